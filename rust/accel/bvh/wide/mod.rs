@@ -1,0 +1,150 @@
+//! Wide trees: `N` children a node, tested at once, and blocks of `N` triangles for leaves. They are what rays walk.
+
+mod collapse;
+mod node;
+mod traverse;
+
+use super::build;
+use crate::accel::{Accelerator, Info, Primitives, SlabRay, extent};
+use crate::math::{Aabb, Hit, Ray};
+use crate::shapes::triangle::TriangleBlock;
+use crate::simd::{Dispatch, Kernel, Level};
+use node::{Child, WideNode};
+use rayon::prelude::*;
+use std::time::Instant;
+use traverse::Batch;
+
+/// How to build a [`WideBvh`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Options {
+    /// Bins an axis of the surface-area builder, from 2 to [`build::binned::MAX_BINS`].
+    pub bins: usize,
+    /// Cost of testing a node's boxes.
+    pub traversal_cost: f32,
+    /// Cost of testing a block of triangles.
+    pub intersection_cost: f32,
+}
+
+impl Options {
+    /// Good for most scenes.
+    pub const DEFAULT: Self = Self { bins: 16, traversal_cost: 1.0, intersection_cost: 1.0 };
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self::DEFAULT
+    }
+}
+
+/// A tree of nodes with up to `N` children over blocks of up to `N` triangles.
+#[derive(Debug)]
+pub struct WideBvh<const N: usize> {
+    /// Empty only if there are no primitives.
+    nodes: Vec<WideNode<N>>,
+    blocks: Vec<TriangleBlock<N>>,
+    /// The largest coordinate of any corner.
+    extent: f64,
+    /// From scene units to those of the boxes.
+    box_scale: f64,
+    /// Entries that a stack can need.
+    stack: usize,
+    level: Level,
+    info: Info,
+}
+
+impl<const N: usize> WideBvh<N> {
+    /// Builds a tree over triangles.
+    pub fn new(primitives: &impl Primitives, options: &Options, level: Level) -> Self {
+        let start = Instant::now();
+        let boxes: Vec<Aabb> = (0..primitives.count() as u32).into_par_iter().map(|p| primitives.aabb(p)).collect();
+        let bounds = boxes.par_iter().copied().reduce(|| Aabb::EMPTY, Aabb::union);
+        let extent = extent(&bounds);
+        let box_scale = SlabRay::box_scale(extent);
+        let scaled: Vec<Aabb> = boxes.par_iter().map(|b| b.scaled(box_scale)).collect();
+        drop(boxes);
+        let binary = build::binned::build(&scaled, options.bins);
+        drop(scaled);
+        let mut bvh = Self::collapse(&binary, primitives, options);
+        bvh.extent = extent;
+        bvh.box_scale = box_scale;
+        bvh.level = level;
+        bvh.info.kind = format!("BVH, {N} wide, binned SAH");
+        bvh.info.bytes = size_of_val(bvh.nodes.as_slice()) + size_of_val(bvh.blocks.as_slice());
+        bvh.info.build_seconds = start.elapsed().as_secs_f64();
+        bvh
+    }
+
+    /// Checks what traversal relies on: boxes hold what is below them, every primitive that can be hit stands in one
+    /// block, once, with its corners, and the tree is no deeper than recorded.
+    pub fn validate(&self, primitives: &impl Primitives) -> Result<(), String> {
+        let mut met = vec![0u32; primitives.count()];
+        let mut deepest = 0;
+        let mut stack: Vec<(u32, usize)> = self.nodes.first().map(|_| (0, 0)).into_iter().collect();
+        let mut visited = 0;
+        while let Some((index, depth)) = stack.pop() {
+            visited += 1;
+            let node = self.nodes.get(index as usize).ok_or_else(|| format!("node {index} does not exist"))?;
+            for lane in 0..N {
+                let (child, outer) = (node.child(lane), node.aabb(lane));
+                match child {
+                    Child::None if outer.is_empty() => {}
+                    Child::None => return Err(format!("node {index} has a box but no child in lane {lane}")),
+                    Child::Node(below) => {
+                        if below <= index {
+                            return Err(format!("node {index} has child {below}"));
+                        }
+                        deepest = deepest.max(depth + 1);
+                        stack.push((below, depth + 1));
+                        let inner = self.nodes.get(below as usize).map_or(Aabb::EMPTY, WideNode::bounds);
+                        if inner.is_empty() || !outer.contains(&inner) {
+                            return Err(format!("node {index} does not hold its child {below}"));
+                        }
+                    }
+                    Child::Block { index: block, count } => {
+                        deepest = deepest.max(depth + 1);
+                        let block = &self.blocks[block as usize];
+                        for lane in 0..count as usize {
+                            let p = block.primitives()[lane];
+                            met[p as usize] += 1;
+                            if block.corners(lane) != primitives.corners(p).map(|c| c.as_dvec3()) {
+                                return Err(format!("primitive {p} has other corners in its block"));
+                            }
+                            if !outer.contains(&primitives.aabb(p).scaled(self.box_scale)) {
+                                return Err(format!("node {index} does not hold primitive {p}"));
+                            }
+                        }
+                    }
+                }
+            }
+        }
+        if visited != self.nodes.len() {
+            return Err(format!("{visited} of {} nodes are reached", self.nodes.len()));
+        }
+        if deepest != self.info.depth {
+            return Err(format!("depth is {deepest}, not {}", self.info.depth));
+        }
+        match (0..met.len()).find(|&p| met[p] != u32::from(!primitives.aabb(p as u32).is_empty())) {
+            Some(p) => Err(format!("primitive {p} stands in {} blocks", met[p])),
+            None => Ok(()),
+        }
+    }
+}
+
+impl<const N: usize> Accelerator for WideBvh<N>
+where
+    Level: Dispatch<N>,
+{
+    fn intersect(&self, rays: &[Ray], hits: &mut [Hit]) {
+        assert_eq!(rays.len(), hits.len(), "a hit for each ray");
+        self.level.dispatch(Batch { bvh: self, rays, out: traverse::Closest(hits) });
+    }
+
+    fn occluded(&self, rays: &[Ray], occluded: &mut [bool]) {
+        assert_eq!(rays.len(), occluded.len(), "an answer for each ray");
+        self.level.dispatch(Batch { bvh: self, rays, out: traverse::Any(occluded) });
+    }
+
+    fn info(&self) -> &Info {
+        &self.info
+    }
+}

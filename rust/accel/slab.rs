@@ -1,0 +1,126 @@
+//! A ray made ready for box tests in f32 that never reject a true hit.
+//!
+//! Boxes are kept in *box units*: the scene scaled by a power of two so that its largest coordinate lies in [1, 2).
+//! Scaling is exact but for what becomes subnormal, and nothing overflows whatever the scene's size.
+//!
+//! The interval of `t` in which a ray is between two planes is `(plane − o) / d`, computed as `plane · r + s` with
+//! `r ≈ 1/d` and `s ≈ −o/d ∓ pad`, all in f32. With v = 2⁻²⁴, to first order and in units of |r|, this errs by
+//! 2v·|plane − o| for r, the same in both terms; v·|plane| for the product (less if fused); v·|o| for rounding o, and
+//! as much again for −o·r and for taking the pad off; and v·(|plane| + |o|) for the sum: in all by less than 6v·R,
+//! where R ("reach") bounds |plane| + |o|. The pad is 8v·R; what is left, at least v·R since |r| > 1/2, covers the error
+//! of a hit's own `t` ([`EdgeRay::T_ERROR`] is a quarter of v). Rounding `t` and a far origin in f64 costs a few 2⁻⁵³ of
+//! the distance, for which 2⁻⁵⁰ of it is added.
+//!
+//! A direction of less than 2⁻⁶⁰ along an axis counts as ±2⁻⁶⁰: within reach, that moves the ray by less than a
+//! hundred-millionth of the pad, and no infinity times zero appears.
+
+use crate::math::robust::{lesser, normalising_scale};
+use crate::math::{Ray, Vec3};
+use crate::shapes::triangle::EdgeRay;
+
+/// What slab tests of a ray need.
+#[derive(Clone, Copy, Debug)]
+pub struct SlabRay {
+    /// Per axis, the inverse of the direction.
+    pub inverse: [f32; 3],
+    /// Per axis, what is added for the plane that is met first.
+    pub near: [f32; 3],
+    /// Per axis, what is added for the plane that is met last.
+    pub far: [f32; 3],
+    /// Per axis, which plane is met first: 0 the lower, 1 the upper.
+    pub first: [usize; 3],
+    /// In box units.
+    pub t_min: f32,
+    /// From `t` along the scaled direction to box units.
+    to_box: f64,
+    /// How far along the origin was moved, in box units.
+    start: f64,
+}
+
+/// At least 2⁻⁶⁰ in magnitude.
+#[inline(always)]
+fn away_from_zero(d: f32) -> f32 {
+    const SMALLEST: f32 = 1.0 / (1u64 << 60) as f32;
+    if d.abs() < SMALLEST { SMALLEST.copysign(d) } else { d }
+}
+
+/// Four times the error of rounding to f32.
+const ULPS: f32 = 1.0 / (1u32 << 22) as f32;
+
+/// Rounds to f32, a little up or down for certain; without a branch, unlike exact outward rounding.
+#[inline(always)]
+fn widened(x: f64, by: f32) -> f32 {
+    let x = x as f32;
+    x + x.abs() * by
+}
+
+impl SlabRay {
+    /// Meets every box but an empty one, at any distance.
+    const EVERYWHERE: Self = Self {
+        inverse: [1.0; 3],
+        near: [-1e38; 3],
+        far: [1e38; 3],
+        first: [0; 3],
+        t_min: -1e38,
+        to_box: 0.0,
+        start: 0.0,
+    };
+
+    /// The scale from a scene's units to box units.
+    pub fn box_scale(extent: f64) -> f64 {
+        normalising_scale(extent).0
+    }
+
+    /// Makes a ray ready for boxes in box units; none if it passes the scene by for certain.
+    #[inline(always)]
+    pub fn new(ray: &EdgeRay, extent: f64, box_scale: f64) -> Option<Self> {
+        const PAD: f64 = 1.0 / (1u64 << 21) as f64;
+        const FAR_PAD: f64 = 1.0 / (1u64 << 50) as f64;
+
+        let mut origin = ray.origin * box_scale;
+        let direction = ray.direction;
+        let largest = ray.largest * box_scale;
+        if !largest.is_finite() {
+            // So far away, counted in scenes, that an f64 cannot say it: every box is met.
+            return Some(Self::EVERYWHERE);
+        }
+        let mut start = 0.0;
+        if ray.is_far {
+            let extent = extent * box_scale;
+            start = -origin.dot(direction) / direction.dot(direction);
+            origin += start * direction;
+            if origin.abs().max_element() > 2.0 * extent + FAR_PAD * largest {
+                return None;
+            }
+        }
+        let pad = Vec3::splat((PAD * ray.reach * box_scale + FAR_PAD * largest) as f32);
+        let (origin, direction) = (origin.as_vec3(), direction.as_vec3());
+        let inverse = Vec3::new(away_from_zero(direction.x), away_from_zero(direction.y), away_from_zero(direction.z));
+        let inverse = inverse.recip();
+        let (shift, pad) = (-origin * inverse, pad * inverse.abs());
+        Some(Self {
+            inverse: inverse.to_array(),
+            near: (shift - pad).to_array(),
+            far: (shift + pad).to_array(),
+            first: [usize::from(inverse.x < 0.0), usize::from(inverse.y < 0.0), usize::from(inverse.z < 0.0)],
+            t_min: widened(ray.t_min * box_scale - start, -ULPS),
+            to_box: box_scale,
+            start,
+        })
+    }
+
+    /// A `t` along the scaled direction in box units, rounded up: no box that starts beyond it can improve on it.
+    #[inline(always)]
+    pub fn limit(&self, t: f64) -> f32 {
+        widened(lesser(t, f64::MAX) * self.to_box - self.start, ULPS)
+    }
+
+    /// Readies a ray for a scene: for triangles and for boxes. None if it cannot hit anything, or passes the
+    /// scene by.
+    #[inline(always)]
+    pub fn prepare(ray: &Ray, extent: f64, box_scale: f64) -> Option<(EdgeRay, Self)> {
+        let edges = EdgeRay::new(ray, extent)?;
+        let slabs = Self::new(&edges, extent, box_scale)?;
+        Some((edges, slabs))
+    }
+}

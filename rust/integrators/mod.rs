@@ -1,0 +1,34 @@
+//! Floor 4: what turns rays into radiance.
+
+mod path;
+
+pub use path::Path;
+
+use crate::math::Ray;
+use crate::optics::Rgb;
+use crate::sampling::Sampler;
+use crate::scene::Scene;
+use crate::workers::Cancel;
+
+/// One sample of one pixel: the ray that the camera sends, and the numbers for what follows.
+#[derive(Clone, Debug)]
+pub struct CameraSample {
+    /// The ray, of unit direction.
+    pub ray: Ray,
+    /// Its numbers; the camera has used the first [`crate::sampling::CAMERA_DIMENSIONS`].
+    pub sampler: Sampler,
+}
+
+/// A way to turn rays into radiance.
+pub trait Integrator: Send + Sync {
+    /// What one thread works with on a scene: the integrator and the memory it needs, to be used again and again.
+    fn worker<'a>(&'a self, scene: &'a Scene) -> Box<dyn Worker + 'a>;
+}
+
+/// An integrator at work on batches of camera samples. It advances all paths of a batch together, one bounce at a
+/// time, so that every ray goes through the accelerator in large groups.
+pub trait Worker: Send {
+    /// Writes the radiance that arrives along each ray. Each depends on its own sample only, not on the batch that it
+    /// is in. Returns early, with nothing of use written, soon after `cancel` is raised.
+    fn radiance(&mut self, samples: &mut [CameraSample], cancel: &Cancel, radiance: &mut [Rgb]);
+}

@@ -1,0 +1,17 @@
+//! raywright: rays to hits, scenes to pictures, each with an honest error.
+//!
+//! The house has floors, and each uses only those under it; `ARCHITECTURE.md` draws them.
+
+pub mod accel;
+pub mod integrators;
+pub mod math;
+pub mod optics;
+pub mod render;
+pub mod sampling;
+pub mod scene;
+pub mod shapes;
+pub mod simd;
+pub mod workers;
+
+#[cfg(feature = "python")]
+mod python;

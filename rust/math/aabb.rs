@@ -1,0 +1,56 @@
+//! Axis-aligned boxes.
+
+use glam::Vec3;
+
+/// The closed box from `min` to `max`. An empty box has `min > max`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Aabb {
+    /// The least corner.
+    pub min: Vec3,
+    /// The greatest corner.
+    pub max: Vec3,
+}
+
+impl Aabb {
+    /// The box that holds nothing: the neutral element of [`Aabb::union`].
+    pub const EMPTY: Self = Self { min: Vec3::INFINITY, max: Vec3::NEG_INFINITY };
+
+    /// The smallest box around some points.
+    pub fn around(points: impl IntoIterator<Item = Vec3>) -> Self {
+        points.into_iter().fold(Self::EMPTY, |b, p| Self { min: b.min.min(p), max: b.max.max(p) })
+    }
+
+    /// The smallest box around two.
+    #[inline(always)]
+    pub fn union(self, other: Self) -> Self {
+        Self { min: self.min.min(other.min), max: self.max.max(other.max) }
+    }
+
+    /// Whether nothing is inside.
+    pub fn is_empty(&self) -> bool {
+        self.min.cmpgt(self.max).any()
+    }
+
+    /// Whether `other` lies inside, borders included. An empty box lies in every box.
+    pub fn contains(&self, other: &Self) -> bool {
+        other.is_empty() || (self.min.cmple(other.min).all() && self.max.cmpge(other.max).all())
+    }
+
+    /// The box times a power of two, computed in f64. Exact, but for coordinates that become subnormal.
+    pub fn scaled(&self, scale: f64) -> Self {
+        let scaled = |v: Vec3| (v.as_dvec3() * scale).as_vec3();
+        Self { min: scaled(self.min), max: scaled(self.max) }
+    }
+
+    /// Half the surface, which is all that the surface-area heuristic needs; 0 for an empty box.
+    #[inline(always)]
+    pub fn half_area(&self) -> f32 {
+        let d = (self.max - self.min).max(Vec3::ZERO);
+        d.x * (d.y + d.z) + d.y * d.z
+    }
+
+    /// The largest magnitude of any coordinate; 0 for an empty box.
+    pub fn largest_coordinate(&self) -> f32 {
+        if self.is_empty() { 0.0 } else { self.min.abs().max(self.max.abs()).max_element() }
+    }
+}

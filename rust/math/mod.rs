@@ -1,0 +1,13 @@
+//! Floor 0: rays, boxes, frames and numbers whose errors are known.
+
+mod aabb;
+mod exact;
+mod frame;
+mod ray;
+pub mod robust;
+
+pub use aabb::Aabb;
+pub use exact::exact_edges;
+pub use frame::Frame;
+pub use glam::{DVec3, Vec3};
+pub use ray::{Hit, Ray};

@@ -1,0 +1,29 @@
+//! Floor 6: the bindings. Arrays in, arrays out, errors mapped; no algorithm lives here.
+
+mod arrays;
+mod describe;
+mod query;
+
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+use crate::simd::Level;
+
+/// The level that kernels run at, or a `ValueError` that says what is wrong with the one asked for.
+fn level() -> PyResult<Level> {
+    Level::current().map_err(PyValueError::new_err)
+}
+
+/// The SIMD level the kernels run at.
+#[pyfunction]
+fn simd() -> PyResult<&'static str> {
+    Ok(level()?.name())
+}
+
+#[pymodule]
+mod _core {
+    #[pymodule_export]
+    use super::query::{AcceleratorInfo, CompiledScene};
+    #[pymodule_export]
+    use super::simd;
+}

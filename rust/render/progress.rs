@@ -1,0 +1,27 @@
+//! Who watches a render.
+
+use super::HistoryRow;
+use std::ops::ControlFlow;
+
+/// Watches a render from the thread that asked for it, and may end it.
+pub trait Progress {
+    /// A pass is done.
+    fn pass(&mut self, row: &HistoryRow) -> ControlFlow<()>;
+
+    /// Called many times a second while a pass is being worked on.
+    fn poll(&mut self) -> ControlFlow<()>;
+}
+
+/// Lets a render go on to its end.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Quiet;
+
+impl Progress for Quiet {
+    fn pass(&mut self, _row: &HistoryRow) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
+
+    fn poll(&mut self) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
+}

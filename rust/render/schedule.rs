@@ -1,0 +1,96 @@
+//! When a render ends, and how many samples the next pass takes.
+
+use super::ErrorEstimate;
+
+/// When to end: the first that is met does.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Until {
+    /// Samples of each pixel.
+    pub samples: Option<u32>,
+    /// relMSE of the picture: met when the whole 95 % interval of its estimate is at or below.
+    pub error: Option<f64>,
+    /// Wall-clock time.
+    pub seconds: Option<f64>,
+}
+
+impl Until {
+    /// Samples below which an estimated error ends nothing: what has not been found yet is not in the estimate.
+    const LEAST_FOR_ERROR: u32 = 16;
+
+    /// Samples of a pass, once there are enough.
+    const PASS: u32 = 16;
+
+    /// Samples of the next pass, of which there have been `done` in `elapsed` seconds, the last ones at `rate` seconds
+    /// each; 0 to end. Passes double (1, 1, 2, 4, 8) so that there is soon something to see, then keep to 16.
+    pub(super) fn next_pass(&self, done: u32, elapsed: f64, rate: f64, error: Option<&ErrorEstimate>) -> u32 {
+        let met = |target| error.is_some_and(|e| e.high <= target);
+        if done >= Self::LEAST_FOR_ERROR && self.error.is_some_and(met) {
+            return 0;
+        }
+        let mut next = done.clamp(1, Self::PASS);
+        if let Some(samples) = self.samples {
+            next = next.min(samples.saturating_sub(done));
+        }
+        if let Some(seconds) = self.seconds
+            && done > 0
+        {
+            // To the nearest sample: one that would end a little late is as good as a little early.
+            let affordable = (seconds - elapsed) / rate + 0.5;
+            next = next.min(affordable.max(0.0) as u32);
+        }
+        next
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The passes of a render whose samples take `rate` seconds and whose error is `1 / samples`.
+    fn passes(until: Until, rate: f64) -> Vec<u32> {
+        let (mut all, mut done) = (Vec::new(), 0);
+        loop {
+            let value = 1.0 / f64::from(done);
+            let error = ErrorEstimate { value, low: 0.5 * value, high: 2.0 * value };
+            let next = until.next_pass(done, f64::from(done) * rate, rate, (done > 1).then_some(&error));
+            if next == 0 {
+                return all;
+            }
+            all.push(next);
+            done += next;
+        }
+    }
+
+    #[test]
+    fn ends_at_samples() {
+        let until = |samples| Until { samples: Some(samples), ..Until::default() };
+        assert_eq!(passes(until(0), 1.0), []);
+        assert_eq!(passes(until(1), 1.0), [1]);
+        assert_eq!(passes(until(50), 1.0), [1, 1, 2, 4, 8, 16, 16, 2]);
+    }
+
+    #[test]
+    fn ends_at_seconds_to_the_nearest_sample() {
+        let until = Until { seconds: Some(10.0), ..Until::default() };
+        assert_eq!(passes(until, 1.0), [1, 1, 2, 4, 2]);
+        assert_eq!(passes(until, 6.0), [1, 1]);
+        assert_eq!(passes(until, 7.0), [1]);
+        assert_eq!(passes(until, 100.0), [1]);
+    }
+
+    #[test]
+    fn ends_at_an_error_that_is_sure() {
+        let until = |error| Until { error: Some(error), ..Until::default() };
+        // The upper end of the interval is 2 / samples.
+        assert_eq!(passes(until(0.05), 1.0).iter().sum::<u32>(), 48);
+        assert_eq!(passes(until(100.0), 1.0).iter().sum::<u32>(), 16);
+    }
+
+    #[test]
+    fn ends_at_what_comes_first() {
+        let all = Until { samples: Some(100), error: Some(0.05), seconds: Some(20.0) };
+        assert_eq!(passes(all, 1.0).iter().sum::<u32>(), 20);
+        assert_eq!(passes(all, 0.1).iter().sum::<u32>(), 48);
+        assert_eq!(passes(Until { samples: Some(30), ..all }, 0.1).iter().sum::<u32>(), 30);
+    }
+}

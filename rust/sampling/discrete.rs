@@ -1,0 +1,155 @@
+//! Choosing one of many by weight.
+
+/// Chooses an entry with probability proportional to its weight, in constant time
+/// (Walker, 1977; built in linear time as in Vose, "A Linear Algorithm for Generating Random Numbers with a Given
+/// Distribution", 1991).
+#[derive(Clone, Debug)]
+pub struct AliasTable {
+    /// Each column of the table belongs to its own entry below the threshold, and to its alias from there on.
+    columns: Vec<Column>,
+    probabilities: Vec<f64>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Column {
+    threshold: f64,
+    alias: u32,
+}
+
+impl AliasTable {
+    /// A table for weights; `None` if all are 0 or there is none.
+    ///
+    /// # Panics
+    /// If a weight is negative, infinite or NaN.
+    pub fn new(weights: &[f64]) -> Option<Self> {
+        assert!(weights.iter().all(|w| w.is_finite() && *w >= 0.0), "weights are finite and not negative");
+        let largest = weights.iter().copied().fold(0.0, f64::max);
+        if largest == 0.0 {
+            return None;
+        }
+        // Taken relative to the largest, no sum overflows.
+        let sum: f64 = weights.iter().map(|w| w / largest).sum();
+        let probabilities: Vec<f64> = weights.iter().map(|w| w / largest / sum).collect();
+
+        let count = weights.len();
+        let mut share: Vec<f64> = probabilities.iter().map(|p| p * count as f64).collect();
+        let mut columns: Vec<Column> = (0..count as u32).map(|alias| Column { threshold: 1.0, alias }).collect();
+        let (mut poor, mut rich): (Vec<u32>, Vec<u32>) = (0..count as u32).partition(|&i| share[i as usize] < 1.0);
+        // Entries of weight 0 come first, while there is surely one to fill their column: rounding may leave a few
+        // poor ones over at the end, which then keep their column to themselves.
+        poor.sort_by_key(|&i| share[i as usize] == 0.0);
+        while let Some(&donor) = rich.last() {
+            let Some(small) = poor.pop() else { break };
+            columns[small as usize] = Column { threshold: share[small as usize], alias: donor };
+            // In this order the difference is exact for a small share (Vose).
+            share[donor as usize] = (share[donor as usize] + share[small as usize]) - 1.0;
+            if share[donor as usize] < 1.0 {
+                poor.push(donor);
+                rich.pop();
+            }
+        }
+        Some(Self { columns, probabilities })
+    }
+
+    /// How many entries there are.
+    pub fn len(&self) -> usize {
+        self.columns.len()
+    }
+
+    /// Whether there is no entry: never.
+    pub fn is_empty(&self) -> bool {
+        self.columns.is_empty()
+    }
+
+    /// The memory held.
+    pub fn bytes(&self) -> usize {
+        size_of_val(self.columns.as_slice()) + size_of_val(self.probabilities.as_slice())
+    }
+
+    /// The entry for a number in [0, 1).
+    #[inline]
+    pub fn sample(&self, u: f64) -> usize {
+        let scaled = u * self.columns.len() as f64;
+        let index = (scaled as usize).min(self.columns.len() - 1);
+        let column = self.columns[index];
+        if scaled - (index as f64) < column.threshold { index } else { column.alias as usize }
+    }
+
+    /// The probability of an entry.
+    #[inline]
+    pub fn probability(&self, index: usize) -> f64 {
+        self.probabilities[index]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::Sampler;
+    use super::super::chi_square::assert_frequencies;
+    use super::*;
+    use proptest::prelude::*;
+
+    /// The probability that the table gives to each entry, read off its columns.
+    fn implied(table: &AliasTable) -> Vec<f64> {
+        let mut sums = vec![0.0; table.len()];
+        for (i, column) in table.columns.iter().enumerate() {
+            sums[i] += column.threshold;
+            sums[column.alias as usize] += 1.0 - column.threshold;
+        }
+        sums.iter().map(|s| s / table.len() as f64).collect()
+    }
+
+    proptest! {
+        #[test]
+        fn columns_hold_the_weights(weights in prop::collection::vec(
+            prop_oneof![Just(0.0), 0.0..1.0f64, (-30.0..30.0f64).prop_map(f64::exp2)], 1..200)) {
+            let Some(table) = AliasTable::new(&weights) else {
+                prop_assert!(weights.iter().all(|&w| w == 0.0));
+                return Ok(());
+            };
+            let sum: f64 = weights.iter().sum();
+            for (i, (got, weight)) in implied(&table).iter().zip(&weights).enumerate() {
+                // Each of a column's few roundings is of a number below the count.
+                prop_assert!((got - weight / sum).abs() < 4.0 * f64::EPSILON * weights.len() as f64);
+                prop_assert!((table.probability(i) - weight / sum).abs() <= 1e-13 * table.probability(i));
+                if *weight == 0.0 {
+                    prop_assert_eq!(*got, 0.0);
+                    prop_assert_eq!(table.columns[i].threshold, 0.0);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn draws_by_weight() {
+        let weights = [1.0, 0.0, 3.0, 1e-9, 0.5, 0.0, 7.0];
+        let table = AliasTable::new(&weights).unwrap();
+        let mut counts = [0; 7];
+        for sample in 0..100_000 {
+            counts[table.sample(Sampler::new(3, 0, sample).one(0))] += 1;
+        }
+        assert_eq!((counts[1], counts[5]), (0, 0));
+        assert_frequencies(&counts, &weights.map(|w| w / 11.5));
+    }
+
+    #[test]
+    fn rare_entries_are_reached() {
+        // One of a thousand entries has a share of 10⁻¹⁰: its column starts with it, and only a number with more than
+        // 32 bits tells it from the rest.
+        let mut weights = vec![1.0; 1000];
+        weights[0] = 1e-10;
+        let table = AliasTable::new(&weights).unwrap();
+        assert_eq!(table.sample(0.0), 0);
+        assert_eq!(table.sample(0.9e-13), 0);
+        assert_ne!(table.sample(1.1e-13), 0);
+    }
+
+    #[test]
+    fn extremes() {
+        assert!(AliasTable::new(&[]).is_none());
+        assert!(AliasTable::new(&[0.0, 0.0]).is_none());
+        let table = AliasTable::new(&[f64::MAX, f64::MAX]).unwrap();
+        assert_eq!(table.probability(1), 0.5);
+        assert_eq!(AliasTable::new(&[5.0]).unwrap().sample(1.0 - f64::EPSILON / 2.0), 0);
+    }
+}

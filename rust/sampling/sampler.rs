@@ -1,0 +1,150 @@
+//! The numbers of one sample of one pixel, by dimension.
+
+use super::philox4x32;
+
+/// How many dimensions stand before those of the first bounce: film position, lens, and two to spare (time, wavelength).
+pub const CAMERA_DIMENSIONS: u32 = 4;
+
+/// Which point set the numbers come from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum SamplerKind {
+    /// Independent random numbers.
+    #[default]
+    Independent,
+}
+
+impl SamplerKind {
+    /// How many consecutive samples of a pixel belong together. Batches are independent of each other, so the spread
+    /// between them is an honest measure of the error; within a batch of a low-discrepancy set it would not be.
+    pub fn batch(self) -> u32 {
+        match self {
+            Self::Independent => 1,
+        }
+    }
+
+    /// The numbers of sample number `sample` of a pixel.
+    pub fn sampler(self, seed: u64, pixel: u32, sample: u32) -> Sampler {
+        match self {
+            Self::Independent => Sampler::new(seed, pixel, sample),
+        }
+    }
+}
+
+/// The numbers of one sample of one pixel. Each is named by its dimension, so none depends on which were asked for
+/// before.
+///
+/// A dimension holds 64 random bits, to be taken either as one number of 53 bits or as a pair of 32 bits each. A choice
+/// wants the many bits: a light of a billionth of the power must still be chosen as often as its probability says. A
+/// point on a surface does not: 2⁻³² of a light's width, in each of two directions, is far below what can be seen of it.
+#[derive(Clone, Debug)]
+pub struct Sampler {
+    key: [u32; 2],
+    pixel: u32,
+    sample: u32,
+    /// The Philox block last made: it holds two dimensions, which are mostly asked for one after the other.
+    block: u32,
+    words: [u32; 4],
+}
+
+impl Sampler {
+    /// The numbers of sample number `sample` of a pixel, for a seed of the whole picture.
+    #[inline]
+    pub fn new(seed: u64, pixel: u32, sample: u32) -> Self {
+        Self { key: [seed as u32, (seed >> 32) as u32], pixel, sample, block: u32::MAX, words: [0; 4] }
+    }
+
+    /// A number in [0, 1) with 53 bits.
+    #[inline]
+    pub fn one(&mut self, dimension: u32) -> f64 {
+        let [low, high] = self.bits(dimension);
+        (u64::from(high) << 32 | u64::from(low)).wrapping_shr(11) as f64 * 2f64.powi(-53)
+    }
+
+    /// Two numbers in (0, 1), each at the middle of one of 2³² equal steps: never 0 and never 1, so that no warp has
+    /// to fear its borders.
+    #[inline]
+    pub fn two(&mut self, dimension: u32) -> [f64; 2] {
+        self.bits(dimension).map(|word| (f64::from(word) + 0.5) * 2f64.powi(-32))
+    }
+
+    #[inline]
+    fn bits(&mut self, dimension: u32) -> [u32; 2] {
+        let block = dimension / 2;
+        if block != self.block {
+            self.words = philox4x32([block, self.sample, self.pixel, 0], self.key);
+            self.block = block;
+        }
+        if dimension.is_multiple_of(2) { [self.words[0], self.words[1]] } else { [self.words[2], self.words[3]] }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::chi_square::assert_frequencies;
+    use super::*;
+
+    #[test]
+    fn a_number_depends_on_its_name_only() {
+        let mut forwards = Sampler::new(7, 3, 5);
+        let ones: Vec<f64> = (0..20).map(|d| forwards.one(d)).collect();
+        let twos: Vec<[f64; 2]> = (0..20).map(|d| forwards.two(d)).collect();
+        for d in (0..20).rev() {
+            let mut fresh = Sampler::new(7, 3, 5);
+            assert_eq!(fresh.one(d), ones[d as usize]);
+            assert_eq!(forwards.two(d), twos[d as usize]);
+        }
+    }
+
+    #[test]
+    fn every_part_of_the_name_counts() {
+        let value = |seed, pixel, sample, dimension| Sampler::new(seed, pixel, sample).one(dimension);
+        let mut all: Vec<f64> = Vec::new();
+        for bit in 0..32 {
+            all.extend([value(1 << bit, 0, 0, 0), value(1 << (bit + 32), 0, 0, 0), value(0, 1 << bit, 0, 0)]);
+            all.push(value(0, 0, 1 << bit, 0));
+            all.push(value(0, 0, 0, 1 << bit));
+        }
+        let count = all.len();
+        all.sort_by(f64::total_cmp);
+        all.dedup();
+        assert_eq!(all.len(), count);
+    }
+
+    #[test]
+    fn uniform_in_square_over_pixels_samples_and_dimensions() {
+        const SIDE: usize = 16;
+        let cell = |u: f64| (u * SIDE as f64) as usize;
+        for axis in 0..3 {
+            let mut pairs = vec![0; SIDE * SIDE];
+            let mut neighbours = vec![0; SIDE * SIDE];
+            for i in 0..100_000u32 {
+                let name = |i: u32| match axis {
+                    0 => (i, 0, 0),
+                    1 => (0, i, 0),
+                    _ => (0, 0, i),
+                };
+                let draw = |i: u32| {
+                    let (pixel, sample, dimension) = name(i);
+                    let mut sampler = Sampler::new(11, pixel, sample);
+                    (sampler.two(dimension), sampler.one(dimension + 1))
+                };
+                let ([x, y], z) = draw(i);
+                pairs[cell(x) * SIDE + cell(y)] += 1;
+                neighbours[cell(z) * SIDE + cell(draw(i + 200_000).1)] += 1;
+            }
+            let expected = vec![1.0 / (SIDE * SIDE) as f64; SIDE * SIDE];
+            assert_frequencies(&pairs, &expected);
+            assert_frequencies(&neighbours, &expected);
+        }
+    }
+
+    #[test]
+    fn borders_are_never_reached() {
+        let mut sampler = Sampler::new(0, 0, 0);
+        sampler.block = 0;
+        sampler.words = [0, 0, u32::MAX, u32::MAX];
+        assert_eq!(sampler.one(0), 0.0);
+        assert_eq!(sampler.one(1), 1.0 - 2f64.powi(-53));
+        assert!(sampler.two(0)[0] > 0.0 && sampler.two(1)[1] < 1.0);
+    }
+}

@@ -1,0 +1,106 @@
+//! A scene as it is described, before it is compiled.
+
+use super::{Material, Mesh, PointLight};
+use crate::optics::{Rgb, is_radiance};
+use std::fmt;
+
+/// One mesh, what it is made of, and how it shines.
+#[derive(Clone, Debug, Default)]
+pub struct Shape {
+    /// The surface.
+    pub mesh: Mesh,
+    /// What it is made of.
+    pub material: Material,
+    /// Radiance emitted on the side that the normals point to.
+    pub emission: Rgb,
+}
+
+/// All that is in a scene.
+#[derive(Clone, Debug, Default)]
+pub struct SceneDescription {
+    /// Surfaces; the index of one is its shape number.
+    pub shapes: Vec<Shape>,
+    /// Lights without extent.
+    pub points: Vec<PointLight>,
+    /// Radiance that comes from everywhere outside; black means that there is none.
+    pub environment: Rgb,
+}
+
+/// Why a description cannot be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DescriptionError {
+    /// The material of this shape reflects less than nothing, or more than all.
+    Material(usize),
+    /// This shape emits less than nothing, or NaN, or infinitely much.
+    Emission(usize),
+    /// This point light is nowhere, or emits less than nothing.
+    Point(usize),
+    /// The environment emits less than nothing.
+    Environment,
+}
+
+impl fmt::Display for DescriptionError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Material(i) => write!(f, "reflectance of shape {i} must lie between 0 and 1"),
+            Self::Emission(i) => write!(f, "emission of shape {i} must be finite and not negative"),
+            Self::Point(i) => {
+                write!(
+                    f,
+                    "point light {i} must have a finite position and an intensity that is finite and not negative"
+                )
+            }
+            Self::Environment => f.write_str("environment must be finite and not negative"),
+        }
+    }
+}
+
+impl std::error::Error for DescriptionError {}
+
+impl SceneDescription {
+    /// Whether it can be.
+    pub fn validate(&self) -> Result<(), DescriptionError> {
+        for (i, shape) in self.shapes.iter().enumerate() {
+            if !shape.material.is_physical() {
+                return Err(DescriptionError::Material(i));
+            }
+            if !is_radiance(shape.emission) {
+                return Err(DescriptionError::Emission(i));
+            }
+        }
+        for (i, point) in self.points.iter().enumerate() {
+            if !(point.position.is_finite() && is_radiance(point.intensity)) {
+                return Err(DescriptionError::Point(i));
+            }
+        }
+        if is_radiance(self.environment) { Ok(()) } else { Err(DescriptionError::Environment) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::DVec3;
+
+    #[test]
+    fn says_what_cannot_be() {
+        let shape = |reflectance: f64, emission: f64| Shape {
+            material: Material::Diffuse { reflectance: Rgb::splat(reflectance) },
+            emission: Rgb::splat(emission),
+            ..Shape::default()
+        };
+        let shapes = |last| SceneDescription { shapes: vec![shape(1.0, 5.0), last], ..Default::default() };
+        assert_eq!(shapes(shape(0.0, 0.0)).validate(), Ok(()));
+        for bad in [-0.1, 1.000_001, f64::NAN] {
+            assert_eq!(shapes(shape(bad, 0.0)).validate(), Err(DescriptionError::Material(1)));
+        }
+        for bad in [-0.1, f64::INFINITY, f64::NAN] {
+            assert_eq!(shapes(shape(0.5, bad)).validate(), Err(DescriptionError::Emission(1)));
+            let point = PointLight { position: DVec3::ZERO, intensity: Rgb::splat(bad) };
+            let points = SceneDescription { points: vec![point], ..Default::default() };
+            assert_eq!(points.validate(), Err(DescriptionError::Point(0)));
+            let sky = SceneDescription { environment: Rgb::splat(bad), ..Default::default() };
+            assert_eq!(sky.validate(), Err(DescriptionError::Environment));
+        }
+    }
+}

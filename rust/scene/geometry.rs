@@ -1,0 +1,174 @@
+//! The surfaces of a scene: every mesh's corners and faces, one after the other.
+
+use crate::accel::Primitives;
+use crate::math::{Aabb, DVec3, Hit, Vec3};
+
+/// One triangle mesh as it is described: what it is made of and how it shines.
+#[derive(Clone, Debug, Default)]
+pub struct Mesh {
+    /// Corners.
+    pub vertices: Vec<Vec3>,
+    /// Three indices into `vertices` a face.
+    pub faces: Vec<[u32; 3]>,
+    /// Shading normals, one a vertex.
+    pub normals: Option<Vec<Vec3>>,
+}
+
+/// All meshes of a scene in one: a primitive is a face, numbered through from the first shape to the last.
+#[derive(Debug, Default)]
+pub struct Geometry {
+    vertices: Vec<Vec3>,
+    /// Indices into `vertices`, for all shapes.
+    faces: Vec<[u32; 3]>,
+    /// Shading normals of all vertices, zero where a shape has none; empty where no shape has any.
+    normals: Vec<Vec3>,
+    /// The first primitive of each shape, and the number of all at the end.
+    first: Vec<u32>,
+    dropped: usize,
+}
+
+/// What shading needs to know of a point on a surface.
+#[derive(Clone, Copy, Debug)]
+pub struct SurfacePoint {
+    /// The point, to within `error` in each coordinate.
+    pub position: DVec3,
+    /// Bound on the error of each coordinate of `position`.
+    pub error: f64,
+    /// Unit normal as the winding gives it.
+    pub normal: DVec3,
+    /// Unit shading normal, on the same side as `normal`.
+    pub shading_normal: DVec3,
+    /// Which shape.
+    pub shape: u32,
+}
+
+impl Primitives for Geometry {
+    fn count(&self) -> usize {
+        self.faces.len()
+    }
+
+    #[inline]
+    fn corners(&self, primitive: u32) -> [Vec3; 3] {
+        self.faces[primitive as usize].map(|v| self.vertices[v as usize])
+    }
+
+    /// Empty for a primitive that is not finite.
+    #[inline]
+    fn aabb(&self, primitive: u32) -> Aabb {
+        let corners = self.corners(primitive);
+        if corners.iter().all(|c| c.is_finite()) { Aabb::around(corners) } else { Aabb::EMPTY }
+    }
+}
+
+impl Geometry {
+    /// Joins meshes; the index of a mesh becomes its shape number.
+    ///
+    /// # Panics
+    /// If a face names a vertex that its mesh does not have, or there are more than 2³¹ faces or vertices in all.
+    pub fn new(meshes: impl IntoIterator<Item = Mesh>) -> Self {
+        let mut all = Self { first: vec![0], ..Self::default() };
+        for mesh in meshes {
+            let base = u32::try_from(all.vertices.len()).expect("fewer than 2^32 vertices");
+            let count = mesh.vertices.len() as u32;
+            if let Some(normals) = &mesh.normals {
+                assert_eq!(normals.len(), mesh.vertices.len(), "a normal for each vertex");
+                all.normals.resize(all.vertices.len(), Vec3::ZERO);
+                all.normals.extend_from_slice(normals);
+            } else if !all.normals.is_empty() {
+                all.normals.resize(all.vertices.len() + mesh.vertices.len(), Vec3::ZERO);
+            }
+            if all.vertices.is_empty() {
+                all.vertices = mesh.vertices;
+            } else {
+                all.vertices.extend_from_slice(&mesh.vertices);
+            }
+            all.faces.reserve(mesh.faces.len());
+            for face in mesh.faces {
+                assert!(face.iter().all(|&v| v < count), "a face names a vertex that its mesh has");
+                all.faces.push(face.map(|v| v + base));
+            }
+            assert!(all.faces.len() < 1 << 31, "fewer than 2^31 faces");
+            all.first.push(all.faces.len() as u32);
+        }
+        all.dropped = (0..all.faces.len() as u32).filter(|&p| all.aabb(p).is_empty()).count();
+        all
+    }
+
+    /// How many shapes there are.
+    pub fn shapes(&self) -> usize {
+        self.first.len() - 1
+    }
+
+    /// How many faces have a corner that is NaN or infinite: no ray can hit them.
+    pub fn dropped(&self) -> usize {
+        self.dropped
+    }
+
+    /// The memory held.
+    pub fn bytes(&self) -> usize {
+        self.vertices.len() * size_of::<Vec3>()
+            + self.normals.len() * size_of::<Vec3>()
+            + self.faces.len() * size_of::<[u32; 3]>()
+            + self.first.len() * size_of::<u32>()
+    }
+
+    /// Which shape a primitive belongs to, and its index there.
+    pub fn locate(&self, primitive: u32) -> (u32, u32) {
+        // The last shape that starts at or before the primitive; empty shapes before it start there too.
+        let shape = self.first.partition_point(|&f| f <= primitive) - 1;
+        (shape as u32, primitive - self.first[shape])
+    }
+
+    /// The primitives of a shape, as numbered among all.
+    pub fn primitives_of(&self, shape: u32) -> std::ops::Range<u32> {
+        self.first[shape as usize]..self.first[shape as usize + 1]
+    }
+
+    /// The point of a primitive with weights `uv` for its second and third corner.
+    pub fn position(&self, primitive: u32, uv: [f64; 2]) -> DVec3 {
+        let [a, b, c] = self.corners(primitive).map(Vec3::as_dvec3);
+        a * (1.0 - uv[0] - uv[1]) + b * uv[0] + c * uv[1]
+    }
+
+    /// Twice the area of a primitive along its unit normal, as the winding gives it. Exact but for the f64 roundings.
+    pub fn area_vector(&self, primitive: u32) -> DVec3 {
+        let [a, b, c] = self.corners(primitive).map(Vec3::as_dvec3);
+        (b - a).cross(c - a)
+    }
+
+    /// The unit normal of a primitive; NaN for one without area.
+    pub fn normal(&self, primitive: u32) -> DVec3 {
+        let n = self.area_vector(primitive);
+        // Scaling by the largest component first keeps the squares of tiny and huge triangles in range.
+        let n = n / n.abs().max_element();
+        n / n.length()
+    }
+
+    /// All that shading needs at a hit.
+    ///
+    /// # Panics
+    /// If it is a miss.
+    pub fn surface(&self, hit: &Hit) -> SurfacePoint {
+        let [a, b, c] = self.corners(hit.primitive).map(Vec3::as_dvec3);
+        let weights = [1.0 - hit.uv[0] - hit.uv[1], hit.uv[0], hit.uv[1]];
+        let position = a * weights[0] + b * weights[1] + c * weights[2];
+        // Weights carry up to 3 roundings, products and sums 3 more: 6 u of each term in all (pbrt 6.8.5 calls it γ₇).
+        let error = 8.0 * f64::EPSILON * a.abs().max(b.abs()).max(c.abs()).max_element();
+        let normal = self.normal(hit.primitive);
+        let shading_normal = self.shading_normal(hit.primitive, weights, normal);
+        SurfacePoint { position, error, normal, shading_normal, shape: self.locate(hit.primitive).0 }
+    }
+
+    /// The interpolated normal of the vertices, on the side of `normal`; `normal` where there is none to be had.
+    fn shading_normal(&self, primitive: u32, weights: [f64; 3], normal: DVec3) -> DVec3 {
+        if self.normals.is_empty() {
+            return normal;
+        }
+        let [i, j, k] = self.faces[primitive as usize].map(|v| self.normals[v as usize].as_dvec3());
+        match (i * weights[0] + j * weights[1] + k * weights[2]).try_normalize() {
+            Some(n) if n.dot(normal) < 0.0 => -n,
+            Some(n) => n,
+            None => normal,
+        }
+    }
+}

@@ -1,0 +1,144 @@
+//! Rays that leave a surface.
+
+use super::SurfacePoint;
+use crate::math::{DVec3, Ray};
+
+/// A point on a surface that rays leave from, or that they are sent to.
+///
+/// Such a ray must not hit the surface it leaves, nor start behind one close by. So it starts a little off the surface:
+/// as far as rounding can matter and no farther, whatever the scale (Pharr, Jakob and Humphreys, "Physically Based
+/// Rendering", 4th ed., 2023, 6.8.6), rather than a fixed distance off.
+#[derive(Clone, Copy, Debug)]
+pub struct Departure {
+    position: DVec3,
+    /// The way off the surface, on the side of its normal.
+    offset: DVec3,
+}
+
+impl Departure {
+    /// How many times the error of the position a ray starts off the surface. With M the largest coordinate of the
+    /// primitive, the position is within 8 ε M = 2⁻⁴⁹ M of its plane in each coordinate, at most 2⁻⁴⁸ M along the
+    /// normal. The ray's own test takes the corners relative to its origin, up to 2 M long, and its distance from them
+    /// by sums of products, with at most 16 roundings of ε/2: another 2⁻⁴⁸ M. Twice the sum of both is 2⁻⁴⁶ M.
+    const SAFETY: f64 = 8.0;
+
+    /// Where rays from a point of a surface start.
+    #[inline]
+    pub fn new(surface: &SurfacePoint) -> Self {
+        Self { position: surface.position, offset: surface.normal * (Self::SAFETY * surface.error) }
+    }
+
+    /// A point in free space.
+    #[inline]
+    pub fn free(position: DVec3) -> Self {
+        Self { position, offset: DVec3::ZERO }
+    }
+
+    /// The point a ray starts or ends at when it leaves or arrives along `direction`, which points away from here.
+    #[inline]
+    fn towards(&self, direction: DVec3) -> DVec3 {
+        if self.offset.dot(direction) < 0.0 { self.position - self.offset } else { self.position + self.offset }
+    }
+
+    /// The ray that leaves along a direction.
+    #[inline]
+    pub fn ray(&self, direction: DVec3) -> Ray {
+        Ray::new(self.towards(direction), direction)
+    }
+
+    /// The segment from here to there: what lies on it shadows the one from the other.
+    #[inline]
+    pub fn segment(&self, there: &Self) -> Ray {
+        let direction = there.position - self.position;
+        Ray::segment(self.towards(direction), there.towards(-direction))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::{Hit, Vec3};
+    use crate::sampling::{Sampler, warp};
+    use crate::scene::fixtures::scene;
+    use crate::scene::{Geometry, Mesh, SceneDescription, Shape};
+
+    /// A triangle of this size and place, turned at random.
+    fn triangle(size: f64, place: f64, sample: u32) -> Mesh {
+        let mut sampler = Sampler::new(1, 0, sample);
+        let place = warp::uniform_sphere(sampler.two(0)) * place;
+        let vertices = (1..4).map(|d| (place + warp::uniform_sphere(sampler.two(d)) * size).as_vec3()).collect();
+        Mesh { vertices, faces: vec![[0, 1, 2]], normals: None }
+    }
+
+    #[test]
+    fn no_ray_hits_the_triangle_it_leaves() {
+        for (size, place) in [(1.0, 0.0), (1.0, 10.0), (1e-6, 0.0), (1e6, 1e7), (1e-3, 1e3), (1.0, 1e6)] {
+            for sample in 0..200 {
+                let mesh = triangle(size, place, sample);
+                let description =
+                    SceneDescription { shapes: vec![Shape { mesh, ..Shape::default() }], ..Default::default() };
+                let scene = scene(description);
+                if scene.geometry().area_vector(0).length() < 0.01 * size * size {
+                    continue;
+                }
+                let mut rays = Vec::new();
+                for draw in 0..100 {
+                    let mut sampler = Sampler::new(2, sample, draw);
+                    let uv = warp::uniform_triangle(sampler.two(0));
+                    let surface = scene.geometry().surface(&Hit { t: 0.0, uv, primitive: 0 });
+                    // Half of them graze the plane, down to an angle of 10⁻¹².
+                    let direction = warp::uniform_sphere(sampler.two(1));
+                    let departure = Departure::new(&surface);
+                    if draw % 2 == 0 {
+                        let sine = 10f64.powf(-12.0 * sampler.one(2));
+                        let along = direction.cross(surface.normal).normalize();
+                        rays.push(departure.ray(along + surface.normal * sine));
+                    } else {
+                        rays.push(departure.ray(direction));
+                        rays.push(departure.segment(&Departure::free(surface.position + direction * size)));
+                    }
+                }
+                let mut occluded = vec![false; rays.len()];
+                scene.occluded(&rays, &mut occluded);
+                assert!(!occluded.contains(&true), "size {size} at {place}");
+            }
+        }
+    }
+
+    #[test]
+    fn starts_on_the_side_it_leaves_to_and_very_near() {
+        let mesh = Mesh {
+            vertices: vec![Vec3::new(0.0, 0.0, 3.0), Vec3::new(1.0, 0.0, 3.0), Vec3::new(0.0, 1.0, 3.0)],
+            faces: vec![[0, 1, 2]],
+            normals: None,
+        };
+        let surface = Geometry::new([mesh]).surface(&Hit { t: 0.0, uv: [0.25, 0.25], primitive: 0 });
+        let departure = Departure::new(&surface);
+        for (direction, sign) in [(DVec3::Z, 1.0), (DVec3::NEG_Z, -1.0)] {
+            let height = sign * (departure.ray(direction).origin.z - 3.0);
+            assert!(height > 0.0 && height < 1e-13);
+        }
+    }
+
+    #[test]
+    fn a_segment_stops_short_of_the_surface_it_goes_to() {
+        let floor = Mesh { vertices: vec![Vec3::ZERO, Vec3::X, Vec3::Y], faces: vec![[0, 1, 2]], normals: None };
+        let ceiling = Mesh {
+            vertices: vec![Vec3::Z, Vec3::Z + Vec3::Y, Vec3::Z + Vec3::X],
+            faces: vec![[0, 1, 2]],
+            normals: None,
+        };
+        let shapes = [floor, ceiling].map(|mesh| Shape { mesh, ..Shape::default() }).into();
+        let scene = scene(SceneDescription { shapes, ..Default::default() });
+        for sample in 0..1000 {
+            let mut sampler = Sampler::new(4, 0, sample);
+            let [a, b] = [0, 1].map(|primitive| {
+                let uv = warp::uniform_triangle(sampler.two(primitive));
+                Departure::new(&scene.geometry().surface(&Hit { t: 0.0, uv, primitive }))
+            });
+            let mut occluded = [false; 2];
+            scene.occluded(&[a.segment(&b), b.segment(&a)], &mut occluded);
+            assert_eq!(occluded, [false; 2]);
+        }
+    }
+}

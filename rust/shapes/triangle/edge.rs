@@ -1,0 +1,148 @@
+//! The edge form: a ray meets a triangle where it passes all three edges on the same side.
+//!
+//! With corners `a b c` relative to the ray's origin, the weight of `a` is `d · (b × c)`, twice over and written
+//! `d · ((b − c) × (b + c))`, which loses less to cancellation far from the origin and is negated exactly when the
+//! edge is walked the other way. (It is the side product of two lines in Plücker coordinates.) It is computed in f64
+//! with a bound on its error; where the bound leaves the sign open the sign is found exactly. So the decision is the
+//! exact one for the numbers given, and neighbours that share an edge never disagree.
+//!
+//! The bound. Let u = 2⁻⁵³, M bound every coordinate of a corner relative to the origin, D < 2 every coordinate of the
+//! direction. A relative corner errs by uM, a sum or difference of two by 4uM and is at most 2M. So a product of two
+//! of them errs by 2·(2M·4uM) + u·4M² = 20uM², a component of the cross product by 2·20uM² + u·8M² = 48uM², its
+//! product with d by 56uM²D and the sum of three by 3·56uM²D + u·(16 + 24)M²D = 208uM²D, to first order. 256uM²D
+//! leaves room for the higher orders, for a direction whose small parts were rounded in scaling, and for M, D
+//! themselves being computed.
+
+use crate::math::robust::{UNIT, greater, lesser, normalising_scale};
+use crate::math::{DVec3, Ray, exact_edges};
+
+/// A ray made ready for edge tests: the direction scaled by a power of two so that its largest coordinate lies in
+/// [1, 2), and what is known beforehand about errors.
+#[derive(Clone, Copy, Debug)]
+pub struct EdgeRay {
+    /// As given.
+    pub origin: DVec3,
+    /// Scaled by `scale`.
+    pub direction: DVec3,
+    /// As given, for exact decisions.
+    unscaled: DVec3,
+    /// `t` as given is `scale` times `t` along the scaled direction.
+    pub scale: f64,
+    /// Of the scaled direction.
+    pub t_min: f64,
+    /// Of the scaled direction.
+    pub t_max: f64,
+    /// The direction's largest coordinate.
+    axis: usize,
+    /// Bound on the error of an edge's weight.
+    sign_error: f64,
+    /// How far `t` may be off along the scaled direction before it is computed anew from exact weights.
+    t_error: f64,
+    /// Bounds the coordinates that `t` is measured against: the origin, or where the ray nears a far scene, plus the
+    /// scene's extent.
+    pub reach: f64,
+    /// Bounds every coordinate relative to the origin.
+    pub largest: f64,
+    /// Whether the origin is so far that the ray is moved up to the scene before boxes are tested.
+    pub is_far: bool,
+}
+
+/// A triangle that a ray meets.
+#[derive(Clone, Copy, Debug)]
+pub struct Candidate {
+    /// Along the scaled direction.
+    pub t: f64,
+    /// Weights of the second and the third corner.
+    pub uv: [f64; 2],
+}
+
+impl EdgeRay {
+    /// Beyond so many extents an origin is far.
+    const FAR: f64 = 8.0;
+
+    /// How far `t` may be off, as a part of `reach`; box tests leave as much room.
+    pub const T_ERROR: f64 = 1.0 / (1u64 << 26) as f64;
+
+    /// Makes a ray ready for triangles whose coordinates are at most `extent`. None if it cannot hit anything: something
+    /// is NaN or infinite, the direction is zero (or has no coordinate that is a normal number), or `t_min > t_max`.
+    #[inline(always)]
+    pub fn new(ray: &Ray, extent: f64) -> Option<Self> {
+        // Zero times infinity or NaN is NaN: one comparison for six numbers.
+        let zero = ray.origin * 0.0 + ray.direction * 0.0;
+        let finite = zero.x + zero.y + zero.z == 0.0;
+        let size = ray.direction.abs();
+        let longest = greater(greater(size.x, size.y), size.z);
+        let axis = if size.x == longest { 0 } else { 2 - usize::from(size.y == longest) };
+        if !(finite && longest >= f64::MIN_POSITIVE && ray.t_min <= ray.t_max) {
+            return None;
+        }
+        let (scale, inverse) = normalising_scale(longest);
+        let far = ray.origin.abs();
+        let far = greater(greater(far.x, far.y), far.z);
+        let largest = far + extent;
+        // Where a ray that is moved up to the scene starts is within √3 extents of the centre, if it hits at all.
+        let is_far = far > Self::FAR * extent;
+        let reach = if is_far { 3.0 * extent } else { largest };
+        Some(Self {
+            origin: ray.origin,
+            direction: ray.direction * scale,
+            unscaled: ray.direction,
+            scale,
+            t_min: ray.t_min * inverse,
+            t_max: ray.t_max * inverse,
+            axis,
+            sign_error: 256.0 * UNIT * 2.0 * largest * largest,
+            t_error: Self::T_ERROR * reach,
+            reach,
+            largest,
+            is_far,
+        })
+    }
+
+    /// Where a triangle is met, if it is: decided for certain. Every kernel ends here, so that all give the same bits.
+    #[inline(always)]
+    pub fn meet(&self, corners: [DVec3; 3]) -> Option<Candidate> {
+        let [a, b, c] = corners.map(|x| x - self.origin);
+        let volume = |v: DVec3, w: DVec3| self.direction.dot((v - w).cross(v + w));
+        let w = [volume(b, c), volume(c, a), volume(a, b)];
+        let above = self.sign_error;
+        if (w[0] > above || w[1] > above || w[2] > above) && (w[0] < -above || w[1] < -above || w[2] < -above) {
+            return None;
+        }
+        let k = self.axis;
+        let z = [a[k], b[k], c[k]];
+        // Should a weight be NaN, so is the sum, and the comparison with it fails.
+        let least = lesser(lesser(w[0].abs(), w[1].abs()), w[2].abs());
+        let sum = w[0] + w[1] + w[2];
+        let range = greater(greater(z[0], z[1]), z[2]) - lesser(lesser(z[0], z[1]), z[2]);
+        // With each weight off by e, the mean of the corners' depths moves by at most 3e · range / (|sum| − 3e).
+        if least > self.sign_error && 6.0 * self.sign_error * range <= self.t_error * sum.abs() {
+            self.accept(w, sum, (w[0] * z[0] + w[1] * z[1] + w[2] * z[2]) / (sum * self.direction[k]))
+        } else {
+            self.meet_exactly(corners)
+        }
+    }
+
+    /// The same where rounding leaves the sign of a weight open, or `t` uncertain.
+    #[cold]
+    #[inline(never)]
+    fn meet_exactly(&self, corners: [DVec3; 3]) -> Option<Candidate> {
+        let w = exact_edges(self.origin, self.unscaled, corners);
+        let sum = w[0] + w[1] + w[2];
+        if w.iter().any(|&x| x > 0.0) && w.iter().any(|&x| x < 0.0) || w == [0.0; 3] {
+            // Passed by; or without area as the ray sees it.
+            return None;
+        }
+        let k = self.axis;
+        // An eighth of everything, lest a difference of huge numbers overflow.
+        let z = corners.map(|c| c[k] / 8.0 - self.origin[k] / 8.0);
+        self.accept(w, sum, 8.0 * ((w[0] * z[0] + w[1] * z[1] + w[2] * z[2]) / (sum * self.direction[k])))
+    }
+
+    #[inline(always)]
+    fn accept(&self, w: [f64; 3], sum: f64, t: f64) -> Option<Candidate> {
+        // What lies so far along a short direction that an f64 cannot say it is no hit either.
+        (t >= self.t_min && t <= self.t_max && (t * self.scale).is_finite())
+            .then(|| Candidate { t, uv: [w[1] / sum, w[2] / sum] })
+    }
+}

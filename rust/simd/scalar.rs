@@ -1,0 +1,74 @@
+//! Lanes as plain arrays: for processors without a level of their own, and as the reading of what the others do.
+
+use super::Simd;
+use std::array::from_fn;
+
+/// No vector instructions beyond what the compiler makes of arrays.
+#[derive(Clone, Copy, Debug)]
+pub struct Scalar;
+
+#[inline(always)]
+fn mask<const N: usize>(lane: impl Fn(usize) -> bool) -> u32 {
+    (0..N).fold(0, |m, i| m | u32::from(lane(i)) << i)
+}
+
+impl<const N: usize> Simd<N> for Scalar {
+    type F32 = [f32; N];
+
+    #[inline(always)]
+    fn splat(self, x: f32) -> [f32; N] {
+        [x; N]
+    }
+    #[inline(always)]
+    fn load(self, from: &[f32; N]) -> [f32; N] {
+        *from
+    }
+    #[inline(always)]
+    fn store(self, x: [f32; N], to: &mut [f32; N]) {
+        *to = x;
+    }
+    #[inline(always)]
+    fn add(self, a: [f32; N], b: [f32; N]) -> [f32; N] {
+        from_fn(|i| a[i] + b[i])
+    }
+    #[inline(always)]
+    fn sub(self, a: [f32; N], b: [f32; N]) -> [f32; N] {
+        from_fn(|i| a[i] - b[i])
+    }
+    #[inline(always)]
+    fn mul(self, a: [f32; N], b: [f32; N]) -> [f32; N] {
+        from_fn(|i| a[i] * b[i])
+    }
+    #[inline(always)]
+    fn neg(self, a: [f32; N]) -> [f32; N] {
+        a.map(|x| -x)
+    }
+    #[inline(always)]
+    fn abs(self, a: [f32; N]) -> [f32; N] {
+        a.map(|x| x.abs())
+    }
+    #[inline(always)]
+    fn mul_sub(self, a: [f32; N], b: [f32; N], c: [f32; N]) -> [f32; N] {
+        from_fn(|i| a[i] * b[i] - c[i])
+    }
+    #[inline(always)]
+    fn mul_add(self, a: [f32; N], b: [f32; N], c: [f32; N]) -> [f32; N] {
+        from_fn(|i| a[i] * b[i] + c[i])
+    }
+    #[inline(always)]
+    fn min(self, a: [f32; N], b: [f32; N]) -> [f32; N] {
+        from_fn(|i| if a[i] < b[i] { a[i] } else { b[i] })
+    }
+    #[inline(always)]
+    fn max(self, a: [f32; N], b: [f32; N]) -> [f32; N] {
+        from_fn(|i| if a[i] > b[i] { a[i] } else { b[i] })
+    }
+    #[inline(always)]
+    fn le(self, a: [f32; N], b: [f32; N]) -> u32 {
+        mask::<N>(|i| a[i] <= b[i])
+    }
+    #[inline(always)]
+    fn gt(self, a: [f32; N], b: [f32; N]) -> u32 {
+        mask::<N>(|i| a[i] > b[i])
+    }
+}

@@ -1,0 +1,139 @@
+//! Threads: pools by size, and work that the calling thread watches and can stop.
+
+use rayon::{ThreadPool, ThreadPoolBuilder};
+use std::collections::HashMap;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Condvar, Mutex, PoisonError};
+use std::time::Duration;
+
+/// How often the calling thread looks up from waiting.
+const WATCH: Duration = Duration::from_millis(40);
+
+/// Raised to ask work to stop soon.
+#[derive(Debug, Default)]
+pub struct Cancel(AtomicBool);
+
+impl Cancel {
+    /// Asks.
+    pub fn raise(&self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
+
+    /// Whether it was asked.
+    pub fn is_raised(&self) -> bool {
+        self.0.load(Ordering::Relaxed)
+    }
+}
+
+/// The pool of so many threads, or of one a core. Made once and kept.
+///
+/// A process that was forked has none of its parent's threads and would wait for them forever, so pools are kept by
+/// process as well; this is also why the global pool is never used.
+pub fn pool(threads: Option<usize>) -> Result<Arc<ThreadPool>, String> {
+    type Pools = HashMap<(u32, Option<usize>), Arc<ThreadPool>>;
+    static POOLS: Mutex<Option<Pools>> = Mutex::new(None);
+    let mut pools = POOLS.lock().unwrap_or_else(PoisonError::into_inner);
+    let pools = pools.get_or_insert_with(HashMap::new);
+    let key = (std::process::id(), threads);
+    if let Some(pool) = pools.get(&key) {
+        return Ok(Arc::clone(pool));
+    }
+    let pool = ThreadPoolBuilder::new()
+        .num_threads(threads.unwrap_or(0))
+        .thread_name(|i| format!("raywright-{i}"))
+        .build()
+        .map_err(|e| format!("no pool of {threads:?} threads: {e}"))?;
+    let pool = Arc::new(pool);
+    pools.insert(key, Arc::clone(&pool));
+    Ok(pool)
+}
+
+/// Does `work` on the pool of so many threads while the calling thread calls `watch` 25 times a second; when that
+/// says false, the work's [`Cancel`] is raised, and it should end soon.
+pub fn watched<T: Send>(
+    threads: Option<usize>,
+    work: impl FnOnce(&Cancel) -> T + Send,
+    mut watch: impl FnMut() -> bool,
+) -> Result<T, String> {
+    let pool = pool(threads)?;
+    let cancel = Cancel::default();
+    let result = Mutex::new(None);
+    let (done, ended) = (Mutex::new(false), Condvar::new());
+    /// Tells the watcher even if the work panics; the scope then passes the panic on.
+    struct Tell<'a>(&'a Mutex<bool>, &'a Condvar);
+    impl Drop for Tell<'_> {
+        fn drop(&mut self) {
+            *self.0.lock().unwrap_or_else(PoisonError::into_inner) = true;
+            self.1.notify_one();
+        }
+    }
+    pool.in_place_scope(|scope| {
+        scope.spawn(|_| {
+            let _tell = Tell(&done, &ended);
+            *result.lock().unwrap_or_else(PoisonError::into_inner) = Some(work(&cancel));
+        });
+        let mut over = done.lock().unwrap_or_else(PoisonError::into_inner);
+        while !*over {
+            let (guard, wait) = ended.wait_timeout(over, WATCH).unwrap_or_else(PoisonError::into_inner);
+            over = guard;
+            if wait.timed_out() && !*over && !cancel.is_raised() {
+                // Watching may take its time, and the work must be able to end meanwhile.
+                drop(over);
+                if !watch() {
+                    cancel.raise();
+                }
+                over = done.lock().unwrap_or_else(PoisonError::into_inner);
+            }
+        }
+    });
+    let value = result.into_inner().unwrap_or_else(PoisonError::into_inner);
+    Ok(value.expect("work that does not panic leaves a result"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rayon::prelude::*;
+    use std::time::Instant;
+
+    #[test]
+    fn pools_have_their_size_and_are_kept() {
+        for threads in [1, 3] {
+            let pool = pool(Some(threads)).unwrap();
+            assert_eq!(pool.current_num_threads(), threads);
+            assert!(Arc::ptr_eq(&pool, &super::pool(Some(threads)).unwrap()));
+        }
+    }
+
+    #[test]
+    fn work_runs_on_the_pool_and_gives_its_result() {
+        let sum = watched(Some(2), |_| (0..1000u64).into_par_iter().sum::<u64>(), || true);
+        assert_eq!(sum, Ok(499_500));
+    }
+
+    #[test]
+    fn work_is_asked_to_stop_when_the_watcher_says_so() {
+        let start = Instant::now();
+        let mut looks = 0;
+        let raised = watched(
+            Some(1),
+            |cancel| {
+                while !cancel.is_raised() && start.elapsed() < Duration::from_secs(20) {
+                    std::thread::yield_now();
+                }
+                cancel.is_raised()
+            },
+            || {
+                looks += 1;
+                looks < 2
+            },
+        );
+        assert_eq!((raised, looks), (Ok(true), 2));
+    }
+
+    #[test]
+    #[should_panic(expected = "from within")]
+    fn panics_come_through() {
+        let _ = watched(Some(1), |_| panic!("from within"), || true);
+    }
+}
