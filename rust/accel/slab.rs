@@ -75,13 +75,14 @@ impl SlabRay {
     #[inline(always)]
     pub fn new(ray: &EdgeRay, extent: f64, box_scale: f64) -> Option<Self> {
         const PAD: f64 = 1.0 / (1u64 << 21) as f64;
+        // So many extents away the pad is many times the scene, and what is added soon more than an f32 can hold.
+        const FARTHEST: f64 = (1u128 << 100) as f64;
         const FAR_PAD: f64 = 1.0 / (1u64 << 50) as f64;
 
         let mut origin = ray.origin * box_scale;
         let direction = ray.direction;
         let largest = ray.largest * box_scale;
-        if !largest.is_finite() {
-            // So far away, counted in scenes, that an f64 cannot say it: every box is met.
+        if largest > FARTHEST {
             return Some(Self::EVERYWHERE);
         }
         let mut start = 0.0;

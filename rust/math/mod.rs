@@ -1,6 +1,7 @@
 //! Floor 0: rays, boxes, frames and numbers whose errors are known.
 
 mod aabb;
+pub mod coherence;
 mod exact;
 mod frame;
 mod ray;

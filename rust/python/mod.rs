@@ -3,6 +3,7 @@
 mod arrays;
 mod describe;
 mod query;
+mod render;
 
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -24,6 +25,8 @@ fn simd() -> PyResult<&'static str> {
 mod _core {
     #[pymodule_export]
     use super::query::{AcceleratorInfo, CompiledScene};
+    #[pymodule_export]
+    use super::render::{Rendering, camera_rays, render_scene};
     #[pymodule_export]
     use super::simd;
 }

@@ -16,8 +16,8 @@ use crate::workers;
 /// Rays that a thread takes at a time: enough to make the hand-over free, few enough to be heard by Ctrl-C.
 const CHUNK: usize = 1024;
 
-/// Rays gathered from the arrays at a time: small enough to stay in the nearest cache.
-const GATHER: usize = 64;
+/// Rays gathered from the arrays at a time: small enough to stay in a near cache, enough to keep a wave full.
+const GATHER: usize = 512;
 
 /// Up to so many rays the calling thread does the work: waking others takes longer.
 const ALONE: usize = 512;

@@ -131,3 +131,133 @@ pub fn render(
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::Quiet;
+    use super::*;
+    use crate::integrators::Path;
+    use crate::scene::fixtures::{cornell, furnace};
+    use std::time::Duration;
+
+    fn settings(samples: u32, threads: usize) -> Settings {
+        Settings {
+            until: Until { samples: Some(samples), ..Until::default() },
+            threads: Some(threads),
+            ..Settings::default()
+        }
+    }
+
+    #[test]
+    fn threads_and_passes_change_no_bit() {
+        let (scene, camera) = cornell(21, 13);
+        let run = |settings| render(&scene, &camera, &Path::default(), &settings, &mut Quiet).unwrap();
+        let one = run(settings(37, 1));
+        for threads in [2, 5] {
+            let other = run(settings(37, threads));
+            assert_eq!(other.rgb(), one.rgb());
+            assert_eq!(other.standard_error(), one.standard_error());
+            assert_eq!(other.error, one.error);
+            let errors = |r: &Rendering| r.history.iter().map(|row| row.error.to_bits()).collect::<Vec<_>>();
+            assert_eq!(errors(&other), errors(&one));
+        }
+        // Ending by time makes other passes. However far it came, the same samples make the same picture.
+        let until = Until { seconds: Some(0.05), ..Until::default() };
+        let timed = run(Settings { until, ..settings(0, 2) });
+        let again = run(settings(timed.film.samples(), 1));
+        assert_eq!(again.film.means(), timed.film.means());
+    }
+
+    #[test]
+    fn seeds_give_other_pictures_of_the_same() {
+        let (scene, camera) = cornell(8, 8);
+        let run = |seed| {
+            let settings = Settings { seed, ..settings(64, 2) };
+            render(&scene, &camera, &Path::default(), &settings, &mut Quiet).unwrap()
+        };
+        let (a, b) = (run(1), run(2));
+        assert_ne!(a.rgb(), b.rgb());
+        assert_eq!(a.rgb(), run(1).rgb());
+    }
+
+    #[test]
+    fn history_tells_how_it_went() {
+        let (scene, camera) = cornell(16, 16);
+        let rendering = render(&scene, &camera, &Path::default(), &settings(40, 2), &mut Quiet).unwrap();
+        let samples: Vec<u32> = rendering.history.iter().map(|row| row.samples).collect();
+        assert_eq!(samples, [1, 2, 4, 8, 16, 32, 40]);
+        assert!(rendering.history[0].error.is_nan() && rendering.history[1].error > 0.0);
+        assert!(rendering.history.is_sorted_by(|a, b| a.seconds <= b.seconds));
+        assert!(rendering.seconds >= rendering.history[6].seconds);
+        assert_eq!(rendering.history[6].error, rendering.error.unwrap().value);
+        assert_eq!(rendering.film.dropped(), 0);
+    }
+
+    #[test]
+    fn ends_at_an_error_or_a_time() {
+        let (scene, camera) = cornell(24, 24);
+        let run = |until| {
+            let settings = Settings { until, threads: Some(2), ..Settings::default() };
+            render(&scene, &camera, &Path::default(), &settings, &mut Quiet).unwrap()
+        };
+        let rendering = run(Until { error: Some(0.02), ..Until::default() });
+        assert!(rendering.error.unwrap().high <= 0.02);
+        assert!(rendering.history[rendering.history.len() - 2].error > 0.01);
+        let rendering = run(Until { seconds: Some(0.5), ..Until::default() });
+        assert!((0.3..2.0).contains(&rendering.seconds), "{}", rendering.seconds);
+        let rendering = run(Until { samples: Some(0), ..Until::default() });
+        assert_eq!((rendering.film.samples(), rendering.error), (0, None));
+        assert!(rendering.standard_error()[0][0].is_nan() && rendering.rgb()[0] == [0.0; 3]);
+    }
+
+    /// Ends the render at the first poll.
+    struct Impatient(Option<Instant>);
+
+    impl Progress for Impatient {
+        fn pass(&mut self, _row: &HistoryRow) -> ControlFlow<()> {
+            ControlFlow::Continue(())
+        }
+
+        fn poll(&mut self) -> ControlFlow<()> {
+            self.0.get_or_insert_with(Instant::now);
+            ControlFlow::Break(())
+        }
+    }
+
+    #[test]
+    fn ends_at_once_when_asked() {
+        // A pass of this takes seconds: paths of thousands of bounces.
+        let scene = furnace(1.0, 1.0);
+        let (_, camera) = cornell(256, 256);
+        let mut progress = Impatient(None);
+        let result = render(&scene, &camera, &Path::default(), &settings(64, 2), &mut progress);
+        assert_eq!(result.err(), Some(RenderError::Interrupted));
+        let waited = progress.0.expect("it was polled").elapsed();
+        assert!(waited < Duration::from_millis(100), "{waited:?}");
+    }
+
+    #[test]
+    fn the_error_of_a_cornell_box_is_as_estimated() {
+        let (scene, camera) = cornell(24, 24);
+        let run = |samples, seed| {
+            let settings = Settings { seed, ..settings(samples, 2) };
+            render(&scene, &camera, &Path::default(), &settings, &mut Quiet).unwrap()
+        };
+        let reference = run(3200, 1_000_000).film.means();
+        let close = (0..40u64)
+            .filter(|&seed| {
+                let rendering = run(16, seed);
+                let truth: f64 = rendering
+                    .film
+                    .means()
+                    .iter()
+                    .zip(&reference)
+                    .map(|(x, mu)| ((*x - *mu).powf(2.0) / (*mu * *mu + 0.01)).element_sum() / 3.0)
+                    .sum();
+                let ratio = rendering.error.unwrap().value / (truth / reference.len() as f64);
+                (0.8..1.25).contains(&ratio)
+            })
+            .count();
+        assert!(close >= 38, "{close} of 40");
+    }
+}

@@ -101,3 +101,69 @@ impl Interaction {
         wi.z * self.normal.dot(direction) <= 0.0
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::Vec3;
+    use crate::sampling::{Sampler, warp};
+    use crate::scene::fixtures::{rectangle, scene, shape};
+    use crate::scene::{Mesh, SceneDescription};
+
+    /// A floor with this shading normal.
+    fn floor(normal: DVec3) -> Scene {
+        let mesh = rectangle([-10.0, -10.0, 0.0], [20.0, 0.0, 0.0], [0.0, 20.0, 0.0]);
+        let mesh = Mesh { normals: Some(vec![normal.as_vec3(); 4]), ..mesh };
+        scene(SceneDescription { shapes: vec![shape(mesh, [0.8; 3], 0.0)], ..Default::default() })
+    }
+
+    fn look(scene: &Scene, from: DVec3) -> Interaction {
+        let ray = Ray::new(from, -from.normalize());
+        let mut hits = [Hit::MISS];
+        scene.intersect(&[ray], &mut hits);
+        Interaction::at(scene, &ray, &hits[0])
+    }
+
+    #[test]
+    fn nothing_goes_through_a_surface_and_nothing_is_nan() {
+        for tilt in [0.0, 0.5, 1.0, 1.5, 1.57] {
+            let floor = floor(DVec3::new(f64::sin(tilt), 0.0, f64::cos(tilt)));
+            for draw in 0..1000 {
+                let mut sampler = Sampler::new(1, 0, draw);
+                let from = warp::uniform_sphere(sampler.two(0));
+                let here = look(&floor, from);
+                let other = warp::uniform_sphere(sampler.two(1));
+                let (scattered, pdf) = here.evaluate(other);
+                assert!(scattered.is_finite() && pdf.is_finite());
+                assert!(scattered == Rgb::ZERO || other.z * from.z > 0.0, "light leaks");
+                if let Some(next) = here.sample(|| 0.5, sampler.two(2)) {
+                    assert!(next.direction.z * from.z > 0.0, "a path leaks");
+                    assert!((next.direction.length() - 1.0).abs() < 1e-12);
+                    let (scattered, pdf) = here.evaluate(next.direction);
+                    assert!((scattered - next.weight * next.pdf).abs().max_element() < 1e-12);
+                    assert!((pdf - next.pdf).abs() < 1e-12);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_surface_that_faces_the_viewer_is_not_black() {
+        // Seen from beyond the horizon of the shading normal, from either side.
+        let floor = floor(DVec3::new(0.8, 0.0, 0.6));
+        for side in [1.0, -1.0] {
+            let here = look(&floor, DVec3::new(-side, 0.0, 0.2 * side));
+            assert!(here.evaluate(DVec3::new(0.6 * side, 0.0, 0.8 * side)).0.x > 0.1);
+        }
+    }
+
+    #[test]
+    fn both_sides_scatter_alike() {
+        let floor = floor(Vec3::Z.as_dvec3());
+        let towards = DVec3::new(0.6, 0.0, 0.8);
+        let above = look(&floor, DVec3::new(0.1, 0.2, 1.0)).evaluate(towards);
+        let below = look(&floor, DVec3::new(0.1, 0.2, -1.0)).evaluate(-towards);
+        assert_eq!(above, below);
+        assert!((above.0.x - 0.8 * 0.8 / std::f64::consts::PI).abs() < 1e-12);
+    }
+}

@@ -49,4 +49,7 @@ pub trait Simd<const N: usize>: Copy + Send + Sync {
     fn le(self, a: Self::F32, b: Self::F32) -> u32;
     /// Lanes where `a > b`.
     fn gt(self, a: Self::F32, b: Self::F32) -> u32;
+
+    /// Asks for every cache line of something that will be needed soon.
+    fn prefetch<T>(self, what: &T);
 }

@@ -71,4 +71,6 @@ impl<const N: usize> Simd<N> for Scalar {
     fn gt(self, a: [f32; N], b: [f32; N]) -> u32 {
         mask::<N>(|i| a[i] > b[i])
     }
+    #[inline(always)]
+    fn prefetch<T>(self, _: &T) {}
 }

@@ -26,6 +26,16 @@ impl Avx2 {
     }
 }
 
+#[inline(always)]
+fn prefetch<T>(what: &T) {
+    const LINE: usize = 64;
+    let start = std::ptr::from_ref(what).cast::<i8>();
+    for offset in (0..size_of::<T>()).step_by(LINE) {
+        // SAFETY: every x86-64 processor has the instruction, and the address lies within `what`.
+        unsafe { _mm_prefetch::<_MM_HINT_T0>(start.add(offset)) }
+    }
+}
+
 /// Makes safe, always inlined methods of intrinsics.
 macro_rules! lanes {
     ($($name:ident($($arg:ident: $type:ty),*) $(-> $ret:ty)? = $body:expr;)*) => {$(
@@ -57,6 +67,11 @@ impl Simd<4> for Sse2 {
         le(a: __m128, b: __m128) -> u32 = _mm_movemask_ps(_mm_cmple_ps(a, b)) as u32;
         gt(a: __m128, b: __m128) -> u32 = _mm_movemask_ps(_mm_cmpgt_ps(a, b)) as u32;
     }
+
+    #[inline(always)]
+    fn prefetch<T>(self, what: &T) {
+        prefetch(what);
+    }
 }
 
 impl Simd<4> for Avx2 {
@@ -78,6 +93,11 @@ impl Simd<4> for Avx2 {
         le(a: __m128, b: __m128) -> u32 = _mm_movemask_ps(_mm_cmple_ps(a, b)) as u32;
         gt(a: __m128, b: __m128) -> u32 = _mm_movemask_ps(_mm_cmpgt_ps(a, b)) as u32;
     }
+
+    #[inline(always)]
+    fn prefetch<T>(self, what: &T) {
+        prefetch(what);
+    }
 }
 
 impl Simd<8> for Avx2 {
@@ -98,5 +118,10 @@ impl Simd<8> for Avx2 {
         max(a: __m256, b: __m256) -> __m256 = _mm256_max_ps(a, b);
         le(a: __m256, b: __m256) -> u32 = _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(a, b)) as u32;
         gt(a: __m256, b: __m256) -> u32 = _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_GT_OQ>(a, b)) as u32;
+    }
+
+    #[inline(always)]
+    fn prefetch<T>(self, what: &T) {
+        prefetch(what);
     }
 }

@@ -7,8 +7,8 @@
 //! is at most 2L. So a product errs by 2vEL + 6vEL + 2vEL = 10vEL, a component of p × q by twice that and 4vEL more, 24vEL, and its
 //! product with d by 2·24vEL + 2v·4EL for rounding d + v·8EL = 64vEL. The sum of three errs by 3·64vEL + v·(16 + 24)EL =
 //! 232vEL, to first order; fused operations err less. 256vEL is allowed, and 2⁻¹²⁶ more for what underflows: six products
-//! that lose at most 2⁻¹⁴⁹ each, times 2. (The least normal number: a subnormal one would make every sum slow.) What
-//! overflows compares with infinity or NaN, and is not rejected.
+//! that lose at most 2⁻¹⁴⁹ each, times 2. (The least normal number: a subnormal one would make every sum slow.) With L below
+//! 2⁶⁰ no sum exceeds 48L² < 2¹²⁶; beyond it, where infinities of either sign may appear, nothing is rejected.
 
 use super::{Candidate, EdgeRay};
 use crate::math::{DVec3, Hit, Vec3};
@@ -38,12 +38,14 @@ impl<const N: usize, S: Simd<N>> BlockRay<N, S> {
     #[inline(always)]
     pub fn new(simd: S, ray: &EdgeRay) -> Self {
         const ERROR: f64 = 1.0 / (1u64 << 16) as f64;
+        const OVERFLOW: f64 = (1u64 << 60) as f64;
         let (o, d) = (ray.origin.as_vec3(), ray.direction.as_vec3());
+        let error = if ray.largest < OVERFLOW { ERROR * ray.largest } else { f64::INFINITY };
         Self {
             origin: [simd.splat(o.x), simd.splat(o.y), simd.splat(o.z)],
             direction: [simd.splat(d.x), simd.splat(d.y), simd.splat(d.z)],
             // Rounded to nearest: the error of that is among those of higher order.
-            error: simd.splat((ERROR * ray.largest) as f32),
+            error: simd.splat(error as f32),
         }
     }
 }

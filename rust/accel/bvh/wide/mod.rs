@@ -1,18 +1,22 @@
 //! Wide trees: `N` children a node, tested at once, and blocks of `N` triangles for leaves. They are what rays walk.
 
+mod batch;
 mod collapse;
 mod node;
-mod traverse;
+mod query;
+mod single;
+mod step;
+mod wave;
 
 use super::build;
 use crate::accel::{Accelerator, Info, Primitives, SlabRay, extent};
 use crate::math::{Aabb, Hit, Ray};
 use crate::shapes::triangle::TriangleBlock;
-use crate::simd::{Dispatch, Kernel, Level};
+use crate::simd::{Dispatch, Level};
+use batch::Batch;
 use node::{Child, WideNode};
 use rayon::prelude::*;
 use std::time::Instant;
-use traverse::Batch;
 
 /// How to build a [`WideBvh`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -136,12 +140,12 @@ where
 {
     fn intersect(&self, rays: &[Ray], hits: &mut [Hit]) {
         assert_eq!(rays.len(), hits.len(), "a hit for each ray");
-        self.level.dispatch(Batch { bvh: self, rays, out: traverse::Closest(hits) });
+        self.level.dispatch(Batch { bvh: self, rays, out: query::Closest(hits) });
     }
 
     fn occluded(&self, rays: &[Ray], occluded: &mut [bool]) {
         assert_eq!(rays.len(), occluded.len(), "an answer for each ray");
-        self.level.dispatch(Batch { bvh: self, rays, out: traverse::Any(occluded) });
+        self.level.dispatch(Batch { bvh: self, rays, out: query::Any(occluded) });
     }
 
     fn info(&self) -> &Info {
