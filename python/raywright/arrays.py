@@ -1,0 +1,142 @@
+"""What comes in as numbers: checked, converted, and refused with one clear line."""
+
+import math
+import operator
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Triple = tuple[float, float, float]
+
+
+def real_array(name: str, value: ArrayLike) -> NDArray[Any]:
+    """Return `value` as an array of float32 or float64 in native byte order, without a copy where possible.
+
+    Integers and the other real types become float64.
+
+    Raises
+    ------
+    TypeError
+        If the values are not real numbers (bool, complex, text, objects).
+    ValueError
+        If nested sequences are ragged.
+    """
+    array = _as_array(name, value)
+    if array.dtype.kind not in "iuf":
+        came = f"dtype {array.dtype}" if isinstance(value, np.ndarray) else _describe(value, array)
+        raise TypeError(f"{name} must be real numbers, got {came}")
+    native = array.dtype.newbyteorder("=")
+    return array.astype(np.float32 if native == np.float32 else np.float64, copy=False)
+
+
+def last_axis(name: str, value: ArrayLike, length: int) -> NDArray[Any]:
+    """Return `value` as `real_array` does, having checked that its last dimension has `length` entries."""
+    array = real_array(name, value)
+    if array.ndim == 0 or array.shape[-1] != length:
+        raise ValueError(f"{name} must have shape (..., {length}), got {array.shape}")
+    return array
+
+
+def rows(name: str, value: ArrayLike, columns: int, count: int | None = None) -> NDArray[Any]:
+    """Return a read-only, C-contiguous copy of an array of shape (count, columns)."""
+    array = real_array(name, value)
+    if array.size == 0 and array.ndim == 1:
+        array = array.reshape(0, columns)
+    if array.ndim != 2 or array.shape[1] != columns or (count is not None and len(array) != count):
+        expected = f"({'N' if count is None else count}, {columns})"
+        raise ValueError(f"{name} must have shape {expected}, got {array.shape}")
+    return frozen(array)
+
+
+def triangles(name: str, value: ArrayLike, vertices: int) -> NDArray[np.uint32]:
+    """Return a read-only, C-contiguous uint32 copy of (F, 3) indices, each in 0..vertices - 1."""
+    array = _as_array(name, value)
+    if array.size == 0 and array.shape in ((0,), (0, 3)):
+        array = np.empty((0, 3), np.uint32)
+    if array.dtype.kind not in "iu":
+        raise TypeError(f"{name} must be integers, got {_describe(value, array)}")
+    if array.ndim != 2 or array.shape[1] != 3:
+        raise ValueError(f"{name} must have shape (F, 3), got {array.shape}")
+    if array.size and (int(array.min()) < 0 or int(array.max()) >= vertices):
+        first = int(np.argmax(((array < 0) | (array >= vertices)).any(axis=1)))
+        corners = ", ".join(str(int(i)) for i in array[first])
+        raise ValueError(f"face {first} of {name} is ({corners}), but there are {vertices} vertices")
+    return frozen(array.astype(np.uint32))
+
+
+def frozen(array: NDArray[Any]) -> NDArray[Any]:
+    """Return a read-only, C-contiguous copy."""
+    copy = np.array(array, order="C", copy=True, subok=False)
+    copy.setflags(write=False)
+    return copy
+
+
+def triple(name: str, value: ArrayLike) -> Triple:
+    """Return three finite numbers as a tuple of floats."""
+    array = real_array(name, value)
+    if array.shape != (3,):
+        raise ValueError(f"{name} must be 3 numbers, got shape {array.shape}")
+    return _finite(name, array)
+
+
+def colour(name: str, value: ArrayLike, most: float = math.inf) -> Triple:
+    """Return one number or three (red, green, blue) as three floats, each finite and in 0..most."""
+    array = real_array(name, value)
+    if array.shape not in ((), (3,)):
+        raise ValueError(f"{name} must be one number or 3, got shape {array.shape}")
+    red, green, blue = _finite(name, np.broadcast_to(array, 3))
+    if min(red, green, blue) < 0 or max(red, green, blue) > most:
+        allowed = "at least 0" if most == math.inf else f"between 0 and {most:g}"
+        raise ValueError(f"{name} must be {allowed}, got {value!r}")
+    return red, green, blue
+
+
+def number(name: str, value: float) -> float:
+    """Return one finite number as a float."""
+    array = real_array(name, value)
+    if array.ndim:
+        raise ValueError(f"{name} must be one number, got shape {array.shape}")
+    if not np.isfinite(array):
+        raise ValueError(f"{name} must be finite, got {value}")
+    return float(array)
+
+
+def positive(name: str, value: float) -> float:
+    """Return one finite number greater than 0 as a float."""
+    result = number(name, value)
+    if result <= 0:
+        raise ValueError(f"{name} must be greater than 0, got {value}")
+    return result
+
+
+def integer(name: str, value: int, least: int, most: int | None = None) -> int:
+    """Return an integer in least..most."""
+    try:
+        if isinstance(value, bool | np.bool_):
+            raise TypeError
+        result = operator.index(value)
+    except TypeError:
+        raise TypeError(f"{name} must be an integer, got {value!r}") from None
+    if result < least or (most is not None and result > most):
+        allowed = f"at least {least}" if most is None else f"between {least} and {most}"
+        raise ValueError(f"{name} must be {allowed}, got {result}")
+    return result
+
+
+def _as_array(name: str, value: ArrayLike) -> NDArray[Any]:
+    try:
+        return np.asarray(value)
+    except (ValueError, TypeError):
+        raise ValueError(f"{name} must be a rectangular array, got ragged {type(value).__name__}") from None
+
+
+def _finite(name: str, array: NDArray[Any]) -> Triple:
+    if not np.isfinite(array).all():
+        raise ValueError(f"{name} must be finite, got {tuple(array.tolist())}")
+    x, y, z = (float(v) for v in array)
+    return x, y, z
+
+
+def _describe(value: object, array: NDArray[Any]) -> str:
+    return f"{type(value).__name__} of dtype {array.dtype}" if array.ndim else repr(value)

@@ -1,0 +1,194 @@
+"""The shell command: ``raywright demo``, ``raywright render`` and ``raywright info``."""
+
+import argparse
+import os
+import sys
+import warnings
+from collections.abc import Callable, Sequence
+from typing import Any, NoReturn
+
+from .camera import Camera
+from .description import described
+from .image import Image
+from .io.meshes import load
+from .io.pictures import check_writable
+from .materials import Diffuse
+from .rendering import render
+from .scene import Scene
+from .scenes import cornell_box, studio, torus_knot
+
+# As shells count it: 128 and the number of SIGINT.
+INTERRUPTED = 130
+DEMO_SECONDS = 10.0
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the shell command and return its exit status: 0, 1 if it failed, 2 if it was used wrongly.
+
+    Errors are one line on stderr. Ctrl-C gives 130.
+
+    Parameters
+    ----------
+    arguments : sequence of str, optional
+        What follows the command's name; those of the process if not given.
+    """
+    warnings.showwarning = _show_warning
+    try:
+        options = _parser().parse_args(arguments)
+        options.run(options)
+        sys.stdout.flush()
+    except KeyboardInterrupt:
+        return _fail("interrupted", INTERRUPTED)
+    except BrokenPipeError:
+        # Whoever read our output has left; say nothing more, not even when stdout is closed at exit.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 1
+    except MemoryError:
+        return _fail("out of memory")
+    except (OSError, ValueError, ImportError, RuntimeError) as error:
+        return _fail(_told(error))
+    return 0
+
+
+def _demo(options: argparse.Namespace) -> None:
+    check_writable(options.output)
+    if options.samples is options.error is options.seconds is None:
+        options.seconds = DEMO_SECONDS
+    knot = torus_knot(material=Diffuse((0.78, 0.55, 0.2)))
+    # Brighter and whiter than the box's own light, so that the picture needs no exposure.
+    scene, camera = cornell_box(knot, options.width, options.height, emission=(40.0, 33.0, 22.0))
+    _picture(scene, camera, options)
+
+
+def _render(options: argparse.Namespace) -> None:
+    check_writable(options.output)
+    shapes = load(options.mesh)
+    _picture(*studio(shapes, options.up, options.width, options.height), options)
+
+
+def _info(options: argparse.Namespace) -> None:
+    print(described(str(options.mesh), Scene(options.mesh)))
+
+
+def _picture(scene: Scene, camera: Camera, options: argparse.Namespace) -> None:
+    image = render(
+        scene,
+        camera,
+        samples=options.samples,
+        error=options.error,
+        seconds=options.seconds,
+        seed=options.seed,
+        threads=options.threads,
+        progress=not options.quiet,
+    )
+    image.save(options.output)
+    if not options.quiet:
+        _tell(image, options.output)
+
+
+def _tell(image: Image, path: str) -> None:
+    print("error against time")
+    print(image.table())
+    print(f"relMSE {image.error} after {image.samples} samples a pixel in {image.seconds:.1f} s")
+    for warning in image.warnings:
+        print(f"warning: {warning}")
+    print(f"picture: {path}")
+
+
+class _Parser(argparse.ArgumentParser):
+    """One that fails in one line."""
+
+    def error(self, message: str) -> NoReturn:
+        self.exit(2, f"raywright: error: {message} (see {self.prog} --help)\n")
+
+
+class _Version(argparse.Action):
+    """Look the version up only when asked: it is a search through all installed packages."""
+
+    def __call__(self, parser: argparse.ArgumentParser, *_: Any) -> NoReturn:
+        from importlib.metadata import version
+
+        print(f"raywright {version('raywright')}")
+        parser.exit()
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = _Parser(prog="raywright", description="Trace rays and render pictures that tell their error.")
+    parser.add_argument("--version", action=_Version, nargs=0, help="tell the version and exit")
+    verbs = parser.add_subparsers(title="verbs", dest="verb", metavar="VERB", required=True)
+
+    demo = verbs.add_parser("demo", help="render a Cornell box with a knot in it")
+    demo.set_defaults(run=_demo)
+    _add_picture(demo, "cornell.png", f"{DEMO_SECONDS:g} seconds", width=512, height=512)
+
+    one = verbs.add_parser("render", help="frame, light and render a mesh file")
+    one.set_defaults(run=_render)
+    one.add_argument("mesh", metavar="MESH", help="any mesh file: PLY, OBJ, STL, GLB, ...")
+    one.add_argument("--up", choices=("y", "z"), default="y", help="axis that points up (default: y)")
+    _add_picture(one, None, "64 samples", width=640, height=480)
+
+    info = verbs.add_parser("info", help="tell what a mesh file holds, and what its accelerator looks like")
+    info.set_defaults(run=_info)
+    info.add_argument("mesh", metavar="MESH", help="any mesh file: PLY, OBJ, STL, GLB, ...")
+    return parser
+
+
+def _add_picture(
+    verb: argparse.ArgumentParser, output: str | None, limit: str, width: int, height: int
+) -> None:
+    told = " (default: %(default)s)"
+    verb.add_argument(
+        "-o",
+        "--output",
+        metavar="FILE",
+        required=output is None,
+        default=output,
+        help=".png, .exr or .npy" + (told if output else ""),
+    )
+    limits = verb.add_argument_group(
+        "limits", f"The first that is met ends the render. Without any: {limit}."
+    )
+    limits.add_argument("--samples", metavar="N", type=_number(int, 1, 2**32 - 1), help="samples a pixel")
+    limits.add_argument("--error", metavar="E", type=_number(float), help="estimated relMSE of the picture")
+    limits.add_argument("--seconds", metavar="S", type=_number(float), help="run time")
+    size = _number(int, 1, 65536)
+    verb.add_argument("--width", metavar="W", type=size, default=width, help="pixels" + told)
+    verb.add_argument("--height", metavar="H", type=size, default=height, help="pixels" + told)
+    verb.add_argument("--threads", metavar="N", type=_number(int, 1), help="threads (default: all cores)")
+    verb.add_argument("--seed", metavar="N", type=_number(int, 0, 2**64 - 1), default=0, help="seed" + told)
+    verb.add_argument("--quiet", action="store_true", help="print nothing but errors")
+
+
+def _number(kind: type[Any], least: int | None = None, most: int | None = None) -> Callable[[str], Any]:
+    """Read a number in least..most; without `least`, one above 0 and finite."""
+
+    def read(text: str) -> Any:
+        value = kind(text)
+        if least is None:
+            if not 0 < value < float("inf"):
+                raise argparse.ArgumentTypeError(f"must be greater than 0, got {text}")
+        elif value < least or (most is not None and value > most):
+            limits = f"at least {least}" if most is None else f"between {least} and {most}"
+            raise argparse.ArgumentTypeError(f"must be {limits}, got {text}")
+        return value
+
+    # argparse names the function in "invalid ... value".
+    read.__name__ = "whole number" if kind is int else "number"
+    return read
+
+
+def _told(error: Exception) -> str:
+    """Tell an error in one line; the system's own begin with a number that says nothing to most."""
+    if isinstance(error, OSError) and error.strerror:
+        told = error.strerror[:1].lower() + error.strerror[1:]
+        return f"{error.filename}: {told}" if error.filename is not None else told
+    return " ".join(str(error).split()) or type(error).__name__
+
+
+def _fail(message: str, status: int = 1) -> int:
+    print(f"raywright: error: {message}" if status == 1 else f"raywright: {message}", file=sys.stderr)
+    return status
+
+
+def _show_warning(message: Warning | str, *_: Any, **__: Any) -> None:
+    print(f"raywright: warning: {message}", file=sys.stderr)

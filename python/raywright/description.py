@@ -1,0 +1,47 @@
+"""A scene described in lines of text."""
+
+from ._core import simd
+from .mesh import Mesh
+from .scene import Scene
+from .topology import degenerate_faces, is_watertight
+
+_MOST_SHAPES = 20
+
+
+def described(name: str, scene: Scene) -> str:
+    """Return what a scene holds, and what its accelerator looks like, as aligned lines under `name`."""
+    faces = sum(len(shape.faces) for shape in scene.shapes)
+    info = scene.accelerator
+    size = scene._compiled().bytes
+    rows = [
+        ("shapes", f"{len(scene.shapes)}"),
+        ("vertices", f"{sum(len(shape.vertices) for shape in scene.shapes):,}"),
+        ("faces", f"{faces:,}"),
+        ("bounds", _bounds(scene)),
+        ("watertight", "yes" if all(map(is_watertight, scene.shapes)) else "no"),
+        ("degenerate", f"{sum(map(degenerate_faces, scene.shapes)):,} faces"),
+        ("accelerator", info.kind),
+        ("nodes", f"{info.nodes:,}, and {info.leaves:,} leaves; depth {info.depth}"),
+        ("built in", f"{info.build_seconds:.4f} s"),
+        ("SAH cost", f"{info.sah_cost:.4g}"),
+        ("memory", f"{size:,} bytes, {size / max(info.primitives, 1):.1f} a triangle"),
+        ("its tree", f"{info.bytes:,} bytes"),
+        ("SIMD", simd()),
+    ]
+    lines = [name] + [f"  {label:<12} {value}" for label, value in rows]
+    if len(scene.shapes) > 1:
+        lines += [f"  shape {i:<6} {_counts(shape)}" for i, shape in enumerate(scene.shapes[:_MOST_SHAPES])]
+        if len(scene.shapes) > _MOST_SHAPES:
+            lines.append(f"  ... and {len(scene.shapes) - _MOST_SHAPES} more")
+    return "\n".join(lines)
+
+
+def _bounds(scene: Scene) -> str:
+    if scene.bounds is None:
+        return "none"
+    low, high = (", ".join(f"{x:.6g}" for x in corner) for corner in scene.bounds)
+    return f"({low}) to ({high})"
+
+
+def _counts(shape: Mesh) -> str:
+    return f"{len(shape.vertices):,} vertices, {len(shape.faces):,} faces"

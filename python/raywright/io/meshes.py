@@ -1,0 +1,201 @@
+"""Meshes from trimesh objects, from files that trimesh reads, and from lists of these."""
+
+import errno
+import logging
+import sys
+import threading
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..arrays import Triple
+from ..materials import Diffuse
+from ..mesh import Mesh
+
+# Switching off trimesh's log and Python's warnings is for the whole process, so loads take turns.
+_quiet_lock = threading.RLock()
+
+
+def meshes(shapes: Any) -> tuple[Mesh, ...]:
+    """Lay out meshes, trimesh objects, paths and nested lists of them as one flat tuple of meshes.
+
+    Raises
+    ------
+    FileNotFoundError
+        If a file is missing.
+    ValueError
+        If a file is not a mesh that can be read.
+    TypeError
+        If something is none of these.
+    """
+    return tuple(_each(shapes))
+
+
+def load(path: str | PathLike[str]) -> tuple[Mesh, ...]:
+    """Read a mesh file with trimesh: one mesh for each node of the file that holds triangles.
+
+    Faces stay in the file's order, and vertices as they are. Only STL, which repeats every corner, has its
+    equal corners joined.
+
+    Raises
+    ------
+    FileNotFoundError
+        If the file is missing.
+    ValueError
+        If the file is not a mesh that can be read, or holds no faces.
+    """
+    path = Path(path)
+    if not path.exists():
+        raise FileNotFoundError(errno.ENOENT, "no such file", str(path))
+    if path.is_dir():
+        raise ValueError(f"{path} is a folder, not a mesh file")
+    import trimesh
+
+    kinds = trimesh.available_formats()
+    name = path.name.lower()
+    if not any(name.endswith(f".{kind}") for kind in kinds):
+        suffix = f"suffix {path.suffix}" if path.suffix else "a name without a suffix"
+        raise ValueError(f"{path}: {suffix} is not a mesh format; known are {', '.join(sorted(kinds))}")
+    try:
+        with _quiet():
+            found = trimesh.load_scene(str(path), process=False)
+            result = tuple(_of_scene(found, loaded=True))
+    except Exception as error:
+        # Parsers fail on bad bytes in every way there is; the caller needs one kind of error, and one line.
+        if isinstance(error, OSError) and error.filename == str(path):
+            raise
+        raise ValueError(f"{path} is not a mesh that can be read ({_reason(error)})") from error
+    if not any(len(mesh.faces) for mesh in result):
+        raise ValueError(f"{path} holds no faces")
+    return tuple(map(_joined, result)) if name.endswith((".stl", ".stl_ascii")) else result
+
+
+def _reason(error: Exception) -> str:
+    if isinstance(error, ModuleNotFoundError):
+        return f"trimesh needs {error.name} for it"
+    told = " ".join(str(error).split())
+    if not isinstance(error, ValueError) or not told:
+        told = f"{type(error).__name__}: {told}" if told else type(error).__name__
+    return told if len(told) <= 120 else f"{told[:117]}..."
+
+
+def _each(shapes: Any) -> Iterator[Mesh]:
+    # trimesh is never imported only to ask: whoever made such an object has imported it.
+    trimesh = sys.modules.get("trimesh")
+    if isinstance(shapes, Mesh):
+        yield shapes
+    elif isinstance(shapes, str | PathLike):
+        yield from load(shapes)
+    elif isinstance(shapes, list | tuple):
+        for shape in shapes:
+            yield from _each(shape)
+    elif isinstance(shapes, getattr(trimesh, "Trimesh", ())):
+        yield _of_trimesh(shapes)
+    elif isinstance(shapes, getattr(trimesh, "Scene", ())):
+        yield from _of_scene(shapes)
+    else:
+        raise TypeError(
+            "shapes must be a Mesh, a trimesh.Trimesh, a trimesh.Scene, a path, or a list of these, "
+            f"got {type(shapes).__module__}.{type(shapes).__qualname__}"
+        )
+
+
+def _of_scene(scene: Any, loaded: bool = False) -> Iterator[Mesh]:
+    order = {name: i for i, name in enumerate(scene.geometry)}
+    placed = [scene.graph[node] for node in scene.graph.nodes_geometry]
+    made: dict[str, Mesh] = {}
+    for matrix, name in sorted(placed, key=lambda place: order[place[1]]):
+        geometry = scene.geometry[name]
+        if not hasattr(geometry, "faces"):
+            continue  # points or curves
+        if name not in made:
+            made[name] = _of_trimesh(geometry, loaded)
+        moved = not np.array_equal(matrix, np.eye(4))
+        yield made[name].transformed(matrix) if moved else made[name]
+
+
+def _of_trimesh(mesh: Any, loaded: bool = False) -> Mesh:
+    vertices = np.asarray(mesh.vertices)
+    faces = np.asarray(mesh.faces)
+    uv = getattr(mesh.visual, "uv", None)
+    if uv is not None and np.shape(uv) != (len(vertices), 2):
+        uv = None
+    return Mesh(vertices, faces, _given_normals(mesh, loaded), uv, _material(mesh.visual))
+
+
+def _given_normals(mesh: Any, loaded: bool) -> NDArray[np.float64] | None:
+    """Vertex normals that came with the mesh, not those that trimesh worked out because someone looked."""
+    if "vertex_normals" not in mesh._cache:
+        return None
+    normals = np.asarray(mesh._cache["vertex_normals"])
+    if normals.shape != (len(mesh.vertices), 3):
+        return None
+    if loaded:
+        return normals  # nobody else has looked
+    own = _angle_weighted(np.asarray(mesh.faces), mesh.face_normals, mesh.face_angles, len(normals))
+    return None if np.allclose(normals, own, rtol=0, atol=1e-10) else normals
+
+
+def _angle_weighted(faces: Any, face_normals: Any, angles: Any, count: int) -> NDArray[np.float64]:
+    """Vertex normals as trimesh works them out: the faces' own, weighted by their angle at the vertex."""
+    weighted = angles[:, :, np.newaxis] * face_normals[:, np.newaxis]
+    total = [np.bincount(faces.reshape(-1), weighted[..., k].reshape(-1), count) for k in range(3)]
+    result = np.stack(total, axis=1).astype(np.float64, copy=False)
+    length = np.linalg.norm(result, axis=1, keepdims=True)
+    np.divide(result, length, out=result, where=length > 0)
+    return result
+
+
+def _material(visual: Any) -> Diffuse | None:
+    """Make a diffuse material of the main colour; None if there is none, or a texture has the say."""
+    material = getattr(visual, "material", None)
+    if material is None:
+        rgba = visual.main_color if getattr(visual, "kind", None) in ("face", "vertex") else None
+        return None if rgba is None else Diffuse(_linear(rgba))
+    if (
+        getattr(material, "baseColorTexture", None) is not None
+        or getattr(material, "image", None) is not None
+    ):
+        return None
+    if hasattr(material, "baseColorFactor"):
+        # glTF 2.0, 3.9.2: the factor is linear already, unlike every other colour here.
+        factor = material.baseColorFactor
+        return None if factor is None else Diffuse(np.asarray(factor[:3], np.float64) / 255)
+    from trimesh.visual.color import DEFAULT_COLOR
+
+    rgba = material.main_color
+    return None if np.array_equal(rgba, DEFAULT_COLOR) else Diffuse(_linear(rgba))
+
+
+def _linear(rgba: Any) -> Triple:
+    """Red, green and blue of 8 bits to linear (IEC 61966-2-1)."""
+    c = np.asarray(rgba[:3], np.float64) / 255
+    red, green, blue = np.where(c <= 0.04045, c / 12.92, ((c + 0.055) / 1.055) ** 2.4).tolist()
+    return red, green, blue
+
+
+def _joined(mesh: Mesh) -> Mesh:
+    """Join corners that are exactly equal; trimesh's own way rounds to 1e-8, too coarse for small scenes."""
+    # Adding 0 makes -0 equal to 0 in its bits as well.
+    rows = np.ascontiguousarray(mesh.vertices + 0.0)
+    keys = rows.view(np.dtype((np.void, rows.dtype.itemsize * 3))).reshape(-1)
+    _, first, inverse = np.unique(keys, return_index=True, return_inverse=True)
+    return Mesh(rows[first], inverse.reshape(-1)[mesh.faces], material=mesh.material, emission=mesh.emission)
+
+
+@contextmanager
+def _quiet() -> Iterator[None]:
+    log = logging.getLogger("trimesh")
+    with _quiet_lock, warnings.catch_warnings(), np.errstate(all="ignore"):
+        warnings.simplefilter("ignore")
+        before, log.disabled = log.disabled, True
+        try:
+            yield
+        finally:
+            log.disabled = before

@@ -1,0 +1,103 @@
+"""Picture files: PNG, EXR and NPY."""
+
+import errno
+import importlib.util
+import io
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+SUFFIXES = (".png", ".exr", ".npy")
+
+
+def check_writable(path: str | PathLike[str]) -> Path:
+    """Find out, before any work is done, whether a picture can be saved at `path`.
+
+    Nothing is left behind, and a file that is there already stays as it is.
+
+    Returns
+    -------
+    Path
+        The path.
+
+    Raises
+    ------
+    ValueError
+        If the suffix is not .png, .exr or .npy.
+    ImportError
+        If the suffix is .exr and OpenEXR is not installed.
+    FileNotFoundError, IsADirectoryError, NotADirectoryError, PermissionError, OSError
+        If the folder is missing, the path is a folder, or the file cannot be written.
+    """
+    path = Path(path)
+    if path.suffix.lower() not in SUFFIXES:
+        raise ValueError(f"a picture is saved as {', '.join(SUFFIXES)}; {path} is none of these")
+    if path.suffix.lower() == ".exr" and importlib.util.find_spec("OpenEXR") is None:
+        raise ImportError(_NO_EXR)
+    if path.is_dir():
+        raise IsADirectoryError(errno.EISDIR, "is a folder", str(path))
+    if not path.parent.exists():
+        raise FileNotFoundError(errno.ENOENT, "no such folder", str(path.parent))
+    # Trying is the only true test: permissions read otherwise for root, and on read-only or full file
+    # systems.
+    try:
+        with open(path, "xb"):
+            pass
+    except FileExistsError:
+        with open(path, "ab"):
+            pass
+    else:
+        path.unlink()
+    return path
+
+
+def srgb(rgb: NDArray[np.floating[Any]]) -> NDArray[np.uint8]:
+    """Linear colours to 8 bits, with the sRGB transfer (IEC 61966-2-1); below 0 and above 1 are clipped."""
+    linear = np.clip(np.nan_to_num(rgb, nan=0.0), 0.0, 1.0)
+    curved = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
+    return np.asarray(curved * 255 + 0.5, np.uint8)
+
+
+def png(rgb: NDArray[np.floating[Any]]) -> bytes:
+    """Return a PNG file of linear colours."""
+    from PIL import Image
+
+    out = io.BytesIO()
+    Image.fromarray(srgb(rgb)).save(out, format="PNG")
+    return out.getvalue()
+
+
+def write(path: Path, rgb: NDArray[np.float32], standard_error: NDArray[np.float32]) -> None:
+    """Write linear colours, (H, W, 3), to a path that `check_writable` has passed.
+
+    PNG is for the eye; NPY holds the linear colours; EXR holds them as channels R, G, B and their standard
+    error as channels standard_error.R, .G, .B, all of 32-bit floats.
+    """
+    suffix = path.suffix.lower()
+    if suffix == ".png":
+        path.write_bytes(png(rgb))
+    elif suffix == ".npy":
+        np.save(path, rgb)
+    else:
+        _write_exr(path, rgb, standard_error)
+
+
+def _write_exr(path: Path, rgb: NDArray[np.float32], standard_error: NDArray[np.float32]) -> None:
+    try:
+        import OpenEXR
+    except ImportError as error:
+        raise ImportError(_NO_EXR) from error
+
+    channels = {}
+    for i, name in enumerate("RGB"):
+        channels[name] = np.ascontiguousarray(rgb[..., i], np.float32)
+        channels[f"standard_error.{name}"] = np.ascontiguousarray(standard_error[..., i], np.float32)
+    header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
+    with OpenEXR.File(header, channels) as file:
+        file.write(str(path))
+
+
+_NO_EXR = "saving .exr needs OpenEXR: pip install 'raywright[exr]'"

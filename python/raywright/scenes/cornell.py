@@ -1,0 +1,115 @@
+"""The Cornell box."""
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..arrays import Triple
+from ..camera import Camera
+from ..io.meshes import meshes
+from ..materials import Diffuse
+from ..mesh import Mesh
+from ..scene import Scene
+
+Quads = list[list[Triple]]
+
+WHITE = Diffuse(0.73)
+RED = Diffuse((0.65, 0.05, 0.05))
+GREEN = Diffuse((0.12, 0.45, 0.15))
+EMISSION = (17.0, 12.0, 4.0)
+
+# The measured box, in millimetres: each row is a quadrilateral, anticlockwise as seen from inside the room
+# (walls) or from outside (blocks). https://www.graphics.cornell.edu/online/box/data.html
+LIGHT: Quads = [[(343, 548.8, 227), (343, 548.8, 332), (213, 548.8, 332), (213, 548.8, 227)]]
+FLOOR: Quads = [[(552.8, 0, 0), (0, 0, 0), (0, 0, 559.2), (549.6, 0, 559.2)]]
+BACK: Quads = [[(549.6, 0, 559.2), (0, 0, 559.2), (0, 548.8, 559.2), (556, 548.8, 559.2)]]
+RIGHT: Quads = [[(0, 0, 559.2), (0, 0, 0), (0, 548.8, 0), (0, 548.8, 559.2)]]
+LEFT: Quads = [[(552.8, 0, 0), (549.6, 0, 559.2), (556, 548.8, 559.2), (556, 548.8, 0)]]
+_CEILING: list[Triple] = [(556, 548.8, 0), (556, 548.8, 559.2), (0, 548.8, 559.2), (0, 548.8, 0)]
+SHORT_BLOCK: Quads = [
+    [(130, 165, 65), (82, 165, 225), (240, 165, 272), (290, 165, 114)],
+    [(290, 0, 114), (290, 165, 114), (240, 165, 272), (240, 0, 272)],
+    [(130, 0, 65), (130, 165, 65), (290, 165, 114), (290, 0, 114)],
+    [(82, 0, 225), (82, 165, 225), (130, 165, 65), (130, 0, 65)],
+    [(240, 0, 272), (240, 165, 272), (82, 165, 225), (82, 0, 225)],
+]
+TALL_BLOCK: Quads = [
+    [(423, 330, 247), (265, 330, 296), (314, 330, 456), (472, 330, 406)],
+    [(423, 0, 247), (423, 330, 247), (472, 330, 406), (472, 0, 406)],
+    [(472, 0, 406), (472, 330, 406), (314, 330, 456), (314, 0, 456)],
+    [(314, 0, 456), (314, 330, 456), (265, 330, 296), (265, 0, 296)],
+    [(265, 0, 296), (265, 330, 296), (423, 330, 247), (423, 0, 247)],
+]
+# The light fills a hole in the ceiling: the room is closed, and no two faces lie in one another.
+CEILING: Quads = [
+    [_CEILING[i], _CEILING[j], LIGHT[0][j], LIGHT[0][i]] for i, j in ((0, 1), (1, 2), (2, 3), (3, 0))
+]
+
+# Middle of the short block's floor, and the room there is for what stands in its place.
+_STAND = (186.0, 0.0, 169.0)
+_STAND_SIZE = (230.0, 260.0, 230.0)
+
+
+def cornell_box(
+    mesh: Any = None, width: int = 512, height: int = 512, emission: ArrayLike = EMISSION
+) -> tuple[Scene, Camera]:
+    """Return the Cornell box (Goral et al. 1984), in millimetres, and the camera that belongs to it.
+
+    The measures are those of the real box at Cornell; the reflectances are the linear RGB values in common
+    use.
+
+    Parameters
+    ----------
+    mesh : Mesh, trimesh object, path, or list of these, optional
+        Stands in place of the short block, scaled to fit there, with its y axis up.
+    width, height : int
+        Size of the picture in pixels.
+    emission : float or 3 floats
+        Radiance of the light in W·sr⁻¹·m⁻².
+
+    Returns
+    -------
+    scene : Scene
+        Shapes: light, floor, ceiling, back, right (green), left (red), tall block, then the short block or
+        `mesh`.
+    camera : Camera
+        In front of the open side.
+
+    Raises
+    ------
+    ValueError
+        If `mesh` holds no faces, or a number is out of its range.
+    """
+    shapes = [_quads(LIGHT, WHITE, emission)]
+    shapes += [_quads(corners, WHITE) for corners in (FLOOR, CEILING, BACK)]
+    shapes += [_quads(RIGHT, GREEN), _quads(LEFT, RED), _quads(TALL_BLOCK, WHITE)]
+    shapes += [_quads(SHORT_BLOCK, WHITE)] if mesh is None else _stood(meshes(mesh))
+    # A lens of 35 mm behind a film of 25 mm by 25 mm.
+    fov = math.degrees(2 * math.atan(0.0125 / 0.035))
+    return Scene(shapes), Camera((278, 273, -800), (278, 273, 0), fov=fov, width=width, height=height)
+
+
+def _quads(corners: Quads, material: Diffuse, emission: ArrayLike | None = None) -> Mesh:
+    """Two triangles for each quadrilateral, with equal corners joined."""
+    vertices, index = np.unique(np.array(corners, np.float64).reshape(-1, 3), axis=0, return_inverse=True)
+    quads = index.reshape(-1, 4)
+    faces = quads[:, [0, 1, 2, 0, 2, 3]].reshape(-1, 3)
+    return Mesh(vertices, faces, material=material, emission=emission)
+
+
+def _stood(parts: tuple[Mesh, ...]) -> list[Mesh]:
+    """Scale meshes as one to fit the stand, put the middle of their bottom on its middle."""
+    boxes = [box for part in parts if (box := part.bounds) is not None]
+    if not boxes:
+        raise ValueError("mesh holds no faces")
+    low, high = np.min([b[0] for b in boxes], axis=0), np.max([b[1] for b in boxes], axis=0)
+    size = high - low
+    scale = float(np.min(np.divide(_STAND_SIZE, size, out=np.full(3, np.inf), where=size > 0)))
+    if not math.isfinite(scale):
+        raise ValueError("mesh is a single point")
+    foot = np.array([(low[0] + high[0]) / 2, low[1], (low[2] + high[2]) / 2])
+    matrix = np.diag([scale, scale, scale, 1.0])
+    matrix[:3, 3] = np.array(_STAND) - scale * foot
+    return [part.transformed(matrix) for part in parts]

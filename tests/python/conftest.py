@@ -1,0 +1,41 @@
+"""What several tests look at."""
+
+import numpy as np
+import pytest
+
+import raywright as rw
+
+CORNERS = [(x, y, z) for x in (0.0, 1.0) for y in (0.0, 1.0) for z in (0.0, 1.0)]
+# Anticlockwise from outside; corner i has the bits of i as its coordinates.
+QUADS = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+BOX_FACES = [face for a, b, c, d in QUADS for face in ((a, b, c), (a, c, d))]
+
+
+@pytest.fixture
+def box() -> rw.Mesh:
+    """The unit cube: 8 vertices, 12 faces, wound so that normals point out."""
+    return rw.Mesh(CORNERS, BOX_FACES)
+
+
+@pytest.fixture
+def triangle() -> rw.Mesh:
+    """One triangle in the plane z = 0 whose normal is +z."""
+    return rw.Mesh([(0.0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)])
+
+
+@pytest.fixture
+def scene(box: rw.Mesh) -> rw.Scene:
+    return rw.Scene(box)
+
+
+@pytest.fixture
+def camera() -> rw.Camera:
+    return rw.Camera((0.5, 0.5, 4), (0.5, 0.5, 0.5), width=8, height=6)
+
+
+@pytest.fixture
+def picture() -> rw.Image:
+    """A picture of known numbers, 3 wide and 2 high."""
+    history = np.array([(0.5, 8, np.nan), (1.0, 16, 0.25), (2.0, 32, 0.125)], rw.image.HISTORY)
+    rgb = np.linspace(0, 1.5, 18, dtype=np.float32).reshape(2, 3, 3)
+    return rw.Image(rgb, rgb / 8, rw.ErrorEstimate(0.125, 0.1, 0.15), history, 2.0, 32)

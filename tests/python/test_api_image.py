@@ -1,0 +1,171 @@
+"""Pictures: their numbers, their files, and where they can be written."""
+
+import io
+import math
+import os
+import pickle
+import sys
+
+import numpy as np
+import OpenEXR
+import pytest
+from PIL import Image as Pillow
+
+import raywright as rw
+
+
+def test_srgb_is_the_standard_curve():
+    linear = np.array([-1, 0, 0.0031308, 0.05, 0.214041, 0.5, 1, 7, np.nan, np.inf], np.float32)
+    rgb = np.repeat(linear[np.newaxis, :, np.newaxis], 3, axis=2)
+    image = rw.Image(rgb, rgb, rw.ErrorEstimate(0, 0, 0), np.empty(0, rw.image.HISTORY), 0.0, 1)
+    assert image.srgb().dtype == np.uint8
+    assert image.srgb()[0, :, 0].tolist() == [0, 0, 10, 63, 127, 188, 255, 255, 0, 255]
+
+
+def test_srgb_of_eight_bits_comes_back():
+    codes = np.arange(256)
+    c = codes / 255
+    linear = np.where(c <= 0.04045, c / 12.92, ((c + 0.055) / 1.055) ** 2.4).astype(np.float32)
+    assert np.array_equal(rw.io.pictures.srgb(linear), codes)
+
+
+def test_arrays_are_read_only(picture):
+    for array in (
+        picture.rgb,
+        picture.standard_error,
+        picture.history,
+        pickle.loads(pickle.dumps(picture)).rgb,
+    ):
+        assert not array.flags.writeable
+
+
+def test_pickle_and_equality(picture):
+    assert pickle.loads(pickle.dumps(picture)) == picture
+    parts = {name: getattr(picture, name) for name in picture.__dataclass_fields__}
+    assert rw.Image(**parts) == picture
+    for change in (
+        {"rgb": picture.rgb + 1},
+        {"samples": 7},
+        {"warnings": ("x",)},
+        {"history": picture.history[:1]},
+    ):
+        assert rw.Image(**{**parts, **change}) != picture
+
+
+def test_repr_is_one_short_line(picture):
+    told = "Image(3x2, 32 samples, 2.00 s, relMSE 0.125 (95 % interval 0.1 to 0.15))"
+    assert repr(picture) == told
+
+
+def test_table_is_error_against_time(picture):
+    assert picture.table().split("\n") == [
+        "  seconds   samples     relMSE",
+        "     0.50         8          -",
+        "     1.00        16       0.25",
+        "     2.00        32      0.125",
+    ]
+
+
+@pytest.mark.parametrize("rows", [1, 2, 5, 12])
+def test_table_of_a_long_history_is_thinned(picture, rows):
+    history = np.zeros(1000, rw.image.HISTORY)
+    history["samples"] = np.arange(1, 1001) * 8
+    history["error"] = 1 / history["samples"]
+    image = rw.Image(picture.rgb, picture.rgb, picture.error, history, 1.0, 8000)
+    lines = image.table(rows).split("\n")[1:]
+    assert len(lines) <= max(rows, 2)
+    assert lines[-1].split()[1] == "8000"
+    if rows > 1:
+        assert lines[0].split()[1] == "8"
+
+
+def test_error_estimate_is_a_number():
+    error = rw.ErrorEstimate(0.0125, 0.011, 0.014)
+    assert float(error) == 0.0125
+    assert f"{error:.2e}" == "1.25e-02"
+    assert str(error) == f"{error}" == "0.0125 (95 % interval 0.011 to 0.014)"
+    assert str(rw.ErrorEstimate(math.nan, math.nan, math.nan)) == "unknown"
+    assert error != rw.ErrorEstimate(0.0125, 0.011, 0.015)
+    assert error != 0.0125
+
+
+def test_png_is_for_the_eye(picture, tmp_path):
+    picture.save(tmp_path / "a.PNG")
+    with Pillow.open(tmp_path / "a.PNG") as file:
+        assert file.format == "PNG"
+        assert file.mode == "RGB"
+        assert np.array_equal(np.asarray(file), picture.srgb())
+    with Pillow.open(io.BytesIO(picture._repr_png_())) as file:
+        assert np.array_equal(np.asarray(file), picture.srgb())
+
+
+def test_npy_holds_the_numbers(picture, tmp_path):
+    picture.save(str(tmp_path / "a.npy"))
+    back = np.load(tmp_path / "a.npy")
+    assert back.dtype == np.float32
+    assert np.array_equal(back, picture.rgb)
+
+
+def test_exr_holds_the_numbers_and_their_error(picture, tmp_path):
+    picture.save(tmp_path / "a.exr")
+    with OpenEXR.File(str(tmp_path / "a.exr"), separate_channels=True) as file:
+        channels = file.channels()
+        assert set(channels) == {f"{layer}{c}" for layer in ("", "standard_error.") for c in "RGB"}
+        for i, c in enumerate("RGB"):
+            assert channels[c].pixels.dtype == np.float32
+            assert np.array_equal(channels[c].pixels, picture.rgb[..., i])
+            assert np.array_equal(channels[f"standard_error.{c}"].pixels, picture.standard_error[..., i])
+
+
+@pytest.mark.parametrize("suffix", [".png", ".npy", ".exr"])
+def test_check_leaves_nothing_behind_and_spares_what_is_there(tmp_path, suffix):
+    path = tmp_path / f"a{suffix}"
+    assert rw.check_writable(path) == path
+    assert list(tmp_path.iterdir()) == []
+    path.write_bytes(b"old")
+    rw.check_writable(str(path))
+    assert path.read_bytes() == b"old"
+
+
+@pytest.mark.parametrize(
+    ("path", "error", "message"),
+    [
+        ("a.jpg", ValueError, r"saved as \.png, \.exr, \.npy; .*a\.jpg is none of these"),
+        ("a", ValueError, r"saved as \.png, \.exr, \.npy"),
+        ("gone/a.png", FileNotFoundError, "no such folder: .*gone"),
+        ("folder.png", IsADirectoryError, r"is a folder: .*folder\.png"),
+        ("file.txt/a.png", NotADirectoryError, r"Not a directory"),
+        (f"{'x' * 300}.png", OSError, "File name too long"),
+    ],
+)
+@pytest.mark.parametrize("save", [False, True])
+def test_places_that_cannot_be_written(tmp_path, picture, path, error, message, save):
+    (tmp_path / "folder.png").mkdir()
+    (tmp_path / "file.txt").write_text("x")
+    before = sorted(tmp_path.rglob("*"))
+    with pytest.raises(error, match=message):
+        picture.save(tmp_path / path) if save else rw.check_writable(tmp_path / path)
+    assert sorted(tmp_path.rglob("*")) == before
+
+
+@pytest.mark.skipif(not hasattr(os, "geteuid") or os.geteuid() == 0, reason="nothing is denied to root")
+@pytest.mark.parametrize("there", [False, True])
+def test_folders_and_files_without_permission(tmp_path, there):
+    path = tmp_path / "a.png"
+    if there:
+        path.write_bytes(b"old")
+        path.chmod(0o400)
+    else:
+        tmp_path.chmod(0o500)
+    try:
+        with pytest.raises(PermissionError, match="Permission denied"):
+            rw.check_writable(path)
+    finally:
+        tmp_path.chmod(0o700)
+
+
+def test_exr_without_openexr_names_the_extra(tmp_path, picture, monkeypatch):
+    monkeypatch.setitem(sys.modules, "OpenEXR", None)
+    for save in (rw.check_writable, picture.save):
+        with pytest.raises(ImportError, match=r"pip install 'raywright\[exr\]'"):
+            save(tmp_path / "a.exr")

@@ -1,0 +1,62 @@
+"""Importing the package imports numpy and nothing else, and soon."""
+
+import os
+import statistics
+import subprocess
+import sys
+
+import pytest
+
+import raywright as rw
+
+
+def run(code):
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=60
+    )
+    return done.stdout
+
+
+def test_import_brings_in_numpy_and_nothing_else():
+    code = "import numpy, sys; before = set(sys.modules); import raywright; print(*set(sys.modules) - before)"
+    new = {name.split(".")[0] for name in run(code).split()}
+    assert new - set(sys.stdlib_module_names) <= {"raywright", "numpy"}
+    assert "raywright" in new
+
+
+def test_queries_do_not_bring_in_more():
+    code = (
+        "import sys, raywright as rw; s, c = rw.scenes.cornell_box(rw.scenes.torus_knot(), 8, 8);"
+        "s.intersect(*c.rays()); rw.render(s, c, samples=1, progress=False);"
+        "print(*{'trimesh', 'PIL', 'tqdm', 'OpenEXR'} & set(sys.modules))"
+    )
+    assert run(code).split() == []
+
+
+def test_import_takes_under_150_ms_beyond_numpy():
+    code = "import numpy, time; t = time.perf_counter(); import raywright; print(time.perf_counter() - t)"
+    assert statistics.median(float(run(code)) for _ in range(5)) < 0.15
+
+
+def test_every_public_name_is_there_and_documented():
+    assert sorted(rw.__all__, key=str.lower) == sorted(set(rw.__all__), key=str.lower)
+    for name in rw.__all__:
+        assert getattr(rw, name).__doc__, name
+
+
+def test_simd_tells_the_level():
+    assert rw.simd() in ("scalar", "sse2", "avx2")
+
+
+@pytest.mark.parametrize("level", ["scalar", "sse2"])
+def test_simd_can_be_forced(level):
+    code = "import raywright; print(raywright.simd())"
+    told = subprocess.run(
+        [sys.executable, "-c", code],
+        capture_output=True,
+        text=True,
+        check=True,
+        timeout=60,
+        env={**os.environ, "RAYWRIGHT_SIMD": level},
+    )
+    assert told.stdout.strip() == level

@@ -1,0 +1,213 @@
+"""Rays going in: shapes, types, copies, and what is refused."""
+
+import threading
+
+import numpy as np
+import pytest
+
+import raywright as rw
+from raywright.rays import RayBatch
+
+DOWN = (0.0, 0.0, -1.0)
+
+
+class Recorder:
+    """Stands for a compiled scene, and keeps what it is asked."""
+
+    def occluded(self, *arguments):
+        self.arguments = arguments
+        return np.zeros(max(len(array) for array in arguments[:4]), np.bool_)
+
+
+@pytest.mark.parametrize(
+    "dtypes", [(np.float32, np.float32), (np.float64, np.float64), (np.float32, np.float64)]
+)
+@pytest.mark.parametrize("shape", [(5, 3), (2, 4, 3), (1, 3)])
+def test_contiguous_arrays_reach_the_core_without_a_copy(scene, monkeypatch, dtypes, shape):
+    core = Recorder()
+    monkeypatch.setattr(scene, "_compiled", lambda: core)
+    origins, directions = (np.ones(shape, dtype) for dtype in dtypes)
+    far = np.ones(shape[:-1])
+    scene.occluded(origins, directions, t_max=far)
+    for passed, given in zip(core.arguments, (origins, directions), strict=False):
+        assert passed.shape == (origins.size // 3, 3)
+        assert passed.dtype == given.dtype
+        assert passed.ctypes.data == given.ctypes.data
+    assert core.arguments[3].ctypes.data == far.ctypes.data
+
+
+def test_one_origin_stays_one_row():
+    rays = RayBatch.of((0, 0, 5), np.ones((4, 6, 3)), 0.0, np.inf, None)
+    assert rays.shape == (4, 6)
+    assert rays.origins.shape == (1, 3)
+    assert rays.directions.shape == (24, 3)
+    assert rays.t_min.shape == rays.t_max.shape == (1,)
+
+
+@pytest.mark.parametrize(
+    ("dtype", "passed"),
+    [
+        (np.int32, np.float64),
+        (np.uint8, np.float64),
+        (np.float16, np.float64),
+        (np.longdouble, np.float64),
+        (">f4", np.float32),
+        (">f8", np.float64),
+    ],
+)
+def test_other_real_types_are_converted(dtype, passed):
+    rays = RayBatch.of(np.array([(1, 2, 3)], dtype), np.array([(4, 5, 6)], dtype), 0, np.inf, None)
+    assert rays.origins.dtype == rays.directions.dtype == passed
+    assert rays.origins.dtype.isnative
+    assert np.array_equal(rays.origins, [(1, 2, 3)])
+    assert np.array_equal(rays.directions, [(4, 5, 6)])
+
+
+@pytest.mark.parametrize(
+    "view",
+    [
+        lambda a: np.asfortranarray(a),
+        lambda a: np.repeat(a, 2, axis=0)[::2],
+        lambda a: np.concatenate([a, a], axis=1)[:, :3],
+        lambda a: a[::-1][::-1],
+        lambda a: np.frombuffer(b"x" + a.tobytes(), np.float64, offset=1).reshape(a.shape),
+    ],
+    ids=["fortran", "strided", "columns", "reversed", "unaligned"],
+)
+def test_memory_layout_does_not_matter(scene, view):
+    rng = np.random.default_rng(1)
+    origins = rng.uniform((-1, -1, 3), (2, 2, 6), (50, 3))
+    directions = np.broadcast_to(DOWN, (50, 3)).copy()
+    expected = scene.intersect(origins, directions)
+    assert 0 < expected.hit.sum() < 50
+    assert scene.intersect(view(origins), view(directions)) == expected
+
+
+@pytest.mark.parametrize(
+    ("origins", "directions", "t_min", "t_max", "lead"),
+    [
+        ((3,), (3,), (), (), ()),
+        ((3,), (7, 3), (), (), (7,)),
+        ((4, 1, 3), (5, 3), (), (), (4, 5)),
+        ((2, 3, 4, 3), (3,), (), (4,), (2, 3, 4)),
+        ((3,), (3,), (), (6,), (6,)),
+        ((3,), (3,), (2, 1), (3,), (2, 3)),
+        ((0, 3), (3,), (), (), (0,)),
+        ((1, 3), (0, 3), (), (), (0,)),
+        ((3,), (3,), (), (0,), (0,)),
+    ],
+)
+def test_results_have_the_broadcast_leading_shape(scene, origins, directions, t_min, t_max, lead):
+    o = np.broadcast_to((0.5, 0.5, 5.0), origins)
+    d = np.broadcast_to(DOWN, directions)
+    hits = scene.intersect(o, d, np.zeros(t_min), np.full(t_max, 9.0))
+    assert hits.shape == hits.t.shape == hits.hit.shape == hits.primitive.shape == lead
+    assert hits.shape_id.shape == hits.instance.shape == lead
+    assert hits.uv.shape == (*lead, 2)
+    assert hits.position.shape == hits.normal.shape == (*lead, 3)
+    assert (hits.t == 4).all()
+    shadowed = scene.occluded(o, d, np.zeros(t_min), np.full(t_max, 9.0))
+    assert shadowed.shape == lead
+    assert shadowed.dtype == np.bool_
+    assert shadowed.all()
+
+
+def test_interval_is_closed_and_per_ray(scene):
+    limits = np.array([3.5, np.nextafter(4.0, 0), 4.0, np.inf])
+    assert np.array_equal(scene.occluded((0.5, 0.4, 5), DOWN, t_max=limits), [False, False, True, True])
+    starts = np.array([0.0, 4.0, 4.5, 5.0, 5.5])
+    assert np.array_equal(scene.intersect((0.5, 0.4, 5), DOWN, t_min=starts).t, [4, 4, 5, 5, np.inf])
+
+
+def test_distance_counts_lengths_of_the_direction(scene):
+    assert scene.intersect((0.5, 0.4, 5), (0, 0, -8)).t == 0.5
+
+
+@pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])
+@pytest.mark.parametrize("part", ["origins", "directions"])
+def test_rays_that_are_not_finite_miss(scene, part, bad):
+    rays = {"origins": np.full((4, 3), (0.5, 0.4, 5.0)), "directions": np.full((4, 3), DOWN)}
+    rays[part][[0, 1, 2], [0, 1, 2]] = bad
+    hits = scene.intersect(**rays)
+    assert np.array_equal(hits.hit, [False, False, False, True])
+    assert np.array_equal(hits.t, [np.inf, np.inf, np.inf, 4.0])
+    assert np.array_equal(scene.occluded(**rays), hits.hit)
+
+
+def test_zero_directions_miss(scene):
+    assert not scene.intersect((0.5, 0.5, 0.5), (0, 0, 0)).hit
+    assert not scene.occluded((0.5, 0.5, 0.5), (0.0, -0.0, 0))
+
+
+@pytest.mark.parametrize("ask", ["intersect", "occluded"])
+@pytest.mark.parametrize(
+    ("arguments", "error", "message"),
+    [
+        (((0, 0), DOWN), ValueError, r"origins must have shape \(\.\.\., 3\), got \(2,\)"),
+        ((5.0, DOWN), ValueError, r"origins must have shape \(\.\.\., 3\), got \(\)"),
+        (
+            ((0, 0, 0), np.zeros((3, 4))),
+            ValueError,
+            r"directions must have shape \(\.\.\., 3\), got \(3, 4\)",
+        ),
+        (
+            ((0, 0, 0), [(1, 2, 3), (1, 2)]),
+            ValueError,
+            r"directions must be a rectangular array, got ragged list",
+        ),
+        (
+            (np.zeros((2, 3)), np.zeros((5, 3))),
+            ValueError,
+            r"do not broadcast: origins \(2,\), directions \(5,\)",
+        ),
+        (((0, 0, 0), np.zeros((4, 3)), 0, np.ones(3)), ValueError, r"do not broadcast: .*t_max \(3,\)"),
+        ((np.zeros(3, complex), DOWN), TypeError, r"origins must be real numbers, got dtype complex128"),
+        (
+            ((0, 0, 0), np.array(["a", "b", "c"])),
+            TypeError,
+            r"directions must be real numbers, got dtype <U1",
+        ),
+        (
+            ((0, 0, 0), np.array([1, 2, None])),
+            TypeError,
+            r"directions must be real numbers, got dtype object",
+        ),
+        ((None, DOWN), TypeError, r"origins must be real numbers, got None"),
+        (((True, False, True), DOWN), TypeError, r"origins must be real numbers, got tuple of dtype bool"),
+        (((0, 0, 0), DOWN, np.nan), ValueError, r"t_min must not be NaN"),
+        (((0, 0, 0), DOWN, 0, np.array([1, np.nan])), ValueError, r"t_max must not be NaN"),
+        (((0, 0, 0), DOWN, "near"), TypeError, r"t_min must be real numbers, got 'near'"),
+        (((0, 0, 0), DOWN, 0, 1, 0), ValueError, r"threads must be at least 1, got 0"),
+        (((0, 0, 0), DOWN, 0, 1, 1.5), TypeError, r"threads must be an integer, got 1.5"),
+    ],
+)
+def test_bad_rays_are_refused_in_one_line(scene, ask, arguments, error, message):
+    with pytest.raises(error, match=message) as caught:
+        getattr(scene, ask)(*arguments)
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("threads", [1, 2, 5])
+def test_threads_do_not_change_the_answer(threads):
+    scene = rw.Scene(rw.scenes.torus_knot(along=60, around=8))
+    rng = np.random.default_rng(2)
+    origins, directions = rng.normal(size=(2, 3000, 3))
+    expected = scene.intersect(origins, directions)
+    assert expected.hit.any()
+    assert scene.intersect(origins, directions, threads=threads) == expected
+    assert np.array_equal(scene.occluded(origins, directions, threads=threads), expected.hit)
+
+
+def test_a_scene_may_be_asked_from_many_threads(box):
+    scene, answers = rw.Scene(box), []
+    origins = np.full((2000, 3), (0.5, 0.4, 5.0))
+    workers = [
+        threading.Thread(target=lambda: answers.append(scene.intersect(origins, DOWN))) for _ in range(8)
+    ]
+    for worker in workers:
+        worker.start()
+    for worker in workers:
+        worker.join()
+    assert len(answers) == 8
+    assert all((answer.t == 4).all() for answer in answers)
+    assert len({id(answer._compiled) for answer in answers}) == 1
