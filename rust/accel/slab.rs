@@ -29,6 +29,10 @@ pub struct SlabRay {
     pub far: [f32; 3],
     /// Per axis, which plane is met first: 0 the lower, 1 the upper.
     pub first: [usize; 3],
+    /// Where it starts, in box units: moved up to the scene if that is far.
+    pub origin: [f32; 3],
+    /// How far outside of a box it may pass, in box units, and still be said to meet it.
+    pub pad: f32,
     /// In box units.
     pub t_min: f32,
     /// From `t` along the scaled direction to box units.
@@ -61,6 +65,8 @@ impl SlabRay {
         near: [-1e38; 3],
         far: [1e38; 3],
         first: [0; 3],
+        origin: [0.0; 3],
+        pad: 1e38,
         t_min: -1e38,
         to_box: 0.0,
         start: 0.0,
@@ -94,15 +100,17 @@ impl SlabRay {
                 return None;
             }
         }
-        let pad = Vec3::splat((PAD * ray.reach * box_scale + FAR_PAD * largest) as f32);
+        let pad = (PAD * ray.reach * box_scale + FAR_PAD * largest) as f32;
         let (origin, direction) = (origin.as_vec3(), direction.as_vec3());
         let inverse = Vec3::new(away_from_zero(direction.x), away_from_zero(direction.y), away_from_zero(direction.z));
         let inverse = inverse.recip();
-        let (shift, pad) = (-origin * inverse, pad * inverse.abs());
+        let (shift, room) = (-origin * inverse, pad * inverse.abs());
         Some(Self {
             inverse: inverse.to_array(),
-            near: (shift - pad).to_array(),
-            far: (shift + pad).to_array(),
+            near: (shift - room).to_array(),
+            far: (shift + room).to_array(),
+            origin: origin.to_array(),
+            pad,
             first: [usize::from(inverse.x < 0.0), usize::from(inverse.y < 0.0), usize::from(inverse.z < 0.0)],
             t_min: widened(ray.t_min * box_scale - start, -ULPS),
             to_box: box_scale,

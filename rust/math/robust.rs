@@ -5,13 +5,13 @@ pub const UNIT: f64 = f64::EPSILON / 2.0;
 
 /// The greater of two numbers that are not NaN: one instruction, where `f64::max` takes four for NaN's sake.
 #[inline(always)]
-pub fn greater(a: f64, b: f64) -> f64 {
+pub fn greater<T: PartialOrd>(a: T, b: T) -> T {
     if a > b { a } else { b }
 }
 
 /// The lesser of two numbers that are not NaN.
 #[inline(always)]
-pub fn lesser(a: f64, b: f64) -> f64 {
+pub fn lesser<T: PartialOrd>(a: T, b: T) -> T {
     if a < b { a } else { b }
 }
 

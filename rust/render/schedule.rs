@@ -64,7 +64,7 @@ mod tests {
     #[test]
     fn ends_at_samples() {
         let until = |samples| Until { samples: Some(samples), ..Until::default() };
-        assert_eq!(passes(until(0), 1.0), []);
+        assert_eq!(passes(until(0), 1.0), Vec::<u32>::new());
         assert_eq!(passes(until(1), 1.0), [1]);
         assert_eq!(passes(until(50), 1.0), [1, 1, 2, 4, 8, 16, 16, 2]);
     }

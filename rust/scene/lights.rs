@@ -3,7 +3,7 @@
 use super::light::{sample_triangle, solid_angle_pdf};
 use super::{Geometry, LightSample, PointLight};
 use crate::accel::Primitives;
-use crate::math::{Aabb, DVec3};
+use crate::math::{DVec3, Frame};
 use crate::optics::Rgb;
 use crate::sampling::{AliasTable, warp};
 use std::f64::consts::PI;
@@ -26,15 +26,16 @@ pub struct Lights {
     choice: Option<AliasTable>,
 }
 
+/// The greatest power that is told from greater ones: the sum of as many as there can be is still finite.
+const MOST: f64 = 1e290;
+
+/// How often the environment is chosen where there are other lights. In a studio with a lamp and a sky, shares of 0.1,
+/// 0.25, 0.5 and 0.7 gave relMSE of 1.4, 2.0, 3.9 and 7.7 thousandths.
+const ENVIRONMENT_SHARE: f64 = 0.1;
+
 impl Lights {
-    /// Numbers the lights: the emission of each shape of a geometry with these bounds, points, and the environment.
-    pub(super) fn new(
-        geometry: &Geometry,
-        bounds: &Aabb,
-        emission: Vec<Rgb>,
-        points: Vec<PointLight>,
-        environment: Rgb,
-    ) -> Self {
+    /// Numbers the lights: the emission of each shape of a geometry, points, and the environment.
+    pub(super) fn new(geometry: &Geometry, emission: Vec<Rgb>, points: Vec<PointLight>, environment: Rgb) -> Self {
         let (mut first, mut triangles, mut powers) = (Vec::new(), Vec::new(), Vec::new());
         for (shape, &radiance) in emission.iter().enumerate() {
             first.push(triangles.len() as u32);
@@ -43,17 +44,21 @@ impl Lights {
                     let area = 0.5 * geometry.area_vector(primitive).length();
                     triangles.push(primitive);
                     // What no ray can hit must not shine either.
-                    powers.push(if geometry.aabb(primitive).is_empty() { 0.0 } else { PI * area * strength(radiance) });
+                    powers.push(if geometry.aabb(primitive).is_empty() {
+                        0.0
+                    } else {
+                        (PI * area * strength(radiance)).min(MOST)
+                    });
                 }
             }
         }
-        powers.extend(points.iter().map(|p| 4.0 * PI * strength(p.intensity)));
+        powers.extend(points.iter().map(|p| (4.0 * PI * strength(p.intensity)).min(MOST)));
         if environment != Rgb::ZERO {
-            // What falls on the sphere around the scene. Without a surface it lights nothing, and any number will do.
-            let radius =
-                if bounds.is_empty() { 1.0 } else { 0.5 * (bounds.max.as_dvec3() - bounds.min.as_dvec3()).length() };
-            let power = 4.0 * PI * PI * radius * radius * strength(environment);
-            powers.push(power.clamp(f64::MIN_POSITIVE, f64::MAX));
+            // What an environment sends into a scene grows with the scene's extent, and falls mostly on floors far away:
+            // chosen by its power, it would leave next to nothing for a lamp. It needs no more than a fixed share, since
+            // scattering finds it well by itself.
+            let others: f64 = powers.iter().sum();
+            powers.push(if others > 0.0 { others * ENVIRONMENT_SHARE / (1.0 - ENVIRONMENT_SHARE) } else { 1.0 });
         }
         Self { choice: AliasTable::new(&powers), emission, first, triangles, points, environment }
     }
@@ -103,7 +108,7 @@ impl Lights {
         } else if let Some(light) = self.points.get(chosen - self.triangles.len()) {
             light.sample(point, probability)
         } else {
-            let direction = crate::math::Frame::new(normal).to_world(warp::cosine_hemisphere(u));
+            let direction = Frame::new(normal).to_world(warp::cosine_hemisphere(u));
             let pdf = self.environment_pdf(normal, direction);
             // Rounding may turn a direction in the plane to below it.
             (pdf > 0.0).then(|| LightSample { direction, weight: self.environment / pdf, pdf, source: None })
@@ -255,7 +260,7 @@ mod tests {
             let pdf = lit.lights().surface_pdf(lit.geometry(), shape, primitive, hits[0].t, cosine);
             assert!((pdf / light.pdf - 1.0).abs() < 1e-9);
         }
-        assert!(from_surfaces > 100 && from_outside > 100);
+        assert!(from_surfaces > 100 && from_outside > 50);
     }
 
     #[test]
@@ -279,7 +284,7 @@ mod tests {
         let tiny = rectangle([-5e-7, -5e-7, 1.0], [0.0, 1e-6, 0.0], [1e-6, 0.0, 0.0]);
         let (mean, _) = irradiance(&lit_by(vec![shape(tiny, [0.0; 3], 1e12)]));
         assert!((mean - 1.0).abs() < 1e-5, "{mean}");
-        for strength in [1e-30, 1e30] {
+        for strength in [1e-30, 1e30, 1e200] {
             assert_irradiance(&lit_by(vec![shape(overhead(), [0.0; 3], strength)]), strength * OVERHEAD);
         }
     }

@@ -1,11 +1,11 @@
 //! A batch of rays for one tree, by the kernel that suits them.
 
 use super::query::Query;
-use super::{WideBvh, single, wave};
+use super::{WideBvh, packet, single, wave};
 use crate::math::{Ray, coherence};
 use crate::simd::{Kernel, Simd};
 
-/// Fewer rays than these leave a wave mostly empty.
+/// Fewer rays than these leave a packet or a wave mostly empty.
 const FEW: usize = 8;
 
 /// A batch of rays, answered into `out`.
@@ -24,10 +24,158 @@ impl<const N: usize, Q: Query<N>> Kernel<N> for Batch<'_, N, Q> {
             for i in 0..self.rays.len() {
                 self.out.finish(i, None);
             }
-        } else if self.rays.len() < FEW || coherence::is_coherent(self.rays, self.bvh.extent) {
+        } else if self.rays.len() < FEW {
             single::answer(simd, self.bvh, self.rays, &mut self.out);
+        } else if coherence::is_coherent(self.rays, self.bvh.extent) {
+            packet::answer(simd, self.bvh, self.rays, &mut self.out);
         } else {
             wave::answer(simd, self.bvh, self.rays, &mut self.out);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::accel::bvh::Options;
+    use crate::accel::bvh::wide::query::{Any, Closest};
+    use crate::accel::{Accelerator, BruteForce, Primitives};
+    use crate::math::{Aabb, DVec3, Hit, Vec3};
+    use crate::sampling::philox4x32;
+    use crate::simd::{Dispatch, Level};
+
+    struct Soup(Vec<[Vec3; 3]>);
+
+    impl Primitives for Soup {
+        fn count(&self) -> usize {
+            self.0.len()
+        }
+        fn aabb(&self, primitive: u32) -> Aabb {
+            Aabb::around(self.0[primitive as usize])
+        }
+        fn corners(&self, primitive: u32) -> [Vec3; 3] {
+            self.0[primitive as usize]
+        }
+    }
+
+    /// The `i`-th of any number of triples from −1 to 1.
+    fn triple(i: u32) -> DVec3 {
+        let [x, y, z, _] = philox4x32([i, 0, 0, 0], [7, 7]).map(|bits| f64::from(bits) / f64::from(1u32 << 31) - 1.0);
+        DVec3::new(x, y, z)
+    }
+
+    /// Triangles of all sizes, with a few planes through them so that rays meet edges and ties.
+    fn soup() -> Soup {
+        let corner = |i: u32, size: f64| (triple(i) + size * triple(i + 10_000)).as_vec3();
+        let mut all: Vec<_> = (0..1000)
+            .map(|i| {
+                let size = 0.3 * triple(i + 20_000).x.powi(4);
+                [0, 1, 2].map(|k| (triple(i) + size * triple(3 * i + k + 30_000)).as_vec3())
+            })
+            .collect();
+        all.extend((0..20).map(|i| [corner(i, 0.5), corner(i, 0.5), corner(i + 1, 0.5)]));
+        for (x, y) in (-8..8).flat_map(|x| (-8..8).map(move |y| (x as f32 / 8.0, y as f32 / 8.0))) {
+            let [a, b, c, d] =
+                [(0.0, 0.0), (0.125, 0.0), (0.125, 0.125), (0.0, 0.125)].map(|(u, v)| Vec3::new(x + u, y + v, 0.25));
+            all.extend([[a, b, c], [a, c, d], [a, c, d]]);
+        }
+        Soup(all)
+    }
+
+    /// Fans of neighbouring rays: through the pixels of cameras near and far, parallel ones along axes, and with gaps of
+    /// rays that cannot hit anything.
+    fn fans() -> Vec<Vec<Ray>> {
+        let mut fans = Vec::new();
+        for camera in 0..12 {
+            let distance = [0.0, 0.5, 3.0, 7.0, 100.0, 1e6][camera as usize % 6];
+            let eye = triple(camera + 50_000).normalize() * distance;
+            let at = 0.3 * triple(camera + 60_000);
+            let spread = if distance > 0.0 { 1.0 / distance } else { 0.7 };
+            let fan = (0..640u32).map(|i| {
+                let (x, y) = (f64::from(i % 40) / 20.0 - 1.0, f64::from(i / 40) / 8.0 - 1.0);
+                let forward = (at - eye).normalize();
+                let side = forward.any_orthonormal_vector();
+                let direction = forward + spread * (x * side + y * forward.cross(side));
+                if i % 53 == 7 {
+                    Ray::new(eye, DVec3::NAN)
+                } else {
+                    Ray::new(eye, direction * 10f64.powi(i as i32 % 5))
+                }
+            });
+            fans.push(fan.collect());
+        }
+        for axis in [DVec3::Z, -DVec3::Z, DVec3::X, DVec3::new(1.0, 1.0, 0.0)] {
+            let side = axis.normalize().any_orthonormal_vector();
+            let up = axis.normalize().cross(side);
+            let grid = (0..640u32).map(|i| {
+                let (x, y) = (f64::from(i % 32) / 16.0 - 1.0, f64::from(i / 32) / 16.0 - 0.5);
+                let mut ray = Ray::new(-3.0 * axis + side * x + up * y, axis);
+                ray.t_max = if i % 3 == 0 { f64::INFINITY } else { 3.25 };
+                ray
+            });
+            fans.push(grid.collect());
+        }
+        fans
+    }
+
+    /// Which kernel to run.
+    #[derive(Clone, Copy, Debug)]
+    enum Which {
+        Single,
+        Wave,
+        Packet,
+    }
+
+    struct By<'a, const N: usize, Q> {
+        which: Which,
+        batch: Batch<'a, N, Q>,
+    }
+
+    impl<const N: usize, Q: Query<N>> Kernel<N> for By<'_, N, Q> {
+        type Output = ();
+
+        #[inline(always)]
+        fn run<S: Simd<N>>(mut self, simd: S) {
+            let Batch { bvh, rays, .. } = self.batch;
+            match self.which {
+                Which::Single => single::answer(simd, bvh, rays, &mut self.batch.out),
+                Which::Wave => wave::answer(simd, bvh, rays, &mut self.batch.out),
+                Which::Packet => packet::answer(simd, bvh, rays, &mut self.batch.out),
+            }
+        }
+    }
+
+    fn kernels_agree<const N: usize>()
+    where
+        Level: Dispatch<N>,
+    {
+        let soup = soup();
+        for level in Level::ALL.into_iter().filter(|l| l.is_available()) {
+            let brute = BruteForce::new(&soup, level);
+            let bvh = WideBvh::<N>::new(&soup, &Options::DEFAULT, level);
+            for rays in fans() {
+                let mut wanted = vec![Hit::MISS; rays.len()];
+                brute.intersect(&rays, &mut wanted);
+                assert!(wanted.iter().filter(|h| h.is_hit()).count() > 50, "a fan that misses shows nothing");
+                for which in [Which::Single, Which::Wave, Which::Packet] {
+                    let mut hits = vec![Hit::MISS; rays.len()];
+                    level.dispatch(By { which, batch: Batch { bvh: &bvh, rays: &rays, out: Closest(&mut hits) } });
+                    assert_eq!(hits, wanted, "{which:?} at {level:?}");
+                    let mut any = vec![false; rays.len()];
+                    level.dispatch(By { which, batch: Batch { bvh: &bvh, rays: &rays, out: Any(&mut any) } });
+                    assert!(any.iter().zip(&wanted).all(|(&any, hit)| any == hit.is_hit()), "{which:?} at {level:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn kernels_four_wide_agree_with_brute_force_bit_for_bit() {
+        kernels_agree::<4>();
+    }
+
+    #[test]
+    fn kernels_eight_wide_agree_with_brute_force_bit_for_bit() {
+        kernels_agree::<8>();
     }
 }

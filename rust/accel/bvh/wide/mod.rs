@@ -3,6 +3,7 @@
 mod batch;
 mod collapse;
 mod node;
+mod packet;
 mod query;
 mod single;
 mod step;

@@ -12,11 +12,12 @@ use crate::simd::Simd;
 /// Answers all rays; the tree is not empty.
 #[inline(always)]
 pub fn answer<const N: usize, S: Simd<N>, Q: Query<N>>(simd: S, bvh: &WideBvh<N>, rays: &[Ray], out: &mut Q) {
-    let mut stack = vec![Entry::NONE; bvh.stack];
+    let mut stack = stack(bvh);
     for (i, ray) in rays.iter().enumerate() {
         match SlabRay::prepare(ray, bvh.extent, bvh.box_scale) {
             Some((edges, slabs)) => {
-                let state = walk::<N, S, Q>(simd, bvh, &edges, &slabs, &mut stack);
+                let mut state = Q::start(&edges);
+                walk::<N, S, Q>(simd, bvh, Packed::ROOT, &edges, &slabs, &mut state, &mut stack);
                 out.finish(i, Some((&edges, state)));
             }
             None => out.finish(i, None),
@@ -24,33 +25,39 @@ pub fn answer<const N: usize, S: Simd<N>, Q: Query<N>>(simd: S, bvh: &WideBvh<N>
     }
 }
 
+/// A stack deep enough for a walk.
+pub fn stack<const N: usize>(bvh: &WideBvh<N>) -> Vec<Entry> {
+    vec![Entry::new(0.0, Packed::ROOT); bvh.stack]
+}
+
+/// Visits what is below `child`; true if the question is answered.
 #[inline(always)]
-fn walk<const N: usize, S: Simd<N>, Q: Query<N>>(
+pub fn walk<const N: usize, S: Simd<N>, Q: Query<N>>(
     simd: S,
     bvh: &WideBvh<N>,
+    mut child: Packed,
     edges: &EdgeRay,
     slabs: &SlabRay,
+    state: &mut Q::State,
     stack: &mut [Entry],
-) -> Q::State {
+) -> bool {
     let (boxes, triangles) = (SlabLanes::new(simd, slabs), BlockRay::new(simd, edges));
-    let mut state = Q::start(edges);
-    let mut limit = slabs.limit(Q::limit(&state));
+    let mut limit = slabs.limit(Q::limit(state));
     let mut top = 0;
-    let mut child = Packed::ROOT;
     loop {
         let below = if let Some(index) = child.node() {
             boxes.descend(simd, &bvh.nodes[index], limit, stack, &mut top)
         } else {
             let (index, count) = child.block();
-            if Q::test(simd, &bvh.blocks[index], count, LeafRay { lanes: &triangles, edges }, &mut state) {
-                return state;
+            if Q::test(simd, &bvh.blocks[index], count, LeafRay { lanes: &triangles, edges }, state) {
+                return true;
             }
-            limit = slabs.limit(Q::limit(&state));
+            limit = slabs.limit(Q::limit(state));
             None
         };
         match below.or_else(|| pop(stack, &mut top, limit)) {
             Some(next) => child = next,
-            None => return state,
+            None => return false,
         }
     }
 }

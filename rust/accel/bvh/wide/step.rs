@@ -6,14 +6,16 @@ use crate::simd::Simd;
 
 /// What is still to be visited, and from where on.
 #[derive(Clone, Copy)]
-pub struct Entry {
+pub struct Entry<T = Packed> {
     near: f32,
-    child: Packed,
+    what: T,
 }
 
-impl Entry {
-    /// Fills unused stacks.
-    pub const NONE: Self = Self { near: 0.0, child: Packed::ROOT };
+impl<T> Entry<T> {
+    /// Something that is met from `near` on; also what fills unused stacks.
+    pub const fn new(near: f32, what: T) -> Self {
+        Self { near, what }
+    }
 }
 
 /// A ray's slabs in every lane.
@@ -60,46 +62,58 @@ impl<const N: usize, S: Simd<N>> SlabLanes<N, S> {
         let far_z = simd.mul_add(simd.load(&planes[2][1 - z]), self.inverse[2], self.far[2]);
         let nears = simd.max(simd.max(near_x, near_y), simd.max(near_z, self.t_min));
         let fars = simd.min(simd.min(far_x, far_y), simd.min(far_z, simd.splat(limit)));
-        let mut hit = simd.le(nears, fars);
-        if hit == 0 {
-            return None;
-        }
+        nearest(simd, nears, simd.le(nears, fars), |lane| node.packed(lane), stack, top)
+    }
+}
+
+/// The nearest of the children in the lanes of `hit`; the others go on to the stack, the farther the deeper.
+#[inline(always)]
+pub fn nearest<const N: usize, S: Simd<N>, T: Copy>(
+    simd: S,
+    nears: S::F32,
+    mut hit: u32,
+    child: impl Fn(usize) -> T,
+    stack: &mut [Entry<T>],
+    top: &mut usize,
+) -> Option<T> {
+    if hit == 0 {
+        return None;
+    }
+    let lane = hit.trailing_zeros() as usize & (N - 1);
+    hit &= hit - 1;
+    if hit == 0 {
+        return Some(child(lane));
+    }
+    let mut distances = [0f32; N];
+    simd.store(nears, &mut distances);
+    let mut best = Entry::new(distances[lane], child(lane));
+    let bottom = *top;
+    while hit != 0 {
         let lane = hit.trailing_zeros() as usize & (N - 1);
         hit &= hit - 1;
-        if hit == 0 {
-            return Some(node.packed(lane));
+        let mut entry = Entry::new(distances[lane], child(lane));
+        if entry.near < best.near {
+            std::mem::swap(&mut entry, &mut best);
         }
-        let mut distances = [0f32; N];
-        simd.store(nears, &mut distances);
-        let mut best = Entry { near: distances[lane], child: node.packed(lane) };
-        let bottom = *top;
-        while hit != 0 {
-            let lane = hit.trailing_zeros() as usize & (N - 1);
-            hit &= hit - 1;
-            let mut entry = Entry { near: distances[lane], child: node.packed(lane) };
-            if entry.near < best.near {
-                std::mem::swap(&mut entry, &mut best);
-            }
-            let mut place = *top;
-            while place > bottom && stack[place - 1].near < entry.near {
-                stack[place] = stack[place - 1];
-                place -= 1;
-            }
-            stack[place] = entry;
-            *top += 1;
+        let mut place = *top;
+        while place > bottom && stack[place - 1].near < entry.near {
+            stack[place] = stack[place - 1];
+            place -= 1;
         }
-        Some(best.child)
+        stack[place] = entry;
+        *top += 1;
     }
+    Some(best.what)
 }
 
 /// What is on top of the stack and still of interest.
 #[inline(always)]
-pub fn pop(stack: &[Entry], top: &mut usize, limit: f32) -> Option<Packed> {
+pub fn pop<T: Copy>(stack: &[Entry<T>], top: &mut usize, limit: f32) -> Option<T> {
     while *top > 0 {
         *top -= 1;
         // What starts exactly at the limit may hold an equal t of a lower primitive.
         if stack[*top].near <= limit {
-            return Some(stack[*top].child);
+            return Some(stack[*top].what);
         }
     }
     None

@@ -38,7 +38,7 @@ struct Flight<T> {
 #[inline(always)]
 pub fn answer<const N: usize, S: Simd<N>, Q: Query<N>>(simd: S, bvh: &WideBvh<N>, rays: &[Ray], out: &mut Q) {
     let width = WAVE.min(rays.len());
-    let mut stacks = vec![Entry::NONE; bvh.stack * width];
+    let mut stacks = vec![Entry::new(0.0, Packed::ROOT); bvh.stack * width];
     let mut flights: Vec<Flight<Q::State>> = Vec::with_capacity(width);
     let mut next = 0;
     while flights.len() < width {
