@@ -12,7 +12,7 @@ def described(name: str, scene: Scene) -> str:
     """Return what a scene holds, and what its accelerator looks like, as aligned lines under `name`."""
     faces = sum(len(shape.faces) for shape in scene.shapes)
     info = scene.accelerator
-    size = scene._compiled().bytes
+    size = scene.bytes
     rows = [
         ("shapes", f"{len(scene.shapes)}"),
         ("vertices", f"{sum(len(shape.vertices) for shape in scene.shapes):,}"),

@@ -106,6 +106,11 @@ class Scene:
         return self._compiled().accelerator
 
     @property
+    def bytes(self) -> int:
+        """Memory that the compiled scene holds: accelerator, vertices, faces and normals."""
+        return self._compiled().bytes
+
+    @property
     def bounds(self) -> NDArray[np.float64] | None:
         """Least and greatest corner of all that can be hit, (2, 3) float64; None for an empty scene."""
         return self._compiled().bounds

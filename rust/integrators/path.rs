@@ -20,7 +20,7 @@ pub struct Path {
 
 impl Default for Path {
     fn default() -> Self {
-        Self { max_depth: None, roulette_depth: 3 }
+        Self { max_depth: None, roulette_depth: 4 }
     }
 }
 

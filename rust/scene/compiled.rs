@@ -32,7 +32,7 @@ impl Scene {
         }
         let geometry = Geometry::new(meshes);
         let bounds = (0..geometry.count() as u32).fold(Aabb::EMPTY, |all, p| all.union(geometry.aabb(p)));
-        let lights = Lights::new(&geometry, &bounds, emission, points, environment);
+        let lights = Lights::new(&geometry, emission, points, environment);
         let accelerator = accelerator(&geometry);
         Ok(Self { geometry, materials, lights, accelerator, bounds })
     }

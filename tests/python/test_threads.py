@@ -1,0 +1,76 @@
+"""Threads: forked processes, signals, and answers that do not depend on how many there are."""
+
+import multiprocessing
+import signal
+import sys
+import threading
+import time
+
+import numpy as np
+import pytest
+
+import raywright as rw
+
+TETRAHEDRON = rw.Mesh(
+    [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]
+)
+
+
+def rays(count):
+    rng = np.random.default_rng(1)
+    return rng.uniform(-1, 2, (count, 3)), rng.normal(size=(count, 3))
+
+
+def hit_count(_):
+    return int(rw.Scene(TETRAHEDRON).intersect(*rays(5000)).hit.sum())
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no fork there")
+@pytest.mark.filterwarnings("ignore:.*multi-threaded, use of fork.*:DeprecationWarning")
+def test_a_forked_process_has_threads_of_its_own():
+    here = hit_count(None)  # the parent's threads are running when it forks
+    with multiprocessing.get_context("fork").Pool(1) as pool:
+        assert pool.map_async(hit_count, [None]).get(timeout=60) == [here]
+
+
+def test_the_number_of_threads_does_not_matter():
+    scene = rw.Scene(TETRAHEDRON)
+    origins, directions = rays(20_000)
+    one = scene.intersect(origins, directions, threads=1)
+    for threads in (2, 3, None):
+        other = scene.intersect(origins, directions, threads=threads)
+        for name in ("t", "primitive", "uv", "normal", "position"):
+            np.testing.assert_array_equal(getattr(other, name), getattr(one, name))
+
+
+def test_scenes_may_be_asked_from_many_python_threads():
+    scene = rw.Scene(TETRAHEDRON)
+    origins, directions = rays(5000)
+    found = []
+    ask = [
+        threading.Thread(target=lambda: found.append(scene.intersect(origins, directions))) for _ in range(8)
+    ]
+    for thread in ask:
+        thread.start()
+    for thread in ask:
+        thread.join()
+    assert len(found) == 8
+    assert all(np.array_equal(f.t, found[0].t) for f in found)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals differ there")
+def test_ctrl_c_ends_a_query_at_once():
+    # Brute force over ten thousand triangles: some minutes of work, if nobody stopped it.
+    rng = np.random.default_rng(2)
+    vertices = rng.normal(size=(30_000, 3))
+    soup = rw.Mesh(vertices, np.arange(30_000).reshape(-1, 3))
+    scene = rw.Scene(soup, accelerator=rw.BruteForce())
+    origins, directions = rng.normal(size=(2, 2_000_000, 3))
+    scene.intersect(origins[:10], directions[:10])
+    timer = threading.Timer(0.3, signal.raise_signal, (signal.SIGINT,))
+    start = time.monotonic()
+    timer.start()
+    with pytest.raises(KeyboardInterrupt):
+        scene.intersect(origins, directions)
+    # A tenth of a second is promised, for an idle machine; tests run beside other work.
+    assert time.monotonic() - start < 2.0
