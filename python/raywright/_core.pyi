@@ -44,11 +44,13 @@ class CompiledScene:
         t_min: NDArray[np.float64],
         t_max: NDArray[np.float64],
         threads: int | None,
+        row: int,
     ) -> tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.int32], NDArray[np.float64]]:
         """Closest hits of N rays: (t (N,), shape_id (N,), primitive (N,), uv (N,2)).
 
         ``origins`` and ``directions`` are (N,3) or (1,3), float32 or float64, each of either type; ``t_min``
-        and ``t_max`` are (N,) or (1,).
+        and ``t_max`` are (N,) or (1,). ``row`` is the length of an image's rows, which is then traced in tiles;
+        0 for what is no image.
         """
     def occluded(
         self,
@@ -57,6 +59,7 @@ class CompiledScene:
         t_min: NDArray[np.float64],
         t_max: NDArray[np.float64],
         threads: int | None,
+        row: int,
     ) -> NDArray[np.bool_]:
         """Whether each of N rays hits anything: (N,). Arguments as `intersect`."""
     def positions(

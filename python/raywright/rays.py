@@ -55,6 +55,12 @@ class RayBatch:
             None if threads is None else integer("threads", threads, 1),
         )
 
+    def arguments(self) -> tuple[Any, ...]:
+        """Give what the core's queries take."""
+        # Image-shaped rays are traced in tiles, where neighbours share more than along a row.
+        row = self.shape[-1] if len(self.shape) >= 2 else 0
+        return self.origins, self.directions, self.t_min, self.t_max, self.threads, row
+
 
 def _distances(name: str, value: ArrayLike) -> NDArray[np.float64]:
     array = real_array(name, value).astype(np.float64, copy=False)

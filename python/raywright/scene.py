@@ -155,9 +155,7 @@ class Scene:
         """
         rays = RayBatch.of(origins, directions, t_min, t_max, threads)
         compiled = self._compiled()
-        t, shape_id, primitive, uv = compiled.intersect(
-            rays.origins, rays.directions, rays.t_min, rays.t_max, rays.threads
-        )
+        t, shape_id, primitive, uv = compiled.intersect(*rays.arguments())
         lead = rays.shape
         return Hits(
             t.reshape(lead), shape_id.reshape(lead), primitive.reshape(lead), uv.reshape(*lead, 2), compiled
@@ -182,7 +180,7 @@ class Scene:
             With the leading shape of the rays.
         """
         rays = RayBatch.of(origins, directions, t_min, t_max, threads)
-        found = self._compiled().occluded(rays.origins, rays.directions, rays.t_min, rays.t_max, rays.threads)
+        found = self._compiled().occluded(*rays.arguments())
         return found.reshape(rays.shape)
 
     def _compiled(self) -> _core.CompiledScene:

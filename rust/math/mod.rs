@@ -6,9 +6,11 @@ mod exact;
 mod frame;
 mod ray;
 pub mod robust;
+mod tiling;
 
 pub use aabb::Aabb;
 pub use exact::exact_edges;
 pub use frame::Frame;
 pub use glam::{DVec3, Vec3};
 pub use ray::{Hit, Ray};
+pub use tiling::Tiling;

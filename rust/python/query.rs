@@ -4,12 +4,11 @@ use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArra
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use rayon::prelude::*;
-use std::array::from_fn;
 
 use super::arrays::{Rows, Triples, numbers, rows};
 use super::describe::{AcceleratorChoice, Scene};
 use crate::accel::Info;
-use crate::math::{Hit, Ray};
+use crate::math::{Hit, Ray, Tiling};
 use crate::scene;
 use crate::workers;
 
@@ -81,10 +80,11 @@ struct RayArrays<'a> {
     t_min: &'a [f64],
     t_max: &'a [f64],
     count: usize,
+    tiling: Tiling,
 }
 
 impl<'a> RayArrays<'a> {
-    fn new(origins: Rows<'a>, directions: Rows<'a>, t_min: &'a [f64], t_max: &'a [f64]) -> PyResult<Self> {
+    fn new(origins: Rows<'a>, directions: Rows<'a>, t_min: &'a [f64], t_max: &'a [f64], row: usize) -> PyResult<Self> {
         let lengths = [origins.len(), directions.len(), t_min.len(), t_max.len()];
         // Broadcasting as numpy has it: ones fit anything, a zero too.
         let count = if lengths.contains(&0) { 0 } else { lengths.into_iter().max().unwrap_or(0) };
@@ -93,7 +93,7 @@ impl<'a> RayArrays<'a> {
                 "origins, directions, t_min and t_max have lengths {lengths:?}"
             )));
         }
-        Ok(Self { origins, directions, t_min, t_max, count })
+        Ok(Self { origins, directions, t_min, t_max, count, tiling: Tiling::new(count, row) })
     }
 
     /// Ray `i`.
@@ -108,13 +108,15 @@ impl<'a> RayArrays<'a> {
         }
     }
 
-    /// Calls `answer` with a few rays at a time, from `start` on, and where they start in the chunk.
+    /// Calls `answer` with some hundred rays at a time of the `count` from `start` on, and with the number of the first;
+    /// [`Tiling::place`] tells where each lies.
     #[inline(always)]
     fn gathered(&self, start: usize, count: usize, mut answer: impl FnMut(&[Ray], usize)) {
+        let mut rays = Vec::with_capacity(GATHER.min(count));
         for from in (0..count).step_by(GATHER) {
-            let size = GATHER.min(count - from);
-            let rays: [Ray; GATHER] = from_fn(|i| self.ray(start + from + i.min(size - 1)));
-            answer(&rays[..size], from);
+            rays.clear();
+            rays.extend((from..count.min(from + GATHER)).map(|i| self.ray(start + self.tiling.place(i, count))));
+            answer(&rays, from);
         }
     }
 }
@@ -131,7 +133,7 @@ impl CompiledScene {
         compiled.map(Self).map_err(|e| PyValueError::new_err(e.to_string()))
     }
 
-    #[allow(clippy::type_complexity)]
+    #[allow(clippy::type_complexity, clippy::too_many_arguments)]
     fn intersect<'py>(
         &self,
         py: Python<'py>,
@@ -140,6 +142,7 @@ impl CompiledScene {
         t_min: PyReadonlyArray1<'py, f64>,
         t_max: PyReadonlyArray1<'py, f64>,
         threads: Option<usize>,
+        row: usize,
     ) -> PyResult<(
         Bound<'py, PyArray1<f64>>,
         Bound<'py, PyArray1<i32>>,
@@ -151,6 +154,7 @@ impl CompiledScene {
             directions.rows("directions")?,
             numbers("t_min", &t_min)?,
             numbers("t_max", &t_max)?,
+            row,
         )?;
         let n = rays.count;
         let t = PyArray1::zeros(py, n, false);
@@ -164,13 +168,14 @@ impl CompiledScene {
             let uv = uv.as_slice_mut()?.as_chunks_mut().0;
             let parts = (t, shape, primitive, uv);
             let scene = &self.0;
-            answer(py, n, threads, parts, |start, (t, shape, primitive, uv)| {
-                rays.gathered(start, t.len(), |rays, from| {
-                    let mut hits = [Hit::MISS; GATHER];
-                    let hits = &mut hits[..rays.len()];
-                    scene.intersect(rays, hits);
+            answer(py, n, rays.tiling.chunk(CHUNK), threads, parts, |start, (t, shape, primitive, uv)| {
+                let count = t.len();
+                let mut hits = [Hit::MISS; GATHER];
+                rays.gathered(start, count, |batch, from| {
+                    let hits = &mut hits[..batch.len()];
+                    scene.intersect(batch, hits);
                     for (i, hit) in hits.iter().enumerate() {
-                        let i = from + i;
+                        let i = rays.tiling.place(from + i, count);
                         (t[i], uv[i]) = (hit.t, hit.uv);
                         (shape[i], primitive[i]) = if hit.is_hit() {
                             let (shape, primitive) = scene.geometry().locate(hit.primitive);
@@ -185,6 +190,7 @@ impl CompiledScene {
         Ok((t, shape, primitive, uv))
     }
 
+    #[allow(clippy::too_many_arguments)]
     fn occluded<'py>(
         &self,
         py: Python<'py>,
@@ -193,19 +199,29 @@ impl CompiledScene {
         t_min: PyReadonlyArray1<'py, f64>,
         t_max: PyReadonlyArray1<'py, f64>,
         threads: Option<usize>,
+        row: usize,
     ) -> PyResult<Bound<'py, PyArray1<bool>>> {
         let rays = RayArrays::new(
             origins.rows("origins")?,
             directions.rows("directions")?,
             numbers("t_min", &t_min)?,
             numbers("t_max", &t_max)?,
+            row,
         )?;
         let out = PyArray1::zeros(py, rays.count, false);
         {
             let mut out = out.readwrite();
             let scene = &self.0;
-            answer(py, rays.count, threads, out.as_slice_mut()?, |start, out| {
-                rays.gathered(start, out.len(), |rays, from| scene.occluded(rays, &mut out[from..from + rays.len()]));
+            answer(py, rays.count, rays.tiling.chunk(CHUNK), threads, out.as_slice_mut()?, |start, out| {
+                let count = out.len();
+                let mut found = [false; GATHER];
+                rays.gathered(start, count, |batch, from| {
+                    let found = &mut found[..batch.len()];
+                    scene.occluded(batch, found);
+                    for (i, &found) in found.iter().enumerate() {
+                        out[rays.tiling.place(from + i, count)] = found;
+                    }
+                });
             })?;
         }
         Ok(out)
@@ -271,7 +287,7 @@ impl CompiledScene {
         {
             let geometry = self.0.geometry();
             let mut out = out.readwrite();
-            answer(py, primitive.len(), None, out.as_slice_mut()?.as_chunks_mut().0, |start, out| {
+            answer(py, primitive.len(), CHUNK, None, out.as_slice_mut()?.as_chunks_mut().0, |start, out| {
                 for (i, to) in out.iter_mut().enumerate() {
                     let i = start + i;
                     *to = match (u32::try_from(shape[i]), u32::try_from(primitive[i])) {
@@ -305,10 +321,11 @@ impl<A: Parts, B: Parts, C: Parts, D: Parts> Parts for (A, B, C, D) {
     }
 }
 
-/// Fills `n` answers chunk by chunk, with the interpreter detached and signals heard.
+/// Fills `n` answers, `chunk` at a time, with the interpreter detached and signals heard.
 fn answer<P: Parts>(
     py: Python<'_>,
     n: usize,
+    chunk: usize,
     threads: Option<usize>,
     parts: P,
     fill: impl Fn(usize, P) + Sync,
@@ -322,11 +339,11 @@ fn answer<P: Parts>(
         workers::watched(
             threads,
             |cancel| {
-                let mut chunks = Vec::with_capacity(n.div_ceil(CHUNK));
+                let mut chunks = Vec::with_capacity(n.div_ceil(chunk));
                 let mut rest = parts;
-                for start in (0..n).step_by(CHUNK) {
-                    let (chunk, more) = rest.split(CHUNK.min(n - start));
-                    chunks.push((start, chunk));
+                for start in (0..n).step_by(chunk) {
+                    let (part, more) = rest.split(chunk.min(n - start));
+                    chunks.push((start, part));
                     rest = more;
                 }
                 chunks.into_par_iter().for_each(|(start, chunk)| {

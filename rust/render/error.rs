@@ -145,7 +145,6 @@ mod tests {
     /// The true relMSE of a film.
     fn truth(film: &Film, brightness: impl Fn(u32, u32) -> f64) -> f64 {
         let means = film.means();
-    let leeway = 5.0 / f64::from(film.batches()).sqrt();
         let sum: f64 = means
             .iter()
             .enumerate()

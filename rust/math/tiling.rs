@@ -1,0 +1,83 @@
+//! The rays of an image in tiles of 4 × 4 pixels: neighbours in both directions, not along rows alone, share a packet.
+
+/// Pixels on a tile's side.
+const SIDE: usize = 4;
+
+/// Rows longer than this are not cut into tiles: a band of them would be too much for one thread.
+const LONGEST: usize = 1 << 14;
+
+/// An order of the pixels of an image, or of a plain sequence.
+#[derive(Clone, Copy, Debug)]
+pub struct Tiling {
+    row: usize,
+}
+
+impl Tiling {
+    /// For an image of `count` pixels in rows of `row`. A sequence, whose `row` is 0, keeps its order, as does what does
+    /// not divide into rows, or into ones that are narrower than a tile or very long.
+    pub fn new(count: usize, row: usize) -> Self {
+        let is_image = (SIDE..=LONGEST).contains(&row) && count.is_multiple_of(row) && count / row >= SIDE;
+        Self { row: if is_image { row } else { 0 } }
+    }
+
+    /// The least number of pixels, `wanted` or more, that are whole bands of tiles: an image may be cut after so many.
+    pub fn chunk(&self, wanted: usize) -> usize {
+        if self.row == 0 { wanted } else { wanted.next_multiple_of(SIDE * self.row) }
+    }
+
+    /// Where the `i`-th pixel to be visited lies among `count` that begin with a band.
+    #[inline(always)]
+    pub fn place(&self, i: usize, count: usize) -> usize {
+        if self.row == 0 {
+            return i;
+        }
+        let band = SIDE * self.row;
+        let (start, i) = (i / band * band, i % band);
+        if start + band > count {
+            // Too few rows are left for tiles.
+            return start + i;
+        }
+        let (tiles, rest) = (self.row / SIDE, self.row % SIDE);
+        let tiled = tiles * SIDE * SIDE;
+        let (x, y) = if i < tiled {
+            (i / (SIDE * SIDE) * SIDE + i % SIDE, i / SIDE % SIDE)
+        } else {
+            (tiles * SIDE + (i - tiled) % rest, (i - tiled) / rest)
+        };
+        start + y * self.row + x
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_pixel_is_visited_once_whatever_the_size() {
+        for (width, height) in [(1, 1), (4, 4), (5, 7), (16, 4), (3, 20), (20, 3), (9, 11), (8, 8)] {
+            for row in [0, width, 5] {
+                let count = width * height;
+                let tiling = Tiling::new(count, row);
+                for wanted in [1, 10, 1000] {
+                    let mut visits = vec![0; count];
+                    for start in (0..count).step_by(tiling.chunk(wanted)) {
+                        let size = tiling.chunk(wanted).min(count - start);
+                        for i in 0..size {
+                            let place = tiling.place(i, size);
+                            assert!(place < size);
+                            visits[start + place] += 1;
+                        }
+                    }
+                    assert!(visits.iter().all(|&n| n == 1), "{width} × {height} in rows of {row}: {visits:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn sixteen_pixels_are_a_square() {
+        let tiling = Tiling::new(64, 8);
+        let tile: Vec<_> = (16..32).map(|i| tiling.place(i, 64)).collect();
+        assert_eq!(tile, [4, 5, 6, 7, 12, 13, 14, 15, 20, 21, 22, 23, 28, 29, 30, 31]);
+    }
+}
