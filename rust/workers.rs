@@ -7,7 +7,7 @@ use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::time::Duration;
 
 /// How often the calling thread looks up from waiting.
-const WATCH: Duration = Duration::from_millis(40);
+const WATCH: Duration = Duration::from_millis(20);
 
 /// Raised to ask work to stop soon.
 #[derive(Debug, Default)]
@@ -48,7 +48,7 @@ pub fn pool(threads: Option<usize>) -> Result<Arc<ThreadPool>, String> {
     Ok(pool)
 }
 
-/// Does `work` on the pool of so many threads while the calling thread calls `watch` 25 times a second; when that
+/// Does `work` on the pool of so many threads while the calling thread calls `watch` 50 times a second; when that
 /// says false, the work's [`Cancel`] is raised, and it should end soon.
 pub fn watched<T: Send>(
     threads: Option<usize>,

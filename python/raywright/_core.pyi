@@ -49,8 +49,8 @@ class CompiledScene:
         """Closest hits of N rays: (t (N,), shape_id (N,), primitive (N,), uv (N,2)).
 
         ``origins`` and ``directions`` are (N,3) or (1,3), float32 or float64, each of either type; ``t_min``
-        and ``t_max`` are (N,) or (1,). ``row`` is the length of an image's rows, which is then traced in tiles;
-        0 for what is no image.
+        and ``t_max`` are (N,) or (1,). ``row`` is the length of an image's rows, which is then traced in
+        tiles; 0 for what is no image.
         """
     def occluded(
         self,

@@ -150,8 +150,8 @@ class Scene:
 
         Notes
         -----
-        Rays with NaN, infinity or a zero direction hit nothing. Hits are watertight: no ray passes between
-        two faces that share an edge or a corner.
+        Rays with NaN, infinity or a zero direction (or one shorter than the least normal number) hit nothing.
+        Hits are watertight: no ray passes between two faces that share an edge or a corner.
         """
         rays = RayBatch.of(origins, directions, t_min, t_max, threads)
         compiled = self._compiled()

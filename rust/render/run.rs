@@ -112,7 +112,7 @@ pub fn render(
         let mut flow = ControlFlow::Continue(());
         let work = |cancel: &Cancel| {
             exposure.expose(&mut film, done..done + count, cancel);
-            estimate(&film)
+            if cancel.is_raised() { None } else { estimate(&film) }
         };
         let poll = || {
             flow = progress.poll();

@@ -14,7 +14,7 @@ use crate::math::Ray;
 use crate::shapes::triangle::{BlockRay, EdgeRay};
 use crate::simd::Simd;
 
-/// Rays in flight. More won nothing.
+/// Rays in flight: 128 were no faster.
 const WAVE: usize = 64;
 
 /// A ray on its way.

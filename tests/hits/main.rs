@@ -1,0 +1,6 @@
+//! Rays to hits: every accelerator gives the same answers, and these are the exact ones.
+
+mod agreement;
+mod boxes;
+mod signs;
+mod triangles;

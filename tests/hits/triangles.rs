@@ -1,0 +1,171 @@
+//! Triangles and rays for the tests of hits, and the comparison of every accelerator at every level.
+
+use raywright::accel::bvh::{Options, WideBvh};
+use raywright::accel::{Accelerator, BruteForce, Primitives};
+use raywright::math::{Aabb, DVec3, Hit, Ray, Vec3};
+use raywright::shapes::triangle::EdgeRay;
+use raywright::simd::Level;
+
+/// Triangles by their corners.
+#[derive(Clone, Debug)]
+pub struct Triangles(pub Vec<[Vec3; 3]>);
+
+impl Primitives for Triangles {
+    fn count(&self) -> usize {
+        self.0.len()
+    }
+
+    fn aabb(&self, primitive: u32) -> Aabb {
+        let corners = self.corners(primitive);
+        if corners.iter().all(|c| c.is_finite()) { Aabb::around(corners) } else { Aabb::EMPTY }
+    }
+
+    fn corners(&self, primitive: u32) -> [Vec3; 3] {
+        self.0[primitive as usize]
+    }
+}
+
+impl Triangles {
+    /// The largest coordinate of all that can be hit.
+    fn extent(&self) -> f64 {
+        let bounds = (0..self.0.len() as u32).fold(Aabb::EMPTY, |b, p| b.union(self.aabb(p)));
+        f64::from(bounds.largest_coordinate())
+    }
+
+    /// The closest hit, triangle by triangle: no boxes, no lanes, no test in f32 before.
+    fn closest(&self, ray: &Ray, extent: f64) -> Hit {
+        let Some(edges) = EdgeRay::new(ray, extent) else { return Hit::MISS };
+        let mut best = Hit::MISS;
+        for p in (0..self.0.len() as u32).filter(|&p| !self.aabb(p).is_empty()) {
+            if let Some(c) = edges.meet(self.corners(p).map(Vec3::as_dvec3))
+                && c.t < best.t
+            {
+                best = Hit { t: c.t, uv: c.uv, primitive: p };
+            }
+        }
+        Hit { t: best.t * edges.scale, ..best }
+    }
+}
+
+/// The levels of this processor.
+pub fn levels() -> impl Iterator<Item = Level> {
+    Level::ALL.into_iter().filter(|l| l.is_available())
+}
+
+/// Both trees and brute force at every level, by name. The trees are valid.
+pub fn accelerators(primitives: &impl Primitives) -> Vec<(String, Box<dyn Accelerator>)> {
+    let mut all: Vec<(String, Box<dyn Accelerator>)> = Vec::new();
+    for level in levels() {
+        let narrow = WideBvh::<4>::new(primitives, &Options::DEFAULT, level);
+        let wide = WideBvh::<8>::new(primitives, &Options::DEFAULT, level);
+        narrow.validate(primitives).unwrap();
+        wide.validate(primitives).unwrap();
+        all.push((format!("4 wide, {}", level.name()), Box::new(narrow)));
+        all.push((format!("8 wide, {}", level.name()), Box::new(wide)));
+        all.push((format!("brute force, {}", level.name()), Box::new(BruteForce::new(primitives, level))));
+    }
+    all
+}
+
+/// The closest hits, after seeing that every accelerator at every level gives the same bits, and `occluded` the same
+/// answer. The rays are asked as one batch, and a few at a time, which other kernels answer.
+pub fn agreed(triangles: &Triangles, rays: &[Ray]) -> Vec<Hit> {
+    let extent = triangles.extent();
+    let wanted: Vec<Hit> = rays.iter().map(|r| triangles.closest(r, extent)).collect();
+    for (name, accelerator) in accelerators(triangles) {
+        for batch in [rays.len().max(1), 3] {
+            let mut hits = vec![Hit::MISS; rays.len()];
+            let mut occluded = vec![false; rays.len()];
+            for ((rays, hits), occluded) in
+                rays.chunks(batch).zip(hits.chunks_mut(batch)).zip(occluded.chunks_mut(batch))
+            {
+                accelerator.intersect(rays, hits);
+                accelerator.occluded(rays, occluded);
+            }
+            for (i, (found, wanted)) in hits.iter().zip(&wanted).enumerate() {
+                let ray = &rays[i];
+                assert_eq!(bits(found), bits(wanted), "{name}, ray {i} of {batch}: {ray:?}: {found:?} for {wanted:?}");
+                assert_eq!(occluded[i], wanted.is_hit(), "{name}, ray {i} of {batch}: {ray:?}: occluded, {wanted:?}");
+            }
+        }
+    }
+    wanted
+}
+
+/// A hit as bits, in which -0 and 0 differ.
+pub fn bits(hit: &Hit) -> (u64, [u64; 2], u32) {
+    (hit.t.to_bits(), hit.uv.map(f64::to_bits), hit.primitive)
+}
+
+/// How many hit.
+pub fn hits(hits: &[Hit]) -> usize {
+    hits.iter().filter(|h| h.is_hit()).count()
+}
+
+/// Pseudo-random numbers, the same at every run (SplitMix64; Steele, Lea and Flood 2014).
+pub struct Random(pub u64);
+
+impl Random {
+    /// 64 bits.
+    pub fn bits(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    /// From `a` to `b`.
+    pub fn between(&mut self, a: f64, b: f64) -> f64 {
+        a + (b - a) * (self.bits() >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    /// Below `n`.
+    pub fn below(&mut self, n: usize) -> usize {
+        (self.bits() % n as u64) as usize
+    }
+
+    /// One of some.
+    pub fn of<T: Copy>(&mut self, some: &[T]) -> T {
+        some[self.below(some.len())]
+    }
+
+    /// A point of the cube from `-r` to `r`.
+    pub fn point(&mut self, r: f64) -> DVec3 {
+        DVec3::new(self.between(-r, r), self.between(-r, r), self.between(-r, r))
+    }
+
+    /// A point of the grid of integers from `-r` to `r`.
+    pub fn grid(&mut self, r: i32) -> DVec3 {
+        let mut x = || (self.below(2 * r as usize + 1) as i32 - r) as f64;
+        DVec3::new(x(), x(), x())
+    }
+
+    /// Triangles of about `size` in the cube from -1 to 1.
+    pub fn soup(&mut self, count: usize, size: f64) -> Triangles {
+        let triangle = |_| {
+            let centre = self.point(1.0);
+            [0; 3].map(|_| (centre + self.point(size)).as_vec3())
+        };
+        Triangles((0..count).map(triangle).collect())
+    }
+
+    /// A vertex, a point of an edge, or one inside, of any of the triangles: exact for vertices.
+    pub fn target(&mut self, triangles: &Triangles) -> DVec3 {
+        let [a, b, c] = triangles.0[self.below(triangles.0.len())].map(|p| p.as_dvec3());
+        match self.below(3) {
+            0 => a,
+            1 => a + (b - a) * self.between(0.0, 1.0),
+            _ => a * 0.25 + b * 0.25 + c * 0.5,
+        }
+    }
+
+    /// Rays from the cube of `reach` aimed at vertices, edges and insides.
+    pub fn aimed(&mut self, triangles: &Triangles, count: usize, reach: f64) -> Vec<Ray> {
+        (0..count)
+            .map(|_| {
+                let (origin, target) = (self.point(reach), self.target(triangles));
+                Ray::new(origin, target - origin)
+            })
+            .collect()
+    }
+}

@@ -1,0 +1,211 @@
+"""Closest hits by brute force in exact arithmetic: what the library's answers are held against.
+
+Everything is decided in integers: floats are integers times powers of two, and the powers are multiplied out.
+Only pairs that f64 rejects with a margin of a thousand error bounds are left out.
+"""
+
+from dataclasses import dataclass
+from fractions import Fraction
+
+import numpy as np
+
+import raywright as rw
+
+UNIT = Fraction(1, 2**53)
+LARGEST = Fraction(np.finfo(np.float64).max)
+SMALLEST = Fraction(1, 2**1074)
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A triangle that a ray's line meets, at an exact `t`, and how far a computed answer may be off."""
+
+    primitive: int
+    t: Fraction
+    uv: tuple[Fraction, Fraction]
+    t_slack: Fraction
+    uv_slack: Fraction
+
+
+@dataclass
+class Outcome:
+    """How many rays hit, and how many had several triangles to choose from."""
+
+    hits: int = 0
+    choices: int = 0
+
+
+def check(mesh, origins, directions, t_min=0.0, t_max=np.inf, exact=False):
+    """Hold the answers of both accelerators against the oracle; `exact` allows for no rounding at all.
+
+    Small integers, whose products and sums an f64 holds exactly, give a correctly rounded `t` and the lowest
+    primitive of equal ones; otherwise a `t` may be off by its error bound, and so may the choice of the
+    closest.
+    """
+    scene, brute = rw.Scene(mesh), rw.Scene(mesh, accelerator=rw.BruteForce())
+    hits, others = (s.intersect(origins, directions, t_min, t_max) for s in (scene, brute))
+    assert np.array_equal(hits.t, others.t)
+    assert np.array_equal(hits.primitive, others.primitive)
+    assert np.array_equal(hits.uv, others.uv)
+    for s in (scene, brute):
+        assert np.array_equal(s.occluded(origins, directions, t_min, t_max), hits.hit)
+    assert np.array_equal(hits.hit, hits.primitive >= 0)
+
+    starts, ways = np.broadcast_arrays(*np.atleast_2d(origins, directions))
+    nears, fars = np.broadcast_to(t_min, len(starts)), np.broadcast_to(t_max, len(starts))
+    vertices, faces = mesh.vertices.astype(np.float32).astype(np.float64), mesh.faces
+    outcome = Outcome()
+    for i, found in enumerate(
+        candidates(vertices[faces], starts.astype(np.float64), ways.astype(np.float64))
+    ):
+        answer = (float(hits.t[i]), int(hits.primitive[i]), hits.uv[i])
+        check_ray(found, answer, float(nears[i]), float(fars[i]), exact)
+        outcome.hits += answer[1] >= 0
+        outcome.choices += len(found) > 1
+    return outcome
+
+
+def check_ray(found, answer, t_min, t_max, exact):
+    t, primitive, uv = answer
+
+    def slack(candidate):
+        return 0 if exact else candidate.t_slack
+
+    def surely_asked_for(c):
+        return at_least(c.t - slack(c), t_min) and at_most(c.t + slack(c), t_max)
+
+    if primitive < 0:
+        assert (t, primitive, *uv) == (np.inf, -1, 0.0, 0.0)
+        assert not [c for c in found if surely_asked_for(c)], "a miss, but these are hit"
+        return
+    mine = next((c for c in found if c.primitive == primitive), None)
+    assert mine is not None, f"primitive {primitive} is not hit"
+    assert t_min <= t <= t_max
+    assert np.isfinite(t)
+    if exact:
+        # Python rounds a quotient of integers correctly.
+        assert t == mine.t.numerator / mine.t.denominator
+    assert abs(Fraction(t) - mine.t) <= (abs(mine.t) * UNIT if exact else mine.t_slack)
+    for computed, wanted in zip(uv, mine.uv, strict=True):
+        assert abs(Fraction(float(computed)) - wanted) <= mine.uv_slack
+    for c in filter(surely_asked_for, found):
+        if exact:
+            assert (mine.t, primitive) <= (c.t, c.primitive)
+        else:
+            assert t <= c.t + c.t_slack, f"{c.primitive} is nearer than {primitive}"
+
+
+def at_least(t, bound):
+    return bound != np.inf and t >= (-LARGEST if bound == -np.inf else Fraction(bound))
+
+
+def at_most(t, bound):
+    return bound != -np.inf and t <= (LARGEST if bound == np.inf else Fraction(bound))
+
+
+def candidates(triangles, origins, directions):
+    """For each ray, the triangles that its line meets, (T,3,3) and (N,3) float64."""
+    usable = np.isfinite(triangles).all(axis=(1, 2))
+    with np.errstate(all="ignore"):
+        # A direction without a normal number in it counts as zero.
+        way = np.abs(directions).max(axis=1) >= np.finfo(np.float64).tiny
+        valid = np.isfinite(origins).all(axis=1) & np.isfinite(directions).all(axis=1) & way
+        step = max(1, 400_000 // max(1, len(triangles)))
+        for start in range(0, len(origins), step):
+            part = slice(start, start + step)
+            open_pairs = doubtful(triangles, origins[part], directions[part]) & usable & valid[part, None]
+            for i, row in enumerate(open_pairs):
+                ray = origins[start + i].tolist(), directions[start + i].tolist()
+                tried = (candidate(int(p), triangles[p].tolist(), *ray) for p in np.flatnonzero(row))
+                yield [c for c in tried if c is not None]
+
+
+def doubtful(triangles, origins, directions):
+    """Pairs (N, T) that f64 cannot reject for certain."""
+    scaled = np.ldexp(directions, -np.frexp(np.abs(directions).max(axis=1))[1][:, None])
+    corners = triangles[None] - origins[:, None, None]
+    size = np.abs(corners).max(axis=(2, 3))
+    # An edge's volume takes some 20 roundings, each below 2⁻⁵³ of at most 12 size² (the direction is at most
+    # 1); 2⁻⁴⁰ is far more. What underflows is below the constant.
+    margin = 2.0**-40 * size**2 + 1e-290
+    volumes = np.einsum(
+        "nj,ntij->nti", scaled, np.cross(np.roll(corners, -1, axis=2), np.roll(corners, -2, axis=2))
+    )
+    positive = (volumes > margin[..., None]).any(axis=2)
+    negative = (volumes < -margin[..., None]).any(axis=2)
+    return ~(positive & negative & (size < 1e100))
+
+
+def candidate(primitive, triangle, origin, direction):
+    """Decide a pair exactly.
+
+    The line meets a triangle that is not edge-on if it passes no edge on the side opposite to another's.
+    """
+    points, point_scale = integers([x for p in (*triangle, origin) for x in p])
+    d, d_scale = integers(direction)
+    o = points[9:]
+    a, b, c = (minus(points[i : i + 3], o) for i in (0, 3, 6))
+    volumes = [dot(d, cross(b, c)), dot(d, cross(c, a)), dot(d, cross(a, b))]
+    total = sum(volumes)
+    if total == 0 or (min(volumes) < 0 < max(volumes)):
+        return None
+    normal = cross(minus(b, a), minus(c, a))
+    assert dot(normal, d) == total
+    t = Fraction(dot(normal, a) * d_scale, total * point_scale)
+    t_slack, uv_slack = slacks([a, b, c], d, total)
+    # From lengths of the direction scaled to a largest coordinate in [1, 2), to lengths of it as it was
+    # given.
+    length = Fraction(2) ** (max(map(abs, d)).bit_length() - 1) / d_scale
+    # Coming back to f64 costs nothing but where t is subnormal.
+    return Candidate(
+        primitive,
+        t,
+        (Fraction(volumes[1], total), Fraction(volumes[2], total)),
+        t_slack / point_scale / length + SMALLEST,
+        uv_slack,
+    )
+
+
+def slacks(corners, d, total):
+    """How far `t` along the scaled direction (in units of the corners), and the weights, may be off.
+
+    `t` is a mean of the corners' depths along the direction's largest axis, so it takes roundings of these
+    depths. And a weight may be off by `e` (see rust/shapes/triangle/edge.rs) if it is computed in f64, which
+    moves the mean by at most 3 e · range / (|total| - 3 e). Where the total is at most 6 e, some weight is
+    too small to tell its sign, and all are computed exactly.
+    """
+    axis = max(range(3), key=lambda k: abs(d[k]))
+    depths = [c[axis] for c in corners]
+    size = max(abs(x) for c in corners for x in c)
+    # d relative to its power of two is below 2; the total is to be seen so too.
+    power = 1 << (max(map(abs, d)).bit_length() - 1)
+    e = 208 * UNIT * 2 * size * size
+    scaled_total = Fraction(abs(total), power)
+    # Each depth: 1 rounding, its product 2 (with its weight's), sums 2 each above and below, times d,
+    # quotient: 9.
+    rounding = 16 * UNIT * max(map(abs, depths))
+    if scaled_total <= 6 * e:
+        return rounding, 8 * UNIT
+    spread = 3 * e / (scaled_total - 3 * e)
+    # A weight's share of the total moves by its own error and by its share of the total's: 4 e / (|total| - 3
+    # e).
+    return rounding + spread * (max(depths) - min(depths)), 8 * UNIT + 4 * spread / 3
+
+
+def integers(values):
+    """Integers and a power of two: each value is its integer over the power."""
+    ratios = [x.as_integer_ratio() for x in values]
+    scale = max(q for _, q in ratios)
+    return [p * (scale // q) for p, q in ratios], scale
+
+
+def minus(p, q):
+    return [x - y for x, y in zip(p, q, strict=True)]
+
+
+def dot(p, q):
+    return sum(x * y for x, y in zip(p, q, strict=True))
+
+
+def cross(p, q):
+    return [p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]]

@@ -1,0 +1,96 @@
+"""The error that a picture tells, against the error that it has."""
+
+import numpy as np
+import pytest
+
+import raywright as rw
+
+
+def render(scene, camera, **limits):
+    return rw.render(scene, camera, progress=False, **limits)
+
+
+def relmse(image, reference):
+    return float(np.mean(np.square(image.rgb - reference) / (np.square(reference) + 0.01)))
+
+
+@pytest.mark.slow
+def test_estimate_of_a_cornell_box_is_close_to_its_true_error():
+    # Below this size a few pixels at the edge of the lamp hold most of the error, and chance alone keeps any
+    # estimate from being so close so often.
+    scene, camera = rw.scenes.cornell_box(width=64, height=64)
+    reference = render(scene, camera, samples=1600, seed=10**9).rgb.astype(float)
+    ratios, inside = [], []
+    for seed in range(100):
+        image = render(scene, camera, samples=16, seed=seed)
+        truth = relmse(image, reference)
+        ratios.append(float(image.error) / truth)
+        inside.append(image.error.low <= truth <= image.error.high)
+    ratios = np.array(ratios)
+    assert np.sum((ratios > 0.8) & (ratios < 1.25)) >= 95
+    # 88 of 100 are fewer than chance brings once in 200, were the intervals' 95 % exact.
+    assert np.sum(inside) >= 88
+
+
+@pytest.mark.slow
+def test_intervals_of_pixels_cover_the_reference():
+    scene, camera = rw.scenes.cornell_box(width=32, height=32)
+    reference = render(scene, camera, samples=25600, seed=10**9).rgb
+    covered = []
+    for seed in range(10):
+        image = render(scene, camera, samples=256, seed=seed)
+        covered.append(np.mean(np.abs(image.rgb - reference) <= 1.96 * image.standard_error))
+    assert 0.93 <= np.mean(covered) <= 0.97
+
+
+def test_standard_error_is_the_spread_over_seeds():
+    scene, camera = rw.scenes.cornell_box(width=8, height=8)
+    images = [render(scene, camera, samples=16, seed=seed) for seed in range(200)]
+    spread = np.var([image.rgb for image in images], axis=0, ddof=1)
+    told = np.mean([np.square(image.standard_error) for image in images], axis=0)
+    # Each of the two is known to some 15 % in a pixel, and their sums over pixels to some 3 %.
+    assert 0.9 < told.sum() / spread.sum() < 1.1
+
+
+def test_mean_over_seeds_is_unbiased():
+    scene, camera = rw.scenes.cornell_box(width=8, height=8)
+    reference = render(scene, camera, samples=20000, seed=10**9)
+    few = np.array([render(scene, camera, samples=1, seed=seed).rgb for seed in range(4000)])
+    error = np.sqrt(few.var(axis=0, ddof=1) / len(few) + np.square(reference.standard_error))
+    deviation = (few.mean(axis=0) - reference.rgb) / error
+    # Channels of a pixel go together: of 64 normal deviates, chance brings one beyond 4.5 once in 2000 cases.
+    assert np.abs(deviation).max() < 4.5
+
+
+def test_rendering_to_an_error_reaches_it():
+    scene, camera = rw.scenes.cornell_box(width=48, height=48)
+    reference = render(scene, camera, samples=2000, seed=10**9).rgb.astype(float)
+    reached = 0
+    for seed in range(20):
+        image = render(scene, camera, error=0.01, seed=seed)
+        assert image.error.high <= 0.01
+        assert image.samples >= 16
+        reached += relmse(image, reference) <= 0.01
+    # 17 of 20 are fewer than chance brings once in 40, if 95 of 100 are promised.
+    assert reached >= 18
+
+
+def test_error_falls_as_one_over_samples():
+    scene, camera = rw.scenes.cornell_box(width=48, height=48)
+    history = render(scene, camera, samples=512).history
+    late = history[history["samples"] >= 32]
+    slope = np.polyfit(np.log(late["samples"]), np.log(late["error"]), 1)[0]
+    assert -1.1 < slope < -0.9
+
+
+def test_a_picture_without_noise_has_no_error():
+    camera = rw.Camera((0, 0, 5), (0, 0, 6), width=4, height=4)
+    image = render(rw.Scene([], environment=0.5), camera, error=1e-9, samples=100)
+    assert (float(image.error), image.samples) == (0.0, 16)
+
+
+def test_one_sample_knows_no_error():
+    scene, camera = rw.scenes.cornell_box(width=4, height=4)
+    image = render(scene, camera, samples=1)
+    assert np.isnan(float(image.error))
+    assert np.isnan(image.standard_error).all()
