@@ -1,9 +1,14 @@
 """What several tests look at."""
 
+import signal
+
 import numpy as np
 import pytest
 
 import raywright as rw
+
+# What a shell runs in the background ignores Ctrl-C, and so would the tests of it, here and in child processes.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 
 CORNERS = [(x, y, z) for x in (0.0, 1.0) for y in (0.0, 1.0) for z in (0.0, 1.0)]
 # Anticlockwise from outside; corner i has the bits of i as its coordinates.
