@@ -1,4 +1,4 @@
-"""Threads: forked processes, signals, and answers that do not depend on how many there are."""
+"""Threads beside forked processes and signals."""
 
 import multiprocessing
 import signal
@@ -31,31 +31,6 @@ def test_a_forked_process_has_threads_of_its_own():
     here = hit_count(None)  # the parent's threads are running when it forks
     with multiprocessing.get_context("fork").Pool(1) as pool:
         assert pool.map_async(hit_count, [None]).get(timeout=60) == [here]
-
-
-def test_the_number_of_threads_does_not_matter():
-    scene = rw.Scene(TETRAHEDRON)
-    origins, directions = rays(20_000)
-    one = scene.intersect(origins, directions, threads=1)
-    for threads in (2, 3, None):
-        other = scene.intersect(origins, directions, threads=threads)
-        for name in ("t", "primitive", "uv", "normal", "position"):
-            np.testing.assert_array_equal(getattr(other, name), getattr(one, name))
-
-
-def test_scenes_may_be_asked_from_many_python_threads():
-    scene = rw.Scene(TETRAHEDRON)
-    origins, directions = rays(5000)
-    found = []
-    ask = [
-        threading.Thread(target=lambda: found.append(scene.intersect(origins, directions))) for _ in range(8)
-    ]
-    for thread in ask:
-        thread.start()
-    for thread in ask:
-        thread.join()
-    assert len(found) == 8
-    assert all(np.array_equal(f.t, found[0].t) for f in found)
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals differ there")
