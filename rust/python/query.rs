@@ -108,15 +108,17 @@ impl<'a> RayArrays<'a> {
         }
     }
 
-    /// Calls `answer` with some hundred rays at a time of the `count` from `start` on, and with the number of the first;
-    /// [`Tiling::place`] tells where each lies.
+    /// Calls `answer` with some hundred rays at a time of the `count` from `start` on, and with where each lies among them.
     #[inline(always)]
-    fn gathered(&self, start: usize, count: usize, mut answer: impl FnMut(&[Ray], usize)) {
+    fn gathered(&self, start: usize, count: usize, mut answer: impl FnMut(&[Ray], &[usize])) {
         let mut rays = Vec::with_capacity(GATHER.min(count));
+        let mut places = [0; GATHER];
         for from in (0..count).step_by(GATHER) {
+            let places = &mut places[..GATHER.min(count - from)];
+            self.tiling.places(from, count, places);
             rays.clear();
-            rays.extend((from..count.min(from + GATHER)).map(|i| self.ray(start + self.tiling.place(i, count))));
-            answer(&rays, from);
+            rays.extend(places.iter().map(|&place| self.ray(start + place)));
+            answer(&rays, places);
         }
     }
 }
@@ -171,11 +173,10 @@ impl CompiledScene {
             answer(py, n, rays.tiling.chunk(CHUNK), threads, parts, |start, (t, shape, primitive, uv)| {
                 let count = t.len();
                 let mut hits = [Hit::MISS; GATHER];
-                rays.gathered(start, count, |batch, from| {
+                rays.gathered(start, count, |batch, places| {
                     let hits = &mut hits[..batch.len()];
                     scene.intersect(batch, hits);
-                    for (i, hit) in hits.iter().enumerate() {
-                        let i = rays.tiling.place(from + i, count);
+                    for (hit, &i) in hits.iter().zip(places) {
                         (t[i], uv[i]) = (hit.t, hit.uv);
                         (shape[i], primitive[i]) = if hit.is_hit() {
                             let (shape, primitive) = scene.geometry().locate(hit.primitive);
@@ -215,11 +216,11 @@ impl CompiledScene {
             answer(py, rays.count, rays.tiling.chunk(CHUNK), threads, out.as_slice_mut()?, |start, out| {
                 let count = out.len();
                 let mut found = [false; GATHER];
-                rays.gathered(start, count, |batch, from| {
+                rays.gathered(start, count, |batch, places| {
                     let found = &mut found[..batch.len()];
                     scene.occluded(batch, found);
-                    for (i, &found) in found.iter().enumerate() {
-                        out[rays.tiling.place(from + i, count)] = found;
+                    for (&found, &i) in found.iter().zip(places) {
+                        out[i] = found;
                     }
                 });
             })?;

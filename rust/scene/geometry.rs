@@ -113,7 +113,11 @@ impl Geometry {
     }
 
     /// Which shape a primitive belongs to, and its index there.
+    #[inline]
     pub fn locate(&self, primitive: u32) -> (u32, u32) {
+        if self.shapes() == 1 {
+            return (0, primitive);
+        }
         // The last shape that starts at or before the primitive; empty shapes before it start there too.
         let shape = self.first.partition_point(|&f| f <= primitive) - 1;
         (shape as u32, primitive - self.first[shape])
