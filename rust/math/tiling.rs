@@ -36,7 +36,7 @@ impl Tiling {
         }
         let (band, tiles, rest) = (SIDE * self.row, self.row / SIDE, self.row % SIDE);
         let tiled = tiles * SIDE * SIDE;
-        // Carried along from pixel to pixel, since a division for each would cost a tenth of all the time.
+        // Carried along from pixel to pixel, since a division for each would show in the time of a ray.
         let (mut start, mut i) = (from / band * band, from % band);
         for place in places {
             if i == band {

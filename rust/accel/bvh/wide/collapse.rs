@@ -3,7 +3,7 @@
 //!
 //! For every binary node and every number i of up to N roots, the least cost of showing its primitives to a parent as
 //! at most i subtrees. A single root is either a block of triangles or a wide node whose N roots are shared out between
-//! the two children. A greedy collapse leaves a third of the slots empty and costs up to a fifth of the speed.
+//! the two children. A greedy collapse leaves more of the slots empty.
 
 use super::{Child, Info, Options, Primitives, TriangleBlock, WideBvh, WideNode};
 use crate::accel::bvh::BinaryBvh;

@@ -17,7 +17,7 @@ use crate::math::robust::{greater, lesser};
 use crate::shapes::triangle::{BlockRay, EdgeRay};
 use crate::simd::Simd;
 
-/// Rays of a packet: of 4 and of 8 were slower.
+/// Rays of a packet: two vectors of eight lanes.
 const RAYS: usize = 16;
 
 /// So many rays or fewer go on alone.

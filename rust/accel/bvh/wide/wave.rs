@@ -14,7 +14,7 @@ use crate::math::Ray;
 use crate::shapes::triangle::{BlockRay, EdgeRay};
 use crate::simd::Simd;
 
-/// Rays in flight: 128 were no faster.
+/// Rays in flight: enough that what one has asked for is there when its turn comes.
 const WAVE: usize = 64;
 
 /// A ray on its way.

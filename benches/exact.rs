@@ -1,0 +1,33 @@
+//! What a decision about a triangle costs: in f64, where its bound makes it certain, and in integers, where it does not.
+
+use divan::{Bencher, black_box};
+use raywright::math::{DVec3, Ray, exact_edges};
+use raywright::shapes::triangle::EdgeRay;
+
+fn main() {
+    divan::main();
+}
+
+/// A triangle and a ray through a point of it that has these weights.
+fn aimed(weights: [f64; 3]) -> (Ray, [DVec3; 3]) {
+    let corners = [[0.75, -0.3125, 2.1], [-0.46, 0.8, 1.9], [-0.3, -0.7, 2.4]]
+        .map(|c: [f32; 3]| DVec3::from_array(c.map(f64::from)));
+    let target = corners[0] * weights[0] + corners[1] * weights[1] + corners[2] * weights[2];
+    let origin = DVec3::new(0.1, 0.2, -1.0);
+    (Ray::new(origin, target - origin), corners)
+}
+
+#[divan::bench]
+fn certain(bencher: Bencher) {
+    let (ray, corners) = aimed([0.25, 0.5, 0.25]);
+    let ray = EdgeRay::new(&ray, 3.0).expect("a ray that can hit");
+    assert!(ray.meet(corners).is_some());
+    bencher.bench_local(|| ray.meet(black_box(corners)));
+}
+
+#[divan::bench]
+fn exact(bencher: Bencher) {
+    let (ray, corners) = aimed([0.5, 0.5, 0.0]);
+    assert!(exact_edges(ray.origin, ray.direction, corners)[2].abs() < 1e-15, "a ray aimed at an edge");
+    bencher.bench_local(|| exact_edges(ray.origin, black_box(ray.direction), black_box(corners)));
+}
