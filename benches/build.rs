@@ -8,7 +8,7 @@ use divan::counter::ItemsCount;
 use meshes::{Mesh, Purpose, noisy_torus, rays, validate};
 use raywright::accel::Primitives;
 use raywright::accel::bvh::build::binned;
-use raywright::accel::bvh::{Options, WideBvh};
+use raywright::accel::bvh::{Options, SingleBvh};
 use raywright::simd::{Dispatch, Level};
 
 const SIZES: [usize; 4] = [1_000, 10_000, 100_000, 1_000_000];
@@ -20,7 +20,8 @@ fn main() {
 #[divan::bench(args = SIZES, sample_count = 3, sample_size = 1)]
 fn binary(bencher: Bencher, size: usize) {
     let triangles = noisy_torus(size);
-    let boxes: Vec<_> = (0..triangles.count() as u32).map(|p| triangles.aabb(p)).collect();
+    let region = triangles.region();
+    let boxes: Vec<_> = (0..triangles.count() as u32).map(|p| region.aabb(triangles.corners(p))).collect();
     binned::build(&boxes, Options::DEFAULT.bins).validate(&boxes).expect("a valid tree");
     bencher.counter(ItemsCount::new(boxes.len())).bench_local(|| binned::build(&boxes, Options::DEFAULT.bins));
 }
@@ -41,7 +42,7 @@ where
 {
     let level = Level::current().expect("a level of this processor");
     let triangles = noisy_torus(size);
-    let build = || WideBvh::<N>::new(&triangles, &Options::DEFAULT, level);
+    let build = || SingleBvh::<N>::new(&triangles, &Options::DEFAULT, level);
     let tree = build();
     tree.validate(&triangles).expect("a valid tree");
     validate(&triangles, &tree, &rays(Mesh::NoisyTorus, &triangles, &tree, Purpose::Primary));

@@ -1,7 +1,7 @@
 //! What a decision about a triangle costs: in f64, where its bound makes it certain, and in integers, where it does not.
 
 use divan::{Bencher, black_box};
-use raywright::math::{DVec3, Ray, exact_edges};
+use raywright::math::{DVec3, Ray, Region, exact_edges};
 use raywright::shapes::triangle::EdgeRay;
 
 fn main() {
@@ -20,7 +20,7 @@ fn aimed(weights: [f64; 3]) -> (Ray, [DVec3; 3]) {
 #[divan::bench]
 fn certain(bencher: Bencher) {
     let (ray, corners) = aimed([0.25, 0.5, 0.25]);
-    let ray = EdgeRay::new(&ray, 3.0).expect("a ray that can hit");
+    let ray = EdgeRay::new(&ray, &Region::around(corners)).expect("a ray that can hit");
     assert!(ray.meet(corners).is_some());
     bencher.bench_local(|| ray.meet(black_box(corners)));
 }

@@ -1,9 +1,9 @@
 //! The meshes and the rays that benches are timed on, the same at every run.
 #![allow(dead_code, reason = "each bench takes what it needs")]
 
-use raywright::accel::bvh::{Options, WideBvh};
+use raywright::accel::bvh::{Options, SingleBvh};
 use raywright::accel::{Accelerator, BruteForce, Primitives};
-use raywright::math::{Aabb, DVec3, Frame, Hit, Ray, Vec3};
+use raywright::math::{DVec3, Frame, Hit, Ray, Vec3};
 use raywright::sampling::{philox4x32, warp};
 use raywright::simd::Level;
 use std::fmt;
@@ -16,12 +16,12 @@ impl Primitives for Triangles {
         self.0.len()
     }
 
-    fn aabb(&self, primitive: u32) -> Aabb {
-        Aabb::around(self.corners(primitive))
+    fn corners(&self, primitive: u32) -> [DVec3; 3] {
+        self.0[primitive as usize].map(Vec3::as_dvec3)
     }
 
-    fn corners(&self, primitive: u32) -> [Vec3; 3] {
-        self.0[primitive as usize]
+    fn is_single(&self) -> bool {
+        true
     }
 }
 
@@ -206,7 +206,7 @@ pub fn rays(mesh: Mesh, triangles: &Triangles, tree: &dyn Accelerator, purpose: 
     let mut seen = vec![Hit::MISS; primary.len()];
     tree.intersect(&primary, &mut seen);
     let leave = |(i, (ray, hit)): (usize, (&Ray, &Hit))| {
-        let [a, b, c] = triangles.corners(hit.primitive).map(|c| c.as_dvec3());
+        let [a, b, c] = triangles.corners(hit.primitive);
         let normal = (b - a).cross(c - a).normalize();
         let normal = if normal.dot(ray.direction) > 0.0 { -normal } else { normal };
         let start = ray.at(hit.t) + normal * 1e-4;
@@ -270,8 +270,8 @@ impl Kernel {
     /// Builds the tree.
     pub fn build(self, triangles: &Triangles) -> Box<dyn Accelerator> {
         match self.width {
-            4 => Box::new(WideBvh::<4>::new(triangles, &Options::DEFAULT, self.level)),
-            _ => Box::new(WideBvh::<8>::new(triangles, &Options::DEFAULT, self.level)),
+            4 => Box::new(SingleBvh::<4>::new(triangles, &Options::DEFAULT, self.level)),
+            _ => Box::new(SingleBvh::<8>::new(triangles, &Options::DEFAULT, self.level)),
         }
     }
 }
@@ -286,7 +286,7 @@ impl fmt::Display for Kernel {
 pub fn validate(triangles: &Triangles, tree: &dyn Accelerator, rays: &[Ray]) {
     const SOME: usize = 200;
     let sample: Vec<Ray> = rays.iter().step_by(rays.len() / SOME + 1).copied().collect();
-    let brute = BruteForce::new(triangles, Level::current().expect("a level of this processor"));
+    let brute = BruteForce::over(triangles, Level::current().expect("a level of this processor"));
     let (mut wanted, mut found) = (vec![Hit::MISS; sample.len()], vec![Hit::MISS; sample.len()]);
     let mut occluded = vec![false; sample.len()];
     brute.intersect(&sample, &mut wanted);

@@ -2,23 +2,50 @@
 
 mod brute;
 pub mod bvh;
+mod crossings;
+mod query;
 mod slab;
 
 pub use brute::BruteForce;
+pub use crossings::Crossings;
 pub use slab::SlabRay;
 
-use crate::math::{Aabb, Hit, Ray, Vec3};
+use crate::math::{DVec3, Hit, Ray, Region};
+use query::{Answers, Any, Closest, Counted, Every};
+use rayon::prelude::*;
 
-/// What an accelerator is built from: primitives known by their numbers, boxes and corners.
+/// What an accelerator is built from: triangles known by their numbers and corners.
 ///
 /// The accelerators know no scene; whoever owns primitives shows them so.
 pub trait Primitives: Sync {
     /// The number of primitives; they are numbered from 0.
     fn count(&self) -> usize;
-    /// The box around a primitive, empty if nothing can hit it.
-    fn aabb(&self, primitive: u32) -> Aabb;
+
     /// The corners of a triangle.
-    fn corners(&self, primitive: u32) -> [Vec3; 3];
+    fn corners(&self, primitive: u32) -> [DVec3; 3];
+
+    /// Whether every coordinate is an f32, so that leaves need not keep more.
+    fn is_single(&self) -> bool;
+
+    /// Whether anything can hit it: not if a corner is NaN or infinite.
+    fn is_finite(&self, primitive: u32) -> bool {
+        self.corners(primitive).iter().all(|c| c.is_finite())
+    }
+
+    /// Where the primitives lie that can be hit.
+    fn region(&self) -> Region {
+        let nothing = || (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        let join = |a: (DVec3, DVec3), b: (DVec3, DVec3)| (a.0.min(b.0), a.1.max(b.1));
+        let (min, max) = (0..self.count() as u32)
+            .into_par_iter()
+            .filter(|&p| self.is_finite(p))
+            .map(|p| {
+                let [a, b, c] = self.corners(p);
+                (a.min(b).min(c), a.max(b).max(c))
+            })
+            .reduce(nothing, join);
+        Region::new(min, max)
+    }
 }
 
 /// Finds hits among primitives. Every accelerator gives the same answers, ties included: of equal `t`, the lowest
@@ -30,8 +57,57 @@ pub trait Accelerator: Send + Sync {
     /// Whether each ray hits anything.
     fn occluded(&self, rays: &[Ray], occluded: &mut [bool]);
 
+    /// Every hit of each ray, of which there are fewer than 2³².
+    fn crossings(&self, rays: &[Ray]) -> Crossings;
+
+    /// What finding the closest hit of each ray takes, ray by ray.
+    fn cost(&self, rays: &[Ray], costs: &mut [Cost]);
+
+    /// The same structure over primitives that have moved: as many, of the same numbers and of which the same can be hit.
+    fn refitted(&self, primitives: &dyn Primitives) -> Result<Box<dyn Accelerator>, String>;
+
     /// What it looks like.
     fn info(&self) -> &Info;
+}
+
+impl<A: Answers> Accelerator for A {
+    fn intersect(&self, rays: &[Ray], hits: &mut [Hit]) {
+        assert_eq!(rays.len(), hits.len(), "a hit for each ray");
+        self.answer(rays, &mut Closest(hits));
+    }
+
+    fn occluded(&self, rays: &[Ray], occluded: &mut [bool]) {
+        assert_eq!(rays.len(), occluded.len(), "an answer for each ray");
+        self.answer(rays, &mut Any(occluded));
+    }
+
+    fn crossings(&self, rays: &[Ray]) -> Crossings {
+        let mut every = Every::of(rays.len());
+        self.answer(rays, &mut every);
+        Crossings::of(every)
+    }
+
+    fn cost(&self, rays: &[Ray], costs: &mut [Cost]) {
+        assert_eq!(rays.len(), costs.len(), "a cost for each ray");
+        self.answer(rays, &mut Counted(costs));
+    }
+
+    fn refitted(&self, primitives: &dyn Primitives) -> Result<Box<dyn Accelerator>, String> {
+        Answers::refitted(self, primitives).map(|a| Box::new(a) as _)
+    }
+
+    fn info(&self) -> &Info {
+        Answers::info(self)
+    }
+}
+
+/// What a query took.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Cost {
+    /// Nodes whose boxes were tested.
+    pub nodes: u32,
+    /// Primitives that stood in the leaves visited.
+    pub primitives: u32,
 }
 
 /// What an accelerator looks like.
@@ -54,9 +130,4 @@ pub struct Info {
     /// Expected cost of a random ray that meets the root's box, by the surface-area heuristic (Goldsmith and Salmon
     /// 1987), in tests of a node or of a block of triangles.
     pub sah_cost: f64,
-}
-
-/// The largest coordinate of any primitive.
-fn extent(bounds: &Aabb) -> f64 {
-    f64::from(bounds.largest_coordinate())
 }

@@ -1,21 +1,20 @@
 //! A ray made ready for box tests in f32 that never reject a true hit.
 //!
-//! Boxes are kept in *box units*: the scene scaled by a power of two so that its largest coordinate lies in [1, 2).
-//! Scaling is exact but for what becomes subnormal, and nothing overflows whatever the scene's size.
+//! Boxes are kept in *box units* ([`Region`]), rounded outwards from f64 numbers that err by 2⁻⁵³ of themselves.
 //!
 //! The interval of `t` in which a ray is between two planes is `(plane − o) / d`, computed as `plane · r + s` with
 //! `r ≈ 1/d` and `s ≈ −o/d ∓ pad`, all in f32. With v = 2⁻²⁴, to first order and in units of |r|, this errs by
 //! 2v·|plane − o| for r, the same in both terms; v·|plane| for the product (less if fused); v·|o| for rounding o, and
 //! as much again for −o·r and for taking the pad off; and v·(|plane| + |o|) for the sum: in all by less than 6v·R,
 //! where R ("reach") bounds |plane| + |o|. The pad is 8v·R; what is left, at least v·R since |r| > 1/2, covers the error
-//! of a hit's own `t` ([`EdgeRay::T_ERROR`] is a quarter of v). Moving a far origin up and
-//! rounding `t`, all in f64, costs some twelve 2⁻⁵³ of the distance, for which 2⁻⁴⁶ of it is added.
+//! of a hit's own `t` ([`EdgeRay::T_ERROR`] is a quarter of v). Taking the centre off, moving a far origin up and
+//! rounding `t`, all in f64, costs some fourteen 2⁻⁵³ of the distance, for which 2⁻⁴⁶ of it is added.
 //!
 //! A direction of less than 2⁻⁶⁰ along an axis counts as ±2⁻⁶⁰: within reach, that moves the ray by less than a
 //! hundred-millionth of the pad, and no infinity times zero appears.
 
-use crate::math::Ray;
-use crate::math::robust::{lesser, normalising_scale};
+use crate::math::robust::lesser;
+use crate::math::{Ray, Region};
 use crate::shapes::triangle::EdgeRay;
 use glam::Vec3A;
 
@@ -73,35 +72,30 @@ impl SlabRay {
         start: 0.0,
     };
 
-    /// The scale from a scene's units to box units.
-    pub fn box_scale(extent: f64) -> f64 {
-        normalising_scale(extent).0
-    }
-
     /// Makes a ray ready for boxes in box units; none if it passes the scene by for certain.
     #[inline(always)]
-    pub fn new(ray: &EdgeRay, extent: f64, box_scale: f64) -> Option<Self> {
+    pub fn new(ray: &EdgeRay, region: &Region) -> Option<Self> {
         const PAD: f64 = 1.0 / (1u64 << 21) as f64;
-        // So many extents away the pad is many times the scene, and what is added soon more than an f32 can hold.
+        // So many radii away the pad is many times the scene, and what is added soon more than an f32 can hold.
         const FARTHEST: f64 = (1u128 << 100) as f64;
         const FAR_PAD: f64 = 1.0 / (1u64 << 46) as f64;
 
-        let mut origin = ray.origin * box_scale;
+        let mut origin = ray.local * region.scale;
         let direction = ray.direction;
-        let largest = ray.largest * box_scale;
+        let largest = ray.largest * region.scale;
         if largest > FARTHEST {
             return Some(Self::EVERYWHERE);
         }
         let mut start = 0.0;
         if ray.is_far {
-            let extent = extent * box_scale;
+            let radius = region.radius * region.scale;
             start = -origin.dot(direction) / direction.dot(direction);
             origin += start * direction;
-            if origin.abs().max_element() > 2.0 * extent + FAR_PAD * largest {
+            if origin.abs().max_element() > 2.0 * radius + FAR_PAD * largest {
                 return None;
             }
         }
-        let pad = (PAD * ray.reach * box_scale + FAR_PAD * largest) as f32;
+        let pad = (PAD * ray.reach * region.scale + FAR_PAD * largest) as f32;
         // Vectors of four, the last unused: an operation is one instruction, not three.
         let (origin, direction) = (origin.as_vec3a(), direction.as_vec3a());
         let inverse = away_from_zero(direction).recip();
@@ -113,8 +107,8 @@ impl SlabRay {
             origin: origin.to_array(),
             pad,
             first: [usize::from(inverse.x < 0.0), usize::from(inverse.y < 0.0), usize::from(inverse.z < 0.0)],
-            t_min: widened(ray.t_min * box_scale - start, -ULPS),
-            to_box: box_scale,
+            t_min: widened(ray.t_min * region.scale - start, -ULPS),
+            to_box: region.scale,
             start,
         })
     }
@@ -128,9 +122,9 @@ impl SlabRay {
     /// Readies a ray for a scene: for triangles and for boxes. None if it cannot hit anything, or passes the
     /// scene by.
     #[inline(always)]
-    pub fn prepare(ray: &Ray, extent: f64, box_scale: f64) -> Option<(EdgeRay, Self)> {
-        let edges = EdgeRay::new(ray, extent)?;
-        let slabs = Self::new(&edges, extent, box_scale)?;
+    pub fn prepare(ray: &Ray, region: &Region) -> Option<(EdgeRay, Self)> {
+        let edges = EdgeRay::new(ray, region)?;
+        let slabs = Self::new(&edges, region)?;
         Some((edges, slabs))
     }
 }

@@ -36,21 +36,10 @@ impl Aabb {
         other.is_empty() || (self.min.cmple(other.min).all() && self.max.cmpge(other.max).all())
     }
 
-    /// The box times a power of two, computed in f64. Exact, but for coordinates that become subnormal.
-    pub fn scaled(&self, scale: f64) -> Self {
-        let scaled = |v: Vec3| (v.as_dvec3() * scale).as_vec3();
-        Self { min: scaled(self.min), max: scaled(self.max) }
-    }
-
     /// Half the surface, which is all that the surface-area heuristic needs; 0 for an empty box.
     #[inline(always)]
     pub fn half_area(&self) -> f32 {
         let d = (self.max - self.min).max(Vec3::ZERO);
         d.x * (d.y + d.z) + d.y * d.z
-    }
-
-    /// The largest magnitude of any coordinate; 0 for an empty box.
-    pub fn largest_coordinate(&self) -> f32 {
-        if self.is_empty() { 0.0 } else { self.min.abs().max(self.max.abs()).max_element() }
     }
 }

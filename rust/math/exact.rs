@@ -23,6 +23,63 @@ pub fn exact_edges(origin: DVec3, direction: DVec3, [a, b, c]: [DVec3; 3]) -> [f
     volumes.map(|v| v.scaled(top))
 }
 
+/// The sign of the first coordinate of `d × (w − v)` that is not exactly zero, and zero where all are: −1, 0 or 1.
+///
+/// It tells on which side of the edge from `v` to `w` a line along `d` passes that touches it, once the line is moved by
+/// nearly nothing along x, by nearly nothing of that along y, and again along z.
+///
+/// All coordinates must be finite.
+#[cold]
+#[inline(never)]
+pub fn exact_turn(direction: DVec3, v: DVec3, w: DVec3) -> i32 {
+    let [d, v, w] = [direction, v, w].map(|x| x.to_array().map(Float::new));
+    for (j, k) in [(1, 2), (2, 0), (0, 1)] {
+        let mut terms = Terms::new();
+        for (x, y, negative) in [(d[j], w[k], false), (d[j], v[k], true), (d[k], w[j], true), (d[k], v[j], false)] {
+            terms.push([x, y, Float::ONE], negative);
+        }
+        let (mantissa, _) = terms.sum();
+        if mantissa != 0.0 {
+            return if mantissa > 0.0 { 1 } else { -1 };
+        }
+    }
+    0
+}
+
+/// Products of three numbers, to be summed exactly.
+struct Terms {
+    factors: [([Float; 3], bool); 18],
+    count: usize,
+}
+
+impl Terms {
+    fn new() -> Self {
+        Self { factors: [([Float::ZERO; 3], false); 18], count: 0 }
+    }
+
+    fn push(&mut self, factors: [Float; 3], negative: bool) {
+        if factors.iter().all(|f| f.mantissa != 0) {
+            self.factors[self.count] = (factors, negative);
+            self.count += 1;
+        }
+    }
+
+    /// The sum as a mantissa, zero or in [1/2, 1] in magnitude, and an exponent.
+    fn sum(&self) -> (f64, i32) {
+        let terms = &self.factors[..self.count];
+        let exponent = |f: &[Float; 3]| f[0].exponent + f[1].exponent + f[2].exponent;
+        let Some(low) = terms.iter().map(|(f, _)| exponent(f)).min() else { return (0.0, 0) };
+        let high = terms.iter().map(|(f, _)| exponent(f)).max().unwrap_or(low);
+        let mut sum = Accumulator::new((high - low) as u32);
+        for (f, negative) in terms {
+            let negative = f.iter().fold(*negative, |n, f| n ^ f.negative);
+            sum.add(f.map(|f| f.mantissa), (exponent(f) - low) as u32, negative);
+        }
+        let (mantissa, exponent) = sum.value();
+        (mantissa, exponent + low)
+    }
+}
+
 /// A number `mantissa · 2^exponent` with |mantissa| in [1/2, 1], or zero.
 struct Volume {
     mantissa: f64,
@@ -33,30 +90,16 @@ impl Volume {
     fn new(o: DVec3, d: DVec3, v: DVec3, w: DVec3) -> Self {
         let [o, d, v, w] = [o, d, v, w].map(|x| x.to_array().map(Float::new));
         // (v − o) × (w − o) = v × w + w × o + o × v.
-        let mut terms = [(Float::ZERO, Float::ZERO, Float::ZERO, false); 18];
-        let mut n = 0;
+        let mut terms = Terms::new();
         for (x, y) in [(v, w), (w, o), (o, v)] {
             for (i, &along) in d.iter().enumerate() {
                 let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-                for (y, z, negative) in [(x[j], y[k], false), (x[k], y[j], true)] {
-                    if along.mantissa != 0 && y.mantissa != 0 && z.mantissa != 0 {
-                        terms[n] = (along, y, z, negative);
-                        n += 1;
-                    }
-                }
+                terms.push([along, x[j], y[k]], false);
+                terms.push([along, x[k], y[j]], true);
             }
         }
-        let terms = &terms[..n];
-        let exponent = |t: &(Float, Float, Float, bool)| t.0.exponent + t.1.exponent + t.2.exponent;
-        let Some(low) = terms.iter().map(exponent).min() else { return Self { mantissa: 0.0, exponent: 0 } };
-        let high = terms.iter().map(exponent).max().unwrap_or(low);
-        let mut sum = Accumulator::new((high - low) as u32);
-        for t in terms {
-            let negative = t.0.negative ^ t.1.negative ^ t.2.negative ^ t.3;
-            sum.add([t.0.mantissa, t.1.mantissa, t.2.mantissa], (exponent(t) - low) as u32, negative);
-        }
-        let (mantissa, exponent) = sum.value();
-        Self { mantissa, exponent: exponent + low }
+        let (mantissa, exponent) = terms.sum();
+        Self { mantissa, exponent }
     }
 
     /// The value over 2^top, kept from vanishing.
@@ -79,6 +122,7 @@ struct Float {
 
 impl Float {
     const ZERO: Self = Self { mantissa: 0, exponent: 0, negative: false };
+    const ONE: Self = Self { mantissa: 1, exponent: 0, negative: false };
 
     fn new(x: f64) -> Self {
         let bits = x.to_bits();

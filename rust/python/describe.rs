@@ -68,7 +68,7 @@ impl Scene<'_> {
 
 impl Mesh<'_> {
     fn describe(self) -> PyResult<scene::Shape> {
-        let vertices = self.vertices.rows("vertices")?.to_single();
+        let vertices = scene::Vertices::from(self.vertices.rows("vertices")?.to_single());
         let faces = rows("faces", &self.faces)?.to_vec();
         if let Some(face) = faces.iter().position(|f| f.iter().any(|&v| v as usize >= vertices.len())) {
             let (corners, count) = (faces[face], vertices.len());
@@ -125,7 +125,7 @@ impl AcceleratorChoice {
         Ok(move |geometry: &Geometry| -> Box<dyn Accelerator> {
             match self {
                 Self::Bvh(options) => bvh::widest(geometry, &options, level),
-                Self::BruteForce => Box::new(BruteForce::new(geometry, level)),
+                Self::BruteForce => BruteForce::over(geometry, level),
             }
         })
     }

@@ -260,11 +260,11 @@ impl CompiledScene {
 
     #[getter]
     fn bounds<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
-        let bounds = self.0.bounds();
+        let bounds = self.0.region();
         if bounds.is_empty() {
             return Ok(None);
         }
-        let corners = [bounds.min, bounds.max].map(|c| c.as_dvec3().to_array().to_vec());
+        let corners = [bounds.min, bounds.max].map(|c| c.to_array().to_vec());
         Ok(Some(PyArray2::from_vec2(py, &corners)?))
     }
 

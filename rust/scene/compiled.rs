@@ -1,8 +1,8 @@
 //! A scene ready for rays.
 
 use super::{DescriptionError, Geometry, Lights, Material, SceneDescription};
-use crate::accel::{Accelerator, Primitives};
-use crate::math::{Aabb, Hit, Ray};
+use crate::accel::{Accelerator, Cost, Crossings, Primitives};
+use crate::math::{Hit, Ray, Region};
 
 /// A scene ready for rays.
 pub struct Scene {
@@ -10,7 +10,7 @@ pub struct Scene {
     materials: Vec<Material>,
     lights: Lights,
     accelerator: Box<dyn Accelerator>,
-    bounds: Aabb,
+    region: Region,
 }
 
 impl Scene {
@@ -31,10 +31,10 @@ impl Scene {
             emission.push(shape.emission);
         }
         let geometry = Geometry::new(meshes);
-        let bounds = (0..geometry.count() as u32).fold(Aabb::EMPTY, |all, p| all.union(geometry.aabb(p)));
+        let region = geometry.region();
         let lights = Lights::new(&geometry, emission, points, environment);
         let accelerator = accelerator(&geometry);
-        Ok(Self { geometry, materials, lights, accelerator, bounds })
+        Ok(Self { geometry, materials, lights, accelerator, region })
     }
 
     /// The closest hit of each ray.
@@ -45,6 +45,16 @@ impl Scene {
     /// Whether each ray hits anything.
     pub fn occluded(&self, rays: &[Ray], occluded: &mut [bool]) {
         self.accelerator.occluded(rays, occluded);
+    }
+
+    /// Every hit of each ray.
+    pub fn crossings(&self, rays: &[Ray]) -> Crossings {
+        self.accelerator.crossings(rays)
+    }
+
+    /// What finding the closest hit of each ray takes.
+    pub fn cost(&self, rays: &[Ray], costs: &mut [Cost]) {
+        self.accelerator.cost(rays, costs);
     }
 
     /// Its surfaces.
@@ -68,8 +78,8 @@ impl Scene {
         self.accelerator.as_ref()
     }
 
-    /// The box around all that can be hit.
-    pub fn bounds(&self) -> Aabb {
-        self.bounds
+    /// Where all that can be hit lies.
+    pub fn region(&self) -> &Region {
+        &self.region
     }
 }

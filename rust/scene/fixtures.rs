@@ -1,7 +1,7 @@
 //! Scenes that tests share.
 
 use super::{Camera, Material, Mesh, Scene, SceneDescription, Shape};
-use crate::accel::bvh::{Options, WideBvh};
+use crate::accel::bvh::{Options, SingleBvh};
 use crate::math::{DVec3, Vec3};
 use crate::optics::Rgb;
 use crate::simd::Level;
@@ -10,7 +10,7 @@ use crate::simd::Level;
 pub(crate) fn scene(description: SceneDescription) -> Scene {
     let level = Level::current().expect("a level");
     let compiled =
-        Scene::new(description, |geometry| Box::new(WideBvh::<4>::new(geometry, &Options::default(), level)));
+        Scene::new(description, |geometry| Box::new(SingleBvh::<4>::new(geometry, &Options::default(), level)));
     compiled.expect("a scene that can be")
 }
 
@@ -18,7 +18,7 @@ pub(crate) fn scene(description: SceneDescription) -> Scene {
 pub(crate) fn rectangle(corner: [f32; 3], side: [f32; 3], other: [f32; 3]) -> Mesh {
     let [corner, side, other] = [corner, side, other].map(Vec3::from);
     Mesh {
-        vertices: vec![corner, corner + side, corner + side + other, corner + other],
+        vertices: vec![corner, corner + side, corner + side + other, corner + other].into(),
         faces: vec![[0, 1, 2], [0, 2, 3]],
         normals: None,
     }

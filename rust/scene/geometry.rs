@@ -1,13 +1,104 @@
 //! The surfaces of a scene: every mesh's corners and faces, one after the other.
 
 use crate::accel::Primitives;
-use crate::math::{Aabb, DVec3, Hit, Vec3};
+use crate::math::{DVec3, Hit, Vec3};
+
+/// Corners of triangles, as precisely as they are known.
+#[derive(Clone, Debug)]
+pub enum Vertices {
+    /// f32.
+    Single(Vec<Vec3>),
+    /// f64.
+    Double(Vec<DVec3>),
+}
+
+impl Default for Vertices {
+    fn default() -> Self {
+        Self::Single(Vec::new())
+    }
+}
+
+impl From<Vec<Vec3>> for Vertices {
+    fn from(vertices: Vec<Vec3>) -> Self {
+        Self::Single(vertices)
+    }
+}
+
+impl FromIterator<Vec3> for Vertices {
+    fn from_iter<I: IntoIterator<Item = Vec3>>(vertices: I) -> Self {
+        Self::Single(vertices.into_iter().collect())
+    }
+}
+
+impl Vertices {
+    /// How many.
+    pub fn len(&self) -> usize {
+        match self {
+            Self::Single(v) => v.len(),
+            Self::Double(v) => v.len(),
+        }
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// One of them.
+    #[inline]
+    pub fn get(&self, i: u32) -> DVec3 {
+        match self {
+            Self::Single(v) => v[i as usize].as_dvec3(),
+            Self::Double(v) => v[i as usize],
+        }
+    }
+
+    /// Kept as f32 if nothing is lost by it: that takes half the memory, and decisions on it are as exact.
+    fn shortened(self) -> Self {
+        // NaN is no number that could be lost.
+        let fits = |x: f64| f64::from(x as f32) == x || x.is_nan();
+        match self {
+            Self::Double(v) if v.iter().all(|p| p.to_array().into_iter().all(fits)) => {
+                Self::Single(v.into_iter().map(|p| p.as_vec3()).collect())
+            }
+            other => other,
+        }
+    }
+
+    /// Both, one after the other; f64 if either is.
+    fn joined(self, more: Self) -> Self {
+        let widened = |v: Vec<Vec3>| v.into_iter().map(Vec3::as_dvec3);
+        match (self, more) {
+            (all, more) if more.is_empty() => all,
+            (all, more) if all.is_empty() => more,
+            (Self::Single(mut all), Self::Single(more)) => {
+                all.extend(more);
+                Self::Single(all)
+            }
+            (Self::Single(all), Self::Double(more)) => Self::Double(widened(all).chain(more).collect()),
+            (Self::Double(mut all), more) => {
+                match more {
+                    Self::Single(more) => all.extend(widened(more)),
+                    Self::Double(more) => all.extend(more),
+                }
+                Self::Double(all)
+            }
+        }
+    }
+
+    fn bytes(&self) -> usize {
+        match self {
+            Self::Single(v) => size_of_val(v.as_slice()),
+            Self::Double(v) => size_of_val(v.as_slice()),
+        }
+    }
+}
 
 /// One triangle mesh as it is described: what it is made of and how it shines.
 #[derive(Clone, Debug, Default)]
 pub struct Mesh {
     /// Corners.
-    pub vertices: Vec<Vec3>,
+    pub vertices: Vertices,
     /// Three indices into `vertices` a face.
     pub faces: Vec<[u32; 3]>,
     /// Shading normals, one a vertex.
@@ -17,7 +108,7 @@ pub struct Mesh {
 /// All meshes of a scene in one: a primitive is a face, numbered through from the first shape to the last.
 #[derive(Debug, Default)]
 pub struct Geometry {
-    vertices: Vec<Vec3>,
+    vertices: Vertices,
     /// Indices into `vertices`, for all shapes.
     faces: Vec<[u32; 3]>,
     /// Shading normals of all vertices, zero where a shape has none; empty where no shape has any.
@@ -48,15 +139,12 @@ impl Primitives for Geometry {
     }
 
     #[inline]
-    fn corners(&self, primitive: u32) -> [Vec3; 3] {
-        self.faces[primitive as usize].map(|v| self.vertices[v as usize])
+    fn corners(&self, primitive: u32) -> [DVec3; 3] {
+        self.faces[primitive as usize].map(|v| self.vertices.get(v))
     }
 
-    /// Empty for a primitive that is not finite.
-    #[inline]
-    fn aabb(&self, primitive: u32) -> Aabb {
-        let corners = self.corners(primitive);
-        if corners.iter().all(|c| c.is_finite()) { Aabb::around(corners) } else { Aabb::EMPTY }
+    fn is_single(&self) -> bool {
+        matches!(self.vertices, Vertices::Single(_))
     }
 }
 
@@ -69,28 +157,25 @@ impl Geometry {
         let mut all = Self { first: vec![0], ..Self::default() };
         for mesh in meshes {
             let base = u32::try_from(all.vertices.len()).expect("fewer than 2^32 vertices");
-            let count = mesh.vertices.len() as u32;
+            let count = mesh.vertices.len();
+            let end = count as u32;
             if let Some(normals) = &mesh.normals {
-                assert_eq!(normals.len(), mesh.vertices.len(), "a normal for each vertex");
+                assert_eq!(normals.len(), count, "a normal for each vertex");
                 all.normals.resize(all.vertices.len(), Vec3::ZERO);
                 all.normals.extend_from_slice(normals);
             } else if !all.normals.is_empty() {
-                all.normals.resize(all.vertices.len() + mesh.vertices.len(), Vec3::ZERO);
+                all.normals.resize(all.vertices.len() + count, Vec3::ZERO);
             }
-            if all.vertices.is_empty() {
-                all.vertices = mesh.vertices;
-            } else {
-                all.vertices.extend_from_slice(&mesh.vertices);
-            }
+            all.vertices = std::mem::take(&mut all.vertices).joined(mesh.vertices.shortened());
             all.faces.reserve(mesh.faces.len());
             for face in mesh.faces {
-                assert!(face.iter().all(|&v| v < count), "a face names a vertex that its mesh has");
+                assert!(face.iter().all(|&v| v < end), "a face names a vertex that its mesh has");
                 all.faces.push(face.map(|v| v + base));
             }
             assert!(all.faces.len() < 1 << 31, "fewer than 2^31 faces");
             all.first.push(all.faces.len() as u32);
         }
-        all.dropped = (0..all.faces.len() as u32).filter(|&p| all.aabb(p).is_empty()).count();
+        all.dropped = (0..all.faces.len() as u32).filter(|&p| !all.is_finite(p)).count();
         all
     }
 
@@ -106,7 +191,7 @@ impl Geometry {
 
     /// The memory held.
     pub fn bytes(&self) -> usize {
-        self.vertices.len() * size_of::<Vec3>()
+        self.vertices.bytes()
             + self.normals.len() * size_of::<Vec3>()
             + self.faces.len() * size_of::<[u32; 3]>()
             + self.first.len() * size_of::<u32>()
@@ -130,13 +215,13 @@ impl Geometry {
 
     /// The point of a primitive with weights `uv` for its second and third corner.
     pub fn position(&self, primitive: u32, uv: [f64; 2]) -> DVec3 {
-        let [a, b, c] = self.corners(primitive).map(Vec3::as_dvec3);
+        let [a, b, c] = self.corners(primitive);
         a * (1.0 - uv[0] - uv[1]) + b * uv[0] + c * uv[1]
     }
 
     /// Twice the area of a primitive along its unit normal, as the winding gives it. Exact but for the f64 roundings.
     pub fn area_vector(&self, primitive: u32) -> DVec3 {
-        let [a, b, c] = self.corners(primitive).map(Vec3::as_dvec3);
+        let [a, b, c] = self.corners(primitive);
         (b - a).cross(c - a)
     }
 
@@ -153,7 +238,7 @@ impl Geometry {
     /// # Panics
     /// If it is a miss.
     pub fn surface(&self, hit: &Hit) -> SurfacePoint {
-        let [a, b, c] = self.corners(hit.primitive).map(Vec3::as_dvec3);
+        let [a, b, c] = self.corners(hit.primitive);
         let weights = [1.0 - hit.uv[0] - hit.uv[1], hit.uv[0], hit.uv[1]];
         let position = a * weights[0] + b * weights[1] + c * weights[2];
         // Weights carry up to 3 roundings, products and sums 3 more: 6 u of each term in all (pbrt 6.8.5 calls it γ₇).

@@ -44,7 +44,7 @@ impl Lights {
                     let area = 0.5 * geometry.area_vector(primitive).length();
                     triangles.push(primitive);
                     // What no ray can hit must not shine either.
-                    powers.push(if geometry.aabb(primitive).is_empty() {
+                    powers.push(if !geometry.is_finite(primitive) {
                         0.0
                     } else {
                         (PI * area * strength(radiance)).min(MOST)
@@ -273,7 +273,8 @@ mod tests {
     #[test]
     fn what_cannot_be_hit_does_not_shine() {
         let mut mesh = overhead();
-        mesh.vertices.extend([DVec3::NAN.as_vec3(), DVec3::splat(2.0).as_vec3()]);
+        let more = [DVec3::NAN, DVec3::splat(2.0)];
+        mesh.vertices = (0..4).map(|i| mesh.vertices.get(i)).chain(more).map(|v| v.as_vec3()).collect();
         mesh.faces.extend([[0, 1, 4], [0, 5, 5], [0, 0, 1]]);
         assert_irradiance(&lit_by(vec![shape(mesh, [0.0; 3], 1.0)]), OVERHEAD);
     }

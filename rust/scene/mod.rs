@@ -15,7 +15,7 @@ mod spawn;
 pub use camera::{Camera, CameraError};
 pub use compiled::Scene;
 pub use description::{DescriptionError, SceneDescription, Shape};
-pub use geometry::{Geometry, Mesh, SurfacePoint};
+pub use geometry::{Geometry, Mesh, SurfacePoint, Vertices};
 pub use interaction::{Interaction, Scattered};
 pub use light::{LightSample, PointLight};
 pub use lights::Lights;

@@ -108,7 +108,7 @@ mod tests {
     #[test]
     fn starts_on_the_side_it_leaves_to_and_very_near() {
         let mesh = Mesh {
-            vertices: vec![Vec3::new(0.0, 0.0, 3.0), Vec3::new(1.0, 0.0, 3.0), Vec3::new(0.0, 1.0, 3.0)],
+            vertices: vec![Vec3::new(0.0, 0.0, 3.0), Vec3::new(1.0, 0.0, 3.0), Vec3::new(0.0, 1.0, 3.0)].into(),
             faces: vec![[0, 1, 2]],
             normals: None,
         };
@@ -122,9 +122,9 @@ mod tests {
 
     #[test]
     fn a_segment_stops_short_of_the_surface_it_goes_to() {
-        let floor = Mesh { vertices: vec![Vec3::ZERO, Vec3::X, Vec3::Y], faces: vec![[0, 1, 2]], normals: None };
+        let floor = Mesh { vertices: vec![Vec3::ZERO, Vec3::X, Vec3::Y].into(), faces: vec![[0, 1, 2]], normals: None };
         let ceiling = Mesh {
-            vertices: vec![Vec3::Z, Vec3::Z + Vec3::Y, Vec3::Z + Vec3::X],
+            vertices: vec![Vec3::Z, Vec3::Z + Vec3::Y, Vec3::Z + Vec3::X].into(),
             faces: vec![[0, 1, 2]],
             normals: None,
         };

@@ -3,7 +3,7 @@
 use crate::triangles::Random;
 use num_bigint::{BigInt, Sign};
 use proptest::prelude::*;
-use raywright::math::{DVec3, Ray, Vec3};
+use raywright::math::{DVec3, Ray, Region, Vec3};
 use raywright::shapes::triangle::EdgeRay;
 
 /// `x · 2^1074` as an integer.
@@ -46,16 +46,16 @@ fn is_met(weights: &[BigInt; 3]) -> bool {
     has(Sign::Plus) != has(Sign::Minus)
 }
 
-/// The least coordinate that bounds a triangle, which a scene of it alone has.
-fn extent(corners: [Vec3; 3]) -> f64 {
-    f64::from(corners.iter().fold(0f32, |m, c| m.max(c.abs().max_element())))
+/// The region of a scene of one triangle.
+fn region(corners: [Vec3; 3]) -> Region {
+    Region::around(corners.map(Vec3::as_dvec3))
 }
 
 fn check(origin: DVec3, direction: DVec3, corners: [Vec3; 3]) -> Result<(), TestCaseError> {
     let ray = Ray { origin, direction, t_min: f64::NEG_INFINITY, t_max: f64::INFINITY };
     let wide = corners.map(|c| c.as_dvec3());
     let met = is_met(&weights(origin, direction, wide));
-    match EdgeRay::new(&ray, extent(corners)) {
+    match EdgeRay::new(&ray, &region(corners)) {
         // Of a t beyond the range of an f64 there is no hit; a length of 2⁻⁶⁰⁰ and coordinates below 2³⁰⁰ give none.
         Some(edges) => prop_assert_eq!(edges.meet(wide).is_some(), met, "{:?} {:?}", ray, corners),
         None => prop_assert!(direction.abs().max_element() < f64::MIN_POSITIVE),
@@ -136,7 +136,7 @@ fn nearly_coplanar_and_nearly_on_an_edge() {
 ///
 /// `rust/shapes/triangle/edge.rs` proves 208 of these units, to first order, and allows 256.
 fn error(origin: DVec3, direction: DVec3, corners: [Vec3; 3]) -> f64 {
-    let edges = EdgeRay::new(&Ray::new(origin, direction), extent(corners)).unwrap();
+    let edges = EdgeRay::new(&Ray::new(origin, direction), &region(corners)).unwrap();
     let wide = corners.map(|c| c.as_dvec3());
     // Of the direction as scaled: exact, as all here are of moderate size. Twice, because of the edge form.
     let wanted = weights(origin, edges.direction, wide);

@@ -1,8 +1,8 @@
 //! Triangles and rays for the tests of hits, and the comparison of every accelerator at every level.
 
-use raywright::accel::bvh::{Options, WideBvh};
+use raywright::accel::bvh::{Options, SingleBvh};
 use raywright::accel::{Accelerator, BruteForce, Primitives};
-use raywright::math::{Aabb, DVec3, Hit, Ray, Vec3};
+use raywright::math::{DVec3, Hit, Ray, Region, Vec3};
 use raywright::shapes::triangle::EdgeRay;
 use raywright::simd::Level;
 
@@ -15,29 +15,22 @@ impl Primitives for Triangles {
         self.0.len()
     }
 
-    fn aabb(&self, primitive: u32) -> Aabb {
-        let corners = self.corners(primitive);
-        if corners.iter().all(|c| c.is_finite()) { Aabb::around(corners) } else { Aabb::EMPTY }
+    fn corners(&self, primitive: u32) -> [DVec3; 3] {
+        self.0[primitive as usize].map(Vec3::as_dvec3)
     }
 
-    fn corners(&self, primitive: u32) -> [Vec3; 3] {
-        self.0[primitive as usize]
+    fn is_single(&self) -> bool {
+        true
     }
 }
 
 impl Triangles {
-    /// The largest coordinate of all that can be hit.
-    fn extent(&self) -> f64 {
-        let bounds = (0..self.0.len() as u32).fold(Aabb::EMPTY, |b, p| b.union(self.aabb(p)));
-        f64::from(bounds.largest_coordinate())
-    }
-
     /// The closest hit, triangle by triangle: no boxes, no lanes, no test in f32 before.
-    fn closest(&self, ray: &Ray, extent: f64) -> Hit {
-        let Some(edges) = EdgeRay::new(ray, extent) else { return Hit::MISS };
+    fn closest(&self, ray: &Ray, region: &Region) -> Hit {
+        let Some(edges) = EdgeRay::new(ray, region) else { return Hit::MISS };
         let mut best = Hit::MISS;
-        for p in (0..self.0.len() as u32).filter(|&p| !self.aabb(p).is_empty()) {
-            if let Some(c) = edges.meet(self.corners(p).map(Vec3::as_dvec3))
+        for p in (0..self.0.len() as u32).filter(|&p| self.is_finite(p)) {
+            if let Some(c) = edges.meet(self.corners(p))
                 && c.t < best.t
             {
                 best = Hit { t: c.t, uv: c.uv, primitive: p };
@@ -56,13 +49,13 @@ pub fn levels() -> impl Iterator<Item = Level> {
 pub fn accelerators(primitives: &impl Primitives) -> Vec<(String, Box<dyn Accelerator>)> {
     let mut all: Vec<(String, Box<dyn Accelerator>)> = Vec::new();
     for level in levels() {
-        let narrow = WideBvh::<4>::new(primitives, &Options::DEFAULT, level);
-        let wide = WideBvh::<8>::new(primitives, &Options::DEFAULT, level);
+        let narrow = SingleBvh::<4>::new(primitives, &Options::DEFAULT, level);
+        let wide = SingleBvh::<8>::new(primitives, &Options::DEFAULT, level);
         narrow.validate(primitives).unwrap();
         wide.validate(primitives).unwrap();
         all.push((format!("4 wide, {}", level.name()), Box::new(narrow)));
         all.push((format!("8 wide, {}", level.name()), Box::new(wide)));
-        all.push((format!("brute force, {}", level.name()), Box::new(BruteForce::new(primitives, level))));
+        all.push((format!("brute force, {}", level.name()), BruteForce::over(primitives, level)));
     }
     all
 }
@@ -70,8 +63,8 @@ pub fn accelerators(primitives: &impl Primitives) -> Vec<(String, Box<dyn Accele
 /// The closest hits, after seeing that every accelerator at every level gives the same bits, and `occluded` the same
 /// answer. The rays are asked as one batch, and a few at a time, which other kernels answer.
 pub fn agreed(triangles: &Triangles, rays: &[Ray]) -> Vec<Hit> {
-    let extent = triangles.extent();
-    let wanted: Vec<Hit> = rays.iter().map(|r| triangles.closest(r, extent)).collect();
+    let region = triangles.region();
+    let wanted: Vec<Hit> = rays.iter().map(|r| triangles.closest(r, &region)).collect();
     for (name, accelerator) in accelerators(triangles) {
         for batch in [rays.len().max(1), 3] {
             let mut hits = vec![Hit::MISS; rays.len()];

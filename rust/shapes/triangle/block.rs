@@ -9,15 +9,141 @@
 //! 232vEL, to first order; fused operations err less. 256vEL is allowed, and 2⁻¹²⁶ more for what underflows: six products
 //! that lose at most 2⁻¹⁴⁹ each, times 2. (The least normal number: a subnormal one would make every sum slow.) With L below
 //! 2⁶⁰ no sum exceeds 48L² < 2¹²⁶; beyond it, where infinities of either sign may appear, nothing is rejected.
+//!
+//! Where corners are rounded to f32 themselves, by vL each, p errs by 2vL more and q too. That of p makes 4vL² in a product, 8vL²
+//! in a component, 16vL² with d and 48vL² in the sum; that of q 2vEL, 4vEL, 8vEL and 24vEL. 64vL² and 320vEL are allowed in all.
 
 use super::{Candidate, EdgeRay};
-use crate::math::{DVec3, Hit, Vec3};
+use crate::math::{DVec3, Region, Vec3};
 use crate::simd::Simd;
 
-/// Up to `N` triangles, one a lane.
+/// Up to `N` triangles whose coordinates are f32 as given, one a lane.
 #[derive(Clone, Debug)]
-#[repr(C, align(16))]
+#[repr(C, align(64))]
 pub struct TriangleBlock<const N: usize> {
+    lanes: Lanes<N>,
+}
+
+/// Up to `N` triangles whose coordinates are f64: rounded for the first test, and as they are.
+#[derive(Clone, Debug)]
+#[repr(C, align(64))]
+pub struct DoubleBlock<const N: usize> {
+    /// In box units.
+    lanes: Lanes<N>,
+    corners: [[DVec3; 3]; N],
+}
+
+/// What stands in the leaves of a tree.
+pub trait Leaf<const N: usize>: Send + Sync + 'static {
+    /// How numbers are kept, in a word.
+    const PRECISION: &'static str;
+
+    /// A leaf of at most `N` triangles, given with their numbers.
+    ///
+    /// # Panics
+    /// If there are more.
+    fn new(region: &Region, triangles: impl IntoIterator<Item = (u32, [DVec3; 3])>) -> Self;
+
+    /// What the first test needs.
+    fn lanes(&self) -> &Lanes<N>;
+
+    /// The corners in a lane, as they were given.
+    fn corners(&self, lane: usize) -> [DVec3; 3];
+
+    /// A ray as the first test needs it.
+    fn ray<S: Simd<N>>(simd: S, ray: &EdgeRay, region: &Region) -> BlockRay<N, S>;
+
+    /// Calls `met` with each triangle in the first `count` lanes that the ray meets, until it says true; then that is said.
+    #[inline(always)]
+    fn meet<S: Simd<N>>(
+        &self,
+        simd: S,
+        lanes: &BlockRay<N, S>,
+        ray: &EdgeRay,
+        count: u32,
+        mut met: impl FnMut(u32, Candidate) -> bool,
+    ) -> bool {
+        let mut left = self.lanes().not_rejected(simd, lanes, count);
+        while left != 0 {
+            let lane = left.trailing_zeros() as usize & (N - 1);
+            left &= left - 1;
+            if let Some(candidate) = ray.meet(self.corners(lane))
+                && met(self.lanes().primitives[lane], candidate)
+            {
+                return true;
+            }
+        }
+        false
+    }
+}
+
+/// The most that a coordinate may be for the test in f32 to reject anything.
+const OVERFLOW: f64 = (1u64 << 60) as f64;
+
+impl<const N: usize> Leaf<N> for TriangleBlock<N> {
+    const PRECISION: &'static str = "single";
+
+    fn new(_: &Region, triangles: impl IntoIterator<Item = (u32, [DVec3; 3])>) -> Self {
+        Self { lanes: Lanes::new(triangles.into_iter().map(|(p, c)| (p, c.map(|c| c.as_vec3())))) }
+    }
+
+    #[inline(always)]
+    fn lanes(&self) -> &Lanes<N> {
+        &self.lanes
+    }
+
+    #[inline(always)]
+    fn corners(&self, lane: usize) -> [DVec3; 3] {
+        let corner = |c: &[[f32; N]; 3]| Vec3::new(c[0][lane], c[1][lane], c[2][lane]).as_dvec3();
+        [corner(&self.lanes.corners[0]), corner(&self.lanes.corners[1]), corner(&self.lanes.corners[2])]
+    }
+
+    #[inline(always)]
+    fn ray<S: Simd<N>>(simd: S, ray: &EdgeRay, _: &Region) -> BlockRay<N, S> {
+        const ERROR: f64 = 1.0 / (1u64 << 16) as f64;
+        let error = if ray.absolute < OVERFLOW { ERROR * ray.absolute } else { f64::INFINITY };
+        BlockRay::new(simd, ray.origin, ray.direction, error, 0.0)
+    }
+}
+
+impl<const N: usize> Leaf<N> for DoubleBlock<N> {
+    const PRECISION: &'static str = "double";
+
+    fn new(region: &Region, triangles: impl IntoIterator<Item = (u32, [DVec3; 3])>) -> Self {
+        let mut corners = [[DVec3::ZERO; 3]; N];
+        let rounded = triangles.into_iter().enumerate().map(|(lane, (p, c))| {
+            corners[lane] = c;
+            (p, c.map(|c| region.to_box(c).as_vec3()))
+        });
+        let lanes = Lanes::new(rounded);
+        Self { lanes, corners }
+    }
+
+    #[inline(always)]
+    fn lanes(&self) -> &Lanes<N> {
+        &self.lanes
+    }
+
+    #[inline(always)]
+    fn corners(&self, lane: usize) -> [DVec3; 3] {
+        self.corners[lane]
+    }
+
+    #[inline(always)]
+    fn ray<S: Simd<N>>(simd: S, ray: &EdgeRay, region: &Region) -> BlockRay<N, S> {
+        const ERROR: f64 = 320.0 / (1u64 << 24) as f64;
+        const CORNERS: f64 = 64.0 / (1u64 << 24) as f64;
+        // |origin| + |corner|, both relative to the centre and in box units.
+        let largest = ray.largest * region.scale;
+        let error = if largest < OVERFLOW { ERROR * largest } else { f64::INFINITY };
+        BlockRay::new(simd, ray.local * region.scale, ray.direction, error, CORNERS * largest * largest)
+    }
+}
+
+/// The coordinates of up to `N` triangles in f32, one a lane.
+#[derive(Clone, Debug)]
+#[repr(C)]
+pub struct Lanes<const N: usize> {
     /// By corner and axis.
     corners: [[[f32; N]; 3]; 3],
     /// The number of each triangle among all.
@@ -31,31 +157,27 @@ pub struct BlockRay<const N: usize, S: Simd<N>> {
     direction: [S::F32; 3],
     /// The bound on the error of a weight over the largest edge.
     error: S::F32,
+    /// What is added to it.
+    least: S::F32,
 }
 
 impl<const N: usize, S: Simd<N>> BlockRay<N, S> {
     /// Rounds a ray to f32.
     #[inline(always)]
-    pub fn new(simd: S, ray: &EdgeRay) -> Self {
-        const ERROR: f64 = 1.0 / (1u64 << 16) as f64;
-        const OVERFLOW: f64 = (1u64 << 60) as f64;
-        let (o, d) = (ray.origin.as_vec3(), ray.direction.as_vec3());
-        let error = if ray.largest < OVERFLOW { ERROR * ray.largest } else { f64::INFINITY };
+    fn new(simd: S, origin: DVec3, direction: DVec3, error: f64, least: f64) -> Self {
+        let (o, d) = (origin.as_vec3(), direction.as_vec3());
         Self {
             origin: [simd.splat(o.x), simd.splat(o.y), simd.splat(o.z)],
             direction: [simd.splat(d.x), simd.splat(d.y), simd.splat(d.z)],
             // Rounded to nearest: the error of that is among those of higher order.
             error: simd.splat(error as f32),
+            least: simd.splat(least as f32 + f32::MIN_POSITIVE),
         }
     }
 }
 
-impl<const N: usize> TriangleBlock<N> {
-    /// A block of at most `N` triangles, given with their numbers.
-    ///
-    /// # Panics
-    /// If there are more.
-    pub fn new(triangles: impl IntoIterator<Item = (u32, [Vec3; 3])>) -> Self {
+impl<const N: usize> Lanes<N> {
+    fn new(triangles: impl IntoIterator<Item = (u32, [Vec3; 3])>) -> Self {
         let mut block = Self { corners: [[[0.0; N]; 3]; 3], primitives: [u32::MAX; N] };
         for (lane, (primitive, corners)) in triangles.into_iter().enumerate() {
             block.primitives[lane] = primitive;
@@ -71,43 +193,6 @@ impl<const N: usize> TriangleBlock<N> {
     /// The numbers of the triangles; `u32::MAX` in empty lanes.
     pub fn primitives(&self) -> &[u32; N] {
         &self.primitives
-    }
-
-    /// The corners in a lane.
-    #[inline(always)]
-    pub fn corners(&self, lane: usize) -> [DVec3; 3] {
-        let corner = |c: &[[f32; N]; 3]| Vec3::new(c[0][lane], c[1][lane], c[2][lane]).as_dvec3();
-        [corner(&self.corners[0]), corner(&self.corners[1]), corner(&self.corners[2])]
-    }
-
-    /// Improves `best`, whose `t` is along the scaled direction, by the triangles in the first `count` lanes.
-    #[inline(always)]
-    pub fn closest<S: Simd<N>>(&self, simd: S, lanes: &BlockRay<N, S>, ray: &EdgeRay, count: u32, best: &mut Hit) {
-        let mut left = self.not_rejected(simd, lanes, count);
-        while left != 0 {
-            let lane = left.trailing_zeros() as usize & (N - 1);
-            left &= left - 1;
-            let primitive = self.primitives[lane];
-            if let Some(Candidate { t, uv }) = ray.meet(self.corners(lane))
-                && (t < best.t || (t == best.t && primitive < best.primitive))
-            {
-                *best = Hit { t, uv, primitive };
-            }
-        }
-    }
-
-    /// Whether the ray meets any of the triangles in the first `count` lanes.
-    #[inline(always)]
-    pub fn any<S: Simd<N>>(&self, simd: S, lanes: &BlockRay<N, S>, ray: &EdgeRay, count: u32) -> bool {
-        let mut left = self.not_rejected(simd, lanes, count);
-        while left != 0 {
-            let lane = left.trailing_zeros() as usize & (N - 1);
-            left &= left - 1;
-            if ray.meet(self.corners(lane)).is_some() {
-                return true;
-            }
-        }
-        false
     }
 
     /// Of the first `count` lanes, those that f32 cannot reject.
@@ -126,7 +211,7 @@ impl<const N: usize> TriangleBlock<N> {
         let w = volume(simd, ray.direction, ab, a, b);
 
         let largest = simd.max(simd.max(largest(simd, bc), largest(simd, ca)), largest(simd, ab));
-        let above = simd.mul_add(largest, ray.error, simd.splat(f32::MIN_POSITIVE));
+        let above = simd.mul_add(largest, ray.error, ray.least);
         let below = simd.neg(above);
         let positive = simd.gt(u, above) | simd.gt(v, above) | simd.gt(w, above);
         let negative = simd.gt(below, u) | simd.gt(below, v) | simd.gt(below, w);

@@ -14,7 +14,7 @@
 //! themselves being computed.
 
 use crate::math::robust::{UNIT, greater, lesser, normalising_scale};
-use crate::math::{DVec3, Ray, exact_edges};
+use crate::math::{DVec3, Ray, Region, exact_edges, exact_turn};
 
 /// A ray made ready for edge tests: the direction scaled by a power of two so that its largest coordinate lies in
 /// [1, 2), and what is known beforehand about errors.
@@ -22,6 +22,8 @@ use crate::math::{DVec3, Ray, exact_edges};
 pub struct EdgeRay {
     /// As given.
     pub origin: DVec3,
+    /// The origin relative to the region's centre.
+    pub local: DVec3,
     /// Scaled by `scale`.
     pub direction: DVec3,
     /// As given, for exact decisions.
@@ -39,10 +41,12 @@ pub struct EdgeRay {
     /// How far `t` may be off along the scaled direction before it is computed anew from exact weights.
     t_error: f64,
     /// Bounds the coordinates that `t` is measured against: the origin, or where the ray nears a far scene, plus the
-    /// scene's extent.
+    /// region's radius.
     pub reach: f64,
     /// Bounds every coordinate relative to the origin.
     pub largest: f64,
+    /// Bounds the sum of a coordinate of the origin and one of a corner, in magnitude.
+    pub absolute: f64,
     /// Whether the origin is so far that the ray is moved up to the scene before boxes are tested.
     pub is_far: bool,
 }
@@ -54,19 +58,36 @@ pub struct Candidate {
     pub t: f64,
     /// Weights of the second and the third corner.
     pub uv: [f64; 2],
+    /// How.
+    pub contact: Contact,
+}
+
+/// How a ray meets a triangle.
+///
+/// Of the triangles that share an edge or a corner, a ray through it meets all. To know which it crosses, it is moved by next
+/// to nothing, along the same direction (Edelsbrunner and Mücke, "Simulation of Simplicity", 1990): then it passes no edge of
+/// a triangle exactly unless it lies in the triangle's plane, and it crosses a closed surface as often in as out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Contact {
+    /// Strictly within.
+    Inside,
+    /// Exactly on an edge or a corner, and across it if moved by next to nothing.
+    Crossing,
+    /// Exactly on an edge or a corner, and past it if moved by next to nothing.
+    Touching,
 }
 
 impl EdgeRay {
-    /// Beyond so many extents an origin is far.
+    /// Beyond so many radii an origin is far.
     const FAR: f64 = 8.0;
 
     /// How far `t` may be off, as a part of `reach`; box tests leave as much room.
     pub const T_ERROR: f64 = 1.0 / (1u64 << 26) as f64;
 
-    /// Makes a ray ready for triangles whose coordinates are at most `extent`. None if it cannot hit anything: something
+    /// Makes a ray ready for the triangles of a region. None if it cannot hit anything: something
     /// is NaN or infinite, the direction is zero (or has no coordinate that is a normal number), or `t_min > t_max`.
     #[inline(always)]
-    pub fn new(ray: &Ray, extent: f64) -> Option<Self> {
+    pub fn new(ray: &Ray, region: &Region) -> Option<Self> {
         // Zero times infinity or NaN is NaN: one comparison for six numbers.
         let zero = ray.origin * 0.0 + ray.direction * 0.0;
         let finite = zero.x + zero.y + zero.z == 0.0;
@@ -77,14 +98,17 @@ impl EdgeRay {
             return None;
         }
         let (scale, inverse) = normalising_scale(longest);
-        let far = ray.origin.abs();
+        let local = ray.origin - region.centre;
+        let far = local.abs();
         let far = greater(greater(far.x, far.y), far.z);
-        let largest = far + extent;
-        // Where a ray that is moved up to the scene starts is within √3 extents of the centre, if it hits at all.
-        let is_far = far > Self::FAR * extent;
-        let reach = if is_far { 3.0 * extent } else { largest };
+        let largest = far + region.radius;
+        // Where a ray that is moved up to the scene starts is within √3 radii of the centre, if it hits at all.
+        let is_far = far > Self::FAR * region.radius;
+        let reach = if is_far { 3.0 * region.radius } else { largest };
+        let absolute = ray.origin.abs();
         Some(Self {
             origin: ray.origin,
+            local,
             direction: ray.direction * scale,
             unscaled: ray.direction,
             scale,
@@ -95,6 +119,7 @@ impl EdgeRay {
             t_error: Self::T_ERROR * reach,
             reach,
             largest,
+            absolute: greater(greater(absolute.x, absolute.y), absolute.z) + region.extent,
             is_far,
         })
     }
@@ -117,7 +142,8 @@ impl EdgeRay {
         let range = greater(greater(z[0], z[1]), z[2]) - lesser(lesser(z[0], z[1]), z[2]);
         // With each weight off by e, the mean of the corners' depths moves by at most 3e · range / (|sum| − 3e).
         if least > self.sign_error && 6.0 * self.sign_error * range <= self.t_error * sum.abs() {
-            self.accept(w, sum, (w[0] * z[0] + w[1] * z[1] + w[2] * z[2]) / (sum * self.direction[k]))
+            let t = (w[0] * z[0] + w[1] * z[1] + w[2] * z[2]) / (sum * self.direction[k]);
+            self.accept(w, sum, t, Contact::Inside)
         } else {
             self.meet_exactly(corners)
         }
@@ -136,13 +162,38 @@ impl EdgeRay {
         let k = self.axis;
         // An eighth of everything, lest a difference of huge numbers overflow.
         let z = corners.map(|c| c[k] / 8.0 - self.origin[k] / 8.0);
-        self.accept(w, sum, 8.0 * ((w[0] * z[0] + w[1] * z[1] + w[2] * z[2]) / (sum * self.direction[k])))
+        let t = 8.0 * ((w[0] * z[0] + w[1] * z[1] + w[2] * z[2]) / (sum * self.direction[k]));
+        self.accept(w, sum, t, self.contact(w, sum, corners))
+    }
+
+    /// How a triangle with these exact weights is met.
+    fn contact(&self, w: [f64; 3], sum: f64, [a, b, c]: [DVec3; 3]) -> Contact {
+        let mut contact = Contact::Inside;
+        for (w, from, to) in [(w[0], b, c), (w[1], c, a), (w[2], a, b)] {
+            if w == 0.0 {
+                let turn = exact_turn(self.unscaled, from, to);
+                if f64::from(turn) * sum <= 0.0 {
+                    return Contact::Touching;
+                }
+                contact = Contact::Crossing;
+            }
+        }
+        contact
+    }
+
+    /// How far apart along the scaled direction the same point may be found on two triangles that share it: their
+    /// weights are exact, and nine roundings of depths below `largest` remain.
+    pub fn same_point(&self) -> f64 {
+        32.0 * UNIT * self.largest
     }
 
     #[inline(always)]
-    fn accept(&self, w: [f64; 3], sum: f64, t: f64) -> Option<Candidate> {
+    fn accept(&self, w: [f64; 3], sum: f64, t: f64, contact: Contact) -> Option<Candidate> {
         // What lies so far along a short direction that an f64 cannot say it is no hit either.
-        (t >= self.t_min && t <= self.t_max && (t * self.scale).is_finite())
-            .then(|| Candidate { t, uv: [w[1] / sum, w[2] / sum] })
+        (t >= self.t_min && t <= self.t_max && (t * self.scale).is_finite()).then(|| Candidate {
+            t,
+            uv: [w[1] / sum, w[2] / sum],
+            contact,
+        })
     }
 }

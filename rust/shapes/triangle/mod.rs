@@ -3,5 +3,5 @@
 mod block;
 mod edge;
 
-pub use block::{BlockRay, TriangleBlock};
-pub use edge::{Candidate, EdgeRay};
+pub use block::{BlockRay, DoubleBlock, Lanes, Leaf, TriangleBlock};
+pub use edge::{Candidate, Contact, EdgeRay};

@@ -1,35 +1,37 @@
 //! A batch of rays for one tree, by the kernel that suits them.
 
-use super::query::Query;
 use super::{WideBvh, packet, single, wave};
+use crate::accel::query::Query;
 use crate::math::{Ray, coherence};
+use crate::shapes::triangle::Leaf;
 use crate::simd::{Kernel, Simd};
 
 /// Fewer rays than these leave a packet or a wave mostly empty.
 const FEW: usize = 8;
 
-/// A batch of rays, answered into `out`.
-pub struct Batch<'a, const N: usize, Q> {
-    pub bvh: &'a WideBvh<N>,
+/// A question about a batch of rays.
+pub struct Batch<'a, const N: usize, L, Q> {
+    pub bvh: &'a WideBvh<N, L>,
     pub rays: &'a [Ray],
-    pub out: Q,
+    pub query: &'a mut Q,
 }
 
-impl<const N: usize, Q: Query<N>> Kernel<N> for Batch<'_, N, Q> {
+impl<const N: usize, L: Leaf<N>, Q: Query> Kernel<N> for Batch<'_, N, L, Q> {
     type Output = ();
 
     #[inline(always)]
-    fn run<S: Simd<N>>(mut self, simd: S) {
-        if self.bvh.nodes.is_empty() {
-            for i in 0..self.rays.len() {
-                self.out.finish(i, None);
+    fn run<S: Simd<N>>(self, simd: S) {
+        let Self { bvh, rays, query } = self;
+        if bvh.nodes.is_empty() {
+            for i in 0..rays.len() {
+                query.finish(i, None);
             }
-        } else if self.rays.len() < FEW {
-            single::answer(simd, self.bvh, self.rays, &mut self.out);
-        } else if coherence::is_coherent(self.rays, self.bvh.extent) {
-            packet::answer(simd, self.bvh, self.rays, &mut self.out);
+        } else if rays.len() < FEW {
+            single::answer(simd, bvh, rays, query);
+        } else if coherence::is_coherent(rays, bvh.region.radius) {
+            packet::answer(simd, bvh, rays, query);
         } else {
-            wave::answer(simd, self.bvh, self.rays, &mut self.out);
+            wave::answer(simd, bvh, rays, query);
         }
     }
 }
@@ -38,10 +40,11 @@ impl<const N: usize, Q: Query<N>> Kernel<N> for Batch<'_, N, Q> {
 mod tests {
     use super::*;
     use crate::accel::bvh::Options;
-    use crate::accel::bvh::wide::query::{Any, Closest};
-    use crate::accel::{Accelerator, BruteForce, Primitives};
-    use crate::math::{Aabb, DVec3, Hit, Vec3};
+    use crate::accel::query::{Any, Closest};
+    use crate::accel::{BruteForce, Primitives};
+    use crate::math::{DVec3, Hit, Vec3};
     use crate::sampling::philox4x32;
+    use crate::shapes::triangle::{DoubleBlock, TriangleBlock};
     use crate::simd::{Dispatch, Level};
 
     struct Soup(Vec<[Vec3; 3]>);
@@ -50,11 +53,11 @@ mod tests {
         fn count(&self) -> usize {
             self.0.len()
         }
-        fn aabb(&self, primitive: u32) -> Aabb {
-            Aabb::around(self.0[primitive as usize])
+        fn corners(&self, primitive: u32) -> [DVec3; 3] {
+            self.0[primitive as usize].map(Vec3::as_dvec3)
         }
-        fn corners(&self, primitive: u32) -> [Vec3; 3] {
-            self.0[primitive as usize]
+        fn is_single(&self) -> bool {
+            true
         }
     }
 
@@ -126,21 +129,21 @@ mod tests {
         Packet,
     }
 
-    struct By<'a, const N: usize, Q> {
+    struct By<'a, const N: usize, L, Q> {
         which: Which,
-        batch: Batch<'a, N, Q>,
+        batch: Batch<'a, N, L, Q>,
     }
 
-    impl<const N: usize, Q: Query<N>> Kernel<N> for By<'_, N, Q> {
+    impl<const N: usize, L: Leaf<N>, Q: Query> Kernel<N> for By<'_, N, L, Q> {
         type Output = ();
 
         #[inline(always)]
-        fn run<S: Simd<N>>(mut self, simd: S) {
-            let Batch { bvh, rays, .. } = self.batch;
+        fn run<S: Simd<N>>(self, simd: S) {
+            let Batch { bvh, rays, query } = self.batch;
             match self.which {
-                Which::Single => single::answer(simd, bvh, rays, &mut self.batch.out),
-                Which::Wave => wave::answer(simd, bvh, rays, &mut self.batch.out),
-                Which::Packet => packet::answer(simd, bvh, rays, &mut self.batch.out),
+                Which::Single => single::answer(simd, bvh, rays, query),
+                Which::Wave => wave::answer(simd, bvh, rays, query),
+                Which::Packet => packet::answer(simd, bvh, rays, query),
             }
         }
     }
@@ -150,19 +153,30 @@ mod tests {
         Level: Dispatch<N>,
     {
         let soup = soup();
+        kernels_agree_over::<N, TriangleBlock<N>>(&soup);
+        kernels_agree_over::<N, DoubleBlock<N>>(&soup);
+    }
+
+    fn kernels_agree_over<const N: usize, L: Leaf<N>>(soup: &Soup)
+    where
+        Level: Dispatch<N>,
+    {
         for level in Level::ALL.into_iter().filter(|l| l.is_available()) {
-            let brute = BruteForce::new(&soup, level);
-            let bvh = WideBvh::<N>::new(&soup, &Options::DEFAULT, level);
+            let brute = BruteForce::over(soup, level);
+            let bvh = WideBvh::<N, L>::new(soup, &Options::DEFAULT, level);
             for rays in fans() {
                 let mut wanted = vec![Hit::MISS; rays.len()];
                 brute.intersect(&rays, &mut wanted);
                 assert!(wanted.iter().filter(|h| h.is_hit()).count() > 50, "a fan that misses shows nothing");
                 for which in [Which::Single, Which::Wave, Which::Packet] {
                     let mut hits = vec![Hit::MISS; rays.len()];
-                    level.dispatch(By { which, batch: Batch { bvh: &bvh, rays: &rays, out: Closest(&mut hits) } });
+                    level.dispatch(By {
+                        which,
+                        batch: Batch { bvh: &bvh, rays: &rays, query: &mut Closest(&mut hits) },
+                    });
                     assert_eq!(hits, wanted, "{which:?} at {level:?}");
                     let mut any = vec![false; rays.len()];
-                    level.dispatch(By { which, batch: Batch { bvh: &bvh, rays: &rays, out: Any(&mut any) } });
+                    level.dispatch(By { which, batch: Batch { bvh: &bvh, rays: &rays, query: &mut Any(&mut any) } });
                     assert!(any.iter().zip(&wanted).all(|(&any, hit)| any == hit.is_hit()), "{which:?} at {level:?}");
                 }
             }

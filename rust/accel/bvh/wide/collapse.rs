@@ -5,9 +5,9 @@
 //! at most i subtrees. A single root is either a block of triangles or a wide node whose N roots are shared out between
 //! the two children. A greedy collapse leaves more of the slots empty.
 
-use super::{Child, Info, Options, Primitives, TriangleBlock, WideBvh, WideNode};
+use super::{Child, Info, Leaf, Options, Primitives, WideBvh, WideNode};
 use crate::accel::bvh::BinaryBvh;
-use crate::math::Aabb;
+use crate::math::{Aabb, Region};
 use crate::simd::Level;
 
 /// The best ways to show a binary node as 1 to N roots.
@@ -26,22 +26,26 @@ struct Plan<const N: usize> {
     count: u32,
 }
 
-impl<const N: usize> WideBvh<N> {
-    pub(super) fn collapse(binary: &BinaryBvh, primitives: &impl Primitives, options: &Options) -> Self {
+impl<const N: usize, L: Leaf<N>> WideBvh<N, L> {
+    pub(super) fn collapse(
+        binary: &BinaryBvh,
+        primitives: &dyn Primitives,
+        region: &Region,
+        options: &Options,
+    ) -> Self {
         let plans = plan::<N>(binary, options);
         let mut wide = Self {
             nodes: Vec::new(),
             blocks: Vec::new(),
-            extent: 0.0,
-            box_scale: 1.0,
+            region: *region,
             stack: 0,
             level: Level::Scalar,
+            options: *options,
             info: Info { primitives: binary.order.len(), ..Info::default() },
         };
         if plans.is_empty() {
             return wide;
         }
-        wide.info.sah_cost = f64::from(plans[0].cost[0] / area(&binary.bounds()));
         // A single block has no box to stand in, so the root is always a node.
         let mut roots = Vec::with_capacity(N);
         if plans[0].left[0] == 0 {
@@ -57,7 +61,7 @@ impl<const N: usize> WideBvh<N> {
                 let (node, plan) = (&binary.nodes[root], &plans[root]);
                 let child = if plan.left[0] == 0 {
                     let range = plan.first as usize..(plan.first + plan.count) as usize;
-                    let block = TriangleBlock::new(binary.order[range].iter().map(|&p| (p, primitives.corners(p))));
+                    let block = L::new(region, binary.order[range].iter().map(|&p| (p, primitives.corners(p))));
                     wide.blocks.push(block);
                     Child::Block { index: wide.blocks.len() as u32 - 1, count: plan.count }
                 } else {
@@ -74,6 +78,7 @@ impl<const N: usize> WideBvh<N> {
         wide.blocks.shrink_to_fit();
         wide.info.nodes = wide.nodes.len();
         wide.info.leaves = wide.blocks.len();
+        wide.info.sah_cost = wide.sah_cost();
         // Each step down leaves at most N − 1 siblings behind.
         wide.stack = wide.info.depth * (N - 1) + 1;
         wide

@@ -4,15 +4,16 @@ mod batch;
 mod collapse;
 mod node;
 mod packet;
-mod query;
+mod refit;
 mod single;
 mod step;
 mod wave;
 
 use super::build;
-use crate::accel::{Accelerator, Info, Primitives, SlabRay, extent};
-use crate::math::{Aabb, Hit, Ray};
-use crate::shapes::triangle::TriangleBlock;
+use crate::accel::query::{Answers, Query};
+use crate::accel::{Info, Primitives};
+use crate::math::{Aabb, Ray, Region};
+use crate::shapes::triangle::Leaf;
 use crate::simd::{Dispatch, Level};
 use batch::Batch;
 use node::{Child, WideNode};
@@ -41,39 +42,33 @@ impl Default for Options {
     }
 }
 
-/// A tree of nodes with up to `N` children over blocks of up to `N` triangles.
+/// A tree of nodes with up to `N` children over leaves of up to `N` triangles.
 #[derive(Debug)]
-pub struct WideBvh<const N: usize> {
+pub struct WideBvh<const N: usize, L> {
     /// Empty only if there are no primitives.
     nodes: Vec<WideNode<N>>,
-    blocks: Vec<TriangleBlock<N>>,
-    /// The largest coordinate of any corner.
-    extent: f64,
-    /// From scene units to those of the boxes.
-    box_scale: f64,
+    blocks: Vec<L>,
+    /// Where the triangles lie; boxes are kept in its units.
+    region: Region,
     /// Entries that a stack can need.
     stack: usize,
     level: Level,
+    options: Options,
     info: Info,
 }
 
-impl<const N: usize> WideBvh<N> {
+impl<const N: usize, L: Leaf<N>> WideBvh<N, L> {
     /// Builds a tree over triangles.
-    pub fn new(primitives: &impl Primitives, options: &Options, level: Level) -> Self {
+    pub fn new(primitives: &dyn Primitives, options: &Options, level: Level) -> Self {
         let start = Instant::now();
-        let boxes: Vec<Aabb> = (0..primitives.count() as u32).into_par_iter().map(|p| primitives.aabb(p)).collect();
-        let bounds = boxes.par_iter().copied().reduce(|| Aabb::EMPTY, Aabb::union);
-        let extent = extent(&bounds);
-        let box_scale = SlabRay::box_scale(extent);
-        let scaled: Vec<Aabb> = boxes.par_iter().map(|b| b.scaled(box_scale)).collect();
+        let region = primitives.region();
+        let boxes: Vec<Aabb> =
+            (0..primitives.count() as u32).into_par_iter().map(|p| aabb(primitives, &region, p)).collect();
+        let binary = build::binned::build(&boxes, options.bins);
         drop(boxes);
-        let binary = build::binned::build(&scaled, options.bins);
-        drop(scaled);
-        let mut bvh = Self::collapse(&binary, primitives, options);
-        bvh.extent = extent;
-        bvh.box_scale = box_scale;
+        let mut bvh = Self::collapse(&binary, primitives, &region, options);
         bvh.level = level;
-        bvh.info.kind = format!("BVH, {N} wide, binned SAH");
+        bvh.info.kind = format!("BVH, {N} wide, binned SAH, {}", L::PRECISION);
         bvh.info.bytes = size_of_val(bvh.nodes.as_slice()) + size_of_val(bvh.blocks.as_slice());
         bvh.info.build_seconds = start.elapsed().as_secs_f64();
         bvh
@@ -81,7 +76,7 @@ impl<const N: usize> WideBvh<N> {
 
     /// Checks what traversal relies on: boxes hold what is below them, every primitive that can be hit stands in one
     /// block, once, with its corners, and the tree is no deeper than recorded.
-    pub fn validate(&self, primitives: &impl Primitives) -> Result<(), String> {
+    pub fn validate(&self, primitives: &dyn Primitives) -> Result<(), String> {
         let mut met = vec![0u32; primitives.count()];
         let mut deepest = 0;
         let mut stack: Vec<(u32, usize)> = self.nodes.first().map(|_| (0, 0)).into_iter().collect();
@@ -109,12 +104,12 @@ impl<const N: usize> WideBvh<N> {
                         deepest = deepest.max(depth + 1);
                         let block = &self.blocks[block as usize];
                         for lane in 0..count as usize {
-                            let p = block.primitives()[lane];
+                            let p = block.lanes().primitives()[lane];
                             met[p as usize] += 1;
-                            if block.corners(lane) != primitives.corners(p).map(|c| c.as_dvec3()) {
+                            if block.corners(lane) != primitives.corners(p) {
                                 return Err(format!("primitive {p} has other corners in its block"));
                             }
-                            if !outer.contains(&primitives.aabb(p).scaled(self.box_scale)) {
+                            if !outer.contains(&aabb(primitives, &self.region, p)) {
                                 return Err(format!("node {index} does not hold primitive {p}"));
                             }
                         }
@@ -128,25 +123,29 @@ impl<const N: usize> WideBvh<N> {
         if deepest != self.info.depth {
             return Err(format!("depth is {deepest}, not {}", self.info.depth));
         }
-        match (0..met.len()).find(|&p| met[p] != u32::from(!primitives.aabb(p as u32).is_empty())) {
+        match (0..met.len()).find(|&p| met[p] != u32::from(primitives.is_finite(p as u32))) {
             Some(p) => Err(format!("primitive {p} stands in {} blocks", met[p])),
             None => Ok(()),
         }
     }
 }
 
-impl<const N: usize> Accelerator for WideBvh<N>
+/// The box around a primitive in a region's units; empty if nothing can hit it.
+fn aabb(primitives: &dyn Primitives, region: &Region, primitive: u32) -> Aabb {
+    let corners = primitives.corners(primitive);
+    if corners.iter().all(|c| c.is_finite()) { region.aabb(corners) } else { Aabb::EMPTY }
+}
+
+impl<const N: usize, L: Leaf<N>> Answers for WideBvh<N, L>
 where
     Level: Dispatch<N>,
 {
-    fn intersect(&self, rays: &[Ray], hits: &mut [Hit]) {
-        assert_eq!(rays.len(), hits.len(), "a hit for each ray");
-        self.level.dispatch(Batch { bvh: self, rays, out: query::Closest(hits) });
+    fn answer<Q: Query>(&self, rays: &[Ray], query: &mut Q) {
+        self.level.dispatch(Batch { bvh: self, rays, query });
     }
 
-    fn occluded(&self, rays: &[Ray], occluded: &mut [bool]) {
-        assert_eq!(rays.len(), occluded.len(), "an answer for each ray");
-        self.level.dispatch(Batch { bvh: self, rays, out: query::Any(occluded) });
+    fn refitted(&self, primitives: &dyn Primitives) -> Result<Self, String> {
+        self.refit(primitives)
     }
 
     fn info(&self) -> &Info {

@@ -8,13 +8,13 @@
 //! the product: less than 6v·R in units of |r|. (Boulos et al., "Packet-based Whitted and Distribution Ray Tracing", 2007.)
 
 use super::node::{Packed, WideNode};
-use super::query::{LeafRay, Query};
 use super::step::{Entry, nearest, pop};
 use super::{WideBvh, single};
 use crate::accel::SlabRay;
+use crate::accel::query::Query;
 use crate::math::Ray;
 use crate::math::robust::{greater, lesser};
-use crate::shapes::triangle::{BlockRay, EdgeRay};
+use crate::shapes::triangle::{EdgeRay, Leaf};
 use crate::simd::Simd;
 
 /// Rays of a packet: two vectors of eight lanes.
@@ -55,22 +55,27 @@ struct Bounds {
 
 /// Answers all rays; the tree is not empty.
 #[inline(always)]
-pub fn answer<const N: usize, S: Simd<N>, Q: Query<N>>(simd: S, bvh: &WideBvh<N>, rays: &[Ray], out: &mut Q) {
+pub fn answer<const N: usize, L: Leaf<N>, S: Simd<N>, Q: Query>(
+    simd: S,
+    bvh: &WideBvh<N, L>,
+    rays: &[Ray],
+    query: &mut Q,
+) {
     let mut stack = vec![Entry::new(0.0, 0u32); bvh.stack];
     let mut lone = single::stack(bvh);
     let mut packet = Packet::<Q::State>::new();
     let mut start = 0;
     for chunk in rays.chunks(RAYS) {
-        packet.gather(bvh, chunk, start, out);
+        packet.gather(bvh, chunk, start, query);
         if packet.is_aligned() {
             packet.collect();
-            packet.walk::<N, S, Q>(simd, bvh, &mut stack, &mut lone);
+            packet.walk(simd, bvh, query, &mut stack, &mut lone);
         } else {
             for i in 0..packet.rays.len() {
-                packet.walk_alone::<N, S, Q>(simd, bvh, Packed::ROOT, i, &mut lone);
+                packet.walk_alone(simd, bvh, Packed::ROOT, i, query, &mut lone);
             }
         }
-        packet.finish(out);
+        packet.finish(query);
         start += chunk.len();
     }
 }
@@ -94,12 +99,12 @@ impl<T: Copy> Packet<T> {
 
     /// Readies the rays that may hit something, and answers the others.
     #[inline(always)]
-    fn gather<const N: usize, Q: Query<N, State = T>>(
+    fn gather<const N: usize, L: Leaf<N>, Q: Query<State = T>>(
         &mut self,
-        bvh: &WideBvh<N>,
+        bvh: &WideBvh<N, L>,
         rays: &[Ray],
         start: usize,
-        out: &mut Q,
+        query: &mut Q,
     ) {
         self.edges.clear();
         self.slabs.clear();
@@ -107,11 +112,11 @@ impl<T: Copy> Packet<T> {
         self.rays.clear();
         self.limit = [f32::NEG_INFINITY; RAYS];
         for (i, ray) in rays.iter().enumerate() {
-            let Some((edges, slabs)) = SlabRay::prepare(ray, bvh.extent, bvh.box_scale) else {
-                out.finish(start + i, None);
+            let Some((edges, slabs)) = SlabRay::prepare(ray, &bvh.region) else {
+                query.finish(start + i, None);
                 continue;
             };
-            let state = Q::start(&edges);
+            let state = query.start(start + i, &edges);
             self.limit[self.rays.len()] = slabs.limit(Q::limit(&state));
             self.edges.push(edges);
             self.slabs.push(slabs);
@@ -169,10 +174,11 @@ impl<T: Copy> Packet<T> {
 
     /// Visits all that any ray may hit.
     #[inline(always)]
-    fn walk<const N: usize, S: Simd<N>, Q: Query<N, State = T>>(
+    fn walk<const N: usize, L: Leaf<N>, S: Simd<N>, Q: Query<State = T>>(
         &mut self,
         simd: S,
-        bvh: &WideBvh<N>,
+        bvh: &WideBvh<N, L>,
+        query: &mut Q,
         stack: &mut [Entry<u32>],
         lone: &mut [Entry],
     ) {
@@ -197,7 +203,7 @@ impl<T: Copy> Packet<T> {
                     while active != 0 {
                         let i = active.trailing_zeros() as usize & (RAYS - 1);
                         active &= active - 1;
-                        self.walk_alone::<N, S, Q>(simd, bvh, child, i, lone);
+                        self.walk_alone(simd, bvh, child, i, query, lone);
                     }
                 } else {
                     let (block, count) = child.block();
@@ -206,8 +212,10 @@ impl<T: Copy> Packet<T> {
                         let i = active.trailing_zeros() as usize & (RAYS - 1);
                         active &= active - 1;
                         let (edges, state) = (&self.edges[i], &mut self.states[i]);
-                        let lanes = BlockRay::new(simd, edges);
-                        let answered = Q::test(simd, block, count, LeafRay { lanes: &lanes, edges }, state);
+                        let lanes = L::ray(simd, edges, &bvh.region);
+                        Q::visit_leaf(state, count);
+                        let offer = |p, candidate| query.offer(state, p, candidate);
+                        let answered = block.meet(simd, &lanes, edges, count, offer);
                         self.limit[i] = if answered { f32::NEG_INFINITY } else { self.slabs[i].limit(Q::limit(state)) };
                     }
                 }
@@ -217,16 +225,17 @@ impl<T: Copy> Packet<T> {
     }
 
     #[inline(always)]
-    fn walk_alone<const N: usize, S: Simd<N>, Q: Query<N, State = T>>(
+    fn walk_alone<const N: usize, L: Leaf<N>, S: Simd<N>, Q: Query<State = T>>(
         &mut self,
         simd: S,
-        bvh: &WideBvh<N>,
+        bvh: &WideBvh<N, L>,
         child: Packed,
         i: usize,
+        query: &mut Q,
         stack: &mut [Entry],
     ) {
         let (edges, slabs, state) = (&self.edges[i], &self.slabs[i], &mut self.states[i]);
-        let answered = single::walk::<N, S, Q>(simd, bvh, child, edges, slabs, state, stack);
+        let answered = single::walk(simd, bvh, child, edges, slabs, query, state, stack);
         self.limit[i] = if answered { f32::NEG_INFINITY } else { slabs.limit(Q::limit(state)) };
     }
 
@@ -268,9 +277,9 @@ impl<T: Copy> Packet<T> {
     }
 
     #[inline(always)]
-    fn finish<const N: usize, Q: Query<N, State = T>>(&self, out: &mut Q) {
+    fn finish<Q: Query<State = T>>(&self, query: &mut Q) {
         for i in 0..self.rays.len() {
-            out.finish(self.rays[i], Some((&self.edges[i], self.states[i])));
+            query.finish(self.rays[i], Some((&self.edges[i], self.states[i])));
         }
     }
 }

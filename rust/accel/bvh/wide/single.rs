@@ -2,54 +2,63 @@
 
 use super::WideBvh;
 use super::node::Packed;
-use super::query::{LeafRay, Query};
 use super::step::{Entry, SlabLanes, pop};
 use crate::accel::SlabRay;
+use crate::accel::query::Query;
 use crate::math::Ray;
-use crate::shapes::triangle::{BlockRay, EdgeRay};
+use crate::shapes::triangle::{EdgeRay, Leaf};
 use crate::simd::Simd;
 
 /// Answers all rays; the tree is not empty.
 #[inline(always)]
-pub fn answer<const N: usize, S: Simd<N>, Q: Query<N>>(simd: S, bvh: &WideBvh<N>, rays: &[Ray], out: &mut Q) {
+pub fn answer<const N: usize, L: Leaf<N>, S: Simd<N>, Q: Query>(
+    simd: S,
+    bvh: &WideBvh<N, L>,
+    rays: &[Ray],
+    query: &mut Q,
+) {
     let mut stack = stack(bvh);
     for (i, ray) in rays.iter().enumerate() {
-        match SlabRay::prepare(ray, bvh.extent, bvh.box_scale) {
+        match SlabRay::prepare(ray, &bvh.region) {
             Some((edges, slabs)) => {
-                let mut state = Q::start(&edges);
-                walk::<N, S, Q>(simd, bvh, Packed::ROOT, &edges, &slabs, &mut state, &mut stack);
-                out.finish(i, Some((&edges, state)));
+                let mut state = query.start(i, &edges);
+                walk(simd, bvh, Packed::ROOT, &edges, &slabs, query, &mut state, &mut stack);
+                query.finish(i, Some((&edges, state)));
             }
-            None => out.finish(i, None),
+            None => query.finish(i, None),
         }
     }
 }
 
 /// A stack deep enough for a walk.
-pub fn stack<const N: usize>(bvh: &WideBvh<N>) -> Vec<Entry> {
+pub fn stack<const N: usize, L>(bvh: &WideBvh<N, L>) -> Vec<Entry> {
     vec![Entry::new(0.0, Packed::ROOT); bvh.stack]
 }
 
 /// Visits what is below `child`; true if the question is answered.
 #[inline(always)]
-pub fn walk<const N: usize, S: Simd<N>, Q: Query<N>>(
+#[allow(clippy::too_many_arguments)]
+pub fn walk<const N: usize, L: Leaf<N>, S: Simd<N>, Q: Query>(
     simd: S,
-    bvh: &WideBvh<N>,
+    bvh: &WideBvh<N, L>,
     mut child: Packed,
     edges: &EdgeRay,
     slabs: &SlabRay,
+    query: &mut Q,
     state: &mut Q::State,
     stack: &mut [Entry],
 ) -> bool {
-    let (boxes, triangles) = (SlabLanes::new(simd, slabs), BlockRay::new(simd, edges));
+    let (boxes, lanes) = (SlabLanes::new(simd, slabs), L::ray(simd, edges, &bvh.region));
     let mut limit = slabs.limit(Q::limit(state));
     let mut top = 0;
     loop {
         let below = if let Some(index) = child.node() {
+            Q::visit_node(state);
             boxes.descend(simd, &bvh.nodes[index], limit, stack, &mut top)
         } else {
             let (index, count) = child.block();
-            if Q::test(simd, &bvh.blocks[index], count, LeafRay { lanes: &triangles, edges }, state) {
+            Q::visit_leaf(state, count);
+            if bvh.blocks[index].meet(simd, &lanes, edges, count, |p, candidate| query.offer(state, p, candidate)) {
                 return true;
             }
             limit = slabs.limit(Q::limit(state));

@@ -7,11 +7,11 @@
 
 use super::WideBvh;
 use super::node::Packed;
-use super::query::{LeafRay, Query};
 use super::step::{Entry, SlabLanes, pop};
 use crate::accel::SlabRay;
+use crate::accel::query::Query;
 use crate::math::Ray;
-use crate::shapes::triangle::{BlockRay, EdgeRay};
+use crate::shapes::triangle::{EdgeRay, Leaf};
 use crate::simd::Simd;
 
 /// Rays in flight: enough that what one has asked for is there when its turn comes.
@@ -36,14 +36,19 @@ struct Flight<T> {
 
 /// Answers all rays, of which there is at least one; the tree is not empty.
 #[inline(always)]
-pub fn answer<const N: usize, S: Simd<N>, Q: Query<N>>(simd: S, bvh: &WideBvh<N>, rays: &[Ray], out: &mut Q) {
+pub fn answer<const N: usize, L: Leaf<N>, S: Simd<N>, Q: Query>(
+    simd: S,
+    bvh: &WideBvh<N, L>,
+    rays: &[Ray],
+    query: &mut Q,
+) {
     let width = WAVE.min(rays.len());
     let mut stacks = vec![Entry::new(0.0, Packed::ROOT); bvh.stack * width];
     let mut flights: Vec<Flight<Q::State>> = Vec::with_capacity(width);
     let mut next = 0;
     while flights.len() < width {
         let stack = flights.len() * bvh.stack;
-        match launch(bvh, rays, &mut next, stack, out) {
+        match launch(bvh, rays, &mut next, stack, query) {
             Some(flight) => flights.push(flight),
             None => break,
         }
@@ -53,12 +58,12 @@ pub fn answer<const N: usize, S: Simd<N>, Q: Query<N>>(simd: S, bvh: &WideBvh<N>
         while i < flights.len() {
             let flight = &mut flights[i];
             let stack = &mut stacks[flight.stack..flight.stack + bvh.stack];
-            if step::<N, S, Q>(simd, bvh, flight, stack) {
+            if step(simd, bvh, flight, stack, query) {
                 i += 1;
                 continue;
             }
-            out.finish(flight.ray, Some((&flight.edges, flight.state)));
-            match launch(bvh, rays, &mut next, flight.stack, out) {
+            query.finish(flight.ray, Some((&flight.edges, flight.state)));
+            match launch(bvh, rays, &mut next, flight.stack, query) {
                 Some(new) => *flight = new,
                 None => {
                     flights.swap_remove(i);
@@ -70,42 +75,45 @@ pub fn answer<const N: usize, S: Simd<N>, Q: Query<N>>(simd: S, bvh: &WideBvh<N>
 
 /// The next ray of the batch that may hit something; the others are answered at once.
 #[inline(always)]
-fn launch<const N: usize, Q: Query<N>>(
-    bvh: &WideBvh<N>,
+fn launch<const N: usize, L: Leaf<N>, Q: Query>(
+    bvh: &WideBvh<N, L>,
     rays: &[Ray],
     next: &mut usize,
     stack: usize,
-    out: &mut Q,
+    query: &mut Q,
 ) -> Option<Flight<Q::State>> {
     while *next < rays.len() {
         let ray = *next;
         *next += 1;
-        if let Some((edges, slabs)) = SlabRay::prepare(&rays[ray], bvh.extent, bvh.box_scale) {
-            let state = Q::start(&edges);
+        if let Some((edges, slabs)) = SlabRay::prepare(&rays[ray], &bvh.region) {
+            let state = query.start(ray, &edges);
             let limit = slabs.limit(Q::limit(&state));
             return Some(Flight { edges, slabs, state, limit, child: Packed::ROOT, top: 0, ray, stack });
         }
-        out.finish(ray, None);
+        query.finish(ray, None);
     }
     None
 }
 
 /// Visits one node or block; false if the ray is answered.
 #[inline(always)]
-fn step<const N: usize, S: Simd<N>, Q: Query<N>>(
+fn step<const N: usize, L: Leaf<N>, S: Simd<N>, Q: Query>(
     simd: S,
-    bvh: &WideBvh<N>,
+    bvh: &WideBvh<N, L>,
     flight: &mut Flight<Q::State>,
     stack: &mut [Entry],
+    query: &mut Q,
 ) -> bool {
     let below = if let Some(index) = flight.child.node() {
+        Q::visit_node(&mut flight.state);
         let lanes = SlabLanes::new(simd, &flight.slabs);
         lanes.descend(simd, &bvh.nodes[index], flight.limit, stack, &mut flight.top)
     } else {
         let (index, count) = flight.child.block();
-        let edges = &flight.edges;
-        let lanes = BlockRay::new(simd, edges);
-        if Q::test(simd, &bvh.blocks[index], count, LeafRay { lanes: &lanes, edges }, &mut flight.state) {
+        let (edges, state) = (&flight.edges, &mut flight.state);
+        let lanes = L::ray(simd, edges, &bvh.region);
+        Q::visit_leaf(state, count);
+        if bvh.blocks[index].meet(simd, &lanes, edges, count, |p, candidate| query.offer(state, p, candidate)) {
             return false;
         }
         flight.limit = flight.slabs.limit(Q::limit(&flight.state));

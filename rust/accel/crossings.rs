@@ -1,0 +1,58 @@
+//! Every hit of a ray, in order, and each point of a surface once.
+//!
+//! Triangles are closed, so a ray through an edge that two of them share meets both; as a surface it is crossed once there, or
+//! not at all where the ray only touches a ridge. Of the triangles met at one point of edges and corners those count that
+//! the ray crosses when it is moved by next to nothing ([`Contact`]), so that a closed surface is crossed an even number of
+//! times from outside and an odd one from inside, however the ray is aimed. Where the ray touches and crosses none, what it
+//! meets is told nevertheless, since [`super::Accelerator::intersect`] tells it: a ridge twice, as if in and out, and the
+//! border of an open surface, which has one triangle there, once.
+
+use super::query::{Every, Meeting};
+use crate::math::Hit;
+use crate::shapes::triangle::Contact;
+
+/// The hits of some rays.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Crossings {
+    /// Ray `i` has the hits from `splits[i]` to `splits[i + 1]`.
+    pub splits: Vec<usize>,
+    /// By ray, then `t`, then primitive.
+    pub hits: Vec<Hit>,
+}
+
+impl Crossings {
+    /// Puts what rays meet in order, and counts points that triangles share once.
+    pub fn of(every: Every) -> Self {
+        let Every { mut met, rays } = every;
+        met.sort_unstable_by(|(r, a), (s, b)| {
+            r.cmp(s).then(a.hit.t.total_cmp(&b.hit.t)).then(a.hit.primitive.cmp(&b.hit.primitive))
+        });
+        let mut crossings = Self { splits: Vec::with_capacity(rays.len() + 1), hits: Vec::with_capacity(met.len()) };
+        crossings.splits.push(0);
+        let mut rest = met.as_slice();
+        for (i, &(scale, same_point)) in rays.iter().enumerate() {
+            let count = rest.iter().take_while(|(ray, _)| *ray as usize == i).count();
+            let (mine, others) = rest.split_at(count);
+            rest = others;
+            let kept = kept(mine, same_point);
+            let hits = mine.iter().zip(kept).filter(|(_, kept)| *kept);
+            crossings.hits.extend(hits.map(|((_, m), _)| Hit { t: m.hit.t * scale, ..m.hit }));
+            crossings.splits.push(crossings.hits.len());
+        }
+        crossings
+    }
+}
+
+/// Which of a ray's meetings, in order, are told.
+fn kept(met: &[(u32, Meeting)], same_point: f64) -> impl Iterator<Item = bool> {
+    let mut kept = vec![true; met.len()];
+    let shared: Vec<usize> = (0..met.len()).filter(|&i| met[i].1.contact != Contact::Inside).collect();
+    for point in shared.chunk_by(|&i, &j| met[j].1.hit.t - met[i].1.hit.t <= same_point) {
+        let crossed = point.iter().filter(|&&i| met[i].1.contact == Contact::Crossing).count();
+        let told = if crossed == 0 { 2 } else { crossed };
+        for &i in point.iter().skip(told) {
+            kept[i] = false;
+        }
+    }
+    kept.into_iter()
+}

@@ -1,0 +1,183 @@
+//! What is asked of each ray: a type each, so that each question has kernels of its own.
+
+use super::{Cost, Info, Primitives};
+use crate::math::{Hit, Ray};
+use crate::shapes::triangle::{Candidate, Contact, EdgeRay};
+
+/// A question about rays. Kernels offer it the triangles that a ray meets, in any order.
+pub trait Query {
+    /// What is known of a ray so far.
+    type State: Copy;
+
+    /// Whether the nearest triangles should be looked at first.
+    const NEAREST_FIRST: bool;
+
+    /// Nothing is known yet of ray `i`.
+    fn start(&self, i: usize, ray: &EdgeRay) -> Self::State;
+    /// The greatest `t` that still matters.
+    fn limit(state: &Self::State) -> f64;
+    /// A triangle that is met; true if the question is answered.
+    fn offer(&mut self, state: &mut Self::State, primitive: u32, candidate: Candidate) -> bool;
+    /// Writes down the answer for ray `i`; without a state, that of a ray that hits nothing.
+    fn finish(&mut self, i: usize, answer: Option<(&EdgeRay, Self::State)>);
+
+    /// A node is about to be tested.
+    #[inline(always)]
+    fn visit_node(_: &mut Self::State) {}
+    /// So many triangles are about to be tested.
+    #[inline(always)]
+    fn visit_leaf(_: &mut Self::State, _: u32) {}
+}
+
+/// The closest hit.
+pub struct Closest<'a>(pub &'a mut [Hit]);
+
+impl Query for Closest<'_> {
+    type State = Hit;
+    const NEAREST_FIRST: bool = true;
+
+    #[inline(always)]
+    fn start(&self, _: usize, ray: &EdgeRay) -> Hit {
+        // Beyond t_max nothing is met, so that a hit at t_max itself still beats this.
+        Hit { t: ray.t_max.next_up(), ..Hit::MISS }
+    }
+    #[inline(always)]
+    fn limit(state: &Hit) -> f64 {
+        state.t
+    }
+    #[inline(always)]
+    fn offer(&mut self, best: &mut Hit, primitive: u32, Candidate { t, uv, .. }: Candidate) -> bool {
+        if t < best.t || (t == best.t && primitive < best.primitive) {
+            *best = Hit { t, uv, primitive };
+        }
+        false
+    }
+    #[inline(always)]
+    fn finish(&mut self, i: usize, answer: Option<(&EdgeRay, Hit)>) {
+        self.0[i] = match answer {
+            Some((ray, hit)) if hit.is_hit() => Hit { t: hit.t * ray.scale, ..hit },
+            _ => Hit::MISS,
+        };
+    }
+}
+
+/// Whether there is any hit.
+pub struct Any<'a>(pub &'a mut [bool]);
+
+impl Query for Any<'_> {
+    type State = (bool, f64);
+    const NEAREST_FIRST: bool = false;
+
+    #[inline(always)]
+    fn start(&self, _: usize, ray: &EdgeRay) -> (bool, f64) {
+        (false, ray.t_max)
+    }
+    #[inline(always)]
+    fn limit(state: &(bool, f64)) -> f64 {
+        state.1
+    }
+    #[inline(always)]
+    fn offer(&mut self, state: &mut (bool, f64), _: u32, _: Candidate) -> bool {
+        state.0 = true;
+        true
+    }
+    #[inline(always)]
+    fn finish(&mut self, i: usize, answer: Option<(&EdgeRay, (bool, f64))>) {
+        self.0[i] = answer.is_some_and(|(_, (hit, _))| hit);
+    }
+}
+
+/// A triangle that a ray meets, and how.
+#[derive(Clone, Copy, Debug)]
+pub struct Meeting {
+    /// `t` is along the scaled direction.
+    pub hit: Hit,
+    /// How it is met.
+    pub contact: Contact,
+}
+
+/// All triangles that are met, one list for all rays.
+#[derive(Debug, Default)]
+pub struct Every {
+    /// Each with the number of its ray, in no order.
+    pub met: Vec<(u32, Meeting)>,
+    /// By ray: what turns `t` into the ray's own, and how far apart the same point may be found.
+    pub rays: Vec<(f64, f64)>,
+}
+
+impl Every {
+    /// Nothing yet of so many rays.
+    pub fn of(rays: usize) -> Self {
+        Self { met: Vec::new(), rays: vec![(1.0, 0.0); rays] }
+    }
+}
+
+impl Query for Every {
+    type State = (u32, f64);
+    const NEAREST_FIRST: bool = false;
+
+    #[inline(always)]
+    fn start(&self, i: usize, ray: &EdgeRay) -> (u32, f64) {
+        (i as u32, ray.t_max)
+    }
+    #[inline(always)]
+    fn limit(state: &(u32, f64)) -> f64 {
+        state.1
+    }
+    #[inline(always)]
+    fn offer(&mut self, state: &mut (u32, f64), primitive: u32, Candidate { t, uv, contact }: Candidate) -> bool {
+        self.met.push((state.0, Meeting { hit: Hit { t, uv, primitive }, contact }));
+        false
+    }
+    #[inline(always)]
+    fn finish(&mut self, i: usize, answer: Option<(&EdgeRay, (u32, f64))>) {
+        if let Some((ray, _)) = answer {
+            self.rays[i] = (ray.scale, ray.same_point());
+        }
+    }
+}
+
+/// The work that the closest hit takes.
+pub struct Counted<'a>(pub &'a mut [Cost]);
+
+impl Query for Counted<'_> {
+    type State = (Hit, Cost);
+    const NEAREST_FIRST: bool = true;
+
+    #[inline(always)]
+    fn start(&self, i: usize, ray: &EdgeRay) -> (Hit, Cost) {
+        (Closest(&mut []).start(i, ray), Cost::default())
+    }
+    #[inline(always)]
+    fn limit(state: &(Hit, Cost)) -> f64 {
+        state.0.t
+    }
+    #[inline(always)]
+    fn offer(&mut self, state: &mut (Hit, Cost), primitive: u32, candidate: Candidate) -> bool {
+        Closest(&mut []).offer(&mut state.0, primitive, candidate)
+    }
+    #[inline(always)]
+    fn finish(&mut self, i: usize, answer: Option<(&EdgeRay, (Hit, Cost))>) {
+        self.0[i] = answer.map_or(Cost::default(), |(_, (_, cost))| cost);
+    }
+    #[inline(always)]
+    fn visit_node(state: &mut (Hit, Cost)) {
+        state.1.nodes += 1;
+    }
+    #[inline(always)]
+    fn visit_leaf(state: &mut (Hit, Cost), count: u32) {
+        state.1.primitives += count;
+    }
+}
+
+/// What can be asked any question: every [`super::Accelerator`] is one.
+pub trait Answers: Send + Sync + Sized + 'static {
+    /// Answers every ray once.
+    fn answer<Q: Query>(&self, rays: &[Ray], query: &mut Q);
+
+    /// See [`super::Accelerator::refitted`].
+    fn refitted(&self, primitives: &dyn Primitives) -> Result<Self, String>;
+
+    /// See [`super::Accelerator::info`].
+    fn info(&self) -> &Info;
+}
