@@ -1,4 +1,4 @@
-//! Building trees on all cores, by number of triangles: the binary tree alone (binned SAH), and all of what rays walk. Each
+//! Building trees on all cores, by number of triangles: the binary tree alone (binned SAH), and all of what rays walk, by quality. Each
 //! is valid, and has given the hits of brute force, before it is timed.
 
 mod meshes;
@@ -8,8 +8,8 @@ use divan::counter::ItemsCount;
 use meshes::{Mesh, Purpose, noisy_torus, rays, validate};
 use raywright::accel::Primitives;
 use raywright::accel::bvh::build::binned;
-use raywright::accel::bvh::{Options, SingleBvh};
-use raywright::simd::{Dispatch, Level};
+use raywright::accel::bvh::{self, Options, Quality};
+use raywright::simd::Level;
 
 const SIZES: [usize; 4] = [1_000, 10_000, 100_000, 1_000_000];
 
@@ -22,29 +22,32 @@ fn binary(bencher: Bencher, size: usize) {
     let triangles = noisy_torus(size);
     let region = triangles.region();
     let boxes: Vec<_> = (0..triangles.count() as u32).map(|p| region.aabb(triangles.corners(p))).collect();
-    binned::build(&boxes, Options::DEFAULT.bins).validate(&boxes).expect("a valid tree");
-    bencher.counter(ItemsCount::new(boxes.len())).bench_local(|| binned::build(&boxes, Options::DEFAULT.bins));
+    let options = Quality::FastBuild.steps(8).binned;
+    binned::build(&boxes, &options).validate(&boxes).expect("a valid tree");
+    bencher.counter(ItemsCount::new(boxes.len())).bench_local(|| binned::build(&boxes, &options));
 }
 
 #[divan::bench(args = SIZES, sample_count = 3, sample_size = 1)]
-fn four_wide(bencher: Bencher, size: usize) {
-    wide::<4>(bencher, size);
+fn fast_build(bencher: Bencher, size: usize) {
+    widest(bencher, size, Quality::FastBuild);
 }
 
 #[divan::bench(args = SIZES, sample_count = 3, sample_size = 1)]
-fn eight_wide(bencher: Bencher, size: usize) {
-    wide::<8>(bencher, size);
+fn balanced(bencher: Bencher, size: usize) {
+    widest(bencher, size, Quality::Balanced);
 }
 
-fn wide<const N: usize>(bencher: Bencher, size: usize)
-where
-    Level: Dispatch<N>,
-{
+#[divan::bench(args = SIZES, sample_count = 3, sample_size = 1)]
+fn fast_rays(bencher: Bencher, size: usize) {
+    widest(bencher, size, Quality::FastRays);
+}
+
+fn widest(bencher: Bencher, size: usize, quality: Quality) {
     let level = Level::current().expect("a level of this processor");
     let triangles = noisy_torus(size);
-    let build = || SingleBvh::<N>::new(&triangles, &Options::DEFAULT, level);
+    let build = || bvh::widest(&triangles, &Options { quality, ..Options::DEFAULT }, level);
     let tree = build();
     tree.validate(&triangles).expect("a valid tree");
-    validate(&triangles, &tree, &rays(Mesh::NoisyTorus, &triangles, &tree, Purpose::Primary));
+    validate(&triangles, tree.as_ref(), &rays(Mesh::NoisyTorus, &triangles, tree.as_ref(), Purpose::Primary));
     bencher.counter(ItemsCount::new(triangles.count())).bench_local(build);
 }

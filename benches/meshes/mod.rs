@@ -1,7 +1,7 @@
 //! The meshes and the rays that benches are timed on, the same at every run.
 #![allow(dead_code, reason = "each bench takes what it needs")]
 
-use raywright::accel::bvh::{Options, SingleBvh};
+use raywright::accel::bvh::{self, Options};
 use raywright::accel::{Accelerator, BruteForce, Primitives};
 use raywright::math::{DVec3, Frame, Hit, Ray, Vec3};
 use raywright::sampling::{philox4x32, warp};
@@ -263,16 +263,12 @@ impl Kernel {
     pub fn all() -> Vec<Self> {
         let available = || Level::ALL.into_iter().filter(|level| level.is_available());
         let narrow = available().map(|level| Self { width: 4, level });
-        // SSE2 has no eight lanes.
-        narrow.chain(available().filter(|&l| l != Level::Sse2).map(|level| Self { width: 8, level })).collect()
+        narrow.chain(available().filter(|level| level.lanes() >= 8).map(|level| Self { width: 8, level })).collect()
     }
 
     /// Builds the tree.
     pub fn build(self, triangles: &Triangles) -> Box<dyn Accelerator> {
-        match self.width {
-            4 => Box::new(SingleBvh::<4>::new(triangles, &Options::DEFAULT, self.level)),
-            _ => Box::new(SingleBvh::<8>::new(triangles, &Options::DEFAULT, self.level)),
-        }
+        bvh::wide(self.width, triangles, &Options::DEFAULT, self.level)
     }
 }
 

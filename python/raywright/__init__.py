@@ -1,10 +1,12 @@
 """Ray tracing for Python: exact hits from numpy arrays, and pictures that say how wrong they still are."""
 
+from typing import TYPE_CHECKING, Any
+
 from . import scenes
 from ._core import AcceleratorInfo, simd
 from .accelerators import BVH, BruteForce
 from .camera import Camera
-from .hits import Hits
+from .hits import AllHits, ClosestPoints, Hits, QueryCost
 from .image import ErrorEstimate, Image
 from .integrators import Path
 from .io.pictures import check_writable
@@ -14,11 +16,16 @@ from .mesh import Mesh
 from .rendering import render
 from .scene import Scene
 
+if TYPE_CHECKING:
+    from . import report
+
 __all__ = [
     "BVH",
     "AcceleratorInfo",
+    "AllHits",
     "BruteForce",
     "Camera",
+    "ClosestPoints",
     "ConstantEnvironment",
     "Diffuse",
     "ErrorEstimate",
@@ -27,9 +34,22 @@ __all__ = [
     "Mesh",
     "Path",
     "PointLight",
+    "QueryCost",
     "Scene",
     "check_writable",
     "render",
+    "report",
     "scenes",
     "simd",
 ]
+
+
+if not TYPE_CHECKING:
+
+    def __getattr__(name: str) -> Any:
+        # Reports are for those who ask for them: nothing else waits for their import.
+        if name == "report":
+            from importlib import import_module
+
+            return import_module(".report", __name__)
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

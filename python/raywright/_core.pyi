@@ -1,15 +1,21 @@
 """The compiled core. Everything here takes validated, C-contiguous arrays; the public face is the package."""
 
 from collections.abc import Callable
-from typing import Any, final
+from typing import Any, TypeAlias, final
 
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["AcceleratorInfo", "CompiledScene", "Rendering", "camera_rays", "render", "simd"]
+_Floats: TypeAlias = NDArray[np.floating[Any]]
+_Numbers: TypeAlias = float | NDArray[np.float64]
+
+__all__ = ["AcceleratorInfo", "CompiledScene", "KernelContest", "Rendering", "camera_rays", "render", "simd"]
 
 def simd() -> str:
-    """Return the SIMD level the kernels run at: "scalar", "sse2" or "avx2"; ``RAYWRIGHT_SIMD`` forces one."""
+    """Return the SIMD level the kernels run at; ``RAYWRIGHT_SIMD`` forces one.
+
+    "scalar", "sse2", "avx2" or "avx512".
+    """
 
 @final
 class AcceleratorInfo:
@@ -37,37 +43,82 @@ class CompiledScene:
     """A scene ready for rays, read by attribute from a `raywright.Scene` (shapes, lights, environment)."""
 
     def __new__(cls, scene: Any, accelerator: Any) -> CompiledScene: ...
+    def refitted(self, scene: Any) -> CompiledScene | None:
+        """Fit the accelerator to a scene of the same faces; None if that cannot be done."""
     def intersect(
         self,
-        origins: NDArray[np.floating[Any]],
-        directions: NDArray[np.floating[Any]],
-        t_min: NDArray[np.float64],
-        t_max: NDArray[np.float64],
+        origins: _Floats,
+        directions: _Floats,
+        t_min: _Numbers,
+        t_max: _Numbers,
+        shape: tuple[int, ...],
         threads: int | None,
-        row: int,
     ) -> tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.int32], NDArray[np.float64]]:
-        """Closest hits of N rays: (t (N,), shape_id (N,), primitive (N,), uv (N,2)).
+        """Closest hits of rays of leading shape `shape`: t, shape_id and primitive (...), uv (..., 2).
 
-        ``origins`` and ``directions`` are (N,3) or (1,3), float32 or float64, each of either type; ``t_min``
-        and ``t_max`` are (N,) or (1,). ``row`` is the length of an image's rows, which is then traced in
-        tiles; 0 for what is no image.
+        ``origins`` and ``directions`` have shape (..., 3) and are float32 or float64, each of either type;
+        ``t_min`` and ``t_max`` are floats or arrays. Each has one row, or one for each ray. Rays of two or
+        more dimensions are an image, and traced in tiles.
         """
     def occluded(
         self,
-        origins: NDArray[np.floating[Any]],
-        directions: NDArray[np.floating[Any]],
-        t_min: NDArray[np.float64],
-        t_max: NDArray[np.float64],
+        origins: _Floats,
+        directions: _Floats,
+        t_min: _Numbers,
+        t_max: _Numbers,
+        shape: tuple[int, ...],
         threads: int | None,
-        row: int,
     ) -> NDArray[np.bool_]:
-        """Whether each of N rays hits anything: (N,). Arguments as `intersect`."""
+        """Whether each ray hits anything. Arguments as `intersect`."""
+    def intersect_all(
+        self,
+        origins: _Floats,
+        directions: _Floats,
+        t_min: _Numbers,
+        t_max: _Numbers,
+        shape: tuple[int, ...],
+        threads: int | None,
+    ) -> tuple[
+        NDArray[np.int64], NDArray[np.float64], NDArray[np.int32], NDArray[np.int32], NDArray[np.float64]
+    ]:
+        """All hits of N rays: splits (N+1,), t (K,), shape_id (K,), primitive (K,), uv (K,2)."""
+    def count(
+        self,
+        origins: _Floats,
+        directions: _Floats,
+        t_min: _Numbers,
+        t_max: _Numbers,
+        shape: tuple[int, ...],
+        threads: int | None,
+    ) -> NDArray[np.int32]:
+        """How many hits each ray has."""
+    def cost(
+        self,
+        origins: _Floats,
+        directions: _Floats,
+        t_min: _Numbers,
+        t_max: _Numbers,
+        shape: tuple[int, ...],
+        threads: int | None,
+    ) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
+        """Nodes visited and primitives tested for each ray's closest hit."""
+    def contains(self, points: _Floats, shape: tuple[int, ...], threads: int | None) -> NDArray[np.bool_]:
+        """Whether points of leading shape `shape` are inside a closed surface or on it."""
+    def nearest(
+        self, points: _Floats, max_distance: _Numbers, shape: tuple[int, ...], threads: int | None
+    ) -> tuple[
+        NDArray[np.float64], NDArray[np.float64], NDArray[np.int32], NDArray[np.int32], NDArray[np.float64]
+    ]:
+        """Closest points of surfaces: distance, position (..., 3), shape_id, primitive, uv (..., 2)."""
     def positions(
         self, shape_id: NDArray[np.int32], primitive: NDArray[np.int32], uv: NDArray[np.float64]
     ) -> NDArray[np.float64]:
         """Points on primitives: (N,3), NaN for misses."""
     def normals(self, shape_id: NDArray[np.int32], primitive: NDArray[np.int32]) -> NDArray[np.float64]:
         """Find unit geometric normals: (N,3), NaN for misses."""
+    @property
+    def growth(self) -> float:
+        """The accelerator's SAH cost over what it was when it was built."""
     @property
     def accelerator(self) -> AcceleratorInfo: ...
     @property
@@ -120,5 +171,29 @@ def render(
     the render at once and is passed on.
     """
 
-def camera_rays(camera: Any) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Origins and directions (H,W,3) through the pixels' centres; row 0 is the top."""
+def camera_rays(camera: Any, offsets: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Origins and directions (H,W,3) through the pixels; row 0 is the top.
+
+    ``offsets`` (2,) or (H,W,2) is where in the pixel: (0, 0) is its upper left, (1, 1) its lower right.
+    """
+
+@final
+class KernelContest:
+    """The ray-triangle routines side by side, on N pairs of a ray and a triangle.
+
+    ``origins`` and ``directions`` are (N,3); ``corners`` is (N,9), one corner after the other.
+    """
+
+    def __new__(
+        cls,
+        origins: NDArray[np.float32],
+        directions: NDArray[np.float32],
+        corners: NDArray[np.float32],
+    ) -> KernelContest: ...
+    @property
+    def routines(self) -> list[tuple[str, int]]:
+        """Name of each routine, and the bytes that it keeps of a triangle."""
+    def round(self) -> list[float]:
+        """Test all pairs with each routine in turn: the seconds that each takes."""
+    def answers(self, routine: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Where one routine finds hits: t (N,), inf for a miss, and uv (N,2)."""

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Literal
 
-from .arrays import integer, positive
+from .arrays import choice, integer, positive
 
 Builder = Literal["binned"]
 _BUILDERS = ("binned",)
@@ -18,8 +18,8 @@ class BVH:
     builder : {"binned"}
         How the tree is built. ``"binned"`` tries a few planes on each axis (Wald 2007, "On fast construction
         of SAH-based bounding volume hierarchies").
-    bins : int
-        Bins for each axis, 2 to 64.
+    bins : int, optional
+        Bins for each axis, 2 to 64; as many as suit the scene's ``quality`` if not given.
     traversal_cost, intersection_cost : float
         Cost of visiting a node and of testing a primitive, in any one unit; only their ratio matters.
 
@@ -32,16 +32,14 @@ class BVH:
     """
 
     builder: Builder = "binned"
-    bins: int = 16
+    bins: int | None = None
     traversal_cost: float = 1.0
     intersection_cost: float = 1.0
 
     def __post_init__(self) -> None:
-        if self.builder not in _BUILDERS:
-            raise ValueError(
-                f"builder must be one of {', '.join(map(repr, _BUILDERS))}, got {self.builder!r}"
-            )
-        object.__setattr__(self, "bins", integer("bins", self.bins, 2, 64))
+        choice("builder", self.builder, _BUILDERS)
+        if self.bins is not None:
+            object.__setattr__(self, "bins", integer("bins", self.bins, 2, 64))
         object.__setattr__(self, "traversal_cost", positive("traversal_cost", self.traversal_cost))
         object.__setattr__(self, "intersection_cost", positive("intersection_cost", self.intersection_cost))
 

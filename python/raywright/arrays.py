@@ -9,6 +9,8 @@ from numpy.typing import ArrayLike, NDArray
 
 Triple = tuple[float, float, float]
 
+_DOUBLE, _SINGLE = np.dtype(np.float64), np.dtype(np.float32)
+
 
 def real_array(name: str, value: ArrayLike) -> NDArray[Any]:
     """Return `value` as an array of float32 or float64 in native byte order, without a copy where possible.
@@ -22,6 +24,8 @@ def real_array(name: str, value: ArrayLike) -> NDArray[Any]:
     ValueError
         If nested sequences are ragged.
     """
+    if type(value) is np.ndarray and (value.dtype is _DOUBLE or value.dtype is _SINGLE):
+        return value
     array = _as_array(name, value)
     if array.dtype.kind not in "iuf":
         came = f"dtype {array.dtype}" if isinstance(value, np.ndarray) else _describe(value, array)
@@ -122,6 +126,12 @@ def integer(name: str, value: int, least: int, most: int | None = None) -> int:
         allowed = f"at least {least}" if most is None else f"between {least} and {most}"
         raise ValueError(f"{name} must be {allowed}, got {result}")
     return result
+
+
+def choice(name: str, value: str, choices: tuple[str, ...]) -> None:
+    """Refuse what is not one of the choices."""
+    if value not in choices:
+        raise ValueError(f"{name} must be one of {', '.join(map(repr, choices))}, got {value!r}")
 
 
 def _as_array(name: str, value: ArrayLike) -> NDArray[Any]:

@@ -1,12 +1,13 @@
 """Where a picture is taken from."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from . import _core
-from .arrays import Triple, integer, number, triple
+from .arrays import Triple, integer, last_axis, number, triple
 
 # Sine of the smallest angle between `up` and the view that still fixes which way is up.
 _LEAST_SINE = 1e-9
@@ -74,15 +75,40 @@ class Camera:
         if np.linalg.norm(np.cross(view, _unit(np.array(self.up)))) < _LEAST_SINE:
             raise ValueError(f"up must not be parallel to the view, got up {self.up} along target - position")
 
-    def rays(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Return the rays through the centres of all pixels.
+    def rays(
+        self, offsets: ArrayLike = (0.5, 0.5), dtype: DTypeLike = np.float64
+    ) -> tuple[NDArray[np.floating[Any]], NDArray[np.floating[Any]]]:
+        """Return a ray through each pixel.
+
+        Parameters
+        ----------
+        offsets : (2,) or (height, width, 2) array
+            Where in the pixel, for all or for each: (0, 0) is its upper left, (1, 1) its lower right. The
+            default is the centre; ``rng.random((height, width, 2))`` is anywhere in it.
+        dtype : float64 or float32
+            Of the arrays; rays of float32 are the fastest to read.
 
         Returns
         -------
-        origins, directions : (height, width, 3) float64
-            Row 0 is the top of the picture, column 0 its left.
+        origins, directions : (height, width, 3) arrays
+            Directions are unit, to rounding. Row 0 is the top of the picture, column 0 its left.
+
+        Raises
+        ------
+        ValueError
+            If `offsets` has another shape, or `dtype` is another type.
+        TypeError
+            If `offsets` are not real numbers.
         """
-        return _core.camera_rays(self)
+        kind = np.dtype(dtype)
+        if kind not in (np.float32, np.float64):
+            raise ValueError(f"dtype must be float32 or float64, got {kind}")
+        where = last_axis("offsets", offsets, 2)
+        if where.shape not in ((2,), (self.height, self.width, 2)):
+            allowed = f"(2,) or ({self.height}, {self.width}, 2)"
+            raise ValueError(f"offsets must have shape {allowed}, got {where.shape}")
+        origins, directions = _core.camera_rays(self, np.ascontiguousarray(where, np.float64))
+        return origins.astype(kind, copy=False), directions.astype(kind, copy=False)
 
 
 def _unit(vector: NDArray[np.float64]) -> NDArray[np.float64]:

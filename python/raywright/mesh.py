@@ -152,6 +152,14 @@ class Mesh:
         return f"Mesh({', '.join(parts)})"
 
 
+def moved(mesh: Mesh, name: str, vertices: ArrayLike) -> Mesh:
+    """Return the mesh with its vertices elsewhere, and all else as it is, given normals too."""
+    result = object.__new__(Mesh)
+    # The other arrays are checked and cannot change: they are shared.
+    vars(result).update(vars(mesh), vertices=rows(name, vertices, 3, len(mesh.vertices)))
+    return result
+
+
 def _same(a: NDArray[Any] | None, b: NDArray[Any] | None) -> bool:
     if a is None or b is None:
         return a is b

@@ -1,78 +1,108 @@
-"""A batch of rays as the core takes it, and its answers in the shape the caller gave."""
+"""Rays and points as the core takes them."""
 
 import math
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .arrays import integer, last_axis, real_array
 
+Floats: TypeAlias = NDArray[np.floating[Any]]
+RayArguments: TypeAlias = tuple[
+    Floats,
+    Floats,
+    float | NDArray[np.float64],
+    float | NDArray[np.float64],
+    tuple[int, ...],
+    int | None,
+]
 
-@dataclass(frozen=True, eq=False)
-class RayBatch:
-    """N rays with leading shape `shape`: arrays of one row, or of N rows, for each part."""
 
-    shape: tuple[int, ...]
-    origins: NDArray[Any]
-    directions: NDArray[Any]
-    t_min: NDArray[np.float64]
-    t_max: NDArray[np.float64]
-    threads: int | None
+def ray_arguments(
+    origins: ArrayLike,
+    directions: ArrayLike,
+    t_min: ArrayLike,
+    t_max: ArrayLike,
+    threads: int | None,
+) -> RayArguments:
+    """Check and broadcast rays, and give what the core's queries take.
 
-    @classmethod
-    def of(
-        cls,
-        origins: ArrayLike,
-        directions: ArrayLike,
-        t_min: ArrayLike,
-        t_max: ArrayLike,
-        threads: int | None,
-    ) -> "RayBatch":
-        """Check and broadcast rays; C-contiguous float32 and float64 arrays pass without a copy."""
-        starts = last_axis("origins", origins, 3)
-        ways = last_axis("directions", directions, 3)
-        near = _distances("t_min", t_min)
-        far = _distances("t_max", t_max)
-        shapes = {
-            "origins": starts.shape[:-1],
-            "directions": ways.shape[:-1],
-            "t_min": near.shape,
-            "t_max": far.shape,
-        }
+    C-contiguous float32 and float64 arrays pass as they are; each array has one row, or one for each ray.
+
+    Returns
+    -------
+    origins, directions, t_min, t_max, shape, threads
+        `shape` is the leading shape of the rays.
+    """
+    starts = last_axis("origins", origins, 3)
+    ways = last_axis("directions", directions, 3)
+    near = _distances("t_min", t_min)
+    far = _distances("t_max", t_max)
+    if threads is not None:
+        threads = integer("threads", threads, 1)
+    shape, lead = starts.shape[:-1], ways.shape[:-1]
+    if type(near) is float and type(far) is float:
+        # The usual rays need no broadcasting, and a few of them no more time than it takes to trace them.
+        if not lead or shape == lead:
+            return _in_order(starts), _in_order(ways), near, far, shape, threads
+        if not shape:
+            return _in_order(starts), _in_order(ways), near, far, lead, threads
+    parts = {"origins": shape, "directions": lead, "t_min": np.shape(near), "t_max": np.shape(far)}
+    try:
+        shape = np.broadcast_shapes(*parts.values())
+    except ValueError:
+        told = ", ".join(f"{name} {lead}" for name, lead in parts.items())
+        raise ValueError(f"leading shapes do not broadcast: {told}") from None
+    near, far = (_spread(x, shape) if isinstance(x, np.ndarray) else x for x in (near, far))
+    return _spread(starts, shape, (3,)), _spread(ways, shape, (3,)), near, far, shape, threads
+
+
+def point_arguments(points: ArrayLike, threads: int | None) -> tuple[Floats, tuple[int, ...], int | None]:
+    """Check points, and give what the core's queries take: the points, their leading shape, and threads."""
+    array = _in_order(last_axis("points", points, 3))
+    return array, array.shape[:-1], None if threads is None else integer("threads", threads, 1)
+
+
+def nearest_arguments(
+    points: ArrayLike, max_distance: ArrayLike, threads: int | None
+) -> tuple[Floats, float | NDArray[np.float64], tuple[int, ...], int | None]:
+    """Check points and distances, and give what the core takes: both, their leading shape, and threads."""
+    array, shape, threads = point_arguments(points, threads)
+    most = _distances("max_distance", max_distance)
+    if np.min(most, initial=0.0) < 0:
+        raise ValueError(f"max_distance must be at least 0, got {np.min(most)}")
+    if isinstance(most, np.ndarray):
         try:
-            shape = np.broadcast_shapes(*shapes.values())
+            lead = np.broadcast_shapes(shape, most.shape)
         except ValueError:
-            told = ", ".join(f"{name} {lead}" for name, lead in shapes.items())
+            told = f"points {shape}, max_distance {most.shape}"
             raise ValueError(f"leading shapes do not broadcast: {told}") from None
-        return cls(
-            shape,
-            _flat(starts, shape),
-            _flat(ways, shape),
-            _flat(near[..., np.newaxis], shape).reshape(-1),
-            _flat(far[..., np.newaxis], shape).reshape(-1),
-            None if threads is None else integer("threads", threads, 1),
-        )
-
-    def arguments(self) -> tuple[Any, ...]:
-        """Give what the core's queries take."""
-        # Image-shaped rays are traced in tiles, where neighbours share more than along a row.
-        row = self.shape[-1] if len(self.shape) >= 2 else 0
-        return self.origins, self.directions, self.t_min, self.t_max, self.threads, row
+        array, most, shape = _spread(array, lead, (3,)), _spread(most, lead), lead
+    return array, most, shape, threads
 
 
-def _distances(name: str, value: ArrayLike) -> NDArray[np.float64]:
-    array = real_array(name, value).astype(np.float64, copy=False)
-    if np.isnan(array).any():
+def _distances(name: str, value: ArrayLike) -> float | NDArray[np.float64]:
+    if type(value) is not float:
+        array = real_array(name, value).astype(np.float64, copy=False)
+        if array.ndim:
+            if np.isnan(array).any():
+                raise ValueError(f"{name} must not be NaN")
+            return array
+        value = float(array)
+    if value != value:
         raise ValueError(f"{name} must not be NaN")
-    return array
+    return value
 
 
-def _flat(array: NDArray[Any], shape: tuple[int, ...]) -> NDArray[Any]:
-    """Rows of `array` for rays of leading shape `shape`: one row if it holds one, else all of them."""
-    columns = array.shape[-1]
-    if math.prod(array.shape[:-1]) != 1:
-        array = np.broadcast_to(array, (*shape, columns))
-        return np.require(array.reshape(math.prod(shape), columns), requirements=["C", "A"])
-    return np.require(array.reshape(1, columns), requirements=["C", "A"])
+def _in_order(array: NDArray[Any]) -> NDArray[Any]:
+    """Return it C-contiguous and aligned."""
+    flags = array.flags
+    return array if flags.c_contiguous and flags.aligned else np.require(array, requirements=["C", "A"])
+
+
+def _spread(array: NDArray[Any], lead: tuple[int, ...], columns: tuple[int, ...] = ()) -> NDArray[Any]:
+    """Return it C-contiguous, with a row for each ray unless it is one row, which serves for all."""
+    shape = (*lead, *columns)
+    one = array.size == math.prod(columns)
+    return _in_order(array if one or array.shape == shape else np.broadcast_to(array, shape))

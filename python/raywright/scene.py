@@ -1,21 +1,21 @@
-"""A scene: what can be hit, what shines, and the questions that rays ask of it."""
+"""A scene: what can be hit, and what shines."""
 
 import threading
 import warnings
 from collections.abc import Sequence
 from os import PathLike
-from typing import TYPE_CHECKING, Any, TypeAlias, Union
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias, Union, cast, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
 from .accelerators import BVH, Accelerator, BruteForce
-from .hits import Hits
+from .arrays import choice
 from .io.meshes import meshes
 from .lights import ConstantEnvironment, PointLight
-from .mesh import Mesh
-from .rays import RayBatch
+from .mesh import Mesh, moved
+from .queries import Queries
 
 if TYPE_CHECKING:
     import trimesh
@@ -23,11 +23,16 @@ if TYPE_CHECKING:
 Shapes: TypeAlias = Union[
     Mesh, "trimesh.Trimesh", "trimesh.Scene", str, PathLike[str], "Sequence[Shapes]"
 ]  # fmt: skip
+Precision: TypeAlias = Literal["single", "double"]
+Quality: TypeAlias = Literal["fast build", "balanced", "fast rays"]
 _BINNED_BVH = BVH()
 
 
-class Scene:
-    """Shapes and lights; compiled for rays the first time that it is asked, and never changed.
+class Scene(Queries):
+    """Shapes and lights; compiled for rays the first time that it is asked.
+
+    Nothing about it changes but where the vertices are, by `refit`. It may be asked from many threads at
+    once.
 
     Parameters
     ----------
@@ -42,13 +47,19 @@ class Scene:
         What surrounds the scene; numbers are a constant radiance. None is black.
     accelerator : BVH or BruteForce
         The structure that finds hits.
+    precision : {"single", "double"}
+        What vertices are rounded to: "single" to float32, which takes the least memory and is the fastest,
+        "double" not at all. Either way hits are exact for the vertices as they then are. "double" costs
+        nothing where all vertices are float32 numbers anyway.
+    quality : {"balanced", "fast build", "fast rays"}
+        How long the accelerator may take to build for the sake of rays.
 
     Raises
     ------
     FileNotFoundError
         If a file is missing.
     ValueError
-        If a file is not a mesh that can be read.
+        If a file is not a mesh that can be read, or `precision` or `quality` is not one of those.
     TypeError
         If something is not of the kinds above.
 
@@ -65,6 +76,8 @@ class Scene:
         lights: PointLight | Sequence[PointLight] = (),
         environment: ConstantEnvironment | ArrayLike | None = None,
         accelerator: Accelerator = _BINNED_BVH,
+        precision: Precision = "single",
+        quality: Quality = "balanced",
     ) -> None:
         self._shapes = meshes(shapes)
         self._lights = tuple(lights) if isinstance(lights, list | tuple) else (lights,)
@@ -77,6 +90,9 @@ class Scene:
         if not isinstance(accelerator, BVH | BruteForce):
             raise TypeError(f"accelerator must be a BVH or BruteForce, got {type(accelerator).__name__}")
         self._accelerator = accelerator
+        choice("precision", precision, get_args(Precision))
+        choice("quality", quality, get_args(Quality))
+        self._precision, self._quality = precision, quality
         self._core: _core.CompiledScene | None = None
         self._lock = threading.Lock()
 
@@ -101,6 +117,16 @@ class Scene:
         return self._accelerator
 
     @property
+    def precision(self) -> Precision:
+        """What vertices are rounded to: "single" or "double"."""
+        return self._precision
+
+    @property
+    def quality(self) -> Quality:
+        """How long the accelerator may take to build: "fast build", "balanced" or "fast rays"."""
+        return self._quality
+
+    @property
     def accelerator(self) -> _core.AcceleratorInfo:
         """What the accelerator came to be: kind, nodes, leaves, depth, bytes, build_seconds, sah_cost."""
         return self._compiled().accelerator
@@ -115,73 +141,63 @@ class Scene:
         """Least and greatest corner of all that can be hit, (2, 3) float64; None for an empty scene."""
         return self._compiled().bounds
 
-    def intersect(
-        self,
-        origins: ArrayLike,
-        directions: ArrayLike,
-        t_min: ArrayLike = 0.0,
-        t_max: ArrayLike = np.inf,
-        threads: int | None = None,
-    ) -> Hits:
-        """Find the closest hit of each ray.
+    def refit(self, vertices: ArrayLike | Sequence[ArrayLike | None]) -> float:
+        """Move the vertices, and fit the accelerator to them: much faster than a new scene.
+
+        Faces, materials, lights and given normals stay as they are. ``scene.shapes`` are new meshes; hits
+        that were found before stay as they were found.
 
         Parameters
         ----------
-        origins, directions : (..., 3) arrays
-            Rays, broadcast against each other; directions need not be unit. C-contiguous float32 and float64
-            are read without a copy, other real types are converted to float64.
-        t_min, t_max : float or (...) arrays
-            The part of the ray that counts, in lengths of its direction, both ends included.
-        threads : int, optional
-            How many to use; all cores if not given. The answer does not depend on it.
+        vertices : (V, 3) array, or list of them
+            The vertices of the only mesh, or of each mesh; as many as it has. None in the list leaves a mesh
+            where it is.
 
         Returns
         -------
-        Hits
-            With the leading shape of the rays. Of hits at the same `t`, the one of the lowest
-            (shape_id, primitive).
+        float
+            How much the accelerator's expected cost (`sah_cost`) has grown since it was last built: 1 is as
+            good as new, and at 2 rays take about twice as long, which `rebuild` puts right.
 
         Raises
         ------
         ValueError
-            If a last dimension is not 3, leading shapes do not broadcast, or `t_min` or `t_max` is NaN.
+            If the number of meshes or of vertices is another.
         TypeError
             If an array does not hold real numbers.
 
         Notes
         -----
-        Rays with NaN, infinity or a zero direction (or one shorter than the least normal number) hit nothing.
-        Hits are watertight: no ray passes between two faces that share an edge or a corner.
+        What cannot be refitted is built anew, for example where other faces than before have a corner that
+        is NaN or infinite; ``scene.accelerator.kind`` then does not end in "refitted". A scene that was not
+        asked anything yet is built when it is.
         """
-        rays = RayBatch.of(origins, directions, t_min, t_max, threads)
-        compiled = self._compiled()
-        t, shape_id, primitive, uv = compiled.intersect(*rays.arguments())
-        lead = rays.shape
-        return Hits(
-            t.reshape(lead), shape_id.reshape(lead), primitive.reshape(lead), uv.reshape(*lead, 2), compiled
+        after = Scene(self._moved(vertices), *self._parts()[1:])
+        with self._lock:
+            core = self._core and self._core.refitted(after)
+            built, self._shapes, self._core = self._core is not None, after.shapes, core
+        if core is None and built:
+            core = self._compiled()
+        return core.growth if core else 1.0
+
+    def rebuild(self) -> None:
+        """Build the accelerator anew, for where the vertices are now."""
+        with self._lock:
+            self._core = None
+        self._compiled()
+
+    def _moved(self, vertices: ArrayLike | Sequence[ArrayLike | None]) -> tuple[Mesh, ...]:
+        count = len(self._shapes)
+        given = list(vertices) if isinstance(vertices, list | tuple) else None
+        if count == 1 and not (given and len(given) == 1 and (given[0] is None or np.ndim(given[0]) == 2)):
+            return (moved(self._shapes[0], "vertices", cast("ArrayLike", vertices)),)
+        if given is None or len(given) != count:
+            came = "an array" if given is None else str(len(given))
+            raise ValueError(f"vertices must be a list of {_counted(count, 'array')}, got {came}")
+        return tuple(
+            shape if to is None else moved(shape, f"vertices[{i}]", to)
+            for i, (shape, to) in enumerate(zip(self._shapes, given, strict=True))
         )
-
-    def occluded(
-        self,
-        origins: ArrayLike,
-        directions: ArrayLike,
-        t_min: ArrayLike = 0.0,
-        t_max: ArrayLike = np.inf,
-        threads: int | None = None,
-    ) -> NDArray[np.bool_]:
-        """Find whether each ray hits anything between `t_min` and `t_max`.
-
-        The same as ``intersect(...).hit``, and faster: a ray ends at the first hit that it meets. Takes and
-        raises what `intersect` does.
-
-        Returns
-        -------
-        (...) bool
-            With the leading shape of the rays.
-        """
-        rays = RayBatch.of(origins, directions, t_min, t_max, threads)
-        found = self._compiled().occluded(*rays.arguments())
-        return found.reshape(rays.shape)
 
     def _compiled(self) -> _core.CompiledScene:
         with self._lock:
@@ -198,7 +214,14 @@ class Scene:
         return compiled
 
     def _parts(self) -> tuple[Any, ...]:
-        return self._shapes, self._lights, self._environment, self._accelerator
+        return (
+            self._shapes,
+            self._lights,
+            self._environment,
+            self._accelerator,
+            self._precision,
+            self._quality,
+        )
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Scene):
@@ -218,7 +241,10 @@ class Scene:
             parts.append(_counted(len(self._lights), "light"))
         if self._environment is not None:
             parts.append(repr(self._environment))
-        return f"Scene({', '.join(parts)}, {self._accelerator!r})"
+        parts.append(repr(self._accelerator))
+        parts += [f"precision={self._precision!r}"] if self._precision != "single" else []
+        parts += [f"quality={self._quality!r}"] if self._quality != "balanced" else []
+        return f"Scene({', '.join(parts)})"
 
 
 def _counted(count: int, name: str) -> str:

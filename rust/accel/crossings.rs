@@ -4,8 +4,8 @@
 //! not at all where the ray only touches a ridge. Of the triangles met at one point of edges and corners those count that
 //! the ray crosses when it is moved by next to nothing ([`Contact`]), so that a closed surface is crossed an even number of
 //! times from outside and an odd one from inside, however the ray is aimed. Where the ray touches and crosses none, what it
-//! meets is told nevertheless, since [`super::Accelerator::intersect`] tells it: a ridge twice, as if in and out, and the
-//! border of an open surface, which has one triangle there, once.
+//! meets is told nevertheless, since [`super::Accelerator::intersect`] tells it: twice, as if in and out. That is two triangles
+//! of a ridge, or twice the same one where the others that it shares the point with are seen edge-on.
 
 use super::query::{Every, Meeting};
 use crate::math::Hit;
@@ -24,8 +24,10 @@ impl Crossings {
     /// Puts what rays meet in order, and counts points that triangles share once.
     pub fn of(every: Every) -> Self {
         let Every { mut met, rays } = every;
+        // The sum with zero is zero for −0 too, since these are equal to whoever looks for the closest.
+        let t = |m: &Meeting| m.hit.t + 0.0;
         met.sort_unstable_by(|(r, a), (s, b)| {
-            r.cmp(s).then(a.hit.t.total_cmp(&b.hit.t)).then(a.hit.primitive.cmp(&b.hit.primitive))
+            r.cmp(s).then(t(a).total_cmp(&t(b))).then(a.hit.primitive.cmp(&b.hit.primitive))
         });
         let mut crossings = Self { splits: Vec::with_capacity(rays.len() + 1), hits: Vec::with_capacity(met.len()) };
         crossings.splits.push(0);
@@ -34,25 +36,29 @@ impl Crossings {
             let count = rest.iter().take_while(|(ray, _)| *ray as usize == i).count();
             let (mine, others) = rest.split_at(count);
             rest = others;
-            let kept = kept(mine, same_point);
-            let hits = mine.iter().zip(kept).filter(|(_, kept)| *kept);
-            crossings.hits.extend(hits.map(|((_, m), _)| Hit { t: m.hit.t * scale, ..m.hit }));
+            for ((_, m), times) in mine.iter().zip(times_told(mine, same_point)) {
+                let hit = Hit { t: m.hit.t * scale, ..m.hit };
+                crossings.hits.extend(std::iter::repeat_n(hit, times));
+            }
             crossings.splits.push(crossings.hits.len());
         }
         crossings
     }
 }
 
-/// Which of a ray's meetings, in order, are told.
-fn kept(met: &[(u32, Meeting)], same_point: f64) -> impl Iterator<Item = bool> {
-    let mut kept = vec![true; met.len()];
+/// How often each of a ray's meetings, in order, is told.
+fn times_told(met: &[(u32, Meeting)], same_point: f64) -> Vec<usize> {
+    let mut times = vec![1; met.len()];
     let shared: Vec<usize> = (0..met.len()).filter(|&i| met[i].1.contact != Contact::Inside).collect();
     for point in shared.chunk_by(|&i, &j| met[j].1.hit.t - met[i].1.hit.t <= same_point) {
         let crossed = point.iter().filter(|&&i| met[i].1.contact == Contact::Crossing).count();
+        if let ([i], 0) = (point, crossed) {
+            times[*i] = 2;
+        }
         let told = if crossed == 0 { 2 } else { crossed };
         for &i in point.iter().skip(told) {
-            kept[i] = false;
+            times[i] = 0;
         }
     }
-    kept.into_iter()
+    times
 }

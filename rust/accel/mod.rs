@@ -3,14 +3,19 @@
 mod brute;
 pub mod bvh;
 mod crossings;
+mod nearest;
+mod parity;
 mod query;
 mod slab;
 
 pub use brute::BruteForce;
 pub use crossings::Crossings;
-pub use slab::SlabRay;
+pub use nearest::Nearest;
+pub use parity::Side;
+pub use slab::{Clock, SlabRay, SlabRays};
 
 use crate::math::{DVec3, Hit, Ray, Region};
+use parity::Parity;
 use query::{Answers, Any, Closest, Counted, Every};
 use rayon::prelude::*;
 
@@ -60,11 +65,22 @@ pub trait Accelerator: Send + Sync {
     /// Every hit of each ray, of which there are fewer than 2³².
     fn crossings(&self, rays: &[Ray]) -> Crossings;
 
+    /// On which side of the `primitives`, which are those that it holds, the origin of each ray lies: by the crossings from there
+    /// on. Rays are asked from a `t_min` of minus `doubt` on, and only a `t` beyond `doubt` is taken at its word.
+    fn sides(&self, primitives: &dyn Primitives, rays: &[Ray], doubt: f64, sides: &mut [Side]);
+
+    /// The nearest point to each point, within its greatest distance, that distance included; one greatest distance for all of
+    /// them, or one each. A point that is NaN or infinite has none. Of primitives as near, the lowest.
+    fn nearest(&self, points: &[DVec3], max_distances: &[f64], nearest: &mut [Nearest]);
+
     /// What finding the closest hit of each ray takes, ray by ray.
     fn cost(&self, rays: &[Ray], costs: &mut [Cost]);
 
     /// The same structure over primitives that have moved: as many, of the same numbers and of which the same can be hit.
     fn refitted(&self, primitives: &dyn Primitives) -> Result<Box<dyn Accelerator>, String>;
+
+    /// Checks what queries rely on; says what is wrong.
+    fn validate(&self, primitives: &dyn Primitives) -> Result<(), String>;
 
     /// What it looks like.
     fn info(&self) -> &Info;
@@ -87,6 +103,17 @@ impl<A: Answers> Accelerator for A {
         Crossings::of(every)
     }
 
+    fn sides(&self, primitives: &dyn Primitives, rays: &[Ray], doubt: f64, sides: &mut [Side]) {
+        assert_eq!(rays.len(), sides.len(), "a side for each ray");
+        self.answer(rays, &mut Parity { primitives, rays, doubt, sides });
+    }
+
+    fn nearest(&self, points: &[DVec3], max_distances: &[f64], nearest: &mut [Nearest]) {
+        assert_eq!(points.len(), nearest.len(), "an answer for each point");
+        assert!(matches!(max_distances.len(), n if n == 1 || n == points.len()), "a distance for each point");
+        Answers::nearest(self, points, max_distances, nearest);
+    }
+
     fn cost(&self, rays: &[Ray], costs: &mut [Cost]) {
         assert_eq!(rays.len(), costs.len(), "a cost for each ray");
         self.answer(rays, &mut Counted(costs));
@@ -94,6 +121,10 @@ impl<A: Answers> Accelerator for A {
 
     fn refitted(&self, primitives: &dyn Primitives) -> Result<Box<dyn Accelerator>, String> {
         Answers::refitted(self, primitives).map(|a| Box::new(a) as _)
+    }
+
+    fn validate(&self, primitives: &dyn Primitives) -> Result<(), String> {
+        Answers::validate(self, primitives)
     }
 
     fn info(&self) -> &Info {

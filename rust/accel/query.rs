@@ -1,8 +1,19 @@
 //! What is asked of each ray: a type each, so that each question has kernels of its own.
 
-use super::{Cost, Info, Primitives};
-use crate::math::{Hit, Ray};
-use crate::shapes::triangle::{Candidate, Contact, EdgeRay};
+use super::{Cost, Info, Nearest, Primitives};
+use crate::math::{DVec3, Hit, Ray};
+use crate::shapes::triangle::{Along, Candidate, Contact};
+
+/// Ways to walk a batch.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kernels {
+    /// One ray after the other.
+    Single,
+    /// That, or many in flight.
+    Waves,
+    /// Those, or packets.
+    All,
+}
 
 /// A question about rays. Kernels offer it the triangles that a ray meets, in any order.
 pub trait Query {
@@ -12,14 +23,17 @@ pub trait Query {
     /// Whether the nearest triangles should be looked at first.
     const NEAREST_FIRST: bool;
 
-    /// Nothing is known yet of ray `i`.
-    fn start(&self, i: usize, ray: &EdgeRay) -> Self::State;
+    /// Which kernels are worth their code.
+    const KERNELS: Kernels = Kernels::All;
+
+    /// Nothing is known yet of ray `i`, asked for `t` up to `t_max` along its scaled direction.
+    fn start(&self, i: usize, t_max: f64) -> Self::State;
     /// The greatest `t` that still matters.
     fn limit(state: &Self::State) -> f64;
     /// A triangle that is met; true if the question is answered.
     fn offer(&mut self, state: &mut Self::State, primitive: u32, candidate: Candidate) -> bool;
     /// Writes down the answer for ray `i`; without a state, that of a ray that hits nothing.
-    fn finish(&mut self, i: usize, answer: Option<(&EdgeRay, Self::State)>);
+    fn finish(&mut self, i: usize, answer: Option<(Along, Self::State)>);
 
     /// A node is about to be tested.
     #[inline(always)]
@@ -37,9 +51,9 @@ impl Query for Closest<'_> {
     const NEAREST_FIRST: bool = true;
 
     #[inline(always)]
-    fn start(&self, _: usize, ray: &EdgeRay) -> Hit {
+    fn start(&self, _: usize, t_max: f64) -> Hit {
         // Beyond t_max nothing is met, so that a hit at t_max itself still beats this.
-        Hit { t: ray.t_max.next_up(), ..Hit::MISS }
+        Hit { t: t_max.next_up(), ..Hit::MISS }
     }
     #[inline(always)]
     fn limit(state: &Hit) -> f64 {
@@ -53,7 +67,7 @@ impl Query for Closest<'_> {
         false
     }
     #[inline(always)]
-    fn finish(&mut self, i: usize, answer: Option<(&EdgeRay, Hit)>) {
+    fn finish(&mut self, i: usize, answer: Option<(Along, Hit)>) {
         self.0[i] = match answer {
             Some((ray, hit)) if hit.is_hit() => Hit { t: hit.t * ray.scale, ..hit },
             _ => Hit::MISS,
@@ -69,8 +83,8 @@ impl Query for Any<'_> {
     const NEAREST_FIRST: bool = false;
 
     #[inline(always)]
-    fn start(&self, _: usize, ray: &EdgeRay) -> (bool, f64) {
-        (false, ray.t_max)
+    fn start(&self, _: usize, t_max: f64) -> (bool, f64) {
+        (false, t_max)
     }
     #[inline(always)]
     fn limit(state: &(bool, f64)) -> f64 {
@@ -82,7 +96,7 @@ impl Query for Any<'_> {
         true
     }
     #[inline(always)]
-    fn finish(&mut self, i: usize, answer: Option<(&EdgeRay, (bool, f64))>) {
+    fn finish(&mut self, i: usize, answer: Option<(Along, (bool, f64))>) {
         self.0[i] = answer.is_some_and(|(_, (hit, _))| hit);
     }
 }
@@ -115,10 +129,11 @@ impl Every {
 impl Query for Every {
     type State = (u32, f64);
     const NEAREST_FIRST: bool = false;
+    const KERNELS: Kernels = Kernels::Waves;
 
     #[inline(always)]
-    fn start(&self, i: usize, ray: &EdgeRay) -> (u32, f64) {
-        (i as u32, ray.t_max)
+    fn start(&self, i: usize, t_max: f64) -> (u32, f64) {
+        (i as u32, t_max)
     }
     #[inline(always)]
     fn limit(state: &(u32, f64)) -> f64 {
@@ -130,7 +145,7 @@ impl Query for Every {
         false
     }
     #[inline(always)]
-    fn finish(&mut self, i: usize, answer: Option<(&EdgeRay, (u32, f64))>) {
+    fn finish(&mut self, i: usize, answer: Option<(Along, (u32, f64))>) {
         if let Some((ray, _)) = answer {
             self.rays[i] = (ray.scale, ray.same_point());
         }
@@ -143,10 +158,12 @@ pub struct Counted<'a>(pub &'a mut [Cost]);
 impl Query for Counted<'_> {
     type State = (Hit, Cost);
     const NEAREST_FIRST: bool = true;
+    // What a ray costs is its own work, not that of a packet.
+    const KERNELS: Kernels = Kernels::Single;
 
     #[inline(always)]
-    fn start(&self, i: usize, ray: &EdgeRay) -> (Hit, Cost) {
-        (Closest(&mut []).start(i, ray), Cost::default())
+    fn start(&self, i: usize, t_max: f64) -> (Hit, Cost) {
+        (Closest(&mut []).start(i, t_max), Cost::default())
     }
     #[inline(always)]
     fn limit(state: &(Hit, Cost)) -> f64 {
@@ -157,7 +174,7 @@ impl Query for Counted<'_> {
         Closest(&mut []).offer(&mut state.0, primitive, candidate)
     }
     #[inline(always)]
-    fn finish(&mut self, i: usize, answer: Option<(&EdgeRay, (Hit, Cost))>) {
+    fn finish(&mut self, i: usize, answer: Option<(Along, (Hit, Cost))>) {
         self.0[i] = answer.map_or(Cost::default(), |(_, (_, cost))| cost);
     }
     #[inline(always)]
@@ -175,8 +192,14 @@ pub trait Answers: Send + Sync + Sized + 'static {
     /// Answers every ray once.
     fn answer<Q: Query>(&self, rays: &[Ray], query: &mut Q);
 
+    /// See [`super::Accelerator::nearest`].
+    fn nearest(&self, points: &[DVec3], max_distances: &[f64], nearest: &mut [Nearest]);
+
     /// See [`super::Accelerator::refitted`].
     fn refitted(&self, primitives: &dyn Primitives) -> Result<Self, String>;
+
+    /// See [`super::Accelerator::validate`].
+    fn validate(&self, primitives: &dyn Primitives) -> Result<(), String>;
 
     /// See [`super::Accelerator::info`].
     fn info(&self) -> &Info;

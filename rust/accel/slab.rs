@@ -15,7 +15,7 @@
 
 use crate::math::robust::lesser;
 use crate::math::{Ray, Region};
-use crate::shapes::triangle::EdgeRay;
+use crate::shapes::triangle::{ALL, Column, EdgeRay, EdgeRays, RAYS, bits};
 use glam::Vec3A;
 
 /// What slab tests of a ray need.
@@ -36,15 +36,47 @@ pub struct SlabRay {
     /// In box units.
     pub t_min: f32,
     /// From `t` along the scaled direction to box units.
+    pub clock: Clock,
+}
+
+/// From `t` along a scaled direction to box units.
+#[derive(Clone, Copy, Debug)]
+pub struct Clock {
     to_box: f64,
     /// How far along the origin was moved, in box units.
     start: f64,
 }
 
+impl Clock {
+    /// Of rays that start where they start.
+    #[inline(always)]
+    pub fn of(region: &Region) -> Self {
+        Self { to_box: region.scale, start: 0.0 }
+    }
+
+    /// A `t` in box units, rounded up: no box that starts beyond it can improve on it.
+    #[inline(always)]
+    pub fn limit(self, t: f64) -> f32 {
+        widened(lesser(t, f64::MAX) * self.to_box - self.start, ULPS)
+    }
+}
+
+/// The pad over the reach.
+const PAD: f64 = 1.0 / (1u64 << 21) as f64;
+
+/// What is added to it over the distance.
+const FAR_PAD: f64 = 1.0 / (1u64 << 46) as f64;
+
+/// So many radii away the pad is many times the scene, and what is added soon more than an f32 can hold.
+const FARTHEST: f64 = (1u128 << 100) as f64;
+
+/// What a direction counts as along an axis at least.
+const SMALLEST: f32 = 1.0 / (1u64 << 60) as f32;
+
 /// At least 2⁻⁶⁰ in magnitude, in every coordinate.
 #[inline(always)]
 fn away_from_zero(d: Vec3A) -> Vec3A {
-    let smallest = Vec3A::splat(1.0 / (1u64 << 60) as f32);
+    let smallest = Vec3A::splat(SMALLEST);
     Vec3A::select(d.abs().cmplt(smallest), smallest.copysign(d), d)
 }
 
@@ -68,18 +100,12 @@ impl SlabRay {
         origin: [0.0; 3],
         pad: 1e38,
         t_min: -1e38,
-        to_box: 0.0,
-        start: 0.0,
+        clock: Clock { to_box: 0.0, start: 0.0 },
     };
 
     /// Makes a ray ready for boxes in box units; none if it passes the scene by for certain.
     #[inline(always)]
     pub fn new(ray: &EdgeRay, region: &Region) -> Option<Self> {
-        const PAD: f64 = 1.0 / (1u64 << 21) as f64;
-        // So many radii away the pad is many times the scene, and what is added soon more than an f32 can hold.
-        const FARTHEST: f64 = (1u128 << 100) as f64;
-        const FAR_PAD: f64 = 1.0 / (1u64 << 46) as f64;
-
         let mut origin = ray.local * region.scale;
         let direction = ray.direction;
         let largest = ray.largest * region.scale;
@@ -108,15 +134,14 @@ impl SlabRay {
             pad,
             first: [usize::from(inverse.x < 0.0), usize::from(inverse.y < 0.0), usize::from(inverse.z < 0.0)],
             t_min: widened(ray.t_min * region.scale - start, -ULPS),
-            to_box: region.scale,
-            start,
+            clock: Clock { to_box: region.scale, start },
         })
     }
 
-    /// A `t` along the scaled direction in box units, rounded up: no box that starts beyond it can improve on it.
+    /// See [`Clock::limit`].
     #[inline(always)]
     pub fn limit(&self, t: f64) -> f32 {
-        widened(lesser(t, f64::MAX) * self.to_box - self.start, ULPS)
+        self.clock.limit(t)
     }
 
     /// Readies a ray for a scene: for triangles and for boxes. None if it cannot hit anything, or passes the
@@ -126,5 +151,74 @@ impl SlabRay {
         let edges = EdgeRay::new(ray, region)?;
         let slabs = Self::new(&edges, region)?;
         Some((edges, slabs))
+    }
+}
+
+/// Sixteen rays by columns, made ready for box tests as [`SlabRay`] does one.
+#[derive(Clone, Debug)]
+#[repr(C, align(64))]
+pub struct SlabRays {
+    /// Per axis, the inverse of the direction.
+    pub inverse: [Column<f32>; 3],
+    /// Per axis, what is added for the plane that is met first.
+    pub near: [Column<f32>; 3],
+    /// Per axis, what is added for the plane that is met last.
+    pub far: [Column<f32>; 3],
+    /// Where they start, in box units.
+    pub origin: [Column<f32>; 3],
+    /// In box units.
+    pub pad: Column<f32>,
+    /// In box units.
+    pub t_min: Column<f32>,
+}
+
+impl Default for SlabRays {
+    fn default() -> Self {
+        let zero = [0.0; RAYS];
+        Self { inverse: [zero; 3], near: [zero; 3], far: [zero; 3], origin: [zero; 3], pad: zero, t_min: zero }
+    }
+}
+
+impl SlabRays {
+    /// Makes rays ready that [`EdgeRays::prepare`] has.
+    #[inline(always)]
+    pub fn prepare(&mut self, rays: &EdgeRays, region: &Region) {
+        // Rays that are not far have their largest coordinate for reach.
+        for i in 0..RAYS {
+            let largest = rays.largest[i] * region.scale;
+            self.pad[i] = (PAD * largest + FAR_PAD * largest) as f32;
+            self.t_min[i] = widened(rays.t_min[i] * region.scale, -ULPS);
+        }
+        for axis in 0..3 {
+            for i in 0..RAYS {
+                let origin = (rays.local[axis][i] * region.scale) as f32;
+                let d = rays.direction[axis][i] as f32;
+                let d = if d.abs() < SMALLEST { SMALLEST.copysign(d) } else { d };
+                let inverse = 1.0 / d;
+                let (shift, room) = (-origin * inverse, self.pad[i] * inverse.abs());
+                self.origin[axis][i] = origin;
+                self.inverse[axis][i] = inverse;
+                self.near[axis][i] = shift - room;
+                self.far[axis][i] = shift + room;
+            }
+        }
+    }
+
+    /// Which plane is met first by axis (0 the lower, 1 the upper), if it is the same for all rays.
+    #[inline(always)]
+    pub fn first(&self) -> Option<[usize; 3]> {
+        let mut first = [0; 3];
+        for axis in 0..3 {
+            let mut down = [0u32; RAYS];
+            for i in 0..RAYS {
+                down[i] = u32::from(self.inverse[axis][i] < 0.0);
+            }
+            first[axis] = match bits(&down) {
+                0 => 0,
+                ALL => 1,
+                _ => return None,
+            };
+        }
+        Some(first)
     }
 }

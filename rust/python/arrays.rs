@@ -1,18 +1,34 @@
 //! numpy arrays as slices of numbers or of vectors.
 
-use numpy::{Element, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
-use pyo3::exceptions::PyValueError;
+use numpy::{
+    Element, PyArrayDyn, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArrayDyn, PyUntypedArrayMethods,
+};
+use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
+use pyo3::types::PyFloat;
 
 use crate::math::{DVec3, Vec3};
 
-/// An (N,3) array of either float type.
-#[derive(FromPyObject)]
+/// A (..., 3) array of either float type.
 pub enum Triples<'py> {
     /// float64.
-    Double(PyReadonlyArray2<'py, f64>),
+    Double(PyReadonlyArrayDyn<'py, f64>),
     /// float32.
-    Single(PyReadonlyArray2<'py, f32>),
+    Single(PyReadonlyArrayDyn<'py, f32>),
+}
+
+impl<'py> FromPyObject<'_, 'py> for Triples<'py> {
+    type Error = PyErr;
+
+    fn extract(object: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
+        if let Ok(array) = object.cast::<PyArrayDyn<f64>>() {
+            return Ok(Self::Double(array.try_readonly()?));
+        }
+        match object.cast::<PyArrayDyn<f32>>() {
+            Ok(array) => Ok(Self::Single(array.try_readonly()?)),
+            Err(_) => Err(PyTypeError::new_err("expected an array of float32 or float64")),
+        }
+    }
 }
 
 /// The rows of a [`Triples`], which threads may share.
@@ -28,8 +44,8 @@ impl Triples<'_> {
     /// Its rows; `name` is the argument's, for the error if it is not what the package promised.
     pub fn rows(&self, name: &str) -> PyResult<Rows<'_>> {
         Ok(match self {
-            Self::Double(array) => Rows::Double(rows(name, array)?),
-            Self::Single(array) => Rows::Single(rows(name, array)?),
+            Self::Double(array) => Rows::Double(vectors(name, array)?),
+            Self::Single(array) => Rows::Single(vectors(name, array)?),
         })
     }
 }
@@ -61,6 +77,53 @@ impl Rows<'_> {
     }
 }
 
+/// A number for all rays, or an array of one for each.
+pub enum Numbers<'py> {
+    /// A float.
+    One([f64; 1]),
+    /// A float64 array of any shape.
+    Each(PyReadonlyArrayDyn<'py, f64>),
+}
+
+impl<'py> FromPyObject<'_, 'py> for Numbers<'py> {
+    type Error = PyErr;
+
+    fn extract(object: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
+        match object.cast::<PyFloat>() {
+            Ok(number) => Ok(Self::One([number.value()])),
+            Err(_) => Ok(Self::Each(object.extract()?)),
+        }
+    }
+}
+
+impl Numbers<'_> {
+    /// All of them, or the only one; `name` is the argument's.
+    pub fn slice(&self, name: &str) -> PyResult<&[f64]> {
+        match self {
+            Self::One(number) => Ok(number),
+            Self::Each(array) => contiguous(name, array),
+        }
+    }
+}
+
+fn contiguous<'a, T: Element>(name: &str, array: &'a PyReadonlyArrayDyn<'_, T>) -> PyResult<&'a [T]> {
+    match array.as_slice() {
+        Ok(all) if array.is_c_contiguous() => Ok(all),
+        _ => Err(PyValueError::new_err(format!("{name} must be C-contiguous"))),
+    }
+}
+
+/// The vectors of a (..., K) array.
+pub fn vectors<'a, T: Element, const K: usize>(
+    name: &str,
+    array: &'a PyReadonlyArrayDyn<'_, T>,
+) -> PyResult<&'a [[T; K]]> {
+    match array.shape().last() {
+        Some(&k) if k == K => Ok(contiguous(name, array)?.as_chunks().0),
+        _ => Err(PyValueError::new_err(format!("{name} has shape {:?}, expected (..., {K})", array.shape()))),
+    }
+}
+
 /// The rows of an (N,K) array.
 pub fn rows<'a, T: Element, const K: usize>(name: &str, array: &'a PyReadonlyArray2<'_, T>) -> PyResult<&'a [[T; K]]> {
     match array.as_slice() {
@@ -74,4 +137,16 @@ pub fn rows<'a, T: Element, const K: usize>(name: &str, array: &'a PyReadonlyArr
 /// The numbers of an (N,) array.
 pub fn numbers<'a, T: Element>(name: &str, array: &'a PyReadonlyArray1<'_, T>) -> PyResult<&'a [T]> {
     array.as_slice().map_err(|_| PyValueError::new_err(format!("{name} must be C-contiguous")))
+}
+
+/// An array of zeros with the leading shape `lead`, and `width` entries a row if that is not none.
+pub fn zeros<'py, T: Element>(py: Python<'py>, lead: &[usize], width: Option<usize>) -> Bound<'py, PyArrayDyn<T>> {
+    let shape: Vec<usize> = lead.iter().copied().chain(width).collect();
+    PyArrayDyn::zeros(py, shape, false)
+}
+
+/// The array, which can be read only from now on.
+pub fn sealed<'py, T: Element>(array: Bound<'py, PyArrayDyn<T>>) -> PyResult<Bound<'py, PyArrayDyn<T>>> {
+    array.try_readwrite()?.make_nonwriteable();
+    Ok(array)
 }

@@ -4,7 +4,7 @@ use numpy::PyReadonlyArray2;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 
-use super::arrays::{Triples, rows};
+use super::arrays::{Rows, Triples, rows};
 use super::level;
 use crate::accel::{Accelerator, BruteForce, bvh};
 use crate::math::DVec3;
@@ -17,6 +17,9 @@ pub struct Scene<'py> {
     shapes: Vec<Mesh<'py>>,
     lights: Vec<Light>,
     environment: Option<Environment>,
+    precision: String,
+    /// How much the build may take for rays to be fast.
+    pub quality: String,
 }
 
 /// `raywright.Mesh`.
@@ -51,8 +54,17 @@ struct Environment {
 impl Scene<'_> {
     /// The core's own description of it.
     pub fn describe(self) -> PyResult<SceneDescription> {
+        let double = match self.precision.as_str() {
+            "single" => false,
+            "double" => true,
+            other => {
+                return Err(PyValueError::new_err(format!(
+                    "precision is {other:?}, expected \"single\" or \"double\""
+                )));
+            }
+        };
         Ok(SceneDescription {
-            shapes: self.shapes.into_iter().map(Mesh::describe).collect::<PyResult<_>>()?,
+            shapes: self.shapes.into_iter().map(|mesh| mesh.describe(double)).collect::<PyResult<_>>()?,
             points: self
                 .lights
                 .into_iter()
@@ -67,8 +79,13 @@ impl Scene<'_> {
 }
 
 impl Mesh<'_> {
-    fn describe(self) -> PyResult<scene::Shape> {
-        let vertices = scene::Vertices::from(self.vertices.rows("vertices")?.to_single());
+    fn describe(self, double: bool) -> PyResult<scene::Shape> {
+        let vertices = match self.vertices.rows("vertices")? {
+            Rows::Double(rows) if double => {
+                scene::Vertices::Double(rows.iter().map(|&r| DVec3::from_array(r)).collect())
+            }
+            rows => scene::Vertices::Single(rows.to_single()),
+        };
         let faces = rows("faces", &self.faces)?.to_vec();
         if let Some(face) = faces.iter().position(|f| f.iter().any(|&v| v as usize >= vertices.len())) {
             let (corners, count) = (faces[face], vertices.len());
@@ -93,14 +110,14 @@ pub enum AcceleratorChoice {
 #[derive(FromPyObject)]
 struct Bvh {
     builder: String,
-    bins: usize,
+    bins: Option<usize>,
     traversal_cost: f32,
     intersection_cost: f32,
 }
 
 impl AcceleratorChoice {
-    /// Reads a choice by the name of its class.
-    pub fn read(choice: &Bound<'_, PyAny>) -> PyResult<Self> {
+    /// Reads a choice by the name of its class; `quality` says how much the build may take.
+    pub fn read(choice: &Bound<'_, PyAny>, quality: &str) -> PyResult<Self> {
         let name = choice.get_type().name()?;
         match name.to_str()? {
             "BVH" => {
@@ -109,10 +126,20 @@ impl AcceleratorChoice {
                 if builder != "binned" {
                     return Err(PyValueError::new_err(format!("builder is {builder:?}, expected \"binned\"")));
                 }
-                if !(2..=most).contains(&bins) {
+                if let Some(bins) = bins.filter(|bins| !(2..=most).contains(bins)) {
                     return Err(PyValueError::new_err(format!("bins is {bins}, expected 2 to {most}")));
                 }
-                Ok(Self::Bvh(bvh::Options { bins, traversal_cost, intersection_cost }))
+                let quality = match quality {
+                    "fast build" => bvh::Quality::FastBuild,
+                    "balanced" => bvh::Quality::Balanced,
+                    "fast rays" => bvh::Quality::FastRays,
+                    other => {
+                        return Err(PyValueError::new_err(format!(
+                            "quality is {other:?}, expected \"fast build\", \"balanced\" or \"fast rays\""
+                        )));
+                    }
+                };
+                Ok(Self::Bvh(bvh::Options { quality, bins, traversal_cost, intersection_cost }))
             }
             "BruteForce" => Ok(Self::BruteForce),
             other => Err(PyTypeError::new_err(format!("accelerator is a {other}, expected BVH or BruteForce"))),

@@ -2,8 +2,12 @@
 
 mod arrays;
 mod describe;
+mod every;
+mod info;
 mod query;
+mod rays;
 mod render;
+mod report;
 
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -24,9 +28,13 @@ fn simd() -> PyResult<&'static str> {
 #[pymodule]
 mod _core {
     #[pymodule_export]
-    use super::query::{AcceleratorInfo, CompiledScene};
+    use super::info::AcceleratorInfo;
+    #[pymodule_export]
+    use super::query::CompiledScene;
     #[pymodule_export]
     use super::render::{Rendering, camera_rays, render_scene};
+    #[pymodule_export]
+    use super::report::KernelContest;
     #[pymodule_export]
     use super::simd;
 }

@@ -1,133 +1,49 @@
-//! Rays to hits, from arrays to arrays.
+//! A compiled scene's answers, from arrays to arrays.
 
-use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
+use numpy::{PyArray2, PyArrayDyn, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
-use rayon::prelude::*;
 
-use super::arrays::{Rows, Triples, numbers, rows};
+use super::arrays::{Numbers, Triples, numbers, rows, sealed, zeros};
 use super::describe::{AcceleratorChoice, Scene};
-use crate::accel::Info;
-use crate::math::{Hit, Ray, Tiling};
+use super::every;
+use super::info::AcceleratorInfo;
+use super::rays::{CHUNK, GATHER, RayArguments, answer};
+use crate::accel::{Cost, Nearest};
+use crate::math::Hit;
 use crate::scene;
 use crate::workers;
-
-/// Rays that a thread takes at a time: enough to make the hand-over free, few enough to be heard by Ctrl-C.
-const CHUNK: usize = 1024;
-
-/// Rays gathered from the arrays at a time: small enough to stay in a near cache, enough to keep a wave full.
-const GATHER: usize = 512;
-
-/// Up to so many rays the calling thread does the work: waking others takes longer.
-const ALONE: usize = 512;
-
-/// What the compiled accelerator looks like.
-#[pyclass(frozen, module = "raywright._core")]
-pub struct AcceleratorInfo(Info);
-
-#[pymethods]
-impl AcceleratorInfo {
-    #[getter]
-    fn kind(&self) -> &str {
-        &self.0.kind
-    }
-    #[getter]
-    fn primitives(&self) -> usize {
-        self.0.primitives
-    }
-    #[getter]
-    fn nodes(&self) -> usize {
-        self.0.nodes
-    }
-    #[getter]
-    fn leaves(&self) -> usize {
-        self.0.leaves
-    }
-    #[getter]
-    fn depth(&self) -> usize {
-        self.0.depth
-    }
-    #[getter]
-    fn bytes(&self) -> usize {
-        self.0.bytes
-    }
-    #[getter]
-    fn build_seconds(&self) -> f64 {
-        self.0.build_seconds
-    }
-    #[getter]
-    fn sah_cost(&self) -> f64 {
-        self.0.sah_cost
-    }
-    fn __repr__(&self) -> String {
-        let Info { kind, primitives, nodes, leaves, depth, bytes, build_seconds, sah_cost } = &self.0;
-        format!(
-            "AcceleratorInfo(kind={kind:?}, primitives={primitives}, nodes={nodes}, leaves={leaves}, depth={depth}, \
-             bytes={bytes}, build_seconds={build_seconds:.4}, sah_cost={sah_cost:.2})"
-        )
-    }
-}
 
 /// A scene ready for rays.
 #[pyclass(frozen, module = "raywright._core")]
 pub struct CompiledScene(pub scene::Scene);
 
-/// A batch of rays as it came: each part one for all rays, or one a ray.
-#[derive(Clone, Copy)]
-struct RayArrays<'a> {
-    origins: Rows<'a>,
-    directions: Rows<'a>,
-    t_min: &'a [f64],
-    t_max: &'a [f64],
-    count: usize,
-    tiling: Tiling,
-}
+/// t, shape_id, primitive and uv.
+type Hits<'py> = (
+    Bound<'py, PyArrayDyn<f64>>,
+    Bound<'py, PyArrayDyn<i32>>,
+    Bound<'py, PyArrayDyn<i32>>,
+    Bound<'py, PyArrayDyn<f64>>,
+);
 
-impl<'a> RayArrays<'a> {
-    fn new(origins: Rows<'a>, directions: Rows<'a>, t_min: &'a [f64], t_max: &'a [f64], row: usize) -> PyResult<Self> {
-        let lengths = [origins.len(), directions.len(), t_min.len(), t_max.len()];
-        // Broadcasting as numpy has it: ones fit anything, a zero too.
-        let count = if lengths.contains(&0) { 0 } else { lengths.into_iter().max().unwrap_or(0) };
-        if lengths.iter().any(|&n| n != 1 && n != count) {
-            return Err(PyValueError::new_err(format!(
-                "origins, directions, t_min and t_max have lengths {lengths:?}"
-            )));
-        }
-        Ok(Self { origins, directions, t_min, t_max, count, tiling: Tiling::new(count, row) })
-    }
+/// Nodes and primitives.
+type Costs<'py> = (Bound<'py, PyArrayDyn<i32>>, Bound<'py, PyArrayDyn<i32>>);
 
-    /// Ray `i`.
-    #[inline(always)]
-    fn ray(&self, i: usize) -> Ray {
-        let of = |n: usize| if n == 1 { 0 } else { i };
-        Ray {
-            origin: self.origins.get(of(self.origins.len())),
-            direction: self.directions.get(of(self.directions.len())),
-            t_min: self.t_min[of(self.t_min.len())],
-            t_max: self.t_max[of(self.t_max.len())],
-        }
-    }
-
-    /// Calls `answer` with some hundred rays at a time of the `count` from `start` on, and with where each lies among them.
-    #[inline(always)]
-    fn gathered(&self, start: usize, count: usize, mut answer: impl FnMut(&[Ray], &[usize])) {
-        let mut rays = Vec::with_capacity(GATHER.min(count));
-        let mut places = [0; GATHER];
-        for from in (0..count).step_by(GATHER) {
-            let places = &mut places[..GATHER.min(count - from)];
-            self.tiling.places(from, count, places);
-            rays.clear();
-            rays.extend(places.iter().map(|&place| self.ray(start + place)));
-            answer(&rays, places);
-        }
-    }
-}
+/// Distance, position, shape_id, primitive and uv.
+type ClosestPoints<'py> = (
+    Bound<'py, PyArrayDyn<f64>>,
+    Bound<'py, PyArrayDyn<f64>>,
+    Bound<'py, PyArrayDyn<i32>>,
+    Bound<'py, PyArrayDyn<i32>>,
+    Bound<'py, PyArrayDyn<f64>>,
+);
 
 #[pymethods]
+#[allow(clippy::too_many_arguments)]
 impl CompiledScene {
     #[new]
     fn new(py: Python<'_>, scene: Scene<'_>, accelerator: &Bound<'_, PyAny>) -> PyResult<Self> {
-        let build = AcceleratorChoice::read(accelerator)?.build()?;
+        let build = AcceleratorChoice::read(accelerator, &scene.quality)?.build()?;
         let description = scene.describe()?;
         let compiled = py
             .detach(|| workers::pool(None).map(|pool| pool.install(|| scene::Scene::new(description, build))))
@@ -135,87 +51,69 @@ impl CompiledScene {
         compiled.map(Self).map_err(|e| PyValueError::new_err(e.to_string()))
     }
 
-    #[allow(clippy::type_complexity, clippy::too_many_arguments)]
+    fn refitted(&self, py: Python<'_>, scene: Scene<'_>) -> PyResult<Option<Self>> {
+        let description = scene.describe()?;
+        let compiled = py
+            .detach(|| workers::pool(None).map(|pool| pool.install(|| self.0.refitted(description))))
+            .map_err(PyRuntimeError::new_err)?;
+        compiled.map(|scene| scene.map(Self)).map_err(|e| PyValueError::new_err(e.to_string()))
+    }
+
     fn intersect<'py>(
         &self,
         py: Python<'py>,
         origins: Triples<'py>,
         directions: Triples<'py>,
-        t_min: PyReadonlyArray1<'py, f64>,
-        t_max: PyReadonlyArray1<'py, f64>,
+        t_min: Numbers<'py>,
+        t_max: Numbers<'py>,
+        shape: Vec<usize>,
         threads: Option<usize>,
-        row: usize,
-    ) -> PyResult<(
-        Bound<'py, PyArray1<f64>>,
-        Bound<'py, PyArray1<i32>>,
-        Bound<'py, PyArray1<i32>>,
-        Bound<'py, PyArray2<f64>>,
-    )> {
-        let rays = RayArrays::new(
-            origins.rows("origins")?,
-            directions.rows("directions")?,
-            numbers("t_min", &t_min)?,
-            numbers("t_max", &t_max)?,
-            row,
-        )?;
-        let n = rays.count;
-        let t = PyArray1::zeros(py, n, false);
-        let shape = PyArray1::zeros(py, n, false);
-        let primitive = PyArray1::zeros(py, n, false);
-        let uv = PyArray2::zeros(py, [n, 2], false);
-        {
-            let (mut t, mut shape, mut primitive, mut uv) =
-                (t.readwrite(), shape.readwrite(), primitive.readwrite(), uv.readwrite());
-            let (t, shape, primitive) = (t.as_slice_mut()?, shape.as_slice_mut()?, primitive.as_slice_mut()?);
-            let uv = uv.as_slice_mut()?.as_chunks_mut().0;
-            let parts = (t, shape, primitive, uv);
-            let scene = &self.0;
-            answer(py, n, rays.tiling.chunk(CHUNK), threads, parts, |start, (t, shape, primitive, uv)| {
-                let count = t.len();
-                let mut hits = [Hit::MISS; GATHER];
-                rays.gathered(start, count, |batch, places| {
-                    let hits = &mut hits[..batch.len()];
-                    scene.intersect(batch, hits);
-                    for (hit, &i) in hits.iter().zip(places) {
-                        (t[i], uv[i]) = (hit.t, hit.uv);
-                        (shape[i], primitive[i]) = if hit.is_hit() {
-                            let (shape, primitive) = scene.geometry().locate(hit.primitive);
-                            (shape as i32, primitive as i32)
-                        } else {
-                            (-1, -1)
-                        };
-                    }
-                });
-            })?;
-        }
+    ) -> PyResult<Hits<'py>> {
+        let arguments = RayArguments { origins, directions, t_min, t_max, shape };
+        let (rays, lead) = (arguments.rays()?, &arguments.shape);
+        let (t, shape) = (zeros(py, lead, None), zeros(py, lead, None));
+        let (primitive, uv) = (zeros(py, lead, None), zeros(py, lead, Some(2)));
+        let (mut to_t, mut to_shape, mut to_primitive, mut to_uv) =
+            (t.readwrite(), shape.readwrite(), primitive.readwrite(), uv.readwrite());
+        let (ts, shapes, primitives) = (to_t.as_slice_mut()?, to_shape.as_slice_mut()?, to_primitive.as_slice_mut()?);
+        let parts = (ts, shapes, primitives, to_uv.as_slice_mut()?.as_chunks_mut().0);
+        let scene = &self.0;
+        answer(py, rays.count, rays.chunk(), threads, parts, |start, (t, shape, primitive, uv)| {
+            let count = t.len();
+            let mut hits = vec![Hit::MISS; GATHER.min(count)];
+            rays.gathered(start, count, |batch, places| {
+                let hits = &mut hits[..batch.len()];
+                scene.intersect(batch, hits);
+                for (hit, &i) in hits.iter().zip(places) {
+                    (t[i], uv[i]) = (hit.t, hit.uv);
+                    (shape[i], primitive[i]) = located(scene, hit.primitive);
+                }
+            });
+        })?;
+        let _ = (to_t.make_nonwriteable(), to_uv.make_nonwriteable());
+        let _ = (to_shape.make_nonwriteable(), to_primitive.make_nonwriteable());
         Ok((t, shape, primitive, uv))
     }
 
-    #[allow(clippy::too_many_arguments)]
     fn occluded<'py>(
         &self,
         py: Python<'py>,
         origins: Triples<'py>,
         directions: Triples<'py>,
-        t_min: PyReadonlyArray1<'py, f64>,
-        t_max: PyReadonlyArray1<'py, f64>,
+        t_min: Numbers<'py>,
+        t_max: Numbers<'py>,
+        shape: Vec<usize>,
         threads: Option<usize>,
-        row: usize,
-    ) -> PyResult<Bound<'py, PyArray1<bool>>> {
-        let rays = RayArrays::new(
-            origins.rows("origins")?,
-            directions.rows("directions")?,
-            numbers("t_min", &t_min)?,
-            numbers("t_max", &t_max)?,
-            row,
-        )?;
-        let out = PyArray1::zeros(py, rays.count, false);
+    ) -> PyResult<Bound<'py, PyArrayDyn<bool>>> {
+        let arguments = RayArguments { origins, directions, t_min, t_max, shape };
+        let rays = arguments.rays()?;
+        let out = zeros(py, &arguments.shape, None);
         {
             let mut out = out.readwrite();
             let scene = &self.0;
-            answer(py, rays.count, rays.tiling.chunk(CHUNK), threads, out.as_slice_mut()?, |start, out| {
+            answer(py, rays.count, rays.chunk(), threads, out.as_slice_mut()?, |start, out| {
                 let count = out.len();
-                let mut found = [false; GATHER];
+                let mut found = vec![false; GATHER.min(count)];
                 rays.gathered(start, count, |batch, places| {
                     let found = &mut found[..batch.len()];
                     scene.occluded(batch, found);
@@ -226,6 +124,133 @@ impl CompiledScene {
             })?;
         }
         Ok(out)
+    }
+
+    fn intersect_all<'py>(
+        &self,
+        py: Python<'py>,
+        origins: Triples<'py>,
+        directions: Triples<'py>,
+        t_min: Numbers<'py>,
+        t_max: Numbers<'py>,
+        shape: Vec<usize>,
+        threads: Option<usize>,
+    ) -> PyResult<every::AllHits<'py>> {
+        let arguments = RayArguments { origins, directions, t_min, t_max, shape };
+        every::intersect_all(py, &self.0, &arguments.rays()?, threads)
+    }
+
+    fn count<'py>(
+        &self,
+        py: Python<'py>,
+        origins: Triples<'py>,
+        directions: Triples<'py>,
+        t_min: Numbers<'py>,
+        t_max: Numbers<'py>,
+        shape: Vec<usize>,
+        threads: Option<usize>,
+    ) -> PyResult<Bound<'py, PyArrayDyn<i32>>> {
+        let arguments = RayArguments { origins, directions, t_min, t_max, shape };
+        let rays = arguments.rays()?;
+        let out = zeros(py, &arguments.shape, None);
+        answer(py, rays.count, rays.chunk(), threads, out.readwrite().as_slice_mut()?, |start, out| {
+            every::count(&self.0, &rays, start, out);
+        })?;
+        Ok(out)
+    }
+
+    fn cost<'py>(
+        &self,
+        py: Python<'py>,
+        origins: Triples<'py>,
+        directions: Triples<'py>,
+        t_min: Numbers<'py>,
+        t_max: Numbers<'py>,
+        shape: Vec<usize>,
+        threads: Option<usize>,
+    ) -> PyResult<Costs<'py>> {
+        let arguments = RayArguments { origins, directions, t_min, t_max, shape };
+        let (rays, lead) = (arguments.rays()?, &arguments.shape);
+        let (nodes, primitives) = (zeros(py, lead, None), zeros(py, lead, None));
+        {
+            let (mut nodes, mut primitives) = (nodes.readwrite(), primitives.readwrite());
+            let parts = (nodes.as_slice_mut()?, primitives.as_slice_mut()?);
+            answer(py, rays.count, rays.chunk(), threads, parts, |start, (nodes, primitives)| {
+                let count = nodes.len();
+                let mut costs = vec![Cost::default(); GATHER.min(count)];
+                rays.gathered(start, count, |batch, places| {
+                    let costs = &mut costs[..batch.len()];
+                    self.0.cost(batch, costs);
+                    for (cost, &i) in costs.iter().zip(places) {
+                        (nodes[i], primitives[i]) = (cost.nodes as i32, cost.primitives as i32);
+                    }
+                });
+            })?;
+        }
+        Ok((sealed(nodes)?, sealed(primitives)?))
+    }
+
+    fn contains<'py>(
+        &self,
+        py: Python<'py>,
+        points: Triples<'py>,
+        shape: Vec<usize>,
+        threads: Option<usize>,
+    ) -> PyResult<Bound<'py, PyArrayDyn<bool>>> {
+        let points = points.rows("points")?;
+        let out = zeros(py, &shape, None);
+        answer(py, points.len(), CHUNK, threads, out.readwrite().as_slice_mut()?, |start, out| {
+            for (k, out) in out.chunks_mut(GATHER).enumerate() {
+                let some: Vec<_> = (0..out.len()).map(|i| points.get(start + k * GATHER + i)).collect();
+                self.0.contains(&some, out);
+            }
+        })?;
+        Ok(out)
+    }
+
+    fn nearest<'py>(
+        &self,
+        py: Python<'py>,
+        points: Triples<'py>,
+        max_distance: Numbers<'py>,
+        shape: Vec<usize>,
+        threads: Option<usize>,
+    ) -> PyResult<ClosestPoints<'py>> {
+        let (points, most) = (points.rows("points")?, max_distance.slice("max_distance")?);
+        let (count, lead) = (shape.iter().product(), &shape);
+        if [points.len(), most.len()].iter().any(|&n| n != 1 && n != count) {
+            let lengths = [points.len(), most.len()];
+            return Err(PyValueError::new_err(format!(
+                "points and max_distance have lengths {lengths:?}, expected 1 or {count}"
+            )));
+        }
+        let (distance, position) = (zeros(py, lead, None), zeros(py, lead, Some(3)));
+        let (shape, primitive, uv) = (zeros(py, lead, None), zeros(py, lead, None), zeros(py, lead, Some(2)));
+        {
+            let (mut distance, mut position) = (distance.readwrite(), position.readwrite());
+            let (mut shape, mut primitive, mut uv) = (shape.readwrite(), primitive.readwrite(), uv.readwrite());
+            let numbers = (shape.as_slice_mut()?, primitive.as_slice_mut()?);
+            let (position, uv) = (position.as_slice_mut()?.as_chunks_mut().0, uv.as_slice_mut()?.as_chunks_mut().0);
+            let parts = (distance.as_slice_mut()?, position, numbers, uv);
+            let scene = &self.0;
+            answer(py, count, CHUNK, threads, parts, |start, (distance, position, (shape, primitive), uv)| {
+                let count = distance.len();
+                let of = |n: usize, i: usize| if n == 1 { 0 } else { start + i };
+                let mut found = vec![Nearest::MISS; GATHER.min(count)];
+                for from in (0..count).step_by(GATHER) {
+                    let some = from..count.min(from + GATHER);
+                    let places: Vec<_> = some.clone().map(|i| points.get(of(points.len(), i))).collect();
+                    let within: Vec<_> = some.clone().map(|i| most[of(most.len(), i)]).collect();
+                    let found = &mut found[..some.len()];
+                    scene.nearest(&places, &within, found);
+                    for (nearest, i) in found.iter().zip(some) {
+                        (distance[i], position[i], uv[i]) = (nearest.distance, nearest.position.to_array(), nearest.uv);
+                        (shape[i], primitive[i]) = located(scene, nearest.primitive);
+                    }
+                }
+            })?;
+        }
+        Ok((sealed(distance)?, sealed(position)?, sealed(shape)?, sealed(primitive)?, sealed(uv)?))
     }
 
     fn positions<'py>(
@@ -246,6 +271,11 @@ impl CompiledScene {
         primitive: PyReadonlyArray1<'py, i32>,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         self.of_primitives(py, &shape_id, &primitive, |geometry, p, _| geometry.normal(p).to_array())
+    }
+
+    #[getter]
+    fn growth(&self) -> f64 {
+        self.0.growth()
     }
 
     #[getter]
@@ -304,61 +334,11 @@ impl CompiledScene {
     }
 }
 
-/// Arrays of answers that can be shared out among threads.
-trait Parts: Send + Sized {
-    fn split(self, at: usize) -> (Self, Self);
-}
-
-impl<T: Send> Parts for &mut [T] {
-    fn split(self, at: usize) -> (Self, Self) {
-        self.split_at_mut(at)
+/// The shape and the face of a primitive, as arrays say it: −1 for none.
+fn located(scene: &scene::Scene, primitive: u32) -> (i32, i32) {
+    if primitive == Hit::MISS.primitive {
+        return (-1, -1);
     }
-}
-
-impl<A: Parts, B: Parts, C: Parts, D: Parts> Parts for (A, B, C, D) {
-    fn split(self, at: usize) -> (Self, Self) {
-        let ((a, e), (b, f), (c, g), (d, h)) = (self.0.split(at), self.1.split(at), self.2.split(at), self.3.split(at));
-        ((a, b, c, d), (e, f, g, h))
-    }
-}
-
-/// Fills `n` answers, `chunk` at a time, with the interpreter detached and signals heard.
-fn answer<P: Parts>(
-    py: Python<'_>,
-    n: usize,
-    chunk: usize,
-    threads: Option<usize>,
-    parts: P,
-    fill: impl Fn(usize, P) + Sync,
-) -> PyResult<()> {
-    if n <= ALONE {
-        py.detach(|| fill(0, parts));
-        return Ok(());
-    }
-    let mut signal = Ok(());
-    py.detach(|| {
-        workers::watched(
-            threads,
-            |cancel| {
-                let mut chunks = Vec::with_capacity(n.div_ceil(chunk));
-                let mut rest = parts;
-                for start in (0..n).step_by(chunk) {
-                    let (part, more) = rest.split(chunk.min(n - start));
-                    chunks.push((start, part));
-                    rest = more;
-                }
-                chunks.into_par_iter().for_each(|(start, chunk)| {
-                    if !cancel.is_raised() {
-                        fill(start, chunk);
-                    }
-                });
-            },
-            || {
-                signal = Python::attach(|py| py.check_signals());
-                signal.is_ok()
-            },
-        )
-    })
-    .map_err(PyRuntimeError::new_err)?;
-    signal
+    let (shape, primitive) = scene.geometry().locate(primitive);
+    (shape as i32, primitive as i32)
 }

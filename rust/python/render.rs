@@ -1,10 +1,11 @@
 //! Scenes to pictures.
 
-use numpy::{PyArray2, PyArray3, PyArrayMethods};
+use numpy::{PyArray2, PyArray3, PyArrayMethods, PyReadonlyArrayDyn};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use std::ops::ControlFlow;
 
+use super::arrays::vectors;
 use super::query::CompiledScene;
 use crate::integrators::Path;
 use crate::math::DVec3;
@@ -148,15 +149,21 @@ impl Progress for Watcher {
     }
 }
 
-/// Origins and directions (H,W,3) through the pixels' centres; row 0 is the top.
+/// Origins and directions (H,W,3) through the pixels; row 0 is the top. `offsets` is where in the pixel: two numbers for all, or
+/// for each.
 #[pyfunction]
 #[allow(clippy::type_complexity)]
 pub fn camera_rays<'py>(
     py: Python<'py>,
     camera: Camera,
+    offsets: PyReadonlyArrayDyn<'py, f64>,
 ) -> PyResult<(Bound<'py, PyArray3<f64>>, Bound<'py, PyArray3<f64>>)> {
     let camera = camera.describe()?;
     let (width, height) = (camera.width() as usize, camera.height() as usize);
+    let offsets: &[[f64; 2]] = vectors("offsets", &offsets)?;
+    if offsets.len() != 1 && offsets.len() != width * height {
+        return Err(PyValueError::new_err(format!("offsets are {}, expected 1 or {width} × {height}", offsets.len())));
+    }
     let origins = PyArray3::zeros(py, [height, width, 3], false);
     let directions = PyArray3::zeros(py, [height, width, 3], false);
     {
@@ -164,7 +171,8 @@ pub fn camera_rays<'py>(
         let to = origins.as_slice_mut()?.as_chunks_mut().0.iter_mut();
         let to = to.zip(directions.as_slice_mut()?.as_chunks_mut().0);
         for (i, (origin, direction)) in to.enumerate() {
-            let ray = camera.ray((i % width) as f64 + 0.5, (i / width) as f64 + 0.5);
+            let [x, y] = offsets[if offsets.len() == 1 { 0 } else { i }];
+            let ray = camera.ray((i % width) as f64 + x, (i / width) as f64 + y);
             (*origin, *direction) = (ray.origin.to_array(), ray.direction.to_array());
         }
     }

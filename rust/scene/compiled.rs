@@ -1,8 +1,8 @@
 //! A scene ready for rays.
 
 use super::{DescriptionError, Geometry, Lights, Material, SceneDescription};
-use crate::accel::{Accelerator, Cost, Crossings, Primitives};
-use crate::math::{Hit, Ray, Region};
+use crate::accel::{Accelerator, Cost, Crossings, Nearest, Primitives, Side};
+use crate::math::{DVec3, Hit, Ray, Region};
 
 /// A scene ready for rays.
 pub struct Scene {
@@ -11,7 +11,21 @@ pub struct Scene {
     lights: Lights,
     accelerator: Box<dyn Accelerator>,
     region: Region,
+    /// The accelerator's cost when it was built.
+    built_cost: f64,
 }
+
+/// Ways out for [`Scene::contains`]: in no special position to anything that people make, and with a largest coordinate
+/// between 1 and 2, so that `t` is not scaled.
+const WAYS_OUT: [DVec3; 7] = [
+    DVec3::new(1.289_430_857_193_402_8, 0.371_920_584_301_275_66, 0.587_109_384_750_921_3),
+    DVec3::new(-1.289_430_857_193_402_8, -0.371_920_584_301_275_66, -0.587_109_384_750_921_3),
+    DVec3::new(-0.518_302_947_561_093_8, 1.470_193_857_204_918_4, -0.219_385_710_482_957_5),
+    DVec3::new(0.293_847_502_918_375_7, -0.638_201_947_562_910_4, 1.619_204_857_391_028_3),
+    DVec3::new(0.851_029_384_756_102_9, -1.137_482_910_583_749_2, -0.743_918_205_764_839_1),
+    DVec3::new(-1.057_291_840_375_629_3, -0.482_910_375_829_104_7, 0.963_820_194_756_382_9),
+    DVec3::new(0.139_204_857_610_293_8, 0.917_364_820_591_837_4, -1.384_710_293_857_460_2),
+];
 
 impl Scene {
     /// Compiles a description, with an accelerator made for its geometry.
@@ -22,6 +36,22 @@ impl Scene {
         description: SceneDescription,
         accelerator: impl FnOnce(&Geometry) -> Box<dyn Accelerator>,
     ) -> Result<Self, DescriptionError> {
+        let (geometry, materials, lights) = Self::parts(description)?;
+        Ok(Self::with(accelerator(&geometry), None, geometry, materials, lights))
+    }
+
+    /// The same scene over meshes that have moved, with the accelerator fitted to them. `None` if that cannot be done
+    /// ([`Accelerator::refitted`]).
+    ///
+    /// # Panics
+    /// As [`Scene::new`].
+    pub fn refitted(&self, description: SceneDescription) -> Result<Option<Self>, DescriptionError> {
+        let (geometry, materials, lights) = Self::parts(description)?;
+        let accelerator = self.accelerator.refitted(&geometry).ok();
+        Ok(accelerator.map(|a| Self::with(a, Some(self.built_cost), geometry, materials, lights)))
+    }
+
+    fn parts(description: SceneDescription) -> Result<(Geometry, Vec<Material>, Lights), DescriptionError> {
         description.validate()?;
         let SceneDescription { shapes, points, environment } = description;
         let (mut meshes, mut materials, mut emission) = (Vec::new(), Vec::new(), Vec::new());
@@ -31,10 +61,25 @@ impl Scene {
             emission.push(shape.emission);
         }
         let geometry = Geometry::new(meshes);
-        let region = geometry.region();
         let lights = Lights::new(&geometry, emission, points, environment);
-        let accelerator = accelerator(&geometry);
-        Ok(Self { geometry, materials, lights, accelerator, region })
+        Ok((geometry, materials, lights))
+    }
+
+    fn with(
+        accelerator: Box<dyn Accelerator>,
+        built_cost: Option<f64>,
+        geometry: Geometry,
+        materials: Vec<Material>,
+        lights: Lights,
+    ) -> Self {
+        let (region, cost) = (geometry.region(), accelerator.info().sah_cost);
+        Self { geometry, materials, lights, accelerator, region, built_cost: built_cost.unwrap_or(cost) }
+    }
+
+    /// What the accelerator costs over what it did when it was built, by the surface-area heuristic; 1 until it is refitted.
+    pub fn growth(&self) -> f64 {
+        let cost = self.accelerator.info().sah_cost;
+        if cost == self.built_cost { 1.0 } else { cost / self.built_cost }
     }
 
     /// The closest hit of each ray.
@@ -50,6 +95,49 @@ impl Scene {
     /// Every hit of each ray.
     pub fn crossings(&self, rays: &[Ray]) -> Crossings {
         self.accelerator.crossings(rays)
+    }
+
+    /// Whether each point is inside the surface or on it: on the way out it is crossed an odd number of times.
+    ///
+    /// A closed surface is crossed as often, but for twos, on any way out, so one way and the opposite one agree. Where
+    /// they do not, there is a hole, and what most of seven ways find is told.
+    pub fn contains(&self, points: &[DVec3], inside: &mut [bool]) {
+        assert_eq!(points.len(), inside.len(), "an answer for each point");
+        inside.fill(false);
+        let within = |p: &DVec3| p.cmpge(self.region.min).all() && p.cmple(self.region.max).all();
+        let mut open: Vec<usize> = (0..points.len()).filter(|&i| within(&points[i])).collect();
+        let mut votes = vec![0u32; points.len()];
+        let (pair, others) = WAYS_OUT.split_at(2);
+        self.vote(points, &open, pair, &mut votes, inside);
+        open.retain(|&i| {
+            inside[i] |= votes[i] == 2;
+            votes[i] == 1 && !inside[i]
+        });
+        self.vote(points, &open, others, &mut votes, inside);
+        for i in open {
+            inside[i] |= 2 * votes[i] as usize > WAYS_OUT.len();
+        }
+    }
+
+    /// Counts the ways out that find some of the points inside, and tells which are on the surface.
+    fn vote(&self, points: &[DVec3], which: &[usize], ways: &[DVec3], votes: &mut [u32], on: &mut [bool]) {
+        // The sign of a t may be wrong up to `EdgeRay::T_ERROR` of at most two radii.
+        let doubt = self.region.radius / (1u64 << 24) as f64;
+        let mut sides = vec![Side::Outside; which.len()];
+        for &way in ways.iter().filter(|_| !which.is_empty()) {
+            let leaving = |&i: &usize| Ray { origin: points[i], direction: way, t_min: -doubt, t_max: f64::INFINITY };
+            let rays: Vec<_> = which.iter().map(leaving).collect();
+            self.accelerator.sides(&self.geometry, &rays, doubt, &mut sides);
+            for (&i, &side) in which.iter().zip(&sides) {
+                votes[i] += u32::from(side == Side::Inside);
+                on[i] |= side == Side::Surface;
+            }
+        }
+    }
+
+    /// The nearest point to each point, within its greatest distance: one for all of them, or one each.
+    pub fn nearest(&self, points: &[DVec3], max_distances: &[f64], nearest: &mut [Nearest]) {
+        self.accelerator.nearest(points, max_distances, nearest);
     }
 
     /// What finding the closest hit of each ray takes.
@@ -81,5 +169,85 @@ impl Scene {
     /// Where all that can be hit lies.
     pub fn region(&self) -> &Region {
         &self.region
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::fixtures::{furnace, inward_box, scene, shape};
+    use crate::scene::{Mesh, Shape};
+
+    #[test]
+    fn a_closed_surface_is_crossed_evenly_however_the_ray_is_aimed() {
+        let cube = furnace(0.5, 0.0);
+        let ways = (-2..=2).flat_map(|x| (-2..=2).flat_map(move |y| (-2..=2).map(move |z| [x, y, z])));
+        let ways: Vec<_> = ways.map(|w| DVec3::from_array(w.map(f64::from))).filter(|w| *w != DVec3::ZERO).collect();
+        // Through corners, edges, middles of faces, and within faces.
+        let rays: Vec<_> =
+            ways.iter().flat_map(|&at| ways.iter().map(move |&way| Ray::new(at - 8.0 * way, way))).collect();
+        let crossings = cube.crossings(&rays);
+        let mut hits = vec![Hit::MISS; rays.len()];
+        cube.intersect(&rays, &mut hits);
+        for (ends, hit) in crossings.splits.windows(2).zip(&hits) {
+            let mine = &crossings.hits[ends[0]..ends[1]];
+            assert_eq!(mine.len() % 2, 0, "{mine:?}");
+            assert_eq!(mine.first().unwrap_or(&Hit::MISS), hit);
+        }
+        assert!(hits.iter().filter(|h| h.is_hit()).count() > 1000);
+    }
+
+    #[test]
+    fn points_are_inside_to_the_last_bit() {
+        let cube = furnace(0.5, 0.0);
+        let near = [-2.0, -1f64.next_up(), -1.0, (-1f64).next_up(), -0.0, 0.3, 1f64.next_down(), 1.0, 1f64.next_up()];
+        let points: Vec<_> =
+            near.iter().flat_map(|&x| near.iter().flat_map(move |&y| near.map(|z| DVec3::new(x, y, z)))).collect();
+        let mut inside = vec![false; points.len()];
+        cube.contains(&points, &mut inside);
+        for (p, inside) in points.iter().zip(inside) {
+            assert_eq!(inside, p.abs().max_element() <= 1.0, "{p}");
+        }
+    }
+
+    #[test]
+    fn with_a_wall_missing_most_ways_out_decide() {
+        let five = inward_box([-1.0; 3], [2.0; 3]).into_iter().take(5).map(|mesh| shape(mesh, [0.5; 3], 0.0));
+        let open = scene(SceneDescription { shapes: five.collect(), ..Default::default() });
+        let mut inside = [false; 3];
+        open.contains(&[DVec3::new(0.1, 0.2, -0.5), DVec3::NAN, DVec3::new(0.0, 0.0, 1.1)], &mut inside);
+        assert_eq!(inside, [true, false, false]);
+    }
+
+    #[test]
+    fn what_is_refitted_answers_as_if_built() {
+        let described = |by: f32| {
+            let shapes: Vec<Shape> = inward_box([-1.0, by, -1.0], [2.0, 2.0 + by, 2.0])
+                .into_iter()
+                .enumerate()
+                .map(|(i, mesh)| shape(mesh, [0.5; 3], if i == 3 { 1.0 } else { 0.0 }))
+                .collect();
+            SceneDescription { shapes, ..Default::default() }
+        };
+        let (still, moved) = (scene(described(0.0)), scene(described(0.75)));
+        let refitted = still.refitted(described(0.75)).unwrap().unwrap();
+        let rays: Vec<_> =
+            (0..100).map(|i| Ray::new(DVec3::new(0.1, 1.0, 0.2), DVec3::new(f64::from(i).sin(), 1.0, 0.3))).collect();
+        let (mut a, mut b) = ([Hit::MISS; 100], [Hit::MISS; 100]);
+        refitted.intersect(&rays, &mut a);
+        moved.intersect(&rays, &mut b);
+        assert_eq!(a, b);
+        assert_eq!(refitted.region(), moved.region());
+        assert_eq!(still.growth(), 1.0);
+        let light =
+            |s: &Scene| s.lights().sample(s.geometry(), rays[0].origin, DVec3::Y, 0.5, [0.5; 2]).unwrap().direction;
+        assert_eq!(light(&refitted), light(&moved));
+        assert_ne!(light(&refitted), light(&still));
+        // Another number of faces is another scene.
+        let fewer = SceneDescription {
+            shapes: vec![Shape { mesh: Mesh::default(), ..Default::default() }],
+            ..Default::default()
+        };
+        assert!(still.refitted(fewer).unwrap().is_none());
     }
 }

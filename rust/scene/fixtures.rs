@@ -1,7 +1,7 @@
 //! Scenes that tests share.
 
 use super::{Camera, Material, Mesh, Scene, SceneDescription, Shape};
-use crate::accel::bvh::{Options, SingleBvh};
+use crate::accel::bvh::{self, Options};
 use crate::math::{DVec3, Vec3};
 use crate::optics::Rgb;
 use crate::simd::Level;
@@ -9,8 +9,7 @@ use crate::simd::Level;
 /// A scene on the default accelerator.
 pub(crate) fn scene(description: SceneDescription) -> Scene {
     let level = Level::current().expect("a level");
-    let compiled =
-        Scene::new(description, |geometry| Box::new(SingleBvh::<4>::new(geometry, &Options::default(), level)));
+    let compiled = Scene::new(description, |geometry| bvh::wide(4, geometry, &Options::default(), level));
     compiled.expect("a scene that can be")
 }
 

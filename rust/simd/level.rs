@@ -1,7 +1,7 @@
 //! Which vector instructions to use: found once, or forced by `RAYWRIGHT_SIMD`.
 
 #[cfg(target_arch = "x86_64")]
-use super::{Avx2, Sse2};
+use super::{Avx2, Avx512, Sse2};
 use super::{Scalar, Simd};
 use std::sync::OnceLock;
 
@@ -14,11 +14,13 @@ pub enum Level {
     Sse2,
     /// AVX2 and FMA.
     Avx2,
+    /// AVX-512 (F, VL, DQ, BW).
+    Avx512,
 }
 
 impl Level {
     /// All levels, from least to most.
-    pub const ALL: [Self; 3] = [Self::Scalar, Self::Sse2, Self::Avx2];
+    pub const ALL: [Self; 4] = [Self::Scalar, Self::Sse2, Self::Avx2, Self::Avx512];
 
     /// The name that `RAYWRIGHT_SIMD` takes.
     pub fn name(self) -> &'static str {
@@ -26,7 +28,13 @@ impl Level {
             Self::Scalar => "scalar",
             Self::Sse2 => "sse2",
             Self::Avx2 => "avx2",
+            Self::Avx512 => "avx512",
         }
+    }
+
+    /// Lanes of its vectors of f32; kernels may have fewer.
+    pub fn lanes(self) -> usize {
+        if self >= Self::Avx2 { 8 } else { 4 }
     }
 
     /// Whether this processor has it.
@@ -37,6 +45,8 @@ impl Level {
             Self::Sse2 => true,
             #[cfg(target_arch = "x86_64")]
             Self::Avx2 => Avx2::detect().is_some(),
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx512 => Avx512::detect().is_some(),
             #[cfg(not(target_arch = "x86_64"))]
             _ => false,
         }
@@ -74,7 +84,7 @@ pub trait Kernel<const N: usize> {
     fn run<S: Simd<N>>(self, simd: S) -> Self::Output;
 }
 
-/// Runs kernels of `N` lanes compiled for a level, which must be available.
+/// Runs kernels of `N` lanes compiled for a level, which must be available and have as many ([`Level::lanes`]).
 pub trait Dispatch<const N: usize> {
     /// Runs one.
     fn dispatch<K: Kernel<N>>(self, kernel: K) -> K::Output;
@@ -84,14 +94,9 @@ impl Dispatch<4> for Level {
     #[inline]
     fn dispatch<K: Kernel<4>>(self, kernel: K) -> K::Output {
         match self {
+            // Four lanes are for processors without more; wider levels have no code of their own for them.
             #[cfg(target_arch = "x86_64")]
-            Self::Avx2 => {
-                let simd = Avx2::detect().expect("an available level");
-                // SAFETY: the processor was just seen to have AVX2 and FMA.
-                unsafe { with_avx2(kernel, simd) }
-            }
-            #[cfg(target_arch = "x86_64")]
-            Self::Sse2 => kernel.run(Sse2::new()),
+            Self::Sse2 | Self::Avx2 | Self::Avx512 => kernel.run(Sse2::new()),
             _ => kernel.run(Scalar),
         }
     }
@@ -102,18 +107,25 @@ impl Dispatch<8> for Level {
     fn dispatch<K: Kernel<8>>(self, kernel: K) -> K::Output {
         match self {
             #[cfg(target_arch = "x86_64")]
+            Self::Avx512 => {
+                let simd = Avx512::detect().expect("an available level");
+                // SAFETY: the processor was just seen to have what `with_avx512` is compiled for.
+                unsafe { with_avx512(kernel, simd) }
+            }
+            #[cfg(target_arch = "x86_64")]
             Self::Avx2 => {
                 let simd = Avx2::detect().expect("an available level");
-                // SAFETY: the processor was just seen to have AVX2 and FMA.
+                // SAFETY: the processor was just seen to have what `with_avx2` is compiled for.
                 unsafe { with_avx2(kernel, simd) }
             }
-            _ => kernel.run(Scalar),
+            // Who has no vectors of eight takes four.
+            level => panic!("eight lanes need AVX2, not {}", level.name()),
         }
     }
 }
 
 #[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2,fma")]
+#[target_feature(enable = "avx2,fma,popcnt,bmi1,bmi2,lzcnt")]
 unsafe fn with_avx2<const N: usize, K: Kernel<N>>(kernel: K, simd: Avx2) -> K::Output
 where
     Avx2: Simd<N>,
@@ -121,8 +133,18 @@ where
     kernel.run(simd)
 }
 
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw,avx2,fma,popcnt,bmi1,bmi2,lzcnt")]
+unsafe fn with_avx512<const N: usize, K: Kernel<N>>(kernel: K, simd: Avx512) -> K::Output
+where
+    Avx512: Simd<N>,
+{
+    kernel.run(simd)
+}
+
 #[cfg(test)]
 mod tests {
+    use super::super::ASCENDING;
     use super::*;
     use proptest::prelude::*;
 
@@ -153,6 +175,13 @@ mod tests {
                 simd.store(x, &mut lanes);
                 out.extend(lanes.map(f32::to_bits));
             }
+            for (order, count) in [(ASCENDING, N), (0o01234567, N - 1), (0o21306574, 3), (0o44332211, 0)] {
+                let items = std::array::from_fn(|i| 100 + i as u32);
+                let (mut nears, mut picked) = ([0.0; N], [0; N]);
+                let count = simd.pick(a, b, &items, order, count as u32, &mut nears, &mut picked);
+                out.push(count as u32);
+                out.extend(nears[..count].iter().map(|x| x.to_bits()).chain(picked[..count].iter().copied()));
+            }
             out
         }
     }
@@ -165,11 +194,16 @@ mod tests {
         let plain = |bits: Vec<u32>| -> Vec<u32> {
             bits.into_iter().map(|x| if f32::from_bits(x).is_nan() { f32::NAN.to_bits() } else { x }).collect()
         };
-        let wanted = plain(Level::Scalar.dispatch(Everything { a, b }));
-        for level in Level::ALL.into_iter().filter(|l| l.is_available()) {
+        let wanted = plain(Everything { a, b }.run(Scalar));
+        for level in levels::<N>() {
             prop_assert_eq!(&plain(level.dispatch(Everything { a, b })), &wanted, "{:?}", level);
         }
         Ok(())
+    }
+
+    /// The levels of this processor that have so many lanes.
+    fn levels<const N: usize>() -> impl Iterator<Item = Level> {
+        Level::ALL.into_iter().filter(|l| l.is_available() && l.lanes() >= N)
     }
 
     fn ordered() -> impl Strategy<Value = f32> {
@@ -186,9 +220,11 @@ mod tests {
 
     #[test]
     fn comparisons_with_nan_are_false() {
-        for level in Level::ALL.into_iter().filter(|l| l.is_available()) {
+        for level in levels::<4>() {
             let out = level.dispatch(Everything { a: [f32::NAN; 4], b: [1.0; 4] });
             assert_eq!(out[..2], [0, 0], "{level:?}");
+        }
+        for level in levels::<8>() {
             let out = level.dispatch(Everything { a: [f32::NAN; 8], b: [1.0; 8] });
             assert_eq!(out[..2], [0, 0], "{level:?}");
         }

@@ -12,7 +12,7 @@ mod x86;
 pub use level::{Dispatch, Kernel, Level};
 pub use scalar::Scalar;
 #[cfg(target_arch = "x86_64")]
-pub use x86::{Avx2, Sse2};
+pub use x86::{Avx2, Avx512, Sse2};
 
 /// Vectors of `N` lanes. A value of a type that implements it proves that the processor has what it needs.
 ///
@@ -50,6 +50,24 @@ pub trait Simd<const N: usize>: Copy + Send + Sync {
     /// Lanes where `a > b`.
     fn gt(self, a: Self::F32, b: Self::F32) -> u32;
 
-    /// Asks for every cache line of something that will be needed soon.
-    fn prefetch<T>(self, what: &T);
+    /// Writes some lanes of `nears` and `items` to the front of `to_nears` and `to_items`, and says how many they are; what is
+    /// behind them is undefined. They are those of the first `count` in `order`, three bits each from the lowest, for which
+    /// `nears ≤ fars`.
+    #[allow(clippy::too_many_arguments)]
+    fn pick(
+        self,
+        nears: Self::F32,
+        fars: Self::F32,
+        items: &[u32; N],
+        order: u32,
+        count: u32,
+        to_nears: &mut [f32; N],
+        to_items: &mut [u32; N],
+    ) -> usize;
+
+    /// Asks for so many cache lines from an address on, which need not be valid.
+    fn prefetch(self, start: *const u8, lines: usize);
 }
+
+/// The order of lanes that [`Simd::pick`] takes for the lowest first.
+pub const ASCENDING: u32 = 0o76543210;

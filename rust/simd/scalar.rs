@@ -12,6 +12,27 @@ fn mask<const N: usize>(lane: impl Fn(usize) -> bool) -> u32 {
     (0..N).fold(0, |m, i| m | u32::from(lane(i)) << i)
 }
 
+/// [`Simd::pick`] lane by lane, without a branch: each is written, and written over unless it counts.
+#[inline(always)]
+pub(super) fn pick_by_lane<const N: usize>(
+    nears: [f32; N],
+    picked: u32,
+    items: &[u32; N],
+    order: u32,
+    count: u32,
+    to_nears: &mut [f32; N],
+    to_items: &mut [u32; N],
+) -> usize {
+    let mut to = 0;
+    for i in 0..N {
+        let lane = (order >> (3 * i)) as usize & (N - 1);
+        to_nears[to & (N - 1)] = nears[lane];
+        to_items[to & (N - 1)] = items[lane];
+        to += (picked >> lane & 1) as usize & usize::from((i as u32) < count);
+    }
+    to
+}
+
 impl<const N: usize> Simd<N> for Scalar {
     type F32 = [f32; N];
 
@@ -72,5 +93,18 @@ impl<const N: usize> Simd<N> for Scalar {
         mask::<N>(|i| a[i] > b[i])
     }
     #[inline(always)]
-    fn prefetch<T>(self, _: &T) {}
+    fn pick(
+        self,
+        nears: [f32; N],
+        fars: [f32; N],
+        items: &[u32; N],
+        order: u32,
+        count: u32,
+        to_nears: &mut [f32; N],
+        to_items: &mut [u32; N],
+    ) -> usize {
+        pick_by_lane(nears, mask::<N>(|i| nears[i] <= fars[i]), items, order, count, to_nears, to_items)
+    }
+    #[inline(always)]
+    fn prefetch(self, _: *const u8, _: usize) {}
 }

@@ -1,6 +1,7 @@
-//! Lanes of x86-64: SSE2, which every such processor has, and AVX2 with FMA.
+//! Lanes of x86-64: SSE2, which every such processor has, AVX2 with FMA, and AVX-512.
 
 use super::Simd;
+use super::scalar::pick_by_lane;
 use std::arch::x86_64::*;
 
 /// SSE2: four lanes.
@@ -15,24 +16,63 @@ impl Sse2 {
     }
 }
 
-/// AVX2 and FMA: four lanes or eight.
+/// AVX2 and FMA: eight lanes.
 #[derive(Clone, Copy, Debug)]
 pub struct Avx2(());
 
 impl Avx2 {
     /// Some on a processor that has it.
     pub fn detect() -> Option<Self> {
-        (is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma")).then_some(Self(()))
+        // Every processor with AVX2 has the others, and kernels are compiled for them.
+        let has = is_x86_feature_detected!("avx2")
+            && is_x86_feature_detected!("fma")
+            && is_x86_feature_detected!("popcnt")
+            && is_x86_feature_detected!("bmi1")
+            && is_x86_feature_detected!("bmi2")
+            && is_x86_feature_detected!("lzcnt");
+        has.then_some(Self(()))
     }
 }
 
+/// AVX-512 with vectors of every length: eight lanes, and moves by mask.
+#[derive(Clone, Copy, Debug)]
+pub struct Avx512(());
+
+impl Avx512 {
+    /// Some on a processor that has it.
+    pub fn detect() -> Option<Self> {
+        let has = is_x86_feature_detected!("avx512f")
+            && is_x86_feature_detected!("avx512vl")
+            && is_x86_feature_detected!("avx512dq")
+            && is_x86_feature_detected!("avx512bw");
+        (has && Avx2::detect().is_some()).then_some(Self(()))
+    }
+}
+
+/// By mask of eight lanes, the numbers of those in it, lowest first, a byte each.
+static FRONT: [u64; 256] = {
+    let mut front = [0; 256];
+    let mut picked = 0;
+    while picked < 256 {
+        let (mut lane, mut place) = (0, 0);
+        while lane < 8 {
+            if picked >> lane & 1 == 1 {
+                front[picked] |= lane << (8 * place);
+                place += 1;
+            }
+            lane += 1;
+        }
+        picked += 1;
+    }
+    front
+};
+
 #[inline(always)]
-fn prefetch<T>(what: &T) {
+fn prefetch(start: *const u8, lines: usize) {
     const LINE: usize = 64;
-    let start = std::ptr::from_ref(what).cast::<i8>();
-    for offset in (0..size_of::<T>()).step_by(LINE) {
-        // SAFETY: every x86-64 processor has the instruction, and the address lies within `what`.
-        unsafe { _mm_prefetch::<_MM_HINT_T0>(start.add(offset)) }
+    for line in 0..lines {
+        // SAFETY: every x86-64 processor has the instruction, which never faults, whatever the address.
+        unsafe { _mm_prefetch::<_MM_HINT_T0>(start.wrapping_add(line * LINE).cast()) }
     }
 }
 
@@ -69,34 +109,24 @@ impl Simd<4> for Sse2 {
     }
 
     #[inline(always)]
-    fn prefetch<T>(self, what: &T) {
-        prefetch(what);
-    }
-}
-
-impl Simd<4> for Avx2 {
-    type F32 = __m128;
-
-    lanes! {
-        splat(x: f32) -> __m128 = _mm_set1_ps(x);
-        load(from: &[f32; 4]) -> __m128 = _mm_loadu_ps(from.as_ptr());
-        store(x: __m128, to: &mut [f32; 4]) = _mm_storeu_ps(to.as_mut_ptr(), x);
-        add(a: __m128, b: __m128) -> __m128 = _mm_add_ps(a, b);
-        sub(a: __m128, b: __m128) -> __m128 = _mm_sub_ps(a, b);
-        mul(a: __m128, b: __m128) -> __m128 = _mm_mul_ps(a, b);
-        neg(a: __m128) -> __m128 = _mm_xor_ps(_mm_set1_ps(-0.0), a);
-        abs(a: __m128) -> __m128 = _mm_andnot_ps(_mm_set1_ps(-0.0), a);
-        mul_sub(a: __m128, b: __m128, c: __m128) -> __m128 = _mm_fmsub_ps(a, b, c);
-        mul_add(a: __m128, b: __m128, c: __m128) -> __m128 = _mm_fmadd_ps(a, b, c);
-        min(a: __m128, b: __m128) -> __m128 = _mm_min_ps(a, b);
-        max(a: __m128, b: __m128) -> __m128 = _mm_max_ps(a, b);
-        le(a: __m128, b: __m128) -> u32 = _mm_movemask_ps(_mm_cmple_ps(a, b)) as u32;
-        gt(a: __m128, b: __m128) -> u32 = _mm_movemask_ps(_mm_cmpgt_ps(a, b)) as u32;
+    fn pick(
+        self,
+        nears: __m128,
+        fars: __m128,
+        items: &[u32; 4],
+        order: u32,
+        count: u32,
+        to_nears: &mut [f32; 4],
+        to_items: &mut [u32; 4],
+    ) -> usize {
+        let mut distances = [0.0; 4];
+        Simd::<4>::store(self, nears, &mut distances);
+        pick_by_lane(distances, Simd::<4>::le(self, nears, fars), items, order, count, to_nears, to_items)
     }
 
     #[inline(always)]
-    fn prefetch<T>(self, what: &T) {
-        prefetch(what);
+    fn prefetch(self, start: *const u8, lines: usize) {
+        prefetch(start, lines);
     }
 }
 
@@ -121,7 +151,85 @@ impl Simd<8> for Avx2 {
     }
 
     #[inline(always)]
-    fn prefetch<T>(self, what: &T) {
-        prefetch(what);
+    fn pick(
+        self,
+        nears: __m256,
+        fars: __m256,
+        items: &[u32; 8],
+        order: u32,
+        count: u32,
+        to_nears: &mut [f32; 8],
+        to_items: &mut [u32; 8],
+    ) -> usize {
+        // SAFETY: `self` exists only where the processor has the instructions, and the references are to as many numbers.
+        unsafe {
+            let lanes =
+                _mm256_srlv_epi32(_mm256_set1_epi32(order as i32), _mm256_setr_epi32(0, 3, 6, 9, 12, 15, 18, 21));
+            let nears = _mm256_permutevar8x32_ps(nears, lanes);
+            let fars = _mm256_permutevar8x32_ps(fars, lanes);
+            let items = _mm256_permutevar8x32_epi32(_mm256_loadu_si256(items.as_ptr().cast()), lanes);
+            let picked = _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(nears, fars)) as usize & ((1 << count) - 1);
+            let front = _mm256_cvtepu8_epi32(_mm_cvtsi64_si128(FRONT[picked & 0xff] as i64));
+            _mm256_storeu_ps(to_nears.as_mut_ptr(), _mm256_permutevar8x32_ps(nears, front));
+            _mm256_storeu_si256(to_items.as_mut_ptr().cast(), _mm256_permutevar8x32_epi32(items, front));
+            picked.count_ones() as usize
+        }
+    }
+
+    #[inline(always)]
+    fn prefetch(self, start: *const u8, lines: usize) {
+        prefetch(start, lines);
+    }
+}
+
+impl Simd<8> for Avx512 {
+    type F32 = __m256;
+
+    lanes! {
+        splat(x: f32) -> __m256 = _mm256_set1_ps(x);
+        load(from: &[f32; 8]) -> __m256 = _mm256_loadu_ps(from.as_ptr());
+        store(x: __m256, to: &mut [f32; 8]) = _mm256_storeu_ps(to.as_mut_ptr(), x);
+        add(a: __m256, b: __m256) -> __m256 = _mm256_add_ps(a, b);
+        sub(a: __m256, b: __m256) -> __m256 = _mm256_sub_ps(a, b);
+        mul(a: __m256, b: __m256) -> __m256 = _mm256_mul_ps(a, b);
+        neg(a: __m256) -> __m256 = _mm256_xor_ps(_mm256_set1_ps(-0.0), a);
+        abs(a: __m256) -> __m256 = _mm256_andnot_ps(_mm256_set1_ps(-0.0), a);
+        mul_sub(a: __m256, b: __m256, c: __m256) -> __m256 = _mm256_fmsub_ps(a, b, c);
+        mul_add(a: __m256, b: __m256, c: __m256) -> __m256 = _mm256_fmadd_ps(a, b, c);
+        min(a: __m256, b: __m256) -> __m256 = _mm256_min_ps(a, b);
+        max(a: __m256, b: __m256) -> __m256 = _mm256_max_ps(a, b);
+        le(a: __m256, b: __m256) -> u32 = u32::from(_mm256_cmp_ps_mask::<_CMP_LE_OQ>(a, b));
+        gt(a: __m256, b: __m256) -> u32 = u32::from(_mm256_cmp_ps_mask::<_CMP_GT_OQ>(a, b));
+    }
+
+    #[inline(always)]
+    fn pick(
+        self,
+        nears: __m256,
+        fars: __m256,
+        items: &[u32; 8],
+        order: u32,
+        count: u32,
+        to_nears: &mut [f32; 8],
+        to_items: &mut [u32; 8],
+    ) -> usize {
+        // SAFETY: `self` exists only where the processor has the instructions, and the references are to as many numbers.
+        unsafe {
+            let lanes =
+                _mm256_srlv_epi32(_mm256_set1_epi32(order as i32), _mm256_setr_epi32(0, 3, 6, 9, 12, 15, 18, 21));
+            let nears = _mm256_permutexvar_ps(lanes, nears);
+            let fars = _mm256_permutexvar_ps(lanes, fars);
+            let items = _mm256_permutexvar_epi32(lanes, _mm256_loadu_si256(items.as_ptr().cast()));
+            let picked = _mm256_cmp_ps_mask::<_CMP_LE_OQ>(nears, fars) & ((1u32 << count) - 1) as u8;
+            // In a register first: a compressing store to memory is many times slower.
+            _mm256_storeu_ps(to_nears.as_mut_ptr(), _mm256_maskz_compress_ps(picked, nears));
+            _mm256_storeu_si256(to_items.as_mut_ptr().cast(), _mm256_maskz_compress_epi32(picked, items));
+            picked.count_ones() as usize
+        }
+    }
+
+    #[inline(always)]
+    fn prefetch(self, start: *const u8, lines: usize) {
+        prefetch(start, lines);
     }
 }

@@ -2,8 +2,7 @@
 
 use crate::triangles::{Random, Triangles, accelerators, agreed, bits, hits, levels};
 use proptest::prelude::*;
-use raywright::accel::Accelerator;
-use raywright::accel::bvh::{Options, SingleBvh};
+use raywright::accel::bvh::{self, Options};
 use raywright::math::{DVec3, Hit, Ray, Vec3};
 use raywright::scene::{Geometry, Mesh};
 
@@ -54,7 +53,7 @@ fn of_coincident_triangles_the_first_is_hit() {
 fn a_million_copies_of_one_triangle() {
     let one = [Vec3::ZERO, Vec3::X, Vec3::Y];
     let triangles = Triangles(vec![one; 1_000_000]);
-    let tree = SingleBvh::<8>::new(&triangles, &Options::DEFAULT, levels().last().unwrap());
+    let tree = bvh::widest(&triangles, &Options::DEFAULT, levels().last().unwrap());
     tree.validate(&triangles).unwrap();
     let ray = Ray::new(DVec3::new(0.25, 0.25, 1.0), -DVec3::Z);
     let mut hit = [Hit::MISS];

@@ -2,5 +2,6 @@
 
 mod agreement;
 mod boxes;
+mod nearest;
 mod signs;
 mod triangles;

@@ -7,7 +7,7 @@ use raywright::math::{DVec3, Ray, Region, Vec3};
 use raywright::shapes::triangle::EdgeRay;
 
 /// `x · 2^1074` as an integer.
-fn integer(x: f64) -> BigInt {
+pub fn integer(x: f64) -> BigInt {
     let bits = x.abs().to_bits();
     let (fraction, biased) = (bits & ((1 << 52) - 1), bits >> 52);
     let magnitude = match biased {
@@ -192,4 +192,30 @@ fn the_bound_on_rounding_withstands_a_hunt() {
     assert!(worst <= 208.0, "an error of {worst} units");
     // The hunt is one: chance alone finds errors of a few units.
     assert!(worst > 8.0, "no more than {worst} units found");
+}
+
+/// Small whole numbers times a power of two, the least and the greatest included, where products under- and overflow.
+fn scaled() -> impl Strategy<Value = ([DVec3; 3], DVec3, DVec3)> {
+    let point = || prop::array::uniform3(-9i32..=9).prop_map(|p| DVec3::from_array(p.map(f64::from)));
+    let bit = || prop::array::uniform3(-1e-15..1e-15f64).prop_map(DVec3::from_array);
+    (prop::array::uniform3(point()), point(), point(), prop::array::uniform3(bit()), -1060i32..1000, prop::bool::ANY)
+        .prop_map(|(corners, at, from, bits, exponent, aimed)| {
+            let target = if aimed { (corners[0] + corners[1]) / 2.0 } else { at };
+            // In two steps: 2^exponent alone may be subnormal, or its inverse infinite.
+            let scale = |p: DVec3| p * 2f64.powi(exponent / 2) * 2f64.powi(exponent - exponent / 2);
+            let corners = [0, 1, 2].map(|i| scale(corners[i] * (1.0 + bits[i])));
+            (corners, scale(from), target - from)
+        })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(20_000))]
+    #[test]
+    fn doubles_of_any_size_are_decided_exactly((corners, origin, direction) in scaled()) {
+        let ray = Ray { origin, direction, t_min: f64::NEG_INFINITY, t_max: f64::INFINITY };
+        let met = is_met(&weights(origin, direction, corners));
+        if let Some(edges) = EdgeRay::new(&ray, &Region::around(corners)) {
+            prop_assert_eq!(edges.meet(corners).is_some(), met, "{:?} {:?}", ray, corners);
+        }
+    }
 }

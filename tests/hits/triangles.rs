@@ -1,6 +1,6 @@
 //! Triangles and rays for the tests of hits, and the comparison of every accelerator at every level.
 
-use raywright::accel::bvh::{Options, SingleBvh};
+use raywright::accel::bvh::{self, Options};
 use raywright::accel::{Accelerator, BruteForce, Primitives};
 use raywright::math::{DVec3, Hit, Ray, Region, Vec3};
 use raywright::shapes::triangle::EdgeRay;
@@ -46,15 +46,14 @@ pub fn levels() -> impl Iterator<Item = Level> {
 }
 
 /// Both trees and brute force at every level, by name. The trees are valid.
-pub fn accelerators(primitives: &impl Primitives) -> Vec<(String, Box<dyn Accelerator>)> {
+pub fn accelerators(primitives: &dyn Primitives) -> Vec<(String, Box<dyn Accelerator>)> {
     let mut all: Vec<(String, Box<dyn Accelerator>)> = Vec::new();
     for level in levels() {
-        let narrow = SingleBvh::<4>::new(primitives, &Options::DEFAULT, level);
-        let wide = SingleBvh::<8>::new(primitives, &Options::DEFAULT, level);
-        narrow.validate(primitives).unwrap();
-        wide.validate(primitives).unwrap();
-        all.push((format!("4 wide, {}", level.name()), Box::new(narrow)));
-        all.push((format!("8 wide, {}", level.name()), Box::new(wide)));
+        for width in [4, 8].into_iter().filter(|&w| w <= level.lanes()) {
+            let tree = bvh::wide(width, primitives, &Options::DEFAULT, level);
+            tree.validate(primitives).unwrap();
+            all.push((format!("{width} wide, {}", level.name()), tree));
+        }
         all.push((format!("brute force, {}", level.name()), BruteForce::over(primitives, level)));
     }
     all

@@ -4,6 +4,7 @@ Everything is decided in integers: floats are integers times powers of two, and 
 Only pairs that f64 rejects with a margin of a thousand error bounds are left out.
 """
 
+import itertools
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -35,14 +36,15 @@ class Outcome:
     choices: int = 0
 
 
-def check(mesh, origins, directions, t_min=0.0, t_max=np.inf, exact=False):
+def check(mesh, origins, directions, t_min=0.0, t_max=np.inf, exact=False, precision="single"):
     """Hold the answers of both accelerators against the oracle; `exact` allows for no rounding at all.
 
     Small integers, whose products and sums an f64 holds exactly, give a correctly rounded `t` and the lowest
     primitive of equal ones; otherwise a `t` may be off by its error bound, and so may the choice of the
     closest.
     """
-    scene, brute = rw.Scene(mesh), rw.Scene(mesh, accelerator=rw.BruteForce())
+    scene = rw.Scene(mesh, precision=precision)
+    brute = rw.Scene(mesh, accelerator=rw.BruteForce(), precision=precision)
     hits, others = (s.intersect(origins, directions, t_min, t_max) for s in (scene, brute))
     assert np.array_equal(hits.t, others.t)
     assert np.array_equal(hits.primitive, others.primitive)
@@ -53,16 +55,20 @@ def check(mesh, origins, directions, t_min=0.0, t_max=np.inf, exact=False):
 
     starts, ways = np.broadcast_arrays(*np.atleast_2d(origins, directions))
     nears, fars = np.broadcast_to(t_min, len(starts)), np.broadcast_to(t_max, len(starts))
-    vertices, faces = mesh.vertices.astype(np.float32).astype(np.float64), mesh.faces
+    triangles = rounded(mesh, precision)
     outcome = Outcome()
-    for i, found in enumerate(
-        candidates(vertices[faces], starts.astype(np.float64), ways.astype(np.float64))
-    ):
+    for i, found in enumerate(candidates(triangles, starts.astype(np.float64), ways.astype(np.float64))):
         answer = (float(hits.t[i]), int(hits.primitive[i]), hits.uv[i])
         check_ray(found, answer, float(nears[i]), float(fars[i]), exact)
         outcome.hits += answer[1] >= 0
         outcome.choices += len(found) > 1
     return outcome
+
+
+def rounded(mesh, precision="single"):
+    """Give the triangles (F,3,3) as a scene of this precision has them."""
+    vertices = mesh.vertices.astype(np.float64)
+    return (vertices if precision == "double" else vertices.astype(np.float32).astype(np.float64))[mesh.faces]
 
 
 def check_ray(found, answer, t_min, t_max, exact):
@@ -172,7 +178,7 @@ def slacks(corners, d, total):
     `t` is a mean of the corners' depths along the direction's largest axis, so it takes roundings of these
     depths. And a weight may be off by `e` (see rust/shapes/triangle/edge.rs) if it is computed in f64, which
     moves the mean by at most 3 e · range / (|total| - 3 e). Where the total is at most 6 e, some weight is
-    too small to tell its sign, and all are computed exactly.
+    too small to tell its sign, and all are computed with less error, in the end with none.
     """
     axis = max(range(3), key=lambda k: abs(d[k]))
     depths = [c[axis] for c in corners]
@@ -181,6 +187,10 @@ def slacks(corners, d, total):
     power = 1 << (max(map(abs, d)).bit_length() - 1)
     e = 208 * UNIT * 2 * size * size
     scaled_total = Fraction(abs(total), power)
+    if scaled_total <= 6 * e:
+        # Then they are computed from the edges themselves, which errs less.
+        edges = [minus(p, q) for p, q in itertools.combinations(corners, 2)]
+        e = 184 * UNIT * size * max(abs(x) for edge in edges for x in edge)
     # Each depth: 1 rounding, its product 2 (with its weight's), sums 2 each above and below, times d,
     # quotient: 9.
     rounding = 16 * UNIT * max(map(abs, depths))

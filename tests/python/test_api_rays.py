@@ -6,42 +6,38 @@ import numpy as np
 import pytest
 
 import raywright as rw
-from raywright.rays import RayBatch
+from raywright.rays import ray_arguments
 
 DOWN = (0.0, 0.0, -1.0)
 
 
-class Recorder:
-    """Stands for a compiled scene, and keeps what it is asked."""
-
-    def occluded(self, *arguments):
-        self.arguments = arguments
-        return np.zeros(max(len(array) for array in arguments[:4]), np.bool_)
+def same_memory(a, b):
+    return a.ctypes.data == b.ctypes.data and a.size == b.size and a.dtype == b.dtype
 
 
 @pytest.mark.parametrize(
     "dtypes", [(np.float32, np.float32), (np.float64, np.float64), (np.float32, np.float64)]
 )
-@pytest.mark.parametrize("shape", [(5, 3), (2, 4, 3), (1, 3)])
-def test_contiguous_arrays_reach_the_core_without_a_copy(scene, monkeypatch, dtypes, shape):
-    core = Recorder()
-    monkeypatch.setattr(scene, "_compiled", lambda: core)
+@pytest.mark.parametrize("shape", [(3,), (5, 3), (2, 4, 3), (1, 3)])
+def test_contiguous_arrays_reach_the_core_without_a_copy(dtypes, shape):
     origins, directions = (np.ones(shape, dtype) for dtype in dtypes)
     far = np.ones(shape[:-1])
-    scene.occluded(origins, directions, t_max=far)
-    for passed, given in zip(core.arguments, (origins, directions), strict=False):
-        assert passed.shape == (origins.size // 3, 3)
-        assert passed.dtype == given.dtype
-        assert passed.ctypes.data == given.ctypes.data
-    assert core.arguments[3].ctypes.data == far.ctypes.data
+    for limit in (9.0, far):
+        arguments = ray_arguments(origins, directions, 0.0, limit, None)
+        assert same_memory(arguments[0], origins)
+        assert same_memory(arguments[1], directions)
+        assert arguments[2] == 0.0
+        assert arguments[4:] == (shape[:-1], None)
+    if far.ndim:
+        assert same_memory(arguments[3], far)
 
 
 def test_one_origin_stays_one_row():
-    rays = RayBatch.of((0, 0, 5), np.ones((4, 6, 3)), 0.0, np.inf, None)
-    assert rays.shape == (4, 6)
-    assert rays.origins.shape == (1, 3)
-    assert rays.directions.shape == (24, 3)
-    assert rays.t_min.shape == rays.t_max.shape == (1,)
+    for far in (np.inf, np.full((4, 6), 2.0)):
+        origins, directions, _, _, shape, _ = ray_arguments((0, 0, 5), np.ones((4, 6, 3)), 0.0, far, None)
+        assert shape == (4, 6)
+        assert origins.size == 3
+        assert directions.shape == (4, 6, 3)
 
 
 @pytest.mark.parametrize(
@@ -56,11 +52,11 @@ def test_one_origin_stays_one_row():
     ],
 )
 def test_other_real_types_are_converted(dtype, passed):
-    rays = RayBatch.of(np.array([(1, 2, 3)], dtype), np.array([(4, 5, 6)], dtype), 0, np.inf, None)
-    assert rays.origins.dtype == rays.directions.dtype == passed
-    assert rays.origins.dtype.isnative
-    assert np.array_equal(rays.origins, [(1, 2, 3)])
-    assert np.array_equal(rays.directions, [(4, 5, 6)])
+    rays = ray_arguments(np.array([(1, 2, 3)], dtype), np.array([(4, 5, 6)], dtype), 0, np.inf, None)
+    for array, expected in zip(rays, [(1, 2, 3), (4, 5, 6)], strict=False):
+        assert array.dtype == passed
+        assert array.dtype.isnative
+        assert np.array_equal(array, [expected])
 
 
 @pytest.mark.parametrize(
@@ -110,6 +106,9 @@ def test_results_have_the_broadcast_leading_shape(scene, origins, directions, t_
     assert shadowed.shape == lead
     assert shadowed.dtype == np.bool_
     assert shadowed.all()
+    assert scene.count(o, d, np.zeros(t_min), np.full(t_max, 9.0)).shape == lead
+    assert scene.intersect_all(o, d, np.zeros(t_min), np.full(t_max, 9.0)).shape == lead
+    assert scene.cost(o, d, np.zeros(t_min), np.full(t_max, 9.0)).nodes.shape == lead
 
 
 def test_interval_is_closed_and_per_ray(scene):
@@ -139,7 +138,7 @@ def test_zero_directions_miss(scene):
     assert not scene.occluded((0.5, 0.5, 0.5), (0.0, -0.0, 0))
 
 
-@pytest.mark.parametrize("ask", ["intersect", "occluded"])
+@pytest.mark.parametrize("ask", ["intersect", "occluded", "intersect_all", "count", "cost"])
 @pytest.mark.parametrize(
     ("arguments", "error", "message"),
     [

@@ -35,6 +35,24 @@ def test_one_light_need_not_be_in_a_list():
     assert rw.Scene([], lights=light).lights == rw.Scene([], lights=[light]).lights == (light,)
 
 
+@pytest.mark.parametrize("precision", ["single", "double"])
+@pytest.mark.parametrize("quality", ["fast build", "balanced", "fast rays"])
+def test_precision_and_quality_are_kept_and_hits_do_not_depend_on_quality(precision, quality):
+    knot = rw.scenes.torus_knot(along=40, around=6)
+    scene = rw.Scene(knot, precision=precision, quality=quality)
+    assert (scene.precision, scene.quality) == (precision, quality)
+    back = pickle.loads(pickle.dumps(scene))
+    assert back == scene
+    assert hash(back) == hash(scene)
+    plain = rw.Scene(knot, precision=precision)
+    assert (scene == plain) == (quality == "balanced")
+    assert (f"precision='{precision}'" in repr(scene)) == (precision == "double")
+    assert (f"quality='{quality}'" in repr(scene)) == (quality != "balanced")
+    rays = np.random.default_rng(4).normal(size=(2, 500, 3))
+    assert scene.intersect(*rays) == plain.intersect(*rays)
+    assert ("double" in scene.accelerator.kind) == (precision == "double")
+
+
 @pytest.mark.parametrize("accelerator", [rw.BVH(), rw.BVH(bins=4), rw.BruteForce()])
 def test_accelerator_is_the_one_chosen(box, accelerator):
     scene = rw.Scene(box, accelerator=accelerator)

@@ -125,6 +125,16 @@ def test_camera_keeps_the_dimensions_of_extreme_scenes():
         (lambda: rw.Path(max_depth=-1), ValueError, r"max_depth must be between 0 and \d+, got -1"),
         (lambda: rw.Path(max_depth=2.5), TypeError, r"max_depth must be an integer, got 2.5"),
         (lambda: rw.Path(roulette_depth=None), TypeError, r"roulette_depth must be an integer, got None"),
+        (
+            lambda: rw.Scene([], precision="half"),
+            ValueError,
+            r"precision must be one of 'single', 'double', got 'half'",
+        ),
+        (
+            lambda: rw.Scene([], quality=3),
+            ValueError,
+            r"quality must be one of 'fast build', 'balanced', 'fast rays', got 3",
+        ),
         (lambda: rw.BVH("magic"), ValueError, r"builder must be one of 'binned', got 'magic'"),
         (lambda: rw.BVH(bins=1), ValueError, r"bins must be between 2 and 64, got 1"),
         (lambda: rw.BVH(bins=True), TypeError, r"bins must be an integer, got True"),
@@ -155,3 +165,40 @@ def test_camera_rays_pass_through_the_pixels(size):
     onto = directions / -directions[..., 2:]
     assert np.allclose(onto[..., 0], x[np.newaxis], atol=1e-14)
     assert np.allclose(onto[..., 1], y[:, np.newaxis], atol=1e-14)
+
+
+def test_camera_rays_may_pass_anywhere_through_the_pixels():
+    camera = rw.Camera((1, 2, 3), (1, 2, 0), fov=90, width=6, height=4)
+    offsets = np.random.default_rng(1).random((4, 6, 2))
+    _, directions = camera.rays(offsets)
+    onto = directions / -directions[..., 2:]
+    assert np.allclose(onto[..., 0], (np.arange(6) + offsets[..., 0]) / 2 - 1.5, atol=1e-14)
+    assert np.allclose(onto[..., 1], 1 - (np.arange(4)[:, None] + offsets[..., 1]) / 2, atol=1e-14)
+    corner = camera.rays((0, 0))[1][0, 0]
+    assert np.allclose(corner / -corner[2], (-1.5, 1, -1), atol=1e-14)
+
+
+def test_camera_rays_have_the_type_asked_for():
+    camera = rw.Camera((1, 2, 3), (1, 2, 0), width=3, height=2)
+    for dtype in (np.float32, np.float64, "float32"):
+        for array, exact in zip(camera.rays(dtype=dtype), camera.rays(), strict=True):
+            assert array.dtype == dtype
+            assert np.array_equal(array, exact.astype(dtype))
+
+
+@pytest.mark.parametrize(
+    ("arguments", "error", "message"),
+    [
+        ({"offsets": (0.5, 0.5, 0.5)}, ValueError, r"offsets must have shape \(\.\.\., 2\), got \(3,\)"),
+        (
+            {"offsets": np.zeros((6, 4, 2))},
+            ValueError,
+            r"offsets must have shape .*\(4, 6, 2\), got \(6, 4, 2\)",
+        ),
+        ({"offsets": "centre"}, TypeError, r"offsets must be real numbers, got 'centre'"),
+        ({"dtype": np.int32}, ValueError, r"dtype must be float32 or float64, got int32"),
+    ],
+)
+def test_bad_offsets_are_refused_in_one_line(arguments, error, message):
+    with pytest.raises(error, match=message):
+        rw.Camera((1, 2, 3), (1, 2, 0), width=6, height=4).rays(**arguments)

@@ -2,27 +2,36 @@
 
 pub mod build;
 mod node;
+pub mod optimise;
+mod quality;
 mod wide;
 
 pub use node::{BinaryBvh, Node};
-pub use wide::{Options, WideBvh};
+pub use quality::{Quality, Steps};
+pub use wide::Options;
+use wide::WideBvh;
 
 use super::{Accelerator, Primitives};
-use crate::shapes::triangle::{DoubleBlock, TriangleBlock};
+use crate::shapes::triangle::{DoubleLeaves, SingleLeaves};
 use crate::simd::Level;
-
-/// A wide tree over triangles whose coordinates are f32.
-pub type SingleBvh<const N: usize> = WideBvh<N, TriangleBlock<N>>;
-
-/// A wide tree over triangles whose coordinates are f64.
-pub type DoubleBvh<const N: usize> = WideBvh<N, DoubleBlock<N>>;
 
 /// A wide tree as wide as the level's registers, 8 from AVX2 on and 4 below, that keeps numbers as precisely as they are.
 pub fn widest(primitives: &dyn Primitives, options: &Options, level: Level) -> Box<dyn Accelerator> {
-    match (level >= Level::Avx2, primitives.is_single()) {
-        (true, true) => Box::new(SingleBvh::<8>::new(primitives, options, level)),
-        (true, false) => Box::new(DoubleBvh::<8>::new(primitives, options, level)),
-        (false, true) => Box::new(SingleBvh::<4>::new(primitives, options, level)),
-        (false, false) => Box::new(DoubleBvh::<4>::new(primitives, options, level)),
+    wide(level.lanes(), primitives, options, level)
+}
+
+/// A tree of so many children a node, 4 or 8.
+///
+/// Not generic: a tree with all its kernels is much code, and whoever made one of a type of their own would compile it again.
+///
+/// # Panics
+/// If the level has fewer lanes, or there is no tree of that width.
+pub fn wide(width: usize, primitives: &dyn Primitives, options: &Options, level: Level) -> Box<dyn Accelerator> {
+    match (width, primitives.is_single()) {
+        (8, true) => Box::new(WideBvh::<8, SingleLeaves<8>>::new(primitives, options, level)),
+        (8, false) => Box::new(WideBvh::<8, DoubleLeaves<8>>::new(primitives, options, level)),
+        (4, true) => Box::new(WideBvh::<4, SingleLeaves<4>>::new(primitives, options, level)),
+        (4, false) => Box::new(WideBvh::<4, DoubleLeaves<4>>::new(primitives, options, level)),
+        _ => panic!("a tree of {width} children a node"),
     }
 }

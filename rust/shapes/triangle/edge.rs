@@ -11,7 +11,8 @@
 //! of them errs by 2·(2M·4uM) + u·4M² = 20uM², a component of the cross product by 2·20uM² + u·8M² = 48uM², its
 //! product with d by 56uM²D and the sum of three by 3·56uM²D + u·(16 + 24)M²D = 208uM²D, to first order. 256uM²D
 //! leaves room for the higher orders, for a direction whose small parts were rounded in scaling, and for M, D
-//! themselves being computed.
+//! themselves being computed. What underflows is no part of it: coordinates so small, or so large that products overflow,
+//! are decided exactly.
 
 use crate::math::robust::{UNIT, greater, lesser, normalising_scale};
 use crate::math::{DVec3, Ray, Region, exact_edges, exact_turn};
@@ -51,6 +52,23 @@ pub struct EdgeRay {
     pub is_far: bool,
 }
 
+/// How `t` along a scaled direction is to be read.
+#[derive(Clone, Copy, Debug)]
+pub struct Along {
+    /// `t` as given over `t` along the scaled direction.
+    pub scale: f64,
+    /// Bounds every coordinate of a corner relative to the origin.
+    pub largest: f64,
+}
+
+impl Along {
+    /// How far apart along the scaled direction the same point may be found on two triangles that share it: their
+    /// weights are exact, and nine roundings of depths below `largest` remain.
+    pub fn same_point(&self) -> f64 {
+        32.0 * UNIT * self.largest
+    }
+}
+
 /// A triangle that a ray meets.
 #[derive(Clone, Copy, Debug)]
 pub struct Candidate {
@@ -79,10 +97,27 @@ pub enum Contact {
 
 impl EdgeRay {
     /// Beyond so many radii an origin is far.
-    const FAR: f64 = 8.0;
+    pub const FAR: f64 = 8.0;
 
     /// How far `t` may be off, as a part of `reach`; box tests leave as much room.
     pub const T_ERROR: f64 = 1.0 / (1u64 << 26) as f64;
+
+    /// Below it products of three coordinates, of which `t` is made, may underflow.
+    const SMALLEST: f64 = 1e-90;
+
+    /// Above it they may overflow.
+    const GREATEST: f64 = 1e101;
+
+    /// Bound on the error of an edge's weight where every coordinate of a corner relative to the origin is at most `largest`;
+    /// infinite where nothing is certain in f64.
+    #[inline(always)]
+    pub fn sign_error(largest: f64) -> f64 {
+        if largest > Self::SMALLEST && largest < Self::GREATEST {
+            256.0 * UNIT * 2.0 * largest * largest
+        } else {
+            f64::INFINITY
+        }
+    }
 
     /// Makes a ray ready for the triangles of a region. None if it cannot hit anything: something
     /// is NaN or infinite, the direction is zero (or has no coordinate that is a normal number), or `t_min > t_max`.
@@ -115,7 +150,7 @@ impl EdgeRay {
             t_min: ray.t_min * inverse,
             t_max: ray.t_max * inverse,
             axis,
-            sign_error: 256.0 * UNIT * 2.0 * largest * largest,
+            sign_error: Self::sign_error(largest),
             t_error: Self::T_ERROR * reach,
             reach,
             largest,
@@ -127,7 +162,7 @@ impl EdgeRay {
     /// Where a triangle is met, if it is: decided for certain. Every kernel ends here, so that all give the same bits.
     #[inline(always)]
     pub fn meet(&self, corners: [DVec3; 3]) -> Option<Candidate> {
-        let [a, b, c] = corners.map(|x| x - self.origin);
+        let [a, b, c] = [corners[0] - self.origin, corners[1] - self.origin, corners[2] - self.origin];
         let volume = |v: DVec3, w: DVec3| self.direction.dot((v - w).cross(v + w));
         let w = [volume(b, c), volume(c, a), volume(a, b)];
         let above = self.sign_error;
@@ -142,6 +177,39 @@ impl EdgeRay {
         let range = greater(greater(z[0], z[1]), z[2]) - lesser(lesser(z[0], z[1]), z[2]);
         // With each weight off by e, the mean of the corners' depths moves by at most 3e · range / (|sum| − 3e).
         if least > self.sign_error && 6.0 * self.sign_error * range <= self.t_error * sum.abs() {
+            let t = (w[0] * z[0] + w[1] * z[1] + w[2] * z[2]) / (sum * self.direction[k]);
+            self.accept(w, sum, t, Contact::Inside)
+        } else {
+            self.meet_closely(corners)
+        }
+    }
+
+    /// The same where that is not enough, as it is from far away. With edges taken from the corners themselves, and E a bound on their
+    /// coordinates, an edge errs by uE; the sum of two relative corners by 4uM and is at most 2M. So a product of the two errs by
+    /// 2uEM + 4uEM + 2uEM = 8uEM, a component of the cross product by 16uEM + 4uEM, its product with d by 2·20uEM + 8uEM, and the sum
+    /// of three by 3·48uEM + (16 + 24)uEM = 184uEM, to first order. 256uEM is allowed.
+    #[cold]
+    #[inline(never)]
+    fn meet_closely(&self, corners: [DVec3; 3]) -> Option<Candidate> {
+        let [a, b, c] = corners;
+        let edges = [b - c, c - a, a - b];
+        let largest = edges[0].abs().max(edges[1].abs()).max(edges[2].abs()).max_element();
+        // What underflows in t is then less than a rounding.
+        if self.sign_error == f64::INFINITY || largest * self.largest * self.largest < 1e-270 {
+            return self.meet_exactly(corners);
+        }
+        let error = 256.0 * UNIT * largest * self.largest;
+        let [a, b, c] = [a - self.origin, b - self.origin, c - self.origin];
+        let volume = |edge: DVec3, sum: DVec3| self.direction.dot(edge.cross(sum));
+        let w = [volume(edges[0], b + c), volume(edges[1], c + a), volume(edges[2], a + b)];
+        if w.iter().any(|&x| x > error) && w.iter().any(|&x| x < -error) {
+            return None;
+        }
+        let k = self.axis;
+        let z = [a[k], b[k], c[k]];
+        let sum = w[0] + w[1] + w[2];
+        let range = z[0].max(z[1]).max(z[2]) - z[0].min(z[1]).min(z[2]);
+        if w.iter().all(|x| x.abs() > error) && 6.0 * error * range <= self.t_error * sum.abs() {
             let t = (w[0] * z[0] + w[1] * z[1] + w[2] * z[2]) / (sum * self.direction[k]);
             self.accept(w, sum, t, Contact::Inside)
         } else {
@@ -181,10 +249,10 @@ impl EdgeRay {
         contact
     }
 
-    /// How far apart along the scaled direction the same point may be found on two triangles that share it: their
-    /// weights are exact, and nine roundings of depths below `largest` remain.
-    pub fn same_point(&self) -> f64 {
-        32.0 * UNIT * self.largest
+    /// How `t` along the scaled direction is to be read.
+    #[inline(always)]
+    pub fn along(&self) -> Along {
+        Along { scale: self.scale, largest: self.largest }
     }
 
     #[inline(always)]

@@ -1,7 +1,12 @@
 //! Triangles: the exact decision whether a ray meets one, alone and by the block.
 
-mod block;
 mod edge;
+mod leaves;
+mod nearest;
+pub mod routines;
+mod sixteen;
 
-pub use block::{BlockRay, DoubleBlock, Lanes, Leaf, TriangleBlock};
-pub use edge::{Candidate, Contact, EdgeRay};
+pub use edge::{Along, Candidate, Contact, EdgeRay};
+pub use leaves::{BlockRay, BlockRays, DoubleLeaves, Leaves, SingleLeaves};
+pub use nearest::{NearestPoint, length, nearest_point, point_of};
+pub use sixteen::{ALL, Column, EdgeRays, Met, RAYS, bits};

@@ -1,283 +1,214 @@
-//! Top-down by the surface-area heuristic, evaluated at the borders of equal bins (Wald, "On fast Construction of
-//! SAH-based Bounding Volume Hierarchies", 2007), on all cores.
+//! Top-down by the surface-area heuristic in bins, on all cores.
 //!
-//! Splits until every leaf has one primitive; how many go into one leaf of the tree that rays walk is decided when it is
+//! Splits down to a few primitives a leaf. How many go into one leaf of the tree that rays walk is decided when it is
 //! collapsed, where the cost of a block of triangles is known.
 
-use super::{BinaryBvh, Bounds, Node, Reference};
+use super::bins::{Bins, SHARE, Split};
+use super::part::Part;
+use super::{BinaryBvh, Bounds, Extents, Node, Reference};
 use crate::math::Aabb;
-use glam::Vec4;
 use rayon::prelude::*;
 
-/// Most bins that may be asked for.
-pub const MAX_BINS: usize = 64;
+pub use super::bins::MAX_BINS;
 
-/// Below so many primitives a subtree is built by one thread.
-const PARALLEL: usize = 1024;
+/// How to build.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Options {
+    /// Bins an axis, from 2 to [`MAX_BINS`].
+    pub bins: usize,
+    /// How many primitives will fit a block of the tree that rays walk, from 1 to [`MAX_BLOCK`]. How so few are split hardly
+    /// matters, and is decided quickly; three eighths of them are not split at all.
+    pub block: usize,
+}
+
+/// Most primitives in a block that may be asked for.
+pub const MAX_BLOCK: usize = 16;
+
+/// Up to so many primitives, a subtree is built by one thread.
+const TASK: usize = 1024;
 
 /// From so many primitives on a node is binned by several threads.
 const PARALLEL_BINNING: usize = 1 << 16;
 
-/// Builds a tree over boxes, leaving out empty ones. `bins` is from 2 to [`MAX_BINS`].
+/// Builds a tree over boxes, leaving out empty ones.
 ///
 /// Takes time n log n on any input: a split that makes no progress by area gives way to the median, and so do all
 /// splits from a depth on that a reasonable tree does not reach.
-pub fn build(boxes: &[Aabb], bins: usize) -> BinaryBvh {
+///
+/// # Panics
+/// If an option is out of range.
+pub fn build(boxes: &[Aabb], options: &Options) -> BinaryBvh {
+    let Options { bins, block } = *options;
     assert!((2..=MAX_BINS).contains(&bins), "bins is {bins}, not from 2 to {MAX_BINS}");
-    let mut references: Vec<Reference> =
-        boxes.par_iter().enumerate().filter(|(_, b)| !b.is_empty()).map(|(i, b)| Reference::new(b, i as u32)).collect();
+    assert!((1..=MAX_BLOCK).contains(&block), "block is {block}, not from 1 to {MAX_BLOCK}");
+    let mut references = references(boxes);
     if references.is_empty() {
         return BinaryBvh::default();
     }
-    let n = references.len();
-    let mut nodes = vec![Node::leaf(Aabb::EMPTY, 0, 0); 2 * n - 1];
-    let (root, below) = nodes.split_at_mut(1);
-    let spare = 2 * n.ilog2() as usize + 40;
-    let task = Task { bins, first: 0, base: 1, spare };
-    let extents = bounds(&references);
-    task.split(&mut references, extents, &mut root[0], below, &mut Bins::new());
-    BinaryBvh { nodes, order: references.iter().map(Reference::primitive).collect() }
+    let spare = 2 * references.len().ilog2() as usize + 40;
+    let task = Task { bins, block, leaf: (3 * block).div_ceil(8), first: 0, spare };
+    let extents = around(&references);
+    let part = task.build(&mut references, extents);
+    let order = references.par_iter().map(Reference::primitive).collect();
+    drop(references);
+    part.assemble(order)
 }
 
-/// Boxes of a set of references: of all that they hold, and of their centres (doubled).
-#[derive(Clone, Copy)]
-struct Extents {
-    all: Bounds,
-    centres: Bounds,
-}
-
-fn bounds(references: &[Reference]) -> Extents {
-    let empty = Extents { all: Bounds::EMPTY, centres: Bounds::EMPTY };
-    let grow = |mut e: Extents, r: &Reference| {
-        e.all.grow(r.min, r.max);
-        e.centres.grow(r.centre(), r.centre());
-        e
-    };
-    let join = |a: Extents, b: Extents| Extents { all: a.all.union(b.all), centres: a.centres.union(b.centres) };
-    if references.len() < PARALLEL_BINNING {
-        references.iter().fold(empty, grow)
+/// References to all boxes but empty ones.
+fn references(boxes: &[Aabb]) -> Vec<Reference> {
+    let numbered = || boxes.par_iter().enumerate();
+    let reference = |(i, b): (usize, &Aabb)| Reference::new(b, i as u32);
+    if numbered().any(|(_, b)| b.is_empty()) {
+        numbered().filter(|(_, b)| !b.is_empty()).map(reference).collect()
     } else {
-        references.par_chunks(1 << 14).map(|c| c.iter().fold(empty, grow)).reduce(|| empty, join)
+        // Where each belongs is known, so it is written there at once.
+        numbered().map(reference).collect()
     }
 }
 
-/// Where a subtree goes: a subtree of n primitives has 2n − 1 nodes, so every part of the array is known beforehand
-/// and threads need not agree on anything.
+fn around(references: &[Reference]) -> Extents {
+    if references.len() < PARALLEL_BINNING {
+        Extents::around(references)
+    } else {
+        references.par_chunks(SHARE).map(Extents::around).reduce(|| Extents::EMPTY, Extents::union)
+    }
+}
+
+/// What to build of a slice of the references.
 #[derive(Clone, Copy)]
 struct Task {
     bins: usize,
+    block: usize,
+    /// So many primitives are not split any more.
+    leaf: usize,
     /// The first primitive, as leaves refer to it.
     first: u32,
-    /// The index of the first node below this one.
-    base: u32,
     /// How many more levels may be split by area.
     spare: usize,
 }
 
 impl Task {
-    fn split(
-        self,
-        references: &mut [Reference],
-        extents: Extents,
-        node: &mut Node,
-        below: &mut [Node],
-        workspace: &mut Bins,
-    ) {
-        let aabb = extents.all.aabb();
-        if references.len() == 1 {
-            *node = Node::leaf(aabb, self.first, 1);
-            return;
+    fn build(self, references: &mut [Reference], extents: Extents) -> Part {
+        if references.len() <= TASK {
+            return self.build_alone(references, extents);
         }
-        *node = Node::inner(aabb, self.base);
-        let by_area = if self.spare > 0 && references.len() > 2 {
-            best_split(references, &extents, self.bins, workspace)
-        } else {
+        let by_area = if self.spare == 0 {
             None
+        } else if references.len() < PARALLEL_BINNING {
+            Split::best(references, &extents, self.bins, &mut Bins::new())
+        } else {
+            Split::best_of_many(references, &extents, self.bins)
         };
         let middle = match by_area {
-            Some(split) => partition(references, |r| split.is_left(r)),
+            Some(split) => partition(references, &split),
             None => median(references, &extents.centres),
         };
         let (left, right) = references.split_at_mut(middle);
-        let (children, below) = below.split_at_mut(2);
-        let (left_below, right_below) = below.split_at_mut(2 * middle - 2);
-        let [left_node, right_node] = children else { unreachable!("split_at_mut(2) gives two") };
-        let spare = self.spare.saturating_sub(1);
-        let base = self.base + 2;
-        let left_task = Self { base, spare, ..self };
-        let right_task =
-            Self { base: base + left_below.len() as u32, first: self.first + middle as u32, spare, ..self };
-        if left.len() + right.len() < PARALLEL {
-            left_task.split(left, bounds(left), left_node, left_below, workspace);
-            right_task.split(right, bounds(right), right_node, right_below, workspace);
-        } else {
-            rayon::join(
-                || left_task.split(left, bounds(left), left_node, left_below, workspace),
-                || right_task.split(right, bounds(right), right_node, right_below, &mut Bins::new()),
-            );
+        let left_task = Self { spare: self.spare.saturating_sub(1), ..self };
+        let right_task = Self { first: self.first + middle as u32, ..left_task };
+        let (left, right) =
+            rayon::join(|| left_task.build(left, around(left)), || right_task.build(right, around(right)));
+        Part::pair(extents.all.aabb(), left, right)
+    }
+
+    /// Builds a subtree on this thread.
+    fn build_alone(self, references: &mut [Reference], extents: Extents) -> Part {
+        /// A node to be made.
+        struct Open {
+            /// Its place below the root, or none for the root.
+            node: Option<usize>,
+            start: usize,
+            end: usize,
+            extents: Extents,
+            spare: usize,
         }
-    }
-}
-
-/// A plane between bins.
-struct Split {
-    axis: usize,
-    /// The last bin on the left.
-    bin: i32,
-    binning: Binning,
-}
-
-impl Split {
-    #[inline(always)]
-    fn is_left(&self, r: &Reference) -> bool {
-        self.binning.bin(r.centre(), self.axis) <= self.bin
-    }
-}
-
-/// From a centre to its bin. Binning and partitioning round alike, so they always agree.
-#[derive(Clone, Copy)]
-struct Binning {
-    origin: Vec4,
-    scale: Vec4,
-}
-
-impl Binning {
-    fn new(centres: &Bounds, bins: usize) -> Self {
-        let size = centres.max - centres.min;
-        // Just under the number of bins, so that the last centre falls into the last bin. Flat axes get bin 0 alone.
-        let scale = Vec4::splat(bins as f32 * (1.0 - 1e-6)) / size;
-        let usable = scale.is_finite_mask() & size.cmpgt(Vec4::ZERO);
-        Self { origin: centres.min, scale: Vec4::select(usable, scale, Vec4::ZERO) }
-    }
-
-    #[inline(always)]
-    fn bins(&self, centre: Vec4) -> Vec4 {
-        (centre - self.origin) * self.scale
-    }
-
-    #[inline(always)]
-    fn bin(&self, centre: Vec4, axis: usize) -> i32 {
-        self.bins(centre)[axis] as i32
-    }
-}
-
-#[derive(Clone, Copy)]
-struct Bin {
-    bounds: Bounds,
-    count: u32,
-}
-
-impl Bin {
-    const EMPTY: Self = Self { bounds: Bounds::EMPTY, count: 0 };
-}
-
-/// The bins of the three axes. Reused from node to node, since clearing all of them costs more than filling a few.
-struct Bins(Box<[[Bin; MAX_BINS]; 3]>);
-
-impl Bins {
-    fn new() -> Self {
-        Self(Box::new([[Bin::EMPTY; MAX_BINS]; 3]))
-    }
-
-    fn clear(&mut self, bins: usize) {
-        for line in self.0.iter_mut() {
-            line[..bins].fill(Bin::EMPTY);
-        }
-    }
-
-    fn add(&mut self, references: &[Reference], binning: &Binning) {
-        for r in references {
-            let place = binning.bins(r.centre());
-            for (axis, line) in self.0.iter_mut().enumerate() {
-                let bin = &mut line[place[axis] as usize & (MAX_BINS - 1)];
-                bin.bounds.grow(r.min, r.max);
-                bin.count += 1;
-            }
-        }
-    }
-
-    fn join(mut self, other: &Self, bins: usize) -> Self {
-        for (a, b) in self.0.iter_mut().zip(other.0.iter()) {
-            for (a, b) in a.iter_mut().zip(b).take(bins) {
-                a.bounds = a.bounds.union(b.bounds);
-                a.count += b.count;
-            }
-        }
-        self
-    }
-
-    fn fill(&mut self, references: &[Reference], binning: &Binning, bins: usize) {
-        if references.len() < PARALLEL_BINNING {
-            self.clear(bins);
-            self.add(references, binning);
-        } else {
-            *self = references
-                .par_chunks(1 << 14)
-                .fold(Self::new, |mut filled, chunk| {
-                    filled.add(chunk, binning);
-                    filled
-                })
-                .reduce(Self::new, |a, b| a.join(&b, bins));
-        }
-    }
-}
-
-/// The cheapest plane; none if no plane parts the centres.
-fn best_split(references: &[Reference], extents: &Extents, bins: usize, workspace: &mut Bins) -> Option<Split> {
-    // Small nodes, of which there are most, need no more bins than they have primitives.
-    let bins = bins.min(references.len().max(4));
-    let binning = Binning::new(&extents.centres, bins);
-    workspace.fill(references, &binning, bins);
-    let mut best: Option<(f32, usize, usize)> = None;
-    for (axis, line) in workspace.0.iter().enumerate().filter(|(axis, _)| binning.scale[*axis] > 0.0) {
-        // Costs of all that lies right of a plane, then swept from the left.
-        let mut right = [0f32; MAX_BINS];
-        let (mut grown, mut count) = (Bounds::EMPTY, 0);
-        for i in (1..bins).rev() {
-            grown = grown.union(line[i].bounds);
-            count += line[i].count;
-            right[i] = if count > 0 { grown.half_area() * count as f32 } else { f32::INFINITY };
-        }
-        let (mut grown, mut count) = (Bounds::EMPTY, 0);
-        for i in 0..bins - 1 {
-            grown = grown.union(line[i].bounds);
-            count += line[i].count;
-            if count == 0 {
+        let nothing = Node::leaf(Aabb::EMPTY, 0, 0);
+        let (mut root, mut below) = (nothing, Vec::with_capacity(references.len()));
+        let mut bins = Bins::new();
+        let mut open = vec![Open { node: None, start: 0, end: references.len(), extents, spare: self.spare }];
+        while let Some(Open { node, start, end, extents, spare }) = open.pop() {
+            let own = &mut references[start..end];
+            let aabb = extents.all.aabb();
+            let child = below.len();
+            let made = if own.len() <= self.leaf {
+                Node::leaf(aabb, self.first + start as u32, own.len() as u32)
+            } else {
+                Node::inner(aabb, child as u32)
+            };
+            *node.map_or(&mut root, |node| &mut below[node]) = made;
+            if made.is_leaf() {
                 continue;
             }
-            let cost = grown.half_area() * count as f32 + right[i + 1];
-            if cost < best.map_or(f32::INFINITY, |b| b.0) {
-                best = Some((cost, axis, i));
-            }
+            let middle = if own.len() <= self.block.max(2) {
+                sweep(own, extents.centres.longest())
+            } else {
+                let by_area = if spare > 0 { Split::best(own, &extents, self.bins, &mut bins) } else { None };
+                match by_area {
+                    Some(split) => partition(own, &split),
+                    None => median(own, &extents.centres),
+                }
+            };
+            let (left, right) = own.split_at(middle);
+            let (left, right) = (Extents::around(left), Extents::around(right));
+            let (middle, spare) = (start + middle, spare.saturating_sub(1));
+            below.extend([nothing; 2]);
+            // The last is taken first, so that what is below the left child comes first.
+            open.push(Open { node: Some(child + 1), start: middle, end, extents: right, spare });
+            open.push(Open { node: Some(child), start, end: middle, extents: left, spare });
         }
+        Part::Whole { root, below }
     }
-    best.map(|(_, axis, bin)| Split { axis, bin: bin as i32, binning })
 }
 
-/// Brings all for which `is_left` holds to the front and tells how many they are.
-fn partition(references: &mut [Reference], is_left: impl Fn(&Reference) -> bool) -> usize {
-    let (mut i, mut j) = (0, references.len());
-    loop {
-        while i < j && is_left(&references[i]) {
-            i += 1;
-        }
-        while i < j && !is_left(&references[j - 1]) {
-            j -= 1;
-        }
-        if i == j {
-            return i;
-        }
-        references.swap(i, j - 1);
+/// Brings all on the left of a split to the front and tells how many they are. Without a branch on the side, which would
+/// be guessed wrong every other time.
+#[inline(always)]
+fn partition(references: &mut [Reference], split: &Split) -> usize {
+    let mut left = 0;
+    for i in 0..references.len() {
+        references.swap(i, left);
+        left += usize::from(split.is_left(&references[left]));
     }
+    left
+}
+
+/// Sorts at most [`MAX_BLOCK`] along an axis and tells where to split them, by the surface-area heuristic.
+#[inline(always)]
+fn sweep(references: &mut [Reference], axis: usize) -> usize {
+    let n = references.len();
+    for i in 1..n {
+        let reference = references[i];
+        let mut place = i;
+        while place > 0 && references[place - 1].centre_on(axis) > reference.centre_on(axis) {
+            references[place] = references[place - 1];
+            place -= 1;
+        }
+        references[place] = reference;
+    }
+    let mut right = [0.0; MAX_BLOCK];
+    let mut grown = Bounds::EMPTY;
+    for i in (1..n).rev() {
+        grown.grow(&references[i].bounds);
+        right[i] = grown.half_area() * (n - i) as f32;
+    }
+    let mut grown = Bounds::EMPTY;
+    let (mut least, mut best) = (f32::INFINITY, n / 2);
+    for i in 1..n {
+        grown.grow(&references[i - 1].bounds);
+        let cost = grown.half_area() * i as f32 + right[i];
+        if cost < least {
+            (least, best) = (cost, i);
+        }
+    }
+    best
 }
 
 /// Halves by number along the longest axis of the centres; equal centres by their primitive's number.
 fn median(references: &mut [Reference], centres: &Bounds) -> usize {
-    let size = centres.max - centres.min;
-    let axis = if size.x >= size.y && size.x >= size.z { 0 } else { 1 + usize::from(size.z > size.y) };
+    let axis = centres.longest();
     let middle = references.len() / 2;
     references.select_nth_unstable_by(middle, |a, b| {
-        a.centre()[axis].total_cmp(&b.centre()[axis]).then(a.primitive().cmp(&b.primitive()))
+        a.centre_on(axis).total_cmp(&b.centre_on(axis)).then(a.primitive().cmp(&b.primitive()))
     });
     middle
 }
@@ -285,16 +216,19 @@ fn median(references: &mut [Reference], centres: &Bounds) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::accel::bvh::build::assert_depth_first;
     use glam::Vec3;
     use proptest::prelude::*;
 
-    fn check(boxes: &[Aabb]) -> BinaryBvh {
-        let bvh = build(boxes, 16);
+    fn check(boxes: &[Aabb], block: usize) -> BinaryBvh {
+        let bvh = build(boxes, &Options { bins: 16, block });
         bvh.validate(boxes).unwrap();
         let n = boxes.iter().filter(|b| !b.is_empty()).count();
-        assert_eq!(bvh.nodes.len(), (2 * n).saturating_sub(1));
-        let limit = if n > 0 { 3 * n.ilog2() as usize + 42 } else { 0 };
+        assert_eq!(bvh.order.len(), n);
+        let limit = if n > 0 { 3 * n.ilog2() as usize + 42 + block } else { 0 };
         assert!(bvh.depth() <= limit, "depth {} for {n} boxes", bvh.depth());
+        assert!(bvh.nodes.iter().all(|n| n.count as usize <= (3 * block).div_ceil(8)));
+        assert_depth_first(&bvh);
         bvh
     }
 
@@ -304,26 +238,42 @@ mod tests {
 
     proptest! {
         #[test]
-        fn trees_over_any_boxes_are_valid(corners in prop::collection::vec(([-2f32..2.0, -2f32..2.0, -2f32..2.0], [0f32..0.5, 0f32..0.5, 0f32..0.5]), 0..300)) {
+        fn trees_over_any_boxes_are_valid(corners in prop::collection::vec(([-2f32..2.0, -2f32..2.0, -2f32..2.0], [0f32..0.5, 0f32..0.5, 0f32..0.5]), 0..300), block in 1..=MAX_BLOCK) {
             let boxes: Vec<_> = corners
                 .iter()
                 .map(|(p, d)| Aabb { min: Vec3::from(*p), max: Vec3::from(*p) + Vec3::from(*d) })
                 .collect();
-            check(&boxes);
+            check(&boxes, block);
         }
     }
 
     #[test]
     fn empty_boxes_are_left_out() {
-        assert!(check(&[]).nodes.is_empty());
-        assert!(check(&[Aabb::EMPTY; 3]).nodes.is_empty());
-        assert_eq!(check(&[Aabb::EMPTY, point([1.0; 3]), Aabb::EMPTY]).order, [1]);
+        assert!(check(&[], 1).nodes.is_empty());
+        assert!(check(&[Aabb::EMPTY; 3], 1).nodes.is_empty());
+        assert_eq!(check(&[Aabb::EMPTY, point([1.0; 3]), Aabb::EMPTY], 1).order, [1]);
+    }
+
+    #[test]
+    fn with_blocks_of_one_every_leaf_has_one() {
+        let boxes: Vec<_> = (0..5000).map(|i| point([i as f32, (i * i % 91) as f32, 0.0])).collect();
+        assert_eq!(check(&boxes, 1).nodes.len(), 2 * boxes.len() - 1);
     }
 
     #[test]
     fn coinciding_boxes_are_halved() {
-        let bvh = check(&vec![point([0.5; 3]); 100_000]);
+        let bvh = check(&vec![point([0.5; 3]); 100_000], 1);
         assert_eq!(bvh.depth(), 17);
+    }
+
+    #[test]
+    fn two_groups_apart_are_parted_first() {
+        // Where the gap is, no plane cuts a box and both sides are smallest.
+        let boxes: Vec<_> =
+            (0..300).map(|i| point([if i % 3 == 0 { 9.0 } else { 0.0 } + 1e-3 * i as f32, 0.0, 0.5])).collect();
+        let bvh = check(&boxes, 8);
+        let [left, right] = bvh.nodes[0].children().map(|child| bvh.nodes[child].aabb());
+        assert!(left.max.x < 1.0 && right.min.x >= 9.0);
     }
 
     #[test]
@@ -335,7 +285,8 @@ mod tests {
                 Aabb { min: Vec3::ZERO, max: Vec3::splat(s) }
             })
             .collect();
-        check(&boxes);
+        check(&boxes, 1);
+        check(&boxes, 8);
     }
 
     #[test]
@@ -345,7 +296,7 @@ mod tests {
             .collect();
         let on = |threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            pool.install(|| build(&boxes, 16)).order
+            pool.install(|| build(&boxes, &Options { bins: 16, block: 8 })).order
         };
         assert_eq!(on(1), on(3));
     }

@@ -1,9 +1,9 @@
 //! A batch of rays for one tree, by the kernel that suits them.
 
 use super::{WideBvh, packet, single, wave};
-use crate::accel::query::Query;
+use crate::accel::query::{Kernels, Query};
 use crate::math::{Ray, coherence};
-use crate::shapes::triangle::Leaf;
+use crate::shapes::triangle::Leaves;
 use crate::simd::{Kernel, Simd};
 
 /// Fewer rays than these leave a packet or a wave mostly empty.
@@ -16,7 +16,7 @@ pub struct Batch<'a, const N: usize, L, Q> {
     pub query: &'a mut Q,
 }
 
-impl<const N: usize, L: Leaf<N>, Q: Query> Kernel<N> for Batch<'_, N, L, Q> {
+impl<const N: usize, L: Leaves<N>, Q: Query> Kernel<N> for Batch<'_, N, L, Q> {
     type Output = ();
 
     #[inline(always)]
@@ -26,9 +26,9 @@ impl<const N: usize, L: Leaf<N>, Q: Query> Kernel<N> for Batch<'_, N, L, Q> {
             for i in 0..rays.len() {
                 query.finish(i, None);
             }
-        } else if rays.len() < FEW {
+        } else if Q::KERNELS == Kernels::Single || rays.len() < FEW {
             single::answer(simd, bvh, rays, query);
-        } else if coherence::is_coherent(rays, bvh.region.radius) {
+        } else if Q::KERNELS == Kernels::All && coherence::is_coherent(rays, bvh.region.radius) {
             packet::answer(simd, bvh, rays, query);
         } else {
             wave::answer(simd, bvh, rays, query);
@@ -44,7 +44,7 @@ mod tests {
     use crate::accel::{BruteForce, Primitives};
     use crate::math::{DVec3, Hit, Vec3};
     use crate::sampling::philox4x32;
-    use crate::shapes::triangle::{DoubleBlock, TriangleBlock};
+    use crate::shapes::triangle::{DoubleLeaves, SingleLeaves};
     use crate::simd::{Dispatch, Level};
 
     struct Soup(Vec<[Vec3; 3]>);
@@ -134,7 +134,7 @@ mod tests {
         batch: Batch<'a, N, L, Q>,
     }
 
-    impl<const N: usize, L: Leaf<N>, Q: Query> Kernel<N> for By<'_, N, L, Q> {
+    impl<const N: usize, L: Leaves<N>, Q: Query> Kernel<N> for By<'_, N, L, Q> {
         type Output = ();
 
         #[inline(always)]
@@ -153,15 +153,15 @@ mod tests {
         Level: Dispatch<N>,
     {
         let soup = soup();
-        kernels_agree_over::<N, TriangleBlock<N>>(&soup);
-        kernels_agree_over::<N, DoubleBlock<N>>(&soup);
+        kernels_agree_over::<N, SingleLeaves<N>>(&soup);
+        kernels_agree_over::<N, DoubleLeaves<N>>(&soup);
     }
 
-    fn kernels_agree_over<const N: usize, L: Leaf<N>>(soup: &Soup)
+    fn kernels_agree_over<const N: usize, L: Leaves<N>>(soup: &Soup)
     where
         Level: Dispatch<N>,
     {
-        for level in Level::ALL.into_iter().filter(|l| l.is_available()) {
+        for level in Level::ALL.into_iter().filter(|l| l.is_available() && l.lanes() >= N) {
             let brute = BruteForce::over(soup, level);
             let bvh = WideBvh::<N, L>::new(soup, &Options::DEFAULT, level);
             for rays in fans() {

@@ -5,147 +5,290 @@
 //! at most i subtrees. A single root is either a block of triangles or a wide node whose N roots are shared out between
 //! the two children. A greedy collapse leaves more of the slots empty.
 
-use super::{Child, Info, Leaf, Options, Primitives, WideBvh, WideNode};
-use crate::accel::bvh::BinaryBvh;
+use super::{Child, Info, Leaves, Options, Primitives, WideBvh, WideNode};
+use crate::accel::bvh::{BinaryBvh, Node};
 use crate::math::{Aabb, Region};
 use crate::simd::Level;
+use rayon::prelude::*;
+use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
-/// The best ways to show a binary node as 1 to N roots.
-#[derive(Clone, Copy)]
-struct Plan<const N: usize> {
-    /// Least cost for at most i + 1 roots, times the area of nothing in particular.
-    cost: [f32; N],
-    /// How many of i + 1 roots the left child gets; 0 where fewer roots do as well. For one root: 0 makes a block, 1 a
-    /// wide node.
-    left: [u8; N],
-    /// How many roots of a wide node made of this one the left child gets.
-    share: u8,
-    /// Where the subtree's primitives start.
-    first: u32,
-    /// How many they are.
-    count: u32,
-}
-
-impl<const N: usize, L: Leaf<N>> WideBvh<N, L> {
+impl<const N: usize, L: Leaves<N>> WideBvh<N, L> {
     pub(super) fn collapse(
         binary: &BinaryBvh,
         primitives: &dyn Primitives,
         region: &Region,
         options: &Options,
     ) -> Self {
-        let plans = plan::<N>(binary, options);
+        let outline = if binary.nodes.is_empty() {
+            Outline::NOTHING
+        } else {
+            Outline::new(binary, &Plan::<N>::new(binary, options))
+        };
+        let nodes: Vec<_> = outline.nodes.par_iter().map(|node| node.build(binary)).collect();
+        let leaves = L::new(region, &outline.order, &outline.counts, |p| primitives.corners(p));
+        let info = Info {
+            primitives: outline.order.len(),
+            nodes: nodes.len(),
+            leaves: outline.counts.len(),
+            depth: outline.depth,
+            ..Info::default()
+        };
+        // Each step down leaves at most N − 1 siblings behind.
         let mut wide = Self {
-            nodes: Vec::new(),
-            blocks: Vec::new(),
+            nodes,
+            leaves,
             region: *region,
-            stack: 0,
+            stack: outline.depth * (N - 1) + 1,
             level: Level::Scalar,
             options: *options,
-            info: Info { primitives: binary.order.len(), ..Info::default() },
+            info,
         };
-        if plans.is_empty() {
-            return wide;
-        }
-        // A single block has no box to stand in, so the root is always a node.
-        let mut roots = Vec::with_capacity(N);
-        if plans[0].left[0] == 0 {
-            roots.push(0);
-        } else {
-            wide_roots(binary, &plans, 0, &mut roots);
-        }
-        wide.nodes.push(WideNode::EMPTY);
-        let mut open = vec![(0usize, roots, 0usize)];
-        while let Some((index, roots, depth)) = open.pop() {
-            wide.info.depth = wide.info.depth.max(depth + 1);
-            for (lane, &root) in roots.iter().enumerate() {
-                let (node, plan) = (&binary.nodes[root], &plans[root]);
-                let child = if plan.left[0] == 0 {
-                    let range = plan.first as usize..(plan.first + plan.count) as usize;
-                    let block = L::new(region, binary.order[range].iter().map(|&p| (p, primitives.corners(p))));
-                    wide.blocks.push(block);
-                    Child::Block { index: wide.blocks.len() as u32 - 1, count: plan.count }
-                } else {
-                    let mut below = Vec::with_capacity(N);
-                    wide_roots(binary, &plans, root, &mut below);
-                    wide.nodes.push(WideNode::EMPTY);
-                    open.push((wide.nodes.len() - 1, below, depth + 1));
-                    Child::Node(wide.nodes.len() as u32 - 1)
-                };
-                wide.nodes[index].set(lane, &node.aabb(), child);
-            }
-        }
-        wide.nodes.shrink_to_fit();
-        wide.blocks.shrink_to_fit();
-        wide.info.nodes = wide.nodes.len();
-        wide.info.leaves = wide.blocks.len();
         wide.info.sah_cost = wide.sah_cost();
-        // Each step down leaves at most N − 1 siblings behind.
-        wide.stack = wide.info.depth * (N - 1) + 1;
         wide
     }
 }
 
 /// Half the surface, but never nothing, so that flat and pointlike trees still count their nodes.
-fn area(bounds: &Aabb) -> f32 {
-    bounds.half_area().max(f32::MIN_POSITIVE)
+fn area(node: &Node) -> f32 {
+    node.aabb().half_area().max(f32::MIN_POSITIVE)
 }
 
-fn plan<const N: usize>(binary: &BinaryBvh, options: &Options) -> Vec<Plan<N>> {
-    let nothing = Plan { cost: [0.0; N], left: [0; N], share: 0, first: 0, count: 0 };
-    let mut plans = vec![nothing; binary.nodes.len()];
-    // Children come after their parents.
-    for (i, node) in binary.nodes.iter().enumerate().rev() {
-        let area = area(&node.aabb());
+/// The best ways to show every binary node as 1 to N roots.
+struct Plan<const N: usize> {
+    /// Of every inner node, by the pair of its children.
+    choices: Vec<AtomicU32>,
+}
+
+/// What is known of a binary node once it is planned.
+#[derive(Clone, Copy)]
+struct Planned<const N: usize> {
+    /// Least cost for at most i + 1 roots, times the area of nothing in particular.
+    cost: [f32; N],
+    /// How many primitives there are below.
+    count: u32,
+    leaf: bool,
+}
+
+/// The choices at an inner node, three bits each: 32 bits for what is the bulk of a plan's memory.
+#[derive(Clone, Copy)]
+struct Choice(u32);
+
+impl Choice {
+    /// A single root is a block of triangles.
+    const BLOCK: u32 = 1;
+
+    /// How many of so many roots, from 2 on, the left child gets; 0 where fewer roots do as well.
+    fn left(self, roots: usize) -> usize {
+        (self.0 >> (3 * roots) & 7) as usize
+    }
+
+    /// How many roots of a wide node made of this one the left child gets.
+    fn share(self) -> usize {
+        (self.0 >> 3 & 7) as usize
+    }
+
+    fn is_block(self) -> bool {
+        self.0 & Self::BLOCK != 0
+    }
+}
+
+impl<const N: usize> Plan<N> {
+    fn new(binary: &BinaryBvh, options: &Options) -> Self {
+        const { assert!(2 <= N && N <= 8, "choices have three bits") };
+        let mut plan = Self { choices: Vec::new() };
+        plan.choices.resize_with(binary.nodes.len() / 2, AtomicU32::default);
+        plan.plan(binary, options, 0, 0);
+        plan
+    }
+
+    /// The choice at an inner node. Pairs of children fill the array from its second node on.
+    fn at(&self, node: &Node) -> &AtomicU32 {
+        &self.choices[(node.index / 2) as usize]
+    }
+
+    fn choice(&self, node: &Node) -> Choice {
+        if node.is_leaf() { Choice(Choice::BLOCK) } else { Choice(self.at(node).load(Relaxed)) }
+    }
+
+    /// Plans all from `node` down, which lies `depth` steps below the root.
+    fn plan(&self, binary: &BinaryBvh, options: &Options, node: usize, depth: usize) -> Planned<N> {
+        /// Down to here, halves are planned side by side.
+        const PARALLEL: usize = 10;
+        let node = &binary.nodes[node];
+        let area = area(node);
         if node.is_leaf() {
             assert!(node.count as usize <= N, "a leaf fits a block");
-            let cost = [area * options.intersection_cost; N];
-            plans[i] = Plan { cost, first: node.index, count: node.count, ..nothing };
-            continue;
+            return Planned { cost: [area * options.intersection_cost; N], count: node.count, leaf: true };
         }
-        let [left, right] = node.children().map(|c| plans[c]);
-        let mut plan = Plan { first: left.first.min(right.first), count: left.count + right.count, ..nothing };
-        let shared = |roots: usize| {
-            (1..roots)
-                .map(|k| (left.cost[k - 1] + right.cost[roots - k - 1], k as u8))
-                .min_by(|a, b| a.0.total_cmp(&b.0))
-                .expect("at least two roots")
+        let below = |child| self.plan(binary, options, child, depth + 1);
+        let [left, right] = node.children();
+        let (left, right) =
+            if depth < PARALLEL { rayon::join(|| below(left), || below(right)) } else { (below(left), below(right)) };
+        let count = left.count + right.count;
+        let as_block = if count as usize <= N { area * options.intersection_cost } else { f32::INFINITY };
+        // Half of all nodes have two leaves below, which are shared out in one way only.
+        let (mut cost, share) = if left.leaf && right.leaf {
+            ([left.cost[0] + right.cost[0]; N], [1; N])
+        } else {
+            shared(&left.cost, &right.cost)
         };
-        let (below, share) = shared(N);
-        plan.share = share;
-        let as_block = if plan.count as usize <= N { area * options.intersection_cost } else { f32::INFINITY };
-        let as_node = below + area * options.traversal_cost;
-        (plan.cost[0], plan.left[0]) = if as_block <= as_node { (as_block, 0) } else { (as_node, 1) };
-        for roots in 2..=N {
-            let (cost, k) = shared(roots);
-            let fewer = plan.cost[roots - 2];
-            (plan.cost[roots - 1], plan.left[roots - 1]) = if cost < fewer { (cost, k) } else { (fewer, 0) };
+        let as_node = cost[N - 1] + area * options.traversal_cost;
+        let mut choice = u32::from(as_block <= as_node) | share[N - 1] << 3;
+        cost[0] = as_block.min(as_node);
+        for i in 1..N {
+            let fewer = cost[i - 1];
+            choice |= if cost[i] < fewer { share[i] << (3 * (i + 1)) } else { 0 };
+            cost[i] = if cost[i] < fewer { cost[i] } else { fewer };
         }
-        plans[i] = plan;
+        // A task of its own writes each, and is waited for before any is read.
+        self.at(node).store(choice, Relaxed);
+        Planned { cost, count, leaf: false }
     }
-    plans
 }
 
-/// The roots below a wide node made of `node`.
-fn wide_roots<const N: usize>(binary: &BinaryBvh, plans: &[Plan<N>], node: usize, roots: &mut Vec<usize>) {
-    let [left, right] = binary.nodes[node].children();
-    let share = plans[node].share as usize;
-    gather(binary, plans, left, share, roots);
-    gather(binary, plans, right, N - share, roots);
+/// For i + 1 roots, from 2 to N, the least cost of sharing them out between two children, and how many the left one
+/// gets then; of equals the fewest. In lines of N, so that they are computed side by side.
+#[inline(always)]
+fn shared<const N: usize>(left: &[f32; N], right: &[f32; N]) -> ([f32; N], [u32; N]) {
+    let (mut best, mut share) = ([f32::INFINITY; N], [0; N]);
+    // `right`, moved on by any number of roots, is a part of this.
+    let mut moved = [[f32::INFINITY; N]; 2];
+    moved[1] = *right;
+    let moved = moved.as_flattened();
+    for k in 1..N {
+        for i in 0..N {
+            let cost = left[k - 1] + moved[N + i - k];
+            share[i] = if cost < best[i] { k as u32 } else { share[i] };
+            best[i] = if cost < best[i] { cost } else { best[i] };
+        }
+    }
+    (best, share)
 }
 
-/// The best at most `count` roots for a binary node. Recursion ends after `count` steps that share and as many that
-/// lower it.
-fn gather<const N: usize>(binary: &BinaryBvh, plans: &[Plan<N>], node: usize, count: usize, roots: &mut Vec<usize>) {
-    let mut count = count;
-    while count > 1 && plans[node].left[count - 1] == 0 {
-        count -= 1;
+/// The wide tree before its nodes and leaves are made: what stands where.
+struct Outline<const N: usize> {
+    nodes: Vec<NodeOutline<N>>,
+    /// The primitives, leaf by leaf.
+    order: Vec<u32>,
+    /// How many each leaf has.
+    counts: Vec<u32>,
+    depth: usize,
+}
+
+/// Which binary nodes stand below a wide one, and what they become.
+#[derive(Clone)]
+struct NodeOutline<const N: usize> {
+    roots: [u32; N],
+    children: [Child; N],
+}
+
+impl<const N: usize> NodeOutline<N> {
+    const EMPTY: Self = Self { roots: [0; N], children: [Child::None; N] };
+
+    fn build(&self, binary: &BinaryBvh) -> WideNode<N> {
+        let mut children = [(Aabb::EMPTY, Child::None); N];
+        let mut count = 0;
+        for (&root, &child) in self.roots.iter().zip(&self.children).filter(|(_, c)| **c != Child::None) {
+            children[count] = (binary.nodes[root as usize].aabb(), child);
+            count += 1;
+        }
+        WideNode::new(&children[..count])
     }
-    if count == 1 {
-        roots.push(node);
-        return;
+}
+
+impl<const N: usize> Outline<N> {
+    const NOTHING: Self = Self { nodes: Vec::new(), order: Vec::new(), counts: Vec::new(), depth: 0 };
+
+    fn new(binary: &BinaryBvh, plan: &Plan<N>) -> Self {
+        let order = Vec::with_capacity(binary.order.len());
+        let mut outline = Self { nodes: vec![NodeOutline::EMPTY], order, counts: Vec::new(), depth: 0 };
+        let mut open = vec![(0, 0u32, 0)];
+        while let Some((index, top, depth)) = open.pop() {
+            outline.depth = outline.depth.max(depth + 1);
+            let mut roots = Held::<N>::new();
+            if plan.choice(&binary.nodes[top as usize]).is_block() {
+                // A single leaf has no box to stand in, so the root is always a node.
+                roots.push(top);
+            } else {
+                plan.wide_roots(binary, top, &mut roots);
+            }
+            for (lane, &root) in roots.items().iter().enumerate() {
+                let child = if plan.choice(&binary.nodes[root as usize]).is_block() {
+                    let mut held = Held::<N>::new();
+                    held.add(binary, root);
+                    let first = outline.order.len() as u32;
+                    outline.order.extend_from_slice(held.items());
+                    outline.counts.push(held.len as u32);
+                    Child::Leaf { first, count: held.len as u32 }
+                } else {
+                    outline.nodes.push(NodeOutline::EMPTY);
+                    let below = outline.nodes.len() - 1;
+                    open.push((below, root, depth + 1));
+                    Child::Node(below as u32)
+                };
+                let node = &mut outline.nodes[index];
+                (node.roots[lane], node.children[lane]) = (root, child);
+            }
+        }
+        outline
     }
-    let [left, right] = binary.nodes[node].children();
-    let share = plans[node].left[count - 1] as usize;
-    gather(binary, plans, left, share, roots);
-    gather(binary, plans, right, count - share, roots);
+}
+
+impl<const N: usize> Plan<N> {
+    /// The roots below a wide node made of `node`.
+    fn wide_roots(&self, binary: &BinaryBvh, node: u32, roots: &mut Held<N>) {
+        let node = &binary.nodes[node as usize];
+        let share = self.choice(node).share();
+        self.gather(binary, node.index, share, roots);
+        self.gather(binary, node.index + 1, N - share, roots);
+    }
+
+    /// The best at most `count` roots for a binary node. Recursion ends after `count` steps that share and as many that
+    /// lower it.
+    fn gather(&self, binary: &BinaryBvh, top: u32, mut count: usize, roots: &mut Held<N>) {
+        let node = &binary.nodes[top as usize];
+        let choice = self.choice(node);
+        while count > 1 && choice.left(count) == 0 {
+            count -= 1;
+        }
+        if count == 1 {
+            roots.push(top);
+            return;
+        }
+        let share = choice.left(count);
+        self.gather(binary, node.index, share, roots);
+        self.gather(binary, node.index + 1, count - share, roots);
+    }
+}
+
+/// At most N numbers, held in place.
+struct Held<const N: usize> {
+    items: [u32; N],
+    len: usize,
+}
+
+impl<const N: usize> Held<N> {
+    fn new() -> Self {
+        Self { items: [0; N], len: 0 }
+    }
+
+    fn push(&mut self, item: u32) {
+        self.items[self.len] = item;
+        self.len += 1;
+    }
+
+    fn items(&self) -> &[u32] {
+        &self.items[..self.len]
+    }
+
+    /// Adds the primitives below a binary node.
+    fn add(&mut self, binary: &BinaryBvh, node: u32) {
+        let node = &binary.nodes[node as usize];
+        if node.is_leaf() {
+            binary.order[node.index as usize..(node.index + node.count) as usize].iter().for_each(|&p| self.push(p));
+        } else {
+            self.add(binary, node.index);
+            self.add(binary, node.index + 1);
+        }
+    }
 }

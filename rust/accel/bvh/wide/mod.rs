@@ -2,6 +2,7 @@
 
 mod batch;
 mod collapse;
+mod nearest;
 mod node;
 mod packet;
 mod refit;
@@ -9,31 +10,34 @@ mod single;
 mod step;
 mod wave;
 
-use super::build;
+use super::Quality;
 use crate::accel::query::{Answers, Query};
-use crate::accel::{Info, Primitives};
-use crate::math::{Aabb, Ray, Region};
-use crate::shapes::triangle::Leaf;
+use crate::accel::{Info, Nearest, Primitives};
+use crate::math::{Aabb, DVec3, Ray, Region};
+use crate::shapes::triangle::Leaves;
 use crate::simd::{Dispatch, Level};
 use batch::Batch;
 use node::{Child, WideNode};
 use rayon::prelude::*;
 use std::time::Instant;
 
-/// How to build a [`WideBvh`].
+/// How to build a wide tree.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
-    /// Bins an axis of the surface-area builder, from 2 to [`build::binned::MAX_BINS`].
-    pub bins: usize,
+    /// How much time the build may take.
+    pub quality: Quality,
+    /// Bins an axis of the surface-area builder, from 2 to [`MAX_BINS`](super::build::binned::MAX_BINS); as many as suit the quality if none.
+    pub bins: Option<usize>,
     /// Cost of testing a node's boxes.
     pub traversal_cost: f32,
-    /// Cost of testing a block of triangles.
+    /// Cost of testing a leaf of triangles.
     pub intersection_cost: f32,
 }
 
 impl Options {
     /// Good for most scenes.
-    pub const DEFAULT: Self = Self { bins: 16, traversal_cost: 1.0, intersection_cost: 1.0 };
+    pub const DEFAULT: Self =
+        Self { quality: Quality::Balanced, bins: None, traversal_cost: 1.0, intersection_cost: 1.0 };
 }
 
 impl Default for Options {
@@ -47,7 +51,7 @@ impl Default for Options {
 pub struct WideBvh<const N: usize, L> {
     /// Empty only if there are no primitives.
     nodes: Vec<WideNode<N>>,
-    blocks: Vec<L>,
+    leaves: L,
     /// Where the triangles lie; boxes are kept in its units.
     region: Region,
     /// Entries that a stack can need.
@@ -57,26 +61,56 @@ pub struct WideBvh<const N: usize, L> {
     info: Info,
 }
 
-impl<const N: usize, L: Leaf<N>> WideBvh<N, L> {
+impl<const N: usize, L: Leaves<N>> WideBvh<N, L> {
     /// Builds a tree over triangles.
+    ///
+    /// # Panics
+    /// If the level has fewer than `N` lanes.
     pub fn new(primitives: &dyn Primitives, options: &Options, level: Level) -> Self {
+        assert!(level.lanes() >= N, "{N} lanes at {}", level.name());
         let start = Instant::now();
         let region = primitives.region();
         let boxes: Vec<Aabb> =
             (0..primitives.count() as u32).into_par_iter().map(|p| aabb(primitives, &region, p)).collect();
-        let binary = build::binned::build(&boxes, options.bins);
+        let mut steps = options.quality.steps(N);
+        steps.binned.bins = options.bins.unwrap_or(steps.binned.bins);
+        let binary = steps.build(&boxes);
         drop(boxes);
         let mut bvh = Self::collapse(&binary, primitives, &region, options);
         bvh.level = level;
-        bvh.info.kind = format!("BVH, {N} wide, binned SAH, {}", L::PRECISION);
-        bvh.info.bytes = size_of_val(bvh.nodes.as_slice()) + size_of_val(bvh.blocks.as_slice());
+        let improved = if steps.reinsertion.rounds > 0 { " and reinsertion" } else { "" };
+        bvh.info.kind = format!("BVH, {N} wide, binned SAH{improved}, {}", L::PRECISION);
+        bvh.info.bytes = size_of_val(bvh.nodes.as_slice()) + bvh.leaves.bytes();
         bvh.info.build_seconds = start.elapsed().as_secs_f64();
         bvh
     }
+}
 
-    /// Checks what traversal relies on: boxes hold what is below them, every primitive that can be hit stands in one
+/// The box around a primitive in a region's units; empty if nothing can hit it.
+fn aabb(primitives: &dyn Primitives, region: &Region, primitive: u32) -> Aabb {
+    let corners = primitives.corners(primitive);
+    if corners.iter().all(|c| c.is_finite()) { region.aabb(corners) } else { Aabb::EMPTY }
+}
+
+impl<const N: usize, L: Leaves<N>> Answers for WideBvh<N, L>
+where
+    Level: Dispatch<N>,
+{
+    fn answer<Q: Query>(&self, rays: &[Ray], query: &mut Q) {
+        self.level.dispatch(Batch { bvh: self, rays, query });
+    }
+
+    fn nearest(&self, points: &[DVec3], max_distances: &[f64], nearest: &mut [Nearest]) {
+        self.level.dispatch(nearest::Points { bvh: self, points, max_distances, nearest });
+    }
+
+    fn refitted(&self, primitives: &dyn Primitives) -> Result<Self, String> {
+        self.refit(primitives)
+    }
+
+    /// Boxes hold what is below them, every primitive that can be hit stands in one
     /// block, once, with its corners, and the tree is no deeper than recorded.
-    pub fn validate(&self, primitives: &dyn Primitives) -> Result<(), String> {
+    fn validate(&self, primitives: &dyn Primitives) -> Result<(), String> {
         let mut met = vec![0u32; primitives.count()];
         let mut deepest = 0;
         let mut stack: Vec<(u32, usize)> = self.nodes.first().map(|_| (0, 0)).into_iter().collect();
@@ -84,30 +118,25 @@ impl<const N: usize, L: Leaf<N>> WideBvh<N, L> {
         while let Some((index, depth)) = stack.pop() {
             visited += 1;
             let node = self.nodes.get(index as usize).ok_or_else(|| format!("node {index} does not exist"))?;
-            for lane in 0..N {
-                let (child, outer) = (node.child(lane), node.aabb(lane));
+            for (outer, child) in node.children() {
+                deepest = deepest.max(depth + 1);
                 match child {
-                    Child::None if outer.is_empty() => {}
-                    Child::None => return Err(format!("node {index} has a box but no child in lane {lane}")),
+                    Child::None => return Err(format!("node {index} has a box but no child in it")),
                     Child::Node(below) => {
                         if below <= index {
                             return Err(format!("node {index} has child {below}"));
                         }
-                        deepest = deepest.max(depth + 1);
                         stack.push((below, depth + 1));
                         let inner = self.nodes.get(below as usize).map_or(Aabb::EMPTY, WideNode::bounds);
                         if inner.is_empty() || !outer.contains(&inner) {
                             return Err(format!("node {index} does not hold its child {below}"));
                         }
                     }
-                    Child::Block { index: block, count } => {
-                        deepest = deepest.max(depth + 1);
-                        let block = &self.blocks[block as usize];
-                        for lane in 0..count as usize {
-                            let p = block.lanes().primitives()[lane];
+                    Child::Leaf { first, count } => {
+                        for (lane, p) in self.leaves.primitives(first as usize, count).enumerate() {
                             met[p as usize] += 1;
-                            if block.corners(lane) != primitives.corners(p) {
-                                return Err(format!("primitive {p} has other corners in its block"));
+                            if self.leaves.corners(first as usize, count, lane) != primitives.corners(p) {
+                                return Err(format!("primitive {p} has other corners in its leaf"));
                             }
                             if !outer.contains(&aabb(primitives, &self.region, p)) {
                                 return Err(format!("node {index} does not hold primitive {p}"));
@@ -124,28 +153,9 @@ impl<const N: usize, L: Leaf<N>> WideBvh<N, L> {
             return Err(format!("depth is {deepest}, not {}", self.info.depth));
         }
         match (0..met.len()).find(|&p| met[p] != u32::from(primitives.is_finite(p as u32))) {
-            Some(p) => Err(format!("primitive {p} stands in {} blocks", met[p])),
+            Some(p) => Err(format!("primitive {p} stands in {} leaves", met[p])),
             None => Ok(()),
         }
-    }
-}
-
-/// The box around a primitive in a region's units; empty if nothing can hit it.
-fn aabb(primitives: &dyn Primitives, region: &Region, primitive: u32) -> Aabb {
-    let corners = primitives.corners(primitive);
-    if corners.iter().all(|c| c.is_finite()) { region.aabb(corners) } else { Aabb::EMPTY }
-}
-
-impl<const N: usize, L: Leaf<N>> Answers for WideBvh<N, L>
-where
-    Level: Dispatch<N>,
-{
-    fn answer<Q: Query>(&self, rays: &[Ray], query: &mut Q) {
-        self.level.dispatch(Batch { bvh: self, rays, query });
-    }
-
-    fn refitted(&self, primitives: &dyn Primitives) -> Result<Self, String> {
-        self.refit(primitives)
     }
 
     fn info(&self) -> &Info {

@@ -1,45 +1,44 @@
 //! Sixteen rays together: nodes are tested against all of them at once, by intervals; only before what is below a child is
-//! visited are its box and each ray tested, and where few are left they go on alone.
+//! visited are its box and each ray tested, and where few are left they go on alone. (Boulos et al., "Packet-based Whitted
+//! and Distribution Ray Tracing", 2007.) In leaves, a triangle is tested against all rays, or a ray against all triangles,
+//! whichever is less work.
 //!
 //! The interval test: along an axis on which all rays go the same way, ray i meets the nearer plane of a box no earlier than
 //! `(plane − o) · r`, with o the latest origin of all rays, moved on by the pad, and r the least or the greatest inverse
 //! of all directions, whichever gives less. It errs by no more than the slab test of a single ray (`accel/slab.rs`): v·|o| for
 //! rounding the origin and as much for moving it, v·(|plane| + |o|) for the difference, and 2v + v of it for the inverse and
-//! the product: less than 6v·R in units of |r|. (Boulos et al., "Packet-based Whitted and Distribution Ray Tracing", 2007.)
+//! the product: less than 6v·R in units of |r|.
 
+use super::WideBvh;
 use super::node::{Packed, WideNode};
-use super::step::{Entry, nearest, pop};
-use super::{WideBvh, single};
-use crate::accel::SlabRay;
+use super::single::{self, Alone};
+use super::step::{Boxes, Stacks};
 use crate::accel::query::Query;
+use crate::accel::slab::{Clock, SlabRays};
 use crate::math::Ray;
 use crate::math::robust::{greater, lesser};
-use crate::shapes::triangle::{EdgeRay, Leaf};
+use crate::shapes::triangle::{ALL, Along, BlockRays, Candidate, Column, Contact, EdgeRay, EdgeRays, Leaves, RAYS};
 use crate::simd::Simd;
-
-/// Rays of a packet: two vectors of eight lanes.
-const RAYS: usize = 16;
 
 /// So many rays or fewer go on alone.
 const FEW: u32 = 4;
 
-/// Rays of one packet, by what the tests need. One is filled again and again.
-struct Packet<T> {
-    edges: Vec<EdgeRay>,
-    slabs: Vec<SlabRay>,
-    states: Vec<T>,
-    /// Which of the batch.
-    rays: Vec<usize>,
-    /// By axis.
-    inverse: [[f32; RAYS]; 3],
-    near: [[f32; RAYS]; 3],
-    far: [[f32; RAYS]; 3],
-    t_min: [f32; RAYS],
+/// So many rays or fewer are decided in f64 one by one.
+const FEW_MET: u32 = 2;
+
+/// Rays of one packet, all plain ([`EdgeRays::prepare`]) and going the same way along every axis.
+struct Packet<'a, T> {
+    /// As given; fewer than sixteen at the end of a batch.
+    rays: &'a [Ray],
+    edges: &'a EdgeRays,
+    slabs: &'a SlabRays,
+    blocks: BlockRays,
+    states: [T; RAYS],
     /// Where in box units the query loses interest; −∞ for rays that are answered or missing.
-    limit: [f32; RAYS],
+    limit: Column<f32>,
+    bounds: Bounds,
     /// The plane that is met first, by axis; for all rays.
     first: [usize; 3],
-    bounds: Bounds,
 }
 
 /// What holds for all rays of a packet.
@@ -53,134 +52,117 @@ struct Bounds {
     t_min: f32,
 }
 
+/// A child that is still to be visited, known by its node and lane, and from where on.
+#[derive(Clone, Copy)]
+struct Entry {
+    near: f32,
+    place: u32,
+}
+
 /// Answers all rays; the tree is not empty.
 #[inline(always)]
-pub fn answer<const N: usize, L: Leaf<N>, S: Simd<N>, Q: Query>(
+pub fn answer<const N: usize, L: Leaves<N>, S: Simd<N>, Q: Query>(
     simd: S,
     bvh: &WideBvh<N, L>,
     rays: &[Ray],
     query: &mut Q,
 ) {
-    let mut stack = vec![Entry::new(0.0, 0u32); bvh.stack];
-    let mut lone = single::stack(bvh);
-    let mut packet = Packet::<Q::State>::new();
-    let mut start = 0;
-    for chunk in rays.chunks(RAYS) {
-        packet.gather(bvh, chunk, start, query);
-        if packet.is_aligned() {
-            packet.collect();
-            packet.walk(simd, bvh, query, &mut stack, &mut lone);
-        } else {
-            for i in 0..packet.rays.len() {
-                packet.walk_alone(simd, bvh, Packed::ROOT, i, query, &mut lone);
-            }
+    let mut stack = vec![Entry { near: 0.0, place: 0 }; bvh.stack];
+    let mut lone = Stacks::new::<N>(1, bvh.stack);
+    // The next packet's columns are written before this one is walked: a wide load must wait for narrow stores.
+    let mut edges = [EdgeRays::default(), EdgeRays::default()];
+    let mut slabs = SlabRays::default();
+    edges[0].transpose(&rays[..rays.len().min(RAYS)]);
+    for (turn, chunk) in rays.chunks(RAYS).enumerate() {
+        let start = turn * RAYS;
+        if start + RAYS < rays.len() {
+            edges[(turn + 1) & 1].transpose(&rays[start + RAYS..rays.len().min(start + 2 * RAYS)]);
         }
-        packet.finish(query);
-        start += chunk.len();
+        let edges = &mut edges[turn & 1];
+        let mut first = None;
+        if chunk.len() as u32 > FEW && edges.prepare(&bvh.region) {
+            slabs.prepare(edges, &bvh.region);
+            first = slabs.first();
+        }
+        let Some(first) = first else {
+            for (i, ray) in chunk.iter().enumerate() {
+                single::ask(simd, bvh, ray, start + i, query, &mut lone);
+            }
+            continue;
+        };
+        let mut packet = Packet {
+            rays: chunk,
+            edges,
+            slabs: &slabs,
+            blocks: L::rays(edges, &bvh.region),
+            states: [query.start(start, edges.t_max[0]); RAYS],
+            limit: [f32::NEG_INFINITY; RAYS],
+            bounds: Bounds::of(&slabs, first),
+            first,
+        };
+        for i in 0..chunk.len() {
+            packet.states[i] = query.start(start + i, edges.t_max[i]);
+            packet.limit[i] = Clock::of(&bvh.region).limit(Q::limit(&packet.states[i]));
+        }
+        packet.walk(simd, bvh, query, &mut stack, &mut lone);
+        for i in 0..chunk.len() {
+            let along = Along { scale: packet.edges.scale[i], largest: packet.edges.largest[i] };
+            query.finish(start + i, Some((along, packet.states[i])));
+        }
     }
 }
 
-impl<T: Copy> Packet<T> {
-    fn new() -> Self {
-        Self {
-            edges: Vec::with_capacity(RAYS),
-            slabs: Vec::with_capacity(RAYS),
-            states: Vec::with_capacity(RAYS),
-            rays: Vec::with_capacity(RAYS),
-            inverse: [[0.0; RAYS]; 3],
-            near: [[0.0; RAYS]; 3],
-            far: [[0.0; RAYS]; 3],
-            t_min: [0.0; RAYS],
-            limit: [0.0; RAYS],
-            first: [0; 3],
-            bounds: Bounds { near: [0.0; 3], far: [0.0; 3], inverse: [[0.0; 2]; 3], t_min: 0.0 },
-        }
-    }
-
-    /// Readies the rays that may hit something, and answers the others.
+impl Bounds {
     #[inline(always)]
-    fn gather<const N: usize, L: Leaf<N>, Q: Query<State = T>>(
-        &mut self,
-        bvh: &WideBvh<N, L>,
-        rays: &[Ray],
-        start: usize,
-        query: &mut Q,
-    ) {
-        self.edges.clear();
-        self.slabs.clear();
-        self.states.clear();
-        self.rays.clear();
-        self.limit = [f32::NEG_INFINITY; RAYS];
-        for (i, ray) in rays.iter().enumerate() {
-            let Some((edges, slabs)) = SlabRay::prepare(ray, &bvh.region) else {
-                query.finish(start + i, None);
-                continue;
-            };
-            let state = query.start(start + i, &edges);
-            self.limit[self.rays.len()] = slabs.limit(Q::limit(&state));
-            self.edges.push(edges);
-            self.slabs.push(slabs);
-            self.states.push(state);
-            self.rays.push(start + i);
-        }
-        if let Some(slabs) = self.slabs.first() {
-            self.first = slabs.first;
-        }
-    }
-
-    /// Whether all rays go the same way along every axis, and are enough to go together.
-    fn is_aligned(&self) -> bool {
-        self.rays.len() as u32 > FEW && self.slabs.iter().all(|s| s.first == self.first)
-    }
-
-    /// Lays the rays out by axis and finds what holds for all. Rays that are missing repeat the first.
-    #[inline(always)]
-    fn collect(&mut self) {
-        self.bounds = Bounds {
+    fn of(slabs: &SlabRays, first: [usize; 3]) -> Self {
+        let mut bounds = Self {
             near: [f32::NEG_INFINITY; 3],
             far: [f32::INFINITY; 3],
             inverse: [[f32::INFINITY, 0.0]; 3],
             t_min: f32::INFINITY,
         };
-        let bounds = &mut self.bounds;
-        let towards = self.first.map(|first| if first == 0 { 1.0 } else { -1.0 });
         for i in 0..RAYS {
-            let slabs = &self.slabs[if i < self.slabs.len() { i } else { 0 }];
-            for axis in 0..3 {
-                self.inverse[axis][i] = slabs.inverse[axis];
-                self.near[axis][i] = slabs.near[axis];
-                self.far[axis][i] = slabs.far[axis];
-                let (origin, size) = (towards[axis] * slabs.origin[axis], slabs.inverse[axis].abs());
-                bounds.near[axis] = greater(bounds.near[axis], origin + slabs.pad);
-                bounds.far[axis] = lesser(bounds.far[axis], origin - slabs.pad);
-                let [least, greatest] = bounds.inverse[axis];
-                bounds.inverse[axis] = [lesser(least, size), greater(greatest, size)];
-            }
-            self.t_min[i] = slabs.t_min;
-            bounds.t_min = lesser(bounds.t_min, slabs.t_min);
+            bounds.t_min = lesser(bounds.t_min, slabs.t_min[i]);
         }
         for axis in 0..3 {
-            bounds.near[axis] *= towards[axis];
-            bounds.far[axis] *= towards[axis];
-            bounds.inverse[axis] = bounds.inverse[axis].map(|size| towards[axis] * size);
+            let towards = if first[axis] == 0 { 1.0 } else { -1.0 };
+            let (mut near, mut far) = (f32::NEG_INFINITY, f32::INFINITY);
+            let (mut least, mut greatest) = (f32::INFINITY, 0.0);
+            for i in 0..RAYS {
+                let (origin, size) = (towards * slabs.origin[axis][i], slabs.inverse[axis][i].abs());
+                near = greater(near, origin + slabs.pad[i]);
+                far = lesser(far, origin - slabs.pad[i]);
+                least = lesser(least, size);
+                greatest = greater(greatest, size);
+            }
+            bounds.near[axis] = near * towards;
+            bounds.far[axis] = far * towards;
+            bounds.inverse[axis] = [least * towards, greatest * towards];
         }
+        bounds
     }
+}
 
+impl<T: Copy> Packet<'_, T> {
     /// Where the last ray loses interest.
     #[inline(always)]
     fn last_limit(&self) -> f32 {
-        self.limit.iter().fold(f32::NEG_INFINITY, |a, &b| greater(b, a))
+        let mut last = f32::NEG_INFINITY;
+        for i in 0..RAYS {
+            last = greater(self.limit[i], last);
+        }
+        last
     }
 
     /// Visits all that any ray may hit.
     #[inline(always)]
-    fn walk<const N: usize, L: Leaf<N>, S: Simd<N>, Q: Query<State = T>>(
+    fn walk<const N: usize, L: Leaves<N>, S: Simd<N>, Q: Query<State = T>>(
         &mut self,
         simd: S,
         bvh: &WideBvh<N, L>,
         query: &mut Q,
-        stack: &mut [Entry<u32>],
-        lone: &mut [Entry],
+        stack: &mut [Entry],
+        lone: &mut Stacks,
     ) {
         let mut limit = self.last_limit();
         let (mut top, mut index) = (0, 0);
@@ -189,54 +171,132 @@ impl<T: Copy> Packet<T> {
             let (nears, fars) = self.interval(simd, node, limit);
             // A child is known by its node and lane, so that its box is at hand when it is popped.
             let place = (index * N) as u32;
-            let mut next = nearest(simd, nears, simd.le(nears, fars), |lane| place + lane as u32, stack, &mut top);
+            let mut next = nearest(simd, nears, simd.le(nears, fars), place, stack, &mut top);
             loop {
                 let Some(place) = next.take().or_else(|| pop(stack, &mut top, limit)) else { return };
                 let (parent, lane) = (&bvh.nodes[place as usize / N], place as usize & (N - 1));
                 let mut active = self.meeting(simd, parent, lane);
-                let child = parent.packed(lane);
-                if let Some(below) = child.node() {
-                    if active.count_ones() > FEW {
-                        index = below;
-                        continue 'down;
+                let child = Packed::of(parent.children[lane]);
+                if child.is_leaf() == 1 {
+                    if active != 0 {
+                        let (first, count) = child.leaf();
+                        self.visit_leaf(simd, bvh, first, count, active, query);
+                        limit = self.last_limit();
                     }
-                    while active != 0 {
-                        let i = active.trailing_zeros() as usize & (RAYS - 1);
-                        active &= active - 1;
-                        self.walk_alone(simd, bvh, child, i, query, lone);
-                    }
-                } else {
-                    let (block, count) = child.block();
-                    let block = &bvh.blocks[block];
-                    while active != 0 {
-                        let i = active.trailing_zeros() as usize & (RAYS - 1);
-                        active &= active - 1;
-                        let (edges, state) = (&self.edges[i], &mut self.states[i]);
-                        let lanes = L::ray(simd, edges, &bvh.region);
-                        Q::visit_leaf(state, count);
-                        let offer = |p, candidate| query.offer(state, p, candidate);
-                        let answered = block.meet(simd, &lanes, edges, count, offer);
-                        self.limit[i] = if answered { f32::NEG_INFINITY } else { self.slabs[i].limit(Q::limit(state)) };
-                    }
+                    continue;
+                }
+                if active.count_ones() > FEW {
+                    index = child.node();
+                    continue 'down;
+                }
+                while active != 0 {
+                    let i = active.trailing_zeros() as usize & (RAYS - 1);
+                    active &= active - 1;
+                    self.walk_alone(simd, bvh, child, i, query, lone);
                 }
                 limit = self.last_limit();
             }
         }
     }
 
+    /// Tests a leaf against the rays in `active`.
     #[inline(always)]
-    fn walk_alone<const N: usize, L: Leaf<N>, S: Simd<N>, Q: Query<State = T>>(
+    fn visit_leaf<const N: usize, L: Leaves<N>, S: Simd<N>, Q: Query<State = T>>(
+        &mut self,
+        simd: S,
+        bvh: &WideBvh<N, L>,
+        first: usize,
+        count: u32,
+        active: u32,
+        query: &mut Q,
+    ) {
+        // By lane, the rays that may meet it.
+        let mut left = [0u32; 8];
+        if active.count_ones() > 2 * count {
+            for lane in 0..count as usize {
+                left[lane & 7] = active & bvh.leaves.rays_not_rejected(simd, &self.blocks, first, count, lane);
+            }
+        } else {
+            let mut rest = active;
+            while rest != 0 {
+                let i = rest.trailing_zeros() as usize & (RAYS - 1);
+                rest &= rest - 1;
+                let mut lanes = bvh.leaves.not_rejected(simd, &self.blocks.of(i), first, count);
+                while lanes != 0 {
+                    left[lanes.trailing_zeros() as usize & 7] |= 1 << i;
+                    lanes &= lanes - 1;
+                }
+            }
+        }
+        let mut changed = 0;
+        for lane in 0..count as usize {
+            let mut rays = left[lane & 7];
+            if rays == 0 {
+                continue;
+            }
+            let corners = bvh.leaves.corners(first, count, lane);
+            let primitive = bvh.leaves.primitive(first, count, lane);
+            if rays.count_ones() > FEW_MET {
+                let met = self.edges.meet(corners, rays);
+                rays = met.open;
+                let mut certain = met.met;
+                changed |= certain;
+                while certain != 0 {
+                    let i = certain.trailing_zeros() as usize & (RAYS - 1);
+                    certain &= certain - 1;
+                    let uv = [met.uv[0][i], met.uv[1][i]];
+                    let candidate = Candidate { t: met.t[i], uv, contact: Contact::Inside };
+                    self.offer(query, i, primitive, candidate);
+                }
+            }
+            changed |= rays;
+            while rays != 0 {
+                let i = rays.trailing_zeros() as usize & (RAYS - 1);
+                rays &= rays - 1;
+                if let Some(candidate) = self.edge(bvh, i).and_then(|ray| ray.meet(corners)) {
+                    self.offer(query, i, primitive, candidate);
+                }
+            }
+        }
+        while changed != 0 {
+            let i = changed.trailing_zeros() as usize & (RAYS - 1);
+            changed &= changed - 1;
+            if self.limit[i] > f32::NEG_INFINITY {
+                self.limit[i] = Clock::of(&bvh.region).limit(Q::limit(&self.states[i]));
+            }
+        }
+    }
+
+    /// Offers a ray a triangle that it meets, unless it is answered.
+    #[inline(always)]
+    fn offer<Q: Query<State = T>>(&mut self, query: &mut Q, i: usize, primitive: u32, candidate: Candidate) {
+        if self.limit[i] > f32::NEG_INFINITY && query.offer(&mut self.states[i], primitive, candidate) {
+            self.limit[i] = f32::NEG_INFINITY;
+        }
+    }
+
+    /// One of the rays.
+    #[inline(always)]
+    fn edge<const N: usize, L>(&self, bvh: &WideBvh<N, L>, i: usize) -> Option<EdgeRay> {
+        EdgeRay::new(&self.rays[i], &bvh.region)
+    }
+
+    #[inline(always)]
+    fn walk_alone<const N: usize, L: Leaves<N>, S: Simd<N>, Q: Query<State = T>>(
         &mut self,
         simd: S,
         bvh: &WideBvh<N, L>,
         child: Packed,
         i: usize,
         query: &mut Q,
-        stack: &mut [Entry],
+        stacks: &mut Stacks,
     ) {
-        let (edges, slabs, state) = (&self.edges[i], &self.slabs[i], &mut self.states[i]);
-        let answered = single::walk(simd, bvh, child, edges, slabs, query, state, stack);
-        self.limit[i] = if answered { f32::NEG_INFINITY } else { slabs.limit(Q::limit(state)) };
+        let Some(edges) = self.edge(bvh, i) else { return };
+        let alone = Alone { lanes: &self.blocks.of(i), edges: &edges, clock: Clock::of(&bvh.region) };
+        let boxes = Boxes::of(self.slabs, self.first, i, self.limit[i], child, 0);
+        let answered = alone.walk(simd, bvh, boxes, query, &mut self.states[i], stacks);
+        self.limit[i] =
+            if answered { f32::NEG_INFINITY } else { Clock::of(&bvh.region).limit(Q::limit(&self.states[i])) };
     }
 
     /// From where at the earliest to where at the latest any ray is in each child.
@@ -248,8 +308,8 @@ impl<T: Copy> Packet<T> {
             let first = self.first[axis] & 1;
             let [least, greatest] =
                 [simd.splat(self.bounds.inverse[axis][0]), simd.splat(self.bounds.inverse[axis][1])];
-            let near = simd.sub(simd.load(&node.bounds[axis][first]), simd.splat(self.bounds.near[axis]));
-            let far = simd.sub(simd.load(&node.bounds[axis][first ^ 1]), simd.splat(self.bounds.far[axis]));
+            let near = simd.sub(simd.load(&node.planes[axis][first]), simd.splat(self.bounds.near[axis]));
+            let far = simd.sub(simd.load(&node.planes[axis][first ^ 1]), simd.splat(self.bounds.far[axis]));
             nears = simd.max(nears, simd.min(simd.mul(near, least), simd.mul(near, greatest)));
             fars = simd.min(fars, simd.max(simd.mul(far, least), simd.mul(far, greatest)));
         }
@@ -261,25 +321,69 @@ impl<T: Copy> Packet<T> {
     fn meeting<const N: usize, S: Simd<N>>(&self, simd: S, node: &WideNode<N>, lane: usize) -> u32 {
         let mut meeting = 0;
         for part in 0..RAYS / N {
-            let mut nears = simd.load(&self.t_min.as_chunks::<N>().0[part]);
+            let mut nears = simd.load(&self.slabs.t_min.as_chunks::<N>().0[part]);
             let mut fars = simd.load(&self.limit.as_chunks::<N>().0[part]);
             for axis in 0..3 {
                 let first = self.first[axis] & 1;
-                let inverse = simd.load(&self.inverse[axis].as_chunks::<N>().0[part]);
-                let near = simd.load(&self.near[axis].as_chunks::<N>().0[part]);
-                let far = simd.load(&self.far[axis].as_chunks::<N>().0[part]);
-                nears = simd.max(nears, simd.mul_add(simd.splat(node.bounds[axis][first][lane]), inverse, near));
-                fars = simd.min(fars, simd.mul_add(simd.splat(node.bounds[axis][first ^ 1][lane]), inverse, far));
+                let inverse = simd.load(&self.slabs.inverse[axis].as_chunks::<N>().0[part]);
+                let near = simd.load(&self.slabs.near[axis].as_chunks::<N>().0[part]);
+                let far = simd.load(&self.slabs.far[axis].as_chunks::<N>().0[part]);
+                nears = simd.max(nears, simd.mul_add(simd.splat(node.planes[axis][first][lane]), inverse, near));
+                fars = simd.min(fars, simd.mul_add(simd.splat(node.planes[axis][first ^ 1][lane]), inverse, far));
             }
             meeting |= simd.le(nears, fars) << (part * N);
         }
-        meeting
+        meeting & ALL
     }
+}
 
-    #[inline(always)]
-    fn finish<Q: Query<State = T>>(&self, query: &mut Q) {
-        for i in 0..self.rays.len() {
-            query.finish(self.rays[i], Some((&self.edges[i], self.states[i])));
+/// The nearest of the children in the lanes of `hit`, the first of which is `place`; the others go on to the stack, the
+/// farther the deeper.
+#[inline(always)]
+fn nearest<const N: usize, S: Simd<N>>(
+    simd: S,
+    nears: S::F32,
+    mut hit: u32,
+    place: u32,
+    stack: &mut [Entry],
+    top: &mut usize,
+) -> Option<u32> {
+    if hit == 0 {
+        return None;
+    }
+    let mut distances = [0f32; N];
+    simd.store(nears, &mut distances);
+    let lane = hit.trailing_zeros() as usize & (N - 1);
+    hit &= hit - 1;
+    let mut best = Entry { near: distances[lane], place: place + lane as u32 };
+    let bottom = *top;
+    while hit != 0 {
+        let lane = hit.trailing_zeros() as usize & (N - 1);
+        hit &= hit - 1;
+        let mut entry = Entry { near: distances[lane], place: place + lane as u32 };
+        if entry.near < best.near {
+            std::mem::swap(&mut entry, &mut best);
+        }
+        let mut at = *top;
+        while at > bottom && stack[at - 1].near < entry.near {
+            stack[at] = stack[at - 1];
+            at -= 1;
+        }
+        stack[at] = entry;
+        *top += 1;
+    }
+    Some(best.place)
+}
+
+/// What is on top of the stack and still of interest.
+#[inline(always)]
+fn pop(stack: &[Entry], top: &mut usize, limit: f32) -> Option<u32> {
+    while *top > 0 {
+        *top -= 1;
+        // What starts exactly at the limit may hold an equal t of a lower primitive.
+        if stack[*top].near <= limit {
+            return Some(stack[*top].place);
         }
     }
+    None
 }

@@ -4,11 +4,11 @@ use super::node::{Child, WideNode};
 use super::{WideBvh, aabb};
 use crate::accel::{Info, Primitives};
 use crate::math::Aabb;
-use crate::shapes::triangle::Leaf;
+use crate::shapes::triangle::Leaves;
 use rayon::prelude::*;
 use std::time::Instant;
 
-impl<const N: usize, L: Leaf<N>> WideBvh<N, L> {
+impl<const N: usize, L: Leaves<N>> WideBvh<N, L> {
     /// The tree with the corners of `primitives` and boxes around them; which child stands where stays as it was. How much
     /// worse it has become its [`Info::sah_cost`] tells.
     pub(super) fn refit(&self, primitives: &dyn Primitives) -> Result<Self, String> {
@@ -17,55 +17,47 @@ impl<const N: usize, L: Leaf<N>> WideBvh<N, L> {
             return Err("corners that are f64 do not fit leaves of f32".into());
         }
         let region = primitives.region();
-        let triangles = |block: &L, count: u32| -> Result<Vec<_>, String> {
-            let numbers = &block.lanes().primitives()[..count as usize];
-            numbers
-                .iter()
-                .map(|&p| {
-                    if (p as usize) < primitives.count() && primitives.is_finite(p) {
-                        Ok((p, primitives.corners(p)))
-                    } else {
-                        Err(format!("primitive {p} could be hit, and cannot any more"))
-                    }
-                })
-                .collect()
-        };
         let finite = (0..primitives.count() as u32).into_par_iter().filter(|&p| primitives.is_finite(p)).count();
         if finite != self.info.primitives {
             return Err(format!("{finite} primitives can be hit, not {}", self.info.primitives));
         }
-        let mut counts = vec![0; self.blocks.len()];
-        for node in &self.nodes {
-            for lane in 0..N {
-                if let Child::Block { index, count } = node.child(lane) {
-                    counts[index as usize] = count;
-                }
+        // Leaf by leaf, as they stand.
+        let mut leaves: Vec<(usize, u32)> = Vec::with_capacity(self.info.leaves);
+        for (_, child) in self.nodes.iter().flat_map(WideNode::children) {
+            if let Child::Leaf { first, count } = child {
+                leaves.push((first as usize, count));
             }
         }
-        let blocks: Vec<L> = self
-            .blocks
-            .par_iter()
-            .zip(&counts)
-            .map(|(block, &count)| Ok(L::new(&region, triangles(block, count)?)))
-            .collect::<Result<_, String>>()?;
+        leaves.sort_unstable();
+        let numbers: Vec<u32> =
+            leaves.iter().flat_map(|&(first, count)| self.leaves.primitives(first, count)).collect();
+        if let Some(&p) = numbers.iter().find(|&&p| p as usize >= primitives.count() || !primitives.is_finite(p)) {
+            return Err(format!("primitive {p} could be hit, and cannot any more"));
+        }
+        let counts: Vec<u32> = leaves.iter().map(|&(_, count)| count).collect();
+        let new = L::new(&region, &numbers, &counts, |p| primitives.corners(p));
+        let boxes: Vec<Aabb> = numbers.par_iter().map(|&p| aabb(primitives, &region, p)).collect();
         let mut nodes = self.nodes.clone();
         let mut around = vec![Aabb::EMPTY; nodes.len()];
         // Children come after their parents.
         for index in (0..nodes.len()).rev() {
-            for lane in 0..N {
-                let child = nodes[index].child(lane);
-                let bounds = match child {
-                    Child::None => continue,
-                    Child::Node(below) => around[below as usize],
-                    Child::Block { index, count } => blocks[index as usize].lanes().primitives()[..count as usize]
-                        .iter()
-                        .fold(Aabb::EMPTY, |b, &p| b.union(aabb(primitives, &region, p))),
-                };
-                nodes[index].set(lane, &bounds, child);
-            }
+            let children: Vec<_> = nodes[index]
+                .children()
+                .map(|(_, child)| {
+                    let bounds = match child {
+                        Child::None => Aabb::EMPTY,
+                        Child::Node(below) => around[below as usize],
+                        Child::Leaf { first, count } => boxes[first as usize..(first + count) as usize]
+                            .iter()
+                            .fold(Aabb::EMPTY, |b, &other| b.union(other)),
+                    };
+                    (bounds, child)
+                })
+                .collect();
+            nodes[index] = WideNode::new(&children);
             around[index] = nodes[index].bounds();
         }
-        let mut bvh = Self { nodes, blocks, region, info: self.info.clone(), ..*self };
+        let mut bvh = Self { nodes, leaves: new, region, info: self.info.clone(), ..*self };
         bvh.info = Info {
             kind: if self.info.kind.ends_with(", refitted") {
                 self.info.kind.clone()
@@ -85,16 +77,12 @@ impl<const N: usize, L: Leaf<N>> WideBvh<N, L> {
         let Some(root) = self.nodes.first() else { return 0.0 };
         let (node_cost, leaf_cost) =
             (f64::from(self.options.traversal_cost), f64::from(self.options.intersection_cost));
-        let below = |node: &WideNode<N>| -> f64 {
-            (0..N)
-                .map(|lane| match node.child(lane) {
-                    Child::None => 0.0,
-                    Child::Node(_) => node_cost * area(&node.aabb(lane)),
-                    Child::Block { .. } => leaf_cost * area(&node.aabb(lane)),
-                })
-                .sum()
+        let below = |(bounds, child): (Aabb, Child)| match child {
+            Child::None => 0.0,
+            Child::Node(_) => node_cost * area(&bounds),
+            Child::Leaf { .. } => leaf_cost * area(&bounds),
         };
         let root = area(&root.bounds());
-        node_cost + self.nodes.iter().map(below).sum::<f64>() / root
+        node_cost + self.nodes.iter().flat_map(WideNode::children).map(below).sum::<f64>() / root
     }
 }

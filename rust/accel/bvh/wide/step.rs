@@ -1,120 +1,151 @@
-//! What every kernel does at a node: test its children, go on to the nearest, remember the others.
+//! What rays do at a node: test its children, and put those that they meet on to a stack.
 
 use super::node::{Packed, WideNode};
-use crate::accel::SlabRay;
-use crate::simd::Simd;
+use crate::accel::slab::{SlabRay, SlabRays};
+use crate::shapes::triangle::RAYS;
+use crate::simd::{ASCENDING, Simd};
 
-/// What is still to be visited, and from where on.
-#[derive(Clone, Copy)]
-pub struct Entry<T = Packed> {
-    near: f32,
-    what: T,
+/// What a ray needs at nodes, a cache line.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
+pub struct Boxes {
+    inverse: [f32; 3],
+    near: [f32; 3],
+    far: [f32; 3],
+    t_min: f32,
+    /// Where in box units the query loses interest.
+    pub limit: f32,
+    /// Which planes are met first: bit i for axis i, set where the ray goes down.
+    octant: u32,
+    /// Where its stack ends.
+    top: u32,
+    /// Where it is.
+    pub at: Packed,
 }
 
-impl<T> Entry<T> {
-    /// Something that is met from `near` on; also what fills unused stacks.
-    pub const fn new(near: f32, what: T) -> Self {
-        Self { near, what }
-    }
-}
+impl Boxes {
+    /// No ray.
+    pub const NOWHERE: Self = Self {
+        inverse: [0.0; 3],
+        near: [0.0; 3],
+        far: [0.0; 3],
+        t_min: 0.0,
+        limit: 0.0,
+        octant: 0,
+        top: 0,
+        at: Packed::NONE,
+    };
 
-/// A ray's slabs in every lane.
-#[derive(Clone, Copy)]
-pub struct SlabLanes<const N: usize, S: Simd<N>> {
-    inverse: [S::F32; 3],
-    near: [S::F32; 3],
-    far: [S::F32; 3],
-    t_min: S::F32,
-    first: [usize; 3],
-}
-
-// Written out, not in closures: those are not always compiled for the kernel's level.
-impl<const N: usize, S: Simd<N>> SlabLanes<N, S> {
-    /// Spreads a ray over the lanes.
+    /// At a child, with nothing on the stack that starts at `bottom`.
     #[inline(always)]
-    pub fn new(simd: S, slabs: &SlabRay) -> Self {
-        let SlabRay { inverse, near, far, .. } = slabs;
+    pub fn new(slabs: &SlabRay, limit: f32, at: Packed, bottom: usize) -> Self {
+        let SlabRay { inverse, near, far, first, t_min, .. } = *slabs;
+        let octant = (first[0] | first[1] << 1 | first[2] << 2) as u32;
+        Self { inverse, near, far, t_min, limit, octant, top: bottom as u32 + 1, at }
+    }
+
+    /// One of sixteen, at a child, with nothing on the stack that starts at `bottom`.
+    #[inline(always)]
+    pub fn of(slabs: &SlabRays, first: [usize; 3], i: usize, limit: f32, at: Packed, bottom: usize) -> Self {
+        let i = i & (RAYS - 1);
+        let SlabRays { inverse, near, far, t_min, .. } = slabs;
+        let octant = (first[0] | first[1] << 1 | first[2] << 2) as u32;
         Self {
-            inverse: [simd.splat(inverse[0]), simd.splat(inverse[1]), simd.splat(inverse[2])],
-            near: [simd.splat(near[0]), simd.splat(near[1]), simd.splat(near[2])],
-            far: [simd.splat(far[0]), simd.splat(far[1]), simd.splat(far[2])],
-            t_min: simd.splat(slabs.t_min),
-            first: slabs.first,
+            inverse: [inverse[0][i], inverse[1][i], inverse[2][i]],
+            near: [near[0][i], near[1][i], near[2][i]],
+            far: [far[0][i], far[1][i], far[2][i]],
+            t_min: t_min[i],
+            limit,
+            octant,
+            top: bottom as u32 + 1,
+            at,
         }
     }
 
-    /// The nearest child of a node that the ray meets before `limit`; the others go on to the stack, the farther the deeper.
+    /// Goes on to what is on top of the stack.
     #[inline(always)]
-    pub fn descend(
-        &self,
+    pub fn pop(&mut self, stacks: &Stacks) {
+        self.top -= 1;
+        self.at = Packed::of(stacks.items[self.top as usize]);
+    }
+
+    /// Tests the children of the node where the ray is and goes on to the nearest that it meets, or, if none, to the top
+    /// of the stack; what else it meets goes on to the stack, the farther the deeper. If not `NEAREST_FIRST`, it goes on to
+    /// the smallest. No branch depends on the ray.
+    // Written out, axis by axis: closures between a kernel's entry and here are not always compiled for its level.
+    #[inline(always)]
+    pub fn enter<const N: usize, S: Simd<N>, const NEAREST_FIRST: bool>(
+        &mut self,
         simd: S,
         node: &WideNode<N>,
-        limit: f32,
-        stack: &mut [Entry],
-        top: &mut usize,
-    ) -> Option<Packed> {
-        let ([x, y, z], planes) = (self.first, &node.bounds);
-        let near_x = simd.mul_add(simd.load(&planes[0][x]), self.inverse[0], self.near[0]);
-        let near_y = simd.mul_add(simd.load(&planes[1][y]), self.inverse[1], self.near[1]);
-        let near_z = simd.mul_add(simd.load(&planes[2][z]), self.inverse[2], self.near[2]);
-        let far_x = simd.mul_add(simd.load(&planes[0][1 - x]), self.inverse[0], self.far[0]);
-        let far_y = simd.mul_add(simd.load(&planes[1][1 - y]), self.inverse[1], self.far[1]);
-        let far_z = simd.mul_add(simd.load(&planes[2][1 - z]), self.inverse[2], self.far[2]);
-        let nears = simd.max(simd.max(near_x, near_y), simd.max(near_z, self.t_min));
-        let fars = simd.min(simd.min(far_x, far_y), simd.min(far_z, simd.splat(limit)));
-        nearest(simd, nears, simd.le(nears, fars), |lane| node.packed(lane), stack, top)
+        stacks: &mut Stacks,
+    ) {
+        let octant = self.octant as usize;
+        let [x, y, z] = [octant & 1, octant >> 1 & 1, octant >> 2 & 1];
+        let planes = &node.planes;
+        let inverse = [simd.splat(self.inverse[0]), simd.splat(self.inverse[1]), simd.splat(self.inverse[2])];
+        let near_x = simd.mul_add(simd.load(&planes[0][x]), inverse[0], simd.splat(self.near[0]));
+        let near_y = simd.mul_add(simd.load(&planes[1][y]), inverse[1], simd.splat(self.near[1]));
+        let near_z = simd.mul_add(simd.load(&planes[2][z]), inverse[2], simd.splat(self.near[2]));
+        let far_x = simd.mul_add(simd.load(&planes[0][x ^ 1]), inverse[0], simd.splat(self.far[0]));
+        let far_y = simd.mul_add(simd.load(&planes[1][y ^ 1]), inverse[1], simd.splat(self.far[1]));
+        let far_z = simd.mul_add(simd.load(&planes[2][z ^ 1]), inverse[2], simd.splat(self.far[2]));
+        let nears = simd.max(simd.max(near_x, near_y), simd.max(near_z, simd.splat(self.t_min)));
+        let fars = simd.min(simd.min(far_x, far_y), simd.min(far_z, simd.splat(self.limit)));
+        let order = if NEAREST_FIRST { node.order(octant) } else { ASCENDING };
+        let top = self.top as usize;
+        let (to_nears, to_items) = (room::<N, _>(&mut stacks.nears[top..]), room::<N, _>(&mut stacks.items[top..]));
+        self.top += simd.pick(nears, fars, &node.children, order, N as u32, to_nears, to_items) as u32;
+        self.pop(stacks);
+    }
+
+    /// Takes note of a new limit: rids the stack, which starts at `bottom`, of what starts beyond. What starts exactly there
+    /// may hold an equal `t` of a lower primitive.
+    #[inline(always)]
+    pub fn shorten<const N: usize, S: Simd<N>>(&mut self, simd: S, limit: f32, stacks: &mut Stacks, bottom: usize) {
+        self.limit = limit;
+        let limit = simd.splat(limit);
+        // The lowest entry always stays.
+        let (mut kept, end) = (bottom + 1, self.top as usize);
+        for from in (bottom + 1..end).step_by(N) {
+            // Read whole before the same places are written.
+            let nears = simd.load(room::<N, _>(&mut stacks.nears[from..]));
+            let items = *room::<N, _>(&mut stacks.items[from..]);
+            let count = (end - from).min(N) as u32;
+            let (to_nears, to_items) =
+                (room::<N, _>(&mut stacks.nears[kept..]), room::<N, _>(&mut stacks.items[kept..]));
+            kept += simd.pick(nears, limit, &items, ASCENDING, count, to_nears, to_items);
+        }
+        self.top = kept as u32;
     }
 }
 
-/// The nearest of the children in the lanes of `hit`; the others go on to the stack, the farther the deeper.
-#[inline(always)]
-pub fn nearest<const N: usize, S: Simd<N>, T: Copy>(
-    simd: S,
-    nears: S::F32,
-    mut hit: u32,
-    child: impl Fn(usize) -> T,
-    stack: &mut [Entry<T>],
-    top: &mut usize,
-) -> Option<T> {
-    if hit == 0 {
-        return None;
-    }
-    let lane = hit.trailing_zeros() as usize & (N - 1);
-    hit &= hit - 1;
-    if hit == 0 {
-        return Some(child(lane));
-    }
-    let mut distances = [0f32; N];
-    simd.store(nears, &mut distances);
-    let mut best = Entry::new(distances[lane], child(lane));
-    let bottom = *top;
-    while hit != 0 {
-        let lane = hit.trailing_zeros() as usize & (N - 1);
-        hit &= hit - 1;
-        let mut entry = Entry::new(distances[lane], child(lane));
-        if entry.near < best.near {
-            std::mem::swap(&mut entry, &mut best);
-        }
-        let mut place = *top;
-        while place > bottom && stack[place - 1].near < entry.near {
-            stack[place] = stack[place - 1];
-            place -= 1;
-        }
-        stack[place] = entry;
-        *top += 1;
-    }
-    Some(best.what)
+/// What rays have still to visit, and from where on: a stack for each, of which the lowest entry says that there is nothing
+/// more.
+pub struct Stacks {
+    nears: Vec<f32>,
+    items: Vec<u32>,
+    depth: usize,
 }
 
-/// What is on top of the stack and still of interest.
-#[inline(always)]
-pub fn pop<T: Copy>(stack: &[Entry<T>], top: &mut usize, limit: f32) -> Option<T> {
-    while *top > 0 {
-        *top -= 1;
-        // What starts exactly at the limit may hold an equal t of a lower primitive.
-        if stack[*top].near <= limit {
-            return Some(stack[*top].what);
-        }
+impl Stacks {
+    /// For so many rays in a tree of which a walk leaves at most `entries` behind.
+    pub fn new<const N: usize>(rays: usize, entries: usize) -> Self {
+        // Room for a move of all lanes behind the last.
+        let depth = entries + 1 + N;
+        assert!(depth * rays <= u32::MAX as usize, "stacks of fewer than 2^32 entries");
+        Self { nears: vec![0.0; depth * rays], items: vec![Packed::NONE.bits(); depth * rays], depth }
     }
-    None
+
+    /// Where the stack of one of them starts.
+    #[inline(always)]
+    pub fn bottom(&self, ray: usize) -> usize {
+        ray * self.depth
+    }
+}
+
+/// Room for a move of all lanes at the front of a stack's rest.
+#[inline(always)]
+fn room<const N: usize, T>(stack: &mut [T]) -> &mut [T; N] {
+    stack.first_chunk_mut().expect("stacks end with room for one move more")
 }

@@ -1,0 +1,36 @@
+"""Memory that an engine holds for a mesh, measured from outside and so in the same way for all of them."""
+
+import ctypes
+import multiprocessing
+import os
+from concurrent.futures import ProcessPoolExecutor
+from pathlib import Path
+
+import numpy as np
+from peers_engines import ENGINES
+
+
+def resident_bytes(name, vertices, faces):
+    """Return by how much a fresh process grows when the engine makes its scene; None where it cannot tell."""
+    if not Path("/proc/self/statm").exists():
+        return None
+    with ProcessPoolExecutor(1, mp_context=multiprocessing.get_context("spawn")) as process:
+        return process.submit(_growth, name, vertices, faces).result()
+
+
+def _growth(name, vertices, faces):
+    # A small scene first: libraries, threads and kernels are there once, whatever the mesh.
+    small, large = ENGINES[name](), ENGINES[name]()
+    small.build(np.eye(3, dtype=np.float32), np.array([[0, 1, 2]]))
+    before = _resident()
+    large.build(vertices, faces)
+    return _resident() - before
+
+
+def _resident():
+    # Memory that was freed but not given back would count otherwise.
+    trim = getattr(ctypes.CDLL(None), "malloc_trim", None)
+    if trim is not None:
+        trim(0)
+    pages = int(Path("/proc/self/statm").read_text().split()[1])
+    return pages * os.sysconf("SC_PAGE_SIZE")

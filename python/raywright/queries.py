@@ -1,0 +1,248 @@
+"""The questions that rays and points ask of a scene."""
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ._core import CompiledScene
+from .hits import AllHits, ClosestPoints, Hits, QueryCost
+from .rays import nearest_arguments, point_arguments, ray_arguments
+
+
+class Queries:
+    """What a compiled scene answers; asking compiles it."""
+
+    _core: CompiledScene | None
+
+    def _compiled(self) -> CompiledScene:
+        raise NotImplementedError
+
+    def intersect(
+        self,
+        origins: ArrayLike,
+        directions: ArrayLike,
+        t_min: ArrayLike = 0.0,
+        t_max: ArrayLike = np.inf,
+        threads: int | None = None,
+    ) -> Hits:
+        """Find the closest hit of each ray.
+
+        Parameters
+        ----------
+        origins, directions : (..., 3) arrays
+            Rays, broadcast against each other; directions need not be unit. C-contiguous float32 and float64
+            are read without a copy, other real types are converted to float64.
+        t_min, t_max : float or (...) arrays
+            The part of the ray that counts, in lengths of its direction, both ends included.
+        threads : int, optional
+            How many to use; all cores if not given. The answer does not depend on it.
+
+        Returns
+        -------
+        Hits
+            With the leading shape of the rays. Of hits at the same `t`, the one of the lowest
+            (shape_id, primitive).
+
+        Raises
+        ------
+        ValueError
+            If a last dimension is not 3, leading shapes do not broadcast, or `t_min` or `t_max` is NaN.
+        TypeError
+            If an array does not hold real numbers.
+
+        Notes
+        -----
+        Rays with NaN, infinity or a zero direction (or one shorter than the least normal number) hit nothing.
+        Hits are watertight: no ray passes between two faces that share an edge or a corner.
+        """
+        rays = ray_arguments(origins, directions, t_min, t_max, threads)
+        core = self._core or self._compiled()
+        return Hits(*core.intersect(*rays), core)
+
+    def occluded(
+        self,
+        origins: ArrayLike,
+        directions: ArrayLike,
+        t_min: ArrayLike = 0.0,
+        t_max: ArrayLike = np.inf,
+        threads: int | None = None,
+    ) -> NDArray[np.bool_]:
+        """Find whether each ray hits anything between `t_min` and `t_max`.
+
+        The same as ``intersect(...).hit``, and faster: a ray ends at the first hit that it meets. Takes and
+        raises what `intersect` does.
+
+        Returns
+        -------
+        (...) bool
+            With the leading shape of the rays.
+        """
+        rays = ray_arguments(origins, directions, t_min, t_max, threads)
+        return (self._core or self._compiled()).occluded(*rays)
+
+    def intersect_all(
+        self,
+        origins: ArrayLike,
+        directions: ArrayLike,
+        t_min: ArrayLike = 0.0,
+        t_max: ArrayLike = np.inf,
+        threads: int | None = None,
+    ) -> AllHits:
+        """Find every hit of each ray, in order.
+
+        Takes and raises what `intersect` does, and the first hit that it finds of each ray is that of
+        `intersect`.
+
+        Returns
+        -------
+        AllHits
+            All hits one after the other, by ray, then `t`, then (shape_id, primitive).
+
+        Notes
+        -----
+        A surface is crossed once where a ray goes through an edge or a vertex of it, not once for each face
+        there. Where a ray only touches an edge or a vertex, it is told twice, as if in and out: two faces, or
+        twice the same one where the ray meets no other. So a closed surface has an even number of hits seen
+        from outside, and an odd number from inside, however the ray is aimed. Faces that lie upon each other
+        are all told.
+        """
+        rays = ray_arguments(origins, directions, t_min, t_max, threads)
+        core = self._core or self._compiled()
+        return AllHits(*core.intersect_all(*rays), rays[4], core)
+
+    def count(
+        self,
+        origins: ArrayLike,
+        directions: ArrayLike,
+        t_min: ArrayLike = 0.0,
+        t_max: ArrayLike = np.inf,
+        threads: int | None = None,
+    ) -> NDArray[np.int32]:
+        """Count the hits of each ray: what `intersect_all` finds, without the memory for it.
+
+        Takes and raises what `intersect` does.
+
+        Returns
+        -------
+        (...) int32
+            With the leading shape of the rays.
+        """
+        rays = ray_arguments(origins, directions, t_min, t_max, threads)
+        return (self._core or self._compiled()).count(*rays)
+
+    def cost(
+        self,
+        origins: ArrayLike,
+        directions: ArrayLike,
+        t_min: ArrayLike = 0.0,
+        t_max: ArrayLike = np.inf,
+        threads: int | None = None,
+    ) -> QueryCost:
+        """Find what the closest hit of each ray takes: nodes visited and primitives tested.
+
+        Takes and raises what `intersect` does. Neighbouring rays share visits, so a ray's cost may depend on
+        which others are asked with it.
+
+        Returns
+        -------
+        QueryCost
+            With the leading shape of the rays.
+        """
+        rays = ray_arguments(origins, directions, t_min, t_max, threads)
+        return QueryCost(*(self._core or self._compiled()).cost(*rays))
+
+    def contains(self, points: ArrayLike, threads: int | None = None) -> NDArray[np.bool_]:
+        """Find whether each point is inside a closed surface.
+
+        A point is inside if a ray from there crosses the surface an odd number of times, which is decided
+        exactly; what is on the surface counts as inside. So where closed surfaces overlap, or one is within
+        the other, what is inside two of them is outside again (the even-odd rule).
+
+        Parameters
+        ----------
+        points : (..., 3) array
+            C-contiguous float32 and float64 are read without a copy.
+        threads : int, optional
+            How many to use; all cores if not given. The answer does not depend on it.
+
+        Returns
+        -------
+        (...) bool
+            With the leading shape of the points. False for points that are NaN or infinite.
+
+        Raises
+        ------
+        ValueError
+            If the last dimension is not 3.
+        TypeError
+            If the array does not hold real numbers.
+
+        Notes
+        -----
+        From a point two opposite ways out are tried, which agree if the surface is closed. Where they do not
+        there is a hole, and the majority of seven ways decides.
+        """
+        return (self._core or self._compiled()).contains(*point_arguments(points, threads))
+
+    def closest_point(
+        self, points: ArrayLike, max_distance: ArrayLike = np.inf, threads: int | None = None
+    ) -> ClosestPoints:
+        """Find the closest point of any surface to each point.
+
+        Parameters
+        ----------
+        points : (..., 3) array
+            C-contiguous float32 and float64 are read without a copy.
+        max_distance : float or (...) array
+            How far to look, this distance included; the less, the faster.
+        threads : int, optional
+            How many to use; all cores if not given. The answer does not depend on it.
+
+        Returns
+        -------
+        ClosestPoints
+            With the leading shape of the points. Of faces at the same distance, the one of the lowest
+            (shape_id, primitive).
+
+        Raises
+        ------
+        ValueError
+            If the last dimension is not 3, shapes do not broadcast, or `max_distance` is negative or NaN.
+        TypeError
+            If an array does not hold real numbers.
+
+        Notes
+        -----
+        Points that are NaN or infinite have no closest point.
+        """
+        core = self._core or self._compiled()
+        return ClosestPoints(*core.nearest(*nearest_arguments(points, max_distance, threads)), core)
+
+    def signed_distance(self, points: ArrayLike, threads: int | None = None) -> NDArray[np.float64]:
+        """Find how far each point is from the surface: negative inside, positive outside, zero on it.
+
+        Inside is what `contains` finds so. (Open3D and most of CAD have this sign, trimesh has the other.)
+
+        Parameters
+        ----------
+        points : (..., 3) array
+            C-contiguous float32 and float64 are read without a copy.
+        threads : int, optional
+            How many to use; all cores if not given. The answer does not depend on it.
+
+        Returns
+        -------
+        (...) float64
+            With the leading shape of the points; inf for points that are NaN or infinite, and for all if the
+            scene is empty.
+
+        Raises
+        ------
+        ValueError
+            If the last dimension is not 3.
+        TypeError
+            If the array does not hold real numbers.
+        """
+        core = self._core or self._compiled()
+        distance = core.nearest(*nearest_arguments(points, np.inf, threads))[0]
+        inside = core.contains(*point_arguments(points, threads)) & (distance > 0)
+        return np.asarray(np.where(inside, -distance, distance))

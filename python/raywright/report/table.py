@@ -1,0 +1,259 @@
+"""The table that every report is: printed, written as Markdown or CSV, or plotted."""
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
+
+if TYPE_CHECKING:
+    from typing_extensions import Self
+
+Row = TypeVar("Row", bound=tuple[Any, ...])
+
+_NO_MATPLOTLIB = "plots need matplotlib: pip install 'raywright[plot]'"
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column of a table.
+
+    Parameters
+    ----------
+    name : str
+        What code calls it.
+    heading : str
+        What people read over it, with the unit.
+    form : str
+        How its numbers are written, as `format` has it; text is written as it is, None as ``-``.
+    """
+
+    name: str
+    heading: str
+    form: str = ""
+
+    def text(self, value: Any) -> str:
+        """Return a value of this column as text."""
+        if value is None:
+            return "-"
+        return value if isinstance(value, str) else format(value, self.form)
+
+
+@dataclass(frozen=True)
+class Chart:
+    """How a table is plotted: the names of columns.
+
+    Parameters
+    ----------
+    x, y : str
+        Columns of numbers, each on a logarithmic axis.
+    colour : str
+        Rows that agree in this column have one colour.
+    marker : str, optional
+        Rows that agree in this column have one marker.
+    lines : bool
+        Whether the rows of one colour and one marker are joined, as they come.
+    """
+
+    x: str
+    y: str
+    colour: str
+    marker: str | None = None
+    lines: bool = False
+
+
+@dataclass(frozen=True, repr=False)
+class Table(Generic[Row]):
+    """Rows of named columns.
+
+    ``print(table)`` shows it, a notebook shows it as Markdown.
+
+    Parameters
+    ----------
+    title : str
+        What it tells, in a line.
+    columns : sequence of Column
+        What the entries of a row are.
+    rows : sequence of tuples
+        Text, numbers, or None where there is nothing to tell.
+    notes : sequence of str
+        What to know when reading it.
+    chart : Chart, optional
+        How it is plotted.
+
+    Raises
+    ------
+    ValueError
+        If a row has more entries, or fewer, than there are columns.
+    """
+
+    title: str
+    columns: tuple[Column, ...]
+    rows: tuple[Row, ...]
+    notes: tuple[str, ...] = ()
+    chart: Chart | None = None
+
+    def __post_init__(self) -> None:
+        for name in ("columns", "rows", "notes"):
+            object.__setattr__(self, name, tuple(getattr(self, name)))
+        for i, row in enumerate(self.rows):
+            if len(row) != len(self.columns):
+                raise ValueError(f"row {i} has {len(row)} entries, but there are {len(self.columns)} columns")
+
+    def column(self, name: str) -> tuple[Any, ...]:
+        """Return the entries of a column, from the first row to the last.
+
+        Raises
+        ------
+        ValueError
+            If there is no such column.
+        """
+        at = self._at(name)
+        return tuple(row[at] for row in self.rows)
+
+    def where(self, **wanted: Any) -> "Self":
+        """Return the table of those rows whose entries, by the names of columns, are these.
+
+        Raises
+        ------
+        ValueError
+            If there is no such column.
+        """
+        picked = [(self._at(name), value) for name, value in wanted.items()]
+        return replace(self, rows=tuple(row for row in self.rows if all(row[i] == v for i, v in picked)))
+
+    def markdown(self) -> str:
+        """Return the table as Markdown, without title and notes."""
+        texts = [[cell.replace("|", "\\|") for cell in line] for line in self._texts()]
+        widths = [max(3, *map(len, cells)) for cells in zip(*texts, strict=True)]
+        left = self._left()
+        rule = ["-" * w if is_left else "-" * (w - 1) + ":" for w, is_left in zip(widths, left, strict=True)]
+        lines = [_aligned(line, widths, left) for line in texts]
+        return "\n".join(f"| {' | '.join(line)} |" for line in (lines[0], rule, *lines[1:]))
+
+    def csv(self) -> str:
+        """Return the table as CSV: names of columns, then rows with all digits; None is empty."""
+        import csv
+        import io
+
+        file = io.StringIO()
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(column.name for column in self.columns)
+        writer.writerows(self.rows)
+        return file.getvalue()
+
+    def plot(self, ax: Any = None, x: str | None = None, y: str | None = None) -> Any:
+        """Plot one column against another on logarithmic axes.
+
+        A zero, which has no logarithm, is drawn at half the least number above zero of its column; rows
+        without a number are left out.
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, optional
+            Where to draw; a new figure if not given.
+        x, y : str, optional
+            Columns other than those of `chart`.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            With a legend.
+
+        Raises
+        ------
+        ImportError
+            If matplotlib is not installed (``pip install 'raywright[plot]'``).
+        ValueError
+            If the table has no chart, or there is no such column.
+        """
+        if self.chart is None:
+            raise ValueError("this table has no chart")
+        chart = replace(self.chart, x=x or self.chart.x, y=y or self.chart.y)
+        across, up = self.columns[self._at(chart.x)], self.columns[self._at(chart.y)]
+        try:
+            import matplotlib.pyplot as plt
+        except ImportError as error:
+            raise ImportError(_NO_MATPLOTLIB) from error
+        if ax is None:
+            _, ax = plt.subplots(figsize=(9, 5.5), layout="constrained")
+        xs, ys = (_drawable(self.column(column.name)) for column in (across, up))
+        colours = self.column(chart.colour)
+        markers = self.column(chart.marker) if chart.marker else ("",) * len(self.rows)
+        shapes = dict(zip(dict.fromkeys(markers), "osD^vP*Xhp<>" * (len(self.rows) // 12 + 1), strict=False))
+        shades = {name: f"C{i}" for i, name in enumerate(dict.fromkeys(colours))}
+        style = "-" if chart.lines else ""
+        for colour, marker in dict.fromkeys(zip(colours, markers, strict=True)):
+            mine = [i for i, key in enumerate(zip(colours, markers, strict=True)) if key == (colour, marker)]
+            points = [(xs[i], ys[i]) for i in mine if xs[i] is not None and ys[i] is not None]
+            ax.plot(
+                [p[0] for p in points],
+                [p[1] for p in points],
+                color=shades[colour],
+                marker=shapes[marker],
+                linestyle=style,
+            )
+        ax.set(xscale="log", yscale="log", xlabel=across.heading, ylabel=up.heading, title=self.title)
+        ax.grid(True, which="major", alpha=0.3)
+        # Keys of their own: one for each colour, one for each marker.
+        for name, shade in shades.items():
+            ax.plot([], [], color=shade, linewidth=5, label=name)
+        if chart.marker:
+            for name, shape in shapes.items():
+                ax.plot([], [], color="0.3", marker=shape, linestyle="", label=name)
+        ax.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
+        return ax
+
+    def _at(self, name: str) -> int:
+        names = [column.name for column in self.columns]
+        if name not in names:
+            raise ValueError(f"no column is called {name!r}; there are {', '.join(names)}")
+        return names.index(name)
+
+    def _texts(self) -> list[list[str]]:
+        """Headings, then rows."""
+        headings = [column.heading for column in self.columns]
+        return [headings] + [
+            [column.text(value) for column, value in zip(self.columns, row, strict=True)] for row in self.rows
+        ]
+
+    def _left(self) -> list[bool]:
+        """Whether each column is of text, which starts at the left; numbers end at the right."""
+        return [any(isinstance(row[i], str) for row in self.rows) for i in range(len(self.columns))]
+
+    def __str__(self) -> str:
+        texts, left = self._texts(), self._left()
+        widths = [max(map(len, cells)) for cells in zip(*texts, strict=True)]
+        lines = ["  ".join(_aligned(line, widths, left)).rstrip() for line in texts]
+        rule = "  ".join("-" * width for width in widths)
+        body: list[str] = []
+        for i, line in enumerate(lines[1:]):
+            # A word that many rows in turn begin with begins a group, which an empty line sets apart.
+            if i and self._grouped() and self.rows[i][0] != self.rows[i - 1][0]:
+                body.append("")
+            body.append(line)
+        return "\n".join([self.title, "", lines[0], rule, *body, *([""] if self.notes else []), *self.notes])
+
+    def _grouped(self) -> bool:
+        first = [row[0] for row in self.rows]
+        return len(set(first)) < len(first)
+
+    def _repr_markdown_(self) -> str:
+        parts = [f"**{self.title}**", self.markdown(), *self.notes]
+        return "\n\n".join(parts)
+
+    def __repr__(self) -> str:
+        names = ", ".join(column.name for column in self.columns)
+        return f"{type(self).__name__}({len(self.rows)} rows of {names})"
+
+
+def _aligned(line: Sequence[str], widths: Iterable[int], left: Iterable[bool]) -> list[str]:
+    return [
+        cell.ljust(width) if is_left else cell.rjust(width)
+        for cell, width, is_left in zip(line, widths, left, strict=True)
+    ]
+
+
+def _drawable(values: Sequence[Any]) -> list[float | None]:
+    """Numbers that have a logarithm; zero becomes half the least of them."""
+    least = min((v for v in values if v is not None and 0 < v < math.inf), default=1.0)
+    return [None if v is None or not 0 <= v < math.inf else float(v) if v > 0 else least / 2 for v in values]

@@ -1,0 +1,169 @@
+//! Where to split a set of boxes: the surface-area heuristic at the borders of equal bins (Wald, "On fast Construction of
+//! SAH-based Bounding Volume Hierarchies", 2007).
+
+use super::{Bounds, Extents, Reference};
+use glam::Vec4;
+use rayon::prelude::*;
+
+/// Most bins that may be asked for.
+pub const MAX_BINS: usize = 64;
+
+/// So many references are one thread's share of a large node.
+pub const SHARE: usize = 1 << 14;
+
+/// A plane between bins.
+#[derive(Clone, Copy)]
+pub struct Split {
+    axis: usize,
+    /// The last place on the left, as [`Binning::place`] gives it.
+    last: f32,
+    binning: Binning,
+}
+
+impl Split {
+    /// The cheapest plane; none if no plane parts the centres.
+    #[inline(always)]
+    pub fn best(references: &[Reference], extents: &Extents, bins: usize, workspace: &mut Bins) -> Option<Self> {
+        // Small nodes, of which there are many, are split as well with fewer.
+        let bins = bins.min((references.len() / 2).max(8));
+        let binning = Binning::new(&extents.centres, bins);
+        workspace.clear(bins);
+        workspace.add(references, &binning);
+        workspace.best(bins, binning)
+    }
+
+    /// The same, by several threads.
+    pub fn best_of_many(references: &[Reference], extents: &Extents, bins: usize) -> Option<Self> {
+        let binning = Binning::new(&extents.centres, bins);
+        let add = |mut filled: Bins, share: &[Reference]| {
+            filled.add(share, &binning);
+            filled
+        };
+        let filled = references.par_chunks(SHARE).fold(Bins::new, add).reduce(Bins::new, |a, b| a.join(&b, bins));
+        filled.best(bins, binning)
+    }
+
+    /// On which side a reference is.
+    #[inline(always)]
+    pub fn is_left(&self, r: &Reference) -> bool {
+        self.binning.place(r, self.axis) <= self.last
+    }
+}
+
+/// From a centre to its bin. Binning and partitioning round alike, so they always agree.
+#[derive(Clone, Copy)]
+struct Binning {
+    origin: Vec4,
+    scale: Vec4,
+}
+
+impl Binning {
+    /// Adding it rounds to a whole number, which then is the lower bits: quicker than a conversion.
+    const WHOLE: f32 = 1.5 * (1 << 23) as f32;
+
+    fn new(centres: &Bounds, bins: usize) -> Self {
+        let size = centres.size();
+        // Just under the number of bins, so that the last centre falls into the last bin. Flat axes get bin 0 alone.
+        let scale = Vec4::splat(bins as f32 * (1.0 - 1e-6)) / size;
+        let usable = scale.is_finite_mask() & size.cmpgt(Vec4::ZERO);
+        Self { origin: centres.min, scale: Vec4::select(usable, scale, Vec4::ZERO) }
+    }
+
+    /// The bins of a reference along the three axes.
+    #[inline(always)]
+    fn bins(&self, r: &Reference) -> [usize; 3] {
+        let places = ((r.centre() - self.origin) * self.scale - 0.5) + Self::WHOLE;
+        let [x, y, z, _] = places.to_array();
+        let bin = |place: f32| place.to_bits() as usize & (MAX_BINS - 1);
+        [bin(x), bin(y), bin(z)]
+    }
+
+    /// The bin of a reference along an axis, plus [`Self::WHOLE`].
+    #[inline(always)]
+    fn place(&self, r: &Reference, axis: usize) -> f32 {
+        ((r.centre_on(axis) - self.origin.as_ref()[axis]) * self.scale.as_ref()[axis] - 0.5) + Self::WHOLE
+    }
+}
+
+/// The bins of the three axes: what they hold, and how many. Reused from node to node, since clearing all of them costs more
+/// than filling a few.
+pub struct Bins {
+    bounds: Box<[[Bounds; MAX_BINS]; 3]>,
+    counts: [[u32; MAX_BINS]; 3],
+}
+
+impl Bins {
+    /// All of them, empty.
+    pub fn new() -> Self {
+        Self { bounds: Box::new([[Bounds::EMPTY; MAX_BINS]; 3]), counts: [[0; MAX_BINS]; 3] }
+    }
+
+    #[inline(always)]
+    fn clear(&mut self, bins: usize) {
+        for axis in 0..3 {
+            self.bounds[axis][..bins].fill(Bounds::EMPTY);
+            self.counts[axis][..bins].fill(0);
+        }
+    }
+
+    #[inline(always)]
+    fn add(&mut self, references: &[Reference], binning: &Binning) {
+        // Neighbours often fall into the same bin, where the second would wait for the first: take turns with some from afar.
+        let (first, second) = references.split_at(references.len() / 2);
+        for (i, r) in second.iter().enumerate() {
+            self.add_one(r, binning);
+            if let Some(r) = first.get(i) {
+                self.add_one(r, binning);
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn add_one(&mut self, r: &Reference, binning: &Binning) {
+        let bins = binning.bins(r);
+        for axis in 0..3 {
+            self.bounds[axis][bins[axis]].grow(&r.bounds);
+            self.counts[axis][bins[axis]] += 1;
+        }
+    }
+
+    fn join(mut self, other: &Self, bins: usize) -> Self {
+        for axis in 0..3 {
+            for i in 0..bins {
+                self.bounds[axis][i].grow(&other.bounds[axis][i]);
+                self.counts[axis][i] += other.counts[axis][i];
+            }
+        }
+        self
+    }
+
+    #[inline(always)]
+    fn best(&self, bins: usize, binning: Binning) -> Option<Split> {
+        let (mut least, mut best) = (f32::INFINITY, None);
+        for axis in 0..3 {
+            if binning.scale.as_ref()[axis] <= 0.0 {
+                continue;
+            }
+            let (bounds, counts) = (&self.bounds[axis], &self.counts[axis]);
+            // Costs of all that lies right of a plane, then swept from the left.
+            let mut right = [0f32; MAX_BINS];
+            let (mut grown, mut count) = (Bounds::EMPTY, 0);
+            for i in (1..bins).rev() {
+                grown.grow(&bounds[i]);
+                count += counts[i];
+                right[i] = if count > 0 { grown.half_area() * count as f32 } else { f32::INFINITY };
+            }
+            let (mut grown, mut count) = (Bounds::EMPTY, 0);
+            for i in 0..bins - 1 {
+                grown.grow(&bounds[i]);
+                count += counts[i];
+                // With nothing on the left it is no number, which is not less than anything.
+                let cost = grown.half_area() * count as f32 + right[i + 1];
+                if cost < least {
+                    (least, best) = (cost, Some(Split { axis, last: Binning::WHOLE + i as f32, binning }));
+                }
+            }
+        }
+        best
+    }
+}

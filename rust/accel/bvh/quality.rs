@@ -1,0 +1,84 @@
+//! How much time a build may take for the sake of the rays.
+
+use super::BinaryBvh;
+use super::build::binned;
+use super::optimise::reinsertion;
+use crate::math::Aabb;
+
+/// A choice between a tree soon and a tree that rays walk fast.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Quality {
+    /// For few rays, or for geometry that changes all the time.
+    FastBuild,
+    /// For most scenes: what is long and thin is looked after, and a mesh of even triangles costs no more than that takes to
+    /// be seen.
+    #[default]
+    Balanced,
+    /// For many rays on one scene.
+    FastRays,
+}
+
+impl Quality {
+    /// All of them, from least to most time.
+    pub const ALL: [Self; 3] = [Self::FastBuild, Self::Balanced, Self::FastRays];
+
+    /// How to build for leaves of blocks of so many triangles.
+    pub const fn steps(self, block: usize) -> Steps {
+        let (bins, rounds, share, worthwhile) = match self {
+            Self::FastBuild => (8, 0, 0.0, 0.0),
+            Self::Balanced => (16, 6, 0.1, 2e-3),
+            Self::FastRays => (32, 30, 0.3, 1e-4),
+        };
+        Steps {
+            binned: binned::Options { bins, block },
+            reinsertion: reinsertion::Options { rounds, share, worthwhile, block },
+        }
+    }
+}
+
+/// What is done one after the other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Steps {
+    /// How the tree is built.
+    pub binned: binned::Options,
+    /// How it is improved then.
+    pub reinsertion: reinsertion::Options,
+}
+
+impl Steps {
+    /// Makes a tree over boxes, leaving out empty ones.
+    ///
+    /// # Panics
+    /// If an option is out of range.
+    pub fn build(&self, boxes: &[Aabb]) -> BinaryBvh {
+        let mut bvh = binned::build(boxes, &self.binned);
+        reinsertion::optimise(&mut bvh, &self.reinsertion);
+        bvh
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::Vec3;
+    use crate::sampling::philox4x32;
+
+    #[test]
+    fn more_time_makes_trees_of_less_area() {
+        // A jumble of sticks.
+        let boxes: Vec<_> = (0..20_000)
+            .map(|i| {
+                let [x, y, z, which] = philox4x32([i, 0, 0, 0], [0, 0]).map(|bits| bits as f32 / 2f32.powi(32));
+                let mut size = Vec3::splat(0.002);
+                size[(which * 3.0) as usize] = 0.2 * which.fract();
+                Aabb { min: Vec3::new(x, y, z), max: Vec3::new(x, y, z) + size }
+            })
+            .collect();
+        let costs = Quality::ALL.map(|quality| {
+            let bvh = quality.steps(8).build(&boxes);
+            bvh.validate(&boxes).unwrap();
+            bvh.nodes.iter().filter(|n| !n.is_leaf()).map(|n| f64::from(n.aabb().half_area())).sum::<f64>()
+        });
+        assert!(costs[1] < 0.95 * costs[0] && costs[2] < 0.95 * costs[1], "{costs:?}");
+    }
+}

@@ -1,0 +1,168 @@
+//! Batches of rays as they come, and their answers shared out among threads.
+
+use pyo3::exceptions::{PyRuntimeError, PyValueError};
+use pyo3::prelude::*;
+use rayon::prelude::*;
+
+use super::arrays::{Numbers, Rows, Triples};
+use crate::math::{Ray, Tiling};
+use crate::workers;
+
+/// Rays that a thread takes at a time: enough to make the hand-over free, few enough to be heard by Ctrl-C.
+pub const CHUNK: usize = 1024;
+
+/// Rays gathered from the arrays at a time: small enough to stay in a near cache, enough to keep a wave full.
+pub const GATHER: usize = 512;
+
+/// A batch of rays as it came: each part one for all rays, or one a ray.
+#[derive(Clone, Copy)]
+pub struct RayArrays<'a> {
+    origins: Rows<'a>,
+    directions: Rows<'a>,
+    t_min: &'a [f64],
+    t_max: &'a [f64],
+    /// How many rays.
+    pub count: usize,
+    tiling: Tiling,
+}
+
+/// What the package gives for a batch of rays: arrays and numbers, and the leading shape of all.
+pub struct RayArguments<'py> {
+    pub origins: Triples<'py>,
+    pub directions: Triples<'py>,
+    pub t_min: Numbers<'py>,
+    pub t_max: Numbers<'py>,
+    pub shape: Vec<usize>,
+}
+
+impl RayArguments<'_> {
+    /// The rays.
+    pub fn rays(&self) -> PyResult<RayArrays<'_>> {
+        let (origins, directions) = (self.origins.rows("origins")?, self.directions.rows("directions")?);
+        let (t_min, t_max) = (self.t_min.slice("t_min")?, self.t_max.slice("t_max")?);
+        let count = self.shape.iter().product();
+        let lengths = [origins.len(), directions.len(), t_min.len(), t_max.len()];
+        if lengths.iter().any(|&n| n != 1 && n != count) {
+            return Err(PyValueError::new_err(format!(
+                "origins, directions, t_min and t_max have lengths {lengths:?}, expected 1 or {count}"
+            )));
+        }
+        // Image-shaped rays are traced in tiles, where neighbours share more than along a row.
+        let row = if self.shape.len() >= 2 { self.shape[self.shape.len() - 1] } else { 0 };
+        Ok(RayArrays { origins, directions, t_min, t_max, count, tiling: Tiling::new(count, row) })
+    }
+}
+
+impl RayArrays<'_> {
+    /// Ray `i`.
+    #[inline(always)]
+    fn ray(&self, i: usize) -> Ray {
+        let of = |n: usize| if n == 1 { 0 } else { i };
+        Ray {
+            origin: self.origins.get(of(self.origins.len())),
+            direction: self.directions.get(of(self.directions.len())),
+            t_min: self.t_min[of(self.t_min.len())],
+            t_max: self.t_max[of(self.t_max.len())],
+        }
+    }
+
+    /// Rays that a thread takes at a time.
+    pub fn chunk(&self) -> usize {
+        self.tiling.chunk(CHUNK)
+    }
+
+    /// Calls `answer` with some hundred rays at a time of the `count` from `start` on, and with where each lies among them.
+    #[inline(always)]
+    pub fn gathered(&self, start: usize, count: usize, mut answer: impl FnMut(&[Ray], &[usize])) {
+        let some = GATHER.min(count);
+        let (mut rays, mut places) = (Vec::with_capacity(some), vec![0; some]);
+        for from in (0..count).step_by(GATHER) {
+            let places = &mut places[..GATHER.min(count - from)];
+            self.tiling.places(from, count, places);
+            rays.clear();
+            rays.extend(places.iter().map(|&place| self.ray(start + place)));
+            answer(&rays, places);
+        }
+    }
+}
+
+/// Arrays of answers that can be shared out among threads.
+pub trait Parts: Send + Sized {
+    /// Those of the first so many rays, and the others.
+    fn split(self, at: usize) -> (Self, Self);
+}
+
+impl<T: Send> Parts for &mut [T] {
+    fn split(self, at: usize) -> (Self, Self) {
+        self.split_at_mut(at)
+    }
+}
+
+impl<A: Parts, B: Parts> Parts for (A, B) {
+    fn split(self, at: usize) -> (Self, Self) {
+        let ((a, c), (b, d)) = (self.0.split(at), self.1.split(at));
+        ((a, b), (c, d))
+    }
+}
+
+impl<A: Parts, B: Parts, C: Parts, D: Parts> Parts for (A, B, C, D) {
+    fn split(self, at: usize) -> (Self, Self) {
+        let ((a, e), (b, f), (c, g), (d, h)) = (self.0.split(at), self.1.split(at), self.2.split(at), self.3.split(at));
+        ((a, b, c, d), (e, f, g, h))
+    }
+}
+
+/// Fills `n` answers, `chunk` at a time, with the interpreter detached and signals heard.
+pub fn answer<P: Parts>(
+    py: Python<'_>,
+    n: usize,
+    chunk: usize,
+    threads: Option<usize>,
+    parts: P,
+    fill: impl Fn(usize, P) + Sync,
+) -> PyResult<()> {
+    let mut chunks = Vec::with_capacity(n.div_ceil(chunk));
+    let mut rest = parts;
+    for start in (0..n).step_by(chunk) {
+        let (part, more) = rest.split(chunk.min(n - start));
+        chunks.push((start, part));
+        rest = more;
+    }
+    each(py, threads, chunks, |(start, part)| fill(start, part)).map(drop)
+}
+
+/// The chunks of `n` rays: where each starts, and how many it has.
+pub fn chunks(n: usize, chunk: usize) -> Vec<(usize, usize)> {
+    (0..n).step_by(chunk).map(|start| (start, chunk.min(n - start))).collect()
+}
+
+/// What `work` makes of each of the chunks, in their order, with the interpreter detached and signals heard. One chunk alone is
+/// the calling thread's: waking others takes longer.
+pub fn each<C: Send, T: Send>(
+    py: Python<'_>,
+    threads: Option<usize>,
+    chunks: Vec<C>,
+    work: impl Fn(C) -> T + Sync,
+) -> PyResult<Vec<T>> {
+    if chunks.len() <= 1 {
+        return Ok(py.detach(|| chunks.into_iter().map(&work).collect()));
+    }
+    let mut signal = Ok(());
+    let made = py
+        .detach(|| {
+            workers::watched(
+                threads,
+                |cancel| {
+                    let chunks = chunks.into_par_iter();
+                    chunks.map(|chunk| (!cancel.is_raised()).then(|| work(chunk))).collect::<Option<_>>()
+                },
+                || {
+                    signal = Python::attach(|py| py.check_signals());
+                    signal.is_ok()
+                },
+            )
+        })
+        .map_err(PyRuntimeError::new_err)?;
+    signal?;
+    made.ok_or_else(|| PyRuntimeError::new_err("work was stopped, and no signal raised"))
+}

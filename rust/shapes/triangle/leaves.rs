@@ -1,0 +1,590 @@
+//! The triangles of a tree's leaves. Those of one leaf are tested side by side: most are rejected together in f32, the few that
+//! are left are decided in f64.
+//!
+//! The test in f32 is that of Möller and Trumbore ("Fast, Minimum Storage Ray/Triangle Intersection", 1997), which takes half
+//! the work of the edge form. With edges e = b − a and f = c − a, the ray from s relative to a, p = d × f and q = s × e, the
+//! corners' weights are u = s · p of b, v = d · q of c, and w = e · p − u − v of a. A triangle is rejected only where one weight
+//! is certainly positive and another certainly negative.
+//!
+//! The bound. Let ε = 2⁻²⁴, E bound every coordinate of e and f, L bound |origin| + |corner| in every coordinate, and
+//! D < 2 those of the direction. The edges err by εE, s by 2εL for rounding the origin and the difference, and d by 2ε. A product in p
+//! errs by 2εE + 2εE + 2εE, and so p by 12εE + 4εE = 16εE; it is at most 4E. A product in q errs by 2εLE + εLE + εLE, and so q by
+//! 8εLE + 2εLE = 10εLE; it is at most 2LE. A product in u errs by 8εLE + 16εLE + 4εLE, and so u by 84εLE + 20εLE = 104εLE. A product
+//! in v errs by 4εLE + 20εLE + 4εLE, and v like u. A product in e · p errs by 4εE² + 16εE² + 4εE², and the sum by 92εE², which is
+//! at most 184εLE, since E ≤ 2L. So w errs by 184εLE + 208εLE and, for its own two roundings, 48εLE: 440εLE, to first order; fused
+//! operations err less. 512εLE is allowed. What underflows in p or q loses at most 2⁻¹⁴⁸ a coordinate, 2⁻¹⁴⁵L in a weight, and
+//! elsewhere less than 2⁻¹⁴⁶: 2⁻¹⁴⁰L + 2⁻¹²⁶ is added. (The least normal number: a subnormal one would make every sum slow.) With
+//! L below 2⁶⁰ no sum exceeds 96L² < 2¹²⁷; beyond it, where infinities of either sign may appear, nothing is rejected.
+//!
+//! Most of what is left lies behind the ray: the surface that it leaves. The ray's parameter is t = f · q / e · p, negative where
+//! numerator and denominator are certainly of opposite sign, and then the triangle is rejected if t must not be. A product in
+//! f · q errs by 2εLE² + 10εLE² + 2εLE², and the sum by 52εLE²: 64εLE² is allowed, and 128εE² for the denominator. With L below 2⁴⁰
+//! no sum exceeds 6LE² < 2¹²⁵; beyond it nothing is rejected so.
+//!
+//! Where corners are rounded to f32 themselves, by εL each, the edges err by 2εL more and s by εL. That makes p err by 8εL more
+//! and q by 4εL² + εLE·2, so u and v by 24εL² + 12εLE, e · p by 48εLE,
+//! w by the sum of these, and f · q by 24εL²E. 64εL² and 640εLE are allowed for weights, 64εLE more for the denominator and 32εL²E
+//! for the numerator.
+
+use super::{Candidate, Column, EdgeRay, EdgeRays, RAYS};
+use crate::math::robust::{greater, lesser};
+use crate::math::{DVec3, Region, Vec3};
+use crate::simd::Simd;
+use rayon::prelude::*;
+
+/// All triangles of a tree, leaf by leaf: at most `N` a leaf, known by where its first stands and how many they are.
+pub trait Leaves<const N: usize>: Send + Sync + Sized + 'static {
+    /// How numbers are kept, in a word.
+    const PRECISION: &'static str;
+
+    /// Triangles by their numbers, leaf by leaf; how many each leaf has; and where the corners of each are.
+    ///
+    /// # Panics
+    /// If a leaf has more than `N`, or the counts do not add up to the triangles.
+    fn new(region: &Region, order: &[u32], counts: &[u32], corners: impl Fn(u32) -> [DVec3; 3] + Sync) -> Self;
+
+    /// The coordinates in f32, and the numbers of the triangles.
+    fn rows(&self) -> &Rows<N>;
+
+    /// The corners of the triangle in a lane of a leaf, as they were given.
+    fn corners(&self, first: usize, count: u32, lane: usize) -> [DVec3; 3];
+
+    /// A ray as the first test needs it.
+    fn ray(ray: &EdgeRay, region: &Region) -> BlockRay;
+
+    /// Sixteen rays as the first test needs them.
+    fn rays(rays: &EdgeRays, region: &Region) -> BlockRays;
+
+    /// Memory held.
+    fn bytes(&self) -> usize;
+
+    /// The number of the triangle in a lane of a leaf.
+    #[inline(always)]
+    fn primitive(&self, first: usize, count: u32, lane: usize) -> u32 {
+        self.rows().primitive(first, count, lane)
+    }
+
+    /// The numbers of the triangles of a leaf.
+    fn primitives(&self, first: usize, count: u32) -> impl Iterator<Item = u32> {
+        (0..count as usize).map(move |lane| self.primitive(first, count, lane))
+    }
+
+    /// Where the first test finds a leaf. The address is only asked for.
+    #[inline(always)]
+    fn place(&self, first: usize) -> *const u8 {
+        self.rows().numbers.as_ptr().wrapping_add(first * ROWS).cast()
+    }
+
+    /// Of the lanes of a leaf, those that the first test cannot reject.
+    #[inline(always)]
+    fn not_rejected<S: Simd<N>>(&self, simd: S, ray: &BlockRay, first: usize, count: u32) -> u32 {
+        self.rows().not_rejected(simd, ray, first, count)
+    }
+
+    /// Of sixteen rays, those for which the first test cannot reject the triangle in a lane of a leaf.
+    #[inline(always)]
+    fn rays_not_rejected<S: Simd<N>>(&self, simd: S, rays: &BlockRays, first: usize, count: u32, lane: usize) -> u32 {
+        self.rows().rays_not_rejected(simd, rays, first, count, lane)
+    }
+
+    /// Calls `met` with each triangle of a leaf that the ray meets, until it says true; then that is said.
+    #[inline(always)]
+    fn meet<S: Simd<N>>(
+        &self,
+        simd: S,
+        first: usize,
+        count: u32,
+        lanes: &BlockRay,
+        ray: &EdgeRay,
+        mut met: impl FnMut(u32, Candidate) -> bool,
+    ) -> bool {
+        let mut left = self.rows().not_rejected(simd, lanes, first, count);
+        while left != 0 {
+            let lane = left.trailing_zeros() as usize & (N - 1);
+            left &= left - 1;
+            if let Some(candidate) = ray.meet(self.corners(first, count, lane))
+                && met(self.primitive(first, count, lane), candidate)
+            {
+                return true;
+            }
+        }
+        false
+    }
+}
+
+/// Numbers of a triangle: nine coordinates and which it is.
+const ROWS: usize = 10;
+
+/// Triangles whose coordinates are f32.
+#[derive(Clone, Debug)]
+pub struct SingleLeaves<const N: usize> {
+    rows: Rows<N>,
+}
+
+/// Triangles whose coordinates are f64: rounded for the first test, and as they are.
+#[derive(Clone, Debug)]
+pub struct DoubleLeaves<const N: usize> {
+    /// In box units.
+    rows: Rows<N>,
+    corners: Vec<[DVec3; 3]>,
+}
+
+impl<const N: usize> Leaves<N> for SingleLeaves<N> {
+    const PRECISION: &'static str = "single";
+
+    fn new(_: &Region, order: &[u32], counts: &[u32], corners: impl Fn(u32) -> [DVec3; 3] + Sync) -> Self {
+        // Exact: the coordinates are f32.
+        Self { rows: Rows::new(order, counts, |p| corners(p).map(|c| c.as_vec3())) }
+    }
+
+    #[inline(always)]
+    fn rows(&self) -> &Rows<N> {
+        &self.rows
+    }
+
+    #[inline(always)]
+    fn corners(&self, first: usize, count: u32, lane: usize) -> [DVec3; 3] {
+        // Written out: `map` is not always compiled for a kernel's level.
+        let [a, b, c] = self.rows.corners(first, count, lane);
+        [a.as_dvec3(), b.as_dvec3(), c.as_dvec3()]
+    }
+
+    #[inline(always)]
+    fn ray(ray: &EdgeRay, _: &Region) -> BlockRay {
+        Errors::EXACT.ray(ray.origin, ray, ray.absolute)
+    }
+
+    #[inline(always)]
+    fn rays(rays: &EdgeRays, _: &Region) -> BlockRays {
+        Errors::EXACT.rays(&rays.origin, rays, &rays.absolute, 1.0)
+    }
+
+    fn bytes(&self) -> usize {
+        self.rows.bytes()
+    }
+}
+
+impl<const N: usize> Leaves<N> for DoubleLeaves<N> {
+    const PRECISION: &'static str = "double";
+
+    fn new(region: &Region, order: &[u32], counts: &[u32], corners: impl Fn(u32) -> [DVec3; 3] + Sync) -> Self {
+        let rows = Rows::new(order, counts, |p| corners(p).map(|c| region.to_box(c).as_vec3()));
+        Self { rows, corners: order.par_iter().map(|&p| corners(p)).collect() }
+    }
+
+    #[inline(always)]
+    fn rows(&self) -> &Rows<N> {
+        &self.rows
+    }
+
+    #[inline(always)]
+    fn corners(&self, first: usize, _: u32, lane: usize) -> [DVec3; 3] {
+        self.corners[first + lane]
+    }
+
+    #[inline(always)]
+    fn ray(ray: &EdgeRay, region: &Region) -> BlockRay {
+        // |origin| + |corner|, both relative to the centre and in box units.
+        Errors::ROUNDED.ray(ray.local * region.scale, ray, ray.largest * region.scale)
+    }
+
+    #[inline(always)]
+    fn rays(rays: &EdgeRays, region: &Region) -> BlockRays {
+        Errors::ROUNDED.rays(&rays.local, rays, &rays.largest, region.scale)
+    }
+
+    fn bytes(&self) -> usize {
+        self.rows.bytes() + size_of_val(self.corners.as_slice())
+    }
+}
+
+/// The triangles of all leaves in f32. A leaf of n has n numbers of each row, one row after the other: the coordinates by
+/// corner and axis, then the triangles' own numbers. So a leaf takes no more memory than its triangles need, and `N` numbers
+/// read from any row are those of the leaf and others that do not matter.
+#[derive(Clone, Debug)]
+pub struct Rows<const N: usize> {
+    numbers: Vec<f32>,
+}
+
+impl<const N: usize> Rows<N> {
+    /// Makes the bits of small whole numbers those of ordinary floats: they are computed with, to no end, by lanes that do not
+    /// matter, and subnormal ones would make that slow.
+    const MASK: u32 = 0x4000_0000;
+
+    fn new(order: &[u32], counts: &[u32], corners: impl Fn(u32) -> [Vec3; 3] + Sync) -> Self {
+        /// Leaves that a thread fills at a time.
+        const SOME: usize = 1024;
+        assert_eq!(counts.iter().sum::<u32>() as usize, order.len(), "as many triangles as their counts say");
+        // The last row of the last leaf can be read as any other.
+        let mut numbers = vec![0.0; order.len() * ROWS + N];
+        let mut parts = Vec::with_capacity(counts.len().div_ceil(SOME));
+        let (mut rest, mut order) = (numbers.as_mut_slice(), order);
+        for counts in counts.chunks(SOME) {
+            let triangles = counts.iter().sum::<u32>() as usize;
+            let (part, others) = rest.split_at_mut(triangles * ROWS);
+            let (mine, more) = order.split_at(triangles);
+            parts.push((part, mine, counts));
+            (rest, order) = (others, more);
+        }
+        parts.into_par_iter().for_each(|(mut part, mut order, counts)| {
+            for &count in counts {
+                let count = count as usize;
+                assert!(count <= N, "a leaf has at most {N} triangles");
+                let (leaf, others) = part.split_at_mut(count * ROWS);
+                let (mine, more) = order.split_at(count);
+                for (lane, &primitive) in mine.iter().enumerate() {
+                    assert!(primitive < Self::MASK, "fewer than 2^30 triangles");
+                    for (corner, at) in corners(primitive).into_iter().enumerate() {
+                        for axis in 0..3 {
+                            leaf[(3 * corner + axis) * count + lane] = at[axis];
+                        }
+                    }
+                    leaf[9 * count + lane] = f32::from_bits(primitive | Self::MASK);
+                }
+                (part, order) = (others, more);
+            }
+        });
+        Self { numbers }
+    }
+
+    fn bytes(&self) -> usize {
+        size_of_val(self.numbers.as_slice())
+    }
+
+    /// The number of the triangle in a lane of a leaf.
+    #[inline(always)]
+    fn primitive(&self, first: usize, count: u32, lane: usize) -> u32 {
+        self.numbers[first * ROWS + 9 * count as usize + lane].to_bits() ^ Self::MASK
+    }
+
+    /// The corners of the triangle in a lane of a leaf.
+    #[inline(always)]
+    fn corners(&self, first: usize, count: u32, lane: usize) -> [Vec3; 3] {
+        let count = count as usize;
+        let leaf = &self.numbers[first * ROWS + lane..][..8 * count + 1];
+        let corner = |c: usize| Vec3::new(leaf[3 * c * count], leaf[(3 * c + 1) * count], leaf[(3 * c + 2) * count]);
+        [corner(0), corner(1), corner(2)]
+    }
+
+    /// A corner of the triangles of a leaf, axis by axis.
+    #[inline(always)]
+    pub fn corner<S: Simd<N>>(&self, simd: S, first: usize, count: u32, corner: usize) -> [S::F32; 3] {
+        let count = count as usize;
+        let rows = &self.numbers[first * ROWS + 3 * corner * count..][..2 * count + N];
+        let row = |axis: usize| rows[axis * count..].first_chunk().expect("rows of the right length");
+        [simd.load(row(0)), simd.load(row(1)), simd.load(row(2))]
+    }
+
+    /// Of the lanes of a leaf, those that f32 cannot reject.
+    // Written out, axis by axis: closures and iterators between here and the kernel's entry are not always compiled for
+    // its level, and then every operation is a call.
+    #[inline(always)]
+    fn not_rejected<S: Simd<N>>(&self, simd: S, ray: &BlockRay, first: usize, count: u32) -> u32 {
+        let o = [simd.splat(ray.origin[0]), simd.splat(ray.origin[1]), simd.splat(ray.origin[2])];
+        let d = [simd.splat(ray.direction[0]), simd.splat(ray.direction[1]), simd.splat(ray.direction[2])];
+        let a = self.corner(simd, first, count, 0);
+        let b = self.corner(simd, first, count, 1);
+        let c = self.corner(simd, first, count, 2);
+        not_rejected(simd, [a, b, c], o, d, &ray.errors) & ((1 << count) - 1)
+    }
+
+    /// Of sixteen rays, those for which f32 cannot reject the triangle in a lane of a leaf.
+    #[inline(always)]
+    fn rays_not_rejected<S: Simd<N>>(&self, simd: S, rays: &BlockRays, first: usize, count: u32, lane: usize) -> u32 {
+        let [a, b, c] = self.corners(first, count, lane);
+        let a = [simd.splat(a.x), simd.splat(a.y), simd.splat(a.z)];
+        let b = [simd.splat(b.x), simd.splat(b.y), simd.splat(b.z)];
+        let c = [simd.splat(c.x), simd.splat(c.y), simd.splat(c.z)];
+        let mut left = 0;
+        for part in 0..RAYS / N {
+            let (o, d) = (&rays.origin, &rays.direction);
+            let o = [part_of(simd, &o[0], part), part_of(simd, &o[1], part), part_of(simd, &o[2], part)];
+            let d = [part_of(simd, &d[0], part), part_of(simd, &d[1], part), part_of(simd, &d[2], part)];
+            left |= (not_rejected(simd, [a, b, c], o, d, &rays.errors) & ((1 << N) - 1)) << (part * N);
+        }
+        left
+    }
+}
+
+/// One vector of a column.
+#[inline(always)]
+fn part_of<const N: usize, S: Simd<N>>(simd: S, column: &Column<f32>, part: usize) -> S::F32 {
+    simd.load(&column.as_chunks::<N>().0[part])
+}
+
+/// Lanes in which f32 cannot reject that a ray meets a triangle; bits above the lanes are set.
+#[inline(always)]
+fn not_rejected<const N: usize, S: Simd<N>>(
+    simd: S,
+    [a, b, c]: [[S::F32; 3]; 3],
+    o: [S::F32; 3],
+    d: [S::F32; 3],
+    errors: &Bounds,
+) -> u32 {
+    let (e, f, s) = (difference(simd, b, a), difference(simd, c, a), difference(simd, o, a));
+    let p = cross(simd, d, f);
+    let q = cross(simd, s, e);
+    let u = dot(simd, s, p);
+    let v = dot(simd, d, q);
+    let denominator = dot(simd, e, p);
+    let w = simd.sub(simd.sub(denominator, u), v);
+
+    let largest = simd.max(largest(simd, e), largest(simd, f));
+    let least = simd.splat(errors.least);
+    let above = simd.mul_add(largest, simd.splat(errors.weight), least);
+    let below = simd.neg(above);
+    let positive = simd.gt(u, above) | simd.gt(v, above) | simd.gt(w, above);
+    let negative = simd.gt(below, u) | simd.gt(below, v) | simd.gt(below, w);
+
+    let numerator = dot(simd, f, q);
+    let error = simd.mul_add(largest, simd.splat(errors.numerator[0]), simd.splat(errors.numerator[1]));
+    let above = simd.mul_add(largest, error, least);
+    let error = simd.mul_add(largest, simd.splat(128.0 / (1u32 << 24) as f32), simd.splat(errors.denominator));
+    let over = simd.mul_add(largest, error, least);
+    let behind = simd.gt(numerator, above) & simd.gt(simd.neg(over), denominator)
+        | simd.gt(simd.neg(above), numerator) & simd.gt(denominator, over);
+    !(positive & negative | behind)
+}
+
+/// What the test in f32 needs of a ray.
+#[derive(Clone, Copy, Debug)]
+pub struct BlockRay {
+    origin: [f32; 3],
+    direction: [f32; 3],
+    errors: Bounds,
+}
+
+/// What the test in f32 needs of sixteen rays.
+#[derive(Clone, Debug)]
+#[repr(C, align(64))]
+pub struct BlockRays {
+    origin: [Column<f32>; 3],
+    direction: [Column<f32>; 3],
+    errors: Bounds,
+}
+
+impl BlockRays {
+    /// One of them.
+    #[inline(always)]
+    pub fn of(&self, i: usize) -> BlockRay {
+        let i = i & (RAYS - 1);
+        let (o, d) = (&self.origin, &self.direction);
+        BlockRay { origin: [o[0][i], o[1][i], o[2][i]], direction: [d[0][i], d[1][i], d[2][i]], errors: self.errors }
+    }
+}
+
+/// Bounds on the errors of the test in f32.
+#[derive(Clone, Copy, Debug)]
+struct Bounds {
+    /// Of a weight over the largest edge.
+    weight: f32,
+    /// Of the numerator of t over the largest edge: by edge, and at least.
+    numerator: [f32; 2],
+    /// The same of the denominator, at least.
+    denominator: f32,
+    /// What is added to every bound.
+    least: f32,
+}
+
+/// The errors of the test in f32, as multiples of 2⁻²⁴.
+struct Errors {
+    /// Of a weight, by L and edge.
+    weight: f64,
+    /// Of a weight by L².
+    corners: f64,
+    /// Of the numerator of t, by L² and edge.
+    numerator: f64,
+    /// Of its denominator, by L and edge.
+    denominator: f64,
+}
+
+impl Errors {
+    /// Where corners are exact.
+    const EXACT: Self = Self { weight: 512.0, corners: 0.0, numerator: 0.0, denominator: 0.0 };
+    /// Where they are rounded themselves.
+    const ROUNDED: Self = Self { weight: 640.0, corners: 64.0, numerator: 32.0, denominator: 64.0 };
+
+    /// The bounds where L is `largest`, of rays that are asked for no t below 0, or for some.
+    #[inline(always)]
+    fn bounds(&self, largest: f64, forwards: bool) -> Bounds {
+        const UNIT: f64 = 1.0 / (1u64 << 24) as f64;
+        const OVERFLOW: f64 = (1u64 << 60) as f64;
+        const NUMERATOR_OVERFLOW: f64 = (1u64 << 40) as f64;
+        const UNDERFLOW: f64 = f64::from_bits((1023 - 140) << 52);
+        let weight = if largest < OVERFLOW { self.weight * largest } else { f64::INFINITY };
+        let numerator = if forwards && largest < NUMERATOR_OVERFLOW { 64.0 * largest } else { f64::INFINITY };
+        Bounds {
+            // Rounded to nearest: the error of that is among those of higher order.
+            weight: (UNIT * weight) as f32,
+            numerator: [(UNIT * numerator) as f32, (UNIT * self.numerator * largest * largest) as f32],
+            denominator: (UNIT * self.denominator * largest) as f32,
+            least: (UNIT * self.corners * largest * largest + UNDERFLOW * largest) as f32 + f32::MIN_POSITIVE,
+        }
+    }
+
+    /// Rounds a ray to f32.
+    #[inline(always)]
+    fn ray(&self, origin: DVec3, ray: &EdgeRay, largest: f64) -> BlockRay {
+        let (o, d) = (origin.as_vec3(), ray.direction.as_vec3());
+        let errors = self.bounds(largest, ray.t_min >= 0.0);
+        BlockRay { origin: [o.x, o.y, o.z], direction: [d.x, d.y, d.z], errors }
+    }
+
+    /// Rounds sixteen rays to f32, with origins and L times `scale`. The greatest bounds serve all.
+    #[inline(always)]
+    fn rays(&self, origin: &[Column<f64>; 3], rays: &EdgeRays, largest: &Column<f64>, scale: f64) -> BlockRays {
+        let (mut most, mut least) = (0.0, f64::INFINITY);
+        for i in 0..RAYS {
+            most = greater(largest[i], most);
+            least = lesser(rays.t_min[i], least);
+        }
+        let errors = self.bounds(most * scale, least >= 0.0);
+        let mut block = BlockRays { origin: [[0.0; RAYS]; 3], direction: [[0.0; RAYS]; 3], errors };
+        for axis in 0..3 {
+            for i in 0..RAYS {
+                block.origin[axis][i] = (origin[axis][i] * scale) as f32;
+                block.direction[axis][i] = rays.direction[axis][i] as f32;
+            }
+        }
+        block
+    }
+}
+
+#[inline(always)]
+fn difference<const N: usize, S: Simd<N>>(simd: S, a: [S::F32; 3], b: [S::F32; 3]) -> [S::F32; 3] {
+    [simd.sub(a[0], b[0]), simd.sub(a[1], b[1]), simd.sub(a[2], b[2])]
+}
+
+/// The largest coordinate in magnitude.
+#[inline(always)]
+fn largest<const N: usize, S: Simd<N>>(simd: S, v: [S::F32; 3]) -> S::F32 {
+    simd.max(simd.max(simd.abs(v[0]), simd.abs(v[1])), simd.abs(v[2]))
+}
+
+#[inline(always)]
+fn cross<const N: usize, S: Simd<N>>(simd: S, a: [S::F32; 3], b: [S::F32; 3]) -> [S::F32; 3] {
+    [
+        simd.mul_sub(a[1], b[2], simd.mul(a[2], b[1])),
+        simd.mul_sub(a[2], b[0], simd.mul(a[0], b[2])),
+        simd.mul_sub(a[0], b[1], simd.mul(a[1], b[0])),
+    ]
+}
+
+#[inline(always)]
+fn dot<const N: usize, S: Simd<N>>(simd: S, a: [S::F32; 3], b: [S::F32; 3]) -> S::F32 {
+    simd.mul_add(a[2], b[2], simd.mul_add(a[1], b[1], simd.mul(a[0], b[0])))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::Ray;
+    use crate::simd::{Dispatch, Kernel, Level};
+    use proptest::prelude::*;
+
+    /// What is not rejected of one leaf.
+    struct Left<'a, L> {
+        leaves: &'a L,
+        ray: &'a BlockRay,
+        count: u32,
+    }
+
+    impl<const N: usize, L: Leaves<N>> Kernel<N> for Left<'_, L> {
+        type Output = u32;
+
+        #[inline(always)]
+        fn run<S: Simd<N>>(self, simd: S) -> u32 {
+            self.leaves.rows().not_rejected(simd, self.ray, 0, self.count)
+        }
+    }
+
+    /// Those with eight lanes.
+    fn levels() -> impl Iterator<Item = Level> {
+        Level::ALL.into_iter().filter(|l| l.is_available() && l.lanes() >= 8)
+    }
+
+    /// Nothing that is met may be rejected.
+    fn nothing_met_is_rejected<const N: usize, L: Leaves<N>>(
+        ray: &Ray,
+        triangles: &[[DVec3; 3]],
+    ) -> Result<usize, TestCaseError>
+    where
+        Level: Dispatch<N>,
+    {
+        let region = Region::around(triangles.iter().flatten().copied());
+        let order: Vec<u32> = (0..triangles.len() as u32).collect();
+        let leaves = L::new(&region, &order, &[triangles.len() as u32], |p| triangles[p as usize]);
+        let Some(edges) = EdgeRay::new(ray, &region) else { return Ok(0) };
+        let lanes = L::ray(&edges, &region);
+        let met: Vec<_> = triangles.iter().map(|&t| edges.meet(t).is_some()).collect();
+        for level in levels() {
+            let left = level.dispatch(Left { leaves: &leaves, ray: &lanes, count: triangles.len() as u32 });
+            prop_assert_eq!(left >> triangles.len(), 0);
+            for (lane, &met) in met.iter().enumerate() {
+                prop_assert!(!met || left >> lane & 1 == 1, "{:?} rejects {:?} of {:?}", level, triangles[lane], ray);
+            }
+        }
+        Ok(met.iter().filter(|&&m| m).count())
+    }
+
+    fn point(size: f64) -> impl Strategy<Value = DVec3> {
+        prop::array::uniform3(-size..size).prop_map(DVec3::from_array)
+    }
+
+    /// A triangle of any shape and size, somewhere, and a ray to a point of it: within, or as near to an edge, a corner or
+    /// the ray's start as roundings are.
+    fn aimed() -> impl Strategy<Value = (Ray, [DVec3; 3])> {
+        let triangle = (point(1.0), [point(1.0), point(1.0), point(1.0)], 0i32..24, 0i32..24);
+        let weights = (0.0..1.0f64, 0.0..1.0f64, -30i32..2, prop::bool::ANY);
+        let ray = (point(1.0), -26i32..10, -30i32..30, -20i32..20);
+        (triangle, weights, ray).prop_map(
+            |((at, ways, small, thin), (v, w, edge, before), (way, far, length, scale))| {
+                let mut corners = ways.map(|way| at + way * 2f64.powi(-small));
+                corners[2] = corners[1] + (corners[2] - corners[1]) * 2f64.powi(-thin);
+                let corners = corners.map(|c| (c * 2f64.powi(scale)).as_vec3().as_dvec3());
+                let (v, w) = (v * 2f64.powi(edge.min(0)), w * (1.0 - v));
+                let target = corners[0] * (1.0 - v - w) + corners[1] * v + corners[2] * w;
+                let back = way * 2f64.powi(far + scale) * if before { 1.0 } else { 2f64.powi(-24) };
+                let origin = target - back;
+                (Ray::new(origin, (target - origin) * 2f64.powi(length)), corners)
+            },
+        )
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(20_000))]
+        #[test]
+        fn the_test_in_f32_rejects_nothing_that_is_met(
+            (ray, triangle) in aimed(), others in prop::collection::vec(aimed(), 0..4), at in 0usize..5, off in -30i32..30
+        ) {
+            let mut triangles: Vec<_> = others.iter().map(|(_, t)| *t).collect();
+            triangles.insert(at.min(others.len()), triangle);
+            nothing_met_is_rejected::<8, SingleLeaves<8>>(&ray, &triangles)?;
+            nothing_met_is_rejected::<8, DoubleLeaves<8>>(&ray, &triangles)?;
+            let moved = DVec3::new(1.0, -0.7, 0.3) * 2f64.powi(off);
+            let ray = Ray { origin: ray.origin + moved, ..ray };
+            let triangles: Vec<_> = triangles.iter().map(|t| t.map(|c| c + moved)).collect();
+            nothing_met_is_rejected::<8, DoubleLeaves<8>>(&ray, &triangles)?;
+        }
+    }
+
+    #[test]
+    fn most_of_what_is_not_met_is_rejected() {
+        let triangle = [DVec3::ZERO, DVec3::X, DVec3::Y];
+        let region = Region::around(triangle);
+        let leaves = SingleLeaves::<8>::new(&region, &[7], &[1], |_| triangle);
+        let left = |origin: DVec3, direction: DVec3| {
+            let edges = EdgeRay::new(&Ray::new(origin, direction), &region).unwrap();
+            let ray = <SingleLeaves<8> as Leaves<8>>::ray(&edges, &region);
+            let found: Vec<_> =
+                levels().map(|level| level.dispatch(Left { leaves: &leaves, ray: &ray, count: 1 })).collect();
+            assert!(found.iter().all(|&f| f == found[0]), "{found:?}");
+            found[0] == 1
+        };
+        let above = DVec3::new(0.25, 0.25, 1.0);
+        assert!(left(above, -DVec3::Z));
+        assert!(!left(above, DVec3::Z), "behind");
+        assert!(!left(above + DVec3::X * 0.51, -DVec3::Z), "beside");
+        assert!(!left(above - DVec3::Y * 0.26, -DVec3::Z), "beside");
+    }
+}

@@ -1,0 +1,203 @@
+//! Sixteen rays by columns, made ready together and tested against a triangle together.
+//!
+//! Every loop here runs over all columns, has no branch and does to each ray what [`EdgeRay`] does to one, in the same order
+//! and with the same roundings: so the compiler makes vectors of it, and the bits are the same.
+
+use super::EdgeRay;
+use crate::math::robust::{greater, lesser};
+use crate::math::{DVec3, Ray, Region};
+
+/// Rays that go together.
+pub const RAYS: usize = 16;
+
+/// A number of each ray.
+pub type Column<T> = [T; RAYS];
+
+/// Sixteen rays as triangles see them; see [`EdgeRay`] for what each number is.
+#[derive(Clone, Debug)]
+#[repr(C, align(64))]
+pub struct EdgeRays {
+    /// As given, by axis.
+    pub origin: [Column<f64>; 3],
+    /// The origin relative to the region's centre.
+    pub local: [Column<f64>; 3],
+    /// Scaled, once the rays are ready.
+    pub direction: [Column<f64>; 3],
+    /// Of the scaled direction, once the rays are ready.
+    pub t_min: Column<f64>,
+    /// Of the scaled direction, once the rays are ready.
+    pub t_max: Column<f64>,
+    /// `t` as given over `t` along the scaled direction.
+    pub scale: Column<f64>,
+    /// Bounds every coordinate of a corner relative to the origin.
+    pub largest: Column<f64>,
+    /// Bounds |origin| + |corner|.
+    pub absolute: Column<f64>,
+}
+
+/// How sixteen rays meet a triangle.
+pub struct Met {
+    /// Rays that meet it for certain.
+    pub met: u32,
+    /// Rays for which f64 is not enough.
+    pub open: u32,
+    /// Along the scaled directions.
+    pub t: Column<f64>,
+    /// Weights of the second and the third corner.
+    pub uv: [Column<f64>; 2],
+}
+
+impl Default for EdgeRays {
+    fn default() -> Self {
+        let zero = [0.0; RAYS];
+        Self {
+            origin: [zero; 3],
+            local: [zero; 3],
+            direction: [zero; 3],
+            t_min: zero,
+            t_max: zero,
+            scale: zero,
+            largest: zero,
+            absolute: zero,
+        }
+    }
+}
+
+/// One bit for each ray.
+#[inline(always)]
+pub fn bits(flags: &Column<u32>) -> u32 {
+    let mut all = 0;
+    for i in 0..RAYS {
+        all |= flags[i] << i;
+    }
+    all
+}
+
+/// All rays.
+pub const ALL: u32 = u32::MAX >> (32 - RAYS);
+
+impl EdgeRays {
+    /// Takes up to sixteen rays, at least one; the last stands for those that are missing.
+    #[inline(always)]
+    pub fn transpose(&mut self, rays: &[Ray]) {
+        for i in 0..RAYS {
+            let ray = &rays[if i < rays.len() { i } else { rays.len() - 1 }];
+            self.origin[0][i] = ray.origin.x;
+            self.origin[1][i] = ray.origin.y;
+            self.origin[2][i] = ray.origin.z;
+            self.direction[0][i] = ray.direction.x;
+            self.direction[1][i] = ray.direction.y;
+            self.direction[2][i] = ray.direction.z;
+            self.t_min[i] = ray.t_min;
+            self.t_max[i] = ray.t_max;
+        }
+    }
+
+    /// Makes rays that were transposed ready. False if one of them cannot hit anything, or is far from the scene, or has a
+    /// direction at the end of the range of f64: those are better asked one by one.
+    #[inline(always)]
+    pub fn prepare(&mut self, region: &Region) -> bool {
+        let mut plain = [0u32; RAYS];
+        for i in 0..RAYS {
+            let (ox, oy, oz) = (self.origin[0][i], self.origin[1][i], self.origin[2][i]);
+            let (dx, dy, dz) = (self.direction[0][i], self.direction[1][i], self.direction[2][i]);
+            let longest = greater(greater(dx.abs(), dy.abs()), dz.abs());
+            let finite = ox * 0.0 + dx * 0.0 + (oy * 0.0 + dy * 0.0) + (oz * 0.0 + dz * 0.0) == 0.0;
+            let biased = longest.to_bits() >> 52;
+            let (scale, inverse) = (f64::from_bits(2046u64.wrapping_sub(biased) << 52), f64::from_bits(biased << 52));
+            self.direction[0][i] = dx * scale;
+            self.direction[1][i] = dy * scale;
+            self.direction[2][i] = dz * scale;
+            self.scale[i] = scale;
+            let ordered = self.t_min[i] <= self.t_max[i];
+            self.t_min[i] *= inverse;
+            self.t_max[i] *= inverse;
+            let (lx, ly, lz) = (ox - region.centre.x, oy - region.centre.y, oz - region.centre.z);
+            self.local[0][i] = lx;
+            self.local[1][i] = ly;
+            self.local[2][i] = lz;
+            let far = greater(greater(lx.abs(), ly.abs()), lz.abs());
+            self.largest[i] = far + region.radius;
+            self.absolute[i] = greater(greater(ox.abs(), oy.abs()), oz.abs()) + region.extent;
+            let near = far <= EdgeRay::FAR * region.radius;
+            // The largest numbers have an inverse that is subnormal.
+            let normal = (biased > 0) & (biased < 2046);
+            plain[i] = u32::from(finite & ordered & near & normal);
+        }
+        bits(&plain) == ALL
+    }
+
+    /// Tests all rays against a triangle; only the answers of those in `asked` count.
+    #[inline(always)]
+    pub fn meet(&self, [a, b, c]: [DVec3; 3], asked: u32) -> Met {
+        let mut met = Met { met: 0, open: 0, t: [0.0; RAYS], uv: [[0.0; RAYS]; 2] };
+        let (mut certain, mut open) = ([0u32; RAYS], [0u32; RAYS]);
+        for i in 0..RAYS {
+            let (ox, oy, oz) = (self.origin[0][i], self.origin[1][i], self.origin[2][i]);
+            let (dx, dy, dz) = (self.direction[0][i], self.direction[1][i], self.direction[2][i]);
+            let (ax, ay, az) = (a.x - ox, a.y - oy, a.z - oz);
+            let (bx, by, bz) = (b.x - ox, b.y - oy, b.z - oz);
+            let (cx, cy, cz) = (c.x - ox, c.y - oy, c.z - oz);
+            let u = volume(dx, dy, dz, bx, by, bz, cx, cy, cz);
+            let v = volume(dx, dy, dz, cx, cy, cz, ax, ay, az);
+            let w = volume(dx, dy, dz, ax, ay, az, bx, by, bz);
+            let largest = self.largest[i];
+            let above = EdgeRay::sign_error(largest);
+            let passed = ((u > above) | (v > above) | (w > above)) & ((u < -above) | (v < -above) | (w < -above));
+            let (sx, sy, sz) = (dx.abs(), dy.abs(), dz.abs());
+            let longest = greater(greater(sx, sy), sz);
+            let (is_x, is_y) = (sx == longest, sy == longest);
+            let za = if is_x {
+                ax
+            } else if is_y {
+                ay
+            } else {
+                az
+            };
+            let zb = if is_x {
+                bx
+            } else if is_y {
+                by
+            } else {
+                bz
+            };
+            let zc = if is_x {
+                cx
+            } else if is_y {
+                cy
+            } else {
+                cz
+            };
+            let d = if is_x {
+                dx
+            } else if is_y {
+                dy
+            } else {
+                dz
+            };
+            let least = lesser(lesser(u.abs(), v.abs()), w.abs());
+            let sum = u + v + w;
+            let range = greater(greater(za, zb), zc) - lesser(lesser(za, zb), zc);
+            let is_certain = (least > above) & (6.0 * above * range <= EdgeRay::T_ERROR * largest * sum.abs());
+            let t = (u * za + v * zb + w * zc) / (sum * d);
+            let counts = (t >= self.t_min[i]) & (t <= self.t_max[i]) & ((t * self.scale[i]).abs() <= f64::MAX);
+            certain[i] = u32::from(!passed & is_certain & counts);
+            open[i] = u32::from(!passed & !is_certain);
+            met.t[i] = t;
+            met.uv[0][i] = v / sum;
+            met.uv[1][i] = w / sum;
+        }
+        met.met = bits(&certain) & asked;
+        met.open = bits(&open) & asked;
+        met
+    }
+}
+
+/// `d · ((v − w) × (v + w))`.
+#[inline(always)]
+#[allow(clippy::too_many_arguments)]
+fn volume(dx: f64, dy: f64, dz: f64, vx: f64, vy: f64, vz: f64, wx: f64, wy: f64, wz: f64) -> f64 {
+    let (px, py, pz) = (vx - wx, vy - wy, vz - wz);
+    let (qx, qy, qz) = (vx + wx, vy + wy, vz + wz);
+    dx * (py * qz - qy * pz) + dy * (pz * qx - qz * px) + dz * (px * qy - qx * py)
+}

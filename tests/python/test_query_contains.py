@@ -1,0 +1,163 @@
+"""Inside or outside: against exact arithmetic."""
+
+from fractions import Fraction
+
+import numpy as np
+import pytest
+import trimesh
+
+import raywright as rw
+
+
+def integer_torus():
+    """A closed, not convex mesh whose vertices are integers."""
+    torus = trimesh.creation.torus(40.0, 15.0, major_sections=16, minor_sections=10)
+    return rw.Mesh(np.round(torus.vertices), torus.faces)
+
+
+def integer_icosphere():
+    ball = trimesh.creation.icosphere(subdivisions=2)
+    return rw.Mesh(np.round(ball.vertices * 64), ball.faces)
+
+
+def volumes(mesh, points, scale):
+    """Volumes that points span with each face and the face's own edges seen from it: (P, F), in integers."""
+    triangles = (mesh.vertices * scale).astype(np.int64)[mesh.faces]
+    seen = triangles[None] - np.round(points * scale).astype(np.int64)[:, None, None]
+    a, b, c = seen[:, :, 0], seen[:, :, 1], seen[:, :, 2]
+    return a, b, c, (a * np.cross(b, c)).sum(axis=-1)
+
+
+def on_surface(mesh, points, scale):
+    """Whether points lie on a face: its plane holds them, and its edges turn the same way around them."""
+    a, b, c, volume = volumes(mesh, points, scale)
+    normal = np.cross(b - a, c - a)
+    turns = [(np.cross(v, w) * normal).sum(axis=-1) >= 0 for v, w in ((a, b), (b, c), (c, a))]
+    return ((volume == 0) & turns[0] & turns[1] & turns[2]).any(axis=1)
+
+
+def winding_number(mesh, points):
+    """By solid angles (van Oosterom and Strackee 1983), of points that are not on the surface."""
+    triangles = mesh.vertices[mesh.faces]
+    seen = triangles[None] - points[:, None, None]
+    a, b, c = seen[:, :, 0], seen[:, :, 1], seen[:, :, 2]
+    la, lb, lc = (np.linalg.norm(x, axis=-1) for x in (a, b, c))
+    volume = (a * np.cross(b, c)).sum(axis=-1)
+    below = la * lb * lc + (a * b).sum(-1) * lc + (b * c).sum(-1) * la + (c * a).sum(-1) * lb
+    return 2 * np.arctan2(volume, below).sum(axis=1) / (4 * np.pi)
+
+
+@pytest.mark.parametrize("accelerator", [rw.BVH(), rw.BruteForce()])
+@pytest.mark.parametrize("mesh", [integer_torus(), integer_icosphere()], ids=["torus", "ball"])
+def test_points_on_grid_planes_are_where_integers_say(mesh, accelerator):
+    rng = np.random.default_rng(1)
+    reach = np.abs(mesh.vertices).max(axis=0) * 2 + 8
+    points = rng.integers(-reach, reach + 1, (1500, 3)) / 2
+    points[:500] = np.round(points[:500])
+    # Vertices, middles of edges, and points of faces whose coordinates are halves.
+    corners = mesh.vertices[mesh.faces]
+    points = np.concatenate([points, mesh.vertices, corners[:, :2].mean(axis=1)])
+    surface = on_surface(mesh, points, 2)
+    assert surface.sum() > 200
+    number = np.zeros(len(points))
+    number[~surface] = winding_number(mesh, points[~surface])
+    assert np.allclose(number, np.round(number), atol=1e-9)
+    truth = surface | (np.round(number) == 1)
+    assert 150 < (truth & ~surface).sum() < len(points) - 300
+    scene = rw.Scene(mesh, accelerator=accelerator)
+    assert np.array_equal(scene.contains(points), truth)
+    assert np.array_equal(
+        scene.contains(points.reshape(2, -1, 3) if len(points) % 2 == 0 else points).ravel(), truth
+    )
+
+
+def test_a_box_holds_its_points_to_the_last_bit(scene):
+    steps = np.array([-1, np.nextafter(0, -1), -0.0, np.nextafter(0, 1), 0.3, 0.5, np.nextafter(1, 0), 1.0])
+    steps = np.append(steps, [np.nextafter(1, 2), 2.0])
+    points = np.stack(np.meshgrid(steps, steps, steps), axis=-1)
+    truth = ((points >= 0) & (points <= 1)).all(axis=-1)
+    assert np.array_equal(scene.contains(points), truth)
+
+
+@pytest.mark.parametrize(("scale", "offset"), [(1.0, 0.0), (1e-6, 0.0), (1e6, 0.0), (1.0, 1e6)])
+def test_points_next_to_faces_are_on_their_side(scale, offset):
+    """Points one step of f64 off a slanted face are told apart, by the exact volume of each."""
+    ball = trimesh.creation.icosphere(subdivisions=1)
+    mesh = rw.Mesh((ball.vertices * scale + offset).astype(np.float32), ball.faces)
+    rng = np.random.default_rng(2)
+    faces = rng.integers(0, len(mesh.faces), 300)
+    corners = mesh.vertices.astype(np.float64)[mesh.faces[faces]]
+    weights = rng.dirichlet((1.0, 1, 1), 300)
+    points = (weights[..., None] * corners).sum(axis=1)
+    points = np.nextafter(points, points + rng.choice([-1.0, 0, 1], points.shape))
+    # The ball is convex: inside is on the inner side of every face. Python's integers have any length.
+    whole = np.vectorize(lambda x: int(Fraction(float(x)) * 2**1074), otypes=[object])
+    a, b, c = (whole(mesh.vertices)[mesh.faces[:, i]] for i in range(3))
+    u, v, place = b - a, c - a, whole(points)
+    normal = np.stack([u[:, i] * v[:, j] - u[:, j] * v[:, i] for i, j in ((1, 2), (2, 0), (0, 1))], axis=1)
+    beyond = ((place[:, None] - a[None]) * normal[None]).sum(axis=2) > 0
+    truth = ~beyond.any(axis=1)
+    assert 50 < truth.sum() < 250
+    assert np.array_equal(rw.Scene(mesh).contains(points), truth)
+
+
+def test_a_cavity_is_outside_again(box):
+    hole = rw.Mesh(box.vertices / 4 + 0.25, box.faces)
+    points = [(0.1, 0.1, 0.1), (0.3, 0.3, 0.3), (0.9, 0.2, 0.4), (2, 0.3, 0.3)]
+    assert np.array_equal(rw.Scene([box, hole]).contains(points), [True, False, True, False])
+
+
+def test_which_way_faces_are_wound_does_not_matter(box):
+    turned = rw.Mesh(box.vertices, box.faces[:, ::-1])
+    mixed = rw.Mesh(box.vertices, [f[::-1] if i % 2 else f for i, f in enumerate(box.faces.tolist())])
+    points = np.random.default_rng(3).uniform(-0.5, 1.5, (500, 3))
+    expected = rw.Scene(box).contains(points)
+    assert np.array_equal(expected, ((points >= 0) & (points <= 1)).all(axis=1))
+    for mesh in (turned, mixed):
+        assert np.array_equal(rw.Scene(mesh).contains(points), expected)
+
+
+def test_a_small_hole_does_not_let_the_outside_in():
+    ball = trimesh.creation.icosphere(subdivisions=3)
+    scene = rw.Scene(rw.Mesh(ball.vertices, ball.faces[8:]))
+    rng = np.random.default_rng(4)
+    points = rng.normal(size=(4000, 3))
+    points *= rng.uniform(0, 1.6, (4000, 1)) / np.linalg.norm(points, axis=1, keepdims=True)
+    radius = np.linalg.norm(points, axis=1)
+    clear = (radius < 0.9) | (radius > 1.0)
+    assert np.array_equal(scene.contains(points)[clear], radius[clear] < 0.9)
+
+
+def test_points_that_are_not_finite_are_outside(scene):
+    points = np.full((4, 3), 0.5)
+    points[[0, 1, 2], [0, 1, 2]] = np.nan, np.inf, -np.inf
+    assert np.array_equal(scene.contains(points), [False, False, False, True])
+    assert not rw.Scene([]).contains((0, 0, 0))
+
+
+@pytest.mark.parametrize("threads", [1, 3])
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+def test_neither_threads_nor_batches_change_the_answer(threads, dtype):
+    scene = rw.Scene(rw.scenes.torus_knot(along=60, around=8))
+    points = np.random.default_rng(5).uniform(-1, 1, (30, 100, 3)).astype(dtype)
+    expected = np.array([scene.contains(row) for row in points])
+    assert expected.any()
+    assert np.array_equal(scene.contains(points, threads=threads), expected)
+    assert scene.contains(np.asfortranarray(points)).dtype == np.bool_
+    assert np.array_equal(scene.contains(np.asfortranarray(points)), expected)
+    assert np.array_equal(scene.contains(points[3, 4]), expected[3, 4])
+
+
+@pytest.mark.parametrize(
+    ("arguments", "error", "message"),
+    [
+        (((0, 0),), ValueError, r"points must have shape \(\.\.\., 3\), got \(2,\)"),
+        ((np.zeros((3, 3), complex),), TypeError, r"points must be real numbers, got dtype complex128"),
+        (((0, 0, 0), 0), ValueError, r"threads must be at least 1, got 0"),
+        (((0, 0, 0), 1.5), TypeError, r"threads must be an integer, got 1.5"),
+    ],
+)
+def test_bad_points_are_refused_in_one_line(scene, arguments, error, message):
+    with pytest.raises(error, match=message) as caught:
+        scene.contains(*arguments)
+    assert "\n" not in str(caught.value)
