@@ -1,9 +1,10 @@
 //! The nearest point of any primitive: what a search for it knows, and when it may pass something by.
 //!
-//! Boxes are kept in f32, in box units ([`Region`]), rounded outwards; how far a point is from one is computed in f64. With
-//! u = 2⁻⁵³ and P the point's largest coordinate in box units, the point errs by 2uP and a box by 2u for its rounding to box
-//! units; a triangle's own distance errs by 2⁻⁴⁹ of the distance to its farthest corner, which is 16u·√3·(P + 2) at most. The point
-//! is widened by 64u·(P + 2) along every axis, so that no box is thought farther than the triangles in it are found to be.
+//! Boxes are kept in f32, in box units ([`Region`]), rounded outwards; how far a point is from one is computed in f64.
+//! With u = 2⁻⁵³ and P the point's largest coordinate in box units, the point errs by 2uP and a box by 2u for its
+//! rounding to box units; a triangle's own distance errs by 2⁻⁴⁹ of the distance to its farthest corner, which is
+//! 16u·√3·(P + 2) at most. The point is widened by 64u·(P + 2) along every axis, so that no box is thought farther than
+//! the triangles in it are found to be.
 
 use crate::math::robust::{greater, lesser, normalising_scale};
 use crate::math::{DVec3, Region};
@@ -35,8 +36,9 @@ impl Nearest {
 
 /// A point that looks for its nearest, and what it has found.
 ///
-/// A point farther than 2²⁶ radii of the region is drawn closer, to between 2²⁶ and 2²⁷ of them: from there all distances
-/// change alike, to within their rounding, but their differences keep more digits, so that boxes can still be told apart.
+/// A point farther than 2²⁶ radii of the region is drawn closer, to between 2²⁶ and 2²⁷ of them: from there all
+/// distances change alike, to within their rounding, but their differences keep more digits, so that boxes can still be
+/// told apart.
 #[derive(Clone, Copy, Debug)]
 pub struct Search {
     /// As given.
@@ -61,8 +63,8 @@ pub struct Search {
 }
 
 impl Search {
-    /// Begins; none if nothing can be found, since the point is NaN or infinite, the distance negative or NaN, or the region
-    /// empty.
+    /// Begins; none if nothing can be found, since the point is NaN or infinite, the distance negative or NaN, or the
+    /// region empty.
     #[inline(always)]
     pub fn new(point: DVec3, max_distance: f64, region: &Region) -> Option<Self> {
         const FAR: f64 = (1u64 << 26) as f64;
@@ -122,8 +124,8 @@ impl Search {
         is_nearer
     }
 
-    /// The squares of the distances to some boxes by axis and side, in their units: never more than those to any triangle
-    /// in them, as [`Search::offer`] has it. Infinite for an empty box.
+    /// The squares of the distances to some boxes by axis and side, in their units: never more than those to any
+    /// triangle in them, as [`Search::offer`] has it. Infinite for an empty box.
     #[inline(always)]
     pub fn squares<const N: usize>(&self, planes: &[[[f32; N]; 2]; 3]) -> [f64; N] {
         let mut squares = [0.0; N];
@@ -163,13 +165,13 @@ impl Search {
 
 /// Tells which triangles of a leaf are too far, side by side and in f32.
 ///
-/// Whatever the vector w, all of a triangle is at least as far as the least w · (corner − point) / |w|. With w towards the
-/// triangle's middle that misses little where the triangle is small next to its distance.
+/// Whatever the vector w, all of a triangle is at least as far as the least w · (corner − point) / |w|. With w towards
+/// the triangle's middle that misses little where the triangle is small next to its distance.
 ///
-/// The bound. Let ε = 2⁻²⁴ and L bound |point| + |corner| in every coordinate. The point errs by εL, a corner by as much if it
-/// is rounded to box units, and their difference by εL; so the product of w and that, of three terms that are each rounded three times at
-/// most, errs by 6εL·(|w₁| + |w₂| + |w₃|) and the distance by 6√3·εL. 16εL is allowed. The vector is what it is and does not err;
-/// squares err by 8ε of themselves, for which 16ε are.
+/// The bound. Let ε = 2⁻²⁴ and L bound |point| + |corner| in every coordinate. The point errs by εL, a corner by as
+/// much if it is rounded to box units, and their difference by εL; so the product of w and that, of three terms that
+/// are each rounded three times at most, errs by 6εL·(|w₁| + |w₂| + |w₃|) and the distance by 6√3·εL. 16εL is allowed.
+/// The vector is what it is and does not err; squares err by 8ε of themselves, for which 16ε are.
 #[derive(Clone, Copy, Debug)]
 pub struct LeafTest {
     /// In the units that leaves are kept in.
@@ -240,8 +242,8 @@ fn gap(lower: f64, upper: f64, low: f64, high: f64) -> f64 {
     gap * gap
 }
 
-/// The square beyond which nothing is as near as a distance: a little more, lest rounding matter, and where squares underflow,
-/// where all are as near.
+/// The square beyond which nothing is as near as a distance: a little more, lest rounding matter, and where squares
+/// underflow, where all are as near.
 #[inline(always)]
 fn limit(distance: f64) -> f64 {
     const ROOM: f64 = 1.0 + 1.0 / (1u64 << 48) as f64;

@@ -166,8 +166,8 @@ fn assert_distance(corners: [DVec3; 3], point: DVec3, found: NearestPoint, error
     assert!(low.sign() != Sign::Plus || &low * &low * &divisor <= square, "too far: {told}");
 }
 
-/// What is promised: 2⁻⁴⁹ of the distance to the farthest corner. And the weights are those of a point of the triangle that is
-/// about so far.
+/// What is promised: 2⁻⁴⁹ of the distance to the farthest corner. And the weights are those of a point of the triangle
+/// that is about so far.
 fn assert_promised(corners: [DVec3; 3], point: DVec3) {
     let found = nearest_point(corners, point);
     let farthest = corners.iter().map(|&c| distance(c, point)).fold(0.0, f64::max);

@@ -1,14 +1,17 @@
-//! The point of a triangle that is nearest to another point (Ericson, "Real-Time Collision Detection", 2005, section 5.1).
+//! The point of a triangle that is nearest to another point (Ericson, "Real-Time Collision Detection", 2005, section
+//! 5.1).
 //!
-//! Ericson finds the feature that is nearest, face, edge or corner, from dot products of edges, which says little of slivers:
-//! their squares cancel. Here the face counts where the point's projection lies within all three edges, decided by the signs
-//! of the same cross products that give the distances to the edges; elsewhere the nearest of the three edges counts, each a
-//! segment of its own. So a triangle without area needs no case of its own: it is its edges, and those are segments or points.
+//! Ericson finds the feature that is nearest, face, edge or corner, from dot products of edges, which says little of
+//! slivers: their squares cancel. Here the face counts where the point's projection lies within all three edges,
+//! decided by the signs of the same cross products that give the distances to the edges; elsewhere the nearest of the
+//! three edges counts, each a segment of its own. So a triangle without area needs no case of its own: it is its edges,
+//! and those are segments or points.
 //!
-//! What holds. Let F be the distance to the farthest corner. The distance errs by less than 2⁻⁴⁹·F. Where differences of
-//! the corners and the point are exact, as those of f32 numbers of about one size are, it is 0 on corners and edges, and within
-//! a face where products of three such differences are exact too, as those of small integers. All is done in units of F, so coordinates may be of any size. Cross products keep nearly all digits however much they
-//! cancel (Kahan; Jeannerod, Louvet and Muller 2013), so that the plane of a sliver is as good as any. What is smaller than
+//! What holds. Let F be the distance to the farthest corner. The distance errs by less than 2⁻⁴⁹·F. Where differences
+//! of the corners and the point are exact, as those of f32 numbers of about one size are, it is 0 on corners and edges,
+//! and within a face where products of three such differences are exact too, as those of small integers. All is done in
+//! units of F, so coordinates may be of any size. Cross products keep nearly all digits however much they cancel
+//! (Kahan; Jeannerod, Louvet and Muller 2013), so that the plane of a sliver is as good as any. What is smaller than
 //! 2⁻⁴⁰⁰·F is lost: such an edge is a point, and such an area none.
 
 use crate::math::DVec3;
@@ -29,8 +32,8 @@ const SMALL_SQUARE: f64 = f64::from_bits((1023 - 800) << 52);
 /// The most that coordinates may be for differences and their differences to be finite.
 const LARGE: f64 = f64::MAX / 8.0;
 
-/// The nearest point of a triangle, whose coordinates and the point's are finite. The distance to an edge that two triangles
-/// share has the same bits for both, whichever way they run along it.
+/// The nearest point of a triangle, whose coordinates and the point's are finite. The distance to an edge that two
+/// triangles share has the same bits for both, whichever way they run along it.
 #[inline(always)]
 pub fn nearest_point(corners: [DVec3; 3], point: DVec3) -> NearestPoint {
     let [a, b, c] = corners;
@@ -70,8 +73,8 @@ pub fn nearest_point(corners: [DVec3; 3], point: DVec3) -> NearestPoint {
 
 /// The weights of the second and the third corner where the face is nearest, given the weights of all times `area`.
 ///
-/// Those of a sliver are uncertain, while the place along its longest edge is not: so the weight of the corner opposite that
-/// edge is taken, as far as the triangle reaches at that place, and those of its ends follow from both.
+/// Those of a sliver are uncertain, while the place along its longest edge is not: so the weight of the corner opposite
+/// that edge is taken, as far as the triangle reaches at that place, and those of its ends follow from both.
 #[inline(always)]
 fn weights(to: &[DVec3; 3], along: &[DVec3; 3], sides: &[f64; 3], area: f64) -> [f64; 2] {
     let lengths = along.map(|e| e.length_squared());
@@ -104,13 +107,15 @@ fn nearest_far_point(corners: [DVec3; 3], point: DVec3) -> NearestPoint {
     NearestPoint { distance: nearest.distance / LESS, ..nearest }
 }
 
-/// The point of a triangle with weights `uv` for its second and third corner; a corner itself where it has all the weight.
+/// The point of a triangle with weights `uv` for its second and third corner; a corner itself where it has all the
+/// weight.
 pub fn point_of(corners: [DVec3; 3], [u, v]: [f64; 2]) -> DVec3 {
     let weights = [1.0 - u - v, u, v];
     let heaviest = if weights[0] >= weights[1] { 0 } else { 1 };
     let heaviest = if weights[heaviest] >= weights[2] { heaviest } else { 2 };
     let (i, j) = ((heaviest + 1) % 3, (heaviest + 2) % 3);
-    // From the corner that weighs most, so that far from the origin only one sum is rounded. Halves, lest differences overflow.
+    // From the corner that weighs most, so that far from the origin only one sum is rounded. Halves, lest differences
+    // overflow.
     let base = corners[heaviest];
     let from_base = |k: usize| (corners[k] / 2.0 - base / 2.0) * weights[k];
     base + (from_base(i) + from_base(j)) * 2.0
@@ -119,7 +124,8 @@ pub fn point_of(corners: [DVec3; 3], [u, v]: [f64; 2]) -> DVec3 {
 /// An edge as seen from the point.
 #[derive(Clone, Copy)]
 struct Edge {
-    /// The cross product of its ends, as seen from the point: the weight of the corner opposite is its part along the normal.
+    /// The cross product of its ends, as seen from the point: the weight of the corner opposite is its part along the
+    /// normal.
     moment: DVec3,
     /// The square of the distance.
     square: f64,

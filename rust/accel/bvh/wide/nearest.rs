@@ -1,5 +1,5 @@
-//! Nearest points on a wide tree: child by child, the nearest box first (Roussopoulos, Kelley and Vincent, "Nearest neighbor
-//! queries", 1995), until the nearest that is left is farther than what is found.
+//! Nearest points on a wide tree: child by child, the nearest box first (Roussopoulos, Kelley and Vincent, "Nearest
+//! neighbor queries", 1995), until the nearest that is left is farther than what is found.
 
 use super::WideBvh;
 use super::node::Child;
