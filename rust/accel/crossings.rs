@@ -9,7 +9,7 @@
 
 use super::query::{Every, Meeting};
 use crate::math::Hit;
-use crate::shapes::triangle::Contact;
+use crate::shapes::Contact;
 
 /// The hits of some rays.
 #[derive(Clone, Debug, Default, PartialEq)]

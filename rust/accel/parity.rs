@@ -8,7 +8,8 @@ use super::Primitives;
 use super::query::{Kernels, Query};
 use crate::math::robust::{UNIT, normalising_scale};
 use crate::math::{DVec3, Ray, exact_edges};
-use crate::shapes::triangle::{Along, Candidate, Contact};
+use crate::shapes::triangle::Along;
+use crate::shapes::{Candidate, Contact};
 use std::cmp::Ordering;
 
 /// Where a point lies.

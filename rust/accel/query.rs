@@ -2,7 +2,8 @@
 
 use super::{Cost, Info, Nearest, Primitives};
 use crate::math::{DVec3, Hit, Ray};
-use crate::shapes::triangle::{Along, Candidate, Contact};
+use crate::shapes::triangle::Along;
+use crate::shapes::{Candidate, Contact};
 
 /// Ways to walk a batch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -16,6 +16,7 @@
 
 use crate::math::robust::{UNIT, greater, lesser, normalising_scale};
 use crate::math::{DVec3, Ray, Region, exact_edges, exact_turn};
+use crate::shapes::{Candidate, Contact};
 
 /// A ray made ready for edge tests: the direction scaled by a power of two so that its largest coordinate lies in
 /// [1, 2), and what is known beforehand about errors.
@@ -67,32 +68,6 @@ impl Along {
     pub fn same_point(&self) -> f64 {
         32.0 * UNIT * self.largest
     }
-}
-
-/// A triangle that a ray meets.
-#[derive(Clone, Copy, Debug)]
-pub struct Candidate {
-    /// Along the scaled direction.
-    pub t: f64,
-    /// Weights of the second and the third corner.
-    pub uv: [f64; 2],
-    /// How.
-    pub contact: Contact,
-}
-
-/// How a ray meets a triangle.
-///
-/// Of the triangles that share an edge or a corner, a ray through it meets all. To know which it crosses, it is moved by next
-/// to nothing, along the same direction (Edelsbrunner and Mücke, "Simulation of Simplicity", 1990): then it passes no edge of
-/// a triangle exactly unless it lies in the triangle's plane, and it crosses a closed surface as often in as out.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Contact {
-    /// Strictly within.
-    Inside,
-    /// Exactly on an edge or a corner, and across it if moved by next to nothing.
-    Crossing,
-    /// Exactly on an edge or a corner, and past it if moved by next to nothing.
-    Touching,
 }
 
 impl EdgeRay {

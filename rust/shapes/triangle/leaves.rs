@@ -26,9 +26,10 @@
 //! w by the sum of these, and f · q by 24εL²E. 64εL² and 640εLE are allowed for weights, 64εLE more for the denominator and 32εL²E
 //! for the numerator.
 
-use super::{Candidate, Column, EdgeRay, EdgeRays, RAYS};
+use super::{Column, EdgeRay, EdgeRays, RAYS};
 use crate::math::robust::{greater, lesser};
 use crate::math::{DVec3, Region, Vec3};
+use crate::shapes::Candidate;
 use crate::simd::Simd;
 use rayon::prelude::*;
 

@@ -6,7 +6,7 @@ mod nearest;
 pub mod routines;
 mod sixteen;
 
-pub use edge::{Along, Candidate, Contact, EdgeRay};
+pub use edge::{Along, EdgeRay};
 pub use leaves::{BlockRay, BlockRays, DoubleLeaves, Leaves, SingleLeaves};
 pub use nearest::{NearestPoint, length, nearest_point, point_of};
 pub use sixteen::{ALL, Column, EdgeRays, Met, RAYS, bits};

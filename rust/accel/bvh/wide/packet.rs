@@ -17,7 +17,8 @@ use crate::accel::query::Query;
 use crate::accel::slab::{Clock, SlabRays};
 use crate::math::Ray;
 use crate::math::robust::{greater, lesser};
-use crate::shapes::triangle::{ALL, Along, BlockRays, Candidate, Column, Contact, EdgeRay, EdgeRays, Leaves, RAYS};
+use crate::shapes::triangle::{ALL, Along, BlockRays, Column, EdgeRay, EdgeRays, Leaves, RAYS};
+use crate::shapes::{Candidate, Contact};
 use crate::simd::Simd;
 
 /// So many rays or fewer go on alone.
