@@ -2,19 +2,16 @@
 
 use super::nearest::{Search, of};
 use super::query::{Answers, Query};
+use super::walk::{Contents, Input, LANES, Lists};
 use super::{Accelerator, Info, Nearest, Primitives};
 use crate::math::{DVec3, Ray, Region};
 use crate::shapes::triangle::{DoubleLeaves, EdgeRay, Leaves, SingleLeaves};
 use crate::simd::{Dispatch, Kernel, Level, Simd};
 use std::time::Instant;
 
-const LANES: usize = 4;
-
-/// Tests all primitives, four at a time.
-#[derive(Debug)]
+/// Tests all primitives: one leaf, and no box before it.
 pub struct BruteForce<L = SingleLeaves<LANES>> {
-    leaves: L,
-    primitives: usize,
+    contents: Contents<L>,
     region: Region,
     level: Level,
     info: Info,
@@ -31,30 +28,29 @@ impl BruteForce {
     }
 }
 
+/// The numbers of what can be hit.
+fn all(primitives: &dyn Primitives) -> Vec<u32> {
+    (0..primitives.count() as u32).filter(|&p| primitives.bounds(p).is_some()).collect()
+}
+
 impl<L: Leaves<LANES>> BruteForce<L> {
     fn of(primitives: &dyn Primitives, level: Level) -> Self {
         let start = Instant::now();
         let region = primitives.region();
-        let all: Vec<u32> = (0..primitives.count() as u32).filter(|&p| primitives.is_finite(p)).collect();
-        let counts: Vec<u32> = all.chunks(LANES).map(|chunk| chunk.len() as u32).collect();
-        let leaves = L::new(&region, &all, &counts, |p| primitives.corners(p));
-        let count = all.len().div_ceil(LANES);
+        let order = all(primitives);
+        let count = order.len();
+        let lists = Lists { counts: vec![count as u32], order };
+        let contents = Contents::new(&Input { region, boxes: Vec::new(), primitives }, &lists);
         let info = Info {
             kind: format!("brute force, {}", L::PRECISION),
-            primitives: all.len(),
-            leaves: count,
-            bytes: leaves.bytes(),
+            primitives: count,
+            leaves: 1,
+            bytes: contents.bytes(),
             build_seconds: start.elapsed().as_secs_f64(),
-            sah_cost: count as f64,
+            sah_cost: count.div_ceil(LANES) as f64,
             ..Info::default()
         };
-        Self { leaves, primitives: all.len(), region, level, info }
-    }
-
-    /// Of each leaf, its first triangle and its count.
-    #[inline(always)]
-    fn places(&self) -> impl Iterator<Item = (usize, u32)> {
-        (0..self.primitives).step_by(LANES).map(|first| (first, (self.primitives - first).min(LANES) as u32))
+        Self { contents, region, level, info }
     }
 }
 
@@ -64,7 +60,15 @@ impl<L: Leaves<LANES>> Answers for BruteForce<L> {
     }
 
     fn nearest(&self, points: &[DVec3], max_distances: &[f64], nearest: &mut [Nearest]) {
-        self.level.dispatch(Points { brute: self, points, max_distances, nearest });
+        let triangles = self.contents.triangles();
+        for (i, (&point, nearest)) in points.iter().zip(nearest).enumerate() {
+            *nearest = Search::new(point, of(max_distances, i), &self.region).map_or(Nearest::MISS, |mut search| {
+                for &(primitive, corners) in &triangles {
+                    search.offer(primitive, corners);
+                }
+                search.finish()
+            });
+        }
     }
 
     fn refitted(&self, primitives: &dyn Primitives) -> Result<Self, String> {
@@ -75,19 +79,12 @@ impl<L: Leaves<LANES>> Answers for BruteForce<L> {
     }
 
     fn validate(&self, primitives: &dyn Primitives) -> Result<(), String> {
-        let kept: Vec<u32> = self.places().flat_map(|(first, count)| self.leaves.primitives(first, count)).collect();
-        let wanted: Vec<u32> = (0..primitives.count() as u32).filter(|&p| primitives.is_finite(p)).collect();
+        let (mut kept, wanted) = (self.contents.primitives(0), all(primitives));
+        kept.sort_unstable();
         if kept != wanted {
             return Err(format!("{} primitives are kept of {} that can be hit", kept.len(), wanted.len()));
         }
-        for (first, count) in self.places() {
-            for (lane, p) in self.leaves.primitives(first, count).enumerate() {
-                if self.leaves.corners(first, count, lane) != primitives.corners(p) {
-                    return Err(format!("primitive {p} has other corners than it was given"));
-                }
-            }
-        }
-        Ok(())
+        self.contents.validate(primitives)
     }
 
     fn info(&self) -> &Info {
@@ -106,50 +103,16 @@ impl<L: Leaves<LANES>, Q: Query> Kernel<LANES> for Batch<'_, L, Q> {
 
     #[inline(always)]
     fn run<S: Simd<LANES>>(self, simd: S) {
-        let Self { brute, rays, query } = self;
+        let Self { brute: BruteForce { contents, region, .. }, rays, query } = self;
         for (i, ray) in rays.iter().enumerate() {
-            let Some(edges) = EdgeRay::new(ray, &brute.region) else {
+            let Some(edges) = EdgeRay::new(ray, region) else {
                 query.finish(i, None);
                 continue;
             };
-            let lanes = L::ray(&edges, &brute.region);
+            let leaf_ray = contents.ray(ray, &edges, region);
             let mut state = query.start(i, edges.t_max);
-            for (first, count) in brute.places() {
-                Q::visit_leaf(&mut state, count);
-                let offer = |p, candidate| query.offer(&mut state, p, candidate);
-                if brute.leaves.meet(simd, first, count, &lanes, &edges, offer) {
-                    break;
-                }
-            }
+            contents.meet(simd, 0, &leaf_ray, &mut None, query, &mut state);
             query.finish(i, Some((edges.along(), state)));
-        }
-    }
-}
-
-struct Points<'a, L> {
-    brute: &'a BruteForce<L>,
-    points: &'a [DVec3],
-    max_distances: &'a [f64],
-    nearest: &'a mut [Nearest],
-}
-
-impl<L: Leaves<LANES>> Kernel<LANES> for Points<'_, L> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<S: Simd<LANES>>(self, _: S) {
-        let Self { brute, points, max_distances, nearest } = self;
-        for (i, (&point, nearest)) in points.iter().zip(nearest).enumerate() {
-            let Some(mut search) = Search::new(point, of(max_distances, i), &brute.region) else {
-                *nearest = Nearest::MISS;
-                continue;
-            };
-            for (first, count) in brute.places() {
-                for lane in 0..count as usize {
-                    search.offer(brute.leaves.primitive(first, count, lane), brute.leaves.corners(first, count, lane));
-                }
-            }
-            *nearest = search.finish();
         }
     }
 }

@@ -27,7 +27,14 @@ impl Crossings {
         // The sum with zero is zero for −0 too, since these are equal to whoever looks for the closest.
         let t = |m: &Meeting| m.hit.t + 0.0;
         met.sort_unstable_by(|(r, a), (s, b)| {
-            r.cmp(s).then(t(a).total_cmp(&t(b))).then(a.hit.primitive.cmp(&b.hit.primitive))
+            r.cmp(s)
+                .then(t(a).total_cmp(&t(b)))
+                .then((a.hit.primitive, a.hit.inner).cmp(&(b.hit.primitive, b.hit.inner)))
+        });
+        // Structures in which a primitive stands at several places may meet it at each.
+        met.dedup_by(|(r, a), (s, b)| {
+            let same = |a: &Hit, b: &Hit| a.primitive == b.primitive && a.inner == b.inner;
+            r == s && t(a) == t(b) && same(&a.hit, &b.hit)
         });
         let mut crossings = Self { splits: Vec::with_capacity(rays.len() + 1), hits: Vec::with_capacity(met.len()) };
         crossings.splits.push(0);

@@ -3,51 +3,71 @@
 mod brute;
 pub mod bvh;
 mod crossings;
+mod mixed;
 mod nearest;
+mod objects;
 mod parity;
 mod query;
 mod slab;
+pub mod walk;
 
 pub use brute::BruteForce;
 pub use crossings::Crossings;
+pub use mixed::mixed;
 pub use nearest::Nearest;
+pub use objects::Objects;
 pub use parity::Side;
 pub use slab::{Clock, SlabRay, SlabRays};
 
+pub use query::Wanted;
+
 use crate::math::{DVec3, Hit, Ray, Region};
+use crate::shapes::Bounds;
 use parity::Parity;
 use query::{Answers, Any, Closest, Counted, Every};
 use rayon::prelude::*;
+use std::sync::Arc;
 
-/// What an accelerator is built from: triangles known by their numbers and corners.
+/// What an accelerator is built from: triangles known by their numbers and corners, and objects known by their numbers alone.
 ///
 /// The accelerators know no scene; whoever owns primitives shows them so.
 pub trait Primitives: Sync {
     /// The number of primitives; they are numbered from 0.
     fn count(&self) -> usize;
 
-    /// The corners of a triangle.
+    /// The corners of a triangle; NaN of what is none.
     fn corners(&self, primitive: u32) -> [DVec3; 3];
 
-    /// Whether every coordinate is an f32, so that leaves need not keep more.
+    /// Whether every coordinate of a triangle is an f32, so that leaves need not keep more.
     fn is_single(&self) -> bool;
 
-    /// Whether anything can hit it: not if a corner is NaN or infinite.
+    /// What is no triangle; none if there is no such thing.
+    fn objects(&self) -> Option<Arc<dyn Objects>> {
+        None
+    }
+
+    /// Whether it is a triangle that can be hit: not if a corner is NaN or infinite.
     fn is_finite(&self, primitive: u32) -> bool {
         self.corners(primitive).iter().all(|c| c.is_finite())
     }
 
-    /// Where the primitives lie that can be hit.
+    /// The box around a primitive, triangle or not; none if nothing can hit it.
+    fn bounds(&self, primitive: u32) -> Option<Bounds> {
+        let [a, b, c] = self.corners(primitive);
+        if a.is_finite() && b.is_finite() && c.is_finite() {
+            return Some(Bounds { min: a.min(b).min(c), max: a.max(b).max(c) });
+        }
+        self.objects()?.bounds(primitive)
+    }
+
+    /// Where the primitives lie that can be hit, but for those without end.
     fn region(&self) -> Region {
         let nothing = || (DVec3::INFINITY, DVec3::NEG_INFINITY);
         let join = |a: (DVec3, DVec3), b: (DVec3, DVec3)| (a.0.min(b.0), a.1.max(b.1));
         let (min, max) = (0..self.count() as u32)
             .into_par_iter()
-            .filter(|&p| self.is_finite(p))
-            .map(|p| {
-                let [a, b, c] = self.corners(p);
-                (a.min(b).min(c), a.max(b).max(c))
-            })
+            .filter_map(|p| self.bounds(p).filter(Bounds::is_finite))
+            .map(|b| (b.min, b.max))
             .reduce(nothing, join);
         Region::new(min, max)
     }
@@ -105,7 +125,9 @@ impl<A: Answers> Accelerator for A {
 
     fn sides(&self, primitives: &dyn Primitives, rays: &[Ray], doubt: f64, sides: &mut [Side]) {
         assert_eq!(rays.len(), sides.len(), "a side for each ray");
-        self.answer(rays, &mut Parity { primitives, rays, doubt, sides });
+        let mut parity = Parity { primitives, rays, doubt, sides, crossed: Vec::new() };
+        self.answer(rays, &mut parity);
+        parity.settle();
     }
 
     fn nearest(&self, points: &[DVec3], max_distances: &[f64], nearest: &mut [Nearest]) {

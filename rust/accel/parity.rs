@@ -5,7 +5,7 @@
 //! expansions (Shewchuk, "Adaptive precision floating-point arithmetic and fast robust geometric predicates", 1997).
 
 use super::Primitives;
-use super::query::{Kernels, Query};
+use super::query::{Kernels, Query, Wanted};
 use crate::math::robust::{UNIT, normalising_scale};
 use crate::math::{DVec3, Ray, exact_edges};
 use crate::shapes::triangle::Along;
@@ -34,11 +34,30 @@ pub struct Parity<'a> {
     pub doubt: f64,
     /// The answers.
     pub sides: &'a mut [Side],
+    /// What each ray crosses: its number, and of what it crosses there which primitive and which in it, and where. A structure may tell of
+    /// the same more than once.
+    pub crossed: Vec<(u32, u32, u32, u64)>,
+}
+
+impl Parity<'_> {
+    /// Turns the sides by what was crossed, once all rays are answered.
+    pub fn settle(mut self) {
+        self.crossed.sort_unstable();
+        self.crossed.dedup();
+        for (ray, ..) in self.crossed {
+            let side = &mut self.sides[ray as usize];
+            *side = match *side {
+                Side::Outside => Side::Inside,
+                Side::Inside => Side::Outside,
+                Side::Surface => Side::Surface,
+            };
+        }
+    }
 }
 
 impl Query for Parity<'_> {
     type State = (u32, Side);
-    const NEAREST_FIRST: bool = false;
+    const WANTED: Wanted = Wanted::Every;
     const KERNELS: Kernels = Kernels::Waves;
 
     #[inline(always)]
@@ -50,17 +69,20 @@ impl Query for Parity<'_> {
         f64::INFINITY
     }
     #[inline(always)]
-    fn offer(&mut self, (i, side): &mut (u32, Side), primitive: u32, Candidate { t, contact, .. }: Candidate) -> bool {
+    fn offer(&mut self, (i, side): &mut (u32, Side), primitive: u32, met: Candidate) -> bool {
+        let Candidate { t, contact, inner, .. } = met;
         let ahead = if t.abs() > self.doubt {
             t.total_cmp(&0.0)
         } else {
-            let ray = &self.rays[*i as usize];
-            sign_of_t(ray.origin, ray.direction, self.primitives.corners(primitive))
+            let (ray, corners) = (&self.rays[*i as usize], self.primitives.corners(primitive));
+            // What is no triangle has no corners, and tells `t` as well as can be.
+            let is_triangle = corners[0].is_finite();
+            if is_triangle { sign_of_t(ray.origin, ray.direction, corners) } else { (t + 0.0).total_cmp(&0.0) }
         };
         match ahead {
             Ordering::Equal => *side = Side::Surface,
             Ordering::Greater if contact != Contact::Touching => {
-                *side = if *side == Side::Inside { Side::Outside } else { Side::Inside };
+                self.crossed.push((*i, primitive, inner, t.to_bits()));
             }
             _ => {}
         }

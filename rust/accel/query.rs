@@ -16,13 +16,27 @@ pub enum Kernels {
     All,
 }
 
+/// How much has to be known of a ray.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Wanted {
+    /// Whatever is met first.
+    Closest,
+    /// Whether anything is met.
+    Any,
+    /// All that is met.
+    Every,
+}
+
 /// A question about rays. Kernels offer it the triangles that a ray meets, in any order.
 pub trait Query {
     /// What is known of a ray so far.
     type State: Copy;
 
+    /// What has to be offered.
+    const WANTED: Wanted;
+
     /// Whether the nearest triangles should be looked at first.
-    const NEAREST_FIRST: bool;
+    const NEAREST_FIRST: bool = matches!(Self::WANTED, Wanted::Closest);
 
     /// Which kernels are worth their code.
     const KERNELS: Kernels = Kernels::All;
@@ -36,10 +50,18 @@ pub trait Query {
     /// Writes down the answer for ray `i`; without a state, that of a ray that hits nothing.
     fn finish(&mut self, i: usize, answer: Option<(Along, Self::State)>);
 
+    /// Whether what is visited is counted.
+    const COUNTED: bool = false;
+
     /// A node is about to be tested.
     #[inline(always)]
-    fn visit_node(_: &mut Self::State) {}
-    /// So many triangles are about to be tested.
+    fn visit_node(state: &mut Self::State) {
+        Self::visit_nodes(state, 1);
+    }
+    /// So many nodes have been tested.
+    #[inline(always)]
+    fn visit_nodes(_: &mut Self::State, _: u32) {}
+    /// So many primitives are about to be tested.
     #[inline(always)]
     fn visit_leaf(_: &mut Self::State, _: u32) {}
 }
@@ -49,7 +71,7 @@ pub struct Closest<'a>(pub &'a mut [Hit]);
 
 impl Query for Closest<'_> {
     type State = Hit;
-    const NEAREST_FIRST: bool = true;
+    const WANTED: Wanted = Wanted::Closest;
 
     #[inline(always)]
     fn start(&self, _: usize, t_max: f64) -> Hit {
@@ -61,9 +83,9 @@ impl Query for Closest<'_> {
         state.t
     }
     #[inline(always)]
-    fn offer(&mut self, best: &mut Hit, primitive: u32, Candidate { t, uv, .. }: Candidate) -> bool {
+    fn offer(&mut self, best: &mut Hit, primitive: u32, Candidate { t, uv, inner, .. }: Candidate) -> bool {
         if t < best.t || (t == best.t && primitive < best.primitive) {
-            *best = Hit { t, uv, primitive };
+            *best = Hit { t, uv, primitive, inner };
         }
         false
     }
@@ -81,7 +103,7 @@ pub struct Any<'a>(pub &'a mut [bool]);
 
 impl Query for Any<'_> {
     type State = (bool, f64);
-    const NEAREST_FIRST: bool = false;
+    const WANTED: Wanted = Wanted::Any;
 
     #[inline(always)]
     fn start(&self, _: usize, t_max: f64) -> (bool, f64) {
@@ -129,7 +151,7 @@ impl Every {
 
 impl Query for Every {
     type State = (u32, f64);
-    const NEAREST_FIRST: bool = false;
+    const WANTED: Wanted = Wanted::Every;
     const KERNELS: Kernels = Kernels::Waves;
 
     #[inline(always)]
@@ -141,8 +163,9 @@ impl Query for Every {
         state.1
     }
     #[inline(always)]
-    fn offer(&mut self, state: &mut (u32, f64), primitive: u32, Candidate { t, uv, contact }: Candidate) -> bool {
-        self.met.push((state.0, Meeting { hit: Hit { t, uv, primitive }, contact }));
+    fn offer(&mut self, state: &mut (u32, f64), primitive: u32, candidate: Candidate) -> bool {
+        let Candidate { t, uv, contact, inner } = candidate;
+        self.met.push((state.0, Meeting { hit: Hit { t, uv, primitive, inner }, contact }));
         false
     }
     #[inline(always)]
@@ -158,7 +181,8 @@ pub struct Counted<'a>(pub &'a mut [Cost]);
 
 impl Query for Counted<'_> {
     type State = (Hit, Cost);
-    const NEAREST_FIRST: bool = true;
+    const WANTED: Wanted = Wanted::Closest;
+    const COUNTED: bool = true;
     // What a ray costs is its own work, not that of a packet.
     const KERNELS: Kernels = Kernels::Single;
 
@@ -179,8 +203,8 @@ impl Query for Counted<'_> {
         self.0[i] = answer.map_or(Cost::default(), |(_, (_, cost))| cost);
     }
     #[inline(always)]
-    fn visit_node(state: &mut (Hit, Cost)) {
-        state.1.nodes += 1;
+    fn visit_nodes(state: &mut (Hit, Cost), count: u32) {
+        state.1.nodes += count;
     }
     #[inline(always)]
     fn visit_leaf(state: &mut (Hit, Cost), count: u32) {

@@ -13,8 +13,8 @@
 //! A direction of less than 2⁻⁶⁰ along an axis counts as ±2⁻⁶⁰: within reach, that moves the ray by less than a
 //! hundred-millionth of the pad, and no infinity times zero appears.
 
-use crate::math::robust::lesser;
-use crate::math::{Ray, Region};
+use crate::math::robust::{greater, lesser};
+use crate::math::{Aabb, Ray, Region};
 use crate::shapes::triangle::{ALL, Column, EdgeRay, EdgeRays, RAYS, bits};
 use glam::Vec3A;
 
@@ -92,7 +92,7 @@ fn widened(x: f64, by: f32) -> f32 {
 
 impl SlabRay {
     /// Meets every box but an empty one, at any distance.
-    const EVERYWHERE: Self = Self {
+    pub const EVERYWHERE: Self = Self {
         inverse: [1.0; 3],
         near: [-1e38; 3],
         far: [1e38; 3],
@@ -142,6 +142,20 @@ impl SlabRay {
     #[inline(always)]
     pub fn limit(&self, t: f64) -> f32 {
         self.clock.limit(t)
+    }
+
+    /// Of a box, where the ray may enter it and where it may leave it. None if it does neither for certain between its `t_min` and
+    /// `limit`; an empty box is never met.
+    #[inline(always)]
+    pub fn passes(&self, aabb: &Aabb, limit: f32) -> Option<(f32, f32)> {
+        let planes = [aabb.min.to_array(), aabb.max.to_array()];
+        let (mut enter, mut leave) = (self.t_min, limit);
+        for axis in 0..3 {
+            let first = self.first[axis];
+            enter = greater(enter, planes[first][axis] * self.inverse[axis] + self.near[axis]);
+            leave = lesser(leave, planes[1 - first][axis] * self.inverse[axis] + self.far[axis]);
+        }
+        (enter <= leave).then_some((enter, leave))
     }
 
     /// Readies a ray for a scene: for triangles and for boxes. None if it cannot hit anything, or passes the

@@ -276,6 +276,7 @@ mod tests {
         direction: DVec3::new(0.48, 0.6, 0.64),
         t_min: 0.0,
         t_max: f64::INFINITY,
+        time: 0.0,
     };
 
     #[test]

@@ -16,17 +16,19 @@ pub struct Ray {
     pub t_min: f64,
     /// The greatest `t` that counts, itself included.
     pub t_max: f64,
+    /// When it is asked, for what moves: 0 as the shutter opens, 1 as it closes.
+    pub time: f64,
 }
 
 impl Ray {
     /// A ray asked for every `t` from 0 on.
     pub fn new(origin: DVec3, direction: DVec3) -> Self {
-        Self { origin, direction, t_min: 0.0, t_max: f64::INFINITY }
+        Self { origin, direction, t_min: 0.0, t_max: f64::INFINITY, time: 0.0 }
     }
 
     /// The segment from `a` to `b`: `t` runs from 0 to 1.
     pub fn segment(a: DVec3, b: DVec3) -> Self {
-        Self { origin: a, direction: b - a, t_min: 0.0, t_max: 1.0 }
+        Self { origin: a, direction: b - a, t_min: 0.0, t_max: 1.0, time: 0.0 }
     }
 
     /// The point at `t`.
@@ -45,11 +47,13 @@ pub struct Hit {
     pub uv: [f64; 2],
     /// Index among all primitives of the scene; `u32::MAX` for a miss.
     pub primitive: u32,
+    /// Of an instance, which primitive in it; 0 for what is none.
+    pub inner: u32,
 }
 
 impl Hit {
     /// Nothing was hit.
-    pub const MISS: Self = Self { t: f64::INFINITY, uv: [0.0; 2], primitive: u32::MAX };
+    pub const MISS: Self = Self { t: f64::INFINITY, uv: [0.0; 2], primitive: u32::MAX, inner: 0 };
 
     /// Whether something was hit.
     pub fn is_hit(&self) -> bool {

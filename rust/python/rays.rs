@@ -63,6 +63,7 @@ impl RayArrays<'_> {
             direction: self.directions.get(of(self.directions.len())),
             t_min: self.t_min[of(self.t_min.len())],
             t_max: self.t_max[of(self.t_max.len())],
+            time: 0.0,
         }
     }
 

@@ -125,7 +125,7 @@ impl Scene {
         let doubt = self.region.radius / (1u64 << 24) as f64;
         let mut sides = vec![Side::Outside; which.len()];
         for &way in ways.iter().filter(|_| !which.is_empty()) {
-            let leaving = |&i: &usize| Ray { origin: points[i], direction: way, t_min: -doubt, t_max: f64::INFINITY };
+            let leaving = |&i: &usize| Ray { t_min: -doubt, ..Ray::new(points[i], way) };
             let rays: Vec<_> = which.iter().map(leaving).collect();
             self.accelerator.sides(&self.geometry, &rays, doubt, &mut sides);
             for (&i, &side) in which.iter().zip(&sides) {

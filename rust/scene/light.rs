@@ -54,7 +54,7 @@ pub(super) fn sample_triangle(
     probability: f64,
     u: [f64; 2],
 ) -> Option<LightSample> {
-    let surface = geometry.surface(&Hit { t: 0.0, uv: warp::uniform_triangle(u), primitive });
+    let surface = geometry.surface(&Hit { t: 0.0, uv: warp::uniform_triangle(u), primitive, inner: 0 });
     let way = surface.position - point;
     let distance = way.length();
     let direction = way / distance;

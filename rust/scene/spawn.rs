@@ -85,7 +85,7 @@ mod tests {
                 for draw in 0..100 {
                     let mut sampler = Sampler::new(2, sample, draw);
                     let uv = warp::uniform_triangle(sampler.two(0));
-                    let surface = scene.geometry().surface(&Hit { t: 0.0, uv, primitive: 0 });
+                    let surface = scene.geometry().surface(&Hit { t: 0.0, uv, primitive: 0, inner: 0 });
                     // Half of them graze the plane, down to an angle of 10⁻¹².
                     let direction = warp::uniform_sphere(sampler.two(1));
                     let departure = Departure::new(&surface);
@@ -112,7 +112,7 @@ mod tests {
             faces: vec![[0, 1, 2]],
             normals: None,
         };
-        let surface = Geometry::new([mesh]).surface(&Hit { t: 0.0, uv: [0.25, 0.25], primitive: 0 });
+        let surface = Geometry::new([mesh]).surface(&Hit { t: 0.0, uv: [0.25, 0.25], primitive: 0, inner: 0 });
         let departure = Departure::new(&surface);
         for (direction, sign) in [(DVec3::Z, 1.0), (DVec3::NEG_Z, -1.0)] {
             let height = sign * (departure.ray(direction).origin.z - 3.0);
@@ -134,7 +134,7 @@ mod tests {
             let mut sampler = Sampler::new(4, 0, sample);
             let [a, b] = [0, 1].map(|primitive| {
                 let uv = warp::uniform_triangle(sampler.two(primitive));
-                Departure::new(&scene.geometry().surface(&Hit { t: 0.0, uv, primitive }))
+                Departure::new(&scene.geometry().surface(&Hit { t: 0.0, uv, primitive, inner: 0 }))
             });
             let mut occluded = [false; 2];
             scene.occluded(&[a.segment(&b), b.segment(&a)], &mut occluded);

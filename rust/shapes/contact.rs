@@ -9,6 +9,8 @@ pub struct Candidate {
     pub uv: [f64; 2],
     /// How.
     pub contact: Contact,
+    /// Of an instance, which primitive in it; 0 for what is none.
+    pub inner: u32,
 }
 
 /// How a ray meets a primitive.

@@ -13,6 +13,13 @@ pub struct Bounds {
     pub max: DVec3,
 }
 
+impl Bounds {
+    /// Whether it ends on every side.
+    pub fn is_finite(&self) -> bool {
+        self.min.is_finite() && self.max.is_finite()
+    }
+}
+
 /// A point of a shape, and how the surface lies there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point {

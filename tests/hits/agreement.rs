@@ -58,7 +58,7 @@ fn a_million_copies_of_one_triangle() {
     let ray = Ray::new(DVec3::new(0.25, 0.25, 1.0), -DVec3::Z);
     let mut hit = [Hit::MISS];
     tree.intersect(&[ray], &mut hit);
-    assert_eq!(hit, [Hit { t: 1.0, uv: [0.25, 0.25], primitive: 0 }]);
+    assert_eq!(hit, [Hit { t: 1.0, uv: [0.25, 0.25], primitive: 0, inner: 0 }]);
 }
 
 #[test]
@@ -307,7 +307,13 @@ fn ray() -> impl Strategy<Value = Ray> {
     let any = || [wide_coordinate(), wide_coordinate(), wide_coordinate()].prop_map(DVec3::from_array);
     let from = prop_oneof![3 => Just(0.0), 1 => Just(f64::NEG_INFINITY), 1 => -2.0..2.0];
     let until = prop_oneof![3 => Just(f64::INFINITY), 1 => 0.0..4.0];
-    (any(), any(), from, until).prop_map(|(origin, direction, t_min, t_max)| Ray { origin, direction, t_min, t_max })
+    (any(), any(), from, until).prop_map(|(origin, direction, t_min, t_max)| Ray {
+        origin,
+        direction,
+        t_min,
+        t_max,
+        time: 0.0,
+    })
 }
 
 proptest! {

@@ -1,6 +1,8 @@
 //! Triangles and rays for the tests of hits, and the comparison of every accelerator at every level.
 
-use raywright::accel::bvh::{self, Options};
+use raywright::accel::bvh::traverse::Ordered;
+use raywright::accel::bvh::{self, Options, Quality};
+use raywright::accel::walk::{self, Input, Lists, Mailbox, Structure};
 use raywright::accel::{Accelerator, BruteForce, Primitives};
 use raywright::math::{DVec3, Hit, Ray, Region, Vec3};
 use raywright::shapes::triangle::EdgeRay;
@@ -33,7 +35,7 @@ impl Triangles {
             if let Some(c) = edges.meet(self.corners(p))
                 && c.t < best.t
             {
-                best = Hit { t: c.t, uv: c.uv, primitive: p };
+                best = Hit { t: c.t, uv: c.uv, primitive: p, inner: 0 };
             }
         }
         Hit { t: best.t * edges.scale, ..best }
@@ -45,7 +47,7 @@ pub fn levels() -> impl Iterator<Item = Level> {
     Level::ALL.into_iter().filter(|l| l.is_available())
 }
 
-/// Both trees and brute force at every level, by name. The trees are valid.
+/// Both trees and brute force at every level, and every structure, by name. All are valid.
 pub fn accelerators(primitives: &dyn Primitives) -> Vec<(String, Box<dyn Accelerator>)> {
     let mut all: Vec<(String, Box<dyn Accelerator>)> = Vec::new();
     for level in levels() {
@@ -56,8 +58,20 @@ pub fn accelerators(primitives: &dyn Primitives) -> Vec<(String, Box<dyn Acceler
         }
         all.push((format!("brute force, {}", level.name()), BruteForce::over(primitives, level)));
     }
+    let level = levels().last().unwrap();
+    for (name, build) in STRUCTURES {
+        let structure = walk::walked(primitives, level, Mailbox::Stamps, &build);
+        structure.validate(primitives).unwrap();
+        all.push((name.to_string(), structure));
+    }
     all
 }
+
+type Build = fn(&Input) -> (Box<dyn Structure>, Lists);
+
+/// The structures that one ray walks at a time.
+const STRUCTURES: [(&str, Build); 1] =
+    [("stack", |input| Ordered::new(Quality::Balanced.steps(2).build(&input.boxes), "balanced"))];
 
 /// The closest hits, after seeing that every accelerator at every level gives the same bits, and `occluded` the same
 /// answer. The rays are asked as one batch, and a few at a time, which other kernels answer.

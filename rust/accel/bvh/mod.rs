@@ -4,6 +4,7 @@ pub mod build;
 mod node;
 pub mod optimise;
 mod quality;
+pub mod traverse;
 mod wide;
 
 pub use node::{BinaryBvh, Node};

@@ -237,6 +237,7 @@ impl EdgeRay {
             t,
             uv: [w[1] / sum, w[2] / sum],
             contact,
+            inner: 0,
         })
     }
 }

@@ -246,7 +246,7 @@ impl<T: Copy> Packet<'_, T> {
                     let i = certain.trailing_zeros() as usize & (RAYS - 1);
                     certain &= certain - 1;
                     let uv = [met.uv[0][i], met.uv[1][i]];
-                    let candidate = Candidate { t: met.t[i], uv, contact: Contact::Inside };
+                    let candidate = Candidate { t: met.t[i], uv, contact: Contact::Inside, inner: 0 };
                     self.offer(query, i, primitive, candidate);
                 }
             }

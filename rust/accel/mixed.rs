@@ -1,0 +1,179 @@
+//! Triangles and objects, each in a structure of their own: one is asked, then the other for what is left.
+
+use super::walk::{self, Input, Lists, Mailbox, Structure};
+use super::{Accelerator, Cost, Crossings, Info, Nearest, Objects, Primitives, Side};
+use crate::math::{DVec3, Hit, Ray};
+use crate::shapes::Bounds;
+use crate::simd::Level;
+use std::sync::Arc;
+
+/// An accelerator over both: `triangles` builds the one over triangles, `objects` that over the others. Where there is only one kind, its
+/// accelerator is all that is built.
+pub fn mixed(
+    primitives: &dyn Primitives,
+    level: Level,
+    triangles: &dyn Fn(&dyn Primitives) -> Box<dyn Accelerator>,
+    objects: &dyn Fn(&Input) -> (Box<dyn Structure>, Lists),
+) -> Box<dyn Accelerator> {
+    if primitives.objects().is_none() {
+        return triangles(primitives);
+    }
+    let others = walk::walked(&OnlyObjects(primitives), level, Mailbox::Stamps, objects);
+    let triangles = triangles(&OnlyTriangles(primitives));
+    if triangles.info().primitives == 0 {
+        return others;
+    }
+    Box::new(Mixed::of(triangles, others))
+}
+
+/// Primitives without those that are no triangles.
+struct OnlyTriangles<'a>(&'a dyn Primitives);
+
+impl Primitives for OnlyTriangles<'_> {
+    fn count(&self) -> usize {
+        self.0.count()
+    }
+    fn corners(&self, primitive: u32) -> [DVec3; 3] {
+        self.0.corners(primitive)
+    }
+    fn is_single(&self) -> bool {
+        self.0.is_single()
+    }
+}
+
+/// Primitives without triangles.
+struct OnlyObjects<'a>(&'a dyn Primitives);
+
+impl Primitives for OnlyObjects<'_> {
+    fn count(&self) -> usize {
+        self.0.count()
+    }
+    fn corners(&self, _: u32) -> [DVec3; 3] {
+        [DVec3::NAN; 3]
+    }
+    fn is_single(&self) -> bool {
+        true
+    }
+    fn objects(&self) -> Option<Arc<dyn Objects>> {
+        self.0.objects()
+    }
+    fn bounds(&self, primitive: u32) -> Option<Bounds> {
+        self.0.objects()?.bounds(primitive)
+    }
+}
+
+struct Mixed {
+    triangles: Box<dyn Accelerator>,
+    objects: Box<dyn Accelerator>,
+    info: Info,
+}
+
+impl Mixed {
+    fn of(triangles: Box<dyn Accelerator>, objects: Box<dyn Accelerator>) -> Self {
+        let (a, b) = (triangles.info(), objects.info());
+        let info = Info {
+            kind: format!("{}; beside it {}", a.kind, b.kind),
+            primitives: a.primitives + b.primitives,
+            nodes: a.nodes + b.nodes,
+            leaves: a.leaves + b.leaves,
+            depth: a.depth.max(b.depth),
+            bytes: a.bytes + b.bytes,
+            build_seconds: a.build_seconds + b.build_seconds,
+            sah_cost: a.sah_cost + b.sah_cost,
+        };
+        Self { triangles, objects, info }
+    }
+}
+
+/// Which of two hits comes first: of equal `t`, that of the lowest primitive.
+fn is_before(a: &Hit, b: &Hit) -> bool {
+    (a.t, a.primitive, a.inner) < (b.t, b.primitive, b.inner)
+}
+
+impl Accelerator for Mixed {
+    fn intersect(&self, rays: &[Ray], hits: &mut [Hit]) {
+        self.triangles.intersect(rays, hits);
+        // A hit takes over at equal `t` too, if it is that of a lower primitive.
+        let rays: Vec<_> = rays.iter().zip(&*hits).map(|(r, h)| Ray { t_max: r.t_max.min(h.t), ..*r }).collect();
+        let mut others = vec![Hit::MISS; rays.len()];
+        self.objects.intersect(&rays, &mut others);
+        for (hit, other) in hits.iter_mut().zip(others) {
+            if is_before(&other, hit) {
+                *hit = other;
+            }
+        }
+    }
+
+    fn occluded(&self, rays: &[Ray], occluded: &mut [bool]) {
+        self.triangles.occluded(rays, occluded);
+        let open: Vec<usize> = (0..rays.len()).filter(|&i| !occluded[i]).collect();
+        let rays: Vec<_> = open.iter().map(|&i| rays[i]).collect();
+        let mut others = vec![false; rays.len()];
+        self.objects.occluded(&rays, &mut others);
+        for (i, other) in open.into_iter().zip(others) {
+            occluded[i] = other;
+        }
+    }
+
+    fn crossings(&self, rays: &[Ray]) -> Crossings {
+        let (a, b) = (self.triangles.crossings(rays), self.objects.crossings(rays));
+        let mut all = Crossings { splits: vec![0], hits: Vec::with_capacity(a.hits.len() + b.hits.len()) };
+        for i in 0..rays.len() {
+            let of = |c: &Crossings| c.splits[i]..c.splits[i + 1];
+            let from = all.hits.len();
+            all.hits.extend_from_slice(&a.hits[of(&a)]);
+            all.hits.extend_from_slice(&b.hits[of(&b)]);
+            // Stable: what is told twice stays so. The sum with zero is zero for −0 too.
+            all.hits[from..].sort_by(|x, y| {
+                (x.t + 0.0).total_cmp(&(y.t + 0.0)).then((x.primitive, x.inner).cmp(&(y.primitive, y.inner)))
+            });
+            all.splits.push(all.hits.len());
+        }
+        all
+    }
+
+    fn sides(&self, primitives: &dyn Primitives, rays: &[Ray], doubt: f64, sides: &mut [Side]) {
+        self.triangles.sides(primitives, rays, doubt, sides);
+        let mut others = vec![Side::Outside; rays.len()];
+        self.objects.sides(primitives, rays, doubt, &mut others);
+        for (side, other) in sides.iter_mut().zip(others) {
+            *side = match (*side, other) {
+                (Side::Surface, _) | (_, Side::Surface) => Side::Surface,
+                (a, b) if a == b => Side::Outside,
+                _ => Side::Inside,
+            };
+        }
+    }
+
+    fn nearest(&self, points: &[DVec3], max_distances: &[f64], nearest: &mut [Nearest]) {
+        self.triangles.nearest(points, max_distances, nearest);
+    }
+
+    fn cost(&self, rays: &[Ray], costs: &mut [Cost]) {
+        self.triangles.cost(rays, costs);
+        let mut hits = vec![Hit::MISS; rays.len()];
+        self.triangles.intersect(rays, &mut hits);
+        let rays: Vec<_> = rays.iter().zip(&hits).map(|(r, h)| Ray { t_max: r.t_max.min(h.t), ..*r }).collect();
+        let mut others = vec![Cost::default(); rays.len()];
+        self.objects.cost(&rays, &mut others);
+        for (cost, other) in costs.iter_mut().zip(others) {
+            cost.nodes += other.nodes;
+            cost.primitives += other.primitives;
+        }
+    }
+
+    fn refitted(&self, primitives: &dyn Primitives) -> Result<Box<dyn Accelerator>, String> {
+        let triangles = self.triangles.refitted(&OnlyTriangles(primitives))?;
+        let objects = self.objects.refitted(&OnlyObjects(primitives))?;
+        Ok(Box::new(Self::of(triangles, objects)))
+    }
+
+    fn validate(&self, primitives: &dyn Primitives) -> Result<(), String> {
+        self.triangles.validate(&OnlyTriangles(primitives))?;
+        self.objects.validate(&OnlyObjects(primitives))
+    }
+
+    fn info(&self) -> &Info {
+        &self.info
+    }
+}

@@ -1,0 +1,181 @@
+//! What stands in the leaves of a structure: triangles by the block, and anything else by its number.
+
+use super::mailbox::Marks;
+use super::{Input, Lists};
+use crate::accel::query::Query;
+use crate::accel::{Objects, Primitives};
+use crate::math::{DVec3, Ray, Region};
+use crate::shapes::triangle::{BlockRay, EdgeRay, Leaves};
+use crate::simd::Simd;
+use std::sync::Arc;
+
+/// Triangles that are tested at once.
+pub const LANES: usize = 4;
+
+/// A ray as whatever stands in leaves needs it.
+pub struct LeafRay<'a> {
+    pub edges: &'a EdgeRay,
+    pub lanes: BlockRay,
+    pub time: f64,
+}
+
+/// The primitives of all leaves.
+pub struct Contents<L> {
+    triangles: L,
+    /// Where the triangles of each leaf begin, and where the last end.
+    ends: Vec<u32>,
+    objects: Option<Arc<dyn Objects>>,
+    /// The numbers of objects, leaf by leaf; and where those of each leaf begin. Empty where there are none.
+    numbers: Vec<u32>,
+    number_ends: Vec<u32>,
+}
+
+impl<L: Leaves<LANES>> Contents<L> {
+    /// Puts primitives into leaves.
+    pub fn new(input: &Input, lists: &Lists) -> Self {
+        let primitives = input.primitives;
+        let (mut order, mut blocks, mut ends) = (Vec::with_capacity(lists.order.len()), Vec::new(), vec![0]);
+        let (mut numbers, mut number_ends) = (Vec::new(), vec![0]);
+        let mut rest = lists.order.as_slice();
+        for &count in &lists.counts {
+            let (leaf, others) = rest.split_at(count as usize);
+            rest = others;
+            let before = order.len();
+            for &p in leaf {
+                if primitives.is_finite(p) { order.push(p) } else { numbers.push(p) }
+            }
+            let triangles = order.len() - before;
+            blocks.extend((0..triangles).step_by(LANES).map(|i| (triangles - i).min(LANES) as u32));
+            ends.push(order.len() as u32);
+            number_ends.push(numbers.len() as u32);
+        }
+        if numbers.is_empty() {
+            number_ends = Vec::new();
+        }
+        let triangles = L::new(&input.region, &order, &blocks, |p| primitives.corners(p));
+        Self { triangles, ends, objects: primitives.objects(), numbers, number_ends }
+    }
+
+    /// Memory held.
+    pub fn bytes(&self) -> usize {
+        let words = self.ends.len() + self.numbers.len() + self.number_ends.len();
+        self.triangles.bytes() + words * size_of::<u32>()
+    }
+
+    /// Of a leaf, the blocks of triangles: where each begins and how many it has.
+    #[inline(always)]
+    fn blocks(&self, leaf: u32) -> impl Iterator<Item = (usize, u32)> + use<L> {
+        let (first, end) = (self.ends[leaf as usize] as usize, self.ends[leaf as usize + 1] as usize);
+        (first..end).step_by(LANES).map(move |at| (at, (end - at).min(LANES) as u32))
+    }
+
+    #[inline(always)]
+    fn numbers(&self, leaf: u32) -> &[u32] {
+        match self.number_ends.get(leaf as usize..leaf as usize + 2) {
+            Some(&[from, to]) => &self.numbers[from as usize..to as usize],
+            _ => &[],
+        }
+    }
+
+    /// The primitives of a leaf.
+    pub fn primitives(&self, leaf: u32) -> Vec<u32> {
+        let triangles = self.blocks(leaf).flat_map(|(first, count)| self.triangles.primitives(first, count));
+        triangles.chain(self.numbers(leaf).iter().copied()).collect()
+    }
+
+    /// The primitives of all leaves.
+    pub fn lists(&self) -> Lists {
+        let leaves: Vec<_> = (0..self.ends.len() as u32 - 1).map(|leaf| self.primitives(leaf)).collect();
+        Lists::of(leaves.iter().map(Vec::as_slice))
+    }
+
+    /// The triangles of all leaves, with their numbers.
+    pub fn triangles(&self) -> Vec<(u32, [DVec3; 3])> {
+        let blocks = (0..self.ends.len() as u32 - 1).flat_map(|leaf| self.blocks(leaf));
+        let of_block = |(first, count): (usize, u32)| {
+            let corners = move |lane| self.triangles.corners(first, count, lane);
+            self.triangles.primitives(first, count).enumerate().map(move |(lane, p)| (p, corners(lane)))
+        };
+        blocks.flat_map(of_block).collect()
+    }
+
+    /// Checks that triangles have the corners that they were given.
+    pub fn validate(&self, primitives: &dyn Primitives) -> Result<(), String> {
+        match self.triangles().into_iter().find(|&(p, corners)| corners != primitives.corners(p)) {
+            Some((p, _)) => Err(format!("primitive {p} has other corners in its leaf")),
+            None => Ok(()),
+        }
+    }
+
+    /// A ray as leaves need it.
+    #[inline(always)]
+    pub fn ray<'a>(&self, ray: &Ray, edges: &'a EdgeRay, region: &Region) -> LeafRay<'a> {
+        LeafRay { edges, lanes: L::ray(edges, region), time: ray.time }
+    }
+
+    /// Offers what of a leaf is met to the query; true if that answers it.
+    #[inline(always)]
+    pub fn meet<Q: Query, S: Simd<LANES>>(
+        &self,
+        simd: S,
+        leaf: u32,
+        ray: &LeafRay,
+        marks: &mut Option<&mut Marks>,
+        query: &mut Q,
+        state: &mut Q::State,
+    ) -> bool {
+        for (first, count) in self.blocks(leaf) {
+            let mut new = (1u32 << count) - 1;
+            if let Some(marks) = marks {
+                for lane in 0..count as usize {
+                    new &= !(u32::from(!marks.is_new(self.triangles.primitive(first, count, lane))) << lane);
+                }
+                if new == 0 {
+                    continue;
+                }
+            }
+            Q::visit_leaf(state, new.count_ones());
+            let mut left = new & self.triangles.not_rejected(simd, &ray.lanes, first, count);
+            while left != 0 {
+                let lane = left.trailing_zeros() as usize & (LANES - 1);
+                left &= left - 1;
+                if let Some(candidate) = ray.edges.meet(self.triangles.corners(first, count, lane))
+                    && query.offer(state, self.triangles.primitive(first, count, lane), candidate)
+                {
+                    return true;
+                }
+            }
+        }
+        let numbers = self.numbers(leaf);
+        !numbers.is_empty() && self.meet_objects(numbers, ray, marks, query, state)
+    }
+
+    /// The same for objects, by their numbers.
+    pub fn meet_objects<Q: Query>(
+        &self,
+        numbers: &[u32],
+        ray: &LeafRay,
+        marks: &mut Option<&mut Marks>,
+        query: &mut Q,
+        state: &mut Q::State,
+    ) -> bool {
+        let Some(objects) = &self.objects else { return false };
+        let EdgeRay { origin, direction, t_min, t_max, scale, .. } = *ray.edges;
+        for &number in numbers {
+            if marks.as_mut().is_some_and(|marks| !marks.is_new(number)) {
+                continue;
+            }
+            Q::visit_leaf(state, 1);
+            let t_max = t_max.min(Q::limit(state));
+            let asked = Ray { origin, direction, t_min, t_max, time: ray.time };
+            let answered = objects.meet(number, Q::WANTED, &asked, &mut |met| {
+                // What lies so far along a short direction that an f64 cannot say it is no hit.
+                (met.t * scale).is_finite() && query.offer(state, number, met)
+            });
+            if answered {
+                return true;
+            }
+        }
+        false
+    }
+}

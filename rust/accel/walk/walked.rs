@@ -1,0 +1,233 @@
+//! Answers every question by walking a structure.
+
+use super::contents::{Contents, LANES};
+use super::mailbox::{Mailbox, Mailboxes, Marks};
+use super::{Input, Lists, Structure};
+use crate::accel::query::{Answers, Query};
+use crate::accel::{Accelerator, Info, Nearest, Primitives, SlabRay, bvh};
+use crate::math::{Aabb, DVec3, Ray, Region};
+use crate::shapes::triangle::{DoubleLeaves, EdgeRay, Leaves, SingleLeaves};
+use crate::simd::{Dispatch, Kernel, Level, Simd};
+use rayon::prelude::*;
+use std::sync::OnceLock;
+use std::time::Instant;
+
+/// A structure with what stands in its leaves.
+pub struct Walked<L> {
+    structure: Box<dyn Structure>,
+    contents: Contents<L>,
+    /// Objects without end, which every ray is tested against.
+    unbounded: Vec<u32>,
+    /// Where a primitive stands in several leaves.
+    mailboxes: Option<Mailboxes>,
+    /// Made when nearest points are asked for.
+    nearest: OnceLock<Box<dyn Accelerator>>,
+    /// How many primitives there are, those among them that nothing can hit.
+    count: usize,
+    region: Region,
+    level: Level,
+    info: Info,
+}
+
+/// Builds a structure over primitives, triangles or not, and keeps their numbers as precisely as they are.
+///
+/// `build` is given what there is, and tells which primitives stand in which leaf. Where one stands in several, `mailbox` says how that is
+/// seen to.
+pub fn walked(
+    primitives: &dyn Primitives,
+    level: Level,
+    mailbox: Mailbox,
+    build: &dyn Fn(&Input) -> (Box<dyn Structure>, Lists),
+) -> Box<dyn Accelerator> {
+    if primitives.is_single() {
+        Box::new(Walked::<SingleLeaves<LANES>>::new(primitives, level, mailbox, build))
+    } else {
+        Box::new(Walked::<DoubleLeaves<LANES>>::new(primitives, level, mailbox, build))
+    }
+}
+
+impl<'a> Input<'a> {
+    /// Looks where primitives lie. Apart from that come the numbers of those without end.
+    fn new(primitives: &'a dyn Primitives) -> (Self, Vec<u32>) {
+        let region = primitives.region();
+        let all = 0..primitives.count() as u32;
+        let boxes = all.clone().into_par_iter().map(|p| match primitives.bounds(p) {
+            Some(b) if b.is_finite() => region.aabb([b.min, b.max, b.max]),
+            _ => Aabb::EMPTY,
+        });
+        let boxes = boxes.collect();
+        let is_unbounded = |&p: &u32| primitives.bounds(p).is_some_and(|b| !b.is_finite());
+        let unbounded = if primitives.objects().is_some() { all.filter(is_unbounded).collect() } else { Vec::new() };
+        (Self { region, boxes, primitives }, unbounded)
+    }
+}
+
+impl<L: Leaves<LANES>> Walked<L> {
+    fn new(
+        primitives: &dyn Primitives,
+        level: Level,
+        mailbox: Mailbox,
+        build: &dyn Fn(&Input) -> (Box<dyn Structure>, Lists),
+    ) -> Self {
+        let start = Instant::now();
+        let (input, unbounded) = Input::new(primitives);
+        let (structure, lists) = build(&input);
+        let contents = Contents::new(&input, &lists);
+        let bounded = input.boxes.iter().filter(|b| !b.is_empty()).count();
+        let mailboxes = (lists.order.len() > bounded).then(|| Mailboxes::new(mailbox, primitives.count()));
+        let info = Info { primitives: bounded + unbounded.len(), ..Info::default() };
+        let (nearest, count, region) = (OnceLock::new(), primitives.count(), input.region);
+        let mut walked = Self { structure, contents, unbounded, mailboxes, nearest, count, region, level, info };
+        walked.inform();
+        walked.info.build_seconds = start.elapsed().as_secs_f64();
+        walked
+    }
+
+    /// Writes down what it looks like.
+    fn inform(&mut self) {
+        let of_structure = self.structure.info();
+        self.info = Info {
+            kind: format!("{}, {}", of_structure.kind, L::PRECISION),
+            bytes: of_structure.bytes + self.contents.bytes() + size_of_val(self.unbounded.as_slice()),
+            primitives: self.info.primitives,
+            build_seconds: self.info.build_seconds,
+            ..of_structure
+        };
+    }
+}
+
+impl<L: Leaves<LANES>> Answers for Walked<L> {
+    fn answer<Q: Query>(&self, rays: &[Ray], query: &mut Q) {
+        match &self.mailboxes {
+            None => self.level.dispatch(Batch { walked: self, rays, marks: None, query }),
+            Some(boxes) => {
+                boxes.with(|marks| self.level.dispatch(Batch { walked: self, rays, marks: Some(marks), query }));
+            }
+        }
+    }
+
+    fn nearest(&self, points: &[DVec3], max_distances: &[f64], nearest: &mut [Nearest]) {
+        // A tree of boxes does this better than anything else.
+        let tree = self.nearest.get_or_init(|| {
+            let mut kept = Kept { corners: vec![[DVec3::NAN; 3]; self.count], is_single: L::PRECISION == "single" };
+            for (primitive, corners) in self.contents.triangles() {
+                kept.corners[primitive as usize] = corners;
+            }
+            bvh::widest(&kept, &bvh::Options::DEFAULT, self.level)
+        });
+        tree.nearest(points, max_distances, nearest);
+    }
+
+    fn refitted(&self, primitives: &dyn Primitives) -> Result<Self, String> {
+        let start = Instant::now();
+        if L::PRECISION == "single" && !primitives.is_single() {
+            return Err("corners that are f64 do not fit leaves of f32".into());
+        }
+        let (input, unbounded) = Input::new(primitives);
+        let lists = self.contents.lists();
+        let can_be_hit = |p: u32| input.boxes.get(p as usize).is_some_and(|b| !b.is_empty());
+        if let Some(p) = lists.order.iter().find(|&&p| !can_be_hit(p)) {
+            return Err(format!("primitive {p} could be hit, and cannot any more"));
+        }
+        let bounded = (0..primitives.count() as u32).filter(|&p| can_be_hit(p)).count();
+        if bounded + unbounded.len() != self.info.primitives || unbounded != self.unbounded {
+            return Err(format!("{bounded} primitives can be hit, not {}", self.info.primitives));
+        }
+        let structure = self.structure.refitted(&input, &|leaf| self.contents.primitives(leaf))?;
+        let mut walked = Self {
+            structure,
+            contents: Contents::new(&input, &lists),
+            unbounded,
+            mailboxes: self.mailboxes.as_ref().map(Mailboxes::another),
+            nearest: OnceLock::new(),
+            region: input.region,
+            info: self.info.clone(),
+            ..*self
+        };
+        walked.inform();
+        walked.info.build_seconds = start.elapsed().as_secs_f64();
+        Ok(walked)
+    }
+
+    fn validate(&self, primitives: &dyn Primitives) -> Result<(), String> {
+        let (input, unbounded) = Input::new(primitives);
+        if unbounded != self.unbounded {
+            return Err(format!("{unbounded:?} have no end, and {:?} are kept", self.unbounded));
+        }
+        let lists = self.contents.lists();
+        let mut met = vec![0u32; input.boxes.len()];
+        for &p in &lists.order {
+            met[p as usize] += 1;
+        }
+        let most = if self.mailboxes.is_some() { u32::MAX } else { 1 };
+        let least = |p: usize| u32::from(!input.boxes[p].is_empty());
+        if let Some(p) = (0..met.len()).find(|&p| met[p] < least(p) || met[p] > most * least(p)) {
+            return Err(format!("primitive {p} stands in {} leaves; its box is {:?}", met[p], input.boxes[p]));
+        }
+        self.contents.validate(primitives)?;
+        self.structure.validate(&input, &|leaf| self.contents.primitives(leaf))
+    }
+
+    fn info(&self) -> &Info {
+        &self.info
+    }
+}
+
+/// The triangles of a structure, as a tree is built of them.
+struct Kept {
+    corners: Vec<[DVec3; 3]>,
+    is_single: bool,
+}
+
+impl Primitives for Kept {
+    fn count(&self) -> usize {
+        self.corners.len()
+    }
+
+    fn corners(&self, primitive: u32) -> [DVec3; 3] {
+        self.corners[primitive as usize]
+    }
+
+    fn is_single(&self) -> bool {
+        self.is_single
+    }
+}
+
+struct Batch<'a, L, Q> {
+    walked: &'a Walked<L>,
+    rays: &'a [Ray],
+    marks: Option<&'a mut Marks>,
+    query: &'a mut Q,
+}
+
+impl<L: Leaves<LANES>, Q: Query> Kernel<LANES> for Batch<'_, L, Q> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd<LANES>>(self, simd: S) {
+        let Self { walked: Walked { structure, contents, unbounded, region, .. }, rays, mut marks, query } = self;
+        let mut walker = structure.walker(Q::COUNTED);
+        for (i, ray) in rays.iter().enumerate() {
+            let Some(edges) = EdgeRay::new(ray, region) else {
+                query.finish(i, None);
+                continue;
+            };
+            let leaf_ray = contents.ray(ray, &edges, region);
+            let mut state = query.start(i, edges.t_max);
+            if let Some(marks) = &mut marks {
+                marks.next_ray();
+            }
+            let mut answered = contents.meet_objects(unbounded, &leaf_ray, &mut marks, query, &mut state);
+            if !answered && let Some(slabs) = SlabRay::new(&edges, region) {
+                walker.start(&slabs);
+                while !answered && let Some(leaf) = walker.next(slabs.limit(Q::limit(&state))) {
+                    answered = contents.meet(simd, leaf, &leaf_ray, &mut marks, query, &mut state);
+                }
+                if Q::COUNTED {
+                    Q::visit_nodes(&mut state, walker.nodes());
+                }
+            }
+            query.finish(i, Some((edges.along(), state)));
+        }
+    }
+}
