@@ -1,6 +1,6 @@
 //! Triangles and objects, each in a structure of their own: one is asked, then the other for what is left.
 
-use super::walk::{self, Input, Lists, Mailbox, Structure};
+use super::walk::{self, Build, Mailbox};
 use super::{Accelerator, Cost, Crossings, Info, Nearest, Objects, Primitives, Side};
 use crate::math::{DVec3, Hit, Ray};
 use crate::shapes::Bounds;
@@ -13,7 +13,7 @@ pub fn mixed(
     primitives: &dyn Primitives,
     level: Level,
     triangles: &dyn Fn(&dyn Primitives) -> Box<dyn Accelerator>,
-    objects: &dyn Fn(&Input) -> (Box<dyn Structure>, Lists),
+    objects: &Build,
 ) -> Box<dyn Accelerator> {
     if primitives.objects().is_none() {
         return triangles(primitives);

@@ -152,12 +152,11 @@ impl PathWorker<'_> {
                 *arriving += path.throughput * self.scene.lights().environment(ray.direction) * weight;
                 continue;
             }
-            let surface = self.scene.geometry().surface(&hit);
+            let surface = self.scene.geometry().surface(&ray, &hit);
             let emission = self.scene.lights().emission(surface.shape);
             let cosine = -ray.direction.dot(surface.normal);
             if emission != Rgb::ZERO && cosine > 0.0 {
-                let light_pdf =
-                    self.scene.lights().surface_pdf(self.scene.geometry(), surface.shape, hit.primitive, hit.t, cosine);
+                let light_pdf = self.scene.lights().surface_pdf(self.scene.geometry(), &ray, &hit, cosine);
                 *arriving += path.throughput * emission * power_heuristic(path.pdf, light_pdf);
             }
             if last {

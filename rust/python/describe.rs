@@ -93,7 +93,7 @@ impl Mesh<'_> {
         }
         let normals = self.normals.as_ref().map(|n| n.rows("normals").map(|rows| rows.to_single())).transpose()?;
         Ok(scene::Shape {
-            mesh: scene::Mesh { vertices, faces, normals },
+            surface: scene::Mesh { vertices, faces, normals }.into(),
             material: Material::Diffuse { reflectance: Rgb::from_array(self.material.reflectance) },
             emission: self.emission.map_or(Rgb::ZERO, Rgb::from_array),
         })
@@ -151,7 +151,7 @@ impl AcceleratorChoice {
         let level = level()?;
         Ok(move |geometry: &Geometry| -> Box<dyn Accelerator> {
             match self {
-                Self::Bvh(options) => bvh::widest(geometry, &options, level),
+                Self::Bvh(options) => bvh::over(geometry, &options, level),
                 Self::BruteForce => BruteForce::over(geometry, level),
             }
         })

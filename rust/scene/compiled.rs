@@ -54,13 +54,13 @@ impl Scene {
     fn parts(description: SceneDescription) -> Result<(Geometry, Vec<Material>, Lights), DescriptionError> {
         description.validate()?;
         let SceneDescription { shapes, points, environment } = description;
-        let (mut meshes, mut materials, mut emission) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut surfaces, mut materials, mut emission) = (Vec::new(), Vec::new(), Vec::new());
         for shape in shapes {
-            meshes.push(shape.mesh);
+            surfaces.push(shape.surface);
             materials.push(shape.material);
             emission.push(shape.emission);
         }
-        let geometry = Geometry::new(meshes);
+        let geometry = Geometry::new(surfaces);
         let lights = Lights::new(&geometry, emission, points, environment);
         Ok((geometry, materials, lights))
     }
@@ -175,8 +175,8 @@ impl Scene {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::Shape;
     use crate::scene::fixtures::{furnace, inward_box, scene, shape};
-    use crate::scene::{Mesh, Shape};
 
     #[test]
     fn a_closed_surface_is_crossed_evenly_however_the_ray_is_aimed() {
@@ -244,10 +244,7 @@ mod tests {
         assert_eq!(light(&refitted), light(&moved));
         assert_ne!(light(&refitted), light(&still));
         // Another number of faces is another scene.
-        let fewer = SceneDescription {
-            shapes: vec![Shape { mesh: Mesh::default(), ..Default::default() }],
-            ..Default::default()
-        };
+        let fewer = SceneDescription { shapes: vec![Shape::default()], ..Default::default() };
         assert!(still.refitted(fewer).unwrap().is_none());
     }
 }

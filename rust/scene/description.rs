@@ -1,14 +1,14 @@
 //! A scene as it is described, before it is compiled.
 
-use super::{Material, Mesh, PointLight};
+use super::{Material, PointLight, Surface};
 use crate::optics::{Rgb, is_radiance};
 use std::fmt;
 
-/// One mesh, what it is made of, and how it shines.
+/// One surface, what it is made of, and how it shines.
 #[derive(Clone, Debug, Default)]
 pub struct Shape {
-    /// The surface.
-    pub mesh: Mesh,
+    /// What rays hit.
+    pub surface: Surface,
     /// What it is made of.
     pub material: Material,
     /// Radiance emitted on the side that the normals point to.

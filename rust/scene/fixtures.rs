@@ -26,7 +26,7 @@ pub(crate) fn rectangle(corner: [f32; 3], side: [f32; 3], other: [f32; 3]) -> Me
 /// A surface of one colour that may shine.
 pub(crate) fn shape(mesh: Mesh, reflectance: impl Into<[f64; 3]>, emission: f64) -> Shape {
     let reflectance = Rgb::from_array(reflectance.into());
-    Shape { mesh, material: Material::Diffuse { reflectance }, emission: Rgb::splat(emission) }
+    Shape { surface: mesh.into(), material: Material::Diffuse { reflectance }, emission: Rgb::splat(emission) }
 }
 
 /// A box from −1 to 1 whose faces look inwards, of one reflectance and emission.

@@ -1,7 +1,10 @@
-//! The surfaces of a scene: every mesh's corners and faces, one after the other.
+//! The surfaces of a scene: every mesh's corners and faces, one after the other, and shapes among them.
 
-use crate::accel::Primitives;
-use crate::math::{DVec3, Hit, Vec3};
+use super::Surfaces;
+use crate::accel::{Objects, Primitives};
+use crate::math::{DVec3, Hit, Ray, Vec3};
+use crate::shapes::{Point, Shape};
+use std::sync::Arc;
 
 /// Corners of triangles, as precisely as they are known.
 #[derive(Clone, Debug)]
@@ -105,12 +108,44 @@ pub struct Mesh {
     pub normals: Option<Vec<Vec3>>,
 }
 
-/// All meshes of a scene in one: a primitive is a face, numbered through from the first shape to the last.
+/// What rays can hit.
+#[derive(Clone, Debug)]
+pub enum Surface {
+    /// Triangles.
+    Mesh(Mesh),
+    /// Anything else.
+    Shape(Arc<dyn Shape>),
+}
+
+impl Default for Surface {
+    fn default() -> Self {
+        Self::Mesh(Mesh::default())
+    }
+}
+
+impl From<Mesh> for Surface {
+    fn from(mesh: Mesh) -> Self {
+        Self::Mesh(mesh)
+    }
+}
+
+impl From<Arc<dyn Shape>> for Surface {
+    fn from(shape: Arc<dyn Shape>) -> Self {
+        Self::Shape(shape)
+    }
+}
+
+/// The face that stands for a shape that is no mesh.
+const NO_FACE: [u32; 3] = [u32::MAX; 3];
+
+/// All surfaces of a scene in one: a primitive is a face, or a shape that is no mesh, numbered through from the first shape to the last.
 #[derive(Debug, Default)]
 pub struct Geometry {
     vertices: Vertices,
-    /// Indices into `vertices`, for all shapes.
+    /// Indices into `vertices`, for all shapes; [`NO_FACE`] for what is no mesh.
     faces: Vec<[u32; 3]>,
+    /// What is no mesh; none if all are.
+    others: Option<Arc<Surfaces>>,
     /// Shading normals of all vertices, zero where a shape has none; empty where no shape has any.
     normals: Vec<Vec3>,
     /// The first primitive of each shape, and the number of all at the end.
@@ -140,7 +175,14 @@ impl Primitives for Geometry {
 
     #[inline]
     fn corners(&self, primitive: u32) -> [DVec3; 3] {
-        self.faces[primitive as usize].map(|v| self.vertices.get(v))
+        match self.faces[primitive as usize] {
+            NO_FACE => [DVec3::NAN; 3],
+            face => face.map(|v| self.vertices.get(v)),
+        }
+    }
+
+    fn objects(&self) -> Option<Arc<dyn Objects>> {
+        self.others.clone().map(|others| others as _)
     }
 
     fn is_single(&self) -> bool {
@@ -149,13 +191,23 @@ impl Primitives for Geometry {
 }
 
 impl Geometry {
-    /// Joins meshes; the index of a mesh becomes its shape number.
+    /// Joins surfaces; the index of one becomes its shape number.
     ///
     /// # Panics
     /// If a face names a vertex that its mesh does not have, or there are more than 2³¹ faces or vertices in all.
-    pub fn new(meshes: impl IntoIterator<Item = Mesh>) -> Self {
+    pub fn new<S: Into<Surface>>(surfaces: impl IntoIterator<Item = S>) -> Self {
         let mut all = Self { first: vec![0], ..Self::default() };
-        for mesh in meshes {
+        let mut others = Surfaces::default();
+        for surface in surfaces {
+            let mesh = match surface.into() {
+                Surface::Mesh(mesh) => mesh,
+                Surface::Shape(shape) => {
+                    others.push(all.faces.len() as u32, shape);
+                    all.faces.push(NO_FACE);
+                    all.first.push(all.faces.len() as u32);
+                    continue;
+                }
+            };
             let base = u32::try_from(all.vertices.len()).expect("fewer than 2^32 vertices");
             let count = mesh.vertices.len();
             let end = count as u32;
@@ -175,7 +227,9 @@ impl Geometry {
             assert!(all.faces.len() < 1 << 31, "fewer than 2^31 faces");
             all.first.push(all.faces.len() as u32);
         }
-        all.dropped = (0..all.faces.len() as u32).filter(|&p| !all.is_finite(p)).count();
+        all.others = (!others.is_empty()).then(|| Arc::new(others));
+        let is_dropped = |&p: &u32| all.faces[p as usize] != NO_FACE && !all.is_finite(p);
+        all.dropped = (0..all.faces.len() as u32).filter(is_dropped).count();
         all
     }
 
@@ -195,6 +249,7 @@ impl Geometry {
             + self.normals.len() * size_of::<Vec3>()
             + self.faces.len() * size_of::<[u32; 3]>()
             + self.first.len() * size_of::<u32>()
+            + self.others.as_ref().map_or(0, |others| others.bytes())
     }
 
     /// Which shape a primitive belongs to, and its index there.
@@ -213,19 +268,33 @@ impl Geometry {
         self.first[shape as usize]..self.first[shape as usize + 1]
     }
 
-    /// The point of a primitive with weights `uv` for its second and third corner.
+    /// A primitive that is no triangle.
+    #[inline]
+    pub fn shape(&self, primitive: u32) -> Option<&dyn Shape> {
+        self.others.as_ref()?.get(primitive)
+    }
+
+    /// The area of a primitive; no finite number if nothing can hit it, or it has no end.
+    pub fn area(&self, primitive: u32) -> f64 {
+        match self.shape(primitive) {
+            Some(shape) => shape.area(),
+            None => 0.5 * self.area_vector(primitive).length(),
+        }
+    }
+
+    /// The point of a triangle with weights `uv` for its second and third corner.
     pub fn position(&self, primitive: u32, uv: [f64; 2]) -> DVec3 {
         let [a, b, c] = self.corners(primitive);
         a * (1.0 - uv[0] - uv[1]) + b * uv[0] + c * uv[1]
     }
 
-    /// Twice the area of a primitive along its unit normal, as the winding gives it. Exact but for the f64 roundings.
+    /// Twice the area of a triangle along its unit normal, as the winding gives it. Exact but for the f64 roundings.
     pub fn area_vector(&self, primitive: u32) -> DVec3 {
         let [a, b, c] = self.corners(primitive);
         (b - a).cross(c - a)
     }
 
-    /// The unit normal of a primitive; NaN for one without area.
+    /// The unit normal of a triangle; NaN for one without area.
     pub fn normal(&self, primitive: u32) -> DVec3 {
         let n = self.area_vector(primitive);
         // Scaling by the largest component first keeps the squares of tiny and huge triangles in range.
@@ -233,19 +302,34 @@ impl Geometry {
         n / n.length()
     }
 
-    /// All that shading needs at a hit.
+    /// All that shading needs at a hit of a ray.
     ///
     /// # Panics
     /// If it is a miss.
-    pub fn surface(&self, hit: &Hit) -> SurfacePoint {
-        let [a, b, c] = self.corners(hit.primitive);
-        let weights = [1.0 - hit.uv[0] - hit.uv[1], hit.uv[0], hit.uv[1]];
+    #[inline]
+    pub fn surface(&self, ray: &Ray, hit: &Hit) -> SurfacePoint {
+        match self.shape(hit.primitive) {
+            Some(shape) => self.on_shape(hit.primitive, &shape.point(ray, hit.t, hit.uv)),
+            None => self.on_triangle(hit.primitive, hit.uv),
+        }
+    }
+
+    /// A point of a shape, as shading needs it.
+    pub fn on_shape(&self, primitive: u32, point: &Point) -> SurfacePoint {
+        let Point { position, error, normal, .. } = *point;
+        SurfacePoint { position, error, normal, shading_normal: normal, shape: self.locate(primitive).0 }
+    }
+
+    /// A point of a triangle, as shading needs it.
+    pub fn on_triangle(&self, primitive: u32, uv: [f64; 2]) -> SurfacePoint {
+        let [a, b, c] = self.corners(primitive);
+        let weights = [1.0 - uv[0] - uv[1], uv[0], uv[1]];
         let position = a * weights[0] + b * weights[1] + c * weights[2];
         // Weights carry up to 3 roundings, products and sums 3 more: 6 u of each term in all (pbrt 6.8.5 calls it γ₇).
         let error = 8.0 * f64::EPSILON * a.abs().max(b.abs()).max(c.abs()).max_element();
-        let normal = self.normal(hit.primitive);
-        let shading_normal = self.shading_normal(hit.primitive, weights, normal);
-        SurfacePoint { position, error, normal, shading_normal, shape: self.locate(hit.primitive).0 }
+        let normal = self.normal(primitive);
+        let shading_normal = self.shading_normal(primitive, weights, normal);
+        SurfacePoint { position, error, normal, shading_normal, shape: self.locate(primitive).0 }
     }
 
     /// The interpolated normal of the vertices, on the side of `normal`; `normal` where there is none to be had.

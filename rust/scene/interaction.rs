@@ -56,7 +56,7 @@ impl Interaction {
     /// Looks up a hit and what is there.
     #[inline]
     pub fn at(scene: &Scene, ray: &Ray, hit: &Hit) -> Self {
-        Self::new(scene, ray, scene.geometry().surface(hit))
+        Self::new(scene, ray, scene.geometry().surface(ray, hit))
     }
 
     /// The point met.

@@ -1,9 +1,10 @@
 //! Single lights, and what is known of a point on one.
 
 use super::{Departure, Geometry};
-use crate::math::{DVec3, Hit};
+use crate::math::DVec3;
 use crate::optics::Rgb;
 use crate::sampling::warp;
+use crate::shapes::Shape;
 
 /// A light without extent that shines equally in all directions.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,7 +55,7 @@ pub(super) fn sample_triangle(
     probability: f64,
     u: [f64; 2],
 ) -> Option<LightSample> {
-    let surface = geometry.surface(&Hit { t: 0.0, uv: warp::uniform_triangle(u), primitive, inner: 0 });
+    let surface = geometry.on_triangle(primitive, warp::uniform_triangle(u));
     let way = surface.position - point;
     let distance = way.length();
     let direction = way / distance;
@@ -66,6 +67,29 @@ pub(super) fn sample_triangle(
     } else {
         None
     }
+}
+
+/// The light that reaches `point` from a shape that emits `radiance` on the side of its normal.
+#[inline]
+pub(super) fn sample_shape(
+    geometry: &Geometry,
+    (primitive, shape): (u32, &dyn Shape),
+    radiance: Rgb,
+    point: DVec3,
+    probability: f64,
+    u: [f64; 2],
+) -> Option<LightSample> {
+    let drawn = shape.sample_from(point, u)?;
+    let direction = (drawn.point.position - point).normalize();
+    let pdf = probability * drawn.pdf;
+    // Also false where the direction is NaN.
+    let faces = -direction.dot(drawn.point.normal) > 0.0 && pdf > 0.0;
+    faces.then(|| LightSample {
+        direction,
+        weight: radiance / pdf,
+        pdf,
+        source: Some(Departure::new(&geometry.on_shape(primitive, &drawn.point))),
+    })
 }
 
 /// The density in solid angle of a point drawn by area on a triangle, as seen from a distance and under the cosine of

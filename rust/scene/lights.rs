@@ -1,14 +1,13 @@
 //! All lights of a scene, and the choice among them.
 
-use super::light::{sample_triangle, solid_angle_pdf};
+use super::light::{sample_shape, sample_triangle, solid_angle_pdf};
 use super::{Geometry, LightSample, PointLight};
-use crate::accel::Primitives;
-use crate::math::{DVec3, Frame};
+use crate::math::{DVec3, Frame, Hit, Ray};
 use crate::optics::Rgb;
 use crate::sampling::{AliasTable, warp};
 use std::f64::consts::PI;
 
-/// The lights of a scene: emitting triangles, points, and what comes from outside.
+/// The lights of a scene: emitting surfaces, points, and what comes from outside.
 ///
 /// One is chosen by its power, and the density of any direction that meets a light is known in constant time: emitting
 /// triangles are numbered shape after shape, then come the points, and last the environment.
@@ -16,10 +15,10 @@ use std::f64::consts::PI;
 pub struct Lights {
     /// Radiance of each shape.
     emission: Vec<Rgb>,
-    /// For each shape, the number of its first triangle among lights; it means nothing for one that is dark.
+    /// For each shape, the number of its first primitive among lights; it means nothing for one that is dark.
     first: Vec<u32>,
-    /// The primitive of each emitting triangle.
-    triangles: Vec<u32>,
+    /// The primitives that emit.
+    surfaces: Vec<u32>,
     points: Vec<PointLight>,
     environment: Rgb,
     /// `None` in a scene without light.
@@ -36,19 +35,16 @@ const ENVIRONMENT_SHARE: f64 = 0.1;
 impl Lights {
     /// Numbers the lights: the emission of each shape of a geometry, points, and the environment.
     pub(super) fn new(geometry: &Geometry, emission: Vec<Rgb>, points: Vec<PointLight>, environment: Rgb) -> Self {
-        let (mut first, mut triangles, mut powers) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut first, mut surfaces, mut powers) = (Vec::new(), Vec::new(), Vec::new());
         for (shape, &radiance) in emission.iter().enumerate() {
-            first.push(triangles.len() as u32);
+            first.push(surfaces.len() as u32);
             if radiance != Rgb::ZERO {
                 for primitive in geometry.primitives_of(shape as u32) {
-                    let area = 0.5 * geometry.area_vector(primitive).length();
-                    triangles.push(primitive);
-                    // What no ray can hit must not shine either.
-                    powers.push(if !geometry.is_finite(primitive) {
-                        0.0
-                    } else {
-                        (PI * area * strength(radiance)).min(MOST)
-                    });
+                    let area = geometry.area(primitive);
+                    surfaces.push(primitive);
+                    // What no ray can hit must not shine either, and from what has no end no point can be drawn: its light is found by
+                    // rays that meet it.
+                    powers.push(if area.is_finite() { (PI * area * strength(radiance)).min(MOST) } else { 0.0 });
                 }
             }
         }
@@ -60,7 +56,7 @@ impl Lights {
             let others: f64 = powers.iter().sum();
             powers.push(if others > 0.0 { others * ENVIRONMENT_SHARE / (1.0 - ENVIRONMENT_SHARE) } else { 1.0 });
         }
-        Self { choice: AliasTable::new(&powers), emission, first, triangles, points, environment }
+        Self { choice: AliasTable::new(&powers), emission, first, surfaces, points, environment }
     }
 
     /// Whether nothing shines.
@@ -72,7 +68,7 @@ impl Lights {
     pub fn bytes(&self) -> usize {
         size_of_val(self.emission.as_slice())
             + size_of_val(self.first.as_slice())
-            + size_of_val(self.triangles.as_slice())
+            + size_of_val(self.surfaces.as_slice())
             + size_of_val(self.points.as_slice())
             + self.choice.as_ref().map_or(0, AliasTable::bytes)
     }
@@ -102,10 +98,13 @@ impl Lights {
         let table = self.choice.as_ref()?;
         let chosen = table.sample(choice);
         let probability = table.probability(chosen);
-        if let Some(&primitive) = self.triangles.get(chosen) {
+        if let Some(&primitive) = self.surfaces.get(chosen) {
             let radiance = self.emission(geometry.locate(primitive).0);
-            sample_triangle(geometry, primitive, radiance, point, probability, u)
-        } else if let Some(light) = self.points.get(chosen - self.triangles.len()) {
+            match geometry.shape(primitive) {
+                Some(shape) => sample_shape(geometry, (primitive, shape), radiance, point, probability, u),
+                None => sample_triangle(geometry, primitive, radiance, point, probability, u),
+            }
+        } else if let Some(light) = self.points.get(chosen - self.surfaces.len()) {
             light.sample(point, probability)
         } else {
             let direction = Frame::new(normal).to_world(warp::cosine_hemisphere(u));
@@ -115,13 +114,18 @@ impl Lights {
         }
     }
 
-    /// The density with which [`Lights::sample`] draws a direction that meets an emitting primitive of a shape, at a
-    /// distance and under the cosine of an angle to its normal.
+    /// The density with which [`Lights::sample`] draws the direction of a ray, which is unit and meets an emitting primitive under the
+    /// cosine of an angle to its normal.
     #[inline]
-    pub fn surface_pdf(&self, geometry: &Geometry, shape: u32, primitive: u32, distance: f64, cosine: f64) -> f64 {
+    pub fn surface_pdf(&self, geometry: &Geometry, ray: &Ray, hit: &Hit, cosine: f64) -> f64 {
         let Some(table) = &self.choice else { return 0.0 };
-        let light = self.first[shape as usize] + (primitive - geometry.primitives_of(shape).start);
-        table.probability(light as usize) * solid_angle_pdf(geometry, primitive, distance, cosine)
+        let (shape, number) = geometry.locate(hit.primitive);
+        let light = self.first[shape as usize] + number;
+        let density = match geometry.shape(hit.primitive) {
+            Some(shape) => shape.pdf_from(ray.origin, ray.direction),
+            None => solid_angle_pdf(geometry, hit.primitive, hit.t, cosine),
+        };
+        table.probability(light as usize) * density
     }
 
     /// The density with which [`Lights::sample`], at a surface with this normal, draws a direction that leaves the
@@ -146,7 +150,6 @@ fn strength(rgb: Rgb) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::{Hit, Ray};
     use crate::sampling::Sampler;
     use crate::scene::fixtures::{rectangle, scene, shape};
     use crate::scene::{Mesh, Scene, SceneDescription, Shape};
@@ -253,11 +256,11 @@ mod tests {
             }
             from_surfaces += 1;
             let mut hits = [Hit::MISS];
-            lit.intersect(&[Ray::new(DVec3::ZERO, light.direction)], &mut hits);
-            let surface = lit.geometry().surface(&hits[0]);
+            let ray = Ray::new(DVec3::ZERO, light.direction);
+            lit.intersect(&[ray], &mut hits);
+            let surface = lit.geometry().surface(&ray, &hits[0]);
             let cosine = -surface.normal.dot(light.direction);
-            let (shape, primitive) = (surface.shape, hits[0].primitive);
-            let pdf = lit.lights().surface_pdf(lit.geometry(), shape, primitive, hits[0].t, cosine);
+            let pdf = lit.lights().surface_pdf(lit.geometry(), &ray, &hits[0], cosine);
             assert!((pdf / light.pdf - 1.0).abs() < 1e-9);
         }
         assert!(from_surfaces > 100 && from_outside > 50);

@@ -11,13 +11,15 @@ mod light;
 mod lights;
 mod material;
 mod spawn;
+mod surfaces;
 
 pub use camera::{Camera, CameraError};
 pub use compiled::Scene;
 pub use description::{DescriptionError, SceneDescription, Shape};
-pub use geometry::{Geometry, Mesh, SurfacePoint, Vertices};
+pub use geometry::{Geometry, Mesh, Surface, SurfacePoint, Vertices};
 pub use interaction::{Interaction, Scattered};
 pub use light::{LightSample, PointLight};
 pub use lights::Lights;
 pub use material::Material;
 pub use spawn::Departure;
+pub use surfaces::Surfaces;

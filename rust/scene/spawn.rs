@@ -57,7 +57,7 @@ impl Departure {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::{Hit, Vec3};
+    use crate::math::Vec3;
     use crate::sampling::{Sampler, warp};
     use crate::scene::fixtures::scene;
     use crate::scene::{Geometry, Mesh, SceneDescription, Shape};
@@ -75,8 +75,10 @@ mod tests {
         for (size, place) in [(1.0, 0.0), (1.0, 10.0), (1e-6, 0.0), (1e6, 1e7), (1e-3, 1e3), (1.0, 1e6)] {
             for sample in 0..200 {
                 let mesh = triangle(size, place, sample);
-                let description =
-                    SceneDescription { shapes: vec![Shape { mesh, ..Shape::default() }], ..Default::default() };
+                let description = SceneDescription {
+                    shapes: vec![Shape { surface: mesh.into(), ..Shape::default() }],
+                    ..Default::default()
+                };
                 let scene = scene(description);
                 if scene.geometry().area_vector(0).length() < 0.01 * size * size {
                     continue;
@@ -85,7 +87,7 @@ mod tests {
                 for draw in 0..100 {
                     let mut sampler = Sampler::new(2, sample, draw);
                     let uv = warp::uniform_triangle(sampler.two(0));
-                    let surface = scene.geometry().surface(&Hit { t: 0.0, uv, primitive: 0, inner: 0 });
+                    let surface = scene.geometry().on_triangle(0, uv);
                     // Half of them graze the plane, down to an angle of 10⁻¹².
                     let direction = warp::uniform_sphere(sampler.two(1));
                     let departure = Departure::new(&surface);
@@ -112,7 +114,7 @@ mod tests {
             faces: vec![[0, 1, 2]],
             normals: None,
         };
-        let surface = Geometry::new([mesh]).surface(&Hit { t: 0.0, uv: [0.25, 0.25], primitive: 0, inner: 0 });
+        let surface = Geometry::new([mesh]).on_triangle(0, [0.25, 0.25]);
         let departure = Departure::new(&surface);
         for (direction, sign) in [(DVec3::Z, 1.0), (DVec3::NEG_Z, -1.0)] {
             let height = sign * (departure.ray(direction).origin.z - 3.0);
@@ -128,13 +130,13 @@ mod tests {
             faces: vec![[0, 1, 2]],
             normals: None,
         };
-        let shapes = [floor, ceiling].map(|mesh| Shape { mesh, ..Shape::default() }).into();
+        let shapes = [floor, ceiling].map(|mesh| Shape { surface: mesh.into(), ..Shape::default() }).into();
         let scene = scene(SceneDescription { shapes, ..Default::default() });
         for sample in 0..1000 {
             let mut sampler = Sampler::new(4, 0, sample);
             let [a, b] = [0, 1].map(|primitive| {
                 let uv = warp::uniform_triangle(sampler.two(primitive));
-                Departure::new(&scene.geometry().surface(&Hit { t: 0.0, uv, primitive, inner: 0 }))
+                Departure::new(&scene.geometry().on_triangle(primitive, uv))
             });
             let mut occluded = [false; 2];
             scene.occluded(&[a.segment(&b), b.segment(&a)], &mut occluded);

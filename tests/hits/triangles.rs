@@ -2,7 +2,7 @@
 
 use raywright::accel::bvh::traverse::Ordered;
 use raywright::accel::bvh::{self, Options, Quality};
-use raywright::accel::walk::{self, Input, Lists, Mailbox, Structure};
+use raywright::accel::walk::{self, Built, Input, Mailbox};
 use raywright::accel::{Accelerator, BruteForce, Primitives};
 use raywright::math::{DVec3, Hit, Ray, Region, Vec3};
 use raywright::shapes::triangle::EdgeRay;
@@ -67,11 +67,11 @@ pub fn accelerators(primitives: &dyn Primitives) -> Vec<(String, Box<dyn Acceler
     all
 }
 
-type Build = fn(&Input) -> (Box<dyn Structure>, Lists);
+type Build = fn(&Input) -> Built;
 
 /// The structures that one ray walks at a time.
 const STRUCTURES: [(&str, Build); 1] =
-    [("stack", |input| Ordered::new(Quality::Balanced.steps(2).build(&input.boxes), "balanced"))];
+    [("stack", |input| Ordered::over(Quality::Balanced.steps(2).build(&input.boxes), "balanced"))];
 
 /// The closest hits, after seeing that every accelerator at every level gives the same bits, and `occluded` the same
 /// answer. The rays are asked as one batch, and a few at a time, which other kernels answer.

@@ -12,9 +12,17 @@ pub use quality::{Quality, Steps};
 pub use wide::Options;
 use wide::WideBvh;
 
-use super::{Accelerator, Primitives};
+use super::walk::Input;
+use super::{Accelerator, Primitives, mixed};
 use crate::shapes::triangle::{DoubleLeaves, SingleLeaves};
 use crate::simd::Level;
+
+/// The default: a wide tree over triangles, and a binary one over what is none.
+pub fn over(primitives: &dyn Primitives, options: &Options, level: Level) -> Box<dyn Accelerator> {
+    // What is no triangle is tested one by one.
+    let others = |input: &Input| traverse::Ordered::over(options.quality.steps(1).build(&input.boxes), "binned SAH");
+    mixed(primitives, level, &|triangles| widest(triangles, options, level), &others)
+}
 
 /// A wide tree as wide as the level's registers, 8 from AVX2 on and 4 below, that keeps numbers as precisely as they are.
 pub fn widest(primitives: &dyn Primitives, options: &Options, level: Level) -> Box<dyn Accelerator> {

@@ -49,6 +49,12 @@ impl Lists {
     }
 }
 
+/// A structure, and which primitives stand in its leaves: what a builder makes.
+pub type Built = (Box<dyn Structure>, Lists);
+
+/// Makes a structure of what there is.
+pub type Build<'a> = dyn Fn(&Input) -> Built + 'a;
+
 /// What rays walk through, from leaf to leaf. It knows boxes, never what is in them.
 pub trait Structure: Send + Sync {
     /// Ready to walk, counting nodes if `counted`. Whoever counts none should have no code for it.

@@ -2,7 +2,7 @@
 
 use super::contents::{Contents, LANES};
 use super::mailbox::{Mailbox, Mailboxes, Marks};
-use super::{Input, Lists, Structure};
+use super::{Build, Input, Structure};
 use crate::accel::query::{Answers, Query};
 use crate::accel::{Accelerator, Info, Nearest, Primitives, SlabRay, bvh};
 use crate::math::{Aabb, DVec3, Ray, Region};
@@ -33,12 +33,7 @@ pub struct Walked<L> {
 ///
 /// `build` is given what there is, and tells which primitives stand in which leaf. Where one stands in several, `mailbox` says how that is
 /// seen to.
-pub fn walked(
-    primitives: &dyn Primitives,
-    level: Level,
-    mailbox: Mailbox,
-    build: &dyn Fn(&Input) -> (Box<dyn Structure>, Lists),
-) -> Box<dyn Accelerator> {
+pub fn walked(primitives: &dyn Primitives, level: Level, mailbox: Mailbox, build: &Build) -> Box<dyn Accelerator> {
     if primitives.is_single() {
         Box::new(Walked::<SingleLeaves<LANES>>::new(primitives, level, mailbox, build))
     } else {
@@ -63,12 +58,7 @@ impl<'a> Input<'a> {
 }
 
 impl<L: Leaves<LANES>> Walked<L> {
-    fn new(
-        primitives: &dyn Primitives,
-        level: Level,
-        mailbox: Mailbox,
-        build: &dyn Fn(&Input) -> (Box<dyn Structure>, Lists),
-    ) -> Self {
+    fn new(primitives: &dyn Primitives, level: Level, mailbox: Mailbox, build: &Build) -> Self {
         let start = Instant::now();
         let (input, unbounded) = Input::new(primitives);
         let (structure, lists) = build(&input);

@@ -3,7 +3,7 @@
 
 use super::{leaves, sah_cost};
 use crate::accel::bvh::BinaryBvh;
-use crate::accel::walk::{Input, Lists, Structure, Walker};
+use crate::accel::walk::{Built, Input, Structure, Walker};
 use crate::accel::{Info, SlabRay};
 use crate::math::Aabb;
 
@@ -17,7 +17,7 @@ pub struct Ordered {
 
 impl Ordered {
     /// Walks a tree; `kind` says how it was built.
-    pub fn new(mut bvh: BinaryBvh, kind: &str) -> (Box<dyn Structure>, Lists) {
+    pub fn over(mut bvh: BinaryBvh, kind: &str) -> Built {
         let (numbers, lists) = leaves(&bvh);
         for (leaf, &node) in numbers.iter().enumerate() {
             bvh.nodes[node as usize].index = leaf as u32;
