@@ -1,34 +1,49 @@
-//! Closest hits on one thread, by rays, mesh, width of the tree and level of the processor. All have given the hits of brute
-//! force before they are timed.
+//! Closest hits on one thread, by rays, mesh, level of the processor and width of the tree: an item is one ray. All have given the
+//! hits of brute force before they are timed.
 
 mod meshes;
 
 use divan::Bencher;
 use divan::counter::ItemsCount;
-use meshes::{Case, Purpose};
+use meshes::{Icosphere, Kernel, NoisyTorus, Purpose, Slats, Subject};
 use raywright::math::Hit;
 
 fn main() {
     divan::main();
 }
 
-#[divan::bench(args = Case::all(), sample_count = 10, sample_size = 1)]
-fn primary(bencher: Bencher, case: Case) {
-    time(bencher, case, Purpose::Primary);
+#[divan::bench(
+    types = [Icosphere, NoisyTorus, Slats],
+    args = Kernel::all_and_double(),
+    sample_count = 10,
+    sample_size = 1
+)]
+fn primary<S: Subject>(bencher: Bencher, kernel: Kernel) {
+    time::<S>(bencher, kernel, Purpose::Primary);
 }
 
-#[divan::bench(args = Case::all(), sample_count = 10, sample_size = 1)]
-fn shadow(bencher: Bencher, case: Case) {
-    time(bencher, case, Purpose::Shadow);
+#[divan::bench(
+    types = [Icosphere, NoisyTorus, Slats],
+    args = Kernel::all_and_double(),
+    sample_count = 10,
+    sample_size = 1
+)]
+fn shadow<S: Subject>(bencher: Bencher, kernel: Kernel) {
+    time::<S>(bencher, kernel, Purpose::Shadow);
 }
 
-#[divan::bench(args = Case::all(), sample_count = 10, sample_size = 1)]
-fn diffuse(bencher: Bencher, case: Case) {
-    time(bencher, case, Purpose::Diffuse);
+#[divan::bench(
+    types = [Icosphere, NoisyTorus, Slats],
+    args = Kernel::all_and_double(),
+    sample_count = 10,
+    sample_size = 1
+)]
+fn diffuse<S: Subject>(bencher: Bencher, kernel: Kernel) {
+    time::<S>(bencher, kernel, Purpose::Diffuse);
 }
 
-fn time(bencher: Bencher, case: Case, purpose: Purpose) {
-    let (tree, rays) = case.prepare(purpose);
+fn time<S: Subject>(bencher: Bencher, kernel: Kernel, purpose: Purpose) {
+    let (tree, rays) = kernel.prepare(S::MESH, purpose);
     let mut hits = vec![Hit::MISS; rays.len()];
     bencher.counter(ItemsCount::new(rays.len())).bench_local(|| tree.intersect(&rays, &mut hits));
 }

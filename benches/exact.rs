@@ -1,8 +1,14 @@
-//! What a decision about a triangle costs: in f64, where its bound makes it certain, and in integers, where it does not.
+//! What a decision about a triangle costs: in f32, by the leaf, where that rejects it for certain; in f64, where its bound makes
+//! it certain; and in integers, where it does not. An item is one triangle.
 
+mod leaves;
+
+use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
+use leaves::Full;
 use raywright::math::{DVec3, Ray, Region, exact_edges};
 use raywright::shapes::triangle::EdgeRay;
+use raywright::simd::Level;
 
 fn main() {
     divan::main();
@@ -17,17 +23,33 @@ fn aimed(weights: [f64; 3]) -> (Ray, [DVec3; 3]) {
     (Ray::new(origin, target - origin), corners)
 }
 
+/// Full leaves, at the level that kernels run at.
+#[divan::bench]
+fn rejected(bencher: Bencher) {
+    let level = Level::current().expect("a level of this processor");
+    let lanes = level.lanes();
+    if lanes == 8 {
+        let full = Full::<8>::new(8, false);
+        bencher.counter(ItemsCount::new(full.len() * lanes)).bench_local(|| black_box(&full).left(level));
+    } else {
+        let full = Full::<4>::new(4, false);
+        bencher.counter(ItemsCount::new(full.len() * lanes)).bench_local(|| black_box(&full).left(level));
+    }
+}
+
 #[divan::bench]
 fn certain(bencher: Bencher) {
     let (ray, corners) = aimed([0.25, 0.5, 0.25]);
     let ray = EdgeRay::new(&ray, &Region::around(corners)).expect("a ray that can hit");
     assert!(ray.meet(corners).is_some());
-    bencher.bench_local(|| ray.meet(black_box(corners)));
+    bencher.counter(ItemsCount::new(1usize)).bench_local(|| ray.meet(black_box(corners)));
 }
 
 #[divan::bench]
 fn exact(bencher: Bencher) {
     let (ray, corners) = aimed([0.5, 0.5, 0.0]);
     assert!(exact_edges(ray.origin, ray.direction, corners)[2].abs() < 1e-15, "a ray aimed at an edge");
-    bencher.bench_local(|| exact_edges(ray.origin, black_box(ray.direction), black_box(corners)));
+    bencher
+        .counter(ItemsCount::new(1usize))
+        .bench_local(|| exact_edges(ray.origin, black_box(ray.direction), black_box(corners)));
 }

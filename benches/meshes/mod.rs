@@ -25,6 +25,23 @@ impl Primitives for Triangles {
     }
 }
 
+/// The same, for trees that keep f64.
+pub struct Doubles<'a>(pub &'a Triangles);
+
+impl Primitives for Doubles<'_> {
+    fn count(&self) -> usize {
+        self.0.count()
+    }
+
+    fn corners(&self, primitive: u32) -> [DVec3; 3] {
+        self.0.corners(primitive)
+    }
+
+    fn is_single(&self) -> bool {
+        false
+    }
+}
+
 /// Four numbers from 0 to 1 for a number and a purpose.
 fn random(i: usize, purpose: u32) -> [f64; 4] {
     philox4x32([i as u32, (i >> 32) as u32, 0, 0], [purpose, 0]).map(|x| f64::from(x) / 2f64.powi(32))
@@ -39,6 +56,16 @@ pub enum Mesh {
     NoisyTorus,
     /// A room of 3,000 slats, two hundred times as long as they are wide, seen from inside.
     Slats,
+}
+
+impl fmt::Display for Mesh {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.pad(match self {
+            Self::Icosphere => "icosphere",
+            Self::NoisyTorus => "noisy torus",
+            Self::Slats => "slats",
+        })
+    }
 }
 
 impl Mesh {
@@ -69,16 +96,6 @@ impl Mesh {
             Self::Icosphere | Self::NoisyTorus => DVec3::new(-2.0, -1.0, 5.0),
             Self::Slats => DVec3::new(0.1, 0.2, 0.9),
         }
-    }
-}
-
-impl fmt::Display for Mesh {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        f.pad(match self {
-            Self::Icosphere => "icosphere",
-            Self::NoisyTorus => "noisy torus",
-            Self::Slats => "slats",
-        })
     }
 }
 
@@ -221,60 +238,75 @@ pub fn rays(mesh: Mesh, triangles: &Triangles, tree: &dyn Accelerator, purpose: 
     primary.iter().zip(&seen).enumerate().filter(|(_, (_, hit))| hit.is_hit()).map(leave).collect()
 }
 
-/// A mesh and a kernel: what one line of a table is about.
-#[derive(Clone, Copy, Debug)]
-pub struct Case {
-    mesh: Mesh,
-    kernel: Kernel,
+/// A mesh as a type, by which benches are grouped.
+pub trait Subject {
+    /// Which one.
+    const MESH: Mesh;
 }
 
-impl Case {
-    /// Every kernel on every mesh.
+/// [`Mesh::Icosphere`].
+pub struct Icosphere;
+/// [`Mesh::NoisyTorus`].
+pub struct NoisyTorus;
+/// [`Mesh::Slats`].
+pub struct Slats;
+
+impl Subject for Icosphere {
+    const MESH: Mesh = Mesh::Icosphere;
+}
+
+impl Subject for NoisyTorus {
+    const MESH: Mesh = Mesh::NoisyTorus;
+}
+
+impl Subject for Slats {
+    const MESH: Mesh = Mesh::Slats;
+}
+
+/// A tree of some width, run at some level of the processor, that keeps f32 or f64.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Kernel {
+    width: usize,
+    level: Level,
+    is_single: bool,
+}
+
+impl Kernel {
+    /// Every level that this processor has, with a tree as wide as that has lanes.
     pub fn all() -> Vec<Self> {
-        let kernels = Kernel::all();
-        Mesh::ALL.into_iter().flat_map(|mesh| kernels.iter().map(move |&kernel| Self { mesh, kernel })).collect()
+        let available = Level::ALL.into_iter().filter(|level| level.is_available());
+        available.map(|level| Self { width: level.lanes(), level, is_single: true }).collect()
     }
 
-    /// The tree, built, and rays for it, seen to give what brute force does.
-    pub fn prepare(self, purpose: Purpose) -> (Box<dyn Accelerator>, Vec<Ray>) {
-        let triangles = self.mesh.triangles();
-        let tree = self.kernel.build(&triangles);
-        let rays = rays(self.mesh, &triangles, tree.as_ref(), purpose);
+    /// The same, and the best of them with f64.
+    pub fn all_and_double() -> Vec<Self> {
+        let mut all = Self::all();
+        all.extend(all.last().map(|&best| Self { is_single: false, ..best }));
+        all
+    }
+
+    /// Builds the tree.
+    pub fn build(self, triangles: &Triangles, options: &Options) -> Box<dyn Accelerator> {
+        if self.is_single {
+            bvh::wide(self.width, triangles, options, self.level)
+        } else {
+            bvh::wide(self.width, &Doubles(triangles), options, self.level)
+        }
+    }
+
+    /// The tree for a mesh, built, and rays for it, seen to give what brute force does.
+    pub fn prepare(self, mesh: Mesh, purpose: Purpose) -> (Box<dyn Accelerator>, Vec<Ray>) {
+        let triangles = mesh.triangles();
+        let tree = self.build(&triangles, &Options::DEFAULT);
+        let rays = rays(mesh, &triangles, tree.as_ref(), purpose);
         validate(&triangles, tree.as_ref(), &rays);
         (tree, rays)
     }
 }
 
-impl fmt::Display for Case {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        write!(f, "{}, {}", self.mesh, self.kernel)
-    }
-}
-
-/// A tree of some width, run at some level of the processor.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Kernel {
-    width: usize,
-    level: Level,
-}
-
-impl Kernel {
-    /// All that differ on this processor.
-    pub fn all() -> Vec<Self> {
-        let available = || Level::ALL.into_iter().filter(|level| level.is_available());
-        let narrow = available().map(|level| Self { width: 4, level });
-        narrow.chain(available().filter(|level| level.lanes() >= 8).map(|level| Self { width: 8, level })).collect()
-    }
-
-    /// Builds the tree.
-    pub fn build(self, triangles: &Triangles) -> Box<dyn Accelerator> {
-        bvh::wide(self.width, triangles, &Options::DEFAULT, self.level)
-    }
-}
-
 impl fmt::Display for Kernel {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        write!(f, "{} wide, {}", self.width, self.level.name())
+        write!(f, "{}, {} wide{}", self.level.name(), self.width, if self.is_single { "" } else { ", f64" })
     }
 }
 

@@ -14,8 +14,8 @@ use wide::WideBvh;
 
 use super::walk::Input;
 use super::{Accelerator, Primitives, mixed};
-use crate::shapes::triangle::{DoubleLeaves, SingleLeaves};
-use crate::simd::Level;
+use crate::shapes::triangle::{DoubleLeaves, Leaves, SingleLeaves};
+use crate::simd::{Dispatch, Level};
 
 /// The default: a wide tree over triangles, and a binary one over what is none.
 pub fn over(primitives: &dyn Primitives, options: &Options, level: Level) -> Box<dyn Accelerator> {
@@ -43,4 +43,17 @@ pub fn wide(width: usize, primitives: &dyn Primitives, options: &Options, level:
         (4, false) => Box::new(WideBvh::<4, DoubleLeaves<4>>::new(primitives, options, level)),
         _ => panic!("a tree of {width} children a node"),
     }
+}
+
+/// A tree over leaves of another type, by which a bench compares these with others.
+#[doc(hidden)]
+pub fn with_leaves<const N: usize, L: Leaves<N>>(
+    primitives: &dyn Primitives,
+    options: &Options,
+    level: Level,
+) -> Box<dyn Accelerator>
+where
+    Level: Dispatch<N>,
+{
+    Box::new(WideBvh::<N, L>::new(primitives, options, level))
 }

@@ -26,7 +26,7 @@
 //! w by the sum of these, and f · q by 24εL²E. 64εL² and 640εLE are allowed for weights, 64εLE more for the denominator and 32εL²E
 //! for the numerator.
 
-use super::{Column, EdgeRay, EdgeRays, RAYS};
+use super::{Column, EdgeRay, EdgeRays, RAYS, Sixteen};
 use crate::math::robust::{greater, lesser};
 use crate::math::{DVec3, Region, Vec3};
 use crate::shapes::Candidate;
@@ -110,6 +110,20 @@ pub trait Leaves<const N: usize>: Send + Sync + Sized + 'static {
             }
         }
         false
+    }
+
+    /// Calls `met` with each of the rays in `active` and each triangle of a leaf that it meets.
+    #[inline(always)]
+    fn meet_sixteen<S: Simd<N>>(
+        &self,
+        simd: S,
+        first: usize,
+        count: u32,
+        rays: &Sixteen,
+        active: u32,
+        met: impl FnMut(usize, u32, Candidate),
+    ) {
+        rays.meet(simd, self, first, count, active, met);
     }
 }
 
@@ -350,8 +364,10 @@ fn not_rejected<const N: usize, S: Simd<N>>(
 /// What the test in f32 needs of a ray.
 #[derive(Clone, Copy, Debug)]
 pub struct BlockRay {
-    origin: [f32; 3],
-    direction: [f32; 3],
+    /// Where it starts, in the units that leaves keep.
+    pub origin: [f32; 3],
+    /// Scaled.
+    pub direction: [f32; 3],
     errors: Bounds,
 }
 
@@ -359,8 +375,10 @@ pub struct BlockRay {
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
 pub struct BlockRays {
-    origin: [Column<f32>; 3],
-    direction: [Column<f32>; 3],
+    /// Where they start, in the units that leaves keep, by axis.
+    pub origin: [Column<f32>; 3],
+    /// Scaled, by axis.
+    pub direction: [Column<f32>; 3],
     errors: Bounds,
 }
 

@@ -1,12 +1,14 @@
 //! Triangles: the exact decision whether a ray meets one, alone and by the block.
 
+mod at_leaf;
 mod edge;
 mod leaves;
 mod nearest;
 pub mod routines;
 mod sixteen;
 
+pub use at_leaf::Sixteen;
 pub use edge::{Along, EdgeRay};
-pub use leaves::{BlockRay, BlockRays, DoubleLeaves, Leaves, SingleLeaves};
+pub use leaves::{BlockRay, BlockRays, DoubleLeaves, Leaves, Rows, SingleLeaves};
 pub use nearest::{NearestPoint, length, nearest_point, point_of};
 pub use sixteen::{ALL, Column, EdgeRays, Met, RAYS, bits};

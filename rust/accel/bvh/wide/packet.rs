@@ -17,23 +17,16 @@ use crate::accel::query::Query;
 use crate::accel::slab::{Clock, SlabRays};
 use crate::math::Ray;
 use crate::math::robust::{greater, lesser};
-use crate::shapes::triangle::{ALL, Along, BlockRays, Column, EdgeRay, EdgeRays, Leaves, RAYS};
-use crate::shapes::{Candidate, Contact};
+use crate::shapes::triangle::{ALL, Along, Column, EdgeRays, Leaves, RAYS, Sixteen};
 use crate::simd::Simd;
 
 /// So many rays or fewer go on alone.
 const FEW: u32 = 4;
 
-/// So many rays or fewer are decided in f64 one by one.
-const FEW_MET: u32 = 2;
-
 /// Rays of one packet, all plain ([`EdgeRays::prepare`]) and going the same way along every axis.
 struct Packet<'a, T> {
-    /// As given; fewer than sixteen at the end of a batch.
-    rays: &'a [Ray],
-    edges: &'a EdgeRays,
+    rays: Sixteen<'a>,
     slabs: &'a SlabRays,
-    blocks: BlockRays,
     states: [T; RAYS],
     /// Where in box units the query loses interest; −∞ for rays that are answered or missing.
     limit: Column<f32>,
@@ -91,11 +84,10 @@ pub fn answer<const N: usize, L: Leaves<N>, S: Simd<N>, Q: Query>(
             }
             continue;
         };
+        let blocks = L::rays(edges, &bvh.region);
         let mut packet = Packet {
-            rays: chunk,
-            edges,
+            rays: Sixteen { given: chunk, region: &bvh.region, edges, blocks: &blocks },
             slabs: &slabs,
-            blocks: L::rays(edges, &bvh.region),
             states: [query.start(start, edges.t_max[0]); RAYS],
             limit: [f32::NEG_INFINITY; RAYS],
             bounds: Bounds::of(&slabs, first),
@@ -107,7 +99,7 @@ pub fn answer<const N: usize, L: Leaves<N>, S: Simd<N>, Q: Query>(
         }
         packet.walk(simd, bvh, query, &mut stack, &mut lone);
         for i in 0..chunk.len() {
-            let along = Along { scale: packet.edges.scale[i], largest: packet.edges.largest[i] };
+            let along = Along { scale: edges.scale[i], largest: edges.largest[i] };
             query.finish(start + i, Some((along, packet.states[i])));
         }
     }
@@ -211,54 +203,15 @@ impl<T: Copy> Packet<'_, T> {
         active: u32,
         query: &mut Q,
     ) {
-        // By lane, the rays that may meet it.
-        let mut left = [0u32; 8];
-        if active.count_ones() > 2 * count {
-            for lane in 0..count as usize {
-                left[lane & 7] = active & bvh.leaves.rays_not_rejected(simd, &self.blocks, first, count, lane);
+        let (mut changed, states, limit) = (0u32, &mut self.states, &mut self.limit);
+        bvh.leaves.meet_sixteen(simd, first, count, &self.rays, active, |i, primitive, candidate| {
+            let i = i & (RAYS - 1);
+            changed |= 1 << i;
+            // Unless it is answered.
+            if limit[i] > f32::NEG_INFINITY && query.offer(&mut states[i], primitive, candidate) {
+                limit[i] = f32::NEG_INFINITY;
             }
-        } else {
-            let mut rest = active;
-            while rest != 0 {
-                let i = rest.trailing_zeros() as usize & (RAYS - 1);
-                rest &= rest - 1;
-                let mut lanes = bvh.leaves.not_rejected(simd, &self.blocks.of(i), first, count);
-                while lanes != 0 {
-                    left[lanes.trailing_zeros() as usize & 7] |= 1 << i;
-                    lanes &= lanes - 1;
-                }
-            }
-        }
-        let mut changed = 0;
-        for lane in 0..count as usize {
-            let mut rays = left[lane & 7];
-            if rays == 0 {
-                continue;
-            }
-            let corners = bvh.leaves.corners(first, count, lane);
-            let primitive = bvh.leaves.primitive(first, count, lane);
-            if rays.count_ones() > FEW_MET {
-                let met = self.edges.meet(corners, rays);
-                rays = met.open;
-                let mut certain = met.met;
-                changed |= certain;
-                while certain != 0 {
-                    let i = certain.trailing_zeros() as usize & (RAYS - 1);
-                    certain &= certain - 1;
-                    let uv = [met.uv[0][i], met.uv[1][i]];
-                    let candidate = Candidate { t: met.t[i], uv, contact: Contact::Inside, inner: 0 };
-                    self.offer(query, i, primitive, candidate);
-                }
-            }
-            changed |= rays;
-            while rays != 0 {
-                let i = rays.trailing_zeros() as usize & (RAYS - 1);
-                rays &= rays - 1;
-                if let Some(candidate) = self.edge(bvh, i).and_then(|ray| ray.meet(corners)) {
-                    self.offer(query, i, primitive, candidate);
-                }
-            }
-        }
+        });
         while changed != 0 {
             let i = changed.trailing_zeros() as usize & (RAYS - 1);
             changed &= changed - 1;
@@ -266,20 +219,6 @@ impl<T: Copy> Packet<'_, T> {
                 self.limit[i] = Clock::of(&bvh.region).limit(Q::limit(&self.states[i]));
             }
         }
-    }
-
-    /// Offers a ray a triangle that it meets, unless it is answered.
-    #[inline(always)]
-    fn offer<Q: Query<State = T>>(&mut self, query: &mut Q, i: usize, primitive: u32, candidate: Candidate) {
-        if self.limit[i] > f32::NEG_INFINITY && query.offer(&mut self.states[i], primitive, candidate) {
-            self.limit[i] = f32::NEG_INFINITY;
-        }
-    }
-
-    /// One of the rays.
-    #[inline(always)]
-    fn edge<const N: usize, L>(&self, bvh: &WideBvh<N, L>, i: usize) -> Option<EdgeRay> {
-        EdgeRay::new(&self.rays[i], &bvh.region)
     }
 
     #[inline(always)]
@@ -292,8 +231,8 @@ impl<T: Copy> Packet<'_, T> {
         query: &mut Q,
         stacks: &mut Stacks,
     ) {
-        let Some(edges) = self.edge(bvh, i) else { return };
-        let alone = Alone { lanes: &self.blocks.of(i), edges: &edges, clock: Clock::of(&bvh.region) };
+        let Some(edges) = self.rays.one(i) else { return };
+        let alone = Alone { lanes: &self.rays.blocks.of(i), edges: &edges, clock: Clock::of(&bvh.region) };
         let boxes = Boxes::of(self.slabs, self.first, i, self.limit[i], child, 0);
         let answered = alone.walk(simd, bvh, boxes, query, &mut self.states[i], stacks);
         self.limit[i] =

@@ -1,0 +1,69 @@
+//! Every fuzz target on some hundred random strings, so that it is known to work with any compiler. `fuzz/` has the same targets for
+//! libFuzzer.
+
+mod targets;
+
+use targets::{hits, leaving, nearest, signs, trees, watertight};
+
+/// Pseudo-random numbers, the same at every run (SplitMix64; Steele, Lea and Flood 2014).
+struct Random(u64);
+
+impl Random {
+    fn bits(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    /// Bytes, and now and then a run of the same, which makes points coincide.
+    fn bytes(&mut self, most: usize) -> Vec<u8> {
+        let length = self.bits() as usize % most;
+        let mut bytes = Vec::with_capacity(length);
+        while bytes.len() < length {
+            let byte = self.bits();
+            let run = if byte >> 8 & 15 == 0 { byte >> 12 & 15 } else { 1 };
+            bytes.extend((0..run).map(|_| byte as u8));
+        }
+        bytes
+    }
+}
+
+/// Feeds a target so many strings; `RAYWRIGHT_FUZZ` asks for so many times more.
+fn feed(target: fn(&[u8]), count: usize) {
+    let times = std::env::var("RAYWRIGHT_FUZZ").map_or(1, |n| n.parse().expect("RAYWRIGHT_FUZZ is a number"));
+    let mut random = Random(1);
+    for _ in 0..count * times {
+        target(&random.bytes(1200));
+    }
+}
+
+#[test]
+fn trees_are_valid() {
+    feed(trees::check, 1000);
+}
+
+#[test]
+fn hits_agree() {
+    feed(hits::check, 200);
+}
+
+#[test]
+fn surfaces_are_left() {
+    feed(leaving::check, 2000);
+}
+
+#[test]
+fn nearest_points_agree() {
+    feed(nearest::check, 1000);
+}
+
+#[test]
+fn signs_are_exact() {
+    feed(signs::check, 20_000);
+}
+
+#[test]
+fn surfaces_are_watertight() {
+    feed(watertight::check, 300);
+}

@@ -1,0 +1,97 @@
+//! Any rays at any triangles: every accelerator gives the hits that are found triangle by triangle, bit for bit, whatever is asked
+//! and however many at once.
+
+use super::accelerators;
+use super::numbers::{Range, one_of};
+use super::triangles::{Triangles, rays, triangles};
+use arbitrary::{Result, Unstructured};
+use raywright::accel::bvh::build::binned::MAX_BINS;
+use raywright::accel::bvh::{Options, Quality};
+use raywright::accel::{Accelerator, Cost, Crossings, Primitives};
+use raywright::math::{Hit, Ray, Region};
+use raywright::shapes::triangle::EdgeRay;
+
+/// Panics where accelerators disagree.
+pub fn check(data: &[u8]) {
+    // What bytes do not tell is zero, so there is always a scene.
+    let _ = scene(&mut Unstructured::new(data)).map(|(triangles, rays, options)| agree(&triangles, &rays, &options));
+}
+
+fn scene(u: &mut Unstructured) -> Result<(Triangles, Vec<Ray>, Options)> {
+    let options = Options {
+        quality: one_of(u, &Quality::ALL)?,
+        bins: Some(u.int_in_range(2..=MAX_BINS)?),
+        // From leaves as small as can be to leaves as large.
+        traversal_cost: one_of(u, &[1.0, 1e-3, 1e3])?,
+        intersection_cost: 1.0,
+    };
+    let triangles = triangles(u, Range::Any)?;
+    let rays = rays(u, &triangles)?;
+    Ok((triangles, rays, options))
+}
+
+/// The closest hit, triangle by triangle: no boxes, no lanes, no test in f32 before.
+fn closest(triangles: &Triangles, ray: &Ray, region: &Region) -> Hit {
+    let Some(edges) = EdgeRay::new(ray, region) else { return Hit::MISS };
+    let mut best = Hit::MISS;
+    for p in (0..triangles.count() as u32).filter(|&p| triangles.is_finite(p)) {
+        if let Some(c) = edges.meet(triangles.corners(p))
+            && c.t < best.t
+        {
+            best = Hit { t: c.t, uv: c.uv, primitive: p, inner: 0 };
+        }
+    }
+    Hit { t: best.t * edges.scale, ..best }
+}
+
+/// A hit as bits, in which −0 and 0 differ.
+fn bits(hit: &Hit) -> (u64, [u64; 2], u32) {
+    (hit.t.to_bits(), hit.uv.map(f64::to_bits), hit.primitive)
+}
+
+fn agree(triangles: &Triangles, rays: &[Ray], options: &Options) {
+    let region = triangles.region();
+    let wanted: Vec<Hit> = rays.iter().map(|ray| closest(triangles, ray, &region)).collect();
+    let mut every: Option<Crossings> = None;
+    for (name, accelerator) in accelerators::all(triangles, options) {
+        // All at once, a fan at a time, and so few that each goes alone; brute force does not care.
+        let batches: &[usize] = if name.starts_with("brute force") { &[usize::MAX] } else { &[usize::MAX, 16, 3] };
+        for &batch in batches {
+            for (rays, wanted) in rays.chunks(batch).zip(wanted.chunks(batch)) {
+                let mut found = vec![Hit::MISS; rays.len()];
+                let mut occluded = vec![false; rays.len()];
+                accelerator.intersect(rays, &mut found);
+                accelerator.occluded(rays, &mut occluded);
+                for (i, ray) in rays.iter().enumerate() {
+                    let told = || format!("{name}, ray {i} of {batch}, {ray:?} at {triangles:?}");
+                    assert_eq!(bits(&found[i]), bits(&wanted[i]), "{}", told());
+                    assert_eq!(occluded[i], wanted[i].is_hit(), "{}", told());
+                }
+            }
+        }
+        let crossings = accelerator.crossings(rays);
+        for (i, ray) in rays.iter().enumerate() {
+            let first = crossings.hits[crossings.splits[i]..crossings.splits[i + 1]].first();
+            let told = || format!("{name}, first crossing of {ray:?} at {triangles:?}");
+            assert_eq!(first.map_or(bits(&Hit::MISS), bits), bits(&wanted[i]), "{}", told());
+        }
+        let same =
+            |a: &Crossings, b: &Crossings| a.splits == b.splits && a.hits.iter().map(bits).eq(b.hits.iter().map(bits));
+        let before = every.get_or_insert_with(|| crossings.clone());
+        assert!(same(before, &crossings), "{name} crosses {triangles:?} with {rays:?} otherwise");
+        work_is_bounded(accelerator.as_ref(), rays);
+    }
+}
+
+/// No ray tests more than there is, and one that cannot hit anything tests nothing.
+fn work_is_bounded(accelerator: &dyn Accelerator, rays: &[Ray]) {
+    let mut costs = vec![Cost::default(); rays.len()];
+    accelerator.cost(rays, &mut costs);
+    let info = accelerator.info();
+    for (cost, ray) in costs.iter().zip(rays) {
+        assert!(cost.nodes as usize <= info.nodes && cost.primitives as usize <= info.primitives, "{ray:?}: {cost:?}");
+        if !(ray.origin.is_finite() && ray.direction.is_finite()) {
+            assert_eq!(*cost, Cost::default(), "{ray:?}");
+        }
+    }
+}

@@ -1,0 +1,89 @@
+//! Any boxes and any triangles: trees hold what they should, and go on doing so when the triangles move.
+
+use super::accelerators;
+use super::numbers::{Range, one_of, single_point};
+use super::triangles::{Triangles, rays, triangles};
+use arbitrary::{Result, Unstructured};
+use raywright::accel::bvh::build::binned;
+use raywright::accel::bvh::optimise::reinsertion;
+use raywright::accel::bvh::{Options, Quality, Steps};
+use raywright::accel::{BruteForce, Primitives};
+use raywright::math::{Aabb, DVec3, Hit};
+use raywright::simd::Level;
+
+/// Panics where a tree is not valid.
+pub fn check(data: &[u8]) {
+    let u = &mut Unstructured::new(data);
+    let _ = if u.arbitrary().unwrap_or(false) { boxes(u) } else { moved(u) };
+}
+
+/// Boxes, some of them empty, many alike; up to some thousand, which more than one thread sorts.
+fn boxes(u: &mut Unstructured) -> Result<()> {
+    let block = u.int_in_range(1..=binned::MAX_BLOCK)?;
+    let steps = Steps {
+        binned: binned::Options { bins: u.int_in_range(2..=binned::MAX_BINS)?, block },
+        reinsertion: reinsertion::Options {
+            rounds: u.int_in_range(0..=30)?,
+            share: one_of(u, &[0.0, 0.1, 0.3, 1.0])?,
+            worthwhile: one_of(u, &[0.0, 1e-4, 1e-2])?,
+            block,
+        },
+    };
+    let mut boxes = Vec::new();
+    for _ in 0..u.int_in_range(0..=40)? {
+        let [a, b] = [single_point(u, Range::Any)?, single_point(u, Range::Any)?];
+        // Of numbers that are no numbers there are no boxes: whoever makes them leaves those out.
+        let is_box = a.is_finite() && b.is_finite();
+        let sorted = Aabb { min: a.min(b), max: a.max(b) };
+        boxes.push(if !is_box || u.ratio(1, 16)? { Aabb::EMPTY } else { sorted });
+    }
+    let (once, copies) = (boxes.clone(), one_of(u, &[1, 1, 1, 2, 7, 40])?);
+    let step = single_point(u, Range::Moderate)?;
+    for i in 1..copies {
+        let shift = step * i as f32;
+        boxes.extend(once.iter().map(|b| Aabb { min: b.min + shift, max: b.max + shift }));
+    }
+    let built = binned::build(&boxes, &steps.binned);
+    let improved = steps.build(&boxes);
+    // At most one split by area a level until the median halves what is left.
+    let count = boxes.iter().filter(|b| !b.is_empty()).count().max(1);
+    let most = 3 * count.ilog2() as usize + 42;
+    for tree in [&built, &improved] {
+        tree.validate(&boxes).unwrap_or_else(|e| panic!("{e}, of {boxes:?} by {steps:?}"));
+        assert!(tree.depth() <= most, "a depth of {} for {boxes:?} by {steps:?}", tree.depth());
+    }
+    Ok(())
+}
+
+/// Trees over triangles, refitted to others of the same numbers.
+fn moved(u: &mut Unstructured) -> Result<()> {
+    let before = triangles(u, Range::Any)?;
+    let stretch = single_point(u, Range::Moderate)?.as_dvec3();
+    let moved = |c: DVec3| {
+        if c.is_finite() { (c * stretch + DVec3::new(stretch.y, stretch.z, stretch.x)).as_vec3().as_dvec3() } else { c }
+    };
+    let mut after = Triangles(before.0.iter().map(|t| t.map(moved)).collect());
+    if u.arbitrary()? {
+        after.0.reverse();
+    }
+    let rays = rays(u, &after)?;
+    let options = Options { quality: one_of(u, &Quality::ALL)?, ..Options::DEFAULT };
+    let mut wanted = vec![Hit::MISS; rays.len()];
+    BruteForce::over(&after, Level::Scalar).intersect(&rays, &mut wanted);
+    let same = (0..before.count() as u32).all(|p| before.is_finite(p) == after.is_finite(p));
+    let is_single = after.is_single();
+    for (name, accelerator) in accelerators::all(&before, &options) {
+        let is_brute = name.starts_with("brute force");
+        let keeps_precision = is_single || !accelerator.info().kind.ends_with("single");
+        match accelerator.refitted(&after) {
+            Ok(refitted) => {
+                assert!(is_brute || same, "{name} takes other triangles");
+                let mut found = vec![Hit::MISS; rays.len()];
+                refitted.intersect(&rays, &mut found);
+                assert_eq!(found, wanted, "{name}, refitted from {before:?} to {after:?} with {rays:?}");
+            }
+            Err(e) => assert!(!same || !keeps_precision, "{name} is not refitted from {before:?} to {after:?}: {e}"),
+        }
+    }
+    Ok(())
+}
