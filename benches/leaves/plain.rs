@@ -12,6 +12,7 @@ pub struct PlainLeaves<const N: usize>(SingleLeaves<N>);
 
 impl<const N: usize> Leaves<N> for PlainLeaves<N> {
     const PRECISION: &'static str = "plain";
+    const EDGES: bool = false;
 
     fn new(region: &Region, order: &[u32], counts: &[u32], corners: impl Fn(u32) -> [DVec3; 3] + Sync) -> Self {
         Self(SingleLeaves::new(region, order, counts, corners))
@@ -138,9 +139,9 @@ impl<const N: usize> PlainLeaves<N> {
     ) -> (u32, Numbers<S::F32>) {
         let o = [simd.splat(ray.origin[0]), simd.splat(ray.origin[1]), simd.splat(ray.origin[2])];
         let d = [simd.splat(ray.direction[0]), simd.splat(ray.direction[1]), simd.splat(ray.direction[2])];
-        let a = self.rows().corner(simd, first, count, 0);
-        let b = self.rows().corner(simd, first, count, 1);
-        let c = self.rows().corner(simd, first, count, 2);
+        let a = self.rows().numbers(simd, first, count, 0);
+        let b = self.rows().numbers(simd, first, count, 1);
+        let c = self.rows().numbers(simd, first, count, 2);
         let interval = [simd.splat(interval[0]), simd.splat(interval[1])];
         let (hit, numbers) = moller_trumbore(simd, [a, b, c], o, d, interval);
         (hit & ((1 << count) - 1), numbers)

@@ -171,9 +171,10 @@ def render(
     the render at once and is passed on.
     """
 
-def camera_rays(camera: Any, offsets: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def camera_rays(camera: Any, offsets: NDArray[np.float64], single: bool) -> tuple[_Floats, _Floats]:
     """Origins and directions (H,W,3) through the pixels; row 0 is the top.
 
+    They are float32 if ``single``, else float64.
     ``offsets`` (2,) or (H,W,2) is where in the pixel: (0, 0) is its upper left, (1, 1) its lower right.
     """
 

@@ -107,8 +107,7 @@ class Camera:
         if where.shape not in ((2,), (self.height, self.width, 2)):
             allowed = f"(2,) or ({self.height}, {self.width}, 2)"
             raise ValueError(f"offsets must have shape {allowed}, got {where.shape}")
-        origins, directions = _core.camera_rays(self, np.ascontiguousarray(where, np.float64))
-        return origins.astype(kind, copy=False), directions.astype(kind, copy=False)
+        return _core.camera_rays(self, np.ascontiguousarray(where, np.float64), kind == np.float32)
 
 
 def _unit(vector: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -168,9 +168,10 @@ impl Search {
 /// Whatever the vector w, all of a triangle is at least as far as the least w · (corner − point) / |w|. With w towards
 /// the triangle's middle that misses little where the triangle is small next to its distance.
 ///
-/// The bound. Let ε = 2⁻²⁴ and L bound |point| + |corner| in every coordinate. The point errs by εL, a corner by as
-/// much if it is rounded to box units, and their difference by εL; so the product of w and that, of three terms that
-/// are each rounded three times at most, errs by 6εL·(|w₁| + |w₂| + |w₃|) and the distance by 6√3·εL. 16εL is allowed.
+/// The bound. Let ε = 2⁻²⁴ and L bound |point| + |corner| in every coordinate. The point errs by εL, a corner by
+/// up to 4εL if it is kept as an edge in box units, and their difference by εL; so the product of w and that, of three terms that
+/// are each rounded three times at most, errs by 9εL·(|w₁| + |w₂| + |w₃|) and the distance by 9√3·εL < 15.6εL. 16εL is
+/// allowed, and in box units 32εL.
 /// The vector is what it is and does not err; squares err by 8ε of themselves, for which 16ε are.
 #[derive(Clone, Copy, Debug)]
 pub struct LeafTest {
@@ -188,12 +189,12 @@ impl LeafTest {
     /// Readies a search for leaves that hold corners as they are, or in box units.
     #[inline(always)]
     pub fn new(search: &Search, region: &Region, as_they_are: bool) -> Self {
-        let (point, extent, scale) = if as_they_are {
-            (search.point, region.extent, 1.0)
+        let (point, extent, scale, step) = if as_they_are {
+            (search.point, region.extent, 1.0, Self::STEP)
         } else {
-            (region.to_box(search.point), 2.0, region.scale)
+            (region.to_box(search.point), 2.0, region.scale, 2.0 * Self::STEP)
         };
-        let slack = Self::STEP * (point.abs().max_element() + extent);
+        let slack = step * (point.abs().max_element() + extent);
         Self { point: point.as_vec3().to_array(), slack, scale }
     }
 

@@ -54,10 +54,10 @@ impl Clock {
         Self { to_box: region.scale, start: 0.0 }
     }
 
-    /// A `t` in box units, rounded up: no box that starts beyond it can improve on it.
+    /// A `t` in box units, rounded up, and never NaN: no box that starts beyond it can improve on it.
     #[inline(always)]
     pub fn limit(self, t: f64) -> f32 {
-        widened(lesser(t, f64::MAX) * self.to_box - self.start, ULPS)
+        widened(greater(lesser(t, f64::MAX) * self.to_box - self.start, f64::from(f32::MIN)), ULPS)
     }
 }
 
@@ -88,6 +88,13 @@ const ULPS: f32 = 1.0 / (1u32 << 22) as f32;
 fn widened(x: f64, by: f32) -> f32 {
     let x = x as f32;
     x + x.abs() * by
+}
+
+/// A `t_min` in box units, rounded down. One that no f32 can hold counts as the greatest: infinity less a part of it would be NaN,
+/// which in a packet is the neighbours' affair as well.
+#[inline(always)]
+fn earliest(t: f64) -> f32 {
+    widened(lesser(t, f64::from(f32::MAX)), -ULPS)
 }
 
 impl SlabRay {
@@ -133,7 +140,7 @@ impl SlabRay {
             origin: origin.to_array(),
             pad,
             first: [usize::from(inverse.x < 0.0), usize::from(inverse.y < 0.0), usize::from(inverse.z < 0.0)],
-            t_min: widened(ray.t_min * region.scale - start, -ULPS),
+            t_min: earliest(ray.t_min * region.scale - start),
             clock: Clock { to_box: region.scale, start },
         })
     }
@@ -201,7 +208,7 @@ impl SlabRays {
         for i in 0..RAYS {
             let largest = rays.largest[i] * region.scale;
             self.pad[i] = (PAD * largest + FAR_PAD * largest) as f32;
-            self.t_min[i] = widened(rays.t_min[i] * region.scale, -ULPS);
+            self.t_min[i] = earliest(rays.t_min[i] * region.scale);
         }
         for axis in 0..3 {
             for i in 0..RAYS {

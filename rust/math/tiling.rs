@@ -3,6 +3,9 @@
 /// Pixels on a tile's side.
 const SIDE: usize = 4;
 
+/// Pixels of a tile.
+const TILE: usize = SIDE * SIDE;
+
 /// Rows longer than this are not cut into tiles: a band of them would be too much for one thread.
 const LONGEST: usize = 1 << 14;
 
@@ -34,24 +37,39 @@ impl Tiling {
             }
             return;
         }
-        let (band, tiles, rest) = (SIDE * self.row, self.row / SIDE, self.row % SIDE);
-        let tiled = tiles * SIDE * SIDE;
+        let (band, tiles, more) = (SIDE * self.row, self.row / SIDE, self.row % SIDE);
+        let tiled = tiles * TILE;
         // Carried along from pixel to pixel, since a division for each would show in the time of a ray.
         let (mut start, mut i) = (from / band * band, from % band);
-        for place in places {
+        let mut rest = places;
+        while !rest.is_empty() {
             if i == band {
                 (start, i) = (start + band, 0);
             }
-            let (x, y) = if start + band > count {
-                // Too few rows are left for tiles.
-                (i, 0)
-            } else if i < tiled {
-                (i / (SIDE * SIDE) * SIDE + i % SIDE, i / SIDE % SIDE)
+            // Where too few rows are left for tiles, pixels keep their order.
+            let is_tiled = start + band <= count && i < tiled;
+            if is_tiled
+                && i.is_multiple_of(TILE)
+                && let Some(tile) = rest.first_chunk_mut::<TILE>()
+            {
+                // A whole tile at once: pixel by pixel would show as well.
+                for (k, place) in tile.iter_mut().enumerate() {
+                    *place = start + i / SIDE + k / SIDE * self.row + k % SIDE;
+                }
+                i += TILE;
+                rest = &mut rest[TILE..];
+                continue;
+            }
+            let (x, y) = if is_tiled {
+                (i / TILE * SIDE + i % SIDE, i / SIDE % SIDE)
+            } else if start + band <= count {
+                (tiles * SIDE + (i - tiled) % more, (i - tiled) / more)
             } else {
-                (tiles * SIDE + (i - tiled) % rest, (i - tiled) / rest)
+                (i, 0)
             };
-            *place = start + y * self.row + x;
+            rest[0] = start + y * self.row + x;
             i += 1;
+            rest = &mut rest[1..];
         }
     }
 }
@@ -66,13 +84,13 @@ mod tests {
             for row in [0, width, 5] {
                 let count = width * height;
                 let tiling = Tiling::new(count, row);
-                for wanted in [1, 10, 1000] {
+                for (wanted, some) in [(1, 7), (10, 7), (10, 24), (1000, 7), (1000, 16), (1000, 1000)] {
                     let mut visits = vec![0; count];
                     for start in (0..count).step_by(tiling.chunk(wanted)) {
                         let size = tiling.chunk(wanted).min(count - start);
                         let mut places = vec![usize::MAX; size];
-                        for (part, places) in places.chunks_mut(7).enumerate() {
-                            tiling.places(7 * part, size, places);
+                        for (part, places) in places.chunks_mut(some).enumerate() {
+                            tiling.places(some * part, size, places);
                         }
                         for place in places {
                             assert!(place < size);
@@ -80,6 +98,22 @@ mod tests {
                         }
                     }
                     assert!(visits.iter().all(|&n| n == 1), "{width} × {height} in rows of {row}: {visits:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn places_are_the_same_however_many_are_asked_for() {
+        for (width, height) in [(9, 11), (16, 8), (7, 4)] {
+            let (tiling, count) = (Tiling::new(width * height, width), width * height);
+            let mut all = vec![0; count];
+            tiling.places(0, count, &mut all);
+            for from in 0..count {
+                for some in [1, 16, 19].into_iter().filter(|some| from + some <= count) {
+                    let mut places = vec![0; some];
+                    tiling.places(from, count, &mut places);
+                    assert_eq!(places, all[from..from + some]);
                 }
             }
         }

@@ -5,7 +5,8 @@ use numpy::{
 };
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::PyFloat;
+use pyo3::sync::PyOnceLock;
+use pyo3::types::{PyFloat, PyTuple};
 
 use crate::math::{DVec3, Vec3};
 
@@ -40,6 +41,36 @@ pub enum Rows<'a> {
     Single(&'a [[f32; 3]]),
 }
 
+/// A row of three numbers.
+pub trait Row: Copy {
+    /// It as a vector.
+    fn vector(self) -> DVec3;
+    /// A vector as a row, rounded to its type.
+    fn of(vector: DVec3) -> Self;
+}
+
+impl Row for [f64; 3] {
+    #[inline(always)]
+    fn vector(self) -> DVec3 {
+        DVec3::from_array(self)
+    }
+    #[inline(always)]
+    fn of(vector: DVec3) -> Self {
+        vector.to_array()
+    }
+}
+
+impl Row for [f32; 3] {
+    #[inline(always)]
+    fn vector(self) -> DVec3 {
+        Vec3::from_array(self).as_dvec3()
+    }
+    #[inline(always)]
+    fn of(vector: DVec3) -> Self {
+        vector.as_vec3().to_array()
+    }
+}
+
 impl Triples<'_> {
     /// Its rows; `name` is the argument's, for the error if it is not what the package promised.
     pub fn rows(&self, name: &str) -> PyResult<Rows<'_>> {
@@ -63,8 +94,8 @@ impl Rows<'_> {
     #[inline(always)]
     pub fn get(&self, i: usize) -> DVec3 {
         match self {
-            Self::Double(rows) => DVec3::from_array(rows[i]),
-            Self::Single(rows) => Vec3::from_array(rows[i]).as_dvec3(),
+            Self::Double(rows) => rows[i].vector(),
+            Self::Single(rows) => rows[i].vector(),
         }
     }
 
@@ -139,10 +170,22 @@ pub fn numbers<'a, T: Element>(name: &str, array: &'a PyReadonlyArray1<'_, T>) -
     array.as_slice().map_err(|_| PyValueError::new_err(format!("{name} must be C-contiguous")))
 }
 
-/// An array of zeros with the leading shape `lead`, and `width` entries a row if that is not none.
-pub fn zeros<'py, T: Element>(py: Python<'py>, lead: &[usize], width: Option<usize>) -> Bound<'py, PyArrayDyn<T>> {
+/// An array with the leading shape `lead`, and `width` entries a row if that is not none. Its entries are anything, and it is
+/// for the caller to write every one: to write zeros first would be one more pass over memory, and by one thread alone.
+pub fn unwritten<'py, T: Element>(
+    py: Python<'py>,
+    lead: &[usize],
+    width: Option<usize>,
+) -> PyResult<Bound<'py, PyArrayDyn<T>>> {
+    // Zeros take less time than a call of a Python function up to here.
+    const SMALL: usize = 4096;
+    static EMPTY: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
     let shape: Vec<usize> = lead.iter().copied().chain(width).collect();
-    PyArrayDyn::zeros(py, shape, false)
+    if shape.iter().product::<usize>() <= SMALL {
+        return Ok(PyArrayDyn::zeros(py, shape, false));
+    }
+    let empty = EMPTY.import(py, "numpy", "empty")?;
+    Ok(empty.call1((PyTuple::new(py, shape)?, T::get_dtype(py)))?.cast_into()?)
 }
 
 /// The array, which can be read only from now on.

@@ -4,7 +4,7 @@ use numpy::{PyArrayDyn, PyArrayMethods};
 use pyo3::prelude::*;
 use std::mem::take;
 
-use super::arrays::{sealed, zeros};
+use super::arrays::{sealed, unwritten};
 use super::rays::{RayArrays, chunks, each};
 use crate::math::Hit;
 use crate::scene::Scene;
@@ -65,13 +65,14 @@ pub fn intersect_all<'py>(
     let mut found =
         each(py, threads, chunks(rays.count, rays.chunk()), |(start, count)| Chunk::of(scene, rays, start, count))?;
     let total: usize = found.iter().map(|chunk| chunk.hits.len()).sum();
-    let (splits, t) = (zeros(py, &[rays.count + 1], None), zeros(py, &[total], None));
-    let (shape, primitive) = (zeros(py, &[total], None), zeros(py, &[total], None));
-    let uv = zeros(py, &[total], Some(2));
+    let (splits, t) = (unwritten(py, &[rays.count + 1], None)?, unwritten(py, &[total], None)?);
+    let (shape, primitive) = (unwritten(py, &[total], None)?, unwritten(py, &[total], None)?);
+    let uv = unwritten(py, &[total], Some(2))?;
     {
         let (mut splits, mut t) = (splits.readwrite(), t.readwrite());
         let (mut shape, mut primitive, mut uv) = (shape.readwrite(), primitive.readwrite(), uv.readwrite());
-        let mut splits = &mut splits.as_slice_mut()?[1..];
+        let (before, mut splits) = splits.as_slice_mut()?.split_at_mut(1);
+        before[0] = 0;
         let (mut t, mut shape) = (t.as_slice_mut()?, shape.as_slice_mut()?);
         let (mut primitive, mut uv) = (primitive.as_slice_mut()?, uv.as_slice_mut()?.as_chunks_mut().0);
         // Each with the places it fills: a chunk's hits go when they are written down, so that they are never held twice.

@@ -4,11 +4,11 @@ use numpy::{PyArray2, PyArrayDyn, PyArrayMethods, PyReadonlyArray1, PyReadonlyAr
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 
-use super::arrays::{Numbers, Triples, numbers, rows, sealed, zeros};
+use super::arrays::{Numbers, Triples, numbers, rows, sealed, unwritten};
 use super::describe::{AcceleratorChoice, Scene};
 use super::every;
 use super::info::AcceleratorInfo;
-use super::rays::{CHUNK, GATHER, RayArguments, answer};
+use super::rays::{BATCH, RayArguments, answer, share};
 use crate::accel::{Cost, Nearest};
 use crate::math::Hit;
 use crate::scene;
@@ -25,6 +25,9 @@ type Hits<'py> = (
     Bound<'py, PyArrayDyn<i32>>,
     Bound<'py, PyArrayDyn<f64>>,
 );
+
+/// Where t, shape_id, primitive and uv of some rays are written.
+type HitParts<'a> = (&'a mut [f64], &'a mut [i32], &'a mut [i32], &'a mut [[f64; 2]]);
 
 /// Nodes and primitives.
 type Costs<'py> = (Bound<'py, PyArrayDyn<i32>>, Bound<'py, PyArrayDyn<i32>>);
@@ -71,8 +74,8 @@ impl CompiledScene {
     ) -> PyResult<Hits<'py>> {
         let arguments = RayArguments { origins, directions, t_min, t_max, shape };
         let (rays, lead) = (arguments.rays()?, &arguments.shape);
-        let (t, shape) = (zeros(py, lead, None), zeros(py, lead, None));
-        let (primitive, uv) = (zeros(py, lead, None), zeros(py, lead, Some(2)));
+        let (t, shape) = (unwritten(py, lead, None)?, unwritten(py, lead, None)?);
+        let (primitive, uv) = (unwritten(py, lead, None)?, unwritten(py, lead, Some(2))?);
         let (mut to_t, mut to_shape, mut to_primitive, mut to_uv) =
             (t.readwrite(), shape.readwrite(), primitive.readwrite(), uv.readwrite());
         let (ts, shapes, primitives) = (to_t.as_slice_mut()?, to_shape.as_slice_mut()?, to_primitive.as_slice_mut()?);
@@ -80,14 +83,11 @@ impl CompiledScene {
         let scene = &self.0;
         answer(py, rays.count, rays.chunk(), threads, parts, |start, (t, shape, primitive, uv)| {
             let count = t.len();
-            let mut hits = vec![Hit::MISS; GATHER.min(count)];
+            let mut hits = vec![Hit::MISS; BATCH.min(count)];
             rays.gathered(start, count, |batch, places| {
                 let hits = &mut hits[..batch.len()];
                 scene.intersect(batch, hits);
-                for (hit, &i) in hits.iter().zip(places) {
-                    (t[i], uv[i]) = (hit.t, hit.uv);
-                    (shape[i], primitive[i]) = located(scene, hit.primitive);
-                }
+                write(scene, hits, places, (t, shape, primitive, uv));
             });
         })?;
         let _ = (to_t.make_nonwriteable(), to_uv.make_nonwriteable());
@@ -107,13 +107,13 @@ impl CompiledScene {
     ) -> PyResult<Bound<'py, PyArrayDyn<bool>>> {
         let arguments = RayArguments { origins, directions, t_min, t_max, shape };
         let rays = arguments.rays()?;
-        let out = zeros(py, &arguments.shape, None);
+        let out = unwritten(py, &arguments.shape, None)?;
         {
             let mut out = out.readwrite();
             let scene = &self.0;
             answer(py, rays.count, rays.chunk(), threads, out.as_slice_mut()?, |start, out| {
                 let count = out.len();
-                let mut found = vec![false; GATHER.min(count)];
+                let mut found = vec![false; BATCH.min(count)];
                 rays.gathered(start, count, |batch, places| {
                     let found = &mut found[..batch.len()];
                     scene.occluded(batch, found);
@@ -152,7 +152,7 @@ impl CompiledScene {
     ) -> PyResult<Bound<'py, PyArrayDyn<i32>>> {
         let arguments = RayArguments { origins, directions, t_min, t_max, shape };
         let rays = arguments.rays()?;
-        let out = zeros(py, &arguments.shape, None);
+        let out = unwritten(py, &arguments.shape, None)?;
         answer(py, rays.count, rays.chunk(), threads, out.readwrite().as_slice_mut()?, |start, out| {
             every::count(&self.0, &rays, start, out);
         })?;
@@ -171,13 +171,13 @@ impl CompiledScene {
     ) -> PyResult<Costs<'py>> {
         let arguments = RayArguments { origins, directions, t_min, t_max, shape };
         let (rays, lead) = (arguments.rays()?, &arguments.shape);
-        let (nodes, primitives) = (zeros(py, lead, None), zeros(py, lead, None));
+        let (nodes, primitives) = (unwritten(py, lead, None)?, unwritten(py, lead, None)?);
         {
             let (mut nodes, mut primitives) = (nodes.readwrite(), primitives.readwrite());
             let parts = (nodes.as_slice_mut()?, primitives.as_slice_mut()?);
             answer(py, rays.count, rays.chunk(), threads, parts, |start, (nodes, primitives)| {
                 let count = nodes.len();
-                let mut costs = vec![Cost::default(); GATHER.min(count)];
+                let mut costs = vec![Cost::default(); BATCH.min(count)];
                 rays.gathered(start, count, |batch, places| {
                     let costs = &mut costs[..batch.len()];
                     self.0.cost(batch, costs);
@@ -198,12 +198,11 @@ impl CompiledScene {
         threads: Option<usize>,
     ) -> PyResult<Bound<'py, PyArrayDyn<bool>>> {
         let points = points.rows("points")?;
-        let out = zeros(py, &shape, None);
-        answer(py, points.len(), CHUNK, threads, out.readwrite().as_slice_mut()?, |start, out| {
-            for (k, out) in out.chunks_mut(GATHER).enumerate() {
-                let some: Vec<_> = (0..out.len()).map(|i| points.get(start + k * GATHER + i)).collect();
-                self.0.contains(&some, out);
-            }
+        let out = unwritten(py, &shape, None)?;
+        let count = shape.iter().product();
+        answer(py, count, share(count), threads, out.readwrite().as_slice_mut()?, |start, out| {
+            let some: Vec<_> = (start..start + out.len()).map(|i| points.get(i)).collect();
+            self.0.contains(&some, out);
         })?;
         Ok(out)
     }
@@ -224,8 +223,9 @@ impl CompiledScene {
                 "points and max_distance have lengths {lengths:?}, expected 1 or {count}"
             )));
         }
-        let (distance, position) = (zeros(py, lead, None), zeros(py, lead, Some(3)));
-        let (shape, primitive, uv) = (zeros(py, lead, None), zeros(py, lead, None), zeros(py, lead, Some(2)));
+        let (distance, position) = (unwritten(py, lead, None)?, unwritten(py, lead, Some(3))?);
+        let (shape, primitive, uv) =
+            (unwritten(py, lead, None)?, unwritten(py, lead, None)?, unwritten(py, lead, Some(2))?);
         {
             let (mut distance, mut position) = (distance.readwrite(), position.readwrite());
             let (mut shape, mut primitive, mut uv) = (shape.readwrite(), primitive.readwrite(), uv.readwrite());
@@ -233,20 +233,16 @@ impl CompiledScene {
             let (position, uv) = (position.as_slice_mut()?.as_chunks_mut().0, uv.as_slice_mut()?.as_chunks_mut().0);
             let parts = (distance.as_slice_mut()?, position, numbers, uv);
             let scene = &self.0;
-            answer(py, count, CHUNK, threads, parts, |start, (distance, position, (shape, primitive), uv)| {
-                let count = distance.len();
-                let of = |n: usize, i: usize| if n == 1 { 0 } else { start + i };
-                let mut found = vec![Nearest::MISS; GATHER.min(count)];
-                for from in (0..count).step_by(GATHER) {
-                    let some = from..count.min(from + GATHER);
-                    let places: Vec<_> = some.clone().map(|i| points.get(of(points.len(), i))).collect();
-                    let within: Vec<_> = some.clone().map(|i| most[of(most.len(), i)]).collect();
-                    let found = &mut found[..some.len()];
-                    scene.nearest(&places, &within, found);
-                    for (nearest, i) in found.iter().zip(some) {
-                        (distance[i], position[i], uv[i]) = (nearest.distance, nearest.position.to_array(), nearest.uv);
-                        (shape[i], primitive[i]) = located(scene, nearest.primitive);
-                    }
+            answer(py, count, share(count), threads, parts, |start, (distance, position, (shape, primitive), uv)| {
+                let some = start..start + distance.len();
+                let of = |n: usize, i: usize| if n == 1 { 0 } else { i };
+                let places: Vec<_> = some.clone().map(|i| points.get(of(points.len(), i))).collect();
+                let within: Vec<_> = some.map(|i| most[of(most.len(), i)]).collect();
+                let mut found = vec![Nearest::MISS; places.len()];
+                scene.nearest(&places, &within, &mut found);
+                for (i, nearest) in found.iter().enumerate() {
+                    (distance[i], position[i], uv[i]) = (nearest.distance, nearest.position.to_array(), nearest.uv);
+                    (shape[i], primitive[i]) = located(scene, nearest.primitive);
                 }
             })?;
         }
@@ -259,7 +255,7 @@ impl CompiledScene {
         shape_id: PyReadonlyArray1<'py, i32>,
         primitive: PyReadonlyArray1<'py, i32>,
         uv: PyReadonlyArray2<'py, f64>,
-    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let uv = rows("uv", &uv)?;
         self.of_primitives(py, &shape_id, &primitive, |geometry, p, i| geometry.position(p, uv[i]).to_array())
     }
@@ -269,7 +265,7 @@ impl CompiledScene {
         py: Python<'py>,
         shape_id: PyReadonlyArray1<'py, i32>,
         primitive: PyReadonlyArray1<'py, i32>,
-    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         self.of_primitives(py, &shape_id, &primitive, |geometry, p, _| geometry.normal(p).to_array())
     }
 
@@ -312,13 +308,14 @@ impl CompiledScene {
         shape_id: &PyReadonlyArray1<'py, i32>,
         primitive: &PyReadonlyArray1<'py, i32>,
         vector: impl Fn(&scene::Geometry, u32, usize) -> [f64; 3] + Sync,
-    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let (shape, primitive) = (numbers("shape_id", shape_id)?, numbers("primitive", primitive)?);
-        let out = PyArray2::zeros(py, [primitive.len(), 3], false);
+        let count = primitive.len();
+        let out = unwritten(py, &[count], Some(3))?;
         {
             let geometry = self.0.geometry();
             let mut out = out.readwrite();
-            answer(py, primitive.len(), CHUNK, None, out.as_slice_mut()?.as_chunks_mut().0, |start, out| {
+            answer(py, count, share(count), None, out.as_slice_mut()?.as_chunks_mut().0, |start, out| {
                 for (i, to) in out.iter_mut().enumerate() {
                     let i = start + i;
                     *to = match (u32::try_from(shape[i]), u32::try_from(primitive[i])) {
@@ -331,6 +328,19 @@ impl CompiledScene {
             })?;
         }
         Ok(out)
+    }
+}
+
+/// Writes hits down where they belong.
+// On its own, or the loop's pointers do not fit into registers.
+#[inline(never)]
+fn write(scene: &scene::Scene, hits: &[Hit], places: &[usize], (t, shape, primitive, uv): HitParts<'_>) {
+    // Told to be as long, so that one comparison serves all four.
+    let count = t.len();
+    let (shape, primitive, uv) = (&mut shape[..count], &mut primitive[..count], &mut uv[..count]);
+    for (hit, &i) in hits.iter().zip(places) {
+        (t[i], uv[i]) = (hit.t, hit.uv);
+        (shape[i], primitive[i]) = located(scene, hit.primitive);
     }
 }
 

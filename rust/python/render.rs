@@ -1,12 +1,13 @@
 //! Scenes to pictures.
 
-use numpy::{PyArray2, PyArray3, PyArrayMethods, PyReadonlyArrayDyn};
+use numpy::{Element, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArrayDyn};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use std::ops::ControlFlow;
 
-use super::arrays::vectors;
+use super::arrays::{Row, unwritten, vectors};
 use super::query::CompiledScene;
+use super::rays::{answer, share};
 use crate::integrators::Path;
 use crate::math::DVec3;
 use crate::render::{self, HistoryRow, Progress, RenderError, Settings, Until};
@@ -149,32 +150,53 @@ impl Progress for Watcher {
     }
 }
 
-/// Origins and directions (H,W,3) through the pixels; row 0 is the top. `offsets` is where in the pixel: two numbers for all, or
-/// for each.
+/// Origins and directions (H,W,3), of one array type.
+type CameraRays<'py> = (Bound<'py, PyAny>, Bound<'py, PyAny>);
+
+/// Origins and directions (H,W,3) through the pixels, as float32 if `single`, else float64; row 0 is the top. `offsets` is where
+/// in the pixel: two numbers for all, or for each.
 #[pyfunction]
-#[allow(clippy::type_complexity)]
 pub fn camera_rays<'py>(
     py: Python<'py>,
     camera: Camera,
     offsets: PyReadonlyArrayDyn<'py, f64>,
-) -> PyResult<(Bound<'py, PyArray3<f64>>, Bound<'py, PyArray3<f64>>)> {
-    let camera = camera.describe()?;
+    single: bool,
+) -> PyResult<CameraRays<'py>> {
+    let (camera, offsets) = (camera.describe()?, vectors("offsets", &offsets)?);
+    if single { rays_of::<f32>(py, &camera, offsets) } else { rays_of::<f64>(py, &camera, offsets) }
+}
+
+/// Rays of either type, made by all threads.
+fn rays_of<'py, T: Element + Send>(
+    py: Python<'py>,
+    camera: &scene::Camera,
+    offsets: &[[f64; 2]],
+) -> PyResult<CameraRays<'py>>
+where
+    [T; 3]: Row,
+{
     let (width, height) = (camera.width() as usize, camera.height() as usize);
-    let offsets: &[[f64; 2]] = vectors("offsets", &offsets)?;
-    if offsets.len() != 1 && offsets.len() != width * height {
+    let count = width * height;
+    if offsets.len() != 1 && offsets.len() != count {
         return Err(PyValueError::new_err(format!("offsets are {}, expected 1 or {width} × {height}", offsets.len())));
     }
-    let origins = PyArray3::zeros(py, [height, width, 3], false);
-    let directions = PyArray3::zeros(py, [height, width, 3], false);
+    let origins = unwritten::<T>(py, &[height, width], Some(3))?;
+    let directions = unwritten::<T>(py, &[height, width], Some(3))?;
     {
         let (mut origins, mut directions) = (origins.readwrite(), directions.readwrite());
-        let to = origins.as_slice_mut()?.as_chunks_mut().0.iter_mut();
-        let to = to.zip(directions.as_slice_mut()?.as_chunks_mut().0);
-        for (i, (origin, direction)) in to.enumerate() {
-            let [x, y] = offsets[if offsets.len() == 1 { 0 } else { i }];
-            let ray = camera.ray((i % width) as f64 + x, (i / width) as f64 + y);
-            (*origin, *direction) = (ray.origin.to_array(), ray.direction.to_array());
-        }
+        let parts = (origins.as_slice_mut()?.as_chunks_mut().0, directions.as_slice_mut()?.as_chunks_mut().0);
+        answer(py, count, share(count), None, parts, |start, (origins, directions)| {
+            let (mut x, mut y) = (start % width, start / width);
+            for (i, (origin, direction)) in origins.iter_mut().zip(directions).enumerate() {
+                let [right, down] = offsets[if offsets.len() == 1 { 0 } else { start + i }];
+                let ray = camera.ray(x as f64 + right, y as f64 + down);
+                (*origin, *direction) = (Row::of(ray.origin), Row::of(ray.direction));
+                x += 1;
+                if x == width {
+                    (x, y) = (0, y + 1);
+                }
+            }
+        })?;
     }
-    Ok((origins, directions))
+    Ok((origins.into_any(), directions.into_any()))
 }

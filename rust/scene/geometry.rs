@@ -175,9 +175,14 @@ impl Primitives for Geometry {
 
     #[inline]
     fn corners(&self, primitive: u32) -> [DVec3; 3] {
-        match self.faces[primitive as usize] {
-            NO_FACE => [DVec3::NAN; 3],
-            face => face.map(|v| self.vertices.get(v)),
+        let face = self.faces[primitive as usize];
+        if face == NO_FACE {
+            return [DVec3::NAN; 3];
+        }
+        // Which floats they are is asked once, so that the corners need not pass through memory.
+        match &self.vertices {
+            Vertices::Single(v) => face.map(|i| v[i as usize].as_dvec3()),
+            Vertices::Double(v) => face.map(|i| v[i as usize]),
         }
     }
 

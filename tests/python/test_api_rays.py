@@ -186,6 +186,49 @@ def test_bad_rays_are_refused_in_one_line(scene, ask, arguments, error, message)
     assert "\n" not in str(caught.value)
 
 
+@pytest.mark.parametrize("part", ["t_min", "t_max"])
+@pytest.mark.parametrize("size", [1e300, np.inf])
+def test_rays_asked_for_nothing_leave_their_neighbours_alone(part, size):
+    # Sixty-four squares, one below the other, and rays that go down together, from the first or the eighth.
+    square = np.array([(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0)])
+    depth = np.arange(64)[:, None]
+    vertices = (square - depth[..., None] * (0, 0, 1)).reshape(-1, 3)
+    faces = (4 * depth + (0, 1, 2, 0, 2, 3)).reshape(-1, 3)
+    directions = np.stack([np.linspace(0.001, 0.002, 64), np.full(64, 0.003), np.full(64, -1.0)], axis=-1)
+    t_min, t_max = np.where(np.arange(64) % 16 < 8, 0.5, 7.5), np.full(64, np.inf)
+    nothing = np.arange(64) % 16 == 8
+    if part == "t_min":
+        t_min[nothing] = size
+    else:
+        t_min[nothing], t_max[nothing] = -np.inf, -size
+    hits = rw.Scene(rw.Mesh(vertices, faces)).intersect((0, 0, 1), directions, t_min, t_max)
+    expected = np.where(np.arange(64) % 16 < 8, 1.0, 8.0)
+    expected[nothing] = np.inf
+    assert np.array_equal(hits.t, expected)
+
+
+@pytest.mark.parametrize("shape", [(5000,), (70, 75), (3, 5, 401)])
+@pytest.mark.parametrize(
+    "dtypes", [(np.float32, np.float32), (np.float32, np.float64), (np.float64, np.float32)]
+)
+def test_each_ray_of_a_large_batch_gets_its_own_answer(shape, dtypes):
+    scene = rw.Scene(rw.scenes.torus_knot(along=60, around=8))
+    rng = np.random.default_rng(3)
+    origins, directions = (rng.normal(size=(*shape, 3)).astype(dtype) for dtype in dtypes)
+    t_max = rng.uniform(0.5, 3, shape)
+    hits = scene.intersect(origins, directions, t_max=t_max)
+    occluded = scene.occluded(origins, directions, t_max=t_max)
+    found = [a.reshape(-1, *a.shape[len(shape) :]) for a in (hits.t, hits.shape_id, hits.primitive, hits.uv)]
+    rays = origins.reshape(-1, 3), directions.reshape(-1, 3), t_max.reshape(-1)
+    assert hits.hit.any()
+    for start in range(0, t_max.size, 7):
+        some = slice(start, start + 7)
+        few = scene.intersect(rays[0][some], rays[1][some], t_max=rays[2][some])
+        for whole, part in zip(found, (few.t, few.shape_id, few.primitive, few.uv), strict=True):
+            assert np.array_equal(whole[some], part)
+        assert np.array_equal(occluded.reshape(-1)[some], few.hit)
+
+
 @pytest.mark.parametrize("threads", [1, 2, 5])
 def test_threads_do_not_change_the_answer(threads):
     scene = rw.Scene(rw.scenes.torus_knot(along=60, around=8))

@@ -21,10 +21,10 @@
 //! f · q errs by 2εLE² + 10εLE² + 2εLE², and the sum by 52εLE²: 64εLE² is allowed, and 128εE² for the denominator. With L below 2⁴⁰
 //! no sum exceeds 6LE² < 2¹²⁵; beyond it nothing is rejected so.
 //!
-//! Where corners are rounded to f32 themselves, by εL each, the edges err by 2εL more and s by εL. That makes p err by 8εL more
-//! and q by 4εL² + εLE·2, so u and v by 24εL² + 12εLE, e · p by 48εLE,
-//! w by the sum of these, and f · q by 24εL²E. 64εL² and 640εLE are allowed for weights, 64εLE more for the denominator and 32εL²E
-//! for the numerator.
+//! Corners that are f64 are kept relative to the scene's centre, in box units: a corner, and the edges from there as f64 has them.
+//! All of it is rounded to f32. Then an edge errs by εE as before, and s by ε|corner| more, which with ε|origin| is εL: the bounds
+//! are the same. (With edges taken between rounded corners they would have terms in L² that do not shrink with the triangle, and
+//! next to nothing of a fine mesh would be rejected.)
 
 use super::{Column, EdgeRay, EdgeRays, RAYS, Sixteen};
 use crate::math::robust::{greater, lesser};
@@ -76,16 +76,29 @@ pub trait Leaves<const N: usize>: Send + Sync + Sized + 'static {
         self.rows().numbers.as_ptr().wrapping_add(first * ROWS).cast()
     }
 
+    /// Whether the first test finds a corner and the edges from there, in box units, instead of three corners.
+    const EDGES: bool;
+
     /// Of the lanes of a leaf, those that the first test cannot reject.
     #[inline(always)]
     fn not_rejected<S: Simd<N>>(&self, simd: S, ray: &BlockRay, first: usize, count: u32) -> u32 {
-        self.rows().not_rejected(simd, ray, first, count)
+        self.rows().not_rejected(simd, ray, first, count, Self::EDGES)
     }
 
     /// Of sixteen rays, those for which the first test cannot reject the triangle in a lane of a leaf.
     #[inline(always)]
     fn rays_not_rejected<S: Simd<N>>(&self, simd: S, rays: &BlockRays, first: usize, count: u32, lane: usize) -> u32 {
-        self.rows().rays_not_rejected(simd, rays, first, count, lane)
+        self.rows().rays_not_rejected(simd, rays, first, count, lane, Self::EDGES)
+    }
+
+    /// The corners of the triangles of a leaf in f32, axis by axis: off by no more than four roundings of the largest coordinate.
+    #[inline(always)]
+    fn nearly<S: Simd<N>>(&self, simd: S, first: usize, count: u32) -> [[S::F32; 3]; 3] {
+        let rows = self.rows();
+        let a = rows.numbers(simd, first, count, 0);
+        let b = rows.numbers(simd, first, count, 1);
+        let c = rows.numbers(simd, first, count, 2);
+        if Self::EDGES { [a, sum(simd, a, b), sum(simd, a, c)] } else { [a, b, c] }
     }
 
     /// Calls `met` with each triangle of a leaf that the ray meets, until it says true; then that is said.
@@ -99,7 +112,7 @@ pub trait Leaves<const N: usize>: Send + Sync + Sized + 'static {
         ray: &EdgeRay,
         mut met: impl FnMut(u32, Candidate) -> bool,
     ) -> bool {
-        let mut left = self.rows().not_rejected(simd, lanes, first, count);
+        let mut left = self.not_rejected(simd, lanes, first, count);
         while left != 0 {
             let lane = left.trailing_zeros() as usize & (N - 1);
             left &= left - 1;
@@ -146,6 +159,7 @@ pub struct DoubleLeaves<const N: usize> {
 
 impl<const N: usize> Leaves<N> for SingleLeaves<N> {
     const PRECISION: &'static str = "single";
+    const EDGES: bool = false;
 
     fn new(_: &Region, order: &[u32], counts: &[u32], corners: impl Fn(u32) -> [DVec3; 3] + Sync) -> Self {
         // Exact: the coordinates are f32.
@@ -160,18 +174,18 @@ impl<const N: usize> Leaves<N> for SingleLeaves<N> {
     #[inline(always)]
     fn corners(&self, first: usize, count: u32, lane: usize) -> [DVec3; 3] {
         // Written out: `map` is not always compiled for a kernel's level.
-        let [a, b, c] = self.rows.corners(first, count, lane);
+        let [a, b, c] = self.rows.vectors(first, count, lane);
         [a.as_dvec3(), b.as_dvec3(), c.as_dvec3()]
     }
 
     #[inline(always)]
     fn ray(ray: &EdgeRay, _: &Region) -> BlockRay {
-        Errors::EXACT.ray(ray.origin, ray, ray.absolute)
+        BlockRay::new(ray.origin, ray, ray.absolute)
     }
 
     #[inline(always)]
     fn rays(rays: &EdgeRays, _: &Region) -> BlockRays {
-        Errors::EXACT.rays(&rays.origin, rays, &rays.absolute, 1.0)
+        BlockRays::new(&rays.origin, rays, &rays.absolute, 1.0)
     }
 
     fn bytes(&self) -> usize {
@@ -181,9 +195,13 @@ impl<const N: usize> Leaves<N> for SingleLeaves<N> {
 
 impl<const N: usize> Leaves<N> for DoubleLeaves<N> {
     const PRECISION: &'static str = "double";
+    const EDGES: bool = true;
 
     fn new(region: &Region, order: &[u32], counts: &[u32], corners: impl Fn(u32) -> [DVec3; 3] + Sync) -> Self {
-        let rows = Rows::new(order, counts, |p| corners(p).map(|c| region.to_box(c).as_vec3()));
+        let rows = Rows::new(order, counts, |p| {
+            let [a, b, c] = corners(p);
+            [region.to_box(a).as_vec3(), ((b - a) * region.scale).as_vec3(), ((c - a) * region.scale).as_vec3()]
+        });
         Self { rows, corners: order.par_iter().map(|&p| corners(p)).collect() }
     }
 
@@ -200,12 +218,12 @@ impl<const N: usize> Leaves<N> for DoubleLeaves<N> {
     #[inline(always)]
     fn ray(ray: &EdgeRay, region: &Region) -> BlockRay {
         // |origin| + |corner|, both relative to the centre and in box units.
-        Errors::ROUNDED.ray(ray.local * region.scale, ray, ray.largest * region.scale)
+        BlockRay::new(ray.local * region.scale, ray, ray.largest * region.scale)
     }
 
     #[inline(always)]
     fn rays(rays: &EdgeRays, region: &Region) -> BlockRays {
-        Errors::ROUNDED.rays(&rays.local, rays, &rays.largest, region.scale)
+        BlockRays::new(&rays.local, rays, &rays.largest, region.scale)
     }
 
     fn bytes(&self) -> usize {
@@ -213,8 +231,8 @@ impl<const N: usize> Leaves<N> for DoubleLeaves<N> {
     }
 }
 
-/// The triangles of all leaves in f32. A leaf of n has n numbers of each row, one row after the other: the coordinates by
-/// corner and axis, then the triangles' own numbers. So a leaf takes no more memory than its triangles need, and `N` numbers
+/// The triangles of all leaves in f32. A leaf of n has n numbers of each row, one row after the other: the coordinates of
+/// three vectors by axis, then the triangles' own numbers. So a leaf takes no more memory than its triangles need, and `N` numbers
 /// read from any row are those of the leaf and others that do not matter.
 #[derive(Clone, Debug)]
 pub struct Rows<const N: usize> {
@@ -226,7 +244,7 @@ impl<const N: usize> Rows<N> {
     /// matter, and subnormal ones would make that slow.
     const MASK: u32 = 0x4000_0000;
 
-    fn new(order: &[u32], counts: &[u32], corners: impl Fn(u32) -> [Vec3; 3] + Sync) -> Self {
+    fn new(order: &[u32], counts: &[u32], vectors: impl Fn(u32) -> [Vec3; 3] + Sync) -> Self {
         /// Leaves that a thread fills at a time.
         const SOME: usize = 1024;
         assert_eq!(counts.iter().sum::<u32>() as usize, order.len(), "as many triangles as their counts say");
@@ -249,9 +267,9 @@ impl<const N: usize> Rows<N> {
                 let (mine, more) = order.split_at(count);
                 for (lane, &primitive) in mine.iter().enumerate() {
                     assert!(primitive < Self::MASK, "fewer than 2^30 triangles");
-                    for (corner, at) in corners(primitive).into_iter().enumerate() {
+                    for (which, vector) in vectors(primitive).into_iter().enumerate() {
                         for axis in 0..3 {
-                            leaf[(3 * corner + axis) * count + lane] = at[axis];
+                            leaf[(3 * which + axis) * count + lane] = vector[axis];
                         }
                     }
                     leaf[9 * count + lane] = f32::from_bits(primitive | Self::MASK);
@@ -272,20 +290,20 @@ impl<const N: usize> Rows<N> {
         self.numbers[first * ROWS + 9 * count as usize + lane].to_bits() ^ Self::MASK
     }
 
-    /// The corners of the triangle in a lane of a leaf.
+    /// The three vectors of the triangle in a lane of a leaf.
     #[inline(always)]
-    fn corners(&self, first: usize, count: u32, lane: usize) -> [Vec3; 3] {
+    fn vectors(&self, first: usize, count: u32, lane: usize) -> [Vec3; 3] {
         let count = count as usize;
         let leaf = &self.numbers[first * ROWS + lane..][..8 * count + 1];
-        let corner = |c: usize| Vec3::new(leaf[3 * c * count], leaf[(3 * c + 1) * count], leaf[(3 * c + 2) * count]);
-        [corner(0), corner(1), corner(2)]
+        let vector = |c: usize| Vec3::new(leaf[3 * c * count], leaf[(3 * c + 1) * count], leaf[(3 * c + 2) * count]);
+        [vector(0), vector(1), vector(2)]
     }
 
-    /// A corner of the triangles of a leaf, axis by axis.
+    /// One of the three vectors of the triangles of a leaf, axis by axis.
     #[inline(always)]
-    pub fn corner<S: Simd<N>>(&self, simd: S, first: usize, count: u32, corner: usize) -> [S::F32; 3] {
+    pub fn numbers<S: Simd<N>>(&self, simd: S, first: usize, count: u32, which: usize) -> [S::F32; 3] {
         let count = count as usize;
-        let rows = &self.numbers[first * ROWS + 3 * corner * count..][..2 * count + N];
+        let rows = &self.numbers[first * ROWS + 3 * which * count..][..2 * count + N];
         let row = |axis: usize| rows[axis * count..].first_chunk().expect("rows of the right length");
         [simd.load(row(0)), simd.load(row(1)), simd.load(row(2))]
     }
@@ -294,28 +312,42 @@ impl<const N: usize> Rows<N> {
     // Written out, axis by axis: closures and iterators between here and the kernel's entry are not always compiled for
     // its level, and then every operation is a call.
     #[inline(always)]
-    fn not_rejected<S: Simd<N>>(&self, simd: S, ray: &BlockRay, first: usize, count: u32) -> u32 {
+    fn not_rejected<S: Simd<N>>(&self, simd: S, ray: &BlockRay, first: usize, count: u32, edges: bool) -> u32 {
         let o = [simd.splat(ray.origin[0]), simd.splat(ray.origin[1]), simd.splat(ray.origin[2])];
         let d = [simd.splat(ray.direction[0]), simd.splat(ray.direction[1]), simd.splat(ray.direction[2])];
-        let a = self.corner(simd, first, count, 0);
-        let b = self.corner(simd, first, count, 1);
-        let c = self.corner(simd, first, count, 2);
-        not_rejected(simd, [a, b, c], o, d, &ray.errors) & ((1 << count) - 1)
+        let a = self.numbers(simd, first, count, 0);
+        let mut e = self.numbers(simd, first, count, 1);
+        let mut f = self.numbers(simd, first, count, 2);
+        if !edges {
+            (e, f) = (difference(simd, e, a), difference(simd, f, a));
+        }
+        not_rejected(simd, [a, e, f], o, d, &ray.errors) & ((1 << count) - 1)
     }
 
     /// Of sixteen rays, those for which f32 cannot reject the triangle in a lane of a leaf.
     #[inline(always)]
-    fn rays_not_rejected<S: Simd<N>>(&self, simd: S, rays: &BlockRays, first: usize, count: u32, lane: usize) -> u32 {
-        let [a, b, c] = self.corners(first, count, lane);
+    fn rays_not_rejected<S: Simd<N>>(
+        &self,
+        simd: S,
+        rays: &BlockRays,
+        first: usize,
+        count: u32,
+        lane: usize,
+        edges: bool,
+    ) -> u32 {
+        let [a, mut e, mut f] = self.vectors(first, count, lane);
+        if !edges {
+            (e, f) = (e - a, f - a);
+        }
         let a = [simd.splat(a.x), simd.splat(a.y), simd.splat(a.z)];
-        let b = [simd.splat(b.x), simd.splat(b.y), simd.splat(b.z)];
-        let c = [simd.splat(c.x), simd.splat(c.y), simd.splat(c.z)];
+        let e = [simd.splat(e.x), simd.splat(e.y), simd.splat(e.z)];
+        let f = [simd.splat(f.x), simd.splat(f.y), simd.splat(f.z)];
         let mut left = 0;
         for part in 0..RAYS / N {
             let (o, d) = (&rays.origin, &rays.direction);
             let o = [part_of(simd, &o[0], part), part_of(simd, &o[1], part), part_of(simd, &o[2], part)];
             let d = [part_of(simd, &d[0], part), part_of(simd, &d[1], part), part_of(simd, &d[2], part)];
-            left |= (not_rejected(simd, [a, b, c], o, d, &rays.errors) & ((1 << N) - 1)) << (part * N);
+            left |= (not_rejected(simd, [a, e, f], o, d, &rays.errors) & ((1 << N) - 1)) << (part * N);
         }
         left
     }
@@ -331,12 +363,12 @@ fn part_of<const N: usize, S: Simd<N>>(simd: S, column: &Column<f32>, part: usiz
 #[inline(always)]
 fn not_rejected<const N: usize, S: Simd<N>>(
     simd: S,
-    [a, b, c]: [[S::F32; 3]; 3],
+    [a, e, f]: [[S::F32; 3]; 3],
     o: [S::F32; 3],
     d: [S::F32; 3],
     errors: &Bounds,
 ) -> u32 {
-    let (e, f, s) = (difference(simd, b, a), difference(simd, c, a), difference(simd, o, a));
+    let s = difference(simd, o, a);
     let p = cross(simd, d, f);
     let q = cross(simd, s, e);
     let u = dot(simd, s, p);
@@ -352,10 +384,8 @@ fn not_rejected<const N: usize, S: Simd<N>>(
     let negative = simd.gt(below, u) | simd.gt(below, v) | simd.gt(below, w);
 
     let numerator = dot(simd, f, q);
-    let error = simd.mul_add(largest, simd.splat(errors.numerator[0]), simd.splat(errors.numerator[1]));
-    let above = simd.mul_add(largest, error, least);
-    let error = simd.mul_add(largest, simd.splat(128.0 / (1u32 << 24) as f32), simd.splat(errors.denominator));
-    let over = simd.mul_add(largest, error, least);
+    let above = simd.mul_add(largest, simd.mul(largest, simd.splat(errors.numerator)), least);
+    let over = simd.mul_add(largest, simd.mul(largest, simd.splat(128.0 / (1u32 << 24) as f32)), least);
     let behind = simd.gt(numerator, above) & simd.gt(simd.neg(over), denominator)
         | simd.gt(simd.neg(above), numerator) & simd.gt(denominator, over);
     !(positive & negative | behind)
@@ -382,7 +412,36 @@ pub struct BlockRays {
     errors: Bounds,
 }
 
+impl BlockRay {
+    /// A ray from an origin in the leaves' units, rounded to f32; `largest` is L.
+    #[inline(always)]
+    fn new(origin: DVec3, ray: &EdgeRay, largest: f64) -> Self {
+        let (o, d) = (origin.as_vec3(), ray.direction.as_vec3());
+        let errors = Bounds::new(largest, ray.t_min >= 0.0);
+        Self { origin: [o.x, o.y, o.z], direction: [d.x, d.y, d.z], errors }
+    }
+}
+
 impl BlockRays {
+    /// Sixteen rays rounded to f32, with origins and L times `scale`. The greatest bounds serve all.
+    #[inline(always)]
+    fn new(origin: &[Column<f64>; 3], rays: &EdgeRays, largest: &Column<f64>, scale: f64) -> Self {
+        let (mut most, mut least) = (0.0, f64::INFINITY);
+        for i in 0..RAYS {
+            most = greater(largest[i], most);
+            least = lesser(rays.t_min[i], least);
+        }
+        let errors = Bounds::new(most * scale, least >= 0.0);
+        let mut block = Self { origin: [[0.0; RAYS]; 3], direction: [[0.0; RAYS]; 3], errors };
+        for axis in 0..3 {
+            for i in 0..RAYS {
+                block.origin[axis][i] = (origin[axis][i] * scale) as f32;
+                block.direction[axis][i] = rays.direction[axis][i] as f32;
+            }
+        }
+        block
+    }
+
     /// One of them.
     #[inline(always)]
     pub fn of(&self, i: usize) -> BlockRay {
@@ -397,81 +456,39 @@ impl BlockRays {
 struct Bounds {
     /// Of a weight over the largest edge.
     weight: f32,
-    /// Of the numerator of t over the largest edge: by edge, and at least.
-    numerator: [f32; 2],
-    /// The same of the denominator, at least.
-    denominator: f32,
+    /// Of the numerator of t over the square of the largest edge.
+    numerator: f32,
     /// What is added to every bound.
     least: f32,
 }
 
-/// The errors of the test in f32, as multiples of 2⁻²⁴.
-struct Errors {
-    /// Of a weight, by L and edge.
-    weight: f64,
-    /// Of a weight by L².
-    corners: f64,
-    /// Of the numerator of t, by L² and edge.
-    numerator: f64,
-    /// Of its denominator, by L and edge.
-    denominator: f64,
-}
-
-impl Errors {
-    /// Where corners are exact.
-    const EXACT: Self = Self { weight: 512.0, corners: 0.0, numerator: 0.0, denominator: 0.0 };
-    /// Where they are rounded themselves.
-    const ROUNDED: Self = Self { weight: 640.0, corners: 64.0, numerator: 32.0, denominator: 64.0 };
-
-    /// The bounds where L is `largest`, of rays that are asked for no t below 0, or for some.
+impl Bounds {
+    /// Those where L is `largest`, of rays that are asked for no t below 0, or for some.
     #[inline(always)]
-    fn bounds(&self, largest: f64, forwards: bool) -> Bounds {
+    fn new(largest: f64, forwards: bool) -> Self {
         const UNIT: f64 = 1.0 / (1u64 << 24) as f64;
         const OVERFLOW: f64 = (1u64 << 60) as f64;
         const NUMERATOR_OVERFLOW: f64 = (1u64 << 40) as f64;
         const UNDERFLOW: f64 = f64::from_bits((1023 - 140) << 52);
-        let weight = if largest < OVERFLOW { self.weight * largest } else { f64::INFINITY };
+        let weight = if largest < OVERFLOW { 512.0 * largest } else { f64::INFINITY };
         let numerator = if forwards && largest < NUMERATOR_OVERFLOW { 64.0 * largest } else { f64::INFINITY };
-        Bounds {
+        Self {
             // Rounded to nearest: the error of that is among those of higher order.
             weight: (UNIT * weight) as f32,
-            numerator: [(UNIT * numerator) as f32, (UNIT * self.numerator * largest * largest) as f32],
-            denominator: (UNIT * self.denominator * largest) as f32,
-            least: (UNIT * self.corners * largest * largest + UNDERFLOW * largest) as f32 + f32::MIN_POSITIVE,
+            numerator: (UNIT * numerator) as f32,
+            least: (UNDERFLOW * largest) as f32 + f32::MIN_POSITIVE,
         }
-    }
-
-    /// Rounds a ray to f32.
-    #[inline(always)]
-    fn ray(&self, origin: DVec3, ray: &EdgeRay, largest: f64) -> BlockRay {
-        let (o, d) = (origin.as_vec3(), ray.direction.as_vec3());
-        let errors = self.bounds(largest, ray.t_min >= 0.0);
-        BlockRay { origin: [o.x, o.y, o.z], direction: [d.x, d.y, d.z], errors }
-    }
-
-    /// Rounds sixteen rays to f32, with origins and L times `scale`. The greatest bounds serve all.
-    #[inline(always)]
-    fn rays(&self, origin: &[Column<f64>; 3], rays: &EdgeRays, largest: &Column<f64>, scale: f64) -> BlockRays {
-        let (mut most, mut least) = (0.0, f64::INFINITY);
-        for i in 0..RAYS {
-            most = greater(largest[i], most);
-            least = lesser(rays.t_min[i], least);
-        }
-        let errors = self.bounds(most * scale, least >= 0.0);
-        let mut block = BlockRays { origin: [[0.0; RAYS]; 3], direction: [[0.0; RAYS]; 3], errors };
-        for axis in 0..3 {
-            for i in 0..RAYS {
-                block.origin[axis][i] = (origin[axis][i] * scale) as f32;
-                block.direction[axis][i] = rays.direction[axis][i] as f32;
-            }
-        }
-        block
     }
 }
 
 #[inline(always)]
 fn difference<const N: usize, S: Simd<N>>(simd: S, a: [S::F32; 3], b: [S::F32; 3]) -> [S::F32; 3] {
     [simd.sub(a[0], b[0]), simd.sub(a[1], b[1]), simd.sub(a[2], b[2])]
+}
+
+#[inline(always)]
+fn sum<const N: usize, S: Simd<N>>(simd: S, a: [S::F32; 3], b: [S::F32; 3]) -> [S::F32; 3] {
+    [simd.add(a[0], b[0]), simd.add(a[1], b[1]), simd.add(a[2], b[2])]
 }
 
 /// The largest coordinate in magnitude.
@@ -513,7 +530,7 @@ mod tests {
 
         #[inline(always)]
         fn run<S: Simd<N>>(self, simd: S) -> u32 {
-            self.leaves.rows().not_rejected(simd, self.ray, 0, self.count)
+            self.leaves.not_rejected(simd, self.ray, 0, self.count)
         }
     }
 

@@ -56,7 +56,7 @@ fn walk<const N: usize, L: Leaves<N>, S: Simd<N>>(
     last: &mut Option<(usize, u32, usize)>,
     stack: &mut [Entry],
 ) {
-    let test = LeafTest::new(search, &bvh.region, L::PRECISION == "single");
+    let test = LeafTest::new(search, &bvh.region, !L::EDGES);
     let (mut limit, mut leaf_limit) = (search.limit(), test.limit(search));
     let mut top = 0;
     let mut child = if bvh.nodes.is_empty() { Child::None } else { Child::Node(0) };
@@ -83,12 +83,7 @@ fn walk<const N: usize, L: Leaves<N>, S: Simd<N>>(
             }
             Child::Leaf { first, count } => {
                 let first = first as usize;
-                let rows = bvh.leaves.rows();
-                let corners = [
-                    rows.corner(simd, first, count, 0),
-                    rows.corner(simd, first, count, 1),
-                    rows.corner(simd, first, count, 2),
-                ];
+                let corners = bvh.leaves.nearly(simd, first, count);
                 let mut left = test.not_rejected(simd, corners, leaf_limit) & ((1 << count) - 1);
                 while left != 0 {
                     let lane = left.trailing_zeros() as usize & (N - 1);

@@ -90,7 +90,7 @@ pub fn answer<const N: usize, L: Leaves<N>, S: Simd<N>, Q: Query>(
             slabs: &slabs,
             states: [query.start(start, edges.t_max[0]); RAYS],
             limit: [f32::NEG_INFINITY; RAYS],
-            bounds: Bounds::of(&slabs, first),
+            bounds: Bounds::of(simd, &slabs, first),
             first,
         };
         for i in 0..chunk.len() {
@@ -105,32 +105,57 @@ pub fn answer<const N: usize, L: Leaves<N>, S: Simd<N>, Q: Query>(
     }
 }
 
+/// The least and the greatest of sixteen numbers without NaN, of which there are `16 / N` vectors.
+#[inline(always)]
+fn least<const N: usize, S: Simd<N>>(simd: S, column: &Column<f32>) -> f32 {
+    let parts = column.as_chunks::<N>().0;
+    let mut all = simd.load(&parts[0]);
+    for part in &parts[1..] {
+        all = simd.min(all, simd.load(part));
+    }
+    let mut lanes = [0f32; N];
+    simd.store(all, &mut lanes);
+    let mut half = [0f32; 4];
+    for i in 0..4 {
+        half[i] = lesser(lanes[i], lanes[N - 4 + i]);
+    }
+    lesser(lesser(half[0], half[1]), lesser(half[2], half[3]))
+}
+
+/// The greatest of a column without NaN.
+#[inline(always)]
+fn greatest<const N: usize, S: Simd<N>>(simd: S, column: &Column<f32>) -> f32 {
+    let parts = column.as_chunks::<N>().0;
+    let mut all = simd.load(&parts[0]);
+    for part in &parts[1..] {
+        all = simd.max(all, simd.load(part));
+    }
+    let mut lanes = [0f32; N];
+    simd.store(all, &mut lanes);
+    let mut half = [0f32; 4];
+    for i in 0..4 {
+        half[i] = greater(lanes[i], lanes[N - 4 + i]);
+    }
+    greater(greater(half[0], half[1]), greater(half[2], half[3]))
+}
+
 impl Bounds {
     #[inline(always)]
-    fn of(slabs: &SlabRays, first: [usize; 3]) -> Self {
-        let mut bounds = Self {
-            near: [f32::NEG_INFINITY; 3],
-            far: [f32::INFINITY; 3],
-            inverse: [[f32::INFINITY, 0.0]; 3],
-            t_min: f32::INFINITY,
-        };
-        for i in 0..RAYS {
-            bounds.t_min = lesser(bounds.t_min, slabs.t_min[i]);
-        }
+    fn of<const N: usize, S: Simd<N>>(simd: S, slabs: &SlabRays, first: [usize; 3]) -> Self {
+        let mut bounds =
+            Self { near: [0.0; 3], far: [0.0; 3], inverse: [[0.0; 2]; 3], t_min: least(simd, &slabs.t_min) };
         for axis in 0..3 {
             let towards = if first[axis] == 0 { 1.0 } else { -1.0 };
-            let (mut near, mut far) = (f32::NEG_INFINITY, f32::INFINITY);
-            let (mut least, mut greatest) = (f32::INFINITY, 0.0);
+            let (mut near, mut far, mut size) = ([0.0; RAYS], [0.0; RAYS], [0.0; RAYS]);
             for i in 0..RAYS {
-                let (origin, size) = (towards * slabs.origin[axis][i], slabs.inverse[axis][i].abs());
-                near = greater(near, origin + slabs.pad[i]);
-                far = lesser(far, origin - slabs.pad[i]);
-                least = lesser(least, size);
-                greatest = greater(greatest, size);
+                let origin = towards * slabs.origin[axis][i];
+                near[i] = origin + slabs.pad[i];
+                far[i] = origin - slabs.pad[i];
+                size[i] = slabs.inverse[axis][i].abs();
             }
-            bounds.near[axis] = near * towards;
-            bounds.far[axis] = far * towards;
-            bounds.inverse[axis] = [least * towards, greatest * towards];
+            bounds.near[axis] = greatest(simd, &near) * towards;
+            bounds.far[axis] = least(simd, &far) * towards;
+            bounds.inverse[axis] = [least(simd, &size) * towards, greatest(simd, &size) * towards];
         }
         bounds
     }
@@ -139,12 +164,8 @@ impl Bounds {
 impl<T: Copy> Packet<'_, T> {
     /// Where the last ray loses interest.
     #[inline(always)]
-    fn last_limit(&self) -> f32 {
-        let mut last = f32::NEG_INFINITY;
-        for i in 0..RAYS {
-            last = greater(self.limit[i], last);
-        }
-        last
+    fn last_limit<const N: usize, S: Simd<N>>(&self, simd: S) -> f32 {
+        greatest(simd, &self.limit)
     }
 
     /// Visits all that any ray may hit.
@@ -157,7 +178,7 @@ impl<T: Copy> Packet<'_, T> {
         stack: &mut [Entry],
         lone: &mut Stacks,
     ) {
-        let mut limit = self.last_limit();
+        let mut limit = self.last_limit(simd);
         let (mut top, mut index) = (0, 0);
         'down: loop {
             let node = &bvh.nodes[index];
@@ -174,7 +195,7 @@ impl<T: Copy> Packet<'_, T> {
                     if active != 0 {
                         let (first, count) = child.leaf();
                         self.visit_leaf(simd, bvh, first, count, active, query);
-                        limit = self.last_limit();
+                        limit = self.last_limit(simd);
                     }
                     continue;
                 }
@@ -187,7 +208,7 @@ impl<T: Copy> Packet<'_, T> {
                     active &= active - 1;
                     self.walk_alone(simd, bvh, child, i, query, lone);
                 }
-                limit = self.last_limit();
+                limit = self.last_limit(simd);
             }
         }
     }
