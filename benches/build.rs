@@ -7,7 +7,7 @@ use divan::Bencher;
 use divan::counter::ItemsCount;
 use meshes::{Mesh, Purpose, noisy_torus, rays, validate};
 use raywright::accel::Primitives;
-use raywright::accel::bvh::build::binned;
+use raywright::accel::bvh::build::{Leaves, binned};
 use raywright::accel::bvh::{self, Options, Quality};
 use raywright::simd::Level;
 
@@ -22,7 +22,7 @@ fn binary(bencher: Bencher, size: usize) {
     let triangles = noisy_torus(size);
     let region = triangles.region();
     let boxes: Vec<_> = (0..triangles.count() as u32).map(|p| region.aabb(triangles.corners(p))).collect();
-    let options = Quality::FastBuild.steps(8).binned;
+    let options = binned::Options { bins: Quality::FastBuild.bins(), leaves: Leaves::for_blocks(8) };
     binned::build(&boxes, &options).validate(&boxes).expect("a valid tree");
     bencher.counter(ItemsCount::new(boxes.len())).bench_local(|| binned::build(&boxes, &options));
 }

@@ -26,6 +26,12 @@ impl Aabb {
         Self { min: self.min.min(other.min), max: self.max.max(other.max) }
     }
 
+    /// What two have in common; empty if they do not meet.
+    #[inline(always)]
+    pub fn intersection(self, other: Self) -> Self {
+        Self { min: self.min.max(other.min), max: self.max.min(other.max) }
+    }
+
     /// Whether nothing is inside.
     pub fn is_empty(&self) -> bool {
         self.min.cmpgt(self.max).any()

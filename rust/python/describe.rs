@@ -1,11 +1,18 @@
 //! Scenes, cameras and integrators as the package describes them, read by attribute.
 
+use std::fmt::Display;
+use std::ops::RangeInclusive;
+
 use numpy::PyReadonlyArray2;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 
 use super::arrays::{Rows, Triples, rows};
 use super::level;
+use crate::accel::bvh::build::halves::Way;
+use crate::accel::bvh::build::morton::Bits;
+use crate::accel::bvh::build::{Builder, ploc, spatial};
+use crate::accel::bvh::optimise::{Optimiser, Optimisers};
 use crate::accel::{Accelerator, BruteForce, bvh};
 use crate::math::DVec3;
 use crate::optics::Rgb;
@@ -113,6 +120,58 @@ struct Bvh {
     bins: Option<usize>,
     traversal_cost: f32,
     intersection_cost: f32,
+    budget: Option<f32>,
+    radius: Option<usize>,
+    optimise: Option<Vec<String>>,
+}
+
+impl Bvh {
+    fn builder(&self) -> PyResult<Builder> {
+        let Self { bins, budget, radius, .. } = *self;
+        within("bins", bins, 2..=bvh::build::binned::MAX_BINS)?;
+        within("budget", budget, 0.0..=spatial::MAX_BUDGET)?;
+        within("radius", radius, 1..=ploc::MAX_RADIUS)?;
+        Ok(match self.builder.as_str() {
+            "binned" => Builder::Binned { bins },
+            "sweep" => Builder::Sweep,
+            "spatial" => Builder::Spatial { bins, budget: budget.unwrap_or(spatial::BUDGET) },
+            "morton" => Builder::Morton(Bits::default()),
+            "ploc" => Builder::Ploc { radius: radius.unwrap_or(ploc::RADIUS) },
+            "midpoint" => Builder::Halves(Way::Midpoint),
+            "median" => Builder::Halves(Way::Median),
+            "mean" => Builder::Halves(Way::Mean),
+            other => return Err(unknown("builder", other, &BUILDERS)),
+        })
+    }
+
+    fn optimisers(&self) -> PyResult<Option<Optimisers>> {
+        let Some(names) = &self.optimise else { return Ok(None) };
+        let optimiser = |name: &String| match name.as_str() {
+            "reinsertion" => Ok(Optimiser::Reinsertion),
+            "treelet" => Ok(Optimiser::Treelet),
+            other => Err(unknown("optimise", other, &["reinsertion", "treelet"])),
+        };
+        let optimisers = names.iter().map(optimiser).collect::<PyResult<Vec<_>>>()?;
+        match Optimisers::new(optimisers) {
+            Some(optimisers) => Ok(Some(optimisers)),
+            None => Err(PyValueError::new_err(format!("optimise is {names:?}, expected each at most once"))),
+        }
+    }
+}
+
+const BUILDERS: [&str; 8] = ["binned", "sweep", "spatial", "morton", "ploc", "midpoint", "median", "mean"];
+
+fn unknown(name: &str, came: &str, expected: &[&str]) -> PyErr {
+    PyValueError::new_err(format!("{name} is {came:?}, expected one of {}", expected.join(", ")))
+}
+
+fn within<T: PartialOrd + Display>(name: &str, came: Option<T>, range: RangeInclusive<T>) -> PyResult<()> {
+    match came.filter(|came| !range.contains(came)) {
+        Some(came) => {
+            Err(PyValueError::new_err(format!("{name} is {came}, expected {} to {}", range.start(), range.end())))
+        }
+        None => Ok(()),
+    }
 }
 
 impl AcceleratorChoice {
@@ -121,14 +180,7 @@ impl AcceleratorChoice {
         let name = choice.get_type().name()?;
         match name.to_str()? {
             "BVH" => {
-                let Bvh { builder, bins, traversal_cost, intersection_cost } = choice.extract()?;
-                let most = bvh::build::binned::MAX_BINS;
-                if builder != "binned" {
-                    return Err(PyValueError::new_err(format!("builder is {builder:?}, expected \"binned\"")));
-                }
-                if let Some(bins) = bins.filter(|bins| !(2..=most).contains(bins)) {
-                    return Err(PyValueError::new_err(format!("bins is {bins}, expected 2 to {most}")));
-                }
+                let bvh: Bvh = choice.extract()?;
                 let quality = match quality {
                     "fast build" => bvh::Quality::FastBuild,
                     "balanced" => bvh::Quality::Balanced,
@@ -139,7 +191,13 @@ impl AcceleratorChoice {
                         )));
                     }
                 };
-                Ok(Self::Bvh(bvh::Options { quality, bins, traversal_cost, intersection_cost }))
+                Ok(Self::Bvh(bvh::Options {
+                    quality,
+                    builder: bvh.builder()?,
+                    optimisers: bvh.optimisers()?,
+                    traversal_cost: bvh.traversal_cost,
+                    intersection_cost: bvh.intersection_cost,
+                }))
             }
             "BruteForce" => Ok(Self::BruteForce),
             other => Err(PyTypeError::new_err(format!("accelerator is a {other}, expected BVH or BruteForce"))),

@@ -2,6 +2,7 @@
 
 mod agreement;
 mod boxes;
+mod builders;
 mod nearest;
 mod signs;
 mod triangles;

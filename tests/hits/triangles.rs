@@ -70,8 +70,10 @@ pub fn accelerators(primitives: &dyn Primitives) -> Vec<(String, Box<dyn Acceler
 type Build = fn(&Input) -> Built;
 
 /// The structures that one ray walks at a time.
-const STRUCTURES: [(&str, Build); 1] =
-    [("stack", |input| Ordered::over(Quality::Balanced.steps(2).build(&input.boxes), "balanced"))];
+const STRUCTURES: [(&str, Build); 1] = [("stack", |input| {
+    let steps = Quality::Balanced.steps(2);
+    Ordered::over(steps.build(&input.boxes, |p, to| input.boxes[p as usize].intersection(*to)), &steps.name())
+})];
 
 /// The closest hits, after seeing that every accelerator at every level gives the same bits, and `occluded` the same
 /// answer. The rays are asked as one batch, and a few at a time, which other kernels answer.

@@ -3,6 +3,7 @@
 pub mod build;
 mod node;
 pub mod optimise;
+mod parts;
 mod quality;
 pub mod traverse;
 mod wide;
@@ -20,7 +21,11 @@ use crate::simd::{Dispatch, Level};
 /// The default: a wide tree over triangles, and a binary one over what is none.
 pub fn over(primitives: &dyn Primitives, options: &Options, level: Level) -> Box<dyn Accelerator> {
     // What is no triangle is tested one by one.
-    let others = |input: &Input| traverse::Ordered::over(options.quality.steps(1).build(&input.boxes), "binned SAH");
+    let others = |input: &Input| {
+        let steps = options.quality.steps(1);
+        let tree = steps.build(&input.boxes, |p, to| input.boxes[p as usize].intersection(*to));
+        traverse::Ordered::over(tree, &steps.name())
+    };
     mixed(primitives, level, &|triangles| widest(triangles, options, level), &others)
 }
 

@@ -1,5 +1,6 @@
 //! The binary tree that every builder makes, of 32-byte nodes.
 
+use super::parts::cover;
 use crate::math::{Aabb, Vec3};
 
 /// A node of a binary tree: half a cache line, so that a pair of children is one.
@@ -76,6 +77,49 @@ impl BinaryBvh {
     /// that is not empty stands in one leaf, once, and children follow their parent.
     pub fn validate(&self, boxes: &[Aabb]) -> Result<(), String> {
         let mut met = vec![0u32; boxes.len()];
+        self.check(|i, node, primitives| {
+            for &p in primitives {
+                met[p as usize] += 1;
+                if !node.aabb().contains(&boxes[p as usize]) {
+                    return Err(format!("leaf {i} does not hold primitive {p}"));
+                }
+            }
+            Ok(())
+        })?;
+        match met.iter().zip(boxes).position(|(&n, b)| n != u32::from(!b.is_empty())) {
+            Some(p) => Err(format!("primitive {p} stands in {} leaves; its box is {:?}", met[p], boxes[p])),
+            None => Ok(()),
+        }
+    }
+
+    /// The same of a tree whose primitives may stand in several leaves, part by part: boxes hold their children's, children follow
+    /// their parent, every primitive that is not empty stands in some leaf, no leaf has it twice, and its leaves' boxes
+    /// together hold it. What lies between them by less than 2⁻²⁰ of the primitive's largest coordinate is not seen, nor more
+    /// than `clip` tells; see [`Builder::build`](super::build::Builder::build).
+    pub fn validate_parts(&self, boxes: &[Aabb], clip: impl Fn(u32, &Aabb) -> Aabb) -> Result<(), String> {
+        let mut parts = vec![Vec::new(); boxes.len()];
+        self.check(|i, node, primitives| {
+            for (k, &p) in primitives.iter().enumerate() {
+                parts[p as usize].push(node.aabb());
+                if primitives[..k].contains(&p) {
+                    return Err(format!("leaf {i} has primitive {p} twice"));
+                }
+            }
+            Ok(())
+        })?;
+        for (p, (parts, whole)) in parts.iter().zip(boxes).enumerate() {
+            if whole.is_empty() != parts.is_empty() {
+                return Err(format!("primitive {p} stands in {} leaves; its box is {whole:?}", parts.len()));
+            }
+            if !cover(parts, whole, |to| clip(p as u32, to)) {
+                return Err(format!("{} leaves do not hold primitive {p} together", parts.len()));
+            }
+        }
+        Ok(())
+    }
+
+    /// Checks that children follow their parents, which hold them, and gives each leaf to another check, with its primitives.
+    fn check(&self, mut leaf: impl FnMut(usize, &Node, &[u32]) -> Result<(), String>) -> Result<(), String> {
         let mut parents = vec![0u32; self.nodes.len()];
         for (i, node) in self.nodes.iter().enumerate() {
             if node.is_leaf() {
@@ -83,12 +127,7 @@ impl BinaryBvh {
                 let Some(primitives) = self.order.get(range.clone()) else {
                     return Err(format!("leaf {i} has primitives {range:?} of {}", self.order.len()));
                 };
-                for &p in primitives {
-                    met[p as usize] += 1;
-                    if !node.aabb().contains(&boxes[p as usize]) {
-                        return Err(format!("leaf {i} does not hold primitive {p}"));
-                    }
-                }
+                leaf(i, node, primitives)?;
             } else {
                 for child in node.children() {
                     if child <= i || child >= self.nodes.len() {
@@ -101,11 +140,8 @@ impl BinaryBvh {
                 }
             }
         }
-        if let Some(i) = parents.iter().skip(1).position(|&n| n != 1) {
-            return Err(format!("node {} has {} parents", i + 1, parents[i + 1]));
-        }
-        match met.iter().zip(boxes).position(|(&n, b)| n != u32::from(!b.is_empty())) {
-            Some(p) => Err(format!("primitive {p} stands in {} leaves; its box is {:?}", met[p], boxes[p])),
+        match parents.iter().skip(1).position(|&n| n != 1) {
+            Some(i) => Err(format!("node {} has {} parents", i + 1, parents[i + 1])),
             None => Ok(()),
         }
     }

@@ -1,8 +1,8 @@
-//! How much time a build may take for the sake of the rays.
+//! How a tree is made, step by step, and how much time that may take for the sake of the rays.
 
 use super::BinaryBvh;
-use super::build::binned;
-use super::optimise::reinsertion;
+use super::build::{Builder, Leaves};
+use super::optimise::{Optimiser, Optimisers, reinsertion, treelet};
 use crate::math::Aabb;
 
 /// A choice between a tree soon and a tree that rays walk fast.
@@ -22,16 +22,29 @@ impl Quality {
     /// All of them, from least to most time.
     pub const ALL: [Self; 3] = [Self::FastBuild, Self::Balanced, Self::FastRays];
 
+    /// Bins an axis that suit it.
+    pub const fn bins(self) -> usize {
+        match self {
+            Self::FastBuild => 8,
+            Self::Balanced => 16,
+            Self::FastRays => 32,
+        }
+    }
+
     /// How to build for leaves of blocks of so many triangles.
     pub const fn steps(self, block: usize) -> Steps {
-        let (bins, rounds, share, worthwhile) = match self {
-            Self::FastBuild => (8, 0, 0.0, 0.0),
-            Self::Balanced => (16, 6, 0.1, 2e-3),
-            Self::FastRays => (32, 30, 0.3, 1e-4),
+        // Where time is short nothing is improved, unless that is asked for.
+        let (optimisers, rounds, share, worthwhile) = match self {
+            Self::FastBuild => (Optimisers::NONE, 6, 0.1, 2e-3),
+            Self::Balanced => (Optimisers::REINSERTION, 6, 0.1, 2e-3),
+            Self::FastRays => (Optimisers::REINSERTION, 30, 0.3, 1e-4),
         };
         Steps {
-            binned: binned::Options { bins, block },
+            builder: Builder::Binned { bins: Some(self.bins()) },
+            leaves: Leaves::for_blocks(block),
+            optimisers,
             reinsertion: reinsertion::Options { rounds, share, worthwhile, block },
+            treelet: treelet::Options { rounds: 3, worthwhile, block },
         }
     }
 }
@@ -40,20 +53,37 @@ impl Quality {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Steps {
     /// How the tree is built.
-    pub binned: binned::Options,
-    /// How it is improved then.
+    pub builder: Builder,
+    /// When a builder makes a leaf.
+    pub leaves: Leaves,
+    /// What improves it then.
+    pub optimisers: Optimisers,
+    /// How much is reinserted, if anything is.
     pub reinsertion: reinsertion::Options,
+    /// How many treelets are tried, if any are.
+    pub treelet: treelet::Options,
 }
 
 impl Steps {
-    /// Makes a tree over boxes, leaving out empty ones.
+    /// Makes a tree over boxes, leaving out empty ones. `clip` is as [`Builder::build`] says.
     ///
     /// # Panics
     /// If an option is out of range.
-    pub fn build(&self, boxes: &[Aabb]) -> BinaryBvh {
-        let mut bvh = binned::build(boxes, &self.binned);
-        reinsertion::optimise(&mut bvh, &self.reinsertion);
+    pub fn build(&self, boxes: &[Aabb], clip: impl Fn(u32, &Aabb) -> Aabb + Sync) -> BinaryBvh {
+        let mut bvh = self.builder.build(boxes, clip, &self.leaves);
+        for optimiser in self.optimisers.iter() {
+            match optimiser {
+                Optimiser::Reinsertion => reinsertion::optimise(&mut bvh, &self.reinsertion),
+                Optimiser::Treelet => treelet::optimise(&mut bvh, &self.treelet),
+            }
+        }
         bvh
+    }
+
+    /// What they are, for people.
+    pub fn name(&self) -> String {
+        let names = self.optimisers.iter().map(Optimiser::name);
+        [self.builder.name()].into_iter().chain(names).collect::<Vec<_>>().join(" and ")
     }
 }
 
@@ -75,7 +105,7 @@ mod tests {
             })
             .collect();
         let costs = Quality::ALL.map(|quality| {
-            let bvh = quality.steps(8).build(&boxes);
+            let bvh = quality.steps(8).build(&boxes, |p, to| boxes[p as usize].intersection(*to));
             bvh.validate(&boxes).unwrap();
             bvh.nodes.iter().filter(|n| !n.is_leaf()).map(|n| f64::from(n.aabb().half_area())).sum::<f64>()
         });

@@ -1,6 +1,7 @@
 //! Triangles: the exact decision whether a ray meets one, alone and by the block.
 
 mod at_leaf;
+mod clip;
 mod edge;
 mod leaves;
 mod nearest;
@@ -8,6 +9,7 @@ pub mod routines;
 mod sixteen;
 
 pub use at_leaf::Sixteen;
+pub use clip::clipped;
 pub use edge::{Along, EdgeRay};
 pub use leaves::{BlockRay, BlockRays, DoubleLeaves, Leaves, Rows, SingleLeaves};
 pub use nearest::{NearestPoint, length, nearest_point, point_of};

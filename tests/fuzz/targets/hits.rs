@@ -2,10 +2,10 @@
 //! and however many at once.
 
 use super::accelerators;
+use super::builders::{builder, optimisers};
 use super::numbers::{Range, one_of};
 use super::triangles::{Triangles, rays, triangles};
 use arbitrary::{Result, Unstructured};
-use raywright::accel::bvh::build::binned::MAX_BINS;
 use raywright::accel::bvh::{Options, Quality};
 use raywright::accel::{Accelerator, Cost, Crossings, Primitives};
 use raywright::math::{Hit, Ray, Region};
@@ -20,7 +20,8 @@ pub fn check(data: &[u8]) {
 fn scene(u: &mut Unstructured) -> Result<(Triangles, Vec<Ray>, Options)> {
     let options = Options {
         quality: one_of(u, &Quality::ALL)?,
-        bins: Some(u.int_in_range(2..=MAX_BINS)?),
+        builder: builder(u)?,
+        optimisers: Some(optimisers(u)?),
         // From leaves as small as can be to leaves as large.
         traversal_cost: one_of(u, &[1.0, 1e-3, 1e3])?,
         intersection_cost: 1.0,

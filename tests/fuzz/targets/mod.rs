@@ -11,6 +11,7 @@ pub mod trees;
 pub mod watertight;
 
 mod accelerators;
+mod builders;
 mod integers;
 mod numbers;
 mod triangles;

@@ -1,11 +1,12 @@
 //! Any boxes and any triangles: trees hold what they should, and go on doing so when the triangles move.
 
 use super::accelerators;
+use super::builders::{builder, optimisers};
 use super::numbers::{Range, one_of, single_point};
 use super::triangles::{Triangles, rays, triangles};
 use arbitrary::{Result, Unstructured};
-use raywright::accel::bvh::build::binned;
-use raywright::accel::bvh::optimise::reinsertion;
+use raywright::accel::bvh::build::{Builder, Leaves, binned};
+use raywright::accel::bvh::optimise::{reinsertion, treelet};
 use raywright::accel::bvh::{Options, Quality, Steps};
 use raywright::accel::{BruteForce, Primitives};
 use raywright::math::{Aabb, DVec3, Hit};
@@ -21,13 +22,16 @@ pub fn check(data: &[u8]) {
 fn boxes(u: &mut Unstructured) -> Result<()> {
     let block = u.int_in_range(1..=binned::MAX_BLOCK)?;
     let steps = Steps {
-        binned: binned::Options { bins: u.int_in_range(2..=binned::MAX_BINS)?, block },
+        builder: builder(u)?,
+        leaves: if u.arbitrary()? { Leaves::for_blocks(block) } else { Leaves::by_cost(block, 1.0, 1.0) },
+        optimisers: optimisers(u)?,
         reinsertion: reinsertion::Options {
             rounds: u.int_in_range(0..=30)?,
             share: one_of(u, &[0.0, 0.1, 0.3, 1.0])?,
             worthwhile: one_of(u, &[0.0, 1e-4, 1e-2])?,
             block,
         },
+        treelet: treelet::Options { rounds: u.int_in_range(0..=4)?, worthwhile: one_of(u, &[0.0, 1e-2])?, block },
     };
     let mut boxes = Vec::new();
     for _ in 0..u.int_in_range(0..=40)? {
@@ -43,14 +47,18 @@ fn boxes(u: &mut Unstructured) -> Result<()> {
         let shift = step * i as f32;
         boxes.extend(once.iter().map(|b| Aabb { min: b.min + shift, max: b.max + shift }));
     }
-    let built = binned::build(&boxes, &steps.binned);
-    let improved = steps.build(&boxes);
-    // At most one split by area a level until the median halves what is left.
-    let count = boxes.iter().filter(|b| !b.is_empty()).count().max(1);
-    let most = 3 * count.ilog2() as usize + 42;
+    let clip = |p: u32, to: &Aabb| boxes[p as usize].intersection(*to);
+    let built = steps.builder.build(&boxes, clip, &steps.leaves);
+    let improved = steps.build(&boxes, clip);
     for tree in [&built, &improved] {
-        tree.validate(&boxes).unwrap_or_else(|e| panic!("{e}, of {boxes:?} by {steps:?}"));
-        assert!(tree.depth() <= most, "a depth of {} for {boxes:?} by {steps:?}", tree.depth());
+        let valid = if steps.builder.parts() { tree.validate_parts(&boxes, clip) } else { tree.validate(&boxes) };
+        valid.unwrap_or_else(|e| panic!("{e}, of {boxes:?} by {steps:?}"));
+    }
+    if let Builder::Binned { .. } = steps.builder {
+        // At most one split by area a level until the median halves what is left.
+        let count = boxes.iter().filter(|b| !b.is_empty()).count().max(1);
+        let most = 3 * count.ilog2() as usize + 42;
+        assert!(built.depth() <= most, "a depth of {} for {boxes:?} by {steps:?}", built.depth());
     }
     Ok(())
 }

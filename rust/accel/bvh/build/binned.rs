@@ -1,11 +1,12 @@
 //! Top-down by the surface-area heuristic in bins, on all cores.
 //!
-//! Splits down to a few primitives a leaf. How many go into one leaf of the tree that rays walk is decided when it is
-//! collapsed, where the cost of a block of triangles is known.
+//! Where a tree is to be collapsed, it splits down to a few primitives a leaf. How many go into one leaf of the tree that rays
+//! walk is decided then, where the cost of a block of triangles and of wide nodes is known.
 
-use super::bins::{Bins, SHARE, Split};
+use super::bins::{Bins, Split};
 use super::part::Part;
-use super::{BinaryBvh, Bounds, Extents, Node, Reference};
+use super::reference::{Bounds, Extents, MANY, Reference, median, partition, references};
+use super::{BinaryBvh, Leaves, Node, spare};
 use crate::math::Aabb;
 use rayon::prelude::*;
 
@@ -16,9 +17,8 @@ pub use super::bins::MAX_BINS;
 pub struct Options {
     /// Bins an axis, from 2 to [`MAX_BINS`].
     pub bins: usize,
-    /// How many primitives will fit a block of the tree that rays walk, from 1 to [`MAX_BLOCK`]. How so few are split hardly
-    /// matters, and is decided quickly; three eighths of them are not split at all.
-    pub block: usize,
+    /// When a leaf is made. How what fits a block is split hardly matters, and is decided quickly.
+    pub leaves: Leaves,
 }
 
 /// Most primitives in a block that may be asked for.
@@ -26,9 +26,6 @@ pub const MAX_BLOCK: usize = 16;
 
 /// Up to so many primitives, a subtree is built by one thread.
 const TASK: usize = 1024;
-
-/// From so many primitives on a node is binned by several threads.
-const PARALLEL_BINNING: usize = 1 << 16;
 
 /// Builds a tree over boxes, leaving out empty ones.
 ///
@@ -38,49 +35,26 @@ const PARALLEL_BINNING: usize = 1 << 16;
 /// # Panics
 /// If an option is out of range.
 pub fn build(boxes: &[Aabb], options: &Options) -> BinaryBvh {
-    let Options { bins, block } = *options;
+    let Options { bins, leaves } = *options;
     assert!((2..=MAX_BINS).contains(&bins), "bins is {bins}, not from 2 to {MAX_BINS}");
-    assert!((1..=MAX_BLOCK).contains(&block), "block is {block}, not from 1 to {MAX_BLOCK}");
+    leaves.check();
     let mut references = references(boxes);
     if references.is_empty() {
         return BinaryBvh::default();
     }
-    let spare = 2 * references.len().ilog2() as usize + 40;
-    let task = Task { bins, block, leaf: (3 * block).div_ceil(8), first: 0, spare };
-    let extents = around(&references);
+    let task = Task { bins, leaves, first: 0, spare: spare(references.len()) };
+    let extents = Extents::around_many(&references);
     let part = task.build(&mut references, extents);
     let order = references.par_iter().map(Reference::primitive).collect();
     drop(references);
     part.assemble(order)
 }
 
-/// References to all boxes but empty ones.
-fn references(boxes: &[Aabb]) -> Vec<Reference> {
-    let numbered = || boxes.par_iter().enumerate();
-    let reference = |(i, b): (usize, &Aabb)| Reference::new(b, i as u32);
-    if numbered().any(|(_, b)| b.is_empty()) {
-        numbered().filter(|(_, b)| !b.is_empty()).map(reference).collect()
-    } else {
-        // Where each belongs is known, so it is written there at once.
-        numbered().map(reference).collect()
-    }
-}
-
-fn around(references: &[Reference]) -> Extents {
-    if references.len() < PARALLEL_BINNING {
-        Extents::around(references)
-    } else {
-        references.par_chunks(SHARE).map(Extents::around).reduce(|| Extents::EMPTY, Extents::union)
-    }
-}
-
 /// What to build of a slice of the references.
 #[derive(Clone, Copy)]
 struct Task {
     bins: usize,
-    block: usize,
-    /// So many primitives are not split any more.
-    leaf: usize,
+    leaves: Leaves,
     /// The first primitive, as leaves refer to it.
     first: u32,
     /// How many more levels may be split by area.
@@ -94,20 +68,22 @@ impl Task {
         }
         let by_area = if self.spare == 0 {
             None
-        } else if references.len() < PARALLEL_BINNING {
+        } else if references.len() < MANY {
             Split::best(references, &extents, self.bins, &mut Bins::new())
         } else {
             Split::best_of_many(references, &extents, self.bins)
         };
         let middle = match by_area {
-            Some(split) => partition(references, &split),
+            Some(split) => partition(references, |r| split.is_left(r)),
             None => median(references, &extents.centres),
         };
         let (left, right) = references.split_at_mut(middle);
         let left_task = Self { spare: self.spare.saturating_sub(1), ..self };
         let right_task = Self { first: self.first + middle as u32, ..left_task };
-        let (left, right) =
-            rayon::join(|| left_task.build(left, around(left)), || right_task.build(right, around(right)));
+        let (left, right) = rayon::join(
+            || left_task.build(left, Extents::around_many(left)),
+            || right_task.build(right, Extents::around_many(right)),
+        );
         Part::pair(extents.all.aabb(), left, right)
     }
 
@@ -129,47 +105,50 @@ impl Task {
         while let Some(Open { node, start, end, extents, spare }) = open.pop() {
             let own = &mut references[start..end];
             let aabb = extents.all.aabb();
+            let split = self.split(own, &extents, spare, &mut bins);
             let child = below.len();
-            let made = if own.len() <= self.leaf {
-                Node::leaf(aabb, self.first + start as u32, own.len() as u32)
-            } else {
-                Node::inner(aabb, child as u32)
+            let made = match split {
+                Some(_) => Node::inner(aabb, child as u32),
+                None => Node::leaf(aabb, self.first + start as u32, own.len() as u32),
             };
             *node.map_or(&mut root, |node| &mut below[node]) = made;
-            if made.is_leaf() {
-                continue;
-            }
-            let middle = if own.len() <= self.block.max(2) {
-                sweep(own, extents.centres.longest())
-            } else {
-                let by_area = if spare > 0 { Split::best(own, &extents, self.bins, &mut bins) } else { None };
-                match by_area {
-                    Some(split) => partition(own, &split),
-                    None => median(own, &extents.centres),
-                }
-            };
-            let (left, right) = own.split_at(middle);
-            let (left, right) = (Extents::around(left), Extents::around(right));
+            let Some((middle, [left, right])) = split else { continue };
             let (middle, spare) = (start + middle, spare.saturating_sub(1));
             below.extend([nothing; 2]);
             // The last is taken first, so that what is below the left child comes first.
             open.push(Open { node: Some(child + 1), start: middle, end, extents: right, spare });
             open.push(Open { node: Some(child), start, end: middle, extents: left, spare });
         }
-        Part::Whole { root, below }
+        Part::Whole { root, below, order: Vec::new() }
     }
-}
 
-/// Brings all on the left of a split to the front and tells how many they are. Without a branch on the side, which would
-/// be guessed wrong every other time.
-#[inline(always)]
-fn partition(references: &mut [Reference], split: &Split) -> usize {
-    let mut left = 0;
-    for i in 0..references.len() {
-        references.swap(i, left);
-        left += usize::from(split.is_left(&references[left]));
+    /// Splits some primitives, unless they are to be a leaf: how many go left, and the extents of both sides.
+    #[inline(always)]
+    fn split(
+        &self,
+        own: &mut [Reference],
+        extents: &Extents,
+        spare: usize,
+        bins: &mut Bins,
+    ) -> Option<(usize, [Extents; 2])> {
+        if own.len() <= self.leaves.whole {
+            return None;
+        }
+        let middle = if own.len() <= self.leaves.block.max(2) {
+            sweep(own, extents.centres.longest())
+        } else {
+            let by_area = if spare > 0 { Split::best(own, extents, self.bins, bins) } else { None };
+            match by_area {
+                Some(split) => partition(own, |r| split.is_left(r)),
+                None => median(own, &extents.centres),
+            }
+        };
+        let (left, right) = own.split_at(middle);
+        let sides = [left, right].map(Extents::around);
+        let [l, r] = sides.map(|side| side.all.half_area());
+        let is_leaf = self.leaves.is_leaf((own.len(), extents.all.half_area()), [(left.len(), l), (right.len(), r)]);
+        (!is_leaf).then_some((middle, sides))
     }
-    left
 }
 
 /// Sorts at most [`MAX_BLOCK`] along an axis and tells where to split them, by the surface-area heuristic.
@@ -203,16 +182,6 @@ fn sweep(references: &mut [Reference], axis: usize) -> usize {
     best
 }
 
-/// Halves by number along the longest axis of the centres; equal centres by their primitive's number.
-fn median(references: &mut [Reference], centres: &Bounds) -> usize {
-    let axis = centres.longest();
-    let middle = references.len() / 2;
-    references.select_nth_unstable_by(middle, |a, b| {
-        a.centre_on(axis).total_cmp(&b.centre_on(axis)).then(a.primitive().cmp(&b.primitive()))
-    });
-    middle
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -221,13 +190,13 @@ mod tests {
     use proptest::prelude::*;
 
     fn check(boxes: &[Aabb], block: usize) -> BinaryBvh {
-        let bvh = build(boxes, &Options { bins: 16, block });
+        let bvh = build(boxes, &Options { bins: 16, leaves: Leaves::for_blocks(block) });
         bvh.validate(boxes).unwrap();
         let n = boxes.iter().filter(|b| !b.is_empty()).count();
         assert_eq!(bvh.order.len(), n);
         let limit = if n > 0 { 3 * n.ilog2() as usize + 42 + block } else { 0 };
         assert!(bvh.depth() <= limit, "depth {} for {n} boxes", bvh.depth());
-        assert!(bvh.nodes.iter().all(|n| n.count as usize <= (3 * block).div_ceil(8)));
+        assert!(bvh.nodes.iter().all(|n| n.count as usize <= Leaves::for_blocks(block).whole));
         assert_depth_first(&bvh);
         bvh
     }
@@ -296,7 +265,7 @@ mod tests {
             .collect();
         let on = |threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            pool.install(|| build(&boxes, &Options { bins: 16, block: 8 })).order
+            pool.install(|| build(&boxes, &Options { bins: 16, leaves: Leaves::for_blocks(8) })).order
         };
         assert_eq!(on(1), on(3));
     }

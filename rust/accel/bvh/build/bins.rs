@@ -1,15 +1,12 @@
 //! Where to split a set of boxes: the surface-area heuristic at the borders of equal bins (Wald, "On fast Construction of
 //! SAH-based Bounding Volume Hierarchies", 2007).
 
-use super::{Bounds, Extents, Reference};
+use super::reference::{Bounds, Extents, Reference, SHARE};
 use glam::Vec4;
 use rayon::prelude::*;
 
 /// Most bins that may be asked for.
 pub const MAX_BINS: usize = 64;
-
-/// So many references are one thread's share of a large node.
-pub const SHARE: usize = 1 << 14;
 
 /// A plane between bins.
 #[derive(Clone, Copy)]
@@ -66,7 +63,7 @@ impl Binning {
         // Just under the number of bins, so that the last centre falls into the last bin. Flat axes get bin 0 alone.
         let scale = Vec4::splat(bins as f32 * (1.0 - 1e-6)) / size;
         let usable = scale.is_finite_mask() & size.cmpgt(Vec4::ZERO);
-        Self { origin: centres.min, scale: Vec4::select(usable, scale, Vec4::ZERO) }
+        Self { origin: centres.least(), scale: Vec4::select(usable, scale, Vec4::ZERO) }
     }
 
     /// The bins of a reference along the three axes.

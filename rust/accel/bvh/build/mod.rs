@@ -1,135 +1,119 @@
 //! Builders of the binary tree. They see boxes, never shapes.
 //!
 //! Trees come laid out depth first: behind a pair of children stands all that is below the first, then all that is below
-//! the second, and leaves refer to the primitives in the same order.
+//! the second, and leaves refer to the primitives in the same order. However many threads build, the tree is the same.
 
 pub mod binned;
 mod bins;
+mod chopped;
+pub mod halves;
+mod leaves;
+pub mod morton;
 mod part;
+pub mod ploc;
+mod radix;
+mod reference;
+mod slices;
+pub mod spatial;
+pub mod sweep;
+#[cfg(test)]
+mod tests;
+mod top_down;
+
+pub use leaves::Leaves;
+pub(super) use reference::Bounds;
 
 use super::{BinaryBvh, Node};
 use crate::math::Aabb;
-use glam::{Vec4, Vec4Swizzles};
+use halves::Way;
 
-/// A box that grows: its least corner, and its greatest with all signs turned, so that both grow by taking the lesser. What
-/// stands in `w` does not count.
-#[derive(Clone, Copy, Debug)]
-#[repr(C)]
-pub(super) struct Bounds {
-    min: Vec4,
-    neg_max: Vec4,
+/// How a binary tree is built.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Builder {
+    /// By the surface-area heuristic in bins: [`binned`].
+    Binned {
+        /// Bins an axis, from 2 to [`binned::MAX_BINS`].
+        bins: Option<usize>,
+    },
+    /// By the surface-area heuristic at every place: [`sweep`].
+    Sweep,
+    /// By the surface-area heuristic with spatial splits: [`spatial`].
+    Spatial {
+        /// Bins an axis, from 2 to [`binned::MAX_BINS`].
+        bins: Option<usize>,
+        /// How many references may be added, over the number of primitives.
+        budget: f32,
+    },
+    /// By Morton codes: [`morton`].
+    Morton(morton::Bits),
+    /// Bottom up by locally ordered clustering: [`ploc`].
+    Ploc {
+        /// How far off in the order of Morton codes a neighbour is sought, from 1 to [`ploc::MAX_RADIUS`].
+        radius: usize,
+    },
+    /// By halves: [`halves`].
+    Halves(Way),
 }
 
-impl Bounds {
-    const EMPTY: Self = Self { min: Vec4::INFINITY, neg_max: Vec4::INFINITY };
+impl Builder {
+    /// What is meant by bins where nobody says how many.
+    const BINS: usize = 16;
 
-    #[inline(always)]
-    fn point(at: Vec4) -> Self {
-        Self { min: at, neg_max: -at }
-    }
-
-    #[inline(always)]
-    pub fn grow(&mut self, other: &Self) {
-        self.min = self.min.min(other.min);
-        self.neg_max = self.neg_max.min(other.neg_max);
-    }
-
-    #[inline(always)]
-    pub fn union(mut self, other: &Self) -> Self {
-        self.grow(other);
-        self
-    }
-
-    pub fn aabb(&self) -> Aabb {
-        Aabb { min: self.min.truncate(), max: -self.neg_max.truncate() }
-    }
-
-    /// How long it is along each axis; not positive where it is flat, or empty.
-    #[inline(always)]
-    fn size(&self) -> Vec4 {
-        -(self.min + self.neg_max)
-    }
-
-    /// The axis along which it is longest.
-    #[inline(always)]
-    fn longest(&self) -> usize {
-        let [x, y, z, _] = self.size().to_array();
-        if x >= y && x >= z { 0 } else { 1 + usize::from(z > y) }
-    }
-
-    /// Half the surface; of an empty box, no number.
-    #[inline(always)]
-    pub fn half_area(&self) -> f32 {
-        // The signs cancel out.
-        let d = self.min + self.neg_max;
-        let [x, y, z, _] = (d * d.yzxw()).to_array();
-        x + y + z
-    }
-}
-
-impl From<&Aabb> for Bounds {
-    fn from(aabb: &Aabb) -> Self {
-        Self { min: aabb.min.extend(0.0), neg_max: (-aabb.max).extend(0.0) }
-    }
-}
-
-/// A box with the number of its primitive, as builders sort them.
-#[derive(Clone, Copy, Debug)]
-#[repr(transparent)]
-struct Reference {
-    /// The lower half of the primitive's number stands in the first `w`, the upper in the second. Halves, as the bits of a
-    /// whole number would make subnormals, which slow arithmetic down.
-    bounds: Bounds,
-}
-
-impl Reference {
-    fn new(aabb: &Aabb, primitive: u32) -> Self {
-        let half = |bits: u32| (bits & 0xffff) as f32;
-        let (min, neg_max) = (aabb.min.extend(half(primitive)), (-aabb.max).extend(half(primitive >> 16)));
-        Self { bounds: Bounds { min, neg_max } }
-    }
-
-    fn primitive(&self) -> u32 {
-        self.bounds.min.w as u32 | (self.bounds.neg_max.w as u32) << 16
-    }
-
-    /// Twice the box's centre.
-    #[inline(always)]
-    fn centre(&self) -> Vec4 {
-        self.bounds.min - self.bounds.neg_max
-    }
-
-    /// The same along one axis.
-    #[inline(always)]
-    fn centre_on(&self, axis: usize) -> f32 {
-        let Bounds { min, neg_max } = &self.bounds;
-        min.as_ref()[axis] - neg_max.as_ref()[axis]
-    }
-}
-
-/// Boxes of a set of references: of all that they hold, and of their centres (doubled).
-#[derive(Clone, Copy)]
-struct Extents {
-    all: Bounds,
-    centres: Bounds,
-}
-
-impl Extents {
-    const EMPTY: Self = Self { all: Bounds::EMPTY, centres: Bounds::EMPTY };
-
-    #[inline(always)]
-    fn around(references: &[Reference]) -> Self {
-        let mut extents = Self::EMPTY;
-        for r in references {
-            extents.all.grow(&r.bounds);
-            extents.centres.grow(&Bounds::point(r.centre()));
+    /// The same with so many bins where nobody has said how many.
+    pub fn or_bins(self, some: usize) -> Self {
+        match self {
+            Self::Binned { bins } => Self::Binned { bins: bins.or(Some(some)) },
+            Self::Spatial { bins, budget } => Self::Spatial { bins: bins.or(Some(some)), budget },
+            other => other,
         }
-        extents
     }
 
-    fn union(self, other: Self) -> Self {
-        Self { all: self.all.union(&other.all), centres: self.centres.union(&other.centres) }
+    /// Its name, for people.
+    pub const fn name(&self) -> &'static str {
+        match self {
+            Self::Binned { .. } => "binned SAH",
+            Self::Sweep => "full-sweep SAH",
+            Self::Spatial { .. } => "SAH with spatial splits",
+            Self::Morton(_) => "Morton codes",
+            Self::Ploc { .. } => "PLOC",
+            Self::Halves(way) => way.name(),
+        }
     }
+
+    /// Whether a primitive may stand in several leaves, part by part.
+    pub const fn parts(&self) -> bool {
+        matches!(self, Self::Spatial { .. })
+    }
+
+    /// Makes a tree over boxes, leaving out empty ones.
+    ///
+    /// `clip` gives a box around what of a primitive lies in another box, or around more; only spatial splits ask for it. It
+    /// must be empty only where there is nothing, and lie within the primitive's own box and the other one.
+    ///
+    /// # Panics
+    /// If an option is out of range.
+    pub fn build(&self, boxes: &[Aabb], clip: impl Fn(u32, &Aabb) -> Aabb + Sync, leaves: &Leaves) -> BinaryBvh {
+        let leaves = *leaves;
+        match *self {
+            Self::Binned { bins } => {
+                binned::build(boxes, &binned::Options { bins: bins.unwrap_or(Self::BINS), leaves })
+            }
+            Self::Sweep => sweep::build(boxes, &leaves),
+            Self::Spatial { bins, budget } => {
+                let bins = bins.unwrap_or(Self::BINS);
+                spatial::build(boxes, clip, &spatial::Options { bins, budget, leaves })
+            }
+            Self::Morton(bits) => morton::build(boxes, bits),
+            Self::Ploc { radius } => ploc::build(boxes, &ploc::Options { radius }),
+            Self::Halves(way) => halves::build(boxes, way, &leaves),
+        }
+    }
+}
+
+/// How many levels are split as the heuristic wants it, before halves by number bound the depth of what is left: a reasonable
+/// tree is not as deep.
+fn spare(references: usize) -> usize {
+    2 * references.max(1).ilog2() as usize + 40
 }
 
 /// Panics unless what is below a node lies together, the left before the right, as do its primitives.

@@ -12,6 +12,8 @@ pub enum Part {
         root: Node,
         /// What is below.
         below: Vec<Node>,
+        /// The primitives of its leaves, which are counted from its own first. Nothing if leaves know their place among all.
+        order: Vec<u32>,
     },
     /// Two parts side by side.
     Pair(Box<Pair>),
@@ -24,13 +26,16 @@ pub struct Pair {
     parts: [Part; 2],
     /// How many nodes there are in both.
     nodes: usize,
+    /// How many primitives they list.
+    listed: usize,
 }
 
 impl Part {
     /// Puts two parts side by side.
     pub fn pair(aabb: Aabb, left: Self, right: Self) -> Self {
         let nodes = 2 + left.below() + right.below();
-        Self::Pair(Box::new(Pair { aabb, parts: [left, right], nodes }))
+        let listed = left.listed() + right.listed();
+        Self::Pair(Box::new(Pair { aabb, parts: [left, right], nodes, listed }))
     }
 
     /// How many nodes there are below its root.
@@ -41,36 +46,66 @@ impl Part {
         }
     }
 
-    /// Makes a tree of it, over primitives in some order.
-    pub fn assemble(self, order: Vec<u32>) -> BinaryBvh {
+    /// How many primitives it lists.
+    fn listed(&self) -> usize {
+        match self {
+            Self::Whole { order, .. } => order.len(),
+            Self::Pair(pair) => pair.listed,
+        }
+    }
+
+    /// Makes a tree of it, over primitives in some order: that which the parts list, if they do.
+    pub fn assemble(self, mut order: Vec<u32>) -> BinaryBvh {
         let mut nodes: Vec<Node> = (0..=self.below()).into_par_iter().map(|_| Node::leaf(Aabb::EMPTY, 0, 0)).collect();
         let (root, below) = nodes.split_at_mut(1);
-        self.place(&mut root[0], 1, below);
+        if self.listed() > 0 {
+            order = vec![0; self.listed()];
+            self.place(&mut root[0], Target { base: 1, below, first: 0, order: &mut order });
+        } else {
+            self.place(&mut root[0], Target { base: 1, below, first: 0, order: &mut [] });
+        }
         BinaryBvh { nodes, order }
     }
 
-    /// Writes its root, and what is below, whose first node has the number `base`.
-    fn place(self, node: &mut Node, base: usize, to: &mut [Node]) {
+    /// Writes its root, and what is below.
+    fn place(self, node: &mut Node, to: Target) {
         match self {
-            Self::Whole { root, below } => {
-                let moved = |n: &Node| if n.is_leaf() { *n } else { Node { index: n.index + base as u32, ..*n } };
+            Self::Whole { root, below, order } => {
+                let moved =
+                    |n: &Node| Node { index: n.index + if n.is_leaf() { to.first } else { to.base } as u32, ..*n };
                 *node = moved(&root);
-                for (to, n) in to.iter_mut().zip(&below) {
+                for (to, n) in to.below.iter_mut().zip(&below) {
                     *to = moved(n);
                 }
+                to.order.copy_from_slice(&order);
             }
             Self::Pair(pair) => {
                 let Pair { aabb, parts: [left, right], .. } = *pair;
+                let Target { base, below, first, order } = to;
                 *node = Node::inner(aabb, base as u32);
-                let (children, to) = to.split_at_mut(2);
+                let (children, below) = below.split_at_mut(2);
                 let [left_node, right_node] = children else { unreachable!("split_at_mut(2) gives two") };
-                let (left_to, right_to) = to.split_at_mut(left.below());
-                let right_base = base + 2 + left_to.len();
-                rayon::join(
-                    || left.place(left_node, base + 2, left_to),
-                    || right.place(right_node, right_base, right_to),
-                );
+                let (left_below, right_below) = below.split_at_mut(left.below());
+                let (left_order, right_order) = order.split_at_mut(left.listed());
+                let right_to = Target {
+                    base: base + 2 + left_below.len(),
+                    below: right_below,
+                    first: first + left_order.len(),
+                    order: right_order,
+                };
+                let left_to = Target { base: base + 2, below: left_below, first, order: left_order };
+                rayon::join(|| left.place(left_node, left_to), || right.place(right_node, right_to));
             }
         }
     }
+}
+
+/// Where a part is written.
+struct Target<'a> {
+    /// The number of the first node below its root.
+    base: usize,
+    below: &'a mut [Node],
+    /// The place of its first primitive in the order.
+    first: usize,
+    order: &'a mut [u32],
 }

@@ -184,7 +184,7 @@ impl Search<'_> {
 mod tests {
     use super::*;
     use crate::accel::bvh::Node;
-    use crate::accel::bvh::build::{assert_depth_first, binned};
+    use crate::accel::bvh::build::{Leaves, assert_depth_first, binned};
     use crate::math::{Aabb, Vec3};
     use crate::sampling::philox4x32;
     use proptest::prelude::*;
@@ -198,7 +198,7 @@ mod tests {
 
     /// A tree before and after, both valid.
     fn check(boxes: &[Aabb], options: &Options) -> [BinaryBvh; 2] {
-        let before = binned::build(boxes, &binned::Options { bins: 16, block: options.block });
+        let before = binned::build(boxes, &binned::Options { bins: 16, leaves: Leaves::for_blocks(options.block) });
         let mut after = before.clone();
         optimise(&mut after, options);
         after.validate(boxes).unwrap();

@@ -62,6 +62,18 @@ pub struct Made {
     to: u32,
 }
 
+/// Some nodes below a node, and how they are to hang together.
+pub struct Treelet {
+    /// The node.
+    pub root: u32,
+    /// Nodes whose subtrees stay as they are.
+    pub leaves: Vec<u32>,
+    /// The pairs between them and the root, by the first of each: one less than leaves.
+    pub pairs: Vec<u32>,
+    /// Of every set of leaves that has a node, those on the left, each leaf as a bit.
+    pub left: Box<[u8; 128]>,
+}
+
 /// The pair that a node is one of; not of the root.
 #[inline(always)]
 fn pair(node: u32) -> usize {
@@ -158,6 +170,11 @@ impl Tree {
         self.size(0).height
     }
 
+    /// The longest way from a node down.
+    pub fn height_of(&self, node: u32) -> u32 {
+        self.size(node).height
+    }
+
     /// The first of the children of an inner node.
     #[inline(always)]
     pub fn below(&self, node: u32) -> Option<u32> {
@@ -211,6 +228,47 @@ impl Tree {
             self.reinsert(node, from);
         }
         self.refit(made);
+    }
+
+    /// Puts a treelet's inner nodes together anew; the box around it stays as it is.
+    pub fn regrow(&mut self, treelet: &Treelet) {
+        let leaves = treelet.leaves.iter().map(|&leaf| {
+            let i = leaf as usize;
+            (self.boxes[i], self.areas[i], self.links[i], self.sizes[i])
+        });
+        let leaves: Vec<_> = leaves.collect();
+        let mut pairs = treelet.pairs.iter().copied();
+        // A set of leaves and the node that is to hold it; what holds two is made when both are.
+        let (mut open, mut made) =
+            (vec![(((1u32 << leaves.len()) - 1) as u8, treelet.root)], Vec::with_capacity(leaves.len()));
+        while let Some((set, node)) = open.pop() {
+            let at = node as usize;
+            if set.is_power_of_two() {
+                (self.boxes[at], self.areas[at], self.links[at], self.sizes[at]) =
+                    leaves[set.trailing_zeros() as usize];
+                self.own(node);
+            } else {
+                let first = pairs.next().expect("one leaf less than pairs and the root have places for");
+                self.links[at] = first;
+                self.own(node);
+                let left = treelet.left[set as usize];
+                open.extend([(left, first), (set & !left, first + 1)]);
+                made.push(at);
+            }
+        }
+        for &at in made.iter().rev() {
+            let left = self.links[at] as usize;
+            self.boxes[at] = self.boxes[left].union(&self.boxes[left + 1]);
+            self.areas[at] = self.boxes[at].half_area();
+            self.sizes[at] = Size::above(self.sizes[left], self.sizes[left + 1]);
+        }
+    }
+
+    /// Takes the size of an inner node from its children, which have changed.
+    pub fn measure(&mut self, node: u32) {
+        if let Some(left) = self.below(node) {
+            self.sizes[node as usize] = Size::above(self.size(left), self.size(left + 1));
+        }
     }
 
     /// Whether a node lies in the subtree of another.

@@ -41,6 +41,7 @@ impl<const N: usize, L: Leaves<N>> WideBvh<N, L> {
             stack: outline.depth * (N - 1) + 1,
             level: Level::Scalar,
             options: *options,
+            in_parts: false,
             info,
         };
         wide.info.sah_cost = wide.sah_cost();
@@ -281,11 +282,15 @@ impl<const N: usize> Held<N> {
         &self.items[..self.len]
     }
 
-    /// Adds the primitives below a binary node.
+    /// Adds the primitives below a binary node; several parts of one once.
     fn add(&mut self, binary: &BinaryBvh, node: u32) {
         let node = &binary.nodes[node as usize];
         if node.is_leaf() {
-            binary.order[node.index as usize..(node.index + node.count) as usize].iter().for_each(|&p| self.push(p));
+            for &p in &binary.order[node.index as usize..(node.index + node.count) as usize] {
+                if !self.items().contains(&p) {
+                    self.push(p);
+                }
+            }
         } else {
             self.add(binary, node.index);
             self.add(binary, node.index + 1);

@@ -10,11 +10,14 @@ mod single;
 mod step;
 mod wave;
 
-use super::Quality;
+use super::build::{Builder, Leaves as LeafRule};
+use super::optimise::Optimisers;
+use super::parts::cover;
+use super::{Quality, Steps};
 use crate::accel::query::{Answers, Query};
 use crate::accel::{Info, Nearest, Primitives};
 use crate::math::{Aabb, DVec3, Ray, Region};
-use crate::shapes::triangle::Leaves;
+use crate::shapes::triangle::{Leaves, clipped};
 use crate::simd::{Dispatch, Level};
 use batch::Batch;
 use node::{Child, WideNode};
@@ -24,10 +27,13 @@ use std::time::Instant;
 /// How to build a wide tree.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
-    /// How much time the build may take.
+    /// How much time the build may take. It decides what nobody else does: bins where none are given, and what improves the
+    /// tree of the default builder.
     pub quality: Quality,
-    /// Bins an axis of the surface-area builder, from 2 to [`MAX_BINS`](super::build::binned::MAX_BINS); as many as suit the quality if none.
-    pub bins: Option<usize>,
+    /// How the binary tree is built.
+    pub builder: Builder,
+    /// What improves it then; if none is given, what suits the quality for a tree of [`Builder::Binned`], and nothing otherwise.
+    pub optimisers: Option<Optimisers>,
     /// Cost of testing a node's boxes.
     pub traversal_cost: f32,
     /// Cost of testing a leaf of triangles.
@@ -36,8 +42,29 @@ pub struct Options {
 
 impl Options {
     /// Good for most scenes.
-    pub const DEFAULT: Self =
-        Self { quality: Quality::Balanced, bins: None, traversal_cost: 1.0, intersection_cost: 1.0 };
+    pub const DEFAULT: Self = Self {
+        quality: Quality::Balanced,
+        builder: Builder::Binned { bins: None },
+        optimisers: None,
+        traversal_cost: 1.0,
+        intersection_cost: 1.0,
+    };
+
+    /// How to make a binary tree for leaves of blocks of so many triangles.
+    pub fn steps(&self, block: usize) -> Steps {
+        let Self { quality, builder, optimisers, traversal_cost, intersection_cost } = *self;
+        let by_quality = quality.steps(block);
+        let default = match builder {
+            Builder::Binned { .. } => by_quality.optimisers,
+            _ => Optimisers::NONE,
+        };
+        Steps {
+            builder: builder.or_bins(quality.bins()),
+            leaves: LeafRule { traversal_cost, intersection_cost, ..by_quality.leaves },
+            optimisers: optimisers.unwrap_or(default),
+            ..by_quality
+        }
+    }
 }
 
 impl Default for Options {
@@ -58,6 +85,8 @@ pub struct WideBvh<const N: usize, L> {
     stack: usize,
     level: Level,
     options: Options,
+    /// Whether a triangle may stand in several leaves, each of which holds a part of it.
+    in_parts: bool,
     info: Info,
 }
 
@@ -72,14 +101,15 @@ impl<const N: usize, L: Leaves<N>> WideBvh<N, L> {
         let region = primitives.region();
         let boxes: Vec<Aabb> =
             (0..primitives.count() as u32).into_par_iter().map(|p| aabb(primitives, &region, p)).collect();
-        let mut steps = options.quality.steps(N);
-        steps.binned.bins = options.bins.unwrap_or(steps.binned.bins);
-        let binary = steps.build(&boxes);
+        let steps = options.steps(N);
+        let binary = steps.build(&boxes, |p, to| clip(primitives, &region, p, to));
+        let count = boxes.par_iter().filter(|b| !b.is_empty()).count();
         drop(boxes);
         let mut bvh = Self::collapse(&binary, primitives, &region, options);
         bvh.level = level;
-        let improved = if steps.reinsertion.rounds > 0 { " and reinsertion" } else { "" };
-        bvh.info.kind = format!("BVH, {N} wide, binned SAH{improved}, {}", L::PRECISION);
+        bvh.in_parts = bvh.info.primitives > count;
+        bvh.info.primitives = count;
+        bvh.info.kind = format!("BVH, {N} wide, {}, {}", steps.name(), L::PRECISION);
         bvh.info.bytes = size_of_val(bvh.nodes.as_slice()) + bvh.leaves.bytes();
         bvh.info.build_seconds = start.elapsed().as_secs_f64();
         bvh
@@ -90,6 +120,11 @@ impl<const N: usize, L: Leaves<N>> WideBvh<N, L> {
 fn aabb(primitives: &dyn Primitives, region: &Region, primitive: u32) -> Aabb {
     let corners = primitives.corners(primitive);
     if corners.iter().all(|c| c.is_finite()) { region.aabb(corners) } else { Aabb::EMPTY }
+}
+
+/// A box around what of a primitive lies in another box, in a region's units.
+fn clip(primitives: &dyn Primitives, region: &Region, primitive: u32, to: &Aabb) -> Aabb {
+    clipped(primitives.corners(primitive).map(|c| region.to_box(c)), to)
 }
 
 impl<const N: usize, L: Leaves<N>> Answers for WideBvh<N, L>
@@ -109,9 +144,11 @@ where
     }
 
     /// Boxes hold what is below them, every primitive that can be hit stands in one
-    /// block, once, with its corners, and the tree is no deeper than recorded.
+    /// block, once, with its corners, and the tree is no deeper than recorded. Where primitives stand in several blocks, the boxes
+    /// of these hold it together, as far as [`cover`] sees.
     fn validate(&self, primitives: &dyn Primitives) -> Result<(), String> {
         let mut met = vec![0u32; primitives.count()];
+        let mut parts = Vec::new();
         let mut deepest = 0;
         let mut stack: Vec<(u32, usize)> = self.nodes.first().map(|_| (0, 0)).into_iter().collect();
         let mut visited = 0;
@@ -138,7 +175,9 @@ where
                             if self.leaves.corners(first as usize, count, lane) != primitives.corners(p) {
                                 return Err(format!("primitive {p} has other corners in its leaf"));
                             }
-                            if !outer.contains(&aabb(primitives, &self.region, p)) {
+                            if self.in_parts {
+                                parts.push((p, outer));
+                            } else if !outer.contains(&aabb(primitives, &self.region, p)) {
                                 return Err(format!("node {index} does not hold primitive {p}"));
                             }
                         }
@@ -151,6 +190,17 @@ where
         }
         if deepest != self.info.depth {
             return Err(format!("depth is {deepest}, not {}", self.info.depth));
+        }
+        parts.sort_unstable_by_key(|part| part.0);
+        for of_one in parts.chunk_by(|a, b| a.0 == b.0) {
+            let p = of_one[0].0;
+            let boxes: Vec<Aabb> = of_one.iter().map(|part| part.1).collect();
+            let whole = aabb(primitives, &self.region, p);
+            if !cover(&boxes, &whole, |to| clip(primitives, &self.region, p, to)) {
+                return Err(format!("{} leaves do not hold primitive {p} together", boxes.len()));
+            }
+            // Several are as good as one.
+            met[p as usize] = 1;
         }
         match (0..met.len()).find(|&p| met[p] != u32::from(primitives.is_finite(p as u32))) {
             Some(p) => Err(format!("primitive {p} stands in {} leaves", met[p])),

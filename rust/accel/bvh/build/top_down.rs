@@ -1,0 +1,73 @@
+//! From the top down, subtree by subtree, whatever decides on the splits.
+
+use super::part::Part;
+use super::{BinaryBvh, Node};
+use crate::math::Aabb;
+
+/// Up to so many primitives, a subtree is built by one thread.
+const TASK: usize = 1024;
+
+/// A set of primitives that may be split in two.
+pub trait Set: Sized + Send {
+    /// What is reused from split to split.
+    type Workspace: Default;
+
+    /// How many there are, at least one.
+    fn len(&self) -> usize;
+
+    /// The box around them.
+    fn aabb(&self) -> Aabb;
+
+    /// Two sets of it, neither empty; or itself, if it is to be a leaf.
+    fn split(self, workspace: &mut Self::Workspace) -> Result<[Self; 2], Self>;
+
+    /// Adds the numbers of its primitives.
+    fn list(&self, order: &mut Vec<u32>);
+}
+
+/// Builds a tree over a set. The sets must not be split much more often in a row than a stack can hold.
+pub fn build<S: Set>(set: S) -> BinaryBvh {
+    part(set).assemble(Vec::new())
+}
+
+fn part<S: Set>(set: S) -> Part {
+    if set.len() <= TASK {
+        return alone(set, &mut S::Workspace::default());
+    }
+    let aabb = set.aabb();
+    match set.split(&mut S::Workspace::default()) {
+        Ok([left, right]) => {
+            let (left, right) = rayon::join(|| part(left), || part(right));
+            Part::pair(aabb, left, right)
+        }
+        Err(leaf) => alone(leaf, &mut S::Workspace::default()),
+    }
+}
+
+/// Builds a subtree on this thread.
+fn alone<S: Set>(set: S, workspace: &mut S::Workspace) -> Part {
+    let nothing = Node::leaf(Aabb::EMPTY, 0, 0);
+    let (mut root, mut below, mut order) = (nothing, Vec::new(), Vec::with_capacity(set.len()));
+    // With its place below the root, or none for the root.
+    let mut open: Vec<(Option<usize>, S)> = vec![(None, set)];
+    while let Some((place, set)) = open.pop() {
+        let aabb = set.aabb();
+        let made = match set.split(workspace) {
+            Ok([left, right]) => {
+                let child = below.len();
+                below.extend([nothing; 2]);
+                // The last is taken first, so that what is below the left child comes first.
+                open.push((Some(child + 1), right));
+                open.push((Some(child), left));
+                Node::inner(aabb, child as u32)
+            }
+            Err(leaf) => {
+                let first = order.len();
+                leaf.list(&mut order);
+                Node::leaf(aabb, first as u32, (order.len() - first) as u32)
+            }
+        };
+        *place.map_or(&mut root, |place| &mut below[place]) = made;
+    }
+    Part::Whole { root, below, order }
+}
