@@ -6,9 +6,7 @@ import numpy as np
 import trimesh
 
 import raywright as rw
-
-# A room's length, height and depth, in metres.
-ROOM = np.array([8.0, 3.0, 5.0])
+from raywright.scenes.room import EYE, LAMP, TARGET
 
 
 class Subject(NamedTuple):
@@ -55,23 +53,9 @@ def torus(triangles, rng):
 
 
 def room(triangles, rng):
-    """Return a closed room, seen from inside, all of long thin boxes: boards, slats and loose beams."""
-    count = max(triangles // 12, 8)
-    panels = [_boards(axis, end, count // 8) for axis in range(3) for end in (0.0, ROOM[axis])]
-    beams = count - 6 * (count // 8)
-    # Smaller where there are more, so that in every room a ray sees as far and meets as many of their boxes.
-    scale = min((1500 / beams) ** 0.5, 3)
-    half = 0.004 * scale * rng.uniform(0.5, 1.5, (beams, 3))
-    half[:, 0] = scale * rng.uniform(0.15, 0.75, beams)
-    # Most lie along the axes, as what is built does; braces lie at any angle, and fill little of their box.
-    turn = np.eye(3)[np.array([[0, 1, 2], [1, 2, 0], [2, 0, 1]])[rng.integers(3, size=beams)]]
-    turn[::8] = np.linalg.qr(rng.normal(size=turn[::8].shape))[0]
-    loose = rng.uniform(0, 1, (beams, 1, 3)) * ROOM + (_CUBE * half[:, None]) @ turn
-    corners = np.concatenate([*panels, loose])
-    faces = _CUBE_FACES + 8 * np.arange(len(corners))[:, None, None]
-    eye, target, lamp = np.array([[0.05, 0.55, 0.93], [0.7, 0.4, 0.3], [0.55, 0.9, 0.55]]) * ROOM
-    vertices = corners.reshape(-1, 3).astype(np.float32)
-    return Subject("room", vertices, faces.reshape(-1, 3), eye, target, lamp)
+    """Return the package's closed room of long thin boxes, seen from inside."""
+    (mesh,) = rw.scenes.room(triangles)
+    return Subject("room", mesh.vertices, mesh.faces.astype(np.int64), EYE, TARGET, LAMP)
 
 
 def given(path):
@@ -88,17 +72,3 @@ def given(path):
 
 #: What `--mesh` calls the meshes that are made here.
 MADE = {"sphere": sphere, "torus": torus, "room": room}
-
-_CUBE = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
-_QUADS = np.array([[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]])
-_CUBE_FACES = np.concatenate([_QUADS[:, [0, 1, 2]], _QUADS[:, [0, 2, 3]]])
-
-
-def _boards(axis, end, count):
-    """Return one side of the room, across `axis` at `end`, as (count,8,3) corners of boards side by side."""
-    across = (axis + 1) % 3
-    centre, half = np.tile(ROOM / 2, (count, 1)), np.tile(ROOM / 2, (count, 1))
-    centre[:, axis], half[:, axis] = end, 0.025
-    half[:, across] = ROOM[across] / count / 2
-    centre[:, across] = (2 * np.arange(count) + 1) * half[:, across]
-    return centre[:, None] + _CUBE * half[:, None]

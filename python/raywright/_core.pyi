@@ -9,7 +9,16 @@ from numpy.typing import NDArray
 _Floats: TypeAlias = NDArray[np.floating[Any]]
 _Numbers: TypeAlias = float | NDArray[np.float64]
 
-__all__ = ["AcceleratorInfo", "CompiledScene", "KernelContest", "Rendering", "camera_rays", "render", "simd"]
+__all__ = [
+    "AcceleratorInfo",
+    "CompiledScene",
+    "KernelContest",
+    "Rendering",
+    "camera_directions",
+    "camera_rays",
+    "render",
+    "simd",
+]
 
 def simd() -> str:
     """Return the SIMD level the kernels run at; ``RAYWRIGHT_SIMD`` forces one.
@@ -177,6 +186,9 @@ def camera_rays(camera: Any, offsets: NDArray[np.float64], single: bool) -> tupl
     They are float32 if ``single``, else float64.
     ``offsets`` (2,) or (H,W,2) is where in the pixel: (0, 0) is its upper left, (1, 1) its lower right.
     """
+
+def camera_directions(camera: Any, points: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Find unit directions (N,3) through points (N,2) of the film, in pixels from its left and its top."""
 
 @final
 class KernelContest:

@@ -69,6 +69,17 @@ def triangles(name: str, value: ArrayLike, vertices: int) -> NDArray[np.uint32]:
     return frozen(array.astype(np.uint32))
 
 
+def indices(name: str, value: ArrayLike, count: int) -> NDArray[np.int64]:
+    """Return integers of any shape, each in 0..count - 1."""
+    array = _as_array(name, value)
+    if array.dtype.kind not in "iu":
+        raise TypeError(f"{name} must be integers, got {_describe(value, array)}")
+    if array.size and (int(array.min()) < 0 or int(array.max()) >= count):
+        first = array.reshape(-1)[np.argmax((array < 0) | (array >= count))]
+        raise ValueError(f"{name} must be between 0 and {count - 1}, got {first}")
+    return array.astype(np.int64)
+
+
 def frozen(array: NDArray[Any]) -> NDArray[Any]:
     """Return a read-only, C-contiguous copy."""
     copy = np.array(array, order="C", copy=True, subok=False)

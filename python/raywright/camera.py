@@ -109,6 +109,34 @@ class Camera:
             raise ValueError(f"offsets must have shape {allowed}, got {where.shape}")
         return _core.camera_rays(self, np.ascontiguousarray(where, np.float64), kind == np.float32)
 
+    def rays_through(self, points: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Return a ray through each of any points of the picture.
+
+        Parameters
+        ----------
+        points : (..., 2) array
+            In pixels from the picture's left and from its top: the centre of the pixel in row i and column j
+            is at (j + 0.5, i + 0.5). Points beside the picture have rays too.
+
+        Returns
+        -------
+        origins, directions : (..., 3) float64 arrays
+            Directions are unit, to rounding, and the same as those of `rays` through the same points.
+
+        Raises
+        ------
+        ValueError
+            If `points` has another shape, or is not finite.
+        TypeError
+            If `points` are not real numbers.
+        """
+        where = last_axis("points", points, 2).astype(np.float64)
+        if not np.isfinite(where).all():
+            raise ValueError("points must be finite")
+        directions = _core.camera_directions(self, np.ascontiguousarray(where.reshape(-1, 2)))
+        directions = directions.reshape(*where.shape[:-1], 3)
+        return np.broadcast_to(self.position, directions.shape).copy(), directions
+
 
 def _unit(vector: NDArray[np.float64]) -> NDArray[np.float64]:
     # Scaled by its greatest part first, so that squares neither overflow nor vanish.

@@ -1,4 +1,4 @@
-"""The shell command: ``raywright demo``, ``raywright render`` and ``raywright info``."""
+"""The shell command: ``raywright demo``, ``render``, ``info`` and ``report``."""
 
 import argparse
 import os
@@ -7,6 +7,7 @@ import warnings
 from collections.abc import Callable, Sequence
 from typing import Any, NoReturn
 
+from .accelerators import Accelerator, every
 from .camera import Camera
 from .description import described
 from .image import Image
@@ -70,6 +71,38 @@ def _info(options: argparse.Namespace) -> None:
     print(described(str(options.mesh), Scene(options.mesh)))
 
 
+def _report(options: argparse.Namespace) -> None:
+    # Reports are for those who ask for them: other verbs do not wait for their import.
+    from .report import accelerators
+    from .report.ray_sets import outside
+
+    if options.plot is not None:
+        check_writable(options.plot, (".png",), "a plot")
+        _check_matplotlib()
+    scene = Scene(options.mesh)
+    camera = outside(scene, max(round(options.rays**0.5), 1))
+    report = accelerators(
+        scene, camera, options.accelerators, options.threads, options.repeats, seed=options.seed
+    )
+    if options.form == "csv":
+        print(report.csv(), end="")
+    else:
+        print(report.markdown() if options.form == "markdown" else report)
+    if options.plot is not None:
+        report.plot().figure.savefig(options.plot, dpi=120)
+
+
+def _check_matplotlib() -> None:
+    """Make sure that plots can be drawn, and that they need no screen."""
+    from .report.table import NO_MATPLOTLIB
+
+    try:
+        import matplotlib
+    except ImportError as error:
+        raise ImportError(NO_MATPLOTLIB) from error
+    matplotlib.use("Agg")
+
+
 def _picture(scene: Scene, camera: Camera, options: argparse.Namespace) -> None:
     image = render(
         scene,
@@ -130,7 +163,61 @@ def _parser() -> argparse.ArgumentParser:
     info = verbs.add_parser("info", help="tell what a mesh file holds, and what its accelerator looks like")
     info.set_defaults(run=_info)
     info.add_argument("mesh", metavar="MESH", help="any mesh file: PLY, OBJ, STL, GLB, ...")
+
+    report = verbs.add_parser("report", help="compare what the library has for the same task")
+    reports = report.add_subparsers(title="reports", dest="report", metavar="REPORT", required=True)
+    _add_accelerators(
+        reports.add_parser("accelerators", help="every accelerator on the same rays: costs, and if all agree")
+    )
     return parser
+
+
+def _add_accelerators(report: argparse.ArgumentParser) -> None:
+    told = " (default: %(default)s)"
+    report.set_defaults(run=_report)
+    report.add_argument("mesh", metavar="MESH", help="any mesh file: PLY, OBJ, STL, GLB, ...")
+    report.add_argument(
+        "--accelerators",
+        metavar="NAMES",
+        type=_accelerators,
+        help="which, with commas between: names as the report has them, or kinds such as BVH (default: all)",
+    )
+    report.add_argument(
+        "--rays",
+        metavar="N",
+        type=_number(int, 1, 2**31 - 1),
+        default=65536,
+        help="about how many primary rays: as many as make a square" + told,
+    )
+    report.add_argument("--threads", metavar="N", type=_number(int, 1), default=1, help="threads" + told)
+    report.add_argument(
+        "--repeats", metavar="N", type=_number(int, 1, 10_000), default=5, help="turns of each" + told
+    )
+    report.add_argument("--seed", metavar="N", type=_number(int, 0, 2**64 - 1), default=0, help="seed" + told)
+    forms = report.add_mutually_exclusive_group()
+    forms.add_argument(
+        "--csv", dest="form", action="store_const", const="csv", default="table", help="print CSV, all digits"
+    )
+    forms.add_argument(
+        "--markdown", dest="form", action="store_const", const="markdown", help="print Markdown"
+    )
+    report.add_argument("--plot", metavar="FILE", help="save a plot, .png")
+
+
+def _accelerators(text: str) -> dict[str, Accelerator]:
+    """Read names of accelerators, or of kinds of them."""
+    known = every()
+    found: dict[str, Accelerator] = {}
+    for name in (part.strip() for part in text.split(",")):
+        mine = {
+            key: one
+            for key, one in known.items()
+            if name.lower() in (key.lower(), type(one).__name__.lower())
+        }
+        if not mine:
+            raise argparse.ArgumentTypeError(f"{name!r} is none of: {', '.join(known)}")
+        found.update(mine)
+    return found
 
 
 def _add_picture(

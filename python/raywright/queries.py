@@ -4,6 +4,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ._core import CompiledScene
+from .arrays import indices, last_axis
+from .camera import Camera
 from .hits import AllHits, ClosestPoints, Hits, QueryCost
 from .rays import nearest_arguments, point_arguments, ray_arguments
 
@@ -149,6 +151,54 @@ class Queries:
         """
         rays = ray_arguments(origins, directions, t_min, t_max, threads)
         return QueryCost(*(self._core or self._compiled()).cost(*rays))
+
+    def pick(
+        self,
+        camera: Camera,
+        x: ArrayLike,
+        y: ArrayLike,
+        offsets: ArrayLike = (0.5, 0.5),
+        threads: int | None = None,
+    ) -> Hits:
+        """Find what is seen at a pixel, or at many: shape, face, place and distance.
+
+        Parameters
+        ----------
+        camera : Camera
+            Whose picture it is.
+        x, y : int or (...) integer arrays
+            Column and row of the pixel, broadcast against each other: (0, 0) is the upper left of the
+            picture, (width - 1, height - 1) its lower right.
+        offsets : (2,) or (..., 2) array
+            Where in the pixel, for all or for each, as `Camera.rays` has it: (0, 0) is its upper left, (1, 1)
+            its lower right. The default is the centre.
+        threads : int, optional
+            How many to use; all cores if not given. The answer does not depend on it.
+
+        Returns
+        -------
+        Hits
+            With the leading shape of the pixels: the same bits as ``intersect(*camera.rays(...))`` at these
+            pixels. As directions are unit, `t` is the distance from the camera.
+
+        Raises
+        ------
+        ValueError
+            If a pixel is outside of the picture, or shapes do not broadcast.
+        TypeError
+            If `camera` is not a Camera, `x` or `y` are not integers, or `offsets` are not real numbers.
+        """
+        if not isinstance(camera, Camera):
+            raise TypeError(f"camera must be a Camera, got {type(camera).__name__}")
+        column, row = indices("x", x, camera.width), indices("y", y, camera.height)
+        where = last_axis("offsets", offsets, 2)
+        try:
+            lead = np.broadcast_shapes(column.shape, row.shape, where.shape[:-1])
+        except ValueError:
+            told = f"x {column.shape}, y {row.shape}, offsets {where.shape[:-1]}"
+            raise ValueError(f"leading shapes do not broadcast: {told}") from None
+        points = np.stack([np.broadcast_to(i, lead) for i in (column, row)], axis=-1) + where
+        return self.intersect(*camera.rays_through(points), threads=threads)
 
     def contains(self, points: ArrayLike, threads: int | None = None) -> NDArray[np.bool_]:
         """Find whether each point is inside a closed surface.

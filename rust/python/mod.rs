@@ -3,6 +3,7 @@
 mod arrays;
 mod describe;
 mod every;
+mod film;
 mod info;
 mod query;
 mod rays;
@@ -27,6 +28,8 @@ fn simd() -> PyResult<&'static str> {
 
 #[pymodule]
 mod _core {
+    #[pymodule_export]
+    use super::film::camera_directions;
     #[pymodule_export]
     use super::info::AcceleratorInfo;
     #[pymodule_export]

@@ -25,7 +25,8 @@ pub struct Camera {
 }
 
 impl Camera {
-    fn describe(&self) -> PyResult<scene::Camera> {
+    /// The camera that it describes.
+    pub fn describe(&self) -> PyResult<scene::Camera> {
         let [position, target, up] = [self.position, self.target, self.up].map(DVec3::from_array);
         scene::Camera::perspective(position, target, up, self.fov, self.width, self.height)
             .map_err(|e| PyValueError::new_err(e.to_string()))

@@ -13,10 +13,21 @@ from numpy.typing import NDArray
 SUFFIXES = (".png", ".exr", ".npy")
 
 
-def check_writable(path: str | PathLike[str]) -> Path:
+def check_writable(
+    path: str | PathLike[str], suffixes: tuple[str, ...] = SUFFIXES, what: str = "a picture"
+) -> Path:
     """Find out, before any work is done, whether a picture can be saved at `path`.
 
     Nothing is left behind, and a file that is there already stays as it is.
+
+    Parameters
+    ----------
+    path : str or path
+        Where to.
+    suffixes : tuple of str
+        Those of the files that there are, in lower case.
+    what : str
+        What is to be saved, for the error.
 
     Returns
     -------
@@ -26,15 +37,15 @@ def check_writable(path: str | PathLike[str]) -> Path:
     Raises
     ------
     ValueError
-        If the suffix is not .png, .exr or .npy.
+        If the suffix is not one of those.
     ImportError
         If the suffix is .exr and OpenEXR is not installed.
     FileNotFoundError, IsADirectoryError, NotADirectoryError, PermissionError, OSError
         If the folder is missing, the path is a folder, or the file cannot be written.
     """
     path = Path(path)
-    if path.suffix.lower() not in SUFFIXES:
-        raise ValueError(f"a picture is saved as {', '.join(SUFFIXES)}; {path} is none of these")
+    if path.suffix.lower() not in suffixes:
+        raise ValueError(f"{what} is saved as {', '.join(suffixes)}; {path} is none of these")
     if path.suffix.lower() == ".exr" and importlib.util.find_spec("OpenEXR") is None:
         raise ImportError(_NO_EXR)
     if path.is_dir():

@@ -1,6 +1,31 @@
 """Reports that set error against time: what the library's parts cost, and how wrong they are."""
 
+from .accelerators import AcceleratorReport, accelerators, rays_per_build
+from .contest import Measured
+from .heatmap import Heatmap, heatmap
+from .per_build import BuildRow, RaysPerBuild
+from .ray_sets import Rays, typical_rays
 from .table import Chart, Column, Table
+from .time_share import TimeShare, time_share
 from .triangle_kernels import KernelReport, KernelRow, kernels
 
-__all__ = ["Chart", "Column", "KernelReport", "KernelRow", "Table", "kernels"]
+__all__ = [
+    "AcceleratorReport",
+    "BuildRow",
+    "Chart",
+    "Column",
+    "Heatmap",
+    "KernelReport",
+    "KernelRow",
+    "Measured",
+    "Rays",
+    "RaysPerBuild",
+    "Table",
+    "TimeShare",
+    "accelerators",
+    "heatmap",
+    "kernels",
+    "rays_per_build",
+    "time_share",
+    "typical_rays",
+]

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
 
 Row = TypeVar("Row", bound=tuple[Any, ...])
 
-_NO_MATPLOTLIB = "plots need matplotlib: pip install 'raywright[plot]'"
+NO_MATPLOTLIB = "plots need matplotlib: pip install 'raywright[plot]'"
 
 
 @dataclass(frozen=True)
@@ -173,7 +173,7 @@ class Table(Generic[Row]):
         try:
             import matplotlib.pyplot as plt
         except ImportError as error:
-            raise ImportError(_NO_MATPLOTLIB) from error
+            raise ImportError(NO_MATPLOTLIB) from error
         if ax is None:
             _, ax = plt.subplots(figsize=(9, 5.5), layout="constrained")
         xs, ys = (_drawable(self.column(column.name)) for column in (across, up))
@@ -194,10 +194,12 @@ class Table(Generic[Row]):
             )
         ax.set(xscale="log", yscale="log", xlabel=across.heading, ylabel=up.heading, title=self.title)
         ax.grid(True, which="major", alpha=0.3)
-        # Keys of their own: one for each colour, one for each marker.
+        # Keys of their own: one for each colour, one for each marker, or one for both.
+        both = chart.marker == chart.colour
         for name, shade in shades.items():
-            ax.plot([], [], color=shade, linewidth=5, label=name)
-        if chart.marker:
+            key = {"marker": shapes[name], "linestyle": style} if both else {"linewidth": 5}
+            ax.plot([], [], color=shade, label=name, **key)
+        if chart.marker and not both:
             for name, shape in shapes.items():
                 ax.plot([], [], color="0.3", marker=shape, linestyle="", label=name)
         ax.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)

@@ -1,0 +1,270 @@
+"""Accelerators side by side, on the same rays."""
+
+import statistics
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..accelerators import Accelerator, every, name_of
+from ..arrays import integer
+from ..scene import Scene
+from .contest import Measured, measured
+from .per_build import COUNTS, RaysPerBuild, rays_per_build_of
+from .ray_sets import Rays, ray_sets
+from .table import Chart, Column, Table
+
+
+@dataclass(frozen=True, repr=False)
+class AcceleratorReport(Table[tuple[Any, ...]]):
+    """A row for each accelerator: `accelerators` makes it.
+
+    Attributes
+    ----------
+    measured : tuple of Measured
+        All that was measured, also set by set.
+    """
+
+    measured: tuple[Measured, ...] = ()
+
+    def by_rays(self) -> Table[Any]:
+        """Return a row for each set of rays and each accelerator."""
+        columns = (
+            Column("rays", "rays"),
+            Column("accelerator", "accelerator"),
+            Column("nodes", "nodes/ray", ".2f"),
+            Column("primitives", "tests/ray", ".2f"),
+            Column("mrays", "Mrays/s", ".3f"),
+            Column("timed", "timed", ",d"),
+            Column("checked", "checked", ",d"),
+            Column("wrong", "wrong", ",d"),
+        )
+        rows = [
+            (
+                name,
+                one.name,
+                one.nodes[name],
+                one.primitives[name],
+                1e-6 / one.seconds_per_ray[name],
+                one.rays[name],
+                one.checked[name],
+                one.wrong[name],
+            )
+            for name in (self.measured[0].rays if self.measured else ())
+            for one in self.measured
+        ]
+        chart = Chart("primitives", "mrays", "accelerator", "rays")
+        return Table(self.title, columns, tuple(rows), self.notes, chart)
+
+    def rays_per_build(self, counts: Sequence[float] = COUNTS) -> RaysPerBuild:
+        """Return which accelerator gives the most rays a second, its build counted in, for so many rays.
+
+        Takes and raises what `rays_per_build` does, and measures nothing anew.
+        """
+        return rays_per_build_of(
+            [
+                (one.name, one.build_seconds, statistics.mean(one.seconds_per_ray.values()))
+                for one in self.measured
+            ],
+            counts,
+        )
+
+
+def accelerators(
+    scene: Scene,
+    rays: Any = None,
+    accelerators: Any = None,
+    threads: int | None = 1,
+    repeats: int = 5,
+    check: int | None = None,
+    seed: int = 0,
+) -> AcceleratorReport:
+    """Compare accelerators on the same rays: what they cost to build and to hold, and what rays cost.
+
+    Every accelerator is built over the scene's shapes. They take turns, set of rays by set of rays, and each
+    turn begins with another, so that each has its share of whatever else the machine does; what is told are
+    medians over the turns. All are in memory at once.
+
+    Parameters
+    ----------
+    scene : Scene
+        What is hit; its own accelerator does not matter.
+    rays : Camera, Rays, (origins, directions), or dict of these by names, optional
+        Of a camera, or if not given, primary, diffuse and shadow rays, as `typical_rays` makes them.
+    accelerators : accelerator, list of them, or dict of them by names, optional
+        All that there are, each with its default options and with each builder and traversal, if not given.
+    threads : int or None
+        How many trace rays; None is all cores. Builds take all cores in any case.
+    repeats : int
+        How many turns each accelerator takes. It is built as often, but for no longer than a second in all.
+    check : int, optional
+        How many rays are held against brute force, of all sets together. If not given, as many as brute force
+        answers in a second or two, and 300 at least.
+    seed : int
+        Which diffuse rays, and which points of lamps.
+
+    Returns
+    -------
+    AcceleratorReport
+        Columns: `accelerator`, its name; `kind`; `build_seconds`, the median; `bytes`; `nodes`; `depth`;
+        `sah_cost`, None where there is no such cost; `nodes_per_ray` and `tests_per_ray`, nodes visited and
+        primitives tested for a ray's closest hit, the mean over all sets of rays; then for each set the
+        million rays a second, by its name; `checked`, how many rays were held against brute force; `wrong`,
+        how many of these differ in hit, t, shape or primitive. ``plot()`` sets rays a second of the first set
+        against time to build.
+
+    Raises
+    ------
+    ValueError
+        If the scene is empty and no rays are given, no primary ray hits, a set is empty, a number is out of
+        its range, or an accelerator is given twice.
+    TypeError
+        If something is of the wrong kind.
+
+    Notes
+    -----
+    An accelerator that would take more than about a second for a set is timed on fewer rays of it, evenly
+    spread, and a note tells on how many. Fewer rays of an image lie further apart, and may take more
+    each.
+    """
+    if not isinstance(scene, Scene):
+        raise TypeError(f"scene must be a Scene, got {type(scene).__name__}")
+    chosen = named_accelerators(accelerators)
+    threads = None if threads is None else integer("threads", threads, 1)
+    repeats = integer("repeats", repeats, 1, 10_000)
+    check = None if check is None else integer("check", check, 1)
+    sets = ray_sets(scene, rays, integer("seed", seed, 0, 2**64 - 1))
+    return _report(measured(scene, sets, chosen, threads, repeats, check), sets, threads, repeats)
+
+
+def rays_per_build(
+    scene: Scene,
+    accelerators: Any = None,
+    counts: Sequence[float] = COUNTS,
+    rays: Any = None,
+    threads: int | None = None,
+    repeats: int = 5,
+    seed: int = 0,
+) -> RaysPerBuild:
+    """Find which accelerator gives the most rays a second in all, its build counted in.
+
+    A scene that changes pays for a build again and again: the fewer rays it traces in between, the less a
+    good tree is worth. Times to build and rays a second are measured as `accelerators` does it; times for
+    more rays than that are reckoned from them.
+
+    Parameters
+    ----------
+    scene, accelerators, rays, threads, repeats, seed
+        As in `accelerators`; rays take all cores if nobody says, as builds do.
+    counts : sequence of numbers
+        How many rays are traced after a build; whole, and 1 at least.
+
+    Returns
+    -------
+    RaysPerBuild
+        For each count a row for each accelerator, the fastest first. ``best()`` has a row for each count;
+        ``plot()`` sets rays a second against their number.
+
+    Raises
+    ------
+    ValueError, TypeError
+        As `accelerators`; also if a count is below 1 or not whole, or there is none.
+    """
+    rays_per_build_of([], counts)
+    report = _accelerators(scene, rays, accelerators, threads, repeats, None, seed)
+    return report.rays_per_build(counts)
+
+
+# `rays_per_build` has an argument of the same name.
+_accelerators = accelerators
+
+
+def named_accelerators(accelerators: Any) -> dict[str, Accelerator]:
+    """Return accelerators by their names, from whatever a report is given; all that there are for None.
+
+    Raises
+    ------
+    ValueError
+        If one is there twice, or none.
+    TypeError
+        If something is not an accelerator.
+    """
+    if accelerators is None:
+        return every()
+    if isinstance(accelerators, Accelerator):
+        accelerators = [accelerators]
+    if not isinstance(accelerators, Mapping | Iterable) or isinstance(accelerators, str):
+        raise TypeError(f"accelerators must be a list or a dict, got {type(accelerators).__name__}")
+    if isinstance(accelerators, Mapping):
+        found = {str(name): one for name, one in accelerators.items()}
+        given = list(found.values())
+    else:
+        given = list(accelerators)
+        found = {}
+    for one in given:
+        if not isinstance(one, Accelerator):
+            raise TypeError(f"accelerators must be raywright accelerators, got {type(one).__name__}")
+        if not isinstance(accelerators, Mapping):
+            if name_of(one) in found:
+                raise ValueError(f"accelerators must differ, got {name_of(one)} twice")
+            found[name_of(one)] = one
+    if not found:
+        raise ValueError("accelerators are empty: there must be one at least")
+    return found
+
+
+def _report(
+    entries: list[Measured], sets: dict[str, Rays], threads: int | None, repeats: int
+) -> AcceleratorReport:
+    columns = (
+        Column("accelerator", "accelerator"),
+        Column("kind", "kind"),
+        Column("build_seconds", "build s", ".4f"),
+        Column("bytes", "bytes", ",d"),
+        Column("nodes", "nodes", ",d"),
+        Column("depth", "depth", "d"),
+        Column("sah_cost", "SAH", ".4g"),
+        Column("nodes_per_ray", "nodes/ray", ".1f"),
+        Column("tests_per_ray", "tests/ray", ".1f"),
+        *(Column(name, name, ".3f") for name in sets),
+        Column("checked", "checked", ",d"),
+        Column("wrong", "wrong", ",d"),
+    )
+    primitives = entries[0].info.primitives
+    on = "all cores" if threads is None else f"{threads} thread{'s' if threads > 1 else ''}"
+    notes = [
+        f"{', '.join(sets)}: million rays a second on {on}, medians of {repeats} turns; "
+        f"of {', '.join(f'{rays.count:,}' for rays in sets.values())} rays.",
+        "wrong: of the rays checked, those that brute force answers otherwise.",
+    ]
+    fewer = []
+    for one in entries:
+        few = [f"{count:,} {key}" for key, count in one.rays.items() if count < sets[key].count]
+        if few:
+            fewer.append(f"{one.name} ({', '.join(few)})")
+    if fewer:
+        notes.append(f"Timed on fewer rays: {', '.join(fewer)}.")
+    title = f"Accelerators over {primitives:,} primitives"
+    rows = tuple(_row(one, sets) for one in entries)
+    chart = Chart("build_seconds", next(iter(sets)), "accelerator", "accelerator")
+    return AcceleratorReport(title, columns, rows, tuple(notes), chart, tuple(entries))
+
+
+def _row(one: Measured, sets: dict[str, Rays]) -> tuple[Any, ...]:
+    weights = [rays.count for rays in sets.values()]
+    means = [float(np.average(list(per.values()), weights=weights)) for per in (one.nodes, one.primitives)]
+    info = one.info
+    return (
+        one.name,
+        type(one.accelerator).__name__,
+        one.build_seconds,
+        info.bytes,
+        info.nodes,
+        info.depth,
+        info.sah_cost if np.isfinite(info.sah_cost) else None,
+        *means,
+        *(1e-6 / seconds for seconds in one.seconds_per_ray.values()),
+        sum(one.checked.values()),
+        sum(one.wrong.values()),
+    )

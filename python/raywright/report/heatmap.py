@@ -1,0 +1,246 @@
+"""The picture of where the work is: nodes visited or primitives tested, pixel by pixel."""
+
+import io
+from dataclasses import dataclass
+from os import PathLike
+from typing import Any, Literal, TypeAlias, get_args
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..arrays import choice, integer
+from ..camera import Camera
+from ..io.pictures import check_writable
+from ..scene import Scene
+from .table import NO_MATPLOTLIB, Column, Table
+from .time_share import TimeShare, time_share
+
+What: TypeAlias = Literal["nodes", "primitives"]
+
+_LEVELS = 256
+# Saved pictures are at least so high, so that the numbers beside the colour bar can be read.
+_LEAST_HEIGHT = 240
+_GAP, _BAR, _TEXT = 12, 16, 84
+_NAMES = {"nodes": "nodes visited", "primitives": "primitives tested"}
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Heatmap:
+    """Where the work of a picture's rays is: `heatmap` makes it. Arrays are read-only; row 0 is the top.
+
+    ``print`` tells its numbers, a notebook shows the picture.
+
+    Attributes
+    ----------
+    nodes, primitives : (H, W) int32
+        Nodes visited and primitives tested for each pixel's closest hit.
+    what : {"nodes", "primitives"}
+        Which of them the picture shows.
+    most : int
+        The count that has the last colour; what is above has it, too.
+    share : TimeShare or None
+        The estimated share of time in boxes and in primitives, if it was asked for.
+    """
+
+    nodes: NDArray[np.int32]
+    primitives: NDArray[np.int32]
+    what: What
+    most: int
+    share: TimeShare | None = None
+
+    @property
+    def counts(self) -> NDArray[np.int32]:
+        """What the picture shows: (H, W) int32."""
+        return self.nodes if self.what == "nodes" else self.primitives
+
+    def srgb(self) -> NDArray[np.uint8]:
+        """Return the picture without its colour bar: (H, W, 3) uint8, sRGB."""
+        level = np.minimum(self.counts.astype(np.int64), self.most) * (_LEVELS - 1)
+        return np.asarray(COLOURS[(level + self.most // 2) // self.most])
+
+    def summary(self) -> Table[Any]:
+        """Return the numbers: mean, median, 99th percentile and maximum of both counts."""
+        columns = (
+            Column("what", "a ray"),
+            Column("mean", "mean", ".2f"),
+            Column("median", "median", ".0f"),
+            Column("percentile_99", "99 %", ".0f"),
+            Column("most", "max", "d"),
+        )
+        rows = [
+            (
+                _NAMES[name],
+                float(counts.mean()),
+                float(np.median(counts)),
+                float(np.quantile(counts, 0.99)),
+                int(counts.max()),
+            )
+            for name, counts in (("nodes", self.nodes), ("primitives", self.primitives))
+        ]
+        height, width = self.counts.shape
+        notes = () if self.share is None else (str(self.share),)
+        return Table(f"Work of {width:,} by {height:,} primary rays", columns, tuple(rows), notes)
+
+    def save(self, path: str | PathLike[str]) -> None:
+        """Save the picture.
+
+        Parameters
+        ----------
+        path : str or path
+            ``.png`` is the picture with its colour bar; small ones are enlarged, each pixel to a square.
+            ``.npy`` holds the counts that it shows.
+
+        Raises
+        ------
+        ValueError
+            If the suffix is another one.
+        OSError
+            If the file cannot be written.
+        """
+        file = check_writable(path, (".png", ".npy"), "a heatmap")
+        if file.suffix.lower() == ".npy":
+            np.save(file, self.counts)
+        else:
+            file.write_bytes(self._repr_png_())
+
+    def plot(self, ax: Any = None) -> Any:
+        """Draw the picture with matplotlib, with a colour bar.
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, optional
+            Where to draw; a new figure if not given.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+
+        Raises
+        ------
+        ImportError
+            If matplotlib is not installed (``pip install 'raywright[plot]'``).
+        """
+        try:
+            import matplotlib.pyplot as plt
+            from matplotlib.colors import ListedColormap
+        except ImportError as error:
+            raise ImportError(NO_MATPLOTLIB) from error
+        if ax is None:
+            _, ax = plt.subplots(layout="constrained")
+        shown = ax.imshow(self.counts, cmap=ListedColormap(COLOURS / 255), vmin=0, vmax=self.most)
+        extend = "max" if self.counts.max() > self.most else "neither"
+        ax.figure.colorbar(shown, ax=ax, extend=extend, label=_NAMES[self.what])
+        ax.set_axis_off()
+        return ax
+
+    def _repr_png_(self) -> bytes:
+        out = io.BytesIO()
+        self._drawn().save(out, format="PNG")
+        return out.getvalue()
+
+    def _drawn(self) -> Any:
+        """Return the picture beside its colour bar, as Pillow has pictures."""
+        from PIL import Image, ImageDraw
+
+        zoom = -(-_LEAST_HEIGHT // self.counts.shape[0])
+        pixels = self.srgb().repeat(zoom, axis=0).repeat(zoom, axis=1)
+        height, width = pixels.shape[:2]
+        page = Image.new("RGB", (width + _GAP + _BAR + _TEXT, height), "white")
+        page.paste(Image.fromarray(pixels), (0, 0))
+        draw = ImageDraw.Draw(page)
+        left = width + _GAP
+        draw.text((left, 2), self.what, fill="black")
+        top, bottom = 22, height - 10
+        for y in range(top, bottom + 1):
+            colour = COLOURS[round((_LEVELS - 1) * (bottom - y) / (bottom - top))]
+            draw.line([(left, y), (left + _BAR - 1, y)], fill=tuple(colour.tolist()))
+        for count in ticks(self.most):
+            y = round(bottom - (bottom - top) * count / self.most)
+            over = "≥ " if count == self.most and self.counts.max() > self.most else ""
+            draw.line([(left + _BAR, y), (left + _BAR + 3, y)], fill="black")
+            draw.text((left + _BAR + 6, y - 6), f"{over}{count:,}", fill="black")
+        return page
+
+    def __str__(self) -> str:
+        return str(self.summary())
+
+    def __repr__(self) -> str:
+        height, width = self.counts.shape
+        return f"Heatmap({width}x{height}, {_NAMES[self.what]}, 0 to {self.most})"
+
+
+def heatmap(
+    scene: Scene,
+    camera: Camera,
+    what: What = "nodes",
+    most: int | None = None,
+    repeats: int = 7,
+    threads: int | None = None,
+) -> Heatmap:
+    """Find where the work of a picture's primary rays is.
+
+    Parameters
+    ----------
+    scene : Scene
+        What is hit, and whose accelerator is looked into.
+    camera : Camera
+        Whose rays go through the centres of the pixels.
+    what : {"nodes", "primitives"}
+        What the picture shows: nodes visited, or primitives tested.
+    most : int, optional
+        The count that has the last colour, at least 1; the greatest there is if not given. Pictures are to be
+        compared with the same one.
+    repeats : int
+        How often rays are timed for the shares of time (`time_share`); 0 leaves them out.
+    threads : int, optional
+        How many count; all cores if not given. The counts do not depend on it.
+
+    Raises
+    ------
+    ValueError
+        If `what` is not one of those, or a number is out of its range.
+    TypeError
+        If `scene` or `camera` is of another kind.
+
+    Notes
+    -----
+    The colours are Green's (2011, "A colour scheme for the display of astronomical intensity images"), which
+    rise evenly from black to white, also for those who do not see colours. Neighbouring rays are traced
+    together by some accelerators, and then share what each of them is said to visit.
+    """
+    if not isinstance(scene, Scene):
+        raise TypeError(f"scene must be a Scene, got {type(scene).__name__}")
+    if not isinstance(camera, Camera):
+        raise TypeError(f"camera must be a Camera, got {type(camera).__name__}")
+    choice("what", what, get_args(What))
+    repeats = integer("repeats", repeats, 0, 10_000)
+    rays = camera.rays()
+    cost = scene.cost(*rays, threads=threads)
+    counts = cost.nodes if what == "nodes" else cost.primitives
+    most = max(int(counts.max()), 1) if most is None else integer("most", most, 1)
+    share = time_share(scene, rays, repeats) if repeats else None
+    return Heatmap(cost.nodes, cost.primitives, what, most, share)
+
+
+def ticks(most: int) -> list[int]:
+    """Return some round numbers from 0 to below `most`, and `most` itself."""
+    step = max(most // 5, 1)
+    size: int = 10 ** (len(str(step)) - 1)
+    step = next(size * digit for digit in (1, 2, 5, 10) if size * digit >= step)
+    # One too near to the last would be written over it.
+    return [*range(0, most - step // 2, step), most]
+
+
+def _cubehelix() -> NDArray[np.uint8]:
+    """Colours from black to white of evenly rising lightness, sRGB: (256, 3)."""
+    light = np.linspace(0, 1, _LEVELS)
+    # Green's defaults: it starts at purple and takes one and a half turns.
+    angle = 2 * np.pi * (0.5 / 3 + 1 - 1.5 * light)
+    amplitude = light * (1 - light) / 2
+    turns = np.array([[-0.14861, 1.78277], [-0.29227, -0.90649], [1.97294, 0.0]])
+    colours = light + amplitude * (turns @ np.stack([np.cos(angle), np.sin(angle)]))
+    return np.asarray(np.clip(colours.T, 0, 1) * 255 + 0.5, np.uint8)
+
+
+COLOURS = _cubehelix()
+"""What counts are drawn in, from none to the most: (256, 3) uint8, sRGB."""

@@ -1,0 +1,203 @@
+"""The rays that accelerators are compared on: what a camera, a diffuse surface and a shadow ask for."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..arrays import integer, last_axis
+from ..camera import Camera
+from ..rays import ray_arguments
+from ..scene import Scene
+
+# From where a scene is looked at when nobody says: three quarters, from above, and so far away (in radii)
+# that all of the sphere around it is in view: more than 1 over the sine of half the angle.
+_AWAY = np.array([0.45, 0.5, 0.74])
+_DISTANCE = 2.4
+_FOV = 50.0
+# Rays leave a surface this part of the greatest coordinate away from it: a million times the rounding error.
+_LIFT = 1e-9
+# Shadow rays end just before the lamp, which may be a surface itself.
+_BEFORE_LAMP = 1 - 1e-4
+
+
+@dataclass(frozen=True, eq=False)
+class Rays:
+    """Rays of one kind, and what is asked of them.
+
+    Parameters
+    ----------
+    origins, directions : (..., 3) arrays
+        Broadcast against each other; rays of two leading dimensions are an image.
+    t_max : float
+        How far they go, in lengths of their directions.
+    any_hit : bool
+        Whether they ask only if there is a hit (`Scene.occluded`), not which is the closest.
+
+    Raises
+    ------
+    ValueError, TypeError
+        As `Scene.intersect`; ValueError too if there is no ray.
+    """
+
+    origins: NDArray[np.floating[Any]]
+    directions: NDArray[np.floating[Any]]
+    t_max: float = np.inf
+    any_hit: bool = False
+
+    def __post_init__(self) -> None:
+        shape = ray_arguments(self.origins, self.directions, 0.0, float(self.t_max), None)[4]
+        for name in ("origins", "directions"):
+            array = np.broadcast_to(last_axis(name, getattr(self, name), 3), (*shape, 3))
+            object.__setattr__(self, name, np.ascontiguousarray(array))
+        if not self.count:
+            raise ValueError("rays are empty: there must be one at least")
+
+    @property
+    def count(self) -> int:
+        """How many there are."""
+        return self.origins.size // 3
+
+    def thinned(self, most: int) -> "Rays":
+        """Return at most so many of them, evenly spread; an image stays an image."""
+        if self.count <= most:
+            return self
+        lead = self.origins.shape[:-1]
+        if len(lead) == 2 and min(lead) ** 2 > self.count / most:
+            step = int(np.ceil((self.count / most) ** 0.5))
+            while -(-lead[0] // step) * -(-lead[1] // step) > most:
+                step += 1
+            origins, directions = (a[::step, ::step] for a in (self.origins, self.directions))
+        else:
+            chosen = np.linspace(0, self.count - 1, max(most, 1)).astype(np.int64)
+            origins, directions = (a.reshape(-1, 3)[chosen] for a in (self.origins, self.directions))
+        return replace(self, origins=origins, directions=directions)
+
+
+def typical_rays(scene: Scene, camera: Camera | None = None, seed: int = 0) -> dict[str, Rays]:
+    """Return the rays that a renderer asks for: primary, diffuse and shadow.
+
+    Parameters
+    ----------
+    scene : Scene
+        What they are shot at.
+    camera : Camera, optional
+        Whose the primary rays are, one through the centre of each pixel. If not given, one of 256 by 256
+        pixels that sees all of the scene from outside.
+    seed : int
+        Which directions the diffuse rays have.
+
+    Returns
+    -------
+    dict of Rays
+        ``"primary"``, an image. ``"diffuse"``, one from each point that is seen, in the order of the pixels,
+        distributed as the cosine to the normal on the side of the camera. ``"shadow"``, one from each such
+        point to a lamp, any hit: to the scene's point lights in turn; or to points of its shining meshes,
+        evenly by area; or, where nothing shines, to a lamp above the camera's right shoulder.
+
+    Raises
+    ------
+    ValueError
+        If the scene is empty, or no primary ray hits anything.
+    """
+    seed = integer("seed", seed, 0, 2**64 - 1)
+    camera = camera or outside(scene)
+    eye, towards = camera.rays()
+    hits = scene.intersect(eye, towards)
+    if not hits.hit.any():
+        raise ValueError("no primary ray hits anything: aim the camera at the scene")
+    rng = np.random.default_rng(seed)
+    normal = hits.normal[hits.hit]
+    normal *= np.where(np.sum(normal * towards[hits.hit], axis=1, keepdims=True) > 0, -1.0, 1.0)
+    points = hits.position[hits.hit]
+    points = points + _LIFT * np.abs(points).max() * normal
+    # A point of the unit sphere that touches the surface, seen from where it touches (Lambert's law).
+    bounced = normal + _units(rng.normal(size=normal.shape))
+    lamps = _lamps(scene, camera, float(np.median(hits.t[hits.hit])), len(points), rng)
+    return {
+        "primary": Rays(eye, towards),
+        "diffuse": Rays(points, bounced),
+        "shadow": Rays(points, lamps - points, _BEFORE_LAMP, any_hit=True),
+    }
+
+
+def ray_sets(scene: Scene, rays: Any, seed: int) -> dict[str, Rays]:
+    """Return sets of rays by their names, from whatever a report is given as its rays.
+
+    None and a Camera are `typical_rays`; a Rays and a pair (origins, directions) are the only set; a dict has
+    a name for each.
+
+    Raises
+    ------
+    ValueError, TypeError
+        As `typical_rays` and `Rays`; TypeError too if it is none of these.
+    """
+    if rays is None or isinstance(rays, Camera):
+        return typical_rays(scene, rays, seed)
+    if not isinstance(rays, Mapping):
+        return {"rays": _one("rays", rays)}
+    if not rays:
+        raise ValueError("rays are empty: there must be one set at least")
+    return {str(name): _one(f"rays[{name!r}]", one) for name, one in rays.items()}
+
+
+def _one(name: str, rays: Any) -> Rays:
+    if isinstance(rays, Rays):
+        return rays
+    if isinstance(rays, tuple | list) and len(rays) == 2:
+        return Rays(*rays)
+    raise TypeError(f"{name} must be a Camera, Rays, or (origins, directions), got {type(rays).__name__}")
+
+
+def outside(scene: Scene, side: int = 256) -> Camera:
+    """Return a camera of `side` by `side` pixels that sees all of a scene from outside.
+
+    Raises
+    ------
+    ValueError
+        If the scene is empty.
+    """
+    bounds = scene.bounds
+    if bounds is None:
+        raise ValueError("the scene is empty: there is nothing to aim rays at")
+    centre = bounds[0] / 2 + bounds[1] / 2
+    radius = float(np.linalg.norm(bounds[1] / 2 - bounds[0] / 2)) or 1.0
+    return Camera(centre + _DISTANCE * radius * _AWAY, centre, fov=_FOV, width=side, height=side)
+
+
+def _lamps(
+    scene: Scene, camera: Camera, away: float, count: int, rng: np.random.Generator
+) -> NDArray[np.float64]:
+    """Return `count` points (N, 3) that shine."""
+    if scene.lights:
+        places = np.array([light.position for light in scene.lights])
+        return np.asarray(places[np.arange(count) % len(places)])
+    shining = [mesh.vertices[mesh.faces] for mesh in scene.shapes if getattr(mesh, "emission", None)]
+    corners = np.concatenate([np.empty((0, 3, 3)), *shining])
+    double_area = np.linalg.norm(
+        np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1
+    )
+    if double_area.sum() > 0 and np.isfinite(double_area).all():
+        face = corners[rng.choice(len(corners), count, p=double_area / double_area.sum())]
+        u, v = rng.random((2, count, 1))
+        over = u + v > 1
+        u, v = np.where(over, 1 - u, u), np.where(over, 1 - v, v)
+        return np.asarray((1 - u - v) * face[:, 0] + u * face[:, 1] + v * face[:, 2])
+    return np.broadcast_to(_over_shoulder(scene, camera, away), (count, 3))
+
+
+def _over_shoulder(scene: Scene, camera: Camera, away: float) -> NDArray[np.float64]:
+    """Return a point half as far from the camera as what it sees; nearer, where a wall is in between."""
+    eye = np.array(camera.position)
+    view = _units(np.array(camera.target) - eye)
+    right = _units(np.cross(view, camera.up))
+    step = 0.5 * away * _units(right + np.cross(right, view))
+    wall = float(scene.intersect(eye, step, t_max=1.0).t)
+    return np.asarray(eye + min(wall / 2, 1.0) * step)
+
+
+def _units(vectors: ArrayLike) -> NDArray[np.float64]:
+    array = np.asarray(vectors, np.float64)
+    return np.asarray(array / np.linalg.norm(array, axis=-1, keepdims=True))

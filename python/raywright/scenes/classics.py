@@ -1,0 +1,84 @@
+"""The scenes on which textbooks compare accelerators, each with a camera."""
+
+import numpy as np
+
+from ..arrays import integer
+from ..camera import Camera
+from ..scene import Scene
+from .city import city
+from .room import EYE, TARGET, room
+from .soup import soup
+from .stadium import teapot_in_stadium
+from .terrain import terrain
+from .turned import rotation, turned
+from .wall import diagonal_wall
+
+# Position and target of each scene's camera.
+_VIEWS = {
+    "stadium": ((0.0, 0.35, 0.75), (0.0, 0.1, 0.0)),
+    "terrain": ((0.0, 16.0, 46.0), (0.0, 3.0, 0.0)),
+    "straight wall": ((0.0, 0.0, 12.0), (0.0, 0.0, 0.0)),
+    "diagonal wall": ((0.0, 0.0, 12.0), (0.0, 0.0, 0.0)),
+    "soup": ((1.7, 1.4, 2.0), (0.5, 0.5, 0.5)),
+    "city": ((-260.0, 190.0, 420.0), (0.0, 20.0, 0.0)),
+    "room": (EYE, TARGET),
+    "turned room": (EYE, TARGET),
+}
+_FOV = 50.0
+
+
+def classics(
+    triangles: int = 50_000, seed: int = 0, width: int = 256, height: int = 256
+) -> dict[str, tuple[Scene, Camera]]:
+    """Return the scenes on which textbooks compare accelerators, and a camera for each.
+
+    ``for name, (scene, camera) in rw.scenes.classics().items(): print(rw.report.accelerators(scene,
+    camera))`` shows what each is known for:
+
+    - ``"stadium"``: all detail in one place, `teapot_in_stadium`. Grids collapse.
+    - ``"terrain"``: detail evenly spread, `terrain`. Grids do well.
+    - ``"straight wall"`` and ``"diagonal wall"``: `diagonal_wall` at 0 and at 45 degrees. Boxes fit the one
+      and not the other.
+    - ``"soup"``: no order at all, `soup`.
+    - ``"city"``: large and small side by side, `city`.
+    - ``"room"`` and ``"turned room"``: long thin boxes seen from inside, `room`; and the same, camera and
+      all, turned by 45 degrees about the y axis.
+
+    Parameters
+    ----------
+    triangles : int
+        About how many in each, 1000 at least.
+    seed : int
+        Which scenes.
+    width, height : int
+        Size of the pictures in pixels.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of its range.
+    TypeError
+        If a number is of the wrong type.
+    """
+    count = integer("triangles", triangles, 1000)
+    # Shares as they are by default: two thirds of a stadium are its teapot, half of a terrain its grass.
+    divisions = max(round((count * 2 / 3 / 64) ** 0.5), 1)
+    tiers = max(round((count / 3 / 384) ** 0.5 * 2), 1)
+    around = max(round(count / 3 / (4 * tiers)), 3)
+    made = {
+        "stadium": teapot_in_stadium(divisions, tiers, around),
+        "terrain": terrain(max(round((count / 4) ** 0.5), 1), count // 2, seed),
+        "straight wall": diagonal_wall(count // 12, 0.0),
+        "diagonal wall": diagonal_wall(count // 12, 45.0),
+        "soup": soup(count, seed=seed),
+        "city": city(max(round((count / 540) ** 0.5), 1), seed),
+        "room": room(count, seed),
+        "turned room": turned(room(count, seed), 45.0),
+    }
+    result = {}
+    for name, shapes in made.items():
+        eye, target = (np.array(point, np.float64) for point in _VIEWS[name])
+        if name == "turned room":
+            eye, target = (point @ rotation(45.0).T for point in (eye, target))
+        result[name] = Scene(shapes), Camera(eye, target, fov=_FOV, width=width, height=height)
+    return result

@@ -1,0 +1,172 @@
+"""A forest: a few trees, and where they stand, again and again."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..arrays import integer, positive
+from ..materials import Diffuse
+from ..mesh import Mesh
+
+Array = NDArray[np.float64]
+
+_SIDES = 5
+# Children of a branch, how long and how thick they are beside it, and how far they lean away from it.
+_CHILDREN, _LONG, _THICK, _LEAN = 3, 0.72, 0.6, 0.65
+_LEVELS = 4
+
+
+class Forest(NamedTuple):
+    """Trees, and where each is to be seen.
+
+    Attributes
+    ----------
+    trees : list of Mesh
+        The unique ones, each with its foot in the origin and y up.
+    tree : (N,) int64
+        Which of them stands there.
+    transforms : (N, 4, 4) float64
+        Where and how: each acts on column vectors (x, y, z, 1).
+    """
+
+    trees: list[Mesh]
+    tree: NDArray[np.int64]
+    transforms: Array
+
+    @property
+    def triangles(self) -> int:
+        """How many triangles are to be seen, each instance counted."""
+        sizes = np.array([len(tree.faces) for tree in self.trees])
+        return int(sizes[self.tree].sum())
+
+    def meshes(self) -> list[Mesh]:
+        """Return every tree where it stands as a mesh of its own: for small forests."""
+        return [
+            self.trees[i].transformed(matrix)
+            for i, matrix in zip(self.tree.tolist(), self.transforms, strict=True)
+        ]
+
+
+def forest(
+    count: int = 100_000,
+    unique: int = 10,
+    triangles: int = 10_000,
+    spacing: float = 6.0,
+    seed: int = 0,
+) -> Forest:
+    """Return a forest of a few unique trees, each seen many times: by default 10⁹ triangles of 10⁵ unique.
+
+    Trees stand one in each square of a grid around the origin, anywhere in it, turned about the y axis and
+    0.7 to 1.3 times as large. A tree is a trunk of 3 m that parts into three, three times over, which is 400
+    triangles of wood; all others are leaves around its twigs.
+
+    Parameters
+    ----------
+    count : int
+        How many trees stand there.
+    unique : int
+        How many different ones.
+    triangles : int
+        Of each unique tree, exactly; more than 400.
+    spacing : float
+        Side of the squares, in metres.
+    seed : int
+        Which trees, and where.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of its range.
+    TypeError
+        If a number is of the wrong type.
+    """
+    count, unique = integer("count", count, 1), integer("unique", unique, 1)
+    triangles = integer("triangles", triangles, 2 * _SIDES * _branches() + 1)
+    spacing = positive("spacing", spacing)
+    rng = np.random.default_rng(integer("seed", seed, 0))
+    trees = [_tree(rng, triangles) for _ in range(unique)]
+    side = int(np.ceil(count**0.5))
+    cell = np.stack(np.divmod(np.arange(count), side), axis=1)
+    place = spacing * (cell + rng.random((count, 2)) - side / 2)
+    angle, size = rng.uniform(0, 2 * np.pi, count), rng.uniform(0.7, 1.3, count)
+    transforms = np.zeros((count, 4, 4))
+    transforms[:, 0, 0] = transforms[:, 2, 2] = size * np.cos(angle)
+    transforms[:, 0, 2] = size * np.sin(angle)
+    transforms[:, 2, 0] = -transforms[:, 0, 2]
+    transforms[:, 1, 1] = size
+    transforms[:, 0, 3], transforms[:, 2, 3] = place.T
+    transforms[:, 3, 3] = 1
+    return Forest(trees, rng.integers(unique, size=count), transforms)
+
+
+def _branches() -> int:
+    return sum(_CHILDREN**level for level in range(_LEVELS))
+
+
+def _tree(rng: "np.random.Generator", triangles: int) -> Mesh:
+    """Return a tree of so many triangles: tapered tubes, and leaves at random places on the last of them."""
+    feet, ways, radii = np.zeros((1, 3)), np.array([[0.0, 3.0, 0.0]]), np.array([0.18])
+    wood = []
+    for level in range(_LEVELS):
+        wood.append(_tubes(feet, ways, radii))
+        if level + 1 < _LEVELS:
+            feet, ways, radii = _parted(rng, feet, ways, radii)
+    vertices = np.concatenate(wood)
+    # Each tube has a ring at its foot and one at its tip.
+    ring, tubes = np.arange(_SIDES), len(vertices) // (2 * _SIDES)
+    after = (ring + 1) % _SIDES
+    one = np.concatenate(
+        [np.stack([ring, ring + _SIDES, after], 1), np.stack([after, ring + _SIDES, after + _SIDES], 1)]
+    )
+    faces = (one + 2 * _SIDES * np.arange(tubes)[:, np.newaxis, np.newaxis]).reshape(-1, 3)
+    leaves = _leaves(rng, feet, ways, triangles - len(faces))
+    more = np.arange(leaves.size // 3).reshape(-1, 3) + len(vertices)
+    vertices = np.concatenate([vertices, leaves.reshape(-1, 3)])
+    return Mesh(vertices, np.concatenate([faces, more]), material=Diffuse((0.2, 0.3, 0.1)))
+
+
+def _parted(rng: "np.random.Generator", feet: Array, ways: Array, radii: Array) -> tuple[Array, Array, Array]:
+    """Return the branches that begin where others end."""
+    count = len(feet) * _CHILDREN
+    tips, ways, radii = (np.repeat(a, _CHILDREN, axis=0) for a in (feet + ways, ways, radii))
+    a, b = _across(ways)
+    # Round the branch, a third of a turn apart, more or less.
+    turn = 2 * np.pi * (np.arange(count) % _CHILDREN + rng.uniform(-0.3, 0.3, count)) / _CHILDREN
+    aside = np.cos(turn)[:, np.newaxis] * a + np.sin(turn)[:, np.newaxis] * b
+    length = np.linalg.norm(ways, axis=1, keepdims=True)
+    lean = _LEAN * rng.uniform(0.6, 1.4, (count, 1))
+    new = ways / length + lean * aside
+    new *= length * _LONG * rng.uniform(0.8, 1.2, (count, 1)) / np.linalg.norm(new, axis=1, keepdims=True)
+    return tips, new, radii * _THICK
+
+
+def _tubes(feet: Array, ways: Array, radii: Array) -> Array:
+    """Return corners of tapered tubes: a ring at the foot of each, then one at its tip."""
+    a, b = _across(ways)
+    angle = 2 * np.pi * np.arange(_SIDES) / _SIDES
+    ring = np.cos(angle)[:, np.newaxis] * a[:, np.newaxis] + np.sin(angle)[:, np.newaxis] * b[:, np.newaxis]
+    wide = radii[:, np.newaxis, np.newaxis] * ring
+    low = feet[:, np.newaxis] + wide
+    high = (feet + ways)[:, np.newaxis] + _THICK * wide
+    return np.stack([low, high], axis=1).reshape(-1, 3)
+
+
+def _leaves(rng: "np.random.Generator", feet: Array, ways: Array, count: int) -> Array:
+    """Return triangles around twigs: (count, 3, 3), the smaller the more there are."""
+    twig = rng.integers(len(feet), size=count)
+    middle = feet[twig] + rng.uniform(0.2, 1.1, (count, 1)) * ways[twig] + rng.normal(0, 0.12, (count, 3))
+    size = min(0.9 * count**-0.25, 0.25)
+    spokes = rng.normal(size=(count, 3, 3))
+    spokes *= size * rng.uniform(0.4, 1.0, (count, 3, 1)) / np.linalg.norm(spokes, axis=2, keepdims=True)
+    return np.asarray(middle[:, np.newaxis] + spokes)
+
+
+def _across(ways: Array) -> tuple[Array, Array]:
+    """Return two unit vectors across each way, so that the three are right-handed: first, second, way."""
+    unit = ways / np.linalg.norm(ways, axis=1, keepdims=True)
+    # The axis along which the way is shortest is never parallel to it.
+    axis = np.eye(3)[np.abs(unit).argmin(axis=1)]
+    a = np.cross(axis, unit)
+    a /= np.linalg.norm(a, axis=1, keepdims=True)
+    return a, np.cross(unit, a)

@@ -1,0 +1,42 @@
+"""Triangles without any order."""
+
+import numpy as np
+
+from ..arrays import integer, positive
+from ..mesh import Mesh
+
+
+def soup(triangles: int = 10_000, size: float | None = None, seed: int = 0) -> list[Mesh]:
+    """Return triangles anywhere in the unit cube, at any angle: nothing for an accelerator to go by.
+
+    Parameters
+    ----------
+    triangles : int
+        How many.
+    size : float, optional
+        How far corners are from the middle of their triangle, at most. If not given, the less the more there
+        are, so that a ray sees about a third of the cube's edge far.
+    seed : int
+        Which triangles.
+
+    Returns
+    -------
+    list of Mesh
+        One mesh, which may reach out of the cube by `size`.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of its range.
+    TypeError
+        If a number is of the wrong type.
+    """
+    count = integer("triangles", triangles, 1)
+    # A ray meets as many in a unit of length as there is area across it in a unit of volume: of a triangle
+    # half its area, which is 0.26 of the squared size in the mean.
+    reach = (23 / count) ** 0.5 if size is None else positive("size", size)
+    rng = np.random.default_rng(integer("seed", seed, 0))
+    spokes = rng.normal(size=(count, 3, 3))
+    spokes *= rng.uniform(0.25, 1, (count, 3, 1)) * reach / np.linalg.norm(spokes, axis=2, keepdims=True)
+    vertices = rng.random((count, 1, 3)) + spokes
+    return [Mesh(vertices.reshape(-1, 3), np.arange(3 * count).reshape(-1, 3))]

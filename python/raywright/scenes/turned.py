@@ -1,0 +1,47 @@
+"""The same scene, turned: to find out what an accelerator owes to the axes."""
+
+import math
+from collections.abc import Iterable
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..arrays import number, triple
+from ..mesh import Mesh
+
+
+def turned(shapes: Iterable[Mesh], angle: float, axis: ArrayLike = (0.0, 1.0, 0.0)) -> list[Mesh]:
+    """Return meshes turned about an axis through the origin.
+
+    Parameters
+    ----------
+    shapes : iterable of Mesh
+        What to turn.
+    angle : float
+        In degrees, anticlockwise as seen from where the axis points to.
+    axis : 3 floats
+        Need not be unit.
+
+    Raises
+    ------
+    ValueError
+        If `angle` or `axis` are not finite, or `axis` is zero.
+    TypeError
+        If they are not numbers.
+    """
+    matrix = np.eye(4)
+    matrix[:3, :3] = rotation(angle, axis)
+    return [shape.transformed(matrix) for shape in shapes]
+
+
+def rotation(angle: float, axis: ArrayLike = (0.0, 1.0, 0.0)) -> NDArray[np.float64]:
+    """Return the (3, 3) matrix that turns column vectors (Rodrigues' formula). Takes what `turned` does."""
+    x = np.array(triple("axis", axis))
+    largest = np.abs(x).max()
+    if largest == 0:
+        raise ValueError("axis must not be zero")
+    x /= largest
+    x /= np.linalg.norm(x)
+    radians = math.radians(number("angle", angle))
+    cross = np.array([[0, -x[2], x[1]], [x[2], 0, -x[0]], [-x[1], x[0], 0]])
+    return np.asarray(np.eye(3) + math.sin(radians) * cross + (1 - math.cos(radians)) * (cross @ cross))
