@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, Any
 
 from . import scenes
 from ._core import AcceleratorInfo, simd
-from .accelerators import BVH, BruteForce
+from .accelerators import BVH, BruteForce, Grid, NestedGrid
 from .camera import Camera
 from .hits import AllHits, ClosestPoints, Hits, QueryCost
 from .image import ErrorEstimate, Image
@@ -29,9 +29,11 @@ __all__ = [
     "ConstantEnvironment",
     "Diffuse",
     "ErrorEstimate",
+    "Grid",
     "Hits",
     "Image",
     "Mesh",
+    "NestedGrid",
     "Path",
     "PointLight",
     "QueryCost",

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
-from .accelerators import BVH, Accelerator, BruteForce
+from .accelerators import BVH, Accelerator
 from .arrays import choice
 from .io.meshes import meshes
 from .lights import ConstantEnvironment, PointLight
@@ -45,7 +45,7 @@ class Scene(Queries):
         Lights that are not meshes.
     environment : ConstantEnvironment, float or 3 floats, optional
         What surrounds the scene; numbers are a constant radiance. None is black.
-    accelerator : BVH or BruteForce
+    accelerator : BVH, Grid, NestedGrid or BruteForce
         The structure that finds hits.
     precision : {"single", "double"}
         What vertices are rounded to: "single" to float32, which takes the least memory and is the fastest,
@@ -87,8 +87,9 @@ class Scene(Queries):
         if environment is not None and not isinstance(environment, ConstantEnvironment):
             environment = ConstantEnvironment(environment)
         self._environment = environment
-        if not isinstance(accelerator, BVH | BruteForce):
-            raise TypeError(f"accelerator must be a BVH or BruteForce, got {type(accelerator).__name__}")
+        if not isinstance(accelerator, Accelerator):
+            kinds = ", ".join(kind.__name__ for kind in get_args(Accelerator))
+            raise TypeError(f"accelerator must be one of {kinds}, got {type(accelerator).__name__}")
         self._accelerator = accelerator
         choice("precision", precision, get_args(Precision))
         choice("quality", quality, get_args(Quality))

@@ -3,6 +3,7 @@
 mod brute;
 pub mod bvh;
 mod crossings;
+pub mod grid;
 mod mixed;
 mod nearest;
 mod objects;

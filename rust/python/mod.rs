@@ -1,5 +1,6 @@
 //! Floor 6: the bindings. Arrays in, arrays out, errors mapped; no algorithm lives here.
 
+mod accelerators;
 mod arrays;
 mod describe;
 mod every;

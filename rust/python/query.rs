@@ -4,8 +4,9 @@ use numpy::{PyArray2, PyArrayDyn, PyArrayMethods, PyReadonlyArray1, PyReadonlyAr
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 
+use super::accelerators;
 use super::arrays::{Numbers, Triples, numbers, rows, sealed, unwritten};
-use super::describe::{AcceleratorChoice, Scene};
+use super::describe::Scene;
 use super::every;
 use super::info::AcceleratorInfo;
 use super::rays::{BATCH, RayArguments, answer, share};
@@ -46,7 +47,7 @@ type ClosestPoints<'py> = (
 impl CompiledScene {
     #[new]
     fn new(py: Python<'_>, scene: Scene<'_>, accelerator: &Bound<'_, PyAny>) -> PyResult<Self> {
-        let build = AcceleratorChoice::read(accelerator, &scene.quality)?.build()?;
+        let build = accelerators::read(accelerator, &scene.quality)?;
         let description = scene.describe()?;
         let compiled = py
             .detach(|| workers::pool(None).map(|pool| pool.install(|| scene::Scene::new(description, build))))

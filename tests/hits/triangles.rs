@@ -2,6 +2,7 @@
 
 use raywright::accel::bvh::traverse::Ordered;
 use raywright::accel::bvh::{self, Options, Quality};
+use raywright::accel::grid::{self, Resolution};
 use raywright::accel::walk::{self, Built, Input, Mailbox};
 use raywright::accel::{Accelerator, BruteForce, Primitives};
 use raywright::math::{DVec3, Hit, Ray, Region, Vec3};
@@ -70,10 +71,17 @@ pub fn accelerators(primitives: &dyn Primitives) -> Vec<(String, Box<dyn Acceler
 type Build = fn(&Input) -> Built;
 
 /// The structures that one ray walks at a time.
-const STRUCTURES: [(&str, Build); 1] = [("stack", |input| {
-    let steps = Quality::Balanced.steps(2);
-    Ordered::over(steps.build(&input.boxes, |p, to| input.boxes[p as usize].intersection(*to)), &steps.name())
-})];
+const STRUCTURES: [(&str, Build); 4] = [
+    ("stack", |input| {
+        let steps = Quality::Balanced.steps(2);
+        Ordered::over(steps.build(&input.boxes, |p, to| input.boxes[p as usize].intersection(*to)), &steps.name())
+    }),
+    ("grid", |input| grid::uniform::build(input, &grid::uniform::Options::DEFAULT)),
+    ("fine grid", |input| {
+        grid::uniform::build(input, &grid::uniform::Options { resolution: Resolution::Each([13, 24, 17]) })
+    }),
+    ("nested grid", |input| grid::nested::build(input, &grid::nested::Options::DEFAULT)),
+];
 
 /// The closest hits, after seeing that every accelerator at every level gives the same bits, and `occluded` the same
 /// answer. The rays are asked as one batch, and a few at a time, which other kernels answer.

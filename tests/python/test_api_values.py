@@ -16,6 +16,8 @@ VALUES = [
     rw.Camera((0, 0, 5), (0, 0, 0)),
     rw.Path(max_depth=3),
     rw.BVH(bins=8),
+    rw.Grid(resolution=(4, 5, 6)),
+    rw.NestedGrid(resolution=7),
     rw.BruteForce(),
     rw.ErrorEstimate(math.nan, math.nan, math.nan),
 ]

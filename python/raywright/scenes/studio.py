@@ -41,7 +41,7 @@ def studio(
         The axis of the mesh that points up.
     width, height : int
         Size of the picture in pixels.
-    accelerator : BVH or BruteForce
+    accelerator : BVH, Grid, NestedGrid or BruteForce
         The structure that finds hits.
 
     Raises

@@ -1,0 +1,78 @@
+//! Bounding volume hierarchies.
+
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+use super::{Build, unknown, within};
+use crate::accel::bvh::build::halves::Way;
+use crate::accel::bvh::build::morton::Bits;
+use crate::accel::bvh::build::{Builder, binned, ploc, spatial};
+use crate::accel::bvh::optimise::{Optimiser, Optimisers};
+use crate::accel::bvh::{self, Quality};
+use crate::simd::Level;
+
+/// `raywright.BVH`.
+#[derive(FromPyObject)]
+pub struct Bvh {
+    builder: String,
+    bins: Option<usize>,
+    traversal_cost: f32,
+    intersection_cost: f32,
+    budget: Option<f32>,
+    radius: Option<usize>,
+    optimise: Option<Vec<String>>,
+}
+
+impl Bvh {
+    /// Reads what is to be built; `quality` decides what nothing else does.
+    pub fn build(self, quality: &str, level: Level) -> PyResult<Build> {
+        let quality = match quality {
+            "fast build" => Quality::FastBuild,
+            "balanced" => Quality::Balanced,
+            "fast rays" => Quality::FastRays,
+            other => return Err(unknown("quality", other, &["fast build", "balanced", "fast rays"])),
+        };
+        let options = bvh::Options {
+            quality,
+            builder: self.builder()?,
+            optimisers: self.optimisers()?,
+            traversal_cost: self.traversal_cost,
+            intersection_cost: self.intersection_cost,
+        };
+        Ok(Box::new(move |geometry| bvh::over(geometry, &options, level)))
+    }
+
+    fn builder(&self) -> PyResult<Builder> {
+        let Self { bins, budget, radius, .. } = *self;
+        within("bins", bins, 2..=binned::MAX_BINS)?;
+        within("budget", budget, 0.0..=spatial::MAX_BUDGET)?;
+        within("radius", radius, 1..=ploc::MAX_RADIUS)?;
+        Ok(match self.builder.as_str() {
+            "binned" => Builder::Binned { bins },
+            "sweep" => Builder::Sweep,
+            "spatial" => Builder::Spatial { bins, budget: budget.unwrap_or(spatial::BUDGET) },
+            "morton" => Builder::Morton(Bits::default()),
+            "ploc" => Builder::Ploc { radius: radius.unwrap_or(ploc::RADIUS) },
+            "midpoint" => Builder::Halves(Way::Midpoint),
+            "median" => Builder::Halves(Way::Median),
+            "mean" => Builder::Halves(Way::Mean),
+            other => return Err(unknown("builder", other, &BUILDERS)),
+        })
+    }
+
+    fn optimisers(&self) -> PyResult<Option<Optimisers>> {
+        let Some(names) = &self.optimise else { return Ok(None) };
+        let optimiser = |name: &String| match name.as_str() {
+            "reinsertion" => Ok(Optimiser::Reinsertion),
+            "treelet" => Ok(Optimiser::Treelet),
+            other => Err(unknown("optimise", other, &["reinsertion", "treelet"])),
+        };
+        let optimisers = names.iter().map(optimiser).collect::<PyResult<Vec<_>>>()?;
+        match Optimisers::new(optimisers) {
+            Some(optimisers) => Ok(Some(optimisers)),
+            None => Err(PyValueError::new_err(format!("optimise is {names:?}, expected each at most once"))),
+        }
+    }
+}
+
+const BUILDERS: [&str; 8] = ["binned", "sweep", "spatial", "morton", "ploc", "midpoint", "median", "mean"];

@@ -1,0 +1,48 @@
+//! What to build over a scene's geometry, as the package describes it: a dataclass a kind, read by attribute.
+
+mod bvh;
+mod grid;
+
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::prelude::*;
+use std::fmt::Display;
+use std::ops::RangeInclusive;
+
+use super::level;
+use crate::accel::walk::{Built, Input, Mailbox, walked};
+use crate::accel::{Accelerator, BruteForce};
+use crate::scene::Geometry;
+use crate::simd::Level;
+
+/// Builds an accelerator, in the thread pool that is current.
+pub type Build = Box<dyn FnOnce(&Geometry) -> Box<dyn Accelerator> + Send>;
+
+/// Reads a choice by the name of its class; `quality` says how much the build may take.
+pub fn read(choice: &Bound<'_, PyAny>, quality: &str) -> PyResult<Build> {
+    let (name, level) = (choice.get_type().name()?, level()?);
+    match name.to_str()? {
+        "BVH" => choice.extract::<bvh::Bvh>()?.build(quality, level),
+        "Grid" => choice.extract::<grid::Grid>()?.build(level),
+        "NestedGrid" => choice.extract::<grid::NestedGrid>()?.build(level),
+        "BruteForce" => Ok(Box::new(move |geometry| BruteForce::over(geometry, level))),
+        other => Err(PyTypeError::new_err(format!("accelerator is a {other}, expected one of raywright's"))),
+    }
+}
+
+/// A structure that one ray walks at a time.
+fn structure(level: Level, mailbox: Mailbox, build: impl Fn(&Input) -> Built + Send + 'static) -> Build {
+    Box::new(move |geometry| walked(geometry, level, mailbox, &build))
+}
+
+fn unknown(name: &str, came: &str, expected: &[&str]) -> PyErr {
+    PyValueError::new_err(format!("{name} is {came:?}, expected one of {}", expected.join(", ")))
+}
+
+fn within<T: PartialOrd + Display>(name: &str, came: Option<T>, range: RangeInclusive<T>) -> PyResult<()> {
+    match came.filter(|came| !range.contains(came)) {
+        Some(came) => {
+            Err(PyValueError::new_err(format!("{name} is {came}, expected {} to {}", range.start(), range.end())))
+        }
+        None => Ok(()),
+    }
+}
