@@ -15,6 +15,20 @@ from .materials import Diffuse
 from .mesh import Mesh
 from .rendering import render
 from .scene import Scene
+from .shapes import (
+    Box,
+    Cone,
+    Cylinder,
+    Disk,
+    Ellipsoid,
+    Implicit,
+    Paraboloid,
+    Plane,
+    Polygon,
+    Sphere,
+    Torus,
+)
+from .surface import Surface
 
 if TYPE_CHECKING:
     from . import report
@@ -23,21 +37,33 @@ __all__ = [
     "BVH",
     "AcceleratorInfo",
     "AllHits",
+    "Box",
     "BruteForce",
     "Camera",
     "ClosestPoints",
+    "Cone",
     "ConstantEnvironment",
+    "Cylinder",
     "Diffuse",
+    "Disk",
+    "Ellipsoid",
     "ErrorEstimate",
     "Grid",
     "Hits",
     "Image",
+    "Implicit",
     "Mesh",
     "NestedGrid",
+    "Paraboloid",
     "Path",
+    "Plane",
     "PointLight",
+    "Polygon",
     "QueryCost",
     "Scene",
+    "Sphere",
+    "Surface",
+    "Torus",
     "check_writable",
     "render",
     "report",

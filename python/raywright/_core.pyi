@@ -1,6 +1,6 @@
 """The compiled core. Everything here takes validated, C-contiguous arrays; the public face is the package."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any, TypeAlias, final
 
 import numpy as np
@@ -16,7 +16,13 @@ __all__ = [
     "Rendering",
     "camera_directions",
     "camera_rays",
+    "implicit_trouble",
+    "matrix_trouble",
+    "points",
+    "polygon_trouble",
     "render",
+    "shape_area",
+    "shape_bounds",
     "simd",
 ]
 
@@ -131,6 +137,10 @@ class CompiledScene:
     @property
     def accelerator(self) -> AcceleratorInfo: ...
     @property
+    def curved(self) -> bool:
+        """Whether anything in it is no mesh."""
+
+    @property
     def dropped(self) -> int:
         """Faces left out because a corner is NaN or infinite."""
     @property
@@ -210,3 +220,36 @@ class KernelContest:
         """Test all pairs with each routine in turn: the seconds that each takes."""
     def answers(self, routine: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Where one routine finds hits: t (N,), inf for a miss, and uv (N,2)."""
+
+def shape_bounds(shape: Any) -> list[list[float]]:
+    """Least and greatest corner of a shape under its transform, rounded outwards."""
+
+def shape_area(shape: Any) -> float:
+    """Area of a shape under its transform."""
+
+def matrix_trouble(matrix: list[list[float]]) -> str | None:
+    """Why an affine matrix (4 rows of 4) has no inverse, or None if it has one."""
+
+def polygon_trouble(
+    outline: Sequence[Sequence[float]], holes: Sequence[Sequence[Sequence[float]]]
+) -> str | None:
+    """Say what is wrong with a polygon; None if nothing is."""
+
+def implicit_trouble(expression: str, min: Sequence[float], max: Sequence[float]) -> str | None:
+    """Say what is wrong with an expression or its box; None if nothing is."""
+
+def points(
+    scene: CompiledScene,
+    shape_id: NDArray[np.int32],
+    primitive: NDArray[np.int32],
+    uv: NDArray[np.float64],
+    t: NDArray[np.float64],
+    origins: _Floats,
+    directions: _Floats,
+    ray: NDArray[np.int64] | None,
+) -> tuple[NDArray[np.float64], ...]:
+    """All about some hits, NaN for misses.
+
+    Position, error, normal, shading normal, dp/du, dp/dv, dn/du and dn/dv. `ray` says which ray each is of,
+    where they are not in turn.
+    """

@@ -1,8 +1,9 @@
 """A scene described in lines of text."""
 
 from ._core import simd
-from .mesh import Mesh
+from .mesh import Mesh, face_count
 from .scene import Scene
+from .shapes import Shape
 from .topology import degenerate_faces, is_watertight
 
 _MOST_SHAPES = 20
@@ -10,16 +11,17 @@ _MOST_SHAPES = 20
 
 def described(name: str, scene: Scene) -> str:
     """Return what a scene holds, and what its accelerator looks like, as aligned lines under `name`."""
-    faces = sum(len(shape.faces) for shape in scene.shapes)
+    meshes = [shape for shape in scene.shapes if isinstance(shape, Mesh)]
+    others = len(scene.shapes) - len(meshes)
     info = scene.accelerator
     size = scene.bytes
     rows = [
-        ("shapes", f"{len(scene.shapes)}"),
-        ("vertices", f"{sum(len(shape.vertices) for shape in scene.shapes):,}"),
-        ("faces", f"{faces:,}"),
+        ("shapes", f"{len(scene.shapes)}" + (f", {others} of them no meshes" if others else "")),
+        ("vertices", f"{sum(len(mesh.vertices) for mesh in meshes):,}"),
+        ("faces", f"{sum(map(face_count, meshes)):,}"),
         ("bounds", _bounds(scene)),
-        ("watertight", "yes" if all(map(is_watertight, scene.shapes)) else "no"),
-        ("degenerate", f"{sum(map(degenerate_faces, scene.shapes)):,} faces"),
+        ("watertight", "yes" if all(map(is_watertight, meshes)) else "no"),
+        ("degenerate", f"{sum(map(degenerate_faces, meshes)):,} faces"),
         ("accelerator", info.kind),
         ("nodes", f"{info.nodes:,}, and {info.leaves:,} leaves; depth {info.depth}"),
         ("built in", f"{info.build_seconds:.4f} s"),
@@ -43,5 +45,7 @@ def _bounds(scene: Scene) -> str:
     return f"({low}) to ({high})"
 
 
-def _counts(shape: Mesh) -> str:
+def _counts(shape: Mesh | Shape) -> str:
+    if not isinstance(shape, Mesh):
+        return type(shape).__name__
     return f"{len(shape.vertices):,} vertices, {len(shape.faces):,} faces"

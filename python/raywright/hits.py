@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _core
+from .surface import Surface
 
 
 @dataclass(frozen=True, eq=False, repr=False, init=False)
@@ -29,6 +30,8 @@ class SurfacePoints:
     primitive: NDArray[np.int32]
     uv: NDArray[np.float64]
     _compiled: _core.CompiledScene = field(repr=False)
+    # Origins and directions, where shapes cannot tell their points without.
+    _rays: tuple[NDArray[Any], NDArray[Any]] | None = field(repr=False)
 
     # What two of them are equal by.
     _parts: ClassVar[tuple[str, ...]] = ("shape_id", "primitive", "uv")
@@ -42,6 +45,8 @@ class SurfacePoints:
     @cached_property
     def position(self) -> NDArray[np.float64]:
         """Where the point is, from the corners of the face: (..., 3) float64; NaN for none."""
+        if self._rays is not None:
+            return self.surface.position
         points = self._compiled.positions(
             self.shape_id.reshape(-1), self.primitive.reshape(-1), self.uv.reshape(-1, 2)
         )
@@ -50,8 +55,35 @@ class SurfacePoints:
     @cached_property
     def normal(self) -> NDArray[np.float64]:
         """Unit geometric normal as the winding gives it: (..., 3) float64; NaN for none."""
+        if self._rays is not None:
+            return self.surface.normal
         normals = self._compiled.normals(self.shape_id.reshape(-1), self.primitive.reshape(-1))
         return sealed(normals.reshape(*self.primitive.shape, 3))
+
+    @cached_property
+    def surface(self) -> Surface:
+        """All about the points: normals, derivatives by the coordinates, bounds on errors."""
+        if self._compiled is None:
+            raise ValueError("surface is not kept in a pickle unless it was asked for before")
+        return self._surface(None)
+
+    def _surface(self, ray: NDArray[np.int64] | None) -> Surface:
+        """Ask all about the points; `ray` says which ray each is of, where they are not in turn."""
+        # Meshes know their points by the weights alone.
+        t = np.ascontiguousarray(getattr(self, "t", np.zeros(self.primitive.shape))).reshape(-1)
+        origins, directions = self._rays or (np.zeros((1, 3)), np.ones((1, 3)))
+        parts = _core.points(
+            self._compiled,
+            self.shape_id.reshape(-1),
+            self.primitive.reshape(-1),
+            self.uv.reshape(-1, 2),
+            t,
+            origins.reshape(-1, 3),
+            directions.reshape(-1, 3),
+            ray,
+        )
+        lead = self.primitive.shape
+        return Surface(*(sealed(part.reshape(*lead, *part.shape[1:])) for part in parts))
 
     def __eq__(self, other: object) -> bool:
         if type(other) is not type(self):
@@ -64,8 +96,9 @@ class SurfacePoints:
 
     def __reduce__(self) -> tuple[Any, ...]:
         # The compiled scene is not pickled, so what would be asked of it later is worked out now.
+        more = ("surface",) if "surface" in vars(self) else ()
         kept = {name: getattr(self, name) for name in (*self._parts, "position", "normal")}
-        return _restored, (type(self), kept, self._more())
+        return _restored, (type(self), kept, {**self._more(), **{name: vars(self)[name] for name in more}})
 
     def _more(self) -> dict[str, Any]:
         """Give what is kept beside the arrays."""
@@ -101,9 +134,12 @@ class Hits(SurfacePoints):
         primitive: NDArray[np.int32],
         uv: NDArray[np.float64],
         compiled: _core.CompiledScene,
+        rays: tuple[Any, ...] | None = None,
     ) -> None:
         # A frozen dataclass's own way of setting its fields takes longer than tracing a ray.
-        self.__dict__.update(t=t, shape_id=shape_id, primitive=primitive, uv=uv, _compiled=compiled)
+        self.__dict__.update(
+            t=t, shape_id=shape_id, primitive=primitive, uv=uv, _compiled=compiled, _rays=rays and rays[:2]
+        )
 
     @cached_property
     def hit(self) -> NDArray[np.bool_]:
@@ -162,9 +198,13 @@ class AllHits(SurfacePoints):
         uv: NDArray[np.float64],
         shape: tuple[int, ...],
         compiled: _core.CompiledScene,
+        rays: tuple[Any, ...] | None = None,
     ) -> None:
         parts = {"ray_splits": ray_splits, "t": t, "shape_id": shape_id, "primitive": primitive, "uv": uv}
-        self.__dict__.update(parts, shape=shape, _compiled=compiled)
+        self.__dict__.update(parts, shape=shape, _compiled=compiled, _rays=rays and rays[:2])
+
+    def _surface(self, ray: NDArray[np.int64] | None) -> Surface:
+        return super()._surface(self.ray)
 
     @cached_property
     def ray(self) -> NDArray[np.int64]:
@@ -220,7 +260,7 @@ class ClosestPoints(SurfacePoints):
     ) -> None:
         parts = {"distance": distance, "shape_id": shape_id, "primitive": primitive, "uv": uv}
         # The position is known already, and stands where cached_property keeps its values.
-        self.__dict__.update(parts, position=position, _compiled=compiled)
+        self.__dict__.update(parts, position=position, _compiled=compiled, _rays=None)
 
     @cached_property
     def found(self) -> NDArray[np.bool_]:
@@ -279,5 +319,7 @@ def _restored(
 ) -> SurfacePoints:
     points = kind.__new__(kind)
     # Where cached_property keeps its values, too.
-    vars(points).update({name: sealed(array) for name, array in arrays.items()}, **more, _compiled=None)
+    vars(points).update(
+        {name: sealed(array) for name, array in arrays.items()}, **more, _compiled=None, _rays=None
+    )
     return points

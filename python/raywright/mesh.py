@@ -152,8 +152,15 @@ class Mesh:
         return f"Mesh({', '.join(parts)})"
 
 
-def moved(mesh: Mesh, name: str, vertices: ArrayLike) -> Mesh:
+def face_count(shape: object) -> int:
+    """Return how many faces a shape has: none if it is no mesh."""
+    return len(shape.faces) if isinstance(shape, Mesh) else 0
+
+
+def moved(mesh: object, name: str, vertices: ArrayLike) -> Mesh:
     """Return the mesh with its vertices elsewhere, and all else as it is, given normals too."""
+    if not isinstance(mesh, Mesh):
+        raise ValueError(f"{name} must be None for what is no mesh, which is a {type(mesh).__name__} here")
     result = object.__new__(Mesh)
     # The other arrays are checked and cannot change: they are shared.
     vars(result).update(vars(mesh), vertices=rows(name, vertices, 3, len(mesh.vertices)))

@@ -58,7 +58,7 @@ class Queries:
         """
         rays = ray_arguments(origins, directions, t_min, t_max, threads)
         core = self._core or self._compiled()
-        return Hits(*core.intersect(*rays), core)
+        return Hits(*core.intersect(*rays), core, rays if core.curved else None)
 
     def occluded(
         self,
@@ -109,7 +109,7 @@ class Queries:
         """
         rays = ray_arguments(origins, directions, t_min, t_max, threads)
         core = self._core or self._compiled()
-        return AllHits(*core.intersect_all(*rays), rays[4], core)
+        return AllHits(*core.intersect_all(*rays), rays[4], core, rays if core.curved else None)
 
     def count(
         self,

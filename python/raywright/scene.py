@@ -14,14 +14,15 @@ from .accelerators import BVH, Accelerator
 from .arrays import choice
 from .io.meshes import meshes
 from .lights import ConstantEnvironment, PointLight
-from .mesh import Mesh, moved
+from .mesh import Mesh, face_count, moved
 from .queries import Queries
+from .shapes import Shape
 
 if TYPE_CHECKING:
     import trimesh
 
 Shapes: TypeAlias = Union[
-    Mesh, "trimesh.Trimesh", "trimesh.Scene", str, PathLike[str], "Sequence[Shapes]"
+    Mesh, Shape, "trimesh.Trimesh", "trimesh.Scene", str, PathLike[str], "Sequence[Shapes]"
 ]  # fmt: skip
 Precision: TypeAlias = Literal["single", "double"]
 Quality: TypeAlias = Literal["fast build", "balanced", "fast rays"]
@@ -36,7 +37,7 @@ class Scene(Queries):
 
     Parameters
     ----------
-    shapes : Mesh, trimesh.Trimesh, trimesh.Scene, path, or list or tuple of these
+    shapes : Mesh, Sphere or another shape, trimesh.Trimesh, trimesh.Scene, path, or list or tuple of these
         What can be hit. A path may be of any mesh file that trimesh reads (PLY, OBJ, STL, GLB, ...). Lists
         may be nested; all of it is laid out flat in ``scene.shapes``. A trimesh.Scene gives one mesh for each
         node that holds one, in the order of its geometry and with the node's transform applied; points and
@@ -98,8 +99,8 @@ class Scene(Queries):
         self._lock = threading.Lock()
 
     @property
-    def shapes(self) -> tuple[Mesh, ...]:
-        """The meshes; `Hits.shape_id` counts them."""
+    def shapes(self) -> tuple[Mesh | Shape, ...]:
+        """What can be hit; `Hits.shape_id` counts them."""
         return self._shapes
 
     @property
@@ -139,7 +140,10 @@ class Scene(Queries):
 
     @property
     def bounds(self) -> NDArray[np.float64] | None:
-        """Least and greatest corner of all that can be hit, (2, 3) float64; None for an empty scene."""
+        """Least and greatest corner of all that can be hit, (2, 3) float64; None for an empty scene.
+
+        What has no end, as a `Plane`, does not count.
+        """
         return self._compiled().bounds
 
     def refit(self, vertices: ArrayLike | Sequence[ArrayLike | None]) -> float:
@@ -151,8 +155,8 @@ class Scene(Queries):
         Parameters
         ----------
         vertices : (V, 3) array, or list of them
-            The vertices of the only mesh, or of each mesh; as many as it has. None in the list leaves a mesh
-            where it is.
+            The vertices of the only shape, or of each shape; as many as it has. None in the list leaves a
+            shape where it is, which is all that can be said of one that is no mesh.
 
         Returns
         -------
@@ -187,7 +191,7 @@ class Scene(Queries):
             self._core = None
         self._compiled()
 
-    def _moved(self, vertices: ArrayLike | Sequence[ArrayLike | None]) -> tuple[Mesh, ...]:
+    def _moved(self, vertices: ArrayLike | Sequence[ArrayLike | None]) -> tuple[Mesh | Shape, ...]:
         count = len(self._shapes)
         given = list(vertices) if isinstance(vertices, list | tuple) else None
         if count == 1 and not (given and len(given) == 1 and (given[0] is None or np.ndim(given[0]) == 2)):
@@ -206,7 +210,7 @@ class Scene(Queries):
                 return self._core
             self._core = compiled = _core.CompiledScene(self, self._accelerator)
         if compiled.dropped:
-            faces = sum(len(shape.faces) for shape in self._shapes)
+            faces = sum(map(face_count, self._shapes))
             warnings.warn(
                 f"{compiled.dropped} of {faces} faces were dropped: a corner is NaN or infinite",
                 RuntimeWarning,
@@ -236,7 +240,7 @@ class Scene(Queries):
         return Scene, self._parts()
 
     def __repr__(self) -> str:
-        faces = sum(len(shape.faces) for shape in self._shapes)
+        faces = sum(map(face_count, self._shapes))
         parts = [f"{_counted(len(self._shapes), 'shape')}", _counted(faces, "face")]
         if self._lights:
             parts.append(_counted(len(self._lights), "light"))

@@ -1,18 +1,32 @@
 //! Floor 0: rays, boxes, frames and numbers whose errors are known.
 
 mod aabb;
+mod affine;
 pub mod coherence;
+mod double;
+mod double_double;
+mod dyadic;
+mod elliptic;
 mod exact;
 mod frame;
+mod interval;
+pub mod number;
 mod ray;
 mod region;
 pub mod robust;
 mod tiling;
 
 pub use aabb::Aabb;
+pub use affine::{Affine, Singular};
+pub use double::Double;
+pub use double_double::DoubleDouble;
+pub use dyadic::Dyadic;
+pub use elliptic::ellipsoid_area;
 pub use exact::{exact_edges, exact_turn};
 pub use frame::Frame;
 pub use glam::{DVec3, Vec3};
+pub use interval::Interval;
+pub use number::{Bounded, Number, Triple};
 pub use ray::{Hit, Ray};
 pub use region::Region;
 pub use tiling::Tiling;

@@ -5,6 +5,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use super::arrays::{Rows, Triples, rows};
+use super::shapes;
 use crate::math::DVec3;
 use crate::optics::Rgb;
 use crate::scene::{self, Material, PointLight, SceneDescription};
@@ -12,7 +13,7 @@ use crate::scene::{self, Material, PointLight, SceneDescription};
 /// `raywright.Scene`.
 #[derive(FromPyObject)]
 pub struct Scene<'py> {
-    shapes: Vec<Mesh<'py>>,
+    shapes: Vec<Bound<'py, PyAny>>,
     lights: Vec<Light>,
     environment: Option<Environment>,
     precision: String,
@@ -26,8 +27,6 @@ struct Mesh<'py> {
     vertices: Triples<'py>,
     faces: PyReadonlyArray2<'py, u32>,
     normals: Option<Triples<'py>>,
-    material: Diffuse,
-    emission: Option<[f64; 3]>,
 }
 
 /// `raywright.Diffuse`.
@@ -62,7 +61,7 @@ impl Scene<'_> {
             }
         };
         Ok(SceneDescription {
-            shapes: self.shapes.into_iter().map(|mesh| mesh.describe(double)).collect::<PyResult<_>>()?,
+            shapes: self.shapes.iter().map(|shape| describe(shape, double)).collect::<PyResult<_>>()?,
             points: self
                 .lights
                 .into_iter()
@@ -76,8 +75,30 @@ impl Scene<'_> {
     }
 }
 
+/// How any shape looks.
+#[derive(FromPyObject)]
+struct Look {
+    material: Diffuse,
+    emission: Option<[f64; 3]>,
+}
+
+/// Reads any shape: a mesh, or what is none.
+fn describe(shape: &Bound<'_, PyAny>, double: bool) -> PyResult<scene::Shape> {
+    let look: Look = shape.extract()?;
+    let surface = if shape.get_type().name()? == "Mesh" {
+        shape.extract::<Mesh<'_>>()?.describe(double)?.into()
+    } else {
+        shapes::read(shape)?.into()
+    };
+    Ok(scene::Shape {
+        surface,
+        material: Material::Diffuse { reflectance: Rgb::from_array(look.material.reflectance) },
+        emission: look.emission.map_or(Rgb::ZERO, Rgb::from_array),
+    })
+}
+
 impl Mesh<'_> {
-    fn describe(self, double: bool) -> PyResult<scene::Shape> {
+    fn describe(self, double: bool) -> PyResult<scene::Mesh> {
         let vertices = match self.vertices.rows("vertices")? {
             Rows::Double(rows) if double => {
                 scene::Vertices::Double(rows.iter().map(|&r| DVec3::from_array(r)).collect())
@@ -90,10 +111,6 @@ impl Mesh<'_> {
             return Err(PyValueError::new_err(format!("face {face} is {corners:?}, but there are {count} vertices")));
         }
         let normals = self.normals.as_ref().map(|n| n.rows("normals").map(|rows| rows.to_single())).transpose()?;
-        Ok(scene::Shape {
-            surface: scene::Mesh { vertices, faces, normals }.into(),
-            material: Material::Diffuse { reflectance: Rgb::from_array(self.material.reflectance) },
-            emission: self.emission.map_or(Rgb::ZERO, Rgb::from_array),
-        })
+        Ok(scene::Mesh { vertices, faces, normals })
     }
 }

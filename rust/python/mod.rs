@@ -5,11 +5,14 @@ mod arrays;
 mod describe;
 mod every;
 mod film;
+mod freeform;
 mod info;
+mod points;
 mod query;
 mod rays;
 mod render;
 mod report;
+mod shapes;
 
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -32,13 +35,19 @@ mod _core {
     #[pymodule_export]
     use super::film::camera_directions;
     #[pymodule_export]
+    use super::freeform::{implicit_trouble, polygon_trouble};
+    #[pymodule_export]
     use super::info::AcceleratorInfo;
+    #[pymodule_export]
+    use super::points::points;
     #[pymodule_export]
     use super::query::CompiledScene;
     #[pymodule_export]
     use super::render::{Rendering, camera_rays, render_scene};
     #[pymodule_export]
     use super::report::KernelContest;
+    #[pymodule_export]
+    use super::shapes::{matrix_trouble, shape_area, shape_bounds};
     #[pymodule_export]
     use super::simd;
 }

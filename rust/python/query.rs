@@ -216,6 +216,11 @@ impl CompiledScene {
         shape: Vec<usize>,
         threads: Option<usize>,
     ) -> PyResult<ClosestPoints<'py>> {
+        if let Some(shape) = self.0.geometry().first_other() {
+            return Err(PyValueError::new_err(format!(
+                "closest points are found on meshes alone, and shape {shape} is none"
+            )));
+        }
         let (points, most) = (points.rows("points")?, max_distance.slice("max_distance")?);
         let (count, lead) = (shape.iter().product(), &shape);
         if [points.len(), most.len()].iter().any(|&n| n != 1 && n != count) {
@@ -280,6 +285,12 @@ impl CompiledScene {
         AcceleratorInfo(self.0.accelerator().info().clone())
     }
 
+    /// Whether anything in it is no mesh.
+    #[getter]
+    fn curved(&self) -> bool {
+        self.0.geometry().first_other().is_some()
+    }
+
     #[getter]
     fn dropped(&self) -> usize {
         self.0.geometry().dropped()
@@ -302,6 +313,10 @@ impl CompiledScene {
 }
 
 impl CompiledScene {
+    pub(super) fn scene(&self) -> &scene::Scene {
+        &self.0
+    }
+
     /// A vector of each primitive, NaN for misses.
     fn of_primitives<'py>(
         &self,

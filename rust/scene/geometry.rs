@@ -238,6 +238,11 @@ impl Geometry {
         all
     }
 
+    /// The first shape that is no mesh, by its number among shapes.
+    pub fn first_other(&self) -> Option<u32> {
+        self.others.as_ref().map(|others| self.locate(others.first()).0)
+    }
+
     /// How many shapes there are.
     pub fn shapes(&self) -> usize {
         self.first.len() - 1
@@ -337,12 +342,15 @@ impl Geometry {
         SurfacePoint { position, error, normal, shading_normal, shape: self.locate(primitive).0 }
     }
 
+    /// The shading normals of a triangle's corners, if there are any.
+    pub(super) fn normals_of(&self, primitive: u32) -> Option<[DVec3; 3]> {
+        let normal = |v: u32| self.normals[v as usize].as_dvec3();
+        (!self.normals.is_empty()).then(|| self.faces[primitive as usize].map(normal))
+    }
+
     /// The interpolated normal of the vertices, on the side of `normal`; `normal` where there is none to be had.
     fn shading_normal(&self, primitive: u32, weights: [f64; 3], normal: DVec3) -> DVec3 {
-        if self.normals.is_empty() {
-            return normal;
-        }
-        let [i, j, k] = self.faces[primitive as usize].map(|v| self.normals[v as usize].as_dvec3());
+        let Some([i, j, k]) = self.normals_of(primitive) else { return normal };
         match (i * weights[0] + j * weights[1] + k * weights[2]).try_normalize() {
             Some(n) if n.dot(normal) < 0.0 => -n,
             Some(n) => n,

@@ -10,6 +10,7 @@ mod interaction;
 mod light;
 mod lights;
 mod material;
+mod points;
 mod spawn;
 mod surfaces;
 
@@ -21,5 +22,6 @@ pub use interaction::{Interaction, Scattered};
 pub use light::{LightSample, PointLight};
 pub use lights::Lights;
 pub use material::Material;
+pub use points::HitPoint;
 pub use spawn::Departure;
 pub use surfaces::Surfaces;

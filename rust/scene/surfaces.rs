@@ -25,6 +25,11 @@ impl Surfaces {
         self.numbers.is_empty()
     }
 
+    /// The least of the numbers.
+    pub fn first(&self) -> u32 {
+        self.numbers[0]
+    }
+
     /// The shape of a number; none of a triangle.
     #[inline]
     pub fn get(&self, number: u32) -> Option<&dyn Shape> {

@@ -1,8 +1,43 @@
 //! Floor 1: what can be hit, one shape a module.
 
+pub mod bounding;
+mod cone;
 mod contact;
+mod cuboid;
+mod cylinder;
+mod disk;
+mod ellipsoid;
+#[cfg(test)]
+mod exact_hits;
+mod implicit;
+mod line;
+mod meeting;
+#[cfg(test)]
+mod oracle;
+mod paraboloid;
+mod placed;
+mod plane;
+mod polygon;
+mod revolution;
 mod shape;
+mod sphere;
+#[cfg(test)]
+mod surfaces;
+mod torus;
 pub mod triangle;
 
+pub use cone::Cone;
 pub use contact::{Candidate, Contact};
+pub use cuboid::Cuboid;
+pub use cylinder::Cylinder;
+pub use disk::Disk;
+pub use ellipsoid::Ellipsoid;
+pub use implicit::Implicit;
+pub use line::{Carried, Line};
+pub use paraboloid::Paraboloid;
+pub use placed::Placed;
+pub use plane::Plane;
+pub use polygon::Polygon;
 pub use shape::{Bounds, Drawn, Point, Shape};
+pub use sphere::Sphere;
+pub use torus::Torus;

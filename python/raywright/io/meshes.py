@@ -17,13 +17,14 @@ from numpy.typing import NDArray
 from ..arrays import Triple
 from ..materials import Diffuse
 from ..mesh import Mesh
+from ..shapes import Shape
 
 # Switching off trimesh's log and Python's warnings is for the whole process, so loads take turns.
 _quiet_lock = threading.RLock()
 
 
-def meshes(shapes: Any) -> tuple[Mesh, ...]:
-    """Lay out meshes, trimesh objects, paths and nested lists of them as one flat tuple of meshes.
+def meshes(shapes: Any) -> tuple[Mesh | Shape, ...]:
+    """Lay out shapes, trimesh objects, paths and nested lists of them as one flat tuple of shapes.
 
     Raises
     ------
@@ -35,6 +36,22 @@ def meshes(shapes: Any) -> tuple[Mesh, ...]:
         If something is none of these.
     """
     return tuple(_each(shapes))
+
+
+def only_meshes(shapes: Any) -> tuple[Mesh, ...]:
+    """Lay out shapes as `meshes` does, where other shapes will not do.
+
+    Raises
+    ------
+    TypeError
+        If one of them is no mesh; and what `meshes` raises.
+    """
+    found = []
+    for shape in _each(shapes):
+        if not isinstance(shape, Mesh):
+            raise TypeError(f"only meshes can be taken here, got {type(shape).__name__}")
+        found.append(shape)
+    return tuple(found)
 
 
 def load(path: str | PathLike[str]) -> tuple[Mesh, ...]:
@@ -85,10 +102,10 @@ def _reason(error: Exception) -> str:
     return told if len(told) <= 120 else f"{told[:117]}..."
 
 
-def _each(shapes: Any) -> Iterator[Mesh]:
+def _each(shapes: Any) -> Iterator[Mesh | Shape]:
     # trimesh is never imported only to ask: whoever made such an object has imported it.
     trimesh = sys.modules.get("trimesh")
-    if isinstance(shapes, Mesh):
+    if isinstance(shapes, Mesh | Shape):
         yield shapes
     elif isinstance(shapes, str | PathLike):
         yield from load(shapes)
@@ -101,7 +118,8 @@ def _each(shapes: Any) -> Iterator[Mesh]:
         yield from _of_scene(shapes)
     else:
         raise TypeError(
-            "shapes must be a Mesh, a trimesh.Trimesh, a trimesh.Scene, a path, or a list of these, "
+            "shapes must be a Mesh, another raywright shape, a trimesh.Trimesh, a trimesh.Scene, a path, "
+            "or a list of these, "
             f"got {type(shapes).__module__}.{type(shapes).__qualname__}"
         )
 

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from .._core import AcceleratorInfo
 from ..accelerators import Accelerator, BruteForce
+from ..mesh import face_count
 from ..scene import Scene
 from .ray_sets import Rays
 
@@ -99,8 +100,9 @@ def measured(
 def _checked(scene: Scene, sets: dict[str, Rays], check: int | None) -> dict[str, Rays]:
     """Return those of the rays that are held against brute force, a like number of each set."""
     if check is None:
-        faces = sum(len(shape.faces) for shape in scene.shapes)
-        check = max(_CHECK_TESTS // max(faces, 1), _LEAST_CHECKED)
+        # What is no mesh counts as one.
+        count = sum(face_count(shape) or 1 for shape in scene.shapes)
+        check = max(_CHECK_TESTS // max(count, 1), _LEAST_CHECKED)
     return {name: rays.thinned(-(-check // len(sets))) for name, rays in sets.items()}
 
 

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..arrays import integer, last_axis
 from ..camera import Camera
+from ..mesh import Mesh
 from ..rays import ray_arguments
 from ..scene import Scene
 
@@ -174,7 +175,8 @@ def _lamps(
     if scene.lights:
         places = np.array([light.position for light in scene.lights])
         return np.asarray(places[np.arange(count) % len(places)])
-    shining = [mesh.vertices[mesh.faces] for mesh in scene.shapes if getattr(mesh, "emission", None)]
+    meshes = [shape for shape in scene.shapes if isinstance(shape, Mesh)]
+    shining = [mesh.vertices[mesh.faces] for mesh in meshes if mesh.emission]
     corners = np.concatenate([np.empty((0, 3, 3)), *shining])
     double_area = np.linalg.norm(
         np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1

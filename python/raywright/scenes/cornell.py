@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 
 from ..arrays import Triple
 from ..camera import Camera
-from ..io.meshes import meshes
+from ..io.meshes import only_meshes
 from ..materials import Diffuse
 from ..mesh import Mesh
 from ..scene import Scene
@@ -85,7 +85,7 @@ def cornell_box(
     shapes = [_quads(LIGHT, WHITE, emission)]
     shapes += [_quads(corners, WHITE) for corners in (FLOOR, CEILING, BACK)]
     shapes += [_quads(RIGHT, GREEN), _quads(LEFT, RED), _quads(TALL_BLOCK, WHITE)]
-    shapes += [_quads(SHORT_BLOCK, WHITE)] if mesh is None else _stood(meshes(mesh))
+    shapes += [_quads(SHORT_BLOCK, WHITE)] if mesh is None else _stood(only_meshes(mesh))
     # A lens of 35 mm behind a film of 25 mm by 25 mm.
     fov = math.degrees(2 * math.atan(0.0125 / 0.035))
     return Scene(shapes), Camera((278, 273, -800), (278, 273, 0), fov=fov, width=width, height=height)

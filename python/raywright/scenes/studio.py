@@ -12,6 +12,7 @@ from ..io.meshes import meshes
 from ..materials import Diffuse
 from ..mesh import Mesh
 from ..scene import Scene
+from ..shapes import Shape
 
 _FOV = 35.0
 # Where the camera and the lamp stand, in degrees: around the upright axis, and above the floor.
@@ -52,7 +53,7 @@ def studio(
     if up not in ("y", "z"):
         raise ValueError(f"up must be 'y' or 'z', got {up!r}")
     parts = meshes(shapes)
-    points = np.concatenate([np.empty((0, 3)), *(part.used_vertices() for part in parts)])
+    points = np.concatenate([np.empty((0, 3)), *map(_outline, parts)])
     if not len(points):
         raise ValueError("there are no faces to show")
     low, high = points.min(axis=0), points.max(axis=0)
@@ -74,6 +75,16 @@ def studio(
     # Across `side` and its perpendicular, so that the square's normal is -beam: it shines on the mesh.
     lamp = _square(centre + 5 * radius * beam, np.cross(beam, side), side, 1.5 * radius, Diffuse(0.0), 9.0)
     return Scene([*parts, floor, lamp], environment=_SKY, accelerator=accelerator), camera
+
+
+def _outline(shape: Mesh | Shape) -> NDArray[np.float64]:
+    """Return points around a shape, (N, 3): a mesh's own, or the corners of the box of what is no mesh."""
+    if isinstance(shape, Mesh):
+        return shape.used_vertices()
+    low, high = shape.bounds
+    if not np.isfinite([low, high]).all():
+        raise ValueError(f"a studio has no room for a {type(shape).__name__} without end")
+    return np.array([np.where(upper, high, low) for upper in np.ndindex(2, 2, 2)])
 
 
 def _axes(up: str) -> NDArray[np.float64]:

@@ -1,0 +1,29 @@
+"""Shapes that are no meshes, each solved as what it is: nothing is cut into triangles."""
+
+from .box import Box
+from .cone import Cone
+from .cylinder import Cylinder
+from .disk import Disk
+from .ellipsoid import Ellipsoid
+from .implicit import Implicit
+from .paraboloid import Paraboloid
+from .plane import Plane
+from .polygon import Polygon
+from .shape import Shape
+from .sphere import Sphere
+from .torus import Torus
+
+__all__ = [
+    "Box",
+    "Cone",
+    "Cylinder",
+    "Disk",
+    "Ellipsoid",
+    "Implicit",
+    "Paraboloid",
+    "Plane",
+    "Polygon",
+    "Shape",
+    "Sphere",
+    "Torus",
+]

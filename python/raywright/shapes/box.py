@@ -1,0 +1,67 @@
+"""The box along the axes."""
+
+from dataclasses import dataclass
+
+from numpy.typing import ArrayLike
+
+from ..arrays import Triple, triple
+from ..materials import Diffuse
+from .shape import Shape
+
+
+@dataclass(frozen=True, init=False, eq=False, repr=False)
+class Box(Shape):
+    """All points between two corners, borders included.
+
+    It is a solid: a ray that runs in a face or along an edge meets it. Other axes are a `transform`'s to
+    give.
+
+    Parameters
+    ----------
+    min, max : 3 floats
+        The least and the greatest corner. They may be equal along an axis, and the box flat.
+    transform : (4, 4) array, optional
+        An affine matrix that acts on column vectors (x, y, z, 1), as from the shape's own space to the world.
+        Rays are decided for the matrix as it is given, not for a rounded inverse.
+    material : Diffuse, optional
+        How the surface scatters; ``Diffuse()`` if not given.
+    emission : float or 3 floats, optional
+        Radiance in W·sr⁻¹·m⁻² that leaves the outer side; None, the default, for a shape that does not shine.
+
+    Raises
+    ------
+    ValueError
+        If a coordinate of `min` is greater than that of `max`, or a number is not finite.
+        If the transform is not a finite affine (4, 4) matrix, or has no inverse.
+    TypeError
+        If a number or a material is something else.
+
+    Notes ----- The faces lie side by side in ``u`` and ``v``: three columns for those at right angles to x,
+    y and z, and two rows, for the lesser face and the greater.
+    """
+
+    min: Triple
+    max: Triple
+
+    def __init__(
+        self,
+        min: ArrayLike = (0.0, 0.0, 0.0),
+        max: ArrayLike = (1.0, 1.0, 1.0),
+        *,
+        transform: ArrayLike | None = None,
+        material: Diffuse | None = None,
+        emission: ArrayLike | None = None,
+    ) -> None:
+        low, high = triple("min", min), triple("max", max)
+        for axis, a, b in zip("xyz", low, high, strict=True):
+            if a > b:
+                raise ValueError(
+                    f"min must not be greater than max, but its {axis} is {a}, and that of max {b}"
+                )
+        self._set(
+            transform,
+            material,
+            emission,
+            min=low,
+            max=high,
+        )

@@ -1,0 +1,72 @@
+"""The cylinder."""
+
+from dataclasses import dataclass
+
+from numpy.typing import ArrayLike
+
+from ..arrays import Triple, positive
+from ..materials import Diffuse
+from .shape import Shape, segment, switch
+
+
+@dataclass(frozen=True, init=False, eq=False, repr=False)
+class Cylinder(Shape):
+    """All points at one distance from a segment, between its ends' planes.
+
+    Whether a ray meets it is decided without error, along the axis and from afar too.
+
+    Parameters
+    ----------
+    base, tip : 3 floats
+        The ends of its axis, which differ.
+    radius : float
+        The distance from the axis, greater than 0.
+    capped : bool
+        Whether disks close it at both ends (the default): then it is a solid, which a ray enters and leaves.
+    transform : (4, 4) array, optional
+        An affine matrix that acts on column vectors (x, y, z, 1), as from the shape's own space to the world.
+        Rays are decided for the matrix as it is given, not for a rounded inverse.
+    material : Diffuse, optional
+        How the surface scatters; ``Diffuse()`` if not given.
+    emission : float or 3 floats, optional
+        Radiance in W·sr⁻¹·m⁻² that leaves the outer side; None, the default, for a shape that does not shine.
+
+    Raises
+    ------
+    ValueError
+        If the ends are the same, the radius is not greater than 0, or a number is not finite.
+        If the transform is not a finite affine (4, 4) matrix, or has no inverse.
+    TypeError
+        If a number or a material is something else.
+
+    Notes ----- ``u`` is the angle about the axis, in turns, anticlockwise as seen from the tip; ``v`` the
+    way from the base to the tip or, of a closed one, that from the middle of the base cap over its rim, up
+    the side and in to the middle of the tip cap, by length.
+    """
+
+    base: Triple
+    tip: Triple
+    radius: float
+    capped: bool
+
+    def __init__(
+        self,
+        base: ArrayLike = (0.0, 0.0, 0.0),
+        tip: ArrayLike = (0.0, 0.0, 1.0),
+        radius: float = 1.0,
+        capped: bool = True,
+        *,
+        transform: ArrayLike | None = None,
+        material: Diffuse | None = None,
+        emission: ArrayLike | None = None,
+    ) -> None:
+        start, end = segment(("base", "tip"), base, tip)
+        self._set(
+            transform,
+            material,
+            emission,
+            base=start,
+            tip=end,
+            radius=positive("radius", radius),
+            capped=switch("capped", capped),
+        )

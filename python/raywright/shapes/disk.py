@@ -1,0 +1,73 @@
+"""The disk."""
+
+from dataclasses import dataclass
+
+from numpy.typing import ArrayLike
+
+from ..arrays import Triple, number, positive, triple
+from ..materials import Diffuse
+from .shape import Shape, direction
+
+
+@dataclass(frozen=True, init=False, eq=False, repr=False)
+class Disk(Shape):
+    """All points of a plane between two distances from a centre, both included.
+
+    Parameters
+    ----------
+    center : 3 floats
+        Its centre.
+    normal : 3 floats
+        At right angles to it, towards its outer side; of any length but 0.
+    radius : float
+        The distance of its rim, greater than 0.
+    inner_radius : float
+        The distance of the rim of a round hole, at least 0 and less than `radius`; 0, the default, for none.
+    transform : (4, 4) array, optional
+        An affine matrix that acts on column vectors (x, y, z, 1), as from the shape's own space to the world.
+        Rays are decided for the matrix as it is given, not for a rounded inverse.
+    material : Diffuse, optional
+        How the surface scatters; ``Diffuse()`` if not given.
+    emission : float or 3 floats, optional
+        Radiance in W·sr⁻¹·m⁻² that leaves the outer side; None, the default, for a shape that does not shine.
+
+    Raises
+    ------
+    ValueError
+        If a radius is out of its range, the normal has no length, or a number is not finite.
+        If the transform is not a finite affine (4, 4) matrix, or has no inverse.
+    TypeError
+        If a number or a material is something else.
+
+    Notes ----- ``u`` is the angle about the normal, in turns; ``v`` the way from the rim, 0, inwards to the
+    hole or the centre, 1.
+    """
+
+    center: Triple
+    normal: Triple
+    radius: float
+    inner_radius: float
+
+    def __init__(
+        self,
+        center: ArrayLike = (0.0, 0.0, 0.0),
+        normal: ArrayLike = (0.0, 0.0, 1.0),
+        radius: float = 1.0,
+        inner_radius: float = 0.0,
+        *,
+        transform: ArrayLike | None = None,
+        material: Diffuse | None = None,
+        emission: ArrayLike | None = None,
+    ) -> None:
+        outer, inner = positive("radius", radius), number("inner_radius", inner_radius)
+        if not 0 <= inner < outer:
+            raise ValueError(f"inner_radius must be at least 0 and less than radius = {outer}, got {inner}")
+        self._set(
+            transform,
+            material,
+            emission,
+            center=triple("center", center),
+            normal=direction("normal", normal),
+            radius=outer,
+            inner_radius=inner,
+        )

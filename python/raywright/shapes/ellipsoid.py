@@ -1,0 +1,67 @@
+"""The ellipsoid."""
+
+from dataclasses import dataclass
+
+from numpy.typing import ArrayLike
+
+from ..arrays import Triple, triple
+from ..materials import Diffuse
+from .shape import Shape
+
+
+@dataclass(frozen=True, init=False, eq=False, repr=False)
+class Ellipsoid(Shape):
+    """A sphere scaled along the axes.
+
+    Other axes than x, y and z are a `transform`'s to give.
+
+    Parameters
+    ----------
+    center : 3 floats
+        Its centre.
+    semi_axes : 3 floats
+        Half its width along x, y and z, each greater than 0.
+    transform : (4, 4) array, optional
+        An affine matrix that acts on column vectors (x, y, z, 1), as from the shape's own space to the world.
+        Rays are decided for the matrix as it is given, not for a rounded inverse.
+    material : Diffuse, optional
+        How the surface scatters; ``Diffuse()`` if not given.
+    emission : float or 3 floats, optional
+        Radiance in W·sr⁻¹·m⁻² that leaves the outer side; None, the default, for a shape that does not shine.
+
+    Raises
+    ------
+    ValueError
+        If a semi-axis is not greater than 0, or a number is not finite.
+        If the transform is not a finite affine (4, 4) matrix, or has no inverse.
+    TypeError
+        If a number or a material is something else.
+
+    Notes
+    -----
+    ``u`` and ``v`` are those of the `Sphere` that it comes of. Its area is Carlson's elliptic integral R_G
+    (Carlson 1961), and it is sampled as that sphere is.
+    """
+
+    center: Triple
+    semi_axes: Triple
+
+    def __init__(
+        self,
+        center: ArrayLike = (0.0, 0.0, 0.0),
+        semi_axes: ArrayLike = (1.0, 1.0, 1.0),
+        *,
+        transform: ArrayLike | None = None,
+        material: Diffuse | None = None,
+        emission: ArrayLike | None = None,
+    ) -> None:
+        axes = triple("semi_axes", semi_axes)
+        if min(axes) <= 0:
+            raise ValueError(f"semi_axes must each be greater than 0, got {axes}")
+        self._set(
+            transform,
+            material,
+            emission,
+            center=triple("center", center),
+            semi_axes=axes,
+        )

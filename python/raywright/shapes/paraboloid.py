@@ -1,0 +1,74 @@
+"""The paraboloid of revolution."""
+
+from dataclasses import dataclass
+
+from numpy.typing import ArrayLike
+
+from ..arrays import Triple, positive
+from ..materials import Diffuse
+from .shape import Shape, segment, switch
+
+
+@dataclass(frozen=True, init=False, eq=False, repr=False)
+class Paraboloid(Shape):
+    """What a parabola draws that is turned about its axis, from its apex to a rim.
+
+    With the radius ``r`` and the distance ``h`` from apex to tip it is ``z = h ρ² / r²``, and its focus
+    lies ``r² / 4h`` above the apex: a mirror of focal length ``f`` and radius ``r`` is as high as ``r² /
+    4f``.
+
+    Parameters
+    ----------
+    apex, tip : 3 floats
+        Where it begins, and the middle of the rim, which differ.
+    radius : float
+        The distance of the rim from the axis, greater than 0.
+    capped : bool
+        Whether a disk closes it at the rim; not if not given.
+    transform : (4, 4) array, optional
+        An affine matrix that acts on column vectors (x, y, z, 1), as from the shape's own space to the world.
+        Rays are decided for the matrix as it is given, not for a rounded inverse.
+    material : Diffuse, optional
+        How the surface scatters; ``Diffuse()`` if not given.
+    emission : float or 3 floats, optional
+        Radiance in W·sr⁻¹·m⁻² that leaves the outer side; None, the default, for a shape that does not shine.
+
+    Raises
+    ------
+    ValueError
+        If apex and tip are the same, the radius is not greater than 0, or a number is not finite.
+        If the transform is not a finite affine (4, 4) matrix, or has no inverse.
+    TypeError
+        If a number or a material is something else.
+
+    Notes ----- ``u`` is the angle about the axis, in turns, anticlockwise as seen from the tip; ``v`` the
+    distance from the axis as a share of the rim's. Of a closed one that is the first half of ``v``, and the
+    second goes on from the rim to the cap's middle.
+    """
+
+    apex: Triple
+    tip: Triple
+    radius: float
+    capped: bool
+
+    def __init__(
+        self,
+        apex: ArrayLike = (0.0, 0.0, 0.0),
+        tip: ArrayLike = (0.0, 0.0, 1.0),
+        radius: float = 1.0,
+        capped: bool = False,
+        *,
+        transform: ArrayLike | None = None,
+        material: Diffuse | None = None,
+        emission: ArrayLike | None = None,
+    ) -> None:
+        start, end = segment(("apex", "tip"), apex, tip)
+        self._set(
+            transform,
+            material,
+            emission,
+            apex=start,
+            tip=end,
+            radius=positive("radius", radius),
+            capped=switch("capped", capped),
+        )

@@ -1,0 +1,62 @@
+"""The infinite plane."""
+
+from dataclasses import dataclass
+
+from numpy.typing import ArrayLike
+
+from ..arrays import Triple, triple
+from ..materials import Diffuse
+from .shape import Shape, direction
+
+
+@dataclass(frozen=True, init=False, eq=False, repr=False)
+class Plane(Shape):
+    """All points of a plane without end.
+
+    A scene with one has no bounds of its own; rays along it see it edge-on and pass.
+
+    Parameters
+    ----------
+    point : 3 floats
+        A point on it.
+    normal : 3 floats
+        At right angles to it, towards its outer side; of any length but 0.
+    transform : (4, 4) array, optional
+        An affine matrix that acts on column vectors (x, y, z, 1), as from the shape's own space to the world.
+        Rays are decided for the matrix as it is given, not for a rounded inverse.
+    material : Diffuse, optional
+        How the surface scatters; ``Diffuse()`` if not given.
+    emission : float or 3 floats, optional
+        Radiance in W·sr⁻¹·m⁻² that leaves the outer side; None, the default, for a shape that does not shine.
+
+    Raises
+    ------
+    ValueError
+        If the normal has no length, or a number is not finite.
+        If the transform is not a finite affine (4, 4) matrix, or has no inverse.
+    TypeError
+        If a number or a material is something else.
+
+    Notes ----- ``u`` and ``v`` run along two unit axes at right angles to the normal (Duff et al. 2017),
+    from the point on, and begin again after each unit of length.
+    """
+
+    point: Triple
+    normal: Triple
+
+    def __init__(
+        self,
+        point: ArrayLike = (0.0, 0.0, 0.0),
+        normal: ArrayLike = (0.0, 0.0, 1.0),
+        *,
+        transform: ArrayLike | None = None,
+        material: Diffuse | None = None,
+        emission: ArrayLike | None = None,
+    ) -> None:
+        self._set(
+            transform,
+            material,
+            emission,
+            point=triple("point", point),
+            normal=direction("normal", normal),
+        )

@@ -1,0 +1,78 @@
+"""The planar polygon."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from .._core import polygon_trouble
+from ..arrays import Triple, rows
+from ..materials import Diffuse
+from .shape import Shape
+
+Ring = tuple[Triple, ...]
+
+
+@dataclass(frozen=True, init=False, eq=False, repr=False)
+class Polygon(Shape):
+    """A flat face, convex or not, with or without holes.
+
+    Whether a ray passes through it is decided by its edges without error, so nothing leaks where two of them
+    share an edge, or one and a mesh in float64. How far away it is hit is told by the plane that is fitted to
+    its points.
+
+    Parameters
+    ----------
+    outline : (N, 3) array
+        Its corners in order, at least 3, the last not repeating the first. The normal points to where they
+        turn anticlockwise.
+    holes : sequence of (N, 3) arrays
+        Outlines of its holes, either way round.
+    transform : (4, 4) array, optional
+        An affine matrix that acts on column vectors (x, y, z, 1), as from the shape's own space to the world.
+        Rays are taken into the shape's own space and rounded there once, all in the same way: nothing leaks
+        between polygons that share an edge and have equal transforms.
+    material : Diffuse, optional
+        How the surface scatters; ``Diffuse()`` if not given.
+    emission : float or 3 floats, optional
+        Radiance in W·sr⁻¹·m⁻² that leaves the outer side; None, the default, for a shape that does not shine.
+
+    Raises
+    ------
+    ValueError
+        If a ring has fewer than 3 corners, a number is not finite, a corner lies off the plane by more than a
+        millionth of the diagonal of the box around them, outlines cross or touch themselves or each other,
+        or a hole is not inside the outline and outside of the other holes. Tells which and where.
+        If the transform is not a finite affine (4, 4) matrix, or has no inverse.
+    TypeError
+        If a number or a material is something else.
+
+    Notes
+    -----
+    ``u`` runs along the first edge of the outline and ``v`` to the left of it, each from 0 to 1 over the
+    outline's extent. Seen exactly edge-on it is not hit.
+    """
+
+    outline: Ring
+    holes: tuple[Ring, ...]
+
+    def __init__(
+        self,
+        outline: ArrayLike,
+        holes: Sequence[ArrayLike] = (),
+        *,
+        transform: ArrayLike | None = None,
+        material: Diffuse | None = None,
+        emission: ArrayLike | None = None,
+    ) -> None:
+        border = _ring("outline", outline)
+        inner = tuple(_ring(f"holes[{i}]", hole) for i, hole in enumerate(holes))
+        trouble = polygon_trouble(border, inner)
+        if trouble is not None:
+            raise ValueError(f"polygon: {trouble}")
+        self._set(transform, material, emission, outline=border, holes=inner)
+
+
+def _ring(name: str, value: ArrayLike) -> Ring:
+    return tuple((x, y, z) for x, y, z in rows(name, value, 3).astype(np.float64).tolist())

@@ -1,0 +1,143 @@
+"""What all shapes have in common that are no meshes."""
+
+from dataclasses import dataclass, fields
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .._core import matrix_trouble, shape_area, shape_bounds
+from ..arrays import Triple, colour, frozen, real_array, triple
+from ..materials import Diffuse
+
+
+@dataclass(frozen=True, init=False, eq=False, repr=False)
+class Shape:
+    """A shape with a transform, a material and an emission. Its subclasses say what it is.
+
+    Shapes compare, hash, print and pickle by their parameters. The transform is kept as a read-only copy.
+    """
+
+    transform: NDArray[np.float64] | None
+    material: Diffuse
+    emission: Triple | None
+
+    def _set(
+        self,
+        transform: ArrayLike | None,
+        material: Diffuse | None,
+        emission: ArrayLike | None,
+        **parameters: Any,
+    ) -> None:
+        """Keep the parameters, and what every shape has once it is checked."""
+        if material is None:
+            material = Diffuse()
+        elif not isinstance(material, Diffuse):
+            raise TypeError(f"material must be a raywright material, got {type(material).__name__}")
+        values = {
+            **parameters,
+            "transform": None if transform is None else affine("transform", transform),
+            "material": material,
+            "emission": None if emission is None else colour("emission", emission),
+        }
+        for name, value in values.items():
+            object.__setattr__(self, name, value)
+
+    @property
+    def bounds(self) -> NDArray[np.float64]:
+        """Least and greatest corner of the transformed shape, (2, 3) float64, rounded outwards.
+
+        Tight to a few units in the last place. Infinite along an axis where the shape is.
+        """
+        return np.array(shape_bounds(self))
+
+    @property
+    def area(self) -> float:
+        """Area of the transformed shape's surface; infinite where it is.
+
+        A closed form or, of a cylinder, a cone or a paraboloid that a transform stretches unevenly, a sum
+        that is right to about 1e-9 of itself.
+        """
+        return shape_area(self)
+
+    def _values(self) -> tuple[Any, ...]:
+        return tuple(
+            value.tobytes() if isinstance(value, np.ndarray) else value
+            for value in (getattr(self, field.name) for field in fields(self))
+        )
+
+    def __eq__(self, other: object) -> bool:
+        if type(other) is not type(self) or not isinstance(other, Shape):
+            return NotImplemented
+        return self._values() == other._values()
+
+    def __hash__(self) -> int:
+        return hash((type(self), self._values()))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # Through the constructor, because an unpickled array would be writeable.
+        return _restored, (type(self), {field.name: getattr(self, field.name) for field in fields(self)})
+
+    def __repr__(self) -> str:
+        parts = [
+            f"{field.name}={value.tolist() if isinstance(value, np.ndarray) else value!r}"
+            for field in sorted(fields(self), key=lambda field: field.name in _COMMON)
+            if (value := getattr(self, field.name)) is not None
+        ]
+        return f"{type(self).__name__}({', '.join(parts)})"
+
+
+_COMMON = ("transform", "material", "emission")
+
+
+def _restored(kind: type[Shape], values: dict[str, Any]) -> Shape:
+    return kind(**values)
+
+
+def affine(name: str, value: ArrayLike) -> NDArray[np.float64]:
+    """Return a read-only copy of a finite affine (4, 4) matrix that has an inverse.
+
+    Raises
+    ------
+    ValueError
+        If the matrix has another shape, is not finite, is not affine, or is singular (tells the determinant).
+    """
+    matrix = frozen(real_array(name, value).astype(np.float64))
+    if matrix.shape != (4, 4):
+        raise ValueError(f"{name} must have shape (4, 4), got {matrix.shape}")
+    if not np.isfinite(matrix).all():
+        row, column = np.argwhere(~np.isfinite(matrix))[0]
+        raise ValueError(f"{name} must be finite, got {matrix[row, column]} in row {row}, column {column}")
+    # -0.0 and 0.0 transform alike, and are to compare alike.
+    matrix = frozen(matrix + 0.0)
+    if not np.array_equal(matrix[3], (0, 0, 0, 1)):
+        raise ValueError(
+            f"{name} must be affine, with (0, 0, 0, 1) as its last row, got {matrix[3].tolist()}"
+        )
+    trouble = matrix_trouble(matrix.tolist())
+    if trouble is not None:
+        raise ValueError(f"{name} must have an inverse, but {trouble}")
+    return matrix
+
+
+def segment(names: tuple[str, str], base: ArrayLike, tip: ArrayLike) -> tuple[Triple, Triple]:
+    """Return two points that differ."""
+    a, b = triple(names[0], base), triple(names[1], tip)
+    if a == b:
+        raise ValueError(f"{names[0]} and {names[1]} must differ for an axis between them, both are {a}")
+    return a, b
+
+
+def direction(name: str, value: ArrayLike) -> Triple:
+    """Return a vector that has a length."""
+    vector = triple(name, value)
+    if vector == (0, 0, 0):
+        raise ValueError(f"{name} must have a length, got {vector}")
+    return vector
+
+
+def switch(name: str, value: bool) -> bool:
+    """Return a bool."""
+    if not isinstance(value, bool | np.bool_):
+        raise TypeError(f"{name} must be True or False, got {value!r}")
+    return bool(value)

@@ -1,0 +1,65 @@
+"""The sphere."""
+
+from dataclasses import dataclass
+
+from numpy.typing import ArrayLike
+
+from ..arrays import Triple, positive, triple
+from ..materials import Diffuse
+from .shape import Shape
+
+
+@dataclass(frozen=True, init=False, eq=False, repr=False)
+class Sphere(Shape):
+    """All points at one distance from a centre.
+
+    Whether a ray meets it is decided without error, and `t` is right to the last place, however small and
+    far it is: the discriminant is that of the ray's closest approach (Haines et al., "Precision
+    Improvements for Ray/Sphere Intersection", 2019).
+
+    Parameters
+    ----------
+    center : 3 floats
+        Its centre.
+    radius : float
+        The distance of all points from it, greater than 0.
+    transform : (4, 4) array, optional
+        An affine matrix that acts on column vectors (x, y, z, 1), as from the shape's own space to the world.
+        Rays are decided for the matrix as it is given, not for a rounded inverse.
+    material : Diffuse, optional
+        How the surface scatters; ``Diffuse()`` if not given.
+    emission : float or 3 floats, optional
+        Radiance in W·sr⁻¹·m⁻² that leaves the outer side; None, the default, for a shape that does not shine.
+
+    Raises
+    ------
+    ValueError
+        If the radius is not greater than 0, or a number is not finite.
+        If the transform is not a finite affine (4, 4) matrix, or has no inverse.
+    TypeError
+        If a number or a material is something else.
+
+    Notes ----- ``u`` is the longitude about +z from +x on, in turns; ``v`` the latitude, from 0 at the pole
+    on -z to 1 at the pole on +z. Tangent rays are hits, and cross nothing where all crossings are asked
+    for. As seen from outside it is sampled evenly in the cone that it fills, from inside in all directions.
+    """
+
+    center: Triple
+    radius: float
+
+    def __init__(
+        self,
+        center: ArrayLike = (0.0, 0.0, 0.0),
+        radius: float = 1.0,
+        *,
+        transform: ArrayLike | None = None,
+        material: Diffuse | None = None,
+        emission: ArrayLike | None = None,
+    ) -> None:
+        self._set(
+            transform,
+            material,
+            emission,
+            center=triple("center", center),
+            radius=positive("radius", radius),
+        )

@@ -1,0 +1,54 @@
+"""How surfaces lie where rays meet them."""
+
+from dataclasses import dataclass, fields
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Surface:
+    """All about the points of some hits; all arrays are float64 and read-only, and NaN for misses.
+
+    Attributes
+    ----------
+    position : (..., 3)
+        Where the points are.
+    error : (...)
+        Bound on how far each coordinate of `position` is from a point of the surface.
+    normal : (..., 3)
+        Unit geometric normal: as the winding gives it, or to the outside of a closed shape.
+    shading_normal : (..., 3)
+        Unit normal as the vertices give it, on the side of `normal`; the same where there are none.
+    dp_du, dp_dv : (..., 3)
+        How the position changes with u and with v.
+    dn_du, dn_dv : (..., 3)
+        How the unit shading normal changes with u and with v.
+    """
+
+    position: NDArray[np.float64]
+    error: NDArray[np.float64]
+    normal: NDArray[np.float64]
+    shading_normal: NDArray[np.float64]
+    dp_du: NDArray[np.float64]
+    dp_dv: NDArray[np.float64]
+    dn_du: NDArray[np.float64]
+    dn_dv: NDArray[np.float64]
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Surface):
+            return NotImplemented
+        pairs = ((getattr(self, part.name), getattr(other, part.name)) for part in fields(self))
+        return all(np.array_equal(a, b, equal_nan=True) for a, b in pairs)
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        # An unpickled array would be writeable.
+        for array in state.values():
+            array.setflags(write=False)
+        vars(self).update(state)
+
+    def __repr__(self) -> str:
+        return f"Surface(shape={self.error.shape})"

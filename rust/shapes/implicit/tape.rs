@@ -1,0 +1,161 @@
+//! An expression as a list of steps, each of which uses the results of steps before it; equal steps are done once.
+
+use super::number::Number;
+
+/// Functions of one number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unary {
+    /// `-a`
+    Negative,
+    /// `abs(a)`
+    Abs,
+    /// `sqrt(a)`
+    Sqrt,
+    /// `exp(a)`
+    Exp,
+    /// `log(a)`, the natural logarithm.
+    Log,
+    /// `sin(a)`
+    Sin,
+    /// `cos(a)`
+    Cos,
+    /// `tan(a)`
+    Tan,
+    /// `asin(a)`
+    Asin,
+    /// `acos(a)`
+    Acos,
+    /// `atan(a)`
+    Atan,
+    /// `sinh(a)`
+    Sinh,
+    /// `cosh(a)`
+    Cosh,
+    /// `tanh(a)`
+    Tanh,
+}
+
+/// Functions of two numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Binary {
+    /// `a + b`
+    Add,
+    /// `a - b`
+    Subtract,
+    /// `a * b`
+    Multiply,
+    /// `a / b`
+    Divide,
+    /// `a ** b` for a power that is no whole number: of what is not negative.
+    Raise,
+    /// `atan2(a, b)`
+    Atan2,
+    /// `min(a, b)`
+    Min,
+    /// `max(a, b)`
+    Max,
+}
+
+/// One step; operands are the numbers of earlier steps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Step {
+    /// A number.
+    Constant(f64),
+    /// x, y or z.
+    Variable(usize),
+    /// A function of one.
+    Unary(Unary, usize),
+    /// A function of two.
+    Binary(Binary, usize, usize),
+    /// To a whole power.
+    Power(usize, i32),
+}
+
+/// The steps of an expression; the last one is its value.
+#[derive(Clone, Debug, Default)]
+pub struct Tape {
+    steps: Vec<Step>,
+}
+
+impl Tape {
+    /// Adds a step, unless it is there, and tells its number. Constants are joined where that rounds nothing, so that
+    /// `x ** -2` is a whole power.
+    pub fn push(&mut self, step: Step) -> usize {
+        let step = match step {
+            Step::Unary(Unary::Negative, a) if self.constant(a).is_some() => {
+                Step::Constant(self.constant(a).map_or(0.0, |x| -x))
+            }
+            Step::Binary(Binary::Multiply, a, b) if a == b => Step::Power(a, 2),
+            Step::Binary(Binary::Raise, a, b) => match self.constant(b) {
+                Some(n) if n.fract() == 0.0 && n.abs() <= 1024.0 => Step::Power(a, n as i32),
+                _ => step,
+            },
+            _ => step,
+        };
+        let same = |other: &Step| match (other, &step) {
+            // 0 and −0 are equal but not the same.
+            (Step::Constant(a), Step::Constant(b)) => a.to_bits() == b.to_bits(),
+            (a, b) => a == b,
+        };
+        self.steps.iter().position(same).unwrap_or_else(|| {
+            self.steps.push(step);
+            self.steps.len() - 1
+        })
+    }
+
+    /// The value of a step, if it is a constant.
+    fn constant(&self, step: usize) -> Option<f64> {
+        if let Step::Constant(x) = self.steps[step] { Some(x) } else { None }
+    }
+
+    /// How many steps there are.
+    pub fn len(&self) -> usize {
+        self.steps.len()
+    }
+
+    /// Makes the step of this number the last one, and drops those that it does not need.
+    pub fn finish(&mut self, last: usize) {
+        let mut needed = vec![false; last + 1];
+        needed[last] = true;
+        for (i, step) in self.steps[..=last].iter().enumerate().rev() {
+            if needed[i] {
+                match *step {
+                    Step::Unary(_, a) | Step::Power(a, _) => needed[a] = true,
+                    Step::Binary(_, a, b) => (needed[a], needed[b]) = (true, true),
+                    Step::Constant(_) | Step::Variable(_) => {}
+                }
+            }
+        }
+        let place: Vec<usize> = (0..=last).map(|i| needed[..i].iter().filter(|&&n| n).count()).collect();
+        let kept = self.steps[..=last].iter().zip(&needed).filter(|(_, needed)| **needed);
+        self.steps = kept
+            .map(|(step, _)| match *step {
+                Step::Unary(f, a) => Step::Unary(f, place[a]),
+                Step::Power(a, n) => Step::Power(place[a], n),
+                Step::Binary(f, a, b) => Step::Binary(f, place[a], place[b]),
+                step => step,
+            })
+            .collect();
+    }
+
+    /// Whether any step uses x, y or z.
+    pub fn is_constant(&self) -> bool {
+        !self.steps.iter().any(|s| matches!(s, Step::Variable(_)))
+    }
+
+    /// The value for given x, y and z. `work` is room to compute in.
+    pub fn value<N: Number>(&self, variables: &[N; 3], work: &mut Vec<N>) -> N {
+        work.clear();
+        for step in &self.steps {
+            let result = match *step {
+                Step::Constant(x) => N::constant(x),
+                Step::Variable(axis) => variables[axis],
+                Step::Unary(function, a) => work[a].unary(function),
+                Step::Binary(function, a, b) => work[a].binary(function, work[b]),
+                Step::Power(a, n) => work[a].power(n),
+            };
+            work.push(result);
+        }
+        work[work.len() - 1]
+    }
+}
