@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, Any
 
 from . import scenes
 from ._core import AcceleratorInfo, simd
-from .accelerators import BVH, BruteForce, Grid, NestedGrid
+from .accelerators import BSP, BVH, BruteForce, Grid, KdTree, NestedGrid, Octree
 from .camera import Camera
 from .hits import AllHits, ClosestPoints, Hits, QueryCost
 from .image import ErrorEstimate, Image
@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from . import report
 
 __all__ = [
+    "BSP",
     "BVH",
     "AcceleratorInfo",
     "AllHits",
@@ -52,8 +53,10 @@ __all__ = [
     "Hits",
     "Image",
     "Implicit",
+    "KdTree",
     "Mesh",
     "NestedGrid",
+    "Octree",
     "Paraboloid",
     "Path",
     "Plane",

@@ -46,7 +46,7 @@ class Scene(Queries):
         Lights that are not meshes.
     environment : ConstantEnvironment, float or 3 floats, optional
         What surrounds the scene; numbers are a constant radiance. None is black.
-    accelerator : BVH, Grid, NestedGrid or BruteForce
+    accelerator : BVH, KdTree, Octree, BSP, Grid, NestedGrid or BruteForce
         The structure that finds hits.
     precision : {"single", "double"}
         What vertices are rounded to: "single" to float32, which takes the least memory and is the fastest,

@@ -1,12 +1,15 @@
 //! Floor 2: what finds hits.
 
 mod brute;
+pub mod bsp;
 pub mod bvh;
 mod crossings;
 pub mod grid;
+pub mod kdtree;
 mod mixed;
 mod nearest;
 mod objects;
+pub mod octree;
 mod parity;
 mod query;
 mod slab;

@@ -5,4 +5,5 @@ mod boxes;
 mod builders;
 mod nearest;
 mod signs;
+mod space;
 mod triangles;

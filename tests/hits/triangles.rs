@@ -3,8 +3,9 @@
 use raywright::accel::bvh::traverse::Ordered;
 use raywright::accel::bvh::{self, Options, Quality};
 use raywright::accel::grid::{self, Resolution};
+use raywright::accel::kdtree::{Builder, Traversal};
 use raywright::accel::walk::{self, Built, Input, Mailbox};
-use raywright::accel::{Accelerator, BruteForce, Primitives};
+use raywright::accel::{Accelerator, BruteForce, Primitives, bsp, kdtree, octree};
 use raywright::math::{DVec3, Hit, Ray, Region, Vec3};
 use raywright::shapes::triangle::EdgeRay;
 use raywright::simd::Level;
@@ -71,7 +72,7 @@ pub fn accelerators(primitives: &dyn Primitives) -> Vec<(String, Box<dyn Acceler
 type Build = fn(&Input) -> Built;
 
 /// The structures that one ray walks at a time.
-const STRUCTURES: [(&str, Build); 4] = [
+const STRUCTURES: [(&str, Build); 11] = [
     ("stack", |input| {
         let steps = Quality::Balanced.steps(2);
         Ordered::over(steps.build(&input.boxes, |p, to| input.boxes[p as usize].intersection(*to)), &steps.name())
@@ -81,7 +82,20 @@ const STRUCTURES: [(&str, Build); 4] = [
         grid::uniform::build(input, &grid::uniform::Options { resolution: Resolution::Each([13, 24, 17]) })
     }),
     ("nested grid", |input| grid::nested::build(input, &grid::nested::Options::DEFAULT)),
+    ("kD-tree", |input| kdtree::build(input, &kdtree::Options::DEFAULT)),
+    ("kD-tree, median, restart", |input| kdtree::build(input, &kd(Builder::Median, Traversal::Restart))),
+    ("kD-tree, middle, restart", |input| kdtree::build(input, &kd(Builder::Middle, Traversal::Restart))),
+    ("kD-tree, cycle, stack", |input| kdtree::build(input, &kd(Builder::Cycle, Traversal::Stack))),
+    ("octree", |input| octree::build(input, &octree::Options::DEFAULT)),
+    ("octree to the end", |input| {
+        octree::build(input, &octree::Options { max_depth: octree::MAX_DEPTH, leaf_size: 1 })
+    }),
+    ("BSP tree", |input| bsp::build(input, &bsp::Options::DEFAULT)),
 ];
+
+const fn kd(builder: Builder, traversal: Traversal) -> kdtree::Options {
+    kdtree::Options { builder, traversal, ..kdtree::Options::DEFAULT }
+}
 
 /// The closest hits, after seeing that every accelerator at every level gives the same bits, and `occluded` the same
 /// answer. The rays are asked as one batch, and a few at a time, which other kernels answer.

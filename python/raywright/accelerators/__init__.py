@@ -4,15 +4,21 @@ from .brute import BruteForce
 from .bvh import BVH, Builder, Optimiser
 from .choices import Accelerator, every, name_of
 from .grid import Grid, Mailbox, NestedGrid
+from .space import BSP, KdBuilder, KdTraversal, KdTree, Octree
 
 __all__ = [
+    "BSP",
     "BVH",
     "Accelerator",
     "BruteForce",
     "Builder",
     "Grid",
+    "KdBuilder",
+    "KdTraversal",
+    "KdTree",
     "Mailbox",
     "NestedGrid",
+    "Octree",
     "Optimiser",
     "every",
     "name_of",

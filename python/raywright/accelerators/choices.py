@@ -7,8 +7,9 @@ from typing import Any, Literal, Union, get_args, get_origin, get_type_hints
 from .brute import BruteForce
 from .bvh import BVH
 from .grid import Grid, NestedGrid
+from .space import BSP, KdTree, Octree
 
-Accelerator = BVH | Grid | NestedGrid | BruteForce
+Accelerator = BVH | KdTree | Octree | BSP | Grid | NestedGrid | BruteForce
 
 
 def every() -> dict[str, Accelerator]:

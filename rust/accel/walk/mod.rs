@@ -9,10 +9,14 @@
 
 mod contents;
 mod mailbox;
+mod parts;
+mod room;
 mod walked;
 
 pub(super) use contents::{Contents, LANES};
 pub use mailbox::Mailbox;
+pub(super) use parts::{Halves, Part, Plane};
+pub(super) use room::Room;
 pub use walked::walked;
 
 use super::{Info, Primitives, SlabRay};

@@ -2,6 +2,7 @@
 
 mod bvh;
 mod grid;
+mod space;
 
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
@@ -24,6 +25,9 @@ pub fn read(choice: &Bound<'_, PyAny>, quality: &str) -> PyResult<Build> {
         "BVH" => choice.extract::<bvh::Bvh>()?.build(quality, level),
         "Grid" => choice.extract::<grid::Grid>()?.build(level),
         "NestedGrid" => choice.extract::<grid::NestedGrid>()?.build(level),
+        "KdTree" => choice.extract::<space::KdTree>()?.build(level),
+        "Octree" => choice.extract::<space::Octree>()?.build(level),
+        "BSP" => choice.extract::<space::Bsp>()?.build(level),
         "BruteForce" => Ok(Box::new(move |geometry| BruteForce::over(geometry, level))),
         other => Err(PyTypeError::new_err(format!("accelerator is a {other}, expected one of raywright's"))),
     }

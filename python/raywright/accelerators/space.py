@@ -1,0 +1,151 @@
+"""Structures that part space by planes."""
+
+from dataclasses import dataclass
+from typing import Literal, get_args
+
+from ..arrays import choice, integer, number, positive
+
+KdBuilder = Literal["sah", "median", "middle", "cycle"]
+KdTraversal = Literal["stack", "restart"]
+_MOST_LEVELS = 60
+
+
+@dataclass(frozen=True)
+class KdTree:
+    """A kD-tree: space parted by planes across its axes, in nodes of 8 bytes.
+
+    A primitive stands in every leaf that it has a part in, and is tested once for a ray all the same.
+
+    Parameters
+    ----------
+    builder : {"sah", "median", "middle", "cycle"}
+        Where planes stand. All clip primitives to what lies in a cell.
+
+        - ``"sah"``: where the surface area heuristic expects the least work, among all ends of clipped
+          primitives, in n log n (Wald and Havran 2006, "On building fast kd-trees for ray tracing, and on
+          doing that in O(N log N)").
+        - ``"median"``: across the cell's longest axis, at the median of the primitives' centres.
+        - ``"middle"``: in the middle of the cell's longest axis.
+        - ``"cycle"``: across one axis after the other, at the median (Bentley 1975, "Multidimensional
+          binary search trees used for associative searching").
+    traversal : {"stack", "restart"}
+        How rays go through it: with a stack (Hapala and Havran 2011, "Review: Kd-tree traversal algorithms
+        for ray tracing"), or without, from the top again after each leaf (Foley and Sugerman 2005; Horn et
+        al. 2007; Laine 2010, "Restart trail for stackless BVH traversal"). Both come to the same leaves in
+        the same order.
+    traversal_cost, intersection_cost : float
+        Cost of visiting a node and of testing a primitive, in any one unit; only their ratio matters. For
+        ``"sah"``.
+    empty_bonus : float
+        By what part a plane's cost is taken to be less that has nothing on one side, 0 to 1. For ``"sah"``.
+    max_depth : int, optional
+        Most levels below the root, 0 to 60; 8 + 1.3 log2(n) for n primitives if not given.
+    leaf_size : int
+        So many primitives are not parted any more.
+
+    Raises
+    ------
+    ValueError
+        If a value is outside its range, or the builder or the traversal is not known.
+    TypeError
+        If a value is not a number.
+    """
+
+    builder: KdBuilder = "sah"
+    traversal: KdTraversal = "stack"
+    traversal_cost: float = 1.0
+    intersection_cost: float = 0.5
+    empty_bonus: float = 0.2
+    max_depth: int | None = None
+    leaf_size: int = 4
+
+    def __post_init__(self) -> None:
+        choice("builder", self.builder, get_args(KdBuilder))
+        choice("traversal", self.traversal, get_args(KdTraversal))
+        bonus = number("empty_bonus", self.empty_bonus)
+        if not 0 <= bonus <= 1:
+            raise ValueError(f"empty_bonus must be between 0 and 1, got {self.empty_bonus}")
+        object.__setattr__(self, "empty_bonus", bonus)
+        _keep_costs(self, self.traversal_cost, self.intersection_cost)
+        _keep_limits(self, self.max_depth, _MOST_LEVELS, self.leaf_size)
+
+
+@dataclass(frozen=True)
+class Octree:
+    """An octree: cells halved across all axes at once, in nodes of 4 bytes.
+
+    Rays are followed by where they meet the planes around cells; those between a cell's children lie
+    half-way (Revelles, Urena and Lastra 2000, "An efficient parametric algorithm for octree traversal").
+
+    Parameters
+    ----------
+    max_depth : int
+        Most levels below the root, 0 to 18.
+    leaf_size : int
+        So many primitives are not parted any more. Nor are those that parting would not save tests of.
+
+    Raises
+    ------
+    ValueError
+        If a value is outside its range.
+    TypeError
+        If a value is not an integer.
+    """
+
+    max_depth: int = 12
+    leaf_size: int = 8
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "max_depth", integer("max_depth", self.max_depth, 0, 18))
+        object.__setattr__(self, "leaf_size", integer("leaf_size", self.leaf_size, 1))
+
+
+@dataclass(frozen=True)
+class BSP:
+    """A tree of planes that lie as they like, taken from the polygons.
+
+    After Fuchs, Kedem and Naylor (1980, "On visible surface generation by a priori tree structures") and,
+    for rays, Ize, Wald and Parker (2008, "Ray tracing with the BSP tree"): each cell tries planes of a few
+    of its polygons, the one that each lies in, three through its edges and six across axes, and takes the
+    one of least cost by the surface area heuristic. Polygons that straddle it are cut.
+
+    Parameters
+    ----------
+    candidates : int
+        So many polygons of a cell give planes, 1 to 1024.
+    traversal_cost, intersection_cost : float
+        Cost of visiting a node and of testing a primitive, in any one unit; only their ratio matters.
+    max_depth : int, optional
+        Most levels below the root, 0 to 60; 8 + 1.3 log2(n) for n primitives if not given.
+    leaf_size : int
+        So many primitives are not parted any more.
+
+    Raises
+    ------
+    ValueError
+        If a value is outside its range.
+    TypeError
+        If a value is not a number.
+    """
+
+    candidates: int = 4
+    traversal_cost: float = 1.0
+    intersection_cost: float = 1.0
+    max_depth: int | None = None
+    leaf_size: int = 2
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "candidates", integer("candidates", self.candidates, 1, 1024))
+        _keep_costs(self, self.traversal_cost, self.intersection_cost)
+        _keep_limits(self, self.max_depth, _MOST_LEVELS, self.leaf_size)
+
+
+def _keep_costs(owner: object, traversal: float, intersection: float) -> None:
+    object.__setattr__(owner, "traversal_cost", positive("traversal_cost", traversal))
+    object.__setattr__(owner, "intersection_cost", positive("intersection_cost", intersection))
+
+
+def _keep_limits(owner: object, depth: int | None, most: int, leaf_size: int) -> None:
+    if depth is not None:
+        object.__setattr__(owner, "max_depth", integer("max_depth", depth, 0, most))
+    object.__setattr__(owner, "leaf_size", integer("leaf_size", leaf_size, 1))
