@@ -89,8 +89,10 @@ fn work_is_bounded(accelerator: &dyn Accelerator, rays: &[Ray]) {
     let mut costs = vec![Cost::default(); rays.len()];
     accelerator.cost(rays, &mut costs);
     let info = accelerator.info();
+    // Parts of one primitive stand in several leaves, of at most eight parts each.
+    let most = if info.kind.contains("spatial splits") { 8 * info.leaves } else { info.primitives };
     for (cost, ray) in costs.iter().zip(rays) {
-        assert!(cost.nodes as usize <= info.nodes && cost.primitives as usize <= info.primitives, "{ray:?}: {cost:?}");
+        assert!(cost.nodes as usize <= info.nodes && cost.primitives as usize <= most, "{ray:?}: {cost:?}");
         if !(ray.origin.is_finite() && ray.direction.is_finite()) {
             assert_eq!(*cost, Cost::default(), "{ray:?}");
         }
