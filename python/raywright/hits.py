@@ -83,7 +83,7 @@ class SurfacePoints:
             ray,
         )
         lead = self.primitive.shape
-        return Surface(*(sealed(part.reshape(*lead, *part.shape[1:])) for part in parts))
+        return Surface(*(sealed(part.reshape(lead + part.shape[1:])) for part in parts))
 
     def __eq__(self, other: object) -> bool:
         if type(other) is not type(self):

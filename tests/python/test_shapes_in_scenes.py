@@ -163,6 +163,15 @@ def test_a_ball_in_a_furnace_is_not_seen():
         assert np.abs(image.rgb - 1).max() < 1e-5
 
 
+def test_one_ray_alone():
+    hits = rw.Scene(rw.Sphere((0, 0, 0), 1)).intersect([0, 0, 3], [0, 0, -1])
+    assert hits.position.tolist() == pytest.approx([0, 0, 1])
+    assert hits.surface.error.shape == ()
+    assert hits.surface.dp_du.shape == (3,)
+    mesh = rw.Scene(trimesh.creation.box()).intersect([0.1, 0.2, 3], [0, 0, -1])
+    assert np.array_equal(mesh.surface.normal, mesh.normal)
+
+
 def test_what_cannot_be_is_told():
     scene = rw.Scene([rw.Sphere((0, 0, 0), 1)])
     with pytest.raises(ValueError, match="closest points are found on meshes alone, and shape 0 is none"):
