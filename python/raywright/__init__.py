@@ -8,6 +8,7 @@ from .accelerators import BSP, BVH, BruteForce, Grid, KdTree, NestedGrid, Octree
 from .camera import Camera
 from .hits import AllHits, ClosestPoints, Hits, QueryCost
 from .image import ErrorEstimate, Image
+from .instance import Instance
 from .integrators import Path
 from .io.pictures import check_writable
 from .lights import ConstantEnvironment, PointLight
@@ -53,6 +54,7 @@ __all__ = [
     "Hits",
     "Image",
     "Implicit",
+    "Instance",
     "KdTree",
     "Mesh",
     "NestedGrid",

@@ -24,6 +24,7 @@ __all__ = [
     "shape_area",
     "shape_bounds",
     "simd",
+    "singular_transform",
 ]
 
 def simd() -> str:
@@ -31,6 +32,9 @@ def simd() -> str:
 
     "scalar", "sse2", "avx2" or "avx512".
     """
+
+def singular_transform(transform: NDArray[np.float64]) -> tuple[int, str] | None:
+    """Find the first of (4,4) or (N,4,4) matrices that has no inverse, and why; None if all have one."""
 
 @final
 class AcceleratorInfo:
@@ -68,8 +72,17 @@ class CompiledScene:
         t_max: _Numbers,
         shape: tuple[int, ...],
         threads: int | None,
-    ) -> tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.int32], NDArray[np.float64]]:
+        time: _Numbers | None = None,
+    ) -> tuple[
+        NDArray[np.float64],
+        NDArray[np.int32],
+        NDArray[np.int32],
+        NDArray[np.float64],
+        NDArray[np.int32] | None,
+    ]:
         """Closest hits of rays of leading shape `shape`: t, shape_id and primitive (...), uv (..., 2).
+
+        And in a scene with instances, instance (...).
 
         ``origins`` and ``directions`` have shape (..., 3) and are float32 or float64, each of either type;
         ``t_min`` and ``t_max`` are floats or arrays. Each has one row, or one for each ray. Rays of two or
@@ -83,6 +96,7 @@ class CompiledScene:
         t_max: _Numbers,
         shape: tuple[int, ...],
         threads: int | None,
+        time: _Numbers | None = None,
     ) -> NDArray[np.bool_]:
         """Whether each ray hits anything. Arguments as `intersect`."""
     def intersect_all(
@@ -93,10 +107,19 @@ class CompiledScene:
         t_max: _Numbers,
         shape: tuple[int, ...],
         threads: int | None,
+        time: _Numbers | None = None,
     ) -> tuple[
-        NDArray[np.int64], NDArray[np.float64], NDArray[np.int32], NDArray[np.int32], NDArray[np.float64]
+        NDArray[np.int64],
+        NDArray[np.float64],
+        NDArray[np.int32],
+        NDArray[np.int32],
+        NDArray[np.float64],
+        NDArray[np.int32] | None,
     ]:
-        """All hits of N rays: splits (N+1,), t (K,), shape_id (K,), primitive (K,), uv (K,2)."""
+        """All hits of N rays: splits (N+1,), t (K,), shape_id (K,), primitive (K,), uv (K,2).
+
+        And in a scene with instances, instance (K,).
+        """
     def count(
         self,
         origins: _Floats,
@@ -105,6 +128,7 @@ class CompiledScene:
         t_max: _Numbers,
         shape: tuple[int, ...],
         threads: int | None,
+        time: _Numbers | None = None,
     ) -> NDArray[np.int32]:
         """How many hits each ray has."""
     def cost(
@@ -115,6 +139,7 @@ class CompiledScene:
         t_max: _Numbers,
         shape: tuple[int, ...],
         threads: int | None,
+        time: _Numbers | None = None,
     ) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
         """Nodes visited and primitives tested for each ray's closest hit."""
     def contains(self, points: _Floats, shape: tuple[int, ...], threads: int | None) -> NDArray[np.bool_]:
@@ -242,10 +267,12 @@ def points(
     scene: CompiledScene,
     shape_id: NDArray[np.int32],
     primitive: NDArray[np.int32],
+    instance: NDArray[np.int32] | None,
     uv: NDArray[np.float64],
     t: NDArray[np.float64],
     origins: _Floats,
     directions: _Floats,
+    time: _Numbers,
     ray: NDArray[np.int64] | None,
 ) -> tuple[NDArray[np.float64], ...]:
     """All about some hits, NaN for misses.

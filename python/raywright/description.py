@@ -1,6 +1,7 @@
 """A scene described in lines of text."""
 
 from ._core import simd
+from .instance import Instance
 from .mesh import Mesh, face_count
 from .scene import Scene
 from .shapes import Shape
@@ -12,6 +13,7 @@ _MOST_SHAPES = 20
 def described(name: str, scene: Scene) -> str:
     """Return what a scene holds, and what its accelerator looks like, as aligned lines under `name`."""
     meshes = [shape for shape in scene.shapes if isinstance(shape, Mesh)]
+    copies = sum(len(shape) for shape in scene.shapes if isinstance(shape, Instance))
     others = len(scene.shapes) - len(meshes)
     info = scene.accelerator
     size = scene.bytes
@@ -19,6 +21,7 @@ def described(name: str, scene: Scene) -> str:
         ("shapes", f"{len(scene.shapes)}" + (f", {others} of them no meshes" if others else "")),
         ("vertices", f"{sum(len(mesh.vertices) for mesh in meshes):,}"),
         ("faces", f"{sum(map(face_count, meshes)):,}"),
+        *([("copies", f"{copies:,}")] if copies else []),
         ("bounds", _bounds(scene)),
         ("watertight", "yes" if all(map(is_watertight, meshes)) else "no"),
         ("degenerate", f"{sum(map(degenerate_faces, meshes)):,} faces"),
@@ -45,7 +48,9 @@ def _bounds(scene: Scene) -> str:
     return f"({low}) to ({high})"
 
 
-def _counts(shape: Mesh | Shape) -> str:
+def _counts(shape: Mesh | Shape | Instance) -> str:
+    if isinstance(shape, Instance):
+        return f"{len(shape):,} copies of {shape.primitives:,} primitives"
     if not isinstance(shape, Mesh):
         return type(shape).__name__
     return f"{len(shape.vertices):,} vertices, {len(shape.faces):,} faces"

@@ -20,7 +20,7 @@ class SurfacePoints:
     shape_id : (...) int32
         Which of ``scene.shapes``; -1 for none.
     primitive : (...) int32
-        Which face of that shape; -1 for none.
+        Which face of that shape, or of an instance what `Instance.locate` tells; -1 for none.
     uv : (..., 2) float64
         Barycentric weights of the face's second and third corner, so that the point is at
         ``(1 - u - v) * a + u * b + v * c`` for corners a, b, c.
@@ -30,8 +30,8 @@ class SurfacePoints:
     primitive: NDArray[np.int32]
     uv: NDArray[np.float64]
     _compiled: _core.CompiledScene = field(repr=False)
-    # Origins and directions, where shapes cannot tell their points without.
-    _rays: tuple[NDArray[Any], NDArray[Any]] | None = field(repr=False)
+    # Origins, directions and times, where shapes cannot tell their points without.
+    _rays: tuple[Any, ...] | None = field(repr=False)
 
     # What two of them are equal by.
     _parts: ClassVar[tuple[str, ...]] = ("shape_id", "primitive", "uv")
@@ -71,15 +71,18 @@ class SurfacePoints:
         """Ask all about the points; `ray` says which ray each is of, where they are not in turn."""
         # Meshes know their points by the weights alone.
         t = np.ascontiguousarray(getattr(self, "t", np.zeros(self.primitive.shape))).reshape(-1)
-        origins, directions = self._rays or (np.zeros((1, 3)), np.ones((1, 3)))
+        origins, directions, time = self._rays or (np.zeros((1, 3)), np.ones((1, 3)), 0.0)
+        instance = vars(self).get("instance")
         parts = _core.points(
             self._compiled,
             self.shape_id.reshape(-1),
             self.primitive.reshape(-1),
+            None if instance is None else instance.reshape(-1),
             self.uv.reshape(-1, 2),
             t,
             origins.reshape(-1, 3),
             directions.reshape(-1, 3),
+            time.reshape(-1) if isinstance(time, np.ndarray) else time,
             ray,
         )
         lead = self.primitive.shape
@@ -90,14 +93,16 @@ class SurfacePoints:
             return NotImplemented
         if self._more() != other._more():
             return False
-        return all(same(getattr(self, name), getattr(other, name)) for name in self._parts)
+        copies = ("instance",) if "instance" in vars(self) or "instance" in vars(other) else ()
+        return all(same(getattr(self, name), getattr(other, name)) for name in (*self._parts, *copies))
 
     __hash__ = None  # type: ignore[assignment]
 
     def __reduce__(self) -> tuple[Any, ...]:
         # The compiled scene is not pickled, so what would be asked of it later is worked out now.
         more = ("surface",) if "surface" in vars(self) else ()
-        kept = {name: getattr(self, name) for name in (*self._parts, "position", "normal")}
+        copies = ("instance",) if "instance" in vars(self) else ()
+        kept = {name: getattr(self, name) for name in (*self._parts, *copies, "position", "normal")}
         return _restored, (type(self), kept, {**self._more(), **{name: vars(self)[name] for name in more}})
 
     def _more(self) -> dict[str, Any]:
@@ -117,7 +122,7 @@ class Hits(SurfacePoints):
     shape_id : (...) int32
         Which of ``scene.shapes``; -1 for a miss.
     primitive : (...) int32
-        Which face of that shape; -1 for a miss.
+        Which face of that shape, or of an instance what `Instance.locate` tells; -1 for a miss.
     uv : (..., 2) float64
         Barycentric weights of the face's second and third corner, so that the hit is at
         ``(1 - u - v) * a + u * b + v * c`` for corners a, b, c.
@@ -133,13 +138,16 @@ class Hits(SurfacePoints):
         shape_id: NDArray[np.int32],
         primitive: NDArray[np.int32],
         uv: NDArray[np.float64],
+        instance: NDArray[np.int32] | None,
         compiled: _core.CompiledScene,
         rays: tuple[Any, ...] | None = None,
     ) -> None:
         # A frozen dataclass's own way of setting its fields takes longer than tracing a ray.
         self.__dict__.update(
-            t=t, shape_id=shape_id, primitive=primitive, uv=uv, _compiled=compiled, _rays=rays and rays[:2]
+            t=t, shape_id=shape_id, primitive=primitive, uv=uv, _compiled=compiled, _rays=rays
         )
+        if instance is not None:
+            self.__dict__["instance"] = instance
 
     @cached_property
     def hit(self) -> NDArray[np.bool_]:
@@ -175,7 +183,7 @@ class AllHits(SurfacePoints):
     shape_id : (K,) int32
         Which of ``scene.shapes``.
     primitive : (K,) int32
-        Which face of that shape.
+        Which face of that shape, or of an instance what `Instance.locate` tells.
     uv : (K, 2) float64
         Barycentric weights of the face's second and third corner, so that the hit is at
         ``(1 - u - v) * a + u * b + v * c`` for corners a, b, c.
@@ -196,12 +204,15 @@ class AllHits(SurfacePoints):
         shape_id: NDArray[np.int32],
         primitive: NDArray[np.int32],
         uv: NDArray[np.float64],
+        instance: NDArray[np.int32] | None,
         shape: tuple[int, ...],
         compiled: _core.CompiledScene,
         rays: tuple[Any, ...] | None = None,
     ) -> None:
         parts = {"ray_splits": ray_splits, "t": t, "shape_id": shape_id, "primitive": primitive, "uv": uv}
-        self.__dict__.update(parts, shape=shape, _compiled=compiled, _rays=rays and rays[:2])
+        self.__dict__.update(parts, shape=shape, _compiled=compiled, _rays=rays)
+        if instance is not None:
+            self.__dict__["instance"] = instance
 
     def _surface(self, ray: NDArray[np.int64] | None) -> Surface:
         return super()._surface(self.ray)

@@ -1,5 +1,7 @@
 """The questions that rays and points ask of a scene."""
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -7,7 +9,7 @@ from ._core import CompiledScene
 from .arrays import indices, last_axis
 from .camera import Camera
 from .hits import AllHits, ClosestPoints, Hits, QueryCost
-from .rays import nearest_arguments, point_arguments, ray_arguments
+from .rays import RayArguments, nearest_arguments, point_arguments, ray_arguments
 
 
 class Queries:
@@ -25,6 +27,7 @@ class Queries:
         t_min: ArrayLike = 0.0,
         t_max: ArrayLike = np.inf,
         threads: int | None = None,
+        time: ArrayLike | None = None,
     ) -> Hits:
         """Find the closest hit of each ray.
 
@@ -37,17 +40,21 @@ class Queries:
             The part of the ray that counts, in lengths of its direction, both ends included.
         threads : int, optional
             How many to use; all cores if not given. The answer does not depend on it.
+        time : float or (...) array, optional
+            When the rays are asked, from 0 as the shutter opens, which it is if not given, to 1 as it closes:
+            instances that move are where they then are.
 
         Returns
         -------
         Hits
             With the leading shape of the rays. Of hits at the same `t`, the one of the lowest
-            (shape_id, primitive).
+            (shape_id, instance, primitive).
 
         Raises
         ------
         ValueError
-            If a last dimension is not 3, leading shapes do not broadcast, or `t_min` or `t_max` is NaN.
+            If a last dimension is not 3, leading shapes do not broadcast, `t_min` or `t_max` is NaN, or
+            `time` is not between 0 and 1.
         TypeError
             If an array does not hold real numbers.
 
@@ -56,9 +63,9 @@ class Queries:
         Rays with NaN, infinity or a zero direction (or one shorter than the least normal number) hit nothing.
         Hits are watertight: no ray passes between two faces that share an edge or a corner.
         """
-        rays = ray_arguments(origins, directions, t_min, t_max, threads)
+        rays = ray_arguments(origins, directions, t_min, t_max, threads, time)
         core = self._core or self._compiled()
-        return Hits(*core.intersect(*rays), core, rays if core.curved else None)
+        return Hits(*core.intersect(*rays), core, known_by(core, rays))
 
     def occluded(
         self,
@@ -67,6 +74,7 @@ class Queries:
         t_min: ArrayLike = 0.0,
         t_max: ArrayLike = np.inf,
         threads: int | None = None,
+        time: ArrayLike | None = None,
     ) -> NDArray[np.bool_]:
         """Find whether each ray hits anything between `t_min` and `t_max`.
 
@@ -78,7 +86,7 @@ class Queries:
         (...) bool
             With the leading shape of the rays.
         """
-        rays = ray_arguments(origins, directions, t_min, t_max, threads)
+        rays = ray_arguments(origins, directions, t_min, t_max, threads, time)
         return (self._core or self._compiled()).occluded(*rays)
 
     def intersect_all(
@@ -88,6 +96,7 @@ class Queries:
         t_min: ArrayLike = 0.0,
         t_max: ArrayLike = np.inf,
         threads: int | None = None,
+        time: ArrayLike | None = None,
     ) -> AllHits:
         """Find every hit of each ray, in order.
 
@@ -97,7 +106,7 @@ class Queries:
         Returns
         -------
         AllHits
-            All hits one after the other, by ray, then `t`, then (shape_id, primitive).
+            All hits one after the other, by ray, then `t`, then (shape_id, instance, primitive).
 
         Notes
         -----
@@ -107,9 +116,9 @@ class Queries:
         from outside, and an odd number from inside, however the ray is aimed. Faces that lie upon each other
         are all told.
         """
-        rays = ray_arguments(origins, directions, t_min, t_max, threads)
+        rays = ray_arguments(origins, directions, t_min, t_max, threads, time)
         core = self._core or self._compiled()
-        return AllHits(*core.intersect_all(*rays), rays[4], core, rays if core.curved else None)
+        return AllHits(*core.intersect_all(*rays), rays[4], core, known_by(core, rays))
 
     def count(
         self,
@@ -118,6 +127,7 @@ class Queries:
         t_min: ArrayLike = 0.0,
         t_max: ArrayLike = np.inf,
         threads: int | None = None,
+        time: ArrayLike | None = None,
     ) -> NDArray[np.int32]:
         """Count the hits of each ray: what `intersect_all` finds, without the memory for it.
 
@@ -128,7 +138,7 @@ class Queries:
         (...) int32
             With the leading shape of the rays.
         """
-        rays = ray_arguments(origins, directions, t_min, t_max, threads)
+        rays = ray_arguments(origins, directions, t_min, t_max, threads, time)
         return (self._core or self._compiled()).count(*rays)
 
     def cost(
@@ -138,18 +148,20 @@ class Queries:
         t_min: ArrayLike = 0.0,
         t_max: ArrayLike = np.inf,
         threads: int | None = None,
+        time: ArrayLike | None = None,
     ) -> QueryCost:
         """Find what the closest hit of each ray takes: nodes visited and primitives tested.
 
         Takes and raises what `intersect` does. Neighbouring rays share visits, so a ray's cost may depend on
-        which others are asked with it.
+        which others are asked with it. A copy of an instance counts as one primitive, whatever it
+        takes there.
 
         Returns
         -------
         QueryCost
             With the leading shape of the rays.
         """
-        rays = ray_arguments(origins, directions, t_min, t_max, threads)
+        rays = ray_arguments(origins, directions, t_min, t_max, threads, time)
         return QueryCost(*(self._core or self._compiled()).cost(*rays))
 
     def pick(
@@ -256,7 +268,8 @@ class Queries:
         Raises
         ------
         ValueError
-            If the last dimension is not 3, shapes do not broadcast, or `max_distance` is negative or NaN.
+            If the last dimension is not 3, shapes do not broadcast, `max_distance` is negative or NaN, or the
+            scene has instances, of which closest points are not told.
         TypeError
             If an array does not hold real numbers.
 
@@ -296,3 +309,8 @@ class Queries:
         distance = core.nearest(*nearest_arguments(points, np.inf, threads))[0]
         inside = core.contains(*point_arguments(points, threads)) & (distance > 0)
         return np.asarray(np.where(inside, -distance, distance))
+
+
+def known_by(core: CompiledScene, rays: RayArguments) -> tuple[Any, ...] | None:
+    """Return what hits have to keep of their rays to know their points: nothing of meshes."""
+    return (*rays[:2], 0.0 if rays[6] is None else rays[6]) if core.curved else None

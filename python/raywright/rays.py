@@ -16,6 +16,7 @@ RayArguments: TypeAlias = tuple[
     float | NDArray[np.float64],
     tuple[int, ...],
     int | None,
+    float | NDArray[np.float64] | None,
 ]
 
 
@@ -25,6 +26,7 @@ def ray_arguments(
     t_min: ArrayLike,
     t_max: ArrayLike,
     threads: int | None,
+    time: ArrayLike | None = None,
 ) -> RayArguments:
     """Check and broadcast rays, and give what the core's queries take.
 
@@ -32,8 +34,8 @@ def ray_arguments(
 
     Returns
     -------
-    origins, directions, t_min, t_max, shape, threads
-        `shape` is the leading shape of the rays.
+    origins, directions, t_min, t_max, shape, threads, time
+        `shape` is the leading shape of the rays; `time` may be None, which is 0 for all.
     """
     starts = last_axis("origins", origins, 3)
     ways = last_axis("directions", directions, 3)
@@ -41,21 +43,25 @@ def ray_arguments(
     far = _distances("t_max", t_max)
     if threads is not None:
         threads = integer("threads", threads, 1)
+    when = None if time is None else _times(time)
     shape, lead = starts.shape[:-1], ways.shape[:-1]
-    if type(near) is float and type(far) is float:
+    if type(near) is float and type(far) is float and not isinstance(when, np.ndarray):
         # The usual rays need no broadcasting, and a few of them no more time than it takes to trace them.
         if not lead or shape == lead:
-            return _in_order(starts), _in_order(ways), near, far, shape, threads
+            return _in_order(starts), _in_order(ways), near, far, shape, threads, when
         if not shape:
-            return _in_order(starts), _in_order(ways), near, far, lead, threads
+            return _in_order(starts), _in_order(ways), near, far, lead, threads, when
     parts = {"origins": shape, "directions": lead, "t_min": np.shape(near), "t_max": np.shape(far)}
+    if isinstance(when, np.ndarray):
+        parts["time"] = when.shape
     try:
         shape = np.broadcast_shapes(*parts.values())
     except ValueError:
         told = ", ".join(f"{name} {lead}" for name, lead in parts.items())
         raise ValueError(f"leading shapes do not broadcast: {told}") from None
     near, far = (_spread(x, shape) if isinstance(x, np.ndarray) else x for x in (near, far))
-    return _spread(starts, shape, (3,)), _spread(ways, shape, (3,)), near, far, shape, threads
+    when = _spread(when, shape) if isinstance(when, np.ndarray) else when
+    return _spread(starts, shape, (3,)), _spread(ways, shape, (3,)), near, far, shape, threads, when
 
 
 def point_arguments(points: ArrayLike, threads: int | None) -> tuple[Floats, tuple[int, ...], int | None]:
@@ -80,6 +86,15 @@ def nearest_arguments(
             raise ValueError(f"leading shapes do not broadcast: {told}") from None
         array, most, shape = _spread(array, lead, (3,)), _spread(most, lead), lead
     return array, most, shape, threads
+
+
+def _times(value: ArrayLike) -> float | NDArray[np.float64]:
+    # A copy, which hits keep: theirs must not change with the caller's.
+    array = np.array(real_array("time", value), np.float64)
+    inside = (array >= 0) & (array <= 1)
+    if not inside.all():
+        raise ValueError(f"time must be between 0 and 1, got {array[~inside].flat[0]}")
+    return array if array.ndim else float(array)
 
 
 def _distances(name: str, value: ArrayLike) -> float | NDArray[np.float64]:

@@ -4,7 +4,7 @@ import threading
 import warnings
 from collections.abc import Sequence
 from os import PathLike
-from typing import TYPE_CHECKING, Any, Literal, TypeAlias, Union, cast, get_args
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias, Union, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from . import _core
 from .accelerators import BVH, Accelerator
 from .arrays import choice
+from .instance import AnyShape, Instance
 from .io.meshes import meshes
 from .lights import ConstantEnvironment, PointLight
 from .mesh import Mesh, face_count, moved
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
     import trimesh
 
 Shapes: TypeAlias = Union[
-    Mesh, Shape, "trimesh.Trimesh", "trimesh.Scene", str, PathLike[str], "Sequence[Shapes]"
+    Mesh, Shape, Instance, "trimesh.Trimesh", "trimesh.Scene", str, PathLike[str], "Sequence[Shapes]"
 ]  # fmt: skip
 Precision: TypeAlias = Literal["single", "double"]
 Quality: TypeAlias = Literal["fast build", "balanced", "fast rays"]
@@ -37,7 +38,7 @@ class Scene(Queries):
 
     Parameters
     ----------
-    shapes : Mesh, Sphere or another shape, trimesh.Trimesh, trimesh.Scene, path, or list or tuple of these
+    shapes : Mesh, Sphere or another shape, Instance, trimesh.Trimesh, trimesh.Scene, path, or list of these
         What can be hit. A path may be of any mesh file that trimesh reads (PLY, OBJ, STL, GLB, ...). Lists
         may be nested; all of it is laid out flat in ``scene.shapes``. A trimesh.Scene gives one mesh for each
         node that holds one, in the order of its geometry and with the node's transform applied; points and
@@ -99,7 +100,7 @@ class Scene(Queries):
         self._lock = threading.Lock()
 
     @property
-    def shapes(self) -> tuple[Mesh | Shape, ...]:
+    def shapes(self) -> tuple[AnyShape, ...]:
         """What can be hit; `Hits.shape_id` counts them."""
         return self._shapes
 
@@ -135,7 +136,7 @@ class Scene(Queries):
 
     @property
     def bytes(self) -> int:
-        """Memory that the compiled scene holds: accelerator, vertices, faces and normals."""
+        """Memory that the compiled scene holds: accelerators, vertices, faces, normals and transforms."""
         return self._compiled().bytes
 
     @property
@@ -156,7 +157,9 @@ class Scene(Queries):
         ----------
         vertices : (V, 3) array, or list of them
             The vertices of the only shape, or of each shape; as many as it has. None in the list leaves a
-            shape where it is, which is all that can be said of one that is no mesh.
+            shape where it is, which is all that can be said of a curved one. Of an `Instance` the transforms,
+            (4, 4) or (N, 4, 4), or a tuple of two such arrays for copies that move; its shapes stay as they
+            are.
 
         Returns
         -------
@@ -191,16 +194,19 @@ class Scene(Queries):
             self._core = None
         self._compiled()
 
-    def _moved(self, vertices: ArrayLike | Sequence[ArrayLike | None]) -> tuple[Mesh | Shape, ...]:
+    def _moved(self, vertices: ArrayLike | Sequence[ArrayLike | None]) -> tuple[AnyShape, ...]:
         count = len(self._shapes)
+        if count == 1 and isinstance(self._shapes[0], Instance):
+            only = vertices[0] if isinstance(vertices, list) and len(vertices) == 1 else vertices
+            return (self._shapes[0] if only is None else _elsewhere(self._shapes[0], "vertices", only),)
         given = list(vertices) if isinstance(vertices, list | tuple) else None
         if count == 1 and not (given and len(given) == 1 and (given[0] is None or np.ndim(given[0]) == 2)):
-            return (moved(self._shapes[0], "vertices", cast("ArrayLike", vertices)),)
+            return (_elsewhere(self._shapes[0], "vertices", vertices),)
         if given is None or len(given) != count:
             came = "an array" if given is None else str(len(given))
             raise ValueError(f"vertices must be a list of {_counted(count, 'array')}, got {came}")
         return tuple(
-            shape if to is None else moved(shape, f"vertices[{i}]", to)
+            shape if to is None else _elsewhere(shape, f"vertices[{i}]", to)
             for i, (shape, to) in enumerate(zip(self._shapes, given, strict=True))
         )
 
@@ -250,6 +256,12 @@ class Scene(Queries):
         parts += [f"precision={self._precision!r}"] if self._precision != "single" else []
         parts += [f"quality={self._quality!r}"] if self._quality != "balanced" else []
         return f"Scene({', '.join(parts)})"
+
+
+def _elsewhere(shape: AnyShape, name: str, to: Any) -> AnyShape:
+    if not isinstance(shape, Instance):
+        return moved(shape, name, to)
+    return shape.moved(*to) if isinstance(to, tuple) else shape.moved(to)
 
 
 def _counted(count: int, name: str) -> str:

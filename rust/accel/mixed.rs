@@ -15,10 +15,8 @@ pub fn mixed(
     triangles: &dyn Fn(&dyn Primitives) -> Box<dyn Accelerator>,
     objects: &Build,
 ) -> Box<dyn Accelerator> {
-    if primitives.objects().is_none() {
-        return triangles(primitives);
-    }
-    let others = walk::walked(&OnlyObjects(primitives), level, Mailbox::Stamps, objects);
+    let Some(kept) = primitives.objects() else { return triangles(primitives) };
+    let others = walk::walked(&OnlyObjects(primitives, kept), level, Mailbox::Stamps, objects);
     let triangles = triangles(&OnlyTriangles(primitives));
     if triangles.info().primitives == 0 {
         return others;
@@ -42,7 +40,14 @@ impl Primitives for OnlyTriangles<'_> {
 }
 
 /// Primitives without triangles.
-struct OnlyObjects<'a>(&'a dyn Primitives);
+struct OnlyObjects<'a>(&'a dyn Primitives, Arc<dyn Objects>);
+
+impl<'a> OnlyObjects<'a> {
+    fn of(primitives: &'a dyn Primitives) -> Result<Self, String> {
+        let objects = primitives.objects().ok_or("there are triangles only, and were others")?;
+        Ok(Self(primitives, objects))
+    }
+}
 
 impl Primitives for OnlyObjects<'_> {
     fn count(&self) -> usize {
@@ -55,10 +60,10 @@ impl Primitives for OnlyObjects<'_> {
         true
     }
     fn objects(&self) -> Option<Arc<dyn Objects>> {
-        self.0.objects()
+        Some(self.1.clone())
     }
     fn bounds(&self, primitive: u32) -> Option<Bounds> {
-        self.0.objects()?.bounds(primitive)
+        self.1.bounds(primitive)
     }
 }
 
@@ -102,6 +107,16 @@ impl Accelerator for Mixed {
                 *hit = other;
             }
         }
+    }
+
+    fn intersect_one(&self, ray: &Ray) -> Hit {
+        let hit = self.triangles.intersect_one(ray);
+        let other = self.objects.intersect_one(&Ray { t_max: ray.t_max.min(hit.t), ..*ray });
+        if is_before(&other, &hit) { other } else { hit }
+    }
+
+    fn occluded_one(&self, ray: &Ray) -> bool {
+        self.triangles.occluded_one(ray) || self.objects.occluded_one(ray)
     }
 
     fn occluded(&self, rays: &[Ray], occluded: &mut [bool]) {
@@ -164,13 +179,13 @@ impl Accelerator for Mixed {
 
     fn refitted(&self, primitives: &dyn Primitives) -> Result<Box<dyn Accelerator>, String> {
         let triangles = self.triangles.refitted(&OnlyTriangles(primitives))?;
-        let objects = self.objects.refitted(&OnlyObjects(primitives))?;
+        let objects = self.objects.refitted(&OnlyObjects::of(primitives)?)?;
         Ok(Box::new(Self::of(triangles, objects)))
     }
 
     fn validate(&self, primitives: &dyn Primitives) -> Result<(), String> {
         self.triangles.validate(&OnlyTriangles(primitives))?;
-        self.objects.validate(&OnlyObjects(primitives))
+        self.objects.validate(&OnlyObjects::of(primitives)?)
     }
 
     fn info(&self) -> &Info {

@@ -83,6 +83,20 @@ pub trait Accelerator: Send + Sync {
     /// The closest hit of each ray.
     fn intersect(&self, rays: &[Ray], hits: &mut [Hit]);
 
+    /// The closest hit of one ray.
+    fn intersect_one(&self, ray: &Ray) -> Hit {
+        let mut hit = [Hit::MISS];
+        self.intersect(std::slice::from_ref(ray), &mut hit);
+        hit[0]
+    }
+
+    /// Whether one ray hits anything.
+    fn occluded_one(&self, ray: &Ray) -> bool {
+        let mut occluded = [false];
+        self.occluded(std::slice::from_ref(ray), &mut occluded);
+        occluded[0]
+    }
+
     /// Whether each ray hits anything.
     fn occluded(&self, rays: &[Ray], occluded: &mut [bool]);
 

@@ -9,6 +9,16 @@ pub trait Objects: Send + Sync {
     /// The box around one, rounded outwards. None of what nothing can hit, triangles among it.
     fn bounds(&self, primitive: u32) -> Option<Bounds>;
 
+    /// Whether anything moves while the shutter is open.
+    fn moves(&self) -> bool {
+        false
+    }
+
+    /// The boxes around one at the times 0 and 1. Interpolated number by number, they hold it at any time between.
+    fn ends(&self, primitive: u32) -> Option<[Bounds; 2]> {
+        self.bounds(primitive).map(|b| [b, b])
+    }
+
     /// Calls `met` with what of it the ray meets between `t_min` and `t_max`, both ends included, until it says true; then that is said.
     /// Nothing has to be told but what is wanted: the first, or any, or every point.
     fn meet(&self, primitive: u32, wanted: Wanted, ray: &Ray, met: &mut dyn FnMut(Candidate) -> bool) -> bool;

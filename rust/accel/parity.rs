@@ -57,7 +57,7 @@ impl Parity<'_> {
 
 impl Query for Parity<'_> {
     type State = (u32, Side);
-    const WANTED: Wanted = Wanted::Every;
+    const WANTED: Wanted = Wanted::Side;
     const KERNELS: Kernels = Kernels::Waves;
 
     #[inline(always)]

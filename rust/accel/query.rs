@@ -25,6 +25,9 @@ pub enum Wanted {
     Any,
     /// All that is met.
     Every,
+    /// On which side of a closed surface the ray starts: what it crosses, an odd number of times or an even one, and whether it starts
+    /// on the surface, where `t` is 0.
+    Side,
 }
 
 /// A question about rays. Kernels offer it the triangles that a ray meets, in any order.

@@ -68,6 +68,8 @@ struct Alive {
     pdf: f64,
     /// Density with which the lights would have drawn it, should it leave the scene.
     environment_pdf: f64,
+    /// When all of the path is asked.
+    time: f64,
     /// Whose sample it is.
     sample: u32,
 }
@@ -120,10 +122,11 @@ impl Worker for PathWorker<'_> {
         self.rays.clear();
         self.rays.extend(samples.iter().map(|s| s.ray));
         self.alive.clear();
-        self.alive.extend((0..samples.len() as u32).map(|sample| Alive {
+        self.alive.extend((0u32..).zip(&*samples).map(|(sample, drawn)| Alive {
             throughput: Rgb::ONE,
             pdf: f64::INFINITY,
             environment_pdf: 0.0,
+            time: drawn.ray.time,
             sample,
         }));
         let mut bounce = 0;
@@ -153,7 +156,7 @@ impl PathWorker<'_> {
                 continue;
             }
             let surface = self.scene.geometry().surface(&ray, &hit);
-            let emission = self.scene.lights().emission(surface.shape);
+            let emission = self.scene.emission_at(&surface);
             let cosine = -ray.direction.dot(surface.normal);
             if emission != Rgb::ZERO && cosine > 0.0 {
                 let light_pdf = self.scene.lights().surface_pdf(self.scene.geometry(), &ray, &hit, cosine);
@@ -194,10 +197,11 @@ impl PathWorker<'_> {
         let arriving = path.throughput * scattered * light.weight * power_heuristic(light.pdf, pdf);
         if arriving != Rgb::ZERO {
             let from = here.departure();
-            self.shadow_rays.push(match &light.source {
+            let ray = match &light.source {
                 Some(source) => from.segment(source),
                 None => from.ray(light.direction),
-            });
+            };
+            self.shadow_rays.push(Ray { time: path.time, ..ray });
             self.unshadowed.push((path.sample, arriving));
         }
     }
@@ -218,7 +222,8 @@ impl PathWorker<'_> {
             }
             path.throughput /= survival;
         }
-        Some((here.departure().ray(next.direction), path))
+        let ray = here.departure().ray(next.direction);
+        Some((Ray { time: path.time, ..ray }, path))
     }
 
     /// Adds the light of shadow rays that meet nothing.
@@ -245,9 +250,12 @@ fn power_heuristic(pdf: f64, other: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::accel::{Accelerator, BruteForce};
     use crate::math::DVec3;
     use crate::scene::fixtures::{furnace, inward_box, rectangle, scene, shape};
-    use crate::scene::{PointLight, SceneDescription};
+    use crate::scene::{Copies, Geometry, Group, Matrix, PointLight, SceneDescription, Shape};
+    use crate::simd::Level;
+    use std::sync::Arc;
 
     /// Mean and standard error of the green radiance along a ray.
     fn radiance(scene: &Scene, path: &Path, ray: Ray, count: u32) -> (f64, f64) {
@@ -292,6 +300,44 @@ mod tests {
             let path = Path { max_depth: Some(depth), roulette_depth: u32::MAX };
             assert_radiance(&scene, &path, ANYWHERE, 20_000, 2.0 - 0.5f64.powi(depth as i32));
         }
+    }
+
+    #[test]
+    fn a_furnace_of_copies_shines_as_one_of_walls() {
+        // Six copies of one wall, each under a map of its own, and a copy of that moving out of shape: light that is not sampled but
+        // found, and rays that leave walls under such maps without meeting them.
+        let wall = Group::new(
+            vec![shape(rectangle([-1.0, -1.0, 0.0], [2.0, 0.0, 0.0], [0.0, 2.0, 0.0]), [0.5; 3], 2.0)],
+            brute,
+        );
+        let place = |x: DVec3, y: DVec3, z: DVec3| -> Matrix {
+            let at = -1.5 * z / z.length();
+            std::array::from_fn(|i| [1.5 * x[i], 1.5 * y[i], z[i], at[i]])
+        };
+        let (x, y, z) = (DVec3::X, DVec3::Y, DVec3::Z);
+        let walls = [
+            place(x, y, z),
+            place(y, x, -z),
+            place(y, z, 3.0 * x),
+            place(z, y, -x),
+            place(z, x, y),
+            place(x, z, -1e-3 * y),
+        ];
+        let walls = Copies::new(Arc::new(wall.unwrap()), &walls).unwrap();
+        let walls = vec![Shape { surface: walls.into(), ..Shape::default() }];
+        let room = Arc::new(Group::new(walls, brute).unwrap());
+        let whole: Matrix = [[30.0, 4.0, 0.0, 7.0], [-1.0, 0.1, 0.0, 1e4], [0.0, 0.2, 1e-2, -5.0]];
+        let start: Matrix = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]];
+        for copies in [Copies::new(room.clone(), &[whole]), Copies::moving(room.clone(), vec![[start, whole]])] {
+            let shapes = vec![Shape { surface: copies.unwrap().into(), ..Shape::default() }];
+            let scene = Scene::new(SceneDescription { shapes, ..Default::default() }, brute).unwrap();
+            let ray = Ray { origin: DVec3::new(10.8, 1e4 - 0.08, -4.957), time: 1.0, ..ANYWHERE };
+            assert_radiance(&scene, &Path::default(), ray, 20_000, 4.0);
+        }
+    }
+
+    fn brute(geometry: &Geometry) -> Box<dyn Accelerator> {
+        BruteForce::over(geometry, Level::Scalar)
     }
 
     #[test]

@@ -5,6 +5,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use super::arrays::{Rows, Triples, rows};
+use super::instances::{self, Wishes};
 use super::shapes;
 use crate::math::DVec3;
 use crate::optics::Rgb;
@@ -49,8 +50,8 @@ struct Environment {
 }
 
 impl Scene<'_> {
-    /// The core's own description of it.
-    pub fn describe(self) -> PyResult<SceneDescription> {
+    /// The core's own description of it, and what has to live as long as what is made of it.
+    pub fn describe(self) -> PyResult<(SceneDescription, Vec<Py<PyAny>>)> {
         let double = match self.precision.as_str() {
             "single" => false,
             "double" => true,
@@ -60,8 +61,15 @@ impl Scene<'_> {
                 )));
             }
         };
-        Ok(SceneDescription {
-            shapes: self.shapes.iter().map(|shape| describe(shape, double)).collect::<PyResult<_>>()?,
+        let (wishes, mut kept) = (Wishes { double, quality: &self.quality }, Vec::new());
+        let shape = |shape: &Bound<'_, PyAny>| describe(shape, double);
+        let mut shapes = Vec::with_capacity(self.shapes.len());
+        for one in &self.shapes {
+            let is_instance = instances::is_instance(one)?;
+            shapes.push(if is_instance { instances::read(one, wishes, &mut kept, &shape)? } else { shape(one)? });
+        }
+        let description = SceneDescription {
+            shapes,
             points: self
                 .lights
                 .into_iter()
@@ -71,7 +79,8 @@ impl Scene<'_> {
                 })
                 .collect(),
             environment: self.environment.map_or(Rgb::ZERO, |e| Rgb::from_array(e.radiance)),
-        })
+        };
+        Ok((description, kept))
     }
 }
 

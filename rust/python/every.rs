@@ -5,6 +5,7 @@ use pyo3::prelude::*;
 use std::mem::take;
 
 use super::arrays::{sealed, unwritten};
+use super::instances::located;
 use super::rays::{RayArrays, chunks, each};
 use crate::math::Hit;
 use crate::scene::Scene;
@@ -46,13 +47,14 @@ impl Chunk {
     }
 }
 
-/// Splits (N+1,), and t (K,), shape_id (K,), primitive (K,) and uv (K,2) of all hits.
+/// Splits (N+1,), and t (K,), shape_id (K,), primitive (K,) and uv (K,2) of all hits, and in a scene with copies instance (K,).
 pub type AllHits<'py> = (
     Bound<'py, PyArrayDyn<i64>>,
     Bound<'py, PyArrayDyn<f64>>,
     Bound<'py, PyArrayDyn<i32>>,
     Bound<'py, PyArrayDyn<i32>>,
     Bound<'py, PyArrayDyn<f64>>,
+    Option<Bound<'py, PyArrayDyn<i32>>>,
 );
 
 /// All hits of all rays.
@@ -68,7 +70,11 @@ pub fn intersect_all<'py>(
     let (splits, t) = (unwritten(py, &[rays.count + 1], None)?, unwritten(py, &[total], None)?);
     let (shape, primitive) = (unwritten(py, &[total], None)?, unwritten(py, &[total], None)?);
     let uv = unwritten(py, &[total], Some(2))?;
+    let has_copies = scene.geometry().has_copies();
+    let instance = has_copies.then(|| unwritten(py, &[total], None)).transpose()?;
     {
+        let mut instance = instance.as_ref().map(|instance| instance.readwrite());
+        let mut instance = instance.as_mut().map(|to| to.as_slice_mut()).transpose()?;
         let (mut splits, mut t) = (splits.readwrite(), t.readwrite());
         let (mut shape, mut primitive, mut uv) = (shape.readwrite(), primitive.readwrite(), uv.readwrite());
         let (before, mut splits) = splits.as_slice_mut()?.split_at_mut(1);
@@ -82,23 +88,45 @@ pub fn intersect_all<'py>(
             let at = from;
             from += hits as i64;
             let hit = (first(&mut t, hits), first(&mut shape, hits), first(&mut primitive, hits), first(&mut uv, hits));
-            (chunk, at, first(&mut splits, rays), hit)
+            let copies = instance.as_mut().map(|instance| first(instance, hits));
+            (chunk, at, first(&mut splits, rays), hit, copies)
         });
-        each(py, threads, places.collect(), |(chunk, mut at, splits, (t, shape, primitive, uv)): Place<'_>| {
-            for (split, length) in splits.iter_mut().zip(chunk.lengths) {
-                at += i64::from(length);
-                *split = at;
-            }
-            for (i, hit) in chunk.hits.into_iter().enumerate() {
-                let (s, p) = scene.geometry().locate(hit.primitive);
-                (t[i], uv[i], shape[i], primitive[i]) = (hit.t, hit.uv, s as i32, p as i32);
-            }
-        })?;
+        each(
+            py,
+            threads,
+            places.collect(),
+            |(chunk, mut at, splits, (t, shape, primitive, uv), mut copies): Place<'_>| {
+                for (split, length) in splits.iter_mut().zip(chunk.lengths) {
+                    at += i64::from(length);
+                    *split = at;
+                }
+                for (i, hit) in chunk.hits.into_iter().enumerate() {
+                    let (s, p) = scene.geometry().locate(hit.primitive);
+                    (t[i], uv[i], shape[i], primitive[i]) = (hit.t, hit.uv, s as i32, p as i32);
+                    if let Some(copies) = &mut copies {
+                        (copies[i], primitive[i]) = located(scene, &hit, p as i32);
+                    }
+                }
+            },
+        )?;
     }
-    Ok((sealed(splits)?, sealed(t)?, sealed(shape)?, sealed(primitive)?, sealed(uv)?))
+    Ok((
+        sealed(splits)?,
+        sealed(t)?,
+        sealed(shape)?,
+        sealed(primitive)?,
+        sealed(uv)?,
+        instance.map(sealed).transpose()?,
+    ))
 }
 
-type Place<'a> = (Chunk, i64, &'a mut [i64], (&'a mut [f64], &'a mut [i32], &'a mut [i32], &'a mut [[f64; 2]]));
+type Place<'a> = (
+    Chunk,
+    i64,
+    &'a mut [i64],
+    (&'a mut [f64], &'a mut [i32], &'a mut [i32], &'a mut [[f64; 2]]),
+    Option<&'a mut [i32]>,
+);
 
 /// Takes the first so many off a slice.
 fn first<'a, T>(rest: &mut &'a mut [T], count: usize) -> &'a mut [T] {

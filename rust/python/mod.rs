@@ -7,6 +7,7 @@ mod every;
 mod film;
 mod freeform;
 mod info;
+mod instances;
 mod points;
 mod query;
 mod rays;
@@ -38,6 +39,8 @@ mod _core {
     use super::freeform::{implicit_trouble, polygon_trouble};
     #[pymodule_export]
     use super::info::AcceleratorInfo;
+    #[pymodule_export]
+    use super::instances::singular_transform;
     #[pymodule_export]
     use super::points::points;
     #[pymodule_export]

@@ -4,7 +4,7 @@ use numpy::{PyArrayDyn, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-use super::arrays::{Triples, numbers, rows, sealed, unwritten};
+use super::arrays::{Numbers, Triples, numbers, rows, sealed, unwritten};
 use super::query::CompiledScene;
 use super::rays::{answer, share};
 use crate::math::{Hit, Ray};
@@ -29,18 +29,23 @@ pub fn points<'py>(
     py: Python<'py>,
     shape_id: PyReadonlyArray1<'py, i32>,
     primitive: PyReadonlyArray1<'py, i32>,
+    instance: Option<PyReadonlyArray1<'py, i32>>,
     uv: PyReadonlyArray2<'py, f64>,
     t: PyReadonlyArray1<'py, f64>,
     origins: Triples<'py>,
     directions: Triples<'py>,
+    time: Numbers<'py>,
     ray: Option<PyReadonlyArray1<'py, i64>>,
 ) -> PyResult<Points<'py>> {
     let (shape, primitive) = (numbers("shape_id", &shape_id)?, numbers("primitive", &primitive)?);
     let (uv, t): (&[[f64; 2]], _) = (rows("uv", &uv)?, numbers("t", &t)?);
+    let time = time.slice("time")?;
+    let copies = instance.as_ref().map(|i| numbers("instance", i)).transpose()?;
     let (origins, directions) = (origins.rows("origins")?, directions.rows("directions")?);
     let order = ray.as_ref().map(|r| numbers("ray", r)).transpose()?;
     let count = primitive.len();
-    if [shape.len(), uv.len(), t.len(), order.map_or(count, <[i64]>::len)].iter().any(|&n| n != count) {
+    let others = [copies.map_or(count, <[i32]>::len), order.map_or(count, <[i64]>::len)];
+    if [shape.len(), uv.len(), t.len()].iter().chain(&others).any(|&n| n != count) {
         return Err(PyValueError::new_err(format!("hits are told {count} times by some, not by all")));
     }
     let vectors = || unwritten::<f64>(py, &[count], Some(3));
@@ -71,9 +76,16 @@ pub fn points<'py>(
                 };
                 let ray = order.map_or(i, |order| order[i] as usize);
                 let of = |n: usize| if n == 1 { 0 } else { ray };
-                let ray = Ray::new(origins.get(of(origins.len())), directions.get(of(directions.len())));
-                let primitive = geometry.primitives_of(shape).start + number;
-                let here = geometry.point(&ray, &Hit { t: t[i], uv: uv[i], primitive, inner: 0 });
+                let ray = Ray {
+                    time: time[of(time.len())],
+                    ..Ray::new(origins.get(of(origins.len())), directions.get(of(directions.len())))
+                };
+                let first = geometry.primitives_of(shape).start;
+                let (primitive, inner) = match copies.map(|copies| u32::try_from(copies[i])) {
+                    Some(Ok(copy)) => (first + copy, number),
+                    _ => (first + number, 0),
+                };
+                let here = geometry.point(&ray, &Hit { t: t[i], uv: uv[i], primitive, inner });
                 error[at] = here.point.error;
                 let told = [here.point.position, here.point.normal, here.shading_normal];
                 let [p, n, s] = told.map(|v| v.to_array());

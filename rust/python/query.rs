@@ -9,6 +9,7 @@ use super::arrays::{Numbers, Triples, numbers, rows, sealed, unwritten};
 use super::describe::Scene;
 use super::every;
 use super::info::AcceleratorInfo;
+use super::instances;
 use super::rays::{BATCH, RayArguments, answer, share};
 use crate::accel::{Cost, Nearest};
 use crate::math::Hit;
@@ -17,14 +18,20 @@ use crate::workers;
 
 /// A scene ready for rays.
 #[pyclass(frozen, module = "raywright._core")]
-pub struct CompiledScene(pub scene::Scene);
+pub struct CompiledScene(
+    pub scene::Scene,
+    /// What groups in it are known by: see `instances`.
+    #[expect(dead_code, reason = "it is only held")]
+    Vec<Py<PyAny>>,
+);
 
-/// t, shape_id, primitive and uv.
+/// t, shape_id, primitive and uv, and in a scene with copies instance.
 type Hits<'py> = (
     Bound<'py, PyArrayDyn<f64>>,
     Bound<'py, PyArrayDyn<i32>>,
     Bound<'py, PyArrayDyn<i32>>,
     Bound<'py, PyArrayDyn<f64>>,
+    Option<Bound<'py, PyArrayDyn<i32>>>,
 );
 
 /// Where t, shape_id, primitive and uv of some rays are written.
@@ -48,21 +55,22 @@ impl CompiledScene {
     #[new]
     fn new(py: Python<'_>, scene: Scene<'_>, accelerator: &Bound<'_, PyAny>) -> PyResult<Self> {
         let build = accelerators::read(accelerator, &scene.quality)?;
-        let description = scene.describe()?;
+        let (description, kept) = scene.describe()?;
         let compiled = py
             .detach(|| workers::pool(None).map(|pool| pool.install(|| scene::Scene::new(description, build))))
             .map_err(PyRuntimeError::new_err)?;
-        compiled.map(Self).map_err(|e| PyValueError::new_err(e.to_string()))
+        compiled.map(|scene| Self(scene, kept)).map_err(|e| PyValueError::new_err(e.to_string()))
     }
 
     fn refitted(&self, py: Python<'_>, scene: Scene<'_>) -> PyResult<Option<Self>> {
-        let description = scene.describe()?;
+        let (description, kept) = scene.describe()?;
         let compiled = py
             .detach(|| workers::pool(None).map(|pool| pool.install(|| self.0.refitted(description))))
             .map_err(PyRuntimeError::new_err)?;
-        compiled.map(|scene| scene.map(Self)).map_err(|e| PyValueError::new_err(e.to_string()))
+        compiled.map(|scene| scene.map(|scene| Self(scene, kept))).map_err(|e| PyValueError::new_err(e.to_string()))
     }
 
+    #[pyo3(signature = (origins, directions, t_min, t_max, shape, threads, time=None))]
     fn intersect<'py>(
         &self,
         py: Python<'py>,
@@ -72,30 +80,39 @@ impl CompiledScene {
         t_max: Numbers<'py>,
         shape: Vec<usize>,
         threads: Option<usize>,
+        time: Option<Numbers<'py>>,
     ) -> PyResult<Hits<'py>> {
-        let arguments = RayArguments { origins, directions, t_min, t_max, shape };
+        let arguments = RayArguments { origins, directions, t_min, t_max, time, shape };
         let (rays, lead) = (arguments.rays()?, &arguments.shape);
         let (t, shape) = (unwritten(py, lead, None)?, unwritten(py, lead, None)?);
         let (primitive, uv) = (unwritten(py, lead, None)?, unwritten(py, lead, Some(2))?);
         let (mut to_t, mut to_shape, mut to_primitive, mut to_uv) =
             (t.readwrite(), shape.readwrite(), primitive.readwrite(), uv.readwrite());
-        let (ts, shapes, primitives) = (to_t.as_slice_mut()?, to_shape.as_slice_mut()?, to_primitive.as_slice_mut()?);
-        let parts = (ts, shapes, primitives, to_uv.as_slice_mut()?.as_chunks_mut().0);
         let scene = &self.0;
-        answer(py, rays.count, rays.chunk(), threads, parts, |start, (t, shape, primitive, uv)| {
+        let instance = scene.geometry().has_copies().then(|| unwritten(py, lead, None)).transpose()?;
+        let mut to_instance = instance.as_ref().map(|instance| instance.readwrite());
+        let (ts, shapes, primitives) = (to_t.as_slice_mut()?, to_shape.as_slice_mut()?, to_primitive.as_slice_mut()?);
+        let copies = to_instance.as_mut().map(|to| to.as_slice_mut()).transpose()?;
+        let parts = ((ts, shapes, primitives, to_uv.as_slice_mut()?.as_chunks_mut().0), copies);
+        answer(py, rays.count, rays.chunk(), threads, parts, |start, ((t, shape, primitive, uv), mut instance)| {
             let count = t.len();
             let mut hits = vec![Hit::MISS; BATCH.min(count)];
             rays.gathered(start, count, |batch, places| {
                 let hits = &mut hits[..batch.len()];
                 scene.intersect(batch, hits);
                 write(scene, hits, places, (t, shape, primitive, uv));
+                if let Some(instance) = &mut instance {
+                    instances::write(scene, hits, places, instance, primitive);
+                }
             });
         })?;
         let _ = (to_t.make_nonwriteable(), to_uv.make_nonwriteable());
         let _ = (to_shape.make_nonwriteable(), to_primitive.make_nonwriteable());
-        Ok((t, shape, primitive, uv))
+        let _ = to_instance.map(|to| to.make_nonwriteable());
+        Ok((t, shape, primitive, uv, instance))
     }
 
+    #[pyo3(signature = (origins, directions, t_min, t_max, shape, threads, time=None))]
     fn occluded<'py>(
         &self,
         py: Python<'py>,
@@ -105,8 +122,9 @@ impl CompiledScene {
         t_max: Numbers<'py>,
         shape: Vec<usize>,
         threads: Option<usize>,
+        time: Option<Numbers<'py>>,
     ) -> PyResult<Bound<'py, PyArrayDyn<bool>>> {
-        let arguments = RayArguments { origins, directions, t_min, t_max, shape };
+        let arguments = RayArguments { origins, directions, t_min, t_max, time, shape };
         let rays = arguments.rays()?;
         let out = unwritten(py, &arguments.shape, None)?;
         {
@@ -127,6 +145,7 @@ impl CompiledScene {
         Ok(out)
     }
 
+    #[pyo3(signature = (origins, directions, t_min, t_max, shape, threads, time=None))]
     fn intersect_all<'py>(
         &self,
         py: Python<'py>,
@@ -136,11 +155,13 @@ impl CompiledScene {
         t_max: Numbers<'py>,
         shape: Vec<usize>,
         threads: Option<usize>,
+        time: Option<Numbers<'py>>,
     ) -> PyResult<every::AllHits<'py>> {
-        let arguments = RayArguments { origins, directions, t_min, t_max, shape };
+        let arguments = RayArguments { origins, directions, t_min, t_max, time, shape };
         every::intersect_all(py, &self.0, &arguments.rays()?, threads)
     }
 
+    #[pyo3(signature = (origins, directions, t_min, t_max, shape, threads, time=None))]
     fn count<'py>(
         &self,
         py: Python<'py>,
@@ -150,8 +171,9 @@ impl CompiledScene {
         t_max: Numbers<'py>,
         shape: Vec<usize>,
         threads: Option<usize>,
+        time: Option<Numbers<'py>>,
     ) -> PyResult<Bound<'py, PyArrayDyn<i32>>> {
-        let arguments = RayArguments { origins, directions, t_min, t_max, shape };
+        let arguments = RayArguments { origins, directions, t_min, t_max, time, shape };
         let rays = arguments.rays()?;
         let out = unwritten(py, &arguments.shape, None)?;
         answer(py, rays.count, rays.chunk(), threads, out.readwrite().as_slice_mut()?, |start, out| {
@@ -160,6 +182,7 @@ impl CompiledScene {
         Ok(out)
     }
 
+    #[pyo3(signature = (origins, directions, t_min, t_max, shape, threads, time=None))]
     fn cost<'py>(
         &self,
         py: Python<'py>,
@@ -169,8 +192,9 @@ impl CompiledScene {
         t_max: Numbers<'py>,
         shape: Vec<usize>,
         threads: Option<usize>,
+        time: Option<Numbers<'py>>,
     ) -> PyResult<Costs<'py>> {
-        let arguments = RayArguments { origins, directions, t_min, t_max, shape };
+        let arguments = RayArguments { origins, directions, t_min, t_max, time, shape };
         let (rays, lead) = (arguments.rays()?, &arguments.shape);
         let (nodes, primitives) = (unwritten(py, lead, None)?, unwritten(py, lead, None)?);
         {

@@ -28,6 +28,7 @@ pub struct RayArrays<'a> {
     directions: Rows<'a>,
     t_min: &'a [f64],
     t_max: &'a [f64],
+    time: &'a [f64],
     /// How many rays.
     pub count: usize,
     tiling: Tiling,
@@ -39,6 +40,8 @@ pub struct RayArguments<'py> {
     pub directions: Triples<'py>,
     pub t_min: Numbers<'py>,
     pub t_max: Numbers<'py>,
+    /// None is 0 for all.
+    pub time: Option<Numbers<'py>>,
     pub shape: Vec<usize>,
 }
 
@@ -47,16 +50,17 @@ impl RayArguments<'_> {
     pub fn rays(&self) -> PyResult<RayArrays<'_>> {
         let (origins, directions) = (self.origins.rows("origins")?, self.directions.rows("directions")?);
         let (t_min, t_max) = (self.t_min.slice("t_min")?, self.t_max.slice("t_max")?);
+        let time = self.time.as_ref().map_or(Ok([0.0].as_slice()), |time| time.slice("time"))?;
         let count = self.shape.iter().product();
-        let lengths = [origins.len(), directions.len(), t_min.len(), t_max.len()];
+        let lengths = [origins.len(), directions.len(), t_min.len(), t_max.len(), time.len()];
         if lengths.iter().any(|&n| n != 1 && n != count) {
             return Err(PyValueError::new_err(format!(
-                "origins, directions, t_min and t_max have lengths {lengths:?}, expected 1 or {count}"
+                "origins, directions, t_min, t_max and time have lengths {lengths:?}, expected 1 or {count}"
             )));
         }
         // Image-shaped rays are traced in tiles, where neighbours share more than along a row.
         let row = if self.shape.len() >= 2 { self.shape[self.shape.len() - 1] } else { 0 };
-        Ok(RayArrays { origins, directions, t_min, t_max, count, tiling: Tiling::new(count, row) })
+        Ok(RayArrays { origins, directions, t_min, t_max, time, count, tiling: Tiling::new(count, row) })
     }
 }
 
@@ -95,11 +99,11 @@ impl RayArrays<'_> {
         places: &[usize],
         rays: &mut Vec<Ray>,
     ) {
-        let Self { t_min, t_max, .. } = *self;
+        let Self { t_min, t_max, time, .. } = *self;
         // One that serves for all is at no distance from itself.
         let step = |length: usize| usize::from(length != 1);
         let [origin, direction] = [step(origins.len()), step(directions.len())];
-        let [near, far] = [step(t_min.len()), step(t_max.len())];
+        let [near, far, when] = [step(t_min.len()), step(t_max.len()), step(time.len())];
         // What it reads must not be thought to lie where it writes: `move`.
         rays.extend(places.iter().map(move |&place| {
             let i = start + place;
@@ -108,7 +112,7 @@ impl RayArrays<'_> {
                 direction: directions[i * direction].vector(),
                 t_min: t_min[i * near],
                 t_max: t_max[i * far],
-                time: 0.0,
+                time: time[i * when],
             }
         }));
     }
@@ -123,6 +127,15 @@ pub trait Parts: Send + Sized {
 impl<T: Send> Parts for &mut [T] {
     fn split(self, at: usize) -> (Self, Self) {
         self.split_at_mut(at)
+    }
+}
+
+impl<P: Parts> Parts for Option<P> {
+    fn split(self, at: usize) -> (Self, Self) {
+        match self.map(|parts| parts.split(at)) {
+            Some((first, others)) => (Some(first), Some(others)),
+            None => (None, None),
+        }
     }
 }
 

@@ -20,6 +20,8 @@ pub(super) struct Exposure<'a> {
     pub integrator: &'a dyn Integrator,
     pub sampler: SamplerKind,
     pub seed: u64,
+    /// Whether samples are spread over the time that the shutter is open.
+    moves: bool,
     /// Workers that no thread is using: their memory is used again.
     idle: Mutex<Vec<Bench<'a>>>,
 }
@@ -39,7 +41,7 @@ impl<'a> Exposure<'a> {
         sampler: SamplerKind,
         seed: u64,
     ) -> Self {
-        Self { scene, camera, integrator, sampler, seed, idle: Mutex::default() }
+        Self { scene, camera, integrator, sampler, seed, moves: scene.geometry().moves(), idle: Mutex::default() }
     }
 
     /// The side of tiles for a number of threads: 16, or less where that would leave threads without work.
@@ -90,10 +92,14 @@ impl<'a> Exposure<'a> {
         }
     }
 
-    /// A sample of a pixel, uniform over its square: the box filter.
+    /// A sample of a pixel, uniform over its square: the box filter. Where anything moves, uniform over the shutter's time too.
     fn camera_sample(&self, x: u32, y: u32, number: u32) -> CameraSample {
         let mut sampler = self.sampler.sampler(self.seed, y * self.camera.width() + x, number);
         let [right, down] = sampler.two(0);
-        CameraSample { ray: self.camera.ray(f64::from(x) + right, f64::from(y) + down), sampler }
+        let mut ray = self.camera.ray(f64::from(x) + right, f64::from(y) + down);
+        if self.moves {
+            ray.time = sampler.one(3);
+        }
+        CameraSample { ray, sampler }
     }
 }

@@ -1,8 +1,9 @@
 //! A scene ready for rays.
 
-use super::{DescriptionError, Geometry, Lights, Material, SceneDescription};
+use super::{DescriptionError, Geometry, Lights, Material, SceneDescription, SurfacePoint};
 use crate::accel::{Accelerator, Cost, Crossings, Nearest, Primitives, Side};
 use crate::math::{DVec3, Hit, Ray, Region};
+use crate::optics::Rgb;
 
 /// A scene ready for rays.
 pub struct Scene {
@@ -159,6 +160,32 @@ impl Scene {
     #[inline]
     pub fn material(&self, shape: u32) -> &Material {
         &self.materials[shape as usize]
+    }
+
+    /// What a point of a surface is made of.
+    #[inline]
+    pub fn material_at(&self, surface: &SurfacePoint) -> &Material {
+        match surface.inner {
+            Some(inner) => self.look(surface.shape, inner).0,
+            None => self.material(surface.shape),
+        }
+    }
+
+    /// Radiance of a point of a surface on the side that the normals point to.
+    #[inline]
+    pub fn emission_at(&self, surface: &SurfacePoint) -> Rgb {
+        match surface.inner {
+            Some(inner) => self.look(surface.shape, inner).1,
+            None => self.lights.emission(surface.shape),
+        }
+    }
+
+    /// Of a shape that is copies of a group, what the primitive of a flattened number is made of, and its radiance.
+    fn look(&self, shape: u32, inner: u32) -> (&Material, Rgb) {
+        match self.geometry.copies_of(shape) {
+            Some(copies) => copies.group().look(inner),
+            None => (self.material(shape), self.lights.emission(shape)),
+        }
     }
 
     /// What finds its hits.

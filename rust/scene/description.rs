@@ -37,6 +37,8 @@ pub enum DescriptionError {
     Point(usize),
     /// The environment emits less than nothing.
     Environment,
+    /// A group has so many primitives, all copies in it counted.
+    TooMany(u64),
 }
 
 impl fmt::Display for DescriptionError {
@@ -50,6 +52,10 @@ impl fmt::Display for DescriptionError {
                     "point light {i} must have a finite position and an intensity that is finite and not negative"
                 )
             }
+            Self::TooMany(n) => write!(
+                f,
+                "an instance holds {n} primitives, all copies in it counted; fewer than 2^31 can be told apart"
+            ),
             Self::Environment => f.write_str("environment must be finite and not negative"),
         }
     }

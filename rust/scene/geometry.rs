@@ -1,9 +1,9 @@
 //! The surfaces of a scene: every mesh's corners and faces, one after the other, and shapes among them.
 
-use super::Surfaces;
+use super::{Copies, Group, Surfaces};
 use crate::accel::{Objects, Primitives};
 use crate::math::{DVec3, Hit, Ray, Vec3};
-use crate::shapes::{Point, Shape};
+use crate::shapes::{Bounds, Point, Shape};
 use std::sync::Arc;
 
 /// Corners of triangles, as precisely as they are known.
@@ -115,6 +115,8 @@ pub enum Surface {
     Mesh(Mesh),
     /// Anything else.
     Shape(Arc<dyn Shape>),
+    /// Other surfaces, put to many places.
+    Copies(Copies),
 }
 
 impl Default for Surface {
@@ -135,6 +137,21 @@ impl From<Arc<dyn Shape>> for Surface {
     }
 }
 
+impl From<Copies> for Surface {
+    fn from(copies: Copies) -> Self {
+        Self::Copies(copies)
+    }
+}
+
+/// Primitives that have no entry among the faces: copies, which are many.
+#[derive(Clone, Copy, Debug)]
+struct Gap {
+    /// The first of them, and the first after them.
+    primitives: [u32; 2],
+    /// How many primitives before its end have no entry.
+    before: u32,
+}
+
 /// The face that stands for a shape that is no mesh.
 const NO_FACE: [u32; 3] = [u32::MAX; 3];
 
@@ -144,6 +161,8 @@ pub struct Geometry {
     vertices: Vertices,
     /// Indices into `vertices`, for all shapes; [`NO_FACE`] for what is no mesh.
     faces: Vec<[u32; 3]>,
+    /// Where primitives have no entry in `faces`, by their numbers.
+    gaps: Vec<Gap>,
     /// What is no mesh; none if all are.
     others: Option<Arc<Surfaces>>,
     /// Shading normals of all vertices, zero where a shape has none; empty where no shape has any.
@@ -166,16 +185,26 @@ pub struct SurfacePoint {
     pub shading_normal: DVec3,
     /// Which shape.
     pub shape: u32,
+    /// Of a copy of a group, which primitive in it, flattened ([`Group`]).
+    pub inner: Option<u32>,
 }
 
 impl Primitives for Geometry {
     fn count(&self) -> usize {
-        self.faces.len()
+        self.first[self.first.len() - 1] as usize
+    }
+
+    fn bounds(&self, primitive: u32) -> Option<Bounds> {
+        let [a, b, c] = self.corners(primitive);
+        if a.is_finite() && b.is_finite() && c.is_finite() {
+            return Some(Bounds { min: a.min(b).min(c), max: a.max(b).max(c) });
+        }
+        self.others.as_ref()?.bounds(primitive)
     }
 
     #[inline]
     fn corners(&self, primitive: u32) -> [DVec3; 3] {
-        let face = self.faces[primitive as usize];
+        let face = self.face(primitive);
         if face == NO_FACE {
             return [DVec3::NAN; 3];
         }
@@ -199,7 +228,7 @@ impl Geometry {
     /// Joins surfaces; the index of one becomes its shape number.
     ///
     /// # Panics
-    /// If a face names a vertex that its mesh does not have, or there are more than 2³¹ faces or vertices in all.
+    /// If a face names a vertex that its mesh does not have, or there are more than 2³¹ primitives or vertices in all.
     pub fn new<S: Into<Surface>>(surfaces: impl IntoIterator<Item = S>) -> Self {
         let mut all = Self { first: vec![0], ..Self::default() };
         let mut others = Surfaces::default();
@@ -207,9 +236,20 @@ impl Geometry {
             let mesh = match surface.into() {
                 Surface::Mesh(mesh) => mesh,
                 Surface::Shape(shape) => {
-                    others.push(all.faces.len() as u32, shape);
+                    let number = all.count() as u32;
+                    others.push(number, shape);
                     all.faces.push(NO_FACE);
-                    all.first.push(all.faces.len() as u32);
+                    all.first.push(number + 1);
+                    continue;
+                }
+                Surface::Copies(copies) => {
+                    let number = all.count();
+                    let end = number + copies.count();
+                    assert!(end < 1 << 31, "fewer than 2^31 primitives");
+                    let before = all.gaps.last().map_or(0, |gap| gap.before) + copies.count() as u32;
+                    all.gaps.push(Gap { primitives: [number as u32, end as u32], before });
+                    others.push_copies(number as u32, copies);
+                    all.first.push(end as u32);
                     continue;
                 }
             };
@@ -224,23 +264,25 @@ impl Geometry {
                 all.normals.resize(all.vertices.len() + count, Vec3::ZERO);
             }
             all.vertices = std::mem::take(&mut all.vertices).joined(mesh.vertices.shortened());
+            let number = all.count() + mesh.faces.len();
             all.faces.reserve(mesh.faces.len());
             for face in mesh.faces {
                 assert!(face.iter().all(|&v| v < end), "a face names a vertex that its mesh has");
                 all.faces.push(face.map(|v| v + base));
             }
-            assert!(all.faces.len() < 1 << 31, "fewer than 2^31 faces");
-            all.first.push(all.faces.len() as u32);
+            assert!(number < 1 << 31, "fewer than 2^31 primitives");
+            all.first.push(number as u32);
         }
         all.others = (!others.is_empty()).then(|| Arc::new(others));
-        let is_dropped = |&p: &u32| all.faces[p as usize] != NO_FACE && !all.is_finite(p);
-        all.dropped = (0..all.faces.len() as u32).filter(is_dropped).count();
+        let is_finite = |v: u32| all.vertices.get(v).is_finite();
+        let is_dropped = |face: &&[u32; 3]| **face != NO_FACE && !face.iter().all(|&v| is_finite(v));
+        all.dropped = all.faces.iter().filter(is_dropped).count();
         all
     }
 
     /// The first shape that is no mesh, by its number among shapes.
     pub fn first_other(&self) -> Option<u32> {
-        self.others.as_ref().map(|others| self.locate(others.first()).0)
+        self.others.as_ref()?.first().map(|first| self.locate(first).0)
     }
 
     /// How many shapes there are.
@@ -253,13 +295,48 @@ impl Geometry {
         self.dropped
     }
 
+    /// The corners of a primitive's face.
+    #[inline]
+    fn face(&self, primitive: u32) -> [u32; 3] {
+        if self.gaps.is_empty() {
+            return self.faces[primitive as usize];
+        }
+        let behind = self.gaps.partition_point(|gap| gap.primitives[1] <= primitive);
+        if self.gaps.get(behind).is_some_and(|gap| gap.primitives[0] <= primitive) {
+            return NO_FACE;
+        }
+        let before = if behind == 0 { 0 } else { self.gaps[behind - 1].before };
+        self.faces[(primitive - before) as usize]
+    }
+
+    /// Whether there are copies of groups.
+    pub fn has_copies(&self) -> bool {
+        self.others.as_ref().is_some_and(|others| others.has_copies())
+    }
+
+    /// The copies that a shape is, if it is.
+    #[inline]
+    pub fn copies_of(&self, shape: u32) -> Option<&Copies> {
+        self.others.as_ref()?.copy(self.first[shape as usize]).map(|(copies, _)| copies)
+    }
+
+    /// Whether anything moves while the shutter is open.
+    pub fn moves(&self) -> bool {
+        self.others.as_ref().is_some_and(|others| others.moves())
+    }
+
     /// The memory held.
     pub fn bytes(&self) -> usize {
+        self.bytes_but(&mut Vec::new())
+    }
+
+    /// The memory held, without groups that were `seen`; those in it are from then on.
+    pub fn bytes_but(&self, seen: &mut Vec<*const Group>) -> usize {
         self.vertices.bytes()
             + self.normals.len() * size_of::<Vec3>()
             + self.faces.len() * size_of::<[u32; 3]>()
             + self.first.len() * size_of::<u32>()
-            + self.others.as_ref().map_or(0, |others| others.bytes())
+            + self.others.as_ref().map_or(0, |others| others.bytes(seen))
     }
 
     /// Which shape a primitive belongs to, and its index there.
@@ -276,6 +353,12 @@ impl Geometry {
     /// The primitives of a shape, as numbered among all.
     pub fn primitives_of(&self, shape: u32) -> std::ops::Range<u32> {
         self.first[shape as usize]..self.first[shape as usize + 1]
+    }
+
+    /// Which copy of what a primitive is, if it is one.
+    #[inline]
+    pub(super) fn copy(&self, primitive: u32) -> Option<(&Copies, u32)> {
+        self.others.as_ref()?.copy(primitive)
     }
 
     /// A primitive that is no triangle.
@@ -318,7 +401,12 @@ impl Geometry {
     /// If it is a miss.
     #[inline]
     pub fn surface(&self, ray: &Ray, hit: &Hit) -> SurfacePoint {
-        match self.shape(hit.primitive) {
+        let Some(others) = &self.others else { return self.on_triangle(hit.primitive, hit.uv) };
+        if let Some((copies, copy)) = others.copy(hit.primitive) {
+            let point = copies.surface(copy, ray, hit);
+            return SurfacePoint { shape: self.locate(hit.primitive).0, inner: Some(hit.inner), ..point };
+        }
+        match others.get(hit.primitive) {
             Some(shape) => self.on_shape(hit.primitive, &shape.point(ray, hit.t, hit.uv)),
             None => self.on_triangle(hit.primitive, hit.uv),
         }
@@ -327,7 +415,7 @@ impl Geometry {
     /// A point of a shape, as shading needs it.
     pub fn on_shape(&self, primitive: u32, point: &Point) -> SurfacePoint {
         let Point { position, error, normal, .. } = *point;
-        SurfacePoint { position, error, normal, shading_normal: normal, shape: self.locate(primitive).0 }
+        SurfacePoint { position, error, normal, shading_normal: normal, shape: self.locate(primitive).0, inner: None }
     }
 
     /// A point of a triangle, as shading needs it.
@@ -339,13 +427,13 @@ impl Geometry {
         let error = 8.0 * f64::EPSILON * a.abs().max(b.abs()).max(c.abs()).max_element();
         let normal = self.normal(primitive);
         let shading_normal = self.shading_normal(primitive, weights, normal);
-        SurfacePoint { position, error, normal, shading_normal, shape: self.locate(primitive).0 }
+        SurfacePoint { position, error, normal, shading_normal, shape: self.locate(primitive).0, inner: None }
     }
 
     /// The shading normals of a triangle's corners, if there are any.
     pub(super) fn normals_of(&self, primitive: u32) -> Option<[DVec3; 3]> {
         let normal = |v: u32| self.normals[v as usize].as_dvec3();
-        (!self.normals.is_empty()).then(|| self.faces[primitive as usize].map(normal))
+        (!self.normals.is_empty()).then(|| self.face(primitive).map(normal))
     }
 
     /// The interpolated normal of the vertices, on the side of `normal`; `normal` where there is none to be had.

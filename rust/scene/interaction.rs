@@ -49,7 +49,7 @@ impl Interaction {
             shading = (shading + back * (Self::GRAZING - cosine)).normalize();
         }
         let frame = Frame::new(shading);
-        let bsdf = scene.material(surface.shape).bsdf();
+        let bsdf = scene.material_at(&surface).bsdf();
         Self { surface, normal, frame, bsdf, wo: frame.to_local(back) }
     }
 

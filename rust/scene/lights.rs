@@ -115,11 +115,14 @@ impl Lights {
     }
 
     /// The density with which [`Lights::sample`] draws the direction of a ray, which is unit and meets an emitting primitive under the
-    /// cosine of an angle to its normal.
+    /// cosine of an angle to its normal. What shines in a copy of a group is never drawn: rays find it that meet it.
     #[inline]
     pub fn surface_pdf(&self, geometry: &Geometry, ray: &Ray, hit: &Hit, cosine: f64) -> f64 {
         let Some(table) = &self.choice else { return 0.0 };
         let (shape, number) = geometry.locate(hit.primitive);
+        if geometry.copies_of(shape).is_some() {
+            return 0.0;
+        }
         let light = self.first[shape as usize] + number;
         let density = match geometry.shape(hit.primitive) {
             Some(shape) => shape.pdf_from(ray.origin, ray.direction),

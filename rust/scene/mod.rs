@@ -2,22 +2,27 @@
 
 mod camera;
 mod compiled;
+mod copies;
 mod description;
 #[cfg(test)]
 pub(crate) mod fixtures;
 mod geometry;
+mod group;
 mod interaction;
 mod light;
 mod lights;
 mod material;
 mod points;
+mod pose;
 mod spawn;
 mod surfaces;
 
 pub use camera::{Camera, CameraError};
 pub use compiled::Scene;
+pub use copies::{BadTransform, Copies, Matrix, check_transforms};
 pub use description::{DescriptionError, SceneDescription, Shape};
 pub use geometry::{Geometry, Mesh, Surface, SurfacePoint, Vertices};
+pub use group::Group;
 pub use interaction::{Interaction, Scattered};
 pub use light::{LightSample, PointLight};
 pub use lights::Lights;

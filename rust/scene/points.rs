@@ -1,6 +1,6 @@
 //! How a surface lies where a ray meets it.
 
-use super::Geometry;
+use super::{Geometry, SurfacePoint};
 use crate::accel::Primitives;
 use crate::math::{DVec3, Hit, Ray};
 use crate::shapes::Point;
@@ -15,12 +15,23 @@ pub struct HitPoint {
     pub shading_normal: DVec3,
 }
 
+impl HitPoint {
+    /// Less of it.
+    pub(super) fn surface(&self) -> SurfacePoint {
+        let Point { position, error, normal, .. } = self.point;
+        SurfacePoint { position, error, normal, shading_normal: self.shading_normal, shape: 0, inner: None }
+    }
+}
+
 impl Geometry {
     /// All about a hit of a ray.
     ///
     /// # Panics
     /// If it is a miss.
     pub fn point(&self, ray: &Ray, hit: &Hit) -> HitPoint {
+        if let Some((copies, copy)) = self.copy(hit.primitive) {
+            return copies.point(copy, ray, hit);
+        }
         if let Some(shape) = self.shape(hit.primitive) {
             let point = shape.point(ray, hit.t, hit.uv);
             return HitPoint { point, shading_normal: point.normal };

@@ -27,14 +27,14 @@ def test_contiguous_arrays_reach_the_core_without_a_copy(dtypes, shape):
         assert same_memory(arguments[0], origins)
         assert same_memory(arguments[1], directions)
         assert arguments[2] == 0.0
-        assert arguments[4:] == (shape[:-1], None)
+        assert arguments[4:] == (shape[:-1], None, None)
     if far.ndim:
         assert same_memory(arguments[3], far)
 
 
 def test_one_origin_stays_one_row():
     for far in (np.inf, np.full((4, 6), 2.0)):
-        origins, directions, _, _, shape, _ = ray_arguments((0, 0, 5), np.ones((4, 6, 3)), 0.0, far, None)
+        origins, directions, _, _, shape, *_ = ray_arguments((0, 0, 5), np.ones((4, 6, 3)), 0.0, far, None)
         assert shape == (4, 6)
         assert origins.size == 3
         assert directions.shape == (4, 6, 3)

@@ -163,6 +163,26 @@ def test_a_ball_in_a_furnace_is_not_seen():
         assert np.abs(image.rgb - 1).max() < 1e-5
 
 
+def test_a_shape_in_an_instance_is_told_as_one_that_is_transformed_itself():
+    """All about the points, for a curved shape in a copy that is sheared, mirrored and moved."""
+    matrix = [[1, 0.5, 0, 4], [0, -2, 0, 0], [0.25, 0, 1, -1], [0, 0, 0, 1]]
+    ball = rw.Sphere((0.5, 0, 0), 1.5)
+    copied = rw.Scene(rw.Instance([ball, rw.Torus((0, 5, 0), (0, 0, 1), 1, 0.5)], matrix))
+    itself = rw.Scene(rw.Sphere((0.5, 0, 0), 1.5, transform=matrix))
+    rng = np.random.default_rng(5)
+    targets = np.array([4.5, 0, -1]) + rng.uniform(-1, 1, (500, 3))
+    origins = targets + 10 * rng.normal(size=(500, 3))
+    a, b = copied.intersect(origins, targets - origins), itself.intersect(origins, targets - origins)
+    mine = b.hit & (a.primitive == 0)
+    assert mine.sum() > 300
+    assert np.allclose(a.t[mine], b.t[mine], rtol=1e-13)
+    for name in ("position", "normal", "shading_normal", "dp_du", "dp_dv", "dn_du", "dn_dv"):
+        of_copy, own = getattr(a.surface, name)[mine], getattr(b.surface, name)[mine]
+        assert np.allclose(of_copy, own, atol=1e-7), name
+    assert (a.instance[mine] == 0).all()
+    assert (b.instance == -1).all()
+
+
 def test_one_ray_alone():
     hits = rw.Scene(rw.Sphere((0, 0, 0), 1)).intersect([0, 0, 3], [0, 0, -1])
     assert hits.position.tolist() == pytest.approx([0, 0, 1])

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Triple
+from ..instance import AnyShape, Instance
 from ..materials import Diffuse
 from ..mesh import Mesh
 from ..shapes import Shape
@@ -23,8 +24,8 @@ from ..shapes import Shape
 _quiet_lock = threading.RLock()
 
 
-def meshes(shapes: Any) -> tuple[Mesh | Shape, ...]:
-    """Lay out shapes, trimesh objects, paths and nested lists of them as one flat tuple of shapes.
+def meshes(shapes: Any) -> tuple[AnyShape, ...]:
+    """Lay out shapes, instances, trimesh objects, paths and nested lists of them as one flat tuple.
 
     Raises
     ------
@@ -102,10 +103,10 @@ def _reason(error: Exception) -> str:
     return told if len(told) <= 120 else f"{told[:117]}..."
 
 
-def _each(shapes: Any) -> Iterator[Mesh | Shape]:
+def _each(shapes: Any) -> Iterator[AnyShape]:
     # trimesh is never imported only to ask: whoever made such an object has imported it.
     trimesh = sys.modules.get("trimesh")
-    if isinstance(shapes, Mesh | Shape):
+    if isinstance(shapes, Mesh | Shape | Instance):
         yield shapes
     elif isinstance(shapes, str | PathLike):
         yield from load(shapes)
@@ -117,10 +118,10 @@ def _each(shapes: Any) -> Iterator[Mesh | Shape]:
     elif isinstance(shapes, getattr(trimesh, "Scene", ())):
         yield from _of_scene(shapes)
     else:
+        came = f"{type(shapes).__module__}.{type(shapes).__qualname__}"
         raise TypeError(
-            "shapes must be a Mesh, another raywright shape, a trimesh.Trimesh, a trimesh.Scene, a path, "
-            "or a list of these, "
-            f"got {type(shapes).__module__}.{type(shapes).__qualname__}"
+            "shapes must be a Mesh, another raywright shape, an Instance, a trimesh.Trimesh, "
+            f"a trimesh.Scene, a path, or a list of these, got {came}"
         )
 
 

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from ..accelerators import BVH, Accelerator
 from ..camera import Camera
+from ..instance import Instance
 from ..io.meshes import meshes
 from ..materials import Diffuse
 from ..mesh import Mesh
@@ -77,10 +78,12 @@ def studio(
     return Scene([*parts, floor, lamp], environment=_SKY, accelerator=accelerator), camera
 
 
-def _outline(shape: Mesh | Shape) -> NDArray[np.float64]:
+def _outline(shape: Mesh | Shape | Instance) -> NDArray[np.float64]:
     """Return points around a shape, (N, 3): a mesh's own, or the corners of the box of what is no mesh."""
     if isinstance(shape, Mesh):
         return shape.used_vertices()
+    if isinstance(shape, Instance):
+        raise TypeError("a studio takes no Instance, whose size it cannot tell")
     low, high = shape.bounds
     if not np.isfinite([low, high]).all():
         raise ValueError(f"a studio has no room for a {type(shape).__name__} without end")

@@ -18,13 +18,17 @@ use super::{Accelerator, Primitives, mixed};
 use crate::shapes::triangle::{DoubleLeaves, Leaves, SingleLeaves};
 use crate::simd::{Dispatch, Level};
 
-/// The default: a wide tree over triangles, and a binary one over what is none.
+/// The default: a wide tree over triangles, and another over what is none; a binary one of moving boxes if anything of that moves.
 pub fn over(primitives: &dyn Primitives, options: &Options, level: Level) -> Box<dyn Accelerator> {
     // What is no triangle is tested one by one.
     let others = |input: &Input| {
-        let steps = options.quality.steps(1);
-        let tree = steps.build(&input.boxes, |p, to| input.boxes[p as usize].intersection(*to));
-        traverse::Ordered::over(tree, &steps.name())
+        if input.primitives.objects().is_some_and(|objects| objects.moves()) {
+            let steps = options.quality.steps(1);
+            let tree = steps.build(&input.boxes, |p, to| input.boxes[p as usize].intersection(*to));
+            traverse::Moving::over(tree, input, &steps.name())
+        } else {
+            wide::over_objects(input, options, level)
+        }
     };
     mixed(primitives, level, &|triangles| widest(triangles, options, level), &others)
 }

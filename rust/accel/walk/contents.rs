@@ -22,7 +22,7 @@ pub struct LeafRay<'a> {
 /// The primitives of all leaves.
 pub struct Contents<L> {
     triangles: L,
-    /// Where the triangles of each leaf begin, and where the last end.
+    /// Where the triangles of each leaf begin, and where the last end. Empty where there are none.
     ends: Vec<u32>,
     objects: Option<Arc<dyn Objects>>,
     /// The numbers of objects, leaf by leaf; and where those of each leaf begin. Empty where there are none.
@@ -51,7 +51,12 @@ impl<L: Leaves<LANES>> Contents<L> {
         }
         if numbers.is_empty() {
             number_ends = Vec::new();
+        } else if order.is_empty() {
+            ends = Vec::new();
         }
+        ends.shrink_to_fit();
+        number_ends.shrink_to_fit();
+        numbers.shrink_to_fit();
         let triangles = L::new(&input.region, &order, &blocks, |p| primitives.corners(p));
         Self { triangles, ends, objects: primitives.objects(), numbers, number_ends }
     }
@@ -65,7 +70,10 @@ impl<L: Leaves<LANES>> Contents<L> {
     /// Of a leaf, the blocks of triangles: where each begins and how many it has.
     #[inline(always)]
     fn blocks(&self, leaf: u32) -> impl Iterator<Item = (usize, u32)> + use<L> {
-        let (first, end) = (self.ends[leaf as usize] as usize, self.ends[leaf as usize + 1] as usize);
+        let (first, end) = match self.ends.get(leaf as usize..leaf as usize + 2) {
+            Some(&[first, end]) => (first as usize, end as usize),
+            _ => (0, 0),
+        };
         (first..end).step_by(LANES).map(move |at| (at, (end - at).min(LANES) as u32))
     }
 
@@ -77,6 +85,11 @@ impl<L: Leaves<LANES>> Contents<L> {
         }
     }
 
+    /// How many leaves there are.
+    fn leaves(&self) -> u32 {
+        self.ends.len().max(self.number_ends.len()) as u32 - 1
+    }
+
     /// The primitives of a leaf.
     pub fn primitives(&self, leaf: u32) -> Vec<u32> {
         let triangles = self.blocks(leaf).flat_map(|(first, count)| self.triangles.primitives(first, count));
@@ -85,13 +98,13 @@ impl<L: Leaves<LANES>> Contents<L> {
 
     /// The primitives of all leaves.
     pub fn lists(&self) -> Lists {
-        let leaves: Vec<_> = (0..self.ends.len() as u32 - 1).map(|leaf| self.primitives(leaf)).collect();
+        let leaves: Vec<_> = (0..self.leaves()).map(|leaf| self.primitives(leaf)).collect();
         Lists::of(leaves.iter().map(Vec::as_slice))
     }
 
     /// The triangles of all leaves, with their numbers.
     pub fn triangles(&self) -> Vec<(u32, [DVec3; 3])> {
-        let blocks = (0..self.ends.len() as u32 - 1).flat_map(|leaf| self.blocks(leaf));
+        let blocks = (0..self.leaves()).flat_map(|leaf| self.blocks(leaf));
         let of_block = |(first, count): (usize, u32)| {
             let corners = move |lane| self.triangles.corners(first, count, lane);
             self.triangles.primitives(first, count).enumerate().map(move |(lane, p)| (p, corners(lane)))

@@ -82,6 +82,12 @@ pub trait Walker {
     /// Begins with a ray.
     fn start(&mut self, ray: &SlabRay);
 
+    /// The same for a ray that is asked at a time, from 0 to 1. Structures that know no motion hold whatever moves at any time.
+    fn start_at(&mut self, ray: &SlabRay, time: f64) {
+        let _ = time;
+        self.start(ray);
+    }
+
     /// The next leaf with anything in it that the ray may meet at a `t` of no more than `limit`, in box units. No leaf is given twice, and
     /// leaves that may be met sooner come first as far as the structure can tell.
     fn next(&mut self, limit: f32) -> Option<u32>;

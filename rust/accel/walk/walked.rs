@@ -52,7 +52,8 @@ impl<'a> Input<'a> {
         });
         let boxes = boxes.collect();
         let is_unbounded = |&p: &u32| primitives.bounds(p).is_some_and(|b| !b.is_finite());
-        let unbounded = if primitives.objects().is_some() { all.filter(is_unbounded).collect() } else { Vec::new() };
+        let has_objects = primitives.objects().is_some();
+        let unbounded = if has_objects { all.into_par_iter().filter(is_unbounded).collect() } else { Vec::new() };
         (Self { region, boxes, primitives }, unbounded)
     }
 }
@@ -209,7 +210,7 @@ impl<L: Leaves<LANES>, Q: Query> Kernel<LANES> for Batch<'_, L, Q> {
             }
             let mut answered = contents.meet_objects(unbounded, &leaf_ray, &mut marks, query, &mut state);
             if !answered && let Some(slabs) = SlabRay::new(&edges, region) {
-                walker.start(&slabs);
+                walker.start_at(&slabs, ray.time);
                 while !answered && let Some(leaf) = walker.next(slabs.limit(Q::limit(&state))) {
                     answered = contents.meet(simd, leaf, &leaf_ray, &mut marks, query, &mut state);
                 }

@@ -1,7 +1,9 @@
 //! Ways through the binary tree, as textbooks have them.
 
+mod moving;
 mod ordered;
 
+pub use moving::Moving;
 pub use ordered::Ordered;
 
 use super::BinaryBvh;

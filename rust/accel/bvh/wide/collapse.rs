@@ -22,7 +22,7 @@ impl<const N: usize, L: Leaves<N>> WideBvh<N, L> {
         let outline = if binary.nodes.is_empty() {
             Outline::NOTHING
         } else {
-            Outline::new(binary, &Plan::<N>::new(binary, options))
+            Outline::new(binary, &Plan::<N>::new(binary, options, N as u32))
         };
         let nodes: Vec<_> = outline.nodes.par_iter().map(|node| node.build(binary)).collect();
         let leaves = L::new(region, &outline.order, &outline.counts, |p| primitives.corners(p));
@@ -55,7 +55,9 @@ fn area(node: &Node) -> f32 {
 }
 
 /// The best ways to show every binary node as 1 to N roots.
-struct Plan<const N: usize> {
+pub(super) struct Plan<const N: usize> {
+    /// How many primitives fit a leaf.
+    block: u32,
     /// Of every inner node, by the pair of its children.
     choices: Vec<AtomicU32>,
 }
@@ -94,9 +96,9 @@ impl Choice {
 }
 
 impl<const N: usize> Plan<N> {
-    fn new(binary: &BinaryBvh, options: &Options) -> Self {
+    pub(super) fn new(binary: &BinaryBvh, options: &Options, block: u32) -> Self {
         const { assert!(2 <= N && N <= 8, "choices have three bits") };
-        let mut plan = Self { choices: Vec::new() };
+        let mut plan = Self { block, choices: Vec::new() };
         plan.choices.resize_with(binary.nodes.len() / 2, AtomicU32::default);
         plan.plan(binary, options, 0, 0);
         plan
@@ -118,7 +120,7 @@ impl<const N: usize> Plan<N> {
         let node = &binary.nodes[node];
         let area = area(node);
         if node.is_leaf() {
-            assert!(node.count as usize <= N, "a leaf fits a block");
+            assert!(node.count <= self.block, "a leaf fits a block");
             return Planned { cost: [area * options.intersection_cost; N], count: node.count, leaf: true };
         }
         let below = |child| self.plan(binary, options, child, depth + 1);
@@ -126,7 +128,7 @@ impl<const N: usize> Plan<N> {
         let (left, right) =
             if depth < PARALLEL { rayon::join(|| below(left), || below(right)) } else { (below(left), below(right)) };
         let count = left.count + right.count;
-        let as_block = if count as usize <= N { area * options.intersection_cost } else { f32::INFINITY };
+        let as_block = if count <= self.block { area * options.intersection_cost } else { f32::INFINITY };
         // Half of all nodes have two leaves below, which are shared out in one way only.
         let (mut cost, share) = if left.leaf && right.leaf {
             ([left.cost[0] + right.cost[0]; N], [1; N])
@@ -167,18 +169,18 @@ fn shared<const N: usize>(left: &[f32; N], right: &[f32; N]) -> ([f32; N], [u32;
 }
 
 /// The wide tree before its nodes and leaves are made: what stands where.
-struct Outline<const N: usize> {
-    nodes: Vec<NodeOutline<N>>,
+pub(super) struct Outline<const N: usize> {
+    pub(super) nodes: Vec<NodeOutline<N>>,
     /// The primitives, leaf by leaf.
-    order: Vec<u32>,
+    pub(super) order: Vec<u32>,
     /// How many each leaf has.
-    counts: Vec<u32>,
-    depth: usize,
+    pub(super) counts: Vec<u32>,
+    pub(super) depth: usize,
 }
 
 /// Which binary nodes stand below a wide one, and what they become.
 #[derive(Clone)]
-struct NodeOutline<const N: usize> {
+pub(super) struct NodeOutline<const N: usize> {
     roots: [u32; N],
     children: [Child; N],
 }
@@ -186,7 +188,7 @@ struct NodeOutline<const N: usize> {
 impl<const N: usize> NodeOutline<N> {
     const EMPTY: Self = Self { roots: [0; N], children: [Child::None; N] };
 
-    fn build(&self, binary: &BinaryBvh) -> WideNode<N> {
+    pub(super) fn build(&self, binary: &BinaryBvh) -> WideNode<N> {
         let mut children = [(Aabb::EMPTY, Child::None); N];
         let mut count = 0;
         for (&root, &child) in self.roots.iter().zip(&self.children).filter(|(_, c)| **c != Child::None) {
@@ -198,9 +200,9 @@ impl<const N: usize> NodeOutline<N> {
 }
 
 impl<const N: usize> Outline<N> {
-    const NOTHING: Self = Self { nodes: Vec::new(), order: Vec::new(), counts: Vec::new(), depth: 0 };
+    pub(super) const NOTHING: Self = Self { nodes: Vec::new(), order: Vec::new(), counts: Vec::new(), depth: 0 };
 
-    fn new(binary: &BinaryBvh, plan: &Plan<N>) -> Self {
+    pub(super) fn new(binary: &BinaryBvh, plan: &Plan<N>) -> Self {
         let order = Vec::with_capacity(binary.order.len());
         let mut outline = Self { nodes: vec![NodeOutline::EMPTY], order, counts: Vec::new(), depth: 0 };
         let mut open = vec![(0, 0u32, 0)];

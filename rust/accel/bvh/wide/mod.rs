@@ -4,6 +4,7 @@ mod batch;
 mod collapse;
 mod nearest;
 mod node;
+mod objects;
 mod packet;
 mod refit;
 mod single;
@@ -21,6 +22,7 @@ use crate::shapes::triangle::{Leaves, clipped};
 use crate::simd::{Dispatch, Level};
 use batch::Batch;
 use node::{Child, WideNode};
+pub use objects::over as over_objects;
 use rayon::prelude::*;
 use std::time::Instant;
 

@@ -17,10 +17,11 @@ pub fn answer<const N: usize, L: Leaves<N>, S: Simd<N>, Q: Query>(
     rays: &[Ray],
     query: &mut Q,
 ) {
-    let mut stacks = Stacks::new::<N>(1, bvh.stack);
+    let mut stacks = Stacks::spare::<N>(bvh.stack);
     for (i, ray) in rays.iter().enumerate() {
         ask(simd, bvh, ray, i, query, &mut stacks);
     }
+    stacks.put_away();
 }
 
 /// Answers ray `i` of a batch.

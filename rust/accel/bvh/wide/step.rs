@@ -4,6 +4,7 @@ use super::node::{Packed, WideNode};
 use crate::accel::slab::{SlabRay, SlabRays};
 use crate::shapes::triangle::RAYS;
 use crate::simd::{ASCENDING, Simd};
+use std::cell::RefCell;
 
 /// What a ray needs at nodes, a cache line.
 #[derive(Clone, Copy, Debug)]
@@ -120,6 +121,11 @@ impl Boxes {
     }
 }
 
+thread_local! {
+    /// Stacks for one ray each that nobody uses. There are as many as accelerators are asked one within the other.
+    static SPARE: RefCell<Vec<Stacks>> = const { RefCell::new(Vec::new()) };
+}
+
 /// What rays have still to visit, and from where on: a stack for each, of which the lowest entry says that there is nothing
 /// more.
 pub struct Stacks {
@@ -135,6 +141,20 @@ impl Stacks {
         let depth = entries + 1 + N;
         assert!(depth * rays <= u32::MAX as usize, "stacks of fewer than 2^32 entries");
         Self { nears: vec![0.0; depth * rays], items: vec![Packed::NONE.bits(); depth * rays], depth }
+    }
+
+    /// Of no ray.
+    pub const NONE: Self = Self { nears: Vec::new(), items: Vec::new(), depth: 0 };
+
+    /// One of those that this thread has put away, or a new one, for one ray: to make them anew takes as long as some nodes.
+    pub fn spare<const N: usize>(entries: usize) -> Self {
+        let fits = |stacks: &Self| stacks.depth > entries + N;
+        SPARE.with_borrow_mut(Vec::pop).filter(fits).unwrap_or_else(|| Self::new::<N>(1, entries))
+    }
+
+    /// Keeps it for the thread's next ray. What is in it means nothing to that, but for the lowest entry, which nothing changes.
+    pub fn put_away(self) {
+        SPARE.with_borrow_mut(|spare| spare.push(self));
     }
 
     /// Where the stack of one of them starts.

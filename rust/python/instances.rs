@@ -1,0 +1,146 @@
+//! Instances as the package describes them: groups compiled once for whoever shares their shapes.
+
+use numpy::PyReadonlyArrayDyn;
+use pyo3::exceptions::{PyRuntimeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::PyTuple;
+use std::collections::HashMap;
+use std::sync::{Arc, LazyLock, Mutex, Weak};
+
+use super::accelerators;
+use super::arrays::vectors;
+use crate::math::Hit;
+use crate::scene::{self, Copies, Group, Matrix, Surface};
+use crate::workers;
+
+/// `raywright.Instance`.
+#[derive(FromPyObject)]
+struct Instance<'py> {
+    shapes: Bound<'py, PyTuple>,
+    transform: PyReadonlyArrayDyn<'py, f64>,
+    transform_end: Option<PyReadonlyArrayDyn<'py, f64>>,
+    accelerator: Bound<'py, PyAny>,
+}
+
+/// How a scene wants its groups.
+#[derive(Clone, Copy)]
+pub struct Wishes<'a> {
+    /// Whether numbers are kept as f64.
+    pub double: bool,
+    /// How much a build may take.
+    pub quality: &'a str,
+}
+
+/// What makes two groups the same: the objects that their shapes are, their accelerator's description, and what the scene wishes.
+#[derive(Clone, PartialEq, Eq, Hash)]
+struct Key {
+    shapes: Vec<usize>,
+    accelerator: String,
+    double: bool,
+    quality: String,
+}
+
+/// Groups that some scene holds. An object is known by its address, and no other can have that while the group lives: whoever holds a
+/// group holds its shapes ([`CompiledScene::kept`]).
+static GROUPS: LazyLock<Mutex<HashMap<Key, Weak<Group>>>> = LazyLock::new(Mutex::default);
+
+/// The rows of (4, 4) or (N, 4, 4) matrices but for the last of each.
+fn matrices(name: &str, array: &PyReadonlyArrayDyn<'_, f64>) -> PyResult<Vec<Matrix>> {
+    let rows = vectors::<f64, 4>(name, array)?;
+    if !rows.len().is_multiple_of(4) {
+        return Err(PyValueError::new_err(format!("{name} has {} rows, expected four for each matrix", rows.len())));
+    }
+    Ok(rows.as_chunks::<4>().0.iter().map(|&[x, y, z, _]| [x, y, z]).collect())
+}
+
+/// Whether a description is that of an instance.
+pub fn is_instance(shape: &Bound<'_, PyAny>) -> PyResult<bool> {
+    Ok(shape.get_type().name()?.to_str()? == "Instance")
+}
+
+/// Reads an instance. `shape` reads what is in it and is none; what has to live as long as the group is added to `kept`.
+pub fn read(
+    instance: &Bound<'_, PyAny>,
+    wishes: Wishes<'_>,
+    kept: &mut Vec<Py<PyAny>>,
+    shape: &dyn Fn(&Bound<'_, PyAny>) -> PyResult<scene::Shape>,
+) -> PyResult<scene::Shape> {
+    let py = instance.py();
+    let Instance { shapes, transform, transform_end, accelerator } = instance.extract()?;
+    let group = group(&shapes, &accelerator, wishes, kept, shape)?;
+    let start = matrices("transform", &transform)?;
+    let end = transform_end.as_ref().map(|end| matrices("transform_end", end)).transpose()?;
+    let copies = in_pool(py, || match end {
+        None => Copies::new(group, &start),
+        Some(end) => Copies::moving(group, start.into_iter().zip(end).map(|(a, b)| [a, b]).collect()),
+    })?;
+    let copies = copies.map_err(|e| PyValueError::new_err(e.to_string()))?;
+    if copies.count() >= 1 << 31 {
+        return Err(PyValueError::new_err(format!(
+            "an instance has {} copies, expected fewer than 2^31",
+            copies.count()
+        )));
+    }
+    Ok(scene::Shape { surface: Surface::Copies(copies), ..scene::Shape::default() })
+}
+
+/// The group of an instance, which may be there already.
+fn group(
+    shapes: &Bound<'_, PyTuple>,
+    accelerator: &Bound<'_, PyAny>,
+    wishes: Wishes<'_>,
+    kept: &mut Vec<Py<PyAny>>,
+    shape: &dyn Fn(&Bound<'_, PyAny>) -> PyResult<scene::Shape>,
+) -> PyResult<Arc<Group>> {
+    let py = shapes.py();
+    let key = Key {
+        shapes: shapes.iter().map(|s| s.as_ptr() as usize).collect(),
+        accelerator: accelerator.repr()?.to_str()?.to_owned(),
+        double: wishes.double,
+        quality: wishes.quality.to_owned(),
+    };
+    // Before it is looked for: from here on no other objects can stand at these addresses.
+    kept.push(shapes.clone().into_any().unbind());
+    let known = || GROUPS.lock().expect("nobody panics here");
+    if let Some(group) = known().get(&key).and_then(Weak::upgrade) {
+        return Ok(group);
+    }
+    let mut inner = Vec::with_capacity(shapes.len());
+    for one in shapes {
+        inner.push(if is_instance(&one)? { read(&one, wishes, kept, shape)? } else { shape(&one)? });
+    }
+    let build = accelerators::read(accelerator, wishes.quality)?;
+    let group = in_pool(py, || Group::new(inner, build))?.map_err(|e| PyValueError::new_err(e.to_string()))?;
+    let group = Arc::new(group);
+    let mut known = known();
+    known.retain(|_, group| group.strong_count() > 0);
+    known.insert(key, Arc::downgrade(&group));
+    Ok(group)
+}
+
+fn in_pool<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> PyResult<T> {
+    py.detach(|| workers::pool(None).map(|pool| pool.install(work))).map_err(PyRuntimeError::new_err)
+}
+
+/// The first of some matrices, (4, 4) or (N, 4, 4), that has no inverse, and why; None if all have one.
+#[pyfunction]
+pub fn singular_transform(py: Python<'_>, transform: PyReadonlyArrayDyn<'_, f64>) -> PyResult<Option<(usize, String)>> {
+    let matrices = matrices("transform", &transform)?;
+    let checked = in_pool(py, || scene::check_transforms(&matrices))?;
+    Ok(checked.err().map(|bad| (bad.index, bad.why.to_string())))
+}
+
+/// Writes down which copies were hit, and what in them: `primitive` is that in the group, `instance` −1 where there is none.
+pub fn write(scene: &scene::Scene, hits: &[Hit], places: &[usize], instance: &mut [i32], primitive: &mut [i32]) {
+    for (hit, &i) in hits.iter().zip(places) {
+        (instance[i], primitive[i]) = located(scene, hit, primitive[i]);
+    }
+}
+
+/// The copy that was hit and what in it; −1 and `number` where it is none.
+pub fn located(scene: &scene::Scene, hit: &Hit, number: i32) -> (i32, i32) {
+    if !hit.is_hit() || scene.geometry().copies_of(scene.geometry().locate(hit.primitive).0).is_none() {
+        return (-1, number);
+    }
+    (number, hit.inner as i32)
+}

@@ -1,0 +1,234 @@
+//! What is put into a scene many times: shapes in a space of their own, with an accelerator of their own.
+
+use super::{DescriptionError, Geometry, HitPoint, Material, SceneDescription, Shape, SurfacePoint};
+use crate::accel::{Accelerator, Primitives, Side};
+use crate::math::robust::normalising_scale;
+use crate::math::{DVec3, Hit, Ray, Region};
+use crate::optics::Rgb;
+use crate::shapes::Bounds;
+use rayon::prelude::*;
+use std::fmt;
+
+/// Shapes that are put elsewhere together, compiled once.
+///
+/// Their primitives are numbered through, *flattened*: shape after shape; a mesh has its faces, a shape that is no mesh one, and copies of
+/// a group for every copy, from the first to the last, all primitives of that group as it numbers them.
+pub struct Group {
+    geometry: Geometry,
+    accelerator: Box<dyn Accelerator>,
+    materials: Vec<Material>,
+    emission: Vec<Rgb>,
+    /// The flattened number of each shape's first primitive, and how many there are.
+    first: Vec<u64>,
+    has_copies: bool,
+    moves: bool,
+    region: Region,
+    bounds: Option<Bounds>,
+}
+
+impl fmt::Debug for Group {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Group({} shapes, {} primitives)", self.geometry.shapes(), self.count())
+    }
+}
+
+impl Group {
+    /// Compiles shapes, with an accelerator made for their geometry.
+    ///
+    /// # Errors
+    /// If a shape is made of what cannot be, or there are 2³¹ primitives or more, flattened: arrays count them as int32.
+    pub fn new(
+        shapes: Vec<Shape>,
+        accelerator: impl FnOnce(&Geometry) -> Box<dyn Accelerator>,
+    ) -> Result<Self, DescriptionError> {
+        let description = SceneDescription { shapes, ..SceneDescription::default() };
+        description.validate()?;
+        let (mut surfaces, mut materials, mut emission) = (Vec::new(), Vec::new(), Vec::new());
+        for shape in description.shapes {
+            surfaces.push(shape.surface);
+            materials.push(shape.material);
+            emission.push(shape.emission);
+        }
+        let geometry = Geometry::new(surfaces);
+        let mut first = vec![0u64];
+        for shape in 0..geometry.shapes() as u32 {
+            let primitives = geometry.primitives_of(shape).len() as u64;
+            let each = geometry.copies_of(shape).map_or(1, |copies| u64::from(copies.group().count()));
+            first.push(first[shape as usize] + primitives * each);
+        }
+        if first[first.len() - 1] >= 1 << 31 {
+            return Err(DescriptionError::TooMany(first[first.len() - 1]));
+        }
+        let (has_copies, moves) = (geometry.has_copies(), geometry.moves());
+        let region = geometry.region();
+        let is_endless = |p: u32| geometry.bounds(p).is_some_and(|b| !b.is_finite());
+        let bounds = if geometry.objects().is_some() && (0..geometry.count() as u32).into_par_iter().any(is_endless) {
+            Some(Bounds { min: DVec3::NEG_INFINITY, max: DVec3::INFINITY })
+        } else {
+            (!region.is_empty()).then_some(Bounds { min: region.min, max: region.max })
+        };
+        let accelerator = accelerator(&geometry);
+        Ok(Self { geometry, accelerator, materials, emission, first, has_copies, moves, region, bounds })
+    }
+
+    /// How many primitives there are, flattened.
+    pub fn count(&self) -> u32 {
+        self.first[self.first.len() - 1] as u32
+    }
+
+    /// The box around all, at any time; none if nothing can be hit.
+    pub fn bounds(&self) -> Option<Bounds> {
+        self.bounds
+    }
+
+    /// Whether anything in it moves.
+    pub fn moves(&self) -> bool {
+        self.moves
+    }
+
+    /// Its surfaces.
+    pub fn geometry(&self) -> &Geometry {
+        &self.geometry
+    }
+
+    /// What finds its hits.
+    pub fn accelerator(&self) -> &dyn Accelerator {
+        self.accelerator.as_ref()
+    }
+
+    /// The flattened number of what was hit.
+    #[inline]
+    pub fn flatten(&self, hit: &Hit) -> u32 {
+        if !self.has_copies {
+            return hit.primitive;
+        }
+        let (shape, number) = self.geometry.locate(hit.primitive);
+        let within = match self.geometry.copies_of(shape) {
+            Some(copies) => number * copies.group().count() + hit.inner,
+            None => number,
+        };
+        self.first[shape as usize] as u32 + within
+    }
+
+    /// The primitive of a flattened number, and which in it.
+    #[inline]
+    pub fn split(&self, flat: u32) -> (u32, u32) {
+        if !self.has_copies {
+            return (flat, 0);
+        }
+        let shape = self.first.partition_point(|&f| f <= u64::from(flat)) - 1;
+        let rest = flat - self.first[shape] as u32;
+        let (number, inner) = match self.geometry.copies_of(shape as u32) {
+            Some(copies) => (rest / copies.group().count(), rest % copies.group().count()),
+            None => (rest, 0),
+        };
+        (self.geometry.primitives_of(shape as u32).start + number, inner)
+    }
+
+    /// Where a ray in its space meets the primitive of a flattened number, `inner`, and how the surface lies there.
+    pub fn surface(&self, ray: &Ray, hit: &Hit) -> SurfacePoint {
+        let (primitive, inner) = self.split(hit.inner);
+        self.geometry.surface(ray, &Hit { primitive, inner, ..*hit })
+    }
+
+    /// All about where a ray in its space meets the primitive of a flattened number, `inner`.
+    pub fn point(&self, ray: &Ray, hit: &Hit) -> HitPoint {
+        let (primitive, inner) = self.split(hit.inner);
+        self.geometry.point(ray, &Hit { primitive, inner, ..*hit })
+    }
+
+    /// What the primitive of a flattened number is made of, and its radiance.
+    pub fn look(&self, flat: u32) -> (&Material, Rgb) {
+        let (primitive, inner) = self.split(flat);
+        let (shape, _) = self.geometry.locate(primitive);
+        match self.geometry.copies_of(shape) {
+            Some(copies) => copies.group().look(inner),
+            None => (&self.materials[shape as usize], self.emission[shape as usize]),
+        }
+    }
+
+    /// On which side of its surfaces the origin of a ray in its space lies, by the crossings from there on.
+    pub fn side(&self, ray: &Ray) -> Side {
+        let size = ray.direction.abs().max_element();
+        if !size.is_normal() {
+            return Side::Outside;
+        }
+        let (scale, _) = normalising_scale(size);
+        // As `Scene::contains` doubts it.
+        let doubt = self.region.radius / (1u64 << 24) as f64;
+        let ray = Ray { direction: ray.direction * scale, t_min: -doubt, ..*ray };
+        let mut sides = [Side::Outside];
+        self.accelerator.sides(&self.geometry, &[ray], doubt, &mut sides);
+        sides[0]
+    }
+
+    /// Memory held, without groups in it that were `seen`; it and they are from then on.
+    pub fn bytes(&self, seen: &mut Vec<*const Self>) -> usize {
+        let me = std::ptr::from_ref(self);
+        if seen.contains(&me) {
+            return 0;
+        }
+        seen.push(me);
+        let tables = size_of_val(self.materials.as_slice())
+            + size_of_val(self.emission.as_slice())
+            + size_of_val(self.first.as_slice());
+        self.accelerator.info().bytes + self.geometry.bytes_but(seen) + tables
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::accel::BruteForce;
+    use crate::scene::fixtures::{rectangle, shape};
+    use crate::scene::{Copies, Matrix};
+    use crate::simd::Level;
+    use std::sync::Arc;
+
+    const HERE: Matrix = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]];
+
+    fn group(shapes: Vec<Shape>) -> Result<Arc<Group>, DescriptionError> {
+        Group::new(shapes, |geometry| BruteForce::over(geometry, Level::Scalar)).map(Arc::new)
+    }
+
+    fn sheet(emission: f64) -> Shape {
+        shape(rectangle([0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]), [0.25; 3], emission)
+    }
+
+    fn copies(group: &Arc<Group>, count: usize) -> Shape {
+        Shape { surface: Copies::new(group.clone(), &vec![HERE; count]).unwrap().into(), ..Shape::default() }
+    }
+
+    #[test]
+    fn numbers_are_flattened_and_split() {
+        let pair = group(vec![sheet(1.0), sheet(2.0)]).unwrap();
+        let all = group(vec![sheet(3.0), copies(&pair, 3), sheet(4.0), copies(&pair, 0), sheet(5.0)]).unwrap();
+        assert_eq!((pair.count(), all.count()), (4, 2 + 12 + 2 + 2));
+        // Shape, number in the shape, and which in that, of each flattened number in turn.
+        let mut flat = 0;
+        for (shape, each, inner, emission) in
+            [(0, 2, 1, [3.0; 2]), (1, 3, 4, [1.0, 2.0]), (2, 2, 1, [4.0; 2]), (4, 2, 1, [5.0; 2])]
+        {
+            for number in 0..each {
+                for inner in 0..inner {
+                    let primitive = all.geometry().primitives_of(shape).start + number;
+                    let hit = Hit { primitive, inner, ..Hit::MISS };
+                    assert_eq!((all.flatten(&hit), all.split(flat)), (flat, (primitive, inner)));
+                    assert_eq!(all.look(flat).1, Rgb::splat(emission[inner as usize / 2]));
+                    flat += 1;
+                }
+            }
+        }
+        assert_eq!(flat, all.count());
+    }
+
+    #[test]
+    fn what_cannot_be_counted_or_be_is_refused() {
+        let mut shape = sheet(0.0);
+        for _ in 0..6 {
+            shape = copies(&group(vec![shape]).unwrap(), 32);
+        }
+        assert_eq!(group(vec![shape]).unwrap_err(), DescriptionError::TooMany(1 << 31));
+        assert_eq!(group(vec![sheet(0.0), sheet(f64::NAN)]).unwrap_err(), DescriptionError::Emission(1));
+    }
+}
