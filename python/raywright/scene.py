@@ -54,7 +54,9 @@ class Scene(Queries):
         "double" not at all. Either way hits are exact for the vertices as they then are. "double" costs
         nothing where all vertices are float32 numbers anyway.
     quality : {"balanced", "fast build", "fast rays"}
-        How long the accelerator may take to build for the sake of rays.
+        How long the accelerator may take to build for the sake of rays. Unless it is "fast build", what is
+        long and diagonal may be cut to pieces for it, and for "fast rays" what else is long; such a tree is
+        built anew by `refit`.
 
     Raises
     ------
@@ -177,8 +179,9 @@ class Scene(Queries):
         Notes
         -----
         What cannot be refitted is built anew, for example where other faces than before have a corner that
-        is NaN or infinite; ``scene.accelerator.kind`` then does not end in "refitted". A scene that was not
-        asked anything yet is built when it is.
+        is NaN or infinite, or where the accelerator holds pieces of faces;
+        ``scene.accelerator.kind`` then does not end in "refitted". With ``quality="fast build"`` the default
+        accelerator holds no pieces. A scene that was not asked anything yet is built when it is.
         """
         after = Scene(self._moved(vertices), *self._parts()[1:])
         with self._lock:

@@ -28,18 +28,19 @@ fn optimisers() -> [Optimisers; 3] {
     [Optimisers::NONE, Optimisers::new([Optimiser::Treelet]).unwrap(), both]
 }
 
-/// Trees of every builder and every optimiser, by name.
+/// Trees of every builder and every optimiser, and of every quality.
 fn trees(triangles: &Triangles) -> Vec<Box<dyn Accelerator>> {
     let level = levels().last().unwrap();
+    let chosen = BUILDERS.into_iter().flat_map(|builder| {
+        optimisers().map(|optimisers| Options { builder, optimisers: Some(optimisers), ..Options::DEFAULT })
+    });
+    let by_quality = Quality::ALL.map(|quality| Options { quality, ..Options::DEFAULT });
     let mut trees = Vec::new();
-    for builder in BUILDERS {
-        for optimisers in optimisers() {
-            let options = Options { builder, optimisers: Some(optimisers), ..Options::DEFAULT };
-            for width in [4, 8].into_iter().filter(|&w| w <= level.lanes()) {
-                let tree = bvh::wide(width, triangles, &options, level);
-                tree.validate(triangles).unwrap_or_else(|wrong| panic!("{}: {wrong}", tree.info().kind));
-                trees.push(tree);
-            }
+    for options in chosen.chain(by_quality) {
+        for width in [4, 8].into_iter().filter(|&w| w <= level.lanes()) {
+            let tree = bvh::wide(width, triangles, &options, level);
+            tree.validate(triangles).unwrap_or_else(|wrong| panic!("{}: {wrong}", tree.info().kind));
+            trees.push(tree);
         }
     }
     trees
@@ -134,12 +135,18 @@ fn a_tree_of_parts_is_not_refitted() {
     let mut random = Random(36);
     let sticks = sticks(&mut random, 600);
     let level = levels().last().unwrap();
-    let tree = |builder| bvh::widest(&sticks, &Options { builder, ..Options::DEFAULT }, level);
-    let wrong = tree(SPATIAL).refitted(&sticks).err().unwrap();
-    assert!(wrong.contains("spatial splits") && wrong.contains("build the tree again"), "{wrong}");
-    for builder in BUILDERS.into_iter().filter(|b| *b != SPATIAL) {
-        tree(builder).refitted(&sticks).unwrap().validate(&sticks).unwrap();
+    let tree = |options| bvh::widest(&sticks, &options, level);
+    let default = Options::DEFAULT;
+    for options in [Options { builder: SPATIAL, ..default }, Options { quality: Quality::FastRays, ..default }, default]
+    {
+        let wrong = tree(options).refitted(&sticks).err().unwrap();
+        assert!(wrong.contains("parts") && wrong.contains("build the tree again"), "{wrong}");
     }
+    for builder in BUILDERS.into_iter().filter(|b| *b != SPATIAL) {
+        let options = Options { builder, optimisers: Some(Optimisers::NONE), ..default };
+        tree(options).refitted(&sticks).unwrap().validate(&sticks).unwrap();
+    }
+    tree(Options { quality: Quality::FastBuild, ..default }).refitted(&sticks).unwrap().validate(&sticks).unwrap();
 }
 
 #[test]

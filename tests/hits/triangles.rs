@@ -75,7 +75,8 @@ type Build = fn(&Input) -> Built;
 const STRUCTURES: [(&str, Build); 11] = [
     ("stack", |input| {
         let steps = Quality::Balanced.steps(2);
-        Ordered::over(steps.build(&input.boxes, |p, to| input.boxes[p as usize].intersection(*to)), &steps.name())
+        let (tree, name) = steps.build(&input.boxes, |p, to| input.boxes[p as usize].intersection(*to));
+        Ordered::over(tree, &name)
     }),
     ("grid", |input| grid::uniform::build(input, &grid::uniform::Options::DEFAULT)),
     ("fine grid", |input| {

@@ -112,6 +112,21 @@ def test_a_scene_with_spatial_splits_can_be_moved():
     assert not scene.accelerator.kind.endswith("refitted")
 
 
+@pytest.mark.parametrize("quality", ["balanced", "fast rays"])
+def test_diagonals_are_cut_where_quality_decides(quality):
+    mesh, origins, directions = sticks(3000)
+    scene, plain = (rw.Scene(mesh, quality=wanted) for wanted in (quality, "fast build"))
+    assert scene.intersect(origins, directions) == plain.intersect(origins, directions)
+    assert " of pieces and reinsertion" in scene.accelerator.kind
+    assert scene.accelerator.sah_cost < 0.6 * plain.accelerator.sah_cost
+    for moved in (scene, plain):
+        assert moved.refit(mesh.vertices * 2) == pytest.approx(1)
+    assert not scene.accelerator.kind.endswith("refitted")
+    assert plain.accelerator.kind.endswith("refitted")
+    assert "pieces" not in rw.Scene(mesh, quality=quality, accelerator=rw.BVH(optimise=())).accelerator.kind
+    assert "pieces" not in rw.Scene(rw.scenes.torus_knot(), quality=quality).accelerator.kind
+
+
 @pytest.mark.parametrize("builder", BUILDERS)
 @pytest.mark.parametrize("count", [0, 1, 2])
 def test_a_few_triangles_and_none(builder, count):

@@ -26,8 +26,9 @@ class BVH:
         - ``"sweep"``: by the surface area heuristic wherever a set can be parted along an axis (MacDonald and
           Booth 1990, "Heuristics for ray tracing using space subdivision").
         - ``"spatial"``: by the surface area heuristic with spatial splits, which part what straddles a plane
-          (Stich, Friedrich and Dietrich 2009, "Spatial splits in bounding volume hierarchies"). For long and
-          diagonal geometry. A scene that moves has to build it again.
+          (Stich, Friedrich and Dietrich 2009, "Spatial splits in bounding volume hierarchies"), after what
+          is long and diagonal has been cut to pieces (Ernst and Greiner 2007, "Early split clipping for
+          bounding volume hierarchies"). A scene that moves has to build it again.
         - ``"morton"``: a linear tree in the order of Morton codes of 63 bits (Lauterbach et al. 2009, "Fast
           BVH construction on GPUs").
         - ``"ploc"``: from the bottom up (Meister and Bittner 2018, "Parallel locally-ordered clustering for
@@ -41,8 +42,8 @@ class BVH:
         Cost of visiting a node and of testing a leaf's block of primitives, in any one unit; only their ratio
         matters. They decide what becomes a leaf.
     budget : float, optional
-        How many references spatial splits may add, over the number of primitives, 0 to 8; 1 if not given. For
-        ``"spatial"``.
+        How many references cuts and spatial splits may add, over the number of primitives, 0 to 8; 4 if not
+        given. Where they gain little they add none. For ``"spatial"``.
     radius : int, optional
         How far off in the order of Morton codes clusters seek each other, 1 to 128; 14 if not given. For
         ``"ploc"``.
@@ -51,7 +52,8 @@ class BVH:
         Bittner 2018, "Parallel reinsertion for bounding volume hierarchy optimization"). ``"treelet"`` puts
         treelets of seven leaves together anew (Karras and Aila 2013, "Fast parallel construction of
         high-quality bounding volume hierarchies"). If not given, what suits the scene's ``quality`` for
-        ``"binned"``, and nothing for the others; with ``()`` nothing at all.
+        ``"binned"``, and nothing for the others; with ``()`` nothing at all. What suits the quality may be,
+        for long and diagonal geometry, that it is cut to pieces first.
 
     Raises
     ------

@@ -9,7 +9,7 @@ pub mod traverse;
 mod wide;
 
 pub use node::{BinaryBvh, Node};
-pub use quality::{Quality, Steps};
+pub use quality::{Cuts, Quality, Steps};
 pub use wide::Options;
 use wide::WideBvh;
 
@@ -23,9 +23,8 @@ pub fn over(primitives: &dyn Primitives, options: &Options, level: Level) -> Box
     // What is no triangle is tested one by one.
     let others = |input: &Input| {
         if input.primitives.objects().is_some_and(|objects| objects.moves()) {
-            let steps = options.quality.steps(1);
-            let tree = steps.build(&input.boxes, |p, to| input.boxes[p as usize].intersection(*to));
-            traverse::Moving::over(tree, input, &steps.name())
+            let (tree, name) = options.quality.steps(1).whole(&input.boxes);
+            traverse::Moving::over(tree, input, &name)
         } else {
             wide::over_objects(input, options, level)
         }

@@ -1,6 +1,8 @@
 //! How a tree is made, step by step, and how much time that may take for the sake of the rays.
 
 use super::BinaryBvh;
+use super::build::presplit::{self, Pieces};
+use super::build::spatial::MAX_BUDGET;
 use super::build::{Builder, Leaves};
 use super::optimise::{Optimiser, Optimisers, reinsertion, treelet};
 use crate::math::Aabb;
@@ -14,7 +16,7 @@ pub enum Quality {
     /// be seen.
     #[default]
     Balanced,
-    /// For many rays on one scene.
+    /// For many rays on one scene, which does not move: what straddles a plane may be parted by it.
     FastRays,
 }
 
@@ -39,8 +41,17 @@ impl Quality {
             Self::Balanced => (Optimisers::REINSERTION, 6, 0.1, 2e-3),
             Self::FastRays => (Optimisers::REINSERTION, 30, 0.3, 1e-4),
         };
+        let builder = Builder::Binned { bins: Some(self.bins()) };
+        let cuts = match self {
+            Self::FastBuild => None,
+            // A tree over pieces cannot be refitted, so a ray must meet less than half as many boxes. With more pieces it would
+            // meet fewer still, but be slower for want of cache.
+            Self::Balanced => Some(Cuts { options: presplit::Options { budget: 4.0, worthwhile: 0.5 }, builder }),
+            Self::FastRays => Some(Cuts::and_splits(Some(self.bins()), MAX_BUDGET)),
+        };
         Steps {
-            builder: Builder::Binned { bins: Some(self.bins()) },
+            cuts,
+            builder,
             leaves: Leaves::for_blocks(block),
             optimisers,
             reinsertion: reinsertion::Options { rounds, share, worthwhile, block },
@@ -49,10 +60,38 @@ impl Quality {
     }
 }
 
+/// What is cut before a build.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cuts {
+    /// How much.
+    pub options: presplit::Options,
+    /// How the tree is built then.
+    pub builder: Builder,
+}
+
+impl Cuts {
+    /// The same with so many bins.
+    pub fn with_bins(self, bins: usize) -> Self {
+        let builder = match self.builder {
+            Builder::Binned { .. } => Builder::Binned { bins: Some(bins) },
+            Builder::Spatial { budget, .. } => Builder::Spatial { bins: Some(bins), budget },
+            other => other,
+        };
+        Self { builder, ..self }
+    }
+
+    /// What spatial splits need before, and they, which together add so many references at most, over the number of primitives.
+    pub const fn and_splits(bins: Option<usize>, budget: f32) -> Self {
+        Self { options: presplit::Options { budget, worthwhile: 0.125 }, builder: Builder::Spatial { bins, budget } }
+    }
+}
+
 /// What is done one after the other.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Steps {
-    /// How the tree is built.
+    /// What is cut before, where that is worthwhile.
+    pub cuts: Option<Cuts>,
+    /// How the tree is built where nothing is.
     pub builder: Builder,
     /// When a builder makes a leaf.
     pub leaves: Leaves,
@@ -65,33 +104,45 @@ pub struct Steps {
 }
 
 impl Steps {
-    /// Makes a tree over boxes, leaving out empty ones. `clip` is as [`Builder::build`] says.
+    /// Makes a tree over boxes none of which is cut, leaving out empty ones, and says how.
+    pub fn whole(self, boxes: &[Aabb]) -> (BinaryBvh, String) {
+        Self { cuts: None, ..self }.build(boxes, |p, to| boxes[p as usize].intersection(*to))
+    }
+
+    /// Makes a tree over boxes, leaving out empty ones, and tells how it was made, for people. `clip` is as [`Builder::build`]
+    /// says.
     ///
     /// # Panics
     /// If an option is out of range.
-    pub fn build(&self, boxes: &[Aabb], clip: impl Fn(u32, &Aabb) -> Aabb + Sync) -> BinaryBvh {
-        let mut bvh = self.builder.build(boxes, clip, &self.leaves);
+    pub fn build(&self, boxes: &[Aabb], clip: impl Fn(u32, &Aabb) -> Aabb + Sync) -> (BinaryBvh, String) {
+        let cut = self.cuts.and_then(|cuts| Some((cuts.builder, Pieces::cut(boxes, &clip, &cuts.options)?)));
+        let (mut bvh, mut name) = if let Some((builder, pieces)) = cut {
+            let builder = builder.over_pieces(boxes.len(), pieces.boxes.len());
+            let clip_piece = |piece: u32, to: &Aabb| clip(pieces.primitives[piece as usize], to);
+            let mut bvh = builder.build(&pieces.boxes, clip_piece, &self.leaves);
+            pieces.put_together(&mut bvh);
+            (bvh, format!("{} of pieces", builder.name()))
+        } else {
+            (self.builder.build(boxes, clip, &self.leaves), self.builder.name().into())
+        };
         for optimiser in self.optimisers.iter() {
             match optimiser {
                 Optimiser::Reinsertion => reinsertion::optimise(&mut bvh, &self.reinsertion),
                 Optimiser::Treelet => treelet::optimise(&mut bvh, &self.treelet),
             }
+            name = format!("{name} and {}", optimiser.name());
         }
-        bvh
-    }
-
-    /// What they are, for people.
-    pub fn name(&self) -> String {
-        let names = self.optimisers.iter().map(Optimiser::name);
-        [self.builder.name()].into_iter().chain(names).collect::<Vec<_>>().join(" and ")
+        (bvh, name)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::Vec3;
+    use crate::accel::bvh::Node;
+    use crate::math::{DVec3, Vec3};
     use crate::sampling::philox4x32;
+    use crate::shapes::triangle::clipped;
 
     #[test]
     fn more_time_makes_trees_of_less_area() {
@@ -105,10 +156,34 @@ mod tests {
             })
             .collect();
         let costs = Quality::ALL.map(|quality| {
-            let bvh = quality.steps(8).build(&boxes, |p, to| boxes[p as usize].intersection(*to));
+            let (bvh, _) = quality.steps(8).build(&boxes, |p, to| boxes[p as usize].intersection(*to));
             bvh.validate(&boxes).unwrap();
             bvh.nodes.iter().filter(|n| !n.is_leaf()).map(|n| f64::from(n.aabb().half_area())).sum::<f64>()
         });
         assert!(costs[1] < costs[0] && costs[2] < costs[1], "{costs:?}");
+    }
+    #[test]
+    fn diagonals_are_cut_where_that_is_worthwhile() {
+        let triangle = |i| {
+            let [x, y, z, _] = philox4x32([i, 0, 0, 0], [0, 0]).map(|bits| f64::from(bits) / 2f64.powi(32));
+            let (from, along) = (DVec3::new(x, y, z), DVec3::new(0.5, 0.4, 0.5));
+            [from, from + along, from + along + DVec3::new(1e-3, 0.0, 0.0)]
+        };
+        let triangles: Vec<_> = (0..3000).map(triangle).collect();
+        let clip = |p: u32, to: &Aabb| clipped(triangles[p as usize], to);
+        let boxes: Vec<_> =
+            (0..3000).map(|p| clip(p, &Aabb { min: Vec3::splat(-4.0), max: Vec3::splat(4.0) })).collect();
+        let [fast, balanced, best] = Quality::ALL.map(|quality| quality.steps(8).build(&boxes, clip));
+        fast.0.validate(&boxes).unwrap();
+        for (bvh, name) in [&balanced, &best] {
+            bvh.validate_parts(&boxes, clip).unwrap();
+            assert!(bvh.order.len() > 9000 && name.ends_with(" of pieces and reinsertion"), "{name}");
+        }
+        // Less by a factor, at least.
+        let leaves = |bvh: &BinaryBvh| {
+            let area = |n: &Node| f64::from(n.aabb().half_area()) * f64::from(n.count);
+            bvh.nodes.iter().map(area).sum::<f64>()
+        };
+        assert!(leaves(&balanced.0) < 0.3 * leaves(&fast.0) && leaves(&best.0) < leaves(&balanced.0));
     }
 }

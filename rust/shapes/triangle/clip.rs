@@ -13,6 +13,7 @@
 
 use crate::math::{Aabb, DVec3, Vec3};
 use std::array::from_fn;
+use std::mem::swap;
 
 /// More than the outline may err by.
 const SLACK: f64 = 1.0 / (1u64 << 44) as f64;
@@ -31,10 +32,17 @@ pub fn clipped(corners: [DVec3; 3], to: &Aabb) -> Aabb {
         }
         let mut outlines = [Outline { corners: [DVec3::ZERO; MOST], count: 3 }; 2];
         outlines[0].corners[..3].copy_from_slice(&corners);
-        let [from, to] = &mut outlines;
+        let [mut from, mut to] = outlines.each_mut();
         for axis in 0..3 {
-            from.clip(to, |p| p[axis] - min[axis], |p| p[axis] = min[axis]);
-            to.clip(from, |p| max[axis] - p[axis], |p| p[axis] = max[axis]);
+            // Most faces have the whole outline on their inner side, which they leave as it is.
+            if from.corners().iter().any(|p| p[axis] < min[axis]) {
+                from.clip(to, |p| p[axis] - min[axis], |p| p[axis] = min[axis]);
+                swap(&mut from, &mut to);
+            }
+            if from.corners().iter().any(|p| p[axis] > max[axis]) {
+                from.clip(to, |p| max[axis] - p[axis], |p| p[axis] = max[axis]);
+                swap(&mut from, &mut to);
+            }
         }
         [least, greatest] = extremes(from.corners());
     }

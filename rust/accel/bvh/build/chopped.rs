@@ -2,9 +2,15 @@
 //! "Spatial Splits in Bounding Volume Hierarchies", 2009; "chopped binning" after Popov, Günther, Seidel and Slusallek 2006).
 
 use super::binned::MAX_BINS;
-use super::reference::{Bounds, MANY, Reference, SHARE};
+use super::reference::{Bounds, Reference};
 use crate::math::Aabb;
 use rayon::prelude::*;
+
+/// From so many references on, several threads look at them: to cut one takes much longer than to look at its box.
+const MANY: usize = 1 << 12;
+
+/// So many are one thread's share then.
+const SHARE: usize = 1 << 10;
 
 /// Bins of equal width along an axis.
 #[derive(Clone, Copy)]
@@ -137,8 +143,9 @@ impl Plane {
         workspace: &mut Chopped,
     ) -> Option<Self> {
         let around = around.aabb();
-        // Few are parted as well with fewer, and each would be cut many times.
-        let bins = bins.min((references.len() / 2).max(4));
+        // Half as many as for whole references, and fewer for few: what is long is cut in each that it passes, and planes found so
+        // are hardly worse.
+        let bins = bins.div_ceil(2).min(references.len() / 2).max(4);
         let grids = [0, 1, 2].map(|axis| Grid::new(axis, &around, bins));
         workspace.clear(bins);
         if references.len() < MANY {
@@ -165,28 +172,18 @@ impl Plane {
     pub fn part(
         &self,
         references: &[Reference],
-        clip: &impl Fn(u32, &Aabb) -> Aabb,
+        clip: &(impl Fn(u32, &Aabb) -> Aabb + Sync),
     ) -> (Vec<Reference>, Vec<Reference>) {
-        let Self { grid, last, left: (mut left_bounds, mut left_count), right: (mut right_bounds, mut right_count) } =
-            *self;
-        let at = grid.border(last + 1);
-        let (mut left, mut right) = (Vec::with_capacity(left_count), Vec::with_capacity(right_count));
-        for reference in references {
-            let [begin, end] = grid.place_of(reference);
-            if end <= last {
-                left.push(*reference);
-                continue;
-            }
-            if begin > last {
-                right.push(*reference);
-                continue;
-            }
-            let (primitive, whole) = (reference.primitive(), reference.bounds.aabb());
-            let (mut below, mut above) = (whole, whole);
-            (below.max[grid.axis], above.min[grid.axis]) = (at, at);
-            let [below, above] = [below, above].map(|half| clip(primitive, &half));
-            let in_left = left_bounds.union(&reference.bounds);
-            let in_right = right_bounds.union(&reference.bounds);
+        let Self { left: (mut left_bounds, mut left_count), right: (mut right_bounds, mut right_count), .. } = *self;
+        let Sorted { mut left, mut right, across } = if references.len() < MANY {
+            self.sort(references, clip)
+        } else {
+            let shares: Vec<_> = references.par_chunks(SHARE).map(|share| self.sort(share, clip)).collect();
+            shares.into_iter().fold(Sorted::default(), Sorted::then)
+        };
+        for Across { whole, halves: [below, above] } in across {
+            let in_left = left_bounds.union(&whole.bounds);
+            let in_right = right_bounds.union(&whole.bounds);
             let (l, r) = (left_bounds.half_area(), right_bounds.half_area());
             let (n, m) = (left_count as f32, right_count as f32);
             let parted = l * n + r * m;
@@ -195,18 +192,64 @@ impl Plane {
             if above.is_empty() || (all_left <= parted && all_left <= all_right && !below.is_empty()) {
                 left_bounds = in_left;
                 right_count -= 1;
-                left.push(*reference);
+                left.push(whole);
             } else if below.is_empty() || all_right <= parted {
                 right_bounds = in_right;
                 left_count -= 1;
-                right.push(*reference);
+                right.push(whole);
             } else {
-                left.push(Reference::new(&below, primitive));
-                right.push(Reference::new(&above, primitive));
+                left.push(Reference::new(&below, whole.primitive()));
+                right.push(Reference::new(&above, whole.primitive()));
             }
         }
         (left, right)
     }
+
+    /// Tells what lies on either side, and cuts what straddles.
+    fn sort(&self, references: &[Reference], clip: &impl Fn(u32, &Aabb) -> Aabb) -> Sorted {
+        let Self { grid, last, .. } = *self;
+        let at = grid.border(last + 1);
+        let mut sorted = Sorted::default();
+        for &whole in references {
+            let [begin, end] = grid.place_of(&whole);
+            if end <= last {
+                sorted.left.push(whole);
+            } else if begin > last {
+                sorted.right.push(whole);
+            } else {
+                let (mut below, mut above) = (whole.bounds.aabb(), whole.bounds.aabb());
+                (below.max[grid.axis], above.min[grid.axis]) = (at, at);
+                let halves = [below, above].map(|half| clip(whole.primitive(), &half));
+                sorted.across.push(Across { whole, halves });
+            }
+        }
+        sorted
+    }
+}
+
+/// References on either side of a plane, and those that straddle it.
+#[derive(Default)]
+struct Sorted {
+    left: Vec<Reference>,
+    right: Vec<Reference>,
+    across: Vec<Across>,
+}
+
+impl Sorted {
+    /// These, and then others.
+    fn then(mut self, other: Self) -> Self {
+        self.left.extend(other.left);
+        self.right.extend(other.right);
+        self.across.extend(other.across);
+        self
+    }
+}
+
+/// A reference that straddles a plane.
+struct Across {
+    whole: Reference,
+    /// What of it lies below the plane, and above.
+    halves: [Aabb; 2],
 }
 
 impl Chopped {

@@ -11,6 +11,7 @@ mod leaves;
 pub mod morton;
 mod part;
 pub mod ploc;
+pub mod presplit;
 mod radix;
 mod reference;
 mod slices;
@@ -83,6 +84,17 @@ impl Builder {
     /// Whether a primitive may stand in several leaves, part by part.
     pub const fn parts(&self) -> bool {
         matches!(self, Self::Spatial { .. })
+    }
+
+    /// The same over pieces of primitives that were cut before: what they are more than the primitives counts as added already.
+    pub fn over_pieces(self, primitives: usize, pieces: usize) -> Self {
+        match self {
+            Self::Spatial { bins, budget } => {
+                let left = budget * primitives as f32 - (pieces - primitives) as f32;
+                Self::Spatial { bins, budget: left.max(0.0) / pieces as f32 }
+            }
+            other => other,
+        }
     }
 
     /// Makes a tree over boxes, leaving out empty ones.

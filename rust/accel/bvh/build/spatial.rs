@@ -5,6 +5,8 @@
 //! sides of the best split of the set overlap, planes that part what they cut are weighed too, in bins that hold the parts. A
 //! straddling reference that costs less when it is left whole goes to one side ("reference unsplitting"). How many references may be
 //! added is bounded; a subtree gets what its parent has left in proportion to its references, so that threads need not share it.
+//! That spends it badly where some need many cuts and others none, so what gains most is better cut before, wherever it is:
+//! [`presplit`](super::presplit).
 
 use super::binned::MAX_BINS;
 use super::bins::{Bins, Split};
@@ -29,14 +31,19 @@ pub struct Options {
 /// Most that may be asked for.
 pub const MAX_BUDGET: f32 = 8.0;
 
-/// As many again. Where planes gain nothing, it is not used up.
-pub const BUDGET: f32 = 1.0;
+/// Enough for most of what long diagonal geometry has to gain. Where planes gain nothing, it is not used up.
+pub const BUDGET: f32 = 4.0;
 
 /// So many references can be told apart by a wide tree.
 const MOST: usize = (1 << 28) - 2;
 
-/// Planes are weighed where the sides overlap by more than this share of the root's area (α in the paper).
-const OVERLAP: f32 = 1e-5;
+/// Planes are weighed where the sides overlap by more than this share of the root's area (α in the paper): where they overlap by
+/// less, hardly a ray meets both for nothing.
+const OVERLAP: f32 = 1e-3;
+
+/// And by more than this share of the set's own. What parting saves is not more than the overlap, and in a mesh of even triangles
+/// neighbours overlap everywhere by a little.
+const OWN_OVERLAP: f32 = 0.2;
 
 /// Builds a tree over boxes, leaving out empty ones; a primitive may stand in several leaves, each of which holds what is left of it
 /// in a box. `clip` is as [`Builder::build`](super::Builder::build) says.
@@ -193,11 +200,12 @@ impl<C: Fn(u32, &Aabb) -> Aabb + Sync> Parts<'_, C> {
 
     /// The best plane, where it costs less than the best split without.
     fn best_plane(&self, whole: Option<&Whole>, chopped: &mut Chopped) -> Option<Plane> {
-        let worth = whole.is_none_or(|whole| whole.overlap > self.shared.overlap);
+        let area = self.extents.all.half_area();
+        let worth = whole.is_none_or(|whole| whole.overlap > self.shared.overlap.max(OWN_OVERLAP * area));
         if !worth || self.budget == 0 {
             return None;
         }
-        let unsplit = self.extents.all.half_area() * self.references.len() as f32;
+        let unsplit = area * self.references.len() as f32;
         let least = whole.map_or(unsplit, |whole| whole.cost.min(unsplit));
         let bins = self.shared.bins;
         Plane::best(&self.references, &self.extents.all, bins, &self.shared.clip, self.budget, chopped)

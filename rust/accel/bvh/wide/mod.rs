@@ -14,7 +14,7 @@ mod wave;
 use super::build::{Builder, Leaves as LeafRule};
 use super::optimise::Optimisers;
 use super::parts::cover;
-use super::{Quality, Steps};
+use super::{Cuts, Quality, Steps};
 use crate::accel::query::{Answers, Query};
 use crate::accel::{Info, Nearest, Primitives};
 use crate::math::{Aabb, DVec3, Ray, Region};
@@ -29,12 +29,13 @@ use std::time::Instant;
 /// How to build a wide tree.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
-    /// How much time the build may take. It decides what nobody else does: bins where none are given, and what improves the
-    /// tree of the default builder.
+    /// How much time the build may take. It decides what nobody else does: bins where none are given, and for the default
+    /// builder what is cut before and what improves its tree.
     pub quality: Quality,
     /// How the binary tree is built.
     pub builder: Builder,
-    /// What improves it then; if none is given, what suits the quality for a tree of [`Builder::Binned`], and nothing otherwise.
+    /// What improves it then. If none is given, what suits the quality for [`Builder::Binned`], as does what is cut before; and
+    /// nothing otherwise.
     pub optimisers: Option<Optimisers>,
     /// Cost of testing a node's boxes.
     pub traversal_cost: f32,
@@ -56,12 +57,19 @@ impl Options {
     pub fn steps(&self, block: usize) -> Steps {
         let Self { quality, builder, optimisers, traversal_cost, intersection_cost } = *self;
         let by_quality = quality.steps(block);
-        let default = match builder {
-            Builder::Binned { .. } => by_quality.optimisers,
-            _ => Optimisers::NONE,
+        let builder = builder.or_bins(quality.bins());
+        // What is named is not changed.
+        let (default, cuts) = match builder {
+            Builder::Binned { bins } if optimisers.is_none() => {
+                let cuts = by_quality.cuts.map(|cuts| cuts.with_bins(bins.unwrap_or(quality.bins())));
+                (by_quality.optimisers, cuts)
+            }
+            Builder::Spatial { bins, budget } => (Optimisers::NONE, Some(Cuts::and_splits(bins, budget))),
+            _ => (Optimisers::NONE, None),
         };
         Steps {
-            builder: builder.or_bins(quality.bins()),
+            cuts,
+            builder,
             leaves: LeafRule { traversal_cost, intersection_cost, ..by_quality.leaves },
             optimisers: optimisers.unwrap_or(default),
             ..by_quality
@@ -104,14 +112,14 @@ impl<const N: usize, L: Leaves<N>> WideBvh<N, L> {
         let boxes: Vec<Aabb> =
             (0..primitives.count() as u32).into_par_iter().map(|p| aabb(primitives, &region, p)).collect();
         let steps = options.steps(N);
-        let binary = steps.build(&boxes, |p, to| clip(primitives, &region, p, to));
+        let (binary, name) = steps.build(&boxes, |p, to| clip(primitives, &region, p, to));
         let count = boxes.par_iter().filter(|b| !b.is_empty()).count();
         drop(boxes);
         let mut bvh = Self::collapse(&binary, primitives, &region, options);
         bvh.level = level;
         bvh.in_parts = bvh.info.primitives > count;
         bvh.info.primitives = count;
-        bvh.info.kind = format!("BVH, {N} wide, {}, {}", steps.name(), L::PRECISION);
+        bvh.info.kind = format!("BVH, {N} wide, {name}, {}", L::PRECISION);
         bvh.info.bytes = size_of_val(bvh.nodes.as_slice()) + bvh.leaves.bytes();
         bvh.info.build_seconds = start.elapsed().as_secs_f64();
         bvh

@@ -25,9 +25,7 @@ struct Objects<const N: usize> {
 /// Builds a tree over boxes, as wide as the level's registers.
 pub fn over(input: &Input, options: &Options, level: Level) -> Built {
     // Objects are not parted, whatever is done with triangles.
-    let steps = options.quality.steps(1);
-    let binary = steps.build(&input.boxes, |p, to| input.boxes[p as usize].intersection(*to));
-    let name = steps.name();
+    let (binary, name) = options.quality.steps(1).whole(&input.boxes);
     match level.lanes() {
         8 => collapsed::<8>(&binary, options, &name, level),
         _ => collapsed::<4>(&binary, options, &name, level),

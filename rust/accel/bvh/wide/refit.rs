@@ -17,7 +17,7 @@ impl<const N: usize, L: Leaves<N>> WideBvh<N, L> {
             return Err("corners that are f64 do not fit leaves of f32".into());
         }
         if self.in_parts {
-            return Err("spatial splits hold parts of the primitives as they were: build the tree again".into());
+            return Err("leaves hold parts of the primitives as they were: build the tree again".into());
         }
         let region = primitives.region();
         let finite = (0..primitives.count() as u32).into_par_iter().filter(|&p| primitives.is_finite(p)).count();
