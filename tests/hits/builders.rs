@@ -9,9 +9,11 @@ use raywright::accel::bvh::{self, Options, Quality};
 use raywright::accel::{Accelerator, BruteForce, Nearest};
 use raywright::math::{DVec3, Hit, Ray, Vec3};
 
-const SPATIAL: Builder = Builder::Spatial { bins: None, budget: 4.0 };
+/// Spatial splits, as many as they like.
+pub const SPATIAL: Builder = Builder::Spatial { bins: None, budget: 4.0 };
 
-const BUILDERS: [Builder; 9] = [
+/// Every builder.
+pub const BUILDERS: [Builder; 9] = [
     Builder::Binned { bins: Some(2) },
     Builder::Sweep,
     SPATIAL,
@@ -23,7 +25,8 @@ const BUILDERS: [Builder; 9] = [
     Builder::Halves(Way::Mean),
 ];
 
-fn optimisers() -> [Optimisers; 3] {
+/// None, one, and all.
+pub fn optimisers() -> [Optimisers; 3] {
     let both = Optimisers::new([Optimiser::Treelet, Optimiser::Reinsertion]).unwrap();
     [Optimisers::NONE, Optimisers::new([Optimiser::Treelet]).unwrap(), both]
 }
@@ -64,7 +67,7 @@ fn agreed(triangles: &Triangles, rays: &[Ray]) -> usize {
 }
 
 /// Long thin triangles along diagonals.
-fn sticks(random: &mut Random, count: usize) -> Triangles {
+pub fn sticks(random: &mut Random, count: usize) -> Triangles {
     let stick = |_| {
         let (from, along) = (random.point(1.0), DVec3::new(1.5, random.between(1.2, 1.5), -1.5));
         [from, from + along, from + along * 0.9 + random.point(0.02)].map(|p| p.as_vec3())

@@ -6,4 +6,5 @@ mod builders;
 mod nearest;
 mod signs;
 mod space;
+mod traversals;
 mod triangles;

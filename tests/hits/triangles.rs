@@ -1,11 +1,11 @@
 //! Triangles and rays for the tests of hits, and the comparison of every accelerator at every level.
 
-use raywright::accel::bvh::traverse::Ordered;
-use raywright::accel::bvh::{self, Options, Quality};
+use raywright::accel::bvh::traverse::{Orders, Rays, Traversal};
+use raywright::accel::bvh::{self, Options};
 use raywright::accel::grid::{self, Resolution};
-use raywright::accel::kdtree::{Builder, Traversal};
+use raywright::accel::kdtree::{self, Builder};
 use raywright::accel::walk::{self, Built, Input, Mailbox};
-use raywright::accel::{Accelerator, BruteForce, Primitives, bsp, kdtree, octree};
+use raywright::accel::{Accelerator, BruteForce, Primitives, bsp, octree};
 use raywright::math::{DVec3, Hit, Ray, Region, Vec3};
 use raywright::shapes::triangle::EdgeRay;
 use raywright::simd::Level;
@@ -71,22 +71,24 @@ pub fn accelerators(primitives: &dyn Primitives) -> Vec<(String, Box<dyn Acceler
 
 type Build = fn(&Input) -> Built;
 
-/// The structures that one ray walks at a time.
-const STRUCTURES: [(&str, Build); 11] = [
-    ("stack", |input| {
-        let steps = Quality::Balanced.steps(2);
-        let (tree, name) = steps.build(&input.boxes, |p, to| input.boxes[p as usize].intersection(*to));
-        Ordered::over(tree, &name)
-    }),
+/// The structures that one ray walks at a time, or some together.
+const STRUCTURES: [(&str, Build); 17] = [
+    ("stack", |input| Traversal::Stack(Rays::One).build(input, &Options::DEFAULT)),
+    ("packets of 4", |input| Traversal::Stack(Rays::Four).build(input, &Options::DEFAULT)),
+    ("packets of 64", |input| Traversal::Stack(Rays::SixtyFour).build(input, &Options::DEFAULT)),
+    ("turned boxes", |input| Traversal::Oriented.build(input, &Options::DEFAULT)),
+    ("slabs", |input| Traversal::Slabs.build(input, &Options::DEFAULT)),
+    ("six threads", |input| Traversal::Threaded(Orders::Six).build(input, &Options::DEFAULT)),
+    ("eight threads", |input| Traversal::Threaded(Orders::Eight).build(input, &Options::DEFAULT)),
     ("grid", |input| grid::uniform::build(input, &grid::uniform::Options::DEFAULT)),
     ("fine grid", |input| {
         grid::uniform::build(input, &grid::uniform::Options { resolution: Resolution::Each([13, 24, 17]) })
     }),
     ("nested grid", |input| grid::nested::build(input, &grid::nested::Options::DEFAULT)),
     ("kD-tree", |input| kdtree::build(input, &kdtree::Options::DEFAULT)),
-    ("kD-tree, median, restart", |input| kdtree::build(input, &kd(Builder::Median, Traversal::Restart))),
-    ("kD-tree, middle, restart", |input| kdtree::build(input, &kd(Builder::Middle, Traversal::Restart))),
-    ("kD-tree, cycle, stack", |input| kdtree::build(input, &kd(Builder::Cycle, Traversal::Stack))),
+    ("kD-tree, median, restart", |input| kdtree::build(input, &kd(Builder::Median, kdtree::Traversal::Restart))),
+    ("kD-tree, middle, restart", |input| kdtree::build(input, &kd(Builder::Middle, kdtree::Traversal::Restart))),
+    ("kD-tree, cycle, stack", |input| kdtree::build(input, &kd(Builder::Cycle, kdtree::Traversal::Stack))),
     ("octree", |input| octree::build(input, &octree::Options::DEFAULT)),
     ("octree to the end", |input| {
         octree::build(input, &octree::Options { max_depth: octree::MAX_DEPTH, leaf_size: 1 })
@@ -94,7 +96,7 @@ const STRUCTURES: [(&str, Build); 11] = [
     ("BSP tree", |input| bsp::build(input, &bsp::Options::DEFAULT)),
 ];
 
-const fn kd(builder: Builder, traversal: Traversal) -> kdtree::Options {
+const fn kd(builder: Builder, traversal: kdtree::Traversal) -> kdtree::Options {
     kdtree::Options { builder, traversal, ..kdtree::Options::DEFAULT }
 }
 

@@ -157,7 +157,7 @@ def test_every_choice_among_words_is_varied_alone(monkeypatch):
             if isinstance(self.improve, str):
                 object.__setattr__(self, "improve", (self.improve,))
 
-    monkeypatch.setattr(kinds, "Accelerator", Tree | rw.BruteForce)
+    monkeypatch.setattr(kinds.choices, "Accelerator", Tree | rw.BruteForce)
     assert kinds.every() == {
         "Tree a": Tree(),
         "Tree b": Tree("b"),

@@ -1,7 +1,7 @@
 """Choice of the structure that finds hits."""
 
 from .brute import BruteForce
-from .bvh import BVH, Builder, Optimiser
+from .bvh import BVH, Builder, Optimiser, Traversal, Volume
 from .choices import Accelerator, every, name_of
 from .grid import Grid, Mailbox, NestedGrid
 from .space import BSP, KdBuilder, KdTraversal, KdTree, Octree
@@ -20,6 +20,8 @@ __all__ = [
     "NestedGrid",
     "Octree",
     "Optimiser",
+    "Traversal",
+    "Volume",
     "every",
     "name_of",
 ]

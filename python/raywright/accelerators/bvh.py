@@ -1,12 +1,14 @@
 """Bounding volume hierarchies."""
 
 from dataclasses import dataclass
-from typing import Literal, get_args
+from typing import ClassVar, Literal, get_args
 
 from ..arrays import choice, integer, number, positive
 
 Builder = Literal["binned", "sweep", "spatial", "morton", "ploc", "midpoint", "median", "mean"]
 Optimiser = Literal["reinsertion", "treelet"]
+Traversal = Literal["wide", "wide4", "wide8", "stack", "threaded", "packets4", "packets64"]
+Volume = Literal["box", "oriented", "slabs"]
 _MOST_BUDGET = 8.0
 # Which builders an option is for; the others would ignore it.
 _BINS, _BUDGET, _RADIUS = ("binned", "spatial"), ("spatial",), ("ploc",)
@@ -14,7 +16,7 @@ _BINS, _BUDGET, _RADIUS = ("binned", "spatial"), ("spatial",), ("ploc",)
 
 @dataclass(frozen=True)
 class BVH:
-    """A bounding volume hierarchy: a binary tree, improved if that is wanted, and made wide for the rays.
+    """A bounding volume hierarchy: a binary tree, improved if that is wanted, and a way for rays through it.
 
     Parameters
     ----------
@@ -54,12 +56,41 @@ class BVH:
         high-quality bounding volume hierarchies"). If not given, what suits the scene's ``quality`` for
         ``"binned"``, and nothing for the others; with ``()`` nothing at all. What suits the quality may be,
         for long and diagonal geometry, that it is cut to pieces first.
+    traversal : {"wide", "wide4", "wide8", "stack", "threaded", "packets4", "packets64"}
+        How rays go through the tree. Hits are the same.
+
+        - ``"wide"``: the tree is collapsed to one of 8 children a node, or 4 where the processor has no AVX2
+          (Wald, Benthin and Boulos 2008, "Getting rid of packets"), which packets or waves of rays walk as
+          suits the batch. The fastest.
+        - ``"wide4"``, ``"wide8"``: the same with that width. 8 needs AVX2.
+        - ``"stack"``: the binary tree, one ray after the other, the nearer child first and the other on a
+          stack with its distance (Kay and Kajiya 1986). Where any hit will do nothing is sorted, and the
+          larger child goes first.
+        - ``"threaded"``: without a stack: each node has a link for a hit and one for a miss (Smits 1998,
+          "Efficiency issues for ray tracing"), once for each of some directions (Hachisuka 2015,
+          "Implementing a photorealistic rendering system using GLSL").
+        - ``"packets4"``: with a stack, four rays together (Wald et al. 2001, "Interactive rendering with
+          coherent ray tracing").
+        - ``"packets64"``: with a stack, 64 rays together, of which the first and the last that are active are
+          known, and an interval test of all of them (Wald, Boulos and Shirley 2007, "Ray tracing deformable
+          scenes using dynamic bounding volume hierarchies"; Overbeck, Ramamoorthi and Mark 2008, "Large ray
+          packets for real-time Whitted ray tracing"). For rays that go much the same way.
+
+        All but the wide ones hold shapes that are not triangles in the same tree as these.
+    orders : {6, 8}, optional
+        How many orders ``"threaded"`` has: one for each half of each axis, or one for each octant; 8 if not
+        given. Each takes 8 bytes a node.
+    bounds : {"box", "oriented", "slabs"}
+        What nodes have beside their boxes, for ``"stack"``: nothing; turned boxes, where these have less
+        surface (Gottschalk, Lin and Manocha 1996, "OBBTree"); or slabs along ten diagonals (Kay and Kajiya
+        1986). That saves tests of diagonal geometry, costs up to 80 bytes a node and a longer test of each,
+        and takes longer to build.
 
     Raises
     ------
     ValueError
-        If a value is outside its range, a name is not known, or the builder does not have an option that is
-        given.
+        If a value is outside its range, a name is not known, or the builder or the traversal does not have an
+        option that is given. A scene raises it for ``"wide8"`` where there is no AVX2.
     TypeError
         If a value is not a number.
     """
@@ -71,6 +102,12 @@ class BVH:
     budget: float | None = None
     radius: int | None = None
     optimise: Optimiser | tuple[Optimiser, ...] | None = None
+    traversal: Traversal = "wide"
+    orders: Literal[6, 8] | None = None
+    bounds: Volume = "box"
+
+    # What an option needs of another one.
+    needs: ClassVar[dict[str, dict[str, str]]] = {"bounds": {"traversal": "stack"}}
 
     def __post_init__(self) -> None:
         choice("builder", self.builder, get_args(Builder))
@@ -87,6 +124,17 @@ class BVH:
             self._keep("radius", integer("radius", self.radius, 1, 128), _RADIUS)
         if self.optimise is not None:
             self._keep("optimise", _optimisers(self.optimise))
+        choice("traversal", self.traversal, get_args(Traversal))
+        if self.orders is not None:
+            orders = integer("orders", self.orders, 6, 8)
+            if orders == 7:
+                raise ValueError(f"orders must be 6 or 8, got {self.orders}")
+            if self.traversal != "threaded":
+                raise ValueError(f"orders is for traversal 'threaded', got traversal {self.traversal!r}")
+            self._keep("orders", orders)
+        choice("bounds", self.bounds, get_args(Volume))
+        if self.bounds != "box" and self.traversal != "stack":
+            raise ValueError(f"bounds is for traversal 'stack', got traversal {self.traversal!r}")
 
     def _keep(self, name: str, value: object, builders: tuple[str, ...] | None = None) -> None:
         if builders is not None and self.builder not in builders:

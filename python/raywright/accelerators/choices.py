@@ -10,20 +10,24 @@ from .grid import Grid, NestedGrid
 from .space import BSP, KdTree, Octree
 
 Accelerator = BVH | KdTree | Octree | BSP | Grid | NestedGrid | BruteForce
+_WIDEST = BVH(traversal="wide8")
 
 
 def every() -> dict[str, Accelerator]:
     """Return one accelerator of each kind, and of each way to build or to walk one, by their names.
 
-    An option that is a choice among words is varied alone, while all others are as they are by default.
+    An option that is a choice among words is varied alone, while all others are as they are by default, or as
+    it needs them. Trees that are 8 wide by name are left out: any wide one is, wherever the processor can.
     """
     found: dict[str, Accelerator] = {}
     for kind in get_args(Accelerator):
         found[name_of(kind())] = kind()
         for option, words in _choices(kind).items():
+            others: dict[str, Any] = getattr(kind, "needs", {}).get(option, {})
             for word in words:
-                one = kind(**{option: word})
-                found.setdefault(name_of(one), one)
+                one = kind(**{option: word}, **others)
+                if one != _WIDEST:
+                    found.setdefault(name_of(one), one)
     return found
 
 

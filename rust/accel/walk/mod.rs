@@ -11,16 +11,19 @@ mod contents;
 mod mailbox;
 mod parts;
 mod room;
+mod together;
 mod walked;
 
 pub(super) use contents::{Contents, LANES};
 pub use mailbox::Mailbox;
 pub(super) use parts::{Halves, Part, Plane};
 pub(super) use room::Room;
+pub use together::{MOST_TOGETHER, Together};
 pub use walked::walked;
 
 use super::{Info, Primitives, SlabRay};
 use crate::math::{Aabb, Region};
+use crate::simd::Level;
 
 /// What a structure is built from.
 pub struct Input<'a> {
@@ -63,6 +66,18 @@ pub type Build<'a> = dyn Fn(&Input) -> Built + 'a;
 pub trait Structure: Send + Sync {
     /// Ready to walk, counting nodes if `counted`. Whoever counts none should have no code for it.
     fn walker(&self, counted: bool) -> Box<dyn Walker + '_>;
+
+    /// Ready to walk for rays of which nothing has to be known but whether they hit: leaves may come in any order. Nodes need not
+    /// be counted.
+    fn any_walker(&self) -> Box<dyn Walker + '_> {
+        self.walker(false)
+    }
+
+    /// Ready to walk with some rays together, by the vectors of a level, if that is how it should be; counting nodes if `counted`.
+    fn together(&self, counted: bool, level: Level) -> Option<Box<dyn Together + '_>> {
+        let _ = (counted, level);
+        None
+    }
 
     /// Its kind, nodes, leaves, depth, bytes and cost. The rest is for others to say.
     fn info(&self) -> Info;

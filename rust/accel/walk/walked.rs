@@ -2,8 +2,9 @@
 
 use super::contents::{Contents, LANES};
 use super::mailbox::{Mailbox, Mailboxes, Marks};
+use super::together;
 use super::{Build, Input, Structure};
-use crate::accel::query::{Answers, Query};
+use crate::accel::query::{Answers, Query, Wanted};
 use crate::accel::{Accelerator, Info, Nearest, Primitives, SlabRay, bvh};
 use crate::math::{Aabb, DVec3, Ray, Region};
 use crate::shapes::triangle::{DoubleLeaves, EdgeRay, Leaves, SingleLeaves};
@@ -196,8 +197,18 @@ impl<L: Leaves<LANES>, Q: Query> Kernel<LANES> for Batch<'_, L, Q> {
 
     #[inline(always)]
     fn run<S: Simd<LANES>>(self, simd: S) {
-        let Self { walked: Walked { structure, contents, unbounded, region, .. }, rays, mut marks, query } = self;
-        let mut walker = structure.walker(Q::COUNTED);
+        let Self { walked, rays, mut marks, query } = self;
+        let Walked { structure, contents, unbounded, region, level, .. } = walked;
+        if rays.len() > 1
+            && let Some(mut walk) = structure.together(Q::COUNTED, *level)
+        {
+            together::Batch { contents, unbounded, region, rays }.answer(simd, walk.as_mut(), query);
+            return;
+        }
+        let mut walker = match Q::WANTED {
+            Wanted::Any => structure.any_walker(),
+            _ => structure.walker(Q::COUNTED),
+        };
         for (i, ray) in rays.iter().enumerate() {
             let Some(edges) = EdgeRay::new(ray, region) else {
                 query.finish(i, None);

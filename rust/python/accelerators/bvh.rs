@@ -8,6 +8,7 @@ use crate::accel::bvh::build::halves::Way;
 use crate::accel::bvh::build::morton::Bits;
 use crate::accel::bvh::build::{Builder, binned, ploc, spatial};
 use crate::accel::bvh::optimise::{Optimiser, Optimisers};
+use crate::accel::bvh::traverse::{Orders, Rays, Traversal};
 use crate::accel::bvh::{self, Quality};
 use crate::simd::Level;
 
@@ -21,6 +22,16 @@ pub struct Bvh {
     budget: Option<f32>,
     radius: Option<usize>,
     optimise: Option<Vec<String>>,
+    traversal: String,
+    orders: Option<u32>,
+    bounds: String,
+}
+
+/// The tree that rays go through, and how.
+enum Tree {
+    /// One of so many children a node, or of as many as suit the level.
+    Wide(Option<usize>),
+    Binary(Traversal),
 }
 
 impl Bvh {
@@ -39,7 +50,40 @@ impl Bvh {
             traversal_cost: self.traversal_cost,
             intersection_cost: self.intersection_cost,
         };
-        Ok(Box::new(move |geometry| bvh::over(geometry, &options, level)))
+        Ok(match self.tree(level)? {
+            Tree::Wide(None) => Box::new(move |geometry| bvh::over(geometry, &options, level)),
+            Tree::Wide(Some(width)) => Box::new(move |geometry| bvh::of_width(width, geometry, &options, level)),
+            Tree::Binary(way) => Box::new(move |geometry| bvh::binary(geometry, &options, way, level)),
+        })
+    }
+
+    fn tree(&self, level: Level) -> PyResult<Tree> {
+        let orders = match self.orders {
+            None | Some(8) => Orders::Eight,
+            Some(6) => Orders::Six,
+            Some(other) => return Err(PyValueError::new_err(format!("orders is {other}, expected 6 or 8"))),
+        };
+        Ok(match self.traversal.as_str() {
+            "wide" => Tree::Wide(None),
+            "wide4" => Tree::Wide(Some(4)),
+            "wide8" if level.lanes() < 8 => {
+                let name = level.name();
+                return Err(PyValueError::new_err(format!(
+                    "traversal \"wide8\" needs AVX2, and kernels run at {name}"
+                )));
+            }
+            "wide8" => Tree::Wide(Some(8)),
+            "stack" => Tree::Binary(match self.bounds.as_str() {
+                "box" => Traversal::Stack(Rays::One),
+                "oriented" => Traversal::Oriented,
+                "slabs" => Traversal::Slabs,
+                other => return Err(unknown("bounds", other, &["box", "oriented", "slabs"])),
+            }),
+            "packets4" => Tree::Binary(Traversal::Stack(Rays::Four)),
+            "packets64" => Tree::Binary(Traversal::Stack(Rays::SixtyFour)),
+            "threaded" => Tree::Binary(Traversal::Threaded(orders)),
+            other => return Err(unknown("traversal", other, &TRAVERSALS)),
+        })
     }
 
     fn builder(&self) -> PyResult<Builder> {
@@ -76,3 +120,5 @@ impl Bvh {
 }
 
 const BUILDERS: [&str; 8] = ["binned", "sweep", "spatial", "morton", "ploc", "midpoint", "median", "mean"];
+
+const TRAVERSALS: [&str; 7] = ["wide", "wide4", "wide8", "stack", "threaded", "packets4", "packets64"];

@@ -90,7 +90,11 @@ fn work_is_bounded(accelerator: &dyn Accelerator, rays: &[Ray]) {
     accelerator.cost(rays, &mut costs);
     let info = accelerator.info();
     // Parts of one primitive stand in several leaves, of at most eight parts each.
-    let most = if info.kind.contains("spatial splits") || info.kind.contains("pieces") { 8 * info.leaves } else { info.primitives };
+    let most = if info.kind.contains("spatial splits") || info.kind.contains("pieces") {
+        8 * info.leaves
+    } else {
+        info.primitives
+    };
     for (cost, ray) in costs.iter().zip(rays) {
         assert!(cost.nodes as usize <= info.nodes && cost.primitives as usize <= most, "{ray:?}: {cost:?}");
         if !(ray.origin.is_finite() && ray.direction.is_finite()) {

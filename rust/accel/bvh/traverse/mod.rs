@@ -1,21 +1,84 @@
-//! Ways through the binary tree, as textbooks have them.
+//! Ways through the binary tree, as textbooks have them: one ray after the other, or some together.
 
+mod any;
+mod bundle;
+mod columns;
+mod gather;
 mod moving;
+mod numbered;
 mod ordered;
+mod oriented;
+mod packets;
+mod slabs;
+mod threaded;
+mod volumes;
 
 pub use moving::Moving;
-pub use ordered::Ordered;
+pub use ordered::{Ordered, Rays};
+pub use threaded::{Orders, Threaded};
 
-use super::BinaryBvh;
-use crate::accel::walk::Lists;
+use super::{BinaryBvh, Options};
+use crate::accel::walk::{Built, Input, LANES};
 use crate::math::Aabb;
+use crate::shapes::triangle::clipped;
+use gather::{Costs, gather};
+use oriented::Oriented;
+use slabs::Slabs;
 
-/// Where each leaf's node is, and what stands in it: leaves are numbered as their nodes are.
-fn leaves(bvh: &BinaryBvh) -> (Vec<u32>, Lists) {
-    let nodes = bvh.nodes.iter().enumerate().filter(|(_, node)| node.is_leaf());
-    let numbers: Vec<u32> = nodes.clone().map(|(i, _)| i as u32).collect();
-    let primitives = nodes.map(|(_, n)| &bvh.order[n.index as usize..(n.index + n.count) as usize]);
-    (numbers, Lists::of(primitives))
+/// A way through a binary tree.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Traversal {
+    /// With a stack.
+    Stack(Rays),
+    /// With a stack, each ray alone, where nodes have turned boxes too.
+    Oriented,
+    /// The same with slabs along diagonals.
+    Slabs,
+    /// Without a stack.
+    Threaded(Orders),
+}
+
+impl Traversal {
+    /// All of them.
+    pub const ALL: [Self; 7] = [
+        Self::Stack(Rays::One),
+        Self::Stack(Rays::Four),
+        Self::Stack(Rays::SixtyFour),
+        Self::Oriented,
+        Self::Slabs,
+        Self::Threaded(Orders::Six),
+        Self::Threaded(Orders::Eight),
+    ];
+
+    /// A structure that is walked so; `kind` says how the tree was built.
+    pub fn over(self, bvh: BinaryBvh, input: &Input, kind: &str) -> Built {
+        match self {
+            Self::Stack(rays) => Ordered::over(bvh, rays, kind),
+            Self::Oriented => Ordered::<Oriented>::within(bvh, input, kind),
+            Self::Slabs => Ordered::<Slabs>::within(bvh, input, kind),
+            Self::Threaded(orders) => Threaded::over(bvh, orders, kind),
+        }
+    }
+
+    /// Builds a tree as the options say, with leaves that suit one that is walked as it is.
+    pub fn build(self, input: &Input, options: &Options) -> Built {
+        // What is no triangle is tested one by one.
+        let block = if input.primitives.objects().is_some() { 1 } else { LANES };
+        let steps = options.steps(block);
+        let (bvh, name) = steps.build(&input.boxes, |p, to| clip(input, p, to));
+        let (traversal, intersection) = (options.traversal_cost, options.intersection_cost);
+        self.over(gather(&bvh, Costs { traversal, intersection, block }), input, &name)
+    }
+}
+
+/// A box around what of a primitive lies in another box.
+fn clip(input: &Input, primitive: u32, to: &Aabb) -> Aabb {
+    let corners = input.primitives.corners(primitive);
+    if corners.iter().all(|c| c.is_finite()) {
+        clipped(corners.map(|c| input.region.to_box(c)), to)
+    } else {
+        input.boxes[primitive as usize].intersection(*to)
+    }
 }
 
 /// The surface-area heuristic's cost of a tree, in tests of a node: of every inner node its two boxes, of every leaf its primitives, each

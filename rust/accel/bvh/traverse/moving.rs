@@ -2,9 +2,9 @@
 //! at its own time (Glassner, "Spacetime Ray Tracing for Animation", 1988; interpolated boxes as in Christensen, Fong, Laur and Batali,
 //! "Ray Tracing for the Movie 'Cars'", 2006).
 
-use super::{leaves, sah_cost};
-use crate::accel::bvh::BinaryBvh;
-use crate::accel::walk::{Built, Input, Structure, Walker};
+use super::sah_cost;
+use crate::accel::bvh::{BinaryBvh, Node};
+use crate::accel::walk::{Built, Input, Lists, Structure, Walker};
 use crate::accel::{Info, SlabRay};
 use crate::math::{Aabb, Vec3};
 
@@ -21,14 +21,15 @@ pub struct Moving {
 impl Moving {
     /// Walks a tree over what moves; `kind` says how it was built.
     pub fn over(mut bvh: BinaryBvh, input: &Input, kind: &str) -> Built {
-        let (numbers, lists) = leaves(&bvh);
+        let primitives = |n: &Node| &bvh.order[n.index as usize..(n.index + n.count) as usize];
+        let lists = Lists::of(bvh.nodes.iter().filter(|n| n.is_leaf()).map(primitives));
         let mut starts = vec![0usize];
         starts.extend(lists.counts.iter().scan(0, |sum, &count| {
             *sum += count as usize;
             Some(*sum)
         }));
-        for (leaf, &node) in numbers.iter().enumerate() {
-            bvh.nodes[node as usize].index = leaf as u32;
+        for (leaf, node) in bvh.nodes.iter_mut().filter(|n| n.is_leaf()).enumerate() {
+            node.index = leaf as u32;
         }
         bvh.order = Vec::new();
         let within = |leaf: u32| lists.order[starts[leaf as usize]..starts[leaf as usize + 1]].to_vec();

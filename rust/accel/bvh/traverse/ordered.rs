@@ -1,111 +1,138 @@
 //! The stack: the nearer child first, the other put away with the distance at which its box begins, and left out when something nearer
-//! was found meanwhile.
+//! was found meanwhile (Kay and Kajiya, "Ray tracing complex scenes", 1986, with a stack for their heap).
 
-use super::{leaves, sah_cost};
+use super::any::{Unordered, larger_first};
+use super::numbered::Numbered;
+use super::volumes::{Alone, Points, Volumes};
+use super::{bundle, packets};
 use crate::accel::bvh::BinaryBvh;
-use crate::accel::walk::{Built, Input, Structure, Walker};
+use crate::accel::walk::{Built, Input, Lists, Structure, Together, Walker};
 use crate::accel::{Info, SlabRay};
-use crate::math::Aabb;
+use crate::simd::Level;
 
-/// A binary tree walked with a stack.
-pub struct Ordered {
-    /// Its leaves have their own number for `index`.
-    bvh: BinaryBvh,
-    depth: usize,
+/// How many rays go through a tree together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rays {
+    /// Each alone.
+    One,
+    /// In packets of 4: one vector.
+    Four,
+    /// In bundles of 64: a range of vectors.
+    SixtyFour,
+}
+
+/// A binary tree walked with a stack, by rays alone or together.
+pub struct Ordered<V = Alone> {
+    tree: Numbered,
+    /// What nodes have beside their boxes.
+    volumes: V,
+    rays: Rays,
     kind: String,
 }
 
 impl Ordered {
     /// Walks a tree; `kind` says how it was built.
-    pub fn over(mut bvh: BinaryBvh, kind: &str) -> Built {
-        let (numbers, lists) = leaves(&bvh);
-        for (leaf, &node) in numbers.iter().enumerate() {
-            bvh.nodes[node as usize].index = leaf as u32;
-        }
-        bvh.order = Vec::new();
-        let kind = format!("BVH, {kind}, stack");
-        (Box::new(Self { depth: bvh.depth(), bvh, kind }), lists)
+    pub fn over(mut bvh: BinaryBvh, rays: Rays, kind: &str) -> Built {
+        larger_first(&mut bvh);
+        let (tree, lists) = Numbered::new(bvh);
+        let name = match rays {
+            Rays::One => "stack",
+            Rays::Four => "packets of 4",
+            Rays::SixtyFour => "packets of 64",
+        };
+        (Box::new(Self { tree, volumes: Alone, rays, kind: format!("BVH, {kind}, {name}") }), lists)
     }
 }
 
-impl Structure for Ordered {
+impl<V: Volumes> Ordered<V> {
+    /// Walks a tree whose nodes have volumes beside their boxes, each ray alone.
+    pub(super) fn within(mut bvh: BinaryBvh, input: &Input, kind: &str) -> Built {
+        larger_first(&mut bvh);
+        let (tree, lists) = Numbered::new(bvh);
+        let volumes = V::around(&tree, &Points::new(input, &lists));
+        (Box::new(Self { tree, volumes, rays: Rays::One, kind: format!("BVH, {kind}, stack{}", V::NAME) }), lists)
+    }
+
+    fn lists(&self, primitives: &dyn Fn(u32) -> Vec<u32>) -> Lists {
+        let leaves = self.tree.nodes.iter().filter(|n| n.is_leaf()).count() as u32;
+        let all: Vec<_> = (0..leaves).map(primitives).collect();
+        Lists::of(all.iter().map(Vec::as_slice))
+    }
+}
+
+impl<V: Volumes> Structure for Ordered<V> {
     fn walker(&self, counted: bool) -> Box<dyn Walker + '_> {
-        // A path puts one child away a level.
-        let stack = Vec::with_capacity(self.depth + 1);
-        if counted {
-            Box::new(Walk::<true> { tree: self, ray: SlabRay::EVERYWHERE, stack, nodes: 0 })
-        } else {
-            Box::new(Walk::<false> { tree: self, ray: SlabRay::EVERYWHERE, stack, nodes: 0 })
+        if counted { Box::new(Walk::<V, true>::new(self)) } else { Box::new(Walk::<V, false>::new(self)) }
+    }
+
+    fn any_walker(&self) -> Box<dyn Walker + '_> {
+        Box::new(Unordered::new(&self.tree, &self.volumes))
+    }
+
+    fn together(&self, counted: bool, level: Level) -> Option<Box<dyn Together + '_>> {
+        match self.rays {
+            Rays::One => None,
+            Rays::Four => Some(packets::walk(&self.tree, counted, level)),
+            Rays::SixtyFour => Some(bundle::walk(&self.tree, counted, level)),
         }
     }
 
     fn info(&self) -> Info {
-        let leaves = self.bvh.nodes.iter().filter(|n| n.is_leaf()).count();
-        Info {
-            kind: self.kind.clone(),
-            nodes: self.bvh.nodes.len() - leaves,
-            leaves,
-            depth: self.depth,
-            bytes: size_of_val(self.bvh.nodes.as_slice()),
-            sah_cost: sah_cost(&self.bvh),
-            ..Info::default()
-        }
+        let info = self.tree.info(&self.kind);
+        Info { bytes: info.bytes + self.volumes.bytes(), ..info }
     }
 
     fn validate(&self, input: &Input, primitives: &dyn Fn(u32) -> Vec<u32>) -> Result<(), String> {
-        let mut whole = self.bvh.clone();
-        for node in whole.nodes.iter_mut().filter(|n| n.is_leaf()) {
-            let mine = primitives(node.index);
-            if mine.len() != node.count as usize {
-                return Err(format!("leaf {} has {} primitives, not {}", node.index, mine.len(), node.count));
-            }
-            node.index = whole.order.len() as u32;
-            whole.order.extend(mine);
-        }
-        match whole.depth() {
-            depth if depth == self.depth => whole.validate(&input.boxes),
-            depth => Err(format!("depth is {depth}, not {}", self.depth)),
+        self.tree.validate(input, primitives)?;
+        let lists = self.lists(primitives);
+        let points = Points::new(input, &lists);
+        let holds = |i: usize| points.below(&self.tree, i).into_iter().all(|p| self.volumes.holds(i, p));
+        match (0..self.tree.nodes.len()).find(|&i| !V::NAME.is_empty() && !holds(i)) {
+            Some(i) => Err(format!("the volume of node {i} does not hold what is below it")),
+            None => Ok(()),
         }
     }
 
     fn refitted(&self, input: &Input, primitives: &dyn Fn(u32) -> Vec<u32>) -> Result<Box<dyn Structure>, String> {
-        let mut bvh = self.bvh.clone();
-        // Children come after their parents.
-        for i in (0..bvh.nodes.len()).rev() {
-            let node = &bvh.nodes[i];
-            let around = if node.is_leaf() {
-                primitives(node.index).into_iter().fold(Aabb::EMPTY, |b, p| b.union(input.boxes[p as usize]))
-            } else {
-                let [a, b] = node.children();
-                bvh.nodes[a].aabb().union(bvh.nodes[b].aabb())
-            };
-            (bvh.nodes[i].min, bvh.nodes[i].max) = (around.min, around.max);
-        }
-        Ok(Box::new(Self { bvh, depth: self.depth, kind: self.kind.clone() }))
+        let tree = self.tree.refitted(input, primitives)?;
+        let volumes = V::around(&tree, &Points::new(input, &self.lists(primitives)));
+        Ok(Box::new(Self { tree, volumes, rays: self.rays, kind: self.kind.clone() }))
     }
 }
 
-struct Walk<'a, const COUNTED: bool> {
-    tree: &'a Ordered,
+struct Walk<'a, V: Volumes, const COUNTED: bool> {
+    tree: &'a Numbered,
+    volumes: &'a V,
     ray: SlabRay,
+    ready: V::Ready,
     /// Nodes that are met, and from where on.
     stack: Vec<(u32, f32)>,
     nodes: u32,
 }
 
-impl<const COUNTED: bool> Walker for Walk<'_, COUNTED> {
+impl<'a, V: Volumes, const COUNTED: bool> Walk<'a, V, COUNTED> {
+    fn new(of: &'a Ordered<V>) -> Self {
+        let ray = SlabRay::EVERYWHERE;
+        // A path puts one child away a level.
+        let stack = Vec::with_capacity(of.tree.depth + 1);
+        Self { tree: &of.tree, volumes: &of.volumes, ray, ready: V::ready(&ray), stack, nodes: 0 }
+    }
+}
+
+impl<V: Volumes, const COUNTED: bool> Walker for Walk<'_, V, COUNTED> {
     fn start(&mut self, ray: &SlabRay) {
         self.ray = *ray;
+        self.ready = V::ready(ray);
         self.nodes = 0;
         self.stack.clear();
-        if let Some(root) = self.tree.bvh.nodes.first() {
+        if let Some(root) = self.tree.nodes.first() {
             self.nodes += u32::from(COUNTED);
             self.stack.extend(ray.passes(&root.aabb(), f32::INFINITY).map(|(enter, _)| (0, enter)));
         }
     }
 
     fn next(&mut self, limit: f32) -> Option<u32> {
-        let nodes = self.tree.bvh.nodes.as_slice();
+        let nodes = self.tree.nodes.as_slice();
         while let Some((mut at, enter)) = self.stack.pop() {
             if enter > limit {
                 continue;
@@ -119,7 +146,10 @@ impl<const COUNTED: bool> Walker for Walk<'_, COUNTED> {
                     self.nodes += 2;
                 }
                 let [a, b] = [node.index, node.index + 1];
-                let passes = |i: u32| self.ray.passes(&nodes[i as usize].aabb(), limit);
+                let passes = |i: u32| {
+                    let within = self.ray.passes(&nodes[i as usize].aabb(), limit)?;
+                    self.volumes.narrowed(i, &self.ready, within)
+                };
                 at = match (passes(a), passes(b)) {
                     (Some((enter, _)), Some((other, _))) if enter <= other => {
                         self.stack.push((b, other));
