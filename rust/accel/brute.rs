@@ -2,16 +2,19 @@
 
 use super::nearest::{Search, of};
 use super::query::{Answers, Query};
-use super::walk::{Contents, Input, LANES, Lists};
+use super::walk::{Contents, Input, Lists};
 use super::{Accelerator, Info, Nearest, Primitives};
 use crate::math::{DVec3, Ray, Region};
 use crate::shapes::triangle::{DoubleLeaves, EdgeRay, Leaves, SingleLeaves};
 use crate::simd::{Dispatch, Kernel, Level, Simd};
 use std::time::Instant;
 
+/// Triangles that are tested at once, on every processor.
+const LANES: usize = 4;
+
 /// Tests all primitives: one leaf, and no box before it.
 pub struct BruteForce<L = SingleLeaves<LANES>> {
-    contents: Contents<L>,
+    contents: Contents<LANES, L>,
     region: Region,
     level: Level,
     info: Info,

@@ -177,7 +177,7 @@ impl<A: Answers> Accelerator for A {
 pub struct Cost {
     /// Nodes whose boxes were tested.
     pub nodes: u32,
-    /// Primitives that stood in the leaves visited.
+    /// Primitives that stood in the leaves visited; each once, where it is known to have been met before.
     pub primitives: u32,
 }
 

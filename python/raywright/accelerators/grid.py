@@ -44,7 +44,7 @@ class Grid:
     """
 
     resolution: int | tuple[int, int, int] | None = None
-    density: float = 2.0
+    density: float = 0.5
     mailbox: Mailbox = "stamps"
 
     def __post_init__(self) -> None:

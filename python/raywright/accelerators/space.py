@@ -54,10 +54,10 @@ class KdTree:
     builder: KdBuilder = "sah"
     traversal: KdTraversal = "stack"
     traversal_cost: float = 1.0
-    intersection_cost: float = 0.5
+    intersection_cost: float = 0.1
     empty_bonus: float = 0.2
     max_depth: int | None = None
-    leaf_size: int = 4
+    leaf_size: int = 8
 
     def __post_init__(self) -> None:
         choice("builder", self.builder, get_args(KdBuilder))

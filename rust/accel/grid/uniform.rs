@@ -18,9 +18,9 @@ pub struct Options {
 }
 
 impl Options {
-    /// Two cells a primitive. With more, fewer primitives are tested in more cells, for about as many instructions, but memory grows, and
-    /// what it takes to come from there.
-    pub const DEFAULT: Self = Self { resolution: Resolution::Density(2.0) };
+    /// Two primitives a cell. With more cells, fewer primitives are tested in each; but up to eight are tested at once, and of one that
+    /// reaches into many cells each keeps a copy, which has to come from memory.
+    pub const DEFAULT: Self = Self { resolution: Resolution::Density(0.5) };
 }
 
 impl Default for Options {

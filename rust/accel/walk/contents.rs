@@ -9,9 +9,6 @@ use crate::shapes::triangle::{BlockRay, EdgeRay, Leaves};
 use crate::simd::Simd;
 use std::sync::Arc;
 
-/// Triangles that are tested at once.
-pub const LANES: usize = 4;
-
 /// A ray as whatever stands in leaves needs it.
 pub struct LeafRay<'a> {
     pub edges: &'a EdgeRay,
@@ -19,8 +16,8 @@ pub struct LeafRay<'a> {
     pub time: f64,
 }
 
-/// The primitives of all leaves.
-pub struct Contents<L> {
+/// The primitives of all leaves, with triangles in blocks of up to `N`.
+pub struct Contents<const N: usize, L> {
     triangles: L,
     /// Where the triangles of each leaf begin, and where the last end. Empty where there are none.
     ends: Vec<u32>,
@@ -30,7 +27,7 @@ pub struct Contents<L> {
     number_ends: Vec<u32>,
 }
 
-impl<L: Leaves<LANES>> Contents<L> {
+impl<const N: usize, L: Leaves<N>> Contents<N, L> {
     /// Puts primitives into leaves.
     pub fn new(input: &Input, lists: &Lists) -> Self {
         let primitives = input.primitives;
@@ -45,7 +42,7 @@ impl<L: Leaves<LANES>> Contents<L> {
                 if primitives.is_finite(p) { order.push(p) } else { numbers.push(p) }
             }
             let triangles = order.len() - before;
-            blocks.extend((0..triangles).step_by(LANES).map(|i| (triangles - i).min(LANES) as u32));
+            blocks.extend((0..triangles).step_by(N).map(|i| (triangles - i).min(N) as u32));
             ends.push(order.len() as u32);
             number_ends.push(numbers.len() as u32);
         }
@@ -69,12 +66,12 @@ impl<L: Leaves<LANES>> Contents<L> {
 
     /// Of a leaf, the blocks of triangles: where each begins and how many it has.
     #[inline(always)]
-    fn blocks(&self, leaf: u32) -> impl Iterator<Item = (usize, u32)> + use<L> {
+    fn blocks(&self, leaf: u32) -> impl Iterator<Item = (usize, u32)> + use<N, L> {
         let (first, end) = match self.ends.get(leaf as usize..leaf as usize + 2) {
             Some(&[first, end]) => (first as usize, end as usize),
             _ => (0, 0),
         };
-        (first..end).step_by(LANES).map(move |at| (at, (end - at).min(LANES) as u32))
+        (first..end).step_by(N).map(move |at| (at, (end - at).min(N) as u32))
     }
 
     #[inline(always)]
@@ -126,9 +123,21 @@ impl<L: Leaves<LANES>> Contents<L> {
         LeafRay { edges, lanes: L::ray(edges, region), time: ray.time }
     }
 
-    /// Offers what of a leaf is met to the query; true if that answers it.
+    /// Of a block, the lanes with a primitive that the ray comes to for the first time.
     #[inline(always)]
-    pub fn meet<Q: Query, S: Simd<LANES>>(
+    fn new_lanes(&self, first: usize, count: u32, marks: &mut Option<&mut Marks>) -> u32 {
+        let is_new = |lane: usize| {
+            let primitive = self.triangles.primitive(first, count, lane);
+            marks.as_mut().is_none_or(|marks| marks.is_new(primitive))
+        };
+        (0..count as usize).map(is_new).enumerate().fold(0, |new, (lane, is_new)| new | u32::from(is_new) << lane)
+    }
+
+    /// Offers what of a leaf is met to the query; true if that answers it.
+    ///
+    /// Nothing is decided twice for a ray, nor counted twice, as far as its marks know; in f32 a block may be looked at again.
+    #[inline(always)]
+    pub fn meet<Q: Query, S: Simd<N>>(
         &self,
         simd: S,
         leaf: u32,
@@ -137,27 +146,33 @@ impl<L: Leaves<LANES>> Contents<L> {
         query: &mut Q,
         state: &mut Q::State,
     ) -> bool {
-        for (first, count) in self.blocks(leaf) {
-            let mut new = (1u32 << count) - 1;
-            if let Some(marks) = marks {
-                for lane in 0..count as usize {
-                    new &= !(u32::from(!marks.is_new(self.triangles.primitive(first, count, lane))) << lane);
-                }
-                if new == 0 {
+        let (mut first, end) = (self.ends[leaf as usize] as usize, self.ends[leaf as usize + 1] as usize);
+        while first < end {
+            let count = (end - first).min(N) as u32;
+            let mut left = self.triangles.not_rejected(simd, &ray.lanes, first, count);
+            if Q::COUNTED {
+                let new = self.new_lanes(first, count, marks);
+                Q::visit_leaf(state, new.count_ones());
+                left &= new;
+            }
+            while left != 0 {
+                let lane = left.trailing_zeros() as usize & (N - 1);
+                left &= left - 1;
+                let primitive = self.triangles.primitive(first, count, lane);
+                // Only what f32 leaves is asked about: to ask about every lane took longer than to test the block again.
+                if !Q::COUNTED
+                    && let Some(marks) = marks
+                    && !marks.is_new(primitive)
+                {
                     continue;
                 }
-            }
-            Q::visit_leaf(state, new.count_ones());
-            let mut left = new & self.triangles.not_rejected(simd, &ray.lanes, first, count);
-            while left != 0 {
-                let lane = left.trailing_zeros() as usize & (LANES - 1);
-                left &= left - 1;
                 if let Some(candidate) = ray.edges.meet(self.triangles.corners(first, count, lane))
-                    && query.offer(state, self.triangles.primitive(first, count, lane), candidate)
+                    && query.offer(state, primitive, candidate)
                 {
                     return true;
                 }
             }
+            first += N;
         }
         let numbers = self.numbers(leaf);
         !numbers.is_empty() && self.meet_objects(numbers, ray, marks, query, state)

@@ -14,7 +14,7 @@ mod room;
 mod together;
 mod walked;
 
-pub(super) use contents::{Contents, LANES};
+pub(super) use contents::Contents;
 pub use mailbox::Mailbox;
 pub(super) use parts::{Halves, Part, Plane};
 pub(super) use room::Room;

@@ -1,6 +1,6 @@
 //! Rays that are walked together, leaf by leaf. Each keeps its own answer and its own limit; in a leaf each is tested by itself.
 
-use super::contents::{Contents, LANES, LeafRay};
+use super::contents::{Contents, LeafRay};
 use crate::accel::SlabRay;
 use crate::accel::query::Query;
 use crate::math::{Ray, Region};
@@ -38,21 +38,21 @@ struct Asked<T> {
 }
 
 /// What a batch is asked about.
-pub struct Batch<'a, L> {
-    pub contents: &'a Contents<L>,
+pub struct Batch<'a, const N: usize, L> {
+    pub contents: &'a Contents<N, L>,
     /// What every ray is tested against.
     pub unbounded: &'a [u32],
     pub region: &'a Region,
     pub rays: &'a [Ray],
 }
 
-impl<L: Leaves<LANES>> Batch<'_, L> {
+impl<const N: usize, L: Leaves<N>> Batch<'_, N, L> {
     /// Answers all rays.
     ///
     /// Where a primitive stands in several leaves, a ray may be offered it more than once, which changes no answer: marks
     /// would have to be kept for every ray at hand.
     #[inline(always)]
-    pub fn answer<Q: Query, S: Simd<LANES>>(&self, simd: S, walk: &mut dyn Together, query: &mut Q) {
+    pub fn answer<Q: Query, S: Simd<N>>(&self, simd: S, walk: &mut dyn Together, query: &mut Q) {
         let Self { contents, unbounded, region, rays } = *self;
         let width = walk.width();
         let (mut asked, mut slabs) = (Vec::with_capacity(width), Vec::with_capacity(width));
@@ -84,7 +84,7 @@ impl<L: Leaves<LANES>> Batch<'_, L> {
 
     /// Walks the rays at hand, and writes down their answers.
     #[inline(always)]
-    fn walk<Q: Query, S: Simd<LANES>>(
+    fn walk<Q: Query, S: Simd<N>>(
         &self,
         simd: S,
         walk: &mut dyn Together,

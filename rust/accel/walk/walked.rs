@@ -1,6 +1,6 @@
 //! Answers every question by walking a structure.
 
-use super::contents::{Contents, LANES};
+use super::contents::Contents;
 use super::mailbox::{Mailbox, Mailboxes, Marks};
 use super::together;
 use super::{Build, Input, Structure};
@@ -14,9 +14,9 @@ use std::sync::OnceLock;
 use std::time::Instant;
 
 /// A structure with what stands in its leaves.
-pub struct Walked<L> {
+pub struct Walked<const N: usize, L> {
     structure: Box<dyn Structure>,
-    contents: Contents<L>,
+    contents: Contents<N, L>,
     /// Objects without end, which every ray is tested against.
     unbounded: Vec<u32>,
     /// Where a primitive stands in several leaves.
@@ -35,10 +35,11 @@ pub struct Walked<L> {
 /// `build` is given what there is, and tells which primitives stand in which leaf. Where one stands in several, `mailbox` says how that is
 /// seen to.
 pub fn walked(primitives: &dyn Primitives, level: Level, mailbox: Mailbox, build: &Build) -> Box<dyn Accelerator> {
-    if primitives.is_single() {
-        Box::new(Walked::<SingleLeaves<LANES>>::new(primitives, level, mailbox, build))
-    } else {
-        Box::new(Walked::<DoubleLeaves<LANES>>::new(primitives, level, mailbox, build))
+    match (level.lanes(), primitives.is_single()) {
+        (8, true) => Box::new(Walked::<8, SingleLeaves<8>>::new(primitives, level, mailbox, build)),
+        (8, false) => Box::new(Walked::<8, DoubleLeaves<8>>::new(primitives, level, mailbox, build)),
+        (_, true) => Box::new(Walked::<4, SingleLeaves<4>>::new(primitives, level, mailbox, build)),
+        (_, false) => Box::new(Walked::<4, DoubleLeaves<4>>::new(primitives, level, mailbox, build)),
     }
 }
 
@@ -59,7 +60,7 @@ impl<'a> Input<'a> {
     }
 }
 
-impl<L: Leaves<LANES>> Walked<L> {
+impl<const N: usize, L: Leaves<N>> Walked<N, L> {
     fn new(primitives: &dyn Primitives, level: Level, mailbox: Mailbox, build: &Build) -> Self {
         let start = Instant::now();
         let (input, unbounded) = Input::new(primitives);
@@ -88,7 +89,10 @@ impl<L: Leaves<LANES>> Walked<L> {
     }
 }
 
-impl<L: Leaves<LANES>> Answers for Walked<L> {
+impl<const N: usize, L: Leaves<N>> Answers for Walked<N, L>
+where
+    Level: Dispatch<N>,
+{
     fn answer<Q: Query>(&self, rays: &[Ray], query: &mut Q) {
         match &self.mailboxes {
             None => self.level.dispatch(Batch { walked: self, rays, marks: None, query }),
@@ -185,18 +189,18 @@ impl Primitives for Kept {
     }
 }
 
-struct Batch<'a, L, Q> {
-    walked: &'a Walked<L>,
+struct Batch<'a, const N: usize, L, Q> {
+    walked: &'a Walked<N, L>,
     rays: &'a [Ray],
     marks: Option<&'a mut Marks>,
     query: &'a mut Q,
 }
 
-impl<L: Leaves<LANES>, Q: Query> Kernel<LANES> for Batch<'_, L, Q> {
+impl<const N: usize, L: Leaves<N>, Q: Query> Kernel<N> for Batch<'_, N, L, Q> {
     type Output = ();
 
     #[inline(always)]
-    fn run<S: Simd<LANES>>(self, simd: S) {
+    fn run<S: Simd<N>>(self, simd: S) {
         let Self { walked, rays, mut marks, query } = self;
         let Walked { structure, contents, unbounded, region, level, .. } = walked;
         if rays.len() > 1
@@ -205,6 +209,8 @@ impl<L: Leaves<LANES>, Q: Query> Kernel<LANES> for Batch<'_, L, Q> {
             together::Batch { contents, unbounded, region, rays }.answer(simd, walk.as_mut(), query);
             return;
         }
+        // One ray at a time. Eight in turn, each with its next leaf fetched meanwhile, are faster in grids where rays have nothing in
+        // common, and slower where they are neighbours; and one's stamps would take the place of another's.
         let mut walker = match Q::WANTED {
             Wanted::Any => structure.any_walker(),
             _ => structure.walker(Q::COUNTED),

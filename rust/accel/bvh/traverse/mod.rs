@@ -18,12 +18,15 @@ pub use ordered::{Ordered, Rays};
 pub use threaded::{Orders, Threaded};
 
 use super::{BinaryBvh, Options};
-use crate::accel::walk::{Built, Input, LANES};
+use crate::accel::walk::{Built, Input};
 use crate::math::Aabb;
 use crate::shapes::triangle::clipped;
 use gather::{Costs, gather};
 use oriented::Oriented;
 use slabs::Slabs;
+
+/// Triangles that leaves are made for, which are tested at once at any level.
+const BLOCK: usize = 4;
 
 /// A way through a binary tree.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -63,7 +66,7 @@ impl Traversal {
     /// Builds a tree as the options say, with leaves that suit one that is walked as it is.
     pub fn build(self, input: &Input, options: &Options) -> Built {
         // What is no triangle is tested one by one.
-        let block = if input.primitives.objects().is_some() { 1 } else { LANES };
+        let block = if input.primitives.objects().is_some() { 1 } else { BLOCK };
         let steps = options.steps(block);
         let (bvh, name) = steps.build(&input.boxes, |p, to| clip(input, p, to));
         let (traversal, intersection) = (options.traversal_cost, options.intersection_cost);
