@@ -138,6 +138,7 @@ impl Affine {
 
     /// The rows of the adjugate, and the determinant, up to a common factor with which that is above 0: the inverse is one over the
     /// other.
+    #[inline]
     pub fn adjugate_in<N: Number>(&self) -> ([Triple<N>; 3], N) {
         let (rows, determinant) = &self.adjugate;
         let known = |x: &Double| N::from_double(x);

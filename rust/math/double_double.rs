@@ -2,12 +2,17 @@
 //! Available Precision", 1971; bounds by Joldes, Muller and Popescu, "Tight and Rigorous Error Bounds for Basic
 //! Building Blocks of Double-Word Arithmetic", 2017).
 
+use super::double::fast_two_sum;
+pub use super::double::two_sum;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// `high + low`, where `low` is at most half a unit in the last place of `high`.
 ///
 /// With u = 2⁻⁵³, a sum errs by less than 3.1u², a product by 4u², a quotient by 10u², a root by 4u², relative to the
 /// result, as long as nothing overflows and no product falls below 2⁻⁹⁶⁰.
+///
+/// For what is computed to a precision that is known beforehand. [`Double`](super::Double) is the same with a bound on its own error,
+/// for what is decided. Products are fused here, which is right up to the largest f64, where those of `Double` end at 2⁹⁹⁶ and say so.
 #[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
 pub struct DoubleDouble {
     /// The number, rounded.
@@ -16,26 +21,11 @@ pub struct DoubleDouble {
     pub low: f64,
 }
 
-/// A sum and what rounding took from it, exactly (Knuth).
-#[inline(always)]
-pub fn two_sum(a: f64, b: f64) -> (f64, f64) {
-    let sum = a + b;
-    let part = sum - a;
-    (sum, (a - (sum - part)) + (b - part))
-}
-
 /// A product and what rounding took from it: exact where that does not underflow.
 #[inline(always)]
 pub fn two_product(a: f64, b: f64) -> (f64, f64) {
     let product = a * b;
     (product, a.mul_add(b, -product))
-}
-
-/// The sum of `a` and `b` where `a` is zero or not smaller, exactly.
-#[inline(always)]
-fn fast_two_sum(a: f64, b: f64) -> (f64, f64) {
-    let sum = a + b;
-    (sum, b - (sum - a))
 }
 
 impl DoubleDouble {

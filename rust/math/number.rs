@@ -80,33 +80,39 @@ pub(super) fn underflow(product: f64) -> f64 {
 pub(super) const SLACK: f64 = 1.0 + 1.0 / (1u64 << 40) as f64;
 
 impl Number for Bounded {
+    #[inline(always)]
     fn of(x: f64) -> Self {
         Self { value: x, error: 0.0 }
     }
 
+    #[inline(always)]
     fn from_double(x: &Double) -> Option<Self> {
         Some(Self { value: x.high, error: x.low.abs() + x.error })
     }
 
+    #[inline(always)]
     fn plus(&self, other: &Self) -> Self {
         let value = self.value + other.value;
         Self { value, error: self.error + other.error + UNIT * value.abs() }
     }
 
+    #[inline(always)]
     fn minus(&self, other: &Self) -> Self {
         let value = self.value - other.value;
         Self { value, error: self.error + other.error + UNIT * value.abs() }
     }
 
+    #[inline(always)]
     fn times(&self, other: &Self) -> Self {
-        if (self.value == 0.0 && self.error == 0.0) || (other.value == 0.0 && other.error == 0.0) {
-            return Self::of(0.0);
-        }
         let value = self.value * other.value;
-        let carried = self.value.abs() * other.error + (other.value.abs() + other.error) * self.error;
-        Self { value, error: carried + UNIT * value.abs() + underflow(value) }
+        let (own, others) = (self.value.abs() + self.error, other.value.abs() + other.error);
+        // Zero that is known as such makes a product that is known to be zero.
+        let lost = if value.abs() > SAFE || own == 0.0 || others == 0.0 { 0.0 } else { UNDERFLOW };
+        let carried = self.value.abs() * other.error + others * self.error;
+        Self { value, error: carried + UNIT * value.abs() + lost }
     }
 
+    #[inline(always)]
     fn over(&self, other: &Self) -> Self {
         let value = self.value / other.value;
         let least = other.value.abs() - other.error * SLACK;
@@ -115,6 +121,7 @@ impl Number for Bounded {
         Self { value, error: carried * SLACK + 2.0 * UNIT * value.abs() + underflow(value) }
     }
 
+    #[inline(always)]
     fn sqrt(&self) -> Self {
         let value = self.value.max(0.0).sqrt();
         // |√x − √x̂| = |x − x̂| / (√x + √x̂).
@@ -122,6 +129,7 @@ impl Number for Bounded {
         Self { value, error: carried + UNIT * value }
     }
 
+    #[inline(always)]
     fn sign(&self) -> Option<Ordering> {
         if self.value.abs() > self.error * SLACK {
             self.value.partial_cmp(&0.0)
@@ -130,10 +138,12 @@ impl Number for Bounded {
         }
     }
 
+    #[inline(always)]
     fn rounded(&self) -> Option<f64> {
         (self.error * SLACK <= UNIT / 4.0 * self.value.abs()).then_some(self.value)
     }
 
+    #[inline(always)]
     fn seems_negative(&self) -> bool {
         self.value < 0.0
     }
@@ -144,44 +154,56 @@ impl Number for Bounded {
 pub struct Triple<N>(pub [N; 3]);
 
 impl<N: Number> Triple<N> {
+    /// Three by the same rule. Written out, since closures over arrays are not always compiled away.
+    #[inline(always)]
+    fn by(mut rule: impl FnMut(usize) -> N) -> Self {
+        let (x, y, z) = (rule(0), rule(1), rule(2));
+        Self([x, y, z])
+    }
+
     /// A finite vector, as it is.
+    #[inline(always)]
     pub fn of(v: DVec3) -> Self {
-        Self(v.to_array().map(N::of))
+        Self::by(|i| N::of(v[i]))
     }
 
     /// The vector from one point to another.
+    #[inline(always)]
     pub fn between(a: DVec3, b: DVec3) -> Self {
         Self::of(b).minus(&Self::of(a))
     }
 
     /// The difference.
+    #[inline(always)]
     pub fn minus(&self, other: &Self) -> Self {
-        Self(std::array::from_fn(|i| self.0[i].minus(&other.0[i])))
+        Self::by(|i| self.0[i].minus(&other.0[i]))
     }
 
     /// The sum.
+    #[inline(always)]
     pub fn plus(&self, other: &Self) -> Self {
-        Self(std::array::from_fn(|i| self.0[i].plus(&other.0[i])))
+        Self::by(|i| self.0[i].plus(&other.0[i]))
     }
 
     /// All three times a number.
+    #[inline(always)]
     pub fn times(&self, by: &N) -> Self {
-        Self(std::array::from_fn(|i| self.0[i].times(by)))
+        Self::by(|i| self.0[i].times(by))
     }
 
     /// The inner product.
+    #[inline(always)]
     pub fn dot(&self, other: &Self) -> N {
-        let [x, y, z] = [0, 1, 2].map(|i| self.0[i].times(&other.0[i]));
-        x.plus(&y).plus(&z)
+        let product = |i: usize| self.0[i].times(&other.0[i]);
+        product(0).plus(&product(1)).plus(&product(2))
     }
 
     /// The cross product.
+    #[inline(always)]
     pub fn cross(&self, other: &Self) -> Self {
         let (a, b) = (&self.0, &other.0);
-        Self(std::array::from_fn(|i| {
-            let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-            a[j].times(&b[k]).minus(&a[k].times(&b[j]))
-        }))
+        let minor = |j: usize, k: usize| a[j].times(&b[k]).minus(&a[k].times(&b[j]));
+        Self([minor(1, 2), minor(2, 0), minor(0, 1)])
     }
 }
 

@@ -91,7 +91,15 @@ impl Objects for Surfaces {
     fn meet(&self, primitive: u32, wanted: Wanted, ray: &Ray, met: &mut dyn FnMut(Candidate) -> bool) -> bool {
         match self.copy(primitive) {
             Some((copies, copy)) => copies.meet(copy, wanted, ray, met),
-            None => self.get(primitive).is_some_and(|shape| shape.meet(ray, met)),
+            None => self.get(primitive).is_some_and(|shape| {
+                let mut answered = false;
+                shape.meet(ray, &mut |candidate| {
+                    answered = met(candidate);
+                    // Of one shape the first that is told is the closest: the others need not be computed.
+                    answered || matches!(wanted, Wanted::Closest)
+                });
+                answered
+            }),
         }
     }
 }

@@ -1,10 +1,10 @@
 //! The box along the axes.
 
 use super::line::Line;
-use super::meeting::{Meets, Solid, ends, tell};
-use super::{Bounds, Candidate, Carried, Drawn, Point, Shape};
+use super::meeting::{Meet, Meets, Solid, tell};
+use super::{Bounds, Candidate, Carried, Contact, Drawn, Point, Shape};
 use crate::math::robust::UNIT;
-use crate::math::{Affine, DVec3, Number, Ray};
+use crate::math::{Affine, Bounded, DVec3, Number, Ray, Triple};
 use std::cmp::Ordering;
 
 /// All points between two corners, borders included: a solid, so that a line in a face, or along an edge, meets it.
@@ -72,6 +72,58 @@ impl Cuboid {
     }
 }
 
+impl Cuboid {
+    /// [`Solid::meets`] in f64, where no two of the faces that matter are met at nearly the same place.
+    ///
+    /// A difference and a quotient err by one UNIT each, and the quotient by next to nothing more where it is subnormal.
+    #[inline(always)]
+    fn quickly(&self, ray: &Ray) -> Option<Meets<Bounded>> {
+        let (o, d) = (ray.origin, ray.direction);
+        let (mut near, mut far) = ([f64::NEG_INFINITY; 2], [f64::INFINITY; 2]);
+        let (mut first, mut last) = (0, 0);
+        for axis in 0..3 {
+            if d[axis] == 0.0 {
+                if o[axis] < self.min[axis] || o[axis] > self.max[axis] {
+                    return Some(Meets::new(true));
+                }
+                continue;
+            }
+            let (below, above) = ((self.min[axis] - o[axis]) / d[axis], (self.max[axis] - o[axis]) / d[axis]);
+            let up = d[axis] > 0.0;
+            let (enter, leave) = if up { (below, above) } else { (above, below) };
+            if enter > near[0] {
+                (near, first) = ([enter, near[0]], 2 * axis + usize::from(!up));
+            } else {
+                near[1] = near[1].max(enter);
+            }
+            if leave < far[0] {
+                (far, last) = ([leave, far[0]], 2 * axis + usize::from(up));
+            } else {
+                far[1] = far[1].min(leave);
+            }
+        }
+        let error = |t: f64| 3.0 * UNIT * t.abs() + f64::MIN_POSITIVE;
+        // Where nothing is met there is only one face to compare with, and that at infinity.
+        let apart = |less: f64, more: f64| less.is_infinite() || more - less > 2.0 * (error(less) + error(more));
+        if near[0].abs().max(far[0].abs()) > 1e300 {
+            return None;
+        }
+        if apart(far[0], near[0]) {
+            return Some(Meets::new(true));
+        }
+        let certain =
+            apart(near[0], far[0]) && apart(near[1], near[0]) && (far[1].is_infinite() || apart(far[0], far[1]));
+        if !certain {
+            return None;
+        }
+        let meet = |t: f64, part: usize| {
+            let (t, slope) = (Bounded { value: t, error: error(t) }, Bounded::of(d[part / 2]));
+            Meet { t, slope, bend: Bounded::of(0.0), surface: part, part, contact: Contact::Inside }
+        };
+        Some(Meets::new(true).with(meet(near[0], first)).with(meet(far[0], last)))
+    }
+}
+
 /// p / q with q above 0: where a line meets a face.
 struct Crossing<N> {
     p: N,
@@ -87,7 +139,7 @@ impl<N: Number> Crossing<N> {
 
 impl Solid for Cuboid {
     /// The last face that the line comes in by, and the first that it goes out by (Kay and Kajiya 1986), compared as fractions.
-    fn meets<N: Number>(&self, line: &Line<N>) -> Option<Meets> {
+    fn meets<N: Number>(&self, line: &Line<N>) -> Option<Meets<N>> {
         let mut near: Option<Crossing<N>> = None;
         let mut far: Option<Crossing<N>> = None;
         for axis in 0..3 {
@@ -96,7 +148,7 @@ impl Solid for Cuboid {
             let (first, last, q) = match d.sign()? {
                 Ordering::Equal => {
                     if below.sign()? == Ordering::Greater || above.sign()? == Ordering::Less {
-                        return Some(Meets::default());
+                        return Some(Meets::new(true));
                     }
                     continue;
                 }
@@ -114,15 +166,35 @@ impl Solid for Cuboid {
                 _ => last,
             });
         }
-        let (Some(near), Some(far)) = (near, far) else { return Some(Meets::default()) };
+        let (Some(near), Some(far)) = (near, far) else { return Some(Meets::new(true)) };
         let order = near.compare(&far)?;
         if order == Ordering::Greater {
-            return Some(Meets::default());
+            return Some(Meets::new(true));
         }
-        let value = |c: &Crossing<N>| c.p.over(&c.q).rounded();
-        let near_t = value(&near)?;
-        let far_t = if order == Ordering::Equal { near_t } else { value(&far)? };
-        Some(ends((near_t, near.part), (far_t, far.part)))
+        let meet = |Crossing { p, q, part }: Crossing<N>| {
+            let slope = line.direction.0[part / 2].clone();
+            Meet { t: p.over(&q), slope, bend: N::of(0.0), surface: part, part, contact: Contact::Inside }
+        };
+        let first = Meets::new(true).with(meet(near));
+        Some(if order == Ordering::Equal { first } else { first.with(meet(far)) })
+    }
+
+    #[inline(always)]
+    fn meets_roughly(&self, ray: &Carried<'_>) -> Option<Meets<Bounded>> {
+        match ray {
+            Carried::Ray(ray) => self.quickly(ray),
+            Carried::Into(..) => self.meets(&ray.line()),
+        }
+    }
+
+    #[inline(always)]
+    fn surface<N: Number>(&self, surface: usize, point: &Triple<N>, unit: &N) -> N {
+        let (axis, greater) = (surface / 2, surface % 2 == 1);
+        let from_lesser = &point.0[axis];
+        if !greater {
+            return from_lesser.clone();
+        }
+        from_lesser.minus(&N::of(self.max[axis]).minus(&N::of(self.min[axis])).times(unit))
     }
 
     fn coordinates(&self, part: usize, point: DVec3) -> [f64; 2] {

@@ -4,7 +4,7 @@ use super::line::Line;
 use super::meeting::{Meets, Solid, tell};
 use super::revolution::{Profile, Revolution};
 use super::{Bounds, Candidate, Carried, Drawn, Point, Shape};
-use crate::math::{Affine, DVec3, Number, Ray};
+use crate::math::{Affine, Bounded, DVec3, Number, Ray, Triple};
 
 /// All points at one distance from a segment, between its ends' planes; closed by disks or open.
 ///
@@ -24,8 +24,21 @@ impl Cylinder {
 }
 
 impl Solid for Cylinder {
-    fn meets<N: Number>(&self, line: &Line<N>) -> Option<Meets> {
+    fn meets<N: Number>(&self, line: &Line<N>) -> Option<Meets<N>> {
         self.surface.meets(&line.from(self.surface.base))
+    }
+
+    #[inline(always)]
+    fn meets_roughly(&self, ray: &Carried<'_>) -> Option<Meets<Bounded>> {
+        if matches!(ray, Carried::Ray(ray) if self.surface.is_passed_by(ray)) {
+            return Some(Meets::new(true));
+        }
+        self.meets(&ray.line())
+    }
+
+    #[inline(always)]
+    fn surface<N: Number>(&self, surface: usize, point: &Triple<N>, unit: &N) -> N {
+        self.surface.zero_on(surface, point, unit)
     }
 
     fn coordinates(&self, part: usize, point: DVec3) -> [f64; 2] {

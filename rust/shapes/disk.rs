@@ -1,9 +1,9 @@
 //! The disk, whole or with a round hole.
 
 use super::line::Line;
-use super::meeting::{Meet, Meets, Solid, tell};
+use super::meeting::{Meets, Solid, tell};
 use super::plane::crossing;
-use super::{Bounds, Candidate, Carried, Contact, Drawn, Point, Shape};
+use super::{Bounds, Candidate, Carried, Drawn, Point, Shape};
 use crate::math::robust::UNIT;
 use crate::math::{Affine, DVec3, Frame, Number, Ray, Triple};
 use std::cmp::Ordering;
@@ -45,14 +45,14 @@ impl Disk {
 }
 
 impl Solid for Disk {
-    fn meets<N: Number>(&self, line: &Line<N>) -> Option<Meets> {
+    fn meets<N: Number>(&self, line: &Line<N>) -> Option<Meets<N>> {
         let line = line.from(self.center);
         let (w, d) = (&line.origin, &line.direction);
         let normal = Triple::of(self.normal);
         // Where the plane is met, times n · d: (n · d) w − (n · w) d = n × (w × d).
         let along = normal.dot(d);
         if along.sign()? == Ordering::Equal {
-            return Some(Meets::default());
+            return Some(Meets::new(false));
         }
         let there = normal.cross(&w.cross(d));
         let square = there.dot(&there);
@@ -63,10 +63,14 @@ impl Solid for Disk {
         if against(self.radius)? == Ordering::Greater
             || (self.inner_radius > 0.0 && against(self.inner_radius)? == Ordering::Less)
         {
-            return Some(Meets::default());
+            return Some(Meets::new(false));
         }
-        let t = crossing(&line, self.normal)?;
-        Some([t.map(|t| Meet { t, part: 0, contact: Contact::Inside }), None])
+        crossing(&line, &normal)
+    }
+
+    #[inline(always)]
+    fn surface<N: Number>(&self, _: usize, point: &Triple<N>, _: &N) -> N {
+        Triple::of(self.normal).dot(point)
     }
 
     fn coordinates(&self, _: usize, point: DVec3) -> [f64; 2] {

@@ -1,7 +1,7 @@
 //! The ellipsoid.
 
 use super::line::Line;
-use super::meeting::{Meets, Solid, ball, tell};
+use super::meeting::{Meets, Solid, ball, ball_surface, tell};
 use super::sphere::{Sphere, ellipsoid_area_under, globe, longitude_latitude};
 use super::{Bounds, Candidate, Carried, Drawn, Point, Shape};
 use crate::math::robust::UNIT;
@@ -37,6 +37,15 @@ impl Ellipsoid {
         Point { position, error, normal, uv, dp: [du * a, dv * a], dn }
     }
 
+    /// What to scale each axis by, and the radius of the ball that it is then: by the product of the other two axes, so that nothing is
+    /// divided, and the product of all three.
+    fn rounding<N: Number>(&self) -> ([N; 3], N) {
+        let [x, y, z] = self.semi_axes.to_array().map(N::of);
+        let by = [y.times(&z), z.times(&x), x.times(&y)];
+        let radius = by[0].times(&x);
+        (by, radius)
+    }
+
     /// How much of its area there is to one of the unit sphere's, at a point of that.
     fn stretch(&self, unit: DVec3) -> f64 {
         let [x, y, z] = self.semi_axes.to_array();
@@ -44,15 +53,23 @@ impl Ellipsoid {
     }
 }
 
+/// Each coordinate times its own factor.
+fn scaled<N: Number>(v: &Triple<N>, by: &[N; 3]) -> Triple<N> {
+    Triple(std::array::from_fn(|i| v.0[i].times(&by[i])))
+}
+
 impl Solid for Ellipsoid {
-    /// With each axis scaled by the product of the other two it is a ball of the product of all three, and nothing is divided.
-    fn meets<N: Number>(&self, line: &Line<N>) -> Option<Meets> {
-        let [x, y, z] = self.semi_axes.to_array().map(N::of);
-        let by = [y.times(&z), z.times(&x), x.times(&y)];
-        let scaled = |v: &Triple<N>| Triple(std::array::from_fn(|i| v.0[i].times(&by[i])));
+    fn meets<N: Number>(&self, line: &Line<N>) -> Option<Meets<N>> {
         let Line { origin, direction, unit } = line.from(self.center);
-        let radius = by[0].times(&x).times(&unit);
-        ball(&Line { origin: scaled(&origin), direction: scaled(&direction), unit }, &radius)
+        let (by, radius) = self.rounding();
+        let line = Line { origin: scaled(&origin, &by), direction: scaled(&direction, &by), unit };
+        ball(&line, &radius.times(&line.unit))
+    }
+
+    #[inline(always)]
+    fn surface<N: Number>(&self, _: usize, point: &Triple<N>, unit: &N) -> N {
+        let (by, radius) = self.rounding();
+        ball_surface(&scaled(point, &by), &radius.times(unit))
     }
 
     fn coordinates(&self, _: usize, point: DVec3) -> [f64; 2] {

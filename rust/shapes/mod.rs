@@ -12,6 +12,7 @@ mod exact_hits;
 mod implicit;
 mod line;
 mod meeting;
+mod newton;
 #[cfg(test)]
 mod oracle;
 mod paraboloid;

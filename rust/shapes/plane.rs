@@ -27,9 +27,13 @@ impl Plane {
 }
 
 impl Solid for Plane {
-    fn meets<N: Number>(&self, line: &Line<N>) -> Option<Meets> {
-        let t = crossing(&line.from(self.point), self.normal)?;
-        Some([t.map(|t| Meet { t, part: 0, contact: Contact::Inside }), None])
+    fn meets<N: Number>(&self, line: &Line<N>) -> Option<Meets<N>> {
+        crossing(&line.from(self.point), &Triple::of(self.normal))
+    }
+
+    #[inline(always)]
+    fn surface<N: Number>(&self, _: usize, point: &Triple<N>, _: &N) -> N {
+        Triple::of(self.normal).dot(point)
     }
 
     fn coordinates(&self, _: usize, point: DVec3) -> [f64; 2] {
@@ -42,14 +46,16 @@ impl Solid for Plane {
     }
 }
 
-/// Where a line meets the plane through its origin of space. No `t` of a line that never meets it, or lies in it.
-pub(super) fn crossing<N: Number>(line: &Line<N>, normal: DVec3) -> Option<Option<f64>> {
-    let normal = Triple::of(normal);
+/// Where a line meets the plane through its origin of space; nowhere if it never meets it, or lies in it.
+#[inline]
+pub(super) fn crossing<N: Number>(line: &Line<N>, normal: &Triple<N>) -> Option<Meets<N>> {
     let (along, height) = (normal.dot(&line.direction), normal.dot(&line.origin));
     if along.sign()? == Ordering::Equal {
-        return Some(None);
+        return Some(Meets::new(false));
     }
-    Some(Some(height.negated().over(&along).rounded()?))
+    let t = height.negated().over(&along);
+    let meet = Meet { t, slope: along, bend: N::of(0.0), surface: 0, part: 0, contact: Contact::Inside };
+    Some(Meets::new(false).with(meet))
 }
 
 impl Shape for Plane {

@@ -184,6 +184,7 @@ mod tests {
             let area = |n: &Node| f64::from(n.aabb().half_area()) * f64::from(n.count);
             bvh.nodes.iter().map(area).sum::<f64>()
         };
-        assert!(leaves(&balanced.0) < 0.3 * leaves(&fast.0) && leaves(&best.0) < leaves(&balanced.0));
+        let [fast, balanced, best] = [leaves(&fast.0), leaves(&balanced.0), leaves(&best.0)];
+        assert!(best < balanced && balanced < 0.4 * fast, "{best}, {balanced}, {fast}");
     }
 }

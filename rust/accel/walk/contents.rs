@@ -64,13 +64,19 @@ impl<const N: usize, L: Leaves<N>> Contents<N, L> {
         self.triangles.bytes() + words * size_of::<u32>()
     }
 
+    /// Of a leaf, where its triangles begin and end.
+    #[inline(always)]
+    fn ends_of(&self, leaf: u32) -> (usize, usize) {
+        match self.ends.get(leaf as usize..leaf as usize + 2) {
+            Some(&[first, end]) => (first as usize, end as usize),
+            _ => (0, 0),
+        }
+    }
+
     /// Of a leaf, the blocks of triangles: where each begins and how many it has.
     #[inline(always)]
     fn blocks(&self, leaf: u32) -> impl Iterator<Item = (usize, u32)> + use<N, L> {
-        let (first, end) = match self.ends.get(leaf as usize..leaf as usize + 2) {
-            Some(&[first, end]) => (first as usize, end as usize),
-            _ => (0, 0),
-        };
+        let (first, end) = self.ends_of(leaf);
         (first..end).step_by(N).map(move |at| (at, (end - at).min(N) as u32))
     }
 
@@ -146,7 +152,7 @@ impl<const N: usize, L: Leaves<N>> Contents<N, L> {
         query: &mut Q,
         state: &mut Q::State,
     ) -> bool {
-        let (mut first, end) = (self.ends[leaf as usize] as usize, self.ends[leaf as usize + 1] as usize);
+        let (mut first, end) = self.ends_of(leaf);
         while first < end {
             let count = (end - first).min(N) as u32;
             let mut left = self.triangles.not_rejected(simd, &ray.lanes, first, count);

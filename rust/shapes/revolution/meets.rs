@@ -1,10 +1,11 @@
 //! Where a line meets a surface of revolution.
 
 use super::{BASE, Profile, Revolution, SIDE, TIP};
-use crate::math::{Number, Triple};
+use crate::math::robust::UNIT;
+use crate::math::{Number, Ray, Triple};
 use crate::shapes::Contact;
 use crate::shapes::line::Line;
-use crate::shapes::meeting::{Meet, Meets, ends, roots};
+use crate::shapes::meeting::{Meet, Meets, Root, roots};
 use std::cmp::Ordering;
 
 impl Revolution {
@@ -14,7 +15,8 @@ impl Revolution {
     /// the two planes the closed shape is convex, so that the line lies within from the first to the last of its meetings
     /// with side and caps. Which root lies between the planes, and which plane is met within its disk, follows from the signs of
     /// the left side and of its derivative where the line meets the planes: no root is compared with anything.
-    pub fn meets<N: Number>(&self, line: &Line<N>) -> Option<Meets> {
+    #[inline]
+    pub fn meets<N: Number>(&self, line: &Line<N>) -> Option<Meets<N>> {
         let Line { origin: w, direction: d, unit } = line;
         let v = Triple::between(self.base, self.tip);
         let vv = v.dot(&v);
@@ -25,14 +27,14 @@ impl Revolution {
         let [a, b, c, discriminant] = self.polynomial(line, &v, [&vv, &climb, &height], [&across, &away, &moment]);
         let a_sign = a.sign()?;
         if a_sign == Ordering::Greater && discriminant.sign()? == Ordering::Less {
-            return Some(Meets::default());
+            return Some(Meets::new(self.capped));
         }
         let climbs = climb.sign()?;
         // The line meets a plane at p / climb.
         let planes = [height.negated(), top.minus(&height)];
         if climbs == Ordering::Equal && (planes[0].sign()? == Ordering::Greater || planes[1].sign()? == Ordering::Less)
         {
-            return Some(Meets::default());
+            return Some(Meets::new(self.capped));
         }
         let mut side = Side::of(a_sign, &b, || discriminant.sign())?;
         let mut caps = [false; 2];
@@ -52,48 +54,90 @@ impl Revolution {
                 side.clip(base_side, a_sign, there, slope, i);
             }
         }
-        let mut met = Ends::default();
+        let mut met = Meets::new(self.capped);
+        let plane = |i: usize| Root { t: planes[i].over(&climb), slope: climb.clone() };
         for i in 0..2 {
             if caps[i] {
                 // A cap without a radius is the side's own point.
                 let part = if self.radii()[i] == 0.0 { SIDE } else { [BASE, TIP][i] };
-                met.add(planes[i].over(&climb).rounded()?, part);
+                met = met.with(meet(plane(i), N::of(0.0), [BASE, TIP][i], part, Contact::Inside));
             }
         }
-        let contact = match side {
-            Side::None => None,
+        // A root that lies on a plane is the plane's.
+        let on_side = |root: &Root<N>, on_plane: Option<usize>, contact: Contact| match on_plane {
+            Some(i) => meet(plane(i), N::of(0.0), [BASE, TIP][i], SIDE, contact),
+            None => meet(root.clone(), a.clone(), SIDE, SIDE, contact),
+        };
+        match side {
+            Side::None => {}
             Side::Two { keep, on_plane } => {
                 if keep.contains(&true) {
-                    // A root is zero only if c is.
-                    c.sign()?;
                     let both = roots(&a, &b, &c, &discriminant)?;
                     for i in 0..2 {
                         if keep[i] {
-                            met.add(self.value(&both[i], on_plane[i], &planes, &climb)?, SIDE);
+                            met = met.with(on_side(&both[i], on_plane[i], Contact::Inside));
                         }
                     }
                 }
-                Some(Contact::Inside)
             }
             Side::One { keep, on_plane, double } => {
                 if keep {
-                    let root = if double { b.over(&a).negated() } else { c.over(&b.plus(&b)).negated() };
-                    c.sign()?;
-                    met.add(self.value(&root, on_plane, &planes, &climb)?, SIDE);
+                    let slope = if double { N::of(0.0) } else { b.plus(&b) };
+                    let t = if double { b.over(&a).negated() } else { c.over(&slope).negated() };
+                    // Through the point of a cone, and within it before or after: moved by next to nothing it crosses once.
+                    let through = if a_sign == Ordering::Less { Contact::Crossing } else { Contact::Touching };
+                    let contact = if double { through } else { Contact::Inside };
+                    met = met.with(on_side(&Root { t, slope }, on_plane, contact));
                 }
-                // Through the point of a cone, and within it before or after: moved by next to nothing it crosses once.
-                let through = if a_sign == Ordering::Less { Contact::Crossing } else { Contact::Touching };
-                Some(if double { through } else { Contact::Inside })
             }
-        };
-        Some(met.told(self.capped, contact.unwrap_or(Contact::Inside)))
+        }
+        Some(met)
     }
 
-    /// The f64 of a root: that of the plane's, where it lies on one.
-    fn value<N: Number>(&self, root: &N, on_plane: Option<usize>, planes: &[N; 2], climb: &N) -> Option<f64> {
-        match on_plane {
-            Some(i) => planes[i].over(climb).rounded(),
-            None => root.rounded(),
+    /// Whether a ray's line certainly stays farther from the axis' line than any point of the surface: |(d × w) · v| > r |d × v|, for
+    /// most lines that come near and meet nothing.
+    ///
+    /// With u = [`UNIT`], and the rounded ways w and v: a cross product errs by 3√2 u of the product of its factors' lengths, and the
+    /// triple product by 3√2 + 4 of |d| |w| |v|. Lengths that are not extreme leave underflow no part in it.
+    #[inline]
+    pub fn is_passed_by(&self, ray: &Ray) -> bool {
+        const LEAST: f64 = f64::from_bits((1023 - 200) << 52);
+        let (d, w, v) = (ray.direction, ray.origin - self.base, self.tip - self.base);
+        let (d_length, w_length, v_length) = (d.length(), w.length(), v.length());
+        let [base, tip] = self.radii();
+        let radius = base.max(tip);
+        let usual = |x: f64| (LEAST..1.0 / LEAST).contains(&x);
+        let plane = d_length * v_length;
+        let volume = d.cross(w).dot(v).abs() - 9.0 * UNIT * plane * w_length;
+        let reach = radius * (d.cross(v).length() + 5.0 * UNIT * plane);
+        usual(d_length) && usual(w_length) && usual(v_length) && usual(radius) && volume > reach * (1.0 + 16.0 * UNIT)
+    }
+
+    /// What is zero on a part's whole surface, at a point in units relative to the foot of the axis: on a line it is what
+    /// [`Revolution::meets`] says of it there.
+    #[inline]
+    pub fn zero_on<N: Number>(&self, part: usize, point: &Triple<N>, unit: &N) -> N {
+        let v = Triple::between(self.base, self.tip);
+        let height = point.dot(&v);
+        let top = || v.dot(&v).times(unit);
+        let away = || point.cross(&v);
+        match (part, self.profile) {
+            (BASE, _) => height,
+            (TIP, _) => height.minus(&top()),
+            (_, Profile::Straight { base, tip }) if base == tip => {
+                let away = away();
+                away.dot(&away).minus(&N::of(base).times(unit).squared().times(&v.dot(&v)))
+            }
+            (_, Profile::Straight { base, tip }) => {
+                let (vv, away) = (v.dot(&v), away());
+                let widening = N::of(tip).minus(&N::of(base)).times(&height);
+                let width = N::of(base).times(&vv).times(unit).plus(&widening);
+                vv.times(&away.dot(&away)).minus(&width.squared())
+            }
+            (_, Profile::Parabola { tip }) => {
+                let away = away();
+                away.dot(&away).minus(&N::of(tip).squared().times(unit).times(&height))
+            }
         }
     }
 
@@ -110,12 +154,19 @@ impl Revolution {
         [across, away, moment]: [&Triple<N>; 3],
     ) -> [N; 4] {
         let volume = moment.dot(v);
-        let turned = v.cross(moment);
         match self.profile {
+            // A cylinder has a polynomial of its own that is v² times less.
+            Profile::Straight { base, tip } if base == tip => {
+                let square = N::of(base).times(&line.unit).squared().times(vv);
+                let a = across.dot(across);
+                let discriminant = square.times(&a).minus(&vv.times(&volume.squared()));
+                [a, across.dot(away), away.dot(away).minus(&square), discriminant]
+            }
             Profile::Straight { base, tip } => {
                 let k = N::of(tip).minus(&N::of(base));
                 let foot = N::of(base).times(vv).times(&line.unit);
                 let (widening, width) = (k.times(climb), foot.plus(&k.times(height)));
+                let turned = v.cross(moment);
                 let reach = line.direction.times(&foot).plus(&turned.times(&k)).cross(v);
                 [
                     vv.times(&across.dot(across)).minus(&widening.squared()),
@@ -126,6 +177,7 @@ impl Revolution {
             }
             Profile::Parabola { tip } => {
                 let square = N::of(tip).squared().times(&line.unit);
+                let turned = v.cross(moment);
                 let half = square.times(climb).times(&N::of(0.5));
                 [
                     across.dot(across),
@@ -225,34 +277,6 @@ impl Side {
     }
 }
 
-/// Up to four meetings.
-#[derive(Default)]
-struct Ends {
-    all: [(f64, usize); 4],
-    count: usize,
-}
-
-impl Ends {
-    fn add(&mut self, t: f64, part: usize) {
-        self.all[self.count] = (t, part);
-        self.count += 1;
-    }
-
-    /// The first and the last of a closed shape; all of an open one.
-    fn told(&mut self, capped: bool, contact: Contact) -> Meets {
-        let all = &mut self.all[..self.count];
-        all.sort_by(|a, b| a.0.total_cmp(&b.0));
-        match all {
-            [] => Meets::default(),
-            [near, .., far] if capped => ends(*near, *far),
-            [only] if capped => ends(*only, *only),
-            all => {
-                let mut meets = Meets::default();
-                for (to, &mut (t, part)) in meets.iter_mut().zip(all) {
-                    *to = Some(Meet { t, part, contact });
-                }
-                meets
-            }
-        }
-    }
+fn meet<N>(Root { t, slope }: Root<N>, bend: N, surface: usize, part: usize, contact: Contact) -> Meet<N> {
+    Meet { t, slope, bend, surface, part, contact }
 }
