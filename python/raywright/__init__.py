@@ -6,6 +6,7 @@ from . import scenes
 from ._core import AcceleratorInfo, simd
 from .accelerators import BSP, BVH, BruteForce, Grid, KdTree, NestedGrid, Octree
 from .camera import Camera
+from .cones import ConeTouches
 from .hits import AllHits, ClosestPoints, Hits, QueryCost
 from .image import ErrorEstimate, Image
 from .instance import Instance
@@ -44,6 +45,7 @@ __all__ = [
     "Camera",
     "ClosestPoints",
     "Cone",
+    "ConeTouches",
     "ConstantEnvironment",
     "Cylinder",
     "Diffuse",

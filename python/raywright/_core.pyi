@@ -16,6 +16,8 @@ __all__ = [
     "Rendering",
     "camera_directions",
     "camera_rays",
+    "cones",
+    "first_hits",
     "implicit_trouble",
     "matrix_trouble",
     "points",
@@ -224,6 +226,28 @@ def camera_rays(camera: Any, offsets: NDArray[np.float64], single: bool) -> tupl
 
 def camera_directions(camera: Any, points: NDArray[np.float64]) -> NDArray[np.float64]:
     """Find unit directions (N,3) through points (N,2) of the film, in pixels from its left and its top."""
+
+def cones(
+    scene: CompiledScene,
+    origins: _Floats,
+    directions: _Floats,
+    half_angle: _Numbers,
+    t_max: _Numbers,
+    shape: tuple[int, ...],
+    threads: int | None,
+) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.int32], NDArray[np.int32]]:
+    """Find what N cones touch, nearest first: splits (N+1,), distance (K,), shape_id (K,), primitive (K,).
+
+    Arguments as `CompiledScene.intersect`; `half_angle` is in degrees.
+    """
+
+def first_hits(
+    scene: CompiledScene, camera: Any, offsets: NDArray[np.float64], threads: int | None
+) -> tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.int32], NDArray[np.float64], int]:
+    """Closest hits of the rays through all pixels: t, shape_id and primitive (H,W), uv (H,W,2).
+
+    The last is for how many pixels the accelerator was asked. ``offsets`` as `camera_rays`.
+    """
 
 @final
 class KernelContest:

@@ -103,11 +103,7 @@ class Camera:
         kind = np.dtype(dtype)
         if kind not in (np.float32, np.float64):
             raise ValueError(f"dtype must be float32 or float64, got {kind}")
-        where = last_axis("offsets", offsets, 2)
-        if where.shape not in ((2,), (self.height, self.width, 2)):
-            allowed = f"(2,) or ({self.height}, {self.width}, 2)"
-            raise ValueError(f"offsets must have shape {allowed}, got {where.shape}")
-        return _core.camera_rays(self, np.ascontiguousarray(where, np.float64), kind == np.float32)
+        return _core.camera_rays(self, pixel_offsets(self, offsets), kind == np.float32)
 
     def rays_through(self, points: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Return a ray through each of any points of the picture.
@@ -136,6 +132,15 @@ class Camera:
         directions = _core.camera_directions(self, np.ascontiguousarray(where.reshape(-1, 2)))
         directions = directions.reshape(*where.shape[:-1], 3)
         return np.broadcast_to(self.position, directions.shape).copy(), directions
+
+
+def pixel_offsets(camera: Camera, offsets: ArrayLike) -> NDArray[np.float64]:
+    """Return offsets in the pixels of a camera, checked and as the core takes them."""
+    where = last_axis("offsets", offsets, 2)
+    if where.shape not in ((2,), (camera.height, camera.width, 2)):
+        allowed = f"(2,) or ({camera.height}, {camera.width}, 2)"
+        raise ValueError(f"offsets must have shape {allowed}, got {where.shape}")
+    return np.ascontiguousarray(where, np.float64)
 
 
 def _unit(vector: NDArray[np.float64]) -> NDArray[np.float64]:

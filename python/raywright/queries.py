@@ -5,9 +5,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from . import _core
 from ._core import CompiledScene
-from .arrays import indices, last_axis
-from .camera import Camera
+from .arrays import indices, integer, last_axis
+from .camera import Camera, pixel_offsets
+from .cones import ConeTouches, cone_arguments
 from .hits import AllHits, ClosestPoints, Hits, QueryCost
 from .rays import RayArguments, nearest_arguments, point_arguments, ray_arguments
 
@@ -211,6 +213,97 @@ class Queries:
             raise ValueError(f"leading shapes do not broadcast: {told}") from None
         points = np.stack([np.broadcast_to(i, lead) for i in (column, row)], axis=-1) + where
         return self.intersect(*camera.rays_through(points), threads=threads)
+
+    def first_hits(self, camera: Camera, offsets: ArrayLike = (0.5, 0.5), threads: int | None = None) -> Hits:
+        """Find what is seen at every pixel, by rasterising: what ``intersect(*camera.rays(offsets))`` finds.
+
+        Faces are projected into the picture (Catmull 1974), and at the pixels that one may cover it is
+        decided for the pixel's ray, exactly, as `intersect` does. Parts of the picture with too many faces
+        are asked of the accelerator, and all of it is if there are more faces than a quarter of its pixels,
+        or something in the scene is no mesh.
+        ``report.first_hits`` tells where it pays.
+
+        Parameters
+        ----------
+        camera : Camera
+            Whose picture it is.
+        offsets : (2,) or (height, width, 2) array
+            Where in the pixel, for all or for each, as `Camera.rays` has it.
+        threads : int, optional
+            How many to use; all cores if not given. The answer does not depend on it.
+
+        Returns
+        -------
+        Hits
+            Of shape (height, width), row 0 on top: the same bits as ``intersect(*camera.rays(offsets))``. As
+            directions are unit, `t` is the distance from the camera.
+
+        Raises
+        ------
+        ValueError
+            If `offsets` has another shape.
+        TypeError
+            If `camera` is not a Camera, or `offsets` are not real numbers.
+        """
+        if not isinstance(camera, Camera):
+            raise TypeError(f"camera must be a Camera, got {type(camera).__name__}")
+        where = pixel_offsets(camera, offsets)
+        core = self._core or self._compiled()
+        if core.curved:
+            return self.intersect(*camera.rays(where), threads=threads)
+        threads = None if threads is None else integer("threads", threads, 1)
+        t, shape_id, primitive, uv, _ = _core.first_hits(core, camera, where, threads)
+        return Hits(t, shape_id, primitive, uv, None, core)
+
+    def cone(
+        self,
+        origins: ArrayLike,
+        directions: ArrayLike,
+        half_angle: ArrayLike,
+        t_max: ArrayLike = np.inf,
+        threads: int | None = None,
+    ) -> ConeTouches:
+        """Find all faces that solid cones touch, the nearest first.
+
+        A face is touched if any point of it, its edges and corners included, is in the cone, its surface
+        included. Nothing hides what is behind it.
+
+        Parameters
+        ----------
+        origins, directions : (..., 3) arrays
+            Apexes and axes, broadcast against each other; directions need not be unit.
+        half_angle : float or (...) array
+            Between the axis and the surface, in degrees, at least 0 and less than 90. A cone of 0 is a ray.
+        t_max : float or (...) array
+            How far from the apex to look, this distance included, in the scene's unit whatever the length of
+            the direction. A cone then ends in a part of a sphere.
+        threads : int, optional
+            How many to use; all cores if not given. The answer does not depend on it.
+
+        Returns
+        -------
+        ConeTouches
+            Faces by cone, then distance, then (shape_id, primitive).
+
+        Raises
+        ------
+        ValueError
+            If a last dimension is not 3, leading shapes do not broadcast, `half_angle` is NaN or out of
+            range, `t_max` is NaN, or something in the scene is no mesh.
+        TypeError
+            If an array does not hold real numbers.
+
+        Notes
+        -----
+        Cones with NaN, infinity or a zero direction touch nothing. No face that has a point in the cone is
+        missed. With M the distance from the apex to the farthest corner of a face, one that misses the cone
+        by less than 2**-43 M may be told as well, and distances are those of a cone whose surface is moved by
+        no more than that. Accelerators agree to the last bit.
+        """
+        core = self._core or self._compiled()
+        arguments = cone_arguments(origins, directions, half_angle, t_max, threads)
+        splits, distance, shape_id, primitive = _core.cones(core, *arguments)
+        return ConeTouches(splits, shape_id, primitive, distance, arguments[4])
 
     def contains(self, points: ArrayLike, threads: int | None = None) -> NDArray[np.bool_]:
         """Find whether each point is inside a closed surface.

@@ -59,9 +59,9 @@ def ray_arguments(
     except ValueError:
         told = ", ".join(f"{name} {lead}" for name, lead in parts.items())
         raise ValueError(f"leading shapes do not broadcast: {told}") from None
-    near, far = (_spread(x, shape) if isinstance(x, np.ndarray) else x for x in (near, far))
-    when = _spread(when, shape) if isinstance(when, np.ndarray) else when
-    return _spread(starts, shape, (3,)), _spread(ways, shape, (3,)), near, far, shape, threads, when
+    near, far = (spread(x, shape) if isinstance(x, np.ndarray) else x for x in (near, far))
+    when = spread(when, shape) if isinstance(when, np.ndarray) else when
+    return spread(starts, shape, (3,)), spread(ways, shape, (3,)), near, far, shape, threads, when
 
 
 def point_arguments(points: ArrayLike, threads: int | None) -> tuple[Floats, tuple[int, ...], int | None]:
@@ -84,7 +84,7 @@ def nearest_arguments(
         except ValueError:
             told = f"points {shape}, max_distance {most.shape}"
             raise ValueError(f"leading shapes do not broadcast: {told}") from None
-        array, most, shape = _spread(array, lead, (3,)), _spread(most, lead), lead
+        array, most, shape = spread(array, lead, (3,)), spread(most, lead), lead
     return array, most, shape, threads
 
 
@@ -116,7 +116,7 @@ def _in_order(array: NDArray[Any]) -> NDArray[Any]:
     return array if flags.c_contiguous and flags.aligned else np.require(array, requirements=["C", "A"])
 
 
-def _spread(array: NDArray[Any], lead: tuple[int, ...], columns: tuple[int, ...] = ()) -> NDArray[Any]:
+def spread(array: NDArray[Any], lead: tuple[int, ...], columns: tuple[int, ...] = ()) -> NDArray[Any]:
     """Return it C-contiguous, with a row for each ray unless it is one row, which serves for all."""
     shape = (*lead, *columns)
     one = array.size == math.prod(columns)

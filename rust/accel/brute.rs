@@ -3,9 +3,9 @@
 use super::nearest::{Search, of};
 use super::query::{Answers, Query};
 use super::walk::{Contents, Input, Lists};
-use super::{Accelerator, Info, Nearest, Primitives};
+use super::{Accelerator, Info, Nearest, Primitives, Touch, Touches};
 use crate::math::{DVec3, Ray, Region};
-use crate::shapes::triangle::{DoubleLeaves, EdgeRay, Leaves, SingleLeaves};
+use crate::shapes::triangle::{DoubleLeaves, EdgeRay, Leaves, SingleLeaves, SolidCone};
 use crate::simd::{Dispatch, Kernel, Level, Simd};
 use std::time::Instant;
 
@@ -72,6 +72,16 @@ impl<L: Leaves<LANES>> Answers for BruteForce<L> {
                 search.finish()
             });
         }
+    }
+
+    fn touched(&self, cones: &[Option<SolidCone>]) -> Touches {
+        let triangles = self.contents.triangles();
+        let mut all = Touches::new();
+        for cone in cones {
+            let touch = |&(primitive, corners)| Some(Touch { distance: cone.as_ref()?.nearest(corners)?, primitive });
+            all.push(triangles.iter().filter_map(touch).collect());
+        }
+        all
     }
 
     fn refitted(&self, primitives: &dyn Primitives) -> Result<Self, String> {

@@ -1,9 +1,10 @@
 //! Triangles and objects, each in a structure of their own: one is asked, then the other for what is left.
 
 use super::walk::{self, Build, Mailbox};
-use super::{Accelerator, Cost, Crossings, Info, Nearest, Objects, Primitives, Side};
+use super::{Accelerator, Cost, Crossings, Info, Nearest, Objects, Primitives, Side, Touches};
 use crate::math::{DVec3, Hit, Ray};
 use crate::shapes::Bounds;
+use crate::shapes::triangle::SolidCone;
 use crate::simd::Level;
 use std::sync::Arc;
 
@@ -162,6 +163,10 @@ impl Accelerator for Mixed {
 
     fn nearest(&self, points: &[DVec3], max_distances: &[f64], nearest: &mut [Nearest]) {
         self.triangles.nearest(points, max_distances, nearest);
+    }
+
+    fn touched(&self, cones: &[Option<SolidCone>]) -> Touches {
+        self.triangles.touched(cones)
     }
 
     fn cost(&self, rays: &[Ray], costs: &mut [Cost]) {

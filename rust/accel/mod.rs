@@ -13,6 +13,7 @@ pub mod octree;
 mod parity;
 mod query;
 mod slab;
+mod touches;
 pub mod walk;
 
 pub use brute::BruteForce;
@@ -22,11 +23,13 @@ pub use nearest::Nearest;
 pub use objects::Objects;
 pub use parity::Side;
 pub use slab::{Clock, SlabRay, SlabRays};
+pub use touches::{Touch, Touches};
 
 pub use query::Wanted;
 
 use crate::math::{DVec3, Hit, Ray, Region};
 use crate::shapes::Bounds;
+use crate::shapes::triangle::SolidCone;
 use parity::Parity;
 use query::{Answers, Any, Closest, Counted, Every};
 use rayon::prelude::*;
@@ -111,6 +114,10 @@ pub trait Accelerator: Send + Sync {
     /// them, or one each. A point that is NaN or infinite has none. Of primitives as near, the lowest.
     fn nearest(&self, points: &[DVec3], max_distances: &[f64], nearest: &mut [Nearest]);
 
+    /// The triangles that each cone touches, nearest first: those that share a point with it, within the bounds that [`SolidCone`] states. None of
+    /// what is no cone.
+    fn touched(&self, cones: &[Option<SolidCone>]) -> Touches;
+
     /// What finding the closest hit of each ray takes, ray by ray.
     fn cost(&self, rays: &[Ray], costs: &mut [Cost]);
 
@@ -152,6 +159,10 @@ impl<A: Answers> Accelerator for A {
         assert_eq!(points.len(), nearest.len(), "an answer for each point");
         assert!(matches!(max_distances.len(), n if n == 1 || n == points.len()), "a distance for each point");
         Answers::nearest(self, points, max_distances, nearest);
+    }
+
+    fn touched(&self, cones: &[Option<SolidCone>]) -> Touches {
+        Answers::touched(self, cones)
     }
 
     fn cost(&self, rays: &[Ray], costs: &mut [Cost]) {

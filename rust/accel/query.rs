@@ -1,8 +1,8 @@
 //! What is asked of each ray: a type each, so that each question has kernels of its own.
 
-use super::{Cost, Info, Nearest, Primitives};
+use super::{Cost, Info, Nearest, Primitives, Touches};
 use crate::math::{DVec3, Hit, Ray};
-use crate::shapes::triangle::Along;
+use crate::shapes::triangle::{Along, SolidCone};
 use crate::shapes::{Candidate, Contact};
 
 /// Ways to walk a batch.
@@ -222,6 +222,9 @@ pub trait Answers: Send + Sync + Sized + 'static {
 
     /// See [`super::Accelerator::nearest`].
     fn nearest(&self, points: &[DVec3], max_distances: &[f64], nearest: &mut [Nearest]);
+
+    /// See [`super::Accelerator::touched`].
+    fn touched(&self, cones: &[Option<SolidCone>]) -> Touches;
 
     /// See [`super::Accelerator::refitted`].
     fn refitted(&self, primitives: &dyn Primitives) -> Result<Self, String>;

@@ -2,9 +2,11 @@
 
 mod accelerators;
 mod arrays;
+mod cones;
 mod describe;
 mod every;
 mod film;
+mod first_hits;
 mod freeform;
 mod info;
 mod instances;
@@ -34,7 +36,11 @@ fn simd() -> PyResult<&'static str> {
 #[pymodule]
 mod _core {
     #[pymodule_export]
+    use super::cones::cones;
+    #[pymodule_export]
     use super::film::camera_directions;
+    #[pymodule_export]
+    use super::first_hits::first_hits;
     #[pymodule_export]
     use super::freeform::{implicit_trouble, polygon_trouble};
     #[pymodule_export]

@@ -86,6 +86,11 @@ impl Camera {
         self.height
     }
 
+    /// Where it is, and three axes: the view, of unit length, half the picture's width at distance 1, and half its height.
+    pub fn axes(&self) -> (DVec3, [DVec3; 3]) {
+        (self.position, [self.forward, self.right, self.up])
+    }
+
     /// The ray, of unit direction, through a point of the film: `x` in pixels from the left, `y` from the top.
     pub fn ray(&self, x: f64, y: f64) -> Ray {
         let right = 2.0 * x / f64::from(self.width) - 1.0;

@@ -1,9 +1,10 @@
 //! A scene ready for rays.
 
 use super::{DescriptionError, Geometry, Lights, Material, SceneDescription, SurfacePoint};
-use crate::accel::{Accelerator, Cost, Crossings, Nearest, Primitives, Side};
+use crate::accel::{Accelerator, Cost, Crossings, Nearest, Primitives, Side, Touches};
 use crate::math::{DVec3, Hit, Ray, Region};
 use crate::optics::Rgb;
+use crate::shapes::triangle::SolidCone;
 
 /// A scene ready for rays.
 pub struct Scene {
@@ -139,6 +140,11 @@ impl Scene {
     /// The nearest point to each point, within its greatest distance: one for all of them, or one each.
     pub fn nearest(&self, points: &[DVec3], max_distances: &[f64], nearest: &mut [Nearest]) {
         self.accelerator.nearest(points, max_distances, nearest);
+    }
+
+    /// The triangles that each cone touches, nearest first.
+    pub fn touched(&self, cones: &[Option<SolidCone>]) -> Touches {
+        self.accelerator.touched(cones)
     }
 
     /// What finding the closest hit of each ray takes.

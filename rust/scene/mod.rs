@@ -4,6 +4,7 @@ mod camera;
 mod compiled;
 mod copies;
 mod description;
+mod first_hits;
 #[cfg(test)]
 pub(crate) mod fixtures;
 mod geometry;
@@ -16,11 +17,13 @@ mod points;
 mod pose;
 mod spawn;
 mod surfaces;
+mod view;
 
 pub use camera::{Camera, CameraError};
 pub use compiled::Scene;
 pub use copies::{BadTransform, Copies, Matrix, check_transforms};
 pub use description::{DescriptionError, SceneDescription, Shape};
+pub use first_hits::FirstHits;
 pub use geometry::{Geometry, Mesh, Surface, SurfacePoint, Vertices};
 pub use group::Group;
 pub use interaction::{Interaction, Scattered};

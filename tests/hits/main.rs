@@ -3,6 +3,7 @@
 mod agreement;
 mod boxes;
 mod builders;
+mod cones;
 mod nearest;
 mod signs;
 mod space;

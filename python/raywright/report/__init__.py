@@ -2,6 +2,7 @@
 
 from .accelerators import AcceleratorReport, accelerators, rays_per_build
 from .contest import Measured
+from .first_hits import first_hits
 from .heatmap import Heatmap, heatmap
 from .per_build import BuildRow, RaysPerBuild
 from .ray_sets import Rays, typical_rays
@@ -23,6 +24,7 @@ __all__ = [
     "Table",
     "TimeShare",
     "accelerators",
+    "first_hits",
     "heatmap",
     "kernels",
     "rays_per_build",

@@ -5,9 +5,9 @@ use super::mailbox::{Mailbox, Mailboxes, Marks};
 use super::together;
 use super::{Build, Input, Structure};
 use crate::accel::query::{Answers, Query, Wanted};
-use crate::accel::{Accelerator, Info, Nearest, Primitives, SlabRay, bvh};
+use crate::accel::{Accelerator, Info, Nearest, Primitives, SlabRay, Touches, bvh};
 use crate::math::{Aabb, DVec3, Ray, Region};
-use crate::shapes::triangle::{DoubleLeaves, EdgeRay, Leaves, SingleLeaves};
+use crate::shapes::triangle::{DoubleLeaves, EdgeRay, Leaves, SingleLeaves, SolidCone};
 use crate::simd::{Dispatch, Kernel, Level, Simd};
 use rayon::prelude::*;
 use std::sync::OnceLock;
@@ -21,7 +21,7 @@ pub struct Walked<const N: usize, L> {
     unbounded: Vec<u32>,
     /// Where a primitive stands in several leaves.
     mailboxes: Option<Mailboxes>,
-    /// Made when nearest points are asked for.
+    /// A tree over the triangles, made when something is asked that is no ray.
     nearest: OnceLock<Box<dyn Accelerator>>,
     /// How many primitives there are, those among them that nothing can hit.
     count: usize,
@@ -76,6 +76,18 @@ impl<const N: usize, L: Leaves<N>> Walked<N, L> {
         walked
     }
 
+    /// What answers for points and cones: a tree of boxes does that better than anything else.
+    fn tree(&self) -> &dyn Accelerator {
+        let tree = self.nearest.get_or_init(|| {
+            let mut kept = Kept { corners: vec![[DVec3::NAN; 3]; self.count], is_single: L::PRECISION == "single" };
+            for (primitive, corners) in self.contents.triangles() {
+                kept.corners[primitive as usize] = corners;
+            }
+            bvh::widest(&kept, &bvh::Options::DEFAULT, self.level)
+        });
+        tree.as_ref()
+    }
+
     /// Writes down what it looks like.
     fn inform(&mut self) {
         let of_structure = self.structure.info();
@@ -103,15 +115,11 @@ where
     }
 
     fn nearest(&self, points: &[DVec3], max_distances: &[f64], nearest: &mut [Nearest]) {
-        // A tree of boxes does this better than anything else.
-        let tree = self.nearest.get_or_init(|| {
-            let mut kept = Kept { corners: vec![[DVec3::NAN; 3]; self.count], is_single: L::PRECISION == "single" };
-            for (primitive, corners) in self.contents.triangles() {
-                kept.corners[primitive as usize] = corners;
-            }
-            bvh::widest(&kept, &bvh::Options::DEFAULT, self.level)
-        });
-        tree.nearest(points, max_distances, nearest);
+        self.tree().nearest(points, max_distances, nearest);
+    }
+
+    fn touched(&self, cones: &[Option<SolidCone>]) -> Touches {
+        self.tree().touched(cones)
     }
 
     fn refitted(&self, primitives: &dyn Primitives) -> Result<Self, String> {

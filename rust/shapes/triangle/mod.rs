@@ -3,6 +3,7 @@
 mod at_leaf;
 mod clip;
 mod edge;
+mod in_cone;
 mod leaves;
 mod nearest;
 pub mod routines;
@@ -11,6 +12,7 @@ mod sixteen;
 pub use at_leaf::Sixteen;
 pub use clip::clipped;
 pub use edge::{Along, EdgeRay};
+pub use in_cone::SolidCone;
 pub use leaves::{BlockRay, BlockRays, DoubleLeaves, Leaves, Rows, SingleLeaves};
 pub use nearest::{NearestPoint, length, nearest_point, point_of};
 pub use sixteen::{ALL, Column, EdgeRays, Met, RAYS, bits};

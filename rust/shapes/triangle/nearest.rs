@@ -178,7 +178,7 @@ pub fn length(v: DVec3) -> f64 {
 
 /// `a × b`, each coordinate to within 1.5 units in its last place.
 #[inline(always)]
-fn cross(a: DVec3, b: DVec3) -> DVec3 {
+pub(super) fn cross(a: DVec3, b: DVec3) -> DVec3 {
     DVec3::new(difference(a.y, b.z, a.z, b.y), difference(a.z, b.x, a.x, b.z), difference(a.x, b.y, a.y, b.x))
 }
 

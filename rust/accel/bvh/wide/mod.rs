@@ -9,6 +9,7 @@ mod packet;
 mod refit;
 mod single;
 mod step;
+mod touched;
 mod wave;
 
 use super::build::{Builder, Leaves as LeafRule};
@@ -16,9 +17,9 @@ use super::optimise::Optimisers;
 use super::parts::cover;
 use super::{Cuts, Quality, Steps};
 use crate::accel::query::{Answers, Query};
-use crate::accel::{Info, Nearest, Primitives};
+use crate::accel::{Info, Nearest, Primitives, Touches};
 use crate::math::{Aabb, DVec3, Ray, Region};
-use crate::shapes::triangle::{Leaves, clipped};
+use crate::shapes::triangle::{Leaves, SolidCone, clipped};
 use crate::simd::{Dispatch, Level};
 use batch::Batch;
 use node::{Child, WideNode};
@@ -147,6 +148,10 @@ where
 
     fn nearest(&self, points: &[DVec3], max_distances: &[f64], nearest: &mut [Nearest]) {
         self.level.dispatch(nearest::Points { bvh: self, points, max_distances, nearest });
+    }
+
+    fn touched(&self, cones: &[Option<SolidCone>]) -> Touches {
+        self.level.dispatch(touched::Cones { bvh: self, cones })
     }
 
     fn refitted(&self, primitives: &dyn Primitives) -> Result<Self, String> {

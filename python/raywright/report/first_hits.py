@@ -1,0 +1,100 @@
+"""The first hits of a picture by rays and by rasterising, side by side."""
+
+import statistics
+import time
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from .. import _core
+from ..arrays import integer
+from ..camera import Camera
+from ..scene import Scene
+from .table import Column, Table
+
+_COLUMNS = (
+    Column("way", "way"),
+    Column("ms", "ms", ".2f"),
+    Column("mrays", "Mrays/s", ".2f"),
+    Column("speedup", "speed-up", ".2f"),
+    Column("by_tree", "asked the tree", ".1%"),
+    Column("wrong", "wrong", ",d"),
+)
+
+
+def first_hits(scene: Scene, camera: Camera, threads: int | None = 1, repeats: int = 5) -> Table[Any]:
+    """Time `Scene.intersect` and `Scene.first_hits` on the same picture.
+
+    Both are timed in turns, and the medians are told. `intersect` is timed twice: with the rays at hand, and
+    with the time that it takes to make them, which rasterising does on its way. Rasterising pays where faces
+    are few next to pixels and little lies behind what is seen; where it does not, the tree is asked: for
+    parts of the picture, or for all of it if there are more faces than a quarter of its pixels.
+
+    Parameters
+    ----------
+    scene : Scene
+        What is seen.
+    camera : Camera
+        By whom.
+    threads : int, optional
+        How many to use; all cores if None.
+    repeats : int
+        How often each is timed.
+
+    Returns
+    -------
+    Table
+        A row for each way: milliseconds, million rays a second, the speed-up over `intersect` with rays at
+        hand, which part of the pixels the tree was asked for, and how many pixels differ from `intersect`
+        (0, or there is a bug).
+
+    Raises
+    ------
+    ValueError
+        If `repeats` or `threads` is below 1, or something in the scene is no mesh.
+    TypeError
+        If an argument is of the wrong kind.
+    """
+    if not isinstance(scene, Scene):
+        raise TypeError(f"scene must be a Scene, got {type(scene).__name__}")
+    if not isinstance(camera, Camera):
+        raise TypeError(f"camera must be a Camera, got {type(camera).__name__}")
+    repeats = integer("repeats", repeats, 1, 10_000)
+    if threads is not None:
+        threads = integer("threads", threads, 1)
+    rays = camera.rays()
+    wanted, found = scene.intersect(*rays, threads=threads), scene.first_hits(camera, threads=threads)
+    core = scene._compiled()
+    if core.curved:
+        raise ValueError("only meshes are rasterised, and something in the scene is none")
+    by_tree = _core.first_hits(core, camera, np.array((0.5, 0.5)), threads)[4]
+    pixels = camera.width * camera.height
+    differ = wanted.t.view(np.int64) != found.t.view(np.int64)
+    differ |= (wanted.shape_id != found.shape_id) | (wanted.primitive != found.primitive)
+    differ |= (wanted.uv.view(np.int64) != found.uv.view(np.int64)).any(axis=-1)
+    ways: dict[str, Callable[[], object]] = {
+        "rays at hand": lambda: scene.intersect(*rays, threads=threads),
+        "rays made": lambda: scene.intersect(*camera.rays(), threads=threads),
+        "rasterised": lambda: scene.first_hits(camera, threads=threads),
+    }
+    seconds: dict[str, list[float]] = {way: [] for way in ways}
+    for _ in range(repeats):
+        for way, ask in ways.items():
+            began = time.perf_counter()
+            ask()
+            seconds[way].append(time.perf_counter() - began)
+    medians = {way: statistics.median(of) for way, of in seconds.items()}
+    rows = [
+        (
+            way,
+            1e3 * median,
+            1e-6 * pixels / median,
+            medians["rays at hand"] / median,
+            by_tree / pixels if way == "rasterised" else 1.0,
+            int(np.count_nonzero(differ)) if way == "rasterised" else 0,
+        )
+        for way, median in medians.items()
+    ]
+    title = f"first hits of {camera.width} by {camera.height} pixels on {core.accelerator.primitives:,} faces"
+    return Table(title, _COLUMNS, tuple(rows))
