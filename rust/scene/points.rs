@@ -102,8 +102,15 @@ mod tests {
         let geometry = Geometry::new([Surface::from(mesh.clone()), sphere.into(), mesh.into()]);
         assert_eq!((geometry.locate(0), geometry.locate(1), geometry.locate(2)), ((0, 0), (1, 0), (2, 0)));
         let ray = Ray::new(DVec3::new(0.0, 1.0, 5.0), -DVec3::Z);
-        let here = geometry.point(&ray, &Hit { t: 3.0, uv: [0.0; 2], primitive: 1, inner: 0 });
-        assert_eq!((here.point.position, here.point.normal), (DVec3::new(0.0, 1.0, 2.0), DVec3::Z));
-        assert_eq!(geometry.surface(&ray, &Hit { t: 3.0, uv: [0.0; 2], primitive: 1, inner: 0 }).shape, 1);
+        let mut uv = [0.0; 2];
+        geometry.shape(1).unwrap().meet(&ray, &mut |met| {
+            uv = met.uv;
+            true
+        });
+        let hit = Hit { t: 3.0, uv, primitive: 1, inner: 0 };
+        let here = geometry.point(&ray, &hit);
+        assert!((here.point.position - DVec3::new(0.0, 1.0, 2.0)).length() < 1e-15);
+        assert!((here.point.normal - DVec3::Z).length() < 1e-15);
+        assert_eq!(geometry.surface(&ray, &hit).shape, 1);
     }
 }
