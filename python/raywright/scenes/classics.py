@@ -4,8 +4,9 @@ import numpy as np
 
 from ..arrays import integer
 from ..camera import Camera
-from ..scene import Scene
+from ..scene import Scene, Shapes
 from .city import city
+from .forest import forest
 from .room import EYE, TARGET, room
 from .soup import soup
 from .stadium import teapot_in_stadium
@@ -23,6 +24,7 @@ _VIEWS = {
     "city": ((-260.0, 190.0, 420.0), (0.0, 20.0, 0.0)),
     "room": (EYE, TARGET),
     "turned room": (EYE, TARGET),
+    "forest": ((0.0, 12.0, 60.0), (0.0, 3.0, 0.0)),
 }
 _FOV = 50.0
 
@@ -41,13 +43,15 @@ def classics(
       and not the other.
     - ``"soup"``: no order at all, `soup`.
     - ``"city"``: large and small side by side, `city`.
+    - ``"forest"``: a thousand copies of a few trees, `forest`: what is seen is a thousand times what is kept,
+      and triangles and copies have an accelerator each.
     - ``"room"`` and ``"turned room"``: long thin boxes seen from inside, `room`; and the same, camera and
       all, turned by 45 degrees about the y axis.
 
     Parameters
     ----------
     triangles : int
-        About how many in each, 1000 at least.
+        About how many in each, 1000 at least; in the forest, of the trees that are copied.
     seed : int
         Which scenes.
     width, height : int
@@ -65,7 +69,7 @@ def classics(
     divisions = max(round((count * 2 / 3 / 64) ** 0.5), 1)
     tiers = max(round((count / 3 / 384) ** 0.5 * 2), 1)
     around = max(round(count / 3 / (4 * tiers)), 3)
-    made = {
+    made: dict[str, Shapes] = {
         "stadium": teapot_in_stadium(divisions, tiers, around),
         "terrain": terrain(max(round((count / 4) ** 0.5), 1), count // 2, seed),
         "straight wall": diagonal_wall(count // 12, 0.0),
@@ -74,6 +78,9 @@ def classics(
         "city": city(max(round((count / 540) ** 0.5), 1), seed),
         "room": room(count, seed),
         "turned room": turned(room(count, seed), 45.0),
+        "forest": forest(
+            1000, max(count // 10_000, 2), count // max(count // 10_000, 2), seed=seed
+        ).instances(),
     }
     result = {}
     for name, shapes in made.items():

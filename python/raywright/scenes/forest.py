@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import integer, positive
+from ..instance import Instance
 from ..materials import Diffuse
 from ..mesh import Mesh
 
@@ -39,6 +40,11 @@ class Forest(NamedTuple):
         """How many triangles are to be seen, each instance counted."""
         sizes = np.array([len(tree.faces) for tree in self.trees])
         return int(sizes[self.tree].sum())
+
+    def instances(self) -> list[Instance]:
+        """Return the forest as an instance of each tree: as many triangles as one likes."""
+        places = [self.transforms[self.tree == i] for i in range(len(self.trees))]
+        return [Instance(tree, where) for tree, where in zip(self.trees, places, strict=True) if len(where)]
 
     def meshes(self) -> list[Mesh]:
         """Return every tree where it stands as a mesh of its own: for small forests."""
