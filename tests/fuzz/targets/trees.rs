@@ -92,7 +92,14 @@ fn moved(u: &mut Unstructured) -> Result<()> {
                 refitted.intersect(&rays, &mut found);
                 assert_eq!(found, wanted, "{name}, refitted from {before:?} to {after:?} with {rays:?}");
             }
-            Err(e) => assert!(!same || !keeps_precision, "{name} is not refitted from {before:?} to {after:?}: {e}"),
+            Err(e) => {
+                // Where triangles are cut, boxes do not follow them.
+                let is_cut = accelerator.info().kind.contains("pieces");
+                assert!(
+                    is_cut || !same || !keeps_precision,
+                    "{name} is not refitted from {before:?} to {after:?}: {e}"
+                );
+            }
         }
     }
     Ok(())
