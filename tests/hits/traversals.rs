@@ -2,6 +2,7 @@
 
 use crate::builders::{BUILDERS, SPATIAL, optimisers, sticks};
 use crate::triangles::{Random, Triangles, levels};
+use raywright::accel::bvh::optimise::Optimisers;
 use raywright::accel::bvh::traverse::{Orders, Rays, Traversal};
 use raywright::accel::bvh::{self, Options};
 use raywright::accel::{Accelerator, BruteForce, Cost, Crossings, Objects, Primitives, Side, Wanted};
@@ -87,7 +88,9 @@ fn nodes(costs: &[Cost]) -> u64 {
 }
 
 fn over(triangles: &Triangles, traversal: Traversal) -> Box<dyn Accelerator> {
-    bvh::binary(triangles, &Options::DEFAULT, traversal, best())
+    // Of whole triangles: what is said here of trees is not said of those over pieces.
+    let options = Options { optimisers: Some(Optimisers::REINSERTION), ..Options::DEFAULT };
+    bvh::binary(triangles, &options, traversal, best())
 }
 
 /// Neighbouring rays through an eye, and rays that go any way, some of them none at all.
