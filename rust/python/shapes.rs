@@ -5,7 +5,7 @@ use pyo3::prelude::*;
 use std::sync::Arc;
 
 use crate::math::{Affine, DVec3};
-use crate::shapes::{Cone, Cuboid, Cylinder, Disk, Ellipsoid, Paraboloid, Placed, Plane, Shape, Sphere};
+use crate::shapes::{Cuboid, Disk, Ellipsoid, Placed, Plane, Revolution, Shape, Sphere};
 
 /// `raywright.Sphere`.
 #[derive(FromPyObject)]
@@ -111,11 +111,11 @@ fn read_own(shape: &Bound<'_, PyAny>) -> PyResult<Arc<dyn Shape>> {
         }
         "Cylinder" => {
             let PyCylinder { base, tip, radius, capped } = shape.extract()?;
-            Arc::new(Cylinder::new(vector(base), vector(tip), radius, capped))
+            Arc::new(Revolution::cylinder(vector(base), vector(tip), radius, capped))
         }
         "Cone" => {
             let PyCone { base, tip, base_radius, tip_radius, capped } = shape.extract()?;
-            Arc::new(Cone::new(vector(base), vector(tip), [base_radius, tip_radius], capped))
+            Arc::new(Revolution::cone(vector(base), vector(tip), [base_radius, tip_radius], capped))
         }
         "Box" => {
             let PyBox { min, max } = shape.extract()?;
@@ -127,7 +127,7 @@ fn read_own(shape: &Bound<'_, PyAny>) -> PyResult<Arc<dyn Shape>> {
         }
         "Paraboloid" => {
             let PyParaboloid { apex, tip, radius, capped } = shape.extract()?;
-            Arc::new(Paraboloid::new(vector(apex), vector(tip), radius, capped))
+            Arc::new(Revolution::paraboloid(vector(apex), vector(tip), radius, capped))
         }
         other => return Err(PyTypeError::new_err(format!("expected a raywright shape, got {other}"))),
     })

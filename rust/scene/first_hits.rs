@@ -389,7 +389,8 @@ mod tests {
         ] {
             let camera = Camera::perspective(position, target, DVec3::Y, fov, 53, 37).unwrap();
             let asked = agreed(&room, &camera, &[[0.5, 0.5]]);
-            assert!(asked < 53 * 37 / 4, "{asked} pixels of the tree");
+            // All but the last tiles of rows, five pixels wide, whose walls are as much to look at as their pixels.
+            assert!(asked <= 5 * 37, "{asked} pixels of the tree");
         }
     }
 

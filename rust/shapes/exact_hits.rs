@@ -84,9 +84,9 @@ fn check_turned(kind: Turned, base: DVec3, tip: DVec3, capped: bool, ray: &Ray) 
     let below = |x: &Vector| &vv - &dot(&minus(x, &foot), &v);
     let oracle = Oracle { surface: &surface, planes: vec![&above, &below], caps: capped };
     let shape: Box<dyn Shape> = match kind {
-        Turned::Cylinder(r) => Box::new(Cylinder::new(base, tip, r, capped)),
-        Turned::Cone(r0, r1) => Box::new(Cone::new(base, tip, [r0, r1], capped)),
-        Turned::Paraboloid(r) => Box::new(Paraboloid::new(base, tip, r, capped)),
+        Turned::Cylinder(r) => Box::new(Revolution::cylinder(base, tip, r, capped)),
+        Turned::Cone(r0, r1) => Box::new(Revolution::cone(base, tip, [r0, r1], capped)),
+        Turned::Paraboloid(r) => Box::new(Revolution::paraboloid(base, tip, r, capped)),
     };
     check(&*shape, &oracle, ray)
 }
@@ -194,9 +194,9 @@ proptest! {
         let map = Affine::new([DVec3::Y * s, DVec3::X * s, DVec3::Z * -s], shift);
         let own: [Arc<dyn Shape>; 5] = [
             match kind {
-                Turned::Cylinder(r) => Arc::new(Cylinder::new(base, tip, r, capped)),
-                Turned::Cone(a, b) => Arc::new(Cone::new(base, tip, [a, b], capped)),
-                Turned::Paraboloid(r) => Arc::new(Paraboloid::new(base, tip, r, capped)),
+                Turned::Cylinder(r) => Arc::new(Revolution::cylinder(base, tip, r, capped)),
+                Turned::Cone(a, b) => Arc::new(Revolution::cone(base, tip, [a, b], capped)),
+                Turned::Paraboloid(r) => Arc::new(Revolution::paraboloid(base, tip, r, capped)),
             },
             Arc::new(Cuboid { min: base.min(tip), max: base.max(tip) }),
             Arc::new(Ellipsoid { center: base, semi_axes: DVec3::new(1.0, 2.0, 3.0) }),
@@ -316,9 +316,9 @@ fn hard_cases_are_met_as_the_oracle_says() -> Result<(), TestCaseError> {
 fn a_start_on_the_surface_is_at_zero_and_only_there() {
     let starts: [(&dyn Shape, DVec3); 6] = [
         (&Sphere { center: DVec3::ZERO, radius: 5.0 }, DVec3::new(3.0, 0.0, -4.0)),
-        (&Cylinder::new(DVec3::ZERO, DVec3::Z, 5.0, true), DVec3::new(-3.0, 4.0, 0.5)),
-        (&Cone::new(DVec3::ZERO, DVec3::Z * 5.0, [5.0, 0.0], true), DVec3::new(-1.5, 2.0, 2.5)),
-        (&Paraboloid::new(DVec3::ZERO, DVec3::Z * 4.0, 2.0, true), DVec3::new(1.0, 0.0, 1.0)),
+        (&Revolution::cylinder(DVec3::ZERO, DVec3::Z, 5.0, true), DVec3::new(-3.0, 4.0, 0.5)),
+        (&Revolution::cone(DVec3::ZERO, DVec3::Z * 5.0, [5.0, 0.0], true), DVec3::new(-1.5, 2.0, 2.5)),
+        (&Revolution::paraboloid(DVec3::ZERO, DVec3::Z * 4.0, 2.0, true), DVec3::new(1.0, 0.0, 1.0)),
         (&Ellipsoid { center: DVec3::X, semi_axes: DVec3::new(5.0, 10.0, 5.0) }, DVec3::new(4.0, 0.0, -4.0)),
         (&Cuboid { min: DVec3::ZERO, max: DVec3::ONE }, DVec3::new(0.25, 0.5, 0.0)),
     ];

@@ -241,7 +241,7 @@ pub(super) fn ball_surface<N: Number>(point: &Triple<N>, radius: &N) -> N {
 mod tests {
     use super::*;
     use crate::math::Affine;
-    use crate::shapes::{Cone, Cuboid, Cylinder, Disk, Ellipsoid, Paraboloid, Plane, Sphere};
+    use crate::shapes::{Cuboid, Disk, Ellipsoid, Plane, Revolution, Sphere};
     use proptest::prelude::*;
 
     type Told = Vec<(u64, [u64; 2], Contact)>;
@@ -288,9 +288,9 @@ mod tests {
         }
         if a != b {
             for capped in [true, false] {
-                sure += u32::from(check(&Cylinder::new(a, b, size, capped), ray)?);
-                sure += u32::from(check(&Cone::new(a, b, [size, size / 2.0], capped), ray)?);
-                sure += u32::from(check(&Paraboloid::new(a, b, size, capped), ray)?);
+                sure += u32::from(check(&Revolution::cylinder(a, b, size, capped), ray)?);
+                sure += u32::from(check(&Revolution::cone(a, b, [size, size / 2.0], capped), ray)?);
+                sure += u32::from(check(&Revolution::paraboloid(a, b, size, capped), ray)?);
             }
         }
         Ok(sure)

@@ -18,10 +18,10 @@ fn shapes() -> Vec<Arc<dyn Shape>> {
         Arc::new(Ellipsoid { center: a, semi_axes: DVec3::new(0.5, 1.5, 0.8) }),
     ];
     for capped in [false, true] {
-        shapes.push(Arc::new(Cylinder::new(a, b, 0.6, capped)));
-        shapes.push(Arc::new(Cone::new(a, b, [0.9, 0.4], capped)));
-        shapes.push(Arc::new(Cone::new(a, b, [0.0, 0.7], capped)));
-        shapes.push(Arc::new(Paraboloid::new(a, b, 0.8, capped)));
+        shapes.push(Arc::new(Revolution::cylinder(a, b, 0.6, capped)));
+        shapes.push(Arc::new(Revolution::cone(a, b, [0.9, 0.4], capped)));
+        shapes.push(Arc::new(Revolution::cone(a, b, [0.0, 0.7], capped)));
+        shapes.push(Arc::new(Revolution::paraboloid(a, b, 0.8, capped)));
     }
     let map = skew();
     let placed: Vec<Arc<dyn Shape>> = shapes
@@ -174,11 +174,11 @@ fn areas_are_the_integrals_of_their_elements() {
 fn areas_have_their_closed_forms() {
     let close = |x: f64, y: f64| assert!((x / y - 1.0).abs() < 1e-13, "{x} {y}");
     let top = DVec3::new(2.0, 4.0, 4.0);
-    close(Cylinder::new(DVec3::ZERO, top, 0.5, false).area(), 6.0 * PI);
-    close(Cylinder::new(DVec3::ZERO, top, 0.5, true).area(), 6.5 * PI);
-    close(Cone::new(DVec3::ZERO, DVec3::Z * 4.0, [3.0, 0.0], true).area(), 24.0 * PI);
+    close(Revolution::cylinder(DVec3::ZERO, top, 0.5, false).area(), 6.0 * PI);
+    close(Revolution::cylinder(DVec3::ZERO, top, 0.5, true).area(), 6.5 * PI);
+    close(Revolution::cone(DVec3::ZERO, DVec3::Z * 4.0, [3.0, 0.0], true).area(), 24.0 * PI);
     // z = ρ² up to 2: π/6 (27 − 1).
-    close(Paraboloid::new(DVec3::ZERO, DVec3::Z * 2.0, 2f64.sqrt(), false).area(), PI / 6.0 * 26.0);
+    close(Revolution::paraboloid(DVec3::ZERO, DVec3::Z * 2.0, 2f64.sqrt(), false).area(), PI / 6.0 * 26.0);
     close(Cuboid { min: DVec3::ZERO, max: DVec3::new(1.0, 2.0, 3.0) }.area(), 22.0);
     // A map that scales evenly, and one that makes a sphere of an ellipsoid again.
     let turn =
@@ -194,7 +194,7 @@ fn areas_have_their_closed_forms() {
     close(round.area(), 4.0 * PI);
     // A cylinder that is pressed flat is two rectangles, nearly.
     let flat = Affine::scale(DVec3::new(1.0, 1e-9, 1.0));
-    let pressed = Placed::new(Arc::new(Cylinder::new(DVec3::ZERO, DVec3::Z * 3.0, 2.0, false)), flat).unwrap();
+    let pressed = Placed::new(Arc::new(Revolution::cylinder(DVec3::ZERO, DVec3::Z * 3.0, 2.0, false)), flat).unwrap();
     assert!((pressed.area() / 24.0 - 1.0).abs() < 1e-8);
 }
 

@@ -22,12 +22,12 @@ impl Revolution {
     }
 
     /// Its area.
-    pub fn area(&self) -> f64 {
+    pub(in crate::shapes) fn area(&self) -> f64 {
         self.areas().iter().sum()
     }
 
     /// A point drawn evenly by area.
-    pub fn sample(&self, u: [f64; 2]) -> Option<Drawn> {
+    pub(in crate::shapes) fn sample(&self, u: [f64; 2]) -> Option<Drawn> {
         let areas = self.areas();
         let whole: f64 = areas.iter().sum();
         let [low, high] = self.breaks();
@@ -63,7 +63,7 @@ impl Revolution {
     /// A cap's is closed. Around a straight side the stretch depends on the angle alone, and around a paraboloid on the radius too:
     /// it is summed at ever more angles until that changes nothing more. For a function of period 1 that converges faster than any
     /// power where it is smooth (Trefethen and Weideman 2014).
-    pub fn area_under(&self, map: &Affine) -> f64 {
+    pub(in crate::shapes) fn area_under(&self, map: &Affine) -> f64 {
         let (frame, height) = self.frame();
         let [base, _, tip] = self.areas();
         let caps = (base + tip) * map.cofactors(frame.normal).length();

@@ -16,7 +16,7 @@ impl Revolution {
     /// with side and caps. Which root lies between the planes, and which plane is met within its disk, follows from the signs of
     /// the left side and of its derivative where the line meets the planes: no root is compared with anything.
     #[inline]
-    pub fn meets<N: Number>(&self, line: &Line<N>) -> Option<Meets<N>> {
+    pub(in crate::shapes) fn meets_from_foot<N: Number>(&self, line: &Line<N>) -> Option<Meets<N>> {
         let Line { origin: w, direction: d, unit } = line;
         let v = Triple::between(self.base, self.tip);
         let vv = v.dot(&v);
@@ -100,7 +100,7 @@ impl Revolution {
     /// With u = [`UNIT`], and the rounded ways w and v: a cross product errs by 3√2 u of the product of its factors' lengths, and the
     /// triple product by 3√2 + 4 of |d| |w| |v|. Lengths that are not extreme leave underflow no part in it.
     #[inline]
-    pub fn is_passed_by(&self, ray: &Ray) -> bool {
+    pub(in crate::shapes) fn is_passed_by(&self, ray: &Ray) -> bool {
         const LEAST: f64 = f64::from_bits((1023 - 200) << 52);
         let (d, w, v) = (ray.direction, ray.origin - self.base, self.tip - self.base);
         let (d_length, w_length, v_length) = (d.length(), w.length(), v.length());
@@ -116,7 +116,7 @@ impl Revolution {
     /// What is zero on a part's whole surface, at a point in units relative to the foot of the axis: on a line it is what
     /// [`Revolution::meets`] says of it there.
     #[inline]
-    pub fn zero_on<N: Number>(&self, part: usize, point: &Triple<N>, unit: &N) -> N {
+    pub(in crate::shapes) fn zero_on<N: Number>(&self, part: usize, point: &Triple<N>, unit: &N) -> N {
         let v = Triple::between(self.base, self.tip);
         let height = point.dot(&v);
         let top = || v.dot(&v).times(unit);

@@ -10,6 +10,7 @@
 
 mod area;
 mod meets;
+mod shape;
 
 use super::{Bounds, Point};
 use crate::math::robust::UNIT;
@@ -32,20 +33,20 @@ pub(in crate::shapes) const TIP: usize = 2;
 
 /// A surface of revolution about a segment.
 #[derive(Clone, Debug, PartialEq)]
-pub(in crate::shapes) struct Revolution {
+pub struct Revolution {
     /// Where the axis begins.
-    pub base: DVec3,
+    pub(in crate::shapes) base: DVec3,
     /// Where it ends.
-    pub tip: DVec3,
+    pub(in crate::shapes) tip: DVec3,
     /// What is turned.
-    pub profile: Profile,
+    pub(in crate::shapes) profile: Profile,
     /// Whether it is closed by disks.
-    pub capped: bool,
+    pub(in crate::shapes) capped: bool,
 }
 
 impl Revolution {
     /// The radii of the two ends.
-    pub fn radii(&self) -> [f64; 2] {
+    pub(in crate::shapes) fn radii(&self) -> [f64; 2] {
         match self.profile {
             Profile::Straight { base, tip } => [base, tip],
             Profile::Parabola { tip } => [0.0, tip],
@@ -53,7 +54,7 @@ impl Revolution {
     }
 
     /// The frame about the axis, and the height.
-    pub fn frame(&self) -> (Frame, f64) {
+    pub(in crate::shapes) fn frame(&self) -> (Frame, f64) {
         let axis = self.tip - self.base;
         // Scaled first, so that no square overflows or vanishes.
         let scale = axis.abs().max_element();
@@ -63,12 +64,12 @@ impl Revolution {
     }
 
     /// The box around it: around its two rims, since nothing bulges out between them.
-    pub fn bounds(&self) -> Bounds {
+    pub(in crate::shapes) fn bounds(&self) -> Bounds {
         Bounds::of_support(|d| self.support(d))
     }
 
     /// The greatest d · x of its points, rounded up.
-    pub fn support(&self, d: DVec3) -> f64 {
+    pub(in crate::shapes) fn support(&self, d: DVec3) -> f64 {
         let (frame, height) = self.frame();
         let across = d.cross(frame.normal).length();
         let rim = |end: DVec3, radius: f64| {
@@ -95,7 +96,7 @@ impl Revolution {
 
     /// Where the second coordinate comes from the base cap to the side, and from there to the tip cap: by lengths along the profile,
     /// and half and half of a paraboloid.
-    pub fn breaks(&self) -> [f64; 2] {
+    pub(in crate::shapes) fn breaks(&self) -> [f64; 2] {
         match self.profile {
             _ if !self.capped => [0.0, 1.0],
             Profile::Parabola { .. } => [0.0, 0.5],
@@ -108,7 +109,7 @@ impl Revolution {
     }
 
     /// The coordinates of a point of a part, relative to the foot.
-    pub fn coordinates(&self, part: usize, x: DVec3) -> [f64; 2] {
+    pub(in crate::shapes) fn coordinates(&self, part: usize, x: DVec3) -> [f64; 2] {
         let (frame, height) = self.frame();
         let local = frame.to_local(x);
         let turn = local.y.atan2(local.x) / TAU;
@@ -134,7 +135,7 @@ impl Revolution {
     ///
     /// The error of a coordinate is that of its last sum, one unit of its own, and those of the summands, which come of a few
     /// roundings each: 8 of the height's and 16 of the radius', with the frame's.
-    pub fn at(&self, [u, v]: [f64; 2]) -> Point {
+    pub(in crate::shapes) fn at(&self, [u, v]: [f64; 2]) -> Point {
         let (frame, height) = self.frame();
         let [base, tip] = self.radii();
         let [low, high] = self.breaks();

@@ -2,39 +2,33 @@
 //! at its own time (Glassner, "Spacetime Ray Tracing for Animation", 1988; interpolated boxes as in Christensen, Fong, Laur and Batali,
 //! "Ray Tracing for the Movie 'Cars'", 2006).
 
-use super::sah_cost;
+use super::numbered::Numbered;
 use crate::accel::bvh::{BinaryBvh, Node};
-use crate::accel::walk::{Built, Input, Lists, Structure, Walker};
+use crate::accel::walk::{Built, Input, Structure, Walker};
 use crate::accel::{Info, SlabRay};
 use crate::math::{Aabb, Vec3};
 
 /// A binary tree whose boxes move.
 pub struct Moving {
-    /// Over the boxes at any time. Its leaves have their own number for `index`.
-    bvh: BinaryBvh,
+    /// Over the boxes at any time.
+    tree: Numbered,
     /// Of each node, at both ends.
     ends: Vec<[Aabb; 2]>,
-    depth: usize,
     kind: String,
 }
 
 impl Moving {
     /// Walks a tree over what moves; `kind` says how it was built.
-    pub fn over(mut bvh: BinaryBvh, input: &Input, kind: &str) -> Built {
-        let primitives = |n: &Node| &bvh.order[n.index as usize..(n.index + n.count) as usize];
-        let lists = Lists::of(bvh.nodes.iter().filter(|n| n.is_leaf()).map(primitives));
+    pub fn over(bvh: BinaryBvh, input: &Input, kind: &str) -> Built {
+        let (tree, lists) = Numbered::new(bvh);
         let mut starts = vec![0usize];
         starts.extend(lists.counts.iter().scan(0, |sum, &count| {
             *sum += count as usize;
             Some(*sum)
         }));
-        for (leaf, node) in bvh.nodes.iter_mut().filter(|n| n.is_leaf()).enumerate() {
-            node.index = leaf as u32;
-        }
-        bvh.order = Vec::new();
         let within = |leaf: u32| lists.order[starts[leaf as usize]..starts[leaf as usize + 1]].to_vec();
-        let ends = ends(&bvh, input, &within);
-        (Box::new(Self { depth: bvh.depth(), ends, bvh, kind: format!("BVH, {kind}, moving boxes") }), lists)
+        let ends = ends(&tree.nodes, input, &within);
+        (Box::new(Self { tree, ends, kind: format!("BVH, {kind}, moving boxes") }), lists)
     }
 }
 
@@ -53,10 +47,10 @@ fn union([a, b]: [Aabb; 2], [c, d]: [Aabb; 2]) -> [Aabb; 2] {
 }
 
 /// The boxes of all nodes at both ends.
-fn ends(bvh: &BinaryBvh, input: &Input, primitives: &dyn Fn(u32) -> Vec<u32>) -> Vec<[Aabb; 2]> {
-    let mut ends = vec![[Aabb::EMPTY; 2]; bvh.nodes.len()];
+fn ends(nodes: &[Node], input: &Input, primitives: &dyn Fn(u32) -> Vec<u32>) -> Vec<[Aabb; 2]> {
+    let mut ends = vec![[Aabb::EMPTY; 2]; nodes.len()];
     // Children come after their parents.
-    for (i, node) in bvh.nodes.iter().enumerate().rev() {
+    for (i, node) in nodes.iter().enumerate().rev() {
         ends[i] = if node.is_leaf() {
             let each = primitives(node.index).into_iter().map(|p| ends_of(input, p));
             each.fold([Aabb::EMPTY; 2], union)
@@ -84,7 +78,7 @@ fn between([start, end]: &[Aabb; 2], time: f64) -> Aabb {
 impl Structure for Moving {
     fn walker(&self, counted: bool) -> Box<dyn Walker + '_> {
         // A path puts one child away a level.
-        let stack = Vec::with_capacity(self.depth + 1);
+        let stack = Vec::with_capacity(self.tree.depth + 1);
         if counted {
             Box::new(Walk::<true> { tree: self, ray: SlabRay::EVERYWHERE, time: 0.0, stack, nodes: 0 })
         } else {
@@ -93,43 +87,30 @@ impl Structure for Moving {
     }
 
     fn info(&self) -> Info {
-        let leaves = self.bvh.nodes.iter().filter(|n| n.is_leaf()).count();
-        Info {
-            kind: self.kind.clone(),
-            nodes: self.bvh.nodes.len() - leaves,
-            leaves,
-            depth: self.depth,
-            bytes: size_of_val(self.bvh.nodes.as_slice()) + size_of_val(self.ends.as_slice()),
-            sah_cost: sah_cost(&self.bvh),
-            ..Info::default()
-        }
+        let info = self.tree.info(&self.kind);
+        Info { bytes: info.bytes + size_of_val(self.ends.as_slice()), ..info }
     }
 
     fn validate(&self, input: &Input, primitives: &dyn Fn(u32) -> Vec<u32>) -> Result<(), String> {
-        for (i, (node, outer)) in self.bvh.nodes.iter().zip(&self.ends).enumerate() {
+        self.tree.validate(input, primitives)?;
+        for (i, (node, outer)) in self.tree.nodes.iter().zip(&self.ends).enumerate() {
             let within = |inner: [Aabb; 2]| outer[0].contains(&inner[0]) && outer[1].contains(&inner[1]);
             let holds = if node.is_leaf() {
                 primitives(node.index).into_iter().all(|p| within(ends_of(input, p)))
             } else {
-                node.children().into_iter().all(|child| child > i && within(self.ends[child]))
+                node.children().into_iter().all(|child| within(self.ends[child]))
             };
             if !holds {
-                return Err(format!("node {i} does not hold what is below it"));
+                return Err(format!("node {i} does not hold what is below it as it moves"));
             }
         }
-        match self.bvh.depth() {
-            depth if depth == self.depth => Ok(()),
-            depth => Err(format!("depth is {depth}, not {}", self.depth)),
-        }
+        Ok(())
     }
 
     fn refitted(&self, input: &Input, primitives: &dyn Fn(u32) -> Vec<u32>) -> Result<Box<dyn Structure>, String> {
-        let (mut bvh, ends) = (self.bvh.clone(), ends(&self.bvh, input, primitives));
-        for (node, [a, b]) in bvh.nodes.iter_mut().zip(&ends) {
-            let around = a.union(*b);
-            (node.min, node.max) = (around.min, around.max);
-        }
-        Ok(Box::new(Self { bvh, ends, depth: self.depth, kind: self.kind.clone() }))
+        let tree = self.tree.refitted(input, primitives)?;
+        let ends = ends(&tree.nodes, input, primitives);
+        Ok(Box::new(Self { tree, ends, kind: self.kind.clone() }))
     }
 }
 
@@ -162,7 +143,7 @@ impl<const COUNTED: bool> Walker for Walk<'_, COUNTED> {
         self.time = if time > 0.0 { time.min(1.0) } else { 0.0 };
         self.nodes = 0;
         self.stack.clear();
-        if !self.tree.bvh.nodes.is_empty() {
+        if !self.tree.tree.nodes.is_empty() {
             self.nodes += u32::from(COUNTED);
             let root = self.enters(0, f32::INFINITY);
             self.stack.extend(root.map(|enter| (0, enter)));
@@ -170,7 +151,7 @@ impl<const COUNTED: bool> Walker for Walk<'_, COUNTED> {
     }
 
     fn next(&mut self, limit: f32) -> Option<u32> {
-        let nodes = self.tree.bvh.nodes.as_slice();
+        let nodes = self.tree.tree.nodes.as_slice();
         while let Some((mut at, enter)) = self.stack.pop() {
             if enter > limit {
                 continue;

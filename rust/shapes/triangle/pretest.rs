@@ -1,0 +1,183 @@
+//! The test of triangles in f32 that comes before the decision in f64: it rejects only what is certainly not met.
+//!
+//! The test in f32 is that of Möller and Trumbore ("Fast, Minimum Storage Ray/Triangle Intersection", 1997), which takes half
+//! the work of the edge form. With edges e = b − a and f = c − a, the ray from s relative to a, p = d × f and q = s × e, the
+//! corners' weights are u = s · p of b, v = d · q of c, and w = e · p − u − v of a. A triangle is rejected only where one weight
+//! is certainly positive and another certainly negative.
+//!
+//! The bound. Let ε = 2⁻²⁴, E bound every coordinate of e and f, L bound |origin| + |corner| in every coordinate, and
+//! D < 2 those of the direction. The edges err by εE, s by 2εL for rounding the origin and the difference, and d by 2ε. A product in p
+//! errs by 2εE + 2εE + 2εE, and so p by 12εE + 4εE = 16εE; it is at most 4E. A product in q errs by 2εLE + εLE + εLE, and so q by
+//! 8εLE + 2εLE = 10εLE; it is at most 2LE. A product in u errs by 8εLE + 16εLE + 4εLE, and so u by 84εLE + 20εLE = 104εLE. A product
+//! in v errs by 4εLE + 20εLE + 4εLE, and v like u. A product in e · p errs by 4εE² + 16εE² + 4εE², and the sum by 92εE², which is
+//! at most 184εLE, since E ≤ 2L. So w errs by 184εLE + 208εLE and, for its own two roundings, 48εLE: 440εLE, to first order; fused
+//! operations err less. 512εLE is allowed. What underflows in p or q loses at most 2⁻¹⁴⁸ a coordinate, 2⁻¹⁴⁵L in a weight, and
+//! elsewhere less than 2⁻¹⁴⁶: 2⁻¹⁴⁰L + 2⁻¹²⁶ is added. (The least normal number: a subnormal one would make every sum slow.) With
+//! L below 2⁶⁰ no sum exceeds 96L² < 2¹²⁷; beyond it, where infinities of either sign may appear, nothing is rejected.
+//!
+//! Most of what is left lies behind the ray: the surface that it leaves. The ray's parameter is t = f · q / e · p, negative where
+//! numerator and denominator are certainly of opposite sign, and then the triangle is rejected if t must not be. A product in
+//! f · q errs by 2εLE² + 10εLE² + 2εLE², and the sum by 52εLE²: 64εLE² is allowed, and 128εE² for the denominator. With L below 2⁴⁰
+//! no sum exceeds 6LE² < 2¹²⁵; beyond it nothing is rejected so.
+//!
+//! Corners that are f64 are kept relative to the scene's centre, in box units: a corner, and the edges from there as f64 has them.
+//! All of it is rounded to f32. Then an edge errs by εE as before, and s by ε|corner| more, which with ε|origin| is εL: the bounds
+//! are the same. (With edges taken between rounded corners they would have terms in L² that do not shrink with the triangle, and
+//! next to nothing of a fine mesh would be rejected.)
+
+use super::{Column, EdgeRay, EdgeRays, RAYS};
+use crate::math::DVec3;
+use crate::math::robust::{greater, lesser};
+use crate::simd::Simd;
+
+/// Lanes in which f32 cannot reject that a ray meets a triangle; bits above the lanes are set.
+#[inline(always)]
+pub(super) fn not_rejected<const N: usize, S: Simd<N>>(
+    simd: S,
+    [a, e, f]: [[S::F32; 3]; 3],
+    o: [S::F32; 3],
+    d: [S::F32; 3],
+    errors: &Bounds,
+) -> u32 {
+    let s = difference(simd, o, a);
+    let p = cross(simd, d, f);
+    let q = cross(simd, s, e);
+    let u = dot(simd, s, p);
+    let v = dot(simd, d, q);
+    let denominator = dot(simd, e, p);
+    let w = simd.sub(simd.sub(denominator, u), v);
+
+    let largest = simd.max(largest(simd, e), largest(simd, f));
+    let least = simd.splat(errors.least);
+    let above = simd.mul_add(largest, simd.splat(errors.weight), least);
+    let below = simd.neg(above);
+    let positive = simd.gt(u, above) | simd.gt(v, above) | simd.gt(w, above);
+    let negative = simd.gt(below, u) | simd.gt(below, v) | simd.gt(below, w);
+
+    let numerator = dot(simd, f, q);
+    let above = simd.mul_add(largest, simd.mul(largest, simd.splat(errors.numerator)), least);
+    let over = simd.mul_add(largest, simd.mul(largest, simd.splat(128.0 / (1u32 << 24) as f32)), least);
+    let behind = simd.gt(numerator, above) & simd.gt(simd.neg(over), denominator)
+        | simd.gt(simd.neg(above), numerator) & simd.gt(denominator, over);
+    !(positive & negative | behind)
+}
+
+/// What the test in f32 needs of a ray.
+#[derive(Clone, Copy, Debug)]
+pub struct BlockRay {
+    /// Where it starts, in the units that leaves keep.
+    pub origin: [f32; 3],
+    /// Scaled.
+    pub direction: [f32; 3],
+    pub(super) errors: Bounds,
+}
+
+/// What the test in f32 needs of sixteen rays.
+#[derive(Clone, Debug)]
+#[repr(C, align(64))]
+pub struct BlockRays {
+    /// Where they start, in the units that leaves keep, by axis.
+    pub origin: [Column<f32>; 3],
+    /// Scaled, by axis.
+    pub direction: [Column<f32>; 3],
+    pub(super) errors: Bounds,
+}
+
+impl BlockRay {
+    /// A ray from an origin in the leaves' units, rounded to f32; `largest` is L.
+    #[inline(always)]
+    pub(super) fn new(origin: DVec3, ray: &EdgeRay, largest: f64) -> Self {
+        let (o, d) = (origin.as_vec3(), ray.direction.as_vec3());
+        let errors = Bounds::new(largest, ray.t_min >= 0.0);
+        Self { origin: [o.x, o.y, o.z], direction: [d.x, d.y, d.z], errors }
+    }
+}
+
+impl BlockRays {
+    /// Sixteen rays rounded to f32, with origins and L times `scale`. The greatest bounds serve all.
+    #[inline(always)]
+    pub(super) fn new(origin: &[Column<f64>; 3], rays: &EdgeRays, largest: &Column<f64>, scale: f64) -> Self {
+        let (mut most, mut least) = (0.0, f64::INFINITY);
+        for i in 0..RAYS {
+            most = greater(largest[i], most);
+            least = lesser(rays.t_min[i], least);
+        }
+        let errors = Bounds::new(most * scale, least >= 0.0);
+        let mut block = Self { origin: [[0.0; RAYS]; 3], direction: [[0.0; RAYS]; 3], errors };
+        for axis in 0..3 {
+            for i in 0..RAYS {
+                block.origin[axis][i] = (origin[axis][i] * scale) as f32;
+                block.direction[axis][i] = rays.direction[axis][i] as f32;
+            }
+        }
+        block
+    }
+
+    /// One of them.
+    #[inline(always)]
+    pub fn of(&self, i: usize) -> BlockRay {
+        let i = i & (RAYS - 1);
+        let (o, d) = (&self.origin, &self.direction);
+        BlockRay { origin: [o[0][i], o[1][i], o[2][i]], direction: [d[0][i], d[1][i], d[2][i]], errors: self.errors }
+    }
+}
+
+/// Bounds on the errors of the test in f32.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Bounds {
+    /// Of a weight over the largest edge.
+    weight: f32,
+    /// Of the numerator of t over the square of the largest edge.
+    numerator: f32,
+    /// What is added to every bound.
+    least: f32,
+}
+
+impl Bounds {
+    /// Those where L is `largest`, of rays that are asked for no t below 0, or for some.
+    #[inline(always)]
+    fn new(largest: f64, forwards: bool) -> Self {
+        const UNIT: f64 = 1.0 / (1u64 << 24) as f64;
+        const OVERFLOW: f64 = (1u64 << 60) as f64;
+        const NUMERATOR_OVERFLOW: f64 = (1u64 << 40) as f64;
+        const UNDERFLOW: f64 = f64::from_bits((1023 - 140) << 52);
+        let weight = if largest < OVERFLOW { 512.0 * largest } else { f64::INFINITY };
+        let numerator = if forwards && largest < NUMERATOR_OVERFLOW { 64.0 * largest } else { f64::INFINITY };
+        Self {
+            // Rounded to nearest: the error of that is among those of higher order.
+            weight: (UNIT * weight) as f32,
+            numerator: (UNIT * numerator) as f32,
+            least: (UNDERFLOW * largest) as f32 + f32::MIN_POSITIVE,
+        }
+    }
+}
+
+#[inline(always)]
+pub(super) fn difference<const N: usize, S: Simd<N>>(simd: S, a: [S::F32; 3], b: [S::F32; 3]) -> [S::F32; 3] {
+    [simd.sub(a[0], b[0]), simd.sub(a[1], b[1]), simd.sub(a[2], b[2])]
+}
+
+#[inline(always)]
+pub(super) fn sum<const N: usize, S: Simd<N>>(simd: S, a: [S::F32; 3], b: [S::F32; 3]) -> [S::F32; 3] {
+    [simd.add(a[0], b[0]), simd.add(a[1], b[1]), simd.add(a[2], b[2])]
+}
+
+/// The largest coordinate in magnitude.
+#[inline(always)]
+fn largest<const N: usize, S: Simd<N>>(simd: S, v: [S::F32; 3]) -> S::F32 {
+    simd.max(simd.max(simd.abs(v[0]), simd.abs(v[1])), simd.abs(v[2]))
+}
+
+#[inline(always)]
+fn cross<const N: usize, S: Simd<N>>(simd: S, a: [S::F32; 3], b: [S::F32; 3]) -> [S::F32; 3] {
+    [
+        simd.mul_sub(a[1], b[2], simd.mul(a[2], b[1])),
+        simd.mul_sub(a[2], b[0], simd.mul(a[0], b[2])),
+        simd.mul_sub(a[0], b[1], simd.mul(a[1], b[0])),
+    ]
+}
+
+#[inline(always)]
+fn dot<const N: usize, S: Simd<N>>(simd: S, a: [S::F32; 3], b: [S::F32; 3]) -> S::F32 {
+    simd.mul_add(a[2], b[2], simd.mul_add(a[1], b[1], simd.mul(a[0], b[0])))
+}
