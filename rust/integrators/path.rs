@@ -156,16 +156,16 @@ impl PathWorker<'_> {
                 continue;
             }
             let surface = self.scene.geometry().surface(&ray, &hit);
-            let emission = self.scene.emission_at(&surface);
             let cosine = -ray.direction.dot(surface.normal);
-            if emission != Rgb::ZERO && cosine > 0.0 {
+            let emission = self.scene.emission_at(&surface).towards(cosine, &Default::default());
+            if emission != Rgb::ZERO {
                 let light_pdf = self.scene.lights().surface_pdf(self.scene.geometry(), &ray, &hit, cosine);
                 *arriving += path.throughput * emission * power_heuristic(path.pdf, light_pdf);
             }
             if last {
                 continue;
             }
-            let here = Interaction::new(self.scene, &ray, surface);
+            let here = Interaction::new(self.scene, &ray, &hit, surface, 0.0);
             let sampler = &mut samples[path.sample as usize].sampler;
             self.ask_a_light(&here, &path, Dimensions::of_bounce(bounce), sampler);
             if let Some((ray, path)) = self.scatter(&here, path, bounce, sampler) {

@@ -52,3 +52,9 @@ impl Bsdf {
         }
     }
 }
+
+impl From<Diffuse> for Bsdf {
+    fn from(diffuse: Diffuse) -> Self {
+        Self::Diffuse(diffuse)
+    }
+}

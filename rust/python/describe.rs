@@ -9,7 +9,8 @@ use super::instances::{self, Wishes};
 use super::shapes;
 use crate::math::DVec3;
 use crate::optics::Rgb;
-use crate::scene::{self, Material, PointLight, SceneDescription};
+use crate::scene::{self, DiffuseMaterial, PointLight, SceneDescription};
+use std::sync::Arc;
 
 /// `raywright.Scene`.
 #[derive(FromPyObject)]
@@ -101,8 +102,8 @@ fn describe(shape: &Bound<'_, PyAny>, double: bool) -> PyResult<scene::Shape> {
     };
     Ok(scene::Shape {
         surface,
-        material: Material::Diffuse { reflectance: Rgb::from_array(look.material.reflectance) },
-        emission: look.emission.map_or(Rgb::ZERO, Rgb::from_array),
+        material: Arc::new(DiffuseMaterial { reflectance: Rgb::from_array(look.material.reflectance).into() }),
+        emission: look.emission.map_or(Rgb::ZERO, Rgb::from_array).into(),
     })
 }
 
@@ -120,6 +121,6 @@ impl Mesh<'_> {
             return Err(PyValueError::new_err(format!("face {face} is {corners:?}, but there are {count} vertices")));
         }
         let normals = self.normals.as_ref().map(|n| n.rows("normals").map(|rows| rows.to_single())).transpose()?;
-        Ok(scene::Mesh { vertices, faces, normals })
+        Ok(scene::Mesh { vertices, faces, normals, ..scene::Mesh::default() })
     }
 }

@@ -1,21 +1,24 @@
 //! A scene ready for rays.
 
-use super::{DescriptionError, Geometry, Lights, Material, SceneDescription, SurfacePoint};
+use super::{DescriptionError, Emission, Geometry, Lights, Material, SceneDescription, SurfacePoint};
 use crate::accel::{Accelerator, Cost, Crossings, Nearest, Primitives, Side, Touches};
 use crate::math::{DVec3, Hit, Ray, Region};
-use crate::optics::Rgb;
 use crate::shapes::triangle::SolidCone;
+use std::sync::Arc;
 
 /// A scene ready for rays.
 pub struct Scene {
     geometry: Geometry,
-    materials: Vec<Material>,
+    materials: Vec<Arc<dyn Material>>,
     lights: Lights,
     accelerator: Box<dyn Accelerator>,
     region: Region,
     /// The accelerator's cost when it was built.
     built_cost: f64,
 }
+
+/// What a description is made into, before it has an accelerator.
+type Parts = (Geometry, Vec<Arc<dyn Material>>, Lights);
 
 /// Ways out for [`Scene::contains`]: in no special position to anything that people make, and with a largest coordinate
 /// between 1 and 2, so that `t` is not scaled.
@@ -53,7 +56,7 @@ impl Scene {
         Ok(accelerator.map(|a| Self::with(a, Some(self.built_cost), geometry, materials, lights)))
     }
 
-    fn parts(description: SceneDescription) -> Result<(Geometry, Vec<Material>, Lights), DescriptionError> {
+    fn parts(description: SceneDescription) -> Result<Parts, DescriptionError> {
         description.validate()?;
         let SceneDescription { shapes, points, environment } = description;
         let (mut surfaces, mut materials, mut emission) = (Vec::new(), Vec::new(), Vec::new());
@@ -71,7 +74,7 @@ impl Scene {
         accelerator: Box<dyn Accelerator>,
         built_cost: Option<f64>,
         geometry: Geometry,
-        materials: Vec<Material>,
+        materials: Vec<Arc<dyn Material>>,
         lights: Lights,
     ) -> Self {
         let (region, cost) = (geometry.region(), accelerator.info().sah_cost);
@@ -164,30 +167,30 @@ impl Scene {
 
     /// What a shape is made of.
     #[inline]
-    pub fn material(&self, shape: u32) -> &Material {
-        &self.materials[shape as usize]
+    pub fn material(&self, shape: u32) -> &dyn Material {
+        &*self.materials[shape as usize]
     }
 
     /// What a point of a surface is made of.
     #[inline]
-    pub fn material_at(&self, surface: &SurfacePoint) -> &Material {
+    pub fn material_at(&self, surface: &SurfacePoint) -> &dyn Material {
         match surface.inner {
             Some(inner) => self.look(surface.shape, inner).0,
             None => self.material(surface.shape),
         }
     }
 
-    /// Radiance of a point of a surface on the side that the normals point to.
+    /// How a point of a surface shines.
     #[inline]
-    pub fn emission_at(&self, surface: &SurfacePoint) -> Rgb {
+    pub fn emission_at(&self, surface: &SurfacePoint) -> &Emission {
         match surface.inner {
             Some(inner) => self.look(surface.shape, inner).1,
             None => self.lights.emission(surface.shape),
         }
     }
 
-    /// Of a shape that is copies of a group, what the primitive of a flattened number is made of, and its radiance.
-    fn look(&self, shape: u32, inner: u32) -> (&Material, Rgb) {
+    /// Of a shape that is copies of a group, what the primitive of a flattened number is made of, and how it shines.
+    fn look(&self, shape: u32, inner: u32) -> (&dyn Material, &Emission) {
         match self.geometry.copies_of(shape) {
             Some(copies) => copies.group().look(inner),
             None => (self.material(shape), self.lights.emission(shape)),

@@ -118,7 +118,7 @@ impl Copies {
 
     /// Where a copy stands at a time; none at a moment at which that has no inverse.
     #[inline]
-    fn pose(&self, copy: u32, time: f64) -> Option<Pose> {
+    pub(super) fn pose(&self, copy: u32, time: f64) -> Option<Pose> {
         match &*self.places {
             Places::Still(poses) => Some(poses[copy as usize]),
             Places::Moving(matrices) => {
@@ -254,6 +254,7 @@ mod tests {
             vertices: vertices.into(),
             faces: (0..count).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect(),
             normals: None,
+            ..Mesh::default()
         }
     }
 
@@ -309,7 +310,7 @@ mod tests {
             let far = [0.0, 1.0, 1e3, 1e7][sample as usize % 4];
             let mut next = draw(sample + 500);
             let corners: Vec<Vec3> = (0..3).map(|_| (next() * 2.0 + next()).as_vec3()).collect();
-            let mesh = Mesh { vertices: corners.into(), faces: vec![[0, 1, 2]], normals: None };
+            let mesh = Mesh { vertices: corners.into(), faces: vec![[0, 1, 2]], normals: None, ..Mesh::default() };
             let group = Arc::new(Group::new(vec![shape(mesh, [0.5; 3], 0.0)], brute).unwrap());
             let inner = Copies::new(group, &[hostile(sample + 1000, 1.0)]).unwrap();
             let nested = Arc::new(Group::new(vec![copied(inner)], brute).unwrap());

@@ -1,18 +1,27 @@
 //! A scene as it is described, before it is compiled.
 
-use super::{Material, PointLight, Surface};
+use super::{DiffuseMaterial, Emission, Material, PointLight, Surface};
 use crate::optics::{Rgb, is_radiance};
 use std::fmt;
+use std::sync::Arc;
 
 /// One surface, what it is made of, and how it shines.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Shape {
     /// What rays hit.
     pub surface: Surface,
     /// What it is made of.
-    pub material: Material,
-    /// Radiance emitted on the side that the normals point to.
-    pub emission: Rgb,
+    pub material: Arc<dyn Material>,
+    /// How it shines.
+    pub emission: Emission,
+}
+
+impl Default for Shape {
+    /// Nothing, of half grey.
+    fn default() -> Self {
+        let material = Arc::new(DiffuseMaterial::default());
+        Self { surface: Surface::default(), material, emission: Emission::default() }
+    }
 }
 
 /// All that is in a scene.
@@ -27,10 +36,10 @@ pub struct SceneDescription {
 }
 
 /// Why a description cannot be.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub enum DescriptionError {
-    /// The material of this shape reflects less than nothing, or more than all.
-    Material(usize),
+    /// The material of this shape cannot be, and why.
+    Material(usize, String),
     /// This shape emits less than nothing, or NaN, or infinitely much.
     Emission(usize),
     /// This point light is nowhere, or emits less than nothing.
@@ -44,7 +53,7 @@ pub enum DescriptionError {
 impl fmt::Display for DescriptionError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Material(i) => write!(f, "reflectance of shape {i} must lie between 0 and 1"),
+            Self::Material(i, why) => write!(f, "material of shape {i}: {why}"),
             Self::Emission(i) => write!(f, "emission of shape {i} must be finite and not negative"),
             Self::Point(i) => {
                 write!(
@@ -67,10 +76,8 @@ impl SceneDescription {
     /// Whether it can be.
     pub fn validate(&self) -> Result<(), DescriptionError> {
         for (i, shape) in self.shapes.iter().enumerate() {
-            if !shape.material.is_physical() {
-                return Err(DescriptionError::Material(i));
-            }
-            if !is_radiance(shape.emission) {
+            shape.material.validate().map_err(|why| DescriptionError::Material(i, why))?;
+            if !shape.emission.is_physical() {
                 return Err(DescriptionError::Emission(i));
             }
         }
@@ -91,14 +98,14 @@ mod tests {
     #[test]
     fn says_what_cannot_be() {
         let shape = |reflectance: f64, emission: f64| Shape {
-            material: Material::Diffuse { reflectance: Rgb::splat(reflectance) },
-            emission: Rgb::splat(emission),
+            material: Arc::new(DiffuseMaterial { reflectance: reflectance.into() }),
+            emission: Rgb::splat(emission).into(),
             ..Shape::default()
         };
         let shapes = |last| SceneDescription { shapes: vec![shape(1.0, 5.0), last], ..Default::default() };
         assert_eq!(shapes(shape(0.0, 0.0)).validate(), Ok(()));
         for bad in [-0.1, 1.000_001, f64::NAN] {
-            assert_eq!(shapes(shape(bad, 0.0)).validate(), Err(DescriptionError::Material(1)));
+            assert!(matches!(shapes(shape(bad, 0.0)).validate(), Err(DescriptionError::Material(1, _))));
         }
         for bad in [-0.1, f64::INFINITY, f64::NAN] {
             assert_eq!(shapes(shape(0.5, bad)).validate(), Err(DescriptionError::Emission(1)));

@@ -408,7 +408,7 @@ mod tests {
         ) {
             let vertices: Vec<_> = corners.iter().map(|&c| Vec3::from_array(c)).collect();
             let faces = (0..vertices.len() as u32 / 3).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
-            let mesh = Mesh { vertices: vertices.into(), faces, normals: None };
+            let mesh = Mesh { vertices: vertices.into(), faces, normals: None, ..Mesh::default() };
             let scene = scene(SceneDescription { shapes: vec![shape(mesh, [0.5; 3], 0.0)], ..Default::default() });
             let [position, target] = [position, target].map(|p| Vec3::from_array(p).as_dvec3());
             if let Ok(camera) = Camera::perspective(position, target, DVec3::new(0.1, 1.0, 0.2), fov, 35, 20) {

@@ -1,10 +1,11 @@
 //! Scenes that tests share.
 
-use super::{Camera, Material, Mesh, Scene, SceneDescription, Shape};
+use super::{Camera, DiffuseMaterial, Mesh, Scene, SceneDescription, Shape};
 use crate::accel::bvh::{self, Options};
 use crate::math::{DVec3, Vec3};
 use crate::optics::Rgb;
 use crate::simd::Level;
+use std::sync::Arc;
 
 /// A scene on the default accelerator.
 pub(crate) fn scene(description: SceneDescription) -> Scene {
@@ -20,13 +21,15 @@ pub(crate) fn rectangle(corner: [f32; 3], side: [f32; 3], other: [f32; 3]) -> Me
         vertices: vec![corner, corner + side, corner + side + other, corner + other].into(),
         faces: vec![[0, 1, 2], [0, 2, 3]],
         normals: None,
+        ..Mesh::default()
     }
 }
 
 /// A surface of one colour that may shine.
 pub(crate) fn shape(mesh: Mesh, reflectance: impl Into<[f64; 3]>, emission: f64) -> Shape {
-    let reflectance = Rgb::from_array(reflectance.into());
-    Shape { surface: mesh.into(), material: Material::Diffuse { reflectance }, emission: Rgb::splat(emission) }
+    let reflectance = Rgb::from_array(reflectance.into()).into();
+    let material = Arc::new(DiffuseMaterial { reflectance });
+    Shape { surface: mesh.into(), material, emission: Rgb::splat(emission).into() }
 }
 
 /// A box from −1 to 1 whose faces look inwards, of one reflectance and emission.
@@ -62,6 +65,7 @@ fn standing_box(centre: [f32; 2], half: f32, height: f32, degrees: f32) -> Mesh 
         vertices: (0..8).map(corner).collect(),
         faces: quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect(),
         normals: None,
+        ..Mesh::default()
     }
 }
 

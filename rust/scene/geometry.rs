@@ -1,5 +1,6 @@
 //! The surfaces of a scene: every mesh's corners and faces, one after the other, and shapes among them.
 
+use super::per_vertex::PerVertex;
 use super::{Copies, Group, Surfaces};
 use crate::accel::{Objects, Primitives};
 use crate::math::{DVec3, Hit, Ray, Vec3};
@@ -106,6 +107,10 @@ pub struct Mesh {
     pub faces: Vec<[u32; 3]>,
     /// Shading normals, one a vertex.
     pub normals: Option<Vec<Vec3>>,
+    /// Texture coordinates, a pair a vertex.
+    pub uvs: Option<Vec<[f32; 2]>>,
+    /// Colours, one a vertex.
+    pub colours: Option<Vec<[f32; 3]>>,
 }
 
 /// What rays can hit.
@@ -165,8 +170,12 @@ pub struct Geometry {
     gaps: Vec<Gap>,
     /// What is no mesh; none if all are.
     others: Option<Arc<Surfaces>>,
-    /// Shading normals of all vertices, zero where a shape has none; empty where no shape has any.
-    normals: Vec<Vec3>,
+    /// Shading normals, zero where a shape has none.
+    normals: PerVertex<Vec3>,
+    /// Texture coordinates, NaN where a shape has none.
+    uvs: PerVertex<[f32; 2]>,
+    /// Colours, white where a shape has none.
+    colours: PerVertex<[f32; 3]>,
     /// The first primitive of each shape, and the number of all at the end.
     first: Vec<u32>,
     dropped: usize,
@@ -256,13 +265,10 @@ impl Geometry {
             let base = u32::try_from(all.vertices.len()).expect("fewer than 2^32 vertices");
             let count = mesh.vertices.len();
             let end = count as u32;
-            if let Some(normals) = &mesh.normals {
-                assert_eq!(normals.len(), count, "a normal for each vertex");
-                all.normals.resize(all.vertices.len(), Vec3::ZERO);
-                all.normals.extend_from_slice(normals);
-            } else if !all.normals.is_empty() {
-                all.normals.resize(all.vertices.len() + count, Vec3::ZERO);
-            }
+            let before = all.vertices.len();
+            all.normals.extend(before, count, mesh.normals.as_deref(), Vec3::ZERO);
+            all.uvs.extend(before, count, mesh.uvs.as_deref(), [f32::NAN; 2]);
+            all.colours.extend(before, count, mesh.colours.as_deref(), [1.0; 3]);
             all.vertices = std::mem::take(&mut all.vertices).joined(mesh.vertices.shortened());
             let number = all.count() + mesh.faces.len();
             all.faces.reserve(mesh.faces.len());
@@ -333,7 +339,9 @@ impl Geometry {
     /// The memory held, without groups that were `seen`; those in it are from then on.
     pub fn bytes_but(&self, seen: &mut Vec<*const Group>) -> usize {
         self.vertices.bytes()
-            + self.normals.len() * size_of::<Vec3>()
+            + self.normals.bytes()
+            + self.uvs.bytes()
+            + self.colours.bytes()
             + self.faces.len() * size_of::<[u32; 3]>()
             + self.first.len() * size_of::<u32>()
             + self.others.as_ref().map_or(0, |others| others.bytes(seen))
@@ -432,8 +440,17 @@ impl Geometry {
 
     /// The shading normals of a triangle's corners, if there are any.
     pub(super) fn normals_of(&self, primitive: u32) -> Option<[DVec3; 3]> {
-        let normal = |v: u32| self.normals[v as usize].as_dvec3();
-        (!self.normals.is_empty()).then(|| self.face(primitive).map(normal))
+        self.normals.of(self.face(primitive)).map(|corners| corners.map(Vec3::as_dvec3))
+    }
+
+    /// The texture coordinates of a triangle's corners, if there are any.
+    pub(super) fn uvs_of(&self, primitive: u32) -> Option<[[f32; 2]; 3]> {
+        self.uvs.of(self.face(primitive)).filter(|corners| !corners[0][0].is_nan())
+    }
+
+    /// The colours of a triangle's corners, if there are any.
+    pub(super) fn colours_of(&self, primitive: u32) -> Option<[[f32; 3]; 3]> {
+        self.colours.of(self.face(primitive))
     }
 
     /// The interpolated normal of the vertices, on the side of `normal`; `normal` where there is none to be had.

@@ -1,13 +1,13 @@
 //! What is put into a scene many times: shapes in a space of their own, with an accelerator of their own.
 
-use super::{DescriptionError, Geometry, HitPoint, Material, SceneDescription, Shape, SurfacePoint};
+use super::{DescriptionError, Emission, Geometry, HitPoint, Material, SceneDescription, Shape, SurfacePoint};
 use crate::accel::{Accelerator, Primitives, Side};
 use crate::math::robust::normalising_scale;
 use crate::math::{DVec3, Hit, Ray, Region};
-use crate::optics::Rgb;
 use crate::shapes::Bounds;
 use rayon::prelude::*;
 use std::fmt;
+use std::sync::Arc;
 
 /// Shapes that are put elsewhere together, compiled once.
 ///
@@ -16,8 +16,8 @@ use std::fmt;
 pub struct Group {
     geometry: Geometry,
     accelerator: Box<dyn Accelerator>,
-    materials: Vec<Material>,
-    emission: Vec<Rgb>,
+    materials: Vec<Arc<dyn Material>>,
+    emission: Vec<Emission>,
     /// The flattened number of each shape's first primitive, and how many there are.
     first: Vec<u64>,
     has_copies: bool,
@@ -137,13 +137,13 @@ impl Group {
         self.geometry.point(ray, &Hit { primitive, inner, ..*hit })
     }
 
-    /// What the primitive of a flattened number is made of, and its radiance.
-    pub fn look(&self, flat: u32) -> (&Material, Rgb) {
+    /// What the primitive of a flattened number is made of, and how it shines.
+    pub fn look(&self, flat: u32) -> (&dyn Material, &Emission) {
         let (primitive, inner) = self.split(flat);
         let (shape, _) = self.geometry.locate(primitive);
         match self.geometry.copies_of(shape) {
             Some(copies) => copies.group().look(inner),
-            None => (&self.materials[shape as usize], self.emission[shape as usize]),
+            None => (&*self.materials[shape as usize], &self.emission[shape as usize]),
         }
     }
 
@@ -180,10 +180,10 @@ impl Group {
 mod tests {
     use super::*;
     use crate::accel::BruteForce;
+    use crate::optics::Rgb;
     use crate::scene::fixtures::{rectangle, shape};
     use crate::scene::{Copies, Matrix};
     use crate::simd::Level;
-    use std::sync::Arc;
 
     const HERE: Matrix = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]];
 
@@ -214,7 +214,7 @@ mod tests {
                     let primitive = all.geometry().primitives_of(shape).start + number;
                     let hit = Hit { primitive, inner, ..Hit::MISS };
                     assert_eq!((all.flatten(&hit), all.split(flat)), (flat, (primitive, inner)));
-                    assert_eq!(all.look(flat).1, Rgb::splat(emission[inner as usize / 2]));
+                    assert_eq!(*all.look(flat).1, Rgb::splat(emission[inner as usize / 2]).into());
                     flat += 1;
                 }
             }

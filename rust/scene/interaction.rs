@@ -1,8 +1,9 @@
 //! A path's encounter with a surface.
 
-use super::{Departure, Scene, SurfacePoint};
+use super::materials::Scattering;
+use super::{Departure, Scene, ShadingPoint, SurfacePoint};
 use crate::math::{DVec3, Frame, Hit, Ray};
-use crate::optics::{Bsdf, Rgb};
+use crate::optics::Rgb;
 
 /// Where a ray has met a surface, seen from the side that it came from.
 ///
@@ -16,7 +17,7 @@ pub struct Interaction {
     normal: DVec3,
     /// Shading frame, its normal on the ray's side too.
     frame: Frame,
-    bsdf: Bsdf,
+    scattering: Scattering,
     /// Back along the ray, in the shading frame.
     wo: DVec3,
 }
@@ -37,26 +38,30 @@ impl Interaction {
     /// turn black though it faces the viewer, so there the normal is bent towards the viewer until it just faces him.
     const GRAZING: f64 = 1e-3;
 
-    /// What a ray of unit direction meets at a hit.
+    /// What a ray of unit direction meets at a hit; `width` is how wide the bundle of its neighbours is there.
     #[inline]
-    pub fn new(scene: &Scene, ray: &Ray, surface: SurfacePoint) -> Self {
+    pub fn new(scene: &Scene, ray: &Ray, hit: &Hit, surface: SurfacePoint, width: f64) -> Self {
+        let material = scene.material_at(&surface);
+        let point = ShadingPoint::new(scene.geometry(), ray, hit, &surface, material.needs(), width);
         let back = -ray.direction;
         let side = 1f64.copysign(back.dot(surface.normal));
         let normal = surface.normal * side;
-        let mut shading = surface.shading_normal * side;
+        let shading = material.normal(&point).unwrap_or(surface.shading_normal);
+        let is_smooth = shading == surface.normal;
+        let mut shading = shading * side;
         let cosine = shading.dot(back);
-        if cosine < Self::GRAZING && surface.shading_normal != surface.normal {
+        if cosine < Self::GRAZING && !is_smooth {
             shading = (shading + back * (Self::GRAZING - cosine)).normalize();
         }
         let frame = Frame::new(shading);
-        let bsdf = scene.material_at(&surface).bsdf();
-        Self { surface, normal, frame, bsdf, wo: frame.to_local(back) }
+        let scattering = material.scattering(&point);
+        Self { surface, normal, frame, scattering, wo: frame.to_local(back) }
     }
 
     /// Looks up a hit and what is there.
     #[inline]
     pub fn at(scene: &Scene, ray: &Ray, hit: &Hit) -> Self {
-        Self::new(scene, ray, scene.geometry().surface(ray, hit))
+        Self::new(scene, ray, hit, scene.geometry().surface(ray, hit), 0.0)
     }
 
     /// The point met.
@@ -84,13 +89,13 @@ impl Interaction {
         if self.crosses(wi, direction) {
             return (Rgb::ZERO, 0.0);
         }
-        (self.bsdf.evaluate(self.wo, wi), self.bsdf.pdf(self.wo, wi))
+        self.scattering.evaluate(self.wo, wi)
     }
 
-    /// Draws where the path goes on to: `choice` and `u` as [`Bsdf::sample`] takes them.
+    /// Draws where the path goes on to: `choice` and `u` as [`Scattering::sample`] takes them.
     #[inline]
     pub fn sample(&self, choice: impl FnOnce() -> f64, u: [f64; 2]) -> Option<Scattered> {
-        let sample = self.bsdf.sample(self.wo, choice, u)?;
+        let sample = self.scattering.sample(self.wo, choice, u)?;
         let direction = self.frame.to_world(sample.wi);
         (!self.crosses(sample.wi, direction)).then_some(Scattered { direction, weight: sample.weight, pdf: sample.pdf })
     }

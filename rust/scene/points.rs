@@ -74,6 +74,7 @@ mod tests {
                 vertices: vec![Vec3::ZERO, Vec3::X, Vec3::Y].into(),
                 faces: vec![turned],
                 normals: Some(normals.clone()),
+                ..Mesh::default()
             };
             let geometry = Geometry::new([mesh]);
             let at = |u: f64, v: f64| {
@@ -98,7 +99,12 @@ mod tests {
     #[test]
     fn a_shape_among_meshes_tells_its_own() {
         let sphere: Arc<dyn Shape> = Arc::new(Sphere { center: DVec3::Y, radius: 2.0 });
-        let mesh = Mesh { vertices: vec![Vec3::ZERO, Vec3::X, Vec3::Y].into(), faces: vec![[0, 1, 2]], normals: None };
+        let mesh = Mesh {
+            vertices: vec![Vec3::ZERO, Vec3::X, Vec3::Y].into(),
+            faces: vec![[0, 1, 2]],
+            normals: None,
+            ..Mesh::default()
+        };
         let geometry = Geometry::new([Surface::from(mesh.clone()), sphere.into(), mesh.into()]);
         assert_eq!((geometry.locate(0), geometry.locate(1), geometry.locate(2)), ((0, 0), (1, 0), (2, 0)));
         let ray = Ray::new(DVec3::new(0.0, 1.0, 5.0), -DVec3::Z);

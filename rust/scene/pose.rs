@@ -9,6 +9,7 @@
 //! and the difference one. A point `p` of the group is at `L p + s`, where `L`, if it is not that of which `M` is the inverse but the
 //! inverse of `M`, is known by its residual `R = 1 − L M`: the point is off by `|R| |L p|`, and `R` is computed to within 4uκ.
 
+use super::mapped::Mapped;
 use super::{HitPoint, SurfacePoint};
 use crate::math::robust::UNIT;
 use crate::math::{Affine, DVec3, Ray, Singular};
@@ -146,16 +147,39 @@ impl Pose {
     pub fn hit_point(&self, here: &HitPoint) -> Option<HitPoint> {
         let rows = self.rows()?;
         let SurfacePoint { position, error, normal, shading_normal, .. } = self.point(&here.surface())?;
-        let across = |n: DVec3| self.inverse[0] * n.x + self.inverse[1] * n.y + self.inverse[2] * n.z;
-        // The normal before it is made unit again; of its change only what turns it is left.
-        let length = across(here.shading_normal).length();
-        let turned = |change: DVec3| {
-            let change = across(change) / length;
-            change - shading_normal * change.dot(shading_normal)
-        };
-        let (dp, dn) = (here.point.dp.map(|d| times(&rows, d)), here.point.dn.map(turned));
+        let (dp, dn) = (here.point.dp.map(|d| times(&rows, d)), self.turning(here.shading_normal, here.point.dn));
         let point = Point { position, error, normal, uv: here.point.uv, dp, dn };
         Some(HitPoint { point, shading_normal })
+    }
+
+    /// How a unit normal changes in the space that it is put into, of which it is known how it does in the group's.
+    fn turning(&self, normal: DVec3, dn: [DVec3; 2]) -> [DVec3; 2] {
+        let across = |n: DVec3| self.inverse[0] * n.x + self.inverse[1] * n.y + self.inverse[2] * n.z;
+        // The normal before it is made unit again; of its change only what turns it is left.
+        let outside = across(normal);
+        let length = outside.length();
+        let outside = outside / length;
+        dn.map(|change| {
+            let change = across(change) / length;
+            change - outside * change.dot(outside)
+        })
+    }
+
+    /// How a point of the group lies in the space that it is put into.
+    pub(super) fn mapped(&self, within: Mapped) -> Mapped {
+        let Some(rows) = self.rows() else { return within };
+        let dn = self.turning(within.shading_normal, within.dn);
+        let volume = rows[0].dot(rows[1].cross(rows[2])).abs();
+        let normal = self.inverse[0] * within.shading_normal.x
+            + self.inverse[1] * within.shading_normal.y
+            + self.inverse[2] * within.shading_normal.z;
+        Mapped {
+            dp: within.dp.map(|d| times(&rows, d)),
+            dn,
+            scale: within.scale / volume.cbrt(),
+            shading_normal: normal.try_normalize().unwrap_or(within.shading_normal),
+            ..within
+        }
     }
 }
 

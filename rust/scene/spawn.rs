@@ -67,7 +67,7 @@ mod tests {
         let mut sampler = Sampler::new(1, 0, sample);
         let place = warp::uniform_sphere(sampler.two(0)) * place;
         let vertices = (1..4).map(|d| (place + warp::uniform_sphere(sampler.two(d)) * size).as_vec3()).collect();
-        Mesh { vertices, faces: vec![[0, 1, 2]], normals: None }
+        Mesh { vertices, faces: vec![[0, 1, 2]], normals: None, ..Mesh::default() }
     }
 
     #[test]
@@ -113,6 +113,7 @@ mod tests {
             vertices: vec![Vec3::new(0.0, 0.0, 3.0), Vec3::new(1.0, 0.0, 3.0), Vec3::new(0.0, 1.0, 3.0)].into(),
             faces: vec![[0, 1, 2]],
             normals: None,
+            ..Mesh::default()
         };
         let surface = Geometry::new([mesh]).on_triangle(0, [0.25, 0.25]);
         let departure = Departure::new(&surface);
@@ -124,11 +125,17 @@ mod tests {
 
     #[test]
     fn a_segment_stops_short_of_the_surface_it_goes_to() {
-        let floor = Mesh { vertices: vec![Vec3::ZERO, Vec3::X, Vec3::Y].into(), faces: vec![[0, 1, 2]], normals: None };
+        let floor = Mesh {
+            vertices: vec![Vec3::ZERO, Vec3::X, Vec3::Y].into(),
+            faces: vec![[0, 1, 2]],
+            normals: None,
+            ..Mesh::default()
+        };
         let ceiling = Mesh {
             vertices: vec![Vec3::Z, Vec3::Z + Vec3::Y, Vec3::Z + Vec3::X].into(),
             faces: vec![[0, 1, 2]],
             normals: None,
+            ..Mesh::default()
         };
         let shapes = [floor, ceiling].map(|mesh| Shape { surface: mesh.into(), ..Shape::default() }).into();
         let scene = scene(SceneDescription { shapes, ..Default::default() });

@@ -265,6 +265,7 @@ fn the_geometry_of_a_scene_is_numbered_through_its_meshes() {
         vertices: triangles.iter().flatten().copied().collect(),
         faces: (0..triangles.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect(),
         normals: None,
+        ..Mesh::default()
     };
     let geometry = Geometry::new([mesh(&soup.0[..20]), mesh(&[]), mesh(&soup.0[20..])]);
     let rays = random.aimed(&soup, 300, 2.0);

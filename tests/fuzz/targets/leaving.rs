@@ -50,6 +50,7 @@ fn plate(u: &mut Unstructured) -> Result<()> {
         vertices: Vertices::Double(triangles.0.concat()),
         faces: vec![[0, 1, 2], [3, 4, 5]],
         normals: None,
+        ..Mesh::default()
     }]);
     let surface = |primitive, uv| geometry.on_triangle(primitive, uv);
     let (near, far) = (surface(0, weights(u, false)?), surface(1, weights(u, true)?));

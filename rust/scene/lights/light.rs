@@ -1,9 +1,9 @@
 //! Single lights, and what is known of a point on one.
 
-use super::{Departure, Geometry};
 use crate::math::DVec3;
 use crate::optics::Rgb;
 use crate::sampling::warp;
+use crate::scene::{Departure, Geometry};
 use crate::shapes::Shape;
 
 /// A light without extent that shines equally in all directions.

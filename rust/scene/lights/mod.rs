@@ -1,10 +1,16 @@
 //! All lights of a scene, and the choice among them.
 
-use super::light::{sample_shape, sample_triangle, solid_angle_pdf};
-use super::{Geometry, LightSample, PointLight};
+mod emission;
+mod light;
+
+pub use emission::Emission;
+pub use light::{LightSample, PointLight};
+
+use super::{Geometry, textures::TexturePoint};
 use crate::math::{DVec3, Frame, Hit, Ray};
 use crate::optics::Rgb;
 use crate::sampling::{AliasTable, warp};
+use light::{sample_shape, sample_triangle, solid_angle_pdf};
 use std::f64::consts::PI;
 
 /// The lights of a scene: emitting surfaces, points, and what comes from outside.
@@ -13,8 +19,8 @@ use std::f64::consts::PI;
 /// triangles are numbered shape after shape, then come the points, and last the environment.
 #[derive(Debug)]
 pub struct Lights {
-    /// Radiance of each shape.
-    emission: Vec<Rgb>,
+    /// How each shape shines.
+    emission: Vec<Emission>,
     /// For each shape, the number of its first primitive among lights; it means nothing for one that is dark.
     first: Vec<u32>,
     /// The primitives that emit.
@@ -34,11 +40,12 @@ const ENVIRONMENT_SHARE: f64 = 0.1;
 
 impl Lights {
     /// Numbers the lights: the emission of each shape of a geometry, points, and the environment.
-    pub(super) fn new(geometry: &Geometry, emission: Vec<Rgb>, points: Vec<PointLight>, environment: Rgb) -> Self {
+    pub(super) fn new(geometry: &Geometry, emission: Vec<Emission>, points: Vec<PointLight>, environment: Rgb) -> Self {
         let (mut first, mut surfaces, mut powers) = (Vec::new(), Vec::new(), Vec::new());
-        for (shape, &radiance) in emission.iter().enumerate() {
+        for (shape, emission) in emission.iter().enumerate() {
             first.push(surfaces.len() as u32);
-            if radiance != Rgb::ZERO {
+            if !emission.is_dark() {
+                let radiance = emission.radiance.mean();
                 for primitive in geometry.primitives_of(shape as u32) {
                     let area = geometry.area(primitive);
                     surfaces.push(primitive);
@@ -73,10 +80,10 @@ impl Lights {
             + self.choice.as_ref().map_or(0, AliasTable::bytes)
     }
 
-    /// Radiance of a shape on the side that its normals point to.
+    /// How a shape shines.
     #[inline]
-    pub fn emission(&self, shape: u32) -> Rgb {
-        self.emission[shape as usize]
+    pub fn emission(&self, shape: u32) -> &Emission {
+        &self.emission[shape as usize]
     }
 
     /// Radiance that comes from outside along a direction.
@@ -99,7 +106,8 @@ impl Lights {
         let chosen = table.sample(choice);
         let probability = table.probability(chosen);
         if let Some(&primitive) = self.surfaces.get(chosen) {
-            let radiance = self.emission(geometry.locate(primitive).0);
+            let emission = self.emission(geometry.locate(primitive).0);
+            let radiance = emission.radiance.at(&TexturePoint::default());
             match geometry.shape(primitive) {
                 Some(shape) => sample_shape(geometry, (primitive, shape), radiance, point, probability, u),
                 None => sample_triangle(geometry, primitive, radiance, point, probability, u),

@@ -1,0 +1,37 @@
+//! A matt surface.
+
+use super::{Material, Scattering};
+use crate::optics::{Diffuse, Rgb};
+use crate::scene::ShadingPoint;
+use crate::scene::textures::{Needs, Value};
+
+/// Scatters by Lambert's law, on both sides.
+#[derive(Clone, Debug)]
+pub struct DiffuseMaterial {
+    /// The share of the light that is reflected, 0 to 1 in each channel.
+    pub reflectance: Value,
+}
+
+impl Default for DiffuseMaterial {
+    /// Half grey.
+    fn default() -> Self {
+        Self { reflectance: Rgb::splat(0.5).into() }
+    }
+}
+
+impl Material for DiffuseMaterial {
+    #[inline]
+    fn scattering(&self, at: &ShadingPoint) -> Scattering {
+        Diffuse { reflectance: self.reflectance.at(&at.texture) }.into()
+    }
+
+    fn needs(&self) -> Needs {
+        self.reflectance.needs()
+    }
+
+    fn validate(&self) -> Result<(), String> {
+        let [low, high] = self.reflectance.range();
+        let is_physical = self.reflectance.is_within(0.0, 1.0);
+        is_physical.then_some(()).ok_or_else(|| format!("reflectance must lie between 0 and 1, got {low} to {high}"))
+    }
+}

@@ -1,0 +1,96 @@
+//! All that scatters light at a point.
+
+use crate::math::DVec3;
+use crate::optics::{Bsdf, BsdfSample, Rgb};
+
+/// All that scatters light at a point: one kind, or several that are weighed. Directions as [`Bsdf`] has them.
+#[derive(Clone, Debug)]
+pub enum Scattering {
+    /// What most surfaces have.
+    One(Bsdf),
+    /// Several, of each its weight.
+    Several(Vec<(Rgb, Bsdf)>),
+}
+
+impl<B: Into<Bsdf>> From<B> for Scattering {
+    #[inline]
+    fn from(bsdf: B) -> Self {
+        Self::One(bsdf.into())
+    }
+}
+
+impl Scattering {
+    /// Two of them together, each with a weight.
+    pub fn mixed(a: (Rgb, Self), b: (Rgb, Self)) -> Self {
+        let mut all = Vec::new();
+        for (weight, scattering) in [a, b] {
+            if weight == Rgb::ZERO {
+                continue;
+            }
+            match scattering {
+                Self::One(bsdf) => all.push((weight, bsdf)),
+                Self::Several(parts) => all.extend(parts.into_iter().map(|(w, bsdf)| (w * weight, bsdf))),
+            }
+        }
+        Self::Several(all)
+    }
+
+    /// The scattering function times |cos θ| of `wi`, and the density with which [`Scattering::sample`] draws `wi`, both without what
+    /// has a single direction.
+    #[inline]
+    pub fn evaluate(&self, wo: DVec3, wi: DVec3) -> (Rgb, f64) {
+        match self {
+            Self::One(bsdf) => (bsdf.evaluate(wo, wi), bsdf.pdf(wo, wi)),
+            Self::Several(parts) => {
+                let (mut value, mut density, total) = (Rgb::ZERO, 0.0, share_of_all(parts));
+                for (weight, bsdf) in parts {
+                    value += *weight * bsdf.evaluate(wo, wi);
+                    density += share(*weight) / total * bsdf.pdf(wo, wi);
+                }
+                if total > 0.0 { (value, density) } else { (Rgb::ZERO, 0.0) }
+            }
+        }
+    }
+
+    /// Draws where the light comes from: `choice` among the parts (only asked for when there are several), `u` for the direction.
+    /// `None` if the draw scatters nothing.
+    #[inline]
+    pub fn sample(&self, wo: DVec3, choice: impl FnOnce() -> f64, u: [f64; 2]) -> Option<BsdfSample> {
+        match self {
+            Self::One(bsdf) => bsdf.sample(wo, choice, u),
+            Self::Several(parts) => {
+                let total = share_of_all(parts);
+                let mut left = choice() * total;
+                let last = parts.iter().rposition(|(weight, _)| share(*weight) > 0.0)?;
+                let mut chosen = last;
+                for (i, (weight, _)) in parts[..last].iter().enumerate() {
+                    let mine = share(*weight);
+                    if left < mine {
+                        chosen = i;
+                        break;
+                    }
+                    left -= mine;
+                }
+                let (weight, bsdf) = &parts[chosen];
+                let probability = share(*weight) / total;
+                // What is left of the choice is as good as a new one.
+                let rest = (left / share(*weight)).clamp(0.0, 1f64.next_down());
+                let sample = bsdf.sample(wo, || rest, u)?;
+                if sample.pdf == f64::INFINITY {
+                    return Some(BsdfSample { weight: sample.weight * *weight / probability, ..sample });
+                }
+                let (value, pdf) = self.evaluate(wo, sample.wi);
+                (pdf > 0.0).then(|| BsdfSample { weight: value / pdf, pdf, ..sample })
+            }
+        }
+    }
+}
+
+/// How often a part of this weight is chosen, over that of the others.
+fn share(weight: Rgb) -> f64 {
+    weight.max_element()
+}
+
+fn share_of_all(parts: &[(Rgb, Bsdf)]) -> f64 {
+    parts.iter().map(|(weight, _)| share(*weight)).sum()
+}

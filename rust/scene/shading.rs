@@ -1,0 +1,75 @@
+//! All that shading may want to know of a point.
+
+use super::textures::{Needs, TexturePoint};
+use super::{Geometry, SurfacePoint};
+use crate::math::{DVec3, Hit, Ray};
+
+/// A point that is shaded. What nobody needs there is not computed ([`Needs`]).
+#[derive(Clone, Copy, Debug)]
+pub struct ShadingPoint {
+    /// Where textures are asked.
+    pub texture: TexturePoint,
+    /// Unit geometric normal, as the winding gives it.
+    pub normal: DVec3,
+    /// Unit shading normal, on the same side.
+    pub shading_normal: DVec3,
+    /// How the point changes with the texture coordinates; zero where that is not known.
+    pub dp: [DVec3; 2],
+    /// How the shading normal does.
+    pub dn: [DVec3; 2],
+    /// The index of refraction on the side of the normal.
+    pub outside: f64,
+}
+
+/// How wide a bundle of neighbouring rays is: a cone around the ray (Akenine-Möller et al., "Texture Level of Detail Strategies for
+/// Real-Time Ray Tracing", 2019).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Footprint {
+    /// At the ray's origin.
+    pub width: f64,
+    /// By how much it widens a length; negative where rays come together.
+    pub spread: f64,
+}
+
+impl Footprint {
+    /// Further along.
+    #[inline]
+    pub fn at(self, distance: f64) -> Self {
+        Self { width: (self.width + self.spread * distance).abs(), ..self }
+    }
+}
+
+impl ShadingPoint {
+    /// What is known of a hit of a ray without asking for more.
+    #[inline]
+    pub fn plain(surface: &SurfacePoint) -> Self {
+        Self {
+            texture: TexturePoint { position: surface.position, ..TexturePoint::default() },
+            normal: surface.normal,
+            shading_normal: surface.shading_normal,
+            dp: [DVec3::ZERO; 2],
+            dn: [DVec3::ZERO; 2],
+            outside: 1.0,
+        }
+    }
+
+    /// What a hit of a ray needs, `width` being that of the footprint there.
+    pub fn new(geometry: &Geometry, ray: &Ray, hit: &Hit, surface: &SurfacePoint, needs: Needs, width: f64) -> Self {
+        let mut point = Self::plain(surface);
+        if !needs.any() {
+            return point;
+        }
+        let here = geometry.mapped(ray, hit, needs);
+        point.texture = TexturePoint { uv: here.uv, position: here.position, colour: here.colour, ..point.texture };
+        (point.dp, point.dn) = (here.dp, here.dn);
+        if needs.width {
+            // An ellipse on the surface whose short axis is the width; the mean of its axes is taken for its size.
+            let cosine = ray.direction.dot(surface.normal).abs().max(1e-3);
+            let size = width / cosine.sqrt();
+            let area = point.dp[0].cross(point.dp[1]).length();
+            point.texture.size = size * here.scale;
+            point.texture.width = if area > 0.0 { size / area.sqrt() } else { 0.0 };
+        }
+        point
+    }
+}

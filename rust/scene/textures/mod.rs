@@ -1,0 +1,48 @@
+//! What varies over surfaces: one interface over all textures.
+
+mod needs;
+mod value;
+
+pub use needs::Needs;
+pub use value::Value;
+
+use crate::math::DVec3;
+use crate::optics::Rgb;
+use std::fmt::Debug;
+
+/// Where a texture is asked.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TexturePoint {
+    /// Texture coordinates; (0, 0) is the lower left of a picture.
+    pub uv: [f64; 2],
+    /// How far apart in `uv` the points are that neighbouring rays meet, about: what is smaller cannot be told apart, and is to be
+    /// averaged over. 0 for a point.
+    pub width: f64,
+    /// The point in the space that its shape was described in: of what stands in an instance, in that of its group.
+    pub position: DVec3,
+    /// As `width`, of the position.
+    pub size: f64,
+    /// The colour of the mesh's vertices there; white where it has none.
+    pub colour: Rgb,
+}
+
+impl Default for TexturePoint {
+    fn default() -> Self {
+        Self { uv: [0.0; 2], width: 0.0, position: DVec3::ZERO, size: 0.0, colour: Rgb::ONE }
+    }
+}
+
+/// What varies over surfaces.
+pub trait Texture: Debug + Send + Sync {
+    /// The value at a point, averaged over its width.
+    fn at(&self, point: &TexturePoint) -> Rgb;
+
+    /// What its values lie between, channel by channel.
+    fn range(&self) -> [Rgb; 2];
+
+    /// Its mean over what it is put on, about: lights are chosen by it.
+    fn mean(&self) -> Rgb;
+
+    /// What it must know of a point.
+    fn needs(&self) -> Needs;
+}
