@@ -57,6 +57,10 @@ pub fn watched<T: Send>(
 ) -> Result<T, String> {
     let pool = pool(threads)?;
     let cancel = Cancel::default();
+    if pool.current_thread_index().is_some() {
+        // One of its own threads, which must not wait for the others: they may all be here. Who called it is watched.
+        return Ok(work(&cancel));
+    }
     let result = Mutex::new(None);
     let (done, ended) = (Mutex::new(false), Condvar::new());
     /// Tells the watcher even if the work panics; the scope then passes the panic on.
@@ -109,6 +113,13 @@ mod tests {
     fn work_runs_on_the_pool_and_gives_its_result() {
         let sum = watched(Some(2), |_| (0..1000u64).into_par_iter().sum::<u64>(), || true);
         assert_eq!(sum, Ok(499_500));
+    }
+
+    #[test]
+    fn work_within_work_does_not_wait_for_its_own_threads() {
+        let within = |i: u64| watched(Some(2), |_| (0..=i).into_par_iter().sum::<u64>(), || true).unwrap();
+        let sums = watched(Some(2), |_| (0..100).into_par_iter().map(within).sum::<u64>(), || true);
+        assert_eq!(sums, Ok((0..100u64).map(|i| i * (i + 1) / 2).sum()));
     }
 
     #[test]

@@ -10,12 +10,15 @@ from .cones import ConeTouches
 from .hits import AllHits, ClosestPoints, Hits, QueryCost
 from .image import ErrorEstimate, Image
 from .instance import Instance
+from .integrator import Integrator
 from .integrators import Path
+from .interactions import Interactions, LightSamples, Rays, Scattered, power_heuristic
 from .io.pictures import check_writable
 from .lights import ConstantEnvironment, PointLight
 from .materials import Diffuse
 from .mesh import Mesh
 from .rendering import render
+from .rng import Rng
 from .scene import Scene
 from .shapes import (
     Box,
@@ -57,7 +60,10 @@ __all__ = [
     "Image",
     "Implicit",
     "Instance",
+    "Integrator",
+    "Interactions",
     "KdTree",
+    "LightSamples",
     "Mesh",
     "NestedGrid",
     "Octree",
@@ -67,11 +73,15 @@ __all__ = [
     "PointLight",
     "Polygon",
     "QueryCost",
+    "Rays",
+    "Rng",
+    "Scattered",
     "Scene",
     "Sphere",
     "Surface",
     "Torus",
     "check_writable",
+    "power_heuristic",
     "render",
     "report",
     "scenes",

@@ -203,6 +203,7 @@ def render(
     scene: CompiledScene,
     camera: Any,
     integrator: Any,
+    described: Any,
     samples: int | None,
     error: float | None,
     seconds: float | None,
@@ -286,6 +287,41 @@ def polygon_trouble(
 
 def implicit_trouble(expression: str, min: Sequence[float], max: Sequence[float]) -> str | None:
     """Say what is wrong with an expression or its box; None if nothing is."""
+
+class Interactions:
+    def __len__(self) -> int: ...
+    def take(self, indices: NDArray[np.int64]) -> Interactions: ...
+    @property
+    def t(self) -> NDArray[np.float64]: ...
+    @property
+    def shape_id(self) -> NDArray[np.int32]: ...
+    @property
+    def position(self) -> NDArray[np.float64]: ...
+    @property
+    def normal(self) -> NDArray[np.float64]: ...
+    @property
+    def shading_normal(self) -> NDArray[np.float64]: ...
+    @property
+    def emission(self) -> NDArray[np.float64]: ...
+    def leave(self, directions: _Floats) -> NDArray[np.float64]: ...
+    def evaluate(self, directions: _Floats) -> tuple[NDArray[np.float64], NDArray[np.float64]]: ...
+    def sample(
+        self, choice: _Numbers, u: _Numbers
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]: ...
+    def light(
+        self, choice: _Numbers, u: _Numbers
+    ) -> tuple[list[NDArray[np.float64]], NDArray[np.float64], NDArray[np.float64]]: ...
+    def light_pdf(self, before: Interactions) -> NDArray[np.float64]: ...
+
+def interactions(
+    scene: CompiledScene, origins: _Floats, directions: _Floats, time: _Numbers
+) -> Interactions:
+    """What rays of unit direction meet: (N,3) origins and directions, and a time for all or each."""
+
+def random_numbers(
+    seed: int, pixel: NDArray[np.uint32], sample: NDArray[np.uint32], dimension: int, pair: bool
+) -> NDArray[np.float64]:
+    """One number, or a pair, of a dimension of each sample of a pixel: (N,) or (N,2)."""
 
 def points(
     scene: CompiledScene,

@@ -11,6 +11,7 @@ from .arrays import indices, integer, last_axis
 from .camera import Camera, pixel_offsets
 from .cones import ConeTouches, cone_arguments
 from .hits import AllHits, ClosestPoints, Hits, QueryCost
+from .interactions import Interactions, Rays
 from .rays import RayArguments, nearest_arguments, point_arguments, ray_arguments
 
 
@@ -90,6 +91,34 @@ class Queries:
         """
         rays = ray_arguments(origins, directions, t_min, t_max, threads, time)
         return (self._core or self._compiled()).occluded(*rays)
+
+    def interactions(self, rays: Rays) -> Interactions:
+        """Find what each ray of a batch meets, and all that shading needs of it.
+
+        For integrators that are written in Python (see `Integrator`): what comes back tells emission, and
+        answers whole batches of questions about scattering and light.
+
+        Parameters
+        ----------
+        rays : Rays
+            Rays of unit direction, as an integrator is given them or `Interactions.leave` makes them.
+
+        Returns
+        -------
+        Interactions
+            An entry a ray.
+
+        Raises
+        ------
+        TypeError
+            If `rays` are no `Rays`.
+        ValueError
+            If their arrays are not (N, 3), (N, 3) and (N,).
+        """
+        if not isinstance(rays, Rays):
+            raise TypeError(f"rays must be raywright.Rays, got {type(rays).__name__}")
+        core = self._core or self._compiled()
+        return Interactions(_core.interactions(core, rays.origins, rays.directions, rays.time), rays)
 
     def intersect_all(
         self,

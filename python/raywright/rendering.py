@@ -6,6 +6,7 @@ from . import _core
 from .arrays import integer, positive
 from .camera import Camera
 from .image import HISTORY, ErrorEstimate, Image
+from .integrator import Integrator
 from .integrators import Path
 from .progress import bar
 from .scene import Scene
@@ -17,7 +18,7 @@ _DEFAULT_SAMPLES = 64
 def render(
     scene: Scene,
     camera: Camera,
-    integrator: Path = _PATH,
+    integrator: Path | Integrator = _PATH,
     samples: int | None = None,
     error: float | None = None,
     seconds: float | None = None,
@@ -33,8 +34,8 @@ def render(
         What to look at.
     camera : Camera
         From where.
-    integrator : Path
-        What turns rays into radiance.
+    integrator : Path or Integrator
+        What turns rays into radiance; an `Integrator` may be written in Python.
     samples : int, optional
         Limit on samples per pixel; 64 if no limit at all is given.
     error : float, optional
@@ -63,13 +64,13 @@ def render(
     KeyboardInterrupt
         At once, when Ctrl-C is pressed.
     """
-    for name, value, kind in (
-        ("scene", scene, Scene),
-        ("camera", camera, Camera),
-        ("integrator", integrator, Path),
+    for name, value, kinds in (
+        ("scene", scene, (Scene,)),
+        ("camera", camera, (Camera,)),
+        ("integrator", integrator, (Path, Integrator)),
     ):
-        if not isinstance(value, kind):
-            raise TypeError(f"{name} must be a raywright.{kind.__name__}, got {type(value).__name__}")
+        if not isinstance(value, kinds):
+            raise TypeError(f"{name} must be a raywright.{kinds[-1].__name__}, got {type(value).__name__}")
     samples = None if samples is None else integer("samples", samples, 1, 2**32 - 1)
     error = None if error is None else positive("error", error)
     seconds = None if seconds is None else positive("seconds", seconds)
@@ -81,9 +82,9 @@ def render(
     limits = (samples, error, seconds)
     if progress:
         with bar(*limits) as report:
-            done = _core.render(compiled, camera, integrator, *limits, seed, threads, report)
+            done = _core.render(compiled, camera, integrator, scene, *limits, seed, threads, report)
     else:
-        done = _core.render(compiled, camera, integrator, *limits, seed, threads, None)
+        done = _core.render(compiled, camera, integrator, scene, *limits, seed, threads, None)
     return _image(done)
 
 

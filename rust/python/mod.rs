@@ -10,12 +10,15 @@ mod first_hits;
 mod freeform;
 mod info;
 mod instances;
+mod interactions;
 mod points;
 mod query;
+mod random;
 mod rays;
 mod render;
 mod report;
 mod shapes;
+mod written;
 
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -48,9 +51,13 @@ mod _core {
     #[pymodule_export]
     use super::instances::singular_transform;
     #[pymodule_export]
+    use super::interactions::{Interactions, interactions};
+    #[pymodule_export]
     use super::points::points;
     #[pymodule_export]
     use super::query::CompiledScene;
+    #[pymodule_export]
+    use super::random::random_numbers;
     #[pymodule_export]
     use super::render::{Rendering, camera_rays, render_scene};
     #[pymodule_export]

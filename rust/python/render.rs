@@ -8,7 +8,8 @@ use std::ops::ControlFlow;
 use super::arrays::{Row, unwritten, vectors};
 use super::query::CompiledScene;
 use super::rays::{answer, share};
-use crate::integrators::Path;
+use super::written::Written;
+use crate::integrators::{Integrator, Path};
 use crate::math::DVec3;
 use crate::render::{self, HistoryRow, Progress, RenderError, Settings, Until};
 use crate::scene;
@@ -93,7 +94,8 @@ pub fn render_scene(
     py: Python<'_>,
     scene: &Bound<'_, CompiledScene>,
     camera: Camera,
-    integrator: PathIntegrator,
+    integrator: &Bound<'_, PyAny>,
+    described: Py<PyAny>,
     samples: Option<u32>,
     error: Option<f64>,
     seconds: Option<f64>,
@@ -103,10 +105,22 @@ pub fn render_scene(
 ) -> PyResult<Rendering> {
     let scene = &scene.get().0;
     let camera = camera.describe()?;
-    let path = Path { max_depth: integrator.max_depth, roulette_depth: integrator.roulette_depth };
+    let kind = integrator.get_type();
+    let (mut path, mut written) = (None, None);
+    if kind.name()? == "Path" && kind.module()?.to_str()?.starts_with("raywright.") {
+        let PathIntegrator { max_depth, roulette_depth } = integrator.extract()?;
+        path = Some(Path { max_depth, roulette_depth });
+    } else {
+        written = Some(Written::new(integrator.clone().unbind(), described, seed));
+    }
+    let chosen: &dyn Integrator = match (&path, &written) {
+        (Some(path), _) => path,
+        (_, Some(written)) => written,
+        _ => unreachable!("it is one or the other"),
+    };
     let settings = Settings { until: Until { samples, error, seconds }, seed, threads, ..Settings::default() };
-    let mut watcher = Watcher { progress, raised: None };
-    match py.detach(|| render::render(scene, &camera, &path, &settings, &mut watcher)) {
+    let mut watcher = Watcher { progress, raised: None, written: written.as_ref() };
+    match py.detach(|| render::render(scene, &camera, chosen, &settings, &mut watcher)) {
         Ok(rendering) => Ok(Rendering(rendering)),
         Err(RenderError::Interrupted) => {
             Err(watcher.raised.unwrap_or_else(|| PyRuntimeError::new_err("the render was interrupted")))
@@ -116,15 +130,17 @@ pub fn render_scene(
 }
 
 /// Passes on how a render goes to a Python function, and hears signals.
-struct Watcher {
+struct Watcher<'a> {
     progress: Option<Py<PyAny>>,
     raised: Option<PyErr>,
+    written: Option<&'a Written>,
 }
 
-impl Watcher {
+impl Watcher<'_> {
     /// Goes on unless an exception is raised, which it keeps.
     fn unless_raised(&mut self, ask: impl FnOnce(Python<'_>, Option<&Py<PyAny>>) -> PyResult<()>) -> ControlFlow<()> {
-        match Python::attach(|py| ask(py, self.progress.as_ref())) {
+        let raised = self.written.and_then(Written::raised);
+        match raised.map_or_else(|| Python::attach(|py| ask(py, self.progress.as_ref())), Err) {
             Ok(()) => ControlFlow::Continue(()),
             Err(raised) => {
                 self.raised = Some(raised);
@@ -134,7 +150,7 @@ impl Watcher {
     }
 }
 
-impl Progress for Watcher {
+impl Progress for Watcher<'_> {
     fn pass(&mut self, row: &HistoryRow) -> ControlFlow<()> {
         let HistoryRow { seconds, samples, error } = *row;
         self.unless_raised(|py, progress| {

@@ -53,6 +53,16 @@ impl Sampler {
         Self { key: [seed as u32, (seed >> 32) as u32], pixel, sample, block: u32::MAX, words: [0; 4] }
     }
 
+    /// Of which pixel it is a sample.
+    pub fn pixel(&self) -> u32 {
+        self.pixel
+    }
+
+    /// The how manieth sample of its pixel it is.
+    pub fn number(&self) -> u32 {
+        self.sample
+    }
+
     /// A number in [0, 1) with 53 bits.
     #[inline]
     pub fn one(&mut self, dimension: u32) -> f64 {

@@ -70,6 +70,12 @@ impl Interaction {
         self.surface.position
     }
 
+    /// The geometric normal on the side that the ray came from.
+    #[inline]
+    pub fn normal(&self) -> DVec3 {
+        self.normal
+    }
+
     /// The shading normal on the side that the ray came from.
     #[inline]
     pub fn shading_normal(&self) -> DVec3 {
