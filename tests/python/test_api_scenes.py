@@ -38,13 +38,25 @@ def test_cornell_box_has_its_measures():
     assert np.allclose(scene.bounds, [(0, 0, 0), (556, 548.8, 559.2)], atol=1e-4)
     assert len(scene.shapes) == 8
     light = scene.shapes[0]
-    assert light.emission == (17.0, 12.0, 4.0)
     assert sum(shape.emission is not None for shape in scene.shapes) == 1
     a, b, c = light.vertices[light.faces[0]]
     assert np.linalg.norm(np.cross(b - a, c - a)) == pytest.approx(130 * 105)
     assert (camera.width, camera.height) == (32, 24)
     assert camera.position == (278.0, 273.0, -800.0)
     assert camera.fov == pytest.approx(39.3077, abs=1e-4)
+
+
+def test_cornell_colours_are_those_of_the_spectra():
+    """Whatever made them of the spectra, a weighted mean lies between the least and the greatest value."""
+    shapes = rw.scenes.cornell_box()[0].shapes
+    white, red, green = (shapes[i].material.reflectance for i in (1, 5, 4))
+    assert np.ptp(white) < 0.01 and 0.70 < min(white) and max(white) < 0.78
+    assert red[0] > 5 * max(red[1:]) and 0.039 < min(red) and max(red) < 0.657
+    assert green[1] > 4 * max(green[0], green[2]) and 0.081 < min(green) and max(green) < 0.482
+    light = shapes[0]
+    assert light.material.reflectance == (0.78,) * 3
+    # A lamp that shines the more the longer the waves are.
+    assert 18.4 > light.emission[0] > light.emission[1] > light.emission[2] > 0
 
 
 def test_cornell_box_faces_look_into_the_room():

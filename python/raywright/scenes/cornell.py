@@ -12,13 +12,12 @@ from ..io.meshes import only_meshes
 from ..materials import Diffuse
 from ..mesh import Mesh
 from ..scene import Scene
+from . import cornell_spectra
 
 Quads = list[list[Triple]]
 
-WHITE = Diffuse(0.73)
-RED = Diffuse((0.65, 0.05, 0.05))
-GREEN = Diffuse((0.12, 0.45, 0.15))
-EMISSION = (17.0, 12.0, 4.0)
+WHITE, RED, GREEN = map(Diffuse, (cornell_spectra.WHITE, cornell_spectra.RED, cornell_spectra.GREEN))
+LAMP = Diffuse(cornell_spectra.LAMP_REFLECTANCE)
 
 # The measured box, in millimetres: each row is a quadrilateral, anticlockwise as seen from inside the room
 # (walls) or from outside (blocks). https://www.graphics.cornell.edu/online/box/data.html
@@ -53,12 +52,12 @@ _STAND_SIZE = (230.0, 260.0, 230.0)
 
 
 def cornell_box(
-    mesh: Any = None, width: int = 512, height: int = 512, emission: ArrayLike = EMISSION
+    mesh: Any = None, width: int = 512, height: int = 512, emission: ArrayLike = cornell_spectra.EMISSION
 ) -> tuple[Scene, Camera]:
     """Return the Cornell box (Goral et al. 1984), in millimetres, and the camera that belongs to it.
 
-    The measures are those of the real box at Cornell; the reflectances are the linear RGB values in common
-    use.
+    The measures are those of the real box at Cornell, and so are the colours: measured spectra, as linear
+    Rec. 709 in which a spectrum that is the same everywhere is grey.
 
     Parameters
     ----------
@@ -67,7 +66,7 @@ def cornell_box(
     width, height : int
         Size of the picture in pixels.
     emission : float or 3 floats
-        Radiance of the light in W·sr⁻¹·m⁻².
+        Radiance of the light in W·sr⁻¹·m⁻²; by default that of the lamp.
 
     Returns
     -------
@@ -82,7 +81,7 @@ def cornell_box(
     ValueError
         If `mesh` holds no faces, or a number is out of its range.
     """
-    shapes = [_quads(LIGHT, WHITE, emission)]
+    shapes = [_quads(LIGHT, LAMP, emission)]
     shapes += [_quads(corners, WHITE) for corners in (FLOOR, CEILING, BACK)]
     shapes += [_quads(RIGHT, GREEN), _quads(LEFT, RED), _quads(TALL_BLOCK, WHITE)]
     shapes += [_quads(SHORT_BLOCK, WHITE)] if mesh is None else _stood(only_meshes(mesh))
