@@ -32,7 +32,7 @@ __all__ = [
 def simd() -> str:
     """Return the SIMD level the kernels run at; ``RAYWRIGHT_SIMD`` forces one.
 
-    "scalar", "sse2", "avx2" or "avx512".
+    "scalar", "neon", "sse2", "avx2" or "avx512".
     """
 
 def singular_transform(transform: NDArray[np.float64]) -> tuple[int, str] | None:

@@ -1,5 +1,7 @@
 //! Which vector instructions to use: found once, or forced by `RAYWRIGHT_SIMD`.
 
+#[cfg(target_arch = "aarch64")]
+use super::Neon;
 #[cfg(target_arch = "x86_64")]
 use super::{Avx2, Avx512, Sse2};
 use super::{Scalar, Simd};
@@ -10,6 +12,8 @@ use std::sync::OnceLock;
 pub enum Level {
     /// What the compiler makes of arrays.
     Scalar,
+    /// NEON, on every 64-bit ARM.
+    Neon,
     /// SSE2, on every x86-64.
     Sse2,
     /// AVX2 and FMA.
@@ -20,12 +24,13 @@ pub enum Level {
 
 impl Level {
     /// All levels, from least to most.
-    pub const ALL: [Self; 4] = [Self::Scalar, Self::Sse2, Self::Avx2, Self::Avx512];
+    pub const ALL: [Self; 5] = [Self::Scalar, Self::Neon, Self::Sse2, Self::Avx2, Self::Avx512];
 
     /// The name that `RAYWRIGHT_SIMD` takes.
     pub fn name(self) -> &'static str {
         match self {
             Self::Scalar => "scalar",
+            Self::Neon => "neon",
             Self::Sse2 => "sse2",
             Self::Avx2 => "avx2",
             Self::Avx512 => "avx512",
@@ -41,6 +46,7 @@ impl Level {
     pub fn is_available(self) -> bool {
         match self {
             Self::Scalar => true,
+            Self::Neon => cfg!(target_arch = "aarch64"),
             #[cfg(target_arch = "x86_64")]
             Self::Sse2 => true,
             #[cfg(target_arch = "x86_64")]
@@ -97,6 +103,8 @@ impl Dispatch<4> for Level {
             // Four lanes are for processors without more; wider levels have no code of their own for them.
             #[cfg(target_arch = "x86_64")]
             Self::Sse2 | Self::Avx2 | Self::Avx512 => kernel.run(Sse2::new()),
+            #[cfg(target_arch = "aarch64")]
+            Self::Neon => kernel.run(Neon::new()),
             _ => kernel.run(Scalar),
         }
     }
@@ -119,7 +127,10 @@ impl Dispatch<8> for Level {
                 unsafe { with_avx2(kernel, simd) }
             }
             // Who has no vectors of eight takes four.
-            level => panic!("eight lanes need AVX2, not {}", level.name()),
+            level => {
+                let _ = kernel;
+                panic!("eight lanes need AVX2, not {}", level.name())
+            }
         }
     }
 }

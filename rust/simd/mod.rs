@@ -4,11 +4,15 @@
 //! once. All levels round alike: only [`Simd::mul_add`] and [`Simd::mul_sub`] may or may not be fused, and they serve tests
 //! whose bounds allow for both.
 
+#[cfg(target_arch = "aarch64")]
+mod arm;
 mod level;
 mod scalar;
 #[cfg(target_arch = "x86_64")]
 mod x86;
 
+#[cfg(target_arch = "aarch64")]
+pub use arm::Neon;
 pub use level::{Dispatch, Kernel, Level};
 pub use scalar::Scalar;
 #[cfg(target_arch = "x86_64")]

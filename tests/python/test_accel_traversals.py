@@ -9,7 +9,7 @@ import pytest
 import raywright as rw
 from raywright.accelerators import Traversal, Volume, every
 
-WIDE8 = rw.simd() not in ("scalar", "sse2")
+WIDE8 = rw.simd() not in ("scalar", "neon", "sse2")
 WAYS = [{"traversal": name} for name in get_args(Traversal) if name != "wide8" or WIDE8]
 WAYS.append({"traversal": "threaded", "orders": 6})
 WAYS += [{"traversal": "stack", "bounds": bounds} for bounds in ("oriented", "slabs")]

@@ -1,6 +1,7 @@
 """Importing the package imports numpy and nothing else, and soon."""
 
 import os
+import platform
 import statistics
 import subprocess
 import sys
@@ -45,10 +46,13 @@ def test_every_public_name_is_there_and_documented():
 
 
 def test_simd_tells_the_level():
-    assert rw.simd() in ("scalar", "sse2", "avx2", "avx512")
+    assert rw.simd() in ("scalar", "neon", "sse2", "avx2", "avx512")
 
 
-@pytest.mark.parametrize("level", ["scalar", "sse2"])
+LEAST = "neon" if platform.machine().lower() in ("aarch64", "arm64") else "sse2"
+
+
+@pytest.mark.parametrize("level", ["scalar", LEAST])
 def test_simd_can_be_forced(level):
     code = "import raywright; print(raywright.simd())"
     told = subprocess.run(

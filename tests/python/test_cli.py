@@ -78,7 +78,7 @@ def test_info_tells_what_a_mesh_holds(ball, tmp_path):
     assert "BVH" in told["accelerator"]
     assert re.fullmatch(r"\d+, and \d+ leaves; depth \d+", told["nodes"])
     assert re.fullmatch(r"[\d,]+ bytes, [\d.]+ a triangle", told["memory"])
-    assert told["SIMD"] in ("scalar", "sse2", "avx2", "avx512")
+    assert told["SIMD"] in ("scalar", "neon", "sse2", "avx2", "avx512")
 
 
 def test_nan_vertices_are_one_line_of_warning(tmp_path):
