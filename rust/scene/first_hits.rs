@@ -359,6 +359,7 @@ impl Row {
 mod tests {
     use super::*;
     use crate::math::Vec3;
+    use crate::scene::cameras::Window;
     use crate::scene::fixtures::{furnace, scene, shape};
     use crate::scene::{Mesh, SceneDescription};
     use proptest::prelude::*;
@@ -418,6 +419,9 @@ mod tests {
             corners in prop::collection::vec(prop::array::uniform3(coordinate()), 3..90),
             position in prop::array::uniform3(coordinate()), target in prop::array::uniform3(coordinate()),
             fov in prop_oneof![Just(90.0), 1.0..179.0f64], offset in prop::array::uniform2(prop_oneof![Just(0.0), Just(0.5), -1.0..2.0f64]),
+            matrix in (
+                prop_oneof![2.0..100.0f64, -100.0..-2.0f64], 2.0..100.0f64, prop_oneof![Just(0.0), -50.0..50.0f64], -50.0..90.0f64, -50.0..70.0f64,
+            ).prop_map(<[f64; 5]>::from),
         ) {
             let vertices: Vec<_> = corners.iter().map(|&c| Vec3::from_array(c)).collect();
             let faces = (0..vertices.len() as u32 / 3).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
@@ -426,6 +430,9 @@ mod tests {
             let [position, target] = [position, target].map(|p| Vec3::from_array(p).as_dvec3());
             if let Ok(camera) = Perspective::looking_at(position, target, DVec3::new(0.1, 1.0, 0.2), fov, 35, 20) {
                 agreed(&scene, &camera, &[offset]);
+                let [across, down, skew, x, y] = matrix;
+                let window = Window::of_matrix([across, down], [x, y], skew, camera.body().size()).unwrap();
+                agreed(&scene, &Perspective::new(camera.body().clone(), window), &[offset]);
             }
         }
     }

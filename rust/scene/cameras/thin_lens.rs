@@ -93,26 +93,22 @@ mod tests {
 
     #[test]
     fn the_circle_of_confusion_is_that_of_a_thin_lens() {
-        // Of a point at distance d in front of a lens of diameter A in focus at s, the film at distance 1 shows a circle with a
-        // diameter of A |d − s| / (d s): c = A f |d − s| / (d (s − f)) seen from the film's distance s f / (s − f).
-        let (radius, focus) = (0.25, 4.0);
-        let (camera, pinhole) = lens(radius, 0, focus);
+        // A lens of focal length f and diameter A, in focus at s, has the film at v = s f / (s − f), and shows a point at distance d as a circle
+        // with a diameter of c = A f |d − s| / (d (s − f)). At distance 1 that is c / v = A |d − s| / (d s).
+        let (focus, focal) = (4.0, 0.1);
+        let (camera, pinhole) = lens(0.25, 0, focus);
         let from = *pinhole.viewpoint();
         for distance in [1.0, 2.0, 3.9, 4.0, 5.0, 100.0] {
-            let mut widest = 0.0f64;
-            for u in squares() {
-                // The lens's ray of the middle, and where it is at that distance: moved over the film by as much, another meets the middle there.
+            let confusion = 0.5 * focal * f64::abs(distance - focus) / (distance * (focus - focal));
+            let film = focus * focal / (focus - focal);
+            // By points on opposite edges of the lens: how far apart their rays are at the distance is how far apart on the film they see one
+            // point there.
+            let edge = 2f64.powi(-33);
+            let [a, b] = [[edge, 0.5], [1.0 - edge, 0.5]].map(|u| {
                 let ray = camera.ray([20.0, 15.0], u, 0.0).ray;
-                let met = ray.at(distance / ray.direction.dot(from.forward)) - from.position;
-                let aside = DVec3::new(met.dot(from.right), met.dot(from.up), 0.0) / distance;
-                let [x, y] = camera.aperture.point(u);
-                let formula = x.hypot(y) * (distance - focus).abs() / (distance * focus);
-                assert!((aside.length() - formula).abs() < 1e-14);
-                // That point of the film shows what the first ray goes through at the distance, and at the middle of the film it is blurred by as much.
-                widest = widest.max(aside.length() / x.hypot(y) * radius);
-            }
-            let diameter = 2.0 * radius * (distance - focus).abs() / (distance * focus);
-            assert!((2.0 * widest - diameter).abs() < 1e-13);
+                ray.at(distance / ray.direction.dot(from.forward)) / distance
+            });
+            assert!(((a - b).length() - confusion / film).abs() < 1e-9, "{distance}");
         }
     }
 
