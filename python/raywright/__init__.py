@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 from . import scenes
 from ._core import AcceleratorInfo, simd
 from .accelerators import BSP, BVH, BruteForce, Grid, KdTree, NestedGrid, Octree
-from .camera import Camera
+from .cameras import AnyCamera, Camera, Fisheye, Orthographic, Panorama, Pose, ThinLens
 from .cones import ConeTouches
 from .hits import AllHits, ClosestPoints, Hits, QueryCost
 from .image import ErrorEstimate, Image
@@ -43,6 +43,7 @@ __all__ = [
     "BVH",
     "AcceleratorInfo",
     "AllHits",
+    "AnyCamera",
     "Box",
     "BruteForce",
     "Camera",
@@ -55,6 +56,7 @@ __all__ = [
     "Disk",
     "Ellipsoid",
     "ErrorEstimate",
+    "Fisheye",
     "Grid",
     "Hits",
     "Image",
@@ -67,11 +69,14 @@ __all__ = [
     "Mesh",
     "NestedGrid",
     "Octree",
+    "Orthographic",
+    "Panorama",
     "Paraboloid",
     "Path",
     "Plane",
     "PointLight",
     "Polygon",
+    "Pose",
     "QueryCost",
     "Rays",
     "Rng",
@@ -79,6 +84,7 @@ __all__ = [
     "Scene",
     "Sphere",
     "Surface",
+    "ThinLens",
     "Torus",
     "check_writable",
     "power_heuristic",

@@ -4,7 +4,7 @@ import numpy as np
 
 from . import _core
 from .arrays import integer, positive
-from .camera import Camera
+from .cameras import AnyCamera
 from .image import HISTORY, ErrorEstimate, Image
 from .integrator import Integrator
 from .integrators import Path
@@ -17,7 +17,7 @@ _DEFAULT_SAMPLES = 64
 
 def render(
     scene: Scene,
-    camera: Camera,
+    camera: AnyCamera,
     integrator: Path | Integrator = _PATH,
     samples: int | None = None,
     error: float | None = None,
@@ -32,7 +32,7 @@ def render(
     ----------
     scene : Scene
         What to look at.
-    camera : Camera
+    camera : Camera or another kind
         From where.
     integrator : Path or Integrator
         What turns rays into radiance; an `Integrator` may be written in Python.
@@ -66,11 +66,12 @@ def render(
     """
     for name, value, kinds in (
         ("scene", scene, (Scene,)),
-        ("camera", camera, (Camera,)),
+        ("camera", camera, (AnyCamera,)),
         ("integrator", integrator, (Path, Integrator)),
     ):
         if not isinstance(value, kinds):
-            raise TypeError(f"{name} must be a raywright.{kinds[-1].__name__}, got {type(value).__name__}")
+            told = kinds[-1].__name__.removeprefix("Any")
+            raise TypeError(f"{name} must be a raywright.{told}, got {type(value).__name__}")
     samples = None if samples is None else integer("samples", samples, 1, 2**32 - 1)
     error = None if error is None else positive("error", error)
     seconds = None if seconds is None else positive("seconds", seconds)
