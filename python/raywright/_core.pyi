@@ -196,8 +196,17 @@ class Rendering:
     @property
     def samples(self) -> int: ...
     @property
+    def counts(self) -> NDArray[np.uint32]:
+        """Samples of each pixel (H,W)."""
+    @property
+    def carried(self) -> tuple[int, float] | None:
+        """How few samples carry more than half of the error estimate, and their share; None if it takes many."""
+    @property
     def dropped(self) -> int:
         """Samples that were NaN, infinite or negative, and are counted as black."""
+    @property
+    def clamped(self) -> tuple[int, float]:
+        """Samples that were clamped, and the share of the picture's radiance that this took."""
 
 def render(
     scene: CompiledScene,
@@ -209,6 +218,8 @@ def render(
     seconds: float | None,
     seed: int,
     threads: int | None,
+    adaptive: bool,
+    clamp: float | None,
     progress: Callable[[float, int, float], None] | None,
 ) -> Rendering:
     """Render until the first of `samples` (per pixel), `error` (relMSE) or `seconds` is met.

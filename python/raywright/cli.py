@@ -21,6 +21,8 @@ from .scenes import cornell_box, studio, torus_knot
 # As shells count it: 128 and the number of SIGINT.
 INTERRUPTED = 130
 DEMO_SECONDS = 10.0
+# What stands for the library's own Cornell box where a mesh file could.
+CORNELL = "cornell"
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -71,19 +73,46 @@ def _info(options: argparse.Namespace) -> None:
     print(described(str(options.mesh), Scene(options.mesh)))
 
 
-def _report(options: argparse.Namespace) -> None:
+def _report_accelerators(options: argparse.Namespace) -> None:
     # Reports are for those who ask for them: other verbs do not wait for their import.
     from .report import accelerators
     from .report.ray_sets import outside
 
-    if options.plot is not None:
-        check_writable(options.plot, (".png",), "a plot")
-        _check_matplotlib()
+    _check_plot(options)
     scene = Scene(options.mesh)
     camera = outside(scene, max(round(options.rays**0.5), 1))
     report = accelerators(
         scene, camera, options.accelerators, options.threads, options.repeats, seed=options.seed
     )
+    _tell_report(report, options)
+
+
+def _report_convergence(options: argparse.Namespace) -> None:
+    from .report import convergence
+
+    _check_plot(options)
+    if options.scene == CORNELL:
+        scene, camera = cornell_box(width=options.width, height=options.height)
+    else:
+        scene, camera = studio(load(options.scene), options.up, options.width, options.height)
+    report = convergence(
+        scene,
+        camera,
+        seconds=options.seconds,
+        reference=options.reference,
+        seeds=options.seeds,
+        threads=options.threads,
+    )
+    _tell_report(report, options)
+
+
+def _check_plot(options: argparse.Namespace) -> None:
+    if options.plot is not None:
+        check_writable(options.plot, (".png",), "a plot")
+        _check_matplotlib()
+
+
+def _tell_report(report: Any, options: argparse.Namespace) -> None:
     if options.form == "csv":
         print(report.csv(), end="")
     else:
@@ -113,6 +142,8 @@ def _picture(scene: Scene, camera: Camera, options: argparse.Namespace) -> None:
         seed=options.seed,
         threads=options.threads,
         progress=not options.quiet,
+        adaptive=options.adaptive,
+        clamp=options.clamp,
     )
     image.save(options.output)
     if not options.quiet:
@@ -169,12 +200,15 @@ def _parser() -> argparse.ArgumentParser:
     _add_accelerators(
         reports.add_parser("accelerators", help="every accelerator on the same rays: costs, and if all agree")
     )
+    _add_convergence(
+        reports.add_parser("convergence", help="error against run time, with and without adaptive sampling")
+    )
     return parser
 
 
 def _add_accelerators(report: argparse.ArgumentParser) -> None:
     told = " (default: %(default)s)"
-    report.set_defaults(run=_report)
+    report.set_defaults(run=_report_accelerators)
     report.add_argument("mesh", metavar="MESH", help="any mesh file: PLY, OBJ, STL, GLB, ...")
     report.add_argument(
         "--accelerators",
@@ -194,6 +228,40 @@ def _add_accelerators(report: argparse.ArgumentParser) -> None:
         "--repeats", metavar="N", type=_number(int, 1, 10_000), default=5, help="turns of each" + told
     )
     report.add_argument("--seed", metavar="N", type=_number(int, 0, 2**64 - 1), default=0, help="seed" + told)
+    _add_forms(report)
+
+
+def _add_convergence(report: argparse.ArgumentParser) -> None:
+    told = " (default: %(default)s)"
+    report.set_defaults(run=_report_convergence)
+    report.add_argument(
+        "scene", metavar="SCENE", help=f"any mesh file, framed and lit as by render, or {CORNELL!r}"
+    )
+    report.add_argument("--up", choices=("y", "z"), default="y", help="axis that points up" + told)
+    report.add_argument(
+        "--seconds",
+        metavar="S",
+        type=_number(float),
+        default=4.0,
+        help="longest run time of one render" + told,
+    )
+    report.add_argument(
+        "--reference",
+        metavar="S",
+        type=_number(float),
+        help="seconds to make a reference in (default: errors are as estimated)",
+    )
+    report.add_argument(
+        "--seeds", metavar="N", type=_number(int, 1, 10_000), default=3, help="renders of each" + told
+    )
+    size = _number(int, 1, 65536)
+    report.add_argument("--width", metavar="W", type=size, default=256, help="pixels" + told)
+    report.add_argument("--height", metavar="H", type=size, default=256, help="pixels" + told)
+    report.add_argument("--threads", metavar="N", type=_number(int, 1), help="threads (default: all cores)")
+    _add_forms(report)
+
+
+def _add_forms(report: argparse.ArgumentParser) -> None:
     forms = report.add_mutually_exclusive_group()
     forms.add_argument(
         "--csv", dest="form", action="store_const", const="csv", default="table", help="print CSV, all digits"
@@ -243,6 +311,12 @@ def _add_picture(
     verb.add_argument("--height", metavar="H", type=size, default=height, help="pixels" + told)
     verb.add_argument("--threads", metavar="N", type=_number(int, 1), help="threads (default: all cores)")
     verb.add_argument("--seed", metavar="N", type=_number(int, 0, 2**64 - 1), default=0, help="seed" + told)
+    verb.add_argument(
+        "--adaptive", action="store_true", help="more samples where more of the estimated error is"
+    )
+    verb.add_argument(
+        "--clamp", metavar="L", type=_number(float), help="radiance to dim brighter samples to: biased"
+    )
     verb.add_argument("--quiet", action="store_true", help="print nothing but errors")
 
 

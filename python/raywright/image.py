@@ -1,7 +1,8 @@
 """Pictures, with how wrong they still are."""
 
 import math
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from os import PathLike
 from typing import Any
 
@@ -24,11 +25,15 @@ class ErrorEstimate:
     ----------
     estimate, low, high : float
         The estimate, and the ends of its interval; NaN where there are too few samples to know.
+    trusted : bool
+        Whether the estimate rests on many samples. If not, a few carry more than half of it, as they do where
+        light is found rarely: one more of their kind, or one fewer, would make it another.
     """
 
     estimate: float
     low: float
     high: float
+    trusted: bool = True
 
     def __float__(self) -> float:
         return self.estimate
@@ -41,9 +46,10 @@ class ErrorEstimate:
             return "unknown"
         return f"{self.estimate:.3g} (95 % interval {self.low:.3g} to {self.high:.3g})"
 
-    def _key(self) -> tuple[float | None, ...]:
+    def _key(self) -> tuple[float | bool | None, ...]:
         # NaN does not equal itself, but one unknown error is like another.
-        return tuple(None if math.isnan(x) else x for x in (self.estimate, self.low, self.high))
+        numbers = (self.estimate, self.low, self.high)
+        return (*(None if math.isnan(x) else x for x in numbers), self.trusted)
 
     def __eq__(self, other: object) -> bool:
         return self._key() == other._key() if isinstance(other, ErrorEstimate) else NotImplemented
@@ -70,9 +76,13 @@ class Image:
     seconds : float
         How long the render took.
     samples : int
-        Samples per pixel.
+        Samples per pixel; their mean if the render was adaptive.
     warnings : tuple of str
         What to know before trusting the picture; empty if there is nothing.
+    biased : bool
+        Whether samples were clamped, so that the picture tends to something darker than the scene.
+    aov : dict of str to (H, W, ...) arrays
+        What else is known of the pixels, by name: ``samples`` (uint32) of each if the render was adaptive.
     """
 
     rgb: NDArray[np.float32]
@@ -82,10 +92,13 @@ class Image:
     seconds: float
     samples: int
     warnings: tuple[str, ...] = ()
+    biased: bool = False
+    aov: Mapping[str, NDArray[Any]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         for name in ("rgb", "standard_error", "history"):
             object.__setattr__(self, name, frozen(getattr(self, name)))
+        object.__setattr__(self, "aov", {name: frozen(array) for name, array in self.aov.items()})
 
     def srgb(self) -> NDArray[np.uint8]:
         """Return the picture for the eye: (H, W, 3) uint8 with the sRGB transfer, clipped to 0..1."""
@@ -140,8 +153,13 @@ class Image:
                 np.array_equal(self.history[name], other.history[name], equal_nan=True)
                 for name in HISTORY.names or ()
             )
-            and (self.error, self.seconds, self.samples, self.warnings)
-            == (other.error, other.seconds, other.samples, other.warnings)
+            and (self.error, self.seconds, self.samples, self.warnings, self.biased)
+            == (other.error, other.seconds, other.samples, other.warnings, other.biased)
+            and self.aov.keys() == other.aov.keys()
+            and all(
+                np.array_equal(array, other.aov[name], equal_nan=array.dtype.kind == "f")
+                for name, array in self.aov.items()
+            )
         )
 
     __hash__ = None  # type: ignore[assignment]
@@ -156,6 +174,8 @@ class Image:
             self.seconds,
             self.samples,
             self.warnings,
+            self.biased,
+            self.aov,
         )
         return Image, parts
 

@@ -23,6 +23,12 @@ pub struct CameraSample {
 pub trait Integrator: Send + Sync {
     /// What one thread works with on a scene: the integrator and the memory it needs, to be used again and again.
     fn worker<'a>(&'a self, scene: &'a Scene) -> Box<dyn Worker + 'a>;
+
+    /// Whether workers must run on the thread that asked for the picture, as what is written in Python must. They are then
+    /// handed batches of tens of thousands of samples, and may raise the cancel themselves to end the render.
+    fn runs_on_caller(&self) -> bool {
+        false
+    }
 }
 
 /// An integrator at work on batches of camera samples. It advances all paths of a batch together, one bounce at a

@@ -51,8 +51,21 @@ impl Rendering {
         self.0.film.samples()
     }
     #[getter]
+    fn counts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<u32>>> {
+        let (width, height) = (self.0.film.width() as usize, self.0.film.height() as usize);
+        numpy::PyArray1::from_vec(py, self.0.film.counts()).reshape([height, width])
+    }
+    #[getter]
+    fn carried(&self) -> Option<(u32, f64)> {
+        self.0.error.and_then(|e| e.carried).map(|c| (c.samples, c.share))
+    }
+    #[getter]
     fn dropped(&self) -> u64 {
         self.0.film.dropped()
+    }
+    #[getter]
+    fn clamped(&self) -> (u64, f64) {
+        self.0.film.clamped()
     }
 }
 
@@ -78,6 +91,8 @@ pub fn render_scene(
     seconds: Option<f64>,
     seed: u64,
     threads: Option<usize>,
+    adaptive: bool,
+    clamp: Option<f64>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Rendering> {
     let scene = &scene.get().0;
@@ -94,7 +109,8 @@ pub fn render_scene(
         (_, Some(written)) => written,
         _ => unreachable!("it is one or the other"),
     };
-    let settings = Settings { until: Until { samples, error, seconds }, seed, threads, ..Settings::default() };
+    let until = Until { samples, error, seconds };
+    let settings = Settings { until, seed, threads, adaptive, clamp, ..Settings::default() };
     let mut watcher = Watcher { progress, raised: None, written: written.as_ref() };
     match py.detach(|| render::render(scene, &*camera.0, chosen, &settings, &mut watcher)) {
         Ok(rendering) => Ok(Rendering(rendering)),

@@ -1,6 +1,8 @@
 //! How wrong a picture still is, told from the picture alone.
 
 use super::Film;
+use super::film::Spread;
+use super::outliers::{Carried, Largest};
 use crate::optics::Rgb;
 use rayon::prelude::*;
 
@@ -14,23 +16,72 @@ pub struct ErrorEstimate {
     pub low: f64,
     /// Its upper end.
     pub high: f64,
+    /// The few samples that carry most of the estimate, which cannot be trusted then; `None` if many carry it.
+    pub carried: Option<Carried>,
 }
 
 /// What is added to the square of a brightness, so that the dark does not count infinitely.
 const FLOOR: f64 = 0.01;
 
-/// Estimates the error of a film; `None` below two batches of samples, which say nothing of it.
+/// Estimates the error of a film; `None` where a pixel has fewer than two batches of samples, which say nothing of it.
 ///
 /// The numerator is simple: the variance s²/n of a pixel's mean is an unbiased estimate of (x − μ)². The denominator is
-/// not, for μ is unknown, and a pixel's own x will not do: samples are skewed, so that the pixels which happen to have a
-/// large s² happen to be bright as well, and dividing the one by the other hides a part of the error. At 16 samples
-/// this makes it a quarter too small in a Cornell box, and more than twice too small with point-like highlights. Nor is
+/// not, for μ is unknown: [`Denominators`] tells what stands in for it.
+pub(super) fn estimate(film: &Film) -> Option<ErrorEstimate> {
+    if film.fewest_batches() < 2 {
+        return None;
+    }
+    let means = film.means();
+    let width = film.width() as usize;
+    // Rows are summed on all cores, and their sums in order, so that the estimate does not depend on the threads.
+    let rows: Vec<Sums> = (0..film.height())
+        .into_par_iter()
+        .map_init(
+            || vec![Spread::default(); width],
+            |spreads, y| {
+                film.spreads(y, spreads);
+                let mut row = Sums::default();
+                for (x, spread) in spreads.iter().enumerate() {
+                    let cross = cross(&means, width, x, y as usize);
+                    row.add(&Denominators::new(&cross, spread.variance, spread.batches), spread);
+                }
+                row
+            },
+        )
+        .collect();
+    let mut all = Sums::default();
+    for row in &rows {
+        all.join(row);
+    }
+    Some(all.estimate(3.0 * means.len() as f64))
+}
+
+/// The brightness of a pixel, and of the four beside it; at the border, its own instead.
+#[inline]
+pub(super) fn cross(means: &[Rgb], width: usize, x: usize, y: usize) -> [Rgb; 5] {
+    let here = y * width + x;
+    let or_here = |there: bool, index: usize| means[if there { index } else { here }];
+    [
+        means[here],
+        or_here(x > 0, here.wrapping_sub(1)),
+        or_here(x + 1 < width, here + 1),
+        or_here(y > 0, here.wrapping_sub(width)),
+        or_here(here + width < means.len(), here + width),
+    ]
+}
+
+/// What the squared errors of a pixel are divided by: an estimate of μ² + 0.01.
+///
+/// A pixel's own x will not do for μ: samples are skewed, so that the pixels which happen to have a large s² happen to be
+/// bright as well, and dividing the one by the other hides a part of the error. At 16 samples this makes it a sixth too
+/// small in a Cornell box, at 2 samples less than half, and more than twice too small with point-like highlights. Nor is
 /// it repaired by the usual corrections, of x² by s²/n or of 1/(x² + 0.01) by a Taylor series: the noise is too large
 /// for them (both were tried, as was the variance of one half of the samples over the mean of the other).
 ///
-/// So μ is taken from the neighbourhood: the median of the pixel and the four beside it. A mean of neighbours is much
-/// too bright next to a light, by which errors there are lost (8 to 13 % of all at 16 samples); medians or trimmed means
-/// of all eight lose too much beside dark corners. Two bounds keep the median where it can be right.
+/// So μ is taken from the four pixels beside it: their median, which is the mean of the middle two. A mean of neighbours
+/// is much too bright next to a light, by which errors there are lost (8 to 13 % of all at 16 samples); medians or
+/// trimmed means of all eight lose too much beside dark corners, and those which count the pixel itself, up to 30 % at 2
+/// samples. Two bounds keep the median where it can be right.
 ///
 /// It may contradict the pixel's own mean by 5/√n standard errors at most. Weighed by s², a mean of n samples is off by
 /// γ/√n standard errors, where γ is the skewness of the samples, some 2 to 5 in global illumination: there is that much
@@ -39,38 +90,29 @@ const FLOOR: f64 = 0.01;
 ///
 /// And the denominator is at least a quarter of the one that the pixel gives. A pixel that one sample made bright may be
 /// a dark one with a stray sample or a bright one on the edge of a lamp; one sample cannot tell, and the error of a lamp
-/// over the square of its dark surroundings would drown all others in the sum.
-pub(super) fn estimate(film: &Film) -> Option<ErrorEstimate> {
-    let variances = film.variances()?;
-    let means = film.means();
-    let leeway = 5.0 / f64::from(film.batches()).sqrt();
-    let (width, height) = (film.width() as usize, film.height() as usize);
-    // Rows are summed on all cores, and their sums in order, so that the estimate does not depend on the threads.
-    let rows: Vec<Sums> = (0..height)
-        .into_par_iter()
-        .map(|y| {
-            let mut row = Sums::default();
-            for x in 0..width {
-                let here = y * width + x;
-                let cross = [
-                    means[here],
-                    means[y * width + x.saturating_sub(1)],
-                    means[y * width + (x + 1).min(width - 1)],
-                    means[y.saturating_sub(1) * width + x],
-                    means[(y + 1).min(height - 1) * width + x],
-                ];
-                row.add(&cross, variances[here], leeway);
-            }
-            row
-        })
-        .collect();
-    let mut all = Sums::default();
-    for row in &rows {
-        all.error += row.error;
-        all.squares += row.squares;
-        all.own += row.own;
+/// over the square of its dark surroundings would drown all others in the sum. Below 8 samples one that is bright makes
+/// more of the mean, and the share falls to 1/32 of n.
+pub(super) struct Denominators {
+    /// One over them.
+    pub inverse: Rgb,
+    /// One over what the pixel's own mean would make them.
+    own: Rgb,
+}
+
+impl Denominators {
+    /// From the brightness of a cross of pixels, the first the one in the middle, and the variance of that one's mean,
+    /// which is of so many batches.
+    #[inline]
+    pub fn new(cross: &[Rgb; 5], variance: Rgb, batches: f64) -> Self {
+        let [mean, a, b, c, d] = *cross;
+        let leeway = 5.0 / batches.sqrt();
+        let off = Rgb::new(variance.x.sqrt(), variance.y.sqrt(), variance.z.sqrt()) * leeway;
+        let middle = (a + b + c + d - a.min(b).min(c).min(d) - a.max(b).max(c).max(d)) / 2.0;
+        let likely = middle.max(mean - off).min(mean + off);
+        let by_itself = mean * mean + FLOOR;
+        let most = (32.0 / batches).max(4.0);
+        Self { inverse: (likely * likely + FLOOR).max(by_itself / most).recip(), own: by_itself.recip() }
     }
-    Some(all.estimate(3.0 * means.len() as f64))
 }
 
 /// Sums over pixels.
@@ -82,26 +124,27 @@ struct Sums {
     squares: f64,
     /// The errors with each pixel's own mean in the denominator.
     own: f64,
+    /// What single batches bring.
+    largest: Largest,
 }
 
 impl Sums {
-    /// Adds a pixel of this variance, the first of the five of a cross, whose brightness may be so many standard errors
-    /// off its mean.
-    fn add(&mut self, cross: &[Rgb; 5], variance: Rgb, leeway: f64) {
-        let (mut error, mut own) = (0.0, 0.0);
-        for channel in 0..3 {
-            let (mean, variance) = (cross[0][channel], variance[channel]);
-            let off = leeway * variance.sqrt();
-            let mut five = cross.map(|rgb| rgb[channel]);
-            five.sort_unstable_by(f64::total_cmp);
-            let likely = five[2].clamp(mean - off, mean + off);
-            let by_itself = mean * mean + FLOOR;
-            error += variance / (likely * likely + FLOOR).max(by_itself / 4.0);
-            own += variance / by_itself;
-        }
+    #[inline]
+    fn add(&mut self, denominators: &Denominators, spread: &Spread) {
+        let error = spread.variance.dot(denominators.inverse);
         self.error += error;
         self.squares += error * error;
-        self.own += own;
+        self.own += spread.variance.dot(denominators.own);
+        for peak in spread.peaks {
+            self.largest.add(peak.dot(denominators.inverse));
+        }
+    }
+
+    fn join(&mut self, other: &Self) {
+        self.error += other.error;
+        self.squares += other.squares;
+        self.own += other.own;
+        self.largest.join(&other.largest);
     }
 
     /// The estimate, over so many values in all.
@@ -113,12 +156,12 @@ impl Sums {
     fn estimate(&self, count: f64) -> ErrorEstimate {
         let value = self.error / count;
         if value == 0.0 {
-            return ErrorEstimate { value, low: 0.0, high: 0.0 };
+            return ErrorEstimate { value, low: 0.0, high: 0.0, carried: None };
         }
         let chance = 1.96 * (2.0 * self.squares).sqrt() / self.error;
         let doubt = 1.0 - self.own / self.error;
         let factor = chance.hypot(doubt).exp();
-        ErrorEstimate { value, low: value / factor, high: value * factor }
+        ErrorEstimate { value, low: value / factor, high: value * factor, carried: self.largest.carry(self.error) }
     }
 }
 
@@ -129,13 +172,13 @@ mod tests {
 
     /// A film whose samples are `brightness` of the pixel times a draw of mean 1, from 1/e on half of the time.
     fn film(side: u32, samples: u32, seed: u64, brightness: impl Fn(u32, u32) -> f64) -> Film {
-        let mut film = Film::new(side, side, 16, 1);
-        for tile in film.extend(samples) {
+        let mut film = Film::new(side, side, 16, 1, false, None);
+        for tile in film.extend_to(samples) {
             for (i, (x, y)) in tile.pixels().enumerate() {
                 for number in 0..samples {
                     // An exponential variable: variance 1, skewness 2.
                     let draw = -Sampler::new(seed, y * side + x, number).two(0)[0].ln();
-                    tile.add(i, number, Rgb::splat(brightness(x, y) * draw));
+                    tile.add(i, Rgb::splat(brightness(x, y) * draw), 1.0);
                 }
             }
         }
@@ -163,7 +206,7 @@ mod tests {
         let busy = |x: u32, y: u32| Sampler::new(77, x, y).one(0) + 0.1;
         let pictures: [&dyn Fn(u32, u32) -> f64; 3] = [&smooth, &edged, &busy];
         for (i, brightness) in pictures.into_iter().enumerate() {
-            for samples in [16, 64, 256] {
+            for samples in [4, 16, 64, 256] {
                 let (mut close, mut covered) = (0, 0);
                 for seed in 0..100 {
                     let film = film(32, samples, seed, brightness);
@@ -188,12 +231,12 @@ mod tests {
     fn is_bounded_by_a_lamp_in_the_dark() {
         // One sample of one pixel meets a lamp; its own mean alone would make that an error of 1.
         let lamp = |lit: f64| {
-            let mut film = Film::new(9, 9, 16, 1);
-            for tile in film.extend(16) {
+            let mut film = Film::new(9, 9, 16, 1, false, None);
+            for tile in film.extend_to(16) {
                 for pixel in 0..81 {
                     for number in 0..16 {
                         let bright = pixel == 40 && number == 3;
-                        tile.add(pixel, number, Rgb::splat(if bright { lit } else { 0.01 }));
+                        tile.add(pixel, Rgb::splat(if bright { lit } else { 0.01 }), 1.0);
                     }
                 }
             }
@@ -202,5 +245,7 @@ mod tests {
         let error = lamp(1e6);
         assert!(error.value < 4.01 / 81.0 && error.value > 1.0 / 81.0);
         assert!(error.low < error.value / 4.0 && error.high > error.value * 4.0);
+        let carried = error.carried.expect("one sample is all there is");
+        assert!(carried.samples == 1 && carried.share > 0.9 && carried.share <= 1.0, "{carried:?}");
     }
 }

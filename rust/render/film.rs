@@ -1,27 +1,16 @@
 //! What samples add up to.
 
-use crate::optics::{Rgb, is_radiance};
-
-/// Sums from which a mean and its error are had.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Moments {
-    /// Sum of samples.
-    pub sum: Rgb,
-    /// Sum of the squares of batches' sums.
-    pub squares: Rgb,
-}
-
-impl Moments {
-    fn add(&mut self, other: &Self) {
-        self.sum += other.sum;
-        self.squares += other.squares;
-    }
-}
+use super::tile::{Cell, FilmTile};
+use crate::optics::Rgb;
+use rayon::prelude::*;
 
 /// The samples of a picture so far: for each pixel and channel their sum, and what it takes to know its error.
 ///
 /// The error comes from the spread of *batches* of samples that are independent of each other. A batch is one sample
 /// where all are independent, and several where they are placed with regard to each other.
+///
+/// A film may be in halves: each pixel then has two *cells*, whose samples are independent of each other and may differ in
+/// number, and the pixel is the mean of the two cells' means. What a film in halves is good for is told in [`super::Adaptive`].
 ///
 /// Sums depend on the order of adding, so the order is part of the film: samples are added up one by one in blocks of
 /// 16, and blocks one by one. Hence how samples are split into passes, who works on a tile and how large tiles are does
@@ -30,57 +19,36 @@ impl Moments {
 pub struct Film {
     width: u32,
     height: u32,
+    side: u32,
     batch: u32,
+    halves: bool,
     samples: u32,
     tiles: Vec<FilmTile>,
 }
 
-/// A rectangle of a film, which one thread works on at a time.
-#[derive(Clone, Debug, PartialEq)]
-pub struct FilmTile {
-    left: u32,
-    top: u32,
-    width: u32,
-    height: u32,
-    batch: u32,
-    /// Whole blocks, of each pixel.
-    total: Vec<Moments>,
-    /// The block that is being filled.
-    partial: Vec<Moments>,
-    /// The batch that is being filled; empty if each sample is one.
-    unfinished: Vec<Rgb>,
-    dropped: u64,
+/// What is known of a pixel.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Spread {
+    /// Batches of samples.
+    pub batches: f64,
+    /// The estimated variance of its mean.
+    pub variance: Rgb,
+    /// What of it comes from the largest batch of each cell.
+    pub peaks: [Rgb; 2],
 }
 
 impl Film {
-    /// Samples that are added up before they are added to the total, or a batch if that is more.
-    const BLOCK: u32 = 16;
-
-    /// The greatest sample that counts: pictures are stored in single precision, in which more would be infinite.
-    const GREATEST: f64 = f32::MAX as f64;
-
-    /// An empty film in square tiles, for batches of samples.
-    pub fn new(width: u32, height: u32, tile: u32, batch: u32) -> Self {
-        assert!(tile > 0 && batch.is_power_of_two(), "tiles hold pixels, and batches fill blocks");
+    /// An empty film in square tiles, for batches of samples. With `clamp`, samples brighter than that are dimmed to it.
+    pub fn new(width: u32, height: u32, side: u32, batch: u32, halves: bool, clamp: Option<f64>) -> Self {
+        assert!(side > 0 && batch.is_power_of_two(), "tiles hold pixels, and batches fill blocks");
         let mut tiles = Vec::new();
-        for top in (0..height).step_by(tile as usize) {
-            for left in (0..width).step_by(tile as usize) {
-                let (w, h) = (tile.min(width - left), tile.min(height - top));
-                let pixels = (w * h) as usize;
-                tiles.push(FilmTile {
-                    left,
-                    top,
-                    width: w,
-                    height: h,
-                    batch,
-                    total: vec![Moments::default(); pixels],
-                    partial: vec![Moments::default(); pixels],
-                    unfinished: vec![Rgb::ZERO; if batch > 1 { pixels } else { 0 }],
-                    dropped: 0,
-                });
+        for top in (0..height).step_by(side as usize) {
+            for left in (0..width).step_by(side as usize) {
+                let size = [side.min(width - left), side.min(height - top)];
+                tiles.push(FilmTile::new([left, top], size, batch, halves, clamp));
             }
         }
-        Self { width, height, batch, samples: 0, tiles }
+        Self { width, height, side, batch, halves, samples: 0, tiles }
     }
 
     /// Pixels in a row.
@@ -93,107 +61,152 @@ impl Film {
         self.height
     }
 
-    /// Samples of each pixel.
+    /// How many pixels there are.
+    pub fn pixel_count(&self) -> usize {
+        self.width as usize * self.height as usize
+    }
+
+    /// Samples of each pixel, or as many as were asked for of all pixels on average.
     pub fn samples(&self) -> u32 {
         self.samples
     }
 
-    /// Independent batches that the samples make.
-    pub fn batches(&self) -> u32 {
-        self.samples / self.batch
+    /// Samples that belong together.
+    pub fn batch(&self) -> u32 {
+        self.batch
+    }
+
+    /// Cells of each pixel: 2 if the film is in halves, else 1.
+    pub fn cells(&self) -> usize {
+        if self.halves { 2 } else { 1 }
     }
 
     /// Samples that were NaN, infinite or negative, and count as black.
     pub fn dropped(&self) -> u64 {
-        self.tiles.iter().map(|t| t.dropped).sum()
+        self.tiles.iter().map(FilmTile::dropped).sum()
     }
 
-    /// The tiles, to be filled with `count` more samples of each of their pixels.
-    pub fn extend(&mut self, count: u32) -> &mut [FilmTile] {
-        self.samples += count;
+    /// How many samples were clamped, and what share of the picture's radiance that took from it.
+    pub fn clamped(&self) -> (u64, f64) {
+        let count = self.tiles.iter().map(FilmTile::clamped).sum();
+        if count == 0 {
+            return (0, 0.0);
+        }
+        let mean = |of: fn(&Cell) -> Rgb| {
+            // Row by row, so that the sum is the same for tiles of any size.
+            let means = self.pixels(|cells| average(cells, |cell| of(cell) / f64::from(cell.count.max(1))));
+            means.iter().map(|rgb| rgb.element_sum()).sum::<f64>()
+        };
+        let (left, taken) = (mean(|cell| cell.sum), mean(|cell| cell.taken));
+        (count, taken / (left + taken))
+    }
+
+    /// The tiles, to be filled until each pixel has `samples` samples, or all have on average.
+    pub fn extend_to(&mut self, samples: u32) -> &mut [FilmTile] {
+        self.samples = samples;
         &mut self.tiles
+    }
+
+    /// The tiles, row by row from the top.
+    pub(super) fn tiles(&self) -> &[FilmTile] {
+        &self.tiles
+    }
+
+    /// Lets the next `count` samples of each cell be evidence: sums of their own are kept of those ([`Film::evidence`]).
+    pub(super) fn take_evidence(&mut self, count: u32) {
+        self.tiles.par_iter_mut().for_each(|tile| tile.take_evidence(count));
+    }
+
+    /// Sum and sum of squares of the samples so far that were evidence, of one half of each pixel.
+    pub(super) fn evidence(&self, half: usize) -> Vec<(Rgb, Rgb)> {
+        self.pixels(|cells| cells[half].evidence)
     }
 
     /// Adds the samples that follow those here.
     ///
     /// # Panics
-    /// If the films differ in shape, or the last block here is not full.
+    /// If the films differ in shape, or are in halves, or the last block here is not full.
     pub fn append(&mut self, next: &Self) {
-        let shape = |f: &Self| (f.width, f.height, f.batch, f.tiles.len());
+        let shape = |f: &Self| (f.width, f.height, f.side, f.batch, f.halves);
         assert_eq!(shape(self), shape(next), "films of one shape");
-        assert!(self.samples.is_multiple_of(Self::BLOCK.max(self.batch)), "whole blocks");
+        assert!(!self.halves && self.samples.is_multiple_of(FilmTile::BLOCK.max(self.batch)), "whole blocks");
         self.samples += next.samples;
         for (tile, next) in self.tiles.iter_mut().zip(&next.tiles) {
-            for (total, next) in tile.total.iter_mut().zip(&next.total) {
-                total.add(next);
-            }
-            tile.partial.clone_from(&next.partial);
-            tile.unfinished.clone_from(&next.unfinished);
-            tile.dropped += next.dropped;
+            tile.append(next);
         }
     }
 
-    /// Something of each pixel, row by row from the top.
-    fn pixels<T: Clone + Default>(&self, of: impl Fn(Moments) -> T) -> Vec<T> {
-        let mut all = vec![T::default(); self.width as usize * self.height as usize];
-        for tile in &self.tiles {
-            for (i, (x, y)) in tile.pixels().enumerate() {
-                let mut moments = tile.total[i];
-                moments.add(&tile.partial[i]);
-                all[y as usize * self.width as usize + x as usize] = of(moments);
+    /// Something of each pixel, of which `of` gets the cells, row by row from the top.
+    fn pixels<T: Clone + Default + Send>(&self, of: impl Fn(&[Cell]) -> T + Sync) -> Vec<T> {
+        let mut all = vec![T::default(); self.pixel_count()];
+        // Rows of no pixels would be chunks of nothing.
+        all.par_chunks_mut(self.width.max(1) as usize).enumerate().for_each(|(y, row)| self.row(y as u32, row, &of));
+        all
+    }
+
+    /// Something of each pixel of a row.
+    fn row<T>(&self, y: u32, row: &mut [T], of: impl Fn(&[Cell]) -> T) {
+        let columns = self.width.div_ceil(self.side) as usize;
+        let band = &self.tiles[(y / self.side) as usize * columns..][..columns];
+        for (tile, part) in band.iter().zip(row.chunks_mut(self.side as usize)) {
+            let first = (y % self.side) as usize * part.len();
+            for (i, entry) in part.iter_mut().enumerate() {
+                let cells = [tile.cell((first + i) * self.cells()), tile.cell((first + i + 1) * self.cells() - 1)];
+                *entry = of(&cells[..self.cells()]);
             }
         }
-        all
     }
 
     /// The mean of each pixel; black without samples.
     pub fn means(&self) -> Vec<Rgb> {
-        let count = f64::from(self.samples.max(1));
-        self.pixels(|m| m.sum / count)
+        self.pixels(|cells| average(cells, |cell| cell.sum / f64::from(cell.count.max(1))))
     }
 
-    /// The estimated variance of each pixel's mean, unbiased; `None` below two batches, which say nothing of it.
+    /// How many samples each pixel has.
+    pub fn counts(&self) -> Vec<u32> {
+        self.pixels(|cells| cells.iter().map(|cell| cell.count).sum())
+    }
+
+    /// Batches in the cell that has the fewest.
+    pub(super) fn fewest_batches(&self) -> u32 {
+        self.tiles.iter().map(FilmTile::fewest).min().unwrap_or(0) / self.batch
+    }
+
+    /// The estimated variance of each pixel's mean, unbiased; `None` where a pixel has fewer than two batches, which say
+    /// nothing of it.
     pub fn variances(&self) -> Option<Vec<Rgb>> {
-        assert!(self.samples.is_multiple_of(self.batch), "whole batches");
-        let batches = f64::from(self.batches());
-        (batches >= 2.0).then(|| {
-            let degrees = batches * (batches - 1.0) * f64::from(self.batch).powi(2);
+        (self.fewest_batches() >= 2).then(|| self.pixels(|cells| self.spread(cells).variance))
+    }
+
+    /// What is known of the pixels of a row, each of which has two batches at least.
+    pub(super) fn spreads(&self, y: u32, row: &mut [Spread]) {
+        self.row(y, row, |cells| self.spread(cells));
+    }
+
+    fn spread(&self, cells: &[Cell]) -> Spread {
+        let mut spread = Spread::default();
+        for (cell, peak) in cells.iter().zip(&mut spread.peaks) {
+            let batches = f64::from(cell.count / self.batch);
+            // A batch that is not full yet is not in the squares; the spread of those that are says what a sample is worth.
+            let sum = cell.sum - cell.unfinished;
+            // The variance of the mean of halves is a quarter of the sum of theirs.
+            let degrees = (batches - 1.0) * f64::from(self.batch) * f64::from(cell.count) * (cells.len().pow(2) as f64);
             // Where all samples agree, rounding may leave less than nothing.
-            self.pixels(|m| ((m.squares - m.sum * m.sum / batches) / degrees).max(Rgb::ZERO))
-        })
+            let variance = ((cell.squares - sum * sum / batches) / degrees).max(Rgb::ZERO);
+            let off = cell.largest - sum / batches;
+            *peak = (off * off / degrees).min(variance);
+            spread.variance += variance;
+            spread.batches += batches;
+        }
+        spread
     }
 }
 
-impl FilmTile {
-    /// The positions of its pixels on the film, row by row.
-    pub fn pixels(&self) -> impl Iterator<Item = (u32, u32)> + use<> {
-        let (left, top, width, height) = (self.left, self.top, self.width, self.height);
-        (top..top + height).flat_map(move |y| (left..left + width).map(move |x| (x, y)))
-    }
-
-    /// Adds sample number `number` of the pixel at this index of [`FilmTile::pixels`]. Those of a pixel come in order.
-    #[inline]
-    pub fn add(&mut self, pixel: usize, number: u32, mut sample: Rgb) {
-        if !is_radiance(sample) || sample.max_element() > Film::GREATEST {
-            self.dropped += 1;
-            sample = Rgb::ZERO;
-        }
-        let partial = &mut self.partial[pixel];
-        partial.sum += sample;
-        if self.batch == 1 {
-            partial.squares += sample * sample;
-        } else {
-            let unfinished = &mut self.unfinished[pixel];
-            *unfinished += sample;
-            if (number + 1).is_multiple_of(self.batch) {
-                partial.squares += *unfinished * *unfinished;
-                *unfinished = Rgb::ZERO;
-            }
-        }
-        if (number + 1).is_multiple_of(Film::BLOCK.max(self.batch)) {
-            self.total[pixel].add(partial);
-            *partial = Moments::default();
-        }
+/// The mean over those cells that have samples.
+fn average(cells: &[Cell], of: impl Fn(&Cell) -> Rgb) -> Rgb {
+    match cells {
+        [one, other] if other.count > 0 => (of(one) + of(other)) / 2.0,
+        _ => of(&cells[0]),
     }
 }
 
@@ -208,42 +221,50 @@ mod tests {
         Rgb::new(sampler.one(0), sampler.one(1).powi(5), 1e-3 / sampler.two(2)[0])
     }
 
+    /// Adds the samples of these numbers to each cell.
     fn expose(film: &mut Film, first: u32, count: u32) {
-        for tile in film.extend(count) {
+        let (samples, cells) = (film.samples(), film.cells());
+        for tile in film.extend_to(samples + count) {
             for (i, (x, y)) in tile.pixels().enumerate() {
-                for number in first..first + count {
-                    tile.add(i, number, sample(y * 1000 + x, number));
+                for (cell, number) in (0..cells).flat_map(|c| (first..first + count).map(move |n| (c, n))) {
+                    tile.add(i * cells + cell, sample((y * 1000 + x) * 2 + cell as u32, number), 1.0);
                 }
             }
         }
     }
 
+    fn film(width: u32, height: u32, side: u32, batch: u32) -> Film {
+        Film::new(width, height, side, batch, false, None)
+    }
+
     #[test]
     fn passes_and_tiles_change_no_bit() {
-        let mut whole = Film::new(13, 7, 16, 1);
-        expose(&mut whole, 0, 100);
-        for (tile, passes) in [(16, vec![1, 1, 2, 4, 8, 16, 16, 16, 36]), (4, vec![50, 50]), (3, vec![7; 14])] {
-            let mut film = Film::new(13, 7, tile, 1);
-            for count in passes {
+        for batch in [1, 8] {
+            let mut whole = film(13, 7, 16, batch);
+            expose(&mut whole, 0, 100);
+            for (side, passes) in [(16, vec![1, 1, 2, 4, 8, 16, 16, 16, 36]), (4, vec![50, 50]), (3, vec![7; 14])] {
+                let mut film = film(13, 7, side, batch);
+                for count in passes {
+                    let first = film.samples();
+                    expose(&mut film, first, count);
+                }
                 let first = film.samples();
-                expose(&mut film, first, count);
+                expose(&mut film, first, 100 - first);
+                assert_eq!(film.means(), whole.means());
+                assert_eq!(film.variances(), whole.variances());
             }
-            let first = film.samples();
-            expose(&mut film, first, 100 - first);
-            assert_eq!(film.means(), whole.means());
-            assert_eq!(film.variances(), whole.variances());
         }
     }
 
     #[test]
     fn films_of_blocks_append_to_the_whole() {
         for batch in [1, 4, 32] {
-            let mut whole = Film::new(5, 5, 4, batch);
+            let mut whole = film(5, 5, 4, batch);
             expose(&mut whole, 0, 160);
-            let mut joined = Film::new(5, 5, 4, batch);
+            let mut joined = film(5, 5, 4, batch);
             let block = 16.max(batch);
             for first in (0..160).step_by(block as usize) {
-                let mut part = Film::new(5, 5, 4, batch);
+                let mut part = film(5, 5, 4, batch);
                 expose(&mut part, first, block);
                 joined.append(&part);
             }
@@ -251,39 +272,109 @@ mod tests {
         }
     }
 
+    /// Mean of the means of whole batches, their variance over their number, and the share of the largest in the latter.
+    fn textbook(values: &[f64], batch: usize) -> (f64, f64, f64) {
+        let batches: Vec<f64> = values.chunks_exact(batch).map(|b| b.iter().sum::<f64>() / batch as f64).collect();
+        let count = batches.len() as f64;
+        let mean = batches.iter().sum::<f64>() / count;
+        let squares: Vec<f64> = batches.iter().map(|x| (x - mean).powi(2)).collect();
+        let variance = squares.iter().sum::<f64>() / (count - 1.0) / count;
+        let largest = (0..batches.len()).max_by(|&a, &b| batches[a].total_cmp(&batches[b])).unwrap();
+        (mean, variance, squares[largest] / (count - 1.0) / count)
+    }
+
     #[test]
-    fn mean_and_variance_are_the_textbook_ones() {
+    fn mean_variance_and_peak_are_the_textbook_ones() {
         for batch in [1, 8] {
-            let mut film = Film::new(2, 1, 16, batch);
+            let mut film = film(2, 1, 16, batch);
             expose(&mut film, 0, 48);
-            let batches: Vec<f64> = (0..48 / batch)
-                .map(|b| (0..batch).map(|i| sample(1, b * batch + i).y).sum::<f64>() / f64::from(batch))
-                .collect();
-            let count = batches.len() as f64;
-            let mean = batches.iter().sum::<f64>() / count;
-            let variance = batches.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / (count - 1.0) / count;
-            assert!((film.means()[1].y / mean - 1.0).abs() < 1e-14);
-            assert!((film.variances().unwrap()[1].y / variance - 1.0).abs() < 1e-12);
+            // Of one channel, the largest batch is the one whose largest channel is largest: blue is, by far.
+            let blue: Vec<f64> = (0..48).map(|n| sample(2, n).z).collect();
+            let (mean, variance, peak) = textbook(&blue, batch as usize);
+            assert!((film.means()[1].z / mean - 1.0).abs() < 1e-14);
+            assert!((film.variances().unwrap()[1].z / variance - 1.0).abs() < 1e-12);
+            let mut row = [Spread::default(); 2];
+            film.spreads(0, &mut row);
+            let largest = |rgb: Rgb| rgb.max_element();
+            let sums = (0..48 / batch).map(|b| (0..batch).map(|i| sample(2, b * batch + i)).sum::<Rgb>());
+            let blue_is_largest =
+                sums.clone().map(largest).fold(0.0, f64::max) == sums.map(|s| s.z).fold(0.0, f64::max);
+            assert!(blue_is_largest && (row[1].peaks[0].z / peak - 1.0).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn an_unfinished_batch_counts_for_the_mean_and_shares_the_spread_of_the_others() {
+        let mut film = film(1, 1, 16, 8);
+        expose(&mut film, 0, 21);
+        let green: Vec<f64> = (0..21).map(|n| sample(0, n).y).collect();
+        assert!((film.means()[0].y / (green.iter().sum::<f64>() / 21.0) - 1.0).abs() < 1e-14);
+        let (_, of_sixteen, _) = textbook(&green, 8);
+        assert!((film.variances().unwrap()[0].y / (of_sixteen * 16.0 / 21.0) - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn halves_count_alike_however_many_samples_they_have() {
+        let mut film = Film::new(1, 1, 16, 1, true, None);
+        let tile = &mut film.extend_to(4)[0];
+        tile.add(0, Rgb::splat(6.0), 1.0);
+        assert_eq!(film.means(), [Rgb::splat(6.0)]);
+        let tile = &mut film.extend_to(4)[0];
+        for value in [2.0, 4.0, 0.0] {
+            tile.add(1, Rgb::splat(value), 1.0);
+        }
+        assert_eq!((film.means(), film.counts()), (vec![Rgb::splat(4.0)], vec![4]));
+        assert_eq!(film.variances(), None);
+        film.extend_to(5)[0].add(0, Rgb::splat(2.0), 1.0);
+        // Variances of the two means: 8 / 2 and 4 / 3.
+        assert!((film.variances().unwrap()[0].x - (4.0 + 4.0 / 3.0) / 4.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn evidence_is_of_the_samples_that_were_said_to_be() {
+        let mut film = Film::new(3, 2, 2, 1, true, None);
+        film.take_evidence(4);
+        expose(&mut film, 0, 6);
+        film.take_evidence(2);
+        expose(&mut film, 6, 3);
+        for half in 0..2 {
+            let of = |n: u32| sample((1000 + 2) * 2 + half, n);
+            let numbers = [0, 1, 2, 3, 6, 7];
+            let sum: Rgb = numbers.map(of).into_iter().sum();
+            let squares: Rgb = numbers.map(|n| of(n) * of(n)).into_iter().sum();
+            assert_eq!(film.evidence(half as usize)[5], (sum, squares));
         }
     }
 
     #[test]
     fn what_is_no_light_is_counted_and_black() {
-        let mut film = Film::new(1, 1, 16, 1);
+        let mut film = film(1, 1, 16, 1);
         let bad = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, -1.0, 1e39];
-        let tile = &mut film.extend(6)[0];
-        for (number, bad) in bad.into_iter().enumerate() {
-            tile.add(0, number as u32, Rgb::new(1.0, bad, 1.0));
+        let tile = &mut film.extend_to(6)[0];
+        for bad in bad {
+            tile.add(0, Rgb::new(1.0, bad, 1.0), 1.0);
         }
-        tile.add(0, 5, Rgb::splat(f64::from(f32::MAX)));
+        tile.add(0, Rgb::splat(f64::from(f32::MAX)), 1.0);
         assert_eq!(film.dropped(), 5);
         assert_eq!(film.means(), [Rgb::splat(f64::from(f32::MAX) / 6.0)]);
         assert!(film.variances().unwrap()[0].is_finite());
     }
 
     #[test]
+    fn what_is_clamped_keeps_its_colour_and_is_counted() {
+        let mut film = Film::new(1, 1, 16, 1, false, Some(2.0));
+        let tile = &mut film.extend_to(4)[0];
+        for value in [Rgb::new(8.0, 4.0, 0.0), Rgb::new(2.0, 1.0, 2.0), Rgb::ZERO, Rgb::ONE] {
+            tile.add(0, value, 1.0);
+        }
+        assert_eq!(film.means(), [Rgb::new(5.0, 3.0, 3.0) / 4.0]);
+        // Nine of twenty were taken.
+        assert_eq!(film.clamped(), (1, 9.0 / 20.0));
+    }
+
+    #[test]
     fn one_sample_has_no_error() {
-        let mut film = Film::new(1, 1, 16, 1);
+        let mut film = film(1, 1, 16, 1);
         expose(&mut film, 0, 1);
         assert_eq!(film.variances(), None);
         expose(&mut film, 1, 1);

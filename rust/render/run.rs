@@ -1,7 +1,8 @@
 //! A render from start to end.
 
+use super::adaptive::Adaptive;
 use super::error::estimate;
-use super::tiles::Exposure;
+use super::tiles::{Exposure, Goal};
 use super::{ErrorEstimate, Film, Progress, Until};
 use crate::integrators::Integrator;
 use crate::optics::Rgb;
@@ -9,7 +10,6 @@ use crate::sampling::SamplerKind;
 use crate::scene::{Camera, Scene};
 use crate::workers::{Cancel, pool, watched};
 use std::fmt;
-use std::ops::ControlFlow;
 use std::time::Instant;
 
 /// How to render.
@@ -23,6 +23,10 @@ pub struct Settings {
     pub threads: Option<usize>,
     /// Where the random numbers come from.
     pub sampler: SamplerKind,
+    /// Whether more samples go where more of the error is; else all pixels have the same number.
+    pub adaptive: bool,
+    /// The radiance to which brighter samples are dimmed, which biases the picture; `None` takes all as they are.
+    pub clamp: Option<f64>,
 }
 
 /// How far a render was after a pass.
@@ -30,7 +34,7 @@ pub struct Settings {
 pub struct HistoryRow {
     /// Wall-clock time since the start.
     pub seconds: f64,
-    /// Samples of each pixel.
+    /// Samples of each pixel, or of all on average.
     pub samples: u32,
     /// Estimated relMSE; NaN as long as nothing can be said.
     pub error: f64,
@@ -88,7 +92,11 @@ fn single(pixels: Vec<Rgb>) -> Vec<[f32; 3]> {
     pixels.into_iter().map(|rgb| rgb.to_array().map(|x| x as f32)).collect()
 }
 
-/// Renders until the first of `settings.until` is met. `progress` is called on this thread, all work is done on others.
+/// Renders until the first of `settings.until` is met. `progress` is called on this thread. All work is done on others, but
+/// for an integrator that [`Integrator::runs_on_caller`].
+///
+/// To end at an estimated error is to look at the samples that the picture is made of, and a picture that happens to be
+/// darker ends sooner. That bias is far below the error: the estimate is a sum over all pixels, in which each hardly counts.
 pub fn render(
     scene: &Scene,
     camera: &dyn Camera,
@@ -98,30 +106,20 @@ pub fn render(
 ) -> Result<Rendering, RenderError> {
     let start = Instant::now();
     let exposure = Exposure::new(scene, camera, integrator, settings.sampler, settings.seed);
-    let tile = exposure.tile_side(pool(settings.threads).map_err(RenderError::Threads)?.current_num_threads());
+    let side = exposure.tile_side(pool(settings.threads).map_err(RenderError::Threads)?.current_num_threads());
     let batch = settings.sampler.batch();
-    let mut film = Film::new(camera.width(), camera.height(), tile, batch);
+    let mut film = Film::new(camera.width(), camera.height(), side, batch, settings.adaptive, settings.clamp);
+    let mut plan = settings.adaptive.then(|| Adaptive::new(&mut film));
     let (mut error, mut history, mut rate) = (None, Vec::<HistoryRow>::new(), 0.0);
     loop {
         let before = start.elapsed().as_secs_f64();
         let done = film.samples();
-        let count = settings.until.next_pass(done, before, rate, error.as_ref()).next_multiple_of(batch);
+        let limit = plan.as_ref().map_or(u32::MAX, |plan| plan.limit(done)) - done;
+        let count = settings.until.next_pass(done, batch, before, rate, error.as_ref()).min(limit);
         if count == 0 {
             return Ok(Rendering { film, error, history, seconds: before });
         }
-        let mut flow = ControlFlow::Continue(());
-        let work = |cancel: &Cancel| {
-            exposure.expose(&mut film, done..done + count, cancel);
-            if cancel.is_raised() { None } else { estimate(&film) }
-        };
-        let poll = || {
-            flow = progress.poll();
-            flow.is_continue()
-        };
-        error = watched(settings.threads, work, poll).map_err(RenderError::Threads)?;
-        if flow.is_break() {
-            return Err(RenderError::Interrupted);
-        }
+        error = pass(&exposure, &mut film, plan.as_mut(), done + count, settings.threads, progress)?;
         let seconds = start.elapsed().as_secs_f64();
         rate = (seconds - before) / f64::from(count);
         let row = HistoryRow { seconds, samples: film.samples(), error: error.map_or(f64::NAN, |e| e.value) };
@@ -132,12 +130,56 @@ pub fn render(
     }
 }
 
+/// Exposes the film until there are so many samples, and estimates its error.
+fn pass(
+    exposure: &Exposure,
+    film: &mut Film,
+    plan: Option<&mut Adaptive>,
+    samples: u32,
+    threads: Option<usize>,
+    progress: &mut dyn Progress,
+) -> Result<Option<ErrorEstimate>, RenderError> {
+    let prepared = |film: &mut Film| Goal {
+        samples,
+        plan: plan.map(|plan| {
+            plan.prepare(film);
+            &*plan
+        }),
+    };
+    let error = if exposure.integrator.runs_on_caller() {
+        let (pool, cancel) = (pool(threads).map_err(RenderError::Threads)?, Cancel::default());
+        let goal = pool.install(|| prepared(film));
+        exposure.expose_here(film, goal, &cancel, || {
+            if progress.poll().is_break() {
+                cancel.raise();
+            }
+        });
+        (!cancel.is_raised()).then(|| pool.install(|| estimate(film)))
+    } else {
+        let work = |cancel: &Cancel| {
+            let goal = prepared(film);
+            exposure.expose(film, goal, cancel);
+            (!cancel.is_raised()).then(|| estimate(film))
+        };
+        let mut ended = false;
+        let watch = || {
+            ended = progress.poll().is_break();
+            !ended
+        };
+        // Who watches may end a pass that has just been done.
+        watched(threads, work, watch).map_err(RenderError::Threads)?.filter(|_| !ended)
+    };
+    // It is raised by who watches, or by an integrator that cannot go on.
+    error.ok_or(RenderError::Interrupted)
+}
+
 #[cfg(test)]
 mod tests {
     use super::super::Quiet;
     use super::*;
-    use crate::integrators::Path;
+    use crate::integrators::{CameraSample, Path, Worker};
     use crate::scene::fixtures::{cornell, furnace};
+    use std::ops::ControlFlow;
     use std::time::Duration;
 
     fn settings(samples: u32, threads: usize) -> Settings {
@@ -178,6 +220,79 @@ mod tests {
         let (a, b) = (run(1), run(2));
         assert_ne!(a.rgb(), b.rgb());
         assert_eq!(a.rgb(), run(1).rgb());
+    }
+
+    #[test]
+    fn adaptive_pictures_have_one_face_too() {
+        let (scene, camera) = cornell(21, 13);
+        let adaptive = |until, threads| {
+            let settings = Settings { adaptive: true, until, ..settings(0, threads) };
+            render(&scene, &camera, &Path::default(), &settings, &mut Quiet).unwrap()
+        };
+        let samples = |samples| Until { samples: Some(samples), ..Until::default() };
+        let one = adaptive(samples(90), 1);
+        for threads in [2, 5] {
+            let other = adaptive(samples(90), threads);
+            assert_eq!(other.film.counts(), one.film.counts());
+            assert_eq!(other.rgb(), one.rgb());
+            assert_eq!(other.error, one.error);
+        }
+        // Cells round to whole samples, by a pattern.
+        let all: u32 = one.film.counts().iter().sum();
+        assert!((f64::from(all) / (21.0 * 13.0 * 90.0) - 1.0).abs() < 0.01, "{all}");
+        let timed = adaptive(Until { seconds: Some(0.05), ..Until::default() }, 2);
+        let again = adaptive(samples(timed.film.samples()), 1);
+        assert_eq!(again.film.means(), timed.film.means());
+        assert!(adaptive(samples(16), 1).film.counts().iter().all(|&count| count == 16));
+    }
+
+    /// Works where it is told, and remembers the largest batch that it was given.
+    struct Here(std::thread::ThreadId, std::sync::atomic::AtomicUsize);
+
+    struct HereWorker<'a>(&'a Here, Box<dyn Worker + 'a>);
+
+    impl Integrator for Here {
+        fn worker<'a>(&'a self, scene: &'a Scene) -> Box<dyn Worker + 'a> {
+            static PATH: Path = Path { max_depth: None, roulette_depth: 4 };
+            Box::new(HereWorker(self, PATH.worker(scene)))
+        }
+        fn runs_on_caller(&self) -> bool {
+            true
+        }
+    }
+
+    impl Worker for HereWorker<'_> {
+        fn radiance(&mut self, samples: &mut [CameraSample], cancel: &Cancel, radiance: &mut [Rgb]) {
+            assert_eq!(std::thread::current().id(), self.0.0);
+            if self.0.1.fetch_max(samples.len(), std::sync::atomic::Ordering::Relaxed) == usize::MAX {
+                cancel.raise();
+            }
+            self.1.radiance(samples, cancel, radiance);
+        }
+    }
+
+    #[test]
+    fn an_integrator_may_stay_on_the_calling_thread() {
+        let (scene, camera) = cornell(70, 61);
+        let mut settings = settings(20, 2);
+        for adaptive in [false, true] {
+            settings.adaptive = adaptive;
+            let here = Here(std::thread::current().id(), Default::default());
+            let mine = render(&scene, &camera, &here, &settings, &mut Quiet).unwrap();
+            let theirs = render(&scene, &camera, &Path::default(), &settings, &mut Quiet).unwrap();
+            assert_eq!((mine.rgb(), mine.error), (theirs.rgb(), theirs.error));
+            // The pass from 8 to 16 samples is 34,160 paths.
+            assert_eq!(here.1.into_inner(), 70 * 61 * 8);
+            // It can end the render.
+            let here = Here(std::thread::current().id(), usize::MAX.into());
+            let result = render(&scene, &camera, &here, &settings, &mut Quiet);
+            assert_eq!(result.err(), Some(RenderError::Interrupted));
+            // So can who watches.
+            let (here, (_, large)) = (Here(std::thread::current().id(), Default::default()), cornell(300, 300));
+            let result = render(&scene, &large, &here, &settings, &mut Impatient(None));
+            assert_eq!(result.err(), Some(RenderError::Interrupted));
+            assert_eq!(here.1.into_inner(), 65_536);
+        }
     }
 
     #[test]

@@ -5,7 +5,7 @@ use super::ErrorEstimate;
 /// When to end: the first that is met does.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Until {
-    /// Samples of each pixel.
+    /// Samples of each pixel, or of all on average.
     pub samples: Option<u32>,
     /// relMSE of the picture: met when the whole 95 % interval of its estimate is at or below.
     pub error: Option<f64>,
@@ -21,13 +21,23 @@ impl Until {
     const PASS: u32 = 16;
 
     /// Samples of the next pass, of which there have been `done` in `elapsed` seconds, the last ones at `rate` seconds
-    /// each; 0 to end. Passes double (1, 1, 2, 4, 8) so that there is soon something to see, then keep to 16.
-    pub(super) fn next_pass(&self, done: u32, elapsed: f64, rate: f64, error: Option<&ErrorEstimate>) -> u32 {
+    /// each; 0 to end. `batch` of them belong together.
+    ///
+    /// Passes double (1, 1, 2, 4, 8) so that there is soon something to see, then keep to 16, or to a batch if that is more.
+    /// Their sizes do not depend on time unless that is limited, so that an error ends a render at the same picture anywhere.
+    pub(super) fn next_pass(
+        &self,
+        done: u32,
+        batch: u32,
+        elapsed: f64,
+        rate: f64,
+        error: Option<&ErrorEstimate>,
+    ) -> u32 {
         let met = |target| error.is_some_and(|e| e.high <= target);
         if done >= Self::LEAST_FOR_ERROR && self.error.is_some_and(met) {
             return 0;
         }
-        let mut next = done.clamp(1, Self::PASS);
+        let mut next = done.clamp(1, Self::PASS.max(batch));
         if let Some(samples) = self.samples {
             next = next.min(samples.saturating_sub(done));
         }
@@ -51,8 +61,8 @@ mod tests {
         let (mut all, mut done) = (Vec::new(), 0);
         loop {
             let value = 1.0 / f64::from(done);
-            let error = ErrorEstimate { value, low: 0.5 * value, high: 2.0 * value };
-            let next = until.next_pass(done, f64::from(done) * rate, rate, (done > 1).then_some(&error));
+            let error = ErrorEstimate { value, low: 0.5 * value, high: 2.0 * value, carried: None };
+            let next = until.next_pass(done, 1, f64::from(done) * rate, rate, (done > 1).then_some(&error));
             if next == 0 {
                 return all;
             }
@@ -84,6 +94,17 @@ mod tests {
         // The upper end of the interval is 2 / samples.
         assert_eq!(passes(until(0.05), 1.0).iter().sum::<u32>(), 48);
         assert_eq!(passes(until(100.0), 1.0).iter().sum::<u32>(), 16);
+    }
+
+    #[test]
+    fn passes_grow_to_whole_batches() {
+        let until = Until { samples: Some(200), ..Until::default() };
+        let (mut all, mut done) = (Vec::new(), 0);
+        while done < 200 {
+            all.push(until.next_pass(done, 64, 0.0, 0.0, None));
+            done += all[all.len() - 1];
+        }
+        assert_eq!(all, [1, 1, 2, 4, 8, 16, 32, 64, 64, 8]);
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! Work on a pass: samples of all pixels, tile by tile over the threads.
 
+use super::adaptive::Adaptive;
 use super::{Film, FilmTile};
 use crate::integrators::{CameraSample, Integrator, Worker};
 use crate::optics::Rgb;
@@ -7,11 +8,14 @@ use crate::sampling::SamplerKind;
 use crate::scene::{Camera, CameraRay, Scene};
 use crate::workers::Cancel;
 use rayon::prelude::*;
-use std::ops::Range;
+use std::slice;
 use std::sync::{Mutex, PoisonError};
 
 /// Paths advanced together at most: enough to keep the accelerator's kernels full, few enough to stay in cache.
 const BATCH: usize = 4096;
+
+/// Paths handed together to an integrator that works on the calling thread, where a call costs more than a path.
+const LARGE_BATCH: usize = 65_536;
 
 /// A picture being taken: everything that stays the same from pass to pass.
 pub(super) struct Exposure<'a> {
@@ -28,13 +32,35 @@ pub(super) struct Exposure<'a> {
     idle: Mutex<Vec<Bench<'a>>>,
 }
 
+/// How many samples cells shall have after a pass: as many as this in all pixels, or as it is decided for this many on average.
+#[derive(Clone, Copy)]
+pub(super) struct Goal<'a> {
+    pub samples: u32,
+    pub plan: Option<&'a Adaptive>,
+}
+
+impl Goal<'_> {
+    fn of(&self, number: usize, tile: &FilmTile, cell: usize) -> u32 {
+        self.plan.map_or(self.samples, |plan| plan.goal(number, cell, tile.position(cell), self.samples))
+    }
+}
+
 /// What a thread works with.
 struct Bench<'a> {
     worker: Box<dyn Worker + 'a>,
     samples: Vec<CameraSample>,
-    /// Of all samples, those too that the camera sees nothing with, which nobody is asked for.
+    /// What each sample counts by the filter and the camera, those too that the camera sees nothing with, which nobody is asked for.
     weights: Vec<f64>,
     radiance: Vec<Rgb>,
+    /// Whose the samples are.
+    runs: Vec<Run>,
+}
+
+/// Consecutive samples of one cell.
+struct Run {
+    tile: usize,
+    cell: usize,
+    count: u32,
 }
 
 impl<'a> Exposure<'a> {
@@ -56,15 +82,23 @@ impl<'a> Exposure<'a> {
         [16, 8, 4].into_iter().find(|&side| tiles(side) >= 8 * threads).unwrap_or(2)
     }
 
-    /// Adds the samples of these numbers to all pixels. Returns soon after `cancel` is raised, leaving a film of no use.
-    pub fn expose(&self, film: &mut Film, numbers: Range<u32>, cancel: &Cancel) {
-        film.extend(numbers.len() as u32).par_iter_mut().with_max_len(1).for_each(|tile| {
+    /// Adds samples until the goal is reached. Returns soon after `cancel` is raised, leaving a film of no use.
+    pub fn expose(&self, film: &mut Film, goal: Goal, cancel: &Cancel) {
+        film.extend_to(goal.samples).par_iter_mut().enumerate().with_max_len(1).for_each(|(number, tile)| {
             if !cancel.is_raised() {
                 let mut bench = self.take_bench();
-                self.expose_tile(tile, numbers.clone(), &mut bench, cancel);
-                self.idle.lock().unwrap_or_else(PoisonError::into_inner).push(bench);
+                self.expose_tiles(slice::from_mut(tile), number, goal, BATCH, &mut bench, cancel, &mut || {});
+                self.put_bench(bench);
             }
         });
+    }
+
+    /// As [`Exposure::expose`], with the integrator on this thread alone, in large batches. After each `poll` is called, which
+    /// may raise `cancel`.
+    pub fn expose_here(&self, film: &mut Film, goal: Goal, cancel: &Cancel, mut poll: impl FnMut()) {
+        let mut bench = self.take_bench();
+        self.expose_tiles(film.extend_to(goal.samples), 0, goal, LARGE_BATCH, &mut bench, cancel, &mut poll);
+        self.put_bench(bench);
     }
 
     fn take_bench(&self) -> Bench<'a> {
@@ -74,47 +108,87 @@ impl<'a> Exposure<'a> {
             samples: Vec::new(),
             weights: Vec::new(),
             radiance: Vec::new(),
+            runs: Vec::new(),
         })
     }
 
-    fn expose_tile(&self, tile: &mut FilmTile, numbers: Range<u32>, bench: &mut Bench, cancel: &Cancel) {
-        let together = (BATCH / tile.pixels().count()).max(1);
-        for first in numbers.clone().step_by(together) {
-            if cancel.is_raised() {
-                return;
-            }
-            let numbers = first..numbers.end.min(first + together as u32);
-            bench.samples.clear();
-            bench.weights.clear();
-            for (x, y) in tile.pixels() {
-                for number in numbers.clone() {
-                    let (sample, weight) = self.camera_sample(x, y, number);
-                    bench.weights.push(weight);
-                    if weight != 0.0 {
-                        bench.samples.push(sample);
+    fn put_bench(&self, bench: Bench<'a>) {
+        self.idle.lock().unwrap_or_else(PoisonError::into_inner).push(bench);
+    }
+
+    /// Brings tiles, of which the first has this number, to the goal in batches of `most` paths.
+    #[allow(clippy::too_many_arguments)]
+    fn expose_tiles(
+        &self,
+        tiles: &mut [FilmTile],
+        first: usize,
+        goal: Goal,
+        most: usize,
+        bench: &mut Bench,
+        cancel: &Cancel,
+        poll: &mut dyn FnMut(),
+    ) {
+        bench.samples.clear();
+        bench.weights.clear();
+        bench.runs.clear();
+        for index in 0..tiles.len() {
+            for cell in 0..tiles[index].counts().len() {
+                let tile = &tiles[index];
+                let (position, mut nth) = (tile.position(cell), tile.counts()[cell]);
+                let end = goal.of(first + index, tile, cell);
+                while nth < end {
+                    let count = (end - nth).min((most - bench.weights.len()) as u32);
+                    for nth in nth..nth + count {
+                        let (sample, weight) = self.camera_sample(position, tiles[index].number(cell, nth));
+                        bench.weights.push(weight);
+                        if weight != 0.0 {
+                            bench.samples.push(sample);
+                        }
+                    }
+                    bench.runs.push(Run { tile: index, cell, count });
+                    nth += count;
+                    if bench.weights.len() == most {
+                        bench.develop(tiles, cancel);
+                        poll();
+                        if cancel.is_raised() {
+                            return;
+                        }
                     }
                 }
             }
-            bench.radiance.resize(bench.samples.len(), Rgb::ZERO);
-            bench.worker.radiance(&mut bench.samples, cancel, &mut bench.radiance);
-            let mut radiance = bench.radiance.iter();
-            for (pixel, weights) in bench.weights.chunks(numbers.len()).enumerate() {
-                for (number, &weight) in numbers.clone().zip(weights) {
-                    let seen = if weight == 0.0 { None } else { radiance.next() };
-                    tile.add(pixel, number, seen.map_or(Rgb::ZERO, |radiance| *radiance * weight));
-                }
-            }
         }
+        bench.develop(tiles, cancel);
     }
 
-    /// A sample of a pixel, uniform over its square: the box filter; and what it counts. Where anything moves, uniform over the shutter's
-    /// time too, and over the lens if there is one.
-    fn camera_sample(&self, x: u32, y: u32, number: u32) -> (CameraSample, f64) {
+    /// A sample of a pixel, uniform over its square: the box filter, whose weights are 1; and what it counts. Where anything moves, uniform
+    /// over the shutter's time too, and over the lens if there is one.
+    fn camera_sample(&self, (x, y): (u32, u32), number: u32) -> (CameraSample, f64) {
         let mut sampler = self.sampler.sampler(self.seed, y * self.camera.width() + x, number);
         let [right, down] = sampler.two(0);
         let lens = if self.uses_lens { sampler.two(1) } else { [0.5; 2] };
         let time = if self.moves { sampler.one(3) } else { 0.0 };
         let CameraRay { ray, weight } = self.camera.ray([f64::from(x) + right, f64::from(y) + down], lens, time);
         (CameraSample { ray, sampler }, weight)
+    }
+}
+
+impl Bench<'_> {
+    /// Adds the radiance of the samples gathered to the cells that they are of, and clears them away.
+    fn develop(&mut self, tiles: &mut [FilmTile], cancel: &Cancel) {
+        if self.weights.is_empty() {
+            return;
+        }
+        self.radiance.resize(self.samples.len(), Rgb::ZERO);
+        self.worker.radiance(&mut self.samples, cancel, &mut self.radiance);
+        let (mut radiance, mut weights) = (self.radiance.iter(), self.weights.iter());
+        for run in &self.runs {
+            for &weight in weights.by_ref().take(run.count as usize) {
+                let seen = if weight == 0.0 { None } else { radiance.next() };
+                tiles[run.tile].add(run.cell, seen.copied().unwrap_or(Rgb::ZERO), weight);
+            }
+        }
+        self.samples.clear();
+        self.weights.clear();
+        self.runs.clear();
     }
 }

@@ -2,6 +2,7 @@
 
 from .accelerators import AcceleratorReport, accelerators, rays_per_build
 from .contest import Measured
+from .convergence import ConvergenceReport, Fit, convergence
 from .first_hits import first_hits
 from .heatmap import Heatmap, heatmap
 from .per_build import BuildRow, RaysPerBuild
@@ -15,6 +16,8 @@ __all__ = [
     "BuildRow",
     "Chart",
     "Column",
+    "ConvergenceReport",
+    "Fit",
     "Heatmap",
     "KernelReport",
     "KernelRow",
@@ -24,6 +27,7 @@ __all__ = [
     "Table",
     "TimeShare",
     "accelerators",
+    "convergence",
     "first_hits",
     "heatmap",
     "kernels",

@@ -1,0 +1,229 @@
+//! A rectangle of a film.
+
+use crate::optics::{Rgb, is_radiance};
+
+/// Sums from which a mean and its error are had.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Moments {
+    /// Sum of samples.
+    sum: Rgb,
+    /// Sum of the squares of batches' sums.
+    squares: Rgb,
+}
+
+impl Moments {
+    fn add(&mut self, other: &Self) {
+        self.sum += other.sum;
+        self.squares += other.squares;
+    }
+}
+
+/// A rectangle of a film, which one thread works on at a time.
+///
+/// Its cells lie pixel by pixel, row by row: one a pixel, or two where the film is in halves.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FilmTile {
+    corner: [u32; 2],
+    size: [u32; 2],
+    batch: u32,
+    halves: bool,
+    clamp: f64,
+    /// Samples of each cell.
+    counts: Vec<u32>,
+    /// Whole blocks, of each cell.
+    total: Vec<Moments>,
+    /// The block that is being filled.
+    partial: Vec<Moments>,
+    /// The sum of the largest batch, by its largest channel.
+    largest: Vec<Rgb>,
+    /// The batch that is being filled; empty if each sample is one.
+    unfinished: Vec<Rgb>,
+    /// What clamping took; empty without.
+    taken: Vec<Rgb>,
+    /// Sums of samples and their squares, and the count up to which they are kept; empty unless the film is in halves.
+    evidence: Vec<(Rgb, Rgb)>,
+    evidence_until: Vec<u32>,
+    dropped: u64,
+    clamped: u64,
+}
+
+/// All that is kept of a cell.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Cell {
+    pub count: u32,
+    pub sum: Rgb,
+    pub squares: Rgb,
+    pub largest: Rgb,
+    pub unfinished: Rgb,
+    pub taken: Rgb,
+    pub evidence: (Rgb, Rgb),
+}
+
+impl FilmTile {
+    /// Samples that are added up before they are added to the total, or a batch if that is more.
+    pub(super) const BLOCK: u32 = 16;
+
+    /// The greatest sample that counts: pictures are stored in single precision, in which more would be infinite.
+    const GREATEST: f64 = f32::MAX as f64;
+
+    pub(super) fn new(corner: [u32; 2], size: [u32; 2], batch: u32, halves: bool, clamp: Option<f64>) -> Self {
+        let cells = (size[0] * size[1]) as usize * if halves { 2 } else { 1 };
+        let if_any = |wanted: bool| if wanted { cells } else { 0 };
+        Self {
+            corner,
+            size,
+            batch,
+            halves,
+            clamp: clamp.unwrap_or(f64::INFINITY),
+            counts: vec![0; cells],
+            total: vec![Moments::default(); cells],
+            partial: vec![Moments::default(); cells],
+            largest: vec![Rgb::ZERO; cells],
+            unfinished: vec![Rgb::ZERO; if_any(batch > 1)],
+            taken: vec![Rgb::ZERO; if_any(clamp.is_some())],
+            evidence: vec![(Rgb::ZERO, Rgb::ZERO); if_any(halves)],
+            evidence_until: vec![0; if_any(halves)],
+            dropped: 0,
+            clamped: 0,
+        }
+    }
+
+    /// The positions of its pixels on the film, row by row.
+    pub fn pixels(&self) -> impl Iterator<Item = (u32, u32)> + use<> {
+        let ([left, top], [width, height]) = (self.corner, self.size);
+        (top..top + height).flat_map(move |y| (left..left + width).map(move |x| (x, y)))
+    }
+
+    /// The position on the film of the pixel that a cell belongs to.
+    pub fn position(&self, cell: usize) -> (u32, u32) {
+        let pixel = if self.halves { cell / 2 } else { cell } as u32;
+        (self.corner[0] + pixel % self.size[0], self.corner[1] + pixel / self.size[0])
+    }
+
+    /// Samples of each cell.
+    pub fn counts(&self) -> &[u32] {
+        &self.counts
+    }
+
+    /// The number, among all samples of its pixel, of the sample that is number `nth` of its cell. Halves take turns by
+    /// the batch, so no batch is in both.
+    #[inline]
+    pub fn number(&self, cell: usize, nth: u32) -> u32 {
+        if self.halves {
+            let (batch, within) = (nth / self.batch, nth % self.batch);
+            (2 * batch + (cell % 2) as u32) * self.batch + within
+        } else {
+            nth
+        }
+    }
+
+    /// Adds the next sample of a cell: radiance, times the weight that the film's filter gives it.
+    #[inline]
+    pub fn add(&mut self, cell: usize, radiance: Rgb, weight: f64) {
+        let sample = self.allowed(cell, radiance) * weight;
+        let number = self.counts[cell];
+        self.counts[cell] += 1;
+        let partial = &mut self.partial[cell];
+        partial.sum += sample;
+        if self.halves && number < self.evidence_until[cell] {
+            let (sum, squares) = &mut self.evidence[cell];
+            *sum += sample;
+            *squares += sample * sample;
+        }
+        let batch = if self.batch == 1 {
+            Some(sample)
+        } else {
+            let unfinished = &mut self.unfinished[cell];
+            *unfinished += sample;
+            (number + 1).is_multiple_of(self.batch).then(|| std::mem::take(unfinished))
+        };
+        if let Some(batch) = batch {
+            partial.squares += batch * batch;
+            keep_largest(&mut self.largest[cell], batch);
+        }
+        if (number + 1).is_multiple_of(Self::BLOCK.max(self.batch)) {
+            self.total[cell].add(partial);
+            *partial = Moments::default();
+        }
+    }
+
+    /// What of a sample's radiance counts.
+    #[inline]
+    fn allowed(&mut self, cell: usize, radiance: Rgb) -> Rgb {
+        let greatest = radiance.max_element();
+        if !is_radiance(radiance) || greatest > Self::GREATEST {
+            self.dropped += 1;
+            return Rgb::ZERO;
+        }
+        if greatest <= self.clamp {
+            return radiance;
+        }
+        let left = radiance * (self.clamp / greatest);
+        self.clamped += 1;
+        self.taken[cell] += radiance - left;
+        left
+    }
+
+    pub(super) fn dropped(&self) -> u64 {
+        self.dropped
+    }
+
+    pub(super) fn clamped(&self) -> u64 {
+        self.clamped
+    }
+
+    /// Samples of the cell that has the fewest.
+    pub(super) fn fewest(&self) -> u32 {
+        self.counts.iter().copied().min().unwrap_or(u32::MAX)
+    }
+
+    pub(super) fn take_evidence(&mut self, count: u32) {
+        for (until, &now) in self.evidence_until.iter_mut().zip(&self.counts) {
+            *until = now + count;
+        }
+    }
+
+    #[inline]
+    pub(super) fn cell(&self, cell: usize) -> Cell {
+        let mut moments = self.total[cell];
+        moments.add(&self.partial[cell]);
+        let or_nothing = |all: &[Rgb]| all.get(cell).copied().unwrap_or(Rgb::ZERO);
+        Cell {
+            count: self.counts[cell],
+            sum: moments.sum,
+            squares: moments.squares,
+            largest: self.largest[cell],
+            unfinished: or_nothing(&self.unfinished),
+            taken: or_nothing(&self.taken),
+            evidence: self.evidence.get(cell).copied().unwrap_or_default(),
+        }
+    }
+
+    /// Adds the samples that follow those here, which are whole blocks.
+    pub(super) fn append(&mut self, next: &Self) {
+        for (total, next) in self.total.iter_mut().zip(&next.total) {
+            total.add(next);
+        }
+        for (largest, &next) in self.largest.iter_mut().zip(&next.largest) {
+            keep_largest(largest, next);
+        }
+        for (taken, &next) in self.taken.iter_mut().zip(&next.taken) {
+            *taken += next;
+        }
+        for (count, next) in self.counts.iter_mut().zip(&next.counts) {
+            *count += next;
+        }
+        self.partial.clone_from(&next.partial);
+        self.unfinished.clone_from(&next.unfinished);
+        self.dropped += next.dropped;
+        self.clamped += next.clamped;
+    }
+}
+
+/// Keeps the batch with the larger channel; filters may weigh samples negatively.
+#[inline]
+fn keep_largest(largest: &mut Rgb, batch: Rgb) {
+    if batch.abs().max_element() > largest.abs().max_element() {
+        *largest = batch;
+    }
+}
