@@ -13,7 +13,7 @@ use crate::optics::Rgb;
 use crate::scene::Scene;
 use crate::workers::Cancel;
 
-/// `raywright.Integrator`, asked for batches by all threads. What it raises ends the render.
+/// `raywright.Integrator`. What it raises ends the render.
 pub struct Written {
     integrator: Py<PyAny>,
     /// `raywright.Scene`.
@@ -72,6 +72,10 @@ impl Written {
 impl Integrator for Written {
     fn worker<'a>(&'a self, _scene: &'a Scene) -> Box<dyn Worker + 'a> {
         Box::new(At(self))
+    }
+
+    fn runs_on_caller(&self) -> bool {
+        true
     }
 }
 
