@@ -61,7 +61,8 @@ impl Scene {
         let SceneDescription { shapes, points, environment } = description;
         let (mut surfaces, mut materials, mut emission) = (Vec::new(), Vec::new(), Vec::new());
         for shape in shapes {
-            surfaces.push(shape.surface);
+            let needs = shape.needs();
+            surfaces.push(shape.surface.with_only(needs));
             materials.push(shape.material);
             emission.push(shape.emission);
         }

@@ -53,7 +53,10 @@ impl Interaction {
         if cosine < Self::GRAZING && !is_smooth {
             shading = (shading + back * (Self::GRAZING - cosine)).normalize();
         }
-        let frame = Frame::new(shading);
+        let frame = match material.tangent(&point) {
+            Some(tangent) => Frame::along(shading, tangent),
+            None => Frame::new(shading),
+        };
         let scattering = material.scattering(&point);
         Self { surface, normal, frame, scattering, wo: frame.to_local(back) }
     }

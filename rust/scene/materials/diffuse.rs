@@ -1,7 +1,8 @@
 //! A matt surface.
 
-use super::{Material, Scattering};
-use crate::optics::{Diffuse, Rgb};
+use super::checks::within;
+use super::{Classic, Material, Scattering};
+use crate::optics::{Bsdf, Diffuse, Rgb};
 use crate::scene::ShadingPoint;
 use crate::scene::textures::{Needs, Value};
 
@@ -25,13 +26,22 @@ impl Material for DiffuseMaterial {
         Diffuse { reflectance: self.reflectance.at(&at.texture) }.into()
     }
 
+    fn constant(&self) -> Option<Bsdf> {
+        match self.reflectance {
+            Value::Constant(reflectance) => Some(Diffuse { reflectance }.into()),
+            Value::Texture(_) => None,
+        }
+    }
+
     fn needs(&self) -> Needs {
         self.reflectance.needs()
     }
 
     fn validate(&self) -> Result<(), String> {
-        let [low, high] = self.reflectance.range();
-        let is_physical = self.reflectance.is_within(0.0, 1.0);
-        is_physical.then_some(()).ok_or_else(|| format!("reflectance must lie between 0 and 1, got {low} to {high}"))
+        within("reflectance", &self.reflectance, 0.0, 1.0)
+    }
+
+    fn classic(&self, at: &ShadingPoint) -> Option<Classic> {
+        Some(Classic::matt(self.reflectance.at(&at.texture)))
     }
 }
