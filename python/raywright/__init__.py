@@ -14,7 +14,16 @@ from .integrator import Integrator
 from .integrators import Path
 from .interactions import Interactions, LightSamples, Rays, Scattered, power_heuristic
 from .io.pictures import check_writable
-from .lights import ConstantEnvironment, PointLight
+from .lights import (
+    ConstantEnvironment,
+    DirectionalLight,
+    Emission,
+    EnvironmentMap,
+    PointLight,
+    ProjectorLight,
+    SpotLight,
+    SunSky,
+)
 from .materials import Diffuse
 from .mesh import Mesh
 from .rendering import render
@@ -53,8 +62,11 @@ __all__ = [
     "ConstantEnvironment",
     "Cylinder",
     "Diffuse",
+    "DirectionalLight",
     "Disk",
     "Ellipsoid",
+    "Emission",
+    "EnvironmentMap",
     "ErrorEstimate",
     "Fisheye",
     "Grid",
@@ -75,6 +87,7 @@ __all__ = [
     "Path",
     "Plane",
     "PointLight",
+    "ProjectorLight",
     "Polygon",
     "Pose",
     "QueryCost",
@@ -83,6 +96,8 @@ __all__ = [
     "Scattered",
     "Scene",
     "Sphere",
+    "SpotLight",
+    "SunSky",
     "Surface",
     "ThinLens",
     "Torus",

@@ -1,10 +1,10 @@
 //! Path tracing.
 
 use super::{CameraSample, Integrator, Worker};
-use crate::math::{Hit, Ray};
+use crate::math::{DVec3, Hit, Ray};
 use crate::optics::Rgb;
 use crate::sampling::{CAMERA_DIMENSIONS, Sampler};
-use crate::scene::{Interaction, Scene};
+use crate::scene::{Interaction, Receiver, Scene, ShadingPoint};
 use crate::workers::Cancel;
 
 /// Unidirectional path tracing (Kajiya, "The Rendering Equation", 1986): at each bounce one light is asked directly,
@@ -66,8 +66,8 @@ struct Alive {
     throughput: Rgb,
     /// Density with which the last surface drew this direction; infinite for a camera's ray.
     pdf: f64,
-    /// Density with which the lights would have drawn it, should it leave the scene.
-    environment_pdf: f64,
+    /// Where that was, as lights see it.
+    from: Receiver,
     /// When all of the path is asked.
     time: f64,
     /// Whose sample it is.
@@ -125,7 +125,7 @@ impl Worker for PathWorker<'_> {
         self.alive.extend((0u32..).zip(&*samples).map(|(sample, drawn)| Alive {
             throughput: Rgb::ONE,
             pdf: f64::INFINITY,
-            environment_pdf: 0.0,
+            from: Receiver::free(DVec3::ZERO),
             time: drawn.ray.time,
             sample,
         }));
@@ -151,15 +151,19 @@ impl PathWorker<'_> {
             let (ray, path, hit) = (self.rays[i], self.alive[i], self.hits[i]);
             let arriving = &mut radiance[path.sample as usize];
             if !hit.is_hit() {
-                let weight = power_heuristic(path.pdf, path.environment_pdf);
-                *arriving += path.throughput * self.scene.lights().environment(ray.direction) * weight;
+                let lights = self.scene.lights();
+                let weight = power_heuristic(path.pdf, lights.outside_pdf(&path.from, ray.direction));
+                *arriving += path.throughput * lights.outside(ray.direction) * weight;
                 continue;
             }
             let surface = self.scene.geometry().surface(&ray, &hit);
             let cosine = -ray.direction.dot(surface.normal);
-            let emission = self.scene.emission_at(&surface).towards(cosine, &Default::default());
+            let emission = self.scene.emission_at(&surface);
+            let needs = emission.needs();
+            let point = ShadingPoint::new(self.scene.geometry(), &ray, &hit, &surface, needs, 0.0);
+            let emission = emission.towards(cosine, &point.texture);
             if emission != Rgb::ZERO {
-                let light_pdf = self.scene.lights().surface_pdf(self.scene.geometry(), &ray, &hit, cosine);
+                let light_pdf = self.scene.lights().surface_pdf(self.scene.geometry(), &path.from, &ray, &hit, cosine);
                 *arriving += path.throughput * emission * power_heuristic(path.pdf, light_pdf);
             }
             if last {
@@ -186,8 +190,7 @@ impl PathWorker<'_> {
         }
         let Some(light) = self.scene.lights().sample(
             self.scene.geometry(),
-            here.position(),
-            here.shading_normal(),
+            &Receiver { position: here.position(), normal: here.shading_normal() },
             sampler.one(dimensions.light_choice()),
             sampler.two(dimensions.light_point()),
         ) else {
@@ -214,7 +217,7 @@ impl PathWorker<'_> {
         let next = here.sample(|| sampler.one(dimensions.scattering_choice()), u)?;
         path.throughput *= next.weight;
         path.pdf = next.pdf;
-        path.environment_pdf = self.scene.lights().environment_pdf(here.shading_normal(), next.direction);
+        path.from = Receiver { position: here.position(), normal: here.shading_normal() };
         if bounce + 1 >= self.path.roulette_depth.min(Path::ROULETTE_AT_LATEST) {
             let survival = Path::survival(path.throughput);
             if sampler.one(dimensions.roulette()) >= survival {
@@ -251,9 +254,8 @@ fn power_heuristic(pdf: f64, other: f64) -> f64 {
 mod tests {
     use super::*;
     use crate::accel::{Accelerator, BruteForce};
-    use crate::math::DVec3;
     use crate::scene::fixtures::{furnace, inward_box, rectangle, scene, shape};
-    use crate::scene::{Copies, Geometry, Group, Matrix, PointLight, SceneDescription, Shape};
+    use crate::scene::{ConstantEnvironment, Copies, Geometry, Group, Matrix, PointLight, SceneDescription, Shape};
     use crate::simd::Level;
     use std::sync::Arc;
 
@@ -398,10 +400,11 @@ mod tests {
         let floor = || vec![shape(rectangle([-9.0, -9.0, 0.0], [18.0, 0.0, 0.0], [0.0, 18.0, 0.0]), [0.5; 3], 0.0)];
         let ray = Ray::new(DVec3::new(0.0, 0.3, 0.4), DVec3::new(0.0, -0.6, -0.8));
         let point = PointLight { position: DVec3::new(1.0, 0.0, 1.0), intensity: Rgb::ONE };
-        let points = scene(SceneDescription { shapes: floor(), points: vec![point], ..Default::default() });
+        let points = scene(SceneDescription { shapes: floor(), lights: vec![Arc::new(point)] });
         let expected = 0.5 * 0.353_553_390_593_273_73 / std::f64::consts::PI;
         assert_radiance(&points, &Path::default(), ray, 10, expected);
-        let sky = scene(SceneDescription { shapes: floor(), environment: Rgb::splat(2.0), ..Default::default() });
+        let sky = Arc::new(ConstantEnvironment { radiance: Rgb::splat(2.0) });
+        let sky = scene(SceneDescription { shapes: floor(), lights: vec![sky] });
         assert_radiance(&sky, &Path::default(), ray, 1000, 1.0);
         // A ray that meets nothing sees the sky itself.
         assert_radiance(&sky, &Path::default(), Ray::new(DVec3::Z, DVec3::Z), 2, 2.0);

@@ -9,6 +9,7 @@ use super::query::CompiledScene;
 use super::rays::{Parts, answer, chunks, each, share};
 use crate::math::{DVec3, Hit, Ray};
 use crate::optics::Rgb;
+use crate::scene::lights::Receiver;
 use crate::scene::{Interaction, Scene};
 
 type Vectors<'py> = Bound<'py, PyArrayDyn<f64>>;
@@ -36,7 +37,7 @@ struct Entry {
 impl Entry {
     fn new(scene: &Scene, ray: Ray, hit: Hit) -> Self {
         if !hit.is_hit() {
-            let emission = scene.lights().environment(ray.direction);
+            let emission = scene.lights().outside(ray.direction);
             return Self { ray, hit, here: None, emission, cosine: 0.0 };
         }
         let surface = scene.geometry().surface(&ray, &hit);
@@ -45,6 +46,11 @@ impl Entry {
         let here = Interaction::new(scene, &ray, &hit, surface, 0.0);
         Self { ray, hit, here: Some(Box::new(here)), emission, cosine }
     }
+}
+
+/// Where light is asked for.
+fn receiver(here: &Interaction) -> Receiver {
+    Receiver { position: here.position(), normal: here.shading_normal() }
 }
 
 /// An array with a row a ray, each made by its own function call.
@@ -265,8 +271,7 @@ impl Interactions {
         let scene = self.scene.get().scene();
         let draw = |i: usize| {
             let here = self.entries[i].here.as_ref()?;
-            let light =
-                scene.lights().sample(scene.geometry(), here.position(), here.shading_normal(), choice[i], u[i])?;
+            let light = scene.lights().sample(scene.geometry(), &receiver(here), choice[i], u[i])?;
             let ray = match &light.source {
                 Some(source) => here.departure().segment(source),
                 None => here.departure().ray(light.direction),
@@ -290,9 +295,9 @@ impl Interactions {
             let Entry { ray, hit, here, emission, cosine } = &self.entries[i];
             let Some(from) = &before.entries[i].here else { return [0.0] };
             [match here {
-                None => lights.environment_pdf(from.shading_normal(), ray.direction),
+                None => lights.outside_pdf(&receiver(from), ray.direction),
                 Some(_) if *emission == Rgb::ZERO => 0.0,
-                Some(_) => lights.surface_pdf(geometry, ray, hit, *cosine),
+                Some(_) => lights.surface_pdf(geometry, &receiver(from), ray, hit, *cosine),
             }]
         })
     }

@@ -11,6 +11,7 @@ mod freeform;
 mod info;
 mod instances;
 mod interactions;
+mod lights;
 mod points;
 mod query;
 mod random;

@@ -30,7 +30,10 @@ pub use first_hits::FirstHits;
 pub use geometry::{Geometry, Mesh, Surface, SurfacePoint, Vertices};
 pub use group::Group;
 pub use interaction::{Interaction, Scattered};
-pub use lights::{Emission, LightSample, Lights, PointLight};
+pub use lights::{
+    ConstantEnvironment, DirectionalLight, Emission, EnvironmentMap, Light, LightBounds, LightSample, Lights, Picture,
+    PointLight, Projector, Reach, Receiver, SpotLight, SunSky,
+};
 pub use materials::{DiffuseMaterial, Material};
 pub use points::HitPoint;
 pub use shading::{Footprint, ShadingPoint};
