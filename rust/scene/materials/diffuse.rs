@@ -1,7 +1,7 @@
 //! A matt surface.
 
 use super::{Material, Scattering};
-use crate::optics::{Diffuse, Rgb};
+use crate::optics::{Bsdf, Diffuse, Rgb};
 use crate::scene::ShadingPoint;
 use crate::scene::textures::{Needs, Value};
 
@@ -23,6 +23,13 @@ impl Material for DiffuseMaterial {
     #[inline]
     fn scattering(&self, at: &ShadingPoint) -> Scattering {
         Diffuse { reflectance: self.reflectance.at(&at.texture) }.into()
+    }
+
+    fn constant(&self) -> Option<Bsdf> {
+        match self.reflectance {
+            Value::Constant(reflectance) => Some(Diffuse { reflectance }.into()),
+            Value::Texture(_) => None,
+        }
     }
 
     fn needs(&self) -> Needs {

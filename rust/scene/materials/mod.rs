@@ -9,6 +9,7 @@ pub use scattering::Scattering;
 use super::ShadingPoint;
 use super::textures::{Needs, TexturePoint};
 use crate::math::DVec3;
+use crate::optics::Bsdf;
 use std::fmt::Debug;
 
 /// What a surface is made of: says how light is scattered at each of its points.
@@ -18,6 +19,11 @@ pub trait Material: Debug + Send + Sync {
 
     /// What it must know of a point.
     fn needs(&self) -> Needs;
+
+    /// How it scatters, where that is the same at every point, on both sides and in every medium.
+    fn constant(&self) -> Option<Bsdf> {
+        None
+    }
 
     /// What of it cannot be, in a few words; `Ok` if all can.
     fn validate(&self) -> Result<(), String>;
