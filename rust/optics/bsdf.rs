@@ -1,17 +1,49 @@
 //! What scatters light at a point: one interface over all kinds.
 
-use super::{Diffuse, Rgb};
+use super::{
+    BlinnPhong, Coated, Conductor, Dielectric, Diffuse, MetallicRough, Mirror, Null, OrenNayar, Phong, Rgb,
+    ThinDielectric, Transparent,
+};
 use glam::DVec3;
 
-/// The bidirectional scattering distribution function at a point of a surface.
+/// What a kind of scattering is asked.
 ///
-/// Directions are unit vectors in the shading frame, z along the normal, both pointing away from the surface: `wo`
-/// to where the light goes, `wi` to where it comes from. A kind of scattering is one variant and one file; a batch
-/// calls it through a `match`, which predicts well and inlines, rather than through a pointer.
-#[derive(Clone, Copy, Debug)]
-pub enum Bsdf {
-    /// Lambert's: equally bright from everywhere.
-    Diffuse(Diffuse),
+/// Directions are unit vectors in the shading frame, z along the normal, both pointing away from the surface: `wo` to
+/// where the light goes, `wi` to where it comes from. A kind that only reflects does so on both sides. One that
+/// transmits knows by the sign of `wo.z` on which side it is: above (z > 0) or below.
+///
+/// What scatters is radiance: where light crosses to another index of refraction, what is evaluated and every weight
+/// have the factor 1 / η² in them, with η the index where the light comes from over that where it goes to
+/// (Veach, "Robust Monte Carlo Methods for Light Transport Simulation", 1997, 5.2).
+pub trait Scatter {
+    /// The scattering function times |cos θ| of `wi`, without what has a single direction.
+    fn evaluate(&self, wo: DVec3, wi: DVec3) -> Rgb;
+
+    /// The density in solid angle with which [`Scatter::sample`] draws `wi`, without what has a single direction.
+    fn pdf(&self, wo: DVec3, wi: DVec3) -> f64;
+
+    /// Draws where the light comes from: `choice`, uniform in [0, 1), among the parts that scattering has (only asked
+    /// for when it has several), `u` for the direction. `None` if the draw scatters nothing.
+    fn sample(&self, wo: DVec3, choice: impl FnOnce() -> f64, u: [f64; 2]) -> Option<BsdfSample>;
+
+    /// About the share of white light that is scattered, for pictures of it: that of even light where the kind knows it.
+    fn albedo(&self) -> Rgb;
+
+    /// Whether all of it goes in single directions, so that [`Scatter::evaluate`] is 0 everywhere.
+    fn is_delta(&self) -> bool {
+        false
+    }
+
+    /// Whether light goes through to the other side.
+    fn transmits(&self) -> bool {
+        false
+    }
+
+    /// How rough its sharpest part is, as the α of a microfacet distribution: 0 for single directions, 1 for what is
+    /// about as wide as a hemisphere.
+    fn roughness(&self) -> f64 {
+        1.0
+    }
 }
 
 /// A direction drawn from a [`Bsdf`].
@@ -24,37 +56,126 @@ pub struct BsdfSample {
     /// Density in solid angle. Infinite where a single direction has all of it, as with a mirror: weighed against any
     /// other way to find this direction, such a sample then gets all the weight.
     pub pdf: f64,
+    /// The index of refraction on the side of `wi` over that on the side of `wo`: 1 unless light is refracted. A weight
+    /// has 1 / eta² in it, which Russian roulette should not take for light lost.
+    pub eta: f64,
 }
 
-impl Bsdf {
-    /// The scattering function times |cos θ| of `wi`, without what has a single direction.
+impl BsdfSample {
+    /// One that stays in its medium.
     #[inline]
-    pub fn evaluate(&self, wo: DVec3, wi: DVec3) -> Rgb {
-        match self {
-            Self::Diffuse(diffuse) => diffuse.evaluate(wo, wi),
-        }
+    pub(super) fn new(wi: DVec3, weight: Rgb, pdf: f64) -> Self {
+        Self { wi, weight, pdf, eta: 1.0 }
     }
 
-    /// The density in solid angle with which [`Bsdf::sample`] draws `wi`, without what has a single direction.
+    /// A single direction, in the same medium.
     #[inline]
-    pub fn pdf(&self, wo: DVec3, wi: DVec3) -> f64 {
-        match self {
-            Self::Diffuse(diffuse) => diffuse.pdf(wo, wi),
-        }
-    }
-
-    /// Draws where the light comes from: `choice` among the parts that scattering has (only asked for when it has
-    /// several), `u` for the direction. `None` if the draw scatters nothing.
-    #[inline]
-    pub fn sample(&self, wo: DVec3, _choice: impl FnOnce() -> f64, u: [f64; 2]) -> Option<BsdfSample> {
-        match self {
-            Self::Diffuse(diffuse) => diffuse.sample(wo, u),
-        }
+    pub(super) fn delta(wi: DVec3, weight: Rgb) -> Self {
+        Self::new(wi, weight, f64::INFINITY)
     }
 }
 
-impl From<Diffuse> for Bsdf {
-    fn from(diffuse: Diffuse) -> Self {
-        Self::Diffuse(diffuse)
-    }
+/// Makes [`Bsdf`] of its kinds: each a type of the same name that implements [`Scatter`].
+macro_rules! kinds {
+    ($($(#[$doc:meta])* $kind:ident,)+) => {
+        /// The bidirectional scattering distribution function at a point of a surface: one of its kinds.
+        ///
+        /// A kind is one file and one line of the list in this one. A batch calls it through a `match`, which predicts well
+        /// and inlines, rather than through a pointer. [`Scatter`] says what is asked of it, and in which frame.
+        #[derive(Clone, Copy, Debug)]
+        pub enum Bsdf {
+            $($(#[$doc])* $kind($kind),)+
+        }
+
+        $(impl From<$kind> for Bsdf {
+            fn from(kind: $kind) -> Self {
+                Self::$kind(kind)
+            }
+        })+
+
+        impl Bsdf {
+            /// See [`Scatter::evaluate`].
+            #[inline]
+            pub fn evaluate(&self, wo: DVec3, wi: DVec3) -> Rgb {
+                match self {
+                    $(Self::$kind(kind) => kind.evaluate(wo, wi),)+
+                }
+            }
+
+            /// See [`Scatter::pdf`].
+            #[inline]
+            pub fn pdf(&self, wo: DVec3, wi: DVec3) -> f64 {
+                match self {
+                    $(Self::$kind(kind) => kind.pdf(wo, wi),)+
+                }
+            }
+
+            /// See [`Scatter::sample`].
+            #[inline]
+            pub fn sample(&self, wo: DVec3, choice: impl FnOnce() -> f64, u: [f64; 2]) -> Option<BsdfSample> {
+                match self {
+                    $(Self::$kind(kind) => kind.sample(wo, choice, u),)+
+                }
+            }
+
+            /// See [`Scatter::albedo`].
+            #[inline]
+            pub fn albedo(&self) -> Rgb {
+                match self {
+                    $(Self::$kind(kind) => kind.albedo(),)+
+                }
+            }
+
+            /// See [`Scatter::is_delta`].
+            #[inline]
+            pub fn is_delta(&self) -> bool {
+                match self {
+                    $(Self::$kind(kind) => kind.is_delta(),)+
+                }
+            }
+
+            /// See [`Scatter::transmits`].
+            #[inline]
+            pub fn transmits(&self) -> bool {
+                match self {
+                    $(Self::$kind(kind) => kind.transmits(),)+
+                }
+            }
+
+            /// See [`Scatter::roughness`].
+            #[inline]
+            pub fn roughness(&self) -> f64 {
+                match self {
+                    $(Self::$kind(kind) => kind.roughness(),)+
+                }
+            }
+        }
+    };
+}
+
+kinds! {
+    /// Lambert's: equally bright from everywhere.
+    Diffuse,
+    /// Rough and matt: brighter towards the light.
+    OrenNayar,
+    /// Reflects into one direction.
+    Mirror,
+    /// Metal, smooth or rough.
+    Conductor,
+    /// Glass or water, smooth or rough: reflects and refracts.
+    Dielectric,
+    /// A pane of glass without thickness.
+    ThinDielectric,
+    /// Diffuse under a dielectric coat: plastic, varnish, glaze.
+    Coated,
+    /// Diffuse and a lobe about the mirror direction.
+    Phong,
+    /// Diffuse and a lobe about the half vector.
+    BlinnPhong,
+    /// The metallic-roughness model of glTF.
+    MetallicRough,
+    /// Lets light straight through.
+    Transparent,
+    /// Scatters nothing.
+    Null,
 }

@@ -1,6 +1,6 @@
 //! Lambert's law.
 
-use super::{BsdfSample, Rgb};
+use super::{BsdfSample, Rgb, Scatter};
 use crate::sampling::warp;
 use glam::DVec3;
 use std::f64::consts::FRAC_1_PI;
@@ -13,29 +13,31 @@ pub struct Diffuse {
     pub reflectance: Rgb,
 }
 
-impl Diffuse {
-    /// See [`super::Bsdf::evaluate`].
+impl Scatter for Diffuse {
     #[inline]
-    pub fn evaluate(&self, wo: DVec3, wi: DVec3) -> Rgb {
+    fn evaluate(&self, wo: DVec3, wi: DVec3) -> Rgb {
         if wo.z * wi.z > 0.0 { self.reflectance * (wi.z.abs() * FRAC_1_PI) } else { Rgb::ZERO }
     }
 
-    /// See [`super::Bsdf::pdf`].
     #[inline]
-    pub fn pdf(&self, wo: DVec3, wi: DVec3) -> f64 {
+    fn pdf(&self, wo: DVec3, wi: DVec3) -> f64 {
         if wo.z * wi.z > 0.0 { wi.z.abs() * FRAC_1_PI } else { 0.0 }
     }
 
-    /// See [`super::Bsdf::sample`]: by the cosine, so that every draw weighs the reflectance.
+    /// By the cosine, so that every draw weighs the reflectance.
     #[inline]
-    pub fn sample(&self, wo: DVec3, u: [f64; 2]) -> Option<BsdfSample> {
+    fn sample(&self, wo: DVec3, _choice: impl FnOnce() -> f64, u: [f64; 2]) -> Option<BsdfSample> {
         if wo.z == 0.0 || self.reflectance == Rgb::ZERO {
             return None;
         }
         let mut wi = warp::cosine_hemisphere(u);
         let pdf = warp::cosine_hemisphere_pdf(wi);
         wi.z = wi.z.copysign(wo.z);
-        Some(BsdfSample { wi, weight: self.reflectance, pdf })
+        Some(BsdfSample::new(wi, self.reflectance, pdf))
+    }
+
+    fn albedo(&self) -> Rgb {
+        self.reflectance
     }
 }
 
@@ -99,6 +101,6 @@ mod tests {
 
     #[test]
     fn black_ends_a_path() {
-        assert!(Diffuse { reflectance: Rgb::ZERO }.sample(ABOVE, [0.3, 0.3]).is_none());
+        assert!(Diffuse { reflectance: Rgb::ZERO }.sample(ABOVE, || 0.0, [0.3, 0.3]).is_none());
     }
 }

@@ -65,7 +65,7 @@ impl<'a> Exposure<'a> {
     fn take_bench(&self) -> Bench<'a> {
         let idle = self.idle.lock().unwrap_or_else(PoisonError::into_inner).pop();
         idle.unwrap_or_else(|| Bench {
-            worker: self.integrator.worker(self.scene),
+            worker: self.integrator.worker(self.scene, Default::default()),
             samples: Vec::new(),
             radiance: Vec::new(),
         })

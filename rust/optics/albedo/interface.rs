@@ -1,0 +1,111 @@
+//! What facets between two dielectrics lose.
+
+use super::tables::interface::{DENSE, DENSE_AVERAGE, THIN, THIN_AVERAGE};
+use super::{averages, mirror_loss, of_alpha, of_alpha_log, of_grazing, volume};
+use crate::optics::{Ggx, fresnel};
+use glam::DVec3;
+
+/// Sizes of the tables: grazing by α by index, and the averages by α by index.
+pub(super) const SIZES: [usize; 3] = [24, 11, 14];
+pub(super) const AVERAGE_SIZES: [usize; 2] = [16, 20];
+
+/// A variable from 0 to 1 for an index of refraction ≥ 1 at a roughness: the cosine at which reflection sets in towards
+/// grazing is about √(η² − 1), and it matters on the scale of α.
+#[inline]
+pub(super) fn of_index(alpha: f64, eta: f64) -> f64 {
+    let w = ((eta - 1.0) * (eta + 1.0)).max(0.0).sqrt();
+    w / (w + alpha)
+}
+
+/// A rough interface between two dielectrics: what it loses of light from either side in one scattering, and how that
+/// light is given back so that nothing is lost and nothing depends on which way the light goes.
+#[derive(Clone, Copy, Debug)]
+pub struct Interface {
+    ggx: Ggx,
+    /// The isotropic roughness that the tables are asked for.
+    alpha: f64,
+    /// How much of an index of refraction ≥ 1 there is at this roughness.
+    index: f64,
+    /// Above and below the surface.
+    sides: [Side; 2],
+}
+
+/// What holds on one side.
+#[derive(Clone, Copy, Debug)]
+struct Side {
+    dense: bool,
+    /// Mean loss over even light.
+    average: f64,
+    /// The share of what is lost that is given back on the other side.
+    crosses: f64,
+}
+
+impl Interface {
+    /// With `eta` the index below over that above.
+    pub fn new(ggx: Ggx, eta: f64) -> Self {
+        let [a, b] = ggx.alpha();
+        let alpha = if a == b { a } else { (0.5 * (a * a + b * b)).sqrt() };
+        let dense = eta.max(1.0 / eta);
+        let index = of_index(alpha, dense);
+        let average = |dense: bool| {
+            let table = if dense { &DENSE_AVERAGE } else { &THIN_AVERAGE };
+            averages(table, AVERAGE_SIZES, [of_alpha_log(alpha), index]) * alpha * alpha
+        };
+        let averages = [average(eta < 1.0), average(eta > 1.0)];
+        // A share t of a loss L̄ that crosses from side a to b is reciprocal if na² ta L̄a = nb² tb L̄b (Kulla and Conty,
+        // "Revisiting Physically Based Shading at Imageworks", 2017). A smooth interface lets through 1 − F̄, for which
+        // na² (1 − F̄a) = nb² (1 − F̄b): so t = (1 − F̄) / L̄ times what keeps both at most 1 − F̄.
+        let least = averages[0].min(averages[1]);
+        let side = |below: bool| {
+            let (own, average) = (if below { 1.0 / eta } else { eta }, averages[usize::from(below)]);
+            let through = 1.0 - fresnel::dielectric_average(own);
+            Side { dense: own < 1.0, average, crosses: if average > 0.0 { through * least / average } else { 0.0 } }
+        };
+        Self { ggx, alpha, index, sides: [side(false), side(true)] }
+    }
+
+    #[inline]
+    fn side(&self, w: DVec3) -> &Side {
+        &self.sides[usize::from(w.z < 0.0)]
+    }
+
+    /// The share of light from `w` that is neither reflected nor refracted away by one facet. Within 0.004 of the
+    /// integral where both α are the same.
+    #[inline]
+    pub fn loss(&self, w: DVec3) -> f64 {
+        let table = if self.side(w).dense { &DENSE } else { &THIN };
+        let loss = volume(table, SIZES, [of_grazing(&self.ggx, w), of_alpha(self.alpha), self.index]);
+        let [a, b] = self.ggx.alpha();
+        if a == b {
+            return loss;
+        }
+        // As much more or less as for mirrors.
+        let isotropic = Ggx::new([self.alpha; 2]);
+        let x = w.z.abs() / self.ggx.stretch(w);
+        let tangent = ((1.0 - x) * (1.0 + x)).max(0.0).sqrt();
+        let (sin, cos) = (tangent, x * self.alpha);
+        let same = DVec3::new(sin, 0.0, cos) / (sin * sin + cos * cos).sqrt();
+        (loss * mirror_loss(&self.ggx, w) / mirror_loss(&isotropic, same).max(1e-9)).min(1.0)
+    }
+
+    /// The share of what is lost on the side of `w` that is given back on the other side.
+    #[inline]
+    pub fn crossing(&self, w: DVec3) -> f64 {
+        self.side(w).crosses
+    }
+
+    /// What is given back to `wo` of light from `wi`, per solid angle, with the cosine of `wi` in it and without the 1 / η²
+    /// of radiance. `loss` is that of `wo`.
+    #[inline]
+    pub fn given_back(&self, loss: f64, wo: DVec3, wi: DVec3) -> f64 {
+        loss * self.given_back_density(wo, wi)
+    }
+
+    /// The density over the sphere with which lost light is given back.
+    #[inline]
+    pub fn given_back_density(&self, wo: DVec3, wi: DVec3) -> f64 {
+        let (from, to) = (self.side(wo), self.side(wi));
+        let share = if wo.z * wi.z > 0.0 { 1.0 - from.crosses } else { from.crosses };
+        if to.average > 0.0 { share * self.loss(wi) * wi.z.abs() / (std::f64::consts::PI * to.average) } else { 0.0 }
+    }
+}

@@ -1,0 +1,266 @@
+//! The integrals that the tables hold, the writing of the tables, and the check that they hold them.
+
+use super::tables;
+use super::{coat, interface, mirror, schlick};
+use super::{of_alpha, of_alpha_log};
+use crate::optics::{Ggx, fresnel};
+use glam::DVec3;
+use std::f64::consts::{FRAC_PI_2, PI};
+
+/// The mean over the facets that `w` sees of a function of their normal, by midpoints. Half the azimuths are enough by
+/// symmetry where `w` lies in the plane of x and z; the tail of the distribution is spread out: 1 − u = s².
+fn mean_over_facets(ggx: &Ggx, w: DVec3, steps: [usize; 2], value: impl Fn(DVec3) -> f64) -> f64 {
+    let mut sum = 0.0;
+    for i in 0..steps[0] {
+        // A midpoint rule in θ of s = sin²(θ / 2) puts points where lobes meet the horizon, at small s.
+        let t = (i as f64 + 0.5) / steps[0] as f64;
+        let (s, ds) = (t * t, 2.0 * t);
+        for j in 0..steps[1] {
+            let u = [(j as f64 + 0.5) / steps[1] as f64 * if w.y == 0.0 { 0.5 } else { 1.0 }, 1.0 - s * s];
+            sum += 2.0 * s * ds * value(ggx.sample_visible(w, u));
+        }
+    }
+    sum / (steps[0] * steps[1]) as f64
+}
+
+/// G₂ / G₁(wo) of a reflection, 0 below the horizon.
+fn reflected(ggx: &Ggx, wo: DVec3, h: DVec3) -> f64 {
+    let wi = h * (2.0 * wo.dot(h)) - wo;
+    if wi.z > 0.0 { ggx.reflection_geometry(wo, wi) * 2.0 * (wo.z + ggx.stretch(wo)) } else { 0.0 }
+}
+
+/// G₂ / G₁(wo) of a refraction, 0 if it ends on the side of `wo`.
+fn refracted(ggx: &Ggx, wo: DVec3, h: DVec3, eta: f64) -> f64 {
+    match fresnel::refract(wo, h, eta) {
+        Some(wi) if wi.z < 0.0 => (ggx.masking(wi) / ggx.masking(wo)).min(1.0),
+        _ => 0.0,
+    }
+}
+
+const STEPS: [usize; 2] = [96, 48];
+
+/// 1 − what perfect mirrors reflect once.
+pub(super) fn mirror_loss(ggx: &Ggx, w: DVec3) -> f64 {
+    1.0 - mean_over_facets(ggx, w, STEPS, |h| reflected(ggx, w, h))
+}
+
+/// 1 − what facets of index `eta` reflect and refract once; `w` is above, where the index is 1.
+pub(super) fn interface_loss(ggx: &Ggx, eta: f64, w: DVec3) -> f64 {
+    1.0 - mean_over_facets(ggx, w, STEPS, |h| {
+        let f = fresnel::dielectric(w.dot(h), eta);
+        f * reflected(ggx, w, h) + (1.0 - f) * refracted(ggx, w, h, eta)
+    })
+}
+
+/// The mean of a function of the facets' cosine over what is reflected once.
+fn reflected_mean(ggx: &Ggx, w: DVec3, value: impl Fn(f64) -> f64) -> f64 {
+    let whole = mean_over_facets(ggx, w, STEPS, |h| reflected(ggx, w, h));
+    mean_over_facets(ggx, w, STEPS, |h| reflected(ggx, w, h) * value(w.dot(h))) / whole
+}
+
+/// The integral over even light, ∫ f(μ) 2μ dμ, of a function that changes on the scale of `alpha`. The variable
+/// t = μ / (μ + α), spread to its ends, has that scale in the middle.
+fn even_light(alpha: f64, f: impl Fn(DVec3) -> f64) -> f64 {
+    let steps = 400;
+    let top = 1.0 / (1.0 + alpha);
+    let sum: f64 = (0..steps)
+        .map(|i| {
+            let v = (i as f64 + 0.5) / steps as f64;
+            let (t, dt) = (top * v * v * (3.0 - 2.0 * v), top * 6.0 * v * (1.0 - v));
+            let (mu, dmu) = (alpha * t / (1.0 - t), alpha / ((1.0 - t) * (1.0 - t)) * dt);
+            f(direction(mu.min(1.0))) * 2.0 * mu * dmu
+        })
+        .sum();
+    sum / steps as f64
+}
+
+fn direction(cosine: f64) -> DVec3 {
+    DVec3::new(((1.0 - cosine) * (1.0 + cosine)).sqrt(), 0.0, cosine)
+}
+
+/// The value at which an increasing function from [low, high] takes the value `at`.
+fn inverse(low: f64, high: f64, at: f64, f: impl Fn(f64) -> f64) -> f64 {
+    let (mut low, mut high) = (low, high);
+    for _ in 0..200 {
+        let middle = 0.5 * (low + high);
+        if f(middle) < at { low = middle } else { high = middle }
+    }
+    0.5 * (low + high)
+}
+
+fn entry(i: usize, count: usize) -> f64 {
+    i as f64 / (count - 1) as f64
+}
+
+/// The roughness at a table's entry; that of none at all is taken where nothing changes any more.
+fn alpha(i: usize, count: usize) -> f64 {
+    inverse(0.0, 1.0, entry(i, count), of_alpha).max(1e-4)
+}
+
+fn alpha_log(i: usize, count: usize) -> f64 {
+    inverse(Ggx::SMOOTH, 1.0, entry(i, count), of_alpha_log)
+}
+
+/// The direction in the plane of x and z of a table's entry for grazing.
+fn grazing(ggx: &Ggx, i: usize, count: usize) -> DVec3 {
+    let x = inverse(0.0, 1.0, entry(i, count), |x| 0.5 * (x.sqrt() + x * x * x)).clamp(1e-5, 1.0);
+    let (sin, cos) = (((1.0 - x) * (1.0 + x)).max(0.0).sqrt(), x * ggx.alpha()[0]);
+    DVec3::new(sin, 0.0, cos).normalize()
+}
+
+/// The index of a table's entry at a roughness.
+fn index(alpha: f64, i: usize, count: usize) -> f64 {
+    let y = entry(i, count).min(1.0 - 1e-9);
+    let w = alpha * y / (1.0 - y);
+    (1.0 + w * w).sqrt()
+}
+
+fn coat_index(i: usize, count: usize) -> f64 {
+    let root = entry(i, count).powi(2).min(1.0 - 1e-9);
+    (1.0 + root) / (1.0 - root)
+}
+
+/// The entries of the tables, by number.
+mod entries {
+    use super::*;
+
+    pub fn isotropic(k: usize) -> f64 {
+        let [n, m] = mirror::ISOTROPIC_SIZES;
+        let ggx = Ggx::new([alpha(k % m, m); 2]);
+        mirror_loss(&ggx, grazing(&ggx, k / m, n))
+    }
+
+    pub fn anisotropic(k: usize) -> f64 {
+        let [n, m, l] = mirror::ANISOTROPIC_SIZES;
+        let ggx = Ggx::new([alpha(k / l % m, m), alpha(k % l, l)]);
+        mirror_loss(&ggx, grazing(&ggx, k / (l * m), n))
+    }
+
+    pub fn loss(k: usize, dense: bool) -> f64 {
+        let [n, m, l] = interface::SIZES;
+        let a = alpha(k / l % m, m);
+        let (ggx, eta) = (Ggx::new([a; 2]), index(a, k % l, l));
+        interface_loss(&ggx, if dense { 1.0 / eta } else { eta }, grazing(&ggx, k / (l * m), n))
+    }
+
+    pub fn coat_mean(k: usize) -> f64 {
+        let [n, m, l] = coat::SIZES;
+        let ggx = Ggx::new([alpha(k / l % m, m); 2]);
+        let eta = coat_index(k % l, l);
+        let w = direction(entry(k / (l * m), n).powi(2).clamp(1e-7, 1.0));
+        reflected_mean(&ggx, w, |c| fresnel::dielectric(c, eta))
+    }
+
+    pub fn schlick_mean(k: usize) -> f64 {
+        let [n, m] = schlick::SIZES;
+        let ggx = Ggx::new([alpha(k % m, m); 2]);
+        let w = direction(entry(k / m, n).powi(2).clamp(1e-7, 1.0));
+        reflected_mean(&ggx, w, fresnel::schlick_weight)
+    }
+
+    // Averages are those of what the tables give between their entries, so that what is given back sums to what is lost.
+
+    pub fn mirror_average(k: usize) -> f64 {
+        let [m, l] = mirror::AVERAGE_SIZES;
+        let alpha = [alpha_log(k / l, m), alpha_log(k % l, l)];
+        let ggx = Ggx::new(alpha);
+        let [a, b] = alpha;
+        let azimuths = if a == b { 1 } else { 24 };
+        let sum: f64 = (0..azimuths)
+            .map(|i| {
+                let (sin, cos) = ((i as f64 + 0.5) / azimuths as f64 * FRAC_PI_2).sin_cos();
+                let scale = (a * a * cos * cos + b * b * sin * sin).sqrt();
+                even_light(scale, |w| super::super::mirror_loss(&ggx, DVec3::new(w.x * cos, w.x * sin, w.z)))
+            })
+            .sum();
+        sum / azimuths as f64 / (0.5 * (a * a + b * b))
+    }
+
+    pub fn loss_average(k: usize, dense: bool) -> f64 {
+        let [m, l] = interface::AVERAGE_SIZES;
+        let a = alpha_log(k / l, m);
+        let interface = super::super::Interface::new(Ggx::new([a; 2]), index(a, k % l, l));
+        even_light(a, |w| interface.loss(if dense { -w } else { w })) / (a * a)
+    }
+
+    pub fn coat_average(k: usize) -> f64 {
+        let [m, l] = coat::AVERAGE_SIZES;
+        let (a, eta) = (alpha(k / l, m), coat_index(k % l, l));
+        let ggx = Ggx::new([a; 2]);
+        even_light(0.1, |w| super::super::coat(a, eta, w.z) * (1.0 - super::super::mirror_loss(&ggx, w)))
+    }
+
+    pub fn schlick_average(k: usize) -> f64 {
+        let a = alpha(k, schlick::AVERAGE_SIZE);
+        let ggx = Ggx::new([a; 2]);
+        even_light(0.1, |w| super::super::schlick_share(a, w.z) * (1.0 - super::super::mirror_loss(&ggx, w)))
+    }
+}
+
+fn shares(name: &str, doc: &str, count: usize, value: impl Fn(usize) -> f64) -> String {
+    let numbers: Vec<String> =
+        (0..count).map(|k| ((value(k).clamp(0.0, 1.0) * 65535.0).round() as u16).to_string()).collect();
+    format!("/// {doc}\npub static {name}: [u16; {count}] = [{}];\n", numbers.join(", "))
+}
+
+fn means(name: &str, doc: &str, count: usize, value: impl Fn(usize) -> f64) -> String {
+    let numbers: Vec<String> = (0..count).map(|k| format!("{:.5}", value(k))).collect();
+    format!("/// {doc}\npub static {name}: [f64; {count}] = [{}];\n", numbers.join(", "))
+}
+
+/// Writes the tables. What averages are made of has to be there and compiled before them: run it twice.
+#[test]
+#[ignore = "writes source files"]
+fn write_tables() {
+    let write = |name: &str, what: &str, parts: &[String]| {
+        let path = format!("{}/rust/optics/albedo/tables/{name}.rs", env!("CARGO_MANIFEST_DIR"));
+        std::fs::write(path, format!("//! {what}\n\n{}", parts.join("\n"))).unwrap();
+    };
+    let product = |sizes: &[usize]| sizes.iter().product::<usize>();
+    write(
+        "mirror",
+        "Losses of perfect mirrors, in 65535ths.",
+        &[
+            shares("ISOTROPIC", "By grazing and α.", product(&mirror::ISOTROPIC_SIZES), entries::isotropic),
+            shares(
+                "ANISOTROPIC",
+                "By grazing, α along and α across.",
+                product(&mirror::ANISOTROPIC_SIZES),
+                entries::anisotropic,
+            ),
+            means(
+                "AVERAGE",
+                "Means over even light, over the mean of α².",
+                product(&mirror::AVERAGE_SIZES),
+                entries::mirror_average,
+            ),
+        ],
+    );
+    let (size, average) = (product(&interface::SIZES), product(&interface::AVERAGE_SIZES));
+    write(
+        "interface",
+        "Losses of facets between dielectrics, in 65535ths.",
+        &[
+            shares("THIN", "From the thinner side, by grazing, α and index.", size, |k| entries::loss(k, false)),
+            shares("DENSE", "From the denser side.", size, |k| entries::loss(k, true)),
+            means("THIN_AVERAGE", "Means over even light, over α².", average, |k| entries::loss_average(k, false)),
+            means("DENSE_AVERAGE", "Those from the denser side.", average, |k| entries::loss_average(k, true)),
+        ],
+    );
+    write(
+        "coat",
+        "Reflectances of rough coats, in 65535ths.",
+        &[
+            shares("MEAN", "By √cos θ, α and index.", product(&coat::SIZES), entries::coat_mean),
+            means("AVERAGE", "Means over even light.", product(&coat::AVERAGE_SIZES), entries::coat_average),
+        ],
+    );
+    write(
+        "schlick",
+        "Means of Schlick's term, in 65535ths.",
+        &[
+            shares("MEAN", "By √cos θ and α.", product(&schlick::SIZES), entries::schlick_mean),
+            means("AVERAGE", "Means over even light.", schlick::AVERAGE_SIZE, entries::schlick_average),
+        ],
+    );
+}

@@ -1,0 +1,6 @@
+//! Tables written by `quadrature.rs`; `cargo test write_tables -- --ignored` writes them anew.
+
+pub mod coat;
+pub mod interface;
+pub mod mirror;
+pub mod schlick;

@@ -1,0 +1,110 @@
+//! Plastic, varnish, glaze: a matt base under a clear coat.
+
+use super::albedo::{coat, coat_average, mirror_loss};
+use super::conductor::{above, half};
+use super::lobes::diffuse;
+use super::mirror::mirrored;
+use super::{BsdfSample, Ggx, Rgb, Scatter, fresnel};
+use glam::DVec3;
+use std::f64::consts::FRAC_1_PI;
+
+/// A dielectric coat, smooth or with GGX microfacets, over a diffuse base. The coat reflects R(ω); the rest reaches the
+/// base, and light from there is reflected back to it under the coat any number of times (Wolff, Nayar and Oren, "Improved
+/// Diffuse Reflection Models for Computer Vision", 1998): with F̄ the mean reflectance of the coat from within,
+/// (1 − R(wo)) (1 − R(wi)) / (π (1 − R̄)) ρ (1 − F̄) / (1 − ρ F̄). Reciprocal, and a white base is white under any coat.
+/// Light that a rough coat's facets throw on facets is taken to reach the base. Both sides reflect.
+#[derive(Clone, Copy, Debug)]
+pub struct Coated {
+    eta: f64,
+    ggx: Option<Ggx>,
+    /// What the base gives back of the light that reaches it.
+    base: Rgb,
+    /// Mean reflectance of the coat from outside.
+    average: f64,
+}
+
+impl Coated {
+    /// Of a base's reflectance, 0 to 1, the coat's index of refraction relative to what is outside, `eta` ≥ 1, and its
+    /// roughness, 0 to 1. Below [`Ggx::SMOOTH`] it reflects in one direction.
+    pub fn new(reflectance: Rgb, eta: f64, alpha: f64) -> Self {
+        let ggx = Ggx::rough([alpha; 2]);
+        let within = fresnel::dielectric_average(1.0 / eta);
+        let average = match &ggx {
+            None => fresnel::dielectric_average(eta),
+            Some(ggx) => coat_average(ggx.alpha()[0], eta),
+        };
+        Self { eta, ggx, base: reflectance * (1.0 - within) / (Rgb::ONE - reflectance * within), average }
+    }
+
+    /// The share of light from `w` that the coat reflects.
+    #[inline]
+    fn reflectance(&self, w: DVec3) -> f64 {
+        match &self.ggx {
+            None => fresnel::dielectric(w.z.abs(), self.eta),
+            Some(ggx) => coat(ggx.alpha()[0], self.eta, w.z) * (1.0 - mirror_loss(ggx, w)),
+        }
+    }
+
+    /// The probability with which a draw is reflected by the coat, of which it reflects this share.
+    #[inline]
+    fn share(&self, reflectance: f64) -> f64 {
+        let base = self.base.max_element() * (1.0 - reflectance);
+        if reflectance > 0.0 { reflectance / (reflectance + base) } else { 0.0 }
+    }
+}
+
+impl Scatter for Coated {
+    #[inline]
+    fn evaluate(&self, wo: DVec3, wi: DVec3) -> Rgb {
+        if !Ggx::sees(wo) || !Ggx::sees(wi) || wo.z * wi.z <= 0.0 {
+            return Rgb::ZERO;
+        }
+        let (wo, wi) = (above(wo), above(wi));
+        let reaching = (1.0 - self.reflectance(wo)) * (1.0 - self.reflectance(wi));
+        let base = self.base * (reaching * FRAC_1_PI * wi.z / (1.0 - self.average));
+        let Some(ggx) = &self.ggx else { return base };
+        let (h, cosine) = half(wo, wi);
+        base + fresnel::dielectric(cosine, self.eta) * ggx.density(h) * ggx.reflection_geometry(wo, wi)
+    }
+
+    #[inline]
+    fn pdf(&self, wo: DVec3, wi: DVec3) -> f64 {
+        if !Ggx::sees(wo) || !Ggx::sees(wi) || wo.z * wi.z <= 0.0 {
+            return 0.0;
+        }
+        let (wo, wi) = (above(wo), above(wi));
+        let share = self.share(self.reflectance(wo));
+        let coat = self.ggx.as_ref().map_or(0.0, |ggx| ggx.reflected_pdf(wo, half(wo, wi).0));
+        share * coat + (1.0 - share) * wi.z * FRAC_1_PI
+    }
+
+    #[inline]
+    fn sample(&self, wo: DVec3, choice: impl FnOnce() -> f64, u: [f64; 2]) -> Option<BsdfSample> {
+        if !Ggx::sees(wo) {
+            return None;
+        }
+        let up = above(wo);
+        let reflectance = self.reflectance(up);
+        let share = self.share(reflectance);
+        let coat = choice() < share;
+        let mut wi = match &self.ggx {
+            None if coat => return Some(BsdfSample::delta(mirrored(wo), Rgb::splat(reflectance / share))),
+            Some(ggx) if coat => ggx.sample_reflection(up, u),
+            _ => diffuse(up, u),
+        };
+        if wi.z <= 0.0 {
+            return None;
+        }
+        wi.z = wi.z.copysign(wo.z);
+        let pdf = self.pdf(wo, wi);
+        (pdf > 0.0).then(|| BsdfSample::new(wi, self.evaluate(wo, wi) / pdf, pdf))
+    }
+
+    fn albedo(&self) -> Rgb {
+        Rgb::splat(self.average) + self.base * (1.0 - self.average)
+    }
+
+    fn roughness(&self) -> f64 {
+        self.ggx.as_ref().map_or(0.0, Ggx::mean_alpha)
+    }
+}

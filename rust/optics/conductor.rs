@@ -1,0 +1,129 @@
+//! Metals.
+
+use super::albedo::{mirror_loss, mirror_loss_average};
+use super::lobes::diffuse;
+use super::mirror::mirrored;
+use super::{BsdfSample, Ggx, Rgb, Scatter, fresnel};
+use glam::DVec3;
+use std::f64::consts::{FRAC_1_PI, PI};
+
+/// A conductor, smooth or with GGX microfacets. Light that facets throw on facets is made up for (Kulla and Conty,
+/// "Revisiting Physically Based Shading at Imageworks", 2017): reciprocal, and a perfect conductor is white at every
+/// roughness. Both sides reflect.
+#[derive(Clone, Copy, Debug)]
+pub struct Conductor {
+    eta: Rgb,
+    k: Rgb,
+    rough: Option<Rough>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Rough {
+    ggx: Ggx,
+    /// What is scattered more than once, over π and the mean loss.
+    multiple: Rgb,
+}
+
+impl Conductor {
+    /// Of the complex index `eta` + i `k` relative to the medium around it, as [`super::conductors`] has it for metals, and
+    /// the roughness along x and y, 0 to 1. Below [`Ggx::SMOOTH`] it is a mirror.
+    pub fn new(eta: Rgb, k: Rgb, alpha: [f64; 2]) -> Self {
+        let rough = Ggx::rough(alpha).map(|ggx| {
+            let multiple = made_up(&ggx, fresnel::conductor_average(eta, k));
+            Rough { ggx, multiple }
+        });
+        Self { eta, k, rough }
+    }
+
+    /// The share of light that is reflected at this cosine of incidence.
+    #[inline]
+    pub fn reflectance(&self, cosine: f64) -> Rgb {
+        fresnel::conductor(cosine, self.eta, self.k)
+    }
+}
+
+/// What scattering more than once gives back of each unit lost, for facets of this mean reflectance, over π and the mean
+/// loss: each further time, F̄ is left, and 1 − L̄ of it gets out.
+#[inline]
+pub(super) fn made_up(ggx: &Ggx, reflectance: Rgb) -> Rgb {
+    let lost = mirror_loss_average(ggx);
+    let colour = reflectance * reflectance * (1.0 - lost) / (Rgb::ONE - reflectance * lost);
+    colour * (FRAC_1_PI / lost)
+}
+
+/// As seen from above: a direction and its mirror image below the surface see the same.
+#[inline]
+pub(super) fn above(w: DVec3) -> DVec3 {
+    DVec3::new(w.x, w.y, w.z.abs())
+}
+
+/// The half vector of two directions above, and the cosine to both.
+#[inline]
+pub(super) fn half(wo: DVec3, wi: DVec3) -> (DVec3, f64) {
+    let h = (wo + wi).normalize_or(DVec3::Z);
+    (h, wo.dot(h).clamp(0.0, 1.0))
+}
+
+impl Scatter for Conductor {
+    #[inline]
+    fn evaluate(&self, wo: DVec3, wi: DVec3) -> Rgb {
+        let Some(rough) = &self.rough else { return Rgb::ZERO };
+        if !Ggx::sees(wo) || !Ggx::sees(wi) || wo.z * wi.z <= 0.0 {
+            return Rgb::ZERO;
+        }
+        let (wo, wi) = (above(wo), above(wi));
+        let (h, cosine) = half(wo, wi);
+        let single = rough.ggx.density(h) * rough.ggx.reflection_geometry(wo, wi);
+        let lost = mirror_loss(&rough.ggx, wo) * mirror_loss(&rough.ggx, wi) * wi.z;
+        self.reflectance(cosine) * single + rough.multiple * lost
+    }
+
+    #[inline]
+    fn pdf(&self, wo: DVec3, wi: DVec3) -> f64 {
+        let Some(rough) = &self.rough else { return 0.0 };
+        if !Ggx::sees(wo) || !Ggx::sees(wi) || wo.z * wi.z <= 0.0 {
+            return 0.0;
+        }
+        let (wo, wi) = (above(wo), above(wi));
+        let lost = mirror_loss(&rough.ggx, wo);
+        (1.0 - lost) * rough.ggx.reflected_pdf(wo, half(wo, wi).0) + lost * wi.z * FRAC_1_PI
+    }
+
+    #[inline]
+    fn sample(&self, wo: DVec3, choice: impl FnOnce() -> f64, u: [f64; 2]) -> Option<BsdfSample> {
+        if !Ggx::sees(wo) {
+            return None;
+        }
+        let Some(rough) = &self.rough else {
+            return Some(BsdfSample::delta(mirrored(wo), self.reflectance(wo.z.abs())));
+        };
+        let up = above(wo);
+        let lost = mirror_loss(&rough.ggx, up);
+        let mut wi = if choice() < lost { diffuse(up, u) } else { rough.ggx.sample_reflection(up, u) };
+        if wi.z <= 0.0 {
+            return None;
+        }
+        wi.z = wi.z.copysign(wo.z);
+        let pdf = self.pdf(wo, wi);
+        (pdf > 0.0).then(|| BsdfSample::new(wi, self.evaluate(wo, wi) / pdf, pdf))
+    }
+
+    fn albedo(&self) -> Rgb {
+        let average = fresnel::conductor_average(self.eta, self.k);
+        match &self.rough {
+            None => average,
+            Some(rough) => {
+                let lost = mirror_loss_average(&rough.ggx);
+                average * (1.0 - lost) + rough.multiple * (PI * lost * lost)
+            }
+        }
+    }
+
+    fn is_delta(&self) -> bool {
+        self.rough.is_none()
+    }
+
+    fn roughness(&self) -> f64 {
+        self.rough.as_ref().map_or(0.0, |rough| rough.ggx.mean_alpha())
+    }
+}

@@ -1,0 +1,186 @@
+//! Glass, water and the like.
+
+use super::albedo::Interface;
+use super::conductor::{above, half};
+use super::lobes::diffuse;
+use super::mirror::mirrored;
+use super::{BsdfSample, Ggx, Rgb, Scatter, fresnel};
+use glam::DVec3;
+
+/// A dielectric interface, smooth or with GGX microfacets (Walter et al., "Microfacet Models for Refraction through Rough
+/// Surfaces", 2007), which reflects and refracts and loses nothing.
+///
+/// A refraction that starts at a facet seen from one side is taken to get out where the facet is seen from the other,
+/// G₂ = min(G₁(wo), G₁(wi)): light that other facets stop goes through them too, the more nearly straight on the closer
+/// the index is to 1. So at index 1 a surface is clear however rough it is. What is still lost is given back as
+/// [`Interface`] says.
+#[derive(Clone, Copy, Debug)]
+pub struct Dielectric {
+    /// Index below over index above.
+    eta: f64,
+    rough: Option<Rough>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Rough {
+    ggx: Ggx,
+    interface: Interface,
+}
+
+impl Dielectric {
+    /// Nearer to 1 an index bends light by less than 10⁻⁶ radians at a rough surface, but within 10⁻³ of grazing. It
+    /// then counts as smooth: Fresnel's reflection is all that can be told.
+    const INVISIBLE: f64 = 1e-6;
+
+    /// Of the index of refraction below the surface over that above, `eta` > 0, and the roughness along x and y, 0 to 1.
+    /// Below [`Ggx::SMOOTH`], or with `eta` within 10⁻⁶ of 1, directions are single.
+    pub fn new(eta: f64, alpha: [f64; 2]) -> Self {
+        let ggx = if (eta - 1.0).abs() < Self::INVISIBLE { None } else { Ggx::rough(alpha) };
+        Self { eta, rough: ggx.map(|ggx| Rough { ggx, interface: Interface::new(ggx, eta) }) }
+    }
+
+    /// The index beyond the surface over that on the side of `w`.
+    #[inline]
+    fn beyond(&self, w: DVec3) -> f64 {
+        if w.z > 0.0 { self.eta } else { 1.0 / self.eta }
+    }
+
+    /// What one scattering does: the scattering function with its cosine, for radiance, and the density of a draw.
+    #[inline]
+    fn single(&self, rough: &Rough, wo: DVec3, wi: DVec3) -> (f64, f64) {
+        let (eta, ggx) = (self.beyond(wo), &rough.ggx);
+        if wo.z * wi.z > 0.0 {
+            let (o, i) = (above(wo), above(wi));
+            let (h, cosine) = half(o, i);
+            let f = fresnel::dielectric(cosine, eta);
+            let density = f * ggx.density(h);
+            return (density * ggx.reflection_geometry(o, i), density * 0.5 / (o.z + ggx.stretch(o)));
+        }
+        // The facet's normal, on the side of wo; the length holds the Jacobian (Walter et al., 2007, eq. 16 and 17).
+        let q = wo + wi * eta;
+        let q = if q.z * wo.z < 0.0 { -q } else { q };
+        let square = q.length_squared();
+        if square == 0.0 {
+            return (0.0, 0.0);
+        }
+        let h = q / square.sqrt();
+        let (o, i) = (wo.dot(h), -wi.dot(h));
+        if o <= 0.0 || i <= 0.0 {
+            return (0.0, 0.0);
+        }
+        self.refraction(rough, wo, wi, h, [o, i], square)
+    }
+
+    /// Refraction at a facet of normal `h`, on the side of `wo`, with cosines to both directions and |wo + η wi|².
+    #[inline]
+    fn refraction(&self, rough: &Rough, wo: DVec3, wi: DVec3, h: DVec3, [o, i]: [f64; 2], square: f64) -> (f64, f64) {
+        let (eta, ggx) = (self.beyond(wo), &rough.ggx);
+        let through = (1.0 - fresnel::dielectric(o, eta)) * ggx.density(h) * o * i / square;
+        // G₁ / cos θo.
+        let seen = 2.0 / (wo.z.abs() + ggx.stretch(wo));
+        let both = seen.min(2.0 * (wi.z / wo.z).abs() / (wi.z.abs() + ggx.stretch(wi)));
+        (through * both, through * seen * eta * eta)
+    }
+
+    /// As [`Dielectric::single`], with what is given back of what facets lose.
+    #[inline]
+    fn both(&self, rough: &Rough, wo: DVec3, wi: DVec3, (value, pdf): (f64, f64)) -> (f64, f64) {
+        let lost = rough.interface.loss(wo);
+        let back =
+            rough.interface.given_back(lost, wo, wi) / if wo.z * wi.z < 0.0 { self.beyond(wo).powi(2) } else { 1.0 };
+        let crossing = rough.interface.crossing(wo);
+        let share = if wo.z * wi.z < 0.0 { crossing } else { 1.0 - crossing };
+        (value + back, (1.0 - lost) * pdf + lost * share * wi.z.abs() * std::f64::consts::FRAC_1_PI)
+    }
+
+    #[inline]
+    fn smooth_sample(&self, wo: DVec3, choice: f64) -> Option<BsdfSample> {
+        let eta = self.beyond(wo);
+        if choice < fresnel::dielectric(wo.z.abs(), eta) {
+            return Some(BsdfSample::delta(mirrored(wo), Rgb::ONE));
+        }
+        let wi = fresnel::refract(wo, DVec3::new(0.0, 0.0, wo.z.signum()), eta)?;
+        Some(BsdfSample { wi, weight: Rgb::splat(1.0 / (eta * eta)), pdf: f64::INFINITY, eta })
+    }
+
+    #[inline]
+    fn rough_sample(&self, rough: &Rough, wo: DVec3, choice: f64, u: [f64; 2]) -> Option<BsdfSample> {
+        let lost = rough.interface.loss(wo);
+        let eta = self.beyond(wo);
+        let (wi, single) = if choice < lost {
+            let mut wi = diffuse(wo, u);
+            if choice < lost * rough.interface.crossing(wo) {
+                wi.z = -wi.z;
+            }
+            (wi, self.single(rough, wo, wi))
+        } else {
+            let choice = (choice - lost) / (1.0 - lost);
+            let mut h = rough.ggx.sample_visible(above(wo), u);
+            h.z = h.z.copysign(wo.z);
+            let o = wo.dot(h);
+            if choice < fresnel::dielectric(o, eta) {
+                let wi = h * (2.0 * o) - wo;
+                (wi, if wi.z * wo.z > 0.0 { self.single(rough, wo, wi) } else { return None })
+            } else {
+                let wi = fresnel::refract(wo, h, eta)?;
+                if wi.z * wo.z >= 0.0 || !Ggx::sees(wi) {
+                    return None;
+                }
+                // |wo + η wi| without the rounding of either: near index 1 it is all that tells directions apart.
+                let e = (eta - 1.0) * (eta + 1.0);
+                let g = (e + o * o).sqrt();
+                (wi, self.refraction(rough, wo, wi, h, [o, g / eta], (e / (o + g)).powi(2)))
+            }
+        };
+        let (value, pdf) = self.both(rough, wo, wi, single);
+        let eta = if wo.z * wi.z < 0.0 { eta } else { 1.0 };
+        (pdf > 0.0).then(|| BsdfSample { wi, weight: Rgb::splat(value / pdf), pdf, eta })
+    }
+}
+
+impl Scatter for Dielectric {
+    #[inline]
+    fn evaluate(&self, wo: DVec3, wi: DVec3) -> Rgb {
+        match &self.rough {
+            Some(rough) if Ggx::sees(wo) && Ggx::sees(wi) => {
+                Rgb::splat(self.both(rough, wo, wi, self.single(rough, wo, wi)).0)
+            }
+            _ => Rgb::ZERO,
+        }
+    }
+
+    #[inline]
+    fn pdf(&self, wo: DVec3, wi: DVec3) -> f64 {
+        match &self.rough {
+            Some(rough) if Ggx::sees(wo) && Ggx::sees(wi) => self.both(rough, wo, wi, self.single(rough, wo, wi)).1,
+            _ => 0.0,
+        }
+    }
+
+    #[inline]
+    fn sample(&self, wo: DVec3, choice: impl FnOnce() -> f64, u: [f64; 2]) -> Option<BsdfSample> {
+        if !Ggx::sees(wo) {
+            return None;
+        }
+        match &self.rough {
+            None => self.smooth_sample(wo, choice()),
+            Some(rough) => self.rough_sample(rough, wo, choice(), u),
+        }
+    }
+
+    fn albedo(&self) -> Rgb {
+        Rgb::ONE
+    }
+
+    fn is_delta(&self) -> bool {
+        self.rough.is_none()
+    }
+
+    fn transmits(&self) -> bool {
+        true
+    }
+
+    fn roughness(&self) -> f64 {
+        self.rough.as_ref().map_or(0.0, |rough| rough.ggx.mean_alpha())
+    }
+}

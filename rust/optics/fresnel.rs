@@ -1,0 +1,112 @@
+//! How much light an interface reflects.
+
+use super::Rgb;
+use glam::DVec3;
+
+/// The reflectance of a dielectric for unpolarised light (Fresnel, 1823): `cosine` of incidence, 0 to 1, and `eta`, the
+/// index of refraction beyond over that before the interface. 1 beyond the critical angle.
+///
+/// Differences of nearly equal terms are divided out: with e = η² − 1 and g = η cos θt = √(e + c²), c − g is −e / (c + g).
+/// So the result has a relative error of some 10⁻¹⁵ however close η is to 1.
+#[inline]
+pub fn dielectric(cosine: f64, eta: f64) -> f64 {
+    let (c, e) = (cosine, (eta - 1.0) * (eta + 1.0));
+    let square = e + c * c;
+    if square <= 0.0 {
+        // At η = 1 and exactly grazing nothing is there to reflect.
+        return if e == 0.0 { 0.0 } else { 1.0 };
+    }
+    let g = square.sqrt();
+    let sum = c + g;
+    let s = e / (sum * sum);
+    let p = e * (c * sum - 1.0) / (sum * (eta * eta * c + g));
+    0.5 * (s * s + p * p)
+}
+
+/// Where a ray comes from that leaves along `wo` after refraction at a facet of unit normal `h`, on the side of `wo`:
+/// `eta` is the index on the far side over that on the side of `wo`. `None` under total reflection. The direction is a
+/// unit vector as precisely as `wo` and `h` are, and it differs from −`wo` by as little as `eta` does from 1.
+#[inline]
+pub fn refract(wo: DVec3, h: DVec3, eta: f64) -> Option<DVec3> {
+    let (c, e) = (wo.dot(h), (eta - 1.0) * (eta + 1.0));
+    let square = e + c * c;
+    if square <= 0.0 {
+        return None;
+    }
+    Some(-(wo + h * (e / (c + square.sqrt()))) / eta)
+}
+
+/// The share of even light from a hemisphere that a dielectric reflects, ∫ 2 F(μ) μ dμ, in closed form (Walsh, 1926;
+/// Duntley, 1942). `eta` is the index beyond over that before the interface. The relative error is below 2e-3 from
+/// η = 1 + 1e-9 on, and below 1e-9 from η = 1.01 on.
+pub fn dielectric_average(eta: f64) -> f64 {
+    if eta < 1.0 {
+        // What gets out is what gets in, but for the solid angle, which is η² times as large in the denser medium.
+        return 1.0 - (1.0 - dielectric_average(1.0 / eta)) * eta * eta;
+    }
+    let n = eta;
+    if n - 1.0 < 1e-4 {
+        // The closed form cancels here. To the first order in e = η² − 1, ∫ 2 t (√(1 + t²) − t)⁴ dt = 1/6 is left.
+        return (n - 1.0) * (n + 1.0) / 6.0;
+    }
+    if n > 1e4 {
+        // All but the transmitted 8 / (3η), to the first order, with powers of η out of the way.
+        return 1.0 - 8.0 / (3.0 * n);
+    }
+    let (n2, n4) = (n * n, n * n * n * n);
+    let plus = n2 + 1.0;
+    0.5 + (n - 1.0) * (3.0 * n + 1.0) / (6.0 * (n + 1.0) * (n + 1.0))
+        + n2 * (n2 - 1.0).powi(2) / plus.powi(3) * ((n - 1.0) / (n + 1.0)).ln()
+        - 2.0 * n * n2 * (n2 + 2.0 * n - 1.0) / (plus * (n4 - 1.0))
+        + 8.0 * n4 * (n4 + 1.0) / (plus * (n4 - 1.0).powi(2)) * n.ln()
+}
+
+/// The reflectance of a conductor for unpolarised light, channel by channel: `cosine` of incidence, and its complex index
+/// `eta` + i `k` relative to the medium before it (Born and Wolf, "Principles of Optics", 14.2).
+#[inline]
+pub fn conductor(cosine: f64, eta: Rgb, k: Rgb) -> Rgb {
+    let (c, c2) = (cosine, cosine * cosine);
+    let s2 = (1.0 - c) * (1.0 + c);
+    let (eta2, k2) = (eta * eta, k * k);
+    let real = eta2 - k2 - s2;
+    // a² + b² = |η² − sin²θ| for the complex η.
+    let norm = (real * real + 4.0 * eta2 * k2).map(f64::sqrt);
+    let a = ((norm + real) * 0.5).max(Rgb::ZERO).map(f64::sqrt);
+    let s = (norm + c2 - 2.0 * c * a) / (norm + c2 + 2.0 * c * a);
+    let (even, odd) = (c2 * norm + s2 * s2, 2.0 * c * s2 * a);
+    let p = s * (even - odd) / (even + odd);
+    (0.5 * (s + p)).clamp(Rgb::ZERO, Rgb::ONE)
+}
+
+/// The share of even light from a hemisphere that a conductor reflects, by Gauss's rule of four points for the weight
+/// 2μ. The error is below 1e-3 for the metals in [`super::conductors`].
+pub fn conductor_average(eta: Rgb, k: Rgb) -> Rgb {
+    let mut sum = Rgb::ZERO;
+    for (node, weight) in GAUSS_COSINE {
+        sum += weight * conductor(node, eta, k);
+    }
+    sum
+}
+
+/// Nodes and weights of Gauss's rule on [0, 1] for the weight function 2μ: exact up to μ⁷.
+const GAUSS_COSINE: [(f64, f64); 4] = [
+    (0.139_759_864_343_780_57, 0.062_361_941_900_016_116),
+    (0.416_409_567_631_083_17, 0.259_695_095_216_464_94),
+    (0.723_156_986_361_876_2, 0.406_929_136_020_543_0),
+    (0.942_895_803_885_482_3, 0.271_013_826_862_976_04),
+];
+
+/// Schlick's approximation of the weight with which a reflectance goes from its value at normal incidence to 1
+/// ("An Inexpensive BRDF Model for Physically-based Rendering", 1994): F = F₀ + (1 − F₀) (1 − cos θ)⁵.
+#[inline]
+pub fn schlick_weight(cosine: f64) -> f64 {
+    let m = (1.0 - cosine).clamp(0.0, 1.0);
+    let m2 = m * m;
+    m2 * m2 * m
+}
+
+/// Schlick's approximation for a reflectance `f0` at normal incidence.
+#[inline]
+pub fn schlick(cosine: f64, f0: Rgb) -> Rgb {
+    f0 + (Rgb::ONE - f0) * schlick_weight(cosine)
+}

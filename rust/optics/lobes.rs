@@ -1,0 +1,62 @@
+//! A diffuse part and a lobe, as the classic models have them.
+
+use super::Rgb;
+use crate::math::Frame;
+use crate::sampling::warp;
+use glam::DVec3;
+use std::f64::consts::TAU;
+
+/// How much of each there is, and how often each is drawn from.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Lobes {
+    pub diffuse: Rgb,
+    pub specular: Rgb,
+    /// The probability of the specular part.
+    share: f64,
+}
+
+impl Lobes {
+    pub fn new(diffuse: Rgb, specular: Rgb) -> Self {
+        let (d, s) = (diffuse.max_element(), specular.max_element());
+        Self { diffuse, specular, share: if s > 0.0 { s / (d + s) } else { 0.0 } }
+    }
+
+    #[inline]
+    pub fn black(&self) -> bool {
+        self.diffuse == Rgb::ZERO && self.specular == Rgb::ZERO
+    }
+
+    #[inline]
+    pub fn is_specular(&self, choice: impl FnOnce() -> f64) -> bool {
+        self.share == 1.0 || (self.share > 0.0 && choice() < self.share)
+    }
+
+    /// The density of a draw from either part.
+    #[inline]
+    pub fn mixed(&self, diffuse: f64, specular: f64) -> f64 {
+        (1.0 - self.share) * diffuse + self.share * specular
+    }
+
+    /// The roughness of an exponent as a microfacet distribution has it, α = √(2 / (n + 2)) (Walter et al., 2007).
+    pub fn roughness(&self, exponent: f64) -> f64 {
+        if self.specular == Rgb::ZERO { 1.0 } else { (2.0 / (exponent + 2.0)).sqrt() }
+    }
+}
+
+/// A direction on the side of `wo`, by the cosine.
+#[inline]
+pub(super) fn diffuse(wo: DVec3, u: [f64; 2]) -> DVec3 {
+    let mut wi = warp::cosine_hemisphere(u);
+    wi.z = wi.z.copysign(wo.z);
+    wi
+}
+
+/// A direction about `axis` with density (n + 1) / 2π cosⁿ.
+#[inline]
+pub(super) fn power_cosine(axis: DVec3, exponent: f64, u: [f64; 2]) -> DVec3 {
+    // 1 − cos by expm1, so that a sharp lobe's width is not rounded away.
+    let depth = -(u[1].ln() / (exponent + 1.0)).exp_m1();
+    let radius = (depth * (2.0 - depth)).max(0.0).sqrt();
+    let (sin, cos) = (TAU * u[0]).sin_cos();
+    Frame::new(axis).to_world(DVec3::new(radius * cos, radius * sin, 1.0 - depth))
+}

@@ -1,0 +1,142 @@
+//! The material of glTF.
+
+use super::albedo::{mirror_loss, mirror_loss_average, schlick_share, schlick_share_average};
+use super::conductor::{above, half, made_up};
+use super::lobes::diffuse;
+use super::mirror::mirrored;
+use super::{BsdfSample, Ggx, Rgb, Scatter, fresnel};
+use glam::DVec3;
+use std::f64::consts::FRAC_1_PI;
+
+/// The metallic-roughness model (Khronos, "glTF 2.0", 2021, appendix B): GGX microfacets of roughness α = roughness², whose
+/// reflectance F₀ at normal incidence goes from 0.04 to the base colour as `metallic` goes from 0 to 1, and a diffuse base under
+/// what is not metal, with Schlick's Fresnel term.
+///
+/// Where the specification leaves the coupling open, this is reciprocal and conserves energy: the base gets what the facets
+/// of a dielectric leave, (1 − R(wo)) (1 − R(wi)) / (π (1 − R̄)), and what facets of metal lose is made up for. A white base
+/// is white at every roughness and metalness. Both sides reflect.
+#[derive(Clone, Copy, Debug)]
+pub struct MetallicRough {
+    ggx: Option<Ggx>,
+    /// Reflectance at normal incidence.
+    f0: Rgb,
+    /// The base's share, over π and the mean of what reaches it.
+    base: Rgb,
+    /// What metal scatters more than once, over π and the mean loss.
+    multiple: Rgb,
+    /// The probability to draw from what is not reflected once, for an albedo of 1.
+    color: Rgb,
+    metallic: f64,
+}
+
+impl MetallicRough {
+    /// The reflectance of what is not metal at normal incidence, that of index 1.5.
+    const DIELECTRIC: f64 = 0.04;
+
+    /// Of a base colour, a metalness and a roughness, each 0 to 1. Where roughness² is below [`Ggx::SMOOTH`] facets
+    /// reflect in one direction.
+    pub fn new(base_color: Rgb, metallic: f64, roughness: f64) -> Self {
+        let metallic = metallic.clamp(0.0, 1.0);
+        let ggx = Ggx::rough([roughness * roughness; 2]);
+        let f0 = base_color * metallic + Self::DIELECTRIC * (1.0 - metallic);
+        // Schlick's (1 − cos)⁵ has the mean 1/21 over even light.
+        let average = match &ggx {
+            None => Self::DIELECTRIC + (1.0 - Self::DIELECTRIC) / 21.0,
+            Some(ggx) => {
+                let kept = 1.0 - mirror_loss_average(ggx);
+                Self::DIELECTRIC * kept + (1.0 - Self::DIELECTRIC) * schlick_share_average(ggx.alpha()[0])
+            }
+        };
+        let metal = base_color + (Rgb::ONE - base_color) / 21.0;
+        let multiple = ggx.as_ref().map_or(Rgb::ZERO, |ggx| made_up(ggx, metal) * metallic);
+        let base = base_color * ((1.0 - metallic) * FRAC_1_PI / (1.0 - average));
+        Self { ggx, f0, base, multiple, color: base_color, metallic }
+    }
+
+    /// The mean of Schlick's term and the share that is kept, for light from `w`.
+    #[inline]
+    fn once(&self, w: DVec3) -> (f64, f64) {
+        match &self.ggx {
+            None => (fresnel::schlick_weight(w.z), 1.0),
+            Some(ggx) => (schlick_share(ggx.alpha()[0], w.z), 1.0 - mirror_loss(ggx, w)),
+        }
+    }
+
+    /// The share of light that facets of a dielectric reflect once.
+    #[inline]
+    fn dielectric((schlick, kept): (f64, f64)) -> f64 {
+        (Self::DIELECTRIC + (1.0 - Self::DIELECTRIC) * schlick) * kept
+    }
+
+    /// The probability with which a draw is one reflection by a facet.
+    #[inline]
+    fn share(&self, once: (f64, f64)) -> f64 {
+        let facets = (self.f0 + (Rgb::ONE - self.f0) * once.0).max_element() * once.1;
+        let metal = self.metallic * (1.0 - once.1);
+        let rest = self.color.max_element() * ((1.0 - self.metallic) * (1.0 - Self::dielectric(once)) + metal);
+        if facets > 0.0 { facets / (facets + rest) } else { 0.0 }
+    }
+}
+
+impl Scatter for MetallicRough {
+    #[inline]
+    fn evaluate(&self, wo: DVec3, wi: DVec3) -> Rgb {
+        if !Ggx::sees(wo) || !Ggx::sees(wi) || wo.z * wi.z <= 0.0 {
+            return Rgb::ZERO;
+        }
+        let (wo, wi) = (above(wo), above(wi));
+        let (once_o, once_i) = (self.once(wo), self.once(wi));
+        let reaching = (1.0 - Self::dielectric(once_o)) * (1.0 - Self::dielectric(once_i));
+        let lost = (1.0 - once_o.1) * (1.0 - once_i.1);
+        let wide = (self.base * reaching + self.multiple * lost) * wi.z;
+        let Some(ggx) = &self.ggx else { return wide };
+        let (h, cosine) = half(wo, wi);
+        wide + fresnel::schlick(cosine, self.f0) * (ggx.density(h) * ggx.reflection_geometry(wo, wi))
+    }
+
+    #[inline]
+    fn pdf(&self, wo: DVec3, wi: DVec3) -> f64 {
+        if !Ggx::sees(wo) || !Ggx::sees(wi) || wo.z * wi.z <= 0.0 {
+            return 0.0;
+        }
+        let (wo, wi) = (above(wo), above(wi));
+        let share = self.share(self.once(wo));
+        let facets = self.ggx.as_ref().map_or(0.0, |ggx| ggx.reflected_pdf(wo, half(wo, wi).0));
+        share * facets + (1.0 - share) * wi.z * FRAC_1_PI
+    }
+
+    #[inline]
+    fn sample(&self, wo: DVec3, choice: impl FnOnce() -> f64, u: [f64; 2]) -> Option<BsdfSample> {
+        if !Ggx::sees(wo) {
+            return None;
+        }
+        let up = above(wo);
+        let share = self.share(self.once(up));
+        let facet = choice() < share;
+        let mut wi = match &self.ggx {
+            None if facet => {
+                return Some(BsdfSample::delta(mirrored(wo), fresnel::schlick(up.z, self.f0) / share));
+            }
+            Some(ggx) if facet => ggx.sample_reflection(up, u),
+            _ => diffuse(up, u),
+        };
+        if wi.z <= 0.0 {
+            return None;
+        }
+        wi.z = wi.z.copysign(wo.z);
+        let pdf = self.pdf(wo, wi);
+        (pdf > 0.0).then(|| BsdfSample::new(wi, self.evaluate(wo, wi) / pdf, pdf))
+    }
+
+    fn albedo(&self) -> Rgb {
+        self.color * (1.0 - self.f0) + self.f0
+    }
+
+    fn is_delta(&self) -> bool {
+        self.ggx.is_none() && self.base == Rgb::ZERO
+    }
+
+    fn roughness(&self) -> f64 {
+        self.ggx.as_ref().map_or(0.0, Ggx::mean_alpha)
+    }
+}

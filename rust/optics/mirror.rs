@@ -1,0 +1,47 @@
+//! A perfect mirror.
+
+use super::{BsdfSample, Rgb, Scatter};
+use glam::DVec3;
+
+/// Reflects into the one direction that Euclid's law of reflection says, the same share at every angle. Both sides
+/// reflect.
+#[derive(Clone, Copy, Debug)]
+pub struct Mirror {
+    /// The share of the light that is reflected, 0 to 1.
+    pub reflectance: Rgb,
+}
+
+/// The mirror image of a direction about the normal.
+#[inline]
+pub(super) fn mirrored(w: DVec3) -> DVec3 {
+    DVec3::new(-w.x, -w.y, w.z)
+}
+
+impl Scatter for Mirror {
+    #[inline]
+    fn evaluate(&self, _wo: DVec3, _wi: DVec3) -> Rgb {
+        Rgb::ZERO
+    }
+
+    #[inline]
+    fn pdf(&self, _wo: DVec3, _wi: DVec3) -> f64 {
+        0.0
+    }
+
+    #[inline]
+    fn sample(&self, wo: DVec3, _choice: impl FnOnce() -> f64, _u: [f64; 2]) -> Option<BsdfSample> {
+        (wo.z != 0.0 && self.reflectance != Rgb::ZERO).then(|| BsdfSample::delta(mirrored(wo), self.reflectance))
+    }
+
+    fn albedo(&self) -> Rgb {
+        self.reflectance
+    }
+
+    fn is_delta(&self) -> bool {
+        true
+    }
+
+    fn roughness(&self) -> f64 {
+        0.0
+    }
+}

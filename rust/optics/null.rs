@@ -1,0 +1,34 @@
+//! What scatters nothing.
+
+use super::{BsdfSample, Rgb, Scatter};
+use glam::DVec3;
+
+/// Takes all light and gives none back: a black surface, or a lamp that only shines. What light passes as if it were not
+/// there is [`super::Transparent`].
+#[derive(Clone, Copy, Debug)]
+pub struct Null;
+
+impl Scatter for Null {
+    #[inline]
+    fn evaluate(&self, _wo: DVec3, _wi: DVec3) -> Rgb {
+        Rgb::ZERO
+    }
+
+    #[inline]
+    fn pdf(&self, _wo: DVec3, _wi: DVec3) -> f64 {
+        0.0
+    }
+
+    #[inline]
+    fn sample(&self, _wo: DVec3, _choice: impl FnOnce() -> f64, _u: [f64; 2]) -> Option<BsdfSample> {
+        None
+    }
+
+    fn albedo(&self) -> Rgb {
+        Rgb::ZERO
+    }
+
+    fn is_delta(&self) -> bool {
+        true
+    }
+}

@@ -1,0 +1,65 @@
+//! Phong's lobe about the mirror direction.
+
+use super::lobes::{Lobes, diffuse};
+use super::mirror::mirrored;
+use super::{BsdfSample, Rgb, Scatter};
+use glam::DVec3;
+use std::f64::consts::{FRAC_1_PI, TAU};
+
+/// Diffuse reflection and Phong's lobe (1975), in the modified form that is reciprocal and conserves energy (Lafortune and
+/// Willems, "Using the Modified Phong Reflectance Model for Physically Based Rendering", 1994):
+/// kd / π + ks (n + 2) / 2π cosⁿ α, with α the angle to the mirror direction. Both sides reflect.
+#[derive(Clone, Copy, Debug)]
+pub struct Phong {
+    lobes: Lobes,
+    exponent: f64,
+}
+
+impl Phong {
+    /// The diffuse and the specular share, which together should be at most 1, and the exponent n ≥ 0.
+    pub fn new(diffuse: Rgb, specular: Rgb, exponent: f64) -> Self {
+        Self { lobes: Lobes::new(diffuse, specular), exponent }
+    }
+}
+
+impl Scatter for Phong {
+    #[inline]
+    fn evaluate(&self, wo: DVec3, wi: DVec3) -> Rgb {
+        if wo.z * wi.z <= 0.0 {
+            return Rgb::ZERO;
+        }
+        let lobe = mirrored(wo).dot(wi).clamp(0.0, 1.0).powf(self.exponent) * (self.exponent + 2.0) / TAU;
+        (self.lobes.diffuse * FRAC_1_PI + self.lobes.specular * lobe) * wi.z.abs()
+    }
+
+    #[inline]
+    fn pdf(&self, wo: DVec3, wi: DVec3) -> f64 {
+        if wo.z * wi.z <= 0.0 {
+            return 0.0;
+        }
+        let lobe = mirrored(wo).dot(wi).clamp(0.0, 1.0).powf(self.exponent) * (self.exponent + 1.0) / TAU;
+        self.lobes.mixed(wi.z.abs() * FRAC_1_PI, lobe)
+    }
+
+    #[inline]
+    fn sample(&self, wo: DVec3, choice: impl FnOnce() -> f64, u: [f64; 2]) -> Option<BsdfSample> {
+        if wo.z == 0.0 || self.lobes.black() {
+            return None;
+        }
+        let wi = if self.lobes.is_specular(choice) {
+            super::lobes::power_cosine(mirrored(wo), self.exponent, u)
+        } else {
+            diffuse(wo, u)
+        };
+        let pdf = self.pdf(wo, wi);
+        (pdf > 0.0).then(|| BsdfSample::new(wi, self.evaluate(wo, wi) / pdf, pdf))
+    }
+
+    fn albedo(&self) -> Rgb {
+        self.lobes.diffuse + self.lobes.specular
+    }
+
+    fn roughness(&self) -> f64 {
+        self.lobes.roughness(self.exponent)
+    }
+}

@@ -1,0 +1,63 @@
+//! A pane of glass.
+
+use super::mirror::mirrored;
+use super::{BsdfSample, Rgb, Scatter, fresnel};
+use glam::DVec3;
+
+/// A plane-parallel dielectric plate without thickness, the same medium on both sides: light reflects and goes straight
+/// through, after all reflections within the plate (Stokes, 1862): with r = F(θ) they sum to R = 2r / (1 + r).
+#[derive(Clone, Copy, Debug)]
+pub struct ThinDielectric {
+    eta: f64,
+}
+
+impl ThinDielectric {
+    /// Of an index of refraction relative to that of the surroundings.
+    pub fn new(eta: f64) -> Self {
+        Self { eta }
+    }
+
+    /// The share of light along `w` that is reflected.
+    #[inline]
+    pub fn reflectance(&self, w: DVec3) -> f64 {
+        let r = fresnel::dielectric(w.z.abs(), self.eta);
+        2.0 * r / (1.0 + r)
+    }
+}
+
+impl Scatter for ThinDielectric {
+    #[inline]
+    fn evaluate(&self, _wo: DVec3, _wi: DVec3) -> Rgb {
+        Rgb::ZERO
+    }
+
+    #[inline]
+    fn pdf(&self, _wo: DVec3, _wi: DVec3) -> f64 {
+        0.0
+    }
+
+    #[inline]
+    fn sample(&self, wo: DVec3, choice: impl FnOnce() -> f64, _u: [f64; 2]) -> Option<BsdfSample> {
+        if wo.z == 0.0 {
+            return None;
+        }
+        let wi = if choice() < self.reflectance(wo) { mirrored(wo) } else { -wo };
+        Some(BsdfSample::delta(wi, Rgb::ONE))
+    }
+
+    fn albedo(&self) -> Rgb {
+        Rgb::ONE
+    }
+
+    fn is_delta(&self) -> bool {
+        true
+    }
+
+    fn transmits(&self) -> bool {
+        true
+    }
+
+    fn roughness(&self) -> f64 {
+        0.0
+    }
+}

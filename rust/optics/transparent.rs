@@ -1,0 +1,44 @@
+//! What lets light straight through.
+
+use super::{BsdfSample, Rgb, Scatter};
+use glam::DVec3;
+
+/// Lets light through as if nothing were there, or a share of it: the holes of a mask.
+#[derive(Clone, Copy, Debug)]
+pub struct Transparent {
+    /// The share of the light that goes through, 0 to 1.
+    pub transmittance: Rgb,
+}
+
+impl Scatter for Transparent {
+    #[inline]
+    fn evaluate(&self, _wo: DVec3, _wi: DVec3) -> Rgb {
+        Rgb::ZERO
+    }
+
+    #[inline]
+    fn pdf(&self, _wo: DVec3, _wi: DVec3) -> f64 {
+        0.0
+    }
+
+    #[inline]
+    fn sample(&self, wo: DVec3, _choice: impl FnOnce() -> f64, _u: [f64; 2]) -> Option<BsdfSample> {
+        (self.transmittance != Rgb::ZERO).then(|| BsdfSample::delta(-wo, self.transmittance))
+    }
+
+    fn albedo(&self) -> Rgb {
+        self.transmittance
+    }
+
+    fn is_delta(&self) -> bool {
+        true
+    }
+
+    fn transmits(&self) -> bool {
+        true
+    }
+
+    fn roughness(&self) -> f64 {
+        0.0
+    }
+}
