@@ -119,8 +119,6 @@ fn crossed(crossings: &Crossings, ray: usize) -> impl DoubleEndedIterator<Item =
 /// What a hit is to a ray among media.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Boundary {
-    /// Of a surface that encloses nothing.
-    Surface,
     /// None: the same medium is on both sides. The ray goes on in these.
     None(Inside),
     /// The surface hit is where one medium ends and another begins.

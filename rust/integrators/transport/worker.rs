@@ -160,7 +160,6 @@ impl<'a, N: Features> TransportWorker<'a, N> {
                         }
                         (outside, through) = (ior, behind);
                     }
-                    Boundary::Surface => {}
                 }
             } else {
                 through = baggage.inside;
