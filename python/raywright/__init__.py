@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 from . import scenes
 from ._core import AcceleratorInfo, simd
 from .accelerators import BSP, BVH, BruteForce, Grid, KdTree, NestedGrid, Octree
-from .camera import Camera
+from .cameras import AnyCamera, Camera, Fisheye, Orthographic, Panorama, Pose, ThinLens
 from .cones import ConeTouches
 from .hits import AllHits, ClosestPoints, Hits, QueryCost
 from .image import ErrorEstimate, Image
@@ -40,6 +40,7 @@ __all__ = [
     "BVH",
     "AcceleratorInfo",
     "AllHits",
+    "AnyCamera",
     "Box",
     "BruteForce",
     "Camera",
@@ -52,6 +53,7 @@ __all__ = [
     "Disk",
     "Ellipsoid",
     "ErrorEstimate",
+    "Fisheye",
     "Grid",
     "Hits",
     "Image",
@@ -61,15 +63,19 @@ __all__ = [
     "Mesh",
     "NestedGrid",
     "Octree",
+    "Orthographic",
+    "Panorama",
     "Paraboloid",
     "Path",
     "Plane",
     "PointLight",
     "Polygon",
+    "Pose",
     "QueryCost",
     "Scene",
     "Sphere",
     "Surface",
+    "ThinLens",
     "Torus",
     "check_writable",
     "render",

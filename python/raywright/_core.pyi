@@ -14,8 +14,8 @@ __all__ = [
     "CompiledScene",
     "KernelContest",
     "Rendering",
-    "camera_directions",
     "camera_rays",
+    "camera_rays_through",
     "cones",
     "first_hits",
     "implicit_trouble",
@@ -217,15 +217,23 @@ def render(
     the render at once and is passed on.
     """
 
-def camera_rays(camera: Any, offsets: NDArray[np.float64], single: bool) -> tuple[_Floats, _Floats]:
+def camera_rays(
+    camera: Any, offsets: NDArray[np.float64], single: bool, lens: NDArray[np.float64], time: _Numbers
+) -> tuple[_Floats, _Floats]:
     """Origins and directions (H,W,3) through the pixels; row 0 is the top.
 
     They are float32 if ``single``, else float64.
-    ``offsets`` (2,) or (H,W,2) is where in the pixel: (0, 0) is its upper left, (1, 1) its lower right.
+    ``offsets`` is where in the pixel: (0, 0) is its upper left, (1, 1) its lower right; ``lens`` where in the
+    lens, ``time`` when while the shutter is open, each from 0 to 1: one for all, or (H,W,2) and (H,W).
     """
 
-def camera_directions(camera: Any, points: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Find unit directions (N,3) through points (N,2) of the film, in pixels from its left and its top."""
+def camera_rays_through(
+    camera: Any, points: NDArray[np.float64], lens: NDArray[np.float64], time: _Numbers
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Origins and directions (N,3) through points (N,2) of the film, in pixels from its left and its top.
+
+    ``lens`` and ``time`` are those of `camera_rays`: one for all, or (N,2) and (N,).
+    """
 
 def cones(
     scene: CompiledScene,

@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 from typing import Any, NoReturn
 
 from .accelerators import Accelerator, every
-from .camera import Camera
+from .cameras import Camera
 from .description import described
 from .image import Image
 from .io.meshes import load

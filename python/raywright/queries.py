@@ -7,8 +7,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _core
 from ._core import CompiledScene
-from .arrays import indices, integer, last_axis
-from .camera import Camera, pixel_offsets
+from .arrays import indices, integer, last_axis, number
+from .cameras import AnyCamera, pixel_offsets
 from .cones import ConeTouches, cone_arguments
 from .hits import AllHits, ClosestPoints, Hits, QueryCost
 from .rays import RayArguments, nearest_arguments, point_arguments, ray_arguments
@@ -168,17 +168,18 @@ class Queries:
 
     def pick(
         self,
-        camera: Camera,
+        camera: AnyCamera,
         x: ArrayLike,
         y: ArrayLike,
         offsets: ArrayLike = (0.5, 0.5),
         threads: int | None = None,
+        time: ArrayLike | None = None,
     ) -> Hits:
         """Find what is seen at a pixel, or at many: shape, face, place and distance.
 
         Parameters
         ----------
-        camera : Camera
+        camera : Camera or another kind
             Whose picture it is.
         x, y : int or (...) integer arrays
             Column and row of the pixel, broadcast against each other: (0, 0) is the upper left of the
@@ -188,6 +189,8 @@ class Queries:
             its lower right. The default is the centre.
         threads : int, optional
             How many to use; all cores if not given. The answer does not depend on it.
+        time : float or (...) array, optional
+            When, from 0 as the camera's shutter opens, which it is if not given, to 1 as it closes.
 
         Returns
         -------
@@ -198,11 +201,11 @@ class Queries:
         Raises
         ------
         ValueError
-            If a pixel is outside of the picture, or shapes do not broadcast.
+            If a pixel is outside of the picture, `time` is not between 0 and 1, or shapes do not broadcast.
         TypeError
             If `camera` is not a Camera, `x` or `y` are not integers, or `offsets` are not real numbers.
         """
-        if not isinstance(camera, Camera):
+        if not isinstance(camera, AnyCamera):
             raise TypeError(f"camera must be a Camera, got {type(camera).__name__}")
         column, row = indices("x", x, camera.width), indices("y", y, camera.height)
         where = last_axis("offsets", offsets, 2)
@@ -212,25 +215,34 @@ class Queries:
             told = f"x {column.shape}, y {row.shape}, offsets {where.shape[:-1]}"
             raise ValueError(f"leading shapes do not broadcast: {told}") from None
         points = np.stack([np.broadcast_to(i, lead) for i in (column, row)], axis=-1) + where
-        return self.intersect(*camera.rays_through(points), threads=threads)
+        rays = camera.rays_through(points, time=time)
+        return self.intersect(*rays, threads=threads, time=camera.scene_time(time))
 
-    def first_hits(self, camera: Camera, offsets: ArrayLike = (0.5, 0.5), threads: int | None = None) -> Hits:
+    def first_hits(
+        self,
+        camera: AnyCamera,
+        offsets: ArrayLike = (0.5, 0.5),
+        threads: int | None = None,
+        time: float | None = None,
+    ) -> Hits:
         """Find what is seen at every pixel, by rasterising: what ``intersect(*camera.rays(offsets))`` finds.
 
         Faces are projected into the picture (Catmull 1974), and at the pixels that one may cover it is
         decided for the pixel's ray, exactly, as `intersect` does. Parts of the picture with too many faces
         are asked of the accelerator, and all of it is if there are more faces than a quarter of its pixels,
-        or something in the scene is no mesh.
+        something in the scene is no mesh, or the camera is another than a pinhole that stands still.
         ``report.first_hits`` tells where it pays.
 
         Parameters
         ----------
-        camera : Camera
+        camera : Camera or another kind
             Whose picture it is.
         offsets : (2,) or (height, width, 2) array
             Where in the pixel, for all or for each, as `Camera.rays` has it.
         threads : int, optional
             How many to use; all cores if not given. The answer does not depend on it.
+        time : float, optional
+            When, from 0 as the camera's shutter opens, which it is if not given, to 1 as it closes.
 
         Returns
         -------
@@ -241,16 +253,17 @@ class Queries:
         Raises
         ------
         ValueError
-            If `offsets` has another shape.
+            If `offsets` has another shape, or `time` is not between 0 and 1.
         TypeError
             If `camera` is not a Camera, or `offsets` are not real numbers.
         """
-        if not isinstance(camera, Camera):
+        if not isinstance(camera, AnyCamera):
             raise TypeError(f"camera must be a Camera, got {type(camera).__name__}")
         where = pixel_offsets(camera, offsets)
         core = self._core or self._compiled()
-        if core.curved:
-            return self.intersect(*camera.rays(where), threads=threads)
+        moment = camera.scene_time(None if time is None else number("time", time))
+        if core.curved or (time and camera.moved_to):
+            return self.intersect(*camera.rays(where, time=time), threads=threads, time=moment)
         threads = None if threads is None else integer("threads", threads, 1)
         t, shape_id, primitive, uv, _ = _core.first_hits(core, camera, where, threads)
         return Hits(t, shape_id, primitive, uv, None, core)

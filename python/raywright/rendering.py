@@ -4,7 +4,7 @@ import numpy as np
 
 from . import _core
 from .arrays import integer, positive
-from .camera import Camera
+from .cameras import AnyCamera
 from .image import HISTORY, ErrorEstimate, Image
 from .integrators import Path
 from .progress import bar
@@ -16,7 +16,7 @@ _DEFAULT_SAMPLES = 64
 
 def render(
     scene: Scene,
-    camera: Camera,
+    camera: AnyCamera,
     integrator: Path = _PATH,
     samples: int | None = None,
     error: float | None = None,
@@ -31,7 +31,7 @@ def render(
     ----------
     scene : Scene
         What to look at.
-    camera : Camera
+    camera : Camera or another kind
         From where.
     integrator : Path
         What turns rays into radiance.
@@ -65,11 +65,12 @@ def render(
     """
     for name, value, kind in (
         ("scene", scene, Scene),
-        ("camera", camera, Camera),
+        ("camera", camera, AnyCamera),
         ("integrator", integrator, Path),
     ):
         if not isinstance(value, kind):
-            raise TypeError(f"{name} must be a raywright.{kind.__name__}, got {type(value).__name__}")
+            told = kind.__name__.removeprefix("Any")
+            raise TypeError(f"{name} must be a raywright.{told}, got {type(value).__name__}")
     samples = None if samples is None else integer("samples", samples, 1, 2**32 - 1)
     error = None if error is None else positive("error", error)
     seconds = None if seconds is None else positive("seconds", seconds)

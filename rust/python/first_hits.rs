@@ -6,10 +6,10 @@ use pyo3::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use super::arrays::{sealed, unwritten, vectors};
+use super::cameras::AnyCamera;
 use super::level;
 use super::query::CompiledScene;
 use super::rays::answer;
-use super::render::Camera;
 use crate::math::Hit;
 use crate::scene::FirstHits;
 use crate::workers;
@@ -28,11 +28,11 @@ type Seen<'py> = (
 pub fn first_hits<'py>(
     py: Python<'py>,
     scene: &Bound<'py, CompiledScene>,
-    camera: Camera,
+    camera: AnyCamera,
     offsets: PyReadonlyArrayDyn<'py, f64>,
     threads: Option<usize>,
 ) -> PyResult<Seen<'py>> {
-    let (scene, camera) = (scene.get().scene(), camera.describe()?);
+    let (scene, camera) = (scene.get().scene(), &*camera.0);
     let offsets = vectors("offsets", &offsets)?;
     let (width, height) = (camera.width() as usize, camera.height() as usize);
     if offsets.len() != 1 && offsets.len() != width * height {
@@ -40,7 +40,7 @@ pub fn first_hits<'py>(
     }
     let level = level()?;
     let picture = py
-        .detach(|| workers::pool(threads).map(|pool| pool.install(|| FirstHits::new(scene, &camera, offsets, level))))
+        .detach(|| workers::pool(threads).map(|pool| pool.install(|| FirstHits::new(scene, camera, offsets, level))))
         .map_err(PyRuntimeError::new_err)?;
     let lead = [height, width];
     let (t, shape) = (unwritten(py, &lead, None)?, unwritten(py, &lead, None)?);

@@ -2,10 +2,10 @@
 
 mod accelerators;
 mod arrays;
+mod cameras;
 mod cones;
 mod describe;
 mod every;
-mod film;
 mod first_hits;
 mod freeform;
 mod info;
@@ -36,9 +36,10 @@ fn simd() -> PyResult<&'static str> {
 #[pymodule]
 mod _core {
     #[pymodule_export]
+    use super::cameras::{camera_rays, camera_rays_through};
+    #[pymodule_export]
     use super::cones::cones;
     #[pymodule_export]
-    use super::film::camera_directions;
     #[pymodule_export]
     use super::first_hits::first_hits;
     #[pymodule_export]
@@ -52,7 +53,7 @@ mod _core {
     #[pymodule_export]
     use super::query::CompiledScene;
     #[pymodule_export]
-    use super::render::{Rendering, camera_rays, render_scene};
+    use super::render::{Rendering, render_scene};
     #[pymodule_export]
     use super::report::KernelContest;
     #[pymodule_export]

@@ -1,37 +1,14 @@
 //! Scenes to pictures.
 
-use numpy::{Element, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArrayDyn};
-use pyo3::exceptions::{PyRuntimeError, PyValueError};
+use numpy::{PyArray2, PyArray3, PyArrayMethods};
+use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use std::ops::ControlFlow;
 
-use super::arrays::{Row, unwritten, vectors};
+use super::cameras::AnyCamera;
 use super::query::CompiledScene;
-use super::rays::{answer, share};
 use crate::integrators::Path;
-use crate::math::DVec3;
 use crate::render::{self, HistoryRow, Progress, RenderError, Settings, Until};
-use crate::scene;
-
-/// `raywright.Camera`.
-#[derive(FromPyObject)]
-pub struct Camera {
-    position: [f64; 3],
-    target: [f64; 3],
-    up: [f64; 3],
-    fov: f64,
-    width: u32,
-    height: u32,
-}
-
-impl Camera {
-    /// The camera that it describes.
-    pub fn describe(&self) -> PyResult<scene::Camera> {
-        let [position, target, up] = [self.position, self.target, self.up].map(DVec3::from_array);
-        scene::Camera::perspective(position, target, up, self.fov, self.width, self.height)
-            .map_err(|e| PyValueError::new_err(e.to_string()))
-    }
-}
 
 /// `raywright.Path`.
 #[derive(FromPyObject)]
@@ -92,7 +69,7 @@ impl Rendering {
 pub fn render_scene(
     py: Python<'_>,
     scene: &Bound<'_, CompiledScene>,
-    camera: Camera,
+    camera: AnyCamera,
     integrator: PathIntegrator,
     samples: Option<u32>,
     error: Option<f64>,
@@ -102,11 +79,10 @@ pub fn render_scene(
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Rendering> {
     let scene = &scene.get().0;
-    let camera = camera.describe()?;
     let path = Path { max_depth: integrator.max_depth, roulette_depth: integrator.roulette_depth };
     let settings = Settings { until: Until { samples, error, seconds }, seed, threads, ..Settings::default() };
     let mut watcher = Watcher { progress, raised: None };
-    match py.detach(|| render::render(scene, &camera, &path, &settings, &mut watcher)) {
+    match py.detach(|| render::render(scene, &*camera.0, &path, &settings, &mut watcher)) {
         Ok(rendering) => Ok(Rendering(rendering)),
         Err(RenderError::Interrupted) => {
             Err(watcher.raised.unwrap_or_else(|| PyRuntimeError::new_err("the render was interrupted")))
@@ -149,55 +125,4 @@ impl Progress for Watcher {
     fn poll(&mut self) -> ControlFlow<()> {
         self.unless_raised(|py, _| py.check_signals())
     }
-}
-
-/// Origins and directions (H,W,3), of one array type.
-type CameraRays<'py> = (Bound<'py, PyAny>, Bound<'py, PyAny>);
-
-/// Origins and directions (H,W,3) through the pixels, as float32 if `single`, else float64; row 0 is the top. `offsets` is where
-/// in the pixel: two numbers for all, or for each.
-#[pyfunction]
-pub fn camera_rays<'py>(
-    py: Python<'py>,
-    camera: Camera,
-    offsets: PyReadonlyArrayDyn<'py, f64>,
-    single: bool,
-) -> PyResult<CameraRays<'py>> {
-    let (camera, offsets) = (camera.describe()?, vectors("offsets", &offsets)?);
-    if single { rays_of::<f32>(py, &camera, offsets) } else { rays_of::<f64>(py, &camera, offsets) }
-}
-
-/// Rays of either type, made by all threads.
-fn rays_of<'py, T: Element + Send>(
-    py: Python<'py>,
-    camera: &scene::Camera,
-    offsets: &[[f64; 2]],
-) -> PyResult<CameraRays<'py>>
-where
-    [T; 3]: Row,
-{
-    let (width, height) = (camera.width() as usize, camera.height() as usize);
-    let count = width * height;
-    if offsets.len() != 1 && offsets.len() != count {
-        return Err(PyValueError::new_err(format!("offsets are {}, expected 1 or {width} × {height}", offsets.len())));
-    }
-    let origins = unwritten::<T>(py, &[height, width], Some(3))?;
-    let directions = unwritten::<T>(py, &[height, width], Some(3))?;
-    {
-        let (mut origins, mut directions) = (origins.readwrite(), directions.readwrite());
-        let parts = (origins.as_slice_mut()?.as_chunks_mut().0, directions.as_slice_mut()?.as_chunks_mut().0);
-        answer(py, count, share(count), None, parts, |start, (origins, directions)| {
-            let (mut x, mut y) = (start % width, start / width);
-            for (i, (origin, direction)) in origins.iter_mut().zip(directions).enumerate() {
-                let [right, down] = offsets[if offsets.len() == 1 { 0 } else { start + i }];
-                let ray = camera.ray(x as f64 + right, y as f64 + down);
-                (*origin, *direction) = (Row::of(ray.origin), Row::of(ray.direction));
-                x += 1;
-                if x == width {
-                    (x, y) = (0, y + 1);
-                }
-            }
-        })?;
-    }
-    Ok((origins.into_any(), directions.into_any()))
 }

@@ -91,7 +91,7 @@ fn single(pixels: Vec<Rgb>) -> Vec<[f32; 3]> {
 /// Renders until the first of `settings.until` is met. `progress` is called on this thread, all work is done on others.
 pub fn render(
     scene: &Scene,
-    camera: &Camera,
+    camera: &dyn Camera,
     integrator: &dyn Integrator,
     settings: &Settings,
     progress: &mut dyn Progress,

@@ -4,7 +4,7 @@ use super::{Film, FilmTile};
 use crate::integrators::{CameraSample, Integrator, Worker};
 use crate::optics::Rgb;
 use crate::sampling::SamplerKind;
-use crate::scene::{Camera, Scene};
+use crate::scene::{Camera, CameraRay, Footprint, Scene};
 use crate::workers::Cancel;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -16,12 +16,14 @@ const BATCH: usize = 4096;
 /// A picture being taken: everything that stays the same from pass to pass.
 pub(super) struct Exposure<'a> {
     pub scene: &'a Scene,
-    pub camera: &'a Camera,
+    pub camera: &'a dyn Camera,
     pub integrator: &'a dyn Integrator,
     pub sampler: SamplerKind,
     pub seed: u64,
     /// Whether samples are spread over the time that the shutter is open.
     moves: bool,
+    /// Whether samples are spread over the lens.
+    uses_lens: bool,
     /// Workers that no thread is using: their memory is used again.
     idle: Mutex<Vec<Bench<'a>>>,
 }
@@ -30,18 +32,21 @@ pub(super) struct Exposure<'a> {
 struct Bench<'a> {
     worker: Box<dyn Worker + 'a>,
     samples: Vec<CameraSample>,
+    /// Of all samples, those too that the camera sees nothing with, which nobody is asked for.
+    weights: Vec<f64>,
     radiance: Vec<Rgb>,
 }
 
 impl<'a> Exposure<'a> {
     pub fn new(
         scene: &'a Scene,
-        camera: &'a Camera,
+        camera: &'a dyn Camera,
         integrator: &'a dyn Integrator,
         sampler: SamplerKind,
         seed: u64,
     ) -> Self {
-        Self { scene, camera, integrator, sampler, seed, moves: scene.geometry().moves(), idle: Mutex::default() }
+        let (moves, uses_lens) = (scene.geometry().moves() || camera.uses_time(), camera.uses_lens());
+        Self { scene, camera, integrator, sampler, seed, moves, uses_lens, idle: Mutex::default() }
     }
 
     /// The side of tiles for a number of threads: 16, or less where that would leave threads without work.
@@ -65,8 +70,9 @@ impl<'a> Exposure<'a> {
     fn take_bench(&self) -> Bench<'a> {
         let idle = self.idle.lock().unwrap_or_else(PoisonError::into_inner).pop();
         idle.unwrap_or_else(|| Bench {
-            worker: self.integrator.worker(self.scene, Default::default()),
+            worker: self.integrator.worker(self.scene, self.footprint()),
             samples: Vec::new(),
+            weights: Vec::new(),
             radiance: Vec::new(),
         })
     }
@@ -79,27 +85,42 @@ impl<'a> Exposure<'a> {
             }
             let numbers = first..numbers.end.min(first + together as u32);
             bench.samples.clear();
+            bench.weights.clear();
             for (x, y) in tile.pixels() {
-                bench.samples.extend(numbers.clone().map(|number| self.camera_sample(x, y, number)));
+                for number in numbers.clone() {
+                    let (sample, weight) = self.camera_sample(x, y, number);
+                    bench.weights.push(weight);
+                    if weight != 0.0 {
+                        bench.samples.push(sample);
+                    }
+                }
             }
             bench.radiance.resize(bench.samples.len(), Rgb::ZERO);
             bench.worker.radiance(&mut bench.samples, cancel, &mut bench.radiance);
-            for (pixel, radiance) in bench.radiance.chunks(numbers.len()).enumerate() {
-                for (number, &radiance) in numbers.clone().zip(radiance) {
-                    tile.add(pixel, number, radiance);
+            let mut radiance = bench.radiance.iter();
+            for (pixel, weights) in bench.weights.chunks(numbers.len()).enumerate() {
+                for (number, &weight) in numbers.clone().zip(weights) {
+                    let seen = if weight == 0.0 { None } else { radiance.next() };
+                    tile.add(pixel, number, seen.map_or(Rgb::ZERO, |radiance| *radiance * weight));
                 }
             }
         }
     }
 
-    /// A sample of a pixel, uniform over its square: the box filter. Where anything moves, uniform over the shutter's time too.
-    fn camera_sample(&self, x: u32, y: u32, number: u32) -> CameraSample {
+    /// How wide the bundle of rays is that a pixel sees.
+    fn footprint(&self) -> Footprint {
+        let spread = self.camera.spread();
+        Footprint { width: spread.width, spread: spread.angle }
+    }
+
+    /// A sample of a pixel, uniform over its square: the box filter; and what it counts. Where anything moves, uniform over the shutter's
+    /// time too, and over the lens if there is one.
+    fn camera_sample(&self, x: u32, y: u32, number: u32) -> (CameraSample, f64) {
         let mut sampler = self.sampler.sampler(self.seed, y * self.camera.width() + x, number);
         let [right, down] = sampler.two(0);
-        let mut ray = self.camera.ray(f64::from(x) + right, f64::from(y) + down);
-        if self.moves {
-            ray.time = sampler.one(3);
-        }
-        CameraSample { ray, sampler }
+        let lens = if self.uses_lens { sampler.two(1) } else { [0.5; 2] };
+        let time = if self.moves { sampler.one(3) } else { 0.0 };
+        let CameraRay { ray, weight } = self.camera.ray([f64::from(x) + right, f64::from(y) + down], lens, time);
+        (CameraSample { ray, sampler }, weight)
     }
 }

@@ -7,10 +7,12 @@
 //! ([`EdgeRay`]), so that hits are those of [`Scene::intersect`](super::Scene::intersect), bit for bit.
 //!
 //! Where the triangles of a tile are so many or so large that looking at them takes longer than asking the tree would, the tree answers
-//! the tile. It answers the whole picture where there are too many triangles to look at each, or something is none.
+//! the tile. It answers the whole picture where there are too many triangles to look at each, or something is none, or the camera is another
+//! than a pinhole that stands still.
 
+use super::Scene;
+use super::cameras::{Camera, Perspective};
 use super::view::{Pixels, View};
-use super::{Camera, Scene};
 use crate::accel::Primitives;
 use crate::math::{DVec3, Hit, Ray, Tiling};
 use crate::shapes::triangle::{Column, EdgeRay, EdgeRays, RAYS, bits};
@@ -38,10 +40,11 @@ struct Projected {
 /// A camera's picture, ready to be asked for its first hits, band by band.
 pub struct FirstHits<'a> {
     scene: &'a Scene,
-    camera: &'a Camera,
+    camera: &'a dyn Camera,
     /// Where in the pixels: one for all of them, or one each.
     offsets: &'a [[f64; 2]],
-    view: View,
+    /// A pinhole that stands still, and its view; of any other camera the tree is asked.
+    view: Option<(&'a Perspective, View)>,
     projected: Vec<Projected>,
     /// Indices of those in each band of tiles, and where each band's begin.
     in_band: Vec<u32>,
@@ -57,14 +60,17 @@ impl<'a> FirstHits<'a> {
     ///
     /// # Panics
     /// If there is another number of offsets.
-    pub fn new(scene: &'a Scene, camera: &'a Camera, offsets: &'a [[f64; 2]], level: Level) -> Self {
+    pub fn new(scene: &'a Scene, camera: &'a dyn Camera, offsets: &'a [[f64; 2]], level: Level) -> Self {
         let (width, height) = (camera.width() as usize, camera.height() as usize);
         assert!(offsets.len() == 1 || offsets.len() == width * height, "an offset for all pixels, or for each");
         let (geometry, region) = (scene.geometry(), scene.region());
-        let reach = (camera.axes().0 - region.centre).abs().max_element() + region.radius;
-        let view = View::new(camera, offsets, reach, EdgeRay::T_ERROR);
+        let view = camera.as_perspective().map(|pinhole| {
+            let reach = (pinhole.viewpoint().position - region.centre).abs().max_element() + region.radius;
+            (pinhole, View::new(pinhole, offsets, reach, EdgeRay::T_ERROR))
+        });
         // Rows and columns are u16.
-        let is_plain = geometry.first_other().is_none()
+        let is_plain = view.is_some()
+            && geometry.first_other().is_none()
             && width.max(height) <= 1 << 16
             && geometry.count().saturating_mul(PIXELS) <= width * height;
         let count = if is_plain { geometry.count() as u32 } else { 0 };
@@ -73,6 +79,7 @@ impl<'a> FirstHits<'a> {
             if !corners.iter().all(|c| c.is_finite()) {
                 return None;
             }
+            let (_, view) = view.as_ref()?;
             let seen = view.see(corners)?;
             let pixels = view.pixels(&seen)?;
             Some(Projected { primitive, depth: (seen.depth as f32).next_down(), pixels })
@@ -209,9 +216,14 @@ impl Tile {
                 let pixel = usize::from(y) * width + usize::from(x);
                 let [right, down] = of.offsets[if of.offsets.len() == 1 { 0 } else { pixel }];
                 let at = [f64::from(x) + right, f64::from(y) + down];
-                let column = usize::from(x - pixels.x[0]);
-                [to.film[0][column], to.film[1][column]] = of.view.film(at[0], at[1]);
-                self.rays.push(of.camera.ray(at[0], at[1]));
+                self.rays.push(match &of.view {
+                    Some((pinhole, view)) => {
+                        let column = usize::from(x - pixels.x[0]);
+                        [to.film[0][column], to.film[1][column]] = view.film(at[0], at[1]);
+                        pinhole.ray_through(at[0], at[1])
+                    }
+                    None => of.camera.ray(at, [0.5; 2], 0.0).ray,
+                });
             }
         }
     }
@@ -247,23 +259,24 @@ impl Kernel<4> for Rasterise<'_, '_> {
         /// So many rays or fewer are asked one by one.
         const FEW: u32 = 2;
         let Self { tile: Tile { rays, hits, triangles, rows }, of, pixels } = self;
+        let Some((pinhole, view)) = &of.view else { return };
         let (geometry, region) = (of.scene.geometry(), of.scene.region());
-        let forward = of.camera.axes().1[0];
+        let forward = pinhole.viewpoint().forward;
         let across = usize::from(pixels.x[1] - pixels.x[0]) + 1;
         for (row, rays) in rows.iter_mut().zip(rays.chunks(across)) {
             row.edges.transpose(rays);
             row.is_plain = row.edges.prepare(region);
             row.beyond = [f64::INFINITY; RAYS];
         }
-        let window = of.view.window(pixels);
+        let window = view.window(pixels);
         let most = window[0][0].abs().max(window[0][1].abs()) + window[1][0].abs().max(window[1][1].abs());
         for triangle in triangles.iter() {
             let corners = geometry.corners(triangle.primitive);
-            let (Some(seen), Some(shared)) = (of.view.see(corners), triangle.pixels.shared(pixels)) else { continue };
-            if of.view.is_beside(&seen, &window) {
+            let (Some(seen), Some(shared)) = (view.see(corners), triangle.pixels.shared(pixels)) else { continue };
+            if view.is_beside(&seen, &window) {
                 continue;
             }
-            let (sides, above) = (seen.sides(), seen.side_error(&of.view, most));
+            let (sides, above) = (seen.sides(), seen.side_error(view, most));
             let (first, last) = (shared.x[0] - pixels.x[0], shared.x[1] - pixels.x[0]);
             let columns = (u32::MAX << first) & (u32::MAX >> (31 - last));
             for y in shared.y[0]..=shared.y[1] {
@@ -346,16 +359,17 @@ impl Row {
 mod tests {
     use super::*;
     use crate::math::Vec3;
+    use crate::scene::cameras::Window;
     use crate::scene::fixtures::{furnace, scene, shape};
     use crate::scene::{Mesh, SceneDescription};
     use proptest::prelude::*;
 
     /// Hits by rasterising at every level, which are those of rays, bit for bit; returns for how many pixels the tree was asked.
-    fn agreed(scene: &Scene, camera: &Camera, offsets: &[[f64; 2]]) -> usize {
+    fn agreed(scene: &Scene, camera: &dyn Camera, offsets: &[[f64; 2]]) -> usize {
         let (width, height) = (camera.width() as usize, camera.height() as usize);
         let ray = |i: usize| {
             let [x, y] = offsets[i % offsets.len()];
-            camera.ray((i % width) as f64 + x, (i / width) as f64 + y)
+            camera.ray([(i % width) as f64 + x, (i / width) as f64 + y], [0.5; 2], 0.0).ray
         };
         let rays: Vec<_> = (0..width * height).map(ray).collect();
         let mut wanted = vec![Hit::MISS; rays.len()];
@@ -387,7 +401,7 @@ mod tests {
             (at(5.0, 4.0, 3.0), at(0.0, 0.0, 0.0), 30.0),
             (at(5e8, 4e8, 3e8), at(0.0, 0.0, 0.0), 2e-7),
         ] {
-            let camera = Camera::perspective(position, target, DVec3::Y, fov, 53, 37).unwrap();
+            let camera = Perspective::looking_at(position, target, DVec3::Y, fov, 53, 37).unwrap();
             let asked = agreed(&room, &camera, &[[0.5, 0.5]]);
             // All but the last tiles of rows, five pixels wide, whose walls are as much to look at as their pixels.
             assert!(asked <= 5 * 37, "{asked} pixels of the tree");
@@ -405,14 +419,20 @@ mod tests {
             corners in prop::collection::vec(prop::array::uniform3(coordinate()), 3..90),
             position in prop::array::uniform3(coordinate()), target in prop::array::uniform3(coordinate()),
             fov in prop_oneof![Just(90.0), 1.0..179.0f64], offset in prop::array::uniform2(prop_oneof![Just(0.0), Just(0.5), -1.0..2.0f64]),
+            matrix in (
+                prop_oneof![2.0..100.0f64, -100.0..-2.0f64], 2.0..100.0f64, prop_oneof![Just(0.0), -50.0..50.0f64], -50.0..90.0f64, -50.0..70.0f64,
+            ).prop_map(<[f64; 5]>::from),
         ) {
             let vertices: Vec<_> = corners.iter().map(|&c| Vec3::from_array(c)).collect();
             let faces = (0..vertices.len() as u32 / 3).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
             let mesh = Mesh { vertices: vertices.into(), faces, normals: None, ..Mesh::default() };
             let scene = scene(SceneDescription { shapes: vec![shape(mesh, [0.5; 3], 0.0)], ..Default::default() });
             let [position, target] = [position, target].map(|p| Vec3::from_array(p).as_dvec3());
-            if let Ok(camera) = Camera::perspective(position, target, DVec3::new(0.1, 1.0, 0.2), fov, 35, 20) {
+            if let Ok(camera) = Perspective::looking_at(position, target, DVec3::new(0.1, 1.0, 0.2), fov, 35, 20) {
                 agreed(&scene, &camera, &[offset]);
+                let [across, down, skew, x, y] = matrix;
+                let window = Window::of_matrix([across, down], [x, y], skew, camera.body().size()).unwrap();
+                agreed(&scene, &Perspective::new(camera.body().clone(), window), &[offset]);
             }
         }
     }

@@ -1,6 +1,6 @@
 //! Scenes that tests share.
 
-use super::{Camera, DiffuseMaterial, Mesh, Scene, SceneDescription, Shape};
+use super::{DiffuseMaterial, Mesh, Perspective, Scene, SceneDescription, Shape};
 use crate::accel::bvh::{self, Options};
 use crate::math::{DVec3, Vec3};
 use crate::optics::Rgb;
@@ -71,7 +71,7 @@ fn standing_box(centre: [f32; 2], half: f32, height: f32, degrees: f32) -> Mesh 
 
 /// The box that everybody renders: red and green walls, two blocks, a small light at the ceiling; it is open to the
 /// camera's side.
-pub(crate) fn cornell(width: u32, height: u32) -> (Scene, Camera) {
+pub(crate) fn cornell(width: u32, height: u32) -> (Scene, Perspective) {
     let white = [0.73, 0.73, 0.73];
     let [left, right, floor, ceiling, back, _] = inward_box([0.0; 3], [1.0; 3]);
     let light = rectangle([0.35, 0.999, 0.35], [0.3, 0.0, 0.0], [0.0, 0.0, 0.3]);
@@ -86,7 +86,7 @@ pub(crate) fn cornell(width: u32, height: u32) -> (Scene, Camera) {
         shape(standing_box([0.67, 0.67], 0.15, 0.3, -17.0), white, 0.0),
     ];
     let camera =
-        Camera::perspective(DVec3::new(0.5, 0.5, 2.4), DVec3::new(0.5, 0.5, 0.0), DVec3::Y, 39.0, width, height);
+        Perspective::looking_at(DVec3::new(0.5, 0.5, 2.4), DVec3::new(0.5, 0.5, 0.0), DVec3::Y, 39.0, width, height);
     (scene(SceneDescription { shapes, ..Default::default() }), camera.expect("a camera"))
 }
 

@@ -1,6 +1,6 @@
 //! Floor 3: what a scene is made of, compiled for rays.
 
-mod camera;
+pub mod cameras;
 mod compiled;
 mod copies;
 mod description;
@@ -24,7 +24,7 @@ mod surfaces;
 pub mod textures;
 mod view;
 
-pub use camera::{Camera, CameraError};
+pub use cameras::{Camera, CameraError, CameraRay, Perspective};
 pub use compiled::Scene;
 pub use copies::{BadTransform, Copies, Matrix, check_transforms};
 pub use description::{DescriptionError, SceneDescription, Shape};

@@ -4,11 +4,11 @@
 //! ray through (x, y), each from −1 to 1 across the picture, goes along (x, y, 1).
 //!
 //! The bound. Let u = 2⁻⁵³, |q| the distance of the farthest corner, and s the greatest of 1 and the inverse half width and half height of
-//! the picture at distance 1. A relative corner errs by u|q|, its product with an axis by 4u|q| more, and axes are at right angles
+//! the picture at distance 1, the more so as its middle is not that of the view ([`super::cameras::Window::onto_film`]). A relative corner errs by u|q|, its product with an axis by 4u|q| more, and axes are at right angles
 //! to within 4u, so that no coordinate errs by more than 16us|q|; a ray's direction, three sums, a normalisation and three
 //! quotients, goes through a point off by less than 16us. 64us|q| is allowed for both, and called the slack.
 
-use super::Camera;
+use super::cameras::{Camera, Perspective};
 use crate::math::DVec3;
 use crate::math::robust::{greater, lesser};
 
@@ -17,13 +17,13 @@ use crate::math::robust::{greater, lesser};
 pub(super) struct View {
     position: DVec3,
     forward: DVec3,
-    /// Axes over the squares of their lengths.
+    /// What gives the first two coordinates.
     right: DVec3,
     up: DVec3,
     size: [f64; 2],
     /// Least and greatest offset in a pixel, by axis.
     offsets: [[f64; 2]; 2],
-    /// The greatest of 1 and the inverse half width and half height.
+    /// What bounds all three, as a multiple of the distance: see [`Window::onto_film`](super::cameras::Window::onto_film).
     stretch: f64,
     /// How far behind the camera something may lie and be met nevertheless, for the rounding of `t`.
     behind: f64,
@@ -68,22 +68,22 @@ const SLACK: f64 = 1.0 / (1u64 << 47) as f64;
 impl View {
     /// The view of a camera whose rays go through its pixels at these offsets; `reach` bounds how far the scene is, and `t_error` is how far, as a
     /// part of that, `t` may be off.
-    pub fn new(camera: &Camera, offsets: &[[f64; 2]], reach: f64, t_error: f64) -> Self {
-        let (position, [forward, right, up]) = camera.axes();
+    pub fn new(camera: &Perspective, offsets: &[[f64; 2]], reach: f64, t_error: f64) -> Self {
+        let position = camera.viewpoint().position;
+        let ([right, up, forward], stretch) = camera.window().onto_film(camera.viewpoint());
         // Rays through what is no finite point hit nothing.
         let finite = || offsets.iter().filter(|o| o[0].is_finite() && o[1].is_finite());
         let range = |axis: usize| {
             finite().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], o| [lesser(o[axis], a), greater(o[axis], b)])
         };
-        let (width, height) = (right.length_squared(), up.length_squared());
         Self {
             position,
             forward,
-            right: right / width,
-            up: up / height,
+            right,
+            up,
             size: [f64::from(camera.width()), f64::from(camera.height())],
             offsets: [range(0), range(1)],
-            stretch: greater(1.0, greater(1.0 / width.sqrt(), 1.0 / height.sqrt())),
+            stretch,
             behind: 4.0 * t_error * reach,
         }
     }
@@ -106,7 +106,7 @@ impl View {
         Some(Seen { corners, slack, reach, depth })
     }
 
-    /// The picture from −1 to 1 at a place in pixels, along x to the right and along y upwards, as [`Camera::ray`] has it.
+    /// The picture from −1 to 1 at a place in pixels, along x to the right and along y upwards, as [`Perspective::ray_through`] has it.
     #[inline(always)]
     pub fn film(&self, x: f64, y: f64) -> [f64; 2] {
         [2.0 * x / self.size[0] - 1.0, 1.0 - 2.0 * y / self.size[1]]

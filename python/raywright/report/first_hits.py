@@ -9,7 +9,7 @@ import numpy as np
 
 from .. import _core
 from ..arrays import integer
-from ..camera import Camera
+from ..cameras import AnyCamera
 from ..scene import Scene
 from .table import Column, Table
 
@@ -23,7 +23,7 @@ _COLUMNS = (
 )
 
 
-def first_hits(scene: Scene, camera: Camera, threads: int | None = 1, repeats: int = 5) -> Table[Any]:
+def first_hits(scene: Scene, camera: AnyCamera, threads: int | None = 1, repeats: int = 5) -> Table[Any]:
     """Time `Scene.intersect` and `Scene.first_hits` on the same picture.
 
     Both are timed in turns, and the medians are told. `intersect` is timed twice: with the rays at hand, and
@@ -35,7 +35,7 @@ def first_hits(scene: Scene, camera: Camera, threads: int | None = 1, repeats: i
     ----------
     scene : Scene
         What is seen.
-    camera : Camera
+    camera : Camera or another kind
         By whom.
     threads : int, optional
         How many to use; all cores if None.
@@ -58,7 +58,7 @@ def first_hits(scene: Scene, camera: Camera, threads: int | None = 1, repeats: i
     """
     if not isinstance(scene, Scene):
         raise TypeError(f"scene must be a Scene, got {type(scene).__name__}")
-    if not isinstance(camera, Camera):
+    if not isinstance(camera, AnyCamera):
         raise TypeError(f"camera must be a Camera, got {type(camera).__name__}")
     repeats = integer("repeats", repeats, 1, 10_000)
     if threads is not None:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import choice, integer
-from ..camera import Camera
+from ..cameras import AnyCamera
 from ..io.pictures import check_writable
 from ..scene import Scene
 from .table import NO_MATPLOTLIB, Column, Table
@@ -171,7 +171,7 @@ class Heatmap:
 
 def heatmap(
     scene: Scene,
-    camera: Camera,
+    camera: AnyCamera,
     what: What = "nodes",
     most: int | None = None,
     repeats: int = 7,
@@ -183,7 +183,7 @@ def heatmap(
     ----------
     scene : Scene
         What is hit, and whose accelerator is looked into.
-    camera : Camera
+    camera : Camera or another kind
         Whose rays go through the centres of the pixels.
     what : {"nodes", "primitives"}
         What the picture shows: nodes visited, or primitives tested.
@@ -210,7 +210,7 @@ def heatmap(
     """
     if not isinstance(scene, Scene):
         raise TypeError(f"scene must be a Scene, got {type(scene).__name__}")
-    if not isinstance(camera, Camera):
+    if not isinstance(camera, AnyCamera):
         raise TypeError(f"camera must be a Camera, got {type(camera).__name__}")
     choice("what", what, get_args(What))
     repeats = integer("repeats", repeats, 0, 10_000)

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..arrays import integer, last_axis
-from ..camera import Camera
+from ..cameras import AnyCamera, Camera
 from ..mesh import Mesh
 from ..rays import ray_arguments
 from ..scene import Scene
@@ -77,14 +77,14 @@ class Rays:
         return replace(self, origins=origins, directions=directions)
 
 
-def typical_rays(scene: Scene, camera: Camera | None = None, seed: int = 0) -> dict[str, Rays]:
+def typical_rays(scene: Scene, camera: AnyCamera | None = None, seed: int = 0) -> dict[str, Rays]:
     """Return the rays that a renderer asks for: primary, diffuse and shadow.
 
     Parameters
     ----------
     scene : Scene
         What they are shot at.
-    camera : Camera, optional
+    camera : Camera or another kind, optional
         Whose the primary rays are, one through the centre of each pixel. If not given, one of 256 by 256
         pixels that sees all of the scene from outside.
     seed : int
@@ -135,7 +135,7 @@ def ray_sets(scene: Scene, rays: Any, seed: int) -> dict[str, Rays]:
     ValueError, TypeError
         As `typical_rays` and `Rays`; TypeError too if it is none of these.
     """
-    if rays is None or isinstance(rays, Camera):
+    if rays is None or isinstance(rays, AnyCamera):
         return typical_rays(scene, rays, seed)
     if not isinstance(rays, Mapping):
         return {"rays": _one("rays", rays)}
@@ -169,7 +169,7 @@ def outside(scene: Scene, side: int = 256) -> Camera:
 
 
 def _lamps(
-    scene: Scene, camera: Camera, away: float, count: int, rng: np.random.Generator
+    scene: Scene, camera: AnyCamera, away: float, count: int, rng: np.random.Generator
 ) -> NDArray[np.float64]:
     """Return `count` points (N, 3) that shine."""
     if scene.lights:
@@ -190,10 +190,10 @@ def _lamps(
     return np.broadcast_to(_over_shoulder(scene, camera, away), (count, 3))
 
 
-def _over_shoulder(scene: Scene, camera: Camera, away: float) -> NDArray[np.float64]:
+def _over_shoulder(scene: Scene, camera: AnyCamera, away: float) -> NDArray[np.float64]:
     """Return a point half as far from the camera as what it sees; nearer, where a wall is in between."""
     eye = np.array(camera.position)
-    view = _units(np.array(camera.target) - eye)
+    view = camera.forward
     right = _units(np.cross(view, camera.up))
     step = 0.5 * away * _units(right + np.cross(right, view))
     wall = float(scene.intersect(eye, step, t_max=1.0).t)

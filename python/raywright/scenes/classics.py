@@ -3,7 +3,7 @@
 import numpy as np
 
 from ..arrays import integer
-from ..camera import Camera
+from ..cameras import Camera
 from ..scene import Scene, Shapes
 from .city import city
 from .forest import forest

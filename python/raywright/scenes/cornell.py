@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..arrays import Triple
-from ..camera import Camera
+from ..cameras import Camera
 from ..io.meshes import only_meshes
 from ..materials import Diffuse
 from ..mesh import Mesh

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..accelerators import BVH, Accelerator
-from ..camera import Camera
+from ..cameras import Camera
 from ..instance import Instance
 from ..io.meshes import meshes
 from ..materials import Diffuse

@@ -1,33 +1,18 @@
-//! Integrators against closed forms.
+//! Path tracing.
 
-use super::*;
+use super::{assert_radiance, radiance, samples_of};
 use crate::accel::{Accelerator, BruteForce};
-use crate::math::DVec3;
-use crate::scene::fixtures::{furnace, inward_box, rectangle, scene, shape};
-use crate::scene::{Copies, Geometry, Group, Matrix, PointLight, SceneDescription, Shape};
+use crate::integrators::{CameraSample, Integrator, Path};
+use crate::math::{DVec3, Ray};
+use crate::optics::Rgb;
+use crate::sampling::Sampler;
+use crate::scene::fixtures::{cornell, furnace, inward_box, rectangle, scene, shape};
+use crate::scene::{
+    Camera, Copies, Footprint, Geometry, Group, Kernel, Matrix, PointLight, Scene, SceneDescription, Shape,
+};
 use crate::simd::Level;
+use crate::workers::Cancel;
 use std::sync::Arc;
-
-/// Mean and standard error of the green radiance along a ray.
-fn radiance(scene: &Scene, path: &Path, ray: Ray, count: u32) -> (f64, f64) {
-    let mut samples: Vec<_> =
-        (0..count).map(|number| CameraSample { ray, sampler: Sampler::new(3, 0, number) }).collect();
-    let mut values = vec![Rgb::ZERO; count as usize];
-    let mut worker = path.worker(scene, Footprint::default());
-    for (samples, values) in samples.chunks_mut(4096).zip(values.chunks_mut(4096)) {
-        worker.radiance(samples, &Cancel::default(), values);
-    }
-    let mean = values.iter().map(|v| v.y).sum::<f64>() / f64::from(count);
-    let variance = values.iter().map(|v| (v.y - mean).powi(2)).sum::<f64>() / f64::from(count - 1);
-    (mean, (variance / f64::from(count)).sqrt())
-}
-
-/// Within four standard errors (chance exceeds them once in 16,000 cases), which are below 1 %.
-fn assert_radiance(scene: &Scene, path: &Path, ray: Ray, count: u32, expected: f64) {
-    let (mean, error) = radiance(scene, path, ray, count);
-    assert!((mean - expected).abs() <= 4.0 * error + 1e-9 * expected, "{mean} ± {error}, not {expected}");
-    assert!(error < 0.01 * expected, "{error} of {expected}");
-}
 
 const ANYWHERE: Ray = Ray {
     origin: DVec3::new(0.1, -0.2, 0.3),
@@ -176,4 +161,53 @@ fn a_sample_does_not_depend_on_its_batch() {
     };
     assert_eq!(run(1), run(100));
     assert_eq!(run(7), run(100));
+}
+
+#[test]
+fn every_kernel_gives_the_same_bits() {
+    let (room, camera) = cornell(8, 8);
+    let lamp = PointLight { position: DVec3::new(0.3, 0.5, 0.2), intensity: Rgb::splat(0.1) };
+    let [_, _, floor, ..] = inward_box([-1.0; 3], [2.0; 3]);
+    let open = SceneDescription {
+        shapes: vec![shape(floor, [0.7, 0.1, 0.4], 0.3)],
+        points: vec![lamp],
+        environment: Rgb::new(0.1, 0.2, 0.3),
+    };
+    for scene in [room, furnace(0.9, 0.3), scene(open)] {
+        assert_eq!(scene.plan().kernel(), Kernel::Plain);
+        let samples: Vec<_> = (0..4000u32)
+            .map(|i| {
+                let film = [f64::from(i % 8) + 0.3, f64::from(i / 8 % 8) + 0.6];
+                CameraSample { ray: camera.ray(film, [0.5; 2], 0.0).ray, sampler: Sampler::new(5, i % 64, i / 64) }
+            })
+            .collect();
+        let path = Path::default();
+        let [plain, open, general] = Kernel::ALL.map(|kernel| {
+            let mut values = vec![Rgb::ZERO; samples.len()];
+            let mut worker = path.worker_of(&scene, Footprint::default(), kernel);
+            worker.radiance(&mut samples.clone(), &Cancel::default(), &mut values);
+            values
+        });
+        assert!(plain == open && plain == general);
+        assert!(plain.iter().filter(|rgb| **rgb != Rgb::ZERO).count() > 1000);
+    }
+}
+
+#[test]
+fn no_film_has_nan_however_bright_or_dim_or_small_the_light() {
+    // A lamp of any strength and size over a floor: what it gives is in proportion to its radiance.
+    let floor = || shape(rectangle([-9.0, -9.0, 0.0], [18.0, 0.0, 0.0], [0.0, 18.0, 0.0]), [0.5; 3], 0.0);
+    let ray = Ray::new(DVec3::new(0.0, 0.3, 0.4), DVec3::new(0.0, -0.6, -0.8));
+    for (side, strength) in [(1e-6f32, 1e12), (1e-6, 1e30), (1e-3, 1e-30), (1e-10, 1e20)] {
+        let lamp = rectangle([-0.5 * side, -0.5 * side, 1.0], [0.0, side, 0.0], [side, 0.0, 0.0]);
+        let shapes = vec![floor(), shape(lamp, [0.0; 3], strength)];
+        let scene = scene(SceneDescription { shapes, ..Default::default() });
+        let values = samples_of(&scene, &Path::default(), ray, 1000);
+        assert!(values.iter().all(|rgb| rgb.is_finite()));
+        // As of a point right above: E = L A / h².
+        let side = f64::from(side);
+        let expected = 0.5 / std::f64::consts::PI * strength * side * side;
+        let mean = values.iter().map(|rgb| rgb.y).sum::<f64>() / 1000.0;
+        assert!((mean / expected - 1.0).abs() < 1e-4, "{mean}, not {expected}");
+    }
 }

@@ -1,0 +1,20 @@
+"""Where pictures are taken from, a kind of camera a file."""
+
+from .any_camera import AnyCamera, pixel_offsets
+from .fisheye import Fisheye
+from .orthographic import Orthographic
+from .panorama import Panorama
+from .perspective import Camera
+from .pose import Pose
+from .thin_lens import ThinLens
+
+__all__ = [
+    "AnyCamera",
+    "Camera",
+    "Fisheye",
+    "Orthographic",
+    "Panorama",
+    "Pose",
+    "ThinLens",
+    "pixel_offsets",
+]

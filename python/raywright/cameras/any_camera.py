@@ -1,0 +1,230 @@
+"""What all cameras have: a picture, a shutter, and rays."""
+
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike, DTypeLike, NDArray
+
+from .. import _core
+from ..arrays import choice, integer, last_axis, number, real_array
+from .pose import Pose
+
+FOV_AXES = ("x", "y", "smaller", "larger", "diagonal")
+_CENTRE = (0.5, 0.5)
+
+
+@dataclass(frozen=True, init=False, repr=False, kw_only=True)
+class AnyCamera(Pose):
+    """What cameras of all kinds can do.
+
+    To be made as one of them: `Camera`, `ThinLens`, `Orthographic`, `Fisheye`, `Panorama`.
+
+    All take where they stand as `Pose` does, and these.
+
+    Parameters
+    ----------
+    width, height : int
+        Size of the picture in pixels, 1 to 65536.
+    moved_to : Pose, optional
+        Where the camera is as the shutter closes; another camera will do. In between it goes straight at an
+        even pace, and turns about one axis at an even pace (slerp; Shoemake 1985).
+    shutter : 2 floats
+        When it opens and closes, in the scene's time, in which instances move from 0 to 1.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of range or not finite, or the shutter closes before it opens.
+    TypeError
+        If something is not a number, or `moved_to` is no Pose.
+    """
+
+    kind: ClassVar[str]
+
+    width: int
+    height: int
+    moved_to: Pose | None = None
+    shutter: tuple[float, float] = (0.0, 1.0)
+
+    def __init__(
+        self,
+        position: ArrayLike,
+        target: ArrayLike | None,
+        up: ArrayLike,
+        direction: ArrayLike | None,
+        width: int,
+        height: int,
+        moved_to: Pose | None,
+        shutter: ArrayLike,
+    ) -> None:
+        super().__init__(position, target, up, direction)
+        if moved_to is not None and not isinstance(moved_to, Pose):
+            raise TypeError(f"moved_to must be a raywright.Pose, got {type(moved_to).__name__}")
+        if isinstance(moved_to, AnyCamera):
+            moved_to = Pose(moved_to.position, moved_to.target, moved_to.up, moved_to.direction)
+        self._keep(
+            width=integer("width", width, 1, 65536),
+            height=integer("height", height, 1, 65536),
+            moved_to=moved_to,
+            shutter=_shutter(shutter),
+        )
+
+    def rays(
+        self,
+        offsets: ArrayLike = _CENTRE,
+        dtype: DTypeLike = np.float64,
+        lens: ArrayLike | None = None,
+        time: ArrayLike | None = None,
+    ) -> tuple[NDArray[np.floating[Any]], NDArray[np.floating[Any]]]:
+        """Return a ray through each pixel.
+
+        Parameters
+        ----------
+        offsets : (2,) or (height, width, 2) array
+            Where in the pixel, for all or for each: (0, 0) is its upper left, (1, 1) its lower right. The
+            default is the centre; ``rng.random((height, width, 2))`` is anywhere in it.
+        dtype : float64 or float32
+            Of the arrays; rays of float32 are the fastest to read.
+        lens : (2,) or (height, width, 2) array, optional
+            Where in the lens, each number from 0 to 1, for all or for each: uniform numbers are uniform over
+            its area. Its centre if not given; of no account for cameras without a lens.
+        time : float or (height, width) array, optional
+            When, from 0 as the shutter opens, which it is if not given, to 1 as it closes, for all or for
+            each. What is in the scene then is asked with ``time=camera.scene_time(time)``.
+
+        Returns
+        -------
+        origins, directions : (height, width, 3) arrays
+            Directions are unit, to rounding. Row 0 is the top of the picture, column 0 its left. Where the
+            camera sees nothing, as beyond the circle of a fisheye, they are NaN, and hit nothing.
+
+        Raises
+        ------
+        ValueError
+            If an array has another shape, `lens` or `time` is out of range, or `dtype` is another type.
+        TypeError
+            If `offsets`, `lens` or `time` are not real numbers.
+        """
+        kind = np.dtype(dtype)
+        if kind not in (np.float32, np.float64):
+            raise ValueError(f"dtype must be float32 or float64, got {kind}")
+        places = (
+            _CENTRE
+            if lens is None
+            else _for_pixels(self, "lens", _in_unit("lens", last_axis("lens", lens, 2)))
+        )
+        times = _times(time)
+        if times.shape not in ((), (self.height, self.width)):
+            raise ValueError(f"time must have shape () or ({self.height}, {self.width}), got {times.shape}")
+        where = pixel_offsets(self, offsets)
+        return _core.camera_rays(self, where, kind == np.float32, _ordered(places), _ordered(times))
+
+    def rays_through(
+        self, points: ArrayLike, lens: ArrayLike | None = None, time: ArrayLike | None = None
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Return a ray through each of any points of the picture.
+
+        Parameters
+        ----------
+        points : (..., 2) array
+            In pixels from the picture's left and from its top: the centre of the pixel in row i and column j
+            is at (j + 0.5, i + 0.5). Points beside the picture have rays too.
+        lens : (..., 2) array, optional
+            Where in the lens, as `rays` has it; leading shapes broadcast.
+        time : float or (...) array, optional
+            When, as `rays` has it; shapes broadcast.
+
+        Returns
+        -------
+        origins, directions : (..., 3) float64 arrays
+            Directions are unit, to rounding, and the same as those of `rays` through the same points; NaN
+            where the camera sees nothing.
+
+        Raises
+        ------
+        ValueError
+            If an array has another shape, `points` are not finite, or `lens` or `time` is out of range.
+        TypeError
+            If `points`, `lens` or `time` are not real numbers.
+        """
+        where = last_axis("points", points, 2)
+        if not np.isfinite(where).all():
+            raise ValueError("points must be finite")
+        places = np.array(_CENTRE) if lens is None else _in_unit("lens", last_axis("lens", lens, 2))
+        times = _times(time)
+        parts = {"points": where.shape[:-1], "lens": places.shape[:-1], "time": times.shape}
+        try:
+            lead = np.broadcast_shapes(*parts.values())
+        except ValueError:
+            told = ", ".join(f"{name} {shape}" for name, shape in parts.items())
+            raise ValueError(f"leading shapes do not broadcast: {told}") from None
+        where = _ordered(np.broadcast_to(where, (*lead, 2)).reshape(-1, 2))
+        places = places if places.ndim == 1 else np.broadcast_to(places, (*lead, 2)).reshape(-1, 2)
+        times = times if times.ndim == 0 else np.broadcast_to(times, lead).reshape(-1)
+        found = _core.camera_rays_through(self, where, _ordered(places), _ordered(times))
+        origins, directions = (rays.reshape(*lead, 3) for rays in found)
+        return origins, directions
+
+    def scene_time(self, time: ArrayLike | None = None) -> NDArray[np.float64]:
+        """Return the scene's time at times (...) from 0 as the shutter opens to 1 as it closes."""
+        opens, closes = self.shutter
+        return np.asarray(opens + (closes - opens) * _times(time))
+
+
+def pixel_offsets(camera: AnyCamera, offsets: ArrayLike) -> NDArray[np.float64]:
+    """Return offsets in the pixels of a camera, checked and as the core takes them."""
+    return _ordered(_for_pixels(camera, "offsets", last_axis("offsets", offsets, 2)))
+
+
+def view_angle(name: str, value: float, most: float = 180.0, closed: bool = False) -> float:
+    """Return an angle of view in degrees, between 0 and the most, which is allowed if it is `closed`."""
+    angle = number(name, value)
+    if not (0 < angle < most or (closed and angle == most)):
+        raise ValueError(f"{name} must be between 0 and {most:g} degrees, got {value}")
+    return angle
+
+
+def picture_axis(name: str, value: str) -> str:
+    """Return which length of a picture something is measured along."""
+    choice(name, value, FOV_AXES)
+    return value
+
+
+def picture_length(camera: AnyCamera, axis: str) -> float:
+    """Return a length of a camera's picture in pixels."""
+    width, height = camera.width, camera.height
+    lengths = {"x": width, "y": height, "smaller": min(width, height), "larger": max(width, height)}
+    return float(lengths[axis]) if axis in lengths else float(np.hypot(width, height))
+
+
+def _shutter(value: ArrayLike) -> tuple[float, float]:
+    array = real_array("shutter", value)
+    if array.shape != (2,):
+        raise ValueError(f"shutter must be 2 numbers, got shape {array.shape}")
+    opens, closes = (float(x) for x in array)
+    if not 0 <= opens <= closes <= 1:
+        raise ValueError(f"shutter must open and then close within 0 to 1, got ({opens:g}, {closes:g})")
+    return opens, closes
+
+
+def _for_pixels(camera: AnyCamera, name: str, where: NDArray[Any]) -> NDArray[Any]:
+    if where.shape not in ((2,), (camera.height, camera.width, 2)):
+        allowed = f"(2,) or ({camera.height}, {camera.width}, 2)"
+        raise ValueError(f"{name} must have shape {allowed}, got {where.shape}")
+    return where
+
+
+def _in_unit(name: str, array: NDArray[Any]) -> NDArray[Any]:
+    within = (array >= 0) & (array <= 1)
+    if not within.all():
+        raise ValueError(f"{name} must be between 0 and 1, got {array[~within].flat[0]:g}")
+    return array
+
+
+def _times(time: ArrayLike | None) -> NDArray[Any]:
+    return _in_unit("time", real_array("time", 0.0 if time is None else time))
+
+
+def _ordered(array: ArrayLike) -> NDArray[np.float64]:
+    return np.asarray(array, np.float64, order="C")

@@ -1,0 +1,80 @@
+"""The camera that sees wide angles in a circle."""
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from numpy.typing import ArrayLike
+
+from ..arrays import choice
+from .any_camera import AnyCamera, picture_axis, view_angle
+from .pose import Pose
+
+# By mapping: the widest angle of view in degrees, and whether it can be had itself.
+_WIDEST = {
+    "equidistant": (360.0, True),
+    "equisolid": (360.0, True),
+    "stereographic": (360.0, False),
+    "orthographic": (180.0, True),
+}
+
+
+@dataclass(frozen=True, init=False, repr=False, kw_only=True)
+class Fisheye(AnyCamera):
+    """A camera that sees a wide angle in a circle (Miyamoto 1964), and nothing beyond.
+
+    Parameters
+    ----------
+    position, target, up, direction
+        Where the camera is, and where it looks, as `Camera` has it.
+    fov : float
+        Angle of view in degrees, from one edge of the circle to the other: up to 360, below 360 if the
+        mapping is stereographic, up to 180 if it is orthographic.
+    width, height : int
+        Size of the picture in pixels, 1 to 65536.
+    mapping : str
+        How far from the middle a direction at an angle θ from the view is seen: ``"equidistant"``, as θ;
+        ``"equisolid"``, as sin(θ/2), so that equal solid angles have equal areas; ``"stereographic"``, as
+        tan(θ/2), so that small circles stay circles; ``"orthographic"``, as sin θ.
+    fov_axis : str
+        Which length of the picture is the diameter of the circle: the ``"smaller"``, so that all of it is
+        seen, ``"x"``, ``"y"``, the ``"larger"``, or the ``"diagonal"``, so that it fills the picture.
+    moved_to, shutter
+        As `Camera` has it.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of range or not finite, or the mapping is none of these.
+    TypeError
+        If something is not a number.
+    """
+
+    kind: ClassVar[str] = "fisheye"
+
+    fov: float
+    mapping: str = "equidistant"
+    fov_axis: str = "smaller"
+
+    def __init__(
+        self,
+        position: ArrayLike,
+        target: ArrayLike | None = None,
+        up: ArrayLike = (0.0, 1.0, 0.0),
+        fov: float = 180.0,
+        width: int = 512,
+        height: int = 512,
+        *,
+        mapping: str = "equidistant",
+        fov_axis: str = "smaller",
+        direction: ArrayLike | None = None,
+        moved_to: Pose | None = None,
+        shutter: ArrayLike = (0.0, 1.0),
+    ) -> None:
+        super().__init__(position, target, up, direction, width, height, moved_to, shutter)
+        choice("mapping", mapping, tuple(_WIDEST))
+        most, closed = _WIDEST[mapping]
+        self._keep(
+            fov=view_angle("fov", fov, most, closed),
+            mapping=mapping,
+            fov_axis=picture_axis("fov_axis", fov_axis),
+        )

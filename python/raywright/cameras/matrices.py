@@ -1,0 +1,95 @@
+"""Where a camera stands, as matrices tell it: of scene files, and of computer vision."""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..arrays import choice, real_array
+
+Matrix = NDArray[np.float64]
+
+# By convention: which way, along the camera's own x, y and z, is right, up and forward.
+_AXES = {
+    "gltf": (1, 1, -1),
+    "mitsuba": (-1, 1, 1),
+    "opencv": (1, -1, 1),
+}
+
+# How far a rotation may be from one.
+_SKEWED = 1e-6
+
+
+class Stand(NamedTuple):
+    """Where a camera stands, and where it looks.
+
+    Attributes
+    ----------
+    position, forward, up : (3,) arrays
+        The latter two unit.
+    mirrored : bool
+        Whether what is to the right is seen on the left.
+    """
+
+    position: Matrix
+    forward: Matrix
+    up: Matrix
+    mirrored: bool
+
+
+def of_world(to_world: ArrayLike, convention: str) -> Stand:
+    """Read a matrix from camera to world, of which lengths do not count."""
+    choice("convention", convention, tuple(_AXES))
+    matrix = finite("to_world", to_world, (4, 4))
+    if not (matrix[3] == (0, 0, 0, 1)).all():
+        row = ", ".join(f"{x:g}" for x in matrix[3])
+        raise ValueError(f"to_world must have (0, 0, 0, 1) as its last row, got ({row})")
+    axes = matrix[:3, :3] * _AXES[convention]
+    lengths = np.abs(axes).max(axis=0)
+    if (lengths == 0).any():
+        raise ValueError(f"to_world must have an inverse: its column {int(lengths.argmin())} is zero")
+    axes = axes / lengths
+    axes = axes / np.linalg.norm(axes, axis=0)
+    off = float(np.abs(axes.T @ axes - np.eye(3)).max())
+    if off > _SKEWED:
+        raise ValueError(
+            f"to_world must turn, move and scale only, and its axes are off right angles by {off:.2g}"
+        )
+    right, up, forward = axes.T
+    return Stand(matrix[:3, 3], forward, up, bool(np.cross(forward, up) @ right < 0))
+
+
+def of_extrinsics(R: ArrayLike, t: ArrayLike) -> Stand:
+    """Read a rotation and a translation from world to camera, with x to the right, y down and z forward."""
+    rotation = finite("R", R, (3, 3))
+    off = float(np.abs(rotation @ rotation.T - np.eye(3)).max())
+    if off > _SKEWED:
+        raise ValueError(f"R must be a rotation, and R times its transpose is off 1 by {off:.2g}")
+    if np.linalg.det(rotation) < 0:
+        raise ValueError("R must be a rotation, and it mirrors: its determinant is -1")
+    shift = real_array("t", t)
+    shift = finite("t", shift.reshape(3) if shift.shape == (3, 1) else shift, (3,))
+    return Stand(-(rotation.T @ shift), rotation[2], -rotation[1], False)
+
+
+def of_camera_matrix(K: ArrayLike) -> tuple[tuple[float, float], tuple[float, float], float]:
+    """Read focal lengths, principal point and skew of a camera matrix."""
+    matrix = finite("K", K, (3, 3))
+    if matrix[1, 0] or matrix[2, 0] or matrix[2, 1]:
+        raise ValueError(f"K must be upper triangular, got {matrix.tolist()}")
+    for i in range(3):
+        if not matrix[i, i]:
+            raise ValueError(f"K must have an inverse: K[{i}, {i}] is 0")
+    matrix = matrix / matrix[2, 2]
+    (fx, skew, cx), (_, fy, cy), _ = matrix.tolist()
+    return (fx, fy), (cx, cy), skew
+
+
+def finite(name: str, value: ArrayLike, shape: tuple[int, ...]) -> Matrix:
+    """Return a finite array of a shape."""
+    array: NDArray[Any] = real_array(name, value)
+    if array.shape != shape:
+        raise ValueError(f"{name} must have shape {shape}, got {array.shape}")
+    if not np.isfinite(array).all():
+        raise ValueError(f"{name} must be finite, and has NaN or infinity")
+    return array.astype(np.float64, copy=False)

@@ -1,0 +1,61 @@
+"""The camera of parallel rays."""
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from numpy.typing import ArrayLike
+
+from ..arrays import positive
+from .any_camera import AnyCamera, picture_axis
+from .pose import Pose
+
+
+@dataclass(frozen=True, init=False, repr=False, kw_only=True)
+class Orthographic(AnyCamera):
+    """A camera whose rays are parallel: lengths are the same at every distance.
+
+    Rays start in the plane through `position` across the view, so that what is behind it is not seen.
+
+    Parameters
+    ----------
+    position, target, up, direction
+        Where the middle of the picture is, and where the camera looks, as `Camera` has it.
+    scale : float
+        How much of the scene is seen from one side of the picture to the other, in the scene's unit.
+    width, height : int
+        Size of the picture in pixels, 1 to 65536.
+    scale_axis : str
+        What `scale` is measured along: ``"x"``, ``"y"``, the ``"smaller"`` or ``"larger"`` of these, or the
+        ``"diagonal"``. (glTF has ymag, half of the scale along y.)
+    moved_to, shutter
+        As `Camera` has it.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of range or not finite.
+    TypeError
+        If something is not a number.
+    """
+
+    kind: ClassVar[str] = "orthographic"
+
+    scale: float
+    scale_axis: str = "y"
+
+    def __init__(
+        self,
+        position: ArrayLike,
+        target: ArrayLike | None = None,
+        up: ArrayLike = (0.0, 1.0, 0.0),
+        scale: float = 1.0,
+        width: int = 512,
+        height: int = 512,
+        *,
+        direction: ArrayLike | None = None,
+        scale_axis: str = "y",
+        moved_to: Pose | None = None,
+        shutter: ArrayLike = (0.0, 1.0),
+    ) -> None:
+        super().__init__(position, target, up, direction, width, height, moved_to, shutter)
+        self._keep(scale=positive("scale", scale), scale_axis=picture_axis("scale_axis", scale_axis))

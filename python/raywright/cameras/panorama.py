@@ -1,0 +1,60 @@
+"""The camera that sees all around."""
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from numpy.typing import ArrayLike
+
+from .any_camera import AnyCamera
+from .pose import Pose
+
+
+@dataclass(frozen=True, init=False, repr=False, kw_only=True)
+class Panorama(AnyCamera):
+    """A camera that sees the whole sphere, in an equirectangular picture.
+
+    Columns are longitudes, rows latitudes. The middle of the picture is where the camera looks, its top row
+    is up, and left and right edge are what is behind. A quarter of the width to the right of the middle is to
+    the right.
+
+    Parameters
+    ----------
+    position, target, up, direction
+        Where the camera is, and what is in the middle, as `Camera` has it. With neither target nor direction
+        it looks along -z.
+    width, height : int
+        Size of the picture in pixels, 1 to 65536.
+    moved_to, shutter
+        As `Camera` has it.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of range or not finite.
+    TypeError
+        If something is not a number.
+
+    Notes
+    -----
+    The camera that looks along -z with +y up sees, at the fractions (u, v) of the picture's width from its
+    left and of its height from its top, the direction (sin φ sin θ, cos θ, -cos φ sin θ) with φ = 2π (u - ½)
+    and θ = π v.
+    """
+
+    kind: ClassVar[str] = "panorama"
+
+    def __init__(
+        self,
+        position: ArrayLike,
+        target: ArrayLike | None = None,
+        up: ArrayLike = (0.0, 1.0, 0.0),
+        width: int = 1024,
+        height: int = 512,
+        *,
+        direction: ArrayLike | None = None,
+        moved_to: Pose | None = None,
+        shutter: ArrayLike = (0.0, 1.0),
+    ) -> None:
+        if target is None and direction is None:
+            direction = (0.0, 0.0, -1.0)
+        super().__init__(position, target, up, direction, width, height, moved_to, shutter)

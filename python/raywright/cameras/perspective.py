@@ -1,0 +1,185 @@
+"""The pinhole camera, told by an angle or by a matrix."""
+
+import math
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..arrays import number, real_array
+from .any_camera import AnyCamera, picture_axis, picture_length, view_angle
+from .matrices import of_camera_matrix, of_extrinsics, of_world
+from .pose import Pose
+
+_FOV = 40.0
+
+Pair = tuple[float, float]
+
+
+@dataclass(frozen=True, init=False, repr=False, kw_only=True)
+class Camera(AnyCamera):
+    """A perspective (pinhole) camera.
+
+    Parameters
+    ----------
+    position : 3 floats
+        Where the camera is, in the scene's unit of length.
+    target : 3 floats, optional
+        The point that comes to the middle of the picture. Either this or `direction` is given.
+    up : 3 floats
+        The direction that points up in the picture; need not be unit nor perpendicular to the view.
+    fov : float, optional
+        Angle of view in degrees, between 0 and 180; 40 if neither this nor `focal` is given.
+    width, height : int
+        Size of the picture in pixels, 1 to 65536.
+    direction : 3 floats, optional
+        The direction that the camera looks in, instead of a target.
+    fov_axis : str
+        What `fov` is measured along: ``"x"``, ``"y"``, the ``"smaller"`` or ``"larger"`` of these, or the
+        ``"diagonal"``.
+    focal : 2 floats, optional
+        Instead of `fov`, focal lengths in pixels, across and down; negative ones mirror the picture.
+    principal : 2 floats, optional
+        The point of the picture that the view goes through, in pixels from its left and its top as
+        `rays_through` has them; the middle if not given. Elsewhere it is a shifted lens, or a part of a
+        picture.
+    skew : float
+        How many pixels farther to the right a point is seen for lying lower by its distance: K[0, 1] of a
+        camera matrix. With `focal` only.
+    moved_to : Pose, optional
+        Where the camera is as the shutter closes; another camera will do.
+    shutter : 2 floats
+        When it opens and closes, in the scene's time, in which instances move from 0 to 1.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of range or not finite, if `position` equals `target`, or if `up` is zero or
+        parallel to the view.
+    TypeError
+        If something is not a number.
+    """
+
+    kind: ClassVar[str] = "perspective"
+
+    fov: float | None = None
+    fov_axis: str = "y"
+    focal: Pair | None = None
+    principal: Pair | None = None
+    skew: float = 0.0
+
+    def __init__(
+        self,
+        position: ArrayLike,
+        target: ArrayLike | None = None,
+        up: ArrayLike = (0.0, 1.0, 0.0),
+        fov: float | None = None,
+        width: int = 512,
+        height: int = 512,
+        *,
+        direction: ArrayLike | None = None,
+        fov_axis: str = "y",
+        focal: ArrayLike | None = None,
+        principal: ArrayLike | None = None,
+        skew: float = 0.0,
+        moved_to: Pose | None = None,
+        shutter: ArrayLike = (0.0, 1.0),
+    ) -> None:
+        super().__init__(position, target, up, direction, width, height, moved_to, shutter)
+        if fov is not None and focal is not None:
+            raise ValueError("either fov or focal must be given, got both")
+        if focal is None:
+            fov = view_angle("fov", _FOV if fov is None else fov)
+        lengths = None if focal is None else _pair("focal", focal)
+        if lengths is not None and 0 in lengths:
+            raise ValueError(f"focal must not be zero, got {lengths}")
+        self._keep(
+            fov=fov,
+            fov_axis=picture_axis("fov_axis", fov_axis),
+            focal=lengths,
+            principal=None if principal is None else _pair("principal", principal),
+            skew=number("skew", skew),
+        )
+        if self.skew and focal is None:
+            raise ValueError("skew must be given with focal, got it with fov")
+
+    @classmethod
+    def from_intrinsics(
+        cls,
+        K: ArrayLike,
+        R: ArrayLike,
+        t: ArrayLike,
+        width: int,
+        height: int,
+        *,
+        pixel_centre: float = 0.0,
+        moved_to: Pose | None = None,
+        shutter: ArrayLike = (0.0, 1.0),
+    ) -> "Camera":
+        """Return the camera of computer vision: a point X is seen at the pixel ``K @ (R @ X + t)``.
+
+        Parameters
+        ----------
+        K : (3, 3) array
+            ``[[fx, skew, cx], [0, fy, cy], [0, 0, 1]]``, in pixels.
+        R, t : (3, 3) and (3,) or (3, 1) arrays
+            From world to camera, whose x is to the right, y down and z forward.
+        width, height : int
+            Size of the picture in pixels.
+        pixel_centre : float
+            Where the centre of the first pixel is, across and down: 0 as OpenCV has it, so that the centre of
+            the pixel in row i and column j is at (j, i); 0.5 for what counts from the picture's corner, as
+            COLMAP does.
+        moved_to, shutter
+            As for any camera; ``Pose.from_extrinsics(R, t)`` is where it goes.
+
+        Raises
+        ------
+        ValueError
+            If a shape is another, a number is not finite, K is not upper triangular or has no inverse, or R
+            is not a rotation to within 1e-6.
+        """
+        focal, (x, y), skew = of_camera_matrix(K)
+        shift = 0.5 - number("pixel_centre", pixel_centre)
+        lens = {"focal": focal, "principal": (x + shift, y + shift), "skew": skew}
+        others = {"width": width, "height": height, "moved_to": moved_to, "shutter": shutter}
+        return cls._at(of_extrinsics(R, t), {**lens, **others})
+
+    @classmethod
+    def from_matrix(cls, to_world: ArrayLike, convention: str = "gltf", **others: Any) -> "Camera":
+        """Return the camera that stands where a matrix says, as `Pose.from_matrix` has it.
+
+        Matrices that mirror are allowed, and mirror the picture.
+        """
+        stand = of_world(to_world, convention)
+        camera = cls._at(stand, others)
+        if not stand.mirrored:
+            return camera
+        (across, _, x), (_, down, y), _ = camera.intrinsics.tolist()
+        focal, principal = (-across, down), (x + 0.5, y + 0.5)
+        return replace(camera, fov=None, fov_axis="y", focal=focal, principal=principal)
+
+    @property
+    def intrinsics(self) -> NDArray[np.float64]:
+        """The camera matrix K, (3, 3), with the centres of pixels at integers, as OpenCV has it.
+
+        To count from the picture's corner, add 0.5 to its K[0, 2] and K[1, 2].
+        """
+        if self.focal is None:
+            tangent = math.tan(math.radians(0.5 * (self.fov or _FOV)))
+            across = down = 0.5 * picture_length(self, self.fov_axis) / tangent
+        else:
+            across, down = self.focal
+        x, y = self.principal or (0.5 * self.width, 0.5 * self.height)
+        return np.array([(across, self.skew, x - 0.5), (0, down, y - 0.5), (0, 0, 1)])
+
+
+def _pair(name: str, value: ArrayLike) -> Pair:
+    array = real_array(name, value)
+    if array.shape != (2,):
+        raise ValueError(f"{name} must be 2 numbers, got shape {array.shape}")
+    if not np.isfinite(array).all():
+        raise ValueError(f"{name} must be finite, got {tuple(array.tolist())}")
+    x, y = (float(v) for v in array)
+    return x, y

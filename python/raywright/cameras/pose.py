@@ -1,0 +1,167 @@
+"""Where a camera stands and how it is turned."""
+
+from dataclasses import dataclass, fields
+from typing import Any, TypeVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..arrays import Triple, triple
+from .matrices import Stand, of_extrinsics, of_world
+
+# Sine of the smallest angle between `up` and the view that still fixes which way is up.
+_LEAST_SINE = 1e-8
+
+P = TypeVar("P", bound="Pose")
+
+
+@dataclass(frozen=True, init=False, repr=False)
+class Pose:
+    """A place, and how what stands there is turned. Every camera is one; others say where a camera goes.
+
+    Parameters
+    ----------
+    position : 3 floats
+        Where it is, in the scene's unit of length.
+    target : 3 floats, optional
+        The point that it looks at. Either this or `direction` is given.
+    up : 3 floats
+        The direction that points up in the picture; need not be unit nor perpendicular to the view.
+    direction : 3 floats, optional
+        The direction that it looks in, of any length.
+
+    Raises
+    ------
+    ValueError
+        If a number is not finite, there are both or neither of `target` and `direction`, `position` equals
+        `target`, or `up` is zero or parallel to the view.
+    TypeError
+        If something is not a number.
+    """
+
+    position: Triple
+    target: Triple | None
+    up: Triple
+    direction: Triple | None = None
+
+    def __init__(
+        self,
+        position: ArrayLike,
+        target: ArrayLike | None = None,
+        up: ArrayLike = (0.0, 1.0, 0.0),
+        direction: ArrayLike | None = None,
+    ) -> None:
+        self._keep(
+            position=triple("position", position),
+            target=None if target is None else triple("target", target),
+            up=triple("up", up),
+            direction=None if direction is None else triple("direction", direction),
+        )
+        if (self.target is None) == (self.direction is None):
+            both = "both" if self.direction else "neither"
+            raise ValueError(f"either target or direction must be given, got {both}")
+        if self.position == self.target:
+            raise ValueError(f"position and target must differ, got {self.position} for both")
+        if self.direction == (0.0, 0.0, 0.0):
+            raise ValueError("direction must not be zero")
+        if self.up == (0.0, 0.0, 0.0):
+            raise ValueError("up must not be zero")
+        if np.linalg.norm(np.cross(self.forward, _unit(np.array(self.up)))) < _LEAST_SINE:
+            along = "target - position" if self.target else "direction"
+            raise ValueError(f"up must not be parallel to the view, got up {self.up} along {along}")
+
+    def _keep(self, **values: Any) -> None:
+        for name, value in values.items():
+            object.__setattr__(self, name, value)
+
+    @classmethod
+    def from_matrix(cls: type[P], to_world: ArrayLike, convention: str = "gltf", **others: Any) -> P:
+        """Return what stands where a matrix says.
+
+        Parameters
+        ----------
+        to_world : (4, 4) array
+            From the camera's own space to the scene's, acting on column vectors (x, y, z, 1). Lengths of its
+            axes do not count.
+        convention : str
+            What the camera's own axes are: ``"gltf"``, it looks along -z with x to the right and y up (as
+            Blender and OpenGL have it too); ``"mitsuba"``, along +z with x to the left and y up;
+            ``"opencv"``, along +z with x to the right and y down.
+        **others
+            What else the class takes, without `position`, `target`, `up` and `direction`.
+
+        Raises
+        ------
+        ValueError
+            If the matrix has another shape, is not finite, mirrors, or has axes that are not at right angles
+            to within 1e-6.
+        """
+        stand = of_world(to_world, convention)
+        if stand.mirrored:
+            raise ValueError("to_world must not mirror: its axes are left-handed")
+        return cls._at(stand, others)
+
+    @classmethod
+    def from_extrinsics(cls: type[P], R: ArrayLike, t: ArrayLike, **others: Any) -> P:
+        """Return what stands where computer vision says: it has a point X of the scene at ``R @ X + t``.
+
+        Parameters
+        ----------
+        R : (3, 3) array
+            Rotation from the scene's axes to those of the camera: x to the right, y down, z forward.
+        t : (3,) or (3, 1) array
+            Translation from world to camera, in the scene's unit.
+        **others
+            What else the class takes, without `position`, `target`, `up` and `direction`.
+
+        Raises
+        ------
+        ValueError
+            If a shape is another, a number is not finite, or `R` is not a rotation to within 1e-6. Of one
+            that is off by less, the third row counts, and then the second.
+        """
+        return cls._at(of_extrinsics(R, t), others)
+
+    @classmethod
+    def _at(cls: type[P], stand: Stand, others: dict[str, Any]) -> P:
+        made = {"position": stand.position, "direction": stand.forward, "up": stand.up}
+        if taken := sorted({*made, "target"} & others.keys()):
+            raise TypeError(f"{taken[0]} is told by the matrix, and must not be given")
+        return cls(**made, **others)
+
+    @property
+    def forward(self) -> NDArray[np.float64]:
+        """The unit direction of the view, (3,)."""
+        if self.target is None:
+            return _unit(np.array(self.direction))
+        # Halved, so that the difference of any two numbers is one.
+        return _unit(np.array(self.target) / 2 - np.array(self.position) / 2)
+
+    @property
+    def extrinsics(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """R (3, 3) and t (3,), which have a point X of the scene at ``R @ X + t``: right, down, forward."""
+        forward = self.forward
+        right = _unit(np.cross(forward, _unit(np.array(self.up))))
+        rotation = np.stack([right, np.cross(forward, right), forward])
+        return rotation, -(rotation @ self.position)
+
+    @property
+    def matrix(self) -> NDArray[np.float64]:
+        """The (4, 4) matrix from camera to world, along -z with y up: what `from_matrix` takes."""
+        result = np.eye(4)
+        result[:3, :3] = self.extrinsics[0].T * (1, -1, -1)
+        result[:3, 3] = self.position
+        return result
+
+    def __repr__(self) -> str:
+        # What was given, and what need not be only where it was.
+        told = ((f.name, getattr(self, f.name), f.default) for f in fields(self))
+        parts = (f"{name}={value!r}" for name, value, default in told if value != default)
+        return f"{type(self).__name__}({', '.join(parts)})"
+
+
+def _unit(vector: NDArray[np.float64]) -> NDArray[np.float64]:
+    # Scaled by its greatest part first, so that squares neither overflow nor vanish.
+    vector = vector / np.abs(vector).max()
+    unit: NDArray[np.float64] = vector / np.linalg.norm(vector)
+    return unit
