@@ -39,6 +39,12 @@ impl Dielectric {
         Self { eta, rough: ggx.map(|ggx| Rough { ggx, interface: Interface::new(ggx, eta) }) }
     }
 
+    /// The index below over the index above.
+    #[inline]
+    pub fn eta(&self) -> f64 {
+        self.eta
+    }
+
     /// The index beyond the surface over that on the side of `w`.
     #[inline]
     fn beyond(&self, w: DVec3) -> f64 {

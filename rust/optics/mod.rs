@@ -3,6 +3,8 @@
 pub mod albedo;
 mod blinn_phong;
 mod bsdf;
+#[cfg(test)]
+mod checks;
 mod coated;
 mod conductor;
 pub mod conductors;

@@ -1,7 +1,7 @@
 //! What facets of perfect mirrors lose.
 
 use super::tables::mirror::{ANISOTROPIC, AVERAGE, ISOTROPIC};
-use super::{averages, of_alpha, of_alpha_log, of_grazing, plane, volume};
+use super::{averages, of_alpha, of_alpha_log, of_x, plane, volume, x_of};
 use crate::optics::Ggx;
 use glam::DVec3;
 
@@ -15,7 +15,7 @@ pub(super) const AVERAGE_SIZES: [usize; 2] = [16, 16];
 /// Within 0.002 of the integral where both α are the same, and within 0.005 otherwise.
 #[inline]
 pub fn mirror_loss(ggx: &Ggx, w: DVec3) -> f64 {
-    let grazing = of_grazing(ggx, w);
+    let grazing = of_x(x_of(ggx, w));
     let [a, b] = ggx.alpha();
     if a == b {
         return plane(&ISOTROPIC, ISOTROPIC_SIZES, [grazing, of_alpha(a)]);

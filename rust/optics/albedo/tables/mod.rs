@@ -1,6 +1,7 @@
 //! Tables written by `quadrature.rs`; `cargo test write_tables -- --ignored` writes them anew.
 
 pub mod coat;
-pub mod interface;
+pub mod interface_dense;
+pub mod interface_thin;
 pub mod mirror;
 pub mod schlick;
