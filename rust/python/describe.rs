@@ -9,7 +9,7 @@ use super::instances::{self, Wishes};
 use super::shapes;
 use crate::math::DVec3;
 use crate::optics::Rgb;
-use crate::scene::{self, DiffuseMaterial, PointLight, SceneDescription};
+use crate::scene::{self, DiffuseMaterial, SceneDescription};
 use std::sync::Arc;
 
 /// `raywright.Scene`.

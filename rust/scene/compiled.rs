@@ -59,7 +59,7 @@ impl Scene {
 
     fn parts(description: SceneDescription) -> Result<Parts, DescriptionError> {
         description.validate()?;
-        let SceneDescription { shapes, points, environment } = description;
+        let SceneDescription { shapes, lights } = description;
         let (mut surfaces, mut materials, mut emission) = (Vec::new(), Vec::new(), Vec::new());
         for shape in shapes {
             surfaces.push(shape.surface);
@@ -67,7 +67,7 @@ impl Scene {
             emission.push(shape.emission);
         }
         let geometry = Geometry::new(surfaces);
-        let lights = Lights::new(&geometry, emission, points, environment);
+        let lights = Lights::new(&geometry, emission, lights);
         Ok((geometry, materials, lights))
     }
 
@@ -219,8 +219,8 @@ impl Scene {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::Shape;
     use crate::scene::fixtures::{furnace, inward_box, scene, shape};
+    use crate::scene::{Receiver, Shape};
 
     #[test]
     fn a_closed_surface_is_crossed_evenly_however_the_ray_is_aimed() {
@@ -283,8 +283,8 @@ mod tests {
         assert_eq!(a, b);
         assert_eq!(refitted.region(), moved.region());
         assert_eq!(still.growth(), 1.0);
-        let light =
-            |s: &Scene| s.lights().sample(s.geometry(), rays[0].origin, DVec3::Y, 0.5, [0.5; 2]).unwrap().direction;
+        let receiver = Receiver { position: rays[0].origin, normal: DVec3::Y };
+        let light = |s: &Scene| s.lights().sample(s.geometry(), &receiver, 0.5, [0.5; 2]).unwrap().direction;
         assert_eq!(light(&refitted), light(&moved));
         assert_ne!(light(&refitted), light(&still));
         // Another number of faces is another scene.

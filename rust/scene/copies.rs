@@ -108,6 +108,11 @@ impl Copies {
         matches!(&*self.places, Places::Moving(_)) || self.group.moves()
     }
 
+    /// Whether none of them moves as a whole.
+    pub(super) fn stand_still(&self) -> bool {
+        matches!(&*self.places, Places::Still(_))
+    }
+
     /// Memory held without the group's.
     pub fn bytes(&self) -> usize {
         match &*self.places {

@@ -1,7 +1,6 @@
 //! A scene as it is described, before it is compiled.
 
-use super::{DiffuseMaterial, Emission, Material, PointLight, Surface};
-use crate::optics::{Rgb, is_radiance};
+use super::{DiffuseMaterial, Emission, Light, Material, Surface};
 use std::fmt;
 use std::sync::Arc;
 
@@ -29,10 +28,8 @@ impl Default for Shape {
 pub struct SceneDescription {
     /// Surfaces; the index of one is its shape number.
     pub shapes: Vec<Shape>,
-    /// Lights without extent.
-    pub points: Vec<PointLight>,
-    /// Radiance that comes from everywhere outside; black means that there is none.
-    pub environment: Rgb,
+    /// Lights that are no surfaces.
+    pub lights: Vec<Arc<dyn Light>>,
 }
 
 /// Why a description cannot be.
@@ -42,10 +39,8 @@ pub enum DescriptionError {
     Material(usize, String),
     /// This shape emits less than nothing, or NaN, or infinitely much.
     Emission(usize),
-    /// This point light is nowhere, or emits less than nothing.
-    Point(usize),
-    /// The environment emits less than nothing.
-    Environment,
+    /// This light that is no surface cannot be, and why.
+    Light(usize, String),
     /// A group has so many primitives, all copies in it counted.
     TooMany(u64),
 }
@@ -55,17 +50,11 @@ impl fmt::Display for DescriptionError {
         match self {
             Self::Material(i, why) => write!(f, "material of shape {i}: {why}"),
             Self::Emission(i) => write!(f, "emission of shape {i} must be finite and not negative"),
-            Self::Point(i) => {
-                write!(
-                    f,
-                    "point light {i} must have a finite position and an intensity that is finite and not negative"
-                )
-            }
+            Self::Light(i, why) => write!(f, "light {i}: {why}"),
             Self::TooMany(n) => write!(
                 f,
                 "an instance holds {n} primitives, all copies in it counted; fewer than 2^31 can be told apart"
             ),
-            Self::Environment => f.write_str("environment must be finite and not negative"),
         }
     }
 }
@@ -81,12 +70,10 @@ impl SceneDescription {
                 return Err(DescriptionError::Emission(i));
             }
         }
-        for (i, point) in self.points.iter().enumerate() {
-            if !(point.position.is_finite() && is_radiance(point.intensity)) {
-                return Err(DescriptionError::Point(i));
-            }
+        for (i, light) in self.lights.iter().enumerate() {
+            light.validate().map_err(|why| DescriptionError::Light(i, why))?;
         }
-        if is_radiance(self.environment) { Ok(()) } else { Err(DescriptionError::Environment) }
+        Ok(())
     }
 }
 
@@ -94,6 +81,8 @@ impl SceneDescription {
 mod tests {
     use super::*;
     use crate::math::DVec3;
+    use crate::optics::Rgb;
+    use crate::scene::{ConstantEnvironment, PointLight};
 
     #[test]
     fn says_what_cannot_be() {
@@ -109,11 +98,13 @@ mod tests {
         }
         for bad in [-0.1, f64::INFINITY, f64::NAN] {
             assert_eq!(shapes(shape(0.5, bad)).validate(), Err(DescriptionError::Emission(1)));
-            let point = PointLight { position: DVec3::ZERO, intensity: Rgb::splat(bad) };
-            let points = SceneDescription { points: vec![point], ..Default::default() };
-            assert_eq!(points.validate(), Err(DescriptionError::Point(0)));
-            let sky = SceneDescription { environment: Rgb::splat(bad), ..Default::default() };
-            assert_eq!(sky.validate(), Err(DescriptionError::Environment));
+            let good = || Arc::new(ConstantEnvironment { radiance: Rgb::ONE }) as Arc<dyn Light>;
+            let point = Arc::new(PointLight { position: DVec3::ZERO, intensity: Rgb::splat(bad) });
+            let points = SceneDescription { lights: vec![good(), point], ..Default::default() };
+            assert!(matches!(points.validate(), Err(DescriptionError::Light(1, _))));
+            let sky = Arc::new(ConstantEnvironment { radiance: Rgb::splat(bad) });
+            let sky = SceneDescription { lights: vec![sky], ..Default::default() };
+            assert!(matches!(sky.validate(), Err(DescriptionError::Light(0, _))));
         }
     }
 }

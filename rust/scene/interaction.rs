@@ -1,7 +1,7 @@
 //! A path's encounter with a surface.
 
 use super::materials::Scattering;
-use super::{Departure, Scene, ShadingPoint, SurfacePoint};
+use super::{Departure, Receiver, Scene, ShadingPoint, SurfacePoint};
 use crate::math::{DVec3, Frame, Hit, Ray};
 use crate::optics::{Bsdf, BsdfSample, Rgb};
 
@@ -12,6 +12,12 @@ pub trait Scatters {
 
     /// Draws where the light comes from.
     fn sample(&self, wo: DVec3, choice: impl FnOnce() -> f64, u: [f64; 2]) -> Option<BsdfSample>;
+
+    /// Whether light goes through to the other side.
+    fn transmits(&self) -> bool;
+
+    /// Whether all of it goes in single directions.
+    fn is_delta(&self) -> bool;
 }
 
 impl Scatters for Scattering {
@@ -24,6 +30,22 @@ impl Scatters for Scattering {
     fn sample(&self, wo: DVec3, choice: impl FnOnce() -> f64, u: [f64; 2]) -> Option<BsdfSample> {
         Self::sample(self, wo, choice, u)
     }
+
+    #[inline]
+    fn transmits(&self) -> bool {
+        match self {
+            Self::One(bsdf) => bsdf.transmits(),
+            Self::Several(parts) => parts.iter().any(|(_, bsdf)| bsdf.transmits()),
+        }
+    }
+
+    #[inline]
+    fn is_delta(&self) -> bool {
+        match self {
+            Self::One(bsdf) => bsdf.is_delta(),
+            Self::Several(parts) => parts.iter().all(|(_, bsdf)| bsdf.is_delta()),
+        }
+    }
 }
 
 impl Scatters for Bsdf {
@@ -35,6 +57,16 @@ impl Scatters for Bsdf {
     #[inline]
     fn sample(&self, wo: DVec3, choice: impl FnOnce() -> f64, u: [f64; 2]) -> Option<BsdfSample> {
         Self::sample(self, wo, choice, u)
+    }
+
+    #[inline]
+    fn transmits(&self) -> bool {
+        Self::transmits(self)
+    }
+
+    #[inline]
+    fn is_delta(&self) -> bool {
+        Self::is_delta(self)
     }
 }
 
@@ -138,6 +170,13 @@ impl<S: Scatters> Interaction<S> {
     #[inline]
     pub fn shading_normal(&self) -> DVec3 {
         self.frame.normal * self.side
+    }
+
+    /// What light is drawn for: the side that the ray came from, or both where light goes through.
+    #[inline]
+    pub fn receiver(&self) -> Receiver {
+        let normal = if self.scattering.transmits() { DVec3::ZERO } else { self.shading_normal() };
+        Receiver { position: self.surface.position, normal }
     }
 
     /// How the point scatters.

@@ -32,7 +32,10 @@ pub use first_hits::FirstHits;
 pub use geometry::{Geometry, Mesh, Surface, SurfacePoint, Vertices};
 pub use group::Group;
 pub use interaction::{Interaction, Scattered, Scatters};
-pub use lights::{Emission, LightSample, Lights, PointLight};
+pub use lights::{
+    ConstantEnvironment, DirectionalLight, Emission, EnvironmentMap, Light, LightBounds, LightSample, Lights, Picture,
+    PointLight, Projector, Reach, Receiver, SpotLight, SunSky,
+};
 pub use materials::{DiffuseMaterial, Material};
 pub use plan::{Kernel, Plan, PlanRow, SceneNeeds};
 pub use points::HitPoint;

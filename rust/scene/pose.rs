@@ -165,6 +165,17 @@ impl Pose {
         })
     }
 
+    /// How many directions about one of the group's space there are to one of the space that it is put into, which is unit.
+    pub(super) fn crowding(&self, direction: DVec3) -> f64 {
+        let [a, b, c] = self.inverse;
+        a.dot(b.cross(c)).abs() / times(&self.inverse, direction).length().powi(3)
+    }
+
+    /// The map itself; none if f64 does not hold it, which it did.
+    pub(super) fn map(&self) -> Option<Affine> {
+        Some(Affine::new(self.rows()?, self.shift))
+    }
+
     /// How a point of the group lies in the space that it is put into.
     pub(super) fn mapped(&self, within: Mapped) -> Mapped {
         let Some(rows) = self.rows() else { return within };

@@ -109,6 +109,10 @@ impl Shape for Placed {
         self.shape.area_under(&map.compose(&self.to_world))
     }
 
+    fn facing(&self) -> Option<DVec3> {
+        self.to_world.normal(self.shape.facing()?).try_normalize()
+    }
+
     /// Drawn as the shape draws it, and so even only where the map stretches all of it alike.
     fn sample(&self, u: [f64; 2]) -> Option<Drawn> {
         let Drawn { point, pdf } = self.shape.sample(u)?;

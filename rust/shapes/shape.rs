@@ -131,6 +131,11 @@ pub trait Shape: Debug + Send + Sync {
         }
     }
 
+    /// The unit normal that all of its points have; none where they differ.
+    fn facing(&self) -> Option<DVec3> {
+        None
+    }
+
     /// A point drawn by area, from two numbers in [0, 1); `pdf` is the density there, 1 / area where it is even. None of a shape
     /// without end, or of no area.
     fn sample(&self, u: [f64; 2]) -> Option<Drawn>;

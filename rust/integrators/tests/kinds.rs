@@ -7,7 +7,7 @@ use crate::optics::{Conductor, Dielectric, Mirror, Rgb};
 use crate::scene::fixtures::{furnace, rectangle, scene, shape};
 use crate::scene::materials::Scattering;
 use crate::scene::textures::Needs;
-use crate::scene::{Material, PointLight, Scene, SceneDescription, Shape, ShadingPoint};
+use crate::scene::{Light, Material, PointLight, Scene, SceneDescription, Shape, ShadingPoint};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
@@ -153,8 +153,8 @@ fn gloss_is_followed_and_matt_light_is_not() {
 #[test]
 fn a_point_light_is_asked_by_all() {
     let point = PointLight { position: DVec3::new(1.0, 0.0, 1.0), intensity: Rgb::ONE };
-    let points = vec![point];
-    let lit = scene(SceneDescription { shapes: vec![shape(floor(), [0.5; 3], 0.0)], points, ..Default::default() });
+    let lights: Vec<Arc<dyn Light>> = vec![Arc::new(point)];
+    let lit = scene(SceneDescription { shapes: vec![shape(floor(), [0.5; 3], 0.0)], lights, ..Default::default() });
     let expected = 0.5 * 0.353_553_390_593_273_73 / PI;
     let each: [&dyn Integrator; 5] =
         [&Path::default(), &Direct::default(), &RayCast::default(), &Whitted::default(), &Distributed::default()];

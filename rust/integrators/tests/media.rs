@@ -7,7 +7,7 @@ use crate::optics::{Dielectric, Rgb};
 use crate::scene::fixtures::{rectangle, scene, shape};
 use crate::scene::materials::{Interior, Scattering};
 use crate::scene::textures::Needs;
-use crate::scene::{Material, Mesh, Scene, SceneDescription, Shape, ShadingPoint};
+use crate::scene::{ConstantEnvironment, Material, Mesh, Scene, SceneDescription, Shape, ShadingPoint};
 use std::sync::Arc;
 
 /// Smooth or rough glass.
@@ -118,7 +118,7 @@ fn glass_in_an_even_light_cannot_be_seen_from_outside_or_inside() {
             let outer = glass(block([-1.0; 3], [1.0; 3]), 1.5, 0, alpha);
             let inner = glass(block([gap - 1.0; 3], [0.5; 3]), 1.8, 1, alpha);
             let shapes = vec![outer, inner];
-            let scene = scene(SceneDescription { shapes, environment: Rgb::ONE, ..Default::default() });
+            let scene = scene(SceneDescription { shapes, lights: vec![Arc::new(ConstantEnvironment { radiance: Rgb::ONE })] });
             for way in ways {
                 let way = way.normalize();
                 // Rough glass gives back on average what it loses, to half a percent.

@@ -8,7 +8,7 @@ use crate::optics::Rgb;
 use crate::sampling::Sampler;
 use crate::scene::fixtures::{cornell, furnace, inward_box, rectangle, scene, shape};
 use crate::scene::{
-    Camera, Copies, Footprint, Geometry, Group, Kernel, Matrix, PointLight, Scene, SceneDescription, Shape,
+    Camera, ConstantEnvironment, Copies, Footprint, Geometry, Group, Kernel, Matrix, PointLight, Scene, SceneDescription, Shape,
 };
 use crate::simd::Level;
 use crate::workers::Cancel;
@@ -134,10 +134,10 @@ fn a_point_and_the_sky_light_a_floor() {
     let floor = || vec![shape(rectangle([-9.0, -9.0, 0.0], [18.0, 0.0, 0.0], [0.0, 18.0, 0.0]), [0.5; 3], 0.0)];
     let ray = Ray::new(DVec3::new(0.0, 0.3, 0.4), DVec3::new(0.0, -0.6, -0.8));
     let point = PointLight { position: DVec3::new(1.0, 0.0, 1.0), intensity: Rgb::ONE };
-    let points = scene(SceneDescription { shapes: floor(), points: vec![point], ..Default::default() });
+    let points = scene(SceneDescription { shapes: floor(), lights: vec![Arc::new(point)], ..Default::default() });
     let expected = 0.5 * 0.353_553_390_593_273_73 / std::f64::consts::PI;
     assert_radiance(&points, &Path::default(), ray, 10, expected);
-    let sky = scene(SceneDescription { shapes: floor(), environment: Rgb::splat(2.0), ..Default::default() });
+    let sky = scene(SceneDescription { shapes: floor(), lights: vec![Arc::new(ConstantEnvironment { radiance: Rgb::splat(2.0) })] });
     assert_radiance(&sky, &Path::default(), ray, 1000, 1.0);
     // A ray that meets nothing sees the sky itself.
     assert_radiance(&sky, &Path::default(), Ray::new(DVec3::Z, DVec3::Z), 2, 2.0);
@@ -170,8 +170,7 @@ fn every_kernel_gives_the_same_bits() {
     let [_, _, floor, ..] = inward_box([-1.0; 3], [2.0; 3]);
     let open = SceneDescription {
         shapes: vec![shape(floor, [0.7, 0.1, 0.4], 0.3)],
-        points: vec![lamp],
-        environment: Rgb::new(0.1, 0.2, 0.3),
+        lights: vec![Arc::new(lamp), Arc::new(ConstantEnvironment { radiance: Rgb::new(0.1, 0.2, 0.3) })],
     };
     for scene in [room, furnace(0.9, 0.3), scene(open)] {
         assert_eq!(scene.plan().kernel(), Kernel::Plain);

@@ -12,7 +12,7 @@ use crate::math::{DVec3, Hit, Ray};
 use crate::optics::{Bsdf, Rgb};
 use crate::sampling::Sampler;
 use crate::scene::textures::TexturePoint;
-use crate::scene::{Departure, Footprint, Interaction, Scattered, Scatters, Scene, ShadingPoint, SurfacePoint};
+use crate::scene::{Departure, Footprint, Interaction, Receiver, Scattered, Scatters, Scene, ShadingPoint, SurfacePoint};
 use crate::workers::Cancel;
 use std::marker::PhantomData;
 
@@ -20,7 +20,7 @@ use std::marker::PhantomData;
 #[derive(Clone, Copy)]
 pub(super) struct Alive {
     throughput: Rgb,
-    /// The shading normal that it left last, on the side of its ray; lights are drawn by it.
+    /// The normal that lights were drawn by where it was scattered last ([`Receiver`]).
     normal: DVec3,
     /// Density with which this direction was drawn, times the number of such draws; infinite for a camera's ray.
     pdf: f64,
@@ -143,7 +143,7 @@ impl<'a, N: Features> TransportWorker<'a, N> {
                 continue;
             }
             let mut surface = self.scene.geometry().surface(&ray, &hit);
-            let (mut outside, mut through) = (1.0, Inside::default());
+            let (mut outside, mut through) = (1.0, baggage.inside);
             let dimensions = Dimensions::of(path.bounce, baggage.branch);
             let sampler = &mut samples[path.sample as usize].sampler;
             if self.nested && around(self.scene, &ray, &hit).is_some() {
@@ -161,8 +161,6 @@ impl<'a, N: Features> TransportWorker<'a, N> {
                         (outside, through) = (ior, behind);
                     }
                 }
-            } else {
-                through = baggage.inside;
             }
             if self.masks && self.is_passed(&ray, &hit, &surface, &mut baggage, dimensions, sampler) {
                 self.pass(Ray { t_min: hit.t.next_up(), ..ray }, path, baggage);
@@ -200,11 +198,11 @@ impl<'a, N: Features> TransportWorker<'a, N> {
     #[inline]
     fn from_outside(&self, ray: &Ray, path: &Alive) -> Rgb {
         let lights = self.scene.lights();
-        let arriving = lights.environment(ray.direction);
+        let arriving = lights.outside(ray.direction);
         if arriving == Rgb::ZERO || path.pdf == f64::INFINITY {
             return arriving;
         }
-        let drawn = lights.environment_pdf(path.normal, ray.direction);
+        let drawn = lights.outside_pdf(&Receiver { position: ray.origin, normal: path.normal }, ray.direction);
         arriving * power_heuristic(path.pdf, drawn * self.asked_from(path))
     }
 
@@ -234,7 +232,8 @@ impl<'a, N: Features> TransportWorker<'a, N> {
         if emission == Rgb::ZERO || path.pdf == f64::INFINITY {
             return emission;
         }
-        let drawn = self.scene.lights().surface_pdf(self.scene.geometry(), ray, hit, cosine);
+        let receiver = Receiver { position: ray.origin, normal: path.normal };
+        let drawn = self.scene.lights().surface_pdf(self.scene.geometry(), &receiver, ray, hit, cosine);
         emission * power_heuristic(path.pdf, drawn * self.asked_from(path))
     }
 
@@ -274,7 +273,7 @@ impl<'a, N: Features> TransportWorker<'a, N> {
     fn scatter<S: Scatters>(&mut self, vertex: Vertex<'_, S>, sampler: &mut Sampler) {
         let is_first = N::BAGGAGE && vertex.path.bounce == 0;
         let (asked, splits) = if is_first { (self.settings.light_samples, self.settings.splits) } else { (1, 1) };
-        if !self.scene.lights().is_dark() {
+        if !self.scene.lights().is_dark() && !vertex.here.scattering().is_delta() {
             for number in 0..asked {
                 self.ask_a_light(&vertex, (number, asked), splits, sampler);
             }
@@ -336,8 +335,8 @@ impl<'a, N: Features> TransportWorker<'a, N> {
             choice = ((choice + f64::from(number)) / f64::from(asked)).min(1f64.next_down());
         }
         let u = sampler.two(dimensions.light_point(number));
-        let (geometry, normal) = (self.scene.geometry(), here.shading_normal());
-        let Some(light) = self.scene.lights().sample(geometry, here.position(), normal, choice, u) else { return };
+        let lights = self.scene.lights();
+        let Some(light) = lights.sample(self.scene.geometry(), &here.receiver(), choice, u) else { return };
         let (scattered, pdf) = here.evaluate(light.direction);
         let mut weight = if self.is_followed(pdf) {
             power_heuristic(light.pdf * f64::from(asked), pdf * f64::from(splits))
@@ -379,7 +378,7 @@ impl<'a, N: Features> TransportWorker<'a, N> {
             path.throughput /= f64::from(splits);
             path.pdf *= f64::from(splits);
         }
-        path.normal = vertex.here.shading_normal();
+        path.normal = vertex.here.receiver().normal;
         path.scale *= next.eta * next.eta;
         path.bounce = path.bounce.saturating_add(1);
         if N::BAGGAGE && path.throughput.max_element() * path.scale < self.settings.least {

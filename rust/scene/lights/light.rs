@@ -1,19 +1,10 @@
-//! Single lights, and what is known of a point on one.
+//! What every light can be asked that is no surface, and what is drawn from one.
 
+use super::{LightBounds, Receiver};
 use crate::math::DVec3;
 use crate::optics::Rgb;
-use crate::sampling::warp;
-use crate::scene::{Departure, Geometry};
-use crate::shapes::Shape;
-
-/// A light without extent that shines equally in all directions.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PointLight {
-    /// Where it is.
-    pub position: DVec3,
-    /// Radiant intensity, W·sr⁻¹.
-    pub intensity: Rgb,
-}
+use crate::scene::Departure;
+use std::fmt::Debug;
 
 /// Light on its way to a point, drawn from a light.
 #[derive(Clone, Copy, Debug)]
@@ -29,72 +20,80 @@ pub struct LightSample {
     pub source: Option<Departure>,
 }
 
-impl PointLight {
-    /// The light that reaches `point`, when this one is chosen with a probability.
+impl LightSample {
+    /// Light that comes from a point, and what it brings to a receiver at distance 1 along the way, were it all.
     #[inline]
-    pub(super) fn sample(&self, point: DVec3, probability: f64) -> Option<LightSample> {
-        let way = self.position - point;
+    pub(super) fn of_point(position: DVec3, receiver: &Receiver, intensity: impl FnOnce(DVec3) -> Rgb) -> Option<Self> {
+        let way = position - receiver.position;
         let distance = way.length();
         // At the light itself there is no direction.
-        (distance > 0.0).then(|| LightSample {
-            direction: way / distance,
-            weight: self.intensity / (distance * distance * probability),
-            pdf: f64::INFINITY,
-            source: Some(Departure::free(self.position)),
-        })
+        if distance == 0.0 {
+            return None;
+        }
+        let direction = way / distance;
+        let weight = intensity(-direction) / (distance * distance);
+        let source = Some(Departure::free(position));
+        (weight != Rgb::ZERO).then_some(Self { direction, weight, pdf: f64::INFINITY, source })
+    }
+
+    /// The same, when its light is one of several and was chosen with a probability.
+    #[inline]
+    pub(super) fn chosen(self, probability: f64) -> Self {
+        Self { weight: self.weight / probability, pdf: self.pdf * probability, ..self }
     }
 }
 
-/// The light that reaches `point` from a triangle that emits `radiance` on the side of its normal, by uniform area.
-#[inline]
-pub(super) fn sample_triangle(
-    geometry: &Geometry,
-    primitive: u32,
-    radiance: Rgb,
-    point: DVec3,
-    probability: f64,
-    u: [f64; 2],
-) -> Option<LightSample> {
-    let surface = geometry.on_triangle(primitive, warp::uniform_triangle(u));
-    let way = surface.position - point;
-    let distance = way.length();
-    let direction = way / distance;
-    let cosine = -direction.dot(surface.normal);
-    // Also false where the distance is 0 and the direction NaN.
-    if cosine > 0.0 {
-        let pdf = probability * solid_angle_pdf(geometry, primitive, distance, cosine);
-        Some(LightSample { direction, weight: radiance / pdf, pdf, source: Some(Departure::new(&surface)) })
-    } else {
-        None
+/// From where a light shines: lights are chosen by it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Reach {
+    /// From within the scene.
+    Inside {
+        /// Its power, W, a mean of the channels.
+        power: f64,
+        /// Where it is and where it shines to.
+        bounds: LightBounds,
+    },
+    /// From outside.
+    Outside {
+        /// Its radiance integrated over all directions, a mean of the channels.
+        flux: f64,
+        /// The share of all directions that it effectively comes from, (∫L)² / (4π ∫L²): 1 of the same light from everywhere, 0 of that
+        /// from a single direction. The less it is, the less often does scattering find the light.
+        spread: f64,
+    },
+}
+
+/// A light that is no surface.
+pub trait Light: Debug + Send + Sync {
+    /// What of it cannot be, in a few words; `Ok` if all can.
+    fn validate(&self) -> Result<(), String>;
+
+    /// From where it shines. The power or flux of one that is dark is 0, and it is never asked for a sample.
+    fn reach(&self) -> Reach;
+
+    /// Draws light that reaches a receiver, as if it were the only light, by two numbers in [0, 1). `None` if the draw gives none. Light
+    /// below a receiver's horizon need not be left out.
+    fn sample(&self, receiver: &Receiver, u: [f64; 2]) -> Option<LightSample>;
+
+    /// The radiance that comes from outside along a direction, which is unit and points there; none of a light that is found by its
+    /// samples only.
+    fn outside(&self, _direction: DVec3) -> Rgb {
+        Rgb::ZERO
     }
+
+    /// The density in solid angle with which [`Light::sample`] draws such a direction: above 0 wherever [`Light::outside`] is not black
+    /// and the receiver's horizon is not above.
+    fn outside_pdf(&self, _receiver: &Receiver, _direction: DVec3) -> f64 {
+        0.0
+    }
+
+    /// The memory held.
+    fn bytes(&self) -> usize;
 }
 
-/// The light that reaches `point` from a shape that emits `radiance` on the side of its normal.
+/// One number for an amount of light: the mean of its channels, so that no colour is chosen too seldom, as blue would
+/// be by its luminance.
 #[inline]
-pub(super) fn sample_shape(
-    geometry: &Geometry,
-    (primitive, shape): (u32, &dyn Shape),
-    radiance: Rgb,
-    point: DVec3,
-    probability: f64,
-    u: [f64; 2],
-) -> Option<LightSample> {
-    let drawn = shape.sample_from(point, u)?;
-    let direction = (drawn.point.position - point).normalize();
-    let pdf = probability * drawn.pdf;
-    // Also false where the direction is NaN.
-    let faces = -direction.dot(drawn.point.normal) > 0.0 && pdf > 0.0;
-    faces.then(|| LightSample {
-        direction,
-        weight: radiance / pdf,
-        pdf,
-        source: Some(Departure::new(&geometry.on_shape(primitive, &drawn.point))),
-    })
-}
-
-/// The density in solid angle of a point drawn by area on a triangle, as seen from a distance and under the cosine of
-/// an angle to its normal.
-#[inline]
-pub(super) fn solid_angle_pdf(geometry: &Geometry, primitive: u32, distance: f64, cosine: f64) -> f64 {
-    distance * distance / (0.5 * geometry.area_vector(primitive).length() * cosine)
+pub(super) fn strength(rgb: Rgb) -> f64 {
+    rgb.element_sum() / 3.0
 }

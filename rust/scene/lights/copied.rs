@@ -1,0 +1,177 @@
+//! Light from surfaces in copies of groups.
+
+use super::choice::Strength;
+use super::light::strength;
+use super::triangle::SeenTriangle;
+use super::{LightSample, Receiver, surface};
+use crate::accel::Primitives;
+use crate::math::{DVec3, Hit, Ray};
+use crate::scene::{Copies, Geometry, Group};
+use crate::shapes::Bounds;
+
+/// The primitives that shine in copies of groups, each one of its own as a light: of copies that stand still, and of what stands in a
+/// group itself, not in copies within it. Where there are more than [`Copied::MOST`], those of the shapes that come last are left to rays
+/// that meet them by chance, as are all others.
+#[derive(Debug, Default)]
+pub(super) struct Copied {
+    /// The shapes that are copies whose lights are here, in order.
+    shapes: Vec<Glow>,
+    lights: Vec<Light>,
+}
+
+/// A shape that is copies of a group in which something shines.
+#[derive(Debug)]
+struct Glow {
+    shape: u32,
+    /// The first light.
+    first: u32,
+    /// The primitives of the group that shine, flattened, in order.
+    flat: Vec<u32>,
+}
+
+/// One primitive of one copy.
+#[derive(Debug)]
+struct Light {
+    /// The copy.
+    primitive: u32,
+    /// Flattened.
+    inner: u32,
+    /// Of a triangle, its corners in the world; NaN of another shape.
+    corners: [DVec3; 3],
+}
+
+impl Copied {
+    /// The most lights in copies, in a scene.
+    pub const MOST: usize = 4096;
+
+    /// Those of a geometry, and how strong each is.
+    pub fn new(geometry: &Geometry) -> (Self, Vec<Strength>) {
+        let (mut all, mut strengths) = (Self::default(), Vec::new());
+        if !geometry.has_copies() {
+            return (all, strengths);
+        }
+        for shape in 0..geometry.shapes() as u32 {
+            let Some(copies) = geometry.copies_of(shape).filter(|copies| copies.stand_still()) else { continue };
+            let flat: Vec<u32> = copies.group().shining().collect();
+            if flat.is_empty() || all.lights.len() + flat.len() * copies.count() > Self::MOST {
+                continue;
+            }
+            let first = all.lights.len() as u32;
+            for primitive in geometry.primitives_of(shape) {
+                for &inner in &flat {
+                    let (light, strength) = Light::new(geometry, copies, primitive, inner);
+                    all.lights.push(light);
+                    strengths.push(strength);
+                }
+            }
+            all.shapes.push(Glow { shape, first, flat });
+        }
+        (all, strengths)
+    }
+
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        self.lights.len()
+    }
+
+    /// The light that was hit in a copy, if it is one.
+    #[inline]
+    pub fn find(&self, shape: u32, copy: u32, inner: u32) -> Option<usize> {
+        let glow = &self.shapes[self.shapes.binary_search_by_key(&shape, |glow| glow.shape).ok()?];
+        let within = glow.flat.binary_search(&inner).ok()?;
+        Some(glow.first as usize + copy as usize * glow.flat.len() + within)
+    }
+
+    /// Draws light from one.
+    pub fn sample(&self, light: usize, geometry: &Geometry, receiver: &Receiver, u: [f64; 2]) -> Option<LightSample> {
+        let Light { primitive, inner, corners } = &self.lights[light];
+        let (copies, copy) = geometry.copy(*primitive)?;
+        let (group, pose) = (copies.group(), copies.pose(copy, 0.0)?);
+        let (own, _) = group.split(*inner);
+        let emission = group.look(*inner).1;
+        let place = (*primitive, *inner);
+        match group.geometry().shape(own) {
+            Some(shape) => {
+                let from = pose.enter(&Ray::new(receiver.position, DVec3::Z)).origin;
+                let drawn = shape.sample_from(from, u)?;
+                let surface = pose.point(&group.geometry().on_shape(own, &drawn.point))?;
+                let sends = |ray: &Ray, hit: &Hit| surface::radiance(geometry, emission, ray, hit, &surface);
+                let density = |direction: DVec3, _| drawn.pdf * pose.crowding(direction);
+                surface::sample(receiver, &surface, place, drawn.point.uv, density, sends)
+            }
+            None => {
+                let seen = SeenTriangle::new(*corners, receiver.position);
+                let uv = seen.sample(u);
+                let surface = pose.point(&group.geometry().on_triangle(own, uv))?;
+                let sends = |ray: &Ray, hit: &Hit| surface::radiance(geometry, emission, ray, hit, &surface);
+                let density = |direction: DVec3, distance| seen.pdf(distance, direction.dot(surface.normal));
+                surface::sample(receiver, &surface, place, uv, density, sends)
+            }
+        }
+    }
+
+    /// The density with which [`Copied::sample`] draws the direction of a ray that meets a light under the cosine of an angle to its
+    /// normal.
+    pub fn pdf(
+        &self,
+        light: usize,
+        geometry: &Geometry,
+        receiver: &Receiver,
+        (ray, hit): (&Ray, &Hit),
+        cosine: f64,
+    ) -> f64 {
+        let Light { primitive, inner, corners } = &self.lights[light];
+        let Some((copies, copy)) = geometry.copy(*primitive) else { return 0.0 };
+        match copies.group().geometry().shape(copies.group().split(*inner).0) {
+            Some(shape) => {
+                let Some(pose) = copies.pose(copy, 0.0) else { return 0.0 };
+                let own = pose.enter(ray);
+                let pdf = shape.pdf_from(own.origin, own.direction);
+                if pdf > 0.0 { pdf * pose.crowding(ray.direction) } else { 0.0 }
+            }
+            None => SeenTriangle::new(*corners, receiver.position).pdf(hit.t, cosine),
+        }
+    }
+
+    /// The memory held.
+    pub fn bytes(&self) -> usize {
+        size_of_val(self.lights.as_slice())
+            + self.shapes.iter().map(|glow| size_of::<Glow>() + size_of_val(glow.flat.as_slice())).sum::<usize>()
+    }
+}
+
+impl Group {
+    /// The primitives that shine, flattened, in order, without those in copies.
+    fn shining(&self) -> impl Iterator<Item = u32> {
+        let own = |shape: &u32| self.geometry().copies_of(*shape).is_none();
+        let flat = |shape: u32| {
+            let primitives = self.geometry().primitives_of(shape);
+            primitives.map(|primitive| self.flatten(&Hit { primitive, ..Hit::MISS }))
+        };
+        (0..self.geometry().shapes() as u32).filter(own).flat_map(flat).filter(|&flat| !self.look(flat).1.is_dark())
+    }
+}
+
+impl Light {
+    fn new(geometry: &Geometry, copies: &Copies, primitive: u32, inner: u32) -> (Self, Strength) {
+        let group = copies.group();
+        let (own, emission) = (group.split(inner).0, group.look(inner).1);
+        let (radiance, both_sides) = (strength(emission.radiance.mean()), emission.both_sides);
+        let map = geometry.copy(primitive).and_then(|(copies, copy)| copies.pose(copy, 0.0)?.map());
+        let (corners, strength) = match (map, group.geometry().shape(own)) {
+            (None, _) => ([DVec3::NAN; 3], Strength::NONE),
+            (Some(map), Some(shape)) => {
+                let bounds = Bounds::of_support(|d| shape.support(map.transposed(d)) + map.shift.dot(d));
+                let facing = shape.facing().and_then(|normal| map.normal(normal).try_normalize());
+                let area = shape.area_under(&map);
+                let strength = Strength::of_shape(area, [bounds.min, bounds.max], facing, radiance, both_sides);
+                ([DVec3::NAN; 3], strength)
+            }
+            (Some(map), None) => {
+                let corners = group.geometry().corners(own).map(|corner| map.point(corner));
+                (corners, Strength::of_triangle(corners, map.determinant() < 0.0, radiance, both_sides))
+            }
+        };
+        (Self { primitive, inner, corners }, strength)
+    }
+}

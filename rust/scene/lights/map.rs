@@ -1,0 +1,168 @@
+//! A picture of all that surrounds a scene.
+
+use super::light::strength;
+use super::pyramid::{Pyramid, linear};
+use super::{Light, LightSample, Picture, Reach, Receiver};
+use crate::math::DVec3;
+use crate::optics::Rgb;
+use std::f64::consts::{PI, TAU};
+use std::sync::Arc;
+
+/// An equirectangular picture all around a scene: its middle is seen along −z, its top at +y, and to the right of the middle lies +x, in
+/// a space of its own.
+///
+/// Between the middles of texels, radiance is interpolated, around the picture's sides too; at its top and bottom it goes on as the last
+/// row is. A cell between four middles is drawn by the light from it, and a point in the cell by exactly what is interpolated there. So
+/// radiance over density varies only by the sine of the colatitude in one cell, and by colour: a bright texel is never met by chance
+/// with a density that does not know of it.
+#[derive(Clone, Debug)]
+pub struct EnvironmentMap {
+    picture: Arc<Picture>,
+    /// From the world's to the picture's space, orthonormal.
+    to_picture: [DVec3; 3],
+    scale: f64,
+    /// Over cells; `None` if all is black.
+    pyramid: Option<Pyramid>,
+    /// 1 − cos of the colatitudes between which each row of cells lies, as differences.
+    bands: Vec<f64>,
+    spread: f64,
+}
+
+impl EnvironmentMap {
+    /// A picture whose radiance, W·sr⁻¹·m⁻², is `scale` times its colours, turned into the world by an orthonormal matrix of three rows.
+    pub fn new(picture: Arc<Picture>, to_world: [DVec3; 3], scale: f64) -> Self {
+        let to_picture = [0, 1, 2].map(|i| DVec3::from_array(to_world.map(|row| row[i])));
+        let height = picture.height();
+        let colatitude = |row: usize| ((row as f64 - 0.5).clamp(0.0, height as f64)) / height as f64 * PI;
+        // cos a − cos b = 2 sin((a + b) / 2) sin((b − a) / 2), which keeps its digits at the poles.
+        let band = |row: usize| {
+            let (a, b) = (colatitude(row), colatitude(row + 1));
+            2.0 * (0.5 * (a + b)).sin() * (0.5 * (b - a)).sin()
+        };
+        let bands: Vec<f64> = (0..=height).map(band).collect();
+        let mut map = Self { picture, to_picture, scale, pyramid: None, bands, spread: 1.0 };
+        let size = [map.picture.width(), height + 1];
+        map.pyramid = Pyramid::new(size, |i, j| map.weight(i, j));
+        if let Some(pyramid) = &map.pyramid {
+            let cells = (0..size[1]).flat_map(|j| (0..size[0]).map(move |i| (i, j)));
+            let squares: f64 = cells
+                .filter(|(_, j)| map.bands[*j] > 0.0)
+                .map(|(i, j)| map.weight(i, j) / pyramid.total() * map.weight(i, j) / pyramid.total() / map.bands[j])
+                .sum();
+            // Weights are of cells one wide: all directions take 2 in height and so many cells.
+            map.spread = 1.0 / (2.0 * size[0] as f64 * squares);
+        }
+        map
+    }
+
+    /// The colours at the corners of a cell: left and right of its upper row, then of its lower.
+    #[inline]
+    fn corners(&self, column: usize, row: usize) -> [Rgb; 4] {
+        let (width, last) = (self.picture.width(), self.picture.height() - 1);
+        let next = if column + 1 == width { 0 } else { column + 1 };
+        let (upper, lower) = (row.saturating_sub(1), row.min(last));
+        let at = |i, j| self.picture.at(i, j);
+        [at(column, upper), at(next, upper), at(column, lower), at(next, lower)]
+    }
+
+    /// What a cell is drawn by: its mean strength times its height.
+    #[inline]
+    fn weight(&self, column: usize, row: usize) -> f64 {
+        0.25 * self.corners(column, row).map(strength).iter().sum::<f64>() * self.bands[row]
+    }
+
+    /// The cell of a direction, where in it the direction is, and the sine of its colatitude.
+    #[inline]
+    fn place(&self, direction: DVec3) -> ([usize; 2], [f64; 2], f64) {
+        let [x, y, z] = self.to_picture.map(|row| row.dot(direction));
+        let (width, height) = (self.picture.width() as f64, self.picture.height() as f64);
+        let sine = x.hypot(z);
+        let column = (0.5 + x.atan2(-z) / TAU) * width - 0.5;
+        let row = sine.atan2(y) / PI * height + 0.5;
+        let (left, top) = (column.floor(), row.floor().clamp(0.0, height));
+        let index = if left < 0.0 { self.picture.width() - 1 } else { left as usize };
+        ([index.min(self.picture.width() - 1), top as usize], [column - left, (row - top).clamp(0.0, 1.0)], sine)
+    }
+
+    /// The radiance in a cell, up to scale.
+    #[inline]
+    fn between(&self, [column, row]: [usize; 2], [x, y]: [f64; 2]) -> Rgb {
+        let [a, b, c, d] = self.corners(column, row);
+        (a * (1.0 - x) + b * x) * (1.0 - y) + (c * (1.0 - x) + d * x) * y
+    }
+
+    /// The density in solid angle where the radiance is this, up to scale.
+    #[inline]
+    fn density(&self, pyramid: &Pyramid, row: usize, radiance: Rgb, sine: f64) -> f64 {
+        let (width, height) = (self.picture.width() as f64, self.picture.height() as f64);
+        // The cells at the poles are half as high as others.
+        let tall = if row == 0 || row == self.picture.height() { 0.5 } else { 1.0 };
+        let element = TAU / width * (PI * tall / height) * sine.max(1e-100);
+        strength(radiance) * self.bands[row] / (pyramid.total() * element)
+    }
+}
+
+impl Light for EnvironmentMap {
+    fn validate(&self) -> Result<(), String> {
+        let orthonormal = (0..3).all(|i| {
+            (0..3).all(|j| {
+                let dot = self.to_picture[i].dot(self.to_picture[j]);
+                (dot - f64::from(u8::from(i == j))).abs() < 1e-6
+            })
+        });
+        let most = self.pyramid.as_ref().map_or(0.0, |p| p.total() * self.scale);
+        if !orthonormal {
+            Err("an environment map may only be turned".into())
+        } else if self.scale >= 0.0 && self.scale.is_finite() && most.is_finite() {
+            Ok(())
+        } else {
+            Err(format!("an environment map's scale is {}, expected finite and not negative", self.scale))
+        }
+    }
+
+    fn reach(&self) -> Reach {
+        let total = self.pyramid.as_ref().map_or(0.0, Pyramid::total);
+        Reach::Outside { flux: total * self.scale * TAU / self.picture.width() as f64, spread: self.spread }
+    }
+
+    #[inline]
+    fn sample(&self, _: &Receiver, u: [f64; 2]) -> Option<LightSample> {
+        let pyramid = self.pyramid.as_ref()?;
+        let (cell, [u, v]) = pyramid.sample(u, |i, j| self.weight(i, j));
+        let [a, b, c, d] = self.corners(cell[0], cell[1]).map(strength);
+        let y = linear(v, a + b, c + d);
+        let x = linear(u, a + (c - a) * y, b + (d - b) * y);
+        let (width, height) = (self.picture.width() as f64, self.picture.height());
+        // The row above the first middle begins at the top, and that below the last ends at the bottom.
+        let row = match cell[1] {
+            0 => 0.5 * y,
+            last if last == height => last as f64 - 0.5 + 0.5 * y,
+            row => row as f64 - 0.5 + y,
+        };
+        let (sine, cosine) = (row / height as f64 * PI).sin_cos();
+        let (sin, cos) = (((cell[0] as f64 + 0.5 + x) / width - 0.5) * TAU).sin_cos();
+        let local = [sine * sin, cosine, -sine * cos];
+        let direction: DVec3 = (0..3).map(|i| self.to_picture[i] * local[i]).sum();
+        let radiance = self.between(cell, [x, y]);
+        let pdf = self.density(pyramid, cell[1], radiance, sine);
+        let weight = radiance * (self.scale / pdf);
+        (pdf > 0.0 && sine > 0.0).then_some(LightSample { direction, weight, pdf, source: None })
+    }
+
+    #[inline]
+    fn outside(&self, direction: DVec3) -> Rgb {
+        let (cell, within, _) = self.place(direction);
+        self.between(cell, within) * self.scale
+    }
+
+    #[inline]
+    fn outside_pdf(&self, _: &Receiver, direction: DVec3) -> f64 {
+        let Some(pyramid) = &self.pyramid else { return 0.0 };
+        let (cell, within, sine) = self.place(direction);
+        self.density(pyramid, cell[1], self.between(cell, within), sine)
+    }
+
+    fn bytes(&self) -> usize {
+        self.picture.bytes() + size_of_val(self.bands.as_slice()) + self.pyramid.as_ref().map_or(0, Pyramid::bytes)
+    }
+}

@@ -1,0 +1,95 @@
+//! What comes from outside a scene: environments, suns, distant lights.
+
+use super::{Light, LightSample, Receiver};
+use crate::math::DVec3;
+use crate::optics::Rgb;
+use std::sync::Arc;
+
+/// All lights that shine from outside.
+#[derive(Debug, Default)]
+pub(super) struct Outside {
+    lights: Vec<Arc<dyn Light>>,
+    /// With which probability each is chosen, given that one is.
+    probabilities: Vec<f64>,
+    /// With which one is.
+    share: f64,
+}
+
+/// How often the sky is chosen where there are lights inside, if it is the same everywhere. In a studio with a lamp and such a sky, shares
+/// of 0.1, 0.25, 0.5 and 0.7 gave relMSE of 1.4, 2.0, 3.9 and 7.7 thousandths.
+///
+/// What an environment sends into a scene grows with the scene's extent, and falls mostly on floors far away: chosen by its power, it
+/// would leave next to nothing for a lamp. It needs no more than a fixed share, since scattering finds it well by itself.
+const SHARE: f64 = 0.1;
+
+/// The share of light that comes from a single direction, which scattering never finds.
+const SHARP_SHARE: f64 = 0.5;
+
+impl Outside {
+    /// Lights with their flux and spread ([`super::Reach::Outside`]), where there are others inside or not.
+    pub fn new(lights: Vec<(Arc<dyn Light>, f64, f64)>, others: bool) -> Self {
+        let most = lights.iter().map(|(_, flux, _)| *flux).fold(0.0, f64::max);
+        // Odds beside all that is inside. Among each other they go by their flux.
+        let odds = |share: f64| share / (1.0 - share);
+        let odds = |spread: f64| odds(SHARP_SHARE) + (odds(SHARE) - odds(SHARP_SHARE)) * spread.clamp(0.0, 1.0);
+        let weight = |(_, flux, spread): &(_, f64, f64)| if most > 0.0 { odds(*spread) * (flux / most) } else { 0.0 };
+        let weights: Vec<f64> = lights.iter().map(weight).collect();
+        let sum: f64 = weights.iter().sum();
+        if sum == 0.0 {
+            return Self::default();
+        }
+        let probabilities = weights.iter().map(|w| w / sum).collect();
+        let share = if others { sum / (1.0 + sum) } else { 1.0 };
+        let lights = lights.into_iter().map(|(light, ..)| light).collect();
+        Self { lights, probabilities, share }
+    }
+
+    /// Whether there is none.
+    pub fn is_dark(&self) -> bool {
+        self.lights.is_empty()
+    }
+
+    /// How often one of them is to be chosen rather than a light inside.
+    #[inline]
+    pub fn share(&self) -> f64 {
+        self.share
+    }
+
+    /// The sum of all radiance along a direction.
+    #[inline]
+    pub fn radiance(&self, direction: DVec3) -> Rgb {
+        self.lights.iter().map(|light| light.outside(direction)).sum()
+    }
+
+    /// The density of [`Outside::sample`].
+    #[inline]
+    pub fn pdf(&self, receiver: &Receiver, direction: DVec3) -> f64 {
+        let each = self.lights.iter().zip(&self.probabilities);
+        each.map(|(light, probability)| probability * light.outside_pdf(receiver, direction)).sum()
+    }
+
+    /// Draws light from one of them. Where several may have been the one, the density is that of all, and so is the radiance.
+    #[inline]
+    pub fn sample(&self, receiver: &Receiver, mut choice: f64, u: [f64; 2]) -> Option<LightSample> {
+        let mut chosen = 0;
+        while chosen + 1 < self.lights.len() && choice >= self.probabilities[chosen] {
+            choice -= self.probabilities[chosen];
+            chosen += 1;
+        }
+        let probability = self.probabilities[chosen];
+        if probability == 0.0 {
+            return None;
+        }
+        let sample = self.lights[chosen].sample(receiver, u)?;
+        if self.lights.len() == 1 || sample.pdf == f64::INFINITY {
+            return Some(sample.chosen(probability));
+        }
+        let pdf = self.pdf(receiver, sample.direction);
+        (pdf > 0.0).then(|| LightSample { weight: self.radiance(sample.direction) / pdf, pdf, ..sample })
+    }
+
+    /// The memory held.
+    pub fn bytes(&self) -> usize {
+        size_of_val(self.probabilities.as_slice()) + self.lights.iter().map(|light| light.bytes()).sum::<usize>()
+    }
+}

@@ -1,0 +1,40 @@
+//! A point that shines evenly.
+
+use super::light::strength;
+use super::{Light, LightBounds, LightSample, Reach, Receiver};
+use crate::math::DVec3;
+use crate::optics::{Rgb, is_radiance};
+use std::f64::consts::PI;
+
+/// A light without extent that shines equally in all directions.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PointLight {
+    /// Where it is.
+    pub position: DVec3,
+    /// Radiant intensity, W·sr⁻¹.
+    pub intensity: Rgb,
+}
+
+impl Light for PointLight {
+    fn validate(&self) -> Result<(), String> {
+        if self.position.is_finite() && is_radiance(self.intensity) {
+            Ok(())
+        } else {
+            Err("a point light must have a finite position and an intensity that is finite and not negative".into())
+        }
+    }
+
+    fn reach(&self) -> Reach {
+        let intensity = strength(self.intensity);
+        Reach::Inside { power: 4.0 * PI * intensity, bounds: LightBounds::everywhere(self.position, intensity) }
+    }
+
+    #[inline]
+    fn sample(&self, receiver: &Receiver, _: [f64; 2]) -> Option<LightSample> {
+        LightSample::of_point(self.position, receiver, |_| self.intensity)
+    }
+
+    fn bytes(&self) -> usize {
+        size_of::<Self>()
+    }
+}

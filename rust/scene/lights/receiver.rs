@@ -1,0 +1,26 @@
+//! What light falls on.
+
+use crate::math::DVec3;
+
+/// A point that light is asked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Receiver {
+    /// Where it is.
+    pub position: DVec3,
+    /// The unit shading normal on the side that light counts on; zero where light from everywhere does, as at surfaces that let light
+    /// through, and in media.
+    pub normal: DVec3,
+}
+
+impl Receiver {
+    /// A point that light reaches from everywhere.
+    pub fn free(position: DVec3) -> Self {
+        Self { position, normal: DVec3::ZERO }
+    }
+
+    /// Whether light from everywhere counts.
+    #[inline]
+    pub fn is_free(&self) -> bool {
+        self.normal == DVec3::ZERO
+    }
+}

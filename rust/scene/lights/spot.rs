@@ -1,0 +1,77 @@
+//! A point that shines into a cone.
+
+use super::light::strength;
+use super::{Light, LightBounds, LightSample, Reach, Receiver};
+use crate::math::DVec3;
+use crate::optics::{Rgb, is_radiance};
+use std::f64::consts::{FRAC_PI_2, PI};
+
+/// A light without extent that shines into a cone: evenly in its middle, then falling off smoothly to its rim.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpotLight {
+    position: DVec3,
+    axis: DVec3,
+    intensity: Rgb,
+    /// The cosines of the angles to the axis up to which all shines, and from which on nothing does.
+    cosines: [f64; 2],
+    angle: f64,
+    falloff: f64,
+}
+
+impl SpotLight {
+    /// A spot at a position that shines along an axis of any length but 0 with a radiant intensity, W·sr⁻¹, into directions within
+    /// `angle` of it, radians, in the last `falloff` of which it falls off.
+    pub fn new(position: DVec3, axis: DVec3, intensity: Rgb, angle: f64, falloff: f64) -> Self {
+        let axis = (axis / axis.abs().max_element()).normalize();
+        // A cosine of next to nothing is 0 at a right angle: what is in its plane is not lit.
+        let cosine = |a: f64| if a >= FRAC_PI_2 { 0.0 } else { a.cos() };
+        Self { position, axis, intensity, cosines: [cosine(angle - falloff), cosine(angle)], angle, falloff }
+    }
+
+    /// The share of the intensity along a unit direction: a cubic of the cosine with level ends.
+    fn share(&self, direction: DVec3) -> f64 {
+        let cosine = self.axis.dot(direction);
+        let [inner, outer] = self.cosines;
+        if cosine <= outer {
+            0.0
+        } else if cosine >= inner {
+            1.0
+        } else {
+            let x = (cosine - outer) / (inner - outer);
+            x * x * (3.0 - 2.0 * x)
+        }
+    }
+}
+
+impl Light for SpotLight {
+    fn validate(&self) -> Result<(), String> {
+        if !(self.position.is_finite() && is_radiance(self.intensity)) {
+            Err("a spot light must have a finite position and an intensity that is finite and not negative".into())
+        } else if !self.axis.is_finite() {
+            Err("a spot light must have a direction of a length other than 0".into())
+        } else if !(self.angle > 0.0 && self.angle <= FRAC_PI_2) {
+            Err(format!("a spot light's angle is {}, expected above 0 and at most 90 degrees", self.angle.to_degrees()))
+        } else if !(self.falloff >= 0.0 && self.falloff <= self.angle) {
+            Err(format!("a spot light's falloff is {}, expected 0 to its angle", self.falloff.to_degrees()))
+        } else {
+            Ok(())
+        }
+    }
+
+    /// The power is exact: of the falloff, which is odd about its middle, the mean over cosines is a half.
+    fn reach(&self) -> Reach {
+        let intensity = strength(self.intensity);
+        let [inner, outer] = self.cosines;
+        let power = 2.0 * PI * intensity * (1.0 - inner + 0.5 * (inner - outer));
+        Reach::Inside { power, bounds: LightBounds::within(self.position, self.axis, self.angle, intensity) }
+    }
+
+    #[inline]
+    fn sample(&self, receiver: &Receiver, _: [f64; 2]) -> Option<LightSample> {
+        LightSample::of_point(self.position, receiver, |direction| self.intensity * self.share(direction))
+    }
+
+    fn bytes(&self) -> usize {
+        size_of::<Self>()
+    }
+}

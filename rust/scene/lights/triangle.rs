@@ -1,0 +1,130 @@
+//! Triangles that shine, as they are seen from a place.
+
+use crate::math::DVec3;
+use crate::sampling::warp;
+
+/// A triangle as it is seen from a place. Where it is near, directions to it are drawn evenly by solid angle, after Arvo ("Stratified
+/// Sampling of Spherical Triangles", 1995) but without an arc cosine: all is found from half angles, and from edges rather than from
+/// differences of directions, so that a thin triangle keeps its digits as well as a fat one. Where it is distant, or seen next to
+/// edge-on, points are drawn by area, which is as good there and cheaper.
+pub(super) struct SeenTriangle {
+    /// The first corner, and the edges from it to the others, as seen from the place.
+    corner: DVec3,
+    edges: [DVec3; 2],
+    /// Along the normal, twice the area long.
+    area: DVec3,
+    /// Unless it is drawn from by area.
+    spherical: Option<Spherical>,
+}
+
+/// What a near triangle is on the unit sphere.
+struct Spherical {
+    /// The directions of the first two corners.
+    a: DVec3,
+    b: DVec3,
+    /// From `a` to `b`.
+    chord: DVec3,
+    solid_angle: f64,
+}
+
+impl SeenTriangle {
+    /// How many times as far as its longer edge the first corner of a distant triangle is, at least. The density of a point drawn by area
+    /// then varies by a factor of 27 at most over a triangle that faces the place, and by one of 2 over most.
+    const DISTANT: f64 = 2.0;
+
+    /// The least solid angle of a near triangle. So little is seen edge-on; the angle between two edges that are nearly one would lose
+    /// its digits, of which it has 7 here at least.
+    const THIN: f64 = 1e-9;
+
+    /// As seen from a place, with `area` being the cross product of its edges.
+    #[inline]
+    pub fn new([a, b, c]: [DVec3; 3], place: DVec3) -> Self {
+        let (corner, edges) = (a - place, [b - a, c - a]);
+        let longest = edges[0].length_squared().max(edges[1].length_squared());
+        let area = edges[0].cross(edges[1]);
+        let spherical = if corner.length_squared() > Self::DISTANT * Self::DISTANT * longest {
+            None
+        } else {
+            Spherical::new(corner, edges, area).filter(|s| s.solid_angle >= Self::THIN)
+        };
+        Self { corner, edges, area, spherical }
+    }
+
+    /// Whether the place is on the side of the normal.
+    #[inline]
+    pub fn faces(&self) -> bool {
+        self.corner.dot(self.area) < 0.0
+    }
+
+    /// Weights of the second and third corner of a point, drawn with [`SeenTriangle::pdf`].
+    #[inline]
+    pub fn sample(&self, u: [f64; 2]) -> [f64; 2] {
+        match &self.spherical {
+            None => warp::uniform_triangle(u),
+            Some(spherical) => self.meet(spherical.sample(self.edges[1], u)),
+        }
+    }
+
+    /// The density in solid angle of a direction that meets it at a distance, under the cosine of an angle to its normal.
+    #[inline]
+    pub fn pdf(&self, distance: f64, cosine: f64) -> f64 {
+        match &self.spherical {
+            None => distance * distance / (0.5 * self.area.length() * cosine.abs()),
+            Some(spherical) => 1.0 / spherical.solid_angle,
+        }
+    }
+
+    /// Where a direction meets it, which does but for roundings (by Cramer's rule).
+    fn meet(&self, direction: DVec3) -> [f64; 2] {
+        let [first, second] = self.edges;
+        let across = direction.cross(second);
+        let determinant = first.dot(across);
+        let v = -self.corner.dot(across) / determinant;
+        let w = -direction.dot(self.corner.cross(first)) / determinant;
+        let (v, w) = (v.max(0.0), w.max(0.0));
+        let sum = (v + w).max(1.0);
+        [v / sum, w / sum]
+    }
+}
+
+impl Spherical {
+    /// None where a corner is the place itself.
+    #[inline]
+    fn new(corner: DVec3, edges: [DVec3; 2], area: DVec3) -> Option<Self> {
+        let corners = [corner, corner + edges[0], corner + edges[1]];
+        let lengths = corners.map(DVec3::length);
+        let [a, b, c] = [0, 1, 2].map(|i| corners[i] / lengths[i]);
+        // tan(Ω/2) by van Oosterom and Strackee ("The Solid Angle of a Plane Triangle", 1983), its numerator by the plane's distance.
+        let determinant = corner.dot(area).abs() / (lengths[0] * lengths[1] * lengths[2]);
+        let rest = 1.0 + a.dot(b) + b.dot(c) + c.dot(a);
+        let solid_angle = 2.0 * determinant.atan2(rest);
+        // 1/|b| − 1/|a|, by the difference of squares.
+        let nearer = -edges[0].dot(corners[0] + corners[1]) / ((lengths[0] + lengths[1]) * lengths[0] * lengths[1]);
+        let chord = edges[0] / lengths[1] + corner * nearer;
+        solid_angle.is_finite().then_some(Self { a, b, chord, solid_angle })
+    }
+
+    /// A direction drawn evenly. The first number takes a part of the angle, bounded by an arc from `b` to a point `q` of the arc from `a`
+    /// to the third corner: with `t` the unit tangent of that arc at `a`, and φ the way to `q` along it,
+    ///
+    /// tan(Ω'/2) = det(a, b, q) / (1 + a·b + b·q + q·a)  for  q = a cos φ + t sin φ
+    ///
+    /// is solved by tan(φ/2) = tan(Ω'/2) (1 + a·b) / (det(a, b, t) − tan(Ω'/2) b·t). The second number goes along the arc from `b` to `q`,
+    /// evenly by its height 1 − cos.
+    #[inline]
+    fn sample(&self, edge: DVec3, u: [f64; 2]) -> DVec3 {
+        let Self { a, b, chord, solid_angle } = *self;
+        let tangent = (edge - a * a.dot(edge)).normalize();
+        let (sin, cos) = (0.5 * solid_angle * u[0]).sin_cos();
+        let along = sin * (1.0 + a.dot(b));
+        let against = cos * a.dot(chord.cross(tangent)).abs() - sin * chord.dot(tangent);
+        let length = along * along + against * against;
+        // From a to q, without the difference of the two.
+        let step = (tangent * against - a * along) * (2.0 * along / length);
+        let arc = if length > 0.0 { step - chord } else { -chord };
+        // 1 − q·b is half the square of the chord between them.
+        let height = 0.5 * arc.length_squared() * u[1];
+        let side = (arc - b * b.dot(arc)).try_normalize().unwrap_or(DVec3::ZERO);
+        b * (1.0 - height) + side * (height * (2.0 - height)).max(0.0).sqrt()
+    }
+}
