@@ -12,7 +12,16 @@ from .image import ErrorEstimate, Image
 from .instance import Instance
 from .integrators import Path
 from .io.pictures import check_writable
-from .lights import ConstantEnvironment, PointLight
+from .lights import (
+    ConstantEnvironment,
+    DirectionalLight,
+    Emission,
+    EnvironmentMap,
+    PointLight,
+    ProjectorLight,
+    SpotLight,
+    SunSky,
+)
 from .materials import Diffuse
 from .mesh import Mesh
 from .rendering import render
@@ -50,8 +59,11 @@ __all__ = [
     "ConstantEnvironment",
     "Cylinder",
     "Diffuse",
+    "DirectionalLight",
     "Disk",
     "Ellipsoid",
+    "Emission",
+    "EnvironmentMap",
     "ErrorEstimate",
     "Fisheye",
     "Grid",
@@ -69,11 +81,14 @@ __all__ = [
     "Path",
     "Plane",
     "PointLight",
+    "ProjectorLight",
     "Polygon",
     "Pose",
     "QueryCost",
     "Scene",
     "Sphere",
+    "SpotLight",
+    "SunSky",
     "Surface",
     "ThinLens",
     "Torus",

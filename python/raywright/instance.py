@@ -49,8 +49,10 @@ class Location(NamedTuple):
 class Instance:
     """Shapes put to one place or to many, compiled once: a copy takes some 150 bytes, whatever is copied.
 
-    Materials and emission are those of the shapes. What shines in an instance lights the scene by rays that
-    meet it; it is not sampled as a light, so small bright lights are better left out of instances.
+    Materials and emission are those of the shapes. What shines in copies is sampled as a light, each copy of
+    each face by itself, where the copies stand still and are at most 4096 in all; what shines in copies that
+    move, in copies within copies, or in more of them is not: it lights the scene by rays that meet it, so
+    small bright lights are better left out of these.
 
     Parameters
     ----------

@@ -6,7 +6,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .arrays import Triple, colour, last_axis, rows, triangles
+from .arrays import Triple, last_axis, rows, triangles
+from .lights.emission import Emission
+from .lights.emission import emission as checked_emission
 from .materials import Diffuse
 
 
@@ -27,7 +29,7 @@ class Mesh:
         Texture coordinates, one pair a vertex; (0, 0) is the lower left.
     material : Diffuse, optional
         How the surface scatters; ``Diffuse()`` if not given.
-    emission : float or 3 floats, optional
+    emission : float, 3 floats or Emission, optional
         Radiance in W·sr⁻¹·m⁻² that leaves the side of the geometric normal: one number, or red, green and
         blue. None, the default, for a mesh that does not shine.
 
@@ -44,7 +46,7 @@ class Mesh:
     normals: NDArray[np.floating[Any]] | None
     uv: NDArray[np.floating[Any]] | None
     material: Diffuse
-    emission: Triple | None
+    emission: Triple | Emission | None
 
     def __init__(
         self,
@@ -53,7 +55,7 @@ class Mesh:
         normals: ArrayLike | None = None,
         uv: ArrayLike | None = None,
         material: Diffuse | None = None,
-        emission: ArrayLike | None = None,
+        emission: ArrayLike | Emission | None = None,
     ) -> None:
         if material is None:
             material = Diffuse()
@@ -67,7 +69,7 @@ class Mesh:
             "normals": None if normals is None else rows("normals", normals, 3, count),
             "uv": None if uv is None else rows("uv", uv, 2, count),
             "material": material,
-            "emission": None if emission is None else colour("emission", emission),
+            "emission": checked_emission(emission),
         }
         for name, value in values.items():
             object.__setattr__(self, name, value)

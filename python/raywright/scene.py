@@ -14,7 +14,8 @@ from .accelerators import BVH, Accelerator
 from .arrays import choice
 from .instance import AnyShape, Instance
 from .io.meshes import meshes
-from .lights import ConstantEnvironment, PointLight
+from .lights import Environment, Light, environments
+from .lights import lights as checked_lights
 from .mesh import Mesh, face_count, moved
 from .queries import Queries
 from .shapes import Shape
@@ -43,10 +44,10 @@ class Scene(Queries):
         may be nested; all of it is laid out flat in ``scene.shapes``. A trimesh.Scene gives one mesh for each
         node that holds one, in the order of its geometry and with the node's transform applied; points and
         curves are left out.
-    lights : PointLight, or sequence of them
-        Lights that are not meshes.
-    environment : ConstantEnvironment, float or 3 floats, optional
-        What surrounds the scene; numbers are a constant radiance. None is black.
+    lights : PointLight, SpotLight, DirectionalLight or ProjectorLight, or sequence of them
+        Lights that are no surfaces.
+    environment : ConstantEnvironment, EnvironmentMap, SunSky, list of these, float or 3 floats, optional
+        What surrounds the scene; numbers are a constant radiance, and several add up. None is black.
     accelerator : BVH, KdTree, Octree, BSP, Grid, NestedGrid or BruteForce
         The structure that finds hits.
     precision : {"single", "double"}
@@ -77,20 +78,15 @@ class Scene(Queries):
     def __init__(
         self,
         shapes: Shapes,
-        lights: PointLight | Sequence[PointLight] = (),
-        environment: ConstantEnvironment | ArrayLike | None = None,
+        lights: Light | Sequence[Light] = (),
+        environment: Environment | Sequence[Environment] | ArrayLike | None = None,
         accelerator: Accelerator = _BINNED_BVH,
         precision: Precision = "single",
         quality: Quality = "balanced",
     ) -> None:
         self._shapes = meshes(shapes)
-        self._lights = tuple(lights) if isinstance(lights, list | tuple) else (lights,)
-        for light in self._lights:
-            if not isinstance(light, PointLight):
-                raise TypeError(f"lights must be raywright lights, got {type(light).__name__}")
-        if environment is not None and not isinstance(environment, ConstantEnvironment):
-            environment = ConstantEnvironment(environment)
-        self._environment = environment
+        self._lights = checked_lights(lights)
+        self._environment = environments(environment)
         if not isinstance(accelerator, Accelerator):
             kinds = ", ".join(kind.__name__ for kind in get_args(Accelerator))
             raise TypeError(f"accelerator must be one of {kinds}, got {type(accelerator).__name__}")
@@ -107,13 +103,13 @@ class Scene(Queries):
         return self._shapes
 
     @property
-    def lights(self) -> tuple[PointLight, ...]:
-        """The lights that are not meshes."""
+    def lights(self) -> tuple[Light, ...]:
+        """The lights that are no surfaces."""
         return self._lights
 
     @property
-    def environment(self) -> ConstantEnvironment | None:
-        """What surrounds the scene; None is black."""
+    def environment(self) -> Environment | tuple[Environment, ...] | None:
+        """What surrounds the scene, a tuple if that is several; None is black."""
         return self._environment
 
     @property

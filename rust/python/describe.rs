@@ -6,6 +6,7 @@ use pyo3::prelude::*;
 
 use super::arrays::{Rows, Triples, rows};
 use super::instances::{self, Wishes};
+use super::lights;
 use super::shapes;
 use crate::math::DVec3;
 use crate::optics::Rgb;
@@ -16,8 +17,8 @@ use std::sync::Arc;
 #[derive(FromPyObject)]
 pub struct Scene<'py> {
     shapes: Vec<Bound<'py, PyAny>>,
-    lights: Vec<Light>,
-    environment: Option<Environment>,
+    lights: Vec<Bound<'py, PyAny>>,
+    environment: Option<Bound<'py, PyAny>>,
     precision: String,
     /// How much the build may take for rays to be fast.
     pub quality: String,
@@ -35,19 +36,6 @@ struct Mesh<'py> {
 #[derive(FromPyObject)]
 struct Diffuse {
     reflectance: [f64; 3],
-}
-
-/// `raywright.PointLight`.
-#[derive(FromPyObject)]
-struct Light {
-    position: [f64; 3],
-    intensity: [f64; 3],
-}
-
-/// `raywright.ConstantEnvironment`.
-#[derive(FromPyObject)]
-struct Environment {
-    radiance: [f64; 3],
 }
 
 impl Scene<'_> {
@@ -69,32 +57,22 @@ impl Scene<'_> {
             let is_instance = instances::is_instance(one)?;
             shapes.push(if is_instance { instances::read(one, wishes, &mut kept, &shape)? } else { shape(one)? });
         }
-        let description = SceneDescription {
-            shapes,
-            points: self
-                .lights
-                .into_iter()
-                .map(|light| PointLight {
-                    position: DVec3::from_array(light.position),
-                    intensity: Rgb::from_array(light.intensity),
-                })
-                .collect(),
-            environment: self.environment.map_or(Rgb::ZERO, |e| Rgb::from_array(e.radiance)),
-        };
-        Ok((description, kept))
+        let mut all = self.lights.iter().map(lights::read).collect::<PyResult<Vec<_>>>()?;
+        all.extend(lights::read_environment(self.environment)?);
+        Ok((SceneDescription { shapes, lights: all }, kept))
     }
 }
 
 /// How any shape looks.
 #[derive(FromPyObject)]
-struct Look {
+struct Look<'py> {
     material: Diffuse,
-    emission: Option<[f64; 3]>,
+    emission: Option<Bound<'py, PyAny>>,
 }
 
 /// Reads any shape: a mesh, or what is none.
 fn describe(shape: &Bound<'_, PyAny>, double: bool) -> PyResult<scene::Shape> {
-    let look: Look = shape.extract()?;
+    let look: Look<'_> = shape.extract()?;
     let surface = if shape.get_type().name()? == "Mesh" {
         shape.extract::<Mesh<'_>>()?.describe(double)?.into()
     } else {
@@ -103,7 +81,7 @@ fn describe(shape: &Bound<'_, PyAny>, double: bool) -> PyResult<scene::Shape> {
     Ok(scene::Shape {
         surface,
         material: Arc::new(DiffuseMaterial { reflectance: Rgb::from_array(look.material.reflectance).into() }),
-        emission: look.emission.map_or(Rgb::ZERO, Rgb::from_array).into(),
+        emission: look.emission.as_ref().map(lights::read_emission).transpose()?.unwrap_or_default(),
     })
 }
 

@@ -10,6 +10,7 @@ mod first_hits;
 mod freeform;
 mod info;
 mod instances;
+mod lights;
 mod points;
 mod query;
 mod rays;

@@ -1,4 +1,4 @@
-"""Picture files: PNG, EXR and NPY."""
+"""Picture files: PNG, EXR and NPY; to read, HDR and what Pillow reads too."""
 
 import errno
 import importlib.util
@@ -9,6 +9,8 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+
+from .radiance_hdr import read_hdr
 
 SUFFIXES = (".png", ".exr", ".npy")
 
@@ -94,6 +96,60 @@ def write(path: Path, rgb: NDArray[np.float32], standard_error: NDArray[np.float
         np.save(path, rgb)
     else:
         _write_exr(path, rgb, standard_error)
+
+
+def read(path: str | PathLike[str]) -> NDArray[np.floating[Any]]:
+    """Return the linear colours of a picture file, (H, W, 3) or (H, W) from the top row on.
+
+    EXR, HDR and NPY files hold them as they are. Of other files, 8 bits a channel are taken as sRGB, and
+    transparency is left out.
+
+    Raises
+    ------
+    FileNotFoundError
+        If there is no such file.
+    ValueError
+        If it is no picture.
+    ImportError
+        If the suffix is .exr and OpenEXR is not installed.
+    """
+    path = Path(path)
+    if not path.exists():
+        raise FileNotFoundError(errno.ENOENT, "no such file", str(path))
+    suffix = path.suffix.lower()
+    if suffix == ".npy":
+        array: NDArray[np.floating[Any]] = np.load(path, allow_pickle=False)
+        return array
+    if suffix == ".hdr":
+        return read_hdr(path)
+    if suffix == ".exr":
+        return _read_exr(path)
+    from PIL import Image, UnidentifiedImageError
+
+    try:
+        with Image.open(path) as picture:
+            coded = np.asarray(picture.convert("RGB"), np.float64) / 255
+    except UnidentifiedImageError:
+        raise ValueError(f"{path} is no picture that can be read") from None
+    linear = np.where(coded <= 0.04045, coded / 12.92, ((coded + 0.055) / 1.055) ** 2.4)
+    return linear.astype(np.float32)
+
+
+def _read_exr(path: Path) -> NDArray[np.float32]:
+    try:
+        import OpenEXR
+    except ImportError as error:
+        raise ImportError(_NO_EXR.replace("saving", "reading")) from error
+
+    try:
+        with OpenEXR.File(str(path), separate_channels=True) as file:
+            channels = {name: channel.pixels for name, channel in file.channels().items()}
+    except RuntimeError as error:
+        raise ValueError(f"{path} is no picture that can be read") from error
+    names = ("R", "G", "B") if "R" in channels else ("Y",) * 3
+    if not all(name in channels for name in names):
+        raise ValueError(f"{path} must have channels R, G and B, or Y; has {', '.join(sorted(channels))}")
+    return np.stack([np.asarray(channels[name], np.float32) for name in names], axis=2)
 
 
 def _write_exr(path: Path, rgb: NDArray[np.float32], standard_error: NDArray[np.float32]) -> None:

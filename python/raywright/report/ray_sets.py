@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..arrays import integer, last_axis
 from ..cameras import AnyCamera, Camera
+from ..lights import DirectionalLight
 from ..mesh import Mesh
 from ..rays import ray_arguments
 from ..scene import Scene
@@ -172,8 +173,9 @@ def _lamps(
     scene: Scene, camera: AnyCamera, away: float, count: int, rng: np.random.Generator
 ) -> NDArray[np.float64]:
     """Return `count` points (N, 3) that shine."""
-    if scene.lights:
-        places = np.array([light.position for light in scene.lights])
+    points = [light for light in scene.lights if not isinstance(light, DirectionalLight)]
+    if points:
+        places = np.array([light.position for light in points])
         return np.asarray(places[np.arange(count) % len(places)])
     meshes = [shape for shape in scene.shapes if isinstance(shape, Mesh)]
     shining = [mesh.vertices[mesh.faces] for mesh in meshes if mesh.emission]

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from numpy.typing import ArrayLike
 
 from ..arrays import Triple, triple
+from ..lights.emission import Emission
 from ..materials import Diffuse
 from .shape import Shape
 
@@ -25,7 +26,7 @@ class Box(Shape):
         Rays are decided for the matrix as it is given, not for a rounded inverse.
     material : Diffuse, optional
         How the surface scatters; ``Diffuse()`` if not given.
-    emission : float or 3 floats, optional
+    emission : float, 3 floats or Emission, optional
         Radiance in W·sr⁻¹·m⁻² that leaves the outer side; None, the default, for a shape that does not shine.
 
     Raises
@@ -50,7 +51,7 @@ class Box(Shape):
         *,
         transform: ArrayLike | None = None,
         material: Diffuse | None = None,
-        emission: ArrayLike | None = None,
+        emission: ArrayLike | Emission | None = None,
     ) -> None:
         low, high = triple("min", min), triple("max", max)
         for axis, a, b in zip("xyz", low, high, strict=True):

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from numpy.typing import ArrayLike
 
 from ..arrays import Triple, number
+from ..lights.emission import Emission
 from ..materials import Diffuse
 from .shape import Shape, segment, switch
 
@@ -28,7 +29,7 @@ class Cone(Shape):
         Rays are decided for the matrix as it is given, not for a rounded inverse.
     material : Diffuse, optional
         How the surface scatters; ``Diffuse()`` if not given.
-    emission : float or 3 floats, optional
+    emission : float, 3 floats or Emission, optional
         Radiance in W·sr⁻¹·m⁻² that leaves the outer side; None, the default, for a shape that does not shine.
 
     Raises
@@ -60,7 +61,7 @@ class Cone(Shape):
         *,
         transform: ArrayLike | None = None,
         material: Diffuse | None = None,
-        emission: ArrayLike | None = None,
+        emission: ArrayLike | Emission | None = None,
     ) -> None:
         start, end = segment(("base", "tip"), base, tip)
         radii = number("base_radius", base_radius), number("tip_radius", tip_radius)

@@ -6,6 +6,7 @@ from numpy.typing import ArrayLike
 
 from .._core import implicit_trouble
 from ..arrays import Triple, triple
+from ..lights.emission import Emission
 from ..materials import Diffuse
 from .shape import Shape
 
@@ -31,7 +32,7 @@ class Implicit(Shape):
         Rays are taken into the shape's own space and rounded there once.
     material : Diffuse, optional
         How the surface scatters; ``Diffuse()`` if not given.
-    emission : float or 3 floats, optional
+    emission : float, 3 floats or Emission, optional
         Radiance in W·sr⁻¹·m⁻² that leaves the outer side; None, the default, for a shape that does not shine.
 
     Raises
@@ -66,7 +67,7 @@ class Implicit(Shape):
         *,
         transform: ArrayLike | None = None,
         material: Diffuse | None = None,
-        emission: ArrayLike | None = None,
+        emission: ArrayLike | Emission | None = None,
     ) -> None:
         if not isinstance(expression, str):
             raise TypeError(f"expression must be a string, got {expression!r}")

@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike
 
 from .._core import polygon_trouble
 from ..arrays import Triple, rows
+from ..lights.emission import Emission
 from ..materials import Diffuse
 from .shape import Shape
 
@@ -35,7 +36,7 @@ class Polygon(Shape):
         between polygons that share an edge and have equal transforms.
     material : Diffuse, optional
         How the surface scatters; ``Diffuse()`` if not given.
-    emission : float or 3 floats, optional
+    emission : float, 3 floats or Emission, optional
         Radiance in W·sr⁻¹·m⁻² that leaves the outer side; None, the default, for a shape that does not shine.
 
     Raises
@@ -64,7 +65,7 @@ class Polygon(Shape):
         *,
         transform: ArrayLike | None = None,
         material: Diffuse | None = None,
-        emission: ArrayLike | None = None,
+        emission: ArrayLike | Emission | None = None,
     ) -> None:
         border = _ring("outline", outline)
         inner = tuple(_ring(f"holes[{i}]", hole) for i, hole in enumerate(holes))

@@ -7,7 +7,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .._core import matrix_trouble, shape_area, shape_bounds
-from ..arrays import Triple, colour, frozen, real_array, triple
+from ..arrays import Triple, frozen, real_array, triple
+from ..lights.emission import Emission
+from ..lights.emission import emission as checked_emission
 from ..materials import Diffuse
 
 
@@ -20,13 +22,13 @@ class Shape:
 
     transform: NDArray[np.float64] | None
     material: Diffuse
-    emission: Triple | None
+    emission: Triple | Emission | None
 
     def _set(
         self,
         transform: ArrayLike | None,
         material: Diffuse | None,
-        emission: ArrayLike | None,
+        emission: ArrayLike | Emission | None,
         **parameters: Any,
     ) -> None:
         """Keep the parameters, and what every shape has once it is checked."""
@@ -38,7 +40,7 @@ class Shape:
             **parameters,
             "transform": None if transform is None else affine("transform", transform),
             "material": material,
-            "emission": None if emission is None else colour("emission", emission),
+            "emission": checked_emission(emission),
         }
         for name, value in values.items():
             object.__setattr__(self, name, value)

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from numpy.typing import ArrayLike
 
 from ..arrays import Triple, positive, triple
+from ..lights.emission import Emission
 from ..materials import Diffuse
 from .shape import Shape, direction
 
@@ -30,7 +31,7 @@ class Torus(Shape):
         Rays are taken into the shape's own space and rounded there once.
     material : Diffuse, optional
         How the surface scatters; ``Diffuse()`` if not given.
-    emission : float or 3 floats, optional
+    emission : float, 3 floats or Emission, optional
         Radiance in W·sr⁻¹·m⁻² that leaves the outer side; None, the default, for a shape that does not shine.
 
     Raises
@@ -63,7 +64,7 @@ class Torus(Shape):
         *,
         transform: ArrayLike | None = None,
         material: Diffuse | None = None,
-        emission: ArrayLike | None = None,
+        emission: ArrayLike | Emission | None = None,
     ) -> None:
         radii = positive("major_radius", major_radius), positive("minor_radius", minor_radius)
         for name, radius in zip(("major_radius", "minor_radius"), radii, strict=True):

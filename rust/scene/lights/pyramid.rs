@@ -146,7 +146,7 @@ mod tests {
 
     #[test]
     fn linear_draws_invert_their_distribution() {
-        for (from, to) in [(1.0, 3.0), (0.0, 1.0), (2.0, 0.0), (1.0, 1.0), (1e-300, 1e300)] {
+        for (from, to) in [(1.0, 3.0), (0.0, 1.0), (2.0, 0.0), (1.0, 1.0), (1e-100, 1e100)] {
             for i in 0..=100 {
                 let u = f64::from(i) / 100.0;
                 let x = linear(u, from, to);

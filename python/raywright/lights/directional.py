@@ -1,0 +1,37 @@
+"""Light from a single direction."""
+
+from dataclasses import dataclass
+
+from numpy.typing import ArrayLike
+
+from ..arrays import Triple, colour, triple
+
+
+@dataclass(frozen=True, init=False)
+class DirectionalLight:
+    """Light that comes from far outside along a single direction, as of a star.
+
+    Parameters
+    ----------
+    direction : 3 floats
+        Where it travels to, of any length but 0.
+    irradiance : float or 3 floats
+        What a surface that faces it receives in W·m⁻², at least 0: one number, or red, green and blue.
+
+    Raises
+    ------
+    ValueError
+        If a number is negative or not finite, or the direction has no length.
+    TypeError
+        If they are not numbers.
+    """
+
+    direction: Triple
+    irradiance: Triple
+
+    def __init__(self, direction: ArrayLike, irradiance: ArrayLike) -> None:
+        way = triple("direction", direction)
+        if way == (0, 0, 0):
+            raise ValueError(f"direction must have a length, got {way}")
+        object.__setattr__(self, "direction", way)
+        object.__setattr__(self, "irradiance", colour("irradiance", irradiance))

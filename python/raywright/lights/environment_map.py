@@ -1,0 +1,68 @@
+"""A picture of all that surrounds a scene."""
+
+from dataclasses import dataclass
+from os import PathLike
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..arrays import frozen, number, real_array
+from .pictured import Pictured, Texels, texels
+
+
+@dataclass(frozen=True, init=False, eq=False, repr=False)
+class EnvironmentMap(Pictured):
+    """An equirectangular picture all around a scene, drawn from by its light.
+
+    The middle of the picture is seen along −z, its top at +y, and what is right of the middle towards +x: as a
+    `Camera` sees it that looks along −z. Between the middles of texels radiance is interpolated, and it is
+    drawn by exactly that: a sun of one texel does no harm.
+
+    Parameters
+    ----------
+    image : (H, W, 3) or (H, W) array, or path
+        Linear radiance from the top row on, at least 0, kept as read-only float32. A path is that of an .exr,
+        .hdr or .npy file of linear colours, or of a picture of 8 bits, which are taken as sRGB.
+    to_world : (3, 3) or (4, 4) array, optional
+        A rotation, or a reflection, from the picture's space to the world.
+    scale : float
+        What the image is multiplied by to be radiance in W·sr⁻¹·m⁻², at least 0.
+
+    Raises
+    ------
+    ValueError
+        If the image is empty, of another shape, negative or not finite; if `to_world` is no rotation; or if
+        `scale` is negative or not finite.
+    TypeError
+        If something is not numbers.
+    FileNotFoundError
+        If a file is missing.
+    """
+
+    image: Texels
+    to_world: NDArray[np.float64]
+    scale: float
+
+    def __init__(
+        self,
+        image: ArrayLike | str | PathLike[str],
+        to_world: ArrayLike | None = None,
+        scale: float = 1.0,
+    ) -> None:
+        factor = number("scale", scale)
+        if factor < 0:
+            raise ValueError(f"scale must be at least 0, got {scale}")
+        object.__setattr__(self, "image", texels("image", image))
+        object.__setattr__(self, "to_world", _rotation("to_world", np.eye(3) if to_world is None else to_world))
+        object.__setattr__(self, "scale", factor)
+
+
+def _rotation(name: str, value: ArrayLike) -> NDArray[np.float64]:
+    matrix = real_array(name, value).astype(np.float64)
+    if matrix.shape == (4, 4) and np.array_equal(matrix[3], (0, 0, 0, 1)) and not matrix[:3, 3].any():
+        matrix = matrix[:3, :3]
+    if matrix.shape != (3, 3):
+        raise ValueError(f"{name} must be a rotation of shape (3, 3) or (4, 4), got {matrix.shape}")
+    if not np.abs(matrix @ matrix.T - np.eye(3)).max() < 1e-6:
+        raise ValueError(f"{name} must be a rotation, with rows of length 1 at right angles")
+    return frozen(matrix + 0.0)

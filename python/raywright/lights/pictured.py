@@ -1,0 +1,71 @@
+"""What lights keep pictures as, and how those that do compare."""
+
+from dataclasses import fields
+from os import PathLike
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..arrays import frozen, real_array
+from ..io.pictures import read
+
+Texels = NDArray[np.float32]
+
+
+def texels(name: str, value: ArrayLike | str | PathLike[str]) -> Texels:
+    """Return a picture of light, (H, W, 3) or (H, W), or the path of one, as read-only linear float32 texels.
+
+    Raises
+    ------
+    ValueError
+        If it is empty, has another shape, or holds what is negative or not finite (tells where).
+    TypeError
+        If it does not hold real numbers.
+    FileNotFoundError
+        If a file is missing.
+    """
+    array = read(value) if isinstance(value, str | PathLike) else real_array(name, value)
+    if array.ndim == 2:
+        array = np.repeat(array[..., None], 3, axis=2)
+    if array.ndim != 3 or array.shape[2] != 3 or 0 in array.shape:
+        raise ValueError(f"{name} must have shape (H, W, 3) or (H, W), and not be empty, got {array.shape}")
+    # What float32 cannot hold becomes infinite, and is told.
+    with np.errstate(over="ignore"):
+        single = frozen(array.astype(np.float32))
+    bad = ~np.isfinite(single) | (single < 0)
+    if bad.any():
+        row, column, _ = np.argwhere(bad)[0]
+        came = array[row, column].tolist()
+        raise ValueError(f"{name} must be finite and at least 0, got {came} in row {row}, column {column}")
+    return single
+
+
+class Pictured:
+    """A frozen dataclass that holds arrays: it compares, hashes, prints and pickles by what is in them."""
+
+    def _values(self) -> tuple[Any, ...]:
+        values = (getattr(self, field.name) for field in fields(self))  # type: ignore[arg-type]
+        return tuple((v.shape, v.tobytes()) if isinstance(v, np.ndarray) else v for v in values)
+
+    def __eq__(self, other: object) -> bool:
+        if type(other) is not type(self) or not isinstance(other, Pictured):
+            return NotImplemented
+        return self._values() == other._values()
+
+    def __hash__(self) -> int:
+        return hash((type(self), self._values()))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # Through the constructor, because an unpickled array would be writeable.
+        values = tuple(getattr(self, field.name) for field in fields(self))  # type: ignore[arg-type]
+        return type(self), values
+
+    def __repr__(self) -> str:
+        def told(value: Any) -> str:
+            if not isinstance(value, np.ndarray):
+                return repr(value)
+            return f"<{value.shape[1]} x {value.shape[0]} texels>" if value.ndim == 3 else repr(value.tolist())
+
+        parts = [f"{f.name}={told(getattr(self, f.name))}" for f in fields(self)]  # type: ignore[arg-type]
+        return f"{type(self).__name__}({', '.join(parts)})"

@@ -1,0 +1,79 @@
+"""A picture that is thrown."""
+
+from dataclasses import dataclass
+from os import PathLike
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..arrays import Triple, colour, number, triple
+from .pictured import Pictured, Texels, texels
+
+
+@dataclass(frozen=True, init=False, eq=False, repr=False)
+class ProjectorLight(Pictured):
+    """A slide projector: a point from which light goes through a picture, and nowhere else.
+
+    A screen at right angles to its axis shows the picture as bright at the corners as in the middle: the
+    intensity goes with the inverse cube of the cosine to the axis, times the picture.
+
+    Parameters
+    ----------
+    image : (H, W, 3) or (H, W) array, or path
+        Linear colours from the top row on, at least 0, kept as read-only float32; a path as `EnvironmentMap`
+        takes it.
+    position : 3 floats
+        Where it is, in the scene's unit of length.
+    target : 3 floats
+        The point that the middle of the picture is thrown to.
+    up : 3 floats
+        The direction that points up in the picture as it is thrown.
+    fov : float
+        Vertical angle of the picture in degrees, between 0 and 180.
+    intensity : float or 3 floats
+        Radiant intensity along the axis where the picture is 1, in W·sr⁻¹, at least 0.
+
+    Raises
+    ------
+    ValueError
+        If the image is empty, of another shape, negative or not finite; if a number is out of its range; or
+        if `position` is `target` or `up` is zero or along the axis.
+    TypeError
+        If something is not numbers.
+    FileNotFoundError
+        If a file is missing.
+    """
+
+    image: Texels
+    position: Triple
+    target: Triple
+    up: Triple
+    fov: float
+    intensity: Triple
+
+    def __init__(
+        self,
+        image: ArrayLike | str | PathLike[str],
+        position: ArrayLike,
+        target: ArrayLike,
+        up: ArrayLike = (0.0, 1.0, 0.0),
+        fov: float = 40.0,
+        intensity: ArrayLike = 1.0,
+    ) -> None:
+        values = {
+            "image": texels("image", image),
+            "position": triple("position", position),
+            "target": triple("target", target),
+            "up": triple("up", up),
+            "fov": number("fov", fov),
+            "intensity": colour("intensity", intensity),
+        }
+        for name, value in values.items():
+            object.__setattr__(self, name, value)
+        if not 0 < self.fov < 180:
+            raise ValueError(f"fov must be between 0 and 180 degrees, got {fov}")
+        if self.position == self.target:
+            raise ValueError(f"target must differ from position, both are {self.target}")
+        axis = np.subtract(self.target, self.position)
+        if not np.linalg.norm(np.cross(axis / np.abs(axis).max(), self.up)) > 0:
+            raise ValueError(f"up must have a length and not be along the axis, got {self.up}")
