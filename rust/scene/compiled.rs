@@ -62,7 +62,8 @@ impl Scene {
         let SceneDescription { shapes, lights } = description;
         let (mut surfaces, mut materials, mut emission) = (Vec::new(), Vec::new(), Vec::new());
         for shape in shapes {
-            surfaces.push(shape.surface);
+            let needs = shape.needs();
+            surfaces.push(shape.surface.with_only(needs));
             materials.push(shape.material);
             emission.push(shape.emission);
         }

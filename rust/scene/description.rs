@@ -1,5 +1,6 @@
 //! A scene as it is described, before it is compiled.
 
+use super::textures::Needs;
 use super::{DiffuseMaterial, Emission, Light, Material, Surface};
 use std::fmt;
 use std::sync::Arc;
@@ -20,6 +21,15 @@ impl Default for Shape {
     fn default() -> Self {
         let material = Arc::new(DiffuseMaterial::default());
         Self { surface: Surface::default(), material, emission: Emission::default() }
+    }
+}
+
+impl Shape {
+    /// What must be known of a point of it to shade it.
+    pub fn needs(&self) -> Needs {
+        // What is dark is not asked how it shines.
+        let emission = if self.emission.is_dark() { Needs::NONE } else { self.emission.needs() };
+        self.material.needs() | emission
     }
 }
 

@@ -1,6 +1,7 @@
 //! The surfaces of a scene: every mesh's corners and faces, one after the other, and shapes among them.
 
 use super::per_vertex::PerVertex;
+use super::textures::Needs;
 use super::{Copies, Group, Surfaces};
 use crate::accel::{Objects, Primitives};
 use crate::math::{DVec3, Hit, Ray, Vec3};
@@ -113,6 +114,15 @@ pub struct Mesh {
     pub colours: Option<Vec<[f32; 3]>>,
 }
 
+impl Mesh {
+    /// The mesh without what nobody asks of its vertices.
+    pub fn with_only(mut self, needs: Needs) -> Self {
+        self.uvs = self.uvs.filter(|_| needs.uv);
+        self.colours = self.colours.filter(|_| needs.colours);
+        self
+    }
+}
+
 /// What rays can hit.
 #[derive(Clone, Debug)]
 pub enum Surface {
@@ -127,6 +137,16 @@ pub enum Surface {
 impl Default for Surface {
     fn default() -> Self {
         Self::Mesh(Mesh::default())
+    }
+}
+
+impl Surface {
+    /// The surface without what nobody asks of it.
+    pub fn with_only(self, needs: Needs) -> Self {
+        match self {
+            Self::Mesh(mesh) => Self::Mesh(mesh.with_only(needs)),
+            other => other,
+        }
     }
 }
 

@@ -45,7 +45,8 @@ impl Group {
         description.validate()?;
         let (mut surfaces, mut materials, mut emission) = (Vec::new(), Vec::new(), Vec::new());
         for shape in description.shapes {
-            surfaces.push(shape.surface);
+            let needs = shape.needs();
+            surfaces.push(shape.surface.with_only(needs));
             materials.push(shape.material);
             emission.push(shape.emission);
         }

@@ -118,7 +118,8 @@ impl Interaction {
         let mut point = ShadingPoint::new(scene.geometry(), ray, hit, &surface, needs, width);
         point.outside = outside;
         let shading = material.normal(&point).unwrap_or(surface.shading_normal);
-        let mut here = Self::with(ray, surface, shading, material.scattering(&point));
+        let tangent = material.tangent(&point);
+        let mut here = Self::with(ray, surface, (shading, tangent), material.scattering(&point));
         if width > 0.0 {
             here.curvature = here.side * mean_curvature(&point);
         }
@@ -137,9 +138,15 @@ impl<S: Scatters> Interaction<S> {
     /// turn black though it faces the viewer, so there the normal is bent towards the viewer until it just faces him.
     const GRAZING: f64 = 1e-3;
 
-    /// A ray of unit direction at a point of a surface with this shading normal that scatters so.
+    /// A ray of unit direction at a point of a surface with this shading normal, and the direction that the frame's x should have if that
+    /// matters, that scatters so.
     #[inline]
-    pub fn with(ray: &Ray, surface: SurfacePoint, shading: DVec3, scattering: S) -> Self {
+    pub fn with(
+        ray: &Ray,
+        surface: SurfacePoint,
+        (shading, tangent): (DVec3, Option<DVec3>),
+        scattering: S,
+    ) -> Self {
         let back = -ray.direction;
         let side = 1f64.copysign(back.dot(surface.normal));
         let is_flat = shading == surface.normal;
@@ -150,7 +157,10 @@ impl<S: Scatters> Interaction<S> {
                 shading = (shading + back * (side * (Self::GRAZING - cosine))).normalize();
             }
         }
-        let frame = Frame::new(shading);
+        let frame = match tangent {
+            Some(tangent) => Frame::along(shading, tangent),
+            None => Frame::new(shading),
+        };
         Self { surface, frame, scattering, wo: frame.to_local(back), side, is_flat, curvature: 0.0 }
     }
 

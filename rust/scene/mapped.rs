@@ -14,6 +14,8 @@ pub(super) struct Mapped {
     pub dp: [DVec3; 2],
     /// How the unit shading normal does.
     pub dn: [DVec3; 2],
+    /// How the point in the space of its shape does.
+    pub object_dp: [DVec3; 2],
     /// The point in the space of its shape.
     pub position: DVec3,
     /// By how much lengths there differ from those of the world, about.
@@ -38,6 +40,7 @@ impl Geometry {
             uv: here.point.uv,
             dp: here.point.dp,
             dn: here.point.dn,
+            object_dp: here.point.dp,
             position: here.point.position,
             scale: 1.0,
             colour: Rgb::ONE,
@@ -65,6 +68,7 @@ impl Geometry {
                 if both.iter().all(|d| d.is_finite()) { both } else { [DVec3::ZERO; 2] }
             };
             (mapped.dp, mapped.dn) = (per_uv(mapped.dp), per_uv(mapped.dn));
+            mapped.object_dp = mapped.dp;
         }
         mapped
     }
@@ -131,6 +135,8 @@ mod tests {
                 assert!((moved - position - told).length() < 1e-12, "{told}");
                 let told = here.dn[0] * by[0] + here.dn[1] * by[1];
                 assert!((turned - normal - told).length() < 1e-7, "{told}");
+                let (there, told) = (there.position - here.position, here.object_dp);
+                assert!((there - told[0] * by[0] - told[1] * by[1]).length() < 1e-12, "{there}");
             }
             assert!((here.colour - Rgb::new(0.5, 0.2, 0.3)).length() < 1e-15);
             assert!((here.uv[0] - (0.05 + 0.18 + 0.09)).abs() < 1e-7);

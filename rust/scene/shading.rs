@@ -17,6 +17,10 @@ pub struct ShadingPoint {
     pub dp: [DVec3; 2],
     /// How the shading normal does.
     pub dn: [DVec3; 2],
+    /// How the point in the space of its shape does.
+    pub object_dp: [DVec3; 2],
+    /// Whether it is seen from the side that the normal points to.
+    pub is_front: bool,
     /// The index of refraction on the side of the normal.
     pub outside: f64,
 }
@@ -40,7 +44,7 @@ impl Footprint {
 }
 
 impl ShadingPoint {
-    /// What is known of a hit of a ray without asking for more.
+    /// What is known of a hit of a ray from the front without asking for more.
     #[inline]
     pub fn plain(surface: &SurfacePoint) -> Self {
         Self {
@@ -49,6 +53,8 @@ impl ShadingPoint {
             shading_normal: surface.shading_normal,
             dp: [DVec3::ZERO; 2],
             dn: [DVec3::ZERO; 2],
+            object_dp: [DVec3::ZERO; 2],
+            is_front: true,
             outside: 1.0,
         }
     }
@@ -56,12 +62,13 @@ impl ShadingPoint {
     /// What a hit of a ray needs, `width` being that of the footprint there.
     pub fn new(geometry: &Geometry, ray: &Ray, hit: &Hit, surface: &SurfacePoint, needs: Needs, width: f64) -> Self {
         let mut point = Self::plain(surface);
+        point.is_front = ray.direction.dot(surface.normal) <= 0.0;
         if !needs.any() {
             return point;
         }
         let here = geometry.mapped(ray, hit, needs);
         point.texture = TexturePoint { uv: here.uv, position: here.position, colour: here.colour, ..point.texture };
-        (point.dp, point.dn) = (here.dp, here.dn);
+        (point.dp, point.dn, point.object_dp) = (here.dp, here.dn, here.object_dp);
         if needs.width {
             // An ellipse on the surface whose short axis is the width; the mean of its axes is taken for its size.
             let cosine = ray.direction.dot(surface.normal).abs().max(1e-3);

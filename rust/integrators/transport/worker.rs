@@ -175,7 +175,7 @@ impl<'a, N: Features> TransportWorker<'a, N> {
                 // Said once more which kind it is, so that nothing is asked of it at each use.
                 let Bsdf::Diffuse(diffuse) = *self.scene.plan().constant(surface.shape) else { continue };
                 let shading = surface.shading_normal;
-                let here = Interaction::with(&ray, surface, shading, Bsdf::Diffuse(diffuse));
+                let here = Interaction::with(&ray, surface, (shading, None), Bsdf::Diffuse(diffuse));
                 self.scatter(Vertex { here, path, baggage, dimensions, through, width: 0.0, time }, sampler);
             } else {
                 let width = if self.widths { baggage.footprint.at(hit.t).width } else { 0.0 };

@@ -1,6 +1,7 @@
 //! A matt surface.
 
-use super::{Material, Scattering};
+use super::checks::within;
+use super::{Classic, Material, Scattering};
 use crate::optics::{Bsdf, Diffuse, Rgb};
 use crate::scene::ShadingPoint;
 use crate::scene::textures::{Needs, Value};
@@ -37,8 +38,10 @@ impl Material for DiffuseMaterial {
     }
 
     fn validate(&self) -> Result<(), String> {
-        let [low, high] = self.reflectance.range();
-        let is_physical = self.reflectance.is_within(0.0, 1.0);
-        is_physical.then_some(()).ok_or_else(|| format!("reflectance must lie between 0 and 1, got {low} to {high}"))
+        within("reflectance", &self.reflectance, 0.0, 1.0)
+    }
+
+    fn classic(&self, at: &ShadingPoint) -> Option<Classic> {
+        Some(Classic::matt(self.reflectance.at(&at.texture)))
     }
 }

@@ -1,10 +1,45 @@
 //! What surfaces are made of: one interface over all materials.
 
+mod blinn_phong;
+mod bump;
+mod checks;
+mod classic;
+mod conductor;
+mod dielectric;
 mod diffuse;
+mod mask;
+mod metallic_rough;
+mod mirror;
+mod mix;
+mod normal_map;
+mod oren_nayar;
+mod phong;
+mod plastic;
+mod roughness;
 mod scattering;
+#[cfg(test)]
+mod tests;
+mod thin_dielectric;
+mod two_sided;
 
+pub use blinn_phong::BlinnPhongMaterial;
+pub use bump::BumpMap;
+pub use classic::Classic;
+pub use conductor::ConductorMaterial;
+pub use dielectric::DielectricMaterial;
 pub use diffuse::DiffuseMaterial;
+pub use mask::Mask;
+pub use metallic_rough::MetallicRoughMaterial;
+pub use mirror::MirrorMaterial;
+pub use mix::MixMaterial;
+pub use normal_map::NormalMap;
+pub use oren_nayar::OrenNayarMaterial;
+pub use phong::PhongMaterial;
+pub use plastic::PlasticMaterial;
+pub use roughness::Roughness;
 pub use scattering::Scattering;
+pub use thin_dielectric::ThinDielectricMaterial;
+pub use two_sided::TwoSided;
 
 use super::ShadingPoint;
 use super::textures::{Needs, TexturePoint};
@@ -38,13 +73,28 @@ pub trait Material: Debug + Send + Sync {
         true
     }
 
+    /// Whether light that meets it may go on on its other side.
+    fn transmits(&self) -> bool {
+        false
+    }
+
     /// A shading normal of its own, unit and on the side of the point's, as bump and normal maps have it.
     fn normal(&self, _at: &ShadingPoint) -> Option<DVec3> {
         None
     }
 
+    /// Where the x axis of its shading frame is to point, if that makes a difference: about along a vector of any length.
+    fn tangent(&self, _at: &ShadingPoint) -> Option<DVec3> {
+        None
+    }
+
     /// What fills what it encloses; none for what encloses nothing, as a sheet.
     fn interior(&self) -> Option<Interior> {
+        None
+    }
+
+    /// What it is to the classic model of ambient, diffuse and specular light; none if that has no words for it.
+    fn classic(&self, _at: &ShadingPoint) -> Option<Classic> {
         None
     }
 }

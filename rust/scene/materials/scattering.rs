@@ -32,7 +32,45 @@ impl Scattering {
                 Self::Several(parts) => all.extend(parts.into_iter().map(|(w, bsdf)| (w * weight, bsdf))),
             }
         }
-        Self::Several(all)
+        match all[..] {
+            [(Rgb::ONE, bsdf)] => Self::One(bsdf),
+            _ => Self::Several(all),
+        }
+    }
+
+    /// About the share of white light that is scattered, as [`Bsdf::albedo`] has it.
+    pub fn albedo(&self) -> Rgb {
+        match self {
+            Self::One(bsdf) => bsdf.albedo(),
+            Self::Several(parts) => parts.iter().map(|(weight, bsdf)| *weight * bsdf.albedo()).sum(),
+        }
+    }
+
+    /// Whether all of it goes in single directions, so that [`Scattering::evaluate`] is 0 everywhere.
+    #[inline]
+    pub fn is_delta(&self) -> bool {
+        match self {
+            Self::One(bsdf) => bsdf.is_delta(),
+            Self::Several(parts) => parts.iter().all(|(_, bsdf)| bsdf.is_delta()),
+        }
+    }
+
+    /// Whether light goes through to the other side.
+    #[inline]
+    pub fn transmits(&self) -> bool {
+        match self {
+            Self::One(bsdf) => bsdf.transmits(),
+            Self::Several(parts) => parts.iter().any(|(_, bsdf)| bsdf.transmits()),
+        }
+    }
+
+    /// How rough its sharpest part is, as [`Bsdf::roughness`] has it.
+    #[inline]
+    pub fn roughness(&self) -> f64 {
+        match self {
+            Self::One(bsdf) => bsdf.roughness(),
+            Self::Several(parts) => parts.iter().map(|(_, bsdf)| bsdf.roughness()).fold(1.0, f64::min),
+        }
     }
 
     /// The scattering function times |cos θ| of `wi`, and the density with which [`Scattering::sample`] draws `wi`, both without what

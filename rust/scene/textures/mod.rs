@@ -1,10 +1,39 @@
 //! What varies over surfaces: one interface over all textures.
 
+mod checker;
+mod domain;
+mod fbm;
+mod image;
+mod marble;
+mod mix;
 mod needs;
+mod noise;
+mod pattern;
+mod perlin;
+mod picture;
+mod product;
+mod stripes;
 mod value;
+mod vertex_colours;
+mod waves;
+mod wood;
 
+pub use checker::Checker;
+pub use domain::{Domain, ObjectTransform, UvTransform};
+pub use fbm::{Fbm, Octaves};
+pub use image::{Filter, ImageTexture, Wrap};
+pub use marble::Marble;
+pub use mix::MixTexture;
 pub use needs::Needs;
+pub use noise::Noise;
+pub use pattern::{Between, Pattern};
+pub use perlin::perlin;
+pub use picture::{Picture, PictureError, Texels};
+pub use product::ProductTexture;
+pub use stripes::Stripes;
 pub use value::Value;
+pub use vertex_colours::VertexColours;
+pub use wood::Wood;
 
 use crate::math::DVec3;
 use crate::optics::Rgb;

@@ -1,0 +1,51 @@
+//! Blinn's form of Phong's model.
+
+use super::phong::{parts, shares};
+use super::{Classic, Material, Scattering};
+use crate::optics::{BlinnPhong, Bsdf};
+use crate::scene::ShadingPoint;
+use crate::scene::textures::{Needs, TexturePoint, Value};
+
+/// A matt surface with highlights where the normal halves the way between light and viewer, on both sides.
+#[derive(Clone, Debug)]
+pub struct BlinnPhongMaterial {
+    /// The share of light that is reflected diffusely, 0 to 1 in each channel.
+    pub diffuse: Value,
+    /// The share that makes highlights, 0 to 1; with the other at most 1.
+    pub specular: Value,
+    /// The power of the cosine, not negative.
+    pub exponent: Value,
+    /// The share of ambient light that is reflected, for integrators that know one.
+    pub ambient: Value,
+}
+
+impl BlinnPhongMaterial {
+    fn bsdf(&self, point: &TexturePoint) -> BlinnPhong {
+        let (diffuse, specular) = parts(point, &self.diffuse, &self.specular);
+        BlinnPhong::new(diffuse, specular, self.exponent.number(point))
+    }
+}
+
+impl Material for BlinnPhongMaterial {
+    fn scattering(&self, at: &ShadingPoint) -> Scattering {
+        self.bsdf(&at.texture).into()
+    }
+
+    fn constant(&self) -> Option<Bsdf> {
+        (!self.needs().any()).then(|| self.bsdf(&TexturePoint::default()).into())
+    }
+
+    fn needs(&self) -> Needs {
+        self.diffuse.needs() | self.specular.needs() | self.exponent.needs() | self.ambient.needs()
+    }
+
+    fn validate(&self) -> Result<(), String> {
+        shares(&self.diffuse, &self.specular, &self.exponent, &self.ambient)
+    }
+
+    fn classic(&self, at: &ShadingPoint) -> Option<Classic> {
+        let point = &at.texture;
+        let (diffuse, specular) = parts(point, &self.diffuse, &self.specular);
+        Some(Classic { ambient: self.ambient.at(point), diffuse, specular, exponent: self.exponent.number(point) })
+    }
+}

@@ -1,0 +1,41 @@
+//! Metal.
+
+use super::checks::within;
+use super::{Material, Roughness, Scattering};
+use crate::math::DVec3;
+use crate::optics::Conductor;
+use crate::scene::ShadingPoint;
+use crate::scene::textures::{Needs, Value};
+
+/// A metal, smooth or rough, which may be brushed: rougher along one direction than across. Both sides reflect.
+#[derive(Clone, Debug)]
+pub struct ConductorMaterial {
+    /// The real part of its index of refraction, above 0.
+    pub eta: Value,
+    /// The imaginary part, not negative.
+    pub k: Value,
+    /// How rough it is.
+    pub roughness: Roughness,
+}
+
+impl Material for ConductorMaterial {
+    fn scattering(&self, at: &ShadingPoint) -> Scattering {
+        let point = &at.texture;
+        let (eta, k) = (self.eta.at(point) / at.outside, self.k.at(point) / at.outside);
+        Conductor::new(eta, k, self.roughness.alpha(point)).into()
+    }
+
+    fn needs(&self) -> Needs {
+        self.eta.needs() | self.k.needs() | self.roughness.needs()
+    }
+
+    fn validate(&self) -> Result<(), String> {
+        within("eta", &self.eta, f64::MIN_POSITIVE, f64::MAX)?;
+        within("k", &self.k, 0.0, f64::MAX)?;
+        self.roughness.validate()
+    }
+
+    fn tangent(&self, at: &ShadingPoint) -> Option<DVec3> {
+        self.roughness.tangent(at)
+    }
+}

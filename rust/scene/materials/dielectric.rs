@@ -1,0 +1,44 @@
+//! Glass, water, diamond.
+
+use super::checks::number;
+use super::{Interior, Material, Roughness, Scattering};
+use crate::math::DVec3;
+use crate::optics::Dielectric;
+use crate::scene::ShadingPoint;
+use crate::scene::textures::Needs;
+
+/// The surface of a clear solid or liquid, smooth or rough, which reflects and refracts. Its normals point out.
+#[derive(Clone, Debug)]
+pub struct DielectricMaterial {
+    /// What is within.
+    pub interior: Interior,
+    /// How rough the surface is.
+    pub roughness: Roughness,
+}
+
+impl Material for DielectricMaterial {
+    fn scattering(&self, at: &ShadingPoint) -> Scattering {
+        Dielectric::new(self.interior.ior / at.outside, self.roughness.alpha(&at.texture)).into()
+    }
+
+    fn needs(&self) -> Needs {
+        self.roughness.needs()
+    }
+
+    fn validate(&self) -> Result<(), String> {
+        number("ior", self.interior.ior, f64::MIN_POSITIVE, f64::MAX)?;
+        self.roughness.validate()
+    }
+
+    fn transmits(&self) -> bool {
+        true
+    }
+
+    fn tangent(&self, at: &ShadingPoint) -> Option<DVec3> {
+        self.roughness.tangent(at)
+    }
+
+    fn interior(&self) -> Option<Interior> {
+        Some(self.interior)
+    }
+}

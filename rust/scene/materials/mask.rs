@@ -1,0 +1,60 @@
+//! Holes.
+
+use super::checks::within;
+use super::{Classic, Interior, Material, Scattering};
+use crate::math::DVec3;
+use crate::scene::ShadingPoint;
+use crate::scene::textures::{Needs, TexturePoint, Value};
+use std::sync::Arc;
+
+/// A material with holes: leaves, lace, fences. Where it is partly there, rays go through it in proportion.
+#[derive(Clone, Debug)]
+pub struct Mask {
+    /// What is between the holes.
+    pub material: Arc<dyn Material>,
+    /// How much of it is there: 0 in a hole, 1 beside it.
+    pub opacity: Value,
+}
+
+impl Material for Mask {
+    fn scattering(&self, at: &ShadingPoint) -> Scattering {
+        self.material.scattering(at)
+    }
+
+    fn needs(&self) -> Needs {
+        self.material.needs() | self.opacity.needs()
+    }
+
+    fn validate(&self) -> Result<(), String> {
+        within("opacity", &self.opacity, 0.0, 1.0)?;
+        self.material.validate()
+    }
+
+    fn opacity(&self, at: &TexturePoint) -> f64 {
+        self.opacity.number(at).clamp(0.0, 1.0) * self.material.opacity(at)
+    }
+
+    fn is_opaque(&self) -> bool {
+        self.opacity.is_within(1.0, 1.0) && self.material.is_opaque()
+    }
+
+    fn transmits(&self) -> bool {
+        self.material.transmits()
+    }
+
+    fn normal(&self, at: &ShadingPoint) -> Option<DVec3> {
+        self.material.normal(at)
+    }
+
+    fn tangent(&self, at: &ShadingPoint) -> Option<DVec3> {
+        self.material.tangent(at)
+    }
+
+    fn interior(&self) -> Option<Interior> {
+        self.material.interior()
+    }
+
+    fn classic(&self, at: &ShadingPoint) -> Option<Classic> {
+        self.material.classic(at)
+    }
+}

@@ -1,0 +1,38 @@
+//! A perfect mirror.
+
+use super::checks::within;
+use super::{Material, Scattering};
+use crate::optics::{Bsdf, Mirror};
+use crate::scene::ShadingPoint;
+use crate::scene::textures::{Needs, TexturePoint, Value};
+
+/// Reflects into one direction, on both sides, the same share from every angle.
+#[derive(Clone, Debug)]
+pub struct MirrorMaterial {
+    /// That share, 0 to 1 in each channel.
+    pub reflectance: Value,
+}
+
+impl MirrorMaterial {
+    fn bsdf(&self, point: &TexturePoint) -> Mirror {
+        Mirror { reflectance: self.reflectance.at(point) }
+    }
+}
+
+impl Material for MirrorMaterial {
+    fn scattering(&self, at: &ShadingPoint) -> Scattering {
+        self.bsdf(&at.texture).into()
+    }
+
+    fn constant(&self) -> Option<Bsdf> {
+        (!self.needs().any()).then(|| self.bsdf(&TexturePoint::default()).into())
+    }
+
+    fn needs(&self) -> Needs {
+        self.reflectance.needs()
+    }
+
+    fn validate(&self) -> Result<(), String> {
+        within("reflectance", &self.reflectance, 0.0, 1.0)
+    }
+}

@@ -1,0 +1,99 @@
+//! Two materials at once.
+
+use super::checks::within;
+use super::{Classic, Interior, Material, Scattering};
+use crate::math::DVec3;
+use crate::optics::Rgb;
+use crate::scene::ShadingPoint;
+use crate::scene::textures::{Needs, TexturePoint, Value};
+use std::sync::Arc;
+
+/// A share of one material, and the rest of another, finely mixed.
+///
+/// What fills it is what fills the first of them that is filled; where they have normals of their own, these are mixed too.
+#[derive(Clone, Debug)]
+pub struct MixMaterial {
+    /// The one.
+    pub a: Arc<dyn Material>,
+    /// The other.
+    pub b: Arc<dyn Material>,
+    /// The share of `b`, 0 to 1.
+    pub amount: Value,
+}
+
+impl MixMaterial {
+    /// How much of either there is: of all, or of what is met where not all is.
+    fn shares(&self, point: &TexturePoint) -> [f64; 2] {
+        let amount = self.amount.number(point).clamp(0.0, 1.0);
+        let shares = [1.0 - amount, amount];
+        if self.is_opaque() {
+            return shares;
+        }
+        let [a, b] = [(1.0 - amount) * self.a.opacity(point), amount * self.b.opacity(point)];
+        if a + b > 0.0 { [a / (a + b), b / (a + b)] } else { shares }
+    }
+}
+
+impl Material for MixMaterial {
+    fn scattering(&self, at: &ShadingPoint) -> Scattering {
+        let [a, b] = self.shares(&at.texture);
+        // Of what is not there nothing need be known.
+        if b == 0.0 {
+            return self.a.scattering(at);
+        }
+        if a == 0.0 {
+            return self.b.scattering(at);
+        }
+        Scattering::mixed((Rgb::splat(a), self.a.scattering(at)), (Rgb::splat(b), self.b.scattering(at)))
+    }
+
+    fn needs(&self) -> Needs {
+        self.a.needs() | self.b.needs() | self.amount.needs()
+    }
+
+    fn validate(&self) -> Result<(), String> {
+        within("amount", &self.amount, 0.0, 1.0)?;
+        self.a.validate().map_err(|why| format!("in a: {why}"))?;
+        self.b.validate().map_err(|why| format!("in b: {why}"))
+    }
+
+    fn opacity(&self, at: &TexturePoint) -> f64 {
+        let amount = self.amount.number(at).clamp(0.0, 1.0);
+        (1.0 - amount) * self.a.opacity(at) + amount * self.b.opacity(at)
+    }
+
+    fn is_opaque(&self) -> bool {
+        self.a.is_opaque() && self.b.is_opaque()
+    }
+
+    fn transmits(&self) -> bool {
+        self.a.transmits() || self.b.transmits()
+    }
+
+    fn normal(&self, at: &ShadingPoint) -> Option<DVec3> {
+        let normals = [self.a.normal(at), self.b.normal(at)];
+        if normals == [None, None] {
+            return None;
+        }
+        let [a, b] = normals.map(|normal| normal.unwrap_or(at.shading_normal));
+        let [of_a, of_b] = self.shares(&at.texture);
+        // Two on one side of a plane are never opposite.
+        (a * of_a + b * of_b).try_normalize()
+    }
+
+    fn tangent(&self, at: &ShadingPoint) -> Option<DVec3> {
+        self.a.tangent(at).or_else(|| self.b.tangent(at))
+    }
+
+    fn interior(&self) -> Option<Interior> {
+        self.a.interior().or_else(|| self.b.interior())
+    }
+
+    fn classic(&self, at: &ShadingPoint) -> Option<Classic> {
+        let [a, b] = self.shares(&at.texture);
+        match (self.a.classic(at), self.b.classic(at)) {
+            (Some(x), Some(y)) => Some(Classic::mixed((a, x), (b, y))),
+            _ => None,
+        }
+    }
+}

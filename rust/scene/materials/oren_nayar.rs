@@ -1,0 +1,45 @@
+//! A rough matt surface.
+
+use super::checks::within;
+use super::{Classic, Material, Scattering};
+use crate::optics::{Bsdf, OrenNayar};
+use crate::scene::ShadingPoint;
+use crate::scene::textures::{Needs, TexturePoint, Value};
+
+/// Scatters as matt facets do, brighter towards the light: clay, plaster, the moon. Both sides do.
+#[derive(Clone, Debug)]
+pub struct OrenNayarMaterial {
+    /// The share of the light that a facet reflects, 0 to 1 in each channel.
+    pub reflectance: Value,
+    /// From 0, Lambert's law, to 1. It is no facets' α.
+    pub roughness: Value,
+}
+
+impl OrenNayarMaterial {
+    fn bsdf(&self, point: &TexturePoint) -> OrenNayar {
+        OrenNayar::new(self.reflectance.at(point), self.roughness.number(point))
+    }
+}
+
+impl Material for OrenNayarMaterial {
+    fn scattering(&self, at: &ShadingPoint) -> Scattering {
+        self.bsdf(&at.texture).into()
+    }
+
+    fn constant(&self) -> Option<Bsdf> {
+        (!self.needs().any()).then(|| self.bsdf(&TexturePoint::default()).into())
+    }
+
+    fn needs(&self) -> Needs {
+        self.reflectance.needs() | self.roughness.needs()
+    }
+
+    fn validate(&self) -> Result<(), String> {
+        within("reflectance", &self.reflectance, 0.0, 1.0)?;
+        within("roughness", &self.roughness, 0.0, 1.0)
+    }
+
+    fn classic(&self, at: &ShadingPoint) -> Option<Classic> {
+        Some(Classic::matt(self.reflectance.at(&at.texture)))
+    }
+}

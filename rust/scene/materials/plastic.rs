@@ -1,0 +1,38 @@
+//! Plastic, glaze, varnish.
+
+use super::checks::{number, within};
+use super::{Material, Roughness, Scattering};
+use crate::optics::Coated;
+use crate::scene::ShadingPoint;
+use crate::scene::textures::{Needs, Value};
+
+/// Something matt under a clear coat, smooth or rough. Both sides are alike.
+#[derive(Clone, Debug)]
+pub struct PlasticMaterial {
+    /// The share of the light that reaches what is under the coat and leaves it again, 0 to 1 in each channel.
+    pub reflectance: Value,
+    /// The coat's index of refraction, at least 1; where what is around has a greater one, there is no coat to be seen.
+    pub ior: f64,
+    /// How rough the coat is, alike in all directions.
+    pub roughness: Roughness,
+}
+
+impl Material for PlasticMaterial {
+    fn scattering(&self, at: &ShadingPoint) -> Scattering {
+        let [alpha, _] = self.roughness.alpha(&at.texture);
+        Coated::new(self.reflectance.at(&at.texture), (self.ior / at.outside).max(1.0), alpha).into()
+    }
+
+    fn needs(&self) -> Needs {
+        self.reflectance.needs() | self.roughness.needs()
+    }
+
+    fn validate(&self) -> Result<(), String> {
+        within("reflectance", &self.reflectance, 0.0, 1.0)?;
+        number("ior", self.ior, 1.0, f64::MAX)?;
+        if !self.roughness.is_alike() {
+            return Err("roughness of a coat must be the same in all directions".to_owned());
+        }
+        self.roughness.validate()
+    }
+}

@@ -1,0 +1,76 @@
+//! How rough a surface is.
+
+use super::checks::within;
+use crate::math::DVec3;
+use crate::scene::ShadingPoint;
+use crate::scene::textures::{Needs, TexturePoint, Value};
+
+/// How rough a surface of small facets is, along u and along v: as an artist's number between 0 and 1, whose square is the α of the facets'
+/// distribution (Burley, "Physically-Based Shading at Disney", 2012; so has it glTF), or as that.
+#[derive(Clone, Debug)]
+pub struct Roughness {
+    /// Along u and along v; the same value twice for what is alike in all directions.
+    pub along: [Value; 2],
+    /// Whether it is α itself.
+    pub is_alpha: bool,
+}
+
+impl Default for Roughness {
+    /// Smooth.
+    fn default() -> Self {
+        0.0.into()
+    }
+}
+
+impl From<f64> for Roughness {
+    /// Alike in all directions.
+    fn from(roughness: f64) -> Self {
+        Value::from(roughness).into()
+    }
+}
+
+impl From<Value> for Roughness {
+    fn from(roughness: Value) -> Self {
+        Self { along: [roughness.clone(), roughness], is_alpha: false }
+    }
+}
+
+impl Roughness {
+    /// α along u and v at a point.
+    #[inline]
+    pub fn alpha(&self, point: &TexturePoint) -> [f64; 2] {
+        let alpha = |value: &Value| {
+            let r = value.number(point).clamp(0.0, 1.0);
+            if self.is_alpha { r } else { r * r }
+        };
+        let first = alpha(&self.along[0]);
+        if self.is_alike() { [first; 2] } else { [first, alpha(&self.along[1])] }
+    }
+
+    /// Whether it is the same in all directions.
+    #[inline]
+    pub fn is_alike(&self) -> bool {
+        self.along[0] == self.along[1]
+    }
+
+    /// Where u goes, if it makes a difference.
+    #[inline]
+    pub fn tangent(&self, at: &ShadingPoint) -> Option<DVec3> {
+        (!self.is_alike()).then_some(at.dp[0])
+    }
+
+    /// What it must know of a point.
+    pub fn needs(&self) -> Needs {
+        let along = if self.is_alike() { Needs::NONE } else { Needs { uv: true, tangents: true, ..Needs::NONE } };
+        self.along[0].needs() | self.along[1].needs() | along
+    }
+
+    /// Whether it lies between 0 and 1.
+    ///
+    /// # Errors
+    /// If it does not.
+    pub fn validate(&self) -> Result<(), String> {
+        let name = if self.is_alpha { "alpha" } else { "roughness" };
+        self.along.iter().try_for_each(|value| within(name, value, 0.0, 1.0))
+    }
+}

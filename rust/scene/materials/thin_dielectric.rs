@@ -1,0 +1,32 @@
+//! A pane of glass.
+
+use super::checks::number;
+use super::{Material, Scattering};
+use crate::optics::ThinDielectric;
+use crate::scene::ShadingPoint;
+use crate::scene::textures::Needs;
+
+/// A clear sheet too thin to bend what is seen through it: a window, a soap bubble without colours. It encloses nothing.
+#[derive(Clone, Debug)]
+pub struct ThinDielectricMaterial {
+    /// The index of refraction within the sheet.
+    pub ior: f64,
+}
+
+impl Material for ThinDielectricMaterial {
+    fn scattering(&self, at: &ShadingPoint) -> Scattering {
+        ThinDielectric::new(self.ior / at.outside).into()
+    }
+
+    fn needs(&self) -> Needs {
+        Needs::NONE
+    }
+
+    fn validate(&self) -> Result<(), String> {
+        number("ior", self.ior, f64::MIN_POSITIVE, f64::MAX)
+    }
+
+    fn transmits(&self) -> bool {
+        true
+    }
+}
