@@ -1,13 +1,26 @@
 //! Floor 4: what turns rays into radiance.
 
+mod ambient_occlusion;
+mod direct;
+mod distributed;
 mod path;
+mod ray_cast;
+#[cfg(test)]
+mod tests;
+mod transport;
+mod whitted;
 
+pub use ambient_occlusion::AmbientOcclusion;
+pub use direct::Direct;
+pub use distributed::Distributed;
 pub use path::Path;
+pub use ray_cast::RayCast;
+pub use whitted::Whitted;
 
 use crate::math::Ray;
 use crate::optics::Rgb;
 use crate::sampling::Sampler;
-use crate::scene::Scene;
+use crate::scene::{Footprint, Scene};
 use crate::workers::Cancel;
 
 /// One sample of one pixel: the ray that the camera sends, and the numbers for what follows.
@@ -21,8 +34,9 @@ pub struct CameraSample {
 
 /// A way to turn rays into radiance.
 pub trait Integrator: Send + Sync {
-    /// What one thread works with on a scene: the integrator and the memory it needs, to be used again and again.
-    fn worker<'a>(&'a self, scene: &'a Scene) -> Box<dyn Worker + 'a>;
+    /// What one thread works with on a scene: the integrator and the memory it needs, to be used again and again. `footprint` is that of
+    /// the camera's rays, for the filtering of textures.
+    fn worker<'a>(&'a self, scene: &'a Scene, footprint: Footprint) -> Box<dyn Worker + 'a>;
 
     /// Whether workers must run on the thread that asked for the picture, as what is written in Python must. They are then
     /// handed batches of tens of thousands of samples, and may raise the cancel themselves to end the render.

@@ -9,8 +9,7 @@ use super::query::CompiledScene;
 use super::rays::{Parts, answer, chunks, each, share};
 use crate::math::{DVec3, Hit, Ray};
 use crate::optics::Rgb;
-use crate::scene::lights::Receiver;
-use crate::scene::{Interaction, Scene};
+use crate::scene::{Interaction, Scene, ShadingPoint};
 
 type Vectors<'py> = Bound<'py, PyArrayDyn<f64>>;
 
@@ -42,15 +41,12 @@ impl Entry {
         }
         let surface = scene.geometry().surface(&ray, &hit);
         let cosine = -ray.direction.dot(surface.normal);
-        let emission = scene.emission_at(&surface).towards(cosine, &Default::default());
-        let here = Interaction::new(scene, &ray, &hit, surface, 0.0);
+        let emission = scene.emission_at(&surface);
+        let point = ShadingPoint::new(scene.geometry(), &ray, &hit, &surface, emission.needs(), 0.0);
+        let emission = emission.towards(cosine, &point.texture);
+        let here = Interaction::new(scene, &ray, &hit, surface, 0.0, 1.0);
         Self { ray, hit, here: Some(Box::new(here)), emission, cosine }
     }
-}
-
-/// Where light is asked for.
-fn receiver(here: &Interaction) -> Receiver {
-    Receiver { position: here.position(), normal: here.shading_normal() }
 }
 
 /// An array with a row a ray, each made by its own function call.
@@ -271,7 +267,7 @@ impl Interactions {
         let scene = self.scene.get().scene();
         let draw = |i: usize| {
             let here = self.entries[i].here.as_ref()?;
-            let light = scene.lights().sample(scene.geometry(), &receiver(here), choice[i], u[i])?;
+            let light = scene.lights().sample(scene.geometry(), &here.receiver(), choice[i], u[i])?;
             let ray = match &light.source {
                 Some(source) => here.departure().segment(source),
                 None => here.departure().ray(light.direction),
@@ -295,9 +291,9 @@ impl Interactions {
             let Entry { ray, hit, here, emission, cosine } = &self.entries[i];
             let Some(from) = &before.entries[i].here else { return [0.0] };
             [match here {
-                None => lights.outside_pdf(&receiver(from), ray.direction),
+                None => lights.outside_pdf(&from.receiver(), ray.direction),
                 Some(_) if *emission == Rgb::ZERO => 0.0,
-                Some(_) => lights.surface_pdf(geometry, &receiver(from), ray, hit, *cosine),
+                Some(_) => lights.surface_pdf(geometry, &from.receiver(), ray, hit, *cosine),
             }]
         })
     }

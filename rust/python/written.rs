@@ -10,7 +10,7 @@ use super::arrays::vectors;
 use crate::integrators::{CameraSample, Integrator, Worker};
 use crate::math::DVec3;
 use crate::optics::Rgb;
-use crate::scene::Scene;
+use crate::scene::{Footprint, Scene};
 use crate::workers::Cancel;
 
 /// `raywright.Integrator`. What it raises ends the render.
@@ -70,7 +70,7 @@ impl Written {
 }
 
 impl Integrator for Written {
-    fn worker<'a>(&'a self, _scene: &'a Scene) -> Box<dyn Worker + 'a> {
+    fn worker<'a>(&'a self, _scene: &'a Scene, _footprint: Footprint) -> Box<dyn Worker + 'a> {
         Box::new(At(self))
     }
 

@@ -178,6 +178,7 @@ mod tests {
     use super::super::Quiet;
     use super::*;
     use crate::integrators::{CameraSample, Path, Worker};
+    use crate::scene::Footprint;
     use crate::scene::fixtures::{cornell, furnace};
     use std::ops::ControlFlow;
     use std::time::Duration;
@@ -252,9 +253,9 @@ mod tests {
     struct HereWorker<'a>(&'a Here, Box<dyn Worker + 'a>);
 
     impl Integrator for Here {
-        fn worker<'a>(&'a self, scene: &'a Scene) -> Box<dyn Worker + 'a> {
+        fn worker<'a>(&'a self, scene: &'a Scene, footprint: Footprint) -> Box<dyn Worker + 'a> {
             static PATH: Path = Path { max_depth: None, roulette_depth: 4 };
-            Box::new(HereWorker(self, PATH.worker(scene)))
+            Box::new(HereWorker(self, PATH.worker(scene, footprint)))
         }
         fn runs_on_caller(&self) -> bool {
             true

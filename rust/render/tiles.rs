@@ -5,7 +5,7 @@ use super::{Film, FilmTile};
 use crate::integrators::{CameraSample, Integrator, Worker};
 use crate::optics::Rgb;
 use crate::sampling::SamplerKind;
-use crate::scene::{Camera, CameraRay, Scene};
+use crate::scene::{Camera, CameraRay, Footprint, Scene};
 use crate::workers::Cancel;
 use rayon::prelude::*;
 use std::slice;
@@ -104,7 +104,7 @@ impl<'a> Exposure<'a> {
     fn take_bench(&self) -> Bench<'a> {
         let idle = self.idle.lock().unwrap_or_else(PoisonError::into_inner).pop();
         idle.unwrap_or_else(|| Bench {
-            worker: self.integrator.worker(self.scene),
+            worker: self.integrator.worker(self.scene, self.footprint()),
             samples: Vec::new(),
             weights: Vec::new(),
             radiance: Vec::new(),
@@ -158,6 +158,12 @@ impl<'a> Exposure<'a> {
             }
         }
         bench.develop(tiles, cancel);
+    }
+
+    /// How wide the bundle of rays is that a pixel sees.
+    fn footprint(&self) -> Footprint {
+        let spread = self.camera.spread();
+        Footprint { width: spread.width, spread: spread.angle }
     }
 
     /// A sample of a pixel, uniform over its square: the box filter, whose weights are 1; and what it counts. Where anything moves, uniform

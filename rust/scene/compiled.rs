@@ -1,6 +1,6 @@
 //! A scene ready for rays.
 
-use super::{DescriptionError, Emission, Geometry, Lights, Material, SceneDescription, SurfacePoint};
+use super::{DescriptionError, Emission, Geometry, Lights, Material, Plan, SceneDescription, SurfacePoint};
 use crate::accel::{Accelerator, Cost, Crossings, Nearest, Primitives, Side, Touches};
 use crate::math::{DVec3, Hit, Ray, Region};
 use crate::shapes::triangle::SolidCone;
@@ -11,6 +11,7 @@ pub struct Scene {
     geometry: Geometry,
     materials: Vec<Arc<dyn Material>>,
     lights: Lights,
+    plan: Plan,
     accelerator: Box<dyn Accelerator>,
     region: Region,
     /// The accelerator's cost when it was built.
@@ -79,7 +80,8 @@ impl Scene {
         lights: Lights,
     ) -> Self {
         let (region, cost) = (geometry.region(), accelerator.info().sah_cost);
-        Self { geometry, materials, lights, accelerator, region, built_cost: built_cost.unwrap_or(cost) }
+        let plan = Plan::new(&geometry, &materials, &lights);
+        Self { geometry, materials, lights, plan, accelerator, region, built_cost: built_cost.unwrap_or(cost) }
     }
 
     /// What the accelerator costs over what it did when it was built, by the surface-area heuristic; 1 until it is refitted.
@@ -164,6 +166,12 @@ impl Scene {
     /// Its lights.
     pub fn lights(&self) -> &Lights {
         &self.lights
+    }
+
+    /// What it needs of those who shade it.
+    #[inline]
+    pub fn plan(&self) -> &Plan {
+        &self.plan
     }
 
     /// What a shape is made of.

@@ -335,6 +335,11 @@ impl Geometry {
         self.faces[(primitive - before) as usize]
     }
 
+    /// Whether a mesh among them has shading normals.
+    pub fn is_smooth(&self) -> bool {
+        self.normals.bytes() > 0
+    }
+
     /// Whether there are copies of groups.
     pub fn has_copies(&self) -> bool {
         self.others.as_ref().is_some_and(|others| others.has_copies())

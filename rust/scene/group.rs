@@ -148,6 +148,11 @@ impl Group {
         }
     }
 
+    /// What each of its shapes is made of, and how it shines.
+    pub fn looks(&self) -> impl Iterator<Item = (&dyn Material, &Emission)> {
+        self.materials.iter().map(|material| &**material).zip(&self.emission)
+    }
+
     /// On which side of its surfaces the origin of a ray in its space lies, by the crossings from there on.
     pub fn side(&self, ray: &Ray) -> Side {
         let size = ray.direction.abs().max_element();

@@ -1,25 +1,95 @@
 //! A path's encounter with a surface.
 
 use super::materials::Scattering;
-use super::{Departure, Scene, ShadingPoint, SurfacePoint};
+use super::{Departure, Receiver, Scene, ShadingPoint, SurfacePoint};
 use crate::math::{DVec3, Frame, Hit, Ray};
-use crate::optics::Rgb;
+use crate::optics::{Bsdf, BsdfSample, Rgb};
 
-/// Where a ray has met a surface, seen from the side that it came from.
+/// What an encounter asks of the scattering at its point. Directions as [`Bsdf`] has them.
+pub trait Scatters {
+    /// The scattering function times |cos θ| of `wi`, and the density with which it is drawn.
+    fn evaluate(&self, wo: DVec3, wi: DVec3) -> (Rgb, f64);
+
+    /// Draws where the light comes from.
+    fn sample(&self, wo: DVec3, choice: impl FnOnce() -> f64, u: [f64; 2]) -> Option<BsdfSample>;
+
+    /// Whether light goes through to the other side.
+    fn transmits(&self) -> bool;
+
+    /// Whether all of it goes in single directions.
+    fn is_delta(&self) -> bool;
+}
+
+impl Scatters for Scattering {
+    #[inline]
+    fn evaluate(&self, wo: DVec3, wi: DVec3) -> (Rgb, f64) {
+        Self::evaluate(self, wo, wi)
+    }
+
+    #[inline]
+    fn sample(&self, wo: DVec3, choice: impl FnOnce() -> f64, u: [f64; 2]) -> Option<BsdfSample> {
+        Self::sample(self, wo, choice, u)
+    }
+
+    #[inline]
+    fn transmits(&self) -> bool {
+        match self {
+            Self::One(bsdf) => bsdf.transmits(),
+            Self::Several(parts) => parts.iter().any(|(_, bsdf)| bsdf.transmits()),
+        }
+    }
+
+    #[inline]
+    fn is_delta(&self) -> bool {
+        match self {
+            Self::One(bsdf) => bsdf.is_delta(),
+            Self::Several(parts) => parts.iter().all(|(_, bsdf)| bsdf.is_delta()),
+        }
+    }
+}
+
+impl Scatters for Bsdf {
+    #[inline]
+    fn evaluate(&self, wo: DVec3, wi: DVec3) -> (Rgb, f64) {
+        (Self::evaluate(self, wo, wi), self.pdf(wo, wi))
+    }
+
+    #[inline]
+    fn sample(&self, wo: DVec3, choice: impl FnOnce() -> f64, u: [f64; 2]) -> Option<BsdfSample> {
+        Self::sample(self, wo, choice, u)
+    }
+
+    #[inline]
+    fn transmits(&self) -> bool {
+        Self::transmits(self)
+    }
+
+    #[inline]
+    fn is_delta(&self) -> bool {
+        Self::is_delta(self)
+    }
+}
+
+/// Where a ray has met a surface.
 ///
-/// Scattering is computed in the shading frame, but which side of the surface a direction lies on is the geometric
-/// normal's to say: otherwise light leaks through wherever the two normals disagree
-/// (Veach, "Robust Monte Carlo Methods for Light Transport Simulation", 1997, 5.3).
+/// Scattering is computed in the shading frame, whose z is on the side of the winding's normal, so that what transmits knows by the sign of
+/// a direction on which side it lies. Which side that is in truth is the geometric normal's to say: otherwise light leaks through wherever
+/// the two normals disagree (Veach, "Robust Monte Carlo Methods for Light Transport Simulation", 1997, 5.3). What is cut off so would
+/// show the facets of a coarse mesh as hard steps where light grazes them; it fades out before instead ([`Interaction::fading`]).
 #[derive(Clone, Debug)]
-pub struct Interaction {
+pub struct Interaction<S = Scattering> {
     surface: SurfacePoint,
-    /// Geometric normal on the ray's side.
-    normal: DVec3,
-    /// Shading frame, its normal on the ray's side too.
+    /// Shading frame.
     frame: Frame,
-    scattering: Scattering,
+    scattering: S,
     /// Back along the ray, in the shading frame.
     wo: DVec3,
+    /// 1 where the ray comes from the side of the winding's normal, −1 on the other.
+    side: f64,
+    /// Whether the two normals are one.
+    is_flat: bool,
+    /// Mean curvature, positive where the surface bulges towards the ray; 0 unless it was asked for.
+    curvature: f64,
 }
 
 /// A direction drawn from the scattering at a surface.
@@ -31,40 +101,62 @@ pub struct Scattered {
     pub weight: Rgb,
     /// Density in solid angle; infinite for a single direction.
     pub pdf: f64,
+    /// The index of refraction there over that where the ray came from.
+    pub eta: f64,
+    /// Whether it goes to the other side of the surface.
+    pub is_through: bool,
 }
 
 impl Interaction {
-    /// The smallest cosine between shading normal and view. Beyond the horizon of the shading normal a surface would
-    /// turn black though it faces the viewer, so there the normal is bent towards the viewer until it just faces him.
-    const GRAZING: f64 = 1e-3;
-
-    /// What a ray of unit direction meets at a hit; `width` is how wide the bundle of its neighbours is there.
+    /// What a ray of unit direction meets at a hit; `width` is how wide the bundle of its neighbours is there, 0 if nobody asks, and `outside`
+    /// the index of refraction on the other side of what the surface encloses.
     #[inline]
-    pub fn new(scene: &Scene, ray: &Ray, hit: &Hit, surface: SurfacePoint, width: f64) -> Self {
+    pub fn new(scene: &Scene, ray: &Ray, hit: &Hit, surface: SurfacePoint, width: f64, outside: f64) -> Self {
         let material = scene.material_at(&surface);
-        let point = ShadingPoint::new(scene.geometry(), ray, hit, &surface, material.needs(), width);
-        let back = -ray.direction;
-        let side = 1f64.copysign(back.dot(surface.normal));
-        let normal = surface.normal * side;
+        let mut needs = material.needs();
+        needs.tangents |= width > 0.0;
+        let mut point = ShadingPoint::new(scene.geometry(), ray, hit, &surface, needs, width);
+        point.outside = outside;
         let shading = material.normal(&point).unwrap_or(surface.shading_normal);
-        let is_smooth = shading == surface.normal;
-        let mut shading = shading * side;
-        let cosine = shading.dot(back);
-        if cosine < Self::GRAZING && !is_smooth {
-            shading = (shading + back * (Self::GRAZING - cosine)).normalize();
+        let tangent = material.tangent(&point);
+        let mut here = Self::with(ray, surface, (shading, tangent), material.scattering(&point));
+        if width > 0.0 {
+            here.curvature = here.side * mean_curvature(&point);
         }
-        let frame = match material.tangent(&point) {
-            Some(tangent) => Frame::along(shading, tangent),
-            None => Frame::new(shading),
-        };
-        let scattering = material.scattering(&point);
-        Self { surface, normal, frame, scattering, wo: frame.to_local(back) }
+        here
     }
 
     /// Looks up a hit and what is there.
     #[inline]
     pub fn at(scene: &Scene, ray: &Ray, hit: &Hit) -> Self {
-        Self::new(scene, ray, hit, scene.geometry().surface(ray, hit), 0.0)
+        Self::new(scene, ray, hit, scene.geometry().surface(ray, hit), 0.0, 1.0)
+    }
+}
+
+impl<S: Scatters> Interaction<S> {
+    /// The smallest cosine between shading normal and view. Beyond the horizon of the shading normal a surface would
+    /// turn black though it faces the viewer, so there the normal is bent towards the viewer until it just faces him.
+    const GRAZING: f64 = 1e-3;
+
+    /// A ray of unit direction at a point of a surface with this shading normal, and the direction that the frame's x should have if that
+    /// matters, that scatters so.
+    #[inline]
+    pub fn with(ray: &Ray, surface: SurfacePoint, (shading, tangent): (DVec3, Option<DVec3>), scattering: S) -> Self {
+        let back = -ray.direction;
+        let side = 1f64.copysign(back.dot(surface.normal));
+        let is_flat = shading == surface.normal;
+        let mut shading = shading;
+        if !is_flat {
+            let cosine = shading.dot(back) * side;
+            if cosine < Self::GRAZING {
+                shading = (shading + back * (side * (Self::GRAZING - cosine))).normalize();
+            }
+        }
+        let frame = match tangent {
+            Some(tangent) => Frame::along(shading, tangent),
+            None => Frame::new(shading),
+        };
+        Self { surface, frame, scattering, wo: frame.to_local(back), side, is_flat, curvature: 0.0 }
     }
 
     /// The point met.
@@ -76,13 +168,38 @@ impl Interaction {
     /// The geometric normal on the side that the ray came from.
     #[inline]
     pub fn normal(&self) -> DVec3 {
-        self.normal
+        self.surface.normal * self.side
+    }
+
+    /// What is known of the point.
+    #[inline]
+    pub fn surface(&self) -> &SurfacePoint {
+        &self.surface
     }
 
     /// The shading normal on the side that the ray came from.
     #[inline]
     pub fn shading_normal(&self) -> DVec3 {
-        self.frame.normal
+        self.frame.normal * self.side
+    }
+
+    /// What light is drawn for: the side that the ray came from, or both where light goes through.
+    #[inline]
+    pub fn receiver(&self) -> Receiver {
+        let normal = if self.scattering.transmits() { DVec3::ZERO } else { self.shading_normal() };
+        Receiver { position: self.surface.position, normal }
+    }
+
+    /// How the point scatters.
+    #[inline]
+    pub fn scattering(&self) -> &S {
+        &self.scattering
+    }
+
+    /// Back along the ray, in the shading frame.
+    #[inline]
+    pub fn wo(&self) -> DVec3 {
+        self.wo
     }
 
     /// Where rays leave from.
@@ -91,29 +208,84 @@ impl Interaction {
         Departure::new(&self.surface)
     }
 
+    /// Mean curvature, positive where the surface bulges towards the ray; 0 unless a width was given.
+    #[inline]
+    pub fn curvature(&self) -> f64 {
+        self.curvature
+    }
+
+    /// Whether a direction points to the other side of the surface than the ray came from.
+    #[inline]
+    pub fn is_through(&self, direction: DVec3) -> bool {
+        self.surface.normal.dot(direction) * self.side < 0.0
+    }
+
     /// Scattering function times cosine for light from a direction, and the density of [`Interaction::sample`] there.
     #[inline]
     pub fn evaluate(&self, direction: DVec3) -> (Rgb, f64) {
         let wi = self.frame.to_local(direction);
-        if self.crosses(wi, direction) {
+        let fading = self.fading(wi, direction);
+        if fading <= 0.0 {
             return (Rgb::ZERO, 0.0);
         }
-        self.scattering.evaluate(self.wo, wi)
+        let (value, pdf) = self.scattering.evaluate(self.wo, wi);
+        (value * fading, pdf)
     }
 
     /// Draws where the path goes on to: `choice` and `u` as [`Scattering::sample`] takes them.
     #[inline]
     pub fn sample(&self, choice: impl FnOnce() -> f64, u: [f64; 2]) -> Option<Scattered> {
-        let sample = self.scattering.sample(self.wo, choice, u)?;
-        let direction = self.frame.to_world(sample.wi);
-        (!self.crosses(sample.wi, direction)).then_some(Scattered { direction, weight: sample.weight, pdf: sample.pdf })
+        self.scattered(&self.scattering.sample(self.wo, choice, u)?)
     }
 
-    /// Whether a direction lies above the one normal and below the other.
+    /// A draw from the scattering as one of directions in the world.
     #[inline]
-    fn crosses(&self, wi: DVec3, direction: DVec3) -> bool {
-        wi.z * self.normal.dot(direction) <= 0.0
+    pub fn scattered(&self, sample: &BsdfSample) -> Option<Scattered> {
+        let direction = self.frame.to_world(sample.wi);
+        let fading = self.fading(sample.wi, direction);
+        // A single direction is not cut off along a line, and need not fade.
+        let fading = if sample.pdf == f64::INFINITY && fading > 0.0 { 1.0 } else { fading };
+        (fading > 0.0).then(|| Scattered {
+            direction,
+            weight: sample.weight * fading,
+            pdf: sample.pdf,
+            eta: sample.eta,
+            is_through: sample.wi.z * self.wo.z < 0.0,
+        })
     }
+
+    /// What light of a direction counts on its way to the horizon of either normal: 0 where it lies above the one and below the other.
+    ///
+    /// Where the normals differ, and light comes from the ray's side, it fades by −G³ + G² + G with
+    /// G = min(1, (ng·ω) / ((ns·ω) (ng·ns))), and so reaches 0 at the geometric horizon with a slope, not a step (Chiang, Li and
+    /// Burley, "Taming the Shadow Terminator", 2019). It is 1 exactly on what is flat, where nothing is biased, and at most 1, so that energy
+    /// is never made. Reciprocity is lost where the normals differ, as it is by any shading normal. Moving the origin of shadow rays
+    /// instead (Hanika, "Hacking the Shadow Terminator", 2021) lets light through near contacts, and needs the light that the geometric
+    /// horizon cuts off.
+    #[inline]
+    fn fading(&self, wi: DVec3, direction: DVec3) -> f64 {
+        let geometric = self.surface.normal.dot(direction);
+        if wi.z * geometric <= 0.0 {
+            return 0.0;
+        }
+        if self.is_flat || wi.z * self.wo.z < 0.0 {
+            return 1.0;
+        }
+        let between = self.frame.normal.dot(self.surface.normal);
+        let g = geometric / (wi.z * between);
+        // A shading normal of the other side, as a bump may have, has no such horizon.
+        if between <= 0.0 || g >= 1.0 { 1.0 } else { ((1.0 - g) * g + 1.0) * g }
+    }
+}
+
+/// The mean curvature of a surface, positive where it bulges to the side of its normal; 0 where it is not known how it lies.
+fn mean_curvature(point: &ShadingPoint) -> f64 {
+    let ([u, v], [du, dv]) = (point.dp, point.dn);
+    // The trace of the shape operator, by the two fundamental forms.
+    let (e, f, g) = (u.dot(u), u.dot(v), v.dot(v));
+    let area = e * g - f * f;
+    let sum = du.dot(u) * g - (du.dot(v) + dv.dot(u)) * f + dv.dot(v) * e;
+    if area > 0.0 { 0.5 * sum / area } else { 0.0 }
 }
 
 #[cfg(test)]

@@ -13,7 +13,9 @@ mod interaction;
 pub mod lights;
 mod mapped;
 pub mod materials;
+pub mod media;
 mod per_vertex;
+mod plan;
 mod points;
 mod pose;
 mod shading;
@@ -29,12 +31,13 @@ pub use description::{DescriptionError, SceneDescription, Shape};
 pub use first_hits::FirstHits;
 pub use geometry::{Geometry, Mesh, Surface, SurfacePoint, Vertices};
 pub use group::Group;
-pub use interaction::{Interaction, Scattered};
+pub use interaction::{Interaction, Scattered, Scatters};
 pub use lights::{
     ConstantEnvironment, DirectionalLight, Emission, EnvironmentMap, Light, LightBounds, LightSample, Lights, Picture,
     PointLight, Projector, Reach, Receiver, SpotLight, SunSky,
 };
 pub use materials::{DiffuseMaterial, Material};
+pub use plan::{Kernel, Plan, PlanRow, SceneNeeds};
 pub use points::HitPoint;
 pub use shading::{Footprint, ShadingPoint};
 pub use spawn::Departure;

@@ -28,6 +28,14 @@ impl Departure {
         Self { position: surface.position, offset: surface.normal * (Self::SAFETY * surface.error) }
     }
 
+    /// How far around a hit of a ray, in lengths of its direction, surfaces count as one with the surface hit: rays that leave it start beyond them.
+    #[inline]
+    pub fn reach(surface: &SurfacePoint, ray: &Ray) -> f64 {
+        // The offset along the normal, as the ray meets the plane; what grazes it comes too close to too much.
+        let slope = ray.direction.dot(surface.normal).abs().max(1e-3 * ray.direction.length());
+        2.0 * Self::SAFETY * surface.error / slope
+    }
+
     /// A point in free space.
     #[inline]
     pub fn free(position: DVec3) -> Self {

@@ -1,0 +1,28 @@
+//! Direct light.
+
+use super::transport::Settings;
+use super::{Integrator, Worker};
+use crate::scene::{Footprint, Scene};
+
+/// What shines, and what is lit by it: one bounce. Lights are sampled and so are surfaces, combined through multiple importance sampling (Veach and
+/// Guibas, "Optimally Combining Sampling Techniques", 1995).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Direct {
+    /// How many light samples a surface takes, from equal shares of the lights; at least 1.
+    pub light_samples: u32,
+    /// How many directions are drawn from its scattering; at least 1.
+    pub surface_samples: u32,
+}
+
+impl Default for Direct {
+    fn default() -> Self {
+        Self { light_samples: 1, surface_samples: 1 }
+    }
+}
+
+impl Integrator for Direct {
+    fn worker<'a>(&'a self, scene: &'a Scene, footprint: Footprint) -> Box<dyn Worker + 'a> {
+        let (light_samples, splits) = (self.light_samples.max(1), self.surface_samples.max(1));
+        Settings { light_samples, splits, ..Settings::path(Some(1), u32::MAX) }.worker(scene, footprint)
+    }
+}

@@ -1,0 +1,85 @@
+//! Surfaces that let a share of rays pass.
+
+use super::{assert_radiance, radiance};
+use crate::integrators::{Path, RayCast};
+use crate::math::{DVec3, Ray};
+use crate::optics::{Diffuse, Rgb};
+use crate::scene::fixtures::{rectangle, scene, shape};
+use crate::scene::materials::Scattering;
+use crate::scene::textures::{Needs, TexturePoint};
+use crate::scene::{Material, PointLight, SceneDescription, ShadingPoint, Shape};
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+/// A black veil.
+#[derive(Debug)]
+struct Veil(f64);
+
+impl Material for Veil {
+    fn scattering(&self, _at: &ShadingPoint) -> Scattering {
+        Diffuse { reflectance: Rgb::ZERO }.into()
+    }
+    fn needs(&self) -> Needs {
+        Needs::NONE
+    }
+    fn validate(&self) -> Result<(), String> {
+        Ok(())
+    }
+    fn opacity(&self, _at: &TexturePoint) -> f64 {
+        self.0
+    }
+    fn is_opaque(&self) -> bool {
+        false
+    }
+}
+
+fn sheet(height: f32) -> crate::scene::Mesh {
+    rectangle([-50.0, -50.0, height], [100.0, 0.0, 0.0], [0.0, 100.0, 0.0])
+}
+
+fn veil(height: f32, opacity: f64) -> Shape {
+    Shape { material: Arc::new(Veil(opacity)), ..shape(sheet(height), [0.0; 3], 0.0) }
+}
+
+const DOWN: Ray = Ray {
+    origin: DVec3::new(0.1, 0.2, 5.0),
+    direction: DVec3::new(0.0, 0.6, -0.8),
+    t_min: 0.0,
+    t_max: f64::INFINITY,
+    time: 0.0,
+};
+
+#[test]
+fn veils_multiply() {
+    let lamp = || shape(sheet(0.0), [0.0; 3], 2.0);
+    let at = |veils: Vec<Shape>| {
+        scene(SceneDescription { shapes: veils.into_iter().chain([lamp()]).collect(), ..Default::default() })
+    };
+    for path in [Path::default(), Path { max_depth: Some(0), ..Path::default() }] {
+        assert_radiance(&at(vec![veil(1.0, 0.25)]), &path, DOWN, 60_000, 1.5);
+        let three = vec![veil(1.0, 0.25), veil(1.000_001, 0.5), veil(2.0, 0.1)];
+        assert_radiance(&at(three), &path, DOWN, 200_000, 2.0 * 0.75 * 0.5 * 0.9);
+        // Nothing, and everything.
+        assert_radiance(&at(vec![veil(1.0, 0.0), veil(2.0, 0.0)]), &path, DOWN, 100, 2.0);
+        assert_eq!(radiance(&at(vec![veil(1.0, 1.0)]), &path, DOWN, 100), (0.0, 0.0));
+        // Of coincident ones, one is there.
+        assert_radiance(&at(vec![veil(1.0, 0.25), veil(1.0, 0.25)]), &path, DOWN, 60_000, 1.5);
+    }
+}
+
+#[test]
+fn light_is_dimmed_by_veils_on_its_way() {
+    // A lamp above two veils, and a ray that starts below both.
+    let point = PointLight { position: DVec3::new(0.0, 0.0, 4.0), intensity: Rgb::ONE };
+    let floor = shape(sheet(0.0), [0.5; 3], 0.0);
+    let shapes = vec![veil(2.0, 0.4), veil(3.0, 0.5), floor];
+    let lit = scene(SceneDescription { shapes, lights: vec![Arc::new(point)], ..Default::default() });
+    let ray = Ray::new(DVec3::new(0.0, -0.6, 0.8), DVec3::new(0.0, 0.6, -0.8));
+    let expected = 0.5 / PI / 16.0 * 0.6 * 0.5;
+    let (mean, _) = radiance(&lit, &Path::default(), ray, 50);
+    assert!((mean / expected - 1.0).abs() < 1e-9, "{mean}, not {expected}");
+    let (mean, _) = radiance(&lit, &RayCast::default(), ray, 50);
+    assert!((mean / expected - 1.0).abs() < 1e-9, "{mean}, not {expected}");
+    let (mean, _) = radiance(&lit, &RayCast { shadows: false, ..RayCast::default() }, ray, 50);
+    assert!((mean / expected * 0.3 - 1.0).abs() < 1e-9, "{mean}");
+}

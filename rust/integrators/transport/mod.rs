@@ -1,0 +1,89 @@
+//! What path tracing and its ancestors share: a batch of paths on their way, one bounce at a time.
+
+mod branches;
+mod dimensions;
+mod features;
+mod nesting;
+mod shadows;
+mod weights;
+mod worker;
+
+use super::Worker;
+use crate::optics::Rgb;
+use crate::scene::{Footprint, Kernel, Scene};
+use features::{General, Open, Plain};
+use worker::TransportWorker;
+
+/// Along which of the directions that surfaces scatter into paths are followed. What is not followed is left to the light that is asked directly.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Follow {
+    /// All.
+    All,
+    /// Those drawn with a density, in solid angle, above this.
+    Sharper(f64),
+    /// Single directions only, and of these every one: paths are split.
+    EachSingle,
+    /// None.
+    Nothing,
+}
+
+/// How light is transported.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Settings {
+    /// The greatest number of bounces.
+    pub max_depth: Option<u32>,
+    /// Roulette is played from this number of bounces on.
+    pub roulette_depth: u32,
+    /// How often light is asked at the first surface.
+    pub light_samples: u32,
+    /// Into how many a path is split at the first surface.
+    pub splits: u32,
+    /// Which directions are followed.
+    pub follow: Follow,
+    /// Whether what lies on the way to a light shadows it.
+    pub shadows: bool,
+    /// Radiance that arrives from everywhere in place of what is not followed, where it is scattered diffusely.
+    pub ambient: Rgb,
+    /// Paths end that contribute less than this, in any colour.
+    pub least: f64,
+}
+
+impl Settings {
+    /// Those of a path tracer.
+    pub fn path(max_depth: Option<u32>, roulette_depth: u32) -> Self {
+        Self {
+            max_depth,
+            roulette_depth,
+            light_samples: 1,
+            splits: 1,
+            follow: Follow::All,
+            shadows: true,
+            ambient: Rgb::ZERO,
+            least: 0.0,
+        }
+    }
+
+    /// Whether they are those of a path tracer, which the special kernels know alone.
+    fn are_plain(&self) -> bool {
+        self.light_samples == 1
+            && self.splits == 1
+            && self.follow == Follow::All
+            && self.shadows
+            && self.ambient == Rgb::ZERO
+            && self.least == 0.0
+    }
+
+    /// What one thread works with: the kernel that has what the scene and these settings need.
+    pub fn worker<'a>(self, scene: &'a Scene, footprint: Footprint) -> Box<dyn Worker + 'a> {
+        self.worker_of(scene, footprint, scene.plan().kernel())
+    }
+
+    /// As [`Settings::worker`], by this kernel or one that can more.
+    pub fn worker_of<'a>(self, scene: &'a Scene, footprint: Footprint, kernel: Kernel) -> Box<dyn Worker + 'a> {
+        match kernel {
+            Kernel::Plain if self.are_plain() => Box::new(TransportWorker::<Plain>::new(self, scene, footprint)),
+            Kernel::Open if self.are_plain() => Box::new(TransportWorker::<Open>::new(self, scene, footprint)),
+            _ => Box::new(TransportWorker::<General>::new(self, scene, footprint)),
+        }
+    }
+}

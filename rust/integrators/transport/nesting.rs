@@ -1,0 +1,162 @@
+//! Which media a path is in.
+
+use crate::accel::Crossings;
+use crate::math::{DVec3, Hit, Ray};
+use crate::scene::materials::Interior;
+use crate::scene::{Departure, Scene};
+
+/// The media that a point lies in. The one of the greatest priority is there, and the surfaces of the others, within it, are not
+/// (Schmidt and Budge, "Simple Nested Dielectrics in Ray Traced Images", 2002). Of equal priority, the greater index.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Inside {
+    count: u32,
+    interiors: [Interior; Self::MOST],
+}
+
+impl Default for Inside {
+    fn default() -> Self {
+        Self { count: 0, interiors: [Interior { ior: 1.0, priority: i32::MIN }; Self::MOST] }
+    }
+}
+
+impl Inside {
+    /// How many of them are told apart. Beyond, those of the least priority are forgotten.
+    const MOST: usize = 4;
+
+    fn is_above(a: &Interior, b: &Interior) -> bool {
+        (a.priority, a.ior) > (b.priority, b.ior)
+    }
+
+    /// What is there; `None` where nothing encloses the point.
+    fn top(&self) -> Option<&Interior> {
+        self.interiors[..self.count as usize].iter().reduce(|a, b| if Self::is_above(b, a) { b } else { a })
+    }
+
+    /// The index of refraction there.
+    fn ior(&self) -> f64 {
+        self.top().map_or(1.0, |interior| interior.ior)
+    }
+
+    fn enter(&mut self, interior: Interior) {
+        if (self.count as usize) < Self::MOST {
+            self.interiors[self.count as usize] = interior;
+            self.count += 1;
+            return;
+        }
+        let mut least = 0;
+        for i in 1..Self::MOST {
+            if Self::is_above(&self.interiors[least], &self.interiors[i]) {
+                least = i;
+            }
+        }
+        if Self::is_above(&interior, &self.interiors[least]) {
+            self.interiors[least] = interior;
+        }
+    }
+
+    /// Leaves one such medium; nothing if it is in none, as behind a surface that encloses nothing.
+    fn leave(&mut self, interior: &Interior) {
+        let all = &mut self.interiors[..self.count as usize];
+        if let Some(found) = all.iter().position(|i| i == interior) {
+            all.swap(found, all.len() - 1);
+            self.count -= 1;
+        }
+    }
+
+    /// What rays from these origins start in: each surface that encloses a medium is crossed outwards once more than inwards, on the way
+    /// out, from inside of it. Open surfaces, and a camera in a wall, may be told wrongly.
+    pub(super) fn at(scene: &Scene, rays: &[Ray], inside: &mut Vec<Self>) {
+        inside.clear();
+        let region = scene.region();
+        let is_within = |p: DVec3| p.cmpge(region.min).all() && p.cmple(region.max).all();
+        // Rays from one point, as a pinhole's, are asked once.
+        let is_asked = |i: usize| is_within(rays[i].origin) && (i == 0 || rays[i].origin != rays[i - 1].origin);
+        let asked: Vec<Ray> = (0..rays.len()).filter(|&i| is_asked(i)).map(|i| rays[i]).collect();
+        let crossings = scene.crossings(&asked);
+        let mut next = 0;
+        for i in 0..rays.len() {
+            let found = if is_asked(i) {
+                next += 1;
+                let mut found = Self::default();
+                // From the last crossing back to the origin.
+                for hit in crossed(&crossings, next - 1).rev() {
+                    found.pass(scene, &rays[i], hit, true);
+                }
+                found
+            } else if is_within(rays[i].origin) {
+                inside[i - 1]
+            } else {
+                Self::default()
+            };
+            inside.push(found);
+        }
+    }
+
+    /// Goes through what a ray hits, along it or back. Returns the medium that it enters or leaves, and whether it enters it.
+    fn pass(&mut self, scene: &Scene, ray: &Ray, hit: &Hit, back: bool) -> Option<(Interior, bool)> {
+        let surface = scene.geometry().surface(ray, hit);
+        let interior = scene.material_at(&surface).interior()?;
+        let enters = (ray.direction.dot(surface.normal) < 0.0) != back;
+        if enters {
+            self.enter(interior);
+        } else {
+            self.leave(&interior);
+        }
+        Some((interior, enters))
+    }
+}
+
+/// What a ray of some crosses; not what it only touches, which is told twice.
+fn crossed(crossings: &Crossings, ray: usize) -> impl DoubleEndedIterator<Item = &Hit> {
+    let hits = &crossings.hits[crossings.splits[ray]..crossings.splits[ray + 1]];
+    let is_twice = move |i: usize| {
+        let same = |j: usize| hits.get(j).is_some_and(|other| *other == hits[i]);
+        same(i + 1) || (i > 0 && same(i - 1))
+    };
+    (0..hits.len()).filter(move |&i| !is_twice(i)).map(move |i| &hits[i])
+}
+
+/// What a hit is to a ray among media.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Boundary {
+    /// None: the same medium is on both sides. The ray goes on in these.
+    None(Inside),
+    /// The surface hit is where one medium ends and another begins.
+    Between {
+        /// Which hit has the surface.
+        hit: Hit,
+        /// The index of refraction on the side of it that is not its own medium's.
+        outside: f64,
+        /// What a ray is in that goes through.
+        through: Inside,
+    },
+}
+
+/// The part of a ray around a hit on whose crossings [`Boundary::new`] decides: surfaces that lie in one another, or closer than rounding tells, are
+/// one boundary. `None` if the surface hit encloses nothing.
+pub(super) fn around(scene: &Scene, ray: &Ray, hit: &Hit) -> Option<Ray> {
+    let surface = scene.geometry().surface(ray, hit);
+    scene.material_at(&surface).interior()?;
+    let reach = Departure::reach(&surface, ray);
+    Some(Ray { t_min: ray.t_min.max(hit.t - reach), t_max: (hit.t + reach).next_up(), ..*ray })
+}
+
+impl Boundary {
+    /// What a ray comes to that is in some media, by what it crosses around its hit ([`around`]).
+    pub(super) fn new(scene: &Scene, ray: &Ray, inside: &Inside, crossings: &Crossings, number: usize) -> Self {
+        let mut through = *inside;
+        let mut owner: Option<(Interior, bool, Hit)> = None;
+        for hit in crossed(crossings, number) {
+            let Some((interior, enters)) = through.pass(scene, ray, hit, false) else { continue };
+            if owner.as_ref().is_none_or(|(best, ..)| Inside::is_above(&interior, best)) {
+                owner = Some((interior, enters, *hit));
+            }
+        }
+        let Some((_, enters, hit)) = owner else { return Self::None(*inside) };
+        // What the path never entered, as where the camera was told wrongly, it leaves like anything else.
+        if inside.top() == through.top() && (enters || inside.top().is_some()) {
+            return Self::None(through);
+        }
+        Self::Between { hit, outside: if enters { inside.ior() } else { through.ior() }, through }
+    }
+}

@@ -1,0 +1,450 @@
+//! A batch of paths on their way.
+
+use super::branches::{matt, singles};
+use super::dimensions::Dimensions;
+use super::features::{Baggage, Features};
+use super::nesting::{Boundary, Inside, around};
+use super::shadows::{Shadows, opacity};
+use super::weights::{ROULETTE_AT_LATEST, power_heuristic, survival};
+use super::{Follow, Settings};
+use crate::integrators::{CameraSample, Worker};
+use crate::math::{DVec3, Hit, Ray};
+use crate::optics::{Bsdf, Rgb};
+use crate::sampling::Sampler;
+use crate::scene::textures::TexturePoint;
+use crate::scene::{
+    Departure, Footprint, Interaction, Receiver, Scattered, Scatters, Scene, ShadingPoint, SurfacePoint,
+};
+use crate::workers::Cancel;
+use std::marker::PhantomData;
+
+/// A path on its way.
+#[derive(Clone, Copy)]
+pub(super) struct Alive {
+    throughput: Rgb,
+    /// The normal that lights were drawn by where it was scattered last ([`Receiver`]).
+    normal: DVec3,
+    /// Density with which this direction was drawn, times the number of such draws; infinite for a camera's ray.
+    pdf: f64,
+    /// How much less radiance is here than where the path started, because of the index of refraction alone.
+    scale: f64,
+    /// Whose sample it is.
+    sample: u32,
+    /// Surfaces that it has been scattered at.
+    bounce: u32,
+}
+
+/// Paths that go on, and the ray that each is about to follow.
+#[derive(Default)]
+struct Queue {
+    rays: Vec<Ray>,
+    alive: Vec<Alive>,
+    baggage: Vec<Baggage>,
+}
+
+impl Queue {
+    fn clear(&mut self) {
+        self.rays.clear();
+        self.alive.clear();
+        self.baggage.clear();
+    }
+}
+
+/// What one thread works with, see [`Settings::worker`].
+pub(super) struct TransportWorker<'a, N> {
+    settings: Settings,
+    scene: &'a Scene,
+    /// That of a camera's ray.
+    footprint: Footprint,
+    masks: bool,
+    nested: bool,
+    widths: bool,
+    now: Queue,
+    next: Queue,
+    hits: Vec<Hit>,
+    /// The parts of rays around hits of what encloses a medium.
+    windows: Vec<Ray>,
+    shadows: Shadows,
+    features: PhantomData<N>,
+}
+
+/// A point that a path has come to.
+struct Vertex<'p, S> {
+    here: Interaction<S>,
+    path: &'p Alive,
+    baggage: &'p Baggage,
+    dimensions: Dimensions,
+    /// What is behind the surface for who goes through it.
+    through: Inside,
+    /// The width there.
+    width: f64,
+    time: f64,
+}
+
+impl<'a, N: Features> TransportWorker<'a, N> {
+    pub fn new(settings: Settings, scene: &'a Scene, footprint: Footprint) -> Self {
+        let needs = scene.plan().needs();
+        Self {
+            settings,
+            scene,
+            footprint,
+            masks: N::BAGGAGE && needs.masks,
+            nested: N::BAGGAGE && needs.nested,
+            widths: N::BAGGAGE && needs.points.width,
+            now: Queue::default(),
+            next: Queue::default(),
+            hits: Vec::new(),
+            windows: Vec::new(),
+            shadows: Shadows::default(),
+            features: PhantomData,
+        }
+    }
+
+    /// Puts the camera's rays into the queue.
+    fn start(&mut self, samples: &[CameraSample]) {
+        self.now.clear();
+        self.now.rays.extend(samples.iter().map(|s| s.ray));
+        self.now.alive.extend((0u32..).zip(samples).map(|(sample, _)| Alive {
+            throughput: Rgb::ONE,
+            normal: DVec3::ZERO,
+            pdf: f64::INFINITY,
+            scale: 1.0,
+            sample,
+            bounce: 0,
+        }));
+        if N::BAGGAGE {
+            let start = Baggage { footprint: self.footprint, ..Baggage::default() };
+            self.now.baggage.resize(samples.len(), start);
+            if self.nested {
+                let mut inside = Vec::new();
+                Inside::at(self.scene, &self.now.rays, &mut inside);
+                for (baggage, inside) in self.now.baggage.iter_mut().zip(inside) {
+                    baggage.inside = inside;
+                }
+            }
+        }
+    }
+
+    /// Takes all paths from their rays' hits to their next rays.
+    fn shade(&mut self, samples: &mut [CameraSample], radiance: &mut [Rgb]) {
+        self.shadows.clear();
+        self.next.clear();
+        self.windows.clear();
+        if self.nested {
+            let hits = self.now.rays.iter().zip(&self.hits).filter(|(_, hit)| hit.is_hit());
+            self.windows.extend(hits.filter_map(|(ray, hit)| around(self.scene, ray, hit)));
+        }
+        let crossings = if self.nested { self.scene.crossings(&self.windows) } else { Default::default() };
+        let mut window = 0;
+        for i in 0..self.now.rays.len() {
+            let (ray, path, mut hit) = (self.now.rays[i], self.now.alive[i], self.hits[i]);
+            let mut baggage = if N::BAGGAGE { self.now.baggage[i] } else { Baggage::default() };
+            let arriving = &mut radiance[path.sample as usize];
+            if !hit.is_hit() {
+                *arriving += path.throughput * self.from_outside(&ray, &path);
+                continue;
+            }
+            let mut surface = self.scene.geometry().surface(&ray, &hit);
+            let (mut outside, mut through) = (1.0, baggage.inside);
+            let dimensions = Dimensions::of(path.bounce, baggage.branch);
+            let sampler = &mut samples[path.sample as usize].sampler;
+            if self.nested && around(self.scene, &ray, &hit).is_some() {
+                window += 1;
+                match Boundary::new(self.scene, &ray, &baggage.inside, &crossings, window - 1) {
+                    Boundary::None(inside) => {
+                        baggage.inside = inside;
+                        self.pass(Ray { t_min: self.windows[window - 1].t_max.next_up(), ..ray }, path, baggage);
+                        continue;
+                    }
+                    Boundary::Between { hit: owner, outside: ior, through: behind } => {
+                        if owner.primitive != hit.primitive || owner.inner != hit.inner {
+                            (hit, surface) = (owner, self.scene.geometry().surface(&ray, &owner));
+                        }
+                        (outside, through) = (ior, behind);
+                    }
+                }
+            }
+            if self.masks && self.is_passed(&ray, &hit, &surface, &mut baggage, dimensions, sampler) {
+                self.pass(Ray { t_min: hit.t.next_up(), ..ray }, path, baggage);
+                continue;
+            }
+            *arriving += path.throughput * self.emitted(&ray, &hit, &surface, &path, &baggage);
+            if self.settings.max_depth.is_some_and(|depth| path.bounce >= depth) {
+                continue;
+            }
+            let (time, path, baggage) = (ray.time, &path, &baggage);
+            if N::PLAIN {
+                // Said once more which kind it is, so that nothing is asked of it at each use.
+                let Bsdf::Diffuse(diffuse) = *self.scene.plan().constant(surface.shape) else { continue };
+                let shading = surface.shading_normal;
+                let here = Interaction::with(&ray, surface, (shading, None), Bsdf::Diffuse(diffuse));
+                self.scatter(Vertex { here, path, baggage, dimensions, through, width: 0.0, time }, sampler);
+            } else {
+                let width = if self.widths { baggage.footprint.at(hit.t).width } else { 0.0 };
+                let here = Interaction::new(self.scene, &ray, &hit, surface, width, outside);
+                let vertex = Vertex { here, path, baggage, dimensions, through, width, time };
+                if N::BAGGAGE && self.settings.ambient != Rgb::ZERO {
+                    let matt = matt(vertex.here.scattering());
+                    *arriving += path.throughput * matt * self.settings.ambient;
+                }
+                if N::BAGGAGE && self.settings.follow == Follow::EachSingle {
+                    self.split_singles(&vertex);
+                }
+                self.scatter(vertex, sampler);
+            }
+        }
+        std::mem::swap(&mut self.now, &mut self.next);
+    }
+
+    /// What arrives from outside the scene at a ray that meets nothing.
+    #[inline]
+    fn from_outside(&self, ray: &Ray, path: &Alive) -> Rgb {
+        let lights = self.scene.lights();
+        let arriving = lights.outside(ray.direction);
+        if arriving == Rgb::ZERO || path.pdf == f64::INFINITY {
+            return arriving;
+        }
+        let drawn = lights.outside_pdf(&Receiver { position: ray.origin, normal: path.normal }, ray.direction);
+        arriving * power_heuristic(path.pdf, drawn * self.asked_from(path))
+    }
+
+    /// How often light was asked where the path was scattered last.
+    #[inline]
+    fn asked_from(&self, path: &Alive) -> f64 {
+        if N::BAGGAGE && path.bounce == 1 { f64::from(self.settings.light_samples) } else { 1.0 }
+    }
+
+    /// What a surface sends back along a ray.
+    #[inline]
+    fn emitted(&self, ray: &Ray, hit: &Hit, surface: &SurfacePoint, path: &Alive, baggage: &Baggage) -> Rgb {
+        let cosine = -ray.direction.dot(surface.normal);
+        let emission = if N::PLAIN {
+            self.scene.lights().emission(surface.shape).towards(cosine, &TexturePoint::default())
+        } else {
+            let emission = self.scene.emission_at(surface);
+            let needs = emission.needs();
+            if needs.any() {
+                let width = if self.widths { baggage.footprint.at(hit.t).width } else { 0.0 };
+                let point = ShadingPoint::new(self.scene.geometry(), ray, hit, surface, needs, width);
+                emission.towards(cosine, &point.texture)
+            } else {
+                emission.towards(cosine, &TexturePoint::default())
+            }
+        };
+        if emission == Rgb::ZERO || path.pdf == f64::INFINITY {
+            return emission;
+        }
+        let receiver = Receiver { position: ray.origin, normal: path.normal };
+        let drawn = self.scene.lights().surface_pdf(self.scene.geometry(), &receiver, ray, hit, cosine);
+        emission * power_heuristic(path.pdf, drawn * self.asked_from(path))
+    }
+
+    /// Whether a ray passes a mask.
+    fn is_passed(
+        &self,
+        ray: &Ray,
+        hit: &Hit,
+        surface: &SurfacePoint,
+        baggage: &mut Baggage,
+        dimensions: Dimensions,
+        sampler: &mut Sampler,
+    ) -> bool {
+        let opacity = opacity(self.scene, ray, hit, surface);
+        if opacity >= 1.0 {
+            return false;
+        }
+        if baggage.chance < 0.0 {
+            baggage.chance = sampler.one(dimensions.mask());
+        }
+        let is_passed = baggage.chance >= opacity;
+        if is_passed {
+            baggage.chance = (baggage.chance - opacity) / (1.0 - opacity);
+        }
+        is_passed
+    }
+
+    /// Sends a path on along the ray that it was on: with the same origin, so that nothing but the surface is left out.
+    fn pass(&mut self, ray: Ray, path: Alive, baggage: Baggage) {
+        self.next.rays.push(ray);
+        self.next.alive.push(path);
+        self.next.baggage.push(baggage);
+    }
+
+    /// Asks lights, and sends the path on to where its surface scatters it.
+    #[inline]
+    fn scatter<S: Scatters>(&mut self, vertex: Vertex<'_, S>, sampler: &mut Sampler) {
+        let is_first = N::BAGGAGE && vertex.path.bounce == 0;
+        let (asked, splits) = if is_first { (self.settings.light_samples, self.settings.splits) } else { (1, 1) };
+        if !self.scene.lights().is_dark() && !vertex.here.scattering().is_delta() {
+            for number in 0..asked {
+                self.ask_a_light(&vertex, (number, asked), splits, sampler);
+            }
+        }
+        if N::BAGGAGE && matches!(self.settings.follow, Follow::EachSingle | Follow::Nothing) {
+            return;
+        }
+        for branch in 0..splits {
+            // The first goes on as the path that it comes from.
+            let branch = if branch == 0 { vertex.baggage.branch } else { branch };
+            let dimensions = if N::BAGGAGE { Dimensions::of(vertex.path.bounce, branch) } else { vertex.dimensions };
+            let u = sampler.two(dimensions.direction());
+            let Some(next) = vertex.here.sample(|| sampler.one(dimensions.scattering_choice()), u) else { continue };
+            if self.is_followed(next.pdf) {
+                self.send(&vertex, &next, (branch, splits), |d| sampler.one(d));
+            }
+        }
+    }
+
+    /// Whether paths go on along a direction that is drawn with this density.
+    #[inline]
+    fn is_followed(&self, pdf: f64) -> bool {
+        if !N::BAGGAGE {
+            return true;
+        }
+        match self.settings.follow {
+            Follow::All => true,
+            Follow::Sharper(than) => pdf > than,
+            Follow::EachSingle => pdf == f64::INFINITY,
+            Follow::Nothing => false,
+        }
+    }
+
+    /// Follows every single direction that a surface scatters into.
+    fn split_singles(&mut self, vertex: &Vertex<'_, crate::scene::materials::Scattering>) {
+        let mut branch = vertex.baggage.branch.wrapping_mul(2);
+        singles(vertex.here.scattering(), vertex.here.wo(), |single| {
+            if let Some(next) = vertex.here.scattered(&single) {
+                self.send(vertex, &next, (branch, 1), |_| 0.0);
+                branch = branch.wrapping_add(1);
+            }
+        });
+    }
+
+    /// Next-event estimation: draws light and queues the shadow ray.
+    #[inline]
+    fn ask_a_light<S: Scatters>(
+        &mut self,
+        vertex: &Vertex<'_, S>,
+        (number, asked): (u32, u32),
+        splits: u32,
+        sampler: &mut Sampler,
+    ) {
+        let (here, path, dimensions) = (&vertex.here, vertex.path, vertex.dimensions);
+        let mut choice = sampler.one(dimensions.light_choice(number));
+        if N::BAGGAGE && asked > 1 {
+            // Of several, each from a share of the lights of its own.
+            choice = ((choice + f64::from(number)) / f64::from(asked)).min(1f64.next_down());
+        }
+        let u = sampler.two(dimensions.light_point(number));
+        let lights = self.scene.lights();
+        let Some(light) = lights.sample(self.scene.geometry(), &here.receiver(), choice, u) else { return };
+        let (scattered, pdf) = here.evaluate(light.direction);
+        let mut weight = if self.is_followed(pdf) {
+            power_heuristic(light.pdf * f64::from(asked), pdf * f64::from(splits))
+        } else {
+            1.0
+        };
+        if N::BAGGAGE {
+            weight /= f64::from(asked);
+        }
+        let arriving = path.throughput * scattered * light.weight * weight;
+        if arriving == Rgb::ZERO {
+            return;
+        }
+        let from = here.departure();
+        let ray = match &light.source {
+            Some(source) => from.segment(source),
+            None => from.ray(light.direction),
+        };
+        self.shadows.push(Ray { time: vertex.time, ..ray }, path.sample, arriving);
+        if self.nested {
+            let is_through = here.is_through(light.direction);
+            self.shadows.set_inside(if is_through { vertex.through } else { vertex.baggage.inside });
+        }
+    }
+
+    /// Queues a path that goes on along a direction drawn, one of so many, unless roulette ends it.
+    #[inline]
+    fn send<S: Scatters>(
+        &mut self,
+        vertex: &Vertex<'_, S>,
+        next: &Scattered,
+        (branch, splits): (u32, u32),
+        mut number: impl FnMut(u32) -> f64,
+    ) {
+        let mut path = *vertex.path;
+        path.throughput *= next.weight;
+        path.pdf = next.pdf;
+        if N::BAGGAGE && splits > 1 {
+            path.throughput /= f64::from(splits);
+            path.pdf *= f64::from(splits);
+        }
+        path.normal = vertex.here.receiver().normal;
+        path.scale *= next.eta * next.eta;
+        path.bounce = path.bounce.saturating_add(1);
+        if N::BAGGAGE && path.throughput.max_element() * path.scale < self.settings.least {
+            return;
+        }
+        if path.bounce >= self.settings.roulette_depth.min(ROULETTE_AT_LATEST) {
+            let dimensions = if N::BAGGAGE { Dimensions::of(vertex.path.bounce, branch) } else { vertex.dimensions };
+            let survival = survival(path.throughput, path.scale);
+            if number(dimensions.roulette()) >= survival {
+                return;
+            }
+            path.throughput /= survival;
+        }
+        let ray = Departure::new(vertex.here.surface()).ray(next.direction);
+        self.next.rays.push(Ray { time: vertex.time, ..ray });
+        self.next.alive.push(path);
+        if N::BAGGAGE {
+            self.next.baggage.push(Baggage {
+                footprint: if self.widths { widened(vertex, next) } else { vertex.baggage.footprint },
+                inside: if next.is_through { vertex.through } else { vertex.baggage.inside },
+                chance: -1.0,
+                branch,
+            });
+        }
+    }
+}
+
+/// The bundle of rays after a surface.
+///
+/// A mirror of mean curvature H, seen by a bundle of width w, spreads it by 2Hw (Akenine-Möller et al., "Improved Shader and Texture Level of
+/// Detail Using Ray Cones", 2021), and refraction by as much as it bends; a draw of density p has its neighbours, among some 256 of a pixel,
+/// 1/√(256 p) off (after Suykens and Willems, "Path Differentials and Applications", 2001).
+fn widened<S: Scatters>(vertex: &Vertex<'_, S>, next: &Scattered) -> Footprint {
+    let (before, curvature) = (vertex.baggage.footprint, vertex.here.curvature());
+    let bent = if next.is_through {
+        before.spread / next.eta + curvature * vertex.width * (1.0 / next.eta - 1.0)
+    } else {
+        before.spread + 2.0 * curvature * vertex.width
+    };
+    let scattered = 1.0 / (16.0 * next.pdf.sqrt());
+    Footprint { width: vertex.width, spread: if scattered > 0.0 { bent.abs().max(scattered) } else { bent } }
+}
+
+impl<N: Features> Worker for TransportWorker<'_, N> {
+    fn radiance(&mut self, samples: &mut [CameraSample], cancel: &Cancel, radiance: &mut [Rgb]) {
+        assert_eq!(samples.len(), radiance.len());
+        radiance.fill(Rgb::ZERO);
+        // Each sample is on its own, so that a batch of paths that split may be worked on in parts.
+        let splits = self.settings.splits.max(self.settings.light_samples) as usize;
+        let together = if N::BAGGAGE && self.settings.follow == Follow::EachSingle { 512 } else { 4096 };
+        let part = if N::BAGGAGE { (together / splits).max(16) } else { samples.len().max(1) };
+        for (samples, radiance) in samples.chunks_mut(part).zip(radiance.chunks_mut(part)) {
+            self.start(samples);
+            while !self.now.rays.is_empty() && !cancel.is_raised() {
+                self.hits.resize(self.now.rays.len(), Hit::MISS);
+                self.scene.intersect(&self.now.rays, &mut self.hits);
+                self.shade(samples, radiance);
+                if !self.settings.shadows {
+                    self.shadows.add_all(radiance);
+                } else if self.masks || self.nested {
+                    self.shadows.add_through(self.scene, self.nested, radiance);
+                } else {
+                    self.shadows.add_unblocked(self.scene, radiance);
+                }
+            }
+        }
+    }
+}

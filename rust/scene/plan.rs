@@ -1,0 +1,261 @@
+//! What a scene needs, what is left out, and which kernel shades it.
+
+use super::textures::Needs;
+use super::{Emission, Geometry, Lights, Material};
+use crate::optics::Bsdf;
+use std::ops::BitOr;
+use std::sync::Arc;
+
+/// What there is in a scene that costs something to those who shade it. Found once, when it is compiled.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SceneNeeds {
+    /// What materials and lights must know of a point, all together.
+    pub points: Needs,
+    /// Materials that are not the same diffuse one at every point of a shape.
+    pub scattering: bool,
+    /// Materials that some rays pass as if nothing were there.
+    pub masks: bool,
+    /// Shapes that enclose a medium with an index of refraction of its own.
+    pub interiors: bool,
+    /// Several of those, which may lie in one another.
+    pub nested: bool,
+    /// Emission that varies over a surface.
+    pub patterned_lights: bool,
+    /// Shading normals.
+    pub smooth: bool,
+    /// Shapes that are no meshes.
+    pub shapes: bool,
+    /// Copies of groups.
+    pub copies: bool,
+    /// What moves while the shutter is open.
+    pub motion: bool,
+    /// Anything that shines.
+    pub light: bool,
+}
+
+impl BitOr for SceneNeeds {
+    type Output = Self;
+
+    fn bitor(self, other: Self) -> Self {
+        Self {
+            points: self.points | other.points,
+            scattering: self.scattering | other.scattering,
+            masks: self.masks | other.masks,
+            interiors: self.interiors | other.interiors,
+            // Two of what encloses something may overlap.
+            nested: self.nested | other.nested | (self.interiors & other.interiors),
+            patterned_lights: self.patterned_lights | other.patterned_lights,
+            smooth: self.smooth | other.smooth,
+            shapes: self.shapes | other.shapes,
+            copies: self.copies | other.copies,
+            motion: self.motion | other.motion,
+            light: self.light | other.light,
+        }
+    }
+}
+
+/// A loop over a batch of paths, compiled with what some scenes need and no more.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Kernel {
+    /// One diffuse colour a shape: no material is asked, and nothing is passed through.
+    Plain,
+    /// Any material and any texture that is asked for points: no masks, no media in one another, no widths of rays.
+    Open,
+    /// All that can be.
+    General,
+}
+
+impl Kernel {
+    /// Every one, from that which can least on.
+    pub const ALL: [Self; 3] = [Self::Plain, Self::Open, Self::General];
+
+    /// What it is called.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Plain => "plain",
+            Self::Open => "open",
+            Self::General => "general",
+        }
+    }
+}
+
+/// What a scene needs, and what follows from it.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    needs: SceneNeeds,
+    /// How each shape scatters, if it does so alike everywhere; empty unless all do.
+    constants: Vec<Bsdf>,
+}
+
+/// A line of a plan: what it is about, whether the scene has it, and what that means.
+pub type PlanRow = (&'static str, bool, &'static str);
+
+impl Plan {
+    /// The plan of a scene.
+    pub(super) fn new(geometry: &Geometry, materials: &[Arc<dyn Material>], lights: &Lights) -> Self {
+        let mut needs = SceneNeeds {
+            smooth: geometry.is_smooth(),
+            shapes: geometry.first_other().is_some_and(|first| geometry.copies_of(first).is_none()),
+            copies: geometry.has_copies(),
+            motion: geometry.moves(),
+            light: !lights.is_dark(),
+            ..SceneNeeds::default()
+        };
+        let mut constants = Vec::with_capacity(materials.len());
+        for (shape, material) in materials.iter().enumerate() {
+            let shape = shape as u32;
+            match geometry.copies_of(shape) {
+                Some(copies) => needs = needs | Self::of_copies(copies.group()),
+                None => {
+                    needs = needs | Self::of(material.as_ref(), lights.emission(shape));
+                    constants.extend(material.constant());
+                }
+            }
+        }
+        if needs.scattering || needs.copies || constants.len() != materials.len() {
+            constants = Vec::new();
+        }
+        Self { needs, constants }
+    }
+
+    fn of(material: &dyn Material, emission: &Emission) -> SceneNeeds {
+        let is_dark = emission.is_dark();
+        SceneNeeds {
+            points: if is_dark { material.needs() } else { material.needs() | emission.needs() },
+            scattering: !matches!(material.constant(), Some(Bsdf::Diffuse(_))),
+            masks: !material.is_opaque(),
+            interiors: material.interior().is_some(),
+            patterned_lights: !is_dark && emission.needs().any(),
+            light: !is_dark,
+            ..SceneNeeds::default()
+        }
+    }
+
+    /// Of a group: with an interior in it, its copies may overlap.
+    fn of_copies(group: &super::Group) -> SceneNeeds {
+        let geometry = group.geometry();
+        let mut needs = SceneNeeds { smooth: geometry.is_smooth(), ..SceneNeeds::default() };
+        for (shape, (material, emission)) in group.looks().enumerate() {
+            needs = needs
+                | match geometry.copies_of(shape as u32) {
+                    Some(copies) => Self::of_copies(copies.group()),
+                    None => Self::of(material, emission),
+                };
+        }
+        SceneNeeds { nested: needs.nested | needs.interiors, ..needs }
+    }
+
+    /// What the scene needs.
+    pub fn needs(&self) -> SceneNeeds {
+        self.needs
+    }
+
+    /// How a shape scatters, in a scene of [`Kernel::Plain`].
+    #[inline]
+    pub fn constant(&self, shape: u32) -> &Bsdf {
+        &self.constants[shape as usize]
+    }
+
+    /// The kernel that has what the scene needs, and the least beyond.
+    pub fn kernel(&self) -> Kernel {
+        Kernel::ALL.into_iter().find(|&kernel| self.suits(kernel)).unwrap_or(Kernel::General)
+    }
+
+    /// Whether a kernel has what the scene needs.
+    pub fn suits(&self, kernel: Kernel) -> bool {
+        let needs = &self.needs;
+        match kernel {
+            Kernel::Plain => !self.constants.is_empty() && !needs.points.any() && !needs.masks && !needs.interiors,
+            Kernel::Open => !(needs.masks || needs.nested || needs.points.width),
+            Kernel::General => true,
+        }
+    }
+
+    /// The plan as a table.
+    pub fn rows(&self) -> Vec<PlanRow> {
+        let needs = &self.needs;
+        let row = |what, has, with, without| (what, has, if has { with } else { without });
+        vec![
+            row("light", needs.light, "a light is asked at each point", "no light is asked, no shadow ray sent"),
+            row("materials", needs.scattering, "asked at each point", "one diffuse colour a shape, asked once"),
+            row(
+                "textures",
+                needs.points.any(),
+                "coordinates are computed where asked for",
+                "no coordinates kept or computed",
+            ),
+            row("filtered textures", needs.points.width, "paths carry the width of their rays", "paths carry no width"),
+            row("masks", needs.masks, "shadow rays are followed through", "the first hit ends a shadow ray"),
+            row("media", needs.interiors, "surfaces have an outside", "no index of refraction kept"),
+            row("nested media", needs.nested, "paths know what they are in", "paths carry no media"),
+            row(
+                "patterned lights",
+                needs.patterned_lights,
+                "emission is asked at each point",
+                "emission is one number a shape",
+            ),
+            row("shading normals", needs.smooth, "interpolated, and faded at the terminator", "none kept or computed"),
+            row("shapes", needs.shapes, "a tree of their own beside the triangles'", "no tree beside the triangles'"),
+            row("instances", needs.copies, "rays are taken to each copy's space", "rays stay in the world"),
+            row("motion", needs.motion, "rays are spread over the shutter's time", "all rays at one time"),
+        ]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::fixtures::{cornell, furnace, rectangle, shape};
+    use crate::scene::materials::{Interior, Scattering};
+    use crate::scene::{SceneDescription, ShadingPoint, Shape};
+
+    #[test]
+    fn diffuse_rooms_are_plain() {
+        for scene in [furnace(0.5, 1.0), cornell(8, 8).0] {
+            assert_eq!(scene.plan().kernel(), Kernel::Plain);
+            assert!(Kernel::ALL.into_iter().all(|kernel| scene.plan().suits(kernel)));
+            let has: Vec<_> = scene.plan().rows().into_iter().filter(|row| row.1).map(|row| row.0).collect();
+            assert_eq!(has, ["light"]);
+        }
+    }
+
+    /// What encloses something, or may be passed.
+    #[derive(Debug)]
+    struct Odd {
+        interior: Option<Interior>,
+        is_opaque: bool,
+    }
+
+    impl Material for Odd {
+        fn scattering(&self, _at: &ShadingPoint) -> Scattering {
+            crate::optics::Diffuse { reflectance: crate::optics::Rgb::ONE }.into()
+        }
+        fn needs(&self) -> Needs {
+            Needs::NONE
+        }
+        fn validate(&self) -> Result<(), String> {
+            Ok(())
+        }
+        fn is_opaque(&self) -> bool {
+            self.is_opaque
+        }
+        fn interior(&self) -> Option<Interior> {
+            self.interior
+        }
+    }
+
+    #[test]
+    fn what_lies_in_one_another_takes_two() {
+        let glass = || Odd { interior: Some(Interior { ior: 1.5, priority: 0 }), is_opaque: true };
+        let sheet = |material: Odd| Shape {
+            material: Arc::new(material),
+            ..shape(rectangle([0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]), [0.5; 3], 0.0)
+        };
+        let plan =
+            |shapes| crate::scene::fixtures::scene(SceneDescription { shapes, ..Default::default() }).plan().clone();
+        assert_eq!(plan(vec![sheet(glass())]).kernel(), Kernel::Open);
+        assert_eq!(plan(vec![sheet(glass()), sheet(glass())]).kernel(), Kernel::General);
+        let mask = Odd { interior: None, is_opaque: false };
+        assert_eq!(plan(vec![sheet(mask)]).kernel(), Kernel::General);
+    }
+}
