@@ -7,6 +7,14 @@ from ._core import AcceleratorInfo, simd
 from .accelerators import BSP, BVH, BruteForce, Grid, KdTree, NestedGrid, Octree
 from .camera import Camera
 from .cones import ConeTouches
+from .filters import (
+    BlackmanHarrisFilter,
+    BoxFilter,
+    GaussianFilter,
+    LanczosFilter,
+    MitchellFilter,
+    TriangleFilter,
+)
 from .hits import AllHits, ClosestPoints, Hits, QueryCost
 from .image import ErrorEstimate, Image
 from .instance import Instance
@@ -16,6 +24,7 @@ from .lights import ConstantEnvironment, PointLight
 from .materials import Diffuse
 from .mesh import Mesh
 from .rendering import render
+from .samplers import Halton, Independent, Lattice, Sobol, Stratified
 from .scene import Scene
 from .shapes import (
     Box,
@@ -40,7 +49,9 @@ __all__ = [
     "BVH",
     "AcceleratorInfo",
     "AllHits",
+    "BlackmanHarrisFilter",
     "Box",
+    "BoxFilter",
     "BruteForce",
     "Camera",
     "ClosestPoints",
@@ -52,13 +63,19 @@ __all__ = [
     "Disk",
     "Ellipsoid",
     "ErrorEstimate",
+    "GaussianFilter",
     "Grid",
+    "Halton",
     "Hits",
     "Image",
     "Implicit",
+    "Independent",
     "Instance",
     "KdTree",
+    "LanczosFilter",
+    "Lattice",
     "Mesh",
+    "MitchellFilter",
     "NestedGrid",
     "Octree",
     "Paraboloid",
@@ -68,9 +85,12 @@ __all__ = [
     "Polygon",
     "QueryCost",
     "Scene",
+    "Sobol",
     "Sphere",
+    "Stratified",
     "Surface",
     "Torus",
+    "TriangleFilter",
     "check_writable",
     "render",
     "report",

@@ -209,6 +209,8 @@ def render(
     seed: int,
     threads: int | None,
     progress: Callable[[float, int, float], None] | None,
+    sampler: Any,
+    filter: Any,
 ) -> Rendering:
     """Render until the first of `samples` (per pixel), `error` (relMSE) or `seconds` is met.
 

@@ -5,12 +5,16 @@ import numpy as np
 from . import _core
 from .arrays import integer, positive
 from .camera import Camera
+from .filters import BoxFilter, Filter
 from .image import HISTORY, ErrorEstimate, Image
 from .integrators import Path
 from .progress import bar
+from .samplers import Independent, Sampler
 from .scene import Scene
 
 _PATH = Path()
+_SAMPLER: Sampler = Independent()
+_FILTER: Filter = BoxFilter()
 _DEFAULT_SAMPLES = 64
 
 
@@ -24,6 +28,8 @@ def render(
     seed: int = 0,
     threads: int | None = None,
     progress: bool = True,
+    sampler: Sampler = _SAMPLER,
+    filter: Filter = _FILTER,
 ) -> Image:
     """Render a picture, until the first of the limits that are given is met.
 
@@ -48,6 +54,10 @@ def render(
         How many to use; all cores if not given.
     progress : bool
         Whether to show a bar on stderr.
+    sampler : Independent, Stratified, Halton, Sobol or Lattice
+        Where the random numbers come from. Samples are rounded up to whole batches.
+    filter : BoxFilter, TriangleFilter, GaussianFilter, MitchellFilter, BlackmanHarrisFilter or LanczosFilter
+        What part of the film a pixel is the mean of.
 
     Returns
     -------
@@ -70,6 +80,10 @@ def render(
     ):
         if not isinstance(value, kind):
             raise TypeError(f"{name} must be a raywright.{kind.__name__}, got {type(value).__name__}")
+    if not isinstance(sampler, Sampler):
+        raise TypeError(f"sampler must be one of raywright's, got {type(sampler).__name__}")
+    if not isinstance(filter, Filter):
+        raise TypeError(f"filter must be one of raywright's, got {type(filter).__name__}")
     samples = None if samples is None else integer("samples", samples, 1, 2**32 - 1)
     error = None if error is None else positive("error", error)
     seconds = None if seconds is None else positive("seconds", seconds)
@@ -81,9 +95,9 @@ def render(
     limits = (samples, error, seconds)
     if progress:
         with bar(*limits) as report:
-            done = _core.render(compiled, camera, integrator, *limits, seed, threads, report)
+            done = _core.render(compiled, camera, integrator, *limits, seed, threads, report, sampler, filter)
     else:
-        done = _core.render(compiled, camera, integrator, *limits, seed, threads, None)
+        done = _core.render(compiled, camera, integrator, *limits, seed, threads, None, sampler, filter)
     return _image(done)
 
 

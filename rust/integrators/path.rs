@@ -87,7 +87,7 @@ struct PathWorker<'a> {
     occluded: Vec<bool>,
 }
 
-/// The dimensions of a bounce. The choice among several kinds of scattering comes last, as most surfaces have one.
+/// The dimensions of a bounce. A choice stands at an even one, before the pair that follows from it, with which samplers place it together.
 #[derive(Clone, Copy)]
 struct Dimensions(u32);
 
@@ -104,14 +104,14 @@ impl Dimensions {
     fn light_point(self) -> u32 {
         self.0 + 1
     }
-    fn direction(self) -> u32 {
+    fn scattering_choice(self) -> u32 {
         self.0 + 2
     }
-    fn roulette(self) -> u32 {
+    fn direction(self) -> u32 {
         self.0 + 3
     }
-    fn scattering_choice(self) -> u32 {
-        self.0 + 4
+    fn roulette(self) -> u32 {
+        self.0 + 5
     }
 }
 

@@ -15,6 +15,7 @@ mod query;
 mod rays;
 mod render;
 mod report;
+mod samplers;
 mod shapes;
 
 use pyo3::exceptions::PyValueError;

@@ -8,6 +8,7 @@ use std::ops::ControlFlow;
 use super::arrays::{Row, unwritten, vectors};
 use super::query::CompiledScene;
 use super::rays::{answer, share};
+use super::samplers;
 use crate::integrators::Path;
 use crate::math::DVec3;
 use crate::render::{self, HistoryRow, Progress, RenderError, Settings, Until};
@@ -100,11 +101,14 @@ pub fn render_scene(
     seed: u64,
     threads: Option<usize>,
     progress: Option<Py<PyAny>>,
+    sampler: &Bound<'_, PyAny>,
+    filter: &Bound<'_, PyAny>,
 ) -> PyResult<Rendering> {
     let scene = &scene.get().0;
     let camera = camera.describe()?;
     let path = Path { max_depth: integrator.max_depth, roulette_depth: integrator.roulette_depth };
-    let settings = Settings { until: Until { samples, error, seconds }, seed, threads, ..Settings::default() };
+    let (sampler, filter) = (samplers::sampler(sampler, samples)?, samplers::filter(filter)?.into());
+    let settings = Settings { until: Until { samples, error, seconds }, seed, threads, sampler, filter };
     let mut watcher = Watcher { progress, raised: None };
     match py.detach(|| render::render(scene, &camera, &path, &settings, &mut watcher)) {
         Ok(rendering) => Ok(Rendering(rendering)),

@@ -135,7 +135,7 @@ mod tests {
                 for number in 0..samples {
                     // An exponential variable: variance 1, skewness 2.
                     let draw = -Sampler::new(seed, y * side + x, number).two(0)[0].ln();
-                    tile.add(i, number, Rgb::splat(brightness(x, y) * draw));
+                    tile.add(i, number, Rgb::splat(brightness(x, y) * draw), 1.0);
                 }
             }
         }
@@ -193,7 +193,7 @@ mod tests {
                 for pixel in 0..81 {
                     for number in 0..16 {
                         let bright = pixel == 40 && number == 3;
-                        tile.add(pixel, number, Rgb::splat(if bright { lit } else { 0.01 }));
+                        tile.add(pixel, number, Rgb::splat(if bright { lit } else { 0.01 }), 1.0);
                     }
                 }
             }

@@ -171,10 +171,12 @@ impl FilmTile {
         (top..top + height).flat_map(move |y| (left..left + width).map(move |x| (x, y)))
     }
 
-    /// Adds sample number `number` of the pixel at this index of [`FilmTile::pixels`]. Those of a pixel come in order.
+    /// Adds sample number `number` of the pixel at this index of [`FilmTile::pixels`], times the weight that its filter gives it,
+    /// which may be negative. Those of a pixel come in order.
     #[inline]
-    pub fn add(&mut self, pixel: usize, number: u32, mut sample: Rgb) {
-        if !is_radiance(sample) || sample.max_element() > Film::GREATEST {
+    pub fn add(&mut self, pixel: usize, number: u32, radiance: Rgb, weight: f64) {
+        let mut sample = radiance * weight;
+        if !is_radiance(radiance) || sample.abs().max_element() > Film::GREATEST {
             self.dropped += 1;
             sample = Rgb::ZERO;
         }
@@ -212,7 +214,7 @@ mod tests {
         for tile in film.extend(count) {
             for (i, (x, y)) in tile.pixels().enumerate() {
                 for number in first..first + count {
-                    tile.add(i, number, sample(y * 1000 + x, number));
+                    tile.add(i, number, sample(y * 1000 + x, number), 1.0);
                 }
             }
         }
@@ -273,9 +275,9 @@ mod tests {
         let bad = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, -1.0, 1e39];
         let tile = &mut film.extend(6)[0];
         for (number, bad) in bad.into_iter().enumerate() {
-            tile.add(0, number as u32, Rgb::new(1.0, bad, 1.0));
+            tile.add(0, number as u32, Rgb::new(1.0, bad, 1.0), 1.0);
         }
-        tile.add(0, 5, Rgb::splat(f64::from(f32::MAX)));
+        tile.add(0, 5, Rgb::splat(f64::from(f32::MAX)), 1.0);
         assert_eq!(film.dropped(), 5);
         assert_eq!(film.means(), [Rgb::splat(f64::from(f32::MAX) / 6.0)]);
         assert!(film.variances().unwrap()[0].is_finite());

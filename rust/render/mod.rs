@@ -2,6 +2,7 @@
 
 mod error;
 mod film;
+pub mod filter;
 mod progress;
 mod run;
 mod schedule;

@@ -1,6 +1,7 @@
 //! A render from start to end.
 
 use super::error::estimate;
+use super::filter::{self, Filter};
 use super::tiles::Exposure;
 use super::{ErrorEstimate, Film, Progress, Until};
 use crate::integrators::Integrator;
@@ -10,10 +11,11 @@ use crate::scene::{Camera, Scene};
 use crate::workers::{Cancel, pool, watched};
 use std::fmt;
 use std::ops::ControlFlow;
+use std::sync::Arc;
 use std::time::Instant;
 
 /// How to render.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Settings {
     /// When to end. With nothing set, the render goes on until its [`Progress`] ends it.
     pub until: Until,
@@ -23,6 +25,20 @@ pub struct Settings {
     pub threads: Option<usize>,
     /// Where the random numbers come from.
     pub sampler: SamplerKind,
+    /// What part of the film a pixel is the mean of.
+    pub filter: Arc<dyn Filter>,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            until: Until::default(),
+            seed: 0,
+            threads: None,
+            sampler: SamplerKind::default(),
+            filter: Arc::new(filter::Box::default()),
+        }
+    }
 }
 
 /// How far a render was after a pass.
@@ -97,7 +113,7 @@ pub fn render(
     progress: &mut dyn Progress,
 ) -> Result<Rendering, RenderError> {
     let start = Instant::now();
-    let exposure = Exposure::new(scene, camera, integrator, settings.sampler, settings.seed);
+    let exposure = Exposure::new(scene, camera, integrator, settings);
     let tile = exposure.tile_side(pool(settings.threads).map_err(RenderError::Threads)?.current_num_threads());
     let batch = settings.sampler.batch();
     let mut film = Film::new(camera.width(), camera.height(), tile, batch);

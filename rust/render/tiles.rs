@@ -1,6 +1,7 @@
 //! Work on a pass: samples of all pixels, tile by tile over the threads.
 
-use super::{Film, FilmTile};
+use super::filter::Filter;
+use super::{Film, FilmTile, Settings};
 use crate::integrators::{CameraSample, Integrator, Worker};
 use crate::optics::Rgb;
 use crate::sampling::SamplerKind;
@@ -19,6 +20,7 @@ pub(super) struct Exposure<'a> {
     pub camera: &'a Camera,
     pub integrator: &'a dyn Integrator,
     pub sampler: SamplerKind,
+    pub filter: &'a dyn Filter,
     pub seed: u64,
     /// Whether samples are spread over the time that the shutter is open.
     moves: bool,
@@ -30,6 +32,8 @@ pub(super) struct Exposure<'a> {
 struct Bench<'a> {
     worker: Box<dyn Worker + 'a>,
     samples: Vec<CameraSample>,
+    /// What each sample counts by the filter.
+    weights: Vec<f64>,
     radiance: Vec<Rgb>,
 }
 
@@ -38,10 +42,11 @@ impl<'a> Exposure<'a> {
         scene: &'a Scene,
         camera: &'a Camera,
         integrator: &'a dyn Integrator,
-        sampler: SamplerKind,
-        seed: u64,
+        settings: &'a Settings,
     ) -> Self {
-        Self { scene, camera, integrator, sampler, seed, moves: scene.geometry().moves(), idle: Mutex::default() }
+        let (sampler, filter, seed) = (settings.sampler, settings.filter.as_ref(), settings.seed);
+        let moves = scene.geometry().moves();
+        Self { scene, camera, integrator, sampler, filter, seed, moves, idle: Mutex::default() }
     }
 
     /// The side of tiles for a number of threads: 16, or less where that would leave threads without work.
@@ -67,6 +72,7 @@ impl<'a> Exposure<'a> {
         idle.unwrap_or_else(|| Bench {
             worker: self.integrator.worker(self.scene),
             samples: Vec::new(),
+            weights: Vec::new(),
             radiance: Vec::new(),
         })
     }
@@ -79,27 +85,34 @@ impl<'a> Exposure<'a> {
             }
             let numbers = first..numbers.end.min(first + together as u32);
             bench.samples.clear();
+            bench.weights.clear();
             for (x, y) in tile.pixels() {
-                bench.samples.extend(numbers.clone().map(|number| self.camera_sample(x, y, number)));
+                for number in numbers.clone() {
+                    let (sample, weight) = self.camera_sample(x, y, number);
+                    bench.samples.push(sample);
+                    bench.weights.push(weight);
+                }
             }
             bench.radiance.resize(bench.samples.len(), Rgb::ZERO);
             bench.worker.radiance(&mut bench.samples, cancel, &mut bench.radiance);
-            for (pixel, radiance) in bench.radiance.chunks(numbers.len()).enumerate() {
-                for (number, &radiance) in numbers.clone().zip(radiance) {
-                    tile.add(pixel, number, radiance);
+            let each = bench.radiance.chunks(numbers.len()).zip(bench.weights.chunks(numbers.len()));
+            for (pixel, (radiance, weights)) in each.enumerate() {
+                for ((number, &radiance), &weight) in numbers.clone().zip(radiance).zip(weights) {
+                    tile.add(pixel, number, radiance, weight);
                 }
             }
         }
     }
 
-    /// A sample of a pixel, uniform over its square: the box filter. Where anything moves, uniform over the shutter's time too.
-    fn camera_sample(&self, x: u32, y: u32, number: u32) -> CameraSample {
+    /// A sample of a pixel, placed by the filter, and what it counts. Where anything moves, it is uniform over the shutter's time too.
+    fn camera_sample(&self, x: u32, y: u32, number: u32) -> (CameraSample, f64) {
         let mut sampler = self.sampler.sampler(self.seed, y * self.camera.width() + x, number);
-        let [right, down] = sampler.two(0);
-        let mut ray = self.camera.ray(f64::from(x) + right, f64::from(y) + down);
+        let ([right, down], weight) = self.filter.sample(sampler.two(0));
+        // Offsets from the centre are added to the half first, so that those of the pixel's own square are exact.
+        let mut ray = self.camera.ray(f64::from(x) + (0.5 + right), f64::from(y) + (0.5 + down));
         if self.moves {
             ray.time = sampler.one(3);
         }
-        CameraSample { ray, sampler }
+        (CameraSample { ray, sampler }, weight)
     }
 }
