@@ -1,7 +1,7 @@
 """What part of the film a pixel is the mean of. Lengths are in pixels.
 
-Samples are drawn by the size of the filter around their own pixel (Ernst, Stamminger and Greiner, "Filter Importance
-Sampling", 2006), so that the errors of pixels stay independent.
+Samples are drawn by the size of the filter around their own pixel (Ernst, Stamminger and Greiner, "Filter
+Importance Sampling", 2006), so that the errors of pixels stay independent.
 """
 
 from dataclasses import dataclass

@@ -1,8 +1,8 @@
 """Where the random numbers of a picture come from.
 
-The numbers of each sample are uniform, and those of its dimensions independent, for every kind: pictures differ in
-their noise only. Those with a `batch` place so many consecutive samples of a pixel evenly with regard to each other;
-batches are independent, and the spread between them tells the error.
+The numbers of each sample are uniform, and those of its dimensions independent, for every kind: pictures
+differ in their noise only. Those with a `batch` place so many consecutive samples of a pixel evenly with
+regard to each other; batches are independent, and the spread between them tells the error.
 """
 
 from dataclasses import dataclass

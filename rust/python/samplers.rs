@@ -25,9 +25,8 @@ pub fn sampler(sampler: &Bound<'_, PyAny>, samples: Option<u32>) -> PyResult<Sam
     };
     let size = match sampler.extract::<Batched>()?.batch {
         None => BatchSize::for_budget(samples),
-        Some(batch) => BatchSize::new(batch).ok_or_else(|| {
-            PyValueError::new_err(format!("batch is {batch}, expected a power of two from 1 to 64"))
-        })?,
+        Some(batch) => BatchSize::new(batch)
+            .ok_or_else(|| PyValueError::new_err(format!("batch is {batch}, expected a power of two from 1 to 64")))?,
     };
     Ok(kind(size))
 }

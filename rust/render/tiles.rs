@@ -38,12 +38,7 @@ struct Bench<'a> {
 }
 
 impl<'a> Exposure<'a> {
-    pub fn new(
-        scene: &'a Scene,
-        camera: &'a Camera,
-        integrator: &'a dyn Integrator,
-        settings: &'a Settings,
-    ) -> Self {
+    pub fn new(scene: &'a Scene, camera: &'a Camera, integrator: &'a dyn Integrator, settings: &'a Settings) -> Self {
         let (sampler, filter, seed) = (settings.sampler, settings.filter.as_ref(), settings.seed);
         let moves = scene.geometry().moves();
         Self { scene, camera, integrator, sampler, filter, seed, moves, idle: Mutex::default() }

@@ -115,7 +115,8 @@ mod tests {
     #[test]
     fn batches_follow_from_the_samples_asked() {
         let of = |samples| BatchSize::for_budget(Some(samples)).samples();
-        for (samples, batch) in [(0, 1), (1, 1), (15, 1), (16, 2), (64, 8), (100, 8), (128, 16), (512, 64), (u32::MAX, 64)]
+        for (samples, batch) in
+            [(0, 1), (1, 1), (15, 1), (16, 2), (64, 8), (100, 8), (128, 16), (512, 64), (u32::MAX, 64)]
         {
             assert_eq!(of(samples), batch, "{samples}");
         }

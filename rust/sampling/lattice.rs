@@ -25,10 +25,7 @@ pub(super) fn two(size: BatchSize, stream: Stream, index: u32, dimension: u32) -
     let index = permute(size, index, stream.word(dimension, 2));
     let shift = stream.word(dimension, 0);
     let at = |factor: u32| (index * factor).unbounded_shl(32 - size.bits());
-    [
-        at(1).wrapping_add(shift as u32),
-        at(GENERATORS[size.bits() as usize][0]).wrapping_add((shift >> 32) as u32),
-    ]
+    [at(1).wrapping_add(shift as u32), at(GENERATORS[size.bits() as usize][0]).wrapping_add((shift >> 32) as u32)]
 }
 
 #[cfg(test)]

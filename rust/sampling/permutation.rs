@@ -16,7 +16,8 @@ impl Field {
         [0b1, 0b11, 0b111, 0b1011, 0b1_0011, 0b10_0101, 0b100_0011];
 
     const ALL: [Self; Self::POLYNOMIALS.len()] = {
-        let mut all = [const { Self { powers: [0; 2 * Self::MOST], logarithms: [0; Self::MOST] } }; Self::POLYNOMIALS.len()];
+        let mut all =
+            [const { Self { powers: [0; 2 * Self::MOST], logarithms: [0; Self::MOST] } }; Self::POLYNOMIALS.len()];
         let mut bits = 1;
         while bits < all.len() {
             let (order, mut exponent, mut power) = ((1 << bits) - 1, 0, 1);

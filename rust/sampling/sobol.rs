@@ -13,8 +13,7 @@ use super::stream::Stream;
 pub(super) fn one(size: BatchSize, stream: Stream, index: u32, dimension: u32) -> u64 {
     let index = permute(size, index, stream.word(dimension | 1, 2));
     // Of a net of three, the third coordinate is the index itself, greatest bit first (Niederreiter, 1992, lemma 4.22).
-    let digits =
-        if dimension.is_multiple_of(2) { index.reverse_bits().unbounded_shr(32 - size.bits()) } else { index };
+    let digits = if dimension.is_multiple_of(2) { index.reverse_bits().unbounded_shr(32 - size.bits()) } else { index };
     scramble(digits, [stream.word(dimension, 0), stream.word(dimension, 1)])
 }
 

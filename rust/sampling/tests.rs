@@ -141,10 +141,9 @@ fn errors_fall_as_theory_has_it() {
                 SamplerKind::Sobol(_) => (3.0, 1.5),
                 SamplerKind::Stratified(_) | SamplerKind::Lattice(_) | SamplerKind::Halton(_) => (2.0, 1.5),
             };
-            for (of, (mean, variance), rate) in [
-                (&smooth as &dyn Fn([f64; 2]) -> f64, smooth_moments, smooth_rate),
-                (&edge, edge_moments, edge_rate),
-            ] {
+            for (of, (mean, variance), rate) in
+                [(&smooth as &dyn Fn([f64; 2]) -> f64, smooth_moments, smooth_rate), (&edge, edge_moments, edge_rate)]
+            {
                 let (found, spread) = batch_moments(kind, samples, of);
                 // Five standard errors are exceeded once in two million.
                 let error = (spread / 8000.0).sqrt();
