@@ -7,6 +7,14 @@ from ._core import AcceleratorInfo, simd
 from .accelerators import BSP, BVH, BruteForce, Grid, KdTree, NestedGrid, Octree
 from .cameras import AnyCamera, Camera, Fisheye, Orthographic, Panorama, Pose, ThinLens
 from .cones import ConeTouches
+from .filters import (
+    BlackmanHarrisFilter,
+    BoxFilter,
+    GaussianFilter,
+    LanczosFilter,
+    MitchellFilter,
+    TriangleFilter,
+)
 from .hits import AllHits, ClosestPoints, Hits, QueryCost
 from .image import ErrorEstimate, Image
 from .instance import Instance
@@ -28,6 +36,7 @@ from .materials import Diffuse
 from .mesh import Mesh
 from .rendering import render
 from .rng import Rng
+from .samplers import Halton, Independent, Lattice, Sobol, Stratified
 from .scene import Scene
 from .shapes import (
     Box,
@@ -53,7 +62,9 @@ __all__ = [
     "AcceleratorInfo",
     "AllHits",
     "AnyCamera",
+    "BlackmanHarrisFilter",
     "Box",
+    "BoxFilter",
     "BruteForce",
     "Camera",
     "ClosestPoints",
@@ -69,16 +80,22 @@ __all__ = [
     "EnvironmentMap",
     "ErrorEstimate",
     "Fisheye",
+    "GaussianFilter",
     "Grid",
+    "Halton",
     "Hits",
     "Image",
     "Implicit",
+    "Independent",
     "Instance",
     "Integrator",
     "Interactions",
     "KdTree",
     "LightSamples",
+    "LanczosFilter",
+    "Lattice",
     "Mesh",
+    "MitchellFilter",
     "NestedGrid",
     "Octree",
     "Orthographic",
@@ -95,12 +112,15 @@ __all__ = [
     "Rng",
     "Scattered",
     "Scene",
+    "Sobol",
     "Sphere",
     "SpotLight",
     "SunSky",
+    "Stratified",
     "Surface",
     "ThinLens",
     "Torus",
+    "TriangleFilter",
     "check_writable",
     "power_heuristic",
     "render",

@@ -221,6 +221,8 @@ def render(
     adaptive: bool,
     clamp: float | None,
     progress: Callable[[float, int, float], None] | None,
+    sampler: Any,
+    filter: Any,
 ) -> Rendering:
     """Render until the first of `samples` (per pixel), `error` (relMSE) or `seconds` is met.
 

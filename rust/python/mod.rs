@@ -18,6 +18,7 @@ mod random;
 mod rays;
 mod render;
 mod report;
+mod samplers;
 mod shapes;
 mod written;
 

@@ -7,6 +7,7 @@ use std::ops::ControlFlow;
 
 use super::cameras::AnyCamera;
 use super::query::CompiledScene;
+use super::samplers;
 use super::written::Written;
 use crate::integrators::{Integrator, Path};
 use crate::render::{self, HistoryRow, Progress, RenderError, Settings, Until};
@@ -94,6 +95,8 @@ pub fn render_scene(
     adaptive: bool,
     clamp: Option<f64>,
     progress: Option<Py<PyAny>>,
+    sampler: &Bound<'_, PyAny>,
+    filter: &Bound<'_, PyAny>,
 ) -> PyResult<Rendering> {
     let scene = &scene.get().0;
     let kind = integrator.get_type();
@@ -110,7 +113,8 @@ pub fn render_scene(
         _ => unreachable!("it is one or the other"),
     };
     let until = Until { samples, error, seconds };
-    let settings = Settings { until, seed, threads, adaptive, clamp, ..Settings::default() };
+    let (sampler, filter) = (samplers::sampler(sampler, samples)?, samplers::filter(filter)?.into());
+    let settings = Settings { until, seed, threads, adaptive, clamp, sampler, filter };
     let mut watcher = Watcher { progress, raised: None, written: written.as_ref() };
     match py.detach(|| render::render(scene, &*camera.0, chosen, &settings, &mut watcher)) {
         Ok(rendering) => Ok(Rendering(rendering)),
