@@ -5,12 +5,13 @@ from typing import TYPE_CHECKING, Any
 from . import scenes
 from ._core import AcceleratorInfo, simd
 from .accelerators import BSP, BVH, BruteForce, Grid, KdTree, NestedGrid, Octree
+from .aovs import AOVS, aovs
 from .cameras import AnyCamera, Camera, Fisheye, Orthographic, Panorama, Pose, ThinLens
 from .cones import ConeTouches
 from .hits import AllHits, ClosestPoints, Hits, QueryCost
 from .image import ErrorEstimate, Image
 from .instance import Instance
-from .integrators import Path
+from .integrators import AmbientOcclusion, Direct, Distributed, Path, RayCast, Whitted
 from .io.pictures import check_writable
 from .lights import (
     ConstantEnvironment,
@@ -24,6 +25,7 @@ from .lights import (
 )
 from .materials import Diffuse
 from .mesh import Mesh
+from .plan import Plan, PlanRow
 from .rendering import render
 from .scene import Scene
 from .shapes import (
@@ -45,10 +47,12 @@ if TYPE_CHECKING:
     from . import report
 
 __all__ = [
+    "AOVS",
     "BSP",
     "BVH",
     "AcceleratorInfo",
     "AllHits",
+    "AmbientOcclusion",
     "AnyCamera",
     "Box",
     "BruteForce",
@@ -59,8 +63,10 @@ __all__ = [
     "ConstantEnvironment",
     "Cylinder",
     "Diffuse",
+    "Direct",
     "DirectionalLight",
     "Disk",
+    "Distributed",
     "Ellipsoid",
     "Emission",
     "EnvironmentMap",
@@ -79,12 +85,15 @@ __all__ = [
     "Panorama",
     "Paraboloid",
     "Path",
+    "Plan",
+    "PlanRow",
     "Plane",
     "PointLight",
-    "ProjectorLight",
     "Polygon",
     "Pose",
+    "ProjectorLight",
     "QueryCost",
+    "RayCast",
     "Scene",
     "Sphere",
     "SpotLight",
@@ -92,6 +101,8 @@ __all__ = [
     "Surface",
     "ThinLens",
     "Torus",
+    "Whitted",
+    "aovs",
     "check_writable",
     "render",
     "report",

@@ -199,6 +199,17 @@ class Rendering:
     def dropped(self) -> int:
         """Samples that were NaN, infinite or negative, and are counted as black."""
 
+def aovs(
+    scene: CompiledScene, camera: Any, names: list[str], samples: int, seed: int, threads: int | None
+) -> list[NDArray[np.float64]]:
+    """Pictures of channels by their names, (H, W) or (H, W, n), in the order asked for.
+
+    Raises ValueError for a name that is not known.
+    """
+
+def plan(scene: CompiledScene) -> tuple[str, list[tuple[str, bool, str]]]:
+    """The kernel that shades the scene, and rows of what, whether, and what follows."""
+
 def render(
     scene: CompiledScene,
     camera: Any,

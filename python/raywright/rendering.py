@@ -6,7 +6,7 @@ from . import _core
 from .arrays import integer, positive
 from .cameras import AnyCamera
 from .image import HISTORY, ErrorEstimate, Image
-from .integrators import Path
+from .integrators import AnyIntegrator, Path, check_integrator
 from .progress import bar
 from .scene import Scene
 
@@ -17,7 +17,7 @@ _DEFAULT_SAMPLES = 64
 def render(
     scene: Scene,
     camera: AnyCamera,
-    integrator: Path = _PATH,
+    integrator: AnyIntegrator = _PATH,
     samples: int | None = None,
     error: float | None = None,
     seconds: float | None = None,
@@ -33,7 +33,7 @@ def render(
         What to look at.
     camera : Camera or another kind
         From where.
-    integrator : Path
+    integrator : Path or another kind
         What turns rays into radiance.
     samples : int, optional
         Limit on samples per pixel; 64 if no limit at all is given.
@@ -66,11 +66,11 @@ def render(
     for name, value, kind in (
         ("scene", scene, Scene),
         ("camera", camera, AnyCamera),
-        ("integrator", integrator, Path),
     ):
         if not isinstance(value, kind):
             told = kind.__name__.removeprefix("Any")
             raise TypeError(f"{name} must be a raywright.{told}, got {type(value).__name__}")
+    check_integrator("integrator", integrator)
     samples = None if samples is None else integer("samples", samples, 1, 2**32 - 1)
     error = None if error is None else positive("error", error)
     seconds = None if seconds is None else positive("seconds", seconds)

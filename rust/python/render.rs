@@ -6,16 +6,9 @@ use pyo3::prelude::*;
 use std::ops::ControlFlow;
 
 use super::cameras::AnyCamera;
+use super::integrators::AnyIntegrator;
 use super::query::CompiledScene;
-use crate::integrators::Path;
 use crate::render::{self, HistoryRow, Progress, RenderError, Settings, Until};
-
-/// `raywright.Path`.
-#[derive(FromPyObject)]
-pub struct PathIntegrator {
-    max_depth: Option<u32>,
-    roulette_depth: u32,
-}
 
 /// A finished render.
 #[pyclass(frozen, module = "raywright._core")]
@@ -70,7 +63,7 @@ pub fn render_scene(
     py: Python<'_>,
     scene: &Bound<'_, CompiledScene>,
     camera: AnyCamera,
-    integrator: PathIntegrator,
+    integrator: AnyIntegrator,
     samples: Option<u32>,
     error: Option<f64>,
     seconds: Option<f64>,
@@ -79,10 +72,9 @@ pub fn render_scene(
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Rendering> {
     let scene = &scene.get().0;
-    let path = Path { max_depth: integrator.max_depth, roulette_depth: integrator.roulette_depth };
     let settings = Settings { until: Until { samples, error, seconds }, seed, threads, ..Settings::default() };
     let mut watcher = Watcher { progress, raised: None };
-    match py.detach(|| render::render(scene, &*camera.0, &path, &settings, &mut watcher)) {
+    match py.detach(|| render::render(scene, &*camera.0, &*integrator.0, &settings, &mut watcher)) {
         Ok(rendering) => Ok(Rendering(rendering)),
         Err(RenderError::Interrupted) => {
             Err(watcher.raised.unwrap_or_else(|| PyRuntimeError::new_err("the render was interrupted")))

@@ -12,6 +12,7 @@ mod group;
 mod interaction;
 pub mod lights;
 mod mapped;
+mod motion;
 pub mod materials;
 pub mod media;
 mod per_vertex;
