@@ -43,7 +43,9 @@ fn main() {
             seconds[which].push(run(Kernel::ALL[which]).0);
         }
     }
-    println!("Paths of a closed room of one diffuse colour a wall on one thread; a kernel's time over that of the one before.");
+    println!(
+        "Paths of a closed room of one diffuse colour a wall on one thread; a kernel's time over that of the one before."
+    );
     println!();
     println!("| kernel | thousand paths a second | time over plain |");
     println!("|---|---|---|");

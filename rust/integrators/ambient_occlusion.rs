@@ -27,7 +27,14 @@ impl Default for AmbientOcclusion {
 
 impl Integrator for AmbientOcclusion {
     fn worker<'a>(&'a self, scene: &'a Scene, _footprint: Footprint) -> Box<dyn Worker + 'a> {
-        Box::new(Openness { settings: *self, scene, hits: Vec::new(), rays: Vec::new(), of: Vec::new(), occluded: Vec::new() })
+        Box::new(Openness {
+            settings: *self,
+            scene,
+            hits: Vec::new(),
+            rays: Vec::new(),
+            of: Vec::new(),
+            occluded: Vec::new(),
+        })
     }
 }
 

@@ -137,8 +137,7 @@ pub fn aovs(
 ) -> Vec<Vec<f64>> {
     let (width, height) = (camera.width() as usize, camera.height() as usize);
     let row_of = |y: usize| -> Vec<Vec<f64>> {
-        let mut row: Vec<_> =
-            channels.iter().map(|channel| vec![channel.nothing(); width * channel.width()]).collect();
+        let mut row: Vec<_> = channels.iter().map(|channel| vec![channel.nothing(); width * channel.width()]).collect();
         if !cancel.is_raised() {
             expose_row(scene, camera, (channels, samples, seed), y, &mut row);
         }

@@ -37,10 +37,9 @@ impl<'a, 'py> FromPyObject<'a, 'py> for AnyIntegrator {
                 max_depth: attribute(of, "max_depth")?,
                 roulette_depth: attribute(of, "roulette_depth")?,
             }),
-            "Direct" => Box::new(Direct {
-                light_samples: light_samples()?,
-                surface_samples: attribute(of, "surface_samples")?,
-            }),
+            "Direct" => {
+                Box::new(Direct { light_samples: light_samples()?, surface_samples: attribute(of, "surface_samples")? })
+            }
             "RayCast" => Box::new(RayCast {
                 ambient: rgb(of, "ambient")?,
                 shadows: attribute(of, "shadows")?,

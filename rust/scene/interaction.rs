@@ -141,12 +141,7 @@ impl<S: Scatters> Interaction<S> {
     /// A ray of unit direction at a point of a surface with this shading normal, and the direction that the frame's x should have if that
     /// matters, that scatters so.
     #[inline]
-    pub fn with(
-        ray: &Ray,
-        surface: SurfacePoint,
-        (shading, tangent): (DVec3, Option<DVec3>),
-        scattering: S,
-    ) -> Self {
+    pub fn with(ray: &Ray, surface: SurfacePoint, (shading, tangent): (DVec3, Option<DVec3>), scattering: S) -> Self {
         let back = -ray.direction;
         let side = 1f64.copysign(back.dot(surface.normal));
         let is_flat = shading == surface.normal;

@@ -51,7 +51,8 @@ mod tests {
         let moved: Matrix = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 3.0], [0.0, 0.0, 1.0, 0.0]];
         let inner = Copies::moving(group(vec![sheet]), vec![[still, grown]]).unwrap();
         let inner = group(vec![Shape { surface: inner.into(), ..Shape::default() }]);
-        let geometry = Geometry::new([crate::scene::Surface::from(Copies::moving(inner, vec![[still, moved]]).unwrap())]);
+        let geometry =
+            Geometry::new([crate::scene::Surface::from(Copies::moving(inner, vec![[still, moved]]).unwrap())]);
         let ray = Ray::new(DVec3::new(0.25, -0.5, 5.0), DVec3::NEG_Z);
         let hit = BruteForce::over(&geometry, Level::Scalar).intersect_one(&ray);
         let motion = geometry.motion(&ray, &hit);

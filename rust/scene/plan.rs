@@ -178,12 +178,22 @@ impl Plan {
         vec![
             row("light", needs.light, "a light is asked at each point", "no light is asked, no shadow ray sent"),
             row("materials", needs.scattering, "asked at each point", "one diffuse colour a shape, asked once"),
-            row("textures", needs.points.any(), "coordinates are computed where asked for", "no coordinates kept or computed"),
+            row(
+                "textures",
+                needs.points.any(),
+                "coordinates are computed where asked for",
+                "no coordinates kept or computed",
+            ),
             row("filtered textures", needs.points.width, "paths carry the width of their rays", "paths carry no width"),
             row("masks", needs.masks, "shadow rays are followed through", "the first hit ends a shadow ray"),
             row("media", needs.interiors, "surfaces have an outside", "no index of refraction kept"),
             row("nested media", needs.nested, "paths know what they are in", "paths carry no media"),
-            row("patterned lights", needs.patterned_lights, "emission is asked at each point", "emission is one number a shape"),
+            row(
+                "patterned lights",
+                needs.patterned_lights,
+                "emission is asked at each point",
+                "emission is one number a shape",
+            ),
             row("shading normals", needs.smooth, "interpolated, and faded at the terminator", "none kept or computed"),
             row("shapes", needs.shapes, "a tree of their own beside the triangles'", "no tree beside the triangles'"),
             row("instances", needs.copies, "rays are taken to each copy's space", "rays stay in the world"),
@@ -197,7 +207,7 @@ mod tests {
     use super::*;
     use crate::scene::fixtures::{cornell, furnace, rectangle, shape};
     use crate::scene::materials::{Interior, Scattering};
-    use crate::scene::{SceneDescription, Shape, ShadingPoint};
+    use crate::scene::{SceneDescription, ShadingPoint, Shape};
 
     #[test]
     fn diffuse_rooms_are_plain() {
@@ -241,7 +251,8 @@ mod tests {
             material: Arc::new(material),
             ..shape(rectangle([0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]), [0.5; 3], 0.0)
         };
-        let plan = |shapes| crate::scene::fixtures::scene(SceneDescription { shapes, ..Default::default() }).plan().clone();
+        let plan =
+            |shapes| crate::scene::fixtures::scene(SceneDescription { shapes, ..Default::default() }).plan().clone();
         assert_eq!(plan(vec![sheet(glass())]).kernel(), Kernel::Open);
         assert_eq!(plan(vec![sheet(glass()), sheet(glass())]).kernel(), Kernel::General);
         let mask = Odd { interior: None, is_opaque: false };

@@ -7,7 +7,7 @@ use crate::optics::{Diffuse, Rgb};
 use crate::scene::fixtures::{rectangle, scene, shape};
 use crate::scene::materials::Scattering;
 use crate::scene::textures::{Needs, TexturePoint};
-use crate::scene::{Material, PointLight, SceneDescription, Shape, ShadingPoint};
+use crate::scene::{Material, PointLight, SceneDescription, ShadingPoint, Shape};
 use std::f64::consts::PI;
 use std::sync::Arc;
 

@@ -8,7 +8,8 @@ use crate::optics::Rgb;
 use crate::sampling::Sampler;
 use crate::scene::fixtures::{cornell, furnace, inward_box, rectangle, scene, shape};
 use crate::scene::{
-    Camera, ConstantEnvironment, Copies, Footprint, Geometry, Group, Kernel, Matrix, PointLight, Scene, SceneDescription, Shape,
+    Camera, ConstantEnvironment, Copies, Footprint, Geometry, Group, Kernel, Matrix, PointLight, Scene,
+    SceneDescription, Shape,
 };
 use crate::simd::Level;
 use crate::workers::Cancel;
@@ -42,10 +43,8 @@ fn a_furnace_shines_so_many_bounces() {
 fn a_furnace_of_copies_shines_as_one_of_walls() {
     // Six copies of one wall, each under a map of its own, and a copy of that moving out of shape: light that is not sampled but
     // found, and rays that leave walls under such maps without meeting them.
-    let wall = Group::new(
-        vec![shape(rectangle([-1.0, -1.0, 0.0], [2.0, 0.0, 0.0], [0.0, 2.0, 0.0]), [0.5; 3], 2.0)],
-        brute,
-    );
+    let wall =
+        Group::new(vec![shape(rectangle([-1.0, -1.0, 0.0], [2.0, 0.0, 0.0], [0.0, 2.0, 0.0]), [0.5; 3], 2.0)], brute);
     let place = |x: DVec3, y: DVec3, z: DVec3| -> Matrix {
         let at = -1.5 * z / z.length();
         std::array::from_fn(|i| [1.5 * x[i], 1.5 * y[i], z[i], at[i]])
@@ -112,8 +111,7 @@ fn a_floor_reflects_the_irradiance_of_a_disk() {
     // Radius 1 at height 1, centred: E = π L r² / (r² + h²) = π/2 L (Howell, C-41 with one small disk). The disk is a
     // polygon of 720 sides of the same area, and the floor an albedo of 0.8.
     let sides = 720u32;
-    let radius =
-        (std::f64::consts::TAU / f64::from(sides) / (std::f64::consts::TAU / f64::from(sides)).sin()).sqrt();
+    let radius = (std::f64::consts::TAU / f64::from(sides) / (std::f64::consts::TAU / f64::from(sides)).sin()).sqrt();
     let corner = |i: u32| {
         let (sin, cos) = (f64::from(i) * std::f64::consts::TAU / f64::from(sides)).sin_cos();
         DVec3::new(radius * cos, radius * sin, 1.0).as_vec3()
@@ -137,7 +135,10 @@ fn a_point_and_the_sky_light_a_floor() {
     let points = scene(SceneDescription { shapes: floor(), lights: vec![Arc::new(point)], ..Default::default() });
     let expected = 0.5 * 0.353_553_390_593_273_73 / std::f64::consts::PI;
     assert_radiance(&points, &Path::default(), ray, 10, expected);
-    let sky = scene(SceneDescription { shapes: floor(), lights: vec![Arc::new(ConstantEnvironment { radiance: Rgb::splat(2.0) })] });
+    let sky = scene(SceneDescription {
+        shapes: floor(),
+        lights: vec![Arc::new(ConstantEnvironment { radiance: Rgb::splat(2.0) })],
+    });
     assert_radiance(&sky, &Path::default(), ray, 1000, 1.0);
     // A ray that meets nothing sees the sky itself.
     assert_radiance(&sky, &Path::default(), Ray::new(DVec3::Z, DVec3::Z), 2, 2.0);
@@ -146,8 +147,7 @@ fn a_point_and_the_sky_light_a_floor() {
 #[test]
 fn a_sample_does_not_depend_on_its_batch() {
     let scene = furnace(0.7, 1.0);
-    let samples: Vec<_> =
-        (0..100).map(|n| CameraSample { ray: ANYWHERE, sampler: Sampler::new(8, n, n) }).collect();
+    let samples: Vec<_> = (0..100).map(|n| CameraSample { ray: ANYWHERE, sampler: Sampler::new(8, n, n) }).collect();
     let run = |size: usize| {
         let path = Path::default();
         let mut worker = path.worker(&scene, Footprint::default());

@@ -12,7 +12,9 @@ use crate::math::{DVec3, Hit, Ray};
 use crate::optics::{Bsdf, Rgb};
 use crate::sampling::Sampler;
 use crate::scene::textures::TexturePoint;
-use crate::scene::{Departure, Footprint, Interaction, Receiver, Scattered, Scatters, Scene, ShadingPoint, SurfacePoint};
+use crate::scene::{
+    Departure, Footprint, Interaction, Receiver, Scattered, Scatters, Scene, ShadingPoint, SurfacePoint,
+};
 use crate::workers::Cancel;
 use std::marker::PhantomData;
 
@@ -284,8 +286,7 @@ impl<'a, N: Features> TransportWorker<'a, N> {
         for branch in 0..splits {
             // The first goes on as the path that it comes from.
             let branch = if branch == 0 { vertex.baggage.branch } else { branch };
-            let dimensions =
-                if N::BAGGAGE { Dimensions::of(vertex.path.bounce, branch) } else { vertex.dimensions };
+            let dimensions = if N::BAGGAGE { Dimensions::of(vertex.path.bounce, branch) } else { vertex.dimensions };
             let u = sampler.two(dimensions.direction());
             let Some(next) = vertex.here.sample(|| sampler.one(dimensions.scattering_choice()), u) else { continue };
             if self.is_followed(next.pdf) {
@@ -385,8 +386,7 @@ impl<'a, N: Features> TransportWorker<'a, N> {
             return;
         }
         if path.bounce >= self.settings.roulette_depth.min(ROULETTE_AT_LATEST) {
-            let dimensions =
-                if N::BAGGAGE { Dimensions::of(vertex.path.bounce, branch) } else { vertex.dimensions };
+            let dimensions = if N::BAGGAGE { Dimensions::of(vertex.path.bounce, branch) } else { vertex.dimensions };
             let survival = survival(path.throughput, path.scale);
             if number(dimensions.roulette()) >= survival {
                 return;

@@ -108,7 +108,10 @@ mod tests {
                 let error = ((square - mean * mean).max(Rgb::ZERO) / f64::from(count)).map(f64::sqrt);
                 // Of what is too seldom to be drawn, three draws of weight 3 are no surprise.
                 let rare = 9.0 / f64::from(count);
-                assert!(((mean - expected).abs() - 4.0 * error).max_element() < rare, "{depth}: {mean}, not {expected}");
+                assert!(
+                    ((mean - expected).abs() - 4.0 * error).max_element() < rare,
+                    "{depth}: {mean}, not {expected}"
+                );
             }
         }
     }
