@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 from . import scenes
 from ._core import AcceleratorInfo, simd
 from .accelerators import BSP, BVH, BruteForce, Grid, KdTree, NestedGrid, Octree
+from .aovs import AOVS, aovs
 from .cameras import AnyCamera, Camera, Fisheye, Orthographic, Panorama, Pose, ThinLens
 from .cones import ConeTouches
 from .filters import (
@@ -19,7 +20,7 @@ from .hits import AllHits, ClosestPoints, Hits, QueryCost
 from .image import ErrorEstimate, Image
 from .instance import Instance
 from .integrator import Integrator
-from .integrators import Path
+from .integrators import AmbientOcclusion, Direct, Distributed, Path, RayCast, Whitted
 from .interactions import Interactions, LightSamples, Rays, Scattered, power_heuristic
 from .io.pictures import check_writable
 from .lights import (
@@ -34,6 +35,7 @@ from .lights import (
 )
 from .materials import Diffuse
 from .mesh import Mesh
+from .plan import Plan, PlanRow
 from .rendering import render
 from .rng import Rng
 from .samplers import Halton, Independent, Lattice, Sobol, Stratified
@@ -57,10 +59,12 @@ if TYPE_CHECKING:
     from . import report
 
 __all__ = [
+    "AOVS",
     "BSP",
     "BVH",
     "AcceleratorInfo",
     "AllHits",
+    "AmbientOcclusion",
     "AnyCamera",
     "BlackmanHarrisFilter",
     "Box",
@@ -73,8 +77,10 @@ __all__ = [
     "ConstantEnvironment",
     "Cylinder",
     "Diffuse",
+    "Direct",
     "DirectionalLight",
     "Disk",
+    "Distributed",
     "Ellipsoid",
     "Emission",
     "EnvironmentMap",
@@ -102,12 +108,15 @@ __all__ = [
     "Panorama",
     "Paraboloid",
     "Path",
+    "Plan",
+    "PlanRow",
     "Plane",
     "PointLight",
-    "ProjectorLight",
     "Polygon",
     "Pose",
+    "ProjectorLight",
     "QueryCost",
+    "RayCast",
     "Rays",
     "Rng",
     "Scattered",
@@ -121,6 +130,8 @@ __all__ = [
     "ThinLens",
     "Torus",
     "TriangleFilter",
+    "Whitted",
+    "aovs",
     "check_writable",
     "power_heuristic",
     "render",

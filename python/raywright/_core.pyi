@@ -208,6 +208,17 @@ class Rendering:
     def clamped(self) -> tuple[int, float]:
         """Samples that were clamped, and the share of the picture's radiance that this took."""
 
+def aovs(
+    scene: CompiledScene, camera: Any, names: list[str], samples: int, seed: int, threads: int | None
+) -> list[NDArray[np.float64]]:
+    """Pictures of channels by their names, (H, W) or (H, W, n), in the order asked for.
+
+    Raises ValueError for a name that is not known.
+    """
+
+def plan(scene: CompiledScene) -> tuple[str, list[tuple[str, bool, str]]]:
+    """The kernel that shades the scene, and rows of what, whether, and what follows."""
+
 def render(
     scene: CompiledScene,
     camera: Any,

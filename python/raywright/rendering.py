@@ -7,8 +7,7 @@ from .arrays import integer, positive
 from .cameras import AnyCamera
 from .filters import BoxFilter, Filter
 from .image import HISTORY, ErrorEstimate, Image
-from .integrator import Integrator
-from .integrators import Path
+from .integrators import AnyIntegrator, Path, check_integrator
 from .progress import Report, bar
 from .samplers import Independent, Sampler
 from .scene import Scene
@@ -22,7 +21,7 @@ _DEFAULT_SAMPLES = 64
 def render(
     scene: Scene,
     camera: AnyCamera,
-    integrator: Path | Integrator = _PATH,
+    integrator: AnyIntegrator = _PATH,
     samples: int | None = None,
     error: float | None = None,
     seconds: float | None = None,
@@ -43,7 +42,7 @@ def render(
         What to look at.
     camera : Camera or another kind
         From where.
-    integrator : Path or Integrator
+    integrator : Path or another kind
         What turns rays into radiance; an `Integrator` may be written in Python.
     samples : int, optional
         Limit on samples per pixel; 64 if no limit at all is given.
@@ -85,14 +84,14 @@ def render(
     KeyboardInterrupt
         At once, when Ctrl-C is pressed.
     """
-    for name, value, kinds in (
-        ("scene", scene, (Scene,)),
-        ("camera", camera, (AnyCamera,)),
-        ("integrator", integrator, (Path, Integrator)),
+    for name, value, kind in (
+        ("scene", scene, Scene),
+        ("camera", camera, AnyCamera),
     ):
-        if not isinstance(value, kinds):
-            told = kinds[-1].__name__.removeprefix("Any")
+        if not isinstance(value, kind):
+            told = kind.__name__.removeprefix("Any")
             raise TypeError(f"{name} must be a raywright.{told}, got {type(value).__name__}")
+    check_integrator("integrator", integrator)
     if not isinstance(adaptive, bool):
         raise TypeError(f"adaptive must be True or False, got {adaptive!r}")
     if not isinstance(sampler, Sampler):

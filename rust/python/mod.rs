@@ -10,6 +10,7 @@ mod first_hits;
 mod freeform;
 mod info;
 mod instances;
+mod integrators;
 mod interactions;
 mod lights;
 mod points;
@@ -53,6 +54,8 @@ mod _core {
     use super::info::AcceleratorInfo;
     #[pymodule_export]
     use super::instances::singular_transform;
+    #[pymodule_export]
+    use super::integrators::{aovs, plan};
     #[pymodule_export]
     use super::interactions::{Interactions, interactions};
     #[pymodule_export]

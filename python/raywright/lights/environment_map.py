@@ -53,7 +53,9 @@ class EnvironmentMap(Pictured):
         if factor < 0:
             raise ValueError(f"scale must be at least 0, got {scale}")
         object.__setattr__(self, "image", texels("image", image))
-        object.__setattr__(self, "to_world", _rotation("to_world", np.eye(3) if to_world is None else to_world))
+        object.__setattr__(
+            self, "to_world", _rotation("to_world", np.eye(3) if to_world is None else to_world)
+        )
         object.__setattr__(self, "scale", factor)
 
 

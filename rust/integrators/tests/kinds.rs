@@ -85,9 +85,9 @@ fn a_furnace_shows_as_many_bounces_as_are_followed() {
     let ray = Ray::new(DVec3::new(0.1, -0.2, 0.3), DVec3::new(0.48, 0.6, 0.64));
     let scene = furnace(0.5, 1.0);
     for integrator in [&Direct::default() as &dyn Integrator, &RayCast::default(), &Whitted::default()] {
-        assert_radiance(&scene, integrator, ray, 20_000, 1.5);
+        assert_radiance(&scene, integrator, ray, 60_000, 1.5);
     }
-    assert_radiance(&scene, &Distributed::default(), ray, 20_000, 1.5);
+    assert_radiance(&scene, &Distributed::default(), ray, 40_000, 1.5);
 }
 
 /// The radiance of a lamp of 2 behind a pane of smooth glass, seen straight, and of one of 5 in front of it.
