@@ -17,7 +17,10 @@ pub struct Metal {
 
 /// The metal of a chemical symbol or an English name, in any case of letters.
 pub fn metal(name: &str) -> Option<Metal> {
-    METALS.iter().find(|metal| name.eq_ignore_ascii_case(metal.symbol) || name.eq_ignore_ascii_case(metal.name)).copied()
+    METALS
+        .iter()
+        .find(|metal| name.eq_ignore_ascii_case(metal.symbol) || name.eq_ignore_ascii_case(metal.name))
+        .copied()
 }
 
 const fn metal_of(symbol: &'static str, name: &'static str, eta: [f64; 3], k: [f64; 3]) -> Metal {

@@ -10,12 +10,14 @@ mod first_hits;
 mod freeform;
 mod info;
 mod instances;
+mod materials;
 mod points;
 mod query;
 mod rays;
 mod render;
 mod report;
 mod shapes;
+mod textures;
 
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -47,6 +49,8 @@ mod _core {
     use super::info::AcceleratorInfo;
     #[pymodule_export]
     use super::instances::singular_transform;
+    #[pymodule_export]
+    use super::materials::metals;
     #[pymodule_export]
     use super::points::points;
     #[pymodule_export]

@@ -5,7 +5,8 @@ from dataclasses import dataclass
 from numpy.typing import ArrayLike
 
 from ..arrays import Triple, number
-from ..materials import Diffuse
+from ..materials import Material
+from ..textures.texture import Texture
 from .shape import Shape, segment, switch
 
 
@@ -26,9 +27,9 @@ class Cone(Shape):
     transform : (4, 4) array, optional
         An affine matrix that acts on column vectors (x, y, z, 1), as from the shape's own space to the world.
         Rays are decided for the matrix as it is given, not for a rounded inverse.
-    material : Diffuse, optional
+    material : Material, optional
         How the surface scatters; ``Diffuse()`` if not given.
-    emission : float or 3 floats, optional
+    emission : float, 3 floats or Texture, optional
         Radiance in W·sr⁻¹·m⁻² that leaves the outer side; None, the default, for a shape that does not shine.
 
     Raises
@@ -59,8 +60,8 @@ class Cone(Shape):
         capped: bool = True,
         *,
         transform: ArrayLike | None = None,
-        material: Diffuse | None = None,
-        emission: ArrayLike | None = None,
+        material: Material | None = None,
+        emission: ArrayLike | Texture | None = None,
     ) -> None:
         start, end = segment(("base", "tip"), base, tip)
         radii = number("base_radius", base_radius), number("tip_radius", tip_radius)

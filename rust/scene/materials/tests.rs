@@ -240,10 +240,7 @@ impl Texture for Wave {
 fn bumps_have_the_normals_of_the_height_field() {
     let bump = |scale| BumpMap { material: grey(0.5), height: Value::Texture(Arc::new(Wave)), scale };
     for (u, v) in [(0.0, 0.0), (0.3, 0.7), (-2.0, 1.1), (5.0, -3.0)] {
-        let (du, dv) = (
-            3.0 * f64::cos(3.0 * u) * f64::cos(2.0 * v),
-            -2.0 * f64::sin(3.0 * u) * f64::sin(2.0 * v),
-        );
+        let (du, dv) = (3.0 * f64::cos(3.0 * u) * f64::cos(2.0 * v), -2.0 * f64::sin(3.0 * u) * f64::sin(2.0 * v));
         for scale in [0.0, 0.1, -0.4] {
             let expected = DVec3::new(-scale * du, -scale * dv, 1.0).normalize();
             let normal = bump(scale).normal(&at(u, v)).unwrap();
@@ -409,7 +406,8 @@ fn what_cannot_be_is_refused_in_a_line() {
 fn a_hole_in_scattering_is_no_mask() {
     // What lets light straight through may stand in a mix like any other kind.
     let through = Scattering::from(Transparent { transmittance: Rgb::ONE });
-    let half = Scattering::mixed((Rgb::splat(0.5), through), (Rgb::splat(0.5), Diffuse { reflectance: Rgb::ONE }.into()));
+    let half =
+        Scattering::mixed((Rgb::splat(0.5), through), (Rgb::splat(0.5), Diffuse { reflectance: Rgb::ONE }.into()));
     assert!(half.transmits() && !half.is_delta());
     assert_eq!((half.albedo(), half.roughness()), (Rgb::ONE, 0.0));
 }

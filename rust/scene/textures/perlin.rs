@@ -118,8 +118,8 @@ mod tests {
                 let by = [corner & 1, (corner >> 1) & 1, corner >> 2];
                 let mut d = [0, 1, 2].map(|k| (at[k] - f64::from(by[k])).abs());
                 d.sort_by(f64::total_cmp);
-                sum += (d[1] + d[2])
-                    * (0..3).map(|k| if by[k] == 1 { fade[k] } else { 1.0 - fade[k] }).product::<f64>();
+                sum +=
+                    (d[1] + d[2]) * (0..3).map(|k| if by[k] == 1 { fade[k] } else { 1.0 - fade[k] }).product::<f64>();
             }
             most = most.max(sum);
         }
