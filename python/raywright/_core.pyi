@@ -20,6 +20,7 @@ __all__ = [
     "first_hits",
     "implicit_trouble",
     "matrix_trouble",
+    "metals",
     "points",
     "polygon_trouble",
     "render",
@@ -311,6 +312,9 @@ def shape_area(shape: Any) -> float:
 
 def matrix_trouble(matrix: list[list[float]]) -> str | None:
     """Why an affine matrix (4 rows of 4) has no inverse, or None if it has one."""
+
+def metals() -> list[tuple[str, str, tuple[float, ...], tuple[float, ...]]]:
+    """Tell the metals that are known: symbol, name, and index of refraction, real and imaginary (RGB)."""
 
 def polygon_trouble(
     outline: Sequence[Sequence[float]], holes: Sequence[Sequence[Sequence[float]]]

@@ -13,6 +13,7 @@ mod instances;
 mod integrators;
 mod interactions;
 mod lights;
+mod materials;
 mod points;
 mod query;
 mod random;
@@ -21,6 +22,7 @@ mod render;
 mod report;
 mod samplers;
 mod shapes;
+mod textures;
 mod written;
 
 use pyo3::exceptions::PyValueError;
@@ -58,6 +60,8 @@ mod _core {
     use super::integrators::{aovs, plan};
     #[pymodule_export]
     use super::interactions::{Interactions, interactions};
+    #[pymodule_export]
+    use super::materials::metals;
     #[pymodule_export]
     use super::points::points;
     #[pymodule_export]
