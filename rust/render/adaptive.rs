@@ -93,8 +93,7 @@ impl Adaptive {
             for tile in film.tiles() {
                 for (cell, (x, y)) in (half..).step_by(2).zip(tile.pixels()) {
                     let count = f64::from(tile.counts()[cell]);
-                    limits[y as usize * width + x as usize] =
-                        [count + f64::from(more), Self::GROWTH * count.max(mean)];
+                    limits[y as usize * width + x as usize] = [count + f64::from(more), Self::GROWTH * count.max(mean)];
                 }
             }
             let level = level(&weights, &limits, f64::from(to / 2) * weights.len() as f64);
@@ -252,7 +251,8 @@ mod tests {
 
     #[test]
     fn variances_are_unbiased_too() {
-        let films: Vec<Film> = (0..1000u64).into_par_iter().map(|seed| film(seed, 0.1, 64, 1, |half| 1 - half)).collect();
+        let films: Vec<Film> =
+            (0..1000u64).into_par_iter().map(|seed| film(seed, 0.1, 64, 1, |half| 1 - half)).collect();
         // Ten values for the error of a ratio of sums over all pixels.
         let ratios: Vec<f64> = films
             .chunks(100)

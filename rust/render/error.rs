@@ -123,8 +123,9 @@ impl Denominators {
 struct Sums {
     /// The errors.
     error: f64,
-    /// Their squares.
+    /// Their squares, and those of the largest batches.
     squares: f64,
+    peaks: f64,
     /// The errors with each pixel's own mean in the denominator.
     own: f64,
     /// What single batches bring.
@@ -139,29 +140,32 @@ impl Sums {
         self.squares += error * error;
         self.own += spread.variance.dot(denominators.own);
         for peak in spread.peaks {
-            self.largest.add(peak.dot(denominators.inverse));
+            let peak = peak.dot(denominators.inverse);
+            self.peaks += peak * peak;
+            self.largest.add(peak);
         }
     }
 
     fn join(&mut self, other: &Self) {
         self.error += other.error;
         self.squares += other.squares;
+        self.peaks += other.peaks;
         self.own += other.own;
         self.largest.join(&other.largest);
     }
 
     /// The estimate, over so many values in all.
     ///
-    /// Two things are uncertain. The true error of each pixel is one draw of (x − μ)², whose variance is twice the square
-    /// of its mean; this is summed as if channels err together, as they nearly do, and pixels apart, as they do. And
-    /// the denominators are in doubt by as much as choosing them has changed. An error is never negative, and a
+    /// Three things are uncertain. The true error of each pixel is one draw of (x − μ)², whose variance is twice the square
+    /// of its mean; this is summed as if channels err together, as they nearly do, and pixels apart, as they do. The
+    /// estimate is a sum over samples, of which the largest of each cell make most of its variance. And the denominators are in doubt by as much as choosing them has changed. An error is never negative, and a
     /// factor too large as likely as too small, so the interval is one of factors.
     fn estimate(&self, count: f64) -> ErrorEstimate {
         let value = self.error / count;
         if value == 0.0 {
             return ErrorEstimate { value, low: 0.0, high: 0.0, carried: None };
         }
-        let chance = 1.96 * (2.0 * self.squares).sqrt() / self.error;
+        let chance = 1.96 * (2.0 * self.squares + self.peaks).sqrt() / self.error;
         let doubt = 1.0 - self.own / self.error;
         let factor = chance.hypot(doubt).exp();
         ErrorEstimate { value, low: value / factor, high: value * factor, carried: self.largest.carry(self.error) }
