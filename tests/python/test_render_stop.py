@@ -64,8 +64,8 @@ def test_stopping_at_an_error_does_not_darken_the_picture():
     error = means.std(ddof=1) / np.sqrt(len(means))
     doubt = np.sqrt(np.square(reference.standard_error.astype(float)).sum()) / reference.rgb.size
     off = means.mean() - reference.rgb.mean(dtype=float)
-    # Within four standard errors, which chance exceeds once in 16,000 cases. Over 300 pictures that is less than
-    # a quarter of what one picture differs from another by.
+    # Within four standard errors, which chance exceeds once in 16,000 cases. Over 300 pictures that is
+    # less than a quarter of what one picture differs from another by.
     assert abs(off) < 4 * np.hypot(error, 2 * doubt)
 
 
