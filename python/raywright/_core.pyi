@@ -201,7 +201,7 @@ class Rendering:
         """Samples of each pixel (H,W)."""
     @property
     def carried(self) -> tuple[int, float] | None:
-        """How few samples carry more than half of the error estimate, and their share; None if it takes many."""
+        """How few samples carry more than half of the error estimate, and their share; None if many do."""
     @property
     def dropped(self) -> int:
         """Samples that were NaN, infinite or negative, and are counted as black."""
