@@ -43,10 +43,7 @@ impl std::fmt::Display for Singular {
 /// By what it is made of.
 impl std::fmt::Debug for Affine {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Affine")
-            .field("rows", &self.rows)
-            .field("shift", &self.shift)
-            .finish()
+        f.debug_struct("Affine").field("rows", &self.rows).field("shift", &self.shift).finish()
     }
 }
 
@@ -60,40 +57,22 @@ impl PartialEq for Affine {
 impl Affine {
     /// The map of three rows and a shift.
     pub fn new(rows: [DVec3; 3], shift: DVec3) -> Self {
-        let largest = rows
-            .iter()
-            .map(|row| row.abs().max_element())
-            .fold(0.0, f64::max);
-        let (up, scale) = if largest.is_normal() {
-            normalising_scale(largest)
-        } else {
-            (1.0, 1.0)
-        };
+        let largest = rows.iter().map(|row| row.abs().max_element()).fold(0.0, f64::max);
+        let (up, scale) = if largest.is_normal() { normalising_scale(largest) } else { (1.0, 1.0) };
         let scaled = rows.map(|row| {
             Triple(row.to_array().map(|x| {
                 let y = x * up;
                 // What becomes subnormal is rounded.
-                Double {
-                    error: if y / up == x { 0.0 } else { f64::MIN_POSITIVE },
-                    ..Double::of(y)
-                }
+                Double { error: if y / up == x { 0.0 } else { f64::MIN_POSITIVE }, ..Double::of(y) }
             }))
         });
         let (adjugate, determinant) = adjugate(scaled);
-        Self {
-            rows,
-            shift,
-            adjugate: (adjugate, determinant.times(&Double::of(scale))),
-            scale,
-        }
+        Self { rows, shift, adjugate: (adjugate, determinant.times(&Double::of(scale))), scale }
     }
 
     /// The map of a matrix that acts on columns (x, y, z, 1), of which the last row is (0, 0, 0, 1) and not given.
     pub fn from_matrix(matrix: [[f64; 4]; 3]) -> Self {
-        Self::new(
-            matrix.map(|[x, y, z, _]| DVec3::new(x, y, z)),
-            DVec3::from_array(matrix.map(|row| row[3])),
-        )
+        Self::new(matrix.map(|[x, y, z, _]| DVec3::new(x, y, z)), DVec3::from_array(matrix.map(|row| row[3])))
     }
 
     /// A map that only moves.
@@ -103,10 +82,7 @@ impl Affine {
 
     /// A map that scales along the axes.
     pub fn scale(by: DVec3) -> Self {
-        Self::new(
-            [DVec3::X * by.x, DVec3::Y * by.y, DVec3::Z * by.z],
-            DVec3::ZERO,
-        )
+        Self::new([DVec3::X * by.x, DVec3::Y * by.y, DVec3::Z * by.z], DVec3::ZERO)
     }
 
     /// The map that does the other first and then this one, each of its numbers rounded once from twice the digits.
@@ -176,10 +152,7 @@ impl Affine {
         };
         let (rows, determinant) = kept().unwrap_or_else(|| adjugate(self.rows.map(Triple::of)));
         if determinant.seems_negative() {
-            (
-                rows.map(|Triple(row)| Triple(row.map(|x| x.negated()))),
-                determinant.negated(),
-            )
+            (rows.map(|Triple(row)| Triple(row.map(|x| x.negated()))), determinant.negated())
         } else {
             (rows, determinant)
         }
@@ -194,10 +167,7 @@ impl Affine {
     pub fn point(&self, p: DVec3) -> DVec3 {
         let point = Triple::<Double>::of(p);
         DVec3::from_array(std::array::from_fn(|i| {
-            Triple::of(self.rows[i])
-                .dot(&point)
-                .plus(&Double::of(self.shift[i]))
-                .high
+            Triple::of(self.rows[i]).dot(&point).plus(&Double::of(self.shift[i])).high
         }))
     }
 
@@ -208,11 +178,7 @@ impl Affine {
 
     /// How areas go, as vectors along their normals: the cofactors of the linear part, times a vector.
     pub fn cofactors(&self, v: DVec3) -> DVec3 {
-        let [a, b, c] = self
-            .adjugate
-            .0
-            .each_ref()
-            .map(|Triple(row)| DVec3::from_array(row.map(|x| x.high)));
+        let [a, b, c] = self.adjugate.0.each_ref().map(|Triple(row)| DVec3::from_array(row.map(|x| x.high)));
         (a * v.x + b * v.y + c * v.z) * self.scale * self.scale
     }
 
@@ -228,11 +194,7 @@ impl Affine {
 
     /// A bound on how far apart the images of points are, in each coordinate, that are at most so far apart in each.
     pub fn spread(&self, error: f64) -> f64 {
-        let most = self
-            .rows
-            .iter()
-            .map(|row| row.abs().element_sum())
-            .fold(0.0, f64::max);
+        let most = self.rows.iter().map(|row| row.abs().element_sum()).fold(0.0, f64::max);
         most * error * (1.0 + 8.0 * UNIT)
     }
 
@@ -241,10 +203,8 @@ impl Affine {
         let columns = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| self.vector(axis));
         let square = columns[0].length_squared();
         let close = |x: f64, y: f64| (x - y).abs() <= square * 32.0 * UNIT;
-        let even = (0..3).all(|i| {
-            close(columns[i].length_squared(), square)
-                && close(columns[i].dot(columns[(i + 1) % 3]), 0.0)
-        });
+        let even = (0..3)
+            .all(|i| close(columns[i].length_squared(), square) && close(columns[i].dot(columns[(i + 1) % 3]), 0.0));
         even.then(|| self.determinant().abs().cbrt())
     }
 }
@@ -262,13 +222,11 @@ mod tests {
     use proptest::prelude::*;
 
     fn vector() -> impl Strategy<Value = DVec3> {
-        prop::array::uniform3(prop_oneof![-2.0..2.0f64, (-2i32..=2).prop_map(f64::from)])
-            .prop_map(DVec3::from_array)
+        prop::array::uniform3(prop_oneof![-2.0..2.0f64, (-2i32..=2).prop_map(f64::from)]).prop_map(DVec3::from_array)
     }
 
     fn map() -> impl Strategy<Value = Affine> {
-        (prop::array::uniform3(vector()), vector())
-            .prop_map(|(rows, shift)| Affine::new(rows, shift))
+        (prop::array::uniform3(vector()), vector()).prop_map(|(rows, shift)| Affine::new(rows, shift))
     }
 
     proptest! {
@@ -303,32 +261,16 @@ mod tests {
 
     #[test]
     fn a_singular_map_is_known_however_nearly_it_is_not() {
-        let rows = [
-            DVec3::new(0.1, 0.2, 0.3),
-            DVec3::new(0.2, 0.4, 0.6),
-            DVec3::Z,
-        ];
-        assert_eq!(
-            Affine::new(rows, DVec3::ZERO).inverse(),
-            Err(Singular::ZeroDeterminant)
-        );
+        let rows = [DVec3::new(0.1, 0.2, 0.3), DVec3::new(0.2, 0.4, 0.6), DVec3::Z];
+        assert_eq!(Affine::new(rows, DVec3::ZERO).inverse(), Err(Singular::ZeroDeterminant));
         let mut nearly = rows;
         nearly[1].x = nearly[1].x.next_up();
         assert!(Affine::new(nearly, DVec3::ZERO).inverse().is_ok());
-        assert_eq!(
-            Affine::scale(DVec3::splat(f64::NAN)).inverse(),
-            Err(Singular::NotFinite)
-        );
-        assert_eq!(
-            Affine::scale(DVec3::splat(f64::from_bits(1))).inverse(),
-            Err(Singular::OutOfRange)
-        );
+        assert_eq!(Affine::scale(DVec3::splat(f64::NAN)).inverse(), Err(Singular::NotFinite));
+        assert_eq!(Affine::scale(DVec3::splat(f64::from_bits(1))).inverse(), Err(Singular::OutOfRange));
         let small = Affine::scale(DVec3::splat(1e-300)).inverse().unwrap();
         assert_eq!(small.vector(DVec3::X).x, 1.0 / 1e-300);
         assert_eq!(Affine::translation(DVec3::X).uniform_scale(), Some(1.0));
-        assert_eq!(
-            Affine::scale(DVec3::new(1.0, 1.0, 1.0 + 1e-9)).uniform_scale(),
-            None
-        );
+        assert_eq!(Affine::scale(DVec3::new(1.0, 1.0, 1.0 + 1e-9)).uniform_scale(), None);
     }
 }

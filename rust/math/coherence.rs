@@ -18,9 +18,7 @@ pub fn is_coherent(rays: &[Ray], extent: f64) -> bool {
         let lengths = a.direction.length_squared() * b.direction.length_squared();
         // Of directions so short or long that this under- or overflows, neither comparison holds.
         let same_way = cosine > 0.0 && cosine * cosine >= COSINE_SQUARED * lengths;
-        near += usize::from(
-            same_way && (a.origin - b.origin).length_squared() <= 1e-4 * extent * extent,
-        );
+        near += usize::from(same_way && (a.origin - b.origin).length_squared() <= 1e-4 * extent * extent);
         all += 1;
     }
     4 * near >= 3 * all
@@ -34,12 +32,7 @@ mod tests {
     fn fan(spread: f64, shift: f64) -> Vec<Ray> {
         let at = |i: u32| f64::from(i.wrapping_mul(2_654_435_761) >> 8) / f64::from(1 << 24) - 0.5;
         (0..200u32)
-            .map(|i| {
-                Ray::new(
-                    DVec3::X * shift * at(i),
-                    DVec3::new(spread * at(7 * i + 1), spread * at(3 * i), 1.0),
-                )
-            })
+            .map(|i| Ray::new(DVec3::X * shift * at(i), DVec3::new(spread * at(7 * i + 1), spread * at(3 * i), 1.0)))
             .collect()
     }
 
@@ -49,19 +42,15 @@ mod tests {
         assert!(!is_coherent(&fan(3.0, 0.0), 1.0));
         assert!(!is_coherent(&fan(0.05, 1.0), 1.0));
         assert!(is_coherent(&fan(0.05, 1.0), 1000.0));
-        let back_and_forth: Vec<_> = (0..64)
-            .map(|i| Ray::new(DVec3::ZERO, if i % 2 == 0 { DVec3::Z } else { -DVec3::Z }))
-            .collect();
+        let back_and_forth: Vec<_> =
+            (0..64).map(|i| Ray::new(DVec3::ZERO, if i % 2 == 0 { DVec3::Z } else { -DVec3::Z })).collect();
         assert!(!is_coherent(&back_and_forth, 1.0));
     }
 
     #[test]
     fn any_number_of_rays_has_an_answer() {
         for count in 0..50 {
-            assert!(is_coherent(
-                &vec![Ray::new(DVec3::ZERO, DVec3::Z); count],
-                1.0
-            ));
+            assert!(is_coherent(&vec![Ray::new(DVec3::ZERO, DVec3::Z); count], 1.0));
         }
     }
 }

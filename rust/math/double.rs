@@ -62,10 +62,7 @@ pub fn two_product(a: f64, b: f64) -> (f64, f64) {
     };
     let product = a * b;
     let ((ah, al), (bh, bl)) = (split(a), split(b));
-    (
-        product,
-        al * bl - (((product - ah * bh) - al * bh) - ah * bl),
-    )
+    (product, al * bl - (((product - ah * bh) - al * bh) - ah * bl))
 }
 
 impl Double {
@@ -73,11 +70,7 @@ impl Double {
     #[inline(always)]
     pub fn difference(a: f64, b: f64) -> Self {
         let (high, low) = two_sum(a, -b);
-        Self {
-            high,
-            low,
-            error: 0.0,
-        }
+        Self { high, low, error: 0.0 }
     }
 
     /// The product of two f64, exactly but for underflow.
@@ -85,11 +78,7 @@ impl Double {
     pub fn product(a: f64, b: f64) -> Self {
         let (high, low) = two_product(a, b);
         // Of large numbers the parts may not be numbers; what is zero has no error.
-        let error = if a == 0.0 || b == 0.0 {
-            0.0
-        } else {
-            underflow(high)
-        };
+        let error = if a == 0.0 || b == 0.0 { 0.0 } else { underflow(high) };
         Self { high, low, error }
     }
 
@@ -112,11 +101,7 @@ impl Double {
 impl Number for Double {
     #[inline]
     fn of(x: f64) -> Self {
-        Self {
-            high: x,
-            low: 0.0,
-            error: 0.0,
-        }
+        Self { high: x, low: 0.0, error: 0.0 }
     }
 
     #[inline]
@@ -130,29 +115,17 @@ impl Number for Double {
         if self.low == 0.0 && other.low == 0.0 {
             // Nothing is lost of two f64; the second sum makes what overflowed not a number.
             let (high, low) = fast_two_sum(sum, rest);
-            return Self {
-                high,
-                low,
-                error: self.error + other.error,
-            };
+            return Self { high, low, error: self.error + other.error };
         }
         let (low, lost) = two_sum(self.low, other.low);
         let (sum, rest) = fast_two_sum(sum, rest + low);
         let (high, low) = fast_two_sum(sum, rest + lost);
-        Self {
-            high,
-            low,
-            error: self.error + other.error + SUM * high.abs(),
-        }
+        Self { high, low, error: self.error + other.error + SUM * high.abs() }
     }
 
     #[inline]
     fn minus(&self, other: &Self) -> Self {
-        self.plus(&Self {
-            high: -other.high,
-            low: -other.low,
-            error: other.error,
-        })
+        self.plus(&Self { high: -other.high, low: -other.low, error: other.error })
     }
 
     #[inline]
@@ -162,28 +135,13 @@ impl Number for Double {
             return *self;
         }
         let (product, rest) = two_product(self.high, other.high);
-        let (high, low) = fast_two_sum(
-            product,
-            rest + (self.high * other.low + self.low * other.high),
-        );
+        let (high, low) = fast_two_sum(product, rest + (self.high * other.low + self.low * other.high));
         // Nothing is lost of two f64.
-        let own = if self.low == 0.0 && other.low == 0.0 {
-            0.0
-        } else {
-            PRODUCT * high.abs()
-        };
-        let lost = if self.is_zero() || other.is_zero() {
-            0.0
-        } else {
-            underflow(high)
-        };
+        let own = if self.low == 0.0 && other.low == 0.0 { 0.0 } else { PRODUCT * high.abs() };
+        let lost = if self.is_zero() || other.is_zero() { 0.0 } else { underflow(high) };
         // The low part is at most 2⁻⁵³ of the high one: SLACK has room for it.
         let carried = self.high.abs() * other.error + (other.high.abs() + other.error) * self.error;
-        Self {
-            high,
-            low,
-            error: carried * SLACK + own + lost,
-        }
+        Self { high, low, error: carried * SLACK + own + lost }
     }
 
     #[inline]
@@ -195,10 +153,7 @@ impl Number for Double {
             return Self::of(0.0);
         }
         // Three digits of 53 bits by long division; the third corrects what the second left.
-        let bare = Self {
-            error: 0.0,
-            ..*other
-        };
+        let bare = Self { error: 0.0, ..*other };
         let digit = |rest: &Self| Self::of(rest.high / other.high);
         let first = digit(self);
         let rest = self.minus(&bare.times(&first));
@@ -207,41 +162,21 @@ impl Number for Double {
         let quotient = first.plus(&second).plus(&digit(&rest));
         let (high, low) = (quotient.high, quotient.low);
         let least = other.high.abs() * (1.0 - f64::EPSILON) - other.error * SLACK;
-        let carried = if least > 0.0 {
-            (self.error + high.abs() * SLACK * other.error) / least
-        } else {
-            f64::INFINITY
-        };
-        Self {
-            high,
-            low,
-            error: carried * SLACK + QUOTIENT * high.abs() + underflow(high),
-        }
+        let carried = if least > 0.0 { (self.error + high.abs() * SLACK * other.error) / least } else { f64::INFINITY };
+        Self { high, low, error: carried * SLACK + QUOTIENT * high.abs() + underflow(high) }
     }
 
     #[inline]
     fn sqrt(&self) -> Self {
         if self.high <= 0.0 {
-            return Self {
-                high: 0.0,
-                low: 0.0,
-                error: (self.error * 4.0).sqrt(),
-            };
+            return Self { high: 0.0, low: 0.0, error: (self.error * 4.0).sqrt() };
         }
         // One step of Newton's from the f64 root doubles its digits.
         let first = Self::of(self.high.sqrt());
-        let rest = Self {
-            error: 0.0,
-            ..*self
-        }
-        .minus(&first.squared());
+        let rest = Self { error: 0.0, ..*self }.minus(&first.squared());
         let root = first.plus(&Self::of(rest.high / (2.0 * first.high)));
         let (high, low) = (root.high, root.low);
-        Self {
-            high,
-            low,
-            error: (self.error / high) * SLACK + QUOTIENT * high + underflow(self.high).sqrt(),
-        }
+        Self { high, low, error: (self.error / high) * SLACK + QUOTIENT * high + underflow(self.high).sqrt() }
     }
 
     #[inline]

@@ -30,10 +30,7 @@ pub fn two_product(a: f64, b: f64) -> (f64, f64) {
 
 impl DoubleDouble {
     /// Zero.
-    pub const ZERO: Self = Self {
-        high: 0.0,
-        low: 0.0,
-    };
+    pub const ZERO: Self = Self { high: 0.0, low: 0.0 };
 
     /// The exact difference of two f64.
     #[inline]
@@ -105,10 +102,7 @@ impl DoubleDouble {
     /// Times a power of two, which is exact.
     #[inline]
     pub fn scaled(self, power_of_two: f64) -> Self {
-        Self {
-            high: self.high * power_of_two,
-            low: self.low * power_of_two,
-        }
+        Self { high: self.high * power_of_two, low: self.low * power_of_two }
     }
 
     /// The f64 next to it.
@@ -148,10 +142,7 @@ impl Neg for DoubleDouble {
     type Output = Self;
     #[inline]
     fn neg(self) -> Self {
-        Self {
-            high: -self.high,
-            low: -self.low,
-        }
+        Self { high: -self.high, low: -self.low }
     }
 }
 
@@ -160,10 +151,7 @@ impl Mul for DoubleDouble {
     #[inline]
     fn mul(self, other: Self) -> Self {
         let (high, error) = two_product(self.high, other.high);
-        let crossed = self.high.mul_add(
-            other.low,
-            self.low.mul_add(other.high, self.low * other.low),
-        );
+        let crossed = self.high.mul_add(other.low, self.low.mul_add(other.high, self.low * other.low));
         let (high, low) = fast_two_sum(high, error + crossed);
         Self { high, low }
     }

@@ -17,11 +17,7 @@ pub struct Dyadic {
 }
 
 impl Dyadic {
-    const ZERO: Self = Self {
-        negative: false,
-        words: Vec::new(),
-        exponent: 0,
-    };
+    const ZERO: Self = Self { negative: false, words: Vec::new(), exponent: 0 };
 
     /// Without zero words at either end.
     fn trimmed(negative: bool, mut words: Vec<u64>, mut exponent: i64) -> Self {
@@ -31,15 +27,7 @@ impl Dyadic {
         let zeros = words.iter().take_while(|&&w| w == 0).count();
         words.drain(..zeros);
         exponent += 64 * zeros as i64;
-        if words.is_empty() {
-            Self::ZERO
-        } else {
-            Self {
-                negative,
-                words,
-                exponent,
-            }
-        }
+        if words.is_empty() { Self::ZERO } else { Self { negative, words, exponent } }
     }
 
     /// The words of the integer times 2^shift.
@@ -62,10 +50,7 @@ impl Dyadic {
             return self.clone();
         }
         if self.words.is_empty() {
-            return Self {
-                negative: other_negative,
-                ..other.clone()
-            };
+            return Self { negative: other_negative, ..other.clone() };
         }
         let exponent = self.exponent.min(other.exponent);
         let mut a = self.shifted((self.exponent - exponent) as u64);
@@ -90,11 +75,7 @@ impl Dyadic {
             let (difference, b1) = difference.overflowing_sub(u64::from(borrow));
             (*x, borrow) = (difference, b0 | b1);
         }
-        Self::trimmed(
-            if less { other_negative } else { self.negative },
-            large,
-            exponent,
-        )
+        Self::trimmed(if less { other_negative } else { self.negative }, large, exponent)
     }
 
     /// Its leading 106 bits or more as a magnitude in [1/2, 1], and a power of two; not of zero.
@@ -103,25 +84,15 @@ impl Dyadic {
         let zeros = self.words[top].leading_zeros();
         let word = |i: usize| {
             let of = |i: usize| top.checked_sub(i).map_or(0, |i| self.words[i]);
-            of(i) << zeros
-                | if zeros > 0 {
-                    of(i + 1) >> (64 - zeros)
-                } else {
-                    0
-                }
+            of(i) << zeros | if zeros > 0 { of(i + 1) >> (64 - zeros) } else { 0 }
         };
         let part = |bits: u64, below: i32| Double::of(bits as f64 * 2f64.powi(below));
         // Halves of words are f64 exactly.
         let sum = (0..2)
             .flat_map(|i| [(word(i) >> 32, 2 * i), (word(i) & 0xffff_ffff, 2 * i + 1)])
-            .fold(Double::of(0.0), |sum, (half, place)| {
-                sum.plus(&part(half, -32 * (place as i32 + 1)))
-            });
+            .fold(Double::of(0.0), |sum, (half, place)| sum.plus(&part(half, -32 * (place as i32 + 1))));
         let sum = Double { error: 0.0, ..sum };
-        (
-            sum,
-            self.exponent + 64 * (top as i64 + 1) - i64::from(zeros),
-        )
+        (sum, self.exponent + 64 * (top as i64 + 1) - i64::from(zeros))
     }
 
     fn from_leading(x: &Double, exponent: i64, negative: bool) -> Self {
@@ -137,20 +108,12 @@ impl Number for Dyadic {
         let bits = x.to_bits();
         let fraction = bits & ((1 << 52) - 1);
         let biased = ((bits >> 52) & 0x7ff) as i64;
-        let (mantissa, exponent) = if biased == 0 {
-            (fraction, -1074)
-        } else {
-            (fraction | 1 << 52, biased - 1075)
-        };
+        let (mantissa, exponent) = if biased == 0 { (fraction, -1074) } else { (fraction | 1 << 52, biased - 1075) };
         if mantissa == 0 {
             return Self::ZERO;
         }
         // Exponents that are multiples of 64 spare most shifts when numbers are added.
-        let exact = Self {
-            negative: x < 0.0,
-            words: vec![mantissa],
-            exponent,
-        };
+        let exact = Self { negative: x < 0.0, words: vec![mantissa], exponent };
         let down = exponent.rem_euclid(64);
         Self::trimmed(x < 0.0, exact.shifted(down as u64), exponent - down)
     }
@@ -173,17 +136,12 @@ impl Number for Dyadic {
         for (i, &x) in self.words.iter().enumerate() {
             let mut carry = 0u64;
             for (j, &y) in other.words.iter().enumerate() {
-                let sum =
-                    u128::from(x) * u128::from(y) + u128::from(words[i + j]) + u128::from(carry);
+                let sum = u128::from(x) * u128::from(y) + u128::from(words[i + j]) + u128::from(carry);
                 (words[i + j], carry) = (sum as u64, (sum >> 64) as u64);
             }
             words[i + other.words.len()] = carry;
         }
-        Self::trimmed(
-            self.negative != other.negative,
-            words,
-            self.exponent + other.exponent,
-        )
+        Self::trimmed(self.negative != other.negative, words, self.exponent + other.exponent)
     }
 
     fn over(&self, other: &Self) -> Self {
@@ -201,11 +159,7 @@ impl Number for Dyadic {
         let (x, exponent) = self.leading();
         let odd = exponent.rem_euclid(2);
         let x = if odd == 1 { x.plus(&x) } else { x };
-        Self::from_leading(
-            &Double { error: 0.0, ..x }.sqrt(),
-            (exponent - odd) / 2,
-            false,
-        )
+        Self::from_leading(&Double { error: 0.0, ..x }.sqrt(), (exponent - odd) / 2, false)
     }
 
     fn sign(&self) -> Option<Ordering> {
@@ -225,8 +179,7 @@ impl Number for Dyadic {
         // Three factors: one power of two may be more than an f64 holds where the product is not.
         let exponent = exponent.clamp(-3000, 3000) as i32;
         let part = exponent / 3;
-        let mut magnitude =
-            x.high * 2f64.powi(part) * 2f64.powi(exponent - 2 * part) * 2f64.powi(part);
+        let mut magnitude = x.high * 2f64.powi(part) * 2f64.powi(exponent - 2 * part) * 2f64.powi(part);
         // Not zero, so that a sign is never lost.
         magnitude = magnitude.max(f64::from_bits(1));
         Some(if self.negative { -magnitude } else { magnitude })

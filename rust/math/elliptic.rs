@@ -32,8 +32,7 @@ fn integral_f(mut v: [f64; 3]) -> f64 {
         if x.abs().max(y.abs()).max(z.abs()) < 1e-3 {
             let (e2, e3) = (x * y - z * z, x * y * z);
             // What is left out is of the sixth order.
-            return (1.0 - e2 / 10.0 + e3 / 14.0 + e2 * e2 / 24.0 - 3.0 * e2 * e3 / 44.0)
-                / mean.sqrt();
+            return (1.0 - e2 / 10.0 + e3 / 14.0 + e2 * e2 / 24.0 - 3.0 * e2 * e3 / 44.0) / mean.sqrt();
         }
         v = duplicated(v).0;
     }
@@ -47,16 +46,10 @@ fn integral_d(mut v: [f64; 3]) -> f64 {
         let [x, y, z] = v.map(|v| 1.0 - v / mean);
         if x.abs().max(y.abs()).max(z.abs()) < 1e-3 {
             let (xy, zz) = (x * y, z * z);
-            let (e2, e3, e4, e5) = (
-                xy - 6.0 * zz,
-                (3.0 * xy - 8.0 * zz) * z,
-                3.0 * (xy - zz) * zz,
-                xy * zz * z,
-            );
-            let series = 1.0 - 3.0 * e2 / 14.0 + e3 / 6.0 + 9.0 * e2 * e2 / 88.0
-                - 3.0 * e4 / 22.0
-                - 9.0 * e2 * e3 / 52.0
-                + 3.0 * e5 / 26.0;
+            let (e2, e3, e4, e5) = (xy - 6.0 * zz, (3.0 * xy - 8.0 * zz) * z, 3.0 * (xy - zz) * zz, xy * zz * z);
+            let series =
+                1.0 - 3.0 * e2 / 14.0 + e3 / 6.0 + 9.0 * e2 * e2 / 88.0 - 3.0 * e4 / 22.0 - 9.0 * e2 * e3 / 52.0
+                    + 3.0 * e5 / 26.0;
             return 3.0 * sum + power * series / (mean * mean.sqrt());
         }
         let (next, lambda) = duplicated(v);
@@ -80,13 +73,7 @@ mod tests {
     #[test]
     fn spheroids_have_their_closed_forms() {
         assert!((ellipsoid_area([4.0; 3]) / (16.0 * PI) - 1.0).abs() < 1e-14);
-        for (a, c) in [
-            (1.0f64, 2.0f64),
-            (3.0, 1.0),
-            (1.0, 1e3),
-            (1e-3, 5.0),
-            (1e4, 1e-3),
-        ] {
+        for (a, c) in [(1.0f64, 2.0f64), (3.0, 1.0), (1.0, 1e3), (1e-3, 5.0), (1e4, 1e-3)] {
             let wanted = if a < c {
                 let e = (1.0 - (a / c) * (a / c)).sqrt();
                 2.0 * PI * a * a * (1.0 + c / (a * e) * e.asin())
@@ -96,10 +83,7 @@ mod tests {
             };
             let found = ellipsoid_area([a * c, a * c, a * a]);
             // asin and atanh near 1 lose digits themselves.
-            assert!(
-                (found / wanted - 1.0).abs() < 1e-9,
-                "{a} {c}: {found} {wanted}"
-            );
+            assert!((found / wanted - 1.0).abs() < 1e-9, "{a} {c}: {found} {wanted}");
         }
     }
 

@@ -19,12 +19,7 @@ use glam::DVec3;
 #[inline(never)]
 pub fn exact_edges(origin: DVec3, direction: DVec3, [a, b, c]: [DVec3; 3]) -> [f64; 3] {
     let volumes = [(b, c), (c, a), (a, b)].map(|(v, w)| Volume::new(origin, direction, v, w));
-    let top = volumes
-        .iter()
-        .filter(|v| v.mantissa != 0.0)
-        .map(|v| v.exponent)
-        .max()
-        .unwrap_or(0);
+    let top = volumes.iter().filter(|v| v.mantissa != 0.0).map(|v| v.exponent).max().unwrap_or(0);
     volumes.map(|v| v.scaled(top))
 }
 
@@ -40,12 +35,7 @@ pub fn exact_turn(direction: DVec3, v: DVec3, w: DVec3) -> i32 {
     let [d, v, w] = [direction, v, w].map(|x| x.to_array().map(Float::new));
     for (j, k) in [(1, 2), (2, 0), (0, 1)] {
         let mut terms = Terms::new();
-        for (x, y, negative) in [
-            (d[j], w[k], false),
-            (d[j], v[k], true),
-            (d[k], w[j], true),
-            (d[k], v[j], false),
-        ] {
+        for (x, y, negative) in [(d[j], w[k], false), (d[j], v[k], true), (d[k], w[j], true), (d[k], v[j], false)] {
             terms.push([x, y, Float::ONE], negative);
         }
         let (mantissa, _) = terms.sum();
@@ -64,10 +54,7 @@ struct Terms {
 
 impl Terms {
     fn new() -> Self {
-        Self {
-            factors: [([Float::ZERO; 3], false); 18],
-            count: 0,
-        }
+        Self { factors: [([Float::ZERO; 3], false); 18], count: 0 }
     }
 
     fn push(&mut self, factors: [Float; 3], negative: bool) {
@@ -123,11 +110,7 @@ impl Volume {
             return 0.0;
         }
         let shift = self.exponent - top;
-        if shift > -1000 {
-            self.mantissa * 2f64.powi(shift)
-        } else {
-            f64::MIN_POSITIVE.copysign(self.mantissa)
-        }
+        if shift > -1000 { self.mantissa * 2f64.powi(shift) } else { f64::MIN_POSITIVE.copysign(self.mantissa) }
     }
 }
 
@@ -140,36 +123,20 @@ struct Float {
 }
 
 impl Float {
-    const ZERO: Self = Self {
-        mantissa: 0,
-        exponent: 0,
-        negative: false,
-    };
-    const ONE: Self = Self {
-        mantissa: 1,
-        exponent: 0,
-        negative: false,
-    };
+    const ZERO: Self = Self { mantissa: 0, exponent: 0, negative: false };
+    const ONE: Self = Self { mantissa: 1, exponent: 0, negative: false };
 
     fn new(x: f64) -> Self {
         let bits = x.to_bits();
         let fraction = bits & ((1 << 52) - 1);
         let biased = ((bits >> 52) & 0x7ff) as i32;
-        let (mantissa, exponent) = if biased == 0 {
-            (fraction, -1074)
-        } else {
-            (fraction | 1 << 52, biased - 1075)
-        };
+        let (mantissa, exponent) = if biased == 0 { (fraction, -1074) } else { (fraction | 1 << 52, biased - 1075) };
         if mantissa == 0 {
             return Self::ZERO;
         }
         // Without trailing zeros the span of the terms is short for round numbers, the usual case of exact ties.
         let zeros = mantissa.trailing_zeros();
-        Self {
-            mantissa: mantissa >> zeros,
-            exponent: exponent + zeros as i32,
-            negative: bits >> 63 == 1,
-        }
+        Self { mantissa: mantissa >> zeros, exponent: exponent + zeros as i32, negative: bits >> 63 == 1 }
     }
 }
 
@@ -185,10 +152,7 @@ impl Accumulator {
 
     /// Room for terms whose exponents differ by up to `span`.
     fn new(span: u32) -> Self {
-        Self {
-            words: [0; Self::WORDS],
-            used: (span as usize + 159 + 5 + 1) / 64 + 1,
-        }
+        Self { words: [0; Self::WORDS], used: (span as usize + 159 + 5 + 1) / 64 + 1 }
     }
 
     /// Adds or subtracts `m₀ · m₁ · m₂ · 2^shift`.
@@ -200,11 +164,7 @@ impl Accumulator {
         let (word, bit) = ((shift / 64) as usize, shift % 64);
         let shifted = |i: usize| {
             let here = if i < 3 { product[i] << bit } else { 0 };
-            let below = if i > 0 && bit > 0 {
-                product[i - 1] >> (64 - bit)
-            } else {
-                0
-            };
+            let below = if i > 0 && bit > 0 { product[i - 1] >> (64 - bit) } else { 0 };
             here | below
         };
         let mut carry = false;
@@ -244,10 +204,7 @@ impl Accumulator {
         // A sticky bit for all that lies below; only an exact tie could round the other way without it.
         bits |= u64::from(words[..top].iter().any(|&w| w != 0));
         let mantissa = bits as f64 / 2f64.powi(64);
-        (
-            if negative { -mantissa } else { mantissa },
-            64 * (top as i32 + 1) - zeros as i32,
-        )
+        (if negative { -mantissa } else { mantissa }, 64 * (top as i32 + 1) - zeros as i32)
     }
 }
 
@@ -269,11 +226,7 @@ mod tests {
         let [o, d, v, w] = [o, d, v, w].map(|x| x.to_array().map(integer));
         let v: Vec<_> = (0..3).map(|i| &v[i] - &o[i]).collect();
         let w: Vec<_> = (0..3).map(|i| &w[i] - &o[i]).collect();
-        (0..3)
-            .map(|i| {
-                &d[i] * (&v[(i + 1) % 3] * &w[(i + 2) % 3] - &v[(i + 2) % 3] * &w[(i + 1) % 3])
-            })
-            .sum()
+        (0..3).map(|i| &d[i] * (&v[(i + 1) % 3] * &w[(i + 2) % 3] - &v[(i + 2) % 3] * &w[(i + 1) % 3])).sum()
     }
 
     fn check(o: DVec3, d: DVec3, corners: [DVec3; 3]) -> Result<(), TestCaseError> {
@@ -282,10 +235,7 @@ mod tests {
         let wanted = [(b, c), (c, a), (a, b)].map(|(v, w)| oracle(o, d, v, w));
         let largest = wanted.iter().map(BigInt::bits).max().unwrap_or(0);
         for (f, w) in found.iter().zip(&wanted) {
-            prop_assert_eq!(
-                f.partial_cmp(&0.0).map(|x| x as i32),
-                Some(w.cmp(&BigInt::ZERO) as i32)
-            );
+            prop_assert_eq!(f.partial_cmp(&0.0).map(|x| x as i32), Some(w.cmp(&BigInt::ZERO) as i32));
             if w.bits() + 900 > largest && w.bits() > 0 {
                 // |f| · 2^largest against |w|, to within one rounding.
                 let scaled = integer(f.abs()) << largest as usize;
@@ -300,9 +250,7 @@ mod tests {
     fn coordinate() -> impl Strategy<Value = f64> {
         prop_oneof![
             (-4i32..=4).prop_map(f64::from),
-            any::<f32>()
-                .prop_filter("finite", |x| x.is_finite())
-                .prop_map(f64::from),
+            any::<f32>().prop_filter("finite", |x| x.is_finite()).prop_map(f64::from),
             -1.0..1.0f64,
             prop::num::f64::NORMAL | prop::num::f64::SUBNORMAL | prop::num::f64::ZERO,
         ]
@@ -335,11 +283,7 @@ mod tests {
         let e = exact_edges(
             DVec3::new(-big, tiny, big),
             DVec3::new(tiny, big, -tiny),
-            [
-                DVec3::new(big, -big, tiny),
-                DVec3::new(tiny, tiny, -big),
-                DVec3::splat(big),
-            ],
+            [DVec3::new(big, -big, tiny), DVec3::new(tiny, tiny, -big), DVec3::splat(big)],
         );
         assert!(e.iter().all(|x| x.is_finite() && *x != 0.0));
         let all = DVec3::splat(tiny);

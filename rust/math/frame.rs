@@ -21,11 +21,7 @@ impl Frame {
         let a = -1.0 / (sign + normal.z);
         let b = normal.x * normal.y * a;
         Self {
-            tangent: DVec3::new(
-                1.0 + sign * normal.x * normal.x * a,
-                sign * b,
-                -sign * normal.x,
-            ),
+            tangent: DVec3::new(1.0 + sign * normal.x * normal.x * a, sign * b, -sign * normal.x),
             bitangent: DVec3::new(b, sign + normal.y * normal.y * a, -normal.y),
             normal,
         }
@@ -38,11 +34,7 @@ impl Frame {
 
     /// From the world's coordinates to local ones.
     pub fn to_local(&self, v: DVec3) -> DVec3 {
-        DVec3::new(
-            self.tangent.dot(v),
-            self.bitangent.dot(v),
-            self.normal.dot(v),
-        )
+        DVec3::new(self.tangent.dot(v), self.bitangent.dot(v), self.normal.dot(v))
     }
 }
 

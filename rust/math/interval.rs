@@ -21,11 +21,7 @@ pub struct Interval {
 }
 
 fn up(x: f64) -> f64 {
-    if x == f64::NEG_INFINITY {
-        -f64::MAX
-    } else {
-        x.next_up()
-    }
+    if x == f64::NEG_INFINITY { -f64::MAX } else { x.next_up() }
 }
 
 /// The least f64 known to be at or above `a + b`.
@@ -33,11 +29,7 @@ fn sum_up(a: f64, b: f64) -> f64 {
     let (sum, error) = two_sum(a, b);
     if sum.is_infinite() {
         // Of finite numbers it may lie just below.
-        return if sum < 0.0 && a.is_finite() && b.is_finite() {
-            -f64::MAX
-        } else {
-            sum
-        };
+        return if sum < 0.0 && a.is_finite() && b.is_finite() { -f64::MAX } else { sum };
     }
     // The parts of the error overflow only for the largest numbers.
     if error <= 0.0 { sum } else { up(sum) }
@@ -50,18 +42,10 @@ fn product_up(a: f64, b: f64) -> f64 {
     }
     let product = a * b;
     if product.is_infinite() {
-        return if product < 0.0 && a.is_finite() && b.is_finite() {
-            -f64::MAX
-        } else {
-            product
-        };
+        return if product < 0.0 && a.is_finite() && b.is_finite() { -f64::MAX } else { product };
     }
     // Where the error may itself underflow it says nothing.
-    if product.abs() > 1e-280 && a.mul_add(b, -product) <= 0.0 {
-        product
-    } else {
-        up(product)
-    }
+    if product.abs() > 1e-280 && a.mul_add(b, -product) <= 0.0 { product } else { up(product) }
 }
 
 /// At or above `a / b`, b not zero; infinity over infinity is left out by giving the least.
@@ -71,19 +55,11 @@ fn quotient_up(a: f64, b: f64) -> f64 {
         return f64::NEG_INFINITY;
     }
     if a == 0.0 || b.is_infinite() || quotient.is_infinite() {
-        return if quotient == f64::NEG_INFINITY && a.is_finite() && b != 0.0 {
-            -f64::MAX
-        } else {
-            quotient
-        };
+        return if quotient == f64::NEG_INFINITY && a.is_finite() && b != 0.0 { -f64::MAX } else { quotient };
     }
     let rest = (-quotient).mul_add(b, a);
     let exact = quotient.abs() > 1e-280 && a.abs() > 1e-280 && a.abs() < 1e300;
-    if exact && (rest == 0.0 || (rest < 0.0) == (b > 0.0)) {
-        quotient
-    } else {
-        up(quotient)
-    }
+    if exact && (rest == 0.0 || (rest < 0.0) == (b > 0.0)) { quotient } else { up(quotient) }
 }
 
 /// At or above the library's `x`.
@@ -93,26 +69,14 @@ fn library_up(x: f64) -> f64 {
 
 impl Interval {
     /// No number at all.
-    pub const EMPTY: Self = Self {
-        low: f64::INFINITY,
-        high: f64::NEG_INFINITY,
-        whole: false,
-    };
+    pub const EMPTY: Self = Self { low: f64::INFINITY, high: f64::NEG_INFINITY, whole: false };
 
     /// Every number, of something that may be undefined somewhere.
-    pub const ANYTHING: Self = Self {
-        low: f64::NEG_INFINITY,
-        high: f64::INFINITY,
-        whole: false,
-    };
+    pub const ANYTHING: Self = Self { low: f64::NEG_INFINITY, high: f64::INFINITY, whole: false };
 
     /// From one number to another that is not less.
     pub const fn new(low: f64, high: f64) -> Self {
-        Self {
-            low,
-            high,
-            whole: true,
-        }
+        Self { low, high, whole: true }
     }
 
     /// One number.
@@ -122,9 +86,7 @@ impl Interval {
 
     /// Whether there is no number in it.
     pub fn is_empty(self) -> bool {
-        self.low
-            .partial_cmp(&self.high)
-            .is_none_or(std::cmp::Ordering::is_gt)
+        self.low.partial_cmp(&self.high).is_none_or(std::cmp::Ordering::is_gt)
     }
 
     /// Whether a number is in it.
@@ -134,8 +96,7 @@ impl Interval {
 
     /// 1 where all numbers are above zero, −1 where all are below, else 0.
     pub fn sign(self) -> i32 {
-        i32::from(self.low > 0.0 && !self.is_empty())
-            - i32::from(self.high < 0.0 && !self.is_empty())
+        i32::from(self.low > 0.0 && !self.is_empty()) - i32::from(self.high < 0.0 && !self.is_empty())
     }
 
     /// The greatest magnitude.
@@ -145,21 +106,13 @@ impl Interval {
 
     /// What is in both; it is as whole as the first.
     pub fn intersection(self, other: Self) -> Self {
-        Self {
-            low: self.low.max(other.low),
-            high: self.high.min(other.high),
-            whole: self.whole,
-        }
+        Self { low: self.low.max(other.low), high: self.high.min(other.high), whole: self.whole }
     }
 
     /// The least interval around both.
     pub fn hull(self, other: Self) -> Self {
         let whole = self.whole && other.whole;
-        Self {
-            low: self.low.min(other.low),
-            high: self.high.max(other.high),
-            whole,
-        }
+        Self { low: self.low.min(other.low), high: self.high.max(other.high), whole }
     }
 
     /// The bounds that some functions of the numbers have, whichever are wholly known.
@@ -168,41 +121,19 @@ impl Interval {
             return Self::EMPTY;
         }
         let (low, high) = bounds();
-        Self {
-            low,
-            high,
-            whole: self.whole && whole,
-        }
+        Self { low, high, whole: self.whole && whole }
     }
 
     /// By a function of the library that never falls, on the part of the interval from `least` to `most`, and whose
     /// values lie from `floor` to `ceiling`.
-    fn rising(
-        self,
-        f: impl Fn(f64) -> f64,
-        [least, most]: [f64; 2],
-        [floor, ceiling]: [f64; 2],
-    ) -> Self {
-        let part = Self {
-            low: self.low.max(least),
-            high: self.high.min(most),
-            whole: self.whole,
-        };
-        part.built(part == self, || {
-            (
-                (-library_up(-f(part.low))).max(floor),
-                library_up(f(part.high)).min(ceiling),
-            )
-        })
+    fn rising(self, f: impl Fn(f64) -> f64, [least, most]: [f64; 2], [floor, ceiling]: [f64; 2]) -> Self {
+        let part = Self { low: self.low.max(least), high: self.high.min(most), whole: self.whole };
+        part.built(part == self, || ((-library_up(-f(part.low))).max(floor), library_up(f(part.high)).min(ceiling)))
     }
 
     /// Its negative.
     pub fn negated(self) -> Self {
-        Self {
-            low: -self.high,
-            high: -self.low,
-            whole: self.whole,
-        }
+        Self { low: -self.high, high: -self.low, whole: self.whole }
     }
 
     /// Sum.
@@ -210,12 +141,7 @@ impl Interval {
         if other.is_empty() {
             return Self::EMPTY;
         }
-        self.built(other.whole, || {
-            (
-                -sum_up(-self.low, -other.low),
-                sum_up(self.high, other.high),
-            )
-        })
+        self.built(other.whole, || (-sum_up(-self.low, -other.low), sum_up(self.high, other.high)))
     }
 
     /// Difference.
@@ -230,28 +156,12 @@ impl Interval {
         }
         self.built(other.whole, || {
             if self.low >= 0.0 && other.low >= 0.0 {
-                return (
-                    -product_up(-self.low, other.low),
-                    product_up(self.high, other.high),
-                );
+                return (-product_up(-self.low, other.low), product_up(self.high, other.high));
             }
-            let pairs = [
-                (self.low, other.low),
-                (self.low, other.high),
-                (self.high, other.low),
-                (self.high, other.high),
-            ];
-            let least = pairs
-                .map(|(a, b)| product_up(-a, b))
-                .into_iter()
-                .fold(f64::NEG_INFINITY, f64::max);
-            (
-                -least,
-                pairs
-                    .map(|(a, b)| product_up(a, b))
-                    .into_iter()
-                    .fold(f64::NEG_INFINITY, f64::max),
-            )
+            let pairs =
+                [(self.low, other.low), (self.low, other.high), (self.high, other.low), (self.high, other.high)];
+            let least = pairs.map(|(a, b)| product_up(-a, b)).into_iter().fold(f64::NEG_INFINITY, f64::max);
+            (-least, pairs.map(|(a, b)| product_up(a, b)).into_iter().fold(f64::NEG_INFINITY, f64::max))
         })
     }
 
@@ -262,44 +172,25 @@ impl Interval {
         }
         if other.contains(0.0) {
             let sign = self.sign();
-            return self.built(false, || {
-                match (sign, other.low == 0.0, other.high == 0.0) {
-                    (1, true, _) => (-quotient_up(-self.low, other.high), f64::INFINITY),
-                    (1, _, true) => (f64::NEG_INFINITY, quotient_up(self.low, other.low)),
-                    (-1, true, _) => (f64::NEG_INFINITY, quotient_up(self.high, other.high)),
-                    (-1, _, true) => (-quotient_up(-self.high, other.low), f64::INFINITY),
-                    _ => (f64::NEG_INFINITY, f64::INFINITY),
-                }
+            return self.built(false, || match (sign, other.low == 0.0, other.high == 0.0) {
+                (1, true, _) => (-quotient_up(-self.low, other.high), f64::INFINITY),
+                (1, _, true) => (f64::NEG_INFINITY, quotient_up(self.low, other.low)),
+                (-1, true, _) => (f64::NEG_INFINITY, quotient_up(self.high, other.high)),
+                (-1, _, true) => (-quotient_up(-self.high, other.low), f64::INFINITY),
+                _ => (f64::NEG_INFINITY, f64::INFINITY),
             });
         }
         self.built(other.whole, || {
-            let pairs = [
-                (self.low, other.low),
-                (self.low, other.high),
-                (self.high, other.low),
-                (self.high, other.high),
-            ];
-            let least = pairs
-                .map(|(a, b)| quotient_up(-a, b))
-                .into_iter()
-                .fold(f64::NEG_INFINITY, f64::max);
-            (
-                -least,
-                pairs
-                    .map(|(a, b)| quotient_up(a, b))
-                    .into_iter()
-                    .fold(f64::NEG_INFINITY, f64::max),
-            )
+            let pairs =
+                [(self.low, other.low), (self.low, other.high), (self.high, other.low), (self.high, other.high)];
+            let least = pairs.map(|(a, b)| quotient_up(-a, b)).into_iter().fold(f64::NEG_INFINITY, f64::max);
+            (-least, pairs.map(|(a, b)| quotient_up(a, b)).into_iter().fold(f64::NEG_INFINITY, f64::max))
         })
     }
 
     /// Magnitude.
     pub fn abs(self) -> Self {
-        let least = if self.contains(0.0) {
-            0.0
-        } else {
-            self.low.abs().min(self.high.abs())
-        };
+        let least = if self.contains(0.0) { 0.0 } else { self.low.abs().min(self.high.abs()) };
         self.built(true, || (least, self.magnitude()))
     }
 
@@ -308,9 +199,7 @@ impl Interval {
         if other.is_empty() {
             return Self::EMPTY;
         }
-        self.built(other.whole, || {
-            (self.low.min(other.low), self.high.min(other.high))
-        })
+        self.built(other.whole, || (self.low.min(other.low), self.high.min(other.high)))
     }
 
     /// The greater of two.
@@ -320,17 +209,10 @@ impl Interval {
 
     /// Square root of what is not negative.
     pub fn sqrt(self) -> Self {
-        let part = Self {
-            low: self.low.max(0.0),
-            ..self
-        };
+        let part = Self { low: self.low.max(0.0), ..self };
         let root_up = |x: f64| {
             let root = x.sqrt();
-            if x > 1e-280 && root.is_finite() && root.mul_add(root, -x) >= 0.0 || x == 0.0 {
-                root
-            } else {
-                up(root)
-            }
+            if x > 1e-280 && root.is_finite() && root.mul_add(root, -x) >= 0.0 || x == 0.0 { root } else { up(root) }
         };
         let root_down = |x: f64| {
             let root = x.sqrt();
@@ -346,19 +228,10 @@ impl Interval {
             return self.built(true, || (1.0, 1.0));
         }
         if n < 0 {
-            return Self {
-                whole: self.whole,
-                ..Self::point(1.0)
-            }
-            .over(self.power(n.saturating_neg()));
+            return Self { whole: self.whole, ..Self::point(1.0) }.over(self.power(n.saturating_neg()));
         }
         let base = if n % 2 == 0 { self.abs() } else { self };
-        base.built(true, || {
-            (
-                Self::of_power(base.low, n).low,
-                Self::of_power(base.high, n).high,
-            )
-        })
+        base.built(true, || (Self::of_power(base.low, n).low, Self::of_power(base.high, n).high))
     }
 
     fn of_power(x: f64, n: i32) -> Self {
@@ -381,38 +254,24 @@ impl Interval {
 
     /// To any power, of what is not negative; undefined where zero meets a power that is not positive.
     pub fn raised(self, other: Self) -> Self {
-        let part = Self {
-            low: self.low.max(0.0),
-            ..self
-        };
+        let part = Self { low: self.low.max(0.0), ..self };
         if other.is_empty() {
             return Self::EMPTY;
         }
         let defined = part == self && !(part.low == 0.0 && other.low <= 0.0);
         // It is monotone in either.
         part.built(other.whole && defined, || {
-            let corners = [
-                (part.low, other.low),
-                (part.low, other.high),
-                (part.high, other.low),
-                (part.high, other.high),
-            ];
+            let corners =
+                [(part.low, other.low), (part.low, other.high), (part.high, other.low), (part.high, other.high)];
             let values = corners.map(|(a, b)| a.powf(b));
             let least = values.into_iter().fold(f64::INFINITY, f64::min);
-            (
-                (-library_up(-least)).max(0.0),
-                library_up(values.into_iter().fold(0.0, f64::max)),
-            )
+            ((-library_up(-least)).max(0.0), library_up(values.into_iter().fold(0.0, f64::max)))
         })
     }
 
     /// e to the power.
     pub fn exp(self) -> Self {
-        self.rising(
-            f64::exp,
-            [f64::NEG_INFINITY, f64::INFINITY],
-            [0.0, f64::INFINITY],
-        )
+        self.rising(f64::exp, [f64::NEG_INFINITY, f64::INFINITY], [0.0, f64::INFINITY])
     }
 
     /// Natural logarithm of what is positive.
@@ -420,15 +279,8 @@ impl Interval {
         if self.high <= 0.0 {
             return Self::EMPTY;
         }
-        let all = self.rising(
-            f64::ln,
-            [0.0, f64::INFINITY],
-            [f64::NEG_INFINITY, f64::INFINITY],
-        );
-        Self {
-            whole: all.whole && self.low > 0.0,
-            ..all
-        }
+        let all = self.rising(f64::ln, [0.0, f64::INFINITY], [f64::NEG_INFINITY, f64::INFINITY]);
+        Self { whole: all.whole && self.low > 0.0, ..all }
     }
 
     /// Whether there is a whole number `k` with `shift + k · period` in it, or nearly so.
@@ -447,16 +299,8 @@ impl Interval {
                 return (-1.0, 1.0);
             }
             let (a, b) = (self.low.cos(), self.high.cos());
-            let low = if self.reaches(PI, TAU) {
-                -1.0
-            } else {
-                (-library_up(-a.min(b))).max(-1.0)
-            };
-            let high = if self.reaches(0.0, TAU) {
-                1.0
-            } else {
-                library_up(a.max(b)).min(1.0)
-            };
+            let low = if self.reaches(PI, TAU) { -1.0 } else { (-library_up(-a.min(b))).max(-1.0) };
+            let high = if self.reaches(0.0, TAU) { 1.0 } else { library_up(a.max(b)).min(1.0) };
             (low, high)
         })
     }
@@ -469,16 +313,8 @@ impl Interval {
                 return (-1.0, 1.0);
             }
             let (a, b) = (self.low.sin(), self.high.sin());
-            let low = if self.reaches(-FRAC_PI_2, TAU) {
-                -1.0
-            } else {
-                (-library_up(-a.min(b))).max(-1.0)
-            };
-            let high = if self.reaches(FRAC_PI_2, TAU) {
-                1.0
-            } else {
-                library_up(a.max(b)).min(1.0)
-            };
+            let low = if self.reaches(-FRAC_PI_2, TAU) { -1.0 } else { (-library_up(-a.min(b))).max(-1.0) };
+            let high = if self.reaches(FRAC_PI_2, TAU) { 1.0 } else { library_up(a.max(b)).min(1.0) };
             (low, high)
         })
     }
@@ -492,11 +328,7 @@ impl Interval {
         if self.magnitude() > 1e13 || self.reaches(FRAC_PI_2, PI) {
             return Self::ANYTHING;
         }
-        self.rising(
-            f64::tan,
-            [f64::NEG_INFINITY, f64::INFINITY],
-            [f64::NEG_INFINITY, f64::INFINITY],
-        )
+        self.rising(f64::tan, [f64::NEG_INFINITY, f64::INFINITY], [f64::NEG_INFINITY, f64::INFINITY])
     }
 
     /// Arc sine, of what lies from −1 to 1.
@@ -506,8 +338,7 @@ impl Interval {
 
     /// Arc cosine, of what lies from −1 to 1.
     pub fn acos(self) -> Self {
-        self.negated()
-            .rising(|x| (-x).acos(), [-1.0, 1.0], [0.0, 3.2])
+        self.negated().rising(|x| (-x).acos(), [-1.0, 1.0], [0.0, 3.2])
     }
 
     /// Arc tangent.
@@ -529,33 +360,21 @@ impl Interval {
                 return (if cut { -library_up(PI) } else { 0.0 }, library_up(PI));
             }
             // Adding zero takes the sign from a zero.
-            let angles = [
-                (self.low, x.low),
-                (self.low, x.high),
-                (self.high, x.low),
-                (self.high, x.high),
-            ]
-            .map(|(y, x)| (y + 0.0).atan2(x + 0.0));
-            let (low, high) = angles
-                .into_iter()
-                .fold((PI, -PI), |(a, b), c| (a.min(c), b.max(c)));
+            let angles = [(self.low, x.low), (self.low, x.high), (self.high, x.low), (self.high, x.high)]
+                .map(|(y, x)| (y + 0.0).atan2(x + 0.0));
+            let (low, high) = angles.into_iter().fold((PI, -PI), |(a, b), c| (a.min(c), b.max(c)));
             (-library_up(-low), library_up(high))
         })
     }
 
     /// Hyperbolic sine.
     pub fn sinh(self) -> Self {
-        self.rising(
-            f64::sinh,
-            [f64::NEG_INFINITY, f64::INFINITY],
-            [f64::NEG_INFINITY, f64::INFINITY],
-        )
+        self.rising(f64::sinh, [f64::NEG_INFINITY, f64::INFINITY], [f64::NEG_INFINITY, f64::INFINITY])
     }
 
     /// Hyperbolic cosine.
     pub fn cosh(self) -> Self {
-        self.abs()
-            .rising(f64::cosh, [0.0, f64::INFINITY], [1.0, f64::INFINITY])
+        self.abs().rising(f64::cosh, [0.0, f64::INFINITY], [1.0, f64::INFINITY])
     }
 
     /// Hyperbolic tangent.

@@ -82,56 +82,34 @@ pub(super) const SLACK: f64 = 1.0 + 1.0 / (1u64 << 40) as f64;
 impl Number for Bounded {
     #[inline(always)]
     fn of(x: f64) -> Self {
-        Self {
-            value: x,
-            error: 0.0,
-        }
+        Self { value: x, error: 0.0 }
     }
 
     #[inline(always)]
     fn from_double(x: &Double) -> Option<Self> {
-        Some(Self {
-            value: x.high,
-            error: x.low.abs() + x.error,
-        })
+        Some(Self { value: x.high, error: x.low.abs() + x.error })
     }
 
     #[inline(always)]
     fn plus(&self, other: &Self) -> Self {
         let value = self.value + other.value;
-        Self {
-            value,
-            error: self.error + other.error + UNIT * value.abs(),
-        }
+        Self { value, error: self.error + other.error + UNIT * value.abs() }
     }
 
     #[inline(always)]
     fn minus(&self, other: &Self) -> Self {
         let value = self.value - other.value;
-        Self {
-            value,
-            error: self.error + other.error + UNIT * value.abs(),
-        }
+        Self { value, error: self.error + other.error + UNIT * value.abs() }
     }
 
     #[inline(always)]
     fn times(&self, other: &Self) -> Self {
         let value = self.value * other.value;
-        let (own, others) = (
-            self.value.abs() + self.error,
-            other.value.abs() + other.error,
-        );
+        let (own, others) = (self.value.abs() + self.error, other.value.abs() + other.error);
         // Zero that is known as such makes a product that is known to be zero.
-        let lost = if value.abs() > SAFE || own == 0.0 || others == 0.0 {
-            0.0
-        } else {
-            UNDERFLOW
-        };
+        let lost = if value.abs() > SAFE || own == 0.0 || others == 0.0 { 0.0 } else { UNDERFLOW };
         let carried = self.value.abs() * other.error + others * self.error;
-        Self {
-            value,
-            error: carried + UNIT * value.abs() + lost,
-        }
+        Self { value, error: carried + UNIT * value.abs() + lost }
     }
 
     #[inline(always)]
@@ -139,30 +117,16 @@ impl Number for Bounded {
         let value = self.value / other.value;
         let least = other.value.abs() - other.error * SLACK;
         // |a/b − â/b̂| ≤ (|δa| + |â/b̂| |δb|) / |b|.
-        let carried = if least > 0.0 {
-            (self.error + value.abs() * other.error) / least
-        } else {
-            f64::INFINITY
-        };
-        Self {
-            value,
-            error: carried * SLACK + 2.0 * UNIT * value.abs() + underflow(value),
-        }
+        let carried = if least > 0.0 { (self.error + value.abs() * other.error) / least } else { f64::INFINITY };
+        Self { value, error: carried * SLACK + 2.0 * UNIT * value.abs() + underflow(value) }
     }
 
     #[inline(always)]
     fn sqrt(&self) -> Self {
         let value = self.value.max(0.0).sqrt();
         // |√x − √x̂| = |x − x̂| / (√x + √x̂).
-        let carried = if self.error == 0.0 {
-            0.0
-        } else {
-            (self.error / value).min(self.error.sqrt() * 2.0)
-        };
-        Self {
-            value,
-            error: carried + UNIT * value,
-        }
+        let carried = if self.error == 0.0 { 0.0 } else { (self.error / value).min(self.error.sqrt() * 2.0) };
+        Self { value, error: carried + UNIT * value }
     }
 
     #[inline(always)]
@@ -253,10 +217,7 @@ mod tests {
     /// Sums and products of six numbers, with whatever cancels.
     fn formula<N: Number>(x: [f64; 6]) -> N {
         let [a, b, c, d, e, f] = x.map(N::of);
-        let (p, q) = (
-            a.times(&b).minus(&c.times(&d)),
-            a.plus(&e).times(&f.minus(&b)),
-        );
+        let (p, q) = (a.times(&b).minus(&c.times(&d)), a.plus(&e).times(&f.minus(&b)));
         p.squared().minus(&q.times(&c.plus(&d))).times(&e.minus(&a))
     }
 
@@ -265,11 +226,7 @@ mod tests {
         let scaled = x.map(|x| {
             let bits = x.to_bits();
             let (m, e) = (bits & ((1 << 52) - 1), bits >> 52 & 0x7ff);
-            let m = if e == 0 {
-                BigInt::from(m)
-            } else {
-                BigInt::from(m | 1 << 52) << (e - 1)
-            };
+            let m = if e == 0 { BigInt::from(m) } else { BigInt::from(m | 1 << 52) << (e - 1) };
             if x < 0.0 { -m } else { m }
         });
         let one = BigInt::from(1) << 1074u32;
@@ -342,10 +299,7 @@ mod tests {
         assert_eq!(least.squared().rounded(), Some(f64::from_bits(1)));
         assert_eq!(most.squared().rounded(), Some(f64::INFINITY));
         assert_eq!(most.squared().over(&most).rounded(), Some(f64::MAX));
-        assert_eq!(
-            least.squared().squared().sqrt().sqrt().rounded(),
-            Some(f64::from_bits(1))
-        );
+        assert_eq!(least.squared().squared().sqrt().sqrt().rounded(), Some(f64::from_bits(1)));
         assert_eq!(Double::of(f64::MAX).squared().sign(), None);
         assert_eq!(Bounded::of(f64::from_bits(1)).squared().sign(), None);
     }

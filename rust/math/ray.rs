@@ -23,24 +23,12 @@ pub struct Ray {
 impl Ray {
     /// A ray asked for every `t` from 0 on.
     pub fn new(origin: DVec3, direction: DVec3) -> Self {
-        Self {
-            origin,
-            direction,
-            t_min: 0.0,
-            t_max: f64::INFINITY,
-            time: 0.0,
-        }
+        Self { origin, direction, t_min: 0.0, t_max: f64::INFINITY, time: 0.0 }
     }
 
     /// The segment from `a` to `b`: `t` runs from 0 to 1.
     pub fn segment(a: DVec3, b: DVec3) -> Self {
-        Self {
-            origin: a,
-            direction: b - a,
-            t_min: 0.0,
-            t_max: 1.0,
-            time: 0.0,
-        }
+        Self { origin: a, direction: b - a, t_min: 0.0, t_max: 1.0, time: 0.0 }
     }
 
     /// The point at `t`.
@@ -65,12 +53,7 @@ pub struct Hit {
 
 impl Hit {
     /// Nothing was hit.
-    pub const MISS: Self = Self {
-        t: f64::INFINITY,
-        uv: [0.0; 2],
-        primitive: u32::MAX,
-        inner: 0,
-    };
+    pub const MISS: Self = Self { t: f64::INFINITY, uv: [0.0; 2], primitive: u32::MAX, inner: 0 };
 
     /// Whether something was hit.
     pub fn is_hit(&self) -> bool {

@@ -28,14 +28,7 @@ impl Region {
     /// The region from one corner to another; of nothing at all if they are the wrong way round.
     pub fn new(min: DVec3, max: DVec3) -> Self {
         if min.cmpgt(max).any() {
-            return Self {
-                min,
-                max,
-                centre: DVec3::ZERO,
-                radius: 0.0,
-                extent: 0.0,
-                scale: 1.0,
-            };
+            return Self { min, max, centre: DVec3::ZERO, radius: 0.0, extent: 0.0, scale: 1.0 };
         }
         // Halves first: the sum may be more than an f64 holds.
         let centre = min / 2.0 + max / 2.0;
@@ -43,28 +36,14 @@ impl Region {
         let radius = radius.min(f64::MAX);
         let extent = min.abs().max(max.abs()).max_element();
         // A subnormal radius has no normal inverse.
-        let (scale, _) = normalising_scale(if radius > 0.0 {
-            radius.max(f64::MIN_POSITIVE)
-        } else {
-            0.0
-        });
-        Self {
-            min,
-            max,
-            centre,
-            radius,
-            extent,
-            scale,
-        }
+        let (scale, _) = normalising_scale(if radius > 0.0 { radius.max(f64::MIN_POSITIVE) } else { 0.0 });
+        Self { min, max, centre, radius, extent, scale }
     }
 
     /// The region of some points.
     pub fn around(points: impl IntoIterator<Item = DVec3>) -> Self {
-        let (min, max) = points
-            .into_iter()
-            .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(min, max), p| {
-                (min.min(p), max.max(p))
-            });
+        let (min, max) =
+            points.into_iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(min, max), p| (min.min(p), max.max(p)));
         Self::new(min, max)
     }
 
@@ -85,10 +64,7 @@ impl Region {
     pub fn aabb(&self, points: [DVec3; 3]) -> Aabb {
         let [a, b, c] = points.map(|p| self.to_box(p));
         let (min, max) = (a.min(b).min(c), a.max(b).max(c));
-        Aabb {
-            min: Vec3::new(down(min.x), down(min.y), down(min.z)),
-            max: Vec3::new(up(max.x), up(max.y), up(max.z)),
-        }
+        Aabb { min: Vec3::new(down(min.x), down(min.y), down(min.z)), max: Vec3::new(up(max.x), up(max.y), up(max.z)) }
     }
 }
 
@@ -112,11 +88,8 @@ mod tests {
     use proptest::prelude::*;
 
     fn anywhere() -> impl Strategy<Value = DVec3> {
-        prop::array::uniform3(prop_oneof![
-            -1e3..1e3f64,
-            prop::num::f64::NORMAL | prop::num::f64::SUBNORMAL
-        ])
-        .prop_map(DVec3::from_array)
+        prop::array::uniform3(prop_oneof![-1e3..1e3f64, prop::num::f64::NORMAL | prop::num::f64::SUBNORMAL])
+            .prop_map(DVec3::from_array)
     }
 
     proptest! {
@@ -139,9 +112,6 @@ mod tests {
     fn a_region_of_nothing_and_of_one_point() {
         assert!(Region::around([]).is_empty());
         let point = Region::around([DVec3::splat(1e7)]);
-        assert_eq!(
-            (point.centre, point.radius, point.scale),
-            (DVec3::splat(1e7), 0.0, 1.0)
-        );
+        assert_eq!((point.centre, point.radius, point.scale), (DVec3::splat(1e7), 0.0, 1.0));
     }
 }

@@ -26,10 +26,7 @@ pub fn normalising_scale(x: f64) -> (f64, f64) {
         0 => (1.0, 1.0),
         // 2⁻¹⁰²³ is subnormal.
         2046 => (f64::MIN_POSITIVE / 2.0, f64::from_bits(2046 << 52)),
-        biased => (
-            f64::from_bits((2046 - biased) << 52),
-            f64::from_bits(biased << 52),
-        ),
+        biased => (f64::from_bits((2046 - biased) << 52), f64::from_bits(biased << 52)),
     }
 }
 

@@ -19,20 +19,13 @@ impl Tiling {
     /// For an image of `count` pixels in rows of `row`. A sequence, whose `row` is 0, keeps its order, as does what does
     /// not divide into rows, or into ones that are narrower than a tile or very long.
     pub fn new(count: usize, row: usize) -> Self {
-        let is_image =
-            (SIDE..=LONGEST).contains(&row) && count.is_multiple_of(row) && count / row >= SIDE;
-        Self {
-            row: if is_image { row } else { 0 },
-        }
+        let is_image = (SIDE..=LONGEST).contains(&row) && count.is_multiple_of(row) && count / row >= SIDE;
+        Self { row: if is_image { row } else { 0 } }
     }
 
     /// The least number of pixels, `wanted` or more, that are whole bands of tiles: an image may be cut after so many.
     pub fn chunk(&self, wanted: usize) -> usize {
-        if self.row == 0 {
-            wanted
-        } else {
-            wanted.next_multiple_of(SIDE * self.row)
-        }
+        if self.row == 0 { wanted } else { wanted.next_multiple_of(SIDE * self.row) }
     }
 
     /// Where the pixels lie that are visited `from`-th and next, among `count` that begin with a band.
@@ -87,27 +80,11 @@ mod tests {
 
     #[test]
     fn every_pixel_is_visited_once_whatever_the_size() {
-        for (width, height) in [
-            (1, 1),
-            (4, 4),
-            (5, 7),
-            (16, 4),
-            (3, 20),
-            (20, 3),
-            (9, 11),
-            (8, 8),
-        ] {
+        for (width, height) in [(1, 1), (4, 4), (5, 7), (16, 4), (3, 20), (20, 3), (9, 11), (8, 8)] {
             for row in [0, width, 5] {
                 let count = width * height;
                 let tiling = Tiling::new(count, row);
-                for (wanted, some) in [
-                    (1, 7),
-                    (10, 7),
-                    (10, 24),
-                    (1000, 7),
-                    (1000, 16),
-                    (1000, 1000),
-                ] {
+                for (wanted, some) in [(1, 7), (10, 7), (10, 24), (1000, 7), (1000, 16), (1000, 1000)] {
                     let mut visits = vec![0; count];
                     for start in (0..count).step_by(tiling.chunk(wanted)) {
                         let size = tiling.chunk(wanted).min(count - start);
@@ -120,10 +97,7 @@ mod tests {
                             visits[start + place] += 1;
                         }
                     }
-                    assert!(
-                        visits.iter().all(|&n| n == 1),
-                        "{width} × {height} in rows of {row}: {visits:?}"
-                    );
+                    assert!(visits.iter().all(|&n| n == 1), "{width} × {height} in rows of {row}: {visits:?}");
                 }
             }
         }
@@ -150,9 +124,6 @@ mod tests {
         let tiling = Tiling::new(64, 8);
         let mut tile = [0; 16];
         tiling.places(16, 64, &mut tile);
-        assert_eq!(
-            tile,
-            [4, 5, 6, 7, 12, 13, 14, 15, 20, 21, 22, 23, 28, 29, 30, 31]
-        );
+        assert_eq!(tile, [4, 5, 6, 7, 12, 13, 14, 15, 20, 21, 22, 23, 28, 29, 30, 31]);
     }
 }

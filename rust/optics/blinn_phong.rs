@@ -21,11 +21,7 @@ impl BlinnPhong {
     pub fn new(diffuse: Rgb, specular: Rgb, exponent: f64) -> Self {
         let n = exponent;
         let scale = (n + 2.0) * (n + 4.0) / (8.0 * PI * ((-0.5 * n).exp2() + n));
-        Self {
-            lobes: Lobes::new(diffuse, specular),
-            exponent,
-            scale,
-        }
+        Self { lobes: Lobes::new(diffuse, specular), exponent, scale }
     }
 
     /// cosⁿ θh and the cosine between half vector and `wo`; `None` for a half vector without direction.
@@ -52,9 +48,7 @@ impl Scatter for BlinnPhong {
             return 0.0;
         }
         let lobe = match self.lobe(wo, wi) {
-            Some((power, cosine)) if cosine > 0.0 => {
-                power * (self.exponent + 1.0) / (4.0 * TAU * cosine)
-            }
+            Some((power, cosine)) if cosine > 0.0 => power * (self.exponent + 1.0) / (4.0 * TAU * cosine),
             _ => 0.0,
         };
         self.lobes.mixed(wi.z.abs() * FRAC_1_PI, lobe)

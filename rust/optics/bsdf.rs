@@ -1,8 +1,8 @@
 //! What scatters light at a point: one interface over all kinds.
 
 use super::{
-    BlinnPhong, Coated, Conductor, Dielectric, Diffuse, MetallicRough, Mirror, Null, OrenNayar,
-    Phong, Rgb, ThinDielectric, Transparent,
+    BlinnPhong, Coated, Conductor, Dielectric, Diffuse, MetallicRough, Mirror, Null, OrenNayar, Phong, Rgb,
+    ThinDielectric, Transparent,
 };
 use glam::DVec3;
 
@@ -65,12 +65,7 @@ impl BsdfSample {
     /// One that stays in its medium.
     #[inline]
     pub(super) fn new(wi: DVec3, weight: Rgb, pdf: f64) -> Self {
-        Self {
-            wi,
-            weight,
-            pdf,
-            eta: 1.0,
-        }
+        Self { wi, weight, pdf, eta: 1.0 }
     }
 
     /// A single direction, in the same medium.

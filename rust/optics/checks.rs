@@ -47,15 +47,7 @@ fn kinds() -> Vec<Bsdf> {
 /// Directions from straight above to grazing, and some from below.
 fn directions() -> Vec<DVec3> {
     let mut directions = Vec::new();
-    for (degrees, turn) in [
-        (0.0, 0.0),
-        (20.0, 1.0),
-        (45.0, 0.0),
-        (60.0, 2.0),
-        (80.0, 4.0),
-        (89.0, 5.0),
-        (89.9, 0.3),
-    ] {
+    for (degrees, turn) in [(0.0, 0.0), (20.0, 1.0), (45.0, 0.0), (60.0, 2.0), (80.0, 4.0), (89.0, 5.0), (89.9, 0.3)] {
         directions.extend([direction(degrees, turn), direction(180.0 - degrees, turn)]);
     }
     directions
@@ -85,26 +77,15 @@ fn share(bsdf: &Bsdf, wo: DVec3, draws: u32) -> (Rgb, f64) {
 #[test]
 fn white_is_white_at_every_roughness_and_angle() {
     let mirror = |alpha: [f64; 2]| Conductor::new(Rgb::ONE, Rgb::splat(1e9), alpha);
-    for alpha in [
-        0.0, 1e-4, 0.001, 0.01, 0.03, 0.1, 0.2, 0.35, 0.5, 0.7, 0.85, 1.0,
-    ] {
+    for alpha in [0.0, 1e-4, 0.001, 0.01, 0.03, 0.1, 0.2, 0.35, 0.5, 0.7, 0.85, 1.0] {
         let mut white: Vec<(Bsdf, f64)> = vec![
             (mirror([alpha; 2]).into(), 0.005),
             (mirror([alpha, 0.2]).into(), 0.01),
             (Coated::new(Rgb::ONE, 1.5, alpha).into(), 0.005),
             (OrenNayar::new(Rgb::ONE, alpha).into(), 0.005),
-            (
-                MetallicRough::new(Rgb::ONE, 0.0, alpha.sqrt()).into(),
-                0.005,
-            ),
-            (
-                MetallicRough::new(Rgb::ONE, 0.4, alpha.sqrt()).into(),
-                0.005,
-            ),
-            (
-                MetallicRough::new(Rgb::ONE, 1.0, alpha.sqrt()).into(),
-                0.005,
-            ),
+            (MetallicRough::new(Rgb::ONE, 0.0, alpha.sqrt()).into(), 0.005),
+            (MetallicRough::new(Rgb::ONE, 0.4, alpha.sqrt()).into(), 0.005),
+            (MetallicRough::new(Rgb::ONE, 1.0, alpha.sqrt()).into(), 0.005),
         ];
         for eta in [1.0, 1.0 + 1e-7, 1.0001, 1.01, 1.1, 1.33, 1.5, 2.0, 3.0] {
             white.push((Dielectric::new(eta, alpha).into(), 0.005));
@@ -139,10 +120,7 @@ fn light_is_scattered_alike_in_both_directions() {
                 let one = bsdf.evaluate(wo, wi) / wi.z.abs() * index(wi).powi(2);
                 let two = bsdf.evaluate(wi, wo) / wo.z.abs() * index(wo).powi(2);
                 let off = (one - two).abs().max_element();
-                assert!(
-                    off <= 1e-6 * one.max_element() + 1e-12,
-                    "{one} {two} {bsdf:?} {wo} {wi}"
-                );
+                assert!(off <= 1e-6 * one.max_element() + 1e-12, "{one} {two} {bsdf:?} {wo} {wi}");
             }
         }
     }
@@ -158,11 +136,7 @@ fn draws_weigh_what_is_evaluated() {
                     continue;
                 };
                 assert!((s.wi.length() - 1.0).abs() < 1e-9 && is_radiance(s.weight) && s.pdf > 0.0);
-                assert_eq!(
-                    s.eta != 1.0,
-                    s.wi.z * wo.z < 0.0 && matches!(bsdf, Bsdf::Dielectric(_)),
-                    "{s:?}"
-                );
+                assert_eq!(s.eta != 1.0, s.wi.z * wo.z < 0.0 && matches!(bsdf, Bsdf::Dielectric(_)), "{s:?}");
                 if s.pdf.is_infinite() {
                     continue;
                 }
@@ -171,10 +145,7 @@ fn draws_weigh_what_is_evaluated() {
                 let off = (value - s.weight * s.pdf).abs().max_element() / value.max_element();
                 // Directions have 10⁻¹⁶: over a lobe's width, for what is evaluated from them.
                 let bound = 1e-9 + 1e-12 * s.pdf.sqrt();
-                assert!(
-                    off < bound && (pdf / s.pdf - 1.0).abs() < bound,
-                    "{off:e} {pdf} {s:?} {bsdf:?} {wo}"
-                );
+                assert!(off < bound && (pdf / s.pdf - 1.0).abs() < bound, "{off:e} {pdf} {s:?} {bsdf:?} {wo}");
             }
         }
     }
@@ -185,10 +156,7 @@ fn nothing_gains_light() {
     for bsdf in kinds() {
         for wo in directions() {
             let (mean, error) = share(&bsdf, wo, 5_000);
-            assert!(
-                mean.max_element() < 1.005 + 5.0 * error,
-                "{mean} {bsdf:?} {wo}"
-            );
+            assert!(mean.max_element() < 1.005 + 5.0 * error, "{mean} {bsdf:?} {wo}");
         }
     }
 }

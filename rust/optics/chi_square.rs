@@ -41,6 +41,11 @@ struct Facets {
     eta: Option<f64>,
 }
 
+impl Facets {
+    /// Slopes above 3 α are no part of it: there is what lies far from a narrow lobe, and midpoints would not see it.
+    const TAIL: f64 = 0.9;
+}
+
 impl Chart for Facets {
     fn cell(&self, wi: DVec3) -> Option<[f64; 2]> {
         let q = match self.eta {
@@ -55,14 +60,16 @@ impl Chart for Facets {
         }
         let (x, y) = (h.x / h.z / self.alpha[0], h.y / h.z / self.alpha[1]);
         let square = x * x + y * y;
-        Some([square / (1.0 + square), (y.atan2(x) + PI) / TAU])
+        let share = square / (1.0 + square);
+        (share < Self::TAIL).then(|| [share / Self::TAIL, (y.atan2(x) + PI) / TAU])
     }
 
     fn direction(&self, at: [f64; 2]) -> Option<(DVec3, f64)> {
+        let at = [at[0] * Self::TAIL, at[1]];
         let (radius, (sin, cos)) = ((at[0] / (1.0 - at[0])).sqrt(), (at[1] * TAU - PI).sin_cos());
         let slopes = DVec3::new(self.alpha[0] * radius * cos, self.alpha[1] * radius * sin, 1.0);
         let mut h = slopes.normalize();
-        let facets = self.alpha[0] * self.alpha[1] * PI / (1.0 - at[0]).powi(2) * h.z.powi(3);
+        let facets = self.alpha[0] * self.alpha[1] * PI / (1.0 - at[0]).powi(2) * h.z.powi(3) * Self::TAIL;
         if self.wo.z < 0.0 {
             h = -h;
         }
@@ -102,9 +109,8 @@ fn assert_density(bsdf: &Bsdf, wo: DVec3, chart: &impl Chart) {
         .map(|cell| {
             let mut sum = 0.0;
             for i in 0..FINE * FINE {
-                let part = |low: usize, i: usize, count: usize| {
-                    (low as f64 + (i as f64 + 0.5) / FINE as f64) / count as f64
-                };
+                let part =
+                    |low: usize, i: usize, count: usize| (low as f64 + (i as f64 + 0.5) / FINE as f64) / count as f64;
                 let at = [part(cell / COLUMNS, i / FINE, ROWS), part(cell % COLUMNS, i % FINE, COLUMNS)];
                 if let Some((wi, area)) = chart.direction(at) {
                     sum += bsdf.pdf(wo, wi) * area;
@@ -115,7 +121,16 @@ fn assert_density(bsdf: &Bsdf, wo: DVec3, chart: &impl Chart) {
         .collect();
     let sum: f64 = expected.iter().sum();
     assert!(sum < 1.003, "{sum} {bsdf:?} {wo}");
-    expected.push((1.0 - sum).max(1e-3));
+    // Midpoints do not see the edge of what is drawn: a cell that holds next to nothing joins the rest.
+    let mut rest = 1.0 - sum;
+    for cell in 0..ROWS * COLUMNS {
+        if expected[cell] < 1e-4 {
+            rest += expected[cell];
+            counts[ROWS * COLUMNS] += counts[cell];
+            (expected[cell], counts[cell]) = (0.0, 0);
+        }
+    }
+    expected.push(rest.max(1e-3));
     if counts.iter().filter(|&&count| count > 40).count() > 1 {
         assert_frequencies(&counts, &expected);
     }
@@ -146,10 +161,10 @@ fn wide_lobes_have_their_density() {
 
 #[test]
 fn reflections_have_their_density() {
-    for alpha in [1e-4, 0.01, 0.3, 1.0] {
+    for alpha in [1e-4f64, 0.01, 0.3, 1.0] {
         let gold = conductors::metal("Au").unwrap();
         for wo in directions() {
-            for across in [alpha, 0.2] {
+            for across in [alpha, (4.0 * alpha).min(0.7)] {
                 let chart = Facets { wo, alpha: [alpha, across], eta: None };
                 assert_density(&Conductor::new(gold.eta, gold.k, [alpha, across]).into(), wo, &chart);
             }
@@ -162,7 +177,7 @@ fn reflections_have_their_density() {
 
 #[test]
 fn refractions_have_their_density() {
-    for alpha in [1e-4, 0.01, 0.3, 1.0] {
+    for alpha in [1e-4f64, 0.01, 0.3, 1.0] {
         for eta in [1.01, 1.5, 3.0] {
             for wo in directions().into_iter().flat_map(|wo| [wo, -wo]) {
                 let bsdf = Dielectric::new(eta, alpha).into();

@@ -33,12 +33,7 @@ impl Coated {
             None => fresnel::dielectric_average(eta),
             Some(ggx) => coat_average(ggx.alpha()[0], eta),
         };
-        Self {
-            eta,
-            ggx,
-            base: reflectance * (1.0 - within) / (Rgb::ONE - reflectance * within),
-            average,
-        }
+        Self { eta, ggx, base: reflectance * (1.0 - within) / (Rgb::ONE - reflectance * within), average }
     }
 
     /// The share of light from `w` that the coat reflects.
@@ -54,11 +49,7 @@ impl Coated {
     #[inline]
     fn share(&self, reflectance: f64) -> f64 {
         let base = self.base.max_element() * (1.0 - reflectance);
-        if reflectance > 0.0 {
-            reflectance / (reflectance + base)
-        } else {
-            0.0
-        }
+        if reflectance > 0.0 { reflectance / (reflectance + base) } else { 0.0 }
     }
 }
 
@@ -73,9 +64,7 @@ impl Scatter for Coated {
         let base = self.base * (reaching * FRAC_1_PI * wi.z / (1.0 - self.average));
         let Some(ggx) = &self.ggx else { return base };
         let (h, cosine) = half(wo, wi);
-        base + fresnel::dielectric(cosine, self.eta)
-            * ggx.density(h)
-            * ggx.reflection_geometry(wo, wi)
+        base + fresnel::dielectric(cosine, self.eta) * ggx.density(h) * ggx.reflection_geometry(wo, wi)
     }
 
     #[inline]
@@ -85,10 +74,7 @@ impl Scatter for Coated {
         }
         let (wo, wi) = (above(wo), above(wi));
         let share = self.share(self.reflectance(wo));
-        let coat = self
-            .ggx
-            .as_ref()
-            .map_or(0.0, |ggx| ggx.reflected_pdf(wo, half(wo, wi).0));
+        let coat = self.ggx.as_ref().map_or(0.0, |ggx| ggx.reflected_pdf(wo, half(wo, wi).0));
         share * coat + (1.0 - share) * wi.z * FRAC_1_PI
     }
 
@@ -103,10 +89,7 @@ impl Scatter for Coated {
         let coat = choice() < share;
         let mut wi = match &self.ggx {
             None if coat => {
-                return Some(BsdfSample::delta(
-                    mirrored(wo),
-                    Rgb::splat(reflectance / share),
-                ));
+                return Some(BsdfSample::delta(mirrored(wo), Rgb::splat(reflectance / share)));
             }
             Some(ggx) if coat => ggx.sample_reflection(up, u),
             _ => diffuse(up, u),

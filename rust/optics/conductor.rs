@@ -88,8 +88,7 @@ impl Scatter for Conductor {
         }
         let (wo, wi) = (above(wo), above(wi));
         let lost = mirror_loss(&rough.ggx, wo);
-        (1.0 - lost) * rough.ggx.reflected_pdf(wo, half(wo, wi).0)
-            + lost * grazing_pdf(rough.ggx.mean_alpha(), wi.z)
+        (1.0 - lost) * rough.ggx.reflected_pdf(wo, half(wo, wi).0) + lost * grazing_pdf(rough.ggx.mean_alpha(), wi.z)
     }
 
     #[inline]
@@ -98,18 +97,12 @@ impl Scatter for Conductor {
             return None;
         }
         let Some(rough) = &self.rough else {
-            return Some(BsdfSample::delta(
-                mirrored(wo),
-                self.reflectance(wo.z.abs()),
-            ));
+            return Some(BsdfSample::delta(mirrored(wo), self.reflectance(wo.z.abs())));
         };
         let up = above(wo);
         let lost = mirror_loss(&rough.ggx, up);
-        let mut wi = if choice() < lost {
-            grazing(rough.ggx.mean_alpha(), u)
-        } else {
-            rough.ggx.sample_reflection(up, u)
-        };
+        let mut wi =
+            if choice() < lost { grazing(rough.ggx.mean_alpha(), u) } else { rough.ggx.sample_reflection(up, u) };
         if wi.z <= 0.0 {
             return None;
         }
@@ -134,8 +127,6 @@ impl Scatter for Conductor {
     }
 
     fn roughness(&self) -> f64 {
-        self.rough
-            .as_ref()
-            .map_or(0.0, |rough| rough.ggx.mean_alpha())
+        self.rough.as_ref().map_or(0.0, |rough| rough.ggx.mean_alpha())
     }
 }

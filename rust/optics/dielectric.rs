@@ -35,18 +35,8 @@ impl Dielectric {
     /// Of the index of refraction below the surface over that above, `eta` > 0, and the roughness, 0 to 1.
     /// Below [`Ggx::SMOOTH`], or with `eta` within 10⁻⁶ of 1, directions are single.
     pub fn new(eta: f64, alpha: f64) -> Self {
-        let ggx = if (eta - 1.0).abs() < Self::INVISIBLE {
-            None
-        } else {
-            Ggx::rough([alpha; 2])
-        };
-        Self {
-            eta,
-            rough: ggx.map(|ggx| Rough {
-                ggx,
-                interface: Interface::new(ggx.mean_alpha(), eta),
-            }),
-        }
+        let ggx = if (eta - 1.0).abs() < Self::INVISIBLE { None } else { Ggx::rough([alpha; 2]) };
+        Self { eta, rough: ggx.map(|ggx| Rough { ggx, interface: Interface::new(ggx.mean_alpha(), eta) }) }
     }
 
     /// The index below over the index above.
@@ -70,10 +60,7 @@ impl Dielectric {
             let (h, cosine) = half(o, i);
             let f = fresnel::dielectric(cosine, eta);
             let density = f * ggx.density(h);
-            return (
-                density * ggx.reflection_geometry(o, i),
-                density * 0.5 / (o.z + ggx.stretch(o)),
-            );
+            return (density * ggx.reflection_geometry(o, i), density * 0.5 / (o.z + ggx.stretch(o)));
         }
         // The facet's normal, on the side of wo; the length holds the Jacobian (Walter et al., 2007, eq. 16 and 17).
         let q = wo + wi * eta;
@@ -92,15 +79,7 @@ impl Dielectric {
 
     /// Refraction at a facet of normal `h`, on the side of `wo`, with cosines to both directions and |wo + η wi|².
     #[inline]
-    fn refraction(
-        &self,
-        rough: &Rough,
-        wo: DVec3,
-        wi: DVec3,
-        h: DVec3,
-        [o, i]: [f64; 2],
-        square: f64,
-    ) -> (f64, f64) {
+    fn refraction(&self, rough: &Rough, wo: DVec3, wi: DVec3, h: DVec3, [o, i]: [f64; 2], square: f64) -> (f64, f64) {
         let (eta, ggx) = (self.beyond(wo), &rough.ggx);
         let through = (1.0 - fresnel::dielectric(o, eta)) * ggx.density(h) * o * i / square;
         // G₁ / cos θo.
@@ -113,23 +92,12 @@ impl Dielectric {
     #[inline]
     fn both(&self, rough: &Rough, wo: DVec3, wi: DVec3, (value, pdf): (f64, f64)) -> (f64, f64) {
         let lost = rough.interface.loss(wo);
-        let back = rough.interface.given_back(lost, wo, wi)
-            / if wo.z * wi.z < 0.0 {
-                self.beyond(wo).powi(2)
-            } else {
-                1.0
-            };
+        let back =
+            rough.interface.given_back(lost, wo, wi) / if wo.z * wi.z < 0.0 { self.beyond(wo).powi(2) } else { 1.0 };
         let crossing = rough.interface.crossing(wo);
-        let share = if wo.z * wi.z < 0.0 {
-            crossing
-        } else {
-            1.0 - crossing
-        };
+        let share = if wo.z * wi.z < 0.0 { crossing } else { 1.0 - crossing };
         let scale = rough.interface.scale(wi);
-        (
-            value + back,
-            (1.0 - lost) * pdf + lost * share * grazing_pdf(scale, wi.z.abs()),
-        )
+        (value + back, (1.0 - lost) * pdf + lost * share * grazing_pdf(scale, wi.z.abs()))
     }
 
     #[inline]
@@ -139,30 +107,15 @@ impl Dielectric {
             return Some(BsdfSample::delta(mirrored(wo), Rgb::ONE));
         }
         let wi = fresnel::refract(wo, DVec3::new(0.0, 0.0, wo.z.signum()), eta)?;
-        Some(BsdfSample {
-            wi,
-            weight: Rgb::splat(1.0 / (eta * eta)),
-            pdf: f64::INFINITY,
-            eta,
-        })
+        Some(BsdfSample { wi, weight: Rgb::splat(1.0 / (eta * eta)), pdf: f64::INFINITY, eta })
     }
 
     #[inline]
-    fn rough_sample(
-        &self,
-        rough: &Rough,
-        wo: DVec3,
-        choice: f64,
-        u: [f64; 2],
-    ) -> Option<BsdfSample> {
+    fn rough_sample(&self, rough: &Rough, wo: DVec3, choice: f64, u: [f64; 2]) -> Option<BsdfSample> {
         let lost = rough.interface.loss(wo);
         let eta = self.beyond(wo);
         let (wi, single) = if choice < lost {
-            let side = if choice < lost * rough.interface.crossing(wo) {
-                -wo.z.signum()
-            } else {
-                wo.z.signum()
-            };
+            let side = if choice < lost * rough.interface.crossing(wo) { -wo.z.signum() } else { wo.z.signum() };
             let scale = rough.interface.scale(DVec3::new(0.0, 0.0, side));
             let wi = grazing(scale, u) * DVec3::new(1.0, 1.0, side);
             if !Ggx::sees(wi) {
@@ -192,20 +145,12 @@ impl Dielectric {
                 // |wo + η wi| without the rounding of either: near index 1 it is all that tells directions apart.
                 let e = (eta - 1.0) * (eta + 1.0);
                 let g = (e + o * o).sqrt();
-                (
-                    wi,
-                    self.refraction(rough, wo, wi, h, [o, g / eta], (e / (o + g)).powi(2)),
-                )
+                (wi, self.refraction(rough, wo, wi, h, [o, g / eta], (e / (o + g)).powi(2)))
             }
         };
         let (value, pdf) = self.both(rough, wo, wi, single);
         let eta = if wo.z * wi.z < 0.0 { eta } else { 1.0 };
-        (pdf > 0.0).then(|| BsdfSample {
-            wi,
-            weight: Rgb::splat(value / pdf),
-            pdf,
-            eta,
-        })
+        (pdf > 0.0).then(|| BsdfSample { wi, weight: Rgb::splat(value / pdf), pdf, eta })
     }
 }
 
@@ -223,9 +168,7 @@ impl Scatter for Dielectric {
     #[inline]
     fn pdf(&self, wo: DVec3, wi: DVec3) -> f64 {
         match &self.rough {
-            Some(rough) if Ggx::sees(wo) && Ggx::sees(wi) => {
-                self.both(rough, wo, wi, self.single(rough, wo, wi)).1
-            }
+            Some(rough) if Ggx::sees(wo) && Ggx::sees(wi) => self.both(rough, wo, wi, self.single(rough, wo, wi)).1,
             _ => 0.0,
         }
     }
@@ -254,8 +197,6 @@ impl Scatter for Dielectric {
     }
 
     fn roughness(&self) -> f64 {
-        self.rough
-            .as_ref()
-            .map_or(0.0, |rough| rough.ggx.mean_alpha())
+        self.rough.as_ref().map_or(0.0, |rough| rough.ggx.mean_alpha())
     }
 }

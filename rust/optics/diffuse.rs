@@ -16,20 +16,12 @@ pub struct Diffuse {
 impl Scatter for Diffuse {
     #[inline]
     fn evaluate(&self, wo: DVec3, wi: DVec3) -> Rgb {
-        if wo.z * wi.z > 0.0 {
-            self.reflectance * (wi.z.abs() * FRAC_1_PI)
-        } else {
-            Rgb::ZERO
-        }
+        if wo.z * wi.z > 0.0 { self.reflectance * (wi.z.abs() * FRAC_1_PI) } else { Rgb::ZERO }
     }
 
     #[inline]
     fn pdf(&self, wo: DVec3, wi: DVec3) -> f64 {
-        if wo.z * wi.z > 0.0 {
-            wi.z.abs() * FRAC_1_PI
-        } else {
-            0.0
-        }
+        if wo.z * wi.z > 0.0 { wi.z.abs() * FRAC_1_PI } else { 0.0 }
     }
 
     /// By the cosine, so that every draw weighs the reflectance.
@@ -57,9 +49,7 @@ mod tests {
     use crate::sampling::chi_square::assert_frequencies;
     use std::f64::consts::{PI, TAU};
 
-    const GREY: Diffuse = Diffuse {
-        reflectance: Rgb::new(0.2, 0.5, 0.8),
-    };
+    const GREY: Diffuse = Diffuse { reflectance: Rgb::new(0.2, 0.5, 0.8) };
     const ABOVE: DVec3 = DVec3::new(0.6, 0.0, 0.8);
 
     #[test]
@@ -72,12 +62,7 @@ mod tests {
                 let wi = warp::uniform_sphere(Sampler::new(5, 0, sample).two(0));
                 sum += Bsdf::Diffuse(GREY).evaluate(wo, wi) / warp::UNIFORM_SPHERE_PDF;
             }
-            assert!(
-                (sum / f64::from(count) / GREY.reflectance - 1.0)
-                    .abs()
-                    .max_element()
-                    < 0.008
-            );
+            assert!((sum / f64::from(count) / GREY.reflectance - 1.0).abs().max_element() < 0.008);
         }
     }
 
@@ -85,12 +70,7 @@ mod tests {
     fn is_reciprocal_and_on_one_side() {
         let wi = DVec3::new(0.0, 0.28, 0.96);
         let swapped = GREY.evaluate(wi, ABOVE) / ABOVE.z;
-        assert!(
-            (GREY.evaluate(ABOVE, wi) / wi.z - swapped)
-                .abs()
-                .max_element()
-                < 1e-15
-        );
+        assert!((GREY.evaluate(ABOVE, wi) / wi.z - swapped).abs().max_element() < 1e-15);
         assert_eq!(GREY.evaluate(ABOVE, -wi), Rgb::ZERO);
         assert_eq!(GREY.pdf(ABOVE, -wi), 0.0);
         assert_eq!(GREY.evaluate(-ABOVE, -wi), GREY.evaluate(ABOVE, wi));
@@ -102,19 +82,11 @@ mod tests {
             let mut counts = vec![0; 20 * 12];
             for sample in 0..100_000 {
                 let u = Sampler::new(6, 0, sample).two(0);
-                let s = Bsdf::Diffuse(GREY)
-                    .sample(wo, || unreachable!("it has one part"), u)
-                    .unwrap();
-                assert!(
-                    (s.weight * s.pdf - GREY.evaluate(wo, s.wi))
-                        .abs()
-                        .max_element()
-                        < 1e-15
-                );
+                let s = Bsdf::Diffuse(GREY).sample(wo, || unreachable!("it has one part"), u).unwrap();
+                assert!((s.weight * s.pdf - GREY.evaluate(wo, s.wi)).abs().max_element() < 1e-15);
                 assert_eq!(s.pdf, GREY.pdf(wo, s.wi));
                 let row = (((s.wi.z + 1.0) * 10.0) as usize).min(19);
-                counts[row * 12 + (((s.wi.y.atan2(s.wi.x) + PI) / TAU * 12.0) as usize).min(11)] +=
-                    1;
+                counts[row * 12 + (((s.wi.y.atan2(s.wi.x) + PI) / TAU * 12.0) as usize).min(11)] += 1;
             }
             // The density is linear in the height, so its middle value in a band is its mean.
             let expected: Vec<f64> = (0..240)
@@ -129,12 +101,6 @@ mod tests {
 
     #[test]
     fn black_ends_a_path() {
-        assert!(
-            Diffuse {
-                reflectance: Rgb::ZERO
-            }
-            .sample(ABOVE, || 0.0, [0.3, 0.3])
-            .is_none()
-        );
+        assert!(Diffuse { reflectance: Rgb::ZERO }.sample(ABOVE, || 0.0, [0.3, 0.3]).is_none());
     }
 }

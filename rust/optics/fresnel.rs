@@ -50,8 +50,8 @@ pub fn dielectric_average(eta: f64) -> f64 {
         return (n - 1.0) * (n + 1.0) / 6.0;
     }
     if n > 1e4 {
-        // All but the transmitted 8 / (3η), to the first order, with powers of η out of the way.
-        return 1.0 - 8.0 / (3.0 * n);
+        // All but 16 / (3η), to the first order, with powers of η out of the way.
+        return 1.0 - 16.0 / (3.0 * n);
     }
     let (n2, n4) = (n * n, n * n * n * n);
     let plus = n2 + 1.0;
@@ -92,7 +92,7 @@ pub fn conductor_average(eta: Rgb, k: Rgb) -> Rgb {
 const GAUSS_COSINE: [(f64, f64); 4] = [
     (0.139_759_864_343_780_57, 0.062_361_941_900_016_116),
     (0.416_409_567_631_083_17, 0.259_695_095_216_464_94),
-    (0.723_156_986_361_876_2, 0.406_929_136_020_543_0),
+    (0.723_156_986_361_876_2, 0.406_929_136_020_543),
     (0.942_895_803_885_482_3, 0.271_013_826_862_976_04),
 ];
 
@@ -123,7 +123,9 @@ mod tests {
         for (degrees, truth) in truths.into_iter().chain(grazing) {
             assert!((dielectric(f64::to_radians(degrees).cos(), 1.5) - truth).abs() < 1e-9, "{degrees}");
         }
-        for (degrees, truth) in [(0.0, 0.04), (30.0, 0.055190167), (41.0, 0.379751266), (41.8, 0.890771921), (42.0, 1.0)] {
+        for (degrees, truth) in
+            [(0.0, 0.04), (30.0, 0.055190167), (41.0, 0.379751266), (41.8, 0.890771921), (42.0, 1.0)]
+        {
             assert!((dielectric(f64::to_radians(degrees).cos(), 1.0 / 1.5) - truth).abs() < 2e-9, "{degrees}");
         }
     }
@@ -142,7 +144,8 @@ mod tests {
         for eta in [1.0f64 + 1e-7, 1.5, 10.0] {
             let critical = ((eta - 1.0) * (eta + 1.0)).sqrt() / eta;
             for near in [critical.next_down(), critical, critical.next_up()] {
-                assert!((dielectric(near, 1.0 / eta) - 1.0).abs() < 1e-6);
+                // 1 − F goes as the root of the distance.
+                assert!((dielectric(near, 1.0 / eta) - 1.0).abs() < 1e-3);
             }
             assert_eq!(dielectric(critical * 0.99, 1.0 / eta), 1.0);
         }

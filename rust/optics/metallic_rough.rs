@@ -44,23 +44,13 @@ impl MetallicRough {
             None => Self::DIELECTRIC + (1.0 - Self::DIELECTRIC) / 21.0,
             Some(ggx) => {
                 let kept = 1.0 - mirror_loss_average(ggx);
-                Self::DIELECTRIC * kept
-                    + (1.0 - Self::DIELECTRIC) * schlick_share_average(ggx.alpha()[0])
+                Self::DIELECTRIC * kept + (1.0 - Self::DIELECTRIC) * schlick_share_average(ggx.alpha()[0])
             }
         };
         let metal = base_color + (Rgb::ONE - base_color) / 21.0;
-        let multiple = ggx
-            .as_ref()
-            .map_or(Rgb::ZERO, |ggx| made_up(ggx, metal) * metallic);
+        let multiple = ggx.as_ref().map_or(Rgb::ZERO, |ggx| made_up(ggx, metal) * metallic);
         let base = base_color * ((1.0 - metallic) * FRAC_1_PI / (1.0 - average));
-        Self {
-            ggx,
-            f0,
-            base,
-            multiple,
-            color: base_color,
-            metallic,
-        }
+        Self { ggx, f0, base, multiple, color: base_color, metallic }
     }
 
     /// The mean of Schlick's term and the share that is kept, for light from `w`.
@@ -68,10 +58,7 @@ impl MetallicRough {
     fn once(&self, w: DVec3) -> (f64, f64) {
         match &self.ggx {
             None => (fresnel::schlick_weight(w.z), 1.0),
-            Some(ggx) => (
-                schlick_share(ggx.alpha()[0], w.z),
-                1.0 - mirror_loss(ggx, w),
-            ),
+            Some(ggx) => (schlick_share(ggx.alpha()[0], w.z), 1.0 - mirror_loss(ggx, w)),
         }
     }
 
@@ -86,16 +73,10 @@ impl MetallicRough {
     fn shares(&self, once: (f64, f64)) -> [f64; 2] {
         let facets = (self.f0 + (Rgb::ONE - self.f0) * once.0).max_element() * once.1;
         let color = self.color.max_element();
-        let (metal, base) = (
-            color * self.metallic * (1.0 - once.1),
-            color * (1.0 - self.metallic) * (1.0 - Self::dielectric(once)),
-        );
+        let (metal, base) =
+            (color * self.metallic * (1.0 - once.1), color * (1.0 - self.metallic) * (1.0 - Self::dielectric(once)));
         let sum = facets + metal + base;
-        if sum > 0.0 {
-            [facets / sum, metal / sum]
-        } else {
-            [0.0; 2]
-        }
+        if sum > 0.0 { [facets / sum, metal / sum] } else { [0.0; 2] }
     }
 
     #[inline]
@@ -117,8 +98,7 @@ impl Scatter for MetallicRough {
         let wide = (self.base * reaching + self.multiple * lost) * wi.z;
         let Some(ggx) = &self.ggx else { return wide };
         let (h, cosine) = half(wo, wi);
-        wide + fresnel::schlick(cosine, self.f0)
-            * (ggx.density(h) * ggx.reflection_geometry(wo, wi))
+        wide + fresnel::schlick(cosine, self.f0) * (ggx.density(h) * ggx.reflection_geometry(wo, wi))
     }
 
     #[inline]
@@ -128,13 +108,8 @@ impl Scatter for MetallicRough {
         }
         let (wo, wi) = (above(wo), above(wi));
         let [facets, metal] = self.shares(self.once(wo));
-        let facet = self
-            .ggx
-            .as_ref()
-            .map_or(0.0, |ggx| ggx.reflected_pdf(wo, half(wo, wi).0));
-        facets * facet
-            + metal * grazing_pdf(self.scale(), wi.z)
-            + (1.0 - facets - metal).max(0.0) * wi.z * FRAC_1_PI
+        let facet = self.ggx.as_ref().map_or(0.0, |ggx| ggx.reflected_pdf(wo, half(wo, wi).0));
+        facets * facet + metal * grazing_pdf(self.scale(), wi.z) + (1.0 - facets - metal).max(0.0) * wi.z * FRAC_1_PI
     }
 
     #[inline]
@@ -148,10 +123,7 @@ impl Scatter for MetallicRough {
         let facet = choice < facets;
         let mut wi = match &self.ggx {
             None if facet => {
-                return Some(BsdfSample::delta(
-                    mirrored(wo),
-                    fresnel::schlick(up.z, self.f0) / facets,
-                ));
+                return Some(BsdfSample::delta(mirrored(wo), fresnel::schlick(up.z, self.f0) / facets));
             }
             Some(ggx) if facet => ggx.sample_reflection(up, u),
             _ if choice < facets + metal => grazing(self.scale(), u),

@@ -20,12 +20,7 @@ impl Scatter for Null {
     }
 
     #[inline]
-    fn sample(
-        &self,
-        _wo: DVec3,
-        _choice: impl FnOnce() -> f64,
-        _u: [f64; 2],
-    ) -> Option<BsdfSample> {
+    fn sample(&self, _wo: DVec3, _choice: impl FnOnce() -> f64, _u: [f64; 2]) -> Option<BsdfSample> {
         None
     }
 

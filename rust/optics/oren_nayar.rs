@@ -33,12 +33,7 @@ impl OrenNayar {
         } else {
             Rgb::ZERO
         };
-        Self {
-            reflectance,
-            scale,
-            r,
-            multiple,
-        }
+        Self { reflectance, scale, r, multiple }
     }
 
     /// The share of light from a direction that white facets scatter once.
@@ -68,11 +63,7 @@ impl Scatter for OrenNayar {
 
     #[inline]
     fn pdf(&self, wo: DVec3, wi: DVec3) -> f64 {
-        if wo.z * wi.z > 0.0 {
-            wi.z.abs() * FRAC_1_PI
-        } else {
-            0.0
-        }
+        if wo.z * wi.z > 0.0 { wi.z.abs() * FRAC_1_PI } else { 0.0 }
     }
 
     #[inline]

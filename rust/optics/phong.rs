@@ -18,10 +18,7 @@ pub struct Phong {
 impl Phong {
     /// The diffuse and the specular share, which together should be at most 1, and the exponent n ≥ 0.
     pub fn new(diffuse: Rgb, specular: Rgb, exponent: f64) -> Self {
-        Self {
-            lobes: Lobes::new(diffuse, specular),
-            exponent,
-        }
+        Self { lobes: Lobes::new(diffuse, specular), exponent }
     }
 }
 
@@ -31,8 +28,7 @@ impl Scatter for Phong {
         if wo.z * wi.z <= 0.0 {
             return Rgb::ZERO;
         }
-        let lobe =
-            mirrored(wo).dot(wi).clamp(0.0, 1.0).powf(self.exponent) * (self.exponent + 2.0) / TAU;
+        let lobe = mirrored(wo).dot(wi).clamp(0.0, 1.0).powf(self.exponent) * (self.exponent + 2.0) / TAU;
         (self.lobes.diffuse * FRAC_1_PI + self.lobes.specular * lobe) * wi.z.abs()
     }
 
@@ -41,8 +37,7 @@ impl Scatter for Phong {
         if wo.z * wi.z <= 0.0 {
             return 0.0;
         }
-        let lobe =
-            mirrored(wo).dot(wi).clamp(0.0, 1.0).powf(self.exponent) * (self.exponent + 1.0) / TAU;
+        let lobe = mirrored(wo).dot(wi).clamp(0.0, 1.0).powf(self.exponent) * (self.exponent + 1.0) / TAU;
         self.lobes.mixed(wi.z.abs() * FRAC_1_PI, lobe)
     }
 

@@ -41,11 +41,7 @@ impl Scatter for ThinDielectric {
         if wo.z == 0.0 {
             return None;
         }
-        let wi = if choice() < self.reflectance(wo) {
-            mirrored(wo)
-        } else {
-            -wo
-        };
+        let wi = if choice() < self.reflectance(wo) { mirrored(wo) } else { -wo };
         Some(BsdfSample::delta(wi, Rgb::ONE))
     }
 

@@ -26,10 +26,7 @@ pub(crate) fn assert_frequencies(counts: &[u64], probabilities: &[f64]) {
     }
     assert!(classes > 1, "too few samples for this test");
     let limit = quantile(f64::from(classes - 1));
-    assert!(
-        statistic < limit,
-        "chi-square {statistic} of {classes} classes, at most {limit}"
-    );
+    assert!(statistic < limit, "chi-square {statistic} of {classes} classes, at most {limit}");
 }
 
 /// The chi-square that is exceeded with probability 10⁻⁴ (Wilson and Hilferty, 1931).

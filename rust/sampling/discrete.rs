@@ -22,10 +22,7 @@ impl AliasTable {
     /// # Panics
     /// If a weight is negative, infinite or NaN.
     pub fn new(weights: &[f64]) -> Option<Self> {
-        assert!(
-            weights.iter().all(|w| w.is_finite() && *w >= 0.0),
-            "weights are finite and not negative"
-        );
+        assert!(weights.iter().all(|w| w.is_finite() && *w >= 0.0), "weights are finite and not negative");
         let largest = weights.iter().copied().fold(0.0, f64::max);
         if largest == 0.0 {
             return None;
@@ -36,23 +33,14 @@ impl AliasTable {
 
         let count = weights.len();
         let mut share: Vec<f64> = probabilities.iter().map(|p| p * count as f64).collect();
-        let mut columns: Vec<Column> = (0..count as u32)
-            .map(|alias| Column {
-                threshold: 1.0,
-                alias,
-            })
-            .collect();
-        let (mut poor, mut rich): (Vec<u32>, Vec<u32>) =
-            (0..count as u32).partition(|&i| share[i as usize] < 1.0);
+        let mut columns: Vec<Column> = (0..count as u32).map(|alias| Column { threshold: 1.0, alias }).collect();
+        let (mut poor, mut rich): (Vec<u32>, Vec<u32>) = (0..count as u32).partition(|&i| share[i as usize] < 1.0);
         // Entries of weight 0 come first, while there is surely one to fill their column: rounding may leave a few
         // poor ones over at the end, which then keep their column to themselves.
         poor.sort_by_key(|&i| share[i as usize] == 0.0);
         while let Some(&donor) = rich.last() {
             let Some(small) = poor.pop() else { break };
-            columns[small as usize] = Column {
-                threshold: share[small as usize],
-                alias: donor,
-            };
+            columns[small as usize] = Column { threshold: share[small as usize], alias: donor };
             // In this order the difference is exact for a small share (Vose).
             share[donor as usize] = (share[donor as usize] + share[small as usize]) - 1.0;
             if share[donor as usize] < 1.0 {
@@ -60,10 +48,7 @@ impl AliasTable {
                 rich.pop();
             }
         }
-        Some(Self {
-            columns,
-            probabilities,
-        })
+        Some(Self { columns, probabilities })
     }
 
     /// How many entries there are.
@@ -87,11 +72,7 @@ impl AliasTable {
         let scaled = u * self.columns.len() as f64;
         let index = (scaled as usize).min(self.columns.len() - 1);
         let column = self.columns[index];
-        if scaled - (index as f64) < column.threshold {
-            index
-        } else {
-            column.alias as usize
-        }
+        if scaled - (index as f64) < column.threshold { index } else { column.alias as usize }
     }
 
     /// The probability of an entry.
@@ -169,11 +150,6 @@ mod tests {
         assert!(AliasTable::new(&[0.0, 0.0]).is_none());
         let table = AliasTable::new(&[f64::MAX, f64::MAX]).unwrap();
         assert_eq!(table.probability(1), 0.5);
-        assert_eq!(
-            AliasTable::new(&[5.0])
-                .unwrap()
-                .sample(1.0 - f64::EPSILON / 2.0),
-            0
-        );
+        assert_eq!(AliasTable::new(&[5.0]).unwrap().sample(1.0 - f64::EPSILON / 2.0), 0);
     }
 }

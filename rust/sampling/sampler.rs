@@ -50,13 +50,7 @@ impl Sampler {
     /// The numbers of sample number `sample` of a pixel, for a seed of the whole picture.
     #[inline]
     pub fn new(seed: u64, pixel: u32, sample: u32) -> Self {
-        Self {
-            key: [seed as u32, (seed >> 32) as u32],
-            pixel,
-            sample,
-            block: u32::MAX,
-            words: [0; 4],
-        }
+        Self { key: [seed as u32, (seed >> 32) as u32], pixel, sample, block: u32::MAX, words: [0; 4] }
     }
 
     /// A number in [0, 1) with 53 bits.
@@ -70,8 +64,7 @@ impl Sampler {
     /// to fear its borders.
     #[inline]
     pub fn two(&mut self, dimension: u32) -> [f64; 2] {
-        self.bits(dimension)
-            .map(|word| (f64::from(word) + 0.5) * 2f64.powi(-32))
+        self.bits(dimension).map(|word| (f64::from(word) + 0.5) * 2f64.powi(-32))
     }
 
     #[inline]
@@ -81,11 +74,7 @@ impl Sampler {
             self.words = philox4x32([block, self.sample, self.pixel, 0], self.key);
             self.block = block;
         }
-        if dimension.is_multiple_of(2) {
-            [self.words[0], self.words[1]]
-        } else {
-            [self.words[2], self.words[3]]
-        }
+        if dimension.is_multiple_of(2) { [self.words[0], self.words[1]] } else { [self.words[2], self.words[3]] }
     }
 }
 
@@ -108,15 +97,10 @@ mod tests {
 
     #[test]
     fn every_part_of_the_name_counts() {
-        let value =
-            |seed, pixel, sample, dimension| Sampler::new(seed, pixel, sample).one(dimension);
+        let value = |seed, pixel, sample, dimension| Sampler::new(seed, pixel, sample).one(dimension);
         let mut all: Vec<f64> = Vec::new();
         for bit in 0..32 {
-            all.extend([
-                value(1 << bit, 0, 0, 0),
-                value(1 << (bit + 32), 0, 0, 0),
-                value(0, 1 << bit, 0, 0),
-            ]);
+            all.extend([value(1 << bit, 0, 0, 0), value(1 << (bit + 32), 0, 0, 0), value(0, 1 << bit, 0, 0)]);
             all.push(value(0, 0, 1 << bit, 0));
             all.push(value(0, 0, 0, 1 << bit));
         }

@@ -30,11 +30,7 @@ pub fn cosine_hemisphere(u: [f64; 2]) -> DVec3 {
     let (radius, angle) = concentric(u);
     let (sin, cos) = angle.sin_cos();
     // The product keeps the digits of a small height that 1 − r² would cancel, so a direction never lies in the plane.
-    DVec3::new(
-        radius * cos,
-        radius * sin,
-        ((1.0 - radius) * (1.0 + radius)).sqrt(),
-    )
+    DVec3::new(radius * cos, radius * sin, ((1.0 - radius) * (1.0 + radius)).sqrt())
 }
 
 /// The density of [`cosine_hemisphere`] in solid angle, 0 below the plane.
@@ -62,11 +58,7 @@ pub const UNIFORM_SPHERE_PDF: f64 = 0.25 * FRAC_1_PI;
 #[inline]
 pub fn uniform_triangle(u: [f64; 2]) -> [f64; 2] {
     let [x, y] = u;
-    if y > x {
-        [0.5 * x, y - 0.5 * x]
-    } else {
-        [x - 0.5 * y, 0.5 * y]
-    }
+    if y > x { [0.5 * x, y - 0.5 * x] } else { [x - 0.5 * y, 0.5 * y] }
 }
 
 #[cfg(test)]
@@ -99,9 +91,7 @@ mod tests {
     fn cosine_hemisphere_has_its_density() {
         let counts = histogram(10 * 12, |u| band(cosine_hemisphere(u), 0.0, 10, 12));
         // The integral of cos θ / π over a band from z₀ to z₁ is z₁² − z₀².
-        let expected: Vec<f64> = (0..120)
-            .map(|i| f64::from(2 * (i / 12) + 1) / 100.0 / 12.0)
-            .collect();
+        let expected: Vec<f64> = (0..120).map(|i| f64::from(2 * (i / 12) + 1) / 100.0 / 12.0).collect();
         assert_frequencies(&counts, &expected);
     }
 
@@ -109,13 +99,7 @@ mod tests {
     fn cosine_hemisphere_density_integrates_to_one() {
         let bands = 1000;
         let sum: f64 = (0..bands)
-            .map(|i| {
-                cosine_hemisphere_pdf(DVec3::new(
-                    0.0,
-                    0.0,
-                    (f64::from(i) + 0.5) / f64::from(bands),
-                ))
-            })
+            .map(|i| cosine_hemisphere_pdf(DVec3::new(0.0, 0.0, (f64::from(i) + 0.5) / f64::from(bands))))
             .sum();
         assert!((sum * TAU / f64::from(bands) - 1.0).abs() < 1e-12);
         assert_eq!(cosine_hemisphere_pdf(DVec3::NEG_Z), 0.0);
@@ -124,13 +108,7 @@ mod tests {
     #[test]
     fn directions_stay_above_the_plane() {
         let edge = 2f64.powi(-33);
-        for u in [
-            [edge, 0.5],
-            [1.0 - edge, 0.5],
-            [0.5, edge],
-            [edge, edge],
-            [0.5, 0.5],
-        ] {
+        for u in [[edge, 0.5], [1.0 - edge, 0.5], [0.5, edge], [edge, edge], [0.5, 0.5]] {
             let d = cosine_hemisphere(u);
             assert!(d.z > 0.0 && (d.length() - 1.0).abs() < 1e-15, "{d}");
         }

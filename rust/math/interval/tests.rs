@@ -12,18 +12,10 @@ fn number() -> impl Strategy<Value = f64> {
 
 /// An interval and a number in it.
 fn inside() -> impl Strategy<Value = (Interval, f64)> {
-    (
-        number(),
-        number(),
-        prop_oneof![Just(0.0), Just(1.0), 0.0..1.0f64],
-    )
-        .prop_map(|(a, b, part)| {
-            let (low, high) = (a.min(b), a.max(b));
-            (
-                Interval::new(low, high),
-                (low + (high - low) * part).clamp(low, high),
-            )
-        })
+    (number(), number(), prop_oneof![Just(0.0), Just(1.0), 0.0..1.0f64]).prop_map(|(a, b, part)| {
+        let (low, high) = (a.min(b), a.max(b));
+        (Interval::new(low, high), (low + (high - low) * part).clamp(low, high))
+    })
 }
 
 /// Whether an interval holds a number of 32 digits.
@@ -121,57 +113,23 @@ fn parts_of_a_domain() {
     assert!(Interval::new(2.0, 3.0).asin().is_empty());
     assert!(Interval::point(0.0).ln().is_empty());
     assert!(Interval::point(1.0).over(Interval::point(0.0)).is_empty());
-    assert_eq!(
-        Interval::new(-4.0, 9.0).sqrt(),
-        Interval {
-            low: 0.0,
-            high: 3.0,
-            whole: false
-        }
-    );
+    assert_eq!(Interval::new(-4.0, 9.0).sqrt(), Interval { low: 0.0, high: 3.0, whole: false });
     assert_eq!(
         Interval::new(1.0, 2.0).over(Interval::new(0.0, 4.0)),
-        Interval {
-            low: 0.25,
-            high: f64::INFINITY,
-            whole: false
-        }
+        Interval { low: 0.25, high: f64::INFINITY, whole: false }
     );
     assert_eq!(
         Interval::new(1.0, 2.0).over(Interval::new(-4.0, 0.0)),
-        Interval {
-            low: f64::NEG_INFINITY,
-            high: -0.25,
-            whole: false
-        }
+        Interval { low: f64::NEG_INFINITY, high: -0.25, whole: false }
     );
-    assert_eq!(
-        Interval::new(1.0, 2.0).over(Interval::new(-1.0, 4.0)),
-        Interval::ANYTHING
-    );
+    assert_eq!(Interval::new(1.0, 2.0).over(Interval::new(-1.0, 4.0)), Interval::ANYTHING);
     assert_eq!(Interval::new(1.0, 2.0).tan(), Interval::ANYTHING);
+    assert!(!Interval::new(-1.0, 1.0).atan2(Interval::new(-2.0, -1.0)).whole);
+    assert!(Interval::new(0.0, 1.0).atan2(Interval::new(-2.0, -1.0)).whole);
     assert!(
-        !Interval::new(-1.0, 1.0)
-            .atan2(Interval::new(-2.0, -1.0))
-            .whole
-    );
-    assert!(
-        Interval::new(0.0, 1.0)
-            .atan2(Interval::new(-2.0, -1.0))
-            .whole
-    );
-    assert!(
-        Interval::EMPTY.plus(Interval::point(1.0)).is_empty()
-            && Interval::point(1.0).times(Interval::EMPTY).is_empty()
+        Interval::EMPTY.plus(Interval::point(1.0)).is_empty() && Interval::point(1.0).times(Interval::EMPTY).is_empty()
     );
     let huge = Interval::point(f64::MAX);
-    assert_eq!(
-        huge.plus(huge),
-        Interval {
-            low: f64::MAX,
-            high: f64::INFINITY,
-            whole: true
-        }
-    );
+    assert_eq!(huge.plus(huge), Interval { low: f64::MAX, high: f64::INFINITY, whole: true });
     assert_eq!(huge.times(huge).low, f64::MAX);
 }

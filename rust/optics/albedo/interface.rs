@@ -84,29 +84,11 @@ impl Interface {
         // na² (1 − F̄a) = nb² (1 − F̄b): so t = (1 − F̄) / L̄ times what keeps both at most 1 − F̄.
         let least = averages[0].min(averages[1]);
         let side = |below: bool| {
-            let (own, average) = (
-                if below { 1.0 / eta } else { eta },
-                averages[usize::from(below)],
-            );
+            let (own, average) = (if below { 1.0 / eta } else { eta }, averages[usize::from(below)]);
             let through = 1.0 - fresnel::dielectric_average(own);
-            Side {
-                dense: own < 1.0,
-                average,
-                crosses: if average > 0.0 {
-                    through * least / average
-                } else {
-                    0.0
-                },
-            }
+            Side { dense: own < 1.0, average, crosses: if average > 0.0 { through * least / average } else { 0.0 } }
         };
-        Self {
-            ggx,
-            alpha,
-            index,
-            bent,
-            eta: dense,
-            sides: [side(false), side(true)],
-        }
+        Self { ggx, alpha, index, bent, eta: dense, sides: [side(false), side(true)] }
     }
 
     #[inline]
@@ -137,11 +119,7 @@ impl Interface {
     /// The cosine on the side of `w` about which light is lost.
     #[inline]
     pub fn scale(&self, w: DVec3) -> f64 {
-        if self.side(w).dense {
-            (self.alpha * self.bent).max(1e-8)
-        } else {
-            self.alpha
-        }
+        if self.side(w).dense { (self.alpha * self.bent).max(1e-8) } else { self.alpha }
     }
 
     /// What is given back to `wo` of light from `wi`, per solid angle, with the cosine of `wi` in it and without the 1 / η²
@@ -155,15 +133,7 @@ impl Interface {
     #[inline]
     pub fn given_back_density(&self, wo: DVec3, wi: DVec3) -> f64 {
         let (from, to) = (self.side(wo), self.side(wi));
-        let share = if wo.z * wi.z > 0.0 {
-            1.0 - from.crosses
-        } else {
-            from.crosses
-        };
-        if to.average > 0.0 {
-            share * self.loss(wi) * wi.z.abs() / (std::f64::consts::PI * to.average)
-        } else {
-            0.0
-        }
+        let share = if wo.z * wi.z > 0.0 { 1.0 - from.crosses } else { from.crosses };
+        if to.average > 0.0 { share * self.loss(wi) * wi.z.abs() / (std::f64::consts::PI * to.average) } else { 0.0 }
     }
 }

@@ -22,11 +22,7 @@ pub fn mirror_loss(ggx: &Ggx, w: DVec3) -> f64 {
     }
     // At the same α tan θ the azimuth matters little, and between the axes it goes as these powers say.
     let (along, across) = (a.powf(1.6) * w.x * w.x, b.powf(1.6) * w.y * w.y);
-    let share = if along + across > 0.0 {
-        across / (along + across)
-    } else {
-        0.5
-    };
+    let share = if along + across > 0.0 { across / (along + across) } else { 0.5 };
     let (a, b) = (of_alpha(a), of_alpha(b));
     let at = |first, second| volume(&ANISOTROPIC, ANISOTROPIC_SIZES, [grazing, first, second]);
     at(a, b) * (1.0 - share) + at(b, a) * share

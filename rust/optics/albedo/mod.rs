@@ -78,13 +78,7 @@ fn plane(table: &[u16], sizes: [usize; 2], at: [f64; 2]) -> f64 {
 fn volume(table: &[u16], sizes: [usize; 3], at: [f64; 3]) -> f64 {
     let (i, f) = between(at[0], sizes[0]);
     let rest = [sizes[1], sizes[2]];
-    let layer = |i: usize| {
-        plane(
-            &table[i * rest[0] * rest[1]..(i + 1) * rest[0] * rest[1]],
-            rest,
-            [at[1], at[2]],
-        )
-    };
+    let layer = |i: usize| plane(&table[i * rest[0] * rest[1]..(i + 1) * rest[0] * rest[1]], rest, [at[1], at[2]]);
     layer(i) * (1.0 - f) + layer(i + 1) * f
 }
 

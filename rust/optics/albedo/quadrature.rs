@@ -15,10 +15,7 @@ fn mean_over_facets(ggx: &Ggx, w: DVec3, steps: [usize; 2], value: impl Fn(DVec3
         let t = (i as f64 + 0.5) / steps[0] as f64;
         let (s, ds) = (t * t, 2.0 * t);
         for j in 0..steps[1] {
-            let u = [
-                (j as f64 + 0.5) / steps[1] as f64 * if w.y == 0.0 { 0.5 } else { 1.0 },
-                1.0 - s * s,
-            ];
+            let u = [(j as f64 + 0.5) / steps[1] as f64 * if w.y == 0.0 { 0.5 } else { 1.0 }, 1.0 - s * s];
             sum += 2.0 * s * ds * value(ggx.sample_visible(w, u));
         }
     }
@@ -28,11 +25,7 @@ fn mean_over_facets(ggx: &Ggx, w: DVec3, steps: [usize; 2], value: impl Fn(DVec3
 /// G₂ / G₁(wo) of a reflection, 0 below the horizon.
 fn reflected(ggx: &Ggx, wo: DVec3, h: DVec3) -> f64 {
     let wi = h * (2.0 * wo.dot(h)) - wo;
-    if wi.z > 0.0 {
-        ggx.reflection_geometry(wo, wi) * 2.0 * (wo.z + ggx.stretch(wo))
-    } else {
-        0.0
-    }
+    if wi.z > 0.0 { ggx.reflection_geometry(wo, wi) * 2.0 * (wo.z + ggx.stretch(wo)) } else { 0.0 }
 }
 
 /// G₂ / G₁(wo) of a refraction, 0 if it ends on the side of `wo`.
@@ -89,11 +82,7 @@ fn inverse(low: f64, high: f64, at: f64, f: impl Fn(f64) -> f64) -> f64 {
     let (mut low, mut high) = (low, high);
     for _ in 0..200 {
         let middle = 0.5 * (low + high);
-        if f(middle) < at {
-            low = middle
-        } else {
-            high = middle
-        }
+        if f(middle) < at { low = middle } else { high = middle }
     }
     0.5 * (low + high)
 }
@@ -150,27 +139,15 @@ mod entries {
     }
 
     pub fn loss(k: usize, dense: bool) -> f64 {
-        let [n, m, l] = if dense {
-            interface::DENSE_SIZES
-        } else {
-            interface::THIN_SIZES
-        };
+        let [n, m, l] = if dense { interface::DENSE_SIZES } else { interface::THIN_SIZES };
         let a = entry(k / l % m, m).powf(1.0 / 0.7).max(1e-4);
         let (ggx, eta) = (Ggx::new([a; 2]), index(a, entry(k % l, l)));
         let bent = interface::bent(interface::scale(a, eta));
         let variable = |x: f64| {
             let cosine = a * x / (a * x).hypot(((1.0 - x) * (1.0 + x)).sqrt());
-            if dense {
-                interface::of_dense(a, eta, bent, x, cosine)
-            } else {
-                of_x(x)
-            }
+            if dense { interface::of_dense(a, eta, bent, x, cosine) } else { of_x(x) }
         };
-        interface_loss(
-            &ggx,
-            if dense { 1.0 / eta } else { eta },
-            grazing(&ggx, k / (l * m), n, variable),
-        )
+        interface_loss(&ggx, if dense { 1.0 / eta } else { eta }, grazing(&ggx, k / (l * m), n, variable))
     }
 
     pub fn coat_mean(k: usize) -> f64 {
@@ -178,11 +155,7 @@ mod entries {
         let (a, eta) = (alpha_root(k / l % m, m), coat_index(k % l, l));
         let w = direction(entry(k / (l * m), n).powi(2).clamp(1e-7, 1.0));
         let mean = reflected_mean(&Ggx::new([a; 2]), w, |c| fresnel::dielectric(c, eta));
-        if a < SMOOTHEST {
-            0.5
-        } else {
-            mean - fresnel::dielectric(effective_cosine(a, w.z), eta) + 0.5
-        }
+        if a < SMOOTHEST { 0.5 } else { mean - fresnel::dielectric(effective_cosine(a, w.z), eta) + 0.5 }
     }
 
     pub fn schlick_mean(k: usize) -> f64 {
@@ -190,11 +163,7 @@ mod entries {
         let a = alpha_root(k % m, m);
         let w = direction(entry(k / m, n).powi(2).clamp(1e-7, 1.0));
         let mean = reflected_mean(&Ggx::new([a; 2]), w, fresnel::schlick_weight);
-        if a < SMOOTHEST {
-            0.5
-        } else {
-            mean - fresnel::schlick_weight(effective_cosine(a, w.z)) + 0.5
-        }
+        if a < SMOOTHEST { 0.5 } else { mean - fresnel::schlick_weight(effective_cosine(a, w.z)) + 0.5 }
     }
 
     // Averages are those of what the tables give between their entries, so that what is given back sums to what is lost.
@@ -209,9 +178,7 @@ mod entries {
             .map(|i| {
                 let (sin, cos) = ((i as f64 + 0.5) / azimuths as f64 * FRAC_PI_2).sin_cos();
                 let scale = (a * a * cos * cos + b * b * sin * sin).sqrt();
-                even_light(scale, |w| {
-                    super::super::mirror_loss(&ggx, DVec3::new(w.x * cos, w.x * sin, w.z))
-                })
+                even_light(scale, |w| super::super::mirror_loss(&ggx, DVec3::new(w.x * cos, w.x * sin, w.z)))
             })
             .sum();
         (sum / azimuths as f64 / (0.5 * (a * a + b * b))).ln()
@@ -224,35 +191,26 @@ mod entries {
         let bent = interface::bent(interface::scale(a, eta));
         let interface = super::super::Interface::new(a, eta);
         // What is bent away has a smaller scale than the rest, which changes slowly.
-        (even_light(a * bent, |w| interface.loss(if dense { -w } else { w })) / (a * a))
-            .max(1e-30)
-            .ln()
+        (even_light(a * bent, |w| interface.loss(if dense { -w } else { w })) / (a * a)).max(1e-30).ln()
     }
 
     pub fn coat_average(k: usize) -> f64 {
         let [m, l] = coat::AVERAGE_SIZES;
         let (a, eta) = (alpha_root(k / l, m), coat_index(k % l, l));
         let ggx = Ggx::new([a; 2]);
-        even_light(0.1, |w| {
-            super::super::coat(a, eta, w.z) * (1.0 - super::super::mirror_loss(&ggx, w))
-        })
+        even_light(0.1, |w| super::super::coat(a, eta, w.z) * (1.0 - super::super::mirror_loss(&ggx, w)))
     }
 
     pub fn schlick_average(k: usize) -> f64 {
         let a = alpha_root(k, schlick::AVERAGE_SIZE);
         let ggx = Ggx::new([a; 2]);
-        even_light(0.1, |w| {
-            super::super::schlick_share(a, w.z) * (1.0 - super::super::mirror_loss(&ggx, w))
-        })
+        even_light(0.1, |w| super::super::schlick_share(a, w.z) * (1.0 - super::super::mirror_loss(&ggx, w)))
     }
 }
 
 /// Source code of a table, in lines as long as they may be.
 fn table(name: &str, doc: &str, kind: &str, numbers: Vec<String>) -> String {
-    let mut source = format!(
-        "/// {doc}\n#[rustfmt::skip]\npub static {name}: [{kind}; {}] = [",
-        numbers.len()
-    );
+    let mut source = format!("/// {doc}\n#[rustfmt::skip]\npub static {name}: [{kind}; {}] = [", numbers.len());
     let mut length = usize::MAX;
     for number in &numbers {
         if length > 116 - number.len() {
@@ -267,21 +225,11 @@ fn table(name: &str, doc: &str, kind: &str, numbers: Vec<String>) -> String {
 
 fn shares(name: &str, doc: &str, count: usize, value: impl Fn(usize) -> f64) -> String {
     let share = |k| (value(k).clamp(0.0, 1.0) * 65535.0).round() as u16;
-    table(
-        name,
-        doc,
-        "u16",
-        (0..count).map(|k| share(k).to_string()).collect(),
-    )
+    table(name, doc, "u16", (0..count).map(|k| share(k).to_string()).collect())
 }
 
 fn means(name: &str, doc: &str, count: usize, value: impl Fn(usize) -> f64) -> String {
-    table(
-        name,
-        doc,
-        "f64",
-        (0..count).map(|k| format!("{:.5}", value(k))).collect(),
-    )
+    table(name, doc, "f64", (0..count).map(|k| format!("{:.5}", value(k))).collect())
 }
 
 /// Writes the tables. What averages are made of has to be there and compiled before them: run it twice.
@@ -289,10 +237,7 @@ fn means(name: &str, doc: &str, count: usize, value: impl Fn(usize) -> f64) -> S
 #[ignore = "writes source files"]
 fn write_tables() {
     let write = |name: &str, what: &str, parts: &[String]| {
-        let path = format!(
-            "{}/rust/optics/albedo/tables/{name}.rs",
-            env!("CARGO_MANIFEST_DIR")
-        );
+        let path = format!("{}/rust/optics/albedo/tables/{name}.rs", env!("CARGO_MANIFEST_DIR"));
         std::fs::write(path, format!("//! {what}\n\n{}", parts.join("\n"))).unwrap();
     };
     const MEANS: &str = "Logarithms of the means over even light, over α².";
@@ -301,12 +246,7 @@ fn write_tables() {
         "mirror",
         "Losses of perfect mirrors, in 65535ths.",
         &[
-            shares(
-                "ISOTROPIC",
-                "By grazing and α.",
-                product(&mirror::ISOTROPIC_SIZES),
-                entries::isotropic,
-            ),
+            shares("ISOTROPIC", "By grazing and α.", product(&mirror::ISOTROPIC_SIZES), entries::isotropic),
             shares(
                 "ANISOTROPIC",
                 "By grazing, α along and α across.",
@@ -321,85 +261,49 @@ fn write_tables() {
             ),
         ],
     );
-    let (thin, dense) = (
-        product(&interface::THIN_SIZES),
-        product(&interface::DENSE_SIZES),
-    );
+    let (thin, dense) = (product(&interface::THIN_SIZES), product(&interface::DENSE_SIZES));
     let average = product(&interface::AVERAGE_SIZES);
     write(
         "interface_thin",
         "Losses of facets between dielectrics from the thinner side, in 65535ths.",
         &[
-            shares("THIN", "By grazing, α and index.", thin, |k| {
-                entries::loss(k, false)
-            }),
-            means("THIN_AVERAGE", MEANS, average, |k| {
-                entries::loss_average(k, false)
-            }),
+            shares("THIN", "By grazing, α and index.", thin, |k| entries::loss(k, false)),
+            means("THIN_AVERAGE", MEANS, average, |k| entries::loss_average(k, false)),
         ],
     );
     write(
         "interface_dense",
         "Losses of facets between dielectrics from the denser side, in 65535ths.",
         &[
-            shares("DENSE", "By grazing, α and index.", dense, |k| {
-                entries::loss(k, true)
-            }),
-            means("DENSE_AVERAGE", MEANS, average, |k| {
-                entries::loss_average(k, true)
-            }),
+            shares("DENSE", "By grazing, α and index.", dense, |k| entries::loss(k, true)),
+            means("DENSE_AVERAGE", MEANS, average, |k| entries::loss_average(k, true)),
         ],
     );
     write(
         "coat",
         "Reflectances of rough coats, in 65535ths.",
         &[
-            shares(
-                "MEAN",
-                "By √cos θ, α and index.",
-                product(&coat::SIZES),
-                entries::coat_mean,
-            ),
-            means(
-                "AVERAGE",
-                "Means over even light.",
-                product(&coat::AVERAGE_SIZES),
-                entries::coat_average,
-            ),
+            shares("MEAN", "By √cos θ, α and index.", product(&coat::SIZES), entries::coat_mean),
+            means("AVERAGE", "Means over even light.", product(&coat::AVERAGE_SIZES), entries::coat_average),
         ],
     );
     write(
         "schlick",
         "Means of Schlick's term, in 65535ths.",
         &[
-            shares(
-                "MEAN",
-                "By √cos θ and α.",
-                product(&schlick::SIZES),
-                entries::schlick_mean,
-            ),
-            means(
-                "AVERAGE",
-                "Means over even light.",
-                schlick::AVERAGE_SIZE,
-                entries::schlick_average,
-            ),
+            shares("MEAN", "By √cos θ and α.", product(&schlick::SIZES), entries::schlick_mean),
+            means("AVERAGE", "Means over even light.", schlick::AVERAGE_SIZE, entries::schlick_average),
         ],
     );
 }
 
 /// Roughnesses between the entries of every table, and cosines that are not theirs either.
 const ALPHAS: [f64; 8] = [1e-4, 0.01, 0.037, 0.155, 0.23, 0.46, 0.77, 0.93];
-const COSINES: [f64; 11] = [
-    1e-6, 1e-3, 0.004, 0.017, 0.05, 0.11, 0.23, 0.55, 0.71, 0.86, 0.995,
-];
+const COSINES: [f64; 11] = [1e-6, 1e-3, 0.004, 0.017, 0.05, 0.11, 0.23, 0.55, 0.71, 0.86, 0.995];
 
 /// Fails where two values for some arguments differ by more.
 fn assert_near(value: f64, truth: f64, bound: f64, what: &[f64]) {
-    assert!(
-        (value - truth).abs() < bound,
-        "{value} for {truth} at {what:?}"
-    );
+    assert!((value - truth).abs() < bound, "{value} for {truth} at {what:?}");
 }
 
 #[test]
@@ -407,24 +311,14 @@ fn mirrors_lose_what_the_table_says() {
     for a in ALPHAS {
         for c in COSINES {
             let (w, ggx) = (direction(c), Ggx::new([a; 2]));
-            assert_near(
-                super::mirror_loss(&ggx, w),
-                mirror_loss(&ggx, w),
-                0.004,
-                &[a, c],
-            );
+            assert_near(super::mirror_loss(&ggx, w), mirror_loss(&ggx, w), 0.004, &[a, c]);
             let schlick = reflected_mean(&ggx, w, fresnel::schlick_weight);
             assert_near(super::schlick_share(a, c), schlick, 0.004, &[a, c]);
             for b in [0.003, 0.05, 0.3, 0.8] {
                 for turn in [0.0, 0.4, 0.8, 1.2, 1.4, FRAC_PI_2] {
                     let (sin, cos) = f64::sin_cos(turn);
                     let (w, ggx) = (DVec3::new(w.x * cos, w.x * sin, w.z), Ggx::new([a, b]));
-                    assert_near(
-                        super::mirror_loss(&ggx, w),
-                        mirror_loss(&ggx, w),
-                        0.01,
-                        &[a, b, c, turn],
-                    );
+                    assert_near(super::mirror_loss(&ggx, w), mirror_loss(&ggx, w), 0.01, &[a, b, c, turn]);
                 }
             }
         }
