@@ -24,7 +24,7 @@ pub struct MetallicRough {
     base: Rgb,
     /// What metal scatters more than once, over π and the mean loss.
     multiple: Rgb,
-    /// The probability to draw from what is not reflected once, for an albedo of 1.
+    /// The base colour.
     color: Rgb,
     metallic: f64,
 }

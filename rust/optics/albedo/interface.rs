@@ -96,7 +96,7 @@ impl Interface {
         &self.sides[usize::from(w.z < 0.0)]
     }
 
-    /// The share of light from `w` that is neither reflected nor refracted away by one facet. Within 0.005 of the integral
+    /// The share of light from `w` that is neither reflected nor refracted away by one facet. Within 0.007 of the integral
     /// where the surface is seen from the thinner side, and within 0.01 from the denser.
     #[inline]
     pub fn loss(&self, w: DVec3) -> f64 {

@@ -11,7 +11,7 @@ use std::f64::consts::FRAC_PI_2;
 fn mean_over_facets(ggx: &Ggx, w: DVec3, steps: [usize; 2], value: impl Fn(DVec3) -> f64) -> f64 {
     let mut sum = 0.0;
     for i in 0..steps[0] {
-        // A midpoint rule in θ of s = sin²(θ / 2) puts points where lobes meet the horizon, at small s.
+        // s = t² puts points where lobes meet the horizon, at small s.
         let t = (i as f64 + 0.5) / steps[0] as f64;
         let (s, ds) = (t * t, 2.0 * t);
         for j in 0..steps[1] {
