@@ -1,7 +1,7 @@
 """Light: what stands in a scene and is no surface, what surrounds it, and how surfaces shine."""
 
 from collections.abc import Sequence
-from typing import TypeAlias, get_args
+from typing import TypeAlias, cast, get_args
 
 from numpy.typing import ArrayLike
 
@@ -56,4 +56,4 @@ def environments(
                     f"environment must be environments only, if several, got {type(one).__name__}"
                 )
         return tuple(value)
-    return ConstantEnvironment(value)
+    return ConstantEnvironment(cast(ArrayLike, value))

@@ -23,10 +23,10 @@ pub struct EnvironmentMap {
     scale: f64,
     /// Over cells; `None` if all is black.
     pyramid: Option<Pyramid>,
-    /// 1 − cos of the colatitudes between which each row of cells lies, as differences.
-    bands: Vec<f64>,
-    /// The sines of these colatitudes.
+    /// The sines of the colatitudes between which each row of cells lies.
     sines: Vec<f64>,
+    /// Strength integrated over all directions, and how spread it is, as [`Reach::Outside`] has them, up to scale.
+    flux: f64,
     spread: f64,
 }
 
@@ -36,24 +36,23 @@ impl EnvironmentMap {
         let to_picture = [0, 1, 2].map(|i| DVec3::from_array(to_world.map(|row| row[i])));
         let height = picture.height();
         let colatitude = |row: usize| ((row as f64 - 0.5).clamp(0.0, height as f64)) / height as f64 * PI;
-        // cos a − cos b = 2 sin((a + b) / 2) sin((b − a) / 2), which keeps its digits at the poles.
-        let band = |row: usize| {
-            let (a, b) = (colatitude(row), colatitude(row + 1));
-            2.0 * (0.5 * (a + b)).sin() * (0.5 * (b - a)).sin()
-        };
-        let bands: Vec<f64> = (0..=height).map(band).collect();
         let sines = (0..=height + 1).map(|row| colatitude(row).sin()).collect();
-        let mut map = Self { picture, to_picture, scale, pyramid: None, bands, sines, spread: 1.0 };
+        let mut map = Self { picture, to_picture, scale, pyramid: None, sines, flux: 0.0, spread: 1.0 };
         let size = [map.picture.width(), height + 1];
         map.pyramid = Pyramid::new(size, |i, j| map.weight(i, j));
-        if let Some(pyramid) = &map.pyramid {
-            let cells = (0..size[1]).flat_map(|j| (0..size[0]).map(move |i| (i, j)));
-            let squares: f64 = cells
-                .filter(|(_, j)| map.bands[*j] > 0.0)
-                .map(|(i, j)| map.weight(i, j) / pyramid.total() * map.weight(i, j) / pyramid.total() / map.bands[j])
-                .sum();
-            // Weights are of cells one wide: all directions take 2 in height and so many cells.
-            map.spread = 1.0 / (2.0 * size[0] as f64 * squares);
+        let mut squares = 0.0;
+        for row in 0..size[1] {
+            // cos a − cos b = 2 sin((a + b) / 2) sin((b − a) / 2), which keeps its digits at the poles.
+            let (a, b) = (colatitude(row), colatitude(row + 1));
+            let solid_angle = 2.0 * (0.5 * (a + b)).sin() * (0.5 * (b - a)).sin() * TAU / size[0] as f64;
+            for column in 0..size[0] {
+                let mean = 0.25 * map.corners(column, row).map(strength).iter().sum::<f64>();
+                map.flux += mean * solid_angle;
+                squares += mean * mean * solid_angle;
+            }
+        }
+        if squares > 0.0 {
+            map.spread = map.flux * map.flux / (2.0 * TAU * squares);
         }
         map
     }
@@ -68,10 +67,12 @@ impl EnvironmentMap {
         [at(column, upper), at(next, upper), at(column, lower), at(next, lower)]
     }
 
-    /// What a cell is drawn by: its mean strength times its height.
+    /// What a cell is drawn by: the light from it, by the ends of it.
     #[inline]
     fn weight(&self, column: usize, row: usize) -> f64 {
-        0.25 * self.corners(column, row).map(strength).iter().sum::<f64>() * self.bands[row]
+        let [a, b, c, d] = self.corners(column, row).map(strength);
+        let tall = if row == 0 || row == self.picture.height() { 0.5 } else { 1.0 };
+        tall * ((a + b) * self.sines[row] + (c + d) * self.sines[row + 1])
     }
 
     /// The cell of a direction, where in it the direction is, and the sine of its colatitude.
@@ -102,13 +103,12 @@ impl EnvironmentMap {
         let radiance = between(corners, [x, y]);
         let [a, b, c, d] = corners.map(strength);
         let (upper, lower) = (a + b, c + d);
+        // Downwards a density goes from one end of the cell to the other, and on in the next.
         let (from, to) = (upper * self.sines[row], lower * self.sines[row + 1]);
-        let along = (from + (to - from) * y) / (0.5 * (from + to));
+        let along = 2.0 * (from + (to - from) * y);
         let across = strength(radiance) / (0.5 * (upper + (lower - upper) * y));
         let (width, height) = (self.picture.width() as f64, self.picture.height() as f64);
-        let tall = if row == 0 || row == self.picture.height() { 0.5 } else { 1.0 };
-        let element = TAU / width * (PI * tall / height) * sine;
-        let pdf = 0.25 * (upper + lower) * self.bands[row] / pyramid.total() * along * across / element;
+        let pdf = along * across / (pyramid.total() * (TAU / width * (PI / height) * sine));
         (radiance, if pdf.is_finite() { pdf } else { 0.0 })
     }
 }
@@ -127,7 +127,7 @@ impl Light for EnvironmentMap {
                 (dot - f64::from(u8::from(i == j))).abs() < 1e-6
             })
         });
-        let most = self.pyramid.as_ref().map_or(0.0, |p| p.total() * self.scale);
+        let most = self.flux * self.scale;
         if !orthonormal {
             Err("an environment map may only be turned".into())
         } else if self.scale >= 0.0 && self.scale.is_finite() && most.is_finite() {
@@ -138,8 +138,7 @@ impl Light for EnvironmentMap {
     }
 
     fn reach(&self) -> Reach {
-        let total = self.pyramid.as_ref().map_or(0.0, Pyramid::total);
-        Reach::Outside { flux: total * self.scale * TAU / self.picture.width() as f64, spread: self.spread }
+        Reach::Outside { flux: self.flux * self.scale, spread: self.spread }
     }
 
     #[inline]
@@ -179,9 +178,6 @@ impl Light for EnvironmentMap {
     }
 
     fn bytes(&self) -> usize {
-        self.picture.bytes()
-            + size_of_val(self.bands.as_slice())
-            + size_of_val(self.sines.as_slice())
-            + self.pyramid.as_ref().map_or(0, Pyramid::bytes)
+        self.picture.bytes() + size_of_val(self.sines.as_slice()) + self.pyramid.as_ref().map_or(0, Pyramid::bytes)
     }
 }

@@ -156,7 +156,7 @@ impl Light for SunSky {
     fn validate(&self) -> Result<(), String> {
         let height = self.sun.dot(self.frame.normal);
         // A sun at the horizon may be below by a rounding.
-        if !(height >= -1e-12) {
+        if height.is_nan() || height < -1e-12 {
             Err("a sun must have a direction, and not below the horizon".into())
         } else if !(2.0..=10.0).contains(&self.turbidity) {
             Err(format!("a sky's turbidity is {}, expected 2 to 10", self.turbidity))

@@ -77,7 +77,7 @@ fn a_draw_has_the_density_that_a_hit_is_told() {
         shape(rectangle([3.0, 3.0, 1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]), [0.5; 3], 0.0),
         shape(rectangle([-9.0, -9.0, 2.0], [0.0, 1.0, 0.0], [1.5, 0.0, 1.0]), [0.0; 3], 7.0),
     ];
-    let lit = scene(SceneDescription { shapes, lights: vec![sky(1.0)], ..Default::default() });
+    let lit = scene(SceneDescription { shapes, lights: vec![sky(1.0)] });
     let (mut from_surfaces, mut from_outside) = (0, 0);
     for number in 0..1000 {
         let mut sampler = Sampler::new(2, 0, number);

@@ -145,7 +145,8 @@ fn both_sides_shine_where_they_are_to() {
 #[test]
 fn disks_give_the_textbook_irradiance() {
     // E = π L r² / (r² + h²) below the middle (Howell, C-41 with one small disk), as far as a disk of area 10⁻¹².
-    for (radius, height) in [(1.0, 1.0), (1.0, 0.3), (1.0, 1e-3), (0.01, 1.0), (5.6418958354775629e-7, 1.0), (2.0, 1e7)]
+    for (radius, height) in
+        [(1.0, 1.0), (1.0, 0.3), (1.0, 1e-3), (0.01, 1.0), (5.641_895_835_477_563e-7, 1.0), (2.0, 1e7)]
     {
         let disk = Disk { center: DVec3::Z * height, normal: DVec3::NEG_Z, radius, inner_radius: 0.0 };
         let expected = PI * radius * radius / (radius * radius + height * height);
