@@ -65,9 +65,8 @@ class Pictured:
         def told(value: Any) -> str:
             if not isinstance(value, np.ndarray):
                 return repr(value)
-            return (
-                f"<{value.shape[1]} x {value.shape[0]} texels>" if value.ndim == 3 else repr(value.tolist())
-            )
+            height, width = value.shape[:2]
+            return f"<{width} x {height} texels>" if value.ndim == 3 else repr(value.tolist())
 
         parts = [f"{f.name}={told(getattr(self, f.name))}" for f in fields(self)]  # type: ignore[arg-type]
         return f"{type(self).__name__}({', '.join(parts)})"
