@@ -25,13 +25,15 @@ def test_means_tend_to_what_fine_rays_see(room):
     seen = rw.aovs(scene, camera, samples=64)
     assert set(seen) == set(rw.AOVS)
     hits = scene.intersect(*camera.rays())
-    # Where the pixel and those around it lie on one wall, the depth hardly changes over it.
-    same = hits.shape_id == seen["shape_id"]
-    depth = np.abs(seen["depth"] / hits.t - 1)
-    assert np.median(depth[same & np.isfinite(hits.t)]) < 2e-3
+    # Over a pixel of the wall that faces the camera, the depth hardly changes; a few have others in them too.
+    hit = hits.hit
+    back = hit & (hits.normal[..., 2] == -1) & (hits.position[..., 2] > 559)
+    assert back.sum() > 30
+    depth = np.abs(seen["depth"][back] / hits.t[back] - 1)
+    assert np.median(depth) < 2e-3
     lengths = np.linalg.norm(seen["normal"], axis=-1)
     assert lengths.max() < 1 + 1e-6
-    assert np.median(lengths) > 1 - 1e-6
+    assert np.median(lengths[hit]) > 1 - 1e-6
     assert not seen["motion"].any()
     np.testing.assert_array_equal(seen["normal"], seen["shading_normal"])
     assert seen["albedo"].min() >= 0
