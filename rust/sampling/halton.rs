@@ -92,7 +92,7 @@ mod tests {
                 let count = (boxes[0] * boxes[1]) as usize;
                 let mut seen = vec![0; count];
                 for point in &points[..count] {
-                    let cell = |axis: usize| (u64::from(point[dimension][axis]) * boxes[axis] >> 32) as usize;
+                    let cell = |axis: usize| ((u64::from(point[dimension][axis]) * boxes[axis]) >> 32) as usize;
                     seen[cell(0) * boxes[1] as usize + cell(1)] += 1;
                 }
                 assert!(seen.iter().all(|&n| n == 1), "{boxes:?}");

@@ -73,7 +73,7 @@ mod tests {
             let origin = found[0];
             let [a, b] = GENERATORS[bits as usize].map(u64::from);
             for (i, point) in (0u64..).zip(&found) {
-                let step = |digits: u32, k: u64| k % count << (digits - bits);
+                let step = |digits: u32, k: u64| (k % count) << (digits - bits);
                 assert_eq!(point[0], origin[0] + step(32, i));
                 assert_eq!(point[1], (origin[1] + step(32, a * i)) % (1 << 32));
                 assert_eq!(point[2], (origin[2] + step(53, b * i)) % (1 << 53));

@@ -94,8 +94,7 @@ fn a_furnace_shows_as_many_bounces_as_are_followed() {
 fn window() -> Scene {
     let (behind, before) = (floor(), rectangle([-9.0, -9.0, 3.0], [0.0, 18.0, 0.0], [18.0, 0.0, 0.0]));
     let pane = rectangle([-9.0, -9.0, 1.0], [18.0, 0.0, 0.0], [0.0, 18.0, 0.0]);
-    let shapes =
-        vec![of(pane, Dielectric::new(1.5, [0.0; 2])), shape(behind, [0.0; 3], 2.0), shape(before, [0.0; 3], 5.0)];
+    let shapes = vec![of(pane, Dielectric::new(1.5, 0.0)), shape(behind, [0.0; 3], 2.0), shape(before, [0.0; 3], 5.0)];
     scene(SceneDescription { shapes, ..Default::default() })
 }
 

@@ -16,7 +16,7 @@ struct Glass(Interior, f64);
 
 impl Material for Glass {
     fn scattering(&self, at: &ShadingPoint) -> Scattering {
-        Dielectric::new(self.0.ior / at.outside, [self.1; 2]).into()
+        Dielectric::new(self.0.ior / at.outside, self.1).into()
     }
     fn needs(&self) -> Needs {
         Needs::NONE
