@@ -218,7 +218,7 @@ def aovs(
     """
 
 def plan(scene: CompiledScene) -> tuple[str, list[tuple[str, bool, str]]]:
-    """The kernel that shades the scene, and rows of what, whether, and what follows."""
+    """Tell the kernel that shades the scene, and rows of what, whether, and what follows."""
 
 def render(
     scene: CompiledScene,
@@ -349,10 +349,8 @@ class Interactions:
     ) -> tuple[list[NDArray[np.float64]], NDArray[np.float64], NDArray[np.float64]]: ...
     def light_pdf(self, before: Interactions) -> NDArray[np.float64]: ...
 
-def interactions(
-    scene: CompiledScene, origins: _Floats, directions: _Floats, time: _Numbers
-) -> Interactions:
-    """What rays of unit direction meet: (N,3) origins and directions, and a time for all or each."""
+def interactions(scene: CompiledScene, origins: _Floats, directions: _Floats, time: _Numbers) -> Interactions:
+    """Find what rays of unit direction meet: (N,3) origins and directions, and a time for all or each."""
 
 def random_numbers(
     seed: int, pixel: NDArray[np.uint32], sample: NDArray[np.uint32], dimension: int, pair: bool

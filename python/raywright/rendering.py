@@ -111,7 +111,18 @@ def render(
 
     def run(report: Report | None) -> _core.Rendering:
         return _core.render(
-            compiled, camera, integrator, scene, *limits, seed, threads, adaptive, clamp, report, sampler, filter
+            compiled,
+            camera,
+            integrator,
+            scene,
+            *limits,
+            seed,
+            threads,
+            adaptive,
+            clamp,
+            report,
+            sampler,
+            filter,
         )
 
     if not progress:

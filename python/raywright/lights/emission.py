@@ -8,7 +8,6 @@ from numpy.typing import ArrayLike
 from ..textures.texture import Texture, Value
 from ..textures.texture import value as checked_value
 
-
 EmissionLike: TypeAlias = Union[ArrayLike, Texture, "Emission"]
 Emitted: TypeAlias = Union[Value, "Emission"]
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..arrays import frozen, real_array
-from ..io.pictures import read
+from ..io.pictures import read_linear
 
 Texels = NDArray[np.float32]
 
@@ -25,7 +25,7 @@ def texels(name: str, value: ArrayLike | str | PathLike[str]) -> Texels:
     FileNotFoundError
         If a file is missing.
     """
-    array = read(value) if isinstance(value, str | PathLike) else real_array(name, value)
+    array = read_linear(value) if isinstance(value, str | PathLike) else real_array(name, value)
     if array.ndim == 2:
         array = np.repeat(array[..., None], 3, axis=2)
     if array.ndim != 3 or array.shape[2] != 3 or 0 in array.shape:

@@ -18,8 +18,8 @@ class Dielectric(Material):
     ior : float
         The index of refraction within, above 0: 1.5 for glass, 1.33 for water, 2.42 for diamond.
     roughness : float or Texture, optional
-        How rough it is, from 0, smooth, to 1. Its square is the alpha of the GGX distribution, as in glTF. 0 if
-        not given.
+        How rough it is, from 0, smooth, to 1. Its square is the alpha of the GGX distribution, as in glTF. 0
+        if not given.
     alpha : float or Texture, optional
         That alpha itself, in place of `roughness`.
     priority : int

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..arrays import integer, positive
-from ..camera import Camera
+from ..cameras import Camera
 from ..image import Image
 from ..rendering import render
 from ..scene import Scene
