@@ -8,9 +8,10 @@ import raywright as rw
 
 
 class PathTracer(rw.Integrator):
-    """Next-event estimation, multiple importance sampling and Russian roulette, as `raywright.Path` has them."""
+    """Next-event estimation, multiple importance sampling and Russian roulette, as `Path` has them."""
 
     def radiance(self, scene, rays, rng):
+        """Advance all paths of the batch together, a bounce at a time."""
         result = np.zeros((len(rays), 3))
         alive = np.arange(len(rays))  # of which ray each path is
         throughput = np.ones((len(rays), 3))

@@ -5,13 +5,22 @@ from typing import TYPE_CHECKING, Any
 from . import scenes
 from ._core import AcceleratorInfo, simd
 from .accelerators import BSP, BVH, BruteForce, Grid, KdTree, NestedGrid, Octree
+from .aovs import AOVS, aovs
 from .cameras import AnyCamera, Camera, Fisheye, Orthographic, Panorama, Pose, ThinLens
 from .cones import ConeTouches
+from .filters import (
+    BlackmanHarrisFilter,
+    BoxFilter,
+    GaussianFilter,
+    LanczosFilter,
+    MitchellFilter,
+    TriangleFilter,
+)
 from .hits import AllHits, ClosestPoints, Hits, QueryCost
 from .image import ErrorEstimate, Image
 from .instance import Instance
 from .integrator import Integrator
-from .integrators import Path
+from .integrators import AmbientOcclusion, Direct, Distributed, Path, RayCast, Whitted
 from .interactions import Interactions, LightSamples, Rays, Scattered, power_heuristic
 from .io.pictures import check_writable
 from .lights import (
@@ -24,10 +33,29 @@ from .lights import (
     SpotLight,
     SunSky,
 )
-from .materials import Diffuse
+from .materials import (
+    BlinnPhong,
+    BumpMap,
+    Conductor,
+    Dielectric,
+    Diffuse,
+    Mask,
+    MetallicRough,
+    Mirror,
+    Mix,
+    NormalMap,
+    OrenNayar,
+    Phong,
+    Plastic,
+    ThinDielectric,
+    TwoSided,
+    metals,
+)
 from .mesh import Mesh
+from .plan import Plan, PlanRow
 from .rendering import render
 from .rng import Rng
+from .samplers import Halton, Independent, Lattice, Sobol, Stratified
 from .scene import Scene
 from .shapes import (
     Box,
@@ -43,65 +71,126 @@ from .shapes import (
     Torus,
 )
 from .surface import Surface
+from .textures import (
+    Checker,
+    FBm,
+    ImageTexture,
+    Marble,
+    MixTexture,
+    Noise,
+    ObjectTransform,
+    ProductTexture,
+    Stripes,
+    UvTransform,
+    VertexColors,
+    Wood,
+)
 
 if TYPE_CHECKING:
     from . import report
 
 __all__ = [
+    "AOVS",
     "BSP",
     "BVH",
     "AcceleratorInfo",
     "AllHits",
+    "AmbientOcclusion",
     "AnyCamera",
+    "BlackmanHarrisFilter",
+    "BlinnPhong",
     "Box",
+    "BoxFilter",
     "BruteForce",
+    "BumpMap",
     "Camera",
+    "Checker",
     "ClosestPoints",
+    "Conductor",
     "Cone",
     "ConeTouches",
     "ConstantEnvironment",
     "Cylinder",
+    "Dielectric",
     "Diffuse",
+    "Direct",
     "DirectionalLight",
     "Disk",
+    "Distributed",
     "Ellipsoid",
     "Emission",
     "EnvironmentMap",
     "ErrorEstimate",
+    "FBm",
     "Fisheye",
+    "GaussianFilter",
     "Grid",
+    "Halton",
     "Hits",
     "Image",
+    "ImageTexture",
     "Implicit",
+    "Independent",
     "Instance",
     "Integrator",
     "Interactions",
     "KdTree",
+    "LanczosFilter",
+    "Lattice",
     "LightSamples",
+    "Marble",
+    "Mask",
     "Mesh",
+    "MetallicRough",
+    "Mirror",
+    "MitchellFilter",
+    "Mix",
+    "MixTexture",
     "NestedGrid",
+    "Noise",
+    "NormalMap",
+    "ObjectTransform",
     "Octree",
+    "OrenNayar",
     "Orthographic",
     "Panorama",
     "Paraboloid",
     "Path",
+    "Phong",
+    "Plan",
+    "PlanRow",
     "Plane",
+    "Plastic",
     "PointLight",
-    "ProjectorLight",
     "Polygon",
     "Pose",
+    "ProductTexture",
+    "ProjectorLight",
     "QueryCost",
+    "RayCast",
     "Rays",
     "Rng",
     "Scattered",
     "Scene",
+    "Sobol",
     "Sphere",
     "SpotLight",
+    "Stratified",
+    "Stripes",
     "SunSky",
     "Surface",
+    "ThinDielectric",
     "ThinLens",
     "Torus",
+    "TriangleFilter",
+    "TwoSided",
+    "UvTransform",
+    "VertexColors",
+    "Whitted",
+    "Wood",
+    "aovs",
     "check_writable",
+    "metals",
     "power_heuristic",
     "render",
     "report",

@@ -20,6 +20,7 @@ __all__ = [
     "first_hits",
     "implicit_trouble",
     "matrix_trouble",
+    "metals",
     "points",
     "polygon_trouble",
     "render",
@@ -200,13 +201,24 @@ class Rendering:
         """Samples of each pixel (H,W)."""
     @property
     def carried(self) -> tuple[int, float] | None:
-        """How few samples carry more than half of the error estimate, and their share; None if it takes many."""
+        """How few samples carry more than half of the error estimate, and their share; None if many do."""
     @property
     def dropped(self) -> int:
         """Samples that were NaN, infinite or negative, and are counted as black."""
     @property
     def clamped(self) -> tuple[int, float]:
         """Samples that were clamped, and the share of the picture's radiance that this took."""
+
+def aovs(
+    scene: CompiledScene, camera: Any, names: list[str], samples: int, seed: int, threads: int | None
+) -> list[NDArray[np.float64]]:
+    """Pictures of channels by their names, (H, W) or (H, W, n), in the order asked for.
+
+    Raises ValueError for a name that is not known.
+    """
+
+def plan(scene: CompiledScene) -> tuple[str, list[tuple[str, bool, str]]]:
+    """Tell the kernel that shades the scene, and rows of what, whether, and what follows."""
 
 def render(
     scene: CompiledScene,
@@ -221,6 +233,8 @@ def render(
     adaptive: bool,
     clamp: float | None,
     progress: Callable[[float, int, float], None] | None,
+    sampler: Any,
+    filter: Any,
 ) -> Rendering:
     """Render until the first of `samples` (per pixel), `error` (relMSE) or `seconds` is met.
 
@@ -299,6 +313,9 @@ def shape_area(shape: Any) -> float:
 def matrix_trouble(matrix: list[list[float]]) -> str | None:
     """Why an affine matrix (4 rows of 4) has no inverse, or None if it has one."""
 
+def metals() -> list[tuple[str, str, tuple[float, ...], tuple[float, ...]]]:
+    """Tell the metals that are known: symbol, name, and index of refraction, real and imaginary (RGB)."""
+
 def polygon_trouble(
     outline: Sequence[Sequence[float]], holes: Sequence[Sequence[Sequence[float]]]
 ) -> str | None:
@@ -332,10 +349,8 @@ class Interactions:
     ) -> tuple[list[NDArray[np.float64]], NDArray[np.float64], NDArray[np.float64]]: ...
     def light_pdf(self, before: Interactions) -> NDArray[np.float64]: ...
 
-def interactions(
-    scene: CompiledScene, origins: _Floats, directions: _Floats, time: _Numbers
-) -> Interactions:
-    """What rays of unit direction meet: (N,3) origins and directions, and a time for all or each."""
+def interactions(scene: CompiledScene, origins: _Floats, directions: _Floats, time: _Numbers) -> Interactions:
+    """Find what rays of unit direction meet: (N,3) origins and directions, and a time for all or each."""
 
 def random_numbers(
     seed: int, pixel: NDArray[np.uint32], sample: NDArray[np.uint32], dimension: int, pair: bool

@@ -16,9 +16,9 @@ if TYPE_CHECKING:
 class Integrator(ABC):
     """What turns rays into radiance, written in Python on whole batches.
 
-    A subclass is given to `render` as the core's integrators are, and its pictures have error estimates, limits
-    and history as theirs do. Batches are of some thousand rays; several threads may call `radiance` at once, so
-    it must not change the integrator.
+    A subclass is given to `render` as the core's integrators are, and its pictures have error estimates,
+    limits and history as theirs do. Batches are of some thousand rays; several threads may call `radiance` at
+    once, so it must not change the integrator.
     """
 
     @abstractmethod
@@ -38,5 +38,6 @@ class Integrator(ABC):
         Returns
         -------
         (N, 3) array
-            Red, green and blue, in W·sr⁻¹·m⁻²; what is not finite or negative counts as black, with a warning.
+            Red, green and blue, in W·sr⁻¹·m⁻²; what is not finite or negative counts as black, with a
+            warning.
         """

@@ -71,7 +71,7 @@ class Scattered:
     @property
     def any(self) -> NDArray[np.bool_]:
         """Whether anything is scattered: (N,) bool."""
-        return self.weight.any(axis=1)
+        return np.asarray(self.weight.any(axis=1))
 
     def __len__(self) -> int:
         return len(self.pdf)
@@ -178,7 +178,7 @@ class Interactions:
 
     @cached_property
     def emission(self) -> Floats:
-        """Radiance towards the ray's origin that nothing scattered: (N, 3); of a miss, that of the environment."""
+        """Radiance along the ray that nothing has scattered: (N, 3); of a miss, that of the environment."""
         return self._core.emission
 
     def evaluate(self, directions: ArrayLike) -> tuple[Floats, Floats]:
@@ -245,12 +245,13 @@ class Interactions:
 def power_heuristic(pdf: ArrayLike, other: ArrayLike) -> Floats:
     """Return the weight of draws of density `pdf` beside another way to draw, of density `other`.
 
-    That of Veach and Guibas (1995) with the exponent 2; infinite densities get the weight 1, and 0 the weight 0.
+    That of Veach and Guibas (1995) with the exponent 2; infinite densities get the weight 1, and 0 the weight
+    0.
     """
     mine, others = np.broadcast_arrays(np.asarray(pdf, np.float64), np.asarray(other, np.float64))
     ratio = np.divide(others, mine, out=np.full(mine.shape, np.inf), where=mine > 0)
     with np.errstate(over="ignore"):
-        return 1.0 / (1.0 + ratio * ratio)
+        return np.asarray(1.0 / (1.0 + ratio * ratio))
 
 
 def _vectors(name: str, value: ArrayLike) -> Floats:

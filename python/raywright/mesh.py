@@ -6,10 +6,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .arrays import Triple, last_axis, rows, triangles
-from .lights.emission import Emission
+from .arrays import last_axis, rows, triangles
+from .lights.emission import EmissionLike, Emitted
 from .lights.emission import emission as checked_emission
-from .materials import Diffuse
+from .materials import Diffuse, Material
 
 
 @dataclass(frozen=True, init=False, eq=False, repr=False)
@@ -27,16 +27,20 @@ class Mesh:
         Shading normals, one a vertex.
     uv : (V, 2) array, optional
         Texture coordinates, one pair a vertex; (0, 0) is the lower left.
-    material : Diffuse, optional
+    material : Material, optional
         How the surface scatters; ``Diffuse()`` if not given.
-    emission : float, 3 floats or Emission, optional
+    emission : float, 3 floats, Texture or Emission, optional
         Radiance in W·sr⁻¹·m⁻² that leaves the side of the geometric normal: one number, or red, green and
         blue. None, the default, for a mesh that does not shine.
+    colors : (V, 3) array, optional
+        Linear red, green and blue, one colour a vertex, each between 0 and 1; a material shows them where it
+        has `VertexColors`.
 
     Raises
     ------
     ValueError
-        If an array has the wrong shape, or a face index is negative or not below V (tells which face).
+        If an array has the wrong shape, a face index is negative or not below V (tells which face), or a
+        colour is not between 0 and 1 (tells which vertex).
     TypeError
         If an array has the wrong type, such as float faces.
     """
@@ -45,8 +49,9 @@ class Mesh:
     faces: NDArray[np.uint32]
     normals: NDArray[np.floating[Any]] | None
     uv: NDArray[np.floating[Any]] | None
-    material: Diffuse
-    emission: Triple | Emission | None
+    material: Material
+    emission: Emitted | None
+    colors: NDArray[np.floating[Any]] | None
 
     def __init__(
         self,
@@ -54,12 +59,13 @@ class Mesh:
         faces: ArrayLike,
         normals: ArrayLike | None = None,
         uv: ArrayLike | None = None,
-        material: Diffuse | None = None,
-        emission: ArrayLike | Emission | None = None,
+        material: Material | None = None,
+        emission: EmissionLike | None = None,
+        colors: ArrayLike | None = None,
     ) -> None:
         if material is None:
             material = Diffuse()
-        elif not isinstance(material, Diffuse):
+        elif not isinstance(material, Material):
             raise TypeError(f"material must be a raywright material, got {type(material).__name__}")
         corners = rows("vertices", vertices, 3)
         count = len(corners)
@@ -70,9 +76,10 @@ class Mesh:
             "uv": None if uv is None else rows("uv", uv, 2, count),
             "material": material,
             "emission": checked_emission(emission),
+            "colors": None if colors is None else _shares("colors", colors, count),
         }
-        for name, value in values.items():
-            object.__setattr__(self, name, value)
+        for name, kept in values.items():
+            object.__setattr__(self, name, kept)
 
     @property
     def bounds(self) -> NDArray[np.float64] | None:
@@ -124,6 +131,7 @@ class Mesh:
             self.uv,
             self.material,
             self.emission,
+            self.colors,
         )
 
     def __eq__(self, other: object) -> bool:
@@ -134,6 +142,7 @@ class Mesh:
             and _same(self.faces, other.faces)
             and _same(self.normals, other.normals)
             and _same(self.uv, other.uv)
+            and _same(self.colors, other.colors)
             and self.material == other.material
             and self.emission == other.emission
         )
@@ -144,14 +153,25 @@ class Mesh:
 
     def __reduce__(self) -> tuple[Any, ...]:
         # Through the constructor, because unpickled arrays would be writeable.
-        return Mesh, (self.vertices, self.faces, self.normals, self.uv, self.material, self.emission)
+        look = (self.material, self.emission, self.colors)
+        return Mesh, (self.vertices, self.faces, self.normals, self.uv, *look)
 
     def __repr__(self) -> str:
         parts = [f"{len(self.vertices)} vertices", f"{len(self.faces)} faces", repr(self.material)]
-        parts += [name for name in ("normals", "uv") if getattr(self, name) is not None]
+        parts += [name for name in ("normals", "uv", "colors") if getattr(self, name) is not None]
         if self.emission is not None:
             parts.append(f"emission={self.emission}")
         return f"Mesh({', '.join(parts)})"
+
+
+def _shares(name: str, given: ArrayLike, count: int) -> NDArray[np.floating[Any]]:
+    """Return a read-only copy of (count, 3) numbers, each between 0 and 1."""
+    array = rows(name, given, 3, count)
+    inside = ((array >= 0) & (array <= 1)).all(axis=1)
+    if not inside.all():
+        first = int(np.argmin(inside))
+        raise ValueError(f"{name} must be between 0 and 1, got {array[first].tolist()} of vertex {first}")
+    return array
 
 
 def face_count(shape: object) -> int:

@@ -5,20 +5,23 @@ import numpy as np
 from . import _core
 from .arrays import integer, positive
 from .cameras import AnyCamera
+from .filters import BoxFilter, Filter
 from .image import HISTORY, ErrorEstimate, Image
-from .integrator import Integrator
-from .integrators import Path
+from .integrators import AnyIntegrator, Path, check_integrator
 from .progress import Report, bar
+from .samplers import Independent, Sampler
 from .scene import Scene
 
 _PATH = Path()
+_SAMPLER: Sampler = Independent()
+_FILTER: Filter = BoxFilter()
 _DEFAULT_SAMPLES = 64
 
 
 def render(
     scene: Scene,
     camera: AnyCamera,
-    integrator: Path | Integrator = _PATH,
+    integrator: AnyIntegrator = _PATH,
     samples: int | None = None,
     error: float | None = None,
     seconds: float | None = None,
@@ -28,6 +31,8 @@ def render(
     progress: bool = True,
     adaptive: bool = False,
     clamp: float | None = None,
+    sampler: Sampler = _SAMPLER,
+    filter: Filter = _FILTER,
 ) -> Image:
     """Render a picture, until the first of the limits that are given is met.
 
@@ -37,7 +42,7 @@ def render(
         What to look at.
     camera : Camera or another kind
         From where.
-    integrator : Path or Integrator
+    integrator : Path or another kind
         What turns rays into radiance; an `Integrator` may be written in Python.
     samples : int, optional
         Limit on samples per pixel; 64 if no limit at all is given.
@@ -60,6 +65,10 @@ def render(
     clamp : float, optional
         Radiance, in the largest channel, to which brighter samples are dimmed. It takes fireflies away, and
         light with them: the picture is biased, and says so. If not given, samples count as they are.
+    sampler : Independent, Stratified, Halton, Sobol or Lattice
+        Where the random numbers come from. Samples are rounded up to whole batches.
+    filter : BoxFilter, TriangleFilter, GaussianFilter, MitchellFilter, BlackmanHarrisFilter or LanczosFilter
+        What part of the film a pixel is the mean of.
 
     Returns
     -------
@@ -75,16 +84,20 @@ def render(
     KeyboardInterrupt
         At once, when Ctrl-C is pressed.
     """
-    for name, value, kinds in (
-        ("scene", scene, (Scene,)),
-        ("camera", camera, (AnyCamera,)),
-        ("integrator", integrator, (Path, Integrator)),
+    for name, value, kind in (
+        ("scene", scene, Scene),
+        ("camera", camera, AnyCamera),
     ):
-        if not isinstance(value, kinds):
-            told = kinds[-1].__name__.removeprefix("Any")
+        if not isinstance(value, kind):
+            told = kind.__name__.removeprefix("Any")
             raise TypeError(f"{name} must be a raywright.{told}, got {type(value).__name__}")
+    check_integrator("integrator", integrator)
     if not isinstance(adaptive, bool):
         raise TypeError(f"adaptive must be True or False, got {adaptive!r}")
+    if not isinstance(sampler, Sampler):
+        raise TypeError(f"sampler must be one of raywright's, got {type(sampler).__name__}")
+    if not isinstance(filter, Filter):
+        raise TypeError(f"filter must be one of raywright's, got {type(filter).__name__}")
     samples = None if samples is None else integer("samples", samples, 1, 2**32 - 1)
     error = None if error is None else positive("error", error)
     seconds = None if seconds is None else positive("seconds", seconds)
@@ -98,7 +111,18 @@ def render(
 
     def run(report: Report | None) -> _core.Rendering:
         return _core.render(
-            compiled, camera, integrator, scene, *limits, seed, threads, adaptive, clamp, report
+            compiled,
+            camera,
+            integrator,
+            scene,
+            *limits,
+            seed,
+            threads,
+            adaptive,
+            clamp,
+            report,
+            sampler,
+            filter,
         )
 
     if not progress:

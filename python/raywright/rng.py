@@ -7,7 +7,7 @@ from . import _core
 
 
 class Rng:
-    """The random numbers of a batch of samples: functions of seed, pixel, sample and dimension, of nothing else.
+    """The random numbers of a batch of samples: functions of seed, pixel, sample and dimension alone.
 
     Each call takes the next dimension for the whole batch, so a picture has the same bits however its pixels
     and samples are split into batches, as long as an integrator makes the same calls in the same order.

@@ -17,6 +17,7 @@ from .io.meshes import meshes
 from .lights import Environment, Light, environments
 from .lights import lights as checked_lights
 from .mesh import Mesh, face_count, moved
+from .plan import Plan, PlanRow
 from .queries import Queries
 from .shapes import Shape
 
@@ -208,6 +209,11 @@ class Scene(Queries):
             shape if to is None else _elsewhere(shape, f"vertices[{i}]", to)
             for i, (shape, to) in enumerate(zip(self._shapes, given, strict=True))
         )
+
+    def plan(self) -> Plan:
+        """Return what the scene needs, what is left out, and which kernel renders it, as a table."""
+        kernel, rows = _core.plan(self._compiled())
+        return Plan(kernel, tuple(PlanRow(*row) for row in rows))
 
     def _compiled(self) -> _core.CompiledScene:
         with self._lock:

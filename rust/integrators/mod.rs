@@ -1,6 +1,7 @@
 //! Floor 4: what turns rays into radiance.
 
 mod ambient_occlusion;
+mod aov;
 mod direct;
 mod distributed;
 mod path;
@@ -11,6 +12,7 @@ mod transport;
 mod whitted;
 
 pub use ambient_occlusion::AmbientOcclusion;
+pub use aov::{Channel, aovs};
 pub use direct::Direct;
 pub use distributed::Distributed;
 pub use path::Path;

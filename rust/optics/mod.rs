@@ -5,6 +5,8 @@ mod blinn_phong;
 mod bsdf;
 #[cfg(test)]
 mod checks;
+#[cfg(test)]
+mod chi_square;
 mod coated;
 mod conductor;
 pub mod conductors;

@@ -155,6 +155,14 @@ pub fn vectors<'a, T: Element, const K: usize>(
     }
 }
 
+/// The rows of an (N, 2) array of either float type, rounded to f32.
+pub fn pairs(name: &str, array: &Bound<'_, PyAny>) -> PyResult<Vec<[f32; 2]>> {
+    if let Ok(doubles) = array.extract::<PyReadonlyArray2<'_, f64>>() {
+        return Ok(rows::<f64, 2>(name, &doubles)?.iter().map(|row| row.map(|x| x as f32)).collect());
+    }
+    Ok(rows::<f32, 2>(name, &array.extract()?)?.to_vec())
+}
+
 /// The rows of an (N,K) array.
 pub fn rows<'a, T: Element, const K: usize>(name: &str, array: &'a PyReadonlyArray2<'_, T>) -> PyResult<&'a [[T; K]]> {
     match array.as_slice() {

@@ -4,14 +4,14 @@ use numpy::PyReadonlyArray2;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-use super::arrays::{Rows, Triples, rows};
+use super::arrays::{Rows, Triples, pairs, rows};
 use super::instances::{self, Wishes};
 use super::lights;
+use super::materials::Looks;
 use super::shapes;
 use crate::math::DVec3;
-use crate::optics::Rgb;
-use crate::scene::{self, DiffuseMaterial, SceneDescription};
-use std::sync::Arc;
+use crate::scene::textures::Needs;
+use crate::scene::{self, SceneDescription};
 
 /// `raywright.Scene`.
 #[derive(FromPyObject)]
@@ -30,12 +30,8 @@ struct Mesh<'py> {
     vertices: Triples<'py>,
     faces: PyReadonlyArray2<'py, u32>,
     normals: Option<Triples<'py>>,
-}
-
-/// `raywright.Diffuse`.
-#[derive(FromPyObject)]
-struct Diffuse {
-    reflectance: [f64; 3],
+    uv: Option<Bound<'py, PyAny>>,
+    colors: Option<Triples<'py>>,
 }
 
 impl Scene<'_> {
@@ -51,7 +47,8 @@ impl Scene<'_> {
             }
         };
         let (wishes, mut kept) = (Wishes { double, quality: &self.quality }, Vec::new());
-        let shape = |shape: &Bound<'_, PyAny>| describe(shape, double);
+        let looks = Looks::default();
+        let shape = |shape: &Bound<'_, PyAny>| describe(shape, double, &looks);
         let mut shapes = Vec::with_capacity(self.shapes.len());
         for one in &self.shapes {
             let is_instance = instances::is_instance(one)?;
@@ -66,27 +63,28 @@ impl Scene<'_> {
 /// How any shape looks.
 #[derive(FromPyObject)]
 struct Look<'py> {
-    material: Diffuse,
+    material: Bound<'py, PyAny>,
     emission: Option<Bound<'py, PyAny>>,
 }
 
 /// Reads any shape: a mesh, or what is none.
-fn describe(shape: &Bound<'_, PyAny>, double: bool) -> PyResult<scene::Shape> {
+fn describe(shape: &Bound<'_, PyAny>, double: bool, looks: &Looks) -> PyResult<scene::Shape> {
     let look: Look<'_> = shape.extract()?;
+    let material = looks.material(&look.material)?;
+    let emission =
+        look.emission.map_or_else(|| Ok(scene::Emission::default()), |e| lights::read_emission(&e, &looks.textures))?;
+    let look = scene::Shape { material, emission, ..scene::Shape::default() };
     let surface = if shape.get_type().name()? == "Mesh" {
-        shape.extract::<Mesh<'_>>()?.describe(double)?.into()
+        shape.extract::<Mesh<'_>>()?.describe(double, look.needs())?.into()
     } else {
         shapes::read(shape)?.into()
     };
-    Ok(scene::Shape {
-        surface,
-        material: Arc::new(DiffuseMaterial { reflectance: Rgb::from_array(look.material.reflectance).into() }),
-        emission: look.emission.as_ref().map(lights::read_emission).transpose()?.unwrap_or_default(),
-    })
+    Ok(scene::Shape { surface, ..look })
 }
 
 impl Mesh<'_> {
-    fn describe(self, double: bool) -> PyResult<scene::Mesh> {
+    /// Of what is there of its vertices, only what is needed is read.
+    fn describe(self, double: bool, needs: Needs) -> PyResult<scene::Mesh> {
         let vertices = match self.vertices.rows("vertices")? {
             Rows::Double(rows) if double => {
                 scene::Vertices::Double(rows.iter().map(|&r| DVec3::from_array(r)).collect())
@@ -99,6 +97,17 @@ impl Mesh<'_> {
             return Err(PyValueError::new_err(format!("face {face} is {corners:?}, but there are {count} vertices")));
         }
         let normals = self.normals.as_ref().map(|n| n.rows("normals").map(|rows| rows.to_single())).transpose()?;
-        Ok(scene::Mesh { vertices, faces, normals, ..scene::Mesh::default() })
+        let uvs = self.uv.filter(|_| needs.uv).map(|uv| pairs("uv", &uv)).transpose()?;
+        let colours = self.colors.filter(|_| needs.colours);
+        let colours = colours.map(|c| c.rows("colors").map(|rows| rows.to_single())).transpose()?;
+        let colours = colours.map(|all| all.into_iter().map(|colour| colour.to_array()).collect());
+        let mesh = scene::Mesh { vertices, faces, normals, uvs, colours };
+        let count = mesh.vertices.len();
+        let sizes =
+            [mesh.normals.as_ref().map(Vec::len), mesh.uvs.as_ref().map(Vec::len), mesh.colours.as_ref().map(Vec::len)];
+        match sizes.into_iter().flatten().find(|&size| size != count) {
+            Some(size) => Err(PyValueError::new_err(format!("{size} values are given for {count} vertices"))),
+            None => Ok(mesh),
+        }
     }
 }

@@ -7,9 +7,10 @@ use pyo3::types::PyTuple;
 use std::sync::Arc;
 
 use super::arrays::vectors;
+use super::textures::Textures;
 use crate::math::DVec3;
 use crate::optics::Rgb;
-use crate::scene::textures::Value;
+
 use crate::scene::{
     ConstantEnvironment, DirectionalLight, Emission, EnvironmentMap, Light, Picture, PointLight, Projector, SpotLight,
     SunSky,
@@ -140,17 +141,12 @@ pub fn read_environment(environment: Option<Bound<'_, PyAny>>) -> PyResult<Vec<A
 }
 
 /// How a shape shines: a radiance, or a `raywright.Emission`.
-pub fn read_emission(emission: &Bound<'_, PyAny>) -> PyResult<Emission> {
+pub fn read_emission(emission: &Bound<'_, PyAny>, textures: &Textures) -> PyResult<Emission> {
     if emission.get_type().name()?.to_str()? != "Emission" {
-        return Ok(Emission { radiance: read_radiance(emission)?, ..Emission::default() });
+        return Ok(Emission { radiance: textures.value(emission)?, ..Emission::default() });
     }
     let PyEmission { radiance, both_sides } = emission.extract()?;
-    Ok(Emission { radiance: read_radiance(&radiance)?, both_sides })
-}
-
-/// What `raywright.lights.emission.emitted` returns.
-fn read_radiance(radiance: &Bound<'_, PyAny>) -> PyResult<Value> {
-    Ok(Rgb::from_array(radiance.extract()?).into())
+    Ok(Emission { radiance: textures.value(&radiance)?, both_sides })
 }
 
 /// An (H, W, 3) array as a picture.

@@ -10,15 +10,19 @@ mod first_hits;
 mod freeform;
 mod info;
 mod instances;
+mod integrators;
 mod interactions;
 mod lights;
+mod materials;
 mod points;
 mod query;
 mod random;
 mod rays;
 mod render;
 mod report;
+mod samplers;
 mod shapes;
+mod textures;
 mod written;
 
 use pyo3::exceptions::PyValueError;
@@ -53,7 +57,11 @@ mod _core {
     #[pymodule_export]
     use super::instances::singular_transform;
     #[pymodule_export]
+    use super::integrators::{aovs, plan};
+    #[pymodule_export]
     use super::interactions::{Interactions, interactions};
+    #[pymodule_export]
+    use super::materials::metals;
     #[pymodule_export]
     use super::points::points;
     #[pymodule_export]

@@ -6,17 +6,12 @@ use pyo3::prelude::*;
 use std::ops::ControlFlow;
 
 use super::cameras::AnyCamera;
+use super::integrators::AnyIntegrator;
 use super::query::CompiledScene;
+use super::samplers;
 use super::written::Written;
-use crate::integrators::{Integrator, Path};
+use crate::integrators::Integrator;
 use crate::render::{self, HistoryRow, Progress, RenderError, Settings, Until};
-
-/// `raywright.Path`.
-#[derive(FromPyObject)]
-pub struct PathIntegrator {
-    max_depth: Option<u32>,
-    roulette_depth: u32,
-}
 
 /// A finished render.
 #[pyclass(frozen, module = "raywright._core")]
@@ -94,23 +89,25 @@ pub fn render_scene(
     adaptive: bool,
     clamp: Option<f64>,
     progress: Option<Py<PyAny>>,
+    sampler: &Bound<'_, PyAny>,
+    filter: &Bound<'_, PyAny>,
 ) -> PyResult<Rendering> {
     let scene = &scene.get().0;
-    let kind = integrator.get_type();
-    let (mut path, mut written) = (None, None);
-    if kind.name()? == "Path" && kind.module()?.to_str()?.starts_with("raywright.") {
-        let PathIntegrator { max_depth, roulette_depth } = integrator.extract()?;
-        path = Some(Path { max_depth, roulette_depth });
-    } else {
+    let own = py.import("raywright.integrator")?.getattr("Integrator")?;
+    let (mut given, mut written) = (None, None);
+    if integrator.is_instance(&own)? {
         written = Some(Written::new(integrator.clone().unbind(), described, seed));
+    } else {
+        given = Some(integrator.extract::<AnyIntegrator>()?.0);
     }
-    let chosen: &dyn Integrator = match (&path, &written) {
-        (Some(path), _) => path,
+    let chosen: &dyn Integrator = match (&given, &written) {
+        (Some(given), _) => &**given,
         (_, Some(written)) => written,
         _ => unreachable!("it is one or the other"),
     };
     let until = Until { samples, error, seconds };
-    let settings = Settings { until, seed, threads, adaptive, clamp, ..Settings::default() };
+    let (sampler, filter) = (samplers::sampler(sampler, samples)?, samplers::filter(filter)?.into());
+    let settings = Settings { until, seed, threads, adaptive, clamp, sampler, filter };
     let mut watcher = Watcher { progress, raised: None, written: written.as_ref() };
     match py.detach(|| render::render(scene, &*camera.0, chosen, &settings, &mut watcher)) {
         Ok(rendering) => Ok(Rendering(rendering)),

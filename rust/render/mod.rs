@@ -3,6 +3,7 @@
 mod adaptive;
 mod error;
 mod film;
+pub mod filter;
 mod outliers;
 mod progress;
 mod run;

@@ -2,6 +2,7 @@
 
 use super::adaptive::Adaptive;
 use super::error::estimate;
+use super::filter::{self, Filter};
 use super::tiles::{Exposure, Goal};
 use super::{ErrorEstimate, Film, Progress, Until};
 use crate::integrators::Integrator;
@@ -10,10 +11,11 @@ use crate::sampling::SamplerKind;
 use crate::scene::{Camera, Scene};
 use crate::workers::{Cancel, pool, watched};
 use std::fmt;
+use std::sync::Arc;
 use std::time::Instant;
 
 /// How to render.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Settings {
     /// When to end. With nothing set, the render goes on until its [`Progress`] ends it.
     pub until: Until,
@@ -27,6 +29,22 @@ pub struct Settings {
     pub adaptive: bool,
     /// The radiance to which brighter samples are dimmed, which biases the picture; `None` takes all as they are.
     pub clamp: Option<f64>,
+    /// What part of the film a pixel is the mean of.
+    pub filter: Arc<dyn Filter>,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            until: Until::default(),
+            seed: 0,
+            threads: None,
+            sampler: SamplerKind::default(),
+            adaptive: false,
+            clamp: None,
+            filter: Arc::new(filter::Box::default()),
+        }
+    }
 }
 
 /// How far a render was after a pass.
@@ -105,7 +123,7 @@ pub fn render(
     progress: &mut dyn Progress,
 ) -> Result<Rendering, RenderError> {
     let start = Instant::now();
-    let exposure = Exposure::new(scene, camera, integrator, settings.sampler, settings.seed);
+    let exposure = Exposure::new(scene, camera, integrator, settings);
     let side = exposure.tile_side(pool(settings.threads).map_err(RenderError::Threads)?.current_num_threads());
     let batch = settings.sampler.batch();
     let mut film = Film::new(camera.width(), camera.height(), side, batch, settings.adaptive, settings.clamp);

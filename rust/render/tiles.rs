@@ -1,7 +1,8 @@
 //! Work on a pass: samples of all pixels, tile by tile over the threads.
 
 use super::adaptive::Adaptive;
-use super::{Film, FilmTile};
+use super::filter::Filter;
+use super::{Film, FilmTile, Settings};
 use crate::integrators::{CameraSample, Integrator, Worker};
 use crate::optics::Rgb;
 use crate::sampling::SamplerKind;
@@ -23,6 +24,7 @@ pub(super) struct Exposure<'a> {
     pub camera: &'a dyn Camera,
     pub integrator: &'a dyn Integrator,
     pub sampler: SamplerKind,
+    pub filter: &'a dyn Filter,
     pub seed: u64,
     /// Whether samples are spread over the time that the shutter is open.
     moves: bool,
@@ -68,11 +70,11 @@ impl<'a> Exposure<'a> {
         scene: &'a Scene,
         camera: &'a dyn Camera,
         integrator: &'a dyn Integrator,
-        sampler: SamplerKind,
-        seed: u64,
+        settings: &'a Settings,
     ) -> Self {
+        let (sampler, filter, seed) = (settings.sampler, settings.filter.as_ref(), settings.seed);
         let (moves, uses_lens) = (scene.geometry().moves() || camera.uses_time(), camera.uses_lens());
-        Self { scene, camera, integrator, sampler, seed, moves, uses_lens, idle: Mutex::default() }
+        Self { scene, camera, integrator, sampler, filter, seed, moves, uses_lens, idle: Mutex::default() }
     }
 
     /// The side of tiles for a number of threads: 16, or less where that would leave threads without work.
@@ -166,15 +168,17 @@ impl<'a> Exposure<'a> {
         Footprint { width: spread.width, spread: spread.angle }
     }
 
-    /// A sample of a pixel, uniform over its square: the box filter, whose weights are 1; and what it counts. Where anything moves, uniform
-    /// over the shutter's time too, and over the lens if there is one.
+    /// A sample of a pixel, placed by the filter, and what it counts. Where anything moves, it is uniform over the shutter's time too, and
+    /// over the lens if there is one.
     fn camera_sample(&self, (x, y): (u32, u32), number: u32) -> (CameraSample, f64) {
         let mut sampler = self.sampler.sampler(self.seed, y * self.camera.width() + x, number);
-        let [right, down] = sampler.two(0);
+        let ([right, down], counts) = self.filter.sample(sampler.two(0));
         let lens = if self.uses_lens { sampler.two(1) } else { [0.5; 2] };
         let time = if self.moves { sampler.one(3) } else { 0.0 };
-        let CameraRay { ray, weight } = self.camera.ray([f64::from(x) + right, f64::from(y) + down], lens, time);
-        (CameraSample { ray, sampler }, weight)
+        // Offsets from the centre are added to the half first, so that those of the pixel's own square are exact.
+        let film = [f64::from(x) + (0.5 + right), f64::from(y) + (0.5 + down)];
+        let CameraRay { ray, weight } = self.camera.ray(film, lens, time);
+        (CameraSample { ray, sampler }, counts * weight)
     }
 }
 

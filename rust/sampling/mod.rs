@@ -3,10 +3,22 @@
 #[cfg(test)]
 pub(crate) mod chi_square;
 mod discrete;
+mod halton;
+mod kind;
+mod lattice;
+mod permutation;
 mod philox;
 mod sampler;
+mod scramble;
+mod sobol;
+mod stratified;
+mod stream;
 pub mod warp;
 
+#[cfg(test)]
+mod tests;
+
 pub use discrete::AliasTable;
+pub use kind::{BatchSize, SamplerKind};
 pub use philox::philox4x32;
-pub use sampler::{CAMERA_DIMENSIONS, Sampler, SamplerKind};
+pub use sampler::{CAMERA_DIMENSIONS, Sampler};

@@ -1,34 +1,10 @@
 //! The numbers of one sample of one pixel, by dimension.
 
-use super::philox4x32;
+use super::stream::Stream;
+use super::{SamplerKind, halton, lattice, philox4x32, sobol, stratified};
 
 /// How many dimensions stand before those of the first bounce: film position, lens, and two to spare (time, wavelength).
 pub const CAMERA_DIMENSIONS: u32 = 4;
-
-/// Which point set the numbers come from.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum SamplerKind {
-    /// Independent random numbers.
-    #[default]
-    Independent,
-}
-
-impl SamplerKind {
-    /// How many consecutive samples of a pixel belong together. Batches are independent of each other, so the spread
-    /// between them is an honest measure of the error; within a batch of a low-discrepancy set it would not be.
-    pub fn batch(self) -> u32 {
-        match self {
-            Self::Independent => 1,
-        }
-    }
-
-    /// The numbers of sample number `sample` of a pixel.
-    pub fn sampler(self, seed: u64, pixel: u32, sample: u32) -> Sampler {
-        match self {
-            Self::Independent => Sampler::new(seed, pixel, sample),
-        }
-    }
-}
 
 /// The numbers of one sample of one pixel. Each is named by its dimension, so none depends on which were asked for
 /// before.
@@ -36,21 +12,46 @@ impl SamplerKind {
 /// A dimension holds 64 random bits, to be taken either as one number of 53 bits or as a pair of 32 bits each. A choice
 /// wants the many bits: a light of a billionth of the power must still be chosen as often as its probability says. A
 /// point on a surface does not: 2⁻³² of a light's width, in each of two directions, is far below what can be seen of it.
+///
+/// A dimension is asked for one of the two in a picture, not for both. Where a choice leads to a point, as that of a light does, the
+/// choice takes an even dimension and the point the odd one that follows: kinds that can do so place the three together.
 #[derive(Clone, Debug)]
 pub struct Sampler {
+    kind: SamplerKind,
     key: [u32; 2],
     pixel: u32,
+    /// Of the pixel's samples, or of those of its batch.
     sample: u32,
     /// The Philox block last made: it holds two dimensions, which are mostly asked for one after the other.
     block: u32,
+    /// That block, or where the batch's stream starts.
     words: [u32; 4],
 }
 
 impl Sampler {
-    /// The numbers of sample number `sample` of a pixel, for a seed of the whole picture.
+    /// Independent numbers of sample number `sample` of a pixel, for a seed of the whole picture.
     #[inline]
     pub fn new(seed: u64, pixel: u32, sample: u32) -> Self {
-        Self { key: [seed as u32, (seed >> 32) as u32], pixel, sample, block: u32::MAX, words: [0; 4] }
+        let key = [seed as u32, (seed >> 32) as u32];
+        Self { kind: SamplerKind::Independent, key, pixel, sample, block: u32::MAX, words: [0; 4] }
+    }
+
+    /// Numbers of any kind.
+    #[inline]
+    pub(super) fn of_kind(kind: SamplerKind, seed: u64, pixel: u32, sample: u32) -> Self {
+        let mut sampler = Self::new(seed, pixel, sample);
+        match kind {
+            SamplerKind::Independent => {}
+            SamplerKind::Stratified(size)
+            | SamplerKind::Halton(size)
+            | SamplerKind::Sobol(size)
+            | SamplerKind::Lattice(size) => {
+                sampler.kind = kind;
+                sampler.words = Stream::words(sampler.key, pixel, sample >> size.bits());
+                sampler.sample = sample & (size.samples() - 1);
+            }
+        }
+        sampler
     }
 
     /// Of which pixel it is a sample.
@@ -66,17 +67,36 @@ impl Sampler {
     /// A number in [0, 1) with 53 bits.
     #[inline]
     pub fn one(&mut self, dimension: u32) -> f64 {
-        let [low, high] = self.bits(dimension);
-        (u64::from(high) << 32 | u64::from(low)).wrapping_shr(11) as f64 * 2f64.powi(-53)
+        let (stream, index) = (Stream::new(self.words), self.sample);
+        let bits = match self.kind {
+            SamplerKind::Independent => {
+                let [low, high] = self.bits(dimension);
+                u64::from(high) << 32 | u64::from(low)
+            }
+            SamplerKind::Stratified(size) => stratified::one(size, stream, index, dimension),
+            SamplerKind::Halton(size) => halton::one(size, stream, index, dimension),
+            SamplerKind::Sobol(size) => sobol::one(size, stream, index, dimension),
+            SamplerKind::Lattice(size) => lattice::one(size, stream, index, dimension),
+        };
+        (bits >> 11) as f64 * 2f64.powi(-53)
     }
 
     /// Two numbers in (0, 1), each at the middle of one of 2³² equal steps: never 0 and never 1, so that no warp has
     /// to fear its borders.
     #[inline]
     pub fn two(&mut self, dimension: u32) -> [f64; 2] {
-        self.bits(dimension).map(|word| (f64::from(word) + 0.5) * 2f64.powi(-32))
+        let (stream, index) = (Stream::new(self.words), self.sample);
+        let bits = match self.kind {
+            SamplerKind::Independent => self.bits(dimension),
+            SamplerKind::Stratified(size) => stratified::two(size, stream, index, dimension),
+            SamplerKind::Halton(size) => halton::two(size, stream, index, dimension),
+            SamplerKind::Sobol(size) => sobol::two(size, stream, index, dimension),
+            SamplerKind::Lattice(size) => lattice::two(size, stream, index, dimension),
+        };
+        bits.map(|word| (f64::from(word) + 0.5) * 2f64.powi(-32))
     }
 
+    /// The 64 bits of a dimension, of independent numbers.
     #[inline]
     fn bits(&mut self, dimension: u32) -> [u32; 2] {
         let block = dimension / 2;

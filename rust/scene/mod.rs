@@ -14,6 +14,7 @@ pub mod lights;
 mod mapped;
 pub mod materials;
 pub mod media;
+mod motion;
 mod per_vertex;
 mod plan;
 mod points;

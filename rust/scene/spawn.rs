@@ -33,7 +33,7 @@ impl Departure {
     pub fn reach(surface: &SurfacePoint, ray: &Ray) -> f64 {
         // The offset along the normal, as the ray meets the plane; what grazes it comes too close to too much.
         let slope = ray.direction.dot(surface.normal).abs().max(1e-3 * ray.direction.length());
-        2.0 * Self::SAFETY * surface.error / slope
+        Self::SAFETY * surface.error / slope
     }
 
     /// A point in free space.

@@ -14,11 +14,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arrays import Triple
 from ..instance import AnyShape, Instance
-from ..materials import Diffuse
 from ..mesh import Mesh
 from ..shapes import Shape
+from .looks import look_of
 
 # Switching off trimesh's log and Python's warnings is for the whole process, so loads take turns.
 _quiet_lock = threading.RLock()
@@ -145,7 +144,8 @@ def _of_trimesh(mesh: Any, loaded: bool = False) -> Mesh:
     uv = getattr(mesh.visual, "uv", None)
     if uv is not None and np.shape(uv) != (len(vertices), 2):
         uv = None
-    return Mesh(vertices, faces, _given_normals(mesh, loaded), uv, _material(mesh.visual))
+    look = look_of(mesh.visual, len(vertices))
+    return Mesh(vertices, faces, _given_normals(mesh, loaded), uv, look.material, look.emission, look.colors)
 
 
 def _given_normals(mesh: Any, loaded: bool) -> NDArray[np.float64] | None:
@@ -169,34 +169,6 @@ def _angle_weighted(faces: Any, face_normals: Any, angles: Any, count: int) -> N
     length = np.linalg.norm(result, axis=1, keepdims=True)
     np.divide(result, length, out=result, where=length > 0)
     return result
-
-
-def _material(visual: Any) -> Diffuse | None:
-    """Make a diffuse material of the main colour; None if there is none, or a texture has the say."""
-    material = getattr(visual, "material", None)
-    if material is None:
-        rgba = visual.main_color if getattr(visual, "kind", None) in ("face", "vertex") else None
-        return None if rgba is None else Diffuse(_linear(rgba))
-    if (
-        getattr(material, "baseColorTexture", None) is not None
-        or getattr(material, "image", None) is not None
-    ):
-        return None
-    if hasattr(material, "baseColorFactor"):
-        # glTF 2.0, 3.9.2: the factor is linear already, unlike every other colour here.
-        factor = material.baseColorFactor
-        return None if factor is None else Diffuse(np.asarray(factor[:3], np.float64) / 255)
-    from trimesh.visual.color import DEFAULT_COLOR
-
-    rgba = material.main_color
-    return None if np.array_equal(rgba, DEFAULT_COLOR) else Diffuse(_linear(rgba))
-
-
-def _linear(rgba: Any) -> Triple:
-    """Red, green and blue of 8 bits to linear (IEC 61966-2-1)."""
-    c = np.asarray(rgba[:3], np.float64) / 255
-    red, green, blue = np.where(c <= 0.04045, c / 12.92, ((c + 0.055) / 1.055) ** 2.4).tolist()
-    return red, green, blue
 
 
 def _joined(mesh: Mesh) -> Mesh:

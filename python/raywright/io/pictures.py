@@ -67,6 +67,78 @@ def check_writable(
     return path
 
 
+def read(path: str | PathLike[str]) -> NDArray[Any]:
+    """Read a picture as it is: (H, W, C), rows from the top, of 1 to 4 channels.
+
+    Parameters
+    ----------
+    path : str or path
+        A PNG or any other picture that Pillow reads (uint8 or, of 16 bits, uint16), an EXR (float32; its
+        channels Y or R, G and B, and A), an HDR (float32), or an NPY.
+
+    Returns
+    -------
+    (H, W, C) array
+        The picture.
+
+    Raises
+    ------
+    FileNotFoundError
+        If the file is missing.
+    ImportError
+        If it is an EXR and OpenEXR is not installed.
+    ValueError
+        If it is no picture that can be read.
+    """
+    path = Path(path)
+    if not path.exists():
+        raise FileNotFoundError(errno.ENOENT, "no such file", str(path))
+    suffix = path.suffix.lower()
+    try:
+        if suffix == ".npy":
+            array = np.load(path, allow_pickle=False)
+        elif suffix == ".hdr":
+            array = read_hdr(path)
+        else:
+            array = _read_exr(path) if suffix == ".exr" else _read_picture(path)
+    except ImportError:
+        raise
+    except Exception as error:
+        # Parsers fail on bad bytes in every way there is; the caller needs one kind of error, and one line.
+        why = " ".join(str(error).split()) or type(error).__name__
+        raise ValueError(f"{path} is not a picture that can be read ({why[:120]})") from error
+    return np.asarray(array if array.ndim != 2 else array[..., np.newaxis])
+
+
+def _read_picture(path: Path) -> NDArray[Any]:
+    from PIL import Image
+
+    picture: Image.Image
+    with Image.open(path) as picture:
+        if picture.mode.startswith("I"):
+            return np.asarray(picture).astype(np.uint16)
+        if picture.mode not in ("L", "LA", "RGB", "RGBA", "F"):
+            clear = "A" in picture.getbands() or "transparency" in picture.info
+            picture = picture.convert("RGBA" if clear else "RGB")
+        return np.array(picture)
+
+
+def _read_exr(path: Path) -> NDArray[np.float32]:
+    try:
+        import OpenEXR
+    except ImportError as error:
+        raise ImportError(_NO_EXR.replace("saving", "reading")) from error
+
+    with OpenEXR.File(str(path), separate_channels=True) as file:
+        channels = {name: channel.pixels for name, channel in file.channels().items()}
+    names = ["R", "G", "B"] if "R" in channels else ["Y"]
+    if missing := [name for name in names if name not in channels]:
+        raise ValueError(f"it has no channel {missing[0]}, only {', '.join(channels)}")
+    return np.stack([channels[name] for name in [*names, *(["A"] if "A" in channels else [])]], -1).astype(
+        np.float32
+    )
+
+
 def srgb(rgb: NDArray[np.floating[Any]]) -> NDArray[np.uint8]:
     """Linear colours to 8 bits, with the sRGB transfer (IEC 61966-2-1); below 0 and above 1 are clipped."""
     linear = np.clip(np.nan_to_num(rgb, nan=0.0), 0.0, 1.0)
@@ -98,58 +170,20 @@ def write(path: Path, rgb: NDArray[np.float32], standard_error: NDArray[np.float
         _write_exr(path, rgb, standard_error)
 
 
-def read(path: str | PathLike[str]) -> NDArray[np.floating[Any]]:
-    """Return the linear colours of a picture file, (H, W, 3) or (H, W) from the top row on.
+def read_linear(path: str | PathLike[str]) -> NDArray[np.floating[Any]]:
+    """Return the linear colours of a picture file, (H, W, 3) or of an NPY what it holds, from the top row on.
 
-    EXR, HDR and NPY files hold them as they are. Of other files, 8 bits a channel are taken as sRGB, and
-    transparency is left out.
-
-    Raises
-    ------
-    FileNotFoundError
-        If there is no such file.
-    ValueError
-        If it is no picture.
-    ImportError
-        If the suffix is .exr and OpenEXR is not installed.
+    EXR, HDR and NPY files hold them as they are. What is of 8 or 16 bits is taken as sRGB. Transparency is
+    left out. Raises what `read` does.
     """
-    path = Path(path)
-    if not path.exists():
-        raise FileNotFoundError(errno.ENOENT, "no such file", str(path))
-    suffix = path.suffix.lower()
-    if suffix == ".npy":
-        array: NDArray[np.floating[Any]] = np.load(path, allow_pickle=False)
-        return array
-    if suffix == ".hdr":
-        return read_hdr(path)
-    if suffix == ".exr":
-        return _read_exr(path)
-    from PIL import Image, UnidentifiedImageError
-
-    try:
-        with Image.open(path) as picture:
-            coded = np.asarray(picture.convert("RGB"), np.float64) / 255
-    except UnidentifiedImageError:
-        raise ValueError(f"{path} is no picture that can be read") from None
-    linear = np.where(coded <= 0.04045, coded / 12.92, ((coded + 0.055) / 1.055) ** 2.4)
-    return linear.astype(np.float32)
-
-
-def _read_exr(path: Path) -> NDArray[np.float32]:
-    try:
-        import OpenEXR
-    except ImportError as error:
-        raise ImportError(_NO_EXR.replace("saving", "reading")) from error
-
-    try:
-        with OpenEXR.File(str(path), separate_channels=True) as file:
-            channels = {name: channel.pixels for name, channel in file.channels().items()}
-    except RuntimeError as error:
-        raise ValueError(f"{path} is no picture that can be read") from error
-    names = ("R", "G", "B") if "R" in channels else ("Y",) * 3
-    if not all(name in channels for name in names):
-        raise ValueError(f"{path} must have channels R, G and B, or Y; has {', '.join(sorted(channels))}")
-    return np.stack([np.asarray(channels[name], np.float32) for name in names], axis=2)
+    array = read(path)
+    if Path(path).suffix.lower() == ".npy":
+        return array[..., 0] if array.shape[-1] == 1 else array
+    colours = array[..., : 1 if array.shape[-1] < 3 else 3]
+    if colours.dtype.kind == "u":
+        coded = colours / np.iinfo(colours.dtype).max
+        colours = np.where(coded <= 0.04045, coded / 12.92, ((coded + 0.055) / 1.055) ** 2.4)
+    return np.broadcast_to(colours, (*colours.shape[:2], 3)).astype(np.float32)
 
 
 def _write_exr(path: Path, rgb: NDArray[np.float32], standard_error: NDArray[np.float32]) -> None:

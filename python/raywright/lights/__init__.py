@@ -1,7 +1,7 @@
 """Light: what stands in a scene and is no surface, what surrounds it, and how surfaces shine."""
 
 from collections.abc import Sequence
-from typing import TypeAlias, get_args
+from typing import TypeAlias, cast, get_args
 
 from numpy.typing import ArrayLike
 
@@ -39,7 +39,7 @@ def lights(value: object) -> tuple[Light, ...]:
     for light in given:
         if not isinstance(light, get_args(Light)):
             raise TypeError(f"lights must be raywright lights, got {type(light).__name__}")
-    return given  # type: ignore[return-value]
+    return given
 
 
 def environments(
@@ -48,12 +48,12 @@ def environments(
     """Return what surrounds a scene: numbers as a constant radiance, and several environments as a tuple."""
     kinds = get_args(Environment)
     if value is None or isinstance(value, kinds):
-        return value  # type: ignore[return-value]
+        return value
     if isinstance(value, list | tuple) and any(isinstance(one, kinds) for one in value):
         for one in value:
             if not isinstance(one, kinds):
                 raise TypeError(
                     f"environment must be environments only, if several, got {type(one).__name__}"
                 )
-        return tuple(value)  # type: ignore[arg-type]
-    return ConstantEnvironment(value)  # type: ignore[arg-type]
+        return tuple(value)
+    return ConstantEnvironment(cast(ArrayLike, value))

@@ -1,11 +1,15 @@
 """How surfaces shine."""
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeAlias, Union
 
 from numpy.typing import ArrayLike
 
-from ..arrays import Triple, colour
+from ..textures.texture import Texture, Value
+from ..textures.texture import value as checked_value
+
+EmissionLike: TypeAlias = Union[ArrayLike, Texture, "Emission"]
+Emitted: TypeAlias = Union[Value, "Emission"]
 
 
 @dataclass(frozen=True, init=False)
@@ -14,8 +18,8 @@ class Emission:
 
     Parameters
     ----------
-    radiance : float or 3 floats
-        Radiance in W·sr⁻¹·m⁻², at least 0: one number, or red, green and blue.
+    radiance : float, 3 floats or Texture
+        Radiance in W·sr⁻¹·m⁻², at least 0: one number, or red, green and blue, or what varies.
     both_sides : bool
         Whether the side that the normals point away from shines too.
 
@@ -27,22 +31,22 @@ class Emission:
         If it is not a number, or `both_sides` is no bool.
     """
 
-    radiance: Triple
+    radiance: Value
     both_sides: bool
 
-    def __init__(self, radiance: ArrayLike, both_sides: bool = False) -> None:
+    def __init__(self, radiance: ArrayLike | Texture, both_sides: bool = False) -> None:
         if not isinstance(both_sides, bool):
             raise TypeError(f"both_sides must be True or False, got {both_sides!r}")
         object.__setattr__(self, "radiance", emitted("radiance", radiance))
         object.__setattr__(self, "both_sides", both_sides)
 
 
-def emitted(name: str, value: Any) -> Triple:
+def emitted(name: str, value: Any) -> Value:
     """Return what may be given as a radiance: the one place that knows."""
-    return colour(name, value)
+    return checked_value(name, value)
 
 
-def emission(value: Any) -> Triple | Emission | None:
+def emission(value: Any) -> Emitted | None:
     """Return the emission of a shape: a radiance, more than that, or None."""
     if value is None or isinstance(value, Emission):
         return value

@@ -14,8 +14,8 @@ from .pictured import Pictured, Texels, texels
 class EnvironmentMap(Pictured):
     """An equirectangular picture all around a scene, drawn from by its light.
 
-    The middle of the picture is seen along −z, its top at +y, and what is right of the middle towards +x: as a
-    `Camera` sees it that looks along −z. Between the middles of texels radiance is interpolated, and it is
+    The middle of the picture is seen along -z, its top at +y, and what is right of the middle towards +x: as
+    a `Camera` sees it that looks along -z. Between the middles of texels radiance is interpolated, and it is
     drawn by exactly that: a sun of one texel does no harm.
 
     Parameters
@@ -52,8 +52,9 @@ class EnvironmentMap(Pictured):
         factor = number("scale", scale)
         if factor < 0:
             raise ValueError(f"scale must be at least 0, got {scale}")
+        turned = np.eye(3) if to_world is None else to_world
         object.__setattr__(self, "image", texels("image", image))
-        object.__setattr__(self, "to_world", _rotation("to_world", np.eye(3) if to_world is None else to_world))
+        object.__setattr__(self, "to_world", _rotation("to_world", turned))
         object.__setattr__(self, "scale", factor)
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..arrays import frozen, real_array
-from ..io.pictures import read
+from ..io.pictures import read_linear
 
 Texels = NDArray[np.float32]
 
@@ -25,7 +25,7 @@ def texels(name: str, value: ArrayLike | str | PathLike[str]) -> Texels:
     FileNotFoundError
         If a file is missing.
     """
-    array = read(value) if isinstance(value, str | PathLike) else real_array(name, value)
+    array = read_linear(value) if isinstance(value, str | PathLike) else real_array(name, value)
     if array.ndim == 2:
         array = np.repeat(array[..., None], 3, axis=2)
     if array.ndim != 3 or array.shape[2] != 3 or 0 in array.shape:
@@ -65,7 +65,8 @@ class Pictured:
         def told(value: Any) -> str:
             if not isinstance(value, np.ndarray):
                 return repr(value)
-            return f"<{value.shape[1]} x {value.shape[0]} texels>" if value.ndim == 3 else repr(value.tolist())
+            height, width = value.shape[:2]
+            return f"<{width} x {height} texels>" if value.ndim == 3 else repr(value.tolist())
 
         parts = [f"{f.name}={told(getattr(self, f.name))}" for f in fields(self)]  # type: ignore[arg-type]
         return f"{type(self).__name__}({', '.join(parts)})"

@@ -23,7 +23,7 @@ class SpotLight:
         Angle between the axis and the rim in degrees, above 0 and at most 90.
     falloff : float
         Over how many degrees, inwards from the rim, it falls off: 0 to `angle`. The cosine to the axis goes
-        through the cubic ``3x² − 2x³``, as level at both ends as can be.
+        through the cubic ``x² (3 - 2x)``, as level at both ends as can be.
 
     Raises
     ------

@@ -16,10 +16,9 @@ _EPOCH = datetime(2000, 1, 1, 12, tzinfo=timezone.utc)
 class SunSky:
     """A clear sky, the sun in it, and a plain below the horizon that reflects both.
 
-    The sky is that of Preetham, Shirley and Smits ("A Practical Analytic Model for Daylight", 1999). The sun is
-    a disk of 0.53°, a black body of 5778 K seen through the air of the same paper. Radiance is in W·sr⁻¹·m⁻² as
-    the eye weighs it: its luminance times 683 lm·W⁻¹ is in cd·m⁻². A noon sun has some millions of it, a sky
-    about ten.
+    The sky is that of Preetham, Shirley and Smits ("A Practical Analytic Model for Daylight", 1999). The sun
+    is a disk of 0.53°, a black body of 5778 K seen through the air of the same paper. Radiance is in
+    W·sr⁻¹·m⁻² as the eye weighs it: its luminance times 683 lm·W⁻¹ is in cd·m⁻².
 
     Parameters
     ----------
@@ -116,7 +115,7 @@ class SunSky:
         ------
         ValueError
             If the sun is below the horizon then and there, the time has no zone, the latitude is not between
-            −90 and 90, or `north` is along `up`; and as the class does.
+            -90 and 90, or `north` is along `up`; and as the class does.
         """
         zenith, ahead = (np.array(_way(name, way)) for name, way in (("up", up), ("north", north)))
         zenith /= np.linalg.norm(zenith)

@@ -232,8 +232,8 @@ def _fitted(report: Table[Any], name: str, first: float | None) -> Fit:
     gain = None if cost is None or first is None else first / cost
     if len({s for s, _ in points}) < 2:
         return Fit(name, None, None, gain)
-    line = np.polyfit(*np.log(np.array(points)).T, 1)
-    return Fit(name, float(line[0]), float(np.exp(line[1])), gain)
+    line = np.polyfit([math.log(s) for s, _ in points], [math.log(e) for _, e in points], 1)
+    return Fit(name, float(line[0]), math.exp(float(line[1])), gain)
 
 
 def _cost(mine: Table[Any]) -> float | None:

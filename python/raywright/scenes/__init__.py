@@ -1,10 +1,14 @@
 """Scenes that are ready to render, and those on which accelerators are compared."""
 
+from .ball import material_ball
 from .city import city
 from .classics import classics
 from .cornell import cornell_box
 from .forest import Forest, forest
+from .glass import glass_spheres
 from .knot import torus_knot
+from .many_lights import many_lights
+from .plates import veach_plates
 from .room import room
 from .soup import soup
 from .stadium import teapot_in_stadium
@@ -13,6 +17,7 @@ from .teapot import teapot
 from .terrain import terrain
 from .turned import turned
 from .wall import diagonal_wall
+from .whitted import whitted_spheres
 
 __all__ = [
     "Forest",
@@ -21,6 +26,9 @@ __all__ = [
     "cornell_box",
     "diagonal_wall",
     "forest",
+    "glass_spheres",
+    "many_lights",
+    "material_ball",
     "room",
     "soup",
     "studio",
@@ -29,4 +37,6 @@ __all__ = [
     "terrain",
     "torus_knot",
     "turned",
+    "veach_plates",
+    "whitted_spheres",
 ]

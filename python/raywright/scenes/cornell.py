@@ -81,16 +81,20 @@ def cornell_box(
     ValueError
         If `mesh` holds no faces, or a number is out of its range.
     """
-    shapes = [_quads(LIGHT, LAMP, emission)]
-    shapes += [_quads(corners, WHITE) for corners in (FLOOR, CEILING, BACK)]
-    shapes += [_quads(RIGHT, GREEN), _quads(LEFT, RED), _quads(TALL_BLOCK, WHITE)]
-    shapes += [_quads(SHORT_BLOCK, WHITE)] if mesh is None else _stood(only_meshes(mesh))
-    # A lens of 35 mm behind a film of 25 mm by 25 mm.
+    shapes = [quads(LIGHT, LAMP, emission)]
+    shapes += [quads(corners, WHITE) for corners in (FLOOR, CEILING, BACK)]
+    shapes += [quads(RIGHT, GREEN), quads(LEFT, RED), quads(TALL_BLOCK, WHITE)]
+    shapes += [quads(SHORT_BLOCK, WHITE)] if mesh is None else _stood(only_meshes(mesh))
+    return Scene(shapes), camera(width, height)
+
+
+def camera(width: int, height: int) -> Camera:
+    """Return the box's camera: a lens of 35 mm behind a film of 25 mm by 25 mm."""
     fov = math.degrees(2 * math.atan(0.0125 / 0.035))
-    return Scene(shapes), Camera((278, 273, -800), (278, 273, 0), fov=fov, width=width, height=height)
+    return Camera((278, 273, -800), (278, 273, 0), fov=fov, width=width, height=height)
 
 
-def _quads(corners: Quads, material: Diffuse, emission: ArrayLike | None = None) -> Mesh:
+def quads(corners: Quads, material: Diffuse, emission: ArrayLike | None = None) -> Mesh:
     """Two triangles for each quadrilateral, with equal corners joined."""
     vertices, index = np.unique(np.array(corners, np.float64).reshape(-1, 3), axis=0, return_inverse=True)
     quads = index.reshape(-1, 4)

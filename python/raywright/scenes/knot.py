@@ -3,7 +3,7 @@
 import numpy as np
 
 from ..arrays import integer, positive
-from ..materials import Diffuse
+from ..materials import Material
 from ..mesh import Mesh
 
 
@@ -13,7 +13,7 @@ def torus_knot(
     along: int = 400,
     around: int = 25,
     tube: float = 0.3,
-    material: Diffuse | None = None,
+    material: Material | None = None,
 ) -> Mesh:
     """Return a closed tube along a torus knot, wound anticlockwise from outside, with smooth normals.
 
@@ -27,7 +27,7 @@ def torus_knot(
         Quadrilaterals along the knot and around the tube, at least 3 each; two triangles for each.
     tube : float
         Radius of the tube.
-    material : Diffuse, optional
+    material : Material, optional
         ``Diffuse()`` if not given.
 
     Raises

@@ -10,7 +10,7 @@ from ..accelerators import BVH, Accelerator
 from ..cameras import Camera
 from ..instance import Instance
 from ..io.meshes import meshes
-from ..materials import Diffuse
+from ..materials import Diffuse, Material
 from ..mesh import Mesh
 from ..scene import Scene
 from ..shapes import Shape
@@ -119,7 +119,7 @@ def _square(
     a: NDArray[np.float64],
     b: NDArray[np.float64],
     half: float,
-    material: Diffuse,
+    material: Material,
     emission: float | None = None,
 ) -> Mesh:
     """Square with sides along unit vectors `a` and `b`; its normal is a x b."""

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import integer
-from ..materials import Diffuse
+from ..materials import Material
 from ..mesh import Mesh
 
 Array = NDArray[np.float64]
@@ -43,7 +43,7 @@ _TUBES = (
 )
 
 
-def teapot(divisions: int = 10, material: Diffuse | None = None) -> Mesh:
+def teapot(divisions: int = 10, material: Material | None = None) -> Mesh:
     """Return the Utah teapot (Newell 1975) of 32 Bézier patches, with its bottom and with smooth normals.
 
     It stands on y = 0 around the y axis, 3.15 high and 4 deep, with the handle at x = -3 and the spout to
@@ -53,7 +53,7 @@ def teapot(divisions: int = 10, material: Diffuse | None = None) -> Mesh:
     ----------
     divisions : int
         How many pieces the sides of each patch are cut into; about 64 times its square are the triangles.
-    material : Diffuse, optional
+    material : Material, optional
         ``Diffuse()`` if not given.
 
     Raises

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from numpy.typing import ArrayLike
 
 from ..arrays import Triple, triple
-from ..lights.emission import Emission
-from ..materials import Diffuse
+from ..lights.emission import EmissionLike
+from ..materials import Material
 from .shape import Shape
 
 
@@ -25,9 +25,9 @@ class Ellipsoid(Shape):
     transform : (4, 4) array, optional
         An affine matrix that acts on column vectors (x, y, z, 1), as from the shape's own space to the world.
         Rays are decided for the matrix as it is given, not for a rounded inverse.
-    material : Diffuse, optional
+    material : Material, optional
         How the surface scatters; ``Diffuse()`` if not given.
-    emission : float, 3 floats or Emission, optional
+    emission : float, 3 floats, Texture or Emission, optional
         Radiance in W·sr⁻¹·m⁻² that leaves the outer side; None, the default, for a shape that does not shine.
 
     Raises
@@ -53,8 +53,8 @@ class Ellipsoid(Shape):
         semi_axes: ArrayLike = (1.0, 1.0, 1.0),
         *,
         transform: ArrayLike | None = None,
-        material: Diffuse | None = None,
-        emission: ArrayLike | Emission | None = None,
+        material: Material | None = None,
+        emission: EmissionLike | None = None,
     ) -> None:
         axes = triple("semi_axes", semi_axes)
         if min(axes) <= 0:

@@ -6,8 +6,8 @@ from numpy.typing import ArrayLike
 
 from .._core import implicit_trouble
 from ..arrays import Triple, triple
-from ..lights.emission import Emission
-from ..materials import Diffuse
+from ..lights.emission import EmissionLike
+from ..materials import Material
 from .shape import Shape
 
 
@@ -30,9 +30,9 @@ class Implicit(Shape):
     transform : (4, 4) array, optional
         An affine matrix that acts on column vectors (x, y, z, 1), as from the shape's own space to the world.
         Rays are taken into the shape's own space and rounded there once.
-    material : Diffuse, optional
+    material : Material, optional
         How the surface scatters; ``Diffuse()`` if not given.
-    emission : float, 3 floats or Emission, optional
+    emission : float, 3 floats, Texture or Emission, optional
         Radiance in W·sr⁻¹·m⁻² that leaves the outer side; None, the default, for a shape that does not shine.
 
     Raises
@@ -66,8 +66,8 @@ class Implicit(Shape):
         max: ArrayLike = (1.0, 1.0, 1.0),
         *,
         transform: ArrayLike | None = None,
-        material: Diffuse | None = None,
-        emission: ArrayLike | Emission | None = None,
+        material: Material | None = None,
+        emission: EmissionLike | None = None,
     ) -> None:
         if not isinstance(expression, str):
             raise TypeError(f"expression must be a string, got {expression!r}")

@@ -8,8 +8,8 @@ from numpy.typing import ArrayLike
 
 from .._core import polygon_trouble
 from ..arrays import Triple, rows
-from ..lights.emission import Emission
-from ..materials import Diffuse
+from ..lights.emission import EmissionLike
+from ..materials import Material
 from .shape import Shape
 
 Ring = tuple[Triple, ...]
@@ -34,9 +34,9 @@ class Polygon(Shape):
         An affine matrix that acts on column vectors (x, y, z, 1), as from the shape's own space to the world.
         Rays are taken into the shape's own space and rounded there once, all in the same way: nothing leaks
         between polygons that share an edge and have equal transforms.
-    material : Diffuse, optional
+    material : Material, optional
         How the surface scatters; ``Diffuse()`` if not given.
-    emission : float, 3 floats or Emission, optional
+    emission : float, 3 floats, Texture or Emission, optional
         Radiance in W·sr⁻¹·m⁻² that leaves the outer side; None, the default, for a shape that does not shine.
 
     Raises
@@ -64,8 +64,8 @@ class Polygon(Shape):
         holes: Sequence[ArrayLike] = (),
         *,
         transform: ArrayLike | None = None,
-        material: Diffuse | None = None,
-        emission: ArrayLike | Emission | None = None,
+        material: Material | None = None,
+        emission: EmissionLike | None = None,
     ) -> None:
         border = _ring("outline", outline)
         inner = tuple(_ring(f"holes[{i}]", hole) for i, hole in enumerate(holes))

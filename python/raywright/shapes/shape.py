@@ -8,9 +8,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from .._core import matrix_trouble, shape_area, shape_bounds
 from ..arrays import Triple, frozen, real_array, triple
-from ..lights.emission import Emission
+from ..lights.emission import EmissionLike, Emitted
 from ..lights.emission import emission as checked_emission
-from ..materials import Diffuse
+from ..materials import Diffuse, Material
 
 
 @dataclass(frozen=True, init=False, eq=False, repr=False)
@@ -21,20 +21,20 @@ class Shape:
     """
 
     transform: NDArray[np.float64] | None
-    material: Diffuse
-    emission: Triple | Emission | None
+    material: Material
+    emission: Emitted | None
 
     def _set(
         self,
         transform: ArrayLike | None,
-        material: Diffuse | None,
-        emission: ArrayLike | Emission | None,
+        material: Material | None,
+        emission: EmissionLike | None,
         **parameters: Any,
     ) -> None:
         """Keep the parameters, and what every shape has once it is checked."""
         if material is None:
             material = Diffuse()
-        elif not isinstance(material, Diffuse):
+        elif not isinstance(material, Material):
             raise TypeError(f"material must be a raywright material, got {type(material).__name__}")
         values = {
             **parameters,
@@ -42,8 +42,8 @@ class Shape:
             "material": material,
             "emission": checked_emission(emission),
         }
-        for name, value in values.items():
-            object.__setattr__(self, name, value)
+        for name, kept in values.items():
+            object.__setattr__(self, name, kept)
 
     @property
     def bounds(self) -> NDArray[np.float64]:
@@ -64,8 +64,8 @@ class Shape:
 
     def _values(self) -> tuple[Any, ...]:
         return tuple(
-            value.tobytes() if isinstance(value, np.ndarray) else value
-            for value in (getattr(self, field.name) for field in fields(self))
+            part.tobytes() if isinstance(part, np.ndarray) else part
+            for part in (getattr(self, field.name) for field in fields(self))
         )
 
     def __eq__(self, other: object) -> bool:
@@ -82,9 +82,9 @@ class Shape:
 
     def __repr__(self) -> str:
         parts = [
-            f"{field.name}={value.tolist() if isinstance(value, np.ndarray) else value!r}"
+            f"{field.name}={part.tolist() if isinstance(part, np.ndarray) else part!r}"
             for field in sorted(fields(self), key=lambda field: field.name in _COMMON)
-            if (value := getattr(self, field.name)) is not None
+            if (part := getattr(self, field.name)) is not None
         ]
         return f"{type(self).__name__}({', '.join(parts)})"
 
@@ -96,7 +96,7 @@ def _restored(kind: type[Shape], values: dict[str, Any]) -> Shape:
     return kind(**values)
 
 
-def affine(name: str, value: ArrayLike) -> NDArray[np.float64]:
+def affine(name: str, given: ArrayLike) -> NDArray[np.float64]:
     """Return a read-only copy of a finite affine (4, 4) matrix that has an inverse.
 
     Raises
@@ -104,7 +104,7 @@ def affine(name: str, value: ArrayLike) -> NDArray[np.float64]:
     ValueError
         If the matrix has another shape, is not finite, is not affine, or is singular (tells the determinant).
     """
-    matrix = frozen(real_array(name, value).astype(np.float64))
+    matrix = frozen(real_array(name, given).astype(np.float64))
     if matrix.shape != (4, 4):
         raise ValueError(f"{name} must have shape (4, 4), got {matrix.shape}")
     if not np.isfinite(matrix).all():
@@ -130,16 +130,16 @@ def segment(names: tuple[str, str], base: ArrayLike, tip: ArrayLike) -> tuple[Tr
     return a, b
 
 
-def direction(name: str, value: ArrayLike) -> Triple:
+def direction(name: str, given: ArrayLike) -> Triple:
     """Return a vector that has a length."""
-    vector = triple(name, value)
+    vector = triple(name, given)
     if vector == (0, 0, 0):
         raise ValueError(f"{name} must have a length, got {vector}")
     return vector
 
 
-def switch(name: str, value: bool) -> bool:
+def switch(name: str, given: bool) -> bool:
     """Return a bool."""
-    if not isinstance(value, bool | np.bool_):
-        raise TypeError(f"{name} must be True or False, got {value!r}")
-    return bool(value)
+    if not isinstance(given, bool | np.bool_):
+        raise TypeError(f"{name} must be True or False, got {given!r}")
+    return bool(given)

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from numpy.typing import ArrayLike
 
 from ..arrays import Triple, positive, triple
-from ..lights.emission import Emission
-from ..materials import Diffuse
+from ..lights.emission import EmissionLike
+from ..materials import Material
 from .shape import Shape
 
 
@@ -27,9 +27,9 @@ class Sphere(Shape):
     transform : (4, 4) array, optional
         An affine matrix that acts on column vectors (x, y, z, 1), as from the shape's own space to the world.
         Rays are decided for the matrix as it is given, not for a rounded inverse.
-    material : Diffuse, optional
+    material : Material, optional
         How the surface scatters; ``Diffuse()`` if not given.
-    emission : float, 3 floats or Emission, optional
+    emission : float, 3 floats, Texture or Emission, optional
         Radiance in W·sr⁻¹·m⁻² that leaves the outer side; None, the default, for a shape that does not shine.
 
     Raises
@@ -54,8 +54,8 @@ class Sphere(Shape):
         radius: float = 1.0,
         *,
         transform: ArrayLike | None = None,
-        material: Diffuse | None = None,
-        emission: ArrayLike | Emission | None = None,
+        material: Material | None = None,
+        emission: EmissionLike | None = None,
     ) -> None:
         self._set(
             transform,

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from numpy.typing import ArrayLike
 
 from ..arrays import Triple, positive, triple
-from ..lights.emission import Emission
-from ..materials import Diffuse
+from ..lights.emission import EmissionLike
+from ..materials import Material
 from .shape import Shape, direction
 
 
@@ -29,9 +29,9 @@ class Torus(Shape):
     transform : (4, 4) array, optional
         An affine matrix that acts on column vectors (x, y, z, 1), as from the shape's own space to the world.
         Rays are taken into the shape's own space and rounded there once.
-    material : Diffuse, optional
+    material : Material, optional
         How the surface scatters; ``Diffuse()`` if not given.
-    emission : float, 3 floats or Emission, optional
+    emission : float, 3 floats, Texture or Emission, optional
         Radiance in W·sr⁻¹·m⁻² that leaves the outer side; None, the default, for a shape that does not shine.
 
     Raises
@@ -63,8 +63,8 @@ class Torus(Shape):
         minor_radius: float = 0.25,
         *,
         transform: ArrayLike | None = None,
-        material: Diffuse | None = None,
-        emission: ArrayLike | Emission | None = None,
+        material: Material | None = None,
+        emission: EmissionLike | None = None,
     ) -> None:
         radii = positive("major_radius", major_radius), positive("minor_radius", minor_radius)
         for name, radius in zip(("major_radius", "minor_radius"), radii, strict=True):

@@ -85,17 +85,16 @@ fn a_furnace_shows_as_many_bounces_as_are_followed() {
     let ray = Ray::new(DVec3::new(0.1, -0.2, 0.3), DVec3::new(0.48, 0.6, 0.64));
     let scene = furnace(0.5, 1.0);
     for integrator in [&Direct::default() as &dyn Integrator, &RayCast::default(), &Whitted::default()] {
-        assert_radiance(&scene, integrator, ray, 20_000, 1.5);
+        assert_radiance(&scene, integrator, ray, 60_000, 1.5);
     }
-    assert_radiance(&scene, &Distributed::default(), ray, 20_000, 1.5);
+    assert_radiance(&scene, &Distributed::default(), ray, 40_000, 1.5);
 }
 
 /// The radiance of a lamp of 2 behind a pane of smooth glass, seen straight, and of one of 5 in front of it.
 fn window() -> Scene {
     let (behind, before) = (floor(), rectangle([-9.0, -9.0, 3.0], [0.0, 18.0, 0.0], [18.0, 0.0, 0.0]));
     let pane = rectangle([-9.0, -9.0, 1.0], [18.0, 0.0, 0.0], [0.0, 18.0, 0.0]);
-    let shapes =
-        vec![of(pane, Dielectric::new(1.5, [0.0; 2])), shape(behind, [0.0; 3], 2.0), shape(before, [0.0; 3], 5.0)];
+    let shapes = vec![of(pane, Dielectric::new(1.5, 0.0)), shape(behind, [0.0; 3], 2.0), shape(before, [0.0; 3], 5.0)];
     scene(SceneDescription { shapes, ..Default::default() })
 }
 
@@ -154,7 +153,7 @@ fn gloss_is_followed_and_matt_light_is_not() {
 fn a_point_light_is_asked_by_all() {
     let point = PointLight { position: DVec3::new(1.0, 0.0, 1.0), intensity: Rgb::ONE };
     let lights: Vec<Arc<dyn Light>> = vec![Arc::new(point)];
-    let lit = scene(SceneDescription { shapes: vec![shape(floor(), [0.5; 3], 0.0)], lights, ..Default::default() });
+    let lit = scene(SceneDescription { shapes: vec![shape(floor(), [0.5; 3], 0.0)], lights });
     let expected = 0.5 * 0.353_553_390_593_273_73 / PI;
     let each: [&dyn Integrator; 5] =
         [&Path::default(), &Direct::default(), &RayCast::default(), &Whitted::default(), &Distributed::default()];

@@ -16,7 +16,7 @@ struct Glass(Interior, f64);
 
 impl Material for Glass {
     fn scattering(&self, at: &ShadingPoint) -> Scattering {
-        Dielectric::new(self.0.ior / at.outside, [self.1; 2]).into()
+        Dielectric::new(self.0.ior / at.outside, self.1).into()
     }
     fn needs(&self) -> Needs {
         Needs::NONE
@@ -113,7 +113,8 @@ fn the_index_may_be_one_or_nearly_or_ten() {
 #[test]
 fn glass_in_an_even_light_cannot_be_seen_from_outside_or_inside() {
     // Radiance over the square of the index is the same everywhere. Seen from outside, from within one, and from within both.
-    let ways = [DVec3::new(0.48, 0.6, 0.64), DVec3::new(-0.36, 0.48, -0.8), DVec3::new(0.01, -0.999_95, 0.0)];
+    // No way is one on which a block holds light for ever by total reflection.
+    let ways = [DVec3::new(0.3, 0.2, 0.93), DVec3::new(-0.2, -0.96, 0.25), DVec3::new(0.01, -0.999_95, 0.0)];
     for alpha in [0.0, 0.3] {
         for gap in [0.0, 1e-6, 0.25] {
             let outer = glass(block([-1.0; 3], [1.0; 3]), 1.5, 0, alpha);
@@ -130,7 +131,7 @@ fn glass_in_an_even_light_cannot_be_seen_from_outside_or_inside() {
                 {
                     let (mean, error) = super::radiance(&scene, &Path::default(), Ray::new(origin, way), 20_000);
                     let off = (mean / (index * index) - 1.0).abs();
-                    assert!(off < 4.0 * error + slack, "{alpha} {gap} {index}: {mean} ± {error}");
+                    assert!(off < 4.0 * error / (index * index) + slack, "{alpha} {gap} {index}: {mean} ± {error}");
                 }
             }
         }

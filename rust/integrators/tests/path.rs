@@ -132,7 +132,7 @@ fn a_point_and_the_sky_light_a_floor() {
     let floor = || vec![shape(rectangle([-9.0, -9.0, 0.0], [18.0, 0.0, 0.0], [0.0, 18.0, 0.0]), [0.5; 3], 0.0)];
     let ray = Ray::new(DVec3::new(0.0, 0.3, 0.4), DVec3::new(0.0, -0.6, -0.8));
     let point = PointLight { position: DVec3::new(1.0, 0.0, 1.0), intensity: Rgb::ONE };
-    let points = scene(SceneDescription { shapes: floor(), lights: vec![Arc::new(point)], ..Default::default() });
+    let points = scene(SceneDescription { shapes: floor(), lights: vec![Arc::new(point)] });
     let expected = 0.5 * 0.353_553_390_593_273_73 / std::f64::consts::PI;
     assert_radiance(&points, &Path::default(), ray, 10, expected);
     let sky = scene(SceneDescription {

@@ -2,7 +2,8 @@
 
 use crate::sampling::CAMERA_DIMENSIONS;
 
-/// The dimensions of a bounce. Two neighbours are made together, so what every surface asks for stands in the first four.
+/// The dimensions of a bounce. A choice stands at an even one, before the pair that
+/// follows from it, with which samplers place it together; and what every surface asks for stands in the first four.
 #[derive(Clone, Copy)]
 pub(super) struct Dimensions(u32);
 
@@ -38,17 +39,17 @@ impl Dimensions {
     /// Where a path goes on to.
     #[inline]
     pub fn direction(self) -> u32 {
-        self.0 + 2
+        self.0 + 3
     }
     /// Whether it goes on.
     #[inline]
     pub fn roulette(self) -> u32 {
-        self.0 + 3
+        self.0 + 4
     }
     /// Among several kinds of scattering, which.
     #[inline]
     pub fn scattering_choice(self) -> u32 {
-        self.0 + 4
+        self.0 + 2
     }
     /// Which masks the ray passes.
     #[inline]

@@ -15,7 +15,8 @@ pub(super) fn of_index(eta: f64) -> f64 {
 }
 
 /// The mean Fresnel reflectance of a dielectric of index `eta` ≥ 1 over the light that its isotropic facets reflect once to
-/// a direction of this cosine, on the side of the thinner medium. Without roughness it is Fresnel's own.
+/// a direction of this cosine, on the side of the thinner medium. Without roughness it is Fresnel's own; within 0.01 of the integral for
+/// indices from 1.2 to 3.
 #[inline]
 pub fn coat(alpha: f64, eta: f64, cosine: f64) -> f64 {
     let c = cosine.abs();

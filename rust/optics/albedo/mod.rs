@@ -44,13 +44,6 @@ fn of_alpha_power(alpha: f64) -> f64 {
     alpha.powf(0.7)
 }
 
-/// A variable from 0 to 1 for a roughness where averages over the hemisphere are asked for, which fall as α² ln(1 / α).
-#[inline]
-fn of_alpha_log(alpha: f64) -> f64 {
-    // From ln(1 + 10⁵) at the smallest roughness down to ln 2.
-    ((1.0 / Ggx::SMOOTH).ln_1p() - alpha.recip().ln_1p()) / ((1.0 / Ggx::SMOOTH).ln_1p() - std::f64::consts::LN_2)
-}
-
 /// About the cosine at which facets are met that reflect to a direction of this cosine: at grazing, that of a slope of α.
 #[inline]
 fn effective_cosine(alpha: f64, cosine: f64) -> f64 {

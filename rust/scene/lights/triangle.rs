@@ -28,8 +28,8 @@ struct Spherical {
 }
 
 impl SeenTriangle {
-    /// How many times as far as its longer edge the first corner of a distant triangle is, at least. The density of a point drawn by area
-    /// then varies by a factor of 27 at most over a triangle that faces the place, and by one of 2 over most.
+    /// How many times as far as its longer edge the first corner of a distant triangle is, at least. Of a point drawn by area the
+    /// distance then varies by a factor of 3 at most.
     const DISTANT: f64 = 2.0;
 
     /// The least solid angle of a near triangle. So little is seen edge-on; the angle between two edges that are nearly one would lose

@@ -1,6 +1,9 @@
 //! Irradiances that have closed forms, and what densities say of draws.
 
-use super::*;
+use super::super::{ConstantEnvironment, Light, PointLight, Receiver};
+use super::{FLOOR, assert_near, irradiance_at};
+use crate::math::{DVec3, Hit, Ray};
+use crate::optics::Rgb;
 use crate::sampling::Sampler;
 use crate::scene::fixtures::{rectangle, scene, shape};
 use crate::scene::{Mesh, Scene, SceneDescription, Shape};
@@ -9,35 +12,13 @@ use std::sync::Arc;
 
 const DRAWS: u32 = 20_000;
 
-/// The origin on a plane that faces up.
-const FLOOR: Receiver = Receiver { position: DVec3::ZERO, normal: DVec3::Z };
-
 fn sky(radiance: f64) -> Arc<dyn Light> {
     Arc::new(ConstantEnvironment { radiance: Rgb::splat(radiance) })
 }
 
-/// Mean and standard error of the irradiance at the origin on a plane with normal +z, nothing shadowing.
-fn irradiance(scene: &Scene) -> (f64, f64) {
-    let (mut sum, mut squares) = (0.0, 0.0);
-    for number in 0..DRAWS {
-        let mut sampler = Sampler::new(1, 0, number);
-        let (choice, u) = (sampler.one(0), sampler.two(1));
-        if let Some(light) = scene.lights().sample(scene.geometry(), &FLOOR, choice, u) {
-            assert!((light.direction.length() - 1.0).abs() < 1e-12 && light.pdf > 0.0);
-            let x = light.weight.y * light.direction.z.max(0.0);
-            sum += x;
-            squares += x * x;
-        }
-    }
-    let mean = sum / f64::from(DRAWS);
-    (mean, ((squares / f64::from(DRAWS) - mean * mean).max(0.0) / f64::from(DRAWS)).sqrt())
-}
-
-/// Within five standard errors, which chance exceeds once in two million, and to a percent.
+/// That a scene gives the floor an irradiance, to a percent.
 fn assert_irradiance(scene: &Scene, expected: f64) {
-    let (mean, error) = irradiance(scene);
-    assert!((mean - expected).abs() <= 5.0 * error + 1e-12 * expected, "{mean} ± {error}, not {expected}");
-    assert!(error < 0.01 * expected);
+    assert_near(irradiance_at(scene, &FLOOR, DRAWS), expected, 0.01);
 }
 
 fn lit_by(shapes: Vec<Shape>) -> Scene {
@@ -56,7 +37,7 @@ const OVERHEAD: f64 = 1.740_839_502_734_206;
 fn rectangle_gives_lamberts_irradiance() {
     assert_irradiance(&lit_by(vec![shape(overhead(), [0.0; 3], 1.0)]), OVERHEAD);
     let up = rectangle([-1.0, -1.0, 1.0], [2.0, 0.0, 0.0], [0.0, 2.0, 0.0]);
-    assert_eq!(irradiance(&lit_by(vec![shape(up, [0.0; 3], 1.0)])), (0.0, 0.0));
+    assert_eq!(irradiance_at(&lit_by(vec![shape(up, [0.0; 3], 1.0)]), &FLOOR, DRAWS), (0.0, 0.0));
 }
 
 #[test]
@@ -145,7 +126,7 @@ fn what_cannot_be_hit_does_not_shine() {
 fn extreme_lights_give_their_irradiance() {
     // A sheet of area 10⁻¹² and radiance 10¹² right above looks like a point of intensity 1.
     let tiny = rectangle([-5e-7, -5e-7, 1.0], [0.0, 1e-6, 0.0], [1e-6, 0.0, 0.0]);
-    let (mean, _) = irradiance(&lit_by(vec![shape(tiny, [0.0; 3], 1e12)]));
+    let (mean, _) = irradiance_at(&lit_by(vec![shape(tiny, [0.0; 3], 1e12)]), &FLOOR, DRAWS);
     assert!((mean - 1.0).abs() < 1e-5, "{mean}");
     for strength in [1e-30, 1e30] {
         assert_irradiance(&lit_by(vec![shape(overhead(), [0.0; 3], strength)]), strength * OVERHEAD);

@@ -1,8 +1,8 @@
-"""What turns rays into radiance."""
+"""Path tracing."""
 
 from dataclasses import dataclass
 
-from .arrays import integer
+from ..arrays import integer
 
 
 @dataclass(frozen=True)

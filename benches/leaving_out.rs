@@ -1,0 +1,98 @@
+//! What leaving out has won: the same paths in the same scene, traced by the kernel that the scene needs and by those that can more. They take
+//! turns, so that what else the machine does is shared by all. Each gives the same bits, which is checked before anything is timed.
+
+use raywright::accel::bvh::{self, Options};
+use raywright::integrators::{CameraSample, Path};
+use raywright::math::{DVec3, Ray, Vec3};
+use raywright::optics::Rgb;
+use raywright::sampling::Sampler;
+use raywright::scene::{DiffuseMaterial, Footprint, Kernel, Mesh, Scene, SceneDescription, Shape};
+use raywright::simd::Level;
+use raywright::workers::Cancel;
+use std::sync::Arc;
+use std::time::Instant;
+
+/// Times that each takes its turn.
+const TURNS: usize = 31;
+
+/// Paths that are timed together.
+const PATHS: u32 = 4096;
+
+fn main() {
+    // Without this flag, as `cargo test --benches` has it, all is checked and nothing timed.
+    let is_timed = std::env::args().any(|arg| arg == "--bench");
+    let scene = room();
+    let run = |kernel| {
+        let mut samples: Vec<_> = (0..PATHS).map(sample).collect();
+        let mut radiance = vec![Rgb::ZERO; samples.len()];
+        let path = Path::default();
+        let mut worker = path.worker_of(&scene, Footprint::default(), kernel);
+        let start = Instant::now();
+        worker.radiance(&mut samples, &Cancel::default(), &mut radiance);
+        (start.elapsed().as_secs_f64(), radiance)
+    };
+    let all = Kernel::ALL.map(run);
+    assert!(all.iter().all(|(_, radiance)| *radiance == all[0].1), "the same bits");
+    if !is_timed {
+        return;
+    }
+    let mut seconds = [const { Vec::new() }; 3];
+    for turn in 0..TURNS {
+        for i in 0..3 {
+            let which = (i + turn) % 3;
+            seconds[which].push(run(Kernel::ALL[which]).0);
+        }
+    }
+    println!(
+        "Paths of a closed room of one diffuse colour a wall on one thread; a kernel's time over that of the one before."
+    );
+    println!();
+    println!("| kernel | thousand paths a second | time over plain |");
+    println!("|---|---|---|");
+    for (kernel, times) in Kernel::ALL.into_iter().zip(&seconds) {
+        let ratios = times.iter().zip(&seconds[0]).map(|(mine, plain)| mine / plain).collect();
+        let rate = f64::from(PATHS) / median(times.clone()) / 1e3;
+        println!("| {} | {rate:.0} | {:.2} |", kernel.name(), median(ratios));
+    }
+}
+
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values[values.len() / 2]
+}
+
+/// A path from the room's middle, in a direction of its own.
+fn sample(number: u32) -> CameraSample {
+    let mut sampler = Sampler::new(1, number, 0);
+    let [x, y] = sampler.two(0);
+    let direction = DVec3::new(x - 0.5, y - 0.5, -0.7).normalize();
+    CameraSample { ray: Ray::new(DVec3::new(0.0, 0.0, 0.9), direction), sampler }
+}
+
+/// A room from −1 to 1 with a lamp under its ceiling.
+fn room() -> Scene {
+    let wall = |corner: Vec3, side: Vec3, other: Vec3, reflectance: Rgb, emission: f64| Shape {
+        surface: Mesh {
+            vertices: vec![corner, corner + side, corner + side + other, corner + other].into(),
+            faces: vec![[0, 1, 2], [0, 2, 3]],
+            ..Mesh::default()
+        }
+        .into(),
+        material: Arc::new(DiffuseMaterial { reflectance: reflectance.into() }),
+        emission: Rgb::splat(emission).into(),
+    };
+    let (x, y, z, low, high) = (2.0 * Vec3::X, 2.0 * Vec3::Y, 2.0 * Vec3::Z, -Vec3::ONE, Vec3::ONE);
+    let white = Rgb::splat(0.73);
+    let shapes = vec![
+        wall(low, y, z, Rgb::new(0.63, 0.065, 0.05), 0.0),
+        wall(high, -z, -y, Rgb::new(0.14, 0.45, 0.091), 0.0),
+        wall(low, z, x, white, 0.0),
+        wall(high, -x, -z, white, 0.0),
+        wall(low, x, y, white, 0.0),
+        wall(high, -y, -x, white, 0.0),
+        wall(Vec3::new(-0.3, 0.99, -0.3), 0.3 * x, 0.3 * z, Rgb::ZERO, 15.0),
+    ];
+    let level = Level::current().expect("a level of this processor");
+    let description = SceneDescription { shapes, ..SceneDescription::default() };
+    Scene::new(description, |geometry| bvh::wide(8, geometry, &Options::default(), level)).expect("a scene")
+}

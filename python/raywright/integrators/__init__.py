@@ -1,0 +1,36 @@
+"""What turns rays into radiance."""
+
+from typing import TypeAlias, get_args
+
+from ..integrator import Integrator
+from .ambient_occlusion import AmbientOcclusion
+from .direct import Direct
+from .distributed import Distributed
+from .path import Path
+from .ray_cast import RayCast
+from .whitted import Whitted
+
+AnyIntegrator: TypeAlias = Path | Direct | RayCast | Whitted | Distributed | AmbientOcclusion | Integrator
+
+__all__ = [
+    "AmbientOcclusion",
+    "AnyIntegrator",
+    "Direct",
+    "Distributed",
+    "Path",
+    "RayCast",
+    "Whitted",
+    "check_integrator",
+]
+
+
+def check_integrator(name: str, value: object) -> None:
+    """Refuse what is no integrator.
+
+    Raises
+    ------
+    TypeError
+        If it is none.
+    """
+    if not isinstance(value, get_args(AnyIntegrator)):
+        raise TypeError(f"{name} must be a raywright.Path, got {type(value).__name__}")

@@ -1,0 +1,15 @@
+"""Numbers that integrators have in common."""
+
+from ..arrays import integer
+
+MOST_SAMPLES = 1024
+
+
+def samples(name: str, value: int) -> int:
+    """Return how often something is drawn at one point, 1 to 1024."""
+    return integer(name, value, 1, MOST_SAMPLES)
+
+
+def depth(name: str, value: int) -> int:
+    """Return a number of bounces."""
+    return integer(name, value, 0, 2**32 - 1)

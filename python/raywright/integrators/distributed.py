@@ -1,0 +1,42 @@
+"""Distributed ray tracing."""
+
+from dataclasses import dataclass
+
+from numpy.typing import ArrayLike
+
+from ..arrays import Triple, colour
+from . import counts
+
+
+@dataclass(frozen=True, init=False)
+class Distributed:
+    """Distributed ray tracing (Cook, Porter and Carpenter 1984): soft shadows, gloss, depth of field, motion.
+
+    Directions are followed into which a surface scatters with more than 1 per steradian, three times the most
+    that a matt one has. Diffuse light between surfaces is left to `ambient`.
+
+    Parameters
+    ----------
+    max_depth : int
+        Greatest number of surfaces that light comes by.
+    splits : int
+        Rays that the first surface splits one into, and light samples there: 1 to 1024.
+    ambient : float or 3 floats
+        Radiance that arrives from everywhere in place of what is not followed.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of its range.
+    TypeError
+        If an argument is of the wrong kind.
+    """
+
+    max_depth: int
+    splits: int
+    ambient: Triple
+
+    def __init__(self, max_depth: int = 8, splits: int = 4, ambient: ArrayLike = 0.0) -> None:
+        object.__setattr__(self, "max_depth", counts.depth("max_depth", max_depth))
+        object.__setattr__(self, "splits", counts.samples("splits", splits))
+        object.__setattr__(self, "ambient", colour("ambient", ambient))

@@ -1,0 +1,56 @@
+"""Recursive ray tracing."""
+
+from dataclasses import dataclass
+
+from numpy.typing import ArrayLike
+
+from ..arrays import Triple, colour, number
+from . import counts
+
+
+@dataclass(frozen=True, init=False)
+class Whitted:
+    """Whitted's ray tracing (1980): lights, ambient light, and both the reflected and the refracted ray.
+
+    Only smooth surfaces are followed, to a depth or for as long as they contribute (Hall and Greenberg 1983);
+    diffuse light between surfaces is left to `ambient`, so the picture is biased by design, and without noise
+    where lights are points and the camera a pinhole.
+
+    Parameters
+    ----------
+    max_depth : int
+        Greatest number of surfaces that light comes by.
+    contribution : float
+        Rays that contribute less than this share to their pixel are not followed: 0 (all are) to below 1.
+    ambient : float or 3 floats
+        Radiance that arrives from everywhere in place of what is not followed.
+    light_samples : int
+        Light samples at the first surface, from equal shares of the lights: 1 to 1024.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of its range.
+    TypeError
+        If an argument is of the wrong kind.
+    """
+
+    max_depth: int
+    contribution: float
+    ambient: Triple
+    light_samples: int
+
+    def __init__(
+        self,
+        max_depth: int = 8,
+        contribution: float = 1 / 512,
+        ambient: ArrayLike = 0.0,
+        light_samples: int = 1,
+    ) -> None:
+        share = number("contribution", contribution)
+        if not 0 <= share < 1:
+            raise ValueError(f"contribution must be at least 0 and below 1, got {contribution!r}")
+        object.__setattr__(self, "max_depth", counts.depth("max_depth", max_depth))
+        object.__setattr__(self, "contribution", share)
+        object.__setattr__(self, "ambient", colour("ambient", ambient))
+        object.__setattr__(self, "light_samples", counts.samples("light_samples", light_samples))

@@ -1,0 +1,38 @@
+"""What surfaces are made of: how they scatter light."""
+
+from .blinn_phong import BlinnPhong
+from .bump_map import BumpMap
+from .conductor import Conductor, metals
+from .dielectric import Dielectric
+from .diffuse import Diffuse
+from .mask import Mask
+from .material import Material
+from .metallic_rough import MetallicRough
+from .mirror import Mirror
+from .mix import Mix
+from .normal_map import NormalMap
+from .oren_nayar import OrenNayar
+from .phong import Phong
+from .plastic import Plastic
+from .thin_dielectric import ThinDielectric
+from .two_sided import TwoSided
+
+__all__ = [
+    "BlinnPhong",
+    "BumpMap",
+    "Conductor",
+    "Dielectric",
+    "Diffuse",
+    "Mask",
+    "Material",
+    "MetallicRough",
+    "Mirror",
+    "Mix",
+    "NormalMap",
+    "OrenNayar",
+    "Phong",
+    "Plastic",
+    "ThinDielectric",
+    "TwoSided",
+    "metals",
+]

@@ -1,0 +1,37 @@
+"""Matt surfaces."""
+
+from dataclasses import dataclass
+
+from numpy.typing import ArrayLike
+
+from ..textures.texture import Texture, Value, value
+from .material import Material
+
+
+@dataclass(frozen=True, init=False)
+class Diffuse(Material):
+    """A surface that scatters evenly into all directions (Lambert's law), on both sides.
+
+    Parameters
+    ----------
+    reflectance : float, 3 floats or Texture
+        Share of the arriving light that leaves again, in [0, 1]: one number, or linear red, green and blue.
+        Numbers are kept as a tuple of 3 floats.
+
+    Raises
+    ------
+    ValueError
+        If a reflectance is outside [0, 1] or not finite, or is not 1 or 3 numbers.
+    TypeError
+        If something is not of the kinds above.
+    """
+
+    reflectance: Value
+
+    def __init__(
+        self,
+        reflectance: ArrayLike | Texture = 0.5,
+    ) -> None:
+        self._set(
+            reflectance=value("reflectance", reflectance, most=1.0),
+        )

@@ -1,0 +1,53 @@
+"""The model of glTF."""
+
+from dataclasses import dataclass
+
+from numpy.typing import ArrayLike
+
+from ..textures.texture import Number, Texture, Value, scalar, value
+from .material import Material
+
+
+@dataclass(frozen=True, init=False)
+class MetallicRough(Material):
+    """The metallic-roughness model of glTF 2.0: from plastic to metal.
+
+    Both sides reflect. Emission is the shape's.
+
+    Parameters
+    ----------
+    base_color : float, 3 floats or Texture
+        Colour of what is matt, or of what the metal reflects, linear, in [0, 1].
+    metallic : float or Texture
+        From 0, none, to 1, metal.
+    roughness : float or Texture
+        From 0, smooth, to 1. Its square is the alpha of the GGX distribution.
+
+    Raises
+    ------
+    ValueError
+        If a number is outside [0, 1] or not finite.
+    TypeError
+        If something is not of the kinds above.
+
+    Notes
+    -----
+    glTF keeps metalness in the blue and roughness in the green of one picture, which is not sRGB:
+    ``ImageTexture(picture, linear=True, channel="b")`` and the same of ``"g"``.
+    """
+
+    base_color: Value
+    metallic: Number
+    roughness: Number
+
+    def __init__(
+        self,
+        base_color: ArrayLike | Texture = 1.0,
+        metallic: "float | Texture" = 1.0,
+        roughness: "float | Texture" = 1.0,
+    ) -> None:
+        self._set(
+            base_color=value("base_color", base_color, most=1.0),
+            metallic=scalar("metallic", metallic, most=1.0),
+            roughness=scalar("roughness", roughness, most=1.0),
+        )

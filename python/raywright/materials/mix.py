@@ -1,0 +1,44 @@
+"""Two materials at once."""
+
+from dataclasses import dataclass
+
+from ..textures.texture import Number, Texture, scalar
+from .material import Material, material
+
+
+@dataclass(frozen=True, init=False)
+class Mix(Material):
+    """A share of one material and the rest of another, finely mixed.
+
+    What fills it is what fills the first of them that is filled.
+
+    Parameters
+    ----------
+    a, b : Material
+        What is mixed.
+    amount : float or Texture
+        Share of `b`, in [0, 1].
+
+    Raises
+    ------
+    ValueError
+        If `amount` is outside [0, 1].
+    TypeError
+        If something is not of the kinds above.
+    """
+
+    a: Material
+    b: Material
+    amount: Number
+
+    def __init__(
+        self,
+        a: Material,
+        b: Material,
+        amount: "float | Texture" = 0.5,
+    ) -> None:
+        self._set(
+            a=material("a", a),
+            b=material("b", b),
+            amount=scalar("amount", amount, most=1.0),
+        )

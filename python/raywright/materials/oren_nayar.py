@@ -1,0 +1,44 @@
+"""Rough matt surfaces."""
+
+from dataclasses import dataclass
+
+from numpy.typing import ArrayLike
+
+from ..textures.texture import Number, Texture, Value, scalar, value
+from .material import Material
+
+
+@dataclass(frozen=True, init=False)
+class OrenNayar(Material):
+    """A surface of matt facets, brighter towards the light: clay, plaster, the moon.
+
+    The model of Oren and Nayar (1994) in a form that conserves energy (Portsmouth, Kutz and Hill, 2024). Both
+    sides reflect.
+
+    Parameters
+    ----------
+    reflectance : float, 3 floats or Texture
+        Share of the light that a facet reflects, in [0, 1].
+    roughness : float or Texture
+        From 0, Lambert's law, to 1. It is not the alpha of any facets.
+
+    Raises
+    ------
+    ValueError
+        If a number is outside [0, 1] or not finite.
+    TypeError
+        If something is not of the kinds above.
+    """
+
+    reflectance: Value
+    roughness: Number
+
+    def __init__(
+        self,
+        reflectance: ArrayLike | Texture = 0.5,
+        roughness: "float | Texture" = 0.5,
+    ) -> None:
+        self._set(
+            reflectance=value("reflectance", reflectance, most=1.0),
+            roughness=scalar("roughness", roughness, most=1.0),
+        )

@@ -1,0 +1,45 @@
+"""A glass and a mirror ball in a box, with their caustics."""
+
+import numpy as np
+
+from ..cameras import Camera
+from ..materials import Dielectric, Mirror
+from ..scene import Scene
+from ..shapes import Sphere
+from . import cornell, cornell_spectra
+
+_RADIUS = 100.0
+# Around the middle of the ceiling; the hole that it fills stays as it is.
+_LAMP_SIZE = 0.3
+
+
+def glass_spheres(width: int = 512, height: int = 512) -> tuple[Scene, Camera]:
+    """Return the Cornell box with a mirror ball and a glass ball in place of its blocks, and its camera.
+
+    After Jensen, "Global Illumination using Photon Maps" (1996). The lamp is small, so that the light that
+    the balls gather, on the floor and on the walls, is hard to find by paths from the camera.
+
+    Parameters
+    ----------
+    width, height : int
+        Size of the picture in pixels.
+
+    Returns
+    -------
+    scene : Scene
+        Shapes: lamp, floor, ceiling, back, right (green), left (red), mirror ball, glass ball.
+    camera : Camera
+    """
+    corners = np.array(cornell.LIGHT[0], np.float64)
+    middle = corners.mean(axis=0)
+    # Just under the ceiling's hole, which a small lamp leaves open to the dark.
+    small = middle + _LAMP_SIZE * (corners - middle) - (0.0, 0.5, 0.0)
+    radiance = np.array(cornell_spectra.EMISSION) / _LAMP_SIZE**2
+    shapes = [cornell.quads([[tuple(corner) for corner in small]], cornell.LAMP, radiance)]
+    shapes += [cornell.quads(part, cornell.WHITE) for part in (cornell.FLOOR, cornell.CEILING, cornell.BACK)]
+    shapes += [cornell.quads(cornell.RIGHT, cornell.GREEN), cornell.quads(cornell.LEFT, cornell.RED)]
+    balls = [
+        Sphere((390.0, _RADIUS, 360.0), _RADIUS, material=Mirror()),
+        Sphere((180.0, _RADIUS, 200.0), _RADIUS, material=Dielectric(1.5)),
+    ]
+    return Scene([*shapes, *balls]), cornell.camera(width, height)

@@ -1,0 +1,52 @@
+"""A room with thousands of lamps."""
+
+import numpy as np
+
+from ..arrays import integer
+from ..cameras import Camera
+from ..materials import Diffuse
+from ..mesh import Mesh
+from ..scene import Scene
+from .room import EYE, SIZE, TARGET, room
+
+# Half the side of a lamp, and the light of all lamps together over their number.
+_HALF, _POWER = 0.01, 400.0
+
+
+def many_lights(
+    lights: int = 2000, seed: int = 0, width: int = 512, height: int = 512
+) -> tuple[Scene, Camera]:
+    """Return the room of `room` lit by many small lamps of all colours, and a camera.
+
+    Of so many, few matter anywhere: what chooses among them by their power alone spends its samples on lamps
+    that are far away or turned away.
+
+    Parameters
+    ----------
+    lights : int
+        How many lamps, at least 1.
+    seed : int
+        Where they are.
+    width, height : int
+        Size of the picture in pixels.
+
+    Returns
+    -------
+    scene : Scene
+        Shapes: those of the room, then the lamps, each a square.
+    camera : Camera
+    """
+    count = integer("lights", lights, 1)
+    shell = room(20_000, seed)
+    rng = np.random.default_rng(integer("seed", seed, 0))
+    places = rng.uniform(0.1 * SIZE, 0.9 * SIZE, (count, 3))
+    colours = rng.uniform(0.2, 1.0, (count, 3)) * (_POWER / count / (4 * _HALF**2 * np.pi))
+    lamps = []
+    for place, colour, way in zip(places, colours, rng.normal(size=(count, 3)), strict=True):
+        normal = way / np.linalg.norm(way)
+        side = np.cross(normal, np.eye(3)[np.argmin(np.abs(normal))])
+        side *= _HALF / np.linalg.norm(side)
+        other = np.cross(normal, side)
+        corners = [place - side - other, place + side - other, place + side + other, place - side + other]
+        lamps.append(Mesh(corners, [[0, 1, 2], [0, 2, 3]], material=Diffuse(0.0), emission=colour))
+    return Scene([*shell, *lamps]), Camera(EYE, TARGET, fov=60.0, width=width, height=height)

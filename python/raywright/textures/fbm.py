@@ -1,0 +1,87 @@
+"""Noise of many sizes."""
+
+from dataclasses import dataclass
+from typing import Any
+
+from numpy.typing import ArrayLike
+
+from ..arrays import Triple, integer, number
+from .noise import SEEDS
+from .texture import Texture, Value, either, scalar, value
+from .transform import ObjectTransform, Transform, placed
+
+
+def octaves_of(octaves: int, lacunarity: float, gain: float, seed: int) -> dict[str, Any]:
+    """Return what describes a sum of noises, checked."""
+    finer = number("lacunarity", lacunarity)
+    if not 1 < finer <= 16:
+        raise ValueError(f"lacunarity must be greater than 1 and at most 16, got {lacunarity}")
+    if isinstance(gain, Texture):
+        raise TypeError(f"gain must be a number, got {type(gain).__name__}")
+    return {
+        "octaves": integer("octaves", octaves, 1, 32),
+        "lacunarity": finer,
+        "gain": scalar("gain", gain, most=1.0),
+        "seed": integer("seed", seed, 0, SEEDS),
+    }
+
+
+@dataclass(frozen=True, init=False)
+class FBm(Texture):
+    """Fractional Brownian motion: a sum of noises, each finer and weaker than the one before.
+
+    Clouds, stains, terrain (Mandelbrot and Van Ness, 1968; Perlin, "An Image Synthesizer", 1985). Noises too
+    fine to be told apart are left out.
+
+    Parameters
+    ----------
+    a, b : float, 3 floats or Texture
+        What is where the sum is -1 or less, and where it is 1 or more.
+    transform : ObjectTransform, UvTransform or float, optional
+        Where it lies, as of `Noise`: the coarsest has spots about a unit in size.
+    octaves : int
+        How many noises, 1 to 32.
+    lacunarity : float
+        How many times finer each is than the one before, above 1 and at most 16.
+    gain : float
+        How many times as strong, 0 to 1.
+    seed : int
+        Which of all noises, 0 to 2^32 - 1.
+
+    Raises
+    ------
+    ValueError
+        If a number is not finite or out of range.
+    TypeError
+        If something is not of the kinds above.
+    """
+
+    a: Value
+    b: Value
+    transform: Transform
+    octaves: int
+    lacunarity: float
+    gain: float
+    seed: int
+
+    def __init__(
+        self,
+        a: ArrayLike | Texture = 0.0,
+        b: ArrayLike | Texture = 1.0,
+        transform: Transform | float | None = None,
+        octaves: int = 8,
+        lacunarity: float = 2.0,
+        gain: float = 0.5,
+        seed: int = 0,
+    ) -> None:
+        self._set(
+            a=value("a", a, -float("inf")),
+            b=value("b", b, -float("inf")),
+            transform=placed(transform, ObjectTransform),
+            **octaves_of(octaves, lacunarity, gain, seed),
+        )
+
+    @property
+    def range(self) -> tuple[Triple, Triple]:
+        """The least and the greatest that it may be, in red, green and blue."""
+        return either(self.a, self.b)

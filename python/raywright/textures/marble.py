@@ -1,0 +1,70 @@
+"""Marble."""
+
+from dataclasses import dataclass
+
+from numpy.typing import ArrayLike
+
+from ..arrays import Triple, number
+from .fbm import octaves_of
+from .texture import Texture, Value, either, value
+from .transform import ObjectTransform, Transform, placed
+
+
+@dataclass(frozen=True, init=False)
+class Marble(Texture):
+    """Veins: soft bands across the first axis, one each unit, bent by noise.
+
+    After Perlin ("An Image Synthesizer", 1985). Bands too narrow to be told apart become their mean.
+
+    Parameters
+    ----------
+    a, b : float, 3 floats or Texture
+        What is between the bands, and what they are.
+    transform : ObjectTransform, UvTransform or float, optional
+        Where it lies: in the space of the shape, or in texture coordinates. A number is how many bands there
+        are to a unit of the shape's space.
+    distortion : float
+        How far noise moves them, in units; 0 leaves them as they are.
+    octaves, lacunarity, gain, seed
+        The noise, as of `FBm`.
+
+    Raises
+    ------
+    ValueError
+        If a number is not finite or out of range.
+    TypeError
+        If something is not of the kinds above.
+    """
+
+    a: Value
+    b: Value
+    transform: Transform
+    distortion: float
+    octaves: int
+    lacunarity: float
+    gain: float
+    seed: int
+
+    def __init__(
+        self,
+        a: ArrayLike | Texture = (0.15, 0.15, 0.18),
+        b: ArrayLike | Texture = (0.85, 0.84, 0.8),
+        transform: Transform | float | None = None,
+        distortion: float = 1.5,
+        octaves: int = 8,
+        lacunarity: float = 2.0,
+        gain: float = 0.5,
+        seed: int = 0,
+    ) -> None:
+        self._set(
+            a=value("a", a, -float("inf")),
+            b=value("b", b, -float("inf")),
+            transform=placed(transform, ObjectTransform),
+            distortion=number("distortion", distortion),
+            **octaves_of(octaves, lacunarity, gain, seed),
+        )
+
+    @property
+    def range(self) -> tuple[Triple, Triple]:
+        """The least and the greatest that it may be, in red, green and blue."""
+        return either(self.a, self.b)

@@ -1,0 +1,46 @@
+"""Two textures by a third."""
+
+from dataclasses import dataclass
+
+from numpy.typing import ArrayLike
+
+from ..arrays import Triple
+from .texture import Texture, Value, either, value
+
+
+@dataclass(frozen=True, init=False)
+class MixTexture(Texture):
+    """Two values, weighed by a third: ``a (1 - amount) + b amount``, channel by channel.
+
+    Parameters
+    ----------
+    a, b : float, 3 floats or Texture
+        What is mixed.
+    amount : float, 3 floats or Texture
+        How much of `b`, between 0 and 1.
+
+    Raises
+    ------
+    ValueError
+        If a number is not finite, or `amount` is not between 0 and 1.
+    TypeError
+        If something is not of the kinds above.
+    """
+
+    a: Value
+    b: Value
+    amount: Value
+
+    def __init__(
+        self, a: ArrayLike | Texture, b: ArrayLike | Texture, amount: ArrayLike | Texture = 0.5
+    ) -> None:
+        self._set(
+            a=value("a", a, -float("inf")),
+            b=value("b", b, -float("inf")),
+            amount=value("amount", amount, most=1.0),
+        )
+
+    @property
+    def range(self) -> tuple[Triple, Triple]:
+        """The least and the greatest that it may be, in red, green and blue."""
+        return either(self.a, self.b)

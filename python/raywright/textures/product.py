@@ -1,0 +1,42 @@
+"""Textures times each other."""
+
+from dataclasses import dataclass
+
+from numpy.typing import ArrayLike
+
+from ..arrays import Triple
+from .texture import Texture, Value, ends, value
+
+
+@dataclass(frozen=True, init=False)
+class ProductTexture(Texture):
+    """The product of two values, channel by channel; with a number, a texture made brighter or darker.
+
+    Parameters
+    ----------
+    a, b : float, 3 floats or Texture
+        What is multiplied.
+
+    Raises
+    ------
+    ValueError
+        If a number is not finite.
+    TypeError
+        If something is not of the kinds above.
+    """
+
+    a: Value
+    b: Value
+
+    def __init__(self, a: ArrayLike | Texture, b: ArrayLike | Texture) -> None:
+        self._set(a=value("a", a, -float("inf")), b=value("b", b, -float("inf")))
+
+    @property
+    def range(self) -> tuple[Triple, Triple]:
+        """The least and the greatest that it may be, in red, green and blue."""
+        products = [
+            tuple(x * y for x, y in zip(i, j, strict=True)) for i in ends(self.a) for j in ends(self.b)
+        ]
+        x, y, z = (min(channel) for channel in zip(*products, strict=True))
+        r, s, t = (max(channel) for channel in zip(*products, strict=True))
+        return (x, y, z), (r, s, t)

@@ -1,0 +1,58 @@
+"""Stripes."""
+
+from dataclasses import dataclass
+
+from numpy.typing import ArrayLike
+
+from ..arrays import Triple
+from .texture import Texture, Value, either, scalar, value
+from .transform import Transform, UvTransform, placed
+
+
+@dataclass(frozen=True, init=False)
+class Stripes(Texture):
+    """Stripes across the first axis, one each unit. Those too narrow to be told apart become their mean.
+
+    Parameters
+    ----------
+    a, b : float, 3 floats or Texture
+        What is between the stripes, and what they are.
+    fraction : float
+        How much of each unit a stripe takes, at its end: between 0 and 1.
+    transform : UvTransform, ObjectTransform or float, optional
+        Where they lie: in texture coordinates, or in the space of the shape. A number is how many stripes
+        there are to a unit of texture coordinates.
+
+    Raises
+    ------
+    ValueError
+        If a number is not finite, or `fraction` is not between 0 and 1.
+    TypeError
+        If something is not of the kinds above.
+    """
+
+    a: Value
+    b: Value
+    fraction: float
+    transform: Transform
+
+    def __init__(
+        self,
+        a: ArrayLike | Texture = 0.2,
+        b: ArrayLike | Texture = 0.8,
+        fraction: float = 0.5,
+        transform: Transform | float | None = None,
+    ) -> None:
+        if isinstance(fraction, Texture):
+            raise TypeError(f"fraction must be a number, got {type(fraction).__name__}")
+        self._set(
+            a=value("a", a, -float("inf")),
+            b=value("b", b, -float("inf")),
+            fraction=scalar("fraction", fraction, most=1.0),
+            transform=placed(transform, UvTransform),
+        )
+
+    @property
+    def range(self) -> tuple[Triple, Triple]:
+        """The least and the greatest that it may be, in red, green and blue."""
+        return either(self.a, self.b)

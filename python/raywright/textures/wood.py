@@ -1,0 +1,70 @@
+"""Wood."""
+
+from dataclasses import dataclass
+
+from numpy.typing import ArrayLike
+
+from ..arrays import Triple, number
+from .fbm import octaves_of
+from .texture import Texture, Value, either, value
+from .transform import ObjectTransform, Transform, placed
+
+
+@dataclass(frozen=True, init=False)
+class Wood(Texture):
+    """Rings about the third axis, one each unit of the radius, bent by noise.
+
+    After Perlin ("An Image Synthesizer", 1985). Rings too narrow to be told apart become their mean.
+
+    Parameters
+    ----------
+    a, b : float, 3 floats or Texture
+        Early wood, and the late wood that a ring darkens to.
+    transform : ObjectTransform, UvTransform or float, optional
+        Where it lies: in the space of the shape, or in texture coordinates. A number is how many rings there
+        are to a unit of the shape's space.
+    distortion : float
+        How far noise moves them, in units; 0 leaves them as they are.
+    octaves, lacunarity, gain, seed
+        The noise, as of `FBm`.
+
+    Raises
+    ------
+    ValueError
+        If a number is not finite or out of range.
+    TypeError
+        If something is not of the kinds above.
+    """
+
+    a: Value
+    b: Value
+    transform: Transform
+    distortion: float
+    octaves: int
+    lacunarity: float
+    gain: float
+    seed: int
+
+    def __init__(
+        self,
+        a: ArrayLike | Texture = (0.6, 0.38, 0.2),
+        b: ArrayLike | Texture = (0.3, 0.15, 0.06),
+        transform: Transform | float | None = None,
+        distortion: float = 0.3,
+        octaves: int = 3,
+        lacunarity: float = 2.0,
+        gain: float = 0.5,
+        seed: int = 0,
+    ) -> None:
+        self._set(
+            a=value("a", a, -float("inf")),
+            b=value("b", b, -float("inf")),
+            transform=placed(transform, ObjectTransform),
+            distortion=number("distortion", distortion),
+            **octaves_of(octaves, lacunarity, gain, seed),
+        )
+
+    @property
+    def range(self) -> tuple[Triple, Triple]:
+        """The least and the greatest that it may be, in red, green and blue."""
+        return either(self.a, self.b)

@@ -1,0 +1,115 @@
+//! Integrators as the package describes them, read by attribute, and pictures of what is seen first.
+
+use numpy::{PyArray1, PyArrayDyn, PyArrayMethods};
+use pyo3::conversion::FromPyObjectOwned;
+use pyo3::exceptions::{PyRuntimeError, PyTypeError, PyValueError};
+use pyo3::prelude::*;
+
+use super::cameras::AnyCamera;
+use super::query::CompiledScene;
+use crate::integrators::{
+    AmbientOcclusion, Channel, Direct, Distributed, Integrator, Path, RayCast, Whitted, aovs as observe,
+};
+use crate::optics::Rgb;
+use crate::workers::watched;
+
+/// Any integrator of the package.
+pub struct AnyIntegrator(pub Box<dyn Integrator>);
+
+/// An attribute of a description.
+fn attribute<'py, T: FromPyObjectOwned<'py>>(of: &Bound<'py, PyAny>, name: &str) -> PyResult<T> {
+    of.getattr(name)?.extract::<T>().map_err(Into::into)
+}
+
+fn rgb(of: &Bound<'_, PyAny>, name: &str) -> PyResult<Rgb> {
+    attribute::<[f64; 3]>(of, name).map(Rgb::from_array)
+}
+
+impl<'a, 'py> FromPyObject<'a, 'py> for AnyIntegrator {
+    type Error = PyErr;
+
+    fn extract(of: Borrowed<'a, 'py, PyAny>) -> PyResult<Self> {
+        let kind = of.get_type().name()?.to_string();
+        let of = &*of;
+        let light_samples = || attribute(of, "light_samples");
+        Ok(Self(match kind.as_str() {
+            "Path" => Box::new(Path {
+                max_depth: attribute(of, "max_depth")?,
+                roulette_depth: attribute(of, "roulette_depth")?,
+            }),
+            "Direct" => {
+                Box::new(Direct { light_samples: light_samples()?, surface_samples: attribute(of, "surface_samples")? })
+            }
+            "RayCast" => Box::new(RayCast {
+                ambient: rgb(of, "ambient")?,
+                shadows: attribute(of, "shadows")?,
+                light_samples: light_samples()?,
+            }),
+            "Whitted" => Box::new(Whitted {
+                max_depth: attribute(of, "max_depth")?,
+                contribution: attribute(of, "contribution")?,
+                ambient: rgb(of, "ambient")?,
+                light_samples: light_samples()?,
+            }),
+            "Distributed" => Box::new(Distributed {
+                max_depth: attribute(of, "max_depth")?,
+                splits: attribute(of, "splits")?,
+                ambient: rgb(of, "ambient")?,
+            }),
+            "AmbientOcclusion" => Box::new(AmbientOcclusion {
+                radius: attribute(of, "radius")?,
+                cosine: attribute(of, "cosine")?,
+                samples: attribute(of, "samples")?,
+            }),
+            other => return Err(PyTypeError::new_err(format!("integrator must be one of raywright's, got {other}"))),
+        }))
+    }
+}
+
+/// Pictures of channels by their names, float64 (H,W) or (H,W,n), in the order asked for.
+#[pyfunction]
+pub fn aovs<'py>(
+    py: Python<'py>,
+    scene: &Bound<'_, CompiledScene>,
+    camera: AnyCamera,
+    names: Vec<String>,
+    samples: u32,
+    seed: u64,
+    threads: Option<usize>,
+) -> PyResult<Vec<Bound<'py, PyArrayDyn<f64>>>> {
+    let named = |name: &String| {
+        let found = Channel::ALL.into_iter().find(|channel| channel.name() == name);
+        found.ok_or_else(|| {
+            let all = Channel::ALL.map(Channel::name).join(", ");
+            PyValueError::new_err(format!("aov {name:?} is not known, expected some of {all}"))
+        })
+    };
+    let channels: Vec<Channel> = names.iter().map(named).collect::<PyResult<_>>()?;
+    let (scene, camera) = (&scene.get().0, &*camera.0);
+    let mut raised = None;
+    let pictures = py
+        .detach(|| {
+            let work = |cancel: &_| observe(scene, camera, &channels, samples, seed, cancel);
+            watched(threads, work, || {
+                raised = Python::attach(|py| py.check_signals()).err();
+                raised.is_none()
+            })
+        })
+        .map_err(PyRuntimeError::new_err)?;
+    if let Some(raised) = raised {
+        return Err(raised);
+    }
+    let size = [camera.height() as usize, camera.width() as usize];
+    let array = |(channel, values): (&Channel, Vec<f64>)| match channel.width() {
+        1 => PyArray1::from_vec(py, values).reshape(&size[..]),
+        n => PyArray1::from_vec(py, values).reshape(&[size[0], size[1], n][..]),
+    };
+    channels.iter().zip(pictures).map(array).collect()
+}
+
+/// What a scene needs and which kernel shades it: the kernel's name, and rows of what, whether, and what follows.
+#[pyfunction]
+pub fn plan(scene: &Bound<'_, CompiledScene>) -> (&'static str, Vec<(&'static str, bool, &'static str)>) {
+    let plan = scene.get().0.plan();
+    (plan.kernel().name(), plan.rows())
+}

@@ -1,0 +1,108 @@
+//! Materials as the package describes them, read by attribute.
+
+use pyo3::exceptions::PyTypeError;
+use pyo3::prelude::*;
+use std::sync::Arc;
+
+use super::textures::{Cache, Textures};
+use crate::optics::conductors::METALS;
+use crate::scene::Material;
+use crate::scene::materials::{
+    BlinnPhongMaterial, BumpMap, ConductorMaterial, DielectricMaterial, DiffuseMaterial, Interior, Mask,
+    MetallicRoughMaterial, MirrorMaterial, MixMaterial, NormalMap, OrenNayarMaterial, PhongMaterial, PlasticMaterial,
+    Roughness, ThinDielectricMaterial, TwoSided,
+};
+use crate::scene::textures::Value;
+
+/// Reads materials and textures: one that many shapes share is read once.
+#[derive(Default)]
+pub struct Looks {
+    materials: Cache<Arc<dyn Material>>,
+    /// What materials and lights vary by.
+    pub textures: Textures,
+}
+
+impl Looks {
+    /// The material of a description.
+    ///
+    /// # Errors
+    /// A `TypeError` for what is none, and what reading its textures raises.
+    pub fn material(&self, given: &Bound<'_, PyAny>) -> PyResult<Arc<dyn Material>> {
+        self.materials.of(given, || self.read(given))
+    }
+
+    /// The material of a description, by the name of its class.
+    fn read(&self, given: &Bound<'_, PyAny>) -> PyResult<Arc<dyn Material>> {
+        let name = given.get_type().name()?;
+        let value = |name: &str| self.textures.attribute(given, name);
+        let float = |name: &str| given.getattr(name)?.extract::<f64>();
+        let inner = |name: &str| self.material(&given.getattr(name)?);
+        let roughness = || self.roughness(given);
+        Ok(match name.to_str()? {
+            "Diffuse" => Arc::new(DiffuseMaterial { reflectance: value("reflectance")? }),
+            "OrenNayar" => {
+                Arc::new(OrenNayarMaterial { reflectance: value("reflectance")?, roughness: value("roughness")? })
+            }
+            "Mirror" => Arc::new(MirrorMaterial { reflectance: value("reflectance")? }),
+            "Conductor" => Arc::new(ConductorMaterial { eta: value("eta")?, k: value("k")?, roughness: roughness()? }),
+            "Dielectric" => {
+                let interior = Interior { ior: float("ior")?, priority: given.getattr("priority")?.extract()? };
+                Arc::new(DielectricMaterial { interior, roughness: roughness()? })
+            }
+            "ThinDielectric" => Arc::new(ThinDielectricMaterial { ior: float("ior")? }),
+            "Plastic" => Arc::new(PlasticMaterial {
+                reflectance: value("reflectance")?,
+                ior: float("ior")?,
+                roughness: roughness()?,
+            }),
+            "Phong" => Arc::new(PhongMaterial {
+                diffuse: value("diffuse")?,
+                specular: value("specular")?,
+                exponent: value("exponent")?,
+                ambient: value("ambient")?,
+            }),
+            "BlinnPhong" => Arc::new(BlinnPhongMaterial {
+                diffuse: value("diffuse")?,
+                specular: value("specular")?,
+                exponent: value("exponent")?,
+                ambient: value("ambient")?,
+            }),
+            "MetallicRough" => Arc::new(MetallicRoughMaterial {
+                base_colour: value("base_color")?,
+                metallic: value("metallic")?,
+                roughness: value("roughness")?,
+            }),
+            "Mix" => Arc::new(MixMaterial { a: inner("a")?, b: inner("b")?, amount: value("amount")? }),
+            "Mask" => Arc::new(Mask { material: inner("material")?, opacity: value("opacity")? }),
+            "BumpMap" => {
+                Arc::new(BumpMap { material: inner("material")?, height: value("height")?, scale: float("scale")? })
+            }
+            "NormalMap" => {
+                Arc::new(NormalMap { material: inner("material")?, normals: value("normals")?, scale: float("scale")? })
+            }
+            "TwoSided" => Arc::new(TwoSided { front: inner("front")?, back: inner("back")? }),
+            other => return Err(PyTypeError::new_err(format!("material must be a raywright material, got {other}"))),
+        })
+    }
+
+    /// Roughness, or alpha where there is one, alike in all directions or of two.
+    fn roughness(&self, given: &Bound<'_, PyAny>) -> PyResult<Roughness> {
+        let alpha = given.getattr("alpha")?;
+        let is_alpha = !alpha.is_none();
+        let told = if is_alpha { alpha } else { given.getattr("roughness")? };
+        let along = match told.extract::<[Bound<'_, PyAny>; 2]>() {
+            Ok([u, v]) => [self.textures.value(&u)?, self.textures.value(&v)?],
+            Err(_) => {
+                let both: Value = self.textures.value(&told)?;
+                [both.clone(), both]
+            }
+        };
+        Ok(Roughness { along, is_alpha })
+    }
+}
+
+/// The metals that are known: symbol, name, and the real and the imaginary part of the index of refraction, in red, green and blue.
+#[pyfunction]
+pub fn metals() -> Vec<(&'static str, &'static str, [f64; 3], [f64; 3])> {
+    METALS.iter().map(|metal| (metal.symbol, metal.name, metal.eta.to_array(), metal.k.to_array())).collect()
+}

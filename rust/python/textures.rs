@@ -1,0 +1,239 @@
+//! Textures as the package describes them, read by attribute.
+
+use numpy::PyReadonlyArrayDyn;
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::prelude::*;
+use std::cell::RefCell;
+use std::collections::HashMap;
+use std::sync::Arc;
+
+use crate::optics::Rgb;
+use crate::scene::textures::{
+    Between, Checker, Domain, Fbm, Filter, ImageTexture, Marble, MixTexture, Noise, ObjectTransform, Octaves, Pattern,
+    Picture, ProductTexture, Stripes, Texels, Texture, UvTransform, Value, VertexColours, Wood, Wrap,
+};
+
+/// What has been made of an object, which stays alive beside it so that no other can have its address.
+struct Known<T> {
+    _object: Py<PyAny>,
+    made: T,
+}
+
+/// What has been made of objects, by their addresses: one that many share is read once.
+pub struct Cache<T>(RefCell<HashMap<usize, Known<T>>>);
+
+impl<T> Default for Cache<T> {
+    fn default() -> Self {
+        Self(RefCell::default())
+    }
+}
+
+impl<T: Clone> Cache<T> {
+    /// What has been made of an object before, or is made of it now.
+    ///
+    /// # Errors
+    /// If it cannot be made.
+    pub fn of(&self, object: &Bound<'_, PyAny>, make: impl FnOnce() -> PyResult<T>) -> PyResult<T> {
+        let address = object.as_ptr() as usize;
+        if let Some(known) = self.0.borrow().get(&address) {
+            return Ok(known.made.clone());
+        }
+        let made = make()?;
+        self.0.borrow_mut().insert(address, Known { _object: object.clone().unbind(), made: made.clone() });
+        Ok(made)
+    }
+}
+
+/// Reads textures.
+#[derive(Default)]
+pub struct Textures {
+    textures: Cache<Arc<dyn Texture>>,
+    /// Pictures by where their numbers are, which channel is taken, whether it is decoded, and whether there are smaller ones.
+    pictures: RefCell<HashMap<(usize, Option<usize>, bool, bool), Known<Arc<Picture>>>>,
+}
+
+/// `raywright.UvTransform` or `raywright.ObjectTransform`.
+#[derive(FromPyObject)]
+enum PyTransform {
+    #[pyo3(transparent)]
+    Uv(PyUvTransform),
+    #[pyo3(transparent)]
+    Object(PyObjectTransform),
+}
+
+/// `raywright.UvTransform`.
+#[derive(FromPyObject)]
+struct PyUvTransform {
+    matrix: [[f64; 3]; 2],
+}
+
+/// `raywright.ObjectTransform`.
+#[derive(FromPyObject)]
+struct PyObjectTransform {
+    matrix: [[f64; 4]; 3],
+}
+
+impl From<PyTransform> for Domain {
+    fn from(transform: PyTransform) -> Self {
+        match transform {
+            PyTransform::Uv(map) => Self::Uv(UvTransform(map.matrix)),
+            PyTransform::Object(map) => Self::Object(ObjectTransform(map.matrix)),
+        }
+    }
+}
+
+/// What all sums of noises have.
+#[derive(FromPyObject)]
+struct PyOctaves {
+    octaves: u32,
+    lacunarity: f64,
+    gain: f64,
+    seed: u32,
+}
+
+impl From<PyOctaves> for Octaves {
+    fn from(octaves: PyOctaves) -> Self {
+        let PyOctaves { octaves: count, lacunarity, gain, seed } = octaves;
+        Self { count, lacunarity, gain, seed }
+    }
+}
+
+/// `raywright.ImageTexture`.
+#[derive(FromPyObject)]
+struct PyImage<'py> {
+    image: Bound<'py, PyAny>,
+    channels: Vec<usize>,
+    decoded: bool,
+    filter: String,
+    wrap: [String; 2],
+    transform: PyUvTransform,
+}
+
+impl Textures {
+    /// A number, three of them, or a texture.
+    ///
+    /// # Errors
+    /// A `TypeError` for what is none of these, and what reading a texture raises.
+    pub fn value(&self, given: &Bound<'_, PyAny>) -> PyResult<Value> {
+        if let Ok(number) = given.extract::<f64>() {
+            return Ok(number.into());
+        }
+        if let Ok(colour) = given.extract::<[f64; 3]>() {
+            return Ok(Rgb::from_array(colour).into());
+        }
+        self.textures.of(given, || self.read(given)).map(Value::Texture)
+    }
+
+    /// An attribute that is a number, three of them, or a texture.
+    ///
+    /// # Errors
+    /// As [`Textures::value`].
+    pub fn attribute(&self, object: &Bound<'_, PyAny>, name: &str) -> PyResult<Value> {
+        self.value(&object.getattr(name)?)
+    }
+
+    /// The texture of a description, by the name of its class.
+    fn read(&self, given: &Bound<'_, PyAny>) -> PyResult<Arc<dyn Texture>> {
+        let name = given.get_type().name()?;
+        let domain = || given.getattr("transform")?.extract::<PyTransform>().map(Domain::from);
+        let octaves = || given.extract::<PyOctaves>().map(Octaves::from);
+        let float = |name: &str| given.getattr(name)?.extract::<f64>();
+        Ok(match name.to_str()? {
+            "Checker" => self.between(given, Checker(domain()?))?,
+            "Stripes" => self.between(given, Stripes { domain: domain()?, fraction: float("fraction")? })?,
+            "Noise" => {
+                let seed = given.getattr("seed")?.extract()?;
+                self.between(given, Noise { domain: domain()?, seed })?
+            }
+            "FBm" => self.between(given, Fbm { domain: domain()?, octaves: octaves()? })?,
+            "Marble" => {
+                let distortion = float("distortion")?;
+                self.between(given, Marble { domain: domain()?, distortion, octaves: octaves()? })?
+            }
+            "Wood" => {
+                let distortion = float("distortion")?;
+                self.between(given, Wood { domain: domain()?, distortion, octaves: octaves()? })?
+            }
+            "MixTexture" => {
+                let [a, b, amount] = [("a"), ("b"), ("amount")].map(|name| self.attribute(given, name));
+                Arc::new(MixTexture { a: a?, b: b?, amount: amount? })
+            }
+            "ProductTexture" => {
+                Arc::new(ProductTexture { a: self.attribute(given, "a")?, b: self.attribute(given, "b")? })
+            }
+            "VertexColors" => Arc::new(VertexColours),
+            "ImageTexture" => Arc::new(self.image(given.extract()?)?),
+            other => return Err(PyTypeError::new_err(format!("expected a number, 3 or a texture, got {other}"))),
+        })
+    }
+
+    fn between(&self, given: &Bound<'_, PyAny>, pattern: impl Pattern + 'static) -> PyResult<Arc<dyn Texture>> {
+        Ok(Arc::new(Between { a: self.attribute(given, "a")?, b: self.attribute(given, "b")?, pattern }))
+    }
+
+    fn image(&self, given: PyImage<'_>) -> PyResult<ImageTexture> {
+        let unknown = |what: &str| PyValueError::new_err(format!("{what} is no way to read an image"));
+        let filter = match given.filter.as_str() {
+            "nearest" => Filter::Nearest,
+            "bilinear" => Filter::Bilinear,
+            "trilinear" => Filter::Trilinear,
+            other => return Err(unknown(other)),
+        };
+        let wrap = |word: &str| match word {
+            "repeat" => Ok(Wrap::Repeat),
+            "clamp" => Ok(Wrap::Clamp),
+            "mirror" => Ok(Wrap::Mirror),
+            other => Err(unknown(other)),
+        };
+        let wrap = [wrap(&given.wrap[0])?, wrap(&given.wrap[1])?];
+        let one = match given.channels[..] {
+            [channel] => Some(channel),
+            _ => None,
+        };
+        let smaller = filter == Filter::Trilinear;
+        let key = (given.image.as_ptr() as usize, one, given.decoded, smaller);
+        let known = self.pictures.borrow().get(&key).map(|known| known.made.clone());
+        let picture = match known {
+            Some(picture) => picture,
+            None => {
+                let made = Arc::new(picture(&given.image, one, given.decoded, smaller)?);
+                let known = Known { _object: given.image.clone().unbind(), made: made.clone() };
+                self.pictures.borrow_mut().insert(key, known);
+                made
+            }
+        };
+        Ok(ImageTexture { picture, uv: UvTransform(given.transform.matrix), wrap, filter })
+    }
+}
+
+/// A picture of one channel of an (H, W, C) array, or of its first three.
+fn picture(image: &Bound<'_, PyAny>, one: Option<usize>, decoded: bool, smaller: bool) -> PyResult<Picture> {
+    fn taken<T: numpy::Element + Copy>(
+        array: &PyReadonlyArrayDyn<'_, T>,
+        one: Option<usize>,
+    ) -> PyResult<(usize, usize, Result<Vec<T>, Vec<[T; 3]>>)> {
+        use numpy::PyUntypedArrayMethods;
+        let &[height, width, count] = array.shape() else {
+            return Err(PyValueError::new_err(format!("image has shape {:?}, expected (H, W, C)", array.shape())));
+        };
+        let all = array.as_slice().map_err(|_| PyValueError::new_err("image must be C-contiguous"))?;
+        if one.unwrap_or(2) >= count {
+            return Err(PyValueError::new_err(format!("image has {count} channels, expected more")));
+        }
+        let rows = all.chunks_exact(count);
+        let texels = match one {
+            Some(channel) => Ok(rows.map(|texel| texel[channel]).collect()),
+            None => Err(rows.map(|texel| [texel[0], texel[1], texel[2]]).collect()),
+        };
+        Ok((width, height, texels))
+    }
+    let (width, height, texels) = if let Ok(bytes) = image.extract::<PyReadonlyArrayDyn<'_, u8>>() {
+        let (width, height, texels) = taken(&bytes, one)?;
+        let texels = texels.map_or_else(|all| Texels::Colour8(all, decoded), |all| Texels::Grey8(all, decoded));
+        (width, height, texels)
+    } else {
+        let (width, height, texels) = taken(&image.extract::<PyReadonlyArrayDyn<'_, f32>>()?, one)?;
+        (width, height, texels.map_or_else(Texels::Colour, Texels::Grey))
+    };
+    Picture::new(width, height, texels, smaller).map_err(|e| PyValueError::new_err(e.to_string()))
+}

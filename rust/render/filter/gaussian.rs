@@ -1,0 +1,38 @@
+//! The bell.
+
+use super::{Profile, length};
+
+/// A normal distribution, less its value at the radius, so that it ends without a step (Pharr, Jakob and Humphreys,
+/// "Physically Based Rendering", 4th edition, 2023, section 8.8.4).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Gaussian {
+    radius: f64,
+    sigma: f64,
+}
+
+impl Gaussian {
+    /// A bell of standard deviation `sigma`, cut off at `radius`.
+    pub fn new(radius: f64, sigma: f64) -> Result<Self, String> {
+        Ok(Self { radius: length("radius", radius)?, sigma: length("sigma", sigma)? })
+    }
+}
+
+impl Profile for Gaussian {
+    fn radius(&self) -> f64 {
+        self.radius.min(WHOLE * self.sigma)
+    }
+
+    fn evaluate(&self, x: f64) -> f64 {
+        let exponent = |x: f64| -0.5 * (x / self.sigma).powi(2);
+        let (here, end) = (exponent(x), exponent(self.radius));
+        if end < -0.5 * WHOLE * WHOLE {
+            here.exp()
+        } else {
+            // exp(here) − exp(end), keeping its digits where the bell is much wider than the radius.
+            end.exp() * (here - end).exp_m1()
+        }
+    }
+}
+
+/// So many standard deviations from its centre, a bell is less than rounding is at the centre.
+const WHOLE: f64 = 9.0;

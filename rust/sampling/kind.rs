@@ -1,0 +1,132 @@
+//! Which point set the numbers of a picture come from, and how large its batches are.
+
+use super::Sampler;
+
+/// How many consecutive samples of a pixel are placed with regard to each other: a power of two, at most 64.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct BatchSize(pub(super) u8);
+
+impl BatchSize {
+    /// Of the largest batch, the logarithm to base 2.
+    pub const MOST_BITS: u32 = 6;
+
+    /// Batches that a picture has at least, where it is known how many samples it takes: with fewer, the spread between
+    /// them tells little of a pixel's error.
+    const LEAST_BATCHES: u32 = 8;
+
+    /// A batch of so many samples: 1, 2, 4, ... 64; `None` for another number.
+    pub fn new(samples: u32) -> Option<Self> {
+        (samples.is_power_of_two() && samples.ilog2() <= Self::MOST_BITS).then(|| Self(samples.ilog2() as u8))
+    }
+
+    /// The largest batch of which so many samples make eight or more; the default where their number is not known.
+    ///
+    /// The larger, the smaller the error of as many samples: in a Cornell box of 64 samples a pixel, Sobol' batches of
+    /// 8, 16, 32 and 64 leave 0.67, 0.60, 0.53 and 0.48 of the relMSE of independent ones. Samples that are no multiple
+    /// of it are to be rounded up: part of a batch is unbiased too, but not worth as much.
+    pub fn for_budget(samples: Option<u32>) -> Self {
+        samples.map_or(Self::default(), |samples| {
+            let most = (samples / Self::LEAST_BATCHES).clamp(1, 1 << Self::MOST_BITS);
+            Self(most.ilog2() as u8)
+        })
+    }
+
+    /// The columns of a grid of as many cells, which has as many rows or half as many.
+    #[inline]
+    pub(super) fn halved(self) -> Self {
+        Self(self.0.div_ceil(2))
+    }
+
+    /// How many samples.
+    #[inline]
+    pub fn samples(self) -> u32 {
+        1 << self.0
+    }
+
+    /// The logarithm of the number of samples to base 2.
+    #[inline]
+    pub fn bits(self) -> u32 {
+        u32::from(self.0)
+    }
+}
+
+/// 16 samples.
+impl Default for BatchSize {
+    fn default() -> Self {
+        Self(4)
+    }
+}
+
+/// Which point set the numbers come from.
+///
+/// Every number of every sample is uniform by itself, and those of different dimensions are independent, whatever the
+/// kind: the mean of a picture over all seeds is the same. Kinds differ in how the samples of a batch lie to each other.
+/// A dimension takes its numbers from a set of two or three dimensions, and sets are put together at random ("padding"):
+/// Sobol's own points of many dimensions have worse pairs, and lose more by that than they win (5 % of the error in a
+/// Cornell box, in batches of 64).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum SamplerKind {
+    /// Independent random numbers.
+    #[default]
+    Independent,
+    /// A jittered grid whose rows and columns are stratified too.
+    Stratified(BatchSize),
+    /// Radical inverses in prime bases, scrambled.
+    Halton(BatchSize),
+    /// Sobol's nets, scrambled as Owen does.
+    Sobol(BatchSize),
+    /// Rank-1 lattices, shifted.
+    Lattice(BatchSize),
+}
+
+impl SamplerKind {
+    /// How many consecutive samples of a pixel belong together. Batches are independent of each other, so the spread
+    /// between them is an honest measure of the error; within a batch of a low-discrepancy set it would not be.
+    pub fn batch(self) -> u32 {
+        match self {
+            Self::Independent => 1,
+            Self::Stratified(size) | Self::Halton(size) | Self::Sobol(size) | Self::Lattice(size) => size.samples(),
+        }
+    }
+
+    /// The same kind, in batches for a number of samples a pixel, if that is known ([`BatchSize::for_budget`]).
+    pub fn with_budget(self, samples: Option<u32>) -> Self {
+        let size = BatchSize::for_budget(samples);
+        match self {
+            Self::Independent => Self::Independent,
+            Self::Stratified(_) => Self::Stratified(size),
+            Self::Halton(_) => Self::Halton(size),
+            Self::Sobol(_) => Self::Sobol(size),
+            Self::Lattice(_) => Self::Lattice(size),
+        }
+    }
+
+    /// The numbers of sample number `sample` of a pixel.
+    #[inline]
+    pub fn sampler(self, seed: u64, pixel: u32, sample: u32) -> Sampler {
+        Sampler::of_kind(self, seed, pixel, sample)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn batches_follow_from_the_samples_asked() {
+        let of = |samples| BatchSize::for_budget(Some(samples)).samples();
+        for (samples, batch) in
+            [(0, 1), (1, 1), (15, 1), (16, 2), (64, 8), (100, 8), (128, 16), (512, 64), (u32::MAX, 64)]
+        {
+            assert_eq!(of(samples), batch, "{samples}");
+        }
+        for samples in 8..2000u32 {
+            assert!(samples.div_ceil(of(samples)) >= 8);
+            assert!(samples.next_multiple_of(of(samples)) - samples <= samples / 8);
+        }
+        assert_eq!(SamplerKind::Sobol(BatchSize::default()).with_budget(None).batch(), 16);
+        assert_eq!(SamplerKind::Independent.with_budget(Some(64)).batch(), 1);
+        assert_eq!(BatchSize::new(64).map(BatchSize::samples), Some(64));
+        assert_eq!((BatchSize::new(0), BatchSize::new(12), BatchSize::new(128)), (None, None, None));
+    }
+}

@@ -1,0 +1,86 @@
+//! Scrambled nets in base 2.
+
+use super::BatchSize;
+use super::permutation::permute;
+use super::scramble::{scramble, scramble_short};
+use super::stream::Stream;
+
+/// A number of 64 bits for a dimension.
+///
+/// One at an even dimension is placed with the pair at the dimension that follows: a choice and what it chooses of make
+/// a (0, m, 3)-net together, so that the pairs of each half, quarter, ... of the choices are a net of their own.
+#[inline]
+pub(super) fn one(size: BatchSize, stream: Stream, index: u32, dimension: u32) -> u64 {
+    let index = permute(size, index, stream.word(dimension | 1, 2));
+    // Of a net of three, the third coordinate is the index itself, greatest bit first (Niederreiter, 1992, lemma 4.22).
+    let digits = if dimension.is_multiple_of(2) { index.reverse_bits().unbounded_shr(32 - size.bits()) } else { index };
+    scramble(digits, [stream.word(dimension, 0), stream.word(dimension, 1)])
+}
+
+/// Two numbers of 32 bits for a dimension: a point of the first two coordinates of Sobol's sequence (1967), a
+/// (0, m, 2)-net with every power of two of its points.
+#[inline]
+pub(super) fn two(size: BatchSize, stream: Stream, index: u32, dimension: u32) -> [u32; 2] {
+    let index = permute(size, index, stream.word(dimension, 2));
+    [scramble_short(index, stream.word(dimension, 0)), scramble_short(pascal(index), stream.word(dimension, 1))]
+}
+
+/// The digits of the second coordinate, least significant bit first: Pascal's triangle modulo 2 times those of the
+/// first, for indices below 2⁸.
+#[inline]
+fn pascal(index: u32) -> u32 {
+    let index = index ^ index >> 1 & 0x55;
+    let index = index ^ index >> 2 & 0x33;
+    index ^ index >> 4 & 0x0F
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sampling::{Sampler, SamplerKind};
+
+    #[test]
+    fn pascals_triangle_by_its_recurrence() {
+        let mut row = vec![1u32];
+        let mut triangle = Vec::new();
+        for _ in 0..8 {
+            triangle.push(row.clone());
+            let mut next = vec![1; row.len() + 1];
+            for k in 1..row.len() {
+                next[k] = row[k - 1] + row[k];
+            }
+            row = next;
+        }
+        for index in 0..256u32 {
+            let digits =
+                (0..8).map(|k| ((k..8).map(|j| triangle[j][k] * (index >> j & 1)).sum::<u32>() % 2) << k).sum();
+            assert_eq!(pascal(index), digits);
+        }
+    }
+
+    #[test]
+    fn every_elementary_interval_holds_one_point() {
+        for bits in 0..=BatchSize::MOST_BITS {
+            let kind = SamplerKind::Sobol(BatchSize::new(1 << bits).unwrap());
+            for (pixel, dimension) in [(0, 1), (1, 5), (2, 0), (3, 4), (4, 4_000_001)] {
+                let points: Vec<Sampler> = (0..1 << bits).map(|i| kind.sampler(8, pixel, (3 << bits) + i)).collect();
+                for across in 0..=bits {
+                    for down in 0..=bits - across {
+                        let mut seen = vec![0; 1 << bits];
+                        for sampler in &points {
+                            let [x, y] = sampler.clone().two(dimension);
+                            // Choices only stand before odd dimensions.
+                            let z = if dimension % 2 == 1 { sampler.clone().one(dimension - 1) } else { 0.0 };
+                            let deep = if dimension % 2 == 1 { bits - across - down } else { 0 };
+                            let cell = |u: f64, bits: u32| (u * f64::from(1u32 << bits)) as usize;
+                            let place = (cell(x, across) << down | cell(y, down)) << deep | cell(z, deep);
+                            seen[place] += 1;
+                        }
+                        let cells = if dimension % 2 == 1 { 1 << bits } else { 1 << (across + down) };
+                        assert!(seen[..cells].iter().all(|&n| n == (1 << bits) / cells), "{bits} {across} {down}");
+                    }
+                }
+            }
+        }
+    }
+}

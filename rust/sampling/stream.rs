@@ -1,0 +1,79 @@
+//! The random numbers that a batch of samples is placed by.
+
+use super::philox4x32;
+
+/// Random words for one batch of samples of one pixel, the same for each of its samples.
+///
+/// They are the SplitMix64 sequence (Steele, Lea and Flood, "Fast Splittable Pseudorandom Number Generators", 2014; constants of Stafford's
+/// thirteenth variant), begun at a random place and with a random key in the midst of it, so that no two batches share a part of it. Two
+/// multiplications a word make numbers from a net cost no more than independent ones.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Stream {
+    start: u64,
+    key: u64,
+}
+
+impl Stream {
+    /// The block of Philox numbers that starts a stream: one that no dimension of independent numbers has.
+    #[inline]
+    pub fn words(key: [u32; 2], pixel: u32, batch: u32) -> [u32; 4] {
+        philox4x32([0, batch, pixel, 1], key)
+    }
+
+    /// The stream that starts from such words.
+    #[inline]
+    pub fn new(words: [u32; 4]) -> Self {
+        let [a, b, c, d] = words.map(u64::from);
+        Self { start: a << 32 | b, key: c << 32 | d }
+    }
+
+    /// Word number 0 to 3 of a dimension.
+    #[inline]
+    pub fn word(self, dimension: u32, number: u32) -> u64 {
+        self.mixed(u64::from(dimension) << 2 | u64::from(number))
+    }
+
+    /// A word that belongs to one sample of the batch, or to any other number below 2²⁸, and to word 0 to 3 of a
+    /// dimension.
+    #[inline]
+    pub fn word_of(self, sample: u32, dimension: u32, number: u32) -> u64 {
+        self.mixed(u64::from(sample + 1) << 34 | u64::from(dimension) << 2 | u64::from(number))
+    }
+
+    #[inline]
+    fn mixed(self, number: u64) -> u64 {
+        let mut z = self.start.wrapping_add(number.wrapping_mul(0x9E37_79B9_7F4A_7C15));
+        z = (z ^ z >> 30).wrapping_mul(0xBF58_476D_1CE4_E5B9) ^ self.key;
+        z = (z ^ z >> 27).wrapping_mul(0x94D0_49BB_1331_11EB);
+        z ^ z >> 31
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::chi_square::assert_frequencies;
+    use super::*;
+
+    #[test]
+    fn words_are_uniform_and_neighbours_independent() {
+        // Neighbours along each part of the name: batch, dimension, number, sample.
+        let word = |i: u32, axis: u32| {
+            let stream = Stream::new(Stream::words([9, 0], 4, if axis == 0 { i } else { 0 }));
+            match axis {
+                0 | 1 => stream.word(if axis == 1 { i } else { 0 }, 2),
+                2 => stream.word(i / 4, i % 4),
+                _ => stream.word_of(i, 3, 0),
+            }
+        };
+        for axis in 0..4 {
+            for (first, second) in [(60, 60), (0, 0), (30, 30), (0, 60)] {
+                let mut pairs = vec![0; 256];
+                for i in 0..100_000 {
+                    let [a, b] = [(i, first), (i + 1, second)].map(|(i, low)| (word(i, axis) >> low & 15) as usize);
+                    pairs[a * 16 + b] += 1;
+                }
+                assert_frequencies(&pairs, &[1.0 / 256.0; 256]);
+            }
+        }
+    }
+}

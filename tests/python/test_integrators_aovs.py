@@ -1,0 +1,68 @@
+"""What is seen first, against the rays that see it."""
+
+import numpy as np
+import pytest
+
+import raywright as rw
+
+
+@pytest.fixture(scope="module")
+def room():
+    return rw.scenes.cornell_box(width=24, height=16)
+
+
+def test_numbers_are_those_of_the_rays_through_the_middles(room):
+    scene, camera = room
+    hits = scene.intersect(*camera.rays())
+    seen = rw.aovs(scene, camera, ("shape_id", "primitive"), samples=1)
+    np.testing.assert_array_equal(seen["shape_id"], hits.shape_id)
+    np.testing.assert_array_equal(seen["primitive"], hits.primitive)
+    assert seen["shape_id"].dtype == np.int32
+
+
+def test_means_tend_to_what_fine_rays_see(room):
+    scene, camera = room
+    seen = rw.aovs(scene, camera, samples=64)
+    assert set(seen) == set(rw.AOVS)
+    hits = scene.intersect(*camera.rays())
+    # Over a pixel of the wall that faces the camera, the depth hardly changes; a few have others in them too.
+    hit = hits.hit
+    back = hit & (hits.normal[..., 2] == -1) & (hits.position[..., 2] > 559)
+    assert back.sum() > 30
+    depth = np.abs(seen["depth"][back] / hits.t[back] - 1)
+    assert np.median(depth) < 2e-3
+    lengths = np.linalg.norm(seen["normal"], axis=-1)
+    assert lengths.max() < 1 + 1e-6
+    assert np.median(lengths[hit]) > 1 - 1e-6
+    assert not seen["motion"].any()
+    np.testing.assert_array_equal(seen["normal"], seen["shading_normal"])
+    assert seen["albedo"].min() >= 0
+    assert seen["albedo"].max() <= 1
+    for array in seen.values():
+        assert not array.flags.writeable
+        assert array.shape[:2] == (16, 24)
+
+
+def test_nothing_is_told_as_such():
+    camera = rw.Camera((0, 0, 5), (0, 0, 9), width=3, height=2)
+    seen = rw.aovs(rw.Scene(rw.Sphere((0, 0, 0), 1)), camera)
+    assert (seen["depth"] == np.inf).all()
+    assert (seen["shape_id"] == -1).all()
+    assert not seen["albedo"].any()
+
+
+def test_motion_is_what_instances_do():
+    ball = rw.Sphere((0, 0, 0), 1)
+    start, end = np.eye(4), np.eye(4)
+    end[:3, 3] = (0.1, -0.2, 0.3)
+    scene = rw.Scene(rw.Instance(ball, start, end))
+    camera = rw.Camera((0, 0, 5), (0, 0, 0), fov=5, width=4, height=4)
+    motion = rw.aovs(scene, camera, "motion", samples=4)["motion"]
+    np.testing.assert_allclose(motion, np.broadcast_to([0.1, -0.2, 0.3], motion.shape), atol=1e-6)
+
+
+def test_unknown_names_are_refused(room):
+    with pytest.raises(ValueError, match=r"aov 'height' is not known, expected some of depth, "):
+        rw.aovs(*room, "height")
+    with pytest.raises(TypeError, match="aov must be names, got 7"):
+        rw.aovs(*room, ["depth", 7])

@@ -1,0 +1,125 @@
+"""Error against run time, told: tables, slopes, and what is refused."""
+
+import csv
+import io
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from PIL import Image as Pillow
+
+import raywright as rw
+from raywright.report.convergence import LEVELS
+
+SCENE, CAMERA = rw.scenes.cornell_box(width=24, height=24)
+
+
+@pytest.fixture(scope="module")
+def report():
+    reference = rw.render(SCENE, CAMERA, samples=4000, seed=10**9, progress=False)
+    ways = {"path": rw.Path(), "adaptive": {"adaptive": True}}
+    return rw.report.convergence(SCENE, CAMERA, ways, 0.4, reference, seeds=2)
+
+
+def test_there_is_a_row_for_each_contender_and_budget(report):
+    assert len(report.rows) == 2 * LEVELS
+    for name in ("path", "adaptive"):
+        mine = report.where(contender=name)
+        assert mine.column("budget") == tuple(0.4 / 2**k for k in reversed(range(LEVELS)))
+        samples = mine.column("samples")
+        assert list(samples) == sorted(samples)
+        for seconds, error, product in zip(
+            mine.column("seconds"), mine.column("relmse"), mine.column("error_seconds"), strict=True
+        ):
+            assert product == pytest.approx(seconds * error)
+
+
+def test_errors_are_those_of_the_samples(report):
+    # Path tracing with independent samples has relMSE = c / samples: c from each of the later budgets agrees.
+    mine = report.where(contender="path")
+    products = np.array(mine.column("relmse"))[2:] * np.array(mine.column("samples"))[2:]
+    assert products.max() < 1.6 * products.min()
+    assert np.log(np.array(mine.column("ratio")[2:])) == pytest.approx(0, abs=0.4)
+
+
+def test_slopes_are_fitted_by_least_squares():
+    columns = [
+        (f"{name}", s, s, 1, e * s**-p, None, e * s ** (1 - p))
+        for name, e, p in (("a", 0.5, 1.0), ("b", 0.1, 1.5))
+        for s in (1.0, 2.0, 4.0)
+    ]
+    made = rw.report.convergence.__globals__["_report"](CAMERA, columns, ["a", "b"], 1, True, 0.0)
+    (a, b) = made.fits
+    assert (a.slope, a.level, a.gain) == pytest.approx((-1.0, 0.5, 1.0))
+    # Products 0.5 each, and 0.1 / (1, 2, 4) ** 0.5, whose geometric mean is 0.1 / 2 ** 0.5.
+    assert (b.slope, b.level, b.gain) == pytest.approx((-1.5, 0.1, 5 * 2**0.5))
+
+
+def test_without_a_reference_errors_are_estimates():
+    report = rw.report.convergence(SCENE, CAMERA, {"path": rw.Path()}, 0.1, seeds=[7])
+    assert set(report.column("ratio")) == {None}
+    assert report.notes[0] == "relMSE: as estimated by the renders themselves, the mean over one seed."
+
+
+def test_a_reference_can_be_made_or_given_as_numbers():
+    made = rw.report.convergence(SCENE, CAMERA, {"path": {}}, 0.05, 0.5, seeds=1)
+    assert any("reference's own relMSE" in note for note in made.notes)
+    given = rw.report.convergence(SCENE, CAMERA, {"path": {}}, 0.05, np.zeros((24, 24, 3)), seeds=1)
+    # Against black, relMSE is the mean square over 0.01.
+    image = rw.render(SCENE, CAMERA, samples=64, progress=False)
+    assert given.column("relmse")[-1] == pytest.approx(np.mean(np.square(image.rgb)) / 0.01, rel=0.5)
+
+
+def test_plot_has_a_line_for_each_fit(report):
+    pytest.importorskip("matplotlib").use("Agg")
+    ax = report.plot()
+    dashed = [line for line in ax.get_lines() if line.get_linestyle() == "--"]
+    assert len(dashed) == 2
+    for fit, line in zip(report.fits, dashed, strict=True):
+        seconds, errors = line.get_data()
+        assert np.allclose(errors, fit.level * seconds**fit.slope)
+    told = [text.get_text() for text in ax.get_legend().get_texts()]
+    assert told[0] == f"path (slope {report.fits[0].slope:.2f})"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "error", "message"),
+    [
+        ({"contenders": {}}, ValueError, "contenders are empty"),
+        ({"contenders": [rw.Path()]}, TypeError, "contenders must be a dict, got list"),
+        (
+            {"contenders": {"a": {"samples": 3}}},
+            ValueError,
+            r"contenders\['a'\] has 'samples'; expected some of",
+        ),
+        ({"contenders": {"a": 3}}, TypeError, "integrator must be"),
+        ({"seconds": 0}, ValueError, "seconds must be greater than 0"),
+        ({"seeds": 0}, ValueError, "seeds must be between 1"),
+        ({"seeds": []}, ValueError, "seeds are empty"),
+        ({"reference": np.zeros((2, 2, 3))}, ValueError, r"reference must have shape \(24, 24, 3\)"),
+        ({"reference": np.full((24, 24, 3), np.nan)}, ValueError, "reference must be finite"),
+    ],
+)
+def test_bad_arguments_are_refused_in_one_line(arguments, error, message):
+    with pytest.raises(error, match=message) as caught:
+        rw.report.convergence(SCENE, CAMERA, **arguments)
+    assert "\n" not in str(caught.value)
+
+
+def test_the_shell_has_it(tmp_path):
+    command = [sys.executable, "-m", "raywright", "report", "convergence", "cornell"]
+    quick = ["--width", "16", "--height", "16", "--seconds", "0.05", "--seeds", "1"]
+    done = subprocess.run([*command, *quick, "--csv"], capture_output=True, text=True, timeout=60)
+    assert (done.returncode, done.stderr) == (0, "")
+    rows = list(csv.DictReader(io.StringIO(done.stdout)))
+    assert [row["contender"] for row in rows] == ["path"] * LEVELS + ["path, adaptive"] * LEVELS
+    pytest.importorskip("matplotlib")
+    plot = ["--plot", str(tmp_path / "plot.png")]
+    done = subprocess.run([*command, *quick, *plot], capture_output=True, text=True, timeout=60)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout.startswith("Error against run time, 16 x 16 pixels\n")
+    with Pillow.open(tmp_path / "plot.png") as picture:
+        assert min(picture.size) > 300
+    done = subprocess.run([*command[:-1], "gone.ply"], capture_output=True, text=True, timeout=60)
+    assert (done.returncode, done.stderr) == (1, "raywright: error: gone.ply: no such file\n")
