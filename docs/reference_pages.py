@@ -5,6 +5,7 @@ docstring heads the page; modules among the names have pages of their own. So a 
 """
 
 import inspect
+import sys
 from collections import defaultdict
 from importlib import import_module
 from pathlib import Path
@@ -19,6 +20,7 @@ _APART = {"trimesh_ray": trimesh_ray}
 # Where members of a class come from that is not the package's own business.
 _STRANGERS = "tuple, dict, object, Exception, ABC, Generic"
 _CORE = "the core"
+_HEADINGS = {"aovs": "What is seen first", "io": "Files", "rng": "Random numbers"}
 
 
 def parts() -> dict[str, tuple[str, str, list[str]]]:
@@ -31,17 +33,22 @@ def parts() -> dict[str, tuple[str, str, list[str]]]:
             names = [f"{value.__name__}.{one}" for one in value.__all__]
             found[name] = (f"raywright.{name}", _text(value), names)
         else:
-            grouped[_home(value)].append(f"raywright.{name}")
+            grouped[_home(name, value)].append(f"raywright.{name}")
     for home, names in grouped.items():
         module = None if home == _CORE else import_module(f"raywright.{home}")
-        heading = home.replace("_", " ").capitalize()
+        heading = _HEADINGS.get(home, home.replace("_", " ").capitalize())
         found[f"about_{home.replace(' ', '_')}"] = (heading, _text(module), names)
     return found
 
 
-def _home(value: Any) -> str:
+def _home(name: str, value: Any) -> str:
     """Return the first module under the package that a thing comes from."""
-    names = str(getattr(value, "__module__", "")).split(".")
+    origin = getattr(value, "__module__", None)
+    if origin is None:
+        # Constants do not know where they come from: it is the module that has them and has the longest name.
+        having = (path for path, module in sys.modules.items() if vars(module).get(name) is value)
+        origin = max((path for path in having if path.startswith("raywright.")), key=len, default="")
+    names = origin.split(".")
     return names[1] if names[0] == "raywright" and len(names) > 1 and names[1] != "_core" else _CORE
 
 
@@ -58,7 +65,7 @@ def _entry(name: str) -> str:
     elif inspect.isroutine(value):
         lines += [f".. autofunction:: {name}"]
     else:
-        lines += [f".. autodata:: {name}", "   :no-value:"]
+        lines += [f".. autodata:: {name}"]
     return "\n".join([*lines, ""])
 
 
