@@ -53,7 +53,9 @@ def _home(name: str, value: Any) -> str:
 
 
 def _text(module: ModuleType | None) -> str:
-    return (inspect.getdoc(module) or "") if module else "What the compiled part of the package says of itself."
+    if module is None:
+        return "What the compiled part of the package says of itself."
+    return inspect.getdoc(module) or ""
 
 
 def _entry(name: str) -> str:
@@ -84,7 +86,8 @@ def write(folder: Path) -> None:
     index = [_underlined("Reference", "="), "Everything public, part by part, from its docstrings.", ""]
     for file, (_, _, names) in sorted(pages.items(), key=lambda page: page[1][0].removeprefix("raywright.")):
         index.append(f":doc:`{file}`")
-        index.append("    " + ", ".join(f":py:obj:`{name.rpartition('.')[2]} <{name}>`" for name in names) + "\n")
+        links = (f":py:obj:`{name.rpartition('.')[2]} <{name}>`" for name in names)
+        index.append(f"    {', '.join(links)}\n")
     index += [".. toctree::", "   :hidden:", "", *(f"   {file}" for file in sorted(pages))]
     texts["index"] = "\n".join([*index, ""])
     for old in folder.glob("*.rst"):

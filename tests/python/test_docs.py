@@ -1,8 +1,8 @@
 """What the pages under docs/ say is so: their Python is run, page by page, and what they claim is checked.
 
-Blocks of a page are run in order, in one namespace, in an empty folder. A block after ``<!-- shown -->`` is not:
-it is for packages that are not installed here. A comment that begins with ``<!-- check`` holds assertions about
-what stands before it; readers do not see them.
+Blocks of a page are run in order, in one namespace, in an empty folder. A block after ``<!-- shown -->`` is
+not: it is for packages that are not installed here. A comment that begins with ``<!-- check`` holds what must
+be so after the blocks before it; readers do not see it.
 """
 
 import re
@@ -23,7 +23,7 @@ BLOCK = re.compile(
 
 
 def blocks(text):
-    """Yield code with so many empty lines before it that its lines have the numbers that they have in the page."""
+    """Yield code below so many empty lines that its lines have the numbers of the page."""
     for found in BLOCK.finditer(text):
         name = found.lastgroup
         if name:
@@ -40,7 +40,8 @@ def test_page_is_true(page, tmp_path, monkeypatch):
 
 
 def test_blocks_are_found_and_keep_their_lines():
-    text = "a\n```python\nx = 1\n```\n<!-- shown -->\n```python\nimport open3d\n```\n<!-- check\nassert x\n-->\n"
+    shown = "<!-- shown -->\n```python\nimport open3d\n```\n"
+    text = f"a\n```python\nx = 1\n```\n{shown}<!-- check\nassert x\n-->\n"
     found = list(blocks(text))
     assert [code.strip() for code in found] == ["x = 1", "assert x"]
     assert [code.count("\n", 0, code.index(code.strip())) for code in found] == [2, 9]
