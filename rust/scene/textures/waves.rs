@@ -9,7 +9,7 @@ pub(super) fn pulse(x: f64, width: f64, fraction: f64) -> f64 {
     // What is left of the width after rounding; where an interval ends within a piece, shares are exact then.
     let width = high - low;
     let first = x - x.floor();
-    if !(width > 0.0) {
+    if width <= 0.0 {
         return if first < fraction { 1.0 } else { 0.0 };
     }
     let whole = (high.floor() - low.floor()) * fraction;
@@ -23,7 +23,7 @@ pub(super) fn pulse(x: f64, width: f64, fraction: f64) -> f64 {
 pub(super) fn ramp(x: f64, width: f64, rise: f64) -> f64 {
     let at = |f: f64| if f < rise { f / rise } else { (1.0 - f) / (1.0 - rise) };
     // Below this, the mean differs from the middle's value by less than 1e-6 / min(rise, 1 − rise), and its quotient loses digits.
-    if !(width > 1e-6) {
+    if width <= 1e-6 {
         return at(x - x.floor());
     }
     let (low, high) = (x - 0.5 * width, x + 0.5 * width);
