@@ -88,7 +88,9 @@ impl Scatter for Coated {
         let share = self.share(reflectance);
         let coat = choice() < share;
         let mut wi = match &self.ggx {
-            None if coat => return Some(BsdfSample::delta(mirrored(wo), Rgb::splat(reflectance / share))),
+            None if coat => {
+                return Some(BsdfSample::delta(mirrored(wo), Rgb::splat(reflectance / share)));
+            }
             Some(ggx) if coat => ggx.sample_reflection(up, u),
             _ => diffuse(up, u),
         };

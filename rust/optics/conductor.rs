@@ -1,7 +1,7 @@
 //! Metals.
 
 use super::albedo::{mirror_loss, mirror_loss_average};
-use super::lobes::diffuse;
+use super::lobes::{grazing, grazing_pdf};
 use super::mirror::mirrored;
 use super::{BsdfSample, Ggx, Rgb, Scatter, fresnel};
 use glam::DVec3;
@@ -67,7 +67,9 @@ pub(super) fn half(wo: DVec3, wi: DVec3) -> (DVec3, f64) {
 impl Scatter for Conductor {
     #[inline]
     fn evaluate(&self, wo: DVec3, wi: DVec3) -> Rgb {
-        let Some(rough) = &self.rough else { return Rgb::ZERO };
+        let Some(rough) = &self.rough else {
+            return Rgb::ZERO;
+        };
         if !Ggx::sees(wo) || !Ggx::sees(wi) || wo.z * wi.z <= 0.0 {
             return Rgb::ZERO;
         }
@@ -86,7 +88,7 @@ impl Scatter for Conductor {
         }
         let (wo, wi) = (above(wo), above(wi));
         let lost = mirror_loss(&rough.ggx, wo);
-        (1.0 - lost) * rough.ggx.reflected_pdf(wo, half(wo, wi).0) + lost * wi.z * FRAC_1_PI
+        (1.0 - lost) * rough.ggx.reflected_pdf(wo, half(wo, wi).0) + lost * grazing_pdf(rough.ggx.mean_alpha(), wi.z)
     }
 
     #[inline]
@@ -99,7 +101,8 @@ impl Scatter for Conductor {
         };
         let up = above(wo);
         let lost = mirror_loss(&rough.ggx, up);
-        let mut wi = if choice() < lost { diffuse(up, u) } else { rough.ggx.sample_reflection(up, u) };
+        let mut wi =
+            if choice() < lost { grazing(rough.ggx.mean_alpha(), u) } else { rough.ggx.sample_reflection(up, u) };
         if wi.z <= 0.0 {
             return None;
         }

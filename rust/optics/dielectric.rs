@@ -2,12 +2,12 @@
 
 use super::albedo::Interface;
 use super::conductor::{above, half};
-use super::lobes::diffuse;
+use super::lobes::{grazing, grazing_pdf};
 use super::mirror::mirrored;
 use super::{BsdfSample, Ggx, Rgb, Scatter, fresnel};
 use glam::DVec3;
 
-/// A dielectric interface, smooth or with GGX microfacets (Walter et al., "Microfacet Models for Refraction through Rough
+/// A dielectric interface, smooth or with isotropic GGX microfacets (Walter et al., "Microfacet Models for Refraction through Rough
 /// Surfaces", 2007), which reflects and refracts and loses nothing.
 ///
 /// A refraction that starts at a facet seen from one side is taken to get out where the facet is seen from the other,
@@ -32,11 +32,17 @@ impl Dielectric {
     /// then counts as smooth: Fresnel's reflection is all that can be told.
     const INVISIBLE: f64 = 1e-6;
 
-    /// Of the index of refraction below the surface over that above, `eta` > 0, and the roughness along x and y, 0 to 1.
+    /// Of the index of refraction below the surface over that above, `eta` > 0, and the roughness, 0 to 1.
     /// Below [`Ggx::SMOOTH`], or with `eta` within 10⁻⁶ of 1, directions are single.
-    pub fn new(eta: f64, alpha: [f64; 2]) -> Self {
-        let ggx = if (eta - 1.0).abs() < Self::INVISIBLE { None } else { Ggx::rough(alpha) };
-        Self { eta, rough: ggx.map(|ggx| Rough { ggx, interface: Interface::new(ggx, eta) }) }
+    pub fn new(eta: f64, alpha: f64) -> Self {
+        let ggx = if (eta - 1.0).abs() < Self::INVISIBLE { None } else { Ggx::rough([alpha; 2]) };
+        Self { eta, rough: ggx.map(|ggx| Rough { ggx, interface: Interface::new(ggx.mean_alpha(), eta) }) }
+    }
+
+    /// The index below over the index above.
+    #[inline]
+    pub fn eta(&self) -> f64 {
+        self.eta
     }
 
     /// The index beyond the surface over that on the side of `w`.
@@ -90,7 +96,8 @@ impl Dielectric {
             rough.interface.given_back(lost, wo, wi) / if wo.z * wi.z < 0.0 { self.beyond(wo).powi(2) } else { 1.0 };
         let crossing = rough.interface.crossing(wo);
         let share = if wo.z * wi.z < 0.0 { crossing } else { 1.0 - crossing };
-        (value + back, (1.0 - lost) * pdf + lost * share * wi.z.abs() * std::f64::consts::FRAC_1_PI)
+        let scale = rough.interface.scale(wi);
+        (value + back, (1.0 - lost) * pdf + lost * share * grazing_pdf(scale, wi.z.abs()))
     }
 
     #[inline]
@@ -108,9 +115,11 @@ impl Dielectric {
         let lost = rough.interface.loss(wo);
         let eta = self.beyond(wo);
         let (wi, single) = if choice < lost {
-            let mut wi = diffuse(wo, u);
-            if choice < lost * rough.interface.crossing(wo) {
-                wi.z = -wi.z;
+            let side = if choice < lost * rough.interface.crossing(wo) { -wo.z.signum() } else { wo.z.signum() };
+            let scale = rough.interface.scale(DVec3::new(0.0, 0.0, side));
+            let wi = grazing(scale, u) * DVec3::new(1.0, 1.0, side);
+            if !Ggx::sees(wi) {
+                return None;
             }
             (wi, self.single(rough, wo, wi))
         } else {
@@ -120,7 +129,14 @@ impl Dielectric {
             let o = wo.dot(h);
             if choice < fresnel::dielectric(o, eta) {
                 let wi = h * (2.0 * o) - wo;
-                (wi, if wi.z * wo.z > 0.0 { self.single(rough, wo, wi) } else { return None })
+                (
+                    wi,
+                    if wi.z * wo.z > 0.0 {
+                        self.single(rough, wo, wi)
+                    } else {
+                        return None;
+                    },
+                )
             } else {
                 let wi = fresnel::refract(wo, h, eta)?;
                 if wi.z * wo.z >= 0.0 || !Ggx::sees(wi) {

@@ -50,8 +50,8 @@ pub fn dielectric_average(eta: f64) -> f64 {
         return (n - 1.0) * (n + 1.0) / 6.0;
     }
     if n > 1e4 {
-        // All but the transmitted 8 / (3η), to the first order, with powers of η out of the way.
-        return 1.0 - 8.0 / (3.0 * n);
+        // All but 16 / (3η), to the first order, with powers of η out of the way.
+        return 1.0 - 16.0 / (3.0 * n);
     }
     let (n2, n4) = (n * n, n * n * n * n);
     let plus = n2 + 1.0;
@@ -92,7 +92,7 @@ pub fn conductor_average(eta: Rgb, k: Rgb) -> Rgb {
 const GAUSS_COSINE: [(f64, f64); 4] = [
     (0.139_759_864_343_780_57, 0.062_361_941_900_016_116),
     (0.416_409_567_631_083_17, 0.259_695_095_216_464_94),
-    (0.723_156_986_361_876_2, 0.406_929_136_020_543_0),
+    (0.723_156_986_361_876_2, 0.406_929_136_020_543),
     (0.942_895_803_885_482_3, 0.271_013_826_862_976_04),
 ];
 
@@ -109,4 +109,94 @@ pub fn schlick_weight(cosine: f64) -> f64 {
 #[inline]
 pub fn schlick(cosine: f64, f0: Rgb) -> Rgb {
     f0 + (Rgb::ONE - f0) * schlick_weight(cosine)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn glass_reflects_as_in_born_and_wolf() {
+        // n = 1.5 by Fresnel's equations, from outside and from within.
+        let truths = [(0.0, 0.04), (30.0, 0.041522626), (45.0, 0.050239911), (56.309932474, 0.073964497)];
+        let grazing = [(60.0, 0.089186713), (75.0, 0.253060563), (85.0, 0.612799645), (89.99, 0.998985895)];
+        for (degrees, truth) in truths.into_iter().chain(grazing) {
+            assert!((dielectric(f64::to_radians(degrees).cos(), 1.5) - truth).abs() < 1e-9, "{degrees}");
+        }
+        for (degrees, truth) in
+            [(0.0, 0.04), (30.0, 0.055190167), (41.0, 0.379751266), (41.8, 0.890771921), (42.0, 1.0)]
+        {
+            assert!((dielectric(f64::to_radians(degrees).cos(), 1.0 / 1.5) - truth).abs() < 2e-9, "{degrees}");
+        }
+    }
+
+    #[test]
+    fn keeps_its_digits_near_index_one_and_at_the_critical_angle() {
+        // At normal incidence ((η − 1) / (η + 1))².
+        for less in [1e-3f64, 1e-7, 1e-12] {
+            let eta = 1.0 + less;
+            let truth = ((eta - 1.0) / (eta + 1.0)).powi(2);
+            assert!((dielectric(1.0, eta) / truth - 1.0).abs() < 1e-13);
+        }
+        for cosine in [0.0, 1e-300, 0.5, 1.0] {
+            assert_eq!(dielectric(cosine, 1.0), 0.0);
+        }
+        for eta in [1.0f64 + 1e-7, 1.5, 10.0] {
+            let critical = ((eta - 1.0) * (eta + 1.0)).sqrt() / eta;
+            for near in [critical.next_down(), critical, critical.next_up()] {
+                // 1 − F goes as the root of the distance.
+                assert!((dielectric(near, 1.0 / eta) - 1.0).abs() < 1e-3);
+            }
+            assert_eq!(dielectric(critical * 0.99, 1.0 / eta), 1.0);
+        }
+    }
+
+    #[test]
+    fn both_ways_reflect_alike() {
+        // What arrives at θ and what arrives at the refracted angle from the other side (Stokes, 1849).
+        for eta in [1.0 + 1e-9, 1.3, 4.0] {
+            for cosine in [1e-6, 0.1, 0.7, 1.0f64] {
+                let wo = DVec3::new((1.0 - cosine * cosine).sqrt(), 0.0, cosine);
+                let wi = refract(wo, DVec3::Z, eta).unwrap();
+                assert!((wi.length() - 1.0).abs() < 1e-15 && (wo.x + eta * wi.x).abs() < 1e-15);
+                let (one, two) = (dielectric(cosine, eta), dielectric(-wi.z, 1.0 / eta));
+                assert!((one / two - 1.0).abs() < 1e-6, "{one} {two}");
+            }
+        }
+        assert!((refract(DVec3::new(0.5, 0.0, 0.75f64.sqrt()), DVec3::Z, 1.5).unwrap().x + 1.0 / 3.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn averages_are_the_integrals() {
+        // Walsh's and Duntley's value for 1.5.
+        assert!((dielectric_average(1.5) - 0.09177795934235121).abs() < 1e-12);
+        for eta in [1.0 + 1e-8, 1.00005, 1.0002, 1.01, 1.33, 3.0, 50.0, 2e4] {
+            // Midpoints in t, μ = t³: where an index near 1 reflects, there are many.
+            let steps = 200_000;
+            let mean: f64 = (0..steps)
+                .map(|i| {
+                    let t = (f64::from(i) + 0.5) / f64::from(steps);
+                    6.0 * t.powi(5) * dielectric(t.powi(3), eta) / f64::from(steps)
+                })
+                .sum();
+            let bound = if eta < 1.001 { 2e-3 } else { 2e-7 };
+            assert!((dielectric_average(eta) / mean - 1.0).abs() < bound, "{eta} {mean} {}", dielectric_average(eta));
+            let within = 1.0 - (1.0 - mean) / (eta * eta);
+            assert!((dielectric_average(1.0 / eta) - within).abs() < 1e-7);
+        }
+        assert_eq!(dielectric_average(1.0), 0.0);
+    }
+
+    #[test]
+    fn metals_reflect_as_in_born_and_wolf() {
+        let (eta, k) = (Rgb::splat(0.2), Rgb::splat(3.9));
+        assert!((conductor(1.0, eta, k).x - 0.9519519519519519).abs() < 1e-14);
+        let truth = 0.5 * (0.991742522 + 0.905072375);
+        assert!((conductor(f64::to_radians(80.0).cos(), eta, k).x - truth).abs() < 1e-9);
+        // Without absorption it is a dielectric.
+        for cosine in [0.0, 0.01, 0.4, 1.0] {
+            let one = conductor(cosine, Rgb::splat(1.7), Rgb::ZERO).y;
+            assert!((one - dielectric(cosine, 1.7)).abs() < 1e-14);
+        }
+    }
 }

@@ -2,7 +2,7 @@
 
 use super::albedo::{mirror_loss, mirror_loss_average, schlick_share, schlick_share_average};
 use super::conductor::{above, half, made_up};
-use super::lobes::diffuse;
+use super::lobes::{diffuse, grazing, grazing_pdf};
 use super::mirror::mirrored;
 use super::{BsdfSample, Ggx, Rgb, Scatter, fresnel};
 use glam::DVec3;
@@ -24,7 +24,7 @@ pub struct MetallicRough {
     base: Rgb,
     /// What metal scatters more than once, over π and the mean loss.
     multiple: Rgb,
-    /// The probability to draw from what is not reflected once, for an albedo of 1.
+    /// The base colour.
     color: Rgb,
     metallic: f64,
 }
@@ -68,13 +68,20 @@ impl MetallicRough {
         (Self::DIELECTRIC + (1.0 - Self::DIELECTRIC) * schlick) * kept
     }
 
-    /// The probability with which a draw is one reflection by a facet.
+    /// The probabilities with which a draw is one reflection by a facet, and what metal scatters more than once.
     #[inline]
-    fn share(&self, once: (f64, f64)) -> f64 {
+    fn shares(&self, once: (f64, f64)) -> [f64; 2] {
         let facets = (self.f0 + (Rgb::ONE - self.f0) * once.0).max_element() * once.1;
-        let metal = self.metallic * (1.0 - once.1);
-        let rest = self.color.max_element() * ((1.0 - self.metallic) * (1.0 - Self::dielectric(once)) + metal);
-        if facets > 0.0 { facets / (facets + rest) } else { 0.0 }
+        let color = self.color.max_element();
+        let (metal, base) =
+            (color * self.metallic * (1.0 - once.1), color * (1.0 - self.metallic) * (1.0 - Self::dielectric(once)));
+        let sum = facets + metal + base;
+        if sum > 0.0 { [facets / sum, metal / sum] } else { [0.0; 2] }
+    }
+
+    #[inline]
+    fn scale(&self) -> f64 {
+        self.ggx.as_ref().map_or(1.0, |ggx| ggx.alpha()[0])
     }
 }
 
@@ -100,9 +107,9 @@ impl Scatter for MetallicRough {
             return 0.0;
         }
         let (wo, wi) = (above(wo), above(wi));
-        let share = self.share(self.once(wo));
-        let facets = self.ggx.as_ref().map_or(0.0, |ggx| ggx.reflected_pdf(wo, half(wo, wi).0));
-        share * facets + (1.0 - share) * wi.z * FRAC_1_PI
+        let [facets, metal] = self.shares(self.once(wo));
+        let facet = self.ggx.as_ref().map_or(0.0, |ggx| ggx.reflected_pdf(wo, half(wo, wi).0));
+        facets * facet + metal * grazing_pdf(self.scale(), wi.z) + (1.0 - facets - metal).max(0.0) * wi.z * FRAC_1_PI
     }
 
     #[inline]
@@ -111,13 +118,15 @@ impl Scatter for MetallicRough {
             return None;
         }
         let up = above(wo);
-        let share = self.share(self.once(up));
-        let facet = choice() < share;
+        let [facets, metal] = self.shares(self.once(up));
+        let choice = choice();
+        let facet = choice < facets;
         let mut wi = match &self.ggx {
             None if facet => {
-                return Some(BsdfSample::delta(mirrored(wo), fresnel::schlick(up.z, self.f0) / share));
+                return Some(BsdfSample::delta(mirrored(wo), fresnel::schlick(up.z, self.f0) / facets));
             }
             Some(ggx) if facet => ggx.sample_reflection(up, u),
+            _ if choice < facets + metal => grazing(self.scale(), u),
             _ => diffuse(up, u),
         };
         if wi.z <= 0.0 {

@@ -114,3 +114,62 @@ impl Ggx {
         w.z.abs() > 1e-100
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::PI;
+
+    #[test]
+    fn facets_cover_the_surface() {
+        // ∫ D cos θ dω = 1, with t = r² / (1 + r²) of the slope r in units of α.
+        for alpha in [[0.001; 2], [0.1; 2], [1.0; 2], [0.02, 0.7]] {
+            let (ggx, steps) = (Ggx::new(alpha), 64);
+            let mut sum = 0.0;
+            for i in 0..steps * steps {
+                let (t, turn) = ((f64::from(i / steps) + 0.5) / 64.0, f64::from(i % steps) / 64.0 * TAU);
+                let r = (t / (1.0 - t)).sqrt();
+                let h = DVec3::new(alpha[0] * r * turn.cos(), alpha[1] * r * turn.sin(), 1.0).normalize();
+                let solid = alpha[0] * alpha[1] * PI / (1.0 - t).powi(2) * h.z.powi(3);
+                sum += ggx.density(h) * h.z * solid / 4096.0;
+            }
+            assert!((sum - 1.0).abs() < 1e-12, "{alpha:?} {sum}");
+        }
+    }
+
+    #[test]
+    fn masking_is_smiths() {
+        // 2 / (1 + √(1 + α² tan² θ)) (Walter et al., 2007).
+        let truths = [(0.1, 0.5, 0.9926104339481299), (0.5, 0.5, 0.8610017480861207), (1.0, 0.5, 2.0 / 3.0)];
+        let grazing = [(1.0, 0.1, 0.18181818181818182), (0.5, 0.01, 0.039209920542121704)];
+        for (alpha, cosine, truth) in truths.into_iter().chain(grazing) {
+            let w = DVec3::new(0.0, f64::sqrt(1.0 - cosine * cosine), cosine);
+            assert!((Ggx::new([alpha; 2]).masking(w) - truth).abs() < 1e-14);
+        }
+    }
+
+    #[test]
+    fn one_scattering_has_its_albedo() {
+        // Quadratures of E(μ) for white facets; compare Kulla and Conty (2017), Heitz et al. (2016).
+        let truths = [
+            (0.1, [0.98830, 0.96929, 0.88346]),
+            (0.3, [0.87737, 0.82171, 0.88881]),
+            (0.5, [0.68785, 0.69825, 0.86011]),
+        ];
+        for (alpha, albedos) in truths {
+            for (cosine, truth) in [1.0, 0.5, 0.1].into_iter().zip(albedos) {
+                let (ggx, wo) = (Ggx::new([alpha; 2]), DVec3::new(f64::sqrt(1.0 - cosine * cosine), 0.0, cosine));
+                let (steps, mut sum) = (400, 0.0);
+                for i in 0..steps * steps {
+                    let (t, v) = ((f64::from(i / steps) + 0.5) / 400.0, (f64::from(i % steps) + 0.5) / 400.0);
+                    let wi = ggx.sample_reflection(wo, [v, 1.0 - t.powi(4)]);
+                    if wi.z > 0.0 {
+                        sum += 4.0 * t.powi(3) * ggx.reflection_geometry(wo, wi) * 2.0 * (wo.z + ggx.stretch(wo));
+                    }
+                }
+                let albedo = sum / f64::from(steps * steps);
+                assert!((albedo - truth).abs() < 1e-4, "{alpha} {cosine} {albedo}");
+            }
+        }
+    }
+}

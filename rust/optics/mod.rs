@@ -3,6 +3,10 @@
 pub mod albedo;
 mod blinn_phong;
 mod bsdf;
+#[cfg(test)]
+mod checks;
+#[cfg(test)]
+mod chi_square;
 mod coated;
 mod conductor;
 pub mod conductors;

@@ -1,20 +1,46 @@
 //! What facets between two dielectrics lose.
 
-use super::tables::interface::{DENSE, DENSE_AVERAGE, THIN, THIN_AVERAGE};
-use super::{averages, mirror_loss, of_alpha, of_alpha_log, of_grazing, volume};
+use super::tables::interface_dense::{DENSE, DENSE_AVERAGE};
+use super::tables::interface_thin::{THIN, THIN_AVERAGE};
+use super::{averages, of_alpha_power, of_x, volume, x_of};
 use crate::optics::{Ggx, fresnel};
 use glam::DVec3;
 
-/// Sizes of the tables: grazing by α by index, and the averages by α by index.
-pub(super) const SIZES: [usize; 3] = [24, 11, 14];
-pub(super) const AVERAGE_SIZES: [usize; 2] = [16, 20];
+/// Sizes of the tables from either side, grazing by α by index, and of the averages by α by index.
+pub(super) const THIN_SIZES: [usize; 3] = [22, 16, 14];
+pub(super) const DENSE_SIZES: [usize; 3] = [34, 12, 30];
+pub(super) const AVERAGE_SIZES: [usize; 2] = [24, 40];
 
-/// A variable from 0 to 1 for an index of refraction ≥ 1 at a roughness: the cosine at which reflection sets in towards
-/// grazing is about √(η² − 1), and it matters on the scale of α.
+/// A variable from 0 to 1 for an index of refraction ≥ 1 at a roughness. The cosine at which reflection sets in towards
+/// grazing is about w = √(η² − 1), and it matters on the scale of α.
 #[inline]
 pub(super) fn of_index(alpha: f64, eta: f64) -> f64 {
-    let w = ((eta - 1.0) * (eta + 1.0)).max(0.0).sqrt();
-    w / (w + alpha)
+    1.0 - (1.0 + scale(alpha, eta)).cbrt().recip()
+}
+
+/// w / α.
+#[inline]
+pub(super) fn scale(alpha: f64, eta: f64) -> f64 {
+    ((eta - 1.0) * (eta + 1.0)).max(0.0).sqrt() / alpha
+}
+
+/// The part of x = z / s(ω) in which light from the denser side is bent so far that it leaves the surface again, up to 1.
+#[inline]
+pub(super) fn bent(scale: f64) -> f64 {
+    let square = scale * scale;
+    square / (2.0 + square)
+}
+
+/// A variable from 0 to 1 for a cosine from the denser side and its x: dense where light is bent away, and about the critical
+/// angle, where what gets through grazes the surface and other facets stop it.
+#[inline]
+pub(super) fn of_dense(alpha: f64, eta: f64, bent: f64, x: f64, cosine: f64) -> f64 {
+    let critical = ((eta - 1.0) * (eta + 1.0)).max(0.0).sqrt() / eta;
+    let near = |c: f64| (c - critical) / (c - critical).hypot(alpha);
+    let (low, high) = (near(0.0), near(1.0));
+    // What is bent away falls off slowly, as a root.
+    let away = |x: f64| 1.0 - (1.0 + x / bent).sqrt().recip();
+    0.25 * of_x(x) + 0.45 * away(x) / away(1.0) + 0.3 * (near(cosine) - low) / (high - low)
 }
 
 /// A rough interface between two dielectrics: what it loses of light from either side in one scattering, and how that
@@ -22,10 +48,12 @@ pub(super) fn of_index(alpha: f64, eta: f64) -> f64 {
 #[derive(Clone, Copy, Debug)]
 pub struct Interface {
     ggx: Ggx,
-    /// The isotropic roughness that the tables are asked for.
     alpha: f64,
     /// How much of an index of refraction ≥ 1 there is at this roughness.
     index: f64,
+    bent: f64,
+    /// The denser index over the thinner.
+    eta: f64,
     /// Above and below the surface.
     sides: [Side; 2],
 }
@@ -41,15 +69,14 @@ struct Side {
 }
 
 impl Interface {
-    /// With `eta` the index below over that above.
-    pub fn new(ggx: Ggx, eta: f64) -> Self {
-        let [a, b] = ggx.alpha();
-        let alpha = if a == b { a } else { (0.5 * (a * a + b * b)).sqrt() };
+    /// Of isotropic facets of roughness `alpha`, with `eta` the index below over that above.
+    pub fn new(alpha: f64, eta: f64) -> Self {
+        let ggx = Ggx::new([alpha; 2]);
         let dense = eta.max(1.0 / eta);
-        let index = of_index(alpha, dense);
+        let (index, bent) = (of_index(alpha, dense), bent(scale(alpha, dense)));
         let average = |dense: bool| {
             let table = if dense { &DENSE_AVERAGE } else { &THIN_AVERAGE };
-            averages(table, AVERAGE_SIZES, [of_alpha_log(alpha), index]) * alpha * alpha
+            averages(table, AVERAGE_SIZES, [alpha.cbrt(), index.sqrt()]).exp() * alpha * alpha
         };
         let averages = [average(eta < 1.0), average(eta > 1.0)];
         // A share t of a loss L̄ that crosses from side a to b is reciprocal if na² ta L̄a = nb² tb L̄b (Kulla and Conty,
@@ -61,7 +88,7 @@ impl Interface {
             let through = 1.0 - fresnel::dielectric_average(own);
             Side { dense: own < 1.0, average, crosses: if average > 0.0 { through * least / average } else { 0.0 } }
         };
-        Self { ggx, alpha, index, sides: [side(false), side(true)] }
+        Self { ggx, alpha, index, bent, eta: dense, sides: [side(false), side(true)] }
     }
 
     #[inline]
@@ -69,29 +96,30 @@ impl Interface {
         &self.sides[usize::from(w.z < 0.0)]
     }
 
-    /// The share of light from `w` that is neither reflected nor refracted away by one facet. Within 0.004 of the
-    /// integral where both α are the same.
+    /// The share of light from `w` that is neither reflected nor refracted away by one facet. Within 0.007 of the integral
+    /// where the surface is seen from the thinner side, and within 0.01 from the denser.
     #[inline]
     pub fn loss(&self, w: DVec3) -> f64 {
-        let table = if self.side(w).dense { &DENSE } else { &THIN };
-        let loss = volume(table, SIZES, [of_grazing(&self.ggx, w), of_alpha(self.alpha), self.index]);
-        let [a, b] = self.ggx.alpha();
-        if a == b {
-            return loss;
+        let x = x_of(&self.ggx, w);
+        let (a, index) = (of_alpha_power(self.alpha), self.index);
+        if self.side(w).dense {
+            let grazing = of_dense(self.alpha, self.eta, self.bent, x, w.z.abs());
+            volume(&DENSE, DENSE_SIZES, [grazing, a, index])
+        } else {
+            volume(&THIN, THIN_SIZES, [of_x(x), a, index])
         }
-        // As much more or less as for mirrors.
-        let isotropic = Ggx::new([self.alpha; 2]);
-        let x = w.z.abs() / self.ggx.stretch(w);
-        let tangent = ((1.0 - x) * (1.0 + x)).max(0.0).sqrt();
-        let (sin, cos) = (tangent, x * self.alpha);
-        let same = DVec3::new(sin, 0.0, cos) / (sin * sin + cos * cos).sqrt();
-        (loss * mirror_loss(&self.ggx, w) / mirror_loss(&isotropic, same).max(1e-9)).min(1.0)
     }
 
     /// The share of what is lost on the side of `w` that is given back on the other side.
     #[inline]
     pub fn crossing(&self, w: DVec3) -> f64 {
         self.side(w).crosses
+    }
+
+    /// The cosine on the side of `w` about which light is lost.
+    #[inline]
+    pub fn scale(&self, w: DVec3) -> f64 {
+        if self.side(w).dense { (self.alpha * self.bent).max(1e-8) } else { self.alpha }
     }
 
     /// What is given back to `wo` of light from `wi`, per solid angle, with the cosine of `wi` in it and without the 1 / η²

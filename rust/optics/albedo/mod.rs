@@ -20,10 +20,15 @@ pub use schlick::{schlick_share, schlick_share_average};
 use super::Ggx;
 use glam::DVec3;
 
-/// A variable from 0 to 1 for x = z / s(ω) = 1 / √(1 + α² tan² θ): dense at grazing, as √x, and near x = 1.
+/// x = z / s(ω) = 1 / √(1 + α² tan² θ).
 #[inline]
-fn of_grazing(ggx: &Ggx, w: DVec3) -> f64 {
-    let x = (w.z.abs() / ggx.stretch(w)).min(1.0);
+fn x_of(ggx: &Ggx, w: DVec3) -> f64 {
+    (w.z.abs() / ggx.stretch(w)).min(1.0)
+}
+
+/// A variable from 0 to 1 for x: dense at grazing, as √x, and near x = 1.
+#[inline]
+fn of_x(x: f64) -> f64 {
     0.5 * (x.sqrt() + x * x * x)
 }
 
@@ -33,12 +38,21 @@ fn of_alpha(alpha: f64) -> f64 {
     1.3 * alpha * alpha / (alpha * alpha + 0.3)
 }
 
-/// A variable from 0 to 1 for a roughness where averages over the hemisphere are asked for, which fall as α² ln(1 / α).
+/// A variable from 0 to 1 for a roughness where what changes with it changes from the first.
 #[inline]
-fn of_alpha_log(alpha: f64) -> f64 {
-    // From ln(1 + 10⁵) at the smallest roughness down to ln 2.
-    ((1.0 / Ggx::SMOOTH).ln_1p() - alpha.recip().ln_1p()) / ((1.0 / Ggx::SMOOTH).ln_1p() - std::f64::consts::LN_2)
+fn of_alpha_power(alpha: f64) -> f64 {
+    alpha.powf(0.7)
 }
+
+/// About the cosine at which facets are met that reflect to a direction of this cosine: at grazing, that of a slope of α.
+#[inline]
+fn effective_cosine(alpha: f64, cosine: f64) -> f64 {
+    let square = FACET_SLOPE * alpha * alpha;
+    ((cosine * cosine + square) / (1.0 + square)).sqrt()
+}
+
+/// What makes the tables of what differs from [`effective_cosine`]'s reflectance the flattest.
+const FACET_SLOPE: f64 = 0.6;
 
 /// Where a variable from 0 to 1 lies between `count` values: the lower one's number, and how far on.
 #[inline]

@@ -1,18 +1,17 @@
 //! The integrals that the tables hold, the writing of the tables, and the check that they hold them.
 
-use super::tables;
 use super::{coat, interface, mirror, schlick};
-use super::{of_alpha, of_alpha_log};
+use super::{effective_cosine, of_alpha, of_x};
 use crate::optics::{Ggx, fresnel};
 use glam::DVec3;
-use std::f64::consts::{FRAC_PI_2, PI};
+use std::f64::consts::FRAC_PI_2;
 
 /// The mean over the facets that `w` sees of a function of their normal, by midpoints. Half the azimuths are enough by
 /// symmetry where `w` lies in the plane of x and z; the tail of the distribution is spread out: 1 − u = s².
 fn mean_over_facets(ggx: &Ggx, w: DVec3, steps: [usize; 2], value: impl Fn(DVec3) -> f64) -> f64 {
     let mut sum = 0.0;
     for i in 0..steps[0] {
-        // A midpoint rule in θ of s = sin²(θ / 2) puts points where lobes meet the horizon, at small s.
+        // s = t² puts points where lobes meet the horizon, at small s.
         let t = (i as f64 + 0.5) / steps[0] as f64;
         let (s, ds) = (t * t, 2.0 * t);
         for j in 0..steps[1] {
@@ -97,22 +96,25 @@ fn alpha(i: usize, count: usize) -> f64 {
     inverse(0.0, 1.0, entry(i, count), of_alpha).max(1e-4)
 }
 
-fn alpha_log(i: usize, count: usize) -> f64 {
-    inverse(Ggx::SMOOTH, 1.0, entry(i, count), of_alpha_log)
+/// Below this entries are those of no roughness.
+const SMOOTHEST: f64 = 1e-4;
+
+fn alpha_root(i: usize, count: usize) -> f64 {
+    entry(i, count).powi(3).max(1e-5)
 }
 
-/// The direction in the plane of x and z of a table's entry for grazing.
-fn grazing(ggx: &Ggx, i: usize, count: usize) -> DVec3 {
-    let x = inverse(0.0, 1.0, entry(i, count), |x| 0.5 * (x.sqrt() + x * x * x)).clamp(1e-5, 1.0);
+/// The direction in the plane of x and z of a table's entry for a variable of x.
+fn grazing(ggx: &Ggx, i: usize, count: usize, variable: impl Fn(f64) -> f64) -> DVec3 {
+    let x = inverse(0.0, 1.0, entry(i, count), variable).clamp(1e-9, 1.0);
     let (sin, cos) = (((1.0 - x) * (1.0 + x)).max(0.0).sqrt(), x * ggx.alpha()[0]);
     DVec3::new(sin, 0.0, cos).normalize()
 }
 
-/// The index of a table's entry at a roughness.
-fn index(alpha: f64, i: usize, count: usize) -> f64 {
-    let y = entry(i, count).min(1.0 - 1e-9);
-    let w = alpha * y / (1.0 - y);
-    (1.0 + w * w).sqrt()
+/// The index of a table's entry at a roughness. In place of 1, where nothing is lost, stands one so near to it that what is
+/// bent does not change any more, in units of what is.
+fn index(alpha: f64, variable: f64) -> f64 {
+    let w = alpha * ((1.0 - variable).powi(-3).min(1e6) - 1.0).max(0.01);
+    w.hypot(1.0)
 }
 
 fn coat_index(i: usize, count: usize) -> f64 {
@@ -127,42 +129,48 @@ mod entries {
     pub fn isotropic(k: usize) -> f64 {
         let [n, m] = mirror::ISOTROPIC_SIZES;
         let ggx = Ggx::new([alpha(k % m, m); 2]);
-        mirror_loss(&ggx, grazing(&ggx, k / m, n))
+        mirror_loss(&ggx, grazing(&ggx, k / m, n, of_x))
     }
 
     pub fn anisotropic(k: usize) -> f64 {
         let [n, m, l] = mirror::ANISOTROPIC_SIZES;
         let ggx = Ggx::new([alpha(k / l % m, m), alpha(k % l, l)]);
-        mirror_loss(&ggx, grazing(&ggx, k / (l * m), n))
+        mirror_loss(&ggx, grazing(&ggx, k / (l * m), n, of_x))
     }
 
     pub fn loss(k: usize, dense: bool) -> f64 {
-        let [n, m, l] = interface::SIZES;
-        let a = alpha(k / l % m, m);
-        let (ggx, eta) = (Ggx::new([a; 2]), index(a, k % l, l));
-        interface_loss(&ggx, if dense { 1.0 / eta } else { eta }, grazing(&ggx, k / (l * m), n))
+        let [n, m, l] = if dense { interface::DENSE_SIZES } else { interface::THIN_SIZES };
+        let a = entry(k / l % m, m).powf(1.0 / 0.7).max(1e-4);
+        let (ggx, eta) = (Ggx::new([a; 2]), index(a, entry(k % l, l)));
+        let bent = interface::bent(interface::scale(a, eta));
+        let variable = |x: f64| {
+            let cosine = a * x / (a * x).hypot(((1.0 - x) * (1.0 + x)).sqrt());
+            if dense { interface::of_dense(a, eta, bent, x, cosine) } else { of_x(x) }
+        };
+        interface_loss(&ggx, if dense { 1.0 / eta } else { eta }, grazing(&ggx, k / (l * m), n, variable))
     }
 
     pub fn coat_mean(k: usize) -> f64 {
         let [n, m, l] = coat::SIZES;
-        let ggx = Ggx::new([alpha(k / l % m, m); 2]);
-        let eta = coat_index(k % l, l);
+        let (a, eta) = (alpha_root(k / l % m, m), coat_index(k % l, l));
         let w = direction(entry(k / (l * m), n).powi(2).clamp(1e-7, 1.0));
-        reflected_mean(&ggx, w, |c| fresnel::dielectric(c, eta))
+        let mean = reflected_mean(&Ggx::new([a; 2]), w, |c| fresnel::dielectric(c, eta));
+        if a < SMOOTHEST { 0.5 } else { mean - fresnel::dielectric(effective_cosine(a, w.z), eta) + 0.5 }
     }
 
     pub fn schlick_mean(k: usize) -> f64 {
         let [n, m] = schlick::SIZES;
-        let ggx = Ggx::new([alpha(k % m, m); 2]);
+        let a = alpha_root(k % m, m);
         let w = direction(entry(k / m, n).powi(2).clamp(1e-7, 1.0));
-        reflected_mean(&ggx, w, fresnel::schlick_weight)
+        let mean = reflected_mean(&Ggx::new([a; 2]), w, fresnel::schlick_weight);
+        if a < SMOOTHEST { 0.5 } else { mean - fresnel::schlick_weight(effective_cosine(a, w.z)) + 0.5 }
     }
 
     // Averages are those of what the tables give between their entries, so that what is given back sums to what is lost.
 
     pub fn mirror_average(k: usize) -> f64 {
         let [m, l] = mirror::AVERAGE_SIZES;
-        let alpha = [alpha_log(k / l, m), alpha_log(k % l, l)];
+        let alpha = [alpha_root(k / l, m), alpha_root(k % l, l)];
         let ggx = Ggx::new(alpha);
         let [a, b] = alpha;
         let azimuths = if a == b { 1 } else { 24 };
@@ -173,39 +181,55 @@ mod entries {
                 even_light(scale, |w| super::super::mirror_loss(&ggx, DVec3::new(w.x * cos, w.x * sin, w.z)))
             })
             .sum();
-        sum / azimuths as f64 / (0.5 * (a * a + b * b))
+        (sum / azimuths as f64 / (0.5 * (a * a + b * b))).ln()
     }
 
     pub fn loss_average(k: usize, dense: bool) -> f64 {
         let [m, l] = interface::AVERAGE_SIZES;
-        let a = alpha_log(k / l, m);
-        let interface = super::super::Interface::new(Ggx::new([a; 2]), index(a, k % l, l));
-        even_light(a, |w| interface.loss(if dense { -w } else { w })) / (a * a)
+        let a = alpha_root(k / l, m);
+        let eta = index(a, entry(k % l, l).powi(2));
+        let bent = interface::bent(interface::scale(a, eta));
+        let interface = super::super::Interface::new(a, eta);
+        // What is bent away has a smaller scale than the rest, which changes slowly.
+        (even_light(a * bent, |w| interface.loss(if dense { -w } else { w })) / (a * a)).max(1e-30).ln()
     }
 
     pub fn coat_average(k: usize) -> f64 {
         let [m, l] = coat::AVERAGE_SIZES;
-        let (a, eta) = (alpha(k / l, m), coat_index(k % l, l));
+        let (a, eta) = (alpha_root(k / l, m), coat_index(k % l, l));
         let ggx = Ggx::new([a; 2]);
         even_light(0.1, |w| super::super::coat(a, eta, w.z) * (1.0 - super::super::mirror_loss(&ggx, w)))
     }
 
     pub fn schlick_average(k: usize) -> f64 {
-        let a = alpha(k, schlick::AVERAGE_SIZE);
+        let a = alpha_root(k, schlick::AVERAGE_SIZE);
         let ggx = Ggx::new([a; 2]);
         even_light(0.1, |w| super::super::schlick_share(a, w.z) * (1.0 - super::super::mirror_loss(&ggx, w)))
     }
 }
 
+/// Source code of a table, in lines as long as they may be.
+fn table(name: &str, doc: &str, kind: &str, numbers: Vec<String>) -> String {
+    let mut source = format!("/// {doc}\n#[rustfmt::skip]\npub static {name}: [{kind}; {}] = [", numbers.len());
+    let mut length = usize::MAX;
+    for number in &numbers {
+        if length > 116 - number.len() {
+            source.push_str("\n   ");
+            length = 3;
+        }
+        source.push_str(&format!(" {number},"));
+        length += number.len() + 2;
+    }
+    source + "\n];\n"
+}
+
 fn shares(name: &str, doc: &str, count: usize, value: impl Fn(usize) -> f64) -> String {
-    let numbers: Vec<String> =
-        (0..count).map(|k| ((value(k).clamp(0.0, 1.0) * 65535.0).round() as u16).to_string()).collect();
-    format!("/// {doc}\npub static {name}: [u16; {count}] = [{}];\n", numbers.join(", "))
+    let share = |k| (value(k).clamp(0.0, 1.0) * 65535.0).round() as u16;
+    table(name, doc, "u16", (0..count).map(|k| share(k).to_string()).collect())
 }
 
 fn means(name: &str, doc: &str, count: usize, value: impl Fn(usize) -> f64) -> String {
-    let numbers: Vec<String> = (0..count).map(|k| format!("{:.5}", value(k))).collect();
-    format!("/// {doc}\npub static {name}: [f64; {count}] = [{}];\n", numbers.join(", "))
+    table(name, doc, "f64", (0..count).map(|k| format!("{:.5}", value(k))).collect())
 }
 
 /// Writes the tables. What averages are made of has to be there and compiled before them: run it twice.
@@ -216,6 +240,7 @@ fn write_tables() {
         let path = format!("{}/rust/optics/albedo/tables/{name}.rs", env!("CARGO_MANIFEST_DIR"));
         std::fs::write(path, format!("//! {what}\n\n{}", parts.join("\n"))).unwrap();
     };
+    const MEANS: &str = "Logarithms of the means over even light, over α².";
     let product = |sizes: &[usize]| sizes.iter().product::<usize>();
     write(
         "mirror",
@@ -230,21 +255,28 @@ fn write_tables() {
             ),
             means(
                 "AVERAGE",
-                "Means over even light, over the mean of α².",
+                "Logarithms of the means over even light, over the mean of α².",
                 product(&mirror::AVERAGE_SIZES),
                 entries::mirror_average,
             ),
         ],
     );
-    let (size, average) = (product(&interface::SIZES), product(&interface::AVERAGE_SIZES));
+    let (thin, dense) = (product(&interface::THIN_SIZES), product(&interface::DENSE_SIZES));
+    let average = product(&interface::AVERAGE_SIZES);
     write(
-        "interface",
-        "Losses of facets between dielectrics, in 65535ths.",
+        "interface_thin",
+        "Losses of facets between dielectrics from the thinner side, in 65535ths.",
         &[
-            shares("THIN", "From the thinner side, by grazing, α and index.", size, |k| entries::loss(k, false)),
-            shares("DENSE", "From the denser side.", size, |k| entries::loss(k, true)),
-            means("THIN_AVERAGE", "Means over even light, over α².", average, |k| entries::loss_average(k, false)),
-            means("DENSE_AVERAGE", "Those from the denser side.", average, |k| entries::loss_average(k, true)),
+            shares("THIN", "By grazing, α and index.", thin, |k| entries::loss(k, false)),
+            means("THIN_AVERAGE", MEANS, average, |k| entries::loss_average(k, false)),
+        ],
+    );
+    write(
+        "interface_dense",
+        "Losses of facets between dielectrics from the denser side, in 65535ths.",
+        &[
+            shares("DENSE", "By grazing, α and index.", dense, |k| entries::loss(k, true)),
+            means("DENSE_AVERAGE", MEANS, average, |k| entries::loss_average(k, true)),
         ],
     );
     write(
@@ -263,4 +295,59 @@ fn write_tables() {
             means("AVERAGE", "Means over even light.", schlick::AVERAGE_SIZE, entries::schlick_average),
         ],
     );
+}
+
+/// Roughnesses between the entries of every table, and cosines that are not theirs either.
+const ALPHAS: [f64; 8] = [1e-4, 0.01, 0.037, 0.155, 0.23, 0.46, 0.77, 0.93];
+const COSINES: [f64; 11] = [1e-6, 1e-3, 0.004, 0.017, 0.05, 0.11, 0.23, 0.55, 0.71, 0.86, 0.995];
+
+/// Fails where two values for some arguments differ by more.
+fn assert_near(value: f64, truth: f64, bound: f64, what: &[f64]) {
+    assert!((value - truth).abs() < bound, "{value} for {truth} at {what:?}");
+}
+
+#[test]
+fn mirrors_lose_what_the_table_says() {
+    for a in ALPHAS {
+        for c in COSINES {
+            let (w, ggx) = (direction(c), Ggx::new([a; 2]));
+            assert_near(super::mirror_loss(&ggx, w), mirror_loss(&ggx, w), 0.004, &[a, c]);
+            let schlick = reflected_mean(&ggx, w, fresnel::schlick_weight);
+            assert_near(super::schlick_share(a, c), schlick, 0.004, &[a, c]);
+            for b in [0.003, 0.05, 0.3, 0.8] {
+                for turn in [0.0, 0.4, 0.8, 1.2, 1.4, FRAC_PI_2] {
+                    let (sin, cos) = f64::sin_cos(turn);
+                    let (w, ggx) = (DVec3::new(w.x * cos, w.x * sin, w.z), Ggx::new([a, b]));
+                    assert_near(super::mirror_loss(&ggx, w), mirror_loss(&ggx, w), 0.01, &[a, b, c, turn]);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn coats_reflect_what_the_table_says() {
+    for a in ALPHAS {
+        for c in COSINES {
+            let (w, ggx) = (direction(c), Ggx::new([a; 2]));
+            for eta in [1.2, 1.33, 1.5, 1.8, 2.4, 3.0] {
+                let mean = reflected_mean(&ggx, w, |c| fresnel::dielectric(c, eta));
+                assert_near(super::coat(a, eta, c), mean, 0.01, &[a, eta, c]);
+            }
+        }
+    }
+}
+
+#[test]
+fn interfaces_lose_what_the_tables_say() {
+    for a in ALPHAS {
+        for c in COSINES {
+            let (w, ggx) = (direction(c), Ggx::new([a; 2]));
+            for eta in [1.00001, 1.0003, 1.01, 1.07, 1.2, 1.33, 1.5, 1.8, 2.4, 3.0] {
+                let interface = super::Interface::new(a, eta);
+                assert_near(interface.loss(w), interface_loss(&ggx, eta, w), 0.007, &[a, eta, c]);
+                assert_near(interface.loss(-w), interface_loss(&ggx, 1.0 / eta, w), 0.009, &[a, 1.0 / eta, c]);
+            }
+        }
+    }
 }

@@ -1,0 +1,207 @@
+//! What holds of every kind of scattering.
+
+use super::*;
+use crate::sampling::Sampler;
+use glam::DVec3;
+use proptest::prelude::*;
+
+fn direction(degrees: f64, turn: f64) -> DVec3 {
+    let (sin, cos) = degrees.to_radians().sin_cos();
+    DVec3::new(sin * turn.cos(), sin * turn.sin(), cos)
+}
+
+const SILVER: conductors::Metal = conductors::METALS[0];
+
+/// One or more of each kind.
+fn kinds() -> Vec<Bsdf> {
+    let (grey, red) = (Rgb::splat(0.6), Rgb::new(0.9, 0.3, 0.1));
+    let mut kinds: Vec<Bsdf> = vec![
+        Diffuse { reflectance: red }.into(),
+        OrenNayar::new(red, 0.7).into(),
+        Mirror { reflectance: red }.into(),
+        ThinDielectric::new(1.5).into(),
+        Dielectric::new(1.5, 0.0).into(),
+        Conductor::new(SILVER.eta, SILVER.k, [0.0; 2]).into(),
+        Coated::new(red, 1.5, 0.0).into(),
+        MetallicRough::new(red, 0.5, 0.0).into(),
+        Transparent { transmittance: red }.into(),
+        Null.into(),
+    ];
+    for n in [0.0, 1.0, 30.0, 5000.0] {
+        kinds.push(Phong::new(grey * 0.5, grey * 0.5, n).into());
+        kinds.push(BlinnPhong::new(grey * 0.5, grey * 0.5, n).into());
+    }
+    for alpha in [1e-4, 0.01, 0.1, 0.4, 1.0] {
+        kinds.push(Conductor::new(SILVER.eta, SILVER.k, [alpha; 2]).into());
+        kinds.push(Conductor::new(SILVER.eta, SILVER.k, [alpha, 0.3]).into());
+        for eta in [1.00001, 1.01, 1.5, 1.0 / 1.5, 3.0] {
+            kinds.push(Dielectric::new(eta, alpha).into());
+        }
+        kinds.push(Coated::new(red, 1.5, alpha).into());
+        kinds.push(MetallicRough::new(red, 0.5, alpha.sqrt()).into());
+        kinds.push(MetallicRough::new(grey, 1.0, alpha.sqrt()).into());
+    }
+    kinds
+}
+
+/// Directions from straight above to grazing, and some from below.
+fn directions() -> Vec<DVec3> {
+    let mut directions = Vec::new();
+    for (degrees, turn) in [(0.0, 0.0), (20.0, 1.0), (45.0, 0.0), (60.0, 2.0), (80.0, 4.0), (89.0, 5.0), (89.9, 0.3)] {
+        directions.extend([direction(degrees, turn), direction(180.0 - degrees, turn)]);
+    }
+    directions
+}
+
+fn draw(bsdf: &Bsdf, wo: DVec3, numbers: &mut Sampler) -> Option<BsdfSample> {
+    let (choice, u) = (numbers.one(2), numbers.two(0));
+    bsdf.sample(wo, || choice, u)
+}
+
+/// The mean weight of draws without the 1 / η² of radiance, and its standard error: the share of light scattered.
+fn share(bsdf: &Bsdf, wo: DVec3, draws: u32) -> (Rgb, f64) {
+    let (mut sum, mut squares) = (Rgb::ZERO, 0.0);
+    for i in 0..draws {
+        let mut numbers = Sampler::new(9, 1, i);
+        if let Some(s) = draw(bsdf, wo, &mut numbers) {
+            let weight = s.weight * s.eta * s.eta;
+            sum += weight;
+            squares += weight.x * weight.x;
+        }
+    }
+    let n = f64::from(draws);
+    let mean = sum / n;
+    (mean, ((squares / n - mean.x * mean.x).max(0.0) / n).sqrt())
+}
+
+#[test]
+fn white_is_white_at_every_roughness_and_angle() {
+    let mirror = |alpha: [f64; 2]| Conductor::new(Rgb::ONE, Rgb::splat(1e9), alpha);
+    for alpha in [0.0, 1e-4, 0.001, 0.01, 0.03, 0.1, 0.2, 0.35, 0.5, 0.7, 0.85, 1.0] {
+        let mut white: Vec<(Bsdf, f64)> = vec![
+            (mirror([alpha; 2]).into(), 0.005),
+            (mirror([alpha, 0.2]).into(), 0.01),
+            (Coated::new(Rgb::ONE, 1.5, alpha).into(), 0.005),
+            (OrenNayar::new(Rgb::ONE, alpha).into(), 0.005),
+            (MetallicRough::new(Rgb::ONE, 0.0, alpha.sqrt()).into(), 0.005),
+            (MetallicRough::new(Rgb::ONE, 0.4, alpha.sqrt()).into(), 0.005),
+            (MetallicRough::new(Rgb::ONE, 1.0, alpha.sqrt()).into(), 0.005),
+        ];
+        for eta in [1.0, 1.0 + 1e-7, 1.0001, 1.01, 1.1, 1.33, 1.5, 2.0, 3.0] {
+            white.push((Dielectric::new(eta, alpha).into(), 0.005));
+            white.push((Dielectric::new(1.0 / eta, alpha).into(), 0.005));
+        }
+        for (bsdf, bound) in white {
+            for wo in directions() {
+                let (mean, error) = share(&bsdf, wo, 4_000);
+                // Five standard errors beyond the bound: by luck one of these 2,500 means is, for one seed in 700.
+                let off = (mean - 1.0).abs().max_element();
+                assert!(off <= bound + 5.0 * error, "{mean} ± {error} {bsdf:?} {wo}");
+            }
+        }
+    }
+}
+
+#[test]
+fn light_is_scattered_alike_in_both_directions() {
+    for bsdf in kinds() {
+        let (mut a, mut b) = (directions(), directions());
+        a.rotate_left(3);
+        b.extend(a.clone());
+        for wo in a {
+            // What is close to a lobe, too: the direction of a draw, from both sides of the surface.
+            let drawn = bsdf.sample(wo, || 0.9, [0.3, 0.4]).map(|s| s.wi);
+            for &wi in b.iter().chain(drawn.as_ref()) {
+                // f(wo, wi) / η² of the side of wi is symmetric.
+                let index = |w: DVec3| match &bsdf {
+                    Bsdf::Dielectric(d) if w.z < 0.0 => d.eta(),
+                    _ => 1.0,
+                };
+                let one = bsdf.evaluate(wo, wi) / wi.z.abs() * index(wi).powi(2);
+                let two = bsdf.evaluate(wi, wo) / wo.z.abs() * index(wo).powi(2);
+                let off = (one - two).abs().max_element();
+                assert!(off <= 1e-6 * one.max_element() + 1e-12, "{one} {two} {bsdf:?} {wo} {wi}");
+            }
+        }
+    }
+}
+
+#[test]
+fn draws_weigh_what_is_evaluated() {
+    for bsdf in kinds() {
+        for wo in directions() {
+            for i in 0..400 {
+                let mut numbers = Sampler::new(3, 0, i);
+                let Some(s) = draw(&bsdf, wo, &mut numbers) else {
+                    continue;
+                };
+                assert!((s.wi.length() - 1.0).abs() < 1e-9 && is_radiance(s.weight) && s.pdf > 0.0);
+                assert_eq!(s.eta != 1.0, s.wi.z * wo.z < 0.0 && matches!(bsdf, Bsdf::Dielectric(_)), "{s:?}");
+                if s.pdf.is_infinite() {
+                    continue;
+                }
+                assert!(!bsdf.is_delta());
+                let (value, pdf) = (bsdf.evaluate(wo, s.wi), bsdf.pdf(wo, s.wi));
+                let off = (value - s.weight * s.pdf).abs().max_element() / value.max_element();
+                // Directions have 10⁻¹⁶: over a lobe's width, for what is evaluated from them.
+                let bound = 1e-9 + 1e-12 * s.pdf.sqrt();
+                assert!(off < bound && (pdf / s.pdf - 1.0).abs() < bound, "{off:e} {pdf} {s:?} {bsdf:?} {wo}");
+            }
+        }
+    }
+}
+
+#[test]
+fn nothing_gains_light() {
+    for bsdf in kinds() {
+        for wo in directions() {
+            let (mean, error) = share(&bsdf, wo, 5_000);
+            assert!(mean.max_element() < 1.005 + 5.0 * error, "{mean} {bsdf:?} {wo}");
+        }
+    }
+}
+
+/// Unit vectors, many of them in the plane, next to it, or next to the axes.
+fn any_direction() -> impl Strategy<Value = DVec3> {
+    let tiny = prop_oneof![Just(0.0), Just(1e-300), Just(1e-12), Just(-1e-12), Just(1e-5), -1.0..1.0f64];
+    (-1.0..1.0f64, -1.0..1.0f64, tiny).prop_filter_map("no direction", |(x, y, z)| DVec3::new(x, y, z).try_normalize())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(400))]
+
+    #[test]
+    fn nothing_is_nan_infinite_or_negative(
+        wo in any_direction(),
+        other in any_direction(),
+        relation in 0..5,
+        choice in 0.0..1.0f64,
+        u in prop_oneof![Just(2f64.powi(-33)), Just(1.0 - 2f64.powi(-33)), 0.0..1.0f64],
+        v in prop_oneof![Just(2f64.powi(-33)), Just(1.0 - 2f64.powi(-33)), 1e-9..1.0f64],
+        alpha in prop_oneof![Just(0.0), Just(1e-5), Just(1e-4), 0.0..=1.0f64],
+        across in prop_oneof![Just(0.0), 0.0..=1.0f64],
+        eta in prop_oneof![Just(1.0), Just(1.0 + 1e-7), Just(1.000002), Just(1.0001), 0.1..10.0f64],
+    ) {
+        let mirrored = DVec3::new(-wo.x, -wo.y, wo.z);
+        let wi = [other, -wo, wo, mirrored, -mirrored][relation as usize];
+        let mut kinds = kinds();
+        kinds.push(Conductor::new(SILVER.eta, SILVER.k, [alpha, across]).into());
+        kinds.push(Dielectric::new(eta, alpha).into());
+        kinds.push(ThinDielectric::new(eta).into());
+        kinds.push(Coated::new(Rgb::ONE, eta.max(1.0), alpha).into());
+        kinds.push(MetallicRough::new(Rgb::ONE, across, alpha).into());
+        kinds.push(OrenNayar::new(Rgb::ONE, alpha).into());
+        for bsdf in kinds {
+            let (value, pdf) = (bsdf.evaluate(wo, wi), bsdf.pdf(wo, wi));
+            prop_assert!(is_radiance(value) && pdf.is_finite() && pdf >= 0.0, "{value} {pdf} {bsdf:?} {wo} {wi}");
+            prop_assert!(is_radiance(bsdf.albedo()) && bsdf.albedo().max_element() <= 1.01, "{bsdf:?}");
+            prop_assert!((0.0..=1.42).contains(&bsdf.roughness()));
+            prop_assert!(!bsdf.is_delta() || value == Rgb::ZERO);
+            if let Some(s) = bsdf.sample(wo, || choice, [u, v]) {
+                prop_assert!(is_radiance(s.weight) && s.pdf > 0.0 && s.eta > 0.0, "{s:?} {bsdf:?} {wo}");
+                prop_assert!((s.wi.length() - 1.0).abs() < 1e-9, "{s:?} {bsdf:?} {wo}");
+                prop_assert!(bsdf.transmits() || s.wi.z * wo.z >= 0.0);
+            }
+        }
+    }
+}
