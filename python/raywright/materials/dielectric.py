@@ -17,10 +17,10 @@ class Dielectric(Material):
     ----------
     ior : float
         The index of refraction within, above 0: 1.5 for glass, 1.33 for water, 2.42 for diamond.
-    roughness : float, Texture, or a pair of them, optional
-        How rough it is, from 0, smooth, to 1; along u and along v if they are two. Its square is the alpha of
-        the GGX distribution, as in glTF. 0 if not given.
-    alpha : float, Texture, or a pair of them, optional
+    roughness : float or Texture, optional
+        How rough it is, from 0, smooth, to 1. Its square is the alpha of the GGX distribution, as in glTF. 0
+        if not given.
+    alpha : float or Texture, optional
         That alpha itself, in place of `roughness`.
     priority : int
         Where several such solids overlap, the one of the greatest priority is there (Schmidt and Budge,
@@ -48,6 +48,6 @@ class Dielectric(Material):
     ) -> None:
         self._set(
             ior=positive("ior", ior),
-            **rough(roughness, alpha),
+            **rough(roughness, alpha, pair=False),
             priority=integer("priority", priority, -(2**31), 2**31 - 1),
         )

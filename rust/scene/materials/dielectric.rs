@@ -2,7 +2,6 @@
 
 use super::checks::number;
 use super::{Interior, Material, Roughness, Scattering};
-use crate::math::DVec3;
 use crate::optics::Dielectric;
 use crate::scene::ShadingPoint;
 use crate::scene::textures::Needs;
@@ -12,13 +11,14 @@ use crate::scene::textures::Needs;
 pub struct DielectricMaterial {
     /// What is within.
     pub interior: Interior,
-    /// How rough the surface is.
+    /// How rough the surface is, alike in all directions.
     pub roughness: Roughness,
 }
 
 impl Material for DielectricMaterial {
     fn scattering(&self, at: &ShadingPoint) -> Scattering {
-        Dielectric::new(self.interior.ior / at.outside, self.roughness.alpha(&at.texture)).into()
+        let [alpha, _] = self.roughness.alpha(&at.texture);
+        Dielectric::new(self.interior.ior / at.outside, alpha).into()
     }
 
     fn needs(&self) -> Needs {
@@ -27,15 +27,11 @@ impl Material for DielectricMaterial {
 
     fn validate(&self) -> Result<(), String> {
         number("ior", self.interior.ior, f64::MIN_POSITIVE, f64::MAX)?;
-        self.roughness.validate()
+        self.roughness.validate_alike()
     }
 
     fn transmits(&self) -> bool {
         true
-    }
-
-    fn tangent(&self, at: &ShadingPoint) -> Option<DVec3> {
-        self.roughness.tangent(at)
     }
 
     fn interior(&self) -> Option<Interior> {

@@ -419,6 +419,12 @@ fn what_cannot_be_is_refused_in_a_line() {
     refused(&ConductorMaterial { k: (-1.0).into(), ..gold(0.0) }, "k must be finite and not negative");
     let coat = PlasticMaterial { reflectance: 0.5.into(), ior: 0.9, roughness: 0.0.into() };
     refused(&coat, "ior must be finite and at least 1, got 0.9");
+    let two = || Roughness { along: [0.1.into(), 0.2.into()], is_alpha: true };
+    refused(
+        &PlasticMaterial { ior: 1.5, roughness: two(), ..coat.clone() },
+        "alpha must be the same in all directions",
+    );
+    refused(&DielectricMaterial { roughness: two(), ..glass(0.0) }, "alpha must be the same in all directions");
     let shiny = PhongMaterial { diffuse: 0.7.into(), specular: 0.4.into(), exponent: 1.0.into(), ambient: 0.0.into() };
     refused(&shiny, "diffuse and specular must add up to at most 1");
     let bump = BumpMap { material: grey(0.5), height: f64::NAN.into(), scale: 1.0 };
