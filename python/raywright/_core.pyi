@@ -14,12 +14,14 @@ __all__ = [
     "CompiledScene",
     "KernelContest",
     "Rendering",
+    "aovs",
     "camera_rays",
     "camera_rays_through",
     "cones",
     "first_hits",
     "implicit_trouble",
     "matrix_trouble",
+    "plan",
     "points",
     "polygon_trouble",
     "render",
@@ -208,7 +210,7 @@ def aovs(
     """
 
 def plan(scene: CompiledScene) -> tuple[str, list[tuple[str, bool, str]]]:
-    """The kernel that shades the scene, and rows of what, whether, and what follows."""
+    """Name the kernel that shades the scene, and tell rows of what, whether, and what follows."""
 
 def render(
     scene: CompiledScene,

@@ -211,7 +211,7 @@ class Scene(Queries):
         )
 
     def plan(self) -> Plan:
-        """Return what the scene needs, what is left out, and which kernel renders it; it prints as a table."""
+        """Return what the scene needs, what is left out, and which kernel renders it, as a table."""
         kernel, rows = _core.plan(self._compiled())
         return Plan(kernel, tuple(PlanRow(*row) for row in rows))
 
