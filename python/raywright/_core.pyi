@@ -14,6 +14,7 @@ __all__ = [
     "CompiledScene",
     "KernelContest",
     "Rendering",
+    "aovs",
     "camera_rays",
     "camera_rays_through",
     "cones",
@@ -21,6 +22,7 @@ __all__ = [
     "implicit_trouble",
     "matrix_trouble",
     "metals",
+    "plan",
     "points",
     "polygon_trouble",
     "render",
@@ -218,7 +220,7 @@ def aovs(
     """
 
 def plan(scene: CompiledScene) -> tuple[str, list[tuple[str, bool, str]]]:
-    """Tell the kernel that shades the scene, and rows of what, whether, and what follows."""
+    """Name the kernel that shades the scene, and tell rows of what, whether, and what follows."""
 
 def render(
     scene: CompiledScene,
