@@ -12,6 +12,7 @@ _Numbers: TypeAlias = float | NDArray[np.float64]
 __all__ = [
     "AcceleratorInfo",
     "CompiledScene",
+    "Interactions",
     "KernelContest",
     "Rendering",
     "aovs",
@@ -20,11 +21,13 @@ __all__ = [
     "cones",
     "first_hits",
     "implicit_trouble",
+    "interactions",
     "matrix_trouble",
     "metals",
     "plan",
     "points",
     "polygon_trouble",
+    "random_numbers",
     "render",
     "shape_area",
     "shape_bounds",
@@ -326,6 +329,7 @@ def polygon_trouble(
 def implicit_trouble(expression: str, min: Sequence[float], max: Sequence[float]) -> str | None:
     """Say what is wrong with an expression or its box; None if nothing is."""
 
+@final
 class Interactions:
     def __len__(self) -> int: ...
     def take(self, indices: NDArray[np.int64]) -> Interactions: ...

@@ -112,7 +112,8 @@ pub fn render_scene(
     match py.detach(|| render::render(scene, &*camera.0, chosen, &settings, &mut watcher)) {
         Ok(rendering) => Ok(Rendering(rendering)),
         Err(RenderError::Interrupted) => {
-            Err(watcher.raised.unwrap_or_else(|| PyRuntimeError::new_err("the render was interrupted")))
+            let raised = written.as_ref().and_then(Written::raised).or(watcher.raised);
+            Err(raised.unwrap_or_else(|| PyRuntimeError::new_err("the render was interrupted")))
         }
         Err(error) => Err(PyRuntimeError::new_err(error.to_string())),
     }
