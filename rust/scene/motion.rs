@@ -35,7 +35,7 @@ impl Geometry {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::accel::{Accelerator, BruteForce};
+    use crate::accel::BruteForce;
     use crate::scene::fixtures::{rectangle, shape};
     use crate::scene::{Copies, Group, Matrix, Shape};
     use crate::simd::Level;

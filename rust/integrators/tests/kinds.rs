@@ -154,7 +154,7 @@ fn gloss_is_followed_and_matt_light_is_not() {
 fn a_point_light_is_asked_by_all() {
     let point = PointLight { position: DVec3::new(1.0, 0.0, 1.0), intensity: Rgb::ONE };
     let lights: Vec<Arc<dyn Light>> = vec![Arc::new(point)];
-    let lit = scene(SceneDescription { shapes: vec![shape(floor(), [0.5; 3], 0.0)], lights, ..Default::default() });
+    let lit = scene(SceneDescription { shapes: vec![shape(floor(), [0.5; 3], 0.0)], lights });
     let expected = 0.5 * 0.353_553_390_593_273_73 / PI;
     let each: [&dyn Integrator; 5] =
         [&Path::default(), &Direct::default(), &RayCast::default(), &Whitted::default(), &Distributed::default()];

@@ -73,7 +73,7 @@ fn light_is_dimmed_by_veils_on_its_way() {
     let point = PointLight { position: DVec3::new(0.0, 0.0, 4.0), intensity: Rgb::ONE };
     let floor = shape(sheet(0.0), [0.5; 3], 0.0);
     let shapes = vec![veil(2.0, 0.4), veil(3.0, 0.5), floor];
-    let lit = scene(SceneDescription { shapes, lights: vec![Arc::new(point)], ..Default::default() });
+    let lit = scene(SceneDescription { shapes, lights: vec![Arc::new(point)] });
     let ray = Ray::new(DVec3::new(0.0, -0.6, 0.8), DVec3::new(0.0, 0.6, -0.8));
     let expected = 0.5 / PI / 16.0 * 0.6 * 0.5;
     let (mean, _) = radiance(&lit, &Path::default(), ray, 50);

@@ -132,7 +132,7 @@ fn a_point_and_the_sky_light_a_floor() {
     let floor = || vec![shape(rectangle([-9.0, -9.0, 0.0], [18.0, 0.0, 0.0], [0.0, 18.0, 0.0]), [0.5; 3], 0.0)];
     let ray = Ray::new(DVec3::new(0.0, 0.3, 0.4), DVec3::new(0.0, -0.6, -0.8));
     let point = PointLight { position: DVec3::new(1.0, 0.0, 1.0), intensity: Rgb::ONE };
-    let points = scene(SceneDescription { shapes: floor(), lights: vec![Arc::new(point)], ..Default::default() });
+    let points = scene(SceneDescription { shapes: floor(), lights: vec![Arc::new(point)] });
     let expected = 0.5 * 0.353_553_390_593_273_73 / std::f64::consts::PI;
     assert_radiance(&points, &Path::default(), ray, 10, expected);
     let sky = scene(SceneDescription {
@@ -172,12 +172,16 @@ fn every_kernel_gives_the_same_bits() {
         shapes: vec![shape(floor, [0.7, 0.1, 0.4], 0.3)],
         lights: vec![Arc::new(lamp), Arc::new(ConstantEnvironment { radiance: Rgb::new(0.1, 0.2, 0.3) })],
     };
-    for scene in [room, furnace(0.9, 0.3), scene(open)] {
+    // From where the camera is, and from within the furnace.
+    let within = ANYWHERE.origin;
+    for (scene, from) in [(room, None), (furnace(0.9, 0.3), Some(within)), (scene(open), None)] {
         assert_eq!(scene.plan().kernel(), Kernel::Plain);
         let samples: Vec<_> = (0..4000u32)
             .map(|i| {
                 let film = [f64::from(i % 8) + 0.3, f64::from(i / 8 % 8) + 0.6];
-                CameraSample { ray: camera.ray(film, [0.5; 2], 0.0).ray, sampler: Sampler::new(5, i % 64, i / 64) }
+                let ray = camera.ray(film, [0.5; 2], 0.0).ray;
+                let ray = Ray { origin: from.unwrap_or(ray.origin), ..ray };
+                CameraSample { ray, sampler: Sampler::new(5, i % 64, i / 64) }
             })
             .collect();
         let path = Path::default();
