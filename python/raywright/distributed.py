@@ -3,8 +3,8 @@
 A pass over the picture is cut into pieces, each some tiles and the samples of one pass, that take some tenths
 of a second each. Where all pixels get the same samples, pieces of later passes are worked on before the first
 are done, so that no worker waits for another; where samples go by the error of those before, pass follows
-pass. Pieces are added in the order of their samples, whenever they come, so a picture has the bits that it has
-on one machine.
+pass. Pieces are added in the order of their samples, whenever they come, so a picture has the bits that it
+has on one machine.
 """
 
 import concurrent.futures

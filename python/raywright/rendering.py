@@ -143,13 +143,14 @@ def render(
     if checkpoint is not None:
         if not isinstance(checkpoint, str | os.PathLike):
             raise TypeError(f"checkpoint must be a path, got {type(checkpoint).__name__}")
-        of = _identity(scene, camera, integrator, seed, adaptive, clamp, sampler, filter)
-        kept = Checkpoints(checkpoint, of)
+        identity = _identity(scene, camera, integrator, seed, adaptive, clamp, sampler, filter)
+        kept = Checkpoints(checkpoint, identity)
     rendering = _begun(kept, camera, threads, adaptive, clamp, sampler)
     if executor is None:
         # Here, so that what there is to warn of is told to the caller.
         scene._compiled()
     limits = (samples, error, seconds)
+    of = (scene, camera, integrator, seed, sampler, filter)
 
     def run(report: Report | None) -> list[str]:
         told: list[str] = []
