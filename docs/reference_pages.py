@@ -1,0 +1,112 @@
+"""A Sphinx extension that writes the reference: a page for each part of the package, from its own names.
+
+What stands in ``raywright.__all__`` is put to the page of the module or subpackage that it comes from, whose
+docstring heads the page; modules among the names have pages of their own. So a new name needs nothing here.
+"""
+
+import inspect
+import sys
+from collections import defaultdict
+from importlib import import_module
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import raywright
+from raywright import trimesh_ray
+
+# Modules that users import by themselves.
+_APART = {"trimesh_ray": trimesh_ray}
+# Where members of a class come from that is not the package's own business.
+_STRANGERS = "tuple, dict, object, Exception, ABC, Generic"
+_CORE = "the core"
+_HEADINGS = {"aovs": "What is seen first", "io": "Files", "rng": "Random numbers"}
+
+
+def parts() -> dict[str, tuple[str, str, list[str]]]:
+    """Return by file name what each page holds: a heading, a text, and full names."""
+    grouped: dict[str, list[str]] = defaultdict(list)
+    found: dict[str, tuple[str, str, list[str]]] = {}
+    named = {name: getattr(raywright, name) for name in raywright.__all__}
+    for name, value in sorted((named | _APART).items(), key=lambda item: item[0].lower()):
+        if isinstance(value, ModuleType):
+            names = [f"{value.__name__}.{one}" for one in value.__all__]
+            found[name] = (f"raywright.{name}", _text(value), names)
+        else:
+            grouped[_home(name, value)].append(f"raywright.{name}")
+    for home, names in grouped.items():
+        module = None if home == _CORE else import_module(f"raywright.{home}")
+        heading = _HEADINGS.get(home, home.replace("_", " ").capitalize())
+        found[f"about_{home.replace(' ', '_')}"] = (heading, _text(module), names)
+    return found
+
+
+def _home(name: str, value: Any) -> str:
+    """Return the first module under the package that a thing comes from."""
+    origin = getattr(value, "__module__", None)
+    if origin is None:
+        # Constants do not know where they come from: it is the module that has them and has the longest name.
+        having = (path for path, module in sys.modules.items() if vars(module).get(name) is value)
+        origin = max((path for path in having if path.startswith("raywright.")), key=len, default="")
+    names = origin.split(".")
+    return names[1] if names[0] == "raywright" and len(names) > 1 and names[1] != "_core" else _CORE
+
+
+def _text(module: ModuleType | None) -> str:
+    if module is None:
+        return "What the compiled part of the package says of itself."
+    return inspect.getdoc(module) or ""
+
+
+def _entry(name: str) -> str:
+    module, _, last = name.rpartition(".")
+    value = getattr(import_module(module), last)
+    lines = [f".. py:currentmodule:: {module}", ""]
+    if inspect.isclass(value):
+        lines += [f".. autoclass:: {name}", "   :members:", f"   :inherited-members: {_STRANGERS}"]
+    elif inspect.isroutine(value):
+        lines += [f".. autofunction:: {name}"]
+    else:
+        lines += [f".. autodata:: {name}"]
+    return "\n".join([*lines, ""])
+
+
+def _underlined(text: str, line: str) -> str:
+    return f"{text}\n{line * len(text)}\n"
+
+
+def write(folder: Path) -> None:
+    """Write the pages, and take away those of names that are no more."""
+    pages = parts()
+    folder.mkdir(exist_ok=True)
+    texts = {
+        file: "\n".join([_underlined(heading, "="), text, "", *map(_entry, names)])
+        for file, (heading, text, names) in pages.items()
+    }
+    index = [_underlined("Reference", "="), "Everything public, part by part, from its docstrings.", ""]
+    for file, (_, _, names) in sorted(pages.items(), key=lambda page: page[1][0].removeprefix("raywright.")):
+        index.append(f":doc:`{file}`")
+        links = (f":py:obj:`{name.rpartition('.')[2]} <{name}>`" for name in names)
+        index.append(f"    {', '.join(links)}\n")
+    index += [".. toctree::", "   :hidden:", "", *(f"   {file}" for file in sorted(pages))]
+    texts["index"] = "\n".join([*index, ""])
+    for old in folder.glob("*.rst"):
+        if old.stem not in texts:
+            old.unlink()
+    for file, text in texts.items():
+        path = folder / f"{file}.rst"
+        # What did not change keeps its time, so that it is not read anew.
+        if not path.exists() or path.read_text(encoding="utf-8") != text:
+            path.write_text(text, encoding="utf-8")
+
+
+def _skipped(_app: Any, _what: str, _name: str, value: Any, skip: bool, _options: Any) -> bool | None:
+    """Leave out what named tuples say of their fields, which their own docstrings say better."""
+    return True if str(getattr(value, "__doc__", "")).startswith("Alias for field number") else None
+
+
+def setup(app: Any) -> dict[str, bool]:
+    """Write the reference before pages are read."""
+    app.connect("builder-inited", lambda app: write(Path(app.srcdir) / "reference"))
+    app.connect("autodoc-skip-member", _skipped)
+    return {"parallel_read_safe": True, "parallel_write_safe": True}
