@@ -156,24 +156,9 @@ def render(
         told: list[str] = []
         try:
             if executor is not None:
-                told += _elsewhere(
-                    rendering,
-                    (scene, camera, integrator, seed, sampler, filter),
-                    executor,
-                    limits,
-                    threads,
-                    report,
-                    kept,
-                )
+                told += _elsewhere(rendering, of, executor, limits, threads, report, kept)
             if executor is None or told:
-                _here(
-                    rendering,
-                    (scene, camera, integrator, seed, sampler, filter),
-                    limits,
-                    threads,
-                    report,
-                    kept,
-                )
+                _here(rendering, of, limits, threads, report, kept)
         finally:
             # Nothing is kept of a render that could not begin.
             if kept is not None and rendering.aim:
