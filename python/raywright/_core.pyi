@@ -10,20 +10,27 @@ _Floats: TypeAlias = NDArray[np.floating[Any]]
 _Numbers: TypeAlias = float | NDArray[np.float64]
 
 __all__ = [
+    "VERSION",
     "AcceleratorInfo",
     "CompiledScene",
+    "Interactions",
     "KernelContest",
     "Rendering",
+    "aovs",
+    "batch_for",
     "camera_rays",
     "camera_rays_through",
     "cones",
+    "expose",
     "first_hits",
     "implicit_trouble",
+    "interactions",
     "matrix_trouble",
     "metals",
+    "plan",
     "points",
     "polygon_trouble",
-    "render",
+    "random_numbers",
     "shape_area",
     "shape_bounds",
     "simd",
@@ -180,8 +187,20 @@ class CompiledScene:
 
 @final
 class Rendering:
-    """A finished render."""
+    """A render: its picture so far, and what it takes to go on with it."""
 
+    def __new__(
+        cls, camera: Any, threads: int | None, adaptive: bool, clamp: float | None, sampler: Any
+    ) -> Rendering: ...
+    @staticmethod
+    def from_bytes(
+        data: bytes, camera: Any, threads: int | None, adaptive: bool, clamp: float | None, sampler: Any
+    ) -> Rendering:
+        """From what `to_bytes` gave; a ValueError says why bytes are not that, whoever made them."""
+    @staticmethod
+    def most_bytes(camera: Any, adaptive: bool) -> int:
+        """Return how many bytes `to_bytes` gives at most."""
+    def to_bytes(self) -> bytes: ...
     @property
     def rgb(self) -> NDArray[np.float32]: ...
     @property
@@ -208,6 +227,84 @@ class Rendering:
     @property
     def clamped(self) -> tuple[int, float]:
         """Samples that were clamped, and the share of the picture's radiance that this took."""
+    def go_on(
+        self,
+        scene: CompiledScene,
+        camera: Any,
+        integrator: Any,
+        described: Any,
+        seed: int,
+        threads: int | None,
+        samples: int | None,
+        error: float | None,
+        seconds: float | None,
+        pause: float | None,
+        progress: Callable[[float, int, float], None] | None,
+        sampler: Any,
+        filter: Any,
+    ) -> bool:
+        """Go on until the first of `samples` (per pixel), `error` (relMSE) or `seconds` is met: True.
+
+        False if that took more than `pause` seconds: what has been begun is done then, and it can go on.
+        ``progress`` is called with (seconds, samples done, error estimate or NaN) after every pass.
+        Signals are checked ten times a second or more; an exception raised by a handler, or by ``progress``,
+        ends the render at once and is passed on. Even then it can be gone on with.
+        """
+    @property
+    def aim(self) -> int:
+        """Samples after the pass that is being worked on; as many as there are if none is."""
+    @property
+    def tiles(self) -> int:
+        """How many tiles the picture has."""
+    @property
+    def block(self) -> int:
+        """Samples that are added up by themselves."""
+    @property
+    def appends(self) -> bool:
+        """Whether samples that fill blocks can be requested before those that come first are there."""
+    @property
+    def rate(self) -> float:
+        """Seconds that a sample of all pixels took in the last pass; 0 before there was one."""
+    def next_aim(
+        self,
+        samples: int | None,
+        error: float | None,
+        seconds: float | None,
+        after: int,
+        elapsed: float,
+        rate: float,
+    ) -> int:
+        """Return the samples after the pass that follows `after` samples, at that time and rate.
+
+        `after` itself is the end.
+        """
+    def begin(self, aim: int) -> None:
+        """Begin the pass to so many samples, or go on with it."""
+    def end(self, seconds: float) -> tuple[float, int, float]:
+        """End the pass, for which all samples are there: the row that it adds to the history."""
+    def request(self, first: int, count: int, before: int | None, samples: int) -> bytes:
+        """Ask `expose` for the samples of some tiles up to a number.
+
+        With ``before``, a multiple of `block`, for those that follow so many others, whether these are there
+        or not.
+        """
+    def take(self, answer: bytes) -> None:
+        """Add the samples that `expose` took."""
+
+VERSION: str
+
+def expose(
+    scene: CompiledScene,
+    camera: Any,
+    integrator: Any,
+    described: Any,
+    seed: int,
+    threads: int | None,
+    request: bytes,
+    sampler: Any,
+    filter: Any,
+) -> bytes:
+    """Take the samples that a request of `Rendering.request` wants. One thread is the calling one."""
 
 def aovs(
     scene: CompiledScene, camera: Any, names: list[str], samples: int, seed: int, threads: int | None
@@ -218,30 +315,10 @@ def aovs(
     """
 
 def plan(scene: CompiledScene) -> tuple[str, list[tuple[str, bool, str]]]:
-    """Tell the kernel that shades the scene, and rows of what, whether, and what follows."""
+    """Name the kernel that shades the scene, and tell rows of what, whether, and what follows."""
 
-def render(
-    scene: CompiledScene,
-    camera: Any,
-    integrator: Any,
-    described: Any,
-    samples: int | None,
-    error: float | None,
-    seconds: float | None,
-    seed: int,
-    threads: int | None,
-    adaptive: bool,
-    clamp: float | None,
-    progress: Callable[[float, int, float], None] | None,
-    sampler: Any,
-    filter: Any,
-) -> Rendering:
-    """Render until the first of `samples` (per pixel), `error` (relMSE) or `seconds` is met.
-
-    ``progress`` is called with (seconds, samples done, error estimate or NaN) after every pass.
-    Signals are checked ten times a second or more; an exception raised by a handler, or by ``progress``, ends
-    the render at once and is passed on.
-    """
+def batch_for(samples: int | None) -> int:
+    """Return the samples of a batch for a number of samples a pixel, if that is known."""
 
 def camera_rays(
     camera: Any, offsets: NDArray[np.float64], single: bool, lens: NDArray[np.float64], time: _Numbers
@@ -324,6 +401,7 @@ def polygon_trouble(
 def implicit_trouble(expression: str, min: Sequence[float], max: Sequence[float]) -> str | None:
     """Say what is wrong with an expression or its box; None if nothing is."""
 
+@final
 class Interactions:
     def __len__(self) -> int: ...
     def take(self, indices: NDArray[np.int64]) -> Interactions: ...

@@ -144,6 +144,7 @@ def _picture(scene: Scene, camera: Camera, options: argparse.Namespace) -> None:
         progress=not options.quiet,
         adaptive=options.adaptive,
         clamp=options.clamp,
+        checkpoint=options.checkpoint,
     )
     image.save(options.output)
     if not options.quiet:
@@ -316,6 +317,9 @@ def _add_picture(
     )
     verb.add_argument(
         "--clamp", metavar="L", type=_number(float), help="radiance to dim brighter samples to: biased"
+    )
+    verb.add_argument(
+        "--checkpoint", metavar="FILE", help="keep the render in a file, and go on from it if it is there"
     )
     verb.add_argument("--quiet", action="store_true", help="print nothing but errors")
 

@@ -249,8 +249,8 @@ def power_heuristic(pdf: ArrayLike, other: ArrayLike) -> Floats:
     0.
     """
     mine, others = np.broadcast_arrays(np.asarray(pdf, np.float64), np.asarray(other, np.float64))
-    ratio = np.divide(others, mine, out=np.full(mine.shape, np.inf), where=mine > 0)
     with np.errstate(over="ignore"):
+        ratio = np.divide(others, mine, out=np.full(mine.shape, np.inf), where=mine > 0)
         return np.asarray(1.0 / (1.0 + ratio * ratio))
 
 

@@ -1,15 +1,25 @@
 """From a scene and a camera to a picture."""
 
+import os
+import warnings as python_warnings
+from collections.abc import Iterable
+from concurrent.futures import Executor
+from typing import Any
+
 import numpy as np
+from numpy.typing import NDArray
 
 from . import _core
+from .aovs import aovs, names_of
 from .arrays import integer, positive
 from .cameras import AnyCamera
+from .checkpoints import Checkpoints
 from .filters import BoxFilter, Filter
+from .identity import digest
 from .image import HISTORY, ErrorEstimate, Image
 from .integrators import AnyIntegrator, Path, check_integrator
 from .progress import Report, bar
-from .samplers import Independent, Sampler
+from .samplers import Independent, Sampler, with_budget
 from .scene import Scene
 
 _PATH = Path()
@@ -33,6 +43,9 @@ def render(
     clamp: float | None = None,
     sampler: Sampler = _SAMPLER,
     filter: Filter = _FILTER,
+    checkpoint: str | os.PathLike[str] | None = None,
+    executor: Executor | None = None,
+    aov: str | Iterable[str] = (),
 ) -> Image:
     """Render a picture, until the first of the limits that are given is met.
 
@@ -55,7 +68,7 @@ def render(
         Picks the random numbers, 0 to 2**64 - 1. The same seed and samples give the same picture, bit for
         bit, for any number of threads.
     threads : int, optional
-        How many to use; all cores if not given.
+        How many to use; all cores if not given. With an executor, for each piece of its work; 1 if not given.
     progress : bool
         Whether to show a bar on stderr.
     adaptive : bool
@@ -69,6 +82,20 @@ def render(
         Where the random numbers come from. Samples are rounded up to whole batches.
     filter : BoxFilter, TriangleFilter, GaussianFilter, MitchellFilter, BlackmanHarrisFilter or LanczosFilter
         What part of the film a pixel is the mean of.
+    checkpoint : str or path, optional
+        A file that is kept up to date with the render: every minute, at its end, and when it is interrupted.
+        If there is such a file, the render goes on from it, with all limits counted from its first start, and
+        ends with the same bits as one that was never interrupted, even by ``kill -9``. The file stays when
+        the render is done, so that it can be taken further by other limits. That it cannot be written is told
+        in ``image.warnings`` and as a RuntimeWarning, and costs nothing else.
+    executor : concurrent.futures.Executor, optional
+        Who does the work: a ``ProcessPoolExecutor``, ``client.get_executor()`` of `dask.distributed`, the
+        pool of `mpi4py.futures`, or any other. The picture has the same bits as without. What is lost with a
+        worker is done again; if the executor breaks, the rest is rendered here, and ``image.warnings`` says
+        so. Scene, camera and integrator are pickled, and compiled once in each process.
+    aov : str or several, optional
+        What is seen first beside the picture, by the names in `AOVS`: ``image.aov["depth"]`` and so on, as
+        `aovs` gives it.
 
     Returns
     -------
@@ -78,11 +105,13 @@ def render(
     Raises
     ------
     TypeError
-        If an argument is of the wrong kind.
+        If an argument is of the wrong kind, or cannot be pickled for the executor.
     ValueError
-        If a number is out of its range.
+        If a number is out of its range; if `checkpoint` is damaged, or of another scene or other settings.
+    OSError
+        If `checkpoint` cannot be read, or its folder is missing.
     KeyboardInterrupt
-        At once, when Ctrl-C is pressed.
+        At once, when Ctrl-C is pressed; a checkpoint is written before.
     """
     for name, value, kind in (
         ("scene", scene, Scene),
@@ -106,37 +135,148 @@ def render(
         samples = _DEFAULT_SAMPLES
     seed = integer("seed", seed, 0, 2**64 - 1)
     threads = None if threads is None else integer("threads", threads, 1)
-    compiled = scene._compiled()
+    if executor is not None and not isinstance(executor, Executor):
+        raise TypeError(f"executor must be a concurrent.futures.Executor, got {type(executor).__name__}")
+    names = names_of(aov)
+    sampler = with_budget(sampler, samples)
+    kept = None
+    if checkpoint is not None:
+        if not isinstance(checkpoint, str | os.PathLike):
+            raise TypeError(f"checkpoint must be a path, got {type(checkpoint).__name__}")
+        identity = _identity(scene, camera, integrator, seed, adaptive, clamp, sampler, filter)
+        kept = Checkpoints(checkpoint, identity)
+    rendering = _begun(kept, camera, threads, adaptive, clamp, sampler)
+    if executor is None:
+        # Here, so that what there is to warn of is told to the caller.
+        scene._compiled()
     limits = (samples, error, seconds)
+    of = (scene, camera, integrator, seed, sampler, filter)
 
-    def run(report: Report | None) -> _core.Rendering:
-        return _core.render(
-            compiled,
-            camera,
-            integrator,
-            scene,
-            *limits,
-            seed,
-            threads,
-            adaptive,
-            clamp,
-            report,
-            sampler,
-            filter,
-        )
+    def run(report: Report | None) -> list[str]:
+        told: list[str] = []
+        try:
+            if executor is not None:
+                told += _elsewhere(rendering, of, executor, limits, threads, report, kept)
+            if executor is None or told:
+                _here(rendering, of, limits, threads, report, kept)
+        finally:
+            # Nothing is kept of a render that could not begin.
+            if kept is not None and rendering.aim:
+                kept.write(rendering)
+        return told + ([kept.trouble] if kept is not None and kept.trouble else [])
 
-    if not progress:
-        return _image(run(None), adaptive, clamp)
-    with bar(*limits) as report:
-        done = run(report)
-    return _image(done, adaptive, clamp)
+    if progress:
+        with bar(*limits) as report:
+            problems = run(report)
+    else:
+        problems = run(None)
+    seen: dict[str, NDArray[Any]] = {"samples": rendering.counts} if adaptive else {}
+    if names:
+        seen |= aovs(scene, camera, names, seed=seed, threads=threads)
+    return _image(rendering, clamp, seen, problems)
 
 
-def _image(done: _core.Rendering, adaptive: bool, clamp: float | None) -> Image:
+_Limits = tuple[int | None, float | None, float | None]
+_Of = tuple[Scene, AnyCamera, AnyIntegrator, int, Sampler, Filter]
+
+
+def _here(
+    rendering: _core.Rendering,
+    of: _Of,
+    limits: _Limits,
+    threads: int | None,
+    report: Report | None,
+    kept: Checkpoints | None,
+) -> None:
+    """Render in this process."""
+    scene, camera, integrator, seed, sampler, filter = of
+    compiled = scene._compiled()
+    how = (compiled, camera, integrator, scene, seed, threads, *limits)
+    while not rendering.go_on(*how, None if kept is None else kept.wait(), report, sampler, filter):
+        if kept is not None:
+            kept.write_beside(rendering)
+
+
+def _elsewhere(
+    rendering: _core.Rendering,
+    of: _Of,
+    executor: Executor,
+    limits: _Limits,
+    threads: int | None,
+    report: Report | None,
+    kept: Checkpoints | None,
+) -> list[str]:
+    """Render by an executor; if it breaks, return what there is to say of that."""
+    # Who renders here does not wait for the import.
+    from .distributed import BrokenError, Distribution
+    from .worker import Job
+
+    def rest() -> None:
+        if kept is not None and kept.wait() == 0:
+            kept.write_beside(rendering)
+
+    distribution = Distribution(rendering, Job(*of), executor, limits, threads or 1)
+    try:
+        distribution.run(report, rest)
+    except BrokenError as error:
+        return [f"the executor broke, and the rest was rendered here: {error}"]
+    finally:
+        for message in distribution.told:
+            python_warnings.warn(message, RuntimeWarning, stacklevel=4)
+    return []
+
+
+def _identity(
+    scene: Scene,
+    camera: AnyCamera,
+    integrator: AnyIntegrator,
+    seed: int,
+    adaptive: bool,
+    clamp: float | None,
+    sampler: Sampler,
+    filter: Filter,
+) -> dict[str, str | int | float | bool | None]:
+    """Return all that the bits of a picture depend on, by names that users know."""
+    return {
+        "version": _core.VERSION,
+        "width": camera.width,
+        "height": camera.height,
+        "scene": digest(scene),
+        "camera": digest(camera),
+        "integrator": digest(integrator),
+        "seed": seed,
+        "adaptive": adaptive,
+        "clamp": clamp,
+        "sampler": repr(sampler),
+        "filter": repr(filter),
+    }
+
+
+def _begun(
+    kept: Checkpoints | None,
+    camera: AnyCamera,
+    threads: int | None,
+    adaptive: bool,
+    clamp: float | None,
+    sampler: Sampler,
+) -> _core.Rendering:
+    """Return an empty render, or that of a checkpoint."""
+    film = None if kept is None else kept.read(_core.Rendering.most_bytes(camera, adaptive))
+    if kept is None or film is None:
+        return _core.Rendering(camera, threads, adaptive, clamp, sampler)
+    try:
+        return _core.Rendering.from_bytes(film, camera, threads, adaptive, clamp, sampler)
+    except ValueError as error:
+        kept.refuse(f"is damaged: {error}")
+
+
+def _image(
+    done: _core.Rendering, clamp: float | None, aov: dict[str, NDArray[Any]], told: list[str]
+) -> Image:
     history = np.empty(len(done.history), HISTORY)
     for i, name in enumerate(HISTORY.names or ()):
         history[name] = done.history[:, i]
-    warnings = []
+    warnings = list(told)
     if done.dropped:
         warnings.append(f"{_samples(done.dropped)} not finite or negative, and count as black")
     clamped, taken = done.clamped
@@ -158,7 +298,7 @@ def _image(done: _core.Rendering, adaptive: bool, clamp: float | None) -> Image:
         done.samples,
         tuple(warnings),
         biased=clamped > 0,
-        aov={"samples": done.counts} if adaptive else {},
+        aov=aov,
     )
 
 

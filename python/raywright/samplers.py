@@ -5,8 +5,9 @@ differ in their noise only. Those with a `batch` place so many consecutive sampl
 regard to each other; batches are independent, and the spread between them tells the error.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
+from . import _core
 from .arrays import integer
 
 _MOST = 64
@@ -131,3 +132,10 @@ def _batch(batch: int | None) -> int | None:
     if size & (size - 1):
         raise ValueError(f"batch must be a power of two, got {batch}")
     return size
+
+
+def with_budget(sampler: Sampler, samples: int | None) -> Sampler:
+    """Return the sampler with batches for so many samples a pixel, if it was given none."""
+    if isinstance(sampler, Independent) or sampler.batch is not None:
+        return sampler
+    return replace(sampler, batch=_core.batch_for(samples))

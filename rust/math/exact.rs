@@ -68,9 +68,7 @@ impl Terms {
     fn sum(&self) -> (f64, i32) {
         let terms = &self.factors[..self.count];
         let exponent = |f: &[Float; 3]| f[0].exponent + f[1].exponent + f[2].exponent;
-        let Some(low) = terms.iter().map(|(f, _)| exponent(f)).min() else {
-            return (0.0, 0);
-        };
+        let Some(low) = terms.iter().map(|(f, _)| exponent(f)).min() else { return (0.0, 0) };
         let high = terms.iter().map(|(f, _)| exponent(f)).max().unwrap_or(low);
         let mut sum = Accumulator::new((high - low) as u32);
         for (f, negative) in terms {
@@ -195,9 +193,7 @@ impl Accumulator {
                 (*w, carry) = (!*w).overflowing_add(u64::from(carry));
             }
         }
-        let Some(top) = words.iter().rposition(|&w| w != 0) else {
-            return (0.0, 0);
-        };
+        let Some(top) = words.iter().rposition(|&w| w != 0) else { return (0.0, 0) };
         let zeros = words[top].leading_zeros();
         let below = if top > 0 { words[top - 1] } else { 0 };
         let mut bits = words[top] << zeros | if zeros > 0 { below >> (64 - zeros) } else { 0 };

@@ -30,8 +30,11 @@ impl Frame {
     /// A frame whose z is the unit vector `normal`, and whose x lies along another vector as nearly as it can; any where that has no
     /// direction, or the normal's.
     pub fn along(normal: DVec3, x: DVec3) -> Self {
-        // What is left of unit vectors this short is rounding.
-        let flat = x.try_normalize().map(|x| x - normal * normal.dot(x)).filter(|flat| flat.length_squared() > 1e-24);
+        // By its largest coordinate first, lest squares vanish; what is left of unit vectors this short is rounding.
+        let flat = (x / x.abs().max_element())
+            .try_normalize()
+            .map(|x| x - normal * normal.dot(x))
+            .filter(|flat| flat.length_squared() > 1e-24);
         match flat.and_then(DVec3::try_normalize) {
             Some(tangent) => Self { tangent, bitangent: normal.cross(tangent), normal },
             None => Self::new(normal),
@@ -74,7 +77,7 @@ mod tests {
         let normal = DVec3::new(0.6, 0.0, 0.8);
         let f = Frame::along(normal, DVec3::new(1e-200, 3e-200, 2e-200));
         assert!((f.tangent.cross(f.bitangent) - normal).length() < 1e-15);
-        assert!(f.tangent.dot(normal).abs() < 1e-15 && f.bitangent.dot(DVec3::new(1.0, 3.0, 2.0)).abs() < 1e-15);
+        assert!(f.tangent.dot(normal).abs() < 1e-15 && f.bitangent.dot(DVec3::new(1.0, 3.0, 2.0)).abs() < 4e-15);
         for nowhere in [DVec3::ZERO, normal * 5.0, DVec3::NAN] {
             assert_eq!(Frame::along(normal, nowhere).tangent, Frame::new(normal).tangent);
         }

@@ -69,11 +69,15 @@ mod _core {
     #[pymodule_export]
     use super::random::random_numbers;
     #[pymodule_export]
-    use super::render::{Rendering, render_scene};
+    use super::render::{Rendering, expose};
     #[pymodule_export]
     use super::report::KernelContest;
+    #[pymodule_export]
+    use super::samplers::batch_for;
     #[pymodule_export]
     use super::shapes::{matrix_trouble, shape_area, shape_bounds};
     #[pymodule_export]
     use super::simd;
+    #[pymodule_export]
+    const VERSION: &str = env!("CARGO_PKG_VERSION");
 }

@@ -1,9 +1,11 @@
 //! Scenes to pictures.
 
 use numpy::{PyArray2, PyArray3, PyArrayMethods};
-use pyo3::exceptions::PyRuntimeError;
+use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
+use pyo3::types::PyBytes;
 use std::ops::ControlFlow;
+use std::time::{Duration, Instant};
 
 use super::cameras::AnyCamera;
 use super::integrators::AnyIntegrator;
@@ -11,14 +13,56 @@ use super::query::CompiledScene;
 use super::samplers;
 use super::written::Written;
 use crate::integrators::Integrator;
-use crate::render::{self, HistoryRow, Progress, RenderError, Settings, Until};
+use crate::render::{self, HistoryRow, Malformed, Progress, RenderError, Request, Settings, Until};
+use crate::workers::pool;
 
-/// A finished render.
-#[pyclass(frozen, module = "raywright._core")]
+/// A render: its picture so far, and what it takes to go on with it.
+#[pyclass(module = "raywright._core")]
 pub struct Rendering(render::Rendering);
 
 #[pymethods]
 impl Rendering {
+    #[new]
+    fn new(
+        camera: AnyCamera,
+        threads: Option<usize>,
+        adaptive: bool,
+        clamp: Option<f64>,
+        sampler: &Bound<'_, PyAny>,
+    ) -> PyResult<Self> {
+        let cores = pool(threads).map_err(PyRuntimeError::new_err)?.current_num_threads();
+        let settings = Settings { adaptive, clamp, sampler: samplers::sampler(sampler)?, ..Settings::default() };
+        Ok(Self(render::Rendering::new(settings.film(&*camera.0, cores))))
+    }
+
+    /// From what `to_bytes` gave; a `ValueError` says why bytes are not that.
+    #[staticmethod]
+    fn from_bytes(
+        py: Python<'_>,
+        data: &[u8],
+        camera: AnyCamera,
+        threads: Option<usize>,
+        adaptive: bool,
+        clamp: Option<f64>,
+        sampler: &Bound<'_, PyAny>,
+    ) -> PyResult<Self> {
+        let pool = pool(threads).map_err(PyRuntimeError::new_err)?;
+        let (width, height) = (camera.0.width(), camera.0.height());
+        let batch = samplers::sampler(sampler)?.batch();
+        let read = || render::Rendering::from_bytes(data, width, height, batch, adaptive, clamp);
+        py.detach(|| pool.install(read)).map(Self).map_err(malformed)
+    }
+
+    /// How many bytes `to_bytes` gives at most.
+    #[staticmethod]
+    fn most_bytes(camera: AnyCamera, adaptive: bool) -> usize {
+        render::Rendering::most_bytes(camera.0.width(), camera.0.height(), adaptive)
+    }
+
+    fn to_bytes<'py>(&self, py: Python<'py>) -> Bound<'py, PyBytes> {
+        PyBytes::new(py, &py.detach(|| self.0.to_bytes()))
+    }
+
     #[getter]
     fn rgb<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f32>>> {
         self.picture(py, self.0.rgb())
@@ -62,6 +106,103 @@ impl Rendering {
     fn clamped(&self) -> (u64, f64) {
         self.0.film.clamped()
     }
+
+    #[getter]
+    fn aim(&self) -> u32 {
+        self.0.aim()
+    }
+    #[getter]
+    fn tiles(&self) -> usize {
+        self.0.film.tile_count()
+    }
+    #[getter]
+    fn block(&self) -> u32 {
+        self.0.film.block()
+    }
+    #[getter]
+    fn appends(&self) -> bool {
+        self.0.film.appends()
+    }
+    #[getter]
+    fn rate(&self) -> f64 {
+        self.0.rate()
+    }
+
+    fn next_aim(
+        &self,
+        samples: Option<u32>,
+        error: Option<f64>,
+        seconds: Option<f64>,
+        after: u32,
+        elapsed: f64,
+        rate: f64,
+    ) -> u32 {
+        self.0.next_aim(&Until { samples, error, seconds }, after, elapsed, rate)
+    }
+
+    fn begin(&mut self, py: Python<'_>, aim: u32) -> PyResult<()> {
+        let pool = pool(None).map_err(PyRuntimeError::new_err)?;
+        py.detach(|| pool.install(|| self.0.begin(aim)));
+        Ok(())
+    }
+
+    fn end(&mut self, py: Python<'_>, seconds: f64) -> PyResult<(f64, u32, f64)> {
+        let pool = pool(None).map_err(PyRuntimeError::new_err)?;
+        let row = py.detach(|| pool.install(|| self.0.end(seconds)));
+        Ok((row.seconds, row.samples, row.error))
+    }
+
+    fn request<'py>(
+        &self,
+        py: Python<'py>,
+        first: usize,
+        count: usize,
+        before: Option<u32>,
+        samples: u32,
+    ) -> PyResult<Bound<'py, PyBytes>> {
+        let film = &self.0.film;
+        let tiles = first..first.saturating_add(count);
+        if tiles.end > film.tile_count() || before.is_some_and(|b| !film.appends() || !b.is_multiple_of(film.block())) {
+            return Err(PyValueError::new_err("request must be of tiles of the film, and before of whole blocks"));
+        }
+        Ok(PyBytes::new(py, &self.0.request(tiles, before, samples)))
+    }
+
+    fn take(&mut self, answer: &[u8]) -> PyResult<()> {
+        self.0.take(answer).map_err(malformed)
+    }
+
+    /// Goes on until the first of `samples` (per pixel), `error` (relMSE) or `seconds` is met, which it says, or until it has
+    /// been at it for `pause` seconds.
+    #[allow(clippy::too_many_arguments)]
+    fn go_on(
+        &mut self,
+        py: Python<'_>,
+        scene: &Bound<'_, CompiledScene>,
+        camera: AnyCamera,
+        integrator: &Bound<'_, PyAny>,
+        described: Py<PyAny>,
+        seed: u64,
+        threads: Option<usize>,
+        samples: Option<u32>,
+        error: Option<f64>,
+        seconds: Option<f64>,
+        pause: Option<f64>,
+        progress: Option<Py<PyAny>>,
+        sampler: &Bound<'_, PyAny>,
+        filter: &Bound<'_, PyAny>,
+    ) -> PyResult<bool> {
+        let chosen = Chosen::read(integrator, described, seed)?;
+        let (sampler, filter) = (samplers::sampler(sampler)?, samplers::filter(filter)?.into());
+        let until = Until { samples, error, seconds };
+        let settings = Settings { until, seed, threads, sampler, filter, ..Settings::default() };
+        let pause = pause.map(|pause| Instant::now() + Duration::from_secs_f64(pause.clamp(0.0, 1e9)));
+        let mut watcher = Watcher { progress, raised: None, pause, written: chosen.written() };
+        let (scene, rendering) = (&scene.get().0, &mut self.0);
+        let result =
+            py.detach(|| render::go_on(rendering, scene, &*camera.0, chosen.chosen(), &settings, &mut watcher));
+        result.map_err(|error| watcher.error(error))
+    }
 }
 
 impl Rendering {
@@ -71,61 +212,79 @@ impl Rendering {
     }
 }
 
-/// Renders until the first of `samples` (per pixel), `error` (relMSE) or `seconds` is met.
+fn malformed(why: Malformed) -> PyErr {
+    PyValueError::new_err(why.to_string())
+}
+
+/// An integrator of the package, or one that is written in Python.
+enum Chosen {
+    Own(Box<dyn Integrator>),
+    Written(Box<Written>),
+}
+
+impl Chosen {
+    fn read(integrator: &Bound<'_, PyAny>, described: Py<PyAny>, seed: u64) -> PyResult<Self> {
+        let base = integrator.py().import("raywright.integrator")?.getattr("Integrator")?;
+        if integrator.is_instance(&base)? {
+            return Ok(Self::Written(Box::new(Written::new(integrator.clone().unbind(), described, seed))));
+        }
+        Ok(Self::Own(integrator.extract::<AnyIntegrator>()?.0))
+    }
+
+    fn chosen(&self) -> &dyn Integrator {
+        match self {
+            Self::Own(own) => &**own,
+            Self::Written(written) => &**written,
+        }
+    }
+
+    fn written(&self) -> Option<&Written> {
+        if let Self::Written(written) = self { Some(written) } else { None }
+    }
+}
+
+/// Takes the samples that a request of `Rendering.request` wants, and gives what `Rendering.take` takes.
 #[pyfunction]
-#[pyo3(name = "render")]
 #[allow(clippy::too_many_arguments)]
-pub fn render_scene(
+pub fn expose(
     py: Python<'_>,
     scene: &Bound<'_, CompiledScene>,
     camera: AnyCamera,
     integrator: &Bound<'_, PyAny>,
     described: Py<PyAny>,
-    samples: Option<u32>,
-    error: Option<f64>,
-    seconds: Option<f64>,
     seed: u64,
     threads: Option<usize>,
-    adaptive: bool,
-    clamp: Option<f64>,
-    progress: Option<Py<PyAny>>,
+    request: &[u8],
     sampler: &Bound<'_, PyAny>,
     filter: &Bound<'_, PyAny>,
-) -> PyResult<Rendering> {
+) -> PyResult<Py<PyBytes>> {
+    let chosen = Chosen::read(integrator, described, seed)?;
+    let (sampler, filter) = (samplers::sampler(sampler)?, samplers::filter(filter)?.into());
+    let settings = Settings { seed, threads, sampler, filter, ..Settings::default() };
+    let mut watcher = Watcher { progress: None, raised: None, pause: None, written: chosen.written() };
     let scene = &scene.get().0;
-    let own = py.import("raywright.integrator")?.getattr("Integrator")?;
-    let (mut given, mut written) = (None, None);
-    if integrator.is_instance(&own)? {
-        written = Some(Written::new(integrator.clone().unbind(), described, seed));
-    } else {
-        given = Some(integrator.extract::<AnyIntegrator>()?.0);
-    }
-    let chosen: &dyn Integrator = match (&given, &written) {
-        (Some(given), _) => &**given,
-        (_, Some(written)) => written,
-        _ => unreachable!("it is one or the other"),
-    };
-    let until = Until { samples, error, seconds };
-    let (sampler, filter) = (samplers::sampler(sampler, samples)?, samplers::filter(filter)?.into());
-    let settings = Settings { until, seed, threads, adaptive, clamp, sampler, filter };
-    let mut watcher = Watcher { progress, raised: None, written: written.as_ref() };
-    match py.detach(|| render::render(scene, &*camera.0, chosen, &settings, &mut watcher)) {
-        Ok(rendering) => Ok(Rendering(rendering)),
-        Err(RenderError::Interrupted) => {
-            Err(watcher.raised.unwrap_or_else(|| PyRuntimeError::new_err("the render was interrupted")))
-        }
-        Err(error) => Err(PyRuntimeError::new_err(error.to_string())),
-    }
+    let request = Request::from_bytes(request, camera.0.width(), camera.0.height()).map_err(malformed)?;
+    let result = py.detach(|| request.expose(scene, &*camera.0, chosen.chosen(), &settings, &mut watcher));
+    let answer = result.map_err(|error| watcher.error(error))?;
+    Ok(PyBytes::new(py, &answer).unbind())
 }
 
 /// Passes on how a render goes to a Python function, and hears signals.
 struct Watcher<'a> {
     progress: Option<Py<PyAny>>,
     raised: Option<PyErr>,
+    /// When to leave the render for now.
+    pause: Option<Instant>,
     written: Option<&'a Written>,
 }
 
 impl Watcher<'_> {
+    /// What ended the render, for Python.
+    fn error(&mut self, error: RenderError) -> PyErr {
+        let raised = self.raised.take().or_else(|| self.written.and_then(Written::raised));
+        raised.unwrap_or_else(|| PyRuntimeError::new_err(error.to_string()))
+    }
+
     /// Goes on unless an exception is raised, which it keeps.
     fn unless_raised(&mut self, ask: impl FnOnce(Python<'_>, Option<&Py<PyAny>>) -> PyResult<()>) -> ControlFlow<()> {
         let raised = self.written.and_then(Written::raised);
@@ -153,5 +312,9 @@ impl Progress for Watcher<'_> {
 
     fn poll(&mut self) -> ControlFlow<()> {
         self.unless_raised(|py, _| py.check_signals())
+    }
+
+    fn pauses(&mut self) -> bool {
+        self.pause.is_some_and(|pause| Instant::now() >= pause)
     }
 }

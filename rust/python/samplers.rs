@@ -12,8 +12,15 @@ struct Batched {
     batch: Option<u32>,
 }
 
-/// Reads a sampler by the name of its class, for a number of samples a pixel, if that is known.
-pub fn sampler(sampler: &Bound<'_, PyAny>, samples: Option<u32>) -> PyResult<SamplerKind> {
+/// The samples of a batch for a number of samples a pixel, if that is known.
+#[pyfunction]
+#[pyo3(signature = (samples))]
+pub fn batch_for(samples: Option<u32>) -> u32 {
+    SamplerKind::Sobol(BatchSize::for_budget(samples)).batch()
+}
+
+/// Reads a sampler by the name of its class.
+pub fn sampler(sampler: &Bound<'_, PyAny>) -> PyResult<SamplerKind> {
     let name = sampler.get_type().name()?;
     let kind = match name.to_str()? {
         "Independent" => return Ok(SamplerKind::Independent),
@@ -24,7 +31,7 @@ pub fn sampler(sampler: &Bound<'_, PyAny>, samples: Option<u32>) -> PyResult<Sam
         other => return Err(PyTypeError::new_err(format!("sampler is a {other}, expected one of raywright's"))),
     };
     let size = match sampler.extract::<Batched>()?.batch {
-        None => BatchSize::for_budget(samples),
+        None => BatchSize::for_budget(None),
         Some(batch) => BatchSize::new(batch)
             .ok_or_else(|| PyValueError::new_err(format!("batch is {batch}, expected a power of two from 1 to 64")))?,
     };

@@ -44,12 +44,18 @@ impl<T: Clone> Cache<T> {
     }
 }
 
+/// What makes two pictures the same: where their numbers are, which channel is taken, whether it is decoded, and whether there are
+/// smaller ones.
+type PictureKey = (usize, Option<usize>, bool, bool);
+
+/// Width, height, and the points of a picture: of one channel, or of three.
+type Taken<T> = (usize, usize, Result<Vec<T>, Vec<[T; 3]>>);
+
 /// Reads textures.
 #[derive(Default)]
 pub struct Textures {
     textures: Cache<Arc<dyn Texture>>,
-    /// Pictures by where their numbers are, which channel is taken, whether it is decoded, and whether there are smaller ones.
-    pictures: RefCell<HashMap<(usize, Option<usize>, bool, bool), Known<Arc<Picture>>>>,
+    pictures: RefCell<HashMap<PictureKey, Known<Arc<Picture>>>>,
 }
 
 /// `raywright.UvTransform` or `raywright.ObjectTransform`.
@@ -208,10 +214,7 @@ impl Textures {
 
 /// A picture of one channel of an (H, W, C) array, or of its first three.
 fn picture(image: &Bound<'_, PyAny>, one: Option<usize>, decoded: bool, smaller: bool) -> PyResult<Picture> {
-    fn taken<T: numpy::Element + Copy>(
-        array: &PyReadonlyArrayDyn<'_, T>,
-        one: Option<usize>,
-    ) -> PyResult<(usize, usize, Result<Vec<T>, Vec<[T; 3]>>)> {
+    fn taken<T: numpy::Element + Copy>(array: &PyReadonlyArrayDyn<'_, T>, one: Option<usize>) -> PyResult<Taken<T>> {
         use numpy::PyUntypedArrayMethods;
         let &[height, width, count] = array.shape() else {
             return Err(PyValueError::new_err(format!("image has shape {:?}, expected (H, W, C)", array.shape())));

@@ -1,7 +1,9 @@
 //! Samples where they are needed.
 
+use super::bytes::{Malformed, Reader, Writer, check};
 use super::error::{Denominators, cross};
 use super::film::Film;
+use super::tile::FilmTile;
 use crate::optics::Rgb;
 use rayon::prelude::*;
 
@@ -63,6 +65,11 @@ impl Adaptive {
         if done < self.to { self.to } else { self.to.saturating_mul(2) }
     }
 
+    /// Mean samples of a pixel at the end of the epoch.
+    pub fn end(&self) -> u32 {
+        self.to
+    }
+
     /// Begins the next epoch if the last is over.
     pub fn prepare(&mut self, film: &mut Film) {
         if film.samples() == self.to {
@@ -76,6 +83,35 @@ impl Adaptive {
         let [start, end] = self.shares[tile][cell];
         let part = f64::from(samples - self.from) / f64::from(self.to - self.from);
         start + (f64::from(end - start) * part + dither(position, cell % 2)) as u32
+    }
+
+    /// What was decided, as bytes.
+    pub fn write(&self, to: &mut Writer) {
+        for number in [self.from, self.to, self.evidence] {
+            to.word(number);
+        }
+        for tile in &self.shares {
+            for end in 0..2 {
+                to.words(tile.iter().map(|share| share[end]));
+            }
+        }
+    }
+
+    /// Reads what was decided for the film, which has been read. If that fails, this plan is of no use.
+    pub fn read(&mut self, film: &Film, from: &mut Reader) -> Result<(), Malformed> {
+        (self.from, self.to, self.evidence) = (from.word()?, from.word()?, from.word()?);
+        let epoch = self.from..=self.to;
+        check(self.from < self.to && epoch.contains(&film.samples()), "an epoch ends before it begins")?;
+        check(self.to <= FilmTile::MOST, "an epoch has too many samples")?;
+        check(self.evidence > 0 && self.evidence <= self.to, "there is no evidence")?;
+        for (tile, shares) in film.tiles().iter().zip(&mut self.shares) {
+            for end in 0..2 {
+                from.words(shares.iter_mut().map(|share| &mut share[end]))?;
+            }
+            let holds = |(&count, &[start, end]): (&u32, &[u32; 2])| start <= count && count <= end;
+            check(tile.counts().iter().zip(&*shares).all(holds), "a cell has other samples than it was given")?;
+        }
+        Ok(())
     }
 
     /// Begins an epoch, in which the half `decider(half)` decides for each half.

@@ -1,5 +1,6 @@
 //! What samples add up to.
 
+use super::bytes::{Malformed, Reader, Writer};
 use super::tile::{Cell, FilmTile};
 use crate::optics::Rgb;
 use rayon::prelude::*;
@@ -22,6 +23,7 @@ pub struct Film {
     side: u32,
     batch: u32,
     halves: bool,
+    clamp: Option<f64>,
     samples: u32,
     tiles: Vec<FilmTile>,
 }
@@ -40,15 +42,35 @@ pub(super) struct Spread {
 impl Film {
     /// An empty film in square tiles, for batches of samples. With `clamp`, samples brighter than that are dimmed to it.
     pub fn new(width: u32, height: u32, side: u32, batch: u32, halves: bool, clamp: Option<f64>) -> Self {
+        let mut film = Self::without_tiles(width, height, side, batch, halves, clamp);
+        film.tiles = (0..film.tile_count()).map(|number| film.empty_tile(number)).collect();
+        film
+    }
+
+    /// One that only knows what its tiles would be.
+    pub(super) fn without_tiles(
+        width: u32,
+        height: u32,
+        side: u32,
+        batch: u32,
+        halves: bool,
+        clamp: Option<f64>,
+    ) -> Self {
         assert!(side > 0 && batch.is_power_of_two(), "tiles hold pixels, and batches fill blocks");
-        let mut tiles = Vec::new();
-        for top in (0..height).step_by(side as usize) {
-            for left in (0..width).step_by(side as usize) {
-                let size = [side.min(width - left), side.min(height - top)];
-                tiles.push(FilmTile::new([left, top], size, batch, halves, clamp));
-            }
-        }
-        Self { width, height, side, batch, halves, samples: 0, tiles }
+        Self { width, height, side, batch, halves, clamp, samples: 0, tiles: Vec::new() }
+    }
+
+    /// How many tiles it has.
+    pub fn tile_count(&self) -> usize {
+        self.width.div_ceil(self.side) as usize * self.height.div_ceil(self.side) as usize
+    }
+
+    /// A tile as it was when the film was empty.
+    pub(super) fn empty_tile(&self, number: usize) -> FilmTile {
+        let columns = self.width.div_ceil(self.side) as usize;
+        let corner = [number % columns, number / columns].map(|n| n as u32 * self.side);
+        let size = [self.side.min(self.width - corner[0]), self.side.min(self.height - corner[1])];
+        FilmTile::new(corner, size, self.batch, self.halves, self.clamp)
     }
 
     /// Pixels in a row.
@@ -112,6 +134,43 @@ impl Film {
         &self.tiles
     }
 
+    /// The tiles, to be filled part of the way to another number of samples.
+    pub(super) fn tiles_mut(&mut self) -> &mut [FilmTile] {
+        &mut self.tiles
+    }
+
+    /// The side of its tiles.
+    pub(super) fn side(&self) -> u32 {
+        self.side
+    }
+
+    /// The radiance to which brighter samples are dimmed.
+    pub(super) fn clamp(&self) -> Option<f64> {
+        self.clamp
+    }
+
+    /// Samples in a block: passes that begin with a block can be worked on before those that come first are done.
+    pub fn block(&self) -> u32 {
+        FilmTile::BLOCK.max(self.batch)
+    }
+
+    /// Whether samples of one block can be appended: halves do not fill their blocks at the same time.
+    pub fn appends(&self) -> bool {
+        !self.halves
+    }
+
+    /// All that has been added to it, as bytes.
+    pub(super) fn write(&self, to: &mut Writer) {
+        to.word(self.samples);
+        self.tiles.iter().for_each(|tile| tile.write(to));
+    }
+
+    /// Reads what was added to a film of the same shape. If that fails, this film is of no use.
+    pub(super) fn read(&mut self, from: &mut Reader) -> Result<(), Malformed> {
+        self.samples = from.word()?;
+        self.tiles.iter_mut().try_for_each(|tile| tile.read(from))
+    }
+
     /// Lets the next `count` samples of each cell be evidence: sums of their own are kept of those ([`Film::evidence`]).
     pub(super) fn take_evidence(&mut self, count: u32) {
         self.tiles.par_iter_mut().for_each(|tile| tile.take_evidence(count));
@@ -129,7 +188,7 @@ impl Film {
     pub fn append(&mut self, next: &Self) {
         let shape = |f: &Self| (f.width, f.height, f.side, f.batch, f.halves);
         assert_eq!(shape(self), shape(next), "films of one shape");
-        assert!(!self.halves && self.samples.is_multiple_of(FilmTile::BLOCK.max(self.batch)), "whole blocks");
+        assert!(self.appends() && self.samples.is_multiple_of(self.block()), "whole blocks");
         self.samples += next.samples;
         for (tile, next) in self.tiles.iter_mut().zip(&next.tiles) {
             tile.append(next);
@@ -258,13 +317,14 @@ mod tests {
 
     #[test]
     fn films_of_blocks_append_to_the_whole() {
-        for batch in [1, 4, 32] {
-            let mut whole = film(5, 5, 4, batch);
+        for (batch, clamp) in [(1, None), (4, None), (32, None), (1, Some(0.01))] {
+            let film = || Film::new(5, 5, 4, batch, false, clamp);
+            let mut whole = film();
             expose(&mut whole, 0, 160);
-            let mut joined = film(5, 5, 4, batch);
+            let mut joined = film();
             let block = 16.max(batch);
             for first in (0..160).step_by(block as usize) {
-                let mut part = film(5, 5, 4, batch);
+                let mut part = film();
                 expose(&mut part, first, block);
                 joined.append(&part);
             }

@@ -1,20 +1,26 @@
 //! Floor 5: pictures, how wrong they still are, and what they cost.
 
 mod adaptive;
+mod bytes;
 mod error;
 mod film;
 pub mod filter;
 mod outliers;
+mod part;
 mod progress;
+mod rendering;
 mod run;
 mod schedule;
 mod tile;
 mod tiles;
 
+pub use bytes::Malformed;
 pub use error::ErrorEstimate;
 pub use film::Film;
 pub use outliers::Carried;
+pub use part::Request;
 pub use progress::{Progress, Quiet};
-pub use run::{HistoryRow, RenderError, Rendering, Settings, render};
+pub use rendering::{HistoryRow, Rendering};
+pub use run::{RenderError, Settings, go_on, render};
 pub use schedule::Until;
 pub use tile::FilmTile;

@@ -10,6 +10,11 @@ pub trait Progress {
 
     /// Called many times a second while a pass is being worked on.
     fn poll(&mut self) -> ControlFlow<()>;
+
+    /// Called as often: whether to leave the render for now, when what has been begun is done.
+    fn pauses(&mut self) -> bool {
+        false
+    }
 }
 
 /// Lets a render go on to its end.

@@ -1,15 +1,12 @@
 //! A render from start to end.
 
-use super::adaptive::Adaptive;
-use super::error::estimate;
 use super::filter::{self, Filter};
-use super::tiles::{Exposure, Goal};
-use super::{ErrorEstimate, Film, Progress, Until};
+use super::tiles::{Exposure, Stop};
+use super::{Film, Progress, Rendering, Until};
 use crate::integrators::Integrator;
-use crate::optics::Rgb;
 use crate::sampling::SamplerKind;
 use crate::scene::{Camera, Scene};
-use crate::workers::{Cancel, pool, watched};
+use crate::workers::{pool, watched};
 use std::fmt;
 use std::sync::Arc;
 use std::time::Instant;
@@ -47,28 +44,15 @@ impl Default for Settings {
     }
 }
 
-/// How far a render was after a pass.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct HistoryRow {
-    /// Wall-clock time since the start.
-    pub seconds: f64,
-    /// Samples of each pixel, or of all on average.
-    pub samples: u32,
-    /// Estimated relMSE; NaN as long as nothing can be said.
-    pub error: f64,
-}
-
-/// A finished render.
-#[derive(Clone, Debug)]
-pub struct Rendering {
-    /// The picture.
-    pub film: Film,
-    /// How wrong it still is; `None` if it has too few samples to say.
-    pub error: Option<ErrorEstimate>,
-    /// How it went, a row a pass.
-    pub history: Vec<HistoryRow>,
-    /// Wall-clock time it took.
-    pub seconds: f64,
+impl Settings {
+    /// An empty film for the pictures of a camera, in tiles for so many threads: of 16 pixels a side, or less where that would
+    /// leave threads without work.
+    pub fn film(&self, camera: &dyn Camera, threads: usize) -> Film {
+        let (width, height) = (camera.width(), camera.height());
+        let tiles = |side: u32| width.div_ceil(side) as usize * height.div_ceil(side) as usize;
+        let side = [16, 8, 4].into_iter().find(|&side| tiles(side) >= 8 * threads).unwrap_or(2);
+        Film::new(width, height, side, self.sampler.batch(), self.adaptive, self.clamp)
+    }
 }
 
 /// Why there is no picture.
@@ -91,25 +75,6 @@ impl fmt::Display for RenderError {
 
 impl std::error::Error for RenderError {}
 
-impl Rendering {
-    /// The picture, linear, row by row from the top.
-    pub fn rgb(&self) -> Vec<[f32; 3]> {
-        single(self.film.means())
-    }
-
-    /// The standard error of each pixel; NaN if it has too few samples to say.
-    pub fn standard_error(&self) -> Vec<[f32; 3]> {
-        match self.film.variances() {
-            Some(variances) => single(variances.into_iter().map(|v| v.map(f64::sqrt)).collect()),
-            None => vec![[f32::NAN; 3]; self.film.width() as usize * self.film.height() as usize],
-        }
-    }
-}
-
-fn single(pixels: Vec<Rgb>) -> Vec<[f32; 3]> {
-    pixels.into_iter().map(|rgb| rgb.to_array().map(|x| x as f32)).collect()
-}
-
 /// Renders until the first of `settings.until` is met. `progress` is called on this thread. All work is done on others, but
 /// for an integrator that [`Integrator::runs_on_caller`].
 ///
@@ -122,82 +87,92 @@ pub fn render(
     settings: &Settings,
     progress: &mut dyn Progress,
 ) -> Result<Rendering, RenderError> {
-    let start = Instant::now();
+    let threads = pool(settings.threads).map_err(RenderError::Threads)?.current_num_threads();
+    let mut rendering = Rendering::new(settings.film(camera, threads));
+    while !go_on(&mut rendering, scene, camera, integrator, settings, progress)? {}
+    Ok(rendering)
+}
+
+/// As [`render`], from where a render is. Whether it ended: else its `progress` wants it to be left for now. After that, and
+/// after an error, it can be gone on with. What limits there are is asked after each pass; one that was begun is done first.
+pub fn go_on(
+    rendering: &mut Rendering,
+    scene: &Scene,
+    camera: &dyn Camera,
+    integrator: &dyn Integrator,
+    settings: &Settings,
+    progress: &mut dyn Progress,
+) -> Result<bool, RenderError> {
+    let (start, earlier) = (Instant::now(), rendering.seconds);
+    let spent = || earlier + start.elapsed().as_secs_f64();
     let exposure = Exposure::new(scene, camera, integrator, settings);
-    let side = exposure.tile_side(pool(settings.threads).map_err(RenderError::Threads)?.current_num_threads());
-    let batch = settings.sampler.batch();
-    let mut film = Film::new(camera.width(), camera.height(), side, batch, settings.adaptive, settings.clamp);
-    let mut plan = settings.adaptive.then(|| Adaptive::new(&mut film));
-    let (mut error, mut history, mut rate) = (None, Vec::<HistoryRow>::new(), 0.0);
+    let pool = pool(settings.threads).map_err(RenderError::Threads)?;
     loop {
-        let before = start.elapsed().as_secs_f64();
-        let done = film.samples();
-        let limit = plan.as_ref().map_or(u32::MAX, |plan| plan.limit(done)) - done;
-        let count = settings.until.next_pass(done, batch, before, rate, error.as_ref()).min(limit);
-        if count == 0 {
-            return Ok(Rendering { film, error, history, seconds: before });
+        rendering.seconds = spent();
+        let done = rendering.film.samples();
+        let aim = rendering.next_aim(&settings.until, done, rendering.seconds, rendering.rate());
+        if aim == done {
+            return Ok(true);
         }
-        error = pass(&exposure, &mut film, plan.as_mut(), done + count, settings.threads, progress)?;
-        let seconds = start.elapsed().as_secs_f64();
-        rate = (seconds - before) / f64::from(count);
-        let row = HistoryRow { seconds, samples: film.samples(), error: error.map_or(f64::NAN, |e| e.value) };
-        history.push(row);
+        pool.install(|| rendering.begin(aim));
+        let passed = pass(&exposure, rendering, settings.threads, progress);
+        rendering.seconds = spent();
+        if !passed? {
+            return Ok(false);
+        }
+        let row = pool.install(|| rendering.end(spent()));
         if progress.pass(&row).is_break() {
             return Err(RenderError::Interrupted);
         }
     }
 }
 
-/// Exposes the film until there are so many samples, and estimates its error.
+/// Works on a pass. Whether it is done: else it is to be left for now.
 fn pass(
     exposure: &Exposure,
-    film: &mut Film,
-    plan: Option<&mut Adaptive>,
-    samples: u32,
+    rendering: &mut Rendering,
     threads: Option<usize>,
     progress: &mut dyn Progress,
-) -> Result<Option<ErrorEstimate>, RenderError> {
-    let prepared = |film: &mut Film| Goal {
-        samples,
-        plan: plan.map(|plan| {
-            plan.prepare(film);
-            &*plan
-        }),
+) -> Result<bool, RenderError> {
+    let stop = Stop::default();
+    let (tiles, goal) = rendering.goal();
+    let mut look = || {
+        if progress.pauses() {
+            stop.pause.raise();
+        }
+        progress.poll().is_continue()
     };
-    let error = if exposure.integrator.runs_on_caller() {
-        let (pool, cancel) = (pool(threads).map_err(RenderError::Threads)?, Cancel::default());
-        let goal = pool.install(|| prepared(film));
-        exposure.expose_here(film, goal, &cancel, || {
-            if progress.poll().is_break() {
-                cancel.raise();
+    let reached = if exposure.integrator.runs_on_caller() {
+        exposure.expose_here(tiles, goal, &stop, || {
+            if !look() {
+                stop.cancel.raise();
             }
-        });
-        (!cancel.is_raised()).then(|| pool.install(|| estimate(film)))
+        })
     } else {
-        let work = |cancel: &Cancel| {
-            let goal = prepared(film);
-            exposure.expose(film, goal, cancel);
-            (!cancel.is_raised()).then(|| estimate(film))
-        };
         let mut ended = false;
         let watch = || {
-            ended = progress.poll().is_break();
+            ended = !look();
+            if ended {
+                stop.cancel.raise();
+            }
             !ended
         };
         // Who watches may end a pass that has just been done.
-        watched(threads, work, watch).map_err(RenderError::Threads)?.filter(|_| !ended)
+        watched(threads, |_| exposure.expose(tiles, goal, &stop), watch).map_err(RenderError::Threads)? && !ended
     };
     // It is raised by who watches, or by an integrator that cannot go on.
-    error.ok_or(RenderError::Interrupted)
+    if stop.cancel.is_raised() { Err(RenderError::Interrupted) } else { Ok(reached) }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::Quiet;
+    use super::super::{HistoryRow, Quiet};
     use super::*;
     use crate::integrators::{CameraSample, Path, Worker};
+    use crate::optics::Rgb;
     use crate::scene::Footprint;
     use crate::scene::fixtures::{cornell, furnace};
+    use crate::workers::Cancel;
     use std::ops::ControlFlow;
     use std::time::Duration;
 
@@ -368,6 +343,63 @@ mod tests {
         assert_eq!(result.err(), Some(RenderError::Interrupted));
         let waited = progress.0.expect("it was polled").elapsed();
         assert!(waited < Duration::from_millis(100), "{waited:?}");
+    }
+
+    /// Leaves the render, or ends it, at every n-th look.
+    struct Restless {
+        looks: u32,
+        every: u32,
+        ends: bool,
+    }
+
+    impl Restless {
+        fn is_due(&mut self) -> bool {
+            self.looks += 1;
+            self.looks.is_multiple_of(self.every)
+        }
+    }
+
+    impl Progress for Restless {
+        fn pass(&mut self, _row: &HistoryRow) -> ControlFlow<()> {
+            if self.ends && self.is_due() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        }
+
+        fn poll(&mut self) -> ControlFlow<()> {
+            if self.ends && self.is_due() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        }
+
+        fn pauses(&mut self) -> bool {
+            !self.ends && self.is_due()
+        }
+    }
+
+    #[test]
+    fn left_at_any_time_it_goes_on_to_the_same() {
+        let (scene, camera) = cornell(70, 61);
+        for adaptive in [false, true] {
+            let settings = Settings { adaptive, ..settings(40, 2) };
+            let whole = render(&scene, &camera, &Path::default(), &settings, &mut Quiet).unwrap();
+            let here = Here(std::thread::current().id(), Default::default());
+            let kinds: [&dyn Integrator; 2] = [&Path::default(), &here];
+            for (integrator, ends) in kinds.into_iter().flat_map(|kind| [(kind, false), (kind, true)]) {
+                let mut rendering = Rendering::new(settings.film(&camera, 2));
+                // What is begun is done where it is left, and lost where it is ended: that must not always come too early.
+                let mut progress = Restless { looks: 0, every: if ends { 3 } else { 1 }, ends };
+                let mut left = 0;
+                loop {
+                    match go_on(&mut rendering, &scene, &camera, integrator, &settings, &mut progress) {
+                        Ok(true) => break,
+                        Ok(false) => assert!(!ends),
+                        Err(error) => assert!(ends && error == RenderError::Interrupted),
+                    }
+                    left += 1;
+                }
+                assert!(left > 0 || !ends);
+                assert_eq!((&rendering.film, rendering.error), (&whole.film, whole.error));
+                let errors = |r: &Rendering| r.history.iter().map(|row| row.error.to_bits()).collect::<Vec<_>>();
+                assert_eq!(errors(&rendering), errors(&whole));
+            }
+        }
     }
 
     #[test]

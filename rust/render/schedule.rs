@@ -37,7 +37,9 @@ impl Until {
         if done >= Self::LEAST_FOR_ERROR && self.error.is_some_and(met) {
             return 0;
         }
-        let mut next = done.clamp(1, Self::PASS.max(batch));
+        let most = Self::PASS.max(batch);
+        // A render that ended within a pass and goes on is back in step after the next.
+        let mut next = done.clamp(1, most - done % most);
         if let Some(samples) = self.samples {
             next = next.min(samples.saturating_sub(done));
         }
@@ -105,6 +107,12 @@ mod tests {
             done += all[all.len() - 1];
         }
         assert_eq!(all, [1, 1, 2, 4, 8, 16, 32, 64, 64, 8]);
+    }
+
+    #[test]
+    fn falls_in_step_again() {
+        let next = |done| Until::default().next_pass(done, 1, 0.0, 0.0, None);
+        assert_eq!([1, 3, 5, 9, 16, 19, 31, 100].map(next), [1, 3, 5, 7, 16, 13, 1, 12]);
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! A rectangle of a film.
 
+use super::bytes::{Malformed, Reader, Writer, check};
 use crate::optics::{Rgb, is_radiance};
 
 /// Sums from which a mean and its error are had.
@@ -38,8 +39,8 @@ pub struct FilmTile {
     largest: Vec<Rgb>,
     /// The batch that is being filled; empty if each sample is one.
     unfinished: Vec<Rgb>,
-    /// What clamping took; empty without.
-    taken: Vec<Rgb>,
+    /// What clamping took from whole blocks, and from the one that is being filled; empty without.
+    taken: Vec<[Rgb; 2]>,
     /// Sums of samples and their squares, and the count up to which they are kept; empty unless the film is in halves.
     evidence: Vec<(Rgb, Rgb)>,
     evidence_until: Vec<u32>,
@@ -80,7 +81,7 @@ impl FilmTile {
             partial: vec![Moments::default(); cells],
             largest: vec![Rgb::ZERO; cells],
             unfinished: vec![Rgb::ZERO; if_any(batch > 1)],
-            taken: vec![Rgb::ZERO; if_any(clamp.is_some())],
+            taken: vec![[Rgb::ZERO; 2]; if_any(clamp.is_some())],
             evidence: vec![(Rgb::ZERO, Rgb::ZERO); if_any(halves)],
             evidence_until: vec![0; if_any(halves)],
             dropped: 0,
@@ -144,6 +145,9 @@ impl FilmTile {
         if (number + 1).is_multiple_of(Self::BLOCK.max(self.batch)) {
             self.total[cell].add(partial);
             *partial = Moments::default();
+            if let Some([whole, now]) = self.taken.get_mut(cell) {
+                *whole += std::mem::take(now);
+            }
         }
     }
 
@@ -160,7 +164,7 @@ impl FilmTile {
         }
         let left = radiance * (self.clamp / greatest);
         self.clamped += 1;
-        self.taken[cell] += radiance - left;
+        self.taken[cell][1] += radiance - left;
         left
     }
 
@@ -194,7 +198,7 @@ impl FilmTile {
             squares: moments.squares,
             largest: self.largest[cell],
             unfinished: or_nothing(&self.unfinished),
-            taken: or_nothing(&self.taken),
+            taken: self.taken.get(cell).map_or(Rgb::ZERO, |[whole, now]| *whole + *now),
             evidence: self.evidence.get(cell).copied().unwrap_or_default(),
         }
     }
@@ -207,8 +211,9 @@ impl FilmTile {
         for (largest, &next) in self.largest.iter_mut().zip(&next.largest) {
             keep_largest(largest, next);
         }
-        for (taken, &next) in self.taken.iter_mut().zip(&next.taken) {
-            *taken += next;
+        for ([whole, now], next) in self.taken.iter_mut().zip(&next.taken) {
+            *whole += next[0];
+            *now = next[1];
         }
         for (count, next) in self.counts.iter_mut().zip(&next.counts) {
             *count += next;
@@ -217,6 +222,49 @@ impl FilmTile {
         self.unfinished.clone_from(&next.unfinished);
         self.dropped += next.dropped;
         self.clamped += next.clamped;
+    }
+
+    /// Samples of a cell, and those of one kind, that bytes can tell of: sums of them are far from what numbers hold.
+    pub(super) const MOST: u32 = u32::MAX / 4;
+
+    /// All that has been added to it, as bytes.
+    pub(super) fn write(&self, to: &mut Writer) {
+        to.words(self.counts.iter().copied());
+        for moments in [&self.total, &self.partial] {
+            to.colours(moments, |m| m.sum);
+            to.colours(moments, |m| m.squares);
+        }
+        to.colours(&self.largest, |rgb| *rgb);
+        to.colours(&self.unfinished, |rgb| *rgb);
+        for part in 0..2 {
+            to.colours(&self.taken, |taken| taken[part]);
+        }
+        to.colours(&self.evidence, |(sum, _)| *sum);
+        to.colours(&self.evidence, |(_, squares)| *squares);
+        to.words(self.evidence_until.iter().copied());
+        to.word(self.dropped);
+        to.word(self.clamped);
+    }
+
+    /// Reads what was added to a tile of the same place and shape. If that fails, this tile is of no use.
+    pub(super) fn read(&mut self, from: &mut Reader) -> Result<(), Malformed> {
+        from.words(self.counts.iter_mut())?;
+        check(self.counts.iter().all(|&count| count <= Self::MOST), "a cell has too many samples")?;
+        for moments in [&mut self.total, &mut self.partial] {
+            from.colours(moments, |m| &mut m.sum)?;
+            from.colours(moments, |m| &mut m.squares)?;
+        }
+        from.colours(&mut self.largest, |rgb| rgb)?;
+        from.colours(&mut self.unfinished, |rgb| rgb)?;
+        for part in 0..2 {
+            from.colours(&mut self.taken, |taken| &mut taken[part])?;
+        }
+        from.colours(&mut self.evidence, |(sum, _)| sum)?;
+        from.colours(&mut self.evidence, |(_, squares)| squares)?;
+        from.words(self.evidence_until.iter_mut())?;
+        (self.dropped, self.clamped) = (from.word()?, from.word()?);
+        let most = self.counts.len() as u64 * u64::from(Self::MOST);
+        check(self.dropped <= most && self.clamped <= most, "there are more samples of a kind than samples")
     }
 }
 

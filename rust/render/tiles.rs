@@ -2,7 +2,7 @@
 
 use super::adaptive::Adaptive;
 use super::filter::Filter;
-use super::{Film, FilmTile, Settings};
+use super::{FilmTile, Settings};
 use crate::integrators::{CameraSample, Integrator, Worker};
 use crate::optics::Rgb;
 use crate::sampling::SamplerKind;
@@ -34,16 +34,43 @@ pub(super) struct Exposure<'a> {
     idle: Mutex<Vec<Bench<'a>>>,
 }
 
-/// How many samples cells shall have after a pass: as many as this in all pixels, or as it is decided for this many on average.
+/// How many samples cells shall have.
 #[derive(Clone, Copy)]
-pub(super) struct Goal<'a> {
-    pub samples: u32,
-    pub plan: Option<&'a Adaptive>,
+pub(super) enum Goal<'a> {
+    /// All as many, counted with the `before` that are on another film.
+    Even { before: u32, samples: u32 },
+    /// As it is decided for so many on average.
+    Planned { plan: &'a Adaptive, samples: u32 },
+    /// These, by tile and cell.
+    Given(&'a [Vec<u32>]),
 }
 
 impl Goal<'_> {
-    fn of(&self, number: usize, tile: &FilmTile, cell: usize) -> u32 {
-        self.plan.map_or(self.samples, |plan| plan.goal(number, cell, tile.position(cell), self.samples))
+    pub fn of(&self, number: usize, tile: &FilmTile, cell: usize) -> u32 {
+        match *self {
+            Self::Even { before, samples } => samples - before,
+            Self::Planned { plan, samples } => plan.goal(number, cell, tile.position(cell), samples),
+            Self::Given(counts) => counts[number][cell],
+        }
+    }
+
+    fn before(&self) -> u32 {
+        if let Self::Even { before, .. } = *self { before } else { 0 }
+    }
+}
+
+/// What may keep a goal from being reached.
+#[derive(Default)]
+pub(super) struct Stop {
+    /// Raised to end all work at once, by who watches or by an integrator that cannot go on.
+    pub cancel: Cancel,
+    /// Raised to end it when what has been begun is done.
+    pub pause: Cancel,
+}
+
+impl Stop {
+    fn is_raised(&self) -> bool {
+        self.cancel.is_raised() || self.pause.is_raised()
     }
 }
 
@@ -77,30 +104,29 @@ impl<'a> Exposure<'a> {
         Self { scene, camera, integrator, sampler, filter, seed, moves, uses_lens, idle: Mutex::default() }
     }
 
-    /// The side of tiles for a number of threads: 16, or less where that would leave threads without work.
-    pub fn tile_side(&self, threads: usize) -> u32 {
-        let tiles =
-            |side: u32| self.camera.width().div_ceil(side) as usize * self.camera.height().div_ceil(side) as usize;
-        [16, 8, 4].into_iter().find(|&side| tiles(side) >= 8 * threads).unwrap_or(2)
-    }
-
-    /// Adds samples until the goal is reached. Returns soon after `cancel` is raised, leaving a film of no use.
-    pub fn expose(&self, film: &mut Film, goal: Goal, cancel: &Cancel) {
-        film.extend_to(goal.samples).par_iter_mut().enumerate().with_max_len(1).for_each(|(number, tile)| {
-            if !cancel.is_raised() {
+    /// Adds samples until the goal is reached, and says whether it was: it returns soon when it is asked to stop. Even then each
+    /// cell has the first of its samples and nothing else, and can be taken further.
+    pub fn expose(&self, tiles: &mut [FilmTile], goal: Goal, stop: &Stop) -> bool {
+        let reached = |(number, tile): (usize, &mut FilmTile)| {
+            !stop.is_raised() && {
                 let mut bench = self.take_bench();
-                self.expose_tiles(slice::from_mut(tile), number, goal, BATCH, &mut bench, cancel, &mut || {});
+                let reached =
+                    self.expose_tiles(slice::from_mut(tile), number, goal, BATCH, &mut bench, stop, &mut || {});
                 self.put_bench(bench);
+                reached
             }
-        });
+        };
+        tiles.par_iter_mut().enumerate().with_max_len(1).map(reached).reduce(|| true, |a, b| a && b)
     }
 
-    /// As [`Exposure::expose`], with the integrator on this thread alone, in large batches. After each `poll` is called, which
-    /// may raise `cancel`.
-    pub fn expose_here(&self, film: &mut Film, goal: Goal, cancel: &Cancel, mut poll: impl FnMut()) {
+    /// As [`Exposure::expose`], with the integrator on this thread alone. After each batch, which is large for an integrator that
+    /// wants to be here, `poll` is called, which may ask to stop.
+    pub fn expose_here(&self, tiles: &mut [FilmTile], goal: Goal, stop: &Stop, mut poll: impl FnMut()) -> bool {
+        let most = if self.integrator.runs_on_caller() { LARGE_BATCH } else { BATCH };
         let mut bench = self.take_bench();
-        self.expose_tiles(film.extend_to(goal.samples), 0, goal, LARGE_BATCH, &mut bench, cancel, &mut poll);
+        let reached = self.expose_tiles(tiles, 0, goal, most, &mut bench, stop, &mut poll);
         self.put_bench(bench);
+        reached
     }
 
     fn take_bench(&self) -> Bench<'a> {
@@ -127,12 +153,13 @@ impl<'a> Exposure<'a> {
         goal: Goal,
         most: usize,
         bench: &mut Bench,
-        cancel: &Cancel,
+        stop: &Stop,
         poll: &mut dyn FnMut(),
-    ) {
+    ) -> bool {
         bench.samples.clear();
         bench.weights.clear();
         bench.runs.clear();
+        let before = goal.before();
         for index in 0..tiles.len() {
             for cell in 0..tiles[index].counts().len() {
                 let tile = &tiles[index];
@@ -141,7 +168,7 @@ impl<'a> Exposure<'a> {
                 while nth < end {
                     let count = (end - nth).min((most - bench.weights.len()) as u32);
                     for nth in nth..nth + count {
-                        let (sample, weight) = self.camera_sample(position, tiles[index].number(cell, nth));
+                        let (sample, weight) = self.camera_sample(position, before + tiles[index].number(cell, nth));
                         bench.weights.push(weight);
                         if weight != 0.0 {
                             bench.samples.push(sample);
@@ -150,16 +177,16 @@ impl<'a> Exposure<'a> {
                     bench.runs.push(Run { tile: index, cell, count });
                     nth += count;
                     if bench.weights.len() == most {
-                        bench.develop(tiles, cancel);
+                        let developed = bench.develop(tiles, &stop.cancel);
                         poll();
-                        if cancel.is_raised() {
-                            return;
+                        if !developed || stop.is_raised() {
+                            return false;
                         }
                     }
                 }
             }
         }
-        bench.develop(tiles, cancel);
+        bench.develop(tiles, &stop.cancel)
     }
 
     /// How wide the bundle of rays is that a pixel sees.
@@ -183,13 +210,17 @@ impl<'a> Exposure<'a> {
 }
 
 impl Bench<'_> {
-    /// Adds the radiance of the samples gathered to the cells that they are of, and clears them away.
-    fn develop(&mut self, tiles: &mut [FilmTile], cancel: &Cancel) {
+    /// Adds the radiance of the samples gathered to the cells that they are of, and clears them away. Whether it did: what a
+    /// cancelled integrator says is not heard.
+    fn develop(&mut self, tiles: &mut [FilmTile], cancel: &Cancel) -> bool {
         if self.weights.is_empty() {
-            return;
+            return true;
         }
         self.radiance.resize(self.samples.len(), Rgb::ZERO);
         self.worker.radiance(&mut self.samples, cancel, &mut self.radiance);
+        if cancel.is_raised() {
+            return false;
+        }
         let (mut radiance, mut weights) = (self.radiance.iter(), self.weights.iter());
         for run in &self.runs {
             for &weight in weights.by_ref().take(run.count as usize) {
@@ -200,5 +231,6 @@ impl Bench<'_> {
         self.samples.clear();
         self.weights.clear();
         self.runs.clear();
+        true
     }
 }

@@ -94,7 +94,8 @@ impl Copies {
 mod tests {
     use super::*;
     use crate::accel::BruteForce;
-    use crate::scene::{Matrix, Mesh, Shape, Surface};
+    use crate::scene::textures::{Between, Checker, Domain, ProductTexture, UvTransform, Value, VertexColours};
+    use crate::scene::{DiffuseMaterial, Matrix, Mesh, Shape, Surface};
     use crate::simd::Level;
     use std::sync::Arc;
 
@@ -117,7 +118,11 @@ mod tests {
     #[test]
     fn tangents_are_what_differences_say_in_copies_too() {
         let place: Matrix = [[2.0, 0.5, 0.0, 7.0], [-1.0, 1.0, 0.3, 1.0], [0.0, 0.2, 1.5, -5.0]];
-        let group = Group::new(vec![Shape { surface: mesh().into(), ..Shape::default() }], |g| {
+        // Nothing is kept of vertices that no material asks for.
+        let checker = Between { a: 0.2.into(), b: 0.8.into(), pattern: Checker(Domain::Uv(UvTransform::default())) };
+        let both = ProductTexture { a: Value::Texture(Arc::new(checker)), b: Value::Texture(Arc::new(VertexColours)) };
+        let material = Arc::new(DiffuseMaterial { reflectance: Value::Texture(Arc::new(both)) });
+        let group = Group::new(vec![Shape { surface: mesh().into(), material, ..Shape::default() }], |g| {
             BruteForce::over(g, Level::Scalar)
         });
         let copies = Copies::new(Arc::new(group.unwrap()), &[place]).unwrap();

@@ -8,7 +8,7 @@ import raywright as rw
 
 @pytest.fixture(scope="module")
 def room():
-    return rw.scenes.cornell_box(width=24, height=16)
+    return rw.scenes.cornell_box(width=96, height=64)
 
 
 def test_numbers_are_those_of_the_rays_through_the_middles(room):
@@ -40,7 +40,7 @@ def test_means_tend_to_what_fine_rays_see(room):
     assert seen["albedo"].max() <= 1
     for array in seen.values():
         assert not array.flags.writeable
-        assert array.shape[:2] == (16, 24)
+        assert array.shape[:2] == (64, 96)
 
 
 def test_nothing_is_told_as_such():

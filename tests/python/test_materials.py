@@ -105,6 +105,7 @@ def test_metals_have_names_and_symbols():
         (lambda: rw.Dielectric(0), ValueError, r"ior must be greater than 0, got 0"),
         (lambda: rw.Dielectric(math.nan), ValueError, r"ior must be finite, got nan"),
         (lambda: rw.Dielectric(roughness=-1), ValueError, r"roughness must be between 0 and 1, got -1"),
+        (lambda: rw.Dielectric(alpha=(0.1, 0.2)), ValueError, r"alpha must be one number or texture, got"),
         (lambda: rw.Dielectric(priority=0.5), TypeError, r"priority must be an integer, got 0.5"),
         (lambda: rw.ThinDielectric(-1), ValueError, r"ior must be greater than 0, got -1"),
         (lambda: rw.Plastic(ior=0.9), ValueError, r"ior must be at least 1, got 0.9"),

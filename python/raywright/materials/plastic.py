@@ -20,8 +20,8 @@ class Plastic(Material):
     ior : float
         The coat's index of refraction, at least 1.
     roughness : float or Texture, optional
-        How rough it is, from 0, smooth, to 1. Its square is the alpha of
-        the GGX distribution, as in glTF. 0 if not given.
+        How rough it is, from 0, smooth, to 1. Its square is the alpha of the GGX distribution, as in glTF. 0
+        if not given.
     alpha : float or Texture, optional
         That alpha itself, in place of `roughness`.
 

@@ -49,7 +49,7 @@ def veach_plates(width: int = 512, height: int = 512) -> tuple[Scene, Camera]:
         material=Diffuse(0.4),
     )
     return Scene([*lamps, *plates, wall]), Camera(
-        _EYE, (0.0, -2.0, 2.5), fov=28.0, width=width, height=height
+        _EYE, (0.0, -2.0, 2.5), fov=38.0, width=width, height=height
     )
 
 

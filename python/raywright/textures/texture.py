@@ -56,7 +56,7 @@ def value(
         return given
     array = real_array(name, given)
     if array.shape not in ((), (3,)):
-        raise ValueError(f"{name} must be a texture, one number or 3, got shape {array.shape}")
+        raise ValueError(f"{name} must be one number or 3, got shape {array.shape}")
     red, green, blue = (float(x) for x in np.broadcast_to(array, 3))
     _check(name, (red, green, blue), repr(given), least, most, above)
     return red, green, blue

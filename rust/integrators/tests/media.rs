@@ -100,13 +100,11 @@ fn slabs_let_through_what_stokes_says_whether_they_touch_or_nearly_do_or_overlap
 #[test]
 fn the_index_may_be_one_or_nearly_or_ten() {
     for ior in [1.0, 1.0 + 1e-7, 1.0001, 10.0, 0.5] {
-        assert_radiance(
-            &over_a_lamp(vec![slab(0.0, 1.0, ior, 0)]),
-            &Path::default(),
-            DOWN,
-            60_000,
-            transmitted(&[1.0, ior, 1.0]),
-        );
+        let (expected, count) = (transmitted(&[1.0, ior, 1.0]), 60_000);
+        let (mean, error) = super::radiance(&over_a_lamp(vec![slab(0.0, 1.0, ior, 0)]), &Path::default(), DOWN, count);
+        // At 1.0001 five rays in a thousand million are reflected: none is drawn here.
+        assert!((mean - expected).abs() < 4.0 * error + 1e-8, "{ior}: {mean} ± {error}, not {expected}");
+        assert!(error < 0.01 * expected);
     }
 }
 
@@ -124,8 +122,9 @@ fn glass_in_an_even_light_cannot_be_seen_from_outside_or_inside() {
                 scene(SceneDescription { shapes, lights: vec![Arc::new(ConstantEnvironment { radiance: Rgb::ONE })] });
             for way in ways {
                 let way = way.normalize();
-                // Rough glass gives back on average what it loses, to half a percent.
-                let slack = if alpha == 0.0 { 1e-9 } else { 0.005 };
+                // Rough glass gives back on average what it loses, to half a percent. In smooth glass roulette ends about one path of
+                // these, and what chance ends is more than ten of them once in ten million.
+                let slack = if alpha == 0.0 { 5e-4 } else { 0.005 };
                 for (origin, index) in
                     [(-3.0 * way, 1.0f64), (DVec3::new(0.75, 0.8, 0.7), 1.5), (DVec3::new(0.1, 0.2, -0.1), 1.8)]
                 {

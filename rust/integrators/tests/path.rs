@@ -172,12 +172,16 @@ fn every_kernel_gives_the_same_bits() {
         shapes: vec![shape(floor, [0.7, 0.1, 0.4], 0.3)],
         lights: vec![Arc::new(lamp), Arc::new(ConstantEnvironment { radiance: Rgb::new(0.1, 0.2, 0.3) })],
     };
-    for scene in [room, furnace(0.9, 0.3), scene(open)] {
+    // From where the camera is, and from within the furnace.
+    let within = ANYWHERE.origin;
+    for (scene, from) in [(room, None), (furnace(0.9, 0.3), Some(within)), (scene(open), None)] {
         assert_eq!(scene.plan().kernel(), Kernel::Plain);
         let samples: Vec<_> = (0..4000u32)
             .map(|i| {
                 let film = [f64::from(i % 8) + 0.3, f64::from(i / 8 % 8) + 0.6];
-                CameraSample { ray: camera.ray(film, [0.5; 2], 0.0).ray, sampler: Sampler::new(5, i % 64, i / 64) }
+                let ray = camera.ray(film, [0.5; 2], 0.0).ray;
+                let ray = Ray { origin: from.unwrap_or(ray.origin), ..ray };
+                CameraSample { ray, sampler: Sampler::new(5, i % 64, i / 64) }
             })
             .collect();
         let path = Path::default();

@@ -141,7 +141,7 @@ impl<'a, N: Features> TransportWorker<'a, N> {
             let mut baggage = if N::BAGGAGE { self.now.baggage[i] } else { Baggage::default() };
             let arriving = &mut radiance[path.sample as usize];
             if !hit.is_hit() {
-                *arriving += path.throughput * self.arriving_from_outside(&ray, &path);
+                *arriving += path.throughput * self.outside_light(&ray, &path);
                 continue;
             }
             let mut surface = self.scene.geometry().surface(&ray, &hit);
@@ -198,7 +198,7 @@ impl<'a, N: Features> TransportWorker<'a, N> {
 
     /// What arrives from outside the scene at a ray that meets nothing.
     #[inline]
-    fn arriving_from_outside(&self, ray: &Ray, path: &Alive) -> Rgb {
+    fn outside_light(&self, ray: &Ray, path: &Alive) -> Rgb {
         let lights = self.scene.lights();
         let arriving = lights.outside(ray.direction);
         if arriving == Rgb::ZERO || path.pdf == f64::INFINITY {

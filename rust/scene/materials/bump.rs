@@ -82,6 +82,10 @@ impl Material for BumpMap {
     fn normal(&self, at: &ShadingPoint) -> Option<DVec3> {
         let own = self.material.normal(at);
         let normal = own.unwrap_or(at.shading_normal);
+        // Where coordinates tell no points apart there is no slope.
+        if at.dp[0].cross(at.dp[1]) == DVec3::ZERO {
+            return own;
+        }
         let step = self.step(at);
         let beside = |k: usize, by: f64| {
             let mut point = at.texture;

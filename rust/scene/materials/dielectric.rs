@@ -27,10 +27,7 @@ impl Material for DielectricMaterial {
 
     fn validate(&self) -> Result<(), String> {
         number("ior", self.interior.ior, f64::MIN_POSITIVE, f64::MAX)?;
-        if !self.roughness.is_alike() {
-            return Err("roughness of a dielectric must be the same in all directions".to_owned());
-        }
-        self.roughness.validate()
+        self.roughness.validate_alike()
     }
 
     fn transmits(&self) -> bool {

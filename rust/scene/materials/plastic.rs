@@ -30,9 +30,6 @@ impl Material for PlasticMaterial {
     fn validate(&self) -> Result<(), String> {
         within("reflectance", &self.reflectance, 0.0, 1.0)?;
         number("ior", self.ior, 1.0, f64::MAX)?;
-        if !self.roughness.is_alike() {
-            return Err("roughness of a coat must be the same in all directions".to_owned());
-        }
-        self.roughness.validate()
+        self.roughness.validate_alike()
     }
 }

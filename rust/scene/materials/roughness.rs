@@ -70,7 +70,20 @@ impl Roughness {
     /// # Errors
     /// If it does not.
     pub fn validate(&self) -> Result<(), String> {
-        let name = if self.is_alpha { "alpha" } else { "roughness" };
-        self.along.iter().try_for_each(|value| within(name, value, 0.0, 1.0))
+        self.along.iter().try_for_each(|value| within(self.name(), value, 0.0, 1.0))
+    }
+
+    /// Whether it lies between 0 and 1, the same in all directions.
+    ///
+    /// # Errors
+    /// If it does not.
+    pub fn validate_alike(&self) -> Result<(), String> {
+        self.validate()?;
+        let alike = self.is_alike().then_some(());
+        alike.ok_or_else(|| format!("{} must be the same in all directions here, got two", self.name()))
+    }
+
+    fn name(&self) -> &'static str {
+        if self.is_alpha { "alpha" } else { "roughness" }
     }
 }

@@ -32,6 +32,8 @@ impl Scattering {
                 Self::Several(parts) => all.extend(parts.into_iter().map(|(w, bsdf)| (w * weight, bsdf))),
             }
         }
+        // What scatters nothing draws nothing, whatever its density says: it must not be chosen.
+        all.retain(|(_, bsdf)| bsdf.albedo() != Rgb::ZERO);
         match all[..] {
             [(Rgb::ONE, bsdf)] => Self::One(bsdf),
             _ => Self::Several(all),

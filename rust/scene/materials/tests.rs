@@ -153,18 +153,22 @@ fn draws_of_mixes_have_their_density() {
     let mix = MixMaterial { a: rough, b: grey(0.8), amount: 0.4.into() };
     let scattering = mix.scattering(&at(0.5, 0.5));
     let (rows, columns, draws) = (12, 16, 100_000);
-    let mut counts = vec![0; rows * columns];
+    // The last is for draws that scatter nothing.
+    let mut counts = vec![0; rows * columns + 1];
     for sample in 0..draws {
         let mut sampler = Sampler::new(32, 3, sample);
         let u = sampler.two(0);
-        let Some(drawn) = scattering.sample(wo, || sampler.one(1), u) else { continue };
+        let Some(drawn) = scattering.sample(wo, || sampler.one(1), u) else {
+            counts[rows * columns] += 1;
+            continue;
+        };
         let row = ((drawn.wi.z * rows as f64) as usize).min(rows - 1);
         let turn = (drawn.wi.y.atan2(drawn.wi.x) + PI) / TAU;
         counts[row * columns + ((turn * columns as f64) as usize).min(columns - 1)] += 1;
     }
     // Integrals over cells by a midpoint rule of 32 × 32.
     let steps = 32;
-    let expected: Vec<f64> = (0..rows * columns)
+    let mut expected: Vec<f64> = (0..rows * columns)
         .map(|cell| {
             let part = |i: usize, k: usize, of: usize| (i as f64 + (k as f64 + 0.5) / steps as f64) / of as f64;
             let sum: f64 = (0..steps * steps)
@@ -178,7 +182,26 @@ fn draws_of_mixes_have_their_density() {
             sum * TAU / (rows * columns * steps * steps) as f64
         })
         .collect();
+    expected.push((1.0 - expected.iter().sum::<f64>()).max(0.0));
     assert_frequencies(&counts, &expected);
+}
+
+#[test]
+fn black_parts_of_a_mix_are_never_drawn() {
+    let wo = DVec3::new(0.6, 0.0, 0.8);
+    let mix = MixMaterial { a: grey(0.0), b: grey(0.8), amount: 0.25.into() };
+    let scattering = mix.scattering(&at(0.0, 0.0));
+    for sample in 0..100 {
+        let mut sampler = Sampler::new(35, 6, sample);
+        let u = sampler.two(0);
+        let drawn = scattering.sample(wo, || sampler.one(1), u).unwrap();
+        assert!((drawn.weight - 0.2).abs().max_element() < 1e-15);
+        assert!((drawn.pdf - drawn.wi.z / PI).abs() < 1e-15);
+    }
+    let black = MixMaterial { a: grey(0.0), b: grey(0.0), amount: 0.25.into() };
+    let black = black.scattering(&at(0.0, 0.0));
+    assert!(black.sample(wo, || 0.5, [0.5; 2]).is_none());
+    assert_eq!(black.evaluate(wo, DVec3::Z), (Rgb::ZERO, 0.0));
 }
 
 #[test]
@@ -396,6 +419,12 @@ fn what_cannot_be_is_refused_in_a_line() {
     refused(&ConductorMaterial { k: (-1.0).into(), ..gold(0.0) }, "k must be finite and not negative");
     let coat = PlasticMaterial { reflectance: 0.5.into(), ior: 0.9, roughness: 0.0.into() };
     refused(&coat, "ior must be finite and at least 1, got 0.9");
+    let two = || Roughness { along: [0.1.into(), 0.2.into()], is_alpha: true };
+    refused(
+        &PlasticMaterial { ior: 1.5, roughness: two(), ..coat.clone() },
+        "alpha must be the same in all directions",
+    );
+    refused(&DielectricMaterial { roughness: two(), ..glass(0.0) }, "alpha must be the same in all directions");
     let shiny = PhongMaterial { diffuse: 0.7.into(), specular: 0.4.into(), exponent: 1.0.into(), ambient: 0.0.into() };
     refused(&shiny, "diffuse and specular must add up to at most 1");
     let bump = BumpMap { material: grey(0.5), height: f64::NAN.into(), scale: 1.0 };

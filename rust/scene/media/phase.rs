@@ -91,8 +91,8 @@ mod tests {
             for step in 1..40 {
                 // Finer near where the density is sharpest.
                 let near = f64::from(step) / 40.0;
-                let c: f64 = 1f64.copysign(g) * (1.0 - 2.0 * near.powi(6));
-                let h = 1e-4 * near.powi(6);
+                let c: f64 = 1f64.copysign(g) * (1.0 - 2.0 * near.powi(4));
+                let h = 1e-3 * near.powi(4);
                 if c.abs() > 1.0 - h {
                     continue;
                 }
