@@ -25,5 +25,3 @@ autodoc_member_order = "bysource"
 numpydoc_show_class_members = False
 
 myst_heading_anchors = 3
-# The list of pages takes in what others add to the folder; that there is nothing yet is no fault.
-suppress_warnings = ["toc.empty_glob"]
