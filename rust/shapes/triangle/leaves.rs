@@ -357,9 +357,9 @@ mod tests {
         }
     }
 
-    /// Those with eight lanes.
-    fn levels() -> impl Iterator<Item = Level> {
-        Level::ALL.into_iter().filter(|l| l.is_available() && l.lanes() >= 8)
+    /// Those with so many lanes.
+    fn levels<const N: usize>() -> impl Iterator<Item = Level> {
+        Level::ALL.into_iter().filter(|l| l.is_available() && l.lanes() >= N)
     }
 
     /// Nothing that is met may be rejected.
@@ -376,7 +376,7 @@ mod tests {
         let Some(edges) = EdgeRay::new(ray, &region) else { return Ok(0) };
         let lanes = L::ray(&edges, &region);
         let met: Vec<_> = triangles.iter().map(|&t| edges.meet(t).is_some()).collect();
-        for level in levels() {
+        for level in levels::<N>() {
             let left = level.dispatch(Left { leaves: &leaves, ray: &lanes, count: triangles.len() as u32 });
             prop_assert_eq!(left >> triangles.len(), 0);
             for (lane, &met) in met.iter().enumerate() {
@@ -418,11 +418,14 @@ mod tests {
         ) {
             let mut triangles: Vec<_> = others.iter().map(|(_, t)| *t).collect();
             triangles.insert(at.min(others.len()), triangle);
+            nothing_met_is_rejected::<4, SingleLeaves<4>>(&ray, &triangles)?;
+            nothing_met_is_rejected::<4, DoubleLeaves<4>>(&ray, &triangles)?;
             nothing_met_is_rejected::<8, SingleLeaves<8>>(&ray, &triangles)?;
             nothing_met_is_rejected::<8, DoubleLeaves<8>>(&ray, &triangles)?;
             let moved = DVec3::new(1.0, -0.7, 0.3) * 2f64.powi(off);
             let ray = Ray { origin: ray.origin + moved, ..ray };
             let triangles: Vec<_> = triangles.iter().map(|t| t.map(|c| c + moved)).collect();
+            nothing_met_is_rejected::<4, DoubleLeaves<4>>(&ray, &triangles)?;
             nothing_met_is_rejected::<8, DoubleLeaves<8>>(&ray, &triangles)?;
         }
     }
@@ -431,12 +434,14 @@ mod tests {
     fn most_of_what_is_not_met_is_rejected() {
         let triangle = [DVec3::ZERO, DVec3::X, DVec3::Y];
         let region = Region::around(triangle);
-        let leaves = SingleLeaves::<8>::new(&region, &[7], &[1], |_| triangle);
+        let four = SingleLeaves::<4>::new(&region, &[7], &[1], |_| triangle);
+        let eight = SingleLeaves::<8>::new(&region, &[7], &[1], |_| triangle);
         let left = |origin: DVec3, direction: DVec3| {
             let edges = EdgeRay::new(&Ray::new(origin, direction), &region).unwrap();
-            let ray = <SingleLeaves<8> as Leaves<8>>::ray(&edges, &region);
-            let found: Vec<_> =
-                levels().map(|level| level.dispatch(Left { leaves: &leaves, ray: &ray, count: 1 })).collect();
+            let ray = &<SingleLeaves<8> as Leaves<8>>::ray(&edges, &region);
+            let narrow = levels::<4>().map(|level| level.dispatch(Left { leaves: &four, ray, count: 1 }));
+            let wide = levels::<8>().map(|level| level.dispatch(Left { leaves: &eight, ray, count: 1 }));
+            let found: Vec<_> = narrow.chain(wide).collect();
             assert!(found.iter().all(|&f| f == found[0]), "{found:?}");
             found[0] == 1
         };
