@@ -165,7 +165,7 @@ class Distribution:
         parts: list[tuple[_Pass, int, int]] = []
         wanted = self._wanted()
         tiles, spent = self._rendering.tiles, 0.0
-        while spent < wanted and len(parts) < _MOST_REQUESTS:
+        while not parts or (spent < wanted and len(parts) < _MOST_REQUESTS):
             now = self._passes[-1] if self._passes else None
             if now is None or now.next == tiles:
                 now = self._next_pass()
