@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import raywright as rw
-from raywright.io.pictures import read
+from raywright.io.pictures import read_linear
 from raywright.lights.sun_sky import sun_position
 
 PICTURE = np.arange(24, dtype=np.float32).reshape(2, 4, 3)
@@ -161,11 +161,11 @@ def test_pictures_of_light_are_read_from_files(tmp_path, picture):
     picture.save(tmp_path / "a.png")
     for name, tolerance in (("a.npy", 0), ("a.exr", 0), ("a.png", 5e-3)):
         clipped = np.minimum(picture.rgb, 1) if name == "a.png" else picture.rgb
-        assert np.abs(read(tmp_path / name) - clipped).max() <= tolerance
+        assert np.abs(read_linear(tmp_path / name) - clipped).max() <= tolerance
         assert rw.EnvironmentMap(tmp_path / name).image.shape == picture.rgb.shape
     (tmp_path / "no.png").write_text("no picture")
-    with pytest.raises(ValueError, match="no picture that can be read"):
-        read(tmp_path / "no.png")
+    with pytest.raises(ValueError, match="is not a picture that can be read"):
+        read_linear(tmp_path / "no.png")
 
 
 def test_radiances_own_files_are_read(tmp_path):
@@ -178,7 +178,7 @@ def test_radiances_own_files_are_read(tmp_path):
     path.write_bytes(head + b"-Y 2 +X 20\n" + runs + bytes((0, 0, 0, 0)) * 20)
     expected = np.zeros((2, 20, 3), np.float32)
     expected[0] = (2, 1, 0)
-    assert np.array_equal(read(path), expected)
+    assert np.array_equal(read_linear(path), expected)
     for bad in (
         head + b"-Y 2 +X 20\n" + runs,
         head + b"+Y 2 +X 20\n" + runs,
@@ -187,4 +187,4 @@ def test_radiances_own_files_are_read(tmp_path):
     ):
         path.write_bytes(bad)
         with pytest.raises(ValueError, match=r"a\.hdr"):
-            read(path)
+            read_linear(path)
