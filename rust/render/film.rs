@@ -11,7 +11,7 @@ use rayon::prelude::*;
 /// where all are independent, and several where they are placed with regard to each other.
 ///
 /// A film may be in halves: each pixel then has two *cells*, whose samples are independent of each other and may differ in
-/// number, and the pixel is the mean of the two cells' means. What a film in halves is good for is told in [`super::Adaptive`].
+/// number, and the pixel is the mean of the two cells' means. What a film in halves is good for is told in `adaptive.rs`.
 ///
 /// Sums depend on the order of adding, so the order is part of the film: samples are added up one by one in blocks of
 /// 16, and blocks one by one. Hence how samples are split into passes, who works on a tile and how large tiles are does

@@ -75,7 +75,7 @@ impl Scatters for Bsdf {
 /// Scattering is computed in the shading frame, whose z is on the side of the winding's normal, so that what transmits knows by the sign of
 /// a direction on which side it lies. Which side that is in truth is the geometric normal's to say: otherwise light leaks through wherever
 /// the two normals disagree (Veach, "Robust Monte Carlo Methods for Light Transport Simulation", 1997, 5.3). What is cut off so would
-/// show the facets of a coarse mesh as hard steps where light grazes them; it fades out before instead ([`Interaction::fading`]).
+/// show the facets of a coarse mesh as hard steps where light grazes them; it fades out before instead (see `fading`).
 #[derive(Clone, Debug)]
 pub struct Interaction<S = Scattering> {
     surface: SurfacePoint,
