@@ -153,7 +153,7 @@ class Distribution:
         piece.attempt += 1
         arguments = (self._courier.key, payload, spool, piece.requests, self._threads, piece.attempt)
         try:
-            future = self._executor.submit(work, *arguments)
+            future = self._executor.submit(work, *arguments, **self._courier.options)
         except Exception as error:
             if not self._landed and not self._flying:
                 raise
@@ -325,6 +325,8 @@ class _Courier:
     def __init__(self, job: Job, executor: Executor) -> None:
         self._client = _dask_client(executor)
         self._dumps: Callable[[Any], bytes] = pickle.dumps
+        # What else `submit` takes: dask need not digest the work to know if it has been done before.
+        self.options: dict[str, Any] = {} if self._client is None else {"pure": False}
         if self._client is not None:
             # It brings classes that are written in a notebook, too.
             self._dumps = importlib.import_module("cloudpickle").dumps

@@ -104,14 +104,18 @@ impl Adaptive {
         check(self.from < self.to && epoch.contains(&film.samples()), "an epoch ends before it begins")?;
         check(self.to <= FilmTile::MOST, "an epoch has too many samples")?;
         check(self.evidence > 0 && self.evidence <= self.to, "there is no evidence")?;
+        let mut all = 0;
         for (tile, shares) in film.tiles().iter().zip(&mut self.shares) {
             for end in 0..2 {
                 from.words(shares.iter_mut().map(|share| &mut share[end]))?;
             }
             let holds = |(&count, &[start, end]): (&u32, &[u32; 2])| start <= count && count <= end;
             check(tile.counts().iter().zip(&*shares).all(holds), "a cell has other samples than it was given")?;
+            all += shares.iter().map(|&[_, end]| u64::from(end)).sum::<u64>();
         }
-        Ok(())
+        // No one shall wait for a pass that never ends. Cells are rounded to whole batches.
+        let most = (u64::from(self.to) + 2 * u64::from(film.batch())) * film.pixel_count() as u64;
+        check(all <= most, "cells were given more samples than there are")
     }
 
     /// Begins an epoch, in which the half `decider(half)` decides for each half.

@@ -183,6 +183,8 @@ impl Rendering {
     fn check_passes(&self) -> Result<(), Malformed> {
         let (done, aim) = (self.film.samples(), self.aim);
         check(done <= aim && aim <= FilmTile::MOST, "a pass ends before it begins")?;
+        // No one shall wait for a pass that never ends.
+        check(aim - done <= self.film.block(), "a pass is too long")?;
         let decided = self.plan.as_ref().is_none_or(|plan| aim == done || aim <= plan.end());
         check(decided, "a pass goes on after its epoch")?;
         let even = |count: &u32| (done..=aim).contains(count);

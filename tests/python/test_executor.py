@@ -320,7 +320,7 @@ def test_dask_is_sent_the_scene_once_a_worker(box, cluster, tmp_path):
 @pytest.mark.filterwarnings("ignore")
 @pytest.mark.parametrize("adaptive", [False, True])
 def test_a_dask_worker_killed_half_way_is_not_missed(cluster, adaptive):
-    scene, camera = rw.scenes.cornell_box(width=160, height=120)
+    scene, camera = rw.scenes.cornell_box(width=96, height=72)
     limits = {"samples": 256, "seed": 3, "progress": False, "adaptive": adaptive}
     one = rw.render(scene, camera, **limits)
     pids = list(cluster.run(os.getpid).values())
