@@ -10,7 +10,7 @@ use std::sync::Arc;
 /// A scene on the default accelerator.
 pub(crate) fn scene(description: SceneDescription) -> Scene {
     let level = Level::current().expect("a level");
-    let compiled = Scene::new(description, |geometry| bvh::wide(4, geometry, &Options::default(), level));
+    let compiled = Scene::new(description, |geometry| bvh::over(geometry, &Options::default(), level));
     compiled.expect("a scene that can be")
 }
 
