@@ -171,7 +171,7 @@ def _volume(mesh):
         (
             (THREE, FACE, None, None, None, (1, 2)),
             ValueError,
-            r"emission must be a texture, one number or 3, got shape \(2,\)",
+            r"emission must be one number or 3, got shape \(2,\)",
         ),
         ((THREE, FACE, None, None, None, np.nan), ValueError, r"emission must be finite"),
     ],

@@ -81,7 +81,7 @@ def test_camera_keeps_the_dimensions_of_extreme_scenes():
         (
             lambda: rw.Diffuse((0.1, 0.2)),
             ValueError,
-            r"reflectance must be a texture, one number or 3, got shape \(2,\)",
+            r"reflectance must be one number or 3, got shape \(2,\)",
         ),
         (lambda: rw.Diffuse("red"), TypeError, r"reflectance must be real numbers, got 'red'"),
         (lambda: rw.Diffuse(math.nan), ValueError, r"reflectance must be finite"),
