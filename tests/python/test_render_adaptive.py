@@ -58,18 +58,26 @@ def test_the_same_error_takes_fewer_samples():
 def test_adaptive_errors_are_as_estimated():
     scene, camera = rw.scenes.cornell_box(width=48, height=48)
     reference = render(scene, camera, samples=4000, seed=10**9).rgb.astype(float)
-    ratios, inside, within = [], [], []
+    ratios, inside = [], []
     for seed in range(40):
         image = render(scene, camera, samples=64, seed=seed, adaptive=True)
         truth = relmse(image, reference)
         ratios.append(float(image.error) / truth)
         inside.append(image.error.low <= truth <= image.error.high)
-        within.append(np.mean(np.abs(image.rgb - reference) <= 1.96 * image.standard_error))
     ratios = np.array(ratios)
     # Of what holds in 95 of 100, chance leaves 34 or fewer of 40 once in 70 cases.
     assert np.sum((ratios > 0.8) & (ratios < 1.25)) >= 35
     assert np.sum(inside) >= 35
-    assert 0.9 < np.mean(within) < 0.97
+
+
+def test_adaptive_intervals_of_pixels_hold():
+    # From 256 samples on they are to hold the truth in 93 to 97 of 100. That of one picture varies by half a
+    # percent, and the mean of six by 0.2 percent, of which three are allowed.
+    scene, camera = rw.scenes.cornell_box(width=48, height=48)
+    reference = render(scene, camera, samples=6000, seed=10**9).rgb.astype(float)
+    images = [render(scene, camera, samples=256, seed=seed, adaptive=True) for seed in range(6)]
+    within = [np.mean(np.abs(image.rgb - reference) <= 1.96 * image.standard_error) for image in images]
+    assert 0.924 < np.mean(within) < 0.976
 
 
 def test_counts_of_samples_are_told():

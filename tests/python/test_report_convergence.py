@@ -36,11 +36,15 @@ def test_there_is_a_row_for_each_contender_and_budget(report):
 
 
 def test_errors_are_those_of_the_samples(report):
-    # Path tracing with independent samples has relMSE = c / samples: c from each of the later budgets agrees.
+    # Path tracing with independent samples has relMSE = c / samples: c from each budget of 16 samples or more
+    # agrees. How many those are is for the machine to say.
     mine = report.where(contender="path")
-    products = np.array(mine.column("relmse"))[2:] * np.array(mine.column("samples"))[2:]
+    samples = np.array(mine.column("samples"))
+    known = samples >= 16
+    assert known[-1]
+    products = np.array(mine.column("relmse"))[known] * samples[known]
     assert products.max() < 1.6 * products.min()
-    assert np.log(np.array(mine.column("ratio")[2:])) == pytest.approx(0, abs=0.4)
+    assert np.log(np.array(mine.column("ratio"), float)[known]) == pytest.approx(0, abs=0.4)
 
 
 def test_slopes_are_fitted_by_least_squares():
