@@ -1,6 +1,7 @@
 """Files that must be refused: by one line, within a second of the processor, and in less than a gigabyte."""
 
 import json
+import select
 import subprocess
 import sys
 from pathlib import Path
@@ -16,7 +17,8 @@ from PIL import PngImagePlugin, JpegImagePlugin
 PIL.Image.init()
 
 readers = {"gltf": read_gltf, "mesh": rw.Scene, "picture": read}
-pages = int(open("/proc/self/statm").read().split()[0])
+with open("/proc/self/statm") as file:
+    pages = int(file.read().split()[0])
 most = pages * resource.getpagesize() + 2**30
 resource.setrlimit(resource.RLIMIT_AS, (most, most))
 for line in sys.stdin:
@@ -30,6 +32,10 @@ for line in sys.stdin:
     took = time.process_time() - began
     print(json.dumps([*told, took, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024]), flush=True)
 """
+
+
+# Seconds, on a machine that may have other things to do.
+PATIENCE = 10
 
 
 class Refusal(NamedTuple):
@@ -53,6 +59,9 @@ class Reader:
         assert self._process.stdout is not None
         self._process.stdin.write(json.dumps([kind, str(path)]) + "\n")
         self._process.stdin.flush()
+        if not select.select([self._process.stdout], [], [], PATIENCE)[0]:
+            self._process.kill()
+            raise TimeoutError(f"{path.name} was read for {PATIENCE} seconds")
         return Refusal(*json.loads(self._process.stdout.readline()))
 
     def refuse(self, kind: str, path: Path) -> str:

@@ -254,6 +254,33 @@ def test_what_is_not_shown_is_told_once(tmp_path, material, told):
     assert [str(one.message) for one in caught] == [f"file.glb: {told}"]
 
 
+@pytest.mark.parametrize("pictured", [False, True])
+def test_specular_and_glossy_materials_become_metallic_and_rough(tmp_path, pictured):
+    """What reflects 4 % is no metal, and what is black but for its specular colour is one."""
+
+    def model(diffuse, specular):
+        writer = Writer()
+        told = {"diffuseFactor": [*diffuse, 1], "specularFactor": specular, "glossinessFactor": 0.75}
+        if pictured:
+            told["diffuseTexture"] = writer.picture(png(np.full((2, 2, 3), 255, np.uint8)))
+        material = {"extensions": {"KHR_materials_pbrSpecularGlossiness": told}}
+        writer.json["extensionsRequired"] = ["KHR_materials_pbrSpecularGlossiness"]
+        made = loaded(tmp_path, material, writer).material
+        ends = [made.base_color, made.metallic, made.roughness]
+        if pictured:
+            # Of 8 bits: sRGB in the picture of colour, shares as they are in that of the rest.
+            low, high = zip(*(one.range for one in ends), strict=True)
+            assert low == high
+            ends = [low[0], low[1][0], low[2][0]]
+        assert ends[2] == pytest.approx(0.25, abs=1 / 255)
+        return ends[0], ends[1]
+
+    color, metallic = model([0.5, 0.25, 0.75], [0.04, 0.04, 0.04])
+    assert (color, metallic) == (pytest.approx((0.5, 0.25, 0.75), abs=0.01), pytest.approx(0, abs=0.01))
+    color, metallic = model([0, 0, 0], [0.8, 0.6, 0.4])
+    assert (color, metallic) == (pytest.approx((0.8, 0.6, 0.4), abs=0.01), pytest.approx(1, abs=0.01))
+
+
 def test_extensions_that_may_be_left_out_are_named(tmp_path):
     writer = Writer()
     writer.json["extensionsUsed"] = ["KHR_materials_sheen", "KHR_materials_ior", "KHR_materials_clearcoat"]

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from ..instance import AnyShape, Instance
 from ..mesh import Mesh
 from ..shapes import Shape
+from .claims import check_mesh_file
 from .looks import look_of
 from .quiet import quiet, reason
 
@@ -92,6 +93,7 @@ def _read(path: Path) -> tuple[Mesh, ...]:
     import trimesh
 
     try:
+        check_mesh_file(path)
         with quiet():
             found = trimesh.load_scene(str(path), process=False)
             return tuple(_of_scene(found, loaded=True))

@@ -10,12 +10,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from .exr_chunks import check_exr
 from .quiet import quiet, reason
 from .radiance_hdr import read_hdr
 
 SUFFIXES = (".png", ".exr", ".npy")
-# Of an EXR: 16384 x 8192. Pillow has a limit of its own, which users may set.
-_MOST_POINTS = 2**27
 
 
 def check_writable(
@@ -176,11 +175,8 @@ def _read_exr(path: Path) -> NDArray[np.float32]:
     except ImportError as error:
         raise ImportError(_NO_EXR.replace("saving", "reading")) from error
 
-    with OpenEXR.File(str(path), header_only=True) as file:
-        low, high = file.header()["dataWindow"]
-    width, height = (int(b) - int(a) + 1 for a, b in zip(low, high, strict=True))
-    if width * height > _MOST_POINTS:
-        raise ValueError(f"it has {width} x {height} points by its header, and {_MOST_POINTS} are read")
+    # The library tells of what is broken in lines of its own, and on stdout.
+    check_exr(path)
     with OpenEXR.File(str(path), separate_channels=True) as file:
         channels = {name: channel.pixels for name, channel in file.channels().items()}
     names = ["R", "G", "B"] if "R" in channels else ["Y"]

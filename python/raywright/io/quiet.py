@@ -32,6 +32,6 @@ def reason(error: Exception, most: int = 120) -> str:
     if isinstance(error, ModuleNotFoundError):
         return f"trimesh needs {error.name} for it"
     told = " ".join(str(error).split())
-    if not isinstance(error, ValueError | OSError) or not told:
+    if not isinstance(error, ValueError | OSError | IndexError) or not told:
         told = f"{type(error).__name__}: {told}" if told else type(error).__name__
     return told if len(told) <= most else f"{told[: most - 3]}..."

@@ -59,8 +59,10 @@ def read_gltf(path: str | PathLike[str]) -> Shot:
     Of materials there is the metallic-roughness model with its pictures, alpha, normals and emission, and of
     the extensions KHR_materials_emissive_strength, KHR_materials_transmission (a `ThinDielectric`, or a
     `Dielectric` where KHR_materials_volume says that there is a volume), KHR_materials_ior and
-    KHR_texture_transform. Spots fall off between their two angles as a `SpotLight` does; the range of lights
-    is a hint, and of no account. Skins and blended shapes are shown as the file has them at rest.
+    KHR_texture_transform; trimesh turns KHR_materials_pbrSpecularGlossiness into that model.
+
+    Spots fall off between their two angles as a `SpotLight` does; the range of lights is a hint, and of no
+    account. Skins and blended shapes are shown as the file has them at rest.
     """
     path = _there(path)
     try:
@@ -69,16 +71,17 @@ def read_gltf(path: str | PathLike[str]) -> Shot:
         seen = camera(document, nodes)
         found = list(shapes(document, nodes))
         lit = list(lights(document, nodes))
+        if not any(map(_faces, found)):
+            raise ValueError("it holds no faces")
         if "animations" in document.root:
             document.tell("its animations are left out: it is shown at rest")
+        shown = bool(lit) or (seen is not None and any(map(_shines, found)))
+        environment = None if shown else ConstantEnvironment(1.0)
+        shot = Shot(Scene(found, lit, environment), framed(found) if seen is None else seen)
     except Exception as error:
         raise _refused(path, "glTF file", error) from error
-    if not any(_faces(shape) for shape in found):
-        raise ValueError(f"{path} holds no faces")
     document.warn(stacklevel=2)
-    shown = bool(lit) or (seen is not None and any(map(_shines, found)))
-    environment = None if shown else ConstantEnvironment(1.0)
-    return Shot(Scene(found, lit, environment), framed(found) if seen is None else seen)
+    return shot
 
 
 def read_meshes(path: Path) -> tuple[Mesh, ...]:

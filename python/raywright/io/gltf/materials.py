@@ -6,6 +6,7 @@ from ...lights.emission import Emitted
 from ...materials import Material
 from ..pbr import IOR, Pbr, Picture
 from .document import Document
+from .glossy import of_glossy
 from .part import Part
 from .pictures import Pictures, coordinates
 
@@ -47,7 +48,6 @@ class Materials:
         return self._made[key]
 
     def _surface(self, part: Part, colored: bool) -> Surface:
-        rough = part.part("pbrMetallicRoughness")
         unlit = part.extension("KHR_materials_unlit") is not None
         if unlit:
             self._document.tell("materials that are shown without light (unlit) are matt here")
@@ -57,13 +57,7 @@ class Materials:
         strength = part.extension("KHR_materials_emissive_strength")
         factor = 1.0 if strength is None else strength.number("emissiveStrength", 1.0, 0.0)
         normals = part.part("normalTexture")
-        made = Pbr(
-            # The set that most lies on is that of the base colour: it is asked for first.
-            color_picture=seen.picture(rough, "baseColorTexture"),
-            color=rough.numbers("baseColorFactor", 4, None, 0, 1) if "baseColorFactor" in rough else None,
-            metallic=rough.number("metallicFactor", None, 0, 1) if "metallicFactor" in rough else None,
-            roughness=rough.number("roughnessFactor", None, 0, 1) if "roughnessFactor" in rough else None,
-            rough_picture=seen.picture(rough, "metallicRoughnessTexture"),
+        made = _model(part, seen)._replace(
             normal_picture=seen.picture(part, "normalTexture"),
             normal_scale=normals.number("scale", 1.0),
             emission=part.numbers("emissiveFactor", 3, (0.0, 0.0, 0.0), 0) * factor,
@@ -104,6 +98,23 @@ class Materials:
                 tell("clear materials do not absorb light here")
         elif made.ior != IOR and made.metallic != 0.0:
             tell("the ior counts for what is clear, or no metal at all, and is left out elsewhere")
+
+
+def _model(part: Part, seen: "_Seen") -> Pbr:
+    """Return the colour of a material, and how metallic and how rough it is."""
+    glossy = part.extension("KHR_materials_pbrSpecularGlossiness")
+    if glossy is not None:
+        pictures = (seen.picture(glossy, name) for name in ("diffuseTexture", "specularGlossinessTexture"))
+        return of_glossy(glossy, *pictures)
+    rough = part.part("pbrMetallicRoughness")
+    return Pbr(
+        color=rough.numbers("baseColorFactor", 4, None, 0, 1) if "baseColorFactor" in rough else None,
+        # Of several sets of coordinates that of the base colour is kept: it is asked for first.
+        color_picture=seen.picture(rough, "baseColorTexture"),
+        metallic=rough.number("metallicFactor", None, 0, 1) if "metallicFactor" in rough else None,
+        roughness=rough.number("roughnessFactor", None, 0, 1) if "roughnessFactor" in rough else None,
+        rough_picture=seen.picture(rough, "metallicRoughnessTexture"),
+    )
 
 
 class _Seen:
