@@ -135,7 +135,7 @@ def _batch(batch: int | None) -> int | None:
 
 
 def as_begun(sampler: Sampler, begun: object) -> Sampler:
-    """Return the sampler, if it was given no batch, with that of one that has begun and was written by ``repr``."""
+    """Return the sampler; if it has no batch, with that of one that has begun, known by its ``repr``."""
     if not isinstance(sampler, Independent) and sampler.batch is None:
         for size in range(_MOST.bit_length()):
             if begun == repr(with_batch := replace(sampler, batch=1 << size)):
