@@ -85,6 +85,7 @@ from .textures import (
     VertexColors,
     Wood,
 )
+from .viewer import Viewer, view
 
 if TYPE_CHECKING:
     from . import report
@@ -186,6 +187,7 @@ __all__ = [
     "TwoSided",
     "UvTransform",
     "VertexColors",
+    "Viewer",
     "Whitted",
     "Wood",
     "aovs",
@@ -196,6 +198,7 @@ __all__ = [
     "report",
     "scenes",
     "simd",
+    "view",
 ]
 
 

@@ -242,13 +242,15 @@ class Rendering:
         progress: Callable[[float, int, float], None] | None,
         sampler: Any,
         filter: Any,
+        look: Callable[[], None] | None,
     ) -> bool:
         """Go on until the first of `samples` (per pixel), `error` (relMSE) or `seconds` is met: True.
 
         False if that took more than `pause` seconds: what has been begun is done then, and it can go on.
         ``progress`` is called with (seconds, samples done, error estimate or NaN) after every pass.
-        Signals are checked ten times a second or more; an exception raised by a handler, or by ``progress``,
-        ends the render at once and is passed on. Even then it can be gone on with.
+        Signals are checked ten times a second or more, and ``look`` is called as often; an exception raised
+        by a handler, by ``progress`` or by ``look`` ends the render at once and is passed on. Even then it
+        can be gone on with.
         """
     @property
     def aim(self) -> int:

@@ -1,4 +1,4 @@
-"""The shell command: ``raywright demo``, ``render``, ``info`` and ``report``."""
+"""The shell command: ``raywright demo``, ``render``, ``view``, ``info`` and ``report``."""
 
 import argparse
 import os
@@ -17,12 +17,15 @@ from .materials import Diffuse
 from .rendering import render
 from .scene import Scene
 from .scenes import cornell_box, studio, torus_knot
+from .viewer import view
 
 # As shells count it: 128 and the number of SIGINT.
 INTERRUPTED = 130
 DEMO_SECONDS = 10.0
 # What stands for the library's own Cornell box where a mesh file could.
 CORNELL = "cornell"
+# What options and arguments of a render have the same names for.
+_HOW = ("samples", "error", "seconds", "seed", "threads", "adaptive", "clamp")
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -69,6 +72,13 @@ def _render(options: argparse.Namespace) -> None:
     _picture(*studio(shapes, options.up, options.width, options.height), options)
 
 
+def _view(options: argparse.Namespace) -> None:
+    how = {name: getattr(options, name) for name in _HOW}
+    with view(*_scene(options), **how, port=options.port, open=options.open) as viewer:
+        print(f"{viewer.url}\n(Ctrl-C ends it)", flush=True)
+        viewer.wait()
+
+
 def _info(options: argparse.Namespace) -> None:
     print(described(str(options.mesh), Scene(options.mesh)))
 
@@ -91,10 +101,7 @@ def _report_convergence(options: argparse.Namespace) -> None:
     from .report import convergence
 
     _check_plot(options)
-    if options.scene == CORNELL:
-        scene, camera = cornell_box(width=options.width, height=options.height)
-    else:
-        scene, camera = studio(load(options.scene), options.up, options.width, options.height)
+    scene, camera = _scene(options)
     report = convergence(
         scene,
         camera,
@@ -104,6 +111,13 @@ def _report_convergence(options: argparse.Namespace) -> None:
         threads=options.threads,
     )
     _tell_report(report, options)
+
+
+def _scene(options: argparse.Namespace) -> tuple[Scene, Camera]:
+    """Return what SCENE names: a mesh file in a studio, or the Cornell box."""
+    if options.scene == CORNELL:
+        return cornell_box(width=options.width, height=options.height)
+    return studio(load(options.scene), options.up, options.width, options.height)
 
 
 def _check_plot(options: argparse.Namespace) -> None:
@@ -133,19 +147,8 @@ def _check_matplotlib() -> None:
 
 
 def _picture(scene: Scene, camera: Camera, options: argparse.Namespace) -> None:
-    image = render(
-        scene,
-        camera,
-        samples=options.samples,
-        error=options.error,
-        seconds=options.seconds,
-        seed=options.seed,
-        threads=options.threads,
-        progress=not options.quiet,
-        adaptive=options.adaptive,
-        clamp=options.clamp,
-        checkpoint=options.checkpoint,
-    )
+    how = {name: getattr(options, name) for name in _HOW}
+    image = render(scene, camera, **how, progress=not options.quiet, checkpoint=options.checkpoint)
     image.save(options.output)
     if not options.quiet:
         _tell(image, options.output)
@@ -192,6 +195,8 @@ def _parser() -> argparse.ArgumentParser:
     one.add_argument("--up", choices=("y", "z"), default="y", help="axis that points up (default: y)")
     _add_picture(one, None, "64 samples", width=640, height=480)
 
+    _add_view(verbs.add_parser("view", help="show a scene in the browser while it renders"))
+
     info = verbs.add_parser("info", help="tell what a mesh file holds, and what its accelerator looks like")
     info.set_defaults(run=_info)
     info.add_argument("mesh", metavar="MESH", help="any mesh file: PLY, OBJ, STL, GLB, ...")
@@ -205,6 +210,27 @@ def _parser() -> argparse.ArgumentParser:
         reports.add_parser("convergence", help="error against run time, with and without adaptive sampling")
     )
     return parser
+
+
+def _add_view(verb: argparse.ArgumentParser) -> None:
+    verb.set_defaults(run=_view)
+    _add_scene(verb)
+    verb.add_argument(
+        "--port",
+        metavar="N",
+        type=_number(int, 0, 65535),
+        default=0,
+        help="where on 127.0.0.1 to serve the page (default: any that is free)",
+    )
+    verb.add_argument("--open", action="store_true", help="open a browser")
+    _add_limits(verb, "to a relMSE of 0.0001", width=640, height=480)
+
+
+def _add_scene(verb: argparse.ArgumentParser) -> None:
+    verb.add_argument(
+        "scene", metavar="SCENE", help=f"any mesh file, framed and lit as by render, or {CORNELL!r}"
+    )
+    verb.add_argument("--up", choices=("y", "z"), default="y", help="axis that points up (default: y)")
 
 
 def _add_accelerators(report: argparse.ArgumentParser) -> None:
@@ -235,10 +261,7 @@ def _add_accelerators(report: argparse.ArgumentParser) -> None:
 def _add_convergence(report: argparse.ArgumentParser) -> None:
     told = " (default: %(default)s)"
     report.set_defaults(run=_report_convergence)
-    report.add_argument(
-        "scene", metavar="SCENE", help=f"any mesh file, framed and lit as by render, or {CORNELL!r}"
-    )
-    report.add_argument("--up", choices=("y", "z"), default="y", help="axis that points up" + told)
+    _add_scene(report)
     report.add_argument(
         "--seconds",
         metavar="S",
@@ -301,6 +324,16 @@ def _add_picture(
         default=output,
         help=".png, .exr or .npy" + (told if output else ""),
     )
+    _add_limits(verb, limit, width, height)
+    verb.add_argument(
+        "--checkpoint", metavar="FILE", help="keep the render in a file, and go on from it if it is there"
+    )
+    verb.add_argument("--quiet", action="store_true", help="print nothing but errors")
+
+
+def _add_limits(verb: argparse.ArgumentParser, limit: str, width: int, height: int) -> None:
+    """Add when a render ends, and how it is done."""
+    told = " (default: %(default)s)"
     limits = verb.add_argument_group(
         "limits", f"The first that is met ends the render. Without any: {limit}."
     )
@@ -318,10 +351,6 @@ def _add_picture(
     verb.add_argument(
         "--clamp", metavar="L", type=_number(float), help="radiance to dim brighter samples to: biased"
     )
-    verb.add_argument(
-        "--checkpoint", metavar="FILE", help="keep the render in a file, and go on from it if it is there"
-    )
-    verb.add_argument("--quiet", action="store_true", help="print nothing but errors")
 
 
 def _number(kind: type[Any], least: int | None = None, most: int | None = None) -> Callable[[str], Any]:

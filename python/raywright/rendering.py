@@ -2,9 +2,9 @@
 
 import os
 import warnings as python_warnings
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from concurrent.futures import Executor
-from typing import Any
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,14 +18,23 @@ from .filters import BoxFilter, Filter
 from .identity import digest
 from .image import HISTORY, ErrorEstimate, Image
 from .integrators import AnyIntegrator, Path, check_integrator
+from .notebook import display
 from .progress import Report, bar
 from .samplers import Sampler, Sobol, as_begun, with_budget
 from .scene import Scene
+from .snapshots import Snapshots
 
 _PATH = Path()
 _SAMPLER: Sampler = Sobol()
 _FILTER: Filter = BoxFilter()
 _DEFAULT_SAMPLES = 64
+
+
+class Stop(Protocol):
+    """What ends a render from elsewhere, such as a `threading.Event`."""
+
+    def is_set(self) -> bool:
+        """Whether the render is to end."""
 
 
 def render(
@@ -38,7 +47,7 @@ def render(
     *,
     seed: int = 0,
     threads: int | None = None,
-    progress: bool = True,
+    progress: bool | Callable[[Image], object] = True,
     adaptive: bool = False,
     clamp: float | None = None,
     sampler: Sampler = _SAMPLER,
@@ -46,6 +55,7 @@ def render(
     checkpoint: str | os.PathLike[str] | None = None,
     executor: Executor | None = None,
     aov: str | Iterable[str] = (),
+    stop: Stop | None = None,
 ) -> Image:
     """Render a picture, until the first of the limits that are given is met.
 
@@ -69,8 +79,11 @@ def render(
         bit, for any number of threads.
     threads : int, optional
         How many to use; all cores if not given. With an executor, for each piece of its work; 1 if not given.
-    progress : bool
-        Whether to show a bar on stderr.
+    progress : bool or callable
+        Whether to show a bar on stderr and, in a notebook, the picture as it comes. Or a function that is
+        called with the picture so far, an Image, ten times a second at most and less often where it takes
+        long, and in the end with what is returned. Within a pass some pixels have more samples than others;
+        before the end of the first, ``image.samples`` is 0. What the function raises ends the render.
     adaptive : bool
         Whether more samples go to the pixels where more of the estimated relMSE is; `samples` is then their
         mean, and ``image.aov["samples"]`` tells how many each pixel has. It begins after 16 samples. No pixel
@@ -98,6 +111,9 @@ def render(
     aov : str or several, optional
         What is seen first beside the picture, by the names in `AOVS`: ``image.aov["depth"]`` and so on, as
         `aovs` gives it.
+    stop : threading.Event, or anything with a method is_set, optional
+        Ends the render at once when it is set, from another thread or from `progress`. The picture so far is
+        returned, even if some of its pixels have no sample yet, which ``image.warnings`` then tells.
 
     Returns
     -------
@@ -115,6 +131,114 @@ def render(
     KeyboardInterrupt
         At once, when Ctrl-C is pressed; a checkpoint is written before.
     """
+    checked = check(
+        scene, camera, integrator, samples, error, seconds, seed, threads, adaptive, clamp, sampler, filter
+    )
+    limits, seed, threads, clamp = checked
+    if not (callable(progress) or isinstance(progress, bool)):
+        raise TypeError(f"progress must be True, False or a function, got {progress!r}")
+    show = progress if callable(progress) else display() if progress else None
+    if stop is not None and not callable(getattr(stop, "is_set", None)):
+        raise TypeError(f"stop must be a threading.Event or the like, got {type(stop).__name__}")
+    if executor is not None and not isinstance(executor, Executor):
+        raise TypeError(f"executor must be a concurrent.futures.Executor, got {type(executor).__name__}")
+    names = names_of(aov)
+    kept = None
+    if checkpoint is not None:
+        if not isinstance(checkpoint, str | os.PathLike):
+            raise TypeError(f"checkpoint must be a path, got {type(checkpoint).__name__}")
+        sampler = as_begun(sampler, held(checkpoint).get("sampler"))
+    sampler = with_budget(sampler, *limits, stop is not None)
+    if checkpoint is not None:
+        identity = _identity(scene, camera, integrator, seed, adaptive, clamp, sampler, filter)
+        kept = Checkpoints(checkpoint, identity)
+    rendering = _begun(kept, camera, threads, adaptive, clamp, sampler)
+    if executor is None:
+        # Here, so that what there is to warn of is told to the caller.
+        scene._compiled()
+    of = (scene, camera, integrator, seed, sampler, filter)
+    snapshots = None if show is None else Snapshots(show)
+
+    def so_far() -> Image:
+        return _image(rendering, clamp, {"samples": rendering.counts} if adaptive else {}, [])
+
+    def wait() -> float | None:
+        waits = [one.wait() for one in (kept, snapshots) if one is not None]
+        return min(waits, default=None)
+
+    def rest() -> None:
+        if kept is not None and kept.wait() == 0:
+            kept.write_beside(rendering)
+        if snapshots is not None and snapshots.wait() == 0:
+            snapshots.take(so_far)
+
+    def look() -> None:
+        if stop is not None and stop.is_set():
+            raise _StoppedError
+
+    def run(report: Report | None) -> list[str]:
+        told: list[str] = []
+        try:
+            look()
+            if executor is not None:
+                told += _elsewhere(rendering, of, executor, limits, threads, report, rest, look)
+            if executor is None or told:
+                _here(rendering, of, limits, threads, report, wait, rest, None if stop is None else look)
+        except _StoppedError:
+            if not rendering.counts.all():
+                told.append("stopped before every pixel had a sample")
+        finally:
+            # Nothing is kept of a render that could not begin.
+            if kept is not None and rendering.aim:
+                kept.write(rendering)
+        return told + ([kept.trouble] if kept is not None and kept.trouble else [])
+
+    if progress is True:
+        with bar(*limits) as report:
+            problems = run(report)
+    else:
+        problems = run(None)
+    seen: dict[str, NDArray[Any]] = {"samples": rendering.counts} if adaptive else {}
+    if names:
+        seen |= aovs(scene, camera, names, seed=seed, threads=threads)
+    image = _image(rendering, clamp, seen, problems)
+    if show is not None:
+        show(image)
+    return image
+
+
+_Limits = tuple[int | None, float | None, float | None]
+_Of = tuple[Scene, AnyCamera, AnyIntegrator, int, Sampler, Filter]
+
+
+class _StoppedError(Exception):
+    """A render was stopped from elsewhere."""
+
+
+class Checked(NamedTuple):
+    """What `render` was told, as the core takes it."""
+
+    limits: _Limits
+    seed: int
+    threads: int | None
+    clamp: float | None
+
+
+def check(
+    scene: Scene,
+    camera: AnyCamera,
+    integrator: AnyIntegrator,
+    samples: int | None,
+    error: float | None,
+    seconds: float | None,
+    seed: int,
+    threads: int | None,
+    adaptive: bool,
+    clamp: float | None,
+    sampler: Sampler,
+    filter: Filter,
+) -> Checked:
+    """Raise a TypeError or a ValueError unless `render` can do what it is told."""
     for name, value, kind in (
         ("scene", scene, Scene),
         ("camera", camera, AnyCamera),
@@ -137,51 +261,7 @@ def render(
         samples = _DEFAULT_SAMPLES
     seed = integer("seed", seed, 0, 2**64 - 1)
     threads = None if threads is None else integer("threads", threads, 1)
-    if executor is not None and not isinstance(executor, Executor):
-        raise TypeError(f"executor must be a concurrent.futures.Executor, got {type(executor).__name__}")
-    names = names_of(aov)
-    kept = None
-    if checkpoint is not None:
-        if not isinstance(checkpoint, str | os.PathLike):
-            raise TypeError(f"checkpoint must be a path, got {type(checkpoint).__name__}")
-        sampler = as_begun(sampler, held(checkpoint).get("sampler"))
-    sampler = with_budget(sampler, samples, error, seconds)
-    if checkpoint is not None:
-        identity = _identity(scene, camera, integrator, seed, adaptive, clamp, sampler, filter)
-        kept = Checkpoints(checkpoint, identity)
-    rendering = _begun(kept, camera, threads, adaptive, clamp, sampler)
-    if executor is None:
-        # Here, so that what there is to warn of is told to the caller.
-        scene._compiled()
-    limits = (samples, error, seconds)
-    of = (scene, camera, integrator, seed, sampler, filter)
-
-    def run(report: Report | None) -> list[str]:
-        told: list[str] = []
-        try:
-            if executor is not None:
-                told += _elsewhere(rendering, of, executor, limits, threads, report, kept)
-            if executor is None or told:
-                _here(rendering, of, limits, threads, report, kept)
-        finally:
-            # Nothing is kept of a render that could not begin.
-            if kept is not None and rendering.aim:
-                kept.write(rendering)
-        return told + ([kept.trouble] if kept is not None and kept.trouble else [])
-
-    if progress:
-        with bar(*limits) as report:
-            problems = run(report)
-    else:
-        problems = run(None)
-    seen: dict[str, NDArray[Any]] = {"samples": rendering.counts} if adaptive else {}
-    if names:
-        seen |= aovs(scene, camera, names, seed=seed, threads=threads)
-    return _image(rendering, clamp, seen, problems)
-
-
-_Limits = tuple[int | None, float | None, float | None]
-_Of = tuple[Scene, AnyCamera, AnyIntegrator, int, Sampler, Filter]
+    return Checked((samples, error, seconds), seed, threads, clamp)
 
 
 def _here(
@@ -190,15 +270,16 @@ def _here(
     limits: _Limits,
     threads: int | None,
     report: Report | None,
-    kept: Checkpoints | None,
+    wait: Callable[[], float | None],
+    rest: Callable[[], None],
+    look: Callable[[], None] | None,
 ) -> None:
-    """Render in this process."""
+    """Render in this process; `rest` is called whenever `wait` is over."""
     scene, camera, integrator, seed, sampler, filter = of
     compiled = scene._compiled()
     how = (compiled, camera, integrator, scene, seed, threads, *limits)
-    while not rendering.go_on(*how, None if kept is None else kept.wait(), report, sampler, filter):
-        if kept is not None:
-            kept.write_beside(rendering)
+    while not rendering.go_on(*how, wait(), report, sampler, filter, look):
+        rest()
 
 
 def _elsewhere(
@@ -208,20 +289,21 @@ def _elsewhere(
     limits: _Limits,
     threads: int | None,
     report: Report | None,
-    kept: Checkpoints | None,
+    rest: Callable[[], None],
+    look: Callable[[], None],
 ) -> list[str]:
     """Render by an executor; if it breaks, return what there is to say of that."""
     # Who renders here does not wait for the import.
     from .distributed import BrokenError, Distribution
     from .worker import Job
 
-    def rest() -> None:
-        if kept is not None and kept.wait() == 0:
-            kept.write_beside(rendering)
+    def look_and_rest() -> None:
+        look()
+        rest()
 
     distribution = Distribution(rendering, Job(*of), executor, limits, threads or 1)
     try:
-        distribution.run(report, rest)
+        distribution.run(report, look_and_rest)
     except BrokenError as error:
         return [f"the executor broke, and the rest was rendered here: {error}"]
     finally:

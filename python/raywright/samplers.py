@@ -28,7 +28,7 @@ class Stratified:
     ----------
     batch : int, optional
         Samples of a batch: 1, 2, 4, ... 64. If not given, the most of which the samples that are asked for
-        make at least 8 batches, and 32 from 256 samples on; 1 if time may end the render before.
+        make at least 8 batches, and 32 from 256 samples on; 1 if time or `stop` may end it before.
 
     Raises
     ------
@@ -54,7 +54,7 @@ class Halton:
     ----------
     batch : int, optional
         Samples of a batch: 1, 2, 4, ... 64. If not given, the most of which the samples that are asked for
-        make at least 8 batches, and 32 from 256 samples on; 1 if time may end the render before.
+        make at least 8 batches, and 32 from 256 samples on; 1 if time or `stop` may end it before.
 
     Raises
     ------
@@ -80,7 +80,7 @@ class Sobol:
     ----------
     batch : int, optional
         Samples of a batch: 1, 2, 4, ... 64. If not given, the most of which the samples that are asked for
-        make at least 8 batches, and 32 from 256 samples on; 1 if time may end the render before.
+        make at least 8 batches, and 32 from 256 samples on; 1 if time or `stop` may end it before.
 
     Raises
     ------
@@ -106,7 +106,7 @@ class Lattice:
     ----------
     batch : int, optional
         Samples of a batch: 1, 2, 4, ... 64. If not given, the most of which the samples that are asked for
-        make at least 8 batches, and 32 from 256 samples on; 1 if time may end the render before.
+        make at least 8 batches, and 32 from 256 samples on; 1 if time or `stop` may end it before.
 
     Raises
     ------
@@ -143,12 +143,14 @@ def as_begun(sampler: Sampler, begun: object) -> Sampler:
     return sampler
 
 
-def with_budget(sampler: Sampler, samples: int | None, error: float | None, seconds: float | None) -> Sampler:
+def with_budget(
+    sampler: Sampler, samples: int | None, error: float | None, seconds: float | None, stoppable: bool = False
+) -> Sampler:
     """Return the sampler with batches for these limits of a render, if it was given none."""
     if isinstance(sampler, Independent) or sampler.batch is not None:
         return sampler
-    if seconds is not None:
-        # It takes two batches to tell an error, and a picture that is out of time has few samples.
+    if seconds is not None or stoppable:
+        # It takes two batches to tell an error, and a picture that is stopped early has few samples.
         samples = None
     elif samples is None and error is not None:
         # Of the fewest samples that a render to an error takes, four batches.

@@ -173,7 +173,7 @@ impl Rendering {
     }
 
     /// Goes on until the first of `samples` (per pixel), `error` (relMSE) or `seconds` is met, which it says, or until it has
-    /// been at it for `pause` seconds.
+    /// been at it for `pause` seconds. `look` is called whenever signals are heard, and may raise to end the render.
     #[allow(clippy::too_many_arguments)]
     fn go_on(
         &mut self,
@@ -191,13 +191,14 @@ impl Rendering {
         progress: Option<Py<PyAny>>,
         sampler: &Bound<'_, PyAny>,
         filter: &Bound<'_, PyAny>,
+        look: Option<Py<PyAny>>,
     ) -> PyResult<bool> {
         let chosen = Chosen::read(integrator, described, seed)?;
         let (sampler, filter) = (samplers::sampler(sampler)?, samplers::filter(filter)?.into());
         let until = Until { samples, error, seconds };
         let settings = Settings { until, seed, threads, sampler, filter, ..Settings::default() };
         let pause = pause.map(|pause| Instant::now() + Duration::from_secs_f64(pause.clamp(0.0, 1e9)));
-        let mut watcher = Watcher { progress, raised: None, pause, written: chosen.written() };
+        let mut watcher = Watcher { progress, look, raised: None, pause, written: chosen.written() };
         let (scene, rendering) = (&scene.get().0, &mut self.0);
         let result =
             py.detach(|| render::go_on(rendering, scene, &*camera.0, chosen.chosen(), &settings, &mut watcher));
@@ -261,7 +262,7 @@ pub fn expose(
     let chosen = Chosen::read(integrator, described, seed)?;
     let (sampler, filter) = (samplers::sampler(sampler)?, samplers::filter(filter)?.into());
     let settings = Settings { seed, threads, sampler, filter, ..Settings::default() };
-    let mut watcher = Watcher { progress: None, raised: None, pause: None, written: chosen.written() };
+    let mut watcher = Watcher { progress: None, look: None, raised: None, pause: None, written: chosen.written() };
     let scene = &scene.get().0;
     let request = Request::from_bytes(request, camera.0.width(), camera.0.height()).map_err(malformed)?;
     let result = py.detach(|| request.expose(scene, &*camera.0, chosen.chosen(), &settings, &mut watcher));
@@ -269,9 +270,10 @@ pub fn expose(
     Ok(PyBytes::new(py, &answer).unbind())
 }
 
-/// Passes on how a render goes to a Python function, and hears signals.
+/// Passes on how a render goes to a Python function, and hears signals and whoever else may end it.
 struct Watcher<'a> {
     progress: Option<Py<PyAny>>,
+    look: Option<Py<PyAny>>,
     raised: Option<PyErr>,
     /// When to leave the render for now.
     pause: Option<Instant>,
@@ -286,9 +288,16 @@ impl Watcher<'_> {
     }
 
     /// Goes on unless an exception is raised, which it keeps.
-    fn unless_raised(&mut self, ask: impl FnOnce(Python<'_>, Option<&Py<PyAny>>) -> PyResult<()>) -> ControlFlow<()> {
+    fn unless_raised(&mut self, then: impl FnOnce(Python<'_>, Option<&Py<PyAny>>) -> PyResult<()>) -> ControlFlow<()> {
+        let ask = |py: Python<'_>| {
+            py.check_signals()?;
+            if let Some(look) = &self.look {
+                look.call0(py)?;
+            }
+            then(py, self.progress.as_ref())
+        };
         let raised = self.written.and_then(Written::raised);
-        match raised.map_or_else(|| Python::attach(|py| ask(py, self.progress.as_ref())), Err) {
+        match raised.map_or_else(|| Python::attach(ask), Err) {
             Ok(()) => ControlFlow::Continue(()),
             Err(raised) => {
                 self.raised = Some(raised);
@@ -302,7 +311,6 @@ impl Progress for Watcher<'_> {
     fn pass(&mut self, row: &HistoryRow) -> ControlFlow<()> {
         let HistoryRow { seconds, samples, error } = *row;
         self.unless_raised(|py, progress| {
-            py.check_signals()?;
             if let Some(progress) = progress {
                 progress.call1(py, (seconds, samples, error))?;
             }
@@ -311,7 +319,7 @@ impl Progress for Watcher<'_> {
     }
 
     fn poll(&mut self) -> ControlFlow<()> {
-        self.unless_raised(|py, _| py.check_signals())
+        self.unless_raised(|_, _| Ok(()))
     }
 
     fn pauses(&mut self) -> bool {

@@ -124,6 +124,10 @@ pub fn go_on(
         if progress.pass(&row).is_break() {
             return Err(RenderError::Interrupted);
         }
+        // Passes may be too short for anyone to look up within.
+        if progress.pauses() {
+            return Ok(false);
+        }
     }
 }
 
@@ -401,6 +405,19 @@ mod tests {
                 assert_eq!(errors(&rendering), errors(&whole));
             }
         }
+    }
+
+    #[test]
+    fn passes_too_short_for_a_look_can_be_left_in_between() {
+        let (scene, camera) = cornell(2, 2);
+        let mut rendering = Rendering::new(settings(40, 1).film(&camera, 1));
+        let mut progress = Restless { looks: 0, every: 1, ends: false };
+        let mut left = 0;
+        while !go_on(&mut rendering, &scene, &camera, &Path::default(), &settings(40, 1), &mut progress).unwrap() {
+            left += 1;
+        }
+        assert_eq!(rendering.film.samples(), 40);
+        assert!(left >= rendering.history.len(), "{left}");
     }
 
     #[test]

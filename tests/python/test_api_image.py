@@ -12,6 +12,7 @@ import pytest
 from PIL import Image as Pillow
 
 import raywright as rw
+from raywright.io import pictures
 
 
 def test_srgb_is_the_standard_curve():
@@ -97,6 +98,17 @@ def test_png_is_for_the_eye(picture, tmp_path):
         assert np.array_equal(np.asarray(file), picture.srgb())
     with Pillow.open(io.BytesIO(picture._repr_png_())) as file:
         assert np.array_equal(np.asarray(file), picture.srgb())
+
+
+def test_jpeg_is_nearly_the_same():
+    ramps = np.stack(np.meshgrid(np.linspace(0, 1, 64), np.linspace(0, 1, 48)), axis=-1)
+    rgb = np.concatenate([ramps, 0.5 * np.ones((48, 64, 1))], axis=-1)
+    with Pillow.open(io.BytesIO(pictures.jpeg(rgb))) as file:
+        assert file.format == "JPEG"
+        seen = np.asarray(file, float)
+    off = np.abs(seen - pictures.srgb(rgb))
+    assert off.mean() < 1
+    assert off.max() < 12
 
 
 def test_npy_holds_the_numbers(picture, tmp_path):

@@ -155,7 +155,7 @@ def test_wrong_use_is_one_line_and_status_2(tmp_path, arguments, message):
 
 
 @pytest.mark.parametrize(
-    "arguments", [["--help"], ["demo", "--help"], ["render", "--help"], ["info", "--help"]]
+    "arguments", [["--help"], *([verb, "--help"] for verb in ("demo", "render", "view", "info"))]
 )
 def test_help_is_on_stdout(tmp_path, arguments):
     done = shell(*arguments, cwd=tmp_path)

@@ -203,6 +203,16 @@ def png(rgb: NDArray[np.floating[Any]]) -> bytes:
     return out.getvalue()
 
 
+def jpeg(rgb: NDArray[np.floating[Any]]) -> bytes:
+    """Return a JPEG file of linear colours: not as exact as PNG, and a small part of the work."""
+    from PIL import Image
+
+    out = io.BytesIO()
+    # Without subsampling, which would smear colours over neighbours.
+    Image.fromarray(srgb(rgb)).save(out, format="JPEG", quality=92, subsampling=0)
+    return out.getvalue()
+
+
 def write(path: Path, rgb: NDArray[np.float32], standard_error: NDArray[np.float32]) -> None:
     """Write linear colours, (H, W, 3), to a path that `check_writable` has passed.
 

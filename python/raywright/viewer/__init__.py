@@ -1,0 +1,161 @@
+"""Scenes in the browser: a page that shows a render while it gets better, and lets the camera be moved."""
+
+import atexit
+import threading
+from typing import TYPE_CHECKING, Any
+
+from ..arrays import integer
+from ..cameras import AnyCamera
+from ..filters import BoxFilter, Filter
+from ..integrators import AnyIntegrator, Path
+from ..rendering import check
+from ..samplers import Independent, Sampler
+from ..scene import Scene
+
+if TYPE_CHECKING:
+    from .server import Server
+    from .session import Session
+
+__all__ = ["Viewer", "view"]
+
+_PATH = Path()
+_SAMPLER: Sampler = Independent()
+_FILTER: Filter = BoxFilter()
+_ERROR = 1e-4
+
+
+class Viewer:
+    """A scene that is served to the browsers of this machine until it is closed; `view` makes it.
+
+    It is a context manager, which closes it at the end.
+
+    Attributes
+    ----------
+    url : str
+        Where the page is: on 127.0.0.1, under a token that nobody can guess.
+    """
+
+    url: str
+
+    def __init__(self, server: "Server", session: "Session") -> None:
+        self.url = server.url
+        self._server, self._session = server, session
+        self._closed = threading.Event()
+        # It must not be left to the end of the interpreter, which does not wait for it.
+        atexit.register(self.close)
+        self._thread = threading.Thread(
+            target=server.serve_forever, args=(0.1,), name="raywright-server", daemon=True
+        )
+        self._thread.start()
+
+    @property
+    def rendering(self) -> bool:
+        """Whether a render is going on: not if nobody looks, nor if the picture is as good as it shall be."""
+        return self._session.rendering
+
+    def wait(self) -> None:
+        """Wait until it is closed, or Ctrl-C is pressed, which closes it."""
+        try:
+            # Not for ever at once: where signals do not end that, they are heard in between.
+            while not self._closed.wait(0.5):
+                pass
+        except KeyboardInterrupt:
+            pass
+        finally:
+            self.close()
+
+    def close(self) -> None:
+        """End the render and the server. Pages that are open show what they last had."""
+        if not self._closed.is_set():
+            self._closed.set()
+            atexit.unregister(self.close)
+            self._session.close()
+            self._server.shutdown()
+            self._server.server_close()
+            self._thread.join()
+
+    def __enter__(self) -> "Viewer":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def __repr__(self) -> str:
+        return f"Viewer({'closed' if self._closed.is_set() else self.url})"
+
+
+def view(
+    scene: Scene,
+    camera: AnyCamera,
+    integrator: AnyIntegrator = _PATH,
+    samples: int | None = None,
+    error: float | None = None,
+    seconds: float | None = None,
+    *,
+    seed: int = 0,
+    threads: int | None = None,
+    adaptive: bool = False,
+    clamp: float | None = None,
+    sampler: Sampler = _SAMPLER,
+    filter: Filter = _FILTER,
+    port: int = 0,
+    open: bool = False,
+) -> Viewer:
+    """Show a scene in the browser while it renders, with its error, and let the mouse move the camera.
+
+    The page is served to this machine alone, as long as the process lives or until the viewer is closed. A
+    small picture comes at once and a better one after it; moving the camera begins anew. While no page is
+    open nothing is rendered.
+
+    Parameters
+    ----------
+    scene, camera, integrator, samples, error, seconds, seed, threads, adaptive, clamp, sampler, filter
+        As `render` has them. If no limit is given, it renders to a relMSE of 1e-4.
+    port : int
+        Where to listen; any free port if 0.
+    open : bool
+        Whether to open a browser.
+
+    Returns
+    -------
+    Viewer
+        Its `url` is where to look; ``viewer.wait()`` waits until Ctrl-C, ``viewer.close()`` ends it.
+
+    Raises
+    ------
+    TypeError, ValueError
+        As `render`.
+    OSError
+        If the port is taken.
+    """
+    port = integer("port", port, 0, 65535)
+    if samples is None and error is None and seconds is None:
+        error = _ERROR
+    check(scene, camera, integrator, samples, error, seconds, seed, threads, adaptive, clamp, sampler, filter)
+    how: dict[str, Any] = {
+        "samples": samples,
+        "error": error,
+        "seconds": seconds,
+        "seed": seed,
+        "threads": threads,
+        "adaptive": adaptive,
+        "clamp": clamp,
+        "sampler": sampler,
+        "filter": filter,
+    }
+    # Who does not look does not wait for the import.
+    from .server import Server
+    from .session import Session
+
+    session = Session(scene, camera, integrator, how)
+    try:
+        server = Server(session, port)
+    except BaseException:
+        session.close()
+        raise
+    viewer = Viewer(server, session)
+    if open:
+        import webbrowser
+
+        webbrowser.open(viewer.url)
+    return viewer

@@ -1,0 +1,177 @@
+"""Where a camera comes to when it is moved around what it looks at."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..arrays import number
+from ..cameras import AnyCamera, Camera, Orthographic, Pose, ThinLens
+
+# Degrees from straight above or below: nearer than that, which way is up would not be told.
+_POLE = 1.0
+
+
+@dataclass(frozen=True)
+class View:
+    """How far a camera was moved from where it was to begin with.
+
+    Attributes
+    ----------
+    azimuth, elevation : float
+        Degrees that it went around, to the right and upwards, always looking at the same point.
+    zoom : float
+        How many times nearer it is to that point.
+    right, up : float
+        How far that point was moved in the picture, in heights of the picture at the start.
+    """
+
+    azimuth: float = 0.0
+    elevation: float = 0.0
+    zoom: float = 1.0
+    right: float = 0.0
+    up: float = 0.0
+
+    # What each may be.
+    LIMITS: ClassVar[Mapping[str, tuple[float, float]]] = {
+        "azimuth": (-1e6, 1e6),
+        "elevation": (-180.0, 180.0),
+        "zoom": (1 / 1024, 1024.0),
+        "right": (-1e3, 1e3),
+        "up": (-1e3, 1e3),
+    }
+
+    @classmethod
+    def read(cls, told: Any) -> "View":
+        """Return the view that a mapping tells, whoever it comes from; what is missing is as at the start.
+
+        Raises
+        ------
+        ValueError
+            If it is no mapping, or has another name in it, or a number is out of its range.
+        TypeError
+            If something is not a number.
+        """
+        if not isinstance(told, Mapping):
+            raise ValueError(f"view must be an object, got {type(told).__name__}")
+        if unknown := sorted(set(told) - set(cls.LIMITS)):
+            raise ValueError(f"view has no {unknown[0][:40]!r}")
+        values = {}
+        for name, given in told.items():
+            value, (least, most) = number(name, given), cls.LIMITS[name]
+            if not least <= value <= most:
+                raise ValueError(f"{name} must be between {least:g} and {most:g}, got {value:g}")
+            values[name] = value
+        return cls(**values)
+
+
+class Orbit:
+    """A camera that goes around the point that it looks at.
+
+    Parameters
+    ----------
+    camera : Camera or another kind
+        Where it starts.
+    bounds : (2, 3) array, optional
+        The least and greatest corner of the scene: a camera without a target goes around the point of its
+        view that is nearest to the middle.
+    """
+
+    def __init__(self, camera: AnyCamera, bounds: NDArray[np.float64] | None = None) -> None:
+        self._camera = camera
+        self._position = np.array(camera.position)
+        forward = camera.forward
+        self._distance = _distance(camera, bounds)
+        self._pivot = self._position + self._distance * forward
+        self._up = np.array(camera.up) / np.linalg.norm(camera.up)
+        across = np.cross(forward, self._up)
+        self._right = across / np.linalg.norm(across)
+        self._picture_up = np.cross(self._right, forward)
+        self._elevation = math.degrees(math.asin(np.clip(-forward @ self._up, -1.0, 1.0)))
+        self._height = _height(camera, self._distance)
+
+    @property
+    def elevations(self) -> tuple[float, float]:
+        """The least and the greatest elevation of a view: what is beyond comes to the same as these."""
+        most = max(90.0 - _POLE, abs(self._elevation))
+        return -most - self._elevation, most - self._elevation
+
+    def camera(self, view: View) -> AnyCamera:
+        """Return the camera of a view: the one it started with, to the bit, if nothing was moved."""
+        if view == View():
+            return self._camera
+        least, most = self.elevations
+        raised = max(least, min(most, view.elevation))
+        turn = _rotation(self._up, view.azimuth) @ _rotation(self._right, -raised)
+        moved = -(view.right * self._right + view.up * self._picture_up) * self._height
+        pivot = self._pivot + turn @ moved
+
+        def pose(one: Pose) -> dict[str, Any]:
+            away = turn @ (np.array(one.position) - self._pivot) / view.zoom
+            return {
+                "position": pivot + away,
+                "target": None,
+                "direction": turn @ one.forward,
+                "up": turn @ np.array(one.up),
+            }
+
+        changes = pose(self._camera)
+        if self._camera.moved_to is not None:
+            changes["moved_to"] = Pose(**pose(self._camera.moved_to))
+        if isinstance(self._camera, Orthographic):
+            changes["scale"] = self._camera.scale / view.zoom
+        if isinstance(self._camera, ThinLens):
+            # What it goes around stays in focus, if it was.
+            sharp = self._camera.focused_distance
+            own = self._camera.focus_distance is not None
+            changes |= {"focus_point": None, "focus_distance": sharp if own else sharp / view.zoom}
+        return replace(self._camera, **changes)
+
+
+def reduced(camera: AnyCamera, divisor: int) -> AnyCamera:
+    """Return the camera with a picture of the same view that has so many times fewer pixels a side."""
+    width, height = (max(round(size / divisor), 1) for size in (camera.width, camera.height))
+    across, down = width / camera.width, height / camera.height
+    changes: dict[str, Any] = {"width": width, "height": height}
+    # What is told in pixels has fewer of them.
+    if isinstance(camera, Camera):
+        for name, pair in (("focal", camera.focal), ("principal", camera.principal)):
+            if pair is not None:
+                changes[name] = (pair[0] * across, pair[1] * down)
+        changes["skew"] = camera.skew * across
+    return replace(camera, **changes)
+
+
+def _distance(camera: AnyCamera, bounds: NDArray[np.float64] | None) -> float:
+    if camera.target is not None:
+        return float(np.linalg.norm(np.subtract(camera.target, camera.position)))
+    if bounds is None or not np.isfinite(bounds).all():
+        return 1.0
+    size = float(np.linalg.norm(bounds[1] - bounds[0]))
+    along = float((bounds.mean(axis=0) - np.array(camera.position)) @ camera.forward)
+    return max(along, 0.01 * size) or 1.0
+
+
+def _height(camera: AnyCamera, distance: float) -> float:
+    """Return how much of the plane through what it goes around is seen from bottom to top."""
+    middle = 0.5 * camera.width
+    origins, directions = camera.rays_through([(middle, 0.0), (middle, camera.height)])
+    forward = camera.forward
+    with np.errstate(invalid="ignore", divide="ignore"):
+        t = (distance - (origins - np.array(camera.position)) @ forward) / (directions @ forward)
+        points = origins + t[:, np.newaxis] * directions
+    height = float(np.linalg.norm(points[0] - points[1]))
+    # Fisheyes and panoramas see more than a plane.
+    return height if math.isfinite(height) and (t > 0).all() else distance
+
+
+def _rotation(axis: NDArray[np.float64], degrees: float) -> NDArray[np.float64]:
+    """Return the (3, 3) rotation about a unit axis (Rodrigues 1840)."""
+    x, y, z = axis
+    cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    angle = math.radians(degrees)
+    turned: NDArray[np.float64] = np.eye(3) + math.sin(angle) * cross + (1 - math.cos(angle)) * cross @ cross
+    return turned

@@ -1,0 +1,270 @@
+"""A render that goes on as long as someone looks, and begins anew when the camera is moved."""
+
+import math
+import threading
+import time
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import Any
+
+from ..cameras import AnyCamera
+from ..image import Image
+from ..integrators import AnyIntegrator
+from ..io import pictures
+from ..rendering import render
+from ..scene import Scene
+from .orbit import Orbit, View, reduced
+
+# What a preview may take: its samples, and its seconds.
+_SAMPLES = 4
+_SECONDS = 0.06
+# Pixels of the first one, and how many times smaller than the picture any may be in each direction.
+_PIXELS = 20_000
+_LEAST_DIVISOR, _MOST_DIVISOR = 2, 32
+# How long a render goes on without anyone who looks: a page that is loaded anew is soon back.
+_GRACE = 0.2
+
+
+@dataclass(frozen=True)
+class Frame:
+    """A picture on its way to whoever looks.
+
+    Attributes
+    ----------
+    number : int
+        Counts the pictures of a session.
+    image : Image
+        The picture.
+    view : View
+        Where from.
+    state : str
+        ``"preview"`` if it is a smaller one, ``"refining"``, or ``"done"``.
+    """
+
+    number: int
+    image: Image
+    view: View
+    state: str
+    _lock: threading.Lock = field(default_factory=threading.Lock, repr=False, compare=False)
+
+    @property
+    def data(self) -> tuple[str, bytes]:
+        """The picture as a file, and its type: JPEG is a small part of the work of PNG while it changes."""
+        with self._lock:
+            return self._data
+
+    @cached_property
+    def _data(self) -> tuple[str, bytes]:
+        if self.state == "done":
+            return "image/png", pictures.png(self.image.rgb)
+        return "image/jpeg", pictures.jpeg(self.image.rgb)
+
+    def told(self) -> dict[str, Any]:
+        """Return what there is to say of the picture, for JSON; None stands for what is not known."""
+        image, view = self.image, self.view
+        error = (image.error.estimate, image.error.low, image.error.high)
+        height, width = image.rgb.shape[:2]
+        return {
+            "number": self.number,
+            "state": self.state,
+            "width": width,
+            "height": height,
+            "samples": image.samples,
+            "seconds": image.seconds,
+            "error": [None if math.isnan(value) else value for value in error],
+            "trusted": image.error.trusted,
+            "warnings": list(image.warnings),
+            "view": {name: getattr(view, name) for name in View.LIMITS},
+        }
+
+
+class Session:
+    """Renders a scene on a thread of its own, for those who look.
+
+    Parameters
+    ----------
+    scene : Scene
+        What to look at.
+    camera : Camera or another kind
+        From where to begin with.
+    integrator : Path or another kind
+        What turns rays into radiance.
+    how : mapping
+        What else `render` takes.
+    """
+
+    def __init__(
+        self, scene: Scene, camera: AnyCamera, integrator: AnyIntegrator, how: Mapping[str, Any]
+    ) -> None:
+        self._scene, self._integrator, self._how = scene, integrator, dict(how)
+        self._size = (camera.width, camera.height)
+        # Here, so that what there is to warn of is told to the caller, and Ctrl-C ends it.
+        self._orbit = Orbit(camera, scene._compiled().bounds)
+        self._view = View()
+        # What is wanted, by number, and the last of these that was rendered to its end.
+        self._wanted, self._done = 1, 0
+        self._frame: Frame | None = None
+        self._count = 0
+        self._trouble: str | None = None
+        self._divisor = _divisor(camera.width * camera.height / _PIXELS)
+        self._watchers, self._left = 0, -math.inf
+        self._closed = False
+        self._rendering = False
+        self._changed = threading.Condition()
+        self._thread = threading.Thread(target=self._work, name="raywright-viewer", daemon=True)
+        self._thread.start()
+
+    @property
+    def rendering(self) -> bool:
+        """Whether it renders now."""
+        return self._rendering
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """Width and height of the picture in pixels."""
+        return self._size
+
+    @property
+    def trouble(self) -> str | None:
+        """Why there is no picture, in one line; None if all is well."""
+        return self._trouble
+
+    @property
+    def closed(self) -> bool:
+        """Whether it was closed."""
+        return self._closed
+
+    @property
+    def elevations(self) -> tuple[float, float]:
+        """The least and greatest elevation of a view."""
+        return self._orbit.elevations
+
+    def turn(self, view: View) -> None:
+        """Show another view. What is being rendered ends at once."""
+        with self._changed:
+            if view != self._view:
+                self._view = view
+                self._wanted += 1
+                self._changed.notify_all()
+
+    @contextmanager
+    def watched(self) -> Iterator[None]:
+        """Look on: while nobody does, nothing is rendered."""
+        with self._changed:
+            self._watchers += 1
+            self._changed.notify_all()
+        try:
+            yield
+        finally:
+            with self._changed:
+                self._watchers -= 1
+                self._left = time.monotonic()
+
+    def next_frame(self, after: int, seconds: float) -> Frame | None:
+        """Return the last picture that there is if it has a greater number, or wait for one for a time."""
+
+        def newer() -> bool:
+            fresh = self._frame is not None and self._frame.number > after
+            return fresh or self._closed or self._trouble is not None
+
+        with self._changed:
+            self._changed.wait_for(newer, seconds)
+            frame = self._frame
+            return frame if frame is not None and frame.number > after else None
+
+    def close(self) -> None:
+        """End all work."""
+        with self._changed:
+            self._closed = True
+            self._changed.notify_all()
+        self._thread.join()
+
+    def is_wanted(self, job: "_Job") -> bool:
+        """Whether it is still of use to go on with something."""
+        unseen = self._watchers == 0 and time.monotonic() - self._left > _GRACE
+        return not self._closed and not unseen and (job.is_preview or job.number == self._wanted)
+
+    def _work(self) -> None:
+        def due() -> bool:
+            return self._closed or (self._watchers > 0 and self._done < self._wanted)
+
+        while True:
+            with self._changed:
+                self._changed.wait_for(due)
+                if self._closed:
+                    return
+                job = _Job(self, self._wanted, self._view)
+                self._rendering = True
+            try:
+                self._preview(replace(job, is_preview=True))
+                self._picture(job)
+            except _UnwantedError:
+                pass
+            except Exception as error:
+                with self._changed:
+                    self._trouble = " ".join(f"{type(error).__name__}: {error}".split())
+                    self._changed.notify_all()
+                return
+            finally:
+                self._rendering = False
+
+    def _preview(self, job: "_Job") -> None:
+        """Show something soon: fewer pixels, and few samples of them."""
+        small = reduced(self._orbit.camera(job.view), self._divisor)
+        limits = {"samples": _SAMPLES, "seconds": _SECONDS, "error": None, "adaptive": False}
+        image = render(self._scene, small, self._integrator, progress=False, stop=job, **self._how | limits)
+        self._show(image, job, "preview")
+        # So small that a sample of all pixels of the next takes about as long as it all may.
+        each = image.seconds / image.samples * self._divisor**2
+        self._divisor = _divisor(each / _SECONDS)
+
+    def _picture(self, job: "_Job") -> None:
+        def show(image: Image) -> None:
+            # Until all pixels have a sample, the preview is the better picture.
+            if image.samples:
+                self._show(image, job, "refining")
+
+        camera = self._orbit.camera(job.view)
+        image = render(self._scene, camera, self._integrator, progress=show, stop=job, **self._how)
+        self._done = job.number
+        self._show(image, job, "done")
+
+    def _show(self, image: Image, job: "_Job", state: str) -> None:
+        with self._changed:
+            last = self._frame
+            if last is not None and last.view == job.view and last.state != "preview":
+                samples = 0 if state == "preview" else image.samples
+                if samples < last.image.samples:
+                    # A render that was left, and now begins anew, had come further.
+                    return
+            self._count += 1
+            self._frame = Frame(self._count, image, job.view, state)
+            self._changed.notify_all()
+
+
+class _UnwantedError(Exception):
+    """What is being rendered is of no use any more."""
+
+
+@dataclass(frozen=True)
+class _Job:
+    """What is to be rendered: what `render` takes as `stop`."""
+
+    session: Session
+    number: int
+    view: View
+    # It is not left when the camera is moved on: else nothing would be seen while it is.
+    is_preview: bool = False
+
+    def is_set(self) -> bool:
+        """Raise rather than say so: nobody waits for the picture so far."""
+        if not self.session.is_wanted(self):
+            raise _UnwantedError
+        return False
+
+
+def _divisor(times: float) -> int:
+    """Return by how much a picture is made smaller in each direction to have so many times fewer pixels."""
+    return max(_LEAST_DIVISOR, min(math.ceil(math.sqrt(times)), _MOST_DIVISOR))

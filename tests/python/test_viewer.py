@@ -1,0 +1,199 @@
+"""The viewer as its page sees it: what is shown, and when work ends."""
+
+import base64
+import re
+import signal
+import socket
+import subprocess
+import sys
+import threading
+import time
+from contextlib import closing
+
+import numpy as np
+import pytest
+from viewer_page import ask, is_done, page, pixels, turn, until
+
+import raywright as rw
+
+SIZE = {"width": 96, "height": 72}
+
+
+@pytest.fixture
+def viewer():
+    """One that goes on for ever."""
+    with rw.view(*rw.scenes.cornell_box(**SIZE), error=1e-12) as viewer:
+        yield viewer
+
+
+def is_soon(condition, seconds=2.0):
+    end = time.monotonic() + seconds
+    while not condition() and time.monotonic() < end:
+        time.sleep(0.01)
+    return condition()
+
+
+def test_a_picture_comes_within_two_seconds_and_gets_better():
+    with rw.view(*rw.scenes.cornell_box(width=320, height=320), error=1e-12) as viewer:
+        began = time.monotonic()
+        with page(viewer) as events:
+            name, scene = next(events)
+            assert (name, scene["width"], scene["height"]) == ("scene", 320, 320)
+            assert scene["elevations"] == [-89, 89]
+            first = until(events, lambda frame: True)
+            assert time.monotonic() - began < 2
+            assert first["state"] == "preview"
+            assert pixels(first).std() > 10
+            early = until(events, lambda frame: frame["samples"] >= 2 and frame["state"] == "refining")
+            late = until(events, lambda frame: frame["samples"] >= 16)
+            assert late["number"] > early["number"]
+            assert late["seconds"] > early["seconds"]
+            assert late["error"][0] < 0.5 * early["error"][0]
+            assert late["error"][1] < late["error"][0] < late["error"][2]
+            assert pixels(late).shape == pixels(early).shape == (320, 320, 3)
+            assert viewer.rendering
+
+
+def test_the_last_picture_is_that_of_render():
+    scene, camera = rw.scenes.cornell_box(**SIZE)
+    with rw.view(scene, camera, samples=24, seed=4) as viewer, page(viewer) as events:
+        done = until(events, is_done)
+        saved = ask(viewer, "picture.png")
+        assert not viewer.rendering
+    image = rw.render(scene, camera, samples=24, seed=4, progress=False)
+    assert (done["samples"], done["error"][0]) == (24, image.error.estimate)
+    assert done["picture"]["type"] == saved[1]["Content-Type"] == "image/png"
+    assert base64.b64decode(done["picture"]["data"]) == saved[2] == image._repr_png_()
+
+
+def test_moving_the_camera_changes_the_picture_and_back_brings_it_back():
+    scene, camera = rw.scenes.cornell_box(rw.scenes.torus_knot(), **SIZE)
+    with rw.view(scene, camera, samples=8) as viewer, page(viewer) as events:
+        start = until(events, is_done)
+        assert turn(viewer, azimuth=25, zoom=1.5) == 204
+        moved = until(events, is_done)
+        assert moved["view"] == {"azimuth": 25, "elevation": 0, "zoom": 1.5, "right": 0, "up": 0}
+        assert np.abs(pixels(moved) - pixels(start)).mean() > 10
+        assert turn(viewer) == 204
+        assert until(events, is_done)["picture"] == start["picture"]
+
+
+def test_moving_the_camera_ends_what_is_rendered_at_once():
+    # A pass of so many pixels takes seconds.
+    with rw.view(*rw.scenes.cornell_box(width=2000, height=2000)) as viewer, page(viewer) as events:
+        until(events, lambda frame: True)
+        for azimuth in (5, 10, 15):
+            began = time.monotonic()
+            turn(viewer, azimuth=azimuth)
+            until(events, lambda frame, azimuth=azimuth: frame["view"]["azimuth"] == azimuth)
+            assert time.monotonic() - began < 2
+
+
+def test_pictures_come_while_the_camera_is_moved():
+    scene, camera = rw.scenes.cornell_box(width=640, height=480)
+    with rw.view(scene, camera) as viewer, page(viewer) as events:
+        until(events, lambda frame: True)
+        seen, moves, over = set(), 0, threading.Event()
+
+        def listen():
+            while len(seen) < 5:
+                seen.add(until(events, lambda frame: True)["view"]["azimuth"])
+            over.set()
+
+        listener = threading.Thread(target=listen)
+        listener.start()
+        # Faster than any picture is made.
+        while not over.wait(0.005) and moves < 2000:
+            moves += 1
+            turn(viewer, azimuth=moves)
+        assert over.wait(10)
+        listener.join()
+        assert max(seen) <= moves
+        assert len(seen) == 5
+
+
+def test_without_a_page_nothing_is_rendered(viewer):
+    assert not viewer.rendering
+    with page(viewer) as events:
+        last = until(events, lambda frame: frame["samples"] >= 4)
+        assert viewer.rendering
+        with page(viewer) as others:
+            until(others, lambda frame: True)
+        time.sleep(1)
+        assert viewer.rendering
+    # Half a second is promised, for an idle machine; tests run beside other work.
+    assert is_soon(lambda: not viewer.rendering)
+    spent = time.process_time()
+    time.sleep(0.5)
+    assert time.process_time() - spent < 0.1
+    with page(viewer) as events:
+        # What there was is shown at once, and gets better.
+        told = until(events, lambda frame: True)
+        assert told["samples"] >= last["samples"]
+        assert until(events, lambda frame: frame["number"] > told["number"])["samples"] >= told["samples"]
+        assert viewer.rendering
+
+
+def test_closing_ends_all_work_at_once(viewer):
+    with page(viewer) as events:
+        until(events, lambda frame: True)
+        began = time.monotonic()
+        viewer.close()
+        assert time.monotonic() - began < 2
+        assert not viewer.rendering
+        assert not [name for name, _ in events if name != "frame"]
+    assert repr(viewer) == "Viewer(closed)"
+    with pytest.raises(ConnectionRefusedError):
+        ask(viewer)
+    viewer.close()
+
+
+class Failing(rw.Integrator):
+    def radiance(self, scene, rays, rng):
+        raise ValueError("no light\ntoday")
+
+
+def test_trouble_is_told_to_the_page():
+    scene, camera = rw.scenes.cornell_box(**SIZE)
+    with rw.view(scene, camera, Failing()) as viewer, page(viewer) as events:
+        assert dict(events)["trouble"] == {"line": "ValueError: no light today"}
+
+
+def test_bad_arguments_are_refused_before_anything_is_served():
+    scene, camera = rw.scenes.cornell_box(**SIZE)
+    with pytest.raises(TypeError, match=r"scene must be a raywright\.Scene, got str"):
+        rw.view("scene", camera)
+    with pytest.raises(ValueError, match="samples must be"):
+        rw.view(scene, camera, samples=0)
+    with pytest.raises(ValueError, match="port must be"):
+        rw.view(scene, camera, port=70_000)
+    with (
+        closing(socket.create_server(("127.0.0.1", 0))) as taken,
+        pytest.raises(OSError, match=r"in use|one usage"),
+    ):
+        rw.view(scene, camera, port=taken.getsockname()[1])
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals differ there")
+def test_the_shell_serves_until_ctrl_c(tmp_path):
+    command = [sys.executable, "-m", "raywright", "view", "cornell", "--width", "96", "--height", "72"]
+    pipe = subprocess.PIPE
+    with subprocess.Popen(command, stdout=pipe, stderr=pipe, cwd=tmp_path, text=True) as process:
+        try:
+            url, told = (process.stdout.readline().strip() for _ in range(2))
+            assert told == "(Ctrl-C ends it)"
+            assert re.fullmatch(r"http://127\.0\.0\.1:\d+/[\w-]{24,}/", url)
+            with page(url) as events:
+                until(events, lambda frame: frame["state"] == "refining")
+                process.send_signal(signal.SIGINT)
+                out, err = process.communicate(timeout=20)
+        finally:
+            process.kill()
+    assert (process.returncode, out, err) == (0, "", "")
+
+
+def test_the_shell_tells_what_it_cannot_show(tmp_path):
+    command = [sys.executable, "-m", "raywright", "view", "no.ply"]
+    done = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path, timeout=60)
+    assert (done.returncode, done.stdout) == (1, "")
+    assert re.fullmatch(r"raywright: error: no\.ply.*\n", done.stderr)

@@ -1,0 +1,188 @@
+"""The viewer in a real browser: Debian's chromium or the like, without a window, driven by playwright.
+
+``pip install '.[browser]'`` and ``apt-get install chromium`` (or chromium-headless-shell) bring both.
+"""
+
+import base64
+import io
+import shutil
+import time
+
+import numpy as np
+import pytest
+from PIL import Image as Pillow
+
+import raywright as rw
+
+playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
+NAMES = ("chromium", "chromium-headless-shell", "chromium-browser", "google-chrome")
+CHROMIUM = next(filter(None, map(shutil.which, NAMES)), None)
+pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="chromium is not installed")
+
+
+@pytest.fixture(scope="module")
+def browser():
+    with playwright.sync_playwright() as driver:
+        # Its sandbox does not work for root or within containers, and it sees nothing but our own page.
+        one = driver.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox", "--disable-gpu"])
+        yield one
+        one.close()
+
+
+@pytest.fixture
+def page(browser):
+    """An empty page that must have nothing to complain of."""
+    page = browser.new_page(viewport={"width": 900, "height": 700})
+    complaints = []
+    page.on("console", lambda told: complaints.append(told.text) if told.type == "error" else None)
+    page.on("pageerror", lambda error: complaints.append(str(error)))
+    yield page
+    if not page.is_closed():
+        page.close()
+    assert complaints == []
+
+
+@pytest.fixture(scope="module")
+def knot():
+    return rw.scenes.cornell_box(rw.scenes.torus_knot(), width=200, height=200)
+
+
+def shown(page, wanted="true", seconds=20):
+    """Wait for a picture of which an expression in JavaScript is true; its number and pixels."""
+    condition = f"() => document.getElementById('picture').dataset.number && ({wanted})"
+    page.wait_for_function(condition, timeout=1000 * seconds, polling=20)
+    number, url = page.evaluate(
+        "() => { const c = document.getElementById('picture'); return [+c.dataset.number, c.toDataURL()]; }"
+    )
+    data = base64.b64decode(url.partition(",")[2])
+    return number, np.asarray(Pillow.open(io.BytesIO(data)).convert("RGB"), float)
+
+
+def told(page, name):
+    return page.text_content(f"#{name}")
+
+
+def is_state(state):
+    return f"document.body.dataset.state === '{state}'"
+
+
+def test_the_page_shows_a_picture_within_two_seconds_and_it_gets_better(page, knot):
+    truth = rw.render(*knot, samples=100, seed=10**9, progress=False).srgb().astype(float)
+    with rw.view(*knot, error=1e-12) as viewer:
+        began = time.monotonic()
+        page.goto(viewer.url)
+        number, first = shown(page, seconds=5)
+        assert time.monotonic() - began < 2
+        # It shows the scene already: the red wall to the left, the green one to the right.
+        left, right = first[80:120, 12:28].mean(axis=(0, 1)), first[80:120, -28:-12].mean(axis=(0, 1))
+        assert left[0] > 1.5 * left[1]
+        assert right[1] > right[0]
+        _, early = shown(
+            page, f"+document.getElementById('samples').textContent >= 2 && {is_state('refining')}"
+        )
+        error = float(told(page, "error"))
+        later, late = shown(page, "+document.getElementById('samples').textContent >= 16")
+        assert later > number
+        assert float(told(page, "error")) < 0.5 * error
+        assert np.square(late - truth).mean() < 0.5 * np.square(early - truth).mean()
+        assert float(told(page, "seconds")) > 0
+        assert " to " in told(page, "interval")
+        assert told(page, "message") == ""
+
+
+def test_dragging_and_the_wheel_move_the_camera(page, knot):
+    with rw.view(*knot, samples=8) as viewer:
+        page.goto(viewer.url)
+        _, start = shown(page, is_state("done"))
+        page.mouse.move(450, 300)
+        page.mouse.down()
+        for x in range(450, 551, 10):
+            page.mouse.move(x, 300)
+        page.mouse.up()
+        page.wait_for_function(f"() => !({is_state('done')})", polling=10)
+        _, turned = shown(page, is_state("done"))
+        assert np.abs(turned - start).mean() > 10
+        page.mouse.wheel(0, -300)
+        page.wait_for_function(f"() => !({is_state('done')})", polling=10)
+        _, near = shown(page, is_state("done"))
+        assert np.abs(near - turned).mean() > 10
+        page.click("#reset")
+        page.wait_for_function(f"() => !({is_state('done')})", polling=10)
+        _, again = shown(page, is_state("done"))
+        assert np.array_equal(again, start)
+
+
+def test_moving_the_camera_shows_something_else_at_once(page):
+    scene, camera = rw.scenes.cornell_box(width=800, height=600)
+    with rw.view(scene, camera) as viewer:
+        page.goto(viewer.url)
+        number, start = shown(page)
+        page.focus("#picture")
+        for _ in range(5):
+            began = time.monotonic()
+            page.keyboard.press("ArrowRight")
+            number, _ = shown(page, f"+document.getElementById('picture').dataset.number > {number}")
+            assert time.monotonic() - began < 2
+        shown(page, is_state("refining"))
+        _, turned = shown(page)
+        assert np.abs(turned - start).mean() > 10
+
+
+def test_closing_the_page_stops_the_work(page, knot):
+    with rw.view(*knot, error=1e-12) as viewer:
+        page.goto(viewer.url)
+        shown(page)
+        assert viewer.rendering
+        page.close()
+        began = time.monotonic()
+        while viewer.rendering and time.monotonic() - began < 10:
+            time.sleep(0.01)
+        # Half a second is promised, for an idle machine; tests run beside other work.
+        assert time.monotonic() - began < 2
+        spent = time.process_time()
+        time.sleep(0.5)
+        assert time.process_time() - spent < 0.1
+
+
+def test_loading_the_page_anew_goes_on(page, knot):
+    with rw.view(*knot, error=1e-12) as viewer:
+        page.goto(viewer.url)
+        number, _ = shown(page, "+document.getElementById('samples').textContent >= 4")
+        samples = int(told(page, "samples"))
+        page.reload()
+        again, _ = shown(page)
+        assert again >= number
+        assert int(told(page, "samples")) >= samples
+
+
+def test_the_page_tells_that_the_viewer_has_ended(browser, knot):
+    page = browser.new_page()
+    with rw.view(*knot, samples=4) as viewer:
+        page.goto(viewer.url)
+        _, last = shown(page, is_state("done"))
+    _, after = shown(page, is_state("waiting"))
+    assert "has ended" in told(page, "message")
+    assert np.array_equal(after, last)
+    page.close()
+
+
+def test_pages_from_elsewhere_get_nothing(browser, knot):
+    page = browser.new_page()
+    with rw.view(*knot, samples=1) as viewer:
+        page.goto("data:text/html,<title>elsewhere</title>")
+        read = "url => fetch(url).then(() => 'read', () => 'refused')"
+        for path in ("", "picture.png", "events"):
+            assert page.evaluate(read, viewer.url + path) == "refused"
+        how = "{method: 'POST', mode: 'no-cors', body: '{\"zoom\": 2}'}"
+        page.evaluate(f"url => fetch(url, {how}).then(() => 0, () => 0)", viewer.url + "view")
+        framed = page.evaluate(
+            "url => new Promise(done => { const f = document.createElement('iframe'); f.onload = () => "
+            "done(f.contentDocument === null); f.src = url; document.body.append(f); })",
+            viewer.url,
+        )
+        assert framed
+        assert not viewer.rendering
+        page.goto(viewer.url)
+        shown(page, is_state("done"))
+        assert page.evaluate("view.zoom") == 1
+    page.close()
