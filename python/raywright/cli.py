@@ -8,21 +8,25 @@ from collections.abc import Callable, Sequence
 from typing import Any, NoReturn
 
 from .accelerators import Accelerator, every
-from .cameras import Camera
 from .description import described
 from .image import Image
-from .io.meshes import load
+from .io.load import has_camera, load
+from .io.meshes import load as load_meshes
 from .io.pictures import check_writable
 from .materials import Diffuse
-from .rendering import render
 from .scene import Scene
 from .scenes import cornell_box, studio, torus_knot
+from .shot import Shot
 
 # As shells count it: 128 and the number of SIGINT.
 INTERRUPTED = 130
 DEMO_SECONDS = 10.0
 # What stands for the library's own Cornell box where a mesh file could.
 CORNELL = "cornell"
+# The size of a picture of a mesh file.
+WIDTH, HEIGHT = 640, 480
+
+_SCENES = "a scene (Mitsuba's XML, glTF), or any mesh file: PLY, OBJ, STL, ..."
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -60,17 +64,23 @@ def _demo(options: argparse.Namespace) -> None:
     knot = torus_knot(material=Diffuse((0.78, 0.55, 0.2)))
     # Brighter and whiter than the box's own light, so that the picture needs no exposure.
     scene, camera = cornell_box(knot, options.width, options.height, emission=(40.0, 33.0, 22.0))
-    _picture(scene, camera, options)
+    _picture(Shot(scene, camera), options)
 
 
 def _render(options: argparse.Namespace) -> None:
     check_writable(options.output)
-    shapes = load(options.mesh)
-    _picture(*studio(shapes, options.up, options.width, options.height), options)
+    if has_camera(options.scene):
+        shot = load(options.scene).resized(options.width, options.height)
+    else:
+        size = options.width or WIDTH, options.height or HEIGHT
+        shot = Shot(*studio(load_meshes(options.scene), options.up, *size))
+    _picture(shot, options)
 
 
 def _info(options: argparse.Namespace) -> None:
-    print(described(str(options.mesh), Scene(options.mesh)))
+    whole = has_camera(options.scene)
+    scene = load(options.scene).scene if whole else Scene(options.scene)
+    print(described(str(options.scene), scene))
 
 
 def _report_accelerators(options: argparse.Namespace) -> None:
@@ -94,7 +104,8 @@ def _report_convergence(options: argparse.Namespace) -> None:
     if options.scene == CORNELL:
         scene, camera = cornell_box(width=options.width, height=options.height)
     else:
-        scene, camera = studio(load(options.scene), options.up, options.width, options.height)
+        meshes = load_meshes(options.scene)
+        scene, camera = studio(meshes, options.up, options.width, options.height)
     report = convergence(
         scene,
         camera,
@@ -132,10 +143,10 @@ def _check_matplotlib() -> None:
     matplotlib.use("Agg")
 
 
-def _picture(scene: Scene, camera: Camera, options: argparse.Namespace) -> None:
-    image = render(
-        scene,
-        camera,
+def _picture(shot: Shot, options: argparse.Namespace) -> None:
+    if options.seed is None:
+        options.seed = shot.seed
+    image = shot.render(
         samples=options.samples,
         error=options.error,
         seconds=options.seconds,
@@ -186,15 +197,17 @@ def _parser() -> argparse.ArgumentParser:
     demo.set_defaults(run=_demo)
     _add_picture(demo, "cornell.png", f"{DEMO_SECONDS:g} seconds", width=512, height=512)
 
-    one = verbs.add_parser("render", help="frame, light and render a mesh file")
+    one = verbs.add_parser("render", help="render a scene, or a mesh file, which is framed and lit")
     one.set_defaults(run=_render)
-    one.add_argument("mesh", metavar="MESH", help="any mesh file: PLY, OBJ, STL, GLB, ...")
-    one.add_argument("--up", choices=("y", "z"), default="y", help="axis that points up (default: y)")
-    _add_picture(one, None, "64 samples", width=640, height=480)
+    one.add_argument("scene", metavar="SCENE", help=_SCENES)
+    one.add_argument(
+        "--up", choices=("y", "z"), default="y", help="axis that points up in a mesh file (default: y)"
+    )
+    _add_picture(one, None, "64 samples, or as many as the scene's own file says")
 
-    info = verbs.add_parser("info", help="tell what a mesh file holds, and what its accelerator looks like")
+    info = verbs.add_parser("info", help="tell what a file holds, and what its accelerator looks like")
     info.set_defaults(run=_info)
-    info.add_argument("mesh", metavar="MESH", help="any mesh file: PLY, OBJ, STL, GLB, ...")
+    info.add_argument("scene", metavar="SCENE", help=_SCENES)
 
     report = verbs.add_parser("report", help="compare what the library has for the same task")
     reports = report.add_subparsers(title="reports", dest="report", metavar="REPORT", required=True)
@@ -290,7 +303,11 @@ def _accelerators(text: str) -> dict[str, Accelerator]:
 
 
 def _add_picture(
-    verb: argparse.ArgumentParser, output: str | None, limit: str, width: int, height: int
+    verb: argparse.ArgumentParser,
+    output: str | None,
+    limit: str,
+    width: int | None = None,
+    height: int | None = None,
 ) -> None:
     told = " (default: %(default)s)"
     verb.add_argument(
@@ -308,10 +325,14 @@ def _add_picture(
     limits.add_argument("--error", metavar="E", type=_number(float), help="estimated relMSE of the picture")
     limits.add_argument("--seconds", metavar="S", type=_number(float), help="run time")
     size = _number(int, 1, 65536)
-    verb.add_argument("--width", metavar="W", type=size, default=width, help="pixels" + told)
-    verb.add_argument("--height", metavar="H", type=size, default=height, help="pixels" + told)
+    own = f" (default: the scene's own, and of a mesh file {WIDTH} x {HEIGHT})"
+    for name, letter, default in (("width", "W", width), ("height", "H", height)):
+        told_size = told if default is not None else own
+        verb.add_argument(f"--{name}", metavar=letter, type=size, default=default, help="pixels" + told_size)
     verb.add_argument("--threads", metavar="N", type=_number(int, 1), help="threads (default: all cores)")
-    verb.add_argument("--seed", metavar="N", type=_number(int, 0, 2**64 - 1), default=0, help="seed" + told)
+    verb.add_argument(
+        "--seed", metavar="N", type=_number(int, 0, 2**64 - 1), help="seed (default: the scene's own, or 0)"
+    )
     verb.add_argument(
         "--adaptive", action="store_true", help="more samples where more of the estimated error is"
     )
