@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import raywright as rw
+from raywright.scenes import cornell_spectra
 
 EYE = {"type": "perspective", "film": {"type": "hdrfilm", "width": 8, "height": 4}}
 
@@ -39,6 +40,17 @@ def test_transforms_are_told_in_any_way():
     shots = [shot(one={"type": "sphere", "to_world": way}) for way in ways]
     assert all(one == shots[0] for one in shots)
     assert (shots[0].scene.shapes[0].transform == nested).all()
+
+
+def test_matrices_of_few_digits_are_straightened():
+    rough = [[-0.224951, -1e-6, -0.97437, 0], [-0.97437, 0, 0.224951, 0], [0, 1, -1e-6, 8.87], [0, 0, 0, 1]]
+    read = shot(sky={"type": "envmap", "bitmap": np.ones((2, 4, 3), np.float32), "to_world": rough})
+    turned = read.scene.environment.to_world
+    assert np.allclose(turned @ turned.T, np.eye(3), rtol=0, atol=1e-15)
+    assert np.allclose(turned @ np.diag([-1, 1, -1]), np.array(rough)[:3, :3], rtol=0, atol=2e-6)
+    skewed = [[1, 0.1, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]
+    with pytest.raises(ValueError, match="perspective 'sensor': to_world must turn, move and scale only"):
+        rw.from_mitsuba({"type": "scene", "sensor": {**EYE, "to_world": skewed}})
 
 
 def test_what_is_not_given_is_as_mitsuba_has_it():
@@ -79,6 +91,19 @@ def test_colours_are_told_in_any_way():
     with pytest.warns(RuntimeWarning, match="spectra by wavelength are approximated"):
         even = seen({"type": "spectrum", "value": [(300, 0.5), (900, 0.5)]})
     assert np.allclose(even, 0.5, rtol=0, atol=1e-12)
+    # The walls of the Cornell box, as Mitsuba (3.9) has them.
+    walls = {
+        "_WHITE": (0.7350, 0.7356, 0.7363),
+        "_RED": (0.4913, 0.0492, 0.0509),
+        "_GREEN": (0.0683, 0.3978, 0.0863),
+    }
+    for name, expected in walls.items():
+        measured = list(
+            zip(range(400, 701, 4), map(float, getattr(cornell_spectra, name).split()), strict=True)
+        )
+        with pytest.warns(RuntimeWarning):
+            wall = seen({"type": "spectrum", "value": measured})
+        assert np.allclose(wall, expected, rtol=0, atol=4e-3)
     # Light that is even over wavelengths is reddish: white is D65.
     lamp = shot(one={"type": "constant", "radiance": {"type": "spectrum", "value": 2.0}}).scene.environment
     assert np.allclose(lamp.radiance, 2 * np.array([1.2047939, 0.948291, 0.908916]), rtol=0, atol=2e-6)

@@ -77,20 +77,41 @@ def test_files_are_included_and_found_in_folders(tmp_path):
         load(tmp_path, body)
 
 
+def test_files_cannot_be_included_without_end(tmp_path):
+    for i in range(14):
+        twice = f'<include filename="{i + 1}.xml"/>' * 2
+        (tmp_path / f"{i}.xml").write_text(f'<scene version="3.0.0">{twice}</scene>')
+    (tmp_path / "14.xml").write_text('<scene version="3.0.0"/>')
+    with pytest.raises(ValueError, match="more than 1000 files are included"):
+        load(tmp_path, '<include filename="0.xml"/>')
+
+
+def test_what_has_no_name_does_not_get_in_the_way_of_what_is_included(tmp_path):
+    balls = '<shape type="sphere"/><shape type="disk"/><bsdf type="diffuse" id="x"/>'
+    for name in ("one", "two"):
+        (tmp_path / f"{name}.xml").write_text(f'<scene version="3.0.0">{balls.replace("x", name)}</scene>')
+    body = f'{balls}<include filename="one.xml"/><include filename="two.xml"/>'
+    assert [type(shape) for shape in load(tmp_path, body).scene.shapes] == [rw.Sphere, rw.Disk] * 3
+
+
 def test_scenes_of_version_one_have_their_names_renewed(tmp_path):
     path = tmp_path / "old.xml"
     path.write_text(
         """
         <scene version="0.6.0"><sensor type="perspective"><float name="fov" value="20"/></sensor>
         <integrator type="path"><integer name="maxDepth" value="3"/></integrator>
+        <texture type="checkerboard" id="theCells"/>
+        <shape type="disk"><bsdf type="diffuse"><ref name="diffuseReflectance" id="theCells"/></bsdf></shape>
         <shape type="sphere"><transform name="toWorld"><scale value="2"/></transform>
         <bsdf type="dielectric"><float name="intIOR" value="1.5"/></bsdf></shape></scene>
     """.replace("intIOR", "intIor")
     )
     shot = rw.load(path)
     assert shot.integrator == rw.Path(max_depth=2)
-    assert shot.scene.shapes[0].transform[0, 0] == 2
-    assert shot.scene.shapes[0].material.ior == 1.5 / 1.000277
+    disk, ball = shot.scene.shapes
+    assert ball.transform[0, 0] == 2
+    assert ball.material.ior == 1.5 / 1.000277
+    assert disk.material.front.reflectance.range == ((np.float32(0.2),) * 3, (np.float32(0.4),) * 3)
 
 
 @pytest.mark.parametrize(
@@ -115,6 +136,15 @@ def test_scenes_of_version_one_have_their_names_renewed(tmp_path):
         (
             "<scene version='3'><transform name='x'><lookat origin='1' target='1'/></transform></scene>",
             "<lookat> must have an origin and a target that differ",
+        ),
+        (
+            f"<scene version='3'>{EYE}<shape type='disk'><ref id='a'/></shape>"
+            "<bsdf id='a' type='blendbsdf'><ref id='a'/><ref name='again' id='a'/></bsdf></scene>",
+            "plugins nest more than 12 deep",
+        ),
+        (
+            f"<scene version='3'>{EYE}<alias id='a' as='b'/><alias id='b' as='a'/></scene>",
+            "references go round in a circle",
         ),
         ("<scene version='3'>" + "<shape type='a'>" * 70, "elements nest more than 64 deep"),
     ],

@@ -26,6 +26,7 @@ from .iors import relative
 from .plugin import Plugin, SceneError
 from .textures import normals, numbers, scalar, value
 from .uv import Uv
+from .values import colour
 
 BLACK = Diffuse(0.0)
 
@@ -117,8 +118,8 @@ def _plastic(plugin: Plugin, uv: Uv) -> Sides:
         trapped = theirs * (colours if nonlinear else 1.0)
         return np.minimum(colours / (1 - trapped + own * colours), 1.0)
 
-    if plugin.take("specular_reflectance", 1.0) != 1.0:
-        plugin.fail("specular_reflectance is not supported")
+    if colour(plugin, "specular_reflectance", 1.0) != (1.0, 1.0, 1.0):
+        plugin.fail("specular_reflectance must be 1")
     reflectance = value(plugin, "diffuse_reflectance", 0.5, uv, change=change)
     return Sides(Plastic(reflectance, ior, alpha=alpha), True)
 

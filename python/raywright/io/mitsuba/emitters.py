@@ -20,7 +20,7 @@ from ..picture_sizes import refuse_huge
 from ..pictures import read_linear
 from .plugin import Plugin, SceneError
 from .textures import picture
-from .transforms import Matrix
+from .transforms import Matrix, straightened
 from .values import colour
 
 TYPES = ("point", "spot", "directional", "constant", "envmap")
@@ -109,9 +109,8 @@ def _map(plugin: Plugin) -> EnvironmentMap:
         refuse_huge(path)
         image = read_linear(path)
     plugin.ignore("mis_compensation")
-    linear = plugin.to_world()[:3, :3]
     # Lengths of the axes do not count, as directions are all that is asked.
-    linear = linear / np.linalg.norm(linear, axis=0)
+    linear = straightened(plugin.to_world())[:3, :3]
     return EnvironmentMap(_rows(image), linear @ _HALF_TURN, plugin.number("scale", 1.0))
 
 

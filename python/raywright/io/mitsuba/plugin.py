@@ -14,6 +14,9 @@ Triple = tuple[float, float, float]
 # What a plugin may have whatever its type, and what changes no picture.
 _COMMON = ("type", "id")
 _MOST_LEVELS = 64
+# Deeper than any scene has plugins within plugins, references followed. What refers to the same twice grows
+# by as many powers of two.
+_MOST_WITHIN = 12
 
 
 class SceneError(ValueError):
@@ -87,6 +90,8 @@ class Plugin:
         kind = values.get("type")
         if not isinstance(kind, str):
             raise SceneError(f"{where}: a plugin must have a type, got {kind!r}")
+        if where.count(".") > _MOST_WITHIN:
+            raise SceneError(f"{where[:60]} ...: plugins nest more than {_MOST_WITHIN} deep")
         self.type, self.where, self.context = kind, where, context
         self.values = values
         self._left = {key for key in values if key not in _COMMON}

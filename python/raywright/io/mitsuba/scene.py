@@ -13,7 +13,7 @@ from .plugin import Context, Plugin, SceneError
 from .xml import read_xml
 
 # What a scene may hold that others refer to: it is read where it is referred to.
-_SHARED = (*bsdfs.TYPES, "bitmap", "checkerboard", shapes.GROUP, "alias")
+_SHARED = ("area", *bsdfs.TYPES, "bitmap", "checkerboard", shapes.GROUP, "alias")
 
 
 def from_mitsuba(

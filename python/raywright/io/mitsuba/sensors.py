@@ -7,7 +7,7 @@ import numpy as np
 
 from ...cameras import AnyCamera, Camera, Orthographic, ThinLens
 from .plugin import Plugin, SceneError
-from .transforms import Matrix
+from .transforms import Matrix, straightened
 
 TYPES = ("perspective", "thinlens", "orthographic")
 FILM = "hdrfilm"
@@ -83,7 +83,7 @@ def _perspective(plugin: Plugin, crop: Crop) -> Camera:
     width, height = crop.part
     if crop.whole and shift == [0.0, 0.0]:
         return Camera.from_matrix(
-            plugin.to_world(), "mitsuba", fov=fov, fov_axis=axis, width=width, height=height
+            straightened(plugin.to_world()), "mitsuba", fov=fov, fov_axis=axis, width=width, height=height
         )
     # The film's own middle and focal length, in pixels of the part.
     length = {"x": crop.size[0], "y": crop.size[1], "diagonal": math.hypot(*crop.size)}
@@ -93,7 +93,12 @@ def _perspective(plugin: Plugin, crop: Crop) -> Camera:
         size * (0.5 - part) - offset for size, part, offset in zip(crop.size, shift, crop.offset, strict=True)
     )
     return Camera.from_matrix(
-        plugin.to_world(), "mitsuba", focal=(focal, focal), principal=(x, y), width=width, height=height
+        straightened(plugin.to_world()),
+        "mitsuba",
+        focal=(focal, focal),
+        principal=(x, y),
+        width=width,
+        height=height,
     )
 
 
@@ -107,7 +112,7 @@ def _thin_lens(plugin: Plugin, crop: Crop) -> ThinLens:
         if plugin.number(f"principal_point_offset_{name}", 0.0) != 0.0:
             plugin.fail(f"principal_point_offset_{name} is not supported")
     return ThinLens.from_matrix(
-        plugin.to_world(),
+        straightened(plugin.to_world()),
         "mitsuba",
         fov=fov,
         fov_axis=axis,
@@ -129,7 +134,7 @@ def _orthographic(plugin: Plugin, crop: Crop) -> Orthographic:
     shift: Matrix = np.eye(4)
     shift[:2, 3] = (0.5 * (w - a) - x) * unit, (0.5 * (h - b) - y) * unit
     return Orthographic.from_matrix(
-        matrix @ shift, "mitsuba", scale=a * unit * across, scale_axis="x", width=a, height=b
+        straightened(matrix @ shift), "mitsuba", scale=a * unit * across, scale_axis="x", width=a, height=b
     )
 
 

@@ -110,6 +110,20 @@ def uv_matrix(value: Any) -> Matrix:
     return _square(array if array.shape != (4, 4) else np.delete(np.delete(array, 2, 0), 2, 1), 3)
 
 
+def straightened(matrix: Matrix) -> Matrix:
+    """Return a (4, 4) matrix with axes at right angles, where they nearly are: files keep few digits.
+
+    What is skewed by more than 1e-3 stays so. Lengths do not count, and handedness stays.
+    """
+    lengths = np.linalg.norm(matrix[:3, :3], axis=0)
+    if not lengths.all():
+        return matrix
+    left, stretch, right = np.linalg.svd(matrix[:3, :3] / lengths)
+    result = matrix.copy()
+    result[:3, :3] = left @ right if np.ptp(stretch) < 1e-3 else matrix[:3, :3] / lengths
+    return result
+
+
 def _array(value: Any) -> Matrix:
     given = getattr(value, "matrix", value)
     try:

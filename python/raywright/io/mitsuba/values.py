@@ -4,21 +4,12 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from . import spectra
 from .plugin import Plugin, Triple
 
 # Types of plugins that are one colour, or one number, all over.
 UNIFORM = ("rgb", "srgb", "spectrum", "uniform", "d65", "rawconstant")
-
-# From CIE 1931 XYZ to linear Rec. 709 (ITU-R BT.709).
-_TO_RGB = np.array(
-    [
-        (3.240479, -1.537150, -0.498535),
-        (-0.969256, 1.875991, 0.041556),
-        (0.055648, -0.204043, 1.057311),
-    ]
-)
 
 
 def colour(plugin: Plugin, name: str, default: float | Triple, emits: bool = False) -> Triple:
@@ -64,7 +55,7 @@ def of_plugin(plugin: Plugin, emits: bool) -> Triple:
         value = plugin.number("value", 1.0)
         result = (value,) * 3
         if emits and kind == "spectrum":
-            result = _triple(_TO_RGB.sum(axis=1) * value)
+            result = _triple(spectra.EVEN * value)
     else:
         result = _by_wavelength(plugin, plugin.take("value"), emits)
     plugin.done()
@@ -97,11 +88,6 @@ def _hex(plugin: Plugin, text: str, coded: bool) -> Triple:
 
 
 def _by_wavelength(plugin: Plugin, pairs: Any, emits: bool) -> Triple:
-    """Return the colour of values at wavelengths, in nm, linear between them and 0 outside.
-
-    The eye's response is that of Wyman, Sloan and Shirley, "Simple Analytic Approximations to the CIE XYZ
-    Color Matching Functions" (2013), within 1 % of the tables' peaks. What reflects is seen in even light.
-    """
     try:
         table = np.array(pairs, dtype=np.float64)
     except (TypeError, ValueError):
@@ -111,31 +97,7 @@ def _by_wavelength(plugin: Plugin, pairs: Any, emits: bool) -> Triple:
     if (np.diff(table[:, 0]) <= 0).any():
         plugin.fail("wavelengths must rise")
     plugin.warn("spectra by wavelength are approximated by red, green and blue")
-    wavelengths = np.arange(360.0, 831.0)
-    response = _TO_RGB @ _matching(wavelengths)
-    values = np.interp(wavelengths, table[:, 0], table[:, 1], left=0.0, right=0.0)
-    even = response.sum(axis=1)
-    result = (response @ values) / even
-    if emits:
-        # Even light is not white, but as red as its share of each response tells.
-        result = result * _TO_RGB.sum(axis=1)
-    return _triple(np.maximum(result, 0.0))
-
-
-def _matching(wavelengths: NDArray[np.float64]) -> NDArray[np.float64]:
-    def lobe(weight: float, middle: float, below: float, above: float) -> NDArray[np.float64]:
-        x = wavelengths - middle
-        return np.asarray(weight * np.exp(-0.5 * (x * np.where(x < 0, below, above)) ** 2))
-
-    return np.stack(
-        [
-            lobe(0.362, 442.0, 0.0624, 0.0374)
-            + lobe(1.056, 599.8, 0.0264, 0.0323)
-            + lobe(-0.065, 501.1, 0.0490, 0.0382),
-            lobe(0.821, 568.8, 0.0213, 0.0247) + lobe(0.286, 530.9, 0.0613, 0.0322),
-            lobe(1.217, 437.0, 0.0845, 0.0278) + lobe(0.681, 459.0, 0.0385, 0.0725),
-        ]
-    )
+    return _triple(spectra.rgb(table, emits))
 
 
 def _triple(array: Any) -> Triple:

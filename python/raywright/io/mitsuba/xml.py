@@ -23,8 +23,8 @@ _OBJECTS = (
     "integrator",
     "texture",
 )
-# As deep as Mitsuba lets files include each other, and deeper than any scene nests its elements.
-_MOST_INCLUDES, _MOST_LEVELS = 15, 64
+# As deep as Mitsuba lets files include each other; more files, and deeper elements, than any scene has.
+_MOST_INCLUDES, _MOST_FILES, _MOST_LEVELS = 15, 1000, 64
 
 Tree = dict[str, Any]
 
@@ -71,6 +71,7 @@ class _Reader:
         self.folders: list[Path] = []
         self._here = ""
         self._depth = 0
+        self._files = 0
 
     def file(self, path: Path, depth: int) -> Tree:
         root = elements(path)
@@ -121,7 +122,7 @@ class _Reader:
 
     def _put(self, element: Element, tree: Tree, key: str | None, value: Any) -> None:
         if key is None:
-            key = f"{element.tag}_{len(tree)}"
+            key = f"{element.tag} {len(tree)}"
         if key in tree:
             self._fail(element, f"{key!r} is there twice")
         tree[key] = value
@@ -129,6 +130,9 @@ class _Reader:
     def _include(self, element: Element, attributes: dict[str, str], tree: Tree) -> None:
         if self._depth >= _MOST_INCLUDES:
             self._fail(element, f"files include each other more than {_MOST_INCLUDES} times")
+        self._files += 1
+        if self._files > _MOST_FILES:
+            self._fail(element, f"more than {_MOST_FILES} files are included")
         name = self._need(element, attributes, "filename")
         path = resolve(name, [Path(self._here).parent, *self.folders])
         included = self.file(path, self._depth + 1)
@@ -136,7 +140,8 @@ class _Reader:
             return self._put(element, tree, included.get("id"), included)
         for key, value in included.items():
             if key not in ("type", "id"):
-                self._put(element, tree, f"{key}_{len(tree)}" if key in tree else key, value)
+                # What has no name of its own has one with a space, and gets another.
+                self._put(element, tree, None if " " in key else key, value)
 
     def _value(self, element: Element, attributes: dict[str, str]) -> Any:
         tag = element.tag
@@ -297,9 +302,9 @@ def _modern(tree: Tree) -> Tree:
     result: Tree = {}
     for key, value in tree.items():
         inner = _modern(value) if isinstance(value, dict) else value
-        # The names of plugins within are their authors' own.
-        own = isinstance(value, dict) and value.get("type") not in ("rgb", "srgb", "spectrum")
-        result[key if own and "id" in value else _snake(key)] = inner
+        # An id is its author's own.
+        own = isinstance(value, dict) and value.get("type") != "ref" and value.get("id") == key
+        result[key if own else _snake(key)] = inner
     if result.get("type") == "diffuse" and "diffuse_reflectance" in result:
         result["reflectance"] = result.pop("diffuse_reflectance")
     shift = [result.pop(name, 0.0) for name in ("uoffset", "voffset")]
