@@ -24,6 +24,16 @@ _MAGIC = b"raywright checkpoint 1\n"
 _MOST_HEADER = 1 << 16
 
 
+def held(path: str | PathLike[str]) -> dict[str, Any]:
+    """Return what the file at a path says that it is a render of; nothing where there is no such file."""
+    with suppress(OSError, ValueError), open(path, "rb") as file:
+        if file.read(len(_MAGIC)) == _MAGIC:
+            length = int.from_bytes(file.read(4), "little")
+            of = json.loads(file.read(min(length, _MOST_HEADER)))["of"]
+            return of if isinstance(of, dict) else {}
+    return {}
+
+
 class Checkpoints:
     """The checkpoint of one render: a file, written again and again, each time whole or not at all.
 

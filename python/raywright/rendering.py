@@ -13,17 +13,17 @@ from . import _core
 from .aovs import aovs, names_of
 from .arrays import integer, positive
 from .cameras import AnyCamera
-from .checkpoints import Checkpoints
+from .checkpoints import Checkpoints, held
 from .filters import BoxFilter, Filter
 from .identity import digest
 from .image import HISTORY, ErrorEstimate, Image
 from .integrators import AnyIntegrator, Path, check_integrator
 from .progress import Report, bar
-from .samplers import Independent, Sampler, with_budget
+from .samplers import Sampler, Sobol, as_begun, with_budget
 from .scene import Scene
 
 _PATH = Path()
-_SAMPLER: Sampler = Independent()
+_SAMPLER: Sampler = Sobol()
 _FILTER: Filter = BoxFilter()
 _DEFAULT_SAMPLES = 64
 
@@ -78,14 +78,16 @@ def render(
     clamp : float, optional
         Radiance, in the largest channel, to which brighter samples are dimmed. It takes fireflies away, and
         light with them: the picture is biased, and says so. If not given, samples count as they are.
-    sampler : Independent, Stratified, Halton, Sobol or Lattice
-        Where the random numbers come from. Samples are rounded up to whole batches.
+    sampler : Sobol, Lattice, Halton, Stratified or Independent
+        Where the random numbers come from. A number of samples that is no multiple of its batches is best
+        avoided: part of a batch is right as well, but worth less.
     filter : BoxFilter, TriangleFilter, GaussianFilter, MitchellFilter, BlackmanHarrisFilter or LanczosFilter
         What part of the film a pixel is the mean of.
     checkpoint : str or path, optional
         A file that is kept up to date with the render: every minute, at its end, and when it is interrupted.
         If there is such a file, the render goes on from it, with all limits counted from its first start, and
-        ends with the same bits as one that was never interrupted, even by ``kill -9``. The file stays when
+        ends with the same bits as one that was never interrupted, even by ``kill -9``. A sampler that was
+        given no batch has that of the file. The file stays when
         the render is done, so that it can be taken further by other limits. That it cannot be written is told
         in ``image.warnings`` and as a RuntimeWarning, and costs nothing else.
     executor : concurrent.futures.Executor, optional
@@ -138,11 +140,13 @@ def render(
     if executor is not None and not isinstance(executor, Executor):
         raise TypeError(f"executor must be a concurrent.futures.Executor, got {type(executor).__name__}")
     names = names_of(aov)
-    sampler = with_budget(sampler, samples)
     kept = None
     if checkpoint is not None:
         if not isinstance(checkpoint, str | os.PathLike):
             raise TypeError(f"checkpoint must be a path, got {type(checkpoint).__name__}")
+        sampler = as_begun(sampler, held(checkpoint).get("sampler"))
+    sampler = with_budget(sampler, samples, error, seconds)
+    if checkpoint is not None:
         identity = _identity(scene, camera, integrator, seed, adaptive, clamp, sampler, filter)
         kept = Checkpoints(checkpoint, identity)
     rendering = _begun(kept, camera, threads, adaptive, clamp, sampler)

@@ -28,7 +28,7 @@ class Stratified:
     ----------
     batch : int, optional
         Samples of a batch: 1, 2, 4, ... 64. If not given, the most of which the samples that are asked for
-        make at least 8 batches; 16 if no number of samples is asked for.
+        make at least 8 batches, and 32 from 256 samples on; 1 if time may end the render before.
 
     Raises
     ------
@@ -54,7 +54,7 @@ class Halton:
     ----------
     batch : int, optional
         Samples of a batch: 1, 2, 4, ... 64. If not given, the most of which the samples that are asked for
-        make at least 8 batches; 16 if no number of samples is asked for.
+        make at least 8 batches, and 32 from 256 samples on; 1 if time may end the render before.
 
     Raises
     ------
@@ -80,7 +80,7 @@ class Sobol:
     ----------
     batch : int, optional
         Samples of a batch: 1, 2, 4, ... 64. If not given, the most of which the samples that are asked for
-        make at least 8 batches; 16 if no number of samples is asked for.
+        make at least 8 batches, and 32 from 256 samples on; 1 if time may end the render before.
 
     Raises
     ------
@@ -106,7 +106,7 @@ class Lattice:
     ----------
     batch : int, optional
         Samples of a batch: 1, 2, 4, ... 64. If not given, the most of which the samples that are asked for
-        make at least 8 batches; 16 if no number of samples is asked for.
+        make at least 8 batches, and 32 from 256 samples on; 1 if time may end the render before.
 
     Raises
     ------
@@ -134,8 +134,23 @@ def _batch(batch: int | None) -> int | None:
     return size
 
 
-def with_budget(sampler: Sampler, samples: int | None) -> Sampler:
-    """Return the sampler with batches for so many samples a pixel, if it was given none."""
+def as_begun(sampler: Sampler, begun: object) -> Sampler:
+    """Return the sampler; if it has no batch, with that of one that has begun, known by its ``repr``."""
+    if not isinstance(sampler, Independent) and sampler.batch is None:
+        for size in range(_MOST.bit_length()):
+            if begun == repr(with_batch := replace(sampler, batch=1 << size)):
+                return with_batch
+    return sampler
+
+
+def with_budget(sampler: Sampler, samples: int | None, error: float | None, seconds: float | None) -> Sampler:
+    """Return the sampler with batches for these limits of a render, if it was given none."""
     if isinstance(sampler, Independent) or sampler.batch is not None:
         return sampler
+    if seconds is not None:
+        # It takes two batches to tell an error, and a picture that is out of time has few samples.
+        samples = None
+    elif samples is None and error is not None:
+        # Of the fewest samples that a render to an error takes, four batches.
+        samples = 32
     return replace(sampler, batch=_core.batch_for(samples))

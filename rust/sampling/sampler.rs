@@ -20,7 +20,9 @@ pub struct Sampler {
     kind: SamplerKind,
     key: [u32; 2],
     pixel: u32,
-    /// Of the pixel's samples, or of those of its batch.
+    /// Of the pixel's samples.
+    number: u32,
+    /// The same, or of those of its batch.
     sample: u32,
     /// The Philox block last made: it holds two dimensions, which are mostly asked for one after the other.
     block: u32,
@@ -33,7 +35,7 @@ impl Sampler {
     #[inline]
     pub fn new(seed: u64, pixel: u32, sample: u32) -> Self {
         let key = [seed as u32, (seed >> 32) as u32];
-        Self { kind: SamplerKind::Independent, key, pixel, sample, block: u32::MAX, words: [0; 4] }
+        Self { kind: SamplerKind::Independent, key, pixel, number: sample, sample, block: u32::MAX, words: [0; 4] }
     }
 
     /// Numbers of any kind.
@@ -61,7 +63,7 @@ impl Sampler {
 
     /// The how manieth sample of its pixel it is.
     pub fn number(&self) -> u32 {
-        self.sample
+        self.number
     }
 
     /// A number in [0, 1) with 53 bits.
@@ -110,6 +112,7 @@ impl Sampler {
 
 #[cfg(test)]
 mod tests {
+    use super::super::BatchSize;
     use super::super::chi_square::assert_frequencies;
     use super::*;
 
@@ -122,6 +125,16 @@ mod tests {
             let mut fresh = Sampler::new(7, 3, 5);
             assert_eq!(fresh.one(d), ones[d as usize]);
             assert_eq!(forwards.two(d), twos[d as usize]);
+        }
+    }
+
+    #[test]
+    fn a_sample_keeps_its_number_in_batches() {
+        let size = BatchSize::new(8).unwrap();
+        for kind in [SamplerKind::Independent, SamplerKind::Sobol(size), SamplerKind::Halton(size)] {
+            for sample in [0, 7, 8, 1000] {
+                assert_eq!(kind.sampler(7, 3, sample).number(), sample);
+            }
         }
     }
 

@@ -133,6 +133,20 @@ def test_studio_frames_any_mesh(box, up, size, matrix):
     assert max(np.ptp(where) / n for where, n in zip(np.nonzero(seen), seen.shape, strict=True)) > 0.3
 
 
+def test_studio_frames_copies_where_they_stand_and_go(box):
+    matrices = np.tile(np.eye(4), (3, 1, 1))
+    matrices[:, 0, 3] = 0, 4, 9
+    ends = matrices.copy()
+    ends[2, 1, 3] = 5
+    scene, camera = rw.scenes.studio(rw.Instance([box, rw.Sphere((0, 0, 0), 0.5)], matrices, ends))
+    for time in (0.0, 1.0):
+        hits = scene.intersect(*camera.rays(), time=time)
+        seen = hits.shape_id == 0
+        assert set(hits.instance[seen]) == {0, 1, 2}
+        border = np.concatenate([seen[0], seen[-1], seen[:, 0], seen[:, -1]])
+        assert not border.any()
+
+
 def test_studio_puts_a_floor_under_and_a_lamp_above(box):
     scene, camera = rw.scenes.studio(box)
     floor, lamp = scene.shapes[-2:]

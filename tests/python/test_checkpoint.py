@@ -20,7 +20,7 @@ import raywright as rw
 from raywright import checkpoints
 
 MAGIC = b"raywright checkpoint 1\n"
-LIMITS = {"samples": 40, "seed": 5, "progress": False}
+LIMITS = {"samples": 40, "seed": 5, "progress": False, "sampler": rw.Sobol(4)}
 
 
 @pytest.fixture
@@ -82,6 +82,15 @@ def test_interrupted_and_resumed_is_never_interrupted(box, path, how, often):
     assert_same(rw.render(*box, **LIMITS, **how, checkpoint=path, threads=1), whole)
 
 
+def test_a_sampler_goes_on_with_the_batches_it_began_with(box, path):
+    few, many = ({"samples": samples, "seed": 5, "progress": False} for samples in (16, 64))
+    rw.render(*box, **few, checkpoint=path)
+    # Of 16 samples two make a batch, and of 64 eight.
+    assert_same(rw.render(*box, **many, checkpoint=path), rw.render(*box, **many, sampler=rw.Sobol(2)))
+    with pytest.raises(ValueError, match=r"it has sampler Sobol\(batch=2\) instead of Sobol\(batch=8\)"):
+        rw.render(*box, **many, sampler=rw.Sobol(8), checkpoint=path)
+
+
 def test_ctrl_c_writes_and_is_passed_on_within_a_pass(path):
     # A pass of this takes longer than the test waits.
     box = rw.scenes.cornell_box(width=200, height=150)
@@ -93,7 +102,7 @@ def test_ctrl_c_writes_and_is_passed_on_within_a_pass(path):
     timer.join()
     of = rw.render(*box, seconds=1e-9, progress=False, checkpoint=path)
     # What was begun is done first, and no bit tells.
-    again = rw.render(*box, samples=of.samples, progress=False)
+    again = rw.render(*box, samples=of.samples, sampler=rw.Sobol(64), progress=False)
     assert np.array_equal(of.rgb, again.rgb)
     assert of.error == again.error
 

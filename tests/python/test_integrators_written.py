@@ -156,6 +156,19 @@ def test_random_numbers_are_named_by_pixel_and_sample():
     assert whole.two().shape == (100, 2)
 
 
+def test_no_two_samples_have_the_same_numbers():
+    seen = []
+
+    class Recorded(rw.Integrator):
+        def radiance(self, scene, rays, rng):
+            seen.extend(rng.one())
+            return np.zeros((len(rays), 3))
+
+    scene, camera = rw.scenes.cornell_box(width=2, height=2)
+    rw.render(scene, camera, Recorded(), samples=64, sampler=rw.Sobol(8), progress=False)
+    assert len(np.unique(seen)) == len(seen) == 256
+
+
 def test_the_power_heuristic_survives_extremes():
     assert rw.power_heuristic(np.inf, 2.0) == 1
     assert rw.power_heuristic(0.0, 2.0) == 0

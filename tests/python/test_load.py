@@ -9,6 +9,7 @@ import pytest
 import trimesh
 
 import raywright as rw
+from raywright.io.gltf import read_gltf
 
 SCENE = """
 <scene version="3.0.0">
@@ -49,6 +50,7 @@ def test_a_shot_renders_as_its_file_says_unless_told_otherwise(path):
         rw.Path(max_depth=2),
         samples=32,
         seed=5,
+        sampler=rw.Independent(),
         filter=rw.GaussianFilter(2.0, 0.5),
         progress=False,
     )
@@ -84,6 +86,12 @@ def test_a_mesh_is_framed_and_lit(path):
     shot = rw.load(path.parent / "ball.ply")
     scene, camera = rw.scenes.studio(path.parent / "ball.ply")
     assert shot == rw.Shot(scene, camera)
+
+
+def test_a_gltf_file_is_read_with_what_stands_in_it(tmp_path):
+    path = tmp_path / "ball.glb"
+    trimesh.creation.icosphere(subdivisions=1).export(path)
+    assert rw.load(path) == read_gltf(path)
 
 
 def test_the_shell_renders_and_describes_a_scene(path):

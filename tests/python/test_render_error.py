@@ -77,7 +77,7 @@ def test_rendering_to_an_error_reaches_it():
 
 def test_error_falls_as_one_over_samples():
     scene, camera = rw.scenes.cornell_box(width=48, height=48)
-    history = render(scene, camera, samples=512).history
+    history = render(scene, camera, samples=512, sampler=rw.Independent()).history
     late = history[history["samples"] >= 32]
     slope = np.polyfit(np.log(late["samples"]), np.log(late["error"]), 1)[0]
     assert -1.1 < slope < -0.9

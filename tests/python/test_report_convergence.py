@@ -18,7 +18,7 @@ SCENE, CAMERA = rw.scenes.cornell_box(width=24, height=24)
 @pytest.fixture(scope="module")
 def report():
     reference = rw.render(SCENE, CAMERA, samples=4000, seed=10**9, progress=False)
-    ways = {"path": rw.Path(), "adaptive": {"adaptive": True}}
+    ways = {"path": {"sampler": rw.Independent()}, "adaptive": {"adaptive": True}}
     return rw.report.convergence(SCENE, CAMERA, ways, 0.4, reference, seeds=2)
 
 

@@ -1,12 +1,8 @@
 """Meshes from trimesh objects, from files that trimesh reads, and from lists of these."""
 
 import errno
-import logging
 import sys
-import threading
-import warnings
 from collections.abc import Iterator
-from contextlib import contextmanager
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -17,10 +13,11 @@ from numpy.typing import NDArray
 from ..instance import AnyShape, Instance
 from ..mesh import Mesh
 from ..shapes import Shape
+from .claims import check_mesh_file
 from .looks import look_of
+from .quiet import quiet, reason
 
-# Switching off trimesh's log and Python's warnings is for the whole process, so loads take turns.
-_quiet_lock = threading.RLock()
+_GLTF = (".glb", ".gltf")
 
 
 def meshes(shapes: Any) -> tuple[AnyShape, ...]:
@@ -55,7 +52,9 @@ def only_meshes(shapes: Any) -> tuple[Mesh, ...]:
 
 
 def load(path: str | PathLike[str]) -> tuple[Mesh, ...]:
-    """Read a mesh file with trimesh: one mesh for each node of the file that holds triangles.
+    """Read a mesh file: one mesh for each node of the file that holds triangles.
+
+    glTF is read by `raywright.io.gltf`, all else by trimesh.
 
     Faces stay in the file's order, and vertices as they are. Only STL, which repeats every corner, has its
     equal corners joined.
@@ -79,15 +78,12 @@ def load(path: str | PathLike[str]) -> tuple[Mesh, ...]:
     if not any(name.endswith(f".{kind}") for kind in kinds):
         suffix = f"suffix {path.suffix}" if path.suffix else "a name without a suffix"
         raise ValueError(f"{path}: {suffix} is not a mesh format; known are {', '.join(sorted(kinds))}")
-    try:
-        with _quiet():
-            found = trimesh.load_scene(str(path), process=False)
-            result = tuple(_of_scene(found, loaded=True))
-    except Exception as error:
-        # Parsers fail on bad bytes in every way there is; the caller needs one kind of error, and one line.
-        if isinstance(error, OSError) and error.filename == str(path):
-            raise
-        raise ValueError(f"{path} is not a mesh that can be read ({_reason(error)})") from error
+    if name.endswith(_GLTF):
+        from .gltf import read_meshes
+
+        result = read_meshes(path)
+    else:
+        result = _read(path)
     if not any(len(mesh.faces) for mesh in result):
         raise ValueError(f"{path} holds no faces")
     return tuple(map(_joined, result)) if name.endswith((".stl", ".stl_ascii")) else result
@@ -107,25 +103,34 @@ def load_whole(path: Path, kind: str) -> Mesh:
 
     how: dict[str, Any] = {"group_material": False, "skip_materials": True} if kind == "obj" else {}
     try:
-        with _quiet(), open(path, "rb") as file:
+        check_mesh_file(path)
+        with quiet(), open(path, "rb") as file:
             found = trimesh.load(file, file_type=kind, process=False, **how)
             parts = tuple(_of_scene(found)) if hasattr(found, "geometry") else (_of_trimesh(found, True),)
-    except OSError:
+    except (MemoryError, OSError):
         raise
     except Exception as error:
-        raise ValueError(f"{path} is not a mesh that can be read ({_reason(error)})") from error
+        raise ValueError(f"{path} is not a mesh that can be read ({reason(error)})") from error
     if len(parts) != 1 or not len(parts[0].faces):
         raise ValueError(f"{path} holds no faces")
     return parts[0]
 
 
-def _reason(error: Exception) -> str:
-    if isinstance(error, ModuleNotFoundError):
-        return f"trimesh needs {error.name} for it"
-    told = " ".join(str(error).split())
-    if not isinstance(error, ValueError) or not told:
-        told = f"{type(error).__name__}: {told}" if told else type(error).__name__
-    return told if len(told) <= 120 else f"{told[:117]}..."
+def _read(path: Path) -> tuple[Mesh, ...]:
+    import trimesh
+
+    try:
+        check_mesh_file(path)
+        with quiet():
+            found = trimesh.load_scene(str(path), process=False)
+            return tuple(_of_scene(found, loaded=True))
+    except MemoryError:
+        raise
+    except Exception as error:
+        # Parsers fail on bad bytes in every way there is; the caller needs one kind of error, and one line.
+        if isinstance(error, OSError) and error.filename == str(path):
+            raise
+        raise ValueError(f"{path} is not a mesh that can be read ({reason(error)})") from error
 
 
 def _each(shapes: Any) -> Iterator[AnyShape]:
@@ -204,15 +209,3 @@ def _joined(mesh: Mesh) -> Mesh:
     keys = rows.view(np.dtype((np.void, rows.dtype.itemsize * 3))).reshape(-1)
     _, first, inverse = np.unique(keys, return_index=True, return_inverse=True)
     return Mesh(rows[first], inverse.reshape(-1)[mesh.faces], material=mesh.material, emission=mesh.emission)
-
-
-@contextmanager
-def _quiet() -> Iterator[None]:
-    log = logging.getLogger("trimesh")
-    with _quiet_lock, warnings.catch_warnings(), np.errstate(all="ignore"):
-        warnings.simplefilter("ignore")
-        before, log.disabled = log.disabled, True
-        try:
-            yield
-        finally:
-            log.disabled = before

@@ -10,6 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from .exr_chunks import check_exr
+from .quiet import quiet, reason
 from .radiance_hdr import read_hdr
 
 SUFFIXES = (".png", ".exr", ".npy")
@@ -96,31 +98,75 @@ def read(path: str | PathLike[str]) -> NDArray[Any]:
     suffix = path.suffix.lower()
     try:
         if suffix == ".npy":
-            array = np.load(path, allow_pickle=False)
+            # A map of a file cannot be longer than the file is.
+            array = np.array(np.load(path, mmap_mode="r", allow_pickle=False))
         elif suffix == ".hdr":
             array = read_hdr(path)
+        elif suffix == ".exr":
+            array = _read_exr(path)
         else:
-            array = _read_exr(path) if suffix == ".exr" else _read_picture(path)
-    except ImportError:
+            array = decode(path)
+    except (ImportError, MemoryError):
         raise
     except Exception as error:
         # Parsers fail on bad bytes in every way there is; the caller needs one kind of error, and one line.
-        why = " ".join(str(error).split()) or type(error).__name__
-        raise ValueError(f"{path} is not a picture that can be read ({why[:120]})") from error
+        raise ValueError(f"{path} is not a picture that can be read ({reason(error)})") from error
     return np.asarray(array if array.ndim != 2 else array[..., np.newaxis])
 
 
-def _read_picture(path: Path) -> NDArray[Any]:
+def decode(source: Path | bytes, formats: tuple[str, ...] | None = None) -> NDArray[Any]:
+    """Read what Pillow reads, from a file or from its bytes: (H, W, C), rows from the top.
+
+    Parameters
+    ----------
+    source : Path or bytes
+        The file.
+    formats : tuple of str, optional
+        Which it may be, by Pillow's names; any if not given.
+
+    Raises
+    ------
+    ValueError
+        If it has more points than ``PIL.Image.MAX_IMAGE_PIXELS``; found out before anything is decoded.
+    Exception
+        Whatever Pillow raises for what it cannot read.
+    """
+    from PIL import Image, UnidentifiedImageError
+
+    stream = io.BytesIO(source) if isinstance(source, bytes) else source
+    try:
+        with quiet(Image.DecompressionBombWarning):
+            opened = Image.open(stream, formats=formats)
+    except (Image.DecompressionBombWarning, Image.DecompressionBombError):
+        raise ValueError(_TOO_MANY.format(Image.MAX_IMAGE_PIXELS)) from None
+    except UnidentifiedImageError:
+        kinds = "Pillow knows" if formats is None else f"is {', '.join(formats)}"
+        raise ValueError(f"it is no picture that {kinds}") from None
+    with opened:
+        return pixels_of(opened)
+
+
+def pixels_of(picture: Any) -> NDArray[Any]:
+    """Return a picture of Pillow's as an (H, W, C) array: uint8, of 16 bits uint16, of floats float32.
+
+    Raises
+    ------
+    ValueError
+        If it has more points than ``PIL.Image.MAX_IMAGE_PIXELS``.
+    """
     from PIL import Image
 
-    picture: Image.Image
-    with Image.open(path) as picture:
-        if picture.mode.startswith("I"):
-            return np.asarray(picture).astype(np.uint16)
+    most = Image.MAX_IMAGE_PIXELS
+    if most is not None and picture.width * picture.height > most:
+        raise ValueError(_TOO_MANY.format(most))
+    if picture.mode.startswith("I"):
+        array = np.asarray(picture).astype(np.uint16)
+    else:
         if picture.mode not in ("L", "LA", "RGB", "RGBA", "F"):
             clear = "A" in picture.getbands() or "transparency" in picture.info
             picture = picture.convert("RGBA" if clear else "RGB")
-        return np.array(picture)
+        array = np.array(picture)
+    return array if array.ndim == 3 else array[..., np.newaxis]
 
 
 def _read_exr(path: Path) -> NDArray[np.float32]:
@@ -129,6 +175,8 @@ def _read_exr(path: Path) -> NDArray[np.float32]:
     except ImportError as error:
         raise ImportError(_NO_EXR.replace("saving", "reading")) from error
 
+    # The library tells of what is broken in lines of its own, and on stdout.
+    check_exr(path)
     with OpenEXR.File(str(path), separate_channels=True) as file:
         channels = {name: channel.pixels for name, channel in file.channels().items()}
     names = ["R", "G", "B"] if "R" in channels else ["Y"]
@@ -201,4 +249,5 @@ def _write_exr(path: Path, rgb: NDArray[np.float32], standard_error: NDArray[np.
         file.write(str(path))
 
 
+_TOO_MANY = "it has more than {} points by its header, which is PIL.Image.MAX_IMAGE_PIXELS"
 _NO_EXR = "saving .exr needs OpenEXR: pip install 'raywright[exr]'"

@@ -19,14 +19,14 @@ def read_hdr(path: Path) -> NDArray[np.float32]:
     line, newline, body = rest.partition(b"\n")
     words = line.split()
     if not (data.startswith((b"#?RADIANCE", b"#?RGBE")) and blank and newline and len(words) == 4):
-        raise ValueError(f"{path} is no Radiance picture")
+        raise ValueError("it is no Radiance picture")
     if b"32-bit_rle_xyze" in header or (words[0], words[2]) != (b"-Y", b"+X"):
-        raise ValueError(f"{path} must hold red, green and blue in rows from the top, left to right")
+        raise ValueError("it must hold red, green and blue in rows from the top, left to right")
     try:
         height, width = int(words[1]), int(words[3])
         rgbe = _pixels(body, width, height)
     except (ValueError, IndexError):
-        raise ValueError(f"{path} is cut short, or no Radiance picture") from None
+        raise ValueError("it is cut short, or no Radiance picture") from None
     exponent = rgbe[..., 3:].astype(np.int32) - 136
     colours = np.ldexp(rgbe[..., :3].astype(np.float32), exponent)
     return np.where(rgbe[..., 3:] > 0, colours, np.float32(0)).astype(np.float32)
@@ -34,10 +34,15 @@ def read_hdr(path: Path) -> NDArray[np.float32]:
 
 def _pixels(body: bytes, width: int, height: int) -> NDArray[np.uint8]:
     """Return the four bytes of each pixel, of rows that are run-length encoded or not."""
+    encoded = 8 <= width <= 32767
+    # 127 times the same number takes 2 bytes, at least.
+    least = 4 + 8 * -(-width // 127) if encoded else 4 * width
+    if min(width, height) < 1 or len(body) < height * least:
+        raise ValueError
     result = np.empty((height, width, 4), np.uint8)
     at = 0
     for row in result:
-        if width < 8 or width > 32767 or body[at : at + 4] != bytes((2, 2, width >> 8, width & 255)):
+        if not encoded or body[at : at + 4] != bytes((2, 2, width >> 8, width & 255)):
             row[:] = np.frombuffer(body, np.uint8, 4 * width, at).reshape(width, 4)
             at += 4 * width
             continue

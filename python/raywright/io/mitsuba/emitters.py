@@ -16,7 +16,6 @@ from ...lights import (
     PointLight,
     SpotLight,
 )
-from ..picture_sizes import refuse_huge
 from ..pictures import read_linear
 from .plugin import Plugin, SceneError
 from .textures import picture
@@ -105,9 +104,7 @@ def _map(plugin: Plugin) -> EnvironmentMap:
             plugin.fail(f"bitmap must hold floats, got {array.dtype}")
         image: NDArray[Any] = np.broadcast_to(array, (*array.shape[:2], 3))
     else:
-        path = plugin.path()
-        refuse_huge(path)
-        image = read_linear(path)
+        image = read_linear(plugin.path())
     plugin.ignore("mis_compensation")
     # Lengths of the axes do not count, as directions are all that is asked.
     linear = straightened(plugin.to_world())[:3, :3]

@@ -8,7 +8,6 @@ from numpy.typing import NDArray
 
 from ...textures import Checker, ImageTexture, UvTransform
 from ...textures.texture import Number, Texture, Value
-from ..picture_sizes import refuse_huge
 from ..pictures import read
 from .plugin import Plugin, Triple
 from .uv import UPRIGHT, Uv
@@ -101,7 +100,6 @@ def picture(plugin: Plugin) -> tuple[NDArray[Any], bool]:
         path = plugin.path()
         kept = plugin.context.kept
         if path not in kept:
-            refuse_huge(path)
             kept[path] = read(path)
         array = kept[path]
     else:

@@ -1,0 +1,147 @@
+"""Materials of a glTF file (glTF 2.0, 3.9, and extensions)."""
+
+from typing import NamedTuple
+
+from ...lights.emission import Emitted
+from ...materials import Material
+from ..pbr import IOR, Pbr, Picture
+from .document import Document
+from .glossy import of_glossy
+from .part import Part
+from .pictures import Pictures, coordinates
+
+
+class Surface(NamedTuple):
+    """What a primitive is made of.
+
+    Attributes
+    ----------
+    material : Material, optional
+        How it scatters; None where nothing is said.
+    emission : Emitted, optional
+        What it gives off.
+    coordinates : int
+        Which set of texture coordinates its pictures lie on.
+    """
+
+    material: Material | None
+    emission: Emitted | None
+    coordinates: int
+
+
+class Materials:
+    """The materials of a document, each made once for those with colours of vertices and once for others."""
+
+    def __init__(self, document: Document) -> None:
+        self._document = document
+        self._all = document.root.parts("materials")
+        self._pictures = Pictures(document)
+        self._made: dict[tuple[int, bool], Surface] = {}
+
+    def of(self, primitive: Part, colored: bool) -> Surface:
+        """Return the material that a primitive names."""
+        if "material" not in primitive:
+            return Surface(Pbr(colored=colored).material(), None, 0)
+        key = primitive.reference("material", "materials", len(self._all)), colored
+        if key not in self._made:
+            self._made[key] = self._surface(self._all[key[0]], colored)
+        return self._made[key]
+
+    def _surface(self, part: Part, colored: bool) -> Surface:
+        unlit = part.extension("KHR_materials_unlit") is not None
+        if unlit:
+            self._document.tell("materials that are shown without light (unlit) are matt here")
+        seen = _Seen(self._document, self._pictures)
+        clear = part.extension("KHR_materials_transmission")
+        volume = part.extension("KHR_materials_volume")
+        strength = part.extension("KHR_materials_emissive_strength")
+        factor = 1.0 if strength is None else strength.number("emissiveStrength", 1.0, 0.0)
+        normals = part.part("normalTexture")
+        made = _model(part, seen)._replace(
+            normal_picture=seen.picture(part, "normalTexture"),
+            normal_scale=normals.number("scale", 1.0),
+            emission=part.numbers("emissiveFactor", 3, (0.0, 0.0, 0.0), 0) * factor,
+            emission_picture=seen.picture(part, "emissiveTexture"),
+            alpha_mode=_alpha_mode(part),
+            alpha_cutoff=part.number("alphaCutoff", 0.5, 0),
+            both_sides=part.flag("doubleSided"),
+            colored=colored,
+            ior=self._ior(part),
+            transmission=0.0 if clear is None else clear.number("transmissionFactor", 0.0, 0, 1),
+            transmission_picture=None if clear is None else seen.picture(clear, "transmissionTexture"),
+            solid=volume is not None and volume.number("thicknessFactor", 0.0, 0) > 0,
+            unlit=unlit,
+        )
+        self._tell_of_glass(made, volume)
+        return Surface(made.material(), made.emitted(), seen.coordinates or 0)
+
+    def _ior(self, part: Part) -> float:
+        given = part.extension("KHR_materials_ior")
+        ior = IOR if given is None else given.number("ior", IOR, 0)
+        if 0 < ior < 1:
+            raise ValueError(f"{part.place} must have an ior of 0 or at least 1, and has {ior:g}")
+        if ior == 0:
+            self._document.tell("an ior of 0, for what reflects all, is left out")
+            return IOR
+        return ior
+
+    def _tell_of_glass(self, made: Pbr, volume: Part | None) -> None:
+        """Tell what of the model for clear materials is not shown."""
+        tell = self._document.tell
+        if made.transmission > 0:
+            tinted = made.color_picture is not None or made.colored
+            if tinted or (made.color is not None and (made.color[:3] != 1).any()):
+                tell("what goes through clear materials is not tinted by their base colour")
+            if not made.solid and (made.roughness is None or made.roughness > 0):
+                tell("thin clear materials are smooth here, however rough they are")
+            if volume is not None and "attenuationDistance" in volume:
+                tell("clear materials do not absorb light here")
+        elif made.ior != IOR and made.metallic != 0.0:
+            tell("the ior counts for what is clear, or no metal at all, and is left out elsewhere")
+
+
+def _model(part: Part, seen: "_Seen") -> Pbr:
+    """Return the colour of a material, and how metallic and how rough it is."""
+    glossy = part.extension("KHR_materials_pbrSpecularGlossiness")
+    if glossy is not None:
+        pictures = (seen.picture(glossy, name) for name in ("diffuseTexture", "specularGlossinessTexture"))
+        return of_glossy(glossy, *pictures)
+    rough = part.part("pbrMetallicRoughness")
+    return Pbr(
+        color=rough.numbers("baseColorFactor", 4, None, 0, 1) if "baseColorFactor" in rough else None,
+        # Of several sets of coordinates that of the base colour is kept: it is asked for first.
+        color_picture=seen.picture(rough, "baseColorTexture"),
+        metallic=rough.number("metallicFactor", None, 0, 1) if "metallicFactor" in rough else None,
+        roughness=rough.number("roughnessFactor", None, 0, 1) if "roughnessFactor" in rough else None,
+        rough_picture=seen.picture(rough, "metallicRoughnessTexture"),
+    )
+
+
+class _Seen:
+    """The pictures of one material, which must lie on one set of texture coordinates."""
+
+    def __init__(self, document: Document, pictures: Pictures) -> None:
+        self._document = document
+        self._pictures = pictures
+        self.coordinates: int | None = None
+
+    def picture(self, part: Part, name: str) -> Picture | None:
+        if name not in part:
+            return None
+        info = part.part(name)
+        wanted = coordinates(info)
+        if self.coordinates is None:
+            self.coordinates = wanted
+        elif wanted != self.coordinates:
+            self._document.tell(
+                "materials whose pictures lie on several sets of texture coordinates keep those on the first"
+            )
+            return None
+        return self._pictures.of(info)
+
+
+def _alpha_mode(part: Part) -> str:
+    mode = part.text("alphaMode", "OPAQUE")
+    if mode not in ("OPAQUE", "MASK", "BLEND"):
+        raise ValueError(f"{part.at('alphaMode')} must be OPAQUE, MASK or BLEND, and is {mode[:20]!r}")
+    return mode

@@ -1,0 +1,204 @@
+"""The material of glTF 2.0, of this library's materials: metal and matt, clear, cut out, and shining."""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..arrays import Triple
+from ..lights import Emission
+from ..lights.emission import Emitted
+from ..materials import (
+    Dielectric,
+    Diffuse,
+    Mask,
+    Material,
+    MetallicRough,
+    Mix,
+    NormalMap,
+    Plastic,
+    ThinDielectric,
+)
+from ..textures import ImageTexture, MixTexture, ProductTexture, UvTransform, VertexColors
+from ..textures.image import Channel, Filter, Wrap
+from ..textures.texture import Number, Texture, Value
+
+_WHITE = (1.0, 1.0, 1.0)
+# Of what reflects 4 % at normal incidence, as the model has it (3.9.6, and KHR_materials_ior).
+IOR = 1.5
+
+
+class Picture(NamedTuple):
+    """A picture, and how it lies on a surface: what an `ImageTexture` is made of.
+
+    Attributes
+    ----------
+    pixels : (H, W, C) array
+        Rows from the top.
+    wrap, filter, transform
+        As `ImageTexture` has them.
+    """
+
+    pixels: NDArray[Any]
+    wrap: tuple[Wrap, Wrap] = ("repeat", "repeat")
+    filter: Filter = "trilinear"
+    transform: UvTransform | None = None
+
+    @property
+    def has_alpha(self) -> bool:
+        """Whether its last channel is alpha."""
+        return self.pixels.shape[2] in (2, 4)
+
+    def texture(self, linear: bool = False, channel: Channel | None = None) -> ImageTexture:
+        """Return it as a texture, sRGB unless it is linear."""
+        return ImageTexture(self.pixels, linear, channel, self.filter, self.wrap, self.transform)
+
+
+class Pbr(NamedTuple):
+    """What glTF says of a material (3.9, and extensions); None where it says nothing.
+
+    Attributes
+    ----------
+    color : (3,) or (4,) array, optional
+        Linear base colour, and alpha.
+    color_picture, rough_picture, normal_picture, emission_picture : Picture, optional
+        Of base colour, of roughness in green and metalness in blue, of normals, and of what it gives off.
+    metallic, roughness : float, optional
+        1 if not given, where something else is.
+    normal_scale : float
+        How much normals turn.
+    emission : (3,) array, optional
+        Radiance.
+    alpha_mode : str, optional
+        ``"MASK"`` and ``"BLEND"`` have alpha count.
+    alpha_cutoff : float, optional
+        Of a mask: the least alpha that is there; 0.5 if not given.
+    both_sides : bool
+        Whether the back shines too.
+    colored : bool
+        Whether colours of vertices count.
+    ior : float
+        Index of refraction.
+    transmission : float
+        Share of light that goes through what is no metal (KHR_materials_transmission).
+    transmission_picture : Picture, optional
+        Of that share, in red.
+    solid : bool
+        Whether it bounds a volume (KHR_materials_volume), and is no thin sheet.
+    unlit : bool
+        Whether it is to be shown without light (KHR_materials_unlit); it is matt here.
+    """
+
+    color: NDArray[np.float64] | None = None
+    color_picture: Picture | None = None
+    metallic: float | None = None
+    roughness: float | None = None
+    rough_picture: Picture | None = None
+    normal_picture: Picture | None = None
+    normal_scale: float = 1.0
+    emission: NDArray[np.float64] | None = None
+    emission_picture: Picture | None = None
+    alpha_mode: str | None = None
+    alpha_cutoff: float | None = None
+    both_sides: bool = False
+    colored: bool = False
+    ior: float = IOR
+    transmission: float = 0.0
+    transmission_picture: Picture | None = None
+    solid: bool = False
+    unlit: bool = False
+
+    def material(self) -> Material | None:
+        """Return the material, None where nothing is said that is to be seen."""
+        made = self._body()
+        if self.transmission > 0:
+            made = self._clear(made or MetallicRough())
+        if self.normal_picture is not None:
+            normals = self.normal_picture.texture(linear=True)
+            made = NormalMap(made or MetallicRough(), normals, self.normal_scale)
+        alpha = self._alpha()
+        return made if alpha == 1.0 else Mask(made or MetallicRough(), alpha)
+
+    def emitted(self) -> Emitted | None:
+        """Return what it gives off, None if that is nothing."""
+        if self.emission is None or not self.emission.any():
+            return None
+        radiance: Value = _triple(self.emission)
+        if self.emission_picture is not None:
+            radiance = _times(self.emission_picture.texture(), radiance)
+        return Emission(radiance, both_sides=True) if self.both_sides else radiance
+
+    def _body(self) -> Material | None:
+        """Return what it is without holes, and as if nothing went through."""
+        known = (self.color, self.color_picture, self.metallic, self.roughness, self.rough_picture)
+        if all(one is None for one in known) and not self.unlit:
+            return Diffuse(VertexColors()) if self.colored else None
+        color = self._color()
+        if self.unlit:
+            return Diffuse(color)
+        metallic, roughness = self._shares()
+        if self.ior != IOR and self.ior >= 1 and metallic == 0.0:
+            return Plastic(color, self.ior, roughness)
+        return MetallicRough(color, metallic, roughness)
+
+    def _color(self) -> Value:
+        color: Value = _WHITE if self.color is None else _triple(self.color[:3])
+        if self.color_picture is not None:
+            color = _times(self.color_picture.texture(), color)
+        return _times(VertexColors(), color) if self.colored else color
+
+    def _shares(self) -> tuple[Number, Number]:
+        """Return how metallic and how rough it is."""
+        metallic = 1.0 if self.metallic is None else self.metallic
+        roughness = 1.0 if self.roughness is None else self.roughness
+        if self.rough_picture is None:
+            return metallic, roughness
+        # No picture makes a metal of what is 0 times as metallic.
+        blue = self.rough_picture.texture(linear=True, channel="b") if metallic else None
+        green = self.rough_picture.texture(linear=True, channel="g")
+        return (0.0 if blue is None else _scaled(blue, metallic)), _scaled(green, roughness)
+
+    def _clear(self, body: Material) -> Material:
+        """Return a material that light goes through where it is no metal."""
+        metallic, roughness = self._shares()
+        clear = Dielectric(self.ior, roughness) if self.solid else ThinDielectric(self.ior)
+        share: Number = self.transmission
+        if self.transmission_picture is not None:
+            share = _scaled(self.transmission_picture.texture(linear=True, channel="r"), self.transmission)
+        if isinstance(metallic, Texture):
+            share = ProductTexture(MixTexture(1.0, 0.0, metallic), share)
+        elif metallic:
+            share = _share_of(share, 1 - metallic)
+        return clear if share == 1.0 else Mix(body, clear, share)
+
+    def _alpha(self) -> Number:
+        """Return how much of it is there."""
+        factor = 1.0 if self.color is None or len(self.color) < 4 else float(self.color[3])
+        if self.alpha_mode not in ("MASK", "BLEND"):
+            return 1.0
+        picture = self.color_picture
+        cutoff = 0.5 if self.alpha_cutoff is None else self.alpha_cutoff
+        if picture is None or not picture.has_alpha:
+            return float(factor >= cutoff) if self.alpha_mode == "MASK" else factor
+        if self.alpha_mode == "BLEND":
+            return _scaled(picture.texture(channel="a"), factor)
+        kept = picture.pixels[..., -1] * (factor / 255) >= cutoff
+        cut = picture._replace(pixels=(kept.astype(np.uint8) * np.uint8(255))[..., np.newaxis])
+        return cut.texture(linear=True)
+
+
+def _times(texture: Texture, factor: Value) -> Texture:
+    return texture if factor == _WHITE else ProductTexture(texture, factor)
+
+
+def _scaled(texture: Texture, factor: float) -> Texture:
+    return texture if factor == 1.0 else ProductTexture(texture, factor)
+
+
+def _share_of(share: Number, factor: float) -> Number:
+    return _scaled(share, factor) if isinstance(share, Texture) else share * factor
+
+
+def _triple(numbers: NDArray[np.float64]) -> Triple:
+    red, green, blue = numbers.tolist()
+    return red, green, blue

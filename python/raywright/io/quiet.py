@@ -1,0 +1,37 @@
+"""Silence for other libraries while they read: what there is to say is in our own errors."""
+
+import logging
+import threading
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import numpy as np
+
+# Switching off a log and Python's warnings is for the whole process, so reads take turns.
+_lock = threading.RLock()
+
+
+@contextmanager
+def quiet(strictly: type[Warning] | None = None) -> Iterator[None]:
+    """Keep trimesh's log, and all warnings, from being heard; those of one kind may be errors instead."""
+    log = logging.getLogger("trimesh")
+    with _lock, warnings.catch_warnings(), np.errstate(all="ignore"):
+        warnings.simplefilter("ignore")
+        if strictly is not None:
+            warnings.simplefilter("error", strictly)
+        before, log.disabled = log.disabled, True
+        try:
+            yield
+        finally:
+            log.disabled = before
+
+
+def reason(error: Exception, most: int = 120) -> str:
+    """Return why a library could not read something, in one line."""
+    if isinstance(error, ModuleNotFoundError):
+        return f"trimesh needs {error.name} for it"
+    told = " ".join(str(error).split())
+    if not isinstance(error, ValueError | OSError | IndexError) or not told:
+        told = f"{type(error).__name__}: {told}" if told else type(error).__name__
+    return told if len(told) <= most else f"{told[: most - 3]}..."

@@ -1,0 +1,295 @@
+"""Materials and pictures of glTF files, against what the format says of them."""
+
+import io
+import math
+import warnings
+
+import numpy as np
+import pytest
+from gltf_writer import SQUARE, Writer
+from PIL import Image
+from trimesh.visual.material import PBRMaterial
+
+import raywright as rw
+from raywright.io.gltf import read_gltf
+
+PIXELS = np.random.default_rng(1).integers(0, 256, (4, 4, 4), np.uint8)
+UV = np.float32([(0, 0), (1, 0), (1, 1), (0, 1)])
+
+
+def png(pixels: np.ndarray, kind: str = "PNG") -> bytes:
+    out = io.BytesIO()
+    Image.fromarray(pixels).save(out, format=kind, **({"lossless": True} if kind == "WEBP" else {}))
+    return out.getvalue()
+
+
+def loaded(tmp_path, material, writer=None, told=None, **attributes):
+    """Return the mesh of a file with one material; what is warned of must be `told`."""
+    writer = writer or Writer()
+    attributes = {"TEXCOORD_0": UV, **attributes}
+    writer.node(mesh=writer.mesh(material, **attributes))
+    path = tmp_path / "file.glb"
+    path.write_bytes(writer.glb())
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        (mesh,) = read_gltf(path).scene.shapes
+    assert [str(one.message) for one in caught] == ([f"file.glb: {told}"] if told else [])
+    assert all(one.filename == __file__ for one in caught)
+    return mesh
+
+
+def clear(**more):
+    """Return a material that light goes through."""
+    extensions = {"KHR_materials_transmission": {"transmissionFactor": 1.0}, **more.pop("extensions", {})}
+    return {
+        "pbrMetallicRoughness": {"metallicFactor": 0, "roughnessFactor": 0, **more},
+        "extensions": extensions,
+    }
+
+
+VOLUME = {"KHR_materials_volume": {"thicknessFactor": 0.1}}
+
+
+def test_all_of_the_model_is_read(tmp_path):
+    writer = Writer()
+    base, both = writer.picture(png(PIXELS)), writer.picture(png(PIXELS[..., :3]))
+    normals, glow = writer.picture(png(PIXELS[::-1, :, :3])), writer.picture(png(PIXELS[:, ::-1, :3]))
+    mesh = loaded(
+        tmp_path,
+        {
+            "pbrMetallicRoughness": {
+                "baseColorFactor": [1, 0.2, 1, 1],
+                "baseColorTexture": base,
+                "metallicRoughnessTexture": both,
+                "roughnessFactor": 0.5,
+            },
+            "normalTexture": {**normals, "scale": 0.75},
+            "emissiveFactor": [0.5, 1, 1],
+            "emissiveTexture": glow,
+            "alphaMode": "MASK",
+            "alphaCutoff": 0.25,
+            "doubleSided": True,
+            "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 8.0}},
+        },
+        writer,
+    )
+    kept = PIXELS[..., 3] / 255 >= 0.25
+    assert np.array_equal(mesh.material.opacity.image[..., 0] == 255, kept)
+    bumpy = mesh.material.material
+    assert (bumpy.normals, bumpy.scale) == (rw.ImageTexture(PIXELS[::-1, :, :3], linear=True), 0.75)
+    model = bumpy.material
+    assert model.base_color == rw.ProductTexture(rw.ImageTexture(PIXELS), (1, 0.2, 1))
+    assert model.metallic == rw.ImageTexture(PIXELS[..., :3], linear=True, channel="b")
+    green = rw.ImageTexture(PIXELS[..., :3], linear=True, channel="g")
+    assert model.roughness == rw.ProductTexture(green, 0.5)
+    shown = rw.ProductTexture(rw.ImageTexture(PIXELS[:, ::-1, :3]), (4, 8, 8))
+    assert mesh.emission == rw.Emission(shown, both_sides=True)
+
+
+def test_files_and_trimesh_give_the_same_looks(tmp_path):
+    import trimesh
+
+    given = PBRMaterial(
+        baseColorFactor=[51, 102, 255, 255],
+        metallicFactor=0.25,
+        roughnessFactor=0.5,
+        baseColorTexture=Image.fromarray(PIXELS),
+        emissiveFactor=[0.5, 0.25, 0],
+        alphaMode="BLEND",
+    )
+    box = trimesh.creation.box()
+    box.visual = trimesh.visual.TextureVisuals(uv=np.random.default_rng(2).random((8, 2)), material=given)
+    box.export(tmp_path / "box.glb")
+    (here,), (there,) = rw.Scene(box).shapes, read_gltf(tmp_path / "box.glb").scene.shapes
+    assert there.material == here.material
+    assert there.emission == here.emission
+    assert np.allclose(there.uv, here.uv, rtol=0, atol=1e-6)
+
+
+def test_a_point_of_a_picture_is_where_it_belongs(tmp_path):
+    """The first row of the file is at v = 0 of the file."""
+    pixels = np.zeros((2, 2, 3), np.uint8)
+    pixels[0, 1] = 255, 0, 0
+    writer = Writer()
+    info = writer.picture(png(pixels))
+    writer.json["samplers"] = [{"magFilter": 9728, "wrapS": 33071, "wrapT": 33648}]
+    writer.json["textures"][0]["sampler"] = 0
+    material = {"pbrMetallicRoughness": {"baseColorTexture": info}, "extensions": {"KHR_materials_unlit": {}}}
+    told = "materials that are shown without light (unlit) are matt here"
+    mesh = loaded(tmp_path, material, writer, told)
+    texture = mesh.material.reflectance
+    assert (texture.filter, texture.wrap) == ("nearest", ("clamp", "mirror"))
+    scene = rw.Scene(mesh, environment=1.0)
+    # (0.75, 0.25) of the square has coordinates (0.75, 0.25) from the top: the right of the first row.
+    for x, y, expected in ((0.75, 0.25, 1), (0.75, 0.75, 0), (0.25, 0.25, 0), (0.25, 0.75, 0)):
+        camera = rw.Camera((x, y, 1), (x, y, 0), fov=0.1, width=1, height=1)
+        seen = rw.render(scene, camera, rw.Path(max_depth=1), samples=1, progress=False).rgb[0, 0]
+        assert seen == pytest.approx((expected, 0, 0), abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("told", "given", "expected"),
+    [
+        ({}, (0.25, 0.5), (0.25, 0.5)),
+        ({"offset": [0.5, 0.25]}, (0.25, 0.5), (0.75, 0.75)),
+        ({"scale": [2, 4]}, (0.25, 0.5), (0.5, 2)),
+        # By KHR_texture_transform a quarter turn is anticlockwise where v goes down: right becomes up.
+        ({"rotation": math.pi / 2}, (0.25, 0), (0, -0.25)),
+        ({"rotation": math.pi / 2, "scale": [2, 1], "offset": [1, 0]}, (0.25, 0.5), (1.5, -0.5)),
+    ],
+)
+def test_pictures_are_scaled_then_turned_then_moved(tmp_path, told, given, expected):
+    writer = Writer()
+    info = {**writer.picture(png(PIXELS)), "extensions": {"KHR_texture_transform": told}}
+    mesh = loaded(tmp_path, {"pbrMetallicRoughness": {"baseColorTexture": info}}, writer)
+    matrix = np.array(mesh.material.base_color.transform.matrix)
+    u, v = matrix @ (given[0], 1 - given[1], 1)
+    assert (u, 1 - v) == pytest.approx(expected, abs=1e-12)
+
+
+def test_pictures_lie_on_the_coordinates_that_they_name(tmp_path):
+    writer = Writer()
+    one = {**writer.picture(png(PIXELS)), "texCoord": 1}
+    model = {"baseColorTexture": one, "metallicRoughnessTexture": {**one, "texCoord": 0}}
+    told = "materials whose pictures lie on several sets of texture coordinates keep those on the first"
+    other = UV * np.float32(0.5)
+    mesh = loaded(tmp_path, {"pbrMetallicRoughness": model}, writer, told, TEXCOORD_1=other)
+    assert np.array_equal(mesh.uv, other * (1, -1) + (0, 1))
+    assert mesh.material.base_color == rw.ImageTexture(PIXELS)
+    assert mesh.material.metallic == 1.0
+
+
+@pytest.mark.parametrize("kind", ["PNG", "JPEG", "WEBP"])
+def test_pictures_may_be_of_three_kinds(tmp_path, kind):
+    data = png(PIXELS[..., :3], kind)
+    writer = Writer()
+    info = writer.picture(data)
+    if kind == "WEBP":
+        writer.json["textures"] = [{"extensions": {"EXT_texture_webp": {"source": 0}}}]
+        writer.json["extensionsRequired"] = ["EXT_texture_webp"]
+    mesh = loaded(tmp_path, {"pbrMetallicRoughness": {"baseColorTexture": info}}, writer)
+    assert np.array_equal(mesh.material.base_color.image, np.asarray(Image.open(io.BytesIO(data))))
+
+
+def test_pictures_beside_the_file_are_found(tmp_path):
+    (tmp_path / "parts").mkdir()
+    (tmp_path / "parts" / "a picture.png").write_bytes(png(PIXELS))
+    writer = Writer()
+    writer.json["images"] = [{"uri": "parts/a%20picture.png"}]
+    writer.json["textures"] = [{"source": 0}]
+    mesh = loaded(tmp_path, {"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}, writer)
+    assert np.array_equal(mesh.material.base_color.image, PIXELS)
+
+
+@pytest.mark.parametrize(
+    ("material", "expected"),
+    [
+        ({}, rw.Diffuse()),
+        ({"pbrMetallicRoughness": {"metallicFactor": 0}}, rw.MetallicRough(1, 0, 1)),
+        (
+            {"pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 0.2]}, "alphaMode": "BLEND"},
+            rw.Mask(rw.MetallicRough(), 0.2),
+        ),
+        (
+            {
+                "pbrMetallicRoughness": {"metallicFactor": 0, "roughnessFactor": 0.5},
+                "extensions": {"KHR_materials_ior": {"ior": 1.8}},
+            },
+            rw.Plastic(1.0, 1.8, 0.5),
+        ),
+        (clear(), rw.ThinDielectric(1.5)),
+        (clear(extensions={"KHR_materials_ior": {"ior": 1.33}}), rw.ThinDielectric(1.33)),
+        (clear(extensions=VOLUME, roughnessFactor=0.25), rw.Dielectric(1.5, 0.25)),
+        (
+            clear(extensions=VOLUME, metallicFactor=0.25),
+            rw.Mix(rw.MetallicRough(1, 0.25, 0), rw.Dielectric(), 0.75),
+        ),
+    ],
+    ids=["nothing", "matt", "blend", "ior", "pane", "water", "rough glass", "partly metal"],
+)
+def test_materials_become_ours(tmp_path, material, expected):
+    assert loaded(tmp_path, material).material == expected
+
+
+def test_what_goes_through_may_vary(tmp_path):
+    writer = Writer()
+    info = writer.picture(png(PIXELS[..., :3]))
+    material = clear(metallicFactor=1.0, metallicRoughnessTexture=info)
+    material["extensions"]["KHR_materials_transmission"] = {
+        "transmissionFactor": 0.5,
+        "transmissionTexture": info,
+    }
+    mix = loaded(tmp_path, material, writer).material
+    blue, red = (rw.ImageTexture(PIXELS[..., :3], linear=True, channel=name) for name in "br")
+    assert mix.a.metallic == blue
+    assert mix.amount == rw.ProductTexture(rw.MixTexture(1.0, 0.0, blue), rw.ProductTexture(red, 0.5))
+
+
+@pytest.mark.parametrize(
+    ("material", "told"),
+    [
+        (
+            clear(baseColorFactor=[1, 0, 0, 1]),
+            "what goes through clear materials is not tinted by their base colour",
+        ),
+        (clear(roughnessFactor=0.5), "thin clear materials are smooth here, however rough they are"),
+        (
+            clear(extensions={"KHR_materials_volume": {"thicknessFactor": 1, "attenuationDistance": 1}}),
+            "clear materials do not absorb light here",
+        ),
+        (
+            {"extensions": {"KHR_materials_ior": {"ior": 1.8}}},
+            "the ior counts for what is clear, or no metal at all, and is left out elsewhere",
+        ),
+    ],
+)
+def test_what_is_not_shown_is_told_once(tmp_path, material, told):
+    writer = Writer()
+    writer.node(mesh=writer.mesh(material))
+    writer.node(mesh=writer.mesh(material))
+    path = tmp_path / "file.glb"
+    path.write_bytes(writer.glb())
+    with pytest.warns(RuntimeWarning) as caught:
+        read_gltf(path)
+    assert [str(one.message) for one in caught] == [f"file.glb: {told}"]
+
+
+@pytest.mark.parametrize("pictured", [False, True])
+def test_specular_and_glossy_materials_become_metallic_and_rough(tmp_path, pictured):
+    """What reflects 4 % is no metal, and what is black but for its specular colour is one."""
+
+    def model(diffuse, specular):
+        writer = Writer()
+        told = {"diffuseFactor": [*diffuse, 1], "specularFactor": specular, "glossinessFactor": 0.75}
+        if pictured:
+            told["diffuseTexture"] = writer.picture(png(np.full((2, 2, 3), 255, np.uint8)))
+        material = {"extensions": {"KHR_materials_pbrSpecularGlossiness": told}}
+        writer.json["extensionsRequired"] = ["KHR_materials_pbrSpecularGlossiness"]
+        made = loaded(tmp_path, material, writer).material
+        ends = [made.base_color, made.metallic, made.roughness]
+        if pictured:
+            # Of 8 bits: sRGB in the picture of colour, shares as they are in that of the rest.
+            low, high = zip(*(one.range for one in ends), strict=True)
+            assert low == high
+            ends = [low[0], low[1][0], low[2][0]]
+        assert ends[2] == pytest.approx(0.25, abs=1 / 255)
+        return ends[0], ends[1]
+
+    color, metallic = model([0.5, 0.25, 0.75], [0.04, 0.04, 0.04])
+    assert (color, metallic) == (pytest.approx((0.5, 0.25, 0.75), abs=0.01), pytest.approx(0, abs=0.01))
+    color, metallic = model([0, 0, 0], [0.8, 0.6, 0.4])
+    assert (color, metallic) == (pytest.approx((0.8, 0.6, 0.4), abs=0.01), pytest.approx(1, abs=0.01))
+
+
+def test_extensions_that_may_be_left_out_are_named(tmp_path):
+    writer = Writer()
+    writer.json["extensionsUsed"] = ["KHR_materials_sheen", "KHR_materials_ior", "KHR_materials_clearcoat"]
+    told = "what its extensions KHR_materials_clearcoat, KHR_materials_sheen say is left out"
+    loaded(tmp_path, {}, writer, told)
+
+
+def test_colours_of_vertices_tint_the_base_colour(tmp_path):
+    half = np.tile(np.float32([0.5, 1, 0.25]), (len(SQUARE), 1))
+    mesh = loaded(tmp_path, {"pbrMetallicRoughness": {"baseColorFactor": [1, 0.5, 1, 1]}}, COLOR_0=half)
+    assert mesh.material == rw.MetallicRough(rw.ProductTexture(rw.VertexColors(), (1, 0.5, 1)), 1, 1)
+    assert np.array_equal(mesh.colors, half)
