@@ -63,6 +63,40 @@ def scenes():
             },
             lamp={"type": "directional", "direction": [0.3, 0.6, -1.0], "irradiance": rgb(2.0, 2.2, 2.5)},
         ),
+        "bitmap, turned and mirrored": scene(
+            2,
+            a={
+                **FLOOR,
+                "to_world": plate(1.5, 1.5, 1.0),
+                "bsdf": {
+                    "type": "diffuse",
+                    "reflectance": picture(
+                        "colours.png",
+                        wrap_mode="mirror",
+                        filter_type="nearest",
+                        to_uv=matrix((-0.4, 0.6, 0), (1.75, 0.96, 0), (-1.44, 2.63, 0), (0, 0, 1)),
+                    ),
+                },
+            },
+            sky=SKY,
+        ),
+        "cylinder, sphere, checkerboard": scene(
+            2,
+            a={
+                "type": "cylinder",
+                "p0": [-1, 0, 0.5],
+                "p1": [1, 0.3, 1.5],
+                "radius": 0.7,
+                "bsdf": {"type": "diffuse", "reflectance": checks(3.0, 2.0)},
+            },
+            b={
+                "type": "sphere",
+                "radius": 0.5,
+                "to_world": moved(1, -1, 0.5, 1.0, 40.0),
+                "bsdf": {"type": "diffuse", "reflectance": checks(4.0, 3.0)},
+            },
+            sky=SKY,
+        ),
         "ply, face_normals, spot": scene(
             a=FLOOR,
             b={
@@ -212,6 +246,15 @@ def scenes():
             ),
             "integrator": {"type": "volpath", "max_depth": -1},
         },
+        # Of materials with a smooth lobe, Mitsuba's (3.9.1) takes the other for part of what that reflects.
+        "blendbsdf": scene(
+            a=FLOOR,
+            b=ball(
+                {"type": "blendbsdf", "weight": picture("colours.png"), "one": matt, "two": sheet["bsdf"]}
+            ),
+            lamp=LAMP,
+            sky=SKY,
+        ),
         # Both soften the shade of bumps where the surface itself falls into it, each in a way of its own.
         # Light from near the surface's normal is not softened.
         "bumpmap": scene(

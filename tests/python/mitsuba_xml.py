@@ -6,7 +6,7 @@ import numpy as np
 
 TAGS = {
     "bsdf": "diffuse dielectric roughdielectric thindielectric conductor roughconductor plastic roughplastic "
-    "principled twosided mask bumpmap normalmap",
+    "principled twosided blendbsdf mask bumpmap normalmap",
     "shape": "sphere disk rectangle cube cylinder obj ply shapegroup instance",
     "emitter": "area point spot directional constant envmap",
     "texture": "bitmap checkerboard",

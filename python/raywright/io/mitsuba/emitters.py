@@ -47,6 +47,7 @@ def emitter(plugin: Plugin) -> Light | Environment:
         "constant": _constant,
         "envmap": _map,
     }
+    plugin.ignore("sampling_weight")
     try:
         result = readers[plugin.type](plugin)
     except SceneError:

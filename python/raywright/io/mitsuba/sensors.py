@@ -117,7 +117,7 @@ def _thin_lens(plugin: Plugin, crop: Crop) -> ThinLens:
         fov=fov,
         fov_axis=axis,
         aperture_radius=plugin.number("aperture_radius", 0.0),
-        focus_distance=plugin.number("focus_distance", 1e4),
+        focus_distance=plugin.number("focus_distance", plugin.number("far_clip", 1e4)),
         width=crop.part[0],
         height=crop.part[1],
     )

@@ -108,6 +108,7 @@ def _look(plugin: Plugin, uv: Uv, inside_out: bool = False) -> tuple[Material, V
         if inside_out:
             plugin.fail("an emitter on the inside is not supported")
         emission = value(emitter, "radiance", 1.0, uv, emits=True)
+        emitter.ignore("sampling_weight")
         emitter.done()
     found = [bsdfs.material(inner, uv) for inner in plugin.children(*bsdfs.TYPES)]
     if len(found) > 1:
@@ -124,26 +125,25 @@ def _moved(matrix: Matrix) -> Matrix | None:
 
 
 class Copies:
-    """The groups of a scene, each of which is read once, and where their copies are."""
+    """The groups of a scene, each of which is read once, and where their copies are.
+
+    They stand in the scene where the first copy does.
+    """
 
     def __init__(self) -> None:
-        self._groups: dict[int, tuple[Mesh | Shape, ...]] = {}
+        self._placed: dict[int, Placed] = {}
 
     def add(self, plugin: Plugin, to: "list[AnyShape | Placed]") -> None:
-        """Put a copy of a group into a list of shapes."""
+        """Put a copy of a group into a list of shapes, beside others of that group if there are any."""
         groups = list(plugin.children(GROUP))
         if len(groups) != 1:
             plugin.fail(f"one {GROUP} must be within, got {len(groups)}")
         key = id(groups[0].values)
-        if key not in self._groups:
-            self._groups[key] = group(groups[0])
-        matrix = plugin.to_world()
+        if key not in self._placed:
+            self._placed[key] = Placed(group(groups[0]), [])
+            to.append(self._placed[key])
+        self._placed[key].matrices.append(plugin.to_world())
         plugin.done()
-        for placed in to:
-            if isinstance(placed, Placed) and placed.shapes is self._groups[key]:
-                placed.matrices.append(matrix)
-                return
-        to.append(Placed(self._groups[key], [matrix]))
 
 
 class Placed:
