@@ -33,7 +33,7 @@ def pool():
 
 def assert_same(a, b):
     assert np.array_equal(a.rgb, b.rgb)
-    assert np.array_equal(a.standard_error, b.standard_error)
+    assert np.array_equal(a.standard_error, b.standard_error, equal_nan=True)
     assert (a.error, a.samples, a.warnings, a.biased) == (b.error, b.samples, b.warnings, b.biased)
     assert a.aov.keys() == b.aov.keys()
     assert all(np.array_equal(a.aov[name], b.aov[name]) for name in a.aov)
