@@ -22,6 +22,8 @@ from .instance import Instance
 from .integrator import Integrator
 from .integrators import AmbientOcclusion, Direct, Distributed, Path, RayCast, Whitted
 from .interactions import Interactions, LightSamples, Rays, Scattered, power_heuristic
+from .io.load import load
+from .io.mitsuba import from_mitsuba
 from .io.pictures import check_writable
 from .lights import (
     ConstantEnvironment,
@@ -70,6 +72,7 @@ from .shapes import (
     Sphere,
     Torus,
 )
+from .shot import Shot
 from .surface import Surface
 from .textures import (
     Checker,
@@ -173,6 +176,7 @@ __all__ = [
     "Rng",
     "Scattered",
     "Scene",
+    "Shot",
     "Sobol",
     "Sphere",
     "SpotLight",
@@ -192,6 +196,8 @@ __all__ = [
     "Wood",
     "aovs",
     "check_writable",
+    "from_mitsuba",
+    "load",
     "metals",
     "power_heuristic",
     "render",

@@ -8,15 +8,15 @@ from collections.abc import Callable, Sequence
 from typing import Any, NoReturn
 
 from .accelerators import Accelerator, every
-from .cameras import Camera
 from .description import described
 from .image import Image
-from .io.meshes import load
+from .io.load import has_camera, load
+from .io.meshes import load as load_meshes
 from .io.pictures import check_writable
 from .materials import Diffuse
-from .rendering import render
 from .scene import Scene
 from .scenes import cornell_box, studio, torus_knot
+from .shot import Shot
 from .viewer import view
 
 # As shells count it: 128 and the number of SIGINT.
@@ -26,6 +26,10 @@ DEMO_SECONDS = 10.0
 CORNELL = "cornell"
 # What options and arguments of a render have the same names for.
 _HOW = ("samples", "error", "seconds", "seed", "threads", "adaptive", "clamp")
+# The size of a picture of a mesh file.
+WIDTH, HEIGHT = 640, 480
+
+_SCENES = "a scene (Mitsuba's XML, glTF), or any mesh file: PLY, OBJ, STL, ..."
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -63,24 +67,27 @@ def _demo(options: argparse.Namespace) -> None:
     knot = torus_knot(material=Diffuse((0.78, 0.55, 0.2)))
     # Brighter and whiter than the box's own light, so that the picture needs no exposure.
     scene, camera = cornell_box(knot, options.width, options.height, emission=(40.0, 33.0, 22.0))
-    _picture(scene, camera, options)
+    _picture(Shot(scene, camera), options)
 
 
 def _render(options: argparse.Namespace) -> None:
     check_writable(options.output)
-    shapes = load(options.mesh)
-    _picture(*studio(shapes, options.up, options.width, options.height), options)
+    _picture(_shot(options), options)
 
 
 def _view(options: argparse.Namespace) -> None:
-    how = {name: getattr(options, name) for name in _HOW}
-    with view(*_scene(options), **how, port=options.port, open=options.open) as viewer:
+    shot = _shot(options)
+    own: dict[str, Any] = {"integrator": shot.integrator, "sampler": shot.sampler, "filter": shot.filter}
+    how = _how(options, shot)
+    with view(shot.scene, shot.camera, **own, **how, port=options.port, open=options.open) as viewer:
         print(f"{viewer.url}\n(Ctrl-C ends it)", flush=True)
         viewer.wait()
 
 
 def _info(options: argparse.Namespace) -> None:
-    print(described(str(options.mesh), Scene(options.mesh)))
+    whole = has_camera(options.scene)
+    scene = load(options.scene).scene if whole else Scene(options.scene)
+    print(described(str(options.scene), scene))
 
 
 def _report_accelerators(options: argparse.Namespace) -> None:
@@ -101,10 +108,10 @@ def _report_convergence(options: argparse.Namespace) -> None:
     from .report import convergence
 
     _check_plot(options)
-    scene, camera = _scene(options)
+    shot = _shot(options)
     report = convergence(
-        scene,
-        camera,
+        shot.scene,
+        shot.camera,
         seconds=options.seconds,
         reference=options.reference,
         seeds=options.seeds,
@@ -113,11 +120,20 @@ def _report_convergence(options: argparse.Namespace) -> None:
     _tell_report(report, options)
 
 
-def _scene(options: argparse.Namespace) -> tuple[Scene, Camera]:
-    """Return what SCENE names: a mesh file in a studio, or the Cornell box."""
+def _shot(options: argparse.Namespace) -> Shot:
+    """Return what SCENE names: a file's own shot, a mesh file in a studio, or the Cornell box."""
+    size = options.width or WIDTH, options.height or HEIGHT
     if options.scene == CORNELL:
-        return cornell_box(width=options.width, height=options.height)
-    return studio(load(options.scene), options.up, options.width, options.height)
+        return Shot(*cornell_box(None, *size))
+    if has_camera(options.scene):
+        return load(options.scene).resized(options.width, options.height)
+    return Shot(*studio(load_meshes(options.scene), options.up, *size))
+
+
+def _how(options: argparse.Namespace, shot: Shot) -> dict[str, Any]:
+    """Return what options say of a render."""
+    how = {name: getattr(options, name) for name in _HOW}
+    return {**how, "seed": shot.seed if options.seed is None else options.seed}
 
 
 def _check_plot(options: argparse.Namespace) -> None:
@@ -146,9 +162,8 @@ def _check_matplotlib() -> None:
     matplotlib.use("Agg")
 
 
-def _picture(scene: Scene, camera: Camera, options: argparse.Namespace) -> None:
-    how = {name: getattr(options, name) for name in _HOW}
-    image = render(scene, camera, **how, progress=not options.quiet, checkpoint=options.checkpoint)
+def _picture(shot: Shot, options: argparse.Namespace) -> None:
+    image = shot.render(**_how(options, shot), progress=not options.quiet, checkpoint=options.checkpoint)
     image.save(options.output)
     if not options.quiet:
         _tell(image, options.output)
@@ -189,17 +204,16 @@ def _parser() -> argparse.ArgumentParser:
     demo.set_defaults(run=_demo)
     _add_picture(demo, "cornell.png", f"{DEMO_SECONDS:g} seconds", width=512, height=512)
 
-    one = verbs.add_parser("render", help="frame, light and render a mesh file")
+    one = verbs.add_parser("render", help="render a scene, or a mesh file, which is framed and lit")
     one.set_defaults(run=_render)
-    one.add_argument("mesh", metavar="MESH", help="any mesh file: PLY, OBJ, STL, GLB, ...")
-    one.add_argument("--up", choices=("y", "z"), default="y", help="axis that points up (default: y)")
-    _add_picture(one, None, "64 samples", width=640, height=480)
+    _add_scene(one)
+    _add_picture(one, None, "64 samples, or as many as the scene's own file says")
 
     _add_view(verbs.add_parser("view", help="show a scene in the browser while it renders"))
 
-    info = verbs.add_parser("info", help="tell what a mesh file holds, and what its accelerator looks like")
+    info = verbs.add_parser("info", help="tell what a file holds, and what its accelerator looks like")
     info.set_defaults(run=_info)
-    info.add_argument("mesh", metavar="MESH", help="any mesh file: PLY, OBJ, STL, GLB, ...")
+    info.add_argument("scene", metavar="SCENE", help=_SCENES)
 
     report = verbs.add_parser("report", help="compare what the library has for the same task")
     reports = report.add_subparsers(title="reports", dest="report", metavar="REPORT", required=True)
@@ -223,14 +237,14 @@ def _add_view(verb: argparse.ArgumentParser) -> None:
         help="where on 127.0.0.1 to serve the page (default: any that is free)",
     )
     verb.add_argument("--open", action="store_true", help="open a browser")
-    _add_limits(verb, "to a relMSE of 0.0001", width=640, height=480)
+    _add_limits(verb, "to a relMSE of 0.0001")
 
 
 def _add_scene(verb: argparse.ArgumentParser) -> None:
+    verb.add_argument("scene", metavar="SCENE", help=f"{_SCENES}; or {CORNELL!r}")
     verb.add_argument(
-        "scene", metavar="SCENE", help=f"any mesh file, framed and lit as by render, or {CORNELL!r}"
+        "--up", choices=("y", "z"), default="y", help="axis that points up in a mesh file (default: y)"
     )
-    verb.add_argument("--up", choices=("y", "z"), default="y", help="axis that points up (default: y)")
 
 
 def _add_accelerators(report: argparse.ArgumentParser) -> None:
@@ -313,7 +327,11 @@ def _accelerators(text: str) -> dict[str, Accelerator]:
 
 
 def _add_picture(
-    verb: argparse.ArgumentParser, output: str | None, limit: str, width: int, height: int
+    verb: argparse.ArgumentParser,
+    output: str | None,
+    limit: str,
+    width: int | None = None,
+    height: int | None = None,
 ) -> None:
     told = " (default: %(default)s)"
     verb.add_argument(
@@ -331,7 +349,9 @@ def _add_picture(
     verb.add_argument("--quiet", action="store_true", help="print nothing but errors")
 
 
-def _add_limits(verb: argparse.ArgumentParser, limit: str, width: int, height: int) -> None:
+def _add_limits(
+    verb: argparse.ArgumentParser, limit: str, width: int | None = None, height: int | None = None
+) -> None:
     """Add when a render ends, and how it is done."""
     told = " (default: %(default)s)"
     limits = verb.add_argument_group(
@@ -341,10 +361,14 @@ def _add_limits(verb: argparse.ArgumentParser, limit: str, width: int, height: i
     limits.add_argument("--error", metavar="E", type=_number(float), help="estimated relMSE of the picture")
     limits.add_argument("--seconds", metavar="S", type=_number(float), help="run time")
     size = _number(int, 1, 65536)
-    verb.add_argument("--width", metavar="W", type=size, default=width, help="pixels" + told)
-    verb.add_argument("--height", metavar="H", type=size, default=height, help="pixels" + told)
+    own = f" (default: the scene's own, and of a mesh file {WIDTH} x {HEIGHT})"
+    for name, letter, default in (("width", "W", width), ("height", "H", height)):
+        told_size = told if default is not None else own
+        verb.add_argument(f"--{name}", metavar=letter, type=size, default=default, help="pixels" + told_size)
     verb.add_argument("--threads", metavar="N", type=_number(int, 1), help="threads (default: all cores)")
-    verb.add_argument("--seed", metavar="N", type=_number(int, 0, 2**64 - 1), default=0, help="seed" + told)
+    verb.add_argument(
+        "--seed", metavar="N", type=_number(int, 0, 2**64 - 1), help="seed (default: the scene's own, or 0)"
+    )
     verb.add_argument(
         "--adaptive", action="store_true", help="more samples where more of the estimated error is"
     )

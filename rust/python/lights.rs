@@ -12,8 +12,8 @@ use crate::math::DVec3;
 use crate::optics::Rgb;
 
 use crate::scene::{
-    ConstantEnvironment, DirectionalLight, Emission, EnvironmentMap, Light, Picture, PointLight, Projector, SpotLight,
-    SunSky,
+    ConstantEnvironment, DirectionalLight, Emission, EnvironmentMap, Light, Picture, PointLight, Profile, Projector,
+    SpotLight, SunSky,
 };
 
 /// `raywright.PointLight`.
@@ -31,6 +31,7 @@ struct PySpot {
     intensity: [f64; 3],
     angle: f64,
     falloff: f64,
+    profile: String,
 }
 
 /// `raywright.DirectionalLight`.
@@ -93,10 +94,11 @@ pub fn read(light: &Bound<'_, PyAny>) -> PyResult<Arc<dyn Light>> {
             Arc::new(PointLight { position: vector(position), intensity: rgb(intensity) })
         }
         "SpotLight" => {
-            let PySpot { position, target, intensity, angle, falloff } = light.extract()?;
+            let PySpot { position, target, intensity, angle, falloff, profile } = light.extract()?;
             let position = vector(position);
             let (angle, falloff) = (angle.to_radians(), falloff.to_radians());
-            Arc::new(SpotLight::new(position, vector(target) - position, rgb(intensity), angle, falloff))
+            let spot = SpotLight::new(position, vector(target) - position, rgb(intensity), angle, falloff);
+            Arc::new(spot.with_profile(if profile == "linear" { Profile::Linear } else { Profile::Smooth }))
         }
         "DirectionalLight" => {
             let PyDirectional { direction, irradiance } = light.extract()?;

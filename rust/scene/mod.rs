@@ -35,7 +35,7 @@ pub use group::Group;
 pub use interaction::{Interaction, Scattered, Scatters};
 pub use lights::{
     ConstantEnvironment, DirectionalLight, Emission, EnvironmentMap, Light, LightBounds, LightSample, Lights, Picture,
-    PointLight, Projector, Reach, Receiver, SpotLight, SunSky,
+    PointLight, Profile, Projector, Reach, Receiver, SpotLight, SunSky,
 };
 pub use materials::{DiffuseMaterial, Material};
 pub use plan::{Kernel, Plan, PlanRow, SceneNeeds};

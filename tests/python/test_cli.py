@@ -129,7 +129,7 @@ def test_failures_are_one_line_and_status_1(ball, tmp_path, arguments, message):
     [
         ([], "the following arguments are required: VERB"),
         (["fly"], ".*invalid choice: '?fly'?.*"),
-        (["info"], "the following arguments are required: MESH"),
+        (["info"], "the following arguments are required: SCENE"),
         (["render", "ball.ply"], "the following arguments are required: -o/--output"),
         (
             ["render", "ball.ply", "-o", "a.png", "--samples", "0"],

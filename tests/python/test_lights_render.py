@@ -36,8 +36,8 @@ def assert_irradiance(found, expected, slack=1e-5):
 
 
 def test_spots_light_their_cone():
-    def lit(angle, falloff=0.0, target=(0, 0, 0)):
-        spot = rw.SpotLight((0, 0, 2), target, 12, angle=angle, falloff=falloff)
+    def lit(angle, falloff=0.0, target=(0, 0, 0), profile="smooth"):
+        spot = rw.SpotLight((0, 0, 2), target, 12, angle=angle, falloff=falloff, profile=profile)
         return floor_irradiance(samples=2, lights=[spot])
 
     assert_irradiance(lit(10), 3)
@@ -47,6 +47,8 @@ def test_spots_light_their_cone():
     assert lit(29, target=aside)[0] == 0
     half = math.degrees(math.acos(2 * math.cos(math.radians(30)) - math.cos(math.radians(10))))
     assert_irradiance(lit(half, half - 10, target=aside), 1.5)
+    # A quarter of the way in, in degrees.
+    assert_irradiance(lit(35, 20, target=aside, profile="linear"), 0.75)
 
 
 def test_directional_light_brings_its_irradiance():

@@ -16,7 +16,7 @@ PICTURE = np.arange(24, dtype=np.float32).reshape(2, 4, 3)
 NOON = datetime(2024, 6, 20, 12, tzinfo=timezone.utc)
 
 VALUES = [
-    rw.SpotLight((1, 2, 3), (0, 0, 0), 4, angle=40, falloff=10),
+    rw.SpotLight((1, 2, 3), (0, 0, 0), 4, angle=40, falloff=10, profile="linear"),
     rw.DirectionalLight((0, 0, -2), (1, 2, 3)),
     rw.ProjectorLight(PICTURE, (0, 0, 5), (0, 0, 0), fov=50, intensity=2),
     rw.EnvironmentMap(PICTURE, scale=3),
@@ -53,6 +53,7 @@ def test_pictures_are_kept_read_only_and_grey_ones_become_colours():
         (rw.SpotLight, {"angle": 90.1}, ValueError, "angle must be above 0 and at most 90 degrees"),
         (rw.SpotLight, {"angle": math.nan}, ValueError, "angle must be finite, got nan"),
         (rw.SpotLight, {"falloff": 31}, ValueError, "falloff must be between 0 and angle = 30 degrees"),
+        (rw.SpotLight, {"profile": "steep"}, ValueError, "profile must be one of 'smooth', 'linear', got"),
         (rw.SpotLight, {"falloff": -1}, ValueError, "falloff must be between 0 and angle"),
         (rw.SpotLight, {"target": (1, 0, 0)}, ValueError, "target must differ from position"),
         (rw.SpotLight, {"intensity": -1}, ValueError, "intensity must be at least 0, got -1"),

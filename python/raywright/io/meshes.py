@@ -89,6 +89,33 @@ def load(path: str | PathLike[str]) -> tuple[Mesh, ...]:
     return tuple(map(_joined, result)) if name.endswith((".stl", ".stl_ascii")) else result
 
 
+def load_whole(path: Path, kind: str) -> Mesh:
+    """Read all of an OBJ or PLY file as one mesh, with its normals and coordinates but not its looks.
+
+    Raises
+    ------
+    FileNotFoundError
+        If the file is missing.
+    ValueError
+        If the file is not a mesh that can be read, or holds no faces.
+    """
+    import trimesh
+
+    how: dict[str, Any] = {"group_material": False, "skip_materials": True} if kind == "obj" else {}
+    try:
+        check_mesh_file(path)
+        with quiet(), open(path, "rb") as file:
+            found = trimesh.load(file, file_type=kind, process=False, **how)
+            parts = tuple(_of_scene(found)) if hasattr(found, "geometry") else (_of_trimesh(found, True),)
+    except (MemoryError, OSError):
+        raise
+    except Exception as error:
+        raise ValueError(f"{path} is not a mesh that can be read ({reason(error)})") from error
+    if len(parts) != 1 or not len(parts[0].faces):
+        raise ValueError(f"{path} holds no faces")
+    return parts[0]
+
+
 def _read(path: Path) -> tuple[Mesh, ...]:
     import trimesh
 

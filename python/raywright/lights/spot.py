@@ -1,15 +1,18 @@
 """A point that shines into a cone."""
 
 from dataclasses import dataclass
+from typing import Literal, TypeAlias, get_args
 
 from numpy.typing import ArrayLike
 
-from ..arrays import Triple, colour, number, triple
+from ..arrays import Triple, choice, colour, number, triple
+
+Profile: TypeAlias = Literal["smooth", "linear"]
 
 
 @dataclass(frozen=True, init=False)
 class SpotLight:
-    """A point that shines into a cone, evenly in its middle and smoothly falling off to its rim.
+    """A point that shines into a cone, evenly in its middle and falling off to its rim.
 
     Parameters
     ----------
@@ -22,13 +25,15 @@ class SpotLight:
     angle : float
         Angle between the axis and the rim in degrees, above 0 and at most 90.
     falloff : float
-        Over how many degrees, inwards from the rim, it falls off: 0 to `angle`. The cosine to the axis goes
-        through the cubic ``x² (3 - 2x)``, as level at both ends as can be.
+        Over how many degrees, inwards from the rim, it falls off: 0 to `angle`.
+    profile : {"smooth", "linear"}
+        How: "smooth" takes the cosine to the axis through the cubic ``x² (3 - 2x)``, as level at both ends as
+        can be; "linear" goes evenly with the angle to the axis.
 
     Raises
     ------
     ValueError
-        If a number is out of its range or not finite, or `target` is `position`.
+        If a number is out of its range or not finite, `target` is `position`, or `profile` is none of those.
     TypeError
         If something is not a number.
     """
@@ -38,6 +43,7 @@ class SpotLight:
     intensity: Triple
     angle: float
     falloff: float
+    profile: Profile
 
     def __init__(
         self,
@@ -46,13 +52,16 @@ class SpotLight:
         intensity: ArrayLike,
         angle: float = 30.0,
         falloff: float = 5.0,
+        profile: Profile = "smooth",
     ) -> None:
+        choice("profile", profile, get_args(Profile))
         values = {
             "position": triple("position", position),
             "target": triple("target", target),
             "intensity": colour("intensity", intensity),
             "angle": number("angle", angle),
             "falloff": number("falloff", falloff),
+            "profile": profile,
         }
         for name, value in values.items():
             object.__setattr__(self, name, value)

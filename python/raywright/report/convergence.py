@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..arrays import integer, positive
-from ..cameras import Camera
+from ..cameras import AnyCamera
 from ..image import Image
 from ..rendering import render
 from ..scene import Scene
@@ -80,7 +80,7 @@ class ConvergenceReport(Table[tuple[Any, ...]]):
 
 def convergence(
     scene: Scene,
-    camera: Camera,
+    camera: AnyCamera,
     contenders: Mapping[str, Any] | None = None,
     seconds: float = 4.0,
     reference: Image | ArrayLike | float | None = None,
@@ -183,7 +183,7 @@ def _rotated(names: list[str], turn: int) -> list[str]:
 
 
 def _reference(
-    scene: Scene, camera: Camera, reference: Any, way: dict[str, Any]
+    scene: Scene, camera: AnyCamera, reference: Any, way: dict[str, Any]
 ) -> tuple[NDArray[np.float64] | None, float]:
     """Return the right picture, and its own relMSE as far as that is known."""
     if reference is None:
@@ -243,7 +243,7 @@ def _cost(mine: Table[Any]) -> float | None:
 
 
 def _report(
-    camera: Camera, rows: list[tuple[Any, ...]], names: list[str], seeds: int, against: bool, doubt: float
+    camera: AnyCamera, rows: list[tuple[Any, ...]], names: list[str], seeds: int, against: bool, doubt: float
 ) -> ConvergenceReport:
     columns = (
         Column("contender", "contender"),

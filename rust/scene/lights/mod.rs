@@ -33,7 +33,7 @@ pub use point::PointLight;
 pub use projector::Projector;
 pub use receiver::Receiver;
 pub use sky::SunSky;
-pub use spot::SpotLight;
+pub use spot::{Profile, SpotLight};
 pub use tree::LightTree;
 
 use super::Geometry;

@@ -6,7 +6,16 @@ use crate::math::DVec3;
 use crate::optics::{Rgb, is_radiance};
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// A light without extent that shines into a cone: evenly in its middle, then falling off smoothly to its rim.
+/// How light falls off towards the rim of a cone.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Profile {
+    /// A cubic of the cosine to the axis, with level ends.
+    Smooth,
+    /// Evenly with the angle to the axis.
+    Linear,
+}
+
+/// A light without extent that shines into a cone: evenly in its middle, then falling off to its rim.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpotLight {
     position: DVec3,
@@ -16,6 +25,7 @@ pub struct SpotLight {
     cosines: [f64; 2],
     angle: f64,
     falloff: f64,
+    profile: Profile,
 }
 
 impl SpotLight {
@@ -25,20 +35,30 @@ impl SpotLight {
         let axis = (axis / axis.abs().max_element()).normalize();
         // A cosine of next to nothing is 0 at a right angle: what is in its plane is not lit.
         let cosine = |a: f64| if a >= FRAC_PI_2 { 0.0 } else { a.cos() };
-        Self { position, axis, intensity, cosines: [cosine(angle - falloff), cosine(angle)], angle, falloff }
+        let cosines = [cosine(angle - falloff), cosine(angle)];
+        Self { position, axis, intensity, cosines, angle, falloff, profile: Profile::Smooth }
     }
 
-    /// The share of the intensity along a unit direction: a cubic of the cosine with level ends.
+    /// The same spot, falling off in another way.
+    pub fn with_profile(self, profile: Profile) -> Self {
+        Self { profile, ..self }
+    }
+
+    /// The share of the intensity along a unit direction.
     fn share(&self, direction: DVec3) -> f64 {
         let cosine = self.axis.dot(direction);
         let [inner, outer] = self.cosines;
         if cosine <= outer {
-            0.0
+            return 0.0;
         } else if cosine >= inner {
-            1.0
-        } else {
-            let x = (cosine - outer) / (inner - outer);
-            x * x * (3.0 - 2.0 * x)
+            return 1.0;
+        }
+        match self.profile {
+            Profile::Smooth => {
+                let x = (cosine - outer) / (inner - outer);
+                x * x * (3.0 - 2.0 * x)
+            }
+            Profile::Linear => ((self.angle - cosine.clamp(-1.0, 1.0).acos()) / self.falloff).clamp(0.0, 1.0),
         }
     }
 }
@@ -58,11 +78,18 @@ impl Light for SpotLight {
         }
     }
 
-    /// The power is exact: of the falloff, which is odd about its middle, the mean over cosines is a half.
+    /// The power is exact. Of the smooth falloff, which is odd about its middle, the mean over cosines is a half; of the linear
+    /// one, ∫ (b − θ) / (b − a) sin θ dθ from a to b is cos a less the mean of cos θ.
     fn reach(&self) -> Reach {
         let intensity = strength(self.intensity);
         let [inner, outer] = self.cosines;
-        let power = 2.0 * PI * intensity * (1.0 - inner + 0.5 * (inner - outer));
+        let falling = match self.profile {
+            Profile::Linear if self.falloff > 0.0 => {
+                inner - (self.angle.sin() - (self.angle - self.falloff).sin()) / self.falloff
+            }
+            _ => 0.5 * (inner - outer),
+        };
+        let power = 2.0 * PI * intensity * (1.0 - inner + falling);
         Reach::Inside { power, bounds: LightBounds::within(self.position, self.axis, self.angle, intensity) }
     }
 

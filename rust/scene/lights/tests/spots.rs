@@ -1,6 +1,8 @@
 //! Lights without extent: their power, and what of them cannot be.
 
-use super::super::{DirectionalLight, Light, LightSample, Picture, PointLight, Projector, Reach, Receiver, SpotLight};
+use super::super::{
+    DirectionalLight, Light, LightSample, Picture, PointLight, Profile, Projector, Reach, Receiver, SpotLight,
+};
 use super::{FLOOR, white};
 use crate::math::DVec3;
 use crate::optics::Rgb;
@@ -39,6 +41,9 @@ fn powers_are_the_integrals_of_intensities() {
         let (sum, told) = (power(&light), told_power(&light));
         // The grid's own error at a sharp rim.
         assert!((sum / told - 1.0).abs() < 5e-3, "{angle} {falloff}: {sum} {told}");
+        let light = light.with_profile(Profile::Linear);
+        let (sum, told) = (power(&light), told_power(&light));
+        assert!((sum / told - 1.0).abs() < 5e-3, "linear, {angle} {falloff}: {sum} {told}");
     }
     // A hemisphere, exactly: 2π I.
     assert!((told_power(&spot(90.0, 0.0)) - 4.0 * PI).abs() < 1e-12);
@@ -66,6 +71,14 @@ fn a_spot_shines_within_its_cone_and_falls_off_between() {
     assert!((at(middle) - 0.5).abs() < 1e-12);
     let falling: Vec<f64> = (0..=100).map(|i| at(0.4 + 0.002 * f64::from(i))).collect();
     assert!(falling.windows(2).all(|pair| pair[0] >= pair[1]));
+    // In angles, evenly.
+    let straight = light.with_profile(Profile::Linear);
+    for (angle, share) in [(0.0, 1.0), (0.4, 1.0), (0.45, 0.75), (0.5, 0.5), (0.59, 0.05), (0.61, 0.0)] {
+        let receiver = Receiver::free(DVec3::new(f64::tan(angle), 0.0, 0.0));
+        let square = 1.0 + f64::tan(angle).powi(2);
+        let found = straight.sample(&receiver, [0.5; 2]).map_or(0.0, |sample| sample.weight.y * square);
+        assert!((found - share).abs() < 1e-12, "{angle}: {found}");
+    }
     // Behind the light, and at it.
     assert!(light.sample(&Receiver::free(DVec3::Z * 2.0), [0.5; 2]).is_none());
     assert!(light.sample(&Receiver::free(DVec3::Z), [0.5; 2]).is_none());

@@ -1,0 +1,5 @@
+"""Scenes in the format of Mitsuba 3, as XML files and as the dicts of its Python interface."""
+
+from .scene import from_mitsuba
+
+__all__ = ["from_mitsuba"]

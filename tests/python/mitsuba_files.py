@@ -1,0 +1,50 @@
+"""The files that the scenes of `mitsuba_scenes` name: pictures and meshes."""
+
+import numpy as np
+from PIL import Image
+
+
+def write_files(folder):
+    """Write the files that the scenes name."""
+    rng = np.random.default_rng(7)
+    Image.fromarray(rng.integers(20, 235, (6, 9, 3), np.uint8)).save(folder / "colours.png")
+    y, x = np.meshgrid(*2 * [(np.arange(32) + 0.5) / 32], indexing="ij")
+    bumps = 0.5 + 0.5 * np.sin(4 * np.pi * x) * np.sin(2 * np.pi * y)
+    Image.fromarray(np.uint8(np.round(255 * bumps))).save(folder / "bumps.png")
+    tilted = np.stack([0.3 * np.sin(2 * np.pi * x), 0.3 * np.cos(4 * np.pi * y) * x, np.ones_like(x)], -1)
+    tilted /= np.linalg.norm(tilted, axis=-1, keepdims=True)
+    Image.fromarray(np.uint8(np.round(127.5 * (tilted + 1)))).save(folder / "normals.png")
+    # Radiance's format: three mantissas and the exponent that they share.
+    mantissas = rng.integers(30, 256, (8, 16, 3), np.uint8)
+    exponents = rng.integers(126, 130, (8, 16, 1), np.uint8)
+    rows = np.concatenate([mantissas, exponents], -1).tobytes()
+    (folder / "around.hdr").write_bytes(b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 8 +X 16\n" + rows)
+    (folder / "bowl.obj").write_text(bowl())
+    (folder / "gem.ply").write_text(gem())
+
+
+def bowl(around=60, along=24):
+    """Part of a sphere as an OBJ, of quadrilaterals with coordinates, smooth, its seam open."""
+    lines, faces = [], []
+    for i in range(along + 1):
+        for j in range(around + 1):
+            u, v = j / around, i / along
+            polar, turn = np.pi * (0.3 + 0.6 * v), 2 * np.pi * u
+            point = (np.sin(polar) * np.cos(turn), np.sin(polar) * np.sin(turn), np.cos(polar) + 1)
+            lines += ["v {:.6f} {:.6f} {:.6f}".format(*point), f"vt {2 * u:.6f} {v:.6f}"]
+    for i in range(along):
+        for j in range(around):
+            a = i * (around + 1) + j + 1
+            corners = (a, a + around + 1, a + around + 2, a + 1)
+            faces.append("f " + " ".join(f"{k}/{k}" for k in corners))
+    return "\n".join(lines + faces) + "\n"
+
+
+def gem():
+    """An octahedron as a PLY."""
+    points = [(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1)]
+    faces = [(a, b, c) if (a + b + c) % 2 == 0 else (b, a, c) for a in (0, 1) for b in (2, 3) for c in (4, 5)]
+    header = ["ply", "format ascii 1.0", "element vertex 6", *(f"property float {name}" for name in "xyz")]
+    header += ["element face 8", "property list uchar int vertex_indices", "end_header"]
+    lines = [" ".join(map(str, point)) for point in points] + [f"3 {a} {b} {c}" for a, b, c in faces]
+    return "\n".join(header + lines) + "\n"

@@ -1,0 +1,255 @@
+"""What plugins of Mitsuba stand for, and how those that are not known, or only nearly, are told of."""
+
+import re
+import warnings
+
+import numpy as np
+import pytest
+
+import raywright as rw
+from raywright.scenes import cornell_spectra
+
+EYE = {"type": "perspective", "film": {"type": "hdrfilm", "width": 8, "height": 4}}
+
+
+def shot(**parts):
+    return rw.from_mitsuba({"type": "scene", "sensor": EYE, **parts})
+
+
+def material(bsdf, **shape):
+    return shot(one={"type": "sphere", **shape, "bsdf": bsdf}).scene.shapes[0].material
+
+
+def front(bsdf):
+    """The material of a BSDF that only has a front; what is behind it is black."""
+    both = material(bsdf)
+    assert both.back == rw.Diffuse(0.0)
+    return both.front
+
+
+class Transform:
+    """Stands for mitsuba's own, which have a matrix."""
+
+    def __init__(self, matrix):
+        self.matrix = matrix
+
+
+def test_transforms_are_told_in_any_way():
+    nested = [[0.0, -2.0, 0.0, 1.0], [2.0, 0.0, 0.0, 2.0], [0.0, 0.0, 2.0, 3.0], [0.0, 0.0, 0.0, 1.0]]
+    ways = (nested, np.array(nested), np.array(nested, np.float32), Transform(np.array(nested)))
+    shots = [shot(one={"type": "sphere", "to_world": way}) for way in ways]
+    assert all(one == shots[0] for one in shots)
+    assert (shots[0].scene.shapes[0].transform == nested).all()
+
+
+def test_matrices_of_few_digits_are_straightened():
+    rough = [[-0.224951, -1e-6, -0.97437, 0], [-0.97437, 0, 0.224951, 0], [0, 1, -1e-6, 8.87], [0, 0, 0, 1]]
+    read = shot(sky={"type": "envmap", "bitmap": np.ones((2, 4, 3), np.float32), "to_world": rough})
+    turned = read.scene.environment.to_world
+    assert np.allclose(turned @ turned.T, np.eye(3), rtol=0, atol=1e-15)
+    assert np.allclose(turned @ np.diag([-1, 1, -1]), np.array(rough)[:3, :3], rtol=0, atol=2e-6)
+    skewed = [[1, 0.1, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]
+    with pytest.raises(ValueError, match="perspective 'sensor': to_world must turn, move and scale only"):
+        rw.from_mitsuba({"type": "scene", "sensor": {**EYE, "to_world": skewed}})
+
+
+def test_what_is_not_given_is_as_mitsuba_has_it():
+    bare = rw.from_mitsuba({"type": "scene", "sensor": {"type": "perspective"}, "s": {"type": "sphere"}})
+    assert (bare.camera.width, bare.camera.height) == (768, 576)
+    # 50 mm on a film of 36 by 24 mm.
+    assert bare.camera.fov_axis == "diagonal"
+    assert np.isclose(np.tan(np.radians(bare.camera.fov / 2)), np.hypot(36, 24) / 100, rtol=1e-15)
+    assert bare.filter == rw.GaussianFilter(radius=2.0, sigma=0.5)
+    assert (bare.samples, bare.seed, bare.integrator) == (4, 0, rw.Path(None, 4))
+    assert bare.scene.shapes == (rw.Sphere(material=rw.TwoSided(rw.Diffuse(0.5), rw.Diffuse(0.0))),)
+    assert front({"type": "plastic"}).ior == 1.49 / 1.000277
+    assert material({"type": "dielectric"}) == rw.Dielectric(1.5046 / 1.000277, alpha=0)
+    assert material({"type": "thindielectric"}) == rw.ThinDielectric(1.5046 / 1.000277)
+    assert front({"type": "conductor"}) == rw.Mirror(1.0)
+    spot = shot(s={"type": "spot"}).scene.lights[0]
+    assert (spot.angle, spot.falloff, spot.profile, spot.target) == (20, 5, "linear", (0, 0, 1))
+
+
+def test_names_stand_for_metals_and_indices():
+    assert front({"type": "conductor", "material": "Au"}) == rw.Conductor("gold", alpha=0)
+    assert material({"type": "dielectric", "int_ior": "Water", "ext_ior": "vacuum"}).ior == 1.333
+    with pytest.raises(
+        ValueError, match=r"dielectric 'one.bsdf': int_ior must be a number or one of .*diamond"
+    ):
+        material({"type": "dielectric", "int_ior": "treacle"})
+
+
+def test_colours_are_told_in_any_way():
+    def seen(value):
+        return front({"type": "diffuse", "reflectance": value}).reflectance
+
+    assert seen(0.25) == (0.25, 0.25, 0.25)
+    assert seen({"type": "rgb", "value": [0.1, 0.2, 0.3]}) == (0.1, 0.2, 0.3)
+    assert seen({"type": "rgb", "value": "#ff8000"}) == (1.0, 128 / 255, 0.0)
+    assert np.allclose(seen({"type": "srgb", "color": "#ff8000"}), (1.0, 0.2158605, 0.0), rtol=0, atol=1e-7)
+    assert seen({"type": "spectrum", "value": 0.5}) == (0.5, 0.5, 0.5)
+    with pytest.warns(RuntimeWarning, match="spectra by wavelength are approximated"):
+        even = seen({"type": "spectrum", "value": [(300, 0.5), (900, 0.5)]})
+    assert np.allclose(even, 0.5, rtol=0, atol=1e-12)
+    # The walls of the Cornell box, as Mitsuba (3.9) has them.
+    walls = {
+        "_WHITE": (0.7350, 0.7356, 0.7363),
+        "_RED": (0.4913, 0.0492, 0.0509),
+        "_GREEN": (0.0683, 0.3978, 0.0863),
+    }
+    for name, expected in walls.items():
+        measured = list(
+            zip(range(400, 701, 4), map(float, getattr(cornell_spectra, name).split()), strict=True)
+        )
+        with pytest.warns(RuntimeWarning):
+            wall = seen({"type": "spectrum", "value": measured})
+        assert np.allclose(wall, expected, rtol=0, atol=4e-3)
+    # Light that is even over wavelengths is reddish: white is D65.
+    lamp = shot(one={"type": "constant", "radiance": {"type": "spectrum", "value": 2.0}}).scene.environment
+    assert np.allclose(lamp.radiance, 2 * np.array([1.2047939, 0.948291, 0.908916]), rtol=0, atol=2e-6)
+    d65 = shot(one={"type": "constant", "radiance": {"type": "d65", "scale": 2.0}}).scene.environment
+    assert d65 == rw.ConstantEnvironment(2.0)
+
+
+def test_the_base_of_plastic_gives_what_it_does_in_mitsuba():
+    """Without ``nonlinear`` r / (1 - F) of it gets out, and so the base here has another reflectance."""
+    within = rw.io.mitsuba.coats.smooth(1.5)
+    # Duntley (1942).
+    assert abs(within - 0.5963) < 1e-4
+    base = front({"type": "plastic", "int_ior": 1.5, "ext_ior": 1.0, "diffuse_reflectance": 0.4}).reflectance[
+        0
+    ]
+    assert np.isclose(base / (1 - base * within), 0.4 / (1 - within), rtol=1e-12)
+    plain = {"type": "plastic", "nonlinear": True, "diffuse_reflectance": 0.4}
+    assert front(plain).reflectance == (0.4, 0.4, 0.4)
+
+
+def test_inside_out_shapes_have_their_front_within():
+    matt = {"type": "diffuse", "reflectance": 0.3}
+    assert material(matt, flip_normals=True) == rw.TwoSided(rw.Diffuse(0.0), rw.Diffuse(0.3))
+    mirrored = np.diag([-1.0, 1, 1, 1])
+    assert material(matt, to_world=mirrored) == material(matt, flip_normals=True)
+    assert material(matt, to_world=mirrored, flip_normals=True) == material(matt)
+    glass = material({"type": "dielectric", "int_ior": 2.0, "ext_ior": 1.0}, flip_normals=True)
+    assert glass.ior == 0.5
+
+
+def test_copies_of_a_group_are_one_instance():
+    group = {"type": "shapegroup", "one": {"type": "sphere"}, "two": {"type": "cube"}}
+    there = [np.diag([2.0, 2, 2, 1]), np.diag([1.0, 1, 3, 1])]
+    copies = {
+        f"c{i}": {"type": "instance", "to_world": m, "g": {"type": "ref", "id": "group"}}
+        for i, m in enumerate(there)
+    }
+    (instance,) = shot(group=group, **copies).scene.shapes
+    assert (instance.transform == there).all()
+    assert [type(one) for one in instance.shapes] == [rw.Sphere, rw.Mesh]
+
+
+def test_integrators_samplers_and_filters():
+    def read(integrator=None, sampler=None, rfilter=None):
+        eye = {**EYE, "film": {"type": "hdrfilm", **({"f": rfilter} if rfilter else {})}}
+        eye |= {"s": sampler} if sampler else {}
+        return rw.from_mitsuba({"type": "scene", "e": eye, **({"i": integrator} if integrator else {})})
+
+    assert read({"type": "path", "max_depth": 5, "rr_depth": 3}).integrator == rw.Path(4, 2)
+    assert read({"type": "volpath", "max_depth": -1}).integrator == rw.Path(None, 4)
+    assert read({"type": "direct", "emitter_samples": 2}).integrator == rw.Direct(2, 1)
+    assert read({"type": "ao", "shading_samples": 4, "ray_length": 2.0}).integrator == rw.AmbientOcclusion(
+        2.0, samples=4
+    )
+    seen = read({"type": "aov", "aovs": "d:depth, n:sh_normal", "img": {"type": "direct"}})
+    assert (seen.aov, seen.integrator) == (("depth", "shading_normal"), rw.Direct())
+    assert read(sampler={"type": "ldsampler", "sample_count": 32, "seed": 7}).sampler == rw.Sobol()
+    counted = read(sampler={"type": "multijitter", "sample_count": 32, "seed": 7})
+    assert (counted.sampler, counted.samples, counted.seed) == (rw.Stratified(), 32, 7)
+    assert read(rfilter={"type": "tent"}).filter == rw.TriangleFilter(1.0)
+    assert read(rfilter={"type": "gaussian", "stddev": 0.25}).filter == rw.GaussianFilter(1.0, 0.25)
+    assert read(rfilter={"type": "mitchell", "B": 0.5}).filter == rw.MitchellFilter(2.0, 0.5, 1 / 3)
+    assert read(rfilter={"type": "catmullrom"}).filter == rw.MitchellFilter(2.0, 0.0, 0.5)
+    assert read(rfilter={"type": "lanczos"}).filter == rw.LanczosFilter(3)
+
+
+def test_a_part_of_a_film_sees_what_the_whole_does_there():
+    film = {"type": "hdrfilm", "width": 12, "height": 8}
+    part = {**film, "crop_width": 5, "crop_height": 3, "crop_offset_x": 2, "crop_offset_y": 4}
+    middle = {**film, "crop_width": 6, "crop_height": 4, "crop_offset_x": 3, "crop_offset_y": 2}
+    turned = [[0.6, 0, 0.8, 1], [0, 1, 0, 2], [-0.8, 0, 0.6, 3], [0, 0, 0, 1]]
+    for kind, crop in (("perspective", part), ("orthographic", part), ("thinlens", middle)):
+        eye = {"type": kind, "to_world": turned, "film": film}
+        eye |= {"aperture_radius": 0.1, "focus_distance": 3.0} if kind == "thinlens" else {}
+        eye |= {"fov": 50.0} if kind != "orthographic" else {}
+        whole, cut = (
+            rw.from_mitsuba({"type": "scene", "e": {**eye, "film": one}}).camera for one in (film, crop)
+        )
+        rows = slice(crop["crop_offset_y"], crop["crop_offset_y"] + crop["crop_height"])
+        columns = slice(crop["crop_offset_x"], crop["crop_offset_x"] + crop["crop_width"])
+        for mine, all_of_it in zip(cut.rays(), whole.rays(), strict=True):
+            assert np.allclose(mine, all_of_it[rows, columns], rtol=0, atol=1e-12), kind
+
+
+@pytest.mark.parametrize(
+    ("parts", "told"),
+    [
+        ({"m": {"type": "homogeneous"}}, "scene: homogeneous 'm' is not supported here"),
+        ({"s": {"type": "sphere", "b": {"type": "hair"}}}, "sphere 's': hair 'b' is not supported here"),
+        ({"s": {"type": "sphere", "colour": 1}}, "sphere 's': parameter 'colour' is not supported"),
+        ({"s": {"type": "sphere", "radius": -1.0}}, "sphere 's': radius must be greater than 0"),
+        (
+            {"s": {"type": "sphere", "to_world": [[1]]}},
+            "sphere 's': to_world must be a matrix of shape (4, 4)",
+        ),
+        ({"s": {"type": "sphere", "b": {"type": "ref", "id": "x"}}}, "there is nothing of id 'x'"),
+        (
+            {"s": {"type": "sphere", "b": {"type": "twosided", "i": {"type": "dielectric", "tint": 1}}}},
+            "dielectric 's.b.i': parameter 'tint' is not supported",
+        ),
+        (
+            {"s": {"type": "sphere", "b": {"type": "diffuse", "reflectance": 1.5}}},
+            "diffuse 's.b': reflectance must be between 0 and 1",
+        ),
+        (
+            {"s": {"type": "sphere", "b": {"type": "diffuse", "reflectance": {"type": "volume"}}}},
+            "volume 's.b.reflectance': this kind of texture is not supported",
+        ),
+        (
+            {"s": {"type": "sphere", "flip_normals": True, "e": {"type": "area"}}},
+            "sphere 's': an emitter on the inside is not supported",
+        ),
+        ({"e": {"type": "spot", "texture": {"type": "bitmap"}}}, "spot 'e': a texture is not supported"),
+        ({"e": {"type": "constant", "radiance": {"type": "blackbody"}}}, "must be the same everywhere"),
+        ({"i": {"type": "ptracer"}}, "ptracer 'i' is not supported here"),
+        ({"i": {"type": "path", "max_depth": 0}}, "path 'i': max_depth must be -1 or at least 1"),
+        ({"i": {"type": "aov", "aovs": "x:boundary_test"}}, "aov 'i': aovs must be of depth,"),
+        ({"e2": {"type": "distant"}}, "distant 'e2' is not supported here"),
+    ],
+)
+def test_what_is_not_supported_is_refused_by_name(parts, told):
+    with pytest.raises(ValueError, match=re.escape(told)) as caught:
+        shot(**parts)
+    assert "\n" not in str(caught.value)
+
+
+def test_what_is_approximated_is_warned_of_once():
+    rough = {"type": "roughconductor", "alpha": 0.2}
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        shot(a={"type": "sphere", "b": rough}, c={"type": "disk", "b": {**rough, "alpha": 0.3}})
+    assert [str(one.message) for one in caught] == [
+        "roughconductor 'a.b': Beckmann's distribution is approximated by GGX of the same alpha"
+    ]
+    with pytest.warns(RuntimeWarning, match="principled .* is approximated by glTF's"):
+        near = front({"type": "principled", "base_color": 0.3, "metallic": 0.25, "clearcoat": 1.0})
+    assert near == rw.MetallicRough(0.3, 0.25, 0.5)
+
+
+def test_files_that_are_missing_are_told():
+    with pytest.raises(FileNotFoundError) as caught:
+        shot(s={"type": "ply", "filename": "gone.ply"})
+    assert caught.value.filename == "gone.ply"
+    with pytest.raises(FileNotFoundError):
+        rw.load("gone.xml")
+    with pytest.raises(TypeError, match="scene must be a dict or a path, got int"):
+        rw.from_mitsuba(3)
+    with pytest.raises(ValueError, match="there is no sensor 1: it has 1"):
+        rw.from_mitsuba({"type": "scene", "sensor": EYE}, sensor=1)
