@@ -36,7 +36,8 @@ class Transform:
 
 def test_transforms_are_told_in_any_way():
     nested = [[0.0, -2.0, 0.0, 1.0], [2.0, 0.0, 0.0, 2.0], [0.0, 0.0, 2.0, 3.0], [0.0, 0.0, 0.0, 1.0]]
-    ways = (nested, np.array(nested), np.array(nested, np.float32), Transform(np.array(nested)))
+    array = np.array(nested)
+    ways = (nested, array, array.astype(np.float32), Transform(array), Transform(array[..., np.newaxis]))
     shots = [shot(one={"type": "sphere", "to_world": way}) for way in ways]
     assert all(one == shots[0] for one in shots)
     assert (shots[0].scene.shapes[0].transform == nested).all()

@@ -79,13 +79,15 @@ impl Light for SpotLight {
     }
 
     /// The power is exact. Of the smooth falloff, which is odd about its middle, the mean over cosines is a half; of the linear
-    /// one, ∫ (b − θ) / (b − a) sin θ dθ from a to b is cos a less the mean of cos θ.
+    /// one, ∫ (b − θ) / (b − a) sin θ dθ from a to b is cos a less the mean of cos θ, which is written so that it keeps its digits
+    /// however near a and b are.
     fn reach(&self) -> Reach {
         let intensity = strength(self.intensity);
         let [inner, outer] = self.cosines;
         let falling = match self.profile {
             Profile::Linear if self.falloff > 0.0 => {
-                inner - (self.angle.sin() - (self.angle - self.falloff).sin()) / self.falloff
+                let half = 0.5 * self.falloff;
+                inner - (self.angle - half).cos() * half.sin() / half
             }
             _ => 0.5 * (inner - outer),
         };

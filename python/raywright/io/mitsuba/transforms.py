@@ -127,9 +127,11 @@ def straightened(matrix: Matrix) -> Matrix:
 def _array(value: Any) -> Matrix:
     given = getattr(value, "matrix", value)
     try:
-        return np.array(given, dtype=np.float64)
+        array = np.array(given, dtype=np.float64)
     except (TypeError, ValueError):
         raise ValueError(f"must be a matrix, got {type(value).__name__}") from None
+    # Those of Mitsuba's variants that work on many numbers at once are of one.
+    return array[..., 0] if array.ndim == 3 and array.shape[2] == 1 else array
 
 
 def _square(value: Any, size: int) -> Matrix:

@@ -71,6 +71,9 @@ fn a_spot_shines_within_its_cone_and_falls_off_between() {
     assert!((at(middle) - 0.5).abs() < 1e-12);
     let falling: Vec<f64> = (0..=100).map(|i| at(0.4 + 0.002 * f64::from(i))).collect();
     assert!(falling.windows(2).all(|pair| pair[0] >= pair[1]));
+    // A falloff next to nothing takes next to nothing away.
+    let sharp = SpotLight::new(DVec3::Z, DVec3::NEG_Z, Rgb::ONE, 0.6, 1e-15).with_profile(Profile::Linear);
+    assert!((told_power(&sharp) - 2.0 * PI * (1.0 - 0.6f64.cos())).abs() < 1e-12);
     // In angles, evenly.
     let straight = light.with_profile(Profile::Linear);
     for (angle, share) in [(0.0, 1.0), (0.4, 1.0), (0.45, 0.75), (0.5, 0.5), (0.59, 0.05), (0.61, 0.0)] {
