@@ -9,7 +9,8 @@ use crate::scene::{Footprint, Scene};
 /// by its scattering, and ambient light. Nothing is followed further, so that mirrors and glass are black.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RayCast {
-    /// Radiance that arrives from everywhere, unshadowed.
+    /// Radiance that arrives from everywhere, unshadowed. Surfaces reflect their ambient share of it
+    /// ([`Material::ambient`](crate::scene::Material::ambient)).
     pub ambient: Rgb,
     /// Whether what lies on the way to a light shadows it.
     pub shadows: bool,

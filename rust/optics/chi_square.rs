@@ -97,7 +97,7 @@ impl Chart for Facets {
 fn assert_density(bsdf: &Bsdf, wo: DVec3, chart: &impl Chart) {
     let mut counts = vec![0; ROWS * COLUMNS + 1];
     for i in 0..DRAWS {
-        let mut numbers = Sampler::new(17, 0, i);
+        let mut numbers = Sampler::new(18, 0, i);
         let (choice, u) = (numbers.one(2), numbers.two(0));
         let wi = bsdf.sample(wo, || choice, u).filter(|s| s.pdf.is_finite()).map(|s| s.wi);
         let cell = wi.and_then(|wi| chart.cell(wi)).map_or(ROWS * COLUMNS, |[a, b]| {

@@ -26,9 +26,8 @@ impl BatchSize {
     /// The largest batch of which so many samples make eight or more, and 32 where they are many; the default where their number is not
     /// known.
     ///
-    /// The larger, the smaller the error of as many samples: in a Cornell box of 64 samples a pixel, Sobol' batches of
-    /// 8, 16, 32 and 64 leave 0.67, 0.60, 0.53 and 0.48 of the relMSE of independent ones. Samples that are no multiple
-    /// of it end in part of a batch, which is unbiased too, but not worth as much.
+    /// The larger, the smaller the error of as many samples, as these are placed with regard to more others. Samples that
+    /// are no multiple of it end in part of a batch, which is unbiased too, but not worth as much.
     pub fn for_budget(samples: Option<u32>) -> Self {
         samples.map_or(Self::default(), |samples| {
             let [many, batches] = Self::MANY;
@@ -69,8 +68,7 @@ impl Default for BatchSize {
 /// Every number of every sample is uniform by itself, and those of different dimensions are independent, whatever the
 /// kind: the mean of a picture over all seeds is the same. Kinds differ in how the samples of a batch lie to each other.
 /// A dimension takes its numbers from a set of two or three dimensions, and sets are put together at random ("padding"):
-/// Sobol's own points of many dimensions have worse pairs, and lose more by that than they win (5 % of the error in a
-/// Cornell box, in batches of 64).
+/// Sobol's own points of many dimensions have worse pairs, and lose more by that than they win.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SamplerKind {
     /// Independent random numbers.

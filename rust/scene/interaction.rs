@@ -126,6 +126,15 @@ impl Interaction {
         here
     }
 
+    /// The share of ambient light that is reflected here ([`Material::ambient`](super::Material::ambient)); for what [`Interaction::new`] was
+    /// given.
+    pub fn ambient(&self, scene: &Scene, ray: &Ray, hit: &Hit, width: f64, outside: f64) -> Rgb {
+        let material = scene.material_at(&self.surface);
+        let mut point = ShadingPoint::new(scene.geometry(), ray, hit, &self.surface, material.needs(), width);
+        point.outside = outside;
+        material.ambient(&point)
+    }
+
     /// Looks up a hit and what is there.
     #[inline]
     pub fn at(scene: &Scene, ray: &Ray, hit: &Hit) -> Self {
@@ -184,10 +193,15 @@ impl<S: Scatters> Interaction<S> {
     }
 
     /// What light is drawn for: the side that the ray came from, or both where light goes through.
+    ///
+    /// A side is asked for where rays to it leave from. On the wall of a hollow ball that shines, nothing else tells whether light is asked
+    /// for inside of it or outside, and the density of rays that meet the wall is asked from there too.
     #[inline]
     pub fn receiver(&self) -> Receiver {
-        let normal = if self.scattering.transmits() { DVec3::ZERO } else { self.shading_normal() };
-        Receiver { position: self.surface.position, normal }
+        if self.scattering.transmits() {
+            return Receiver::free(self.surface.position);
+        }
+        Receiver { position: self.departure().ray(self.normal()).origin, normal: self.shading_normal() }
     }
 
     /// How the point scatters.

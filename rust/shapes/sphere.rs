@@ -44,7 +44,9 @@ impl Sphere {
     fn cap(&self, place: DVec3) -> Option<(f64, DVec3, f64)> {
         let way = place - self.center;
         let distance = way.length();
-        if distance < self.radius {
+        // By as much may the way to a place on the sphere be too long.
+        let rounding = 4.0 * UNIT * (place.abs().max_element() + 5.0 * self.radius);
+        if distance < self.radius + rounding {
             return None;
         }
         let sine = self.radius / distance;
@@ -190,8 +192,11 @@ impl Shape for Sphere {
             let ray = Ray { t_min: f64::MIN_POSITIVE, ..Ray::new(place, direction) };
             let mut point = None;
             self.meet(&ray, &mut |met| {
-                point = Some(self.at(met.uv));
-                true
+                let here = self.at(met.uv);
+                // A place on the sphere is not seen from itself, though rounding may have moved it off.
+                let seen = met.t > 4.0 * here.error;
+                point = seen.then_some(here);
+                seen
             });
             return Some(Drawn { point: point?, pdf: UNIFORM_SPHERE_PDF });
         };

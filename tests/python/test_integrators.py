@@ -46,6 +46,54 @@ def test_each_gives_lamberts_irradiance(integrator, expected):
     assert error < 0.01 * expected
 
 
+CHECKED = rw.Checker(0.2, 0.6, 2)  # a quarter of the floor, about its origin, is of one of both
+
+
+@pytest.mark.parametrize("make", [rw.RayCast, rw.Whitted, rw.Distributed])
+@pytest.mark.parametrize(
+    ("material", "share"),
+    [
+        (rw.Phong(0.5, 0.25, 8, ambient=(0.1, 0.2, 0.7)), (0.1, 0.2, 0.7)),
+        (rw.BlinnPhong(0.5, 0.25, 8, ambient=0), 0),
+        # As much as is reflected diffusely where nothing else is said, without the highlights.
+        (rw.Phong(0.5, 0.25), 0.5),
+        (rw.BlinnPhong((0.1, 0.2, 0.3), 0.25), (0.1, 0.2, 0.3)),
+        (rw.Phong(0.5, 0.25, ambient=CHECKED), 0.2),
+        # Of mixtures the mean, in which a mirror has none; of masks and maps that of their material.
+        (rw.Mix(rw.Phong(0.5, 0.25, ambient=0.1), rw.Diffuse(0.7), 0.25), 0.75 * 0.1 + 0.25 * 0.7),
+        (rw.Mix(rw.Phong(0.5, 0.25, ambient=0.8), rw.Mirror(), 0.5), 0.4),
+        (rw.Mask(rw.Phong(ambient=0.3), 1.0), 0.3),
+        (rw.NormalMap(rw.Phong(ambient=0.3), (0.8, 0.5, 0.9)), 0.3),
+        (rw.BumpMap(rw.BlinnPhong(ambient=0.3), rw.Noise(), 0.1), 0.3),
+        (rw.TwoSided(rw.Phong(ambient=0.3), rw.Phong(ambient=0.9)), 0.3),
+        (rw.Diffuse(0.6), 0.6),
+        (rw.Mirror(), 0),
+    ],
+)
+def test_ambient_light_times_the_ambient_share_is_added(make, material, share):
+    # Phong 1975: k_a I_a, and in the dark, or of what is mirrored, nothing else.
+    corners = [(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0)]
+    uv = [(0, 0), (1, 0), (1, 1), (0, 1)]
+    floor = rw.Mesh(corners, [(0, 1, 2), (0, 2, 3)], uv=uv, material=material)
+    camera = rw.Camera((-0.2, -0.2, 3), (-0.2, -0.2, 0), fov=1, width=4, height=4)
+    light = np.array([1.0, 2.0, 3.0])
+    image = rw.render(rw.Scene(floor), camera, make(ambient=light), samples=2, progress=False)
+    np.testing.assert_allclose(image.rgb, np.broadcast_to(share * light, (4, 4, 3)), rtol=1e-6)
+    assert not rw.render(rw.Scene(floor), camera, make(), samples=2, progress=False).rgb.any()
+
+
+@pytest.mark.parametrize("make", [rw.RayCast, rw.Whitted])
+def test_the_classic_model_is_ambient_diffuse_and_specular(make):
+    # A lamp right above, seen from right above, where the highlight is strongest: k_a I_a, k_d / pi of the
+    # irradiance, and k_s (n + 2) / 2 pi of it (Lafortune and Willems 1994).
+    floor = rw.Disk((0, 0, 0), (0, 0, 1), 9, material=rw.Phong(0.4, 0.3, 10, ambient=0.2))
+    scene = rw.Scene(floor, lights=[rw.PointLight((0, 0, 2), 8)])
+    camera = rw.Camera((0, 0, 1), (0, 0, 0), up=(0, 1, 0), fov=1e-3, width=4, height=4)
+    image = rw.render(scene, camera, make(ambient=0.5), samples=2, progress=False)
+    expected = 0.2 * 0.5 + 2 * (0.4 / math.pi + 0.3 * 12 / (2 * math.pi))
+    np.testing.assert_allclose(image.rgb, expected, rtol=1e-6)
+
+
 def test_path_of_depth_one_and_direct_are_the_same_estimator():
     scene, camera = rw.scenes.cornell_box(width=24, height=24)
     path = rw.render(scene, camera, rw.Path(max_depth=1), samples=64, progress=False)

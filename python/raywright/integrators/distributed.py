@@ -22,7 +22,8 @@ class Distributed:
     splits : int
         Rays that the first surface splits one into, and light samples there: 1 to 1024.
     ambient : float or 3 floats
-        Radiance that arrives from everywhere in place of what is not followed.
+        Radiance that arrives from everywhere in place of what is not followed; of which surfaces reflect
+        their ambient share, as in `RayCast`.
 
     Raises
     ------

@@ -17,7 +17,8 @@ class RayCast:
     Parameters
     ----------
     ambient : float or 3 floats
-        Radiance that arrives from everywhere, unshadowed.
+        Radiance that arrives from everywhere, unshadowed. Surfaces reflect their ambient share of it: `Phong`
+        and `BlinnPhong` one of their own, smooth ones none, others what they reflect of white light, about.
     shadows : bool
         Whether what lies on the way to a light shadows it.
     light_samples : int

@@ -23,7 +23,8 @@ class Whitted:
     contribution : float
         Rays that contribute less than this share to their pixel are not followed: 0 (all are) to below 1.
     ambient : float or 3 floats
-        Radiance that arrives from everywhere in place of what is not followed.
+        Radiance that arrives from everywhere in place of what is not followed; of which surfaces reflect
+        their ambient share, as in `RayCast`.
     light_samples : int
         Light samples at the first surface, from equal shares of the lights: 1 to 1024.
 

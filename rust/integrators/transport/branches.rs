@@ -1,4 +1,4 @@
-//! The single directions that a surface scatters into, and what is left for the others.
+//! The single directions that a surface scatters into.
 
 use crate::math::DVec3;
 use crate::optics::{Bsdf, BsdfSample, Rgb};
@@ -51,13 +51,4 @@ fn of_one(bsdf: &Bsdf, wo: DVec3, weight: Rgb, each: &mut impl FnMut(BsdfSample)
     let probability = 0.5 * (low + high);
     emit(first, probability);
     emit(last, 1.0 - probability);
-}
-
-/// The share of light from everywhere that is scattered into other than single directions, about.
-pub(super) fn matt(scattering: &Scattering) -> Rgb {
-    let of_one = |bsdf: &Bsdf| if bsdf.is_delta() { Rgb::ZERO } else { bsdf.albedo() };
-    match scattering {
-        Scattering::One(bsdf) => of_one(bsdf),
-        Scattering::Several(parts) => parts.iter().map(|(weight, bsdf)| *weight * of_one(bsdf)).sum(),
-    }
 }

@@ -1,6 +1,6 @@
 //! A batch of paths on their way.
 
-use super::branches::{matt, singles};
+use super::branches::singles;
 use super::dimensions::Dimensions;
 use super::features::{Baggage, Features};
 use super::nesting::{Boundary, Inside, around};
@@ -184,8 +184,8 @@ impl<'a, N: Features> TransportWorker<'a, N> {
                 let here = Interaction::new(self.scene, &ray, &hit, surface, width, outside);
                 let vertex = Vertex { here, path, baggage, dimensions, through, width, time };
                 if N::BAGGAGE && self.settings.ambient != Rgb::ZERO {
-                    let matt = matt(vertex.here.scattering());
-                    *arriving += path.throughput * matt * self.settings.ambient;
+                    let share = vertex.here.ambient(self.scene, &ray, &hit, width, outside);
+                    *arriving += path.throughput * share * self.settings.ambient;
                 }
                 if N::BAGGAGE && self.settings.follow == Follow::EachSingle {
                     self.split_singles(&vertex);

@@ -38,6 +38,9 @@ fn refracted(ggx: &Ggx, wo: DVec3, h: DVec3, eta: f64) -> f64 {
 
 const STEPS: [usize; 2] = [96, 48];
 
+/// What is reflected totally ends at a line between the facets, which so many midpoints tell to a few thousandths.
+const SHARP_STEPS: [usize; 2] = [300, 48];
+
 /// 1 − what perfect mirrors reflect once.
 pub(super) fn mirror_loss(ggx: &Ggx, w: DVec3) -> f64 {
     1.0 - mean_over_facets(ggx, w, STEPS, |h| reflected(ggx, w, h))
@@ -45,7 +48,7 @@ pub(super) fn mirror_loss(ggx: &Ggx, w: DVec3) -> f64 {
 
 /// 1 − what facets of index `eta` reflect and refract once; `w` is above, where the index is 1.
 pub(super) fn interface_loss(ggx: &Ggx, eta: f64, w: DVec3) -> f64 {
-    1.0 - mean_over_facets(ggx, w, STEPS, |h| {
+    1.0 - mean_over_facets(ggx, w, SHARP_STEPS, |h| {
         let f = fresnel::dielectric(w.dot(h), eta);
         f * reflected(ggx, w, h) + (1.0 - f) * refracted(ggx, w, h, eta)
     })
@@ -343,10 +346,11 @@ fn interfaces_lose_what_the_tables_say() {
     for a in ALPHAS {
         for c in COSINES {
             let (w, ggx) = (direction(c), Ggx::new([a; 2]));
-            for eta in [1.00001, 1.0003, 1.01, 1.07, 1.2, 1.33, 1.5, 1.8, 2.4, 3.0] {
+            for eta in [1.00001, 1.0003, 1.01, 1.07, 1.2, 1.33, 1.5, 1.8, 2.4, 3.0, 5.0, 10.0] {
                 let interface = super::Interface::new(a, eta);
-                assert_near(interface.loss(w), interface_loss(&ggx, eta, w), 0.007, &[a, eta, c]);
-                assert_near(interface.loss(-w), interface_loss(&ggx, 1.0 / eta, w), 0.009, &[a, 1.0 / eta, c]);
+                let bound = if eta < 1.001 { 0.009 } else { 0.005 };
+                assert_near(interface.loss(w), interface_loss(&ggx, eta, w), 0.005, &[a, eta, c]);
+                assert_near(interface.loss(-w), interface_loss(&ggx, 1.0 / eta, w), bound, &[a, 1.0 / eta, c]);
             }
         }
     }

@@ -1,8 +1,8 @@
 //! Blinn's form of Phong's model.
 
 use super::phong::{parts, shares};
-use super::{Classic, Material, Scattering};
-use crate::optics::{BlinnPhong, Bsdf};
+use super::{Material, Scattering};
+use crate::optics::{BlinnPhong, Bsdf, Rgb};
 use crate::scene::ShadingPoint;
 use crate::scene::textures::{Needs, TexturePoint, Value};
 
@@ -43,9 +43,7 @@ impl Material for BlinnPhongMaterial {
         shares(&self.diffuse, &self.specular, &self.exponent, &self.ambient)
     }
 
-    fn classic(&self, at: &ShadingPoint) -> Option<Classic> {
-        let point = &at.texture;
-        let (diffuse, specular) = parts(point, &self.diffuse, &self.specular);
-        Some(Classic { ambient: self.ambient.at(point), diffuse, specular, exponent: self.exponent.number(point) })
+    fn ambient(&self, at: &ShadingPoint) -> Rgb {
+        self.ambient.at(&at.texture)
     }
 }

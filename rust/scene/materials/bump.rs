@@ -1,8 +1,9 @@
 //! Bumps.
 
 use super::checks::{number, within};
-use super::{Classic, Interior, Material, Scattering};
+use super::{Interior, Material, Scattering};
 use crate::math::DVec3;
+use crate::optics::Rgb;
 use crate::scene::ShadingPoint;
 use crate::scene::textures::{Needs, TexturePoint, Value};
 use std::sync::Arc;
@@ -113,7 +114,7 @@ impl Material for BumpMap {
         self.material.interior()
     }
 
-    fn classic(&self, at: &ShadingPoint) -> Option<Classic> {
-        self.material.classic(at)
+    fn ambient(&self, at: &ShadingPoint) -> Rgb {
+        self.material.ambient(at)
     }
 }

@@ -1,7 +1,7 @@
 //! A matt surface.
 
 use super::checks::within;
-use super::{Classic, Material, Scattering};
+use super::{Material, Scattering};
 use crate::optics::{Bsdf, Diffuse, Rgb};
 use crate::scene::ShadingPoint;
 use crate::scene::textures::{Needs, Value};
@@ -39,9 +39,5 @@ impl Material for DiffuseMaterial {
 
     fn validate(&self) -> Result<(), String> {
         within("reflectance", &self.reflectance, 0.0, 1.0)
-    }
-
-    fn classic(&self, at: &ShadingPoint) -> Option<Classic> {
-        Some(Classic::matt(self.reflectance.at(&at.texture)))
     }
 }

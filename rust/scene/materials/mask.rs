@@ -1,8 +1,9 @@
 //! Holes.
 
 use super::checks::within;
-use super::{Classic, Interior, Material, Scattering};
+use super::{Interior, Material, Scattering};
 use crate::math::DVec3;
+use crate::optics::Rgb;
 use crate::scene::ShadingPoint;
 use crate::scene::textures::{Needs, TexturePoint, Value};
 use std::sync::Arc;
@@ -54,7 +55,7 @@ impl Material for Mask {
         self.material.interior()
     }
 
-    fn classic(&self, at: &ShadingPoint) -> Option<Classic> {
-        self.material.classic(at)
+    fn ambient(&self, at: &ShadingPoint) -> Rgb {
+        self.material.ambient(at)
     }
 }

@@ -1,7 +1,7 @@
 //! Two materials at once.
 
 use super::checks::within;
-use super::{Classic, Interior, Material, Scattering};
+use super::{Interior, Material, Scattering};
 use crate::math::DVec3;
 use crate::optics::Rgb;
 use crate::scene::ShadingPoint;
@@ -89,11 +89,8 @@ impl Material for MixMaterial {
         self.a.interior().or_else(|| self.b.interior())
     }
 
-    fn classic(&self, at: &ShadingPoint) -> Option<Classic> {
+    fn ambient(&self, at: &ShadingPoint) -> Rgb {
         let [a, b] = self.shares(&at.texture);
-        match (self.a.classic(at), self.b.classic(at)) {
-            (Some(x), Some(y)) => Some(Classic::mixed((a, x), (b, y))),
-            _ => None,
-        }
+        self.a.ambient(at) * a + self.b.ambient(at) * b
     }
 }

@@ -3,7 +3,6 @@
 mod blinn_phong;
 mod bump;
 mod checks;
-mod classic;
 mod conductor;
 mod dielectric;
 mod diffuse;
@@ -24,7 +23,6 @@ mod two_sided;
 
 pub use blinn_phong::BlinnPhongMaterial;
 pub use bump::BumpMap;
-pub use classic::Classic;
 pub use conductor::ConductorMaterial;
 pub use dielectric::DielectricMaterial;
 pub use diffuse::DiffuseMaterial;
@@ -44,7 +42,7 @@ pub use two_sided::TwoSided;
 use super::ShadingPoint;
 use super::textures::{Needs, TexturePoint};
 use crate::math::DVec3;
-use crate::optics::Bsdf;
+use crate::optics::{Bsdf, Rgb};
 use std::fmt::Debug;
 
 /// What a surface is made of: says how light is scattered at each of its points.
@@ -93,9 +91,11 @@ pub trait Material: Debug + Send + Sync {
         None
     }
 
-    /// What it is to the classic model of ambient, diffuse and specular light; none if that has no words for it.
-    fn classic(&self, _at: &ShadingPoint) -> Option<Classic> {
-        None
+    /// The share of an even light from nowhere that it reflects: the ambient coefficient of the classic models of light (Phong,
+    /// "Illumination for Computer Generated Pictures", 1975). Where these have no word for it, that of light from everywhere which it
+    /// does not scatter into single directions.
+    fn ambient(&self, at: &ShadingPoint) -> Rgb {
+        self.scattering(at).matt_albedo()
     }
 }
 

@@ -2,8 +2,9 @@
 
 use super::bump::on_its_side;
 use super::checks::{number, within};
-use super::{Classic, Interior, Material, Scattering};
+use super::{Interior, Material, Scattering};
 use crate::math::DVec3;
+use crate::optics::Rgb;
 use crate::scene::ShadingPoint;
 use crate::scene::textures::{Needs, TexturePoint, Value};
 use std::sync::Arc;
@@ -70,7 +71,7 @@ impl Material for NormalMap {
         self.material.interior()
     }
 
-    fn classic(&self, at: &ShadingPoint) -> Option<Classic> {
-        self.material.classic(at)
+    fn ambient(&self, at: &ShadingPoint) -> Rgb {
+        self.material.ambient(at)
     }
 }

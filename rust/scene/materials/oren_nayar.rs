@@ -1,7 +1,7 @@
 //! A rough matt surface.
 
 use super::checks::within;
-use super::{Classic, Material, Scattering};
+use super::{Material, Scattering};
 use crate::optics::{Bsdf, OrenNayar};
 use crate::scene::ShadingPoint;
 use crate::scene::textures::{Needs, TexturePoint, Value};
@@ -37,9 +37,5 @@ impl Material for OrenNayarMaterial {
     fn validate(&self) -> Result<(), String> {
         within("reflectance", &self.reflectance, 0.0, 1.0)?;
         within("roughness", &self.roughness, 0.0, 1.0)
-    }
-
-    fn classic(&self, at: &ShadingPoint) -> Option<Classic> {
-        Some(Classic::matt(self.reflectance.at(&at.texture)))
     }
 }

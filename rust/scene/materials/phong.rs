@@ -1,7 +1,7 @@
 //! Phong's model.
 
 use super::checks::within;
-use super::{Classic, Material, Scattering};
+use super::{Material, Scattering};
 use crate::optics::{Bsdf, Phong, Rgb};
 use crate::scene::ShadingPoint;
 use crate::scene::textures::{Needs, TexturePoint, Value};
@@ -67,9 +67,7 @@ impl Material for PhongMaterial {
         shares(&self.diffuse, &self.specular, &self.exponent, &self.ambient)
     }
 
-    fn classic(&self, at: &ShadingPoint) -> Option<Classic> {
-        let point = &at.texture;
-        let (diffuse, specular) = parts(point, &self.diffuse, &self.specular);
-        Some(Classic { ambient: self.ambient.at(point), diffuse, specular, exponent: self.exponent.number(point) })
+    fn ambient(&self, at: &ShadingPoint) -> Rgb {
+        self.ambient.at(&at.texture)
     }
 }

@@ -48,6 +48,15 @@ impl Scattering {
         }
     }
 
+    /// About the share of light from everywhere that is scattered into other than single directions.
+    pub fn matt_albedo(&self) -> Rgb {
+        let of_one = |bsdf: &Bsdf| if bsdf.is_delta() { Rgb::ZERO } else { bsdf.albedo() };
+        match self {
+            Self::One(bsdf) => of_one(bsdf),
+            Self::Several(parts) => parts.iter().map(|(weight, bsdf)| *weight * of_one(bsdf)).sum(),
+        }
+    }
+
     /// Whether all of it goes in single directions, so that [`Scattering::evaluate`] is 0 everywhere.
     #[inline]
     pub fn is_delta(&self) -> bool {

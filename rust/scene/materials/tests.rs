@@ -377,7 +377,7 @@ fn roughness_is_squared_and_alpha_is_not() {
 }
 
 #[test]
-fn the_classic_model_is_told_to_those_who_ask() {
+fn ambient_light_is_reflected_by_its_own_share() {
     let phong = |ambient: f64| {
         Arc::new(PhongMaterial {
             diffuse: 0.5.into(),
@@ -386,13 +386,17 @@ fn the_classic_model_is_told_to_those_who_ask() {
             ambient: ambient.into(),
         })
     };
-    let classic = phong(0.1).classic(&at(0.0, 0.0)).unwrap();
-    assert_eq!((classic.ambient, classic.diffuse), (Rgb::splat(0.1), Rgb::splat(0.5)));
-    assert_eq!((classic.specular, classic.exponent), (Rgb::splat(0.25), 8.0));
-    let mixed = MixMaterial { a: phong(0.1), b: grey(0.3), amount: 0.5.into() }.classic(&at(0.0, 0.0)).unwrap();
-    assert!((mixed.ambient - 0.2).abs().max_element() < 1e-15 && (mixed.diffuse - 0.4).abs().max_element() < 1e-15);
-    assert_eq!((mixed.specular, mixed.exponent), (Rgb::splat(0.125), 8.0));
-    assert_eq!(mirror().classic(&at(0.0, 0.0)), None);
+    let share = |material: &dyn Material| material.ambient(&at(0.0, 0.0));
+    assert_eq!(share(&*phong(0.1)), Rgb::splat(0.1));
+    // What has no share of its own reflects it as any light, and what is smooth does not.
+    assert_eq!((share(&*grey(0.3)), share(&*mirror())), (Rgb::splat(0.3), Rgb::ZERO));
+    let mixed = |b: Arc<dyn Material>| share(&MixMaterial { a: phong(0.1), b, amount: 0.5.into() });
+    assert!((mixed(grey(0.3)) - 0.2).abs().max_element() < 1e-15);
+    assert!((mixed(mirror()) - 0.05).abs().max_element() < 1e-15);
+    let sides = TwoSided { front: phong(0.1), back: grey(0.3) };
+    assert_eq!(share(&sides), Rgb::splat(0.1));
+    assert_eq!(sides.ambient(&ShadingPoint { is_front: false, ..at(0.0, 0.0) }), Rgb::splat(0.3));
+    assert_eq!(share(&Mask { material: phong(0.1), opacity: 0.5.into() }), Rgb::splat(0.1));
 }
 
 #[test]

@@ -1,7 +1,8 @@
 //! One material on the front and another on the back.
 
-use super::{Classic, Material, Scattering};
+use super::{Material, Scattering};
 use crate::math::DVec3;
+use crate::optics::Rgb;
 use crate::scene::ShadingPoint;
 use crate::scene::textures::Needs;
 use std::sync::Arc;
@@ -51,7 +52,7 @@ impl Material for TwoSided {
         self.side(at).tangent(at)
     }
 
-    fn classic(&self, at: &ShadingPoint) -> Option<Classic> {
-        self.side(at).classic(at)
+    fn ambient(&self, at: &ShadingPoint) -> Rgb {
+        self.side(at).ambient(at)
     }
 }

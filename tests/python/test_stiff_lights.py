@@ -1,0 +1,177 @@
+"""Lights that are very strong, very weak, very small, or a single texel, against closed forms.
+
+Means are within five of their standard errors, which chance exceeds once in two million.
+"""
+
+import math
+
+import numpy as np
+import pytest
+
+import raywright as rw
+
+UPRIGHT = np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]])  # what is up in a map is +z
+
+
+def lit(samples=64, integrator=None, **scene):
+    """Radiance of the origin on a floor of reflectance 0.8 in the plane z = 0: mean, and standard error."""
+    floor = rw.Disk((0, 0, 0), (0, 0, 1), 9, material=rw.Diffuse(0.8))
+    shapes = [floor, *scene.pop("shapes", ())]
+    camera = rw.Camera((3, 0, 0.5), (0, 0, 0), up=(0, 0, 1), fov=1e-3, width=8, height=8)
+    how = integrator or rw.Path(max_depth=1)
+    image = rw.render(rw.Scene(shapes, **scene), camera, how, samples=samples, progress=False)
+    assert np.isfinite(image.rgb).all()
+    assert np.isfinite(image.standard_error).all()
+    assert not any("finite" in warning for warning in image.warnings)
+    error = math.sqrt(float(np.square(image.standard_error[..., 1].astype(float)).sum())) / 64
+    return float(image.rgb[..., 1].mean(dtype=float)), error
+
+
+def assert_lit(found, expected, slack=1e-5):
+    value, error = found
+    assert abs(value - expected) <= 5 * error + slack * expected, f"{value} ± {error}, not {expected}"
+    assert error <= 0.01 * expected
+
+
+# What shines, by its strength, and the radiance of the origin when that is 1.
+ARRANGEMENTS = {
+    "point": (lambda s: {"lights": [rw.PointLight((0, 0, 2), s)]}, 0.8 / math.pi / 4),
+    "spot": (lambda s: {"lights": [rw.SpotLight((0, 0, 2), (0, 0, 0), s)]}, 0.8 / math.pi / 4),
+    "direction": (lambda s: {"lights": [rw.DirectionalLight((0, 0, -1), s)]}, 0.8 / math.pi),
+    "sphere": (
+        lambda s: {"shapes": [rw.Sphere((0, 0, 2), 0.5, material=rw.Diffuse(0), emission=s)]},
+        0.8 / 16,
+    ),
+    "disk": (
+        lambda s: {"shapes": [rw.Disk((0, 0, 1), (0, 0, -1), 1, material=rw.Diffuse(0), emission=s)]},
+        0.8 / 2,
+    ),
+    "sky": (lambda s: {"environment": s}, 0.8),
+    "map": (lambda s: {"environment": rw.EnvironmentMap(np.ones((4, 8)), scale=s)}, 0.8),
+}
+
+
+@pytest.mark.parametrize("strength", [1e-30, 1e-10, 1e10, 1e30])
+@pytest.mark.parametrize("kind", ARRANGEMENTS)
+def test_strength_is_a_factor_of_the_picture_and_of_its_error(kind, strength):
+    # The same draws at any strength: the numbers of strength 1, times it, to the digits that pictures keep.
+    make, share = ARRANGEMENTS[kind]
+    found, unit = lit(**make(strength)), lit(**make(1.0))
+    assert found[0] == pytest.approx(unit[0] * strength, rel=1e-5)
+    # What cancels in a standard error of nearly nothing is not known to any digit.
+    assert found[1] == pytest.approx(unit[1] * strength, rel=1e-2, abs=1e-6 * share * strength)
+    assert_lit(found, share * strength)
+
+
+def test_a_weak_light_beside_a_strong_one_is_not_lost():
+    # 1e30 in one channel, 1e-30 in another: each is what it would be by itself.
+    lights = [rw.PointLight((0, 0, 2), (1e30, 0, 0)), rw.PointLight((0, 0, 1), (0, 1e-30, 0))]
+    floor = rw.Disk((0, 0, 0), (0, 0, 1), 9, material=rw.Diffuse(0.8))
+    camera = rw.Camera((3, 0, 0.5), (0, 0, 0), up=(0, 0, 1), fov=1e-3, width=4, height=4)
+    image = rw.render(
+        rw.Scene(floor, lights=lights), camera, rw.Direct(light_samples=2), samples=4, progress=False
+    )
+    assert np.isfinite(image.rgb).all()
+    assert image.rgb[..., 0] == pytest.approx(1e30 * 0.8 / math.pi / 4, rel=1e-4)
+    assert (image.rgb[..., 2] == 0).all()
+
+
+def sum_over_map(picture, fine=16):
+    """Irradiance of a plane that looks to the top of a map, of texels joined linearly, by midpoints."""
+    rows, columns = picture.shape
+    theta = (np.arange(rows * fine) + 0.5) / (rows * fine) * math.pi
+    down = np.clip(theta / math.pi * rows - 0.5, 0, rows - 1)
+    # Texels join around the seam, so of a row its sum is all that counts.
+    sums = np.interp(down, np.arange(rows), picture.sum(axis=1))
+    weight = np.maximum(np.cos(theta), 0) * np.sin(theta) * math.pi / (rows * fine)
+    return float((sums * weight).sum()) * 2 * math.pi / columns
+
+
+@pytest.mark.parametrize(
+    "texel", [(0, 5), (10, 0), (10, 63), (15, 20), (20, 33)], ids=["pole", "seam", "edge", "horizon", "below"]
+)
+def test_a_sun_of_one_texel_anywhere_in_a_map_lights_as_the_sum_over_it(texel):
+    picture = np.random.default_rng(4).random((32, 64)).astype(np.float32)
+    picture[texel] = 1e7
+    found = lit(samples=256, environment=rw.EnvironmentMap(picture, UPRIGHT))
+    assert_lit(found, 0.8 / math.pi * sum_over_map(picture), slack=2e-3)
+
+
+@pytest.mark.parametrize("strength", [1e-30, 1e30])
+def test_a_map_of_any_strength_lights_as_the_sum_over_it(strength):
+    picture = np.random.default_rng(5).random((8, 16)).astype(np.float32)
+    found = lit(samples=256, environment=rw.EnvironmentMap(picture * np.float32(strength), UPRIGHT))
+    assert_lit(found, 0.8 / math.pi * sum_over_map(picture) * strength, slack=2e-3)
+
+
+@pytest.mark.parametrize("place", [0.0, 1e3, 1e6])
+@pytest.mark.parametrize("radius", [1e-5, 1e-9])
+def test_a_tiny_sphere_of_constant_power_is_a_point_also_from_far_and_far_away(radius, place):
+    # E = π L (R/d)²: at a distance of 1 and of 1000, and wherever it all stands.
+    for distance in (1.0, 1e3):
+        at = (place, 0, 0)
+        ball = rw.Sphere((place, 0, distance), radius, material=rw.Diffuse(0), emission=1 / radius**2)
+        floor = rw.Disk(at, (0, 0, 1), 9, material=rw.Diffuse(0.8))
+        camera = rw.Camera((place + 3, 0, 0.5), at, up=(0, 0, 1), fov=1e-3, width=8, height=8)
+        scene = rw.Scene([floor, ball], precision="double")
+        image = rw.render(scene, camera, rw.Path(max_depth=1), samples=16, progress=False)
+        error = math.sqrt(float(np.square(image.standard_error[..., 1].astype(float)).sum())) / 64
+        assert_lit((float(image.rgb[..., 1].mean(dtype=float)), error), 0.8 / distance**2, slack=1e-4)
+
+
+@pytest.mark.parametrize("shape", ["square", "disk", "triangle", "sliver"])
+def test_areas_of_a_trillionth_light_as_points(shape):
+    # Power π L A at height 1, cosines 1: E = L A.
+    if shape == "disk":
+        lamp = rw.Disk(
+            (0, 0, 1), (0, 0, -1), math.sqrt(1e-12 / math.pi), material=rw.Diffuse(0), emission=1e12
+        )
+    else:
+        a, b = {"square": (1e-6, 1e-6), "triangle": (2e-6, 1e-6), "sliver": (2e-3, 1e-9)}[shape]
+        corners = np.array([(0, 0, 1), (0, b, 1), (a, b, 1), (a, 0, 1)]) - (a / 3, b / 3, 0)
+        faces = [(0, 1, 2), (0, 2, 3)] if shape == "square" else [(0, 1, 3)]
+        lamp = rw.Mesh(corners, faces, material=rw.Diffuse(0), emission=1e12)
+    found = lit(samples=16, shapes=[lamp], precision="double")
+    assert_lit(found, 0.8 / math.pi, slack=1e-4)
+
+
+GLOWING = {"material": rw.Diffuse(0.5), "emission": rw.Emission(1, both_sides=True)}
+# Closed shapes about the origin, and some of them large, small, stretched or far away.
+HOLLOW = {
+    "sphere": (rw.Sphere((0, 0, 0), 1, **GLOWING), (0, 0, 0)),
+    "small sphere": (rw.Sphere((0.1, 0.2, 0.3), 1e-5, **GLOWING), (0.1, 0.2, 0.3)),
+    "far sphere": (rw.Sphere((1e5, -1e5, 1e4), 1, **GLOWING), (1e5, -1e5, 1e4)),
+    "ellipsoid": (rw.Ellipsoid((0, 0, 0), (1, 2, 0.5), **GLOWING), (0, 0, 0)),
+    "box": (rw.Box((-1, -2, -1), (1, 1, 3), **GLOWING), (0, 0, 0)),
+    "cylinder": (rw.Cylinder((0, 0, -1), (0, 0, 1), 1, **GLOWING), (0, 0, 0)),
+    "cone": (rw.Cone((0, 0, -0.5), (0, 0, 1), 1, **GLOWING), (0, 0, 0)),
+    "torus": (rw.Torus((0, 0, 2), (0, 1, 0), 2, 1, **GLOWING), (0, 0, 0)),
+    "copy": (rw.Instance(rw.Sphere((0, 0, 0), 1, **GLOWING), np.diag([1, 2, 0.5, 1])), (0, 0, 0)),
+    "far copy": (
+        rw.Instance(
+            rw.Sphere((0, 0, 0), 1, **GLOWING), [[2, 0, 0, 1e5], [0, 2, 0, 0], [0, 0, 2, 0], [0, 0, 0, 1]]
+        ),
+        (1e5, 0, 0),
+    ),
+}
+
+
+@pytest.mark.parametrize("kind", HOLLOW)
+def test_within_any_hollow_shape_that_shines_it_is_alike(kind):
+    # What is closed, shines 1 and reflects a half: 1 / (1 - 0.5), and 1.5 where light is followed once.
+    shape, centre = HOLLOW[kind]
+    scene = rw.Scene(shape, precision="double")
+    camera = rw.Camera(centre, np.add(centre, (0.3, 0.4, 0.5)), fov=90, width=8, height=8)
+    for depth, expected in ((None, 2.0), (1, 1.5)):
+        image = rw.render(scene, camera, rw.Path(max_depth=depth), samples=128, progress=False)
+        error = math.sqrt(float(np.square(image.standard_error[..., 1].astype(float)).sum())) / 64
+        assert_lit((float(image.rgb[..., 1].mean(dtype=float)), error), expected)
+
+
+def test_a_ball_that_shines_and_reflects_is_seen_by_itself_from_outside_only():
+    # Convex: nothing of its own light falls on its outside, whatever rounding says of where that is.
+    for centre in ((0, 0, 0), (1e5, 0, 0)):
+        ball = rw.Sphere(centre, 1, material=rw.Diffuse(0.5), emission=rw.Emission(1, both_sides=True))
+        camera = rw.Camera(np.add(centre, (0, 0, 9)), centre, fov=8, width=16, height=16)
+        image = rw.render(rw.Scene(ball, precision="double"), camera, samples=16, progress=False)
+        np.testing.assert_array_equal(image.rgb, 1)
