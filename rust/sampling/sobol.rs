@@ -52,7 +52,7 @@ mod tests {
             row = next;
         }
         for index in 0..256u32 {
-            let digits =
+            let digits: u32 =
                 (0..8).map(|k| ((k..8).map(|j| triangle[j][k] * (index >> j & 1)).sum::<u32>() % 2) << k).sum();
             assert_eq!(pascal(index), digits);
         }

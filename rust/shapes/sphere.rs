@@ -40,7 +40,7 @@ impl Sphere {
     }
 
     /// 1 − cos of half the angle that it fills as seen from a place, with the unit vector from the centre to the place and the sine of
-    /// that half; none from inside.
+    /// that half; none from inside, and from places on it.
     fn cap(&self, place: DVec3) -> Option<(f64, DVec3, f64)> {
         let way = place - self.center;
         let distance = way.length();

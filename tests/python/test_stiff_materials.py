@@ -63,7 +63,7 @@ def test_a_glass_ball_in_an_even_light_cannot_be_seen(ior, alpha):
     # Rougher ones of higher indices hold light for hundreds of bounces, and a few paths bring most of it out.
     camera = rw.Camera((0, 0, 10), (0, 0, 0), fov=8, width=8, height=8)
     ball = rw.Sphere((0, 0, 0), 1, material=rw.Dielectric(ior, alpha=alpha))
-    image = rw.render(rw.Scene(ball, environment=1), camera, samples=128, progress=False)
+    image = rw.render(rw.Scene(ball, environment=1), camera, samples=256, progress=False)
     error = math.sqrt(float(np.square(image.standard_error[..., 1].astype(float)).sum())) / 64
     assert abs(float(image.rgb[..., 1].mean()) - 1) <= 0.005 + 5 * error
     assert error < 0.02
