@@ -244,6 +244,15 @@ def test_what_is_approximated_is_warned_of_once():
     assert near == rw.MetallicRough(0.3, 0.25, 0.5)
 
 
+def test_bumps_on_the_inside_are_refused():
+    bumps = {"type": "bumpmap", "height": {"type": "checkerboard"}, "bsdf": {"type": "diffuse"}}
+    with (
+        pytest.warns(RuntimeWarning, match="light fades towards the horizon in raywright's way"),
+        pytest.raises(ValueError, match=r"sphere 'one': flip_normals with bumps .* is not supported"),
+    ):
+        material(bumps, flip_normals=True)
+
+
 def test_files_that_are_missing_are_told():
     with pytest.raises(FileNotFoundError) as caught:
         shot(s={"type": "ply", "filename": "gone.ply"})

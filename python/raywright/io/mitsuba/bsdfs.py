@@ -72,18 +72,22 @@ def sides(plugin: Plugin, uv: Uv) -> Sides:
 
 
 def turned_round(given: Material, plugin: Plugin) -> Material:
-    """Return a material as it is on a surface whose normals point the other way."""
+    """Return a material as it is on a surface whose normals point the other way.
+
+    Raises
+    ------
+    ValueError
+        If it has bumps, or normals of its own: tells it of the plugin whose surface it is.
+    """
+    if isinstance(given, BumpMap | NormalMap):
+        plugin.fail("flip_normals with bumps or a normal map is not supported")
     if isinstance(given, TwoSided):
-        return TwoSided(given.back, given.front)
+        return TwoSided(turned_round(given.back, plugin), turned_round(given.front, plugin))
     if isinstance(given, Mask):
         return Mask(turned_round(given.material, plugin), given.opacity)
     if isinstance(given, Mix):
         return Mix(turned_round(given.a, plugin), turned_round(given.b, plugin), given.amount)
-    if isinstance(given, Dielectric):
-        return replace(given, ior=1 / given.ior)
-    if isinstance(given, BumpMap | NormalMap):
-        plugin.fail("flip_normals with bumps or a normal map is not supported")
-    return given
+    return replace(given, ior=1 / given.ior) if isinstance(given, Dielectric) else given
 
 
 def _diffuse(plugin: Plugin, uv: Uv) -> Sides:
