@@ -22,8 +22,6 @@ from .instance import Instance
 from .integrator import Integrator
 from .integrators import AmbientOcclusion, Direct, Distributed, Path, RayCast, Whitted
 from .interactions import Interactions, LightSamples, Rays, Scattered, power_heuristic
-from .io.load import load
-from .io.mitsuba import from_mitsuba
 from .io.pictures import check_writable
 from .lights import (
     ConstantEnvironment,
@@ -88,10 +86,12 @@ from .textures import (
     VertexColors,
     Wood,
 )
-from .viewer import Viewer, view
 
 if TYPE_CHECKING:
     from . import report
+    from .io.load import load
+    from .io.mitsuba import from_mitsuba
+    from .viewer import Viewer, view
 
 __all__ = [
     "AOVS",
@@ -209,11 +209,19 @@ __all__ = [
 
 
 if not TYPE_CHECKING:
+    # These are for those who ask for them: nothing else waits for their import.
+    _LATER = {
+        "Viewer": ".viewer",
+        "from_mitsuba": ".io.mitsuba",
+        "load": ".io.load",
+        "report": ".report",
+        "view": ".viewer",
+    }
 
     def __getattr__(name: str) -> Any:
-        # Reports are for those who ask for them: nothing else waits for their import.
-        if name == "report":
+        if name in _LATER:
             from importlib import import_module
 
-            return import_module(".report", __name__)
+            module = import_module(_LATER[name], __name__)
+            return module if name == "report" else getattr(module, name)
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

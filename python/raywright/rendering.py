@@ -148,7 +148,7 @@ def render(
         if not isinstance(checkpoint, str | os.PathLike):
             raise TypeError(f"checkpoint must be a path, got {type(checkpoint).__name__}")
         sampler = as_begun(sampler, held(checkpoint).get("sampler"))
-    sampler = with_budget(sampler, *limits, stop is not None)
+    sampler = with_budget(sampler, *limits, adaptive)
     if checkpoint is not None:
         identity = _identity(scene, camera, integrator, seed, adaptive, clamp, sampler, filter)
         kept = Checkpoints(checkpoint, identity)

@@ -28,7 +28,8 @@ class Stratified:
     ----------
     batch : int, optional
         Samples of a batch: 1, 2, 4, ... 64. If not given, the most of which the samples that are asked for
-        make at least 8 batches, and 32 from 256 samples on; 1 if time or `stop` may end it before.
+        make at least 8 batches, and 64 from 256 samples on, or half as many if the render is adaptive; 1
+        if time may end it before.
 
     Raises
     ------
@@ -54,7 +55,8 @@ class Halton:
     ----------
     batch : int, optional
         Samples of a batch: 1, 2, 4, ... 64. If not given, the most of which the samples that are asked for
-        make at least 8 batches, and 32 from 256 samples on; 1 if time or `stop` may end it before.
+        make at least 8 batches, and 64 from 256 samples on, or half as many if the render is adaptive; 1
+        if time may end it before.
 
     Raises
     ------
@@ -80,7 +82,8 @@ class Sobol:
     ----------
     batch : int, optional
         Samples of a batch: 1, 2, 4, ... 64. If not given, the most of which the samples that are asked for
-        make at least 8 batches, and 32 from 256 samples on; 1 if time or `stop` may end it before.
+        make at least 8 batches, and 64 from 256 samples on, or half as many if the render is adaptive; 1
+        if time may end it before.
 
     Raises
     ------
@@ -106,7 +109,8 @@ class Lattice:
     ----------
     batch : int, optional
         Samples of a batch: 1, 2, 4, ... 64. If not given, the most of which the samples that are asked for
-        make at least 8 batches, and 32 from 256 samples on; 1 if time or `stop` may end it before.
+        make at least 8 batches, and 64 from 256 samples on, or half as many if the render is adaptive; 1
+        if time may end it before.
 
     Raises
     ------
@@ -144,15 +148,16 @@ def as_begun(sampler: Sampler, begun: object) -> Sampler:
 
 
 def with_budget(
-    sampler: Sampler, samples: int | None, error: float | None, seconds: float | None, stoppable: bool = False
+    sampler: Sampler, samples: int | None, error: float | None, seconds: float | None, adaptive: bool
 ) -> Sampler:
     """Return the sampler with batches for these limits of a render, if it was given none."""
     if isinstance(sampler, Independent) or sampler.batch is not None:
         return sampler
-    if seconds is not None or stoppable:
-        # It takes two batches to tell an error, and a picture that is stopped early has few samples.
+    if seconds is not None:
+        # It takes two batches to tell an error, and a picture that is out of time has few samples.
         samples = None
     elif samples is None and error is not None:
         # Of the fewest samples that a render to an error takes, four batches.
         samples = 32
-    return replace(sampler, batch=_core.batch_for(samples))
+    # The samples of an adaptive picture are in halves, each with batches of its own.
+    return replace(sampler, batch=max(_core.batch_for(samples) // (1 + adaptive), 1))

@@ -38,7 +38,8 @@ def test_what_is_no_radiance_counts_as_black_and_is_counted(value):
 
 def test_a_picture_without_any_says_nothing():
     scene, camera = rw.scenes.cornell_box(width=4, height=4)
-    assert rw.render(scene, camera, Spoilt(2.0, 0.1), samples=16, progress=False).warnings == ()
+    how = {"samples": 16, "sampler": rw.Independent(), "progress": False}
+    assert rw.render(scene, camera, Spoilt(2.0, 0.1), **how).warnings == ()
 
 
 def anything(rng, most):
