@@ -44,8 +44,10 @@ def test_a_picture_comes_within_two_seconds_and_gets_better():
             assert time.monotonic() - began < 2
             assert first["state"] == "preview"
             assert pixels(first).std() > 10
-            early = until(events, lambda frame: frame["samples"] >= 2 and frame["state"] == "refining")
-            late = until(events, lambda frame: frame["samples"] >= 16)
+            early = until(
+                events, lambda frame: frame["state"] == "refining" and frame["error"][0] is not None
+            )
+            late = until(events, lambda frame: frame["samples"] >= 4 * early["samples"])
             assert late["number"] > early["number"]
             assert late["seconds"] > early["seconds"]
             assert late["error"][0] < 0.5 * early["error"][0]

@@ -78,10 +78,10 @@ def test_the_page_shows_a_picture_within_two_seconds_and_it_gets_better(page, kn
         assert left[0] > 1.5 * left[1]
         assert right[1] > right[0]
         _, early = shown(
-            page, f"+document.getElementById('samples').textContent >= 2 && {is_state('refining')}"
+            page, f"+document.getElementById('samples').textContent >= 8 && {is_state('refining')}"
         )
         error = float(told(page, "error"))
-        later, late = shown(page, "+document.getElementById('samples').textContent >= 16")
+        later, late = shown(page, "+document.getElementById('samples').textContent >= 32")
         assert later > number
         assert float(told(page, "error")) < 0.5 * error
         assert np.square(late - truth).mean() < 0.5 * np.square(early - truth).mean()
