@@ -31,16 +31,22 @@ BLOCK = 16
 class Raywright:
     """raywright on all cores."""
 
-    name = "raywright"
-
-    def __init__(self, scene, camera, integrator):
+    def __init__(self, scene, camera, integrator, sampler):
+        self.name = f"raywright {type(sampler).__name__.lower()}"
+        self.sampler = sampler
         self.scene, self.camera, self.integrator = scene, camera, integrator
 
     def render(self, samples, seed):
         """Return a picture and the seconds that it took."""
         start = time.perf_counter()
         image = rw.render(
-            self.scene, self.camera, self.integrator, samples=samples, seed=seed, progress=False
+            self.scene,
+            self.camera,
+            self.integrator,
+            samples=samples,
+            seed=seed,
+            sampler=self.sampler,
+            progress=False,
         )
         return image.rgb.astype(np.float64), time.perf_counter() - start
 
@@ -96,11 +102,13 @@ def _blocks(picture):
 def contest(name, make, arguments):
     """Render a scene by all in turns; returns lines of a table."""
     scene, camera, depth = make()
-    ours = Raywright(scene, camera, rw.Path(max_depth=depth))
+    ours = [
+        Raywright(scene, camera, rw.Path(max_depth=depth), kind) for kind in (rw.Independent(), rw.Sobol())
+    ]
     with_mitsuba = importlib.util.find_spec("mitsuba") is not None
     others = [Mitsuba(scene, camera, depth, sampler) for sampler in SAMPLERS] if with_mitsuba else []
-    mine, blocks, errors = reference(ours, arguments.reference, 8)
-    truths = {ours.name: mine}
+    mine, blocks, errors = reference(ours[-1], arguments.reference, 8)
+    truths = {engine.name: mine for engine in ours}
     if others:
         theirs, other_blocks, other_errors = reference(others[0], arguments.reference, 8)
         # Blocks in the tails of t with 7 degrees of freedom: beyond 8 standard errors, one in 10,000.
@@ -110,17 +118,17 @@ def contest(name, make, arguments):
             f"{off.max():.1f} at most"
         )
         truths |= {other.name: theirs for other in others}
-    records = {engine.name: ([], []) for engine in (ours, *others)}
-    for engine in (ours, *others):
+    records = {engine.name: ([], []) for engine in (*ours, *others)}
+    for engine in (*ours, *others):
         engine.render(arguments.samples, 0)
-    for turn, engine in product(range(arguments.repeat), (ours, *others)):
+    for turn, engine in product(range(arguments.repeat), (*ours, *others)):
         picture, seconds = engine.render(arguments.samples, turn + 1)
         records[engine.name][0].append(seconds)
         records[engine.name][1].append(relmse(picture, truths[engine.name]))
     rows = {}
     for engine, (seconds, wrong) in records.items():
         rows[engine] = (statistics.median(seconds), statistics.mean(wrong))
-    best = min((s * e for engine, (s, e) in rows.items() if engine != ours.name), default=math.nan)
+    best = min((math.prod(rows[other.name]) for other in others), default=math.nan)
     for engine, (seconds, wrong) in rows.items():
         ratio = f"{seconds * wrong / best:.2f}" if others else "-"
         yield f"| {name} | {engine} | {seconds:.3f} | {wrong:.2e} | {seconds * wrong:.2e} | {ratio} |"

@@ -20,12 +20,12 @@ from .image import HISTORY, ErrorEstimate, Image
 from .integrators import AnyIntegrator, Path, check_integrator
 from .notebook import display
 from .progress import Report, bar
-from .samplers import Sampler, Sobol, as_begun, with_budget
+from .samplers import Independent, Sampler, as_begun, with_budget
 from .scene import Scene
 from .snapshots import Snapshots
 
 _PATH = Path()
-_SAMPLER: Sampler = Sobol()
+_SAMPLER: Sampler = Independent()
 _FILTER: Filter = BoxFilter()
 _DEFAULT_SAMPLES = 64
 
@@ -91,9 +91,10 @@ def render(
     clamp : float, optional
         Radiance, in the largest channel, to which brighter samples are dimmed. It takes fireflies away, and
         light with them: the picture is biased, and says so. If not given, samples count as they are.
-    sampler : Sobol, Lattice, Halton, Stratified or Independent
-        Where the random numbers come from. A number of samples that is no multiple of its batches is best
-        avoided: part of a batch is right as well, but worth less.
+    sampler : Independent, Stratified, Halton, Sobol or Lattice
+        Where the random numbers come from. Those with batches take fewer samples to the same error, and tell
+        the error of a single pixel from fewer independent parts. A number of samples that is no multiple of
+        its batches is best avoided: part of a batch is right as well, but worth less.
     filter : BoxFilter, TriangleFilter, GaussianFilter, MitchellFilter, BlackmanHarrisFilter or LanczosFilter
         What part of the film a pixel is the mean of.
     checkpoint : str or path, optional

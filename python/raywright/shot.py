@@ -9,7 +9,7 @@ from .filters import BoxFilter, Filter
 from .image import Image
 from .integrators import AnyIntegrator, Path
 from .rendering import render
-from .samplers import Sampler, Sobol
+from .samplers import Independent, Sampler
 from .scene import Scene
 
 _LIMITS = ("samples", "error", "seconds")
@@ -31,7 +31,7 @@ class Shot:
         What turns rays into radiance.
     samples : int, optional
         Samples per pixel; None leaves it to `render`.
-    sampler : Sobol, Lattice, Halton, Stratified or Independent
+    sampler : Independent, Stratified, Halton, Sobol or Lattice
         Where the random numbers come from.
     filter : BoxFilter, TriangleFilter, GaussianFilter, MitchellFilter, BlackmanHarrisFilter or LanczosFilter
         What part of the film a pixel is the mean of.
@@ -45,7 +45,7 @@ class Shot:
     camera: AnyCamera
     integrator: AnyIntegrator = field(default_factory=Path)
     samples: int | None = None
-    sampler: Sampler = field(default_factory=Sobol)
+    sampler: Sampler = field(default_factory=Independent)
     filter: Filter = field(default_factory=BoxFilter)
     seed: int = 0
     aov: tuple[str, ...] = ()

@@ -9,7 +9,7 @@ from ..cameras import AnyCamera
 from ..filters import BoxFilter, Filter
 from ..integrators import AnyIntegrator, Path
 from ..rendering import check
-from ..samplers import Sampler, Sobol
+from ..samplers import Independent, Sampler
 from ..scene import Scene
 
 if TYPE_CHECKING:
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 __all__ = ["Viewer", "view"]
 
 _PATH = Path()
-_SAMPLER: Sampler = Sobol()
+_SAMPLER: Sampler = Independent()
 _FILTER: Filter = BoxFilter()
 _ERROR = 1e-4
 
