@@ -84,9 +84,10 @@ def test_interrupted_and_resumed_is_never_interrupted(box, path, how, often):
 
 def test_a_sampler_goes_on_with_the_batches_it_began_with(box, path):
     few, many = ({"samples": samples, "seed": 5, "progress": False} for samples in (16, 64))
-    rw.render(*box, **few, checkpoint=path)
+    begun = {"sampler": rw.Sobol(), "checkpoint": path}
+    rw.render(*box, **few, **begun)
     # Of 16 samples two make a batch, and of 64 eight.
-    assert_same(rw.render(*box, **many, checkpoint=path), rw.render(*box, **many, sampler=rw.Sobol(2)))
+    assert_same(rw.render(*box, **many, **begun), rw.render(*box, **many, sampler=rw.Sobol(2)))
     with pytest.raises(ValueError, match=r"it has sampler Sobol\(batch=2\) instead of Sobol\(batch=8\)"):
         rw.render(*box, **many, sampler=rw.Sobol(8), checkpoint=path)
 
@@ -102,7 +103,7 @@ def test_ctrl_c_writes_and_is_passed_on_within_a_pass(path):
     timer.join()
     of = rw.render(*box, seconds=1e-9, progress=False, checkpoint=path)
     # What was begun is done first, and no bit tells.
-    again = rw.render(*box, samples=of.samples, sampler=rw.Sobol(64), progress=False)
+    again = rw.render(*box, samples=of.samples, progress=False)
     assert np.array_equal(of.rgb, again.rgb)
     assert of.error == again.error
 
