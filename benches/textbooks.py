@@ -85,11 +85,11 @@ def sayings(of):
             for wall in ("straight wall", "diagonal wall")
         )
         yield (
-            "Turned by 45 degrees, the wall takes "
+            "Spatial splits repair rotation: turned by 45 degrees, the wall takes "
             + ", ".join(
                 f"{turned[name] / straight[name]:.2f} times the tests a ray of the {name}" for name in turned
             )
-            + ": spatial splits repair rotation."
+            + "."
         )
     if "turned room" in of:
         rows = (

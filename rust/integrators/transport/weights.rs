@@ -25,7 +25,7 @@ const SURVIVAL: f64 = 1.0 - 1.0 / 4096.0;
 /// q the second moment is (ρ²/q)ᵏ, whose sum over k is finite only for q > ρ². A fixed bound such as the usual 0.95
 /// breaks that in bright surroundings, and the error bar with it. By the root of the throughput, both settle at ρ,
 /// and up to a reflectance of 0.9998 the bound is never reached. The throughput itself would do as well, but ends
-/// paths earlier than pays: in a Cornell box it takes 10 % less time for 15 % more error, and leaves a longer tail.
+/// paths earlier than pays: less time for more than as much error, and a longer tail.
 #[inline]
 pub(super) fn survival(throughput: Rgb, scale: f64) -> f64 {
     (throughput.max_element() * scale).sqrt().min(SURVIVAL)
