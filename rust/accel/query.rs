@@ -53,7 +53,8 @@ pub trait Query {
     /// Writes down the answer for ray `i`; without a state, that of a ray that hits nothing.
     fn finish(&mut self, i: usize, answer: Option<(Along, Self::State)>);
 
-    /// Whether what is visited is counted.
+    /// Whether what is visited is counted. Such a question is asked of one ray after the other ([`Kernels::Single`]): other kernels have not
+    /// even the places where it would be told.
     const COUNTED: bool = false;
 
     /// A node is about to be tested.

@@ -15,6 +15,7 @@ mod ray;
 mod region;
 pub mod robust;
 mod tiling;
+pub mod turn;
 
 pub use aabb::Aabb;
 pub use affine::{Affine, Singular};

@@ -2,9 +2,10 @@
 
 use super::Rgb;
 use crate::math::Frame;
+use crate::math::turn::sin_cos_turn;
 use crate::sampling::warp;
 use glam::DVec3;
-use std::f64::consts::{FRAC_1_PI, TAU};
+use std::f64::consts::FRAC_1_PI;
 
 /// How much of each there is, and how often each is drawn from.
 #[derive(Clone, Copy, Debug)]
@@ -57,7 +58,7 @@ pub(super) fn power_cosine(axis: DVec3, exponent: f64, u: [f64; 2]) -> DVec3 {
     // 1 − cos by expm1, so that a sharp lobe's width is not rounded away.
     let depth = -(u[1].ln() / (exponent + 1.0)).exp_m1();
     let radius = (depth * (2.0 - depth)).max(0.0).sqrt();
-    let (sin, cos) = (TAU * u[0]).sin_cos();
+    let [sin, cos] = sin_cos_turn(u[0]);
     Frame::new(axis).to_world(DVec3::new(radius * cos, radius * sin, 1.0 - depth))
 }
 
@@ -66,7 +67,7 @@ pub(super) fn power_cosine(axis: DVec3, exponent: f64, u: [f64; 2]) -> DVec3 {
 #[inline]
 pub(super) fn grazing(scale: f64, u: [f64; 2]) -> DVec3 {
     let square = (scale * scale * (u[1] * (scale * scale).recip().ln_1p()).exp_m1()).min(1.0);
-    let (sin, cos) = (TAU * u[0]).sin_cos();
+    let [sin, cos] = sin_cos_turn(u[0]);
     let radius = (1.0 - square).sqrt();
     DVec3::new(radius * cos, radius * sin, square.sqrt())
 }

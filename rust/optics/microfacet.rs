@@ -1,7 +1,8 @@
 //! Surfaces made of small mirrors.
 
+use crate::math::turn::sin_cos_turn;
 use glam::DVec3;
-use std::f64::consts::{FRAC_1_PI, TAU};
+use std::f64::consts::FRAC_1_PI;
 
 /// The distribution of slopes that Trowbridge and Reitz found (1975), later named GGX (Walter et al., "Microfacet Models for
 /// Refraction through Rough Surfaces", 2007), with roughness α along x and along y; heights are independent and masking is
@@ -89,7 +90,7 @@ impl Ggx {
         // The cap has heights from −w.z to 1. Its direction plus w has height (1 − u) (1 + w.z), here without cancellation.
         let depth = u[1] * (1.0 + w.z);
         let radius = (depth * (2.0 - depth)).max(0.0).sqrt();
-        let (sin, cos) = (TAU * u[0]).sin_cos();
+        let [sin, cos] = sin_cos_turn(u[0]);
         let h = DVec3::new(ax * (radius * cos + w.x), ay * (radius * sin + w.y), (1.0 - u[1]) * (1.0 + w.z));
         h.normalize()
     }
@@ -118,7 +119,7 @@ impl Ggx {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::f64::consts::PI;
+    use std::f64::consts::{PI, TAU};
 
     #[test]
     fn facets_cover_the_surface() {

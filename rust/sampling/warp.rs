@@ -1,34 +1,32 @@
 //! Maps from the unit square to directions and points, with their densities.
 
+use crate::math::turn::{sin_cos_eighth, sin_cos_turn};
 use glam::{DVec2, DVec3};
-use std::f64::consts::{FRAC_1_PI, FRAC_PI_2, FRAC_PI_4, TAU};
+use std::f64::consts::{FRAC_1_PI, FRAC_PI_4};
 
 /// A point of the unit disk, uniform in area; squares near each other in the square stay near each other
 /// (Shirley and Chiu, "A Low Distortion Map Between Disk and Square", 1997).
 #[inline]
 pub fn uniform_disk(u: [f64; 2]) -> DVec2 {
-    let (radius, angle) = concentric(u);
-    DVec2::from_angle(angle) * radius
+    let (radius, [sin, cos]) = concentric(u);
+    DVec2::new(radius * cos, radius * sin)
 }
 
-/// Radius and angle of the concentric map.
+/// Radius of the concentric map, and the sine and the cosine of its angle.
 #[inline]
-fn concentric(u: [f64; 2]) -> (f64, f64) {
+fn concentric(u: [f64; 2]) -> (f64, [f64; 2]) {
     let (a, b) = (2.0 * u[0] - 1.0, 2.0 * u[1] - 1.0);
-    if a.abs() > b.abs() {
-        (a, FRAC_PI_4 * (b / a))
-    } else if b != 0.0 {
-        (b, FRAC_PI_2 - FRAC_PI_4 * (a / b))
-    } else {
-        (0.0, 0.0)
-    }
+    let wide = a.abs() > b.abs();
+    let (radius, other) = if wide { (a, b) } else { (b, a) };
+    // An eighth of a turn at most to either side of an axis.
+    let [sin, cos] = sin_cos_eighth(if radius == 0.0 { 0.0 } else { FRAC_PI_4 * (other / radius) });
+    (radius, if wide { [sin, cos] } else { [cos, sin] })
 }
 
 /// A direction about +z with density cos θ / π (Malley's method).
 #[inline]
 pub fn cosine_hemisphere(u: [f64; 2]) -> DVec3 {
-    let (radius, angle) = concentric(u);
-    let (sin, cos) = angle.sin_cos();
+    let (radius, [sin, cos]) = concentric(u);
     // The product keeps the digits of a small height that 1 − r² would cancel, so a direction never lies in the plane.
     DVec3::new(radius * cos, radius * sin, ((1.0 - radius) * (1.0 + radius)).sqrt())
 }
@@ -43,7 +41,7 @@ pub fn cosine_hemisphere_pdf(direction: DVec3) -> f64 {
 #[inline]
 pub fn uniform_sphere(u: [f64; 2]) -> DVec3 {
     let z = 1.0 - 2.0 * u[0];
-    let (sin, cos) = (TAU * u[1]).sin_cos();
+    let [sin, cos] = sin_cos_turn(u[1]);
     // 1 − z² = 4 u (1 − u), without the cancellation at the poles.
     let radius = 2.0 * (u[0] * (1.0 - u[0])).sqrt();
     DVec3::new(radius * cos, radius * sin, z)
@@ -66,7 +64,7 @@ mod tests {
     use super::super::Sampler;
     use super::super::chi_square::assert_frequencies;
     use super::*;
-    use std::f64::consts::PI;
+    use std::f64::consts::{PI, TAU};
 
     const DRAWS: u32 = 200_000;
 

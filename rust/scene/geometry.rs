@@ -1,5 +1,6 @@
 //! The surfaces of a scene: every mesh's corners and faces, one after the other, and shapes among them.
 
+use super::facets::Facets;
 use super::per_vertex::PerVertex;
 use super::textures::Needs;
 use super::{Copies, Group, Surfaces};
@@ -198,6 +199,8 @@ pub struct Geometry {
     colours: PerVertex<[f32; 3]>,
     /// The first primitive of each shape, and the number of all at the end.
     first: Vec<u32>,
+    /// What is asked of a face at every hit, where there are few.
+    facets: Facets,
     dropped: usize,
 }
 
@@ -303,6 +306,7 @@ impl Geometry {
         let is_finite = |v: u32| all.vertices.get(v).is_finite();
         let is_dropped = |face: &&[u32; 3]| **face != NO_FACE && !face.iter().all(|&v| is_finite(v));
         all.dropped = all.faces.iter().filter(is_dropped).count();
+        all.facets = Facets::new(all.count(), |primitive| (all.computed_normal(primitive), all.located(primitive).0));
         all
     }
 
@@ -369,12 +373,20 @@ impl Geometry {
             + self.colours.bytes()
             + self.faces.len() * size_of::<[u32; 3]>()
             + self.first.len() * size_of::<u32>()
+            + self.facets.bytes()
             + self.others.as_ref().map_or(0, |others| others.bytes(seen))
     }
 
     /// Which shape a primitive belongs to, and its index there.
     #[inline]
     pub fn locate(&self, primitive: u32) -> (u32, u32) {
+        match self.facets.get(primitive) {
+            Some(facet) => (facet.shape, primitive - self.first[facet.shape as usize]),
+            None => self.located(primitive),
+        }
+    }
+
+    fn located(&self, primitive: u32) -> (u32, u32) {
         if self.shapes() == 1 {
             return (0, primitive);
         }
@@ -422,6 +434,10 @@ impl Geometry {
 
     /// The unit normal of a triangle; NaN for one without area.
     pub fn normal(&self, primitive: u32) -> DVec3 {
+        self.facets.get(primitive).map_or_else(|| self.computed_normal(primitive), |facet| facet.normal)
+    }
+
+    fn computed_normal(&self, primitive: u32) -> DVec3 {
         let n = self.area_vector(primitive);
         // Scaling by the largest component first keeps the squares of tiny and huge triangles in range.
         let n = n / n.abs().max_element();
@@ -458,9 +474,12 @@ impl Geometry {
         let position = a * weights[0] + b * weights[1] + c * weights[2];
         // Weights carry up to 3 roundings, products and sums 3 more: 6 u of each term in all (pbrt 6.8.5 calls it γ₇).
         let error = 8.0 * f64::EPSILON * a.abs().max(b.abs()).max(c.abs()).max_element();
-        let normal = self.normal(primitive);
+        let (normal, shape) = match self.facets.get(primitive) {
+            Some(facet) => (facet.normal, facet.shape),
+            None => (self.computed_normal(primitive), self.located(primitive).0),
+        };
         let shading_normal = self.shading_normal(primitive, weights, normal);
-        SurfacePoint { position, error, normal, shading_normal, shape: self.locate(primitive).0, inner: None }
+        SurfacePoint { position, error, normal, shading_normal, shape, inner: None }
     }
 
     /// The shading normals of a triangle's corners, if there are any.

@@ -4,6 +4,7 @@ pub mod cameras;
 mod compiled;
 mod copies;
 mod description;
+mod facets;
 mod first_hits;
 #[cfg(test)]
 pub(crate) mod fixtures;

@@ -1,6 +1,7 @@
 //! Triangles that shine, as they are seen from a place.
 
 use crate::math::DVec3;
+use crate::math::turn::sin_cos;
 use crate::sampling::warp;
 
 /// A triangle as it is seen from a place. Where it is near, directions to it are drawn evenly by solid angle, after Arvo ("Stratified
@@ -115,7 +116,7 @@ impl Spherical {
     fn sample(&self, edge: DVec3, u: [f64; 2]) -> DVec3 {
         let Self { a, b, chord, solid_angle } = *self;
         let tangent = (edge - a * a.dot(edge)).normalize();
-        let (sin, cos) = (0.5 * solid_angle * u[0]).sin_cos();
+        let [sin, cos] = sin_cos(0.5 * solid_angle * u[0]);
         let along = sin * (1.0 + a.dot(b));
         let against = cos * a.dot(chord.cross(tangent)).abs() - sin * chord.dot(tangent);
         let length = along * along + against * against;

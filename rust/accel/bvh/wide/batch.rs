@@ -21,6 +21,7 @@ impl<const N: usize, L: Leaves<N>, Q: Query> Kernel<N> for Batch<'_, N, L, Q> {
 
     #[inline(always)]
     fn run<S: Simd<N>>(self, simd: S) {
+        const { assert!(!Q::COUNTED || matches!(Q::KERNELS, Kernels::Single), "only single rays count") };
         let Self { bvh, rays, query } = self;
         if bvh.nodes.is_empty() {
             for i in 0..rays.len() {
@@ -31,6 +32,7 @@ impl<const N: usize, L: Leaves<N>, Q: Query> Kernel<N> for Batch<'_, N, L, Q> {
         } else if Q::KERNELS == Kernels::All && coherence::is_coherent(rays, bvh.region.radius) {
             packet::answer(simd, bvh, rays, query);
         } else {
+            // Scattered rays sorted by octant, so that packets would take them, are slower as soon as a tree has two nodes.
             wave::answer(simd, bvh, rays, query);
         }
     }

@@ -78,7 +78,6 @@ pub fn answer<const N: usize, L: Leaves<N>, S: Simd<N>, Q: Query>(
         for &place in &places[..len] {
             let place = place as usize;
             let ray = &mut boxes[place & (WAVE - 1)];
-            Q::visit_node(&mut flights[place].state);
             let node = &bvh.nodes[ray.at.node()];
             if Q::NEAREST_FIRST {
                 ray.enter::<N, S, true>(simd, node, &mut stacks);
@@ -97,7 +96,6 @@ pub fn answer<const N: usize, L: Leaves<N>, S: Simd<N>, Q: Query>(
             let mut done = ray.at == Packed::NONE;
             if !done {
                 let (first, count) = ray.at.leaf();
-                Q::visit_leaf(state, count);
                 let before = Q::limit(state);
                 let offer = |p, candidate| query.offer(state, p, candidate);
                 done = bvh.leaves.meet(simd, first, count, lanes, edges, offer);
