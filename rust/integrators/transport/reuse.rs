@@ -26,9 +26,25 @@ pub(super) struct Reuse {
     first: Vec<First>,
     /// Second points, in the order of their samples.
     second: Vec<Second>,
+    pairs: Vec<Pair>,
+    /// Rays in bundles of [`BUNDLE`] with one origin, and those that are too few for one.
+    bundles: Sight,
+    strays: Sight,
+}
+
+/// Rays, and whether something lies on the way.
+#[derive(Default)]
+struct Sight {
     rays: Vec<Ray>,
     occluded: Vec<bool>,
-    pairs: Vec<Pair>,
+}
+
+impl Sight {
+    fn look(&mut self, scene: &Scene) {
+        self.occluded.resize(self.rays.len(), false);
+        scene.occluded(&self.rays, &mut self.occluded);
+        self.rays.clear();
+    }
 }
 
 /// A first point, which takes.
@@ -57,13 +73,27 @@ struct Second {
 struct Pair {
     /// By the number of the sample.
     first: u32,
+    /// The number of the ray between them, counted through bundles or strays; `KNOWN` where it need not be asked.
+    ray: u32,
+    is_stray: bool,
     /// G, if it does.
     geometry: f64,
     fading: f64,
 }
 
+impl Pair {
+    const KNOWN: u32 = u32::MAX;
+}
+
 /// Rays that are sent together: enough to keep the accelerator's kernels full, few enough to stay in cache.
 const TOGETHER: usize = 4096;
+
+/// Rays that the accelerator takes through its tree as one packet. With those of two origins in it, none would go together, so that a
+/// few of the same are added to fill it.
+const BUNDLE: usize = 16;
+
+/// Fewer rays than these go alone.
+const FEW: usize = 5;
 
 impl First {
     const NONE: Self = Self {
@@ -110,7 +140,8 @@ impl Reuse {
         self.first.resize(samples, First::NONE);
         self.second.clear();
         self.pairs.clear();
-        self.rays.clear();
+        self.bundles.rays.clear();
+        self.strays.rays.clear();
     }
 
     /// A path comes to a surface. Where what it finds from there on is to be shared, it goes on with it as that of sample number
@@ -163,16 +194,30 @@ impl Reuse {
                     continue;
                 }
                 let before = self.pairs.len();
+                let rays = &mut self.bundles.rays;
                 for i in group.clone() {
                     let Some((geometry, fading)) = self.first[i as usize].geometry(second) else { continue };
-                    self.pairs.push(Pair { first: i, geometry, fading });
+                    // That a path sees where it has come to is known.
+                    let ray = if i == second.sample { Pair::KNOWN } else { rays.len() as u32 };
+                    self.pairs.push(Pair { first: i, ray, is_stray: false, geometry, fading });
                     if i != second.sample {
-                        self.rays.push(second.departure.segment(&self.first[i as usize].departure));
+                        rays.push(second.departure.segment(&self.first[i as usize].departure));
+                    }
+                }
+                let left = rays.len() % BUNDLE;
+                if left >= FEW {
+                    rays.resize(rays.len() + BUNDLE - left, rays[rays.len() - 1]);
+                } else if left > 0 {
+                    let (start, to) = (rays.len() - left, self.strays.rays.len());
+                    self.strays.rays.extend(rays.drain(start..));
+                    for pair in self.pairs[before..].iter_mut().filter(|p| p.ray != Pair::KNOWN && p.ray >= start as u32) {
+                        pair.ray = pair.ray - start as u32 + to as u32;
+                        pair.is_stray = true;
                     }
                 }
                 seconds.push((second.sample, self.pairs.len() - before));
             }
-            if self.rays.len() >= TOGETHER {
+            if self.bundles.rays.len() + self.strays.rays.len() >= TOGETHER {
                 self.give(scene, &mut seconds, found, radiance);
             }
         }
@@ -181,16 +226,16 @@ impl Reuse {
 
     /// Shares out what was found from those second points on, of so many pairs each.
     fn give(&mut self, scene: &Scene, seconds: &mut Vec<(u32, usize)>, found: &[Rgb], radiance: &mut [Rgb]) {
-        self.occluded.resize(self.rays.len(), false);
-        scene.occluded(&self.rays, &mut self.occluded);
-        let (mut pairs, mut occluded) = (&mut self.pairs[..], self.occluded.iter());
+        self.bundles.look(scene);
+        self.strays.look(scene);
+        let mut pairs = &mut self.pairs[..];
         for (sample, count) in seconds.drain(..) {
             let (of, rest) = pairs.split_at_mut(count);
             pairs = rest;
             let mut sum = 0.0;
             for pair in &mut *of {
-                // That a path sees where it has come to is known.
-                if pair.first != sample && occluded.next() == Some(&true) {
+                let sight = if pair.is_stray { &self.strays } else { &self.bundles };
+                if pair.ray != Pair::KNOWN && sight.occluded[pair.ray as usize] {
                     pair.geometry = 0.0;
                 }
                 sum += pair.geometry;
@@ -202,6 +247,5 @@ impl Reuse {
             }
         }
         self.pairs.clear();
-        self.rays.clear();
     }
 }
