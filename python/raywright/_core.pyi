@@ -27,6 +27,7 @@ __all__ = [
     "interactions",
     "matrix_trouble",
     "metals",
+    "patch",
     "plan",
     "points",
     "polygon_trouble",
@@ -190,11 +191,23 @@ class Rendering:
     """A render: its picture so far, and what it takes to go on with it."""
 
     def __new__(
-        cls, camera: Any, threads: int | None, adaptive: bool, clamp: float | None, sampler: Any
+        cls,
+        camera: Any,
+        threads: int | None,
+        adaptive: bool,
+        clamp: float | None,
+        sampler: Any,
+        patch: int,
     ) -> Rendering: ...
     @staticmethod
     def from_bytes(
-        data: bytes, camera: Any, threads: int | None, adaptive: bool, clamp: float | None, sampler: Any
+        data: bytes,
+        camera: Any,
+        threads: int | None,
+        adaptive: bool,
+        clamp: float | None,
+        sampler: Any,
+        patch: int,
     ) -> Rendering:
         """From what `to_bytes` gave; a ValueError says why bytes are not that, whoever made them."""
     @staticmethod
@@ -294,6 +307,9 @@ class Rendering:
         """Add the samples that `expose` took."""
 
 VERSION: str
+
+def patch(scene: CompiledScene, integrator: Any) -> int:
+    """Return the side of the square patches of pixels whose samples an integrator takes together."""
 
 def expose(
     scene: CompiledScene,

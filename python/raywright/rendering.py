@@ -153,7 +153,8 @@ def render(
     if checkpoint is not None:
         identity = _identity(scene, camera, integrator, seed, adaptive, clamp, sampler, filter)
         kept = Checkpoints(checkpoint, identity)
-    rendering = _begun(kept, camera, threads, adaptive, clamp, sampler)
+    patch = _patch(scene, integrator)
+    rendering = _begun(kept, camera, threads, adaptive, clamp, sampler, patch)
     if executor is None:
         # Here, so that what there is to warn of is told to the caller.
         scene._compiled()
@@ -339,6 +340,13 @@ def _identity(
     }
 
 
+def _patch(scene: Scene, integrator: AnyIntegrator) -> int:
+    """Return the side of the patches of pixels whose samples are taken together."""
+    if not isinstance(integrator, Path) or integrator.reuse == 1:
+        return 1
+    return _core.patch(scene._compiled(), integrator)
+
+
 def _begun(
     kept: Checkpoints | None,
     camera: AnyCamera,
@@ -346,13 +354,14 @@ def _begun(
     adaptive: bool,
     clamp: float | None,
     sampler: Sampler,
+    patch: int,
 ) -> _core.Rendering:
     """Return an empty render, or that of a checkpoint."""
     film = None if kept is None else kept.read(_core.Rendering.most_bytes(camera, adaptive))
     if kept is None or film is None:
-        return _core.Rendering(camera, threads, adaptive, clamp, sampler)
+        return _core.Rendering(camera, threads, adaptive, clamp, sampler, patch)
     try:
-        return _core.Rendering.from_bytes(film, camera, threads, adaptive, clamp, sampler)
+        return _core.Rendering.from_bytes(film, camera, threads, adaptive, clamp, sampler, patch)
     except ValueError as error:
         kept.refuse(f"is damaged: {error}")
 

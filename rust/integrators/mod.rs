@@ -40,6 +40,11 @@ pub trait Integrator: Send + Sync {
     /// the camera's rays, for the filtering of textures.
     fn worker<'a>(&'a self, scene: &'a Scene, footprint: Footprint) -> Box<dyn Worker + 'a>;
 
+    /// The side of the square patches of pixels whose samples of the same number work together; 1 where each sample is on its own.
+    fn patch(&self, _scene: &Scene) -> u32 {
+        1
+    }
+
     /// Whether workers must run on the thread that asked for the picture, as what is written in Python must. They are then
     /// handed batches of tens of thousands of samples, and may raise the cancel themselves to end the render.
     fn runs_on_caller(&self) -> bool {
@@ -53,4 +58,16 @@ pub trait Worker: Send {
     /// Writes the radiance that arrives along each ray. Each depends on its own sample only, not on the batch that it
     /// is in. Returns early, with nothing of use written, soon after `cancel` is raised.
     fn radiance(&mut self, samples: &mut [CameraSample], cancel: &Cancel, radiance: &mut [Rgb]);
+
+    /// As [`Worker::radiance`], of samples that stand in groups one after the other, of so many each. What arrives along a ray may
+    /// depend on all samples of its group, but on no others, and its mean not even on these.
+    fn radiance_in_groups(
+        &mut self,
+        samples: &mut [CameraSample],
+        _groups: &[u32],
+        cancel: &Cancel,
+        radiance: &mut [Rgb],
+    ) {
+        self.radiance(samples, cancel, radiance);
+    }
 }

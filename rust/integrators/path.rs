@@ -1,6 +1,6 @@
 //! Path tracing.
 
-use super::transport::Settings;
+use super::transport::{Settings, can_share};
 use super::{Integrator, Worker};
 use crate::scene::{Footprint, Kernel, Scene};
 
@@ -13,27 +13,37 @@ pub struct Path {
     pub max_depth: Option<u32>,
     /// Roulette is played from this number of bounces on.
     pub roulette_depth: u32,
+    /// The side of the square patches of pixels whose paths share what they find from their second surface on, where both that and the
+    /// first are diffuse; 1 for none ([`Integrator::patch`]).
+    pub reuse: u32,
 }
 
 impl Default for Path {
     fn default() -> Self {
-        Self { max_depth: None, roulette_depth: 4 }
+        Self { max_depth: None, roulette_depth: 4, reuse: 1 }
     }
 }
 
 impl Path {
-    fn settings(&self) -> Settings {
-        Settings::path(self.max_depth, self.roulette_depth)
+    fn settings(&self, scene: &Scene) -> Settings {
+        let shares = self.patch(scene) > 1;
+        Settings { shares, ..Settings::path(self.max_depth, self.roulette_depth) }
     }
 
     /// What one thread works with, compiled as this kernel, or as one that can more. Every kernel that suits a scene gives the same bits.
     pub fn worker_of<'a>(&self, scene: &'a Scene, footprint: Footprint, kernel: Kernel) -> Box<dyn Worker + 'a> {
-        self.settings().worker_of(scene, footprint, kernel)
+        self.settings(scene).worker_of(scene, footprint, kernel)
     }
 }
 
 impl Integrator for Path {
     fn worker<'a>(&'a self, scene: &'a Scene, footprint: Footprint) -> Box<dyn Worker + 'a> {
-        self.settings().worker(scene, footprint)
+        self.settings(scene).worker(scene, footprint)
+    }
+
+    /// 1 where nothing can be shared, see [`can_share`], or no path goes on from its second surface.
+    fn patch(&self, scene: &Scene) -> u32 {
+        let goes_on = self.max_depth.is_none_or(|depth| depth > 1);
+        if goes_on && can_share(scene) { self.reuse.max(1) } else { 1 }
     }
 }

@@ -36,6 +36,7 @@ impl<'a, 'py> FromPyObject<'a, 'py> for AnyIntegrator {
             "Path" => Box::new(Path {
                 max_depth: attribute(of, "max_depth")?,
                 roulette_depth: attribute(of, "roulette_depth")?,
+                reuse: attribute(of, "reuse")?,
             }),
             "Direct" => {
                 Box::new(Direct { light_samples: light_samples()?, surface_samples: attribute(of, "surface_samples")? })

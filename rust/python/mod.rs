@@ -69,7 +69,7 @@ mod _core {
     #[pymodule_export]
     use super::random::random_numbers;
     #[pymodule_export]
-    use super::render::{Rendering, expose};
+    use super::render::{Rendering, expose, patch};
     #[pymodule_export]
     use super::report::KernelContest;
     #[pymodule_export]

@@ -29,14 +29,16 @@ impl Rendering {
         adaptive: bool,
         clamp: Option<f64>,
         sampler: &Bound<'_, PyAny>,
+        patch: u32,
     ) -> PyResult<Self> {
         let cores = pool(threads).map_err(PyRuntimeError::new_err)?.current_num_threads();
         let settings = Settings { adaptive, clamp, sampler: samplers::sampler(sampler)?, ..Settings::default() };
-        Ok(Self(render::Rendering::new(settings.film(&*camera.0, cores))))
+        Ok(Self(render::Rendering::new(settings.film(&*camera.0, cores, patch.max(1)))))
     }
 
     /// From what `to_bytes` gave; a `ValueError` says why bytes are not that.
     #[staticmethod]
+    #[allow(clippy::too_many_arguments)]
     fn from_bytes(
         py: Python<'_>,
         data: &[u8],
@@ -45,11 +47,12 @@ impl Rendering {
         adaptive: bool,
         clamp: Option<f64>,
         sampler: &Bound<'_, PyAny>,
+        patch: u32,
     ) -> PyResult<Self> {
         let pool = pool(threads).map_err(PyRuntimeError::new_err)?;
         let (width, height) = (camera.0.width(), camera.0.height());
         let batch = samplers::sampler(sampler)?.batch();
-        let read = || render::Rendering::from_bytes(data, width, height, batch, adaptive, clamp);
+        let read = || render::Rendering::from_bytes(data, width, height, batch, adaptive, clamp, patch.max(1));
         py.detach(|| pool.install(read)).map(Self).map_err(malformed)
     }
 
@@ -242,6 +245,12 @@ impl Chosen {
     fn written(&self) -> Option<&Written> {
         if let Self::Written(written) = self { Some(written) } else { None }
     }
+}
+
+/// The side of the patches of pixels whose samples an integrator takes together.
+#[pyfunction]
+pub fn patch(scene: &Bound<'_, CompiledScene>, integrator: AnyIntegrator) -> u32 {
+    integrator.0.patch(&scene.get().0)
 }
 
 /// Takes the samples that a request of `Rendering.request` wants, and gives what `Rendering.take` takes.

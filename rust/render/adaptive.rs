@@ -26,6 +26,8 @@ use rayon::prelude::*;
 /// as much is lost as is won. In a Cornell box, whose optimum would need 1.5 times fewer samples than the same number
 /// everywhere, 1.3 to 1.35 of these are had.
 ///
+/// Pixels of a patch take their samples together, so they have as many, by the mean of what they would have each.
+///
 /// How many samples a cell has depends on the seed and on the mean number of samples alone, not on passes or threads.
 #[derive(Clone, Debug)]
 pub(super) struct Adaptive {
@@ -35,6 +37,8 @@ pub(super) struct Adaptive {
     to: u32,
     /// Samples of each cell that are evidence when it ends.
     evidence: u32,
+    /// The side of the patches of pixels that get as many.
+    patch: u32,
     /// What each cell of each tile has when the epoch begins, and when it ends.
     shares: Vec<Vec<[u32; 2]>>,
 }
@@ -57,7 +61,7 @@ impl Adaptive {
         let first = Self::FIRST.max(2 * film.batch());
         film.take_evidence(first / 2);
         let shares = film.tiles().iter().map(|tile| vec![[0, first / 2]; tile.counts().len()]).collect();
-        Self { from: 0, to: first, evidence: first / 2, shares }
+        Self { from: 0, to: first, evidence: first / 2, patch: film.patch(), shares }
     }
 
     /// Mean samples of a pixel up to which a film that has `done` can go at once.
@@ -82,7 +86,7 @@ impl Adaptive {
     pub fn goal(&self, tile: usize, cell: usize, position: (u32, u32), samples: u32) -> u32 {
         let [start, end] = self.shares[tile][cell];
         let part = f64::from(samples - self.from) / f64::from(self.to - self.from);
-        start + (f64::from(end - start) * part + dither(position, cell % 2)) as u32
+        start + (f64::from(end - start) * part + dither(position, self.patch, cell % 2)) as u32
     }
 
     /// What was decided, as bytes.
@@ -142,18 +146,20 @@ impl Adaptive {
                     let pixel = y as usize * width + x as usize;
                     let [start, end] = &mut shares[cell];
                     let more = (level * weights[pixel]).clamp(limits[pixel][0], limits[pixel][1]) - f64::from(*start);
-                    *end = *start + batch * (more / f64::from(batch) + dither((x, y), half)) as u32;
+                    *end = *start + batch * (more / f64::from(batch) + dither((x, y), self.patch, half)) as u32;
                 }
             }
         }
         film.take_evidence(more);
-        *self = Self { from, to, evidence: self.evidence + more, shares };
+        *self = Self { from, to, evidence: self.evidence + more, patch: self.patch, shares };
     }
 }
 
 /// What is added to a number of samples before it is rounded down: evenly spread over neighbours, so that hardly any
-/// are lost or won in sum (the R2 sequence of Roberts, 2018), and one half apart for the halves of a pixel.
-fn dither((x, y): (u32, u32), half: usize) -> f64 {
+/// are lost or won in sum (the R2 sequence of Roberts, 2018), and one half apart for the halves of a pixel. Neighbours are patches of so
+/// many pixels a side.
+fn dither((x, y): (u32, u32), patch: u32, half: usize) -> f64 {
+    let (x, y) = (x / patch, y / patch);
     (f64::from(x) * 0.754_877_666_246_692_8 + f64::from(y) * 0.569_840_290_998_053_3 + 0.5 * (1 - half) as f64).fract()
 }
 
@@ -172,7 +178,7 @@ fn weights(film: &Film, half: usize, samples: u32) -> Vec<f64> {
             variance.dot(Denominators::new(&cross, variance, count).inverse)
         })
         .collect();
-    let mut weights = smoothed(&errors, width);
+    let mut weights = in_patches(smoothed(&errors, width), width, film.patch() as usize);
     weights.par_iter_mut().for_each(|weight| *weight = weight.sqrt());
     let mean = ordered_sum(weights.len(), |i| weights[i]) / weights.len() as f64;
     weights.par_iter_mut().for_each(|weight| *weight = if mean > 0.0 { *weight + Adaptive::LEAST * mean } else { 1.0 });
@@ -193,6 +199,24 @@ fn smoothed(values: &[f64], width: usize) -> Vec<f64> {
         .into_par_iter()
         .map(|i| (0..5).map(|k| KERNEL[k] * across[at(i / width, k, height) * width + i % width]).sum())
         .collect()
+}
+
+/// The mean over each patch of so many values a side, at each of its places.
+fn in_patches(mut values: Vec<f64>, width: usize, patch: usize) -> Vec<f64> {
+    if patch > 1 && width > 0 {
+        values.par_chunks_mut(patch * width).for_each(|band| {
+            for left in (0..width).step_by(patch) {
+                let columns = left..width.min(left + patch);
+                let mut sum = 0.0;
+                for row in band.chunks(width) {
+                    sum += row[columns.clone()].iter().sum::<f64>();
+                }
+                let mean = sum / (columns.len() * (band.len() / width)) as f64;
+                band.chunks_mut(width).for_each(|row| row[columns.clone()].fill(mean));
+            }
+        });
+    }
+    values
 }
 
 /// The level at which weights times it, each between its limits, sum up to `total`.

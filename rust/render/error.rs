@@ -33,25 +33,33 @@ pub(super) fn estimate(film: &Film) -> Option<ErrorEstimate> {
     }
     let means = film.means();
     let width = film.width() as usize;
-    // Rows are summed on all cores, and their sums in order, so that the estimate does not depend on the threads.
-    let rows: Vec<Sums> = (0..film.height())
+    let patch = film.patch();
+    // Rows of patches are summed on all cores, and their sums in order, so that the estimate does not depend on the threads.
+    let bands: Vec<Sums> = (0..film.height().div_ceil(patch))
         .into_par_iter()
         .map_init(
             || vec![Spread::default(); width],
-            |spreads, y| {
-                film.spreads(y, spreads);
-                let mut row = Sums::default();
-                for (x, spread) in spreads.iter().enumerate() {
-                    let cross = cross(&means, width, x, y as usize);
-                    row.add(&Denominators::new(&cross, spread.variance, spread.batches), spread);
+            |spreads, band| {
+                let mut patches = vec![Patch::default(); width.div_ceil(patch as usize)];
+                for y in band * patch..film.height().min((band + 1) * patch) {
+                    film.spreads(y, spreads);
+                    for (x, spread) in spreads.iter().enumerate() {
+                        let cross = cross(&means, width, x, y as usize);
+                        let denominators = Denominators::new(&cross, spread.variance, spread.batches);
+                        patches[x / patch as usize].add(&denominators, spread);
+                    }
                 }
-                row
+                let mut sums = Sums::default();
+                for patch in &patches {
+                    sums.add(patch);
+                }
+                sums
             },
         )
         .collect();
     let mut all = Sums::default();
-    for row in &rows {
-        all.join(row);
+    for band in &bands {
+        all.join(band);
     }
     Some(all.estimate(3.0 * means.len() as f64))
 }
@@ -118,7 +126,7 @@ impl Denominators {
     }
 }
 
-/// Sums over pixels.
+/// Sums over patches.
 #[derive(Clone, Copy, Default)]
 struct Sums {
     /// The errors.
@@ -132,15 +140,33 @@ struct Sums {
     largest: Largest,
 }
 
-impl Sums {
+/// Sums over the pixels of a patch.
+#[derive(Clone, Copy, Default)]
+struct Patch {
+    error: f64,
+    own: f64,
+    /// What the largest batches bring, of each kind of cell: those of neighbours mostly are the same, which all of them share.
+    peaks: [f64; 2],
+}
+
+impl Patch {
     #[inline]
     fn add(&mut self, denominators: &Denominators, spread: &Spread) {
-        let error = spread.variance.dot(denominators.inverse);
-        self.error += error;
-        self.squares += error * error;
+        self.error += spread.variance.dot(denominators.inverse);
         self.own += spread.variance.dot(denominators.own);
-        for peak in spread.peaks {
-            let peak = peak.dot(denominators.inverse);
+        for (sum, peak) in self.peaks.iter_mut().zip(spread.peaks) {
+            *sum += peak.dot(denominators.inverse);
+        }
+    }
+}
+
+impl Sums {
+    #[inline]
+    fn add(&mut self, patch: &Patch) {
+        self.error += patch.error;
+        self.squares += patch.error * patch.error;
+        self.own += patch.own;
+        for peak in patch.peaks {
             self.peaks += peak * peak;
             self.largest.add(peak);
         }
@@ -157,7 +183,8 @@ impl Sums {
     /// The estimate, over so many values in all.
     ///
     /// Three things are uncertain. The true error of each pixel is one draw of (x − μ)², whose variance is twice the square
-    /// of its mean; this is summed as if channels err together, as they nearly do, and pixels apart, as they do. The
+    /// of its mean; this is summed as if channels err together, as they nearly do, and patches apart, as they do. Pixels of a patch
+    /// that take samples together err together: by how much is not known, and the interval is a little wide where it is not all. The
     /// estimate is a sum over samples, of which the largest of each cell make most of its variance. And the denominators are in doubt by as much as choosing them has changed. An error is never negative, and a
     /// factor too large as likely as too small, so the interval is one of factors.
     fn estimate(&self, count: f64) -> ErrorEstimate {

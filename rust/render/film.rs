@@ -13,6 +13,9 @@ use rayon::prelude::*;
 /// A film may be in halves: each pixel then has two *cells*, whose samples are independent of each other and may differ in
 /// number, and the pixel is the mean of the two cells' means. What a film in halves is good for is told in `adaptive.rs`.
 ///
+/// Samples of the same number in a *patch*, a square of pixels, may have been taken together. A tile holds whole patches, and where the error
+/// comes from in `error.rs`, a patch counts as one.
+///
 /// Sums depend on the order of adding, so the order is part of the film: samples are added up one by one in blocks of
 /// 16, and blocks one by one. Hence how samples are split into passes, who works on a tile and how large tiles are does
 /// not change a bit, and neither does [`Film::append`] with films of single blocks, wherever these were made.
@@ -24,6 +27,7 @@ pub struct Film {
     batch: u32,
     halves: bool,
     clamp: Option<f64>,
+    patch: u32,
     samples: u32,
     tiles: Vec<FilmTile>,
 }
@@ -57,7 +61,18 @@ impl Film {
         clamp: Option<f64>,
     ) -> Self {
         assert!(side > 0 && batch.is_power_of_two(), "tiles hold pixels, and batches fill blocks");
-        Self { width, height, side, batch, halves, clamp, samples: 0, tiles: Vec::new() }
+        Self { width, height, side, batch, halves, clamp, patch: 1, samples: 0, tiles: Vec::new() }
+    }
+
+    /// The same film, in patches of so many pixels a side, of which its tiles hold whole ones.
+    pub fn in_patches(self, patch: u32) -> Self {
+        assert!(patch > 0 && self.side.is_multiple_of(patch), "whole patches");
+        Self { patch, ..self }
+    }
+
+    /// The side of its patches.
+    pub fn patch(&self) -> u32 {
+        self.patch
     }
 
     /// How many tiles it has.
@@ -186,7 +201,7 @@ impl Film {
     /// # Panics
     /// If the films differ in shape, or are in halves, or the last block here is not full.
     pub fn append(&mut self, next: &Self) {
-        let shape = |f: &Self| (f.width, f.height, f.side, f.batch, f.halves);
+        let shape = |f: &Self| (f.width, f.height, f.side, f.batch, f.halves, f.patch);
         assert_eq!(shape(self), shape(next), "films of one shape");
         assert!(self.appends() && self.samples.is_multiple_of(self.block()), "whole blocks");
         self.samples += next.samples;

@@ -204,7 +204,7 @@ mod tests {
         for adaptive in [false, true] {
             let settings = settings(adaptive);
             let whole = render(&scene, &camera, &Path::default(), &settings, &mut Quiet).unwrap();
-            let mut rendering = Rendering::new(settings.film(&camera, 2));
+            let mut rendering = Rendering::new(settings.film(&camera, 2, 1));
             loop {
                 let done = rendering.film.samples();
                 let aim = rendering.next_aim(&settings.until, done, 0.0, 0.0);
@@ -231,7 +231,7 @@ mod tests {
     #[test]
     fn samples_are_not_taken_twice() {
         let (_, camera) = cornell(SIZE[0], SIZE[1]);
-        let mut rendering = Rendering::new(settings(false).film(&camera, 2));
+        let mut rendering = Rendering::new(settings(false).film(&camera, 2, 1));
         rendering.begin(16);
         let (first, second) = (rendering.request(0..5, Some(0), 16), rendering.request(0..5, Some(16), 32));
         let (first, second) = (answer(&first, 1), answer(&second, 1));
@@ -251,7 +251,7 @@ mod tests {
             cut: bool,
         ) {
             let (_, camera) = cornell(SIZE[0], SIZE[1]);
-            let mut rendering = Rendering::new(settings(adaptive).film(&camera, 2));
+            let mut rendering = Rendering::new(settings(adaptive).film(&camera, 2, 1));
             rendering.begin(4);
             let mut request = rendering.request(2..4, (!adaptive).then_some(0), 4);
             let change = |bytes: &mut Vec<u8>| {

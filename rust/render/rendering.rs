@@ -148,7 +148,7 @@ impl Rendering {
         cells * 2 * (33 * 8 + 4 * 4) + 20_000_000 + 1024
     }
 
-    /// From what [`Rendering::to_bytes`] gave for a film of the same size, batches, halves and clamping, whoever it comes from.
+    /// From what [`Rendering::to_bytes`] gave for a film of the same size, batches, halves, clamping and patches, whoever it comes from.
     pub fn from_bytes(
         bytes: &[u8],
         width: u32,
@@ -156,14 +156,16 @@ impl Rendering {
         batch: u32,
         halves: bool,
         clamp: Option<f64>,
+        patch: u32,
     ) -> Result<Self, Malformed> {
         let mut from = Reader(bytes);
         let side: u32 = from.word()?;
         check((1..=64).contains(&side), "tiles have no size")?;
+        check(side.is_multiple_of(patch), "tiles hold parts of patches")?;
         // The least that a film takes, so that memory is not taken for one that is not there.
         let tiles = width.div_ceil(side) as usize * height.div_ceil(side) as usize;
         check(bytes.len() / 32 >= tiles, "they end too early")?;
-        let mut this = Self::new(Film::new(width, height, side, batch, halves, clamp));
+        let mut this = Self::new(Film::new(width, height, side, batch, halves, clamp).in_patches(patch));
         this.film.read(&mut from)?;
         this.aim = from.word()?;
         this.seconds = from.float()?;
@@ -223,7 +225,7 @@ mod tests {
     }
 
     fn read(bytes: &[u8], adaptive: bool, clamp: Option<f64>) -> Result<Rendering, Malformed> {
-        Rendering::from_bytes(bytes, SIZE[0], SIZE[1], 1, adaptive, clamp)
+        Rendering::from_bytes(bytes, SIZE[0], SIZE[1], 1, adaptive, clamp, 1)
     }
 
     fn assert_same(a: &Rendering, b: &Rendering) {
@@ -263,8 +265,8 @@ mod tests {
         assert!(read(&bytes, false, None).is_ok());
         assert!(read(&bytes, true, None).is_err());
         assert!(read(&bytes, false, Some(1.0)).is_err());
-        assert!(Rendering::from_bytes(&bytes, 65_536, 65_536, 1, false, None).is_err());
-        assert!(Rendering::from_bytes(&bytes, SIZE[0], SIZE[1], 4, false, None).is_err());
+        assert!(Rendering::from_bytes(&bytes, 65_536, 65_536, 1, false, None, 1).is_err());
+        assert!(Rendering::from_bytes(&bytes, SIZE[0], SIZE[1], 4, false, None, 1).is_err());
     }
 
     /// Of a render that was even, and one that was adaptive.

@@ -45,13 +45,14 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// An empty film for the pictures of a camera, in tiles for so many threads: of 16 pixels a side, or less where that would
-    /// leave threads without work.
-    pub fn film(&self, camera: &dyn Camera, threads: usize) -> Film {
+    /// An empty film for the pictures of a camera, in patches as the integrator has them ([`Integrator::patch`]), and in tiles for so many
+    /// threads: of 16 pixels a side, or less where that would leave threads without work.
+    pub fn film(&self, camera: &dyn Camera, threads: usize, patch: u32) -> Film {
         let (width, height) = (camera.width(), camera.height());
         let tiles = |side: u32| width.div_ceil(side) as usize * height.div_ceil(side) as usize;
-        let side = [16, 8, 4].into_iter().find(|&side| tiles(side) >= 8 * threads).unwrap_or(2);
-        Film::new(width, height, side, self.sampler.batch(), self.adaptive, self.clamp)
+        let fits = |side: u32| side.is_multiple_of(patch) && tiles(side) >= 8 * threads;
+        let side = [16, 8, 4].into_iter().find(|&side| fits(side)).unwrap_or(2u32.next_multiple_of(patch));
+        Film::new(width, height, side, self.sampler.batch(), self.adaptive, self.clamp).in_patches(patch)
     }
 }
 
@@ -88,7 +89,7 @@ pub fn render(
     progress: &mut dyn Progress,
 ) -> Result<Rendering, RenderError> {
     let threads = pool(settings.threads).map_err(RenderError::Threads)?.current_num_threads();
-    let mut rendering = Rendering::new(settings.film(camera, threads));
+    let mut rendering = Rendering::new(settings.film(camera, threads, integrator.patch(scene)));
     while !go_on(&mut rendering, scene, camera, integrator, settings, progress)? {}
     Ok(rendering)
 }
@@ -251,7 +252,7 @@ mod tests {
 
     impl Integrator for Here {
         fn worker<'a>(&'a self, scene: &'a Scene, footprint: Footprint) -> Box<dyn Worker + 'a> {
-            static PATH: Path = Path { max_depth: None, roulette_depth: 4 };
+            static PATH: Path = Path { max_depth: None, roulette_depth: 4, reuse: 1 };
             Box::new(HereWorker(self, PATH.worker(scene, footprint)))
         }
         fn runs_on_caller(&self) -> bool {
@@ -386,7 +387,7 @@ mod tests {
             let here = Here(std::thread::current().id(), Default::default());
             let kinds: [&dyn Integrator; 2] = [&Path::default(), &here];
             for (integrator, ends) in kinds.into_iter().flat_map(|kind| [(kind, false), (kind, true)]) {
-                let mut rendering = Rendering::new(settings.film(&camera, 2));
+                let mut rendering = Rendering::new(settings.film(&camera, 2, 1));
                 let mut progress = Restless { looks: 0, every: 1, ends };
                 let mut left = 0;
                 loop {
@@ -410,7 +411,7 @@ mod tests {
     #[test]
     fn passes_too_short_for_a_look_can_be_left_in_between() {
         let (scene, camera) = cornell(2, 2);
-        let mut rendering = Rendering::new(settings(40, 1).film(&camera, 1));
+        let mut rendering = Rendering::new(settings(40, 1).film(&camera, 1, 1));
         let mut progress = Restless { looks: 0, every: 1, ends: false };
         let mut left = 0;
         while !go_on(&mut rendering, &scene, &camera, &Path::default(), &settings(40, 1), &mut progress).unwrap() {

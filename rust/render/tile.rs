@@ -101,6 +101,21 @@ impl FilmTile {
         (self.corner[0] + pixel % self.size[0], self.corner[1] + pixel / self.size[0])
     }
 
+    /// Its cells, patch by patch of so many pixels a side, and one kind of cell after the other.
+    pub(super) fn together(
+        &self,
+        patch: u32,
+    ) -> impl Iterator<Item = impl Iterator<Item = usize> + use<>> + use<> {
+        let ([width, height], kinds) = (self.size, if self.halves { 2 } else { 1 });
+        let columns = width.div_ceil(patch);
+        (0..columns * height.div_ceil(patch) * kinds).map(move |number| {
+            let (number, kind) = (number / kinds, number % kinds);
+            let (left, top) = (number % columns * patch, number / columns * patch);
+            let pixels = move |y: u32| (left..width.min(left + patch)).map(move |x| y * width + x);
+            (top..height.min(top + patch)).flat_map(pixels).map(move |pixel| (pixel * kinds + kind) as usize)
+        })
+    }
+
     /// Samples of each cell.
     pub fn counts(&self) -> &[u32] {
         &self.counts

@@ -9,6 +9,7 @@ use crate::sampling::SamplerKind;
 use crate::scene::{Camera, CameraRay, Footprint, Scene};
 use crate::workers::Cancel;
 use rayon::prelude::*;
+use std::ops::Range;
 use std::slice;
 use std::sync::{Mutex, PoisonError};
 
@@ -30,6 +31,8 @@ pub(super) struct Exposure<'a> {
     moves: bool,
     /// Whether samples are spread over the lens.
     uses_lens: bool,
+    /// The side of the patches of pixels whose samples work together.
+    patch: u32,
     /// Workers that no thread is using: their memory is used again.
     idle: Mutex<Vec<Bench<'a>>>,
 }
@@ -81,8 +84,20 @@ struct Bench<'a> {
     /// What each sample counts by the filter and the camera, those too that the camera sees nothing with, which nobody is asked for.
     weights: Vec<f64>,
     radiance: Vec<Rgb>,
+    /// How many samples work together, group by group; empty where each is on its own.
+    groups: Vec<u32>,
+    /// Samples in those.
+    grouped: usize,
     /// Whose the samples are.
     runs: Vec<Run>,
+}
+
+/// A cell whose samples are taken with those of others.
+struct Member {
+    cell: usize,
+    position: (u32, u32),
+    /// Those that it lacks.
+    samples: Range<u32>,
 }
 
 /// Consecutive samples of one cell.
@@ -101,7 +116,8 @@ impl<'a> Exposure<'a> {
     ) -> Self {
         let (sampler, filter, seed) = (settings.sampler, settings.filter.as_ref(), settings.seed);
         let (moves, uses_lens) = (scene.geometry().moves() || camera.uses_time(), camera.uses_lens());
-        Self { scene, camera, integrator, sampler, filter, seed, moves, uses_lens, idle: Mutex::default() }
+        let patch = integrator.patch(scene);
+        Self { scene, camera, integrator, sampler, filter, seed, moves, uses_lens, patch, idle: Mutex::default() }
     }
 
     /// Adds samples until the goal is reached, and says whether it was: it returns soon when it is asked to stop. Even then each
@@ -136,6 +152,8 @@ impl<'a> Exposure<'a> {
             samples: Vec::new(),
             weights: Vec::new(),
             radiance: Vec::new(),
+            groups: Vec::new(),
+            grouped: 0,
             runs: Vec::new(),
         })
     }
@@ -156,27 +174,29 @@ impl<'a> Exposure<'a> {
         stop: &Stop,
         poll: &mut dyn FnMut(),
     ) -> bool {
-        bench.samples.clear();
-        bench.weights.clear();
-        bench.runs.clear();
+        bench.clear();
         let before = goal.before();
+        let mut members: Vec<Member> = Vec::new();
         for index in 0..tiles.len() {
-            for cell in 0..tiles[index].counts().len() {
+            for cells in tiles[index].together(self.patch) {
                 let tile = &tiles[index];
-                let (position, mut nth) = (tile.position(cell), tile.counts()[cell]);
-                let end = goal.of(first + index, tile, cell);
-                while nth < end {
-                    let count = (end - nth).min((most - bench.weights.len()) as u32);
-                    for nth in nth..nth + count {
-                        let (sample, weight) = self.camera_sample(position, before + tiles[index].number(cell, nth));
-                        bench.weights.push(weight);
-                        if weight != 0.0 {
-                            bench.samples.push(sample);
-                        }
+                members.clear();
+                members.extend(cells.map(|cell| Member {
+                    cell,
+                    position: tile.position(cell),
+                    samples: tile.counts()[cell]..goal.of(first + index, tile, cell),
+                }));
+                let start = members.iter().map(|m| m.samples.start).min().unwrap_or(0);
+                let end = members.iter().map(|m| m.samples.end).max().unwrap_or(0);
+                for nth in start..end {
+                    let number = before + tiles[index].number(members[0].cell, nth);
+                    for member in members.iter().filter(|m| m.samples.contains(&nth)) {
+                        bench.add(index, member.cell, self.camera_sample(member.position, number));
                     }
-                    bench.runs.push(Run { tile: index, cell, count });
-                    nth += count;
-                    if bench.weights.len() == most {
+                    if self.patch > 1 {
+                        bench.end_group();
+                    }
+                    if bench.weights.len() + members.len() > most {
                         let developed = bench.develop(tiles, &stop.cancel);
                         poll();
                         if !developed || stop.is_raised() {
@@ -210,6 +230,36 @@ impl<'a> Exposure<'a> {
 }
 
 impl Bench<'_> {
+    fn clear(&mut self) {
+        self.samples.clear();
+        self.weights.clear();
+        self.groups.clear();
+        self.grouped = 0;
+        self.runs.clear();
+    }
+
+    /// Adds a sample of a cell.
+    #[inline]
+    fn add(&mut self, tile: usize, cell: usize, (sample, weight): (CameraSample, f64)) {
+        self.weights.push(weight);
+        if weight != 0.0 {
+            self.samples.push(sample);
+        }
+        match self.runs.last_mut() {
+            Some(run) if (run.tile, run.cell) == (tile, cell) => run.count += 1,
+            _ => self.runs.push(Run { tile, cell, count: 1 }),
+        }
+    }
+
+    /// The samples since the last group are one.
+    fn end_group(&mut self) {
+        let count = self.samples.len() - self.grouped;
+        if count > 0 {
+            self.groups.push(count as u32);
+            self.grouped = self.samples.len();
+        }
+    }
+
     /// Adds the radiance of the samples gathered to the cells that they are of, and clears them away. Whether it did: what a
     /// cancelled integrator says is not heard.
     fn develop(&mut self, tiles: &mut [FilmTile], cancel: &Cancel) -> bool {
@@ -217,7 +267,11 @@ impl Bench<'_> {
             return true;
         }
         self.radiance.resize(self.samples.len(), Rgb::ZERO);
-        self.worker.radiance(&mut self.samples, cancel, &mut self.radiance);
+        if self.groups.is_empty() {
+            self.worker.radiance(&mut self.samples, cancel, &mut self.radiance);
+        } else {
+            self.worker.radiance_in_groups(&mut self.samples, &self.groups, cancel, &mut self.radiance);
+        }
         if cancel.is_raised() {
             return false;
         }
@@ -228,9 +282,7 @@ impl Bench<'_> {
                 tiles[run.tile].add(run.cell, seen.copied().unwrap_or(Rgb::ZERO), weight);
             }
         }
-        self.samples.clear();
-        self.weights.clear();
-        self.runs.clear();
+        self.clear();
         true
     }
 }

@@ -18,6 +18,9 @@ pub trait Scatters {
 
     /// Whether all of it goes in single directions.
     fn is_delta(&self) -> bool;
+
+    /// What is reflected, if that is the same into every direction.
+    fn diffuse(&self) -> Option<Rgb>;
 }
 
 impl Scatters for Scattering {
@@ -46,6 +49,11 @@ impl Scatters for Scattering {
             Self::Several(parts) => parts.iter().all(|(_, bsdf)| bsdf.is_delta()),
         }
     }
+
+    #[inline]
+    fn diffuse(&self) -> Option<Rgb> {
+        if let Self::One(bsdf) = self { Scatters::diffuse(bsdf) } else { None }
+    }
 }
 
 impl Scatters for Bsdf {
@@ -68,6 +76,11 @@ impl Scatters for Bsdf {
     fn is_delta(&self) -> bool {
         Self::is_delta(self)
     }
+
+    #[inline]
+    fn diffuse(&self) -> Option<Rgb> {
+        if let Self::Diffuse(diffuse) = self { Some(diffuse.reflectance) } else { None }
+    }
 }
 
 /// Where a ray has met a surface.
@@ -88,6 +101,8 @@ pub struct Interaction<S = Scattering> {
     side: f64,
     /// Whether the two normals are one.
     is_flat: bool,
+    /// Whether the shading normal was bent towards the ray.
+    is_bent: bool,
     /// Mean curvature, positive where the surface bulges towards the ray; 0 unless it was asked for.
     curvature: f64,
 }
@@ -145,7 +160,7 @@ impl Interaction {
 impl<S: Scatters> Interaction<S> {
     /// The smallest cosine between shading normal and view. Beyond the horizon of the shading normal a surface would
     /// turn black though it faces the viewer, so there the normal is bent towards the viewer until it just faces him.
-    const GRAZING: f64 = 1e-3;
+    pub const GRAZING: f64 = 1e-3;
 
     /// A ray of unit direction at a point of a surface with this shading normal, and the direction that the frame's x should have if that
     /// matters, that scatters so.
@@ -154,10 +169,11 @@ impl<S: Scatters> Interaction<S> {
         let back = -ray.direction;
         let side = 1f64.copysign(back.dot(surface.normal));
         let is_flat = shading == surface.normal;
-        let mut shading = shading;
+        let (mut shading, mut is_bent) = (shading, false);
         if !is_flat {
             let cosine = shading.dot(back) * side;
             if cosine < Self::GRAZING {
+                is_bent = true;
                 shading = (shading + back * (side * (Self::GRAZING - cosine))).normalize();
             }
         }
@@ -165,7 +181,7 @@ impl<S: Scatters> Interaction<S> {
             Some(tangent) => Frame::along(shading, tangent),
             None => Frame::new(shading),
         };
-        Self { surface, frame, scattering, wo: frame.to_local(back), side, is_flat, curvature: 0.0 }
+        Self { surface, frame, scattering, wo: frame.to_local(back), side, is_flat, is_bent, curvature: 0.0 }
     }
 
     /// The point met.
@@ -190,6 +206,24 @@ impl<S: Scatters> Interaction<S> {
     #[inline]
     pub fn shading_normal(&self) -> DVec3 {
         self.frame.normal * self.side
+    }
+
+    /// The cosine between the ray, back along it, and the shading normal on its side.
+    #[inline]
+    pub fn cosine(&self) -> f64 {
+        self.wo.z * self.side
+    }
+
+    /// Whether the two normals are one.
+    #[inline]
+    pub fn is_flat(&self) -> bool {
+        self.is_flat
+    }
+
+    /// Whether the shading normal was bent towards the ray, and is another for rays of other directions.
+    #[inline]
+    pub fn is_bent(&self) -> bool {
+        self.is_bent
     }
 
     /// What light is drawn for: the side that the ray came from, or both where light goes through.
@@ -286,10 +320,17 @@ impl<S: Scatters> Interaction<S> {
             return 1.0;
         }
         let between = self.frame.normal.dot(self.surface.normal);
-        let g = geometric / (wi.z * between);
-        // A shading normal of the other side, as a bump may have, has no such horizon.
-        if between <= 0.0 || g >= 1.0 { 1.0 } else { ((1.0 - g) * g + 1.0) * g }
+        fading(geometric, wi.z, between)
     }
+}
+
+/// What light counts near the horizon of the geometric normal, as [`Interaction`] has it: by its cosines to the geometric and to the
+/// shading normal, both positive and up to the same factor, and that between the two.
+#[inline]
+pub fn fading(geometric: f64, shading: f64, between: f64) -> f64 {
+    let g = geometric / (shading * between);
+    // A shading normal of the other side, as a bump may have, has no such horizon.
+    if between <= 0.0 || g >= 1.0 { 1.0 } else { ((1.0 - g) * g + 1.0) * g }
 }
 
 /// The mean curvature of a surface, positive where it bulges to the side of its normal; 0 where it is not known how it lies.

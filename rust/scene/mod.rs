@@ -33,7 +33,7 @@ pub use description::{DescriptionError, SceneDescription, Shape};
 pub use first_hits::FirstHits;
 pub use geometry::{Geometry, Mesh, Surface, SurfacePoint, Vertices};
 pub use group::Group;
-pub use interaction::{Interaction, Scattered, Scatters};
+pub use interaction::{Interaction, Scattered, Scatters, fading};
 pub use lights::{
     ConstantEnvironment, DirectionalLight, Emission, EnvironmentMap, Light, LightBounds, LightSample, Lights, Picture,
     PointLight, Profile, Projector, Reach, Receiver, SpotLight, SunSky,

@@ -36,9 +36,15 @@ impl Departure {
         Self::SAFETY * surface.error / slope
     }
 
+    /// The point itself.
+    #[inline]
+    pub fn position(&self) -> DVec3 {
+        self.position
+    }
+
     /// A point in free space.
     #[inline]
-    pub fn free(position: DVec3) -> Self {
+    pub const fn free(position: DVec3) -> Self {
         Self { position, offset: DVec3::ZERO }
     }
 

@@ -34,7 +34,7 @@ fn a_furnace_shines_by_its_geometric_series() {
 fn a_furnace_shines_so_many_bounces() {
     let scene = furnace(0.5, 1.0);
     for depth in 0..4 {
-        let path = Path { max_depth: Some(depth), roulette_depth: u32::MAX };
+        let path = Path { max_depth: Some(depth), roulette_depth: u32::MAX, ..Path::default() };
         assert_radiance(&scene, &path, ANYWHERE, 20_000, 2.0 - 0.5f64.powi(depth as i32));
     }
 }
@@ -82,7 +82,7 @@ fn roulette_changes_no_mean() {
     shapes.push(shape(ceiling, [0.3; 3], 1.0));
     let scene = scene(SceneDescription { shapes, ..Default::default() });
     let run = |roulette_depth| {
-        let path = Path { max_depth: Some(60), roulette_depth };
+        let path = Path { max_depth: Some(60), roulette_depth, ..Path::default() };
         radiance(&scene, &path, Ray { direction: DVec3::new(0.6, -0.8, 0.0), ..ANYWHERE }, 60_000)
     };
     let (expected, error) = run(u32::MAX);

@@ -2,6 +2,7 @@
 
 use super::nesting::Inside;
 use crate::scene::Footprint;
+use std::marker::PhantomData;
 
 /// What a loop over paths is compiled with: a type for each [`crate::scene::Kernel`].
 pub(super) trait Features: Send + Sync + 'static {
@@ -9,6 +10,8 @@ pub(super) trait Features: Send + Sync + 'static {
     const PLAIN: bool;
     /// Paths carry [`Baggage`]: the scene may have masks, nested media or filtered textures, and paths may be split.
     const BAGGAGE: bool;
+    /// Paths of a group share what they find from their second surface on ([`super::reuse::Reuse`]).
+    const SHARES: bool = false;
 }
 
 /// See [`crate::scene::Kernel::Plain`].
@@ -31,6 +34,15 @@ impl Features for Open {
 impl Features for General {
     const PLAIN: bool = false;
     const BAGGAGE: bool = true;
+}
+
+/// The same, with paths that share.
+pub(super) struct Sharing<N>(PhantomData<N>);
+
+impl<N: Features> Features for Sharing<N> {
+    const PLAIN: bool = N::PLAIN;
+    const BAGGAGE: bool = N::BAGGAGE;
+    const SHARES: bool = true;
 }
 
 /// What a path carries that few scenes need.

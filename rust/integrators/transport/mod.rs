@@ -4,6 +4,7 @@ mod branches;
 mod dimensions;
 mod features;
 mod nesting;
+mod reuse;
 mod shadows;
 mod weights;
 mod worker;
@@ -11,7 +12,7 @@ mod worker;
 use super::Worker;
 use crate::optics::Rgb;
 use crate::scene::{Footprint, Kernel, Scene};
-use features::{General, Open, Plain};
+use features::{General, Open, Plain, Sharing};
 use worker::TransportWorker;
 
 /// Along which of the directions that surfaces scatter into paths are followed. What is not followed is left to the light that is asked directly.
@@ -46,6 +47,8 @@ pub(super) struct Settings {
     pub ambient: Rgb,
     /// Paths end that contribute less than this, in any colour.
     pub least: f64,
+    /// Whether paths of a group share what they find, in scenes where they can ([`can_share`]).
+    pub shares: bool,
 }
 
 impl Settings {
@@ -60,6 +63,7 @@ impl Settings {
             shadows: true,
             ambient: Rgb::ZERO,
             least: 0.0,
+            shares: false,
         }
     }
 
@@ -81,9 +85,21 @@ impl Settings {
     /// As [`Settings::worker`], by this kernel or one that can more.
     pub fn worker_of<'a>(self, scene: &'a Scene, footprint: Footprint, kernel: Kernel) -> Box<dyn Worker + 'a> {
         match kernel {
+            Kernel::Plain if self.shares => Box::new(TransportWorker::<Sharing<Plain>>::new(self, scene, footprint)),
+            _ if self.shares => Box::new(TransportWorker::<Sharing<Open>>::new(self, scene, footprint)),
             Kernel::Plain if self.are_plain() => Box::new(TransportWorker::<Plain>::new(self, scene, footprint)),
             Kernel::Open if self.are_plain() => Box::new(TransportWorker::<Open>::new(self, scene, footprint)),
             _ => Box::new(TransportWorker::<General>::new(self, scene, footprint)),
         }
     }
+}
+
+/// Whether paths can share in a scene: two points see each other or do not, at any time, and what is found at a point does not depend on who
+/// looks.
+///
+/// Masks and nested media make sight more than a yes or no; where something moves, the samples of a group see the scene at times of
+/// their own; and a filtered texture shows to each what is of its own width.
+pub(super) fn can_share(scene: &Scene) -> bool {
+    let needs = scene.plan().needs();
+    scene.plan().suits(Kernel::Open) && !needs.motion && !scene.lights().is_dark()
 }

@@ -4,6 +4,7 @@ use super::branches::singles;
 use super::dimensions::Dimensions;
 use super::features::{Baggage, Features};
 use super::nesting::{Boundary, Inside, around};
+use super::reuse::Reuse;
 use super::shadows::{Shadows, opacity};
 use super::weights::{ROULETTE_AT_LATEST, power_heuristic, survival};
 use super::{Follow, Settings};
@@ -21,17 +22,17 @@ use std::marker::PhantomData;
 /// A path on its way.
 #[derive(Clone, Copy)]
 pub(super) struct Alive {
-    throughput: Rgb,
+    pub(super) throughput: Rgb,
     /// The normal that lights were drawn by where it was scattered last ([`Receiver`]).
     normal: DVec3,
     /// Density with which this direction was drawn, times the number of such draws; infinite for a camera's ray.
     pdf: f64,
     /// How much less radiance is here than where the path started, because of the index of refraction alone.
     scale: f64,
-    /// Whose sample it is.
-    sample: u32,
+    /// Whose sample it is; as many more as there are samples, where what is found is for sharing.
+    pub(super) sample: u32,
     /// Surfaces that it has been scattered at.
-    bounce: u32,
+    pub(super) bounce: u32,
 }
 
 /// Paths that go on, and the ray that each is about to follow.
@@ -65,6 +66,9 @@ pub(super) struct TransportWorker<'a, N> {
     /// The parts of rays around hits of what encloses a medium.
     windows: Vec<Ray>,
     shadows: Shadows,
+    reuse: Reuse,
+    /// What samples find for themselves, and then what they find for sharing.
+    found: Vec<Rgb>,
     features: PhantomData<N>,
 }
 
@@ -96,6 +100,8 @@ impl<'a, N: Features> TransportWorker<'a, N> {
             hits: Vec::new(),
             windows: Vec::new(),
             shadows: Shadows::default(),
+            reuse: Reuse::default(),
+            found: Vec::new(),
             features: PhantomData,
         }
     }
@@ -135,7 +141,7 @@ impl<'a, N: Features> TransportWorker<'a, N> {
             self.windows.extend(hits.filter_map(|(ray, hit)| around(self.scene, ray, hit)));
         }
         let crossings = if self.nested { self.scene.crossings(&self.windows) } else { Default::default() };
-        let mut window = 0;
+        let (mut window, count) = (0, samples.len());
         for i in 0..self.now.rays.len() {
             let (ray, path, mut hit) = (self.now.rays[i], self.now.alive[i], self.hits[i]);
             let mut baggage = if N::BAGGAGE { self.now.baggage[i] } else { Baggage::default() };
@@ -147,7 +153,7 @@ impl<'a, N: Features> TransportWorker<'a, N> {
             let mut surface = self.scene.geometry().surface(&ray, &hit);
             let (mut outside, mut through) = (1.0, baggage.inside);
             let dimensions = Dimensions::of(path.bounce, baggage.branch);
-            let sampler = &mut samples[path.sample as usize].sampler;
+            let sampler = &mut samples[Self::own(path.sample, count)].sampler;
             if self.nested && around(self.scene, &ray, &hit).is_some() {
                 window += 1;
                 match Boundary::new(self.scene, &ray, &baggage.inside, &crossings, window - 1) {
@@ -172,16 +178,18 @@ impl<'a, N: Features> TransportWorker<'a, N> {
             if self.settings.max_depth.is_some_and(|depth| path.bounce >= depth) {
                 continue;
             }
-            let (time, path, baggage) = (ray.time, &path, &baggage);
+            let (time, baggage) = (ray.time, &baggage);
             if N::PLAIN {
                 // Said once more which kind it is, so that nothing is asked of it at each use.
                 let Bsdf::Diffuse(diffuse) = *self.scene.plan().constant(surface.shape) else { continue };
                 let shading = surface.shading_normal;
                 let here = Interaction::with(&ray, surface, (shading, None), Bsdf::Diffuse(diffuse));
+                let path = &self.known(path, &here);
                 self.scatter(Vertex { here, path, baggage, dimensions, through, width: 0.0, time }, sampler);
             } else {
                 let width = if self.widths { baggage.footprint.at(hit.t).width } else { 0.0 };
                 let here = Interaction::new(self.scene, &ray, &hit, surface, width, outside);
+                let path = &self.known(path, &here);
                 let vertex = Vertex { here, path, baggage, dimensions, through, width, time };
                 if N::BAGGAGE && self.settings.ambient != Rgb::ZERO {
                     let share = vertex.here.ambient(self.scene, &ray, &hit, width, outside);
@@ -194,6 +202,19 @@ impl<'a, N: Features> TransportWorker<'a, N> {
             }
         }
         std::mem::swap(&mut self.now, &mut self.next);
+    }
+
+    /// The index of a sample, for what a path finds for it or for sharing.
+    #[inline]
+    fn own(sample: u32, samples: usize) -> usize {
+        let index = sample as usize;
+        if N::SHARES && index >= samples { index - samples } else { index }
+    }
+
+    /// A path that comes to a surface, as that which goes on from there.
+    #[inline]
+    fn known<S: Scatters>(&mut self, path: Alive, here: &Interaction<S>) -> Alive {
+        if N::SHARES { self.reuse.visit(path, here) } else { path }
     }
 
     /// What arrives from outside the scene at a ray that meets nothing.
@@ -385,7 +406,9 @@ impl<'a, N: Features> TransportWorker<'a, N> {
         if N::BAGGAGE && path.throughput.max_element() * path.scale < self.settings.least {
             return;
         }
-        if path.bounce >= self.settings.roulette_depth.min(ROULETTE_AT_LATEST) {
+        // With what density a path comes to its second point is to be known.
+        let is_played = !N::SHARES || path.bounce > 1;
+        if is_played && path.bounce >= self.settings.roulette_depth.min(ROULETTE_AT_LATEST) {
             let dimensions = if N::BAGGAGE { Dimensions::of(vertex.path.bounce, branch) } else { vertex.dimensions };
             let survival = survival(path.throughput, path.scale);
             if number(dimensions.roulette()) >= survival {
@@ -423,28 +446,59 @@ fn widened<S: Scatters>(vertex: &Vertex<'_, S>, next: &Scattered) -> Footprint {
     Footprint { width: vertex.width, spread: if scattered > 0.0 { bent.abs().max(scattered) } else { bent } }
 }
 
+impl<N: Features> TransportWorker<'_, N> {
+    /// Follows the paths of these samples to their ends, and adds what they find.
+    fn follow(&mut self, samples: &mut [CameraSample], cancel: &Cancel, radiance: &mut [Rgb]) {
+        self.start(samples);
+        while !self.now.rays.is_empty() && !cancel.is_raised() {
+            self.hits.resize(self.now.rays.len(), Hit::MISS);
+            self.scene.intersect(&self.now.rays, &mut self.hits);
+            self.shade(samples, radiance);
+            if !self.settings.shadows {
+                self.shadows.add_all(radiance);
+            } else if self.masks || self.nested {
+                self.shadows.add_through(self.scene, self.nested, radiance);
+            } else {
+                self.shadows.add_unblocked(self.scene, radiance);
+            }
+        }
+    }
+}
+
 impl<N: Features> Worker for TransportWorker<'_, N> {
     fn radiance(&mut self, samples: &mut [CameraSample], cancel: &Cancel, radiance: &mut [Rgb]) {
         assert_eq!(samples.len(), radiance.len());
+        if N::SHARES {
+            return self.radiance_in_groups(samples, &vec![1; samples.len()], cancel, radiance);
+        }
         radiance.fill(Rgb::ZERO);
         // Each sample is on its own, so that a batch of paths that split may be worked on in parts.
         let splits = self.settings.splits.max(self.settings.light_samples) as usize;
         let together = if N::BAGGAGE && self.settings.follow == Follow::EachSingle { 512 } else { 4096 };
         let part = if N::BAGGAGE { (together / splits).max(16) } else { samples.len().max(1) };
         for (samples, radiance) in samples.chunks_mut(part).zip(radiance.chunks_mut(part)) {
-            self.start(samples);
-            while !self.now.rays.is_empty() && !cancel.is_raised() {
-                self.hits.resize(self.now.rays.len(), Hit::MISS);
-                self.scene.intersect(&self.now.rays, &mut self.hits);
-                self.shade(samples, radiance);
-                if !self.settings.shadows {
-                    self.shadows.add_all(radiance);
-                } else if self.masks || self.nested {
-                    self.shadows.add_through(self.scene, self.nested, radiance);
-                } else {
-                    self.shadows.add_unblocked(self.scene, radiance);
-                }
-            }
+            self.follow(samples, cancel, radiance);
         }
+    }
+
+    fn radiance_in_groups(
+        &mut self,
+        samples: &mut [CameraSample],
+        groups: &[u32],
+        cancel: &Cancel,
+        radiance: &mut [Rgb],
+    ) {
+        if !N::SHARES {
+            return self.radiance(samples, cancel, radiance);
+        }
+        let mut found = std::mem::take(&mut self.found);
+        found.clear();
+        found.resize(2 * samples.len(), Rgb::ZERO);
+        self.reuse.begin(samples.len());
+        self.follow(samples, cancel, &mut found);
+        let (own, shared) = found.split_at(samples.len());
+        radiance.copy_from_slice(own);
+        self.reuse.share(self.scene, groups, shared, cancel, radiance);
+        self.found = found;
     }
 }

@@ -1,0 +1,251 @@
+//! Paths that share what they find.
+
+use super::worker::Alive;
+use crate::math::{DVec3, Ray};
+use crate::optics::Rgb;
+use crate::scene::{Departure, Interaction, Scatters, Scene, fading};
+use crate::workers::Cancel;
+
+/// What the paths of a batch share: the light that leaves their second surfaces (Bekaert, Sbert and Halton, "Accelerating Path
+/// Tracing by Re-Using Paths", 2002).
+///
+/// Path j of a group goes from a first point xⱼ, where scattering is diffuse, to a second, yⱼ. If that is diffuse too, what the rest of the
+/// path finds of the light that yⱼ reflects is worth the same to all first points that see it. So each of them takes
+/// its part of it as one more sample, weighed against all that could have come to it: by the balance heuristic (Veach and Guibas, 1995) over
+/// the densities pₖ with which the paths of the group meet a surface at yⱼ. With G(x, y) = cos θₓ cos θ_y V(x, y) / |x − y|² these are
+/// pₖ = G(xₖ, yⱼ) / π, and point i takes of yⱼ the share G(xᵢ, yⱼ) / Σₖ G(xₖ, yⱼ), times its reflectance. The sum knows all
+/// mutual visibilities, so the mean is as without sharing whatever lies between; shares are at most 1, so nothing
+/// is made large that was not.
+///
+/// What a path finds at its first point, and what yⱼ emits itself, stays its own. So does the rest of a path that does not
+/// come to a diffuse second point, or from where the shading normal had to be bent ([`Interaction::GRAZING`]), and with it yⱼ were
+/// another: these directions are in the domain of no technique that shares, for whoever takes.
+#[derive(Default)]
+pub(super) struct Reuse {
+    /// The first point of each sample.
+    first: Vec<First>,
+    /// Second points, in the order of their samples.
+    second: Vec<Second>,
+    pairs: Vec<Pair>,
+    /// Rays in bundles of [`BUNDLE`] with one origin, and those that are too few for one.
+    bundles: Sight,
+    strays: Sight,
+}
+
+/// Rays, and whether something lies on the way.
+#[derive(Default)]
+struct Sight {
+    rays: Vec<Ray>,
+    occluded: Vec<bool>,
+}
+
+impl Sight {
+    fn look(&mut self, scene: &Scene) {
+        self.occluded.resize(self.rays.len(), false);
+        scene.occluded(&self.rays, &mut self.occluded);
+        self.rays.clear();
+    }
+}
+
+/// A first point, which takes.
+#[derive(Clone, Copy)]
+struct First {
+    departure: Departure,
+    /// Shading normal and geometric normal on the side of the camera.
+    shading: DVec3,
+    normal: DVec3,
+    is_flat: bool,
+    /// What is reflected, times what the path brings there; zero where nothing is taken.
+    reflectance: Rgb,
+}
+
+/// A second point, which gives.
+#[derive(Clone, Copy)]
+struct Second {
+    departure: Departure,
+    shading: DVec3,
+    normal: DVec3,
+    is_flat: bool,
+    sample: u32,
+}
+
+/// A first point that may see a second one.
+struct Pair {
+    /// By the number of the sample.
+    first: u32,
+    /// The number of the ray between them, counted through bundles or strays; `KNOWN` where it need not be asked.
+    ray: u32,
+    is_stray: bool,
+    /// G, if it does.
+    geometry: f64,
+    fading: f64,
+}
+
+impl Pair {
+    const KNOWN: u32 = u32::MAX;
+}
+
+/// Rays that are sent together: enough to keep the accelerator's kernels full, few enough to stay in cache.
+const TOGETHER: usize = 4096;
+
+/// Rays that the accelerator takes through its tree as one packet. With those of two origins in it, none would go together, so that a
+/// few of the same are added to fill it.
+const BUNDLE: usize = 16;
+
+/// Fewer rays than these go alone.
+const FEW: usize = 5;
+
+impl First {
+    const NONE: Self = Self {
+        departure: Departure::free(DVec3::ZERO),
+        shading: DVec3::ZERO,
+        normal: DVec3::ZERO,
+        is_flat: true,
+        reflectance: Rgb::ZERO,
+    };
+
+    /// G without visibility, and the fading of light; none where either point does not face the other, or nothing may be shared.
+    #[inline]
+    fn geometry(&self, there: &Second) -> Option<(f64, f64)> {
+        let way = there.departure.position() - self.departure.position();
+        let square = way.length_squared();
+        let (leaving, arriving) = (self.shading.dot(way), -there.normal.dot(way));
+        if leaving <= 0.0 || arriving <= 0.0 {
+            return None;
+        }
+        let mut fades = 1.0;
+        if !self.is_flat {
+            let geometric = self.normal.dot(way);
+            if geometric <= 0.0 {
+                return None;
+            }
+            fades = fading(geometric, leaving, self.shading.dot(self.normal));
+        }
+        if !there.is_flat {
+            const GRAZING: f64 = Interaction::<crate::optics::Bsdf>::GRAZING;
+            let cosine = -there.shading.dot(way);
+            if cosine <= 0.0 || cosine * cosine < GRAZING * GRAZING * square {
+                return None;
+            }
+        }
+        let geometry = leaving * arriving / (square * square);
+        (geometry > 0.0 && geometry.is_finite()).then_some((geometry, fades))
+    }
+}
+
+impl Reuse {
+    /// Forgets all, and begins with a batch of so many samples.
+    pub fn begin(&mut self, samples: usize) {
+        self.first.clear();
+        self.first.resize(samples, First::NONE);
+        self.second.clear();
+        self.pairs.clear();
+        self.bundles.rays.clear();
+        self.strays.rays.clear();
+    }
+
+    /// A path comes to a surface. Where what it finds from there on is to be shared, it goes on with it as that of sample number
+    /// `samples` and more.
+    #[inline]
+    pub fn visit<S: Scatters>(&mut self, mut path: Alive, here: &Interaction<S>) -> Alive {
+        if path.bounce > 1 {
+            return path;
+        }
+        let Some(reflectance) = here.scattering().diffuse() else { return path };
+        let (shading, normal) = (here.shading_normal(), here.normal());
+        // Where the one normal is seen from above and the other from below, or both from the side, nothing is scattered.
+        let is_lit = here.cosine() > 0.0 && reflectance != Rgb::ZERO;
+        if !is_lit {
+            return path;
+        }
+        let (departure, is_flat) = (here.departure(), here.is_flat());
+        if path.bounce == 0 {
+            let reflectance = path.throughput * reflectance;
+            self.first[path.sample as usize] = First { departure, shading, normal, is_flat, reflectance };
+            return path;
+        }
+        let second = Second { departure, shading, normal, is_flat, sample: path.sample };
+        let first = &self.first[path.sample as usize];
+        if first.reflectance == Rgb::ZERO || here.is_bent() || first.geometry(&second).is_none() {
+            return path;
+        }
+        self.second.push(second);
+        path.throughput = Rgb::ONE;
+        path.sample += self.first.len() as u32;
+        path
+    }
+
+    /// Adds to the radiance of each sample what it takes of what all of its group have `found`.
+    pub fn share(&mut self, scene: &Scene, groups: &[u32], found: &[Rgb], cancel: &Cancel, radiance: &mut [Rgb]) {
+        let (mut start, mut next) = (0, 0);
+        let mut seconds = Vec::new();
+        for &count in groups {
+            if cancel.is_raised() {
+                return;
+            }
+            let group = start..start + count;
+            start = group.end;
+            while let Some(second) = self.second.get(next)
+                && second.sample < group.end
+            {
+                next += 1;
+                // What is nothing is not shared.
+                if found[second.sample as usize] == Rgb::ZERO {
+                    continue;
+                }
+                let before = self.pairs.len();
+                let rays = &mut self.bundles.rays;
+                for i in group.clone() {
+                    let Some((geometry, fading)) = self.first[i as usize].geometry(second) else { continue };
+                    // That a path sees where it has come to is known.
+                    let ray = if i == second.sample { Pair::KNOWN } else { rays.len() as u32 };
+                    self.pairs.push(Pair { first: i, ray, is_stray: false, geometry, fading });
+                    if i != second.sample {
+                        rays.push(second.departure.segment(&self.first[i as usize].departure));
+                    }
+                }
+                let left = rays.len() % BUNDLE;
+                if left >= FEW {
+                    rays.resize(rays.len() + BUNDLE - left, rays[rays.len() - 1]);
+                } else if left > 0 {
+                    let (start, to) = (rays.len() - left, self.strays.rays.len());
+                    self.strays.rays.extend(rays.drain(start..));
+                    for pair in self.pairs[before..].iter_mut().filter(|p| p.ray != Pair::KNOWN && p.ray >= start as u32) {
+                        pair.ray = pair.ray - start as u32 + to as u32;
+                        pair.is_stray = true;
+                    }
+                }
+                seconds.push((second.sample, self.pairs.len() - before));
+            }
+            if self.bundles.rays.len() + self.strays.rays.len() >= TOGETHER {
+                self.give(scene, &mut seconds, found, radiance);
+            }
+        }
+        self.give(scene, &mut seconds, found, radiance);
+    }
+
+    /// Shares out what was found from those second points on, of so many pairs each.
+    fn give(&mut self, scene: &Scene, seconds: &mut Vec<(u32, usize)>, found: &[Rgb], radiance: &mut [Rgb]) {
+        self.bundles.look(scene);
+        self.strays.look(scene);
+        let mut pairs = &mut self.pairs[..];
+        for (sample, count) in seconds.drain(..) {
+            let (of, rest) = pairs.split_at_mut(count);
+            pairs = rest;
+            let mut sum = 0.0;
+            for pair in &mut *of {
+                let sight = if pair.is_stray { &self.strays } else { &self.bundles };
+                if pair.ray != Pair::KNOWN && sight.occluded[pair.ray as usize] {
+                    pair.geometry = 0.0;
+                }
+                sum += pair.geometry;
+            }
+            for pair in of.iter().filter(|pair| pair.geometry > 0.0) {
+                let part = pair.geometry / sum * pair.fading;
+                radiance[pair.first as usize] +=
+                    self.first[pair.first as usize].reflectance * (found[sample as usize] * part);
+            }
+        }
+        self.pairs.clear();
+    }
+}
