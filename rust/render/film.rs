@@ -118,6 +118,11 @@ impl Film {
         if self.halves { 2 } else { 1 }
     }
 
+    /// The memory held for its pixels: what batches, clamping and halves take is only there where they are.
+    pub fn bytes(&self) -> usize {
+        self.tiles.iter().map(FilmTile::bytes).sum()
+    }
+
     /// Samples that were NaN, infinite or negative, and count as black.
     pub fn dropped(&self) -> u64 {
         self.tiles.iter().map(FilmTile::dropped).sum()
@@ -454,6 +459,25 @@ mod tests {
         assert_eq!(film.means(), [Rgb::new(5.0, 3.0, 3.0) / 4.0]);
         // Nine of twenty were taken.
         assert_eq!(film.clamped(), (1, 9.0 / 20.0));
+    }
+
+    #[test]
+    fn what_is_not_asked_for_takes_no_memory() {
+        // A count, five colours; a colour more where samples belong together, two where they are clamped. Halves double
+        // all, and have evidence: two colours and a count.
+        let (count, colour) = (size_of::<u32>(), size_of::<Rgb>());
+        for (batch, halves, clamp, each) in [
+            (1, false, None, count + 5 * colour),
+            (8, false, None, count + 6 * colour),
+            (1, false, Some(1.0), count + 7 * colour),
+            (1, true, None, 2 * (2 * count + 7 * colour)),
+            (64, true, Some(1.0), 2 * (2 * count + 10 * colour)),
+        ] {
+            let mut film = Film::new(13, 7, 4, batch, halves, clamp);
+            assert_eq!(film.bytes(), 13 * 7 * each);
+            expose(&mut film, 0, 40);
+            assert_eq!(film.bytes(), 13 * 7 * each);
+        }
     }
 
     #[test]

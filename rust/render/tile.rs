@@ -183,6 +183,16 @@ impl FilmTile {
         left
     }
 
+    /// The memory held for its cells.
+    pub(super) fn bytes(&self) -> usize {
+        self.counts.capacity() * size_of::<u32>()
+            + (self.total.capacity() + self.partial.capacity()) * size_of::<Moments>()
+            + (self.largest.capacity() + self.unfinished.capacity()) * size_of::<Rgb>()
+            + self.taken.capacity() * size_of::<[Rgb; 2]>()
+            + self.evidence.capacity() * size_of::<(Rgb, Rgb)>()
+            + self.evidence_until.capacity() * size_of::<u32>()
+    }
+
     pub(super) fn dropped(&self) -> u64 {
         self.dropped
     }

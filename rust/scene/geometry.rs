@@ -3,102 +3,11 @@
 use super::facets::Facets;
 use super::per_vertex::PerVertex;
 use super::textures::Needs;
-use super::{Copies, Group, Surfaces};
+use super::{Copies, Group, Surfaces, Vertices};
 use crate::accel::{Objects, Primitives};
 use crate::math::{DVec3, Hit, Ray, Vec3};
 use crate::shapes::{Bounds, Point, Shape};
 use std::sync::Arc;
-
-/// Corners of triangles, as precisely as they are known.
-#[derive(Clone, Debug)]
-pub enum Vertices {
-    /// f32.
-    Single(Vec<Vec3>),
-    /// f64.
-    Double(Vec<DVec3>),
-}
-
-impl Default for Vertices {
-    fn default() -> Self {
-        Self::Single(Vec::new())
-    }
-}
-
-impl From<Vec<Vec3>> for Vertices {
-    fn from(vertices: Vec<Vec3>) -> Self {
-        Self::Single(vertices)
-    }
-}
-
-impl FromIterator<Vec3> for Vertices {
-    fn from_iter<I: IntoIterator<Item = Vec3>>(vertices: I) -> Self {
-        Self::Single(vertices.into_iter().collect())
-    }
-}
-
-impl Vertices {
-    /// How many.
-    pub fn len(&self) -> usize {
-        match self {
-            Self::Single(v) => v.len(),
-            Self::Double(v) => v.len(),
-        }
-    }
-
-    /// Whether there are none.
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
-    }
-
-    /// One of them.
-    #[inline]
-    pub fn get(&self, i: u32) -> DVec3 {
-        match self {
-            Self::Single(v) => v[i as usize].as_dvec3(),
-            Self::Double(v) => v[i as usize],
-        }
-    }
-
-    /// Kept as f32 if nothing is lost by it: that takes half the memory, and decisions on it are as exact.
-    fn shortened(self) -> Self {
-        // NaN is no number that could be lost.
-        let fits = |x: f64| f64::from(x as f32) == x || x.is_nan();
-        match self {
-            Self::Double(v) if v.iter().all(|p| p.to_array().into_iter().all(fits)) => {
-                Self::Single(v.into_iter().map(|p| p.as_vec3()).collect())
-            }
-            other => other,
-        }
-    }
-
-    /// Both, one after the other; f64 if either is.
-    fn joined(self, more: Self) -> Self {
-        let widened = |v: Vec<Vec3>| v.into_iter().map(Vec3::as_dvec3);
-        match (self, more) {
-            (all, more) if more.is_empty() => all,
-            (all, more) if all.is_empty() => more,
-            (Self::Single(mut all), Self::Single(more)) => {
-                all.extend(more);
-                Self::Single(all)
-            }
-            (Self::Single(all), Self::Double(more)) => Self::Double(widened(all).chain(more).collect()),
-            (Self::Double(mut all), more) => {
-                match more {
-                    Self::Single(more) => all.extend(widened(more)),
-                    Self::Double(more) => all.extend(more),
-                }
-                Self::Double(all)
-            }
-        }
-    }
-
-    fn bytes(&self) -> usize {
-        match self {
-            Self::Single(v) => size_of_val(v.as_slice()),
-            Self::Double(v) => size_of_val(v.as_slice()),
-        }
-    }
-}
 
 /// One triangle mesh as it is described: what it is made of and how it shines.
 #[derive(Clone, Debug, Default)]
@@ -191,11 +100,11 @@ pub struct Geometry {
     gaps: Vec<Gap>,
     /// What is no mesh; none if all are.
     others: Option<Arc<Surfaces>>,
-    /// Shading normals, zero where a shape has none.
+    /// Shading normals.
     normals: PerVertex<Vec3>,
-    /// Texture coordinates, NaN where a shape has none.
+    /// Texture coordinates.
     uvs: PerVertex<[f32; 2]>,
-    /// Colours, white where a shape has none.
+    /// Colours.
     colours: PerVertex<[f32; 3]>,
     /// The first primitive of each shape, and the number of all at the end.
     first: Vec<u32>,
@@ -286,12 +195,17 @@ impl Geometry {
                 }
             };
             let base = u32::try_from(all.vertices.len()).expect("fewer than 2^32 vertices");
-            let count = mesh.vertices.len();
-            let end = count as u32;
-            let before = all.vertices.len();
-            all.normals.extend(before, count, mesh.normals.as_deref(), Vec3::ZERO);
-            all.uvs.extend(before, count, mesh.uvs.as_deref(), [f32::NAN; 2]);
-            all.colours.extend(before, count, mesh.colours.as_deref(), [1.0; 3]);
+            let end = mesh.vertices.len() as u32;
+            let has_all = |count: Option<usize>| count.is_none_or(|n| n == end as usize);
+            assert!(
+                has_all(mesh.normals.as_ref().map(Vec::len))
+                    && has_all(mesh.uvs.as_ref().map(Vec::len))
+                    && has_all(mesh.colours.as_ref().map(Vec::len)),
+                "a value for each vertex"
+            );
+            all.normals.extend(base, mesh.normals);
+            all.uvs.extend(base, mesh.uvs);
+            all.colours.extend(base, mesh.colours);
             all.vertices = std::mem::take(&mut all.vertices).joined(mesh.vertices.shortened());
             let number = all.count() + mesh.faces.len();
             all.faces.reserve(mesh.faces.len());
@@ -302,12 +216,23 @@ impl Geometry {
             assert!(number < 1 << 31, "fewer than 2^31 primitives");
             all.first.push(number as u32);
         }
+        all.shrink_to_fit();
         all.others = (!others.is_empty()).then(|| Arc::new(others));
         let is_finite = |v: u32| all.vertices.get(v).is_finite();
         let is_dropped = |face: &&[u32; 3]| **face != NO_FACE && !face.iter().all(|&v| is_finite(v));
         all.dropped = all.faces.iter().filter(is_dropped).count();
         all.facets = Facets::new(all.count(), |primitive| (all.computed_normal(primitive), all.located(primitive).0));
         all
+    }
+
+    /// Gives memory back that was reserved for more.
+    fn shrink_to_fit(&mut self) {
+        self.vertices.shrink_to_fit();
+        self.faces.shrink_to_fit();
+        self.first.shrink_to_fit();
+        self.normals.shrink_to_fit();
+        self.uvs.shrink_to_fit();
+        self.colours.shrink_to_fit();
     }
 
     /// The first shape that is no mesh, by its number among shapes.
@@ -341,7 +266,7 @@ impl Geometry {
 
     /// Whether a mesh among them has shading normals.
     pub fn is_smooth(&self) -> bool {
-        self.normals.bytes() > 0
+        !self.normals.is_empty()
     }
 
     /// Whether there are copies of groups.
@@ -360,7 +285,7 @@ impl Geometry {
         self.others.as_ref().is_some_and(|others| others.moves())
     }
 
-    /// The memory held.
+    /// The memory held, what is reserved for more included.
     pub fn bytes(&self) -> usize {
         self.bytes_but(&mut Vec::new())
     }
@@ -371,8 +296,9 @@ impl Geometry {
             + self.normals.bytes()
             + self.uvs.bytes()
             + self.colours.bytes()
-            + self.faces.len() * size_of::<[u32; 3]>()
-            + self.first.len() * size_of::<u32>()
+            + self.faces.capacity() * size_of::<[u32; 3]>()
+            + self.first.capacity() * size_of::<u32>()
+            + self.gaps.capacity() * size_of::<Gap>()
             + self.facets.bytes()
             + self.others.as_ref().map_or(0, |others| others.bytes(seen))
     }
@@ -489,7 +415,8 @@ impl Geometry {
 
     /// The texture coordinates of a triangle's corners, if there are any.
     pub(super) fn uvs_of(&self, primitive: u32) -> Option<[[f32; 2]; 3]> {
-        self.uvs.of(self.face(primitive)).filter(|corners| !corners[0][0].is_nan())
+        // Those that are NaN are none.
+        self.uvs.of(self.face(primitive)).filter(|corners| !corners.as_flattened().iter().any(|x| x.is_nan()))
     }
 
     /// The colours of a triangle's corners, if there are any.

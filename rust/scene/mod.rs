@@ -24,6 +24,7 @@ mod shading;
 mod spawn;
 mod surfaces;
 pub mod textures;
+mod vertices;
 mod view;
 
 pub use cameras::{Camera, CameraError, CameraRay, Perspective};
@@ -31,7 +32,7 @@ pub use compiled::Scene;
 pub use copies::{BadTransform, Copies, Matrix, check_transforms};
 pub use description::{DescriptionError, SceneDescription, Shape};
 pub use first_hits::FirstHits;
-pub use geometry::{Geometry, Mesh, Surface, SurfacePoint, Vertices};
+pub use geometry::{Geometry, Mesh, Surface, SurfacePoint};
 pub use group::Group;
 pub use interaction::{Interaction, Scattered, Scatters, fading};
 pub use lights::{
@@ -44,3 +45,4 @@ pub use points::HitPoint;
 pub use shading::{Footprint, ShadingPoint};
 pub use spawn::Departure;
 pub use surfaces::Surfaces;
+pub use vertices::Vertices;

@@ -1,49 +1,110 @@
 //! What meshes may know of their vertices beside where they are.
 
-/// Values of all vertices of a geometry; nothing is kept as long as no mesh has any.
-#[derive(Debug, Default)]
-pub(super) struct PerVertex<T>(Vec<T>);
+/// Values of the vertices of those meshes that have some; nothing is kept of the others.
+#[derive(Debug)]
+pub(super) struct PerVertex<T> {
+    values: Vec<T>,
+    /// Vertices that have values, in order; meshes with values that follow each other are in one.
+    runs: Vec<Run>,
+}
+
+/// Neighbouring vertices that all have a value.
+#[derive(Clone, Copy, Debug)]
+struct Run {
+    /// The first vertex, and the first after them.
+    vertices: [u32; 2],
+    /// How many vertices before them have none.
+    without: u32,
+}
+
+impl<T> Default for PerVertex<T> {
+    fn default() -> Self {
+        Self { values: Vec::new(), runs: Vec::new() }
+    }
+}
 
 impl<T: Copy> PerVertex<T> {
-    /// Adds those of a mesh of `count` vertices, of which there were `before`; `none` stands for what is not known.
-    ///
-    /// # Panics
-    /// If there is not one for each vertex.
-    pub fn extend(&mut self, before: usize, count: usize, values: Option<&[T]>, none: T) {
-        match values {
-            Some(values) => {
-                assert_eq!(values.len(), count, "a value for each vertex");
-                self.0.resize(before, none);
-                self.0.extend_from_slice(values);
-            }
-            None if self.0.is_empty() => {}
-            None => self.0.resize(before + count, none),
+    /// Adds those of a mesh, if it has some. Its vertices are numbered from `first` on, after those of all meshes before.
+    pub fn extend(&mut self, first: u32, values: Option<Vec<T>>) {
+        let Some(values) = values.filter(|values| !values.is_empty()) else { return };
+        let end = first + values.len() as u32;
+        match self.runs.last_mut() {
+            Some(run) if run.vertices[1] == first => run.vertices[1] = end,
+            _ => self.runs.push(Run { vertices: [first, end], without: first - self.values.len() as u32 }),
+        }
+        if self.values.is_empty() {
+            self.values = values;
+        } else {
+            self.values.extend(values);
         }
     }
 
-    /// Those of a face's corners; none if no mesh has any.
+    /// Gives memory back that was reserved for more.
+    pub fn shrink_to_fit(&mut self) {
+        self.values.shrink_to_fit();
+        self.runs.shrink_to_fit();
+    }
+
+    /// Those of a face's corners; none if its mesh has none.
     #[inline]
     pub fn of(&self, face: [u32; 3]) -> Option<[T; 3]> {
-        (!self.0.is_empty()).then(|| face.map(|v| self.0[v as usize]))
+        // The corners of a face are of one mesh, so what holds of one holds of all.
+        let run = match &*self.runs {
+            [] => return None,
+            [run] => run,
+            runs => runs.get(runs.partition_point(|run| run.vertices[1] <= face[0]))?,
+        };
+        let [first, end] = run.vertices;
+        (first <= face[0] && face[0] < end).then(|| face.map(|v| self.values[(v - run.without) as usize]))
+    }
+
+    /// Whether no mesh has any.
+    pub fn is_empty(&self) -> bool {
+        self.values.is_empty()
     }
 
     /// The memory held.
     pub fn bytes(&self) -> usize {
-        size_of_val(self.0.as_slice())
+        self.values.capacity() * size_of::<T>() + self.runs.capacity() * size_of::<Run>()
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::prelude::*;
 
     #[test]
     fn is_kept_only_where_a_mesh_has_some() {
-        let mut all = PerVertex::default();
-        all.extend(0, 3, None, 0);
-        assert_eq!((all.of([0, 1, 2]), all.bytes()), (None, 0));
-        all.extend(3, 2, Some(&[7, 8]), 0);
-        all.extend(5, 1, None, 0);
-        assert_eq!(all.of([2, 4, 5]), Some([0, 8, 0]));
+        let mut all = PerVertex::<u8>::default();
+        assert_eq!((all.of([0, 1, 2]), all.bytes(), all.is_empty()), (None, 0, true));
+        // Three vertices without, two with, one without.
+        all.extend(0, None);
+        all.extend(3, Some(vec![7, 8]));
+        all.extend(5, None);
+        all.shrink_to_fit();
+        assert_eq!((all.of([0, 1, 2]), all.of([3, 4, 3]), all.of([5; 3])), (None, Some([7, 8, 7]), None));
+        assert_eq!(all.bytes(), 2 + size_of::<Run>());
+    }
+
+    proptest! {
+        #[test]
+        fn meshes_have_their_own_and_no_more_is_kept(meshes in prop::collection::vec((1u32..5, any::<bool>()), 0..12)) {
+            let (mut all, mut first, mut kept) = (PerVertex::<u32>::default(), 0, 0);
+            for &(count, has) in &meshes {
+                all.extend(first, has.then(|| (first..first + count).map(|v| 3 * v + 1).collect()));
+                kept += if has { count as usize } else { 0 };
+                first += count;
+            }
+            let mut first = 0;
+            for (count, has) in meshes {
+                for v in first..first + count {
+                    let expected = [v, first, first + count - 1];
+                    prop_assert_eq!(all.of(expected), has.then(|| expected.map(|v| 3 * v + 1)));
+                }
+                first += count;
+            }
+            prop_assert_eq!(all.values.len(), kept);
+        }
     }
 }

@@ -225,18 +225,3 @@ def test_meshes_keep_colours():
         rw.Mesh(SQUARE, FACES, colors=[(0, 0, 0), (0, 2, 0), (0, 0, 0), (0, 0, 0)])
     with pytest.raises(ValueError, match=r"colors must have shape \(4, 3\)"):
         rw.Mesh(SQUARE, FACES, colors=colors[:3])
-
-
-def test_nothing_is_kept_that_no_material_asks_for():
-    def size(material, **more):
-        return rw.Scene(rw.Mesh(SQUARE, FACES, material=material, **more)).bytes
-
-    plain = size(rw.Diffuse())
-    assert size(rw.Diffuse(), uv=UV, colors=np.ones((4, 3))) == plain
-    assert size(rw.Diffuse(rw.Noise()), uv=UV) == plain
-    # 8 bytes a vertex for coordinates, 12 for colours.
-    assert size(rw.Diffuse(rw.Checker()), uv=UV, colors=np.ones((4, 3))) == plain + 4 * 8
-    assert size(rw.Diffuse(rw.VertexColors()), uv=UV, colors=np.ones((4, 3))) == plain + 4 * 12
-    group = rw.Instance(rw.Mesh(SQUARE, FACES, uv=UV), np.eye(4))
-    textured = rw.Instance(rw.Mesh(SQUARE, FACES, uv=UV, material=rw.Diffuse(rw.Checker())), np.eye(4))
-    assert rw.Scene(textured).bytes == rw.Scene(group).bytes + 4 * 8
