@@ -7,6 +7,8 @@ mod film;
 pub mod filter;
 mod outliers;
 mod part;
+#[cfg(test)]
+mod patches;
 mod progress;
 mod rendering;
 mod run;

@@ -102,10 +102,7 @@ impl FilmTile {
     }
 
     /// Its cells, patch by patch of so many pixels a side, and one kind of cell after the other.
-    pub(super) fn together(
-        &self,
-        patch: u32,
-    ) -> impl Iterator<Item = impl Iterator<Item = usize> + use<>> + use<> {
+    pub(super) fn together(&self, patch: u32) -> impl Iterator<Item = impl Iterator<Item = usize> + use<>> + use<> {
         let ([width, height], kinds) = (self.size, if self.halves { 2 } else { 1 });
         let columns = width.div_ceil(patch);
         (0..columns * height.div_ceil(patch) * kinds).map(move |number| {

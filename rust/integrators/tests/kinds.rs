@@ -129,7 +129,13 @@ fn mirrors_face_to_face_end_at_the_depth() {
         let integrator = Whitted { max_depth: depth, contribution: 0.0, ..Whitted::default() };
         let (mean, _) = radiance(&scene, &integrator, ray, 4);
         assert!((mean - expected).abs() < 1e-12, "{depth}: {mean}, not {expected}");
-        assert_radiance(&scene, &Path { max_depth: Some(depth), roulette_depth: 99, ..Path::default() }, ray, 4, expected);
+        assert_radiance(
+            &scene,
+            &Path { max_depth: Some(depth), roulette_depth: 99, ..Path::default() },
+            ray,
+            4,
+            expected,
+        );
     }
 }
 

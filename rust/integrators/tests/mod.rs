@@ -4,6 +4,7 @@ mod kinds;
 mod masks;
 mod media;
 mod path;
+mod reuse;
 
 use super::{CameraSample, Integrator};
 use crate::math::Ray;

@@ -210,7 +210,9 @@ impl Reuse {
                 } else if left > 0 {
                     let (start, to) = (rays.len() - left, self.strays.rays.len());
                     self.strays.rays.extend(rays.drain(start..));
-                    for pair in self.pairs[before..].iter_mut().filter(|p| p.ray != Pair::KNOWN && p.ray >= start as u32) {
+                    for pair in
+                        self.pairs[before..].iter_mut().filter(|p| p.ray != Pair::KNOWN && p.ray >= start as u32)
+                    {
                         pair.ray = pair.ray - start as u32 + to as u32;
                         pair.is_stray = true;
                     }
@@ -247,5 +249,53 @@ impl Reuse {
             }
         }
         self.pairs.clear();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn first(position: DVec3, normal: DVec3, shading: DVec3) -> First {
+        let departure = Departure::free(position);
+        First { departure, shading, normal, is_flat: shading == normal, reflectance: Rgb::ONE }
+    }
+
+    fn second(position: DVec3, normal: DVec3, shading: DVec3) -> Second {
+        let departure = Departure::free(position);
+        Second { departure, shading, normal, is_flat: shading == normal, sample: 0 }
+    }
+
+    #[test]
+    fn geometry_is_that_of_two_small_surfaces() {
+        let floor = first(DVec3::ZERO, DVec3::Z, DVec3::Z);
+        let above = second(DVec3::new(3.0, 0.0, 4.0), DVec3::NEG_Z, DVec3::NEG_Z);
+        // Two cosines of 4/5, at a distance of 5.
+        let (geometry, fading) = floor.geometry(&above).unwrap();
+        assert!((geometry - 0.64 / 25.0).abs() < 1e-16 && fading == 1.0);
+        // A shading normal counts for the cosine where light is taken, and for nothing where it is given.
+        let tilted = DVec3::new(0.6, 0.0, 0.8);
+        let (geometry, fading) = first(DVec3::ZERO, DVec3::Z, tilted).geometry(&above).unwrap();
+        // Now the direction is that of the shading normal, a factor 5/4 more.
+        assert!((geometry - 0.8 / 25.0).abs() < 1e-16 && (0.0..=1.0).contains(&fading));
+        let other = second(above.departure.position(), DVec3::NEG_Z, -tilted);
+        assert_eq!(floor.geometry(&other), floor.geometry(&above));
+    }
+
+    #[test]
+    fn what_turns_away_or_is_one_point_shares_nothing() {
+        let floor = first(DVec3::ZERO, DVec3::Z, DVec3::Z);
+        for (position, normal) in [
+            (DVec3::Z, DVec3::Z),
+            (DVec3::NEG_Z, DVec3::NEG_Z),
+            (DVec3::X, DVec3::NEG_X),
+            (DVec3::ZERO, DVec3::NEG_Z),
+            (DVec3::Z * 1e-200, DVec3::NEG_Z),
+        ] {
+            assert_eq!(floor.geometry(&second(position, normal, normal)), None);
+        }
+        // Its shading normal would be bent for who looks from here.
+        let grazed = second(DVec3::Z, DVec3::NEG_Z, DVec3::new(1.0, 0.0, -5e-4).normalize());
+        assert_eq!(floor.geometry(&grazed), None);
     }
 }
