@@ -69,6 +69,10 @@ impl Default for BatchSize {
 /// kind: the mean of a picture over all seeds is the same. Kinds differ in how the samples of a batch lie to each other.
 /// A dimension takes its numbers from a set of two or three dimensions, and sets are put together at random ("padding"):
 /// Sobol's own points of many dimensions have worse pairs, and lose more by that than they win.
+///
+/// `benches/samplers.py` compares them. Lattices leave the least error in most batches; of 4 points, those of rank 1 all lie on a
+/// diagonal, and Sobol's nets are better. Blue noise over the picture is no kind: it changes how errors lie beside each other,
+/// and no pixel's error.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SamplerKind {
     /// Independent random numbers.
