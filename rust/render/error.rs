@@ -23,6 +23,9 @@ pub struct ErrorEstimate {
 /// What is added to the square of a brightness, so that the dark does not count infinitely.
 const FLOOR: f64 = 0.01;
 
+/// The error of a picture that is right to a millionth: what is left of it is mostly rounding, and who carries it tells nothing.
+const ROUNDING: f64 = 1e-12;
+
 /// Estimates the error of a film; `None` where a pixel has fewer than two batches of samples, which say nothing of it.
 ///
 /// The numerator is simple: the variance s²/n of a pixel's mean is an unbiased estimate of (x − μ)². The denominator is
@@ -195,7 +198,8 @@ impl Sums {
         let chance = 1.96 * (2.0 * self.squares + self.peaks).sqrt() / self.error;
         let doubt = 1.0 - self.own / self.error;
         let factor = chance.hypot(doubt).exp();
-        ErrorEstimate { value, low: value / factor, high: value * factor, carried: self.largest.carry(self.error) }
+        let carried = if value > ROUNDING { self.largest.carry(self.error) } else { None };
+        ErrorEstimate { value, low: value / factor, high: value * factor, carried }
     }
 }
 
@@ -261,6 +265,22 @@ mod tests {
         assert_eq!(estimate(&film(4, 1, 0, |_, _| 1.0)), None);
         let black = estimate(&film(4, 4, 0, |_, _| 0.0)).unwrap();
         assert_eq!((black.value, black.low, black.high), (0.0, 0.0, 0.0));
+    }
+
+    #[test]
+    fn rounding_is_not_to_be_distrusted() {
+        let off = |by: f64| {
+            let mut film = Film::new(4, 4, 16, 1, false, None);
+            for tile in film.extend_to(16) {
+                for (pixel, number) in (0..16).flat_map(|pixel| (0..16).map(move |number| (pixel, number))) {
+                    tile.add(pixel, Rgb::splat(if (pixel, number) == (5, 3) { 1.0 + by } else { 1.0 }), 1.0);
+                }
+            }
+            estimate(&film).unwrap()
+        };
+        let (large, small) = (off(1e-3), off(1e-5));
+        assert!(large.value > ROUNDING && large.carried.is_some_and(|carried| carried.samples == 1));
+        assert!((0.0..ROUNDING).contains(&small.value) && small.carried.is_none());
     }
 
     #[test]
