@@ -38,6 +38,13 @@ def camera() -> rw.Camera:
     return rw.Camera((0.5, 0.5, 4), (0.5, 0.5, 0.5), width=8, height=6)
 
 
+@pytest.fixture(scope="session")
+def cornell() -> tuple[rw.Scene, rw.Camera, np.ndarray]:
+    """The Cornell box in 48 by 48 pixels, and how it looks with 6000 samples a pixel."""
+    scene, camera = rw.scenes.cornell_box(width=48, height=48)
+    return scene, camera, rw.render(scene, camera, samples=6000, seed=10**9, progress=False).rgb.astype(float)
+
+
 @pytest.fixture
 def picture() -> rw.Image:
     """A picture of known numbers, 3 wide and 2 high."""

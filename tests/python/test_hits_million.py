@@ -65,7 +65,8 @@ def test_vertices_edges_and_along_edges_at_any_scale_and_place(scale, offset, dt
     scene = rw.Scene(mesh, precision="double" if dtype is np.float64 else "single")
     centre = (mesh.bounds[0] + mesh.bounds[1]) / 2
     failed = 0
-    for _ in range(COUNT // BATCH):
+    # Half of the rays from inside, half from outside.
+    for _ in range(COUNT // BATCH // 2):
         targets = goals(rng, mesh, BATCH)
         inner = (centre + 0.2 * scale * ways(rng, BATCH) * rng.uniform(0, 1, (BATCH, 1))).astype(dtype)
         failed += failures(scene, inner, (targets - inner).astype(dtype), inside=True)
@@ -80,8 +81,7 @@ def test_vertices_edges_and_along_edges_at_any_scale_and_place(scale, offset, dt
 
 
 @pytest.mark.parametrize("aspect", [1e3, 1e4, 1e5, 1e6, 1e7, 1e8])
-@pytest.mark.parametrize("dtype", [np.float32, np.float64])
-def test_slivers(aspect, dtype):
+def test_slivers(aspect):
     """A box as long as it is wide, and one over the aspect high: its sides are slivers, seen from inside."""
     rng = np.random.default_rng(2)
     box = trimesh.creation.box((2, 2, 2)).subdivide()
@@ -89,7 +89,8 @@ def test_slivers(aspect, dtype):
     mesh = rw.Mesh((box.vertices * size).astype(np.float32), box.faces)
     scene = rw.Scene(mesh)
     failed = 0
-    for _ in range(COUNT // BATCH):
+    for batch in range(COUNT // BATCH):
+        dtype = (np.float32, np.float64)[batch % 2]
         origins = (rng.uniform(-0.9, 0.9, (BATCH, 3)) * size).astype(dtype)
         failed += failures(scene, origins, (goals(rng, mesh, BATCH) - origins).astype(dtype), inside=True)
     assert failed == 0

@@ -87,8 +87,7 @@ def test_sdist_holds_what_it_is_built_and_tested_from():
     QEMU is None or sys.platform != "linux" or platform.machine() != "x86_64",
     reason="needs qemu-x86_64, on Linux and x86-64",
 )
-@pytest.mark.parametrize("processor", ["Nehalem", "Westmere"])
-def test_processors_without_avx_give_the_same_answers(processor):
+def test_processors_without_avx_give_the_same_answers():
     told = [
         subprocess.run(
             [*command, sys.executable, "-c", ANSWERS],
@@ -98,7 +97,7 @@ def test_processors_without_avx_give_the_same_answers(processor):
             timeout=300,
             env={name: value for name, value in os.environ.items() if name != "RAYWRIGHT_SIMD"},
         ).stdout.split()
-        for command in ([], [QEMU, "-cpu", processor])
+        for command in ([], [QEMU, "-cpu", "Nehalem"])
     ]
     (level, native), (old_level, old) = told
     assert old_level == "sse2"

@@ -44,9 +44,8 @@ def test_no_pixel_is_biased_where_light_is_rare(lamps):
     assert picture.std() / np.sqrt(len(picture)) < 0.01 * 1.99
 
 
-def test_the_same_error_takes_fewer_samples():
-    scene, camera = rw.scenes.cornell_box(width=48, height=48)
-    reference = render(scene, camera, samples=4000, seed=10**9).rgb.astype(float)
+def test_the_same_error_takes_fewer_samples(cornell):
+    scene, camera, reference = cornell
     errors = [
         [relmse(render(scene, camera, samples=64, seed=s, adaptive=a), reference) for s in range(6)]
         for a in (False, True)
@@ -55,9 +54,8 @@ def test_the_same_error_takes_fewer_samples():
     assert np.mean(errors[0]) > 1.2 * np.mean(errors[1])
 
 
-def test_adaptive_errors_are_as_estimated():
-    scene, camera = rw.scenes.cornell_box(width=48, height=48)
-    reference = render(scene, camera, samples=4000, seed=10**9).rgb.astype(float)
+def test_adaptive_errors_are_as_estimated(cornell):
+    scene, camera, reference = cornell
     ratios, inside = [], []
     for seed in range(40):
         image = render(scene, camera, samples=64, seed=seed, adaptive=True)
@@ -70,11 +68,10 @@ def test_adaptive_errors_are_as_estimated():
     assert np.sum(inside) >= 35
 
 
-def test_adaptive_intervals_of_pixels_hold():
+def test_adaptive_intervals_of_pixels_hold(cornell):
     # From 256 samples on they are to hold the truth in 93 to 97 of 100. That of one picture varies by half a
     # percent, and the mean of six by 0.2 percent, of which three are allowed.
-    scene, camera = rw.scenes.cornell_box(width=48, height=48)
-    reference = render(scene, camera, samples=6000, seed=10**9).rgb.astype(float)
+    scene, camera, reference = cornell
     images = [render(scene, camera, samples=256, seed=seed, adaptive=True) for seed in range(6)]
     within = [np.mean(np.abs(image.rgb - reference) <= 1.96 * image.standard_error) for image in images]
     assert 0.924 < np.mean(within) < 0.976

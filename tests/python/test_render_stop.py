@@ -16,22 +16,26 @@ def relmse(image, reference):
     return float(np.mean(np.square(image.rgb - reference) / (np.square(reference) + 0.01)))
 
 
-def cornell():
-    return rw.scenes.cornell_box(width=48, height=48)
-
-
-def highlights():
+def balls(size):
     """Balls under small bright lamps that are in the picture: few samples of a pixel meet them."""
-    balls = [rw.Sphere((x, y, 0.0), 0.4) for x in (-1, 0, 1) for y in (-1, 0, 1)]
+    matt = [rw.Sphere((x, y, 0.0), 0.4) for x in (-1, 0, 1) for y in (-1, 0, 1)]
     lamps = [rw.Sphere((x + 0.5, y + 0.5, 1.0), 0.01, emission=200.0) for x in (-1, 0) for y in (-1, 0)]
     floor = rw.Plane((0, 0, -0.5), (0, 0, 1))
-    camera = rw.Camera((0, -3, 4), (0, 0, 0), up=(0, 0, 1), fov=45, width=48, height=48)
-    return rw.Scene([*balls, *lamps, floor], environment=0.2), camera
+    camera = rw.Camera((0, -3, 4), (0, 0, 0), up=(0, 0, 1), fov=45, width=size, height=size)
+    return rw.Scene([*matt, *lamps, floor], environment=0.2), camera
 
 
-def reached(scene, camera, seeds, adaptive):
+def with_reference(scene, camera):
     # Off by a fortieth of the target at most, which makes errors seem that much larger.
-    reference = render(scene, camera, samples=4000, seed=10**9, adaptive=True).rgb.astype(float)
+    return scene, camera, render(scene, camera, samples=4000, seed=10**9, adaptive=True).rgb.astype(float)
+
+
+@pytest.fixture(scope="module")
+def highlights():
+    return with_reference(*balls(48))
+
+
+def reached(scene, camera, reference, seeds, adaptive):
     count = 0
     for seed in range(seeds):
         image = render(scene, camera, error=TARGET, seed=seed, adaptive=adaptive)
@@ -43,17 +47,15 @@ def reached(scene, camera, seeds, adaptive):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("adaptive", [False, True])
-@pytest.mark.parametrize("make", [cornell, highlights])
-def test_an_error_that_was_asked_for_is_reached(make, adaptive):
+@pytest.mark.parametrize("which", ["cornell", "highlights"])
+def test_an_error_that_was_asked_for_is_reached(request, which, adaptive):
     # Were it 95 of 100 exactly, chance would bring 90 or fewer once in 35 cases; these seeds are fixed.
-    assert reached(*make(), 100, adaptive) >= 95
+    assert reached(*request.getfixturevalue(which), 100, adaptive) >= 95
 
 
 def test_an_error_that_was_asked_for_is_reached_in_a_small_picture():
-    scene, camera = highlights()
-    small = rw.Camera(camera.position, camera.target, up=camera.up, fov=45, width=24, height=24)
     # As above: 18 or fewer of 20 come by chance once in 4 cases, 17 once in 13.
-    assert reached(scene, small, 20, False) >= 18
+    assert reached(*with_reference(*balls(24)), 20, False) >= 18
 
 
 def test_stopping_at_an_error_does_not_darken_the_picture():
