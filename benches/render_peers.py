@@ -27,12 +27,16 @@ import raywright as rw
 # Pixels on a side of the blocks whose means are compared.
 BLOCK = 16
 
+# Pixels on a side of the patches that share paths, where paths are shared.
+REUSE = 8
+
 
 class Raywright:
     """raywright on all cores."""
 
     def __init__(self, scene, camera, integrator, sampler):
-        self.name = f"raywright {type(sampler).__name__.lower()}"
+        reuse = " reuse" if integrator.reuse > 1 else ""
+        self.name = f"raywright {type(sampler).__name__.lower()}{reuse}"
         self.sampler = sampler
         self.scene, self.camera, self.integrator = scene, camera, integrator
 
@@ -102,12 +106,13 @@ def _blocks(picture):
 def contest(name, make, arguments):
     """Render a scene by all in turns; returns lines of a table."""
     scene, camera, depth = make()
+    kinds = (rw.Independent(), 1), (rw.Sobol(), 1), (rw.Sobol(), REUSE)
     ours = [
-        Raywright(scene, camera, rw.Path(max_depth=depth), kind) for kind in (rw.Independent(), rw.Sobol())
+        Raywright(scene, camera, rw.Path(max_depth=depth, reuse=reuse), sampler) for sampler, reuse in kinds
     ]
     with_mitsuba = importlib.util.find_spec("mitsuba") is not None
     others = [Mitsuba(scene, camera, depth, sampler) for sampler in SAMPLERS] if with_mitsuba else []
-    mine, blocks, errors = reference(ours[-1], arguments.reference, 8)
+    mine, blocks, errors = reference(ours[1], arguments.reference, 8)
     truths = {engine.name: mine for engine in ours}
     if others:
         theirs, other_blocks, other_errors = reference(others[0], arguments.reference, 8)

@@ -23,15 +23,16 @@ class Path:
     roulette_depth : int
         Bounces before Russian roulette begins, at least 0.
     reuse : int
-        Side of the square patches of pixels whose paths are shared, 1, 2, 4 or 8: what a path finds from its
-        second surface on counts, in its place, for each pixel of the patch whose first surface sees that
-        (Bekaert, Sbert and Halton 2002). The mean stays what it is. What is left of the noise by a patch of
-        4 is some tenth of it where most light is indirect, at twice the time. 1 shares nothing.
+        Side of the square patches of pixels that share paths: 1, 2, 4 or 8, where 1 shares nothing. What a
+        path finds from its second surface on counts for every pixel of the patch whose own first surface
+        sees that second one (Bekaert, Sbert and Halton 2002), in proportion to how likely each was to come
+        there, which leaves no bias. It pays where surfaces are matt and most light is indirect, as in a
+        room: rays between all these points cost time, and direct light gains nothing.
 
-        Shared is what goes from a `Diffuse` surface to another; the rest of a picture stays as it is. Nothing
-        is shared in a scene where something moves, with masks, with media within one another, or with images
-        that are filtered by width. Pixels of a patch err together, which looks like spots of its size: the
-        error estimate knows it.
+        Shared is what goes from one `Diffuse` surface to another; all else is as without. Nothing is shared
+        where something moves, and in scenes with masks, with media in one another or with textures that are
+        filtered by width. Pixels of a patch err together, so that noise comes in patches. The error estimate
+        knows it: its interval is wider than without, most so in small pictures.
 
     Raises
     ------
@@ -50,7 +51,7 @@ class Path:
         if self.max_depth is not None:
             object.__setattr__(self, "max_depth", integer("max_depth", self.max_depth, 0, most))
         object.__setattr__(self, "roulette_depth", integer("roulette_depth", self.roulette_depth, 0, most))
-        reuse = integer("reuse", self.reuse, 1)
+        reuse = integer("reuse", self.reuse, 1, _SIDES[-1])
         if reuse not in _SIDES:
             raise ValueError(f"reuse must be 1, 2, 4 or 8, got {reuse}")
         object.__setattr__(self, "reuse", reuse)

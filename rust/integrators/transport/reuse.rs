@@ -5,6 +5,7 @@ use crate::math::{DVec3, Ray};
 use crate::optics::Rgb;
 use crate::scene::{Departure, Interaction, Scatters, Scene, fading};
 use crate::workers::Cancel;
+use std::ops::Range;
 
 /// What the paths of a batch share: the light that leaves their second surfaces (Bekaert, Sbert and Halton, "Accelerating Path
 /// Tracing by Re-Using Paths", 2002).
@@ -79,6 +80,12 @@ struct Pair {
     /// G, if it does.
     geometry: f64,
     fading: f64,
+}
+
+/// What is given from a second point on, and to how many pairs at most.
+struct Given {
+    found: Rgb,
+    pairs: usize,
 }
 
 impl Pair {
@@ -175,63 +182,87 @@ impl Reuse {
         path
     }
 
-    /// Adds to the radiance of each sample what it takes of what all of its group have `found`.
-    pub fn share(&mut self, scene: &Scene, groups: &[u32], found: &[Rgb], cancel: &Cancel, radiance: &mut [Rgb]) {
+    /// Adds to the radiance of each sample what it takes of what all of its group have `found`. `chance` gives a uniform number of a group, by
+    /// the number of its first sample.
+    ///
+    /// Most of the time goes into rays, and dim light is not worth as many as bright light. What is dimmer than the mean of its group is shared
+    /// in proportion to that only, and counts for more where it is: a systematic sample, which takes one uniform number for all.
+    pub fn share(
+        &mut self,
+        scene: &Scene,
+        groups: &[u32],
+        found: &[Rgb],
+        cancel: &Cancel,
+        radiance: &mut [Rgb],
+        mut chance: impl FnMut(u32) -> f64,
+    ) {
         let (mut start, mut next) = (0, 0);
-        let mut seconds = Vec::new();
+        let mut given = Vec::new();
         for &count in groups {
             if cancel.is_raised() {
                 return;
             }
             let group = start..start + count;
-            start = group.end;
-            while let Some(second) = self.second.get(next)
-                && second.sample < group.end
-            {
-                next += 1;
-                // What is nothing is not shared.
-                if found[second.sample as usize] == Rgb::ZERO {
-                    continue;
+            let seconds = next..self.second.partition_point(|second| second.sample < group.end);
+            (start, next) = (group.end, seconds.end);
+            let brightness = |second: &Second| found[second.sample as usize].element_sum();
+            let mean = self.second[seconds.clone()].iter().map(brightness).sum::<f64>() / seconds.len() as f64;
+            let mut turn = if mean > 0.0 { chance(group.start) } else { 0.0 };
+            for i in seconds {
+                let second = self.second[i];
+                let brightness = brightness(&second);
+                let probability = (brightness / mean).min(1.0);
+                let before = turn;
+                turn += probability;
+                if brightness != 0.0 && (probability >= 1.0 || turn.floor() > before.floor()) {
+                    let pairs = self.pair(&group, &second);
+                    let found = found[second.sample as usize] / probability;
+                    given.push(Given { found, pairs });
                 }
-                let before = self.pairs.len();
-                let rays = &mut self.bundles.rays;
-                for i in group.clone() {
-                    let Some((geometry, fading)) = self.first[i as usize].geometry(second) else { continue };
-                    // That a path sees where it has come to is known.
-                    let ray = if i == second.sample { Pair::KNOWN } else { rays.len() as u32 };
-                    self.pairs.push(Pair { first: i, ray, is_stray: false, geometry, fading });
-                    if i != second.sample {
-                        rays.push(second.departure.segment(&self.first[i as usize].departure));
-                    }
-                }
-                let left = rays.len() % BUNDLE;
-                if left >= FEW {
-                    rays.resize(rays.len() + BUNDLE - left, rays[rays.len() - 1]);
-                } else if left > 0 {
-                    let (start, to) = (rays.len() - left, self.strays.rays.len());
-                    self.strays.rays.extend(rays.drain(start..));
-                    for pair in
-                        self.pairs[before..].iter_mut().filter(|p| p.ray != Pair::KNOWN && p.ray >= start as u32)
-                    {
-                        pair.ray = pair.ray - start as u32 + to as u32;
-                        pair.is_stray = true;
-                    }
-                }
-                seconds.push((second.sample, self.pairs.len() - before));
             }
             if self.bundles.rays.len() + self.strays.rays.len() >= TOGETHER {
-                self.give(scene, &mut seconds, found, radiance);
+                self.give(scene, &mut given, radiance);
             }
         }
-        self.give(scene, &mut seconds, found, radiance);
+        self.give(scene, &mut given, radiance);
     }
 
-    /// Shares out what was found from those second points on, of so many pairs each.
-    fn give(&mut self, scene: &Scene, seconds: &mut Vec<(u32, usize)>, found: &[Rgb], radiance: &mut [Rgb]) {
+    /// Pairs a second point with all first points that may see it, and says with how many.
+    fn pair(&mut self, group: &Range<u32>, second: &Second) -> usize {
+        let before = self.pairs.len();
+        let rays = &mut self.bundles.rays;
+        for i in group.clone() {
+            let there = &self.first[i as usize];
+            let Some((geometry, fading)) = there.geometry(second) else { continue };
+            // That a path sees where it has come to is known.
+            let is_known = i == second.sample;
+            let ray = if is_known { Pair::KNOWN } else { rays.len() as u32 };
+            self.pairs.push(Pair { first: i, ray, is_stray: false, geometry, fading });
+            if !is_known {
+                rays.push(second.departure.segment(&there.departure));
+            }
+        }
+        let left = rays.len() % BUNDLE;
+        if left >= FEW {
+            rays.resize(rays.len() + BUNDLE - left, rays[rays.len() - 1]);
+        } else if left > 0 {
+            let (start, to) = ((rays.len() - left) as u32, self.strays.rays.len() as u32);
+            self.strays.rays.extend(rays.drain(start as usize..));
+            for pair in &mut self.pairs[before..] {
+                if pair.ray != Pair::KNOWN && pair.ray >= start {
+                    (pair.ray, pair.is_stray) = (pair.ray - start + to, true);
+                }
+            }
+        }
+        self.pairs.len() - before
+    }
+
+    /// Shares out what is given, where it is seen.
+    fn give(&mut self, scene: &Scene, given: &mut Vec<Given>, radiance: &mut [Rgb]) {
         self.bundles.look(scene);
         self.strays.look(scene);
         let mut pairs = &mut self.pairs[..];
-        for (sample, count) in seconds.drain(..) {
+        for Given { found, pairs: count } in given.drain(..) {
             let (of, rest) = pairs.split_at_mut(count);
             pairs = rest;
             let mut sum = 0.0;
@@ -244,8 +275,8 @@ impl Reuse {
             }
             for pair in of.iter().filter(|pair| pair.geometry > 0.0) {
                 let part = pair.geometry / sum * pair.fading;
-                radiance[pair.first as usize] +=
-                    self.first[pair.first as usize].reflectance * (found[sample as usize] * part);
+                let first = pair.first as usize;
+                radiance[first] += self.first[first].reflectance * (found * part);
             }
         }
         self.pairs.clear();

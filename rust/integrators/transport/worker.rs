@@ -498,7 +498,8 @@ impl<N: Features> Worker for TransportWorker<'_, N> {
         self.follow(samples, cancel, &mut found);
         let (own, shared) = found.split_at(samples.len());
         radiance.copy_from_slice(own);
-        self.reuse.share(self.scene, groups, shared, cancel, radiance);
+        let chance = |sample: u32| samples[sample as usize].sampler.one(Dimensions::SHARING);
+        self.reuse.share(self.scene, groups, shared, cancel, radiance, chance);
         self.found = found;
     }
 }
