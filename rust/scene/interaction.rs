@@ -18,6 +18,9 @@ pub trait Scatters {
 
     /// Whether all of it goes in single directions.
     fn is_delta(&self) -> bool;
+
+    /// How rough its sharpest part is ([`Bsdf::roughness`]).
+    fn roughness(&self) -> f64;
 }
 
 impl Scatters for Scattering {
@@ -46,6 +49,11 @@ impl Scatters for Scattering {
             Self::Several(parts) => parts.iter().all(|(_, bsdf)| bsdf.is_delta()),
         }
     }
+
+    #[inline]
+    fn roughness(&self) -> f64 {
+        Self::roughness(self)
+    }
 }
 
 impl Scatters for Bsdf {
@@ -67,6 +75,11 @@ impl Scatters for Bsdf {
     #[inline]
     fn is_delta(&self) -> bool {
         Self::is_delta(self)
+    }
+
+    #[inline]
+    fn roughness(&self) -> f64 {
+        Self::roughness(self)
     }
 }
 
