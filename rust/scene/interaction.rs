@@ -21,6 +21,9 @@ pub trait Scatters {
 
     /// What is reflected, if that is the same into every direction.
     fn diffuse(&self) -> Option<Rgb>;
+
+    /// How rough its sharpest part is ([`Bsdf::roughness`]).
+    fn roughness(&self) -> f64;
 }
 
 impl Scatters for Scattering {
@@ -54,6 +57,11 @@ impl Scatters for Scattering {
     fn diffuse(&self) -> Option<Rgb> {
         if let Self::One(bsdf) = self { Scatters::diffuse(bsdf) } else { None }
     }
+
+    #[inline]
+    fn roughness(&self) -> f64 {
+        Self::roughness(self)
+    }
 }
 
 impl Scatters for Bsdf {
@@ -80,6 +88,11 @@ impl Scatters for Bsdf {
     #[inline]
     fn diffuse(&self) -> Option<Rgb> {
         if let Self::Diffuse(diffuse) = self { Some(diffuse.reflectance) } else { None }
+    }
+
+    #[inline]
+    fn roughness(&self) -> f64 {
+        Self::roughness(self)
     }
 }
 

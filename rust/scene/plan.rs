@@ -83,9 +83,15 @@ impl Kernel {
 #[derive(Clone, Debug)]
 pub struct Plan {
     needs: SceneNeeds,
+    /// How many lights are asked one by one where light is scattered sharply; 0 if it is one of all.
+    few: u32,
     /// How each shape scatters, if it does so alike everywhere; empty unless all do.
     constants: Vec<Bsdf>,
 }
+
+/// What scatters more sharply than by this roughness, but not into single directions, is glossy: among 4 panels, asking each was found to halve error times time at 0.25, over
+/// metal as over varnish, and to leave it as it is at 0.5.
+const GLOSS: f64 = 0.35;
 
 /// A line of a plan: what it is about, whether the scene has it, and what that means.
 pub type PlanRow = (&'static str, bool, &'static str);
@@ -115,7 +121,8 @@ impl Plan {
         if needs.scattering || needs.copies || constants.len() != materials.len() {
             constants = Vec::new();
         }
-        Self { needs, constants }
+        let few = if needs.scattering { lights.few() } else { 0 };
+        Self { needs, few, constants }
     }
 
     fn of(material: &dyn Material, emission: &Emission) -> SceneNeeds {
@@ -150,6 +157,14 @@ impl Plan {
         self.needs
     }
 
+    /// Whether each of few lights is asked ([`Lights::sample_one`]), and one of them gets the shadow ray, at a point that scatters light with
+    /// this roughness ([`Bsdf::roughness`]). What lights bring to the eye from a matt surface is told well enough by where they are, so that
+    /// one is chosen and asked there ([`Lights::sample`]); from a glossy one, only by asking them.
+    #[inline]
+    pub fn asks_each(&self, roughness: impl FnOnce() -> f64) -> bool {
+        self.few > 0 && (f64::MIN_POSITIVE..=GLOSS).contains(&roughness())
+    }
+
     /// How a shape scatters, in a scene of [`Kernel::Plain`].
     #[inline]
     pub fn constant(&self, shape: u32) -> &Bsdf {
@@ -177,6 +192,12 @@ impl Plan {
         let row = |what, has, with, without| (what, has, if has { with } else { without });
         vec![
             row("light", needs.light, "a light is asked at each point", "no light is asked, no shadow ray sent"),
+            row(
+                "few lights",
+                self.few > 0,
+                "where it is glossy, each is asked, and one gets the shadow ray",
+                "one of all is asked",
+            ),
             row("materials", needs.scattering, "asked at each point", "one diffuse colour a shape, asked once"),
             row(
                 "textures",

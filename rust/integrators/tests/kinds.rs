@@ -27,15 +27,15 @@ impl Material for Of {
     }
 }
 
-fn of(mesh: crate::scene::Mesh, scattering: impl Into<Scattering>) -> Shape {
+pub(super) fn of(mesh: crate::scene::Mesh, scattering: impl Into<Scattering>) -> Shape {
     Shape { material: Arc::new(Of(scattering.into())), ..shape(mesh, [0.0; 3], 0.0) }
 }
 
-fn floor() -> crate::scene::Mesh {
+pub(super) fn floor() -> crate::scene::Mesh {
     rectangle([-9.0, -9.0, 0.0], [18.0, 0.0, 0.0], [0.0, 18.0, 0.0])
 }
 
-const DOWN: Ray = Ray {
+pub(super) const DOWN: Ray = Ray {
     origin: DVec3::new(0.0, -0.6, 0.8),
     direction: DVec3::new(0.0, 0.6, -0.8),
     t_min: 0.0,

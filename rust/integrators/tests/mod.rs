@@ -1,5 +1,6 @@
 //! Integrators against closed forms.
 
+mod glossy;
 mod kinds;
 mod masks;
 mod media;

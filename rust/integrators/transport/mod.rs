@@ -4,6 +4,7 @@ mod branches;
 mod dimensions;
 mod features;
 mod nesting;
+mod resampling;
 mod reuse;
 mod shadows;
 mod weights;

@@ -4,6 +4,7 @@ use super::branches::singles;
 use super::dimensions::Dimensions;
 use super::features::{Baggage, Features};
 use super::nesting::{Boundary, Inside, around};
+use super::resampling::resampled;
 use super::reuse::Reuse;
 use super::shadows::{Shadows, opacity};
 use super::weights::{ROULETTE_AT_LATEST, power_heuristic, survival};
@@ -14,7 +15,7 @@ use crate::optics::{Bsdf, Rgb};
 use crate::sampling::Sampler;
 use crate::scene::textures::TexturePoint;
 use crate::scene::{
-    Departure, Footprint, Interaction, Receiver, Scattered, Scatters, Scene, ShadingPoint, SurfacePoint,
+    Departure, Footprint, Interaction, LightSample, Receiver, Scattered, Scatters, Scene, ShadingPoint, SurfacePoint,
 };
 use crate::workers::Cancel;
 use std::marker::PhantomData;
@@ -33,6 +34,8 @@ pub(super) struct Alive {
     pub(super) sample: u32,
     /// Surfaces that it has been scattered at.
     pub(super) bounce: u32,
+    /// Whether each of few lights was asked where it was scattered last.
+    each: bool,
 }
 
 /// Paths that go on, and the ray that each is about to follow.
@@ -117,6 +120,7 @@ impl<'a, N: Features> TransportWorker<'a, N> {
             scale: 1.0,
             sample,
             bounce: 0,
+            each: false,
         }));
         if N::BAGGAGE {
             let start = Baggage { footprint: self.footprint, ..Baggage::default() };
@@ -225,7 +229,12 @@ impl<'a, N: Features> TransportWorker<'a, N> {
         if arriving == Rgb::ZERO || path.pdf == f64::INFINITY {
             return arriving;
         }
-        let drawn = lights.outside_pdf(&Receiver { position: ray.origin, normal: path.normal }, ray.direction);
+        let receiver = Receiver { position: ray.origin, normal: path.normal };
+        if !N::PLAIN && path.each {
+            let weight = |drawn: f64| power_heuristic(path.pdf, drawn * self.asked_from(path));
+            return lights.outside_weighed(&receiver, ray.direction, weight);
+        }
+        let drawn = lights.outside_pdf(&receiver, ray.direction);
         arriving * power_heuristic(path.pdf, drawn * self.asked_from(path))
     }
 
@@ -256,7 +265,12 @@ impl<'a, N: Features> TransportWorker<'a, N> {
             return emission;
         }
         let receiver = Receiver { position: ray.origin, normal: path.normal };
-        let drawn = self.scene.lights().surface_pdf(self.scene.geometry(), &receiver, ray, hit, cosine);
+        let (lights, geometry) = (self.scene.lights(), self.scene.geometry());
+        let drawn = if !N::PLAIN && path.each {
+            lights.own_pdf(geometry, &receiver, ray, hit, cosine)
+        } else {
+            lights.surface_pdf(geometry, &receiver, ray, hit, cosine)
+        };
         emission * power_heuristic(path.pdf, drawn * self.asked_from(path))
     }
 
@@ -350,16 +364,70 @@ impl<'a, N: Features> TransportWorker<'a, N> {
         splits: u32,
         sampler: &mut Sampler,
     ) {
-        let (here, path, dimensions) = (&vertex.here, vertex.path, vertex.dimensions);
-        let mut choice = sampler.one(dimensions.light_choice(number));
-        if N::BAGGAGE && asked > 1 {
-            // Of several, each from a share of the lights of its own.
-            choice = ((choice + f64::from(number)) / f64::from(asked)).min(1f64.next_down());
+        let (here, dimensions) = (&vertex.here, vertex.dimensions);
+        if self.asks_each(here) {
+            if let Some((light, arriving)) = self.ask_each_light(vertex, (number, asked), splits, sampler) {
+                self.cast(vertex, &light, arriving);
+            }
+            return;
         }
+        let choice = share(sampler.one(dimensions.light_choice(number)), (number, asked));
         let u = sampler.two(dimensions.light_point(number));
         let lights = self.scene.lights();
         let Some(light) = lights.sample(self.scene.geometry(), &here.receiver(), choice, u) else { return };
-        let (scattered, pdf) = here.evaluate(light.direction);
+        let arriving = self.arriving(vertex, &light, asked, splits);
+        if arriving != Rgb::ZERO {
+            self.cast(vertex, &light, arriving);
+        }
+    }
+
+    /// Draws light of each of few lights, and of it one draw to stand for all.
+    #[inline(never)]
+    fn ask_each_light<S: Scatters>(
+        &self,
+        vertex: &Vertex<'_, S>,
+        (number, asked): (u32, u32),
+        splits: u32,
+        sampler: &mut Sampler,
+    ) -> Option<(LightSample, Rgb)> {
+        let (lights, receiver, dimensions) = (self.scene.lights(), vertex.here.receiver(), vertex.dimensions);
+        let first = number.wrapping_mul(lights.few());
+        let choice = share(sampler.one(dimensions.light_choice(first)), (number, asked));
+        let draw = |one: u32| {
+            let number = first.wrapping_add(one);
+            let u = sampler.two(dimensions.light_point(number));
+            let choice = || sampler.one(dimensions.light_choice(number));
+            let light = lights.sample_one(one, self.scene.geometry(), &receiver, choice, u)?;
+            Some((light, self.arriving(vertex, &light, asked, splits)))
+        };
+        resampled(choice, (0..lights.few()).filter_map(draw))
+    }
+
+    /// Whether each of few lights is asked at a point.
+    #[inline]
+    fn asks_each<S: Scatters>(&self, here: &Interaction<S>) -> bool {
+        !N::PLAIN && self.scene.plan().asks_each(|| here.scattering().roughness())
+    }
+
+    /// Queues the shadow ray of light that was drawn.
+    #[inline]
+    fn cast<S: Scatters>(&mut self, vertex: &Vertex<'_, S>, light: &LightSample, arriving: Rgb) {
+        let from = vertex.here.departure();
+        let ray = match &light.source {
+            Some(source) => from.segment(source),
+            None => from.ray(light.direction),
+        };
+        self.shadows.push(Ray { time: vertex.time, ..ray }, vertex.path.sample, arriving);
+        if self.nested {
+            let is_through = vertex.here.is_through(light.direction);
+            self.shadows.set_inside(if is_through { vertex.through } else { vertex.baggage.inside });
+        }
+    }
+
+    /// What light that was drawn adds to the sample, one of so many draws, if nothing is in its way.
+    #[inline]
+    fn arriving<S: Scatters>(&self, vertex: &Vertex<'_, S>, light: &LightSample, asked: u32, splits: u32) -> Rgb {
+        let (scattered, pdf) = vertex.here.evaluate(light.direction);
         let mut weight = if self.is_followed(pdf) {
             power_heuristic(light.pdf * f64::from(asked), pdf * f64::from(splits))
         } else {
@@ -368,20 +436,7 @@ impl<'a, N: Features> TransportWorker<'a, N> {
         if N::BAGGAGE {
             weight /= f64::from(asked);
         }
-        let arriving = path.throughput * scattered * light.weight * weight;
-        if arriving == Rgb::ZERO {
-            return;
-        }
-        let from = here.departure();
-        let ray = match &light.source {
-            Some(source) => from.segment(source),
-            None => from.ray(light.direction),
-        };
-        self.shadows.push(Ray { time: vertex.time, ..ray }, path.sample, arriving);
-        if self.nested {
-            let is_through = here.is_through(light.direction);
-            self.shadows.set_inside(if is_through { vertex.through } else { vertex.baggage.inside });
-        }
+        vertex.path.throughput * scattered * light.weight * weight
     }
 
     /// Queues a path that goes on along a direction drawn, one of so many, unless roulette ends it.
@@ -402,6 +457,7 @@ impl<'a, N: Features> TransportWorker<'a, N> {
         }
         path.normal = vertex.here.receiver().normal;
         path.scale *= next.eta * next.eta;
+        path.each = self.asks_each(&vertex.here);
         path.bounce = path.bounce.saturating_add(1);
         if N::BAGGAGE && path.throughput.max_element() * path.scale < self.settings.least {
             return;
@@ -428,6 +484,12 @@ impl<'a, N: Features> TransportWorker<'a, N> {
             });
         }
     }
+}
+
+/// The choice of one of several draws: each makes its own in a share of all.
+#[inline]
+fn share(choice: f64, (number, asked): (u32, u32)) -> f64 {
+    if asked == 1 { choice } else { ((choice + f64::from(number)) / f64::from(asked)).min(1f64.next_down()) }
 }
 
 /// The bundle of rays after a surface.

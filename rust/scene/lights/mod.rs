@@ -6,6 +6,7 @@ mod constant;
 mod copied;
 mod directional;
 mod emission;
+mod few;
 mod light;
 mod map;
 mod outside;
@@ -42,6 +43,7 @@ use crate::math::{DVec3, Hit, Ray};
 use crate::optics::Rgb;
 use choice::{Choice, Strength};
 use copied::Copied;
+use few::Few;
 use light::strength;
 use outside::Outside;
 use std::sync::Arc;
@@ -63,15 +65,20 @@ pub struct Lights {
     /// `None` if nothing within the scene shines.
     choice: Option<Choice>,
     outside: Outside,
+    few: Few,
 }
 
 impl Lights {
     /// Numbers the lights: the emission of each shape of a geometry, and what is no surface.
     pub(super) fn new(geometry: &Geometry, emission: Vec<Emission>, others: Vec<Arc<dyn Light>>) -> Self {
         let (mut first, mut surfaces, mut strengths) = (Vec::new(), Vec::new(), Vec::new());
+        let mut pairs = Vec::new();
         for (shape, emission) in emission.iter().enumerate() {
             first.push(surfaces.len() as u32);
             if !emission.is_dark() && geometry.copies_of(shape as u32).is_none() {
+                if geometry.primitives_of(shape as u32).len() == 2 {
+                    pairs.push(surfaces.len() as u32);
+                }
                 for primitive in geometry.primitives_of(shape as u32) {
                     surfaces.push(primitive);
                     strengths.push(Self::of_primitive(geometry, primitive, emission));
@@ -92,7 +99,8 @@ impl Lights {
         }
         let choice = Choice::new(&strengths);
         let outside = Outside::new(outside, choice.is_some());
-        Self { emission, first, surfaces, copied, inside, choice, outside }
+        let few = Few::new(&strengths, &pairs, outside.lights().len());
+        Self { emission, first, surfaces, copied, inside, choice, outside, few }
     }
 
     /// How strong a primitive of the scene is. What no ray can hit must not shine either, and from what has no end no point can be drawn:
@@ -120,6 +128,7 @@ impl Lights {
             + self.inside.iter().map(|light| light.bytes()).sum::<usize>()
             + self.choice.as_ref().map_or(0, Choice::bytes)
             + self.outside.bytes()
+            + self.few.bytes()
     }
 
     /// How a shape shines.
@@ -143,15 +152,27 @@ impl Lights {
         }
         let choice = if share > 0.0 { ((choice - share) / (1.0 - share)).min(1.0 - f64::EPSILON) } else { choice };
         let (chosen, probability) = self.choice.as_ref()?.sample(receiver, choice)?;
-        let sample = if let Some(&primitive) = self.surfaces.get(chosen) {
+        Some(self.sample_within(chosen, geometry, receiver, u)?.chosen((1.0 - share) * probability))
+    }
+
+    /// Draws light of one that is within the scene, by its number, as if it were the only one.
+    #[inline]
+    fn sample_within(
+        &self,
+        number: usize,
+        geometry: &Geometry,
+        receiver: &Receiver,
+        u: [f64; 2],
+    ) -> Option<LightSample> {
+        if let Some(&primitive) = self.surfaces.get(number) {
             let emission = self.emission(geometry.locate(primitive).0);
-            surface::sample_primitive(geometry, emission, primitive, receiver, u)
-        } else if chosen - self.surfaces.len() < self.copied.len() {
-            self.copied.sample(chosen - self.surfaces.len(), geometry, receiver, u)
-        } else {
-            self.inside[chosen - self.surfaces.len() - self.copied.len()].sample(receiver, u)
-        };
-        Some(sample?.chosen((1.0 - share) * probability))
+            return surface::sample_primitive(geometry, emission, primitive, receiver, u);
+        }
+        let number = number - self.surfaces.len();
+        if number < self.copied.len() {
+            return self.copied.sample(number, geometry, receiver, u);
+        }
+        self.inside[number - self.copied.len()].sample(receiver, u)
     }
 
     /// The density with which [`Lights::sample`] draws, for a receiver, the direction of a ray from there, which is unit and meets an
@@ -160,19 +181,39 @@ impl Lights {
     #[inline]
     pub fn surface_pdf(&self, geometry: &Geometry, receiver: &Receiver, ray: &Ray, hit: &Hit, cosine: f64) -> f64 {
         let Some(choice) = &self.choice else { return 0.0 };
-        let (shape, number) = geometry.locate(hit.primitive);
-        let share = 1.0 - self.outside.share();
-        if geometry.copies_of(shape).is_some() {
-            let Some(light) = self.copied.find(shape, number, hit.inner) else { return 0.0 };
-            let probability = share * choice.probability(self.surfaces.len() + light, receiver);
-            return if probability > 0.0 {
-                probability * self.copied.pdf(light, geometry, receiver, (ray, hit), cosine)
-            } else {
-                0.0
-            };
+        let Some(number) = self.number_of(geometry, hit) else { return 0.0 };
+        let probability = (1.0 - self.outside.share()) * choice.probability(number, receiver);
+        if probability > 0.0 {
+            probability * self.pdf_within(number, geometry, receiver, (ray, hit), cosine)
+        } else {
+            0.0
         }
-        let probability = share * choice.probability((self.first[shape as usize] + number) as usize, receiver);
-        if probability > 0.0 { probability * surface::primitive_pdf(geometry, receiver, ray, hit, cosine) } else { 0.0 }
+    }
+
+    /// The number of the light that was hit; none if it is in copies and never drawn.
+    #[inline]
+    fn number_of(&self, geometry: &Geometry, hit: &Hit) -> Option<usize> {
+        let (shape, number) = geometry.locate(hit.primitive);
+        if geometry.copies_of(shape).is_some() {
+            return Some(self.surfaces.len() + self.copied.find(shape, number, hit.inner)?);
+        }
+        Some((self.first[shape as usize] + number) as usize)
+    }
+
+    /// The density of [`Lights::sample_within`].
+    #[inline]
+    fn pdf_within(
+        &self,
+        number: usize,
+        geometry: &Geometry,
+        receiver: &Receiver,
+        (ray, hit): (&Ray, &Hit),
+        cosine: f64,
+    ) -> f64 {
+        if number < self.surfaces.len() {
+            return surface::primitive_pdf(geometry, receiver, ray, hit, cosine);
+        }
+        self.copied.pdf(number - self.surfaces.len(), geometry, receiver, (ray, hit), cosine)
     }
 
     /// The density with which [`Lights::sample`], for a receiver, draws a unit direction that leaves the scene.

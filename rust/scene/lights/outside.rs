@@ -13,6 +13,8 @@ pub(super) struct Outside {
     probabilities: Vec<f64>,
     /// With which one is.
     share: f64,
+    /// See [`Outside::own_share`].
+    own_shares: Vec<f64>,
 }
 
 /// How often the sky is chosen where there are lights inside, if it is the same everywhere. In a studio with a lamp and such a sky, shares
@@ -40,13 +42,28 @@ impl Outside {
         }
         let probabilities = weights.iter().map(|w| w / sum).collect();
         let share = if others { sum / (1.0 + sum) } else { 1.0 };
+        let own = |spread: f64| if others { 1.0 - (1.0 - SHARE) * spread.clamp(0.0, 1.0) } else { 1.0 };
+        let own_shares = lights.iter().map(|(_, _, spread)| own(*spread)).collect();
         let lights = lights.into_iter().map(|(light, ..)| light).collect();
-        Self { lights, probabilities, share }
+        Self { lights, probabilities, share, own_shares }
     }
 
     /// Whether there is none.
     pub fn is_dark(&self) -> bool {
         self.lights.is_empty()
+    }
+
+    /// Each of them.
+    #[inline]
+    pub fn lights(&self) -> &[Arc<dyn Light>] {
+        &self.lights
+    }
+
+    /// How often one is asked where each of all lights is. What is found well by scattering need not be, and would take the shadow ray from
+    /// what is not.
+    #[inline]
+    pub fn own_share(&self, one: usize) -> f64 {
+        self.own_shares[one]
     }
 
     /// How often one of them is to be chosen rather than a light inside.
@@ -90,6 +107,8 @@ impl Outside {
 
     /// The memory held.
     pub fn bytes(&self) -> usize {
-        size_of_val(self.probabilities.as_slice()) + self.lights.iter().map(|light| light.bytes()).sum::<usize>()
+        size_of_val(self.probabilities.as_slice())
+            + size_of_val(self.own_shares.as_slice())
+            + self.lights.iter().map(|light| light.bytes()).sum::<usize>()
     }
 }

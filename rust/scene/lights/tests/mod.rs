@@ -2,6 +2,7 @@
 
 mod copies;
 mod environments;
+mod few;
 mod irradiance;
 mod many;
 mod shapes;

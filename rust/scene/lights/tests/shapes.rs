@@ -24,7 +24,7 @@ fn round(surface: Arc<dyn crate::shapes::Shape>, radiance: f64) -> Scene {
 
 /// The irradiance of a triangle of radiance 1, as a vector (Lambert, 1760): half the sum over edges of the angle between its ends times
 /// the unit normal of the plane through it and the place. It must be above the horizon.
-fn lambert(corners: [DVec3; 3], receiver: &Receiver) -> f64 {
+pub(super) fn lambert(corners: [DVec3; 3], receiver: &Receiver) -> f64 {
     let c = corners.map(|corner| (corner - receiver.position).normalize());
     let edge = |a: DVec3, b: DVec3| {
         let cross = a.cross(b);
