@@ -117,7 +117,7 @@ fn each_light_brings_what_scattering_finds() {
                 let (mean, other) = radiance(&scene, integrator, DOWN, 20_000);
                 assert!(
                     (mean - expected).abs() < 4.0 * error.hypot(other),
-                    "{mean} ± {other}, not {expected} ± {error}"
+                    "{which} {number}: {mean} ± {other}, not {expected} ± {error}"
                 );
                 assert!(other < 0.03 * mean, "{other} of {mean}");
             }
