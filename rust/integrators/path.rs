@@ -41,7 +41,7 @@ impl Integrator for Path {
         self.settings(scene).worker(scene, footprint)
     }
 
-    /// 1 where nothing can be shared, see [`can_share`], or no path goes on from its second surface.
+    /// 1 where nothing can be shared, or no path goes on from its second surface.
     fn patch(&self, scene: &Scene) -> u32 {
         let goes_on = self.max_depth.is_none_or(|depth| depth > 1);
         if goes_on && can_share(scene) { self.reuse.max(1) } else { 1 }

@@ -221,7 +221,9 @@ impl Geometry {
         let is_finite = |v: u32| all.vertices.get(v).is_finite();
         let is_dropped = |face: &&[u32; 3]| **face != NO_FACE && !face.iter().all(|&v| is_finite(v));
         all.dropped = all.faces.iter().filter(is_dropped).count();
-        all.facets = Facets::new(all.count(), |primitive| (all.computed_normal(primitive), all.located(primitive).0));
+        // Copies are many, and each shall be small.
+        let faces = if all.gaps.is_empty() { all.count() } else { 0 };
+        all.facets = Facets::new(faces, |primitive| (all.computed_normal(primitive), all.located(primitive).0));
         all
     }
 
