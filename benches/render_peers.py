@@ -91,10 +91,12 @@ def relmse(picture, reference):
 
 
 def reference(engine, samples, seeds):
-    """Return a long picture, and the standard errors of its blocks' means."""
+    """Return a long picture with its own relMSE, its blocks' means, and the standard errors of these."""
     pictures = [engine.render(samples, 1_000_000 + seed)[0] for seed in range(seeds)]
     blocks = np.stack([_blocks(picture) for picture in pictures])
-    return np.mean(pictures, axis=0), blocks.mean(axis=0), blocks.std(axis=0, ddof=1) / math.sqrt(seeds)
+    mean = np.mean(pictures, axis=0)
+    noise = float(np.mean(np.var(pictures, axis=0, ddof=1) / seeds / (mean**2 + 0.01)))
+    return (mean, noise), blocks.mean(axis=0), blocks.std(axis=0, ddof=1) / math.sqrt(seeds)
 
 
 def _blocks(picture):
@@ -129,7 +131,9 @@ def contest(name, make, arguments):
     for turn, engine in product(range(arguments.repeat), (*ours, *others)):
         picture, seconds = engine.render(arguments.samples, turn + 1)
         records[engine.name][0].append(seconds)
-        records[engine.name][1].append(relmse(picture, truths[engine.name]))
+        # The noise of the long picture adds to that of the other, of which it knows nothing.
+        truth, noise = truths[engine.name]
+        records[engine.name][1].append(relmse(picture, truth) - noise)
     rows = {}
     for engine, (seconds, wrong) in records.items():
         rows[engine] = (statistics.median(seconds), statistics.mean(wrong))
