@@ -314,6 +314,7 @@ impl Geometry {
         }
     }
 
+    #[inline(always)]
     fn located(&self, primitive: u32) -> (u32, u32) {
         if self.shapes() == 1 {
             return (0, primitive);
@@ -365,6 +366,7 @@ impl Geometry {
         self.facets.get(primitive).map_or_else(|| self.computed_normal(primitive), |facet| facet.normal)
     }
 
+    #[inline(always)]
     fn computed_normal(&self, primitive: u32) -> DVec3 {
         let n = self.area_vector(primitive);
         // Scaling by the largest component first keeps the squares of tiny and huge triangles in range.
