@@ -34,24 +34,14 @@ impl BlinnPhong {
 
 impl Scatter for BlinnPhong {
     #[inline]
-    fn evaluate(&self, wo: DVec3, wi: DVec3) -> Rgb {
+    fn evaluate(&self, wo: DVec3, wi: DVec3) -> (Rgb, f64) {
         if wo.z * wi.z <= 0.0 {
-            return Rgb::ZERO;
+            return (Rgb::ZERO, 0.0);
         }
-        let lobe = self.lobe(wo, wi).map_or(0.0, |(power, _)| power) * self.scale;
-        (self.lobes.diffuse * FRAC_1_PI + self.lobes.specular * lobe) * wi.z.abs()
-    }
-
-    #[inline]
-    fn pdf(&self, wo: DVec3, wi: DVec3) -> f64 {
-        if wo.z * wi.z <= 0.0 {
-            return 0.0;
-        }
-        let lobe = match self.lobe(wo, wi) {
-            Some((power, cosine)) if cosine > 0.0 => power * (self.exponent + 1.0) / (4.0 * TAU * cosine),
-            _ => 0.0,
-        };
-        self.lobes.mixed(wi.z.abs() * FRAC_1_PI, lobe)
+        let (power, cosine) = self.lobe(wo, wi).unwrap_or((0.0, 0.0));
+        let density = if cosine > 0.0 { power * (self.exponent + 1.0) / (4.0 * TAU * cosine) } else { 0.0 };
+        let value = (self.lobes.diffuse * FRAC_1_PI + self.lobes.specular * (power * self.scale)) * wi.z.abs();
+        (value, self.lobes.mixed(wi.z.abs() * FRAC_1_PI, density))
     }
 
     #[inline]
@@ -65,8 +55,8 @@ impl Scatter for BlinnPhong {
         } else {
             diffuse(wo, u)
         };
-        let pdf = self.pdf(wo, wi);
-        (pdf > 0.0).then(|| BsdfSample::new(wi, self.evaluate(wo, wi) / pdf, pdf))
+        let (value, pdf) = self.evaluate(wo, wi);
+        (pdf > 0.0).then(|| BsdfSample::new(wi, value / pdf, pdf))
     }
 
     fn albedo(&self) -> Rgb {

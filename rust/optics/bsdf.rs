@@ -16,11 +16,9 @@ use glam::DVec3;
 /// have the factor 1 / η² in them, with η the index where the light comes from over that where it goes to
 /// (Veach, "Robust Monte Carlo Methods for Light Transport Simulation", 1997, 5.2).
 pub trait Scatter {
-    /// The scattering function times |cos θ| of `wi`, without what has a single direction.
-    fn evaluate(&self, wo: DVec3, wi: DVec3) -> Rgb;
-
-    /// The density in solid angle with which [`Scatter::sample`] draws `wi`, without what has a single direction.
-    fn pdf(&self, wo: DVec3, wi: DVec3) -> f64;
+    /// The scattering function times |cos θ| of `wi`, and the density in solid angle with which [`Scatter::sample`] draws `wi`, both
+    /// without what has a single direction. Who asks for the one mostly needs the other, and much is in both.
+    fn evaluate(&self, wo: DVec3, wi: DVec3) -> (Rgb, f64);
 
     /// Draws where the light comes from: `choice`, uniform in [0, 1), among the parts that scattering has (only asked
     /// for when it has several), `u` for the direction. `None` if the draw scatters nothing.
@@ -96,17 +94,9 @@ macro_rules! kinds {
         impl Bsdf {
             /// See [`Scatter::evaluate`].
             #[inline]
-            pub fn evaluate(&self, wo: DVec3, wi: DVec3) -> Rgb {
+            pub fn evaluate(&self, wo: DVec3, wi: DVec3) -> (Rgb, f64) {
                 match self {
                     $(Self::$kind(kind) => kind.evaluate(wo, wi),)+
-                }
-            }
-
-            /// See [`Scatter::pdf`].
-            #[inline]
-            pub fn pdf(&self, wo: DVec3, wi: DVec3) -> f64 {
-                match self {
-                    $(Self::$kind(kind) => kind.pdf(wo, wi),)+
                 }
             }
 

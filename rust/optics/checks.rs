@@ -117,8 +117,8 @@ fn light_is_scattered_alike_in_both_directions() {
                     Bsdf::Dielectric(d) if w.z < 0.0 => d.eta(),
                     _ => 1.0,
                 };
-                let one = bsdf.evaluate(wo, wi) / wi.z.abs() * index(wi).powi(2);
-                let two = bsdf.evaluate(wi, wo) / wo.z.abs() * index(wo).powi(2);
+                let one = bsdf.evaluate(wo, wi).0 / wi.z.abs() * index(wi).powi(2);
+                let two = bsdf.evaluate(wi, wo).0 / wo.z.abs() * index(wo).powi(2);
                 let off = (one - two).abs().max_element();
                 assert!(off <= 1e-6 * one.max_element() + 1e-12, "{one} {two} {bsdf:?} {wo} {wi}");
             }
@@ -141,7 +141,7 @@ fn draws_weigh_what_is_evaluated() {
                     continue;
                 }
                 assert!(!bsdf.is_delta());
-                let (value, pdf) = (bsdf.evaluate(wo, s.wi), bsdf.pdf(wo, s.wi));
+                let (value, pdf) = bsdf.evaluate(wo, s.wi);
                 let off = (value - s.weight * s.pdf).abs().max_element() / value.max_element();
                 // Directions have 10⁻¹⁶: over a lobe's width, for what is evaluated from them.
                 let bound = 1e-9 + 1e-12 * s.pdf.sqrt();
@@ -192,7 +192,7 @@ proptest! {
         kinds.push(MetallicRough::new(Rgb::ONE, across, alpha).into());
         kinds.push(OrenNayar::new(Rgb::ONE, alpha).into());
         for bsdf in kinds {
-            let (value, pdf) = (bsdf.evaluate(wo, wi), bsdf.pdf(wo, wi));
+            let (value, pdf) = bsdf.evaluate(wo, wi);
             prop_assert!(is_radiance(value) && pdf.is_finite() && pdf >= 0.0, "{value} {pdf} {bsdf:?} {wo} {wi}");
             prop_assert!(is_radiance(bsdf.albedo()) && bsdf.albedo().max_element() <= 1.01, "{bsdf:?}");
             prop_assert!((0.0..=1.42).contains(&bsdf.roughness()));

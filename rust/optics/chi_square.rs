@@ -113,7 +113,7 @@ fn assert_density(bsdf: &Bsdf, wo: DVec3, chart: &impl Chart) {
                     |low: usize, i: usize, count: usize| (low as f64 + (i as f64 + 0.5) / FINE as f64) / count as f64;
                 let at = [part(cell / COLUMNS, i / FINE, ROWS), part(cell % COLUMNS, i % FINE, COLUMNS)];
                 if let Some((wi, area)) = chart.direction(at) {
-                    sum += bsdf.pdf(wo, wi) * area;
+                    sum += bsdf.evaluate(wo, wi).1 * area;
                 }
             }
             sum / (FINE * FINE * ROWS * COLUMNS) as f64

@@ -1,6 +1,6 @@
 //! Plastic, varnish, glaze: a matt base under a clear coat.
 
-use super::albedo::{coat, coat_average, mirror_loss};
+use super::albedo::{MirrorLoss, coat, coat_average};
 use super::conductor::{above, half};
 use super::lobes::diffuse;
 use super::mirror::mirrored;
@@ -41,7 +41,7 @@ impl Coated {
     fn reflectance(&self, w: DVec3) -> f64 {
         match &self.ggx {
             None => fresnel::dielectric(w.z.abs(), self.eta),
-            Some(ggx) => coat(ggx.alpha()[0], self.eta, w.z) * (1.0 - mirror_loss(ggx, w)),
+            Some(ggx) => coat(ggx.alpha()[0], self.eta, w.z) * (1.0 - MirrorLoss::new(*ggx).of(w)),
         }
     }
 
@@ -55,27 +55,20 @@ impl Coated {
 
 impl Scatter for Coated {
     #[inline]
-    fn evaluate(&self, wo: DVec3, wi: DVec3) -> Rgb {
+    fn evaluate(&self, wo: DVec3, wi: DVec3) -> (Rgb, f64) {
         if !Ggx::sees(wo) || !Ggx::sees(wi) || wo.z * wi.z <= 0.0 {
-            return Rgb::ZERO;
+            return (Rgb::ZERO, 0.0);
         }
         let (wo, wi) = (above(wo), above(wi));
-        let reaching = (1.0 - self.reflectance(wo)) * (1.0 - self.reflectance(wi));
+        let reflectance = self.reflectance(wo);
+        let share = self.share(reflectance);
+        let reaching = (1.0 - reflectance) * (1.0 - self.reflectance(wi));
         let base = self.base * (reaching * FRAC_1_PI * wi.z / (1.0 - self.average));
-        let Some(ggx) = &self.ggx else { return base };
+        let diffuse = (1.0 - share) * wi.z * FRAC_1_PI;
+        let Some(ggx) = &self.ggx else { return (base, diffuse) };
         let (h, cosine) = half(wo, wi);
-        base + fresnel::dielectric(cosine, self.eta) * ggx.density(h) * ggx.reflection_geometry(wo, wi)
-    }
-
-    #[inline]
-    fn pdf(&self, wo: DVec3, wi: DVec3) -> f64 {
-        if !Ggx::sees(wo) || !Ggx::sees(wi) || wo.z * wi.z <= 0.0 {
-            return 0.0;
-        }
-        let (wo, wi) = (above(wo), above(wi));
-        let share = self.share(self.reflectance(wo));
-        let coat = self.ggx.as_ref().map_or(0.0, |ggx| ggx.reflected_pdf(wo, half(wo, wi).0));
-        share * coat + (1.0 - share) * wi.z * FRAC_1_PI
+        let coat = fresnel::dielectric(cosine, self.eta) * ggx.density(h) * ggx.reflection_geometry(wo, wi);
+        (base + coat, share * ggx.reflected_pdf(wo, h) + diffuse)
     }
 
     #[inline]
@@ -98,8 +91,8 @@ impl Scatter for Coated {
             return None;
         }
         wi.z = wi.z.copysign(wo.z);
-        let pdf = self.pdf(wo, wi);
-        (pdf > 0.0).then(|| BsdfSample::new(wi, self.evaluate(wo, wi) / pdf, pdf))
+        let (value, pdf) = self.evaluate(wo, wi);
+        (pdf > 0.0).then(|| BsdfSample::new(wi, value / pdf, pdf))
     }
 
     fn albedo(&self) -> Rgb {

@@ -1,9 +1,10 @@
 //! Metals.
 
-use super::albedo::{mirror_loss, mirror_loss_average};
-use super::lobes::{grazing, grazing_pdf};
+use super::albedo::MirrorLoss;
+use super::fresnel::ConductorIndex;
+use super::lobes::Grazing;
 use super::mirror::mirrored;
-use super::{BsdfSample, Ggx, Rgb, Scatter, fresnel};
+use super::{BsdfSample, Ggx, Rgb, Scatter};
 use glam::DVec3;
 use std::f64::consts::{FRAC_1_PI, PI};
 
@@ -12,14 +13,16 @@ use std::f64::consts::{FRAC_1_PI, PI};
 /// roughness. Both sides reflect.
 #[derive(Clone, Copy, Debug)]
 pub struct Conductor {
-    eta: Rgb,
-    k: Rgb,
+    index: ConductorIndex,
     rough: Option<Rough>,
 }
 
 #[derive(Clone, Copy, Debug)]
 struct Rough {
     ggx: Ggx,
+    loss: MirrorLoss,
+    /// Where light goes that is scattered more than once.
+    grazing: Grazing,
     /// What is scattered more than once, over π and the mean loss.
     multiple: Rgb,
 }
@@ -28,25 +31,26 @@ impl Conductor {
     /// Of the complex index `eta` + i `k` relative to the medium around it, as [`super::conductors`] has it for metals, and
     /// the roughness along x and y, 0 to 1. Below [`Ggx::SMOOTH`] it is a mirror.
     pub fn new(eta: Rgb, k: Rgb, alpha: [f64; 2]) -> Self {
+        let index = ConductorIndex::new(eta, k);
         let rough = Ggx::rough(alpha).map(|ggx| {
-            let multiple = made_up(&ggx, fresnel::conductor_average(eta, k));
-            Rough { ggx, multiple }
+            let loss = MirrorLoss::new(ggx);
+            let multiple = made_up(loss.average(), index.average());
+            Rough { ggx, loss, grazing: Grazing::new(ggx.mean_alpha()), multiple }
         });
-        Self { eta, k, rough }
+        Self { index, rough }
     }
 
     /// The share of light that is reflected at this cosine of incidence.
     #[inline]
     pub fn reflectance(&self, cosine: f64) -> Rgb {
-        fresnel::conductor(cosine, self.eta, self.k)
+        self.index.reflectance(cosine)
     }
 }
 
-/// What scattering more than once gives back of each unit lost, for facets of this mean reflectance, over π and the mean
-/// loss: each further time, F̄ is left, and 1 − L̄ of it gets out.
+/// What scattering more than once gives back of each unit lost, for facets of this mean loss and reflectance, over π and the
+/// mean loss: each further time, F̄ is left, and 1 − L̄ of it gets out.
 #[inline]
-pub(super) fn made_up(ggx: &Ggx, reflectance: Rgb) -> Rgb {
-    let lost = mirror_loss_average(ggx);
+pub(super) fn made_up(lost: f64, reflectance: Rgb) -> Rgb {
     let colour = reflectance * reflectance * (1.0 - lost) / (Rgb::ONE - reflectance * lost);
     colour * (FRAC_1_PI / lost)
 }
@@ -66,29 +70,19 @@ pub(super) fn half(wo: DVec3, wi: DVec3) -> (DVec3, f64) {
 
 impl Scatter for Conductor {
     #[inline]
-    fn evaluate(&self, wo: DVec3, wi: DVec3) -> Rgb {
+    fn evaluate(&self, wo: DVec3, wi: DVec3) -> (Rgb, f64) {
         let Some(rough) = &self.rough else {
-            return Rgb::ZERO;
+            return (Rgb::ZERO, 0.0);
         };
         if !Ggx::sees(wo) || !Ggx::sees(wi) || wo.z * wi.z <= 0.0 {
-            return Rgb::ZERO;
+            return (Rgb::ZERO, 0.0);
         }
         let (wo, wi) = (above(wo), above(wi));
         let (h, cosine) = half(wo, wi);
         let single = rough.ggx.density(h) * rough.ggx.reflection_geometry(wo, wi);
-        let lost = mirror_loss(&rough.ggx, wo) * mirror_loss(&rough.ggx, wi) * wi.z;
-        self.reflectance(cosine) * single + rough.multiple * lost
-    }
-
-    #[inline]
-    fn pdf(&self, wo: DVec3, wi: DVec3) -> f64 {
-        let Some(rough) = &self.rough else { return 0.0 };
-        if !Ggx::sees(wo) || !Ggx::sees(wi) || wo.z * wi.z <= 0.0 {
-            return 0.0;
-        }
-        let (wo, wi) = (above(wo), above(wi));
-        let lost = mirror_loss(&rough.ggx, wo);
-        (1.0 - lost) * rough.ggx.reflected_pdf(wo, half(wo, wi).0) + lost * grazing_pdf(rough.ggx.mean_alpha(), wi.z)
+        let lost = rough.loss.of(wo);
+        let value = self.reflectance(cosine) * single + rough.multiple * (lost * rough.loss.of(wi) * wi.z);
+        (value, (1.0 - lost) * rough.ggx.reflected_pdf(wo, h) + lost * rough.grazing.pdf(wi.z))
     }
 
     #[inline]
@@ -100,23 +94,22 @@ impl Scatter for Conductor {
             return Some(BsdfSample::delta(mirrored(wo), self.reflectance(wo.z.abs())));
         };
         let up = above(wo);
-        let lost = mirror_loss(&rough.ggx, up);
-        let mut wi =
-            if choice() < lost { grazing(rough.ggx.mean_alpha(), u) } else { rough.ggx.sample_reflection(up, u) };
+        let lost = rough.loss.of(up);
+        let mut wi = if choice() < lost { rough.grazing.sample(u) } else { rough.ggx.sample_reflection(up, u) };
         if wi.z <= 0.0 {
             return None;
         }
         wi.z = wi.z.copysign(wo.z);
-        let pdf = self.pdf(wo, wi);
-        (pdf > 0.0).then(|| BsdfSample::new(wi, self.evaluate(wo, wi) / pdf, pdf))
+        let (value, pdf) = self.evaluate(wo, wi);
+        (pdf > 0.0).then(|| BsdfSample::new(wi, value / pdf, pdf))
     }
 
     fn albedo(&self) -> Rgb {
-        let average = fresnel::conductor_average(self.eta, self.k);
+        let average = self.index.average();
         match &self.rough {
             None => average,
             Some(rough) => {
-                let lost = mirror_loss_average(&rough.ggx);
+                let lost = rough.loss.average();
                 average * (1.0 - lost) + rough.multiple * (PI * lost * lost)
             }
         }

@@ -2,7 +2,7 @@
 
 use super::albedo::Interface;
 use super::conductor::{above, half};
-use super::lobes::{grazing, grazing_pdf};
+use super::lobes::Grazing;
 use super::mirror::mirrored;
 use super::{BsdfSample, Ggx, Rgb, Scatter, fresnel};
 use glam::DVec3;
@@ -97,7 +97,7 @@ impl Dielectric {
         let crossing = rough.interface.crossing(wo);
         let share = if wo.z * wi.z < 0.0 { crossing } else { 1.0 - crossing };
         let scale = rough.interface.scale(wi);
-        (value + back, (1.0 - lost) * pdf + lost * share * grazing_pdf(scale, wi.z.abs()))
+        (value + back, (1.0 - lost) * pdf + lost * share * Grazing::new(scale).pdf(wi.z.abs()))
     }
 
     #[inline]
@@ -117,7 +117,7 @@ impl Dielectric {
         let (wi, single) = if choice < lost {
             let side = if choice < lost * rough.interface.crossing(wo) { -wo.z.signum() } else { wo.z.signum() };
             let scale = rough.interface.scale(DVec3::new(0.0, 0.0, side));
-            let wi = grazing(scale, u) * DVec3::new(1.0, 1.0, side);
+            let wi = Grazing::new(scale).sample(u) * DVec3::new(1.0, 1.0, side);
             if !Ggx::sees(wi) {
                 return None;
             }
@@ -156,20 +156,13 @@ impl Dielectric {
 
 impl Scatter for Dielectric {
     #[inline]
-    fn evaluate(&self, wo: DVec3, wi: DVec3) -> Rgb {
+    fn evaluate(&self, wo: DVec3, wi: DVec3) -> (Rgb, f64) {
         match &self.rough {
             Some(rough) if Ggx::sees(wo) && Ggx::sees(wi) => {
-                Rgb::splat(self.both(rough, wo, wi, self.single(rough, wo, wi)).0)
+                let (value, pdf) = self.both(rough, wo, wi, self.single(rough, wo, wi));
+                (Rgb::splat(value), pdf)
             }
-            _ => Rgb::ZERO,
-        }
-    }
-
-    #[inline]
-    fn pdf(&self, wo: DVec3, wi: DVec3) -> f64 {
-        match &self.rough {
-            Some(rough) if Ggx::sees(wo) && Ggx::sees(wi) => self.both(rough, wo, wi, self.single(rough, wo, wi)).1,
-            _ => 0.0,
+            _ => (Rgb::ZERO, 0.0),
         }
     }
 

@@ -15,13 +15,9 @@ pub struct Diffuse {
 
 impl Scatter for Diffuse {
     #[inline]
-    fn evaluate(&self, wo: DVec3, wi: DVec3) -> Rgb {
-        if wo.z * wi.z > 0.0 { self.reflectance * (wi.z.abs() * FRAC_1_PI) } else { Rgb::ZERO }
-    }
-
-    #[inline]
-    fn pdf(&self, wo: DVec3, wi: DVec3) -> f64 {
-        if wo.z * wi.z > 0.0 { wi.z.abs() * FRAC_1_PI } else { 0.0 }
+    fn evaluate(&self, wo: DVec3, wi: DVec3) -> (Rgb, f64) {
+        let pdf = if wo.z * wi.z > 0.0 { wi.z.abs() * FRAC_1_PI } else { 0.0 };
+        (self.reflectance * pdf, pdf)
     }
 
     /// By the cosine, so that every draw weighs the reflectance.
@@ -60,7 +56,7 @@ mod tests {
             let mut sum = Rgb::ZERO;
             for sample in 0..count {
                 let wi = warp::uniform_sphere(Sampler::new(5, 0, sample).two(0));
-                sum += Bsdf::Diffuse(GREY).evaluate(wo, wi) / warp::UNIFORM_SPHERE_PDF;
+                sum += Bsdf::Diffuse(GREY).evaluate(wo, wi).0 / warp::UNIFORM_SPHERE_PDF;
             }
             assert!((sum / f64::from(count) / GREY.reflectance - 1.0).abs().max_element() < 0.008);
         }
@@ -69,10 +65,9 @@ mod tests {
     #[test]
     fn is_reciprocal_and_on_one_side() {
         let wi = DVec3::new(0.0, 0.28, 0.96);
-        let swapped = GREY.evaluate(wi, ABOVE) / ABOVE.z;
-        assert!((GREY.evaluate(ABOVE, wi) / wi.z - swapped).abs().max_element() < 1e-15);
-        assert_eq!(GREY.evaluate(ABOVE, -wi), Rgb::ZERO);
-        assert_eq!(GREY.pdf(ABOVE, -wi), 0.0);
+        let swapped = GREY.evaluate(wi, ABOVE).0 / ABOVE.z;
+        assert!((GREY.evaluate(ABOVE, wi).0 / wi.z - swapped).abs().max_element() < 1e-15);
+        assert_eq!(GREY.evaluate(ABOVE, -wi), (Rgb::ZERO, 0.0));
         assert_eq!(GREY.evaluate(-ABOVE, -wi), GREY.evaluate(ABOVE, wi));
     }
 
@@ -83,8 +78,9 @@ mod tests {
             for sample in 0..100_000 {
                 let u = Sampler::new(6, 0, sample).two(0);
                 let s = Bsdf::Diffuse(GREY).sample(wo, || unreachable!("it has one part"), u).unwrap();
-                assert!((s.weight * s.pdf - GREY.evaluate(wo, s.wi)).abs().max_element() < 1e-15);
-                assert_eq!(s.pdf, GREY.pdf(wo, s.wi));
+                let (value, pdf) = GREY.evaluate(wo, s.wi);
+                assert!((s.weight * s.pdf - value).abs().max_element() < 1e-15);
+                assert_eq!(s.pdf, pdf);
                 let row = (((s.wi.z + 1.0) * 10.0) as usize).min(19);
                 counts[row * 12 + (((s.wi.y.atan2(s.wi.x) + PI) / TAU * 12.0) as usize).min(11)] += 1;
             }
@@ -92,7 +88,7 @@ mod tests {
             let expected: Vec<f64> = (0..240)
                 .map(|i| {
                     let z = (f64::from(i / 12) + 0.5) / 10.0 - 1.0;
-                    GREY.pdf(wo, DVec3::new((1.0 - z * z).sqrt(), 0.0, z)) * TAU / 120.0
+                    GREY.evaluate(wo, DVec3::new((1.0 - z * z).sqrt(), 0.0, z)).1 * TAU / 120.0
                 })
                 .collect();
             assert_frequencies(&counts, &expected);

@@ -61,31 +61,59 @@ pub fn dielectric_average(eta: f64) -> f64 {
         + 8.0 * n4 * (n4 + 1.0) / (plus * (n4 - 1.0).powi(2)) * n.ln()
 }
 
-/// The reflectance of a conductor for unpolarised light, channel by channel: `cosine` of incidence, and its complex index
-/// `eta` + i `k` relative to the medium before it (Born and Wolf, "Principles of Optics", 14.2).
-#[inline]
-pub fn conductor(cosine: f64, eta: Rgb, k: Rgb) -> Rgb {
-    let (c, c2) = (cosine, cosine * cosine);
-    let s2 = (1.0 - c) * (1.0 + c);
-    let (eta2, k2) = (eta * eta, k * k);
-    let real = eta2 - k2 - s2;
-    // a² + b² = |η² − sin²θ| for the complex η.
-    let norm = (real * real + 4.0 * eta2 * k2).map(f64::sqrt);
-    let a = ((norm + real) * 0.5).max(Rgb::ZERO).map(f64::sqrt);
-    let s = (norm + c2 - 2.0 * c * a) / (norm + c2 + 2.0 * c * a);
-    let (even, odd) = (c2 * norm + s2 * s2, 2.0 * c * s2 * a);
-    let p = s * (even - odd) / (even + odd);
-    (0.5 * (s + p)).clamp(Rgb::ZERO, Rgb::ONE)
+/// A conductor's index of refraction η + ik, squared.
+#[derive(Clone, Copy, Debug)]
+pub struct ConductorIndex {
+    /// Its real part, η² − k².
+    real: Rgb,
+    /// The square of its imaginary part, 4 η² k².
+    imaginary2: Rgb,
 }
 
-/// The share of even light from a hemisphere that a conductor reflects, by Gauss's rule of four points for the weight
-/// 2μ. The error is below 1e-3 for the metals in [`super::conductors`].
-pub fn conductor_average(eta: Rgb, k: Rgb) -> Rgb {
-    let mut sum = Rgb::ZERO;
-    for (node, weight) in GAUSS_COSINE {
-        sum += weight * conductor(node, eta, k);
+impl ConductorIndex {
+    /// Of the index `eta` + i `k` relative to the medium before it, channel by channel.
+    #[inline]
+    pub fn new(eta: Rgb, k: Rgb) -> Self {
+        let (eta2, k2) = (eta * eta, k * k);
+        Self { real: eta2 - k2, imaginary2: 4.0 * eta2 * k2 }
     }
-    sum
+
+    /// The reflectance for unpolarised light of a `cosine` of incidence (Born and Wolf, "Principles of Optics", 14.2).
+    #[inline]
+    pub fn reflectance(&self, cosine: f64) -> Rgb {
+        let (c, c2) = (cosine, cosine * cosine);
+        let s2 = (1.0 - c) * (1.0 + c);
+        let real = self.real - s2;
+        // a² + b² = |η² − sin²θ| for the complex η.
+        let norm = root(real * real + self.imaginary2);
+        let a = root(((norm + real) * 0.5).max(Rgb::ZERO));
+        let s = (norm + c2 - 2.0 * c * a) / (norm + c2 + 2.0 * c * a);
+        let (even, odd) = (c2 * norm + s2 * s2, 2.0 * c * s2 * a);
+        let p = s * (even - odd) / (even + odd);
+        (0.5 * (s + p)).clamp(Rgb::ZERO, Rgb::ONE)
+    }
+
+    /// The share of even light from a hemisphere that is reflected, by Gauss's rule of four points for the weight 2μ. The error is
+    /// below 1e-3 for the metals in [`super::conductors`].
+    pub fn average(&self) -> Rgb {
+        let mut sum = Rgb::ZERO;
+        for (node, weight) in GAUSS_COSINE {
+            sum += weight * self.reflectance(node);
+        }
+        sum
+    }
+}
+
+/// The roots of all channels.
+#[inline]
+fn root(x: Rgb) -> Rgb {
+    Rgb::new(x.x.sqrt(), x.y.sqrt(), x.z.sqrt())
+}
+
+/// The reflectance of a conductor of the index `eta` + i `k`, as [`ConductorIndex::reflectance`] has it.
+#[inline]
+pub fn conductor(cosine: f64, eta: Rgb, k: Rgb) -> Rgb {
+    ConductorIndex::new(eta, k).reflectance(cosine)
 }
 
 /// Nodes and weights of Gauss's rule on [0, 1] for the weight function 2μ: exact up to μ⁷.

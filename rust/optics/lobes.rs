@@ -62,19 +62,35 @@ pub(super) fn power_cosine(axis: DVec3, exponent: f64, u: [f64; 2]) -> DVec3 {
     Frame::new(axis).to_world(DVec3::new(radius * cos, radius * sin, 1.0 - depth))
 }
 
-/// What facets lose and give back lies at cosines about their roughness, and falls off there as the inverse square: so do
-/// these directions, with density μ / (μ² + κ²) over the cosine μ for a scale κ. At κ = 1 it is nearly the cosine's.
-#[inline]
-pub(super) fn grazing(scale: f64, u: [f64; 2]) -> DVec3 {
-    let square = (scale * scale * (u[1] * (scale * scale).recip().ln_1p()).exp_m1()).min(1.0);
-    let [sin, cos] = sin_cos_turn(u[0]);
-    let radius = (1.0 - square).sqrt();
-    DVec3::new(radius * cos, radius * sin, square.sqrt())
+/// Directions near the plane. What facets lose and give back lies at cosines about their roughness, and falls off there as the
+/// inverse square: so do these, with density μ / (μ² + κ²) over the cosine μ for a scale κ. At κ = 1 it is nearly the cosine's.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Grazing {
+    /// κ².
+    square: f64,
+    /// ln(1 + 1 / κ²).
+    log: f64,
 }
 
-/// The density in solid angle of [`grazing`].
-#[inline]
-pub(super) fn grazing_pdf(scale: f64, cosine: f64) -> f64 {
-    let square = scale * scale;
-    FRAC_1_PI * cosine / ((cosine * cosine + square) * square.recip().ln_1p())
+impl Grazing {
+    #[inline]
+    pub fn new(scale: f64) -> Self {
+        let square = scale * scale;
+        Self { square, log: square.recip().ln_1p() }
+    }
+
+    /// Draws one.
+    #[inline]
+    pub fn sample(&self, u: [f64; 2]) -> DVec3 {
+        let square = (self.square * (u[1] * self.log).exp_m1()).min(1.0);
+        let [sin, cos] = sin_cos_turn(u[0]);
+        let radius = (1.0 - square).sqrt();
+        DVec3::new(radius * cos, radius * sin, square.sqrt())
+    }
+
+    /// The density in solid angle of one of this cosine.
+    #[inline]
+    pub fn pdf(&self, cosine: f64) -> f64 {
+        FRAC_1_PI * cosine / ((cosine * cosine + self.square) * self.log)
+    }
 }

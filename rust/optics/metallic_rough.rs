@@ -1,8 +1,8 @@
 //! The material of glTF.
 
-use super::albedo::{mirror_loss, mirror_loss_average, schlick_share, schlick_share_average};
+use super::albedo::{MirrorLoss, schlick_share, schlick_share_average};
 use super::conductor::{above, half, made_up};
-use super::lobes::{diffuse, grazing, grazing_pdf};
+use super::lobes::{Grazing, diffuse};
 use super::mirror::mirrored;
 use super::{BsdfSample, Ggx, Rgb, Scatter, fresnel};
 use glam::DVec3;
@@ -27,6 +27,8 @@ pub struct MetallicRough {
     /// The base colour.
     color: Rgb,
     metallic: f64,
+    /// Where what metal scatters more than once goes to.
+    grazing: Grazing,
 }
 
 impl MetallicRough {
@@ -43,14 +45,15 @@ impl MetallicRough {
         let average = match &ggx {
             None => Self::DIELECTRIC + (1.0 - Self::DIELECTRIC) / 21.0,
             Some(ggx) => {
-                let kept = 1.0 - mirror_loss_average(ggx);
+                let kept = 1.0 - MirrorLoss::new(*ggx).average();
                 Self::DIELECTRIC * kept + (1.0 - Self::DIELECTRIC) * schlick_share_average(ggx.alpha()[0])
             }
         };
         let metal = base_color + (Rgb::ONE - base_color) / 21.0;
-        let multiple = ggx.as_ref().map_or(Rgb::ZERO, |ggx| made_up(ggx, metal) * metallic);
+        let multiple = ggx.as_ref().map_or(Rgb::ZERO, |ggx| made_up(MirrorLoss::new(*ggx).average(), metal) * metallic);
         let base = base_color * ((1.0 - metallic) * FRAC_1_PI / (1.0 - average));
-        Self { ggx, f0, base, multiple, color: base_color, metallic }
+        let grazing = Grazing::new(ggx.as_ref().map_or(1.0, |ggx| ggx.alpha()[0]));
+        Self { ggx, f0, base, multiple, color: base_color, metallic, grazing }
     }
 
     /// The mean of Schlick's term and the share that is kept, for light from `w`.
@@ -58,7 +61,7 @@ impl MetallicRough {
     fn once(&self, w: DVec3) -> (f64, f64) {
         match &self.ggx {
             None => (fresnel::schlick_weight(w.z), 1.0),
-            Some(ggx) => (schlick_share(ggx.alpha()[0], w.z), 1.0 - mirror_loss(ggx, w)),
+            Some(ggx) => (schlick_share(ggx.alpha()[0], w.z), 1.0 - MirrorLoss::new(*ggx).of(w)),
         }
     }
 
@@ -78,38 +81,30 @@ impl MetallicRough {
         let sum = facets + metal + base;
         if sum > 0.0 { [facets / sum, metal / sum] } else { [0.0; 2] }
     }
-
-    #[inline]
-    fn scale(&self) -> f64 {
-        self.ggx.as_ref().map_or(1.0, |ggx| ggx.alpha()[0])
-    }
 }
 
 impl Scatter for MetallicRough {
     #[inline]
-    fn evaluate(&self, wo: DVec3, wi: DVec3) -> Rgb {
+    fn evaluate(&self, wo: DVec3, wi: DVec3) -> (Rgb, f64) {
         if !Ggx::sees(wo) || !Ggx::sees(wi) || wo.z * wi.z <= 0.0 {
-            return Rgb::ZERO;
+            return (Rgb::ZERO, 0.0);
         }
         let (wo, wi) = (above(wo), above(wi));
         let (once_o, once_i) = (self.once(wo), self.once(wi));
         let reaching = (1.0 - Self::dielectric(once_o)) * (1.0 - Self::dielectric(once_i));
         let lost = (1.0 - once_o.1) * (1.0 - once_i.1);
         let wide = (self.base * reaching + self.multiple * lost) * wi.z;
-        let Some(ggx) = &self.ggx else { return wide };
-        let (h, cosine) = half(wo, wi);
-        wide + fresnel::schlick(cosine, self.f0) * (ggx.density(h) * ggx.reflection_geometry(wo, wi))
-    }
-
-    #[inline]
-    fn pdf(&self, wo: DVec3, wi: DVec3) -> f64 {
-        if !Ggx::sees(wo) || !Ggx::sees(wi) || wo.z * wi.z <= 0.0 {
-            return 0.0;
-        }
-        let (wo, wi) = (above(wo), above(wi));
-        let [facets, metal] = self.shares(self.once(wo));
-        let facet = self.ggx.as_ref().map_or(0.0, |ggx| ggx.reflected_pdf(wo, half(wo, wi).0));
-        facets * facet + metal * grazing_pdf(self.scale(), wi.z) + (1.0 - facets - metal).max(0.0) * wi.z * FRAC_1_PI
+        let [facets, metal] = self.shares(once_o);
+        let (once, facet) = match &self.ggx {
+            None => (Rgb::ZERO, 0.0),
+            Some(ggx) => {
+                let (h, cosine) = half(wo, wi);
+                let facets = ggx.density(h) * ggx.reflection_geometry(wo, wi);
+                (fresnel::schlick(cosine, self.f0) * facets, ggx.reflected_pdf(wo, h))
+            }
+        };
+        let spread = metal * self.grazing.pdf(wi.z);
+        (wide + once, facets * facet + spread + (1.0 - facets - metal).max(0.0) * wi.z * FRAC_1_PI)
     }
 
     #[inline]
@@ -126,15 +121,15 @@ impl Scatter for MetallicRough {
                 return Some(BsdfSample::delta(mirrored(wo), fresnel::schlick(up.z, self.f0) / facets));
             }
             Some(ggx) if facet => ggx.sample_reflection(up, u),
-            _ if choice < facets + metal => grazing(self.scale(), u),
+            _ if choice < facets + metal => self.grazing.sample(u),
             _ => diffuse(up, u),
         };
         if wi.z <= 0.0 {
             return None;
         }
         wi.z = wi.z.copysign(wo.z);
-        let pdf = self.pdf(wo, wi);
-        (pdf > 0.0).then(|| BsdfSample::new(wi, self.evaluate(wo, wi) / pdf, pdf))
+        let (value, pdf) = self.evaluate(wo, wi);
+        (pdf > 0.0).then(|| BsdfSample::new(wi, value / pdf, pdf))
     }
 
     fn albedo(&self) -> Rgb {

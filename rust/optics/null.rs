@@ -10,13 +10,8 @@ pub struct Null;
 
 impl Scatter for Null {
     #[inline]
-    fn evaluate(&self, _wo: DVec3, _wi: DVec3) -> Rgb {
-        Rgb::ZERO
-    }
-
-    #[inline]
-    fn pdf(&self, _wo: DVec3, _wi: DVec3) -> f64 {
-        0.0
+    fn evaluate(&self, _wo: DVec3, _wi: DVec3) -> (Rgb, f64) {
+        (Rgb::ZERO, 0.0)
     }
 
     #[inline]

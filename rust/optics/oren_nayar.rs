@@ -49,21 +49,16 @@ impl OrenNayar {
 
 impl Scatter for OrenNayar {
     #[inline]
-    fn evaluate(&self, wo: DVec3, wi: DVec3) -> Rgb {
+    fn evaluate(&self, wo: DVec3, wi: DVec3) -> (Rgb, f64) {
         if wo.z * wi.z <= 0.0 {
-            return Rgb::ZERO;
+            return (Rgb::ZERO, 0.0);
         }
         let (o, i) = (wo.z.abs(), wi.z.abs());
         let s = wo.x * wi.x + wo.y * wi.y;
         let retro = if s > 0.0 { s / o.max(i) } else { s };
         let single = (self.scale * (1.0 + self.r * retro)).max(0.0) * FRAC_1_PI;
         let lost = (1.0 - self.single(o)) * (1.0 - self.single(i));
-        (self.reflectance * single + self.multiple * lost.max(0.0)) * i
-    }
-
-    #[inline]
-    fn pdf(&self, wo: DVec3, wi: DVec3) -> f64 {
-        if wo.z * wi.z > 0.0 { wi.z.abs() * FRAC_1_PI } else { 0.0 }
+        ((self.reflectance * single + self.multiple * lost.max(0.0)) * i, i * FRAC_1_PI)
     }
 
     #[inline]
@@ -74,7 +69,7 @@ impl Scatter for OrenNayar {
         let mut wi = warp::cosine_hemisphere(u);
         let pdf = warp::cosine_hemisphere_pdf(wi);
         wi.z = wi.z.copysign(wo.z);
-        Some(BsdfSample::new(wi, self.evaluate(wo, wi) / pdf, pdf))
+        Some(BsdfSample::new(wi, self.evaluate(wo, wi).0 / pdf, pdf))
     }
 
     fn albedo(&self) -> Rgb {

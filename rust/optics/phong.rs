@@ -24,21 +24,14 @@ impl Phong {
 
 impl Scatter for Phong {
     #[inline]
-    fn evaluate(&self, wo: DVec3, wi: DVec3) -> Rgb {
+    fn evaluate(&self, wo: DVec3, wi: DVec3) -> (Rgb, f64) {
         if wo.z * wi.z <= 0.0 {
-            return Rgb::ZERO;
+            return (Rgb::ZERO, 0.0);
         }
-        let lobe = mirrored(wo).dot(wi).clamp(0.0, 1.0).powf(self.exponent) * (self.exponent + 2.0) / TAU;
-        (self.lobes.diffuse * FRAC_1_PI + self.lobes.specular * lobe) * wi.z.abs()
-    }
-
-    #[inline]
-    fn pdf(&self, wo: DVec3, wi: DVec3) -> f64 {
-        if wo.z * wi.z <= 0.0 {
-            return 0.0;
-        }
-        let lobe = mirrored(wo).dot(wi).clamp(0.0, 1.0).powf(self.exponent) * (self.exponent + 1.0) / TAU;
-        self.lobes.mixed(wi.z.abs() * FRAC_1_PI, lobe)
+        let power = mirrored(wo).dot(wi).clamp(0.0, 1.0).powf(self.exponent);
+        let (lobe, density) = (power * (self.exponent + 2.0) / TAU, power * (self.exponent + 1.0) / TAU);
+        let value = (self.lobes.diffuse * FRAC_1_PI + self.lobes.specular * lobe) * wi.z.abs();
+        (value, self.lobes.mixed(wi.z.abs() * FRAC_1_PI, density))
     }
 
     #[inline]
@@ -51,8 +44,8 @@ impl Scatter for Phong {
         } else {
             diffuse(wo, u)
         };
-        let pdf = self.pdf(wo, wi);
-        (pdf > 0.0).then(|| BsdfSample::new(wi, self.evaluate(wo, wi) / pdf, pdf))
+        let (value, pdf) = self.evaluate(wo, wi);
+        (pdf > 0.0).then(|| BsdfSample::new(wi, value / pdf, pdf))
     }
 
     fn albedo(&self) -> Rgb {

@@ -12,13 +12,8 @@ pub struct Transparent {
 
 impl Scatter for Transparent {
     #[inline]
-    fn evaluate(&self, _wo: DVec3, _wi: DVec3) -> Rgb {
-        Rgb::ZERO
-    }
-
-    #[inline]
-    fn pdf(&self, _wo: DVec3, _wi: DVec3) -> f64 {
-        0.0
+    fn evaluate(&self, _wo: DVec3, _wi: DVec3) -> (Rgb, f64) {
+        (Rgb::ZERO, 0.0)
     }
 
     #[inline]

@@ -67,7 +67,7 @@ impl Scatters for Scattering {
 impl Scatters for Bsdf {
     #[inline]
     fn evaluate(&self, wo: DVec3, wi: DVec3) -> (Rgb, f64) {
-        (Self::evaluate(self, wo, wi), self.pdf(wo, wi))
+        Self::evaluate(self, wo, wi)
     }
 
     #[inline]
@@ -140,6 +140,18 @@ impl Interaction {
     /// the index of refraction on the other side of what the surface encloses.
     #[inline]
     pub fn new(scene: &Scene, ray: &Ray, hit: &Hit, surface: SurfacePoint, width: f64, outside: f64) -> Self {
+        if outside == 1.0
+            && width == 0.0
+            && let Some(&bsdf) = scene.plan().constant(surface.shape)
+        {
+            let shading = surface.shading_normal;
+            return Self::with(ray, surface, (shading, None), Scattering::One(bsdf));
+        }
+        Self::mapped(scene, ray, hit, surface, width, outside)
+    }
+
+    /// The same where the material has to be asked.
+    fn mapped(scene: &Scene, ray: &Ray, hit: &Hit, surface: SurfacePoint, width: f64, outside: f64) -> Self {
         let material = scene.material_at(&surface);
         let mut needs = material.needs();
         needs.tangents |= width > 0.0;

@@ -150,7 +150,7 @@ fn single_directions_are_shared_in_without_noise() {
     ];
     let frame = Frame::new(DVec3::Z);
     let wo = frame.to_local(-DOWN.direction);
-    let from = |direction: DVec3| metal().evaluate(wo, frame.to_local(direction)).y;
+    let from = |direction: DVec3| metal().evaluate(wo, frame.to_local(direction)).0.y;
     let expected = from(place.normalize()) * 2.0 / place.length_squared() + from(-way.normalize()) * 3.0;
     let lit = over(metal(), vec![], lights);
     assert!(lit.plan().asks_each(|| 0.2));

@@ -185,7 +185,7 @@ impl<'a, N: Features> TransportWorker<'a, N> {
             let (time, baggage) = (ray.time, &baggage);
             if N::PLAIN {
                 // Said once more which kind it is, so that nothing is asked of it at each use.
-                let Bsdf::Diffuse(diffuse) = *self.scene.plan().constant(surface.shape) else { continue };
+                let Some(&Bsdf::Diffuse(diffuse)) = self.scene.plan().constant(surface.shape) else { continue };
                 let shading = surface.shading_normal;
                 let here = Interaction::with(&ray, surface, (shading, None), Bsdf::Diffuse(diffuse));
                 let path = &self.known(path, &here);

@@ -14,7 +14,7 @@ mod tables;
 
 pub use coat::{coat, coat_average};
 pub use interface::Interface;
-pub use mirror::{mirror_loss, mirror_loss_average};
+pub use mirror::MirrorLoss;
 pub use schlick::{schlick_share, schlick_share_average};
 
 use super::Ggx;

@@ -1,6 +1,6 @@
 //! The integrals that the tables hold, the writing of the tables, and the check that they hold them.
 
-use super::{coat, interface, mirror, schlick};
+use super::{MirrorLoss, coat, interface, mirror, schlick};
 use super::{effective_cosine, of_alpha, of_x};
 use crate::optics::{Ggx, fresnel};
 use glam::DVec3;
@@ -174,14 +174,14 @@ mod entries {
     pub fn mirror_average(k: usize) -> f64 {
         let [m, l] = mirror::AVERAGE_SIZES;
         let alpha = [alpha_root(k / l, m), alpha_root(k % l, l)];
-        let ggx = Ggx::new(alpha);
+        let loss = MirrorLoss::new(Ggx::new(alpha));
         let [a, b] = alpha;
         let azimuths = if a == b { 1 } else { 24 };
         let sum: f64 = (0..azimuths)
             .map(|i| {
                 let (sin, cos) = ((i as f64 + 0.5) / azimuths as f64 * FRAC_PI_2).sin_cos();
                 let scale = (a * a * cos * cos + b * b * sin * sin).sqrt();
-                even_light(scale, |w| super::super::mirror_loss(&ggx, DVec3::new(w.x * cos, w.x * sin, w.z)))
+                even_light(scale, |w| loss.of(DVec3::new(w.x * cos, w.x * sin, w.z)))
             })
             .sum();
         (sum / azimuths as f64 / (0.5 * (a * a + b * b))).ln()
@@ -200,14 +200,14 @@ mod entries {
     pub fn coat_average(k: usize) -> f64 {
         let [m, l] = coat::AVERAGE_SIZES;
         let (a, eta) = (alpha_root(k / l, m), coat_index(k % l, l));
-        let ggx = Ggx::new([a; 2]);
-        even_light(0.1, |w| super::super::coat(a, eta, w.z) * (1.0 - super::super::mirror_loss(&ggx, w)))
+        let loss = MirrorLoss::new(Ggx::new([a; 2]));
+        even_light(0.1, |w| super::super::coat(a, eta, w.z) * (1.0 - loss.of(w)))
     }
 
     pub fn schlick_average(k: usize) -> f64 {
         let a = alpha_root(k, schlick::AVERAGE_SIZE);
-        let ggx = Ggx::new([a; 2]);
-        even_light(0.1, |w| super::super::schlick_share(a, w.z) * (1.0 - super::super::mirror_loss(&ggx, w)))
+        let loss = MirrorLoss::new(Ggx::new([a; 2]));
+        even_light(0.1, |w| super::super::schlick_share(a, w.z) * (1.0 - loss.of(w)))
     }
 }
 
@@ -314,14 +314,14 @@ fn mirrors_lose_what_the_table_says() {
     for a in ALPHAS {
         for c in COSINES {
             let (w, ggx) = (direction(c), Ggx::new([a; 2]));
-            assert_near(super::mirror_loss(&ggx, w), mirror_loss(&ggx, w), 0.004, &[a, c]);
+            assert_near(MirrorLoss::new(ggx).of(w), mirror_loss(&ggx, w), 0.004, &[a, c]);
             let schlick = reflected_mean(&ggx, w, fresnel::schlick_weight);
             assert_near(super::schlick_share(a, c), schlick, 0.004, &[a, c]);
             for b in [0.003, 0.05, 0.3, 0.8] {
                 for turn in [0.0, 0.4, 0.8, 1.2, 1.4, FRAC_PI_2] {
                     let (sin, cos) = f64::sin_cos(turn);
                     let (w, ggx) = (DVec3::new(w.x * cos, w.x * sin, w.z), Ggx::new([a, b]));
-                    assert_near(super::mirror_loss(&ggx, w), mirror_loss(&ggx, w), 0.01, &[a, b, c, turn]);
+                    assert_near(MirrorLoss::new(ggx).of(w), mirror_loss(&ggx, w), 0.01, &[a, b, c, turn]);
                 }
             }
         }

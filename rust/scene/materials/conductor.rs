@@ -3,9 +3,9 @@
 use super::checks::within;
 use super::{Material, Roughness, Scattering};
 use crate::math::DVec3;
-use crate::optics::Conductor;
+use crate::optics::{Bsdf, Conductor};
 use crate::scene::ShadingPoint;
-use crate::scene::textures::{Needs, Value};
+use crate::scene::textures::{Needs, TexturePoint, Value};
 
 /// A metal, smooth or rough, which may be brushed: rougher along one direction than across. Both sides reflect.
 #[derive(Clone, Debug)]
@@ -18,11 +18,20 @@ pub struct ConductorMaterial {
     pub roughness: Roughness,
 }
 
+impl ConductorMaterial {
+    fn bsdf(&self, point: &TexturePoint, outside: f64) -> Conductor {
+        let (eta, k) = (self.eta.at(point) / outside, self.k.at(point) / outside);
+        Conductor::new(eta, k, self.roughness.alpha(point))
+    }
+}
+
 impl Material for ConductorMaterial {
     fn scattering(&self, at: &ShadingPoint) -> Scattering {
-        let point = &at.texture;
-        let (eta, k) = (self.eta.at(point) / at.outside, self.k.at(point) / at.outside);
-        Conductor::new(eta, k, self.roughness.alpha(point)).into()
+        self.bsdf(&at.texture, at.outside).into()
+    }
+
+    fn constant(&self) -> Option<Bsdf> {
+        (!self.needs().any()).then(|| self.bsdf(&TexturePoint::default(), 1.0).into())
     }
 
     fn needs(&self) -> Needs {

@@ -2,9 +2,9 @@
 
 use super::checks::number;
 use super::{Interior, Material, Roughness, Scattering};
-use crate::optics::Dielectric;
+use crate::optics::{Bsdf, Dielectric};
 use crate::scene::ShadingPoint;
-use crate::scene::textures::Needs;
+use crate::scene::textures::{Needs, TexturePoint};
 
 /// The surface of a clear solid or liquid, smooth or rough, which reflects and refracts. Its normals point out.
 #[derive(Clone, Debug)]
@@ -15,10 +15,20 @@ pub struct DielectricMaterial {
     pub roughness: Roughness,
 }
 
+impl DielectricMaterial {
+    fn bsdf(&self, point: &TexturePoint, outside: f64) -> Dielectric {
+        let [alpha, _] = self.roughness.alpha(point);
+        Dielectric::new(self.interior.ior / outside, alpha)
+    }
+}
+
 impl Material for DielectricMaterial {
     fn scattering(&self, at: &ShadingPoint) -> Scattering {
-        let [alpha, _] = self.roughness.alpha(&at.texture);
-        Dielectric::new(self.interior.ior / at.outside, alpha).into()
+        self.bsdf(&at.texture, at.outside).into()
+    }
+
+    fn constant(&self) -> Option<Bsdf> {
+        (!self.needs().any()).then(|| self.bsdf(&TexturePoint::default(), 1.0).into())
     }
 
     fn needs(&self) -> Needs {

@@ -53,7 +53,8 @@ pub trait Material: Debug + Send + Sync {
     /// What it must know of a point.
     fn needs(&self) -> Needs;
 
-    /// How it scatters, where that is the same at every point, on both sides and in every medium.
+    /// How it scatters where nothing else is around, of index of refraction 1, if that is the same at every point and on both sides, and
+    /// it has neither a normal nor a tangent of its own.
     fn constant(&self) -> Option<Bsdf> {
         None
     }

@@ -2,9 +2,9 @@
 
 use super::checks::{number, within};
 use super::{Material, Roughness, Scattering};
-use crate::optics::Coated;
+use crate::optics::{Bsdf, Coated};
 use crate::scene::ShadingPoint;
-use crate::scene::textures::{Needs, Value};
+use crate::scene::textures::{Needs, TexturePoint, Value};
 
 /// Something matt under a clear coat, smooth or rough. Both sides are alike.
 #[derive(Clone, Debug)]
@@ -17,10 +17,20 @@ pub struct PlasticMaterial {
     pub roughness: Roughness,
 }
 
+impl PlasticMaterial {
+    fn bsdf(&self, point: &TexturePoint, outside: f64) -> Coated {
+        let [alpha, _] = self.roughness.alpha(point);
+        Coated::new(self.reflectance.at(point), (self.ior / outside).max(1.0), alpha)
+    }
+}
+
 impl Material for PlasticMaterial {
     fn scattering(&self, at: &ShadingPoint) -> Scattering {
-        let [alpha, _] = self.roughness.alpha(&at.texture);
-        Coated::new(self.reflectance.at(&at.texture), (self.ior / at.outside).max(1.0), alpha).into()
+        self.bsdf(&at.texture, at.outside).into()
+    }
+
+    fn constant(&self) -> Option<Bsdf> {
+        (!self.needs().any()).then(|| self.bsdf(&TexturePoint::default(), 1.0).into())
     }
 
     fn needs(&self) -> Needs {

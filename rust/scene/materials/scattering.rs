@@ -89,12 +89,13 @@ impl Scattering {
     #[inline]
     pub fn evaluate(&self, wo: DVec3, wi: DVec3) -> (Rgb, f64) {
         match self {
-            Self::One(bsdf) => (bsdf.evaluate(wo, wi), bsdf.pdf(wo, wi)),
+            Self::One(bsdf) => bsdf.evaluate(wo, wi),
             Self::Several(parts) => {
                 let (mut value, mut density, total) = (Rgb::ZERO, 0.0, share_of_all(parts));
                 for (weight, bsdf) in parts {
-                    value += *weight * bsdf.evaluate(wo, wi);
-                    density += share(*weight) / total * bsdf.pdf(wo, wi);
+                    let (of_part, pdf) = bsdf.evaluate(wo, wi);
+                    value += *weight * of_part;
+                    density += share(*weight) / total * pdf;
                 }
                 if total > 0.0 { (value, density) } else { (Rgb::ZERO, 0.0) }
             }

@@ -2,7 +2,7 @@
 
 use super::checks::number;
 use super::{Material, Scattering};
-use crate::optics::ThinDielectric;
+use crate::optics::{Bsdf, ThinDielectric};
 use crate::scene::ShadingPoint;
 use crate::scene::textures::Needs;
 
@@ -16,6 +16,10 @@ pub struct ThinDielectricMaterial {
 impl Material for ThinDielectricMaterial {
     fn scattering(&self, at: &ShadingPoint) -> Scattering {
         ThinDielectric::new(self.ior / at.outside).into()
+    }
+
+    fn constant(&self) -> Option<Bsdf> {
+        Some(ThinDielectric::new(self.ior).into())
     }
 
     fn needs(&self) -> Needs {
