@@ -6,7 +6,7 @@ use super::textures::Needs;
 use super::{Copies, Group, Surfaces, Vertices};
 use crate::accel::{Objects, Primitives};
 use crate::math::{DVec3, Hit, Ray, Vec3};
-use crate::shapes::{Bounds, Point, Shape};
+use crate::shapes::{Bounds, Shape, Site};
 use std::sync::Arc;
 
 /// One triangle mesh as it is described: what it is made of and how it shines.
@@ -386,14 +386,14 @@ impl Geometry {
             return SurfacePoint { shape: self.locate(hit.primitive).0, inner: Some(hit.inner), ..point };
         }
         match others.get(hit.primitive) {
-            Some(shape) => self.on_shape(hit.primitive, &shape.point(ray, hit.t, hit.uv)),
+            Some(shape) => self.on_shape(hit.primitive, &shape.point(ray, hit.t, hit.uv).site()),
             None => self.on_triangle(hit.primitive, hit.uv),
         }
     }
 
     /// A point of a shape, as shading needs it.
-    pub fn on_shape(&self, primitive: u32, point: &Point) -> SurfacePoint {
-        let Point { position, error, normal, .. } = *point;
+    pub fn on_shape(&self, primitive: u32, site: &Site) -> SurfacePoint {
+        let Site { position, error, normal } = *site;
         SurfacePoint { position, error, normal, shading_normal: normal, shape: self.locate(primitive).0, inner: None }
     }
 

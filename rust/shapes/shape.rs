@@ -44,6 +44,17 @@ impl Bounds {
     }
 }
 
+/// Where a point of a shape is and where the surface faces: all that light needs to know of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Site {
+    /// The point, to within `error` in each coordinate.
+    pub position: DVec3,
+    /// Bound on the error of each coordinate of `position`.
+    pub error: f64,
+    /// The unit normal, to the outside of what is closed.
+    pub normal: DVec3,
+}
+
 /// A point of a shape, and how the surface lies there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point {
@@ -61,12 +72,30 @@ pub struct Point {
     pub dn: [DVec3; 2],
 }
 
+impl Point {
+    /// The point without its coordinates.
+    #[inline]
+    pub fn site(&self) -> Site {
+        let Self { position, error, normal, .. } = *self;
+        Site { position, error, normal }
+    }
+}
+
 /// A point drawn from a shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Drawn {
     /// The point.
     pub point: Point,
     /// Its density: by area, or by solid angle as seen from where it was drawn for.
+    pub pdf: f64,
+}
+
+/// A point drawn from a shape as seen from a place, by solid angle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Seen {
+    /// The point.
+    pub site: Site,
+    /// The density of its direction.
     pub pdf: f64,
 }
 
@@ -158,6 +187,12 @@ pub trait Shape: Debug + Send + Sync {
         });
         let (point, pdf) = (first?, self.pdf_from(place, way));
         (pdf.is_finite() && pdf > 0.0).then_some(Drawn { point, pdf })
+    }
+
+    /// The same for who does not ask where the point lies in coordinates, which shapes may know a shorter way to.
+    fn sight_from(&self, place: DVec3, u: [f64; 2]) -> Option<Seen> {
+        let Drawn { point, pdf } = self.sample_from(place, u)?;
+        Some(Seen { site: point.site(), pdf })
     }
 
     /// The density by solid angle with which [`Shape::sample_from`] draws a direction, of any length, from a place. 0 where it draws

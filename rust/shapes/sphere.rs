@@ -2,8 +2,9 @@
 
 use super::line::Line;
 use super::meeting::{Meet, Meets, Solid, ball, ball_surface, tell};
-use super::{Bounds, Candidate, Carried, Contact, Drawn, Point, Shape};
+use super::{Bounds, Candidate, Carried, Contact, Drawn, Point, Seen, Shape, Site};
 use crate::math::robust::UNIT;
+use crate::math::turn::sin_cos_turn;
 use crate::math::{Affine, Bounded, DVec3, Frame, Number, Ray, Triple, ellipsoid_area};
 use crate::sampling::warp::{UNIFORM_SPHERE_PDF, uniform_sphere};
 use std::f64::consts::{PI, TAU};
@@ -25,18 +26,17 @@ impl Sphere {
     pub const UNIT: Self = Self { center: DVec3::ZERO, radius: 1.0 };
 
     /// The point of given coordinates.
-    ///
-    /// The direction is unit to within 4 UNIT in each coordinate; the last sum adds one UNIT of its own.
-    fn at(&self, [u, v]: [f64; 2]) -> Point {
-        let (direction, derivatives) = globe([u, v]);
-        self.towards(direction, [u, v], derivatives)
+    fn at(&self, uv: [f64; 2]) -> Point {
+        let (direction, dn) = globe(uv);
+        let Site { position, error, normal } = self.towards(direction);
+        Point { position, error, normal, uv, dp: dn.map(|d| d * self.radius), dn }
     }
 
-    fn towards(&self, direction: DVec3, uv: [f64; 2], derivatives: [DVec3; 2]) -> Point {
+    /// The point in a direction from the centre that is unit to within 4 UNIT in each coordinate; the last sum adds one UNIT of its own.
+    #[inline]
+    fn towards(&self, direction: DVec3) -> Site {
         let position = self.center + direction * self.radius;
-        let error = UNIT * (position.abs().max_element() + 5.0 * self.radius);
-        let dp = derivatives.map(|d| d * self.radius);
-        Point { position, error, normal: direction, uv, dp, dn: derivatives }
+        Site { position, error: UNIT * (position.abs().max_element() + 5.0 * self.radius), normal: direction }
     }
 
     /// 1 − cos of half the angle that it fills as seen from a place, with the unit vector from the centre to the place and the sine of
@@ -186,19 +186,19 @@ impl Shape for Sphere {
     ///
     /// From outside the point is found from the angle at the centre, which has no difference of great numbers in it (Pharr, Jakob,
     /// Humphreys, "Physically Based Rendering", 4th edition, 2023, section 6.2.4): a sphere may be as small or as distant as it likes.
-    fn sample_from(&self, place: DVec3, u: [f64; 2]) -> Option<Drawn> {
+    fn sight_from(&self, place: DVec3, u: [f64; 2]) -> Option<Seen> {
         let Some((height, axis, sine)) = self.cap(place) else {
             let direction = uniform_sphere(u);
             let ray = Ray { t_min: f64::MIN_POSITIVE, ..Ray::new(place, direction) };
             let mut point = None;
             self.meet(&ray, &mut |met| {
-                let here = self.at(met.uv);
+                let here = self.at(met.uv).site();
                 // A place on the sphere is not seen from itself, though rounding may have moved it off.
                 let seen = met.t > 4.0 * here.error;
                 point = seen.then_some(here);
                 seen
             });
-            return Some(Drawn { point: point?, pdf: UNIFORM_SPHERE_PDF });
+            return Some(Seen { site: point?, pdf: UNIFORM_SPHERE_PDF });
         };
         // x = 1 − cos θ is even in [0, height), and sin² θ = x (2 − x).
         let x = u[0] * height;
@@ -207,10 +207,14 @@ impl Shape for Sphere {
         // The angle between the place and the point, as seen from the centre.
         let cosine = square / sine + (1.0 - x) * inside.sqrt();
         let across = ((1.0 - cosine) * (1.0 + cosine)).max(0.0).sqrt();
-        let (sin, cos) = (TAU * u[1]).sin_cos();
+        let [sin, cos] = sin_cos_turn(u[1]);
         let direction = Frame::new(axis).to_world(DVec3::new(across * cos, across * sin, cosine)).normalize();
-        let uv = longitude_latitude(direction);
-        Some(Drawn { point: self.at(uv), pdf: 1.0 / (TAU * height) })
+        Some(Seen { site: self.towards(direction), pdf: 1.0 / (TAU * height) })
+    }
+
+    fn sample_from(&self, place: DVec3, u: [f64; 2]) -> Option<Drawn> {
+        let Seen { site, pdf } = self.sight_from(place, u)?;
+        Some(Drawn { point: self.at(longitude_latitude(site.normal)), pdf })
     }
 
     fn pdf_from(&self, place: DVec3, direction: DVec3) -> f64 {

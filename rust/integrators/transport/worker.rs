@@ -15,7 +15,7 @@ use crate::optics::{Bsdf, Rgb};
 use crate::sampling::Sampler;
 use crate::scene::textures::TexturePoint;
 use crate::scene::{
-    Departure, Footprint, Interaction, LightSample, Receiver, Scattered, Scatters, Scene, ShadingPoint, SurfacePoint,
+    Departure, Footprint, Interaction, LightSample, Receiver, Scattered, Scatters, Scene, SurfacePoint,
 };
 use crate::workers::Cancel;
 use std::marker::PhantomData;
@@ -249,17 +249,10 @@ impl<'a, N: Features> TransportWorker<'a, N> {
     fn emitted(&self, ray: &Ray, hit: &Hit, surface: &SurfacePoint, path: &Alive, baggage: &Baggage) -> Rgb {
         let cosine = -ray.direction.dot(surface.normal);
         let emission = if N::PLAIN {
-            self.scene.lights().emission(surface.shape).towards(cosine, &TexturePoint::default())
+            self.scene.lights().emission(surface.shape).towards(cosine, &TexturePoint::NOWHERE)
         } else {
-            let emission = self.scene.emission_at(surface);
-            let needs = emission.needs();
-            if needs.any() {
-                let width = if self.widths { baggage.footprint.at(hit.t).width } else { 0.0 };
-                let point = ShadingPoint::new(self.scene.geometry(), ray, hit, surface, needs, width);
-                emission.towards(cosine, &point.texture)
-            } else {
-                emission.towards(cosine, &TexturePoint::default())
-            }
+            let width = || if self.widths { baggage.footprint.at(hit.t).width } else { 0.0 };
+            self.scene.emission_at(surface).sent(self.scene.geometry(), ray, hit, surface, width)
         };
         if emission == Rgb::ZERO || path.pdf == f64::INFINITY {
             return emission;

@@ -1,7 +1,7 @@
 //! What facets of perfect mirrors lose.
 
 use super::tables::mirror::{ANISOTROPIC, AVERAGE, ISOTROPIC};
-use super::{averages, of_alpha, of_x, plane, volume, x_of};
+use super::{averages, between, of_alpha, of_x, volume, within, x_of};
 use crate::optics::Ggx;
 use glam::DVec3;
 
@@ -14,16 +14,15 @@ pub(super) const AVERAGE_SIZES: [usize; 2] = [28, 28];
 #[derive(Clone, Copy, Debug)]
 pub struct MirrorLoss {
     ggx: Ggx,
-    /// Where in the tables each roughness is, as a variable from 0 to 1.
-    at: [f64; 2],
+    /// Between which columns of the table of facets that are alike in all directions.
+    column: (usize, f64),
 }
 
 impl MirrorLoss {
     /// Of these facets.
     #[inline]
     pub fn new(ggx: Ggx) -> Self {
-        let [a, b] = ggx.alpha();
-        Self { ggx, at: [of_alpha(a), of_alpha(b)] }
+        Self { ggx, column: between(of_alpha(ggx.alpha()[0]), ISOTROPIC_SIZES[1]) }
     }
 
     /// Of light from `w`: 1 − ∫ D G₂ / (4 cos θ) dω.
@@ -34,7 +33,8 @@ impl MirrorLoss {
         let grazing = of_x(x_of(&self.ggx, w));
         let [a, b] = self.ggx.alpha();
         if a == b {
-            return plane(&ISOTROPIC, ISOTROPIC_SIZES, [grazing, self.at[0]]);
+            let [rows, columns] = ISOTROPIC_SIZES;
+            return within(&ISOTROPIC, columns, between(grazing, rows), self.column);
         }
         self.of_brushed(grazing, w)
     }
@@ -42,11 +42,12 @@ impl MirrorLoss {
     #[inline(never)]
     fn of_brushed(&self, grazing: f64, w: DVec3) -> f64 {
         // At the same α tan θ the azimuth matters little, and between the axes it goes as these powers say.
-        let ([a, b], [at_a, at_b]) = (self.ggx.alpha(), self.at);
+        let [a, b] = self.ggx.alpha();
         let (along, across) = (a.powf(1.6) * w.x * w.x, b.powf(1.6) * w.y * w.y);
         let share = if along + across > 0.0 { across / (along + across) } else { 0.5 };
+        let (a, b) = (of_alpha(a), of_alpha(b));
         let at = |first, second| volume(&ANISOTROPIC, ANISOTROPIC_SIZES, [grazing, first, second]);
-        at(at_a, at_b) * (1.0 - share) + at(at_b, at_a) * share
+        at(a, b) * (1.0 - share) + at(b, a) * share
     }
 
     /// Its mean over even light, ∫ loss cos θ dω / π, as its table has it, within 1 %.

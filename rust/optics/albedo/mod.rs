@@ -58,19 +58,23 @@ const FACET_SLOPE: f64 = 0.6;
 #[inline]
 fn between(variable: f64, count: usize) -> (usize, f64) {
     let at = variable.clamp(0.0, 1.0) * (count - 1) as f64;
-    let low = (at as usize).min(count - 2);
-    (low, at - low as f64)
+    // To 32 bits and back, which processors convert at once.
+    let low = (at as i32).min(count as i32 - 2);
+    (low as usize, at - f64::from(low))
 }
 
 /// The value of a table of shares in 65535ths between its entries, linear in each variable.
 #[inline]
 fn plane(table: &[u16], sizes: [usize; 2], at: [f64; 2]) -> f64 {
-    let ((i, f), (j, g)) = (between(at[0], sizes[0]), between(at[1], sizes[1]));
-    let row = |i: usize| {
-        let k = i * sizes[1] + j;
-        f64::from(table[k]) * (1.0 - g) + f64::from(table[k + 1]) * g
-    };
-    (row(i) * (1.0 - f) + row(i + 1) * f) / 65535.0
+    within(table, sizes[1], between(at[0], sizes[0]), between(at[1], sizes[1]))
+}
+
+/// The same where it is known between which entries, of a table with rows of so many.
+#[inline]
+fn within(table: &[u16], columns: usize, (i, f): (usize, f64), (j, g): (usize, f64)) -> f64 {
+    let four = &table[i * columns + j..][..columns + 2];
+    let row = |k: usize| f64::from(four[k]) * (1.0 - g) + f64::from(four[k + 1]) * g;
+    (row(0) * (1.0 - f) + row(columns) * f) / 65535.0
 }
 
 /// The same of a table of three variables.

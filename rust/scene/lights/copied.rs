@@ -93,17 +93,17 @@ impl Copied {
         match group.geometry().shape(own) {
             Some(shape) => {
                 let from = pose.enter(&Ray::new(receiver.position, DVec3::Z)).origin;
-                let drawn = shape.sample_from(from, u)?;
-                let surface = pose.point(&group.geometry().on_shape(own, &drawn.point))?;
-                let sends = |ray: &Ray, hit: &Hit| surface::radiance(geometry, emission, ray, hit, &surface);
-                let density = |direction: DVec3, _| drawn.pdf * pose.crowding(direction);
-                surface::sample(receiver, &surface, place, drawn.point.uv, density, sends)
+                let (seen, uv) = surface::seen(shape, emission.needs(), from, u)?;
+                let surface = pose.point(&group.geometry().on_shape(own, &seen.site))?;
+                let sends = |ray: &Ray, hit: &Hit| emission.sent(geometry, ray, hit, &surface, || 0.0);
+                let density = |direction: DVec3, _| seen.pdf * pose.crowding(direction);
+                surface::sample(receiver, &surface, place, uv, density, sends)
             }
             None => {
                 let seen = SeenTriangle::new(*corners, receiver.position);
                 let uv = seen.sample(u);
                 let surface = pose.point(&group.geometry().on_triangle(own, uv))?;
-                let sends = |ray: &Ray, hit: &Hit| surface::radiance(geometry, emission, ray, hit, &surface);
+                let sends = |ray: &Ray, hit: &Hit| emission.sent(geometry, ray, hit, &surface, || 0.0);
                 let density = |direction: DVec3, distance| seen.pdf(distance, direction.dot(surface.normal));
                 surface::sample(receiver, &surface, place, uv, density, sends)
             }

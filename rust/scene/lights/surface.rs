@@ -4,15 +4,38 @@ use super::triangle::SeenTriangle;
 use super::{Emission, LightSample, Receiver};
 use crate::accel::Primitives;
 use crate::math::{DVec3, Hit, Ray};
+use crate::scene::textures::{Needs, TexturePoint};
+use crate::shapes::{Drawn, Seen, Shape};
 use crate::optics::Rgb;
 use crate::scene::{Departure, Geometry, ShadingPoint, SurfacePoint};
 
-/// What a surface sends from a point of it, met by a ray of unit direction from the receiver.
+impl Emission {
+    /// What a surface sends back along a ray of unit direction that meets it; `width` is that of the footprint there, if anybody asks.
+    #[inline]
+    pub fn sent(
+        &self,
+        geometry: &Geometry,
+        ray: &Ray,
+        hit: &Hit,
+        surface: &SurfacePoint,
+        width: impl FnOnce() -> f64,
+    ) -> Rgb {
+        let (cosine, needs) = (-ray.direction.dot(surface.normal), self.needs());
+        if !needs.any() {
+            return self.towards(cosine, &TexturePoint::NOWHERE);
+        }
+        self.towards(cosine, &ShadingPoint::new(geometry, ray, hit, surface, needs, width()).texture)
+    }
+}
+
+/// Draws a point of a shape as seen from a place, and says where it lies in coordinates if that is needed.
 #[inline]
-pub(super) fn radiance(geometry: &Geometry, emission: &Emission, ray: &Ray, hit: &Hit, surface: &SurfacePoint) -> Rgb {
-    let cosine = -ray.direction.dot(surface.normal);
-    let point = ShadingPoint::new(geometry, ray, hit, surface, emission.needs(), 0.0);
-    emission.towards(cosine, &point.texture)
+pub(super) fn seen(shape: &dyn Shape, needs: Needs, place: DVec3, u: [f64; 2]) -> Option<(Seen, [f64; 2])> {
+    if !needs.any() {
+        return Some((shape.sight_from(place, u)?, [0.0; 2]));
+    }
+    let Drawn { point, pdf } = shape.sample_from(place, u)?;
+    Some((Seen { site: point.site(), pdf }, point.uv))
 }
 
 /// Light from a point drawn on a primitive. The last is what it sends, asked by the ray to it.
@@ -54,10 +77,10 @@ pub(super) fn sample_primitive(
 ) -> Option<LightSample> {
     match geometry.shape(primitive) {
         Some(shape) => {
-            let drawn = shape.sample_from(receiver.position, u)?;
-            let surface = geometry.on_shape(primitive, &drawn.point);
-            let sends = |ray: &Ray, hit: &Hit| radiance(geometry, emission, ray, hit, &surface);
-            sample(receiver, &surface, (primitive, 0), drawn.point.uv, |_, _| drawn.pdf, sends)
+            let (seen, uv) = seen(shape, emission.needs(), receiver.position, u)?;
+            let surface = geometry.on_shape(primitive, &seen.site);
+            let sends = |ray: &Ray, hit: &Hit| emission.sent(geometry, ray, hit, &surface, || 0.0);
+            sample(receiver, &surface, (primitive, 0), uv, |_, _| seen.pdf, sends)
         }
         None => {
             let seen = SeenTriangle::new(geometry.corners(primitive), receiver.position);
@@ -67,7 +90,7 @@ pub(super) fn sample_primitive(
             let uv = seen.sample(u);
             let surface = geometry.on_triangle(primitive, uv);
             let density = |direction: DVec3, distance| seen.pdf(distance, direction.dot(surface.normal));
-            let sends = |ray: &Ray, hit: &Hit| radiance(geometry, emission, ray, hit, &surface);
+            let sends = |ray: &Ray, hit: &Hit| emission.sent(geometry, ray, hit, &surface, || 0.0);
             sample(receiver, &surface, (primitive, 0), uv, density, sends)
         }
     }

@@ -55,9 +55,14 @@ pub struct TexturePoint {
     pub colour: Rgb,
 }
 
+impl TexturePoint {
+    /// For what asks nothing of a point.
+    pub const NOWHERE: Self = Self { uv: [0.0; 2], width: 0.0, position: DVec3::ZERO, size: 0.0, colour: Rgb::ONE };
+}
+
 impl Default for TexturePoint {
     fn default() -> Self {
-        Self { uv: [0.0; 2], width: 0.0, position: DVec3::ZERO, size: 0.0, colour: Rgb::ONE }
+        Self::NOWHERE
     }
 }
 
