@@ -195,6 +195,11 @@ pub trait Shape: Debug + Send + Sync {
         Some(Seen { site: point.site(), pdf })
     }
 
+    /// [`Shape::pdf_from`] of a direction that is known to meet it.
+    fn pdf_of_met(&self, place: DVec3, direction: DVec3) -> f64 {
+        self.pdf_from(place, direction)
+    }
+
     /// The density by solid angle with which [`Shape::sample_from`] draws a direction, of any length, from a place. 0 where it draws
     /// none.
     ///

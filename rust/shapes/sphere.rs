@@ -39,9 +39,9 @@ impl Sphere {
         Site { position, error: UNIT * (position.abs().max_element() + 5.0 * self.radius), normal: direction }
     }
 
-    /// 1 − cos of half the angle that it fills as seen from a place, with the unit vector from the centre to the place and the sine of
-    /// that half; none from inside, and from places on it.
-    fn cap(&self, place: DVec3) -> Option<(f64, DVec3, f64)> {
+    /// The cone that it fills as seen from a place; none from inside, and from places on it.
+    #[inline]
+    fn cone(&self, place: DVec3) -> Option<Cone> {
         let way = place - self.center;
         let distance = way.length();
         // By as much may the way to a place on the sphere be too long.
@@ -49,10 +49,28 @@ impl Sphere {
         if distance < self.radius + rounding {
             return None;
         }
-        let sine = self.radius / distance;
-        let cosine = ((distance - self.radius) * (distance + self.radius)).sqrt() / distance;
-        // 1 − cos = sin² / (1 + cos), so that a small cap keeps its digits.
-        Some((sine * sine / (1.0 + cosine), way / distance, sine))
+        let inverse = 1.0 / distance;
+        let sine = self.radius * inverse;
+        let cosine = ((distance - self.radius) * (distance + self.radius)).sqrt() * inverse;
+        Some(Cone { axis: way * inverse, sine, part: 1.0 / (1.0 + cosine) })
+    }
+}
+
+/// The directions in which a sphere is seen from a place outside.
+struct Cone {
+    /// From the centre to the place, unit.
+    axis: DVec3,
+    /// The sine of half its angle.
+    sine: f64,
+    /// 1 / (1 + cos) of it.
+    part: f64,
+}
+
+impl Cone {
+    /// 1 − cos of half its angle, by sin² / (1 + cos), so that a small one keeps its digits.
+    #[inline]
+    fn height(&self) -> f64 {
+        self.sine * self.sine * self.part
     }
 }
 
@@ -187,7 +205,7 @@ impl Shape for Sphere {
     /// From outside the point is found from the angle at the centre, which has no difference of great numbers in it (Pharr, Jakob,
     /// Humphreys, "Physically Based Rendering", 4th edition, 2023, section 6.2.4): a sphere may be as small or as distant as it likes.
     fn sight_from(&self, place: DVec3, u: [f64; 2]) -> Option<Seen> {
-        let Some((height, axis, sine)) = self.cap(place) else {
+        let Some(cone) = self.cone(place) else {
             let direction = uniform_sphere(u);
             let ray = Ray { t_min: f64::MIN_POSITIVE, ..Ray::new(place, direction) };
             let mut point = None;
@@ -200,16 +218,19 @@ impl Shape for Sphere {
             });
             return Some(Seen { site: point?, pdf: UNIFORM_SPHERE_PDF });
         };
-        // x = 1 − cos θ is even in [0, height), and sin² θ = x (2 − x).
-        let x = u[0] * height;
-        let square = x * (2.0 - x);
-        let inside = (1.0 - square / (sine * sine)).max(0.0);
-        // The angle between the place and the point, as seen from the centre.
-        let cosine = square / sine + (1.0 - x) * inside.sqrt();
-        let across = ((1.0 - cosine) * (1.0 + cosine)).max(0.0).sqrt();
+        // x = 1 − cos θ is even in [0, height), and sin² θ = x (2 − x) is the square of the cone's sine times that of the angle at which the
+        // sphere is met there.
+        let x = u[0] * cone.height();
+        let square = u[0] * cone.part * (2.0 - x);
+        let facing = (1.0 - square).max(0.0).sqrt();
+        // The angle between the place and the point as seen from the centre: that at which it is met less θ.
+        let cosine = (1.0 - x) * facing + square * cone.sine;
+        let across = square.sqrt() * (1.0 - x - cone.sine * facing);
         let [sin, cos] = sin_cos_turn(u[1]);
-        let direction = Frame::new(axis).to_world(DVec3::new(across * cos, across * sin, cosine)).normalize();
-        Some(Seen { site: self.towards(direction), pdf: 1.0 / (TAU * height) })
+        let direction = Frame::new(cone.axis).to_world(DVec3::new(across * cos, across * sin, cosine));
+        // Unit but for some roundings: a step of Newton's is as good as a root and a quotient, and need not wait for them.
+        let direction = direction * (1.5 - 0.5 * direction.length_squared());
+        Some(Seen { site: self.towards(direction), pdf: 1.0 / (TAU * cone.height()) })
     }
 
     fn sample_from(&self, place: DVec3, u: [f64; 2]) -> Option<Drawn> {
@@ -218,8 +239,12 @@ impl Shape for Sphere {
     }
 
     fn pdf_from(&self, place: DVec3, direction: DVec3) -> f64 {
-        let Some((height, ..)) = self.cap(place) else { return UNIFORM_SPHERE_PDF };
-        if self.meet(&Ray::new(place, direction), &mut |_| true) { 1.0 / (TAU * height) } else { 0.0 }
+        let is_met = self.cone(place).is_none() || self.meet(&Ray::new(place, direction), &mut |_| true);
+        if is_met { self.pdf_of_met(place, direction) } else { 0.0 }
+    }
+
+    fn pdf_of_met(&self, place: DVec3, _: DVec3) -> f64 {
+        self.cone(place).map_or(UNIFORM_SPHERE_PDF, |cone| 1.0 / (TAU * cone.height()))
     }
 }
 

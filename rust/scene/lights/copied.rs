@@ -126,7 +126,7 @@ impl Copied {
             Some(shape) => {
                 let Some(pose) = copies.pose(copy, 0.0) else { return 0.0 };
                 let own = pose.enter(ray);
-                let pdf = shape.pdf_from(own.origin, own.direction);
+                let pdf = shape.pdf_of_met(own.origin, own.direction);
                 if pdf > 0.0 { pdf * pose.crowding(ray.direction) } else { 0.0 }
             }
             None => SeenTriangle::new(*corners, receiver.position).pdf(hit.t, cosine),

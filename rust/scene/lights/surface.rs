@@ -101,7 +101,7 @@ pub(super) fn sample_primitive(
 #[inline]
 pub(super) fn primitive_pdf(geometry: &Geometry, receiver: &Receiver, ray: &Ray, hit: &Hit, cosine: f64) -> f64 {
     match geometry.shape(hit.primitive) {
-        Some(shape) => shape.pdf_from(ray.origin, ray.direction),
+        Some(shape) => shape.pdf_of_met(ray.origin, ray.direction),
         None => SeenTriangle::new(geometry.corners(hit.primitive), receiver.position).pdf(hit.t, cosine),
     }
 }

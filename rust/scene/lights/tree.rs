@@ -128,8 +128,8 @@ impl LightTree {
     /// The share of an inner node's first child; `None` if neither child brings anything.
     #[inline]
     fn share(&self, node: usize, receiver: &Receiver) -> Option<f64> {
-        let [first, second] =
-            [node + 1, self.nodes[node].link as usize].map(|child| self.nodes[child].bounds.importance(receiver));
+        let first = self.nodes[node + 1].bounds.importance(receiver);
+        let second = self.nodes[self.nodes[node].link as usize].bounds.importance(receiver);
         let sum = first + second;
         (sum > 0.0).then(|| first / sum)
     }
