@@ -1,7 +1,7 @@
 //! Plastic, varnish, glaze: a matt base under a clear coat.
 
 use super::albedo::{MirrorLoss, coat, coat_average};
-use super::conductor::{above, half};
+use super::conductor::above;
 use super::lobes::diffuse;
 use super::mirror::mirrored;
 use super::{BsdfSample, Ggx, Rgb, Scatter, fresnel};
@@ -66,9 +66,9 @@ impl Scatter for Coated {
         let base = self.base * (reaching * FRAC_1_PI * wi.z / (1.0 - self.average));
         let diffuse = (1.0 - share) * wi.z * FRAC_1_PI;
         let Some(ggx) = &self.ggx else { return (base, diffuse) };
-        let (h, cosine) = half(wo, wi);
-        let coat = fresnel::dielectric(cosine, self.eta) * ggx.density(h) * ggx.reflection_geometry(wo, wi);
-        (base + coat, share * ggx.reflected_pdf(wo, h) + diffuse)
+        let (density, cosine) = ggx.mirroring(wo, wi);
+        let coat = fresnel::dielectric(cosine, self.eta) * density * ggx.reflection_geometry(wo, wi);
+        (base + coat, share * ggx.reflected_pdf(wo, density) + diffuse)
     }
 
     #[inline]

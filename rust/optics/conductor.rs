@@ -61,13 +61,6 @@ pub(super) fn above(w: DVec3) -> DVec3 {
     DVec3::new(w.x, w.y, w.z.abs())
 }
 
-/// The half vector of two directions above, and the cosine to both.
-#[inline]
-pub(super) fn half(wo: DVec3, wi: DVec3) -> (DVec3, f64) {
-    let h = (wo + wi).normalize_or(DVec3::Z);
-    (h, wo.dot(h).clamp(0.0, 1.0))
-}
-
 impl Scatter for Conductor {
     #[inline]
     fn evaluate(&self, wo: DVec3, wi: DVec3) -> (Rgb, f64) {
@@ -78,11 +71,11 @@ impl Scatter for Conductor {
             return (Rgb::ZERO, 0.0);
         }
         let (wo, wi) = (above(wo), above(wi));
-        let (h, cosine) = half(wo, wi);
-        let single = rough.ggx.density(h) * rough.ggx.reflection_geometry(wo, wi);
+        let (density, cosine) = rough.ggx.mirroring(wo, wi);
+        let single = density * rough.ggx.reflection_geometry(wo, wi);
         let lost = rough.loss.of(wo);
         let value = self.reflectance(cosine) * single + rough.multiple * (lost * rough.loss.of(wi) * wi.z);
-        (value, (1.0 - lost) * rough.ggx.reflected_pdf(wo, h) + lost * rough.grazing.pdf(wi.z))
+        (value, (1.0 - lost) * rough.ggx.reflected_pdf(wo, density) + lost * rough.grazing.pdf(wi.z))
     }
 
     #[inline]

@@ -1,7 +1,7 @@
 //! Glass, water and the like.
 
 use super::albedo::Interface;
-use super::conductor::{above, half};
+use super::conductor::above;
 use super::lobes::Grazing;
 use super::mirror::mirrored;
 use super::{BsdfSample, Ggx, Rgb, Scatter, fresnel};
@@ -57,10 +57,9 @@ impl Dielectric {
         let (eta, ggx) = (self.beyond(wo), &rough.ggx);
         if wo.z * wi.z > 0.0 {
             let (o, i) = (above(wo), above(wi));
-            let (h, cosine) = half(o, i);
-            let f = fresnel::dielectric(cosine, eta);
-            let density = f * ggx.density(h);
-            return (density * ggx.reflection_geometry(o, i), density * 0.5 / (o.z + ggx.stretch(o)));
+            let (density, cosine) = ggx.mirroring(o, i);
+            let density = density * fresnel::dielectric(cosine, eta);
+            return (density * ggx.reflection_geometry(o, i), ggx.reflected_pdf(o, density));
         }
         // The facet's normal, on the side of wo; the length holds the Jacobian (Walter et al., 2007, eq. 16 and 17).
         let q = wo + wi * eta;

@@ -87,10 +87,10 @@ impl ConductorIndex {
         // a² + b² = |η² − sin²θ| for the complex η.
         let norm = root(real * real + self.imaginary2);
         let a = root(((norm + real) * 0.5).max(Rgb::ZERO));
-        let s = (norm + c2 - 2.0 * c * a) / (norm + c2 + 2.0 * c * a);
-        let (even, odd) = (c2 * norm + s2 * s2, 2.0 * c * s2 * a);
-        let p = s * (even - odd) / (even + odd);
-        (0.5 * (s + p)).clamp(Rgb::ZERO, Rgb::ONE)
+        // The one polarisation is (sum − twice) / (sum + twice), and the other that times (even − odd) / (even + odd): their mean.
+        let (sum, twice) = (norm + c2, 2.0 * c * a);
+        let (even, odd) = (c2 * norm + s2 * s2, s2 * twice);
+        ((sum - twice) * even / ((sum + twice) * (even + odd))).clamp(Rgb::ZERO, Rgb::ONE)
     }
 
     /// The share of even light from a hemisphere that is reflected, by Gauss's rule of four points for the weight 2μ. The error is

@@ -1,7 +1,7 @@
 //! The material of glTF.
 
 use super::albedo::{MirrorLoss, schlick_share, schlick_share_average};
-use super::conductor::{above, half, made_up};
+use super::conductor::{above, made_up};
 use super::lobes::{Grazing, diffuse};
 use super::mirror::mirrored;
 use super::{BsdfSample, Ggx, Rgb, Scatter, fresnel};
@@ -98,9 +98,9 @@ impl Scatter for MetallicRough {
         let (once, facet) = match &self.ggx {
             None => (Rgb::ZERO, 0.0),
             Some(ggx) => {
-                let (h, cosine) = half(wo, wi);
-                let facets = ggx.density(h) * ggx.reflection_geometry(wo, wi);
-                (fresnel::schlick(cosine, self.f0) * facets, ggx.reflected_pdf(wo, h))
+                let (density, cosine) = ggx.mirroring(wo, wi);
+                let facets = density * ggx.reflection_geometry(wo, wi);
+                (fresnel::schlick(cosine, self.f0) * facets, ggx.reflected_pdf(wo, density))
             }
         };
         let spread = metal * self.grazing.pdf(wi.z);

@@ -54,6 +54,24 @@ impl Ggx {
         FRAC_1_PI / (ax * ay * square * square)
     }
 
+    /// The density, as [`Ggx::density`] has it, of the facets that mirror one direction to another, and the cosine to both.
+    ///
+    /// By the half vector as it is, not unit, and with α² divided out: with q = wo + wi and p = αx αy it is
+    /// |q|⁴ p³ / (π (αy² qx² + αx² qy² + p² qz²)²), and the cosine is |q| / 2.
+    #[inline]
+    pub fn mirroring(&self, wo: DVec3, wi: DVec3) -> (f64, f64) {
+        let ([ax, ay], q) = (self.alpha, wo + wi);
+        let square = q.length_squared();
+        // Of opposite directions next to the plane nothing is told by their sum.
+        if square < 1e-60 {
+            return (self.density(DVec3::Z), wo.z);
+        }
+        let product = ax * ay;
+        let (x, y, z) = (ay * q.x, ax * q.y, product * q.z);
+        let root = square * product / (x * x + y * y + z * z);
+        (FRAC_1_PI * product * (root * root), (0.5 * square.sqrt()).min(1.0))
+    }
+
     /// s(ω) = |z| √(1 + α² tan² θ).
     #[inline]
     pub fn stretch(&self, w: DVec3) -> f64 {
@@ -95,11 +113,11 @@ impl Ggx {
         h.normalize()
     }
 
-    /// The density, in solid angle, with which [`Ggx::sample_reflection`] draws the direction whose half vector is `h`.
+    /// The density, in solid angle, with which [`Ggx::sample_reflection`] draws a direction to which facets of this density mirror.
     #[inline]
-    pub fn reflected_pdf(&self, wo: DVec3, h: DVec3) -> f64 {
+    pub fn reflected_pdf(&self, wo: DVec3, density: f64) -> f64 {
         // D G₁ (wo · h) / cos θo, over the 4 (wo · h) of mirroring.
-        self.density(h) * 0.5 / (wo.z + self.stretch(wo))
+        density * 0.5 / (wo.z + self.stretch(wo))
     }
 
     /// Draws the direction from which a facet that `wo` sees reflects. It may lie below the horizon.

@@ -59,8 +59,14 @@ pub(super) struct Baggage {
     pub branch: u32,
 }
 
+impl Baggage {
+    /// That of paths which carry none.
+    pub const NONE: Self =
+        Self { footprint: Footprint { width: 0.0, spread: 0.0 }, inside: Inside::NONE, chance: -1.0, branch: 0 };
+}
+
 impl Default for Baggage {
     fn default() -> Self {
-        Self { footprint: Footprint::default(), inside: Inside::default(), chance: -1.0, branch: 0 }
+        Self::NONE
     }
 }

@@ -15,13 +15,17 @@ pub(super) struct Inside {
 
 impl Default for Inside {
     fn default() -> Self {
-        Self { count: 0, interiors: [Interior { ior: 1.0, priority: i32::MIN }; Self::MOST] }
+        Self::NONE
     }
 }
 
 impl Inside {
     /// How many of them are told apart. Beyond, those of the least priority are forgotten.
     const MOST: usize = 4;
+
+    /// In nothing.
+    pub const NONE: Self =
+        Self { count: 0, interiors: [Interior { ior: 1.0, priority: i32::MIN }; Self::MOST] };
 
     fn is_above(a: &Interior, b: &Interior) -> bool {
         (a.priority, a.ior) > (b.priority, b.ior)

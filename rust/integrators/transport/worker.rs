@@ -82,7 +82,7 @@ struct Vertex<'p, S> {
     baggage: &'p Baggage,
     dimensions: Dimensions,
     /// What is behind the surface for who goes through it.
-    through: Inside,
+    through: &'p Inside,
     /// The width there.
     width: f64,
     time: f64,
@@ -148,41 +148,42 @@ impl<'a, N: Features> TransportWorker<'a, N> {
         let (mut window, count) = (0, samples.len());
         for i in 0..self.now.rays.len() {
             let (ray, path, mut hit) = (self.now.rays[i], self.now.alive[i], self.hits[i]);
-            let mut baggage = if N::BAGGAGE { self.now.baggage[i] } else { Baggage::default() };
+            let mut own = if N::BAGGAGE { self.now.baggage[i] } else { Baggage::NONE };
             let arriving = &mut radiance[path.sample as usize];
             if !hit.is_hit() {
                 *arriving += path.throughput * self.outside_light(&ray, &path);
                 continue;
             }
             let mut surface = self.scene.geometry().surface(&ray, &hit);
-            let (mut outside, mut through) = (1.0, baggage.inside);
-            let dimensions = Dimensions::of(path.bounce, baggage.branch);
+            let (mut outside, mut behind) = (1.0, None);
+            let dimensions = Dimensions::of(path.bounce, own.branch);
             let sampler = &mut samples[Self::own(path.sample, count)].sampler;
-            if self.nested && around(self.scene, &ray, &hit).is_some() {
+            if N::BAGGAGE && self.nested && around(self.scene, &ray, &hit).is_some() {
                 window += 1;
-                match Boundary::new(self.scene, &ray, &baggage.inside, &crossings, window - 1) {
+                match Boundary::new(self.scene, &ray, &own.inside, &crossings, window - 1) {
                     Boundary::None(inside) => {
-                        baggage.inside = inside;
-                        self.pass(Ray { t_min: self.windows[window - 1].t_max.next_up(), ..ray }, path, baggage);
+                        own.inside = inside;
+                        self.pass(Ray { t_min: self.windows[window - 1].t_max.next_up(), ..ray }, path, own);
                         continue;
                     }
-                    Boundary::Between { hit: owner, outside: ior, through: behind } => {
+                    Boundary::Between { hit: owner, outside: ior, through } => {
                         if owner.primitive != hit.primitive || owner.inner != hit.inner {
                             (hit, surface) = (owner, self.scene.geometry().surface(&ray, &owner));
                         }
-                        (outside, through) = (ior, behind);
+                        (outside, behind) = (ior, Some(through));
                     }
                 }
             }
-            if self.masks && self.is_passed(&ray, &hit, &surface, &mut baggage, dimensions, sampler) {
-                self.pass(Ray { t_min: hit.t.next_up(), ..ray }, path, baggage);
+            if N::BAGGAGE && self.masks && self.is_passed(&ray, &hit, &surface, &mut own, dimensions, sampler) {
+                self.pass(Ray { t_min: hit.t.next_up(), ..ray }, path, own);
                 continue;
             }
-            *arriving += path.throughput * self.emitted(&ray, &hit, &surface, &path, &baggage);
+            let baggage = if N::BAGGAGE { &own } else { &Baggage::NONE };
+            *arriving += path.throughput * self.emitted(&ray, &hit, &surface, &path, baggage);
             if self.settings.max_depth.is_some_and(|depth| path.bounce >= depth) {
                 continue;
             }
-            let (time, baggage) = (ray.time, &baggage);
+            let (time, through) = (ray.time, behind.as_ref().unwrap_or(&baggage.inside));
             if N::PLAIN {
                 // Said once more which kind it is, so that nothing is asked of it at each use.
                 let Some(&Bsdf::Diffuse(diffuse)) = self.scene.plan().constant(surface.shape) else { continue };
@@ -191,7 +192,7 @@ impl<'a, N: Features> TransportWorker<'a, N> {
                 let path = &self.known(path, &here);
                 self.scatter(Vertex { here, path, baggage, dimensions, through, width: 0.0, time }, sampler);
             } else {
-                let width = if self.widths { baggage.footprint.at(hit.t).width } else { 0.0 };
+                let width = if N::BAGGAGE && self.widths { baggage.footprint.at(hit.t).width } else { 0.0 };
                 let here = Interaction::new(self.scene, &ray, &hit, surface, width, outside);
                 let path = &self.known(path, &here);
                 let vertex = Vertex { here, path, baggage, dimensions, through, width, time };
@@ -251,7 +252,7 @@ impl<'a, N: Features> TransportWorker<'a, N> {
         let emission = if N::PLAIN {
             self.scene.lights().emission(surface.shape).towards(cosine, &TexturePoint::NOWHERE)
         } else {
-            let width = || if self.widths { baggage.footprint.at(hit.t).width } else { 0.0 };
+            let width = || if N::BAGGAGE && self.widths { baggage.footprint.at(hit.t).width } else { 0.0 };
             self.scene.emission_at(surface).sent(self.scene.geometry(), ray, hit, surface, width)
         };
         if emission == Rgb::ZERO || path.pdf == f64::INFINITY {
@@ -411,9 +412,9 @@ impl<'a, N: Features> TransportWorker<'a, N> {
             None => from.ray(light.direction),
         };
         self.shadows.push(Ray { time: vertex.time, ..ray }, vertex.path.sample, arriving);
-        if self.nested {
+        if N::BAGGAGE && self.nested {
             let is_through = vertex.here.is_through(light.direction);
-            self.shadows.set_inside(if is_through { vertex.through } else { vertex.baggage.inside });
+            self.shadows.set_inside(if is_through { *vertex.through } else { vertex.baggage.inside });
         }
     }
 
@@ -471,7 +472,7 @@ impl<'a, N: Features> TransportWorker<'a, N> {
         if N::BAGGAGE {
             self.next.baggage.push(Baggage {
                 footprint: if self.widths { widened(vertex, next) } else { vertex.baggage.footprint },
-                inside: if next.is_through { vertex.through } else { vertex.baggage.inside },
+                inside: if next.is_through { *vertex.through } else { vertex.baggage.inside },
                 chance: -1.0,
                 branch,
             });

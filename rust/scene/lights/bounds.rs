@@ -73,26 +73,30 @@ impl LightBounds {
             // Within the ball around the box, all ways to it are possible.
             return if radius > 0.0 { self.intensity / radius } else { 0.0 };
         }
-        let way = way / square.sqrt();
-        let (sin_ball, cos_ball) = {
-            let square = radius / square;
-            (square.sqrt(), (1.0 - square).sqrt())
+        // Sines and cosines are taken times the distance, so that they need no quotient, and their roots not wait for each other.
+        let inverse = 1.0 / square;
+        let (sin_ball, cos_ball) = (radius.sqrt(), (square - radius).sqrt());
+        let to_ball = |sin: f64, cos: f64| {
+            if cos >= cos_ball { 1.0 } else { (cos * cos_ball + sin * sin_ball) * inverse }
         };
-        let mut importance = self.intensity / square;
+        let mut importance = self.intensity * inverse;
         if self.cos_cone > -1.0 {
-            let cos = self.axis.dot(way).clamp(-1.0, 1.0);
-            let (sin, sin_cone) = (sine(cos), sine(self.cos_cone));
+            let (cos, distance) = (self.axis.dot(way), square.sqrt());
             // The angle to the nearest normal, and then what of it is left by the nearest point.
-            let (sin, cos) = less((sin, cos), (sin_cone, self.cos_cone));
-            let (_, cos) = less((sin, cos), (sin_ball, cos_ball));
+            let cos = if cos >= self.cos_cone * distance {
+                1.0
+            } else {
+                let (sin, sin_cone) = (across(cos, square), across(self.cos_cone, 1.0));
+                to_ball(sin * self.cos_cone - cos * sin_cone, cos * self.cos_cone + sin * sin_cone)
+            };
             if cos < self.cos_reach {
                 return 0.0;
             }
             importance *= cos;
         }
         if !receiver.is_free() {
-            let cos = (-receiver.normal.dot(way)).clamp(-1.0, 1.0);
-            importance *= less((sine(cos), cos), (sin_ball, cos_ball)).1.max(0.0);
+            let cos = -receiver.normal.dot(way);
+            importance *= to_ball(across(cos, square), cos).max(0.0);
         }
         importance
     }
@@ -110,15 +114,10 @@ impl LightBounds {
     }
 }
 
+/// The sine of an angle by its cosine, both times a length of this square.
 #[inline]
-fn sine(cos: f64) -> f64 {
-    ((1.0 - cos) * (1.0 + cos)).max(0.0).sqrt()
-}
-
-/// Sine and cosine of one angle less another, but not below 0.
-#[inline]
-fn less((sin_a, cos_a): (f64, f64), (sin_b, cos_b): (f64, f64)) -> (f64, f64) {
-    if cos_a >= cos_b { (0.0, 1.0) } else { (sin_a * cos_b - cos_a * sin_b, cos_a * cos_b + sin_a * sin_b) }
+fn across(cos: f64, square: f64) -> f64 {
+    (square - cos * cos).max(0.0).sqrt()
 }
 
 /// The least cone around two, with a little room.
