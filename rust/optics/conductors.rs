@@ -114,7 +114,10 @@ mod tests {
             // The rule of four points, against one of many.
             let many = (0..2000).map(|i| (f64::from(i) + 0.5) / 2000.0);
             let mean: Rgb = many.map(|mu| fresnel::conductor(mu, one.eta, one.k) * mu / 1000.0).sum();
-            assert!((mean - fresnel::ConductorIndex::new(one.eta, one.k).average()).abs().max_element() < 1e-3, "{one:?}");
+            assert!(
+                (mean - fresnel::ConductorIndex::new(one.eta, one.k).average()).abs().max_element() < 1e-3,
+                "{one:?}"
+            );
         }
         let normal = |name| metal(name).map(|m| fresnel::conductor(1.0, m.eta, m.k)).unwrap();
         // Silver is the whitest; copper and gold take blue, gold less of green.

@@ -24,8 +24,7 @@ impl Inside {
     const MOST: usize = 4;
 
     /// In nothing.
-    pub const NONE: Self =
-        Self { count: 0, interiors: [Interior { ior: 1.0, priority: i32::MIN }; Self::MOST] };
+    pub const NONE: Self = Self { count: 0, interiors: [Interior { ior: 1.0, priority: i32::MIN }; Self::MOST] };
 
     fn is_above(a: &Interior, b: &Interior) -> bool {
         (a.priority, a.ior) > (b.priority, b.ior)

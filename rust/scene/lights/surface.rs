@@ -4,10 +4,10 @@ use super::triangle::SeenTriangle;
 use super::{Emission, LightSample, Receiver};
 use crate::accel::Primitives;
 use crate::math::{DVec3, Hit, Ray};
-use crate::scene::textures::{Needs, TexturePoint};
-use crate::shapes::{Drawn, Seen, Shape};
 use crate::optics::Rgb;
+use crate::scene::textures::{Needs, TexturePoint};
 use crate::scene::{Departure, Geometry, ShadingPoint, SurfacePoint};
+use crate::shapes::{Drawn, Seen, Shape};
 
 impl Emission {
     /// What a surface sends back along a ray of unit direction that meets it; `width` is that of the footprint there, if anybody asks.
