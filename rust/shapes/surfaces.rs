@@ -361,3 +361,25 @@ fn spheres_are_drawn_from_at_any_distance() {
         }
     }
 }
+
+/// Who asks for no coordinates is told the same point.
+#[test]
+fn sights_are_what_is_drawn_without_coordinates() {
+    for (name, shape) in (0..).zip(&shapes()) {
+        for place in [DVec3::new(2.2, 1.4, 1.9), DVec3::new(0.6, 0.35, 0.1)] {
+            for i in 0..200 {
+                let u = Sampler::new(6, name, i).two(0);
+                let (Some(seen), Some(drawn)) = (shape.sight_from(place, u), shape.sample_from(place, u)) else {
+                    continue;
+                };
+                let site = drawn.point.site();
+                assert!((seen.site.position - site.position).abs().max_element() <= seen.site.error + site.error);
+                assert!((seen.site.normal - site.normal).length() < 1e-14 && seen.pdf == drawn.pdf, "{shape:?}");
+                // The way there meets it, but for what rounding takes off a rim.
+                let way = site.position - place;
+                let (met, any) = (shape.pdf_of_met(place, way), shape.pdf_from(place, way));
+                assert!(any == 0.0 || met == any, "{shape:?}");
+            }
+        }
+    }
+}

@@ -366,6 +366,32 @@ fn glass_is_relative_to_what_is_outside() {
 }
 
 #[test]
+fn what_is_the_same_everywhere_is_told_as_at_any_point() {
+    let (wo, wi) = (DVec3::new(0.6, 0.0, 0.8), DVec3::new(-0.48, 0.36, 0.8));
+    let mut told = 0;
+    for material in all() {
+        let Some(bsdf) = material.constant() else { continue };
+        told += 1;
+        for (u, v, is_front) in [(0.1, 0.2, true), (0.7, 0.9, false)] {
+            let point = ShadingPoint { is_front, ..at(u, v) };
+            assert!(material.normal(&point).is_none() && material.tangent(&point).is_none(), "{material:?}");
+            let here = material.scattering(&point);
+            let sharply = |s: crate::optics::BsdfSample| (s.wi, s.weight, s.pdf, s.eta);
+            for side in [wo, -wo] {
+                assert_eq!(bsdf.evaluate(side, wi), here.evaluate(side, wi), "{material:?}");
+                let [a, b] = [bsdf.sample(side, || 0.3, [0.4, 0.6]), here.sample(side, || 0.3, [0.4, 0.6])];
+                assert_eq!(a.map(sharply), b.map(sharply), "{material:?}");
+            }
+        }
+    }
+    assert_eq!(told, 5);
+    // Brushed metal has a direction, and a texture has points.
+    let brushed = Roughness { along: [0.1.into(), 0.4.into()], is_alpha: false };
+    assert!(gold(brushed).constant().is_none() && gold(checker(0.1, 0.4)).constant().is_none());
+    assert!(gold(0.3).constant().is_some() && glass(0.3).constant().is_some());
+}
+
+#[test]
 fn roughness_is_squared_and_alpha_is_not() {
     let here = &at(0.5, 0.5).texture;
     assert_eq!(Roughness::from(0.5).alpha(here), [0.25; 2]);
