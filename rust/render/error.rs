@@ -6,8 +6,8 @@ use super::outliers::{Carried, Largest};
 use crate::optics::Rgb;
 use rayon::prelude::*;
 
-/// An estimate of relMSE, the mean over pixels and channels of (x − μ)² / (μ² + 0.01), where x is the picture and μ what
-/// it tends to. The interval holds the relMSE of this very picture in 95 of 100 cases.
+/// An estimate of relMSE, the mean over pixels and channels of (x − μ)² / (μ² + 0.01), where x is the picture and μ
+/// what it tends to. The interval holds the relMSE of this very picture in 95 of 100 cases.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ErrorEstimate {
     /// The estimate.
@@ -23,7 +23,8 @@ pub struct ErrorEstimate {
 /// What is added to the square of a brightness, so that the dark does not count infinitely.
 const FLOOR: f64 = 0.01;
 
-/// The error of a picture that is right to a millionth: what is left of it is mostly rounding, and who carries it tells nothing.
+/// The error of a picture that is right to a millionth: what is left of it is mostly rounding, and who carries it tells
+/// nothing.
 const ROUNDING: f64 = 1e-12;
 
 /// Estimates the error of a film; `None` where a pixel has fewer than two batches of samples, which say nothing of it.
@@ -37,7 +38,8 @@ pub(super) fn estimate(film: &Film) -> Option<ErrorEstimate> {
     let means = film.means();
     let width = film.width() as usize;
     let patch = film.patch();
-    // Rows of patches are summed on all cores, and their sums in order, so that the estimate does not depend on the threads.
+    // Rows of patches are summed on all cores, and their sums in order, so that the estimate does not depend on the
+    // threads.
     let bands: Vec<Sums> = (0..film.height().div_ceil(patch))
         .into_par_iter()
         .map_init(
@@ -83,27 +85,28 @@ pub(super) fn cross(means: &[Rgb], width: usize, x: usize, y: usize) -> [Rgb; 5]
 
 /// What the squared errors of a pixel are divided by: an estimate of μ² + 0.01.
 ///
-/// A pixel's own x will not do for μ: samples are skewed, so that the pixels which happen to have a large s² happen to be
-/// bright as well, and dividing the one by the other hides a part of the error. At 16 samples this makes it a sixth too
-/// small in a Cornell box, at 2 samples less than half, and more than twice too small with point-like highlights. Nor is
-/// it repaired by the usual corrections, of x² by s²/n or of 1/(x² + 0.01) by a Taylor series: the noise is too large
-/// for them (both were tried, as was the variance of one half of the samples over the mean of the other).
+/// A pixel's own x will not do for μ: samples are skewed, so that the pixels which happen to have a large s² happen to
+/// be bright as well, and dividing the one by the other hides a part of the error. At 16 samples this makes it a sixth
+/// too small in a Cornell box, at 2 samples less than half, and more than twice too small with point-like highlights.
+/// Nor is it repaired by the usual corrections, of x² by s²/n or of 1/(x² + 0.01) by a Taylor series: the noise is too
+/// large for them (both were tried, as was the variance of one half of the samples over the mean of the other).
 ///
 /// So μ is taken from the neighbourhood: the median of the pixel and the four beside it. A mean of neighbours is much
-/// too bright next to a light, by which errors there are lost (8 to 13 % of all at 16 samples); medians or trimmed means
-/// of all eight lose too much beside dark corners. Below 16 samples the pixel itself has no vote, which would cost 10 % of
-/// the error at 8 samples. From there on it has: where neighbours have nothing to do with each other, it is worth more.
-/// Two bounds keep the median where it can be right.
+/// too bright next to a light, by which errors there are lost (8 to 13 % of all at 16 samples); medians or trimmed
+/// means of all eight lose too much beside dark corners. Below 16 samples the pixel itself has no vote, which would
+/// cost 10 % of the error at 8 samples. From there on it has: where neighbours have nothing to do with each other, it
+/// is worth more. Two bounds keep the median where it can be right.
 ///
 /// It may contradict the pixel's own mean by 5/√n standard errors at most. Weighed by s², a mean of n samples is off by
 /// γ/√n standard errors, where γ is the skewness of the samples, some 2 to 5 in global illumination: there is that much
 /// to mend and no more. So detail finer than a pixel is not smoothed away, and with more samples each pixel speaks for
 /// itself.
 ///
-/// And the denominator is at least a quarter of the one that the pixel gives. A pixel that one sample made bright may be
-/// a dark one with a stray sample or a bright one on the edge of a lamp; one sample cannot tell, and the error of a lamp
-/// over the square of its dark surroundings would drown all others in the sum. Of two samples this leaves a quarter of the
-/// error of a Cornell box out, and of four a tenth; with less of a bound, more than that would be made up where no lamp is near.
+/// And the denominator is at least a quarter of the one that the pixel gives. A pixel that one sample made bright may
+/// be a dark one with a stray sample or a bright one on the edge of a lamp; one sample cannot tell, and the error of a
+/// lamp over the square of its dark surroundings would drown all others in the sum. Of two samples this leaves a
+/// quarter of the error of a Cornell box out, and of four a tenth; with less of a bound, more than that would be made
+/// up where no lamp is near.
 pub(super) struct Denominators {
     /// One over them.
     pub inverse: Rgb,
@@ -134,11 +137,14 @@ impl Denominators {
 struct Sums {
     /// The errors.
     error: f64,
-    /// Their squares, and those of the largest batches.
-    squares: f64,
-    peaks: f64,
-    /// The errors with each pixel's own mean in the denominator.
+    /// The errors with each pixel's own mean in the denominator, and with whichever denominator makes them larger.
     own: f64,
+    most: f64,
+    /// Squares and cubes of the latter.
+    squares: f64,
+    cubes: f64,
+    /// What rare samples may add to the second and the third cumulant.
+    rare: [f64; 2],
     /// What single batches bring.
     largest: Largest,
 }
@@ -148,7 +154,9 @@ struct Sums {
 struct Patch {
     error: f64,
     own: f64,
-    /// What the largest batches bring, of each kind of cell: those of neighbours mostly are the same, which all of them share.
+    most: f64,
+    /// What the largest batches bring, of each kind of cell: those of neighbours mostly are the same, which all of them
+    /// share.
     peaks: [f64; 2],
 }
 
@@ -157,6 +165,7 @@ impl Patch {
     fn add(&mut self, denominators: &Denominators, spread: &Spread) {
         self.error += spread.variance.dot(denominators.inverse);
         self.own += spread.variance.dot(denominators.own);
+        self.most += spread.variance.dot(denominators.inverse.max(denominators.own));
         for (sum, peak) in self.peaks.iter_mut().zip(spread.peaks) {
             *sum += peak.dot(denominators.inverse);
         }
@@ -167,40 +176,80 @@ impl Sums {
     #[inline]
     fn add(&mut self, patch: &Patch) {
         self.error += patch.error;
-        self.squares += patch.error * patch.error;
         self.own += patch.own;
-        for peak in patch.peaks {
-            self.peaks += peak * peak;
-            self.largest.add(peak);
+        self.most += patch.most;
+        patch.peaks.iter().for_each(|&peak| self.largest.add(peak));
+        if patch.error > 0.0 {
+            // At most all of it: rounding may make it more.
+            let share = (patch.peaks[0].max(patch.peaks[1]) / patch.error).min(1.0);
+            let square = patch.most * patch.most;
+            self.squares += square;
+            self.cubes += square * patch.most;
+            self.rare[0] += square * share;
+            self.rare[1] += square * patch.most * share * (22.0 + share);
         }
     }
 
     fn join(&mut self, other: &Self) {
         self.error += other.error;
-        self.squares += other.squares;
-        self.peaks += other.peaks;
         self.own += other.own;
+        self.most += other.most;
+        self.squares += other.squares;
+        self.cubes += other.cubes;
+        self.rare[0] += other.rare[0];
+        self.rare[1] += other.rare[1];
         self.largest.join(&other.largest);
     }
 
     /// The estimate, over so many values in all.
     ///
-    /// Three things are uncertain. The true error of each pixel is one draw of (x − μ)², whose variance is twice the square
-    /// of its mean; this is summed as if channels err together, as they nearly do, and patches apart, as they do. Pixels of a patch
-    /// that take samples together err together: by how much is not known, and the interval is a little wide where it is not all. The
-    /// estimate is a sum over samples, of which the largest of each cell make most of its variance. And the denominators are in doubt by as much as choosing them has changed. An error is never negative, and a
-    /// factor too large as likely as too small, so the interval is one of factors.
+    /// Three things are uncertain, and taken as independent.
+    ///
+    /// The true error of each patch is one draw of (x − μ)², summed as if channels err together, as they nearly do, and
+    /// patches apart, as they do. (Pixels of a patch that take samples together err together, by how much is not known,
+    /// and the interval is a little wide where it is not all.) Let m be its mean, which the estimate tells. Of a normal
+    /// x, the cumulants are m, 2m² and 8m³. But means of few bright samples and many dark ones are skewed. If there are
+    /// λ bright ones, as in Poisson's distribution, the cumulants are m, (2 + 1/λ)m² and (8 + 22/λ + 1/λ²)m³, and the
+    /// share of the largest in the estimate is 1/λ. Samples of other kinds have smaller cumulants for that share, which
+    /// bounds Σδ⁴/(Σδ²)². All this comes from the rare large errors, so only the upper end goes by it. A few such
+    /// pixels, as on the rim of a lamp, may hold most of the variance; so the sum is skewed too, and an interval that
+    /// takes it for symmetric is missed above only.
+    ///
+    /// The estimate is a sum over samples, and its variance is m²/λ. That an outlier makes both the error and its
+    /// estimate larger does not bring them together: it makes its pixel's denominator larger as well.
+    ///
+    /// And denominators are in doubt by as much as choosing them has changed, pixel by pixel and in sum. In both, the
+    /// larger error counts for the upper end.
+    ///
+    /// All three are factors, and their logarithms are added as what is independent is.
     fn estimate(&self, count: f64) -> ErrorEstimate {
         let value = self.error / count;
         if value == 0.0 {
             return ErrorEstimate { value, low: 0.0, high: 0.0, carried: None };
         }
-        let chance = 1.96 * (2.0 * self.squares + self.peaks).sqrt() / self.error;
-        let doubt = 1.0 - self.own / self.error;
-        let factor = chance.hypot(doubt).exp();
+        let (square, cube) = (self.most.powi(2), self.most.powi(3));
+        let (variance, skewed) = (2.0 * self.squares, 8.0 * self.cubes);
+        let least = quantile(-1.96, variance / square, skewed / cube);
+        let greatest = quantile(1.96, (variance + self.rare[0]) / square, (skewed + self.rare[1]) / cube);
+        let estimate = 1.96 * (self.rare[0] / square).sqrt();
+        let doubt = (self.own / self.error).ln();
+        let [low, high] = [least, greatest].map(|factor| factor.ln().hypot(estimate).hypot(doubt).exp());
         let carried = if value > ROUNDING { self.largest.carry(self.error) } else { None };
-        ErrorEstimate { value, low: value / factor, high: value * factor, carried }
+        ErrorEstimate { value, low: value / low, high: self.most / count * high, carried }
     }
+}
+
+/// The quantile of a sum of squares of mean 1, with these second and third cumulants, that a normal deviate stands for.
+///
+/// The sum is taken for χ², of as many degrees of freedom as make it as skewed (Pearson, 1959), by the approximation of
+/// Wilson and Hilferty (1931). That fails below one degree, and one is taken: at 1.96, fewer are as many standard
+/// deviations off within 4 %, down to a fifth of a degree.
+fn quantile(normal: f64, variance: f64, skewed: f64) -> f64 {
+    let degrees = (8.0 * variance.powi(3) / (skewed * skewed)).max(1.0);
+    let part = 2.0 / (9.0 * degrees);
+    let cube = (1.0 - part + normal * part.sqrt()).powi(3);
+    // One normal deviate's square is above a thousandth of its mean in 975 of 1000 cases, and sums of them are so too.
+    (1.0 + (variance * degrees / 2.0).sqrt() * (cube - 1.0)).max(0.001)
 }
 
 #[cfg(test)]
@@ -257,6 +306,59 @@ mod tests {
                 // One that holds in 95 of 100 fails 89 of 100 times or fewer with probability 0.01.
                 assert!(close >= 95 && covered >= 89, "picture {i}, {samples} samples: {close}, {covered}");
             }
+        }
+    }
+
+    /// A film in halves, whose cells have 16 to 64 samples: draws of mean 1.
+    fn uneven(seed: u64, draw: impl Fn(u32, u32, f64) -> f64) -> Film {
+        let mut film = Film::new(16, 16, 16, 1, true, None);
+        for tile in film.extend_to(80) {
+            for cell in 0..tile.counts().len() {
+                let (x, y) = tile.position(cell);
+                for nth in 0..16 * (1 + (3 * x + 5 * y + 2 * (cell as u32 % 2)) % 4) {
+                    let uniform = Sampler::new(seed, y * 16 + x, tile.number(cell, nth)).two(0)[0];
+                    tile.add(cell, Rgb::splat(draw(x, y, uniform)), 1.0);
+                }
+            }
+        }
+        film
+    }
+
+    #[test]
+    fn holds_on_both_sides_for_halves_of_differing_counts_and_few_rare_samples() {
+        let exponential = |_: u32, _: u32, uniform: f64| -uniform.ln();
+        // One pixel in sixteen holds the error, half of its light in one sample in so many.
+        let rims = [5.0, 10.0, 20.0].map(|many| {
+            move |x: u32, y: u32, uniform: f64| {
+                let rim = x % 4 == 2 && y % 4 == 2;
+                if rim { 0.5 + if uniform * many < 1.0 { many / 2.0 } else { 0.0 } } else { 0.9 + 0.2 * uniform }
+            }
+        });
+        let kinds: [&(dyn Fn(u32, u32, f64) -> f64 + Sync); 4] = [&exponential, &rims[0], &rims[1], &rims[2]];
+        for (i, draw) in kinds.into_iter().enumerate() {
+            let off: Vec<[bool; 2]> = (0..300u64)
+                .into_par_iter()
+                .map(|seed| {
+                    let film = uneven(seed, draw);
+                    let (estimate, truth) = (estimate(&film).unwrap(), truth(&film, |_, _| 1.0));
+                    [truth < estimate.low, truth > estimate.high]
+                })
+                .collect();
+            let [below, above] = [0, 1].map(|side| off.iter().filter(|off| off[side]).count());
+            // Were it one in 40 on each side, chance would bring 15 or more of 300 once in 100 cases.
+            assert!(below < 15 && above < 15, "kind {i}: {below} below, {above} above");
+        }
+    }
+
+    #[test]
+    fn quantiles_are_those_of_chi_squared() {
+        // Of 1, 2, 5 and 20 degrees of freedom, over these: where one in 40 is below, and one in 40 above.
+        for (degrees, low, high) in
+            [(1.0, 0.001, 5.024), (2.0, 0.0253, 3.689), (5.0, 0.1662, 2.567), (20.0, 0.4795, 1.708)]
+        {
+            let (variance, skewed) = (2.0 / degrees, 8.0 / f64::powi(degrees, 2));
+            assert!((quantile(-1.96, variance, skewed) - low).abs() < 0.02);
+            assert!((quantile(1.96, variance, skewed) / high - 1.0).abs() < 0.02);
         }
     }
 
