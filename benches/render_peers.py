@@ -35,8 +35,8 @@ class Raywright:
     """raywright on all cores."""
 
     def __init__(self, scene, camera, integrator, sampler):
-        reuse = " reuse" if integrator.reuse > 1 else ""
-        self.name = f"raywright {type(sampler).__name__.lower()}{reuse}"
+        ways = " reuse" * (integrator.reuse > 1) + " caustics" * integrator.caustics
+        self.name = f"raywright {type(sampler).__name__.lower()}{ways}"
         self.sampler = sampler
         self.scene, self.camera, self.integrator = scene, camera, integrator
 
@@ -108,13 +108,12 @@ def _blocks(picture):
 def contest(name, make, arguments):
     """Render a scene by all in turns; returns lines of a table."""
     scene, camera, depth = make()
-    kinds = (rw.Independent(), 1), (rw.Sobol(), 1), (rw.Sobol(), REUSE)
-    ours = [
-        Raywright(scene, camera, rw.Path(max_depth=depth, reuse=reuse), sampler) for sampler, reuse in kinds
-    ]
+    ways = {}, {"reuse": REUSE}, {"caustics": True}
+    kinds = [(rw.Independent(), {})] + [(rw.Sobol(), way) for way in ways]
+    ours = [Raywright(scene, camera, rw.Path(max_depth=depth, **way), sampler) for sampler, way in kinds]
     with_mitsuba = importlib.util.find_spec("mitsuba") is not None
     others = [Mitsuba(scene, camera, depth, sampler) for sampler in SAMPLERS] if with_mitsuba else []
-    mine, blocks, errors = reference(ours[1], arguments.reference, 8)
+    mine, blocks, errors = reference(ours[-1], arguments.reference, 8)
     truths = {engine.name: mine for engine in ours}
     if others:
         theirs, other_blocks, other_errors = reference(others[0], arguments.reference, 8)

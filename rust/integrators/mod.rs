@@ -45,6 +45,9 @@ pub trait Integrator: Send + Sync {
         1
     }
 
+    /// Makes what workers need of a scene, once for all of them: it is called before there are any.
+    fn prepare(&self, _scene: &Scene) {}
+
     /// Whether workers must run on the thread that asked for the picture, as what is written in Python must. They are then
     /// handed batches of tens of thousands of samples, and may raise the cancel themselves to end the render.
     fn runs_on_caller(&self) -> bool {

@@ -16,18 +16,25 @@ pub struct Path {
     /// The side of the square patches of pixels whose paths share what they find from their second surface on, where both that and the
     /// first are diffuse; 1 for none ([`Integrator::patch`]).
     pub reuse: u32,
+    /// Whether matt surfaces draw directions from where light comes by way of mirrors and glass as well ([`crate::scene::Caustics`]).
+    pub caustics: bool,
 }
 
 impl Default for Path {
     fn default() -> Self {
-        Self { max_depth: None, roulette_depth: 4, reuse: 1 }
+        Self { max_depth: None, roulette_depth: 4, reuse: 1, caustics: false }
     }
 }
 
 impl Path {
     fn settings(&self, scene: &Scene) -> Settings {
-        let shares = self.patch(scene) > 1;
-        Settings { shares, ..Settings::path(self.max_depth, self.roulette_depth) }
+        let (shares, aims) = (self.patch(scene) > 1, self.aims(scene));
+        Settings { shares, aims, ..Settings::path(self.max_depth, self.roulette_depth) }
+    }
+
+    /// What is sharp must be there, and light beyond it: in scenes of the plain kernel, nothing is.
+    fn aims(&self, scene: &Scene) -> bool {
+        self.caustics && self.max_depth.is_none_or(|depth| depth > 1) && scene.plan().needs().scattering
     }
 
     /// What one thread works with, compiled as this kernel, or as one that can more. Every kernel that suits a scene gives the same bits.
@@ -39,6 +46,12 @@ impl Path {
 impl Integrator for Path {
     fn worker<'a>(&'a self, scene: &'a Scene, footprint: Footprint) -> Box<dyn Worker + 'a> {
         self.settings(scene).worker(scene, footprint)
+    }
+
+    fn prepare(&self, scene: &Scene) {
+        if self.aims(scene) {
+            scene.caustics();
+        }
     }
 
     /// 1 where nothing can be shared, or no path goes on from its second surface.

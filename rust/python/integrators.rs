@@ -37,6 +37,7 @@ impl<'a, 'py> FromPyObject<'a, 'py> for AnyIntegrator {
                 max_depth: attribute(of, "max_depth")?,
                 roulette_depth: attribute(of, "roulette_depth")?,
                 reuse: attribute(of, "reuse")?,
+                caustics: attribute(of, "caustics")?,
             }),
             "Direct" => {
                 Box::new(Direct { light_samples: light_samples()?, surface_samples: attribute(of, "surface_samples")? })

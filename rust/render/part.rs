@@ -143,8 +143,9 @@ impl Request {
             Wanted::Counts(counts) => Goal::Given(counts),
         };
         let tiles = &mut self.tiles[..];
-        let threads = pool(settings.threads).map_err(RenderError::Threads)?.current_num_threads();
-        let reached = if integrator.runs_on_caller() || threads == 1 {
+        let pool = pool(settings.threads).map_err(RenderError::Threads)?;
+        pool.install(|| integrator.prepare(scene));
+        let reached = if integrator.runs_on_caller() || pool.current_num_threads() == 1 {
             exposure.expose_here(tiles, goal, &stop, || {
                 if progress.poll().is_break() {
                     stop.cancel.raise();

@@ -108,6 +108,7 @@ pub fn go_on(
     let spent = || earlier + start.elapsed().as_secs_f64();
     let exposure = Exposure::new(scene, camera, integrator, settings);
     let pool = pool(settings.threads).map_err(RenderError::Threads)?;
+    pool.install(|| integrator.prepare(scene));
     loop {
         rendering.seconds = spent();
         let done = rendering.film.samples();
@@ -252,7 +253,7 @@ mod tests {
 
     impl Integrator for Here {
         fn worker<'a>(&'a self, scene: &'a Scene, footprint: Footprint) -> Box<dyn Worker + 'a> {
-            static PATH: Path = Path { max_depth: None, roulette_depth: 4, reuse: 1 };
+            static PATH: Path = Path { max_depth: None, roulette_depth: 4, reuse: 1, caustics: false };
             Box::new(HereWorker(self, PATH.worker(scene, footprint)))
         }
         fn runs_on_caller(&self) -> bool {

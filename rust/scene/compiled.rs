@@ -1,10 +1,10 @@
 //! A scene ready for rays.
 
-use super::{DescriptionError, Emission, Geometry, Lights, Material, Plan, SceneDescription, SurfacePoint};
+use super::{Caustics, DescriptionError, Emission, Geometry, Lights, Material, Plan, SceneDescription, SurfacePoint};
 use crate::accel::{Accelerator, Cost, Crossings, Nearest, Primitives, Side, Touches};
 use crate::math::{DVec3, Hit, Ray, Region};
 use crate::shapes::triangle::SolidCone;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// A scene ready for rays.
 pub struct Scene {
@@ -12,6 +12,8 @@ pub struct Scene {
     materials: Vec<Arc<dyn Material>>,
     lights: Lights,
     plan: Plan,
+    /// `None` within if there are none; made when they are first asked for.
+    caustics: OnceLock<Option<Caustics>>,
     accelerator: Box<dyn Accelerator>,
     region: Region,
     /// The accelerator's cost when it was built.
@@ -81,7 +83,8 @@ impl Scene {
     ) -> Self {
         let (region, cost) = (geometry.region(), accelerator.info().sah_cost);
         let plan = Plan::new(&geometry, &materials, &lights);
-        Self { geometry, materials, lights, plan, accelerator, region, built_cost: built_cost.unwrap_or(cost) }
+        let built_cost = built_cost.unwrap_or(cost);
+        Self { geometry, materials, lights, plan, caustics: OnceLock::new(), accelerator, region, built_cost }
     }
 
     /// What the accelerator costs over what it did when it was built, by the surface-area heuristic; 1 until it is refitted.
@@ -172,6 +175,17 @@ impl Scene {
     #[inline]
     pub fn plan(&self) -> &Plan {
         &self.plan
+    }
+
+    /// From where light comes by way of mirrors and glass; `None` where it does not.
+    pub fn caustics(&self) -> Option<&Caustics> {
+        if self.caustics.get().is_none() {
+            // Not within the lock: threads that wait for others take up work of theirs, which may come here too. Whoever makes them, they are
+            // the same.
+            let made = Caustics::new(self);
+            let _ = self.caustics.set(made);
+        }
+        self.caustics.get()?.as_ref()
     }
 
     /// What a shape is made of.

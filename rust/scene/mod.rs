@@ -1,6 +1,7 @@
 //! Floor 3: what a scene is made of, compiled for rays.
 
 pub mod cameras;
+mod caustics;
 mod compiled;
 mod copies;
 mod description;
@@ -28,6 +29,7 @@ mod vertices;
 mod view;
 
 pub use cameras::{Camera, CameraError, CameraRay, Perspective};
+pub use caustics::{Aim, Caustics, is_matt};
 pub use compiled::Scene;
 pub use copies::{BadTransform, Copies, Matrix, check_transforms};
 pub use description::{DescriptionError, SceneDescription, Shape};

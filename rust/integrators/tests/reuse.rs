@@ -16,7 +16,7 @@ use std::sync::Arc;
 
 /// Without roulette, which sharing paths play by what they reflect from their second surface on.
 fn path(reuse: u32) -> Path {
-    Path { max_depth: Some(6), roulette_depth: u32::MAX, reuse }
+    Path { max_depth: Some(6), roulette_depth: u32::MAX, reuse, ..Path::default() }
 }
 
 /// So many groups of samples, each through all pixels of a square of this side in the middle of a picture.

@@ -1,5 +1,6 @@
 //! What path tracing and its ancestors share: a batch of paths on their way, one bounce at a time.
 
+mod aiming;
 mod branches;
 mod dimensions;
 mod features;
@@ -50,6 +51,8 @@ pub(super) struct Settings {
     pub least: f64,
     /// Whether paths of a group share what they find, in scenes where they can ([`can_share`]).
     pub shares: bool,
+    /// Whether paths aim at where light comes from by way of mirrors and glass.
+    pub aims: bool,
 }
 
 impl Settings {
@@ -65,6 +68,7 @@ impl Settings {
             ambient: Rgb::ZERO,
             least: 0.0,
             shares: false,
+            aims: false,
         }
     }
 

@@ -1,5 +1,6 @@
 //! A batch of paths on their way.
 
+use super::aiming::{Arrival, arrive, density, draw};
 use super::branches::singles;
 use super::dimensions::Dimensions;
 use super::features::{Baggage, Features};
@@ -15,7 +16,8 @@ use crate::optics::{Bsdf, Rgb};
 use crate::sampling::Sampler;
 use crate::scene::textures::TexturePoint;
 use crate::scene::{
-    Departure, Footprint, Interaction, LightSample, Receiver, Scattered, Scatters, Scene, SurfacePoint,
+    Aim, Caustics, Departure, Footprint, Interaction, LightSample, Receiver, Scattered, Scatters, Scene, SurfacePoint,
+    is_matt,
 };
 use crate::workers::Cancel;
 use std::marker::PhantomData;
@@ -36,6 +38,20 @@ pub(super) struct Alive {
     pub(super) bounce: u32,
     /// Whether each of few lights was asked where it was scattered last.
     each: bool,
+    /// How much denser directions were drawn than surfaces scatter into them, since the last matt one ([`super::aiming`]).
+    pub(super) aimed: f32,
+}
+
+/// The most that [`Alive::aimed`] can be, so that it stays finite.
+const MOST_AIMED: f32 = 1e30;
+
+impl Alive {
+    /// What the throughput counts for in roulette: where it is small because of the index of refraction, or because the path was aimed, no
+    /// light is lost.
+    #[inline]
+    pub(super) fn importance(&self) -> f64 {
+        self.scale * f64::from(self.aimed)
+    }
 }
 
 /// Paths that go on, and the ray that each is about to follow.
@@ -63,6 +79,8 @@ pub(super) struct TransportWorker<'a, N> {
     masks: bool,
     nested: bool,
     widths: bool,
+    /// Where paths aim, if they do.
+    caustics: Option<&'a Caustics>,
     now: Queue,
     next: Queue,
     hits: Vec<Hit>,
@@ -86,6 +104,10 @@ struct Vertex<'p, S> {
     /// The width there.
     width: f64,
     time: f64,
+    /// Where light comes from by way of what is sharp.
+    aim: Option<Aim<'p>>,
+    /// Whether roulette has been played.
+    arrival: Arrival,
 }
 
 impl<'a, N: Features> TransportWorker<'a, N> {
@@ -98,6 +120,7 @@ impl<'a, N: Features> TransportWorker<'a, N> {
             masks: N::BAGGAGE && needs.masks,
             nested: N::BAGGAGE && needs.nested,
             widths: N::BAGGAGE && needs.points.width,
+            caustics: if settings.aims { scene.caustics() } else { None },
             now: Queue::default(),
             next: Queue::default(),
             hits: Vec::new(),
@@ -121,6 +144,7 @@ impl<'a, N: Features> TransportWorker<'a, N> {
             sample,
             bounce: 0,
             each: false,
+            aimed: 1.0,
         }));
         if N::BAGGAGE {
             let start = Baggage { footprint: self.footprint, ..Baggage::default() };
@@ -190,12 +214,18 @@ impl<'a, N: Features> TransportWorker<'a, N> {
                 let shading = surface.shading_normal;
                 let here = Interaction::with(&ray, surface, (shading, None), Bsdf::Diffuse(diffuse));
                 let path = &self.known(path, &here);
-                self.scatter(Vertex { here, path, baggage, dimensions, through, width: 0.0, time }, sampler);
+                let (width, aim, arrival) = (0.0, None, Arrival::GoesOn);
+                self.scatter(Vertex { here, path, baggage, dimensions, through, width, time, aim, arrival }, sampler);
             } else {
                 let width = if N::BAGGAGE && self.widths { baggage.footprint.at(hit.t).width } else { 0.0 };
                 let here = Interaction::new(self.scene, &ray, &hit, surface, width, outside);
-                let path = &self.known(path, &here);
-                let vertex = Vertex { here, path, baggage, dimensions, through, width, time };
+                let mut path = self.known(path, &here);
+                let (aim, arrival) = self.aim(&mut path, &here, || sampler.one(dimensions.roulette()));
+                if arrival == Arrival::Ends {
+                    continue;
+                }
+                let path = &path;
+                let vertex = Vertex { here, path, baggage, dimensions, through, width, time, aim, arrival };
                 if N::BAGGAGE && self.settings.ambient != Rgb::ZERO {
                     let share = vertex.here.ambient(self.scene, &ray, &hit, width, outside);
                     *arriving += path.throughput * share * self.settings.ambient;
@@ -220,6 +250,25 @@ impl<'a, N: Features> TransportWorker<'a, N> {
     #[inline]
     fn known<S: Scatters>(&mut self, path: Alive, here: &Interaction<S>) -> Alive {
         if N::SHARES { self.reuse.visit(path, here) } else { path }
+    }
+
+    /// Where light comes from by way of what is sharp, at a point that a path has come to; and whether the path goes on there.
+    #[inline]
+    fn aim<S: Scatters>(
+        &self,
+        path: &mut Alive,
+        here: &Interaction<S>,
+        number: impl FnOnce() -> f64,
+    ) -> (Option<Aim<'a>>, Arrival) {
+        let Some(caustics) = self.caustics else { return (None, Arrival::GoesOn) };
+        if !is_matt(here.scattering()) {
+            return (None, Arrival::GoesOn);
+        }
+        // With what density a path comes to the second point that it shares is to be known.
+        let aims = !N::SHARES || path.bounce > 0;
+        let aim = if aims { caustics.aim(here.position()) } else { None };
+        let arrival = arrive(path, aim.as_ref(), number);
+        (aim, arrival)
     }
 
     /// What arrives from outside the scene at a ray that meets nothing.
@@ -317,9 +366,14 @@ impl<'a, N: Features> TransportWorker<'a, N> {
             let branch = if branch == 0 { vertex.baggage.branch } else { branch };
             let dimensions = if N::BAGGAGE { Dimensions::of(vertex.path.bounce, branch) } else { vertex.dimensions };
             let u = sampler.two(dimensions.direction());
-            let Some(next) = vertex.here.sample(|| sampler.one(dimensions.scattering_choice()), u) else { continue };
+            let mut choice = || sampler.one(dimensions.scattering_choice());
+            let drawn = match &vertex.aim {
+                None => vertex.here.sample(choice, u).map(|next| (next, 1.0)),
+                Some(aim) => draw(&vertex.here, aim, choice(), u),
+            };
+            let Some((next, denser)) = drawn else { continue };
             if self.is_followed(next.pdf) {
-                self.send(&vertex, &next, (branch, splits), |d| sampler.one(d));
+                self.send(&vertex, &next, denser, (branch, splits), |d| sampler.one(d));
             }
         }
     }
@@ -343,7 +397,7 @@ impl<'a, N: Features> TransportWorker<'a, N> {
         let mut branch = vertex.baggage.branch.wrapping_mul(2);
         singles(vertex.here.scattering(), vertex.here.wo(), |single| {
             if let Some(next) = vertex.here.scattered(&single) {
-                self.send(vertex, &next, (branch, 1), |_| 0.0);
+                self.send(vertex, &next, 1.0, (branch, 1), |_| 0.0);
                 branch = branch.wrapping_add(1);
             }
         });
@@ -421,7 +475,10 @@ impl<'a, N: Features> TransportWorker<'a, N> {
     /// What light that was drawn adds to the sample, one of so many draws, if nothing is in its way.
     #[inline]
     fn arriving<S: Scatters>(&self, vertex: &Vertex<'_, S>, light: &LightSample, asked: u32, splits: u32) -> Rgb {
-        let (scattered, pdf) = vertex.here.evaluate(light.direction);
+        let (scattered, mut pdf) = vertex.here.evaluate(light.direction);
+        if let Some(aim) = &vertex.aim {
+            pdf = density(aim, pdf, light.direction);
+        }
         let mut weight = if self.is_followed(pdf) {
             power_heuristic(light.pdf * f64::from(asked), pdf * f64::from(splits))
         } else {
@@ -439,12 +496,14 @@ impl<'a, N: Features> TransportWorker<'a, N> {
         &mut self,
         vertex: &Vertex<'_, S>,
         next: &Scattered,
+        denser: f64,
         (branch, splits): (u32, u32),
         mut number: impl FnMut(u32) -> f64,
     ) {
         let mut path = *vertex.path;
         path.throughput *= next.weight;
         path.pdf = next.pdf;
+        path.aimed = (path.aimed * denser as f32).min(MOST_AIMED);
         if N::BAGGAGE && splits > 1 {
             path.throughput /= f64::from(splits);
             path.pdf *= f64::from(splits);
@@ -457,10 +516,10 @@ impl<'a, N: Features> TransportWorker<'a, N> {
             return;
         }
         // With what density a path comes to its second point is to be known.
-        let is_played = !N::SHARES || path.bounce > 1;
+        let is_played = (!N::SHARES || path.bounce > 1) && vertex.arrival == Arrival::GoesOn;
         if is_played && path.bounce >= self.settings.roulette_depth.min(ROULETTE_AT_LATEST) {
             let dimensions = if N::BAGGAGE { Dimensions::of(vertex.path.bounce, branch) } else { vertex.dimensions };
-            let survival = survival(path.throughput, path.scale);
+            let survival = survival(path.throughput, path.importance());
             if number(dimensions.roulette()) >= survival {
                 return;
             }

@@ -1,0 +1,74 @@
+//! Paths that aim at where light comes from by way of mirrors and glass.
+
+use super::weights::survival;
+use super::worker::Alive;
+use crate::math::DVec3;
+use crate::optics::Rgb;
+use crate::scene::{Aim, Interaction, Scattered, Scatters};
+
+/// A path that comes to a matt surface, where it may aim or not: whether roulette has ended it or been played, so that it is not again.
+///
+/// One that was aimed and has come here has missed what it was aimed at, or found what is brightly lit: it goes on by what it brings, and as
+/// if it brought more by as much as more light comes here. Other paths are left to the roulette that all play.
+#[inline]
+pub(super) fn arrive(path: &mut Alive, aim: Option<&Aim>, number: impl FnOnce() -> f64) -> Arrival {
+    let denser = std::mem::replace(&mut path.aimed, 1.0);
+    if denser <= 1.0 {
+        return Arrival::GoesOn;
+    }
+    let gain = aim.map_or(1.0, Aim::gain);
+    path.aimed = denser.min((gain * gain) as f32);
+    let survival = survival(path.throughput, path.importance());
+    if number() >= survival {
+        return Arrival::Ends;
+    }
+    path.throughput /= survival;
+    Arrival::Played
+}
+
+/// What becomes of a path that comes to a matt surface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Arrival {
+    /// Roulette is still to be played.
+    GoesOn,
+    /// Roulette was won.
+    Played,
+    /// Roulette was lost.
+    Ends,
+}
+
+/// The density of a direction that a surface draws with `pdf`, where paths aim as well.
+#[inline]
+pub(super) fn density(aim: &Aim, pdf: f64, direction: DVec3) -> f64 {
+    pdf + aim.share() * (aim.pdf(direction) - pdf)
+}
+
+/// A direction drawn by a surface or by where light comes from, weighed by the density of both together (Veach and Guibas, 1995: the one-sample
+/// model), and how much denser that is than the surface's.
+pub(super) fn draw<S: Scatters>(
+    here: &Interaction<S>,
+    aim: &Aim,
+    choice: f64,
+    u: [f64; 2],
+) -> Option<(Scattered, f64)> {
+    let share = aim.share();
+    if choice < share {
+        let direction = aim.sample(choice / share, u);
+        let (value, pdf) = here.evaluate(direction);
+        if value == Rgb::ZERO || pdf <= 0.0 {
+            return None;
+        }
+        let both = density(aim, pdf, direction);
+        let next = Scattered { direction, weight: value / both, pdf: both, eta: 1.0, is_through: false };
+        return Some((next, both / pdf));
+    }
+    // What is left of the choice is uniform again.
+    let next = here.sample(|| ((choice - share) / (1.0 - share)).min(1f64.next_down()), u)?;
+    if next.pdf == f64::INFINITY {
+        let denser = 1.0 - share;
+        return Some((Scattered { weight: next.weight / denser, ..next }, denser));
+    }
+    let both = density(aim, next.pdf, next.direction);
+    let denser = both / next.pdf;
+    Some((Scattered { weight: next.weight / denser, pdf: both, ..next }, denser))
+}

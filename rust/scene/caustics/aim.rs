@@ -1,0 +1,56 @@
+//! Directions towards where light comes from.
+
+use super::cells::Cell;
+use crate::math::DVec3;
+
+/// Directions from a place towards where light comes from: those to one of several balls.
+#[derive(Clone, Copy, Debug)]
+pub struct Aim<'a> {
+    cell: Cell<'a>,
+    place: DVec3,
+}
+
+impl<'a> Aim<'a> {
+    /// Those from a place in a cell.
+    #[inline]
+    pub(super) fn new(cell: Cell<'a>, place: DVec3) -> Self {
+        Self { cell, place }
+    }
+
+    /// How often it is worth while to aim, rather than to leave it to the surface.
+    #[inline]
+    pub fn share(&self) -> f64 {
+        self.cell.share
+    }
+
+    /// How much brighter than others the place is, for the light that comes to it by way of what is sharp.
+    #[inline]
+    pub fn gain(&self) -> f64 {
+        self.cell.gain
+    }
+
+    /// Draws a direction: `choice` among the balls, `u` of those to one, all uniform in [0, 1).
+    #[inline]
+    pub fn sample(&self, mut choice: f64, u: [f64; 2]) -> DVec3 {
+        // Shares add up to 1 but for roundings.
+        let mut chosen = &self.cell.lobes[self.cell.lobes.len() - 1];
+        for lobe in self.cell.lobes {
+            if choice < lobe.share() {
+                chosen = lobe;
+                break;
+            }
+            choice -= lobe.share();
+        }
+        chosen.sample(self.place, u)
+    }
+
+    /// The density in solid angle with which [`Aim::sample`] draws a unit direction.
+    #[inline]
+    pub fn pdf(&self, direction: DVec3) -> f64 {
+        let mut sum = 0.0;
+        for lobe in self.cell.lobes {
+            sum += lobe.pdf(self.place, direction);
+        }
+        sum
+    }
+}

@@ -1,0 +1,172 @@
+//! Places, divided by how much light comes there.
+
+use super::lobe::Lobe;
+use super::photons::Photon;
+use crate::math::DVec3;
+use std::ops::Range;
+
+/// Places in cells, by halving the photons at the longest side of the box around them until few are left.
+#[derive(Debug)]
+pub(super) struct Cells {
+    nodes: Vec<Node>,
+    leaves: Vec<Leaf>,
+    lobes: Vec<Lobe>,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Node {
+    /// What is below `at` along the axis is in the first child, which is the next node.
+    Split { axis: usize, at: f64, second: usize },
+    /// By its number.
+    Leaf(usize),
+}
+
+/// A cell, and about where photons came to it.
+#[derive(Clone, Debug)]
+struct Leaf {
+    min: DVec3,
+    max: DVec3,
+    share: f64,
+    gain: f64,
+    lobes: Range<usize>,
+}
+
+/// What is known of a cell.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Cell<'a> {
+    /// Where light comes from: one lobe at least, [`LOBES`] at most, whose shares add up to 1.
+    pub lobes: &'a [Lobe],
+    /// How often to aim.
+    pub share: f64,
+    /// How much brighter than usual it is there.
+    pub gain: f64,
+}
+
+/// The most photons in a cell. With 32 or 128 there is more noise in pictures of balls of glass.
+const PHOTONS: usize = 64;
+
+/// The most lobes of a cell. With 16 there is more noise.
+const LOBES: usize = 32;
+
+/// What a cell knows of those beside it, in sizes of its own: without, light at its borders is missed.
+const BESIDE: f64 = 0.5;
+
+/// How often directions are drawn from the ball around all others, in case that one is missing.
+const WIDE: f64 = 0.1;
+
+/// How often paths aim, at least and at most.
+const SHARES: [f64; 2] = [0.1, 0.6];
+
+/// The most that a cell is brighter than usual.
+const BRIGHTEST: f64 = 1e6;
+
+impl Cells {
+    /// Those of some photons, where so much light falls over area usually.
+    pub fn new(mut photons: Vec<Photon>, usual: f64) -> Self {
+        let mut all = Self { nodes: Vec::new(), leaves: Vec::new(), lobes: Vec::new() };
+        let mut ranges = Vec::new();
+        let count = photons.len();
+        all.divide(&mut photons, 0..count, &mut ranges);
+        for range in ranges {
+            let (min, max) = bounds(&photons[range]);
+            let beside = DVec3::splat(BESIDE * (max - min).max_element());
+            let (min, max) = (min - beside, max + beside);
+            let mut near = Vec::new();
+            all.gather(0, &photons, (min, max), &mut near);
+            all.add_leaf(&mut near, (min, max), usual);
+        }
+        all
+    }
+
+    /// Divides a range of photons. Leaves are numbered in the order of their ranges.
+    fn divide(&mut self, photons: &mut [Photon], range: Range<usize>, ranges: &mut Vec<Range<usize>>) {
+        let mine = &mut photons[range.clone()];
+        let (min, max) = bounds(mine);
+        let size = max - min;
+        let axis = (0..3).max_by(|&a, &b| size[a].total_cmp(&size[b])).unwrap_or(0);
+        if mine.len() <= PHOTONS || size[axis] <= 0.0 {
+            self.nodes.push(Node::Leaf(ranges.len()));
+            ranges.push(range);
+            return;
+        }
+        let half = mine.len() / 2;
+        mine.select_nth_unstable_by(half, |a, b| a.position[axis].total_cmp(&b.position[axis]));
+        let (at, node) = (mine[half].position[axis], self.nodes.len());
+        self.nodes.push(Node::Leaf(0));
+        self.divide(photons, range.start..range.start + half, ranges);
+        self.nodes[node] = Node::Split { axis, at, second: self.nodes.len() };
+        self.divide(photons, range.start + half..range.end, ranges);
+    }
+
+    /// Adds those photons of a node that are in a box.
+    fn gather(&self, node: usize, photons: &[Photon], (min, max): (DVec3, DVec3), near: &mut Vec<Photon>) {
+        match self.nodes[node] {
+            Node::Leaf(_) => {
+                let inside = |p: &&Photon| p.position.cmpge(min).all() && p.position.cmple(max).all();
+                near.extend(photons.iter().filter(inside));
+            }
+            Node::Split { axis, at, second } => {
+                // Halves are where `divide` made them.
+                let (one, other) = photons.split_at(photons.len() / 2);
+                if min[axis] <= at {
+                    self.gather(node + 1, one, (min, max), near);
+                }
+                if max[axis] >= at {
+                    self.gather(second, other, (min, max), near);
+                }
+            }
+        }
+    }
+
+    fn add_leaf(&mut self, near: &mut [Photon], (min, max): (DVec3, DVec3), usual: f64) {
+        let sides = max - min;
+        let size = sides.max_element();
+        let light: f64 = near.iter().map(|photon| photon.flux).sum();
+        let area = (sides.x * sides.y).max(sides.y * sides.z).max(sides.z * sides.x);
+        // Where no light comes straight, or on no area, all that comes is by way of what is sharp.
+        let brighter = if usual > 0.0 { (light / area / usual).min(BRIGHTEST) } else { BRIGHTEST };
+        let all = Lobe::around(near, size);
+        near.sort_by_key(|photon| photon.chain);
+        let mut each = Vec::new();
+        for group in near.chunk_by_mut(|a, b| a.chain == b.chain) {
+            Lobe::divide(group, size, 3, &mut each);
+        }
+        // The variance of what is sought in a lobe goes by its light, its brightness and its solid angle, over how often it is drawn: it had
+        // better be drawn by the root of those. The larger ones are mostly of lesser brightness, so that a root of the solid angle is left.
+        let mut strengths: Vec<(Lobe, f64)> =
+            each.into_iter().map(|(lobe, light)| (lobe, (light * lobe.fills().sqrt()).sqrt())).collect();
+        strengths.sort_by(|a, b| b.1.total_cmp(&a.1));
+        strengths.truncate(LOBES - 1);
+        let total: f64 = strengths.iter().map(|(_, strength)| strength).sum();
+        let first = self.lobes.len();
+        let part = if total > 0.0 { (1.0 - WIDE) / total } else { 0.0 };
+        self.lobes.extend(strengths.iter().filter(|(_, s)| *s > 0.0).map(|(lobe, s)| lobe.drawn(s * part)));
+        let wide = if total > 0.0 { WIDE } else { 1.0 };
+        self.lobes.push(all.drawn(wide));
+        // By how much noise it takes from what paths find of the rest, and adds to it, were each lobe half filled by what is sought.
+        let share = (2.0 * brighter / (2.0 * brighter + 1.0)).clamp(SHARES[0], SHARES[1]);
+        self.leaves.push(Leaf { min, max, share, gain: 1.0 + brighter, lobes: first..self.lobes.len() });
+    }
+
+    /// The cell of a place; `None` where no photon has been about.
+    #[inline]
+    pub fn find(&self, place: DVec3) -> Option<Cell<'_>> {
+        let mut node = 0;
+        loop {
+            match self.nodes[node] {
+                Node::Split { axis, at, second } => node = if place[axis] < at { node + 1 } else { second },
+                Node::Leaf(number) => {
+                    let leaf = &self.leaves[number];
+                    let inside = place.cmpge(leaf.min).all() && place.cmple(leaf.max).all();
+                    let cell = Cell { lobes: &self.lobes[leaf.lobes.clone()], share: leaf.share, gain: leaf.gain };
+                    return inside.then_some(cell);
+                }
+            }
+        }
+    }
+}
+
+fn bounds(photons: &[Photon]) -> (DVec3, DVec3) {
+    let start = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    photons.iter().fold(start, |(min, max), p| (min.min(p.position), max.max(p.position)))
+}

@@ -1,0 +1,217 @@
+"""Paths that aim at where light comes from by mirrors and glass: the same mean, less noise, the same bits."""
+
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+import pytest
+
+import raywright as rw
+
+
+def render(scene, camera, caustics, **how):
+    how = {"samples": 16} | how
+    depth = how.pop("max_depth", None)
+    reuse = how.pop("reuse", 1)
+    path = rw.Path(max_depth=depth, reuse=reuse, caustics=caustics)
+    return rw.render(scene, camera, path, progress=False, **how)
+
+
+def assert_same(a, b):
+    assert np.array_equal(a.rgb, b.rgb)
+    assert np.array_equal(a.standard_error, b.standard_error)
+
+
+def quad(corner, side, other, **what):
+    corner, side, other = (np.array(v, float) for v in (corner, side, other))
+    return rw.Mesh(
+        [corner, corner + side, corner + side + other, corner + other], [(0, 1, 2), (0, 2, 3)], **what
+    )
+
+
+SHIFT = np.array([4.0, -8.0, 16.0])
+LAMP = np.array([[0.5, 1.0, 0.0], [0.0, 0.0, 0.05], [0.05, 0.0, 0.0]])
+
+
+def mirrored(scale, shift=0.0):
+    """A floor that a lamp lights by way of a mirror alone, and a camera that sees a spot of it."""
+
+    def at(point):
+        return tuple((np.array(point, float) + shift) * scale)
+
+    def part(corner, side, other, **what):
+        return quad(at(corner), np.array(side) * scale, np.array(other) * scale, **what)
+
+    black = rw.Diffuse(0.0)
+    floor = part((-1, 0, -1), (0, 0, 2), (2, 0, 0), material=rw.Diffuse(0.5))
+    mirror = part((1, 0, -1), (0, 0, 2), (0, 2, 0), material=rw.Mirror(0.8))
+    # Seen from above it is dark: it shines down, and a shade hides it from where the camera looks.
+    lamp = part(*LAMP[[0, 2, 1]], material=black, emission=20.0)
+    shade = part((0.4, 0.3, -0.5), (0, 0.8, 0), (0, 0, 1), material=black)
+    camera = rw.Camera(at((-0.5, 2, 0.3)), at((0, 0, 0)), fov=0.1, width=4, height=4)
+    return rw.Scene([floor, mirror, lamp, shade]), camera
+
+
+def truth():
+    """Radiance of the spot: 0.5 / π times 0.8 times the light of the lamp's image, 2 - x away."""
+    nodes, weights = np.polynomial.legendre.leggauss(16)
+    u, v = np.meshgrid(0.5 + 0.5 * nodes, 0.5 + 0.5 * nodes)
+    corner, side, other = LAMP
+    points = corner + u[..., None] * side + v[..., None] * other
+    points[..., 0] = 2.0 - points[..., 0]
+    square = np.sum(points**2, axis=-1)
+    # Both cosines are the height over the distance.
+    light = np.sum(np.outer(weights, weights) / 4 * points[..., 1] ** 2 / square**2) * 0.05**2
+    return 0.5 / np.pi * 0.8 * 20.0 * light
+
+
+@pytest.mark.parametrize("scale", [1e-6, 1.0, 1e6])
+@pytest.mark.parametrize("shift", [0.0, SHIFT])
+def test_light_from_a_mirror_is_that_of_the_image(scale, shift):
+    scene, camera = mirrored(scale, shift)
+    image = render(scene, camera, True, samples=16384, max_depth=2, seed=3)
+    mean, error = image.rgb.mean(dtype=float), np.sqrt(np.mean(image.standard_error.astype(float) ** 2) / 16)
+    # Four standard errors, which are below one part in a hundred; the spot is a thousandth wide.
+    assert abs(mean - truth()) <= 4 * error + 1e-3 * truth()
+    assert error < 0.01 * truth()
+
+
+def test_most_paths_find_it():
+    scene, camera = mirrored(1.0)
+    free, aimed = (
+        render(scene, camera, caustics, samples=4096, max_depth=2).standard_error
+        for caustics in (False, True)
+    )
+    # The image fills a part in some five thousand of what the floor sees, and most of what paths aim at.
+    assert np.mean(np.square(aimed)) < 0.01 * np.mean(np.square(free))
+
+
+def room(*more, lamp=0.4):
+    """Grey walls around the origin, a lamp under the ceiling, and what else; seen from within."""
+    walls = rw.Box((-1, -1, -1), (1, 1, 1), material=rw.Diffuse((0.7, 0.5, 0.3)))
+    shines = quad(
+        (-lamp, 0.95, -lamp), (2 * lamp, 0, 0), (0, 0, 2 * lamp), material=rw.Diffuse(0.2), emission=8
+    )
+    camera = rw.Camera((0, 0, 0.98), (0, -0.2, 0), fov=90, width=12, height=12)
+    return rw.Scene([walls, shines, *more]), camera
+
+
+def sky():
+    """A glass ball on a floor, under a sky with a bright patch."""
+    pixels = np.full((16, 32, 3), 0.3)
+    pixels[3:5, 6:9] = 40.0
+    floor = rw.Disk((0, -0.5, 0), (0, 1, 0), 3.0, material=rw.Diffuse(0.6))
+    ball = rw.Sphere((0, 0, 0), 0.5, material=rw.Dielectric(1.5))
+    camera = rw.Camera((0, 1.5, 4), (0, -0.2, 0), fov=50, width=12, height=12)
+    return rw.Scene([floor, ball], environment=rw.EnvironmentMap(pixels)), camera
+
+
+def moving():
+    ball = rw.Sphere((0, 0, 0), 0.3, material=rw.Mirror(0.9))
+    here, there = np.eye(4), np.eye(4)
+    here[:3, 3], there[:3, 3] = (-0.3, -0.5, 0), (0.3, -0.5, 0)
+    return room(rw.Instance([ball], here, there))
+
+
+def copies():
+    places = np.stack([np.eye(4)] * 2)
+    places[:, :3, 3] = [(-0.4, -0.5, 0), (0.4, -0.5, 0.1)]
+    return room(rw.Instance([rw.Sphere((0, 0, 0), 0.3, material=rw.Dielectric(1.5))], places))
+
+
+SCENES = {
+    "glass": lambda: room(rw.Sphere((0.2, -0.4, 0), 0.4, material=rw.Dielectric(1.5))),
+    "mirror and varnish": lambda: room(
+        rw.Sphere((-0.4, -0.5, 0), 0.3, material=rw.Mirror(0.9)),
+        rw.Sphere((0.4, -0.5, 0), 0.3, material=rw.Plastic((0.2, 0.4, 0.8))),
+    ),
+    "metal": lambda: room(rw.Sphere((0, -0.5, 0), 0.4, material=rw.Conductor("gold", roughness=0.2))),
+    "half a mirror": lambda: room(
+        rw.Sphere((0, -0.5, 0), 0.4, material=rw.Mix(rw.Diffuse(0.6), rw.Mirror(0.8), 0.5))
+    ),
+    "glass in glass": lambda: room(
+        rw.Sphere((0, -0.4, 0), 0.5, material=rw.Dielectric(1.5)),
+        rw.Sphere((0, -0.4, 0), 0.3, material=rw.Dielectric(1.2, priority=1)),
+    ),
+    # No light comes straight to anything.
+    "bulb": lambda: room(rw.Sphere((0, 0.9, 0), 0.8, material=rw.Dielectric(1.1)), lamp=0.2),
+    "sky": sky,
+    "moving": moving,
+    "copies": copies,
+}
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_the_mean_is_what_it_is_without(name):
+    scene, camera = SCENES[name]()
+    mean, error = {}, {}
+    for caustics in (False, True):
+        how = {"samples": 128, "sampler": rw.Sobol()}
+        few = np.array(
+            [render(scene, camera, caustics, seed=s, **how).rgb.mean(axis=(0, 1)) for s in range(40)]
+        )
+        mean[caustics], error[caustics] = few.mean(axis=0), few.std(axis=0, ddof=1) / np.sqrt(40)
+    # Four and a half standard errors of 80 pictures are exceeded once in some 10,000 cases, of 27.
+    assert (np.abs(mean[True] - mean[False]) <= 4.5 * np.hypot(error[True], error[False])).all()
+    # A hundredth, so that much that is lost or counted twice is seen.
+    assert (np.hypot(error[True], error[False]) < 0.01 * mean[False]).all()
+
+
+def test_a_furnace_stays_one():
+    floor = rw.Disk((0, -0.5, 0), (0, 1, 0), 3.0, material=rw.Diffuse(1.0))
+    balls = [
+        rw.Sphere((-0.6, 0, 0), 0.5, material=rw.Dielectric(1.5)),
+        rw.Sphere((0.6, 0, 0), 0.5, material=rw.Mirror(1.0)),
+    ]
+    camera = rw.Camera((0, 1.5, 4), (0, -0.2, 0), fov=50, width=16, height=16)
+    scene = rw.Scene([floor, *balls], environment=1.0)
+    image = render(scene, camera, True, samples=256)
+    error = np.sqrt(np.mean(image.standard_error.astype(float) ** 2) / image.rgb.size * 3)
+    assert abs(image.rgb.mean(dtype=float) - 1) <= 4 * error + 1e-6
+    assert error < 0.005
+
+
+@pytest.mark.parametrize("how", [{}, {"adaptive": True}, {"sampler": rw.Sobol()}, {"reuse": 4}])
+def test_threads_pieces_and_checkpoints_change_no_bit(how, tmp_path):
+    def glass():
+        return rw.scenes.glass_spheres(width=21, height=13)
+
+    one = render(*glass(), True, samples=48, threads=1, **how)
+    assert one.error.estimate > 0
+    assert_same(render(*glass(), True, samples=48, threads=3, **how), one)
+    with ThreadPoolExecutor(2) as executor:
+        assert_same(render(*glass(), True, samples=48, executor=executor, **how), one)
+    if "sampler" not in how:
+        # Whose batches are made for the samples that are asked for.
+        render(*glass(), True, samples=16, checkpoint=tmp_path / "a", **how)
+        assert_same(render(*glass(), True, samples=48, checkpoint=tmp_path / "a", **how), one)
+
+
+def test_where_nothing_can_be_found_it_changes_no_bit():
+    plain = rw.scenes.cornell_box(width=16, height=16)
+    assert_same(render(*plain, True), render(*plain, False))
+    # What shines into single directions is never met, and one bounce finds no lamp in a mirror.
+    ball = rw.Sphere((0, -0.5, 0), 0.4, material=rw.Mirror())
+    walls = rw.Box((-1, -1, -1), (1, 1, 1), material=rw.Diffuse(0.5))
+    point = rw.Scene([walls, ball], lights=rw.PointLight((0, 0.9, 0), 3.0))
+    camera = rw.Camera((0, 0, 0.98), (0, -0.2, 0), fov=90, width=12, height=12)
+    assert_same(render(point, camera, True), render(point, camera, False))
+    glass = SCENES["glass"]()
+    assert_same(render(*glass, True, max_depth=1), render(*glass, False, max_depth=1))
+    dark = rw.Scene([walls, ball])
+    assert not render(dark, camera, True).rgb.any()
+
+
+def test_fireflies_are_found_by_most_paths():
+    scene, camera = rw.scenes.glass_spheres(width=64, height=64)
+    free, aimed = (
+        np.array([render(scene, camera, caustics, samples=64, seed=s).rgb for s in range(4)], float)
+        for caustics in (False, True)
+    )
+    mean = np.square(aimed.mean(axis=0)) + 0.01
+    # By some twenty times less in each of four such sets of seeds.
+    assert np.mean(aimed.var(axis=0, ddof=1) / mean) < 0.2 * np.mean(free.var(axis=0, ddof=1) / mean)
+
+
+def test_what_is_neither_true_nor_false_is_refused():
+    with pytest.raises(TypeError, match="caustics must be True or False, got 1"):
+        rw.Path(caustics=1)
