@@ -1,7 +1,7 @@
 //! Paths that aim at where light comes from by way of mirrors and glass.
 
+use super::alive::Alive;
 use super::weights::survival;
-use super::worker::Alive;
 use crate::math::DVec3;
 use crate::optics::Rgb;
 use crate::scene::{Aim, Interaction, Scattered, Scatters};

@@ -1,6 +1,8 @@
 //! What path tracing and its ancestors share: a batch of paths on their way, one bounce at a time.
 
 mod aiming;
+mod alive;
+mod asking;
 mod branches;
 mod dimensions;
 mod features;

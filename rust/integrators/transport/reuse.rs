@@ -1,6 +1,6 @@
 //! Paths that share what they find.
 
-use super::worker::Alive;
+use super::alive::Alive;
 use crate::math::{DVec3, Ray};
 use crate::optics::Rgb;
 use crate::scene::{Departure, Interaction, Scatters, Scene, fading};

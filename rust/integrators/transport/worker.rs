@@ -1,11 +1,11 @@
 //! A batch of paths on their way.
 
-use super::aiming::{Arrival, arrive, density, draw};
+use super::aiming::{Arrival, arrive, draw};
+use super::alive::{Alive, Queue};
 use super::branches::singles;
 use super::dimensions::Dimensions;
 use super::features::{Baggage, Features};
 use super::nesting::{Boundary, Inside, around};
-use super::resampling::resampled;
 use super::reuse::Reuse;
 use super::shadows::{Shadows, opacity};
 use super::weights::{ROULETTE_AT_LATEST, power_heuristic, survival};
@@ -16,68 +16,19 @@ use crate::optics::{Bsdf, Rgb};
 use crate::sampling::Sampler;
 use crate::scene::textures::TexturePoint;
 use crate::scene::{
-    Aim, Caustics, Departure, Footprint, Interaction, LightSample, Receiver, Scattered, Scatters, Scene, SurfacePoint,
-    is_matt,
+    Aim, Caustics, Departure, Footprint, Interaction, Receiver, Scattered, Scatters, Scene, SurfacePoint, is_matt,
 };
 use crate::workers::Cancel;
 use std::marker::PhantomData;
 
-/// A path on its way.
-#[derive(Clone, Copy)]
-pub(super) struct Alive {
-    pub(super) throughput: Rgb,
-    /// The normal that lights were drawn by where it was scattered last ([`Receiver`]).
-    normal: DVec3,
-    /// Density with which this direction was drawn, times the number of such draws; infinite for a camera's ray.
-    pdf: f64,
-    /// How much less radiance is here than where the path started, because of the index of refraction alone.
-    scale: f64,
-    /// Whose sample it is; as many more as there are samples, where what is found is for sharing.
-    pub(super) sample: u32,
-    /// Surfaces that it has been scattered at.
-    pub(super) bounce: u32,
-    /// Whether each of few lights was asked where it was scattered last.
-    each: bool,
-    /// How much denser directions were drawn than surfaces scatter into them, since the last matt one ([`super::aiming`]).
-    pub(super) aimed: f32,
-}
-
-/// The most that [`Alive::aimed`] can be, so that it stays finite.
-const MOST_AIMED: f32 = 1e30;
-
-impl Alive {
-    /// What the throughput counts for in roulette: where it is small because of the index of refraction, or because the path was aimed, no
-    /// light is lost.
-    #[inline]
-    pub(super) fn importance(&self) -> f64 {
-        self.scale * f64::from(self.aimed)
-    }
-}
-
-/// Paths that go on, and the ray that each is about to follow.
-#[derive(Default)]
-struct Queue {
-    rays: Vec<Ray>,
-    alive: Vec<Alive>,
-    baggage: Vec<Baggage>,
-}
-
-impl Queue {
-    fn clear(&mut self) {
-        self.rays.clear();
-        self.alive.clear();
-        self.baggage.clear();
-    }
-}
-
 /// What one thread works with, see [`Settings::worker`].
 pub(super) struct TransportWorker<'a, N> {
     settings: Settings,
-    scene: &'a Scene,
+    pub(super) scene: &'a Scene,
     /// That of a camera's ray.
     footprint: Footprint,
     masks: bool,
-    nested: bool,
+    pub(super) nested: bool,
     widths: bool,
     /// Where paths aim, if they do.
     caustics: Option<&'a Caustics>,
@@ -86,7 +37,7 @@ pub(super) struct TransportWorker<'a, N> {
     hits: Vec<Hit>,
     /// The parts of rays around hits of what encloses a medium.
     windows: Vec<Ray>,
-    shadows: Shadows,
+    pub(super) shadows: Shadows,
     reuse: Reuse,
     /// What samples find for themselves, and then what they find for sharing.
     found: Vec<Rgb>,
@@ -94,20 +45,20 @@ pub(super) struct TransportWorker<'a, N> {
 }
 
 /// A point that a path has come to.
-struct Vertex<'p, S> {
-    here: Interaction<S>,
-    path: &'p Alive,
-    baggage: &'p Baggage,
-    dimensions: Dimensions,
+pub(super) struct Vertex<'p, S> {
+    pub(super) here: Interaction<S>,
+    pub(super) path: &'p Alive,
+    pub(super) baggage: &'p Baggage,
+    pub(super) dimensions: Dimensions,
     /// What is behind the surface for who goes through it.
-    through: &'p Inside,
+    pub(super) through: &'p Inside,
     /// The width there.
-    width: f64,
-    time: f64,
+    pub(super) width: f64,
+    pub(super) time: f64,
     /// Where light comes from by way of what is sharp.
-    aim: Option<Aim<'p>>,
+    pub(super) aim: Option<Aim<'p>>,
     /// Whether roulette has been played.
-    arrival: Arrival,
+    pub(super) arrival: Arrival,
 }
 
 impl<'a, N: Features> TransportWorker<'a, N> {
@@ -380,7 +331,7 @@ impl<'a, N: Features> TransportWorker<'a, N> {
 
     /// Whether paths go on along a direction that is drawn with this density.
     #[inline]
-    fn is_followed(&self, pdf: f64) -> bool {
+    pub(super) fn is_followed(&self, pdf: f64) -> bool {
         if !N::BAGGAGE {
             return true;
         }
@@ -403,93 +354,6 @@ impl<'a, N: Features> TransportWorker<'a, N> {
         });
     }
 
-    /// Next-event estimation: draws light and queues the shadow ray.
-    #[inline]
-    fn ask_a_light<S: Scatters>(
-        &mut self,
-        vertex: &Vertex<'_, S>,
-        (number, asked): (u32, u32),
-        splits: u32,
-        sampler: &mut Sampler,
-    ) {
-        let (here, dimensions) = (&vertex.here, vertex.dimensions);
-        if self.asks_each(here) {
-            if let Some((light, arriving)) = self.ask_each_light(vertex, (number, asked), splits, sampler) {
-                self.cast(vertex, &light, arriving);
-            }
-            return;
-        }
-        let choice = share(sampler.one(dimensions.light_choice(number)), (number, asked));
-        let u = sampler.two(dimensions.light_point(number));
-        let lights = self.scene.lights();
-        let Some(light) = lights.sample(self.scene.geometry(), &here.receiver(), choice, u) else { return };
-        let arriving = self.arriving(vertex, &light, asked, splits);
-        if arriving != Rgb::ZERO {
-            self.cast(vertex, &light, arriving);
-        }
-    }
-
-    /// Draws light of each of few lights, and of it one draw to stand for all.
-    #[inline(never)]
-    fn ask_each_light<S: Scatters>(
-        &self,
-        vertex: &Vertex<'_, S>,
-        (number, asked): (u32, u32),
-        splits: u32,
-        sampler: &mut Sampler,
-    ) -> Option<(LightSample, Rgb)> {
-        let (lights, receiver, dimensions) = (self.scene.lights(), vertex.here.receiver(), vertex.dimensions);
-        let first = number.wrapping_mul(lights.few());
-        let choice = share(sampler.one(dimensions.light_choice(first)), (number, asked));
-        let draw = |one: u32| {
-            let number = first.wrapping_add(one);
-            let u = sampler.two(dimensions.light_point(number));
-            let choice = || sampler.one(dimensions.light_choice(number));
-            let light = lights.sample_one(one, self.scene.geometry(), &receiver, choice, u)?;
-            Some((light, self.arriving(vertex, &light, asked, splits)))
-        };
-        resampled(choice, (0..lights.few()).filter_map(draw))
-    }
-
-    /// Whether each of few lights is asked at a point.
-    #[inline]
-    fn asks_each<S: Scatters>(&self, here: &Interaction<S>) -> bool {
-        !N::PLAIN && self.scene.plan().asks_each(|| here.scattering().roughness())
-    }
-
-    /// Queues the shadow ray of light that was drawn.
-    #[inline]
-    fn cast<S: Scatters>(&mut self, vertex: &Vertex<'_, S>, light: &LightSample, arriving: Rgb) {
-        let from = vertex.here.departure();
-        let ray = match &light.source {
-            Some(source) => from.segment(source),
-            None => from.ray(light.direction),
-        };
-        self.shadows.push(Ray { time: vertex.time, ..ray }, vertex.path.sample, arriving);
-        if N::BAGGAGE && self.nested {
-            let is_through = vertex.here.is_through(light.direction);
-            self.shadows.set_inside(if is_through { *vertex.through } else { vertex.baggage.inside });
-        }
-    }
-
-    /// What light that was drawn adds to the sample, one of so many draws, if nothing is in its way.
-    #[inline]
-    fn arriving<S: Scatters>(&self, vertex: &Vertex<'_, S>, light: &LightSample, asked: u32, splits: u32) -> Rgb {
-        let (scattered, mut pdf) = vertex.here.evaluate(light.direction);
-        if let Some(aim) = &vertex.aim {
-            pdf = density(aim, pdf, light.direction);
-        }
-        let mut weight = if self.is_followed(pdf) {
-            power_heuristic(light.pdf * f64::from(asked), pdf * f64::from(splits))
-        } else {
-            1.0
-        };
-        if N::BAGGAGE {
-            weight /= f64::from(asked);
-        }
-        vertex.path.throughput * scattered * light.weight * weight
-    }
-
     /// Queues a path that goes on along a direction drawn, one of so many, unless roulette ends it.
     #[inline]
     fn send<S: Scatters>(
@@ -503,7 +367,7 @@ impl<'a, N: Features> TransportWorker<'a, N> {
         let mut path = *vertex.path;
         path.throughput *= next.weight;
         path.pdf = next.pdf;
-        path.aimed = (path.aimed * denser as f32).min(MOST_AIMED);
+        path.aim(denser);
         if N::BAGGAGE && splits > 1 {
             path.throughput /= f64::from(splits);
             path.pdf *= f64::from(splits);
@@ -537,12 +401,6 @@ impl<'a, N: Features> TransportWorker<'a, N> {
             });
         }
     }
-}
-
-/// The choice of one of several draws: each makes its own in a share of all.
-#[inline]
-fn share(choice: f64, (number, asked): (u32, u32)) -> f64 {
-    if asked == 1 { choice } else { ((choice + f64::from(number)) / f64::from(asked)).min(1f64.next_down()) }
 }
 
 /// The bundle of rays after a surface.

@@ -274,10 +274,13 @@ fn branch(here: &Interaction, choice: f64, u: [f64; 2]) -> Option<(Scattered, f6
     let is_same = |choice: f64| {
         here.sample(|| choice, u).is_some_and(|other| other.direction == next.direction && other.pdf == next.pdf)
     };
-    if !is_asked || is_same(0.0) == is_same(last) {
+    if !is_asked {
         return Some((next, 1.0));
     }
     let is_first = is_same(0.0);
+    if is_first == is_same(last) {
+        return Some((next, 1.0));
+    }
     let (mut low, mut high) = (0.0, 1.0);
     for _ in 0..HALVINGS {
         let middle = 0.5 * (low + high);

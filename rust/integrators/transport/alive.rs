@@ -1,0 +1,59 @@
+//! Paths on their way.
+
+use super::features::Baggage;
+use crate::math::{DVec3, Ray};
+use crate::optics::Rgb;
+
+/// A path on its way.
+#[derive(Clone, Copy)]
+pub(super) struct Alive {
+    pub(super) throughput: Rgb,
+    /// The normal that lights were drawn by where it was scattered last ([`crate::scene::Receiver`]).
+    pub(super) normal: DVec3,
+    /// Density with which this direction was drawn, times the number of such draws; infinite for a camera's ray.
+    pub(super) pdf: f64,
+    /// How much less radiance is here than where the path started, because of the index of refraction alone.
+    pub(super) scale: f64,
+    /// Whose sample it is; as many more as there are samples, where what is found is for sharing.
+    pub(super) sample: u32,
+    /// Surfaces that it has been scattered at.
+    pub(super) bounce: u32,
+    /// Whether each of few lights was asked where it was scattered last.
+    pub(super) each: bool,
+    /// How much denser directions were drawn than surfaces scatter into them, since the last matt one ([`super::aiming`]).
+    pub(super) aimed: f32,
+}
+
+impl Alive {
+    /// It goes on along a direction that was drawn so much more densely than the surface scatters into it.
+    #[inline]
+    pub(super) fn aim(&mut self, denser: f64) {
+        /// So that it stays finite.
+        const MOST: f32 = 1e30;
+        self.aimed = (self.aimed * denser as f32).min(MOST);
+    }
+
+    /// What the throughput counts for in roulette: where it is small because of the index of refraction, or because the path was aimed, no
+    /// light is lost.
+    #[inline]
+    pub(super) fn importance(&self) -> f64 {
+        self.scale * f64::from(self.aimed)
+    }
+}
+
+/// Paths that go on, and the ray that each is about to follow.
+#[derive(Default)]
+pub(super) struct Queue {
+    pub rays: Vec<Ray>,
+    pub alive: Vec<Alive>,
+    pub baggage: Vec<Baggage>,
+}
+
+impl Queue {
+    /// Forgets all.
+    pub fn clear(&mut self) {
+        self.rays.clear();
+        self.alive.clear();
+        self.baggage.clear();
+    }
+}
