@@ -13,14 +13,20 @@ from types import ModuleType
 from typing import Any
 
 import raywright
-from raywright import trimesh_ray
+from raywright.compat import trimesh_ray
 
 # Modules that users import by themselves.
 _APART = {"trimesh_ray": trimesh_ray}
 # Where members of a class come from that is not the package's own business.
 _STRANGERS = "tuple, dict, object, Exception, ABC, Generic"
 _CORE = "the core"
-_HEADINGS = {"aovs": "What is seen first", "io": "Files", "rng": "Random numbers"}
+_HEADINGS = {
+    "io": "Files",
+    "query": "What rays and points find",
+    "rendering": "Pictures",
+    "scene": "Scenes",
+    "scene_files": "Scene files",
+}
 
 
 def parts() -> dict[str, tuple[str, str, list[str]]]:
@@ -31,7 +37,7 @@ def parts() -> dict[str, tuple[str, str, list[str]]]:
     for name, value in sorted((named | _APART).items(), key=lambda item: item[0].lower()):
         if isinstance(value, ModuleType):
             names = [f"{value.__name__}.{one}" for one in value.__all__]
-            found[name] = (f"raywright.{name}", _text(value), names)
+            found[name] = (value.__name__, _text(value), names)
         else:
             grouped[_home(name, value)].append(f"raywright.{name}")
     for home, names in grouped.items():

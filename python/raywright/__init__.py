@@ -5,23 +5,10 @@ from typing import TYPE_CHECKING, Any
 from . import scenes
 from ._core import AcceleratorInfo, simd
 from .accelerators import BSP, BVH, BruteForce, Grid, KdTree, NestedGrid, Octree
-from .aovs import AOVS, aovs
 from .cameras import AnyCamera, Camera, Fisheye, Orthographic, Panorama, Pose, ThinLens
-from .cones import ConeTouches
-from .filters import (
-    BlackmanHarrisFilter,
-    BoxFilter,
-    GaussianFilter,
-    LanczosFilter,
-    MitchellFilter,
-    TriangleFilter,
-)
-from .hits import AllHits, ClosestPoints, Hits, QueryCost
-from .image import ErrorEstimate, Image
-from .instance import Instance
-from .integrator import Integrator
 from .integrators import AmbientOcclusion, Direct, Distributed, Path, RayCast, Whitted
-from .interactions import Interactions, LightSamples, Rays, Scattered, power_heuristic
+from .integrators.base import Integrator
+from .integrators.rng import Rng
 from .io.pictures import check_writable
 from .lights import (
     ConstantEnvironment,
@@ -51,27 +38,28 @@ from .materials import (
     TwoSided,
     metals,
 )
-from .mesh import Mesh
-from .plan import Plan, PlanRow
-from .rendering import render
-from .rng import Rng
-from .samplers import Halton, Independent, Lattice, Sobol, Stratified
-from .scene import Scene
-from .shapes import (
-    Box,
-    Cone,
-    Cylinder,
-    Disk,
-    Ellipsoid,
-    Implicit,
-    Paraboloid,
-    Plane,
-    Polygon,
-    Sphere,
-    Torus,
+from .query.cones import ConeTouches
+from .query.hits import AllHits, ClosestPoints, Hits, QueryCost
+from .query.interactions import Interactions, LightSamples, Rays, Scattered, power_heuristic
+from .query.surface import Surface
+from .rendering.aovs import AOVS, aovs
+from .rendering.filters import (
+    BlackmanHarrisFilter,
+    BoxFilter,
+    GaussianFilter,
+    LanczosFilter,
+    MitchellFilter,
+    TriangleFilter,
 )
-from .shot import Shot
-from .surface import Surface
+from .rendering.image import ErrorEstimate, Image
+from .rendering.render import render
+from .rendering.samplers import Halton, Independent, Lattice, Sobol, Stratified
+from .rendering.shot import Shot
+from .scene.instance import Instance
+from .scene.plan import Plan, PlanRow
+from .scene.scene import Scene
+from .shapes import Box, Cone, Cylinder, Disk, Ellipsoid, Implicit, Paraboloid, Plane, Polygon, Sphere, Torus
+from .shapes.mesh import Mesh
 from .textures import (
     Checker,
     FBm,
@@ -89,8 +77,8 @@ from .textures import (
 
 if TYPE_CHECKING:
     from . import report
-    from .io.load import load
-    from .io.mitsuba import from_mitsuba
+    from .scene_files.load import load
+    from .scene_files.mitsuba import from_mitsuba
     from .viewer import Viewer, view
 
 __all__ = [
@@ -212,8 +200,8 @@ if not TYPE_CHECKING:
     # These are for those who ask for them: nothing else waits for their import.
     _LATER = {
         "Viewer": ".viewer",
-        "from_mitsuba": ".io.mitsuba",
-        "load": ".io.load",
+        "from_mitsuba": ".scene_files.mitsuba",
+        "load": ".scene_files.load",
         "report": ".report",
         "view": ".viewer",
     }

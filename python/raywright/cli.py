@@ -8,15 +8,15 @@ from collections.abc import Callable, Sequence
 from typing import Any, NoReturn
 
 from .accelerators import Accelerator, every
-from .description import described
-from .image import Image
-from .io.load import has_camera, load
-from .io.meshes import load as load_meshes
 from .io.pictures import check_writable
 from .materials import Diffuse
-from .scene import Scene
+from .mesh_files.meshes import load as load_meshes
+from .rendering.image import Image
+from .rendering.shot import Shot
+from .scene.scene import Scene
+from .scene.summary import described
+from .scene_files.load import has_camera, load
 from .scenes import cornell_box, studio, torus_knot
-from .shot import Shot
 from .viewer import view
 
 # As shells count it: 128 and the number of SIGINT.

@@ -228,7 +228,7 @@ enum Chosen {
 
 impl Chosen {
     fn read(integrator: &Bound<'_, PyAny>, described: Py<PyAny>, seed: u64) -> PyResult<Self> {
-        let base = integrator.py().import("raywright.integrator")?.getattr("Integrator")?;
+        let base = integrator.py().import("raywright.integrators.base")?.getattr("Integrator")?;
         if integrator.is_instance(&base)? {
             return Ok(Self::Written(Box::new(Written::new(integrator.clone().unbind(), described, seed))));
         }

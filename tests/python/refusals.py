@@ -10,7 +10,7 @@ from typing import NamedTuple
 READ = """
 import json, resource, sys, time
 import raywright as rw
-from raywright.io.gltf import read_gltf
+from raywright.scene_files.gltf import read_gltf
 from raywright.io.pictures import read
 import trimesh, PIL.Image, numpy
 from PIL import PngImagePlugin, JpegImagePlugin

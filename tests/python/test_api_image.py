@@ -18,7 +18,7 @@ from raywright.io import pictures
 def test_srgb_is_the_standard_curve():
     linear = np.array([-1, 0, 0.0031308, 0.05, 0.214041, 0.5, 1, 7, np.nan, np.inf], np.float32)
     rgb = np.repeat(linear[np.newaxis, :, np.newaxis], 3, axis=2)
-    image = rw.Image(rgb, rgb, rw.ErrorEstimate(0, 0, 0), np.empty(0, rw.image.HISTORY), 0.0, 1)
+    image = rw.Image(rgb, rgb, rw.ErrorEstimate(0, 0, 0), np.empty(0, rw.rendering.image.HISTORY), 0.0, 1)
     assert image.srgb().dtype == np.uint8
     assert image.srgb()[0, :, 0].tolist() == [0, 0, 10, 63, 127, 188, 255, 255, 0, 255]
 
@@ -69,7 +69,7 @@ def test_table_is_error_against_time(picture):
 
 @pytest.mark.parametrize("rows", [1, 2, 5, 12])
 def test_table_of_a_long_history_is_thinned(picture, rows):
-    history = np.zeros(1000, rw.image.HISTORY)
+    history = np.zeros(1000, rw.rendering.image.HISTORY)
     history["samples"] = np.arange(1, 1001) * 8
     history["error"] = 1 / history["samples"]
     image = rw.Image(picture.rgb, picture.rgb, picture.error, history, 1.0, 8000)

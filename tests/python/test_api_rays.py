@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import raywright as rw
-from raywright.rays import ray_arguments
+from raywright.query.rays import ray_arguments
 
 DOWN = (0.0, 0.0, -1.0)
 

@@ -17,7 +17,7 @@ import numpy as np
 import pytest
 
 import raywright as rw
-from raywright import checkpoints
+from raywright.rendering import checkpoints
 
 MAGIC = b"raywright checkpoint 1\n"
 LIMITS = {"samples": 40, "seed": 5, "progress": False, "sampler": rw.Sobol(4)}

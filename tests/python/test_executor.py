@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 import raywright as rw
-from raywright import distributed
+from raywright.rendering import executor as distributed
 
 LIMITS = {"samples": 72, "seed": 3, "progress": False, "sampler": rw.Sobol(4)}
 

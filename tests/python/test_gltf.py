@@ -8,7 +8,7 @@ import trimesh
 from gltf_writer import CORNERS, SQUARE, Writer, square
 
 import raywright as rw
-from raywright.io.gltf import read_gltf
+from raywright.scene_files.gltf import read_gltf
 
 TURN = math.sqrt(0.5)  # sine and cosine of half a quarter turn
 

@@ -12,7 +12,7 @@ import pytest
 from gltf_writer import CORNERS, SQUARE, Writer, glb, square
 from refusals import Reader
 
-from raywright.io.gltf import read_gltf
+from raywright.scene_files.gltf import read_gltf
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="limits of memory are Linux's")
 

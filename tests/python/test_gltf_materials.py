@@ -11,7 +11,7 @@ from PIL import Image
 from trimesh.visual.material import PBRMaterial
 
 import raywright as rw
-from raywright.io.gltf import read_gltf
+from raywright.scene_files.gltf import read_gltf
 
 PIXELS = np.random.default_rng(1).integers(0, 256, (4, 4, 4), np.uint8)
 UV = np.float32([(0, 0), (1, 0), (1, 1), (0, 1)])

@@ -9,7 +9,7 @@ import pytest
 import trimesh
 
 import raywright as rw
-from raywright.io.gltf import read_gltf
+from raywright.scene_files.gltf import read_gltf
 
 SCENE = """
 <scene version="3.0.0">

@@ -114,7 +114,7 @@ def test_colours_are_told_in_any_way():
 
 def test_the_base_of_plastic_gives_what_it_does_in_mitsuba():
     """Without ``nonlinear`` r / (1 - F) of it gets out, and so the base here has another reflectance."""
-    within = rw.io.mitsuba.coats.smooth(1.5)
+    within = rw.scene_files.mitsuba.coats.smooth(1.5)
     # Duntley (1942).
     assert abs(within - 0.5963) < 1e-4
     base = front({"type": "plastic", "int_ior": 1.5, "ext_ior": 1.0, "diffuse_reflectance": 0.4}).reflectance[

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import raywright as rw
-from raywright.topology import degenerate_faces, is_watertight
+from raywright.shapes.topology import degenerate_faces, is_watertight
 
 SCENES = rw.scenes
 MADE = {

@@ -11,8 +11,8 @@ import trimesh
 from trimesh.ray import ray_triangle
 
 import raywright as rw
-from raywright import trimesh_ray
-from raywright.trimesh_ray import RayMeshIntersector
+from raywright.compat import trimesh_ray
+from raywright.compat.trimesh_ray import RayMeshIntersector
 
 
 @pytest.fixture(autouse=True)
@@ -387,7 +387,7 @@ def test_where_there_is_no_embree_it_seems_that_there_is():
 import sys
 sys.modules["embreex"] = sys.modules["pyembree"] = None
 import trimesh
-from raywright import trimesh_ray
+from raywright.compat import trimesh_ray
 assert not trimesh.ray.has_embree
 with trimesh_ray.install():
     assert trimesh.ray.has_embree
@@ -400,7 +400,7 @@ print(type(mesh.ray).__module__, type(trimesh.creation.box().ray).__module__)
         [sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=60
     )
     assert done.stdout.split() == [
-        "raywright.trimesh_ray.intersector",
+        "raywright.compat.trimesh_ray.intersector",
         "True",
         "trimesh.ray.ray_triangle",
         "trimesh.ray.ray_triangle",

@@ -2,8 +2,8 @@
 
 from typing import TypeAlias, get_args
 
-from ..integrator import Integrator
 from .ambient_occlusion import AmbientOcclusion
+from .base import Integrator
 from .direct import Direct
 from .distributed import Distributed
 from .path import Path

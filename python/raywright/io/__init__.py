@@ -1,1 +1,1 @@
-"""Files and other libraries' objects, in and out."""
+"""Files of pixels, and quiet for the libraries that read files."""

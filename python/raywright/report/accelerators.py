@@ -9,7 +9,7 @@ import numpy as np
 
 from ..accelerators import Accelerator, every, name_of
 from ..arrays import integer
-from ..scene import Scene
+from ..scene.scene import Scene
 from .contest import Measured, measured
 from .per_build import COUNTS, RaysPerBuild, rays_per_build_of
 from .ray_sets import Rays, ray_sets

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from .._core import AcceleratorInfo
 from ..accelerators import Accelerator, BruteForce
-from ..mesh import face_count
-from ..scene import Scene
+from ..scene.scene import Scene
+from ..shapes.mesh import face_count
 from .ray_sets import Rays
 
 # Tests of a primitive that brute force may take for the check, if nobody says how many rays to check: a

@@ -12,9 +12,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..arrays import integer, positive
 from ..cameras import AnyCamera
-from ..image import Image
-from ..rendering import render
-from ..scene import Scene
+from ..rendering.image import Image
+from ..rendering.render import render
+from ..scene.scene import Scene
 from .table import Chart, Column, Table
 
 LEVELS = 6

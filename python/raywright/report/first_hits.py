@@ -10,7 +10,7 @@ import numpy as np
 from .. import _core
 from ..arrays import integer
 from ..cameras import AnyCamera
-from ..scene import Scene
+from ..scene.scene import Scene
 from .table import Column, Table
 
 _COLUMNS = (

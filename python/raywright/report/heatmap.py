@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ..arrays import choice, integer
 from ..cameras import AnyCamera
 from ..io.pictures import check_writable
-from ..scene import Scene
+from ..scene.scene import Scene
 from .table import NO_MATPLOTLIB, Column, Table
 from .time_share import TimeShare, time_share
 

@@ -10,9 +10,9 @@ from numpy.typing import ArrayLike, NDArray
 from ..arrays import integer, last_axis
 from ..cameras import AnyCamera, Camera
 from ..lights import DirectionalLight
-from ..mesh import Mesh
-from ..rays import ray_arguments
-from ..scene import Scene
+from ..query.rays import ray_arguments
+from ..scene.scene import Scene
+from ..shapes.mesh import Mesh
 
 # From where a scene is looked at when nobody says: three quarters, from above, and so far away (in radii)
 # that all of the sphere around it is in view: more than 1 over the sine of half the angle.

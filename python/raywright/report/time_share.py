@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import integer
-from ..scene import Scene
+from ..scene.scene import Scene
 from .ray_sets import Rays, ray_sets
 
 # Batches to fit, at least, and rays in one, at least: the time of fewer is mostly that of the call.

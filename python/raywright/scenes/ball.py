@@ -4,9 +4,9 @@ import math
 
 from ..cameras import Camera
 from ..materials import Diffuse, Material
-from ..mesh import Mesh
-from ..scene import Scene
+from ..scene.scene import Scene
 from ..shapes import Sphere, Torus
+from ..shapes.mesh import Mesh
 from ..textures import Checker
 
 _SKY = 0.35

@@ -4,7 +4,8 @@ import numpy as np
 
 from ..arrays import integer
 from ..cameras import Camera
-from ..scene import Scene, Shapes
+from ..scene.instance import Shapes
+from ..scene.scene import Scene
 from .city import city
 from .forest import forest
 from .room import EYE, TARGET, room

@@ -8,10 +8,10 @@ from numpy.typing import ArrayLike
 
 from ..arrays import Triple
 from ..cameras import Camera
-from ..io.meshes import only_meshes
 from ..materials import Diffuse
-from ..mesh import Mesh
-from ..scene import Scene
+from ..scene.instance import only_meshes
+from ..scene.scene import Scene
+from ..shapes.mesh import Mesh
 from . import cornell_spectra
 
 Quads = list[list[Triple]]

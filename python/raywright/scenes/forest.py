@@ -6,9 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import integer, positive
-from ..instance import Instance
 from ..materials import Diffuse
-from ..mesh import Mesh
+from ..scene.instance import Instance
+from ..shapes.mesh import Mesh
 
 Array = NDArray[np.float64]
 

@@ -4,7 +4,7 @@ import numpy as np
 
 from ..cameras import Camera
 from ..materials import Dielectric, Mirror
-from ..scene import Scene
+from ..scene.scene import Scene
 from ..shapes import Sphere
 from . import cornell, cornell_spectra
 

@@ -4,7 +4,7 @@ import numpy as np
 
 from ..arrays import integer, positive
 from ..materials import Material
-from ..mesh import Mesh
+from ..shapes.mesh import Mesh
 
 
 def torus_knot(

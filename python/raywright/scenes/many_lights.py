@@ -5,8 +5,8 @@ import numpy as np
 from ..arrays import integer
 from ..cameras import Camera
 from ..materials import Diffuse
-from ..mesh import Mesh
-from ..scene import Scene
+from ..scene.scene import Scene
+from ..shapes.mesh import Mesh
 from .room import EYE, SIZE, TARGET, room
 
 # Half the side of a lamp, and the light of all lamps together over their number.

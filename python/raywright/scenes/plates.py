@@ -5,9 +5,9 @@ from numpy.typing import NDArray
 
 from ..cameras import Camera
 from ..materials import Conductor, Diffuse
-from ..mesh import Mesh
-from ..scene import Scene
+from ..scene.scene import Scene
 from ..shapes import Sphere
+from ..shapes.mesh import Mesh
 
 _EYE = np.array((0.0, 2.0, 15.0))
 # Half along x and half across, of each plate.

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ..arrays import integer
-from ..mesh import Mesh
+from ..shapes.mesh import Mesh
 from .boxes import Array, boxes
 
 SIZE = np.array([8.0, 3.0, 5.0])

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ..arrays import integer, positive
-from ..mesh import Mesh
+from ..shapes.mesh import Mesh
 
 
 def soup(triangles: int = 10_000, size: float | None = None, seed: int = 0) -> list[Mesh]:

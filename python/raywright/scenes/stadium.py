@@ -4,7 +4,7 @@ import numpy as np
 
 from ..arrays import integer, positive
 from ..materials import Diffuse
-from ..mesh import Mesh
+from ..shapes.mesh import Mesh
 from .teapot import teapot
 
 # Half the length and half the depth of the field, in metres, and of a tier.

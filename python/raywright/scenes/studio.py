@@ -7,11 +7,11 @@ from numpy.typing import NDArray
 
 from ..accelerators import BVH, Accelerator
 from ..cameras import Camera
-from ..framing import direction, framed, outline, upright_axes
-from ..io.meshes import meshes
 from ..materials import Diffuse, Material
-from ..mesh import Mesh
-from ..scene import Scene
+from ..scene.framing import direction, framed, outline, upright_axes
+from ..scene.instance import meshes
+from ..scene.scene import Scene
+from ..shapes.mesh import Mesh
 
 # Where the lamp stands, in degrees: around the upright axis, and above the floor.
 _LAMP_ANGLES = (-25.0, 55.0)

@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from ..arrays import integer
 from ..materials import Material
-from ..mesh import Mesh
+from ..shapes.mesh import Mesh
 
 Array = NDArray[np.float64]
 

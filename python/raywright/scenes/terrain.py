@@ -4,7 +4,7 @@ import numpy as np
 
 from ..arrays import integer
 from ..materials import Diffuse
-from ..mesh import Mesh
+from ..shapes.mesh import Mesh
 from .boxes import Array
 
 _WIDTH = 100.0

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..arrays import number, triple
-from ..mesh import Mesh
+from ..shapes.mesh import Mesh
 
 
 def turned(shapes: Iterable[Mesh], angle: float, axis: ArrayLike = (0.0, 1.0, 0.0)) -> list[Mesh]:

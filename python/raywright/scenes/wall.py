@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from ..arrays import integer, number
-from ..mesh import Mesh
+from ..shapes.mesh import Mesh
 from .boxes import boxes
 
 _THICK = 0.02

@@ -3,9 +3,9 @@
 from ..cameras import Camera
 from ..lights import PointLight
 from ..materials import BlinnPhong, Dielectric, Mirror, Mix
-from ..mesh import Mesh
-from ..scene import Scene
+from ..scene.scene import Scene
 from ..shapes import Sphere
+from ..shapes.mesh import Mesh
 from ..textures import Checker
 
 _RED, _YELLOW = (0.8, 0.1, 0.05), (0.9, 0.8, 0.1)

@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING, Any
 
 from ..arrays import integer
 from ..cameras import AnyCamera
-from ..filters import BoxFilter, Filter
 from ..integrators import AnyIntegrator, Path
-from ..rendering import check
-from ..samplers import Independent, Sampler
-from ..scene import Scene
+from ..rendering.filters import BoxFilter, Filter
+from ..rendering.render import check
+from ..rendering.samplers import Independent, Sampler
+from ..scene.scene import Scene
 
 if TYPE_CHECKING:
     from .server import Server

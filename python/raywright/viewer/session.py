@@ -10,11 +10,11 @@ from functools import cached_property
 from typing import Any
 
 from ..cameras import AnyCamera
-from ..image import Image
 from ..integrators import AnyIntegrator
 from ..io import pictures
-from ..rendering import render
-from ..scene import Scene
+from ..rendering.image import Image
+from ..rendering.render import render
+from ..scene.scene import Scene
 from .orbit import Orbit, View, reduced
 
 # What a preview may take: its samples, and its seconds.

@@ -1,0 +1,217 @@
+"""Ray queries on one trimesh mesh."""
+
+from typing import Any
+
+import numpy as np
+import trimesh
+from numpy.typing import ArrayLike, NDArray
+
+from ...arrays import integer, real_array
+from ...scene.scene import Scene
+from ...shapes.mesh import Mesh
+
+Int64s = NDArray[np.int64]
+Points = NDArray[np.float64]
+_Cache: Any = trimesh.caching.Cache
+
+
+class RayMeshIntersector:
+    """Ray queries on a mesh, which may change between them.
+
+    Parameters
+    ----------
+    geometry : trimesh.Trimesh
+        The mesh.
+    scale_to_box : bool
+        Changes nothing: no size of a mesh needs scaling here. It is there because
+        ``trimesh.ray.ray_pyembree.RayMeshIntersector`` has it.
+
+    Raises
+    ------
+    TypeError
+        If `geometry` is not a trimesh.Trimesh.
+
+    Notes
+    -----
+    Directions need not be unit. Rays with NaN, infinity or a zero direction hit nothing.
+    """
+
+    def __init__(self, geometry: trimesh.Trimesh, scale_to_box: bool = True) -> None:
+        if not isinstance(geometry, trimesh.Trimesh):
+            raise TypeError(f"geometry must be a trimesh.Trimesh, got {type(geometry).__name__}")
+        self.mesh = geometry
+        self._scale_to_box = scale_to_box
+        self._cache = _Cache(id_function=geometry.__hash__)
+
+    def intersects_location(
+        self,
+        ray_origins: ArrayLike,
+        ray_directions: ArrayLike,
+        multiple_hits: bool = True,
+        max_hits: int | None = None,
+    ) -> tuple[Points, Int64s, Int64s]:
+        """Find where rays hit the mesh.
+
+        Takes, raises and orders what `intersects_id` does.
+
+        Returns
+        -------
+        locations : (m, 3) float64
+            Where.
+        index_ray : (m,) int64
+            Which ray.
+        index_tri : (m,) int64
+            Which face.
+        """
+        primitive, ray, position = self._hits(ray_origins, ray_directions, multiple_hits, max_hits, True)
+        return position, ray, primitive
+
+    def intersects_id(
+        self,
+        ray_origins: ArrayLike,
+        ray_directions: ArrayLike,
+        multiple_hits: bool = True,
+        max_hits: int | None = None,
+        return_locations: bool = False,
+    ) -> tuple[Int64s, Int64s] | tuple[Int64s, Int64s, Points]:
+        """Find which faces rays hit.
+
+        Parameters
+        ----------
+        ray_origins, ray_directions : (n, 3) arrays
+            The rays.
+        multiple_hits : bool
+            Whether every hit of a ray is wanted, or the first.
+        max_hits : int, optional
+            The most hits of a ray that are wanted, from the first on; all of them if not given.
+        return_locations : bool
+            Whether to return where, too.
+
+        Returns
+        -------
+        index_tri : (m,) int64
+            Which face. All first hits of rays come first, then all second ones, and so on.
+        index_ray : (m,) int64
+            Which ray.
+        locations : (m, 3) float64
+            Where; only with `return_locations`.
+
+        Raises
+        ------
+        ValueError
+            If an array is not (n, 3), the two differ in shape, or `max_hits` is less than 0.
+        TypeError
+            If an array does not hold real numbers, or `max_hits` is not an integer.
+        """
+        primitive, ray, position = self._hits(
+            ray_origins, ray_directions, multiple_hits, max_hits, return_locations
+        )
+        return (primitive, ray, position) if return_locations else (primitive, ray)
+
+    def intersects_first(self, ray_origins: ArrayLike, ray_directions: ArrayLike) -> NDArray[np.int32]:
+        """Find the first face that each ray hits.
+
+        Takes and raises what `intersects_id` does.
+
+        Returns
+        -------
+        (n,) int32
+            Which face; -1 for none.
+        """
+        hits = self._scene.intersect(*_rays(ray_origins, ray_directions))
+        return hits.primitive.copy()
+
+    def intersects_any(self, ray_origins: ArrayLike, ray_directions: ArrayLike) -> NDArray[np.bool_]:
+        """Find whether each ray hits anything: (n,) bool.
+
+        Takes and raises what `intersects_id` does.
+        """
+        return self._scene.occluded(*_rays(ray_origins, ray_directions))
+
+    def contains_points(self, points: ArrayLike) -> NDArray[np.bool_]:
+        """Find whether each point is inside the mesh, decided as `Scene.contains` does: (n,) bool.
+
+        Parameters
+        ----------
+        points : (n, 3) array
+            The points.
+
+        Raises
+        ------
+        ValueError
+            If the array is not (n, 3).
+        TypeError
+            If it does not hold real numbers.
+        """
+        return self._scene.contains(_triples("points", points))
+
+    @property
+    def _scene(self) -> Scene:
+        """The mesh as it is now."""
+        # The cache empties itself when the mesh has another hash.
+        scene: Scene | None = self._cache["scene"]
+        if scene is None:
+            # Nothing of the vertices is lost; the core keeps float32 where that holds them all.
+            scene = Scene(Mesh(self.mesh.vertices, self.mesh.faces), precision="double")
+            self._cache["scene"] = scene
+        return scene
+
+    def _hits(
+        self,
+        ray_origins: ArrayLike,
+        ray_directions: ArrayLike,
+        multiple_hits: bool,
+        max_hits: int | None,
+        with_positions: bool,
+    ) -> tuple[Int64s, Int64s, Points]:
+        """Find faces, rays and, if wanted, positions, in the order of `intersects_id`."""
+        rays = _rays(ray_origins, ray_directions)
+        most = None if max_hits is None else integer("max_hits", max_hits, 0)
+        if multiple_hits and most != 1:
+            found = self._scene.intersect_all(*rays)
+            depth = np.arange(len(found)) - found.ray_splits[found.ray]
+            # Small numbers are sorted by their digits, in linear time.
+            depth = depth.astype(np.min_scalar_type(depth.max(initial=0)), copy=False)
+            which = np.argsort(depth, kind="stable")
+            if most is not None:
+                which = which[: np.searchsorted(depth, most, sorter=which)]
+            primitive, ray = found.primitive[which], found.ray[which]
+            position = found.position[which] if with_positions else np.empty((0, 3))
+        else:
+            first = self._scene.intersect(*rays)
+            ray = np.flatnonzero(first.hit) if most != 0 else np.empty(0, np.intp)
+            primitive = first.primitive[ray]
+            position = first.position[ray] if with_positions else np.empty((0, 3))
+        return primitive.astype(np.int64), ray.astype(np.int64, copy=False), position
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {"mesh": self.mesh, "_scale_to_box": self._scale_to_box}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__init__(state["mesh"], state["_scale_to_box"])  # type: ignore[misc]
+
+    def __copy__(self) -> "RayMeshIntersector":
+        return RayMeshIntersector(self.mesh, self._scale_to_box)
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> "RayMeshIntersector":
+        # Of the same mesh, as trimesh has it.
+        return self.__copy__()
+
+    def __repr__(self) -> str:
+        return f"RayMeshIntersector({len(self.mesh.faces)} faces)"
+
+
+def _triples(name: str, value: ArrayLike) -> NDArray[Any]:
+    array = real_array(name, value)
+    if array.shape == (0,):
+        array = array.reshape(0, 3)
+    if array.ndim != 2 or array.shape[1] != 3:
+        raise ValueError(f"{name} must have shape (n, 3), got {array.shape}")
+    return array
+
+
+def _rays(origins: ArrayLike, directions: ArrayLike) -> tuple[NDArray[Any], NDArray[Any]]:
+    starts, ways = _triples("ray_origins", origins), _triples("ray_directions", directions)
+    if starts.shape != ways.shape:
+        raise ValueError(f"ray_origins and ray_directions differ in shape: {starts.shape} and {ways.shape}")
+    return starts, ways

@@ -1,0 +1,1 @@
+"""Meshes and their looks from files and from trimesh's objects."""

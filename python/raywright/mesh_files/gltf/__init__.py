@@ -1,0 +1,47 @@
+"""glTF files, .gltf and .glb: their meshes, and what is on them."""
+
+import errno
+from os import PathLike
+from pathlib import Path
+
+from ...io.quiet import reason
+from ...shapes.mesh import Mesh
+from .document import Document
+from .nodes import placed
+from .stands import meshes
+
+__all__ = ["read_meshes", "refused", "there"]
+
+
+def read_meshes(path: Path) -> tuple[Mesh, ...]:
+    """Read the meshes of a glTF 2.0 file, with their materials: one for each node and primitive of triangles.
+
+    Raises
+    ------
+    ValueError
+        As `read_gltf` does.
+    """
+    try:
+        document = Document(path)
+        found = tuple(meshes(document, placed(document)))
+    except Exception as error:
+        raise refused(path, "mesh", error) from error
+    document.warn(stacklevel=3)
+    return found
+
+
+def there(path: str | PathLike[str]) -> Path:
+    """Return the path of a file that is there, or raise."""
+    path = Path(path)
+    if not path.exists():
+        raise FileNotFoundError(errno.ENOENT, "no such file", str(path))
+    if path.is_dir():
+        raise ValueError(f"{path} is a folder, not a glTF file")
+    return path
+
+
+def refused(path: Path, what: str, error: Exception) -> Exception:
+    """Return what to raise for a file of which `error` says that it cannot be read as `what`."""
+    if isinstance(error, OSError | MemoryError):
+        return error
+    return ValueError(f"{path} is not a {what} that can be read ({reason(error, 160)})")

@@ -1,0 +1,113 @@
+"""Triangles of a glTF file: meshes from its primitives (glTF 2.0, 3.7)."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...shapes.mesh import Mesh
+from .accessors import Accessors
+from .deform import Deform
+from .document import Document
+from .materials import Materials
+from .part import Part
+
+_TRIANGLES, _STRIP, _FAN = 4, 5, 6
+
+
+class Geometry:
+    """The meshes of a document, each made once for all the nodes where it stands."""
+
+    def __init__(self, document: Document, accessors: Accessors) -> None:
+        self._document = document
+        self._all = document.root.parts("meshes")
+        self._accessors = accessors
+        self._materials = Materials(document)
+        self._made: dict[int, tuple[Mesh, ...]] = {}
+
+    def index(self, node: Part) -> int:
+        """Return which mesh a node shows."""
+        return node.reference("mesh", "meshes", len(self._all))
+
+    def meshes(self, index: int, deform: Deform | None = None) -> tuple[Mesh, ...]:
+        """Return the meshes that a mesh of the file is made of; points and lines are left out."""
+        if deform is not None:
+            return self._primitives(index, deform)
+        if index not in self._made:
+            self._made[index] = self._primitives(index, None)
+        return self._made[index]
+
+    def is_morphed(self, index: int) -> bool:
+        """Return whether a mesh has shapes to be blended to."""
+        return any("targets" in primitive for primitive in self._all[index].parts("primitives"))
+
+    def weights(self, index: int) -> Part:
+        """Return the part that holds how much of each shape a mesh has by itself."""
+        return self._all[index]
+
+    def _primitives(self, index: int, deform: Deform | None) -> tuple[Mesh, ...]:
+        made = (self._mesh(part, deform) for part in self._all[index].parts("primitives"))
+        return tuple(mesh for mesh in made if mesh is not None)
+
+    def _mesh(self, primitive: Part, deform: Deform | None) -> Mesh | None:
+        mode = primitive.integer("mode", _TRIANGLES, most=_FAN)
+        attributes = primitive.part("attributes")
+        if mode < _TRIANGLES or "POSITION" not in attributes:
+            return None
+        vertices = self._accessors.vectors(attributes, "POSITION", 3)
+        normals = self._accessors.vectors(attributes, "NORMAL", 3) if "NORMAL" in attributes else None
+        if deform is not None:
+            vertices, normals = deform.applied(primitive, vertices, normals)
+        colors = self._accessors.vectors(attributes, "COLOR_0", 3, 4) if "COLOR_0" in attributes else None
+        if colors is not None and colors.shape[1] == 4 and (colors[:, 3] < 1).any():
+            self._document.tell("the alpha of colours of vertices is left out")
+        surface = self._materials.of(primitive, colors is not None)
+        uv = self._coordinates(attributes, f"TEXCOORD_{surface.coordinates}")
+        corners = self._corners(primitive, len(vertices))
+        for others in (normals, uv, colors):
+            if others is not None and len(others) != len(vertices):
+                both = f"{len(vertices)} of POSITION, and {len(others)} of others"
+                raise ValueError(f"{attributes.place} has {both}")
+        used: Any = slice(None)
+        if 2 * len(corners) < len(vertices):
+            # Few of the vertices that it shares with others.
+            used, corners = np.unique(corners, return_inverse=True)
+        return Mesh(
+            vertices[used],
+            _faces(corners.reshape(-1), mode, primitive),
+            None if normals is None else normals[used],
+            None if uv is None else uv[used],
+            surface.material,
+            surface.emission,
+            # Linear here, unlike what trimesh has of other files.
+            None if colors is None else np.clip(colors[used, :3], 0, 1),
+        )
+
+    def _corners(self, primitive: Part, count: int) -> NDArray[np.int64]:
+        if "indices" not in primitive:
+            return np.arange(count)
+        corners = self._accessors.integers(primitive, "indices")[:, 0].astype(np.int64)
+        if corners.max() >= count:
+            raise ValueError(f"{primitive.place} has index {corners.max()}, and there are {count} vertices")
+        return corners
+
+    def _coordinates(self, attributes: Part, name: str) -> NDArray[np.float64] | None:
+        if name not in attributes:
+            return None
+        uv = self._accessors.vectors(attributes, name, 2).astype(np.float64)
+        # glTF has v from the top of pictures downwards.
+        uv[:, 1] = 1 - uv[:, 1]
+        return uv
+
+
+def _faces(corners: NDArray[np.int64], mode: int, primitive: Part) -> NDArray[np.int64]:
+    """Return the triangles of a list, a strip or a fan of corners (3.7.2.1)."""
+    if mode == _TRIANGLES:
+        if len(corners) % 3:
+            raise ValueError(f"{primitive.place} has {len(corners)} corners of triangles, which is no triple")
+        return corners.reshape(-1, 3)
+    first = np.arange(max(len(corners) - 2, 0))
+    if mode == _FAN:
+        return corners[np.stack([first + 1, first + 2, np.zeros_like(first)], axis=1)]
+    odd = first % 2
+    return corners[np.stack([first, first + 1 + odd, first + 2 - odd], axis=1)]

@@ -1,0 +1,80 @@
+"""Materials, emission and colours from what trimesh calls visuals."""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..io.pictures import pixels_of
+from ..lights.emission import Emitted
+from ..materials import Diffuse, Material
+from ..textures import ImageTexture, VertexColors
+from .pbr import Pbr, Picture
+
+
+class Look(NamedTuple):
+    """How a mesh looks; None where nothing is said of it."""
+
+    material: Material | None = None
+    emission: Emitted | None = None
+    colors: NDArray[np.float64] | None = None
+
+
+def look_of(visual: Any, count: int) -> Look:
+    """Return what a visual of a mesh with `count` vertices says.
+
+    Colours of vertices are kept where they differ; of colours of faces the main one is taken. Of glTF's
+    material there is base colour, metalness, roughness, normals, emission and alpha; of others the diffuse
+    colour or picture.
+    """
+    material = getattr(visual, "material", None)
+    if material is None:
+        return _coloured(visual, count)
+    if hasattr(material, "baseColorFactor"):
+        pbr = _pbr(material)
+        return Look(pbr.material(), pbr.emitted())
+    image = getattr(material, "image", None)
+    if image is not None:
+        return Look(Diffuse(ImageTexture(pixels_of(image))))
+    from trimesh.visual.color import DEFAULT_COLOR
+
+    rgba = material.main_color
+    return Look(None if np.array_equal(rgba, DEFAULT_COLOR) else Diffuse(tuple(_linear(rgba[:3]))))
+
+
+def _coloured(visual: Any, count: int) -> Look:
+    kind = getattr(visual, "kind", None)
+    if kind == "vertex":
+        rgba = np.asarray(visual.vertex_colors)
+        if rgba.shape == (count, 4) and len(rgba) and (rgba[:, :3] != rgba[0, :3]).any():
+            return Look(Diffuse(VertexColors()), colors=_linear(rgba[:, :3]))
+    return Look(Diffuse(tuple(_linear(visual.main_color[:3]))) if kind in ("face", "vertex") else None)
+
+
+def _pbr(given: Any) -> Pbr:
+    """Return what a PBRMaterial of trimesh says."""
+    factor, emission = given.baseColorFactor, given.emissiveFactor
+    return Pbr(
+        # 3.9.2: factors are linear already, unlike every other colour here.
+        color=None if factor is None else np.asarray(factor, np.float64) / 255,
+        color_picture=_picture(given.baseColorTexture),
+        metallic=None if given.metallicFactor is None else float(given.metallicFactor),
+        roughness=None if given.roughnessFactor is None else float(given.roughnessFactor),
+        rough_picture=_picture(given.metallicRoughnessTexture),
+        normal_picture=_picture(given.normalTexture),
+        emission=None if emission is None else np.asarray(emission, np.float64),
+        emission_picture=_picture(given.emissiveTexture),
+        alpha_mode=given.alphaMode,
+        alpha_cutoff=None if given.alphaCutoff is None else float(given.alphaCutoff),
+        both_sides=bool(given.doubleSided),
+    )
+
+
+def _picture(image: Any) -> Picture | None:
+    return None if image is None else Picture(pixels_of(image))
+
+
+def _linear(rgb: Any) -> NDArray[np.float64]:
+    """Red, green and blue of 8 bits to linear (IEC 61966-2-1)."""
+    c = np.asarray(rgb, np.float64) / 255
+    return np.where(c <= 0.04045, c / 12.92, ((c + 0.055) / 1.055) ** 2.4)

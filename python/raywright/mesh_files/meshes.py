@@ -1,0 +1,106 @@
+"""Meshes from files."""
+
+import errno
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..io.quiet import quiet, reason
+from ..shapes.mesh import Mesh
+from .claims import check_mesh_file
+from .trimesh_objects import of_scene, of_trimesh
+
+_GLTF = (".glb", ".gltf")
+
+
+def load(path: str | PathLike[str]) -> tuple[Mesh, ...]:
+    """Read a mesh file: one mesh for each node of the file that holds triangles.
+
+    glTF is read by `raywright.mesh_files.gltf`, all else by trimesh.
+
+    Faces stay in the file's order, and vertices as they are. Only STL, which repeats every corner, has its
+    equal corners joined.
+
+    Raises
+    ------
+    FileNotFoundError
+        If the file is missing.
+    ValueError
+        If the file is not a mesh that can be read, or holds no faces.
+    """
+    path = Path(path)
+    if not path.exists():
+        raise FileNotFoundError(errno.ENOENT, "no such file", str(path))
+    if path.is_dir():
+        raise ValueError(f"{path} is a folder, not a mesh file")
+    import trimesh
+
+    kinds = trimesh.available_formats()
+    name = path.name.lower()
+    if not any(name.endswith(f".{kind}") for kind in kinds):
+        suffix = f"suffix {path.suffix}" if path.suffix else "a name without a suffix"
+        raise ValueError(f"{path}: {suffix} is not a mesh format; known are {', '.join(sorted(kinds))}")
+    if name.endswith(_GLTF):
+        from .gltf import read_meshes
+
+        result = read_meshes(path)
+    else:
+        result = _read(path)
+    if not any(len(mesh.faces) for mesh in result):
+        raise ValueError(f"{path} holds no faces")
+    return tuple(map(_joined, result)) if name.endswith((".stl", ".stl_ascii")) else result
+
+
+def load_whole(path: Path, kind: str) -> Mesh:
+    """Read all of an OBJ or PLY file as one mesh, with its normals and coordinates but not its looks.
+
+    Raises
+    ------
+    FileNotFoundError
+        If the file is missing.
+    ValueError
+        If the file is not a mesh that can be read, or holds no faces.
+    """
+    import trimesh
+
+    how: dict[str, Any] = {"group_material": False, "skip_materials": True} if kind == "obj" else {}
+    try:
+        check_mesh_file(path)
+        with quiet(), open(path, "rb") as file:
+            found = trimesh.load(file, file_type=kind, process=False, **how)
+            parts = tuple(of_scene(found)) if hasattr(found, "geometry") else (of_trimesh(found, True),)
+    except (MemoryError, OSError):
+        raise
+    except Exception as error:
+        raise ValueError(f"{path} is not a mesh that can be read ({reason(error)})") from error
+    if len(parts) != 1 or not len(parts[0].faces):
+        raise ValueError(f"{path} holds no faces")
+    return parts[0]
+
+
+def _read(path: Path) -> tuple[Mesh, ...]:
+    import trimesh
+
+    try:
+        check_mesh_file(path)
+        with quiet():
+            found = trimesh.load_scene(str(path), process=False)
+            return tuple(of_scene(found, loaded=True))
+    except MemoryError:
+        raise
+    except Exception as error:
+        # Parsers fail on bad bytes in every way there is; the caller needs one kind of error, and one line.
+        if isinstance(error, OSError) and error.filename == str(path):
+            raise
+        raise ValueError(f"{path} is not a mesh that can be read ({reason(error)})") from error
+
+
+def _joined(mesh: Mesh) -> Mesh:
+    """Join corners that are exactly equal; trimesh's own way rounds to 1e-8, too coarse for small scenes."""
+    # Adding 0 makes -0 equal to 0 in its bits as well.
+    rows = np.ascontiguousarray(mesh.vertices + 0.0)
+    keys = rows.view(np.dtype((np.void, rows.dtype.itemsize * 3))).reshape(-1)
+    _, first, inverse = np.unique(keys, return_index=True, return_inverse=True)
+    return Mesh(rows[first], inverse.reshape(-1)[mesh.faces], material=mesh.material, emission=mesh.emission)

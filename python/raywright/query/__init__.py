@@ -1,0 +1,1 @@
+"""What rays and points ask of a scene, and what comes back."""

@@ -1,0 +1,106 @@
+"""What solid cones touch."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..arrays import real_array
+from .hits import same, sealed
+from .rays import Floats, ray_arguments, spread
+
+ConeArguments: TypeAlias = tuple[
+    Floats,
+    Floats,
+    float | NDArray[np.float64],
+    float | NDArray[np.float64],
+    tuple[int, ...],
+    int | None,
+]
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class ConeTouches:
+    """What each cone touches, one after the other: by cone, then distance, then (shape_id, primitive).
+
+    There are K touches of N cones in all, and those of cone i, counted along the cones in C order, are from
+    ``cone_splits[i]`` to ``cone_splits[i + 1]``. All arrays are read-only.
+
+    Attributes
+    ----------
+    cone_splits : (N + 1,) int64
+        Where the touches of each cone begin, and at the end how many there are.
+    shape_id : (K,) int32
+        Which of ``scene.shapes``.
+    primitive : (K,) int32
+        Which face of that shape.
+    distance : (K,) float64
+        From the apex to the nearest point of the face that is in the cone, in the scene's unit of length.
+    shape : tuple of int
+        Leading shape of the cones.
+    """
+
+    cone_splits: NDArray[np.int64]
+    shape_id: NDArray[np.int32]
+    primitive: NDArray[np.int32]
+    distance: NDArray[np.float64]
+    shape: tuple[int, ...]
+
+    @cached_property
+    def cone(self) -> NDArray[np.int64]:
+        """Which cone each touch is of, counted along the cones in C order: (K,) int64."""
+        return sealed(np.repeat(np.arange(len(self.cone_splits) - 1), np.diff(self.cone_splits)))
+
+    @cached_property
+    def count(self) -> NDArray[np.int64]:
+        """How many faces each cone touches: (...) int64."""
+        return sealed(np.diff(self.cone_splits).reshape(self.shape))
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, ConeTouches):
+            return NotImplemented
+        names = ("cone_splits", "shape_id", "primitive", "distance")
+        return self.shape == other.shape and all(same(getattr(self, n), getattr(other, n)) for n in names)
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __len__(self) -> int:
+        return len(self.distance)
+
+    def __repr__(self) -> str:
+        return f"ConeTouches(shape={self.shape}, {len(self)} touches of {len(self.cone_splits) - 1} cones)"
+
+
+def cone_arguments(
+    origins: ArrayLike,
+    directions: ArrayLike,
+    half_angle: ArrayLike,
+    t_max: ArrayLike,
+    threads: int | None,
+) -> ConeArguments:
+    """Check and broadcast cones, and give what the core takes.
+
+    Returns
+    -------
+    origins, directions, half_angle, t_max, shape, threads
+        `shape` is the leading shape of the cones; each array has one row, or one for each cone.
+    """
+    angles = real_array("half_angle", half_angle).astype(np.float64, copy=False)
+    wrong = ~((angles >= 0) & (angles < 90))
+    if wrong.any():
+        came = angles[wrong][0] if angles.ndim else angles
+        raise ValueError(f"half_angle must be at least 0 and less than 90 degrees, got {came}")
+    starts, ways, _, most, lead, threads, _ = ray_arguments(origins, directions, 0.0, t_max, threads)
+    if not angles.ndim:
+        return starts, ways, float(angles), most, lead, threads
+    try:
+        shape = np.broadcast_shapes(lead, angles.shape)
+    except ValueError:
+        told = f"cones {lead}, half_angle {angles.shape}"
+        raise ValueError(f"leading shapes do not broadcast: {told}") from None
+    if shape != lead:
+        starts, ways = spread(starts, shape, (3,)), spread(ways, shape, (3,))
+        most = spread(most, shape) if isinstance(most, np.ndarray) else most
+    return starts, ways, spread(angles, shape), most, shape, threads

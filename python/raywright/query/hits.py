@@ -1,0 +1,336 @@
+"""What rays hit."""
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .. import _core
+from .surface import Surface
+
+
+@dataclass(frozen=True, eq=False, repr=False, init=False)
+class SurfacePoints:
+    """Points on the surfaces of a scene; all arrays are read-only.
+
+    Attributes
+    ----------
+    shape_id : (...) int32
+        Which of ``scene.shapes``; -1 for none.
+    primitive : (...) int32
+        Which face of that shape, or of an instance what `Instance.locate` tells; -1 for none.
+    uv : (..., 2) float64
+        Barycentric weights of the face's second and third corner, so that the point is at
+        ``(1 - u - v) * a + u * b + v * c`` for corners a, b, c.
+    """
+
+    shape_id: NDArray[np.int32]
+    primitive: NDArray[np.int32]
+    uv: NDArray[np.float64]
+    _compiled: _core.CompiledScene = field(repr=False)
+    # Origins, directions and times, where shapes cannot tell their points without.
+    _rays: tuple[Any, ...] | None = field(repr=False)
+
+    # What two of them are equal by.
+    _parts: ClassVar[tuple[str, ...]] = ("shape_id", "primitive", "uv")
+
+    @cached_property
+    def instance(self) -> NDArray[np.int32]:
+        """Which instance the point is on: (...) int32; -1 for none and for what is not instanced."""
+        # One number seen from every index: scenes without instances spend no memory on them.
+        return np.broadcast_to(np.int32(-1), self.primitive.shape)
+
+    @cached_property
+    def position(self) -> NDArray[np.float64]:
+        """Where the point is, from the corners of the face: (..., 3) float64; NaN for none."""
+        if self._rays is not None:
+            return self.surface.position
+        points = self._compiled.positions(
+            self.shape_id.reshape(-1), self.primitive.reshape(-1), self.uv.reshape(-1, 2)
+        )
+        return sealed(points.reshape(*self.primitive.shape, 3))
+
+    @cached_property
+    def normal(self) -> NDArray[np.float64]:
+        """Unit geometric normal as the winding gives it: (..., 3) float64; NaN for none."""
+        if self._rays is not None:
+            return self.surface.normal
+        normals = self._compiled.normals(self.shape_id.reshape(-1), self.primitive.reshape(-1))
+        return sealed(normals.reshape(*self.primitive.shape, 3))
+
+    @cached_property
+    def surface(self) -> Surface:
+        """All about the points: normals, derivatives by the coordinates, bounds on errors."""
+        if self._compiled is None:
+            raise ValueError("surface is not kept in a pickle unless it was asked for before")
+        return self._surface(None)
+
+    def _surface(self, ray: NDArray[np.int64] | None) -> Surface:
+        """Ask all about the points; `ray` says which ray each is of, where they are not in turn."""
+        # Meshes know their points by the weights alone.
+        t = np.ascontiguousarray(getattr(self, "t", np.zeros(self.primitive.shape))).reshape(-1)
+        origins, directions, time = self._rays or (np.zeros((1, 3)), np.ones((1, 3)), 0.0)
+        instance = vars(self).get("instance")
+        parts = _core.points(
+            self._compiled,
+            self.shape_id.reshape(-1),
+            self.primitive.reshape(-1),
+            None if instance is None else instance.reshape(-1),
+            self.uv.reshape(-1, 2),
+            t,
+            origins.reshape(-1, 3),
+            directions.reshape(-1, 3),
+            time.reshape(-1) if isinstance(time, np.ndarray) else time,
+            ray,
+        )
+        lead = self.primitive.shape
+        return Surface(*(sealed(part.reshape(lead + part.shape[1:])) for part in parts))
+
+    def __eq__(self, other: object) -> bool:
+        if type(other) is not type(self):
+            return NotImplemented
+        if self._more() != other._more():
+            return False
+        copies = ("instance",) if "instance" in vars(self) or "instance" in vars(other) else ()
+        return all(same(getattr(self, name), getattr(other, name)) for name in (*self._parts, *copies))
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # The compiled scene is not pickled, so what would be asked of it later is worked out now.
+        more = ("surface",) if "surface" in vars(self) else ()
+        copies = ("instance",) if "instance" in vars(self) else ()
+        kept = {name: getattr(self, name) for name in (*self._parts, *copies, "position", "normal")}
+        return _restored, (type(self), kept, {**self._more(), **{name: vars(self)[name] for name in more}})
+
+    def _more(self) -> dict[str, Any]:
+        """Give what is kept beside the arrays."""
+        return {}
+
+
+@dataclass(frozen=True, eq=False, repr=False, init=False)
+class Hits(SurfacePoints):
+    """The closest hit of each ray; every array begins with the leading shape of the rays, and is read-only.
+
+    Attributes
+    ----------
+    t : (...) float64
+        Distance in lengths of the ray's direction, so that the hit is at ``origin + t * direction``; inf for
+        a miss.
+    shape_id : (...) int32
+        Which of ``scene.shapes``; -1 for a miss.
+    primitive : (...) int32
+        Which face of that shape, or of an instance what `Instance.locate` tells; -1 for a miss.
+    uv : (..., 2) float64
+        Barycentric weights of the face's second and third corner, so that the hit is at
+        ``(1 - u - v) * a + u * b + v * c`` for corners a, b, c.
+    """
+
+    t: NDArray[np.float64]
+
+    _parts = ("t", "shape_id", "primitive", "uv")
+
+    def __init__(
+        self,
+        t: NDArray[np.float64],
+        shape_id: NDArray[np.int32],
+        primitive: NDArray[np.int32],
+        uv: NDArray[np.float64],
+        instance: NDArray[np.int32] | None,
+        compiled: _core.CompiledScene,
+        rays: tuple[Any, ...] | None = None,
+    ) -> None:
+        # A frozen dataclass's own way of setting its fields takes longer than tracing a ray.
+        self.__dict__.update(
+            t=t, shape_id=shape_id, primitive=primitive, uv=uv, _compiled=compiled, _rays=rays
+        )
+        if instance is not None:
+            self.__dict__["instance"] = instance
+
+    @cached_property
+    def hit(self) -> NDArray[np.bool_]:
+        """Whether each ray hits anything: (...) bool."""
+        return sealed(np.asarray(self.primitive >= 0))
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Leading shape of the rays."""
+        return self.t.shape
+
+    def __len__(self) -> int:
+        return len(self.t)
+
+    def __repr__(self) -> str:
+        count = int(np.count_nonzero(self.hit))
+        return f"Hits(shape={self.shape}, {count} of {self.t.size} rays hit)"
+
+
+@dataclass(frozen=True, eq=False, repr=False, init=False)
+class AllHits(SurfacePoints):
+    """Every hit of each ray, one after the other: by ray, then `t`, then (shape_id, primitive).
+
+    There are K hits of N rays in all, and those of ray i, counted along the rays in C order, are from
+    ``ray_splits[i]`` to ``ray_splits[i + 1]``. All arrays are read-only.
+
+    Attributes
+    ----------
+    ray_splits : (N + 1,) int64
+        Where the hits of each ray begin, and at the end how many there are.
+    t : (K,) float64
+        Distance in lengths of the ray's direction, so that the hit is at ``origin + t * direction``.
+    shape_id : (K,) int32
+        Which of ``scene.shapes``.
+    primitive : (K,) int32
+        Which face of that shape, or of an instance what `Instance.locate` tells.
+    uv : (K, 2) float64
+        Barycentric weights of the face's second and third corner, so that the hit is at
+        ``(1 - u - v) * a + u * b + v * c`` for corners a, b, c.
+    shape : tuple of int
+        Leading shape of the rays.
+    """
+
+    ray_splits: NDArray[np.int64]
+    t: NDArray[np.float64]
+    shape: tuple[int, ...]
+
+    _parts = ("ray_splits", "t", "shape_id", "primitive", "uv")
+
+    def __init__(
+        self,
+        ray_splits: NDArray[np.int64],
+        t: NDArray[np.float64],
+        shape_id: NDArray[np.int32],
+        primitive: NDArray[np.int32],
+        uv: NDArray[np.float64],
+        instance: NDArray[np.int32] | None,
+        shape: tuple[int, ...],
+        compiled: _core.CompiledScene,
+        rays: tuple[Any, ...] | None = None,
+    ) -> None:
+        parts = {"ray_splits": ray_splits, "t": t, "shape_id": shape_id, "primitive": primitive, "uv": uv}
+        self.__dict__.update(parts, shape=shape, _compiled=compiled, _rays=rays)
+        if instance is not None:
+            self.__dict__["instance"] = instance
+
+    def _surface(self, ray: NDArray[np.int64] | None) -> Surface:
+        return super()._surface(self.ray)
+
+    @cached_property
+    def ray(self) -> NDArray[np.int64]:
+        """Which ray each hit is of, counted along the rays in C order: (K,) int64."""
+        return sealed(np.repeat(np.arange(len(self.ray_splits) - 1), np.diff(self.ray_splits)))
+
+    @cached_property
+    def count(self) -> NDArray[np.int64]:
+        """How many hits each ray has: (...) int64."""
+        return sealed(np.diff(self.ray_splits).reshape(self.shape))
+
+    def _more(self) -> dict[str, Any]:
+        return {"shape": self.shape}
+
+    def __len__(self) -> int:
+        return len(self.t)
+
+    def __repr__(self) -> str:
+        return f"AllHits(shape={self.shape}, {len(self)} hits of {len(self.ray_splits) - 1} rays)"
+
+
+@dataclass(frozen=True, eq=False, repr=False, init=False)
+class ClosestPoints(SurfacePoints):
+    """The closest point of the surface to each point; every array begins with their leading shape.
+
+    All arrays are read-only.
+
+    Attributes
+    ----------
+    distance : (...) float64
+        How far the closest point is; inf where none is near enough.
+    shape_id : (...) int32
+        Which of ``scene.shapes`` it is on; -1 for none.
+    primitive : (...) int32
+        Which face of that shape; -1 for none.
+    uv : (..., 2) float64
+        Barycentric weights of the face's second and third corner, so that the closest point is at
+        ``(1 - u - v) * a + u * b + v * c`` for corners a, b, c.
+    """
+
+    distance: NDArray[np.float64]
+
+    _parts = ("distance", "shape_id", "primitive", "uv")
+
+    def __init__(
+        self,
+        distance: NDArray[np.float64],
+        position: NDArray[np.float64],
+        shape_id: NDArray[np.int32],
+        primitive: NDArray[np.int32],
+        uv: NDArray[np.float64],
+        compiled: _core.CompiledScene,
+    ) -> None:
+        parts = {"distance": distance, "shape_id": shape_id, "primitive": primitive, "uv": uv}
+        # The position is known already, and stands where cached_property keeps its values.
+        self.__dict__.update(parts, position=position, _compiled=compiled, _rays=None)
+
+    @cached_property
+    def found(self) -> NDArray[np.bool_]:
+        """Whether anything is near enough: (...) bool."""
+        return sealed(np.asarray(self.primitive >= 0))
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Leading shape of the points."""
+        return self.distance.shape
+
+    def __len__(self) -> int:
+        return len(self.distance)
+
+    def __repr__(self) -> str:
+        count = int(np.count_nonzero(self.found))
+        return f"ClosestPoints(shape={self.shape}, {count} of {self.distance.size} found)"
+
+
+@dataclass(frozen=True, eq=False)
+class QueryCost:
+    """What finding the closest hit of each ray takes; arrays with the leading shape of the rays, read-only.
+
+    Attributes
+    ----------
+    nodes : (...) int32
+        Nodes of the accelerator that are visited: the boxes of a node's children are tested together.
+    primitives : (...) int32
+        Primitives in the leaves that are visited: each is tested.
+    """
+
+    nodes: NDArray[np.int32]
+    primitives: NDArray[np.int32]
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, QueryCost):
+            return NotImplemented
+        return same(self.nodes, other.nodes) and same(self.primitives, other.primitives)
+
+    __hash__ = None  # type: ignore[assignment]
+
+
+def sealed(array: NDArray[Any]) -> NDArray[Any]:
+    """Return the array, which can be read only from now on."""
+    array.setflags(write=False)
+    return array
+
+
+def same(a: NDArray[Any], b: NDArray[Any]) -> bool:
+    """Whether two arrays hold the same; NaN is equal to NaN."""
+    return np.array_equal(a, b, equal_nan=a.dtype.kind == "f")
+
+
+def _restored(
+    kind: type[SurfacePoints], arrays: dict[str, NDArray[Any]], more: dict[str, Any]
+) -> SurfacePoints:
+    points = kind.__new__(kind)
+    # Where cached_property keeps its values, too.
+    vars(points).update(
+        {name: sealed(array) for name, array in arrays.items()}, **more, _compiled=None, _rays=None
+    )
+    return points

@@ -1,0 +1,278 @@
+"""What batches of rays meet, and how it scatters light: what integrators written in Python ask."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .. import _core
+from ..arrays import last_axis
+
+Floats = NDArray[np.float64]
+
+
+class Occluding(Protocol):
+    """What says whether rays meet anything: a scene."""
+
+    def occluded(
+        self,
+        origins: ArrayLike,
+        directions: ArrayLike,
+        t_min: ArrayLike = ...,
+        t_max: ArrayLike = ...,
+        threads: int | None = ...,
+        time: ArrayLike | None = ...,
+    ) -> NDArray[np.bool_]:
+        """See `Scene.occluded`."""
+        ...
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Rays:
+    """A batch of rays.
+
+    Attributes
+    ----------
+    origins, directions : (N, 3) float64
+        Directions are unit.
+    time : (N,) float64
+        When each is asked, from 0 as the shutter opens to 1 as it closes.
+    """
+
+    origins: Floats
+    directions: Floats
+    time: Floats
+
+    def __post_init__(self) -> None:
+        for name, tail in (("origins", (3,)), ("directions", (3,)), ("time", ())):
+            array = np.ascontiguousarray(getattr(self, name), np.float64)
+            object.__setattr__(self, name, array)
+            if array.shape[1:] != tail or array.ndim != 1 + len(tail) or len(array) != len(self.origins):
+                shapes = [np.shape(getattr(self, part)) for part in ("origins", "directions", "time")]
+                raise ValueError(f"rays must have shapes (N, 3), (N, 3) and (N,), got {shapes}")
+
+    def __len__(self) -> int:
+        return len(self.directions)
+
+    def __getitem__(self, which: Any) -> "Rays":
+        return Rays(self.origins[which], self.directions[which], self.time[which])
+
+    def __repr__(self) -> str:
+        return f"Rays({len(self)})"
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Scattered:
+    """Directions drawn from the scattering at surfaces.
+
+    Attributes
+    ----------
+    direction : (N, 3) float64
+        Unit directions that paths go on to; NaN where nothing is scattered.
+    weight : (N, 3) float64
+        Scattering function times cosine over density: what throughput is multiplied by; 0 where nothing is.
+    pdf : (N,) float64
+        Density in solid angle; infinite where a single direction has all of it, as with a mirror.
+    """
+
+    direction: Floats
+    weight: Floats
+    pdf: Floats
+
+    @property
+    def any(self) -> NDArray[np.bool_]:
+        """Whether anything is scattered: (N,) bool."""
+        return np.asarray(self.weight.any(axis=1))
+
+    def __len__(self) -> int:
+        return len(self.pdf)
+
+    def __repr__(self) -> str:
+        return f"Scattered({len(self)})"
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class LightSamples:
+    """Light drawn from the lights of a scene, on its way to surfaces.
+
+    Attributes
+    ----------
+    direction : (N, 3) float64
+        Unit directions that it comes from; NaN where there is none.
+    weight : (N, 3) float64
+        Radiance over density, were nothing in between; 0 where there is none.
+    pdf : (N,) float64
+        Density in solid angle; infinite for lights without extent.
+    """
+
+    direction: Floats
+    weight: Floats
+    pdf: Floats
+    _segments: tuple[Floats, Floats, Floats]
+    _time: Floats
+
+    def visible(self, scene: Occluding, which: ArrayLike | None = None) -> NDArray[np.bool_]:
+        """Return whether nothing is in between: (N,) bool.
+
+        Parameters
+        ----------
+        scene : Scene
+            The scene that it was drawn from.
+        which : (N,) bool array, optional
+            Those to ask for; the others are told to be hidden. By default, all that bring light.
+        """
+        asked = self.weight.any(axis=1) if which is None else np.asarray(which, np.bool_)
+        origins, directions, most = (part[asked] for part in self._segments)
+        result = np.zeros(len(self), np.bool_)
+        result[asked] = ~scene.occluded(origins, directions, t_max=most, time=self._time[asked])
+        return result
+
+    def __len__(self) -> int:
+        return len(self.pdf)
+
+    def __repr__(self) -> str:
+        return f"LightSamples({len(self)})"
+
+
+class Interactions:
+    """What a batch of rays has met, seen from where they came: an entry a ray. Made by `Scene.interactions`.
+
+    Arrays are float64 and read-only, NaN for misses unless said otherwise. Indexing with a mask or with
+    indices gives a part of the batch.
+    """
+
+    def __init__(self, core: _core.Interactions, rays: Rays) -> None:
+        self._core = core
+        self.rays = rays
+
+    def __len__(self) -> int:
+        return len(self._core)
+
+    def __getitem__(self, which: ArrayLike) -> "Interactions":
+        index = np.asarray(which)
+        if index.dtype == np.bool_:
+            if index.shape != (len(self),):
+                raise IndexError(f"a mask must have shape ({len(self)},), got {index.shape}")
+            index = np.flatnonzero(index)
+        index = np.ascontiguousarray(index, np.int64)
+        return Interactions(self._core.take(index), self.rays[index])
+
+    @cached_property
+    def t(self) -> Floats:
+        """Distance from the ray's origin: (N,); infinite for a miss."""
+        return self._core.t
+
+    @cached_property
+    def hit(self) -> NDArray[np.bool_]:
+        """Whether anything was hit: (N,) bool."""
+        return self.shape_id >= 0
+
+    @cached_property
+    def shape_id(self) -> NDArray[np.int32]:
+        """Which of ``scene.shapes``: (N,) int32; -1 for a miss."""
+        return self._core.shape_id
+
+    @cached_property
+    def position(self) -> Floats:
+        """Where it was hit: (N, 3)."""
+        return self._core.position
+
+    @cached_property
+    def normal(self) -> Floats:
+        """Unit geometric normal on the side that the ray came from: (N, 3)."""
+        return self._core.normal
+
+    @cached_property
+    def shading_normal(self) -> Floats:
+        """Unit shading normal on the side that the ray came from: (N, 3)."""
+        return self._core.shading_normal
+
+    @cached_property
+    def emission(self) -> Floats:
+        """Radiance along the ray that nothing has scattered: (N, 3); of a miss, that of the environment."""
+        return self._core.emission
+
+    def evaluate(self, directions: ArrayLike) -> tuple[Floats, Floats]:
+        """Return how light from some directions is scattered back along the rays.
+
+        Parameters
+        ----------
+        directions : (N, 3) array
+            Unit directions that light comes from.
+
+        Returns
+        -------
+        value : (N, 3)
+            Scattering function times cosine; 0 for misses, and where all scattering has a single direction.
+        pdf : (N,)
+            The density, in solid angle, with which `sample` draws the direction.
+        """
+        return self._core.evaluate(_vectors("directions", directions))
+
+    def sample(self, choice: Floats, u: Floats) -> Scattered:
+        """Draw where paths go on to.
+
+        Parameters
+        ----------
+        choice : (N,) array
+            Numbers in [0, 1) that choose among kinds of scattering.
+        u : (N, 2) array
+            Pairs of numbers in (0, 1) for the direction.
+        """
+        return Scattered(*self._core.sample(_numbers(choice), _numbers(u)))
+
+    def light(self, choice: Floats, u: Floats) -> LightSamples:
+        """Draw light that reaches the points from the scene's lights.
+
+        Parameters
+        ----------
+        choice : (N,) array
+            Numbers in [0, 1) that choose among the lights.
+        u : (N, 2) array
+            Pairs of numbers in (0, 1) for the point on the light.
+        """
+        (direction, weight, origins, ways), most, pdf = self._core.light(_numbers(choice), _numbers(u))
+        return LightSamples(direction, weight, pdf, (origins, ways, most), self.rays.time)
+
+    def light_pdf(self, before: "Interactions") -> Floats:
+        """Return the density with which `light` would have drawn what the rays ran into: (N,).
+
+        Parameters
+        ----------
+        before : Interactions
+            Where the rays come from, an entry a ray.
+        """
+        return self._core.light_pdf(before._core)
+
+    def leave(self, directions: ArrayLike) -> Rays:
+        """Return the rays that leave along some unit directions, (N, 3), and do not meet what they leave."""
+        ways = _vectors("directions", directions)
+        return Rays(self._core.leave(ways), ways, self.rays.time)
+
+    def __repr__(self) -> str:
+        return f"Interactions({len(self)}, {int(np.count_nonzero(self.hit))} hit)"
+
+
+def power_heuristic(pdf: ArrayLike, other: ArrayLike) -> Floats:
+    """Return the weight of draws of density `pdf` beside another way to draw, of density `other`.
+
+    That of Veach and Guibas (1995) with the exponent 2; infinite densities get the weight 1, and 0 the weight
+    0.
+    """
+    mine, others = np.broadcast_arrays(np.asarray(pdf, np.float64), np.asarray(other, np.float64))
+    with np.errstate(over="ignore"):
+        ratio = np.divide(others, mine, out=np.full(mine.shape, np.inf), where=mine > 0)
+        return np.asarray(1.0 / (1.0 + ratio * ratio))
+
+
+def _vectors(name: str, value: ArrayLike) -> Floats:
+    array = np.ascontiguousarray(last_axis(name, value, 3), np.float64)
+    if array.ndim != 2:
+        raise ValueError(f"{name} must have shape (N, 3), got {array.shape}")
+    return array
+
+
+def _numbers(value: ArrayLike) -> Floats:
+    return np.ascontiguousarray(value, np.float64)

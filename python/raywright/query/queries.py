@@ -1,0 +1,451 @@
+"""The questions that rays and points ask of a scene."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .. import _core
+from .._core import CompiledScene
+from ..arrays import indices, integer, last_axis, number
+from ..cameras import AnyCamera, pixel_offsets
+from .cones import ConeTouches, cone_arguments
+from .hits import AllHits, ClosestPoints, Hits, QueryCost
+from .interactions import Interactions, Rays
+from .rays import RayArguments, nearest_arguments, point_arguments, ray_arguments
+
+
+class Queries:
+    """What a compiled scene answers; asking compiles it."""
+
+    _core: CompiledScene | None
+
+    def _compiled(self) -> CompiledScene:
+        raise NotImplementedError
+
+    def intersect(
+        self,
+        origins: ArrayLike,
+        directions: ArrayLike,
+        t_min: ArrayLike = 0.0,
+        t_max: ArrayLike = np.inf,
+        threads: int | None = None,
+        time: ArrayLike | None = None,
+    ) -> Hits:
+        """Find the closest hit of each ray.
+
+        Parameters
+        ----------
+        origins, directions : (..., 3) arrays
+            Rays, broadcast against each other; directions need not be unit. C-contiguous float32 and float64
+            are read without a copy, other real types are converted to float64.
+        t_min, t_max : float or (...) arrays
+            The part of the ray that counts, in lengths of its direction, both ends included.
+        threads : int, optional
+            How many to use; all cores if not given. The answer does not depend on it.
+        time : float or (...) array, optional
+            When the rays are asked, from 0 as the shutter opens, which it is if not given, to 1 as it closes:
+            instances that move are where they then are.
+
+        Returns
+        -------
+        Hits
+            With the leading shape of the rays. Of hits at the same `t`, the one of the lowest
+            (shape_id, instance, primitive).
+
+        Raises
+        ------
+        ValueError
+            If a last dimension is not 3, leading shapes do not broadcast, `t_min` or `t_max` is NaN, or
+            `time` is not between 0 and 1.
+        TypeError
+            If an array does not hold real numbers.
+
+        Notes
+        -----
+        Rays with NaN, infinity or a zero direction (or one shorter than the least normal number) hit nothing.
+        Hits are watertight: no ray passes between two faces that share an edge or a corner.
+        """
+        rays = ray_arguments(origins, directions, t_min, t_max, threads, time)
+        core = self._core or self._compiled()
+        return Hits(*core.intersect(*rays), core, known_by(core, rays))
+
+    def occluded(
+        self,
+        origins: ArrayLike,
+        directions: ArrayLike,
+        t_min: ArrayLike = 0.0,
+        t_max: ArrayLike = np.inf,
+        threads: int | None = None,
+        time: ArrayLike | None = None,
+    ) -> NDArray[np.bool_]:
+        """Find whether each ray hits anything between `t_min` and `t_max`.
+
+        The same as ``intersect(...).hit``, and faster: a ray ends at the first hit that it meets. Takes and
+        raises what `intersect` does.
+
+        Returns
+        -------
+        (...) bool
+            With the leading shape of the rays.
+        """
+        rays = ray_arguments(origins, directions, t_min, t_max, threads, time)
+        return (self._core or self._compiled()).occluded(*rays)
+
+    def interactions(self, rays: Rays) -> Interactions:
+        """Find what each ray of a batch meets, and all that shading needs of it.
+
+        For integrators that are written in Python (see `Integrator`): what comes back tells emission, and
+        answers whole batches of questions about scattering and light.
+
+        Parameters
+        ----------
+        rays : Rays
+            Rays of unit direction, as an integrator is given them or `Interactions.leave` makes them.
+
+        Returns
+        -------
+        Interactions
+            An entry a ray.
+
+        Raises
+        ------
+        TypeError
+            If `rays` are no `Rays`.
+        ValueError
+            If their arrays are not (N, 3), (N, 3) and (N,).
+        """
+        if not isinstance(rays, Rays):
+            raise TypeError(f"rays must be raywright.Rays, got {type(rays).__name__}")
+        core = self._core or self._compiled()
+        return Interactions(_core.interactions(core, rays.origins, rays.directions, rays.time), rays)
+
+    def intersect_all(
+        self,
+        origins: ArrayLike,
+        directions: ArrayLike,
+        t_min: ArrayLike = 0.0,
+        t_max: ArrayLike = np.inf,
+        threads: int | None = None,
+        time: ArrayLike | None = None,
+    ) -> AllHits:
+        """Find every hit of each ray, in order.
+
+        Takes and raises what `intersect` does, and the first hit that it finds of each ray is that of
+        `intersect`.
+
+        Returns
+        -------
+        AllHits
+            All hits one after the other, by ray, then `t`, then (shape_id, instance, primitive).
+
+        Notes
+        -----
+        A surface is crossed once where a ray goes through an edge or a vertex of it, not once for each face
+        there. Where a ray only touches an edge or a vertex, it is told twice, as if in and out: two faces, or
+        twice the same one where the ray meets no other. So a closed surface has an even number of hits seen
+        from outside, and an odd number from inside, however the ray is aimed. Faces that lie upon each other
+        are all told.
+        """
+        rays = ray_arguments(origins, directions, t_min, t_max, threads, time)
+        core = self._core or self._compiled()
+        return AllHits(*core.intersect_all(*rays), rays[4], core, known_by(core, rays))
+
+    def count(
+        self,
+        origins: ArrayLike,
+        directions: ArrayLike,
+        t_min: ArrayLike = 0.0,
+        t_max: ArrayLike = np.inf,
+        threads: int | None = None,
+        time: ArrayLike | None = None,
+    ) -> NDArray[np.int32]:
+        """Count the hits of each ray: what `intersect_all` finds, without the memory for it.
+
+        Takes and raises what `intersect` does.
+
+        Returns
+        -------
+        (...) int32
+            With the leading shape of the rays.
+        """
+        rays = ray_arguments(origins, directions, t_min, t_max, threads, time)
+        return (self._core or self._compiled()).count(*rays)
+
+    def cost(
+        self,
+        origins: ArrayLike,
+        directions: ArrayLike,
+        t_min: ArrayLike = 0.0,
+        t_max: ArrayLike = np.inf,
+        threads: int | None = None,
+        time: ArrayLike | None = None,
+    ) -> QueryCost:
+        """Find what the closest hit of each ray takes: nodes visited and primitives tested.
+
+        Takes and raises what `intersect` does. Neighbouring rays share visits, so a ray's cost may depend on
+        which others are asked with it. A copy of an instance counts as one primitive, whatever it
+        takes there.
+
+        Returns
+        -------
+        QueryCost
+            With the leading shape of the rays.
+        """
+        rays = ray_arguments(origins, directions, t_min, t_max, threads, time)
+        return QueryCost(*(self._core or self._compiled()).cost(*rays))
+
+    def pick(
+        self,
+        camera: AnyCamera,
+        x: ArrayLike,
+        y: ArrayLike,
+        offsets: ArrayLike = (0.5, 0.5),
+        threads: int | None = None,
+        time: ArrayLike | None = None,
+    ) -> Hits:
+        """Find what is seen at a pixel, or at many: shape, face, place and distance.
+
+        Parameters
+        ----------
+        camera : Camera or another kind
+            Whose picture it is.
+        x, y : int or (...) integer arrays
+            Column and row of the pixel, broadcast against each other: (0, 0) is the upper left of the
+            picture, (width - 1, height - 1) its lower right.
+        offsets : (2,) or (..., 2) array
+            Where in the pixel, for all or for each, as `Camera.rays` has it: (0, 0) is its upper left, (1, 1)
+            its lower right. The default is the centre.
+        threads : int, optional
+            How many to use; all cores if not given. The answer does not depend on it.
+        time : float or (...) array, optional
+            When, from 0 as the camera's shutter opens, which it is if not given, to 1 as it closes.
+
+        Returns
+        -------
+        Hits
+            With the leading shape of the pixels: the same bits as ``intersect(*camera.rays(...))`` at these
+            pixels. As directions are unit, `t` is the distance from the camera.
+
+        Raises
+        ------
+        ValueError
+            If a pixel is outside of the picture, `time` is not between 0 and 1, or shapes do not broadcast.
+        TypeError
+            If `camera` is not a Camera, `x` or `y` are not integers, or `offsets` are not real numbers.
+        """
+        if not isinstance(camera, AnyCamera):
+            raise TypeError(f"camera must be a Camera, got {type(camera).__name__}")
+        column, row = indices("x", x, camera.width), indices("y", y, camera.height)
+        where = last_axis("offsets", offsets, 2)
+        try:
+            lead = np.broadcast_shapes(column.shape, row.shape, where.shape[:-1])
+        except ValueError:
+            told = f"x {column.shape}, y {row.shape}, offsets {where.shape[:-1]}"
+            raise ValueError(f"leading shapes do not broadcast: {told}") from None
+        points = np.stack([np.broadcast_to(i, lead) for i in (column, row)], axis=-1) + where
+        rays = camera.rays_through(points, time=time)
+        return self.intersect(*rays, threads=threads, time=camera.scene_time(time))
+
+    def first_hits(
+        self,
+        camera: AnyCamera,
+        offsets: ArrayLike = (0.5, 0.5),
+        threads: int | None = None,
+        time: float | None = None,
+    ) -> Hits:
+        """Find what is seen at every pixel, by rasterising: what ``intersect(*camera.rays(offsets))`` finds.
+
+        Faces are projected into the picture (Catmull 1974), and at the pixels that one may cover it is
+        decided for the pixel's ray, exactly, as `intersect` does. Parts of the picture with too many faces
+        are asked of the accelerator, and all of it is if there are more faces than a quarter of its pixels,
+        something in the scene is no mesh, or the camera is another than a pinhole that stands still.
+        ``report.first_hits`` tells where it pays.
+
+        Parameters
+        ----------
+        camera : Camera or another kind
+            Whose picture it is.
+        offsets : (2,) or (height, width, 2) array
+            Where in the pixel, for all or for each, as `Camera.rays` has it.
+        threads : int, optional
+            How many to use; all cores if not given. The answer does not depend on it.
+        time : float, optional
+            When, from 0 as the camera's shutter opens, which it is if not given, to 1 as it closes.
+
+        Returns
+        -------
+        Hits
+            Of shape (height, width), row 0 on top: the same bits as ``intersect(*camera.rays(offsets))``. As
+            directions are unit, `t` is the distance from the camera.
+
+        Raises
+        ------
+        ValueError
+            If `offsets` has another shape, or `time` is not between 0 and 1.
+        TypeError
+            If `camera` is not a Camera, or `offsets` are not real numbers.
+        """
+        if not isinstance(camera, AnyCamera):
+            raise TypeError(f"camera must be a Camera, got {type(camera).__name__}")
+        where = pixel_offsets(camera, offsets)
+        core = self._core or self._compiled()
+        moment = camera.scene_time(None if time is None else number("time", time))
+        if core.curved or (time and camera.moved_to):
+            return self.intersect(*camera.rays(where, time=time), threads=threads, time=moment)
+        threads = None if threads is None else integer("threads", threads, 1)
+        t, shape_id, primitive, uv, _ = _core.first_hits(core, camera, where, threads)
+        return Hits(t, shape_id, primitive, uv, None, core)
+
+    def cone(
+        self,
+        origins: ArrayLike,
+        directions: ArrayLike,
+        half_angle: ArrayLike,
+        t_max: ArrayLike = np.inf,
+        threads: int | None = None,
+    ) -> ConeTouches:
+        """Find all faces that solid cones touch, the nearest first.
+
+        A face is touched if any point of it, its edges and corners included, is in the cone, its surface
+        included. Nothing hides what is behind it.
+
+        Parameters
+        ----------
+        origins, directions : (..., 3) arrays
+            Apexes and axes, broadcast against each other; directions need not be unit.
+        half_angle : float or (...) array
+            Between the axis and the surface, in degrees, at least 0 and less than 90. A cone of 0 is a ray.
+        t_max : float or (...) array
+            How far from the apex to look, this distance included, in the scene's unit whatever the length of
+            the direction. A cone then ends in a part of a sphere.
+        threads : int, optional
+            How many to use; all cores if not given. The answer does not depend on it.
+
+        Returns
+        -------
+        ConeTouches
+            Faces by cone, then distance, then (shape_id, primitive).
+
+        Raises
+        ------
+        ValueError
+            If a last dimension is not 3, leading shapes do not broadcast, `half_angle` is NaN or out of
+            range, `t_max` is NaN, or something in the scene is no mesh.
+        TypeError
+            If an array does not hold real numbers.
+
+        Notes
+        -----
+        Cones with NaN, infinity or a zero direction touch nothing. No face that has a point in the cone is
+        missed. With M the distance from the apex to the farthest corner of a face, one that misses the cone
+        by less than 2**-43 M may be told as well, and distances are those of a cone whose surface is moved by
+        no more than that. Accelerators agree to the last bit.
+        """
+        core = self._core or self._compiled()
+        arguments = cone_arguments(origins, directions, half_angle, t_max, threads)
+        splits, distance, shape_id, primitive = _core.cones(core, *arguments)
+        return ConeTouches(splits, shape_id, primitive, distance, arguments[4])
+
+    def contains(self, points: ArrayLike, threads: int | None = None) -> NDArray[np.bool_]:
+        """Find whether each point is inside a closed surface.
+
+        A point is inside if a ray from there crosses the surface an odd number of times, which is decided
+        exactly; what is on the surface counts as inside. So where closed surfaces overlap, or one is within
+        the other, what is inside two of them is outside again (the even-odd rule).
+
+        Parameters
+        ----------
+        points : (..., 3) array
+            C-contiguous float32 and float64 are read without a copy.
+        threads : int, optional
+            How many to use; all cores if not given. The answer does not depend on it.
+
+        Returns
+        -------
+        (...) bool
+            With the leading shape of the points. False for points that are NaN or infinite.
+
+        Raises
+        ------
+        ValueError
+            If the last dimension is not 3.
+        TypeError
+            If the array does not hold real numbers.
+
+        Notes
+        -----
+        From a point two opposite ways out are tried, which agree if the surface is closed. Where they do not
+        there is a hole, and the majority of seven ways decides.
+        """
+        return (self._core or self._compiled()).contains(*point_arguments(points, threads))
+
+    def closest_point(
+        self, points: ArrayLike, max_distance: ArrayLike = np.inf, threads: int | None = None
+    ) -> ClosestPoints:
+        """Find the closest point of any surface to each point.
+
+        Parameters
+        ----------
+        points : (..., 3) array
+            C-contiguous float32 and float64 are read without a copy.
+        max_distance : float or (...) array
+            How far to look, this distance included; the less, the faster.
+        threads : int, optional
+            How many to use; all cores if not given. The answer does not depend on it.
+
+        Returns
+        -------
+        ClosestPoints
+            With the leading shape of the points. Of faces at the same distance, the one of the lowest
+            (shape_id, primitive).
+
+        Raises
+        ------
+        ValueError
+            If the last dimension is not 3, shapes do not broadcast, `max_distance` is negative or NaN, or the
+            scene has instances, of which closest points are not told.
+        TypeError
+            If an array does not hold real numbers.
+
+        Notes
+        -----
+        Points that are NaN or infinite have no closest point.
+        """
+        core = self._core or self._compiled()
+        return ClosestPoints(*core.nearest(*nearest_arguments(points, max_distance, threads)), core)
+
+    def signed_distance(self, points: ArrayLike, threads: int | None = None) -> NDArray[np.float64]:
+        """Find how far each point is from the surface: negative inside, positive outside, zero on it.
+
+        Inside is what `contains` finds so. (Open3D and most of CAD have this sign, trimesh has the other.)
+
+        Parameters
+        ----------
+        points : (..., 3) array
+            C-contiguous float32 and float64 are read without a copy.
+        threads : int, optional
+            How many to use; all cores if not given. The answer does not depend on it.
+
+        Returns
+        -------
+        (...) float64
+            With the leading shape of the points; inf for points that are NaN or infinite, and for all if the
+            scene is empty.
+
+        Raises
+        ------
+        ValueError
+            If the last dimension is not 3.
+        TypeError
+            If the array does not hold real numbers.
+        """
+        core = self._core or self._compiled()
+        distance = core.nearest(*nearest_arguments(points, np.inf, threads))[0]
+        inside = core.contains(*point_arguments(points, threads)) & (distance > 0)
+        return np.asarray(np.where(inside, -distance, distance))
+
+
+def known_by(core: CompiledScene, rays: RayArguments) -> tuple[Any, ...] | None:
+    """Return what hits have to keep of their rays to know their points: nothing of meshes."""
+    return (*rays[:2], 0.0 if rays[6] is None else rays[6]) if core.curved else None

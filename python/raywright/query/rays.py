@@ -1,0 +1,123 @@
+"""Rays and points as the core takes them."""
+
+import math
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..arrays import integer, last_axis, real_array
+
+Floats: TypeAlias = NDArray[np.floating[Any]]
+RayArguments: TypeAlias = tuple[
+    Floats,
+    Floats,
+    float | NDArray[np.float64],
+    float | NDArray[np.float64],
+    tuple[int, ...],
+    int | None,
+    float | NDArray[np.float64] | None,
+]
+
+
+def ray_arguments(
+    origins: ArrayLike,
+    directions: ArrayLike,
+    t_min: ArrayLike,
+    t_max: ArrayLike,
+    threads: int | None,
+    time: ArrayLike | None = None,
+) -> RayArguments:
+    """Check and broadcast rays, and give what the core's queries take.
+
+    C-contiguous float32 and float64 arrays pass as they are; each array has one row, or one for each ray.
+
+    Returns
+    -------
+    origins, directions, t_min, t_max, shape, threads, time
+        `shape` is the leading shape of the rays; `time` may be None, which is 0 for all.
+    """
+    starts = last_axis("origins", origins, 3)
+    ways = last_axis("directions", directions, 3)
+    near = _distances("t_min", t_min)
+    far = _distances("t_max", t_max)
+    if threads is not None:
+        threads = integer("threads", threads, 1)
+    when = None if time is None else _times(time)
+    shape, lead = starts.shape[:-1], ways.shape[:-1]
+    if type(near) is float and type(far) is float and not isinstance(when, np.ndarray):
+        # The usual rays need no broadcasting, and a few of them no more time than it takes to trace them.
+        if not lead or shape == lead:
+            return _in_order(starts), _in_order(ways), near, far, shape, threads, when
+        if not shape:
+            return _in_order(starts), _in_order(ways), near, far, lead, threads, when
+    parts = {"origins": shape, "directions": lead, "t_min": np.shape(near), "t_max": np.shape(far)}
+    if isinstance(when, np.ndarray):
+        parts["time"] = when.shape
+    try:
+        shape = np.broadcast_shapes(*parts.values())
+    except ValueError:
+        told = ", ".join(f"{name} {lead}" for name, lead in parts.items())
+        raise ValueError(f"leading shapes do not broadcast: {told}") from None
+    near, far = (spread(x, shape) if isinstance(x, np.ndarray) else x for x in (near, far))
+    when = spread(when, shape) if isinstance(when, np.ndarray) else when
+    return spread(starts, shape, (3,)), spread(ways, shape, (3,)), near, far, shape, threads, when
+
+
+def point_arguments(points: ArrayLike, threads: int | None) -> tuple[Floats, tuple[int, ...], int | None]:
+    """Check points, and give what the core's queries take: the points, their leading shape, and threads."""
+    array = _in_order(last_axis("points", points, 3))
+    return array, array.shape[:-1], None if threads is None else integer("threads", threads, 1)
+
+
+def nearest_arguments(
+    points: ArrayLike, max_distance: ArrayLike, threads: int | None
+) -> tuple[Floats, float | NDArray[np.float64], tuple[int, ...], int | None]:
+    """Check points and distances, and give what the core takes: both, their leading shape, and threads."""
+    array, shape, threads = point_arguments(points, threads)
+    most = _distances("max_distance", max_distance)
+    if np.min(most, initial=0.0) < 0:
+        raise ValueError(f"max_distance must be at least 0, got {np.min(most)}")
+    if isinstance(most, np.ndarray):
+        try:
+            lead = np.broadcast_shapes(shape, most.shape)
+        except ValueError:
+            told = f"points {shape}, max_distance {most.shape}"
+            raise ValueError(f"leading shapes do not broadcast: {told}") from None
+        array, most, shape = spread(array, lead, (3,)), spread(most, lead), lead
+    return array, most, shape, threads
+
+
+def _times(value: ArrayLike) -> float | NDArray[np.float64]:
+    # A copy, which hits keep: theirs must not change with the caller's.
+    array = np.array(real_array("time", value), np.float64)
+    inside = (array >= 0) & (array <= 1)
+    if not inside.all():
+        raise ValueError(f"time must be between 0 and 1, got {array[~inside].flat[0]}")
+    return array if array.ndim else float(array)
+
+
+def _distances(name: str, value: ArrayLike) -> float | NDArray[np.float64]:
+    if type(value) is not float:
+        array = real_array(name, value).astype(np.float64, copy=False)
+        if array.ndim:
+            if np.isnan(array).any():
+                raise ValueError(f"{name} must not be NaN")
+            return array
+        value = float(array)
+    if value != value:
+        raise ValueError(f"{name} must not be NaN")
+    return value
+
+
+def _in_order(array: NDArray[Any]) -> NDArray[Any]:
+    """Return it C-contiguous and aligned."""
+    flags = array.flags
+    return array if flags.c_contiguous and flags.aligned else np.require(array, requirements=["C", "A"])
+
+
+def spread(array: NDArray[Any], lead: tuple[int, ...], columns: tuple[int, ...] = ()) -> NDArray[Any]:
+    """Return it C-contiguous, with a row for each ray unless it is one row, which serves for all."""
+    shape = (*lead, *columns)
+    one = array.size == math.prod(columns)
+    return _in_order(array if one or array.shape == shape else np.broadcast_to(array, shape))

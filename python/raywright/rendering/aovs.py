@@ -1,0 +1,87 @@
+"""What is seen first, rather than how bright it is."""
+
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .. import _core
+from ..arrays import frozen, integer
+from ..cameras import AnyCamera
+from ..scene.scene import Scene
+
+AOVS = ("depth", "position", "normal", "shading_normal", "uv", "shape_id", "primitive", "albedo", "motion")
+
+
+def names_of(aov: str | Iterable[str]) -> tuple[str, ...]:
+    """Return the names of pictures that are asked for, each once.
+
+    Raises
+    ------
+    ValueError
+        If one is not known.
+    TypeError
+        If one is no text.
+    """
+    names = (aov,) if isinstance(aov, str) else tuple(dict.fromkeys(aov))
+    for name in names:
+        if not isinstance(name, str):
+            raise TypeError(f"aov must be names, got {name!r}")
+        if name not in AOVS:
+            raise ValueError(f"aov {name!r} is not known, expected some of {', '.join(AOVS)}")
+    return names
+
+
+def aovs(
+    scene: Scene,
+    camera: AnyCamera,
+    aov: str | Iterable[str] = AOVS,
+    samples: int = 16,
+    *,
+    seed: int = 0,
+    threads: int | None = None,
+) -> dict[str, NDArray[Any]]:
+    """Return pictures of what is seen first, by their names.
+
+    Parameters
+    ----------
+    scene : Scene
+        What to look at.
+    camera : camera
+        From where.
+    aov : str or some of them
+        ``"depth"`` (distance along the ray; infinite where nothing is seen), ``"position"``, ``"normal"``
+        (unit geometric normal, as the winding gives it), ``"shading_normal"``, ``"uv"``, ``"shape_id"`` and
+        ``"primitive"`` (-1 where nothing is seen), ``"albedo"``, ``"motion"`` (how far the point goes while
+        the shutter is open, in the scene's space). All of them if not given.
+    samples : int
+        Samples per pixel, over its square, the lens and the shutter: a pixel is the mean of those that see
+        something. Numbers of shapes and primitives are those of its middle.
+    seed : int
+        Picks the random numbers.
+    threads : int, optional
+        How many to use; all cores if not given.
+
+    Returns
+    -------
+    dict of str to array
+        (H, W) or (H, W, 2 or 3) float32, and int32 for numbers of things; read-only, row 0 the top.
+
+    Raises
+    ------
+    ValueError
+        If a name is not known, or a number out of its range.
+    TypeError
+        If an argument is of the wrong kind.
+    """
+    names = names_of(aov)
+    samples = integer("samples", samples, 1, 2**32 - 1)
+    seed = integer("seed", seed, 0, 2**64 - 1)
+    threads = None if threads is None else integer("threads", threads, 1)
+    arrays = _core.aovs(scene._compiled(), camera, list(names), samples, seed, threads)
+    ids = ("shape_id", "primitive")
+    return {
+        name: frozen(array.astype(np.int32 if name in ids else np.float32))
+        for name, array in zip(names, arrays, strict=True)
+    }

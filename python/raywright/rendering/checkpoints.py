@@ -1,0 +1,204 @@
+"""Renders that survive: what has been rendered, in a file, to go on from."""
+
+import errno
+import json
+import os
+import threading
+import time
+import warnings
+import zlib
+from collections.abc import Mapping
+from contextlib import suppress
+from os import PathLike
+from pathlib import Path
+from typing import Any, NoReturn
+
+from .. import _core
+
+# How often a file is written, and the least that the time between is of the time that writing took.
+_SECONDS = 60.0
+_SHARE = 20.0
+
+_MAGIC = b"raywright checkpoint 1\n"
+# More than any header takes, so that a file of another kind is not read for one.
+_MOST_HEADER = 1 << 16
+
+
+def held(path: str | PathLike[str]) -> dict[str, Any]:
+    """Return what the file at a path says that it is a render of; nothing where there is no such file."""
+    with suppress(OSError, ValueError), open(path, "rb") as file:
+        if file.read(len(_MAGIC)) == _MAGIC:
+            length = int.from_bytes(file.read(4), "little")
+            of = json.loads(file.read(min(length, _MOST_HEADER)))["of"]
+            return of if isinstance(of, dict) else {}
+    return {}
+
+
+class Checkpoints:
+    """The checkpoint of one render: a file, written again and again, each time whole or not at all.
+
+    The file begins with a line that says what it is, then in JSON what it is a render of and how long what
+    follows is: the film, compressed. It holds nothing that is executed.
+
+    Parameters
+    ----------
+    path : str or path
+        The file.
+    identity : dict of str to str, number or None
+        What the render is of, by names that users know: a checkpoint of anything else is refused.
+
+    Raises
+    ------
+    FileNotFoundError
+        If the folder is missing.
+    IsADirectoryError
+        If the path is a folder.
+    """
+
+    def __init__(self, path: str | PathLike[str], identity: Mapping[str, Any]) -> None:
+        self.path = Path(path)
+        self.trouble: str | None = None
+        self._identity = dict(identity)
+        self._cost = 0.0
+        self._last = time.monotonic()
+        self._writer: threading.Thread | None = None
+        if self.path.is_dir():
+            raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(self.path))
+        if not self.path.absolute().parent.is_dir():
+            raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), str(self.path.parent))
+
+    def read(self, most: int) -> bytes | None:
+        """Return the film that the file holds, of so many bytes at most; None if there is no file.
+
+        Raises
+        ------
+        ValueError
+            If the file is truncated, damaged or none of ours, or of another render: it says what differs.
+        OSError
+            If it cannot be read.
+        """
+        if not self.path.exists():
+            return None
+        with open(self.path, "rb") as file:
+            if file.read(len(_MAGIC)) != _MAGIC:
+                self.refuse("is no checkpoint of this version")
+            length = int.from_bytes(file.read(4), "little")
+            if length > _MOST_HEADER:
+                self.refuse("is damaged")
+            header = self._header(file.read(length))
+            self._compare(header["of"])
+            size, packed = header["bytes"], header["packed"]
+            # Compression makes next to nothing longer.
+            if not 0 <= size <= most or not 0 <= packed <= size + (size >> 8) + 1024:
+                self.refuse("is damaged")
+            data = file.read(packed + 1)
+        if len(data) < packed:
+            self.refuse("is truncated")
+        unpacked = zlib.decompressobj()
+        try:
+            film = unpacked.decompress(data, size + 1)
+        except zlib.error:
+            self.refuse("is damaged")
+        if len(data) > packed or len(film) != size or not unpacked.eof:
+            self.refuse("is damaged")
+        return film
+
+    def refuse(self, why: str) -> NoReturn:
+        """Raise the ValueError that says why a file is of no use."""
+        raise ValueError(f"checkpoint {self.path} {why}")
+
+    def wait(self) -> float:
+        """Return the seconds until the file should be written."""
+        return max(self._last + max(_SECONDS, _SHARE * self._cost) - time.monotonic(), 0.0)
+
+    def write_beside(self, rendering: _core.Rendering) -> None:
+        """Write the file while the render goes on; if the last time is not over yet, another time."""
+        if self._writer is not None and self._writer.is_alive():
+            return
+        self._tell()
+        self._last = time.monotonic()
+        film = rendering.to_bytes()
+        self._writer = threading.Thread(target=self._write, args=(film,), name="raywright-checkpoint")
+        self._writer.start()
+
+    def write(self, rendering: _core.Rendering) -> None:
+        """Write the file, now; that it cannot be is told and nothing else."""
+        if self._writer is not None:
+            self._writer.join()
+        self._write(rendering.to_bytes())
+        self._tell()
+
+    def _write(self, film: bytes) -> None:
+        began = time.monotonic()
+        # Of one name, so that what a killed process leaves behind is used again. In the same folder: only
+        # there can it take the file's place at once.
+        beside = self.path.with_name(self.path.name + ".part")
+        try:
+            packed = zlib.compress(film, 1)
+            header = {"of": self._identity, "bytes": len(film), "packed": len(packed)}
+            text = json.dumps(header).encode()
+            try:
+                with open(beside, "wb") as file:
+                    for part in (_MAGIC, len(text).to_bytes(4, "little"), text, packed):
+                        file.write(part)
+                    file.flush()
+                    os.fsync(file.fileno())
+                os.replace(beside, self.path)
+            except BaseException:
+                with suppress(OSError):
+                    beside.unlink()
+                raise
+            _sync_folder(self.path.absolute().parent)
+            self.trouble = None
+        except (OSError, MemoryError) as error:
+            told = error.strerror if isinstance(error, OSError) and error.strerror else "out of memory"
+            self.trouble = f"the checkpoint {self.path} could not be written: {told[:1].lower()}{told[1:]}"
+        self._cost = time.monotonic() - began
+
+    def _tell(self) -> None:
+        """Warn of trouble as it comes: it may be hours until the picture is there to tell."""
+        if self.trouble is not None:
+            # Where warnings are errors, this one must not cost the picture.
+            with suppress(RuntimeWarning):
+                warnings.warn(self.trouble, RuntimeWarning, stacklevel=2)
+
+    def _header(self, text: bytes) -> dict[str, Any]:
+        try:
+            header = json.loads(text)
+            kinds = (type(header["of"]), type(header["bytes"]), type(header["packed"]))
+            if kinds == (dict, int, int):
+                return dict(header)
+        except (ValueError, KeyError, TypeError, RecursionError):
+            pass
+        self.refuse("is truncated or damaged")
+
+    def _compare(self, theirs: dict[str, Any]) -> None:
+        differ = []
+        for name, mine in self._identity.items():
+            other = theirs.get(name)
+            if other == mine and type(other) is type(mine):
+                continue
+            values = f"{name} {_told(other)} instead of {_told(mine)}"
+            differ.append(f"another {name}" if _is_digest(mine) else values)
+        if differ or theirs.keys() - self._identity.keys():
+            self.refuse(f"is of another render: it has {', '.join(differ) or 'other settings'}")
+
+
+def _is_digest(value: Any) -> bool:
+    return isinstance(value, str) and len(value) == 64
+
+
+def _told(value: Any) -> str:
+    # What a file holds may be long.
+    told = value if isinstance(value, str) else repr(value)
+    return told if len(told) <= 40 else f"{told[:37]}..."
+
+
+def _sync_folder(folder: Path) -> None:
+    """Let the file's new name survive a loss of power, where folders can be synchronised."""
+    with suppress(OSError):
+        number = os.open(folder, os.O_RDONLY)
+        try:
+            os.fsync(number)
+        finally:
+            os.close(number)

@@ -1,0 +1,173 @@
+"""What part of the film a pixel is the mean of. Lengths are in pixels.
+
+Samples are drawn by the size of the filter around their own pixel (Ernst, Stamminger and Greiner, "Filter
+Importance Sampling", 2006), so that the errors of pixels stay independent.
+"""
+
+from dataclasses import dataclass
+
+from ..arrays import integer, number
+
+_LEAST, _MOST = 1e-6, 64.0
+_MOST_LOBES = 16
+
+
+@dataclass(frozen=True)
+class BoxFilter:
+    """The mean over a square.
+
+    Parameters
+    ----------
+    radius : float
+        Half its side, 1e-6 to 64; 0.5 is the pixel's own square.
+
+    Raises
+    ------
+    ValueError
+        If `radius` is out of range.
+    TypeError
+        If it is not a number.
+    """
+
+    radius: float = 0.5
+
+    def __post_init__(self) -> None:
+        _lengths(self, "radius")
+
+
+@dataclass(frozen=True)
+class TriangleFilter:
+    """A tent: falls evenly from the pixel's centre to 0 at `radius` along each axis.
+
+    Parameters
+    ----------
+    radius : float
+        Where it ends, 1e-6 to 64; 1 interpolates between pixels.
+
+    Raises
+    ------
+    ValueError
+        If `radius` is out of range.
+    TypeError
+        If it is not a number.
+    """
+
+    radius: float = 1.0
+
+    def __post_init__(self) -> None:
+        _lengths(self, "radius")
+
+
+@dataclass(frozen=True)
+class GaussianFilter:
+    """A bell, less its value at `radius`, so that it ends without a step (Pharr, Jakob and Humphreys 2023).
+
+    Parameters
+    ----------
+    radius : float
+        Where it ends, 1e-6 to 64.
+    sigma : float
+        Its standard deviation, 1e-6 to 64.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of range.
+    TypeError
+        If it is not a number.
+    """
+
+    radius: float = 1.5
+    sigma: float = 0.5
+
+    def __post_init__(self) -> None:
+        _lengths(self, "radius", "sigma")
+
+
+@dataclass(frozen=True)
+class MitchellFilter:
+    """A cubic spline with negative lobes, which sharpens edges (Mitchell and Netravali 1988).
+
+    Parameters
+    ----------
+    radius : float
+        Where it ends, 1e-6 to 64.
+    b, c : float
+        How much it blurs and how much it rings, 0 to 1; the authors advise ``b + 2 * c == 1``.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of range.
+    TypeError
+        If it is not a number.
+    """
+
+    radius: float = 2.0
+    b: float = 1 / 3
+    c: float = 1 / 3
+
+    def __post_init__(self) -> None:
+        _lengths(self, "radius")
+        _within(self, 0.0, 1.0, "b", "c")
+
+
+@dataclass(frozen=True)
+class BlackmanHarrisFilter:
+    """A smooth window of four cosines, nowhere negative (Harris 1978).
+
+    Parameters
+    ----------
+    radius : float
+        Where it ends, 1e-6 to 64.
+
+    Raises
+    ------
+    ValueError
+        If `radius` is out of range.
+    TypeError
+        If it is not a number.
+    """
+
+    radius: float = 1.5
+
+    def __post_init__(self) -> None:
+        _lengths(self, "radius")
+
+
+@dataclass(frozen=True)
+class LanczosFilter:
+    """A sinc under the middle of a wider one (Duchon 1979): the sharpest, with negative lobes that ring.
+
+    Parameters
+    ----------
+    lobes : int
+        Where it ends in pixels, 1 to 16.
+
+    Raises
+    ------
+    ValueError
+        If `lobes` is out of range.
+    TypeError
+        If it is not an integer.
+    """
+
+    lobes: int = 3
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "lobes", integer("lobes", self.lobes, 1, _MOST_LOBES))
+
+
+Filter = BoxFilter | TriangleFilter | GaussianFilter | MitchellFilter | BlackmanHarrisFilter | LanczosFilter
+
+
+def _lengths(values: object, *names: str) -> None:
+    _within(values, _LEAST, _MOST, *names)
+
+
+def _within(values: object, least: float, most: float, *names: str) -> None:
+    for name in names:
+        value = number(name, getattr(values, name))
+        if not least <= value <= most:
+            raise ValueError(f"{name} must be between {least:g} and {most:g}, got {value:g}")
+        object.__setattr__(values, name, value)

@@ -1,0 +1,200 @@
+"""Pictures, with how wrong they still are."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from os import PathLike
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..arrays import frozen
+from ..io import pictures
+
+HISTORY = np.dtype([("seconds", np.float64), ("samples", np.int64), ("error", np.float64)])
+
+
+@dataclass(frozen=True, eq=False)
+class ErrorEstimate:
+    """An estimate of the relative mean squared error (relMSE) of a picture, with its 95 % interval.
+
+    relMSE is the mean of (x - ref)² / (ref² + 0.01) over pixels and channels. ``float()`` gives the estimate.
+
+    Attributes
+    ----------
+    estimate, low, high : float
+        The estimate, and the ends of its interval; NaN where there are too few samples to know.
+    trusted : bool
+        Whether the estimate rests on many samples. If not, a few carry more than half of it, as they do where
+        light is found rarely: one more of their kind, or one fewer, would make it another.
+    """
+
+    estimate: float
+    low: float
+    high: float
+    trusted: bool = True
+
+    def __float__(self) -> float:
+        return self.estimate
+
+    def __format__(self, spec: str) -> str:
+        return format(self.estimate, spec) if spec else str(self)
+
+    def __str__(self) -> str:
+        if math.isnan(self.estimate):
+            return "unknown"
+        return f"{self.estimate:.3g} (95 % interval {self.low:.3g} to {self.high:.3g})"
+
+    def _key(self) -> tuple[float | bool | None, ...]:
+        # NaN does not equal itself, but one unknown error is like another.
+        numbers = (self.estimate, self.low, self.high)
+        return (*(None if math.isnan(x) else x for x in numbers), self.trusted)
+
+    def __eq__(self, other: object) -> bool:
+        return self._key() == other._key() if isinstance(other, ErrorEstimate) else NotImplemented
+
+    def __hash__(self) -> int:
+        return hash(self._key())
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Image:
+    """A picture that `render` made. Arrays are read-only; row 0 is the top.
+
+    Attributes
+    ----------
+    rgb : (H, W, 3) float32
+        Linear red, green and blue: radiance in W·sr⁻¹·m⁻².
+    standard_error : (H, W, 3) float32
+        Standard error of `rgb`.
+    error : ErrorEstimate
+        relMSE of the whole picture, with its 95 % interval.
+    history : (K,) structured array
+        Fields ``seconds`` (float64), ``samples`` (int64, per pixel) and ``error`` (float64, relMSE), as the
+        render went.
+    seconds : float
+        How long the render took.
+    samples : int
+        Samples per pixel; their mean if the render was adaptive.
+    warnings : tuple of str
+        What to know before trusting the picture; empty if there is nothing.
+    biased : bool
+        Whether samples were clamped, so that the picture tends to something darker than the scene.
+    aov : dict of str to (H, W, ...) arrays
+        What else is known of the pixels, by name: ``samples`` (uint32) of each if the render was adaptive.
+    """
+
+    rgb: NDArray[np.float32]
+    standard_error: NDArray[np.float32]
+    error: ErrorEstimate
+    history: NDArray[np.void]
+    seconds: float
+    samples: int
+    warnings: tuple[str, ...] = ()
+    biased: bool = False
+    aov: Mapping[str, NDArray[Any]] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        for name in ("rgb", "standard_error", "history"):
+            object.__setattr__(self, name, frozen(getattr(self, name)))
+        object.__setattr__(self, "aov", {name: frozen(array) for name, array in self.aov.items()})
+
+    def srgb(self) -> NDArray[np.uint8]:
+        """Return the picture for the eye: (H, W, 3) uint8 with the sRGB transfer, clipped to 0..1."""
+        return pictures.srgb(self.rgb)
+
+    def save(self, path: str | PathLike[str]) -> None:
+        """Save the picture.
+
+        Parameters
+        ----------
+        path : str or path
+            ``.png`` is for the eye: 8 bits, sRGB, clipped. ``.npy`` holds `rgb`. ``.exr`` holds `rgb` as
+            channels R, G, B and `standard_error` as channels standard_error.R, .G, .B, 32-bit floats.
+
+        Raises
+        ------
+        ValueError
+            If the suffix is another one.
+        ImportError
+            If the suffix is .exr and OpenEXR is not installed (``pip install 'raywright[exr]'``).
+        OSError
+            If the file cannot be written: FileNotFoundError if the folder is missing, and so on.
+        """
+        pictures.write(pictures.check_writable(path), self.rgb, self.standard_error)
+
+    def table(self, rows: int = 12) -> str:
+        """Return error against time as lines of text: seconds, samples per pixel, relMSE.
+
+        Parameters
+        ----------
+        rows : int
+            The most rows to print; a longer history is thinned so that samples grow evenly by factors.
+        """
+        lines = [f"{'seconds':>9} {'samples':>9} {'relMSE':>10}"]
+        for i in _thinned(self.history["samples"], rows):
+            seconds, samples, error = self.history[i].item()
+            told = "-" if math.isnan(error) else f"{error:.4g}"
+            lines.append(f"{seconds:9.2f} {samples:9d} {told:>10}")
+        return "\n".join(lines)
+
+    def _repr_png_(self) -> bytes:
+        return pictures.png(self.rgb)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Image):
+            return NotImplemented
+        return (
+            np.array_equal(self.rgb, other.rgb, equal_nan=True)
+            and np.array_equal(self.standard_error, other.standard_error, equal_nan=True)
+            and self.history.shape == other.history.shape
+            and all(
+                np.array_equal(self.history[name], other.history[name], equal_nan=True)
+                for name in HISTORY.names or ()
+            )
+            and (self.error, self.seconds, self.samples, self.warnings, self.biased)
+            == (other.error, other.seconds, other.samples, other.warnings, other.biased)
+            and self.aov.keys() == other.aov.keys()
+            and all(
+                np.array_equal(array, other.aov[name], equal_nan=array.dtype.kind == "f")
+                for name, array in self.aov.items()
+            )
+        )
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # Through the constructor, because unpickled arrays would be writeable.
+        parts = (
+            self.rgb,
+            self.standard_error,
+            self.error,
+            self.history,
+            self.seconds,
+            self.samples,
+            self.warnings,
+            self.biased,
+            self.aov,
+        )
+        return Image, parts
+
+    def __repr__(self) -> str:
+        height, width = self.rgb.shape[:2]
+        parts = [
+            f"{width}x{height}",
+            f"{self.samples} samples",
+            f"{self.seconds:.2f} s",
+            f"relMSE {self.error}",
+        ]
+        return f"Image({', '.join([*parts, *self.warnings])})"
+
+
+def _thinned(samples: NDArray[np.int64], rows: int) -> list[int]:
+    count = len(samples)
+    if count <= rows:
+        return list(range(count))
+    wanted = np.geomspace(max(int(samples[0]), 1), max(int(samples[-1]), 1), max(rows, 2))
+    return sorted(
+        {min(int(i), count - 1) for i in np.searchsorted(samples, wanted * (1 - 1e-12))} | {count - 1}
+    )

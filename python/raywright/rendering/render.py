@@ -1,0 +1,402 @@
+"""From a scene and a camera to a picture."""
+
+import os
+import warnings as python_warnings
+from collections.abc import Callable, Iterable
+from concurrent.futures import Executor
+from typing import Any, NamedTuple, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .. import _core
+from ..arrays import integer, positive
+from ..cameras import AnyCamera
+from ..integrators import AnyIntegrator, Path, check_integrator
+from ..scene.scene import Scene
+from .aovs import aovs, names_of
+from .checkpoints import Checkpoints, held
+from .digest import digest
+from .filters import BoxFilter, Filter
+from .image import HISTORY, ErrorEstimate, Image
+from .notebook import display
+from .progress import Report, bar
+from .samplers import Independent, Sampler, as_begun, with_budget
+from .snapshots import Snapshots
+
+_PATH = Path()
+_SAMPLER: Sampler = Independent()
+_FILTER: Filter = BoxFilter()
+_DEFAULT_SAMPLES = 64
+
+
+class Stop(Protocol):
+    """What ends a render from elsewhere, such as a `threading.Event`."""
+
+    def is_set(self) -> bool:
+        """Whether the render is to end."""
+
+
+def render(
+    scene: Scene,
+    camera: AnyCamera,
+    integrator: AnyIntegrator = _PATH,
+    samples: int | None = None,
+    error: float | None = None,
+    seconds: float | None = None,
+    *,
+    seed: int = 0,
+    threads: int | None = None,
+    progress: bool | Callable[[Image], object] = True,
+    adaptive: bool = False,
+    clamp: float | None = None,
+    sampler: Sampler = _SAMPLER,
+    filter: Filter = _FILTER,
+    checkpoint: str | os.PathLike[str] | None = None,
+    executor: Executor | None = None,
+    aov: str | Iterable[str] = (),
+    stop: Stop | None = None,
+) -> Image:
+    """Render a picture, until the first of the limits that are given is met.
+
+    Parameters
+    ----------
+    scene : Scene
+        What to look at.
+    camera : Camera or another kind
+        From where.
+    integrator : Path or another kind
+        What turns rays into radiance; an `Integrator` may be written in Python.
+    samples : int, optional
+        Limit on samples per pixel; 64 if no limit at all is given.
+    error : float, optional
+        Limit on the relMSE of the picture (see `ErrorEstimate`): the whole 95 % interval of its estimate is
+        at or below. At least 16 samples a pixel are taken, as what was never seen is in no estimate.
+    seconds : float, optional
+        Limit on run time in seconds, to the nearest sample of all pixels.
+    seed : int
+        Picks the random numbers, 0 to 2**64 - 1. The same seed and samples give the same picture, bit for
+        bit, for any number of threads.
+    threads : int, optional
+        How many to use; all cores if not given. With an executor, for each piece of its work; 1 if not given.
+    progress : bool or callable
+        Whether to show a bar on stderr and, in a notebook, the picture as it comes. Or a function that is
+        called with the picture so far, an Image, ten times a second at most and less often where it takes
+        long, and in the end with what is returned. Within a pass some pixels have more samples than others;
+        before the end of the first, ``image.samples`` is 0. What the function raises ends the render.
+    adaptive : bool
+        Whether more samples go to the pixels where more of the estimated relMSE is; `samples` is then their
+        mean, and ``image.aov["samples"]`` tells how many each pixel has. It begins after 16 samples. No pixel
+        is biased by it: each has two halves, and what is seen in one decides how many samples the other gets.
+    clamp : float, optional
+        Radiance, in the largest channel, to which brighter samples are dimmed. It takes fireflies away, and
+        light with them: the picture is biased, and says so. If not given, samples count as they are.
+    sampler : Independent, Stratified, Halton, Sobol or Lattice
+        Where the random numbers come from. Those with batches take fewer samples to the same error, and tell
+        the error of a single pixel from fewer independent parts. A number of samples that is no multiple of
+        its batches is best avoided: part of a batch is right as well, but worth less.
+    filter : BoxFilter, TriangleFilter, GaussianFilter, MitchellFilter, BlackmanHarrisFilter or LanczosFilter
+        What part of the film a pixel is the mean of.
+    checkpoint : str or path, optional
+        A file that is kept up to date with the render: every minute, at its end, and when it is interrupted.
+        If there is such a file, the render goes on from it, with all limits counted from its first start, and
+        ends with the same bits as one that was never interrupted, even by ``kill -9``. A sampler that was
+        given no batch has that of the file. The file stays when
+        the render is done, so that it can be taken further by other limits. That it cannot be written is told
+        in ``image.warnings`` and as a RuntimeWarning, and costs nothing else.
+    executor : concurrent.futures.Executor, optional
+        Who does the work: a ``ProcessPoolExecutor``, ``client.get_executor()`` of `dask.distributed`, the
+        pool of `mpi4py.futures`, or any other. The picture has the same bits as without. What is lost with a
+        worker is done again; if the executor breaks, the rest is rendered here, and ``image.warnings`` says
+        so. Scene, camera and integrator are pickled, and compiled once in each process.
+    aov : str or several, optional
+        What is seen first beside the picture, by the names in `AOVS`: ``image.aov["depth"]`` and so on, as
+        `aovs` gives it.
+    stop : threading.Event, or anything with a method is_set, optional
+        Ends the render at once when it is set, from another thread or from `progress`. The picture so far is
+        returned, even if some of its pixels have no sample yet, which ``image.warnings`` then tells.
+
+    Returns
+    -------
+    Image
+        With its standard error, error estimate and history.
+
+    Raises
+    ------
+    TypeError
+        If an argument is of the wrong kind, or cannot be pickled for the executor.
+    ValueError
+        If a number is out of its range; if `checkpoint` is damaged, or of another scene or other settings.
+    OSError
+        If `checkpoint` cannot be read, or its folder is missing.
+    KeyboardInterrupt
+        At once, when Ctrl-C is pressed; a checkpoint is written before.
+    """
+    checked = check(
+        scene, camera, integrator, samples, error, seconds, seed, threads, adaptive, clamp, sampler, filter
+    )
+    limits, seed, threads, clamp = checked
+    if not (callable(progress) or isinstance(progress, bool)):
+        raise TypeError(f"progress must be True, False or a function, got {progress!r}")
+    show = progress if callable(progress) else display() if progress else None
+    if stop is not None and not callable(getattr(stop, "is_set", None)):
+        raise TypeError(f"stop must be a threading.Event or the like, got {type(stop).__name__}")
+    if executor is not None and not isinstance(executor, Executor):
+        raise TypeError(f"executor must be a concurrent.futures.Executor, got {type(executor).__name__}")
+    names = names_of(aov)
+    kept = None
+    if checkpoint is not None:
+        if not isinstance(checkpoint, str | os.PathLike):
+            raise TypeError(f"checkpoint must be a path, got {type(checkpoint).__name__}")
+        sampler = as_begun(sampler, held(checkpoint).get("sampler"))
+    sampler = with_budget(sampler, *limits, adaptive)
+    if checkpoint is not None:
+        identity = _identity(scene, camera, integrator, seed, adaptive, clamp, sampler, filter)
+        kept = Checkpoints(checkpoint, identity)
+    patch = _patch(scene, integrator)
+    rendering = _begun(kept, camera, threads, adaptive, clamp, sampler, patch)
+    if executor is None:
+        # Here, so that what there is to warn of is told to the caller.
+        scene._compiled()
+    of = (scene, camera, integrator, seed, sampler, filter)
+    snapshots = None if show is None else Snapshots(show)
+
+    def so_far() -> Image:
+        return _image(rendering, clamp, {"samples": rendering.counts} if adaptive else {}, [])
+
+    def wait() -> float | None:
+        waits = [one.wait() for one in (kept, snapshots) if one is not None]
+        return min(waits, default=None)
+
+    def rest() -> None:
+        if kept is not None and kept.wait() == 0:
+            kept.write_beside(rendering)
+        if snapshots is not None and snapshots.wait() == 0:
+            snapshots.take(so_far)
+
+    def look() -> None:
+        if stop is not None and stop.is_set():
+            raise _StoppedError
+
+    def run(report: Report | None) -> list[str]:
+        told: list[str] = []
+        try:
+            look()
+            if executor is not None:
+                told += _elsewhere(rendering, of, executor, limits, threads, report, rest, look)
+            if executor is None or told:
+                _here(rendering, of, limits, threads, report, wait, rest, None if stop is None else look)
+        except _StoppedError:
+            if not rendering.counts.all():
+                told.append("stopped before every pixel had a sample")
+        finally:
+            # Nothing is kept of a render that could not begin.
+            if kept is not None and rendering.aim:
+                kept.write(rendering)
+        return told + ([kept.trouble] if kept is not None and kept.trouble else [])
+
+    if progress is True:
+        with bar(*limits) as report:
+            problems = run(report)
+    else:
+        problems = run(None)
+    seen: dict[str, NDArray[Any]] = {"samples": rendering.counts} if adaptive else {}
+    if names:
+        seen |= aovs(scene, camera, names, seed=seed, threads=threads)
+    image = _image(rendering, clamp, seen, problems)
+    if show is not None:
+        show(image)
+    return image
+
+
+_Limits = tuple[int | None, float | None, float | None]
+_Of = tuple[Scene, AnyCamera, AnyIntegrator, int, Sampler, Filter]
+
+
+class _StoppedError(Exception):
+    """A render was stopped from elsewhere."""
+
+
+class Checked(NamedTuple):
+    """What `render` was told, as the core takes it."""
+
+    limits: _Limits
+    seed: int
+    threads: int | None
+    clamp: float | None
+
+
+def check(
+    scene: Scene,
+    camera: AnyCamera,
+    integrator: AnyIntegrator,
+    samples: int | None,
+    error: float | None,
+    seconds: float | None,
+    seed: int,
+    threads: int | None,
+    adaptive: bool,
+    clamp: float | None,
+    sampler: Sampler,
+    filter: Filter,
+) -> Checked:
+    """Raise a TypeError or a ValueError unless `render` can do what it is told."""
+    for name, value, kind in (
+        ("scene", scene, Scene),
+        ("camera", camera, AnyCamera),
+    ):
+        if not isinstance(value, kind):
+            told = kind.__name__.removeprefix("Any")
+            raise TypeError(f"{name} must be a raywright.{told}, got {type(value).__name__}")
+    check_integrator("integrator", integrator)
+    if not isinstance(adaptive, bool):
+        raise TypeError(f"adaptive must be True or False, got {adaptive!r}")
+    if not isinstance(sampler, Sampler):
+        raise TypeError(f"sampler must be one of raywright's, got {type(sampler).__name__}")
+    if not isinstance(filter, Filter):
+        raise TypeError(f"filter must be one of raywright's, got {type(filter).__name__}")
+    samples = None if samples is None else integer("samples", samples, 1, 2**32 - 1)
+    error = None if error is None else positive("error", error)
+    seconds = None if seconds is None else positive("seconds", seconds)
+    clamp = None if clamp is None else positive("clamp", clamp)
+    if samples is None and error is None and seconds is None:
+        samples = _DEFAULT_SAMPLES
+    seed = integer("seed", seed, 0, 2**64 - 1)
+    threads = None if threads is None else integer("threads", threads, 1)
+    return Checked((samples, error, seconds), seed, threads, clamp)
+
+
+def _here(
+    rendering: _core.Rendering,
+    of: _Of,
+    limits: _Limits,
+    threads: int | None,
+    report: Report | None,
+    wait: Callable[[], float | None],
+    rest: Callable[[], None],
+    look: Callable[[], None] | None,
+) -> None:
+    """Render in this process; `rest` is called whenever `wait` is over."""
+    scene, camera, integrator, seed, sampler, filter = of
+    compiled = scene._compiled()
+    how = (compiled, camera, integrator, scene, seed, threads, *limits)
+    while not rendering.go_on(*how, wait(), report, sampler, filter, look):
+        rest()
+
+
+def _elsewhere(
+    rendering: _core.Rendering,
+    of: _Of,
+    executor: Executor,
+    limits: _Limits,
+    threads: int | None,
+    report: Report | None,
+    rest: Callable[[], None],
+    look: Callable[[], None],
+) -> list[str]:
+    """Render by an executor; if it breaks, return what there is to say of that."""
+    # Who renders here does not wait for the import.
+    from .executor import BrokenError, Distribution
+    from .worker import Job
+
+    def look_and_rest() -> None:
+        look()
+        rest()
+
+    distribution = Distribution(rendering, Job(*of), executor, limits, threads or 1)
+    try:
+        distribution.run(report, look_and_rest)
+    except BrokenError as error:
+        return [f"the executor broke, and the rest was rendered here: {error}"]
+    finally:
+        for message in distribution.told:
+            python_warnings.warn(message, RuntimeWarning, stacklevel=4)
+    return []
+
+
+def _identity(
+    scene: Scene,
+    camera: AnyCamera,
+    integrator: AnyIntegrator,
+    seed: int,
+    adaptive: bool,
+    clamp: float | None,
+    sampler: Sampler,
+    filter: Filter,
+) -> dict[str, str | int | float | bool | None]:
+    """Return all that the bits of a picture depend on, by names that users know."""
+    return {
+        "version": _core.VERSION,
+        "width": camera.width,
+        "height": camera.height,
+        "scene": digest(scene),
+        "camera": digest(camera),
+        "integrator": digest(integrator),
+        "seed": seed,
+        "adaptive": adaptive,
+        "clamp": clamp,
+        "sampler": repr(sampler),
+        "filter": repr(filter),
+    }
+
+
+def _patch(scene: Scene, integrator: AnyIntegrator) -> int:
+    """Return the side of the patches of pixels whose samples are taken together."""
+    if not isinstance(integrator, Path) or integrator.reuse == 1:
+        return 1
+    return _core.patch(scene._compiled(), integrator)
+
+
+def _begun(
+    kept: Checkpoints | None,
+    camera: AnyCamera,
+    threads: int | None,
+    adaptive: bool,
+    clamp: float | None,
+    sampler: Sampler,
+    patch: int,
+) -> _core.Rendering:
+    """Return an empty render, or that of a checkpoint."""
+    film = None if kept is None else kept.read(_core.Rendering.most_bytes(camera, adaptive))
+    if kept is None or film is None:
+        return _core.Rendering(camera, threads, adaptive, clamp, sampler, patch)
+    try:
+        return _core.Rendering.from_bytes(film, camera, threads, adaptive, clamp, sampler, patch)
+    except ValueError as error:
+        kept.refuse(f"is damaged: {error}")
+
+
+def _image(
+    done: _core.Rendering, clamp: float | None, aov: dict[str, NDArray[Any]], told: list[str]
+) -> Image:
+    history = np.empty(len(done.history), HISTORY)
+    for i, name in enumerate(HISTORY.names or ()):
+        history[name] = done.history[:, i]
+    warnings = list(told)
+    if done.dropped:
+        warnings.append(f"{_samples(done.dropped)} not finite or negative, and count as black")
+    clamped, taken = done.clamped
+    if clamped:
+        warnings.append(
+            f"biased: {_samples(clamped)} clamped to {clamp:g}, "
+            f"which took {100 * taken:.2g} % of the radiance"
+        )
+    if done.carried is not None:
+        few, share = done.carried
+        carriers = "one sample carries" if few == 1 else f"{few} samples carry"
+        warnings.append(f"{carriers} {100 * share:.0f} % of the error estimate: it cannot be trusted yet")
+    return Image(
+        done.rgb,
+        done.standard_error,
+        ErrorEstimate(*done.error, trusted=done.carried is None),
+        history,
+        done.seconds,
+        done.samples,
+        tuple(warnings),
+        biased=clamped > 0,
+        aov=aov,
+    )
+
+
+def _samples(count: int) -> str:
+    return f"{count} sample{' was' if count == 1 else 's were'}"

@@ -1,0 +1,164 @@
+"""Where the random numbers of a picture come from.
+
+The numbers of each sample are uniform, and those of its dimensions independent, for every kind: pictures
+differ in their noise only. Those with a `batch` place so many consecutive samples of a pixel evenly with
+regard to each other; batches are independent, and the spread between them tells the error.
+"""
+
+from dataclasses import dataclass, replace
+
+from .. import _core
+from ..arrays import integer
+
+_MOST = 64
+
+
+@dataclass(frozen=True)
+class Independent:
+    """Independent random numbers: Philox4x32-10 (Salmon et al. 2011)."""
+
+
+@dataclass(frozen=True)
+class Stratified:
+    """Jittered grids, with one point in each row and column of the finer grid too.
+
+    Multi-jittered sampling (Chiu, Shirley and Wang 1994), correlated as in Kensler (2013).
+
+    Parameters
+    ----------
+    batch : int, optional
+        Samples of a batch: 1, 2, 4, ... 64. If not given, the most of which the samples that are asked for
+        make at least 8 batches, and 64 from 256 samples on, or half as many if the render is adaptive; 1
+        if time may end it before.
+
+    Raises
+    ------
+    ValueError
+        If `batch` is no power of two, or out of range.
+    TypeError
+        If it is not an integer.
+    """
+
+    batch: int | None = None
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "batch", _batch(self.batch))
+
+
+@dataclass(frozen=True)
+class Halton:
+    """Radical inverses in prime bases (Halton 1960), scrambled as Owen (1995) does.
+
+    Pairs of dimensions have the bases 2 and 3, 5 and 7, ... 47 and 53, and then these again.
+
+    Parameters
+    ----------
+    batch : int, optional
+        Samples of a batch: 1, 2, 4, ... 64. If not given, the most of which the samples that are asked for
+        make at least 8 batches, and 64 from 256 samples on, or half as many if the render is adaptive; 1
+        if time may end it before.
+
+    Raises
+    ------
+    ValueError
+        If `batch` is no power of two, or out of range.
+    TypeError
+        If it is not an integer.
+    """
+
+    batch: int | None = None
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "batch", _batch(self.batch))
+
+
+@dataclass(frozen=True)
+class Sobol:
+    """Sobol's (0, 2)-sequence (1967), scrambled as Owen (1995) does, anew for each pair of dimensions.
+
+    Choices, as of a light, are placed together with the point that is chosen on it.
+
+    Parameters
+    ----------
+    batch : int, optional
+        Samples of a batch: 1, 2, 4, ... 64. If not given, the most of which the samples that are asked for
+        make at least 8 batches, and 64 from 256 samples on, or half as many if the render is adaptive; 1
+        if time may end it before.
+
+    Raises
+    ------
+    ValueError
+        If `batch` is no power of two, or out of range.
+    TypeError
+        If it is not an integer.
+    """
+
+    batch: int | None = None
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "batch", _batch(self.batch))
+
+
+@dataclass(frozen=True)
+class Lattice:
+    """Rank-1 lattices, each shifted at random (Cranley and Patterson 1976).
+
+    The generators are those of the least P2 (Sloan and Joe 1994). In most batches errors are smaller than
+    with `Sobol`; the points of a batch of 4 lie on a diagonal, and are worse.
+
+    Parameters
+    ----------
+    batch : int, optional
+        Samples of a batch: 1, 2, 4, ... 64. If not given, the most of which the samples that are asked for
+        make at least 8 batches, and 64 from 256 samples on, or half as many if the render is adaptive; 1
+        if time may end it before.
+
+    Raises
+    ------
+    ValueError
+        If `batch` is no power of two, or out of range.
+    TypeError
+        If it is not an integer.
+    """
+
+    batch: int | None = None
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "batch", _batch(self.batch))
+
+
+Sampler = Independent | Stratified | Halton | Sobol | Lattice
+
+
+def _batch(batch: int | None) -> int | None:
+    if batch is None:
+        return None
+    size = integer("batch", batch, 1, _MOST)
+    if size & (size - 1):
+        raise ValueError(f"batch must be a power of two, got {batch}")
+    return size
+
+
+def as_begun(sampler: Sampler, begun: object) -> Sampler:
+    """Return the sampler; if it has no batch, with that of one that has begun, known by its ``repr``."""
+    if not isinstance(sampler, Independent) and sampler.batch is None:
+        for size in range(_MOST.bit_length()):
+            if begun == repr(with_batch := replace(sampler, batch=1 << size)):
+                return with_batch
+    return sampler
+
+
+def with_budget(
+    sampler: Sampler, samples: int | None, error: float | None, seconds: float | None, adaptive: bool
+) -> Sampler:
+    """Return the sampler with batches for these limits of a render, if it was given none."""
+    if isinstance(sampler, Independent) or sampler.batch is not None:
+        return sampler
+    if seconds is not None:
+        # It takes two batches to tell an error, and a picture that is out of time has few samples.
+        samples = None
+    elif samples is None and error is not None:
+        # Of the fewest samples that a render to an error takes, four batches.
+        samples = 32
+    # The samples of an adaptive picture are in halves, each with batches of its own.
+    return replace(sampler, batch=max(_core.batch_for(samples) // (1 + adaptive), 1))

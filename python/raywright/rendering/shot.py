@@ -1,0 +1,116 @@
+"""A scene with all that it takes to make a picture of it."""
+
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+from ..arrays import integer
+from ..cameras import AnyCamera, Camera
+from ..integrators import AnyIntegrator, Path
+from ..scene.scene import Scene
+from .filters import BoxFilter, Filter
+from .image import Image
+from .render import render
+from .samplers import Independent, Sampler
+
+_LIMITS = ("samples", "error", "seconds")
+
+
+@dataclass(frozen=True)
+class Shot:
+    """A scene, a camera, and how they are rendered: what `load` and `from_mitsuba` return.
+
+    Shots compare by what they hold, and pickle.
+
+    Parameters
+    ----------
+    scene : Scene
+        What to look at.
+    camera : Camera or another kind
+        From where.
+    integrator : Path or another kind
+        What turns rays into radiance.
+    samples : int, optional
+        Samples per pixel; None leaves it to `render`.
+    sampler : Independent, Stratified, Halton, Sobol or Lattice
+        Where the random numbers come from.
+    filter : BoxFilter, TriangleFilter, GaussianFilter, MitchellFilter, BlackmanHarrisFilter or LanczosFilter
+        What part of the film a pixel is the mean of.
+    seed : int
+        Picks the random numbers.
+    aov : tuple of str
+        What is seen first beside the picture, as `raywright.render` takes it.
+    """
+
+    scene: Scene
+    camera: AnyCamera
+    integrator: AnyIntegrator = field(default_factory=Path)
+    samples: int | None = None
+    sampler: Sampler = field(default_factory=Independent)
+    filter: Filter = field(default_factory=BoxFilter)
+    seed: int = 0
+    aov: tuple[str, ...] = ()
+
+    def render(self, **overrides: Any) -> Image:
+        """Render the picture.
+
+        Parameters
+        ----------
+        **overrides
+            Arguments of `raywright.render`, in place of what the shot has. The samples of the shot are of
+            account only where none of `samples`, `error` and `seconds` is given.
+
+        Returns
+        -------
+        Image
+            With its standard error, error estimate and history.
+
+        Raises
+        ------
+        TypeError, ValueError, OSError, KeyboardInterrupt
+            As `raywright.render` does.
+        """
+        own: dict[str, Any] = {
+            "scene": self.scene,
+            "camera": self.camera,
+            "integrator": self.integrator,
+            "sampler": self.sampler,
+            "filter": self.filter,
+            "seed": self.seed,
+            "aov": self.aov,
+        }
+        if all(overrides.get(limit) is None for limit in _LIMITS):
+            own["samples"] = self.samples
+            overrides = {name: value for name, value in overrides.items() if name not in _LIMITS}
+        return render(**(own | overrides))
+
+    def resized(self, width: int | None = None, height: int | None = None) -> "Shot":
+        """Return the shot with a picture of another size.
+
+        Parameters
+        ----------
+        width, height : int, optional
+            In pixels. If only one is given, the other keeps the proportions.
+
+        Raises
+        ------
+        ValueError
+            If a number is out of its range.
+        TypeError
+            If it is not an integer.
+        """
+        before = self.camera
+        if width is None and height is None:
+            return self
+        if width is None:
+            width = max(round(before.width * integer("height", height or 0, 1) / before.height), 1)
+        if height is None:
+            height = max(round(before.height * integer("width", width, 1) / before.width), 1)
+        lens: dict[str, Any] = {}
+        if isinstance(before, Camera):
+            # What is told in pixels grows with them.
+            by = width / before.width, height / before.height
+            for name in ("focal", "principal"):
+                if (pair := getattr(before, name)) is not None:
+                    lens[name] = pair[0] * by[0], pair[1] * by[1]
+            lens["skew"] = before.skew * by[0] / by[1]
+        return replace(self, camera=replace(before, width=width, height=height, **lens))

@@ -1,0 +1,150 @@
+"""What happens in the processes of an executor: parts of pictures are made there.
+
+A render is described by a job, which each process needs once: the first piece of work that finds it missing
+reads it from a file, or asks for it. The scene is compiled once a process, however many pieces are worked on
+there.
+"""
+
+import hashlib
+import os
+import pickle
+import socket
+import threading
+import time
+import traceback
+import warnings
+from collections import OrderedDict
+from collections.abc import Sequence
+from contextlib import suppress
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from .. import _core
+
+if TYPE_CHECKING:
+    from ..cameras import AnyCamera
+    from ..scene.scene import Scene
+
+# Scenes that a process keeps compiled.
+_KEPT = 4
+_jobs: "OrderedDict[str, Job]" = OrderedDict()
+_lock = threading.RLock()
+
+
+@dataclass
+class Job:
+    """What is to be rendered: all that is the same for each piece of the work."""
+
+    scene: "Scene"
+    camera: "AnyCamera"
+    integrator: Any
+    seed: int
+    sampler: Any
+    filter: Any
+    told: tuple[str, ...] = ()
+    _compiling: threading.Lock = field(default_factory=threading.Lock, repr=False)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Job, (self.scene, self.camera, self.integrator, self.seed, self.sampler, self.filter)
+
+    def compiled(self) -> _core.CompiledScene:
+        """Return the scene, compiled the first time that it is asked for."""
+        if self.scene._core is not None:
+            return self.scene._core
+        # What there is to warn of is for who asked for the picture, who may be far away.
+        with self._compiling, warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            compiled = self.scene._compiled()
+            self.told += tuple(str(warning.message) for warning in caught)
+        return compiled
+
+    def expose(self, request: bytes, threads: int) -> bytes:
+        """Take the samples that a request wants."""
+        scene = self.compiled()
+        return _core.expose(
+            scene,
+            self.camera,
+            self.integrator,
+            self.scene,
+            self.seed,
+            threads,
+            request,
+            self.sampler,
+            self.filter,
+        )
+
+
+class Done(NamedTuple):
+    """Answers to the requests, how long they took, and what there was to warn of in the scene."""
+
+    answers: list[bytes]
+    seconds: float
+    worker: str
+    told: tuple[str, ...]
+
+
+class Missing(NamedTuple):
+    """The process has not been given the job yet."""
+
+    worker: str
+
+
+class Raised(NamedTuple):
+    """The scene or the integrator raised an exception, which is no accident of the executor."""
+
+    error: Exception
+    trace: str
+
+
+def keep(key: str, job: Job) -> None:
+    """Let this process have a job without asking for it."""
+    with _lock:
+        _jobs[key] = job
+        _jobs.move_to_end(key)
+        while len(_jobs) > _KEPT:
+            _jobs.popitem(last=False)
+
+
+def work(
+    key: str, payload: bytes | None, spool: str | None, requests: Sequence[bytes], threads: int, attempt: int
+) -> Done | Missing | Raised:
+    """Work on requests for a job; `attempt` only tells apart what is asked for again."""
+    me = f"{socket.gethostname()}/{os.getpid()}"
+    try:
+        job = _job(key, payload, spool)
+        if job is None:
+            return Missing(me)
+        # Not in the time that the work takes, by which later pieces are cut.
+        job.compiled()
+        began = time.perf_counter()
+        answers = [job.expose(request, threads) for request in requests]
+    except Exception as error:
+        return Raised(_sendable(error), traceback.format_exc())
+    return Done(answers, time.perf_counter() - began, me, job.told)
+
+
+def _job(key: str, payload: bytes | None, spool: str | None) -> Job | None:
+    with _lock:
+        if key in _jobs:
+            _jobs.move_to_end(key)
+            return _jobs[key]
+        if payload is None and spool is not None:
+            # Not there on another machine.
+            with suppress(OSError):
+                payload = Path(spool).read_bytes()
+        if payload is None or hashlib.sha256(payload).hexdigest() != key:
+            return None
+        job: Job = pickle.loads(payload)
+        keep(key, job)
+        return job
+
+
+def _sendable(error: Exception) -> Exception:
+    """Return an exception that survives being pickled: itself, or its words."""
+    try:
+        if type(pickle.loads(pickle.dumps(error))) is type(error):
+            return error
+    except Exception:
+        pass
+    return RuntimeError(f"{type(error).__name__}: {error}")

@@ -1,0 +1,290 @@
+"""Shapes put to many places."""
+
+import bisect
+import sys
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import accumulate
+from os import PathLike
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias, Union
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .. import _core
+from ..accelerators import BVH, Accelerator
+from ..arrays import frozen, integer, real_array
+from ..mesh_files.meshes import load
+from ..mesh_files.trimesh_objects import of_scene, of_trimesh
+from ..shapes import Shape
+from ..shapes.mesh import Mesh, face_count
+
+if TYPE_CHECKING:
+    import trimesh
+
+AnyShape = Union[Mesh, Shape, "Instance"]
+Shapes: TypeAlias = Union[
+    Mesh, Shape, "Instance", "trimesh.Trimesh", "trimesh.Scene", str, PathLike[str], "Sequence[Shapes]"
+]
+_BVH = BVH()
+_MOST = 2**31
+
+
+class Location(NamedTuple):
+    """Where a primitive of an instance is.
+
+    Attributes
+    ----------
+    path : tuple of (int, int)
+        For instances within the instance, from the outside in: which of its shapes is an instance, and which
+        copy of that. Empty where there is none.
+    shape : Mesh or another shape
+        The shape that the primitive is of.
+    shape_id : int
+        Which it is of the ``shapes`` of the innermost instance.
+    face : int
+        Which face of the shape; 0 of one that is no mesh.
+    """
+
+    path: tuple[tuple[int, int], ...]
+    shape: Mesh | Shape
+    shape_id: int
+    face: int
+
+
+@dataclass(frozen=True, init=False, eq=False, repr=False)
+class Instance:
+    """Shapes put to one place or to many, compiled once: a copy takes some 150 bytes, whatever is copied.
+
+    Materials and emission are those of the shapes. What shines in copies is sampled as a light, each copy of
+    each face by itself, where the copies stand still and are at most 4096 in all; what shines in copies that
+    move, in copies within copies, or in more of them is not: it lights the scene by rays that meet it, so
+    small bright lights are better left out of these.
+
+    Parameters
+    ----------
+    shapes : Mesh or another shape, Instance, trimesh.Trimesh, trimesh.Scene, path, or list or tuple of these
+        What is copied. Instances of the same shapes, the very same objects, share what is compiled.
+    transform : (4, 4) or (N, 4, 4) array
+        Where the copies are: affine matrices that act on column vectors (x, y, z, 1), each with (0, 0, 0, 1)
+        as its last row, and invertible.
+    transform_end : array of the same shape, optional
+        Where they are as the shutter closes, for copies that move. At a time between 0 and 1 the matrix is
+        ``transform + (transform_end - transform) * time``, number by number: every point moves on a straight
+        line, and what turns by much should be cut into shorter times. Should a matrix between have no
+        inverse, the copy is not seen then.
+    accelerator : BVH or another accelerator, optional
+        The structure that finds hits in the shapes, by itself; ``BVH()`` if not given.
+
+    Raises
+    ------
+    ValueError
+        If a matrix has the wrong shape, is not finite, has another last row or no inverse (tells which and
+        why), or there are 2^31 primitives or more, all copies within counted.
+    TypeError
+        If something is not of the kinds above.
+
+    Notes
+    -----
+    ``hits.instance`` tells which copy is hit, and ``hits.primitive`` what in it, numbered flat: shape after
+    shape, a mesh by its faces, an instance by its copies and for each of them all that is in it. `locate`
+    takes such a number apart.
+
+    A ray is taken to the space of the shapes by the inverse of the matrix, rounded to float64, and hits are
+    exact for it as it is taken there. Compared with shapes that are moved themselves, hits differ by what
+    rounding moved vertices makes, and not at all where neither rounds, as with integers and powers of two.
+
+    Closed surfaces in copies count for ``contains``; ``closest_point`` is not told of scenes with instances.
+    """
+
+    shapes: tuple[AnyShape, ...]
+    transform: NDArray[np.float64]
+    transform_end: NDArray[np.float64] | None
+    accelerator: Accelerator
+
+    def __init__(
+        self,
+        shapes: "Shapes",
+        transform: ArrayLike,
+        transform_end: ArrayLike | None = None,
+        accelerator: Accelerator | None = None,
+    ) -> None:
+        start = _matrices("transform", transform)
+        end = None if transform_end is None else _matrices("transform_end", transform_end)
+        if end is not None and end.shape != start.shape:
+            raise ValueError(f"transform_end must have shape {start.shape} as transform, got {end.shape}")
+        if accelerator is not None and not isinstance(accelerator, Accelerator):
+            raise TypeError(f"accelerator must be a raywright accelerator, got {type(accelerator).__name__}")
+        values = {
+            "shapes": meshes(shapes),
+            "transform": start,
+            "transform_end": end,
+            "accelerator": _BVH if accelerator is None else accelerator,
+        }
+        for name, value in values.items():
+            object.__setattr__(self, name, value)
+        if self.primitives >= _MOST:
+            told = f"{self.primitives} primitives, all copies in it counted"
+            raise ValueError(f"an instance must hold fewer than 2^31 primitives, got {told}")
+        if len(self) >= _MOST:
+            raise ValueError(f"transform must have fewer than 2^31 matrices, got {len(self)}")
+
+    def __len__(self) -> int:
+        return 1 if self.transform.ndim == 2 else len(self.transform)
+
+    @cached_property
+    def _first(self) -> tuple[int, ...]:
+        """Where the primitives of each shape begin, and how many there are."""
+        sizes = (
+            len(shape) * shape.primitives if isinstance(shape, Instance) else _count(shape)
+            for shape in self.shapes
+        )
+        return (0, *accumulate(sizes))
+
+    @property
+    def primitives(self) -> int:
+        """How many primitives one copy has, all copies in it counted."""
+        return self._first[-1]
+
+    def locate(self, primitive: int) -> Location:
+        """Find what a number of ``hits.primitive`` stands for.
+
+        Raises
+        ------
+        ValueError
+            If it is negative or not below `primitives`.
+        TypeError
+            If it is not an integer.
+        """
+        rest = integer("primitive", primitive, 0, self.primitives - 1)
+        within = self
+        path: list[tuple[int, int]] = []
+        while True:
+            shape_id = bisect.bisect_right(within._first, rest) - 1
+            rest -= within._first[shape_id]
+            shape = within.shapes[shape_id]
+            if not isinstance(shape, Instance):
+                return Location(tuple(path), shape, shape_id, rest)
+            copy, rest = divmod(rest, shape.primitives)
+            path.append((shape_id, copy))
+            within = shape
+
+    def moved(self, transform: ArrayLike, transform_end: ArrayLike | None = None) -> "Instance":
+        """Return as many copies of the same shapes elsewhere; they share what is compiled."""
+        result = Instance(self.shapes, transform, transform_end, self.accelerator)
+        if len(result) != len(self):
+            raise ValueError(f"transform must have {len(self)} matrices, got {len(result)}")
+        return result
+
+    def _parts(self) -> tuple[Any, ...]:
+        return self.shapes, self.transform, self.transform_end, self.accelerator
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Instance):
+            return NotImplemented
+        pairs = ((self.transform, other.transform), (self.transform_end, other.transform_end))
+        return (
+            self.accelerator == other.accelerator
+            and all(a is b or (a is not None and b is not None and np.array_equal(a, b)) for a, b in pairs)
+            and self.shapes == other.shapes
+        )
+
+    def __hash__(self) -> int:
+        return hash((self.shapes, self.transform.shape, self.accelerator))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Instance, self._parts()
+
+    def __repr__(self) -> str:
+        shapes, copies = len(self.shapes), len(self)
+        parts = [
+            f"{shapes} shape{'' if shapes == 1 else 's'}",
+            f"{copies} {'copy' if copies == 1 else 'copies'}",
+        ]
+        parts += [] if self.transform_end is None else ["moving"]
+        parts += [] if self.accelerator == _BVH else [repr(self.accelerator)]
+        return f"Instance({', '.join(parts)})"
+
+
+def _count(shape: Mesh | Shape) -> int:
+    """Return how many primitives a shape is: one if it is no mesh."""
+    return face_count(shape) if isinstance(shape, Mesh) else 1
+
+
+def _matrices(name: str, value: ArrayLike) -> NDArray[np.float64]:
+    """Return a read-only copy of (4, 4) or (N, 4, 4) affine matrices that have inverses."""
+    array = real_array(name, value).astype(np.float64, copy=False)
+    if array.ndim not in (2, 3) or array.shape[-2:] != (4, 4):
+        raise ValueError(f"{name} must have shape (4, 4) or (N, 4, 4), got {array.shape}")
+
+    def which(index: int) -> str:
+        return name if array.ndim == 2 else f"{name}[{index}]"
+
+    each = array.reshape(-1, 4, 4)
+    finite = np.isfinite(each).all(axis=(1, 2))
+    if not finite.all():
+        raise ValueError(f"{which(int(np.argmin(finite)))} must be finite, and has NaN or infinity")
+    affine = (each[:, 3] == (0, 0, 0, 1)).all(axis=1)
+    if not affine.all():
+        first = int(np.argmin(affine))
+        row = ", ".join(f"{x:g}" for x in each[first, 3])
+        raise ValueError(f"{which(first)} must have (0, 0, 0, 1) as its last row, got ({row})")
+    array = frozen(array)
+    if (singular := _core.singular_transform(array)) is not None:
+        index, why = singular
+        raise ValueError(f"{which(index)} must have an inverse: {why}")
+    return array
+
+
+def meshes(shapes: Any) -> tuple[AnyShape, ...]:
+    """Lay out shapes, instances, trimesh objects, paths and nested lists of them as one flat tuple.
+
+    Raises
+    ------
+    FileNotFoundError
+        If a file is missing.
+    ValueError
+        If a file is not a mesh that can be read.
+    TypeError
+        If something is none of these.
+    """
+    return tuple(_each(shapes))
+
+
+def only_meshes(shapes: Any) -> tuple[Mesh, ...]:
+    """Lay out shapes as `meshes` does, where other shapes will not do.
+
+    Raises
+    ------
+    TypeError
+        If one of them is no mesh; and what `meshes` raises.
+    """
+    found = []
+    for shape in _each(shapes):
+        if not isinstance(shape, Mesh):
+            raise TypeError(f"only meshes can be taken here, got {type(shape).__name__}")
+        found.append(shape)
+    return tuple(found)
+
+
+def _each(shapes: Any) -> Iterator[AnyShape]:
+    # trimesh is never imported only to ask: whoever made such an object has imported it.
+    trimesh = sys.modules.get("trimesh")
+    if isinstance(shapes, Mesh | Shape | Instance):
+        yield shapes
+    elif isinstance(shapes, str | PathLike):
+        yield from load(shapes)
+    elif isinstance(shapes, list | tuple):
+        for shape in shapes:
+            yield from _each(shape)
+    elif isinstance(shapes, getattr(trimesh, "Trimesh", ())):
+        yield of_trimesh(shapes)
+    elif isinstance(shapes, getattr(trimesh, "Scene", ())):
+        yield from of_scene(shapes)
+    else:
+        came = f"{type(shapes).__module__}.{type(shapes).__qualname__}"
+        raise TypeError(
+            "shapes must be a Mesh, another raywright shape, an Instance, a trimesh.Trimesh, "
+            f"a trimesh.Scene, a path, or a list of these, got {came}"
+        )

@@ -1,0 +1,264 @@
+"""A scene: what can be hit, and what shines."""
+
+import threading
+import warnings
+from collections.abc import Sequence
+from typing import Any, Literal, TypeAlias, get_args
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .. import _core
+from ..accelerators import BVH, Accelerator
+from ..arrays import choice
+from ..lights import Environment, Light, environments
+from ..lights import lights as checked_lights
+from ..query.queries import Queries
+from ..shapes.mesh import face_count, moved
+from .instance import AnyShape, Instance, Shapes, meshes
+from .plan import Plan, PlanRow
+
+Precision: TypeAlias = Literal["single", "double"]
+Quality: TypeAlias = Literal["fast build", "balanced", "fast rays"]
+_BINNED_BVH = BVH()
+
+
+class Scene(Queries):
+    """Shapes and lights; compiled for rays the first time that it is asked.
+
+    Nothing about it changes but where the vertices are, by `refit`. It may be asked from many threads at
+    once.
+
+    Parameters
+    ----------
+    shapes : Mesh, Sphere or another shape, Instance, trimesh.Trimesh, trimesh.Scene, path, or list of these
+        What can be hit. A path may be of any mesh file that trimesh reads (PLY, OBJ, STL, GLB, ...). Lists
+        may be nested; all of it is laid out flat in ``scene.shapes``. A trimesh.Scene gives one mesh for each
+        node that holds one, in the order of its geometry and with the node's transform applied; points and
+        curves are left out.
+    lights : PointLight, SpotLight, DirectionalLight or ProjectorLight, or sequence of them
+        Lights that are no surfaces.
+    environment : ConstantEnvironment, EnvironmentMap, SunSky, list of these, float or 3 floats, optional
+        What surrounds the scene; numbers are a constant radiance, and several add up. None is black.
+    accelerator : BVH, KdTree, Octree, BSP, Grid, NestedGrid or BruteForce
+        The structure that finds hits.
+    precision : {"single", "double"}
+        What vertices are rounded to: "single" to float32, which takes the least memory and is the fastest,
+        "double" not at all. Either way hits are exact for the vertices as they then are. "double" costs
+        nothing where all vertices are float32 numbers anyway.
+    quality : {"balanced", "fast build", "fast rays"}
+        How long the accelerator may take to build for the sake of rays. Unless it is "fast build", what is
+        long and diagonal may be cut to pieces for it, and for "fast rays" what else is long; such a tree is
+        built anew by `refit`.
+
+    Raises
+    ------
+    FileNotFoundError
+        If a file is missing.
+    ValueError
+        If a file is not a mesh that can be read, or `precision` or `quality` is not one of those.
+    TypeError
+        If something is not of the kinds above.
+
+    Notes
+    -----
+    Faces with a corner that is NaN or infinite are left out when the scene is compiled, with one
+    RuntimeWarning that tells how many. Scenes compare by what they hold, and pickle without what was
+    compiled.
+    """
+
+    def __init__(
+        self,
+        shapes: Shapes,
+        lights: Light | Sequence[Light] = (),
+        environment: Environment | Sequence[Environment] | ArrayLike | None = None,
+        accelerator: Accelerator = _BINNED_BVH,
+        precision: Precision = "single",
+        quality: Quality = "balanced",
+    ) -> None:
+        self._shapes = meshes(shapes)
+        self._lights = checked_lights(lights)
+        self._environment = environments(environment)
+        if not isinstance(accelerator, Accelerator):
+            kinds = ", ".join(kind.__name__ for kind in get_args(Accelerator))
+            raise TypeError(f"accelerator must be one of {kinds}, got {type(accelerator).__name__}")
+        self._accelerator = accelerator
+        choice("precision", precision, get_args(Precision))
+        choice("quality", quality, get_args(Quality))
+        self._precision, self._quality = precision, quality
+        self._core: _core.CompiledScene | None = None
+        self._lock = threading.Lock()
+
+    @property
+    def shapes(self) -> tuple[AnyShape, ...]:
+        """What can be hit; `Hits.shape_id` counts them."""
+        return self._shapes
+
+    @property
+    def lights(self) -> tuple[Light, ...]:
+        """The lights that are no surfaces."""
+        return self._lights
+
+    @property
+    def environment(self) -> Environment | tuple[Environment, ...] | None:
+        """What surrounds the scene, a tuple if that is several; None is black."""
+        return self._environment
+
+    @property
+    def accelerator_choice(self) -> Accelerator:
+        """The accelerator that was asked for."""
+        return self._accelerator
+
+    @property
+    def precision(self) -> Precision:
+        """What vertices are rounded to: "single" or "double"."""
+        return self._precision
+
+    @property
+    def quality(self) -> Quality:
+        """How long the accelerator may take to build: "fast build", "balanced" or "fast rays"."""
+        return self._quality
+
+    @property
+    def accelerator(self) -> _core.AcceleratorInfo:
+        """What the accelerator came to be: kind, nodes, leaves, depth, bytes, build_seconds, sah_cost."""
+        return self._compiled().accelerator
+
+    @property
+    def bytes(self) -> int:
+        """Memory that the compiled scene holds: accelerators, vertices, faces, normals and transforms."""
+        return self._compiled().bytes
+
+    @property
+    def bounds(self) -> NDArray[np.float64] | None:
+        """Least and greatest corner of all that can be hit, (2, 3) float64; None for an empty scene.
+
+        What has no end, as a `Plane`, does not count.
+        """
+        return self._compiled().bounds
+
+    def refit(self, vertices: ArrayLike | Sequence[ArrayLike | None]) -> float:
+        """Move the vertices, and fit the accelerator to them: much faster than a new scene.
+
+        Faces, materials, lights and given normals stay as they are. ``scene.shapes`` are new meshes; hits
+        that were found before stay as they were found.
+
+        Parameters
+        ----------
+        vertices : (V, 3) array, or list of them
+            The vertices of the only shape, or of each shape; as many as it has. None in the list leaves a
+            shape where it is, which is all that can be said of a curved one. Of an `Instance` the transforms,
+            (4, 4) or (N, 4, 4), or a tuple of two such arrays for copies that move; its shapes stay as they
+            are.
+
+        Returns
+        -------
+        float
+            How much the accelerator's expected cost (`sah_cost`) has grown since it was last built: 1 is as
+            good as new, and at 2 rays take about twice as long, which `rebuild` puts right.
+
+        Raises
+        ------
+        ValueError
+            If the number of meshes or of vertices is another.
+        TypeError
+            If an array does not hold real numbers.
+
+        Notes
+        -----
+        What cannot be refitted is built anew, for example where other faces than before have a corner that
+        is NaN or infinite, or where the accelerator holds pieces of faces;
+        ``scene.accelerator.kind`` then does not end in "refitted". With ``quality="fast build"`` the default
+        accelerator holds no pieces. A scene that was not asked anything yet is built when it is.
+        """
+        after = Scene(self._moved(vertices), *self._parts()[1:])
+        with self._lock:
+            core = self._core and self._core.refitted(after)
+            built, self._shapes, self._core = self._core is not None, after.shapes, core
+        if core is None and built:
+            core = self._compiled()
+        return core.growth if core else 1.0
+
+    def rebuild(self) -> None:
+        """Build the accelerator anew, for where the vertices are now."""
+        with self._lock:
+            self._core = None
+        self._compiled()
+
+    def _moved(self, vertices: ArrayLike | Sequence[ArrayLike | None]) -> tuple[AnyShape, ...]:
+        count = len(self._shapes)
+        if count == 1 and isinstance(self._shapes[0], Instance):
+            only = vertices[0] if isinstance(vertices, list) and len(vertices) == 1 else vertices
+            return (self._shapes[0] if only is None else _elsewhere(self._shapes[0], "vertices", only),)
+        given = list(vertices) if isinstance(vertices, list | tuple) else None
+        if count == 1 and not (given and len(given) == 1 and (given[0] is None or np.ndim(given[0]) == 2)):
+            return (_elsewhere(self._shapes[0], "vertices", vertices),)
+        if given is None or len(given) != count:
+            came = "an array" if given is None else str(len(given))
+            raise ValueError(f"vertices must be a list of {_counted(count, 'array')}, got {came}")
+        return tuple(
+            shape if to is None else _elsewhere(shape, f"vertices[{i}]", to)
+            for i, (shape, to) in enumerate(zip(self._shapes, given, strict=True))
+        )
+
+    def plan(self) -> Plan:
+        """Return what the scene needs, what is left out, and which kernel renders it, as a table."""
+        kernel, rows = _core.plan(self._compiled())
+        return Plan(kernel, tuple(PlanRow(*row) for row in rows))
+
+    def _compiled(self) -> _core.CompiledScene:
+        with self._lock:
+            if self._core is not None:
+                return self._core
+            self._core = compiled = _core.CompiledScene(self, self._accelerator)
+        if compiled.dropped:
+            faces = sum(map(face_count, self._shapes))
+            warnings.warn(
+                f"{compiled.dropped} of {faces} faces were dropped: a corner is NaN or infinite",
+                RuntimeWarning,
+                stacklevel=3,
+            )
+        return compiled
+
+    def _parts(self) -> tuple[Any, ...]:
+        return (
+            self._shapes,
+            self._lights,
+            self._environment,
+            self._accelerator,
+            self._precision,
+            self._quality,
+        )
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Scene):
+            return NotImplemented
+        return self._parts() == other._parts()
+
+    def __hash__(self) -> int:
+        return hash(self._parts())
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Scene, self._parts()
+
+    def __repr__(self) -> str:
+        faces = sum(map(face_count, self._shapes))
+        parts = [f"{_counted(len(self._shapes), 'shape')}", _counted(faces, "face")]
+        if self._lights:
+            parts.append(_counted(len(self._lights), "light"))
+        if self._environment is not None:
+            parts.append(repr(self._environment))
+        parts.append(repr(self._accelerator))
+        parts += [f"precision={self._precision!r}"] if self._precision != "single" else []
+        parts += [f"quality={self._quality!r}"] if self._quality != "balanced" else []
+        return f"Scene({', '.join(parts)})"
+
+
+def _elsewhere(shape: AnyShape, name: str, to: Any) -> AnyShape:
+    if not isinstance(shape, Instance):
+        return moved(shape, name, to)
+    return shape.moved(*to) if isinstance(to, tuple) else shape.moved(to)
+
+
+def _counted(count: int, name: str) -> str:
+    return f"{count} {name}{'' if count == 1 else 's'}"

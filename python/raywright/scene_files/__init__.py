@@ -1,0 +1,1 @@
+"""Whole scenes from files, ready to be rendered."""

@@ -1,0 +1,220 @@
+"""BSDFs to materials. Most of Mitsuba's scatter on the side of the normals only: the other is black."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...materials import (
+    BumpMap,
+    Dielectric,
+    Diffuse,
+    Mask,
+    Material,
+    MetallicRough,
+    Mix,
+    NormalMap,
+    Plastic,
+    ThinDielectric,
+    TwoSided,
+)
+from . import coats
+from .errors import SceneError
+from .facets import conductor, dielectric, roughness, scaled
+from .iors import relative
+from .plugin import Plugin
+from .textures import normals, numbers, scalar, value
+from .uv import Uv
+from .values import colour
+
+BLACK = Diffuse(0.0)
+
+
+class Sides(NamedTuple):
+    """A material, and whether only the side of the normals has it."""
+
+    material: Material
+    front_only: bool
+
+    def closed(self) -> Material:
+        """Return the material of both sides."""
+        return TwoSided(self.material, BLACK) if self.front_only else self.material
+
+
+def material(plugin: Plugin, uv: Uv) -> Material:
+    """Return the material that a BSDF stands for, of both sides.
+
+    Raises
+    ------
+    ValueError
+        If its type, or a parameter of it, is not supported; tells which.
+    """
+    return sides(plugin, uv).closed()
+
+
+def sides(plugin: Plugin, uv: Uv) -> Sides:
+    """Return the material that a BSDF stands for, and whether it has one side only."""
+    key = (id(plugin.values), id(uv))
+    if key in plugin.context.kept:
+        kept: Sides = plugin.context.kept[key]
+        return kept
+    try:
+        result = _READERS[plugin.type](plugin, uv)
+    except SceneError:
+        raise
+    except (ValueError, TypeError) as error:
+        # What a material refuses is told with the plugin that asks for it.
+        raise SceneError(f"{plugin}: {error}") from error
+    plugin.done()
+    plugin.context.kept[key] = result
+    return result
+
+
+def turned_round(given: Material, plugin: Plugin) -> Material:
+    """Return a material as it is on a surface whose normals point the other way.
+
+    Raises
+    ------
+    ValueError
+        If it has bumps, or normals of its own: tells it of the plugin whose surface it is.
+    """
+    if isinstance(given, BumpMap | NormalMap):
+        plugin.fail("flip_normals with bumps or a normal map is not supported")
+    if isinstance(given, TwoSided):
+        return TwoSided(turned_round(given.back, plugin), turned_round(given.front, plugin))
+    if isinstance(given, Mask):
+        return Mask(turned_round(given.material, plugin), given.opacity)
+    if isinstance(given, Mix):
+        return Mix(turned_round(given.a, plugin), turned_round(given.b, plugin), given.amount)
+    return replace(given, ior=1 / given.ior) if isinstance(given, Dielectric) else given
+
+
+def _diffuse(plugin: Plugin, uv: Uv) -> Sides:
+    return Sides(Diffuse(value(plugin, "reflectance", 0.5, uv)), True)
+
+
+def _dielectric(plugin: Plugin, uv: Uv) -> Sides:
+    return Sides(dielectric(plugin, uv), False)
+
+
+def _thin_dielectric(plugin: Plugin, uv: Uv) -> Sides:
+    pane = ThinDielectric(relative(plugin, "bk7"))
+    return Sides(scaled(pane, plugin, ("specular_reflectance", "specular_transmittance"), uv), False)
+
+
+def _conductor(plugin: Plugin, uv: Uv) -> Sides:
+    return Sides(conductor(plugin, uv), True)
+
+
+def _plastic(plugin: Plugin, uv: Uv) -> Sides:
+    ior = relative(plugin, "polypropylene")
+    alpha = roughness(plugin, uv) if plugin.type == "roughplastic" else 0.0
+    if not isinstance(alpha, float):
+        plugin.fail("alpha must be one number")
+    # What the coat reflects back to the base: as Mitsuba has it, and as it is here.
+    own = coats.smooth(ior)
+    theirs = coats.rough(ior, alpha) if plugin.type == "roughplastic" else own
+    nonlinear = plugin.switch("nonlinear", False)
+
+    def change(colours: NDArray[np.float64]) -> NDArray[np.float64]:
+        # What makes r / (1 - own r) here of theirs: r / (1 - theirs r), or unless nonlinear r / (1 - theirs).
+        trapped = theirs * (colours if nonlinear else 1.0)
+        return np.minimum(colours / (1 - trapped + own * colours), 1.0)
+
+    if colour(plugin, "specular_reflectance", 1.0) != (1.0, 1.0, 1.0):
+        plugin.fail("specular_reflectance must be 1")
+    reflectance = value(plugin, "diffuse_reflectance", 0.5, uv, change=change)
+    return Sides(Plastic(reflectance, ior, alpha=alpha), True)
+
+
+def _principled(plugin: Plugin, uv: Uv) -> Sides:
+    plugin.warn("a principled BSDF is approximated by glTF's: base_color, metallic and roughness")
+    left_out = {
+        "anisotropic", "spec_trans", "eta", "specular", "spec_tint", "sheen", "sheen_tint", "flatness",
+        "clearcoat", "clearcoat_gloss", "diffuse_reflectance_sampling_rate", "main_specular_sampling_rate",
+        "clearcoat_sampling_rate",
+    }  # fmt: skip
+    if plugin.take("spec_trans", 0.0) != 0.0:
+        plugin.fail("spec_trans is not supported")
+    plugin.ignore(*left_out)
+    return Sides(
+        MetallicRough(
+            value(plugin, "base_color", 0.5, uv),
+            scalar(plugin, "metallic", 0.0, uv),
+            scalar(plugin, "roughness", 0.5, uv),
+        ),
+        True,
+    )
+
+
+def _two_sided(plugin: Plugin, uv: Uv) -> Sides:
+    inner = _inner(plugin, uv, 1, 2)
+    if len(inner) == 1:
+        return Sides(inner[0].material, False)
+    return Sides(TwoSided(inner[0].material, inner[1].material), False)
+
+
+def _mask(plugin: Plugin, uv: Uv) -> Sides:
+    (inner,) = _inner(plugin, uv, 1)
+    return Sides(Mask(inner.closed(), scalar(plugin, "opacity", 0.5, uv)), False)
+
+
+def _blend(plugin: Plugin, uv: Uv) -> Sides:
+    a, b = _inner(plugin, uv, 2)
+    amount = scalar(plugin, "weight", 0.5, uv)
+    if a.front_only and b.front_only:
+        return Sides(Mix(a.material, b.material, amount), True)
+    return Sides(Mix(a.closed(), b.closed(), amount), False)
+
+
+def _bump_map(plugin: Plugin, uv: Uv) -> Sides:
+    (inner,) = _inner(plugin, uv, 1)
+    _soft_terminator(plugin)
+    textures = list(plugin.children("bitmap", "checkerboard"))
+    if len(textures) != 1:
+        plugin.fail(f"one texture must be within, got {len(textures)}")
+    height = numbers(textures[0], uv)
+    return inner._replace(material=BumpMap(inner.material, height, plugin.number("scale", 1.0)))
+
+
+def _normal_map(plugin: Plugin, uv: Uv) -> Sides:
+    (inner,) = _inner(plugin, uv, 1)
+    _soft_terminator(plugin)
+    given = plugin.child("normalmap")
+    if given is None:
+        plugin.fail("normalmap must be given")
+    return inner._replace(material=NormalMap(inner.material, normals(given, uv)))
+
+
+def _soft_terminator(plugin: Plugin) -> None:
+    plugin.ignore("flip_invalid_normals", "use_shadowing_function")
+    plugin.warn("light fades towards the horizon in raywright's way, not by use_shadowing_function")
+
+
+def _inner(plugin: Plugin, uv: Uv, *counts: int) -> list[Sides]:
+    found = [sides(inner, uv) for inner in plugin.children(*_READERS)]
+    if len(found) not in counts:
+        expected = " or ".join(map(str, counts))
+        plugin.fail(f"{expected} BSDF{'' if counts == (1,) else 's'} must be within, got {len(found)}")
+    return found
+
+
+_READERS: dict[str, Callable[[Plugin, Uv], Sides]] = {
+    "diffuse": _diffuse,
+    "dielectric": _dielectric,
+    "roughdielectric": _dielectric,
+    "thindielectric": _thin_dielectric,
+    "conductor": _conductor,
+    "roughconductor": _conductor,
+    "plastic": _plastic,
+    "roughplastic": _plastic,
+    "principled": _principled,
+    "twosided": _two_sided,
+    "mask": _mask,
+    "blendbsdf": _blend,
+    "bumpmap": _bump_map,
+    "normalmap": _normal_map,
+}
+TYPES = tuple(_READERS)

@@ -1,0 +1,98 @@
+"""Meshes as Mitsuba has them: of OBJ and PLY files, its rectangle and its cube."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...mesh_files.meshes import load_whole
+from .plugin import Plugin
+from .transforms import Matrix
+
+Floats = NDArray[np.float64]
+
+_FACES = (
+    # Which way a face of the cube looks, and its corners with the coordinates (0, 1), (1, 1), (1, 0), (0, 0).
+    ((0, -1, 0), ((1, -1, -1), (1, -1, 1), (-1, -1, 1), (-1, -1, -1))),
+    ((0, 1, 0), ((1, 1, -1), (-1, 1, -1), (-1, 1, 1), (1, 1, 1))),
+    ((1, 0, 0), ((1, -1, -1), (1, 1, -1), (1, 1, 1), (1, -1, 1))),
+    ((0, 0, 1), ((1, -1, 1), (1, 1, 1), (-1, 1, 1), (-1, -1, 1))),
+    ((-1, 0, 0), ((-1, -1, 1), (-1, 1, 1), (-1, 1, -1), (-1, -1, -1))),
+    ((0, 0, -1), ((1, 1, -1), (1, -1, -1), (-1, -1, -1), (-1, 1, -1))),
+)
+
+
+class Triangles(NamedTuple):
+    """What a mesh is made of: (V, 3), (F, 3), and if there are any (V, 3) normals and (V, 2) coordinates."""
+
+    vertices: Floats
+    faces: NDArray[np.int64]
+    normals: Floats | None = None
+    uv: Floats | None = None
+
+    def placed(self, matrix: Matrix, flipped: bool) -> "Triangles":
+        """Return them where a matrix puts them; `flipped`, with the other side outside.
+
+        A matrix that mirrors turns faces round where there are normals, so that what is outside stays so.
+        """
+        linear = matrix[:3, :3]
+        vertices = self.vertices @ linear.T + matrix[:3, 3]
+        normals = self.normals
+        turned = flipped
+        if normals is not None:
+            normals = _unit(normals @ np.linalg.inv(linear))
+            turned = flipped != bool(np.linalg.det(linear) < 0)
+            normals = -normals if flipped else normals
+        return Triangles(vertices, self.faces[:, [0, 2, 1]] if turned else self.faces, normals, self.uv)
+
+
+def rectangle() -> Triangles:
+    """Return the square from (-1, -1, 0) to (1, 1, 0), which looks along +z."""
+    uv = np.array([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)])
+    vertices = np.column_stack([2 * uv - 1, np.zeros(4)])
+    return Triangles(vertices, np.array([(0, 1, 2), (0, 2, 3)]), np.tile((0.0, 0.0, 1.0), (4, 1)), uv)
+
+
+def cube() -> Triangles:
+    """Return the cube from (-1, -1, -1) to (1, 1, 1), each face of which has coordinates of its own."""
+    vertices = np.array([corner for _, corners in _FACES for corner in corners], np.float64)
+    normals = np.repeat(np.array([normal for normal, _ in _FACES], np.float64), 4, axis=0)
+    uv = np.tile([(0.0, 1.0), (1.0, 1.0), (1.0, 0.0), (0.0, 0.0)], (6, 1))
+    faces = (np.arange(6)[:, None, None] * 4 + np.array([(0, 1, 2), (3, 0, 2)])).reshape(-1, 3)
+    return Triangles(vertices, faces, normals, uv)
+
+
+def of_file(plugin: Plugin) -> tuple[Triangles, bool]:
+    """Return the mesh of an ``obj`` or ``ply``, and whether it is still to be made smooth where it stands."""
+    path = plugin.path()
+    mesh = load_whole(path, plugin.type)
+    vertices, faces = mesh.vertices.astype(np.float64), mesh.faces.astype(np.int64)
+    if not np.isfinite(vertices[faces]).all():
+        plugin.fail(f"{path} has corners that are not finite")
+    uv = None if mesh.uv is None else mesh.uv.astype(np.float64)
+    if plugin.switch("flip_tex_coords", plugin.type == "obj") and uv is not None:
+        uv = np.column_stack([uv[:, 0], 1 - uv[:, 1]])
+    flat, given = plugin.switch("face_normals", False), mesh.normals
+    normals = None if flat or given is None else _unit(given.astype(np.float64))
+    return Triangles(vertices, faces, normals, uv), not flat and given is None
+
+
+def smooth_normals(vertices: Floats, faces: NDArray[np.int64]) -> Floats:
+    """Return normals of vertices, (V, 3): those of the faces around, weighted by their angles there.
+
+    Thürmer and Wüthrich, "Computing Vertex Normals from Polygonal Facets" (1998).
+    """
+    corners = vertices[faces]
+    own = _unit(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]))
+    total = np.zeros_like(vertices)
+    for k in range(3):
+        a, b = (_unit(corners[:, (k + step) % 3] - corners[:, k]) for step in (1, 2))
+        # Kahan's angle, which keeps its digits where the cosine is near 1.
+        angle = 2 * np.arctan2(np.linalg.norm(a - b, axis=1), np.linalg.norm(a + b, axis=1))
+        np.add.at(total, faces[:, k], own * angle[:, None])
+    return _unit(total)
+
+
+def _unit(vectors: Floats) -> Floats:
+    lengths = np.linalg.norm(vectors, axis=-1, keepdims=True)
+    return np.asarray(np.divide(vectors, lengths, out=np.zeros_like(vectors), where=lengths > 0))

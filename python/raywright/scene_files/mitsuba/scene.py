@@ -1,0 +1,115 @@
+"""A whole scene, from a dict or an XML file."""
+
+from collections.abc import Mapping
+from os import PathLike
+from pathlib import Path
+from typing import Any, cast, get_args
+
+from ...lights import Environment, Light
+from ...rendering.shot import Shot
+from ...scene.scene import Scene
+from . import bsdfs, emitters, sensors, settings, shapes
+from .errors import SceneError
+from .plugin import Context, Plugin
+from .xml import read_xml
+
+# What a scene may hold that others refer to: it is read where it is referred to.
+_SHARED = ("area", *bsdfs.TYPES, "bitmap", "checkerboard", shapes.GROUP, "alias")
+
+
+def from_mitsuba(
+    scene: Mapping[str, Any] | str | PathLike[str],
+    *,
+    folder: str | PathLike[str] | None = None,
+    sensor: int = 0,
+    parameters: Mapping[str, Any] | None = None,
+) -> Shot:
+    """Read a scene in the format of Mitsuba 3.
+
+    The picture is that of Mitsuba's ``_rgb`` variants. What is not supported is refused by the name of its
+    plugin; what is only approximated is warned of, once for each type.
+
+    Parameters
+    ----------
+    scene : dict or path
+        A scene as ``mitsuba.load_dict`` takes it, or an XML file. Transforms may be nested lists, arrays, or
+        Mitsuba's own objects; Mitsuba is not needed.
+    folder : path, optional
+        Where a dict's files are; the current one if not given. Those of an XML file are where it is.
+    sensor : int
+        Which of the scene's sensors looks.
+    parameters : dict, optional
+        What ``$name`` in an XML file stands for, in place of its defaults.
+
+    Returns
+    -------
+    Shot
+        The scene, with the camera, the integrator and the settings that it has.
+
+    Raises
+    ------
+    FileNotFoundError
+        If a file is missing.
+    ValueError
+        If something is not supported, or is not as it must be (tells which plugin, or which line).
+    TypeError
+        If `scene` is no dict and no path.
+    """
+    if isinstance(scene, Mapping):
+        tree, folders = scene, [Path("." if folder is None else folder)]
+    elif isinstance(scene, str | PathLike):
+        tree, folders = read_xml(Path(scene), parameters or {})
+    else:
+        raise TypeError(f"scene must be a dict or a path, got {type(scene).__name__}")
+    if tree.get("type") != "scene":
+        raise SceneError(f"scene must have the type 'scene', got {tree.get('type')!r}")
+    return _read(Plugin(tree, "", Context(tree, folders)), sensor)
+
+
+def _read(scene: Plugin, number: int) -> Shot:
+    found: list[Any] = []
+    copies = shapes.Copies()
+    lights: list[Light] = []
+    around: list[Environment] = []
+    for plugin in scene.children(*shapes.TYPES, shapes.COPY, *emitters.TYPES):
+        if plugin.type == shapes.COPY:
+            copies.add(plugin, found)
+        elif plugin.type in emitters.TYPES:
+            one = emitters.emitter(plugin)
+            if isinstance(one, get_args(Light)):
+                lights.append(cast(Light, one))
+            else:
+                around.append(cast(Environment, one))
+        else:
+            found.append(shapes.shape(plugin))
+    integrators = list(scene.children(*settings.INTEGRATORS))
+    if len(integrators) > 1:
+        scene.fail("a scene must have one integrator only")
+    looking = list(scene.children(*sensors.TYPES))
+    if not 0 <= number < len(looking):
+        scene.fail(f"there is no sensor {number}: it has {len(looking)}")
+    for _ in scene.children(*_SHARED):
+        pass
+    scene.done()
+    asked = settings.integrator(integrators[0] if integrators else None)
+    eye = looking[number]
+    film = _only(eye, sensors.FILM)
+    rfilter = settings.rfilter(_only(film, *settings.FILTERS) if film is not None else None)
+    sampler, samples, seed = settings.sampler(_only(eye, *settings.SAMPLERS))
+    return Shot(
+        Scene(shapes.instances(found), lights, around[0] if len(around) == 1 else around or None),
+        sensors.camera(eye, film),
+        asked.integrator,
+        samples,
+        sampler=sampler,
+        filter=rfilter,
+        seed=seed,
+        aov=asked.aov,
+    )
+
+
+def _only(plugin: Plugin, *types: str) -> Plugin | None:
+    found = list(plugin.children(*types))
+    if len(found) > 1:
+        plugin.fail(f"one {found[0].type} only can be within")
+    return found[0] if found else None

@@ -1,0 +1,170 @@
+"""Shapes, groups of them, and their copies."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from ...materials import Diffuse, Material, TwoSided
+from ...scene.instance import AnyShape, Instance
+from ...shapes import Cylinder, Disk, Shape, Sphere
+from ...shapes.mesh import Mesh
+from ...textures.texture import Value
+from . import bsdfs, mesh_files
+from .errors import SceneError
+from .plugin import Plugin
+from .textures import value
+from .transforms import Matrix, frame
+from .uv import CUBE, DISK, SAME, SPHERE, Uv
+
+GROUP, COPY = "shapegroup", "instance"
+
+
+def shape(plugin: Plugin) -> Mesh | Shape:
+    """Return the shape that a plugin stands for, with its material and what it emits.
+
+    Raises
+    ------
+    FileNotFoundError
+        If its file is missing.
+    ValueError
+        If its type, or a parameter of it, is not supported; tells which.
+    """
+    try:
+        result = _READERS[plugin.type](plugin)
+    except SceneError:
+        raise
+    except (ValueError, TypeError, np.linalg.LinAlgError) as error:
+        raise SceneError(f"{plugin}: {error}") from error
+    plugin.done()
+    return result
+
+
+def _mesh(plugin: Plugin) -> Mesh:
+    own = {"rectangle": mesh_files.rectangle, "cube": mesh_files.cube}
+    triangles, smooth = (own[plugin.type](), False) if plugin.type in own else mesh_files.of_file(plugin)
+    vertices, faces, normals, uv = triangles.placed(plugin.to_world(), plugin.switch("flip_normals", False))
+    if smooth:
+        normals = mesh_files.smooth_normals(vertices, faces)
+    elif plugin.type in own:
+        # All corners of each face have its own normal.
+        normals = None
+    return Mesh(vertices, faces, normals, uv, *_look(plugin, CUBE if plugin.type == "cube" else SAME))
+
+
+def _sphere(plugin: Plugin) -> Sphere:
+    matrix = plugin.to_world()
+    center, radius = plugin.vector("center", (0.0, 0.0, 0.0)), plugin.number("radius", 1.0)
+    # Mitsuba has a sphere that is mirrored inside out.
+    inside_out = plugin.switch("flip_normals", False) != bool(np.linalg.det(matrix[:3, :3]) < 0)
+    material, emission = _look(plugin, SPHERE, inside_out)
+    return Sphere(center, radius, transform=_moved(matrix), material=material, emission=emission)
+
+
+def _disk(plugin: Plugin) -> Disk:
+    matrix = plugin.to_world()
+    if plugin.switch("flip_normals", False):
+        matrix = matrix @ np.diag([1.0, 1.0, -1.0, 1.0])
+    material, emission = _look(plugin, DISK)
+    return Disk(transform=_moved(matrix), material=material, emission=emission)
+
+
+def _cylinder(plugin: Plugin) -> Cylinder:
+    base, tip = plugin.vector("p0", (0.0, 0.0, 0.0)), plugin.vector("p1", (0.0, 0.0, 1.0))
+    radius, length = plugin.number("radius", 1.0), float(np.linalg.norm(tip - base))
+    if not length > 0:
+        plugin.fail("p0 and p1 must differ")
+    axis = (tip - base) / length
+    own = np.eye(4)
+    own[:3] = np.column_stack([*frame(axis), axis, base])
+    material, emission = _look(plugin, SAME, plugin.switch("flip_normals", False))
+    return Cylinder(
+        tip=(0.0, 0.0, length),
+        radius=radius,
+        capped=False,
+        transform=_moved(plugin.to_world() @ own),
+        material=material,
+        emission=emission,
+    )
+
+
+_READERS: dict[str, Callable[[Plugin], Mesh | Shape]] = {
+    "obj": _mesh,
+    "ply": _mesh,
+    "rectangle": _mesh,
+    "cube": _mesh,
+    "sphere": _sphere,
+    "disk": _disk,
+    "cylinder": _cylinder,
+}
+TYPES = tuple(_READERS)
+
+
+def _look(plugin: Plugin, uv: Uv, inside_out: bool = False) -> tuple[Material, Value | None]:
+    """Return the material of a shape and the radiance of its front, None if it has none."""
+    emission = None
+    for emitter in plugin.children("area"):
+        if emission is not None:
+            plugin.fail("a shape must have one emitter only")
+        if inside_out:
+            plugin.fail("an emitter on the inside is not supported")
+        emission = value(emitter, "radiance", 1.0, uv, emits=True)
+        emitter.ignore("sampling_weight")
+        emitter.done()
+    found = [bsdfs.material(inner, uv) for inner in plugin.children(*bsdfs.TYPES)]
+    if len(found) > 1:
+        plugin.fail("a shape must have one BSDF only")
+    # Lamps are black, and all else is grey on its front.
+    default = bsdfs.BLACK if emission is not None else TwoSided(Diffuse(0.5), bsdfs.BLACK)
+    material = found[0] if found else default
+    plugin.ignore("silhouette_sampling_weight")
+    return bsdfs.turned_round(material, plugin) if inside_out else material, emission
+
+
+def _moved(matrix: Matrix) -> Matrix | None:
+    return None if np.array_equal(matrix, np.eye(4)) else matrix
+
+
+class Copies:
+    """The groups of a scene, each of which is read once, and where their copies are.
+
+    They stand in the scene where the first copy does.
+    """
+
+    def __init__(self) -> None:
+        self._placed: dict[int, Placed] = {}
+
+    def add(self, plugin: Plugin, to: "list[AnyShape | Placed]") -> None:
+        """Put a copy of a group into a list of shapes, beside others of that group if there are any."""
+        groups = list(plugin.children(GROUP))
+        if len(groups) != 1:
+            plugin.fail(f"one {GROUP} must be within, got {len(groups)}")
+        key = id(groups[0].values)
+        if key not in self._placed:
+            self._placed[key] = Placed(group(groups[0]), [])
+            to.append(self._placed[key])
+        self._placed[key].matrices.append(plugin.to_world())
+        plugin.done()
+
+
+class Placed:
+    """Shapes of a group, and the matrices of its copies."""
+
+    def __init__(self, shapes: tuple[Mesh | Shape, ...], matrices: list[Matrix]) -> None:
+        self.shapes, self.matrices = shapes, matrices
+
+    def instance(self) -> Instance:
+        """All copies as one."""
+        return Instance(self.shapes, np.stack(self.matrices))
+
+
+def group(plugin: Plugin) -> tuple[Mesh | Shape, ...]:
+    """Return the shapes of a group."""
+    shapes = tuple(shape(inner) for inner in plugin.children(*TYPES))
+    plugin.done()
+    return shapes
+
+
+def instances(found: "list[Any]") -> list[AnyShape]:
+    """Return shapes in which copies have become instances."""
+    return [one.instance() if isinstance(one, Placed) else one for one in found]

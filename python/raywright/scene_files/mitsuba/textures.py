@@ -1,0 +1,174 @@
+"""Textures: pictures and checkerboards, and what may be a texture or the same everywhere."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...io.pictures import read
+from ...textures import Checker, ImageTexture, UvTransform
+from ...textures.texture import Number, Texture, Value
+from .plugin import Plugin, Triple
+from .uv import UPRIGHT, Uv
+from .values import UNIFORM, colour, of_plugin
+
+# Luminance of linear Rec. 709.
+_LUMINANCE = np.array([0.212671, 0.715160, 0.072169])
+
+# What is done to colours, of numbers and of every point of a picture.
+Change = Callable[[NDArray[np.float64]], NDArray[np.float64]]
+
+
+def value(
+    plugin: Plugin,
+    name: str,
+    default: float | Triple,
+    uv: Uv,
+    emits: bool = False,
+    change: Change | None = None,
+) -> Value:
+    """Return a parameter that is a colour or a texture of colours.
+
+    Parameters
+    ----------
+    plugin : Plugin
+        Whose parameter it is.
+    name : str
+        Its name.
+    default : float or 3 floats
+        If it is not given.
+    uv : Uv
+        Where the surface has its texture coordinates.
+    emits : bool
+        Whether it is light rather than a share of light.
+    change : function, optional
+        What is done to its colours.
+    """
+    inner = plugin.child(name)
+    if inner is None or inner.type in UNIFORM:
+        found = colour(plugin, name, default, emits)
+        return found if change is None else _changed(found, change)
+    return texture(inner, uv, change)
+
+
+def scalar(plugin: Plugin, name: str, default: float, uv: Uv) -> Number:
+    """Return a parameter that is a number or a texture.
+
+    Of a picture's colours the luminance counts, and of other colours the mean of red, green and blue.
+    """
+    inner = plugin.child(name)
+    if inner is None:
+        return plugin.number(name, default)
+    if inner.type in UNIFORM:
+        return float(np.mean(of_plugin(inner, False)))
+    return numbers(inner, uv)
+
+
+def numbers(plugin: Plugin, uv: Uv) -> Texture:
+    """Return a texture of numbers."""
+    if plugin.type == "checkerboard":
+        # Asked for a number rather than a colour, Mitsuba (3.9) has the two the other way round.
+        return _checkerboard(plugin, uv, None, ("color1", "color0"))
+    return texture(plugin, uv, _grey, grey=True)
+
+
+def _grey(colours: NDArray[np.float64]) -> NDArray[np.float64]:
+    return np.repeat((colours @ _LUMINANCE)[..., None], 3, axis=-1)
+
+
+def texture(plugin: Plugin, uv: Uv, change: Change | None = None, grey: bool = False) -> Texture:
+    """Return a texture of colours, or if it is to be `grey`, of numbers that `change` makes of colours."""
+    if plugin.type == "bitmap":
+        return _bitmap(plugin, uv, change, grey)
+    if plugin.type == "checkerboard":
+        return _checkerboard(plugin, uv, change, ("color0", "color1"))
+    plugin.fail("this kind of texture is not supported")
+
+
+def picture(plugin: Plugin) -> tuple[NDArray[Any], bool]:
+    """Return the picture that a plugin names or holds, (H, W, 1 or 3), and whether it is linear.
+
+    Of 8 bits it stays so; alpha is left out.
+    """
+    given = [name for name in ("filename", "bitmap", "data") if plugin.has(name)]
+    if len(given) != 1:
+        plugin.fail("one of filename, bitmap and data must be given")
+    raw = plugin.switch("raw", False)
+    linear = raw or given == ["data"]
+    if given == ["filename"]:
+        path = plugin.path()
+        kept = plugin.context.kept
+        if path not in kept:
+            kept[path] = read(path)
+        array = kept[path]
+    else:
+        held = plugin.take(given[0])
+        array = np.asarray(held)
+        gamma = getattr(held, "srgb_gamma", None)
+        linear = linear or (callable(gamma) and not gamma())
+    if array.ndim == 2:
+        array = array[..., None]
+    if array.ndim != 3 or not 1 <= array.shape[2] <= 4 or 0 in array.shape:
+        plugin.fail(f"a picture must have shape (H, W, 1 to 4), got {array.shape}")
+    array = array[..., : 3 if array.shape[2] > 2 else 1]
+    return array, linear or array.dtype.kind == "f"
+
+
+def normals(plugin: Plugin, uv: Uv) -> ImageTexture:
+    """Return a picture of normals, along u and v as raywright has them."""
+    if plugin.type != "bitmap":
+        plugin.fail("a normal map must be a bitmap")
+    if uv.turned:
+        plugin.fail("a normal map on a disk is not supported")
+
+    def turn(colours: NDArray[np.float64]) -> NDArray[np.float64]:
+        # Along v Mitsuba has what makes a right-handed frame with u and the normal.
+        return np.stack([colours[..., 0], 1 - colours[..., 1], colours[..., 2]], -1)
+
+    return _bitmap(plugin, uv, turn if uv.left_handed else None, False)
+
+
+def _bitmap(plugin: Plugin, uv: Uv, change: Change | None, grey: bool) -> ImageTexture:
+    array, linear = picture(plugin)
+    nearest = plugin.choice("filter_type", "bilinear", ("bilinear", "nearest")) == "nearest"
+    wrap = plugin.choice("wrap_mode", "repeat", ("repeat", "mirror", "clamp"))
+    matrix = UPRIGHT @ plugin.to_uv() @ uv.matrix
+    plugin.ignore("format", "accel")
+    plugin.done()
+    if change is not None and not (grey and array.shape[2] == 1):
+        array, linear = change(_linear(array, linear)).astype(np.float32), True
+        array = array[..., :1] if grey else array
+    return ImageTexture(
+        array,
+        linear=linear,
+        filter="nearest" if nearest else "bilinear",
+        wrap=wrap,  # type: ignore[arg-type]
+        transform=UvTransform(matrix=matrix[:2]),
+    )
+
+
+def _linear(array: NDArray[Any], linear: bool) -> NDArray[np.float64]:
+    """Return a picture as linear colours, (H, W, 3)."""
+    shares = array / np.iinfo(array.dtype).max if array.dtype.kind == "u" else array.astype(np.float64)
+    if not linear:
+        shares = np.where(shares <= 0.04045, shares / 12.92, ((shares + 0.055) / 1.055) ** 2.4)
+    return np.broadcast_to(shares, (*array.shape[:2], 3))
+
+
+def _checkerboard(plugin: Plugin, uv: Uv, change: Change | None, names: tuple[str, str]) -> Texture:
+    default = {"color0": 0.4, "color1": 0.2}
+    a, b = (value(plugin, name, default[name], uv, change=change) for name in names)
+    matrix = plugin.to_uv() @ uv.matrix
+    plugin.done()
+    if isinstance(a, Texture) or isinstance(b, Texture):
+        # Two cells to a unit.
+        return Checker(a, b, UvTransform(matrix=(np.diag([2.0, 2.0, 1.0]) @ matrix)[:2]))
+    # Its cells have sharp edges however small they are seen, which those of `Checker` do not.
+    cells = np.array([(b, a), (a, b)], np.float32)
+    return ImageTexture(cells, filter="nearest", transform=UvTransform(matrix=matrix[:2]))
+
+
+def _changed(found: Triple, change: Change) -> Triple:
+    red, green, blue = (float(x) for x in change(np.array(found)))
+    return red, green, blue

@@ -1,0 +1,195 @@
+"""Triangle meshes."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..arrays import last_axis, rows, triangles
+from ..lights.emission import EmissionLike, Emitted
+from ..lights.emission import emission as checked_emission
+from ..materials import Diffuse, Material
+
+
+@dataclass(frozen=True, init=False, eq=False, repr=False)
+class Mesh:
+    """A mesh of triangles. All arrays are kept as read-only copies.
+
+    Parameters
+    ----------
+    vertices : (V, 3) array
+        Corners. float32 and float64 are kept as they are, other real types become float64. NaN and infinity
+        are allowed: faces that use them are left out, with a warning, when the scene is compiled.
+    faces : (F, 3) integer array
+        Indices of three vertices a face; kept as uint32. The normal points to where they turn anticlockwise.
+    normals : (V, 3) array, optional
+        Shading normals, one a vertex.
+    uv : (V, 2) array, optional
+        Texture coordinates, one pair a vertex; (0, 0) is the lower left.
+    material : Material, optional
+        How the surface scatters; ``Diffuse()`` if not given.
+    emission : float, 3 floats, Texture or Emission, optional
+        Radiance in W·sr⁻¹·m⁻² that leaves the side of the geometric normal: one number, or red, green and
+        blue. None, the default, for a mesh that does not shine.
+    colors : (V, 3) array, optional
+        Linear red, green and blue, one colour a vertex, each between 0 and 1; a material shows them where it
+        has `VertexColors`.
+
+    Raises
+    ------
+    ValueError
+        If an array has the wrong shape, a face index is negative or not below V (tells which face), or a
+        colour is not between 0 and 1 (tells which vertex).
+    TypeError
+        If an array has the wrong type, such as float faces.
+    """
+
+    vertices: NDArray[np.floating[Any]]
+    faces: NDArray[np.uint32]
+    normals: NDArray[np.floating[Any]] | None
+    uv: NDArray[np.floating[Any]] | None
+    material: Material
+    emission: Emitted | None
+    colors: NDArray[np.floating[Any]] | None
+
+    def __init__(
+        self,
+        vertices: ArrayLike,
+        faces: ArrayLike,
+        normals: ArrayLike | None = None,
+        uv: ArrayLike | None = None,
+        material: Material | None = None,
+        emission: EmissionLike | None = None,
+        colors: ArrayLike | None = None,
+    ) -> None:
+        if material is None:
+            material = Diffuse()
+        elif not isinstance(material, Material):
+            raise TypeError(f"material must be a raywright material, got {type(material).__name__}")
+        corners = rows("vertices", vertices, 3)
+        count = len(corners)
+        values = {
+            "vertices": corners,
+            "faces": triangles("faces", faces, count),
+            "normals": None if normals is None else rows("normals", normals, 3, count),
+            "uv": None if uv is None else rows("uv", uv, 2, count),
+            "material": material,
+            "emission": checked_emission(emission),
+            "colors": None if colors is None else _shares("colors", colors, count),
+        }
+        for name, kept in values.items():
+            object.__setattr__(self, name, kept)
+
+    @property
+    def bounds(self) -> NDArray[np.float64] | None:
+        """Least and greatest corner of the finite vertices in use, (2, 3) float64; None without any."""
+        points = self.used_vertices()
+        return np.stack([points.min(axis=0), points.max(axis=0)]) if len(points) else None
+
+    def used_vertices(self) -> NDArray[np.float64]:
+        """Return the finite vertices that faces use: (N, 3) float64."""
+        used = np.zeros(len(self.vertices), np.bool_)
+        used[self.faces.reshape(-1)] = True
+        used &= np.isfinite(self.vertices).all(axis=1)
+        return self.vertices[used].astype(np.float64)
+
+    def transformed(self, matrix: ArrayLike) -> "Mesh":
+        """Return the mesh moved by an affine matrix, computed in float64.
+
+        A matrix that mirrors also turns every face round (its second and third corner change places), so that
+        what was outside stays outside.
+
+        Parameters
+        ----------
+        matrix : (4, 4) array
+            Acts on column vectors (x, y, z, 1); the last row must be (0, 0, 0, 1).
+
+        Raises
+        ------
+        ValueError
+            If the matrix has another shape, is not finite, or is not affine.
+        """
+        full = last_axis("matrix", matrix, 4).astype(np.float64)
+        if full.shape != (4, 4) or not np.isfinite(full).all() or not np.array_equal(full[3], (0, 0, 0, 1)):
+            raise ValueError("matrix must be a finite (4, 4) array with (0, 0, 0, 1) as its last row")
+        linear, shift = full[:3, :3], full[:3, 3]
+        mirrors = bool(np.linalg.det(linear) < 0)
+        normals = self.normals
+        if normals is not None:
+            # Normals go with the matrix of cofactors: the inverse transpose without its division, so that a
+            # flattening matrix works too.
+            x, y, z = linear
+            cofactors = np.stack([np.cross(y, z), np.cross(z, x), np.cross(x, y)])
+            normals = (normals.astype(np.float64) @ cofactors.T) * (-1.0 if mirrors else 1.0)
+            length = np.linalg.norm(normals, axis=1, keepdims=True)
+            normals = np.divide(normals, length, out=np.zeros_like(normals), where=length > 0)
+        return Mesh(
+            self.vertices.astype(np.float64) @ linear.T + shift,
+            self.faces[:, [0, 2, 1]] if mirrors else self.faces,
+            normals,
+            self.uv,
+            self.material,
+            self.emission,
+            self.colors,
+        )
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Mesh):
+            return NotImplemented
+        return (
+            _same(self.vertices, other.vertices)
+            and _same(self.faces, other.faces)
+            and _same(self.normals, other.normals)
+            and _same(self.uv, other.uv)
+            and _same(self.colors, other.colors)
+            and self.material == other.material
+            and self.emission == other.emission
+        )
+
+    def __hash__(self) -> int:
+        # The sizes and the plain parts: equal meshes agree on them, and reading every vertex would be slow.
+        return hash((self.vertices.shape, self.faces.shape, self.material, self.emission))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # Through the constructor, because unpickled arrays would be writeable.
+        look = (self.material, self.emission, self.colors)
+        return Mesh, (self.vertices, self.faces, self.normals, self.uv, *look)
+
+    def __repr__(self) -> str:
+        parts = [f"{len(self.vertices)} vertices", f"{len(self.faces)} faces", repr(self.material)]
+        parts += [name for name in ("normals", "uv", "colors") if getattr(self, name) is not None]
+        if self.emission is not None:
+            parts.append(f"emission={self.emission}")
+        return f"Mesh({', '.join(parts)})"
+
+
+def _shares(name: str, given: ArrayLike, count: int) -> NDArray[np.floating[Any]]:
+    """Return a read-only copy of (count, 3) numbers, each between 0 and 1."""
+    array = rows(name, given, 3, count)
+    inside = ((array >= 0) & (array <= 1)).all(axis=1)
+    if not inside.all():
+        first = int(np.argmin(inside))
+        raise ValueError(f"{name} must be between 0 and 1, got {array[first].tolist()} of vertex {first}")
+    return array
+
+
+def face_count(shape: object) -> int:
+    """Return how many faces a shape has: none if it is no mesh."""
+    return len(shape.faces) if isinstance(shape, Mesh) else 0
+
+
+def moved(mesh: object, name: str, vertices: ArrayLike) -> Mesh:
+    """Return the mesh with its vertices elsewhere, and all else as it is, given normals too."""
+    if not isinstance(mesh, Mesh):
+        raise ValueError(f"{name} must be None for what is no mesh, which is a {type(mesh).__name__} here")
+    result = object.__new__(Mesh)
+    # The other arrays are checked and cannot change: they are shared.
+    vars(result).update(vars(mesh), vertices=rows(name, vertices, 3, len(mesh.vertices)))
+    return result
+
+
+def _same(a: NDArray[Any] | None, b: NDArray[Any] | None) -> bool:
+    if a is None or b is None:
+        return a is b
+    return a.dtype == b.dtype and np.array_equal(a, b, equal_nan=a.dtype.kind == "f")
