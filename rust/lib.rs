@@ -15,3 +15,10 @@ pub mod workers;
 
 #[cfg(feature = "python")]
 mod python;
+
+#[cfg(test)]
+extern crate self as raywright;
+
+#[cfg(test)]
+#[path = "../tests/main.rs"]
+mod tests;

@@ -3,6 +3,7 @@
 
 mod targets;
 
+use super::cases;
 use targets::{hits, leaving, nearest, signs, trees, watertight};
 
 /// Pseudo-random numbers, the same at every run (SplitMix64; Steele, Lea and Flood 2014).
@@ -30,8 +31,8 @@ impl Random {
 }
 
 /// Feeds a target so many strings; `RAYWRIGHT_FUZZ` asks for so many times more.
-fn feed(target: fn(&[u8]), count: usize) {
-    let times = std::env::var("RAYWRIGHT_FUZZ").map_or(1, |n| n.parse().expect("RAYWRIGHT_FUZZ is a number"));
+fn feed(target: fn(&[u8]), count: u32) {
+    let times: u32 = std::env::var("RAYWRIGHT_FUZZ").map_or(1, |n| n.parse().expect("RAYWRIGHT_FUZZ is a number"));
     let mut random = Random(1);
     for _ in 0..count * times {
         target(&random.bytes(1200));
@@ -40,12 +41,12 @@ fn feed(target: fn(&[u8]), count: usize) {
 
 #[test]
 fn trees_are_valid() {
-    feed(trees::check, 1000);
+    feed(trees::check, cases(1000));
 }
 
 #[test]
 fn hits_agree() {
-    feed(hits::check, 200);
+    feed(hits::check, cases(200));
 }
 
 #[test]
@@ -55,7 +56,7 @@ fn surfaces_are_left() {
 
 #[test]
 fn nearest_points_agree() {
-    feed(nearest::check, 1000);
+    feed(nearest::check, cases(1000));
 }
 
 #[test]
@@ -65,5 +66,5 @@ fn signs_are_exact() {
 
 #[test]
 fn surfaces_are_watertight() {
-    feed(watertight::check, 300);
+    feed(watertight::check, cases(300));
 }

@@ -1,6 +1,7 @@
 //! Every accelerator, at every width and level, gives the same hits, bit for bit, and these are the right ones.
 
-use crate::triangles::{Random, Triangles, accelerators, agreed, bits, hits, levels};
+use super::super::cases;
+use super::triangles::{Random, Triangles, accelerators, agreed, bits, hits, levels};
 use proptest::prelude::*;
 use raywright::accel::bvh::{self, Options};
 use raywright::math::{DVec3, Hit, Ray, Vec3};
@@ -68,7 +69,7 @@ fn origins_far_away() {
     // Beyond 2¹⁰⁰ extents boxes are given up, beyond 1e38 an f32 holds no origin, beyond 1e154 an f64 no square.
     for exponent in [2, 4, 6, 7, 8, 10, 12, 14, 15, 16, 17, 18, 20, 25, 29, 30, 31, 37, 38, 39, 60, 150, 155, 300] {
         let distance = 10f64.powi(exponent);
-        let rays: Vec<_> = (0..80)
+        let rays: Vec<_> = (0..cases(80))
             .map(|i| {
                 let target = random.target(&soup);
                 // Along an axis a ray from any distance meets what it is aimed at.
@@ -79,7 +80,7 @@ fn origins_far_away() {
                 Ray::new(origin, if aimed { (target - origin) / distance } else { way })
             })
             .collect();
-        assert!(hits(&agreed(&soup, &rays)) > 20, "{distance:e}");
+        assert!(hits(&agreed(&soup, &rays)) > rays.len() / 4, "{distance:e}");
     }
     let end = f64::MAX;
     let rays: Vec<_> = [-1.0, 0.0, 1.0]
@@ -318,7 +319,7 @@ fn ray() -> impl Strategy<Value = Ray> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(200))]
+    #![proptest_config(ProptestConfig::with_cases(cases(200)))]
     #[test]
     fn any_rays_at_any_triangles(
         triangles in prop::collection::vec([point(), point(), point()], 0..40),

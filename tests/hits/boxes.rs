@@ -1,6 +1,7 @@
 //! A box test never rejects a true hit: triangles that fill their flat boxes to the border, and rays that graze them.
 
-use crate::triangles::{Random, Triangles, agreed, hits};
+use super::super::cases;
+use super::triangles::{Random, Triangles, agreed, hits};
 use proptest::prelude::*;
 use raywright::math::{DVec3, Ray, Vec3};
 
@@ -99,7 +100,7 @@ fn rays_from_far_that_only_just_arrive() {
     for exponent in (0..=110).step_by(2) {
         let triangles = flat(&mut random, 40, 2.0);
         let distance = 2f64.powi(exponent);
-        let rays: Vec<_> = (0..60)
+        let rays: Vec<_> = (0..cases(60))
             .map(|_| {
                 let target = on_border(&mut random, &triangles);
                 let way = random.point(1.0);
@@ -143,7 +144,7 @@ fn intervals_that_end_at_the_hit() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(100))]
+    #![proptest_config(ProptestConfig::with_cases(cases(100)))]
     #[test]
     fn boxes_without_volume_of_any_size(
         seed in any::<u64>(),

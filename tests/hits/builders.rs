@@ -1,6 +1,6 @@
 //! However a tree is built and improved, it is valid and gives the hits of brute force, bit for bit.
 
-use crate::triangles::{Random, Triangles, bits, levels};
+use super::triangles::{Random, Triangles, bits, levels};
 use raywright::accel::bvh::build::halves::Way;
 use raywright::accel::bvh::build::morton::Bits;
 use raywright::accel::bvh::build::{Builder, ploc};

@@ -1,6 +1,6 @@
 //! Cones on every accelerator touch what they touch among all triangles, one by one, and that is what is there.
 
-use crate::triangles::{Random, Triangles, accelerators};
+use super::triangles::{Random, Triangles, accelerators};
 use proptest::prelude::*;
 use raywright::accel::Primitives;
 use raywright::math::{DVec3, Hit, Vec3};

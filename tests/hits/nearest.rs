@@ -1,7 +1,7 @@
 //! Nearest points: every accelerator gives the same ones, bit for bit, and they are the right ones.
 
-use crate::signs::integer;
-use crate::triangles::{Random, Triangles, levels};
+use super::signs::integer;
+use super::triangles::{Random, Triangles, levels};
 use num_bigint::{BigInt, Sign};
 use proptest::prelude::*;
 use raywright::accel::bvh::{self, Options};

@@ -1,6 +1,6 @@
 //! A triangle is met if and only if big integers say so, and the bound that spares them the work holds.
 
-use crate::triangles::Random;
+use super::triangles::Random;
 use num_bigint::{BigInt, Sign};
 use proptest::prelude::*;
 use raywright::math::{DVec3, Ray, Region, Vec3};

@@ -1,6 +1,6 @@
 //! Structures that divide space: bounded on any input, the same for any number of threads, and no primitive tested twice.
 
-use crate::triangles::{Random, Triangles, agreed, hits, levels};
+use super::triangles::{Random, Triangles, agreed, hits, levels};
 use raywright::accel::kdtree::{Builder, Traversal};
 use raywright::accel::walk::{Input, Lists, Mailbox, Structure, walked};
 use raywright::accel::{Accelerator, Cost, bsp, kdtree, octree};

@@ -1,7 +1,7 @@
 //! Every way through a binary tree, over the tree of every builder, answers every question as brute force does.
 
-use crate::builders::{BUILDERS, SPATIAL, optimisers, sticks};
-use crate::triangles::{Random, Triangles, levels};
+use super::builders::{BUILDERS, SPATIAL, optimisers, sticks};
+use super::triangles::{Random, Triangles, levels};
 use raywright::accel::bvh::optimise::Optimisers;
 use raywright::accel::bvh::traverse::{Orders, Rays, Traversal};
 use raywright::accel::bvh::{self, Options};
