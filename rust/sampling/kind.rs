@@ -1,7 +1,5 @@
 //! Which point set the numbers of a picture come from, and how large its batches are.
 
-use super::Sampler;
-
 /// How many consecutive samples of a pixel are placed with regard to each other: a power of two, at most 64.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct BatchSize(pub(super) u8);
@@ -108,12 +106,6 @@ impl SamplerKind {
             Self::Sobol(_) => Self::Sobol(size),
             Self::Lattice(_) => Self::Lattice(size),
         }
-    }
-
-    /// The numbers of sample number `sample` of a pixel.
-    #[inline]
-    pub fn sampler(self, seed: u64, pixel: u32, sample: u32) -> Sampler {
-        Sampler::of_kind(self, seed, pixel, sample)
     }
 }
 

@@ -21,6 +21,7 @@ mod plane;
 mod polygon;
 mod revolution;
 mod shape;
+mod solid;
 mod sphere;
 #[cfg(test)]
 mod surfaces;

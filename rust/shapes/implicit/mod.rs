@@ -1,5 +1,6 @@
 //! Surfaces `f(x, y, z) = 0` within a box.
 
+mod functions;
 mod jet;
 mod line;
 mod number;
