@@ -23,7 +23,7 @@ pub use crossings::Crossings;
 pub use nearest::Nearest;
 pub use objects::Objects;
 pub use parity::Side;
-pub use slab::{Clock, SlabRay, SlabRays};
+pub use slab::SlabRay;
 pub use touches::{Touch, Touches};
 pub use walked::walked;
 

@@ -23,7 +23,8 @@ pub mod textures;
 mod view;
 
 pub use cameras::{Camera, CameraError, CameraRay, Perspective};
-pub use caustics::{Aim, Caustics, is_matt};
+pub(crate) use caustics::is_matt;
+pub use caustics::{Aim, Caustics};
 pub use compiled::Scene;
 pub use description::{DescriptionError, SceneDescription, Shape};
 pub use emission::Emission;
@@ -31,7 +32,8 @@ pub use first_hits::FirstHits;
 pub use geometry::{
     BadTransform, Copies, Geometry, Group, Matrix, Mesh, Surface, Surfaces, Vertices, check_transforms,
 };
-pub use interaction::{Interaction, Scattered, fading};
+pub(crate) use interaction::fading;
+pub use interaction::{Interaction, Scattered};
 pub use lights::{
     ConstantEnvironment, DirectionalLight, EnvironmentMap, Light, LightBounds, LightSample, Lights, Picture,
     PointLight, Profile, Projector, Reach, Receiver, SpotLight, SunSky,

@@ -1,6 +1,5 @@
 //! Floor 1: what can be hit, one shape a module.
 
-pub mod bounding;
 mod cone;
 mod contact;
 mod cuboid;
@@ -15,6 +14,7 @@ mod meeting;
 mod newton;
 #[cfg(test)]
 mod oracle;
+pub(crate) mod oriented_box;
 mod paraboloid;
 mod placed;
 mod plane;

@@ -12,7 +12,7 @@ pub mod routines;
 mod rows;
 mod sixteen;
 
-pub use clip::clipped;
+pub(crate) use clip::clipped;
 pub use edge::{Along, EdgeRay};
 pub use in_cone::SolidCone;
 pub use kept::{DoubleLeaves, SingleLeaves};
