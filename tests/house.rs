@@ -97,6 +97,18 @@ fn arrows_are_seen_however_they_are_written() {
     assert_eq!(circles, ["a", "c::e"]);
 }
 
+#[test]
+fn no_attribute_stands_twice() {
+    for path in rust_files(&Path::new(env!("CARGO_MANIFEST_DIR")).join("rust")) {
+        let text = fs::read_to_string(&path).unwrap();
+        let lines: Vec<&str> = text.lines().collect();
+        for (number, pair) in (1..).zip(lines.windows(2)) {
+            let is_twice = pair[0] == pair[1] && pair[0].trim().starts_with("#[");
+            assert!(!is_twice, "{}:{number}: {} stands twice", path.display(), pair[0].trim());
+        }
+    }
+}
+
 /// Those that are part of a circle between files and folders side by side.
 fn circles(arrows: &BTreeSet<Arrow>) -> Vec<&Arrow> {
     // Where both ends are side by side, and their names there.
