@@ -7,6 +7,7 @@
 mod fuzz;
 #[path = "hits/main.rs"]
 mod hits;
+mod house;
 mod routines;
 
 /// How many of so many cases to try: a quarter, or all of them where `RAYWRIGHT_SLOW` is set.

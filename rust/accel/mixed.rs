@@ -1,6 +1,7 @@
 //! Triangles and objects, each in a structure of their own: one is asked, then the other for what is left.
 
-use super::walk::{self, Build, Mailbox};
+use super::walk::{Build, Mailbox};
+use super::walked::walked;
 use super::{Accelerator, Cost, Crossings, Info, Nearest, Objects, Primitives, Side, Touches};
 use crate::math::{DVec3, Hit, Ray};
 use crate::shapes::Bounds;
@@ -17,7 +18,7 @@ pub fn mixed(
     objects: &Build,
 ) -> Box<dyn Accelerator> {
     let Some(kept) = primitives.objects() else { return triangles(primitives) };
-    let others = walk::walked(&OnlyObjects(primitives, kept), level, Mailbox::Stamps, objects);
+    let others = walked(&OnlyObjects(primitives, kept), level, Mailbox::Stamps, objects);
     let triangles = triangles(&OnlyTriangles(primitives));
     if triangles.info().primitives == 0 {
         return others;

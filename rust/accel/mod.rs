@@ -14,16 +14,18 @@ mod parity;
 mod query;
 mod slab;
 mod touches;
+pub mod trees;
 pub mod walk;
+mod walked;
 
 pub use brute::BruteForce;
 pub use crossings::Crossings;
-pub use mixed::mixed;
 pub use nearest::Nearest;
 pub use objects::Objects;
 pub use parity::Side;
-pub use slab::{Clock, SlabRay, SlabRays};
+pub use slab::SlabRay;
 pub use touches::{Touch, Touches};
+pub use walked::walked;
 
 pub use query::Wanted;
 

@@ -145,7 +145,7 @@ impl SlabRay {
         })
     }
 
-    /// See [`Clock::limit`].
+    /// A `t` along its direction in box units, rounded up, and never NaN: no box that starts beyond it can improve on it.
     #[inline(always)]
     pub fn limit(&self, t: f64) -> f32 {
         self.clock.limit(t)

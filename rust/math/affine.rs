@@ -141,7 +141,7 @@ impl Affine {
     #[inline]
     pub fn adjugate_in<N: Number>(&self) -> ([Triple<N>; 3], N) {
         let (rows, determinant) = &self.adjugate;
-        let known = |x: &Double| N::from_double(x);
+        let known = |x: &Double| N::of_sum(x.high, x.low, x.error);
         let kept = || {
             let mut result: [Option<Triple<N>>; 3] = [const { None }; 3];
             for (to, Triple([x, y, z])) in result.iter_mut().zip(rows) {

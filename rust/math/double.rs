@@ -105,8 +105,8 @@ impl Number for Double {
     }
 
     #[inline]
-    fn from_double(x: &Double) -> Option<Self> {
-        Some(*x)
+    fn of_sum(high: f64, low: f64, error: f64) -> Option<Self> {
+        Some(Self { high, low, error })
     }
 
     #[inline]

@@ -118,9 +118,9 @@ impl Number for Dyadic {
         Self::trimmed(x < 0.0, exact.shifted(down as u64), exponent - down)
     }
 
-    fn from_double(x: &Double) -> Option<Self> {
-        let known = x.error == 0.0 && x.high.is_finite() && x.low.is_finite();
-        known.then(|| Self::of(x.high).plus(&Self::of(x.low)))
+    fn of_sum(high: f64, low: f64, error: f64) -> Option<Self> {
+        let known = error == 0.0 && high.is_finite() && low.is_finite();
+        known.then(|| Self::of(high).plus(&Self::of(low)))
     }
 
     fn plus(&self, other: &Self) -> Self {

@@ -1,11 +1,11 @@
 //! Numbers that know how wrong they are: one formula, computed as roughly as its sign allows.
 //!
 //! A decision is a sign of a polynomial in the numbers that were given. It is asked of [`Bounded`] first, an f64 with a
-//! bound on its error; where that leaves it open of [`Double`], twice as long; and last of
+//! bound on its error; where that leaves it open of [`Double`](super::Double), twice as long; and last of
 //! [`Dyadic`](super::Dyadic), which has no error at all.
 
+use super::DVec3;
 use super::robust::UNIT;
-use super::{DVec3, Double};
 use std::cmp::Ordering;
 
 /// A number with a bound on its error.
@@ -13,8 +13,8 @@ pub trait Number: Clone {
     /// A finite f64, as it is.
     fn of(x: f64) -> Self;
 
-    /// What a [`Double`] stands for, if this type can hold it with its error.
-    fn from_double(x: &Double) -> Option<Self>;
+    /// What the sum of two f64, the second at most half an ulp of the first, is within `error` of, if this type can hold that.
+    fn of_sum(high: f64, low: f64, error: f64) -> Option<Self>;
 
     /// The sum.
     fn plus(&self, other: &Self) -> Self;
@@ -67,7 +67,7 @@ pub struct Bounded {
 /// Where no product loses digits to underflow.
 const SAFE: f64 = f64::MIN_POSITIVE * (1u64 << 60) as f64 * (1u64 << 60) as f64;
 
-/// What the products in a [`Double`] product, and its bound, lose to underflow: less than 16 halves of the least f64, four
+/// What the products in a [`Double`](super::Double) product, and its bound, lose to underflow: less than 16 halves of the least f64, four
 /// times over.
 const UNDERFLOW: f64 = f64::from_bits(32);
 
@@ -86,8 +86,8 @@ impl Number for Bounded {
     }
 
     #[inline(always)]
-    fn from_double(x: &Double) -> Option<Self> {
-        Some(Self { value: x.high, error: x.low.abs() + x.error })
+    fn of_sum(high: f64, low: f64, error: f64) -> Option<Self> {
+        Some(Self { value: high, error: low.abs() + error })
     }
 
     #[inline(always)]
@@ -209,7 +209,7 @@ impl<N: Number> Triple<N> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::Dyadic;
+    use super::super::{Double, Dyadic};
     use super::*;
     use num_bigint::BigInt;
     use proptest::prelude::*;

@@ -48,7 +48,6 @@ mod _core {
     #[pymodule_export]
     use super::cones::cones;
     #[pymodule_export]
-    #[pymodule_export]
     use super::first_hits::first_hits;
     #[pymodule_export]
     use super::freeform::{implicit_trouble, polygon_trouble};

@@ -18,7 +18,7 @@ use rayon::prelude::*;
 ///
 /// Sums depend on the order of adding, so the order is part of the film: samples are added up one by one in blocks of
 /// 16, and blocks one by one. Hence how samples are split into passes, who works on a tile and how large tiles are does
-/// not change a bit, and neither does [`Film::append`] with films of single blocks, wherever these were made.
+/// not change a bit, and neither does appending films of single blocks, wherever these were made.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Film {
     width: u32,
@@ -119,7 +119,8 @@ impl Film {
     }
 
     /// The memory held for its pixels: what batches, clamping and halves take is only there where they are.
-    pub fn bytes(&self) -> usize {
+    #[cfg(test)]
+    fn bytes(&self) -> usize {
         self.tiles.iter().map(FilmTile::bytes).sum()
     }
 
@@ -205,7 +206,8 @@ impl Film {
     ///
     /// # Panics
     /// If the films differ in shape, or are in halves, or the last block here is not full.
-    pub fn append(&mut self, next: &Self) {
+    #[cfg(test)]
+    fn append(&mut self, next: &Self) {
         let shape = |f: &Self| (f.width, f.height, f.side, f.batch, f.halves, f.patch);
         assert_eq!(shape(self), shape(next), "films of one shape");
         assert!(self.appends() && self.samples.is_multiple_of(self.block()), "whole blocks");

@@ -13,6 +13,7 @@ mod progress;
 mod rendering;
 mod run;
 mod schedule;
+mod settings;
 mod tile;
 mod tiles;
 
@@ -23,6 +24,7 @@ pub use outliers::Carried;
 pub use part::Request;
 pub use progress::{Progress, Quiet};
 pub use rendering::{HistoryRow, Rendering};
-pub use run::{RenderError, Settings, go_on, render};
+pub use run::{RenderError, go_on, render};
 pub use schedule::Until;
+pub use settings::Settings;
 pub use tile::FilmTile;

@@ -1,7 +1,7 @@
 //! Parts of a pass that are worked on elsewhere, in other processes or on other machines.
 //!
 //! What is asked for and what comes back are bytes. Samples that fill blocks of their own are asked for without telling what
-//! their cells have so far, and appended ([`super::Film::append`]); else tiles travel as they are, and come back with more.
+//! their cells have so far, and appended ([`FilmTile::append`]); else tiles travel as they are, and come back with more.
 //! Either way nobody can tell from the bits of a picture where its samples were taken.
 
 use super::bytes::{Malformed, Reader, Writer, check};

@@ -181,6 +181,7 @@ impl FilmTile {
     }
 
     /// The memory held for its cells.
+    #[cfg(test)]
     pub(super) fn bytes(&self) -> usize {
         self.counts.capacity() * size_of::<u32>()
             + (self.total.capacity() + self.partial.capacity()) * size_of::<Moments>()

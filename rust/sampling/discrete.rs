@@ -51,16 +51,6 @@ impl AliasTable {
         Some(Self { columns, probabilities })
     }
 
-    /// How many entries there are.
-    pub fn len(&self) -> usize {
-        self.columns.len()
-    }
-
-    /// Whether there is no entry: never.
-    pub fn is_empty(&self) -> bool {
-        self.columns.is_empty()
-    }
-
     /// The memory held.
     pub fn bytes(&self) -> usize {
         size_of_val(self.columns.as_slice()) + size_of_val(self.probabilities.as_slice())
@@ -91,12 +81,12 @@ mod tests {
 
     /// The probability that the table gives to each entry, read off its columns.
     fn implied(table: &AliasTable) -> Vec<f64> {
-        let mut sums = vec![0.0; table.len()];
+        let mut sums = vec![0.0; table.columns.len()];
         for (i, column) in table.columns.iter().enumerate() {
             sums[i] += column.threshold;
             sums[column.alias as usize] += 1.0 - column.threshold;
         }
-        sums.iter().map(|s| s / table.len() as f64).collect()
+        sums.iter().map(|s| s / table.columns.len() as f64).collect()
     }
 
     proptest! {

@@ -1,7 +1,5 @@
 //! Which point set the numbers of a picture come from, and how large its batches are.
 
-use super::Sampler;
-
 /// How many consecutive samples of a pixel are placed with regard to each other: a power of two, at most 64.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct BatchSize(pub(super) u8);
@@ -97,24 +95,6 @@ impl SamplerKind {
             Self::Stratified(size) | Self::Halton(size) | Self::Sobol(size) | Self::Lattice(size) => size.samples(),
         }
     }
-
-    /// The same kind, in batches for a number of samples a pixel, if that is known ([`BatchSize::for_budget`]).
-    pub fn with_budget(self, samples: Option<u32>) -> Self {
-        let size = BatchSize::for_budget(samples);
-        match self {
-            Self::Independent => Self::Independent,
-            Self::Stratified(_) => Self::Stratified(size),
-            Self::Halton(_) => Self::Halton(size),
-            Self::Sobol(_) => Self::Sobol(size),
-            Self::Lattice(_) => Self::Lattice(size),
-        }
-    }
-
-    /// The numbers of sample number `sample` of a pixel.
-    #[inline]
-    pub fn sampler(self, seed: u64, pixel: u32, sample: u32) -> Sampler {
-        Sampler::of_kind(self, seed, pixel, sample)
-    }
 }
 
 #[cfg(test)]
@@ -133,8 +113,7 @@ mod tests {
             assert!(samples.div_ceil(of(samples)) >= 8);
             assert!(samples < 256 || samples.div_ceil(of(samples)) >= 64);
         }
-        assert_eq!(SamplerKind::Sobol(BatchSize::default()).with_budget(None).batch(), 1);
-        assert_eq!(SamplerKind::Independent.with_budget(Some(64)).batch(), 1);
+        assert_eq!((BatchSize::for_budget(None).samples(), SamplerKind::Independent.batch()), (1, 1));
         assert_eq!(BatchSize::new(64).map(BatchSize::samples), Some(64));
         assert_eq!((BatchSize::new(0), BatchSize::new(12), BatchSize::new(128)), (None, None, None));
     }

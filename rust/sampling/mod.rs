@@ -18,7 +18,7 @@ pub mod warp;
 #[cfg(test)]
 mod tests;
 
-pub use discrete::AliasTable;
+pub(crate) use discrete::AliasTable;
 pub use kind::{BatchSize, SamplerKind};
 pub use philox::philox4x32;
 pub use sampler::{CAMERA_DIMENSIONS, Sampler};

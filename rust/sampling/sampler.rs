@@ -30,30 +30,29 @@ pub struct Sampler {
     words: [u32; 4],
 }
 
+impl SamplerKind {
+    /// The numbers of sample number `sample` of a pixel.
+    #[inline]
+    pub fn sampler(self, seed: u64, pixel: u32, sample: u32) -> Sampler {
+        let mut sampler = Sampler::new(seed, pixel, sample);
+        match self {
+            Self::Independent => {}
+            Self::Stratified(size) | Self::Halton(size) | Self::Sobol(size) | Self::Lattice(size) => {
+                sampler.kind = self;
+                sampler.words = Stream::words(sampler.key, pixel, sample >> size.bits());
+                sampler.sample = sample & (size.samples() - 1);
+            }
+        }
+        sampler
+    }
+}
+
 impl Sampler {
     /// Independent numbers of sample number `sample` of a pixel, for a seed of the whole picture.
     #[inline]
     pub fn new(seed: u64, pixel: u32, sample: u32) -> Self {
         let key = [seed as u32, (seed >> 32) as u32];
         Self { kind: SamplerKind::Independent, key, pixel, number: sample, sample, block: u32::MAX, words: [0; 4] }
-    }
-
-    /// Numbers of any kind.
-    #[inline]
-    pub(super) fn of_kind(kind: SamplerKind, seed: u64, pixel: u32, sample: u32) -> Self {
-        let mut sampler = Self::new(seed, pixel, sample);
-        match kind {
-            SamplerKind::Independent => {}
-            SamplerKind::Stratified(size)
-            | SamplerKind::Halton(size)
-            | SamplerKind::Sobol(size)
-            | SamplerKind::Lattice(size) => {
-                sampler.kind = kind;
-                sampler.words = Stream::words(sampler.key, pixel, sample >> size.bits());
-                sampler.sample = sample & (size.samples() - 1);
-            }
-        }
-        sampler
     }
 
     /// Of which pixel it is a sample.

@@ -20,9 +20,6 @@ pub struct Scene {
     built_cost: f64,
 }
 
-/// What a description is made into, before it has an accelerator.
-type Parts = (Geometry, Vec<Arc<dyn Material>>, Lights);
-
 /// Ways out for [`Scene::contains`]: in no special position to anything that people make, and with a largest coordinate
 /// between 1 and 2, so that `t` is not scaled.
 const WAYS_OUT: [DVec3; 7] = [
@@ -44,8 +41,9 @@ impl Scene {
         description: SceneDescription,
         accelerator: impl FnOnce(&Geometry) -> Box<dyn Accelerator>,
     ) -> Result<Self, DescriptionError> {
-        let (geometry, materials, lights) = Self::parts(description)?;
-        Ok(Self::with(accelerator(&geometry), None, geometry, materials, lights))
+        let parts = description.joined()?;
+        let lights = Lights::new(&parts.geometry, parts.emission, parts.lights);
+        Ok(Self::with(accelerator(&parts.geometry), None, parts.geometry, parts.materials, lights))
     }
 
     /// The same scene over meshes that have moved, with the accelerator fitted to them. `None` if that cannot be done
@@ -54,24 +52,10 @@ impl Scene {
     /// # Panics
     /// As [`Scene::new`].
     pub fn refitted(&self, description: SceneDescription) -> Result<Option<Self>, DescriptionError> {
-        let (geometry, materials, lights) = Self::parts(description)?;
-        let accelerator = self.accelerator.refitted(&geometry).ok();
-        Ok(accelerator.map(|a| Self::with(a, Some(self.built_cost), geometry, materials, lights)))
-    }
-
-    fn parts(description: SceneDescription) -> Result<Parts, DescriptionError> {
-        description.validate()?;
-        let SceneDescription { shapes, lights } = description;
-        let (mut surfaces, mut materials, mut emission) = (Vec::new(), Vec::new(), Vec::new());
-        for shape in shapes {
-            let needs = shape.needs();
-            surfaces.push(shape.surface.with_only(needs));
-            materials.push(shape.material);
-            emission.push(shape.emission);
-        }
-        let geometry = Geometry::new(surfaces);
-        let lights = Lights::new(&geometry, emission, lights);
-        Ok((geometry, materials, lights))
+        let parts = description.joined()?;
+        let lights = Lights::new(&parts.geometry, parts.emission, parts.lights);
+        let accelerator = self.accelerator.refitted(&parts.geometry).ok();
+        Ok(accelerator.map(|a| Self::with(a, Some(self.built_cost), parts.geometry, parts.materials, lights)))
     }
 
     fn with(
@@ -177,12 +161,12 @@ impl Scene {
         &self.plan
     }
 
-    /// From where light comes by way of mirrors and glass; `None` where it does not.
-    pub fn caustics(&self) -> Option<&Caustics> {
+    /// From where light comes by way of mirrors and glass, kept from when it was first `found`; `None` where it does not.
+    pub(super) fn kept_caustics(&self, found: impl FnOnce(&Self) -> Option<Caustics>) -> Option<&Caustics> {
         if self.caustics.get().is_none() {
             // Not within the lock: threads that wait for others take up work of theirs, which may come here too. Whoever makes them, they are
             // the same.
-            let made = Caustics::new(self);
+            let made = found(self);
             let _ = self.caustics.set(made);
         }
         self.caustics.get()?.as_ref()

@@ -1,7 +1,8 @@
 //! A scene as it is described, before it is compiled.
 
 use super::textures::Needs;
-use super::{DiffuseMaterial, Emission, Light, Material, Surface};
+use super::{DiffuseMaterial, Emission, Geometry, Group, Light, Material, Surface};
+use crate::accel::Accelerator;
 use std::fmt;
 use std::sync::Arc;
 
@@ -84,6 +85,47 @@ impl SceneDescription {
             light.validate().map_err(|why| DescriptionError::Light(i, why))?;
         }
         Ok(())
+    }
+
+    /// Its surfaces joined, without what nobody asks of them.
+    ///
+    /// # Panics
+    /// If a mesh is no mesh; see [`Geometry::new`].
+    pub(super) fn joined(self) -> Result<Parts, DescriptionError> {
+        self.validate()?;
+        let (mut surfaces, mut materials, mut emission) = (Vec::new(), Vec::new(), Vec::new());
+        for shape in self.shapes {
+            let needs = shape.needs();
+            surfaces.push(shape.surface.with_only(needs));
+            materials.push(shape.material);
+            emission.push(shape.emission);
+        }
+        Ok(Parts { geometry: Geometry::new(surfaces), materials, emission, lights: self.lights })
+    }
+}
+
+/// What a description is made into, before it has an accelerator.
+pub(super) struct Parts {
+    pub geometry: Geometry,
+    /// What each shape is made of.
+    pub materials: Vec<Arc<dyn Material>>,
+    /// How each shape shines.
+    pub emission: Vec<Emission>,
+    /// Lights that are no surfaces.
+    pub lights: Vec<Arc<dyn Light>>,
+}
+
+impl Group {
+    /// Compiles shapes, with an accelerator made for their geometry.
+    ///
+    /// # Errors
+    /// If a shape is made of what cannot be, or there are 2³¹ primitives or more, flattened: arrays count them as int32.
+    pub fn new(
+        shapes: Vec<Shape>,
+        accelerator: impl FnOnce(&Geometry) -> Box<dyn Accelerator>,
+    ) -> Result<Self, DescriptionError> {
+        let parts = SceneDescription { shapes, ..SceneDescription::default() }.joined()?;
+        Self::of(parts.geometry, parts.materials, parts.emission, accelerator).map_err(DescriptionError::TooMany)
     }
 }
 

@@ -1,7 +1,8 @@
 //! Scenes that tests share.
 
 use super::{DiffuseMaterial, Mesh, Perspective, Scene, SceneDescription, Shape};
-use crate::accel::bvh::{self, Options};
+use crate::accel::bvh::Options;
+use crate::accel::trees;
 use crate::math::{DVec3, Vec3};
 use crate::optics::Rgb;
 use crate::simd::Level;
@@ -10,7 +11,7 @@ use std::sync::Arc;
 /// A scene on the default accelerator.
 pub(crate) fn scene(description: SceneDescription) -> Scene {
     let level = Level::current().expect("a level");
-    let compiled = Scene::new(description, |geometry| bvh::over(geometry, &Options::default(), level));
+    let compiled = Scene::new(description, |geometry| trees::over(geometry, &Options::default(), level));
     compiled.expect("a scene that can be")
 }
 

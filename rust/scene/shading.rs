@@ -1,10 +1,10 @@
 //! All that shading may want to know of a point.
 
-use super::textures::{Needs, TexturePoint};
-use super::{Geometry, SurfacePoint};
-use crate::math::{DVec3, Hit, Ray};
+use super::SurfacePoint;
+use super::textures::TexturePoint;
+use crate::math::DVec3;
 
-/// A point that is shaded. What nobody needs there is not computed ([`Needs`]).
+/// A point that is shaded. What nobody needs there is not computed ([`Needs`](super::textures::Needs)).
 #[derive(Clone, Copy, Debug)]
 pub struct ShadingPoint {
     /// Where textures are asked.
@@ -57,26 +57,5 @@ impl ShadingPoint {
             is_front: true,
             outside: 1.0,
         }
-    }
-
-    /// What a hit of a ray needs, `width` being that of the footprint there.
-    pub fn new(geometry: &Geometry, ray: &Ray, hit: &Hit, surface: &SurfacePoint, needs: Needs, width: f64) -> Self {
-        let mut point = Self::plain(surface);
-        point.is_front = ray.direction.dot(surface.normal) <= 0.0;
-        if !needs.any() {
-            return point;
-        }
-        let here = geometry.mapped(ray, hit, needs);
-        point.texture = TexturePoint { uv: here.uv, position: here.position, colour: here.colour, ..point.texture };
-        (point.dp, point.dn, point.object_dp) = (here.dp, here.dn, here.object_dp);
-        if needs.width {
-            // An ellipse on the surface whose short axis is the width; the mean of its axes is taken for its size.
-            let cosine = ray.direction.dot(surface.normal).abs().max(1e-3);
-            let size = width / cosine.sqrt();
-            let area = point.dp[0].cross(point.dp[1]).length();
-            point.texture.size = size * here.scale;
-            point.texture.width = if area > 0.0 { size / area.sqrt() } else { 0.0 };
-        }
-        point
     }
 }

@@ -1,7 +1,8 @@
 //! The box along the axes.
 
 use super::line::Line;
-use super::meeting::{Meet, Meets, Solid, tell};
+use super::meeting::tell;
+use super::solid::{Meet, Meets, Solid};
 use super::{Bounds, Candidate, Carried, Contact, Drawn, Point, Shape};
 use crate::math::robust::UNIT;
 use crate::math::{Affine, Bounded, DVec3, Number, Ray, Triple};

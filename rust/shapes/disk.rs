@@ -1,8 +1,9 @@
 //! The disk, whole or with a round hole.
 
 use super::line::Line;
-use super::meeting::{Meets, Solid, tell};
+use super::meeting::tell;
 use super::plane::crossing;
+use super::solid::{Meets, Solid};
 use super::{Bounds, Candidate, Carried, Drawn, Point, Shape};
 use crate::math::robust::UNIT;
 use crate::math::{Affine, DVec3, Frame, Number, Ray, Triple};

@@ -1,7 +1,8 @@
 //! The ellipsoid.
 
 use super::line::Line;
-use super::meeting::{Meets, Solid, ball, ball_surface, tell};
+use super::meeting::{ball, ball_surface, tell};
+use super::solid::{Meets, Solid};
 use super::sphere::{Sphere, ellipsoid_area_under, globe, longitude_latitude};
 use super::{Bounds, Candidate, Carried, Drawn, Point, Shape};
 use crate::math::robust::UNIT;

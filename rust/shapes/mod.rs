@@ -1,6 +1,5 @@
 //! Floor 1: what can be hit, one shape a module.
 
-pub mod bounding;
 mod cone;
 mod contact;
 mod cuboid;
@@ -15,12 +14,14 @@ mod meeting;
 mod newton;
 #[cfg(test)]
 mod oracle;
+pub(crate) mod oriented_box;
 mod paraboloid;
 mod placed;
 mod plane;
 mod polygon;
 mod revolution;
 mod shape;
+mod solid;
 mod sphere;
 #[cfg(test)]
 mod surfaces;

@@ -1,7 +1,7 @@
 //! Roots of a surface along a line, from some digits of them to all.
 
 use super::line::Carried;
-use super::meeting::{Meet, Solid};
+use super::solid::{Meet, Solid};
 use crate::math::Bounded;
 use crate::math::robust::UNIT;
 

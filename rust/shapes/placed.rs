@@ -27,16 +27,6 @@ impl Placed {
         Ok(Self { shape, to_world, to_object })
     }
 
-    /// The shape that is moved, in its own space.
-    pub fn shape(&self) -> &Arc<dyn Shape> {
-        &self.shape
-    }
-
-    /// Where it is moved.
-    pub fn to_world(&self) -> &Affine {
-        &self.to_world
-    }
-
     /// A point of the shape, in the world.
     ///
     /// The map is computed with twice the digits and rounded once; what the point was off, it takes along.

@@ -1,7 +1,8 @@
 //! The sphere.
 
 use super::line::Line;
-use super::meeting::{Meet, Meets, Solid, ball, ball_surface, tell};
+use super::meeting::{ball, ball_surface, tell};
+use super::solid::{Meet, Meets, Solid};
 use super::{Bounds, Candidate, Carried, Contact, Drawn, Point, Seen, Shape, Site};
 use crate::math::robust::UNIT;
 use crate::math::turn::sin_cos_turn;

@@ -2,8 +2,8 @@
 
 use super::triangles::{Random, Triangles, agreed, hits, levels};
 use raywright::accel::kdtree::{Builder, Traversal};
-use raywright::accel::walk::{Input, Lists, Mailbox, Structure, walked};
-use raywright::accel::{Accelerator, Cost, bsp, kdtree, octree};
+use raywright::accel::walk::{Input, Lists, Mailbox, Structure};
+use raywright::accel::{Accelerator, Cost, bsp, kdtree, octree, walked};
 use raywright::math::{DVec3, Ray, Vec3};
 
 type Build = Box<dyn Fn(&Input) -> (Box<dyn Structure>, Lists) + Sync>;

@@ -2,10 +2,10 @@
 
 use super::builders::{BUILDERS, SPATIAL, optimisers, sticks};
 use super::triangles::{Random, Triangles, levels};
+use raywright::accel::bvh::Options;
 use raywright::accel::bvh::optimise::Optimisers;
 use raywright::accel::bvh::traverse::{Orders, Rays, Traversal};
-use raywright::accel::bvh::{self, Options};
-use raywright::accel::{Accelerator, BruteForce, Cost, Crossings, Objects, Primitives, Side, Wanted};
+use raywright::accel::{Accelerator, BruteForce, Cost, Crossings, Objects, Primitives, Side, Wanted, trees};
 use raywright::math::{DVec3, Hit, Ray, Vec3};
 use raywright::shapes::{Bounds, Candidate, Contact};
 use raywright::simd::Level;
@@ -24,13 +24,14 @@ fn trees(primitives: &dyn Primitives) -> Vec<Box<dyn Accelerator>> {
     for (i, builder) in BUILDERS.into_iter().enumerate() {
         for (k, traversal) in Traversal::ALL.into_iter().enumerate() {
             let optimisers = Some(optimisers()[(i + k) % 3]);
-            let tree = bvh::binary(primitives, &Options { builder, optimisers, ..Options::DEFAULT }, traversal, best());
+            let tree =
+                trees::binary(primitives, &Options { builder, optimisers, ..Options::DEFAULT }, traversal, best());
             tree.validate(primitives).unwrap_or_else(|wrong| panic!("{}: {wrong}", tree.info().kind));
             trees.push(tree);
         }
     }
     let ways = Traversal::ALL.into_iter().flat_map(|way| levels().map(move |level| (way, level)));
-    trees.extend(ways.map(|(way, level)| bvh::binary(primitives, &Options::DEFAULT, way, level)));
+    trees.extend(ways.map(|(way, level)| trees::binary(primitives, &Options::DEFAULT, way, level)));
     trees
 }
 
@@ -90,7 +91,7 @@ fn nodes(costs: &[Cost]) -> u64 {
 fn over(triangles: &Triangles, traversal: Traversal) -> Box<dyn Accelerator> {
     // Of whole triangles: what is said here of trees is not said of those over pieces.
     let options = Options { optimisers: Some(Optimisers::REINSERTION), ..Options::DEFAULT };
-    bvh::binary(triangles, &options, traversal, best())
+    trees::binary(triangles, &options, traversal, best())
 }
 
 /// Neighbouring rays through an eye, and rays that go any way, some of them none at all.
@@ -218,7 +219,7 @@ fn trees_are_fitted_to_what_moves_unless_they_hold_parts() {
         assert_eq!(ask(moved.as_ref(), &after, &rays, 100), wanted, "{traversal:?}");
         let told = |a: &dyn Accelerator| (a.info().nodes, a.info().leaves, a.info().kind.clone());
         assert_eq!(told(moved.as_ref()), told(tree.as_ref()));
-        let parts = bvh::binary(&before, &Options { builder: SPATIAL, ..Options::DEFAULT }, traversal, best());
+        let parts = trees::binary(&before, &Options { builder: SPATIAL, ..Options::DEFAULT }, traversal, best());
         let wrong = parts.refitted(&after).err().unwrap();
         assert!(wrong.contains("spatial splits") && wrong.contains("build the tree again"), "{wrong}");
     }

@@ -4,8 +4,8 @@ use raywright::accel::bvh::traverse::{Orders, Rays, Traversal};
 use raywright::accel::bvh::{self, Options};
 use raywright::accel::grid::{self, Resolution};
 use raywright::accel::kdtree::{self, Builder};
-use raywright::accel::walk::{self, Built, Input, Mailbox};
-use raywright::accel::{Accelerator, BruteForce, Primitives, bsp, octree};
+use raywright::accel::walk::{Built, Input, Mailbox};
+use raywright::accel::{Accelerator, BruteForce, Primitives, bsp, octree, walked};
 use raywright::math::{DVec3, Hit, Ray, Region, Vec3};
 use raywright::shapes::triangle::EdgeRay;
 use raywright::simd::Level;
@@ -62,7 +62,7 @@ pub fn accelerators(primitives: &dyn Primitives) -> Vec<(String, Box<dyn Acceler
     }
     let level = levels().last().unwrap();
     for (name, build) in STRUCTURES {
-        let structure = walk::walked(primitives, level, Mailbox::Stamps, &build);
+        let structure = walked(primitives, level, Mailbox::Stamps, &build);
         structure.validate(primitives).unwrap();
         all.push((name.to_string(), structure));
     }

@@ -10,45 +10,22 @@ mod wide;
 
 pub use node::{BinaryBvh, Node};
 pub use quality::{Cuts, Quality, Steps};
-use traverse::Traversal;
 pub use wide::Options;
 use wide::WideBvh;
 
-use super::walk::{Input, Mailbox, walked};
-use super::{Accelerator, Primitives, mixed};
+use super::walk::{Built, Input};
+use super::{Accelerator, Primitives};
 use crate::shapes::triangle::{DoubleLeaves, Leaves, SingleLeaves};
 use crate::simd::{Dispatch, Level};
 
-/// The default: a wide tree over triangles, and another over what is none; a binary one of moving boxes if anything of that moves.
-pub fn over(primitives: &dyn Primitives, options: &Options, level: Level) -> Box<dyn Accelerator> {
-    of_width(level.lanes(), primitives, options, level)
-}
-
-/// The same with so many children a node, 4 or 8.
-///
-/// # Panics
-/// If the level has fewer lanes, or there is no tree of that width.
-pub fn of_width(width: usize, primitives: &dyn Primitives, options: &Options, level: Level) -> Box<dyn Accelerator> {
-    // What is no triangle is tested one by one.
-    let others = |input: &Input| {
-        if input.primitives.objects().is_some_and(|objects| objects.moves()) {
-            let (tree, name) = options.quality.steps(1).whole(&input.boxes);
-            traverse::Moving::over(tree, input, &name)
-        } else {
-            wide::over_objects(input, options, level)
-        }
-    };
-    mixed(primitives, level, &|triangles| wide(width, triangles, options, level), &others)
-}
-
-/// A binary tree over triangles and what is none, walked as textbooks have it.
-pub fn binary(
-    primitives: &dyn Primitives,
-    options: &Options,
-    traversal: Traversal,
-    level: Level,
-) -> Box<dyn Accelerator> {
-    walked(primitives, level, Mailbox::Stamps, &|input| traversal.build(input, options))
+/// A tree over what is tested one by one: a wide one, or a binary one of moving boxes if anything moves.
+pub(super) fn over_objects(input: &Input, options: &Options, level: Level) -> Built {
+    if input.primitives.objects().is_some_and(|objects| objects.moves()) {
+        let (tree, name) = options.quality.steps(1).whole(&input.boxes);
+        traverse::Moving::over(tree, input, &name)
+    } else {
+        wide::over_objects(input, options, level)
+    }
 }
 
 /// A wide tree as wide as the level's registers, 8 from AVX2 on and 4 below, that keeps numbers as precisely as they are.

@@ -2,7 +2,7 @@
 //!
 //! A [`Structure`] knows boxes and gives leaves, in the order in which a ray comes to them; what stands in the leaves, triangles or anything
 //! else, is tested here, by the same decision that all accelerators share. So its file holds its idea and nothing else, and every
-//! question can be asked of it.
+//! question can be asked of it, by way of [`walked`](super::walked()).
 //!
 //! Rays are walked in box units as [`SlabRay`] makes them ready: where it says at which `t` a plane is met, both ends of that are
 //! padded, and a walk that takes an interval for what it may be at most, and goes where it may be, misses nothing.
@@ -12,14 +12,14 @@ mod mailbox;
 mod parts;
 mod room;
 mod together;
-mod walked;
 
 pub(super) use contents::Contents;
 pub use mailbox::Mailbox;
+pub(super) use mailbox::{Mailboxes, Marks};
 pub(super) use parts::{Halves, Part, Plane};
 pub(super) use room::Room;
+pub(super) use together::TogetherBatch;
 pub use together::{MOST_TOGETHER, Together};
-pub use walked::walked;
 
 use super::{Info, Primitives, SlabRay};
 use crate::math::{Aabb, Region};

@@ -38,7 +38,7 @@ struct Asked<T> {
 }
 
 /// What a batch is asked about.
-pub struct Batch<'a, const N: usize, L> {
+pub struct TogetherBatch<'a, const N: usize, L> {
     pub contents: &'a Contents<N, L>,
     /// What every ray is tested against.
     pub unbounded: &'a [u32],
@@ -46,7 +46,7 @@ pub struct Batch<'a, const N: usize, L> {
     pub rays: &'a [Ray],
 }
 
-impl<const N: usize, L: Leaves<N>> Batch<'_, N, L> {
+impl<const N: usize, L: Leaves<N>> TogetherBatch<'_, N, L> {
     /// Answers all rays.
     ///
     /// Where a primitive stands in several leaves, a ray may be offered it more than once, which changes no answer: marks

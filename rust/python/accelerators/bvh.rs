@@ -10,6 +10,7 @@ use crate::accel::bvh::build::{Builder, binned, ploc, spatial};
 use crate::accel::bvh::optimise::{Optimiser, Optimisers};
 use crate::accel::bvh::traverse::{Orders, Rays, Traversal};
 use crate::accel::bvh::{self, Quality};
+use crate::accel::trees;
 use crate::simd::Level;
 
 /// `raywright.BVH`.
@@ -51,9 +52,9 @@ impl Bvh {
             intersection_cost: self.intersection_cost,
         };
         Ok(match self.tree(level)? {
-            Tree::Wide(None) => Box::new(move |geometry| bvh::over(geometry, &options, level)),
-            Tree::Wide(Some(width)) => Box::new(move |geometry| bvh::of_width(width, geometry, &options, level)),
-            Tree::Binary(way) => Box::new(move |geometry| bvh::binary(geometry, &options, way, level)),
+            Tree::Wide(None) => Box::new(move |geometry| trees::over(geometry, &options, level)),
+            Tree::Wide(Some(width)) => Box::new(move |geometry| trees::of_width(width, geometry, &options, level)),
+            Tree::Binary(way) => Box::new(move |geometry| trees::binary(geometry, &options, way, level)),
         })
     }
 

@@ -10,8 +10,8 @@ use std::fmt::Display;
 use std::ops::RangeInclusive;
 
 use super::level;
-use crate::accel::walk::{Built, Input, Mailbox, walked};
-use crate::accel::{Accelerator, BruteForce};
+use crate::accel::walk::{Built, Input, Mailbox};
+use crate::accel::{Accelerator, BruteForce, walked};
 use crate::scene::Geometry;
 use crate::simd::Level;
 

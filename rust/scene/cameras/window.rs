@@ -97,11 +97,6 @@ impl Window {
         Ok(Self { centre: centre.map(|c| c + 0.0), ..self })
     }
 
-    /// Half the width and half the height.
-    pub fn half(&self) -> [f64; 2] {
-        self.half
-    }
-
     /// Where a point of the film, from −1 to 1, is at distance 1: to the right, and upwards.
     #[inline(always)]
     pub fn point(&self, [x, y]: [f64; 2]) -> [f64; 2] {

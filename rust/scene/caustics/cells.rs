@@ -1,7 +1,7 @@
 //! Places, divided by how much light comes there.
 
 use super::lobe::Lobe;
-use super::photons::Photon;
+use super::photon::Photon;
 use crate::math::DVec3;
 use std::ops::Range;
 

@@ -1,6 +1,6 @@
 //! Balls that light comes from, as they are seen from a neighbourhood.
 
-use super::photons::Photon;
+use super::photon::Photon;
 use crate::math::turn::sin_cos_turn;
 use crate::math::{DVec3, Frame};
 use glam::DMat3;

@@ -3,13 +3,14 @@
 mod aim;
 mod cells;
 mod lobe;
-mod photons;
+mod photon;
 #[cfg(test)]
 mod tests;
 
 pub use aim::Aim;
+pub(super) use photon::Photon;
 
-use super::{Scatters, Scene};
+use super::Scatters;
 use crate::math::DVec3;
 use cells::Cells;
 
@@ -18,7 +19,7 @@ use cells::Cells;
 ///
 /// A matt surface that sees a lamp in a ball of glass finds it by chance as seldom as its image is small, and is the brighter for it:
 /// the fireflies of path tracing. The lamp cannot be asked, for nothing goes straight to it. So photons are sent from the lights to what is
-/// sharp, and followed to where they fall (`photons.rs`); places are divided into cells of about as many of them (`cells.rs`), and photons
+/// sharp, and followed to where they fall (`scene/photons.rs`); places are divided into cells of about as many of them (`cells.rs`), and photons
 /// of a cell that came by the same surfaces are taken together for a ball that light comes from (`lobe.rs`). A path draws its direction from
 /// the cones to these or from its surface, and is weighed by the density of both together (`aim.rs`). So photons that are missing,
 /// or wrong, make a picture noisier and never another one, and nothing of them need be exact.
@@ -30,10 +31,9 @@ pub struct Caustics {
 }
 
 impl Caustics {
-    /// Those of a scene; `None` where no photon has come anywhere by way of what is sharp.
-    pub(super) fn new(scene: &Scene) -> Option<Self> {
-        let photons = photons::photons(scene);
-        let usual = photons::usual(scene, &photons);
+    /// What photons tell of it, and how much light comes straight from lights to where they have fallen, over area, on average; `None`
+    /// where no photon has come anywhere by way of what is sharp.
+    pub(super) fn new(photons: Vec<Photon>, usual: f64) -> Option<Self> {
         (!photons.is_empty()).then(|| Self { cells: Cells::new(photons, usual) })
     }
 

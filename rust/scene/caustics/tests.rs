@@ -3,11 +3,12 @@
 use super::Caustics;
 use super::cells::Cells;
 use super::lobe::Lobe;
-use super::photons::{Photon, photons};
+use super::photon::Photon;
 use crate::math::DVec3;
 use crate::sampling::{Sampler, warp};
 use crate::scene::fixtures::{cornell, rectangle, scene, shape};
 use crate::scene::materials::MirrorMaterial;
+use crate::scene::photons::photons;
 use crate::scene::{PointLight, Scene, SceneDescription, Shape};
 use std::f64::consts::TAU;
 use std::sync::Arc;

@@ -35,6 +35,7 @@ impl Texels {
         }
     }
 
+    #[cfg(test)]
     fn bytes(&self) -> usize {
         match self {
             Self::Grey8(all, _) => size_of_val(all.as_slice()),
@@ -198,7 +199,8 @@ impl Picture {
     }
 
     /// The memory held.
-    pub fn bytes(&self) -> usize {
+    #[cfg(test)]
+    fn bytes(&self) -> usize {
         self.levels.iter().map(|level| level.texels.bytes() + size_of::<Level>()).sum()
     }
 }

@@ -4,8 +4,8 @@
 //! Of intervals the derivatives hold every slope that the function has there, those on either side of a kink included
 //! (Clarke's generalised gradient), so that where zero is not among them the function only rises or only falls.
 
+use super::functions::{Binary, Unary};
 use super::number::{Number, Scalar};
-use super::tape::{Binary, Unary};
 
 /// A value and its derivatives.
 #[derive(Clone, Copy, Debug)]

@@ -1,5 +1,6 @@
 //! Surfaces `f(x, y, z) = 0` within a box.
 
+mod functions;
 mod jet;
 mod line;
 mod number;
@@ -32,7 +33,6 @@ use tape::Tape;
 /// change.
 #[derive(Clone, Debug)]
 pub struct Implicit {
-    text: String,
     tape: Tape,
     bounds: Bounds,
     /// Bounds every coordinate.
@@ -63,12 +63,7 @@ impl Implicit {
         if side <= 64.0 * f64::EPSILON * extent {
             return Err(format!("min is {min} and max is {max}, expected a box wider than 64 units in the last place"));
         }
-        Ok(Self { text: expression.to_owned(), tape, bounds: Bounds { min, max }, extent, surface: OnceLock::new() })
-    }
-
-    /// The expression as it was given.
-    pub fn expression(&self) -> &str {
-        &self.text
+        Ok(Self { tape, bounds: Bounds { min, max }, extent, surface: OnceLock::new() })
     }
 
     /// The expression's value at a point; NaN where it is not defined.

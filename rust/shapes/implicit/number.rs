@@ -1,6 +1,6 @@
 //! What an expression can be evaluated with: numbers, intervals, and either with its derivatives along a line.
 
-use super::tape::{Binary, Unary};
+use super::functions::{Binary, Unary};
 use crate::math::Interval;
 
 /// What knows the functions of an expression.

@@ -3,7 +3,8 @@
 //! A sum is terms joined by `+` and `-`, a term is factors joined by `*` and `/`, a factor has signs before it, and a
 //! power is an atom with `** factor` behind it: so `-x**2` is `-(x**2)` and `2**-1` is a half, as in Python.
 
-use super::tape::{Binary, Step, Tape, Unary};
+use super::functions::{Binary, Unary};
+use super::tape::{Step, Tape};
 
 const UNARY: [(&str, Unary); 13] = [
     ("abs", Unary::Abs),

@@ -1,60 +1,7 @@
 //! An expression as a list of steps, each of which uses the results of steps before it; equal steps are done once.
 
+use super::functions::{Binary, Unary};
 use super::number::Number;
-
-/// Functions of one number.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Unary {
-    /// `-a`
-    Negative,
-    /// `abs(a)`
-    Abs,
-    /// `sqrt(a)`
-    Sqrt,
-    /// `exp(a)`
-    Exp,
-    /// `log(a)`, the natural logarithm.
-    Log,
-    /// `sin(a)`
-    Sin,
-    /// `cos(a)`
-    Cos,
-    /// `tan(a)`
-    Tan,
-    /// `asin(a)`
-    Asin,
-    /// `acos(a)`
-    Acos,
-    /// `atan(a)`
-    Atan,
-    /// `sinh(a)`
-    Sinh,
-    /// `cosh(a)`
-    Cosh,
-    /// `tanh(a)`
-    Tanh,
-}
-
-/// Functions of two numbers.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Binary {
-    /// `a + b`
-    Add,
-    /// `a - b`
-    Subtract,
-    /// `a * b`
-    Multiply,
-    /// `a / b`
-    Divide,
-    /// `a ** b` for a power that is no whole number: of what is not negative.
-    Raise,
-    /// `atan2(a, b)`
-    Atan2,
-    /// `min(a, b)`
-    Min,
-    /// `max(a, b)`
-    Max,
-}
 
 /// One step; operands are the numbers of earlier steps.
 #[derive(Clone, Copy, Debug, PartialEq)]

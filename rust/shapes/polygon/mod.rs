@@ -152,16 +152,6 @@ impl Polygon {
         Ok(Self { rings, bounds, longest, anchor, normal, deviation, corner, axes, area, kept, parts, shares })
     }
 
-    /// The outline, then the holes.
-    pub fn rings(&self) -> &[Vec<DVec3>] {
-        &self.rings
-    }
-
-    /// The unit normal.
-    pub fn normal(&self) -> DVec3 {
-        self.normal
-    }
-
     /// Where a line that passes through meets the plane, and the point relative to where u and v are 0. With 32 digits,
     /// so that a far origin and a grazing direction lose none.
     fn crossing(&self, ray: &Ray) -> Option<(f64, DVec3)> {

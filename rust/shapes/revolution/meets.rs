@@ -5,7 +5,8 @@ use crate::math::robust::UNIT;
 use crate::math::{Number, Ray, Triple};
 use crate::shapes::Contact;
 use crate::shapes::line::Line;
-use crate::shapes::meeting::{Meet, Meets, Root, roots};
+use crate::shapes::meeting::{Root, roots};
+use crate::shapes::solid::{Meet, Meets};
 use std::cmp::Ordering;
 
 impl Revolution {

@@ -3,7 +3,8 @@
 use super::Revolution;
 use crate::math::{Affine, Bounded, DVec3, Number, Ray, Triple};
 use crate::shapes::line::Line;
-use crate::shapes::meeting::{Meets, Solid, tell};
+use crate::shapes::meeting::tell;
+use crate::shapes::solid::{Meets, Solid};
 use crate::shapes::{Bounds, Candidate, Carried, Drawn, Point, Shape};
 
 impl Solid for Revolution {

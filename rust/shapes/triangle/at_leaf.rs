@@ -1,31 +1,13 @@
 //! Sixteen rays at a leaf: each triangle against those that are there, in f32 first, and in f64 those that are left.
 
-use super::{BlockRays, EdgeRay, EdgeRays, Leaves, RAYS};
-use crate::math::{Ray, Region};
+use super::leaves::{Leaves, Sixteen};
+use super::sixteen::RAYS;
 use crate::shapes::{Candidate, Contact};
 use crate::simd::Simd;
-
-/// Sixteen rays, ready for leaves.
-pub struct Sixteen<'a> {
-    /// As given; fewer than sixteen at the end of a batch.
-    pub given: &'a [Ray],
-    /// Where the triangles lie.
-    pub region: &'a Region,
-    /// As the decision in f64 needs them.
-    pub edges: &'a EdgeRays,
-    /// As the test in f32 needs them.
-    pub blocks: &'a BlockRays,
-}
 
 impl Sixteen<'_> {
     /// So many rays or fewer are decided in f64 one by one.
     const FEW: u32 = 2;
-
-    /// One of those that were given.
-    #[inline(always)]
-    pub fn one(&self, i: usize) -> Option<EdgeRay> {
-        EdgeRay::new(&self.given[i], self.region)
-    }
 
     /// See [`Leaves::meet_sixteen`].
     #[inline(always)]

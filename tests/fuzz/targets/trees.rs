@@ -5,7 +5,7 @@ use super::builders::{builder, optimisers};
 use super::numbers::{Range, one_of, single_point};
 use super::triangles::{Triangles, rays, triangles};
 use arbitrary::{Result, Unstructured};
-use raywright::accel::bvh::build::{Builder, Leaves, binned};
+use raywright::accel::bvh::build::{Builder, Leaves};
 use raywright::accel::bvh::optimise::{reinsertion, treelet};
 use raywright::accel::bvh::{Cuts, Options, Quality, Steps};
 use raywright::accel::{BruteForce, Primitives};
@@ -20,7 +20,7 @@ pub fn check(data: &[u8]) {
 
 /// Boxes, some of them empty, many alike; up to some thousand, which more than one thread sorts.
 fn boxes(u: &mut Unstructured) -> Result<()> {
-    let block = u.int_in_range(1..=binned::MAX_BLOCK)?;
+    let block = u.int_in_range(1..=Leaves::MAX_BLOCK)?;
     // Nothing is gained by cutting boxes, so nothing is cut.
     let steps = Steps {
         cuts: Some(Cuts::and_splits(None, 8.0)),

@@ -21,9 +21,6 @@ pub struct Options {
     pub leaves: Leaves,
 }
 
-/// Most primitives in a block that may be asked for.
-pub const MAX_BLOCK: usize = 16;
-
 /// Up to so many primitives, a subtree is built by one thread.
 const TASK: usize = 1024;
 
@@ -151,7 +148,7 @@ impl Task {
     }
 }
 
-/// Sorts at most [`MAX_BLOCK`] along an axis and tells where to split them, by the surface-area heuristic.
+/// Sorts at most [`Leaves::MAX_BLOCK`] along an axis and tells where to split them, by the surface-area heuristic.
 #[inline(always)]
 fn sweep(references: &mut [Reference], axis: usize) -> usize {
     let n = references.len();
@@ -164,7 +161,7 @@ fn sweep(references: &mut [Reference], axis: usize) -> usize {
         }
         references[place] = reference;
     }
-    let mut right = [0.0; MAX_BLOCK];
+    let mut right = [0.0; Leaves::MAX_BLOCK];
     let mut grown = Bounds::EMPTY;
     for i in (1..n).rev() {
         grown.grow(&references[i].bounds);
@@ -207,7 +204,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn trees_over_any_boxes_are_valid(corners in prop::collection::vec(([-2f32..2.0, -2f32..2.0, -2f32..2.0], [0f32..0.5, 0f32..0.5, 0f32..0.5]), 0..300), block in 1..=MAX_BLOCK) {
+        fn trees_over_any_boxes_are_valid(corners in prop::collection::vec(([-2f32..2.0, -2f32..2.0, -2f32..2.0], [0f32..0.5, 0f32..0.5, 0f32..0.5]), 0..300), block in 1..=Leaves::MAX_BLOCK) {
             let boxes: Vec<_> = corners
                 .iter()
                 .map(|(p, d)| Aabb { min: Vec3::from(*p), max: Vec3::from(*p) + Vec3::from(*d) })

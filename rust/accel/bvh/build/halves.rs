@@ -20,9 +20,6 @@ pub enum Way {
 }
 
 impl Way {
-    /// All of them.
-    pub const ALL: [Self; 3] = [Self::Midpoint, Self::Median, Self::Mean];
-
     /// Its name, for people.
     pub const fn name(self) -> &'static str {
         match self {

@@ -1,7 +1,5 @@
 //! When a builder makes a leaf.
 
-use super::binned::MAX_BLOCK;
-
 /// When a builder that goes from the top down makes a leaf, by the surface-area heuristic (Goldsmith and Salmon 1987).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Leaves {
@@ -10,7 +8,7 @@ pub struct Leaves {
     /// More than so many always are, from `whole` to [`Leaves::MAX`]. In between, a leaf is made where no split lowers the
     /// cost.
     pub most: usize,
-    /// So many primitives are tested at once, from 1 to [`MAX_BLOCK`].
+    /// So many primitives are tested at once, from 1 to [`Leaves::MAX_BLOCK`].
     pub block: usize,
     /// Cost of a step down.
     pub traversal_cost: f32,
@@ -21,6 +19,9 @@ pub struct Leaves {
 impl Leaves {
     /// Most primitives in a leaf that may be asked for.
     pub const MAX: usize = 1024;
+
+    /// Most primitives in a block that may be asked for.
+    pub const MAX_BLOCK: usize = 16;
 
     /// For trees that are collapsed to ones with leaves of blocks of so many: down to a few primitives, without weighing costs.
     /// What shares a block is decided better then, where the cost of the wide nodes is known. Three eighths of a block are not
@@ -39,7 +40,7 @@ impl Leaves {
     /// If an option is out of range.
     pub(super) fn check(&self) {
         let Self { whole, most, block, .. } = *self;
-        assert!((1..=MAX_BLOCK).contains(&block), "block is {block}, not from 1 to {MAX_BLOCK}");
+        assert!((1..=Self::MAX_BLOCK).contains(&block), "block is {block}, not from 1 to {}", Self::MAX_BLOCK);
         assert!(1 <= whole && whole <= most && most <= Self::MAX, "leaves from {whole} to {most}");
     }
 

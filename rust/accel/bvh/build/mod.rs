@@ -11,7 +11,7 @@ mod leaves;
 pub mod morton;
 mod part;
 pub mod ploc;
-pub mod presplit;
+pub(super) mod presplit;
 mod radix;
 mod reference;
 mod slices;

@@ -6,7 +6,7 @@
 //! straddling reference that costs less when it is left whole goes to one side ("reference unsplitting"). How many references may be
 //! added is bounded; a subtree gets what its parent has left in proportion to its references, so that threads need not share it.
 //! That spends it badly where some need many cuts and others none, so what gains most is better cut before, wherever it is:
-//! [`presplit`](super::presplit).
+//! `presplit`.
 
 use super::binned::MAX_BINS;
 use super::bins::{Bins, Split};

@@ -36,7 +36,7 @@ fn assert_sound(bvh: &BinaryBvh, boxes: &[Aabb], builder: Builder, clip: impl Fn
     assert_depth_first(bvh);
     let count = boxes.iter().filter(|b| !b.is_empty()).count();
     // What fits a block may be a chain.
-    let limit = 3 * count.max(1).ilog2() as usize + 42 + binned::MAX_BLOCK;
+    let limit = 3 * count.max(1).ilog2() as usize + 42 + Leaves::MAX_BLOCK;
     let limit = if let Builder::Morton(bits) = builder { limit.max(bits.count() as usize + 33) } else { limit };
     assert!(bvh.depth() <= limit, "{}: depth {} of {count}", builder.name(), bvh.depth());
 }

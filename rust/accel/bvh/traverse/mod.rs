@@ -13,8 +13,9 @@ mod slabs;
 mod threaded;
 mod volumes;
 
-pub use moving::Moving;
-pub use ordered::{Ordered, Rays};
+pub(super) use moving::Moving;
+use ordered::Ordered;
+pub use ordered::Rays;
 pub use threaded::{Orders, Threaded};
 
 use super::{BinaryBvh, Options};

@@ -5,7 +5,7 @@ use super::numbered::Numbered;
 use super::volumes::{Line, NOWHERE, Points, Span, Volumes, grow};
 use crate::accel::SlabRay;
 use crate::math::{DVec3, Vec3};
-use crate::shapes::bounding::{OrientedBox, Volume};
+use crate::shapes::oriented_box::OrientedBox;
 use rayon::prelude::*;
 
 /// What a turned box has of the surface of the node's own at most: one that has more is not worth its test.

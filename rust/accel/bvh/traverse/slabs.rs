@@ -5,13 +5,13 @@ use super::numbered::Numbered;
 use super::volumes::{Across, Line, NOWHERE, Points, Span, Volumes, grow};
 use crate::accel::SlabRay;
 use crate::math::DVec3;
-use crate::shapes::bounding;
+use crate::shapes::oriented_box::DIRECTIONS;
 
 /// Directions beside the axes.
 const COUNT: usize = 10;
 
 fn normal(i: usize) -> DVec3 {
-    bounding::Slabs::<13>::NORMALS[3 + i]
+    DIRECTIONS[3 + i]
 }
 
 /// Heights of all nodes.

@@ -1,11 +1,8 @@
 //! Answers every question by walking a structure.
 
-use super::contents::Contents;
-use super::mailbox::{Mailbox, Mailboxes, Marks};
-use super::together;
-use super::{Build, Input, Structure};
-use crate::accel::query::{Answers, Query, Wanted};
-use crate::accel::{Accelerator, Info, Nearest, Primitives, SlabRay, Touches, bvh};
+use super::query::{Answers, Query, Wanted};
+use super::walk::{Build, Contents, Input, Mailbox, Mailboxes, Marks, Structure, TogetherBatch};
+use super::{Accelerator, Info, Nearest, Primitives, SlabRay, Touches, bvh};
 use crate::math::{Aabb, DVec3, Ray, Region};
 use crate::shapes::triangle::{DoubleLeaves, EdgeRay, Leaves, SingleLeaves, SolidCone};
 use crate::simd::{Dispatch, Kernel, Level, Simd};
@@ -214,7 +211,7 @@ impl<const N: usize, L: Leaves<N>, Q: Query> Kernel<N> for Batch<'_, N, L, Q> {
         if rays.len() > 1
             && let Some(mut walk) = structure.together(Q::COUNTED, *level)
         {
-            together::Batch { contents, unbounded, region, rays }.answer(simd, walk.as_mut(), query);
+            TogetherBatch { contents, unbounded, region, rays }.answer(simd, walk.as_mut(), query);
             return;
         }
         // One ray at a time. Eight in turn, each with its next leaf fetched meanwhile, are faster in grids where rays have nothing in

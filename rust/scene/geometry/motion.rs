@@ -1,7 +1,8 @@
 //! Where a point of a surface goes while the shutter is open.
 
-use super::{Geometry, SurfacePoint};
+use super::Geometry;
 use crate::math::{DVec3, Hit, Ray};
+use crate::scene::SurfacePoint;
 
 impl Geometry {
     /// How far the point of a surface that a ray hits goes from the shutter's opening to its closing.

@@ -1,26 +1,11 @@
 //! Photons that come to matt surfaces by way of sharp ones.
 
-use super::is_matt;
+use super::caustics::{Caustics, Photon, is_matt};
+use super::{Departure, Geometry, Interaction, LightSample, Receiver, Scattered, Scene};
 use crate::math::{DVec3, Hit, Ray};
 use crate::optics::Bsdf;
 use crate::sampling::{AliasTable, Sampler, warp};
-use crate::scene::{Departure, Geometry, Interaction, LightSample, Receiver, Scattered, Scene};
 use rayon::prelude::*;
-
-/// Light that has come to a place.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Photon {
-    /// Where it fell, just off the surface.
-    pub position: DVec3,
-    /// The shading normal there, on its side.
-    pub normal: DVec3,
-    /// The last surface before, that it came from.
-    pub target: DVec3,
-    /// About how much light it stands for, W, a mean of the channels.
-    pub flux: f64,
-    /// Tells by which surfaces it came, since the light or a matt one.
-    pub chain: u64,
-}
 
 /// How many are sent.
 const SENT: u32 = 1 << 16;
@@ -37,6 +22,17 @@ const MATT: u32 = 2;
 /// What is drawn with a density above this, in solid angle, was scattered sharply: a matt surface has at most 1/π.
 const SHARP: f64 = 4.0;
 
+impl Scene {
+    /// From where light comes by way of mirrors and glass; `None` where it does not. Photons are sent when it is first asked for.
+    pub fn caustics(&self) -> Option<&Caustics> {
+        self.kept_caustics(|scene| {
+            let photons = photons(scene);
+            let usual = usual(scene, &photons);
+            Caustics::new(photons, usual)
+        })
+    }
+}
+
 /// Photons that came to matt surfaces by way of sharp ones, in an order that depends on the scene only.
 pub(super) fn photons(scene: &Scene) -> Vec<Photon> {
     if scene.lights().is_dark() {
@@ -49,7 +45,7 @@ pub(super) fn photons(scene: &Scene) -> Vec<Photon> {
 }
 
 /// The light that comes straight from lights to where photons have fallen, over area, on average.
-pub(super) fn usual(scene: &Scene, photons: &[Photon]) -> f64 {
+fn usual(scene: &Scene, photons: &[Photon]) -> f64 {
     /// How many are asked.
     const ASKED: usize = 4096;
     let (mut rays, mut arriving, mut asked) = (Vec::new(), Vec::new(), 0.0);

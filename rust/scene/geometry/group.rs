@@ -1,9 +1,12 @@
 //! What is put into a scene many times: shapes in a space of their own, with an accelerator of their own.
 
-use super::{DescriptionError, Emission, Geometry, HitPoint, Material, SceneDescription, Shape, SurfacePoint};
+use super::Geometry;
+use super::mapped::Mapped;
 use crate::accel::{Accelerator, Primitives, Side};
 use crate::math::robust::normalising_scale;
 use crate::math::{DVec3, Hit, Ray, Region};
+use crate::scene::textures::Needs;
+use crate::scene::{Emission, HitPoint, Material, SurfacePoint};
 use crate::shapes::Bounds;
 use rayon::prelude::*;
 use std::fmt;
@@ -33,32 +36,25 @@ impl fmt::Debug for Group {
 }
 
 impl Group {
-    /// Compiles shapes, with an accelerator made for their geometry.
+    /// Of surfaces, what each is made of and how it shines, with an accelerator made for them.
     ///
     /// # Errors
-    /// If a shape is made of what cannot be, or there are 2³¹ primitives or more, flattened: arrays count them as int32.
-    pub fn new(
-        shapes: Vec<Shape>,
+    /// If there are 2³¹ primitives or more, flattened: so many.
+    pub(in crate::scene) fn of(
+        geometry: Geometry,
+        materials: Vec<Arc<dyn Material>>,
+        emission: Vec<Emission>,
         accelerator: impl FnOnce(&Geometry) -> Box<dyn Accelerator>,
-    ) -> Result<Self, DescriptionError> {
-        let description = SceneDescription { shapes, ..SceneDescription::default() };
-        description.validate()?;
-        let (mut surfaces, mut materials, mut emission) = (Vec::new(), Vec::new(), Vec::new());
-        for shape in description.shapes {
-            let needs = shape.needs();
-            surfaces.push(shape.surface.with_only(needs));
-            materials.push(shape.material);
-            emission.push(shape.emission);
-        }
-        let geometry = Geometry::new(surfaces);
+    ) -> Result<Self, u64> {
         let mut first = vec![0u64];
         for shape in 0..geometry.shapes() as u32 {
             let primitives = geometry.primitives_of(shape).len() as u64;
             let each = geometry.copies_of(shape).map_or(1, |copies| u64::from(copies.group().count()));
             first.push(first[shape as usize] + primitives * each);
         }
-        if first[first.len() - 1] >= 1 << 31 {
-            return Err(DescriptionError::TooMany(first[first.len() - 1]));
+        let count = first[first.len() - 1];
+        if count >= 1 << 31 {
+            return Err(count);
         }
         let (has_copies, moves) = (geometry.has_copies(), geometry.moves());
         let region = geometry.region();
@@ -138,6 +134,12 @@ impl Group {
         self.geometry.point(ray, &Hit { primitive, inner, ..*hit })
     }
 
+    /// How the hit of a ray in its space lies, of the primitive of a flattened number, `inner`.
+    pub(super) fn mapped(&self, ray: &Ray, hit: &Hit, needs: Needs) -> Mapped {
+        let (primitive, inner) = self.split(hit.inner);
+        self.geometry.mapped(ray, &Hit { primitive, inner, ..*hit }, needs)
+    }
+
     /// What the primitive of a flattened number is made of, and how it shines.
     pub fn look(&self, flat: u32) -> (&dyn Material, &Emission) {
         let (primitive, inner) = self.split(flat);
@@ -188,7 +190,7 @@ mod tests {
     use crate::accel::BruteForce;
     use crate::optics::Rgb;
     use crate::scene::fixtures::{rectangle, shape};
-    use crate::scene::{Copies, Matrix};
+    use crate::scene::{Copies, DescriptionError, Matrix, Shape};
     use crate::simd::Level;
 
     const HERE: Matrix = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]];

@@ -1,6 +1,7 @@
 //! What is in a scene and is no mesh, as accelerators see it: shapes, and copies of groups.
 
-use super::{Copies, Group};
+use super::copies::Copies;
+use super::group::Group;
 use crate::accel::{Objects, Wanted};
 use crate::math::Ray;
 use crate::shapes::{Bounds, Candidate, Shape};

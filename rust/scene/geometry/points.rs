@@ -1,27 +1,10 @@
 //! How a surface lies where a ray meets it.
 
-use super::{Geometry, SurfacePoint};
+use super::Geometry;
 use crate::accel::Primitives;
 use crate::math::{DVec3, Hit, Ray};
+use crate::scene::HitPoint;
 use crate::shapes::Point;
-
-/// A point of a surface with all that is known of it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct HitPoint {
-    /// Where it is, how the surface lies there, and how that changes with its coordinates: of a triangle the weights of its second and
-    /// third corner, with which it is the shading normal that changes.
-    pub point: Point,
-    /// Unit shading normal, on the same side as the normal.
-    pub shading_normal: DVec3,
-}
-
-impl HitPoint {
-    /// Less of it.
-    pub(super) fn surface(&self) -> SurfacePoint {
-        let Point { position, error, normal, .. } = self.point;
-        SurfacePoint { position, error, normal, shading_normal: self.shading_normal, shape: 0, inner: None }
-    }
-}
 
 impl Geometry {
     /// All about a hit of a ray.

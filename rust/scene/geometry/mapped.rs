@@ -1,9 +1,10 @@
 //! How a point lies in what textures know: coordinates, colours, and the space of its shape.
 
-use super::textures::Needs;
-use super::{Copies, Geometry, Group};
+use super::Geometry;
 use crate::math::{DVec3, Hit, Ray, Vec3};
 use crate::optics::Rgb;
+use crate::scene::textures::{Needs, TexturePoint};
+use crate::scene::{ShadingPoint, SurfacePoint};
 
 /// What textures and bumps may want to know of a hit. Only what is needed is right.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,7 +24,7 @@ pub(super) struct Mapped {
     /// The colour of the mesh's vertices.
     pub colour: Rgb,
     /// The shading normal in the space of its shape.
-    pub(super) shading_normal: DVec3,
+    pub shading_normal: DVec3,
 }
 
 impl Geometry {
@@ -74,19 +75,26 @@ impl Geometry {
     }
 }
 
-impl Group {
-    /// How the hit of a ray in its space lies, of the primitive of a flattened number, `inner`.
-    fn mapped(&self, ray: &Ray, hit: &Hit, needs: Needs) -> Mapped {
-        let (primitive, inner) = self.split(hit.inner);
-        self.geometry().mapped(ray, &Hit { primitive, inner, ..*hit }, needs)
-    }
-}
-
-impl Copies {
-    fn mapped(&self, copy: u32, ray: &Ray, hit: &Hit, needs: Needs) -> Mapped {
-        let pose = self.pose(copy, ray.time).expect("what is hit has a place");
-        let within = self.group().mapped(&pose.enter(ray), hit, needs);
-        pose.mapped(within)
+impl ShadingPoint {
+    /// What a hit of a ray needs, `width` being that of the footprint there.
+    pub fn new(geometry: &Geometry, ray: &Ray, hit: &Hit, surface: &SurfacePoint, needs: Needs, width: f64) -> Self {
+        let mut point = Self::plain(surface);
+        point.is_front = ray.direction.dot(surface.normal) <= 0.0;
+        if !needs.any() {
+            return point;
+        }
+        let here = geometry.mapped(ray, hit, needs);
+        point.texture = TexturePoint { uv: here.uv, position: here.position, colour: here.colour, ..point.texture };
+        (point.dp, point.dn, point.object_dp) = (here.dp, here.dn, here.object_dp);
+        if needs.width {
+            // An ellipse on the surface whose short axis is the width; the mean of its axes is taken for its size.
+            let cosine = ray.direction.dot(surface.normal).abs().max(1e-3);
+            let size = width / cosine.sqrt();
+            let area = point.dp[0].cross(point.dp[1]).length();
+            point.texture.size = size * here.scale;
+            point.texture.width = if area > 0.0 { size / area.sqrt() } else { 0.0 };
+        }
+        point
     }
 }
 
@@ -95,7 +103,7 @@ mod tests {
     use super::*;
     use crate::accel::BruteForce;
     use crate::scene::textures::{Between, Checker, Domain, ProductTexture, UvTransform, Value, VertexColours};
-    use crate::scene::{DiffuseMaterial, Matrix, Mesh, Shape, Surface};
+    use crate::scene::{Copies, DiffuseMaterial, Group, Matrix, Mesh, Shape, Surface};
     use crate::simd::Level;
     use std::sync::Arc;
 

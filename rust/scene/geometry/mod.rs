@@ -1,12 +1,28 @@
 //! The surfaces of a scene: every mesh's corners and faces, one after the other, and shapes among them.
 
-use super::facets::Facets;
-use super::per_vertex::PerVertex;
+mod copies;
+mod facets;
+mod group;
+mod mapped;
+mod motion;
+mod per_vertex;
+mod points;
+mod pose;
+mod surfaces;
+mod vertices;
+
+pub use copies::{BadTransform, Copies, Matrix, check_transforms};
+pub use group::Group;
+pub use surfaces::Surfaces;
+pub use vertices::Vertices;
+
+use super::SurfacePoint;
 use super::textures::Needs;
-use super::{Copies, Group, Surfaces, Vertices};
 use crate::accel::{Objects, Primitives};
 use crate::math::{DVec3, Hit, Ray, Vec3};
 use crate::shapes::{Bounds, Shape, Site};
+use facets::Facets;
+use per_vertex::PerVertex;
 use std::sync::Arc;
 
 /// One triangle mesh as it is described: what it is made of and how it shines.
@@ -111,23 +127,6 @@ pub struct Geometry {
     /// What is asked of a face at every hit, where there are few.
     facets: Facets,
     dropped: usize,
-}
-
-/// What shading needs to know of a point on a surface.
-#[derive(Clone, Copy, Debug)]
-pub struct SurfacePoint {
-    /// The point, to within `error` in each coordinate.
-    pub position: DVec3,
-    /// Bound on the error of each coordinate of `position`.
-    pub error: f64,
-    /// Unit normal as the winding gives it.
-    pub normal: DVec3,
-    /// Unit shading normal, on the same side as `normal`.
-    pub shading_normal: DVec3,
-    /// Which shape.
-    pub shape: u32,
-    /// Of a copy of a group, which primitive in it, flattened ([`Group`]).
-    pub inner: Option<u32>,
 }
 
 impl Primitives for Geometry {
@@ -331,7 +330,7 @@ impl Geometry {
 
     /// Which copy of what a primitive is, if it is one.
     #[inline]
-    pub(super) fn copy(&self, primitive: u32) -> Option<(&Copies, u32)> {
+    pub(in crate::scene) fn copy(&self, primitive: u32) -> Option<(&Copies, u32)> {
         self.others.as_ref()?.copy(primitive)
     }
 
@@ -413,18 +412,18 @@ impl Geometry {
     }
 
     /// The shading normals of a triangle's corners, if there are any.
-    pub(super) fn normals_of(&self, primitive: u32) -> Option<[DVec3; 3]> {
+    fn normals_of(&self, primitive: u32) -> Option<[DVec3; 3]> {
         self.normals.of(self.face(primitive)).map(|corners| corners.map(Vec3::as_dvec3))
     }
 
     /// The texture coordinates of a triangle's corners, if there are any.
-    pub(super) fn uvs_of(&self, primitive: u32) -> Option<[[f32; 2]; 3]> {
+    fn uvs_of(&self, primitive: u32) -> Option<[[f32; 2]; 3]> {
         // Those that are NaN are none.
         self.uvs.of(self.face(primitive)).filter(|corners| !corners.as_flattened().iter().any(|x| x.is_nan()))
     }
 
     /// The colours of a triangle's corners, if there are any.
-    pub(super) fn colours_of(&self, primitive: u32) -> Option<[[f32; 3]; 3]> {
+    fn colours_of(&self, primitive: u32) -> Option<[[f32; 3]; 3]> {
         self.colours.of(self.face(primitive))
     }
 

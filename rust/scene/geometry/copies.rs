@@ -1,9 +1,12 @@
 //! A group put to many places.
 
+use super::group::Group;
+use super::mapped::Mapped;
 use super::pose::{Pose, between, carried_by};
-use super::{Group, HitPoint, SurfacePoint};
 use crate::accel::{Side, Wanted};
 use crate::math::{Hit, Ray, Singular};
+use crate::scene::textures::Needs;
+use crate::scene::{HitPoint, SurfacePoint};
 use crate::shapes::{Bounds, Candidate, Contact};
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -109,7 +112,7 @@ impl Copies {
     }
 
     /// Whether none of them moves as a whole.
-    pub(super) fn stand_still(&self) -> bool {
+    pub(in crate::scene) fn stand_still(&self) -> bool {
         matches!(&*self.places, Places::Still(_))
     }
 
@@ -123,7 +126,7 @@ impl Copies {
 
     /// Where a copy stands at a time; none at a moment at which that has no inverse.
     #[inline]
-    pub(super) fn pose(&self, copy: u32, time: f64) -> Option<Pose> {
+    pub(in crate::scene) fn pose(&self, copy: u32, time: f64) -> Option<Pose> {
         match &*self.places {
             Places::Still(poses) => Some(poses[copy as usize]),
             Places::Moving(matrices) => {
@@ -196,13 +199,23 @@ impl Copies {
         let inside = self.group.point(&pose.enter(ray), hit);
         pose.hit_point(&inside).expect("what is hit has a place")
     }
+
+    /// How a ray's hit of a copy lies.
+    ///
+    /// # Panics
+    /// If it is none.
+    pub(super) fn mapped(&self, copy: u32, ray: &Ray, hit: &Hit, needs: Needs) -> Mapped {
+        let pose = self.pose(copy, ray.time).expect("what is hit has a place");
+        let within = self.group.mapped(&pose.enter(ray), hit, needs);
+        pose.mapped(within)
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::accel::bvh::{self, Options};
-    use crate::accel::{Accelerator, BruteForce};
+    use crate::accel::bvh::Options;
+    use crate::accel::{Accelerator, BruteForce, trees};
     use crate::math::{DVec3, Vec3};
     use crate::sampling::{Sampler, warp};
     use crate::scene::fixtures::{inward_box, shape};
@@ -210,7 +223,7 @@ mod tests {
     use crate::simd::Level;
 
     fn tree(geometry: &Geometry) -> Box<dyn Accelerator> {
-        bvh::over(geometry, &Options::default(), Level::current().unwrap())
+        trees::over(geometry, &Options::default(), Level::current().unwrap())
     }
 
     fn brute(geometry: &Geometry) -> Box<dyn Accelerator> {

@@ -10,9 +10,9 @@
 //! inverse of `M`, is known by its residual `R = 1 − L M`: the point is off by `|R| |L p|`, and `R` is computed to within 4uκ.
 
 use super::mapped::Mapped;
-use super::{HitPoint, SurfacePoint};
 use crate::math::robust::UNIT;
 use crate::math::{Affine, DVec3, Ray, Singular};
+use crate::scene::{HitPoint, SurfacePoint};
 use crate::shapes::{Bounds, Point};
 
 /// A linear map by its rows.
@@ -166,13 +166,13 @@ impl Pose {
     }
 
     /// How many directions about one of the group's space there are to one of the space that it is put into, which is unit.
-    pub(super) fn crowding(&self, direction: DVec3) -> f64 {
+    pub(in crate::scene) fn crowding(&self, direction: DVec3) -> f64 {
         let [a, b, c] = self.inverse;
         a.dot(b.cross(c)).abs() / times(&self.inverse, direction).length().powi(3)
     }
 
     /// The map itself; none if f64 does not hold it, which it did.
-    pub(super) fn map(&self) -> Option<Affine> {
+    pub(in crate::scene) fn map(&self) -> Option<Affine> {
         Some(Affine::new(self.rows()?, self.shift))
     }
 

@@ -1,0 +1,52 @@
+//! How to render.
+
+use super::filter::{self, Filter};
+use super::{Film, Until};
+use crate::sampling::SamplerKind;
+use crate::scene::Camera;
+use std::sync::Arc;
+
+/// How to render.
+#[derive(Clone, Debug)]
+pub struct Settings {
+    /// When to end. With nothing set, the render goes on until its [`Progress`](super::Progress) ends it.
+    pub until: Until,
+    /// Which of all possible pictures.
+    pub seed: u64,
+    /// How many threads work; `None` for as many as there are cores.
+    pub threads: Option<usize>,
+    /// Where the random numbers come from.
+    pub sampler: SamplerKind,
+    /// Whether more samples go where more of the error is; else all pixels have the same number.
+    pub adaptive: bool,
+    /// The radiance to which brighter samples are dimmed, which biases the picture; `None` takes all as they are.
+    pub clamp: Option<f64>,
+    /// What part of the film a pixel is the mean of.
+    pub filter: Arc<dyn Filter>,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            until: Until::default(),
+            seed: 0,
+            threads: None,
+            sampler: SamplerKind::default(),
+            adaptive: false,
+            clamp: None,
+            filter: Arc::new(filter::Box::default()),
+        }
+    }
+}
+
+impl Settings {
+    /// An empty film for the pictures of a camera, in patches as the integrator has them ([`Integrator::patch`](crate::integrators::Integrator::patch)), and in tiles for so many
+    /// threads: of 16 pixels a side, or less where that would leave threads without work.
+    pub fn film(&self, camera: &dyn Camera, threads: usize, patch: u32) -> Film {
+        let (width, height) = (camera.width(), camera.height());
+        let tiles = |side: u32| width.div_ceil(side) as usize * height.div_ceil(side) as usize;
+        let fits = |side: u32| side.is_multiple_of(patch) && tiles(side) >= 8 * threads;
+        let side = [16, 8, 4].into_iter().find(|&side| fits(side)).unwrap_or(2u32.next_multiple_of(patch));
+        Film::new(width, height, side, self.sampler.batch(), self.adaptive, self.clamp).in_patches(patch)
+    }
+}

@@ -1,0 +1,96 @@
+//! What an encounter with a surface asks of how it scatters light.
+
+use super::materials::Scattering;
+use crate::math::DVec3;
+use crate::optics::{Bsdf, BsdfSample, Rgb};
+
+/// What an encounter asks of the scattering at its point. Directions as [`Bsdf`] has them.
+pub trait Scatters {
+    /// The scattering function times |cos θ| of `wi`, and the density with which it is drawn.
+    fn evaluate(&self, wo: DVec3, wi: DVec3) -> (Rgb, f64);
+
+    /// Draws where the light comes from.
+    fn sample(&self, wo: DVec3, choice: impl FnOnce() -> f64, u: [f64; 2]) -> Option<BsdfSample>;
+
+    /// Whether light goes through to the other side.
+    fn transmits(&self) -> bool;
+
+    /// Whether all of it goes in single directions.
+    fn is_delta(&self) -> bool;
+
+    /// What is reflected, if that is the same into every direction.
+    fn diffuse(&self) -> Option<Rgb>;
+
+    /// How rough its sharpest part is ([`Bsdf::roughness`]).
+    fn roughness(&self) -> f64;
+}
+
+impl Scatters for Scattering {
+    #[inline]
+    fn evaluate(&self, wo: DVec3, wi: DVec3) -> (Rgb, f64) {
+        Self::evaluate(self, wo, wi)
+    }
+
+    #[inline]
+    fn sample(&self, wo: DVec3, choice: impl FnOnce() -> f64, u: [f64; 2]) -> Option<BsdfSample> {
+        Self::sample(self, wo, choice, u)
+    }
+
+    #[inline]
+    fn transmits(&self) -> bool {
+        match self {
+            Self::One(bsdf) => bsdf.transmits(),
+            Self::Several(parts) => parts.iter().any(|(_, bsdf)| bsdf.transmits()),
+        }
+    }
+
+    #[inline]
+    fn is_delta(&self) -> bool {
+        match self {
+            Self::One(bsdf) => bsdf.is_delta(),
+            Self::Several(parts) => parts.iter().all(|(_, bsdf)| bsdf.is_delta()),
+        }
+    }
+
+    #[inline]
+    fn diffuse(&self) -> Option<Rgb> {
+        if let Self::One(bsdf) = self { Scatters::diffuse(bsdf) } else { None }
+    }
+
+    #[inline]
+    fn roughness(&self) -> f64 {
+        Self::roughness(self)
+    }
+}
+
+impl Scatters for Bsdf {
+    #[inline]
+    fn evaluate(&self, wo: DVec3, wi: DVec3) -> (Rgb, f64) {
+        Self::evaluate(self, wo, wi)
+    }
+
+    #[inline]
+    fn sample(&self, wo: DVec3, choice: impl FnOnce() -> f64, u: [f64; 2]) -> Option<BsdfSample> {
+        Self::sample(self, wo, choice, u)
+    }
+
+    #[inline]
+    fn transmits(&self) -> bool {
+        Self::transmits(self)
+    }
+
+    #[inline]
+    fn is_delta(&self) -> bool {
+        Self::is_delta(self)
+    }
+
+    #[inline]
+    fn diffuse(&self) -> Option<Rgb> {
+        if let Self::Diffuse(diffuse) = self { Some(diffuse.reflectance) } else { None }
+    }
+
+    #[inline]
+    fn roughness(&self) -> f64 {
+        Self::roughness(self)
+    }
+}

@@ -1,0 +1,39 @@
+//! Points of surfaces, and what is known of them.
+
+use crate::math::DVec3;
+use crate::shapes::Point;
+
+/// What shading needs to know of a point on a surface.
+#[derive(Clone, Copy, Debug)]
+pub struct SurfacePoint {
+    /// The point, to within `error` in each coordinate.
+    pub position: DVec3,
+    /// Bound on the error of each coordinate of `position`.
+    pub error: f64,
+    /// Unit normal as the winding gives it.
+    pub normal: DVec3,
+    /// Unit shading normal, on the same side as `normal`.
+    pub shading_normal: DVec3,
+    /// Which shape.
+    pub shape: u32,
+    /// Of a copy of a group, which primitive in it, flattened ([`Group`](super::Group)).
+    pub inner: Option<u32>,
+}
+
+/// A point of a surface with all that is known of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HitPoint {
+    /// Where it is, how the surface lies there, and how that changes with its coordinates: of a triangle the weights of its second and
+    /// third corner, with which it is the shading normal that changes.
+    pub point: Point,
+    /// Unit shading normal, on the same side as the normal.
+    pub shading_normal: DVec3,
+}
+
+impl HitPoint {
+    /// Less of it.
+    pub(super) fn surface(&self) -> SurfacePoint {
+        let Point { position, error, normal, .. } = self.point;
+        SurfacePoint { position, error, normal, shading_normal: self.shading_normal, shape: 0, inner: None }
+    }
+}

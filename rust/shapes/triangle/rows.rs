@@ -1,0 +1,151 @@
+//! The triangles of a tree's leaves in f32, side by side, and the first test of them.
+
+use super::pretest::{BlockRay, BlockRays, difference, not_rejected};
+use super::sixteen::{Column, RAYS};
+use crate::math::Vec3;
+use crate::simd::Simd;
+use rayon::prelude::*;
+
+/// Numbers of a triangle: nine coordinates and which it is.
+const ROWS: usize = 10;
+
+/// The triangles of all leaves in f32. A leaf of n has n numbers of each row, one row after the other: the coordinates of
+/// three vectors by axis, then the triangles' own numbers. So a leaf takes no more memory than its triangles need, and `N` numbers
+/// read from any row are those of the leaf and others that do not matter.
+#[derive(Clone, Debug)]
+pub struct Rows<const N: usize> {
+    numbers: Vec<f32>,
+}
+
+impl<const N: usize> Rows<N> {
+    /// Makes the bits of small whole numbers those of ordinary floats: they are computed with, to no end, by lanes that do not
+    /// matter, and subnormal ones would make that slow.
+    const MASK: u32 = 0x4000_0000;
+
+    pub(super) fn new(order: &[u32], counts: &[u32], vectors: impl Fn(u32) -> [Vec3; 3] + Sync) -> Self {
+        /// Leaves that a thread fills at a time.
+        const SOME: usize = 1024;
+        assert_eq!(counts.iter().sum::<u32>() as usize, order.len(), "as many triangles as their counts say");
+        // The last row of the last leaf can be read as any other.
+        let mut numbers = vec![0.0; order.len() * ROWS + N];
+        let mut parts = Vec::with_capacity(counts.len().div_ceil(SOME));
+        let (mut rest, mut order) = (numbers.as_mut_slice(), order);
+        for counts in counts.chunks(SOME) {
+            let triangles = counts.iter().sum::<u32>() as usize;
+            let (part, others) = rest.split_at_mut(triangles * ROWS);
+            let (mine, more) = order.split_at(triangles);
+            parts.push((part, mine, counts));
+            (rest, order) = (others, more);
+        }
+        parts.into_par_iter().for_each(|(mut part, mut order, counts)| {
+            for &count in counts {
+                let count = count as usize;
+                assert!(count <= N, "a leaf has at most {N} triangles");
+                let (leaf, others) = part.split_at_mut(count * ROWS);
+                let (mine, more) = order.split_at(count);
+                for (lane, &primitive) in mine.iter().enumerate() {
+                    assert!(primitive < Self::MASK, "fewer than 2^30 triangles");
+                    for (which, vector) in vectors(primitive).into_iter().enumerate() {
+                        for axis in 0..3 {
+                            leaf[(3 * which + axis) * count + lane] = vector[axis];
+                        }
+                    }
+                    leaf[9 * count + lane] = f32::from_bits(primitive | Self::MASK);
+                }
+                (part, order) = (others, more);
+            }
+        });
+        Self { numbers }
+    }
+
+    pub(super) fn bytes(&self) -> usize {
+        size_of_val(self.numbers.as_slice())
+    }
+
+    /// Where a leaf begins. The address is only asked for.
+    #[inline(always)]
+    pub(super) fn place(&self, first: usize) -> *const u8 {
+        self.numbers.as_ptr().wrapping_add(first * ROWS).cast()
+    }
+
+    /// The number of the triangle in a lane of a leaf.
+    #[inline(always)]
+    pub(super) fn primitive(&self, first: usize, count: u32, lane: usize) -> u32 {
+        self.numbers[first * ROWS + 9 * count as usize + lane].to_bits() ^ Self::MASK
+    }
+
+    /// The three vectors of the triangle in a lane of a leaf.
+    #[inline(always)]
+    pub(super) fn vectors(&self, first: usize, count: u32, lane: usize) -> [Vec3; 3] {
+        let count = count as usize;
+        let leaf = &self.numbers[first * ROWS + lane..][..8 * count + 1];
+        let vector = |c: usize| Vec3::new(leaf[3 * c * count], leaf[(3 * c + 1) * count], leaf[(3 * c + 2) * count]);
+        [vector(0), vector(1), vector(2)]
+    }
+
+    /// One of the three vectors of the triangles of a leaf, axis by axis.
+    #[inline(always)]
+    pub fn numbers<S: Simd<N>>(&self, simd: S, first: usize, count: u32, which: usize) -> [S::F32; 3] {
+        let count = count as usize;
+        let rows = &self.numbers[first * ROWS + 3 * which * count..][..2 * count + N];
+        let row = |axis: usize| rows[axis * count..].first_chunk().expect("rows of the right length");
+        [simd.load(row(0)), simd.load(row(1)), simd.load(row(2))]
+    }
+
+    /// Of the lanes of a leaf, those that f32 cannot reject.
+    // Written out, axis by axis: closures and iterators between here and the kernel's entry are not always compiled for
+    // its level, and then every operation is a call.
+    #[inline(always)]
+    pub(super) fn not_rejected<S: Simd<N>>(
+        &self,
+        simd: S,
+        ray: &BlockRay,
+        first: usize,
+        count: u32,
+        edges: bool,
+    ) -> u32 {
+        let o = [simd.splat(ray.origin[0]), simd.splat(ray.origin[1]), simd.splat(ray.origin[2])];
+        let d = [simd.splat(ray.direction[0]), simd.splat(ray.direction[1]), simd.splat(ray.direction[2])];
+        let a = self.numbers(simd, first, count, 0);
+        let mut e = self.numbers(simd, first, count, 1);
+        let mut f = self.numbers(simd, first, count, 2);
+        if !edges {
+            (e, f) = (difference(simd, e, a), difference(simd, f, a));
+        }
+        not_rejected(simd, [a, e, f], o, d, &ray.errors) & ((1 << count) - 1)
+    }
+
+    /// Of sixteen rays, those for which f32 cannot reject the triangle in a lane of a leaf.
+    #[inline(always)]
+    pub(super) fn rays_not_rejected<S: Simd<N>>(
+        &self,
+        simd: S,
+        rays: &BlockRays,
+        first: usize,
+        count: u32,
+        lane: usize,
+        edges: bool,
+    ) -> u32 {
+        let [a, mut e, mut f] = self.vectors(first, count, lane);
+        if !edges {
+            (e, f) = (e - a, f - a);
+        }
+        let a = [simd.splat(a.x), simd.splat(a.y), simd.splat(a.z)];
+        let e = [simd.splat(e.x), simd.splat(e.y), simd.splat(e.z)];
+        let f = [simd.splat(f.x), simd.splat(f.y), simd.splat(f.z)];
+        let mut left = 0;
+        for part in 0..RAYS / N {
+            let (o, d) = (&rays.origin, &rays.direction);
+            let o = [part_of(simd, &o[0], part), part_of(simd, &o[1], part), part_of(simd, &o[2], part)];
+            let d = [part_of(simd, &d[0], part), part_of(simd, &d[1], part), part_of(simd, &d[2], part)];
+            left |= (not_rejected(simd, [a, e, f], o, d, &rays.errors) & ((1 << N) - 1)) << (part * N);
+        }
+        left
+    }
+}
+
+/// One vector of a column.
+#[inline(always)]
+fn part_of<const N: usize, S: Simd<N>>(simd: S, column: &Column<f32>, part: usize) -> S::F32 {
+    simd.load(&column.as_chunks::<N>().0[part])
+}

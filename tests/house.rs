@@ -1,0 +1,372 @@
+//! The house as `ARCHITECTURE.md` draws it: what its files name of each other, read from their text.
+//!
+//! An arrow goes from the file that names something to the file where that stands, through every re-export; what only tests
+//! name is none. A `mod.rs` and the files and folders beside it are one room: they may name what stands in their `mod.rs`,
+//! and be named there. But of any two of these files and folders, each with all that is in it, only one may need the other,
+//! however long the way round.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// On which floor what stands in `rust/` is.
+const FLOORS: [(&str, u8); 11] = [
+    ("math", 0),
+    ("simd", 0),
+    ("sampling", 0),
+    ("workers", 0),
+    ("shapes", 1),
+    ("optics", 1),
+    ("accel", 2),
+    ("scene", 3),
+    ("integrators", 4),
+    ("render", 5),
+    ("python", 6),
+];
+
+/// The names on the way from the crate to a module, and perhaps on to what stands in it.
+type Names = Vec<String>;
+
+/// What a file has without its tests.
+#[derive(Default)]
+struct File {
+    /// The paths it names, from the crate on.
+    paths: BTreeSet<Names>,
+    /// What it calls by a name of its own, and the path to that.
+    imports: BTreeMap<String, Names>,
+}
+
+/// Something named in one file that stands in another.
+#[derive(PartialEq, Eq, PartialOrd, Ord)]
+struct Arrow {
+    from: Names,
+    to: Names,
+    item: String,
+}
+
+#[test]
+fn floors_use_only_those_under_them() {
+    let floor = |room: &String| FLOORS.iter().find(|(name, _)| name == room).map(|(_, floor)| floor);
+    let files = crate_files();
+    let unknown: Vec<&Names> = files.keys().filter(|names| names.first().is_some_and(|n| floor(n).is_none())).collect();
+    assert!(unknown.is_empty(), "on no floor: {unknown:?}");
+    let arrows = arrows(&files);
+    let upwards: Vec<&Arrow> = arrows.iter().filter(|a| floor(&a.from[0]) < floor(&a.to[0])).collect();
+    assert!(upwards.is_empty(), "arrows that go up:\n{}", told(&upwards));
+}
+
+#[test]
+fn no_two_files_or_folders_side_by_side_need_each_other() {
+    let mut arrows = arrows(&crate_files());
+    arrows.retain(|arrow| arrow.from[0] != "optics");
+    let circles = circles(&arrows);
+    assert!(circles.is_empty(), "arrows that are part of a circle:\n{}", told(&circles));
+}
+
+#[test]
+fn arrows_are_seen_however_they_are_written() {
+    let texts = [
+        ("mod.rs", "mod a;\nmod b;\npub mod c;\npub use a::{Big, Small as Little};\n"),
+        ("a.rs", "/// See [`super::b::Far`].\npub struct Big<'a>(&'a str, super::c::d::Deep);\n"),
+        (
+            "b.rs",
+            "use super::{\n    Little,\n    c::{self, d},\n};\nconst SIGNS: [char; 2] = ['\"', '{'];\nfn f() -> d::Deep {\n    c::g()\n}\n",
+        ),
+        ("c/mod.rs", "pub mod d;\nmod e;\nuse e::E;\nfn text() -> &'static str {\n    \"crate::b::Far // \\\" \"\n}\n"),
+        ("c/d.rs", "pub struct Deep;\n\n#[cfg(test)]\nmod tests {\n    use crate::b::Far;\n}\n"),
+        (
+            "c/e.rs",
+            "pub(super) struct E(super::d::Deep);\nmod inner {\n    use super::super::super::Big;\n}\n#[cfg(test)]\nuse crate::b;\n",
+        ),
+    ];
+    let files = files(texts.map(|(path, text)| (PathBuf::from(path), text.to_string())));
+    let seen = arrows(&files);
+    let told = told(&seen.iter().collect::<Vec<_>>());
+    let expected = [
+        "a -> c::d: Deep",
+        "b -> a: Small",
+        "b -> c: g",
+        "b -> c: itself",
+        "b -> c::d: Deep",
+        "b -> c::d: itself",
+        "c::e -> a: Big",
+        "c::e -> c::d: Deep",
+    ];
+    assert_eq!(told.lines().map(str::trim).collect::<Vec<_>>(), expected);
+    let circles: Vec<String> = circles(&seen).iter().map(|a| a.from.join("::")).collect();
+    assert_eq!(circles, ["a", "c::e"]);
+}
+
+#[test]
+fn no_attribute_stands_twice() {
+    for path in rust_files(&Path::new(env!("CARGO_MANIFEST_DIR")).join("rust")) {
+        let text = fs::read_to_string(&path).unwrap();
+        let lines: Vec<&str> = text.lines().collect();
+        for (number, pair) in (1..).zip(lines.windows(2)) {
+            let is_twice = pair[0] == pair[1] && pair[0].trim().starts_with("#[");
+            assert!(!is_twice, "{}:{number}: {} stands twice", path.display(), pair[0].trim());
+        }
+    }
+}
+
+/// Those that are part of a circle between files and folders side by side.
+fn circles(arrows: &BTreeSet<Arrow>) -> Vec<&Arrow> {
+    // Where both ends are side by side, and their names there.
+    let ends = |arrow: &Arrow| {
+        let shared = arrow.from.iter().zip(&arrow.to).take_while(|(a, b)| a == b).count();
+        (arrow.from[..shared].to_vec(), arrow.from[shared].clone(), arrow.to[shared].clone())
+    };
+    let mut needs: BTreeMap<(Names, String), BTreeSet<String>> = BTreeMap::new();
+    for (place, from, to) in arrows.iter().map(ends) {
+        needs.entry((place, from)).or_default().insert(to);
+    }
+    let needs_it = |place: &Names, one: &String, other: &String| {
+        let (mut reached, mut open) = (BTreeSet::new(), vec![one]);
+        while let Some(next) = open.pop() {
+            open.extend(
+                needs.get(&(place.clone(), next.clone())).into_iter().flatten().filter(|to| reached.insert(*to)),
+            );
+        }
+        reached.contains(other)
+    };
+    arrows.iter().filter(|arrow| matches!(ends(arrow), (place, from, to) if needs_it(&place, &to, &from))).collect()
+}
+
+/// One line for each arrow.
+fn told(arrows: &[&Arrow]) -> String {
+    arrows.iter().map(|a| format!("  {} -> {}: {}\n", a.from.join("::"), a.to.join("::"), a.item)).collect()
+}
+
+/// Every arrow from one file to another, but for those between a `mod.rs` and what stands beside it.
+fn arrows(files: &BTreeMap<Names, File>) -> BTreeSet<Arrow> {
+    let mut arrows = BTreeSet::new();
+    for (from, file) in files {
+        for path in &file.paths {
+            let (to, item) = stands(files, path);
+            if !to.starts_with(from) && !from.starts_with(&to) {
+                arrows.insert(Arrow { from: from.clone(), to, item });
+            }
+        }
+    }
+    arrows
+}
+
+/// The file in which that stands which a path leads to, and its name there; the file itself has none.
+fn stands(files: &BTreeMap<Names, File>, path: &[String]) -> (Names, String) {
+    let mut path = path.to_vec();
+    // A name leads to another once for each re-export.
+    for _ in 0..10 {
+        let depth = (0..=path.len()).rev().find(|&n| files.contains_key(&path[..n])).expect("the crate itself is one");
+        let (module, rest) = path.split_at(depth);
+        match rest.first().and_then(|name| files[module].imports.get(name)) {
+            Some(import) if *import != path => path = [import, &rest[1..]].concat(),
+            _ => return (module.to_vec(), rest.first().cloned().unwrap_or("itself".into())),
+        }
+    }
+    panic!("{} leads nowhere", path.join("::"));
+}
+
+/// Every file of the crate that is more than tests, by the names that lead to it.
+fn crate_files() -> BTreeMap<Names, File> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("rust");
+    let read = |path: PathBuf| (path.strip_prefix(&root).unwrap().to_owned(), fs::read_to_string(&path).unwrap());
+    let files = files(rust_files(&root).into_iter().map(read));
+    assert!(files.len() > 300, "too few files: {}", files.len());
+    files
+}
+
+/// Files that are more than tests, of all by their paths and texts.
+fn files(all: impl IntoIterator<Item = (PathBuf, String)>) -> BTreeMap<Names, File> {
+    let (mut codes, mut tests) = (BTreeMap::new(), BTreeSet::new());
+    for (path, text) in all {
+        let mut module: Names = path.with_extension("").iter().map(|name| name.to_str().unwrap().into()).collect();
+        module.pop_if(|name| name == "mod" || name == "lib");
+        let (code, modules) = without_tests(&code(&text));
+        tests.extend(modules.into_iter().map(|name| [&*module, &[name]].concat()));
+        codes.insert(module, code);
+    }
+    codes.retain(|module, _| !tests.iter().any(|test| module.starts_with(test)));
+    let known: BTreeSet<Names> = codes.keys().cloned().collect();
+    codes.into_iter().map(|(module, code)| (module.clone(), file(&module, &code, &known))).collect()
+}
+
+/// All Rust files in a folder and its folders.
+fn rust_files(folder: &Path) -> Vec<PathBuf> {
+    let mut files = Vec::new();
+    for entry in fs::read_dir(folder).unwrap_or_else(|e| panic!("{}: {e}", folder.display())) {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            files.extend(rust_files(&path));
+        } else if path.extension().is_some_and(|e| e == "rs") {
+            files.push(path);
+        }
+    }
+    files
+}
+
+/// The text without its comments and what stands in its strings.
+fn code(text: &str) -> String {
+    let mut code = String::new();
+    let mut in_string = false;
+    let mut rest = text;
+    while let Some(c) = rest.chars().next() {
+        let skipped = match c {
+            '\\' if in_string => 2,
+            '"' => {
+                in_string = !in_string;
+                1
+            }
+            '\'' if !in_string && rest.starts_with("'\"'") => 3,
+            '/' if !in_string && rest.starts_with("//") => rest.find('\n').unwrap_or(rest.len()),
+            _ => 0,
+        };
+        if skipped == 0 {
+            if !in_string || c == '\n' {
+                code.push(c);
+            }
+            rest = &rest[c.len_utf8()..];
+        } else {
+            rest = &rest[skipped..];
+        }
+    }
+    code
+}
+
+/// Formatted code without what is there for tests alone, and the names of the files that are.
+fn without_tests(code: &str) -> (String, Vec<String>) {
+    let (mut kept, mut files) = (String::new(), Vec::new());
+    let mut lines = code.lines();
+    while let Some(line) = lines.next() {
+        let Some(indent) = line.find("#[cfg(test)]") else {
+            kept.extend([line, "\n"]);
+            continue;
+        };
+        // It ends with the first line as far in that closes something.
+        for line in lines.by_ref() {
+            let (before, item) = line.split_at(indent.min(line.len()));
+            if before.trim().is_empty() && !item.starts_with(' ') && item.trim_end().ends_with([';', '}']) {
+                let name = item.trim_end().strip_suffix(';').and_then(|item| item.split("mod ").nth(1));
+                files.extend(name.map(String::from));
+                break;
+            }
+        }
+    }
+    (kept, files)
+}
+
+/// What code in a module names.
+fn file(module: &Names, code: &str, known: &BTreeSet<Names>) -> File {
+    let words = words(code);
+    let word = |at: usize| words.get(at).map_or("", String::as_str);
+    let mut file = File::default();
+    // Modules within the file, and how many braces are open inside each.
+    let mut inner: Vec<(String, usize)> = Vec::new();
+    let mut open = 0;
+    // Imports come first, for paths may begin in them.
+    for imports in [true, false] {
+        let mut at = 0;
+        while at < words.len() {
+            let here: Names = module.iter().chain(inner.iter().map(|(name, _)| name)).cloned().collect();
+            at += 1;
+            match word(at - 1) {
+                "mod" if word(at + 1) == "{" => {
+                    inner.push((words[at].clone(), open + 1));
+                }
+                "{" => open += 1,
+                "}" => {
+                    inner.pop_if(|(_, inside)| *inside == open);
+                    open -= 1;
+                }
+                "use" => {
+                    let mut leaves = Vec::new();
+                    tree(&words, &mut at, &[], &mut leaves);
+                    for (path, name) in leaves.into_iter().filter(|_| imports) {
+                        let Some(path) = from_crate(&path, &here, &file, known) else { continue };
+                        assert!(name != "*", "{} takes all of {}: nobody sees what", here.join("::"), path.join("::"));
+                        file.paths.insert(path.clone());
+                        if inner.is_empty() {
+                            file.imports.insert(name, path);
+                        }
+                    }
+                }
+                name if !imports && word(at) == "::" && (at < 2 || word(at - 2) != "::") => {
+                    let mut path = vec![name.to_string()];
+                    while word(at) == "::" && word(at + 1).starts_with(|c: char| c.is_alphabetic() || c == '_') {
+                        path.push(words[at + 1].clone());
+                        at += 2;
+                    }
+                    file.paths.extend(from_crate(&path, &here, &file, known));
+                }
+                _ => {}
+            }
+        }
+    }
+    file
+}
+
+/// The words and signs of code; `::` is one.
+fn words(code: &str) -> Vec<String> {
+    let is_word = |c: char| c.is_alphanumeric() || c == '_';
+    let mut words: Vec<String> = Vec::new();
+    let mut rest = code.trim_start();
+    while let Some(c) = rest.chars().next() {
+        let end = match c {
+            _ if is_word(c) => rest.find(|c| !is_word(c)).unwrap_or(rest.len()),
+            _ if rest.starts_with("::") => 2,
+            _ => c.len_utf8(),
+        };
+        words.push(rest[..end].into());
+        rest = rest[end..].trim_start();
+    }
+    words
+}
+
+/// The leaves of a tree of imports: the path of each, and the name that it gets. `at` goes behind the tree.
+fn tree(words: &[String], at: &mut usize, before: &[String], leaves: &mut Vec<(Names, String)>) {
+    let mut path = before.to_vec();
+    loop {
+        match words[*at].as_str() {
+            "{" => {
+                *at += 1;
+                while words[*at] != "}" {
+                    tree(words, at, &path, leaves);
+                    *at += usize::from(words[*at] == ",");
+                }
+                *at += 1;
+                return;
+            }
+            "self" if !path.is_empty() => {}
+            word => path.push(word.into()),
+        }
+        *at += 1;
+        match words[*at].as_str() {
+            "::" => *at += 1,
+            "as" => {
+                leaves.push((path, words[*at + 1].clone()));
+                *at += 2;
+                return;
+            }
+            _ => {
+                let name = path.last().unwrap().clone();
+                if name == "*" {
+                    path.pop();
+                }
+                leaves.push((path, name));
+                return;
+            }
+        }
+    }
+}
+
+/// A path as it is from the crate on; none where it leads to another crate, or begins in what stands in the file.
+fn from_crate(path: &[String], here: &Names, file: &File, known: &BTreeSet<Names>) -> Option<Names> {
+    let child = [&**here, &path[..1]].concat();
+    let ups = path.iter().take_while(|name| *name == "super").count();
+    match path[0].as_str() {
+        "crate" => Some(path[1..].to_vec()),
+        "self" => Some([here, &path[1..]].concat()),
+        "super" => Some([&here[..here.len() - ups], &path[ups..]].concat()),
+        _ if known.contains(&child) => Some([here, path].concat()),
+        name => file.imports.get(name).map(|import| [import, &path[1..]].concat()),
+    }
+}
