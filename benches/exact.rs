@@ -1,5 +1,5 @@
-//! What a decision about a triangle costs: in f32, by the leaf, where that rejects it for certain; in f64, where its bound makes
-//! it certain; and in integers, where it does not. An item is one triangle.
+//! What a decision about a triangle costs: in f32, by the leaf, where that rejects it for certain; in f64, where its
+//! bound makes it certain; and in integers, where it does not. An item is one triangle.
 
 mod leaves;
 

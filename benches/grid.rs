@@ -1,5 +1,5 @@
-//! Grids against the tree, and against each other by how repeats are seen to: closest hits on one thread. All have given the hits of
-//! brute force before they are timed.
+//! Grids against the tree, and against each other by how repeats are seen to: closest hits on one thread. All have
+//! given the hits of brute force before they are timed.
 
 mod meshes;
 

@@ -1,5 +1,5 @@
-//! What it costs to test a leaf of one to eight triangles against a ray, by width of the leaves and level of the processor: an item
-//! is one leaf and one ray. Leaves are in the cache, and one test need not wait for the one before.
+//! What it costs to test a leaf of one to eight triangles against a ray, by width of the leaves and level of the
+//! processor: an item is one leaf and one ray. Leaves are in the cache, and one test need not wait for the one before.
 
 mod leaves;
 

@@ -1,5 +1,6 @@
-//! What leaving out has won: the same paths in the same scene, traced by the kernel that the scene needs and by those that can more. They take
-//! turns, so that what else the machine does is shared by all. Each gives the same bits, which is checked before anything is timed.
+//! What leaving out has won: the same paths in the same scene, traced by the kernel that the scene needs and by those
+//! that can more. They take turns, so that what else the machine does is shared by all. Each gives the same bits, which
+//! is checked before anything is timed.
 
 use raywright::accel::bvh::{self, Options};
 use raywright::integrators::{CameraSample, Path};

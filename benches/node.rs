@@ -1,9 +1,9 @@
-//! What it costs to test a node against a ray, by kernel, width of the tree and level of the processor: an item is one node and one
-//! ray.
+//! What it costs to test a node against a ray, by kernel, width of the tree and level of the processor: an item is one
+//! node and one ray.
 //!
-//! A kernel is asked for hits, never for a node. So rays go between triangles on both sides: every box of a node holds them, none of a
-//! leaf does, which is counted before anything is timed. There are some hundred nodes to every ray, next to which the rest that a
-//! ray costs is a few hundredths; they are in the cache.
+//! A kernel is asked for hits, never for a node. So rays go between triangles on both sides: every box of a node holds
+//! them, none of a leaf does, which is counted before anything is timed. There are some hundred nodes to every ray,
+//! next to which the rest that a ray costs is a few hundredths; they are in the cache.
 
 mod meshes;
 
@@ -51,14 +51,15 @@ fn time(bencher: Bencher, kernel: Kernel, count: usize, both_ways: bool) {
 /// Places on the way.
 const COUNT: usize = 2048;
 
-/// Triangles at a place, all alike: more than the leaves of a binary tree keep together, and as many as fit the narrowest leaf.
+/// Triangles at a place, all alike: more than the leaves of a binary tree keep together, and as many as fit the
+/// narrowest leaf.
 const COPIES: usize = 4;
 
 /// From one to the next: so much more than they are wide that trees divide them along the way.
 const APART: f64 = 64.0;
 
-/// Triangles along the x axis, by turns on one side of it and on the other: so the box of two places holds a part of the axis, and
-/// the box of one does not. They are wider than the gap, or it would be of use to divide them by sides.
+/// Triangles along the x axis, by turns on one side of it and on the other: so the box of two places holds a part of
+/// the axis, and the box of one does not. They are wider than the gap, or it would be of use to divide them by sides.
 fn zigzag() -> Triangles {
     let triangle = |i: usize| {
         let (x, side) = (i as f32 * APART as f32, if i.is_multiple_of(2) { 1.0 } else { -1.0 });

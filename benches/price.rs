@@ -1,7 +1,9 @@
-//! What exact decisions cost a ray on one thread: the same trees walked by the same kernels, over leaves whose f32 answer is
-//! believed, over our own, and over those that keep f64. They take turns, so that what else the machine does is shared by all.
+//! What exact decisions cost a ray on one thread: the same trees walked by the same kernels, over leaves whose f32
+//! answer is believed, over our own, and over those that keep f64. They take turns, so that what else the machine does
+//! is shared by all.
 //!
-//! Ours have given the hits of brute force before they are timed, bit for bit; of the others the table says how often they err.
+//! Ours have given the hits of brute force before they are timed, bit for bit; of the others the table says how often
+//! they err.
 
 mod meshes;
 #[path = "leaves/plain.rs"]
@@ -98,8 +100,8 @@ fn trees(triangles: &Triangles, level: Level) -> [Box<dyn Accelerator>; 3] {
     [plain, exact, bvh::widest(&Doubles(triangles), &Options::DEFAULT, level)]
 }
 
-/// How many rays hit another triangle, or none, when f32 is believed. Panics if ours are wrong, or the plain ones more often
-/// than an honest test in f32 is.
+/// How many rays hit another triangle, or none, when f32 is believed. Panics if ours are wrong, or the plain ones more
+/// often than an honest test in f32 is.
 fn disagreeing(triangles: &Triangles, trees: &[Box<dyn Accelerator>; 3], rays: &[Ray]) -> usize {
     validate(triangles, trees[1].as_ref(), rays);
     validate(triangles, trees[2].as_ref(), rays);
@@ -116,8 +118,9 @@ fn disagreeing(triangles: &Triangles, trees: &[Box<dyn Accelerator>; 3], rays: &
 
 /// Seconds that each tree takes for all rays.
 ///
-/// Each goes through all rays before the next has its turn, so that each finds its own nodes in the cache; who is first changes.
-/// Chunks are timed, and of a chunk the median of all turns counts: whoever else wants the processor is met by few of them.
+/// Each goes through all rays before the next has its turn, so that each finds its own nodes in the cache; who is first
+/// changes. Chunks are timed, and of a chunk the median of all turns counts: whoever else wants the processor is met by
+/// few of them.
 fn turns(trees: &[Box<dyn Accelerator>; 3], rays: &[Ray], asked: Asked) -> [f64; 3] {
     let mut hits = [Hit::MISS; CHUNK];
     let mut occluded = [false; CHUNK];

@@ -1,5 +1,5 @@
-//! Closest hits on one thread through structures that divide space, beside the default tree of boxes. All have given the hits of brute
-//! force before they are timed.
+//! Closest hits on one thread through structures that divide space, beside the default tree of boxes. All have given
+//! the hits of brute force before they are timed.
 
 mod meshes;
 

@@ -1,9 +1,9 @@
 //! The house as `ARCHITECTURE.md` draws it: what its files name of each other, read from their text.
 //!
-//! An arrow goes from the file that names something to the file where that stands, through every re-export; what only tests
-//! name is none. A `mod.rs` and the files and folders beside it are one room: they may name what stands in their `mod.rs`,
-//! and be named there. But of any two of these files and folders, each with all that is in it, only one may need the other,
-//! however long the way round.
+//! An arrow goes from the file that names something to the file where that stands, through every re-export; what only
+//! tests name is none. A `mod.rs` and the files and folders beside it are one room: they may name what stands in their
+//! `mod.rs`, and be named there. But of any two of these files and folders, each with all that is in it, only one may
+//! need the other, however long the way round.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;

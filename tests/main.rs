@@ -1,7 +1,7 @@
 //! What is asked of the crate from outside: by its public face alone, as a user's own crate would.
 //!
-//! They are compiled with the crate's unit tests (see `rust/lib.rs`): as crates of their own they would have it compiled once more, and all
-//! that is generic again for each of them.
+//! They are compiled with the crate's unit tests (see `rust/lib.rs`): as crates of their own they would have it
+//! compiled once more, and all that is generic again for each of them.
 
 #[path = "fuzz/main.rs"]
 mod fuzz;

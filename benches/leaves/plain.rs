@@ -176,8 +176,8 @@ fn candidate<const N: usize>(numbers: &Numbers<[f32; N]>, lane: usize) -> Candid
     Candidate { t, uv: [u, v], contact: Contact::Inside, inner: 0 }
 }
 
-/// Lanes that are met within an interval; bits above the lanes mean nothing. Nothing is divided: where the denominator is
-/// negative all signs are turned.
+/// Lanes that are met within an interval; bits above the lanes mean nothing. Nothing is divided: where the denominator
+/// is negative all signs are turned.
 #[inline(always)]
 fn moller_trumbore<const N: usize, S: Simd<N>>(
     simd: S,

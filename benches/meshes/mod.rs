@@ -161,7 +161,8 @@ pub fn noisy_torus(count: usize) -> Triangles {
     Triangles(triangles)
 }
 
-/// Slats across a room from -1 to 1, each a triangle, in any direction near its walls; and the walls, in two triangles each.
+/// Slats across a room from -1 to 1, each a triangle, in any direction near its walls; and the walls, in two triangles
+/// each.
 fn slats(count: usize) -> Triangles {
     let mut triangles = Vec::with_capacity(count + 12);
     for axis in 0..3 {

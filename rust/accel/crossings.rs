@@ -1,11 +1,12 @@
 //! Every hit of a ray, in order, and each point of a surface once.
 //!
-//! Triangles are closed, so a ray through an edge that two of them share meets both; as a surface it is crossed once there, or
-//! not at all where the ray only touches a ridge. Of the triangles met at one point of edges and corners those count that
-//! the ray crosses when it is moved by next to nothing ([`Contact`]), so that a closed surface is crossed an even number of
-//! times from outside and an odd one from inside, however the ray is aimed. Where the ray touches and crosses none, what it
-//! meets is told nevertheless, since [`super::Accelerator::intersect`] tells it: twice, as if in and out. That is two triangles
-//! of a ridge, or twice the same one where the others that it shares the point with are seen edge-on.
+//! Triangles are closed, so a ray through an edge that two of them share meets both; as a surface it is crossed once
+//! there, or not at all where the ray only touches a ridge. Of the triangles met at one point of edges and corners
+//! those count that the ray crosses when it is moved by next to nothing ([`Contact`]), so that a closed surface is
+//! crossed an even number of times from outside and an odd one from inside, however the ray is aimed. Where the ray
+//! touches and crosses none, what it meets is told nevertheless, since [`super::Accelerator::intersect`] tells it:
+//! twice, as if in and out. That is two triangles of a ridge, or twice the same one where the others that it shares the
+//! point with are seen edge-on.
 
 use super::query::{Every, Meeting};
 use crate::math::Hit;

@@ -9,8 +9,8 @@ use crate::shapes::triangle::SolidCone;
 use crate::simd::Level;
 use std::sync::Arc;
 
-/// An accelerator over both: `triangles` builds the one over triangles, `objects` that over the others. Where there is only one kind, its
-/// accelerator is all that is built.
+/// An accelerator over both: `triangles` builds the one over triangles, `objects` that over the others. Where there is
+/// only one kind, its accelerator is all that is built.
 pub fn mixed(
     primitives: &dyn Primitives,
     level: Level,

@@ -37,7 +37,8 @@ use query::{Answers, Any, Closest, Counted, Every};
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// What an accelerator is built from: triangles known by their numbers and corners, and objects known by their numbers alone.
+/// What an accelerator is built from: triangles known by their numbers and corners, and objects known by their numbers
+/// alone.
 ///
 /// The accelerators know no scene; whoever owns primitives shows them so.
 pub trait Primitives: Sync {
@@ -108,22 +109,24 @@ pub trait Accelerator: Send + Sync {
     /// Every hit of each ray, of which there are fewer than 2³².
     fn crossings(&self, rays: &[Ray]) -> Crossings;
 
-    /// On which side of the `primitives`, which are those that it holds, the origin of each ray lies: by the crossings from there
-    /// on. Rays are asked from a `t_min` of minus `doubt` on, and only a `t` beyond `doubt` is taken at its word.
+    /// On which side of the `primitives`, which are those that it holds, the origin of each ray lies: by the crossings
+    /// from there on. Rays are asked from a `t_min` of minus `doubt` on, and only a `t` beyond `doubt` is taken at its
+    /// word.
     fn sides(&self, primitives: &dyn Primitives, rays: &[Ray], doubt: f64, sides: &mut [Side]);
 
-    /// The nearest point to each point, within its greatest distance, that distance included; one greatest distance for all of
-    /// them, or one each. A point that is NaN or infinite has none. Of primitives as near, the lowest.
+    /// The nearest point to each point, within its greatest distance, that distance included; one greatest distance for
+    /// all of them, or one each. A point that is NaN or infinite has none. Of primitives as near, the lowest.
     fn nearest(&self, points: &[DVec3], max_distances: &[f64], nearest: &mut [Nearest]);
 
-    /// The triangles that each cone touches, nearest first: those that share a point with it, within the bounds that [`SolidCone`] states. None of
-    /// what is no cone.
+    /// The triangles that each cone touches, nearest first: those that share a point with it, within the bounds that
+    /// [`SolidCone`] states. None of what is no cone.
     fn touched(&self, cones: &[Option<SolidCone>]) -> Touches;
 
     /// What finding the closest hit of each ray takes, ray by ray.
     fn cost(&self, rays: &[Ray], costs: &mut [Cost]);
 
-    /// The same structure over primitives that have moved: as many, of the same numbers and of which the same can be hit.
+    /// The same structure over primitives that have moved: as many, of the same numbers and of which the same can be
+    /// hit.
     fn refitted(&self, primitives: &dyn Primitives) -> Result<Box<dyn Accelerator>, String>;
 
     /// Checks what queries rely on; says what is wrong.

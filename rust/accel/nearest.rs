@@ -168,11 +168,11 @@ impl Search {
 /// Whatever the vector w, all of a triangle is at least as far as the least w · (corner − point) / |w|. With w towards
 /// the triangle's middle that misses little where the triangle is small next to its distance.
 ///
-/// The bound. Let ε = 2⁻²⁴ and L bound |point| + |corner| in every coordinate. The point errs by εL, a corner by
-/// up to 4εL if it is kept as an edge in box units, and their difference by εL; so the product of w and that, of three terms that
-/// are each rounded three times at most, errs by 9εL·(|w₁| + |w₂| + |w₃|) and the distance by 9√3·εL < 15.6εL. 16εL is
-/// allowed, and in box units 32εL.
-/// The vector is what it is and does not err; squares err by 8ε of themselves, for which 16ε are.
+/// The bound. Let ε = 2⁻²⁴ and L bound |point| + |corner| in every coordinate. The point errs by εL, a corner by up to
+/// 4εL if it is kept as an edge in box units, and their difference by εL; so the product of w and that, of three terms
+/// that are each rounded three times at most, errs by 9εL·(|w₁| + |w₂| + |w₃|) and the distance by 9√3·εL < 15.6εL.
+/// 16εL is allowed, and in box units 32εL. The vector is what it is and does not err; squares err by 8ε of themselves,
+/// for which 16ε are.
 #[derive(Clone, Copy, Debug)]
 pub struct LeafTest {
     /// In the units that leaves are kept in.

@@ -19,7 +19,7 @@ pub trait Objects: Send + Sync {
         self.bounds(primitive).map(|b| [b, b])
     }
 
-    /// Calls `met` with what of it the ray meets between `t_min` and `t_max`, both ends included, until it says true; then that is said.
-    /// Nothing has to be told but what is wanted: the first, or any, or every point.
+    /// Calls `met` with what of it the ray meets between `t_min` and `t_max`, both ends included, until it says true;
+    /// then that is said. Nothing has to be told but what is wanted: the first, or any, or every point.
     fn meet(&self, primitive: u32, wanted: Wanted, ray: &Ray, met: &mut dyn FnMut(Candidate) -> bool) -> bool;
 }

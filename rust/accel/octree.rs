@@ -1,11 +1,12 @@
 //! Octrees: every cell is halved across all three axes at once, so that nothing has to be said about where.
 //!
-//! A node is 4 bytes and knows neither plane nor box. A ray is followed by the `t` at which it meets the six planes around a cell; those
-//! of the planes between its eight children lie half-way (Revelles, Ureña and Lastra, "An Efficient Parametric Algorithm for Octree
-//! Traversal", 2000). Cells have the proportions of the box around everything.
+//! A node is 4 bytes and knows neither plane nor box. A ray is followed by the `t` at which it meets the six planes
+//! around a cell; those of the planes between its eight children lie half-way (Revelles, Ureña and Lastra, "An
+//! Efficient Parametric Algorithm for Octree Traversal", 2000). Cells have the proportions of the box around
+//! everything.
 //!
-//! Where it meets a plane is not certain, by an amount that is the same for all planes across an axis. So there are children in which it
-//! may be and those in which it certainly is not, and the former are visited.
+//! Where it meets a plane is not certain, by an amount that is the same for all planes across an axis. So there are
+//! children in which it may be and those in which it certainly is not, and the former are visited.
 
 use super::walk::{Halves, Input, Lists, Part, Plane, Room, Structure, Walker};
 use super::{Info, SlabRay};
@@ -45,8 +46,8 @@ pub struct Octree {
     /// The box around everything: the root's cell.
     bounds: Aabb,
     depth: usize,
-    /// By the surface-area heuristic: of every inner node one visit, of every leaf its primitives, each times the chance that a ray that
-    /// meets the root's cell meets this one's.
+    /// By the surface-area heuristic: of every inner node one visit, of every leaf its primitives, each times the
+    /// chance that a ray that meets the root's cell meets this one's.
     sah_cost: f64,
 }
 
@@ -93,8 +94,9 @@ const SHARE: usize = 4096;
 
 /// Builds an octree over primitives.
 ///
-/// It has the same bits for any number of threads. Time is n times the number of levels, with clipped parts counted in n; a node is a leaf
-/// where its children would not save tests, as where primitives coincide, and there are at most 9 times as many parts as primitives, and 64 more.
+/// It has the same bits for any number of threads. Time is n times the number of levels, with clipped parts counted in
+/// n; a node is a leaf where its children would not save tests, as where primitives coincide, and there are at most 9
+/// times as many parts as primitives, and 64 more.
 ///
 /// # Panics
 /// If an option is out of range.
@@ -154,7 +156,8 @@ impl Octree {
         Plane { axis, at: (min + (max - min) * share) as f32 }
     }
 
-    /// One of eight children, of which the first is said: bits 0 to 2 of its number are set where it lies above the plane across x to z.
+    /// One of eight children, of which the first is said: bits 0 to 2 of its number are set where it lies above the
+    /// plane across x to z.
     fn child(&self, cell: &Cell, first: usize, octant: usize) -> Cell {
         let mut child = Cell { node: first + octant, depth: cell.depth + 1, ..*cell };
         for axis in 0..3 {
@@ -315,10 +318,10 @@ struct Way {
     around: [[f32; 3]; 2],
     /// By axis, how far off it may meet a plane.
     ///
-    /// With v = 2⁻²⁴ and R the ray's reach, a plane stands up to 2v from where the builder put it, and what is taken for half-way errs by
-    /// vR more a level at the most: the least upper bound of what two errors of levels above, halved, add up to. In all that is less than
-    /// 2vR + 18 · 2/3 · vR = 14vR, in units of t times the inverse of the direction; taking the middle of what bounds a `t` from
-    /// both sides costs less than vR. Twice the pad is 16vR.
+    /// With v = 2⁻²⁴ and R the ray's reach, a plane stands up to 2v from where the builder put it, and what is taken
+    /// for half-way errs by vR more a level at the most: the least upper bound of what two errors of levels above,
+    /// halved, add up to. In all that is less than 2vR + 18 · 2/3 · vR = 14vR, in units of t times the inverse of the
+    /// direction; taking the middle of what bounds a `t` from both sides costs less than vR. Twice the pad is 16vR.
     room: [f32; 3],
     /// The bits of axes along which the ray goes down: what turns the octant that it comes to first into octant 0.
     mirror: u32,
@@ -375,7 +378,8 @@ struct Walk<'a, const COUNTED: bool> {
 const ABOVE: [u32; 3] = [0b1010_1010, 0b1100_1100, 0b1111_0000];
 
 impl<const COUNTED: bool> Walk<'_, COUNTED> {
-    /// Children that the ray may be in while it is in their parent, the one that it comes to first as the first: a bit each.
+    /// Children that the ray may be in while it is in their parent, the one that it comes to first as the first: a bit
+    /// each.
     #[inline(always)]
     fn met(&self, (enter, leave): (f32, f32), middle: &[f32; 3]) -> u32 {
         let room = &self.way.room;
@@ -420,7 +424,8 @@ impl<const COUNTED: bool> Walker for Walk<'_, COUNTED> {
             let middle: [f32; 3] = from_fn(|axis| 0.5 * (first[axis] + last[axis]));
             let (enter, leave) = self.way.span(&around);
             let mut met = self.met((enter, lesser(leave, limit)), &middle);
-            // The farthest is put away first. A child's number has a bit more than those of all that the ray may come to before it.
+            // The farthest is put away first. A child's number has a bit more than those of all that the ray may come
+            // to before it.
             while met != 0 {
                 let octant = 31 - met.leading_zeros();
                 met ^= 1 << octant;

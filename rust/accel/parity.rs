@@ -1,8 +1,8 @@
 //! On which side of a closed surface points lie: inside if a ray from there crosses it an odd number of times.
 //!
-//! All of it is decided exactly. Which triangles the ray crosses, [`Contact`] tells, through edges and corners too; and where
-//! `t` is too small for its sign to be sure, the sign is that of the volume of the triangle and the ray's origin, by
-//! expansions (Shewchuk, "Adaptive precision floating-point arithmetic and fast robust geometric predicates", 1997).
+//! All of it is decided exactly. Which triangles the ray crosses, [`Contact`] tells, through edges and corners too; and
+//! where `t` is too small for its sign to be sure, the sign is that of the volume of the triangle and the ray's origin,
+//! by expansions (Shewchuk, "Adaptive precision floating-point arithmetic and fast robust geometric predicates", 1997).
 
 use super::Primitives;
 use super::query::{Kernels, Query, Wanted};
@@ -34,8 +34,8 @@ pub struct Parity<'a> {
     pub doubt: f64,
     /// The answers.
     pub sides: &'a mut [Side],
-    /// What each ray crosses: its number, and of what it crosses there which primitive and which in it, and where. A structure may tell of
-    /// the same more than once.
+    /// What each ray crosses: its number, and of what it crosses there which primitive and which in it, and where. A
+    /// structure may tell of the same more than once.
     pub crossed: Vec<(u32, u32, u32, u64)>,
 }
 
@@ -105,14 +105,16 @@ fn sign_of_t(origin: DVec3, direction: DVec3, corners: [DVec3; 3]) -> Ordering {
     if through > 0.0 { volume } else { volume.reverse() }
 }
 
-/// The sign of `(a − o) · ((b − o) × (c − o))`: exact for coordinates that are zero, or not less than 2⁻²⁸⁰ of the greatest.
+/// The sign of `(a − o) · ((b − o) × (c − o))`: exact for coordinates that are zero, or not less than 2⁻²⁸⁰ of the
+/// greatest.
 fn sign_of_volume(origin: DVec3, corners: [DVec3; 3]) -> Ordering {
     let [a, b, c] = corners.map(|x| x - origin);
     let size = |u: f64, v: f64, w: f64| u.abs() * (v.abs() + w.abs());
     let parts = |v: DVec3, w: DVec3| (v.y * w.z, v.z * w.y, v.z * w.x, v.x * w.z, v.x * w.y, v.y * w.x);
     let (p, q, r, s, t, u) = parts(b, c);
     let volume = a.x * (p - q) + a.y * (r - s) + a.z * (t - u);
-    // Shewchuk's bound for the determinant of three differences is (7 + 56 u) u of this; what underflows is less than the constant.
+    // Shewchuk's bound for the determinant of three differences is (7 + 56 u) u of this; what underflows is less than
+    // the constant.
     let bound = 8.0 * UNIT * (size(a.x, p, q) + size(a.y, r, s) + size(a.z, t, u)) + 1e-290;
     if volume.abs() > bound && volume.is_finite() {
         return volume.total_cmp(&0.0);

@@ -25,8 +25,8 @@ pub enum Wanted {
     Any,
     /// All that is met.
     Every,
-    /// On which side of a closed surface the ray starts: what it crosses, an odd number of times or an even one, and whether it starts
-    /// on the surface, where `t` is 0.
+    /// On which side of a closed surface the ray starts: what it crosses, an odd number of times or an even one, and
+    /// whether it starts on the surface, where `t` is 0.
     Side,
 }
 
@@ -53,8 +53,8 @@ pub trait Query {
     /// Writes down the answer for ray `i`; without a state, that of a ray that hits nothing.
     fn finish(&mut self, i: usize, answer: Option<(Along, Self::State)>);
 
-    /// Whether what is visited is counted. Such a question is asked of one ray after the other ([`Kernels::Single`]): other kernels have not
-    /// even the places where it would be told.
+    /// Whether what is visited is counted. Such a question is asked of one ray after the other ([`Kernels::Single`]):
+    /// other kernels have not even the places where it would be told.
     const COUNTED: bool = false;
 
     /// A node is about to be tested.

@@ -6,8 +6,8 @@
 //! `r ≈ 1/d` and `s ≈ −o/d ∓ pad`, all in f32. With v = 2⁻²⁴, to first order and in units of |r|, this errs by
 //! 2v·|plane − o| for r, the same in both terms; v·|plane| for the product (less if fused); v·|o| for rounding o, and
 //! as much again for −o·r and for taking the pad off; and v·(|plane| + |o|) for the sum: in all by less than 6v·R,
-//! where R ("reach") bounds |plane| + |o|. The pad is 8v·R; what is left, at least v·R since |r| > 1/2, covers the error
-//! of a hit's own `t` ([`EdgeRay::T_ERROR`] is a quarter of v). Taking the centre off, moving a far origin up and
+//! where R ("reach") bounds |plane| + |o|. The pad is 8v·R; what is left, at least v·R since |r| > 1/2, covers the
+//! error of a hit's own `t` ([`EdgeRay::T_ERROR`] is a quarter of v). Taking the centre off, moving a far origin up and
 //! rounding `t`, all in f64, costs some fourteen 2⁻⁵³ of the distance, for which 2⁻⁴⁶ of it is added.
 //!
 //! A direction of less than 2⁻⁶⁰ along an axis counts as ±2⁻⁶⁰: within reach, that moves the ray by less than a
@@ -90,8 +90,8 @@ fn widened(x: f64, by: f32) -> f32 {
     x + x.abs() * by
 }
 
-/// A `t_min` in box units, rounded down. One that no f32 can hold counts as the greatest: infinity less a part of it would be NaN,
-/// which in a packet is the neighbours' affair as well.
+/// A `t_min` in box units, rounded down. One that no f32 can hold counts as the greatest: infinity less a part of it
+/// would be NaN, which in a packet is the neighbours' affair as well.
 #[inline(always)]
 fn earliest(t: f64) -> f32 {
     widened(lesser(t, f64::from(f32::MAX)), -ULPS)
@@ -145,14 +145,15 @@ impl SlabRay {
         })
     }
 
-    /// A `t` along its direction in box units, rounded up, and never NaN: no box that starts beyond it can improve on it.
+    /// A `t` along its direction in box units, rounded up, and never NaN: no box that starts beyond it can improve on
+    /// it.
     #[inline(always)]
     pub fn limit(&self, t: f64) -> f32 {
         self.clock.limit(t)
     }
 
-    /// Of a box, where the ray may enter it and where it may leave it. None if it does neither for certain between its `t_min` and
-    /// `limit`; an empty box is never met.
+    /// Of a box, where the ray may enter it and where it may leave it. None if it does neither for certain between its
+    /// `t_min` and `limit`; an empty box is never met.
     #[inline(always)]
     pub fn passes(&self, aabb: &Aabb, limit: f32) -> Option<(f32, f32)> {
         let planes = [aabb.min.to_array(), aabb.max.to_array()];

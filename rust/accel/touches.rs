@@ -1,9 +1,9 @@
 //! What solid cones touch: of each, all primitives, the nearest first; and which boxes they may be passed by for.
 //!
-//! The bound. A box that is met must be told of wherever a triangle in it is ([`SolidCone::nearest`]). In units in which the
-//! largest coordinate of the apex and of the region, P + 2 box units, lies in [1, 2), a triangle is found up to 2⁻⁴³·2 outside
-//! of a cone, and apex and box err by 4u each for their rounding. Boxes are passed by from 2⁻⁴¹ on, which is four times that, and far
-//! less than what their f32 planes are rounded by.
+//! The bound. A box that is met must be told of wherever a triangle in it is ([`SolidCone::nearest`]). In units in
+//! which the largest coordinate of the apex and of the region, P + 2 box units, lies in [1, 2), a triangle is found up
+//! to 2⁻⁴³·2 outside of a cone, and apex and box err by 4u each for their rounding. Boxes are passed by from 2⁻⁴¹ on,
+//! which is four times that, and far less than what their f32 planes are rounded by.
 
 use crate::math::robust::{greater, normalising_scale};
 use crate::math::{DVec3, Region};
@@ -69,8 +69,8 @@ pub struct Boxes<'a> {
 const PAD: f64 = 1.0 / (1u64 << 41) as f64;
 
 impl<'a> Boxes<'a> {
-    /// Readies a cone for the boxes of a region. None if its apex is so far, in box units, that an f64 cannot say it: then every box may
-    /// hold something.
+    /// Readies a cone for the boxes of a region. None if its apex is so far, in box units, that an f64 cannot say it:
+    /// then every box may hold something.
     pub fn new(cone: &'a SolidCone, region: &Region) -> Option<Self> {
         let apex = region.to_box(cone.apex);
         let largest = apex.abs().max_element() + 2.0;
@@ -82,7 +82,8 @@ impl<'a> Boxes<'a> {
         Some(Self { cone, apex: apex * scale, scale, most: most * most * (1.0 + PAD) })
     }
 
-    /// Of some boxes by axis and side, those that may hold something that the cone touches, and perhaps some that are empty.
+    /// Of some boxes by axis and side, those that may hold something that the cone touches, and perhaps some that are
+    /// empty.
     #[inline(always)]
     pub fn may_touch<const N: usize>(&self, planes: &[[[f32; N]; 2]; 3]) -> u32 {
         let mut left = 0;

@@ -8,7 +8,8 @@ use super::walked::walked;
 use super::{Accelerator, Primitives};
 use crate::simd::Level;
 
-/// The default: a wide tree over triangles, and another over what is none; a binary one of moving boxes if anything of that moves.
+/// The default: a wide tree over triangles, and another over what is none; a binary one of moving boxes if anything of
+/// that moves.
 pub fn over(primitives: &dyn Primitives, options: &Options, level: Level) -> Box<dyn Accelerator> {
     of_width(level.lanes(), primitives, options, level)
 }

@@ -29,8 +29,8 @@ pub struct Walked<const N: usize, L> {
 
 /// Builds a structure over primitives, triangles or not, and keeps their numbers as precisely as they are.
 ///
-/// `build` is given what there is, and tells which primitives stand in which leaf. Where one stands in several, `mailbox` says how that is
-/// seen to.
+/// `build` is given what there is, and tells which primitives stand in which leaf. Where one stands in several,
+/// `mailbox` says how that is seen to.
 pub fn walked(primitives: &dyn Primitives, level: Level, mailbox: Mailbox, build: &Build) -> Box<dyn Accelerator> {
     match (level.lanes(), primitives.is_single()) {
         (8, true) => Box::new(Walked::<8, SingleLeaves<8>>::new(primitives, level, mailbox, build)),
@@ -214,8 +214,9 @@ impl<const N: usize, L: Leaves<N>, Q: Query> Kernel<N> for Batch<'_, N, L, Q> {
             TogetherBatch { contents, unbounded, region, rays }.answer(simd, walk.as_mut(), query);
             return;
         }
-        // One ray at a time. Eight in turn, each with its next leaf fetched meanwhile, are faster in grids where rays have nothing in
-        // common, and slower where they are neighbours; and one's stamps would take the place of another's.
+        // One ray at a time. Eight in turn, each with its next leaf fetched meanwhile, are faster in grids where rays
+        // have nothing in common, and slower where they are neighbours; and one's stamps would take the place of
+        // another's.
         let mut walker = match Q::WANTED {
             Wanted::Any => structure.any_walker(),
             _ => structure.walker(Q::COUNTED),

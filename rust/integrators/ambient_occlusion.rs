@@ -7,8 +7,9 @@ use crate::sampling::{CAMERA_DIMENSIONS, warp};
 use crate::scene::{Departure, Footprint, Scene};
 use crate::workers::Cancel;
 
-/// How open the surroundings of what is seen are (Zhukov, Iones and Kronin, "An Ambient Light Illumination Model", 1998; Landis, "Production-Ready
-/// Global Illumination", 2002): the share of directions in which nothing is near. White where nothing is seen.
+/// How open the surroundings of what is seen are (Zhukov, Iones and Kronin, "An Ambient Light Illumination Model",
+/// 1998; Landis, "Production-Ready Global Illumination", 2002): the share of directions in which nothing is near. White
+/// where nothing is seen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AmbientOcclusion {
     /// How near what occludes has to be; infinite for anything.

@@ -125,8 +125,8 @@ fn albedo(scattering: &Scattering) -> Rgb {
 
 /// Pictures of channels, each a row of numbers a pixel, pixels row by row from the top.
 ///
-/// A pixel has the mean over its samples that see something, uniform over its square, lens and shutter; numbers of things are those of its
-/// middle, as the shutter opens. Returns soon after `cancel` is raised, with nothing of use.
+/// A pixel has the mean over its samples that see something, uniform over its square, lens and shutter; numbers of
+/// things are those of its middle, as the shutter opens. Returns soon after `cancel` is raised, with nothing of use.
 pub fn aovs(
     scene: &Scene,
     camera: &dyn Camera,

@@ -4,8 +4,8 @@ use super::transport::Settings;
 use super::{Integrator, Worker};
 use crate::scene::{Footprint, Scene};
 
-/// What shines, and what is lit by it: one bounce. Lights are sampled and so are surfaces, combined through multiple importance sampling (Veach and
-/// Guibas, "Optimally Combining Sampling Techniques", 1995).
+/// What shines, and what is lit by it: one bounce. Lights are sampled and so are surfaces, combined through multiple
+/// importance sampling (Veach and Guibas, "Optimally Combining Sampling Techniques", 1995).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Direct {
     /// How many light samples a surface takes, from equal shares of the lights; at least 1.

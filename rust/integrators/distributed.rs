@@ -5,19 +5,21 @@ use super::{Integrator, Worker};
 use crate::optics::Rgb;
 use crate::scene::{Footprint, Scene};
 
-/// Distributed ray tracing (Cook, Porter and Carpenter, "Distributed Ray Tracing", 1984): rays are spread over lights, lobes, lens and shutter, for
-/// soft shadows, gloss, depth of field and motion blur. Diffuse light between surfaces is not followed: ambient light stands for it.
+/// Distributed ray tracing (Cook, Porter and Carpenter, "Distributed Ray Tracing", 1984): rays are spread over lights,
+/// lobes, lens and shutter, for soft shadows, gloss, depth of field and motion blur. Diffuse light between surfaces is
+/// not followed: ambient light stands for it.
 ///
-/// A direction is followed if the surface scatters into it with more than [`Distributed::GLOSS`] per solid angle, three times the most that a matt
-/// surface has; what comes from the others is the lights' alone. The first surface splits its ray, the others do not.
+/// A direction is followed if the surface scatters into it with more than [`Distributed::GLOSS`] per solid angle, three
+/// times the most that a matt surface has; what comes from the others is the lights' alone. The first surface splits
+/// its ray, the others do not.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Distributed {
     /// The greatest number of surfaces that light comes by, from the light on.
     pub max_depth: u32,
     /// Into how many rays the first surface splits one, and how often it asks for light; at least 1.
     pub splits: u32,
-    /// Radiance that arrives from everywhere in place of what is not followed; of which surfaces reflect their ambient share
-    /// ([`Material::ambient`](crate::scene::Material::ambient)).
+    /// Radiance that arrives from everywhere in place of what is not followed; of which surfaces reflect their ambient
+    /// share ([`Material::ambient`](crate::scene::Material::ambient)).
     pub ambient: Rgb,
 }
 

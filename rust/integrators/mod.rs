@@ -36,11 +36,12 @@ pub struct CameraSample {
 
 /// A way to turn rays into radiance.
 pub trait Integrator: Send + Sync {
-    /// What one thread works with on a scene: the integrator and the memory it needs, to be used again and again. `footprint` is that of
-    /// the camera's rays, for the filtering of textures.
+    /// What one thread works with on a scene: the integrator and the memory it needs, to be used again and again.
+    /// `footprint` is that of the camera's rays, for the filtering of textures.
     fn worker<'a>(&'a self, scene: &'a Scene, footprint: Footprint) -> Box<dyn Worker + 'a>;
 
-    /// The side of the square patches of pixels whose samples of the same number work together; 1 where each sample is on its own.
+    /// The side of the square patches of pixels whose samples of the same number work together; 1 where each sample is
+    /// on its own.
     fn patch(&self, _scene: &Scene) -> u32 {
         1
     }
@@ -48,8 +49,8 @@ pub trait Integrator: Send + Sync {
     /// Makes what workers need of a scene, once for all of them: it is called before there are any.
     fn prepare(&self, _scene: &Scene) {}
 
-    /// Whether workers must run on the thread that asked for the picture, as what is written in Python must. They are then
-    /// handed batches of tens of thousands of samples, and may raise the cancel themselves to end the render.
+    /// Whether workers must run on the thread that asked for the picture, as what is written in Python must. They are
+    /// then handed batches of tens of thousands of samples, and may raise the cancel themselves to end the render.
     fn runs_on_caller(&self) -> bool {
         false
     }
@@ -62,8 +63,8 @@ pub trait Worker: Send {
     /// is in. Returns early, with nothing of use written, soon after `cancel` is raised.
     fn radiance(&mut self, samples: &mut [CameraSample], cancel: &Cancel, radiance: &mut [Rgb]);
 
-    /// As [`Worker::radiance`], of samples that stand in groups one after the other, of so many each. What arrives along a ray may
-    /// depend on all samples of its group, but on no others, and its mean not even on these.
+    /// As [`Worker::radiance`], of samples that stand in groups one after the other, of so many each. What arrives
+    /// along a ray may depend on all samples of its group, but on no others, and its mean not even on these.
     fn radiance_in_groups(
         &mut self,
         samples: &mut [CameraSample],

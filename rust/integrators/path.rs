@@ -13,10 +13,11 @@ pub struct Path {
     pub max_depth: Option<u32>,
     /// Roulette is played from this number of bounces on.
     pub roulette_depth: u32,
-    /// The side of the square patches of pixels whose paths share what they find from their second surface on, where both that and the
-    /// first are diffuse; 1 for none ([`Integrator::patch`]).
+    /// The side of the square patches of pixels whose paths share what they find from their second surface on, where
+    /// both that and the first are diffuse; 1 for none ([`Integrator::patch`]).
     pub reuse: u32,
-    /// Whether matt surfaces draw directions from where light comes by way of mirrors and glass as well ([`crate::scene::Caustics`]).
+    /// Whether matt surfaces draw directions from where light comes by way of mirrors and glass as well
+    /// ([`crate::scene::Caustics`]).
     pub caustics: bool,
 }
 
@@ -37,7 +38,8 @@ impl Path {
         self.caustics && self.max_depth.is_none_or(|depth| depth > 1) && scene.plan().needs().scattering
     }
 
-    /// What one thread works with, compiled as this kernel, or as one that can more. Every kernel that suits a scene gives the same bits.
+    /// What one thread works with, compiled as this kernel, or as one that can more. Every kernel that suits a scene
+    /// gives the same bits.
     pub fn worker_of<'a>(&self, scene: &'a Scene, footprint: Footprint, kernel: Kernel) -> Box<dyn Worker + 'a> {
         self.settings(scene).worker_of(scene, footprint, kernel)
     }

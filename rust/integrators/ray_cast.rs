@@ -5,8 +5,9 @@ use super::{Integrator, Worker};
 use crate::optics::Rgb;
 use crate::scene::{Footprint, Scene};
 
-/// Ray casting with shadows (Appel, "Some Techniques for Shading Machine Renderings of Solids", 1968): what shines, what the lights give a surface
-/// by its scattering, and ambient light. Nothing is followed further, so that mirrors and glass are black.
+/// Ray casting with shadows (Appel, "Some Techniques for Shading Machine Renderings of Solids", 1968): what shines,
+/// what the lights give a surface by its scattering, and ambient light. Nothing is followed further, so that mirrors
+/// and glass are black.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RayCast {
     /// Radiance that arrives from everywhere, unshadowed. Surfaces reflect their ambient share of it

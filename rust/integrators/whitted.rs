@@ -5,17 +5,18 @@ use super::{Integrator, Worker};
 use crate::optics::Rgb;
 use crate::scene::{Footprint, Scene};
 
-/// Whitted's ray tracing ("An Improved Illumination Model for Shaded Display", 1980): lights and ambient light at each surface by its scattering,
-/// and both the reflected and the refracted ray of smooth ones, followed to a depth, or for as long as they contribute (Hall and Greenberg, "A Testbed
-/// for Realistic Image Synthesis", 1983). What is scattered otherwise is not followed.
+/// Whitted's ray tracing ("An Improved Illumination Model for Shaded Display", 1980): lights and ambient light at each
+/// surface by its scattering, and both the reflected and the refracted ray of smooth ones, followed to a depth, or for
+/// as long as they contribute (Hall and Greenberg, "A Testbed for Realistic Image Synthesis", 1983). What is scattered
+/// otherwise is not followed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Whitted {
     /// The greatest number of surfaces that light comes by, from the light on.
     pub max_depth: u32,
     /// Rays are not followed that contribute less than this share to their pixel, in any colour; 0 follows all.
     pub contribution: f64,
-    /// Radiance that arrives from everywhere in place of what is not followed; of which surfaces reflect their ambient share
-    /// ([`Material::ambient`](crate::scene::Material::ambient)).
+    /// Radiance that arrives from everywhere in place of what is not followed; of which surfaces reflect their ambient
+    /// share ([`Material::ambient`](crate::scene::Material::ambient)).
     pub ambient: Rgb,
     /// How many light samples the first surface takes, from equal shares of the lights; at least 1.
     pub light_samples: u32,

@@ -12,8 +12,8 @@ pub struct Affine {
     pub rows: [DVec3; 3],
     /// Where the origin goes.
     pub shift: DVec3,
-    /// The adjugate of the linear part times a power of two, and the determinant times the square of it: the inverse is one over
-    /// the other. No number of a map of any scale vanishes so.
+    /// The adjugate of the linear part times a power of two, and the determinant times the square of it: the inverse is
+    /// one over the other. No number of a map of any scale vanishes so.
     adjugate: ([Triple<Double>; 3], Double),
     /// One over that power of two's root.
     scale: f64,
@@ -136,8 +136,8 @@ impl Affine {
         Some(result)
     }
 
-    /// The rows of the adjugate, and the determinant, up to a common factor with which that is above 0: the inverse is one over the
-    /// other.
+    /// The rows of the adjugate, and the determinant, up to a common factor with which that is above 0: the inverse is
+    /// one over the other.
     #[inline]
     pub fn adjugate_in<N: Number>(&self) -> ([Triple<N>; 3], N) {
         let (rows, determinant) = &self.adjugate;
@@ -182,7 +182,8 @@ impl Affine {
         (a * v.x + b * v.y + c * v.z) * self.scale * self.scale
     }
 
-    /// A normal's image: at right angles to the images of what it is at right angles to, and on the same side. Not unit.
+    /// A normal's image: at right angles to the images of what it is at right angles to, and on the same side. Not
+    /// unit.
     pub fn normal(&self, n: DVec3) -> DVec3 {
         self.cofactors(n) * 1f64.copysign(self.adjugate.1.high)
     }

@@ -5,9 +5,9 @@ use super::Ray;
 /// Neighbours looked at.
 const PAIRS: usize = 16;
 
-/// Whether most neighbours in a batch start within a hundredth of `extent` of each other, in directions less than 8 degrees
-/// apart, and so visit much the same of a scene. A few neighbours are looked at, spread evenly over the batch; which answer
-/// is given matters to speed alone.
+/// Whether most neighbours in a batch start within a hundredth of `extent` of each other, in directions less than 8
+/// degrees apart, and so visit much the same of a scene. A few neighbours are looked at, spread evenly over the batch;
+/// which answer is given matters to speed alone.
 pub fn is_coherent(rays: &[Ray], extent: f64) -> bool {
     const COSINE_SQUARED: f64 = 0.98;
     let step = (rays.len() / PAIRS).max(2);

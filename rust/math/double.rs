@@ -3,17 +3,18 @@
 use super::number::{Number, SLACK, underflow};
 use std::cmp::Ordering;
 
-/// The unevaluated sum of two f64, the second at most half an ulp of the first, and a bound on the distance from what it
-/// stands for.
+/// The unevaluated sum of two f64, the second at most half an ulp of the first, and a bound on the distance from what
+/// it stands for.
 ///
-/// Sums and products are those of Dekker ("A Floating-Point Technique for Extending the Available Precision", 1971) in the
-/// forms whose errors Joldes, Muller and Popescu proved ("Tight and rigorous error bounds for basic building blocks of
-/// double-word arithmetic", 2017): with u = 2⁻⁵³, at most 3u² + 13u³ of a sum and less than 8u² of a product. Twice that is
-/// allowed for.
+/// Sums and products are those of Dekker ("A Floating-Point Technique for Extending the Available Precision", 1971) in
+/// the forms whose errors Joldes, Muller and Popescu proved ("Tight and rigorous error bounds for basic building blocks
+/// of double-word arithmetic", 2017): with u = 2⁻⁵³, at most 3u² + 13u³ of a sum and less than 8u² of a product. Twice
+/// that is allowed for.
 ///
-/// It is [`DoubleDouble`](super::DoubleDouble) with its error, for decisions: that costs about half as much again, which what is only
-/// computed need not pay. No fused multiplication is asked of the processor: where a program is compiled for processors that may
-/// have none, each is a call, and the hits of most shapes are made of a hundred products.
+/// It is [`DoubleDouble`](super::DoubleDouble) with its error, for decisions: that costs about half as much again,
+/// which what is only computed need not pay. No fused multiplication is asked of the processor: where a program is
+/// compiled for processors that may have none, each is a call, and the hits of most shapes are made of a hundred
+/// products.
 #[derive(Clone, Copy, Debug)]
 pub struct Double {
     /// The f64 nearest to the sum.

@@ -11,8 +11,9 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 /// With u = 2⁻⁵³, a sum errs by less than 3.1u², a product by 4u², a quotient by 10u², a root by 4u², relative to the
 /// result, as long as nothing overflows and no product falls below 2⁻⁹⁶⁰.
 ///
-/// For what is computed to a precision that is known beforehand. [`Double`](super::Double) is the same with a bound on its own error,
-/// for what is decided. Products are fused here, which is right up to the largest f64, where those of `Double` end at 2⁹⁹⁶ and say so.
+/// For what is computed to a precision that is known beforehand. [`Double`](super::Double) is the same with a bound on
+/// its own error, for what is decided. Products are fused here, which is right up to the largest f64, where those of
+/// `Double` end at 2⁹⁹⁶ and say so.
 #[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
 pub struct DoubleDouble {
     /// The number, rounded.

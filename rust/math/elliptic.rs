@@ -24,7 +24,8 @@ fn integral_g([x, y, z]: [f64; 3]) -> f64 {
     (y * integral_f([x, z, y]) - product * integral_d([x, z, y]) / 3.0 + (x / y * z).sqrt()) / 2.0
 }
 
-/// R_F, by duplication (Carlson, "Numerical computation of real or complex elliptic integrals", 1995). At most one is zero.
+/// R_F, by duplication (Carlson, "Numerical computation of real or complex elliptic integrals", 1995). At most one is
+/// zero.
 fn integral_f(mut v: [f64; 3]) -> f64 {
     loop {
         let mean = (v[0] + v[1] + v[2]) / 3.0;

@@ -5,8 +5,8 @@
 //! of three coordinates. A product of three f64 is an integer of 159 bits times a power of two, so the sum fits a
 //! fixed-point number of at most 6,400 bits; usually a few words, since only the span between the smallest and the
 //! largest term is used (Kulisch's long accumulator, 1971). That is simpler than expansions (Shewchuk 1997), cannot
-//! underflow or overflow, and is asked only of rays that pass an edge within rounding. `cargo bench --bench exact` tells
-//! what it costs.
+//! underflow or overflow, and is asked only of rays that pass an edge within rounding. `cargo bench --bench exact`
+//! tells what it costs.
 
 use glam::DVec3;
 
@@ -25,8 +25,8 @@ pub fn exact_edges(origin: DVec3, direction: DVec3, [a, b, c]: [DVec3; 3]) -> [f
 
 /// The sign of the first coordinate of `d × (w − v)` that is not exactly zero, and zero where all are: −1, 0 or 1.
 ///
-/// It tells on which side of the edge from `v` to `w` a line along `d` passes that touches it, once the line is moved by
-/// nearly nothing along x, by nearly nothing of that along y, and again along z.
+/// It tells on which side of the edge from `v` to `w` a line along `d` passes that touches it, once the line is moved
+/// by nearly nothing along x, by nearly nothing of that along y, and again along z.
 ///
 /// All coordinates must be finite.
 #[cold]

@@ -28,8 +28,8 @@ impl Frame {
         }
     }
 
-    /// A frame whose z is the unit vector `normal`, and whose x lies along another vector as nearly as it can; any where that has no
-    /// direction, or the normal's.
+    /// A frame whose z is the unit vector `normal`, and whose x lies along another vector as nearly as it can; any
+    /// where that has no direction, or the normal's.
     pub fn along(normal: DVec3, x: DVec3) -> Self {
         // By its largest coordinate first, lest squares vanish; what is left of unit vectors this short is rounding.
         let flat = (x / x.abs().max_element())

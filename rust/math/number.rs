@@ -13,7 +13,8 @@ pub trait Number: Clone {
     /// A finite f64, as it is.
     fn of(x: f64) -> Self;
 
-    /// What the sum of two f64, the second at most half an ulp of the first, is within `error` of, if this type can hold that.
+    /// What the sum of two f64, the second at most half an ulp of the first, is within `error` of, if this type can
+    /// hold that.
     fn of_sum(high: f64, low: f64, error: f64) -> Option<Self>;
 
     /// The sum.
@@ -51,11 +52,12 @@ pub trait Number: Clone {
     }
 }
 
-/// An f64 and a bound on its distance from what it stands for, kept as it is computed (Wilkinson's running error analysis,
-/// 1986).
+/// An f64 and a bound on its distance from what it stands for, kept as it is computed (Wilkinson's running error
+/// analysis, 1986).
 ///
-/// Each operation adds its own rounding, at most [`UNIT`] of what came out. The bound is itself computed with roundings, a few
-/// a step, each of a relative [`UNIT`]: 2⁻⁴⁰ of it, added when a sign is asked for, is room for thousands of steps.
+/// Each operation adds its own rounding, at most [`UNIT`] of what came out. The bound is itself computed with
+/// roundings, a few a step, each of a relative [`UNIT`]: 2⁻⁴⁰ of it, added when a sign is asked for, is room for
+/// thousands of steps.
 #[derive(Clone, Copy, Debug)]
 pub struct Bounded {
     /// About the number.
@@ -67,8 +69,8 @@ pub struct Bounded {
 /// Where no product loses digits to underflow.
 const SAFE: f64 = f64::MIN_POSITIVE * (1u64 << 60) as f64 * (1u64 << 60) as f64;
 
-/// What the products in a [`Double`](super::Double) product, and its bound, lose to underflow: less than 16 halves of the least f64, four
-/// times over.
+/// What the products in a [`Double`](super::Double) product, and its bound, lose to underflow: less than 16 halves of
+/// the least f64, four times over.
 const UNDERFLOW: f64 = f64::from_bits(32);
 
 /// What is added to the bound of a product for underflow.

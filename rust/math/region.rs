@@ -6,8 +6,8 @@ use super::{Aabb, DVec3, Vec3};
 /// The box around a scene, in f64, with a centre and a scale of its own.
 ///
 /// What is computed in f32 is computed in *box units*: relative to the centre, and times a power of two so that no
-/// coordinate exceeds 2. So a small scene far from the origin loses nothing to its distance, and nothing overflows whatever
-/// its size.
+/// coordinate exceeds 2. So a small scene far from the origin loses nothing to its distance, and nothing overflows
+/// whatever its size.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Region {
     /// The least corner.
@@ -58,8 +58,8 @@ impl Region {
         (point - self.centre) * self.scale
     }
 
-    /// The box around some points in box units, rounded outwards. It errs by what [`Region::to_box`] does in f64, half an ulp
-    /// of its own numbers, and by no more.
+    /// The box around some points in box units, rounded outwards. It errs by what [`Region::to_box`] does in f64, half
+    /// an ulp of its own numbers, and by no more.
     #[inline]
     pub fn aabb(&self, points: [DVec3; 3]) -> Aabb {
         let [a, b, c] = points.map(|p| self.to_box(p));

@@ -1,12 +1,13 @@
 //! Sines and cosines of parts of a turn.
 //!
-//! Directions are drawn by angles that are simple parts of a turn. Of these the quadrant is found exactly, before anything is
-//! rounded, and in an eighth of a turn to either side a few terms of the Taylor series are all there is to it; a sine for every argument has to
-//! do much more.
+//! Directions are drawn by angles that are simple parts of a turn. Of these the quadrant is found exactly, before
+//! anything is rounded, and in an eighth of a turn to either side a few terms of the Taylor series are all there is to
+//! it; a sine for every argument has to do much more.
 
 use std::f64::consts::{FRAC_2_PI, TAU};
 
-/// 1/3!, −1/5! and so on: what follows in the sine of x, after x, in powers of −x². The first term left out is 5·10⁻¹⁷ at π/4.
+/// 1/3!, −1/5! and so on: what follows in the sine of x, after x, in powers of −x². The first term left out is 5·10⁻¹⁷
+/// at π/4.
 const SINE: [f64; 7] = [
     -1.0 / 6.0,
     1.0 / 120.0,

@@ -178,8 +178,9 @@ pub fn numbers<'a, T: Element>(name: &str, array: &'a PyReadonlyArray1<'_, T>) -
     array.as_slice().map_err(|_| PyValueError::new_err(format!("{name} must be C-contiguous")))
 }
 
-/// An array with the leading shape `lead`, and `width` entries a row if that is not none. Its entries are anything, and it is
-/// for the caller to write every one: to write zeros first would be one more pass over memory, and by one thread alone.
+/// An array with the leading shape `lead`, and `width` entries a row if that is not none. Its entries are anything, and
+/// it is for the caller to write every one: to write zeros first would be one more pass over memory, and by one thread
+/// alone.
 pub fn unwritten<'py, T: Element>(
     py: Python<'py>,
     lead: &[usize],

@@ -248,8 +248,8 @@ fn of<T: Copy>(all: &[T], i: usize) -> T {
     if all.len() == 1 { all[0] } else { all[i] }
 }
 
-/// Origins and directions (H,W,3) through the pixels, as float32 if `single`, else float64; row 0 is the top. `offsets` is where
-/// in the pixel, `lens` where in the lens, `time` when while the shutter is open: one for all, or for each.
+/// Origins and directions (H,W,3) through the pixels, as float32 if `single`, else float64; row 0 is the top. `offsets`
+/// is where in the pixel, `lens` where in the lens, `time` when while the shutter is open: one for all, or for each.
 #[pyfunction]
 pub fn camera_rays<'py>(
     py: Python<'py>,
@@ -270,8 +270,8 @@ pub fn camera_rays<'py>(
     if single { points.rays::<f32>(py, camera, &lead) } else { points.rays::<f64>(py, camera, &lead) }
 }
 
-/// Origins and directions (N,3) through `points` (N,2) of the film, in pixels from its left and from its top. `lens` and `time` are one for
-/// all, or one for each.
+/// Origins and directions (N,3) through `points` (N,2) of the film, in pixels from its left and from its top. `lens`
+/// and `time` are one for all, or one for each.
 #[pyfunction]
 pub fn camera_rays_through<'py>(
     py: Python<'py>,

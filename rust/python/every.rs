@@ -47,7 +47,8 @@ impl Chunk {
     }
 }
 
-/// Splits (N+1,), and t (K,), shape_id (K,), primitive (K,) and uv (K,2) of all hits, and in a scene with copies instance (K,).
+/// Splits (N+1,), and t (K,), shape_id (K,), primitive (K,) and uv (K,2) of all hits, and in a scene with copies
+/// instance (K,).
 pub type AllHits<'py> = (
     Bound<'py, PyArrayDyn<i64>>,
     Bound<'py, PyArrayDyn<f64>>,
@@ -81,7 +82,8 @@ pub fn intersect_all<'py>(
         before[0] = 0;
         let (mut t, mut shape) = (t.as_slice_mut()?, shape.as_slice_mut()?);
         let (mut primitive, mut uv) = (primitive.as_slice_mut()?, uv.as_slice_mut()?.as_chunks_mut().0);
-        // Each with the places it fills: a chunk's hits go when they are written down, so that they are never held twice.
+        // Each with the places it fills: a chunk's hits go when they are written down, so that they are never held
+        // twice.
         let mut from = 0i64;
         let places = found.iter_mut().map(take).map(|chunk| {
             let (rays, hits) = (chunk.lengths.len(), chunk.hits.len());

@@ -31,7 +31,8 @@ pub struct Wishes<'a> {
     pub quality: &'a str,
 }
 
-/// What makes two groups the same: the objects that their shapes are, their accelerator's description, and what the scene wishes.
+/// What makes two groups the same: the objects that their shapes are, their accelerator's description, and what the
+/// scene wishes.
 #[derive(Clone, PartialEq, Eq, Hash)]
 struct Key {
     shapes: Vec<usize>,
@@ -40,8 +41,8 @@ struct Key {
     quality: String,
 }
 
-/// Groups that some scene holds. An object is known by its address, and no other can have that while the group lives: whoever holds a
-/// group holds its shapes ([`CompiledScene::kept`]).
+/// Groups that some scene holds. An object is known by its address, and no other can have that while the group lives:
+/// whoever holds a group holds its shapes ([`CompiledScene::kept`]).
 static GROUPS: LazyLock<Mutex<HashMap<Key, Weak<Group>>>> = LazyLock::new(Mutex::default);
 
 /// The rows of (4, 4) or (N, 4, 4) matrices but for the last of each.
@@ -58,7 +59,8 @@ pub fn is_instance(shape: &Bound<'_, PyAny>) -> PyResult<bool> {
     Ok(shape.get_type().name()?.to_str()? == "Instance")
 }
 
-/// Reads an instance. `shape` reads what is in it and is none; what has to live as long as the group is added to `kept`.
+/// Reads an instance. `shape` reads what is in it and is none; what has to live as long as the group is added to
+/// `kept`.
 pub fn read(
     instance: &Bound<'_, PyAny>,
     wishes: Wishes<'_>,
@@ -130,7 +132,8 @@ pub fn singular_transform(py: Python<'_>, transform: PyReadonlyArrayDyn<'_, f64>
     Ok(checked.err().map(|bad| (bad.index, bad.why.to_string())))
 }
 
-/// Writes down which copies were hit, and what in them: `primitive` is that in the group, `instance` −1 where there is none.
+/// Writes down which copies were hit, and what in them: `primitive` is that in the group, `instance` −1 where there is
+/// none.
 pub fn write(scene: &scene::Scene, hits: &[Hit], places: &[usize], instance: &mut [i32], primitive: &mut [i32]) {
     for (hit, &i) in hits.iter().zip(places) {
         (instance[i], primitive[i]) = located(scene, hit, primitive[i]);

@@ -252,8 +252,8 @@ impl Interactions {
         Ok((direction, weight, pdf))
     }
 
-    /// Light on its way: directions, weights, and the segments that must be free, as origins and directions with `t` up to 1 or, from
-    /// outside the scene, infinity; last its density.
+    /// Light on its way: directions, weights, and the segments that must be free, as origins and directions with `t` up
+    /// to 1 or, from outside the scene, infinity; last its density.
     #[allow(clippy::type_complexity)]
     fn light<'py>(
         &self,

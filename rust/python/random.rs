@@ -7,8 +7,8 @@ use pyo3::prelude::*;
 use super::arrays::{numbers, sealed, unwritten};
 use crate::sampling::{CAMERA_DIMENSIONS, SamplerKind};
 
-/// One number, or a pair if `pair`, of a dimension of each sample of a pixel: (N,) or (N,2). The dimensions that the camera uses come
-/// before the first.
+/// One number, or a pair if `pair`, of a dimension of each sample of a pixel: (N,) or (N,2). The dimensions that the
+/// camera uses come before the first.
 #[pyfunction]
 pub fn random_numbers<'py>(
     py: Python<'py>,

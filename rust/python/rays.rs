@@ -8,9 +8,9 @@ use super::arrays::{Numbers, Row, Rows, Triples};
 use crate::math::{Ray, Tiling};
 use crate::workers;
 
-/// Rays that are gathered from the arrays and asked together, at most: few enough to stay in a near cache and for Ctrl-C to be
-/// heard, and enough that a wave of rays in flight is seldom run down. (512 take 2 to 5 % longer where rays are scattered, and
-/// as long where they are not; 8192 gain no more.)
+/// Rays that are gathered from the arrays and asked together, at most: few enough to stay in a near cache and for
+/// Ctrl-C to be heard, and enough that a wave of rays in flight is seldom run down. (512 take 2 to 5 % longer where
+/// rays are scattered, and as long where they are not; 8192 gain no more.)
 pub const BATCH: usize = 2048;
 
 /// So many go to a thread where there are not many: enough to make the hand-over free.
@@ -70,7 +70,8 @@ impl RayArrays<'_> {
         self.tiling.chunk(share(self.count))
     }
 
-    /// Calls `answer` with up to [`BATCH`] rays at a time of the `count` from `start` on, and with where each lies among them.
+    /// Calls `answer` with up to [`BATCH`] rays at a time of the `count` from `start` on, and with where each lies
+    /// among them.
     #[inline(always)]
     pub fn gathered(&self, start: usize, count: usize, mut answer: impl FnMut(&[Ray], &[usize])) {
         let some = BATCH.min(count);
@@ -177,8 +178,8 @@ pub fn chunks(n: usize, chunk: usize) -> Vec<(usize, usize)> {
     (0..n).step_by(chunk).map(|start| (start, chunk.min(n - start))).collect()
 }
 
-/// What `work` makes of each of the chunks, in their order, with the interpreter detached and signals heard. One chunk alone is
-/// the calling thread's: waking others takes longer.
+/// What `work` makes of each of the chunks, in their order, with the interpreter detached and signals heard. One chunk
+/// alone is the calling thread's: waking others takes longer.
 pub fn each<C: Send, T: Send>(
     py: Python<'_>,
     threads: Option<usize>,

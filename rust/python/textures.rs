@@ -44,8 +44,8 @@ impl<T: Clone> Cache<T> {
     }
 }
 
-/// What makes two pictures the same: where their numbers are, which channel is taken, whether it is decoded, and whether there are
-/// smaller ones.
+/// What makes two pictures the same: where their numbers are, which channel is taken, whether it is decoded, and
+/// whether there are smaller ones.
 type PictureKey = (usize, Option<usize>, bool, bool);
 
 /// Width, height, and the points of a picture: of one channel, or of three.

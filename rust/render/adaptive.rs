@@ -7,24 +7,25 @@ use super::tile::FilmTile;
 use crate::optics::Rgb;
 use rayon::prelude::*;
 
-/// Decides how many samples each pixel gets, such that most go where most of the error is, and no pixel is biased by it.
+/// Decides how many samples each pixel gets, such that most go where most of the error is, and no pixel is biased by
+/// it.
 ///
 /// To give a pixel more samples if its first ones were unlike each other, and then to take the mean of all, is biased
 /// (Kirk and Arvo, "Unbiased Sampling Techniques for Image Synthesis", 1991): a bright sample brings about others that
-/// dilute it, and its absence is left as it is, so that what is rare and bright comes out too dark. Here each pixel has two
-/// halves, and *the samples of one half decide how many the other gets*. Which values a half holds says nothing of how
-/// many it holds, so its mean is unbiased, and so is the usual estimate of the variance of that. The pixel is the plain
-/// mean of the two means: to weigh them by their counts would let a half's samples have a say in its weight.
+/// dilute it, and its absence is left as it is, so that what is rare and bright comes out too dark. Here each pixel has
+/// two halves, and *the samples of one half decide how many the other gets*. Which values a half holds says nothing of
+/// how many it holds, so its mean is unbiased, and so is the usual estimate of the variance of that. The pixel is the
+/// plain mean of the two means: to weigh them by their counts would let a half's samples have a say in its weight.
 ///
-/// Nor may the other half repeat what it was told. A half's count follows from *evidence* in the other: a number
-/// of samples that is the same for all pixels, whatever anyone decided, taken at the start of each epoch. The samples on
+/// Nor may the other half repeat what it was told. A half's count follows from *evidence* in the other: a number of
+/// samples that is the same for all pixels, whatever anyone decided, taken at the start of each epoch. The samples on
 /// top of those are for the mean only.
 ///
 /// An epoch ends when the samples of all pixels have doubled. At its start, each half is allotted what it shall have at
-/// the end. The error of a sum of pixels is least for counts that are proportional to the root of what one sample of a pixel
-/// adds to it (Neyman, 1934), here to relMSE. That is estimated from few samples, and smoothed over the neighbours, without which
-/// as much is lost as is won. In a Cornell box, whose optimum would need 1.5 times fewer samples than the same number
-/// everywhere, 1.3 to 1.35 of these are had.
+/// the end. The error of a sum of pixels is least for counts that are proportional to the root of what one sample of a
+/// pixel adds to it (Neyman, 1934), here to relMSE. That is estimated from few samples, and smoothed over the
+/// neighbours, without which as much is lost as is won. In a Cornell box, whose optimum would need 1.5 times fewer
+/// samples than the same number everywhere, 1.3 to 1.35 of these are had.
 ///
 /// Pixels of a patch take their samples together, so they have as many, by the mean of what they would have each.
 ///
@@ -50,7 +51,8 @@ impl Adaptive {
     /// The part of an epoch's samples that is evidence for the next.
     const EVIDENCE: f64 = 0.25;
 
-    /// A cell's samples grow by this factor in an epoch at most, or to this multiple of the mean: whatever evidence says.
+    /// A cell's samples grow by this factor in an epoch at most, or to this multiple of the mean: whatever evidence
+    /// says.
     const GROWTH: f64 = 4.0;
 
     /// The weight that each pixel has whatever it was seen to do, of the mean: it may only have been lucky.
@@ -156,8 +158,8 @@ impl Adaptive {
 }
 
 /// What is added to a number of samples before it is rounded down: evenly spread over neighbours, so that hardly any
-/// are lost or won in sum (the R2 sequence of Roberts, 2018), and one half apart for the halves of a pixel. Neighbours are patches of so
-/// many pixels a side.
+/// are lost or won in sum (the R2 sequence of Roberts, 2018), and one half apart for the halves of a pixel. Neighbours
+/// are patches of so many pixels a side.
 fn dither((x, y): (u32, u32), patch: u32, half: usize) -> f64 {
     let (x, y) = (x / patch, y / patch);
     (f64::from(x) * 0.754_877_666_246_692_8 + f64::from(y) * 0.569_840_290_998_053_3 + 0.5 * (1 - half) as f64).fract()
@@ -264,8 +266,8 @@ mod tests {
     use crate::sampling::Sampler;
     use proptest::prelude::*;
 
-    /// A film of samples that are mostly 1 and rarely `1 / chance` more, exposed to so many samples by counts that the half
-    /// `decider(half)` decides.
+    /// A film of samples that are mostly 1 and rarely `1 / chance` more, exposed to so many samples by counts that the
+    /// half `decider(half)` decides.
     fn film(seed: u64, chance: f64, samples: u32, batch: u32, decider: fn(usize) -> usize) -> Film {
         let mut film = Film::new(8, 8, 4, batch, true, None);
         let mut plan = Adaptive::new(&mut film);

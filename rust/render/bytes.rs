@@ -1,4 +1,5 @@
-//! Numbers to bytes and back. Bytes may come from anyone: reading them neither panics nor takes memory that they do not fill.
+//! Numbers to bytes and back. Bytes may come from anyone: reading them neither panics nor takes memory that they do not
+//! fill.
 
 use crate::optics::Rgb;
 use std::fmt;

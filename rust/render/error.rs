@@ -231,8 +231,8 @@ impl Sums {
         let (variance, skewed) = (2.0 * self.squares, 8.0 * self.cubes);
         let least = quantile(-1.96, variance / square, skewed / cube);
         let (variance, skewed) = ((variance + self.rare[0]) / square, (skewed + self.rare[1]) / cube);
-        // Where a few samples are all there is, how rare they are is not known either. A factor's logarithm goes further
-        // then, and elsewhere not so far.
+        // Where a few samples are all there is, how rare they are is not known either. A factor's logarithm goes
+        // further then, and elsewhere not so far.
         let greatest = quantile(1.96, variance, skewed).max((1.96 * variance.sqrt()).exp());
         let estimate = 1.96 * (self.rare[0] / square).sqrt();
         let doubt = (self.own / self.error).ln();

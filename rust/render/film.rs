@@ -10,11 +10,12 @@ use rayon::prelude::*;
 /// The error comes from the spread of *batches* of samples that are independent of each other. A batch is one sample
 /// where all are independent, and several where they are placed with regard to each other.
 ///
-/// A film may be in halves: each pixel then has two *cells*, whose samples are independent of each other and may differ in
-/// number, and the pixel is the mean of the two cells' means. What a film in halves is good for is told in `adaptive.rs`.
+/// A film may be in halves: each pixel then has two *cells*, whose samples are independent of each other and may differ
+/// in number, and the pixel is the mean of the two cells' means. What a film in halves is good for is told in
+/// `adaptive.rs`.
 ///
-/// Samples of the same number in a *patch*, a square of pixels, may have been taken together. A tile holds whole patches, and where the error
-/// comes from in `error.rs`, a patch counts as one.
+/// Samples of the same number in a *patch*, a square of pixels, may have been taken together. A tile holds whole
+/// patches, and where the error comes from in `error.rs`, a patch counts as one.
 ///
 /// Sums depend on the order of adding, so the order is part of the film: samples are added up one by one in blocks of
 /// 16, and blocks one by one. Hence how samples are split into passes, who works on a tile and how large tiles are does
@@ -44,7 +45,8 @@ pub(super) struct Spread {
 }
 
 impl Film {
-    /// An empty film in square tiles, for batches of samples. With `clamp`, samples brighter than that are dimmed to it.
+    /// An empty film in square tiles, for batches of samples. With `clamp`, samples brighter than that are dimmed to
+    /// it.
     pub fn new(width: u32, height: u32, side: u32, batch: u32, halves: bool, clamp: Option<f64>) -> Self {
         let mut film = Self::without_tiles(width, height, side, batch, halves, clamp);
         film.tiles = (0..film.tile_count()).map(|number| film.empty_tile(number)).collect();
@@ -192,7 +194,8 @@ impl Film {
         self.tiles.iter_mut().try_for_each(|tile| tile.read(from))
     }
 
-    /// Lets the next `count` samples of each cell be evidence: sums of their own are kept of those ([`Film::evidence`]).
+    /// Lets the next `count` samples of each cell be evidence: sums of their own are kept of those
+    /// ([`Film::evidence`]).
     pub(super) fn take_evidence(&mut self, count: u32) {
         self.tiles.par_iter_mut().for_each(|tile| tile.take_evidence(count));
     }
@@ -253,8 +256,8 @@ impl Film {
         self.tiles.iter().map(FilmTile::fewest).min().unwrap_or(0) / self.batch
     }
 
-    /// The estimated variance of each pixel's mean, unbiased; `None` where a pixel has fewer than two batches, which say
-    /// nothing of it.
+    /// The estimated variance of each pixel's mean, unbiased; `None` where a pixel has fewer than two batches, which
+    /// say nothing of it.
     pub fn variances(&self) -> Option<Vec<Rgb>> {
         (self.fewest_batches() >= 2).then(|| self.pixels(|cells| self.spread(cells).variance))
     }
@@ -268,7 +271,8 @@ impl Film {
         let mut spread = Spread::default();
         for (cell, peak) in cells.iter().zip(&mut spread.peaks) {
             let batches = f64::from(cell.count / self.batch);
-            // A batch that is not full yet is not in the squares; the spread of those that are says what a sample is worth.
+            // A batch that is not full yet is not in the squares; the spread of those that are says what a sample is
+            // worth.
             let sum = cell.sum - cell.unfinished;
             // The variance of the mean of halves is a quarter of the sum of theirs.
             let degrees = (batches - 1.0) * f64::from(self.batch) * f64::from(cell.count) * (cells.len().pow(2) as f64);
@@ -354,7 +358,8 @@ mod tests {
         }
     }
 
-    /// Mean of the means of whole batches, their variance over their number, and the share of the largest in the latter.
+    /// Mean of the means of whole batches, their variance over their number, and the share of the largest in the
+    /// latter.
     fn textbook(values: &[f64], batch: usize) -> (f64, f64, f64) {
         let batches: Vec<f64> = values.chunks_exact(batch).map(|b| b.iter().sum::<f64>() / batch as f64).collect();
         let count = batches.len() as f64;

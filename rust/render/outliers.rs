@@ -10,13 +10,14 @@ pub struct Carried {
 }
 
 /// How many samples are few. A sum of which eight like terms make one half has, by these alone, a standard error of
-/// √8/16, some 18 %: the next such sample, or its absence, moves it out of the factor of 1.25 that an estimate is worth.
+/// √8/16, some 18 %: the next such sample, or its absence, moves it out of the factor of 1.25 that an estimate is
+/// worth.
 const FEW: usize = 8;
 
 /// The largest of many numbers, from the largest down.
 ///
-/// Only the largest batch of each cell is looked at. That is enough: an outlier is one of few in all of the picture, and two of
-/// them are hardly ever in the same cell.
+/// Only the largest batch of each cell is looked at. That is enough: an outlier is one of few in all of the picture,
+/// and two of them are hardly ever in the same cell.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Largest([f64; FEW]);
 

@@ -1,8 +1,8 @@
 //! Parts of a pass that are worked on elsewhere, in other processes or on other machines.
 //!
-//! What is asked for and what comes back are bytes. Samples that fill blocks of their own are asked for without telling what
-//! their cells have so far, and appended ([`FilmTile::append`]); else tiles travel as they are, and come back with more.
-//! Either way nobody can tell from the bits of a picture where its samples were taken.
+//! What is asked for and what comes back are bytes. Samples that fill blocks of their own are asked for without telling
+//! what their cells have so far, and appended ([`FilmTile::append`]); else tiles travel as they are, and come back with
+//! more. Either way nobody can tell from the bits of a picture where its samples were taken.
 
 use super::bytes::{Malformed, Reader, Writer, check};
 use super::tile::FilmTile;
@@ -30,8 +30,8 @@ enum Wanted {
 }
 
 impl Rendering {
-    /// Asks for the samples of some tiles that take them to `samples`. With `before`, these follow as many others, which need not
-    /// be there yet: blocks must be whole before, and the film must append ([`Film::appends`]).
+    /// Asks for the samples of some tiles that take them to `samples`. With `before`, these follow as many others,
+    /// which need not be there yet: blocks must be whole before, and the film must append ([`Film::appends`]).
     ///
     /// # Panics
     /// If the film has no such tiles, or does not append.
@@ -126,8 +126,8 @@ impl Request {
         Ok(Self { first, tiles, wanted: Wanted::Counts(counts) })
     }
 
-    /// Takes the samples, and gives what [`Rendering::take`] takes. A single thread is the calling one, so that many calls at
-    /// once do not wait for each other. Limits in `settings` are of no account.
+    /// Takes the samples, and gives what [`Rendering::take`] takes. A single thread is the calling one, so that many
+    /// calls at once do not wait for each other. Limits in `settings` are of no account.
     pub fn expose(
         mut self,
         scene: &Scene,

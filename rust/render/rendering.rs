@@ -21,8 +21,8 @@ pub struct HistoryRow {
 
 /// A render: its picture so far, and what it takes to go on with it, here or elsewhere, now or later.
 ///
-/// It is worked on in passes. Within one, some cells have more samples already and others have not; each has the first of its
-/// samples and nothing else, so a pass can be left at any time and gone on with, and no bit tells.
+/// It is worked on in passes. Within one, some cells have more samples already and others have not; each has the first
+/// of its samples and nothing else, so a pass can be left at any time and gone on with, and no bit tells.
 #[derive(Clone, Debug)]
 pub struct Rendering {
     /// The picture.
@@ -73,8 +73,8 @@ impl Rendering {
         }
     }
 
-    /// Samples after the pass that comes when there are `after`; no more than these to end. A pass that has been begun comes
-    /// first. `elapsed` and `rate` are as in [`Until`], for which `after` may be later than now.
+    /// Samples after the pass that comes when there are `after`; no more than these to end. A pass that has been begun
+    /// comes first. `elapsed` and `rate` are as in [`Until`], for which `after` may be later than now.
     pub fn next_aim(&self, until: &Until, after: u32, elapsed: f64, rate: f64) -> u32 {
         if after < self.aim {
             return self.aim;
@@ -141,14 +141,17 @@ impl Rendering {
         to.0
     }
 
-    /// How many bytes [`Rendering::to_bytes`] gives at most, for a film of this size and with a history of a million passes.
+    /// How many bytes [`Rendering::to_bytes`] gives at most, for a film of this size and with a history of a million
+    /// passes.
     pub fn most_bytes(width: u32, height: u32, halves: bool) -> usize {
-        // Of a cell 33 numbers of 8 bytes and 4 of 4, and as much again for what stands before them in the smallest tile.
+        // Of a cell 33 numbers of 8 bytes and 4 of 4, and as much again for what stands before them in the smallest
+        // tile.
         let cells = width as usize * height as usize * if halves { 2 } else { 1 };
         cells * 2 * (33 * 8 + 4 * 4) + 20_000_000 + 1024
     }
 
-    /// From what [`Rendering::to_bytes`] gave for a film of the same size, batches, halves, clamping and patches, whoever it comes from.
+    /// From what [`Rendering::to_bytes`] gave for a film of the same size, batches, halves, clamping and patches,
+    /// whoever it comes from.
     pub fn from_bytes(
         bytes: &[u8],
         width: u32,

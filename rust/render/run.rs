@@ -28,11 +28,12 @@ impl fmt::Display for RenderError {
 
 impl std::error::Error for RenderError {}
 
-/// Renders until the first of `settings.until` is met. `progress` is called on this thread. All work is done on others, but
-/// for an integrator that [`Integrator::runs_on_caller`].
+/// Renders until the first of `settings.until` is met. `progress` is called on this thread. All work is done on others,
+/// but for an integrator that [`Integrator::runs_on_caller`].
 ///
 /// To end at an estimated error is to look at the samples that the picture is made of, and a picture that happens to be
-/// darker ends sooner. That bias is far below the error: the estimate is a sum over all pixels, in which each hardly counts.
+/// darker ends sooner. That bias is far below the error: the estimate is a sum over all pixels, in which each hardly
+/// counts.
 pub fn render(
     scene: &Scene,
     camera: &dyn Camera,
@@ -46,8 +47,9 @@ pub fn render(
     Ok(rendering)
 }
 
-/// As [`render`], from where a render is. Whether it ended: else its `progress` wants it to be left for now. After that, and
-/// after an error, it can be gone on with. What limits there are is asked after each pass; one that was begun is done first.
+/// As [`render`], from where a render is. Whether it ended: else its `progress` wants it to be left for now. After
+/// that, and after an error, it can be gone on with. What limits there are is asked after each pass; one that was begun
+/// is done first.
 pub fn go_on(
     rendering: &mut Rendering,
     scene: &Scene,

@@ -23,8 +23,9 @@ impl Until {
     /// Samples of the next pass, of which there have been `done` in `elapsed` seconds, the last ones at `rate` seconds
     /// each; 0 to end. `batch` of them belong together.
     ///
-    /// Passes double (1, 1, 2, 4, 8) so that there is soon something to see, then keep to 16, or to a batch if that is more.
-    /// Their sizes do not depend on time unless that is limited, so that an error ends a render at the same picture anywhere.
+    /// Passes double (1, 1, 2, 4, 8) so that there is soon something to see, then keep to 16, or to a batch if that is
+    /// more. Their sizes do not depend on time unless that is limited, so that an error ends a render at the same
+    /// picture anywhere.
     pub(super) fn next_pass(
         &self,
         done: u32,

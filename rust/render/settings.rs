@@ -40,8 +40,9 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// An empty film for the pictures of a camera, in patches as the integrator has them ([`Integrator::patch`](crate::integrators::Integrator::patch)), and in tiles for so many
-    /// threads: of 16 pixels a side, or less where that would leave threads without work.
+    /// An empty film for the pictures of a camera, in patches as the integrator has them
+    /// ([`Integrator::patch`](crate::integrators::Integrator::patch)), and in tiles for so many threads: of 16 pixels a
+    /// side, or less where that would leave threads without work.
     pub fn film(&self, camera: &dyn Camera, threads: usize, patch: u32) -> Film {
         let (width, height) = (camera.width(), camera.height());
         let tiles = |side: u32| width.div_ceil(side) as usize * height.div_ceil(side) as usize;

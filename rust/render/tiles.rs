@@ -81,7 +81,8 @@ impl Stop {
 struct Bench<'a> {
     worker: Box<dyn Worker + 'a>,
     samples: Vec<CameraSample>,
-    /// What each sample counts by the filter and the camera, those too that the camera sees nothing with, which nobody is asked for.
+    /// What each sample counts by the filter and the camera, those too that the camera sees nothing with, which nobody
+    /// is asked for.
     weights: Vec<f64>,
     radiance: Vec<Rgb>,
     /// How many samples work together, group by group; empty where each is on its own.
@@ -120,8 +121,8 @@ impl<'a> Exposure<'a> {
         Self { scene, camera, integrator, sampler, filter, seed, moves, uses_lens, patch, idle: Mutex::default() }
     }
 
-    /// Adds samples until the goal is reached, and says whether it was: it returns soon when it is asked to stop. Even then each
-    /// cell has the first of its samples and nothing else, and can be taken further.
+    /// Adds samples until the goal is reached, and says whether it was: it returns soon when it is asked to stop. Even
+    /// then each cell has the first of its samples and nothing else, and can be taken further.
     pub fn expose(&self, tiles: &mut [FilmTile], goal: Goal, stop: &Stop) -> bool {
         let reached = |(number, tile): (usize, &mut FilmTile)| {
             !stop.is_raised() && {
@@ -135,8 +136,8 @@ impl<'a> Exposure<'a> {
         tiles.par_iter_mut().enumerate().with_max_len(1).map(reached).reduce(|| true, |a, b| a && b)
     }
 
-    /// As [`Exposure::expose`], with the integrator on this thread alone. After each batch, which is large for an integrator that
-    /// wants to be here, `poll` is called, which may ask to stop.
+    /// As [`Exposure::expose`], with the integrator on this thread alone. After each batch, which is large for an
+    /// integrator that wants to be here, `poll` is called, which may ask to stop.
     pub fn expose_here(&self, tiles: &mut [FilmTile], goal: Goal, stop: &Stop, mut poll: impl FnMut()) -> bool {
         let most = if self.integrator.runs_on_caller() { LARGE_BATCH } else { BATCH };
         let mut bench = self.take_bench();
@@ -215,8 +216,8 @@ impl<'a> Exposure<'a> {
         Footprint { width: spread.width, spread: spread.angle }
     }
 
-    /// A sample of a pixel, placed by the filter, and what it counts. Where anything moves, it is uniform over the shutter's time too, and
-    /// over the lens if there is one.
+    /// A sample of a pixel, placed by the filter, and what it counts. Where anything moves, it is uniform over the
+    /// shutter's time too, and over the lens if there is one.
     fn camera_sample(&self, (x, y): (u32, u32), number: u32) -> (CameraSample, f64) {
         let mut sampler = self.sampler.sampler(self.seed, y * self.camera.width() + x, number);
         let ([right, down], counts) = self.filter.sample(sampler.two(0));
@@ -260,8 +261,8 @@ impl Bench<'_> {
         }
     }
 
-    /// Adds the radiance of the samples gathered to the cells that they are of, and clears them away. Whether it did: what a
-    /// cancelled integrator says is not heard.
+    /// Adds the radiance of the samples gathered to the cells that they are of, and clears them away. Whether it did:
+    /// what a cancelled integrator says is not heard.
     fn develop(&mut self, tiles: &mut [FilmTile], cancel: &Cancel) -> bool {
         if self.weights.is_empty() {
             return true;

@@ -12,8 +12,9 @@ impl BatchSize {
     /// them tells little of a pixel's error.
     const LEAST_BATCHES: u32 = 8;
 
-    /// Samples from which on 1.96 standard errors of a pixel, either way, should hold the truth in about 93 of 100 cases,
-    /// and batches that it takes. Eight give 91 even of even noise (Student's t), and that of dim pixels is uneven.
+    /// Samples from which on 1.96 standard errors of a pixel, either way, should hold the truth in about 93 of 100
+    /// cases, and batches that it takes. Eight give 91 even of even noise (Student's t), and that of dim pixels is
+    /// uneven.
     const MANY: [u32; 2] = [256, 64];
 
     /// A batch of so many samples: 1, 2, 4, ... 64; `None` for another number.
@@ -21,11 +22,11 @@ impl BatchSize {
         (samples.is_power_of_two() && samples.ilog2() <= Self::MOST_BITS).then(|| Self(samples.ilog2() as u8))
     }
 
-    /// The largest batch of which so many samples make eight or more, and 64 where they are many; the default where their number is not
-    /// known.
+    /// The largest batch of which so many samples make eight or more, and 64 where they are many; the default where
+    /// their number is not known.
     ///
-    /// The larger, the smaller the error of as many samples, as these are placed with regard to more others. Samples that
-    /// are no multiple of it end in part of a batch, which is unbiased too, but not worth as much.
+    /// The larger, the smaller the error of as many samples, as these are placed with regard to more others. Samples
+    /// that are no multiple of it end in part of a batch, which is unbiased too, but not worth as much.
     pub fn for_budget(samples: Option<u32>) -> Self {
         samples.map_or(Self::default(), |samples| {
             let [many, batches] = Self::MANY;
@@ -54,7 +55,8 @@ impl BatchSize {
     }
 }
 
-/// 1 sample: where it is not known how many there will be, there may be few, and it takes two batches to tell their error.
+/// 1 sample: where it is not known how many there will be, there may be few, and it takes two batches to tell their
+/// error.
 impl Default for BatchSize {
     fn default() -> Self {
         Self(0)
@@ -64,13 +66,13 @@ impl Default for BatchSize {
 /// Which point set the numbers come from.
 ///
 /// Every number of every sample is uniform by itself, and those of different dimensions are independent, whatever the
-/// kind: the mean of a picture over all seeds is the same. Kinds differ in how the samples of a batch lie to each other.
-/// A dimension takes its numbers from a set of two or three dimensions, and sets are put together at random ("padding"):
-/// Sobol's own points of many dimensions have worse pairs, and lose more by that than they win.
+/// kind: the mean of a picture over all seeds is the same. Kinds differ in how the samples of a batch lie to each
+/// other. A dimension takes its numbers from a set of two or three dimensions, and sets are put together at random
+/// ("padding"): Sobol's own points of many dimensions have worse pairs, and lose more by that than they win.
 ///
-/// `benches/samplers.py` compares them. Lattices leave the least error in most batches; of 4 points, those of rank 1 all lie on a
-/// diagonal, and Sobol's nets are better. Blue noise over the picture is no kind: it changes how errors lie beside each other,
-/// and no pixel's error.
+/// `benches/samplers.py` compares them. Lattices leave the least error in most batches; of 4 points, those of rank 1
+/// all lie on a diagonal, and Sobol's nets are better. Blue noise over the picture is no kind: it changes how errors
+/// lie beside each other, and no pixel's error.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SamplerKind {
     /// Independent random numbers.

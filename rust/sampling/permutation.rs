@@ -42,8 +42,8 @@ static FIELDS: [Field; Field::POLYNOMIALS.len()] = Field::ALL;
 ///
 /// It is i ↦ a·i + b in the field of that many elements, a ≠ 0, which takes any two elements to any two places equally
 /// often. No more is asked for: the variance of a mean depends on its samples two at a time, so it is as if all
-/// permutations were as likely. Owen's scrambling of the index (Burley, "Practical Hash-Based Owen Scrambling", 2020) keeps
-/// neighbours neighbours in all dimensions, which makes errors larger.
+/// permutations were as likely. Owen's scrambling of the index (Burley, "Practical Hash-Based Owen Scrambling", 2020)
+/// keeps neighbours neighbours in all dimensions, which makes errors larger.
 #[inline]
 pub(super) fn permute(size: BatchSize, index: u32, random: u64) -> u32 {
     let field = &FIELDS[size.bits() as usize];

@@ -3,7 +3,8 @@
 use super::stream::Stream;
 use super::{SamplerKind, halton, lattice, philox4x32, sobol, stratified};
 
-/// How many dimensions stand before those of the first bounce: film position, lens, and two to spare (time, wavelength).
+/// How many dimensions stand before those of the first bounce: film position, lens, and two to spare
+/// (time, wavelength).
 pub const CAMERA_DIMENSIONS: u32 = 4;
 
 /// The numbers of one sample of one pixel. Each is named by its dimension, so none depends on which were asked for
@@ -11,10 +12,12 @@ pub const CAMERA_DIMENSIONS: u32 = 4;
 ///
 /// A dimension holds 64 random bits, to be taken either as one number of 53 bits or as a pair of 32 bits each. A choice
 /// wants the many bits: a light of a billionth of the power must still be chosen as often as its probability says. A
-/// point on a surface does not: 2⁻³² of a light's width, in each of two directions, is far below what can be seen of it.
+/// point on a surface does not: 2⁻³² of a light's width, in each of two directions, is far below what can be seen of
+/// it.
 ///
-/// A dimension is asked for one of the two in a picture, not for both. Where a choice leads to a point, as that of a light does, the
-/// choice takes an even dimension and the point the odd one that follows: kinds that can do so place the three together.
+/// A dimension is asked for one of the two in a picture, not for both. Where a choice leads to a point, as that of a
+/// light does, the choice takes an even dimension and the point the odd one that follows: kinds that can do so place
+/// the three together.
 #[derive(Clone, Debug)]
 pub struct Sampler {
     kind: SamplerKind,

@@ -3,11 +3,11 @@
 /// The 64 binary digits after the point of a number whose first digits are `digits`, least significant bit first,
 /// scrambled as `random` picks.
 ///
-/// Owen's nested scrambling ("Randomly Permuted (t,m,s)-Nets and (t,s)-Sequences", 1995) makes each number uniform, and two
-/// that agree in k digits into two that agree in k digits and no more, whose further digits are independent. So does
-/// d ↦ a·d + c modulo 2⁶⁴ with a random odd a and a random c, least significant bit first: the difference of two
-/// numbers is 2ᵏ times something odd, and a makes that 2ᵏ times anything odd, equally often. As variance depends on samples two at a
-/// time, one multiplication does the work of Owen's tree of coins, and does it exactly.
+/// Owen's nested scrambling ("Randomly Permuted (t,m,s)-Nets and (t,s)-Sequences", 1995) makes each number uniform, and
+/// two that agree in k digits into two that agree in k digits and no more, whose further digits are independent. So
+/// does d ↦ a·d + c modulo 2⁶⁴ with a random odd a and a random c, least significant bit first: the difference of two
+/// numbers is 2ᵏ times something odd, and a makes that 2ᵏ times anything odd, equally often. As variance depends on
+/// samples two at a time, one multiplication does the work of Owen's tree of coins, and does it exactly.
 #[inline]
 pub(super) fn scramble(digits: u32, random: [u64; 2]) -> u64 {
     u64::from(digits).wrapping_mul(random[0] | 1).wrapping_add(random[1]).reverse_bits()

@@ -11,8 +11,8 @@ pub(super) fn one(size: BatchSize, stream: Stream, index: u32, dimension: u32) -
     u64::from(stratum).unbounded_shl(64 - size.bits()) | stream.word_of(index, dimension, 0) >> size.bits()
 }
 
-/// Two numbers of 32 bits for a dimension: one point in each cell of a grid, and one in each row and column of the
-/// grid of 2ᵐ × 2ᵐ too (Chiu, Shirley and Wang, "Multi-Jittered Sampling", 1994), all columns of cells having their points
+/// Two numbers of 32 bits for a dimension: one point in each cell of a grid, and one in each row and column of the grid
+/// of 2ᵐ × 2ᵐ too (Chiu, Shirley and Wang, "Multi-Jittered Sampling", 1994), all columns of cells having their points
 /// in the same order, and all rows (Kensler, "Correlated Multi-Jittered Sampling", 2013).
 #[inline]
 pub(super) fn two(size: BatchSize, stream: Stream, index: u32, dimension: u32) -> [u32; 2] {
@@ -20,7 +20,8 @@ pub(super) fn two(size: BatchSize, stream: Stream, index: u32, dimension: u32) -
     let columns = size.halved();
     let rows = BatchSize(size.0 - columns.0);
     let (column, row) = (cell & (columns.samples() - 1), cell >> columns.bits());
-    // A column of cells has as many rows of the fine grid's to give as there are columns of them, and the other way round.
+    // A column of cells has as many rows of the fine grid's to give as there are columns of them, and the other way
+    // round.
     let across = column << rows.bits() | permute(rows, row, stream.word(dimension, 0));
     let down = row << columns.bits() | permute(columns, column, stream.word(dimension, 1));
     let jitter = stream.word_of(index, dimension, 3);

@@ -133,9 +133,9 @@ fn errors_fall_as_theory_has_it() {
     for (samples, kinds) in [(16u32, kinds(16)), (64, kinds(64))] {
         for kind in kinds {
             let n = f64::from(samples);
-            // The exponents of Owen's nets: n⁻³ of what is smooth, n⁻³ᐟ² across an edge; a jittered grid has n⁻² and n⁻³ᐟ²
-            // (Mitchell, "Consequences of Stratified Sampling in Graphics", 1996). A lattice whose integrand does not go on
-            // around the square, n⁻². Factors of 8 beside them hold logarithms and constants.
+            // The exponents of Owen's nets: n⁻³ of what is smooth, n⁻³ᐟ² across an edge; a jittered grid has n⁻² and
+            // n⁻³ᐟ² (Mitchell, "Consequences of Stratified Sampling in Graphics", 1996). A lattice whose integrand does
+            // not go on around the square, n⁻². Factors of 8 beside them hold logarithms and constants.
             let (smooth_rate, edge_rate) = match kind {
                 SamplerKind::Independent => (1.0, 1.0),
                 SamplerKind::Sobol(_) => (3.0, 1.5),

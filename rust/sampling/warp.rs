@@ -51,8 +51,8 @@ pub fn uniform_sphere(u: [f64; 2]) -> DVec3 {
 pub const UNIFORM_SPHERE_PDF: f64 = 0.25 * FRAC_1_PI;
 
 /// Weights of a triangle's second and third corner, uniform in area. The square is folded along a diagonal, which
-/// crowds nothing into a corner as the map with the square root does
-/// (Heitz, "A Low-Distortion Map Between Triangle and Square", 2019). The density is 1 / area.
+/// crowds nothing into a corner as the map with the square root does (Heitz, "A Low-Distortion Map Between Triangle and
+/// Square", 2019). The density is 1 / area.
 #[inline]
 pub fn uniform_triangle(u: [f64; 2]) -> [f64; 2] {
     let [x, y] = u;

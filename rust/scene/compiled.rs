@@ -71,7 +71,8 @@ impl Scene {
         Self { geometry, materials, lights, plan, caustics: OnceLock::new(), accelerator, region, built_cost }
     }
 
-    /// What the accelerator costs over what it did when it was built, by the surface-area heuristic; 1 until it is refitted.
+    /// What the accelerator costs over what it did when it was built, by the surface-area heuristic; 1 until it is
+    /// refitted.
     pub fn growth(&self) -> f64 {
         let cost = self.accelerator.info().sah_cost;
         if cost == self.built_cost { 1.0 } else { cost / self.built_cost }
@@ -161,11 +162,12 @@ impl Scene {
         &self.plan
     }
 
-    /// From where light comes by way of mirrors and glass, kept from when it was first `found`; `None` where it does not.
+    /// From where light comes by way of mirrors and glass, kept from when it was first `found`; `None` where it does
+    /// not.
     pub(super) fn kept_caustics(&self, found: impl FnOnce(&Self) -> Option<Caustics>) -> Option<&Caustics> {
         if self.caustics.get().is_none() {
-            // Not within the lock: threads that wait for others take up work of theirs, which may come here too. Whoever makes them, they are
-            // the same.
+            // Not within the lock: threads that wait for others take up work of theirs, which may come here too.
+            // Whoever makes them, they are the same.
             let made = found(self);
             let _ = self.caustics.set(made);
         }

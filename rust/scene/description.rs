@@ -119,7 +119,8 @@ impl Group {
     /// Compiles shapes, with an accelerator made for their geometry.
     ///
     /// # Errors
-    /// If a shape is made of what cannot be, or there are 2³¹ primitives or more, flattened: arrays count them as int32.
+    /// If a shape is made of what cannot be, or there are 2³¹ primitives or more, flattened: arrays count them as
+    /// int32.
     pub fn new(
         shapes: Vec<Shape>,
         accelerator: impl FnOnce(&Geometry) -> Box<dyn Accelerator>,

@@ -1,14 +1,15 @@
-//! What a camera sees, by rasterising: a z-buffer of primitives (Catmull, "A subdivision algorithm for computer display of curved
-//! surfaces", 1974) in which every pixel's decision is that of its ray.
+//! What a camera sees, by rasterising: a z-buffer of primitives (Catmull, "A subdivision algorithm for computer display
+//! of curved surfaces", 1974) in which every pixel's decision is that of its ray.
 //!
-//! Each triangle is projected once, to a rectangle of pixels that holds all whose rays can meet it (`view.rs`). The picture is cut into
-//! tiles. In a tile, triangles come nearest first; of those pixels of their rectangles that are not certainly passed by an edge, or certainly
-//! hidden by what is met already, the ray is asked: whether it meets the triangle, and at which `t`, is decided as everywhere
-//! ([`EdgeRay`]), so that hits are those of [`Scene::intersect`](super::Scene::intersect), bit for bit.
+//! Each triangle is projected once, to a rectangle of pixels that holds all whose rays can meet it (`view.rs`). The
+//! picture is cut into tiles. In a tile, triangles come nearest first; of those pixels of their rectangles that are not
+//! certainly passed by an edge, or certainly hidden by what is met already, the ray is asked: whether it meets the
+//! triangle, and at which `t`, is decided as everywhere ([`EdgeRay`]), so that hits are those of
+//! [`Scene::intersect`](super::Scene::intersect), bit for bit.
 //!
-//! Where the triangles of a tile are so many or so large that looking at them takes longer than asking the tree would, the tree answers
-//! the tile. It answers the whole picture where there are too many triangles to look at each, or something is none, or the camera is another
-//! than a pinhole that stands still.
+//! Where the triangles of a tile are so many or so large that looking at them takes longer than asking the tree would,
+//! the tree answers the tile. It answers the whole picture where there are too many triangles to look at each, or
+//! something is none, or the camera is another than a pinhole that stands still.
 
 use super::Scene;
 use super::cameras::{Camera, Perspective};
@@ -55,8 +56,8 @@ pub struct FirstHits<'a> {
 }
 
 impl<'a> FirstHits<'a> {
-    /// Projects all triangles of a scene, on the current pool of threads. `offsets` are where in the pixels rays go, (0, 0) the upper left of one: one for all of
-    /// them, or one each.
+    /// Projects all triangles of a scene, on the current pool of threads. `offsets` are where in the pixels rays go,
+    /// (0, 0) the upper left of one: one for all of them, or one each.
     ///
     /// # Panics
     /// If there is another number of offsets.
@@ -183,8 +184,8 @@ impl Tile {
         self.hits.clear();
         self.hits.resize(count, Hit::MISS);
         self.triangles.clear();
-        // A triangle is made ready for the tile, and then its rows are looked at: each takes about as long. A ray that asks the tree takes
-        // a little longer than either.
+        // A triangle is made ready for the tile, and then its rows are looked at: each takes about as long. A ray that
+        // asks the tree takes a little longer than either.
         let most = count + count / 4;
         let mut work = if of.is_plain { 0 } else { most + 1 };
         for triangle in triangles {
@@ -323,8 +324,8 @@ impl Kernel<4> for Rasterise<'_, '_> {
 }
 
 impl Row {
-    /// The rays that do not certainly pass a triangle by, with one edge on their left and another on their right, and are not certain to meet something before
-    /// that depth.
+    /// The rays that do not certainly pass a triangle by, with one edge on their left and another on their right, and
+    /// are not certain to meet something before that depth.
     #[inline(always)]
     fn not_passed(&self, sides: &[DVec3; 3], above: f64, depth: f64) -> u32 {
         let mut left = [0u32; RAYS];
@@ -341,8 +342,8 @@ impl Row {
 
     /// Takes a hit of ray `i` if it is closer; of equal `t`, that of the lowest primitive.
     ///
-    /// This `t` and any that it is compared with may be off by [`EdgeRay::T_ERROR`] of the largest coordinate each, and the depth by a
-    /// few roundings.
+    /// This `t` and any that it is compared with may be off by [`EdgeRay::T_ERROR`] of the largest coordinate each, and
+    /// the depth by a few roundings.
     #[inline(always)]
     fn offer(&mut self, i: usize, hit: Hit, scale: f64, ray: &Ray, forward: DVec3, best: &mut Hit) {
         const ROOM: f64 = 1.0 + 1.0 / (1u64 << 40) as f64;
@@ -364,7 +365,8 @@ mod tests {
     use crate::scene::{Mesh, SceneDescription};
     use proptest::prelude::*;
 
-    /// Hits by rasterising at every level, which are those of rays, bit for bit; returns for how many pixels the tree was asked.
+    /// Hits by rasterising at every level, which are those of rays, bit for bit; returns for how many pixels the tree
+    /// was asked.
     fn agreed(scene: &Scene, camera: &dyn Camera, offsets: &[[f64; 2]]) -> usize {
         let (width, height) = (camera.width() as usize, camera.height() as usize);
         let ray = |i: usize| {

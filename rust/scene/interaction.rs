@@ -7,10 +7,11 @@ use crate::optics::{BsdfSample, Rgb};
 
 /// Where a ray has met a surface.
 ///
-/// Scattering is computed in the shading frame, whose z is on the side of the winding's normal, so that what transmits knows by the sign of
-/// a direction on which side it lies. Which side that is in truth is the geometric normal's to say: otherwise light leaks through wherever
-/// the two normals disagree (Veach, "Robust Monte Carlo Methods for Light Transport Simulation", 1997, 5.3). What is cut off so would
-/// show the facets of a coarse mesh as hard steps where light grazes them; it fades out before instead (see `fading`).
+/// Scattering is computed in the shading frame, whose z is on the side of the winding's normal, so that what transmits
+/// knows by the sign of a direction on which side it lies. Which side that is in truth is the geometric normal's to
+/// say: otherwise light leaks through wherever the two normals disagree (Veach, "Robust Monte Carlo Methods for Light
+/// Transport Simulation", 1997, 5.3). What is cut off so would show the facets of a coarse mesh as hard steps where
+/// light grazes them; it fades out before instead (see `fading`).
 #[derive(Clone, Debug)]
 pub struct Interaction<S = Scattering> {
     surface: SurfacePoint,
@@ -45,8 +46,8 @@ pub struct Scattered {
 }
 
 impl Interaction {
-    /// What a ray of unit direction meets at a hit; `width` is how wide the bundle of its neighbours is there, 0 if nobody asks, and `outside`
-    /// the index of refraction on the other side of what the surface encloses.
+    /// What a ray of unit direction meets at a hit; `width` is how wide the bundle of its neighbours is there, 0 if
+    /// nobody asks, and `outside` the index of refraction on the other side of what the surface encloses.
     #[inline]
     pub fn new(scene: &Scene, ray: &Ray, hit: &Hit, surface: SurfacePoint, width: f64, outside: f64) -> Self {
         if outside == 1.0
@@ -75,8 +76,8 @@ impl Interaction {
         here
     }
 
-    /// The share of ambient light that is reflected here ([`Material::ambient`](super::Material::ambient)); for what [`Interaction::new`] was
-    /// given.
+    /// The share of ambient light that is reflected here ([`Material::ambient`](super::Material::ambient)); for what
+    /// [`Interaction::new`] was given.
     pub fn ambient(&self, scene: &Scene, ray: &Ray, hit: &Hit, width: f64, outside: f64) -> Rgb {
         let material = scene.material_at(&self.surface);
         let mut point = ShadingPoint::new(scene.geometry(), ray, hit, &self.surface, material.needs(), width);
@@ -96,8 +97,8 @@ impl<S: Scatters> Interaction<S> {
     /// turn black though it faces the viewer, so there the normal is bent towards the viewer until it just faces him.
     pub const GRAZING: f64 = 1e-3;
 
-    /// A ray of unit direction at a point of a surface with this shading normal, and the direction that the frame's x should have if that
-    /// matters, that scatters so.
+    /// A ray of unit direction at a point of a surface with this shading normal, and the direction that the frame's x
+    /// should have if that matters, that scatters so.
     #[inline]
     pub fn with(ray: &Ray, surface: SurfacePoint, (shading, tangent): (DVec3, Option<DVec3>), scattering: S) -> Self {
         let back = -ray.direction;
@@ -162,8 +163,9 @@ impl<S: Scatters> Interaction<S> {
 
     /// What light is drawn for: the side that the ray came from, or both where light goes through.
     ///
-    /// A side is asked for where rays to it leave from. On the wall of a hollow ball that shines, nothing else tells whether light is asked
-    /// for inside of it or outside, and the density of rays that meet the wall is asked from there too.
+    /// A side is asked for where rays to it leave from. On the wall of a hollow ball that shines, nothing else tells
+    /// whether light is asked for inside of it or outside, and the density of rays that meet the wall is asked from
+    /// there too.
     #[inline]
     pub fn receiver(&self) -> Receiver {
         if self.scattering.transmits() {
@@ -236,14 +238,15 @@ impl<S: Scatters> Interaction<S> {
         })
     }
 
-    /// What light of a direction counts on its way to the horizon of either normal: 0 where it lies above the one and below the other.
+    /// What light of a direction counts on its way to the horizon of either normal: 0 where it lies above the one and
+    /// below the other.
     ///
-    /// Where the normals differ, and light comes from the ray's side, it fades by −G³ + G² + G with
-    /// G = min(1, (ng·ω) / ((ns·ω) (ng·ns))), and so reaches 0 at the geometric horizon with a slope, not a step (Chiang, Li and
-    /// Burley, "Taming the Shadow Terminator", 2019). It is 1 exactly on what is flat, where nothing is biased, and at most 1, so that energy
-    /// is never made. Reciprocity is lost where the normals differ, as it is by any shading normal. Moving the origin of shadow rays
-    /// instead (Hanika, "Hacking the Shadow Terminator", 2021) lets light through near contacts, and needs the light that the geometric
-    /// horizon cuts off.
+    /// Where the normals differ, and light comes from the ray's side, it fades by −G³ + G² + G with G = min(1, (ng·ω) /
+    /// ((ns·ω) (ng·ns))), and so reaches 0 at the geometric horizon with a slope, not a step (Chiang, Li and Burley,
+    /// "Taming the Shadow Terminator", 2019). It is 1 exactly on what is flat, where nothing is biased, and at most 1,
+    /// so that energy is never made. Reciprocity is lost where the normals differ, as it is by any shading normal.
+    /// Moving the origin of shadow rays instead (Hanika, "Hacking the Shadow Terminator", 2021) lets light through near
+    /// contacts, and needs the light that the geometric horizon cuts off.
     #[inline]
     fn fading(&self, wi: DVec3, direction: DVec3) -> f64 {
         let geometric = self.surface.normal.dot(direction);
@@ -258,8 +261,8 @@ impl<S: Scatters> Interaction<S> {
     }
 }
 
-/// What light counts near the horizon of the geometric normal, as [`Interaction`] has it: by its cosines to the geometric and to the
-/// shading normal, both positive and up to the same factor, and that between the two.
+/// What light counts near the horizon of the geometric normal, as [`Interaction`] has it: by its cosines to the
+/// geometric and to the shading normal, both positive and up to the same factor, and that between the two.
 #[inline]
 pub fn fading(geometric: f64, shading: f64, between: f64) -> f64 {
     let g = geometric / (shading * between);
@@ -267,7 +270,8 @@ pub fn fading(geometric: f64, shading: f64, between: f64) -> f64 {
     if between <= 0.0 || g >= 1.0 { 1.0 } else { ((1.0 - g) * g + 1.0) * g }
 }
 
-/// The mean curvature of a surface, positive where it bulges to the side of its normal; 0 where it is not known how it lies.
+/// The mean curvature of a surface, positive where it bulges to the side of its normal; 0 where it is not known how it
+/// lies.
 fn mean_curvature(point: &ShadingPoint) -> f64 {
     let ([u, v], [du, dv]) = (point.dp, point.dn);
     // The trace of the shape operator, by the two fundamental forms.

@@ -23,7 +23,8 @@ const MATT: u32 = 2;
 const SHARP: f64 = 4.0;
 
 impl Scene {
-    /// From where light comes by way of mirrors and glass; `None` where it does not. Photons are sent when it is first asked for.
+    /// From where light comes by way of mirrors and glass; `None` where it does not. Photons are sent when it is first
+    /// asked for.
     pub fn caustics(&self) -> Option<&Caustics> {
         self.kept_caustics(|scene| {
             let photons = photons(scene);
@@ -141,8 +142,8 @@ struct Flight {
 struct Flying {
     number: u32,
     flux: f64,
-    /// Whether its light shines into this direction only, or from one point: who scatters it into single directions is never met by a path that
-    /// finds the light.
+    /// Whether its light shines into this direction only, or from one point: who scatters it into single directions is
+    /// never met by a path that finds the light.
     is_single: bool,
     /// The last surface, and by which it came.
     target: DVec3,
@@ -246,8 +247,8 @@ impl Flying {
     }
 }
 
-/// Draws where a photon goes on to, and what it counts. Of two parts of scattering, each is drawn in a quarter of all cases at least: what glass
-/// reflects is seldom drawn otherwise, and as bright, where it falls, as what goes through.
+/// Draws where a photon goes on to, and what it counts. Of two parts of scattering, each is drawn in a quarter of all
+/// cases at least: what glass reflects is seldom drawn otherwise, and as bright, where it falls, as what goes through.
 fn branch(here: &Interaction, choice: f64, u: [f64; 2]) -> Option<(Scattered, f64)> {
     /// How often the choice between parts is halved to know how likely each is.
     const HALVINGS: u32 = 6;

@@ -89,8 +89,8 @@ pub struct Plan {
     constants: Vec<Option<Bsdf>>,
 }
 
-/// What scatters more sharply than by this roughness, but not into single directions, is glossy. Over rougher surfaces, asking each of a
-/// few lights costs as much time as it saves.
+/// What scatters more sharply than by this roughness, but not into single directions, is glossy. Over rougher surfaces,
+/// asking each of a few lights costs as much time as it saves.
 const GLOSS: f64 = 0.35;
 
 /// A line of a plan: what it is about, whether the scene has it, and what that means.
@@ -157,16 +157,17 @@ impl Plan {
         self.needs
     }
 
-    /// Whether each of few lights is asked ([`Lights::sample_one`]), and one of them gets the shadow ray, at a point that scatters light with
-    /// this roughness ([`Bsdf::roughness`]). What lights bring to the eye from a matt surface is told well enough by where they are, so that
-    /// one is chosen and asked there ([`Lights::sample`]); from a glossy one, only by asking them.
+    /// Whether each of few lights is asked ([`Lights::sample_one`]), and one of them gets the shadow ray, at a point
+    /// that scatters light with this roughness ([`Bsdf::roughness`]). What lights bring to the eye from a matt surface
+    /// is told well enough by where they are, so that one is chosen and asked there ([`Lights::sample`]); from a glossy
+    /// one, only by asking them.
     #[inline]
     pub fn asks_each(&self, roughness: impl FnOnce() -> f64) -> bool {
         self.few > 0 && (f64::MIN_POSITIVE..=GLOSS).contains(&roughness())
     }
 
-    /// How a shape scatters that is surrounded by nothing, if it does so alike everywhere; in a scene of [`Kernel::Plain`] each does, and is
-    /// diffuse.
+    /// How a shape scatters that is surrounded by nothing, if it does so alike everywhere; in a scene of
+    /// [`Kernel::Plain`] each does, and is diffuse.
     #[inline]
     pub fn constant(&self, shape: u32) -> Option<&Bsdf> {
         self.constants[shape as usize].as_ref()

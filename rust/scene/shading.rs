@@ -25,8 +25,8 @@ pub struct ShadingPoint {
     pub outside: f64,
 }
 
-/// How wide a bundle of neighbouring rays is: a cone around the ray (Akenine-Möller et al., "Texture Level of Detail Strategies for
-/// Real-Time Ray Tracing", 2019).
+/// How wide a bundle of neighbouring rays is: a cone around the ray (Akenine-Möller et al., "Texture Level of Detail
+/// Strategies for Real-Time Ray Tracing", 2019).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Footprint {
     /// At the ray's origin.

@@ -23,8 +23,8 @@ pub struct SurfacePoint {
 /// A point of a surface with all that is known of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HitPoint {
-    /// Where it is, how the surface lies there, and how that changes with its coordinates: of a triangle the weights of its second and
-    /// third corner, with which it is the shading normal that changes.
+    /// Where it is, how the surface lies there, and how that changes with its coordinates: of a triangle the weights of
+    /// its second and third corner, with which it is the shading normal that changes.
     pub point: Point,
     /// Unit shading normal, on the same side as the normal.
     pub shading_normal: DVec3,

@@ -1,12 +1,14 @@
 //! Triangles as a camera sees them: which pixels they may cover, for certain to include all that they do.
 //!
-//! In view space a point relative to the camera has the coordinates (X, Y, W) along the picture's width and height and the view, such that a
-//! ray through (x, y), each from −1 to 1 across the picture, goes along (x, y, 1).
+//! In view space a point relative to the camera has the coordinates (X, Y, W) along the picture's width and height and
+//! the view, such that a ray through (x, y), each from −1 to 1 across the picture, goes along (x, y, 1).
 //!
-//! The bound. Let u = 2⁻⁵³, |q| the distance of the farthest corner, and s the greatest of 1 and the inverse half width and half height of
-//! the picture at distance 1, the more so as its middle is not that of the view ([`super::cameras::Window::onto_film`]). A relative corner errs by u|q|, its product with an axis by 4u|q| more, and axes are at right angles
-//! to within 4u, so that no coordinate errs by more than 16us|q|; a ray's direction, three sums, a normalisation and three
-//! quotients, goes through a point off by less than 16us. 64us|q| is allowed for both, and called the slack.
+//! The bound. Let u = 2⁻⁵³, |q| the distance of the farthest corner, and s the greatest of 1 and the inverse half width
+//! and half height of the picture at distance 1, the more so as its middle is not that of the view
+//! ([`super::cameras::Window::onto_film`]). A relative corner errs by u|q|, its product with an axis by 4u|q| more, and
+//! axes are at right angles to within 4u, so that no coordinate errs by more than 16us|q|; a ray's direction, three
+//! sums, a normalisation and three quotients, goes through a point off by less than 16us. 64us|q| is allowed for both,
+//! and called the slack.
 
 use super::cameras::{Camera, Perspective};
 use crate::math::DVec3;
@@ -23,7 +25,8 @@ pub(super) struct View {
     size: [f64; 2],
     /// Least and greatest offset in a pixel, by axis.
     offsets: [[f64; 2]; 2],
-    /// What bounds all three, as a multiple of the distance: see [`Window::onto_film`](super::cameras::Window::onto_film).
+    /// What bounds all three, as a multiple of the distance: see
+    /// [`Window::onto_film`](super::cameras::Window::onto_film).
     stretch: f64,
     /// How far behind the camera something may lie and be met nevertheless, for the rounding of `t`.
     behind: f64,
@@ -66,8 +69,8 @@ impl Pixels {
 const SLACK: f64 = 1.0 / (1u64 << 47) as f64;
 
 impl View {
-    /// The view of a camera whose rays go through its pixels at these offsets; `reach` bounds how far the scene is, and `t_error` is how far, as a
-    /// part of that, `t` may be off.
+    /// The view of a camera whose rays go through its pixels at these offsets; `reach` bounds how far the scene is, and
+    /// `t_error` is how far, as a part of that, `t` may be off.
     pub fn new(camera: &Perspective, offsets: &[[f64; 2]], reach: f64, t_error: f64) -> Self {
         let position = camera.viewpoint().position;
         let ([right, up, forward], stretch) = camera.window().onto_film(camera.viewpoint());
@@ -106,7 +109,8 @@ impl View {
         Some(Seen { corners, slack, reach, depth })
     }
 
-    /// The picture from −1 to 1 at a place in pixels, along x to the right and along y upwards, as [`Perspective::ray_through`] has it.
+    /// The picture from −1 to 1 at a place in pixels, along x to the right and along y upwards, as
+    /// [`Perspective::ray_through`] has it.
     #[inline(always)]
     pub fn film(&self, x: f64, y: f64) -> [f64; 2] {
         [2.0 * x / self.size[0] - 1.0, 1.0 - 2.0 * y / self.size[1]]
@@ -121,8 +125,8 @@ impl View {
         [[left, right], [bottom, top]]
     }
 
-    /// Whether no ray through a window of the film can meet a triangle: all of it lies beyond one of the four planes through the window's
-    /// sides.
+    /// Whether no ray through a window of the film can meet a triangle: all of it lies beyond one of the four planes
+    /// through the window's sides.
     #[inline]
     pub fn is_beside(&self, seen: &Seen, window: &[[f64; 2]; 2]) -> bool {
         let behind = if seen.depth > 0.0 { 0.0 } else { self.behind };
@@ -174,9 +178,9 @@ impl Seen {
         [b.cross(c), c.cross(a), a.cross(b)]
     }
 
-    /// What such a product may be off by, for x and y whose magnitudes add up to no more than `most`. With Q the reach, in which the stretch s is, a
-    /// coordinate errs by 64uQ, a side by 4·65uQ² + 4uQ², its product with (x, y, 1) by 300uQ² times 1 + `most`, and the ray
-    /// is off by 16us in each of x and y, which moves it by 2·16us·2Q².
+    /// What such a product may be off by, for x and y whose magnitudes add up to no more than `most`. With Q the reach,
+    /// in which the stretch s is, a coordinate errs by 64uQ, a side by 4·65uQ² + 4uQ², its product with (x, y, 1) by
+    /// 300uQ² times 1 + `most`, and the ray is off by 16us in each of x and y, which moves it by 2·16us·2Q².
     #[inline(always)]
     pub fn side_error(&self, view: &View, most: f64) -> f64 {
         const ERROR: f64 = 1.0 / (1u64 << 43) as f64;

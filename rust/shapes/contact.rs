@@ -15,9 +15,10 @@ pub struct Candidate {
 
 /// How a ray meets a primitive.
 ///
-/// Of the triangles that share an edge or a corner, a ray through it meets all. To know which it crosses, it is moved by next
-/// to nothing, along the same direction (Edelsbrunner and Mücke, "Simulation of Simplicity", 1990): then it passes no edge of
-/// a triangle exactly unless it lies in the triangle's plane, and it crosses a closed surface as often in as out.
+/// Of the triangles that share an edge or a corner, a ray through it meets all. To know which it crosses, it is moved
+/// by next to nothing, along the same direction (Edelsbrunner and Mücke, "Simulation of Simplicity", 1990): then it
+/// passes no edge of a triangle exactly unless it lies in the triangle's plane, and it crosses a closed surface as
+/// often in as out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Contact {
     /// Strictly within.

@@ -10,9 +10,9 @@ use std::cmp::Ordering;
 
 /// All points between two corners, borders included: a solid, so that a line in a face, or along an edge, meets it.
 ///
-/// Its coordinates lay the six faces side by side: three columns for those at right angles to x, y and z, two rows for the lesser
-/// and the greater. In its cell a face runs along the two other axes in turn (y and z of x, z and x of y, x and y of z), the first of
-/// them reversed in the lower row, so that all are seen from outside.
+/// Its coordinates lay the six faces side by side: three columns for those at right angles to x, y and z, two rows for
+/// the lesser and the greater. In its cell a face runs along the two other axes in turn (y and z of x, z and x of y, x
+/// and y of z), the first of them reversed in the lower row, so that all are seen from outside.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cuboid {
     /// The least corner.
@@ -76,7 +76,8 @@ impl Cuboid {
 impl Cuboid {
     /// [`Solid::meets`] in f64, where no two of the faces that matter are met at nearly the same place.
     ///
-    /// A difference and a quotient err by one UNIT each, and the quotient by next to nothing more where it is subnormal.
+    /// A difference and a quotient err by one UNIT each, and the quotient by next to nothing more where it is
+    /// subnormal.
     #[inline(always)]
     fn quickly(&self, ray: &Ray) -> Option<Meets<Bounded>> {
         let (o, d) = (ray.origin, ray.direction);
@@ -139,7 +140,8 @@ impl<N: Number> Crossing<N> {
 }
 
 impl Solid for Cuboid {
-    /// The last face that the line comes in by, and the first that it goes out by (Kay and Kajiya 1986), compared as fractions.
+    /// The last face that the line comes in by, and the first that it goes out by (Kay and Kajiya 1986), compared as
+    /// fractions.
     fn meets<N: Number>(&self, line: &Line<N>) -> Option<Meets<N>> {
         let mut near: Option<Crossing<N>> = None;
         let mut far: Option<Crossing<N>> = None;

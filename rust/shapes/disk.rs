@@ -13,8 +13,8 @@ use std::f64::consts::{PI, TAU};
 
 /// The points of a plane between two distances from a centre, both included.
 ///
-/// Its coordinates are the angle about the normal, in turns, and the way from the outer rim inwards to the inner one, or to the
-/// centre.
+/// Its coordinates are the angle about the normal, in turns, and the way from the outer rim inwards to the inner one,
+/// or to the centre.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Disk {
     /// Its centre.
@@ -46,11 +46,12 @@ impl Disk {
     }
 }
 
-/// A whole disk as it is seen from near, in polar coordinates about the foot of the perpendicular from the place to its plane. Of a
-/// solid angle one has dω = dφ dc, c being the cosine to the normal: along the line of an angle φ, directions are drawn evenly. How
-/// angles are drawn is a choice that the density counts; evenly where the foot is inside, and else by the length of the chord that the
-/// line cuts, both of which differ from what is even in all directions by small factors. (The even way, of Guillén et al., "Area-Preserving
-/// Parameterizations for Spherical Ellipses", 2017, takes the inverse of an elliptic integral for every draw.)
+/// A whole disk as it is seen from near, in polar coordinates about the foot of the perpendicular from the place to its
+/// plane. Of a solid angle one has dω = dφ dc, c being the cosine to the normal: along the line of an angle φ,
+/// directions are drawn evenly. How angles are drawn is a choice that the density counts; evenly where the foot is
+/// inside, and else by the length of the chord that the line cuts, both of which differ from what is even in all
+/// directions by small factors. (The even way, of Guillén et al., "Area-Preserving Parameterizations for Spherical
+/// Ellipses", 2017, takes the inverse of an elliptic integral for every draw.)
 struct Seen {
     height: f64,
     /// From the foot to the centre, in the disk's frame: how far, and the unit vector there.
@@ -80,8 +81,9 @@ impl Seen {
         let inside = self.distance < self.radius;
         let start = if inside { 0.0 } else { (self.distance - self.radius) * (self.distance + self.radius) / end };
         let (r0, r1) = (start.hypot(height), end.hypot(height));
-        // The span is height · (end² − start²) / lengths, and the density of the angle is 1 / 2π, or outside 2 half · middle / π radius²
-        // where end² − start² is 4 half · middle: of a chord of no length, the quotient has its limit.
+        // The span is height · (end² − start²) / lengths, and the density of the angle is 1 / 2π, or outside 2 half ·
+        // middle / π radius² where end² − start² is 4 half · middle: of a chord of no length, the quotient has its
+        // limit.
         let lengths = r0 * r1 * (r0 + r1);
         let (squares, per_square) = if inside {
             (end * end, 1.0 / (TAU * end * end))
@@ -126,7 +128,8 @@ impl Seen {
 }
 
 impl Disk {
-    /// How many times as far as its radius the centre of a distant disk is, at least: there, drawing by area is as good.
+    /// How many times as far as its radius the centre of a distant disk is, at least: there, drawing by area is as
+    /// good.
     const DISTANT: f64 = 3.0;
 
     /// How it is seen from a place that is given in its frame, unless by area.

@@ -38,8 +38,8 @@ impl Ellipsoid {
         Point { position, error, normal, uv, dp: [du * a, dv * a], dn }
     }
 
-    /// What to scale each axis by, and the radius of the ball that it is then: by the product of the other two axes, so that nothing is
-    /// divided, and the product of all three.
+    /// What to scale each axis by, and the radius of the ball that it is then: by the product of the other two axes, so
+    /// that nothing is divided, and the product of all three.
     fn rounding<N: Number>(&self) -> ([N; 3], N) {
         let [x, y, z] = self.semi_axes.to_array().map(N::of);
         let by = [y.times(&z), z.times(&x), x.times(&y)];
@@ -125,7 +125,8 @@ impl Shape for Ellipsoid {
         Some(Drawn { point, pdf: UNIFORM_SPHERE_PDF / self.stretch(unit) })
     }
 
-    /// As seen from a place the sphere that it comes of fills a cone, from which a direction is drawn evenly and brought back.
+    /// As seen from a place the sphere that it comes of fills a cone, from which a direction is drawn evenly and
+    /// brought back.
     fn sample_from(&self, place: DVec3, u: [f64; 2]) -> Option<Drawn> {
         let place = (place - self.center) / self.semi_axes;
         let Drawn { point, pdf } = Sphere::UNIT.sample_from(place, u)?;
@@ -141,8 +142,8 @@ impl Shape for Ellipsoid {
 }
 
 impl Ellipsoid {
-    /// How many directions about one of the sphere's space there are to one of its own: |S⁻¹ d|⁻³ / det S of a unit vector d, which
-    /// is given as S⁻¹ d of any length.
+    /// How many directions about one of the sphere's space there are to one of its own: |S⁻¹ d|⁻³ / det S of a unit
+    /// vector d, which is given as S⁻¹ d of any length.
     fn crowding(&self, way: DVec3) -> f64 {
         let stretched = (way.normalize() * self.semi_axes).length();
         stretched.powi(3) / self.semi_axes.element_product()

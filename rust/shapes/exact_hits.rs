@@ -182,8 +182,8 @@ proptest! {
         check(&shape, &Oracle { surface: &surface, planes: vec![], caps: false }, &ray)?;
     }
 
-    /// A map that f64 carries out exactly leaves all as it was: shapes moved and lines moved, by scaling with a power of two, changing
-    /// axes, mirroring, and going from one integer to another.
+    /// A map that f64 carries out exactly leaves all as it was: shapes moved and lines moved, by scaling with a power
+    /// of two, changing axes, mirroring, and going from one integer to another.
     #[test]
     fn exact_maps_change_nothing(
         kind in turned(), capped: bool, base in grid_point(2), axis in grid_point(2), shift in grid_point(50),

@@ -4,8 +4,8 @@ use crate::math::{Affine, DVec3, Double, Number, Ray, Triple};
 
 /// A ray, and the maps that it goes through before it comes to a shape, outermost first.
 ///
-/// Nothing is rounded on the way: each type of number computes the line in the shape's space for itself, so that what is decided
-/// there is decided of the ray and the matrices as they are given.
+/// Nothing is rounded on the way: each type of number computes the line in the shape's space for itself, so that what
+/// is decided there is decided of the ray and the matrices as they are given.
 #[derive(Clone, Copy, Debug)]
 pub enum Carried<'a> {
     /// The ray itself.
@@ -16,8 +16,8 @@ pub enum Carried<'a> {
 
 /// The line `(origin + t · direction) / unit`, with a unit above 0.
 ///
-/// The inverse of a matrix is its adjugate over its determinant. With the determinant kept apart there is no division, and what
-/// is asked of a line stays a polynomial. Whoever uses it measures all lengths in units.
+/// The inverse of a matrix is its adjugate over its determinant. With the determinant kept apart there is no division,
+/// and what is asked of a line stays a polynomial. Whoever uses it measures all lengths in units.
 #[derive(Clone, Debug)]
 pub struct Line<N> {
     /// Where t is 0, in units.
@@ -65,8 +65,8 @@ impl Carried<'_> {
         }
     }
 
-    /// The point at `t` in the innermost space relative to another, in units, and the unit: with twice the digits of an f64 left after
-    /// all that cancels, where those of [`Carried::line`] are counted before.
+    /// The point at `t` in the innermost space relative to another, in units, and the unit: with twice the digits of an
+    /// f64 left after all that cancels, where those of [`Carried::line`] are counted before.
     #[inline(always)]
     pub fn at(&self, t: f64, from: DVec3) -> (Triple<Double>, Double) {
         match self {

@@ -9,10 +9,10 @@ use std::cmp::Ordering;
 
 /// Tells the meetings of a solid with a ray, as [`super::Shape::meet`] does.
 ///
-/// What is met, and in which order, is nearly always certain in f64 with a bound on its error, and each `t` is then corrected by what
-/// the surface's polynomial is there at twice the length ([`refined`]). What that leaves open is computed at twice the length
-/// throughout, and what is still open without any error. All three give the f64 nearest to the exact `t` but within 2⁻⁶⁰ of a tie,
-/// and the choice between them depends on nothing but shape and line.
+/// What is met, and in which order, is nearly always certain in f64 with a bound on its error, and each `t` is then
+/// corrected by what the surface's polynomial is there at twice the length ([`refined`]). What that leaves open is
+/// computed at twice the length throughout, and what is still open without any error. All three give the f64 nearest to
+/// the exact `t` but within 2⁻⁶⁰ of a tie, and the choice between them depends on nothing but shape and line.
 #[inline(always)]
 pub(super) fn tell(solid: &impl Solid, ray: &Carried<'_>, met: &mut dyn FnMut(Candidate) -> bool) -> bool {
     if !ray.is_line() {
@@ -47,7 +47,8 @@ fn tell_refined(
     let [Some(mut first), mut second, None, _] = meets.all else { return Err(0) };
     let touched = meets.closed && second.is_none();
     if let Some(second) = &mut second {
-        // Apart by more than their errors and their roundings, of which each error holds one: so are what they are rounded to.
+        // Apart by more than their errors and their roundings, of which each error holds one: so are what they are
+        // rounded to.
         let (gap, room) = (second.t.value - first.t.value, 4.0 * (first.t.error + second.t.error));
         if gap < -room {
             std::mem::swap(&mut first, second);
@@ -147,8 +148,8 @@ pub(super) fn roots<N: Number>(a: &N, b: &N, c: &N, discriminant: &N) -> Option<
 pub(super) fn ball<N: Number>(line: &Line<N>, radius: &N) -> Option<Meets<N>> {
     let (w, d) = (&line.origin, &line.direction);
     let a = d.dot(d);
-    // r² d² − |w × d|² = d² (r² − h²), with h the least distance of the line from the centre: what b² − a c is, without its
-    // cancellation (Haines et al., "Precision Improvements for Ray/Sphere Intersection", 2019).
+    // r² d² − |w × d|² = d² (r² − h²), with h the least distance of the line from the centre: what b² − a c is, without
+    // its cancellation (Haines et al., "Precision Improvements for Ray/Sphere Intersection", 2019).
     let moment = w.cross(d);
     let square = radius.squared();
     let discriminant = square.times(&a).minus(&moment.dot(&moment));
@@ -191,7 +192,8 @@ mod tests {
         told
     }
 
-    /// Fails unless the short way tells what the long one does, to the last bit but for ties; says whether f64 was certain.
+    /// Fails unless the short way tells what the long one does, to the last bit but for ties; says whether f64 was
+    /// certain.
     fn check(solid: &impl Solid, ray: &Carried<'_>) -> Result<bool, TestCaseError> {
         let exact = told(|met| tell_exactly(solid, ray, 0, met));
         let known = solid.meets_roughly(ray);

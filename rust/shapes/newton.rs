@@ -13,10 +13,10 @@ const SLACK: f64 = 1.0 + 1.0 / (1u64 << 40) as f64;
 
 /// The f64 next to where a line meets a surface; none where the bounds do not make that certain.
 ///
-/// Newton's step, with the polynomial f at twice the length and all else in f64. With S the slope at the root, a half the second
-/// derivative and ε the distance of the start from the root, f = ε (S + a ε) there, exactly: so the step errs by no more than f and S
-/// are wrong, each by a bound that is known, and by a ε. Once is enough but for roots next to 0, where one that is nearer is as far off
-/// as it is large.
+/// Newton's step, with the polynomial f at twice the length and all else in f64. With S the slope at the root, a half
+/// the second derivative and ε the distance of the start from the root, f = ε (S + a ε) there, exactly: so the step
+/// errs by no more than f and S are wrong, each by a bound that is known, and by a ε. Once is enough but for roots next
+/// to 0, where one that is nearer is as far off as it is large.
 #[inline(always)]
 pub(super) fn refined(solid: &impl Solid, ray: &Carried<'_>, meet: &Meet<Bounded>) -> Option<f64> {
     let (mut t, mut reach) = (meet.t.value, meet.t.error);

@@ -1,7 +1,7 @@
 //! Where a line meets a quadric between two planes, to more than 60 digits, for tests.
 //!
-//! It knows the surface as a polynomial of a point and nothing of how the shapes go about it: the coefficients along the line come
-//! from three of its values, and roots by the schoolbook's formula in integers of any length.
+//! It knows the surface as a polynomial of a point and nothing of how the shapes go about it: the coefficients along
+//! the line come from three of its values, and roots by the schoolbook's formula in integers of any length.
 
 use crate::math::{DVec3, Ray};
 use num_bigint::BigInt;
@@ -115,8 +115,8 @@ fn along(ray: &Ray, t: &Exact) -> Vector {
     [0, 1, 2].map(|i| &o[i] + &(&d[i] * t))
 }
 
-/// A surface f = 0, inside it f ≤ 0, at most quadratic; cut to where all of some linear functions are at least 0; of which
-/// `caps` are closed where they are 0.
+/// A surface f = 0, inside it f ≤ 0, at most quadratic; cut to where all of some linear functions are at least 0; of
+/// which `caps` are closed where they are 0.
 pub(crate) struct Oracle<'a> {
     pub surface: &'a dyn Fn(&Vector) -> Exact,
     pub planes: Vec<&'a dyn Fn(&Vector) -> Exact>,

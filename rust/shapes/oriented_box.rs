@@ -3,7 +3,8 @@
 use crate::math::DVec3;
 use crate::math::robust::UNIT;
 
-/// The axes, the diagonals of a cube and those of its faces, not of unit length (Kay and Kajiya, "Ray Tracing Complex Scenes", 1986).
+/// The axes, the diagonals of a cube and those of its faces, not of unit length (Kay and Kajiya, "Ray Tracing Complex
+/// Scenes", 1986).
 pub const DIRECTIONS: [DVec3; 13] = [
     DVec3::new(1.0, 0.0, 0.0),
     DVec3::new(0.0, 1.0, 0.0),

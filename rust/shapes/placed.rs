@@ -7,8 +7,9 @@ use std::sync::Arc;
 
 /// A shape under an affine map: itself a shape, in the space that the map leads to.
 ///
-/// A ray is taken back to the shape's own space, with its direction as long as it comes out, so that `t` is the same in both. Shapes
-/// that decide without error do so for the ray and the matrix as they are given ([`Carried`]); others get the ray rounded once.
+/// A ray is taken back to the shape's own space, with its direction as long as it comes out, so that `t` is the same in
+/// both. Shapes that decide without error do so for the ray and the matrix as they are given ([`Carried`]); others get
+/// the ray rounded once.
 #[derive(Clone, Debug)]
 pub struct Placed {
     shape: Arc<dyn Shape>,
@@ -46,7 +47,8 @@ impl Placed {
         Point { position, error, normal, uv: point.uv, dp: point.dp.map(|d| map.vector(d)), dn }
     }
 
-    /// How many directions about one of the shape's space there are to one of the world's: |det L⁻¹| / |L⁻¹ d|³ of a unit vector d.
+    /// How many directions about one of the shape's space there are to one of the world's: |det L⁻¹| / |L⁻¹ d|³ of a
+    /// unit vector d.
     fn crowding(&self, direction: DVec3) -> f64 {
         let own = self.to_object.vector(direction.normalize());
         self.to_object.determinant().abs() / own.length().powi(3)
@@ -58,8 +60,8 @@ impl Shape for Placed {
         Bounds::of_support(|d| self.support(d))
     }
 
-    /// That of the shape along the direction taken back, which is exact but for roundings of the few products in it: of a shape whose
-    /// own is tight, so is this.
+    /// That of the shape along the direction taken back, which is exact but for roundings of the few products in it: of
+    /// a shape whose own is tight, so is this.
     fn support(&self, d: DVec3) -> f64 {
         let own = self.to_world.transposed(d);
         let reach = self.shape.support(own);

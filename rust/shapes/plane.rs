@@ -10,8 +10,8 @@ use std::cmp::Ordering;
 
 /// The plane through a point, at right angles to a normal of any length but 0.
 ///
-/// Its coordinates are those along two unit axes at right angles to the normal, from the point on, less their whole parts: they
-/// repeat after each unit of length.
+/// Its coordinates are those along two unit axes at right angles to the normal, from the point on, less their whole
+/// parts: they repeat after each unit of length.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plane {
     /// A point on it.
@@ -84,8 +84,8 @@ impl Shape for Plane {
 
     /// The ray's own point, moved along the normal by the distance that it is off.
     ///
-    /// That distance is an inner product of four rounded differences, wrong by 6 UNIT of their sizes; as much again is the frame's
-    /// normal.
+    /// That distance is an inner product of four rounded differences, wrong by 6 UNIT of their sizes; as much again is
+    /// the frame's normal.
     fn point(&self, ray: &Ray, t: f64, uv: [f64; 2]) -> Point {
         let Frame { tangent, bitangent, normal } = self.frame();
         let away = Carried::Ray(ray).line().from(self.point).at(t);

@@ -104,22 +104,24 @@ pub trait Shape: Debug + Send + Sync {
     /// The least box around it, rounded outwards.
     fn bounds(&self) -> Bounds;
 
-    /// The greatest `d · x` of its points x, or of a box around them, rounded up: what boxes in other spaces are made of.
+    /// The greatest `d · x` of its points x, or of a box around them, rounded up: what boxes in other spaces are made
+    /// of.
     fn support(&self, d: DVec3) -> f64 {
         self.bounds().support(d)
     }
 
-    /// Calls `met` with every point where the line meets the shape and `t_min ≤ t ≤ t_max`, both ends included, by increasing `t`,
-    /// until it says true; then that is said.
+    /// Calls `met` with every point where the line meets the shape and `t_min ≤ t ≤ t_max`, both ends included, by
+    /// increasing `t`, until it says true; then that is said.
     ///
-    /// The direction need not be unit, and `t` counts in its lengths: it is the f64 next to the exact one, or next but one, and it is
-    /// what is compared with the ends. Whether there is a hit is decided for the numbers as they are given. A closed shape is
-    /// crossed evenly: a line that touches it is told once, as [`super::Contact::Touching`]. A surface that the line runs along is
-    /// seen edge-on and not met. A line that is not finite, or has no direction, meets nothing.
+    /// The direction need not be unit, and `t` counts in its lengths: it is the f64 next to the exact one, or next but
+    /// one, and it is what is compared with the ends. Whether there is a hit is decided for the numbers as they are
+    /// given. A closed shape is crossed evenly: a line that touches it is told once, as [`super::Contact::Touching`]. A
+    /// surface that the line runs along is seen edge-on and not met. A line that is not finite, or has no direction,
+    /// meets nothing.
     fn meet(&self, ray: &Ray, met: &mut dyn FnMut(Candidate) -> bool) -> bool;
 
-    /// The same for a ray of another space. Shapes that can, decide for ray and maps as they are given; others take the ray
-    /// rounded to f64 in their own space.
+    /// The same for a ray of another space. Shapes that can, decide for ray and maps as they are given; others take the
+    /// ray rounded to f64 in their own space.
     fn meet_carried(&self, ray: &Carried<'_>, met: &mut dyn FnMut(Candidate) -> bool) -> bool {
         self.meet(&ray.rounded(), met)
     }
@@ -132,8 +134,8 @@ pub trait Shape: Debug + Send + Sync {
 
     /// The area of its image under a map; to about 10⁻⁹ of itself where a shape has a formula of its own.
     ///
-    /// Here: exact where the map scales evenly. Else the mean of the stretch at points drawn evenly from a grid, of which ever finer
-    /// ones are taken until the last two agree to 10⁻⁶, or the last has 1024² points.
+    /// Here: exact where the map scales evenly. Else the mean of the stretch at points drawn evenly from a grid, of
+    /// which ever finer ones are taken until the last two agree to 10⁻⁶, or the last has 1024² points.
     fn area_under(&self, map: &Affine) -> f64 {
         let area = self.area();
         if !area.is_finite() {
@@ -165,15 +167,15 @@ pub trait Shape: Debug + Send + Sync {
         None
     }
 
-    /// A point drawn by area, from two numbers in [0, 1); `pdf` is the density there, 1 / area where it is even. None of a shape
-    /// without end, or of no area.
+    /// A point drawn by area, from two numbers in [0, 1); `pdf` is the density there, 1 / area where it is even. None
+    /// of a shape without end, or of no area.
     fn sample(&self, u: [f64; 2]) -> Option<Drawn>;
 
-    /// The first point of a direction drawn by solid angle as seen from a place, and the density of that direction, which is
-    /// [`Shape::pdf_from`]'s. None where nothing is seen.
+    /// The first point of a direction drawn by solid angle as seen from a place, and the density of that direction,
+    /// which is [`Shape::pdf_from`]'s. None where nothing is seen.
     ///
-    /// Here: towards a point drawn by area. Whether that point is hidden by others does not matter, since the density is that of the
-    /// direction, and counts them all.
+    /// Here: towards a point drawn by area. Whether that point is hidden by others does not matter, since the density
+    /// is that of the direction, and counts them all.
     fn sample_from(&self, place: DVec3, u: [f64; 2]) -> Option<Drawn> {
         let way = self.sample(u)?.point.position - place;
         let ray = Ray { t_min: f64::MIN_POSITIVE, ..Ray::new(place, way) };
@@ -200,8 +202,8 @@ pub trait Shape: Debug + Send + Sync {
         self.pdf_from(place, direction)
     }
 
-    /// The density by solid angle with which [`Shape::sample_from`] draws a direction, of any length, from a place. 0 where it draws
-    /// none.
+    /// The density by solid angle with which [`Shape::sample_from`] draws a direction, of any length, from a place. 0
+    /// where it draws none.
     ///
     /// Here: the sum over all points that lie there, if [`Shape::sample`] is even.
     fn pdf_from(&self, place: DVec3, direction: DVec3) -> f64 {

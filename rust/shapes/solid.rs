@@ -28,7 +28,8 @@ pub(super) struct Meets<N> {
     pub all: [Option<Meet<N>>; 4],
     /// How many.
     pub count: usize,
-    /// Whether the first and the last are the ends of a segment within a closed convex shape; the others do not count then.
+    /// Whether the first and the last are the ends of a segment within a closed convex shape; the others do not count
+    /// then.
     pub closed: bool,
 }
 
@@ -50,8 +51,8 @@ impl<N> Meets<N> {
 
 /// A shape that can tell in any numbers where a line meets it.
 pub(super) trait Solid {
-    /// Where, or none where the numbers' errors leave open whether it is met, or by which part. Where there are many, some may be
-    /// told twice, in numbers without error.
+    /// Where, or none where the numbers' errors leave open whether it is met, or by which part. Where there are many,
+    /// some may be told twice, in numbers without error.
     fn meets<N: Number>(&self, line: &Line<N>) -> Option<Meets<N>>;
 
     /// The same with the bounds of an f64, for shapes that know a shorter way.
@@ -60,8 +61,8 @@ pub(super) trait Solid {
         self.meets(&ray.line::<Bounded>())
     }
 
-    /// What is zero on one of its surfaces: a polynomial of second degree at most of a point, which is given in units, relative to
-    /// [`Solid::reference`].
+    /// What is zero on one of its surfaces: a polynomial of second degree at most of a point, which is given in units,
+    /// relative to [`Solid::reference`].
     fn surface<N: Number>(&self, surface: usize, point: &Triple<N>, unit: &N) -> N;
 
     /// The coordinates of a point of a part, given as nearly as f64 can relative to [`Solid::reference`].

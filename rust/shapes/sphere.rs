@@ -12,8 +12,8 @@ use std::f64::consts::{PI, TAU};
 
 /// All points at one distance from a centre; closed.
 ///
-/// Its coordinates are the longitude about +z from +x on, in turns, and the latitude from the pole at −z to that at +z, in half
-/// turns.
+/// Its coordinates are the longitude about +z from +x on, in turns, and the latitude from the pole at −z to that at +z,
+/// in half turns.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sphere {
     /// Its centre.
@@ -33,7 +33,8 @@ impl Sphere {
         Point { position, error, normal, uv, dp: dn.map(|d| d * self.radius), dn }
     }
 
-    /// The point in a direction from the centre that is unit to within 4 UNIT in each coordinate; the last sum adds one UNIT of its own.
+    /// The point in a direction from the centre that is unit to within 4 UNIT in each coordinate; the last sum adds one
+    /// UNIT of its own.
     #[inline]
     fn towards(&self, direction: DVec3) -> Site {
         let position = self.center + direction * self.radius;
@@ -78,10 +79,10 @@ impl Cone {
 impl Sphere {
     /// [`Solid::meets`] by a bound of the whole formula ([`ball`]) in place of one for each step.
     ///
-    /// With u = [`UNIT`], and w the rounded way from the centre: d² errs by 3u of it, r² d² by 5u, w² by 5u, w · d by 4u |w| |d|,
-    /// and w × d by 3u of the sizes of its products, in all by 3√2 u |w| |d|, so that its square errs by 3u of it and
-    /// 8.5u |w × d| |w| |d| + 18u² w² d² more. What is allowed for here is greater by more than the roundings of the bounds, and, where
-    /// r² d² is not tiny, by more than any underflow takes.
+    /// With u = [`UNIT`], and w the rounded way from the centre: d² errs by 3u of it, r² d² by 5u, w² by 5u, w · d by
+    /// 4u |w| |d|, and w × d by 3u of the sizes of its products, in all by 3√2 u |w| |d|, so that its square errs by 3u
+    /// of it and 8.5u |w × d| |w| |d| + 18u² w² d² more. What is allowed for here is greater by more than the roundings
+    /// of the bounds, and, where r² d² is not tiny, by more than any underflow takes.
     #[inline(always)]
     fn quickly(&self, ray: &Ray) -> Option<Meets<Bounded>> {
         const LEAST: f64 = f64::from_bits((1023 - 400) << 52);
@@ -203,8 +204,9 @@ impl Shape for Sphere {
 
     /// Evenly in the cone that it fills, or in all directions from inside.
     ///
-    /// From outside the point is found from the angle at the centre, which has no difference of great numbers in it (Pharr, Jakob,
-    /// Humphreys, "Physically Based Rendering", 4th edition, 2023, section 6.2.4): a sphere may be as small or as distant as it likes.
+    /// From outside the point is found from the angle at the centre, which has no difference of great numbers in it
+    /// (Pharr, Jakob, Humphreys, "Physically Based Rendering", 4th edition, 2023, section 6.2.4): a sphere may be as
+    /// small or as distant as it likes.
     fn sight_from(&self, place: DVec3, u: [f64; 2]) -> Option<Seen> {
         let Some(cone) = self.cone(place) else {
             let direction = uniform_sphere(u);
@@ -219,8 +221,8 @@ impl Shape for Sphere {
             });
             return Some(Seen { site: point?, pdf: UNIFORM_SPHERE_PDF });
         };
-        // x = 1 − cos θ is even in [0, height), and sin² θ = x (2 − x) is the square of the cone's sine times that of the angle at which the
-        // sphere is met there.
+        // x = 1 − cos θ is even in [0, height), and sin² θ = x (2 − x) is the square of the cone's sine times that of
+        // the angle at which the sphere is met there.
         let x = u[0] * cone.height();
         let square = u[0] * cone.part * (2.0 - x);
         let facing = (1.0 - square).max(0.0).sqrt();
@@ -229,7 +231,8 @@ impl Shape for Sphere {
         let across = square.sqrt() * (1.0 - x - cone.sine * facing);
         let [sin, cos] = sin_cos_turn(u[1]);
         let direction = Frame::new(cone.axis).to_world(DVec3::new(across * cos, across * sin, cosine));
-        // Unit but for some roundings: a step of Newton's is as good as a root and a quotient, and need not wait for them.
+        // Unit but for some roundings: a step of Newton's is as good as a root and a quotient, and need not wait for
+        // them.
         let direction = direction * (1.5 - 0.5 * direction.length_squared());
         Some(Seen { site: self.towards(direction), pdf: 1.0 / (TAU * cone.height()) })
     }
@@ -251,16 +254,17 @@ impl Shape for Sphere {
 
 /// The area of the image of an ellipsoid of given semi-axes, to about 10⁻¹⁴ of itself.
 ///
-/// The image is the unit sphere's under L diag(a), and the singular values of that map's cofactors are the products of the image's
-/// semi-axes two by two.
+/// The image is the unit sphere's under L diag(a), and the singular values of that map's cofactors are the products of
+/// the image's semi-axes two by two.
 pub(super) fn ellipsoid_area_under(map: &Affine, axes: DVec3) -> f64 {
     let [x, y, z] = axes.to_array();
     let columns = [DVec3::X * (y * z), DVec3::Y * (z * x), DVec3::Z * (x * y)].map(|c| map.cofactors(c));
     ellipsoid_area(singular_values(columns))
 }
 
-/// The singular values of a matrix of three columns, by turning pairs of columns until they are at right angles (Hestenes,
-/// "Inversion of Matrices by Biorthogonalization", 1958). Small ones keep their digits as well as large ones do.
+/// The singular values of a matrix of three columns, by turning pairs of columns until they are at right angles
+/// (Hestenes, "Inversion of Matrices by Biorthogonalization", 1958). Small ones keep their digits as well as large ones
+/// do.
 fn singular_values(mut columns: [DVec3; 3]) -> [f64; 3] {
     for _ in 0..40 {
         let mut turned = false;

@@ -209,8 +209,8 @@ fn points_are_drawn_by_area_with_their_density() {
             let [x, y] = drawn.point.uv.map(|x| ((x * 8.0) as usize).min(7));
             counts[8 * x + y] += 1;
         }
-        // An even one's density is one over its area; an ellipsoid is drawn from as the unit sphere is that it comes of; a placed one as
-        // it was before, where the map back shrinks areas by as much as the map stretched them.
+        // An even one's density is one over its area; an ellipsoid is drawn from as the unit sphere is that it comes
+        // of; a placed one as it was before, where the map back shrinks areas by as much as the map stretched them.
         let (area, round) = (shapes[name % own].area(), format!("{shape:?}").contains("Ellipsoid"));
         let density = |point: &Point| {
             if round {
@@ -238,10 +238,10 @@ fn direction(z: f64, turn: f64) -> DVec3 {
     DVec3::new(out * cos, out * sin, z)
 }
 
-/// Of each cell the directions that meet the shape fill a solid angle. It is the mean of 1 / pdf over drawn directions that fall
-/// there, if and only if they fall there with the density that is told; five standard errors are allowed for, and three of the grid
-/// that measures the solid angle. Where the density has no poles, as it has where a curved surface is seen edge-on, the frequencies
-/// themselves are tested too.
+/// Of each cell the directions that meet the shape fill a solid angle. It is the mean of 1 / pdf over drawn directions
+/// that fall there, if and only if they fall there with the density that is told; five standard errors are allowed for,
+/// and three of the grid that measures the solid angle. Where the density has no poles, as it has where a curved
+/// surface is seen edge-on, the frequencies themselves are tested too.
 #[test]
 fn directions_are_drawn_with_their_density() {
     const FINE: usize = 48;
@@ -259,8 +259,8 @@ fn directions_are_drawn_with_their_density() {
             let drawn = shape.sample_from(place, Sampler::new(4, name, i).two(0)).unwrap();
             let way = drawn.point.position - place;
             let pdf = shape.pdf_from(place, way * 3.0);
-            // Rounding turns the direction by next to nothing, and by 1 / cos of that moves a point that is seen at that angle:
-            // the density, which goes with 1 / cos, changes by 1 / cos² of it.
+            // Rounding turns the direction by next to nothing, and by 1 / cos of that moves a point that is seen at
+            // that angle: the density, which goes with 1 / cos, changes by 1 / cos² of it.
             let limit = 1e-9 + 1e-15 * pdf * pdf;
             assert!((pdf / drawn.pdf - 1.0).abs() < limit, "{shape:?}: {pdf} {}", drawn.pdf);
             let d = way.normalize();
@@ -353,7 +353,8 @@ fn spheres_are_drawn_from_at_any_distance() {
             let way = drawn.point.position - place;
             assert!(drawn.pdf.is_finite() && drawn.pdf > 0.0);
             if distance > radius * 1.001 {
-                // Seen from its front, and within the cone of angle asin(r / d), whose solid angle is π r² / d² where that is small.
+                // Seen from its front, and within the cone of angle asin(r / d), whose solid angle is π r² / d² where
+                // that is small.
                 assert!(way.dot(drawn.point.normal) < 1e-12 * way.length());
                 let angle = (radius / distance).powi(2) * PI;
                 assert!((drawn.pdf * angle - 1.0).abs() < 1e-7);

@@ -31,8 +31,8 @@ macro_rules! lanes {
         #[inline(always)]
         #[allow(unused_unsafe)]
         fn $name(self, $($arg: $type),*) $(-> $ret)? {
-            // SAFETY: every 64-bit ARM processor has the instructions, and references to arrays of four numbers are valid
-            // for four numbers; no alignment is assumed.
+            // SAFETY: every 64-bit ARM processor has the instructions, and references to arrays of four numbers are
+            // valid for four numbers; no alignment is assumed.
             unsafe { $body }
         }
     )*};

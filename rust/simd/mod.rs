@@ -1,8 +1,8 @@
 //! Floor 0: one vocabulary for every width and level of the processor's vector units.
 //!
-//! A kernel is written once against [`Simd`] and compiled whole for each level ([`Dispatch`]); which one runs is decided
-//! once. All levels round alike: only [`Simd::mul_add`] and [`Simd::mul_sub`] may or may not be fused, and they serve tests
-//! whose bounds allow for both.
+//! A kernel is written once against [`Simd`] and compiled whole for each level ([`Dispatch`]); which one runs is
+//! decided once. All levels round alike: only [`Simd::mul_add`] and [`Simd::mul_sub`] may or may not be fused, and they
+//! serve tests whose bounds allow for both.
 
 #[cfg(target_arch = "aarch64")]
 mod arm;
@@ -54,9 +54,9 @@ pub trait Simd<const N: usize>: Copy + Send + Sync {
     /// Lanes where `a > b`.
     fn gt(self, a: Self::F32, b: Self::F32) -> u32;
 
-    /// Writes some lanes of `nears` and `items` to the front of `to_nears` and `to_items`, and says how many they are; what is
-    /// behind them is undefined. They are those of the first `count` in `order`, three bits each from the lowest, for which
-    /// `nears ≤ fars`.
+    /// Writes some lanes of `nears` and `items` to the front of `to_nears` and `to_items`, and says how many they are;
+    /// what is behind them is undefined. They are those of the first `count` in `order`, three bits each from the
+    /// lowest, for which `nears ≤ fars`.
     #[allow(clippy::too_many_arguments)]
     fn pick(
         self,

@@ -161,7 +161,8 @@ impl Simd<8> for Avx2 {
         to_nears: &mut [f32; 8],
         to_items: &mut [u32; 8],
     ) -> usize {
-        // SAFETY: `self` exists only where the processor has the instructions, and the references are to as many numbers.
+        // SAFETY: `self` exists only where the processor has the instructions, and the references are to as many
+        // numbers.
         unsafe {
             let lanes =
                 _mm256_srlv_epi32(_mm256_set1_epi32(order as i32), _mm256_setr_epi32(0, 3, 6, 9, 12, 15, 18, 21));
@@ -213,7 +214,8 @@ impl Simd<8> for Avx512 {
         to_nears: &mut [f32; 8],
         to_items: &mut [u32; 8],
     ) -> usize {
-        // SAFETY: `self` exists only where the processor has the instructions, and the references are to as many numbers.
+        // SAFETY: `self` exists only where the processor has the instructions, and the references are to as many
+        // numbers.
         unsafe {
             let lanes =
                 _mm256_srlv_epi32(_mm256_set1_epi32(order as i32), _mm256_setr_epi32(0, 3, 6, 9, 12, 15, 18, 21));

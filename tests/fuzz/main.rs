@@ -1,5 +1,5 @@
-//! Every fuzz target on some hundred random strings, so that it is known to work with any compiler. `fuzz/` has the same targets for
-//! libFuzzer.
+//! Every fuzz target on some hundred random strings, so that it is known to work with any compiler. `fuzz/` has the
+//! same targets for libFuzzer.
 
 mod targets;
 

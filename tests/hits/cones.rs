@@ -166,8 +166,9 @@ proptest! {
         }
     }
 
-    /// By another way: the square of the distance is least over the triangle where its point is in the cone, found by cutting the triangle
-    /// into ever smaller ones, of which those are kept that may have such a point nearer than the best.
+    /// By another way: the square of the distance is least over the triangle where its point is in the cone, found by
+    /// cutting the triangle into ever smaller ones, of which those are kept that may have such a point nearer than the
+    /// best.
     #[test]
     fn distances_are_those_of_branch_and_bound(
         corners in [point(), point(), point()], apex in point(), way in point(), angle in prop_oneof![0.5..80.0f64, Just(45.0)],

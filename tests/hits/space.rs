@@ -1,4 +1,5 @@
-//! Structures that divide space: bounded on any input, the same for any number of threads, and no primitive tested twice.
+//! Structures that divide space: bounded on any input, the same for any number of threads, and no primitive tested
+//! twice.
 
 use super::triangles::{Random, Triangles, agreed, hits, levels};
 use raywright::accel::kdtree::{Builder, Traversal};
@@ -55,7 +56,8 @@ fn a_spray_of_needles_through_one_point_stays_bounded() {
         let tree = over(&triangles, &build);
         tree.validate(&triangles).unwrap();
         let info = tree.info();
-        // In blocks, a primitive takes 40 bytes a place and there are 9 places for each and 64 more; leaves and nodes come on top.
+        // In blocks, a primitive takes 40 bytes a place and there are 9 places for each and 64 more; leaves and nodes
+        // come on top.
         let most = (9 * 3000 + 64) * 40 + 60 * info.leaves + 48 * info.nodes + 4096;
         assert!(info.bytes < most, "{name}: {info:?}");
         // None is tested twice.

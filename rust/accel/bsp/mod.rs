@@ -1,8 +1,9 @@
-//! BSP trees: space parted by planes that lie as they like (Fuchs, Kedem and Naylor, "On Visible Surface Generation by A Priori Tree
-//! Structures", 1980; for rays, Ize, Wald and Parker, "Ray Tracing with the BSP Tree", 2008).
+//! BSP trees: space parted by planes that lie as they like (Fuchs, Kedem and Naylor, "On Visible Surface Generation by
+//! A Priori Tree Structures", 1980; for rays, Ize, Wald and Parker, "Ray Tracing with the BSP Tree", 2008).
 //!
-//! Rays go from front to back as through a kD-tree. Planes and rays are kept in f64; a ray is taken to be on both sides of a plane
-//! while it is no farther from it than it may be off, and a polygon that reaches over by less stands on one side only.
+//! Rays go from front to back as through a kD-tree. Planes and rays are kept in f64; a ray is taken to be on both sides
+//! of a plane while it is no farther from it than it may be off, and a polygon that reaches over by less stands on one
+//! side only.
 
 mod build;
 mod cell;
@@ -25,8 +26,8 @@ pub const MAX_CANDIDATES: usize = 1024;
 /// How to build a BSP tree.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
-    /// So many polygons of a cell give planes that are tried, from 1 to [`MAX_CANDIDATES`]: each the one that it lies in, three through
-    /// its edges and six across axes.
+    /// So many polygons of a cell give planes that are tried, from 1 to [`MAX_CANDIDATES`]: each the one that it lies
+    /// in, three through its edges and six across axes.
     pub candidates: usize,
     /// Cost of visiting a node, for the surface-area heuristic; only its ratio to the next matters.
     pub traversal_cost: f32,
@@ -120,16 +121,16 @@ struct Bsp {
     /// The box around everything: the root's cell.
     bounds: Aabb,
     depth: usize,
-    /// By the surface-area heuristic: of every inner node one test of a plane, of every leaf its primitives, each times the chance that a
-    /// ray that meets the box around everything meets its cell.
+    /// By the surface-area heuristic: of every inner node one test of a plane, of every leaf its primitives, each times
+    /// the chance that a ray that meets the box around everything meets its cell.
     sah_cost: f64,
 }
 
 /// Builds a BSP tree over primitives.
 ///
-/// It has the same bits for any number of threads. Time is n times the number of levels, with cut pieces counted in n; there are at most 9
-/// times as many pieces as primitives, and 64 more. What is no triangle gives planes across axes only, and is cut by
-/// no others.
+/// It has the same bits for any number of threads. Time is n times the number of levels, with cut pieces counted in n;
+/// there are at most 9 times as many pieces as primitives, and 64 more. What is no triangle gives planes across axes
+/// only, and is cut by no others.
 ///
 /// # Panics
 /// If an option is out of range.
@@ -236,10 +237,12 @@ struct Walk<'a, const COUNTED: bool> {
     tree: &'a Bsp,
     origin: DVec3,
     direction: DVec3,
-    /// How far off it may be, and what stands on one side only though it reaches over, by any coordinate: and so by any height.
+    /// How far off it may be, and what stands on one side only though it reaches over, by any coordinate: and so by any
+    /// height.
     ///
-    /// The origin is rounded to f32, the inverse of the direction twice. With R the ray's reach, that moves it by less than 3 · 2⁻²⁴ R where
-    /// the scene is, of which the pad is more than twice as much. Quotients in f64 add next to nothing.
+    /// The origin is rounded to f32, the inverse of the direction twice. With R the ray's reach, that moves it by less
+    /// than 3 · 2⁻²⁴ R where the scene is, of which the pad is more than twice as much. Quotients in f64 add next to
+    /// nothing.
     room: f64,
     open: [Open; STACK],
     /// How many are open.
@@ -284,8 +287,8 @@ impl<const COUNTED: bool> Walker for Walk<'_, COUNTED> {
                 }
                 let node = &nodes[child.0 as usize];
                 let (above, ascent) = (node.plane.height(self.origin), node.plane.normal.dot(self.direction));
-                // Going up it comes from behind. What is not a number, as where it goes along the plane as far away as it may be off,
-                // is never less or more, and both sides are visited.
+                // Going up it comes from behind. What is not a number, as where it goes along the plane as far away as
+                // it may be off, is never less or more, and both sides are visited.
                 let up = ascent > 0.0;
                 let (way, speed) = (if up { -above } else { above }, ascent.abs());
                 let (from, until) = ((way - self.room) / speed, (way + self.room) / speed);

@@ -4,8 +4,9 @@ use super::plane::{Plane, Side};
 use crate::accel::walk::Input;
 use crate::math::{Aabb, DVec3};
 
-/// What does not reach over a plane by more lies on one side of it. A piece is where it should be but for less than a quarter of it: a cut
-/// in f64 of coordinates up to 2 lies on the edge that it cuts, and off the plane, by less than 2⁻⁴⁸ each, and no more than 60 are made.
+/// What does not reach over a plane by more lies on one side of it. A piece is where it should be but for less than a
+/// quarter of it: a cut in f64 of coordinates up to 2 lies on the edge that it cuts, and off the plane, by less than
+/// 2⁻⁴⁸ each, and no more than 60 are made.
 pub const TOLERANCE: f64 = 1.0 / (1u64 << 40) as f64;
 
 /// What of a primitive lies in a cell.
@@ -56,8 +57,8 @@ impl Piece {
         }
     }
 
-    /// What is behind a plane, and what in front of it; all of it on side `within` if it lies in the plane, for rays are on
-    /// both sides of what they are so near to.
+    /// What is behind a plane, and what in front of it; all of it on side `within` if it lies in the plane, for rays
+    /// are on both sides of what they are so near to.
     pub fn parted(self, plane: &Plane, within: usize) -> [Option<Self>; 2] {
         match Plane::side(self.range(plane), TOLERANCE) {
             Side::Back => [Some(self), None],

@@ -4,8 +4,8 @@ use crate::math::DVec3;
 
 /// The points `p` with `normal · p = offset`, in box units.
 ///
-/// The coordinates of the normal add up to 1 in magnitude, so that what moves no coordinate of a point by more than e moves its height by
-/// no more than e.
+/// The coordinates of the normal add up to 1 in magnitude, so that what moves no coordinate of a point by more than e
+/// moves its height by no more than e.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plane {
     pub normal: DVec3,
@@ -70,8 +70,8 @@ impl Plane {
         }
     }
 
-    /// What of a convex outline lies behind and what in front, and the points where it was cut (Sutherland and Hodgman, "Reentrant Polygon
-    /// Clipping", 1974).
+    /// What of a convex outline lies behind and what in front, and the points where it was cut (Sutherland and Hodgman,
+    /// "Reentrant Polygon Clipping", 1974).
     pub fn cut(&self, outline: &[DVec3], cuts: &mut Vec<DVec3>) -> [Vec<DVec3>; 2] {
         let [mut back, mut front] = [Vec::with_capacity(outline.len() + 1), Vec::with_capacity(outline.len() + 1)];
         let Some(&(mut from)) = outline.last() else { return [back, front] };

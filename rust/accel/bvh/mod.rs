@@ -28,14 +28,16 @@ pub(super) fn over_objects(input: &Input, options: &Options, level: Level) -> Bu
     }
 }
 
-/// A wide tree as wide as the level's registers, 8 from AVX2 on and 4 below, that keeps numbers as precisely as they are.
+/// A wide tree as wide as the level's registers, 8 from AVX2 on and 4 below, that keeps numbers as precisely as they
+/// are.
 pub fn widest(primitives: &dyn Primitives, options: &Options, level: Level) -> Box<dyn Accelerator> {
     wide(level.lanes(), primitives, options, level)
 }
 
 /// A tree of so many children a node, 4 or 8.
 ///
-/// Not generic: a tree with all its kernels is much code, and whoever made one of a type of their own would compile it again.
+/// Not generic: a tree with all its kernels is much code, and whoever made one of a type of their own would compile it
+/// again.
 ///
 /// # Panics
 /// If the level has fewer lanes, or there is no tree of that width.

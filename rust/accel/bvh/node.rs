@@ -9,8 +9,8 @@ use crate::math::{Aabb, Vec3};
 pub struct Node {
     /// The least corner of the box.
     pub min: Vec3,
-    /// Of an inner node, the first of its two children, which lie side by side; of a leaf, where its primitives start in
-    /// [`BinaryBvh::order`].
+    /// Of an inner node, the first of its two children, which lie side by side; of a leaf, where its primitives start
+    /// in [`BinaryBvh::order`].
     pub index: u32,
     /// The greatest corner of the box.
     pub max: Vec3,
@@ -92,10 +92,10 @@ impl BinaryBvh {
         }
     }
 
-    /// The same of a tree whose primitives may stand in several leaves, part by part: boxes hold their children's, children follow
-    /// their parent, every primitive that is not empty stands in some leaf, no leaf has it twice, and its leaves' boxes
-    /// together hold it. What lies between them by less than 2⁻²⁰ of the primitive's largest coordinate is not seen, nor more
-    /// than `clip` tells; see [`Builder::build`](super::build::Builder::build).
+    /// The same of a tree whose primitives may stand in several leaves, part by part: boxes hold their children's,
+    /// children follow their parent, every primitive that is not empty stands in some leaf, no leaf has it twice, and
+    /// its leaves' boxes together hold it. What lies between them by less than 2⁻²⁰ of the primitive's largest
+    /// coordinate is not seen, nor more than `clip` tells; see [`Builder::build`](super::build::Builder::build).
     pub fn validate_parts(&self, boxes: &[Aabb], clip: impl Fn(u32, &Aabb) -> Aabb) -> Result<(), String> {
         let mut parts = vec![Vec::new(); boxes.len()];
         self.check(|i, node, primitives| {
@@ -118,7 +118,8 @@ impl BinaryBvh {
         Ok(())
     }
 
-    /// Checks that children follow their parents, which hold them, and gives each leaf to another check, with its primitives.
+    /// Checks that children follow their parents, which hold them, and gives each leaf to another check, with its
+    /// primitives.
     fn check(&self, mut leaf: impl FnMut(usize, &Node, &[u32]) -> Result<(), String>) -> Result<(), String> {
         let mut parents = vec![0u32; self.nodes.len()];
         for (i, node) in self.nodes.iter().enumerate() {

@@ -5,11 +5,12 @@ use crate::math::{Aabb, Vec3};
 /// What may lie between boxes without being seen, over the largest coordinate.
 const GAP: f32 = 1.0 / (1u32 << 20) as f32;
 
-/// Whether some boxes together hold a primitive, whose own box is `whole`; `clip` gives a box around what of it lies in another.
+/// Whether some boxes together hold a primitive, whose own box is `whole`; `clip` gives a box around what of it lies in
+/// another.
 ///
-/// The primitive's box is cut along faces of the boxes until a piece holds nothing of the primitive, or lies in one of the
-/// boxes, or no face cuts it. The boxes are made larger by 2⁻²⁰ of the largest coordinate before, many times what `clip` may
-/// exceed: else a face on which the primitive ends might have something beyond it.
+/// The primitive's box is cut along faces of the boxes until a piece holds nothing of the primitive, or lies in one of
+/// the boxes, or no face cuts it. The boxes are made larger by 2⁻²⁰ of the largest coordinate before, many times what
+/// `clip` may exceed: else a face on which the primitive ends might have something beyond it.
 pub fn cover(boxes: &[Aabb], whole: &Aabb, clip: impl Fn(&Aabb) -> Aabb) -> bool {
     let gap = Vec3::splat(GAP * whole.min.abs().max(whole.max.abs()).max_element());
     let boxes: Vec<_> = boxes.iter().map(|b| Aabb { min: b.min - gap, max: b.max + gap }).collect();

@@ -12,8 +12,8 @@ use crate::math::Aabb;
 pub enum Quality {
     /// For few rays, or for geometry that changes all the time.
     FastBuild,
-    /// For most scenes: what is long and thin is looked after, and a mesh of even triangles costs no more than that takes to
-    /// be seen.
+    /// For most scenes: what is long and thin is looked after, and a mesh of even triangles costs no more than that
+    /// takes to be seen.
     #[default]
     Balanced,
     /// For many rays on one scene, which does not move: what straddles a plane may be parted by it.
@@ -44,8 +44,8 @@ impl Quality {
         let builder = Builder::Binned { bins: Some(self.bins()) };
         let cuts = match self {
             Self::FastBuild => None,
-            // A tree over pieces cannot be refitted, so a ray must meet less than half as many boxes. With more pieces it would
-            // meet fewer still, but be slower for want of cache.
+            // A tree over pieces cannot be refitted, so a ray must meet less than half as many boxes. With more pieces
+            // it would meet fewer still, but be slower for want of cache.
             Self::Balanced => Some(Cuts { options: presplit::Options { budget: 4.0, worthwhile: 0.5 }, builder }),
             Self::FastRays => Some(Cuts::and_splits(Some(self.bins()), MAX_BUDGET)),
         };
@@ -80,7 +80,8 @@ impl Cuts {
         Self { builder, ..self }
     }
 
-    /// What spatial splits need before, and they, which together add so many references at most, over the number of primitives.
+    /// What spatial splits need before, and they, which together add so many references at most, over the number of
+    /// primitives.
     pub const fn and_splits(bins: Option<usize>, budget: f32) -> Self {
         Self { options: presplit::Options { budget, worthwhile: 0.125 }, builder: Builder::Spatial { bins, budget } }
     }
@@ -109,8 +110,8 @@ impl Steps {
         Self { cuts: None, ..self }.build(boxes, |p, to| boxes[p as usize].intersection(*to))
     }
 
-    /// Makes a tree over boxes, leaving out empty ones, and tells how it was made, for people. `clip` is as [`Builder::build`]
-    /// says.
+    /// Makes a tree over boxes, leaving out empty ones, and tells how it was made, for people. `clip` is as
+    /// [`Builder::build`] says.
     ///
     /// # Panics
     /// If an option is out of range.

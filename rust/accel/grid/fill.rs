@@ -1,8 +1,10 @@
-//! Puts primitives into the cells that they touch: each cell's number is counted, the counts are added up, and everything goes to its
-//! place, a counting sort (Lagae and Dutré, "Compact, Fast and Robust Grids for Ray Tracing", 2008).
+//! Puts primitives into the cells that they touch: each cell's number is counted, the counts are added up, and
+//! everything goes to its place, a counting sort (Lagae and Dutré, "Compact, Fast and Robust Grids for Ray Tracing",
+//! 2008).
 //!
-//! What is large stands in many cells. Lest a few large things in fine cells take all memory, a grid that would need more than it may is
-//! made coarser until it does not; each time a third of the cells is left, so all tries together take little more than the first.
+//! What is large stands in many cells. Lest a few large things in fine cells take all memory, a grid that would need
+//! more than it may is made coarser until it does not; each time a third of the cells is left, so all tries together
+//! take little more than the first.
 
 use super::lattice::Lattice;
 use super::overlap::Overlap;

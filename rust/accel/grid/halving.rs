@@ -1,8 +1,9 @@
-//! Rays with a large pad, from so far away that an f32 hardly tells one cell from the next: what they may meet is found by halving the grid
-//! as long as [`SlabRay::passes`] cannot rule a part out, the nearer half first. That needs no bound but the one of the box test.
+//! Rays with a large pad, from so far away that an f32 hardly tells one cell from the next: what they may meet is found
+//! by halving the grid as long as [`SlabRay::passes`] cannot rule a part out, the nearer half first. That needs no
+//! bound but the one of the box test.
 //!
-//! Slices are parted first, then rows, then cells, so that the numbers of a part's cells are an interval, and whether there is
-//! anything in them is known at once.
+//! Slices are parted first, then rows, then cells, so that the numbers of a part's cells are an interval, and whether
+//! there is anything in them is known at once.
 
 use super::lattice::{Lattice, Occupied};
 use crate::accel::SlabRay;
@@ -26,8 +27,8 @@ impl Halving {
         self.open.push((grid, 0..lattice.count()));
     }
 
-    /// The next cell with anything in it that the ray may pass, and the grid it belongs to; `grid` says of each where it lies and where
-    /// its bits begin. Every box that is tested is counted in `nodes`.
+    /// The next cell with anything in it that the ray may pass, and the grid it belongs to; `grid` says of each where
+    /// it lies and where its bits begin. Every box that is tested is counted in `nodes`.
     pub fn next<'a>(
         &mut self,
         ray: &SlabRay,

@@ -1,29 +1,32 @@
 //! Grids: space cut into cells of one size, and walks from cell to cell.
 //!
-//! "A hit counts only inside its cell" is what textbooks ask, since a primitive that stands in many cells may be met in one that the
-//! ray comes to later. Here it need not be asked, and nothing is left to chance:
+//! "A hit counts only inside its cell" is what textbooks ask, since a primitive that stands in many cells may be met in
+//! one that the ray comes to later. Here it need not be asked, and nothing is left to chance:
 //!
-//! Along axis a, plane i of a grid lies at the real number pᵢ = low + i · width, and a walk says that the ray meets it at Tₐ(i), computed
-//! in f32 by one formula (`walk.rs`). That is monotone in i, so these numbers, as they were rounded, cut the line of t into
-//! intervals without gap, and the walk goes through all cells whose interval, the common one of their three axes, is more than
-//! nothing. Let a ray meet a primitive at t, which lies in the interval of some cell. Were all exact, the ray would be in that cell
-//! then; as it is, it is at most PAD outside along any axis. So a primitive is listed in every cell that it touches when
-//! that is widened by PAD on all sides, and therefore in this one: whatever the ray meets up to the t at which it leaves a cell is listed in
-//! the cells so far. A hit found there is a hit wherever it lies, and once the nearest known one lies before the ray leaves its
-//! cell, the walk is over. The planes at the border of a grid lie so much more than PAD beyond all that is in it that no
-//! hit lies outside of their intervals.
+//! Along axis a, plane i of a grid lies at the real number pᵢ = low + i · width, and a walk says that the ray meets it
+//! at Tₐ(i), computed in f32 by one formula (`walk.rs`). That is monotone in i, so these numbers, as they were rounded,
+//! cut the line of t into intervals without gap, and the walk goes through all cells whose interval, the common one of
+//! their three axes, is more than nothing. Let a ray meet a primitive at t, which lies in the interval of some cell.
+//! Were all exact, the ray would be in that cell then; as it is, it is at most PAD outside along any axis. So a
+//! primitive is listed in every cell that it touches when that is widened by PAD on all sides, and therefore in this
+//! one: whatever the ray meets up to the t at which it leaves a cell is listed in the cells so far. A hit found there
+//! is a hit wherever it lies, and once the nearest known one lies before the ray leaves its cell, the walk is over. The
+//! planes at the border of a grid lie so much more than PAD beyond all that is in it that no hit lies outside of their
+//! intervals.
 //!
-//! The bound. Let v = 2⁻²⁴, all be in box units, and r be the inverse of the direction along an axis, as [`SlabRay`] has it. Planes are
-//! at most P = 2 from the centre, and a little. A ray that is not far starts at most 8 radii away, O = 16, and its reach is R = 18. In
-//! units of v·|r|, what is computed for a plane's t errs by 2R for r; by 4O for the shift −o·r (o is rounded, the product, `near`
-//! and `far`, and their sum); by 2·4 for i · (width · r); by P + (P + O) for low · r and its sum with the shift; and by R for the last
-//! sum: 146, and so the ray is 146v from where a plane is thought to be. A hit's own t errs by a quarter of v times the reach, along
-//! which the ray moves less than twice as far: 9v. Of a ray that is far and was moved up, R is 6 and O is 4: 53v in all, and what moving it
-//! costs is less than its pad, of which 48v are not for that: where the pad is at most MOST_PAD = 144v, 96v are left, 149v together.
-//! PAD is 192v. Rays with a larger pad, from beyond a hundred million radii, halve the grid instead (`halving.rs`).
+//! The bound. Let v = 2⁻²⁴, all be in box units, and r be the inverse of the direction along an axis, as [`SlabRay`]
+//! has it. Planes are at most P = 2 from the centre, and a little. A ray that is not far starts at most 8 radii away,
+//! O = 16, and its reach is R = 18. In units of v·|r|, what is computed for a plane's t errs by 2R for r; by 4O for the
+//! shift −o·r (o is rounded, the product, `near` and `far`, and their sum); by 2·4 for i · (width · r); by P + (P + O)
+//! for low · r and its sum with the shift; and by R for the last sum: 146, and so the ray is 146v from where a plane is
+//! thought to be. A hit's own t errs by a quarter of v times the reach, along which the ray moves less than twice as
+//! far: 9v. Of a ray that is far and was moved up, R is 6 and O is 4: 53v in all, and what moving it costs is less than
+//! its pad, of which 48v are not for that: where the pad is at most MOST_PAD = 144v, 96v are left, 149v together. PAD
+//! is 192v. Rays with a larger pad, from beyond a hundred million radii, halve the grid instead (`halving.rs`).
 //!
-//! Sources: Fujimoto, Tanaka and Iwata, "ARTS: Accelerated Ray-Tracing System", 1986; Amanatides and Woo, "A Fast Voxel Traversal
-//! Algorithm for Ray Tracing", 1987; Cleary and Wyvill, "Analysis of an Algorithm for Fast Ray Tracing Using Uniform Space Subdivision", 1988.
+//! Sources: Fujimoto, Tanaka and Iwata, "ARTS: Accelerated Ray-Tracing System", 1986; Amanatides and Woo, "A Fast Voxel
+//! Traversal Algorithm for Ray Tracing", 1987; Cleary and Wyvill, "Analysis of an Algorithm for Fast Ray Tracing Using
+//! Uniform Space Subdivision", 1988.
 
 mod fill;
 mod halving;
@@ -42,7 +45,8 @@ use crate::shapes::triangle::EdgeRay;
 /// How far around each cell, in box units, what touches it is listed.
 const PAD: f32 = 3.0 / (1u32 << 18) as f32;
 
-/// The greatest pad of rays that go from cell to cell: that of the farthest origin from which a ray is not moved up, with room for rounding.
+/// The greatest pad of rays that go from cell to cell: that of the farthest origin from which a ray is not moved up,
+/// with room for rounding.
 const MOST_PAD: f32 = (2.0 * (EdgeRay::FAR + 1.0) * (1.0 + 1e-6)) as f32 / (1u32 << 21) as f32;
 
 /// Whether a ray may go from cell to cell.

@@ -1,9 +1,10 @@
-//! Grids in the dense cells of grids, each with a resolution of its own (Jevans and Wyvill, "Adaptive Voxel Subdivision for Ray Tracing",
-//! 1989): what a single grid cannot do where a little of the scene is fine and most of it is not.
+//! Grids in the dense cells of grids, each with a resolution of its own (Jevans and Wyvill, "Adaptive Voxel Subdivision
+//! for Ray Tracing", 1989): what a single grid cannot do where a little of the scene is fine and most of it is not.
 //!
-//! A grid in a cell lies around what of the cell's primitives is in the cell, widened by PAD, and is walked while the ray is in the cell.
-//! Where the walk says that the ray is in the cell then, it is there or at most PAD outside; a hit at that time is therefore within
-//! what the inner grid lies around, whose border is beyond that again. So what the module says of one grid holds of grids in grids.
+//! A grid in a cell lies around what of the cell's primitives is in the cell, widened by PAD, and is walked while the
+//! ray is in the cell. Where the walk says that the ray is in the cell then, it is there or at most PAD outside; a hit
+//! at that time is therefore within what the inner grid lies around, whose border is beyond that again. So what the
+//! module says of one grid holds of grids in grids.
 
 use super::fill::{Budget, Filled, expected};
 use super::halving::Halving;
@@ -73,8 +74,8 @@ const ENTRY: f64 = 12.0;
 
 /// Builds the grids; leaves are numbered grid by grid, those in a cell before what is in the next.
 ///
-/// Grids in each other are made level by level, until the least of these is reached: `depth`, a dozen references a primitive, or
-/// none that lowers the cost.
+/// Grids in each other are made level by level, until the least of these is reached: `depth`, a dozen references a
+/// primitive, or none that lowers the cost.
 pub fn build(input: &Input, options: &Options) -> (Box<dyn Structure>, Lists) {
     let primitives = present(input);
     if primitives.is_empty() {
@@ -235,8 +236,8 @@ impl Structure for Nested {
         if counted { Box::new(NestedWalk::<true>::new(self)) } else { Box::new(NestedWalk::<false>::new(self)) }
     }
 
-    /// The cost is that of a uniform grid, summed over all: of each cell a step and, if there is no grid in it, a test of each
-    /// primitive, times the chance that a line that meets the outermost grid's box comes into it.
+    /// The cost is that of a uniform grid, summed over all: of each cell a step and, if there is no grid in it, a test
+    /// of each primitive, times the chance that a line that meets the outermost grid's box comes into it.
     fn info(&self) -> Info {
         let cells = self.parts.iter().map(|part| part.lattice.count()).sum();
         Info {

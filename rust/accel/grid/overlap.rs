@@ -1,12 +1,13 @@
 //! Which cells a primitive touches.
 //!
-//! A triangle touches a box unless one of thirteen axes parts them: the box's three, the triangle's normal, and the nine cross products
-//! of edges of both (Akenine-Möller, "Fast 3D Triangle-Box Overlap Testing", 2001). Since all cells are of one size, what each axis allows
-//! is computed once a triangle, and a cell takes one product with its middle (Schwarz and Seidel, "Fast Parallel Surface and Solid
-//! Voxelization on GPUs", 2010).
+//! A triangle touches a box unless one of thirteen axes parts them: the box's three, the triangle's normal, and the
+//! nine cross products of edges of both (Akenine-Möller, "Fast 3D Triangle-Box Overlap Testing", 2001). Since all cells
+//! are of one size, what each axis allows is computed once a triangle, and a cell takes one product with its middle
+//! (Schwarz and Seidel, "Fast Parallel Surface and Solid Voxelization on GPUs", 2010).
 //!
-//! Whatever axis is taken, corners and cell projected onto it without error are parted or not. In f64 a projection errs by some 2⁻⁵⁰ of
-//! the axis' length, and the cell is widened by [`PAD`], of which a sixth is to spare: so no rounding leaves a triangle out.
+//! Whatever axis is taken, corners and cell projected onto it without error are parted or not. In f64 a projection errs
+//! by some 2⁻⁵⁰ of the axis' length, and the cell is widened by [`PAD`], of which a sixth is to spare: so no rounding
+//! leaves a triangle out.
 
 use super::PAD;
 use super::lattice::Lattice;

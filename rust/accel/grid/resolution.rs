@@ -6,8 +6,9 @@ use crate::math::{Aabb, Vec3};
 /// How many cells a grid is to have.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Resolution {
-    /// So many cells a primitive, as nearly cubes as can be: the cube-root rule (Cleary and Wyvill 1988), by which a grid in space
-    /// has ∛(density · n) cells along an axis, one over a plane √(density · n), and one along a line density · n.
+    /// So many cells a primitive, as nearly cubes as can be: the cube-root rule (Cleary and Wyvill 1988), by which a
+    /// grid in space has ∛(density · n) cells along an axis, one over a plane √(density · n), and one along a line
+    /// density · n.
     Density(f32),
     /// So many along the longest side, and cells that are as nearly cubes as can be.
     Longest(u32),
@@ -24,8 +25,8 @@ impl Resolution {
 
     /// The cells along each axis of a box in box units with `count` primitives in it.
     ///
-    /// Fewer than asked for where there would be more than can be, or where they would be thinner than eight times what is listed around
-    /// each: then everything would stand everywhere.
+    /// Fewer than asked for where there would be more than can be, or where they would be thinner than eight times what
+    /// is listed around each: then everything would stand everywhere.
     pub fn cells(self, bounds: &Aabb, count: usize) -> [u32; 3] {
         let extent = (bounds.max - bounds.min).max(Vec3::ZERO).to_array();
         let most = extent.map(|e| ((e / (8.0 * PAD)) as u32).clamp(1, Self::MOST));
@@ -45,7 +46,8 @@ impl Resolution {
     }
 }
 
-/// The side of cubes of which so many fill a box. Along an axis that is thinner than a cube there is one, and the others share them.
+/// The side of cubes of which so many fill a box. Along an axis that is thinner than a cube there is one, and the
+/// others share them.
 fn cell_width(mut extent: [f32; 3], cells: f32) -> f32 {
     extent.sort_by(f32::total_cmp);
     let [a, b, c] = extent.map(f64::from);

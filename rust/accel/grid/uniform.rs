@@ -12,14 +12,14 @@ use crate::math::{Aabb, Vec3};
 /// How to build.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
-    /// How many cells to make. Fewer are made where they would hold more than a dozen primitives for each that there is, or more
-    /// than two million.
+    /// How many cells to make. Fewer are made where they would hold more than a dozen primitives for each that there
+    /// is, or more than two million.
     pub resolution: Resolution,
 }
 
 impl Options {
-    /// Two primitives a cell. With more cells, fewer primitives are tested in each; but up to eight are tested at once, and of one that
-    /// reaches into many cells each keeps a copy, which has to come from memory.
+    /// Two primitives a cell. With more cells, fewer primitives are tested in each; but up to eight are tested at once,
+    /// and of one that reaches into many cells each keeps a copy, which has to come from memory.
     pub const DEFAULT: Self = Self { resolution: Resolution::Density(0.5) };
 }
 
@@ -82,8 +82,9 @@ impl Structure for Grid {
         if counted { Box::new(GridWalk::<true>::new(self)) } else { Box::new(GridWalk::<false>::new(self)) }
     }
 
-    /// The cost is what a random line that meets the grid's box takes if nothing ends it: by the surface-area heuristic, the chance of coming
-    /// into a cell times one step and a test of each primitive there (Cleary and Wyvill 1988 count alike).
+    /// The cost is what a random line that meets the grid's box takes if nothing ends it: by the surface-area
+    /// heuristic, the chance of coming into a cell times one step and a test of each primitive there (Cleary and Wyvill
+    /// 1988 count alike).
     fn info(&self) -> Info {
         let cells = self.lattice.map_or(0, |l| l.count());
         let share = self.lattice.map_or(0.0, |l| l.cell_area() / l.area());
@@ -129,7 +130,8 @@ impl Grid {
 
 struct GridWalk<'a, const COUNTED: bool> {
     grid: &'a Grid,
-    /// In the cell that comes next; none where the ray does not come into the grid, or is too far away to go from cell to cell.
+    /// In the cell that comes next; none where the ray does not come into the grid, or is too far away to go from cell
+    /// to cell.
     walk: Option<Walk>,
     /// Whether the walk is still in its first cell.
     is_new: bool,

@@ -1,8 +1,8 @@
-//! From cell to cell along a ray (Amanatides and Woo 1987): of the next planes across the three axes, the one that is met first is stepped
-//! through.
+//! From cell to cell along a ray (Amanatides and Woo 1987): of the next planes across the three axes, the one that is
+//! met first is stepped through.
 //!
-//! Where a plane is met is not added up step by step, which would add up rounding too, but computed from the plane's index. So it is
-//! the same number from either side, and whoever asks for it.
+//! Where a plane is met is not added up step by step, which would add up rounding too, but computed from the plane's
+//! index. So it is the same number from either side, and whoever asks for it.
 
 use super::lattice::Lattice;
 use crate::accel::SlabRay;
@@ -31,7 +31,8 @@ pub struct Walk {
 }
 
 impl Walk {
-    /// Begins where the ray comes into the lattice, or at `from` if that is later. None if it leaves, or `until` is, before.
+    /// Begins where the ray comes into the lattice, or at `from` if that is later. None if it leaves, or `until` is,
+    /// before.
     #[inline(always)]
     pub fn new(lattice: &Lattice, ray: &SlabRay, mut from: f32, mut until: f32) -> Option<Self> {
         let (mut step, mut start) = ([0.0; 3], [0.0; 3]);
@@ -132,7 +133,8 @@ mod tests {
     }
 
     proptest! {
-        /// What the module says of walks: at every t the ray is in the cell that the walk is in then, or at most PAD outside.
+        /// What the module says of walks: at every t the ray is in the cell that the walk is in then, or at most PAD
+        /// outside.
         #[test]
         fn the_ray_is_where_the_walk_is(
             origin in prop::array::uniform3(coordinate()).prop_map(DVec3::from_array),

@@ -1,7 +1,8 @@
 //! kD-trees: space parted by planes across its axes, in nodes of 8 bytes.
 //!
-//! A node covers a cell of space and knows nothing but the plane that parts it; a primitive stands in every leaf whose cell it has a
-//! part in. Cells do not overlap, so a ray comes to leaves strictly from the front, and what it meets in the first ends its search.
+//! A node covers a cell of space and knows nothing but the plane that parts it; a primitive stands in every leaf whose
+//! cell it has a part in. Cells do not overlap, so a ray comes to leaves strictly from the front, and what it meets in
+//! the first ends its search.
 
 mod build;
 mod check;
@@ -56,8 +57,9 @@ pub struct KdTree {
 
 /// Builds a kD-tree over primitives.
 ///
-/// It has the same bits for any number of threads. Time is n log n by the surface-area heuristic, where clipped parts are counted in n, and
-/// n log² n at most otherwise; there are at most 9 times as many parts as primitives, and 64 more.
+/// It has the same bits for any number of threads. Time is n log n by the surface-area heuristic, where clipped parts
+/// are counted in n, and n log² n at most otherwise; there are at most 9 times as many parts as primitives, and 64
+/// more.
 ///
 /// # Panics
 /// If an option is out of range.
@@ -101,8 +103,8 @@ impl KdTree {
         (!node.is_leaf()).then(|| (plane(), node.children() as usize))
     }
 
-    /// The surface-area heuristic's cost: of every inner node one test of a plane, of every leaf its primitives, each times the chance that
-    /// a ray that meets the root's cell meets this one's.
+    /// The surface-area heuristic's cost: of every inner node one test of a plane, of every leaf its primitives, each
+    /// times the chance that a ray that meets the root's cell meets this one's.
     fn sah_cost(&self) -> f64 {
         let root = area(&self.bounds);
         let share = |cell: &Cell| if root > 0.0 { area(&cell.aabb) / root } else { 1.0 };

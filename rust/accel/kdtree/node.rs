@@ -2,10 +2,11 @@
 
 /// A plane that parts space, or a leaf. It has no box: what it covers is said by the planes above it.
 ///
-/// The lowest two bits of `bits` are the axis, or 3 for a leaf. The rest is, of an inner node, where its two children stand, which lie side
-/// by side, the one below the plane first; of a leaf, how many primitives it has. `word` is, of an inner node, where its plane stands, as the
-/// bits of an f32; of a leaf, its number. (After Pharr, Jakob and Humphreys, "Physically Based Rendering", where one child needs no
-/// number. With both side by side they share a cache line, and either is found without a branch.)
+/// The lowest two bits of `bits` are the axis, or 3 for a leaf. The rest is, of an inner node, where its two children
+/// stand, which lie side by side, the one below the plane first; of a leaf, how many primitives it has. `word` is, of
+/// an inner node, where its plane stands, as the bits of an f32; of a leaf, its number. (After Pharr, Jakob and
+/// Humphreys, "Physically Based Rendering", where one child needs no number. With both side by side they share a cache
+/// line, and either is found without a branch.)
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(C)]
 pub struct Node {

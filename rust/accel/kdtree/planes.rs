@@ -12,7 +12,8 @@ struct Along {
     first: u32,
 }
 
-/// By axis, so that what a plane needs lies together; the fourth is never used, and makes every axis that two bits can say one.
+/// By axis, so that what a plane needs lies together; the fourth is never used, and makes every axis that two bits can
+/// say one.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub struct PlaneRay([Along; 4]);

@@ -1,10 +1,11 @@
-//! No stack: after a leaf the ray goes down again from the top (Foley and Sugerman, "KD-Tree Acceleration Structures for a GPU Raytracer",
-//! 2005), or from the lowest node that has all in it that is left (push-down; Horn, Sugerman, Houston and Hanrahan, "Interactive k-D Tree
-//! GPU Raytracing", 2007).
+//! No stack: after a leaf the ray goes down again from the top (Foley and Sugerman, "KD-Tree Acceleration Structures
+//! for a GPU Raytracer", 2005), or from the lowest node that has all in it that is left (push-down; Horn, Sugerman,
+//! Houston and Hanrahan, "Interactive k-D Tree GPU Raytracing", 2007).
 //!
-//! Where two leaves meet at a plane, it is not certain on which side of it a ray is, so that `t` alone would not say where it has been.
-//! A bit a level does, of whether the ray is done with the side that it came to first (Laine, "Restart Trail for Stackless BVH
-//! Traversal", 2010). So it comes to the same leaves as with a stack, in the same order.
+//! Where two leaves meet at a plane, it is not certain on which side of it a ray is, so that `t` alone would not say
+//! where it has been. A bit a level does, of whether the ray is done with the side that it came to first
+//! (Laine, "Restart Trail for Stackless BVH Traversal", 2010). So it comes to the same leaves as with a stack, in the
+//! same order.
 
 use super::planes::PlaneRay;
 use super::{KdTree, MAX_DEPTH};

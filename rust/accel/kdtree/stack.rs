@@ -1,5 +1,6 @@
-//! The stack: the side that the ray comes to first, the other put away with the part of the ray that is in it (Havran, "Heuristic Ray
-//! Shooting Algorithms", 2000; what was tried since, in Hapala and Havran, "Review: Kd-tree Traversal Algorithms for Ray Tracing", 2011).
+//! The stack: the side that the ray comes to first, the other put away with the part of the ray that is in it
+//! (Havran, "Heuristic Ray Shooting Algorithms", 2000; what was tried since, in Hapala and Havran, "Review: Kd-tree
+//! Traversal Algorithms for Ray Tracing", 2011).
 
 use super::planes::PlaneRay;
 use super::{KdTree, MAX_DEPTH};
@@ -67,7 +68,8 @@ impl<const COUNTED: bool> Walker for Walk<'_, COUNTED> {
                 if COUNTED {
                     self.nodes += 1;
                 }
-                // With arithmetic for the branches below, a ray takes longer: it waits for each node where it now goes ahead on a guess.
+                // With arithmetic for the branches below, a ray takes longer: it waits for each node where it now goes
+                // ahead on a guess.
                 let sides = self.planes.sides(node.axis(), node.plane());
                 at = node.children() + sides.first;
                 if sides.from > leave {

@@ -141,7 +141,8 @@ impl<const N: usize, L: Leaves<N>> Contents<N, L> {
 
     /// Offers what of a leaf is met to the query; true if that answers it.
     ///
-    /// Nothing is decided twice for a ray, nor counted twice, as far as its marks know; in f32 a block may be looked at again.
+    /// Nothing is decided twice for a ray, nor counted twice, as far as its marks know; in f32 a block may be looked at
+    /// again.
     #[inline(always)]
     pub fn meet<Q: Query, S: Simd<N>>(
         &self,
@@ -165,7 +166,8 @@ impl<const N: usize, L: Leaves<N>> Contents<N, L> {
                 let lane = left.trailing_zeros() as usize & (N - 1);
                 left &= left - 1;
                 let primitive = self.triangles.primitive(first, count, lane);
-                // Only what f32 leaves is asked about: to ask about every lane took longer than to test the block again.
+                // Only what f32 leaves is asked about: to ask about every lane took longer than to test the block
+                // again.
                 if !Q::COUNTED
                     && let Some(marks) = marks
                     && !marks.is_new(primitive)

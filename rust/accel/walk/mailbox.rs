@@ -7,12 +7,12 @@ use std::sync::Mutex;
 pub enum Mailbox {
     /// None: tests are repeated, answers are not.
     None,
-    /// A stamp a primitive, which says by which ray it was tested last (Amanatides and Woo, "A Fast Voxel Traversal Algorithm for
-    /// Ray Tracing", 1987). Nothing is decided twice.
+    /// A stamp a primitive, which says by which ray it was tested last (Amanatides and Woo, "A Fast Voxel Traversal
+    /// Algorithm for Ray Tracing", 1987). Nothing is decided twice.
     #[default]
     Stamps,
-    /// A few of the last primitives tested, found by the last digits of their numbers (Benthin, "Realtime Ray Tracing on Current CPU
-    /// Architectures", 2006). It fits into the nearest cache, and forgets.
+    /// A few of the last primitives tested, found by the last digits of their numbers (Benthin, "Realtime Ray Tracing
+    /// on Current CPU Architectures", 2006). It fits into the nearest cache, and forgets.
     Cache,
 }
 

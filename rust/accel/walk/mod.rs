@@ -1,11 +1,12 @@
 //! Structures that are walked by one ray at a time, as textbooks have them.
 //!
-//! A [`Structure`] knows boxes and gives leaves, in the order in which a ray comes to them; what stands in the leaves, triangles or anything
-//! else, is tested here, by the same decision that all accelerators share. So its file holds its idea and nothing else, and every
-//! question can be asked of it, by way of [`walked`](super::walked()).
+//! A [`Structure`] knows boxes and gives leaves, in the order in which a ray comes to them; what stands in the leaves,
+//! triangles or anything else, is tested here, by the same decision that all accelerators share. So its file holds its
+//! idea and nothing else, and every question can be asked of it, by way of [`walked`](super::walked()).
 //!
-//! Rays are walked in box units as [`SlabRay`] makes them ready: where it says at which `t` a plane is met, both ends of that are
-//! padded, and a walk that takes an interval for what it may be at most, and goes where it may be, misses nothing.
+//! Rays are walked in box units as [`SlabRay`] makes them ready: where it says at which `t` a plane is met, both ends
+//! of that are padded, and a walk that takes an interval for what it may be at most, and goes where it may be, misses
+//! nothing.
 
 mod contents;
 mod mailbox;
@@ -67,13 +68,14 @@ pub trait Structure: Send + Sync {
     /// Ready to walk, counting nodes if `counted`. Whoever counts none should have no code for it.
     fn walker(&self, counted: bool) -> Box<dyn Walker + '_>;
 
-    /// Ready to walk for rays of which nothing has to be known but whether they hit: leaves may come in any order. Nodes need not
-    /// be counted.
+    /// Ready to walk for rays of which nothing has to be known but whether they hit: leaves may come in any order.
+    /// Nodes need not be counted.
     fn any_walker(&self) -> Box<dyn Walker + '_> {
         self.walker(false)
     }
 
-    /// Ready to walk with some rays together, by the vectors of a level, if that is how it should be; counting nodes if `counted`.
+    /// Ready to walk with some rays together, by the vectors of a level, if that is how it should be; counting nodes if
+    /// `counted`.
     fn together(&self, counted: bool, level: Level) -> Option<Box<dyn Together + '_>> {
         let _ = (counted, level);
         None
@@ -97,14 +99,15 @@ pub trait Walker {
     /// Begins with a ray.
     fn start(&mut self, ray: &SlabRay);
 
-    /// The same for a ray that is asked at a time, from 0 to 1. Structures that know no motion hold whatever moves at any time.
+    /// The same for a ray that is asked at a time, from 0 to 1. Structures that know no motion hold whatever moves at
+    /// any time.
     fn start_at(&mut self, ray: &SlabRay, time: f64) {
         let _ = time;
         self.start(ray);
     }
 
-    /// The next leaf with anything in it that the ray may meet at a `t` of no more than `limit`, in box units. No leaf is given twice, and
-    /// leaves that may be met sooner come first as far as the structure can tell.
+    /// The next leaf with anything in it that the ray may meet at a `t` of no more than `limit`, in box units. No leaf
+    /// is given twice, and leaves that may be met sooner come first as far as the structure can tell.
     fn next(&mut self, limit: f32) -> Option<u32>;
 
     /// Nodes visited since the start; 0 if none are counted.

@@ -1,4 +1,5 @@
-//! Parts of primitives, as planes across an axis make them: where space is divided and not the primitives, one may lie on both sides.
+//! Parts of primitives, as planes across an axis make them: where space is divided and not the primitives, one may lie
+//! on both sides.
 
 use super::Input;
 use crate::math::Aabb;
@@ -55,10 +56,11 @@ impl Part {
         0.5 * (self.aabb.min[axis] + self.aabb.max[axis])
     }
 
-    /// Where it lies. Triangles are clipped, which is what makes splits "perfect" (Havran, "Heuristic Ray Shooting Algorithms", 2000): a
-    /// side of which the triangle misses what the box has of it does not get it.
+    /// Where it lies. Triangles are clipped, which is what makes splits "perfect" (Havran, "Heuristic Ray Shooting
+    /// Algorithms", 2000): a side of which the triangle misses what the box has of it does not get it.
     ///
-    /// Whatever point of the primitive lies in the part's box lies in the closed half on one of the sides that are named.
+    /// Whatever point of the primitive lies in the part's box lies in the closed half on one of the sides that are
+    /// named.
     pub fn halves(&self, input: &Input, plane: Plane) -> Halves {
         let (least, greatest) = (self.aabb.min[plane.axis], self.aabb.max[plane.axis]);
         if least == plane.at && greatest == plane.at {

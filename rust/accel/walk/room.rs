@@ -5,8 +5,8 @@
 pub struct Room {
     /// Levels.
     pub depth: usize,
-    /// Parts added to the primitives by parting them. A node shares what it has left among its children by how many parts these have, so
-    /// that threads need not agree.
+    /// Parts added to the primitives by parting them. A node shares what it has left among its children by how many
+    /// parts these have, so that threads need not agree.
     spare: usize,
 }
 
@@ -22,8 +22,8 @@ impl Room {
         Self { depth, spare: Self::SPARE * primitives + Self::AT_LEAST }
     }
 
-    /// How deep a tree of planes should be at most: 8 + 1.3 log₂ n, which Havran found to be enough ("Heuristic Ray Shooting Algorithms",
-    /// 2000).
+    /// How deep a tree of planes should be at most: 8 + 1.3 log₂ n, which Havran found to be enough ("Heuristic Ray
+    /// Shooting Algorithms", 2000).
     pub fn depth_for(primitives: usize) -> usize {
         (8.0 + 1.3 * (primitives.max(1) as f64).log2()) as usize
     }

@@ -1,4 +1,5 @@
-//! Rays that are walked together, leaf by leaf. Each keeps its own answer and its own limit; in a leaf each is tested by itself.
+//! Rays that are walked together, leaf by leaf. Each keeps its own answer and its own limit; in a leaf each is tested
+//! by itself.
 
 use super::contents::{Contents, LeafRay};
 use crate::accel::SlabRay;
@@ -18,12 +19,13 @@ pub trait Together {
     /// Begins with some rays, at least one.
     fn start(&mut self, rays: &[SlabRay]);
 
-    /// The next leaf with anything in it that some of the rays may meet, each at a `t` of no more than its limit, in box units; and
-    /// which rays these are, bit by bit. Rays that are answered, and those that are missing, have a limit of −∞, and are
-    /// not told. No leaf is given twice.
+    /// The next leaf with anything in it that some of the rays may meet, each at a `t` of no more than its limit, in
+    /// box units; and which rays these are, bit by bit. Rays that are answered, and those that are missing, have a
+    /// limit of −∞, and are not told. No leaf is given twice.
     fn next(&mut self, limits: &[f32; MOST_TOGETHER]) -> Option<(u32, u64)>;
 
-    /// Nodes visited since the start for one of the rays; 0 if none are counted. A test of all rays at once counts once.
+    /// Nodes visited since the start for one of the rays; 0 if none are counted. A test of all rays at once counts
+    /// once.
     fn nodes(&self, ray: usize) -> u32;
 }
 
@@ -49,8 +51,8 @@ pub struct TogetherBatch<'a, const N: usize, L> {
 impl<const N: usize, L: Leaves<N>> TogetherBatch<'_, N, L> {
     /// Answers all rays.
     ///
-    /// Where a primitive stands in several leaves, a ray may be offered it more than once, which changes no answer: marks
-    /// would have to be kept for every ray at hand.
+    /// Where a primitive stands in several leaves, a ray may be offered it more than once, which changes no answer:
+    /// marks would have to be kept for every ray at hand.
     #[inline(always)]
     pub fn answer<Q: Query, S: Simd<N>>(&self, simd: S, walk: &mut dyn Together, query: &mut Q) {
         let Self { contents, unbounded, region, rays } = *self;

@@ -141,7 +141,8 @@ fn mirrors_face_to_face_end_at_the_depth() {
 
 #[test]
 fn gloss_is_followed_and_matt_light_is_not() {
-    // A rough metal over which hangs a lamp that reaches everywhere it can see: direct light by both techniques, followed or not, is the same.
+    // A rough metal over which hangs a lamp that reaches everywhere it can see: direct light by both techniques,
+    // followed or not, is the same.
     let metal = Conductor::new(Rgb::splat(0.2), Rgb::splat(3.9), [0.15; 2]);
     let lamp = rectangle([-1.0, -1.0, 1.0], [0.0, 2.0, 0.0], [2.0, 0.0, 0.0]);
     let shapes = vec![of(floor(), metal), shape(lamp, [0.0; 3], 3.0)];
@@ -171,7 +172,8 @@ fn a_point_light_is_asked_by_all() {
 
 #[test]
 fn a_corner_occludes_half_its_surroundings() {
-    // Before an endless wall at right angles, as near as can be, half of even light is hidden; what is farther away than the radius is not.
+    // Before an endless wall at right angles, as near as can be, half of even light is hidden; what is farther away
+    // than the radius is not.
     let wall = rectangle([-900.0, 1e-3, 0.0], [1800.0, 0.0, 0.0], [0.0, 0.0, 900.0]);
     let shapes = vec![shape(floor(), [0.0; 3], 0.0), shape(wall, [0.0; 3], 0.0)];
     let scene = scene(SceneDescription { shapes, ..Default::default() });

@@ -45,7 +45,8 @@ fn shared(scene: &Scene, path: &Path, samples: &[CameraSample], group: usize, to
     all
 }
 
-/// The mean of groups' green means, its standard error, and the mean over samples of the squared deviation from the former.
+/// The mean of groups' green means, its standard error, and the mean over samples of the squared deviation from the
+/// former.
 fn told(values: &[Rgb], group: usize) -> (f64, f64, f64) {
     let means: Vec<f64> = values.chunks(group).map(|g| g.iter().map(|v| v.y).sum::<f64>() / group as f64).collect();
     let count = means.len() as f64;

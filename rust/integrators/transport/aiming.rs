@@ -6,10 +6,12 @@ use crate::math::DVec3;
 use crate::optics::Rgb;
 use crate::scene::{Aim, Interaction, Scattered, Scatters};
 
-/// A path that comes to a matt surface, where it may aim or not: whether roulette has ended it or been played, so that it is not again.
+/// A path that comes to a matt surface, where it may aim or not: whether roulette has ended it or been played, so that
+/// it is not again.
 ///
-/// One that was aimed and has come here has missed what it was aimed at, or found what is brightly lit: it goes on by what it brings, and as
-/// if it brought more by as much as more light comes here. Other paths are left to the roulette that all play.
+/// One that was aimed and has come here has missed what it was aimed at, or found what is brightly lit: it goes on by
+/// what it brings, and as if it brought more by as much as more light comes here. Other paths are left to the roulette
+/// that all play.
 #[inline]
 pub(super) fn arrive(path: &mut Alive, aim: Option<&Aim>, number: impl FnOnce() -> f64) -> Arrival {
     let denser = std::mem::replace(&mut path.aimed, 1.0);
@@ -43,8 +45,8 @@ pub(super) fn density(aim: &Aim, pdf: f64, direction: DVec3) -> f64 {
     pdf + aim.share() * (aim.pdf(direction) - pdf)
 }
 
-/// A direction drawn by a surface or by where light comes from, weighed by the density of both together (Veach and Guibas, 1995: the one-sample
-/// model), and how much denser that is than the surface's.
+/// A direction drawn by a surface or by where light comes from, weighed by the density of both together (Veach and
+/// Guibas, 1995: the one-sample model), and how much denser that is than the surface's.
 pub(super) fn draw<S: Scatters>(
     here: &Interaction<S>,
     aim: &Aim,

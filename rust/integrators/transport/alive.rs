@@ -20,7 +20,8 @@ pub(super) struct Alive {
     pub(super) bounce: u32,
     /// Whether each of few lights was asked where it was scattered last.
     pub(super) each: bool,
-    /// How much denser directions were drawn than surfaces scatter into them, since the last matt one ([`super::aiming`]).
+    /// How much denser directions were drawn than surfaces scatter into them, since the last matt one
+    /// ([`super::aiming`]).
     pub(super) aimed: f32,
 }
 
@@ -33,8 +34,8 @@ impl Alive {
         self.aimed = (self.aimed * denser as f32).min(MOST);
     }
 
-    /// What the throughput counts for in roulette: where it is small because of the index of refraction, or because the path was aimed, no
-    /// light is lost.
+    /// What the throughput counts for in roulette: where it is small because of the index of refraction, or because the
+    /// path was aimed, no light is lost.
     #[inline]
     pub(super) fn importance(&self) -> f64 {
         self.scale * f64::from(self.aimed)

@@ -19,7 +19,8 @@ pub(super) fn singles(scattering: &Scattering, wo: DVec3, mut each: impl FnMut(B
     }
 }
 
-/// A kind of scattering has two parts at most, and the choice between them has one threshold: what lies under it is how likely the first is.
+/// A kind of scattering has two parts at most, and the choice between them has one threshold: what lies under it is how
+/// likely the first is.
 fn of_one(bsdf: &Bsdf, wo: DVec3, weight: Rgb, each: &mut impl FnMut(BsdfSample)) {
     let draw = |choice: f64| bsdf.sample(wo, || choice, [0.5; 2]);
     let (first, last) = (draw(0.0), draw(1f64.next_down()));

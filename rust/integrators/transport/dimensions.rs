@@ -2,8 +2,8 @@
 
 use crate::sampling::CAMERA_DIMENSIONS;
 
-/// The dimensions of a bounce. A choice stands at an even one, before the pair that
-/// follows from it, with which samplers place it together; and what every surface asks for stands in the first four.
+/// The dimensions of a bounce. A choice stands at an even one, before the pair that follows from it, with which
+/// samplers place it together; and what every surface asks for stands in the first four.
 #[derive(Clone, Copy)]
 pub(super) struct Dimensions(u32);
 
@@ -13,7 +13,8 @@ impl Dimensions {
     /// What of a group's light is shared: one of the two that cameras leave to spare.
     pub const SHARING: u32 = 2;
 
-    /// Bounces that the branches of a split path have to themselves. Beyond, they draw the same numbers, of different meaning.
+    /// Bounces that the branches of a split path have to themselves. Beyond, they draw the same numbers, of different
+    /// meaning.
     const BRANCH: u32 = 1 << 9;
 
     /// Where the numbers of further light samples start.

@@ -52,8 +52,8 @@ pub(super) struct Baggage {
     pub footprint: Footprint,
     /// What the ray starts in.
     pub inside: Inside,
-    /// A uniform number that decides which masks the ray passes; negative until it is asked for. Given what it has decided, the rest of it is
-    /// uniform again.
+    /// A uniform number that decides which masks the ray passes; negative until it is asked for. Given what it has
+    /// decided, the rest of it is uniform again.
     pub chance: f64,
     /// Which of the branches that its sample has split into, so that each has numbers of its own.
     pub branch: u32,

@@ -19,7 +19,8 @@ use crate::scene::{Footprint, Kernel, Scene};
 use features::{General, Open, Plain, Sharing};
 use worker::TransportWorker;
 
-/// Along which of the directions that surfaces scatter into paths are followed. What is not followed is left to the light that is asked directly.
+/// Along which of the directions that surfaces scatter into paths are followed. What is not followed is left to the
+/// light that is asked directly.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Follow {
     /// All.
@@ -101,11 +102,11 @@ impl Settings {
     }
 }
 
-/// Whether paths can share in a scene: two points see each other or do not, at any time, and what is found at a point does not depend on who
-/// looks.
+/// Whether paths can share in a scene: two points see each other or do not, at any time, and what is found at a point
+/// does not depend on who looks.
 ///
-/// Masks and nested media make sight more than a yes or no; where something moves, the samples of a group see the scene at times of
-/// their own; and a filtered texture shows to each what is of its own width.
+/// Masks and nested media make sight more than a yes or no; where something moves, the samples of a group see the scene
+/// at times of their own; and a filtered texture shows to each what is of its own width.
 pub(super) fn can_share(scene: &Scene) -> bool {
     let needs = scene.plan().needs();
     scene.plan().suits(Kernel::Open) && !needs.motion && !scene.lights().is_dark()

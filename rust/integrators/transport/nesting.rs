@@ -5,8 +5,9 @@ use crate::math::{DVec3, Hit, Ray};
 use crate::scene::materials::Interior;
 use crate::scene::{Departure, Scene};
 
-/// The media that a point lies in. The one of the greatest priority is there, and the surfaces of the others, within it, are not
-/// (Schmidt and Budge, "Simple Nested Dielectrics in Ray Traced Images", 2002). Of equal priority, the greater index.
+/// The media that a point lies in. The one of the greatest priority is there, and the surfaces of the others, within
+/// it, are not (Schmidt and Budge, "Simple Nested Dielectrics in Ray Traced Images", 2002). Of equal priority, the
+/// greater index.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Inside {
     count: u32,
@@ -66,8 +67,8 @@ impl Inside {
         }
     }
 
-    /// What rays from these origins start in: each surface that encloses a medium is crossed outwards once more than inwards, on the way
-    /// out, from inside of it. Open surfaces, and a camera in a wall, may be told wrongly.
+    /// What rays from these origins start in: each surface that encloses a medium is crossed outwards once more than
+    /// inwards, on the way out, from inside of it. Open surfaces, and a camera in a wall, may be told wrongly.
     pub(super) fn at(scene: &Scene, rays: &[Ray], inside: &mut Vec<Self>) {
         inside.clear();
         let region = scene.region();
@@ -95,7 +96,8 @@ impl Inside {
         }
     }
 
-    /// Goes through what a ray hits, along it or back. Returns the medium that it enters or leaves, and whether it enters it.
+    /// Goes through what a ray hits, along it or back. Returns the medium that it enters or leaves, and whether it
+    /// enters it.
     fn pass(&mut self, scene: &Scene, ray: &Ray, hit: &Hit, back: bool) -> Option<(Interior, bool)> {
         let surface = scene.geometry().surface(ray, hit);
         let interior = scene.material_at(&surface).interior()?;
@@ -135,8 +137,8 @@ pub(super) enum Boundary {
     },
 }
 
-/// The part of a ray around a hit on whose crossings [`Boundary::new`] decides: surfaces that lie in one another, or closer than rounding tells, are
-/// one boundary. `None` if the surface hit encloses nothing.
+/// The part of a ray around a hit on whose crossings [`Boundary::new`] decides: surfaces that lie in one another, or
+/// closer than rounding tells, are one boundary. `None` if the surface hit encloses nothing.
 pub(super) fn around(scene: &Scene, ray: &Ray, hit: &Hit) -> Option<Ray> {
     let surface = scene.geometry().surface(ray, hit);
     scene.material_at(&surface).interior()?;

@@ -3,11 +3,13 @@
 use crate::optics::Rgb;
 
 /// Of all draws and what each brings, one, chosen with a probability that goes by what it brings, over that
-/// probability: the mean is that of the sum, and only the one must still be seen to arrive (Talbot, Cline and Egbert, "Importance Resampling
-/// for Global Illumination", 2005). One that brings nothing is never chosen; `None` if none brings anything. `choice` is uniform in [0, 1).
+/// probability: the mean is that of the sum, and only the one must still be seen to arrive (Talbot, Cline and Egbert,
+/// "Importance Resampling for Global Illumination", 2005). One that brings nothing is never chosen; `None` if none
+/// brings anything. `choice` is uniform in [0, 1).
 ///
-/// Each draw in turn takes the place of the one kept before (Chao, "A General Purpose Unequal Probability Sampling Plan", 1982), and what is
-/// left of the number once it has decided is uniform again. What is not finite is kept, so that it is not hidden.
+/// Each draw in turn takes the place of the one kept before (Chao, "A General Purpose Unequal Probability Sampling
+/// Plan", 1982), and what is left of the number once it has decided is uniform again. What is not finite is kept, so
+/// that it is not hidden.
 #[inline]
 pub(super) fn resampled<T>(mut choice: f64, draws: impl Iterator<Item = (T, Rgb)>) -> Option<(T, Rgb)> {
     let (mut sum, mut kept) = (0.0, None);

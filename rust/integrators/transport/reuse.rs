@@ -7,20 +7,20 @@ use crate::scene::{Departure, Interaction, Scatters, Scene, fading};
 use crate::workers::Cancel;
 use std::ops::Range;
 
-/// What the paths of a batch share: the light that leaves their second surfaces (Bekaert, Sbert and Halton, "Accelerating Path
-/// Tracing by Re-Using Paths", 2002).
+/// What the paths of a batch share: the light that leaves their second surfaces (Bekaert, Sbert and Halton,
+/// "Accelerating Path Tracing by Re-Using Paths", 2002).
 ///
-/// Path j of a group goes from a first point xⱼ, where scattering is diffuse, to a second, yⱼ. If that is diffuse too, what the rest of the
-/// path finds of the light that yⱼ reflects is worth the same to all first points that see it. So each of them takes
-/// its part of it as one more sample, weighed against all that could have come to it: by the balance heuristic (Veach and Guibas, 1995) over
-/// the densities pₖ with which the paths of the group meet a surface at yⱼ. With G(x, y) = cos θₓ cos θ_y V(x, y) / |x − y|² these are
-/// pₖ = G(xₖ, yⱼ) / π, and point i takes of yⱼ the share G(xᵢ, yⱼ) / Σₖ G(xₖ, yⱼ), times its reflectance. The sum knows all
-/// mutual visibilities, so the mean is as without sharing whatever lies between; shares are at most 1, so nothing
-/// is made large that was not.
+/// Path j of a group goes from a first point xⱼ, where scattering is diffuse, to a second, yⱼ. If that is diffuse too,
+/// what the rest of the path finds of the light that yⱼ reflects is worth the same to all first points that see it. So
+/// each of them takes its part of it as one more sample, weighed against all that could have come to it: by the balance
+/// heuristic (Veach and Guibas, 1995) over the densities pₖ with which the paths of the group meet a surface at yⱼ.
+/// With G(x, y) = cos θₓ cos θ_y V(x, y) / |x − y|² these are pₖ = G(xₖ, yⱼ) / π, and point i takes of yⱼ the share
+/// G(xᵢ, yⱼ) / Σₖ G(xₖ, yⱼ), times its reflectance. The sum knows all mutual visibilities, so the mean is as without
+/// sharing whatever lies between; shares are at most 1, so nothing is made large that was not.
 ///
-/// What a path finds at its first point, and what yⱼ emits itself, stays its own. So does the rest of a path that does not
-/// come to a diffuse second point, or from where the shading normal had to be bent ([`Interaction::GRAZING`]), and with it yⱼ were
-/// another: these directions are in the domain of no technique that shares, for whoever takes.
+/// What a path finds at its first point, and what yⱼ emits itself, stays its own. So does the rest of a path that does
+/// not come to a diffuse second point, or from where the shading normal had to be bent ([`Interaction::GRAZING`]), and
+/// with it yⱼ were another: these directions are in the domain of no technique that shares, for whoever takes.
 #[derive(Default)]
 pub(super) struct Reuse {
     /// The first point of each sample.
@@ -95,8 +95,8 @@ impl Pair {
 /// Rays that are sent together: enough to keep the accelerator's kernels full, few enough to stay in cache.
 const TOGETHER: usize = 4096;
 
-/// Rays that the accelerator takes through its tree as one packet. With those of two origins in it, none would go together, so that a
-/// few of the same are added to fill it.
+/// Rays that the accelerator takes through its tree as one packet. With those of two origins in it, none would go
+/// together, so that a few of the same are added to fill it.
 const BUNDLE: usize = 16;
 
 /// Fewer rays than these go alone.
@@ -111,7 +111,8 @@ impl First {
         reflectance: Rgb::ZERO,
     };
 
-    /// G without visibility, and the fading of light; none where either point does not face the other, or nothing may be shared.
+    /// G without visibility, and the fading of light; none where either point does not face the other, or nothing may
+    /// be shared.
     #[inline]
     fn geometry(&self, there: &Second) -> Option<(f64, f64)> {
         let way = there.departure.position() - self.departure.position();
@@ -151,8 +152,8 @@ impl Reuse {
         self.strays.rays.clear();
     }
 
-    /// A path comes to a surface. Where what it finds from there on is to be shared, it goes on with it as that of sample number
-    /// `samples` and more.
+    /// A path comes to a surface. Where what it finds from there on is to be shared, it goes on with it as that of
+    /// sample number `samples` and more.
     #[inline]
     pub fn visit<S: Scatters>(&mut self, mut path: Alive, here: &Interaction<S>) -> Alive {
         if path.bounce > 1 {
@@ -160,7 +161,8 @@ impl Reuse {
         }
         let Some(reflectance) = here.scattering().diffuse() else { return path };
         let (shading, normal) = (here.shading_normal(), here.normal());
-        // Where the one normal is seen from above and the other from below, or both from the side, nothing is scattered.
+        // Where the one normal is seen from above and the other from below, or both from the side, nothing is
+        // scattered.
         let is_lit = here.cosine() > 0.0 && reflectance != Rgb::ZERO;
         if !is_lit {
             return path;
@@ -182,11 +184,12 @@ impl Reuse {
         path
     }
 
-    /// Adds to the radiance of each sample what it takes of what all of its group have `found`. `chance` gives a uniform number of a group, by
-    /// the number of its first sample.
+    /// Adds to the radiance of each sample what it takes of what all of its group have `found`. `chance` gives a
+    /// uniform number of a group, by the number of its first sample.
     ///
-    /// Most of the time goes into rays, and dim light is not worth as many as bright light. What is dimmer than the mean of its group is shared
-    /// in proportion to that only, and counts for more where it is: a systematic sample, which takes one uniform number for all.
+    /// Most of the time goes into rays, and dim light is not worth as many as bright light. What is dimmer than the
+    /// mean of its group is shared in proportion to that only, and counts for more where it is: a systematic sample,
+    /// which takes one uniform number for all.
     pub fn share(
         &mut self,
         scene: &Scene,

@@ -57,8 +57,8 @@ impl Shadows {
         }
     }
 
-    /// Adds to each sample what arrives at it through masks, dimmed by their opacity, and through surfaces that are none because another
-    /// medium is there.
+    /// Adds to each sample what arrives at it through masks, dimmed by their opacity, and through surfaces that are
+    /// none because another medium is there.
     pub fn add_through(&mut self, scene: &Scene, nested: bool, radiance: &mut [Rgb]) {
         // Light is added in the order of the rays, whichever of them are followed for longer.
         let mut on_way: Vec<usize> = (0..self.rays.len()).collect();

@@ -18,8 +18,9 @@ pub(super) const ROULETTE_AT_LATEST: u32 = 4096;
 /// bounces.
 const SURVIVAL: f64 = 1.0 - 1.0 / 4096.0;
 
-/// The probability that a path of this throughput survives a round of Russian roulette (Arvo and Kirk, 1990). `scale` is how much less radiance
-/// is where the path is than where it started, because of the index of refraction alone: light that is spread so is not lost.
+/// The probability that a path of this throughput survives a round of Russian roulette (Arvo and Kirk, 1990). `scale`
+/// is how much less radiance is where the path is than where it started, because of the index of refraction alone:
+/// light that is spread so is not lost.
 ///
 /// Dividing by it must not let the throughput grow from round to round: after k rounds of reflectance ρ and survival
 /// q the second moment is (ρ²/q)ᵏ, whose sum over k is finite only for q > ρ². A fixed bound such as the usual 0.95

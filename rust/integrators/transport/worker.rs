@@ -203,7 +203,8 @@ impl<'a, N: Features> TransportWorker<'a, N> {
         if N::SHARES { self.reuse.visit(path, here) } else { path }
     }
 
-    /// Where light comes from by way of what is sharp, at a point that a path has come to; and whether the path goes on there.
+    /// Where light comes from by way of what is sharp, at a point that a path has come to; and whether the path goes on
+    /// there.
     #[inline]
     fn aim<S: Scatters>(
         &self,
@@ -405,9 +406,10 @@ impl<'a, N: Features> TransportWorker<'a, N> {
 
 /// The bundle of rays after a surface.
 ///
-/// A mirror of mean curvature H, seen by a bundle of width w, spreads it by 2Hw (Akenine-Möller et al., "Improved Shader and Texture Level of
-/// Detail Using Ray Cones", 2021), and refraction by as much as it bends; a draw of density p has its neighbours, among some 256 of a pixel,
-/// 1/√(256 p) off (after Suykens and Willems, "Path Differentials and Applications", 2001).
+/// A mirror of mean curvature H, seen by a bundle of width w, spreads it by 2Hw (Akenine-Möller et al., "Improved
+/// Shader and Texture Level of Detail Using Ray Cones", 2021), and refraction by as much as it bends; a draw of density
+/// p has its neighbours, among some 256 of a pixel, 1/√(256 p) off (after Suykens and Willems, "Path Differentials and
+/// Applications", 2001).
 fn widened<S: Scatters>(vertex: &Vertex<'_, S>, next: &Scattered) -> Footprint {
     let (before, curvature) = (vertex.baggage.footprint, vertex.here.curvature());
     let bent = if next.is_through {

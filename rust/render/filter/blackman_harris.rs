@@ -2,8 +2,8 @@
 
 use super::{Profile, length};
 
-/// A sum of four cosines with hardly any side lobes, nowhere negative (Harris, "On the Use of Windows for Harmonic Analysis
-/// with the Discrete Fourier Transform", 1978: the minimum four-term window).
+/// A sum of four cosines with hardly any side lobes, nowhere negative (Harris, "On the Use of Windows for Harmonic
+/// Analysis with the Discrete Fourier Transform", 1978: the minimum four-term window).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BlackmanHarris {
     radius: f64,

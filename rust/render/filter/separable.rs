@@ -33,7 +33,8 @@ pub struct Separable<P> {
     density: Vec<f64>,
     /// The integral of the density up to each node.
     cumulative: Vec<f64>,
-    /// The last cell that begins at or before each of as many equal steps of u as there are cells (Chen and Asau, 1974).
+    /// The last cell that begins at or before each of as many equal steps of u as there are cells (Chen and Asau,
+    /// 1974).
     guide: Vec<u16>,
 }
 

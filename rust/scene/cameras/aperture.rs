@@ -15,7 +15,8 @@ pub struct Aperture {
 }
 
 impl Aperture {
-    /// A disk of a radius; or with `blades` a polygon with so many sides, turned counterclockwise as the camera looks by an angle in radians.
+    /// A disk of a radius; or with `blades` a polygon with so many sides, turned counterclockwise as the camera looks
+    /// by an angle in radians.
     ///
     /// # Errors
     /// If the radius is negative or not finite, the angle is not finite, or there are one or two blades.
@@ -37,8 +38,9 @@ impl Aperture {
         if self.blades == 0 {
             return disk.to_array();
         }
-        // The square of a disk's radius and its angle are uniform each. Taken along the polygon's edge, at an even pace on every side,
-        // and from the middle to there, they are uniform in each of the triangles between the middle and a side.
+        // The square of a disk's radius and its angle are uniform each. Taken along the polygon's edge, at an even pace
+        // on every side, and from the middle to there, they are uniform in each of the triangles between the middle and
+        // a side.
         let sides = f64::from(self.blades);
         let along = (disk.y.atan2(disk.x) / TAU).rem_euclid(1.0) * sides;
         let side = along.floor();
@@ -57,7 +59,8 @@ mod tests {
     use crate::sampling::chi_square::assert_frequencies;
     use std::f64::consts::PI;
 
-    /// Whether a point is in a polygon, and how far it is from leaving it: the least distance to a side over that of the middle.
+    /// Whether a point is in a polygon, and how far it is from leaving it: the least distance to a side over that of
+    /// the middle.
     fn within([x, y]: [f64; 2], blades: u32, rotation: f64) -> f64 {
         let inner = (PI / f64::from(blades)).cos();
         (0..blades)
@@ -70,8 +73,8 @@ mod tests {
 
     #[test]
     fn polygons_are_filled_evenly() {
-        // Cells between equal areas from the middle, and halves of the polygon's sides. The chance of failing by luck is that of
-        // `assert_frequencies`, for each number of blades; the seed is fixed.
+        // Cells between equal areas from the middle, and halves of the polygon's sides. The chance of failing by luck
+        // is that of `assert_frequencies`, for each number of blades; the seed is fixed.
         for (blades, rotation) in [(3, 0.0), (5, 0.3), (6, -2.0), (9, 7.0)] {
             let aperture = Aperture::new(1.0, blades, rotation).unwrap();
             let (rings, sectors) = (6, 2 * blades as usize);

@@ -71,8 +71,8 @@ pub struct Fisheye {
 }
 
 impl Fisheye {
-    /// A camera with an angle of view, in degrees, in the circle whose diameter is one of its picture's lengths: all of the circle is in
-    /// the picture if it is the smaller, the circle is around the picture if it is the diagonal.
+    /// A camera with an angle of view, in degrees, in the circle whose diameter is one of its picture's lengths: all of
+    /// the circle is in the picture if it is the smaller, the circle is around the picture if it is the diagonal.
     ///
     /// # Errors
     /// If the angle is not positive, or wider than the mapping can show.
@@ -146,7 +146,8 @@ mod tests {
                 let (sin, cos) = (0.7 * f64::from(i)).sin_cos();
                 let seen = camera.ray([80.0 + 60.0 * part * cos, 60.0 - 60.0 * part * sin], [0.5; 2], 0.0);
                 let expected = DVec3::new(cos * theta.sin(), sin * theta.sin(), -theta.cos());
-                // Where the radius hardly grows with the angle, at the edge of some, the angle is known to the root of a rounding.
+                // Where the radius hardly grows with the angle, at the edge of some, the angle is known to the root of
+                // a rounding.
                 let slow = matches!(mapping, Mapping::Equisolid if fov == 360.0)
                     || mapping == Mapping::Orthographic && fov == 180.0;
                 let bound = if slow && i > 44 { 1e-7 } else { 2e-14 };

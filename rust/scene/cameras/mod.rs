@@ -27,13 +27,14 @@ use std::fmt::Debug;
 
 /// What turns points of a picture into rays.
 ///
-/// A point of the film is told in pixels, x from the left and y from the top, so that the centre of the first pixel is at (0.5, 0.5).
+/// A point of the film is told in pixels, x from the left and y from the top, so that the centre of the first pixel is
+/// at (0.5, 0.5).
 pub trait Camera: Debug + Send + Sync {
     /// The picture's size, and where the camera is over time.
     fn body(&self) -> &Body;
 
-    /// The ray through a point of the film and a point of the lens, each coordinate in (0, 1) and its centre at (0.5, 0.5), at a time from
-    /// 0 as the shutter opens to 1 as it closes.
+    /// The ray through a point of the film and a point of the lens, each coordinate in (0, 1) and its centre at
+    /// (0.5, 0.5), at a time from 0 as the shutter opens to 1 as it closes.
     fn ray(&self, film: [f64; 2], lens: [f64; 2], time: f64) -> CameraRay;
 
     /// What a pixel covers.
@@ -68,7 +69,8 @@ pub trait Camera: Debug + Send + Sync {
 /// A ray of a camera, and what it counts.
 #[derive(Clone, Copy, Debug)]
 pub struct CameraRay {
-    /// Of unit direction, at a time of the scene. Where the weight is 0 it is none: its direction is no number, and it hits nothing.
+    /// Of unit direction, at a time of the scene. Where the weight is 0 it is none: its direction is no number, and it
+    /// hits nothing.
     pub ray: Ray,
     /// What the radiance along it is multiplied with; 0 where the camera sees nothing.
     pub weight: f64,
@@ -87,8 +89,8 @@ impl CameraRay {
     }
 }
 
-/// How far apart the rays of neighbouring pixels are: at a distance t, by `width + angle * t`. Where that differs over the picture, it is
-/// that of its middle.
+/// How far apart the rays of neighbouring pixels are: at a distance t, by `width + angle * t`. Where that differs over
+/// the picture, it is that of its middle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spread {
     /// Between directions, in radians.

@@ -4,7 +4,8 @@ use super::window::from_middle;
 use super::{Body, Camera, CameraError, CameraRay, Measured, Spread};
 use crate::math::Ray;
 
-/// A camera whose rays are parallel. They start in the plane through its position, so that what is behind it is not seen.
+/// A camera whose rays are parallel. They start in the plane through its position, so that what is behind it is not
+/// seen.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Orthographic {
     body: Body,

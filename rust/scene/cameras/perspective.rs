@@ -9,7 +9,8 @@ use crate::math::{DVec3, Ray};
 pub struct Perspective {
     body: Body,
     window: Window,
-    /// The film at distance 1 as the shutter opens: its middle, half its width to the right, and half its height upwards.
+    /// The film at distance 1 as the shutter opens: its middle, half its width to the right, and half its height
+    /// upwards.
     film: [DVec3; 3],
 }
 
@@ -48,7 +49,8 @@ impl Perspective {
         &self.window
     }
 
-    /// The ray, of unit direction, through a point of the film as the shutter opens: `x` in pixels from the left, `y` from the top.
+    /// The ray, of unit direction, through a point of the film as the shutter opens: `x` in pixels from the left, `y`
+    /// from the top.
     #[inline]
     pub fn ray_through(&self, x: f64, y: f64) -> Ray {
         self.ray_by(self.body.start().position, &self.film, [x, y], 0.0)
@@ -112,7 +114,8 @@ mod tests {
     }
 
     proptest! {
-        /// The formula of a still pinhole with square pixels about the middle, written down by itself: pictures are kept to the bit.
+        /// The formula of a still pinhole with square pixels about the middle, written down by itself: pictures are
+        /// kept to the bit.
         #[test]
         fn rays_keep_their_bits(
             position in prop::array::uniform3(-9.0..9.0f64), target in prop::array::uniform3(-9.0..9.0f64),

@@ -4,8 +4,8 @@ use super::window::from_middle;
 use super::{Aperture, Body, Camera, CameraError, CameraRay, Spread, Window};
 use crate::math::Ray;
 
-/// A camera with a thin lens (Potmesil and Chakravarty, "A Lens and Aperture Camera Model for Synthetic Image Generation", 1981): what
-/// lies in a plane across the view is sharp, and the rest blurred as the lens is wide.
+/// A camera with a thin lens (Potmesil and Chakravarty, "A Lens and Aperture Camera Model for Synthetic Image
+/// Generation", 1981): what lies in a plane across the view is sharp, and the rest blurred as the lens is wide.
 ///
 /// What its picture holds of that plane is what a pinhole at its middle sees.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,7 +40,8 @@ impl Camera for ThinLens {
         let [x, y] = self.window.point(from_middle(film, self.body.size()));
         let [right, up] = self.aperture.point(lens);
         let origin = from.position + from.right * right + from.up * up;
-        // From the lens to the point in focus, over the distance there. No position is in it, so that it is as right far from the origin.
+        // From the lens to the point in focus, over the distance there. No position is in it, so that it is as right
+        // far from the origin.
         let direction = from.direction(x - right / self.focus, y - up / self.focus, 1.0).normalize();
         CameraRay::seen(Ray { time: self.body.scene_time(time), ..Ray::new(origin, direction) })
     }
@@ -93,16 +94,17 @@ mod tests {
 
     #[test]
     fn the_circle_of_confusion_is_that_of_a_thin_lens() {
-        // A lens of focal length f and diameter A, in focus at s, has the film at v = s f / (s − f), and shows a point at distance d as a circle
-        // with a diameter of c = A f |d − s| / (d (s − f)). At distance 1 that is c / v = A |d − s| / (d s).
+        // A lens of focal length f and diameter A, in focus at s, has the film at v = s f / (s − f), and shows a point
+        // at distance d as a circle with a diameter of c = A f |d − s| / (d (s − f)). At distance 1 that is c / v =
+        // A |d − s| / (d s).
         let (focus, focal) = (4.0, 0.1);
         let (camera, pinhole) = lens(0.25, 0, focus);
         let from = *pinhole.viewpoint();
         for distance in [1.0, 2.0, 3.9, 4.0, 5.0, 100.0] {
             let confusion = 0.5 * focal * f64::abs(distance - focus) / (distance * (focus - focal));
             let film = focus * focal / (focus - focal);
-            // By points on opposite edges of the lens: how far apart their rays are at the distance is how far apart on the film they see one
-            // point there.
+            // By points on opposite edges of the lens: how far apart their rays are at the distance is how far apart on
+            // the film they see one point there.
             let edge = 2f64.powi(-33);
             let [a, b] = [[edge, 0.5], [1.0 - edge, 0.5]].map(|u| {
                 let ray = camera.ray([20.0, 15.0], u, 0.0).ray;

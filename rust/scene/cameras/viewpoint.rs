@@ -173,7 +173,8 @@ mod tests {
             let way = Way::new(start, end);
             let here = way.at(time);
             prop_assert!(is_right_handed(&here));
-            // The turn from the start is that share of the whole, about the same axis: each of the axes stays as far from it as it is.
+            // The turn from the start is that share of the whole, about the same axis: each of the axes stays as far
+            // from it as it is.
             for (from, now, to) in [(start.right, here.right, end.right), (start.up, here.up, end.up), (start.forward, here.forward, end.forward)] {
                 prop_assert!((from.dot(way.axis) - now.dot(way.axis)).abs() < 1e-13);
                 let angle = |v: DVec3, w: DVec3| {

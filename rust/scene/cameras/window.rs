@@ -32,8 +32,9 @@ impl Measured {
     }
 }
 
-/// The film of a pinhole or a lens, seen at distance 1: its point at (x, y), each from −1 to 1, x to the right and y upwards, is
-/// `centre + (half width · x + skew · y, half height · y)` to the right of and above the middle of the view.
+/// The film of a pinhole or a lens, seen at distance 1: its point at (x, y), each from −1 to 1, x to the right and y
+/// upwards, is `centre + (half width · x + skew · y, half height · y)` to the right of and above the middle of the
+/// view.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Window {
     /// Half its width and half its height; negative where the picture is mirrored.
@@ -65,9 +66,9 @@ impl Window {
         Ok(Self { half, centre: [0.0; 2], skew: 0.0 })
     }
 
-    /// Of a camera matrix: focal lengths in pixels, the principal point in pixels from the film's left and top, and the skew, so that a
-    /// point at (x, y) to the right and below at distance 1 is seen at `focal[0] x + skew y + principal[0]`, `focal[1] y + principal[1]`.
-    /// Negative focal lengths mirror the picture.
+    /// Of a camera matrix: focal lengths in pixels, the principal point in pixels from the film's left and top, and the
+    /// skew, so that a point at (x, y) to the right and below at distance 1 is seen at
+    /// `focal[0] x + skew y + principal[0]`, `focal[1] y + principal[1]`. Negative focal lengths mirror the picture.
     ///
     /// # Errors
     /// If a focal length is zero, or a number is not finite.
@@ -112,8 +113,9 @@ impl Window {
         [middle, from.right * self.half[0], up]
     }
 
-    /// What a point relative to a viewpoint is multiplied with to give its x, its y, and its distance along the view, such that it is seen
-    /// at x and y over the distance; and what bounds each of these, and how roundings grow, as multiples of the point's distance.
+    /// What a point relative to a viewpoint is multiplied with to give its x, its y, and its distance along the view,
+    /// such that it is seen at x and y over the distance; and what bounds each of these, and how roundings grow, as
+    /// multiples of the point's distance.
     pub fn onto_film(&self, from: &Viewpoint) -> ([DVec3; 3], f64) {
         let ([width, height], [x, y], skew) = (self.half, self.centre, self.skew);
         let up = (from.up - from.forward * y) / height;

@@ -131,8 +131,9 @@ impl Cells {
         for group in near.chunk_by_mut(|a, b| a.chain == b.chain) {
             Lobe::divide(group, size, 3, &mut each);
         }
-        // The variance of what is sought in a lobe goes by its light, its brightness and its solid angle, over how often it is drawn: it had
-        // better be drawn by the root of those. The larger ones are mostly of lesser brightness, so that a root of the solid angle is left.
+        // The variance of what is sought in a lobe goes by its light, its brightness and its solid angle, over how
+        // often it is drawn: it had better be drawn by the root of those. The larger ones are mostly of lesser
+        // brightness, so that a root of the solid angle is left.
         let mut strengths: Vec<(Lobe, f64)> =
             each.into_iter().map(|(lobe, light)| (lobe, (light * lobe.fills().sqrt()).sqrt())).collect();
         strengths.sort_by(|a, b| b.1.total_cmp(&a.1));
@@ -143,7 +144,8 @@ impl Cells {
         self.lobes.extend(strengths.iter().filter(|(_, s)| *s > 0.0).map(|(lobe, s)| lobe.drawn(s * part)));
         let wide = if total > 0.0 { WIDE } else { 1.0 };
         self.lobes.push(all.drawn(wide));
-        // By how much noise it takes from what paths find of the rest, and adds to it, were each lobe half filled by what is sought.
+        // By how much noise it takes from what paths find of the rest, and adds to it, were each lobe half filled by
+        // what is sought.
         let share = (2.0 * brighter / (2.0 * brighter + 1.0)).clamp(SHARES[0], SHARES[1]);
         self.leaves.push(Leaf { min, max, share, gain: 1.0 + brighter, lobes: first..self.lobes.len() });
     }

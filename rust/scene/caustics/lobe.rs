@@ -6,8 +6,8 @@ use crate::math::{DVec3, Frame};
 use glam::DMat3;
 use std::f64::consts::TAU;
 
-/// A ball that light comes from. As the image of a lamp in a mirror moves with who looks, its place depends on that of who looks: linearly, as
-/// photons tell by least squares.
+/// A ball that light comes from. As the image of a lamp in a mirror moves with who looks, its place depends on that of
+/// who looks: linearly, as photons tell by least squares.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Lobe {
     /// The middle of the places that it is seen from.
@@ -35,7 +35,8 @@ impl Lobe {
         let fitted = (photons.len() >= Self::FEW).then(|| still.fitted(photons, size));
         let lobe = fitted.filter(|fitted| 2.0 * fitted.spread(photons) < still.spread(photons)).unwrap_or(still);
         let farthest = photons.iter().map(|p| lobe.off(p).length_squared()).fold(0.0, f64::max);
-        // Few have not been as far out as others will be. And of what few saw from one place, neighbours see something else.
+        // Few have not been as far out as others will be. And of what few saw from one place, neighbours see something
+        // else.
         let radius = farthest.sqrt() * (1.0 + 2.0 / count) + if photons.len() < Self::FEW { size / count } else { 0.0 };
         // Not so small that squares of cosines could not tell its directions from others.
         let least = (1e-10 * still.target.distance_squared(still.place)).max(f64::MIN_POSITIVE);
@@ -65,13 +66,15 @@ impl Lobe {
         self.share
     }
 
-    /// Draws a direction to it, all with the same density: a cone's, of less than half of all directions even from within.
+    /// Draws a direction to it, all with the same density: a cone's, of less than half of all directions even from
+    /// within.
     #[inline]
     pub fn sample(&self, place: DVec3, u: [f64; 2]) -> DVec3 {
         let way = self.target(place) - place;
         let far = way.length_squared();
         let all = far + self.square;
-        // The height of the cone's cap, 1 − cos θ with cos² θ = d² / (d² + r²), without the cancellation of small cones.
+        // The height of the cone's cap, 1 − cos θ with cos² θ = d² / (d² + r²), without the cancellation of small
+        // cones.
         let height = self.square / all / (1.0 + (far / all).sqrt());
         let down = u[0] * height;
         let across = (down * (2.0 - down)).sqrt();
@@ -105,7 +108,8 @@ impl Lobe {
 
     /// With the motion that suits photons best.
     fn fitted(self, photons: &[Photon], size: f64) -> Self {
-        // Places mostly lie in a plane, and nothing is known of how it moves across: what is added keeps it still there.
+        // Places mostly lie in a plane, and nothing is known of how it moves across: what is added keeps it still
+        // there.
         let mut places = DMat3::from_diagonal(DVec3::splat(1e-4 * size * size * photons.len() as f64));
         let mut moves = DMat3::ZERO;
         for photon in photons {
@@ -117,8 +121,8 @@ impl Lobe {
         if moves.is_finite() { Self { moves, ..self } } else { self }
     }
 
-    /// Divides photons, at least one, into those that came from one ball each, by halving at most so often: of each, the ball, and the light
-    /// that came from it.
+    /// Divides photons, at least one, into those that came from one ball each, by halving at most so often: of each,
+    /// the ball, and the light that came from it.
     pub fn divide(photons: &mut [Photon], size: f64, halvings: u32, each: &mut Vec<(Self, f64)>) {
         let lobe = Self::around(photons, size);
         if halvings > 0 && photons.len() > Self::FEW {

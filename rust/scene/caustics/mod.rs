@@ -14,15 +14,16 @@ use super::Scatters;
 use crate::math::DVec3;
 use cells::Cells;
 
-/// From where light comes to the places of a scene by way of mirrors and glass: paths that want to find it had better go where photons
-/// came from (Jensen, "Importance Driven Path Tracing using the Photon Map", 1995).
+/// From where light comes to the places of a scene by way of mirrors and glass: paths that want to find it had better
+/// go where photons came from (Jensen, "Importance Driven Path Tracing using the Photon Map", 1995).
 ///
-/// A matt surface that sees a lamp in a ball of glass finds it by chance as seldom as its image is small, and is the brighter for it:
-/// the fireflies of path tracing. The lamp cannot be asked, for nothing goes straight to it. So photons are sent from the lights to what is
-/// sharp, and followed to where they fall (`scene/photons.rs`); places are divided into cells of about as many of them (`cells.rs`), and photons
-/// of a cell that came by the same surfaces are taken together for a ball that light comes from (`lobe.rs`). A path draws its direction from
-/// the cones to these or from its surface, and is weighed by the density of both together (`aim.rs`). So photons that are missing,
-/// or wrong, make a picture noisier and never another one, and nothing of them need be exact.
+/// A matt surface that sees a lamp in a ball of glass finds it by chance as seldom as its image is small, and is the
+/// brighter for it: the fireflies of path tracing. The lamp cannot be asked, for nothing goes straight to it. So
+/// photons are sent from the lights to what is sharp, and followed to where they fall (`scene/photons.rs`); places are
+/// divided into cells of about as many of them (`cells.rs`), and photons of a cell that came by the same surfaces are
+/// taken together for a ball that light comes from (`lobe.rs`). A path draws its direction from the cones to these or
+/// from its surface, and is weighed by the density of both together (`aim.rs`). So photons that are missing, or wrong,
+/// make a picture noisier and never another one, and nothing of them need be exact.
 ///
 /// It depends on the scene alone: not on the camera, nor on threads.
 #[derive(Debug)]
@@ -31,8 +32,8 @@ pub struct Caustics {
 }
 
 impl Caustics {
-    /// What photons tell of it, and how much light comes straight from lights to where they have fallen, over area, on average; `None`
-    /// where no photon has come anywhere by way of what is sharp.
+    /// What photons tell of it, and how much light comes straight from lights to where they have fallen, over area, on
+    /// average; `None` where no photon has come anywhere by way of what is sharp.
     pub(super) fn new(photons: Vec<Photon>, usual: f64) -> Option<Self> {
         (!photons.is_empty()).then(|| Self { cells: Cells::new(photons, usual) })
     }
@@ -44,8 +45,8 @@ impl Caustics {
     }
 }
 
-/// Whether a surface scatters light so widely that it is worth while to aim: not in single directions alone, nor in a lobe that knows better
-/// where light matters, nor to both sides.
+/// Whether a surface scatters light so widely that it is worth while to aim: not in single directions alone, nor in a
+/// lobe that knows better where light matters, nor to both sides.
 #[inline]
 pub fn is_matt<S: Scatters>(scattering: &S) -> bool {
     /// The roughness of what is sharp, at most.

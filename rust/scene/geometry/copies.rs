@@ -16,8 +16,8 @@ pub type Matrix = [[f64; 4]; 3];
 
 /// Copies of a group, each of them a primitive: 96 bytes for one that stands still.
 ///
-/// A ray is taken to the group's space and asked of the group's accelerator there, with the same `t`. So what is hit is what is hit in the
-/// group by the ray as it is taken there, and that is decided exactly, whatever finds the copies.
+/// A ray is taken to the group's space and asked of the group's accelerator there, with the same `t`. So what is hit is
+/// what is hit in the group by the ray as it is taken there, and that is decided exactly, whatever finds the copies.
 #[derive(Clone, Debug)]
 pub struct Copies {
     group: Arc<Group>,
@@ -83,8 +83,9 @@ impl Copies {
         Ok(Self { group, places: Arc::new(Places::Still(poses)) })
     }
 
-    /// Copies that move while the shutter is open: the matrix of each at its opening and at its closing. Every point moves on a straight
-    /// line; should the matrix between have no inverse at some moment, the copy is not seen at that.
+    /// Copies that move while the shutter is open: the matrix of each at its opening and at its closing. Every point
+    /// moves on a straight line; should the matrix between have no inverse at some moment, the copy is not seen at
+    /// that.
     ///
     /// # Errors
     /// If one of the matrices given has no inverse.
@@ -136,8 +137,8 @@ impl Copies {
         }
     }
 
-    /// The boxes around a copy as the shutter opens and as it closes; between the two, interpolated number by number, they hold it too.
-    /// None if nothing in it can be hit.
+    /// The boxes around a copy as the shutter opens and as it closes; between the two, interpolated number by number,
+    /// they hold it too. None if nothing in it can be hit.
     pub fn ends(&self, copy: u32) -> Option<[Bounds; 2]> {
         let inside = self.group.bounds()?;
         match &*self.places {

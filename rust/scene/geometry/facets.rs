@@ -11,8 +11,9 @@ pub(super) struct Facet {
     pub shape: u32,
 }
 
-/// Those of all primitives of a geometry of few. A normal takes a root and six quotients, and the shape a search; of more faces than the
-/// processor's second cache holds it would be memory that is waited for, and in the way of what else is needed.
+/// Those of all primitives of a geometry of few. A normal takes a root and six quotients, and the shape a search; of
+/// more faces than the processor's second cache holds it would be memory that is waited for, and in the way of what
+/// else is needed.
 #[derive(Debug, Default)]
 pub(super) struct Facets(Vec<Facet>);
 

@@ -14,8 +14,9 @@ use std::sync::Arc;
 
 /// Shapes that are put elsewhere together, compiled once.
 ///
-/// Their primitives are numbered through, *flattened*: shape after shape; a mesh has its faces, a shape that is no mesh one, and copies of
-/// a group for every copy, from the first to the last, all primitives of that group as it numbers them.
+/// Their primitives are numbered through, *flattened*: shape after shape; a mesh has its faces, a shape that is no mesh
+/// one, and copies of a group for every copy, from the first to the last, all primitives of that group as it numbers
+/// them.
 pub struct Group {
     geometry: Geometry,
     accelerator: Box<dyn Accelerator>,

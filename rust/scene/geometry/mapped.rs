@@ -9,7 +9,8 @@ use crate::scene::{ShadingPoint, SurfacePoint};
 /// What textures and bumps may want to know of a hit. Only what is needed is right.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Mapped {
-    /// Texture coordinates: of a mesh those of its vertices, or the weights of the second and third corner where it has none.
+    /// Texture coordinates: of a mesh those of its vertices, or the weights of the second and third corner where it has
+    /// none.
     pub uv: [f64; 2],
     /// How the point changes with them; zero where they do not tell points apart.
     pub dp: [DVec3; 2],

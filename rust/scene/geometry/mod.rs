@@ -106,7 +106,8 @@ struct Gap {
 /// The face that stands for a shape that is no mesh.
 const NO_FACE: [u32; 3] = [u32::MAX; 3];
 
-/// All surfaces of a scene in one: a primitive is a face, or a shape that is no mesh, numbered through from the first shape to the last.
+/// All surfaces of a scene in one: a primitive is a face, or a shape that is no mesh, numbered through from the first
+/// shape to the last.
 #[derive(Debug, Default)]
 pub struct Geometry {
     vertices: Vertices,

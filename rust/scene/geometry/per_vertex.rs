@@ -24,7 +24,8 @@ impl<T> Default for PerVertex<T> {
 }
 
 impl<T: Copy> PerVertex<T> {
-    /// Adds those of a mesh, if it has some. Its vertices are numbered from `first` on, after those of all meshes before.
+    /// Adds those of a mesh, if it has some. Its vertices are numbered from `first` on, after those of all meshes
+    /// before.
     pub fn extend(&mut self, first: u32, values: Option<Vec<T>>) {
         let Some(values) = values.filter(|values| !values.is_empty()) else { return };
         let end = first + values.len() as u32;

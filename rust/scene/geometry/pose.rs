@@ -1,13 +1,15 @@
 //! Where a copy stands: the map from a group's space to that which it is put into, as rays and as points take it.
 //!
-//! A ray is taken to the group's space by a matrix `M` and the shift `s` of the map: `o' = M (o − s)`, `d' = M d`, with its direction as
-//! long as it comes out, so that `t` is the same on both sides. `M` is the inverse of the map's linear part `L`, rounded once; the copy
-//! is where `M`, as rounded, says that it is. The difference from what `L` says is that of a vertex rounded to f64.
+//! A ray is taken to the group's space by a matrix `M` and the shift `s` of the map: `o' = M (o − s)`, `d' = M d`, with
+//! its direction as long as it comes out, so that `t` is the same on both sides. `M` is the inverse of the map's linear
+//! part `L`, rounded once; the copy is where `M`, as rounded, says that it is. The difference from what `L` says is
+//! that of a vertex rounded to f64.
 //!
-//! The bounds, with u = 2⁻⁵³ and κ the greatest row sum of |L| |M|, at least 1 and 3 for a turn at most. A coordinate of `o'` errs
-//! by less than 4u (|M| |o − s|), of which the world sees 4uκ |o − s|, and so for `d'`; three products and their sum are five roundings,
-//! and the difference one. A point `p` of the group is at `L p + s`, where `L`, if it is not that of which `M` is the inverse but the
-//! inverse of `M`, is known by its residual `R = 1 − L M`: the point is off by `|R| |L p|`, and `R` is computed to within 4uκ.
+//! The bounds, with u = 2⁻⁵³ and κ the greatest row sum of |L| |M|, at least 1 and 3 for a turn at most. A coordinate
+//! of `o'` errs by less than 4u (|M| |o − s|), of which the world sees 4uκ |o − s|, and so for `d'`; three products and
+//! their sum are five roundings, and the difference one. A point `p` of the group is at `L p + s`, where `L`, if it is
+//! not that of which `M` is the inverse but the inverse of `M`, is known by its residual `R = 1 − L M`: the point is
+//! off by `|R| |L p|`, and `R` is computed to within 4uκ.
 
 use super::mapped::Mapped;
 use crate::math::robust::UNIT;
@@ -47,8 +49,8 @@ fn condition(a: &Rows, b: &Rows) -> f64 {
     times(&abs(a), sums).max_element()
 }
 
-/// The inverse of a linear map, to within some roundings of its largest numbers where it is well conditioned, and each number to within
-/// an ulp where not.
+/// The inverse of a linear map, to within some roundings of its largest numbers where it is well conditioned, and each
+/// number to within an ulp where not.
 ///
 /// # Errors
 /// If there is none, decided exactly, or f64 cannot hold it.
@@ -105,18 +107,20 @@ impl Pose {
     /// The box around a box that is put there, and room: it is as large again by 2⁻²² of itself.
     ///
     /// The room is for `t`, which in the group's space may be off by 2⁻²⁶ of nine radii at most
-    /// ([`crate::shapes::triangle::EdgeRay::T_ERROR`]), and for a ray's own roundings, 8uκ of how far it comes. So whatever a ray hits as it is
-    /// taken back, it meets in the box too, if κ is at most 16, of which box tests take care at any distance, or κ times the distance at
-    /// most 2²⁷ times the size of the copy. Beyond, what it grazes within its roundings may be found by one accelerator and not by another.
+    /// ([`crate::shapes::triangle::EdgeRay::T_ERROR`]), and for a ray's own roundings, 8uκ of how far it comes. So
+    /// whatever a ray hits as it is taken back, it meets in the box too, if κ is at most 16, of which box tests take
+    /// care at any distance, or κ times the distance at most 2²⁷ times the size of the copy. Beyond, what it grazes
+    /// within its roundings may be found by one accelerator and not by another.
     pub fn around(&self, bounds: &Bounds) -> Option<Bounds> {
         Some(carried(&self.rows()?, self.shift, bounds))
     }
 
     /// A point of the group's surface in the space that it is put into; none if there is none to be told.
     ///
-    /// With M the size of what it stands on, which the error of a point tells (8ε M of a triangle, as much as the coordinates of a point
-    /// itself at least), the point errs by what it was off before, by the residual, and by the roundings here. A ray that leaves is taken
-    /// back with an error of 8uκ |L| M along the surface's extent: 32uκ |L| M are allowed for all of it.
+    /// With M the size of what it stands on, which the error of a point tells (8ε M of a triangle, as much as the
+    /// coordinates of a point itself at least), the point errs by what it was off before, by the residual, and by the
+    /// roundings here. A ray that leaves is taken back with an error of 8uκ |L| M along the surface's extent: 32uκ |L|
+    /// M are allowed for all of it.
     pub fn point(&self, point: &SurfacePoint) -> Option<SurfacePoint> {
         let rows = self.rows()?;
         let kappa = condition(&rows, &self.inverse);
@@ -165,7 +169,8 @@ impl Pose {
         })
     }
 
-    /// How many directions about one of the group's space there are to one of the space that it is put into, which is unit.
+    /// How many directions about one of the group's space there are to one of the space that it is put into, which is
+    /// unit.
     pub(in crate::scene) fn crowding(&self, direction: DVec3) -> f64 {
         let [a, b, c] = self.inverse;
         a.dot(b.cross(c)).abs() / times(&self.inverse, direction).length().powi(3)

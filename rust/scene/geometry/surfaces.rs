@@ -60,7 +60,8 @@ impl Surfaces {
         self.numbers.binary_search(&number).ok().map(|i| self.shapes[i].as_ref())
     }
 
-    /// Memory held, without that of shapes themselves, and without groups that were `seen`; those here are from then on.
+    /// Memory held, without that of shapes themselves, and without groups that were `seen`; those here are from then
+    /// on.
     pub fn bytes(&self, seen: &mut Vec<*const Group>) -> usize {
         let of_copies = |(_, copies): &(u32, Copies)| copies.bytes() + copies.group().bytes(seen);
         size_of_val(self.numbers.as_slice())

@@ -64,7 +64,8 @@ impl LightBounds {
 
     /// About what all of it brings to a receiver; 0 only if it brings nothing.
     ///
-    /// As if all were at the middle, but facing the receiver as much as any of it can, and as far above the receiver's horizon.
+    /// As if all were at the middle, but facing the receiver as much as any of it can, and as far above the receiver's
+    /// horizon.
     #[inline]
     pub fn importance(&self, receiver: &Receiver) -> f64 {
         let way = receiver.position - self.centre();
@@ -73,7 +74,8 @@ impl LightBounds {
             // Within the ball around the box, all ways to it are possible.
             return if radius > 0.0 { self.intensity / radius } else { 0.0 };
         }
-        // Sines and cosines are taken times the distance, so that they need no quotient, and their roots not wait for each other.
+        // Sines and cosines are taken times the distance, so that they need no quotient, and their roots not wait for
+        // each other.
         let inverse = 1.0 / square;
         let (sin_ball, cos_ball) = (radius.sqrt(), (square - radius).sqrt());
         let to_ball = |sin: f64, cos: f64| {
@@ -101,9 +103,9 @@ impl LightBounds {
         importance
     }
 
-    /// The cost of a part of a tree, up to what is the same for all: intensity times the area that it takes, times the directions that it
-    /// shines to (Conty Estevez and Kulla, 2018, their equation 1). The area is that of the ball around the box, as boxes of lights in a
-    /// row have none.
+    /// The cost of a part of a tree, up to what is the same for all: intensity times the area that it takes, times the
+    /// directions that it shines to (Conty Estevez and Kulla, 2018, their equation 1). The area is that of the ball
+    /// around the box, as boxes of lights in a row have none.
     pub fn cost(&self) -> f64 {
         let cone = self.cos_cone.clamp(-1.0, 1.0).acos();
         let (sin, cos) = cone.sin_cos();

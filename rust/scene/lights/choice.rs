@@ -26,8 +26,8 @@ pub(super) enum Choice {
 /// The greatest power that is told from greater ones: the sum of as many as there can be is still finite.
 pub(super) const MOST: f64 = 1e290;
 
-/// From so many lights on there is a tree: among three lamps over a floor it already takes most of the variance of the choice away, for
-/// two importances a level. The two triangles of a single lamp are seen alike, and have none.
+/// From so many lights on there is a tree: among three lamps over a floor it already takes most of the variance of the
+/// choice away, for two importances a level. The two triangles of a single lamp are seen alike, and have none.
 const MANY: usize = 3;
 
 impl Strength {

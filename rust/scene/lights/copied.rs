@@ -9,9 +9,9 @@ use crate::math::{DVec3, Hit, Ray};
 use crate::scene::{Copies, Geometry, Group};
 use crate::shapes::Bounds;
 
-/// The primitives that shine in copies of groups, each one of its own as a light: of copies that stand still, and of what stands in a
-/// group itself, not in copies within it. Where there are more than [`Copied::MOST`], those of the shapes that come last are left to rays
-/// that meet them by chance, as are all others.
+/// The primitives that shine in copies of groups, each one of its own as a light: of copies that stand still, and of
+/// what stands in a group itself, not in copies within it. Where there are more than [`Copied::MOST`], those of the
+/// shapes that come last are left to rays that meet them by chance, as are all others.
 #[derive(Debug, Default)]
 pub(super) struct Copied {
     /// The shapes that are copies whose lights are here, in order.
@@ -110,8 +110,8 @@ impl Copied {
         }
     }
 
-    /// The density with which [`Copied::sample`] draws the direction of a ray that meets a light under the cosine of an angle to its
-    /// normal.
+    /// The density with which [`Copied::sample`] draws the direction of a ray that meets a light under the cosine of an
+    /// angle to its normal.
     pub fn pdf(
         &self,
         light: usize,

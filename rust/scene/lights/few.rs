@@ -18,7 +18,8 @@ pub(super) struct Few {
 /// One within the scene.
 #[derive(Clone, Copy, Debug)]
 struct Lamp {
-    /// Its number, or of the two triangles that make a mesh their numbers: of these one is drawn, so that a panel is asked once.
+    /// Its number, or of the two triangles that make a mesh their numbers: of these one is drawn, so that a panel is
+    /// asked once.
     numbers: [u32; 2],
     /// How often it is the first.
     share: f64,
@@ -48,12 +49,13 @@ impl Lamp {
 }
 
 impl Few {
-    /// The most that are asked one by one: over metal of alpha 0.1, error times time is by that half as great among 4, 8 and 12 panels, and
-    /// 0.6 times as great among 16. Among more, four candidates of one choice each were tried, of which one got the shadow ray: for half the error
-    /// they took twice the time.
+    /// The most that are asked one by one: over metal of alpha 0.1, error times time is by that half as great among 4,
+    /// 8 and 12 panels, and 0.6 times as great among 16. Among more, four candidates of one choice each were tried, of
+    /// which one got the shadow ray: for half the error they took twice the time.
     const MOST: usize = 16;
 
-    /// Those of some strengths within a scene, of which the first of some are the first of two triangles of a mesh; and so many outside.
+    /// Those of some strengths within a scene, of which the first of some are the first of two triangles of a mesh; and
+    /// so many outside.
     pub fn new(strengths: &[Strength], pairs: &[u32], outside: usize) -> Self {
         let mut within = Vec::new();
         let mut number = 0;
@@ -82,15 +84,15 @@ impl Few {
 
 /// What is asked of lights one by one. Densities are each light's own, with no choice among lights in them.
 impl Lights {
-    /// How many lights [`Lights::sample_one`] knows, a panel of two triangles being one. 0 where it would be one, which needs no choice, or where
-    /// they are more than few.
+    /// How many lights [`Lights::sample_one`] knows, a panel of two triangles being one. 0 where it would be one, which
+    /// needs no choice, or where they are more than few.
     #[inline]
     pub fn few(&self) -> u32 {
         self.few.count
     }
 
-    /// Draws light of one of the few that reaches a receiver: `choice`, uniform in [0, 1), whether it is asked at all (only asked for where it
-    /// is not always), `u` for the direction. `None` if the draw gives none.
+    /// Draws light of one of the few that reaches a receiver: `choice`, uniform in [0, 1), whether it is asked at all
+    /// (only asked for where it is not always), `u` for the direction. `None` if the draw gives none.
     #[inline]
     pub fn sample_one(
         &self,
@@ -120,8 +122,8 @@ impl Lights {
         }
     }
 
-    /// The density with which [`Lights::sample_one`] draws, for a receiver, the direction of a ray from there, of the light that it meets:
-    /// as [`Lights::surface_pdf`] has it, without the choice.
+    /// The density with which [`Lights::sample_one`] draws, for a receiver, the direction of a ray from there, of the
+    /// light that it meets: as [`Lights::surface_pdf`] has it, without the choice.
     #[inline]
     pub fn own_pdf(&self, geometry: &Geometry, receiver: &Receiver, ray: &Ray, hit: &Hit, cosine: f64) -> f64 {
         let Some(number) = self.number_of(geometry, hit) else { return 0.0 };
@@ -129,8 +131,8 @@ impl Lights {
         share.map_or(0.0, |share| share * self.pdf_within(number, geometry, receiver, (ray, hit), cosine))
     }
 
-    /// Radiance that comes from outside along a unit direction to a receiver, that of each light there times a weight, by the density with which
-    /// [`Lights::sample_one`] draws the direction.
+    /// Radiance that comes from outside along a unit direction to a receiver, that of each light there times a weight,
+    /// by the density with which [`Lights::sample_one`] draws the direction.
     #[inline]
     pub fn outside_weighed(&self, receiver: &Receiver, direction: DVec3, weight: impl Fn(f64) -> f64) -> Rgb {
         let each = self.outside.lights().iter().enumerate().map(|(one, light)| (one, light, light.outside(direction)));

@@ -57,8 +57,9 @@ pub enum Reach {
     Outside {
         /// Its radiance integrated over all directions, a mean of the channels.
         flux: f64,
-        /// The share of all directions that it effectively comes from, (∫L)² / (4π ∫L²): 1 of the same light from everywhere, 0 of that
-        /// from a single direction. The less it is, the less often does scattering find the light.
+        /// The share of all directions that it effectively comes from, (∫L)² / (4π ∫L²): 1 of the same light from
+        /// everywhere, 0 of that from a single direction. The less it is, the less often does scattering find the
+        /// light.
         spread: f64,
     },
 }
@@ -71,18 +72,18 @@ pub trait Light: Debug + Send + Sync {
     /// From where it shines. The power or flux of one that is dark is 0, and it is never asked for a sample.
     fn reach(&self) -> Reach;
 
-    /// Draws light that reaches a receiver, as if it were the only light, by two numbers in [0, 1). `None` if the draw gives none. Light
-    /// below a receiver's horizon need not be left out.
+    /// Draws light that reaches a receiver, as if it were the only light, by two numbers in [0, 1). `None` if the draw
+    /// gives none. Light below a receiver's horizon need not be left out.
     fn sample(&self, receiver: &Receiver, u: [f64; 2]) -> Option<LightSample>;
 
-    /// The radiance that comes from outside along a direction, which is unit and points there; none of a light that is found by its
-    /// samples only.
+    /// The radiance that comes from outside along a direction, which is unit and points there; none of a light that is
+    /// found by its samples only.
     fn outside(&self, _direction: DVec3) -> Rgb {
         Rgb::ZERO
     }
 
-    /// The density in solid angle with which [`Light::sample`] draws such a direction: above 0 wherever [`Light::outside`] is not black
-    /// and the receiver's horizon is not above.
+    /// The density in solid angle with which [`Light::sample`] draws such a direction: above 0 wherever
+    /// [`Light::outside`] is not black and the receiver's horizon is not above.
     fn outside_pdf(&self, _receiver: &Receiver, _direction: DVec3) -> f64 {
         0.0
     }

@@ -8,13 +8,14 @@ use crate::optics::Rgb;
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
-/// An equirectangular picture all around a scene: its middle is seen along −z, its top at +y, and to the right of the middle lies +x, in
-/// a space of its own.
+/// An equirectangular picture all around a scene: its middle is seen along −z, its top at +y, and to the right of the
+/// middle lies +x, in a space of its own.
 ///
-/// Between the middles of texels, radiance is interpolated, around the picture's sides too; at its top and bottom it goes on as the last
-/// row is. A cell between four middles is drawn by the light from it, and a point in the cell by what is interpolated there: exactly so across,
-/// and downwards by a line between the products of radiance and sine of the colatitude at either end. So radiance over density varies by a
-/// small factor in one cell, and by colour: a bright texel is never met by chance with a density that does not know of it.
+/// Between the middles of texels, radiance is interpolated, around the picture's sides too; at its top and bottom it
+/// goes on as the last row is. A cell between four middles is drawn by the light from it, and a point in the cell by
+/// what is interpolated there: exactly so across, and downwards by a line between the products of radiance and sine of
+/// the colatitude at either end. So radiance over density varies by a small factor in one cell, and by colour: a bright
+/// texel is never met by chance with a density that does not know of it.
 #[derive(Clone, Debug)]
 pub struct EnvironmentMap {
     picture: Arc<Picture>,
@@ -31,7 +32,8 @@ pub struct EnvironmentMap {
 }
 
 impl EnvironmentMap {
-    /// A picture whose radiance, W·sr⁻¹·m⁻², is `scale` times its colours, turned into the world by an orthonormal matrix of three rows.
+    /// A picture whose radiance, W·sr⁻¹·m⁻², is `scale` times its colours, turned into the world by an orthonormal
+    /// matrix of three rows.
     pub fn new(picture: Arc<Picture>, to_world: [DVec3; 3], scale: f64) -> Self {
         let to_picture = [0, 1, 2].map(|i| DVec3::from_array(to_world.map(|row| row[i])));
         let height = picture.height();

@@ -48,8 +48,9 @@ use std::sync::Arc;
 
 /// The lights of a scene: emitting surfaces, others that stand within it, and what comes from outside.
 ///
-/// Those within are numbered: first the emitting primitives, shape after shape, then those in copies of groups, then what is no surface.
-/// One of them is chosen by its power or, where there are many, by what it brings to where it is asked for.
+/// Those within are numbered: first the emitting primitives, shape after shape, then those in copies of groups, then
+/// what is no surface. One of them is chosen by its power or, where there are many, by what it brings to where it is
+/// asked for.
 #[derive(Debug)]
 pub struct Lights {
     /// How each shape shines.
@@ -101,8 +102,8 @@ impl Lights {
         Self { emission, first, surfaces, copied, inside, choice, outside, few }
     }
 
-    /// How strong a primitive of the scene is. What no ray can hit must not shine either, and from what has no end no point can be drawn:
-    /// its light is found by rays that meet it.
+    /// How strong a primitive of the scene is. What no ray can hit must not shine either, and from what has no end no
+    /// point can be drawn: its light is found by rays that meet it.
     fn of_primitive(geometry: &Geometry, primitive: u32, emission: &Emission) -> Strength {
         let radiance = strength(emission.radiance.mean());
         let Some(shape) = geometry.shape(primitive) else {
@@ -141,7 +142,8 @@ impl Lights {
         self.outside.radiance(direction)
     }
 
-    /// Draws light that reaches a receiver: a light by `choice`, and of that a direction by `u`. `None` if the draw gives none.
+    /// Draws light that reaches a receiver: a light by `choice`, and of that a direction by `u`. `None` if the draw
+    /// gives none.
     #[inline]
     pub fn sample(&self, geometry: &Geometry, receiver: &Receiver, choice: f64, u: [f64; 2]) -> Option<LightSample> {
         let share = self.outside.share();
@@ -173,9 +175,9 @@ impl Lights {
         self.inside[number - self.copied.len()].sample(receiver, u)
     }
 
-    /// The density with which [`Lights::sample`] draws, for a receiver, the direction of a ray from there, which is unit and meets an
-    /// emitting primitive under the cosine of an angle to its normal. 0 of what shines in copies that move, or in copies of copies, or in
-    /// too many: it is never drawn, and found by rays that meet it.
+    /// The density with which [`Lights::sample`] draws, for a receiver, the direction of a ray from there, which is
+    /// unit and meets an emitting primitive under the cosine of an angle to its normal. 0 of what shines in copies that
+    /// move, or in copies of copies, or in too many: it is never drawn, and found by rays that meet it.
     #[inline]
     pub fn surface_pdf(&self, geometry: &Geometry, receiver: &Receiver, ray: &Ray, hit: &Hit, cosine: f64) -> f64 {
         let Some(choice) = &self.choice else { return 0.0 };

@@ -17,11 +17,12 @@ pub(super) struct Outside {
     own_shares: Vec<f64>,
 }
 
-/// How often the sky is chosen where there are lights inside, if it is the same everywhere. In a studio with a lamp and such a sky, shares
-/// of 0.1, 0.25, 0.5 and 0.7 gave relMSE of 1.4, 2.0, 3.9 and 7.7 thousandths.
+/// How often the sky is chosen where there are lights inside, if it is the same everywhere. In a studio with a lamp and
+/// such a sky, shares of 0.1, 0.25, 0.5 and 0.7 gave relMSE of 1.4, 2.0, 3.9 and 7.7 thousandths.
 ///
-/// What an environment sends into a scene grows with the scene's extent, and falls mostly on floors far away: chosen by its power, it
-/// would leave next to nothing for a lamp. It needs no more than a fixed share, since scattering finds it well by itself.
+/// What an environment sends into a scene grows with the scene's extent, and falls mostly on floors far away: chosen by
+/// its power, it would leave next to nothing for a lamp. It needs no more than a fixed share, since scattering finds it
+/// well by itself.
 const SHARE: f64 = 0.1;
 
 /// The share of light that comes from a single direction, which scattering never finds.
@@ -59,8 +60,8 @@ impl Outside {
         &self.lights
     }
 
-    /// How often one is asked where each of all lights is. What is found well by scattering need not be, and would take the shadow ray from
-    /// what is not.
+    /// How often one is asked where each of all lights is. What is found well by scattering need not be, and would take
+    /// the shadow ray from what is not.
     #[inline]
     pub fn own_share(&self, one: usize) -> f64 {
         self.own_shares[one]
@@ -85,7 +86,8 @@ impl Outside {
         each.map(|(light, probability)| probability * light.outside_pdf(receiver, direction)).sum()
     }
 
-    /// Draws light from one of them. Where several may have been the one, the density is that of all, and so is the radiance.
+    /// Draws light from one of them. Where several may have been the one, the density is that of all, and so is the
+    /// radiance.
     #[inline]
     pub fn sample(&self, receiver: &Receiver, mut choice: f64, u: [f64; 2]) -> Option<LightSample> {
         let mut chosen = 0;

@@ -8,8 +8,8 @@ use std::sync::Arc;
 
 /// A slide projector: a point from which light goes through a picture.
 ///
-/// On a screen at right angles to its axis the picture is as bright at the corners as in the middle: the intensity goes with the inverse
-/// cube of the cosine to the axis, which makes up for the distance and the slant.
+/// On a screen at right angles to its axis the picture is as bright at the corners as in the middle: the intensity goes
+/// with the inverse cube of the cosine to the axis, which makes up for the distance and the slant.
 #[derive(Clone, Debug)]
 pub struct Projector {
     picture: Arc<Picture>,
@@ -23,8 +23,8 @@ pub struct Projector {
 }
 
 impl Projector {
-    /// Throws a picture from a position towards another, upright as `up` has it, under a vertical angle of `fov` radians. Between the
-    /// middles of its texels the picture is interpolated.
+    /// Throws a picture from a position towards another, upright as `up` has it, under a vertical angle of `fov`
+    /// radians. Between the middles of its texels the picture is interpolated.
     ///
     /// # Errors
     /// If the positions are one, or `up` points along their line; in a few words.
@@ -75,8 +75,8 @@ impl Light for Projector {
         }
     }
 
-    /// Over the plane at distance 1, the inverse cube of the cosine is what a solid angle takes there: the power is the mean of the
-    /// picture, but for its edges, times its area there.
+    /// Over the plane at distance 1, the inverse cube of the cosine is what a solid angle takes there: the power is the
+    /// mean of the picture, but for its edges, times its area there.
     fn reach(&self) -> Reach {
         let [x, y] = self.half;
         let (width, height) = (self.picture.width(), self.picture.height());

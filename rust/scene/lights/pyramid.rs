@@ -1,9 +1,9 @@
 //! Cells of a grid, drawn by their weights.
 
-/// Sums of the weights of a grid's cells, over 2 × 2 of them, 4 × 4, and so on up to all. Going down again, a cell is drawn from two
-/// numbers that are used up one choice at a time (Clarberg et al., "Wavelet Importance Sampling", 2005, in its simplest form): numbers
-/// that are near each other give cells that are, so that what is even about a set of numbers stays so. The weights themselves are asked
-/// for, so that it takes no more than 8/3 bytes a cell.
+/// Sums of the weights of a grid's cells, over 2 × 2 of them, 4 × 4, and so on up to all. Going down again, a cell is
+/// drawn from two numbers that are used up one choice at a time (Clarberg et al., "Wavelet Importance Sampling", 2005,
+/// in its simplest form): numbers that are near each other give cells that are, so that what is even about a set of
+/// numbers stays so. The weights themselves are asked for, so that it takes no more than 8/3 bytes a cell.
 #[derive(Clone, Debug)]
 pub struct Pyramid {
     size: [usize; 2],
@@ -53,8 +53,8 @@ impl Pyramid {
         self.total
     }
 
-    /// A cell with probability weight / total, and what is left of the two numbers, which is even in it. The weights are those that it
-    /// was made with.
+    /// A cell with probability weight / total, and what is left of the two numbers, which is even in it. The weights
+    /// are those that it was made with.
     #[inline]
     pub fn sample(&self, [mut u, mut v]: [f64; 2], weight: impl Fn(usize, usize) -> f64) -> ([usize; 2], [f64; 2]) {
         let (mut i, mut j) = (0, 0);

@@ -7,8 +7,8 @@ use crate::math::DVec3;
 pub struct Receiver {
     /// Where it is.
     pub position: DVec3,
-    /// The unit shading normal on the side that light counts on; zero where light from everywhere does, as at surfaces that let light
-    /// through, and in media.
+    /// The unit shading normal on the side that light counts on; zero where light from everywhere does, as at surfaces
+    /// that let light through, and in media.
     pub normal: DVec3,
 }
 

@@ -29,8 +29,8 @@ pub struct SpotLight {
 }
 
 impl SpotLight {
-    /// A spot at a position that shines along an axis of any length but 0 with a radiant intensity, W·sr⁻¹, into directions within
-    /// `angle` of it, radians, in the last `falloff` of which it falls off.
+    /// A spot at a position that shines along an axis of any length but 0 with a radiant intensity, W·sr⁻¹, into
+    /// directions within `angle` of it, radians, in the last `falloff` of which it falls off.
     pub fn new(position: DVec3, axis: DVec3, intensity: Rgb, angle: f64, falloff: f64) -> Self {
         let axis = (axis / axis.abs().max_element()).normalize();
         // A cosine of next to nothing is 0 at a right angle: what is in its plane is not lit.
@@ -78,9 +78,9 @@ impl Light for SpotLight {
         }
     }
 
-    /// The power is exact. Of the smooth falloff, which is odd about its middle, the mean over cosines is a half; of the linear
-    /// one, ∫ (b − θ) / (b − a) sin θ dθ from a to b is cos a less the mean of cos θ, which is written so that it keeps its digits
-    /// however near a and b are.
+    /// The power is exact. Of the smooth falloff, which is odd about its middle, the mean over cosines is a half; of
+    /// the linear one, ∫ (b − θ) / (b − a) sin θ dθ from a to b is cos a less the mean of cos θ, which is written so
+    /// that it keeps its digits however near a and b are.
     fn reach(&self) -> Reach {
         let intensity = strength(self.intensity);
         let [inner, outer] = self.cosines;

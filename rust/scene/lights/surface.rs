@@ -10,7 +10,8 @@ use crate::scene::{Departure, Geometry, ShadingPoint, SurfacePoint};
 use crate::shapes::{Drawn, Seen, Shape};
 
 impl Emission {
-    /// What a surface sends back along a ray of unit direction that meets it; `width` is that of the footprint there, if anybody asks.
+    /// What a surface sends back along a ray of unit direction that meets it; `width` is that of the footprint there,
+    /// if anybody asks.
     #[inline]
     pub fn sent(
         &self,
@@ -96,8 +97,8 @@ pub(super) fn sample_primitive(
     }
 }
 
-/// The density with which [`sample_primitive`] draws the direction of a ray that meets the primitive under the cosine of an angle to its
-/// normal.
+/// The density with which [`sample_primitive`] draws the direction of a ray that meets the primitive under the cosine
+/// of an angle to its normal.
 #[inline]
 pub(super) fn primitive_pdf(geometry: &Geometry, receiver: &Receiver, ray: &Ray, hit: &Hit, cosine: f64) -> f64 {
     match geometry.shape(hit.primitive) {

@@ -3,8 +3,9 @@
 use super::{LightBounds, Receiver};
 use crate::math::DVec3;
 
-/// A binary tree over lights (Conty Estevez and Kulla, 2018; with pdfs as in Pharr, Jakob and Humphreys, "Physically Based Rendering", 4th
-/// edition, 2023, 12.6.3): from the root on, one of two children is taken with a probability that goes by what each may bring.
+/// A binary tree over lights (Conty Estevez and Kulla, 2018; with pdfs as in Pharr, Jakob and Humphreys, "Physically
+/// Based Rendering", 4th edition, 2023, 12.6.3): from the root on, one of two children is taken with a probability that
+/// goes by what each may bring.
 #[derive(Debug)]
 pub struct LightTree {
     /// Depth first: the first child of an inner node is the next one.
@@ -27,7 +28,8 @@ impl Node {
 /// The trail of a light that is not in the tree.
 const NOWHERE: u64 = u64::MAX;
 
-/// Down to this depth, parts are split by their cost; from there on by halves, of which there are 31 at most: a trail has 64 bits.
+/// Down to this depth, parts are split by their cost; from there on by halves, of which there are 31 at most: a trail
+/// has 64 bits.
 const DEEPEST_SPLIT: u32 = 28;
 
 /// Into how many slices a part is cut to find where to split it.
@@ -79,7 +81,8 @@ impl LightTree {
         self.nodes[here].bounds
     }
 
-    /// Chooses a light for a receiver by a number in [0, 1), and tells its probability. `None` if none brings anything there.
+    /// Chooses a light for a receiver by a number in [0, 1), and tells its probability. `None` if none brings anything
+    /// there.
     #[inline]
     pub fn sample(&self, receiver: &Receiver, mut u: f64) -> Option<(usize, f64)> {
         let (mut here, mut probability) = (0, 1.0);

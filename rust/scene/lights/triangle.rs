@@ -4,10 +4,10 @@ use crate::math::DVec3;
 use crate::math::turn::sin_cos;
 use crate::sampling::warp;
 
-/// A triangle as it is seen from a place. Where it is near, directions to it are drawn evenly by solid angle, after Arvo ("Stratified
-/// Sampling of Spherical Triangles", 1995) but without an arc cosine: all is found from half angles, and from edges rather than from
-/// differences of directions, so that a thin triangle keeps its digits as well as a fat one. Where it is distant, or seen next to
-/// edge-on, points are drawn by area, which is as good there and cheaper.
+/// A triangle as it is seen from a place. Where it is near, directions to it are drawn evenly by solid angle, after
+/// Arvo ("Stratified Sampling of Spherical Triangles", 1995) but without an arc cosine: all is found from half angles,
+/// and from edges rather than from differences of directions, so that a thin triangle keeps its digits as well as a fat
+/// one. Where it is distant, or seen next to edge-on, points are drawn by area, which is as good there and cheaper.
 pub(super) struct SeenTriangle {
     /// The first corner, and the edges from it to the others, as seen from the place.
     corner: DVec3,
@@ -29,12 +29,12 @@ struct Spherical {
 }
 
 impl SeenTriangle {
-    /// How many times as far as its longer edge the first corner of a distant triangle is, at least. Of a point drawn by area the
-    /// distance then varies by a factor of 3 at most.
+    /// How many times as far as its longer edge the first corner of a distant triangle is, at least. Of a point drawn
+    /// by area the distance then varies by a factor of 3 at most.
     const DISTANT: f64 = 2.0;
 
-    /// The least solid angle of a near triangle. So little is seen edge-on; the angle between two edges that are nearly one would lose
-    /// its digits, of which it has 7 here at least.
+    /// The least solid angle of a near triangle. So little is seen edge-on; the angle between two edges that are nearly
+    /// one would lose its digits, of which it has 7 here at least.
     const THIN: f64 = 1e-9;
 
     /// As seen from a place, with `area` being the cross product of its edges.
@@ -66,7 +66,8 @@ impl SeenTriangle {
         }
     }
 
-    /// The density in solid angle of a direction that meets it at a distance, under the cosine of an angle to its normal.
+    /// The density in solid angle of a direction that meets it at a distance, under the cosine of an angle to its
+    /// normal.
     #[inline]
     pub fn pdf(&self, distance: f64, cosine: f64) -> f64 {
         match &self.spherical {
@@ -95,7 +96,8 @@ impl Spherical {
         let corners = [corner, corner + edges[0], corner + edges[1]];
         let lengths = corners.map(DVec3::length);
         let [a, b, c] = [0, 1, 2].map(|i| corners[i] / lengths[i]);
-        // tan(Ω/2) by van Oosterom and Strackee ("The Solid Angle of a Plane Triangle", 1983), its numerator by the plane's distance.
+        // tan(Ω/2) by van Oosterom and Strackee ("The Solid Angle of a Plane Triangle", 1983), its numerator by the
+        // plane's distance.
         let determinant = corner.dot(area).abs() / (lengths[0] * lengths[1] * lengths[2]);
         let rest = 1.0 + a.dot(b) + b.dot(c) + c.dot(a);
         let solid_angle = 2.0 * determinant.atan2(rest);
@@ -105,13 +107,14 @@ impl Spherical {
         solid_angle.is_finite().then_some(Self { a, b, chord, solid_angle })
     }
 
-    /// A direction drawn evenly. The first number takes a part of the angle, bounded by an arc from `b` to a point `q` of the arc from `a`
-    /// to the third corner: with `t` the unit tangent of that arc at `a`, and φ the way to `q` along it,
+    /// A direction drawn evenly. The first number takes a part of the angle, bounded by an arc from `b` to a point `q`
+    /// of the arc from `a` to the third corner: with `t` the unit tangent of that arc at `a`, and φ the way to `q`
+    /// along it,
     ///
     /// tan(Ω'/2) = det(a, b, q) / (1 + a·b + b·q + q·a)  for  q = a cos φ + t sin φ
     ///
-    /// is solved by tan(φ/2) = tan(Ω'/2) (1 + a·b) / (det(a, b, t) − tan(Ω'/2) b·t). The second number goes along the arc from `b` to `q`,
-    /// evenly by its height 1 − cos.
+    /// is solved by tan(φ/2) = tan(Ω'/2) (1 + a·b) / (det(a, b, t) − tan(Ω'/2) b·t). The second number goes along the
+    /// arc from `b` to `q`, evenly by its height 1 − cos.
     #[inline]
     fn sample(&self, edge: DVec3, u: [f64; 2]) -> DVec3 {
         let Self { a, b, chord, solid_angle } = *self;

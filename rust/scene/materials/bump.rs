@@ -8,8 +8,8 @@ use crate::scene::ShadingPoint;
 use crate::scene::textures::{Needs, TexturePoint, Value};
 use std::sync::Arc;
 
-/// A material on a surface that looks as if it were raised, by a height at each point (Blinn, "Simulation of Wrinkled Surfaces", 1978).
-/// What is hit is the surface as it was: only its normals change.
+/// A material on a surface that looks as if it were raised, by a height at each point (Blinn, "Simulation of Wrinkled
+/// Surfaces", 1978). What is hit is the surface as it was: only its normals change.
 #[derive(Clone, Debug)]
 pub struct BumpMap {
     /// The material.
@@ -30,8 +30,8 @@ pub(super) fn on_its_side(normal: DVec3, geometric: DVec3) -> DVec3 {
 }
 
 impl BumpMap {
-    /// How far apart heights are compared, in texture coordinates, where the width of rays is not known: the mean slope over this is off by
-    /// its square.
+    /// How far apart heights are compared, in texture coordinates, where the width of rays is not known: the mean slope
+    /// over this is off by its square.
     const STEP: f64 = 5e-4;
 
     /// How far apart they are at least, so that enough of their digits differ.

@@ -10,7 +10,8 @@ use std::sync::Arc;
 
 /// A share of one material, and the rest of another, finely mixed.
 ///
-/// What fills it is what fills the first of them that is filled; where they have normals of their own, these are mixed too.
+/// What fills it is what fills the first of them that is filled; where they have normals of their own, these are mixed
+/// too.
 #[derive(Clone, Debug)]
 pub struct MixMaterial {
     /// The one.

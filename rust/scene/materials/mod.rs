@@ -53,8 +53,8 @@ pub trait Material: Debug + Send + Sync {
     /// What it must know of a point.
     fn needs(&self) -> Needs;
 
-    /// How it scatters where nothing else is around, of index of refraction 1, if that is the same at every point and on both sides, and
-    /// it has neither a normal nor a tangent of its own.
+    /// How it scatters where nothing else is around, of index of refraction 1, if that is the same at every point and
+    /// on both sides, and it has neither a normal nor a tangent of its own.
     fn constant(&self) -> Option<Bsdf> {
         None
     }
@@ -82,7 +82,8 @@ pub trait Material: Debug + Send + Sync {
         None
     }
 
-    /// Where the x axis of its shading frame is to point, if that makes a difference: about along a vector of any length.
+    /// Where the x axis of its shading frame is to point, if that makes a difference: about along a vector of any
+    /// length.
     fn tangent(&self, _at: &ShadingPoint) -> Option<DVec3> {
         None
     }
@@ -92,9 +93,9 @@ pub trait Material: Debug + Send + Sync {
         None
     }
 
-    /// The share of an even light from nowhere that it reflects: the ambient coefficient of the classic models of light (Phong,
-    /// "Illumination for Computer Generated Pictures", 1975). Where these have no word for it, that of light from everywhere which it
-    /// does not scatter into single directions.
+    /// The share of an even light from nowhere that it reflects: the ambient coefficient of the classic models of light
+    /// (Phong, "Illumination for Computer Generated Pictures", 1975). Where these have no word for it, that of light
+    /// from everywhere which it does not scatter into single directions.
     fn ambient(&self, at: &ShadingPoint) -> Rgb {
         self.scattering(at).matt_albedo()
     }
@@ -105,7 +106,7 @@ pub trait Material: Debug + Send + Sync {
 pub struct Interior {
     /// Its index of refraction.
     pub ior: f64,
-    /// Where several overlap, that of the greatest priority is there (Schmidt and Budge, "Simple Nested Dielectrics in Ray Traced
-    /// Images", 2002).
+    /// Where several overlap, that of the greatest priority is there (Schmidt and Budge, "Simple Nested Dielectrics in
+    /// Ray Traced Images", 2002).
     pub priority: i32,
 }

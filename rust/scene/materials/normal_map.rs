@@ -9,7 +9,8 @@ use crate::scene::ShadingPoint;
 use crate::scene::textures::{Needs, TexturePoint, Value};
 use std::sync::Arc;
 
-/// A material whose normals a texture turns: red, green and blue from 0 to 1 are −1 to 1 along u, along v and along the normal, as in glTF.
+/// A material whose normals a texture turns: red, green and blue from 0 to 1 are −1 to 1 along u, along v and along the
+/// normal, as in glTF.
 #[derive(Clone, Debug)]
 pub struct NormalMap {
     /// The material.

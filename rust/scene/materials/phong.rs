@@ -37,7 +37,8 @@ pub(super) fn shares(diffuse: &Value, specular: &Value, exponent: &Value, ambien
     }
 }
 
-/// The classic shares at a point. Where textures say more than 1 together, highlights leave the rest to what is diffuse.
+/// The classic shares at a point. Where textures say more than 1 together, highlights leave the rest to what is
+/// diffuse.
 pub(super) fn parts(point: &TexturePoint, diffuse: &Value, specular: &Value) -> (Rgb, Rgb) {
     let specular = specular.at(point);
     (diffuse.at(point).min(Rgb::ONE - specular), specular)

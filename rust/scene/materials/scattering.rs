@@ -84,8 +84,8 @@ impl Scattering {
         }
     }
 
-    /// The scattering function times |cos θ| of `wi`, and the density with which [`Scattering::sample`] draws `wi`, both without what
-    /// has a single direction.
+    /// The scattering function times |cos θ| of `wi`, and the density with which [`Scattering::sample`] draws `wi`,
+    /// both without what has a single direction.
     #[inline]
     pub fn evaluate(&self, wo: DVec3, wi: DVec3) -> (Rgb, f64) {
         match self {
@@ -102,8 +102,8 @@ impl Scattering {
         }
     }
 
-    /// Draws where the light comes from: `choice` among the parts (only asked for when there are several), `u` for the direction.
-    /// `None` if the draw scatters nothing.
+    /// Draws where the light comes from: `choice` among the parts (only asked for when there are several), `u` for the
+    /// direction. `None` if the draw scatters nothing.
     #[inline]
     pub fn sample(&self, wo: DVec3, choice: impl FnOnce() -> f64, u: [f64; 2]) -> Option<BsdfSample> {
         match self {

@@ -289,7 +289,8 @@ fn a_raised_sphere_keeps_its_normals() {
 
 #[test]
 fn bumps_of_space_follow_it() {
-    // Heights by the position, where texture coordinates have another scale: their normals are those of the noise's slope.
+    // Heights by the position, where texture coordinates have another scale: their normals are those of the noise's
+    // slope.
     let pattern = Noise { domain: Domain::Object(ObjectTransform::default()), seed: 5 };
     let height = Between { a: 0.0.into(), b: 1.0.into(), pattern };
     let value = |x: f64, y: f64| height.at(&at(x, y).texture).x;

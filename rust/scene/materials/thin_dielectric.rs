@@ -6,7 +6,8 @@ use crate::optics::{Bsdf, ThinDielectric};
 use crate::scene::ShadingPoint;
 use crate::scene::textures::Needs;
 
-/// A clear sheet too thin to bend what is seen through it: a window, a soap bubble without colours. It encloses nothing.
+/// A clear sheet too thin to bend what is seen through it: a window, a soap bubble without colours. It encloses
+/// nothing.
 #[derive(Clone, Debug)]
 pub struct ThinDielectricMaterial {
     /// The index of refraction within the sheet.

@@ -13,7 +13,8 @@ pub struct Homogeneous {
 }
 
 impl Homogeneous {
-    /// A medium by its coefficients of absorption and scattering, each per unit of length. `None` if one is negative or not finite.
+    /// A medium by its coefficients of absorption and scattering, each per unit of length. `None` if one is negative or
+    /// not finite.
     pub fn new(absorption: Rgb, scattering: Rgb, phase: HenyeyGreenstein) -> Option<Self> {
         let is_coefficient = |c: Rgb| c.is_finite() && c.cmpge(Rgb::ZERO).all();
         (is_coefficient(absorption) && is_coefficient(scattering)).then_some(Self { absorption, scattering, phase })
@@ -35,8 +36,8 @@ impl Medium for Homogeneous {
         self.left(ray.t_max - ray.t_min)
     }
 
-    /// By the extinction of one channel, of which each is as likely: the weight is over the mean density of all three, and so at most 3
-    /// however much they differ.
+    /// By the extinction of one channel, of which each is as likely: the weight is over the mean density of all three,
+    /// and so at most 3 however much they differ.
     fn sample_distance(&self, ray: &Ray, choice: f64, u: f64) -> MediumSample {
         let extinction = self.extinction();
         let chosen = extinction[((choice * 3.0) as usize).min(2)];
@@ -85,8 +86,8 @@ mod tests {
 
     #[test]
     fn draws_give_what_gets_through_and_what_is_scattered() {
-        // What gets through is e^-τ, what is scattered once the albedo times the rest, channel by channel. Four standard errors of
-        // the mean, which chance exceeds once in 16,000 cases; 18 cases.
+        // What gets through is e^-τ, what is scattered once the albedo times the rest, channel by channel. Four
+        // standard errors of the mean, which chance exceeds once in 16,000 cases; 18 cases.
         let albedo = Rgb::new(0.2, 0.9, 0.5);
         for depth in [1e-6, 0.3, 1e3] {
             let extinction = Rgb::new(0.5, 1.0, 2.0) * depth;

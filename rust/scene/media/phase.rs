@@ -3,7 +3,8 @@
 use crate::math::{DVec3, Frame};
 use std::f64::consts::{FRAC_1_PI, TAU};
 
-/// The phase function of Henyey and Greenstein ("Diffuse Radiation in the Galaxy", 1941): by one number, the mean cosine.
+/// The phase function of Henyey and Greenstein ("Diffuse Radiation in the Galaxy", 1941): by one number, the mean
+/// cosine.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HenyeyGreenstein {
     g: f64,

@@ -3,10 +3,11 @@
 use super::waves::pulse;
 use super::{Domain, Needs, Pattern, TexturePoint};
 
-/// Unit cells that are 0 and 1 in turn along each axis, averaged over a box in closed form: far away they become even grey.
+/// Unit cells that are 0 and 1 in turn along each axis, averaged over a box in closed form: far away they become even
+/// grey.
 ///
-/// In texture coordinates these are squares, and the one at the lower left is 0; in space they are cubes, and a surface that lies exactly
-/// between two layers has no say in which it shows.
+/// In texture coordinates these are squares, and the one at the lower left is 0; in space they are cubes, and a surface
+/// that lies exactly between two layers has no say in which it shows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Checker(pub Domain);
 

@@ -24,8 +24,8 @@ impl Default for Octaves {
 }
 
 impl Octaves {
-    /// Widths, in cells, from which on a noise fades, and at which it is gone. A noise has no frequencies to speak of above one a cell,
-    /// which two samples a cell still tell.
+    /// Widths, in cells, from which on a noise fades, and at which it is gone. A noise has no frequencies to speak of
+    /// above one a cell, which two samples a cell still tell.
     const FADES: [f64; 2] = [0.5, 1.0];
 
     /// The sum at a point, of which neighbours are `size` apart: what is finer is left out, as its mean is 0.
@@ -47,7 +47,8 @@ impl Octaves {
         sum
     }
 
-    /// How fast the sum changes with the point, as a root mean square, of what is left at this size. A noise changes by about 1 a cell.
+    /// How fast the sum changes with the point, as a root mean square, of what is left at this size. A noise changes by
+    /// about 1 a cell.
     #[inline]
     pub(super) fn slope(&self, size: f64) -> f64 {
         let (mut squares, mut each, mut frequency) = (0.0, 1.0, 1.0);
@@ -67,8 +68,8 @@ impl Octaves {
     }
 }
 
-/// Fractional Brownian motion: clouds, stains, terrain (Mandelbrot and Van Ness, 1968; as a sum of noises Perlin, "An Image Synthesizer",
-/// 1985). A sum beyond ±1, which is rare, counts as that.
+/// Fractional Brownian motion: clouds, stains, terrain (Mandelbrot and Van Ness, 1968; as a sum of noises Perlin, "An
+/// Image Synthesizer", 1985). A sum beyond ±1, which is rare, counts as that.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fbm {
     /// Where it lies.

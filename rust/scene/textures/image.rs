@@ -23,8 +23,8 @@ pub enum Filter {
     Nearest,
     /// The four around, in proportion.
     Bilinear,
-    /// The four around in the two sizes of the picture whose points are about as wide as what is asked for (Williams, "Pyramidal
-    /// Parametrics", 1983).
+    /// The four around in the two sizes of the picture whose points are about as wide as what is asked for (Williams,
+    /// "Pyramidal Parametrics", 1983).
     Trilinear,
 }
 
@@ -87,8 +87,8 @@ impl ImageTexture {
     #[inline]
     fn halvings(&self, width: f64) -> f64 {
         let full = self.picture.level(0);
-        // Points of a picture that lies on a surface without distortion are as wide as high there, whatever its sides: so what counts is
-        // how many of them an area holds.
+        // Points of a picture that lies on a surface without distortion are as wide as high there, whatever its sides:
+        // so what counts is how many of them an area holds.
         let texels = width * (self.uv.determinant().abs() * (full.width * full.height) as f64).sqrt();
         if texels > 1.0 { texels.log2() } else { 0.0 }
     }

@@ -4,8 +4,8 @@ use super::waves::sine;
 use super::{Domain, Needs, Octaves, Pattern, TexturePoint};
 use std::f64::consts::TAU;
 
-/// Veins: bands across the x axis, one each unit, bent by noise (Perlin, "An Image Synthesizer", 1985). Bands that are too fine for the
-/// width fade to their mean.
+/// Veins: bands across the x axis, one each unit, bent by noise (Perlin, "An Image Synthesizer", 1985). Bands that are
+/// too fine for the width fade to their mean.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Marble {
     /// Where it lies.
@@ -22,8 +22,8 @@ impl Pattern for Marble {
         let place = self.domain.place(point);
         let size = place.size();
         let bent = place.point.x + self.distortion * self.octaves.sum(place.point, size);
-        // Over the width the noise bends the bands by this much, as a standard deviation (that of an even spread is its width over √12),
-        // in a way that is as good as Gaussian: so much is left of a sine by that.
+        // Over the width the noise bends the bands by this much, as a standard deviation (that of an even spread is its
+        // width over √12), in a way that is as good as Gaussian: so much is left of a sine by that.
         let spread = TAU * size * self.distortion * self.octaves.slope(size);
         let left = (-spread * spread / 24.0).exp();
         0.5 + 0.5 * sine(bent, place.widths.x) * left

@@ -44,8 +44,8 @@ use std::fmt::Debug;
 pub struct TexturePoint {
     /// Texture coordinates; (0, 0) is the lower left of a picture.
     pub uv: [f64; 2],
-    /// How far apart in `uv` the points are that neighbouring rays meet, about: what is smaller cannot be told apart, and is to be
-    /// averaged over. 0 for a point.
+    /// How far apart in `uv` the points are that neighbouring rays meet, about: what is smaller cannot be told apart,
+    /// and is to be averaged over. 0 for a point.
     pub width: f64,
     /// The point in the space that its shape was described in: of what stands in an instance, in that of its group.
     pub position: DVec3,

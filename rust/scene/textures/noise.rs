@@ -2,7 +2,8 @@
 
 use super::{Domain, Needs, Octaves, Pattern, TexturePoint};
 
-/// Smooth random spots about a unit in size ([`super::perlin`]), which fade to their mean where they cannot be told apart.
+/// Smooth random spots about a unit in size ([`super::perlin`]), which fade to their mean where they cannot be told
+/// apart.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Noise {
     /// Where they lie.

@@ -2,13 +2,13 @@
 
 use crate::math::DVec3;
 
-/// The most that eight corners' gradients may add up to, each in the worst direction: found by maximising their sum over the cell, where
-/// it is 1.036353811… at (0.3524, ½, ½) and its images.
+/// The most that eight corners' gradients may add up to, each in the worst direction: found by maximising their sum
+/// over the cell, where it is 1.036353811… at (0.3524, ½, ½) and its images.
 const MOST: f64 = 1.036_353_9;
 
-/// Improved noise (Perlin, "Improving Noise", 2002), with a hash of its own instead of a table, so that it never repeats
-/// within 2³² units and every seed is another noise. Between −1 and 1, 0 on the lattice of integers, with continuous second
-/// derivatives, and of features about a unit in size.
+/// Improved noise (Perlin, "Improving Noise", 2002), with a hash of its own instead of a table, so that it never
+/// repeats within 2³² units and every seed is another noise. Between −1 and 1, 0 on the lattice of integers, with
+/// continuous second derivatives, and of features about a unit in size.
 #[inline]
 pub fn perlin(p: DVec3, seed: u32) -> f64 {
     let cell = p.floor();
@@ -47,8 +47,8 @@ fn along(hash: u32, d: DVec3) -> f64 {
     signed(a, 1) + signed(b, 2)
 }
 
-/// Three coordinates and a seed to 32 bits that look like chance: odd multipliers, then shifts and products until every bit of
-/// the input has a say in every bit of the output.
+/// Three coordinates and a seed to 32 bits that look like chance: odd multipliers, then shifts and products until every
+/// bit of the input has a say in every bit of the output.
 #[inline]
 fn mixed([x, y, z]: [u32; 3], seed: u32) -> u32 {
     let mut h = seed.wrapping_mul(0x9E37_79B1) ^ 0x5BD1_E995;
@@ -85,8 +85,8 @@ mod tests {
 
         #[test]
         fn changes_no_faster_than_its_bound(p in point(50.0), by in point(1e-3), seed: u32) {
-            // Along an axis the mean of gradients adds at most 1, and the change of weights at most 15/8 of the difference of
-            // two values of at most 1.0364: less than 4.9.
+            // Along an axis the mean of gradients adds at most 1, and the change of weights at most 15/8 of the
+            // difference of two values of at most 1.0364: less than 4.9.
             let difference = (perlin(p + by, seed) - perlin(p, seed)).abs();
             prop_assert!(difference <= 4.9 / MOST * by.abs().element_sum() + 1e-12);
         }
@@ -106,7 +106,8 @@ mod tests {
 
     #[test]
     fn its_bound_is_that_of_the_worst_gradients() {
-        // The sum over corners of weight times the greatest product with a direction to an edge, over a grid of the cell.
+        // The sum over corners of weight times the greatest product with a direction to an edge, over a grid of the
+        // cell.
         let steps = 64;
         let mut most: f64 = 0.0;
         for i in 0..=steps * steps * steps + 3 * steps * steps {

@@ -12,7 +12,8 @@ static DECODED: LazyLock<[[f64; 256]; 2]> = LazyLock::new(|| {
     [std::array::from_fn(share), std::array::from_fn(|i| srgb(share(i)))]
 });
 
-/// The points of a picture, row after row from the top, as they came: of 8 bits or of floats, one number each or red, green and blue.
+/// The points of a picture, row after row from the top, as they came: of 8 bits or of floats, one number each or red,
+/// green and blue.
 #[derive(Clone)]
 pub enum Texels {
     /// 8 bits of one number, and whether they are sRGB.
@@ -77,8 +78,9 @@ impl Level {
         self.texels.get(y * self.width + x)
     }
 
-    /// Half as wide and as high, rounded down, each point the mean of its part of the picture. Where a number is odd, parts end within
-    /// points, which count in proportion (Guthe and Heckbert, "Non-Power-of-Two Mipmapping", 2005): so the mean stays what it was.
+    /// Half as wide and as high, rounded down, each point the mean of its part of the picture. Where a number is odd,
+    /// parts end within points, which count in proportion (Guthe and Heckbert, "Non-Power-of-Two Mipmapping", 2005): so
+    /// the mean stays what it was.
     fn halved(&self) -> Self {
         let (width, height) = ((self.width / 2).max(1), (self.height / 2).max(1));
         let row = |y: usize| {

@@ -3,7 +3,8 @@
 use super::{Needs, Texture, TexturePoint};
 use crate::optics::Rgb;
 
-/// The colour of the mesh's vertices, between them in proportion; white on what has none. Beyond 0 and 1 it counts as these.
+/// The colour of the mesh's vertices, between them in proportion; white on what has none. Beyond 0 and 1 it counts as
+/// these.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct VertexColours;
 

@@ -17,12 +17,13 @@ pub(super) fn pulse(x: f64, width: f64, fraction: f64) -> f64 {
     ((whole + rest(high) - rest(low)) / width).clamp(0.0, 1.0)
 }
 
-/// The mean over the interval of this width around `x` of what rises evenly from 0 to 1 in the first `rise` of each period and falls in
-/// the rest; `rise` lies between 0 and 1.
+/// The mean over the interval of this width around `x` of what rises evenly from 0 to 1 in the first `rise` of each
+/// period and falls in the rest; `rise` lies between 0 and 1.
 #[inline]
 pub(super) fn ramp(x: f64, width: f64, rise: f64) -> f64 {
     let at = |f: f64| if f < rise { f / rise } else { (1.0 - f) / (1.0 - rise) };
-    // Below this, the mean differs from the middle's value by less than 1e-6 / min(rise, 1 − rise), and its quotient loses digits.
+    // Below this, the mean differs from the middle's value by less than 1e-6 / min(rise, 1 − rise), and its quotient
+    // loses digits.
     if width.is_nan() || width <= 1e-6 {
         return at(x - x.floor());
     }

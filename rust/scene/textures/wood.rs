@@ -4,9 +4,9 @@ use super::waves::ramp;
 use super::{Domain, Needs, Octaves, Pattern, TexturePoint};
 use crate::math::DVec3;
 
-/// Rings about the z axis, one each unit of the radius, from light early wood to dark late wood and quickly back, bent by noise
-/// (Perlin, "An Image Synthesizer", 1985; after Peachey, "Solid Texturing of Complex Surfaces", 1985). Rings that are too
-/// fine for the width fade to their mean.
+/// Rings about the z axis, one each unit of the radius, from light early wood to dark late wood and quickly back, bent
+/// by noise (Perlin, "An Image Synthesizer", 1985; after Peachey, "Solid Texturing of Complex Surfaces", 1985). Rings
+/// that are too fine for the width fade to their mean.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wood {
     /// Where it lies.

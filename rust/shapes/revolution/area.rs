@@ -44,7 +44,8 @@ impl Revolution {
             let share = ((left - areas[0]) / areas[1]).clamp(0.0, 1.0);
             let along = match self.profile {
                 Profile::Straight { base, tip } => {
-                    // So is a cone; a cylinder is even in the height. One formula serves both, without a difference that cancels.
+                    // So is a cone; a cylinder is even in the height. One formula serves both, without a difference
+                    // that cancels.
                     let radius = (base * base + share * (tip - base) * (tip + base)).max(0.0).sqrt();
                     if share > 0.0 { share * (base + tip) / (base + radius) } else { 0.0 }
                 }
@@ -60,9 +61,9 @@ impl Revolution {
 
     /// The area of its image under a map, to about 10⁻⁹ of itself.
     ///
-    /// A cap's is closed. Around a straight side the stretch depends on the angle alone, and around a paraboloid on the radius too:
-    /// it is summed at ever more angles until that changes nothing more. For a function of period 1 that converges faster than any
-    /// power where it is smooth (Trefethen and Weideman 2014).
+    /// A cap's is closed. Around a straight side the stretch depends on the angle alone, and around a paraboloid on the
+    /// radius too: it is summed at ever more angles until that changes nothing more. For a function of period 1 that
+    /// converges faster than any power where it is smooth (Trefethen and Weideman 2014).
     pub(in crate::shapes) fn area_under(&self, map: &Affine) -> f64 {
         let (frame, height) = self.frame();
         let [base, _, tip] = self.areas();

@@ -12,10 +12,11 @@ use std::cmp::Ordering;
 impl Revolution {
     /// Where a line meets it, with the foot of the axis as the line's origin of space.
     ///
-    /// On the line the surface is `a t² + 2 b t + c = 0`. Inside it is the left side at most 0, if the axis is long enough; between
-    /// the two planes the closed shape is convex, so that the line lies within from the first to the last of its meetings
-    /// with side and caps. Which root lies between the planes, and which plane is met within its disk, follows from the signs of
-    /// the left side and of its derivative where the line meets the planes: no root is compared with anything.
+    /// On the line the surface is `a t² + 2 b t + c = 0`. Inside it is the left side at most 0, if the axis is long
+    /// enough; between the two planes the closed shape is convex, so that the line lies within from the first to the
+    /// last of its meetings with side and caps. Which root lies between the planes, and which plane is met within its
+    /// disk, follows from the signs of the left side and of its derivative where the line meets the planes: no root is
+    /// compared with anything.
     #[inline]
     pub(in crate::shapes) fn meets_from_foot<N: Number>(&self, line: &Line<N>) -> Option<Meets<N>> {
         let Line { origin: w, direction: d, unit } = line;
@@ -85,7 +86,8 @@ impl Revolution {
                 if keep {
                     let slope = if double { N::of(0.0) } else { b.plus(&b) };
                     let t = if double { b.over(&a).negated() } else { c.over(&slope).negated() };
-                    // Through the point of a cone, and within it before or after: moved by next to nothing it crosses once.
+                    // Through the point of a cone, and within it before or after: moved by next to nothing it crosses
+                    // once.
                     let through = if a_sign == Ordering::Less { Contact::Crossing } else { Contact::Touching };
                     let contact = if double { through } else { Contact::Inside };
                     met = met.with(on_side(&Root { t, slope }, on_plane, contact));
@@ -95,11 +97,12 @@ impl Revolution {
         Some(met)
     }
 
-    /// Whether a ray's line certainly stays farther from the axis' line than any point of the surface: |(d × w) · v| > r |d × v|, for
-    /// most lines that come near and meet nothing.
+    /// Whether a ray's line certainly stays farther from the axis' line than any point of the surface: |(d × w) · v| >
+    /// r |d × v|, for most lines that come near and meet nothing.
     ///
-    /// With u = [`UNIT`], and the rounded ways w and v: a cross product errs by 3√2 u of the product of its factors' lengths, and the
-    /// triple product by 3√2 + 4 of |d| |w| |v|. Lengths that are not extreme leave underflow no part in it.
+    /// With u = [`UNIT`], and the rounded ways w and v: a cross product errs by 3√2 u of the product of its factors'
+    /// lengths, and the triple product by 3√2 + 4 of |d| |w| |v|. Lengths that are not extreme leave underflow no part
+    /// in it.
     #[inline]
     pub(in crate::shapes) fn is_passed_by(&self, ray: &Ray) -> bool {
         const LEAST: f64 = f64::from_bits((1023 - 200) << 52);
@@ -114,8 +117,8 @@ impl Revolution {
         usual(d_length) && usual(w_length) && usual(v_length) && usual(radius) && volume > reach * (1.0 + 16.0 * UNIT)
     }
 
-    /// What is zero on a part's whole surface, at a point in units relative to the foot of the axis: on a line it is what
-    /// [`Revolution::meets`] says of it there.
+    /// What is zero on a part's whole surface, at a point in units relative to the foot of the axis: on a line it is
+    /// what [`Revolution::meets`] says of it there.
     #[inline]
     pub(in crate::shapes) fn zero_on<N: Number>(&self, part: usize, point: &Triple<N>, unit: &N) -> N {
         let v = Triple::between(self.base, self.tip);
@@ -142,8 +145,8 @@ impl Revolution {
         }
     }
 
-    /// The coefficients a, b, c along the line, and b² − a c up to a positive factor of exactly 1 in closest-approach form, that is
-    /// without the terms that always cancel.
+    /// The coefficients a, b, c along the line, and b² − a c up to a positive factor of exactly 1 in closest-approach
+    /// form, that is without the terms that always cancel.
     ///
     /// With P = d × v, R = w × v, m = d × w, and A, B what the axis adds along the line: P·R squared less P² R² is
     /// −|P × R|² = −v² (m · v)² (Lagrange), and B P − A R = (B d − A w) × v with (w · v) d − (d · v) w = v × m.
@@ -223,8 +226,8 @@ impl Side {
         })
     }
 
-    /// Drops the roots that lie before the line's meeting with plane `i` (`first`), or after it, by the signs of the polynomial and
-    /// of half its derivative there.
+    /// Drops the roots that lie before the line's meeting with plane `i` (`first`), or after it, by the signs of the
+    /// polynomial and of half its derivative there.
     fn clip(&mut self, first: bool, a: Ordering, there: Ordering, slope: Ordering, i: usize) {
         // How a root compares with the plane's t.
         let against = |greater: bool, linear: bool| {

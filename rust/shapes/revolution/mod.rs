@@ -1,7 +1,9 @@
-//! Cylinders, cones and paraboloids: what a line or a parabola draws when it is turned about an axis, between two planes.
+//! Cylinders, cones and paraboloids: what a line or a parabola draws when it is turned about an axis, between two
+//! planes.
 //!
-//! With x a point relative to the foot of the axis and v the axis, |x × v| is |v| times the distance from the axis, and x · v is |v|
-//! times the height. So all are the zeros of polynomials in what is given, with no unit vector and no rotation:
+//! With x a point relative to the foot of the axis and v the axis, |x × v| is |v| times the distance from the axis, and
+//! x · v is |v| times the height. So all are the zeros of polynomials in what is given, with no unit vector and no
+//! rotation:
 //!
 //! - from radius r to r + k: `v² |x × v|² = (r v² + k (x · v))²`;
 //! - a parabola of radius r at height |v|: `|x × v|² = r² (x · v)`.
@@ -74,14 +76,15 @@ impl Revolution {
         let across = d.cross(frame.normal).length();
         let rim = |end: DVec3, radius: f64| {
             let size = (end.abs() * d.abs()).element_sum() + radius * d.length();
-            // The sum of three products errs by 3 UNIT of the sum of their sizes; the frame's own normal by 4 UNIT, which tells on the
-            // second term only.
+            // The sum of three products errs by 3 UNIT of the sum of their sizes; the frame's own normal by 4 UNIT,
+            // which tells on the second term only.
             end.dot(d) + radius * across + 16.0 * UNIT * size
         };
         match self.profile {
             Profile::Straight { base, tip } => rim(self.base, base).max(rim(self.tip, tip)),
             Profile::Parabola { tip } => {
-                // Along the profile (r v, h v²): greatest at the rim or, where d points below it, at v = −r |d⊥| / (2 h d∥).
+                // Along the profile (r v, h v²): greatest at the rim or, where d points below it, at v = −r |d⊥| / (2 h
+                // d∥).
                 let along = d.dot(frame.normal) * height;
                 let v = -tip * across / (2.0 * along);
                 let bulge = if (0.0..=1.0).contains(&v) {
@@ -94,8 +97,8 @@ impl Revolution {
         }
     }
 
-    /// Where the second coordinate comes from the base cap to the side, and from there to the tip cap: by lengths along the profile,
-    /// and half and half of a paraboloid.
+    /// Where the second coordinate comes from the base cap to the side, and from there to the tip cap: by lengths along
+    /// the profile, and half and half of a paraboloid.
     pub(in crate::shapes) fn breaks(&self) -> [f64; 2] {
         match self.profile {
             _ if !self.capped => [0.0, 1.0],
@@ -133,8 +136,8 @@ impl Revolution {
 
     /// The point of given coordinates.
     ///
-    /// The error of a coordinate is that of its last sum, one unit of its own, and those of the summands, which come of a few
-    /// roundings each: 8 of the height's and 16 of the radius', with the frame's.
+    /// The error of a coordinate is that of its last sum, one unit of its own, and those of the summands, which come of
+    /// a few roundings each: 8 of the height's and 16 of the radius', with the frame's.
     pub(in crate::shapes) fn at(&self, [u, v]: [f64; 2]) -> Point {
         let (frame, height) = self.frame();
         let [base, tip] = self.radii();

@@ -1,15 +1,15 @@
 //! What of a triangle lies in a box.
 //!
-//! The triangle is clipped by one face of the box after the other (Sutherland and Hodgman, "Reentrant Polygon Clipping", 1974),
-//! in f64.
+//! The triangle is clipped by one face of the box after the other (Sutherland and Hodgman, "Reentrant Polygon
+//! Clipping", 1974), in f64.
 //!
-//! The bound. Where a face cuts an edge between two corners as they were computed, the share of the edge errs by 4u of itself,
-//! with u = 2⁻⁵³, and so with coordinates of at most 2 each coordinate of the cut errs by less than 32u. So the outline is moved by
-//! less than ε = 200u by six faces and by the rounding of the triangle's own corners. It may be bent by that, but about a point of the
-//! triangle that is farther than ε from it, it still winds: clipping moves only what is beyond a face, and rounding less
-//! than ε. So all of the triangle that is in the box is within ε of the outline's hull, if the faces stand 2ε outside, once for how
-//! far the outline is from the triangle and once for what it has left the triangle's plane by. 2⁻⁴⁴ is allowed for that, and
-//! once more at the end.
+//! The bound. Where a face cuts an edge between two corners as they were computed, the share of the edge errs by 4u of
+//! itself, with u = 2⁻⁵³, and so with coordinates of at most 2 each coordinate of the cut errs by less than 32u. So the
+//! outline is moved by less than ε = 200u by six faces and by the rounding of the triangle's own corners. It may be
+//! bent by that, but about a point of the triangle that is farther than ε from it, it still winds: clipping moves only
+//! what is beyond a face, and rounding less than ε. So all of the triangle that is in the box is within ε of the
+//! outline's hull, if the faces stand 2ε outside, once for how far the outline is from the triangle and once for what
+//! it has left the triangle's plane by. 2⁻⁴⁴ is allowed for that, and once more at the end.
 
 use crate::math::{Aabb, DVec3, Vec3};
 use std::array::from_fn;
@@ -21,8 +21,9 @@ const SLACK: f64 = 1.0 / (1u64 << 44) as f64;
 /// Of n corners, one face leaves at most 3n/2, however they are bent: 3, 4, 6, 9, 13, 19, 28.
 const MOST: usize = 28;
 
-/// A box around all of a triangle that lies in another box; within that box, and empty only if there is nothing. Coordinates are
-/// in box units, in which they do not exceed 2 by more than a rounding ([`Region::to_box`](crate::math::Region::to_box)).
+/// A box around all of a triangle that lies in another box; within that box, and empty only if there is nothing.
+/// Coordinates are in box units, in which they do not exceed 2 by more than a rounding
+/// ([`Region::to_box`](crate::math::Region::to_box)).
 pub fn clipped(corners: [DVec3; 3], to: &Aabb) -> Aabb {
     let (min, max) = (to.min.as_dvec3() - SLACK, to.max.as_dvec3() + SLACK);
     let [mut least, mut greatest] = extremes(&corners);

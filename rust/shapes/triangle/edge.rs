@@ -7,12 +7,12 @@
 //! exact one for the numbers given, and neighbours that share an edge never disagree.
 //!
 //! The bound. Let u = 2⁻⁵³, M bound every coordinate of a corner relative to the origin, D < 2 every coordinate of the
-//! direction. A relative corner errs by uM, a sum or difference of two by 4uM and is at most 2M. So a product of two
-//! of them errs by 2·(2M·4uM) + u·4M² = 20uM², a component of the cross product by 2·20uM² + u·8M² = 48uM², its
-//! product with d by 56uM²D and the sum of three by 3·56uM²D + u·(16 + 24)M²D = 208uM²D, to first order. 256uM²D
-//! leaves room for the higher orders, for a direction whose small parts were rounded in scaling, and for M, D
-//! themselves being computed. What underflows is no part of it: coordinates so small, or so large that products overflow,
-//! are decided exactly.
+//! direction. A relative corner errs by uM, a sum or difference of two by 4uM and is at most 2M. So a product of two of
+//! them errs by 2·(2M·4uM) + u·4M² = 20uM², a component of the cross product by 2·20uM² + u·8M² = 48uM², its product
+//! with d by 56uM²D and the sum of three by 3·56uM²D + u·(16 + 24)M²D = 208uM²D, to first order. 256uM²D leaves room
+//! for the higher orders, for a direction whose small parts were rounded in scaling, and for M, D themselves being
+//! computed. What underflows is no part of it: coordinates so small, or so large that products overflow, are decided
+//! exactly.
 
 use crate::math::robust::{UNIT, greater, lesser, normalising_scale};
 use crate::math::{DVec3, Ray, Region, exact_edges, exact_turn};
@@ -83,8 +83,8 @@ impl EdgeRay {
     /// Above it they may overflow.
     const GREATEST: f64 = 1e101;
 
-    /// Bound on the error of an edge's weight where every coordinate of a corner relative to the origin is at most `largest`;
-    /// infinite where nothing is certain in f64.
+    /// Bound on the error of an edge's weight where every coordinate of a corner relative to the origin is at most
+    /// `largest`; infinite where nothing is certain in f64.
     #[inline(always)]
     pub fn sign_error(largest: f64) -> f64 {
         if largest > Self::SMALLEST && largest < Self::GREATEST {
@@ -159,10 +159,11 @@ impl EdgeRay {
         }
     }
 
-    /// The same where that is not enough, as it is from far away. With edges taken from the corners themselves, and E a bound on their
-    /// coordinates, an edge errs by uE; the sum of two relative corners by 4uM and is at most 2M. So a product of the two errs by
-    /// 2uEM + 4uEM + 2uEM = 8uEM, a component of the cross product by 16uEM + 4uEM, its product with d by 2·20uEM + 8uEM, and the sum
-    /// of three by 3·48uEM + (16 + 24)uEM = 184uEM, to first order. 256uEM is allowed.
+    /// The same where that is not enough, as it is from far away. With edges taken from the corners themselves, and E a
+    /// bound on their coordinates, an edge errs by uE; the sum of two relative corners by 4uM and is at most 2M. So a
+    /// product of the two errs by 2uEM + 4uEM + 2uEM = 8uEM, a component of the cross product by 16uEM + 4uEM, its
+    /// product with d by 2·20uEM + 8uEM, and the sum of three by 3·48uEM + (16 + 24)uEM = 184uEM, to first order.
+    /// 256uEM is allowed.
     #[cold]
     #[inline(never)]
     fn meet_closely(&self, corners: [DVec3; 3]) -> Option<Candidate> {

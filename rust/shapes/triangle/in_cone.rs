@@ -2,27 +2,28 @@
 //!
 //! Triangle and cone are convex, and so is what they share: there is one nearest point, and it is found by asking less
 //! and less. It is the triangle's point nearest to the apex, if that is in the cone. Otherwise, were it inside the
-//! cone, a step towards that point would be nearer; so it lies on the cone's surface. Of the triangle's plane, which the
-//! cone's surface cuts in a conic section, the nearest point lies where the plane through the axis and the normal does, for all
-//! is symmetric about that: on one generator of the cone. If that point is in the triangle, it is the one. If not, the nearest is
-//! on an edge, by the same argument; along an edge the distance outside of the cone is convex as well, so its least place has a closed
-//! form, and where it rises through zero Newton's method comes down to it without ever overshooting.
+//! cone, a step towards that point would be nearer; so it lies on the cone's surface. Of the triangle's plane, which
+//! the cone's surface cuts in a conic section, the nearest point lies where the plane through the axis and the normal
+//! does, for all is symmetric about that: on one generator of the cone. If that point is in the triangle, it is the
+//! one. If not, the nearest is on an edge, by the same argument; along an edge the distance outside of the cone is
+//! convex as well, so its least place has a closed form, and where it rises through zero Newton's method comes down to
+//! it without ever overshooting.
 //!
-//! What holds. Let M be the largest coordinate of a corner as seen from the apex, and u = 2⁻⁵³. A point q, of height z over the
-//! apex and at ρ from the axis, is outside of the cone by ρ cos α − z sin α, which is convex in q and errs by less than 64uM: z
-//! errs by 6u|q|, of which 2u are the axis's own, ρ by 12u|q|, with |q| ≤ √3·M, and q itself, on an edge, by 4uM. What is
-//! outside by no more than δ = 2⁻⁴⁴·M counts, in units in which M lies in [1, 2): so a triangle that has a point
-//! in the cone is always found, and one that misses the cone by more than 2⁻⁴³·M never. The distance is that of a cone whose surface is moved
-//! by no more. A triangle that shares only points within its outline with the cone is met by the axis, which is decided
-//! exactly ([`EdgeRay`]).
+//! What holds. Let M be the largest coordinate of a corner as seen from the apex, and u = 2⁻⁵³. A point q, of height z
+//! over the apex and at ρ from the axis, is outside of the cone by ρ cos α − z sin α, which is convex in q and errs by
+//! less than 64uM: z errs by 6u|q|, of which 2u are the axis's own, ρ by 12u|q|, with |q| ≤ √3·M, and q itself, on an
+//! edge, by 4uM. What is outside by no more than δ = 2⁻⁴⁴·M counts, in units in which M lies in [1, 2): so a triangle
+//! that has a point in the cone is always found, and one that misses the cone by more than 2⁻⁴³·M never. The distance
+//! is that of a cone whose surface is moved by no more. A triangle that shares only points within its outline with the
+//! cone is met by the axis, which is decided exactly ([`EdgeRay`]).
 
 use super::nearest::cross;
 use super::{EdgeRay, length, nearest_point, point_of};
 use crate::math::robust::{greater, lesser, normalising_scale};
 use crate::math::{DVec3, Ray, Region};
 
-/// A solid cone without end: all points whose direction from the apex differs from the axis by no more than an angle. A ray, if
-/// that is zero.
+/// A solid cone without end: all points whose direction from the apex differs from the axis by no more than an angle. A
+/// ray, if that is zero.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SolidCone {
     /// The apex.
@@ -39,15 +40,17 @@ pub struct SolidCone {
     pub most: f64,
 }
 
-/// How far outside of a cone counts as touching it, for triangles whose largest coordinate from the apex lies in [1, 2).
+/// How far outside of a cone counts as touching it, for triangles whose largest coordinate from the apex lies in
+/// [1, 2).
 const DELTA: f64 = 1.0 / (1u64 << 44) as f64;
 
 /// The most that coordinates may be for differences and their differences to be finite.
 const LARGE: f64 = f64::MAX / 8.0;
 
 impl SolidCone {
-    /// The cone from `apex` along `direction`, of any length, with half an opening angle in degrees. None if nothing can be
-    /// in it: a number is NaN or infinite, the direction zero (or has no coordinate that is a normal number), the angle not in 0..90, or `most` negative or NaN.
+    /// The cone from `apex` along `direction`, of any length, with half an opening angle in degrees. None if nothing
+    /// can be in it: a number is NaN or infinite, the direction zero (or has no coordinate that is a normal number),
+    /// the angle not in 0..90, or `most` negative or NaN.
     pub fn new(apex: DVec3, direction: DVec3, half_angle: f64, most: f64) -> Option<Self> {
         let longest = direction.abs().max_element();
         let is_cone = apex.is_finite() && direction.is_finite() && longest >= f64::MIN_POSITIVE;
@@ -59,8 +62,8 @@ impl SolidCone {
         Some(Self { apex, axis, direction, sine, cosine, most })
     }
 
-    /// A direction that all of the cone goes away from: no point q of it, seen from the apex, has a positive product with it. Of those, about the
-    /// one in which `towards` is farthest out; none on the axis.
+    /// A direction that all of the cone goes away from: no point q of it, seen from the apex, has a positive product
+    /// with it. Of those, about the one in which `towards` is farthest out; none on the axis.
     #[inline(always)]
     pub fn away(&self, towards: DVec3) -> Option<DVec3> {
         let across = self.across(towards);
@@ -68,8 +71,8 @@ impl SolidCone {
         (size > 0.0).then(|| across * (self.cosine / size) - self.axis * self.sine)
     }
 
-    /// What of a vector is at right angles to the axis. Taken twice, so that it is so to within rounding of its own length, however
-    /// little is left of the vector.
+    /// What of a vector is at right angles to the axis. Taken twice, so that it is so to within rounding of its own
+    /// length, however little is left of the vector.
     #[inline(always)]
     fn across(&self, vector: DVec3) -> DVec3 {
         let across = vector - self.axis * self.axis.dot(vector);
@@ -88,8 +91,8 @@ impl SolidCone {
         self.outside(q) <= DELTA && self.axis.dot(q) >= -DELTA
     }
 
-    /// The distance from the apex to the nearest point of a triangle that is in the cone. None if there is none, or it is farther than
-    /// counts. The corners are finite.
+    /// The distance from the apex to the nearest point of a triangle that is in the cone. None if there is none, or it
+    /// is farther than counts. The corners are finite.
     pub fn nearest(&self, corners: [DVec3; 3]) -> Option<f64> {
         self.nearest_of_all(corners).filter(|&distance| distance <= self.most && distance.is_finite())
     }
@@ -135,8 +138,8 @@ impl SolidCone {
         is_beyond(-self.axis) || self.away(q[0] + q[1] + q[2]).is_some_and(is_beyond)
     }
 
-    /// The direction of the generator on which a plane, that of a triangle, is nearest to the apex within the cone. None if that is inside the cone, or the
-    /// cone goes away from the plane.
+    /// The direction of the generator on which a plane, that of a triangle, is nearest to the apex within the cone.
+    /// None if that is inside the cone, or the cone goes away from the plane.
     #[inline(always)]
     fn generator(&self, normal: DVec3, q: [DVec3; 3]) -> Option<DVec3> {
         let normal = if normal.dot(q[0]) < 0.0 { -normal } else { normal };
@@ -147,8 +150,9 @@ impl SolidCone {
         (!is_steep && size > 0.0).then(|| self.axis * self.cosine + across * (self.sine / size))
     }
 
-    /// How far from the apex a way from there meets a triangle: whether it does is decided exactly, of the way as given; where, along `unit`, by the normal, which
-    /// errs less than weights do where the triangle is small next to its distance.
+    /// How far from the apex a way from there meets a triangle: whether it does is decided exactly, of the way as
+    /// given; where, along `unit`, by the normal, which errs less than weights do where the triangle is small next to
+    /// its distance.
     fn met(&self, corners: [DVec3; 3], normal: DVec3, q: [DVec3; 3], way: DVec3, unit: DVec3) -> Option<f64> {
         let ray = Ray { t_min: f64::NEG_INFINITY, ..Ray::new(self.apex, way) };
         EdgeRay::new(&ray, &Region::around(corners))?.meet(corners)?;

@@ -179,8 +179,8 @@ mod tests {
         prop::array::uniform3(-size..size).prop_map(DVec3::from_array)
     }
 
-    /// A triangle of any shape and size, somewhere, and a ray to a point of it: within, or as near to an edge, a corner or
-    /// the ray's start as roundings are.
+    /// A triangle of any shape and size, somewhere, and a ray to a point of it: within, or as near to an edge, a corner
+    /// or the ray's start as roundings are.
     fn aimed() -> impl Strategy<Value = (Ray, [DVec3; 3])> {
         let triangle = (point(1.0), [point(1.0), point(1.0), point(1.0)], 0i32..24, 0i32..24);
         let weights = (0.0..1.0f64, 0.0..1.0f64, -30i32..2, prop::bool::ANY);

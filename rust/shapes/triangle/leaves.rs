@@ -66,7 +66,8 @@ pub trait Leaves<const N: usize>: Send + Sync + Sized + 'static {
         self.rows().rays_not_rejected(simd, rays, first, count, lane, Self::EDGES)
     }
 
-    /// The corners of the triangles of a leaf in f32, axis by axis: off by no more than four roundings of the largest coordinate.
+    /// The corners of the triangles of a leaf in f32, axis by axis: off by no more than four roundings of the largest
+    /// coordinate.
     #[inline(always)]
     fn nearly<S: Simd<N>>(&self, simd: S, first: usize, count: u32) -> [[S::F32; 3]; 3] {
         let rows = self.rows();

@@ -1,29 +1,30 @@
 //! The test of triangles in f32 that comes before the decision in f64: it rejects only what is certainly not met.
 //!
-//! The test in f32 is that of Möller and Trumbore ("Fast, Minimum Storage Ray/Triangle Intersection", 1997), which takes half
-//! the work of the edge form. With edges e = b − a and f = c − a, the ray from s relative to a, p = d × f and q = s × e, the
-//! corners' weights are u = s · p of b, v = d · q of c, and w = e · p − u − v of a. A triangle is rejected only where one weight
-//! is certainly positive and another certainly negative.
+//! The test in f32 is that of Möller and Trumbore ("Fast, Minimum Storage Ray/Triangle Intersection", 1997), which
+//! takes half the work of the edge form. With edges e = b − a and f = c − a, the ray from s relative to a, p = d × f
+//! and q = s × e, the corners' weights are u = s · p of b, v = d · q of c, and w = e · p − u − v of a. A triangle is
+//! rejected only where one weight is certainly positive and another certainly negative.
 //!
-//! The bound. Let ε = 2⁻²⁴, E bound every coordinate of e and f, L bound |origin| + |corner| in every coordinate, and
-//! D < 2 those of the direction. The edges err by εE, s by 2εL for rounding the origin and the difference, and d by 2ε. A product in p
-//! errs by 2εE + 2εE + 2εE, and so p by 12εE + 4εE = 16εE; it is at most 4E. A product in q errs by 2εLE + εLE + εLE, and so q by
-//! 8εLE + 2εLE = 10εLE; it is at most 2LE. A product in u errs by 8εLE + 16εLE + 4εLE, and so u by 84εLE + 20εLE = 104εLE. A product
-//! in v errs by 4εLE + 20εLE + 4εLE, and v like u. A product in e · p errs by 4εE² + 16εE² + 4εE², and the sum by 92εE², which is
-//! at most 184εLE, since E ≤ 2L. So w errs by 184εLE + 208εLE and, for its own two roundings, 48εLE: 440εLE, to first order; fused
-//! operations err less. 512εLE is allowed. What underflows in p or q loses at most 2⁻¹⁴⁸ a coordinate, 2⁻¹⁴⁵L in a weight, and
-//! elsewhere less than 2⁻¹⁴⁶: 2⁻¹⁴⁰L + 2⁻¹²⁶ is added. (The least normal number: a subnormal one would make every sum slow.) With
-//! L below 2⁶⁰ no sum exceeds 96L² < 2¹²⁷; beyond it, where infinities of either sign may appear, nothing is rejected.
+//! The bound. Let ε = 2⁻²⁴, E bound every coordinate of e and f, L bound |origin| + |corner| in every coordinate, and D
+//! < 2 those of the direction. The edges err by εE, s by 2εL for rounding the origin and the difference, and d by 2ε. A
+//! product in p errs by 2εE + 2εE + 2εE, and so p by 12εE + 4εE = 16εE; it is at most 4E. A product in q errs by 2εLE +
+//! εLE + εLE, and so q by 8εLE + 2εLE = 10εLE; it is at most 2LE. A product in u errs by 8εLE + 16εLE + 4εLE, and so u
+//! by 84εLE + 20εLE = 104εLE. A product in v errs by 4εLE + 20εLE + 4εLE, and v like u. A product in e · p errs by
+//! 4εE² + 16εE² + 4εE², and the sum by 92εE², which is at most 184εLE, since E ≤ 2L. So w errs by 184εLE + 208εLE and,
+//! for its own two roundings, 48εLE: 440εLE, to first order; fused operations err less. 512εLE is allowed. What
+//! underflows in p or q loses at most 2⁻¹⁴⁸ a coordinate, 2⁻¹⁴⁵L in a weight, and elsewhere less than 2⁻¹⁴⁶: 2⁻¹⁴⁰L +
+//! 2⁻¹²⁶ is added. (The least normal number: a subnormal one would make every sum slow.) With L below 2⁶⁰ no sum
+//! exceeds 96L² < 2¹²⁷; beyond it, where infinities of either sign may appear, nothing is rejected.
 //!
-//! Most of what is left lies behind the ray: the surface that it leaves. The ray's parameter is t = f · q / e · p, negative where
-//! numerator and denominator are certainly of opposite sign, and then the triangle is rejected if t must not be. A product in
-//! f · q errs by 2εLE² + 10εLE² + 2εLE², and the sum by 52εLE²: 64εLE² is allowed, and 128εE² for the denominator. With L below 2⁴⁰
-//! no sum exceeds 6LE² < 2¹²⁵; beyond it nothing is rejected so.
+//! Most of what is left lies behind the ray: the surface that it leaves. The ray's parameter is t = f · q / e · p,
+//! negative where numerator and denominator are certainly of opposite sign, and then the triangle is rejected if t must
+//! not be. A product in f · q errs by 2εLE² + 10εLE² + 2εLE², and the sum by 52εLE²: 64εLE² is allowed, and 128εE² for
+//! the denominator. With L below 2⁴⁰ no sum exceeds 6LE² < 2¹²⁵; beyond it nothing is rejected so.
 //!
-//! Corners that are f64 are kept relative to the scene's centre, in box units: a corner, and the edges from there as f64 has them.
-//! All of it is rounded to f32. Then an edge errs by εE as before, and s by ε|corner| more, which with ε|origin| is εL: the bounds
-//! are the same. (With edges taken between rounded corners they would have terms in L² that do not shrink with the triangle, and
-//! next to nothing of a fine mesh would be rejected.)
+//! Corners that are f64 are kept relative to the scene's centre, in box units: a corner, and the edges from there as
+//! f64 has them. All of it is rounded to f32. Then an edge errs by εE as before, and s by ε|corner| more, which with
+//! ε|origin| is εL: the bounds are the same. (With edges taken between rounded corners they would have terms in L² that
+//! do not shrink with the triangle, and next to nothing of a fine mesh would be rejected.)
 
 use super::{Column, EdgeRay, EdgeRays, RAYS};
 use crate::math::DVec3;

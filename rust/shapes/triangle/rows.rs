@@ -9,17 +9,17 @@ use rayon::prelude::*;
 /// Numbers of a triangle: nine coordinates and which it is.
 const ROWS: usize = 10;
 
-/// The triangles of all leaves in f32. A leaf of n has n numbers of each row, one row after the other: the coordinates of
-/// three vectors by axis, then the triangles' own numbers. So a leaf takes no more memory than its triangles need, and `N` numbers
-/// read from any row are those of the leaf and others that do not matter.
+/// The triangles of all leaves in f32. A leaf of n has n numbers of each row, one row after the other: the coordinates
+/// of three vectors by axis, then the triangles' own numbers. So a leaf takes no more memory than its triangles need,
+/// and `N` numbers read from any row are those of the leaf and others that do not matter.
 #[derive(Clone, Debug)]
 pub struct Rows<const N: usize> {
     numbers: Vec<f32>,
 }
 
 impl<const N: usize> Rows<N> {
-    /// Makes the bits of small whole numbers those of ordinary floats: they are computed with, to no end, by lanes that do not
-    /// matter, and subnormal ones would make that slow.
+    /// Makes the bits of small whole numbers those of ordinary floats: they are computed with, to no end, by lanes that
+    /// do not matter, and subnormal ones would make that slow.
     const MASK: u32 = 0x4000_0000;
 
     pub(super) fn new(order: &[u32], counts: &[u32], vectors: impl Fn(u32) -> [Vec3; 3] + Sync) -> Self {

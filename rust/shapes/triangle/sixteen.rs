@@ -1,7 +1,7 @@
 //! Sixteen rays by columns, made ready together and tested against a triangle together.
 //!
-//! Every loop here runs over all columns, has no branch and does to each ray what [`EdgeRay`] does to one, in the same order
-//! and with the same roundings: so the compiler makes vectors of it, and the bits are the same.
+//! Every loop here runs over all columns, has no branch and does to each ray what [`EdgeRay`] does to one, in the same
+//! order and with the same roundings: so the compiler makes vectors of it, and the bits are the same.
 
 use super::EdgeRay;
 use crate::math::robust::{greater, lesser};
@@ -93,8 +93,8 @@ impl EdgeRays {
         }
     }
 
-    /// Makes rays that were transposed ready. False if one of them cannot hit anything, or is far from the scene, or has a
-    /// direction at the end of the range of f64: those are better asked one by one.
+    /// Makes rays that were transposed ready. False if one of them cannot hit anything, or is far from the scene, or
+    /// has a direction at the end of the range of f64: those are better asked one by one.
     #[inline(always)]
     pub fn prepare(&mut self, region: &Region) -> bool {
         let mut plain = [0u32; RAYS];

@@ -1,5 +1,5 @@
-//! Any rays at any triangles: every accelerator gives the hits that are found triangle by triangle, bit for bit, whatever is asked
-//! and however many at once.
+//! Any rays at any triangles: every accelerator gives the hits that are found triangle by triangle, bit for bit,
+//! whatever is asked and however many at once.
 
 use super::accelerators;
 use super::builders::{builder, optimisers};

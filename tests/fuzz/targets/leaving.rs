@@ -1,5 +1,5 @@
-//! Any triangle that is no sliver, and a copy of it close by: a ray that leaves a surface does not meet it again, one that is sent to
-//! a surface stops short of it, and neither leaks through a plate as thin as 10⁻⁵ of its size.
+//! Any triangle that is no sliver, and a copy of it close by: a ray that leaves a surface does not meet it again, one
+//! that is sent to a surface stops short of it, and neither leaks through a plate as thin as 10⁻⁵ of its size.
 
 use super::accelerators;
 use super::numbers::{Range, double_point, one_of, single_point};
@@ -37,8 +37,8 @@ fn plate(u: &mut Unstructured) -> Result<()> {
     let [a, b, c] = [corner(u)? + place, corner(u)? + place, corner(u)? + place];
     let size = largest(&[b - a, c - b, a - c]);
     let twice_area = (b - a).cross(c - a);
-    // Far from the origin numbers are too coarse for the copy to be one, and the normal of a sliver is not known well enough to
-    // say which of the flattest directions lead away.
+    // Far from the origin numbers are too coarse for the copy to be one, and the normal of a sliver is not known well
+    // enough to say which of the flattest directions lead away.
     let is_near = largest(&[a, b, c]) < 2f64.powi(16) * size;
     if !is_near || twice_area.length() < 0.1 * size * size {
         return Ok(());

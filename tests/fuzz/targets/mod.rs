@@ -1,7 +1,7 @@
 //! What raywright promises, as functions of any bytes that panic where a promise is broken: one file a promise.
 //!
-//! `cargo +nightly fuzz run hits` (or `leaving`, `nearest`, `signs`, `trees`, `watertight`) looks for such bytes with libFuzzer;
-//! `cargo test --test fuzz` feeds the same functions some hundred random strings, with any compiler.
+//! `cargo +nightly fuzz run hits` (or `leaving`, `nearest`, `signs`, `trees`, `watertight`) looks for such bytes with
+//! libFuzzer; `cargo test --test fuzz` feeds the same functions some hundred random strings, with any compiler.
 
 pub mod hits;
 pub mod leaving;

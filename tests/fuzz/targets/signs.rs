@@ -97,7 +97,8 @@ impl Case {
         let on_edge = weights.iter().any(|w| sign(w) == 0);
         assert_eq!(found.contact != Contact::Inside, on_edge, "{self:?}: {found:?}");
 
-        // t is (Σ weight · depth) / (Σ weight · direction) along the largest axis of the scaled direction, which is exact.
+        // t is (Σ weight · depth) / (Σ weight · direction) along the largest axis of the scaled direction, which is
+        // exact.
         let axis = (0..3).max_by(|&i, &j| direction[i].magnitude().cmp(direction[j].magnitude())).expect("three axes");
         let depth: BigInt = weights.iter().zip(relative).map(|(w, p)| w * &p[axis]).sum();
         let divisor = weights.iter().sum::<BigInt>() * integer(edges.direction[axis]);

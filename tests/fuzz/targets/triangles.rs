@@ -33,7 +33,8 @@ pub fn points(u: &mut Unstructured, range: Range, most: usize) -> Result<Vec<DVe
         .collect()
 }
 
-/// Triangles that share many of their corners, and the same again, shifted: as many as it takes for a tree of a few levels.
+/// Triangles that share many of their corners, and the same again, shifted: as many as it takes for a tree of a few
+/// levels.
 pub fn triangles(u: &mut Unstructured, range: Range) -> Result<Triangles> {
     let points = points(u, range, 12)?;
     let mut triangles = Vec::new();

@@ -1,5 +1,5 @@
-//! Closed surfaces of any shape: a line crosses one an even number of times, a ray from inside never gets out, and on which side a
-//! point lies is what integers say.
+//! Closed surfaces of any shape: a line crosses one an even number of times, a ray from inside never gets out, and on
+//! which side a point lies is what integers say.
 
 use super::accelerators;
 use super::integers::{Exact, cross, dot, exact, is_met, minus, sign, weights};
@@ -20,8 +20,8 @@ pub fn check(data: &[u8]) {
 
 /// A closed surface, and rays from within its bounds whose directions have a largest coordinate between 1 and 2.
 ///
-/// The surfaces of tetrahedra are closed, so is what several of them make, and so it is where faces that occur twice are left
-/// out; and every closed surface is a sum of tetrahedra that share a corner, in this sense.
+/// The surfaces of tetrahedra are closed, so is what several of them make, and so it is where faces that occur twice
+/// are left out; and every closed surface is a sum of tetrahedra that share a corner, in this sense.
 fn surface(u: &mut Unstructured) -> Result<(Triangles, Vec<Ray>)> {
     let points = points(u, Range::Moderate, 12)?;
     let mut faces: BTreeMap<[usize; 3], usize> = BTreeMap::new();

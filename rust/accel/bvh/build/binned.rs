@@ -1,7 +1,7 @@
 //! Top-down by the surface-area heuristic in bins, on all cores.
 //!
-//! Where a tree is to be collapsed, it splits down to a few primitives a leaf. How many go into one leaf of the tree that rays
-//! walk is decided then, where the cost of a block of triangles and of wide nodes is known.
+//! Where a tree is to be collapsed, it splits down to a few primitives a leaf. How many go into one leaf of the tree
+//! that rays walk is decided then, where the cost of a block of triangles and of wide nodes is known.
 
 use super::bins::{Bins, Split};
 use super::part::Part;

@@ -1,5 +1,5 @@
-//! Where to split a set of boxes: the surface-area heuristic at the borders of equal bins (Wald, "On fast Construction of
-//! SAH-based Bounding Volume Hierarchies", 2007).
+//! Where to split a set of boxes: the surface-area heuristic at the borders of equal bins (Wald, "On fast Construction
+//! of SAH-based Bounding Volume Hierarchies", 2007).
 
 use super::reference::{Bounds, Extents, Reference, SHARE};
 use glam::Vec4;
@@ -82,8 +82,8 @@ impl Binning {
     }
 }
 
-/// The bins of the three axes: what they hold, and how many. Reused from node to node, since clearing all of them costs more
-/// than filling a few.
+/// The bins of the three axes: what they hold, and how many. Reused from node to node, since clearing all of them costs
+/// more than filling a few.
 pub struct Bins {
     bounds: Box<[[Bounds; MAX_BINS]; 3]>,
     counts: [[u32; MAX_BINS]; 3],
@@ -105,7 +105,8 @@ impl Bins {
 
     #[inline(always)]
     fn add(&mut self, references: &[Reference], binning: &Binning) {
-        // Neighbours often fall into the same bin, where the second would wait for the first: take turns with some from afar.
+        // Neighbours often fall into the same bin, where the second would wait for the first: take turns with some from
+        // afar.
         let (first, second) = references.split_at(references.len() / 2);
         for (i, r) in second.iter().enumerate() {
             self.add_one(r, binning);

@@ -1,5 +1,6 @@
-//! Planes that part what they cut: bins of equal width that hold the parts of each reference (Stich, Friedrich and Dietrich,
-//! "Spatial Splits in Bounding Volume Hierarchies", 2009; "chopped binning" after Popov, Günther, Seidel and Slusallek 2006).
+//! Planes that part what they cut: bins of equal width that hold the parts of each reference (Stich, Friedrich and
+//! Dietrich, "Spatial Splits in Bounding Volume Hierarchies", 2009; "chopped binning" after Popov, Günther, Seidel and
+//! Slusallek 2006).
 
 use super::binned::MAX_BINS;
 use super::reference::{Bounds, Reference};
@@ -34,7 +35,8 @@ impl Grid {
         self.origin + self.width * bin as f32
     }
 
-    /// The first and the last bin that an interval reaches into, which is that of its lower end if it only touches the next.
+    /// The first and the last bin that an interval reaches into, which is that of its lower end if it only touches the
+    /// next.
     #[inline(always)]
     fn place(&self, min: f32, max: f32) -> [usize; 2] {
         let guess = |x: f32| (((x - self.origin) / self.width) as usize).min(self.bins - 1);
@@ -143,8 +145,8 @@ impl Plane {
         workspace: &mut Chopped,
     ) -> Option<Self> {
         let around = around.aabb();
-        // Half as many as for whole references, and fewer for few: what is long is cut in each that it passes, and planes found so
-        // are hardly worse.
+        // Half as many as for whole references, and fewer for few: what is long is cut in each that it passes, and
+        // planes found so are hardly worse.
         let bins = bins.div_ceil(2).min(references.len() / 2).max(4);
         let grids = [0, 1, 2].map(|axis| Grid::new(axis, &around, bins));
         workspace.clear(bins);

@@ -1,6 +1,6 @@
-//! From the top down by halves along the longest axis of the centres, as textbooks begin (Kay and Kajiya, "Ray Tracing Complex
-//! Scenes", 1986): at the middle of where the centres are, at their median, or at their mean. The sides' areas are not looked
-//! at.
+//! From the top down by halves along the longest axis of the centres, as textbooks begin (Kay and Kajiya, "Ray Tracing
+//! Complex Scenes", 1986): at the middle of where the centres are, at their median, or at their mean. The sides' areas
+//! are not looked at.
 
 use super::reference::{Extents, Reference, SHARE, median, partition, references};
 use super::top_down::{self, Set};
@@ -30,7 +30,8 @@ impl Way {
     }
 }
 
-/// Builds a tree over boxes, leaving out empty ones. Leaves are made by number alone: at most [`Leaves::whole`] primitives.
+/// Builds a tree over boxes, leaving out empty ones. Leaves are made by number alone: at most [`Leaves::whole`]
+/// primitives.
 ///
 /// Takes time n log n on any input: from a depth on that a reasonable tree does not reach, sets are halved by number.
 ///

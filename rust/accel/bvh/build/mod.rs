@@ -1,7 +1,8 @@
 //! Builders of the binary tree. They see boxes, never shapes.
 //!
-//! Trees come laid out depth first: behind a pair of children stands all that is below the first, then all that is below
-//! the second, and leaves refer to the primitives in the same order. However many threads build, the tree is the same.
+//! Trees come laid out depth first: behind a pair of children stands all that is below the first, then all that is
+//! below the second, and leaves refer to the primitives in the same order. However many threads build, the tree is the
+//! same.
 
 pub mod binned;
 mod bins;
@@ -86,7 +87,8 @@ impl Builder {
         matches!(self, Self::Spatial { .. })
     }
 
-    /// The same over pieces of primitives that were cut before: what they are more than the primitives counts as added already.
+    /// The same over pieces of primitives that were cut before: what they are more than the primitives counts as added
+    /// already.
     pub fn over_pieces(self, primitives: usize, pieces: usize) -> Self {
         match self {
             Self::Spatial { bins, budget } => {
@@ -99,8 +101,8 @@ impl Builder {
 
     /// Makes a tree over boxes, leaving out empty ones.
     ///
-    /// `clip` gives a box around what of a primitive lies in another box, or around more; only spatial splits ask for it. It
-    /// must be empty only where there is nothing, and lie within the primitive's own box and the other one.
+    /// `clip` gives a box around what of a primitive lies in another box, or around more; only spatial splits ask for
+    /// it. It must be empty only where there is nothing, and lie within the primitive's own box and the other one.
     ///
     /// # Panics
     /// If an option is out of range.
@@ -122,8 +124,8 @@ impl Builder {
     }
 }
 
-/// How many levels are split as the heuristic wants it, before halves by number bound the depth of what is left: a reasonable
-/// tree is not as deep.
+/// How many levels are split as the heuristic wants it, before halves by number bound the depth of what is left: a
+/// reasonable tree is not as deep.
 fn spare(references: usize) -> usize {
     2 * references.max(1).ilog2() as usize + 40
 }

@@ -1,6 +1,7 @@
-//! A linear tree: primitives in the order of their centres' Morton codes, parted bit by bit (Lauterbach, Garland, Sengupta,
-//! Luebke and Manocha, "Fast BVH Construction on GPUs", 2009; Karras, "Maximizing Parallelism in the Construction of BVHs, Octrees,
-//! and k-d Trees", 2012). Codes are sorted by radix, subtrees written side by side, and boxes made from the bottom up.
+//! A linear tree: primitives in the order of their centres' Morton codes, parted bit by bit (Lauterbach, Garland,
+//! Sengupta, Luebke and Manocha, "Fast BVH Construction on GPUs", 2009; Karras, "Maximizing Parallelism in the
+//! Construction of BVHs, Octrees, and k-d Trees", 2012). Codes are sorted by radix, subtrees written side by side, and
+//! boxes made from the bottom up.
 //!
 //! Leaves have one primitive each; what shares a block is decided when the tree is collapsed.
 
@@ -30,8 +31,8 @@ impl Bits {
     }
 }
 
-/// Builds a tree over boxes, leaving out empty ones. It is no deeper than codes have bits, plus the logarithm of how many
-/// share a code: these are halved by number.
+/// Builds a tree over boxes, leaving out empty ones. It is no deeper than codes have bits, plus the logarithm of how
+/// many share a code: these are halved by number.
 pub fn build(boxes: &[Aabb], bits: Bits) -> BinaryBvh {
     let references = references(boxes);
     if references.is_empty() {

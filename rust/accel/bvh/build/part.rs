@@ -12,7 +12,8 @@ pub enum Part {
         root: Node,
         /// What is below.
         below: Vec<Node>,
-        /// The primitives of its leaves, which are counted from its own first. Nothing if leaves know their place among all.
+        /// The primitives of its leaves, which are counted from its own first. Nothing if leaves know their place among
+        /// all.
         order: Vec<u32>,
     },
     /// Two parts side by side.

@@ -1,13 +1,13 @@
-//! From the bottom up by locally ordered clustering (Meister and Bittner, "Parallel Locally-Ordered Clustering for Bounding
-//! Volume Hierarchy Construction", 2018).
+//! From the bottom up by locally ordered clustering (Meister and Bittner, "Parallel Locally-Ordered Clustering for
+//! Bounding Volume Hierarchy Construction", 2018).
 //!
-//! Clusters stand in the order of Morton codes, one primitive each at first. In every round each seeks, among those up to a radius
-//! before and behind it, the one with which it makes the smallest box; two that seek each other become one. Which of several
-//! as near is sought is a matter of their places alone, in an order that both sides see alike: so some pair is made in every
-//! round, all are where everything coincides, and threads do not matter.
+//! Clusters stand in the order of Morton codes, one primitive each at first. In every round each seeks, among those up
+//! to a radius before and behind it, the one with which it makes the smallest box; two that seek each other become one.
+//! Which of several as near is sought is a matter of their places alone, in an order that both sides see alike: so some
+//! pair is made in every round, all are where everything coincides, and threads do not matter.
 //!
-//! In a chain of scales only one pair finds itself a round. After more rounds than a reasonable scene takes, neighbours are
-//! paired as they stand, which bounds time and depth.
+//! In a chain of scales only one pair finds itself a round. After more rounds than a reasonable scene takes, neighbours
+//! are paired as they stand, which bounds time and depth.
 
 use super::morton::{self, Bits};
 use super::reference::{Bounds, Reference, references};
@@ -32,8 +32,8 @@ pub const RADIUS: usize = 14;
 /// So many clusters are one thread's share.
 const SHARE: usize = 1 << 12;
 
-/// Builds a tree over boxes, leaving out empty ones. Leaves have one primitive each; what shares a block is decided when the
-/// tree is collapsed.
+/// Builds a tree over boxes, leaving out empty ones. Leaves have one primitive each; what shares a block is decided
+/// when the tree is collapsed.
 ///
 /// # Panics
 /// If the radius is out of range.
@@ -79,8 +79,8 @@ struct Pair {
 #[derive(Clone, Copy)]
 struct Neighbour {
     area: f32,
-    /// Of equal areas the least rank is nearer: two that are paired as they stand, then those that are less far apart, then those
-    /// that come first.
+    /// Of equal areas the least rank is nearer: two that are paired as they stand, then those that are less far apart,
+    /// then those that come first.
     rank: u64,
     place: u32,
 }

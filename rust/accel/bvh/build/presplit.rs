@@ -1,13 +1,14 @@
-//! Cuts before a build: what is long and lies across the axes fills little of its box, and any builder makes a better tree of the
-//! boxes of its pieces (Ernst and Greiner, "Early Split Clipping for Bounding Volume Hierarchies", 2007).
+//! Cuts before a build: what is long and lies across the axes fills little of its box, and any builder makes a better
+//! tree of the boxes of its pieces (Ernst and Greiner, "Early Split Clipping for Bounding Volume Hierarchies", 2007).
 //!
-//! What a cut gains is the area of a box less that of what is left of the primitive in either half: by so much fewer rays meet it
-//! for nothing. Pieces are cut where most is gained, wherever in the scene that is, until the budget is used up or too little is
-//! gained, so that in the end they gain about the same everywhere. (Karras and Aila, "Fast Parallel Construction of High-Quality
-//! Bounding Volume Hierarchies", 2013, share the budget out beforehand, by a power of the area.)
+//! What a cut gains is the area of a box less that of what is left of the primitive in either half: by so much fewer
+//! rays meet it for nothing. Pieces are cut where most is gained, wherever in the scene that is, until the budget is
+//! used up or too little is gained, so that in the end they gain about the same everywhere. (Karras and Aila, "Fast
+//! Parallel Construction of High-Quality Bounding Volume Hierarchies", 2013, share the budget out beforehand, by a
+//! power of the area.)
 //!
-//! Even meshes gain nothing by it, since a piece takes a place in a block as its whole did. So nothing is cut where not much is
-//! gained in all.
+//! Even meshes gain nothing by it, since a piece takes a place in a block as its whole did. So nothing is cut where not
+//! much is gained in all.
 
 use super::BinaryBvh;
 use super::reference::SHARE;
@@ -24,12 +25,12 @@ pub struct Options {
     pub worthwhile: f32,
 }
 
-/// A cut gains at least so much of the area of the box around all, over the number of primitives. If as many pieces are added as
-/// there are primitives, a ray then meets at least so many boxes fewer.
+/// A cut gains at least so much of the area of the box around all, over the number of primitives. If as many pieces are
+/// added as there are primitives, a ray then meets at least so many boxes fewer.
 const LEAST: f32 = 5.0;
 
-/// And so much of the area that it cuts. A diagonal in a plane gains a half; a triangle with two sides along the axes gains a
-/// quarter, which is lost again in the nodes above its pieces.
+/// And so much of the area that it cuts. A diagonal in a plane gains a half; a triangle with two sides along the axes
+/// gains a quarter, which is lost again in the nodes above its pieces.
 const LEAST_SHARE: f32 = 0.3;
 
 /// So many pieces can be told apart by a wide tree.
@@ -229,7 +230,8 @@ mod tests {
     use crate::sampling::philox4x32;
     use crate::shapes::triangle::clipped;
 
-    /// Triangles of some size, the second corner in a direction from the first, which for the third is turned by a right angle.
+    /// Triangles of some size, the second corner in a direction from the first, which for the third is turned by a
+    /// right angle.
     fn triangles(count: u32, along: DVec3, aside: DVec3) -> Vec<[DVec3; 3]> {
         let random = |i| philox4x32([i, 0, 0, 0], [0, 0]).map(|bits| f64::from(bits) / 2f64.powi(32));
         let place = |i| DVec3::from_slice(&random(i)[..3]);

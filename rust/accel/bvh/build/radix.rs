@@ -1,4 +1,5 @@
-//! A stable parallel radix sort by whole-number keys (Zagha and Blelloch, "Radix Sort for Vector Multiprocessors", 1991).
+//! A stable parallel radix sort by whole-number keys (Zagha and Blelloch, "Radix Sort for Vector Multiprocessors",
+//! 1991).
 
 use rayon::prelude::*;
 

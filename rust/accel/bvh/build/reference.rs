@@ -10,8 +10,8 @@ pub const SHARE: usize = 1 << 14;
 /// From so many references on, several threads look at them.
 pub const MANY: usize = 1 << 16;
 
-/// A box that grows: its least corner, and its greatest with all signs turned, so that both grow by taking the lesser. What
-/// stands in `w` does not count.
+/// A box that grows: its least corner, and its greatest with all signs turned, so that both grow by taking the lesser.
+/// What stands in `w` does not count.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub struct Bounds {
@@ -99,8 +99,8 @@ impl From<&Aabb> for Bounds {
 #[derive(Clone, Copy, Debug)]
 #[repr(transparent)]
 pub struct Reference {
-    /// The lower half of the primitive's number stands in the first `w`, the upper in the second. Halves, as the bits of a
-    /// whole number would make subnormals, which slow arithmetic down.
+    /// The lower half of the primitive's number stands in the first `w`, the upper in the second. Halves, as the bits
+    /// of a whole number would make subnormals, which slow arithmetic down.
     pub bounds: Bounds,
 }
 
@@ -184,8 +184,8 @@ pub fn references(boxes: &[Aabb]) -> Vec<Reference> {
     }
 }
 
-/// Brings those that belong on the left to the front and tells how many they are. Without a branch on the side, which would
-/// be guessed wrong every other time.
+/// Brings those that belong on the left to the front and tells how many they are. Without a branch on the side, which
+/// would be guessed wrong every other time.
 #[inline(always)]
 pub fn partition(references: &mut [Reference], is_left: impl Fn(&Reference) -> bool) -> usize {
     let mut left = 0;

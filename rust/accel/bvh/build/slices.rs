@@ -1,5 +1,5 @@
-//! Binary trees with one primitive a leaf, written where they belong at once: a subtree over n of them has 2 n − 1 nodes, so
-//! every place is known beforehand.
+//! Binary trees with one primitive a leaf, written where they belong at once: a subtree over n of them has 2 n − 1
+//! nodes, so every place is known beforehand.
 
 use super::{BinaryBvh, Node};
 use crate::math::Aabb;
@@ -22,8 +22,8 @@ pub enum Opened<S> {
     Pair(S, S, usize),
 }
 
-/// Writes a tree over so many primitives, at least one; boxes come from the bottom up. Subtrees must not be nested much deeper
-/// than a stack can hold.
+/// Writes a tree over so many primitives, at least one; boxes come from the bottom up. Subtrees must not be nested much
+/// deeper than a stack can hold.
 pub fn write(root: impl Subtree, count: usize) -> BinaryBvh {
     let nothing = Node::leaf(Aabb::EMPTY, 0, 0);
     let mut nodes: Vec<Node> = (0..2 * count - 1).into_par_iter().map(|_| nothing).collect();

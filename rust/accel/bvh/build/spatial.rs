@@ -1,12 +1,12 @@
-//! From the top down by the surface-area heuristic, where a primitive that straddles a plane may be parted by it (Stich, Friedrich
-//! and Dietrich, "Spatial Splits in Bounding Volume Hierarchies", 2009).
+//! From the top down by the surface-area heuristic, where a primitive that straddles a plane may be parted by it
+//! (Stich, Friedrich and Dietrich, "Spatial Splits in Bounding Volume Hierarchies", 2009).
 //!
 //! What is sorted are references: a primitive with the box around a part of it, which another may share. Where the two
-//! sides of the best split of the set overlap, planes that part what they cut are weighed too, in bins that hold the parts. A
-//! straddling reference that costs less when it is left whole goes to one side ("reference unsplitting"). How many references may be
-//! added is bounded; a subtree gets what its parent has left in proportion to its references, so that threads need not share it.
-//! That spends it badly where some need many cuts and others none, so what gains most is better cut before, wherever it is:
-//! `presplit`.
+//! sides of the best split of the set overlap, planes that part what they cut are weighed too, in bins that hold the
+//! parts. A straddling reference that costs less when it is left whole goes to one side ("reference unsplitting"). How
+//! many references may be added is bounded; a subtree gets what its parent has left in proportion to its references, so
+//! that threads need not share it. That spends it badly where some need many cuts and others none, so what gains most
+//! is better cut before, wherever it is: `presplit`.
 
 use super::binned::MAX_BINS;
 use super::bins::{Bins, Split};
@@ -37,19 +37,19 @@ pub const BUDGET: f32 = 4.0;
 /// So many references can be told apart by a wide tree.
 const MOST: usize = (1 << 28) - 2;
 
-/// Planes are weighed where the sides overlap by more than this share of the root's area (α in the paper): where they overlap by
-/// less, hardly a ray meets both for nothing.
+/// Planes are weighed where the sides overlap by more than this share of the root's area (α in the paper): where they
+/// overlap by less, hardly a ray meets both for nothing.
 const OVERLAP: f32 = 1e-3;
 
-/// And by more than this share of the set's own. What parting saves is not more than the overlap, and in a mesh of even triangles
-/// neighbours overlap everywhere by a little.
+/// And by more than this share of the set's own. What parting saves is not more than the overlap, and in a mesh of even
+/// triangles neighbours overlap everywhere by a little.
 const OWN_OVERLAP: f32 = 0.2;
 
-/// Builds a tree over boxes, leaving out empty ones; a primitive may stand in several leaves, each of which holds what is left of it
-/// in a box. `clip` is as [`Builder::build`](super::Builder::build) says.
+/// Builds a tree over boxes, leaving out empty ones; a primitive may stand in several leaves, each of which holds what
+/// is left of it in a box. `clip` is as [`Builder::build`](super::Builder::build) says.
 ///
-/// Takes time n log n on any input: sets that cannot be parted by area are halved by number, and so are all from a depth on that
-/// a reasonable tree does not reach.
+/// Takes time n log n on any input: sets that cannot be parted by area are halved by number, and so are all from a
+/// depth on that a reasonable tree does not reach.
 ///
 /// # Panics
 /// If an option is out of range.

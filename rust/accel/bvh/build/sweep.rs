@@ -1,9 +1,9 @@
-//! From the top down by the surface-area heuristic at every place where a set can be parted along an axis (MacDonald and Booth,
-//! "Heuristics for Ray Tracing Using Space Subdivision", 1990).
+//! From the top down by the surface-area heuristic at every place where a set can be parted along an axis (MacDonald
+//! and Booth, "Heuristics for Ray Tracing Using Space Subdivision", 1990).
 //!
-//! The primitives are sorted once along each axis, and the three orders are parted stably (Wald and Havran, "On building fast
-//! kd-trees for ray tracing, and on doing that in O(N log N)", 2006). The three axes are swept side by side where nodes are
-//! large, and subtrees are built side by side below.
+//! The primitives are sorted once along each axis, and the three orders are parted stably (Wald and Havran, "On
+//! building fast kd-trees for ray tracing, and on doing that in O(N log N)", 2006). The three axes are swept side by
+//! side where nodes are large, and subtrees are built side by side below.
 
 use super::reference::{Bounds, Reference, references};
 use super::top_down::{self, Set};
@@ -18,8 +18,8 @@ const MANY: usize = 4096;
 
 /// Builds a tree over boxes, leaving out empty ones.
 ///
-/// Takes time n log n on any input: sets that cannot be parted by area are halved by number, and so are all from a depth on that
-/// a reasonable tree does not reach.
+/// Takes time n log n on any input: sets that cannot be parted by area are halved by number, and so are all from a
+/// depth on that a reasonable tree does not reach.
 ///
 /// # Panics
 /// If an option is out of range.

@@ -1,5 +1,5 @@
-//! Optimisers of the binary tree: what a builder, which looks at one node at a time, has left to gain. To them leaves are
-//! opaque, so the tree of any builder will do.
+//! Optimisers of the binary tree: what a builder, which looks at one node at a time, has left to gain. To them leaves
+//! are opaque, so the tree of any builder will do.
 
 pub mod reinsertion;
 mod tree;

@@ -3,13 +3,14 @@
 //!
 //! The cost of a tree is the area of its inner nodes. Taking a subtree out makes its parent needless and its ancestors
 //! smaller; putting it in somewhere else makes a new parent and enlarges those above. In every round the best place is
-//! sought for each of the largest nodes, by branch and bound and on all cores, in the tree as it stands; then the moves are
-//! made one after the other, from the one that gains most, leaving out those whose neighbourhood another has changed.
-//! Since nothing of that depends on who seeks, the tree is the same for any number of threads.
+//! sought for each of the largest nodes, by branch and bound and on all cores, in the tree as it stands; then the moves
+//! are made one after the other, from the one that gains most, leaving out those whose neighbourhood another has
+//! changed. Since nothing of that depends on who seeks, the tree is the same for any number of threads.
 //!
-//! Three things are our own. What fits one block of triangles is moved as a whole: a triangle that leaves it alone makes inner
-//! nodes smaller, but needs a block for itself, which costs more. A node that found no better place rests for some rounds, so
-//! that the search comes to smaller ones. And a search sees a bounded number of nodes, so that the time is bounded on any input.
+//! Three things are our own. What fits one block of triangles is moved as a whole: a triangle that leaves it alone
+//! makes inner nodes smaller, but needs a block for itself, which costs more. A node that found no better place rests
+//! for some rounds, so that the search comes to smaller ones. And a search sees a bounded number of nodes, so that the
+//! time is bounded on any input.
 
 use super::tree::{Move, Tree, sibling};
 use crate::accel::bvh::BinaryBvh;
@@ -35,8 +36,8 @@ const REST: u32 = 5;
 /// So many pairs of nodes are seen in a search; few searches come near.
 const PATIENCE: u32 = 256;
 
-/// Moves subtrees of a tree, which is laid out depth first and is so again afterwards. Its inner nodes have no more area
-/// then, and it is no deeper than it was or than three times the logarithm of its primitives and some.
+/// Moves subtrees of a tree, which is laid out depth first and is so again afterwards. Its inner nodes have no more
+/// area then, and it is no deeper than it was or than three times the logarithm of its primitives and some.
 pub fn optimise(bvh: &mut BinaryBvh, options: &Options) {
     if options.rounds == 0 || bvh.nodes.is_empty() {
         return;
@@ -70,7 +71,8 @@ pub fn optimise(bvh: &mut BinaryBvh, options: &Options) {
     *bvh = tree.lay_out(bvh);
 }
 
-/// About so many of the largest nodes for which `is_asked` holds, in the order of their numbers; the root is none of them.
+/// About so many of the largest nodes for which `is_asked` holds, in the order of their numbers; the root is none of
+/// them.
 fn largest(tree: &Tree, count: usize, is_asked: impl Fn(u32) -> bool) -> Vec<u32> {
     let nodes = || (0..).zip(tree.areas()).skip(1).filter(|&(node, _)| is_asked(node));
     // The area of the least is taken from a sample.

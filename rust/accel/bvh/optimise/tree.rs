@@ -198,8 +198,8 @@ impl Tree {
         (0..self.len() as u32).filter(|&n| self.below(n).is_some()).map(|n| f64::from(self.area(n))).sum()
     }
 
-    /// Makes the moves that do not get into each other's way, the first ones first; which they are, and how much area they
-    /// save in all.
+    /// Makes the moves that do not get into each other's way, the first ones first; which they are, and how much area
+    /// they save in all.
     pub fn apply(&mut self, moves: impl IntoIterator<Item = Move>) -> (Vec<Made>, f64) {
         self.time += 1;
         let (mut made, mut saved) = (Vec::new(), 0.0);
@@ -280,8 +280,8 @@ impl Tree {
     }
 
     /// Takes out a subtree and makes it the sibling of what stands at `to`. Pairs stay pairs, so only three nodes
-    /// change: the sibling left behind takes the parent's place, what stood at `to` the sibling's, and the pair hangs below
-    /// `to`. The same with the former parent for `to` takes it back.
+    /// change: the sibling left behind takes the parent's place, what stood at `to` the sibling's, and the pair hangs
+    /// below `to`. The same with the former parent for `to` takes it back.
     fn reinsert(&mut self, node: u32, to: u32) {
         let (from, beside) = (self.parent(node), sibling(node));
         self.put(from, beside);

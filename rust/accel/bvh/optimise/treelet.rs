@@ -1,9 +1,9 @@
-//! Putting treelets together anew (Karras and Aila, "Fast Parallel Construction of High-Quality Bounding Volume Hierarchies",
-//! 2013).
+//! Putting treelets together anew (Karras and Aila, "Fast Parallel Construction of High-Quality Bounding Volume
+//! Hierarchies", 2013).
 //!
-//! From the bottom up, each node and its largest descendants are a treelet of seven leaves. Of all the ways in which these can
-//! hang together, dynamic programming over their subsets finds the one whose inner nodes have the least area. Treelets of one
-//! level do not meet, so threads share them out, and the tree is the same for any number of threads.
+//! From the bottom up, each node and its largest descendants are a treelet of seven leaves. Of all the ways in which
+//! these can hang together, dynamic programming over their subsets finds the one whose inner nodes have the least area.
+//! Treelets of one level do not meet, so threads share them out, and the tree is the same for any number of threads.
 //!
 //! What fits one block of triangles is a leaf here, and stays as it is.
 
@@ -26,8 +26,8 @@ pub struct Options {
 /// Leaves of a treelet.
 const LEAVES: usize = 7;
 
-/// Goes through a tree, which is laid out depth first and is so again afterwards. Its inner nodes have no more area then, and
-/// it is no deeper than it was or than three times the logarithm of its primitives and some.
+/// Goes through a tree, which is laid out depth first and is so again afterwards. Its inner nodes have no more area
+/// then, and it is no deeper than it was or than three times the logarithm of its primitives and some.
 pub fn optimise(bvh: &mut BinaryBvh, options: &Options) {
     if options.rounds == 0 || bvh.nodes.is_empty() {
         return;
@@ -90,7 +90,8 @@ fn levels(tree: &Tree) -> Vec<Vec<Seen>> {
     levels.into_iter().map(|level| level.into_iter().map(seen).collect()).collect()
 }
 
-/// The best treelet at a node, and how much area it saves; none if that is nothing, or if it would be higher than allowed.
+/// The best treelet at a node, and how much area it saves; none if that is nothing, or if it would be higher than
+/// allowed.
 fn best(tree: &Tree, root: u32, highest: u32) -> Option<(Treelet, f64)> {
     let first = tree.below(root)?;
     let mut leaves = Vec::with_capacity(LEAVES);

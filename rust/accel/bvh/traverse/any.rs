@@ -1,5 +1,6 @@
-//! Any hit will do: nothing is sorted, and no distance is kept. Of two children that are met, the one of more surface goes first, since a
-//! ray that meets both is more likely stopped there; that order is the same for all rays, so the tree itself has it.
+//! Any hit will do: nothing is sorted, and no distance is kept. Of two children that are met, the one of more surface
+//! goes first, since a ray that meets both is more likely stopped there; that order is the same for all rays, so the
+//! tree itself has it.
 
 use super::numbered::Numbered;
 use super::volumes::Volumes;

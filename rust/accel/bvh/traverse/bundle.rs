@@ -1,15 +1,17 @@
-//! Sixty-four rays together. What is known of a bundle at a node is its first ray that may meet the box, and the last; those between are
-//! not looked at (Wald, Boulos and Shirley, "Ray Tracing Deformable Scenes using Dynamic Bounding Volume Hierarchies", 2007; Overbeck,
-//! Ramamoorthi and Mark, "Large Ray Packets for Real-time Whitted Ray Tracing", 2008, where it is called ranged traversal). A box is
-//! tested in three steps:
+//! Sixty-four rays together. What is known of a bundle at a node is its first ray that may meet the box, and the last;
+//! those between are not looked at (Wald, Boulos and Shirley, "Ray Tracing Deformable Scenes using Dynamic Bounding
+//! Volume Hierarchies", 2007; Overbeck, Ramamoorthi and Mark, "Large Ray Packets for Real-time Whitted Ray Tracing",
+//! 2008, where it is called ranged traversal). A box is tested in three steps:
 //!
 //! 1. if the first ray so far meets it, all go on: where rays keep together, that is all that a box takes;
-//! 2. if an interval that holds all rays misses it, none does (Boulos et al., "Packet-based Whitted and Distribution Ray Tracing",
-//!    2007): what is derived in `bvh/wide/packet.rs` holds here, where rays may be far too, since each has its own pad;
+//! 2. if an interval that holds all rays misses it, none does (Boulos et al., "Packet-based Whitted and Distribution
+//!    Ray Tracing", 2007): what is derived in `bvh/wide/packet.rs` holds here, where rays may be far too, since each
+//!    has its own pad;
 //! 3. else the first that meets it is sought, ray after ray.
 //!
-//! In place of one ray stands a vector of them. Which child comes first is decided by the first ray, by the axis along which
-//! the children are farthest apart. A node is tested when it is its turn, so that what was found until then counts.
+//! In place of one ray stands a vector of them. Which child comes first is decided by the first ray, by the axis along
+//! which the children are farthest apart. A node is tested when it is its turn, so that what was found until then
+//! counts.
 //!
 //! Rays that go different ways have ranges that are long and mostly empty: they are answered as well, but slowly.
 
@@ -79,8 +81,8 @@ impl<'a, const N: usize, const COUNTED: bool> Walk<'a, N, COUNTED> {
         self.rays.meet::<N, S>(simd, group, node, limits).1
     }
 
-    /// The groups between the first and the last of some in which any ray meets a box, and one such ray of the first. None
-    /// if no ray does.
+    /// The groups between the first and the last of some in which any ray meets a box, and one such ray of the first.
+    /// None if no ray does.
     #[inline(always)]
     fn narrowed<S: Simd<N>>(
         &mut self,

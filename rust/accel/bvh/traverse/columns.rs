@@ -61,8 +61,8 @@ impl<const R: usize> Columns<R> {
         self.first[axis]
     }
 
-    /// Where the rays of a group of `N` enter a box, and which of them do so no later than they leave it and than `limits`: that
-    /// is [`SlabRay::passes`], lane by lane, for a box that is not empty.
+    /// Where the rays of a group of `N` enter a box, and which of them do so no later than they leave it and than
+    /// `limits`: that is [`SlabRay::passes`], lane by lane, for a box that is not empty.
     ///
     /// Where rays go both ways along an axis, the lesser of both products is that of the plane which each meets first.
     #[inline(always)]

@@ -1,5 +1,5 @@
-//! Leaves of as many primitives as cost least, for a tree that is walked as it is: builders from the bottom up make a leaf of every
-//! primitive, and optimisers let leaves be.
+//! Leaves of as many primitives as cost least, for a tree that is walked as it is: builders from the bottom up make a
+//! leaf of every primitive, and optimisers let leaves be.
 
 use crate::accel::bvh::{BinaryBvh, Node};
 
@@ -17,8 +17,9 @@ pub struct Costs {
 /// More primitives are not gathered in a leaf.
 const MOST: usize = 32;
 
-/// Makes a leaf of everything below a node wherever that costs no more, by the surface-area heuristic (Goldsmith and Salmon 1987).
-/// What stands below a node more than once, part by part, stands in its leaf once. The tree is laid out depth first.
+/// Makes a leaf of everything below a node wherever that costs no more, by the surface-area heuristic (Goldsmith and
+/// Salmon 1987). What stands below a node more than once, part by part, stands in its leaf once. The tree is laid out
+/// depth first.
 pub fn gather(bvh: &BinaryBvh, costs: Costs) -> BinaryBvh {
     let whole = is_whole(bvh, costs);
     let mut gathered = BinaryBvh { nodes: Vec::with_capacity(bvh.nodes.len()), order: Vec::new() };

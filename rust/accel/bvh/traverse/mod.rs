@@ -85,8 +85,8 @@ fn clip(input: &Input, primitive: u32, to: &Aabb) -> Aabb {
     }
 }
 
-/// The surface-area heuristic's cost of a tree, in tests of a node: of every inner node its two boxes, of every leaf its primitives, each
-/// times the chance that a ray that meets the root's box meets this one's.
+/// The surface-area heuristic's cost of a tree, in tests of a node: of every inner node its two boxes, of every leaf
+/// its primitives, each times the chance that a ray that meets the root's box meets this one's.
 fn sah_cost(bvh: &BinaryBvh) -> f64 {
     let area = |aabb: &Aabb| f64::from(aabb.half_area());
     let sum: f64 = bvh.nodes.iter().map(|n| area(&n.aabb()) * if n.is_leaf() { f64::from(n.count) } else { 2.0 }).sum();

@@ -1,6 +1,6 @@
-//! The stack over boxes that move: every node keeps its box as the shutter opens and as it closes, and a ray meets what lies between the two
-//! at its own time (Glassner, "Spacetime Ray Tracing for Animation", 1988; interpolated boxes as in Christensen, Fong, Laur and Batali,
-//! "Ray Tracing for the Movie 'Cars'", 2006).
+//! The stack over boxes that move: every node keeps its box as the shutter opens and as it closes, and a ray meets what
+//! lies between the two at its own time (Glassner, "Spacetime Ray Tracing for Animation", 1988; interpolated boxes as
+//! in Christensen, Fong, Laur and Batali, "Ray Tracing for the Movie 'Cars'", 2006).
 
 use super::numbered::Numbered;
 use crate::accel::bvh::{BinaryBvh, Node};

@@ -1,4 +1,5 @@
-//! The tree that all these ways share: leaves are known by numbers of their own, and what is in them is for others to keep.
+//! The tree that all these ways share: leaves are known by numbers of their own, and what is in them is for others to
+//! keep.
 
 use super::{clip, sah_cost};
 use crate::accel::Info;

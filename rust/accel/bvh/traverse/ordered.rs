@@ -1,5 +1,6 @@
-//! The stack: the nearer child first, the other put away with the distance at which its box begins, and left out when something nearer
-//! was found meanwhile (Kay and Kajiya, "Ray tracing complex scenes", 1986, with a stack for their heap).
+//! The stack: the nearer child first, the other put away with the distance at which its box begins, and left out when
+//! something nearer was found meanwhile (Kay and Kajiya, "Ray tracing complex scenes", 1986, with a stack for their
+//! heap).
 
 use super::any::{Unordered, larger_first};
 use super::numbered::Numbered;

@@ -1,5 +1,5 @@
-//! Turned boxes: a node has, beside its box, one along axes of its own, where that has less surface (Gottschalk, Lin and Manocha,
-//! "OBBTree: A Hierarchical Structure for Rapid Interference Detection", 1996).
+//! Turned boxes: a node has, beside its box, one along axes of its own, where that has less surface (Gottschalk, Lin
+//! and Manocha, "OBBTree: A Hierarchical Structure for Rapid Interference Detection", 1996).
 
 use super::numbered::Numbered;
 use super::volumes::{Line, NOWHERE, Points, Span, Volumes, grow};

@@ -1,6 +1,7 @@
-//! Four rays together, one in each lane: a box is tested against all of them in the time of one (Wald, Slusallek, Benthin and Wagner,
-//! "Interactive Rendering with Coherent Ray Tracing", 2001). Those that meet it go on, those that do not wait. Which child comes first
-//! is decided by the majority, so rays that go different ways are answered as well, only not as soon.
+//! Four rays together, one in each lane: a box is tested against all of them in the time of one (Wald, Slusallek,
+//! Benthin and Wagner, "Interactive Rendering with Coherent Ray Tracing", 2001). Those that meet it go on, those that
+//! do not wait. Which child comes first is decided by the majority, so rays that go different ways are answered as
+//! well, only not as soon.
 
 use super::columns::Columns;
 use super::numbered::Numbered;

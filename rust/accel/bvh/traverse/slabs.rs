@@ -1,5 +1,5 @@
-//! Slabs along the diagonals: a node has, beside its box, from where to where it goes along ten more directions, those of a cube's edges
-//! and corners (Kay and Kajiya, "Ray tracing complex scenes", 1986).
+//! Slabs along the diagonals: a node has, beside its box, from where to where it goes along ten more directions, those
+//! of a cube's edges and corners (Kay and Kajiya, "Ray tracing complex scenes", 1986).
 
 use super::numbered::Numbered;
 use super::volumes::{Across, Line, NOWHERE, Points, Span, Volumes, grow};

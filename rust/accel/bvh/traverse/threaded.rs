@@ -1,9 +1,9 @@
-//! Threads in place of a stack: every node says where to go on if its box is met and where if it is missed, so that a walk
-//! keeps one number (Smits, "Efficiency Issues for Ray Tracing", 1998).
+//! Threads in place of a stack: every node says where to go on if its box is met and where if it is missed, so that a
+//! walk keeps one number (Smits, "Efficiency Issues for Ray Tracing", 1998).
 //!
-//! One thread through the tree is one order of its leaves, and good for rays that come to them in that order. So there are several, one
-//! for each of six or eight ways that a ray may go (Hachisuka, "Implementing a Photorealistic Rendering System using GLSL",
-//! 2015), and of each two children the one whose centre comes sooner that way goes first.
+//! One thread through the tree is one order of its leaves, and good for rays that come to them in that order. So there
+//! are several, one for each of six or eight ways that a ray may go (Hachisuka, "Implementing a Photorealistic
+//! Rendering System using GLSL", 2015), and of each two children the one whose centre comes sooner that way goes first.
 
 use super::numbered::Numbered;
 use crate::accel::bvh::BinaryBvh;

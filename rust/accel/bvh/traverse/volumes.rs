@@ -1,12 +1,13 @@
-//! What nodes may have beside their boxes: something that fits diagonal geometry closer, and that a ray which meets the box still has to
-//! meet. All are made of planes across some directions.
+//! What nodes may have beside their boxes: something that fits diagonal geometry closer, and that a ray which meets the
+//! box still has to meet. All are made of planes across some directions.
 //!
-//! The bound, with v = 2⁻²⁴ and R the reach of `accel/slab.rs`, which bounds what is in a box, the origin, and the way between in every
-//! coordinate. Of a direction n with coordinates of at most 1, a point of the node on the ray has the height n·p = n·o + t (n·d).
-//! Per coordinate the origin errs by vR and the ray's way by 3vR, since d is taken from its inverse: 12vR for three. Computing n·o errs by
-//! 6vR, and n·d by as much times t. So with the numbers computed, the height is off by 24vR at most. Dividing by n·d errs by
-//! v of heights of at most 3R four times, and sums and products by 9vR: 45vR in all, in units of the inverse. Eight pads of the slab test are
-//! 64vR; what is left covers the error of a hit's own `t`, and heights that are rounded in f64.
+//! The bound, with v = 2⁻²⁴ and R the reach of `accel/slab.rs`, which bounds what is in a box, the origin, and the way
+//! between in every coordinate. Of a direction n with coordinates of at most 1, a point of the node on the ray has the
+//! height n·p = n·o + t (n·d). Per coordinate the origin errs by vR and the ray's way by 3vR, since d is taken from its
+//! inverse: 12vR for three. Computing n·o errs by 6vR, and n·d by as much times t. So with the numbers computed, the
+//! height is off by 24vR at most. Dividing by n·d errs by v of heights of at most 3R four times, and sums and products
+//! by 9vR: 45vR in all, in units of the inverse. Eight pads of the slab test are 64vR; what is left covers the error of
+//! a hit's own `t`, and heights that are rounded in f64.
 
 use crate::accel::SlabRay;
 use crate::accel::bvh::traverse::numbered::Numbered;

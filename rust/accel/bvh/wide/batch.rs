@@ -32,7 +32,8 @@ impl<const N: usize, L: Leaves<N>, Q: Query> Kernel<N> for Batch<'_, N, L, Q> {
         } else if Q::KERNELS == Kernels::All && coherence::is_coherent(rays, bvh.region.radius) {
             packet::answer(simd, bvh, rays, query);
         } else {
-            // Scattered rays sorted by octant, so that packets would take them, are slower as soon as a tree has two nodes.
+            // Scattered rays sorted by octant, so that packets would take them, are slower as soon as a tree has two
+            // nodes.
             wave::answer(simd, bvh, rays, query);
         }
     }
@@ -87,8 +88,8 @@ mod tests {
         Soup(all)
     }
 
-    /// Fans of neighbouring rays: through the pixels of cameras near and far, parallel ones along axes, and with gaps of
-    /// rays that cannot hit anything.
+    /// Fans of neighbouring rays: through the pixels of cameras near and far, parallel ones along axes, and with gaps
+    /// of rays that cannot hit anything.
     fn fans() -> Vec<Vec<Ray>> {
         let mut fans = Vec::new();
         for camera in 0..12 {

@@ -30,13 +30,13 @@ use std::time::Instant;
 /// How to build a wide tree.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
-    /// How much time the build may take. It decides what nobody else does: bins where none are given, and for the default
-    /// builder what is cut before and what improves its tree.
+    /// How much time the build may take. It decides what nobody else does: bins where none are given, and for the
+    /// default builder what is cut before and what improves its tree.
     pub quality: Quality,
     /// How the binary tree is built.
     pub builder: Builder,
-    /// What improves it then. If none is given, what suits the quality for [`Builder::Binned`], as does what is cut before; and
-    /// nothing otherwise.
+    /// What improves it then. If none is given, what suits the quality for [`Builder::Binned`], as does what is cut
+    /// before; and nothing otherwise.
     pub optimisers: Option<Optimisers>,
     /// Cost of testing a node's boxes.
     pub traversal_cost: f32,
@@ -158,9 +158,9 @@ where
         self.refit(primitives)
     }
 
-    /// Boxes hold what is below them, every primitive that can be hit stands in one
-    /// block, once, with its corners, and the tree is no deeper than recorded. Where primitives stand in several blocks, the boxes
-    /// of these hold it together, as far as [`cover`] sees.
+    /// Boxes hold what is below them, every primitive that can be hit stands in one block, once, with its corners, and
+    /// the tree is no deeper than recorded. Where primitives stand in several blocks, the boxes of these hold it
+    /// together, as far as [`cover`] sees.
     fn validate(&self, primitives: &dyn Primitives) -> Result<(), String> {
         let mut met = vec![0u32; primitives.count()];
         let mut parts = Vec::new();

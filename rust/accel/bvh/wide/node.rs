@@ -1,7 +1,7 @@
 //! A node of a wide tree: the boxes of its children by axis and side, so that each plane of all is one vector.
 //!
-//! Planes of a byte, in steps from the node's own origin (Ylitie, Karras and Laine 2017), make a node half as large. That was
-//! tried: no faster on 69 k triangles, and slower on 832 k and on long thin ones, whose boxes it makes coarse.
+//! Planes of a byte, in steps from the node's own origin (Ylitie, Karras and Laine 2017), make a node half as large.
+//! That was tried: no faster on 69 k triangles, and slower on 832 k and on long thin ones, whose boxes it makes coarse.
 
 use crate::math::{Aabb, Vec3};
 use std::array::from_fn;
@@ -133,8 +133,8 @@ impl<const N: usize> WideNode<N> {
         node
     }
 
-    /// Notes for each octant in which order rays that go towards it should visit the children: by where the boxes' middles
-    /// lie along the octant's diagonal.
+    /// Notes for each octant in which order rays that go towards it should visit the children: by where the boxes'
+    /// middles lie along the octant's diagonal.
     fn sort(&mut self, count: usize) {
         for octant in 0..8 {
             let middle = |lane: usize| -> f32 {
@@ -152,8 +152,8 @@ impl<const N: usize> WideNode<N> {
         }
     }
 
-    /// The lanes from the farthest to the nearest for rays that go towards an octant (bit i is set where they go down along
-    /// axis i), three bits each from the lowest; then those that are empty.
+    /// The lanes from the farthest to the nearest for rays that go towards an octant (bit i is set where they go down
+    /// along axis i), three bits each from the lowest; then those that are empty.
     #[inline(always)]
     pub fn order(&self, octant: usize) -> u32 {
         self.orders[octant & (N - 1)] >> (16 * ((octant & 7) / N))

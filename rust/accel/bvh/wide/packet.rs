@@ -1,13 +1,13 @@
-//! Sixteen rays together: nodes are tested against all of them at once, by intervals; only before what is below a child is
-//! visited are its box and each ray tested, and where few are left they go on alone. (Boulos et al., "Packet-based Whitted
-//! and Distribution Ray Tracing", 2007.) In leaves, a triangle is tested against all rays, or a ray against all triangles,
-//! whichever is less work.
+//! Sixteen rays together: nodes are tested against all of them at once, by intervals; only before what is below a child
+//! is visited are its box and each ray tested, and where few are left they go on alone. (Boulos et al., "Packet-based
+//! Whitted and Distribution Ray Tracing", 2007.) In leaves, a triangle is tested against all rays, or a ray against all
+//! triangles, whichever is less work.
 //!
-//! The interval test: along an axis on which all rays go the same way, ray i meets the nearer plane of a box no earlier than
-//! `(plane − o) · r`, with o the latest origin of all rays, moved on by the pad, and r the least or the greatest inverse
-//! of all directions, whichever gives less. It errs by no more than the slab test of a single ray (`accel/slab.rs`): v·|o| for
-//! rounding the origin and as much for moving it, v·(|plane| + |o|) for the difference, and 2v + v of it for the inverse and
-//! the product: less than 6v·R in units of |r|.
+//! The interval test: along an axis on which all rays go the same way, ray i meets the nearer plane of a box no earlier
+//! than `(plane − o) · r`, with o the latest origin of all rays, moved on by the pad, and r the least or the greatest
+//! inverse of all directions, whichever gives less. It errs by no more than the slab test of a single ray
+//! (`accel/slab.rs`): v·|o| for rounding the origin and as much for moving it, v·(|plane| + |o|) for the difference,
+//! and 2v + v of it for the inverse and the product: less than 6v·R in units of |r|.
 
 use super::WideBvh;
 use super::node::{Packed, WideNode};

@@ -9,8 +9,8 @@ use rayon::prelude::*;
 use std::time::Instant;
 
 impl<const N: usize, L: Leaves<N>> WideBvh<N, L> {
-    /// The tree with the corners of `primitives` and boxes around them; which child stands where stays as it was. How much
-    /// worse it has become its [`Info::sah_cost`] tells.
+    /// The tree with the corners of `primitives` and boxes around them; which child stands where stays as it was. How
+    /// much worse it has become its [`Info::sah_cost`] tells.
     pub(super) fn refit(&self, primitives: &dyn Primitives) -> Result<Self, String> {
         let start = Instant::now();
         if L::PRECISION == "single" && !primitives.is_single() {

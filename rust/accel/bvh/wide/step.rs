@@ -70,9 +70,9 @@ impl Boxes {
         self.at = Packed::of(stacks.items[self.top as usize]);
     }
 
-    /// Tests the children of the node where the ray is and goes on to the nearest that it meets, or, if none, to the top
-    /// of the stack; what else it meets goes on to the stack, the farther the deeper. If not `NEAREST_FIRST`, it goes on to
-    /// the smallest. No branch depends on the ray.
+    /// Tests the children of the node where the ray is and goes on to the nearest that it meets, or, if none, to the
+    /// top of the stack; what else it meets goes on to the stack, the farther the deeper. If not `NEAREST_FIRST`, it
+    /// goes on to the smallest. No branch depends on the ray.
     // Written out, axis by axis: closures between a kernel's entry and here are not always compiled for its level.
     #[inline(always)]
     pub fn enter<const N: usize, S: Simd<N>, const NEAREST_FIRST: bool>(
@@ -100,8 +100,8 @@ impl Boxes {
         self.pop(stacks);
     }
 
-    /// Takes note of a new limit: rids the stack, which starts at `bottom`, of what starts beyond. What starts exactly there
-    /// may hold an equal `t` of a lower primitive.
+    /// Takes note of a new limit: rids the stack, which starts at `bottom`, of what starts beyond. What starts exactly
+    /// there may hold an equal `t` of a lower primitive.
     #[inline(always)]
     pub fn shorten<const N: usize, S: Simd<N>>(&mut self, simd: S, limit: f32, stacks: &mut Stacks, bottom: usize) {
         self.limit = limit;
@@ -126,8 +126,8 @@ thread_local! {
     static SPARE: RefCell<Vec<Stacks>> = const { RefCell::new(Vec::new()) };
 }
 
-/// What rays have still to visit, and from where on: a stack for each, of which the lowest entry says that there is nothing
-/// more.
+/// What rays have still to visit, and from where on: a stack for each, of which the lowest entry says that there is
+/// nothing more.
 pub struct Stacks {
     nears: Vec<f32>,
     items: Vec<u32>,
@@ -146,13 +146,15 @@ impl Stacks {
     /// Of no ray.
     pub const NONE: Self = Self { nears: Vec::new(), items: Vec::new(), depth: 0 };
 
-    /// One of those that this thread has put away, or a new one, for one ray: to make them anew takes as long as some nodes.
+    /// One of those that this thread has put away, or a new one, for one ray: to make them anew takes as long as some
+    /// nodes.
     pub fn spare<const N: usize>(entries: usize) -> Self {
         let fits = |stacks: &Self| stacks.depth > entries + N;
         SPARE.with_borrow_mut(Vec::pop).filter(fits).unwrap_or_else(|| Self::new::<N>(1, entries))
     }
 
-    /// Keeps it for the thread's next ray. What is in it means nothing to that, but for the lowest entry, which nothing changes.
+    /// Keeps it for the thread's next ray. What is in it means nothing to that, but for the lowest entry, which nothing
+    /// changes.
     pub fn put_away(self) {
         SPARE.with_borrow_mut(|spare| spare.push(self));
     }

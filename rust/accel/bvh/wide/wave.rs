@@ -1,10 +1,10 @@
 //! Many rays in flight on one thread: one takes a step, a node or a leaf; what it needs next is fetched from memory
 //! while the others take theirs.
 //!
-//! A ray that waits for memory at every step, and for the outcome of every branch, leaves most of the processor idle. So
-//! each of 64 rays has a stack of its own; those that are at a node wait in one queue, those at a leaf in another; and a step
-//! at a node has no branch that depends on the ray ([`Boxes::enter`]). Only when a ray has hit something is its stack rid of
-//! what lies beyond.
+//! A ray that waits for memory at every step, and for the outcome of every branch, leaves most of the processor idle.
+//! So each of 64 rays has a stack of its own; those that are at a node wait in one queue, those at a leaf in another;
+//! and a step at a node has no branch that depends on the ray ([`Boxes::enter`]). Only when a ray has hit something is
+//! its stack rid of what lies beyond.
 
 use super::WideBvh;
 use super::node::Packed;

@@ -10,17 +10,17 @@ use crate::math::Aabb;
 /// Ways to choose a plane.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Builder {
-    /// Where the surface-area heuristic expects the least work (MacDonald and Booth, "Heuristics for Ray Tracing Using Space Subdivision",
-    /// 1990), with a bonus for cutting off empty space, among all ends of clipped parts, in n log n (Wald and Havran, "On Building Fast
-    /// kd-Trees for Ray Tracing, and on Doing That in O(N log N)", 2006).
+    /// Where the surface-area heuristic expects the least work (MacDonald and Booth, "Heuristics for Ray Tracing Using
+    /// Space Subdivision", 1990), with a bonus for cutting off empty space, among all ends of clipped parts, in n log n
+    /// (Wald and Havran, "On Building Fast kd-Trees for Ray Tracing, and on Doing That in O(N log N)", 2006).
     #[default]
     Sah,
     /// Across the cell's longest axis, at the median of the primitives' centres.
     Median,
     /// In the middle of the cell, across its longest axis.
     Middle,
-    /// Across one axis after the other, at the median of the primitives' centres (Bentley, "Multidimensional Binary Search Trees Used for
-    /// Associative Searching", 1975).
+    /// Across one axis after the other, at the median of the primitives' centres (Bentley, "Multidimensional Binary
+    /// Search Trees Used for Associative Searching", 1975).
     Cycle,
 }
 
@@ -59,8 +59,8 @@ pub struct Options {
 }
 
 impl Options {
-    /// As good as any for most scenes. Up to eight primitives are tested at once, and what a node's plane costs most is that its outcome
-    /// is guessed wrong: so a primitive is cheap beside it.
+    /// As good as any for most scenes. Up to eight primitives are tested at once, and what a node's plane costs most is
+    /// that its outcome is guessed wrong: so a primitive is cheap beside it.
     pub const DEFAULT: Self = Self {
         builder: Builder::Sah,
         traversal: Traversal::Stack,
@@ -90,7 +90,8 @@ impl Default for Options {
     }
 }
 
-/// From so many parts on, what is below and above a plane is built at once, and a plane is sought along all axes at once.
+/// From so many parts on, what is below and above a plane is built at once, and a plane is sought along all axes at
+/// once.
 const PARALLEL: usize = 4096;
 
 /// Nodes and leaves, and the box around everything.
@@ -132,8 +133,8 @@ impl Grown {
         Node::leaf(number, parts.len())
     }
 
-    /// Makes two children, what is below the first and then what is below the second, and gives the number of the first; both at once if
-    /// they are many.
+    /// Makes two children, what is below the first and then what is below the second, and gives the number of the
+    /// first; both at once if they are many.
     fn pair(
         &mut self,
         many: bool,

@@ -1,5 +1,5 @@
-//! By the surface-area heuristic in n log n: the ends of all parts are sorted once, and stay sorted as they are dealt out (Wald and Havran,
-//! "On Building Fast kd-Trees for Ray Tracing, and on Doing That in O(N log N)", 2006).
+//! By the surface-area heuristic in n log n: the ends of all parts are sorted once, and stay sorted as they are dealt
+//! out (Wald and Havran, "On Building Fast kd-Trees for Ray Tracing, and on Doing That in O(N log N)", 2006).
 
 use super::super::area;
 use super::{Grown, Node, Options, PARALLEL};
@@ -7,8 +7,8 @@ use crate::accel::walk::{Halves, Input, Part, Plane, Room};
 use crate::math::Aabb;
 use rayon::prelude::*;
 
-/// An end of a part along an axis. In the order of its bits are: where it lies; whether the part ends there, lies flat there, or starts there;
-/// and the part's number.
+/// An end of a part along an axis. In the order of its bits are: where it lies; whether the part ends there, lies flat
+/// there, or starts there; and the part's number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct Event(u64);
 
@@ -214,7 +214,8 @@ impl Builder<'_> {
     }
 }
 
-/// The ends along an axis on either side: of what goes there as it is in the order in which they were, of what is cut anew.
+/// The ends along an axis on either side: of what goes there as it is in the order in which they were, of what is cut
+/// anew.
 fn dealt(
     events: &[Event],
     axis: usize,

@@ -16,7 +16,8 @@ use std::f64::consts::{PI, TAU};
 
 /// A clear sky and the sun in it over a plain that reflects both evenly.
 ///
-/// The sun is a disk of even radiance, and its draws fill the cone of that. The sky above is drawn by a table, and the ground evenly.
+/// The sun is a disk of even radiance, and its draws fill the cone of that. The sky above is drawn by a table, and the
+/// ground evenly.
 #[derive(Clone, Debug)]
 pub struct SunSky {
     /// Whose z is up.
@@ -31,7 +32,8 @@ pub struct SunSky {
     albedo: Rgb,
     /// Fluxes of sun, sky and ground, means of the channels.
     flux: [f64; 3],
-    /// What the cells of the sky are drawn by: sectors about the zenith, and bands of equal height from the horizon to it.
+    /// What the cells of the sky are drawn by: sectors about the zenith, and bands of equal height from the horizon to
+    /// it.
     weights: Vec<f64>,
     pyramid: Option<Pyramid>,
     spread: f64,
@@ -47,8 +49,8 @@ const SUN_SHARE: f64 = 0.5;
 const LEAST: f64 = 1e-3;
 
 impl SunSky {
-    /// For a sun in a direction of any length but 0, not below the horizon, as `up` has it; a turbidity from 2, clear, to 10, hazy; and a
-    /// ground of a reflectance. `scales` multiply the light of the sun and that of the sky.
+    /// For a sun in a direction of any length but 0, not below the horizon, as `up` has it; a turbidity from 2, clear,
+    /// to 10, hazy; and a ground of a reflectance. `scales` multiply the light of the sun and that of the sky.
     ///
     /// Radiance is in W·sr⁻¹·m⁻² as the eye weighs it: its luminance times 683 lm·W⁻¹ is in cd·m⁻².
     pub fn new([sun, up]: [DVec3; 2], turbidity: f64, albedo: Rgb, scales: [f64; 2]) -> Self {

@@ -4,8 +4,9 @@ use super::sun::from_xyz;
 use crate::optics::Rgb;
 use std::f64::consts::PI;
 
-/// The sky of Preetham, Shirley and Smits ("A Practical Analytic Model for Daylight", 1999): luminance and chromaticity go from the zenith
-/// to anywhere by a formula of five coefficients (Perez, Seals and Michalsky, 1993), which depend on the turbidity.
+/// The sky of Preetham, Shirley and Smits ("A Practical Analytic Model for Daylight", 1999): luminance and chromaticity
+/// go from the zenith to anywhere by a formula of five coefficients (Perez, Seals and Michalsky, 1993), which depend on
+/// the turbidity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Perez {
     /// Of luminance, x and y: what the formula is multiplied by for their values.
@@ -20,7 +21,8 @@ const COEFFICIENTS: [[[f64; 2]; 5]; 3] = [
     [[-0.0167, -0.2608], [-0.0950, 0.0092], [-0.0079, 0.2102], [-0.0441, -1.6537], [-0.0109, 0.0529]],
 ];
 
-/// The chromaticities of the zenith: rows by falling powers of the turbidity, columns by falling powers of the sun's zenith angle.
+/// The chromaticities of the zenith: rows by falling powers of the turbidity, columns by falling powers of the sun's
+/// zenith angle.
 const ZENITH: [[[f64; 4]; 3]; 2] = [
     [[0.00166, -0.00375, 0.00209, 0.0], [-0.02903, 0.06377, -0.03202, 0.00394], [0.11693, -0.21196, 0.06052, 0.25886]],
     [[0.00275, -0.00610, 0.00317, 0.0], [-0.04214, 0.08970, -0.04153, 0.00516], [0.15346, -0.26756, 0.06670, 0.26688]],

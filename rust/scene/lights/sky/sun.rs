@@ -12,8 +12,8 @@ pub fn solid_angle() -> f64 {
     4.0 * PI * sine * sine
 }
 
-/// Absorption of ozone, cm⁻¹, each 10 nm from 450 to 700 nm (Iqbal, "An Introduction to Solar Radiation", 1983, as Preetham et al. have
-/// it).
+/// Absorption of ozone, cm⁻¹, each 10 nm from 450 to 700 nm (Iqbal, "An Introduction to Solar Radiation", 1983, as
+/// Preetham et al. have it).
 const OZONE: [f64; 26] = [
     0.003, 0.006, 0.009, 0.014, 0.021, 0.030, 0.040, 0.048, 0.063, 0.075, 0.085, 0.103, 0.120, 0.120, 0.115, 0.125,
     0.120, 0.105, 0.090, 0.079, 0.067, 0.057, 0.048, 0.036, 0.028, 0.023,
@@ -30,9 +30,10 @@ pub fn black_body(wavelength: f64, temperature: f64) -> f64 {
     C1 / metres.powi(5) / (C2 / (metres * temperature)).exp_m1() * 1e-9
 }
 
-/// The share of sunlight at a wavelength in nm that comes through clear air, for a sun at a height whose cosine to the zenith is this and
-/// a turbidity (Preetham, Shirley and Smits, "A Practical Analytic Model for Daylight", 1999, appendix 2): what molecules scatter, what
-/// dust does, and what ozone takes. Water and mixed gases take next to nothing of visible light.
+/// The share of sunlight at a wavelength in nm that comes through clear air, for a sun at a height whose cosine to the
+/// zenith is this and a turbidity (Preetham, Shirley and Smits, "A Practical Analytic Model for Daylight", 1999,
+/// appendix 2): what molecules scatter, what dust does, and what ozone takes. Water and mixed gases take next to
+/// nothing of visible light.
 pub fn transmittance(wavelength: f64, cos_zenith: f64, turbidity: f64) -> f64 {
     // Relative to the air above (Kasten, 1966).
     let degrees = cos_zenith.clamp(0.0, 1.0).acos().to_degrees();
@@ -51,8 +52,8 @@ pub fn transmittance(wavelength: f64, cos_zenith: f64, turbidity: f64) -> f64 {
     (-(molecules + dust + ozone) * mass).exp()
 }
 
-/// The colour-matching functions of the CIE's observer of 1931 at a wavelength in nm (Wyman, Sloan and Shirley, "Simple Analytic
-/// Approximations to the CIE XYZ Color Matching Functions", 2013).
+/// The colour-matching functions of the CIE's observer of 1931 at a wavelength in nm (Wyman, Sloan and Shirley, "Simple
+/// Analytic Approximations to the CIE XYZ Color Matching Functions", 2013).
 pub fn observer(wavelength: f64) -> [f64; 3] {
     let lobe = |middle: f64, left: f64, right: f64| {
         let x = (wavelength - middle) / if wavelength < middle { left } else { right };
@@ -75,7 +76,8 @@ pub fn from_xyz([x, y, z]: [f64; 3]) -> Rgb {
     .max(Rgb::ZERO)
 }
 
-/// The radiance of the sun as it is seen from the ground: a black body of 5778 K through the air. Luminance over 683 lm·W⁻¹.
+/// The radiance of the sun as it is seen from the ground: a black body of 5778 K through the air. Luminance over 683
+/// lm·W⁻¹.
 pub fn radiance(cos_zenith: f64, turbidity: f64) -> Rgb {
     let xyz = (360..=830).fold([0.0; 3], |mut sum, wavelength| {
         let wavelength = f64::from(wavelength);

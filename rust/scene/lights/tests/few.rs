@@ -11,8 +11,8 @@ use crate::shapes::{Disk, Plane, Sphere};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-/// A square of side 2 that looks down from height 1, right above the point, and the irradiance it gives at radiance 1: four times that of a
-/// corner (Lambert, 1760).
+/// A square of side 2 that looks down from height 1, right above the point, and the irradiance it gives at radiance 1:
+/// four times that of a corner (Lambert, 1760).
 fn overhead() -> Mesh {
     rectangle([-1.0, -1.0, 1.0], [0.0, 2.0, 0.0], [2.0, 0.0, 0.0])
 }

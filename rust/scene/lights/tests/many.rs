@@ -132,7 +132,8 @@ fn bounds_hold_both_that_they_are_of() {
     assert!(both.cos_cone < 1e-5, "half of all directions at least");
 }
 
-/// Mean and variance of the irradiance of point lights at a receiver, over an even grid of the choice: no chance is in it.
+/// Mean and variance of the irradiance of point lights at a receiver, over an even grid of the choice: no chance is in
+/// it.
 fn estimate(choice: &Choice, lights: &[PointLight], receiver: &Receiver) -> (f64, f64) {
     const DRAWS: u32 = 200_000;
     let (mut sum, mut squares) = (0.0, 0.0);

@@ -1,4 +1,5 @@
-//! What is asked of all lights: that what they bring is what closed forms say, and that densities are those of their draws.
+//! What is asked of all lights: that what they bring is what closed forms say, and that densities are those of their
+//! draws.
 
 mod copies;
 mod environments;
@@ -26,7 +27,8 @@ fn draw(scene: &Scene, receiver: &Receiver, number: u32) -> Option<LightSample> 
     scene.lights().sample(scene.geometry(), receiver, choice, u)
 }
 
-/// Mean and standard error of the irradiance at a receiver, nothing shadowing: of a free one, of all light that comes to it.
+/// Mean and standard error of the irradiance at a receiver, nothing shadowing: of a free one, of all light that comes
+/// to it.
 fn irradiance_at(scene: &Scene, receiver: &Receiver, draws: u32) -> (f64, f64) {
     let (mut sum, mut squares) = (0.0, 0.0);
     for number in 0..draws {
@@ -42,8 +44,8 @@ fn irradiance_at(scene: &Scene, receiver: &Receiver, draws: u32) -> (f64, f64) {
     (mean, ((squares / f64::from(draws) - mean * mean).max(0.0) / f64::from(draws)).sqrt())
 }
 
-/// Within five standard errors, which chance exceeds once in two million, and these to a share; what is drawn without error is right but
-/// for the roundings of a sum of so many.
+/// Within five standard errors, which chance exceeds once in two million, and these to a share; what is drawn without
+/// error is right but for the roundings of a sum of so many.
 fn assert_near((mean, error): (f64, f64), expected: f64, share: f64) {
     assert!((mean - expected).abs() <= 5.0 * error + 1e-10 * expected, "{mean} ± {error}, not {expected}");
     assert!(error <= share * expected, "{error} of {expected}");
@@ -62,8 +64,8 @@ impl Grid {
         row * self.columns + column.min(self.columns - 1)
     }
 
-    /// The integral of a function over each cell, by the midpoints of so many parts each way, of the colatitude and of the turn: what goes
-    /// with the inverse of the sine is smooth so.
+    /// The integral of a function over each cell, by the midpoints of so many parts each way, of the colatitude and of
+    /// the turn: what goes with the inverse of the sine is smooth so.
     fn integrals(&self, parts: usize, of: impl Fn(DVec3) -> f64) -> Vec<f64> {
         let mut sums = vec![0.0; self.rows * self.columns];
         for row in 0..self.rows {

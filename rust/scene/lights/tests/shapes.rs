@@ -22,8 +22,8 @@ fn round(surface: Arc<dyn crate::shapes::Shape>, radiance: f64) -> Scene {
     scene(SceneDescription { shapes, ..Default::default() })
 }
 
-/// The irradiance of a triangle of radiance 1, as a vector (Lambert, 1760): half the sum over edges of the angle between its ends times
-/// the unit normal of the plane through it and the place. It must be above the horizon.
+/// The irradiance of a triangle of radiance 1, as a vector (Lambert, 1760): half the sum over edges of the angle
+/// between its ends times the unit normal of the plane through it and the place. It must be above the horizon.
 pub(super) fn lambert(corners: [DVec3; 3], receiver: &Receiver) -> f64 {
     let c = corners.map(|corner| (corner - receiver.position).normalize());
     let edge = |a: DVec3, b: DVec3| {
@@ -57,8 +57,8 @@ fn triangles_give_lamberts_irradiance_at_any_distance() {
 
 #[test]
 fn next_to_its_plane_a_triangle_keeps_its_digits() {
-    // Above its plane by less and less, up to its being drawn by area. All of its light is its solid angle (van Oosterom and Strackee,
-    // 1983), in which the determinant of the corners is the height.
+    // Above its plane by less and less, up to its being drawn by area. All of its light is its solid angle (van
+    // Oosterom and Strackee, 1983), in which the determinant of the corners is the height.
     let corners = [DVec3::ZERO, DVec3::X, DVec3::Y];
     for height in [1e-1, 1e-3, 1e-6, 1e-8, 1e-10, 1e-14] {
         for (x, y) in [(-0.01, 0.5), (0.7, 0.7), (0.25, 0.25), (-0.3, -0.3)] {
@@ -159,8 +159,8 @@ fn disks_give_the_textbook_irradiance() {
 
 #[test]
 fn near_a_disk_drawing_by_solid_angle_leaves_a_fraction_of_the_variance() {
-    // Beside and above it: the density is the inverse of the solid angle but for a small factor, where that of an area goes with the
-    // square of the distance.
+    // Beside and above it: the density is the inverse of the solid angle but for a small factor, where that of an area
+    // goes with the square of the distance.
     let disk = Disk { center: DVec3::ZERO, normal: DVec3::Z, radius: 1.0, inner_radius: 0.0 };
     for place in [DVec3::new(0.2, 0.1, 0.01), DVec3::new(1.3, 0.0, 0.05), DVec3::new(0.0, 0.9, 0.3)] {
         // Mean and variance of the solid angle, over an even grid of draws: no chance is in it.
