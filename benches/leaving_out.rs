@@ -45,7 +45,8 @@ fn main() {
         }
     }
     println!(
-        "Paths of a closed room of one diffuse colour a wall, on one thread; a kernel's time over that of the plain one."
+        "Paths of a closed room of one diffuse colour a wall, on one thread; a kernel's time over that of the plain \
+         one."
     );
     println!();
     println!("| kernel | thousand paths a second | time over plain |");

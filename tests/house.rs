@@ -70,13 +70,15 @@ fn arrows_are_seen_however_they_are_written() {
         ("a.rs", "/// See [`super::b::Far`].\npub struct Big<'a>(&'a str, super::c::d::Deep);\n"),
         (
             "b.rs",
-            "use super::{\n    Little,\n    c::{self, d},\n};\nconst SIGNS: [char; 2] = ['\"', '{'];\nfn f() -> d::Deep {\n    c::g()\n}\n",
+            "use super::{\n    Little,\n    c::{self, d},\n};\nconst SIGNS: [char; 2] = ['\"', '{'];\n\
+             fn f() -> d::Deep {\n    c::g()\n}\n",
         ),
         ("c/mod.rs", "pub mod d;\nmod e;\nuse e::E;\nfn text() -> &'static str {\n    \"crate::b::Far // \\\" \"\n}\n"),
         ("c/d.rs", "pub struct Deep;\n\n#[cfg(test)]\nmod tests {\n    use crate::b::Far;\n}\n"),
         (
             "c/e.rs",
-            "pub(super) struct E(super::d::Deep);\nmod inner {\n    use super::super::super::Big;\n}\n#[cfg(test)]\nuse crate::b;\n",
+            "pub(super) struct E(super::d::Deep);\nmod inner {\n    use super::super::super::Big;\n}\n\
+             #[cfg(test)]\nuse crate::b;\n",
         ),
     ];
     let files = files(texts.map(|(path, text)| (PathBuf::from(path), text.to_string())));
@@ -105,6 +107,20 @@ fn no_attribute_stands_twice() {
         for (number, pair) in (1..).zip(lines.windows(2)) {
             let is_twice = pair[0] == pair[1] && pair[0].trim().starts_with("#[");
             assert!(!is_twice, "{}:{number}: {} stands twice", path.display(), pair[0].trim());
+        }
+    }
+}
+
+#[test]
+fn no_line_is_longer_than_120_columns() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    for path in ["rust", "tests", "benches"].iter().flat_map(|folder| rust_files(&root.join(folder))) {
+        if path.starts_with(root.join("rust/optics")) || path.ends_with("python/materials.rs") {
+            continue;
+        }
+        for (number, line) in (1..).zip(fs::read_to_string(&path).unwrap().lines()) {
+            let columns = line.chars().count();
+            assert!(columns <= 120, "{}:{number}: {columns} columns", path.display());
         }
     }
 }

@@ -216,7 +216,9 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(2048))]
         #[test]
-        fn volumes_have_the_sign_of_big_integers(o in point(), a in point(), b in point(), c in point(), u in 0.0..1.0f64) {
+        fn volumes_have_the_sign_of_big_integers(
+            o in point(), a in point(), b in point(), c in point(), u in 0.0..1.0f64,
+        ) {
             prop_assert_eq!(sign_of_volume(o, [a, b, c]), oracle(o, [a, b, c]));
             // Within rounding of the plane.
             let near = a + (b - a) * u + (c - a) * (1.0 - u);

@@ -118,7 +118,8 @@ mod tests {
     proptest! {
         #[test]
         fn no_box_with_a_point_in_the_cone_is_passed_by(
-            apex in point(), away in prop_oneof![Just(1.0), Just(1e3), Just(1e12), Just(1e-9)], way in point(), angle in prop_oneof![Just(0.0), 0.0..90.0f64],
+            apex in point(), away in prop_oneof![Just(1.0), Just(1e3), Just(1e12), Just(1e-9)], way in point(),
+            angle in prop_oneof![Just(0.0), 0.0..90.0f64],
             t in 0.0..4.0f64, around in 0.0..6.3f64, part in 0.0..1.0f64, low in point(), high in point(),
         ) {
             prop_assume!(way.length() > 1e-3);

@@ -259,12 +259,17 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(4096))]
         #[test]
-        fn signs_and_values_are_those_of_big_integers(o in point(), d in point(), a in point(), b in point(), c in point()) {
+        fn signs_and_values_are_those_of_big_integers(
+            o in point(), d in point(), a in point(), b in point(), c in point(),
+        ) {
             check(o, d, [a, b, c])?;
         }
 
         #[test]
-        fn aimed_rays_give_exact_zeros(a in [-8i32..8, -8..8, -8..8], b in [-8i32..8, -8..8, -8..8], o in [-8i32..8, -8..8, -8..8], k in 0i32..=16) {
+        fn aimed_rays_give_exact_zeros(
+            a in prop::array::uniform3(-8i32..8), b in prop::array::uniform3(-8i32..8),
+            o in prop::array::uniform3(-8i32..8), k in 0i32..=16,
+        ) {
             let [a, b, o] = [a, b, o].map(|p| DVec3::from_array(p.map(f64::from)));
             // A target on the edge from a to b, exactly: sixteenths of small integers.
             let target = a + (b - a) * (f64::from(k) / 16.0);

@@ -420,9 +420,11 @@ mod tests {
         fn any_triangles_from_anywhere(
             corners in prop::collection::vec(prop::array::uniform3(coordinate()), 3..90),
             position in prop::array::uniform3(coordinate()), target in prop::array::uniform3(coordinate()),
-            fov in prop_oneof![Just(90.0), 1.0..179.0f64], offset in prop::array::uniform2(prop_oneof![Just(0.0), Just(0.5), -1.0..2.0f64]),
+            fov in prop_oneof![Just(90.0), 1.0..179.0f64],
+            offset in prop::array::uniform2(prop_oneof![Just(0.0), Just(0.5), -1.0..2.0f64]),
             matrix in (
-                prop_oneof![2.0..100.0f64, -100.0..-2.0f64], 2.0..100.0f64, prop_oneof![Just(0.0), -50.0..50.0f64], -50.0..90.0f64, -50.0..70.0f64,
+                prop_oneof![2.0..100.0f64, -100.0..-2.0f64], 2.0..100.0f64, prop_oneof![Just(0.0), -50.0..50.0f64],
+                -50.0..90.0f64, -50.0..70.0f64,
             ).prop_map(<[f64; 5]>::from),
         ) {
             let vertices: Vec<_> = corners.iter().map(|&c| Vec3::from_array(c)).collect();

@@ -150,7 +150,8 @@ proptest! {
 
     #[test]
     fn ties_on_a_grid_are_decided_exactly(
-        kind in turned(), capped: bool, base in grid_point(2), axis in grid_point(2), o in grid_point(4), d in grid_point(2),
+        kind in turned(), capped: bool, base in grid_point(2), axis in grid_point(2),
+        o in grid_point(4), d in grid_point(2),
     ) {
         prop_assume!(axis != DVec3::ZERO && d != DVec3::ZERO);
         // A line along a generator lies in the side, and has no meeting of its own there.
@@ -160,7 +161,8 @@ proptest! {
 
     #[test]
     fn a_placed_sphere_is_met_as_the_matrix_says(
-        rows in prop::array::uniform3(prop_oneof![any_point(3.0), grid_point(2)]), shift in point(), o in point(), target in any_point(1.2),
+        rows in prop::array::uniform3(prop_oneof![any_point(3.0), grid_point(2)]),
+        shift in point(), o in point(), target in any_point(1.2),
     ) {
         let map = Affine::new(rows, shift);
         prop_assume!(map.determinant().abs() > 1e-9);
@@ -215,7 +217,8 @@ proptest! {
 
     #[test]
     fn boxes_planes_and_disks_are_met_as_fractions_say(
-        a in point(), b in point(), o in point(), d in prop_oneof![any_point(2.0), grid_point(2)], radius in prop_oneof![0.1..5.0, Just(1.0), Just(2.0)],
+        a in point(), b in point(), o in point(), d in prop_oneof![any_point(2.0), grid_point(2)],
+        radius in prop_oneof![0.1..5.0, Just(1.0), Just(2.0)],
     ) {
         prop_assume!(d != DVec3::ZERO && b != DVec3::ZERO);
         let ray = Ray::new(o, d);
@@ -247,7 +250,8 @@ proptest! {
         // The plane through a at right angles to b, and the disk in it.
         let n = vector(b);
         let (along, height) = (dot(&n, &ed), dot(&n, &minus(&vector(a), &eo)));
-        let (plane, disk) = (Plane { point: a, normal: b }, Disk { center: a, normal: b, radius, inner_radius: radius / 4.0 });
+        let plane = Plane { point: a, normal: b };
+        let disk = Disk { center: a, normal: b, radius, inner_radius: radius / 4.0 };
         let (on_plane, on_disk) = (meets(&plane, &ray), meets(&disk, &ray));
         prop_assert_eq!(on_plane.len(), usize::from(along.sign() != Ordering::Equal));
         if let Some(met) = on_plane.first() {

@@ -250,7 +250,8 @@ mod tests {
 
         #[test]
         fn short_numbers_tell_what_long_ones_do(
-            a in point(), axis in point(), size in prop_oneof![0.01..3.0f64, Just(1.0), Just(2.0)], o in point(), target in point(),
+            a in point(), axis in point(), size in prop_oneof![0.01..3.0f64, Just(1.0), Just(2.0)],
+            o in point(), target in point(),
             (space, length, own) in (extreme(), extreme(), extreme()), close in -52..2i32,
         ) {
             // To within any share of the size past the rim, too.

@@ -155,11 +155,13 @@ proptest! {
         let mut random = Random(seed);
         let stretch = DVec3::from_array(exponents.map(|e| 2f64.powi(e)));
         let triangles = flat(&mut random, count, 0.5);
-        let triangles = Triangles(triangles.0.iter().map(|t| t.map(|c: Vec3| (c.as_dvec3() * stretch).as_vec3())).collect());
+        let stretched = |c: Vec3| (c.as_dvec3() * stretch).as_vec3();
+        let triangles = Triangles(triangles.0.iter().map(|t| t.map(stretched)).collect());
         let rays: Vec<_> = (0..60)
             .map(|_| {
                 let target = on_border(&mut random, &triangles);
-                let origin = random.point(2.0) * if random.below(2) == 0 { stretch } else { stretch.min_element() * DVec3::ONE };
+                let origin = random.point(2.0);
+                let origin = origin * if random.below(2) == 0 { stretch } else { stretch.min_element() * DVec3::ONE };
                 Ray::new(origin, target - origin)
             })
             .collect();

@@ -147,7 +147,8 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(3000))]
     #[test]
     fn no_point_of_a_triangle_in_the_cone_is_nearer(
-        corners in [point(), point(), point()], apex in point(), way in point(), angle in prop_oneof![Just(0.0), 0.0..89.9f64, Just(45.0), 1e-9..1e-3f64],
+        corners in [point(), point(), point()], apex in point(), way in point(),
+        angle in prop_oneof![Just(0.0), 0.0..89.9f64, Just(45.0), 1e-9..1e-3f64],
         weights in prop::collection::vec((0.0..=1.0f64, 0.0..=1.0f64), 60),
     ) {
         prop_assume!(way.length() > 1e-6);
@@ -171,7 +172,8 @@ proptest! {
     /// best.
     #[test]
     fn distances_are_those_of_branch_and_bound(
-        corners in [point(), point(), point()], apex in point(), way in point(), angle in prop_oneof![0.5..80.0f64, Just(45.0)],
+        corners in [point(), point(), point()], apex in point(), way in point(),
+        angle in prop_oneof![0.5..80.0f64, Just(45.0)],
     ) {
         prop_assume!(way.length() > 1e-6);
         let cone = SolidCone::new(apex, way, angle, f64::INFINITY).unwrap();

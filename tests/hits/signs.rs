@@ -99,7 +99,9 @@ proptest! {
     }
 
     #[test]
-    fn rays_aimed_at_edges(origin in wide_point(), corners in [point(), point(), point()], k in -4i32..=12, side in -4i32..=4) {
+    fn rays_aimed_at_edges(
+        origin in wide_point(), corners in [point(), point(), point()], k in -4i32..=12, side in -4i32..=4,
+    ) {
         let [a, b, c] = corners.map(|p| p.as_dvec3() / 2f64.powi(20));
         let along = a + (b - a) * (f64::from(k) / 8.0);
         let target = along + (c - along) * (f64::from(side) * f64::EPSILON);

@@ -180,7 +180,8 @@ mod tests {
             let Some((edges, slabs)) = SlabRay::prepare(&ray, &region) else { return Ok(()) };
             let lattice = Lattice::around(&Aabb { min: Vec3::NEG_ONE, max: Vec3::ONE }, cells);
             let t = slabs.limit(1.0 / edges.scale);
-            let mut walk = Walk::new(&lattice, &slabs, slabs.t_min, f32::INFINITY).expect("it is aimed at what is inside");
+            let walk = Walk::new(&lattice, &slabs, slabs.t_min, f32::INFINITY);
+            let mut walk = walk.expect("it is aimed at what is inside");
             prop_assert!(walk.enter <= t && t <= walk.until);
             while walk.step(t) {}
             let cell = lattice.cell(walk.cell);

@@ -61,7 +61,8 @@ fn draws_by_the_size_of_the_filter() {
             let cell = |x: f64| (((x / radius + 1.0) * SIDE as f64 / 2.0) as usize).min(SIDE - 1);
             counts[cell(x) * SIDE + cell(y)] += 1;
         }
-        // |f| over each cell along one axis, by midpoints; the table that is drawn from differs by less than a thousandth.
+        // |f| over each cell along one axis, by midpoints; the table that is drawn from differs by less than a
+        // thousandth.
         let steps = 2000;
         let share = |cell: usize| {
             let at = |i: usize| (2.0 * (cell as f64 + (i as f64 + 0.5) / steps as f64) / SIDE as f64 - 1.0) * radius;

@@ -165,7 +165,8 @@ mod tests {
     proptest! {
         #[test]
         fn turns_are_even(
-            ways in prop::array::uniform4(prop::array::uniform3(-1.0..1.0f64)), time in 0.0..1.0f64, small in prop_oneof![Just(1.0), Just(1e-6)],
+            ways in prop::array::uniform4(prop::array::uniform3(-1.0..1.0f64)), time in 0.0..1.0f64,
+            small in prop_oneof![Just(1.0), Just(1e-6)],
         ) {
             let [a, up, b, other] = ways.map(DVec3::from_array);
             let Ok(start) = Viewpoint::towards(a, a, up) else { return Ok(()) };
@@ -175,7 +176,8 @@ mod tests {
             prop_assert!(is_right_handed(&here));
             // The turn from the start is that share of the whole, about the same axis: each of the axes stays as far
             // from it as it is.
-            for (from, now, to) in [(start.right, here.right, end.right), (start.up, here.up, end.up), (start.forward, here.forward, end.forward)] {
+            let axes = |v: &Viewpoint| [v.right, v.up, v.forward];
+            for ((from, now), to) in axes(&start).into_iter().zip(axes(&here)).zip(axes(&end)) {
                 prop_assert!((from.dot(way.axis) - now.dot(way.axis)).abs() < 1e-13);
                 let angle = |v: DVec3, w: DVec3| {
                     let [v, w] = [v, w].map(|v| v - way.axis * v.dot(way.axis));

@@ -281,22 +281,27 @@ mod tests {
             let largest = exact.iter().map(|row| row.abs().max_element()).fold(0.0, f64::max);
             let kappa = condition(&rows, &exact);
             for (a, b) in inverse.iter().zip(&exact) {
-                prop_assert!((*a - *b).abs().max_element() <= 16.0 * UNIT * kappa.min(WELL_CONDITIONED).powi(2) * largest);
+                let bound = 16.0 * UNIT * kappa.min(WELL_CONDITIONED).powi(2) * largest;
+                prop_assert!((*a - *b).abs().max_element() <= bound);
             }
         }
 
         #[test]
-        fn a_ray_taken_over_and_a_point_taken_back_meet(matrix in matrix(), p in vector(3.0), way in vector(1.0), t in 0.1..10.0f64) {
+        fn a_ray_taken_over_and_a_point_taken_back_meet(
+            matrix in matrix(), p in vector(3.0), way in vector(1.0), t in 0.1..10.0f64,
+        ) {
             let Ok(pose) = Pose::new(&matrix) else { return Err(TestCaseError::reject("singular")) };
             // A point of the group, as one of a triangle of this size.
             let own = SurfacePoint {
-                position: p, error: 16.0 * UNIT * 3.0, normal: DVec3::X, shading_normal: DVec3::X, shape: 0, inner: None,
+                position: p, error: 16.0 * UNIT * 3.0, normal: DVec3::X, shading_normal: DVec3::X,
+                shape: 0, inner: None,
             };
             let world = pose.point(&own).unwrap();
             // Exactly where it is, by twice the digits.
             let map = Affine::new(pose.inverse, DVec3::ZERO).inverse().unwrap();
             let exact = Affine::new(map.rows, pose.shift).point(p);
-            prop_assert!((world.position - exact).abs().max_element() <= world.error, "{} {}", world.position, world.error);
+            let off = (world.position - exact).abs().max_element();
+            prop_assert!(off <= world.error, "{} {}", world.position, world.error);
             // A ray towards it passes it in the group's space by no more than the error told, which is small.
             let ray = Ray::new(world.position - way * t, way);
             let taken = pose.enter(&ray);
@@ -308,7 +313,9 @@ mod tests {
         }
 
         #[test]
-        fn boxes_hold_what_they_held(matrix in matrix(), a in vector(2.0), b in vector(2.0), u in prop::array::uniform3(0.0..=1.0f64)) {
+        fn boxes_hold_what_they_held(
+            matrix in matrix(), a in vector(2.0), b in vector(2.0), u in prop::array::uniform3(0.0..=1.0f64),
+        ) {
             let bounds = Bounds { min: a.min(b), max: a.max(b) };
             let Ok(pose) = Pose::new(&matrix) else { return Err(TestCaseError::reject("singular")) };
             let around = pose.around(&bounds).unwrap();
@@ -331,7 +338,8 @@ mod tests {
         ) {
             let bounds = Bounds { min: a.min(b), max: a.max(b) };
             let [from, to] = [start, end].map(|matrix| carried_by(&matrix, &bounds));
-            let box_then = Bounds { min: from.min + (to.min - from.min) * time, max: from.max + (to.max - from.max) * time };
+            let mixed = |a: DVec3, b: DVec3| a + (b - a) * time;
+            let box_then = Bounds { min: mixed(from.min, to.min), max: mixed(from.max, to.max) };
             let (rows, shift) = parts(&between(&start, &end, time));
             prop_assert!(holds(&box_then, Affine::new(rows, shift).point(inside(&bounds, DVec3::from_array(u)))));
         }

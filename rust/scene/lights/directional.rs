@@ -24,7 +24,8 @@ impl Light for DirectionalLight {
         if self.from.is_finite() && is_radiance(self.irradiance) {
             Ok(())
         } else {
-            Err("a directional light must have a direction of a length other than 0, and an irradiance that is finite and not negative"
+            Err("a directional light must have a direction of a length other than 0, and an irradiance that is \
+                 finite and not negative"
                 .into())
         }
     }

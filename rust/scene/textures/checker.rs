@@ -50,7 +50,8 @@ mod tests {
                 })
                 .sum();
             // Each edge that crosses the box may be off by half a row of it.
-            prop_assert!((checker.amount(&at(u, v, width)) - sum / f64::from(steps * steps)).abs() < 5.0 / f64::from(steps));
+            let mean = sum / f64::from(steps * steps);
+            prop_assert!((checker.amount(&at(u, v, width)) - mean).abs() < 5.0 / f64::from(steps));
         }
     }
 

@@ -92,7 +92,9 @@ mod tests {
         }
 
         #[test]
-        fn is_smooth_across_cells(cell in point(20.0), a in 0.0..1.0f64, b in 0.0..1.0f64, axis in 0usize..3, seed: u32) {
+        fn is_smooth_across_cells(
+            cell in point(20.0), a in 0.0..1.0f64, b in 0.0..1.0f64, axis in 0usize..3, seed: u32,
+        ) {
             let mut p = cell.floor() + DVec3::new(a, b, a * b);
             p[axis] = cell.floor()[axis];
             let h = 1e-4;

@@ -232,7 +232,8 @@ mod tests {
             for text in EXPRESSIONS {
                 let tape = parse(text).unwrap();
                 let boxed: [Interval; 3] = std::array::from_fn(|i| Interval::new(p[i] - half[i], p[i] + half[i]));
-                let inside: [f64; 3] = std::array::from_fn(|i| (p[i] + half[i] * part[i]).clamp(boxed[i].low, boxed[i].high));
+                let at = |i: usize| (p[i] + half[i] * part[i]).clamp(boxed[i].low, boxed[i].high);
+                let inside: [f64; 3] = std::array::from_fn(at);
                 let held = tape.value(&line(boxed, d), &mut Vec::new());
                 let exact = tape.value(&line(inside.map(Interval::point), d), &mut Vec::new());
                 let rough = tape.value(&line(inside, d), &mut Vec::new());

@@ -292,7 +292,8 @@ mod tests {
 
     #[test]
     fn what_is_wrong_is_told_with_its_column() {
-        let known = "x, y, z, pi, e, abs, sqrt, exp, log, sin, cos, tan, asin, acos, atan, sinh, cosh, tanh, atan2, pow, min, max";
+        let known = "x, y, z, pi, e, abs, sqrt, exp, log, sin, cos, tan, asin, acos, atan, sinh, cosh, tanh, \
+                     atan2, pow, min, max";
         assert_eq!(refusal("x*y + foo"), format!("unknown name 'foo' at column 7; known: {known}"));
         assert_eq!(refusal("x + "), "expected a number, a name or \"(\" at column 5, where it ends");
         assert_eq!(refusal("(x + 1"), "expected \")\" at column 7, where it ends");

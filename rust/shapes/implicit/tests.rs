@@ -55,7 +55,8 @@ proptest! {
         roots.dedup_by_key(|r| r.0);
         // Roots that f64 hold exactly, and others.
         for scale in [0.03125, 0.03] {
-            let factors: Vec<String> = roots.iter().map(|(r, power)| format!("(x - {:?})**{power}", f64::from(*r) * scale)).collect();
+            let factor = |(r, power): &(_, _)| format!("(x - {:?})**{power}", f64::from(*r) * scale);
+            let factors: Vec<String> = roots.iter().map(factor).collect();
             let text = format!("({}) * (y + {shift:?} + 2)", factors.join(" * "));
             let found = along_x(&text, 1.0);
             prop_assert_eq!(found.len(), roots.len(), "{} {:?}", text, found);

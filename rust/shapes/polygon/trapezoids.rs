@@ -142,7 +142,8 @@ mod tests {
                 radii.into_iter().enumerate().map(at).collect()
             };
             // On a grid, so that points share heights and edges are level.
-            let outer: Vec<DVec2> = star(radii.into_iter().map(f64::from).collect()).iter().map(|p| p.round()).collect();
+            let outer = star(radii.into_iter().map(f64::from).collect());
+            let outer: Vec<DVec2> = outer.iter().map(|p| p.round()).collect();
             let mut rings = vec![outer, star(hole)];
             if check(&rings).is_err() {
                 rings.truncate(1);

@@ -132,7 +132,10 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(3000))]
         #[test]
-        fn all_that_is_in_both_is_kept(corners in [point(), point(), point()], to in a_box(), weights in prop::collection::vec((0u32..=1 << 20, 0u32..=1 << 20), 50)) {
+        fn all_that_is_in_both_is_kept(
+            corners in [point(), point(), point()], to in a_box(),
+            weights in prop::collection::vec((0u32..=1 << 20, 0u32..=1 << 20), 50),
+        ) {
             let kept = clipped(corners, &to);
             prop_assert!(kept == Aabb::EMPTY || to.contains(&kept));
             // Points of the triangle: their weights are whole, so that they err by roundings alone.
@@ -141,7 +144,8 @@ mod tests {
                 let [a, b, c] = [(1 << 20) - s - t, s, t].map(|w| f64::from(w) / f64::from(1 << 20));
                 let p = corners[0] * a + corners[1] * b + corners[2] * c;
                 if p.cmpge(to.min.as_dvec3()).all() && p.cmple(to.max.as_dvec3()).all() {
-                    prop_assert!(p.cmpge(kept.min.as_dvec3()).all() && p.cmple(kept.max.as_dvec3()).all(), "{p} of {to:?}: {kept:?}");
+                    let is_kept = p.cmpge(kept.min.as_dvec3()).all() && p.cmple(kept.max.as_dvec3()).all();
+                    prop_assert!(is_kept, "{p} of {to:?}: {kept:?}");
                 }
             }
         }
@@ -152,7 +156,7 @@ mod tests {
             let everything = Aabb { min: Vec3::splat(-3.0), max: Vec3::splat(3.0) };
             let (mut left, mut right) = (everything, everything);
             (left.max[axis], right.min[axis]) = (at, at);
-            let (whole, left, right) = (clipped(corners, &everything), clipped(corners, &left), clipped(corners, &right));
+            let [whole, left, right] = [everything, left, right].map(|part| clipped(corners, &part));
             prop_assert!(whole.contains(&left) && whole.contains(&right));
             prop_assert_eq!(left.union(right), whole);
         }

@@ -203,7 +203,8 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(20_000))]
         #[test]
         fn the_test_in_f32_rejects_nothing_that_is_met(
-            (ray, triangle) in aimed(), others in prop::collection::vec(aimed(), 0..4), at in 0usize..5, off in -30i32..30
+            (ray, triangle) in aimed(), others in prop::collection::vec(aimed(), 0..4),
+            at in 0usize..5, off in -30i32..30,
         ) {
             let mut triangles: Vec<_> = others.iter().map(|(_, t)| *t).collect();
             triangles.insert(at.min(others.len()), triangle);

@@ -204,7 +204,12 @@ mod tests {
 
     proptest! {
         #[test]
-        fn trees_over_any_boxes_are_valid(corners in prop::collection::vec(([-2f32..2.0, -2f32..2.0, -2f32..2.0], [0f32..0.5, 0f32..0.5, 0f32..0.5]), 0..300), block in 1..=Leaves::MAX_BLOCK) {
+        fn trees_over_any_boxes_are_valid(
+            corners in prop::collection::vec(
+                (prop::array::uniform3(-2f32..2.0), prop::array::uniform3(0f32..0.5)), 0..300,
+            ),
+            block in 1..=Leaves::MAX_BLOCK,
+        ) {
             let boxes: Vec<_> = corners
                 .iter()
                 .map(|(p, d)| Aabb { min: Vec3::from(*p), max: Vec3::from(*p) + Vec3::from(*d) })

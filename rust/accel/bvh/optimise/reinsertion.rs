@@ -228,7 +228,9 @@ mod tests {
     proptest! {
         #[test]
         fn trees_over_any_boxes_stay_valid_and_cost_no_more(
-            corners in prop::collection::vec(([-2f32..2.0, -2f32..2.0, -2f32..2.0], [0f32..0.5, 0f32..2.0, 0f32..0.1]), 0..300),
+            corners in prop::collection::vec(
+                (prop::array::uniform3(-2f32..2.0), [0f32..0.5, 0f32..2.0, 0f32..0.1]), 0..300,
+            ),
             flat in any::<bool>(),
             share in 0.1f32..1.0,
             block in 1usize..9,

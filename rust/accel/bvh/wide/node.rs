@@ -215,7 +215,9 @@ mod tests {
     proptest! {
         #[test]
         fn children_keep_their_boxes_and_are_visited_by_octant(
-            corners in prop::collection::vec((prop::array::uniform3(coordinate()), prop::array::uniform3(coordinate())), 1..=8)
+            corners in prop::collection::vec(
+                (prop::array::uniform3(coordinate()), prop::array::uniform3(coordinate())), 1..=8,
+            )
         ) {
             let children: Vec<_> = corners
                 .iter()

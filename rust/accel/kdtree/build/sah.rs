@@ -251,7 +251,9 @@ mod tests {
 
     proptest! {
         #[test]
-        fn events_are_ordered_as_what_they_are_made_of(a in -2f32..2.0, b in -2f32..2.0, kinds in (0u64..3, 0u64..3), parts in (0..Event::MOST, 0..Event::MOST)) {
+        fn events_are_ordered_as_what_they_are_made_of(
+            a in -2f32..2.0, b in -2f32..2.0, kinds in (0u64..3, 0u64..3), parts in (0..Event::MOST, 0..Event::MOST),
+        ) {
             for b in [b, a, -a] {
                 let (one, other) = (Event::new(a, kinds.0, parts.0), Event::new(b, kinds.1, parts.1));
                 let wanted = a.partial_cmp(&b).unwrap().then(kinds.0.cmp(&kinds.1)).then(parts.0.cmp(&parts.1));
