@@ -109,9 +109,9 @@ pub trait Accelerator: Send + Sync {
     /// Every hit of each ray, of which there are fewer than 2³².
     fn crossings(&self, rays: &[Ray]) -> Crossings;
 
-    /// On which side of the `primitives`, which are those that it holds, the origin of each ray lies: by the crossings
-    /// from there on. Rays are asked from a `t_min` of minus `doubt` on, and only a `t` beyond `doubt` is taken at its
-    /// word.
+    /// On which side of the surface that the `primitives` make, which must be those that it holds, the origin of each
+    /// ray lies: by the crossings from there on. Rays are asked from a `t_min` of minus `doubt` on; the sign of a `t`
+    /// is only believed where it is farther from 0 than `doubt`.
     fn sides(&self, primitives: &dyn Primitives, rays: &[Ray], doubt: f64, sides: &mut [Side]);
 
     /// The nearest point to each point, within its greatest distance, that distance included; one greatest distance for

@@ -5,8 +5,8 @@
 //! Efficient Parametric Algorithm for Octree Traversal", 2000). Cells have the proportions of the box around
 //! everything.
 //!
-//! Where it meets a plane is not certain, by an amount that is the same for all planes across an axis. So there are
-//! children in which it may be and those in which it certainly is not, and the former are visited.
+//! Where it meets a plane is uncertain, by an amount that is the same for all planes across an axis. So in some
+//! children it certainly is not; all others are visited.
 
 use super::walk::{Halves, Input, Lists, Part, Plane, Room, Structure, Walker};
 use super::{Info, SlabRay};

@@ -34,8 +34,8 @@ pub struct Parity<'a> {
     pub doubt: f64,
     /// The answers.
     pub sides: &'a mut [Side],
-    /// What each ray crosses: its number, and of what it crosses there which primitive and which in it, and where. A
-    /// structure may tell of the same more than once.
+    /// What is crossed: the number of the ray, the primitive, which primitive within that one, and where. A structure
+    /// may tell the same crossing more than once.
     pub crossed: Vec<(u32, u32, u32, u64)>,
 }
 

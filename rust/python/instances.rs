@@ -41,8 +41,8 @@ struct Key {
     quality: String,
 }
 
-/// Groups that some scene holds. An object is known by its address, and no other can have that while the group lives:
-/// whoever holds a group holds its shapes ([`CompiledScene::kept`]).
+/// Groups that some scene holds. An object is known by its address, which no other object can get while the group
+/// lives: whoever holds a group holds its shapes ([`CompiledScene::kept`]).
 static GROUPS: LazyLock<Mutex<HashMap<Key, Weak<Group>>>> = LazyLock::new(Mutex::default);
 
 /// The rows of (4, 4) or (N, 4, 4) matrices but for the last of each.

@@ -15,7 +15,7 @@ use rayon::prelude::*;
 /// `adaptive.rs`.
 ///
 /// Samples of the same number in a *patch*, a square of pixels, may have been taken together. A tile holds whole
-/// patches, and where the error comes from in `error.rs`, a patch counts as one.
+/// patches, and where `error.rs` asks where the error comes from, a patch counts as one.
 ///
 /// Sums depend on the order of adding, so the order is part of the film: samples are added up one by one in blocks of
 /// 16, and blocks one by one. Hence how samples are split into passes, who works on a tile and how large tiles are does

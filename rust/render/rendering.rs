@@ -73,8 +73,9 @@ impl Rendering {
         }
     }
 
-    /// Samples after the pass that comes when there are `after`; no more than these to end. A pass that has been begun
-    /// comes first. `elapsed` and `rate` are as in [`Until`], for which `after` may be later than now.
+    /// How many samples there are after the next pass, if there are `after` before it; the same number if the render
+    /// ends there. A pass that has been begun comes first. `elapsed` and `rate` are as in [`Until`], for which `after`
+    /// may be later than now.
     pub fn next_aim(&self, until: &Until, after: u32, elapsed: f64, rate: f64) -> u32 {
         if after < self.aim {
             return self.aim;

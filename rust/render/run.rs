@@ -47,9 +47,9 @@ pub fn render(
     Ok(rendering)
 }
 
-/// As [`render`], from where a render is. Whether it ended: else its `progress` wants it to be left for now. After
-/// that, and after an error, it can be gone on with. What limits there are is asked after each pass; one that was begun
-/// is done first.
+/// As [`render`], from where a render is. True if it has ended, false if its `progress` wants it to be left for now.
+/// After that, and after an error, it can be gone on with. Limits are looked at after each pass; one that was begun is
+/// done first.
 pub fn go_on(
     rendering: &mut Rendering,
     scene: &Scene,

@@ -81,8 +81,8 @@ impl Stop {
 struct Bench<'a> {
     worker: Box<dyn Worker + 'a>,
     samples: Vec<CameraSample>,
-    /// What each sample counts by the filter and the camera, those too that the camera sees nothing with, which nobody
-    /// is asked for.
+    /// What each sample counts by the filter and the camera: also of those for which the camera has no ray, and the
+    /// integrator is not asked.
     weights: Vec<f64>,
     radiance: Vec<Rgb>,
     /// How many samples work together, group by group; empty where each is on its own.

@@ -12,9 +12,9 @@ impl BatchSize {
     /// them tells little of a pixel's error.
     const LEAST_BATCHES: u32 = 8;
 
-    /// Samples from which on 1.96 standard errors of a pixel, either way, should hold the truth in about 93 of 100
-    /// cases, and batches that it takes. Eight give 91 even of even noise (Student's t), and that of dim pixels is
-    /// uneven.
+    /// From so many samples on, 1.96 standard errors of a pixel, either way, should hold the truth in about 93 of 100
+    /// cases; and how many batches that takes. Eight give 91 even of even noise (Student's t), and that of dim pixels
+    /// is uneven.
     const MANY: [u32; 2] = [256, 64];
 
     /// A batch of so many samples: 1, 2, 4, ... 64; `None` for another number.

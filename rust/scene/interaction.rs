@@ -76,8 +76,8 @@ impl Interaction {
         here
     }
 
-    /// The share of ambient light that is reflected here ([`Material::ambient`](super::Material::ambient)); for what
-    /// [`Interaction::new`] was given.
+    /// The share of ambient light that is reflected here ([`Material::ambient`](super::Material::ambient)); the other
+    /// arguments are those that [`Interaction::new`] was given.
     pub fn ambient(&self, scene: &Scene, ray: &Ray, hit: &Hit, width: f64, outside: f64) -> Rgb {
         let material = scene.material_at(&self.surface);
         let mut point = ShadingPoint::new(scene.geometry(), ray, hit, &self.surface, material.needs(), width);
@@ -97,8 +97,8 @@ impl<S: Scatters> Interaction<S> {
     /// turn black though it faces the viewer, so there the normal is bent towards the viewer until it just faces him.
     pub const GRAZING: f64 = 1e-3;
 
-    /// A ray of unit direction at a point of a surface with this shading normal, and the direction that the frame's x
-    /// should have if that matters, that scatters so.
+    /// What a ray of unit direction meets at a point of a surface, given the shading normal there, the direction that
+    /// the frame's x should have if that matters, and how the surface scatters.
     #[inline]
     pub fn with(ray: &Ray, surface: SurfacePoint, (shading, tangent): (DVec3, Option<DVec3>), scattering: S) -> Self {
         let back = -ray.direction;

@@ -142,8 +142,8 @@ struct Flight {
 struct Flying {
     number: u32,
     flux: f64,
-    /// Whether its light shines into this direction only, or from one point: who scatters it into single directions is
-    /// never met by a path that finds the light.
+    /// Whether its light shines into this direction only, or from one point: where that is scattered into single
+    /// directions, no path can find the light.
     is_single: bool,
     /// The last surface, and by which it came.
     target: DVec3,

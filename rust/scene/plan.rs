@@ -89,8 +89,8 @@ pub struct Plan {
     constants: Vec<Option<Bsdf>>,
 }
 
-/// What scatters more sharply than by this roughness, but not into single directions, is glossy. Over rougher surfaces,
-/// asking each of a few lights costs as much time as it saves.
+/// What has less than this roughness, but does not scatter into single directions, counts as glossy. Over rougher
+/// surfaces, asking each of a few lights costs as much time as it saves.
 const GLOSS: f64 = 0.35;
 
 /// A line of a plan: what it is about, whether the scene has it, and what that means.

@@ -22,9 +22,9 @@ impl Departure {
     /// by sums of products, with at most 16 roundings of ε/2: another 2⁻⁴⁸ M. Twice the sum of both is 2⁻⁴⁶ M.
     const SAFETY: f64 = 8.0;
 
-    /// Where a segment ends, as a share of its way: further off what it goes to than where that meets it by the f64 of
-    /// its test alone, whose bounds are within 2⁻⁴⁶ of the way but for what is grazed. Most shapes need no longer
-    /// numbers then to tell that they do not shadow themselves.
+    /// Where a segment ends, as a share of its way. What is left to the surface that it goes to is more than the error
+    /// of that surface's test in f64, whose bounds are within 2⁻⁴⁶ of the way except where it is grazed. So most shapes
+    /// can tell without longer numbers that they do not shadow themselves.
     const END: f64 = 1.0 - 1.0 / (1u64 << 45) as f64;
 
     /// Where rays from a point of a surface start.

@@ -4,7 +4,7 @@
 //! the view, such that a ray through (x, y), each from −1 to 1 across the picture, goes along (x, y, 1).
 //!
 //! The bound. Let u = 2⁻⁵³, |q| the distance of the farthest corner, and s the greatest of 1 and the inverse half width
-//! and half height of the picture at distance 1, the more so as its middle is not that of the view
+//! and half height of the picture at distance 1, or more where the picture's middle is not that of the view
 //! ([`super::cameras::Window::onto_film`]). A relative corner errs by u|q|, its product with an axis by 4u|q| more, and
 //! axes are at right angles to within 4u, so that no coordinate errs by more than 16us|q|; a ray's direction, three
 //! sums, a normalisation and three quotients, goes through a point off by less than 16us. 64us|q| is allowed for both,

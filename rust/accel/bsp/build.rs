@@ -2,9 +2,9 @@
 //!
 //! Any plane may part a cell; those worth trying are the ones that polygons lie in, those through their edges, and
 //! those across axes that they touch (Ize, Wald and Parker, "Ray Tracing with the BSP Tree", 2008). They are taken from
-//! a few polygons of each cell. How good one is, is first guessed from how it shares a few pieces and the cell's width.
-//! Of the best, the cell's surface is measured, and all pieces are counted, those that are cut on both sides: that
-//! weighs balance against splits.
+//! a few polygons of each cell. The cost of each is first guessed, from how it divides a few of the pieces and the
+//! cell's width. For the best of them the surface on both sides is measured and all pieces are counted, those that are
+//! cut on both sides: so balance is weighed against splits.
 
 use super::cell::Cell;
 use super::pieces::{Piece, TOLERANCE, triangle};
@@ -133,9 +133,9 @@ impl Builder<'_> {
         Ok(Split { plane, cells, sides, rooms })
     }
 
-    /// The least cost of a node, given its children's shares of the surface and how many pieces each has, the third
-    /// number those that lie in the plane: with that, on which side these are best, and how many there are then on
-    /// each. Pieces count for `scale` each.
+    /// The least cost of a node, given its children's shares of the surface, how many pieces each child has and, as the
+    /// third number, how many lie in the plane. With it comes on which side the latter are best put, and how many
+    /// pieces there are then on each. A piece counts for `scale`.
     fn best_counts(self, shares: [f64; 2], [back, front, within]: [usize; 3], scale: f64) -> (f64, usize, [usize; 2]) {
         let Options { traversal_cost, intersection_cost, .. } = *self.options;
         let of_a_piece = f64::from(intersection_cost) * scale;

@@ -44,8 +44,9 @@ impl Cell {
         ranges.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], [least, greatest]| [a.min(least), b.max(greatest)])
     }
 
-    /// What a plane may leave of the surface on either side, if the cell were a prism across it as wide as it is at
-    /// most: each side has both its ends, as large as the cell's shadow, and its share of what is around.
+    /// How much surface a plane may leave on either side, if the cell is taken for a prism that stands across the plane
+    /// and is as wide as the cell at its widest: each side has two ends, as large as the cell's shadow on the plane,
+    /// and its share of what is around.
     ///
     /// None if the plane has less than `least` of the cell on a side.
     pub fn guessed_areas(&self, plane: &Plane, least: f64) -> Option<[f64; 2]> {

@@ -237,8 +237,8 @@ struct Walk<'a, const COUNTED: bool> {
     tree: &'a Bsp,
     origin: DVec3,
     direction: DVec3,
-    /// How far off it may be, and what stands on one side only though it reaches over, by any coordinate: and so by any
-    /// height.
+    /// How far off the ray may be, and how far a primitive may reach over a plane and still stand on one side of it
+    /// only: in any coordinate, and so in the height over any plane.
     ///
     /// The origin is rounded to f32, the inverse of the direction twice. With R the ray's reach, that moves it by less
     /// than 3 · 2⁻²⁴ R where the scene is, of which the pad is more than twice as much. Quotients in f64 add next to

@@ -12,8 +12,8 @@ use crate::math::Aabb;
 pub enum Quality {
     /// For few rays, or for geometry that changes all the time.
     FastBuild,
-    /// For most scenes: what is long and thin is looked after, and a mesh of even triangles costs no more than that
-    /// takes to be seen.
+    /// For most scenes: what is long and thin is taken care of, and a mesh of even triangles takes no more time than it
+    /// takes to see that nothing in it is.
     #[default]
     Balanced,
     /// For many rays on one scene, which does not move: what straddles a plane may be parted by it.
@@ -80,8 +80,8 @@ impl Cuts {
         Self { builder, ..self }
     }
 
-    /// What spatial splits need before, and they, which together add so many references at most, over the number of
-    /// primitives.
+    /// Spatial splits, and the cuts that they need before. Together they add at most `budget` references for each
+    /// primitive.
     pub const fn and_splits(bins: Option<usize>, budget: f32) -> Self {
         Self { options: presplit::Options { budget, worthwhile: 0.125 }, builder: Builder::Spatial { bins, budget } }
     }

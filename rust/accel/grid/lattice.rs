@@ -71,8 +71,8 @@ impl Lattice {
         Aabb { min: corner(from, 0, -f64::from(PAD)), max: corner(to, 1, f64::from(PAD)) }
     }
 
-    /// The first and the last cell that touch a box when they are widened by [`PAD`]; none if no cell does. Being cut
-    /// off at f64's precision is nothing beside what PAD has to spare.
+    /// The first and the last cell that touch a box when they are widened by [`PAD`]; none if no cell does. What f64
+    /// rounds here is far less than PAD has to spare.
     #[inline]
     pub fn range(&self, aabb: &Aabb) -> Option<([u32; 3], [u32; 3])> {
         let (mut from, mut to) = ([0; 3], [0; 3]);

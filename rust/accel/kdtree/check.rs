@@ -6,9 +6,9 @@ use crate::math::Aabb;
 
 /// Says what is wrong with a tree, given the primitives of each leaf.
 ///
-/// Pairs of children follow their parent and have but one; planes stand within the cells that they part, and no leaf is
-/// deeper than recorded; and each primitive stands in the leaves whose cells it has a part in, clipped at every plane
-/// as it was when the tree was built.
+/// Each pair of children comes after its parent, and has only the one; planes stand within the cells that they part,
+/// and no leaf is deeper than recorded; and each primitive stands in the leaves whose cells it has a part in, clipped
+/// at every plane as it was when the tree was built.
 pub fn check(tree: &KdTree, input: &Input, primitives: &dyn Fn(u32) -> Vec<u32>) -> Result<(), String> {
     let (parts, bounds) = input.parts();
     if bounds != tree.bounds {

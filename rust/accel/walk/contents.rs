@@ -141,8 +141,8 @@ impl<const N: usize, L: Leaves<N>> Contents<N, L> {
 
     /// Offers what of a leaf is met to the query; true if that answers it.
     ///
-    /// Nothing is decided twice for a ray, nor counted twice, as far as its marks know; in f32 a block may be looked at
-    /// again.
+    /// No primitive is decided twice for a ray, nor counted twice, as far as the ray's marks remember; the test of a
+    /// block in f32 may be done again.
     #[inline(always)]
     pub fn meet<Q: Query, S: Simd<N>>(
         &self,

@@ -57,7 +57,8 @@ impl Part {
     }
 
     /// Where it lies. Triangles are clipped, which is what makes splits "perfect" (Havran, "Heuristic Ray Shooting
-    /// Algorithms", 2000): a side of which the triangle misses what the box has of it does not get it.
+    /// Algorithms", 2000): a side gets the triangle only if some of it lies in the part of the box that is on that
+    /// side.
     ///
     /// Whatever point of the primitive lies in the part's box lies in the closed half on one of the sides that are
     /// named.

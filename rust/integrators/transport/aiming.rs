@@ -6,12 +6,12 @@ use crate::math::DVec3;
 use crate::optics::Rgb;
 use crate::scene::{Aim, Interaction, Scattered, Scatters};
 
-/// A path that comes to a matt surface, where it may aim or not: whether roulette has ended it or been played, so that
-/// it is not again.
+/// Plays roulette for a path that was aimed and comes to a matt surface, and tells whether that ended the path, was
+/// survived, or is still to be played because the path was not aimed.
 ///
-/// One that was aimed and has come here has missed what it was aimed at, or found what is brightly lit: it goes on by
-/// what it brings, and as if it brought more by as much as more light comes here. Other paths are left to the roulette
-/// that all play.
+/// A path that was aimed and has come here has missed what it was aimed at, or has found what is brightly lit. Its
+/// chance to go on goes by what it brings, counted for more where more light comes to this place than to others. Other
+/// paths are left to the roulette that all paths play.
 #[inline]
 pub(super) fn arrive(path: &mut Alive, aim: Option<&Aim>, number: impl FnOnce() -> f64) -> Arrival {
     let denser = std::mem::replace(&mut path.aimed, 1.0);

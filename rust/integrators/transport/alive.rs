@@ -34,8 +34,8 @@ impl Alive {
         self.aimed = (self.aimed * denser as f32).min(MOST);
     }
 
-    /// What the throughput counts for in roulette: where it is small because of the index of refraction, or because the
-    /// path was aimed, no light is lost.
+    /// What the throughput is multiplied by for roulette: no light is lost where it is small only because of the index
+    /// of refraction, or because the path was aimed.
     #[inline]
     pub(super) fn importance(&self) -> f64 {
         self.scale * f64::from(self.aimed)

@@ -407,9 +407,9 @@ impl<'a, N: Features> TransportWorker<'a, N> {
 /// The bundle of rays after a surface.
 ///
 /// A mirror of mean curvature H, seen by a bundle of width w, spreads it by 2Hw (Akenine-Möller et al., "Improved
-/// Shader and Texture Level of Detail Using Ray Cones", 2021), and refraction by as much as it bends; a draw of density
-/// p has its neighbours, among some 256 of a pixel, 1/√(256 p) off (after Suykens and Willems, "Path Differentials and
-/// Applications", 2001).
+/// Shader and Texture Level of Detail Using Ray Cones", 2021), and refraction by as much as it bends; a direction drawn
+/// with density p has its neighbours, if some 256 are drawn for a pixel, about 1/√(256 p) away (after Suykens and
+/// Willems, "Path Differentials and Applications", 2001).
 fn widened<S: Scatters>(vertex: &Vertex<'_, S>, next: &Scattered) -> Footprint {
     let (before, curvature) = (vertex.baggage.footprint, vertex.here.curvature());
     let bent = if next.is_through {

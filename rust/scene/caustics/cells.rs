@@ -131,9 +131,9 @@ impl Cells {
         for group in near.chunk_by_mut(|a, b| a.chain == b.chain) {
             Lobe::divide(group, size, 3, &mut each);
         }
-        // The variance of what is sought in a lobe goes by its light, its brightness and its solid angle, over how
-        // often it is drawn: it had better be drawn by the root of those. The larger ones are mostly of lesser
-        // brightness, so that a root of the solid angle is left.
+        // The variance of what is sought in a lobe is its light times its brightness times its solid angle, over how
+        // often it is drawn: so it is best drawn in proportion to the root of their product. The larger ones are mostly
+        // less bright, so that of both together a root of the solid angle is left.
         let mut strengths: Vec<(Lobe, f64)> =
             each.into_iter().map(|(lobe, light)| (lobe, (light * lobe.fills().sqrt()).sqrt())).collect();
         strengths.sort_by(|a, b| b.1.total_cmp(&a.1));

@@ -35,8 +35,8 @@ impl Lobe {
         let fitted = (photons.len() >= Self::FEW).then(|| still.fitted(photons, size));
         let lobe = fitted.filter(|fitted| 2.0 * fitted.spread(photons) < still.spread(photons)).unwrap_or(still);
         let farthest = photons.iter().map(|p| lobe.off(p).length_squared()).fold(0.0, f64::max);
-        // Few have not been as far out as others will be. And of what few saw from one place, neighbours see something
-        // else.
+        // A few photons do not come from as far out as others will. And neighbours see something else than what a few
+        // saw from one place.
         let radius = farthest.sqrt() * (1.0 + 2.0 / count) + if photons.len() < Self::FEW { size / count } else { 0.0 };
         // Not so small that squares of cosines could not tell its directions from others.
         let least = (1e-10 * still.target.distance_squared(still.place)).max(f64::MIN_POSITIVE);

@@ -17,13 +17,13 @@ use cells::Cells;
 /// From where light comes to the places of a scene by way of mirrors and glass: paths that want to find it had better
 /// go where photons came from (Jensen, "Importance Driven Path Tracing using the Photon Map", 1995).
 ///
-/// A matt surface that sees a lamp in a ball of glass finds it by chance as seldom as its image is small, and is the
-/// brighter for it: the fireflies of path tracing. The lamp cannot be asked, for nothing goes straight to it. So
-/// photons are sent from the lights to what is sharp, and followed to where they fall (`scene/photons.rs`); places are
-/// divided into cells of about as many of them (`cells.rs`), and photons of a cell that came by the same surfaces are
-/// taken together for a ball that light comes from (`lobe.rs`). A path draws its direction from the cones to these or
-/// from its surface, and is weighed by the density of both together (`aim.rs`). So photons that are missing, or wrong,
-/// make a picture noisier and never another one, and nothing of them need be exact.
+/// A path from a matt surface finds a lamp behind a ball of glass only by chance, the less often the smaller the lamp's
+/// image, and each time it counts for the more: the fireflies of path tracing. The lamp cannot be asked, for nothing
+/// goes straight to it. So photons are sent from the lights to what is sharp, and followed to where they fall
+/// (`scene/photons.rs`); places are divided into cells of about as many of them (`cells.rs`), and photons of a cell
+/// that came by the same surfaces are taken together for a ball that light comes from (`lobe.rs`). A path draws its
+/// direction from the cones to these or from its surface, and is weighed by the density of both together (`aim.rs`). So
+/// photons that are missing, or wrong, make a picture noisier and never another one, and nothing of them need be exact.
 ///
 /// It depends on the scene alone: not on the camera, nor on threads.
 #[derive(Debug)]

@@ -12,8 +12,8 @@ pub(super) struct Facet {
 }
 
 /// Those of all primitives of a geometry of few. A normal takes a root and six quotients, and the shape a search; of
-/// more faces than the processor's second cache holds it would be memory that is waited for, and in the way of what
-/// else is needed.
+/// more faces than the processor's second cache holds, to read them would be to wait for memory, and would push out of
+/// the cache what else is needed.
 #[derive(Debug, Default)]
 pub(super) struct Facets(Vec<Facet>);
 

@@ -9,9 +9,9 @@ use crate::math::{DVec3, Hit, Ray};
 use crate::scene::{Copies, Geometry, Group};
 use crate::shapes::Bounds;
 
-/// The primitives that shine in copies of groups, each one of its own as a light: of copies that stand still, and of
-/// what stands in a group itself, not in copies within it. Where there are more than [`Copied::MOST`], those of the
-/// shapes that come last are left to rays that meet them by chance, as are all others.
+/// The primitives that shine in copies of groups, each of every copy a light of its own: those of copies that stand
+/// still, and of what stands in a group itself, not in copies within it. Where there would be more than
+/// [`Copied::MOST`], the shapes that come last are left out. What is left out is found by rays that meet it by chance.
 #[derive(Debug, Default)]
 pub(super) struct Copied {
     /// The shapes that are copies whose lights are here, in order.

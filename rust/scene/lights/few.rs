@@ -18,7 +18,7 @@ pub(super) struct Few {
 /// One within the scene.
 #[derive(Clone, Copy, Debug)]
 struct Lamp {
-    /// Its number, or of the two triangles that make a mesh their numbers: of these one is drawn, so that a panel is
+    /// Its number, or the numbers of the two triangles that make a mesh: one of these is drawn, so that a panel is
     /// asked once.
     numbers: [u32; 2],
     /// How often it is the first.
@@ -54,8 +54,8 @@ impl Few {
     /// which one got the shadow ray: for half the error they took twice the time.
     const MOST: usize = 16;
 
-    /// Those of some strengths within a scene, of which the first of some are the first of two triangles of a mesh; and
-    /// so many outside.
+    /// Of lights with these strengths within a scene, and so many outside. `pairs` are the numbers of those that are
+    /// the first of the two triangles of a mesh.
     pub fn new(strengths: &[Strength], pairs: &[u32], outside: usize) -> Self {
         let mut within = Vec::new();
         let mut number = 0;
@@ -84,8 +84,8 @@ impl Few {
 
 /// What is asked of lights one by one. Densities are each light's own, with no choice among lights in them.
 impl Lights {
-    /// How many lights [`Lights::sample_one`] knows, a panel of two triangles being one. 0 where it would be one, which
-    /// needs no choice, or where they are more than few.
+    /// How many lights [`Lights::sample_one`] knows, where a panel of two triangles counts as one. 0 where there is
+    /// only one, which needs no choice, or where there are more than a few.
     #[inline]
     pub fn few(&self) -> u32 {
         self.few.count

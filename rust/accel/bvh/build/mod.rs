@@ -87,8 +87,8 @@ impl Builder {
         matches!(self, Self::Spatial { .. })
     }
 
-    /// The same over pieces of primitives that were cut before: what they are more than the primitives counts as added
-    /// already.
+    /// The same over pieces of primitives that were cut before: the pieces beyond one for each primitive count as
+    /// references that are added already.
     pub fn over_pieces(self, primitives: usize, pieces: usize) -> Self {
         match self {
             Self::Spatial { bins, budget } => {

@@ -12,8 +12,8 @@ pub enum Part {
         root: Node,
         /// What is below.
         below: Vec<Node>,
-        /// The primitives of its leaves, which are counted from its own first. Nothing if leaves know their place among
-        /// all.
+        /// The primitives of its leaves, which say where theirs begin in this list. Empty if they already say where
+        /// among all primitives.
         order: Vec<u32>,
     },
     /// Two parts side by side.

@@ -44,8 +44,9 @@ fn irradiance_at(scene: &Scene, receiver: &Receiver, draws: u32) -> (f64, f64) {
     (mean, ((squares / f64::from(draws) - mean * mean).max(0.0) / f64::from(draws)).sqrt())
 }
 
-/// Within five standard errors, which chance exceeds once in two million, and these to a share; what is drawn without
-/// error is right but for the roundings of a sum of so many.
+/// Asserts that a mean is within five standard errors, which chance exceeds once in two million, and that the standard
+/// error is at most a share of what is expected. What is drawn without error must be right but for the roundings of a
+/// sum of so many.
 fn assert_near((mean, error): (f64, f64), expected: f64, share: f64) {
     assert!((mean - expected).abs() <= 5.0 * error + 1e-10 * expected, "{mean} ± {error}, not {expected}");
     assert!(error <= share * expected, "{error} of {expected}");
