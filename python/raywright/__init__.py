@@ -27,6 +27,7 @@ from .materials import (
     Dielectric,
     Diffuse,
     Mask,
+    MetalIndex,
     MetallicRough,
     Mirror,
     Mix,
@@ -36,6 +37,7 @@ from .materials import (
     Plastic,
     ThinDielectric,
     TwoSided,
+    metal_index,
     metals,
 )
 from .query.cones import ConeTouches
@@ -133,6 +135,7 @@ __all__ = [
     "Marble",
     "Mask",
     "Mesh",
+    "MetalIndex",
     "MetallicRough",
     "Mirror",
     "MitchellFilter",
@@ -186,6 +189,7 @@ __all__ = [
     "check_writable",
     "from_mitsuba",
     "load",
+    "metal_index",
     "metals",
     "power_heuristic",
     "render",

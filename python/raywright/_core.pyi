@@ -26,6 +26,7 @@ __all__ = [
     "implicit_trouble",
     "interactions",
     "matrix_trouble",
+    "metal_index",
     "metals",
     "patch",
     "plan",
@@ -36,6 +37,7 @@ __all__ = [
     "shape_bounds",
     "simd",
     "singular_transform",
+    "spectrum_rgb",
 ]
 
 def simd() -> str:
@@ -408,8 +410,14 @@ def shape_area(shape: Any) -> float:
 def matrix_trouble(matrix: list[list[float]]) -> str | None:
     """Why an affine matrix (4 rows of 4) has no inverse, or None if it has one."""
 
-def metals() -> list[tuple[str, str, tuple[float, ...], tuple[float, ...]]]:
-    """Tell the metals that are known: symbol, name, and index of refraction, real and imaginary (RGB)."""
+def metals() -> list[tuple[str, str]]:
+    """Tell the metals that are known: symbol and name."""
+
+def metal_index(name: str) -> list[list[float]]:
+    """Tell what was measured of a metal: rows of wavelength (nm), real and imaginary part of its index."""
+
+def spectrum_rgb(rows: Sequence[Sequence[float]], of_daylight: bool) -> list[float]:
+    """Tell the linear Rec. 709 of values at rising wavelengths (nm): shares of daylight, or of even light."""
 
 def polygon_trouble(
     outline: Sequence[Sequence[float]], holes: Sequence[Sequence[Sequence[float]]]

@@ -27,6 +27,12 @@ pub trait Scatter {
     /// About the share of white light that is scattered, for pictures of it: that of even light where the kind knows it.
     fn albedo(&self) -> Rgb;
 
+    /// By what all of it is to be multiplied for light that came to such a surface before: 1 unless it scatters more
+    /// than there is, in a channel ([`super::conductors::Curve::again`]).
+    fn again(&self) -> Rgb {
+        Rgb::ONE
+    }
+
     /// Whether all of it goes in single directions, so that [`Scatter::evaluate`] is 0 everywhere.
     fn is_delta(&self) -> bool {
         false
@@ -113,6 +119,14 @@ macro_rules! kinds {
             pub fn albedo(&self) -> Rgb {
                 match self {
                     $(Self::$kind(kind) => kind.albedo(),)+
+                }
+            }
+
+            /// See [`Scatter::again`].
+            #[inline]
+            pub fn again(&self) -> Rgb {
+                match self {
+                    $(Self::$kind(kind) => kind.again(),)+
                 }
             }
 

@@ -162,11 +162,11 @@ fn wide_lobes_have_their_density() {
 #[test]
 fn reflections_have_their_density() {
     for alpha in [1e-4f64, 0.01, 0.3, 1.0] {
-        let gold = conductors::metal("Au").unwrap();
+        let gold = |alpha| Conductor::metal(conductors::metal("Au").unwrap(), 1.0, alpha);
         for wo in directions() {
             for across in [alpha, (4.0 * alpha).min(0.7)] {
                 let chart = Facets { wo, alpha: [alpha, across], eta: None };
-                assert_density(&Conductor::new(gold.eta, gold.k, [alpha, across]).into(), wo, &chart);
+                assert_density(&gold([alpha, across]).into(), wo, &chart);
             }
             let chart = Facets { wo, alpha: [alpha; 2], eta: None };
             assert_density(&Coated::new(Rgb::splat(0.5), 1.5, alpha).into(), wo, &chart);

@@ -1,6 +1,7 @@
 //! Metals.
 
 use super::albedo::MirrorLoss;
+use super::conductors::{Metal, Reflectance};
 use super::fresnel::ConductorIndex;
 use super::lobes::Grazing;
 use super::mirror::mirrored;
@@ -11,9 +12,12 @@ use std::f64::consts::{FRAC_1_PI, PI};
 /// A conductor, smooth or with GGX microfacets. Light that facets throw on facets is made up for (Kulla and Conty,
 /// "Revisiting Physically Based Shading at Imageworks", 2017): reciprocal, and a perfect conductor is white at every
 /// roughness. Both sides reflect.
+///
+/// A measured metal has its colour by wavelength ([`super::conductors::Curve`]), of what is scattered once and of what is scattered
+/// more than once, and may have more than 1 in a channel.
 #[derive(Clone, Copy, Debug)]
 pub struct Conductor {
-    index: ConductorIndex,
+    fresnel: Reflectance,
     rough: Option<Rough>,
 }
 
@@ -28,22 +32,30 @@ struct Rough {
 }
 
 impl Conductor {
-    /// Of the complex index `eta` + i `k` relative to the medium around it, as [`super::conductors`] has it for metals, and
-    /// the roughness along x and y, 0 to 1. Below [`Ggx::SMOOTH`] it is a mirror.
+    /// Of the complex index `eta` + i `k` relative to the medium around it, and the roughness along x and y, 0 to 1. Below
+    /// [`Ggx::SMOOTH`] it is a mirror.
     pub fn new(eta: Rgb, k: Rgb, alpha: [f64; 2]) -> Self {
-        let index = ConductorIndex::new(eta, k);
+        Self::of(Reflectance::Index(ConductorIndex::new(eta, k)), alpha)
+    }
+
+    /// Of a measured metal in a medium of index `outside`, and the roughness.
+    pub fn metal(metal: &'static Metal, outside: f64, alpha: [f64; 2]) -> Self {
+        Self::of(Reflectance::of(metal, outside), alpha)
+    }
+
+    fn of(fresnel: Reflectance, alpha: [f64; 2]) -> Self {
         let rough = Ggx::rough(alpha).map(|ggx| {
             let loss = MirrorLoss::new(ggx);
-            let multiple = made_up(loss.average(), index.average());
+            let multiple = fresnel.seen(|mean| made_up_of(loss.average(), mean)).max(Rgb::ZERO);
             Rough { ggx, loss, grazing: Grazing::new(ggx.mean_alpha()), multiple }
         });
-        Self { index, rough }
+        Self { fresnel, rough }
     }
 
     /// The share of light that is reflected at this cosine of incidence.
     #[inline]
     pub fn reflectance(&self, cosine: f64) -> Rgb {
-        self.index.reflectance(cosine)
+        self.fresnel.at(cosine)
     }
 }
 
@@ -51,7 +63,14 @@ impl Conductor {
 /// mean loss: each further time, F̄ is left, and 1 − L̄ of it gets out.
 #[inline]
 pub(super) fn made_up(lost: f64, reflectance: Rgb) -> Rgb {
-    let colour = reflectance * reflectance * (1.0 - lost) / (Rgb::ONE - reflectance * lost);
+    let of = |share| made_up_of(lost, share);
+    Rgb::new(of(reflectance.x), of(reflectance.y), of(reflectance.z))
+}
+
+/// The same of one channel, or one wavelength.
+#[inline]
+fn made_up_of(lost: f64, reflectance: f64) -> f64 {
+    let colour = reflectance * reflectance * (1.0 - lost) / (1.0 - reflectance * lost);
     colour * (FRAC_1_PI / lost)
 }
 
@@ -98,7 +117,7 @@ impl Scatter for Conductor {
     }
 
     fn albedo(&self) -> Rgb {
-        let average = self.index.average();
+        let average = self.fresnel.average();
         match &self.rough {
             None => average,
             Some(rough) => {
@@ -106,6 +125,10 @@ impl Scatter for Conductor {
                 average * (1.0 - lost) + rough.multiple * (PI * lost * lost)
             }
         }
+    }
+
+    fn again(&self) -> Rgb {
+        self.fresnel.again()
     }
 
     fn is_delta(&self) -> bool {

@@ -20,6 +20,7 @@ mod mirror;
 mod null;
 mod oren_nayar;
 mod phong;
+pub mod spectra;
 mod spectrum;
 mod thin_dielectric;
 mod transparent;

@@ -1,14 +1,14 @@
 //! Materials as the package describes them, read by attribute.
 
-use pyo3::exceptions::PyTypeError;
+use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use std::sync::Arc;
 
 use super::textures::{Cache, Textures};
-use crate::optics::conductors::METALS;
+use crate::optics::conductors::{METALS, metal};
 use crate::scene::Material;
 use crate::scene::materials::{
-    BlinnPhongMaterial, BumpMap, ConductorMaterial, DielectricMaterial, DiffuseMaterial, Interior, Mask,
+    BlinnPhongMaterial, BumpMap, ConductorMaterial, DielectricMaterial, DiffuseMaterial, Index, Interior, Mask,
     MetallicRoughMaterial, MirrorMaterial, MixMaterial, NormalMap, OrenNayarMaterial, PhongMaterial, PlasticMaterial,
     Roughness, ThinDielectricMaterial, TwoSided,
 };
@@ -44,7 +44,13 @@ impl Looks {
                 Arc::new(OrenNayarMaterial { reflectance: value("reflectance")?, roughness: value("roughness")? })
             }
             "Mirror" => Arc::new(MirrorMaterial { reflectance: value("reflectance")? }),
-            "Conductor" => Arc::new(ConductorMaterial { eta: value("eta")?, k: value("k")?, roughness: roughness()? }),
+            "Conductor" => {
+                let index = match given.getattr("metal")?.extract::<Option<String>>()? {
+                    Some(name) => Index::Measured(metal(&name).ok_or_else(|| unknown(&name))?),
+                    None => Index::Constants { eta: value("eta")?, k: value("k")? },
+                };
+                Arc::new(ConductorMaterial { index, roughness: roughness()? })
+            }
             "Dielectric" => {
                 let interior = Interior { ior: float("ior")?, priority: given.getattr("priority")?.extract()? };
                 Arc::new(DielectricMaterial { interior, roughness: roughness()? })
@@ -101,8 +107,21 @@ impl Looks {
     }
 }
 
-/// The metals that are known: symbol, name, and the real and the imaginary part of the index of refraction, in red, green and blue.
+/// The metals that are known: symbol and name.
 #[pyfunction]
-pub fn metals() -> Vec<(&'static str, &'static str, [f64; 3], [f64; 3])> {
-    METALS.iter().map(|metal| (metal.symbol, metal.name, metal.eta.to_array(), metal.k.to_array())).collect()
+pub fn metals() -> Vec<(&'static str, &'static str)> {
+    METALS.iter().map(|metal| (metal.symbol, metal.name)).collect()
+}
+
+/// What was measured of a metal: wavelength in nm, and the real and the imaginary part of the index of refraction there.
+///
+/// # Errors
+/// A `ValueError` for a metal that is not known.
+#[pyfunction]
+pub fn metal_index(name: &str) -> PyResult<Vec<[f64; 3]>> {
+    metal(name).map(|metal| metal.index.to_vec()).ok_or_else(|| unknown(name))
+}
+
+fn unknown(name: &str) -> PyErr {
+    PyValueError::new_err(format!("metal must be one that is known, got '{name}'"))
 }

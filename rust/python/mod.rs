@@ -22,6 +22,7 @@ mod render;
 mod report;
 mod samplers;
 mod shapes;
+mod spectra;
 mod textures;
 mod written;
 
@@ -60,7 +61,7 @@ mod _core {
     #[pymodule_export]
     use super::interactions::{Interactions, interactions};
     #[pymodule_export]
-    use super::materials::metals;
+    use super::materials::{metal_index, metals};
     #[pymodule_export]
     use super::points::points;
     #[pymodule_export]
@@ -77,6 +78,8 @@ mod _core {
     use super::shapes::{matrix_trouble, shape_area, shape_bounds};
     #[pymodule_export]
     use super::simd;
+    #[pymodule_export]
+    use super::spectra::spectrum_rgb;
     #[pymodule_export]
     const VERSION: &str = env!("CARGO_PKG_VERSION");
 }

@@ -23,6 +23,9 @@ pub trait Scatters {
 
     /// How rough its sharpest part is ([`Bsdf::roughness`]).
     fn roughness(&self) -> f64;
+
+    /// What of it is left for light that came to such a surface before ([`Bsdf::again`]).
+    fn again(&self) -> Rgb;
 }
 
 impl Scatters for Scattering {
@@ -61,6 +64,11 @@ impl Scatters for Scattering {
     fn roughness(&self) -> f64 {
         Self::roughness(self)
     }
+
+    #[inline]
+    fn again(&self) -> Rgb {
+        Self::again(self)
+    }
 }
 
 impl Scatters for Bsdf {
@@ -92,5 +100,10 @@ impl Scatters for Bsdf {
     #[inline]
     fn roughness(&self) -> f64 {
         Self::roughness(self)
+    }
+
+    #[inline]
+    fn again(&self) -> Rgb {
+        Self::again(self)
     }
 }

@@ -1,5 +1,6 @@
 """Materials: what they keep, what they refuse, and what they do to light."""
 
+import dataclasses
 import math
 import pickle
 from dataclasses import FrozenInstanceError
@@ -59,10 +60,30 @@ def test_shapes_and_meshes_take_them(material, box):
     assert pickle.loads(pickle.dumps(scene)).shapes[0] == mesh
 
 
+def test_metals_tell_what_was_measured():
+    for name in rw.metals():
+        wavelengths, eta, k = rw.metal_index(name)
+        assert wavelengths.shape == eta.shape == k.shape
+        assert (np.diff(wavelengths) > 0).all()
+        assert min(eta.min(), k.min()) > 0
+    gold = rw.metal_index("Au")
+    # Lynch and Hunter (1985), at 2 eV.
+    at = np.abs(gold.wavelengths - 619.92).argmin()
+    assert (gold.eta[at], gold.k[at]) == (0.194, 3.06)
+    with pytest.raises(ValueError, match=r"metal must be one of silver, .*, got 'unobtainium'"):
+        rw.metal_index("unobtainium")
+    with pytest.raises(TypeError, match="metal must be a name, got int"):
+        rw.metal_index(79)
+
+
 def test_metals_have_names_and_symbols():
     assert {"gold", "silver", "copper", "aluminium"} <= set(rw.metals())
     gold = rw.Conductor("gold")
-    assert gold == rw.Conductor("Au") == rw.Conductor("GOLD") == rw.Conductor(eta=gold.eta, k=gold.k)
+    assert gold == rw.Conductor("Au") == rw.Conductor("GOLD") == dataclasses.replace(gold)
+    assert (gold.metal, gold.eta, gold.k) == ("gold", None, None)
+    constant = rw.Conductor(eta=0.2, k=(3, 4, 5))
+    assert constant.metal is None
+    assert constant == dataclasses.replace(constant) != gold
     assert gold.roughness == 0
     assert gold.alpha is None
     assert rw.Conductor("gold", alpha=0.25).roughness is None

@@ -73,6 +73,7 @@ def test_what_is_not_given_is_as_mitsuba_has_it():
 
 def test_names_stand_for_metals_and_indices():
     assert front({"type": "conductor", "material": "Au"}) == rw.Conductor("gold", alpha=0)
+    assert front({"type": "conductor", "material": "Ni_palik"}) == rw.Conductor("nickel", alpha=0)
     assert material({"type": "dielectric", "int_ior": "Water", "ext_ior": "vacuum"}).ior == 1.333
     with pytest.raises(
         ValueError, match=r"dielectric 'one.bsdf': int_ior must be a number or one of .*diamond"

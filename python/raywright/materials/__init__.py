@@ -2,7 +2,7 @@
 
 from .blinn_phong import BlinnPhong
 from .bump_map import BumpMap
-from .conductor import Conductor, metals
+from .conductor import Conductor, MetalIndex, metal_index, metals
 from .dielectric import Dielectric
 from .diffuse import Diffuse
 from .mask import Mask
@@ -25,6 +25,7 @@ __all__ = [
     "Diffuse",
     "Mask",
     "Material",
+    "MetalIndex",
     "MetallicRough",
     "Mirror",
     "Mix",
@@ -34,5 +35,6 @@ __all__ = [
     "Plastic",
     "ThinDielectric",
     "TwoSided",
+    "metal_index",
     "metals",
 ]

@@ -1,9 +1,10 @@
 """Metals."""
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
-from numpy.typing import ArrayLike
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from .. import _core
 from ..textures.texture import Texture, Value, value
@@ -16,12 +17,23 @@ class Conductor(Material):
 
     Light that facets throw on facets is made up for (Kulla and Conty, 2017). Both sides reflect.
 
+    A metal that is named has the colour of its spectrum: at each angle, Fresnel's reflectance by the index of
+    refraction that was measured, integrated over the wavelengths of daylight (CIE D65) as the standard
+    observer sees them (CIE 1931), in linear Rec. 709. So a light of (1, 1, 1) looks in it as in a spectral
+    renderer, in which white is daylight. In a channel it may reflect more than there is: gold is
+    (1.022, 0.782, 0.344), an orange that no mixture of red, green and blue quite has. Of what is reflected
+    by gold again and again, each time but the first gives at most 96.2 % of the red, which is what the
+    wavelength has that is reflected best: two and five reflections are right to 3 % so, and no light is
+    without end. An integrator in Python sees each reflection as if it were the first.
+
     Parameters
     ----------
     metal : str, optional
-        Its name or symbol, as ``"gold"`` or ``"Au"``; `metals` tells all that are known.
+        Its name or symbol, as ``"gold"`` or ``"Au"``; `metals` tells all that are known, `metal_index` what
+        was measured of each.
     eta, k : float, 3 floats or Texture, optional
-        Real and imaginary part of its index of refraction, in place of a name: above 0, and at least 0.
+        Real and imaginary part of its index of refraction, in place of a name: above 0, and at least 0. Three
+        are those of red, green and blue, each with a reflectance of its own.
     roughness : float, Texture, or a pair of them, optional
         How rough it is, from 0, smooth, to 1; along u and along v if they are two. Its square is the alpha of
         the GGX distribution, as in glTF. 0 if not given.
@@ -30,8 +42,10 @@ class Conductor(Material):
 
     Attributes
     ----------
-    eta, k : tuple of 3 floats, or Texture
-        The index of refraction, of a name too.
+    metal : str or None
+        The name, whichever way it was told.
+    eta, k : tuple of 3 floats, or Texture, or None
+        The index of refraction, unless it is that of a name.
 
     Raises
     ------
@@ -41,8 +55,9 @@ class Conductor(Material):
         If something is not of the kinds above.
     """
 
-    eta: Value
-    k: Value
+    metal: str | None
+    eta: Value | None
+    k: Value | None
     roughness: Rough | None
     alpha: Rough | None
 
@@ -60,24 +75,62 @@ class Conductor(Material):
                 raise ValueError("only one of metal and (eta, k) can be given")
             if not isinstance(metal, str):
                 raise TypeError(f"metal must be a name, got {type(metal).__name__}")
-            eta, k = _index(metal)
+            self._set(metal=_known(metal), eta=None, k=None)
         elif eta is None or k is None:
             raise ValueError("metal must be given, or both eta and k")
-        self._set(
-            eta=value("eta", eta, above=True),
-            k=value("k", k),
-            **rough(roughness, alpha),
-        )
+        else:
+            self._set(metal=None, eta=value("eta", eta, above=True), k=value("k", k))
+        self._set(**rough(roughness, alpha))
+
+
+class MetalIndex(NamedTuple):
+    """A metal's index of refraction, eta + ik, as it was measured: see `metal_index`.
+
+    Attributes
+    ----------
+    wavelengths : (N,) array
+        In nm, rising, from below 360 to beyond 830.
+    eta, k : (N,) array
+        The real and the imaginary part there.
+    """
+
+    wavelengths: NDArray[np.float64]
+    eta: NDArray[np.float64]
+    k: NDArray[np.float64]
 
 
 def metals() -> tuple[str, ...]:
     """Return the names of the metals that `Conductor` knows."""
-    return tuple(name for _, name, _, _ in _core.metals())
+    return tuple(name for _, name in _core.metals())
 
 
-def _index(metal: str) -> tuple[tuple[float, ...], tuple[float, ...]]:
+def metal_index(metal: str) -> MetalIndex:
+    """Return what was measured of a metal: its index of refraction by wavelength.
+
+    `Conductor` takes it as linear between these wavelengths. The sources are the "Handbook of Optical
+    Constants of Solids" (Palik, 1985 and 1991) and papers that refractiveindex.info lists, one for a metal:
+    they stand with the numbers in ``rust/optics/conductors/measured.rs``.
+
+    Parameters
+    ----------
+    metal : str
+        Its name or symbol, as ``"gold"`` or ``"Au"``.
+
+    Raises
+    ------
+    ValueError
+        If the name is not known.
+    TypeError
+        If it is no name.
+    """
+    if not isinstance(metal, str):
+        raise TypeError(f"metal must be a name, got {type(metal).__name__}")
+    return MetalIndex(*np.array(_core.metal_index(_known(metal))).T.copy())
+
+
+def _known(metal: str) -> str:
     wanted = metal.casefold()
-    for symbol, name, eta, k in _core.metals():
+    for symbol, name in _core.metals():
         if wanted in (symbol.casefold(), name):
-            return eta, k
+            return name
     raise ValueError(f"metal must be one of {', '.join(metals())}, got {metal!r}")

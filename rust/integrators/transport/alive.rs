@@ -20,6 +20,8 @@ pub(super) struct Alive {
     pub(super) bounce: u32,
     /// Whether each of few lights was asked where it was scattered last.
     pub(super) each: bool,
+    /// Whether it has come to a surface that gives more than there is, in a channel.
+    pub(super) gilded: bool,
     /// How much denser directions were drawn than surfaces scatter into them, since the last matt one
     /// ([`super::aiming`]).
     pub(super) aimed: f32,
@@ -32,6 +34,18 @@ impl Alive {
         /// So that it stays finite.
         const MOST: f32 = 1e30;
         self.aimed = (self.aimed * denser as f32).min(MOST);
+    }
+
+    /// It comes to a surface that leaves so much of its light if it has been at such a one before
+    /// ([`crate::optics::Bsdf::again`]).
+    #[inline]
+    pub(super) fn meet(&mut self, again: Rgb) {
+        if again != Rgb::ONE {
+            if self.gilded {
+                self.throughput *= again;
+            }
+            self.gilded = true;
+        }
     }
 
     /// What the throughput is multiplied by for roulette: no light is lost where it is small only because of the index

@@ -95,6 +95,7 @@ impl<'a, N: Features> TransportWorker<'a, N> {
             sample,
             bounce: 0,
             each: false,
+            gilded: false,
             aimed: 1.0,
         }));
         if N::BAGGAGE {
@@ -171,6 +172,7 @@ impl<'a, N: Features> TransportWorker<'a, N> {
                 let width = if N::BAGGAGE && self.widths { baggage.footprint.at(hit.t).width } else { 0.0 };
                 let here = Interaction::new(self.scene, &ray, &hit, surface, width, outside);
                 let mut path = self.known(path, &here);
+                path.meet(here.scattering().again());
                 let (aim, arrival) = self.aim(&mut path, &here, || sampler.one(dimensions.roulette()));
                 if arrival == Arrival::Ends {
                     continue;

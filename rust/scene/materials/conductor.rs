@@ -3,6 +3,7 @@
 use super::checks::within;
 use super::{Material, Roughness, Scattering};
 use crate::math::DVec3;
+use crate::optics::conductors::Metal;
 use crate::optics::{Bsdf, Conductor};
 use crate::scene::ShadingPoint;
 use crate::scene::textures::{Needs, TexturePoint, Value};
@@ -10,18 +11,33 @@ use crate::scene::textures::{Needs, TexturePoint, Value};
 /// A metal, smooth or rough, which may be brushed: rougher along one direction than across. Both sides reflect.
 #[derive(Clone, Debug)]
 pub struct ConductorMaterial {
-    /// The real part of its index of refraction, above 0.
-    pub eta: Value,
-    /// The imaginary part, not negative.
-    pub k: Value,
+    /// What it is of.
+    pub index: Index,
     /// How rough it is.
     pub roughness: Roughness,
 }
 
+/// An index of refraction.
+#[derive(Clone, Debug)]
+pub enum Index {
+    /// In red, green and blue.
+    Constants {
+        /// The real part, above 0.
+        eta: Value,
+        /// The imaginary part, not negative.
+        k: Value,
+    },
+    /// As it was measured, by wavelength.
+    Measured(&'static Metal),
+}
+
 impl ConductorMaterial {
     fn bsdf(&self, point: &TexturePoint, outside: f64) -> Conductor {
-        let (eta, k) = (self.eta.at(point) / outside, self.k.at(point) / outside);
-        Conductor::new(eta, k, self.roughness.alpha(point))
+        let alpha = self.roughness.alpha(point);
+        match &self.index {
+            Index::Constants { eta, k } => Conductor::new(eta.at(point) / outside, k.at(point) / outside, alpha),
+            Index::Measured(metal) => Conductor::metal(metal, outside, alpha),
+        }
     }
 }
 
@@ -35,12 +51,18 @@ impl Material for ConductorMaterial {
     }
 
     fn needs(&self) -> Needs {
-        self.eta.needs() | self.k.needs() | self.roughness.needs()
+        let index = match &self.index {
+            Index::Constants { eta, k } => eta.needs() | k.needs(),
+            Index::Measured(_) => Needs::default(),
+        };
+        index | self.roughness.needs()
     }
 
     fn validate(&self) -> Result<(), String> {
-        within("eta", &self.eta, f64::MIN_POSITIVE, f64::MAX)?;
-        within("k", &self.k, 0.0, f64::MAX)?;
+        if let Index::Constants { eta, k } = &self.index {
+            within("eta", eta, f64::MIN_POSITIVE, f64::MAX)?;
+            within("k", k, 0.0, f64::MAX)?;
+        }
         self.roughness.validate()
     }
 

@@ -23,7 +23,7 @@ mod two_sided;
 
 pub use blinn_phong::BlinnPhongMaterial;
 pub use bump::BumpMap;
-pub use conductor::ConductorMaterial;
+pub use conductor::{ConductorMaterial, Index};
 pub use dielectric::DielectricMaterial;
 pub use diffuse::DiffuseMaterial;
 pub use mask::Mask;

@@ -57,6 +57,18 @@ impl Scattering {
         }
     }
 
+    /// By what all of it is to be multiplied for light that came to such a surface before, as [`Bsdf::again`] has it; of several, as much as
+    /// their shares ask for.
+    #[inline]
+    pub fn again(&self) -> Rgb {
+        match self {
+            Self::One(bsdf) => bsdf.again(),
+            Self::Several(parts) => {
+                parts.iter().fold(Rgb::ONE, |again, (weight, bsdf)| again - *weight * (Rgb::ONE - bsdf.again()))
+            }
+        }
+    }
+
     /// Whether all of it goes in single directions, so that [`Scattering::evaluate`] is 0 everywhere.
     #[inline]
     pub fn is_delta(&self) -> bool {

@@ -39,11 +39,13 @@ fn mirror() -> Arc<dyn Material> {
 }
 
 fn gold(roughness: impl Into<Roughness>) -> ConductorMaterial {
-    ConductorMaterial {
-        eta: Rgb::new(0.143, 0.375, 1.442).into(),
-        k: Rgb::new(3.983, 2.386, 1.603).into(),
-        roughness: roughness.into(),
-    }
+    let (eta, k) = (Rgb::new(0.143, 0.375, 1.442), Rgb::new(3.983, 2.386, 1.603));
+    conductor(eta, k, roughness)
+}
+
+fn conductor(eta: impl Into<Value>, k: impl Into<Value>, roughness: impl Into<Roughness>) -> ConductorMaterial {
+    let index = Index::Constants { eta: eta.into(), k: k.into() };
+    ConductorMaterial { index, roughness: roughness.into() }
 }
 
 fn glass(roughness: f64) -> DielectricMaterial {
@@ -445,9 +447,9 @@ fn what_cannot_be_is_refused_in_a_line() {
         refused(&ThinDielectricMaterial { ior: bad }, "ior must be finite and above 0, got");
         let interior = Interior { ior: bad, priority: 0 };
         refused(&DielectricMaterial { interior, roughness: 0.0.into() }, "ior must be finite and above 0");
-        refused(&ConductorMaterial { eta: bad.into(), ..gold(0.0) }, "eta must be finite and above 0");
+        refused(&conductor(bad, 1.0, 0.0), "eta must be finite and above 0");
     }
-    refused(&ConductorMaterial { k: (-1.0).into(), ..gold(0.0) }, "k must be finite and not negative");
+    refused(&conductor(1.0, -1.0, 0.0), "k must be finite and not negative");
     let coat = PlasticMaterial { reflectance: 0.5.into(), ior: 0.9, roughness: 0.0.into() };
     refused(&coat, "ior must be finite and at least 1, got 0.9");
     let two = || Roughness { along: [0.1.into(), 0.2.into()], is_alpha: true };

@@ -24,7 +24,8 @@ def conductor(plugin: Plugin, uv: Uv) -> Material:
             eta = tuple(max(x, _NEXT_TO_NOTHING) for x in eta)  # type: ignore[assignment]
         metal: Material = Conductor(eta=eta, k=k, alpha=rough)
     elif name != "none":
-        metal = Conductor(name, alpha=rough)
+        # Of some it also has, or only has, the values of Palik's handbook.
+        metal = Conductor(name.removesuffix("_palik"), alpha=rough)
     elif plugin.type == "conductor":
         return Mirror(value(plugin, "specular_reflectance", 1.0, uv))
     else:

@@ -1,0 +1,88 @@
+//! Metals as they were measured.
+
+mod curve;
+mod measured;
+mod reflectance;
+
+pub use curve::Curve;
+pub use measured::METALS;
+pub use reflectance::Reflectance;
+
+use super::spectra;
+use std::fmt;
+use std::sync::OnceLock;
+
+/// A metal, whose complex index of refraction η + ik was measured at wavelengths from below [`spectra::FIRST`] to
+/// beyond [`spectra::LAST`].
+pub struct Metal {
+    /// Chemical symbol.
+    pub symbol: &'static str,
+    /// English name.
+    pub name: &'static str,
+    /// Wavelengths in nm, which rise, and η and k there.
+    pub index: &'static [[f64; 3]],
+    curve: OnceLock<Curve>,
+}
+
+impl Metal {
+    const fn new(symbol: &'static str, name: &'static str, index: &'static [[f64; 3]]) -> Self {
+        Self { symbol, name, index, curve: OnceLock::new() }
+    }
+
+    /// η and k at a wavelength that is seen, linear between those measured.
+    ///
+    /// # Panics
+    /// For one that is not seen.
+    pub fn index_at(&self, wavelength: f64) -> (f64, f64) {
+        let [_, eta, k] = spectra::at(self.index, wavelength).expect("what is seen was measured");
+        (eta, k)
+    }
+
+    /// How it reflects in red, green and blue; computed when it is first asked for.
+    pub fn curve(&self) -> &Curve {
+        self.curve.get_or_init(|| Curve::new(|wavelength| self.index_at(wavelength)))
+    }
+}
+
+/// Its symbol: tables are not for telling.
+impl fmt::Debug for Metal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.symbol)
+    }
+}
+
+/// The metal of a chemical symbol or an English name, in any case of letters.
+pub fn metal(name: &str) -> Option<&'static Metal> {
+    METALS.iter().find(|metal| name.eq_ignore_ascii_case(metal.symbol) || name.eq_ignore_ascii_case(metal.name))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn metals_are_found_by_symbol_and_name() {
+        assert_eq!(metal("au").unwrap().name, "gold");
+        assert_eq!(metal("Gold").unwrap().symbol, "Au");
+        assert_eq!(metal("Al").unwrap().name, "aluminium");
+        assert!(metal("unobtainium").is_none());
+        for (i, one) in METALS.iter().enumerate() {
+            assert!(METALS[i + 1..].iter().all(|other| other.symbol > one.symbol && other.name != one.name));
+        }
+    }
+
+    #[test]
+    fn all_that_is_seen_was_measured() {
+        for metal in &METALS {
+            assert!(metal.index.is_sorted_by(|a, b| a[0] < b[0]), "{metal:?}");
+            assert!(
+                metal.index[0][0] <= spectra::FIRST && metal.index.last().unwrap()[0] >= spectra::LAST,
+                "{metal:?}"
+            );
+            assert!(metal.index.iter().all(|[_, eta, k]| *eta > 0.0 && *k > 0.0), "{metal:?}");
+            for wavelength in [spectra::FIRST, spectra::LAST] {
+                assert!(metal.index_at(wavelength).0 > 0.0);
+            }
+        }
+    }
+}

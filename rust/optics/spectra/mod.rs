@@ -1,0 +1,21 @@
+//! Light by wavelength, and what it looks like in red, green and blue.
+//!
+//! Wavelengths are in nm. What is seen lies between [`FIRST`] and [`LAST`], where the eye's response is tabulated.
+
+mod daylight;
+mod linear;
+mod observer;
+mod primaries;
+mod response;
+
+pub use daylight::daylight;
+pub use linear::at;
+pub use observer::matching;
+pub use primaries::{xyz_of_primaries, xyz_to_rgb};
+pub use response::{Illuminant, Response};
+
+/// The shortest wavelength that is seen, nm.
+pub const FIRST: f64 = 360.0;
+
+/// The longest.
+pub const LAST: f64 = 830.0;
