@@ -1,8 +1,8 @@
 """Ray tracing for Python: exact hits from numpy arrays, and pictures that say how wrong they still are."""
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from . import scenes
+from . import _core, scenes
 from ._core import AcceleratorInfo, simd
 from .accelerators import BSP, BVH, BruteForce, Grid, KdTree, NestedGrid, Octree
 from .cameras import AnyCamera, Camera, Fisheye, Orthographic, Panorama, Pose, ThinLens
@@ -199,6 +199,7 @@ __all__ = [
     "view",
 ]
 
+__version__ = _core.VERSION
 
 if not TYPE_CHECKING:
     # These are for those who ask for them: nothing else waits for their import.
@@ -210,10 +211,14 @@ if not TYPE_CHECKING:
         "view": ".viewer",
     }
 
-    def __getattr__(name: str) -> Any:
+    def __getattr__(name: str) -> object:
         if name in _LATER:
             from importlib import import_module
 
             module = import_module(_LATER[name], __name__)
             return module if name == "report" else getattr(module, name)
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+    def __dir__() -> list[str]:
+        # What is public, whether it is imported yet or not, and none of what it is made of.
+        return sorted({*__all__, *(name for name in globals() if name.startswith("__"))})

@@ -7,6 +7,7 @@ import warnings
 from collections.abc import Callable, Sequence
 from typing import Any, NoReturn
 
+from ._core import VERSION
 from .accelerators import Accelerator, every
 from .io.pictures import check_writable
 from .materials import Diffuse
@@ -123,11 +124,14 @@ def _report_convergence(options: argparse.Namespace) -> None:
 def _shot(options: argparse.Namespace) -> Shot:
     """Return what SCENE names: a file's own shot, a mesh file in a studio, or the Cornell box."""
     size = options.width or WIDTH, options.height or HEIGHT
+    whole = options.scene == CORNELL or has_camera(options.scene)
+    if whole and options.up is not None:
+        options.refuse(f"argument --up: is for mesh files, and {options.scene} knows itself what is up")
     if options.scene == CORNELL:
         return Shot(*cornell_box(None, *size))
-    if has_camera(options.scene):
+    if whole:
         return load(options.scene).resized(options.width, options.height)
-    return Shot(*studio(load_meshes(options.scene), options.up, *size))
+    return Shot(*studio(load_meshes(options.scene), options.up or "y", *size))
 
 
 def _how(options: argparse.Namespace, shot: Shot) -> dict[str, Any]:
@@ -137,9 +141,14 @@ def _how(options: argparse.Namespace, shot: Shot) -> dict[str, Any]:
 
 
 def _check_plot(options: argparse.Namespace) -> None:
+    from .report.plots import NO_MATPLOTLIB
+
     if options.plot is not None:
         check_writable(options.plot, (".png",), "a plot")
-        _check_matplotlib()
+        try:
+            import matplotlib  # noqa: F401
+        except ImportError as error:
+            raise ImportError(NO_MATPLOTLIB) from error
 
 
 def _tell_report(report: Any, options: argparse.Namespace) -> None:
@@ -148,18 +157,7 @@ def _tell_report(report: Any, options: argparse.Namespace) -> None:
     else:
         print(report.markdown() if options.form == "markdown" else report)
     if options.plot is not None:
-        report.plot().figure.savefig(options.plot, dpi=120)
-
-
-def _check_matplotlib() -> None:
-    """Make sure that plots can be drawn, and that they need no screen."""
-    from .report.table import NO_MATPLOTLIB
-
-    try:
-        import matplotlib
-    except ImportError as error:
-        raise ImportError(NO_MATPLOTLIB) from error
-    matplotlib.use("Agg")
+        report.plot(options.plot)
 
 
 def _picture(shot: Shot, options: argparse.Namespace) -> None:
@@ -185,19 +183,11 @@ class _Parser(argparse.ArgumentParser):
         self.exit(2, f"raywright: error: {message} (see {self.prog} --help)\n")
 
 
-class _Version(argparse.Action):
-    """Look the version up only when asked: it is a search through all installed packages."""
-
-    def __call__(self, parser: argparse.ArgumentParser, *_: Any) -> NoReturn:
-        from importlib.metadata import version
-
-        print(f"raywright {version('raywright')}")
-        parser.exit()
-
-
 def _parser() -> argparse.ArgumentParser:
     parser = _Parser(prog="raywright", description="Trace rays and render pictures that tell their error.")
-    parser.add_argument("--version", action=_Version, nargs=0, help="tell the version and exit")
+    parser.add_argument(
+        "--version", action="version", version=f"raywright {VERSION}", help="tell the version and exit"
+    )
     verbs = parser.add_subparsers(title="verbs", dest="verb", metavar="VERB", required=True)
 
     demo = verbs.add_parser("demo", help="render a Cornell box with a knot in it")
@@ -243,8 +233,9 @@ def _add_view(verb: argparse.ArgumentParser) -> None:
 def _add_scene(verb: argparse.ArgumentParser) -> None:
     verb.add_argument("scene", metavar="SCENE", help=f"{_SCENES}; or {CORNELL!r}")
     verb.add_argument(
-        "--up", choices=("y", "z"), default="y", help="axis that points up in a mesh file (default: y)"
+        "--up", choices=("y", "z"), help="axis that points up in a mesh file, not in a scene (default: y)"
     )
+    verb.set_defaults(refuse=verb.error)
 
 
 def _add_accelerators(report: argparse.ArgumentParser) -> None:

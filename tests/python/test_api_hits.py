@@ -1,6 +1,7 @@
 """Hits coming out: what they hold, and that they are what they say."""
 
 import copy
+import dataclasses
 import pickle
 
 import numpy as np
@@ -113,3 +114,36 @@ def test_equality_is_by_content(scene):
     assert scene.intersect(*rays) == scene.intersect(*rays)
     assert scene.intersect(*rays) != scene.intersect((0.5, 0.4, 6), (0, 0, -1))
     assert scene.intersect(*rays) != "hits"
+
+
+def test_asdict_gives_the_arrays_and_nothing_of_the_scene(scene, hits):
+    rays = (0.5, 0.4, 3.0), (0.0, 0.0, -2.0)
+    corner = ("shape_id", "primitive", "uv", "instance")
+    found = [
+        (hits, {"t", *corner}),
+        (scene.intersect(*rays), {"t", *corner}),
+        (scene.intersect_all(*rays), {"ray_splits", "t", "shape", *corner}),
+        (scene.closest_point([(2.0, 3.0, 4.0)]), {"distance", *corner}),
+        (scene.cost(*rays), {"nodes", "primitives"}),
+        (hits.surface, {"position", "error", "normal", "shading_normal", "dp_du", "dp_dv", "dn_du", "dn_dv"}),
+        (scene.cone(*rays, 10.0), {"cone_splits", "shape_id", "primitive", "distance", "shape"}),
+    ]
+    for points, names in [*found, *((pickle.loads(pickle.dumps(points)), names) for points, names in found)]:
+        told = dataclasses.asdict(points)
+        assert set(told) == names
+        for name, value in told.items():
+            kept = getattr(points, name)
+            assert type(value) is type(kept)
+            assert np.array_equal(value, kept, equal_nan=np.asarray(kept).dtype.kind == "f")
+    # Copies of what is read-only: they may be written to, and the hits stay as they are.
+    told = dataclasses.asdict(hits)
+    told["t"][:] = 0
+    assert hits.t.any()
+
+
+def test_instances_are_among_what_asdict_gives():
+    ball = rw.Instance(rw.scenes.torus_knot(along=30, around=6), [np.eye(4), np.diag([2.0, 2, 2, 1])])
+    hits = rw.Scene([ball]).intersect(*rw.Camera((0, 0, 9), (0, 0, 0), width=9, height=9).rays())
+    told = dataclasses.asdict(hits)["instance"]
+    assert np.array_equal(told, hits.instance)
+    assert set(told.ravel().tolist()) > {-1}

@@ -181,3 +181,10 @@ def test_exr_without_openexr_names_the_extra(tmp_path, picture, monkeypatch):
     for save in (rw.check_writable, picture.save):
         with pytest.raises(ImportError, match=r"pip install 'raywright\[exr\]'"):
             save(tmp_path / "a.exr")
+
+
+@pytest.mark.parametrize("path", [3, None, b"a.png"])
+def test_what_is_no_path_is_told(picture, path):
+    for ask in (rw.check_writable, picture.save, rw.load):
+        with pytest.raises(TypeError, match=f"^path must be a str or a path, got {type(path).__name__}$"):
+            ask(path)

@@ -1,10 +1,13 @@
 """Importing the package imports numpy and nothing else, and soon."""
 
+import importlib.metadata
 import os
 import platform
+import re
 import statistics
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -43,6 +46,24 @@ def test_every_public_name_is_there_and_documented():
     assert len(rw.__all__) == len(set(rw.__all__))
     for name in rw.__all__:
         assert getattr(rw, name).__doc__, name
+
+
+@pytest.mark.parametrize(
+    "used", ["", "raywright.load, raywright.report, raywright.view; from raywright import *; "]
+)
+def test_dir_is_what_is_public(used):
+    told = run(f"import raywright; {used}print(*dir(raywright))").split()
+    assert len(told) == len(set(told))
+    # What waits to be imported is among it, and nothing that the package is made of.
+    assert {name for name in told if not (name.startswith("__") and name.endswith("__"))} == set(rw.__all__)
+    assert {"__all__", "__doc__", "__file__", "__name__", "__version__"} <= set(told)
+    assert told == sorted(told)
+
+
+def test_the_version_is_that_of_the_package_and_of_the_crate():
+    cargo = Path(__file__).parents[2] / "Cargo.toml"
+    crate = re.search(r'^version = "(.*)"$', cargo.read_text(encoding="utf-8"), re.MULTILINE)[1]
+    assert rw.__version__ == crate == importlib.metadata.version("raywright")
 
 
 def test_simd_tells_the_level():

@@ -1,6 +1,8 @@
 """Scenes: what they take, keep and compile."""
 
+import copy
 import pickle
+import sys
 import warnings
 
 import numpy as np
@@ -187,3 +189,69 @@ def test_bad_scenes_are_refused_in_one_line(call, error, message):
     with pytest.raises(error, match=message) as caught:
         call()
     assert "\n" not in str(caught.value)
+
+
+def test_a_changed_copy_has_the_rest_of_its_scene(box, triangle):
+    scene = rw.Scene(
+        [box],
+        rw.PointLight((0, 0, 5), 1),
+        2.0,
+        accelerator=rw.KdTree(leaf_size=3),
+        precision="double",
+        quality="fast build",
+    )
+    scene.intersect((0.5, 0.4, 5), DOWN)
+    changes = {
+        "shapes": (box, triangle),
+        "lights": (),
+        "environment": rw.ConstantEnvironment(3),
+        "accelerator": rw.BVH(),
+        "precision": "single",
+        "quality": "balanced",
+    }
+    kept = {
+        "shapes": scene.shapes,
+        "lights": scene.lights,
+        "environment": scene.environment,
+        "accelerator": scene.accelerator_choice,
+        "precision": scene.precision,
+        "quality": scene.quality,
+    }
+    before = pickle.dumps(scene)
+    for name, value in changes.items():
+        changed = scene.replace(**{name: value})
+        assert changed == rw.Scene(**{**kept, name: value})
+        assert changed != scene
+    assert scene.replace() == scene
+    assert scene.replace(**changes) == rw.Scene(**changes)
+    assert scene.replace(environment=None).environment is None
+    # It is another scene, of its own rays, and the first one stays as it was.
+    other = scene.replace(shapes=[triangle])
+    assert other.intersect((0.5, 0.4, 5), DOWN) == rw.Scene(triangle).intersect((0.5, 0.4, 5), DOWN)
+    assert pickle.dumps(scene) == before
+
+
+def test_copy_replace_makes_one_too(box):
+    scene = rw.Scene(box)
+    # What Python asks for it from 3.13 on.
+    assert type(scene).__replace__(scene, environment=1.0) == rw.Scene(box, environment=1.0)
+    if sys.version_info >= (3, 13):
+        assert copy.replace(scene, environment=1.0) == rw.Scene(box, environment=1.0)
+
+
+@pytest.mark.parametrize(
+    ("changes", "error", "message"),
+    [
+        ({"enviroment": 1}, TypeError, r"^a Scene has no 'enviroment' to replace; it has shapes, lights, "),
+        (
+            {"accelerator_choice": rw.BVH()},
+            TypeError,
+            r"^a Scene has no 'accelerator_choice' to replace; it has",
+        ),
+        ({"lights": 3}, TypeError, r"^lights must be raywright lights, got int$"),
+        ({"precision": "half"}, ValueError, r"^precision must be one of 'single', 'double', got 'half'$"),
+    ],
+)
+def test_a_wrong_change_is_told(box, changes, error, message):
+    with pytest.raises(error, match=message):
+        rw.Scene(box).replace(**changes)

@@ -12,6 +12,8 @@ import pytest
 import trimesh
 from PIL import Image as Pillow
 
+import raywright as rw
+
 SMALL = ["--width", "16", "--height", "12"]
 
 
@@ -155,6 +157,23 @@ def test_wrong_use_is_one_line_and_status_2(tmp_path, arguments, message):
 
 
 @pytest.mark.parametrize(
+    ("verb", "scene"),
+    [
+        (["render", "-o", "a.png"], "scene.xml"),
+        (["view"], "scene.GLB"),
+        (["report", "convergence"], "cornell"),
+    ],
+)
+def test_up_is_refused_where_a_scene_knows_it(tmp_path, verb, scene):
+    done = shell(*verb, scene, "--up", "z", cwd=tmp_path)
+    assert (done.returncode, done.stdout) == (2, "")
+    told = f"argument --up: is for mesh files, and {scene} knows itself what is up"
+    use = rf"\(see raywright {verb[0]}.* --help\)"
+    assert re.fullmatch(rf"raywright: error: {re.escape(told)} {use}\n", done.stderr)
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
     "arguments", [["--help"], *([verb, "--help"] for verb in ("demo", "render", "view", "info"))]
 )
 def test_help_is_on_stdout(tmp_path, arguments):
@@ -167,6 +186,7 @@ def test_version(tmp_path):
     done = shell("--version", cwd=tmp_path)
     assert done.returncode == 0
     assert re.fullmatch(r"raywright \d+\.\d+\.\d+\S*\n", done.stdout)
+    assert done.stdout == f"raywright {rw.__version__}\n"
 
 
 def test_the_installed_command_is_the_same(tmp_path):

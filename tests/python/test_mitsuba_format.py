@@ -264,3 +264,22 @@ def test_files_that_are_missing_are_told():
         rw.from_mitsuba(3)
     with pytest.raises(ValueError, match="there is no sensor 1: it has 1"):
         rw.from_mitsuba({"type": "scene", "sensor": EYE}, sensor=1)
+    with pytest.raises(ValueError, match="sensor must be at least 0, got -1"):
+        rw.from_mitsuba({"type": "scene", "sensor": EYE}, sensor=-1)
+    with pytest.raises(TypeError, match="sensor must be an integer, got 'eye'"):
+        rw.from_mitsuba({"type": "scene", "sensor": EYE}, sensor="eye")
+
+
+@pytest.mark.parametrize("kind", ["radiancemeter", "irradiancemeter", "distant", "batch"])
+def test_a_sensor_that_is_not_supported_is_named(kind):
+    told = f"scene: {kind} 'eye' is not supported here; sensors are perspective, thinlens, orthographic"
+    for others in ({}, {"sensor": EYE}):
+        with pytest.raises(ValueError, match=re.escape(told)):
+            rw.from_mitsuba({"type": "scene", **others, "eye": {"type": kind}})
+
+
+def test_a_scene_without_a_sensor_is_told_so():
+    with pytest.raises(ValueError, match=r"^scene: it has no sensor$"):
+        rw.from_mitsuba({"type": "scene", "ball": {"type": "sphere"}})
+    with pytest.raises(ValueError, match=r"^scene: my_camera 'eye' is not supported here$"):
+        rw.from_mitsuba({"type": "scene", "eye": {"type": "my_camera", "film": {"type": "hdrfilm"}}})

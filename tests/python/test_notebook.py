@@ -1,6 +1,7 @@
 """Pictures in notebooks, as they come."""
 
 import base64
+import pickle
 import subprocess
 import sys
 import types
@@ -70,6 +71,25 @@ def test_a_terminal_shows_no_pictures(handles):
     assert handles.made == []
 
 
+def test_the_cell_that_rendered_it_shows_no_second_picture(handles, capsys):
+    handles.shell.execution_count = 7
+    image = rw.render(*rw.scenes.cornell_box(**BOX), samples=2)
+    capsys.readouterr()
+    image._ipython_display_()
+    assert capsys.readouterr().out == f"{image!r}\n"
+    # Copies, later cells, and pictures that were not shown go by their PNG as ever.
+    copy = pickle.loads(pickle.dumps(image))
+    assert copy == image
+    quiet = rw.render(*rw.scenes.cornell_box(**BOX), samples=2, progress=False)
+    for other in (copy, quiet):
+        with pytest.raises(NotImplementedError):
+            other._ipython_display_()
+    handles.shell.execution_count = 8
+    with pytest.raises(NotImplementedError):
+        image._ipython_display_()
+    assert capsys.readouterr().out == ""
+
+
 def test_nothing_is_imported_for_it():
     code = (
         "import sys, raywright as rw; rw.render(*rw.scenes.cornell_box(width=8, height=8), samples=1);"
@@ -108,3 +128,25 @@ def test_a_real_kernel_sends_the_picture_again_and_again():
     text = "".join(one.text for one in outputs if one.get("name") == "stdout").strip()
     assert last.data["image/png"].replace("\n", "") == text
     assert base64.b64decode(text).startswith(b"\x89PNG")
+
+
+@pytest.mark.filterwarnings("default")
+def test_a_real_kernel_shows_one_picture_a_cell():
+    nbclient = pytest.importorskip("nbclient", reason="nbclient is not installed")
+    pytest.importorskip("ipykernel", reason="ipykernel is not installed")
+    import nbformat
+
+    render = "rw.render(*rw.scenes.cornell_box(width=32, height=32), samples=4)"
+    sources = [
+        f"import raywright as rw\n{render}",
+        f"image = {render}",
+        "image",
+        f"image = {render}\nimage",
+        f"image = {render[:-1]}, progress=False)\nimage",
+    ]
+    notebook = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(source) for source in sources])
+    nbclient.NotebookClient(notebook, timeout=120, kernel_name="python3").execute()
+    for cell in notebook.cells:
+        shown = [one for one in cell.outputs if "image/png" in one.get("data", ())]
+        assert len(shown) == 1, cell.source
+        assert not [one for one in cell.outputs if one.output_type == "error"]

@@ -123,6 +123,17 @@ def test_plot_has_a_line_for_each_fit(report):
     assert told[0] == f"path (slope {report.fits[0].slope:.2f})"
 
 
+def test_a_plot_in_a_file_has_its_lines_too(report, tmp_path):
+    pytest.importorskip("matplotlib")
+    ax = report.plot(str(tmp_path / "plot.svg"))
+    assert sum(line.get_linestyle() == "--" for line in ax.get_lines()) == 2
+    plain = report.plot(tmp_path / "plain.svg", x="samples")
+    assert not any("slope" in text.get_text() for text in plain.get_legend().get_texts())
+    text = (tmp_path / "plot.svg").read_text(encoding="utf-8")
+    # Of each contender its line of marks and the one that fits it; dashes are drawn by the latter alone.
+    assert text.count("stroke-dasharray") >= 2
+
+
 @pytest.mark.parametrize(
     ("arguments", "error", "message"),
     [

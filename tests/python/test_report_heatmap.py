@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from PIL import Image as Pillow
+from PIL import ImageDraw, ImageFont
 
 import raywright as rw
 from raywright.report.heatmap import COLOURS, ticks
@@ -83,6 +84,26 @@ def test_png_shows_the_picture_enlarged_beside_its_bar(heat, tmp_path):
         assert file.size == (pixels.shape[1], 240)
 
 
+@pytest.mark.parametrize("most", [None, 3, 1])
+def test_the_font_has_what_is_written(most, monkeypatch):
+    written = []
+    draw = ImageDraw.ImageDraw.text
+
+    def text(self, at, told, **how):
+        written.append(told)
+        draw(self, at, told, **how)
+
+    monkeypatch.setattr(ImageDraw.ImageDraw, "text", text)
+    heat = rw.report.heatmap(SCENE, CAMERA, most=most, repeats=0)
+    heat._repr_png_()
+    # What is above the last number has its colour, too, and that is told.
+    *numbers, last = map(str, ticks(heat.most))
+    assert written == ["nodes", *numbers, last if most is None else f"{last}+"]
+    font = ImageFont.load_default()
+    missing = bytes(font.getmask("\ue000" if isinstance(font, ImageFont.FreeTypeFont) else "\x00"))
+    assert all(bytes(font.getmask(letter)) != missing for letter in set("".join(written)))
+
+
 def test_npy_holds_the_counts(heat, tmp_path):
     heat.save(tmp_path / "heat.npy")
     assert np.array_equal(np.load(tmp_path / "heat.npy"), heat.counts)
@@ -106,6 +127,14 @@ def test_plot_shows_the_counts(heat):
     assert np.array_equal(ax.images[0].get_array(), heat.counts)
     assert ax.images[0].get_clim() == (0, heat.most)
     ax.figure.clear()
+
+
+def test_plot_goes_to_a_file(heat, tmp_path):
+    pytest.importorskip("matplotlib")
+    ax = heat.plot(tmp_path / "heat.png")
+    assert np.array_equal(ax.images[0].get_array(), heat.counts)
+    with Pillow.open(tmp_path / "heat.png") as picture:
+        assert min(picture.size) > 300
 
 
 @given(st.integers(1, 10**9))

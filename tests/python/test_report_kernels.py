@@ -4,6 +4,7 @@ import csv
 import dataclasses
 import io
 import pickle
+import re
 import subprocess
 import sys
 from fractions import Fraction
@@ -414,6 +415,44 @@ def test_a_plot_shows_each_row_on_logarithmic_axes(report, table):
         (40, 1.5),
     }
     plt.close(mine.figure)
+
+
+@pytest.mark.parametrize(
+    ("name", "begins"),
+    [("a.png", b"\x89PNG"), ("a.svg", b"<?xml"), ("a.pdf", b"%PDF"), ("a.PNG", b"\x89PNG")],
+)
+def test_a_plot_may_go_to_a_file(table, tmp_path, name, begins):
+    matplotlib = pytest.importorskip("matplotlib")
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+
+    before = plt.get_fignums()
+    for where in (tmp_path / name, str(tmp_path / name)):
+        ax = table.plot(where)
+        assert isinstance(ax, matplotlib.axes.Axes)
+        assert (tmp_path / name).read_bytes().startswith(begins)
+        (tmp_path / name).unlink()
+    # Nobody has to close it: pyplot does not know of it.
+    assert plt.get_fignums() == before
+
+
+@pytest.mark.parametrize(
+    ("where", "error", "message"),
+    [
+        ("plot.jpg", ValueError, "a plot is saved as .png, .svg, .pdf; plot.jpg is none of these"),
+        ("plot", ValueError, "a plot is saved as .png, .svg, .pdf; plot is none of these"),
+        ("gone/plot.png", FileNotFoundError, "no such folder"),
+        (3, TypeError, "ax must be matplotlib axes or a path, got int"),
+        ([1], TypeError, "ax must be matplotlib axes or a path, got list"),
+    ],
+)
+def test_a_plot_goes_nowhere_else(table, tmp_path, monkeypatch, where, error, message):
+    pytest.importorskip("matplotlib")
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(error, match=re.escape(message)) as caught:
+        table.plot(where)
+    assert "\n" not in str(caught.value)
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_a_plot_needs_a_chart_and_matplotlib(table, monkeypatch):

@@ -9,6 +9,7 @@ import sys
 import threading
 import time
 from contextlib import closing
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -199,3 +200,16 @@ def test_the_shell_tells_what_it_cannot_show(tmp_path):
     done = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path, timeout=60)
     assert (done.returncode, done.stdout) == (1, "")
     assert re.fullmatch(r"raywright: error: no\.ply.*\n", done.stderr)
+
+
+def test_no_style_cuts_or_hides_what_stands_under_the_picture():
+    # As far as it can be told without a browser: lines wrap, and nothing is taken out of them.
+    style = (Path(rw.__file__).parent / "viewer" / "page.css").read_text(encoding="utf-8")
+    rules = dict(re.findall(r"([^{}]+?)\s*\{([^{}]*)\}", re.sub(r"/\*.*?\*/", "", style, flags=re.DOTALL)))
+    rules = {name.strip(): body for name, body in rules.items()}
+    for name in ("footer", "dl", "#control"):
+        assert "flex-wrap: wrap;" in rules[name], name
+    for name in ("footer", "#control", "#hint"):
+        for cut in ("overflow", "text-overflow", "white-space", "display: none", "min-width: 0"):
+            assert cut not in rules[name], (name, cut)
+    assert "@media" not in style

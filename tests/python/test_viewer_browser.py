@@ -128,6 +128,25 @@ def test_moving_the_camera_shows_something_else_at_once(page):
         assert np.abs(turned - start).mean() > 10
 
 
+def test_nothing_under_the_picture_is_cut_in_a_narrow_window(page, knot):
+    told = """() => [...document.querySelectorAll("footer :is(dd, canvas, p, button, a)")].map(one => {
+        const { left, right, bottom } = one.getBoundingClientRect();
+        const inside = one.clientWidth - one.scrollWidth;
+        return [one.id, left, innerWidth - right, innerHeight - bottom, inside];
+    })"""
+    with rw.view(*knot, samples=1) as viewer:
+        page.goto(viewer.url)
+        shown(page, is_state("done"))
+        for width, height in ((1600, 800), (1030, 600), (900, 600), (600, 400), (320, 480)):
+            page.set_viewport_size({"width": width, "height": height})
+            rooms = page.evaluate(told)
+            assert {"hint", "reset", "save", "interval", "history"} <= {name for name, *_ in rooms}
+            for name, *room in rooms:
+                assert min(room) >= 0, (width, name, room)
+            # There is no scrolling, and a picture above.
+            assert page.evaluate("document.getElementById('picture').clientHeight") > height / 3
+
+
 def test_closing_the_page_stops_the_work(page, knot):
     with rw.view(*knot, error=1e-12) as viewer:
         page.goto(viewer.url)

@@ -46,7 +46,11 @@ def check_writable(
         If the suffix is .exr and OpenEXR is not installed.
     FileNotFoundError, IsADirectoryError, NotADirectoryError, PermissionError, OSError
         If the folder is missing, the path is a folder, or the file cannot be written.
+    TypeError
+        If `path` is no path.
     """
+    if not isinstance(path, str | PathLike):
+        raise TypeError(f"path must be a str or a path, got {type(path).__name__}")
     path = Path(path)
     if path.suffix.lower() not in suffixes:
         raise ValueError(f"{what} is saved as {', '.join(suffixes)}; {path} is none of these")

@@ -3,11 +3,13 @@
 import math
 from dataclasses import dataclass
 from datetime import datetime, timezone
+from typing import overload
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ..arrays import Triple, colour, number, triple
+from .times import Time, Times, one_or_many
 
 _EPOCH = datetime(2000, 1, 1, 12, tzinfo=timezone.utc)
 
@@ -20,11 +22,15 @@ class SunSky:
     is a disk of 0.53°, a black body of 5778 K seen through the air of the same paper. Radiance is in
     W·sr⁻¹·m⁻² as the eye weighs it: its luminance times 683 lm·W⁻¹ is in cd·m⁻².
 
+    The formula of the sky ends at sunset. From there on it is the sky of sunset, darker as the illuminance of
+    the ground is through twilight (Seidelmann, "Explanatory Supplement to the Astronomical Almanac", 1992),
+    and black once the sun is 18° below the horizon: there are no moon and no stars.
+
     Parameters
     ----------
     sun : 3 floats
-        The direction of the sun, of any length but 0, not below the horizon. See `at` for that of a time and
-        place.
+        The direction of the sun, of any length but 0; at night it is below the horizon. See `at` for that of
+        a time and place.
     turbidity : float
         How hazy the air is: 2, very clear, to 10, hazy.
     ground_albedo : float or 3 floats
@@ -37,7 +43,7 @@ class SunSky:
     Raises
     ------
     ValueError
-        If the sun is below the horizon, or a number is out of its range or not finite.
+        If a number is out of its range or not finite.
     TypeError
         If something is not a number.
     """
@@ -73,21 +79,18 @@ class SunSky:
         for name in ("sun_scale", "sky_scale"):
             if getattr(self, name) < 0:
                 raise ValueError(f"{name} must be at least 0, got {getattr(self, name)}")
-        if self.elevation < -1e-9:
-            raise ValueError(
-                f"sun must not be below the horizon, but is {-self.elevation:.4g} degrees below it"
-            )
 
     @property
     def elevation(self) -> float:
-        """The angle of the sun above the horizon, in degrees."""
+        """The angle of the sun above the horizon, in degrees; negative at night."""
         sun, up = (np.array(way) / np.abs(way).max() for way in (self.sun, self.up))
         return math.degrees(math.atan2(float(sun @ up), float(np.linalg.norm(np.cross(sun, up)))))
 
+    @overload
     @classmethod
-    def at(
+    def at(  # type: ignore[overload-overlap]  # A text is not taken letter by letter.
         cls,
-        when: datetime,
+        when: Time,
         latitude: float,
         longitude: float,
         turbidity: float = 3.0,
@@ -96,43 +99,99 @@ class SunSky:
         north: ArrayLike = (0.0, 0.0, -1.0),
         sun_scale: float = 1.0,
         sky_scale: float = 1.0,
-    ) -> "SunSky":
-        """Return the daylight of a time and place.
+    ) -> "SunSky": ...
+
+    @overload
+    @classmethod
+    def at(
+        cls,
+        when: Times,
+        latitude: float,
+        longitude: float,
+        turbidity: float = 3.0,
+        ground_albedo: ArrayLike = 0.2,
+        up: ArrayLike = (0.0, 1.0, 0.0),
+        north: ArrayLike = (0.0, 0.0, -1.0),
+        sun_scale: float = 1.0,
+        sky_scale: float = 1.0,
+    ) -> "tuple[SunSky, ...]": ...
+
+    @classmethod
+    def at(
+        cls,
+        when: Time | Times,
+        latitude: float,
+        longitude: float,
+        turbidity: float = 3.0,
+        ground_albedo: ArrayLike = 0.2,
+        up: ArrayLike = (0.0, 1.0, 0.0),
+        north: ArrayLike = (0.0, 0.0, -1.0),
+        sun_scale: float = 1.0,
+        sky_scale: float = 1.0,
+    ) -> "SunSky | tuple[SunSky, ...]":
+        """Return the daylight of a time and place, or of each of several times.
 
         The sun is where the low-precision formulas of the Astronomical Almanac have it, to 0.01° from 1950 to
         2050 (Michalsky, "The Astronomical Almanac's Algorithm for Approximate Solar Position", 1988).
 
         Parameters
         ----------
-        when : datetime
-            The time, with its time zone.
+        when : datetime, numpy.datetime64, str, or sequence or (N,) array of these
+            The time. A datetime must have its zone, and so must a text in ISO 8601, as
+            ``"2025-06-21T12:00+02:00"``, or with ``Z`` for UTC. A datetime64 has none, and is in UTC.
         latitude, longitude : float
             The place in degrees, north and east positive.
         north : 3 floats
             The direction of the north; only what of it is at right angles to `up` counts.
+        turbidity, ground_albedo, up, sun_scale, sky_scale
+            As the class takes them.
+
+        Returns
+        -------
+        SunSky, or tuple of SunSky
+            One for each time, if there are several. Its `elevation` tells whether it is night.
 
         Raises
         ------
         ValueError
-            If the sun is below the horizon then and there, the time has no zone, the latitude is not between
-            -90 and 90, or `north` is along `up`; and as the class does.
+            If a time has no zone or is not one, the latitude is not between -90 and 90, or `north` is along
+            `up`; and as the class does.
+        TypeError
+            If `when` is something else; and as the class does.
         """
+        times = one_or_many("when", when)
         zenith, ahead = (np.array(_way(name, way)) for name, way in (("up", up), ("north", north)))
         zenith /= np.linalg.norm(zenith)
         ahead = ahead - zenith * (ahead @ zenith)
         if not np.linalg.norm(ahead) > 1e-12:
             raise ValueError(f"north must not be along up, got {north!r}")
         ahead /= np.linalg.norm(ahead)
-        azimuth, elevation = sun_position(when, latitude, longitude)
-        level = ahead * math.cos(azimuth) + np.cross(ahead, zenith) * math.sin(azimuth)
-        sun = level * math.cos(elevation) + zenith * math.sin(elevation)
-        return cls(sun, turbidity, ground_albedo, up, sun_scale, sky_scale)
+        right = np.cross(ahead, zenith)
+
+        def day(time: datetime) -> "SunSky":
+            azimuth, elevation = sun_position(time, latitude, longitude)
+            level = ahead * math.cos(azimuth) + right * math.sin(azimuth)
+            sun = level * math.cos(elevation) + zenith * math.sin(elevation)
+            return cls(sun, turbidity, ground_albedo, up, sun_scale, sky_scale)
+
+        return tuple(map(day, times)) if isinstance(times, list) else day(times)
 
 
 def sun_position(when: datetime, latitude: float, longitude: float) -> tuple[float, float]:
-    """Return azimuth, from the north over the east, and elevation of the sun's centre, both in radians."""
-    if when.tzinfo is None:
-        raise ValueError(f"when must have a time zone, got {when!r}")
+    """Return azimuth, from the north over the east, and elevation of the sun's centre, both in radians.
+
+    Parameters
+    ----------
+    when : datetime
+        With its time zone.
+    latitude, longitude : float
+        In degrees, north and east positive.
+
+    Raises
+    ------
+    ValueError
+        If the latitude is not between -90 and 90, or a number is not finite.
+    """
     place, east = number("latitude", latitude), number("longitude", longitude)
     if not -90 <= place <= 90:
         raise ValueError(f"latitude must be between -90 and 90 degrees, got {latitude}")

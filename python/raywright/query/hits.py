@@ -1,6 +1,6 @@
 """What rays hit."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, ClassVar
 
@@ -11,8 +11,23 @@ from .. import _core
 from .surface import Surface
 
 
+class Known:
+    """What points know beside their fields, so that `dataclasses.asdict` gives what is public."""
+
+    primitive: NDArray[np.int32]
+    _compiled: _core.CompiledScene
+    # Origins, directions and times, where shapes cannot tell their points without.
+    _rays: tuple[Any, ...] | None
+
+    @cached_property
+    def instance(self) -> NDArray[np.int32]:
+        """Which instance the point is on: (...) int32; -1 for none and for what is not instanced."""
+        # One number seen from every index: scenes without instances spend no memory on them.
+        return np.broadcast_to(np.int32(-1), self.primitive.shape)
+
+
 @dataclass(frozen=True, eq=False, repr=False, init=False)
-class SurfacePoints:
+class SurfacePoints(Known):
     """Points on the surfaces of a scene; all arrays are read-only.
 
     Attributes
@@ -29,18 +44,11 @@ class SurfacePoints:
     shape_id: NDArray[np.int32]
     primitive: NDArray[np.int32]
     uv: NDArray[np.float64]
-    _compiled: _core.CompiledScene = field(repr=False)
-    # Origins, directions and times, where shapes cannot tell their points without.
-    _rays: tuple[Any, ...] | None = field(repr=False)
+    # A field, too, though it is made only when it is asked for.
+    instance: NDArray[np.int32]
 
     # What two of them are equal by.
     _parts: ClassVar[tuple[str, ...]] = ("shape_id", "primitive", "uv")
-
-    @cached_property
-    def instance(self) -> NDArray[np.int32]:
-        """Which instance the point is on: (...) int32; -1 for none and for what is not instanced."""
-        # One number seen from every index: scenes without instances spend no memory on them.
-        return np.broadcast_to(np.int32(-1), self.primitive.shape)
 
     @cached_property
     def position(self) -> NDArray[np.float64]:

@@ -142,6 +142,14 @@ class Image:
     def _repr_png_(self) -> bytes:
         return pictures.png(self.rgb)
 
+    def _ipython_display_(self) -> None:
+        # Under the cell that rendered it, a notebook has the picture already: the numbers are enough there.
+        is_shown = vars(self).get("_is_shown")
+        if is_shown is None or not is_shown():
+            # By which IPython knows to go on as if there were no such method.
+            raise NotImplementedError
+        print(repr(self))
+
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Image):
             return NotImplemented

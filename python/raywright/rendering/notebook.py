@@ -2,6 +2,7 @@
 
 import sys
 from collections.abc import Callable
+from typing import Any
 
 from .image import Image
 
@@ -9,7 +10,8 @@ from .image import Image
 def display() -> Callable[[Image], None] | None:
     """Return what shows pictures under the notebook cell that is being run, one in the place of the other.
 
-    None where no notebook is. Nothing is imported then: a notebook has imported IPython already.
+    None where no notebook is. Nothing is imported then: a notebook has imported IPython already. The last
+    picture knows that the cell has it, and shows no second one should the cell end with it.
     """
     ipython = sys.modules.get("IPython")
     shell = ipython.get_ipython() if ipython is not None else None
@@ -20,6 +22,7 @@ def display() -> Callable[[Image], None] | None:
 
     handle = DisplayHandle()
     shown = False
+    cell = _cell(shell)
 
     def show(image: Image) -> None:
         nonlocal shown
@@ -28,5 +31,13 @@ def display() -> Callable[[Image], None] | None:
         else:
             handle.display(image)
         shown = True
+        # No field of the picture: it is of this place, and goes with no copy.
+        vars(image)["_is_shown"] = lambda: _cell(shell) == cell
 
     return show
+
+
+def _cell(shell: Any) -> int | None:
+    """Return the number of the cell that is being run."""
+    number: int | None = getattr(shell, "execution_count", None)
+    return number

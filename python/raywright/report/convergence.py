@@ -50,6 +50,9 @@ class Fit:
 class ConvergenceReport(Table[tuple[Any, ...]]):
     """A row for each contender and budget: `convergence` makes it.
 
+    Its plot is of relMSE over seconds, both logarithmic, with the line that fits each contender; of other
+    columns there is no such line.
+
     Attributes
     ----------
     fits : tuple of Fit
@@ -58,14 +61,10 @@ class ConvergenceReport(Table[tuple[Any, ...]]):
 
     fits: tuple[Fit, ...] = ()
 
-    def plot(self, ax: Any = None, x: str | None = None, y: str | None = None) -> Any:
-        """Plot relMSE over seconds, both logarithmic, with the line that fits each contender.
-
-        Takes, returns and raises what `Table.plot` does. Lines are drawn for these two columns only.
-        """
-        ax = super().plot(ax, x, y)
-        if (x or "seconds", y or "relmse") != ("seconds", "relmse"):
-            return ax
+    def _draw(self, ax: Any, chart: Chart) -> None:
+        super()._draw(ax, chart)
+        if (chart.x, chart.y) != ("seconds", "relmse"):
+            return
         for i, fit in enumerate(self.fits):
             if fit.slope is not None and fit.level is not None:
                 seconds = np.array(self.where(contender=fit.contender).column("seconds"))
@@ -75,7 +74,6 @@ class ConvergenceReport(Table[tuple[Any, ...]]):
         slopes = {fit.contender: fit.slope for fit in self.fits if fit.slope is not None}
         told = [f"{name} (slope {slopes[name]:.2f})" if name in slopes else name for name in labels]
         ax.legend(handles, told, loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
-        return ax
 
 
 def convergence(

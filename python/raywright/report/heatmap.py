@@ -12,7 +12,8 @@ from ..arrays import choice, integer
 from ..cameras import AnyCamera
 from ..io.pictures import check_writable
 from ..scene.scene import Scene
-from .table import NO_MATPLOTLIB, Column, Table
+from .plots import plotted
+from .table import Column, Table
 from .time_share import TimeShare, time_share
 
 What: TypeAlias = Literal["nodes", "primitives"]
@@ -108,8 +109,8 @@ class Heatmap:
 
         Parameters
         ----------
-        ax : matplotlib.axes.Axes, optional
-            Where to draw; a new figure if not given.
+        ax : matplotlib.axes.Axes, str or path, optional
+            Where to draw: a new figure if not given, or a file, .png, .svg or .pdf.
 
         Returns
         -------
@@ -119,19 +120,22 @@ class Heatmap:
         ------
         ImportError
             If matplotlib is not installed (``pip install 'raywright[plot]'``).
+        ValueError
+            If a file has another suffix.
+        OSError
+            If the file cannot be written.
+        TypeError
+            If `ax` is something else.
         """
-        try:
-            import matplotlib.pyplot as plt
-            from matplotlib.colors import ListedColormap
-        except ImportError as error:
-            raise ImportError(NO_MATPLOTLIB) from error
-        if ax is None:
-            _, ax = plt.subplots(layout="constrained")
+        return plotted(ax, self._draw)
+
+    def _draw(self, ax: Any) -> None:
+        from matplotlib.colors import ListedColormap
+
         shown = ax.imshow(self.counts, cmap=ListedColormap(COLOURS / 255), vmin=0, vmax=self.most)
         extend = "max" if self.counts.max() > self.most else "neither"
         ax.figure.colorbar(shown, ax=ax, extend=extend, label=_NAMES[self.what])
         ax.set_axis_off()
-        return ax
 
     def _repr_png_(self) -> bytes:
         out = io.BytesIO()
@@ -156,9 +160,10 @@ class Heatmap:
             draw.line([(left, y), (left + _BAR - 1, y)], fill=tuple(colour.tolist()))
         for count in ticks(self.most):
             y = round(bottom - (bottom - top) * count / self.most)
-            over = "≥ " if count == self.most and self.counts.max() > self.most else ""
+            # Pillow's own font has the letters of ASCII for sure, and no sign for "at least".
+            more = "+" if count == self.most and self.counts.max() > self.most else ""
             draw.line([(left + _BAR, y), (left + _BAR + 3, y)], fill="black")
-            draw.text((left + _BAR + 6, y - 6), f"{over}{count:,}", fill="black")
+            draw.text((left + _BAR + 6, y - 6), f"{count:,}{more}", fill="black")
         return page
 
     def __str__(self) -> str:

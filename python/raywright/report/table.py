@@ -5,12 +5,12 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
+from .plots import plotted
+
 if TYPE_CHECKING:
     from typing_extensions import Self
 
 Row = TypeVar("Row", bound=tuple[Any, ...])
-
-NO_MATPLOTLIB = "plots need matplotlib: pip install 'raywright[plot]'"
 
 
 @dataclass(frozen=True)
@@ -149,8 +149,8 @@ class Table(Generic[Row]):
 
         Parameters
         ----------
-        ax : matplotlib.axes.Axes, optional
-            Where to draw; a new figure if not given.
+        ax : matplotlib.axes.Axes, str or path, optional
+            Where to draw: a new figure if not given, or a file, .png, .svg or .pdf.
         x, y : str, optional
             Columns other than those of `chart`.
 
@@ -164,18 +164,21 @@ class Table(Generic[Row]):
         ImportError
             If matplotlib is not installed (``pip install 'raywright[plot]'``).
         ValueError
-            If the table has no chart, or there is no such column.
+            If the table has no chart, there is no such column, or a file has another suffix.
+        OSError
+            If the file cannot be written.
+        TypeError
+            If `ax` is something else.
         """
         if self.chart is None:
             raise ValueError("this table has no chart")
         chart = replace(self.chart, x=x or self.chart.x, y=y or self.chart.y)
+        for name in (chart.x, chart.y):
+            self._at(name)
+        return plotted(ax, lambda ax: self._draw(ax, chart), figsize=(9, 5.5))
+
+    def _draw(self, ax: Any, chart: Chart) -> None:
         across, up = self.columns[self._at(chart.x)], self.columns[self._at(chart.y)]
-        try:
-            import matplotlib.pyplot as plt
-        except ImportError as error:
-            raise ImportError(NO_MATPLOTLIB) from error
-        if ax is None:
-            _, ax = plt.subplots(figsize=(9, 5.5), layout="constrained")
         xs, ys = (_drawable(self.column(column.name)) for column in (across, up))
         colours = self.column(chart.colour)
         markers = self.column(chart.marker) if chart.marker else ("",) * len(self.rows)
@@ -203,7 +206,6 @@ class Table(Generic[Row]):
             for name, shape in shapes.items():
                 ax.plot([], [], color="0.3", marker=shape, linestyle="", label=name)
         ax.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
-        return ax
 
     def _at(self, name: str) -> int:
         names = [column.name for column in self.columns]

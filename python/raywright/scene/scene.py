@@ -21,6 +21,7 @@ from .plan import Plan, PlanRow
 Precision: TypeAlias = Literal["single", "double"]
 Quality: TypeAlias = Literal["fast build", "balanced", "fast rays"]
 _BINNED_BVH = BVH()
+_ARGUMENTS = ("shapes", "lights", "environment", "accelerator", "precision", "quality")
 
 
 class Scene(Queries):
@@ -137,6 +138,34 @@ class Scene(Queries):
         """
         return self._compiled().bounds
 
+    def replace(self, **changes: Any) -> "Scene":
+        """Return a scene that differs in what is named, and is as this one otherwise.
+
+        It is compiled anew when it is asked. ``copy.replace`` (Python 3.13) does the same.
+
+        Parameters
+        ----------
+        **changes
+            Arguments of `Scene`, by name.
+
+        Returns
+        -------
+        Scene
+
+        Raises
+        ------
+        TypeError
+            If `Scene` has no such argument; and as `Scene` does.
+        ValueError, FileNotFoundError
+            As `Scene` does.
+        """
+        for name in changes:
+            if name not in _ARGUMENTS:
+                raise TypeError(f"a Scene has no {name!r} to replace; it has {', '.join(_ARGUMENTS)}")
+        return Scene(**{**dict(zip(_ARGUMENTS, self._parts(), strict=True)), **changes})
+
+    __replace__ = replace
+
     def refit(self, vertices: ArrayLike | Sequence[ArrayLike | None]) -> float:
         """Move the vertices, and fit the accelerator to them: much faster than a new scene.
 
@@ -221,6 +250,7 @@ class Scene(Queries):
         return compiled
 
     def _parts(self) -> tuple[Any, ...]:
+        """Give what a scene is made of: its arguments, in their order."""
         return (
             self._shapes,
             self._lights,

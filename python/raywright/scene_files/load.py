@@ -38,7 +38,11 @@ def load(path: str | PathLike[str]) -> Shot:
         If the file, or one that it names, is missing.
     ValueError
         If it cannot be read, or holds something that is not supported.
+    TypeError
+        If `path` is no path.
     """
+    if not isinstance(path, str | PathLike):
+        raise TypeError(f"path must be a str or a path, got {type(path).__name__}")
     path = Path(path)
     if not path.exists():
         raise FileNotFoundError(errno.ENOENT, "no such file", str(path))

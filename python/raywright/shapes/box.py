@@ -37,8 +37,10 @@ class Box(Shape):
     TypeError
         If a number or a material is something else.
 
-    Notes ----- The faces lie side by side in ``u`` and ``v``: three columns for those at right angles to x,
-    y and z, and two rows, for the lesser face and the greater.
+    Notes
+    -----
+    The faces lie side by side in ``u`` and ``v``: three columns for those at right angles to x, y and z, and
+    two rows, for the lesser face and the greater.
     """
 
     min: Triple

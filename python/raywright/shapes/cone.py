@@ -40,9 +40,11 @@ class Cone(Shape):
     TypeError
         If a number or a material is something else.
 
-    Notes ----- ``u`` is the angle about the axis, in turns, anticlockwise as seen from the tip; ``v`` the
-    way from the base to the tip or, of a closed one, that from the middle of the base cap over its rim, up
-    the side and in to the middle of the tip cap, by length.
+    Notes
+    -----
+    ``u`` is the angle about the axis, in turns, anticlockwise as seen from the tip; ``v`` the way from the
+    base to the tip or, of a closed one, that from the middle of the base cap over its rim, up the side and in
+    to the middle of the tip cap, by length.
     """
 
     base: Triple

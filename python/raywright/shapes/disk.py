@@ -40,8 +40,10 @@ class Disk(Shape):
     TypeError
         If a number or a material is something else.
 
-    Notes ----- ``u`` is the angle about the normal, in turns; ``v`` the way from the rim, 0, inwards to the
-    hole or the centre, 1.
+    Notes
+    -----
+    ``u`` is the angle about the normal, in turns; ``v`` the way from the rim, 0, inwards to the hole or the
+    centre, 1.
     """
 
     center: Triple

@@ -42,9 +42,11 @@ class Paraboloid(Shape):
     TypeError
         If a number or a material is something else.
 
-    Notes ----- ``u`` is the angle about the axis, in turns, anticlockwise as seen from the tip; ``v`` the
-    distance from the axis as a share of the rim's. Of a closed one that is the first half of ``v``, and the
-    second goes on from the rim to the cap's middle.
+    Notes
+    -----
+    ``u`` is the angle about the axis, in turns, anticlockwise as seen from the tip; ``v`` the distance from
+    the axis as a share of the rim's. Of a closed one that is the first half of ``v``, and the second goes on
+    from the rim to the cap's middle.
     """
 
     apex: Triple

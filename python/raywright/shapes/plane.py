@@ -38,8 +38,10 @@ class Plane(Shape):
     TypeError
         If a number or a material is something else.
 
-    Notes ----- ``u`` and ``v`` run along two unit axes at right angles to the normal (Duff et al. 2017),
-    from the point on, and begin again after each unit of length.
+    Notes
+    -----
+    ``u`` and ``v`` run along two unit axes at right angles to the normal (Duff et al. 2017), from the point
+    on, and begin again after each unit of length.
     """
 
     point: Triple

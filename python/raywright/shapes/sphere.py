@@ -40,9 +40,11 @@ class Sphere(Shape):
     TypeError
         If a number or a material is something else.
 
-    Notes ----- ``u`` is the longitude about +z from +x on, in turns; ``v`` the latitude, from 0 at the pole
-    on -z to 1 at the pole on +z. Tangent rays are hits, and cross nothing where all crossings are asked
-    for. As seen from outside it is sampled evenly in the cone that it fills, from inside in all directions.
+    Notes
+    -----
+    ``u`` is the longitude about +z from +x on, in turns; ``v`` the latitude, from 0 at the pole on -z to 1 at
+    the pole on +z. Tangent rays are hits, and cross nothing where all crossings are asked for. As seen from
+    outside it is sampled evenly in the cone that it fills, from inside in all directions.
     """
 
     center: Triple

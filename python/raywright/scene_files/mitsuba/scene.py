@@ -5,6 +5,7 @@ from os import PathLike
 from pathlib import Path
 from typing import Any, cast, get_args
 
+from ...arrays import integer
 from ...lights import Environment, Light
 from ...rendering.shot import Shot
 from ...scene.scene import Scene
@@ -53,8 +54,9 @@ def from_mitsuba(
     ValueError
         If something is not supported, or is not as it must be (tells which plugin, or which line).
     TypeError
-        If `scene` is no dict and no path.
+        If `scene` is no dict and no path, or `sensor` is no integer.
     """
+    sensor = integer("sensor", sensor, 0)
     if isinstance(scene, Mapping):
         tree, folders = scene, [Path("." if folder is None else folder)]
     elif isinstance(scene, str | PathLike):
@@ -86,13 +88,17 @@ def _read(scene: Plugin, number: int) -> Shot:
     if len(integrators) > 1:
         scene.fail("a scene must have one integrator only")
     looking = list(scene.children(*sensors.TYPES))
-    if not 0 <= number < len(looking):
-        scene.fail(f"there is no sensor {number}: it has {len(looking)}")
+    for other in scene.children(*sensors.OTHERS):
+        scene.fail(f"{other} is not supported here; sensors are {', '.join(sensors.TYPES)}")
     for _ in scene.children(*_SHARED):
         pass
     scene.done()
-    asked = settings.integrator(integrators[0] if integrators else None)
+    if not looking:
+        scene.fail("it has no sensor")
+    if not 0 <= number < len(looking):
+        scene.fail(f"there is no sensor {number}: it has {len(looking)}")
     eye = looking[number]
+    asked = settings.integrator(integrators[0] if integrators else None)
     film = _only(eye, sensors.FILM)
     rfilter = settings.rfilter(_only(film, *settings.FILTERS) if film is not None else None)
     sampler, samples, seed = settings.sampler(_only(eye, *settings.SAMPLERS))

@@ -11,6 +11,17 @@ from .plugin import Plugin
 from .transforms import Matrix, straightened
 
 TYPES = ("perspective", "thinlens", "orthographic")
+# What Mitsuba has, or had, beside these.
+OTHERS = (
+    "batch",
+    "distant",
+    "fluencemeter",
+    "irradiancemeter",
+    "perspective_rdist",
+    "radiancemeter",
+    "spherical",
+    "telecentric",
+)
 FILM = "hdrfilm"
 
 

@@ -4,6 +4,7 @@ mod perez;
 pub mod sun;
 #[cfg(test)]
 mod tests;
+mod twilight;
 
 pub use perez::Perez;
 
@@ -24,6 +25,8 @@ pub struct SunSky {
     frame: Frame,
     /// To the sun, unit.
     sun: DVec3,
+    /// To the brightest of the sky: the sun or, once it has set, the horizon above it.
+    glow: DVec3,
     sun_radiance: Rgb,
     sky: Perez,
     sky_scale: f64,
@@ -49,19 +52,24 @@ const SUN_SHARE: f64 = 0.5;
 const LEAST: f64 = 1e-3;
 
 impl SunSky {
-    /// For a sun in a direction of any length but 0, not below the horizon, as `up` has it; a turbidity from 2, clear,
-    /// to 10, hazy; and a ground of a reflectance. `scales` multiply the light of the sun and that of the sky.
+    /// For a sun in a direction of any length but 0; a turbidity from 2, clear, to 10, hazy; and a ground of a
+    /// reflectance. `scales` multiply the light of the sun and that of the sky. The formula of the sky ends where the
+    /// sun is at the horizon, as `up` has it: below, the sky is as it is then, and darker as twilight is.
     ///
     /// Radiance is in W·sr⁻¹·m⁻² as the eye weighs it: its luminance times 683 lm·W⁻¹ is in cd·m⁻².
     pub fn new([sun, up]: [DVec3; 2], turbidity: f64, albedo: Rgb, scales: [f64; 2]) -> Self {
         let unit = |v: DVec3| (v / v.abs().max_element()).normalize();
         let (sun, frame) = (unit(sun), Frame::new(unit(up)));
         let height = sun.dot(frame.normal);
-        let (sky, sky_scale) = (Perez::new(height, turbidity), scales[1]);
-        let sun_radiance = sun::radiance(height, turbidity) * scales[0];
+        // Of a sun straight below, the glow is as good on any side: there is no light left.
+        let glow = if height < 0.0 { (sun - frame.normal * height).normalize_or(frame.tangent) } else { sun };
+        let (sky, sky_scale) = (Perez::new(height.max(0.0), turbidity), scales[1] * twilight::share(height));
+        let is_up = height > -sun::RADIUS.sin();
+        let sun_radiance = if is_up { sun::radiance(height, turbidity) * scales[0] } else { Rgb::ZERO };
         let mut all = Self {
             frame,
             sun,
+            glow,
             sun_radiance,
             sky,
             sky_scale,
@@ -117,7 +125,7 @@ impl SunSky {
 
     /// The radiance of the sky alone, from above the horizon.
     fn sky_at(&self, direction: DVec3) -> Rgb {
-        self.sky.radiance(direction.dot(self.frame.normal), direction.dot(self.sun)) * self.sky_scale
+        self.sky.radiance(direction.dot(self.frame.normal), direction.dot(self.glow)) * self.sky_scale
     }
 
     /// Whether a direction goes to the sun: the chord between the two is twice the sine of half the angle.
@@ -156,10 +164,8 @@ impl SunSky {
 
 impl Light for SunSky {
     fn validate(&self) -> Result<(), String> {
-        let height = self.sun.dot(self.frame.normal);
-        // A sun at the horizon may be below by a rounding.
-        if height.is_nan() || height < -1e-12 {
-            Err("a sun must have a direction, and not below the horizon".into())
+        if self.sun.dot(self.frame.normal).is_nan() {
+            Err("a sun must have a direction".into())
         } else if !(2.0..=10.0).contains(&self.turbidity) {
             Err(format!("a sky's turbidity is {}, expected 2 to 10", self.turbidity))
         } else if !(is_radiance(self.albedo) && self.albedo.max_element() <= 1.0) {
@@ -199,8 +205,14 @@ impl Light for SunSky {
     }
 
     fn outside(&self, direction: DVec3) -> Rgb {
-        let around = if direction.dot(self.frame.normal) > 0.0 { self.sky_at(direction) } else { self.ground };
-        if self.is_sun(direction) { around + self.sun_radiance } else { around }
+        // The plain hides what of the sun has set.
+        if direction.dot(self.frame.normal) <= 0.0 {
+            self.ground
+        } else if self.is_sun(direction) {
+            self.sky_at(direction) + self.sun_radiance
+        } else {
+            self.sky_at(direction)
+        }
     }
 
     fn outside_pdf(&self, receiver: &Receiver, direction: DVec3) -> f64 {

@@ -172,13 +172,43 @@ fn a_receiver_is_lit_by_sun_and_sky_as_integrals_say() {
 }
 
 #[test]
+fn daylight_goes_out_as_the_sun_sets() {
+    let way = |degrees: f64| {
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        DVec3::new(cos, 0.0, sin)
+    };
+    let day = |degrees: f64| SunSky::new([way(degrees), DVec3::Z], 3.0, white(0.2), [1.0, 1.0]);
+    let zenith = |degrees: f64| day(degrees).outside(DVec3::Z).y;
+    // No step at the horizon, the sky at 6 degrees below it as much darker as the ground is by the almanac, and then night.
+    assert!((zenith(-1e-7) / zenith(1e-7) - 1.0).abs() < 1e-5, "{} {}", zenith(-1e-7), zenith(1e-7));
+    assert!((zenith(-6.0) / zenith(0.0) * 10f64.powf(2.88) / 3.4 - 1.0).abs() < 0.02);
+    for below in [18.5, 60.0, 90.0] {
+        let night = day(-below);
+        assert_eq!(night.validate(), Ok(()));
+        for towards in [DVec3::Z, DVec3::X, DVec3::NEG_Z, way(-below), way(0.1), way(-0.1)] {
+            assert_eq!(night.outside(towards), Rgb::ZERO);
+        }
+        assert!(night.sample(&FLOOR, [0.3, 0.7]).is_none());
+    }
+    // Twilight is drawn by its density, and the sun is there as long as an edge of it is above the plain.
+    assert_density(&day(-4.0), &FLOOR, 60, 2e-3);
+    let edge = |degrees: f64| {
+        let sky = SunSky::new([way(degrees), DVec3::Z], 3.0, white(0.2), [0.0, 1.0]);
+        day(degrees).outside(way(0.005)).y - sky.outside(way(0.005)).y
+    };
+    assert!(edge(0.0) > 0.0 && edge(-0.25) > 0.0);
+    assert_eq!((edge(-0.27), edge(0.28)), (0.0, 0.0));
+    // Below the plain nothing of it is seen.
+    assert_eq!(day(0.0).outside(way(-0.1)), day(0.0).outside(DVec3::NEG_Z));
+}
+
+#[test]
 fn daylight_that_cannot_be_is_told() {
     let day = |sun: DVec3, turbidity: f64, albedo: f64, scale: f64| {
         SunSky::new([sun, DVec3::Z], turbidity, white(albedo), [scale, 1.0]).validate()
     };
     assert_eq!(day(DVec3::X, 2.0, 1.0, 0.0), Ok(()));
     for (sun, turbidity, albedo, scale) in [
-        (DVec3::NEG_Z, 3.0, 0.2, 1.0),
         (DVec3::ZERO, 3.0, 0.2, 1.0),
         (DVec3::Z, 1.9, 0.2, 1.0),
         (DVec3::Z, f64::NAN, 0.2, 1.0),

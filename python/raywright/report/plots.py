@@ -1,0 +1,56 @@
+"""Where a plot is drawn: on axes, in a figure of its own, or to a file."""
+
+from collections.abc import Callable
+from os import PathLike
+from typing import Any
+
+from ..io.pictures import check_writable
+
+NO_MATPLOTLIB = "plots need matplotlib: pip install 'raywright[plot]'"
+_SUFFIXES = (".png", ".svg", ".pdf")
+
+
+def plotted(where: Any, draw: Callable[[Any], object], **figure: Any) -> Any:
+    """Draw on axes and return them.
+
+    Parameters
+    ----------
+    where : matplotlib.axes.Axes, str or path, optional
+        Where to: a new figure of `matplotlib.pyplot` if None, and with a path one that goes to that file.
+    draw : callable
+        Takes axes and draws on them.
+    **figure
+        What a new figure is like, as `matplotlib.figure.Figure` takes it.
+
+    Raises
+    ------
+    ImportError
+        If matplotlib is not installed.
+    ValueError
+        If the suffix of the file is not .png, .svg or .pdf.
+    OSError
+        If the file cannot be written.
+    TypeError
+        If `where` is something else.
+    """
+    file = check_writable(where, _SUFFIXES, "a plot") if isinstance(where, str | PathLike) else None
+    figure["layout"] = "constrained"
+    try:
+        if where is None:
+            import matplotlib.pyplot as plt
+
+            _, ax = plt.subplots(**figure)
+        else:
+            from matplotlib.axes import Axes
+            from matplotlib.figure import Figure
+
+            # Without pyplot, which would keep the figure and may want a screen.
+            ax = where if file is None else Figure(**figure).subplots()
+            if not isinstance(ax, Axes):
+                raise TypeError(f"ax must be matplotlib axes or a path, got {type(ax).__name__}")
+    except ImportError as error:
+        raise ImportError(NO_MATPLOTLIB) from error
+    draw(ax)
+    if file is not None:
+        ax.figure.savefig(file, dpi=120)
+    return ax
