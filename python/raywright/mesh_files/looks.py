@@ -9,7 +9,6 @@ from ..io.pictures import pixels_of
 from ..materials import Diffuse
 from ..textures import ImageTexture, VertexColors
 from .look import Look, linear
-from .obj.held import is_held, look_of_held
 from .pbr import Pbr, Picture
 
 
@@ -26,8 +25,11 @@ def look_of(visual: Any, count: int) -> Look:
     if hasattr(material, "baseColorFactor"):
         pbr = _pbr(material)
         return Look(pbr.material(), pbr.emitted())
-    if is_held(material):
-        return look_of_held(material)
+    if getattr(material, "kwargs", None):
+        from .obj.held import is_held, look_of_held
+
+        if is_held(material):
+            return look_of_held(material)
     image = getattr(material, "image", None)
     if image is not None:
         return Look(Diffuse(ImageTexture(pixels_of(image))))

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from ..cameras import AnyCamera
 from ..lights import Emission, Light
 from ..lights.emission import Emitted
+from ..mesh_files.look import linear
 from ..rendering.shot import Shot
 from ..scene.framing import framed
 from ..scene.instance import AnyShape, Instance, meshes
@@ -16,7 +17,7 @@ from ..scene.scene import Scene
 from ..scenes.studio import lit, studio
 from ..shapes.mesh import Mesh
 from ..textures import ImageTexture, ProductTexture
-from ..textures.texture import Texture, Value, ends
+from ..textures.texture import Value, ends
 
 # Mean radiance over all surface from which on shapes light themselves: in a closed room of theirs it would be
 # about as bright as that, times what its walls reflect.
@@ -102,20 +103,15 @@ def _mean(emitted: Emitted) -> float:
 
 
 def _mean_value(value: Value) -> NDArray[np.float64]:
-    if not isinstance(value, Texture):
-        return np.array(value)
     if isinstance(value, ProductTexture):
-        return _mean_value(value.a) * _mean_value(value.b)
-    if isinstance(value, ImageTexture):
-        counted = value.image[..., list(value.channels)]
-        if counted.dtype != np.uint8:
-            return counted.mean(axis=(0, 1), dtype=np.float64)
-        levels = np.arange(256) / 255
-        if value.decoded:
-            levels = np.where(levels <= 0.04045, levels / 12.92, ((levels + 0.055) / 1.055) ** 2.4)
-        shares = [
-            np.bincount(counted[..., i].ravel(), minlength=256) @ levels for i in range(counted.shape[2])
-        ]
-        return np.array(shares) / counted[..., 0].size
-    low, high = ends(value)
-    return (np.array(low) + np.array(high)) / 2
+        return np.asarray(_mean_value(value.a) * _mean_value(value.b))
+    if not isinstance(value, ImageTexture):
+        low, high = ends(value)
+        return np.asarray((np.array(low) + np.array(high)) / 2)
+    counted = value.image[..., list(value.channels)]
+    if counted.dtype != np.uint8:
+        return np.asarray(counted.mean(axis=(0, 1), dtype=np.float64))
+    levels = linear(np.arange(256) / 255) if value.decoded else np.arange(256) / 255
+    each = np.moveaxis(counted, 2, 0).reshape(len(value.channels), -1)
+    shares = [np.bincount(one, minlength=256) @ levels for one in each]
+    return np.asarray(np.array(shares) / each.shape[1], np.float64)

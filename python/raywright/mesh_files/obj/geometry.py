@@ -55,10 +55,12 @@ class Geometry:
     Raises
     ------
     ValueError
-        If a number cannot be read, or a face has a vertex that is not there.
+        If it is no text, a number cannot be read, or a face has a vertex that is not there.
     """
 
     def __init__(self, text: bytes) -> None:
+        if b"\0" in text:
+            raise ValueError("it is no text")
         if _BACKWARDS.search(text):
             text = _forwards(text)
         points = _table(text, b"v", "vertices", 3)

@@ -162,7 +162,7 @@ def _checked(pixels: NDArray[Any], most: float) -> NDArray[Any]:
     if pixels.dtype.kind != "f" and pixels.dtype not in (np.uint8, np.uint16):
         raise ValueError(f"it has numbers of type {pixels.dtype}")
     if pixels.dtype.kind == "f":
-        return np.clip(np.nan_to_num(pixels, nan=0.0, posinf=0.0, neginf=0.0), 0.0, most)
+        return np.asarray(np.clip(np.nan_to_num(pixels, nan=0.0, posinf=0.0, neginf=0.0), 0.0, most))
     return pixels
 
 
