@@ -11,13 +11,13 @@ from ._core import VERSION
 from .accelerators import Accelerator, every
 from .io.pictures import check_writable
 from .materials import Diffuse
-from .mesh_files.meshes import load as load_meshes
 from .rendering.image import Image
 from .rendering.shot import Shot
 from .scene.scene import Scene
 from .scene.summary import described
 from .scene_files.load import has_camera, load
-from .scenes import cornell_box, studio, torus_knot
+from .scene_files.shown import HEIGHT, WIDTH
+from .scenes import cornell_box, torus_knot
 from .viewer import view
 
 # As shells count it: 128 and the number of SIGINT.
@@ -27,9 +27,6 @@ DEMO_SECONDS = 10.0
 CORNELL = "cornell"
 # What options and arguments of a render have the same names for.
 _HOW = ("samples", "error", "seconds", "seed", "threads", "adaptive", "clamp")
-# The size of a picture of a mesh file.
-WIDTH, HEIGHT = 640, 480
-
 _SCENES = "a scene (Mitsuba's XML, glTF), or any mesh file: PLY, OBJ, STL, ..."
 
 
@@ -122,16 +119,12 @@ def _report_convergence(options: argparse.Namespace) -> None:
 
 
 def _shot(options: argparse.Namespace) -> Shot:
-    """Return what SCENE names: a file's own shot, a mesh file in a studio, or the Cornell box."""
-    size = options.width or WIDTH, options.height or HEIGHT
-    whole = options.scene == CORNELL or has_camera(options.scene)
-    if whole and options.up is not None:
+    """Return what SCENE names: what a file holds as it is shown, or the Cornell box."""
+    if options.up is not None and (options.scene == CORNELL or has_camera(options.scene)):
         options.refuse(f"argument --up: is for mesh files, and {options.scene} knows itself what is up")
     if options.scene == CORNELL:
-        return Shot(*cornell_box(None, *size))
-    if whole:
-        return load(options.scene).resized(options.width, options.height)
-    return Shot(*studio(load_meshes(options.scene), options.up or "y", *size))
+        return Shot(*cornell_box(None, options.width or WIDTH, options.height or HEIGHT))
+    return load(options.scene, options.up or "y", options.width, options.height)
 
 
 def _how(options: argparse.Namespace, shot: Shot) -> dict[str, Any]:

@@ -7,6 +7,8 @@ from typing import Any
 
 import numpy as np
 
+import raywright as rw
+
 TYPES = {1: "SCALAR", 2: "VEC2", 3: "VEC3", 4: "VEC4", 16: "MAT4"}
 CODES = {"b": 5120, "B": 5121, "h": 5122, "H": 5123, "I": 5125, "f": 5126}
 # Two triangles in the plane z = 0 from (0, 0) to (1, 1), whose normals are +z.
@@ -99,3 +101,8 @@ def square(**node: Any) -> Writer:
     writer = Writer()
     writer.node(mesh=writer.mesh(), **node)
     return writer
+
+
+def own(shot: rw.Shot) -> tuple[Any, ...]:
+    """The shapes of a file without a camera: without the floor and the lamp of what has no light."""
+    return shot.scene.shapes if shot.scene.environment is None else shot.scene.shapes[:-2]

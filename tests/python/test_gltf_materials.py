@@ -6,7 +6,7 @@ import warnings
 
 import numpy as np
 import pytest
-from gltf_writer import SQUARE, Writer
+from gltf_writer import SQUARE, Writer, own
 from PIL import Image
 from trimesh.visual.material import PBRMaterial
 
@@ -32,7 +32,7 @@ def loaded(tmp_path, material, writer=None, told=None, **attributes):
     path.write_bytes(writer.glb())
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
-        (mesh,) = read_gltf(path).scene.shapes
+        (mesh,) = own(read_gltf(path))
     assert [str(one.message) for one in caught] == ([f"file.glb: {told}"] if told else [])
     assert all(one.filename == __file__ for one in caught)
     return mesh
@@ -100,7 +100,7 @@ def test_files_and_trimesh_give_the_same_looks(tmp_path):
     box = trimesh.creation.box()
     box.visual = trimesh.visual.TextureVisuals(uv=np.random.default_rng(2).random((8, 2)), material=given)
     box.export(tmp_path / "box.glb")
-    (here,), (there,) = rw.Scene(box).shapes, read_gltf(tmp_path / "box.glb").scene.shapes
+    (here,), (there,) = rw.Scene(box).shapes, own(read_gltf(tmp_path / "box.glb"))
     assert there.material == here.material
     assert there.emission == here.emission
     assert np.allclose(there.uv, here.uv, rtol=0, atol=1e-6)

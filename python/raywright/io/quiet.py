@@ -1,10 +1,12 @@
 """Silence for other libraries while they read: what there is to say is in our own errors."""
 
 import logging
+import sys
 import threading
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 
 import numpy as np
 
@@ -27,6 +29,15 @@ def quiet(strictly: type[Warning] | None = None) -> Iterator[None]:
             log.disabled = before
 
 
+def warn_caller(message: str) -> None:
+    """Warn at the line outside of this package from where it was called."""
+    package = __name__.partition(".")[0]
+    frame, level = sys._getframe(1), 2
+    while frame.f_back is not None and frame.f_globals.get("__name__", "").partition(".")[0] == package:
+        frame, level = frame.f_back, level + 1
+    warnings.warn(message, RuntimeWarning, stacklevel=level)
+
+
 def reason(error: Exception, most: int = 120) -> str:
     """Return why a library could not read something, in one line."""
     if isinstance(error, ModuleNotFoundError):
@@ -35,3 +46,10 @@ def reason(error: Exception, most: int = 120) -> str:
     if not isinstance(error, ValueError | OSError | IndexError) or not told:
         told = f"{type(error).__name__}: {told}" if told else type(error).__name__
     return told if len(told) <= most else f"{told[: most - 3]}..."
+
+
+def refused(path: Path, what: str, error: Exception) -> Exception:
+    """Return what to raise for a file of which `error` says that it cannot be read as `what`."""
+    if isinstance(error, OSError | MemoryError):
+        return error
+    return ValueError(f"{path} is not a {what} that can be read ({reason(error, 160)})")

@@ -1,31 +1,23 @@
 """Materials, emission and colours from what trimesh calls visuals."""
 
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..io.pictures import pixels_of
-from ..lights.emission import Emitted
-from ..materials import Diffuse, Material
+from ..materials import Diffuse
 from ..textures import ImageTexture, VertexColors
+from .look import Look, linear
 from .pbr import Pbr, Picture
-
-
-class Look(NamedTuple):
-    """How a mesh looks; None where nothing is said of it."""
-
-    material: Material | None = None
-    emission: Emitted | None = None
-    colors: NDArray[np.float64] | None = None
 
 
 def look_of(visual: Any, count: int) -> Look:
     """Return what a visual of a mesh with `count` vertices says.
 
     Colours of vertices are kept where they differ; of colours of faces the main one is taken. Of glTF's
-    material there is base colour, metalness, roughness, normals, emission and alpha; of others the diffuse
-    colour or picture.
+    material there is base colour, metalness, roughness, normals, emission and alpha; of those of OBJ files
+    all that trimesh keeps; of others the diffuse colour or picture.
     """
     material = getattr(visual, "material", None)
     if material is None:
@@ -33,6 +25,11 @@ def look_of(visual: Any, count: int) -> Look:
     if hasattr(material, "baseColorFactor"):
         pbr = _pbr(material)
         return Look(pbr.material(), pbr.emitted())
+    if getattr(material, "kwargs", None):
+        from .obj.held import is_held, look_of_held
+
+        if is_held(material):
+            return look_of_held(material)
     image = getattr(material, "image", None)
     if image is not None:
         return Look(Diffuse(ImageTexture(pixels_of(image))))
@@ -75,6 +72,5 @@ def _picture(image: Any) -> Picture | None:
 
 
 def _linear(rgb: Any) -> NDArray[np.float64]:
-    """Red, green and blue of 8 bits to linear (IEC 61966-2-1)."""
-    c = np.asarray(rgb, np.float64) / 255
-    return np.where(c <= 0.04045, c / 12.92, ((c + 0.055) / 1.055) ** 2.4)
+    """Red, green and blue of 8 bits to linear."""
+    return linear(np.asarray(rgb, np.float64) / 255)

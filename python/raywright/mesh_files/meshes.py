@@ -3,11 +3,10 @@
 import errno
 from os import PathLike
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
-from ..io.quiet import quiet, reason
+from ..io.quiet import quiet, reason, refused
 from ..shapes.mesh import Mesh
 from .claims import check_mesh_file
 from .trimesh_objects import of_scene, of_trimesh
@@ -18,7 +17,8 @@ _GLTF = (".glb", ".gltf")
 def load(path: str | PathLike[str]) -> tuple[Mesh, ...]:
     """Read a mesh file: one mesh for each node of the file that holds triangles.
 
-    glTF is read by `raywright.mesh_files.gltf`, all else by trimesh.
+    glTF is read by `raywright.mesh_files.gltf`, OBJ by `raywright.mesh_files.obj`, with a mesh for each of
+    its materials, and all else by trimesh.
 
     Faces stay in the file's order, and vertices as they are. Only STL, which repeats every corner, has its
     equal corners joined.
@@ -29,6 +29,11 @@ def load(path: str | PathLike[str]) -> tuple[Mesh, ...]:
         If the file is missing.
     ValueError
         If the file is not a mesh that can be read, or holds no faces.
+
+    Warns
+    -----
+    RuntimeWarning
+        Once of each kind of thing in the file that is not shown as it says.
     """
     path = Path(path)
     if not path.exists():
@@ -46,6 +51,10 @@ def load(path: str | PathLike[str]) -> tuple[Mesh, ...]:
         from .gltf import read_meshes
 
         result = read_meshes(path)
+    elif name.endswith(".obj"):
+        from .obj import read_obj
+
+        result = read_obj(path)
     else:
         result = _read(path)
     if not any(len(mesh.faces) for mesh in result):
@@ -63,21 +72,28 @@ def load_whole(path: Path, kind: str) -> Mesh:
     ValueError
         If the file is not a mesh that can be read, or holds no faces.
     """
+    if kind == "obj":
+        from .obj import read_obj_whole
+
+        mesh = read_obj_whole(path)
+    else:
+        mesh = _whole_ply(path)
+    if mesh is None or not len(mesh.faces):
+        raise ValueError(f"{path} holds no faces")
+    return mesh
+
+
+def _whole_ply(path: Path) -> Mesh | None:
     import trimesh
 
-    how: dict[str, Any] = {"group_material": False, "skip_materials": True} if kind == "obj" else {}
     try:
         check_mesh_file(path)
         with quiet(), open(path, "rb") as file:
-            found = trimesh.load(file, file_type=kind, process=False, **how)
+            found = trimesh.load(file, file_type="ply", process=False)
             parts = tuple(of_scene(found)) if hasattr(found, "geometry") else (of_trimesh(found, True),)
-    except (MemoryError, OSError):
-        raise
     except Exception as error:
-        raise ValueError(f"{path} is not a mesh that can be read ({reason(error)})") from error
-    if len(parts) != 1 or not len(parts[0].faces):
-        raise ValueError(f"{path} holds no faces")
-    return parts[0]
+        raise refused(path, "mesh", error) from error
+    return parts[0] if len(parts) == 1 else None
 
 
 def _read(path: Path) -> tuple[Mesh, ...]:

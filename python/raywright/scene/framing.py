@@ -6,13 +6,14 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import integer
 from ..cameras import Camera
 from ..shapes.mesh import Mesh
 from .instance import AnyShape, Instance, meshes
 
 _FOV = 35.0
 # Where the camera stands, in degrees: around the upright axis, and above the ground.
-_ANGLES = (35.0, 22.0)
+CAMERA_ANGLES = (35.0, 22.0)
 
 
 def framed(
@@ -38,10 +39,11 @@ def framed(
         As `Scene`; ValueError too if there is nothing to look at, a shape has no end, or `up` is another
         axis.
     """
+    width, height = integer("width", width, 1, 65536), integer("height", height, 1, 65536)
     axes = upright_axes(up)
     points = outline(shapes)
     centre = points.min(axis=0) / 2 + points.max(axis=0) / 2
-    away = direction(_ANGLES) @ axes
+    away = direction(CAMERA_ANGLES) @ axes
     distance = _distance(points - centre, away, axes[1], width / height)
     return Camera(centre + distance * away, centre, axes[1], _FOV, width, height)
 

@@ -3,11 +3,12 @@
 import errno
 from os import PathLike
 from pathlib import Path
+from typing import Literal
 
 from ..mesh_files import meshes
 from ..rendering.shot import Shot
-from ..scenes.studio import studio
 from .mitsuba import from_mitsuba
+from .shown import shown
 
 # Files that may have cameras and lights of their own.
 SCENES = (".xml", ".glb", ".gltf")
@@ -18,14 +19,29 @@ def has_camera(path: str | PathLike[str]) -> bool:
     return Path(path).suffix.lower() in SCENES
 
 
-def load(path: str | PathLike[str]) -> Shot:
+def load(
+    path: str | PathLike[str],
+    up: Literal["y", "z"] = "y",
+    width: int | None = None,
+    height: int | None = None,
+) -> Shot:
     """Read a scene, or a mesh, with all that it takes to make a picture of it.
+
+    What a file holds is shown in its own light where it has some: lights, or surfaces that shine and give
+    off enough, 0.02 W·sr⁻¹·m⁻² and more in the mean over all of its surface, or anything that shines where
+    the file has a camera. What has no light is lit as in `scenes.studio`: for a camera of its own, or else
+    framed, and on a floor.
 
     Parameters
     ----------
     path : str or path
-        ``.xml``, a scene of Mitsuba 3, as `from_mitsuba` reads it; ``.glb`` or ``.gltf``; or any mesh file
-        that trimesh reads, which is framed, lit and put on a floor as `scenes.studio` does.
+        ``.xml``, a scene of Mitsuba 3, as `from_mitsuba` reads it; ``.glb`` or ``.gltf``; or any other mesh
+        file that trimesh reads: OBJ with its materials, PLY, STL, ...
+    up : {"y", "z"}
+        The axis that points up in a mesh file that does not say so; in glTF it is y.
+    width, height : int, optional
+        Size of the picture in pixels, without them the file's own; if only one is given, the other keeps its
+        proportions. Of a file without a camera they are 640 and 480 where they are not given.
 
     Returns
     -------
@@ -37,9 +53,14 @@ def load(path: str | PathLike[str]) -> Shot:
     FileNotFoundError
         If the file, or one that it names, is missing.
     ValueError
-        If it cannot be read, or holds something that is not supported.
+        If it cannot be read, or holds something that is not supported, or a number is out of range.
     TypeError
-        If `path` is no path.
+        If `path` is no path, or a size is no integer.
+
+    Warns
+    -----
+    RuntimeWarning
+        Once of each kind of thing in the file that is not shown as it says.
     """
     if not isinstance(path, str | PathLike):
         raise TypeError(f"path must be a str or a path, got {type(path).__name__}")
@@ -48,9 +69,9 @@ def load(path: str | PathLike[str]) -> Shot:
         raise FileNotFoundError(errno.ENOENT, "no such file", str(path))
     suffix = path.suffix.lower()
     if suffix == ".xml":
-        return from_mitsuba(path)
+        return from_mitsuba(path).resized(width, height)
     if suffix in SCENES:
         from .gltf import read_gltf
 
-        return read_gltf(path)
-    return Shot(*studio(meshes.load(path)))
+        return read_gltf(path, width, height)
+    return shown(meshes.load(path), up=up, width=width, height=height)

@@ -1,20 +1,23 @@
 """A studio: a floor, a lamp, a soft sky and a camera around any mesh."""
 
+import math
 from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..accelerators import BVH, Accelerator
-from ..cameras import Camera
+from ..cameras import AnyCamera, Camera
 from ..materials import Diffuse, Material
-from ..scene.framing import direction, framed, outline, upright_axes
+from ..scene.framing import CAMERA_ANGLES, direction, framed, outline, upright_axes
 from ..scene.instance import meshes
 from ..scene.scene import Scene
 from ..shapes.mesh import Mesh
 
 # Where the lamp stands, in degrees: around the upright axis, and above the floor.
 _LAMP_ANGLES = (-25.0, 55.0)
+# How far, in times that the mesh reaches.
+_LAMP_DISTANCE = 5.0
 _SKY = (0.42, 0.45, 0.5)
 _BVH = BVH()
 
@@ -47,23 +50,64 @@ def studio(
     FileNotFoundError, ValueError, TypeError
         As `Scene`; ValueError too if there is nothing to show, or `up` is another axis.
     """
-    axes = upright_axes(up)
     parts = meshes(shapes)
-    points = outline(parts)
-    low, high = points.min(axis=0), points.max(axis=0)
-    centre = low / 2 + high / 2
-    radius = float(np.linalg.norm(high / 2 - low / 2)) or 1.0
-    upward = axes[1]
     camera = framed(parts, up, width, height)
+    centre, radius, axes = _room(parts, up)
 
     # The floor lies a little under the mesh, so that a flat bottom is not in the same plane.
-    ground = centre + (float(((points - centre) @ upward).min()) - 1e-4 * radius) * upward
+    lowest = float(((outline(parts) - centre) @ axes[1]).min())
+    ground = centre + (lowest - 1e-4 * radius) * axes[1]
     floor = _square(ground, axes[0], -axes[2], 25 * radius, Diffuse(0.4))
-    beam = direction(_LAMP_ANGLES) @ axes
-    side = np.cross(upward, beam) / np.linalg.norm(np.cross(upward, beam))
-    # Across `side` and its perpendicular, so that the square's normal is -beam: it shines on the mesh.
-    lamp = _square(centre + 5 * radius * beam, np.cross(beam, side), side, 1.5 * radius, Diffuse(0.0), 9.0)
+    lamp = _lamp(centre, radius, axes)
     return Scene([*parts, floor, lamp], environment=_SKY, accelerator=accelerator), camera
+
+
+def lit(shapes: Any, camera: AnyCamera) -> Scene:
+    """Return shapes in the light of the studio, without its floor, for a camera that stands elsewhere.
+
+    The lamp stands to the camera's left as it does in the studio, as large as it is there for who stands at
+    the mesh, and no nearer than the camera, so that only who looks up has it in the picture.
+
+    Parameters
+    ----------
+    shapes : Mesh, another shape, Instance, trimesh object, path, or list of these
+        What to show; its y points up.
+    camera : Camera or another kind
+        From where it is looked at.
+
+    Raises
+    ------
+    FileNotFoundError, ValueError, TypeError
+        As `studio`.
+    """
+    parts = meshes(shapes)
+    centre, radius, axes = _room(parts, "y")
+    # Of a camera that looks straight down, what is below in its picture is nearer.
+    for away in (-camera.forward, -np.array(camera.up)):
+        level = away - (away @ axes[1]) * axes[1]
+        if np.linalg.norm(level) > 1e-6 * np.linalg.norm(away):
+            break
+    around = math.atan2(level @ axes[0], level @ axes[2]) - math.radians(CAMERA_ANGLES[0])
+    cos, sin = math.cos(around), math.sin(around)
+    turned = np.stack([cos * axes[0] - sin * axes[2], axes[1], sin * axes[0] + cos * axes[2]])
+    farther = float(np.linalg.norm(np.array(camera.position) - centre)) / _LAMP_DISTANCE
+    return Scene([*parts, _lamp(centre, max(radius, farther), turned)], environment=_SKY)
+
+
+def _room(parts: Any, up: str) -> tuple[NDArray[np.float64], float, NDArray[np.float64]]:
+    """Return the middle of shapes, how far they reach from it, and which way is right, up, and near."""
+    axes = upright_axes(up)
+    points = outline(parts)
+    low, high = points.min(axis=0), points.max(axis=0)
+    return low / 2 + high / 2, float(np.linalg.norm(high / 2 - low / 2)) or 1.0, axes
+
+
+def _lamp(centre: NDArray[np.float64], radius: float, axes: NDArray[np.float64]) -> Mesh:
+    beam = direction(_LAMP_ANGLES) @ axes
+    side = np.cross(axes[1], beam) / np.linalg.norm(np.cross(axes[1], beam))
+    # Across `side` and its perpendicular, so that the square's normal is -beam: it shines on the mesh.
+    middle = centre + _LAMP_DISTANCE * radius * beam
+    return _square(middle, np.cross(beam, side), side, 1.5 * radius, Diffuse(0.0), 9.0)
 
 
 def _square(

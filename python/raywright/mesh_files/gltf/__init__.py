@@ -4,13 +4,13 @@ import errno
 from os import PathLike
 from pathlib import Path
 
-from ...io.quiet import reason
+from ...io.quiet import refused
 from ...shapes.mesh import Mesh
 from .document import Document
 from .nodes import placed
 from .stands import meshes
 
-__all__ = ["read_meshes", "refused", "there"]
+__all__ = ["read_meshes", "there"]
 
 
 def read_meshes(path: Path) -> tuple[Mesh, ...]:
@@ -26,7 +26,7 @@ def read_meshes(path: Path) -> tuple[Mesh, ...]:
         found = tuple(meshes(document, placed(document)))
     except Exception as error:
         raise refused(path, "mesh", error) from error
-    document.warn(stacklevel=3)
+    document.warn()
     return found
 
 
@@ -38,10 +38,3 @@ def there(path: str | PathLike[str]) -> Path:
     if path.is_dir():
         raise ValueError(f"{path} is a folder, not a glTF file")
     return path
-
-
-def refused(path: Path, what: str, error: Exception) -> Exception:
-    """Return what to raise for a file of which `error` says that it cannot be read as `what`."""
-    if isinstance(error, OSError | MemoryError):
-        return error
-    return ValueError(f"{path} is not a {what} that can be read ({reason(error, 160)})")

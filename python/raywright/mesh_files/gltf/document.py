@@ -3,11 +3,11 @@
 import base64
 import json
 import struct
-import warnings
 from pathlib import Path
 from typing import Any, NoReturn
 from urllib.parse import unquote, unquote_to_bytes, urlsplit
 
+from ...io.quiet import warn_caller
 from .part import Part
 
 _MAGIC, _JSON, _BIN = b"glTF", b"JSON", b"BIN\0"
@@ -64,13 +64,13 @@ class Document:
         if what not in self._told:
             self._told.append(what)
 
-    def warn(self, stacklevel: int) -> None:
+    def warn(self) -> None:
         """Warn of all that was kept."""
         unknown = [name for name in self.root.texts("extensionsUsed") if name not in _KNOWN]
         if unknown:
             self.tell(f"what its extensions {', '.join(sorted(set(unknown)))} say is left out")
         for what in self._told:
-            warnings.warn(f"{self.path.name}: {what}", RuntimeWarning, stacklevel=stacklevel + 1)
+            warn_caller(f"{self.path.name}: {what}")
         self._told.clear()
 
     def view(self, part: Part, name: str = "bufferView") -> tuple[memoryview, int | None]:

@@ -2,16 +2,15 @@
 
 from os import PathLike
 
-from ...lights import ConstantEnvironment
-from ...mesh_files.gltf import refused, there
+from ...arrays import integer
+from ...io.quiet import refused
+from ...mesh_files.gltf import there
 from ...mesh_files.gltf.document import Document
 from ...mesh_files.gltf.nodes import placed
 from ...rendering.shot import Shot
-from ...scene.framing import framed
 from ...scene.instance import AnyShape, Instance
-from ...scene.scene import Scene
-from ...shapes import Shape
-from ...shapes.mesh import Mesh, face_count
+from ...shapes.mesh import face_count
+from ..shown import shown
 from .cameras import camera
 from .lights import lights
 from .shapes import shapes
@@ -19,21 +18,24 @@ from .shapes import shapes
 __all__ = ["read_gltf"]
 
 
-def read_gltf(path: str | PathLike[str]) -> Shot:
+def read_gltf(path: str | PathLike[str], width: int | None = None, height: int | None = None) -> Shot:
     """Read a glTF 2.0 file, .gltf or .glb: meshes with their materials, lights and a camera.
 
     Parameters
     ----------
     path : str or path
         The file. What it names beside itself must be in its folder, or in a folder within that.
+    width, height : int, optional
+        Size of the picture in pixels, as `load` has them.
 
     Returns
     -------
     Shot
         The file's scene. Large meshes that stand at several nodes are an `Instance` each. The camera is the
         first of the file, or else one from three quarters that has all in its picture. Where there is no
-        light, that is no light of KHR_lights_punctual and, in a file with a camera, nothing that shines, an
-        even environment of radiance 1 is around it.
+        light of KHR_lights_punctual, and nothing that shines in a file with a camera, or not enough in one
+        without, there is the light of `scenes.studio`, and where there is no camera its floor too: the same
+        mesh looks the same from any file.
 
     Raises
     ------
@@ -41,7 +43,9 @@ def read_gltf(path: str | PathLike[str]) -> Shot:
         If the file is missing.
     ValueError
         If it is no glTF file that can be read, is broken anywhere, needs an extension that is not supported,
-        names files outside of its folder, or holds no faces.
+        names files outside of its folder, or holds no faces; or if a size is out of range.
+    TypeError
+        If a size is no integer.
 
     Warns
     -----
@@ -63,6 +67,9 @@ def read_gltf(path: str | PathLike[str]) -> Shot:
     account. Skins and blended shapes are shown as the file has them at rest.
     """
     path = there(path)
+    for name, size in (("width", width), ("height", height)):
+        if size is not None:
+            integer(name, size, 1, 65536)
     try:
         document = Document(path)
         nodes = placed(document)
@@ -73,20 +80,12 @@ def read_gltf(path: str | PathLike[str]) -> Shot:
             raise ValueError("it holds no faces")
         if "animations" in document.root:
             document.tell("its animations are left out: it is shown at rest")
-        shown = bool(lit) or (seen is not None and any(map(_shines, found)))
-        environment = None if shown else ConstantEnvironment(1.0)
-        shot = Shot(Scene(found, lit, environment), framed(found) if seen is None else seen)
+        shot = shown(found, lit, seen, width=width, height=height)
     except Exception as error:
         raise refused(path, "glTF file", error) from error
-    document.warn(stacklevel=2)
+    document.warn()
     return shot
 
 
 def _faces(shape: AnyShape) -> int:
     return shape.primitives if isinstance(shape, Instance) else face_count(shape)
-
-
-def _shines(shape: AnyShape) -> bool:
-    if isinstance(shape, Instance):
-        return any(map(_shines, shape.shapes))
-    return isinstance(shape, Mesh | Shape) and shape.emission is not None

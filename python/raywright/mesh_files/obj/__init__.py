@@ -1,0 +1,82 @@
+"""OBJ files: their triangles, and their materials from MTL files."""
+
+from pathlib import Path
+
+import numpy as np
+
+from ...io.quiet import refused
+from ...materials import Diffuse
+from ...shapes.mesh import Mesh
+from ...textures import VertexColors
+from ..look import Look, linear
+from .geometry import Geometry, Part
+from .library import Library, span_of
+from .notes import Notes
+from .text import text_of
+
+__all__ = ["read_obj", "read_obj_whole"]
+
+
+def read_obj(path: Path) -> tuple[Mesh, ...]:
+    """Read an OBJ file: a mesh for each material, in the order in which faces have them first.
+
+    Faces of a mesh are in the order of the file; polygons are fans of triangles. Vertices are those that
+    faces use, one for each that is used with other texture coordinates or another normal.
+
+    Raises
+    ------
+    ValueError
+        If it is none that can be read.
+
+    Warns
+    -----
+    RuntimeWarning
+        Once of each kind of thing that is not shown as the file, or one of its MTL files, says.
+    """
+    notes = Notes(path.name)
+    try:
+        text = text_of(path.read_bytes())
+        geometry = Geometry(text)
+        library = Library(path, text, notes)
+        found = tuple(_mesh(part, library) for part in geometry.parts())
+    except Exception as error:
+        raise refused(path, "mesh", error) from error
+    for lost in geometry.lost:
+        notes.add("what faces name, and is not there, is left out", lost)
+    notes.warn()
+    library.warn()
+    return found
+
+
+def read_obj_whole(path: Path) -> Mesh | None:
+    """Read all triangles of an OBJ file as one mesh, without its looks; None if there are none.
+
+    Raises
+    ------
+    ValueError
+        As `read_obj` does.
+    """
+    try:
+        parts = tuple(Geometry(text_of(path.read_bytes())).parts(whole=True))
+    except Exception as error:
+        raise refused(path, "mesh", error) from error
+    return Mesh(parts[0].vertices, parts[0].faces, parts[0].normals, parts[0].uv) if parts else None
+
+
+def _mesh(part: Part, library: Library) -> Mesh:
+    span = None if part.uv is None else span_of(part.vertices, part.faces, part.uv)
+    look = library.look(part.material, span) or _colored(part)
+    return Mesh(part.vertices, part.faces, part.normals, part.uv, look.material, look.emission, look.colors)
+
+
+def _colored(part: Part) -> Look:
+    """Return the colours of vertices, which are taken as sRGB: those of pictures and of scanners are."""
+    if part.colors is None:
+        return Look()
+    # Some programs write them as integers.
+    shares = part.colors / 255 if (part.colors > 1).any() else part.colors
+    colors = linear(np.clip(np.nan_to_num(shares), 0, 1))
+    if (colors == colors[0]).all():
+        red, green, blue = colors[0].tolist()
+        return Look(Diffuse((red, green, blue)))
+    return Look(Diffuse(VertexColors()), colors=colors)

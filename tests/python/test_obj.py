@@ -1,0 +1,185 @@
+"""Triangles of OBJ files: all forms of them, in their order."""
+
+import warnings
+
+import numpy as np
+import pytest
+
+import raywright as rw
+from raywright.mesh_files.meshes import load_whole
+
+POINTS = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
+
+
+def read(tmp_path, text, *told):
+    path = tmp_path / "file.obj"
+    path.write_bytes(text if isinstance(text, bytes) else text.encode())
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        shapes = rw.Scene(path).shapes
+    assert [str(one.message) for one in caught] == [f"file.obj: {one}" for one in told]
+    return shapes
+
+
+def triangles(mesh):
+    return mesh.vertices[mesh.faces].tolist()
+
+
+def corners(*numbers):
+    points = [[float(word) for word in line.split()[1:]] for line in POINTS.splitlines()]
+    return [[points[i - 1] for i in face] for face in numbers]
+
+
+def test_polygons_are_fans_in_the_order_of_the_file(tmp_path):
+    """Of squares alone, and of squares beside others."""
+    (squares,) = read(tmp_path, f"{POINTS}f 1 2 3 4\nf 5 6 7 8\nf 1 2 6 5\n")
+    assert triangles(squares) == corners((1, 2, 3), (1, 3, 4), (5, 6, 7), (5, 7, 8), (1, 2, 6), (1, 6, 5))
+    (mixed,) = read(tmp_path, f"{POINTS}f 1 2 3 4\nf 5 6 7\nf 1 2 6 7 5\nf 3 4\n")
+    expected = corners((1, 2, 3), (1, 3, 4), (5, 6, 7), (1, 2, 6), (1, 6, 7), (1, 7, 5))
+    assert triangles(mixed) == expected
+    hits = rw.Scene(squares).intersect([(0.9, 0.1, -1), (0.9, 0.1, 2)], [(0, 0, 1), (0, 0, -1)])
+    assert hits.primitive.tolist() == [0, 2]
+
+
+def test_materials_come_in_the_order_of_the_file(tmp_path):
+    (tmp_path / "file.mtl").write_text("newmtl b\nKd 1 0 0\nnewmtl a\nKd 0 1 0\n")
+    faces = "f 1 2 3\nusemtl b\nf 2 3 4\nusemtl a\nf 3 4 5\nusemtl b\nf 4 5 6\n"
+    shapes = read(tmp_path, f"mtllib file.mtl\n{POINTS}{faces}")
+    assert [shape.material for shape in shapes] == [
+        rw.Diffuse(),
+        rw.Diffuse((1, 0, 0)),
+        rw.Diffuse((0, 1, 0)),
+    ]
+    expected = [corners((1, 2, 3)), corners((2, 3, 4), (4, 5, 6)), corners((3, 4, 5))]
+    assert [triangles(shape) for shape in shapes] == expected
+
+
+def test_numbers_may_count_back_from_where_they_stand(tmp_path):
+    """Each of two objects counts from its own last vertex, coordinate and normal."""
+    one = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nvn 0 0 1\nf -3/-3/-1 -2/-2/-1 -1/-1/-1\n"
+    two = "v 0 0 5\nv 1 0 5\nv 0 1 5\nvt .5 0\nvt 1 .5\nvt .5 1\nvn 1 0 0\nf -3/-3/-1 -2/-2/-1 -1/-1/-1\n"
+    (mesh,) = read(tmp_path, one + two)
+    assert triangles(mesh) == [
+        [[0, 0, 0], [1, 0, 0], [0, 1, 0]],
+        [[0, 0, 5], [1, 0, 5], [0, 1, 5]],
+    ]
+    uv, normals = mesh.uv[mesh.faces], mesh.normals[mesh.faces]
+    assert uv[1].tolist() == [[0.5, 0], [1, 0.5], [0.5, 1]]
+    assert normals[:, 0].tolist() == [[0, 0, 1], [1, 0, 0]]
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_all_forms_of_faces_say_the_same(tmp_path, seed):
+    """The same random polygons: each line in a form of its own, with other white space and line ends."""
+    rng = np.random.default_rng(seed)
+    points, uv, normals = rng.normal(size=(20, 3)), rng.random((9, 2)), rng.normal(size=(7, 3))
+    faces = [rng.integers(0, (20, 9, 7), (rng.integers(3, 7), 3)) for _ in range(40)]
+    lines = [
+        f"{keyword} {' '.join(map(repr, row.tolist()))}"
+        for keyword, table in (("v", points), ("vt", uv), ("vn", normals))
+        for row in table
+    ]
+    counts = np.array([20, 9, 7])
+
+    def told(corner):
+        back = rng.random() < 0.2
+        return "/".join(str(n) for n in (corner - counts if back else corner + 1))
+
+    for face in faces:
+        between = rng.choice([" ", "  ", "\t", " \\\n "])
+        lines.append(
+            rng.choice(["", " ", "\t"]) + "f " + between.join(map(told, face)) + rng.choice(["", " # x"])
+        )
+        lines += rng.choice(["", "o a", "g b c", "s 1", "# f 1 2 3"], 1).tolist()
+    end = rng.choice(["\n", "\r\n", "\r"])
+    text = end.join(lines).replace("\n", end) if end != "\n" else "\n".join(lines)
+    (mesh,) = read(tmp_path, text.encode("utf-16") if seed == 5 else text)
+    expected = [np.stack([f[[0, i, i + 1]] for i in range(1, len(f) - 1)]) for f in faces]
+    index = np.concatenate(expected)
+    assert np.array_equal(mesh.vertices[mesh.faces], points[index[..., 0]])
+    assert np.array_equal(mesh.uv[mesh.faces], uv[index[..., 1]])
+    assert np.array_equal(mesh.normals[mesh.faces], normals[index[..., 2]])
+    # A vertex for each of its uses, and no more.
+    assert len(mesh.vertices) == len(np.unique(index.reshape(-1, 3), axis=0))
+
+
+@pytest.mark.parametrize(
+    ("faces", "uv", "normals"),
+    [
+        ("f 1 2 3", None, None),
+        ("f 1/ 2/ 3/", None, None),
+        ("f 1// 2// 3//", None, None),
+        ("f 1//1 2//1 3//1", None, 1),
+        ("f 1/1 2/2 3/3", [[[0, 0], [1, 0], [1, 1]]], None),
+        ("f 1/1/ 2/2/ 3/3/", [[[0, 0], [1, 0], [1, 1]]], None),
+        ("f 1/1/1 2/2/1 3/3/1", [[[0, 0], [1, 0], [1, 1]]], 1),
+        # What has no coordinates lies on the corner of pictures, and normals count if all have them.
+        ("f 1/2/1 2/3/1 3/4/1\nf 1 2 4", [[[1, 0], [1, 1], [0, 1]], [[0, 0]] * 3], None),
+        ("fo 1 2 3", None, None),
+    ],
+)
+def test_what_a_corner_has(tmp_path, faces, uv, normals):
+    head = f"{POINTS}vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nvn 0 0 2\n"
+    (mesh,) = read(tmp_path, f"{head}{faces}\n")
+    assert (mesh.uv is None and uv is None) or mesh.uv[mesh.faces].tolist() == uv
+    assert (mesh.normals is None) == (normals is None)
+
+
+def test_what_faces_name_and_is_not_there_is_told(tmp_path):
+    missing = "what faces name, and is not there, is left out: "
+    (mesh,) = read(tmp_path, f"{POINTS}vt 0 0\nf 1/1 2/2 3/1\n", f"{missing}texture coordinates")
+    assert mesh.uv is None
+    (mesh,) = read(tmp_path, f"{POINTS}vn 0 0 1\nf 1//1 2//-2 3//1\n", f"{missing}normals")
+    assert mesh.normals is None
+
+
+@pytest.mark.parametrize(
+    ("lines", "message"),
+    [
+        ("f 0 1 2", r"a face has vertex 0, out of bounds: there are 8"),
+        ("f 1 2 9", r"a face has vertex 9, out of bounds: there are 8"),
+        ("f 1 2 -9", r"a face has vertex -9, out of bounds: there are 8"),
+        ("f 1 2 -99999999999999999999", r"a face has vertex [-0-9]+, out of bounds"),
+        ("f 1 2 1.5", r"a face has corner '1.5'"),
+        ("f 1 2 x", r"a face has corner 'x'"),
+        ("f 1/2/3/4 2 3", r"a face has corner '1/2/3/4'"),
+        ("f 1 2 /3", r"a face has vertex 0, out of bounds"),
+        ("f 1 2 " + "9" * 5000, r"a face has (corner|vertex) '?9"),
+        ("v 1 2\nf 1 2 3", r"vertices must have shape \(N, 3\), and one is '1 2'"),
+        ("v 1 2 x\nf 1 2 3", r"vertices have 'x', which is no number"),
+        ("v 1,5 2 0\nf 1 2 3", r"vertices have '1,5', which is no number"),
+        ("vn 0 1\nf 1 2 3", r"normals must have shape \(N, 3\), and one is '0 1'"),
+        ("vt \nf 1 2 3", r"texture coordinates must have shape \(N, 1\), and one is ''"),
+    ],
+)
+def test_what_is_broken_is_refused(tmp_path, lines, message):
+    (tmp_path / "file.obj").write_text(f"{POINTS}{lines}\n")
+    with pytest.raises(ValueError, match=rf"file.obj is not a mesh that can be read \({message}") as caught:
+        rw.Scene(tmp_path / "file.obj")
+    assert len(str(caught.value)) < 250 + len(str(tmp_path))
+
+
+def test_colours_of_vertices_are_srgb(tmp_path):
+    points = "v 0 0 0 1 0 0\nv 1 0 0 0 0.5 0\nv 0 1 0 0 0 1\nf 1 2 3\n"
+    (mesh,) = read(tmp_path, points)
+    assert mesh.material == rw.Diffuse(rw.VertexColors())
+    assert mesh.colors == pytest.approx(np.diag([1, ((0.5 + 0.055) / 1.055) ** 2.4, 1]))
+    (same,) = read(
+        tmp_path,
+        points.replace("0.5", "127.5").replace(" 1 0 0\n", " 255 0 0\n", 1).replace(" 0 0 1\n", " 0 0 255\n"),
+    )
+    assert same.colors == pytest.approx(mesh.colors)
+    (even,) = read(tmp_path, "v 0 0 0 1 0 0\nv 1 0 0 1 0 0\nv 0 1 0 1 0 0\nf 1 2 3\n")
+    assert (even.material, even.colors) == (rw.Diffuse((1, 0, 0)), None)
+
+
+def test_files_of_mitsuba_are_read_whole_and_in_order(tmp_path):
+    (tmp_path / "file.obj").write_text(f"mtllib none.mtl\n{POINTS}usemtl a\nf 1 2 3 4\nusemtl b\nf 5 6 7 8\n")
+    mesh = load_whole(tmp_path / "file.obj", "obj")
+    assert triangles(mesh) == corners((1, 2, 3), (1, 3, 4), (5, 6, 7), (5, 7, 8))
+
+
+def test_files_without_faces_hold_none(tmp_path):
+    (tmp_path / "file.obj").write_text(POINTS + "l 1 2\np 3\n")
+    with pytest.raises(ValueError, match=r"file.obj holds no faces"):
+        rw.Scene(tmp_path / "file.obj")

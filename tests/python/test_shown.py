@@ -1,0 +1,274 @@
+"""How files are shown that say nothing of light, or of a camera: alike, whatever their kind."""
+
+import subprocess
+import sys
+import warnings
+
+import numpy as np
+import pytest
+import trimesh
+from gltf_writer import Writer
+from obj_files import FACE, SQUARE, picture, write
+
+import raywright as rw
+from raywright.scene_files.shown import own_radiance, shown
+
+# What is seen of the square from straight above.
+EYE = {"type": "perspective", "perspective": {"yfov": 0.6, "aspectRatio": 1.5, "znear": 0.1}}
+
+
+def shell(*arguments, cwd):
+    command = [sys.executable, "-m", "raywright", *map(str, arguments)]
+    return subprocess.run(command, capture_output=True, text=True, cwd=cwd, timeout=60)
+
+
+def gltf(tmp_path, emission=0.0, camera=None, lights=(), **node):
+    writer = Writer()
+    writer.node(mesh=writer.mesh({"emissiveFactor": [emission] * 3}), **node)
+    if camera is not None:
+        writer.node(camera=writer.add("cameras", EYE), **camera)
+    for light in lights:
+        writer.node(translation=[0, 0, 2], extensions=writer.light(**light))
+    (tmp_path / "file.glb").write_bytes(writer.glb())
+    return rw.load(tmp_path / "file.glb")
+
+
+def leftward(near):
+    """The way to the lamp of one who looks along -near."""
+    right = np.cross((0, 1, 0), near)
+    level = np.array(near) * np.cos(np.pi / 3) - right * np.sin(np.pi / 3)
+    return level * np.cos(np.radians(55)) + np.array((0, np.sin(np.radians(55)), 0))
+
+
+def test_the_same_mesh_looks_the_same_from_any_file(tmp_path):
+    knot = trimesh.creation.torus(1.0, 0.4)
+    # All its numbers are of 32 bits, and of few digits, so that every kind of file holds them all.
+    knot.vertices = np.round(knot.vertices * 256) / 256
+    pictures = []
+    for kind in ("obj", "ply", "stl", "glb", "off"):
+        knot.export(tmp_path / f"knot.{kind}")
+        shot = rw.load(tmp_path / f"knot.{kind}", width=40, height=30)
+        mesh, floor, lamp = shot.scene.shapes
+        assert np.array_equal(mesh.vertices[mesh.faces], knot.triangles)
+        expected, camera = rw.scenes.studio(knot, width=40, height=30)
+        assert (floor, lamp) == expected.shapes[1:]
+        assert shot.scene.environment == expected.environment
+        assert shot.camera == camera
+        pictures.append(shot.render(samples=4, progress=False).rgb)
+    assert all(np.array_equal(one, pictures[0]) for one in pictures)
+
+
+def test_a_material_looks_the_same_from_blenders_obj_and_glb(tmp_path):
+    head = "# Blender 4.2.0 MTL File: 'None'\n# www.blender.org\n\n"
+    statements = "Ns 250\nKa 0.5 0.5 0.5\nKd 0.8 0.4 0.2\nKs 0.5 0.5 0.5\nKe 0 0 0\nNi 1.5\nd 1.0\nillum 3"
+    path = write(tmp_path, statements, geometry=SQUARE.replace("vt", "#"), faces="f 1 2 3 4\n", head=head)
+    writer = Writer()
+    model = {"baseColorFactor": [0.8, 0.4, 0.2, 1], "metallicFactor": 0.5, "roughnessFactor": 0.5}
+    writer.node(mesh=writer.mesh({"pbrMetallicRoughness": model}))
+    (tmp_path / "file.glb").write_bytes(writer.glb())
+    one, other = (rw.load(one, width=24, height=18) for one in (path, tmp_path / "file.glb"))
+    assert one.scene.shapes[0].material == other.scene.shapes[0].material
+    assert np.array_equal(
+        one.render(samples=4, progress=False).rgb, other.render(samples=4, progress=False).rgb
+    )
+
+
+def test_a_camera_of_the_file_stays_and_gets_the_studios_light(tmp_path):
+    shot = gltf(tmp_path, camera={"translation": [0.5, 0.5, 3]})
+    assert (shot.camera.position, shot.camera.width, shot.camera.height) == ((0.5, 0.5, 3), 720, 480)
+    square, lamp = shot.scene.shapes
+    studio, _ = rw.scenes.studio(square)
+    assert shot.scene.environment == studio.environment
+    assert lamp.emission == studio.shapes[-1].emission
+    # It is 60 degrees to the left of who looks along -z, 55 above, and 5 times as far as the mesh reaches.
+    middle = lamp.vertices.mean(axis=0) - (0.5, 0.5, 0)
+    assert np.allclose(middle, 5 * np.sqrt(0.5) * leftward((0, 0, 1)), rtol=0, atol=1e-12)
+    # Seen from where the studio has its own camera, it is the studio's.
+    _, own = rw.scenes.studio(square)
+    assert np.allclose(shown([square], camera=own).scene.shapes[-1].vertices, studio.shapes[-1].vertices)
+
+
+@pytest.mark.parametrize(
+    ("way", "up", "near"),
+    [
+        ((1, 0, 0), (0, 1, 0), (1, 0, 0)),
+        ((0, 1, 0), (0, 0, -1), (0, 0, 1)),
+        ((0, -1, 0), (-1, 0, 0), (1, 0, 0)),
+    ],
+)
+def test_the_lamp_goes_with_the_camera_and_out_of_its_picture(way, up, near):
+    """As far as a camera that is far away, and to the left of one that looks straight down or up."""
+    box = trimesh.creation.box()
+    camera = rw.Camera(40 * np.array(way), (0, 0, 0), up, fov=70, width=90, height=60)
+    scene = shown(box, camera=camera).scene
+    assert np.allclose(scene.shapes[1].vertices.mean(axis=0), 40 * leftward(near), rtol=0, atol=1e-9)
+    hits = scene.intersect(*camera.rays())
+    # Who looks up sees it.
+    assert set(np.unique(hits.shape_id)) == ({-1, 0} if way[1] >= 0 else {-1, 0, 1})
+
+
+def test_what_has_light_of_its_own_is_shown_in_it(tmp_path):
+    alone = {"environment": None, "shapes": 1}
+
+    def held(shot):
+        return {"environment": shot.scene.environment, "shapes": len(shot.scene.shapes)}
+
+    assert held(gltf(tmp_path, lights=[{"type": "point", "intensity": 683.0}])) == alone
+    assert held(gltf(tmp_path, emission=1.0)) == alone
+    # Small lights on a device do not light it, unless somebody has put a camera there.
+    assert held(gltf(tmp_path, emission=0.01, camera={"translation": [0, 0, 4]})) == alone
+    assert held(gltf(tmp_path, emission=0.01))["shapes"] == 3
+    assert held(rw.load(write(tmp_path, "Ke 0.02 0.02 0.02"))) == alone
+    assert held(rw.load(write(tmp_path, "Ke 0.019 0.019 0.019")))["shapes"] == 3
+    shot = rw.load(write(tmp_path, "Kd 0 0 0\nKe 3 2 1"), width=32, height=24)
+    mask = shot.scene.intersect(*shot.camera.rays()).hit
+    image = shot.render(samples=1, integrator=rw.Path(max_depth=2), progress=False).rgb
+    # Pixels that are wholly on it.
+    inner = mask[1:-1, 1:-1] & mask[2:, 1:-1] & mask[:-2, 1:-1] & mask[1:-1, 2:] & mask[1:-1, :-2]
+    assert inner.sum() > 20
+    assert np.array_equal(image[1:-1, 1:-1][inner], np.broadcast_to(np.float32((3, 2, 1)), (inner.sum(), 3)))
+
+
+def test_the_mean_of_what_is_given_off(tmp_path):
+    """Over area: of a picture over all its points, and of copies with their sizes."""
+    mesh = rw.Mesh([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)], emission=(1.0, 2.0, 6.0))
+    dark = rw.Mesh([(0, 0, 0), (2, 0, 0), (0, 1, 0)], [(0, 1, 2)])
+    assert own_radiance([mesh]) == 3
+    assert own_radiance([mesh, dark]) == 1
+    twice = rw.Instance(mesh, [np.diag([2.0, 2, 2, 1]), np.diag([1.0, -1, 1, 1])])
+    assert own_radiance([twice, dark]) == pytest.approx(3 * 2.5 / 3.5)
+    pixels = picture(tmp_path, "half.png", [[255, 0], [188, 188]])
+    grey = ((188 / 255 + 0.055) / 1.055) ** 2.4
+    both = rw.Emission(rw.ProductTexture(rw.ImageTexture(pixels), 4.0), both_sides=True)
+    lit = rw.Mesh(mesh.vertices, mesh.faces, uv=np.zeros((3, 2)), emission=both)
+    assert own_radiance([lit]) == pytest.approx(4 * (1 + 2 * grey) / 4)
+    assert own_radiance([rw.Sphere((0, 0, 0), 1.0)]) == own_radiance([]) == 0
+
+
+def test_size_and_the_way_up_may_be_told(tmp_path):
+    path = write(tmp_path, "Kd 1 0 0")
+    assert rw.load(path, "z", 20, 10) == rw.Shot(*rw.scenes.studio(path, "z", 20, 10))
+    camera = gltf(tmp_path, camera={"translation": [0, 0, 4]}).camera
+    small = rw.load(tmp_path / "file.glb", width=72).camera
+    assert (camera.width, camera.height, small.width, small.height) == (720, 480, 72, 48)
+    gltf(tmp_path)
+    for one in (path, tmp_path / "file.glb"):
+        with pytest.raises(ValueError, match=r"^width must be"):
+            rw.load(one, width=0)
+        with pytest.raises(TypeError, match=r"^height must be"):
+            rw.load(one, height=1.5)
+
+
+def test_the_shell_shows_a_lamp(tmp_path):
+    write(tmp_path, "Kd 0 0 0\nKe 17 12 4\nfoo 1\nPc 1")
+    done = shell("render", "file.obj", "-o", "a.npy", "--samples", 1, "--quiet", "--width", 64, cwd=tmp_path)
+    told = "raywright: warning: file.mtl: what is not shown here is left out: foo of 'it', Pc of 'it'\n"
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", told)
+    assert np.load(tmp_path / "a.npy").max(axis=(0, 1)).tolist() == [17, 12, 4]
+    done = shell("info", "file.obj", cwd=tmp_path)
+    assert (done.returncode, done.stderr) == (0, told)
+    assert "faces        2" in done.stdout
+
+
+NUMBERS = [
+    "nan",
+    "inf",
+    "-1",
+    "1e999",
+    "1e38",
+    "1e-300",
+    "",
+    "x",
+    "0x10",
+    "1_0",
+    "\ufffd",
+    "-" * 500,
+    "9" * 5000,
+]
+KEYWORDS = ["Kd", "Ks", "Ke", "Ns", "Ni", "d", "Tr", "Tf", "illum", "Pr", "Pm", "map_Kd -s", "bump -bm"]
+CASES = [
+    *(
+        f"{base}\n{keyword} {n}{more}"
+        for n in NUMBERS
+        for keyword in KEYWORDS
+        for base, more in (
+            ("Kd 0.5 0.5 0.5\nKs 0.5 0.5 0.5\nNs 10\nillum 2", ""),
+            ("illum 7\nNi 1.5\nPr 0.5", f" {n} {n}"),
+        )
+    ),
+    *(f"Kd 1 1 1\nKs 1 1 1\nNi {n}\nNs {n}\nKe {n} {n} {n}\nillum {i}" for n in NUMBERS for i in range(11)),
+    "newmtl it\n" * 1000,
+    "\\\n" * 1000,
+    "\0" * 1000,
+    "map_Kd " + "a/" * 5000,
+    "map_Kd \0",
+    "map_Kd -s -o -bm -clamp",
+    "map_Kd -s",
+    "\n".join(f"k{i} 1" for i in range(10_000)),
+]
+
+
+def test_hostile_materials_are_shown_somehow(tmp_path):
+    """Each is read, with few short warnings, and nothing that is no light comes of it."""
+    picture(tmp_path, "a.png", np.full((4, 4, 3), 200))
+    shapes = []
+    for i, statements in enumerate(CASES):
+        path = write(tmp_path, statements, faces=FACE)
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            (mesh,) = rw.Scene(path).shapes
+        assert len(caught) <= 5
+        assert all(len(str(one.message)) < 1000 and "\n" not in str(one.message) for one in caught)
+        shapes.append(mesh.transformed([(1, 0, 0, i % 20), (0, 1, 0, i // 20), (0, 0, 1, 0), (0, 0, 0, 1)]))
+    camera = rw.Camera((10, 10, 30), (10, 10, 0), fov=60, width=60, height=60)
+    image = rw.render(rw.Scene(shapes, environment=1.0), camera, samples=8, progress=False)
+    assert not image.warnings or all("few samples" in one for one in image.warnings)
+    assert np.isfinite(image.rgb).all()
+    assert (image.rgb >= 0).all()
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        np.random.default_rng(3).bytes(100_000),
+        b"newmtl it\n" + np.random.default_rng(4).bytes(100_000),
+        b"newmtl it\n" + b"Kd 0.5 0.5 0.5\n" * 10**6,
+        b"".join(b"newmtl m%d\nKd 1 0 0\n" % i for i in range(10**5)),
+        b"newmtl it\n" + b"".join(b"k%d 1\n" % i for i in range(10**5)),
+        b"newmtl it\nmap_Kd " + b"-s 1 " * 10**5 + b"a.png\n",
+        b" " * 10**7,
+        b"newmtl it" + b" x" * 10**6,
+        "newmtl it\nKd 1 0 0\n".encode("utf-16"),
+        b"",
+    ],
+    ids=[
+        "noise",
+        "noise within",
+        "lines",
+        "materials",
+        "keywords",
+        "options",
+        "blanks",
+        "name",
+        "UTF-16",
+        "empty",
+    ],
+)
+def test_hostile_files_of_materials_do_no_harm(tmp_path, data):
+    path = write(tmp_path, "")
+    (tmp_path / "file.mtl").write_bytes(data)
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        (mesh,) = rw.Scene(path).shapes
+    assert len(mesh.faces) == 2
+    assert len(caught) <= 4
+    assert all(len(str(one.message)) < 1000 and "\n" not in str(one.message) for one in caught)
+
+
+def test_many_files_of_materials_are_not_all_looked_for(tmp_path):
+    lines = "".join(f"mtllib {i}.mtl {i}b.mtl\n" for i in range(100_000))
+    (tmp_path / "file.obj").write_text(lines + SQUARE + FACE)
+    with pytest.warns(
+        RuntimeWarning, match=r"^file.obj: files of materials are left out: '0.mtl' .* and \d+ more$"
+    ):
+        assert len(rw.Scene(tmp_path / "file.obj").shapes) == 1
