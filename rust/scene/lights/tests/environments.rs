@@ -179,7 +179,8 @@ fn daylight_goes_out_as_the_sun_sets() {
     };
     let day = |degrees: f64| SunSky::new([way(degrees), DVec3::Z], 3.0, white(0.2), [1.0, 1.0]);
     let zenith = |degrees: f64| day(degrees).outside(DVec3::Z).y;
-    // No step at the horizon, the sky at 6 degrees below it as much darker as the ground is by the almanac, and then night.
+    // No step at the horizon, the sky at 6 degrees below it as much darker as the ground is by the almanac, and then
+    // night.
     assert!((zenith(-1e-7) / zenith(1e-7) - 1.0).abs() < 1e-5, "{} {}", zenith(-1e-7), zenith(1e-7));
     assert!((zenith(-6.0) / zenith(0.0) * 10f64.powf(2.88) / 3.4 - 1.0).abs() < 0.02);
     for below in [18.5, 60.0, 90.0] {
