@@ -21,6 +21,7 @@ mod per_vertex;
 mod plan;
 mod points;
 mod pose;
+mod rounding;
 mod shading;
 mod spawn;
 mod surfaces;
@@ -44,6 +45,7 @@ pub use lights::{
 pub use materials::{DiffuseMaterial, Material};
 pub use plan::{Kernel, Plan, PlanRow, SceneNeeds};
 pub use points::HitPoint;
+pub use rounding::{Precision, Rounding, rounded};
 pub use shading::{Footprint, ShadingPoint};
 pub use spawn::Departure;
 pub use surfaces::Surfaces;
