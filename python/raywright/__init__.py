@@ -43,6 +43,7 @@ from .materials import (
 from .query.cones import ConeTouches
 from .query.hits import AllHits, ClosestPoints, Hits, QueryCost
 from .query.interactions import Interactions, LightSamples, Rays, Scattered, power_heuristic
+from .query.leaving import LeavingRays
 from .query.surface import Surface
 from .rendering.aovs import AOVS, aovs
 from .rendering.filters import (
@@ -131,6 +132,7 @@ __all__ = [
     "KdTree",
     "LanczosFilter",
     "Lattice",
+    "LeavingRays",
     "LightSamples",
     "Marble",
     "Mask",

@@ -25,6 +25,7 @@ __all__ = [
     "first_hits",
     "implicit_trouble",
     "interactions",
+    "leave",
     "matrix_trouble",
     "metal_index",
     "metals",
@@ -55,6 +56,8 @@ class AcceleratorInfo:
 
     @property
     def kind(self) -> str: ...
+    @property
+    def precision(self) -> str: ...
     @property
     def primitives(self) -> int: ...
     @property
@@ -169,6 +172,11 @@ class CompiledScene:
         """Points on primitives: (N,3), NaN for misses."""
     def normals(self, shape_id: NDArray[np.int32], primitive: NDArray[np.int32]) -> NDArray[np.float64]:
         """Find unit geometric normals: (N,3), NaN for misses."""
+    def errors(self, shape_id: NDArray[np.int32], primitive: NDArray[np.int32]) -> NDArray[np.float64]:
+        """Bound how far each coordinate of `positions` is from the surface: (N,1), NaN for misses."""
+    @property
+    def loss(self) -> tuple[float, float] | None:
+        """How far rounding has moved vertices, and as a share of their mesh's extent, where it is a loss."""
     @property
     def growth(self) -> float:
         """The accelerator's SAH cost over what it was when it was built."""
@@ -460,6 +468,20 @@ def random_numbers(
     seed: int, pixel: NDArray[np.uint32], sample: NDArray[np.uint32], dimension: int, pair: bool
 ) -> NDArray[np.float64]:
     """One number, or a pair, of a dimension of each sample of a pixel: (N,) or (N,2)."""
+
+def leave(
+    position: NDArray[np.float64],
+    error: NDArray[np.float64],
+    normal: NDArray[np.float64],
+    directions: _Floats,
+    which: NDArray[np.int64] | None,
+    shape: tuple[int, ...],
+) -> NDArray[np.float64]:
+    """Where rays of leading shape `shape` start that leave N points along some directions: (..., 3).
+
+    ``which`` says which point each leaves; without it, all are left in turn, over and over. ``directions``
+    has one row, or one for each ray.
+    """
 
 def points(
     scene: CompiledScene,

@@ -46,6 +46,7 @@ impl<L: Leaves<LANES>> BruteForce<L> {
         let contents = Contents::new(&Input { region, boxes: Vec::new(), primitives }, &lists);
         let info = Info {
             kind: format!("brute force, {}", L::PRECISION),
+            precision: L::PRECISION,
             primitives: count,
             leaves: 1,
             bytes: contents.bytes(),

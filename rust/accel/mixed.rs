@@ -80,6 +80,7 @@ impl Mixed {
         let (a, b) = (triangles.info(), objects.info());
         let info = Info {
             kind: format!("{}; beside it {}", a.kind, b.kind),
+            precision: a.precision,
             primitives: a.primitives + b.primitives,
             nodes: a.nodes + b.nodes,
             leaves: a.leaves + b.leaves,

@@ -202,6 +202,8 @@ pub struct Cost {
 pub struct Info {
     /// What it is, and how it was built.
     pub kind: String,
+    /// How precisely the corners of triangles are kept in its leaves: "single" or "double".
+    pub precision: &'static str,
     /// Primitives in it: those that can be hit.
     pub primitives: usize,
     /// Inner nodes.

@@ -90,6 +90,7 @@ impl<const N: usize, L: Leaves<N>> Walked<N, L> {
         let of_structure = self.structure.info();
         self.info = Info {
             kind: format!("{}, {}", of_structure.kind, L::PRECISION),
+            precision: L::PRECISION,
             bytes: of_structure.bytes + self.contents.bytes() + size_of_val(self.unbounded.as_slice()),
             primitives: self.info.primitives,
             build_seconds: self.info.build_seconds,

@@ -9,6 +9,7 @@ use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyFloat, PyTuple};
 
 use crate::math::{DVec3, Vec3};
+use crate::scene::Vertices;
 
 /// A (..., 3) array of either float type.
 pub enum Triples<'py> {
@@ -96,6 +97,14 @@ impl Rows<'_> {
         match self {
             Self::Double(rows) => rows[i].vector(),
             Self::Single(rows) => rows[i].vector(),
+        }
+    }
+
+    /// All of them as vertices, with all of their digits.
+    pub fn vertices(self) -> Vertices {
+        match self {
+            Self::Double(rows) => Vertices::Double(rows.iter().map(|&r| DVec3::from_array(r)).collect()),
+            Self::Single(_) => Vertices::Single(self.to_single()),
         }
     }
 

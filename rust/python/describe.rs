@@ -9,9 +9,8 @@ use super::instances::{self, Wishes};
 use super::lights;
 use super::materials::Looks;
 use super::shapes;
-use crate::math::DVec3;
 use crate::scene::textures::Needs;
-use crate::scene::{self, SceneDescription};
+use crate::scene::{self, Precision, Rounding, SceneDescription, Surface};
 
 /// `raywright.Scene`.
 #[derive(FromPyObject)]
@@ -37,23 +36,18 @@ struct Mesh<'py> {
 impl Scene<'_> {
     /// The core's own description of it, and what has to live as long as what is made of it.
     pub fn describe(self) -> PyResult<(SceneDescription, Vec<Py<PyAny>>)> {
-        let double = match self.precision.as_str() {
-            "single" => false,
-            "double" => true,
+        let precision = match self.precision.as_str() {
+            "auto" => Precision::Auto,
+            "single" => Precision::Single,
+            "double" => Precision::Double,
             other => {
                 return Err(PyValueError::new_err(format!(
-                    "precision is {other:?}, expected \"single\" or \"double\""
+                    "precision is {other:?}, expected \"auto\", \"single\" or \"double\""
                 )));
             }
         };
-        let (wishes, mut kept) = (Wishes { double, quality: &self.quality }, Vec::new());
-        let looks = Looks::default();
-        let shape = |shape: &Bound<'_, PyAny>| describe(shape, double, &looks);
-        let mut shapes = Vec::with_capacity(self.shapes.len());
-        for one in &self.shapes {
-            let is_instance = instances::is_instance(one)?;
-            shapes.push(if is_instance { instances::read(one, wishes, &mut kept, &shape)? } else { shape(one)? });
-        }
+        let (wishes, looks, mut kept) = (Wishes { precision, quality: &self.quality }, Looks::default(), Vec::new());
+        let shapes = read(&self.shapes, wishes, &looks, &mut kept)?;
         let mut all = self.lights.iter().map(lights::read).collect::<PyResult<Vec<_>>>()?;
         all.extend(lights::read_environment(self.environment)?);
         Ok((SceneDescription { shapes, lights: all }, kept))
@@ -67,42 +61,74 @@ struct Look<'py> {
     emission: Option<Bound<'py, PyAny>>,
 }
 
-/// Reads any shape: a mesh, or what is none.
-fn describe(shape: &Bound<'_, PyAny>, double: bool, looks: &Looks) -> PyResult<scene::Shape> {
+/// Reads the shapes of a scene, or of a group in it. Vertices are rounded as they are read, and read again where that is a loss: all of
+/// them, so that meshes which share some still do.
+fn read(
+    all: &[Bound<'_, PyAny>],
+    wishes: Wishes<'_>,
+    looks: &Looks,
+    kept: &mut Vec<Py<PyAny>>,
+) -> PyResult<Vec<scene::Shape>> {
+    let (mut shapes, mut rounded) = (Vec::with_capacity(all.len()), Vec::new());
+    for one in all {
+        if instances::is_instance(one)? {
+            shapes.push(instances::read(one, wishes, kept, &|within, kept| read(within, wishes, looks, kept))?);
+            continue;
+        }
+        let (shape, given) = describe(one, wishes.precision, looks)?;
+        rounded.extend(given.map(|given| (shapes.len(), given)));
+        shapes.push(shape);
+    }
+    let meshes = shapes.iter().filter_map(|shape| if let Surface::Mesh(m) = &shape.surface { Some(m) } else { None });
+    if wishes.precision.is_double(meshes.map(|mesh| mesh.rounding).fold(Rounding::default(), Rounding::worst)) {
+        for (number, given) in rounded {
+            if let Surface::Mesh(mesh) = &mut shapes[number].surface {
+                mesh.vertices = given.rows("vertices")?.vertices();
+            }
+        }
+    }
+    Ok(shapes)
+}
+
+/// Reads any shape: a mesh, or what is none; and of a mesh whose vertices were rounded, all of their digits.
+fn describe<'py>(
+    shape: &Bound<'py, PyAny>,
+    precision: Precision,
+    looks: &Looks,
+) -> PyResult<(scene::Shape, Option<Triples<'py>>)> {
     let look: Look<'_> = shape.extract()?;
     let material = looks.material(&look.material)?;
     let emission =
         look.emission.map_or_else(|| Ok(scene::Emission::default()), |e| lights::read_emission(&e, &looks.textures))?;
     let look = scene::Shape { material, emission, ..scene::Shape::default() };
-    let surface = if shape.get_type().name()? == "Mesh" {
-        shape.extract::<Mesh<'_>>()?.describe(double, look.needs())?.into()
-    } else {
-        shapes::read(shape)?.into()
-    };
-    Ok(scene::Shape { surface, ..look })
+    if shape.get_type().name()? != "Mesh" {
+        return Ok((scene::Shape { surface: shapes::read(shape)?.into(), ..look }, None));
+    }
+    let given = shape.extract::<Mesh<'py>>()?;
+    let mesh = given.describe(precision, look.needs())?;
+    let is_rounded = mesh.rounding.moved > 0.0;
+    Ok((scene::Shape { surface: mesh.into(), ..look }, is_rounded.then_some(given.vertices)))
 }
 
 impl Mesh<'_> {
     /// Of what is there of its vertices, only what is needed is read.
-    fn describe(self, double: bool, needs: Needs) -> PyResult<scene::Mesh> {
-        let vertices = match self.vertices.rows("vertices")? {
-            Rows::Double(rows) if double => {
-                scene::Vertices::Double(rows.iter().map(|&r| DVec3::from_array(r)).collect())
-            }
-            rows => scene::Vertices::Single(rows.to_single()),
-        };
-        let faces = rows("faces", &self.faces)?.to_vec();
-        if let Some(face) = faces.iter().position(|f| f.iter().any(|&v| v as usize >= vertices.len())) {
-            let (corners, count) = (faces[face], vertices.len());
+    fn describe(&self, precision: Precision, needs: Needs) -> PyResult<scene::Mesh> {
+        let (given, faces) = (self.vertices.rows("vertices")?, rows("faces", &self.faces)?.to_vec());
+        let count = given.len();
+        if let Some(face) = faces.iter().position(|f| f.iter().any(|&v| v as usize >= count)) {
+            let corners = faces[face];
             return Err(PyValueError::new_err(format!("face {face} is {corners:?}, but there are {count} vertices")));
         }
+        let (vertices, rounding) = match given {
+            Rows::Double(rows) if precision != Precision::Double => scene::rounded(rows, &faces),
+            given => (given.vertices(), Rounding::default()),
+        };
         let normals = self.normals.as_ref().map(|n| n.rows("normals").map(|rows| rows.to_single())).transpose()?;
-        let uvs = self.uv.filter(|_| needs.uv).map(|uv| pairs("uv", &uv)).transpose()?;
-        let colours = self.colors.filter(|_| needs.colours);
+        let uvs = self.uv.as_ref().filter(|_| needs.uv).map(|uv| pairs("uv", uv)).transpose()?;
+        let colours = self.colors.as_ref().filter(|_| needs.colours);
         let colours = colours.map(|c| c.rows("colors").map(|rows| rows.to_single())).transpose()?;
         let colours = colours.map(|all| all.into_iter().map(|colour| colour.to_array()).collect());
-        let mesh = scene::Mesh { vertices, faces, normals, uvs, colours };
-        let count = mesh.vertices.len();
+        let mesh = scene::Mesh { vertices, rounding, faces, normals, uvs, colours };
         let sizes =
             [mesh.normals.as_ref().map(Vec::len), mesh.uvs.as_ref().map(Vec::len), mesh.colours.as_ref().map(Vec::len)];
         match sizes.into_iter().flatten().find(|&size| size != count) {

@@ -15,6 +15,10 @@ impl AcceleratorInfo {
         &self.0.kind
     }
     #[getter]
+    fn precision(&self) -> &'static str {
+        self.0.precision
+    }
+    #[getter]
     fn primitives(&self) -> usize {
         self.0.primitives
     }
@@ -43,7 +47,7 @@ impl AcceleratorInfo {
         self.0.sah_cost
     }
     fn __repr__(&self) -> String {
-        let Info { kind, primitives, nodes, leaves, depth, bytes, build_seconds, sah_cost } = &self.0;
+        let Info { kind, primitives, nodes, leaves, depth, bytes, build_seconds, sah_cost, .. } = &self.0;
         format!(
             "AcceleratorInfo(kind={kind:?}, primitives={primitives}, nodes={nodes}, leaves={leaves}, depth={depth}, \
              bytes={bytes}, build_seconds={build_seconds:.4}, sah_cost={sah_cost:.2})"

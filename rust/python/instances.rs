@@ -10,7 +10,7 @@ use std::sync::{Arc, LazyLock, Mutex, Weak};
 use super::accelerators;
 use super::arrays::vectors;
 use crate::math::Hit;
-use crate::scene::{self, Copies, Group, Matrix, Surface};
+use crate::scene::{self, Copies, Group, Matrix, Precision, Surface};
 use crate::workers;
 
 /// `raywright.Instance`.
@@ -25,8 +25,8 @@ struct Instance<'py> {
 /// How a scene wants its groups.
 #[derive(Clone, Copy)]
 pub struct Wishes<'a> {
-    /// Whether numbers are kept as f64.
-    pub double: bool,
+    /// How precisely vertices are kept.
+    pub precision: Precision,
     /// How much a build may take.
     pub quality: &'a str,
 }
@@ -37,7 +37,7 @@ pub struct Wishes<'a> {
 struct Key {
     shapes: Vec<usize>,
     accelerator: String,
-    double: bool,
+    precision: Precision,
     quality: String,
 }
 
@@ -59,17 +59,19 @@ pub fn is_instance(shape: &Bound<'_, PyAny>) -> PyResult<bool> {
     Ok(shape.get_type().name()?.to_str()? == "Instance")
 }
 
-/// Reads an instance. `shape` reads what is in it and is none; what has to live as long as the group is added to
-/// `kept`.
+/// What reads the shapes of a group; what has to live as long as groups among them is added to the last.
+type ReadShapes<'a> = &'a dyn Fn(&[Bound<'_, PyAny>], &mut Vec<Py<PyAny>>) -> PyResult<Vec<scene::Shape>>;
+
+/// Reads an instance. `read_shapes` reads what is in it; what has to live as long as the group is added to `kept`.
 pub fn read(
     instance: &Bound<'_, PyAny>,
     wishes: Wishes<'_>,
     kept: &mut Vec<Py<PyAny>>,
-    shape: &dyn Fn(&Bound<'_, PyAny>) -> PyResult<scene::Shape>,
+    read_shapes: ReadShapes<'_>,
 ) -> PyResult<scene::Shape> {
     let py = instance.py();
     let Instance { shapes, transform, transform_end, accelerator } = instance.extract()?;
-    let group = group(&shapes, &accelerator, wishes, kept, shape)?;
+    let group = group(&shapes, &accelerator, wishes, kept, read_shapes)?;
     let start = matrices("transform", &transform)?;
     let end = transform_end.as_ref().map(|end| matrices("transform_end", end)).transpose()?;
     let copies = in_pool(py, || match end {
@@ -92,13 +94,13 @@ fn group(
     accelerator: &Bound<'_, PyAny>,
     wishes: Wishes<'_>,
     kept: &mut Vec<Py<PyAny>>,
-    shape: &dyn Fn(&Bound<'_, PyAny>) -> PyResult<scene::Shape>,
+    read_shapes: ReadShapes<'_>,
 ) -> PyResult<Arc<Group>> {
     let py = shapes.py();
     let key = Key {
         shapes: shapes.iter().map(|s| s.as_ptr() as usize).collect(),
         accelerator: accelerator.repr()?.to_str()?.to_owned(),
-        double: wishes.double,
+        precision: wishes.precision,
         quality: wishes.quality.to_owned(),
     };
     // Before it is looked for: from here on no other objects can stand at these addresses.
@@ -107,10 +109,7 @@ fn group(
     if let Some(group) = known().get(&key).and_then(Weak::upgrade) {
         return Ok(group);
     }
-    let mut inner = Vec::with_capacity(shapes.len());
-    for one in shapes {
-        inner.push(if is_instance(&one)? { read(&one, wishes, kept, shape)? } else { shape(&one)? });
-    }
+    let inner = read_shapes(&shapes.iter().collect::<Vec<_>>(), kept)?;
     let build = accelerators::read(accelerator, wishes.quality)?;
     let group = in_pool(py, || Group::new(inner, build))?.map_err(|e| PyValueError::new_err(e.to_string()))?;
     let group = Arc::new(group);

@@ -11,6 +11,7 @@ use crate::integrators::{
     AmbientOcclusion, Channel, Direct, Distributed, Integrator, Path, RayCast, Whitted, aovs as observe,
 };
 use crate::optics::Rgb;
+use crate::scene::PlanRow;
 use crate::workers::watched;
 
 /// Any integrator of the package.
@@ -111,7 +112,7 @@ pub fn aovs<'py>(
 
 /// What a scene needs and which kernel shades it: the kernel's name, and rows of what, whether, and what follows.
 #[pyfunction]
-pub fn plan(scene: &Bound<'_, CompiledScene>) -> (&'static str, Vec<(&'static str, bool, &'static str)>) {
+pub fn plan(scene: &Bound<'_, CompiledScene>) -> (&'static str, Vec<PlanRow>) {
     let plan = scene.get().0.plan();
     (plan.kernel().name(), plan.rows())
 }

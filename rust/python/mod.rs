@@ -12,6 +12,7 @@ mod info;
 mod instances;
 mod integrators;
 mod interactions;
+mod leave;
 mod lights;
 mod materials;
 mod points;
@@ -60,6 +61,8 @@ mod _core {
     use super::integrators::{aovs, plan};
     #[pymodule_export]
     use super::interactions::{Interactions, interactions};
+    #[pymodule_export]
+    use super::leave::leave;
     #[pymodule_export]
     use super::materials::{metal_index, metals};
     #[pymodule_export]

@@ -299,6 +299,15 @@ impl CompiledScene {
         self.of_primitives(py, &shape_id, &primitive, |geometry, p, _| geometry.normal(p).to_array())
     }
 
+    fn errors<'py>(
+        &self,
+        py: Python<'py>,
+        shape_id: PyReadonlyArray1<'py, i32>,
+        primitive: PyReadonlyArray1<'py, i32>,
+    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        self.of_primitives(py, &shape_id, &primitive, |geometry, p, _| [geometry.error(p)])
+    }
+
     #[getter]
     fn growth(&self) -> f64 {
         self.0.growth()
@@ -318,6 +327,12 @@ impl CompiledScene {
     #[getter]
     fn dropped(&self) -> usize {
         self.0.geometry().dropped()
+    }
+
+    /// How far rounding to f32 has moved vertices, and what share of their mesh's extent that is, where it is a loss.
+    #[getter]
+    fn loss(&self) -> Option<(f64, f64)> {
+        self.0.plan().loss().map(|rounding| (rounding.moved, rounding.share()))
     }
 
     #[getter]
@@ -341,17 +356,17 @@ impl CompiledScene {
         &self.0
     }
 
-    /// A vector of each primitive, NaN for misses.
-    fn of_primitives<'py>(
+    /// So many numbers of each primitive, NaN for misses.
+    fn of_primitives<'py, const K: usize>(
         &self,
         py: Python<'py>,
         shape_id: &PyReadonlyArray1<'py, i32>,
         primitive: &PyReadonlyArray1<'py, i32>,
-        vector: impl Fn(&scene::Geometry, u32, usize) -> [f64; 3] + Sync,
+        numbers_of: impl Fn(&scene::Geometry, u32, usize) -> [f64; K] + Sync,
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let (shape, primitive) = (numbers("shape_id", shape_id)?, numbers("primitive", primitive)?);
         let count = primitive.len();
-        let out = unwritten(py, &[count], Some(3))?;
+        let out = unwritten(py, &[count], Some(K))?;
         {
             let geometry = self.0.geometry();
             let mut out = out.readwrite();
@@ -360,9 +375,9 @@ impl CompiledScene {
                     let i = start + i;
                     *to = match (u32::try_from(shape[i]), u32::try_from(primitive[i])) {
                         (Ok(shape), Ok(primitive)) => {
-                            vector(geometry, geometry.primitives_of(shape).start + primitive, i)
+                            numbers_of(geometry, geometry.primitives_of(shape).start + primitive, i)
                         }
-                        _ => [f64::NAN; 3],
+                        _ => [f64::NAN; K],
                     };
                 }
             })?;

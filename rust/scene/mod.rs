@@ -15,6 +15,7 @@ pub mod materials;
 pub mod media;
 mod photons;
 mod plan;
+mod rounding;
 mod scatters;
 mod shading;
 mod spawn;
@@ -40,6 +41,7 @@ pub use lights::{
 };
 pub use materials::{DiffuseMaterial, Material};
 pub use plan::{Kernel, Plan, PlanRow, SceneNeeds};
+pub use rounding::{Precision, Rounding, rounded};
 pub use scatters::Scatters;
 pub use shading::{Footprint, ShadingPoint};
 pub use spawn::Departure;

@@ -1,8 +1,10 @@
 //! What a scene needs, what is left out, and which kernel shades it.
 
 use super::textures::Needs;
-use super::{Emission, Geometry, Lights, Material};
+use super::{Emission, Geometry, Lights, Material, Rounding};
+use crate::accel::Primitives;
 use crate::optics::Bsdf;
+use std::borrow::Cow;
 use std::ops::BitOr;
 use std::sync::Arc;
 
@@ -29,6 +31,8 @@ pub struct SceneNeeds {
     pub copies: bool,
     /// What moves while the shutter is open.
     pub motion: bool,
+    /// Vertices with more digits than f32 has.
+    pub double: bool,
     /// Anything that shines.
     pub light: bool,
 }
@@ -49,6 +53,7 @@ impl BitOr for SceneNeeds {
             shapes: self.shapes | other.shapes,
             copies: self.copies | other.copies,
             motion: self.motion | other.motion,
+            double: self.double | other.double,
             light: self.light | other.light,
         }
     }
@@ -83,6 +88,8 @@ impl Kernel {
 #[derive(Clone, Debug)]
 pub struct Plan {
     needs: SceneNeeds,
+    /// What rounding to f32 did to vertices, or would have done: of the mesh, in groups too, to which that is most.
+    rounding: Rounding,
     /// How many lights are asked one by one where light is scattered sharply; 0 if it is one of all.
     few: u32,
     /// How each shape scatters, if it does so alike everywhere ([`Material::constant`]).
@@ -94,7 +101,7 @@ pub struct Plan {
 const GLOSS: f64 = 0.35;
 
 /// A line of a plan: what it is about, whether the scene has it, and what that means.
-pub type PlanRow = (&'static str, bool, &'static str);
+pub type PlanRow = (&'static str, bool, Cow<'static, str>);
 
 impl Plan {
     /// The plan of a scene.
@@ -104,15 +111,17 @@ impl Plan {
             shapes: geometry.first_other().is_some_and(|first| geometry.copies_of(first).is_none()),
             copies: geometry.has_copies(),
             motion: geometry.moves(),
+            double: !geometry.is_single(),
             light: !lights.is_dark(),
             ..SceneNeeds::default()
         };
+        let mut rounding = geometry.rounding();
         let mut constants = Vec::with_capacity(materials.len());
         for (shape, material) in materials.iter().enumerate() {
             let shape = shape as u32;
             match geometry.copies_of(shape) {
                 Some(copies) => {
-                    needs = needs | Self::of_copies(copies.group());
+                    needs = needs | Self::of_copies(copies.group(), &mut rounding);
                     constants.push(None);
                 }
                 None => {
@@ -122,7 +131,7 @@ impl Plan {
             }
         }
         let few = if needs.scattering { lights.few() } else { 0 };
-        Self { needs, few, constants }
+        Self { needs, rounding, few, constants }
     }
 
     fn of(material: &dyn Material, emission: &Emission) -> SceneNeeds {
@@ -139,13 +148,15 @@ impl Plan {
     }
 
     /// Of a group: with an interior in it, its copies may overlap.
-    fn of_copies(group: &super::Group) -> SceneNeeds {
+    fn of_copies(group: &super::Group, rounding: &mut Rounding) -> SceneNeeds {
         let geometry = group.geometry();
-        let mut needs = SceneNeeds { smooth: geometry.is_smooth(), ..SceneNeeds::default() };
+        *rounding = rounding.worst(geometry.rounding());
+        let (smooth, double) = (geometry.is_smooth(), !geometry.is_single());
+        let mut needs = SceneNeeds { smooth, double, ..SceneNeeds::default() };
         for (shape, (material, emission)) in group.looks().enumerate() {
             needs = needs
                 | match geometry.copies_of(shape as u32) {
-                    Some(copies) => Self::of_copies(copies.group()),
+                    Some(copies) => Self::of_copies(copies.group(), rounding),
                     None => Self::of(material, emission),
                 };
         }
@@ -155,6 +166,23 @@ impl Plan {
     /// What the scene needs.
     pub fn needs(&self) -> SceneNeeds {
         self.needs
+    }
+
+    /// What rounding to f32 has done to vertices, where that is a loss.
+    pub fn loss(&self) -> Option<Rounding> {
+        (!self.needs.double && self.rounding.is_loss()).then_some(self.rounding)
+    }
+
+    /// Which digits of vertices are kept, and why.
+    fn digits(&self) -> Cow<'static, str> {
+        let Rounding { moved, .. } = self.rounding;
+        let figure = || format!("{moved:.1e}, {:.1e} of its mesh's extent", self.rounding.share());
+        match (self.needs.double, moved > 0.0) {
+            (true, true) => format!("all digits kept: float32 would move one by {}", figure()).into(),
+            (true, false) => "all digits kept, as asked for".into(),
+            (false, true) => format!("kept as float32, which moves none by more than {}", figure()).into(),
+            (false, false) => "kept as float32, which has all of their digits".into(),
+        }
     }
 
     /// Whether each of few lights is asked ([`Lights::sample_one`]), and one of them gets the shadow ray, at a point
@@ -193,7 +221,8 @@ impl Plan {
     /// The plan as a table.
     pub fn rows(&self) -> Vec<PlanRow> {
         let needs = &self.needs;
-        let row = |what, has, with, without| (what, has, if has { with } else { without });
+        let row =
+            |what, has, with: &'static str, without: &'static str| (what, has, if has { with } else { without }.into());
         vec![
             row("light", needs.light, "a light is asked at each point", "no light is asked, no shadow ray sent"),
             row(
@@ -223,6 +252,7 @@ impl Plan {
             row("shapes", needs.shapes, "a tree of their own beside the triangles'", "no tree beside the triangles'"),
             row("instances", needs.copies, "rays are taken to each copy's space", "rays stay in the world"),
             row("motion", needs.motion, "rays are spread over the shutter's time", "all rays at one time"),
+            ("float64 vertices", needs.double, self.digits()),
         ]
     }
 }

@@ -19,7 +19,9 @@ impl Departure {
     /// How many times the error of the position a ray starts off the surface. With M the largest coordinate of the
     /// primitive, the position is within 8 ε M = 2⁻⁴⁹ M of its plane in each coordinate, at most 2⁻⁴⁸ M along the
     /// normal. The ray's own test takes the corners relative to its origin, up to 2 M long, and its distance from them
-    /// by sums of products, with at most 16 roundings of ε/2: another 2⁻⁴⁸ M. Twice the sum of both is 2⁻⁴⁶ M.
+    /// by sums of products, with at most 16 roundings of ε/2: another 2⁻⁴⁸ M. Twice the sum of both is 2⁻⁴⁶ M. On a sliver the products
+    /// weigh more than the distance, but where that could make a difference the test takes exact ones, and then this is plenty
+    /// ([`crate::shapes::triangle::EdgeRay`]).
     const SAFETY: f64 = 8.0;
 
     /// Where a segment ends, as a share of its way. What is left to the surface that it goes to is more than the error
@@ -30,7 +32,13 @@ impl Departure {
     /// Where rays from a point of a surface start.
     #[inline]
     pub fn new(surface: &SurfacePoint) -> Self {
-        Self { position: surface.position, offset: surface.normal * (Self::SAFETY * surface.error) }
+        Self::off(surface.position, surface.error, surface.normal)
+    }
+
+    /// Where rays start from a point of a surface of this normal, of which each coordinate is known to within `error`.
+    #[inline]
+    pub fn off(position: DVec3, error: f64, normal: DVec3) -> Self {
+        Self { position, offset: normal * (Self::SAFETY * error) }
     }
 
     /// How far around a hit of a ray, in lengths of its direction, surfaces count as one with the surface hit: rays
@@ -80,7 +88,7 @@ mod tests {
     use crate::math::Vec3;
     use crate::sampling::{Sampler, warp};
     use crate::scene::fixtures::scene;
-    use crate::scene::{Geometry, Mesh, SceneDescription, Shape};
+    use crate::scene::{Geometry, Mesh, SceneDescription, Shape, Vertices};
 
     /// A triangle of this size and place, turned at random.
     fn triangle(size: f64, place: f64, sample: u32) -> Mesh {
@@ -124,6 +132,36 @@ mod tests {
                 scene.occluded(&rays, &mut occluded);
                 assert!(!occluded.contains(&true), "size {size} at {place}");
             }
+        }
+    }
+
+    #[test]
+    fn no_ray_hits_the_sliver_it_leaves() {
+        for sample in 0..600 {
+            let (aspect, place) = ([10.0, 1e3, 1e6, 1e8][sample as usize % 4], [0.0, 1.0, 1e4][sample as usize % 3]);
+            let mut sampler = Sampler::new(5, 0, sample);
+            let [start, along, across] = [0, 1, 2].map(|d| warp::uniform_sphere(sampler.two(d)));
+            let (start, across) = (start * place, across.reject_from(along) / aspect);
+            let vertices = Vertices::Double(vec![start, start + along, start + 0.3 * along + across]);
+            // In a large scene, too, whose bounds on errors are larger.
+            let far = if sample % 2 == 0 { 0.0 } else { 1e3 };
+            let other = Mesh { faces: vec![[0, 0, 0]], ..triangle(1.0, far, sample) };
+            let shapes = [Mesh { vertices, faces: vec![[0, 1, 2]], ..Mesh::default() }, other];
+            let shapes = shapes.map(|mesh| Shape { surface: mesh.into(), ..Shape::default() }).into();
+            let scene = scene(SceneDescription { shapes, ..Default::default() });
+            let mut rays = Vec::new();
+            for draw in 0..200 {
+                let mut sampler = Sampler::new(6, sample, draw);
+                let surface = scene.geometry().on_triangle(0, warp::uniform_triangle(sampler.two(0)));
+                let direction = warp::uniform_sphere(sampler.two(1));
+                // The normal is known to within the aspect times a rounding: what is flatter has no side.
+                if direction.dot(surface.normal).abs() > 64.0 * f64::EPSILON * aspect * (1.0 + place) {
+                    rays.push(Departure::new(&surface).ray(direction));
+                }
+            }
+            let mut occluded = vec![false; rays.len()];
+            scene.occluded(&rays, &mut occluded);
+            assert_eq!(occluded.iter().filter(|&&o| o).count(), 0, "aspect {aspect} at {place}");
         }
     }
 

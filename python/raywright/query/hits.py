@@ -5,10 +5,14 @@ from functools import cached_property
 from typing import Any, ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from .. import _core
+from .leaving import LeavingRays, leaving
 from .surface import Surface
+
+# What is asked of the compiled scene when it is wanted, and kept by a pickle.
+_ASKED = ("position", "normal", "_error")
 
 
 class Known:
@@ -69,6 +73,55 @@ class SurfacePoints(Known):
         return sealed(normals.reshape(*self.primitive.shape, 3))
 
     @cached_property
+    def _error(self) -> NDArray[np.float64]:
+        """Bound on how far each coordinate of `position` is from the surface: (...) float64; NaN for none."""
+        if self._rays is not None:
+            return self.surface.error
+        errors = self._compiled.errors(self.shape_id.reshape(-1), self.primitive.reshape(-1))
+        return sealed(errors.reshape(self.primitive.shape))
+
+    def leave(self, directions: ArrayLike) -> LeavingRays:
+        """Return rays that leave the points along some directions, and do not meet what they leave.
+
+        They start off the surface, on the side to which each goes: ``scene.intersect(*hits.leave(ways))``.
+
+        Parameters
+        ----------
+        directions : (..., 3) array
+            Where the rays go; they need not be unit. They and the points broadcast as arrays do: of points of
+            shape (N,), directions of shape (3,) or (N, 3) give a ray each, and (S, N, 3) S of them.
+
+        Returns
+        -------
+        LeavingRays
+            Origins and directions, both of the shape that points and directions broadcast to. Origins are NaN
+            for misses, and such rays hit nothing.
+
+        Raises
+        ------
+        ValueError
+            If the last dimension is not 3, or leading shapes do not broadcast.
+        TypeError
+            If the array does not hold real numbers.
+
+        Notes
+        -----
+        `position` itself is no place to start from: it is rounded, so that it lies a little before the
+        surface or behind it, and about half of the rays from there meet the face that they leave. Origins
+        are moved along the normal by 8 times ``surface.error``, as far as rounding can matter and no farther
+        (Pharr, Jakob and Humphreys 2023, 6.8.6), by the rule that rays of pictures go by: some 1e-14 of the
+        largest coordinate, so that a plate of 1e-5 of its distance from the origin does not leak.
+
+        Of a face, a copy's face and a flat shape, no ray meets what it leaves; of a curved shape, only those
+        that go through it meet it again. A direction along the surface, at right angles to the normal, starts
+        on the side of the normal and stays there. Where the angle to the surface is within rounding, 1e-16 or
+        so, or on a sliver within that times its length over its height, so is the side.
+
+        Where copies move, rays are to be asked at the `time` of the hits.
+        """
+        return leaving(self.primitive.shape, self.position, self._error, self.normal, directions)
+
+    @cached_property
     def surface(self) -> Surface:
         """All about the points: normals, derivatives by the coordinates, bounds on errors."""
         if self._compiled is None:
@@ -110,7 +163,7 @@ class SurfacePoints(Known):
         # The compiled scene is not pickled, so what would be asked of it later is worked out now.
         more = ("surface",) if "surface" in vars(self) else ()
         copies = ("instance",) if "instance" in vars(self) else ()
-        kept = {name: getattr(self, name) for name in (*self._parts, *copies, "position", "normal")}
+        kept = {name: getattr(self, name) for name in (*self._parts, *copies, *_ASKED)}
         return _restored, (type(self), kept, {**self._more(), **{name: vars(self)[name] for name in more}})
 
     def _more(self) -> dict[str, Any]:

@@ -18,7 +18,7 @@ from ..shapes.mesh import face_count, moved
 from .instance import AnyShape, Instance, Shapes, meshes
 from .plan import Plan, PlanRow
 
-Precision: TypeAlias = Literal["single", "double"]
+Precision: TypeAlias = Literal["auto", "single", "double"]
 Quality: TypeAlias = Literal["fast build", "balanced", "fast rays"]
 _BINNED_BVH = BVH()
 _ARGUMENTS = ("shapes", "lights", "environment", "accelerator", "precision", "quality")
@@ -43,10 +43,11 @@ class Scene(Queries):
         What surrounds the scene; numbers are a constant radiance, and several add up. None is black.
     accelerator : BVH, KdTree, Octree, BSP, Grid, NestedGrid or BruteForce
         The structure that finds hits.
-    precision : {"single", "double"}
+    precision : {"auto", "single", "double"}
         What vertices are rounded to: "single" to float32, which takes the least memory and is the fastest,
-        "double" not at all. Either way hits are exact for the vertices as they then are. "double" costs
-        nothing where all vertices are float32 numbers anyway.
+        "double" not at all, "auto" to float32 where that moves no vertex by more than 1e-7 of the extent of
+        its mesh. Either way hits are exact for the vertices as they then are. "double" costs nothing where
+        all vertices are float32 numbers anyway.
     quality : {"balanced", "fast build", "fast rays"}
         How long the accelerator may take to build for the sake of rays. Unless it is "fast build", what is
         long and diagonal may be cut to pieces for it, and for "fast rays" what else is long; such a tree is
@@ -63,6 +64,13 @@ class Scene(Queries):
 
     Notes
     -----
+    With "auto", rounding is measured along each axis, and against the longest side of the box around the
+    vertices that faces of the mesh use. Meshes of float32 stay so. One mesh that loses by it keeps the
+    digits of all meshes of the scene, so that vertices which they share stay shared; the shapes of an
+    `Instance` are a group of their own in this. `plan` tells the figure, ``accelerator.precision`` what
+    became of it. "single" where "auto" would keep the digits gives one RuntimeWarning, with the figure, when
+    the scene is compiled.
+
     Faces with a corner that is NaN or infinite are left out when the scene is compiled, with one
     RuntimeWarning that tells how many. Scenes compare by what they hold, and pickle without what was
     compiled.
@@ -74,7 +82,7 @@ class Scene(Queries):
         lights: Light | Sequence[Light] = (),
         environment: Environment | Sequence[Environment] | ArrayLike | None = None,
         accelerator: Accelerator = _BINNED_BVH,
-        precision: Precision = "single",
+        precision: Precision = "auto",
         quality: Quality = "balanced",
     ) -> None:
         self._shapes = meshes(shapes)
@@ -88,6 +96,7 @@ class Scene(Queries):
         choice("quality", quality, get_args(Quality))
         self._precision, self._quality = precision, quality
         self._core: _core.CompiledScene | None = None
+        self._is_loss_told = False
         self._lock = threading.Lock()
 
     @property
@@ -112,7 +121,7 @@ class Scene(Queries):
 
     @property
     def precision(self) -> Precision:
-        """What vertices are rounded to: "single" or "double"."""
+        """What vertices are rounded to, as asked for: "auto", "single" or "double"."""
         return self._precision
 
     @property
@@ -122,7 +131,10 @@ class Scene(Queries):
 
     @property
     def accelerator(self) -> _core.AcceleratorInfo:
-        """What the accelerator came to be: kind, nodes, leaves, depth, bytes, build_seconds, sah_cost."""
+        """What the accelerator came to be: kind, nodes, leaves, depth, bytes, build_seconds, sah_cost.
+
+        Its `precision` is that of the vertices that it holds, "single" or "double"; instances have their own.
+        """
         return self._compiled().accelerator
 
     @property
@@ -206,6 +218,8 @@ class Scene(Queries):
             built, self._shapes, self._core = self._core is not None, after.shapes, core
         if core is None and built:
             core = self._compiled()
+        elif core is not None:
+            self._tell_loss(core, stacklevel=3)
         return core.growth if core else 1.0
 
     def rebuild(self) -> None:
@@ -231,7 +245,10 @@ class Scene(Queries):
         )
 
     def plan(self) -> Plan:
-        """Return what the scene needs, what is left out, and which kernel renders it, as a table."""
+        """Return what the scene needs, what is left out, and which kernel renders it, as a table.
+
+        Among it is whether vertices keep more digits than float32 has, and how far rounding moves them.
+        """
         kernel, rows = _core.plan(self._compiled())
         return Plan(kernel, tuple(PlanRow(*row) for row in rows))
 
@@ -247,7 +264,21 @@ class Scene(Queries):
                 RuntimeWarning,
                 stacklevel=3,
             )
+        self._tell_loss(compiled, stacklevel=4)
         return compiled
+
+    def _tell_loss(self, compiled: _core.CompiledScene, stacklevel: int) -> None:
+        """Warn of what rounding to float32 has lost, once."""
+        if compiled.loss is None or self._is_loss_told:
+            return
+        self._is_loss_told = True
+        moved, share = compiled.loss
+        warnings.warn(
+            f'precision="single" moves vertices by up to {moved:.3g}, {share:.2g} of the extent of their '
+            'mesh; "auto" and "double" keep them where they are',
+            RuntimeWarning,
+            stacklevel=stacklevel,
+        )
 
     def _parts(self) -> tuple[Any, ...]:
         """Give what a scene is made of: its arguments, in their order."""
@@ -279,7 +310,7 @@ class Scene(Queries):
         if self._environment is not None:
             parts.append(repr(self._environment))
         parts.append(repr(self._accelerator))
-        parts += [f"precision={self._precision!r}"] if self._precision != "single" else []
+        parts += [f"precision={self._precision!r}"] if self._precision != "auto" else []
         parts += [f"quality={self._quality!r}"] if self._quality != "balanced" else []
         return f"Scene({', '.join(parts)})"
 

@@ -117,6 +117,7 @@ mod tests {
             normals: Some(vec![Vec3::Z, Vec3::new(0.3, 0.1, 1.0), Vec3::new(-0.2, 0.4, 1.0)]),
             uvs: Some(vec![[0.1, 0.2], [0.9, 0.1], [0.3, 0.8]]),
             colours: Some(vec![[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]),
+            ..Mesh::default()
         }
     }
 

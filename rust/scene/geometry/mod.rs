@@ -16,6 +16,7 @@ pub use group::Group;
 pub use surfaces::Surfaces;
 pub use vertices::Vertices;
 
+use super::Rounding;
 use super::SurfacePoint;
 use super::textures::Needs;
 use crate::accel::{Objects, Primitives};
@@ -30,6 +31,8 @@ use std::sync::Arc;
 pub struct Mesh {
     /// Corners.
     pub vertices: Vertices,
+    /// What rounding them to f32 did to the mesh, or would have done; nothing where nobody looked.
+    pub rounding: Rounding,
     /// Three indices into `vertices` a face.
     pub faces: Vec<[u32; 3]>,
     /// Shading normals, one a vertex.
@@ -103,6 +106,13 @@ struct Gap {
     before: u32,
 }
 
+/// Bound on the error of each coordinate of a point that is computed from a triangle's corners and weights.
+#[inline(always)]
+fn error_among([a, b, c]: [DVec3; 3]) -> f64 {
+    // Weights carry up to 3 roundings, products and sums 3 more: 6 u of each term in all (pbrt 6.8.5 calls it γ₇).
+    8.0 * f64::EPSILON * a.abs().max(b.abs()).max(c.abs()).max_element()
+}
+
 /// The face that stands for a shape that is no mesh.
 const NO_FACE: [u32; 3] = [u32::MAX; 3];
 
@@ -128,6 +138,8 @@ pub struct Geometry {
     /// What is asked of a face at every hit, where there are few.
     facets: Facets,
     dropped: usize,
+    /// Of the mesh that it does most to.
+    rounding: Rounding,
 }
 
 impl Primitives for Geometry {
@@ -206,6 +218,7 @@ impl Geometry {
             all.normals.extend(base, mesh.normals);
             all.uvs.extend(base, mesh.uvs);
             all.colours.extend(base, mesh.colours);
+            all.rounding = all.rounding.worst(mesh.rounding);
             all.vertices = std::mem::take(&mut all.vertices).joined(mesh.vertices.shortened());
             let number = all.count() + mesh.faces.len();
             all.faces.reserve(mesh.faces.len());
@@ -250,6 +263,11 @@ impl Geometry {
     /// How many faces have a corner that is NaN or infinite: no ray can hit them.
     pub fn dropped(&self) -> usize {
         self.dropped
+    }
+
+    /// What rounding to f32 did to vertices, or would have done: of the mesh to which that is most.
+    pub fn rounding(&self) -> Rounding {
+        self.rounding
     }
 
     /// The corners of a primitive's face.
@@ -355,6 +373,11 @@ impl Geometry {
         a * (1.0 - uv[0] - uv[1]) + b * uv[0] + c * uv[1]
     }
 
+    /// Bound on the error of each coordinate of a point of a triangle, as [`SurfacePoint::error`].
+    pub fn error(&self, primitive: u32) -> f64 {
+        error_among(self.corners(primitive))
+    }
+
     /// Twice the area of a triangle along its unit normal, as the winding gives it. Exact but for the f64 roundings.
     pub fn area_vector(&self, primitive: u32) -> DVec3 {
         let [a, b, c] = self.corners(primitive);
@@ -402,8 +425,7 @@ impl Geometry {
         let [a, b, c] = self.corners(primitive);
         let weights = [1.0 - uv[0] - uv[1], uv[0], uv[1]];
         let position = a * weights[0] + b * weights[1] + c * weights[2];
-        // Weights carry up to 3 roundings, products and sums 3 more: 6 u of each term in all (pbrt 6.8.5 calls it γ₇).
-        let error = 8.0 * f64::EPSILON * a.abs().max(b.abs()).max(c.abs()).max_element();
+        let error = error_among([a, b, c]);
         let (normal, shape) = match self.facets.get(primitive) {
             Some(facet) => (facet.normal, facet.shape),
             None => (self.computed_normal(primitive), self.located(primitive).0),

@@ -13,6 +13,10 @@
 //! for the higher orders, for a direction whose small parts were rounded in scaling, and for M, D themselves being
 //! computed. What underflows is no part of it: coordinates so small, or so large that products overflow, are decided
 //! exactly.
+//!
+//! With each weight off by e, and S their sum, the mean of the corners' depths, which `t` is, moves by at most 3e · range / (|S| − 3e). For
+//! slivers, and for what is grazed, that is more than a ray starts off the surface that it leaves. So a `t` that is not negative but may be
+//! by this is computed from exact weights: what a ray meets lies before it.
 
 use crate::math::robust::{UNIT, greater, lesser, normalising_scale};
 use crate::math::{DVec3, Ray, Region, exact_edges, exact_turn};
@@ -150,13 +154,21 @@ impl EdgeRay {
         let least = lesser(lesser(w[0].abs(), w[1].abs()), w[2].abs());
         let sum = w[0] + w[1] + w[2];
         let range = greater(greater(z[0], z[1]), z[2]) - lesser(lesser(z[0], z[1]), z[2]);
-        // With each weight off by e, the mean of the corners' depths moves by at most 3e · range / (|sum| − 3e).
         if least > self.sign_error && 6.0 * self.sign_error * range <= self.t_error * sum.abs() {
             let t = (w[0] * z[0] + w[1] * z[1] + w[2] * z[2]) / (sum * self.direction[k]);
-            self.accept(w, sum, t, Contact::Inside)
-        } else {
-            self.meet_closely(corners)
+            if !Self::may_be_behind(t, self.t_min, sum, range, self.sign_error) {
+                return self.accept(w, sum, t, Contact::Inside);
+            }
         }
+        self.meet_closely(corners)
+    }
+
+    /// Whether a `t` that is not negative may be in truth, with weights of this sum off by this error each, and corners whose depths have this
+    /// range; of what lies before `t_min` for certain nobody needs to know.
+    #[inline(always)]
+    pub(super) fn may_be_behind(t: f64, t_min: f64, sum: f64, range: f64, error: f64) -> bool {
+        let (share, doubt) = (sum.abs() - 3.0 * error, 3.0 * error * range);
+        (t >= 0.0) & (t * share <= doubt) & ((t_min - t) * share <= doubt)
     }
 
     /// The same where that is not enough, as it is from far away. With edges taken from the corners themselves, and E a
@@ -187,10 +199,11 @@ impl EdgeRay {
         let range = z[0].max(z[1]).max(z[2]) - z[0].min(z[1]).min(z[2]);
         if w.iter().all(|x| x.abs() > error) && 6.0 * error * range <= self.t_error * sum.abs() {
             let t = (w[0] * z[0] + w[1] * z[1] + w[2] * z[2]) / (sum * self.direction[k]);
-            self.accept(w, sum, t, Contact::Inside)
-        } else {
-            self.meet_exactly(corners)
+            if !Self::may_be_behind(t, self.t_min, sum, range, error) {
+                return self.accept(w, sum, t, Contact::Inside);
+            }
         }
+        self.meet_exactly(corners)
     }
 
     /// The same where rounding leaves the sign of a weight open, or `t` uncertain.

@@ -178,8 +178,10 @@ impl EdgeRays {
             let least = lesser(lesser(u.abs(), v.abs()), w.abs());
             let sum = u + v + w;
             let range = greater(greater(za, zb), zc) - lesser(lesser(za, zb), zc);
-            let is_certain = (least > above) & (6.0 * above * range <= EdgeRay::T_ERROR * largest * sum.abs());
             let t = (u * za + v * zb + w * zc) / (sum * d);
+            let is_certain = (least > above)
+                & (6.0 * above * range <= EdgeRay::T_ERROR * largest * sum.abs())
+                & !EdgeRay::may_be_behind(t, self.t_min[i], sum, range, above);
             let counts = (t >= self.t_min[i]) & (t <= self.t_max[i]) & ((t * self.scale[i]).abs() <= f64::MAX);
             certain[i] = u32::from(!passed & is_certain & counts);
             open[i] = u32::from(!passed & !is_certain);

@@ -121,6 +121,7 @@ impl<const N: usize, L: Leaves<N>> WideBvh<N, L> {
         bvh.in_parts = bvh.info.primitives > count;
         bvh.info.primitives = count;
         bvh.info.kind = format!("BVH, {N} wide, {name}, {}", L::PRECISION);
+        bvh.info.precision = L::PRECISION;
         bvh.info.bytes = size_of_val(bvh.nodes.as_slice()) + bvh.leaves.bytes();
         bvh.info.build_seconds = start.elapsed().as_secs_f64();
         bvh

@@ -1,0 +1,48 @@
+"""Rays that leave surfaces."""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .. import _core
+from ..arrays import last_axis
+from .rays import spread
+
+
+class LeavingRays(NamedTuple):
+    """Rays that leave surfaces, as a scene takes them: ``scene.intersect(*rays)``.
+
+    Attributes
+    ----------
+    origins : (..., 3) float64
+        Where they start, off the surface on the side to which they go; NaN where there is no surface.
+    directions : (..., 3) float64 or float32
+        Where they go, as given; broadcast to the shape of the origins.
+    """
+
+    origins: NDArray[np.float64]
+    directions: NDArray[np.floating[Any]]
+
+
+def leaving(
+    shape: tuple[int, ...],
+    position: NDArray[np.float64],
+    error: NDArray[np.float64],
+    normal: NDArray[np.float64],
+    directions: ArrayLike,
+) -> LeavingRays:
+    """Return the rays that leave points of leading shape `shape`, of which the core tells all else."""
+    ways = last_axis("directions", directions, 3)
+    try:
+        lead = np.broadcast_shapes(shape, ways.shape[:-1])
+    except ValueError:
+        told = f"points {shape}, directions {ways.shape[:-1]}"
+        raise ValueError(f"leading shapes do not broadcast: {told}") from None
+    count = error.size
+    # Where the last of the shape is that of the points, the core takes them in turn, over and over.
+    in_turn = count == 1 or lead[len(lead) - len(shape) :] == shape
+    which = None if in_turn else np.broadcast_to(np.arange(count).reshape(shape), lead).reshape(-1)
+    parts = position.reshape(-1, 3), error.reshape(-1), normal.reshape(-1, 3)
+    origins = _core.leave(*parts, spread(ways, lead, (3,)), which, lead)
+    return LeavingRays(origins, np.broadcast_to(ways, (*lead, 3)))
