@@ -61,8 +61,8 @@ struct Look<'py> {
     emission: Option<Bound<'py, PyAny>>,
 }
 
-/// Reads the shapes of a scene, or of a group in it. Vertices are rounded as they are read, and read again where that is a loss: all of
-/// them, so that meshes which share some still do.
+/// Reads the shapes of a scene, or of a group in it. Vertices are rounded as they are read, and read again where that
+/// is a loss: all of them, so that meshes which share some still do.
 fn read(
     all: &[Bound<'_, PyAny>],
     wishes: Wishes<'_>,

@@ -9,8 +9,8 @@ use super::rays::{answer, share};
 use crate::math::DVec3;
 use crate::scene::Departure;
 
-/// Where rays along some directions start, of leading shape `shape`: from the points that `which` names, or from all in turn, over and over.
-/// NaN for what is no point.
+/// Where rays along some directions start, of leading shape `shape`: from the points that `which` names, or from all in
+/// turn, over and over. NaN for what is no point.
 #[pyfunction]
 pub fn leave<'py>(
     py: Python<'py>,

@@ -113,7 +113,8 @@ pub fn metals() -> Vec<(&'static str, &'static str)> {
     METALS.iter().map(|metal| (metal.symbol, metal.name)).collect()
 }
 
-/// What was measured of a metal: wavelength in nm, and the real and the imaginary part of the index of refraction there.
+/// What was measured of a metal: wavelength in nm, and the real and the imaginary part of the index of refraction
+/// there.
 ///
 /// # Errors
 /// A `ValueError` for a metal that is not known.

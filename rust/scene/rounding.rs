@@ -36,8 +36,8 @@ pub struct Rounding {
 }
 
 impl Rounding {
-    /// The share of its extent by which a mesh may change without loss. f32 rounds by 2⁻²⁵ to 2⁻²⁴ of a number: by 6e-8 of the extent of what
-    /// reaches the origin, and by more than this of what stands two or three of its extents away.
+    /// The share of its extent by which a mesh may change without loss. f32 rounds by 2⁻²⁵ to 2⁻²⁴ of a number: by 6e-8
+    /// of the extent of what reaches the origin, and by more than this of what stands two or three of its extents away.
     pub const MOST: f64 = 1e-7;
 
     /// Whether that is a loss.
@@ -56,8 +56,8 @@ impl Rounding {
     }
 }
 
-/// Vertices rounded to f32, and what that does to those that are finite and in use: what lies about unused has no say in how large a mesh
-/// is.
+/// Vertices rounded to f32, and what that does to those that are finite and in use: what lies about unused has no say
+/// in how large a mesh is.
 ///
 /// # Panics
 /// If a face names a vertex that there is not.

@@ -19,9 +19,9 @@ impl Departure {
     /// How many times the error of the position a ray starts off the surface. With M the largest coordinate of the
     /// primitive, the position is within 8 ε M = 2⁻⁴⁹ M of its plane in each coordinate, at most 2⁻⁴⁸ M along the
     /// normal. The ray's own test takes the corners relative to its origin, up to 2 M long, and its distance from them
-    /// by sums of products, with at most 16 roundings of ε/2: another 2⁻⁴⁸ M. Twice the sum of both is 2⁻⁴⁶ M. On a sliver the products
-    /// weigh more than the distance, but where that could make a difference the test takes exact ones, and then this is plenty
-    /// ([`crate::shapes::triangle::EdgeRay`]).
+    /// by sums of products, with at most 16 roundings of ε/2: another 2⁻⁴⁸ M. Twice the sum of both is 2⁻⁴⁶ M. On a
+    /// sliver the products weigh more than the distance, but where that could make a difference the test takes exact
+    /// ones, and then this is plenty ([`crate::shapes::triangle::EdgeRay`]).
     const SAFETY: f64 = 8.0;
 
     /// Where a segment ends, as a share of its way. What is left to the surface that it goes to is more than the error

@@ -14,9 +14,10 @@
 //! computed. What underflows is no part of it: coordinates so small, or so large that products overflow, are decided
 //! exactly.
 //!
-//! With each weight off by e, and S their sum, the mean of the corners' depths, which `t` is, moves by at most 3e · range / (|S| − 3e). For
-//! slivers, and for what is grazed, that is more than a ray starts off the surface that it leaves. So a `t` that is not negative but may be
-//! by this is computed from exact weights: what a ray meets lies before it.
+//! With each weight off by e, and S their sum, the mean of the corners' depths, which `t` is, moves by at most 3e ·
+//! range / (|S| − 3e). For slivers, and for what is grazed, that is more than a ray starts off the surface that it
+//! leaves. So a `t` that is not negative but may be by this is computed from exact weights: what a ray meets lies
+//! before it.
 
 use crate::math::robust::{UNIT, greater, lesser, normalising_scale};
 use crate::math::{DVec3, Ray, Region, exact_edges, exact_turn};
@@ -163,8 +164,8 @@ impl EdgeRay {
         self.meet_closely(corners)
     }
 
-    /// Whether a `t` that is not negative may be in truth, with weights of this sum off by this error each, and corners whose depths have this
-    /// range; of what lies before `t_min` for certain nobody needs to know.
+    /// Whether a `t` that is not negative may be in truth, with weights of this sum off by this error each, and corners
+    /// whose depths have this range; of what lies before `t_min` for certain nobody needs to know.
     #[inline(always)]
     pub(super) fn may_be_behind(t: f64, t_min: f64, sum: f64, range: f64, error: f64) -> bool {
         let (share, doubt) = (sum.abs() - 3.0 * error, 3.0 * error * range);
