@@ -15,7 +15,6 @@ pub mod materials;
 pub mod media;
 mod photons;
 mod plan;
-mod rounding;
 mod scatters;
 mod shading;
 mod spawn;
@@ -31,7 +30,8 @@ pub use description::{DescriptionError, SceneDescription, Shape};
 pub use emission::Emission;
 pub use first_hits::FirstHits;
 pub use geometry::{
-    BadTransform, Copies, Geometry, Group, Matrix, Mesh, Surface, Surfaces, Vertices, check_transforms,
+    BadTransform, Copies, Geometry, Group, Matrix, Mesh, Precision, Rounding, Surface, Surfaces, Vertices,
+    check_transforms, rounded,
 };
 pub(crate) use interaction::fading;
 pub use interaction::{Interaction, Scattered};
@@ -41,7 +41,6 @@ pub use lights::{
 };
 pub use materials::{DiffuseMaterial, Material};
 pub use plan::{Kernel, Plan, PlanRow, SceneNeeds};
-pub use rounding::{Precision, Rounding, rounded};
 pub use scatters::Scatters;
 pub use shading::{Footprint, ShadingPoint};
 pub use spawn::Departure;

@@ -79,7 +79,10 @@ impl OrientedBox {
 /// The axes along an edge of a triangle and its normal.
 fn frame(edge: DVec3, normal: DVec3) -> Option<[DVec3; 3]> {
     let (x, y) = (edge.try_normalize()?, normal.try_normalize()?);
-    // Of a sliver the normal may lean: at right angles again.
+    // Of a sliver the normal may lean: at right angles again. What of it is left then may be so short that its own
+    // rounding leans; the second time it is not (Parlett, "The Symmetric Eigenvalue Problem", 1980, 6.9: twice is
+    // enough).
+    let y = (y - x * x.dot(y)).try_normalize()?;
     let y = (y - x * x.dot(y)).try_normalize()?;
     Some([x, y, x.cross(y)])
 }
@@ -151,15 +154,34 @@ mod tests {
         })
     }
 
+    /// Whether axes are of unit length and at right angles.
+    fn are_orthonormal(axes: &[DVec3; 3]) -> bool {
+        (0..3).all(|i| (axes[i].length() - 1.0).abs() < 1e-14 && axes[i].dot(axes[(i + 1) % 3]).abs() < 1e-14)
+    }
+
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(3000))]
         #[test]
         fn points_are_inside_of_what_is_around_them(points in cloud()) {
             let turned = OrientedBox::around(&points).unwrap();
             prop_assert!(points.iter().all(|&p| holds(&turned, p)));
-            for (i, a) in turned.axes.iter().enumerate() {
-                prop_assert!((a.length() - 1.0).abs() < 1e-14 && a.dot(turned.axes[(i + 1) % 3]).abs() < 1e-14);
-            }
+            prop_assert!(are_orthonormal(&turned.axes));
+        }
+    }
+
+    #[test]
+    fn three_points_almost_on_a_line_have_axes_at_right_angles() {
+        let points = [
+            DVec3::new(-7.309689497994247e-8, 7.739302646373153e-8, 0.03516246177659127),
+            DVec3::new(1.397889860017682e-11, -1.480048187538151e-11, -6.724396266659991e-6),
+            DVec3::new(-1.2964641838066503e-11, 1.3726614094095293e-11, 6.236499145460257e-6),
+        ];
+        assert!(are_orthonormal(&OrientedBox::around(&points).unwrap().axes));
+        // However much a normal leans, and wherever it leans to.
+        for lean in [0.0, 0.5, 1.0 - 1e-8, 1.0 - 1e-15] {
+            let (x, other) = (DVec3::new(1e-9, 3.0, -2.0), DVec3::new(0.3, 0.2, 1.0));
+            let normal = x.normalize() * lean + other * (1.0 - lean);
+            assert!(are_orthonormal(&frame(x, normal).unwrap()), "{lean}");
         }
     }
 

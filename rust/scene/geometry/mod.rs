@@ -8,15 +8,16 @@ mod motion;
 mod per_vertex;
 mod points;
 mod pose;
+mod rounding;
 mod surfaces;
 mod vertices;
 
 pub use copies::{BadTransform, Copies, Matrix, check_transforms};
 pub use group::Group;
+pub use rounding::{Precision, Rounding, rounded};
 pub use surfaces::Surfaces;
 pub use vertices::Vertices;
 
-use super::Rounding;
 use super::SurfacePoint;
 use super::textures::Needs;
 use crate::accel::{Objects, Primitives};
