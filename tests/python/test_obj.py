@@ -43,7 +43,7 @@ def test_polygons_are_fans_in_the_order_of_the_file(tmp_path):
 
 def test_materials_come_in_the_order_of_the_file(tmp_path):
     (tmp_path / "file.mtl").write_text("newmtl b\nKd 1 0 0\nnewmtl a\nKd 0 1 0\n")
-    faces = "f 1 2 3\nusemtl b\nf 2 3 4\nusemtl a\nf 3 4 5\nusemtl b\nf 4 5 6\n"
+    faces = "f 1 2 3\nusemtl a\nusemtl b\nf 2 3 4\nusemtl a\nf 3 4 5\nusemtl b\nf 4 5 6\n"
     shapes = read(tmp_path, f"mtllib file.mtl\n{POINTS}{faces}")
     assert [shape.material for shape in shapes] == [
         rw.Diffuse(),

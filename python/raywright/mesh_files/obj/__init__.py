@@ -35,9 +35,8 @@ def read_obj(path: Path) -> tuple[Mesh, ...]:
     """
     notes = Notes(path.name)
     try:
-        text = text_of(path.read_bytes())
-        geometry = Geometry(text)
-        library = Library(path, text, notes)
+        geometry = Geometry(text_of(path.read_bytes()))
+        library = Library(path, geometry.libraries, notes)
         found = tuple(_mesh(part, library) for part in geometry.parts())
     except Exception as error:
         raise refused(path, "mesh", error) from error
@@ -57,7 +56,7 @@ def read_obj_whole(path: Path) -> Mesh | None:
         As `read_obj` does.
     """
     try:
-        parts = tuple(Geometry(text_of(path.read_bytes())).parts(whole=True))
+        parts = tuple(Geometry(text_of(path.read_bytes()), whole=True).parts())
     except Exception as error:
         raise refused(path, "mesh", error) from error
     return Mesh(parts[0].vertices, parts[0].faces, parts[0].normals, parts[0].uv) if parts else None

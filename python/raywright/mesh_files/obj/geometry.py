@@ -14,10 +14,7 @@ from .text import name_of, told
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
-_FACE = re.compile(rb"^[ \t]*fo?[ \t]+([^\n]*)", re.MULTILINE)
-_MATERIAL = re.compile(rb"^[ \t]*usemtl\b[ \t]*([^\n]*)", re.MULTILINE)
-_BACKWARDS = re.compile(rb"^[ \t]*fo?[ \t][^\n]*-", re.MULTILINE)
-_COUNTED = re.compile(rb"^[ \t]*(vt|vn|v|fo?)[ \t]+[^\n]*", re.MULTILINE)
+_BACK = re.compile(rb"-[0-9]{1,18}")
 # Corners with more slashes than none, one or two.
 _MORE = [re.compile(rb"/" + rb"[^\s/]*/" * count) for count in range(3)]
 
@@ -47,8 +44,17 @@ class Part(NamedTuple):
 class Geometry:
     """What faces of an OBJ file refer to, and the faces.
 
+    Parameters
+    ----------
+    text : bytes
+        The file, as `text_of` has it.
+    whole : bool
+        Whether all faces are one part, whatever their materials.
+
     Attributes
     ----------
+    libraries : list of bytes
+        What names files of materials, in the order of the file.
     lost : tuple of str
         What of it cannot be shown, for a warning.
 
@@ -58,24 +64,43 @@ class Geometry:
         If it is no text, a number cannot be read, or a face has a vertex that is not there.
     """
 
-    def __init__(self, text: bytes) -> None:
+    def __init__(self, text: bytes, whole: bool = False) -> None:
         if b"\0" in text:
             raise ValueError("it is no text")
-        if _BACKWARDS.search(text):
-            text = _forwards(text)
-        points = _table(text, b"v", "vertices", 3)
+        if b"\t" in text:
+            text = text.replace(b"\t", b" ")
+        tables: dict[bytes, list[bytes]] = {b"v": [], b"vt": [], b"vn": []}
+        self.libraries: list[bytes] = []
+        self._faces: dict[str | None, list[bytes]] = {}
+        name: str | None = None
+        faces: list[bytes] | None = None
+        for line in text.split(b"\n"):
+            word, _, rest = line.partition(b" ")
+            if not word:
+                word, _, rest = line.lstrip().partition(b" ")
+            if word in (b"f", b"fo"):
+                if faces is None:
+                    faces = self._faces.setdefault(name, [])
+                faces.append(_forwards(rest, tables) if b"-" in rest else rest)
+            elif word in tables:
+                tables[word].append(rest)
+            elif word == b"usemtl" and not whole:
+                name = name_of(rest) or None
+                faces = self._faces.get(name)
+            elif word == b"mtllib":
+                self.libraries.append(rest)
+        points = _table(tables[b"v"], "vertices", 3)
         self._points = points[:, :3]
         self._colors = points[:, 3:6] if points.shape[1] >= 6 else None
-        uv = _table(text, b"vt", "texture coordinates", 1)
+        uv = _table(tables[b"vt"], "texture coordinates", 1)
         # Those of one number are of curves, and of pictures one point high.
         self._uv = uv[:, :2] if uv.shape[1] > 1 else np.column_stack([uv, np.zeros_like(uv)])
-        self._normals = _table(text, b"vn", "normals", 3)[:, :3]
-        self._text = text
+        self._normals = _table(tables[b"vn"], "normals", 3)[:, :3]
         self.lost: tuple[str, ...] = ()
 
-    def parts(self, whole: bool = False) -> Iterator[Part]:
-        """Yield the triangles of each material, in the order in which they come first; `whole`, of all."""
-        for name, lines in _by_material(self._text, whole).items():
+    def parts(self) -> Iterator[Part]:
+        """Yield the triangles of each material, in the order in which faces have them first."""
+        for name, lines in self._faces.items():
             counts, corners = _corners(lines)
             if len(counts):
                 yield self._part(name, _fans(counts), corners)
@@ -110,29 +135,15 @@ class Geometry:
             self.lost = (*self.lost, what)
 
 
-def _by_material(text: bytes, whole: bool) -> dict[str | None, list[bytes]]:
-    """Return the lines of faces, without their keyword, by the material that they name."""
-    if whole:
-        return {None: _FACE.findall(text)}
-    found: dict[str | None, list[bytes]] = {}
-    pieces = _MATERIAL.split(text)
-    names = [None, *(name_of(piece) or None for piece in pieces[1::2])]
-    for name, piece in zip(names, pieces[::2], strict=True):
-        if lines := _FACE.findall(piece):
-            found.setdefault(name, []).extend(lines)
-    return found
-
-
-def _table(text: bytes, keyword: bytes, what: str, least: int) -> Floats:
-    """Return the numbers of all lines of a keyword, as many columns as each of them has."""
-    lines = re.findall(rb"^[ \t]*" + keyword + rb"[ \t]+([^\n]*)", text, re.MULTILINE)
+def _table(lines: list[bytes], what: str, least: int) -> Floats:
+    """Return the numbers of lines, as many columns as each of them has."""
     if not lines:
         return np.empty((0, least))
     lines = _uncommented(lines)
     counts = np.fromiter((len(line.split()) for line in lines), np.int64, len(lines))
     columns = int(counts.min())
     if columns < least:
-        line = told(lines[int(counts.argmin())].decode("utf-8", "replace"))
+        line = told(name_of(lines[int(counts.argmin())]))
         raise ValueError(f"{what} must have shape (N, {least}), and one is {line}")
     numbers = _numbers(b" ".join(lines), np.float64)
     if len(numbers) != counts.sum():
@@ -215,31 +226,34 @@ def _within(index: Integers, table: Floats, least: int) -> bool:
 def _distinct(columns: list[Integers]) -> tuple[Integers, Integers]:
     """Return where each distinct row stands first, in the order of points, and which one each row is."""
     key = columns[0]
-    for column in columns[1:]:
-        # Numbered anew at each step, so that products stay below 2^63.
-        _, key = np.unique(key, return_inverse=True)
-        key = key.reshape(-1) * (int(column.max()) + 2) + column + 1
+    # Many programs write the same number thrice.
+    others = [column for column in columns[1:] if not np.array_equal(column, key)]
+    for column in others:
+        size = int(column.max()) + 2
+        if int(key.max()) >= 2**62 // size:
+            # Numbered anew, so that products stay below 2^63.
+            _, key = np.unique(key, return_inverse=True)
+        key = key.reshape(-1) * size + column + 1
+    if not others:
+        # As below, without sorting.
+        first = np.full(int(key.max()) + 1, -1)
+        first[key[::-1]] = np.arange(len(key))[::-1]
+        used = first >= 0
+        return first[used], (np.cumsum(used) - 1)[key]
     _, first, place = np.unique(key, return_index=True, return_inverse=True)
     return first, place.reshape(-1)
 
 
-def _forwards(text: bytes) -> bytes:
-    """Return a text whose faces count from the first vertex on, and none back from where it stands."""
-    counts = {b"v": 0, b"vt": 0, b"vn": 0}
+def _forwards(rest: bytes, tables: dict[bytes, list[bytes]]) -> bytes:
+    """Return the corners of a face counted from the first vertex on, none back from where it stands."""
 
     def corner(word: bytes) -> bytes:
         parts = word.split(b"/")
-        for i, (part, count) in enumerate(zip(parts, counts.values(), strict=False)):
+        for i, (part, table) in enumerate(zip(parts, tables.values(), strict=False)):
+            back = int(part[1:]) if _BACK.fullmatch(part) else 0
             # What is before the first of them stays, and is found out of bounds.
-            if part.startswith(b"-") and part[1:].isdigit() and len(part) < 19 and 0 < -int(part) <= count:
-                parts[i] = b"%d" % (count + 1 + int(part))
+            if 0 < back <= len(table):
+                parts[i] = b"%d" % (len(table) + 1 - back)
         return b"/".join(parts)
 
-    def line(match: "re.Match[bytes]") -> bytes:
-        keyword = match[1]
-        if keyword in counts:
-            counts[keyword] += 1
-            return match[0]
-        return b" ".join([b"f", *map(corner, match[0].split()[1:])])
-
-    return _COUNTED.sub(line, text)
+    return b" ".join(map(corner, rest.split(b"#")[0].split()))

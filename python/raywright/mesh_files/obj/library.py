@@ -14,7 +14,6 @@ from .mtl import Description, Written, written
 from .notes import Notes
 from .text import name_of, text_of, told
 
-_LIBRARIES = re.compile(rb"^[ \t]*mtllib[ \t]+([^\n]*)", re.MULTILINE)
 LOST_FILES = "files of materials are left out"
 LOST_MATERIALS = "materials that are in no file beside it are left out"
 # More files than this no program names, and each is looked for.
@@ -29,18 +28,18 @@ class Library:
     ----------
     path : Path
         The file.
-    text : bytes
-        What it holds.
+    lines : list of bytes
+        What it has to name their files.
     notes : Notes
         Where it is told what is missing.
     """
 
-    def __init__(self, path: Path, text: bytes, notes: Notes) -> None:
+    def __init__(self, path: Path, lines: list[bytes], notes: Notes) -> None:
         self._notes = notes
         self._files: list[tuple[Written, Pictures, Notes]] = []
         self._named = False
         # In the order of the file, each once: many programs name theirs before each object.
-        for line in islice(dict.fromkeys(map(name_of, _LIBRARIES.findall(text))), _MOST):
+        for line in islice(dict.fromkeys(map(name_of, lines)), _MOST):
             self._named = True
             for found in self._found(path, line):
                 self._add(found)

@@ -37,7 +37,7 @@ _GREY = np.full(3, 0.5)
 _HARDEST = 1e9
 # Some programs write an exponent of 0 or 1 where there are no highlights: MeshLab and trimesh.
 _NO_HIGHLIGHT = 1.0
-_MATT, _MIRRORS, _PANE, _GLASS = (0, 1), (3, 5), 4, (6, 7)
+_MATT, _MIRRORS, _PANE = (0, 1), (3, 5), 4
 # A picture of heights, from black to white, is as high as this part of its width (a length of the mesh).
 _BUMP = 0.01
 
@@ -117,12 +117,12 @@ class _Reading:
     def _emission(self) -> Emission | None:
         """Return what it gives off: Ke times its picture, to both sides, as the format tells of none."""
         color, found = self._said.color("Ke", BRIGHTEST), self._picture("map_Ke")
-        bright = color is not None and bool(color.any())
-        if found is not None:
-            texture = found.texture()
-            # Black beside a picture is what programs write who do not know better.
-            return Emission(ProductTexture(texture, color) if bright else texture, both_sides=True)  # type: ignore[arg-type]
-        return Emission(color, both_sides=True) if bright else None  # type: ignore[arg-type]
+        factor = None if color is None or not color.any() else _triple(color)
+        if found is None:
+            return None if factor is None else Emission(factor, both_sides=True)
+        # Black beside a picture is what programs write that keep one or the other.
+        texture = found.texture()
+        return Emission(texture if factor is None else ProductTexture(texture, factor), both_sides=True)
 
     def _opacity(self) -> Number:
         """Return how much of it is there: d, or else 1 - Tr, times its picture."""
@@ -147,16 +147,21 @@ class _Reading:
         filters = said.color("Tf")
         # A filter that is white, or of what is opaque black, says nothing that is not said elsewhere.
         plain = filters is None or not filters.any() or bool((filters == 1).all())
-        ior = said.number("Ni", 0.001, 10)
-        # Blender writes 6 for metal that is not all there.
-        bends = self._illum == 7 or (self._illum == 6 and said.blender is None)
         if not plain:
             said.note(LEFT_OUT, "Tf")
-        if not bends or ior in (None, 1.0) or (filters is not None and not filters.any()):
+        # Blender writes 6 for metal that is not all there.
+        bends = self._illum == 7 or (self._illum == 6 and said.blender is None)
+        ior = self._ior() if bends and (filters is None or filters.any()) else None
+        if ior is None:
             return None
         said.take("Kd", "map_Kd", "Ks", "map_Ks", "Ns", "map_Ns", "Pm", "map_Pm", "map_d")
         rough = self._share("Pr")
         return Dielectric(ior, 0.0 if rough is None else rough)
+
+    def _ior(self) -> float | None:
+        """Return the index of refraction where it is not that of air; within what the format allows."""
+        ior = self._said.number("Ni", 0.001, 10)
+        return None if ior == 1 else ior
 
     def _metallic_rough(self) -> Material:
         """Return what Pr and Pm say, in the words of glTF's model; highlights say the same in other words."""
@@ -267,8 +272,8 @@ class _Reading:
 
     def _seen_through(self, body: Material, opacity: Number) -> Material:
         """Return a material of which only a part is there: a pane for the rest (illum 4), or nothing."""
-        ior = self._said.number("Ni", 0.001, 10)
-        if self._illum != _PANE or ior in (None, 1.0) or self._said.blender is not None:
+        ior = self._ior() if self._illum == _PANE and self._said.blender is None else None
+        if ior is None:
             return Mask(body, opacity)
         rest = MixTexture(1.0, 0.0, opacity) if isinstance(opacity, Texture) else 1 - opacity
         return Mix(body, ThinDielectric(ior), rest)
