@@ -304,27 +304,25 @@ mod tests {
 
     #[test]
     fn one_scattering_has_its_albedo() {
-        // White facets, by midpoints over facets as they are seen and, on another way, over all directions.
-        for alpha in [0.1, 0.3, 0.5, 1.0] {
-            for cosine in [1.0, 0.5, 0.1] {
+        // Of white facets, by quadrature over slopes.
+        let truths = [
+            (0.1, [1.0, 0.99985, 0.91291]),
+            (0.3, [0.99971, 0.92329, 0.94146]),
+            (0.5, [0.94300, 0.86936, 0.95503]),
+            (1.0, [0.46159, 0.76657, 0.95280]),
+        ];
+        for (alpha, albedos) in truths {
+            for (cosine, truth) in [1.0, 0.5, 0.1].into_iter().zip(albedos) {
                 let (facets, wo) = (Beckmann::new([alpha; 2]), direction(cosine, 0.0));
-                let mut seen = 0.0;
+                let mut sum = 0.0;
                 for k in 0..400 * 400 {
-                    let u = [(f64::from(k / 400) + 0.5) / 400.0, (f64::from(k % 400) + 0.5) / 400.0];
-                    let wi = facets.sample_reflection(wo, u);
+                    let wi = facets.sample_reflection(wo, [k / 400, k % 400].map(|i| (f64::from(i) + 0.5) / 400.0));
                     if wi.z > 0.0 {
-                        seen += facets.reflection_geometry(wo, wi) * 2.0 * (wo.z + facets.stretch(wo)) / 160_000.0;
+                        sum += facets.reflection_geometry(wo, wi) * 2.0 * (wo.z + facets.stretch(wo));
                     }
                 }
-                let mut whole = 0.0;
-                for k in 0..800 * 800 {
-                    // Elevations that are dense near the plane.
-                    let t = (f64::from(k / 800) + 0.5) / 800.0;
-                    let wi = direction(t * t, (f64::from(k % 800) + 0.5) / 800.0 * TAU);
-                    let (density, _) = facets.mirroring(wo, wi);
-                    whole += density * facets.reflection_geometry(wo, wi) * TAU * 2.0 * t / 640_000.0;
-                }
-                assert!((seen - whole).abs() < 2e-4, "{alpha} {cosine} {seen} {whole}");
+                let albedo = sum / 160_000.0;
+                assert!((albedo - truth).abs() < 2e-4, "{alpha} {cosine} {albedo}");
             }
         }
     }
