@@ -195,7 +195,9 @@ mod tests {
     fn facets_that_mirror_are_those_of_the_half_vector() {
         for alpha in [[Beckmann::SMOOTH; 2], [0.01; 2], [0.3; 2], [1.0; 2], [1e-3, 0.7]] {
             let facets = Beckmann::new(alpha);
-            for (cosine, turn) in [1.0, 0.9, 0.5, 0.1, 1e-3, 1e-9].into_iter().flat_map(|z| [0.0, 1.0, PI].map(|t| (z, t))) {
+            for (cosine, turn) in
+                [1.0, 0.9, 0.5, 0.1, 1e-3, 1e-9].into_iter().flat_map(|z| [0.0, 1.0, PI].map(|t| (z, t)))
+            {
                 let (wo, wi) = (direction(cosine, 0.3), direction(0.7 * cosine, 0.3 + turn));
                 let h = (wo + wi).normalize();
                 let (density, mirrored) = facets.mirroring(wo, wi);
@@ -283,7 +285,8 @@ mod tests {
                 let h = facets.sample_visible(wo, Sampler::new(6, 0, number).two(0));
                 assert!((h.length() - 1.0).abs() < 1e-12 && h.z > 0.0 && wo.dot(h) > -1e-12);
                 let (i, j) = (cell(h.x / h.z / alpha[0]), cell(h.y / h.z / alpha[1]));
-                let at = if inside(i) && inside(j) { i as usize * cells as usize + j as usize } else { counts.len() - 1 };
+                let at =
+                    if inside(i) && inside(j) { i as usize * cells as usize + j as usize } else { counts.len() - 1 };
                 counts[at] += 1;
             }
             let step = 2.0 * reach / f64::from(cells * fine);

@@ -69,7 +69,6 @@ impl Facets for Ggx {
         let h = DVec3::new(ax * (radius * cos + w.x), ay * (radius * sin + w.y), (1.0 - u[1]) * (1.0 + w.z));
         h.normalize()
     }
-
 }
 
 #[cfg(test)]

@@ -1,9 +1,10 @@
 //! Metal.
 
 use super::checks::within;
-use super::{Material, Roughness, Scattering};
+use super::{FacetKind, Material, Roughness, Scattering};
 use crate::math::DVec3;
-use crate::optics::{Bsdf, Conductor};
+use crate::optics::fresnel::ConductorIndex;
+use crate::optics::{Beckmann, Bsdf, Conductor, Facets, Ggx, Once};
 use crate::scene::ShadingPoint;
 use crate::scene::textures::{Needs, TexturePoint, Value};
 
@@ -19,9 +20,15 @@ pub struct ConductorMaterial {
 }
 
 impl ConductorMaterial {
-    fn bsdf(&self, point: &TexturePoint, outside: f64) -> Conductor {
-        let (eta, k) = (self.eta.at(point) / outside, self.k.at(point) / outside);
-        Conductor::new(eta, k, self.roughness.alpha(point))
+    #[inline]
+    fn bsdf(&self, point: &TexturePoint, outside: f64) -> Bsdf {
+        let index = ConductorIndex::new(self.eta.at(point) / outside, self.k.at(point) / outside);
+        let alpha = self.roughness.alpha(point);
+        match self.roughness.facets {
+            FacetKind::Ggx => Conductor::of(index, Ggx::rough(alpha)).into(),
+            FacetKind::GgxOnce => Conductor::of(index, Once::<Ggx>::rough(alpha)).into(),
+            FacetKind::BeckmannOnce => Conductor::of(index, Once::<Beckmann>::rough(alpha)).into(),
+        }
     }
 }
 
@@ -31,7 +38,7 @@ impl Material for ConductorMaterial {
     }
 
     fn constant(&self) -> Option<Bsdf> {
-        (!self.needs().any()).then(|| self.bsdf(&TexturePoint::default(), 1.0).into())
+        (!self.needs().any()).then(|| self.bsdf(&TexturePoint::default(), 1.0))
     }
 
     fn needs(&self) -> Needs {

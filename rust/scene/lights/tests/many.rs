@@ -24,7 +24,12 @@ fn strengths(count: u32) -> Vec<Strength> {
                 1 => inside(&SpotLight::new(at, way, white(strong), 0.7, 0.2)),
                 kind => {
                     let side = way.any_orthonormal_vector() * 0.3;
-                    Strength::of_triangle([at, at + side, at + side.cross(way)], false, strong, if kind == 2 { Sides::Both } else { Sides::Front })
+                    Strength::of_triangle(
+                        [at, at + side, at + side.cross(way)],
+                        false,
+                        strong,
+                        if kind == 2 { Sides::Both } else { Sides::Front },
+                    )
                 }
             }
         })
