@@ -7,6 +7,7 @@ mod double;
 mod double_double;
 mod dyadic;
 mod elliptic;
+pub mod erf;
 mod exact;
 mod frame;
 mod interval;

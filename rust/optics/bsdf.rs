@@ -1,7 +1,7 @@
 //! What scatters light at a point: one interface over all kinds.
 
 use super::{
-    BlinnPhong, Coated, Conductor, Dielectric, Diffuse, MetallicRough, Mirror, Null, OrenNayar, Phong, Rgb,
+    BlinnPhong, Coated, Conductor, Dielectric, Diffuse, Faceted, MetallicRough, Mirror, Null, OrenNayar, Phong, Rgb,
     ThinDielectric, Transparent,
 };
 use glam::DVec3;
@@ -178,6 +178,8 @@ kinds! {
     BlinnPhong,
     /// The metallic-roughness model of glTF.
     MetallicRough,
+    /// Rough surfaces of other facets, or with what they scatter once alone.
+    Faceted,
     /// Lets light straight through.
     Transparent,
     /// Scatters nothing.

@@ -1,9 +1,11 @@
 //! What holds of every kind of scattering.
 
+use super::conductors::Reflectance;
 use super::*;
 use crate::sampling::Sampler;
 use glam::DVec3;
 use proptest::prelude::*;
+use std::sync::OnceLock;
 
 fn direction(degrees: f64, turn: f64) -> DVec3 {
     let (sin, cos) = degrees.to_radians().sin_cos();
@@ -15,6 +17,32 @@ const SILVER: (Rgb, Rgb) = (Rgb::new(0.0569, 0.0540, 0.0469), Rgb::new(4.2543, 3
 
 fn gold(outside: f64, alpha: [f64; 2]) -> Bsdf {
     Conductor::metal(conductors::metal("gold").unwrap(), outside, alpha).into()
+}
+
+/// Silver and glass of facets that scatter once.
+fn once<F: Facets>(alpha: [f64; 2], eta: f64) -> [Bsdf; 2]
+where
+    Bsdf: From<Conductor<Once<F>>> + From<Dielectric<Once<F>>>,
+{
+    let silver = Reflectance::Index(fresnel::ConductorIndex::new(SILVER.0, SILVER.1));
+    let (brushed, alike) = (Once::<F>::new(alpha), Once::<F>::new([alpha[0]; 2]));
+    [Conductor::of(silver, Some(brushed)).into(), Dielectric::of(eta, Some(alike)).into()]
+}
+
+/// Plastics whose coats scatter once. What goes through them is integrated, once.
+fn plastics_once() -> &'static [Bsdf] {
+    static MADE: OnceLock<Vec<Bsdf>> = OnceLock::new();
+    fn made<F: Facets>(alpha: f64, eta: f64) -> Bsdf
+    where
+        Bsdf: From<CoatedOnce<F>>,
+    {
+        let facets = Once::<F>::new([alpha; 2]);
+        CoatedOnce::new(Rgb::new(0.9, 0.3, 1.0), eta, facets, Through::new(&facets, eta)).into()
+    }
+    let alphas = [1e-4, 0.01, 0.1, 0.4, 1.0];
+    let all = alphas.into_iter().flat_map(|alpha| [1.0, 1.01, 1.5].map(|eta| (alpha, eta)));
+    let both = |(alpha, eta)| [made::<Ggx>(alpha, eta), made::<Beckmann>(alpha, eta)];
+    MADE.get_or_init(|| all.flat_map(both).collect())
 }
 
 /// One or more of each kind.
@@ -48,8 +76,23 @@ fn kinds() -> Vec<Bsdf> {
         kinds.push(Coated::new(red, 1.5, alpha).into());
         kinds.push(MetallicRough::new(red, 0.5, alpha.sqrt()).into());
         kinds.push(MetallicRough::new(grey, 1.0, alpha.sqrt()).into());
+        for eta in [1.01, 1.5] {
+            kinds.extend(once::<Ggx>([alpha, 0.3], eta));
+            kinds.extend(once::<Beckmann>([alpha, 0.3], eta));
+        }
     }
+    kinds.extend(plastics_once());
     kinds
+}
+
+/// The index of refraction below it over that above.
+fn index(bsdf: &Bsdf) -> f64 {
+    match bsdf {
+        Bsdf::Dielectric(d) => d.eta(),
+        Bsdf::Faceted(Faceted::DielectricOnce(d)) => d.eta(),
+        Bsdf::Faceted(Faceted::BeckmannDielectricOnce(d)) => d.eta(),
+        _ => 1.0,
+    }
 }
 
 /// Directions from straight above to grazing, and some from below.
@@ -121,10 +164,7 @@ fn light_is_scattered_alike_in_both_directions() {
             let drawn = bsdf.sample(wo, || 0.9, [0.3, 0.4]).map(|s| s.wi);
             for &wi in b.iter().chain(drawn.as_ref()) {
                 // f(wo, wi) / η² of the side of wi is symmetric.
-                let index = |w: DVec3| match &bsdf {
-                    Bsdf::Dielectric(d) if w.z < 0.0 => d.eta(),
-                    _ => 1.0,
-                };
+                let index = |w: DVec3| if w.z < 0.0 { index(&bsdf) } else { 1.0 };
                 let one = bsdf.evaluate(wo, wi).0 / wi.z.abs() * index(wi).powi(2);
                 let two = bsdf.evaluate(wi, wo).0 / wo.z.abs() * index(wo).powi(2);
                 let off = (one - two).abs().max_element();
@@ -144,7 +184,7 @@ fn draws_weigh_what_is_evaluated() {
                     continue;
                 };
                 assert!((s.wi.length() - 1.0).abs() < 1e-9 && is_radiance(s.weight) && s.pdf > 0.0);
-                assert_eq!(s.eta != 1.0, s.wi.z * wo.z < 0.0 && matches!(bsdf, Bsdf::Dielectric(_)), "{s:?}");
+                assert_eq!(s.eta != 1.0, s.wi.z * wo.z < 0.0 && index(&bsdf) != 1.0, "{s:?}");
                 if s.pdf.is_infinite() {
                     continue;
                 }
@@ -203,6 +243,8 @@ proptest! {
         kinds.push(Coated::new(Rgb::ONE, eta.max(1.0), alpha).into());
         kinds.push(MetallicRough::new(Rgb::ONE, across, alpha).into());
         kinds.push(OrenNayar::new(Rgb::ONE, alpha).into());
+        kinds.extend(once::<Ggx>([alpha, across], eta));
+        kinds.extend(once::<Beckmann>([alpha, across], eta));
         for bsdf in kinds {
             let (value, pdf) = bsdf.evaluate(wo, wi);
             prop_assert!(is_radiance(value) && pdf.is_finite() && pdf >= 0.0, "{value} {pdf} {bsdf:?} {wo} {wi}");

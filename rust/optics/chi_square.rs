@@ -1,5 +1,6 @@
 //! Draws have the density that they say.
 
+use super::conductors::Reflectance;
 use super::*;
 use crate::sampling::Sampler;
 use crate::sampling::chi_square::assert_frequencies;
@@ -34,19 +35,19 @@ impl Chart for Sphere {
 }
 
 /// Slopes of the facet that reflects or refracts to `wo`, in units of α: however narrow a lobe is, it fills this square.
-struct Facets {
+struct Slopes {
     wo: DVec3,
     alpha: [f64; 2],
     /// The index beyond the surface, to look at what is refracted.
     eta: Option<f64>,
 }
 
-impl Facets {
+impl Slopes {
     /// Slopes above 3 α are no part of it: there is what lies far from a narrow lobe, and midpoints would not see it.
     const TAIL: f64 = 0.9;
 }
 
-impl Chart for Facets {
+impl Chart for Slopes {
     fn cell(&self, wi: DVec3) -> Option<[f64; 2]> {
         let q = match self.eta {
             None if wi.z * self.wo.z > 0.0 => self.wo + wi,
@@ -165,14 +166,29 @@ fn reflections_have_their_density() {
         let gold = |alpha| Conductor::metal(conductors::metal("Au").unwrap(), 1.0, alpha);
         for wo in directions() {
             for across in [alpha, (4.0 * alpha).min(0.7)] {
-                let chart = Facets { wo, alpha: [alpha, across], eta: None };
+                let chart = Slopes { wo, alpha: [alpha, across], eta: None };
                 assert_density(&gold([alpha, across]).into(), wo, &chart);
             }
-            let chart = Facets { wo, alpha: [alpha; 2], eta: None };
+            let chart = Slopes { wo, alpha: [alpha; 2], eta: None };
             assert_density(&Coated::new(Rgb::splat(0.5), 1.5, alpha).into(), wo, &chart);
             assert_density(&MetallicRough::new(Rgb::splat(0.5), 0.5, alpha.sqrt()).into(), wo, &chart);
+            once_reflected::<Ggx>([alpha, (4.0 * alpha).min(0.7)], wo);
+            once_reflected::<Beckmann>([alpha, (4.0 * alpha).min(0.7)], wo);
         }
     }
+}
+
+/// Of metal and plastic whose facets scatter once.
+fn once_reflected<F: Facets>(alpha: [f64; 2], wo: DVec3)
+where
+    Bsdf: From<Conductor<Once<F>>> + From<CoatedOnce<F>>,
+{
+    let index = fresnel::ConductorIndex::new(Rgb::splat(0.2), Rgb::splat(3.0));
+    let metal = Conductor::of(Reflectance::Index(index), Some(Once::<F>::new(alpha)));
+    assert_density(&metal.into(), wo, &Slopes { wo, alpha, eta: None });
+    let alike = Once::<F>::new([alpha[0]; 2]);
+    let plastic = CoatedOnce::new(Rgb::splat(0.5), 1.5, alike, Through::new(&alike, 1.5));
+    assert_density(&plastic.into(), wo, &Slopes { wo, alpha: [alpha[0]; 2], eta: None });
 }
 
 #[test]
@@ -180,10 +196,15 @@ fn refractions_have_their_density() {
     for alpha in [1e-4f64, 0.01, 0.3, 1.0] {
         for eta in [1.01, 1.5, 3.0] {
             for wo in directions().into_iter().flat_map(|wo| [wo, -wo]) {
-                let bsdf = Dielectric::new(eta, alpha).into();
                 let beyond = if wo.z > 0.0 { eta } else { 1.0 / eta };
-                for eta in [None, Some(beyond)] {
-                    assert_density(&bsdf, wo, &Facets { wo, alpha: [alpha; 2], eta });
+                for bsdf in [
+                    Dielectric::new(eta, alpha).into(),
+                    Dielectric::of(eta, Some(Once::<Ggx>::new([alpha; 2]))).into(),
+                    Dielectric::of(eta, Some(Once::<Beckmann>::new([alpha; 2]))).into(),
+                ] {
+                    for eta in [None, Some(beyond)] {
+                        assert_density(&bsdf, wo, &Slopes { wo, alpha: [alpha; 2], eta });
+                    }
                 }
             }
         }

@@ -4,7 +4,7 @@ use super::albedo::{MirrorLoss, coat, coat_average};
 use super::conductor::above;
 use super::lobes::diffuse;
 use super::mirror::mirrored;
-use super::{BsdfSample, Ggx, Rgb, Scatter, fresnel};
+use super::{BsdfSample, Facets, Ggx, Rgb, Scatter, fresnel};
 use glam::DVec3;
 use std::f64::consts::FRAC_1_PI;
 

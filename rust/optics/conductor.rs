@@ -1,30 +1,30 @@
 //! Metals.
 
-use super::albedo::MirrorLoss;
 use super::conductors::{Metal, Reflectance};
 use super::fresnel::ConductorIndex;
 use super::lobes::Grazing;
+use super::losses::{Lossy, Lost};
 use super::mirror::mirrored;
-use super::{BsdfSample, Ggx, Rgb, Scatter};
+use super::{BsdfSample, Facets, Ggx, Rgb, Scatter};
 use glam::DVec3;
 use std::f64::consts::{FRAC_1_PI, PI};
 
-/// A conductor, smooth or with GGX microfacets. Light that facets throw on facets is made up for (Kulla and Conty,
-/// "Revisiting Physically Based Shading at Imageworks", 2017): reciprocal, and a perfect conductor is white at every
+/// A conductor, smooth or with microfacets. Light that facets throw on facets is made up for as far as these know of it (Kulla and
+/// Conty, "Revisiting Physically Based Shading at Imageworks", 2017): reciprocal, and a perfect conductor is white at every
 /// roughness. Both sides reflect.
 ///
 /// A measured metal has its colour by wavelength ([`super::conductors::Curve`]), of what is scattered once and of what is scattered
 /// more than once, and may have more than 1 in a channel.
 #[derive(Clone, Copy, Debug)]
-pub struct Conductor {
+pub struct Conductor<F: Lossy = Ggx> {
     fresnel: Reflectance,
-    rough: Option<Rough>,
+    rough: Option<Rough<F>>,
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Rough {
-    ggx: Ggx,
-    loss: MirrorLoss,
+struct Rough<F: Lossy> {
+    facets: F,
+    loss: F::Mirror,
     /// Where light goes that is scattered more than once.
     grazing: Grazing,
     /// What is scattered more than once, over π and the mean loss.
@@ -32,22 +32,25 @@ struct Rough {
 }
 
 impl Conductor {
-    /// Of the complex index `eta` + i `k` relative to the medium around it, and the roughness along x and y, 0 to 1. Below
-    /// [`Ggx::SMOOTH`] it is a mirror.
+    /// Of the complex index `eta` + i `k` relative to the medium around it, and the roughness of GGX along x and y, 0
+    /// to 1. Below [`Facets::SMOOTH`] it is a mirror.
     pub fn new(eta: Rgb, k: Rgb, alpha: [f64; 2]) -> Self {
-        Self::of(Reflectance::Index(ConductorIndex::new(eta, k)), alpha)
+        Self::of(Reflectance::Index(ConductorIndex::new(eta, k)), Ggx::rough(alpha))
     }
 
-    /// Of a measured metal in a medium of index `outside`, and the roughness.
+    /// Of a measured metal in a medium of index `outside`, and the roughness of GGX.
     pub fn metal(metal: &'static Metal, outside: f64, alpha: [f64; 2]) -> Self {
-        Self::of(Reflectance::of(metal, outside), alpha)
+        Self::of(Reflectance::of(metal, outside), Ggx::rough(alpha))
     }
+}
 
-    fn of(fresnel: Reflectance, alpha: [f64; 2]) -> Self {
-        let rough = Ggx::rough(alpha).map(|ggx| {
-            let loss = MirrorLoss::new(ggx);
+impl<F: Lossy> Conductor<F> {
+    /// Of what it reflects smooth, and facets; a mirror without.
+    pub fn of(fresnel: Reflectance, facets: Option<F>) -> Self {
+        let rough = facets.map(|facets| {
+            let loss = facets.mirror();
             let multiple = fresnel.seen(|mean| made_up_of(loss.average(), mean)).max(Rgb::ZERO);
-            Rough { ggx, loss, grazing: Grazing::new(ggx.mean_alpha()), multiple }
+            Rough { facets, loss, grazing: Grazing::new(facets.mean_alpha()), multiple }
         });
         Self { fresnel, rough }
     }
@@ -70,6 +73,9 @@ pub(super) fn made_up(lost: f64, reflectance: Rgb) -> Rgb {
 /// The same of one channel, or one wavelength.
 #[inline]
 fn made_up_of(lost: f64, reflectance: f64) -> f64 {
+    if lost == 0.0 {
+        return 0.0;
+    }
     let colour = reflectance * reflectance * (1.0 - lost) / (1.0 - reflectance * lost);
     colour * (FRAC_1_PI / lost)
 }
@@ -80,26 +86,26 @@ pub(super) fn above(w: DVec3) -> DVec3 {
     DVec3::new(w.x, w.y, w.z.abs())
 }
 
-impl Scatter for Conductor {
+impl<F: Lossy> Scatter for Conductor<F> {
     #[inline]
     fn evaluate(&self, wo: DVec3, wi: DVec3) -> (Rgb, f64) {
         let Some(rough) = &self.rough else {
             return (Rgb::ZERO, 0.0);
         };
-        if !Ggx::sees(wo) || !Ggx::sees(wi) || wo.z * wi.z <= 0.0 {
+        if !F::sees(wo) || !F::sees(wi) || wo.z * wi.z <= 0.0 {
             return (Rgb::ZERO, 0.0);
         }
         let (wo, wi) = (above(wo), above(wi));
-        let (density, cosine) = rough.ggx.mirroring(wo, wi);
-        let single = density * rough.ggx.reflection_geometry(wo, wi);
+        let (density, cosine) = rough.facets.mirroring(wo, wi);
+        let single = density * rough.facets.reflection_geometry(wo, wi);
         let lost = rough.loss.of(wo);
         let value = self.reflectance(cosine) * single + rough.multiple * (lost * rough.loss.of(wi) * wi.z);
-        (value, (1.0 - lost) * rough.ggx.reflected_pdf(wo, density) + lost * rough.grazing.pdf(wi.z))
+        (value, (1.0 - lost) * rough.facets.reflected_pdf(wo, density) + lost * rough.grazing.pdf(wi.z))
     }
 
     #[inline]
     fn sample(&self, wo: DVec3, choice: impl FnOnce() -> f64, u: [f64; 2]) -> Option<BsdfSample> {
-        if !Ggx::sees(wo) {
+        if !F::sees(wo) {
             return None;
         }
         let Some(rough) = &self.rough else {
@@ -107,7 +113,7 @@ impl Scatter for Conductor {
         };
         let up = above(wo);
         let lost = rough.loss.of(up);
-        let mut wi = if choice() < lost { rough.grazing.sample(u) } else { rough.ggx.sample_reflection(up, u) };
+        let mut wi = if choice() < lost { rough.grazing.sample(u) } else { rough.facets.sample_reflection(up, u) };
         if wi.z <= 0.0 {
             return None;
         }
@@ -136,6 +142,6 @@ impl Scatter for Conductor {
     }
 
     fn roughness(&self) -> f64 {
-        self.rough.as_ref().map_or(0.0, |rough| rough.ggx.mean_alpha())
+        self.rough.as_ref().map_or(0.0, |rough| rough.facets.mean_alpha())
     }
 }

@@ -1,42 +1,50 @@
 //! Glass, water and the like.
 
-use super::albedo::Interface;
 use super::conductor::above;
 use super::lobes::Grazing;
+use super::losses::{Lossy, LostBetween};
 use super::mirror::mirrored;
-use super::{BsdfSample, Ggx, Rgb, Scatter, fresnel};
+use super::{BsdfSample, Facets, Ggx, Rgb, Scatter, fresnel};
 use glam::DVec3;
 
-/// A dielectric interface, smooth or with isotropic GGX microfacets (Walter et al., "Microfacet Models for Refraction through Rough
-/// Surfaces", 2007), which reflects and refracts and loses nothing.
+/// A dielectric interface, smooth or with isotropic microfacets (Walter et al., "Microfacet Models for Refraction through Rough
+/// Surfaces", 2007), which reflects and refracts.
 ///
-/// A refraction that starts at a facet seen from one side is taken to get out where the facet is seen from the other,
-/// G₂ = min(G₁(wo), G₁(wi)): light that other facets stop goes through them too, the more nearly straight on the closer
+/// A refraction that starts at a facet seen from one side is mostly taken to get out where the facet is seen from the other
+/// ([`Facets::refraction_geometry`]): light that other facets stop goes through them too, the more nearly straight on the closer
 /// the index is to 1. So at index 1 a surface is clear however rough it is. What is still lost is given back as
-/// [`Interface`] says.
+/// [`LostBetween`] says.
 #[derive(Clone, Copy, Debug)]
-pub struct Dielectric {
+pub struct Dielectric<F: Lossy = Ggx> {
     /// Index below over index above.
     eta: f64,
-    rough: Option<Rough>,
+    rough: Option<Rough<F>>,
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Rough {
-    ggx: Ggx,
-    interface: Interface,
+struct Rough<F: Lossy> {
+    facets: F,
+    interface: F::Interface,
 }
 
 impl Dielectric {
+    /// Of the index of refraction below the surface over that above, `eta` > 0, and the roughness of GGX, 0 to 1.
+    /// Below [`Facets::SMOOTH`], or with `eta` within 10⁻⁶ of 1, directions are single.
+    pub fn new(eta: f64, alpha: f64) -> Self {
+        Self::of(eta, Ggx::rough([alpha; 2]))
+    }
+}
+
+impl<F: Lossy> Dielectric<F> {
     /// Nearer to 1 an index bends light by less than 10⁻⁶ radians at a rough surface, but within 10⁻³ of grazing. It
     /// then counts as smooth: Fresnel's reflection is all that can be told.
     const INVISIBLE: f64 = 1e-6;
 
-    /// Of the index of refraction below the surface over that above, `eta` > 0, and the roughness, 0 to 1.
-    /// Below [`Ggx::SMOOTH`], or with `eta` within 10⁻⁶ of 1, directions are single.
-    pub fn new(eta: f64, alpha: f64) -> Self {
-        let ggx = if (eta - 1.0).abs() < Self::INVISIBLE { None } else { Ggx::rough([alpha; 2]) };
-        Self { eta, rough: ggx.map(|ggx| Rough { ggx, interface: Interface::new(ggx.mean_alpha(), eta) }) }
+    /// Of the index of refraction below the surface over that above, `eta` > 0, and facets that are alike in all directions. Without them, or
+    /// with `eta` within 10⁻⁶ of 1, directions are single.
+    pub fn of(eta: f64, facets: Option<F>) -> Self {
+        let facets = facets.filter(|_| (eta - 1.0).abs() >= Self::INVISIBLE);
+        Self { eta, rough: facets.map(|facets| Rough { facets, interface: facets.interface(eta) }) }
     }
 
     /// The index below over the index above.
@@ -53,13 +61,13 @@ impl Dielectric {
 
     /// What one scattering does: the scattering function with its cosine, for radiance, and the density of a draw.
     #[inline]
-    fn single(&self, rough: &Rough, wo: DVec3, wi: DVec3) -> (f64, f64) {
-        let (eta, ggx) = (self.beyond(wo), &rough.ggx);
+    fn single(&self, rough: &Rough<F>, wo: DVec3, wi: DVec3) -> (f64, f64) {
+        let (eta, facets) = (self.beyond(wo), &rough.facets);
         if wo.z * wi.z > 0.0 {
             let (o, i) = (above(wo), above(wi));
-            let (density, cosine) = ggx.mirroring(o, i);
+            let (density, cosine) = facets.mirroring(o, i);
             let density = density * fresnel::dielectric(cosine, eta);
-            return (density * ggx.reflection_geometry(o, i), ggx.reflected_pdf(o, density));
+            return (density * facets.reflection_geometry(o, i), facets.reflected_pdf(o, density));
         }
         // The facet's normal, on the side of wo; the length holds the Jacobian (Walter et al., 2007, eq. 16 and 17).
         let q = wo + wi * eta;
@@ -78,18 +86,24 @@ impl Dielectric {
 
     /// Refraction at a facet of normal `h`, on the side of `wo`, with cosines to both directions and |wo + η wi|².
     #[inline]
-    fn refraction(&self, rough: &Rough, wo: DVec3, wi: DVec3, h: DVec3, [o, i]: [f64; 2], square: f64) -> (f64, f64) {
-        let (eta, ggx) = (self.beyond(wo), &rough.ggx);
-        let through = (1.0 - fresnel::dielectric(o, eta)) * ggx.density(h) * o * i / square;
-        // G₁ / cos θo.
-        let seen = 2.0 / (wo.z.abs() + ggx.stretch(wo));
-        let both = seen.min(2.0 * (wi.z / wo.z).abs() / (wi.z.abs() + ggx.stretch(wi)));
+    fn refraction(
+        &self,
+        rough: &Rough<F>,
+        wo: DVec3,
+        wi: DVec3,
+        h: DVec3,
+        [o, i]: [f64; 2],
+        square: f64,
+    ) -> (f64, f64) {
+        let (eta, facets) = (self.beyond(wo), &rough.facets);
+        let through = (1.0 - fresnel::dielectric(o, eta)) * facets.density(h) * o * i / square;
+        let [seen, both] = facets.refraction_geometry(wo, wi);
         (through * both, through * seen * eta * eta)
     }
 
     /// As [`Dielectric::single`], with what is given back of what facets lose.
     #[inline]
-    fn both(&self, rough: &Rough, wo: DVec3, wi: DVec3, (value, pdf): (f64, f64)) -> (f64, f64) {
+    fn both(&self, rough: &Rough<F>, wo: DVec3, wi: DVec3, (value, pdf): (f64, f64)) -> (f64, f64) {
         let lost = rough.interface.loss(wo);
         let back =
             rough.interface.given_back(lost, wo, wi) / if wo.z * wi.z < 0.0 { self.beyond(wo).powi(2) } else { 1.0 };
@@ -110,20 +124,20 @@ impl Dielectric {
     }
 
     #[inline]
-    fn rough_sample(&self, rough: &Rough, wo: DVec3, choice: f64, u: [f64; 2]) -> Option<BsdfSample> {
+    fn rough_sample(&self, rough: &Rough<F>, wo: DVec3, choice: f64, u: [f64; 2]) -> Option<BsdfSample> {
         let lost = rough.interface.loss(wo);
         let eta = self.beyond(wo);
         let (wi, single) = if choice < lost {
             let side = if choice < lost * rough.interface.crossing(wo) { -wo.z.signum() } else { wo.z.signum() };
             let scale = rough.interface.scale(DVec3::new(0.0, 0.0, side));
             let wi = Grazing::new(scale).sample(u) * DVec3::new(1.0, 1.0, side);
-            if !Ggx::sees(wi) {
+            if !F::sees(wi) {
                 return None;
             }
             (wi, self.single(rough, wo, wi))
         } else {
             let choice = (choice - lost) / (1.0 - lost);
-            let mut h = rough.ggx.sample_visible(above(wo), u);
+            let mut h = rough.facets.sample_visible(above(wo), u);
             h.z = h.z.copysign(wo.z);
             let o = wo.dot(h);
             if choice < fresnel::dielectric(o, eta) {
@@ -138,7 +152,7 @@ impl Dielectric {
                 )
             } else {
                 let wi = fresnel::refract(wo, h, eta)?;
-                if wi.z * wo.z >= 0.0 || !Ggx::sees(wi) {
+                if wi.z * wo.z >= 0.0 || !F::sees(wi) {
                     return None;
                 }
                 // |wo + η wi| without the rounding of either: near index 1 it is all that tells directions apart.
@@ -153,11 +167,11 @@ impl Dielectric {
     }
 }
 
-impl Scatter for Dielectric {
+impl<F: Lossy> Scatter for Dielectric<F> {
     #[inline]
     fn evaluate(&self, wo: DVec3, wi: DVec3) -> (Rgb, f64) {
         match &self.rough {
-            Some(rough) if Ggx::sees(wo) && Ggx::sees(wi) => {
+            Some(rough) if F::sees(wo) && F::sees(wi) => {
                 let (value, pdf) = self.both(rough, wo, wi, self.single(rough, wo, wi));
                 (Rgb::splat(value), pdf)
             }
@@ -167,7 +181,7 @@ impl Scatter for Dielectric {
 
     #[inline]
     fn sample(&self, wo: DVec3, choice: impl FnOnce() -> f64, u: [f64; 2]) -> Option<BsdfSample> {
-        if !Ggx::sees(wo) {
+        if !F::sees(wo) {
             return None;
         }
         match &self.rough {
@@ -189,6 +203,6 @@ impl Scatter for Dielectric {
     }
 
     fn roughness(&self) -> f64 {
-        self.rough.as_ref().map_or(0.0, |rough| rough.ggx.mean_alpha())
+        self.rough.as_ref().map_or(0.0, |rough| rough.facets.mean_alpha())
     }
 }

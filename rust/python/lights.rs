@@ -13,7 +13,7 @@ use crate::optics::Rgb;
 
 use crate::scene::{
     ConstantEnvironment, DirectionalLight, Emission, EnvironmentMap, Light, Picture, PointLight, Profile, Projector,
-    SpotLight, SunSky,
+    Sides, SpotLight, SunSky,
 };
 
 /// `raywright.PointLight`.
@@ -81,7 +81,7 @@ struct PySunSky {
 #[derive(FromPyObject)]
 struct PyEmission<'py> {
     radiance: Bound<'py, PyAny>,
-    both_sides: bool,
+    side: String,
 }
 
 /// Reads a light, or an environment, by the name of its class.
@@ -147,8 +147,13 @@ pub fn read_emission(emission: &Bound<'_, PyAny>, textures: &Textures) -> PyResu
     if emission.get_type().name()?.to_str()? != "Emission" {
         return Ok(Emission { radiance: textures.value(emission)?, ..Emission::default() });
     }
-    let PyEmission { radiance, both_sides } = emission.extract()?;
-    Ok(Emission { radiance: textures.value(&radiance)?, both_sides })
+    let PyEmission { radiance, side } = emission.extract()?;
+    let sides = match side.as_str() {
+        "back" => Sides::Back,
+        "both" => Sides::Both,
+        _ => Sides::Front,
+    };
+    Ok(Emission { radiance: textures.value(&radiance)?, sides })
 }
 
 /// An (H, W, 3) array as a picture.

@@ -8,9 +8,9 @@ use super::textures::{Cache, Textures};
 use crate::optics::conductors::{METALS, metal};
 use crate::scene::Material;
 use crate::scene::materials::{
-    BlinnPhongMaterial, BumpMap, ConductorMaterial, DielectricMaterial, DiffuseMaterial, Index, Interior, Mask,
-    MetallicRoughMaterial, MirrorMaterial, MixMaterial, NormalMap, OrenNayarMaterial, PhongMaterial, PlasticMaterial,
-    Roughness, ThinDielectricMaterial, TwoSided,
+    BlinnPhongMaterial, BumpMap, ConductorMaterial, DielectricMaterial, DiffuseMaterial, FacetKind, Index, Interior,
+    Mask, MetallicRoughMaterial, MirrorMaterial, MixMaterial, NormalMap, OrenNayarMaterial, PhongMaterial,
+    PlasticMaterial, Roughness, ThinDielectricMaterial, TwoSided,
 };
 use crate::scene::textures::Value;
 
@@ -60,6 +60,7 @@ impl Looks {
                 reflectance: value("reflectance")?,
                 ior: float("ior")?,
                 roughness: roughness()?,
+                coats: Arc::default(),
             }),
             "Phong" => Arc::new(PhongMaterial {
                 diffuse: value("diffuse")?,
@@ -91,7 +92,7 @@ impl Looks {
         })
     }
 
-    /// Roughness, or alpha where there is one, alike in all directions or of two.
+    /// Roughness, or alpha where there is one, alike in all directions or of two; and of which facets.
     fn roughness(&self, given: &Bound<'_, PyAny>) -> PyResult<Roughness> {
         let alpha = given.getattr("alpha")?;
         let is_alpha = !alpha.is_none();
@@ -103,7 +104,13 @@ impl Looks {
                 [both.clone(), both]
             }
         };
-        Ok(Roughness { along, is_alpha })
+        let distribution: String = given.getattr("distribution")?.extract()?;
+        let facets = match (distribution.as_str(), given.getattr("multiple_scattering")?.extract()?) {
+            ("beckmann", _) => FacetKind::BeckmannOnce,
+            (_, true) => FacetKind::Ggx,
+            (_, false) => FacetKind::GgxOnce,
+        };
+        Ok(Roughness { along, is_alpha, facets })
     }
 }
 

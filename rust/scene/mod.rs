@@ -27,7 +27,7 @@ pub(crate) use caustics::is_matt;
 pub use caustics::{Aim, Caustics};
 pub use compiled::Scene;
 pub use description::{DescriptionError, SceneDescription, Shape};
-pub use emission::Emission;
+pub use emission::{Emission, Sides};
 pub use first_hits::FirstHits;
 pub use geometry::{
     BadTransform, Copies, Geometry, Group, Matrix, Mesh, Precision, Rounding, Surface, Surfaces, Vertices,

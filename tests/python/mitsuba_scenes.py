@@ -191,6 +191,82 @@ def scenes():
                 },
             },
         ),
+        # Facets throw much of the light on facets here, which is lost in Mitsuba.
+        "roughconductor, very rough": scene(
+            a=TILED,
+            sky=upright,
+            b=ball({"type": "roughconductor", **GOLD, "distribution": "ggx", "alpha": 0.7}),
+        ),
+        "roughconductor, beckmann": scene(a=TILED, sky=upright, b=ball({"type": "roughconductor", **GOLD})),
+        "roughconductor, beckmann, very rough": scene(
+            a=TILED,
+            sky=upright,
+            b=ball({"type": "roughconductor", **GOLD, "distribution": "beckmann", "alpha": 0.6}),
+        ),
+        "roughconductor, beckmann, brushed": scene(
+            a=TILED,
+            sky=upright,
+            b={
+                "type": "disk",
+                "to_world": plate(1.2, 1.2, 1.0),
+                "bsdf": {"type": "roughconductor", **GOLD, "alpha_u": 0.08, "alpha_v": 0.5},
+            },
+        ),
+        "roughdielectric, very rough": scene(
+            12,
+            a=TILED,
+            sky=SKY,
+            b=ball({"type": "roughdielectric", "int_ior": 1.5, "distribution": "ggx", "alpha": 0.5}),
+        ),
+        "roughdielectric, beckmann": scene(12, a=TILED, sky=SKY, b=ball({"type": "roughdielectric"})),
+        "roughdielectric, beckmann, very rough": scene(
+            12,
+            a=TILED,
+            sky=SKY,
+            b={
+                "type": "rectangle",
+                "to_world": plate(1.2, 1.2, 1.0),
+                "bsdf": {
+                    "type": "roughdielectric",
+                    "int_ior": 1.8,
+                    "alpha": 0.5,
+                    "sample_visible": False,
+                },
+            },
+        ),
+        "roughplastic, very rough": scene(
+            a=FLOOR,
+            lamp=LAMP,
+            sky=SKY,
+            b=ball(
+                {
+                    "type": "roughplastic",
+                    "diffuse_reflectance": rgb(0.1, 0.4, 0.8),
+                    "distribution": "ggx",
+                    "alpha": 0.5,
+                    "nonlinear": True,
+                }
+            ),
+        ),
+        "roughplastic, beckmann": scene(
+            a=FLOOR,
+            lamp=LAMP,
+            sky=SKY,
+            b=ball({"type": "roughplastic", "diffuse_reflectance": rgb(0.1, 0.4, 0.8)}),
+        ),
+        "roughplastic, beckmann, very rough": scene(
+            a=FLOOR,
+            lamp=LAMP,
+            sky=SKY,
+            b=ball(
+                {
+                    "type": "roughplastic",
+                    "diffuse_reflectance": rgb(0.1, 0.4, 0.8),
+                    "int_ior": 1.8,
+                    "alpha": 0.6,
+                }
+            ),
+        ),
         "plastic": scene(
             a=FLOOR,
             b=ball({"type": "plastic", "diffuse_reflectance": rgb(0.1, 0.4, 0.8)}),
@@ -230,6 +306,48 @@ def scenes():
                 "radius": 0.7,
                 "flip_normals": True,
                 "bsdf": {"type": "twosided", "in": matt, "out": {"type": "plastic"}},
+            },
+        ),
+        "sphere and cylinder that shine inwards": scene(
+            6,
+            a=FLOOR,
+            b=ball(matt),
+            dome={
+                "type": "sphere",
+                "radius": 7.0,
+                "flip_normals": True,
+                "bsdf": matt,
+                "emitter": {"type": "area", "radiance": rgb(0.3, 0.4, 0.6)},
+            },
+            tube={
+                "type": "cylinder",
+                "p0": [1.2, -1.5, 0.2],
+                "p1": [1.6, -0.8, 0.9],
+                "radius": 0.5,
+                "flip_normals": True,
+                "emitter": {"type": "area", "radiance": rgb(6.0, 3.0, 1.0)},
+            },
+        ),
+        "cube, rectangle and disk that shine backwards": scene(
+            6,
+            b=ball(matt),
+            room={
+                "type": "cube",
+                "to_world": moved(0, 0, 4.0, 6.0, 20.0),
+                "flip_normals": True,
+                "bsdf": {"type": "diffuse", "reflectance": 0.6},
+                "emitter": {"type": "area", "radiance": rgb(0.2, 0.25, 0.3)},
+            },
+            c={
+                **LAMP,
+                "to_world": matrix((-2, -1, 3), (1, 0, 0), (0, 1, 0), (0, 0, 1)),
+                "flip_normals": True,
+            },
+            d={
+                "type": "disk",
+                "to_world": matrix((2, 0, 2), (0, 0, 1), (0, 1, 0), (1, 0, 0)),
+                "flip_normals": True,
+                "emitter": {"type": "area", "radiance": rgb(1.0, 4.0, 2.0)},
             },
         ),
         # Of Mitsuba's integrators `path` (3.9.1) has the opacity squared where lights are sampled.

@@ -137,14 +137,89 @@ def test_area_of_a_trillionth_lights_as_a_point(radiance):
 
 
 def test_both_sides_shine():
-    # A lamp that looks up lights the floor below only if both of its sides shine: Lambert, 1760.
-    for both_sides, expected in ((False, 0.0), (True, 1.740839502734206)):
-        lamp = rectangle((-1, -1, 1), (2, 0, 0), (0, 2, 0), emission=rw.Emission(1, both_sides))
+    # A lamp that looks up lights the floor below only if its back shines: Lambert, 1760.
+    for emission, expected in (
+        (rw.Emission(1, False), 0.0),
+        (rw.Emission(1, True), 1.740839502734206),
+        (rw.Emission(1, side="back"), 1.740839502734206),
+    ):
+        lamp = rectangle((-1, -1, 1), (2, 0, 0), (0, 2, 0), emission=emission)
         found = floor_irradiance([lamp], samples=256)
         if expected:
             assert_irradiance(found, expected)
         else:
             assert found[0] == 0
+
+
+HOLLOW = {
+    "sphere": {"shapes": [rw.Sphere((0.2, 0, 0.3), 2.0, emission=rw.Emission(3, side="back"))]},
+    "stretched": {
+        "shapes": [
+            rw.Sphere(
+                transform=[[3, 0, 1, 0], [0, 2, 0, 0.1], [0, 0, 4, 0.5], [0, 0, 0, 1]],
+                emission=rw.Emission(3, side="back"),
+            )
+        ]
+    },
+    "ellipsoid": {"shapes": [rw.Ellipsoid((0, 0, 0), (2, 3, 4), emission=rw.Emission(3, side="back"))]},
+    "box": {"shapes": [rw.Box((-2, -2, -2), (2, 3, 4), emission=rw.Emission(3, side="back"))]},
+    "cylinder": {"shapes": [rw.Cylinder((0, 0, -2), (0, 0, 2), 3, emission=rw.Emission(3, side="back"))]},
+    "copy": {
+        "shapes": [
+            rw.Instance(rw.Sphere((0, 0, 0), 1, emission=rw.Emission(3, side="back")), np.diag([2, 3, 2, 1]))
+        ]
+    },
+    "two": {
+        # The inner one is dark outside, and hides the outer one.
+        "shapes": [
+            rw.Sphere((0, 0, 0), 2, emission=rw.Emission(3, side="back")),
+            rw.Sphere((0, 0, 0), 9, emission=rw.Emission(70, side="back")),
+        ]
+    },
+    "patterned": {
+        "shapes": [rw.Sphere((0, 0, 0), 2, emission=rw.Emission(rw.Checker(3.0, 3.0), side="back"))],
+    },
+}
+
+
+@pytest.mark.parametrize("kind", HOLLOW)
+def test_within_what_shines_inwards_there_is_light_from_everywhere(kind):
+    # π L, of which the floor hides nothing.
+    assert_irradiance(floor_irradiance(samples=256, **HOLLOW[kind]), 3 * math.pi, slack=1e-5)
+
+
+def test_a_tube_that_shines_inwards():
+    # From the middle of its base the far end is seen under π r² / (r² + h²), and all else is wall.
+    radius, height = 1.5, 2.0
+    wall = rw.Cylinder((0, 0, -1), (0, 0, height), radius, capped=False, emission=rw.Emission(2, side="back"))
+    expected = 2 * math.pi * height**2 / (radius**2 + height**2)
+    assert_irradiance(floor_irradiance([wall], samples=512), expected)
+
+
+def test_what_shines_inwards_is_dark_from_outside():
+    camera = rw.Camera((0, 0, 9), (0, 0, 0), fov=20, width=16, height=16)
+    emission = rw.Emission(5, side="back")
+    for shape in (
+        rw.Sphere((0, 0, 0), 1, material=rw.Diffuse(0.5), emission=emission),
+        rw.Cylinder((0, -1, 0), (0, 1, 0), 1, material=rw.Diffuse(0.5), emission=emission),
+        rw.Box((-1, -1, -1), (1, 1, 1), material=rw.Diffuse(0.5), emission=emission),
+    ):
+        assert not rw.render(rw.Scene(shape), camera, samples=4, progress=False).rgb.any()
+        # What falls on it from elsewhere is reflected as ever: convex, and white it would be the sky.
+        lit = rw.render(rw.Scene(shape, environment=2.0), camera, samples=64, progress=False)
+        assert lit.rgb[8, 8] == pytest.approx(1.0, abs=5 * float(lit.standard_error[8, 8].max()))
+
+
+@pytest.mark.parametrize("integrator", [rw.Path(), rw.Path(reuse=2), rw.Path(caustics=True)], ids=repr)
+def test_a_ball_in_what_shines_inwards_and_reflects(integrator):
+    # All is L / (1 - albedo), the ball too, which shines and reflects as the shell does.
+    shell = rw.Sphere((0, 0, 0), 3, material=rw.Diffuse(0.5), emission=rw.Emission(1, side="back"))
+    ball = rw.Sphere((0, 0, 0), 0.5, material=rw.Diffuse(0.5), emission=1)
+    camera = rw.Camera((0, 0, 2), (0, 0, 0), fov=60, width=16, height=16)
+    image = rw.render(rw.Scene([shell, ball]), camera, integrator, samples=256, progress=False)
+    error = math.sqrt(float(np.square(image.standard_error[..., 1].astype(float)).sum())) / 256
+    assert abs(float(image.rgb[..., 1].mean(dtype=float)) - 2.0) <= 4 * error + 1e-5
+    assert error < 0.01
 
 
 def test_lamps_in_instances_light_as_they_do_outside():

@@ -2,7 +2,7 @@
 
 import math
 import pickle
-from dataclasses import FrozenInstanceError
+from dataclasses import FrozenInstanceError, replace
 from datetime import datetime, timedelta, timezone
 
 import numpy as np
@@ -23,6 +23,7 @@ VALUES = [
     rw.SunSky((0, 1, 1), turbidity=4),
     rw.SunSky((0, -1, 5)),
     rw.Emission((1, 2, 3), both_sides=True),
+    rw.Emission((1, 2, 3), side="back"),
 ]
 
 
@@ -36,6 +37,17 @@ def test_values_pickle_compare_hash_print_and_are_frozen(value):
     assert value != VALUES[VALUES.index(value) - 1]
     with pytest.raises(FrozenInstanceError):
         value.scale = 1
+
+
+def test_sides_that_shine_are_told_in_either_way():
+    assert rw.Emission(1) == rw.Emission(1, side="front") == rw.Emission(1, False)
+    assert rw.Emission(1, True) == rw.Emission(1, both_sides=True, side="both") == rw.Emission(1, side="both")
+    assert [rw.Emission(1, side=side).both_sides for side in ("front", "back", "both")] == [
+        False,
+        False,
+        True,
+    ]
+    assert replace(rw.Emission(1, side="back"), radiance=(2, 2, 2)) == rw.Emission(2, side="back")
 
 
 def test_pictures_are_kept_read_only_and_grey_ones_become_colours():
@@ -86,6 +98,18 @@ def test_pictures_are_kept_read_only_and_grey_ones_become_colours():
         (rw.SunSky, {"sky_scale": -1}, ValueError, "sky_scale must be at least 0"),
         (rw.Emission, {"radiance": -1}, ValueError, "radiance must be at least 0, got -1"),
         (rw.Emission, {"both_sides": 1}, TypeError, "both_sides must be True or False, got 1"),
+        (
+            rw.Emission,
+            {"side": "left"},
+            ValueError,
+            "side must be one of 'front', 'back', 'both', got 'left'",
+        ),
+        (
+            rw.Emission,
+            {"both_sides": True, "side": "back"},
+            ValueError,
+            "only one of both_sides and side can be given, got True and 'back'",
+        ),
     ],
 )
 def test_nonsense_is_refused_in_one_line(kind, arguments, error, message):

@@ -258,3 +258,60 @@ def test_pictures_and_colours_of_vertices_are_loaded():
     mesh = rw.Scene(box).shapes[0]
     assert mesh.material == rw.Diffuse(rw.VertexColors())
     assert mesh.colors[:2] == pytest.approx(np.array([(0.502886, 0, 1), (0.003035, 1, 0)]), abs=1e-6)
+
+
+ROUGH = [rw.Conductor, rw.Dielectric, rw.Plastic]
+
+
+def of_facets(kind, **facets):
+    return rw.Conductor("Au", alpha=0.3, **facets) if kind is rw.Conductor else kind(alpha=0.3, **facets)
+
+
+@pytest.mark.parametrize("kind", ROUGH)
+def test_facets_are_told_and_checked(kind):
+    told = of_facets(kind, distribution="beckmann", multiple_scattering=False)
+    assert (told.distribution, told.multiple_scattering) == ("beckmann", False)
+    assert of_facets(kind) == of_facets(kind, distribution="ggx", multiple_scattering=True) != told
+    assert pickle.loads(pickle.dumps(told)) == told
+    with pytest.raises(ValueError, match="distribution must be one of 'ggx', 'beckmann', got 'phong'"):
+        of_facets(kind, distribution="phong")
+    with pytest.raises(TypeError, match="multiple_scattering must be True or False, got 1"):
+        of_facets(kind, multiple_scattering=1)
+    with pytest.raises(
+        ValueError, match="multiple_scattering must be False where distribution is 'beckmann'"
+    ):
+        of_facets(kind, distribution="beckmann")
+
+
+def test_highlights_are_those_of_the_distribution():
+    """At the mirror's angle and beside it: D F G2 / (4 cos cos) for GGX (Walter et al., 2007) and for Beckmann."""
+    alpha, tilt = 0.2, np.radians(20)
+
+    def lit(distribution, slope):
+        # Looked at from straight above; a light whose half vector has this slope.
+        half = np.arctan(slope)
+        way = np.array((np.sin(2 * half), 0, np.cos(2 * half)))
+        metal = rw.Conductor(
+            eta=1e-9, k=1e9, alpha=alpha, distribution=distribution, multiple_scattering=False
+        )
+        plate = rw.Disk((0, 0, 0), (0, 0, 1), 1, material=metal)
+        scene = rw.Scene(plate, lights=[rw.DirectionalLight(-way, 1.0)])
+        camera = rw.Orthographic((0, 0, 5), (0, 0, 0), up=(0, 1, 0), scale=0.01, width=1, height=1)
+        return float(rw.render(scene, camera, rw.Path(max_depth=1), samples=1, progress=False).rgb[0, 0, 0])
+
+    def expected(distribution, slope):
+        half = np.arctan(slope)
+        cosine = np.cos(2 * half)
+        a = 1 / (alpha * np.tan(2 * half)) if slope else np.inf
+        if distribution == "ggx":
+            density = 1 / (np.pi * alpha**2 * np.cos(half) ** 4 * (1 + (slope / alpha) ** 2) ** 2)
+            hidden = (np.sqrt(1 + 1 / a**2) - 1) / 2
+        else:
+            density = np.exp(-((slope / alpha) ** 2)) / (np.pi * alpha**2 * np.cos(half) ** 4)
+            hidden = (math.erf(a) - 1) / 2 + np.exp(-(a**2)) / (2 * a * np.sqrt(np.pi)) if slope else 0.0
+        return density / (1 + hidden) / (4 * cosine) * cosine
+
+    for distribution in ("ggx", "beckmann"):
+        for slope in (0.0, 0.1, 0.3, np.tan(tilt)):
+            seen, truth = lit(distribution, slope), expected(distribution, slope)
+            assert seen == pytest.approx(truth, rel=1e-5), (distribution, slope)

@@ -135,25 +135,29 @@ def test_areas_of_a_trillionth_light_as_points(shape):
     assert_lit(found, 0.8 / math.pi, slack=1e-4)
 
 
-GLOWING = {"material": rw.Diffuse(0.5), "emission": rw.Emission(1, both_sides=True)}
-# Closed shapes about the origin, and some of them large, small, stretched or far away.
-HOLLOW = {
-    "sphere": (rw.Sphere((0, 0, 0), 1, **GLOWING), (0, 0, 0)),
-    "small sphere": (rw.Sphere((0.1, 0.2, 0.3), 1e-5, **GLOWING), (0.1, 0.2, 0.3)),
-    "far sphere": (rw.Sphere((1e5, -1e5, 1e4), 1, **GLOWING), (1e5, -1e5, 1e4)),
-    "ellipsoid": (rw.Ellipsoid((0, 0, 0), (1, 2, 0.5), **GLOWING), (0, 0, 0)),
-    "box": (rw.Box((-1, -2, -1), (1, 1, 3), **GLOWING), (0, 0, 0)),
-    "cylinder": (rw.Cylinder((0, 0, -1), (0, 0, 1), 1, **GLOWING), (0, 0, 0)),
-    "cone": (rw.Cone((0, 0, -0.5), (0, 0, 1), 1, **GLOWING), (0, 0, 0)),
-    "torus": (rw.Torus((0, 0, 2), (0, 1, 0), 2, 1, **GLOWING), (0, 0, 0)),
-    "copy": (rw.Instance(rw.Sphere((0, 0, 0), 1, **GLOWING), np.diag([1, 2, 0.5, 1])), (0, 0, 0)),
-    "far copy": (
-        rw.Instance(
-            rw.Sphere((0, 0, 0), 1, **GLOWING), [[2, 0, 0, 1e5], [0, 2, 0, 0], [0, 0, 2, 0], [0, 0, 0, 1]]
+def hollow(side):
+    """Closed shapes about the origin, some large, small, stretched or far away, and a place within."""
+    glowing = {"material": rw.Diffuse(0.5), "emission": rw.Emission(1, side=side)}
+    return {
+        "sphere": (rw.Sphere((0, 0, 0), 1, **glowing), (0, 0, 0)),
+        "small sphere": (rw.Sphere((0.1, 0.2, 0.3), 1e-5, **glowing), (0.1, 0.2, 0.3)),
+        "far sphere": (rw.Sphere((1e5, -1e5, 1e4), 1, **glowing), (1e5, -1e5, 1e4)),
+        "ellipsoid": (rw.Ellipsoid((0, 0, 0), (1, 2, 0.5), **glowing), (0, 0, 0)),
+        "box": (rw.Box((-1, -2, -1), (1, 1, 3), **glowing), (0, 0, 0)),
+        "cylinder": (rw.Cylinder((0, 0, -1), (0, 0, 1), 1, **glowing), (0, 0, 0)),
+        "cone": (rw.Cone((0, 0, -0.5), (0, 0, 1), 1, **glowing), (0, 0, 0)),
+        "torus": (rw.Torus((0, 0, 2), (0, 1, 0), 2, 1, **glowing), (0, 0, 0)),
+        "copy": (rw.Instance(rw.Sphere((0, 0, 0), 1, **glowing), np.diag([1, 2, 0.5, 1])), (0, 0, 0)),
+        "far copy": (
+            rw.Instance(
+                rw.Sphere((0, 0, 0), 1, **glowing), [[2, 0, 0, 1e5], [0, 2, 0, 0], [0, 0, 2, 0], [0, 0, 0, 1]]
+            ),
+            (1e5, 0, 0),
         ),
-        (1e5, 0, 0),
-    ),
-}
+    }
+
+
+HOLLOW = {f"{name}, {side}": one for side in ("both", "back") for name, one in hollow(side).items()}
 
 
 @pytest.mark.parametrize("kind", HOLLOW)

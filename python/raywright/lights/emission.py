@@ -5,40 +5,59 @@ from typing import Any, TypeAlias, Union
 
 from numpy.typing import ArrayLike
 
+from ..arrays import choice
 from ..textures.texture import Texture, Value
 from ..textures.texture import value as checked_value
 
 EmissionLike: TypeAlias = Union[ArrayLike, Texture, "Emission"]
 Emitted: TypeAlias = Union[Value, "Emission"]
 
+SIDES = ("front", "back", "both")
+
 
 @dataclass(frozen=True, init=False)
 class Emission:
-    """What a surface gives off: the `emission` of a shape that shines on both sides.
+    """What a surface gives off: the `emission` of a shape that shines on its back, or on both sides.
+
+    The front is where the normals point to: the outside of a closed shape, and the side from which the
+    corners of a face are seen anticlockwise. A sphere whose back shines lights what stands within.
 
     Parameters
     ----------
     radiance : float, 3 floats or Texture
         Radiance in W·sr⁻¹·m⁻², at least 0: one number, or red, green and blue, or what varies.
     both_sides : bool
-        Whether the side that the normals point away from shines too.
+        Short for ``side="both"``.
+    side : {"front", "back", "both"}, optional
+        The side that shines; the front if not given.
 
     Raises
     ------
     ValueError
-        If a number is negative or not finite, or there are not 1 or 3 of them.
+        If a number is negative or not finite, there are not 1 or 3 of them, or there is no such side.
     TypeError
         If it is not a number, or `both_sides` is no bool.
     """
 
     radiance: Value
-    both_sides: bool
+    side: str
 
-    def __init__(self, radiance: ArrayLike | Texture, both_sides: bool = False) -> None:
+    def __init__(
+        self, radiance: ArrayLike | Texture, both_sides: bool = False, *, side: str | None = None
+    ) -> None:
         if not isinstance(both_sides, bool):
             raise TypeError(f"both_sides must be True or False, got {both_sides!r}")
+        if side is not None:
+            choice("side", side, SIDES)
+            if both_sides and side != "both":
+                raise ValueError(f"only one of both_sides and side can be given, got True and {side!r}")
         object.__setattr__(self, "radiance", emitted("radiance", radiance))
-        object.__setattr__(self, "both_sides", both_sides)
+        object.__setattr__(self, "side", side or ("both" if both_sides else "front"))
+
+    @property
+    def both_sides(self) -> bool:
+        """Whether both sides shine."""
+        return self.side == "both"
 
 
 def emitted(name: str, value: Any) -> Value:

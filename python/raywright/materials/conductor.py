@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from .. import _core
 from ..textures.texture import Texture, Value, value
-from .material import Material, Rough, rough
+from .material import Material, Rough, facets, rough
 
 
 @dataclass(frozen=True, init=False)
@@ -36,9 +36,18 @@ class Conductor(Material):
         are those of red, green and blue, each with a reflectance of its own.
     roughness : float, Texture, or a pair of them, optional
         How rough it is, from 0, smooth, to 1; along u and along v if they are two. Its square is the alpha of
-        the GGX distribution, as in glTF. 0 if not given.
+        its facets' distribution, as in glTF. 0 if not given.
     alpha : float, Texture, or a pair of them, optional
         That alpha itself, in place of `roughness`.
+    distribution : {"ggx", "beckmann"}
+        How the slopes of its facets are spread: with long tails (Walter et al., "Microfacet Models for
+        Refraction through Rough Surfaces", 2007), or normally (Beckmann and Spizzichino, 1963), which makes
+        highlights without a glow around them.
+    multiple_scattering : bool
+        Whether light that facets throw on each other goes on. If not, it is lost, so that a surface is the
+        darker the rougher it is, and what is hidden from either side is independent of the other: the model
+        of Walter et al., which many renderers have as it stands. It must be False for Beckmann's facets, of
+        which it is not known what they throw on each other.
 
     Attributes
     ----------
@@ -50,7 +59,8 @@ class Conductor(Material):
     Raises
     ------
     ValueError
-        If the name is not known, there is neither a name nor both `eta` and `k`, or a number is out of range.
+        If the name is not known, there is neither a name nor both `eta` and `k`, a number is out of range, or
+        there is no such distribution.
     TypeError
         If something is not of the kinds above.
     """
@@ -60,6 +70,8 @@ class Conductor(Material):
     k: Value | None
     roughness: Rough | None
     alpha: Rough | None
+    distribution: str
+    multiple_scattering: bool
 
     def __init__(
         self,
@@ -69,6 +81,8 @@ class Conductor(Material):
         k: "ArrayLike | Texture | None" = None,
         roughness: Any = None,
         alpha: Any = None,
+        distribution: str = "ggx",
+        multiple_scattering: bool = True,
     ) -> None:
         if metal is not None:
             if eta is not None or k is not None:
@@ -80,7 +94,7 @@ class Conductor(Material):
             raise ValueError("metal must be given, or both eta and k")
         else:
             self._set(metal=None, eta=value("eta", eta, above=True), k=value("k", k))
-        self._set(**rough(roughness, alpha))
+        self._set(**rough(roughness, alpha), **facets(distribution, multiple_scattering))
 
 
 class MetalIndex(NamedTuple):

@@ -3,10 +3,12 @@
 from dataclasses import dataclass
 from typing import Any, TypeAlias
 
-from ..arrays import number
+from ..arrays import choice, number
 from ..textures.texture import Number, Texture, Value, scalar, value
 
 Rough: TypeAlias = Number | tuple[Number, Number]
+
+DISTRIBUTIONS = ("ggx", "beckmann")
 
 
 @dataclass(frozen=True, init=False)
@@ -58,6 +60,24 @@ def _one_or_two(name: str, given: Any, pair: bool) -> Rough:
         expected = "one number or texture, or a pair of them" if pair else "one number or texture"
         raise ValueError(f"{name} must be {expected}, got {given!r}")
     return scalar(f"{name}[0]", given[0], most=1.0), scalar(f"{name}[1]", given[1], most=1.0)
+
+
+def facets(distribution: str, multiple_scattering: bool) -> dict[str, Any]:
+    """Return which facets a rough surface has and whether all of their light is followed, checked.
+
+    Raises
+    ------
+    ValueError
+        If there is no such distribution, or it is not known what its facets throw on each other.
+    TypeError
+        If `multiple_scattering` is no bool.
+    """
+    choice("distribution", distribution, DISTRIBUTIONS)
+    if not isinstance(multiple_scattering, bool):
+        raise TypeError(f"multiple_scattering must be True or False, got {multiple_scattering!r}")
+    if distribution == "beckmann" and multiple_scattering:
+        raise ValueError("multiple_scattering must be False where distribution is 'beckmann', got True")
+    return {"distribution": distribution, "multiple_scattering": multiple_scattering}
 
 
 def number_from(name: str, given: float, least: float) -> float:

@@ -6,7 +6,7 @@ from typing import Any
 from numpy.typing import ArrayLike
 
 from ..textures.texture import Texture, Value, value
-from .material import Material, Rough, number_from, rough
+from .material import Material, Rough, facets, number_from, rough
 
 
 @dataclass(frozen=True, init=False)
@@ -20,15 +20,24 @@ class Plastic(Material):
     ior : float
         The coat's index of refraction, at least 1.
     roughness : float or Texture, optional
-        How rough it is, from 0, smooth, to 1. Its square is the alpha of the GGX distribution, as in glTF. 0
-        if not given.
+        How rough it is, from 0, smooth, to 1. Its square is the alpha of its facets' distribution, as in
+        glTF. 0 if not given.
     alpha : float or Texture, optional
         That alpha itself, in place of `roughness`.
+    distribution : {"ggx", "beckmann"}
+        How the slopes of its facets are spread: with long tails (Walter et al., "Microfacet Models for
+        Refraction through Rough Surfaces", 2007), or normally (Beckmann and Spizzichino, 1963), which makes
+        highlights without a glow around them.
+    multiple_scattering : bool
+        Whether light that facets throw on each other goes on. If not, it is lost, so that a surface is the
+        darker the rougher it is, and what is hidden from either side is independent of the other: the model
+        of Walter et al., which many renderers have as it stands. It must be False for Beckmann's facets, of
+        which it is not known what they throw on each other.
 
     Raises
     ------
     ValueError
-        If a share or a roughness is outside [0, 1], or `ior` is below 1.
+        If a share or a roughness is outside [0, 1], `ior` is below 1, or there is no such distribution.
     TypeError
         If something is not of the kinds above.
     """
@@ -37,6 +46,8 @@ class Plastic(Material):
     ior: float
     roughness: Rough | None
     alpha: Rough | None
+    distribution: str
+    multiple_scattering: bool
 
     def __init__(
         self,
@@ -44,9 +55,13 @@ class Plastic(Material):
         ior: float = 1.5,
         roughness: Any = None,
         alpha: Any = None,
+        *,
+        distribution: str = "ggx",
+        multiple_scattering: bool = True,
     ) -> None:
         self._set(
             reflectance=value("reflectance", reflectance, most=1.0),
             ior=number_from("ior", ior, 1.0),
             **rough(roughness, alpha, pair=False),
+            **facets(distribution, multiple_scattering),
         )

@@ -3,7 +3,7 @@
 use super::tables::interface_dense::{DENSE, DENSE_AVERAGE};
 use super::tables::interface_thin::{THIN, THIN_AVERAGE};
 use super::{averages, of_alpha_power, of_x, volume, x_of};
-use crate::optics::{Ggx, fresnel};
+use crate::optics::{Facets, Ggx, fresnel};
 use glam::DVec3;
 
 /// Sizes of the tables from either side, grazing by α by index, and of the averages by α by index.

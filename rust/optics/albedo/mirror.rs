@@ -2,7 +2,7 @@
 
 use super::tables::mirror::{ANISOTROPIC, AVERAGE, ISOTROPIC};
 use super::{averages, between, of_alpha, of_x, volume, within, x_of};
-use crate::optics::Ggx;
+use crate::optics::{Facets, Ggx};
 use glam::DVec3;
 
 /// Sizes of the tables: grazing by α, grazing by α along by α across, and the averages by α and α.

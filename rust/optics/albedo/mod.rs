@@ -17,7 +17,7 @@ pub use interface::Interface;
 pub use mirror::MirrorLoss;
 pub use schlick::{schlick_share, schlick_share_average};
 
-use super::Ggx;
+use super::{Facets, Ggx};
 use glam::DVec3;
 
 /// x = z / s(ω) = 1 / √(1 + α² tan² θ).

@@ -2,7 +2,7 @@
 
 use super::{MirrorLoss, coat, interface, mirror, schlick};
 use super::{effective_cosine, of_alpha, of_x};
-use crate::optics::{Ggx, fresnel};
+use crate::optics::{Facets, Ggx, fresnel};
 use glam::DVec3;
 use std::f64::consts::FRAC_PI_2;
 

@@ -1,6 +1,6 @@
 //! The choice among the lights within a scene.
 
-use super::{LightBounds, LightTree, Receiver};
+use super::{LightBounds, LightTree, Receiver, Sides};
 use crate::math::DVec3;
 use crate::sampling::AliasTable;
 use std::f64::consts::PI;
@@ -45,21 +45,21 @@ impl Strength {
     };
 
     /// Of a triangle that faces to where its corners turn anticlockwise, or the other way if it is `turned`.
-    pub fn of_triangle([a, b, c]: [DVec3; 3], turned: bool, radiance: f64, both_sides: bool) -> Self {
+    pub fn of_triangle([a, b, c]: [DVec3; 3], turned: bool, radiance: f64, sides: Sides) -> Self {
         let cross = (b - a).cross(c - a);
         let normal = cross.try_normalize().map(|n| if turned { -n } else { n });
-        Self::of_shape(0.5 * cross.length(), [a.min(b).min(c), a.max(b).max(c)], normal, radiance, both_sides)
+        Self::of_shape(0.5 * cross.length(), [a.min(b).min(c), a.max(b).max(c)], normal, radiance, sides)
     }
 
     /// Of a surface of an area in a box that faces one way, or any.
-    pub fn of_shape(area: f64, bounds: [DVec3; 2], facing: Option<DVec3>, radiance: f64, both_sides: bool) -> Self {
+    pub fn of_shape(area: f64, bounds: [DVec3; 2], facing: Option<DVec3>, radiance: f64, sides: Sides) -> Self {
         if !(area.is_finite() && bounds[0].is_finite() && bounds[1].is_finite()) {
             return Self::NONE;
         }
         // Of what is round, a quarter of the area is seen (Cauchy).
         let seen = if facing.is_some() { 1.0 } else { 0.25 };
-        let facing = facing.filter(|_| !both_sides);
-        let power = PI * area * radiance * if both_sides { 2.0 } else { 1.0 };
+        let facing = facing.and_then(|normal| sides.facing(normal));
+        let power = PI * area * radiance * sides.count();
         Self { power, bounds: LightBounds::surface(bounds, facing, (seen * area * radiance).min(MOST)) }
     }
 }

@@ -156,7 +156,7 @@ impl Light {
     fn new(geometry: &Geometry, copies: &Copies, primitive: u32, inner: u32) -> (Self, Strength) {
         let group = copies.group();
         let (own, emission) = (group.split(inner).0, group.look(inner).1);
-        let (radiance, both_sides) = (strength(emission.radiance.mean()), emission.both_sides);
+        let (radiance, sides) = (strength(emission.radiance.mean()), emission.sides);
         let map = geometry.copy(primitive).and_then(|(copies, copy)| copies.pose(copy, 0.0)?.map());
         let (corners, strength) = match (map, group.geometry().shape(own)) {
             (None, _) => ([DVec3::NAN; 3], Strength::NONE),
@@ -164,12 +164,12 @@ impl Light {
                 let bounds = Bounds::of_support(|d| shape.support(map.transposed(d)) + map.shift.dot(d));
                 let facing = shape.facing().and_then(|normal| map.normal(normal).try_normalize());
                 let area = shape.area_under(&map);
-                let strength = Strength::of_shape(area, [bounds.min, bounds.max], facing, radiance, both_sides);
+                let strength = Strength::of_shape(area, [bounds.min, bounds.max], facing, radiance, sides);
                 ([DVec3::NAN; 3], strength)
             }
             (Some(map), None) => {
                 let corners = group.geometry().corners(own).map(|corner| map.point(corner));
-                (corners, Strength::of_triangle(corners, map.determinant() < 0.0, radiance, both_sides))
+                (corners, Strength::of_triangle(corners, map.determinant() < 0.0, radiance, sides))
             }
         };
         (Self { primitive, inner, corners }, strength)

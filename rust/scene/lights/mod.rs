@@ -35,7 +35,7 @@ pub use sky::SunSky;
 pub use spot::{Profile, SpotLight};
 pub use tree::LightTree;
 
-use super::{Emission, Geometry};
+use super::{Emission, Geometry, Sides};
 use crate::accel::Primitives;
 use crate::math::{DVec3, Hit, Ray};
 use crate::optics::Rgb;
@@ -107,10 +107,10 @@ impl Lights {
     fn of_primitive(geometry: &Geometry, primitive: u32, emission: &Emission) -> Strength {
         let radiance = strength(emission.radiance.mean());
         let Some(shape) = geometry.shape(primitive) else {
-            return Strength::of_triangle(geometry.corners(primitive), false, radiance, emission.both_sides);
+            return Strength::of_triangle(geometry.corners(primitive), false, radiance, emission.sides);
         };
         let (area, bounds) = (shape.area(), shape.bounds());
-        Strength::of_shape(area, [bounds.min, bounds.max], shape.facing(), radiance, emission.both_sides)
+        Strength::of_shape(area, [bounds.min, bounds.max], shape.facing(), radiance, emission.sides)
     }
 
     /// Whether nothing shines that could be drawn.

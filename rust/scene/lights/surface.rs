@@ -85,7 +85,7 @@ pub(super) fn sample_primitive(
         }
         None => {
             let seen = SeenTriangle::new(geometry.corners(primitive), receiver.position);
-            if !(seen.faces() || emission.both_sides) {
+            if !emission.sides.shine(seen.height()) {
                 return None;
             }
             let uv = seen.sample(u);

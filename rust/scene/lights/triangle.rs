@@ -51,10 +51,10 @@ impl SeenTriangle {
         Self { corner, edges, area, spherical }
     }
 
-    /// Whether the place is on the side of the normal.
+    /// How high the place is above the plane, on the side of the normal, in units of its own.
     #[inline]
-    pub fn faces(&self) -> bool {
-        self.corner.dot(self.area) < 0.0
+    pub fn height(&self) -> f64 {
+        -self.corner.dot(self.area)
     }
 
     /// Weights of the second and third corner of a point, drawn with [`SeenTriangle::pdf`].

@@ -1,10 +1,11 @@
 //! Metal.
 
 use super::checks::within;
-use super::{Material, Roughness, Scattering};
+use super::{FacetKind, Material, Roughness, Scattering};
 use crate::math::DVec3;
-use crate::optics::conductors::Metal;
-use crate::optics::{Bsdf, Conductor};
+use crate::optics::conductors::{Metal, Reflectance};
+use crate::optics::fresnel::ConductorIndex;
+use crate::optics::{Beckmann, Bsdf, Conductor, Facets, Ggx, Once};
 use crate::scene::ShadingPoint;
 use crate::scene::textures::{Needs, TexturePoint, Value};
 
@@ -32,11 +33,19 @@ pub enum Index {
 }
 
 impl ConductorMaterial {
-    fn bsdf(&self, point: &TexturePoint, outside: f64) -> Conductor {
+    #[inline]
+    fn bsdf(&self, point: &TexturePoint, outside: f64) -> Bsdf {
+        let fresnel = match &self.index {
+            Index::Constants { eta, k } => {
+                Reflectance::Index(ConductorIndex::new(eta.at(point) / outside, k.at(point) / outside))
+            }
+            Index::Measured(metal) => Reflectance::of(metal, outside),
+        };
         let alpha = self.roughness.alpha(point);
-        match &self.index {
-            Index::Constants { eta, k } => Conductor::new(eta.at(point) / outside, k.at(point) / outside, alpha),
-            Index::Measured(metal) => Conductor::metal(metal, outside, alpha),
+        match self.roughness.facets {
+            FacetKind::Ggx => Conductor::of(fresnel, Ggx::rough(alpha)).into(),
+            FacetKind::GgxOnce => Conductor::of(fresnel, Once::<Ggx>::rough(alpha)).into(),
+            FacetKind::BeckmannOnce => Conductor::of(fresnel, Once::<Beckmann>::rough(alpha)).into(),
         }
     }
 }
@@ -47,7 +56,7 @@ impl Material for ConductorMaterial {
     }
 
     fn constant(&self) -> Option<Bsdf> {
-        (!self.needs().any()).then(|| self.bsdf(&TexturePoint::default(), 1.0).into())
+        (!self.needs().any()).then(|| self.bsdf(&TexturePoint::default(), 1.0))
     }
 
     fn needs(&self) -> Needs {

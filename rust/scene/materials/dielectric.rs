@@ -1,8 +1,8 @@
 //! Glass, water, diamond.
 
 use super::checks::number;
-use super::{Interior, Material, Roughness, Scattering};
-use crate::optics::{Bsdf, Dielectric};
+use super::{FacetKind, Interior, Material, Roughness, Scattering};
+use crate::optics::{Beckmann, Bsdf, Dielectric, Facets, Ggx, Once};
 use crate::scene::ShadingPoint;
 use crate::scene::textures::{Needs, TexturePoint};
 
@@ -16,9 +16,14 @@ pub struct DielectricMaterial {
 }
 
 impl DielectricMaterial {
-    fn bsdf(&self, point: &TexturePoint, outside: f64) -> Dielectric {
-        let [alpha, _] = self.roughness.alpha(point);
-        Dielectric::new(self.interior.ior / outside, alpha)
+    #[inline]
+    fn bsdf(&self, point: &TexturePoint, outside: f64) -> Bsdf {
+        let ([alpha, _], eta) = (self.roughness.alpha(point), self.interior.ior / outside);
+        match self.roughness.facets {
+            FacetKind::Ggx => Dielectric::of(eta, Ggx::rough([alpha; 2])).into(),
+            FacetKind::GgxOnce => Dielectric::of(eta, Once::<Ggx>::rough([alpha; 2])).into(),
+            FacetKind::BeckmannOnce => Dielectric::of(eta, Once::<Beckmann>::rough([alpha; 2])).into(),
+        }
     }
 }
 
@@ -28,7 +33,7 @@ impl Material for DielectricMaterial {
     }
 
     fn constant(&self) -> Option<Bsdf> {
-        (!self.needs().any()).then(|| self.bsdf(&TexturePoint::default(), 1.0).into())
+        (!self.needs().any()).then(|| self.bsdf(&TexturePoint::default(), 1.0))
     }
 
     fn needs(&self) -> Needs {

@@ -3,6 +3,7 @@
 mod blinn_phong;
 mod bump;
 mod checks;
+mod coats;
 mod conductor;
 mod dielectric;
 mod diffuse;
@@ -23,6 +24,7 @@ mod two_sided;
 
 pub use blinn_phong::BlinnPhongMaterial;
 pub use bump::BumpMap;
+pub use coats::Coats;
 pub use conductor::{ConductorMaterial, Index};
 pub use dielectric::DielectricMaterial;
 pub use diffuse::DiffuseMaterial;
@@ -34,7 +36,7 @@ pub use normal_map::NormalMap;
 pub use oren_nayar::OrenNayarMaterial;
 pub use phong::PhongMaterial;
 pub use plastic::PlasticMaterial;
-pub use roughness::Roughness;
+pub use roughness::{FacetKind, Roughness};
 pub use scattering::Scattering;
 pub use thin_dielectric::ThinDielectricMaterial;
 pub use two_sided::TwoSided;

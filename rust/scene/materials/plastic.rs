@@ -1,10 +1,11 @@
 //! Plastic, glaze, varnish.
 
 use super::checks::{number, within};
-use super::{Material, Roughness, Scattering};
-use crate::optics::{Bsdf, Coated};
+use super::{Coats, FacetKind, Material, Roughness, Scattering};
+use crate::optics::{Beckmann, Bsdf, Coated, CoatedOnce, Facets, Ggx, Once, Rgb};
 use crate::scene::ShadingPoint;
 use crate::scene::textures::{Needs, TexturePoint, Value};
+use std::sync::Arc;
 
 /// Something matt under a clear coat, smooth or rough. Both sides are alike.
 #[derive(Clone, Debug)]
@@ -15,12 +16,32 @@ pub struct PlasticMaterial {
     pub ior: f64,
     /// How rough the coat is, alike in all directions.
     pub roughness: Roughness,
+    /// What goes through it, where its facets scatter once: to be begun with none.
+    pub coats: Arc<Coats>,
 }
 
 impl PlasticMaterial {
-    fn bsdf(&self, point: &TexturePoint, outside: f64) -> Coated {
-        let [alpha, _] = self.roughness.alpha(point);
-        Coated::new(self.reflectance.at(point), (self.ior / outside).max(1.0), alpha)
+    #[inline]
+    fn bsdf(&self, point: &TexturePoint, outside: f64) -> Bsdf {
+        let ([alpha, _], eta) = (self.roughness.alpha(point), (self.ior / outside).max(1.0));
+        let reflectance = self.reflectance.at(point);
+        match self.roughness.facets {
+            FacetKind::Ggx => Coated::new(reflectance, eta, alpha).into(),
+            FacetKind::GgxOnce => self.once::<Ggx>(reflectance, eta, alpha),
+            FacetKind::BeckmannOnce => self.once::<Beckmann>(reflectance, eta, alpha),
+        }
+    }
+
+    /// Of a coat whose facets scatter once; of one without, if it is smooth.
+    fn once<F: Facets>(&self, reflectance: Rgb, eta: f64, alpha: f64) -> Bsdf
+    where
+        Bsdf: From<CoatedOnce<F>>,
+    {
+        let Some(facets) = Once::<F>::rough([alpha; 2]) else {
+            return Coated::new(reflectance, eta, 0.0).into();
+        };
+        let through = self.coats.through::<F>(self.roughness.alpha_range(), alpha, eta);
+        CoatedOnce::new(reflectance, eta, facets, through).into()
     }
 }
 
@@ -30,7 +51,7 @@ impl Material for PlasticMaterial {
     }
 
     fn constant(&self) -> Option<Bsdf> {
-        (!self.needs().any()).then(|| self.bsdf(&TexturePoint::default(), 1.0).into())
+        (!self.needs().any()).then(|| self.bsdf(&TexturePoint::default(), 1.0))
     }
 
     fn needs(&self) -> Needs {

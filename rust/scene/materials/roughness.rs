@@ -13,6 +13,20 @@ pub struct Roughness {
     pub along: [Value; 2],
     /// Whether it is α itself.
     pub is_alpha: bool,
+    /// Of which facets.
+    pub facets: FacetKind,
+}
+
+/// Which facets a rough surface is made of, and what becomes of light that they throw on each other.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum FacetKind {
+    /// GGX's, with all of the light.
+    #[default]
+    Ggx,
+    /// GGX's, with what is scattered once.
+    GgxOnce,
+    /// Beckmann's, with what is scattered once.
+    BeckmannOnce,
 }
 
 impl Default for Roughness {
@@ -31,7 +45,7 @@ impl From<f64> for Roughness {
 
 impl From<Value> for Roughness {
     fn from(roughness: Value) -> Self {
-        Self { along: [roughness.clone(), roughness], is_alpha: false }
+        Self { along: [roughness.clone(), roughness], is_alpha: false, facets: FacetKind::default() }
     }
 }
 
@@ -45,6 +59,14 @@ impl Roughness {
         };
         let first = alpha(&self.along[0]);
         if self.is_alike() { [first; 2] } else { [first, alpha(&self.along[1])] }
+    }
+
+    /// The least and the greatest α along u.
+    pub fn alpha_range(&self) -> [f64; 2] {
+        self.along[0].range().map(|r| {
+            let r = (r.element_sum() / 3.0).clamp(0.0, 1.0);
+            if self.is_alpha { r } else { r * r }
+        })
     }
 
     /// Whether it is the same in all directions.

@@ -62,14 +62,18 @@ fn all() -> Vec<Arc<dyn Material>> {
     };
     let PhongMaterial { diffuse, specular, exponent, ambient } = phong.clone();
     let blinn = BlinnPhongMaterial { diffuse, specular, exponent, ambient };
-    let coat =
-        PlasticMaterial { reflectance: checker(1.0, 0.2), ior: 1.5, roughness: Roughness::from(checker(0.0, 0.6)) };
+    let coat = PlasticMaterial {
+        reflectance: checker(1.0, 0.2),
+        ior: 1.5,
+        roughness: Roughness::from(checker(0.0, 0.6)),
+        coats: Arc::default(),
+    };
     let gltf = MetallicRoughMaterial {
         base_colour: Rgb::new(1.0, 0.8, 0.2).into(),
         metallic: checker(0.0, 1.0),
         roughness: 0.5.into(),
     };
-    let brushed = gold(Roughness { along: [0.1.into(), 0.5.into()], is_alpha: true });
+    let brushed = gold(Roughness { along: [0.1.into(), 0.5.into()], is_alpha: true, facets: FacetKind::Ggx });
     let mixed = MixMaterial { a: Arc::new(gold(0.4)), b: grey(1.0), amount: checker(0.25, 0.75) };
     vec![
         Arc::new(DiffuseMaterial { reflectance: checker(0.0, 1.0) }),
@@ -151,7 +155,7 @@ fn a_mix_is_linear() {
 #[test]
 fn draws_of_mixes_have_their_density() {
     let wo = DVec3::new(0.6, 0.0, 0.8);
-    let rough = Arc::new(gold(Roughness { along: [0.5.into(), 0.8.into()], is_alpha: true }));
+    let rough = Arc::new(gold(Roughness { along: [0.5.into(), 0.8.into()], is_alpha: true, facets: FacetKind::Ggx }));
     let mix = MixMaterial { a: rough, b: grey(0.8), amount: 0.4.into() };
     let scattering = mix.scattering(&at(0.5, 0.5));
     let (rows, columns, draws) = (12, 16, 100_000);
@@ -389,7 +393,7 @@ fn what_is_the_same_everywhere_is_told_as_at_any_point() {
     }
     assert_eq!(told, 5);
     // Brushed metal has a direction, and a texture has points.
-    let brushed = Roughness { along: [0.1.into(), 0.4.into()], is_alpha: false };
+    let brushed = Roughness { along: [0.1.into(), 0.4.into()], is_alpha: false, facets: FacetKind::Ggx };
     assert!(gold(brushed).constant().is_none() && gold(checker(0.1, 0.4)).constant().is_none());
     assert!(gold(0.3).constant().is_some() && glass(0.3).constant().is_some());
 }
@@ -398,9 +402,15 @@ fn what_is_the_same_everywhere_is_told_as_at_any_point() {
 fn roughness_is_squared_and_alpha_is_not() {
     let here = &at(0.5, 0.5).texture;
     assert_eq!(Roughness::from(0.5).alpha(here), [0.25; 2]);
-    assert_eq!(Roughness { along: [0.5.into(), 0.25.into()], is_alpha: true }.alpha(here), [0.5, 0.25]);
-    assert_eq!(Roughness { along: [0.5.into(), 0.25.into()], is_alpha: false }.alpha(here), [0.25, 0.0625]);
-    let brushed = gold(Roughness { along: [0.5.into(), 0.25.into()], is_alpha: true });
+    assert_eq!(
+        Roughness { along: [0.5.into(), 0.25.into()], is_alpha: true, facets: FacetKind::Ggx }.alpha(here),
+        [0.5, 0.25]
+    );
+    assert_eq!(
+        Roughness { along: [0.5.into(), 0.25.into()], is_alpha: false, facets: FacetKind::Ggx }.alpha(here),
+        [0.25, 0.0625]
+    );
+    let brushed = gold(Roughness { along: [0.5.into(), 0.25.into()], is_alpha: true, facets: FacetKind::Ggx });
     assert_eq!((brushed.tangent(&at(0.0, 0.0)), gold(0.5).tangent(&at(0.0, 0.0))), (Some(DVec3::X), None));
     assert!(brushed.needs().tangents && !gold(0.5).needs().any());
 }
@@ -450,9 +460,9 @@ fn what_cannot_be_is_refused_in_a_line() {
         refused(&conductor(bad, 1.0, 0.0), "eta must be finite and above 0");
     }
     refused(&conductor(1.0, -1.0, 0.0), "k must be finite and not negative");
-    let coat = PlasticMaterial { reflectance: 0.5.into(), ior: 0.9, roughness: 0.0.into() };
+    let coat = PlasticMaterial { reflectance: 0.5.into(), ior: 0.9, roughness: 0.0.into(), coats: Arc::default() };
     refused(&coat, "ior must be finite and at least 1, got 0.9");
-    let two = || Roughness { along: [0.1.into(), 0.2.into()], is_alpha: true };
+    let two = || Roughness { along: [0.1.into(), 0.2.into()], is_alpha: true, facets: FacetKind::Ggx };
     refused(
         &PlasticMaterial { ior: 1.5, roughness: two(), ..coat.clone() },
         "alpha must be the same in all directions",

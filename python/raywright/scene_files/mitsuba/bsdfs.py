@@ -22,7 +22,7 @@ from ...materials import (
 )
 from . import coats
 from .errors import SceneError
-from .facets import conductor, dielectric, roughness, scaled
+from .facets import SMOOTH, conductor, dielectric, facets, scaled
 from .iors import relative
 from .plugin import Plugin
 from .textures import normals, numbers, scalar, value
@@ -110,12 +110,13 @@ def _conductor(plugin: Plugin, uv: Uv) -> Sides:
 
 def _plastic(plugin: Plugin, uv: Uv) -> Sides:
     ior = relative(plugin, "polypropylene")
-    alpha = roughness(plugin, uv) if plugin.type == "roughplastic" else 0.0
-    if not isinstance(alpha, float):
+    rough = facets(plugin, uv) if plugin.type == "roughplastic" else SMOOTH
+    if not isinstance(rough.alpha, float):
         plugin.fail("alpha must be one number")
     # What the coat reflects back to the base: as Mitsuba has it, and as it is here.
-    own = coats.smooth(ior)
-    theirs = coats.rough(ior, alpha) if plugin.type == "roughplastic" else own
+    own = theirs = coats.smooth(ior)
+    if rough is not SMOOTH:
+        own, theirs = coats.rough(ior, rough.alpha, rough.distribution)
     nonlinear = plugin.switch("nonlinear", False)
 
     def change(colours: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -126,7 +127,7 @@ def _plastic(plugin: Plugin, uv: Uv) -> Sides:
     if colour(plugin, "specular_reflectance", 1.0) != (1.0, 1.0, 1.0):
         plugin.fail("specular_reflectance must be 1")
     reflectance = value(plugin, "diffuse_reflectance", 0.5, uv, change=change)
-    return Sides(Plastic(reflectance, ior, alpha=alpha), True)
+    return Sides(Plastic(reflectance, ior, **rough.arguments()), True)
 
 
 def _principled(plugin: Plugin, uv: Uv) -> Sides:

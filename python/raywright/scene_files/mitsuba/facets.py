@@ -1,4 +1,6 @@
-"""What conductors and dielectrics have in common: roughness, and shares of what they reflect."""
+"""What conductors and dielectrics have in common: facets, and shares of what they reflect."""
+
+from typing import NamedTuple, TypedDict
 
 from ...materials import Conductor, Dielectric, Diffuse, Material, Mirror, Mix
 from ...materials.material import Rough
@@ -14,7 +16,7 @@ _NEXT_TO_NOTHING = 1e-9
 
 def conductor(plugin: Plugin, uv: Uv) -> Material:
     """Return the material of a ``conductor`` or ``roughconductor``."""
-    rough = roughness(plugin, uv) if plugin.type == "roughconductor" else 0.0
+    rough = (facets(plugin, uv) if plugin.type == "roughconductor" else SMOOTH).arguments()
     name = plugin.text("material", "none")
     if plugin.has("eta") or plugin.has("k"):
         if name != "none":
@@ -22,35 +24,66 @@ def conductor(plugin: Plugin, uv: Uv) -> Material:
         eta, k = value(plugin, "eta", 0.0, uv), value(plugin, "k", 1.0, uv)
         if not isinstance(eta, Texture):
             eta = tuple(max(x, _NEXT_TO_NOTHING) for x in eta)  # type: ignore[assignment]
-        metal: Material = Conductor(eta=eta, k=k, alpha=rough)
+        metal: Material = Conductor(eta=eta, k=k, **rough)
     elif name != "none":
         # Of some it also has, or only has, the values of Palik's handbook.
-        metal = Conductor(name.removesuffix("_palik"), alpha=rough)
+        metal = Conductor(name.removesuffix("_palik"), **rough)
     elif plugin.type == "conductor":
         return Mirror(value(plugin, "specular_reflectance", 1.0, uv))
     else:
-        metal = Conductor(eta=_NEXT_TO_NOTHING, k=1.0, alpha=rough)
+        metal = Conductor(eta=_NEXT_TO_NOTHING, k=1.0, **rough)
     return scaled(metal, plugin, ("specular_reflectance",), uv)
 
 
 def dielectric(plugin: Plugin, uv: Uv) -> Material:
     """Return the material of a ``dielectric`` or ``roughdielectric``."""
-    rough = roughness(plugin, uv) if plugin.type == "roughdielectric" else 0.0
-    if isinstance(rough, tuple):
+    rough = facets(plugin, uv) if plugin.type == "roughdielectric" else SMOOTH
+    if isinstance(rough.alpha, tuple):
         plugin.fail("alpha_u and alpha_v are not supported")
-    solid = Dielectric(relative(plugin, "bk7"), alpha=rough)
+    solid = Dielectric(relative(plugin, "bk7"), **rough.arguments())
     return scaled(solid, plugin, ("specular_reflectance", "specular_transmittance"), uv)
 
 
-def roughness(plugin: Plugin, uv: Uv) -> Rough:
-    """Return the alpha of a rough BSDF, or two of them, along raywright's u and v."""
-    if plugin.choice("distribution", "beckmann", ("beckmann", "ggx")) == "beckmann":
-        plugin.warn("Beckmann's distribution is approximated by GGX of the same alpha")
+class Arguments(TypedDict):
+    """What raywright's rough materials are told of their facets."""
+
+    alpha: Rough
+    distribution: str
+    multiple_scattering: bool
+
+
+class Facets(NamedTuple):
+    """What a rough surface is made of: the alpha, or two of them along raywright's u and v."""
+
+    alpha: Rough
+    distribution: str = "ggx"
+    multiple_scattering: bool = True
+
+    def arguments(self) -> Arguments:
+        """Return them as raywright's materials take them."""
+        return Arguments(
+            alpha=self.alpha,
+            distribution=self.distribution,
+            multiple_scattering=self.multiple_scattering,
+        )
+
+
+SMOOTH = Facets(0.0)
+
+
+def facets(plugin: Plugin, uv: Uv) -> Facets:
+    """Return the facets of a rough BSDF, which scatter once in Mitsuba.
+
+    Of ``sample_visible`` only the noise depends.
+    """
+    distribution = plugin.choice("distribution", "beckmann", ("beckmann", "ggx"))
     plugin.ignore("sample_visible")
     if not plugin.has("alpha_u") and not plugin.has("alpha_v"):
-        return scalar(plugin, "alpha", 0.1, uv)
+        return Facets(scalar(plugin, "alpha", 0.1, uv), distribution, False)
+    if plugin.has("alpha"):
+        plugin.fail("either alpha or alpha_u and alpha_v must be given, got both")
     u, v = (scalar(plugin, name, 0.1, uv) for name in ("alpha_u", "alpha_v"))
-    return (v, u) if uv.turned else (u, v)
+    return Facets((v, u) if uv.turned else (u, v), distribution, False)
 
 
 def scaled(given: Material, plugin: Plugin, names: tuple[str, ...], uv: Uv) -> Material:

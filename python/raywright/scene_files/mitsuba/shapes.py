@@ -5,11 +5,12 @@ from typing import Any
 
 import numpy as np
 
+from ...lights import Emission
+from ...lights.emission import Emitted
 from ...materials import Diffuse, Material, TwoSided
 from ...scene.instance import AnyShape, Instance
 from ...shapes import Cylinder, Disk, Shape, Sphere
 from ...shapes.mesh import Mesh
-from ...textures.texture import Value
 from . import bsdfs, mesh_files
 from .errors import SceneError
 from .plugin import Plugin
@@ -100,15 +101,18 @@ _READERS: dict[str, Callable[[Plugin], Mesh | Shape]] = {
 TYPES = tuple(_READERS)
 
 
-def _look(plugin: Plugin, uv: Uv, inside_out: bool = False) -> tuple[Material, Value | None]:
-    """Return the material of a shape and the radiance of its front, None if it has none."""
-    emission = None
+def _look(plugin: Plugin, uv: Uv, inside_out: bool = False) -> tuple[Material, Emitted | None]:
+    """Return the material of a shape and what it emits, None if nothing.
+
+    `inside_out`, of one whose front is its inside in Mitsuba.
+    """
+    emission: Emitted | None = None
     for emitter in plugin.children("area"):
         if emission is not None:
             plugin.fail("a shape must have one emitter only")
-        if inside_out:
-            plugin.fail("an emitter on the inside is not supported")
         emission = value(emitter, "radiance", 1.0, uv, emits=True)
+        if inside_out:
+            emission = Emission(emission, side="back")
         emitter.ignore("sampling_weight")
         emitter.done()
     found = [bsdfs.material(inner, uv) for inner in plugin.children(*bsdfs.TYPES)]

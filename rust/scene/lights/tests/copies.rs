@@ -1,6 +1,6 @@
 //! Surfaces in copies of groups as lights.
 
-use super::super::{Emission, Receiver};
+use super::super::{Emission, Receiver, Sides};
 use super::{FLOOR, assert_near, draw, irradiance_at, white};
 use crate::accel::BruteForce;
 use crate::math::{Affine, DVec3, Hit, Ray};
@@ -22,7 +22,7 @@ fn ball() -> Arc<dyn crate::shapes::Shape> {
 }
 
 fn shining(mut shape: Shape) -> Shape {
-    shape.emission = Emission { both_sides: true, ..white(2.0).into() };
+    shape.emission = Emission { sides: Sides::Both, ..white(2.0).into() };
     shape
 }
 

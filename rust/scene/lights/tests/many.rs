@@ -1,7 +1,7 @@
 //! The choice among many lights.
 
 use super::super::choice::{Choice, Strength};
-use super::super::{Light, LightBounds, LightTree, PointLight, Reach, Receiver, SpotLight};
+use super::super::{Light, LightBounds, LightTree, PointLight, Reach, Receiver, Sides, SpotLight};
 use super::white;
 use crate::math::DVec3;
 use crate::sampling::Sampler;
@@ -24,7 +24,12 @@ fn strengths(count: u32) -> Vec<Strength> {
                 1 => inside(&SpotLight::new(at, way, white(strong), 0.7, 0.2)),
                 kind => {
                     let side = way.any_orthonormal_vector() * 0.3;
-                    Strength::of_triangle([at, at + side, at + side.cross(way)], false, strong, kind == 2)
+                    Strength::of_triangle(
+                        [at, at + side, at + side.cross(way)],
+                        false,
+                        strong,
+                        if kind == 2 { Sides::Both } else { Sides::Front },
+                    )
                 }
             }
         })

@@ -1,13 +1,13 @@
 //! Surfaces of all kinds as lights: by solid angle, however small, distant, near or edge-on.
 
-use super::super::{Emission, Receiver};
+use super::super::{Emission, Receiver, Sides};
 use super::{FLOOR, Grid, assert_near, draw, irradiance_at, white};
 use crate::accel::Primitives;
-use crate::math::{DVec3, Hit, Ray};
+use crate::math::{Affine, DVec3, Hit, Ray};
 use crate::sampling::chi_square::assert_frequencies;
 use crate::scene::fixtures::{scene, shape};
 use crate::scene::{Mesh, Scene, SceneDescription, Shape};
-use crate::shapes::{Disk, Shape as _, Sphere};
+use crate::shapes::{Cuboid, Disk, Ellipsoid, Placed, Shape as _, Sphere};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
@@ -124,21 +124,51 @@ fn near_triangles_are_drawn_evenly_by_solid_angle() {
 }
 
 #[test]
-fn both_sides_shine_where_they_are_to() {
-    let sheet = |both_sides| {
+fn sides_shine_where_they_are_to() {
+    let sheet = |sides| {
         let mesh =
             Mesh { vertices: LAMP.map(|c| c.as_vec3()).to_vec().into(), faces: vec![[0, 1, 2]], ..Mesh::default() };
-        let emission = Emission { both_sides, ..white(1.0).into() };
+        let emission = Emission { sides, ..white(1.0).into() };
         scene(SceneDescription { shapes: vec![Shape { emission, ..shape(mesh, [0.0; 3], 0.0) }], ..Default::default() })
     };
     let single = LAMP.map(|c| c.as_vec3().as_dvec3());
     let above = Receiver { position: DVec3::new(0.2, 0.3, 2.0), normal: DVec3::NEG_Z };
     let faces_up = (LAMP[1] - LAMP[0]).cross(LAMP[2] - LAMP[0]).z > 0.0;
     let (front, back) = if faces_up { (above, FLOOR) } else { (FLOOR, above) };
-    for both_sides in [false, true] {
-        assert_near(irradiance_at(&sheet(both_sides), &front, 20_000), lambert(single, &front), 0.01);
-        let behind = irradiance_at(&sheet(both_sides), &back, 20_000);
-        if both_sides { assert_near(behind, lambert(single, &back), 0.01) } else { assert_eq!(behind, (0.0, 0.0)) }
+    for (sides, lit) in [(Sides::Front, [true, false]), (Sides::Back, [false, true]), (Sides::Both, [true, true])] {
+        for (receiver, lit) in [&front, &back].into_iter().zip(lit) {
+            let found = irradiance_at(&sheet(sides), receiver, 20_000);
+            if lit { assert_near(found, lambert(single, receiver), 0.01) } else { assert_eq!(found, (0.0, 0.0)) }
+        }
+    }
+}
+
+#[test]
+fn within_what_shines_inwards_there_is_light_from_everywhere() {
+    // π L on whatever stands within, wherever it is and however it is turned, and nothing outside.
+    let map = Affine::from_matrix([[1.5, 0.2, 0.0, 0.1], [-0.4, 0.8, 0.3, -0.2], [0.1, 0.2, 2.0, 0.3]]);
+    let closed: [Arc<dyn crate::shapes::Shape>; 4] = [
+        Arc::new(Sphere { center: DVec3::new(0.1, 0.2, 0.0), radius: 1.0 }),
+        Arc::new(Ellipsoid { center: DVec3::ZERO, semi_axes: DVec3::new(1.0, 0.7, 3.0) }),
+        Arc::new(Cuboid { min: DVec3::splat(-0.8), max: DVec3::splat(1.3) }),
+        Arc::new(Placed::new(Arc::new(Sphere::UNIT), map).unwrap()),
+    ];
+    for surface in closed {
+        let of = |sides| {
+            let emission = Emission { sides, ..white(2.0).into() };
+            let shapes = vec![Shape { surface: surface.clone().into(), emission, ..Shape::default() }];
+            scene(SceneDescription { shapes, ..Default::default() })
+        };
+        let within = [(DVec3::ZERO, DVec3::Z), (DVec3::new(0.4, 0.1, -0.3), DVec3::new(0.6, 0.0, -0.8))];
+        for (position, normal) in within {
+            let receiver = Receiver { position, normal };
+            for (sides, expected) in [(Sides::Back, 2.0 * PI), (Sides::Both, 2.0 * PI), (Sides::Front, 0.0)] {
+                assert_near(irradiance_at(&of(sides), &receiver, 20_000), expected, 0.03);
+            }
+        }
+        let outside = Receiver { position: DVec3::new(0.5, 0.3, -9.0), normal: DVec3::Z };
+        assert_eq!(irradiance_at(&of(Sides::Back), &outside, 2000), (0.0, 0.0));
+        assert!(irradiance_at(&of(Sides::Front), &outside, 2000).0 > 0.05);
     }
 }
 

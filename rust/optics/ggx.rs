@@ -1,65 +1,41 @@
-//! Surfaces made of small mirrors.
+//! Facets of long tails.
 
+use super::Facets;
 use crate::math::turn::sin_cos_turn;
 use glam::DVec3;
 use std::f64::consts::FRAC_1_PI;
 
 /// The distribution of slopes that Trowbridge and Reitz found (1975), later named GGX (Walter et al., "Microfacet Models for
-/// Refraction through Rough Surfaces", 2007), with roughness α along x and along y; heights are independent and masking is
-/// Smith's, correlated by height (Heitz, "Understanding the Masking-Shadowing Function", 2014).
-///
-/// Directions are on the side of the normal: z > 0. Nothing divides by a cosine: where formulas have G / cos θ,
-/// these have the root s(ω) = √(z² + αx² x² + αy² y²), which is never 0, so all of it holds up to grazing.
+/// Refraction through Rough Surfaces", 2007): facets as the surface of an ellipsoid has them. Here s(ω) is the root
+/// √(z² + αx² x² + αy² y²).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ggx {
     alpha: [f64; 2],
 }
 
-impl Ggx {
-    /// Below this roughness a surface is a smooth one: its lobe, 10⁻⁵ radians wide, is sharper than the sun's disk by a
-    /// factor of 500, and what it does differently is below 10⁻⁸ of the light but within 10⁻³ of grazing.
-    pub const SMOOTH: f64 = 1e-5;
-
-    /// Of this roughness along x and y, 0 to 1. Where one is below [`Ggx::SMOOTH`] it counts as that much.
+impl Facets for Ggx {
     #[inline]
-    pub fn new(alpha: [f64; 2]) -> Self {
+    fn new(alpha: [f64; 2]) -> Self {
         Self { alpha: alpha.map(|a| a.clamp(Self::SMOOTH, 1.0)) }
     }
 
-    /// One for a rough surface, `None` where it is smooth in both directions.
     #[inline]
-    pub fn rough(alpha: [f64; 2]) -> Option<Self> {
-        (alpha[0] >= Self::SMOOTH || alpha[1] >= Self::SMOOTH).then(|| Self::new(alpha))
-    }
-
-    /// The roughness along x and y.
-    #[inline]
-    pub fn alpha(&self) -> [f64; 2] {
+    fn alpha(&self) -> [f64; 2] {
         self.alpha
     }
 
-    /// The roughness of the isotropic distribution with as many slopes: √(αx αy).
     #[inline]
-    pub fn mean_alpha(&self) -> f64 {
-        (self.alpha[0] * self.alpha[1]).sqrt()
-    }
-
-    /// The density of facets about the unit normal `h`, per area of the surface and solid angle. Its integral with
-    /// cos θ is 1.
-    #[inline]
-    pub fn density(&self, h: DVec3) -> f64 {
+    fn density(&self, h: DVec3) -> f64 {
         let [ax, ay] = self.alpha;
         let (x, y) = (h.x / ax, h.y / ay);
         let square = x * x + y * y + h.z * h.z;
         FRAC_1_PI / (ax * ay * square * square)
     }
 
-    /// The density, as [`Ggx::density`] has it, of the facets that mirror one direction to another, and the cosine to both.
-    ///
     /// By the half vector as it is, not unit, and with α² divided out: with q = wo + wi and p = αx αy it is
     /// |q|⁴ p³ / (π (αy² qx² + αx² qy² + p² qz²)²), and the cosine is |q| / 2.
     #[inline]
-    pub fn mirroring(&self, wo: DVec3, wi: DVec3) -> (f64, f64) {
+    fn mirroring(&self, wo: DVec3, wi: DVec3) -> (f64, f64) {
         let ([ax, ay], q) = (self.alpha, wo + wi);
         let square = q.length_squared();
         // Of opposite directions next to the plane nothing is told by their sum.
@@ -72,37 +48,18 @@ impl Ggx {
         (FRAC_1_PI * product * (root * root), (0.5 * square.sqrt()).min(1.0))
     }
 
-    /// s(ω) = |z| √(1 + α² tan² θ).
+    /// |z| √(1 + α² tan² θ).
     #[inline]
-    pub fn stretch(&self, w: DVec3) -> f64 {
+    fn stretch(&self, w: DVec3) -> f64 {
         let [ax, ay] = self.alpha;
         let (x, y) = (ax * w.x, ay * w.y);
         (x * x + y * y + w.z * w.z).sqrt()
     }
 
-    /// The share of the facets' area facing `w` that is seen from there: Smith's G₁.
-    #[inline]
-    pub fn masking(&self, w: DVec3) -> f64 {
-        2.0 * w.z.abs() / (w.z.abs() + self.stretch(w))
-    }
-
-    /// G₂(wo, wi) / (4 cos θo): what F D is multiplied by for reflection, with the cosine of `wi` in it.
-    #[inline]
-    pub fn reflection_geometry(&self, wo: DVec3, wi: DVec3) -> f64 {
-        // G₂ = 1 / (1 + Λ(wo) + Λ(wi)), and 1 + 2Λ = s / z.
-        0.5 * wi.z / (self.stretch(wo) * wi.z + self.stretch(wi) * wo.z)
-    }
-
-    /// The density, in solid angle of facet normals, with which [`Ggx::sample_visible`] draws `h`.
-    #[inline]
-    pub fn visible_pdf(&self, wo: DVec3, h: DVec3) -> f64 {
-        self.density(h) * wo.dot(h).max(0.0) * 2.0 / (wo.z + self.stretch(wo))
-    }
-
-    /// Draws the normal of a facet as seen from `wo`. Seen from a stretched direction, facets are a hemisphere of mirrors, which
+    /// Seen from a stretched direction, facets are a hemisphere of mirrors, which
     /// reflect to a uniform cap of the sphere (Dupuy and Benyoub, "Sampling Visible GGX Normals with Spherical Caps", 2023).
     #[inline]
-    pub fn sample_visible(&self, wo: DVec3, u: [f64; 2]) -> DVec3 {
+    fn sample_visible(&self, wo: DVec3, u: [f64; 2]) -> DVec3 {
         let [ax, ay] = self.alpha;
         let w = DVec3::new(ax * wo.x, ay * wo.y, wo.z) / self.stretch(wo);
         // The cap has heights from −w.z to 1. Its direction plus w has height (1 − u) (1 + w.z), here without cancellation.
@@ -111,26 +68,6 @@ impl Ggx {
         let [sin, cos] = sin_cos_turn(u[0]);
         let h = DVec3::new(ax * (radius * cos + w.x), ay * (radius * sin + w.y), (1.0 - u[1]) * (1.0 + w.z));
         h.normalize()
-    }
-
-    /// The density, in solid angle, with which [`Ggx::sample_reflection`] draws a direction to which facets of this density mirror.
-    #[inline]
-    pub fn reflected_pdf(&self, wo: DVec3, density: f64) -> f64 {
-        // D G₁ (wo · h) / cos θo, over the 4 (wo · h) of mirroring.
-        density * 0.5 / (wo.z + self.stretch(wo))
-    }
-
-    /// Draws the direction from which a facet that `wo` sees reflects. It may lie below the horizon.
-    #[inline]
-    pub fn sample_reflection(&self, wo: DVec3, u: [f64; 2]) -> DVec3 {
-        let h = self.sample_visible(wo, u);
-        h * (2.0 * wo.dot(h)) - wo
-    }
-
-    /// Whether a direction is far enough from the plane for products of cosines to be numbers: at 10⁻¹⁰⁰ everything is.
-    #[inline]
-    pub fn sees(w: DVec3) -> bool {
-        w.z.abs() > 1e-100
     }
 }
 

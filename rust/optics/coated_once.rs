@@ -1,0 +1,76 @@
+//! Plastic whose coat scatters once each time it is met.
+
+use super::conductor::above;
+use super::lobes::diffuse;
+use super::{BsdfSample, Facets, Once, Rgb, Scatter, Through, fresnel};
+use glam::DVec3;
+use std::f64::consts::FRAC_1_PI;
+
+/// A rough dielectric coat over a diffuse base. Light that a facet refracts reaches the base; what comes back from there gets out by another,
+/// or is reflected by one to the base, any number of times: with T the share that is refracted from outside and F̄ what is reflected
+/// of even light from within, ρ T(wo) T(wi) / (π η² (1 − ρ F̄)). What facets throw on each other is lost at each of them. Both
+/// sides reflect.
+#[derive(Clone, Copy, Debug)]
+pub struct CoatedOnce<F> {
+    eta: f64,
+    facets: Once<F>,
+    through: Through,
+    /// ρ / (η² (1 − ρ F̄)).
+    base: Rgb,
+}
+
+impl<F: Facets> CoatedOnce<F> {
+    /// Of a base's reflectance, 0 to 1, the coat's index of refraction relative to what is outside, `eta` ≥ 1, its facets, and what goes
+    /// through these.
+    pub fn new(reflectance: Rgb, eta: f64, facets: Once<F>, through: Through) -> Self {
+        let base = reflectance / (Rgb::ONE - reflectance * through.within()) / (eta * eta);
+        Self { eta, facets, through, base }
+    }
+
+    /// The probability with which a draw is reflected by the coat, of which this share goes through.
+    #[inline]
+    fn share(&self, through: f64) -> f64 {
+        let base = self.base.max_element() * self.through.average() * through;
+        let coat = 1.0 - through;
+        if coat > 0.0 { coat / (coat + base) } else { 0.0 }
+    }
+}
+
+impl<F: Facets> Scatter for CoatedOnce<F> {
+    fn evaluate(&self, wo: DVec3, wi: DVec3) -> (Rgb, f64) {
+        if !F::sees(wo) || !F::sees(wi) || wo.z * wi.z <= 0.0 {
+            return (Rgb::ZERO, 0.0);
+        }
+        let (wo, wi) = (above(wo), above(wi));
+        let through = self.through.share(wo.z);
+        let share = self.share(through);
+        let base = self.base * (through * self.through.share(wi.z) * FRAC_1_PI * wi.z);
+        let (density, cosine) = self.facets.mirroring(wo, wi);
+        let coat = fresnel::dielectric(cosine, self.eta) * density * self.facets.reflection_geometry(wo, wi);
+        (base + coat, share * self.facets.reflected_pdf(wo, density) + (1.0 - share) * wi.z * FRAC_1_PI)
+    }
+
+    fn sample(&self, wo: DVec3, choice: impl FnOnce() -> f64, u: [f64; 2]) -> Option<BsdfSample> {
+        if !F::sees(wo) {
+            return None;
+        }
+        let up = above(wo);
+        let share = self.share(self.through.share(up.z));
+        let mut wi = if choice() < share { self.facets.sample_reflection(up, u) } else { diffuse(up, u) };
+        if wi.z <= 0.0 {
+            return None;
+        }
+        wi.z = wi.z.copysign(wo.z);
+        let (value, pdf) = self.evaluate(wo, wi);
+        (pdf > 0.0).then(|| BsdfSample::new(wi, value / pdf, pdf))
+    }
+
+    fn albedo(&self) -> Rgb {
+        let through = self.through.average();
+        Rgb::splat(1.0 - through) + self.base * (through * through)
+    }
+
+    fn roughness(&self) -> f64 {
+        self.facets.mean_alpha()
+    }
+}
