@@ -57,8 +57,7 @@ fn floors_use_only_those_under_them() {
 
 #[test]
 fn no_two_files_or_folders_side_by_side_need_each_other() {
-    let mut arrows = arrows(&crate_files());
-    arrows.retain(|arrow| arrow.from[0] != "optics");
+    let arrows = arrows(&crate_files());
     let circles = circles(&arrows);
     assert!(circles.is_empty(), "arrows that are part of a circle:\n{}", told(&circles));
 }
@@ -115,9 +114,6 @@ fn no_attribute_stands_twice() {
 fn no_line_is_longer_than_120_columns() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     for path in ["rust", "tests", "benches"].iter().flat_map(|folder| rust_files(&root.join(folder))) {
-        if path.starts_with(root.join("rust/optics")) || path.ends_with("python/materials.rs") {
-            continue;
-        }
         for (number, line) in (1..).zip(fs::read_to_string(&path).unwrap().lines()) {
             let columns = line.chars().count();
             assert!(columns <= 120, "{}:{number}: {columns} columns", path.display());

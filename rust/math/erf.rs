@@ -5,8 +5,9 @@ use std::f64::consts::FRAC_2_SQRT_PI;
 /// 1 / √π.
 pub const FRAC_1_SQRT_PI: f64 = 0.5 * FRAC_2_SQRT_PI;
 
-/// (1 + 2x) times [`scaled_complement`] as a polynomial in (x − 3) / (x + 3), in which it is smooth from 0 to infinity (Shepherd and
-/// Laframboise, "Chebyshev Approximation of (1 + 2x) exp(x²) erfc x", 1981); interpolated at Chebyshev's nodes.
+/// (1 + 2x) times [`scaled_complement`] as a polynomial in (x − 3) / (x + 3), in which it is smooth from 0 to infinity
+/// (Shepherd and Laframboise, "Chebyshev Approximation of (1 + 2x) exp(x²) erfc x", 1981); interpolated at Chebyshev's
+/// nodes.
 const COMPLEMENT: [f64; 17] = [
     1.2530080582697298,
     -0.13562110604544592,
@@ -27,7 +28,8 @@ const COMPLEMENT: [f64; 17] = [
     5.5170860854608995e-8,
 ];
 
-/// erf⁻¹(s) / s by w = −ln(1 − s²) from 0 to [`MIDDLE`], as a polynomial in the variable from −1 to 1 over that range; interpolated.
+/// erf⁻¹(s) / s by w = −ln(1 − s²) from 0 to [`MIDDLE`], as a polynomial in the variable from −1 to 1 over that range;
+/// interpolated.
 const INVERSE_MIDDLE: [f64; 13] = [
     1.6536545626831138,
     0.7504943076479603,
@@ -80,8 +82,8 @@ pub fn complement_integral(x: f64) -> f64 {
     if x > 7.0 { 0.0 } else { (-x * x).exp() * (FRAC_1_SQRT_PI - x * scaled_complement(x)) }
 }
 
-/// erf⁻¹(1 − 2u) for 0 < u < 1: a slope that as great a share u of a Gaussian surface exceeds. The relative error is below 10⁻⁸ from
-/// u = 10⁻²⁰ on, and as much from the other end.
+/// erf⁻¹(1 − 2u) for 0 < u < 1: a slope that as great a share u of a Gaussian surface exceeds. The relative error is
+/// below 10⁻⁸ from u = 10⁻²⁰ on, and as much from the other end.
 #[inline]
 pub fn exceeded(u: f64) -> f64 {
     let product = 4.0 * u * (1.0 - u);

@@ -5,11 +5,11 @@ use crate::math::DVec3;
 use crate::math::erf::{FRAC_1_SQRT_PI, complement_integral, exceeded, scaled_complement};
 use std::f64::consts::FRAC_1_PI;
 
-/// The distribution of facets of a surface whose slopes are normally distributed (Beckmann and Spizzichino, "The Scattering of
-/// Electromagnetic Waves from Rough Surfaces", 1963), with variance α²/2 along x and y.
+/// The distribution of facets of a surface whose slopes are normally distributed (Beckmann and Spizzichino, "The
+/// Scattering of Electromagnetic Waves from Rough Surfaces", 1963), with variance α²/2 along x and y.
 ///
-/// With q = √(αx² x² + αy² y²) and a = z / q, Smith's Λ is (exp(−a²) / (a √π) − erfc(a)) / 2, so that s(ω) = z + q i(a), with i the
-/// integral of erfc from a to infinity.
+/// With q = √(αx² x² + αy² y²) and a = z / q, Smith's Λ is (exp(−a²) / (a √π) − erfc(a)) / 2, so that s(ω) = z + q
+/// i(a), with i the integral of erfc from a to infinity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Beckmann {
     alpha: [f64; 2],
@@ -69,8 +69,8 @@ impl Facets for Beckmann {
     }
 
     /// Slopes along the way to `wo` and across it are independent of each other (Heitz and d'Eon, "Importance Sampling
-    /// Microfacet-Based BSDFs using the Distribution of Visible Normals", 2014): of those across a share is exceeded, those along are
-    /// found by [`leaning`].
+    /// Microfacet-Based BSDFs using the Distribution of Visible Normals", 2014): of those across a share is exceeded,
+    /// those along are found by [`leaning`].
     fn sample_visible(&self, wo: DVec3, u: [f64; 2]) -> DVec3 {
         let [ax, ay] = self.alpha;
         let (x, y) = (ax * wo.x, ay * wo.y);
@@ -89,9 +89,9 @@ fn share(u: f64) -> f64 {
 
 /// The lean towards a viewer at height `z` and distance `q` that a share `u` of the facets seen exceeds, 0 < u < 1.
 ///
-/// Of those whose slope is t as many are seen as (z + q t) exp(−t²) says, where that is positive, so that those from x on are
-/// S(x) = z erfc(x) / 2 + q exp(−x²) / (2 √π). By Newton's method on ln S, which falls and is concave: whatever it starts from,
-/// it is beyond the solution after one step, and comes back with every other.
+/// Of those whose slope is t as many are seen as (z + q t) exp(−t²) says, where that is positive, so that those from x
+/// on are S(x) = z erfc(x) / 2 + q exp(−x²) / (2 √π). By Newton's method on ln S, which falls and is concave: whatever
+/// it starts from, it is beyond the solution after one step, and comes back with every other.
 fn leaning(z: f64, q: f64, u: f64) -> f64 {
     let half = 0.5 * q * FRAC_1_SQRT_PI;
     // All that is seen, (z + s) / 2, and the logarithm of what is to be left.
@@ -125,8 +125,8 @@ fn leaning(z: f64, q: f64, u: f64) -> f64 {
 /// Far more than it takes: 3 or 4 mostly, and some 30 where the share is 1 but for roundings.
 const STEPS: usize = 64;
 
-/// Where to start: between the solutions from the horizon and from straight above, or where these are of no use, next to the slope
-/// from which on facets are seen.
+/// Where to start: between the solutions from the horizon and from straight above, or where these are of no use, next
+/// to the slope from which on facets are seen.
 fn start(z: f64, q: f64, u: f64, all: f64, most: f64) -> f64 {
     let above = z / (z + q);
     let guess = most + above * (exceeded(u) - most);

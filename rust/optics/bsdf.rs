@@ -16,15 +16,17 @@ use glam::DVec3;
 /// have the factor 1 / η² in them, with η the index where the light comes from over that where it goes to
 /// (Veach, "Robust Monte Carlo Methods for Light Transport Simulation", 1997, 5.2).
 pub trait Scatter {
-    /// The scattering function times |cos θ| of `wi`, and the density in solid angle with which [`Scatter::sample`] draws `wi`, both
-    /// without what has a single direction. Who asks for the one mostly needs the other, and much is in both.
+    /// The scattering function times |cos θ| of `wi`, and the density in solid angle with which [`Scatter::sample`]
+    /// draws `wi`, both without what has a single direction. Who asks for the one mostly needs the other, and much is
+    /// in both.
     fn evaluate(&self, wo: DVec3, wi: DVec3) -> (Rgb, f64);
 
     /// Draws where the light comes from: `choice`, uniform in [0, 1), among the parts that scattering has (only asked
     /// for when it has several), `u` for the direction. `None` if the draw scatters nothing.
     fn sample(&self, wo: DVec3, choice: impl FnOnce() -> f64, u: [f64; 2]) -> Option<BsdfSample>;
 
-    /// About the share of white light that is scattered, for pictures of it: that of even light where the kind knows it.
+    /// About the share of white light that is scattered, for pictures of it: that of even light where the kind knows
+    /// it.
     fn albedo(&self) -> Rgb;
 
     /// By what all of it is to be multiplied for light that came to such a surface before: 1 unless it scatters more
@@ -84,8 +86,8 @@ macro_rules! kinds {
     ($($(#[$doc:meta])* $kind:ident,)+) => {
         /// The bidirectional scattering distribution function at a point of a surface: one of its kinds.
         ///
-        /// A kind is one file and one line of the list in this one. A batch calls it through a `match`, which predicts well
-        /// and inlines, rather than through a pointer. [`Scatter`] says what is asked of it, and in which frame.
+        /// A kind is one file and one line of the list in this one. A batch calls it through a `match`, which predicts
+        /// well and inlines, rather than through a pointer. [`Scatter`] says what is asked of it, and in which frame.
         #[derive(Clone, Copy, Debug)]
         pub enum Bsdf {
             $($(#[$doc])* $kind($kind),)+

@@ -34,7 +34,8 @@ impl Chart for Sphere {
     }
 }
 
-/// Slopes of the facet that reflects or refracts to `wo`, in units of α: however narrow a lobe is, it fills this square.
+/// Slopes of the facet that reflects or refracts to `wo`, in units of α: however narrow a lobe is, it fills this
+/// square.
 struct Slopes {
     wo: DVec3,
     alpha: [f64; 2],

@@ -9,10 +9,10 @@ use glam::DVec3;
 use std::f64::consts::FRAC_1_PI;
 
 /// A dielectric coat, smooth or with GGX microfacets, over a diffuse base. The coat reflects R(ω); the rest reaches the
-/// base, and light from there is reflected back to it under the coat any number of times (Wolff, Nayar and Oren, "Improved
-/// Diffuse Reflection Models for Computer Vision", 1998): with F̄ the mean reflectance of the coat from within,
-/// (1 − R(wo)) (1 − R(wi)) / (π (1 − R̄)) ρ (1 − F̄) / (1 − ρ F̄). Reciprocal, and a white base is white under any coat.
-/// Light that a rough coat's facets throw on facets is taken to reach the base. Both sides reflect.
+/// base, and light from there is reflected back to it under the coat any number of times (Wolff, Nayar and Oren,
+/// "Improved Diffuse Reflection Models for Computer Vision", 1998): with F̄ the mean reflectance of the coat from
+/// within, (1 − R(wo)) (1 − R(wi)) / (π (1 − R̄)) ρ (1 − F̄) / (1 − ρ F̄). Reciprocal, and a white base is white under
+/// any coat. Light that a rough coat's facets throw on facets is taken to reach the base. Both sides reflect.
 #[derive(Clone, Copy, Debug)]
 pub struct Coated {
     eta: f64,

@@ -6,10 +6,10 @@ use super::{BsdfSample, Facets, Once, Rgb, Scatter, Through, fresnel};
 use glam::DVec3;
 use std::f64::consts::FRAC_1_PI;
 
-/// A rough dielectric coat over a diffuse base. Light that a facet refracts reaches the base; what comes back from there gets out by another,
-/// or is reflected by one to the base, any number of times: with T the share that is refracted from outside and F̄ what is reflected
-/// of even light from within, ρ T(wo) T(wi) / (π η² (1 − ρ F̄)). What facets throw on each other is lost at each of them. Both
-/// sides reflect.
+/// A rough dielectric coat over a diffuse base. Light that a facet refracts reaches the base; what comes back from
+/// there gets out by another, or is reflected by one to the base, any number of times: with T the share that is
+/// refracted from outside and F̄ what is reflected of even light from within, ρ T(wo) T(wi) / (π η² (1 − ρ F̄)). What
+/// facets throw on each other is lost at each of them. Both sides reflect.
 #[derive(Clone, Copy, Debug)]
 pub struct CoatedOnce<F> {
     eta: f64,
@@ -20,8 +20,8 @@ pub struct CoatedOnce<F> {
 }
 
 impl<F: Facets> CoatedOnce<F> {
-    /// Of a base's reflectance, 0 to 1, the coat's index of refraction relative to what is outside, `eta` ≥ 1, its facets, and what goes
-    /// through these.
+    /// Of a base's reflectance, 0 to 1, the coat's index of refraction relative to what is outside, `eta` ≥ 1, its
+    /// facets, and what goes through these.
     pub fn new(reflectance: Rgb, eta: f64, facets: Once<F>, through: Through) -> Self {
         let base = reflectance / (Rgb::ONE - reflectance * through.within()) / (eta * eta);
         Self { eta, facets, through, base }

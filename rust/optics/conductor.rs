@@ -9,12 +9,12 @@ use super::{BsdfSample, Facets, Ggx, Rgb, Scatter};
 use glam::DVec3;
 use std::f64::consts::{FRAC_1_PI, PI};
 
-/// A conductor, smooth or with microfacets. Light that facets throw on facets is made up for as far as these know of it (Kulla and
-/// Conty, "Revisiting Physically Based Shading at Imageworks", 2017): reciprocal, and a perfect conductor is white at every
-/// roughness. Both sides reflect.
+/// A conductor, smooth or with microfacets. Light that facets throw on facets is made up for as far as these know of it
+/// (Kulla and Conty, "Revisiting Physically Based Shading at Imageworks", 2017): reciprocal, and a perfect conductor is
+/// white at every roughness. Both sides reflect.
 ///
-/// A measured metal has its colour by wavelength ([`super::conductors::Curve`]), of what is scattered once and of what is scattered
-/// more than once, and may have more than 1 in a channel.
+/// A measured metal has its colour by wavelength ([`super::conductors::Curve`]), of what is scattered once and of what
+/// is scattered more than once, and may have more than 1 in a channel.
 #[derive(Clone, Copy, Debug)]
 pub struct Conductor<F: Lossy = Ggx> {
     fresnel: Reflectance,
@@ -62,8 +62,8 @@ impl<F: Lossy> Conductor<F> {
     }
 }
 
-/// What scattering more than once gives back of each unit lost, for facets of this mean loss and reflectance, over π and the
-/// mean loss: each further time, F̄ is left, and 1 − L̄ of it gets out.
+/// What scattering more than once gives back of each unit lost, for facets of this mean loss and reflectance, over π
+/// and the mean loss: each further time, F̄ is left, and 1 − L̄ of it gets out.
 #[inline]
 pub(super) fn made_up(lost: f64, reflectance: Rgb) -> Rgb {
     let of = |share| made_up_of(lost, share);

@@ -7,12 +7,13 @@ use super::mirror::mirrored;
 use super::{BsdfSample, Facets, Ggx, Rgb, Scatter, fresnel};
 use glam::DVec3;
 
-/// A dielectric interface, smooth or with isotropic microfacets (Walter et al., "Microfacet Models for Refraction through Rough
-/// Surfaces", 2007), which reflects and refracts.
+/// A dielectric interface, smooth or with isotropic microfacets (Walter et al., "Microfacet Models for Refraction
+/// through Rough Surfaces", 2007), which reflects and refracts.
 ///
-/// A refraction that starts at a facet seen from one side is mostly taken to get out where the facet is seen from the other
-/// ([`Facets::refraction_geometry`]): light that other facets stop goes through them too, the more nearly straight on the closer
-/// the index is to 1. So at index 1 a surface is clear however rough it is. What is still lost is given back as
+/// A refraction that starts at a facet seen from one side is mostly taken to get out where the facet is seen from the
+/// other ([`Facets::refraction_geometry`]): light that other facets stop goes through them too, the more nearly
+/// straight on the closer the index is to 1. So at index 1 a surface is clear however rough it is. What is still lost
+/// is given back as
 /// [`LostBetween`] says.
 #[derive(Clone, Copy, Debug)]
 pub struct Dielectric<F: Lossy = Ggx> {
@@ -40,8 +41,8 @@ impl<F: Lossy> Dielectric<F> {
     /// then counts as smooth: Fresnel's reflection is all that can be told.
     const INVISIBLE: f64 = 1e-6;
 
-    /// Of the index of refraction below the surface over that above, `eta` > 0, and facets that are alike in all directions. Without them, or
-    /// with `eta` within 10⁻⁶ of 1, directions are single.
+    /// Of the index of refraction below the surface over that above, `eta` > 0, and facets that are alike in all
+    /// directions. Without them, or with `eta` within 10⁻⁶ of 1, directions are single.
     pub fn of(eta: f64, facets: Option<F>) -> Self {
         let facets = facets.filter(|_| (eta - 1.0).abs() >= Self::INVISIBLE);
         Self { eta, rough: facets.map(|facets| Rough { facets, interface: facets.interface(eta) }) }

@@ -3,12 +3,12 @@
 use crate::math::DVec3;
 use std::fmt::Debug;
 
-/// Small mirrors, each with its own slope, independent of each other and of their heights: what is hidden of them is Smith's
-/// (Heitz, "Understanding the Masking-Shadowing Function in Microfacet-Based BRDFs", 2014). Their slopes are spread by a roughness
-/// α along x and one along y.
+/// Small mirrors, each with its own slope, independent of each other and of their heights: what is hidden of them is
+/// Smith's (Heitz, "Understanding the Masking-Shadowing Function in Microfacet-Based BRDFs", 2014). Their slopes are
+/// spread by a roughness α along x and one along y.
 ///
-/// Directions are on the side of the normal: z > 0. Nothing divides by a cosine: where formulas have G / cos θ, these have the
-/// length s(ω) = |z| (1 + 2Λ(ω)), which is never 0, so all of it holds up to grazing.
+/// Directions are on the side of the normal: z > 0. Nothing divides by a cosine: where formulas have G / cos θ, these
+/// have the length s(ω) = |z| (1 + 2Λ(ω)), which is never 0, so all of it holds up to grazing.
 pub trait Facets: Copy + Debug + PartialEq {
     /// Below this roughness a surface is a smooth one: its lobe, 10⁻⁵ radians wide, is sharper than the sun's disk by a
     /// factor of 500, and what it does differently is below 10⁻⁸ of the light but within 10⁻³ of grazing.
@@ -37,7 +37,8 @@ pub trait Facets: Copy + Debug + PartialEq {
     /// cos θ is 1.
     fn density(&self, h: DVec3) -> f64;
 
-    /// The density, as [`Facets::density`] has it, of the facets that mirror one direction to another, and the cosine to both.
+    /// The density, as [`Facets::density`] has it, of the facets that mirror one direction to another, and the cosine
+    /// to both.
     fn mirroring(&self, wo: DVec3, wi: DVec3) -> (f64, f64);
 
     /// s(ω).
@@ -52,16 +53,16 @@ pub trait Facets: Copy + Debug + PartialEq {
         2.0 * w.z.abs() / (w.z.abs() + self.stretch(w))
     }
 
-    /// G₂(wo, wi) / (4 cos θo): what F D is multiplied by for reflection, with the cosine of `wi` in it. Here facets that are
-    /// high are seen from both sides, and low ones from neither: G₂ is correlated by height.
+    /// G₂(wo, wi) / (4 cos θo): what F D is multiplied by for reflection, with the cosine of `wi` in it. Here facets
+    /// that are high are seen from both sides, and low ones from neither: G₂ is correlated by height.
     #[inline]
     fn reflection_geometry(&self, wo: DVec3, wi: DVec3) -> f64 {
         // G₂ = 1 / (1 + Λ(wo) + Λ(wi)), and 1 + 2Λ = s / z.
         0.5 * wi.z / (self.stretch(wo) * wi.z + self.stretch(wi) * wo.z)
     }
 
-    /// G₁(wo) / cos θo, and G₂(wo, wi) / cos θo for light that goes through to `wi` on the other side. Here a refraction that
-    /// starts at a facet seen from one side is taken to get out where the facet is seen from the other,
+    /// G₁(wo) / cos θo, and G₂(wo, wi) / cos θo for light that goes through to `wi` on the other side. Here a
+    /// refraction that starts at a facet seen from one side is taken to get out where the facet is seen from the other,
     /// G₂ = min(G₁(wo), G₁(wi)).
     #[inline]
     fn refraction_geometry(&self, wo: DVec3, wi: DVec3) -> [f64; 2] {
@@ -75,7 +76,8 @@ pub trait Facets: Copy + Debug + PartialEq {
         self.density(h) * wo.dot(h).max(0.0) * 2.0 / (wo.z + self.stretch(wo))
     }
 
-    /// The density, in solid angle, with which [`Facets::sample_reflection`] draws a direction to which facets of this density mirror.
+    /// The density, in solid angle, with which [`Facets::sample_reflection`] draws a direction to which facets of this
+    /// density mirror.
     #[inline]
     fn reflected_pdf(&self, wo: DVec3, density: f64) -> f64 {
         // D G₁ (wo · h) / cos θo, over the 4 (wo · h) of mirroring.

@@ -6,8 +6,8 @@ use glam::DVec3;
 /// The reflectance of a dielectric for unpolarised light (Fresnel, 1823): `cosine` of incidence, 0 to 1, and `eta`, the
 /// index of refraction beyond over that before the interface. 1 beyond the critical angle.
 ///
-/// Differences of nearly equal terms are divided out: with e = η² − 1 and g = η cos θt = √(e + c²), c − g is −e / (c + g).
-/// So the result has a relative error of some 10⁻¹⁵ however close η is to 1.
+/// Differences of nearly equal terms are divided out: with e = η² − 1 and g = η cos θt = √(e + c²), c − g is −e / (c +
+/// g). So the result has a relative error of some 10⁻¹⁵ however close η is to 1.
 #[inline]
 pub fn dielectric(cosine: f64, eta: f64) -> f64 {
     let (c, e) = (cosine, (eta - 1.0) * (eta + 1.0));
@@ -87,14 +87,15 @@ impl ConductorIndex {
         // a² + b² = |η² − sin²θ| for the complex η.
         let norm = root(real * real + self.imaginary2);
         let a = root(((norm + real) * 0.5).max(Rgb::ZERO));
-        // The one polarisation is (sum − twice) / (sum + twice), and the other that times (even − odd) / (even + odd): their mean.
+        // The one polarisation is (sum − twice) / (sum + twice), and the other that times (even − odd) / (even + odd):
+        // their mean.
         let (sum, twice) = (norm + c2, 2.0 * c * a);
         let (even, odd) = (c2 * norm + s2 * s2, s2 * twice);
         ((sum - twice) * even / ((sum + twice) * (even + odd))).clamp(Rgb::ZERO, Rgb::ONE)
     }
 
-    /// The share of even light from a hemisphere that is reflected, by Gauss's rule of four points for the weight 2μ. The error is
-    /// below 1e-3 for the metals in [`super::conductors`].
+    /// The share of even light from a hemisphere that is reflected, by Gauss's rule of four points for the weight 2μ.
+    /// The error is below 1e-3 for the metals in [`super::conductors`].
     pub fn average(&self) -> Rgb {
         let mut sum = Rgb::ZERO;
         for (node, weight) in GAUSS_COSINE {

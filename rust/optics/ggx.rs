@@ -5,9 +5,9 @@ use crate::math::turn::sin_cos_turn;
 use glam::DVec3;
 use std::f64::consts::FRAC_1_PI;
 
-/// The distribution of slopes that Trowbridge and Reitz found (1975), later named GGX (Walter et al., "Microfacet Models for
-/// Refraction through Rough Surfaces", 2007): facets as the surface of an ellipsoid has them. Here s(ω) is the root
-/// √(z² + αx² x² + αy² y²).
+/// The distribution of slopes that Trowbridge and Reitz found (1975), later named GGX (Walter et al., "Microfacet
+/// Models for Refraction through Rough Surfaces", 2007): facets as the surface of an ellipsoid has them. Here s(ω) is
+/// the root √(z² + αx² x² + αy² y²).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ggx {
     alpha: [f64; 2],
@@ -57,12 +57,14 @@ impl Facets for Ggx {
     }
 
     /// Seen from a stretched direction, facets are a hemisphere of mirrors, which
-    /// reflect to a uniform cap of the sphere (Dupuy and Benyoub, "Sampling Visible GGX Normals with Spherical Caps", 2023).
+    /// reflect to a uniform cap of the sphere (Dupuy and Benyoub, "Sampling Visible GGX Normals with Spherical Caps",
+    /// 2023).
     #[inline]
     fn sample_visible(&self, wo: DVec3, u: [f64; 2]) -> DVec3 {
         let [ax, ay] = self.alpha;
         let w = DVec3::new(ax * wo.x, ay * wo.y, wo.z) / self.stretch(wo);
-        // The cap has heights from −w.z to 1. Its direction plus w has height (1 − u) (1 + w.z), here without cancellation.
+        // The cap has heights from −w.z to 1. Its direction plus w has height (1 − u) (1 + w.z), here without
+        // cancellation.
         let depth = u[1] * (1.0 + w.z);
         let radius = (depth * (2.0 - depth)).max(0.0).sqrt();
         let [sin, cos] = sin_cos_turn(u[0]);
@@ -106,7 +108,8 @@ mod tests {
                 let wi = direction(0.7 * wo.z, 0.3 + turn);
                 let h = (wo + wi).normalize();
                 let (density, cosine) = ggx.mirroring(wo, wi);
-                // A half vector is known to 10⁻¹⁶ over its length before it was made unit, and the density to that over a lobe's width.
+                // A half vector is known to 10⁻¹⁶ over its length before it was made unit, and the density to that over
+                // a lobe's width.
                 let known = 1e-15 / (wo + wi).length();
                 assert!(
                     (density / ggx.density(h) - 1.0).abs() < 1e-13 + 16.0 * known / alpha[0],
@@ -115,7 +118,8 @@ mod tests {
                 assert!((cosine - wo.dot(h)).abs() < 1e-15 + known, "{wo} {wi}");
             }
         }
-        // Next to nothing of two directions is left that are opposite and in the plane: the facets are those of the plane.
+        // Next to nothing of two directions is left that are opposite and in the plane: the facets are those of the
+        // plane.
         let (wo, wi) = (DVec3::new(1.0, 0.0, 1e-90), DVec3::new(-1.0, 0.0, 1e-90));
         assert_eq!(Ggx::new([0.3; 2]).mirroring(wo, wi), (Ggx::new([0.3; 2]).density(DVec3::Z), 1e-90));
     }

@@ -62,8 +62,9 @@ pub(super) fn power_cosine(axis: DVec3, exponent: f64, u: [f64; 2]) -> DVec3 {
     Frame::new(axis).to_world(DVec3::new(radius * cos, radius * sin, 1.0 - depth))
 }
 
-/// Directions near the plane. What facets lose and give back lies at cosines about their roughness, and falls off there as the
-/// inverse square: so do these, with density μ / (μ² + κ²) over the cosine μ for a scale κ. At κ = 1 it is nearly the cosine's.
+/// Directions near the plane. What facets lose and give back lies at cosines about their roughness, and falls off there
+/// as the inverse square: so do these, with density μ / (μ² + κ²) over the cosine μ for a scale κ. At κ = 1 it is
+/// nearly the cosine's.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Grazing {
     /// κ².

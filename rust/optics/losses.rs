@@ -39,8 +39,8 @@ pub trait LostBetween: Copy + Debug {
     /// The cosine on the side of `w` about which light is lost.
     fn scale(&self, w: DVec3) -> f64;
 
-    /// What is given back to `wo`, which loses `loss`, of light from `wi`, per solid angle, with the cosine of `wi` in it and without the
-    /// 1 / η² of radiance.
+    /// What is given back to `wo`, which loses `loss`, of light from `wi`, per solid angle, with the cosine of `wi` in
+    /// it and without the 1 / η² of radiance.
     fn given_back(&self, loss: f64, wo: DVec3, wi: DVec3) -> f64;
 }
 

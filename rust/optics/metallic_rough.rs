@@ -8,13 +8,13 @@ use super::{BsdfSample, Facets, Ggx, Rgb, Scatter, fresnel};
 use glam::DVec3;
 use std::f64::consts::FRAC_1_PI;
 
-/// The metallic-roughness model (Khronos, "glTF 2.0", 2021, appendix B): GGX microfacets of roughness α = roughness², whose
-/// reflectance F₀ at normal incidence goes from 0.04 to the base colour as `metallic` goes from 0 to 1, and a diffuse base under
-/// what is not metal, with Schlick's Fresnel term.
+/// The metallic-roughness model (Khronos, "glTF 2.0", 2021, appendix B): GGX microfacets of roughness α = roughness²,
+/// whose reflectance F₀ at normal incidence goes from 0.04 to the base colour as `metallic` goes from 0 to 1, and a
+/// diffuse base under what is not metal, with Schlick's Fresnel term.
 ///
-/// Where the specification leaves the coupling open, this is reciprocal and conserves energy: the base gets what the facets
-/// of a dielectric leave, (1 − R(wo)) (1 − R(wi)) / (π (1 − R̄)), and what facets of metal lose is made up for. A white base
-/// is white at every roughness and metalness. Both sides reflect.
+/// Where the specification leaves the coupling open, this is reciprocal and conserves energy: the base gets what the
+/// facets of a dielectric leave, (1 − R(wo)) (1 − R(wi)) / (π (1 − R̄)), and what facets of metal lose is made up for.
+/// A white base is white at every roughness and metalness. Both sides reflect.
 #[derive(Clone, Copy, Debug)]
 pub struct MetallicRough {
     ggx: Option<Ggx>,

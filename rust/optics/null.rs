@@ -3,8 +3,8 @@
 use super::{BsdfSample, Rgb, Scatter};
 use glam::DVec3;
 
-/// Takes all light and gives none back: a black surface, or a lamp that only shines. What light passes as if it were not
-/// there is [`super::Transparent`].
+/// Takes all light and gives none back: a black surface, or a lamp that only shines. What light passes as if it were
+/// not there is [`super::Transparent`].
 #[derive(Clone, Copy, Debug)]
 pub struct Null;
 

@@ -3,8 +3,9 @@
 use super::Facets;
 use crate::math::DVec3;
 
-/// Facets whose masking and shadowing are independent of each other, G₂ = G₁(wo) G₁(wi), and which give nothing back of what they throw
-/// on each other: the model of Walter et al. ("Microfacet Models for Refraction through Rough Surfaces", 2007) as it stands.
+/// Facets whose masking and shadowing are independent of each other, G₂ = G₁(wo) G₁(wi), and which give nothing back of
+/// what they throw on each other: the model of Walter et al. ("Microfacet Models for Refraction through Rough
+/// Surfaces", 2007) as it stands.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Once<F>(F);
 
@@ -77,7 +78,8 @@ mod tests {
 
     #[test]
     fn one_scattering_has_its_albedo() {
-        // Of white facets, by quadratures over slopes and over facets as they are seen; of GGX's compare Heitz et al. (2016).
+        // Of white facets, by quadratures over slopes and over facets as they are seen; of GGX's compare Heitz et al.
+        // (2016).
         let truths = [
             (0.1, [0.98831, 0.96912, 0.87275], [1.0, 0.99985, 0.91232]),
             (0.3, [0.87736, 0.81813, 0.84233], [0.99971, 0.92329, 0.93141]),

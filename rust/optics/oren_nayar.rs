@@ -5,9 +5,9 @@ use crate::sampling::warp;
 use glam::DVec3;
 use std::f64::consts::{FRAC_1_PI, PI};
 
-/// A surface of Lambertian facets (Oren and Nayar, "Generalization of Lambert's Reflectance Model", 1994) in the form of
-/// Fujii with all light between facets made up for (Portsmouth, Kutz and Hill, "EON: A practical energy-preserving rough
-/// diffuse BRDF", 2024): reciprocal, and white at reflectance 1 for every roughness. Both sides reflect.
+/// A surface of Lambertian facets (Oren and Nayar, "Generalization of Lambert's Reflectance Model", 1994) in the form
+/// of Fujii with all light between facets made up for (Portsmouth, Kutz and Hill, "EON: A practical energy-preserving
+/// rough diffuse BRDF", 2024): reciprocal, and white at reflectance 1 for every roughness. Both sides reflect.
 #[derive(Clone, Copy, Debug)]
 pub struct OrenNayar {
     reflectance: Rgb,

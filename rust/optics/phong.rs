@@ -6,9 +6,9 @@ use super::{BsdfSample, Rgb, Scatter};
 use glam::DVec3;
 use std::f64::consts::{FRAC_1_PI, TAU};
 
-/// Diffuse reflection and Phong's lobe (1975), in the modified form that is reciprocal and conserves energy (Lafortune and
-/// Willems, "Using the Modified Phong Reflectance Model for Physically Based Rendering", 1994):
-/// kd / π + ks (n + 2) / 2π cosⁿ α, with α the angle to the mirror direction. Both sides reflect.
+/// Diffuse reflection and Phong's lobe (1975), in the modified form that is reciprocal and conserves energy (Lafortune
+/// and Willems, "Using the Modified Phong Reflectance Model for Physically Based Rendering", 1994): kd / π + ks (n + 2)
+/// / 2π cosⁿ α, with α the angle to the mirror direction. Both sides reflect.
 #[derive(Clone, Copy, Debug)]
 pub struct Phong {
     lobes: Lobes,

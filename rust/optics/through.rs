@@ -3,11 +3,11 @@
 use super::{Facets, fresnel};
 use crate::math::DVec3;
 
-/// How much light facets between dielectrics let through, each share by one refraction with masking on either side: of light from the thinner
-/// side, by its cosine; and how much they reflect from within.
+/// How much light facets between dielectrics let through, each share by one refraction with masking on either side: of
+/// light from the thinner side, by its cosine; and how much they reflect from within.
 ///
-/// Nothing of it has a closed form. It is integrated when a material is made ready, by Gauss's rules over facets as they are seen, and kept
-/// at [`NODES`] cosines.
+/// Nothing of it has a closed form. It is integrated when a material is made ready, by Gauss's rules over facets as
+/// they are seen, and kept at [`NODES`] cosines.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Through {
     alpha: f64,
@@ -18,8 +18,8 @@ pub struct Through {
     within: f32,
 }
 
-/// At so many cosines shares are kept, between which they are within 0.0025 of the integral for indices from 1.05 on, and within
-/// 0.001 mostly.
+/// At so many cosines shares are kept, between which they are within 0.0025 of the integral for indices from 1.05 on,
+/// and within 0.001 mostly.
 const NODES: usize = 20;
 
 impl Through {
@@ -148,7 +148,8 @@ impl<'a, F: Facets> Seen<'a, F> {
 
     fn new(facets: &'a F) -> Self {
         let along = gauss(Self::ALONG);
-        // What is drawn first is the same on both sides of the plane of x and z; the tail of the other is spread out, 1 − u = t³.
+        // What is drawn first is the same on both sides of the plane of x and z; the tail of the other is spread out, 1
+        // − u = t³.
         let draw = |x: f64, across: f64, t: f64, along: f64| ([0.5 * x, 1.0 - t * t * t], across * along * 3.0 * t * t);
         let of_row = |(x, across): (f64, f64)| along.iter().map(move |&(t, along)| draw(x, across, t, along));
         let draws = gauss(Self::ACROSS).into_iter().flat_map(of_row).collect();
@@ -240,7 +241,8 @@ mod tests {
 
     #[test]
     fn what_goes_in_and_out_and_is_reflected_is_no_more_than_all() {
-        // What gets out of even light from within is what gets in, over η² (Stokes, 1849); the rest is lost, the more the rougher.
+        // What gets out of even light from within is what gets in, over η² (Stokes, 1849); the rest is lost, the more
+        // the rougher.
         let kept = |through: Through, eta: f64| through.within() + through.average() / (eta * eta);
         for eta in [1.05, 1.5, 2.5] {
             let mut last = [1.002; 2];

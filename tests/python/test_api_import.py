@@ -38,7 +38,8 @@ def test_queries_do_not_bring_in_more():
 
 
 def test_import_takes_under_150_ms_beyond_numpy():
-    code = "import numpy, time; t = time.perf_counter(); import raywright; print(time.perf_counter() - t)"
+    # Of the process, which waits for nothing: other tests may run beside this one.
+    code = "import numpy, time; t = time.process_time(); import raywright; print(time.process_time() - t)"
     assert statistics.median(float(run(code)) for _ in range(5)) < 0.15
 
 

@@ -37,7 +37,7 @@ def test_one_light_need_not_be_in_a_list():
     assert rw.Scene([], lights=light).lights == rw.Scene([], lights=[light]).lights == (light,)
 
 
-@pytest.mark.parametrize("precision", ["single", "double"])
+@pytest.mark.parametrize("precision", ["auto", "single", "double"])
 @pytest.mark.parametrize("quality", ["fast build", "balanced", "fast rays"])
 def test_precision_and_quality_are_kept_and_hits_do_not_depend_on_quality(precision, quality):
     knot = rw.scenes.torus_knot(along=40, around=6)
@@ -48,7 +48,7 @@ def test_precision_and_quality_are_kept_and_hits_do_not_depend_on_quality(precis
     assert hash(back) == hash(scene)
     plain = rw.Scene(knot, precision=precision)
     assert (scene == plain) == (quality == "balanced")
-    assert (f"precision='{precision}'" in repr(scene)) == (precision == "double")
+    assert (f"precision='{precision}'" in repr(scene)) == (precision != "auto")
     assert (f"quality='{quality}'" in repr(scene)) == (quality != "balanced")
     rays = np.random.default_rng(4).normal(size=(2, 500, 3))
     assert scene.intersect(*rays) == plain.intersect(*rays)
@@ -249,7 +249,11 @@ def test_copy_replace_makes_one_too(box):
             r"^a Scene has no 'accelerator_choice' to replace; it has",
         ),
         ({"lights": 3}, TypeError, r"^lights must be raywright lights, got int$"),
-        ({"precision": "half"}, ValueError, r"^precision must be one of 'single', 'double', got 'half'$"),
+        (
+            {"precision": "half"},
+            ValueError,
+            r"^precision must be one of 'auto', 'single', 'double', got 'half'$",
+        ),
     ],
 )
 def test_a_wrong_change_is_told(box, changes, error, message):

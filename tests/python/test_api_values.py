@@ -133,7 +133,7 @@ def test_camera_keeps_the_dimensions_of_extreme_scenes():
         (
             lambda: rw.Scene([], precision="half"),
             ValueError,
-            r"precision must be one of 'single', 'double', got 'half'",
+            r"precision must be one of 'auto', 'single', 'double', got 'half'",
         ),
         (
             lambda: rw.Scene([], quality=3),

@@ -284,7 +284,7 @@ def test_facets_are_told_and_checked(kind):
 
 
 def test_highlights_are_those_of_the_distribution():
-    """At the mirror's angle and beside it: D F G2 / (4 cos cos) for GGX (Walter et al., 2007) and for Beckmann."""
+    """At the mirror's angle and beside it: D F G2 / (4 cos cos) of both (Walter et al., 2007)."""
     alpha, tilt = 0.2, np.radians(20)
 
     def lit(distribution, slope):

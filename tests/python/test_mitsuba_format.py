@@ -253,16 +253,26 @@ def test_what_is_not_supported_is_refused_by_name(parts, told):
 
 
 def test_what_is_approximated_is_warned_of_once():
-    rough = {"type": "roughconductor", "alpha": 0.2}
+    like_disney = {"type": "principled", "roughness": 0.2}
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
-        shot(a={"type": "sphere", "b": rough}, c={"type": "disk", "b": {**rough, "alpha": 0.3}})
+        shot(
+            a={"type": "sphere", "b": like_disney},
+            c={"type": "disk", "b": {**like_disney, "roughness": 0.3}},
+        )
     assert [str(one.message) for one in caught] == [
-        "roughconductor 'a.b': Beckmann's distribution is approximated by GGX of the same alpha"
+        "principled 'a.b': a principled BSDF is approximated by glTF's: base_color, metallic and roughness"
     ]
-    with pytest.warns(RuntimeWarning, match="principled .* is approximated by glTF's"):
-        near = front({"type": "principled", "base_color": 0.3, "metallic": 0.25, "clearcoat": 1.0})
-    assert near == rw.MetallicRough(0.3, 0.25, 0.5)
+
+
+def test_facets_are_those_of_the_scene():
+    """Beckmann's unless it says otherwise, as Mitsuba has it, and without what they throw on each other."""
+    for kind in ("roughconductor", "roughdielectric", "roughplastic"):
+        for told, distribution in (({}, "beckmann"), ({"distribution": "ggx"}, "ggx")):
+            scene = shot(a={"type": "sphere", "b": {"type": kind, "alpha": 0.2, **told}}).scene
+            material = scene.shapes[0].material
+            material = getattr(material, "front", material)
+            assert (material.distribution, material.multiple_scattering) == (distribution, False)
 
 
 def test_bumps_on_the_inside_are_refused():

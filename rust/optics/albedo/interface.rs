@@ -25,15 +25,16 @@ pub(super) fn scale(alpha: f64, eta: f64) -> f64 {
     ((eta - 1.0) * (eta + 1.0)).max(0.0).sqrt() / alpha
 }
 
-/// The part of x = z / s(ω) in which light from the denser side is bent so far that it leaves the surface again, up to 1.
+/// The part of x = z / s(ω) in which light from the denser side is bent so far that it leaves the surface again, up to
+/// 1.
 #[inline]
 pub(super) fn bent(scale: f64) -> f64 {
     let square = scale * scale;
     square / (2.0 + square)
 }
 
-/// A variable from 0 to 1 for a cosine from the denser side and its x: dense where light is bent away, and about the critical
-/// angle, where what gets through grazes the surface and other facets stop it.
+/// A variable from 0 to 1 for a cosine from the denser side and its x: dense where light is bent away, and about the
+/// critical angle, where what gets through grazes the surface and other facets stop it.
 #[inline]
 pub(super) fn of_dense(alpha: f64, eta: f64, bent: f64, x: f64, cosine: f64) -> f64 {
     let critical = ((eta - 1.0) * (eta + 1.0)).max(0.0).sqrt() / eta;
@@ -80,9 +81,9 @@ impl Interface {
             averages(table, AVERAGE_SIZES, [alpha.cbrt(), index.sqrt()]).exp() * alpha * alpha
         };
         let averages = [average(eta < 1.0), average(eta > 1.0)];
-        // A share t of a loss L̄ that crosses from side a to b is reciprocal if na² ta L̄a = nb² tb L̄b (Kulla and Conty,
-        // "Revisiting Physically Based Shading at Imageworks", 2017). A smooth interface lets through 1 − F̄, for which
-        // na² (1 − F̄a) = nb² (1 − F̄b): so t = (1 − F̄) / L̄ times what keeps both at most 1 − F̄.
+        // A share t of a loss L̄ that crosses from side a to b is reciprocal if na² ta L̄a = nb² tb L̄b (Kulla and
+        // Conty, "Revisiting Physically Based Shading at Imageworks", 2017). A smooth interface lets through 1 − F̄,
+        // for which na² (1 − F̄a) = nb² (1 − F̄b): so t = (1 − F̄) / L̄ times what keeps both at most 1 − F̄.
         let least = averages[0].min(averages[1]);
         let side = |below: bool| {
             let (own, average) = (if below { 1.0 / eta } else { eta }, averages[usize::from(below)]);
@@ -97,9 +98,9 @@ impl Interface {
         &self.sides[usize::from(w.z < 0.0)]
     }
 
-    /// The share of light from `w` that is neither reflected nor refracted away by one facet. Within 0.005 of the integral, but
-    /// for directions that graze the surface: there within 0.007 from the thinner side where it is hardly rough and of an index
-    /// above 2, and within 0.009 from the denser where the index is 1 to a thousandth.
+    /// The share of light from `w` that is neither reflected nor refracted away by one facet. Within 0.005 of the
+    /// integral, but for directions that graze the surface: there within 0.007 from the thinner side where it is hardly
+    /// rough and of an index above 2, and within 0.009 from the denser where the index is 1 to a thousandth.
     #[inline]
     pub fn loss(&self, w: DVec3) -> f64 {
         let x = x_of(&self.ggx, w);
@@ -124,8 +125,8 @@ impl Interface {
         if self.side(w).dense { (self.alpha * self.bent).max(1e-8) } else { self.alpha }
     }
 
-    /// What is given back to `wo` of light from `wi`, per solid angle, with the cosine of `wi` in it and without the 1 / η²
-    /// of radiance. `loss` is that of `wo`.
+    /// What is given back to `wo` of light from `wi`, per solid angle, with the cosine of `wi` in it and without the 1
+    /// / η² of radiance. `loss` is that of `wo`.
     #[inline]
     pub fn given_back(&self, loss: f64, wo: DVec3, wi: DVec3) -> f64 {
         loss * self.given_back_density(wo, wi)

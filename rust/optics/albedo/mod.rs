@@ -1,8 +1,8 @@
 //! How much light microfacets scatter once: the rest meets further facets, and a rough surface has to make up for it.
 //!
-//! What is lost has no closed form. It is tabulated by integrating once (`quadrature.rs`, in tests, which also writes the
-//! tables) in variables in which it is smooth, down to no roughness at all: near grazing a surface of roughness α behaves at
-//! angle θ as every other with the same α tan θ.
+//! What is lost has no closed form. It is tabulated by integrating once (`quadrature.rs`, in tests, which also writes
+//! the tables) in variables in which it is smooth, down to no roughness at all: near grazing a surface of roughness α
+//! behaves at angle θ as every other with the same α tan θ.
 
 mod coat;
 mod interface;
@@ -44,7 +44,8 @@ fn of_alpha_power(alpha: f64) -> f64 {
     alpha.powf(0.7)
 }
 
-/// About the cosine at which facets are met that reflect to a direction of this cosine: at grazing, that of a slope of α.
+/// About the cosine at which facets are met that reflect to a direction of this cosine: at grazing, that of a slope of
+/// α.
 #[inline]
 fn effective_cosine(alpha: f64, cosine: f64) -> f64 {
     let square = FACET_SLOPE * alpha * alpha;

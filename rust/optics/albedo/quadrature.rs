@@ -113,8 +113,8 @@ fn grazing(ggx: &Ggx, i: usize, count: usize, variable: impl Fn(f64) -> f64) -> 
     DVec3::new(sin, 0.0, cos).normalize()
 }
 
-/// The index of a table's entry at a roughness. In place of 1, where nothing is lost, stands one so near to it that what is
-/// bent does not change any more, in units of what is.
+/// The index of a table's entry at a roughness. In place of 1, where nothing is lost, stands one so near to it that
+/// what is bent does not change any more, in units of what is.
 fn index(alpha: f64, variable: f64) -> f64 {
     let w = alpha * ((1.0 - variable).powi(-3).min(1e6) - 1.0).max(0.01);
     w.hypot(1.0)
@@ -169,7 +169,8 @@ mod entries {
         if a < SMOOTHEST { 0.5 } else { mean - fresnel::schlick_weight(effective_cosine(a, w.z)) + 0.5 }
     }
 
-    // Averages are those of what the tables give between their entries, so that what is given back sums to what is lost.
+    // Averages are those of what the tables give between their entries, so that what is given back sums to what is
+    // lost.
 
     pub fn mirror_average(k: usize) -> f64 {
         let [m, l] = mirror::AVERAGE_SIZES;

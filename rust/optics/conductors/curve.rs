@@ -90,9 +90,9 @@ impl Curve {
         self.lines.iter().map(|line| line.weight * of_mean(mean(line))).sum()
     }
 
-    /// By what the reflectance is to be multiplied for light that such a metal has reflected before. It is less than 1 in a channel that
-    /// exceeds 1: then at most so much is left of that as of the wavelength that is reflected best, at normal incidence. Of gold in gold, the
-    /// red after two and after five reflections is right to 3 % so.
+    /// By what the reflectance is to be multiplied for light that such a metal has reflected before. It is less than 1
+    /// in a channel that exceeds 1: then at most so much is left of that as of the wavelength that is reflected best,
+    /// at normal incidence. Of gold in gold, the red after two and after five reflections is right to 3 % so.
     #[inline]
     pub fn again(&self) -> Rgb {
         self.again

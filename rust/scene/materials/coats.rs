@@ -3,14 +3,16 @@
 use crate::optics::{Facets, Through};
 use std::sync::{Arc, PoisonError, RwLock};
 
-/// What goes through the coat of a plastic whose facets scatter once, made ready for each index of refraction that is asked of it.
+/// What goes through the coat of a plastic whose facets scatter once, made ready for each index of refraction that is
+/// asked of it.
 #[derive(Debug, Default)]
 pub struct Coats {
     ready: RwLock<Vec<(f64, Arc<[Through]>)>>,
 }
 
 impl Coats {
-    /// What goes through facets of roughness `alpha`, one within `range`, which is always the same, and the index below over that above.
+    /// What goes through facets of roughness `alpha`, one within `range`, which is always the same, and the index below
+    /// over that above.
     pub fn through<F: Facets>(&self, range: [f64; 2], alpha: f64, eta: f64) -> Through {
         let all = self.of::<F>(range, eta);
         let [low, high] = range.map(f64::sqrt);
