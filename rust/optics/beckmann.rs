@@ -70,7 +70,7 @@ impl Facets for Beckmann {
 
     /// Slopes along the way to `wo` and across it are independent of each other (Heitz and d'Eon, "Importance Sampling
     /// Microfacet-Based BSDFs using the Distribution of Visible Normals", 2014): of those across a share is exceeded,
-    /// those along are found by [`leaning`].
+    /// those along are found by `leaning`.
     fn sample_visible(&self, wo: DVec3, u: [f64; 2]) -> DVec3 {
         let [ax, ay] = self.alpha;
         let (x, y) = (ax * wo.x, ay * wo.y);

@@ -14,7 +14,7 @@ use glam::DVec3;
 /// other ([`Facets::refraction_geometry`]): light that other facets stop goes through them too, the more nearly
 /// straight on the closer the index is to 1. So at index 1 a surface is clear however rough it is. What is still lost
 /// is given back as
-/// [`LostBetween`] says.
+/// `LostBetween` says.
 #[derive(Clone, Copy, Debug)]
 pub struct Dielectric<F: Lossy = Ggx> {
     /// Index below over index above.

@@ -7,7 +7,7 @@ use crate::math::DVec3;
 /// light from the thinner side, by its cosine; and how much they reflect from within.
 ///
 /// Nothing of it has a closed form. It is integrated when a material is made ready, by Gauss's rules over facets as
-/// they are seen, and kept at [`NODES`] cosines.
+/// they are seen, and kept at `NODES` cosines.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Through {
     alpha: f64,
