@@ -1,8 +1,8 @@
 //! What scatters light at a point: one interface over all kinds.
 
 use super::{
-    BlinnPhong, BsdfSample, Coated, Conductor, Dielectric, Diffuse, Faceted, MetallicRough, Mirror, Null, OrenNayar,
-    Phong, Rgb, Scatter, ThinDielectric, Transparent,
+    Beckmann, BlinnPhong, BsdfSample, Coated, CoatedOnce, Conductor, Dielectric, Diffuse, Faceted, Ggx, MetallicRough,
+    Mirror, Null, Once, OrenNayar, Phong, Rgb, Scatter, ThinDielectric, Transparent,
 };
 use glam::DVec3;
 
@@ -111,4 +111,24 @@ kinds! {
     Transparent,
     /// Scatters nothing.
     Null,
+}
+
+/// Makes [`Bsdf`] of less common facets too.
+macro_rules! faceted {
+    ($($of:ty,)+) => {
+        $(impl From<$of> for Bsdf {
+            fn from(kind: $of) -> Self {
+                Self::Faceted(kind.into())
+            }
+        })+
+    };
+}
+
+faceted! {
+    Conductor<Once<Ggx>>,
+    Conductor<Once<Beckmann>>,
+    Dielectric<Once<Ggx>>,
+    Dielectric<Once<Beckmann>>,
+    CoatedOnce<Ggx>,
+    CoatedOnce<Beckmann>,
 }

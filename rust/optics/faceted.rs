@@ -1,6 +1,6 @@
 //! Rough surfaces that are not of GGX's facets, or not with all of the light.
 
-use super::{Beckmann, Bsdf, BsdfSample, CoatedOnce, Conductor, Dielectric, Ggx, Once, Rgb, Scatter};
+use super::{Beckmann, BsdfSample, CoatedOnce, Conductor, Dielectric, Ggx, Once, Rgb, Scatter};
 use crate::math::DVec3;
 
 /// Makes [`Faceted`] of its kinds.
@@ -8,16 +8,16 @@ macro_rules! kinds {
     ($($(#[$doc:meta])* $kind:ident($of:ty),)+) => {
         /// A rough surface of less common facets: one of its kinds.
         ///
-        /// They are kept apart from the kinds of [`Bsdf`], so that these do not share their code with what most scenes
+        /// They are kept apart from the kinds of [`super::Bsdf`], so that these do not share their code with what most scenes
         /// do not have.
         #[derive(Clone, Copy, Debug)]
         pub enum Faceted {
             $($(#[$doc])* $kind($of),)+
         }
 
-        $(impl From<$of> for Bsdf {
+        $(impl From<$of> for Faceted {
             fn from(kind: $of) -> Self {
-                Self::Faceted(Faceted::$kind(kind))
+                Self::$kind(kind)
             }
         })+
 
@@ -39,6 +39,12 @@ macro_rules! kinds {
             fn albedo(&self) -> Rgb {
                 match self {
                     $(Self::$kind(kind) => kind.albedo(),)+
+                }
+            }
+
+            fn again(&self) -> Rgb {
+                match self {
+                    $(Self::$kind(kind) => kind.again(),)+
                 }
             }
 

@@ -130,7 +130,7 @@ def test_python_integrators_may_be_interrupted_in_their_midst(path, at):
 
 SCRIPT = """
 import sys, raywright as rw
-from raywright import checkpoints
+from raywright.rendering import checkpoints
 checkpoints._SECONDS = checkpoints._SHARE = 0.0
 scene, camera = rw.scenes.cornell_box(width=32, height=24)
 image = rw.render(
