@@ -8,8 +8,8 @@ macro_rules! kinds {
     ($($(#[$doc:meta])* $kind:ident($of:ty),)+) => {
         /// A rough surface of less common facets: one of its kinds.
         ///
-        /// They are kept apart from the kinds of [`super::Bsdf`], so that these do not share their code with what most scenes
-        /// do not have.
+        /// They are kept apart from the kinds of [`super::Bsdf`], so that these do not share their code with what most
+        /// scenes do not have.
         #[derive(Clone, Copy, Debug)]
         pub enum Faceted {
             $($(#[$doc])* $kind($of),)+
