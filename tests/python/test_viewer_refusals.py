@@ -3,6 +3,7 @@
 import re
 import socket
 import sys
+import time
 from contextlib import closing
 from urllib.parse import urlsplit
 
@@ -120,6 +121,22 @@ def test_what_is_too_much_or_of_another_kind_is_refused(viewer):
     assert ask(viewer, "", "POST", b"{}", **kind)[0] == 404
     for method in ("PUT", "DELETE", "OPTIONS", "HEAD", "TRACE"):
         assert ask(viewer, method=method)[0] == 501
+
+
+def test_who_still_sends_what_is_refused_learns_why(viewer):
+    at = urlsplit(viewer.url)
+    head = f"POST {at.path}view HTTP/1.1\r\nHost: {at.netloc}\r\nContent-Type: application/json\r\n"
+    for length, status in (("Transfer-Encoding: chunked", b"411"), ("Content-Length: 5000", b"413")):
+        with closing(socket.create_connection((at.hostname, at.port), timeout=20)) as connection:
+            connection.sendall(f"{head}{length}\r\n\r\n".encode())
+            # The answer is there, and whatever else is done with the connection has been done.
+            assert connection.recv(1, socket.MSG_PEEK)
+            time.sleep(0.2)
+            for _ in range(5):
+                connection.sendall(b" " * 1000)
+                time.sleep(0.01)
+            told = b"".join(iter(lambda: connection.recv(65536), b""))
+        assert told.startswith(b"HTTP/1.1 " + status), told
 
 
 def test_what_is_no_request_is_refused_in_one_line(viewer):

@@ -35,6 +35,9 @@ _MOST_PAGES = 32
 # How soon it is seen that a page was closed, and how long a silent connection is kept.
 _LOOK = 0.1
 _SILENCE = 10.0
+# How long, and how many bytes at most, a browser is listened to that still sends what is refused.
+_LINGER = 2.0
+_MOST_UNREAD = 1 << 20
 _HEADERS = {
     "Cache-Control": "no-store",
     "Content-Security-Policy": (
@@ -97,6 +100,26 @@ class Server(ThreadingHTTPServer):
     def hosts(self) -> tuple[str, str]:
         """What the server may be called."""
         return f"{HOST}:{self.server_port}", f"localhost:{self.server_port}"
+
+    def shutdown_request(self, request: Any) -> None:
+        """Close a connection so that the last answer arrives.
+
+        If something that was sent is left unread, closing resets the connection, and who is still sending may
+        never see why it was refused (RFC 9112, section 9.6). So first our side is closed alone, and the rest is
+        read and thrown away.
+        """
+        try:
+            request.shutdown(socket.SHUT_WR)
+            end, left = time.monotonic() + _LINGER, _MOST_UNREAD
+            while left > 0 and (wait := end - time.monotonic()) > 0:
+                request.settimeout(wait)
+                more = len(request.recv(min(left, 65536)))
+                if more == 0:
+                    break
+                left -= more
+        except OSError:
+            pass
+        self.close_request(request)
 
     def handle_error(self, request: Any, client_address: Any) -> None:
         """Say nothing of browsers that leave."""
