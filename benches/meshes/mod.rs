@@ -273,7 +273,7 @@ pub struct Kernel {
 }
 
 impl Kernel {
-    /// Every level that this processor has, with a tree as wide as that has lanes.
+    /// Every level that this processor has, with a tree as wide as the level has lanes.
     pub fn all() -> Vec<Self> {
         let available = Level::ALL.into_iter().filter(|level| level.is_available());
         available.map(|level| Self { width: level.lanes(), level, is_single: true }).collect()

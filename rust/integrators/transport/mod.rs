@@ -90,7 +90,7 @@ impl Settings {
         self.worker_of(scene, footprint, scene.plan().kernel())
     }
 
-    /// As [`Settings::worker`], by this kernel or one that can more.
+    /// As [`Settings::worker`], by this kernel or one that can do more.
     pub fn worker_of<'a>(self, scene: &'a Scene, footprint: Footprint, kernel: Kernel) -> Box<dyn Worker + 'a> {
         match kernel {
             Kernel::Plain if self.shares => Box::new(TransportWorker::<Sharing<Plain>>::new(self, scene, footprint)),
