@@ -52,7 +52,7 @@ words!(u32, u64);
 #[derive(Default)]
 pub(super) struct Writer(pub Vec<u8>);
 
-/// How many numbers of one kind are stored: all the same, or one by one.
+/// How numbers of one kind are stored: all the same, or one by one.
 const SAME: u8 = 0;
 const EACH: u8 = 1;
 

@@ -23,9 +23,9 @@ pub struct Sampler {
     kind: SamplerKind,
     key: [u32; 2],
     pixel: u32,
-    /// Of the pixel's samples.
+    /// Its number among the pixel's samples.
     number: u32,
-    /// The same, or of those of its batch.
+    /// The same, or among those of its batch.
     sample: u32,
     /// The Philox block last made: it holds two dimensions, which are mostly asked for one after the other.
     block: u32,
@@ -63,7 +63,7 @@ impl Sampler {
         self.pixel
     }
 
-    /// The how manieth sample of its pixel it is.
+    /// Its number among the samples of its pixel, from 0 on.
     pub fn number(&self) -> u32 {
         self.number
     }
