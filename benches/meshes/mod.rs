@@ -54,7 +54,7 @@ pub enum Mesh {
     Icosphere,
     /// A torus of about as many, dented by a tenth of its radius.
     NoisyTorus,
-    /// A room of 3,000 slats, two hundred times as long as they are wide, seen from inside.
+    /// A room of 3,000 slats, four hundred times as long as they are wide, seen from inside.
     Slats,
 }
 

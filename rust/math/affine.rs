@@ -12,8 +12,8 @@ pub struct Affine {
     pub rows: [DVec3; 3],
     /// Where the origin goes.
     pub shift: DVec3,
-    /// The adjugate of the linear part times a power of two, and the determinant times the square of it: the inverse is
-    /// the first over the second. So no number of a map vanishes, whatever its scale.
+    /// The adjugate and the determinant of the linear part, both times the same power of two: the inverse is the first
+    /// over the second. So no number of a map vanishes, whatever its scale.
     adjugate: ([Triple<Double>; 3], Double),
     /// One over that power of two's root.
     scale: f64,

@@ -88,7 +88,7 @@ impl DoubleDouble {
         self * self
     }
 
-    /// Its square root; zero of what is not above zero.
+    /// Its square root; zero for what is not above zero.
     #[inline]
     pub fn sqrt(self) -> Self {
         if self.high <= 0.0 {

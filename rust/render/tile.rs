@@ -3,7 +3,7 @@
 use super::bytes::{Malformed, Reader, Writer, check};
 use crate::optics::{Rgb, is_radiance};
 
-/// Sums from which a mean and its error are had.
+/// Sums that a mean and its error are computed from.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Moments {
     /// Sum of samples.

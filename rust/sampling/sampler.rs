@@ -3,8 +3,7 @@
 use super::stream::Stream;
 use super::{SamplerKind, halton, lattice, philox4x32, sobol, stratified};
 
-/// How many dimensions stand before those of the first bounce: film position, lens, and two to spare
-/// (time, wavelength).
+/// How many dimensions stand before those of the first bounce: film position, lens, one to spare, and time.
 pub const CAMERA_DIMENSIONS: u32 = 4;
 
 /// The numbers of one sample of one pixel. Each is named by its dimension, so none depends on which were asked for
