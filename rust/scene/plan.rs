@@ -90,7 +90,7 @@ pub struct Plan {
     needs: SceneNeeds,
     /// What rounding to f32 did to vertices, or would have done: of the mesh, in groups too, to which that is most.
     rounding: Rounding,
-    /// How many lights are asked one by one where light is scattered sharply; 0 if one of them all is drawn.
+    /// How many lights are asked one by one where light is scattered sharply; 0 where one of all is asked.
     few: u32,
     /// How each shape scatters, if it does so alike everywhere ([`Material::constant`]).
     constants: Vec<Option<Bsdf>>,

@@ -75,7 +75,7 @@ impl Settings {
         }
     }
 
-    /// Whether they are those of a path tracer, which the special kernels know alone.
+    /// Whether they are those of a path tracer, the only ones that the special kernels know.
     fn are_plain(&self) -> bool {
         self.light_samples == 1
             && self.splits == 1
