@@ -45,7 +45,7 @@ struct Case {
 }
 
 impl Case {
-    /// Every size of leaf at every level, as wide as that has lanes.
+    /// Every size of leaf at every level, each as wide as its level has lanes.
     fn all() -> Vec<Self> {
         let available = Level::ALL.into_iter().filter(|level| level.is_available());
         let sizes =

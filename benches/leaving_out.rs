@@ -1,6 +1,6 @@
 //! What leaving out has won: the same paths in the same scene, traced by the kernel that the scene needs and by those
-//! that can more. They take turns, so that what else the machine does is shared by all. Each gives the same bits, which
-//! is checked before anything is timed.
+//! that can do more. They take turns, so that whatever else the machine does is shared by all. Each gives the same
+//! bits, which is checked before anything is timed.
 
 use raywright::accel::bvh::{self, Options};
 use raywright::integrators::{CameraSample, Path};
@@ -13,7 +13,7 @@ use raywright::workers::Cancel;
 use std::sync::Arc;
 use std::time::Instant;
 
-/// Times that each takes its turn.
+/// How often each takes its turn.
 const TURNS: usize = 31;
 
 /// Paths that are timed together.

@@ -1,6 +1,6 @@
 //! What exact decisions cost a ray on one thread: the same trees walked by the same kernels, over leaves whose f32
-//! answer is believed, over our own, and over those that keep f64. They take turns, so that what else the machine does
-//! is shared by all.
+//! answer is believed, over our own, and over those that keep f64. They take turns, so that whatever else the machine
+//! does is shared by all.
 //!
 //! Ours have given the hits of brute force before they are timed, bit for bit; of the others the table says how often
 //! they err.
@@ -18,7 +18,7 @@ use raywright::simd::Level;
 use std::hint::black_box;
 use std::time::Instant;
 
-/// Times that each takes its turn.
+/// How often each takes its turn.
 const TURNS: usize = 41;
 
 /// Rays that are timed together: a batch as a caller's threads have them, and much less than a time slice.

@@ -58,7 +58,8 @@ pub fn watched<T: Send>(
     let pool = pool(threads)?;
     let cancel = Cancel::default();
     if pool.current_thread_index().is_some() {
-        // One of its own threads, which must not wait for the others: they may all be here. Who called it is watched.
+        // One of its own threads, which must not wait for the others: they may all be here. Whoever called it is
+        // watched.
         return Ok(work(&cancel));
     }
     let result = Mutex::new(None);

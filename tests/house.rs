@@ -163,7 +163,7 @@ fn arrows(files: &BTreeMap<Names, File>) -> BTreeSet<Arrow> {
     arrows
 }
 
-/// The file in which that stands which a path leads to, and its name there; the file itself has none.
+/// The file that holds what a path leads to, and its name there; the file itself has none.
 fn stands(files: &BTreeMap<Names, File>, path: &[String]) -> (Names, String) {
     let mut path = path.to_vec();
     // A name leads to another once for each re-export.

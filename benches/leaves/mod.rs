@@ -4,7 +4,7 @@ use raywright::math::{DVec3, Ray, Region};
 use raywright::shapes::triangle::{BlockRay, EdgeRay, Leaves, SingleLeaves};
 use raywright::simd::{Dispatch, Kernel, Level, Simd};
 
-/// Some leaves as large as each other, and a ray for each.
+/// Some leaves of equal size, and a ray for each.
 pub struct Full<const N: usize> {
     leaves: SingleLeaves<N>,
     count: u32,

@@ -127,7 +127,7 @@ impl<const N: usize> Leaves<N> for PlainLeaves<N> {
 }
 
 impl<const N: usize> PlainLeaves<N> {
-    /// The lanes of a leaf that a ray meets, and at what.
+    /// The lanes of a leaf that a ray meets, and the numbers of each meeting.
     #[inline(always)]
     fn lanes<S: Simd<N>>(
         &self,
@@ -148,7 +148,7 @@ impl<const N: usize> PlainLeaves<N> {
     }
 }
 
-/// What quotients make `t` and `uv`.
+/// The numbers whose quotients make `t` and `uv`.
 struct Numbers<F> {
     denominator: F,
     t: F,

@@ -54,7 +54,7 @@ pub enum Mesh {
     Icosphere,
     /// A torus of about as many, dented by a tenth of its radius.
     NoisyTorus,
-    /// A room of 3,000 slats, two hundred times as long as they are wide, seen from inside.
+    /// A room of 3,000 slats, four hundred times as long as they are wide, seen from inside.
     Slats,
 }
 
@@ -273,7 +273,7 @@ pub struct Kernel {
 }
 
 impl Kernel {
-    /// Every level that this processor has, with a tree as wide as that has lanes.
+    /// Every level that this processor has, with a tree as wide as the level has lanes.
     pub fn all() -> Vec<Self> {
         let available = Level::ALL.into_iter().filter(|level| level.is_available());
         available.map(|level| Self { width: level.lanes(), level, is_single: true }).collect()

@@ -18,7 +18,7 @@ pub enum Channel {
     Position,
     /// Unit geometric normal, as the winding gives it.
     Normal,
-    /// Unit shading normal, that of bumps included.
+    /// Unit shading normal, bumps included.
     ShadingNormal,
     /// Texture coordinates.
     Uv,

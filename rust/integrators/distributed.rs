@@ -18,8 +18,8 @@ pub struct Distributed {
     pub max_depth: u32,
     /// Into how many rays the first surface splits one, and how often it asks for light; at least 1.
     pub splits: u32,
-    /// Radiance that arrives from everywhere in place of what is not followed; of which surfaces reflect their ambient
-    /// share ([`Material::ambient`](crate::scene::Material::ambient)).
+    /// Radiance that arrives from everywhere in place of what is not followed. Surfaces reflect their ambient share of
+    /// it ([`Material::ambient`](crate::scene::Material::ambient)).
     pub ambient: Rgb,
 }
 

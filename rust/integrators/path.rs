@@ -9,14 +9,14 @@ use crate::scene::{Footprint, Kernel, Scene};
 /// "Optimally Combining Sampling Techniques", 1995), and Russian roulette ends paths (Arvo and Kirk, 1990).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Path {
-    /// The greatest number of bounces off surfaces; 0 shows only what shines itself. `None` is all of them.
+    /// The greatest number of bounces off surfaces; 0 shows only what shines itself. `None` sets no limit.
     pub max_depth: Option<u32>,
     /// Roulette is played from this number of bounces on.
     pub roulette_depth: u32,
     /// The side of the square patches of pixels whose paths share what they find from their second surface on, where
     /// both that and the first are diffuse; 1 for none ([`Integrator::patch`]).
     pub reuse: u32,
-    /// Whether matt surfaces draw directions from where light comes by way of mirrors and glass as well
+    /// Whether matt surfaces draw directions also from where light comes by way of mirrors and glass
     /// ([`crate::scene::Caustics`]).
     pub caustics: bool,
 }
@@ -33,12 +33,12 @@ impl Path {
         Settings { shares, aims, ..Settings::path(self.max_depth, self.roulette_depth) }
     }
 
-    /// What is sharp must be there, and light beyond it: in scenes of the plain kernel, nothing is.
+    /// There must be something sharp, and light beyond it: scenes of the plain kernel have nothing sharp.
     fn aims(&self, scene: &Scene) -> bool {
         self.caustics && self.max_depth.is_none_or(|depth| depth > 1) && scene.plan().needs().scattering
     }
 
-    /// What one thread works with, compiled as this kernel, or as one that can more. Every kernel that suits a scene
+    /// What one thread works with, compiled as this kernel, or as one that can do more. Every kernel that suits a scene
     /// gives the same bits.
     pub fn worker_of<'a>(&self, scene: &'a Scene, footprint: Footprint, kernel: Kernel) -> Box<dyn Worker + 'a> {
         self.settings(scene).worker_of(scene, footprint, kernel)

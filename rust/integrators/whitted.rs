@@ -15,8 +15,8 @@ pub struct Whitted {
     pub max_depth: u32,
     /// Rays are not followed that contribute less than this share to their pixel, in any colour; 0 follows all.
     pub contribution: f64,
-    /// Radiance that arrives from everywhere in place of what is not followed; of which surfaces reflect their ambient
-    /// share ([`Material::ambient`](crate::scene::Material::ambient)).
+    /// Radiance that arrives from everywhere in place of what is not followed. Surfaces reflect their ambient share of
+    /// it ([`Material::ambient`](crate::scene::Material::ambient)).
     pub ambient: Rgb,
     /// How many light samples the first surface takes, from equal shares of the lights; at least 1.
     pub light_samples: u32,

@@ -12,8 +12,8 @@ pub struct Affine {
     pub rows: [DVec3; 3],
     /// Where the origin goes.
     pub shift: DVec3,
-    /// The adjugate of the linear part times a power of two, and the determinant times the square of it: the inverse is
-    /// one over the other. No number of a map of any scale vanishes so.
+    /// The adjugate and the determinant of the linear part, both times the same power of two: the inverse is the first
+    /// over the second. So no number of a map vanishes, whatever its scale.
     adjugate: ([Triple<Double>; 3], Double),
     /// One over that power of two's root.
     scale: f64,
@@ -22,7 +22,7 @@ pub struct Affine {
 /// Why a map has no inverse.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Singular {
-    /// A number is infinite or none.
+    /// A number is infinite or NaN.
     NotFinite,
     /// The determinant is zero, exactly.
     ZeroDeterminant,
@@ -136,8 +136,8 @@ impl Affine {
         Some(result)
     }
 
-    /// The rows of the adjugate, and the determinant, up to a common factor with which that is above 0: the inverse is
-    /// one over the other.
+    /// The rows of the adjugate, and the determinant, up to a common factor that makes the determinant positive: the
+    /// inverse is the first over the second.
     #[inline]
     pub fn adjugate_in<N: Number>(&self) -> ([Triple<N>; 3], N) {
         let (rows, determinant) = &self.adjugate;
@@ -158,7 +158,7 @@ impl Affine {
         }
     }
 
-    /// About the determinant of the linear part, how volumes change; negative where it mirrors.
+    /// The determinant of the linear part, approximately: how volumes change; negative where it mirrors.
     pub fn determinant(&self) -> f64 {
         self.adjugate.1.high * self.scale * self.scale
     }
@@ -193,7 +193,8 @@ impl Affine {
         self.rows[0] * d.x + self.rows[1] * d.y + self.rows[2] * d.z
     }
 
-    /// A bound on how far apart the images of points are, in each coordinate, that are at most so far apart in each.
+    /// A bound, in each coordinate, on how far apart the images of two points are that are at most `error` apart in
+    /// each.
     pub fn spread(&self, error: f64) -> f64 {
         let most = self.rows.iter().map(|row| row.abs().element_sum()).fold(0.0, f64::max);
         most * error * (1.0 + 8.0 * UNIT)

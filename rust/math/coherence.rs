@@ -2,7 +2,7 @@
 
 use super::Ray;
 
-/// Neighbours looked at.
+/// Pairs of neighbours looked at.
 const PAIRS: usize = 16;
 
 /// Whether most neighbours in a batch start within a hundredth of `extent` of each other, in directions less than 8

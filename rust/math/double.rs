@@ -12,8 +12,8 @@ use std::cmp::Ordering;
 /// that is allowed for.
 ///
 /// It is [`DoubleDouble`](super::DoubleDouble) with its error, for decisions: that costs about half as much again,
-/// which what is only computed need not pay. No fused multiplication is asked of the processor: where a program is
-/// compiled for processors that may have none, each is a call, and the hits of most shapes are made of a hundred
+/// which numbers that decide nothing need not pay. No fused multiplication is asked of the processor: where a program
+/// is compiled for processors that may have none, each is a call, and the hits of most shapes are made of a hundred
 /// products.
 #[derive(Clone, Copy, Debug)]
 pub struct Double {
@@ -53,7 +53,7 @@ pub fn fast_two_sum(a: f64, b: f64) -> (f64, f64) {
 
 /// The product of two f64 and what its rounding left (Veltkamp and Dekker, 1971).
 ///
-/// Not a number where a factor is above 2⁹⁹⁶, and off by some of the least f64 where the rest is subnormal.
+/// NaN where a factor is above 2⁹⁹⁶, and off by some of the least f64 where the rest is subnormal.
 #[inline(always)]
 pub fn two_product(a: f64, b: f64) -> (f64, f64) {
     let split = |x: f64| {
@@ -78,7 +78,7 @@ impl Double {
     #[inline(always)]
     pub fn product(a: f64, b: f64) -> Self {
         let (high, low) = two_product(a, b);
-        // Of large numbers the parts may not be numbers; what is zero has no error.
+        // Of large numbers the parts may be NaN; what is zero has no error.
         let error = if a == 0.0 || b == 0.0 { 0.0 } else { underflow(high) };
         Self { high, low, error }
     }
@@ -114,7 +114,7 @@ impl Number for Double {
     fn plus(&self, other: &Self) -> Self {
         let (sum, rest) = two_sum(self.high, other.high);
         if self.low == 0.0 && other.low == 0.0 {
-            // Nothing is lost of two f64; the second sum makes what overflowed not a number.
+            // Nothing is lost of two f64; the second sum makes NaN of what overflowed.
             let (high, low) = fast_two_sum(sum, rest);
             return Self { high, low, error: self.error + other.error };
         }
@@ -172,7 +172,7 @@ impl Number for Double {
         if self.high <= 0.0 {
             return Self { high: 0.0, low: 0.0, error: (self.error * 4.0).sqrt() };
         }
-        // One step of Newton's from the f64 root doubles its digits.
+        // One step of Newton's method from the f64 root doubles its digits.
         let first = Self::of(self.high.sqrt());
         let rest = Self { error: 0.0, ..*self }.minus(&first.squared());
         let root = first.plus(&Self::of(rest.high / (2.0 * first.high)));

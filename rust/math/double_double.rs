@@ -12,7 +12,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 /// result, as long as nothing overflows and no product falls below 2⁻⁹⁶⁰.
 ///
 /// For what is computed to a precision that is known beforehand. [`Double`](super::Double) is the same with a bound on
-/// its own error, for what is decided. Products are fused here, which is right up to the largest f64, where those of
+/// its own error, for what is decided. Products are fused here, which is right up to the largest f64, while those of
 /// `Double` end at 2⁹⁹⁶ and say so.
 #[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
 pub struct DoubleDouble {
@@ -88,7 +88,7 @@ impl DoubleDouble {
         self * self
     }
 
-    /// Its square root; zero of what is not above zero.
+    /// Its square root; zero for what is not above zero.
     #[inline]
     pub fn sqrt(self) -> Self {
         if self.high <= 0.0 {

@@ -82,8 +82,8 @@ pub fn complement_integral(x: f64) -> f64 {
     if x > 7.0 { 0.0 } else { (-x * x).exp() * (FRAC_1_SQRT_PI - x * scaled_complement(x)) }
 }
 
-/// erf⁻¹(1 − 2u) for 0 < u < 1: a slope that as great a share u of a Gaussian surface exceeds. The relative error is
-/// below 10⁻⁸ from u = 10⁻²⁰ on, and as much from the other end.
+/// erf⁻¹(1 − 2u) for 0 < u < 1: the slope that a share u of a Gaussian surface exceeds. The relative error is below
+/// 10⁻⁸ from u = 10⁻²⁰ on, and as much from the other end.
 #[inline]
 pub fn exceeded(u: f64) -> f64 {
     let product = 4.0 * u * (1.0 - u);

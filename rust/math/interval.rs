@@ -115,7 +115,7 @@ impl Interval {
         Self { low: self.low.min(other.low), high: self.high.max(other.high), whole }
     }
 
-    /// The bounds that some functions of the numbers have, whichever are wholly known.
+    /// The interval between `bounds`, or empty if this one is; whole only if this one is, and `whole` says so.
     fn built(self, whole: bool, bounds: impl FnOnce() -> (f64, f64)) -> Self {
         if self.is_empty() {
             return Self::EMPTY;

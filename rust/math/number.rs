@@ -1,7 +1,7 @@
 //! Numbers that know how wrong they are: one formula, computed as roughly as its sign allows.
 //!
 //! A decision is a sign of a polynomial in the numbers that were given. It is asked of [`Bounded`] first, an f64 with a
-//! bound on its error; where that leaves it open of [`Double`](super::Double), twice as long; and last of
+//! bound on its error; where that leaves it open, of [`Double`](super::Double), twice as long; and last of
 //! [`Dyadic`](super::Dyadic), which has no error at all.
 
 use super::DVec3;
@@ -13,8 +13,8 @@ pub trait Number: Clone {
     /// A finite f64, as it is.
     fn of(x: f64) -> Self;
 
-    /// What the sum of two f64, the second at most half an ulp of the first, is within `error` of, if this type can
-    /// hold that.
+    /// A number within `error` of the sum of two f64, the second at most half an ulp of the first; none if this type
+    /// cannot hold it.
     fn of_sum(high: f64, low: f64, error: f64) -> Option<Self>;
 
     /// The sum.

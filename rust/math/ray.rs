@@ -47,7 +47,7 @@ pub struct Hit {
     pub uv: [f64; 2],
     /// Index among all primitives of the scene; `u32::MAX` for a miss.
     pub primitive: u32,
-    /// Of an instance, which primitive in it; 0 for what is none.
+    /// Of an instance, which primitive in it; 0 for what is no instance.
     pub inner: u32,
 }
 

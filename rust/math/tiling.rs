@@ -17,7 +17,7 @@ pub struct Tiling {
 
 impl Tiling {
     /// For an image of `count` pixels in rows of `row`. A sequence, whose `row` is 0, keeps its order, as does what
-    /// does not divide into rows, or into ones that are narrower than a tile or very long.
+    /// does not divide into rows, or divides into rows narrower than a tile or very long.
     pub fn new(count: usize, row: usize) -> Self {
         let is_image = (SIDE..=LONGEST).contains(&row) && count.is_multiple_of(row) && count / row >= SIDE;
         Self { row: if is_image { row } else { 0 } }

@@ -81,7 +81,7 @@ impl Facets for Beckmann {
     }
 }
 
-/// A share of facets that no slope has which is infinite: neither none nor all of them.
+/// A share of facets whose slope is finite: neither none nor all of them.
 #[inline]
 fn share(u: f64) -> f64 {
     u.clamp(1e-19, 1.0 - f64::EPSILON)
@@ -90,8 +90,8 @@ fn share(u: f64) -> f64 {
 /// The lean towards a viewer at height `z` and distance `q` that a share `u` of the facets seen exceeds, 0 < u < 1.
 ///
 /// Of those whose slope is t as many are seen as (z + q t) exp(−t²) says, where that is positive, so that those from x
-/// on are S(x) = z erfc(x) / 2 + q exp(−x²) / (2 √π). By Newton's method on ln S, which falls and is concave: whatever
-/// it starts from, it is beyond the solution after one step, and comes back with every other.
+/// on are S(x) = z erfc(x) / 2 + q exp(−x²) / (2 √π). By Newton's method on ln S, which falls and is concave: wherever
+/// it starts, one step takes it beyond the solution, and each further one back towards it.
 fn leaning(z: f64, q: f64, u: f64) -> f64 {
     let half = 0.5 * q * FRAC_1_SQRT_PI;
     // All that is seen, (z + s) / 2, and the logarithm of what is to be left.
@@ -202,7 +202,7 @@ mod tests {
                 let h = (wo + wi).normalize();
                 let (density, mirrored) = facets.mirroring(wo, wi);
                 let known = 1e-15 / (wo + wi).length();
-                // As the exponent is known, which is the square of a slope over α.
+                // As well as the exponent is known, which is the square of a slope over α.
                 let slope = (h.x / alpha[0]).hypot(h.y / alpha[1]) / h.z;
                 let bound = (1e-13 + 16.0 * known / alpha[0]) * (1.0 + slope) + 1e-15 * slope * slope;
                 let expected = facets.density(h);

@@ -105,7 +105,7 @@ kinds! {
     BlinnPhong,
     /// The metallic-roughness model of glTF.
     MetallicRough,
-    /// Rough surfaces of other facets, or with what they scatter once alone.
+    /// Rough surfaces of other facets, or of facets that scatter once only.
     Faceted,
     /// Lets light straight through.
     Transparent,

@@ -191,7 +191,7 @@ fn draws_weigh_what_is_evaluated() {
                 assert!(!bsdf.is_delta());
                 let (value, pdf) = bsdf.evaluate(wo, s.wi);
                 let off = (value - s.weight * s.pdf).abs().max_element() / value.max_element();
-                // Directions have 10⁻¹⁶: over a lobe's width, for what is evaluated from them.
+                // Directions are right to 10⁻¹⁶; what is evaluated from them, to that over a lobe's width.
                 let bound = 1e-9 + 1e-12 * s.pdf.sqrt();
                 assert!(off < bound && (pdf / s.pdf - 1.0).abs() < bound, "{off:e} {pdf} {s:?} {bsdf:?} {wo}");
             }
@@ -204,7 +204,7 @@ fn nothing_gains_light() {
     for bsdf in kinds() {
         for wo in directions() {
             let (mean, error) = share(&bsdf, wo, 5_000);
-            // What gains does so but once on its way.
+            // What gains does so only once on its way.
             let again = mean * bsdf.again();
             assert!(again.max_element() < 1.005 + 5.0 * error, "{mean} {bsdf:?} {wo}");
             assert!(mean.max_element() < 1.03 + 5.0 * error, "{mean} {bsdf:?} {wo}");

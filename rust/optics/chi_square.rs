@@ -77,7 +77,7 @@ impl Chart for Slopes {
         }
         let cosine = self.wo.dot(h);
         if cosine <= 0.0 {
-            // A facet that faces away belongs to the same mirror direction as none that is seen.
+            // A facet that faces away is not seen.
             return None;
         }
         match self.eta {

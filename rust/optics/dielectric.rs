@@ -13,8 +13,7 @@ use glam::DVec3;
 /// A refraction that starts at a facet seen from one side is mostly taken to get out where the facet is seen from the
 /// other ([`Facets::refraction_geometry`]): light that other facets stop goes through them too, the more nearly
 /// straight on the closer the index is to 1. So at index 1 a surface is clear however rough it is. What is still lost
-/// is given back as
-/// `LostBetween` says.
+/// is given back as `LostBetween` says.
 #[derive(Clone, Copy, Debug)]
 pub struct Dielectric<F: Lossy = Ggx> {
     /// Index below over index above.
@@ -37,7 +36,7 @@ impl Dielectric {
 }
 
 impl<F: Lossy> Dielectric<F> {
-    /// Nearer to 1 an index bends light by less than 10⁻⁶ radians at a rough surface, but within 10⁻³ of grazing. It
+    /// Nearer to 1 an index bends light by less than 10⁻⁶ radians at a rough surface, except within 10⁻³ of grazing. It
     /// then counts as smooth: Fresnel's reflection is all that can be told.
     const INVISIBLE: f64 = 1e-6;
 

@@ -11,7 +11,7 @@ use std::fmt::Debug;
 /// have the length s(ω) = |z| (1 + 2Λ(ω)), which is never 0, so all of it holds up to grazing.
 pub trait Facets: Copy + Debug + PartialEq {
     /// Below this roughness a surface is a smooth one: its lobe, 10⁻⁵ radians wide, is sharper than the sun's disk by a
-    /// factor of 500, and what it does differently is below 10⁻⁸ of the light but within 10⁻³ of grazing.
+    /// factor of 500, and what it does differently is below 10⁻⁸ of the light except within 10⁻³ of grazing.
     const SMOOTH: f64 = 1e-5;
 
     /// Of this roughness along x and y, 0 to 1. Where one is below [`Facets::SMOOTH`] it counts as that much.

@@ -56,9 +56,8 @@ impl Facets for Ggx {
         (x * x + y * y + w.z * w.z).sqrt()
     }
 
-    /// Seen from a stretched direction, facets are a hemisphere of mirrors, which
-    /// reflect to a uniform cap of the sphere (Dupuy and Benyoub, "Sampling Visible GGX Normals with Spherical Caps",
-    /// 2023).
+    /// Seen from a stretched direction, facets are a hemisphere of mirrors, which reflect to a uniform cap of the
+    /// sphere (Dupuy and Benyoub, "Sampling Visible GGX Normals with Spherical Caps", 2023).
     #[inline]
     fn sample_visible(&self, wo: DVec3, u: [f64; 2]) -> DVec3 {
         let [ax, ay] = self.alpha;
@@ -118,7 +117,7 @@ mod tests {
                 assert!((cosine - wo.dot(h)).abs() < 1e-15 + known, "{wo} {wi}");
             }
         }
-        // Next to nothing of two directions is left that are opposite and in the plane: the facets are those of the
+        // Next to nothing is left of two directions that are opposite and in the plane: the facets are those of the
         // plane.
         let (wo, wi) = (DVec3::new(1.0, 0.0, 1e-90), DVec3::new(-1.0, 0.0, 1e-90));
         assert_eq!(Ggx::new([0.3; 2]).mirroring(wo, wi), (Ggx::new([0.3; 2]).density(DVec3::Z), 1e-90));

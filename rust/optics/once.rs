@@ -42,7 +42,7 @@ impl<F: Facets> Facets for Once<F> {
 
     #[inline]
     fn reflection_geometry(&self, wo: DVec3, wi: DVec3) -> f64 {
-        // Of either G₁ = 2 z / (z + s).
+        // For either direction, G₁ = 2 z / (z + s).
         wi.z / ((wo.z + self.stretch(wo)) * (wi.z + self.stretch(wi)))
     }
 

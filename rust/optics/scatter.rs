@@ -14,8 +14,8 @@ use glam::DVec3;
 /// (Veach, "Robust Monte Carlo Methods for Light Transport Simulation", 1997, 5.2).
 pub trait Scatter {
     /// The scattering function times |cos θ| of `wi`, and the density in solid angle with which [`Scatter::sample`]
-    /// draws `wi`, both without what has a single direction. Who asks for the one mostly needs the other, and much is
-    /// in both.
+    /// draws `wi`, both without what has a single direction. Whoever asks for the one mostly needs the other, and much
+    /// of the work is the same.
     fn evaluate(&self, wo: DVec3, wi: DVec3) -> (Rgb, f64);
 
     /// Draws where the light comes from: `choice`, uniform in [0, 1), among the parts that scattering has (only asked
@@ -26,7 +26,7 @@ pub trait Scatter {
     /// it.
     fn albedo(&self) -> Rgb;
 
-    /// By what all of it is to be multiplied for light that came to such a surface before: 1 unless it scatters more
+    /// What all of it is to be multiplied by for light that came to such a surface before: 1 unless it scatters more
     /// than there is, in a channel ([`super::conductors::Curve::again`]).
     fn again(&self) -> Rgb {
         Rgb::ONE

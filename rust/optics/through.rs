@@ -18,7 +18,7 @@ pub struct Through {
     within: f32,
 }
 
-/// At so many cosines shares are kept, between which they are within 0.0025 of the integral for indices from 1.05 on,
+/// Shares are kept at so many cosines; between these they are within 0.0025 of the integral for indices from 1.05 on,
 /// and within 0.001 mostly.
 const NODES: usize = 20;
 
@@ -33,7 +33,7 @@ impl Through {
             through.shares[i] = seen.refracted(direction(cosine), eta) as f32;
         }
         through.average = even_light(0.0, 1.0, |cosine| through.share(cosine)) as f32;
-        // From within it ends to go through, next to a line, at the critical angle.
+        // From within, light stops going through about the critical angle: the integral is split there.
         let critical = ((eta - 1.0) * (eta + 1.0)).max(0.0).sqrt() / eta;
         let within = |cosine| seen.reflected(direction(cosine), 1.0 / eta);
         through.within = (even_light(0.0, critical, within) + even_light(critical, 1.0, within)) as f32;
@@ -125,7 +125,7 @@ fn gauss(count: usize) -> Vec<(f64, f64)> {
     (0..count).map(node).collect()
 }
 
-/// The integral over even light between two cosines, ∫ f(μ) 2μ dμ, dense at either.
+/// The integral over even light between two cosines, ∫ f(μ) 2μ dμ, dense at both.
 fn even_light(from: f64, to: f64, f: impl Fn(f64) -> f64) -> f64 {
     let length = to - from;
     let term = |(t, weight): (f64, f64)| {
@@ -156,7 +156,7 @@ impl<'a, F: Facets> Seen<'a, F> {
         Self { facets, draws }
     }
 
-    /// The mean over those that `w`, in the plane of x and z, sees of a function of their normal.
+    /// The mean of a function of the facets' normals, over the facets that `w`, in the plane of x and z, sees.
     fn mean(&self, w: DVec3, value: impl Fn(DVec3) -> f64) -> f64 {
         self.draws.iter().map(|&(u, weight)| weight * value(self.facets.sample_visible(w, u))).sum()
     }
@@ -241,8 +241,8 @@ mod tests {
 
     #[test]
     fn what_goes_in_and_out_and_is_reflected_is_no_more_than_all() {
-        // What gets out of even light from within is what gets in, over η² (Stokes, 1849); the rest is lost, the more
-        // the rougher.
+        // What gets out of even light from within is what gets in, over η² (Stokes, 1849); the rest is lost, the more,
+        // the rougher the coat is.
         let kept = |through: Through, eta: f64| through.within() + through.average() / (eta * eta);
         for eta in [1.05, 1.5, 2.5] {
             let mut last = [1.002; 2];

@@ -44,7 +44,7 @@ pub enum Rows<'a> {
 
 /// A row of three numbers.
 pub trait Row: Copy {
-    /// It as a vector.
+    /// The row as a vector.
     fn vector(self) -> DVec3;
     /// A vector as a row, rounded to its type.
     fn of(vector: DVec3) -> Self;

@@ -249,7 +249,8 @@ fn of<T: Copy>(all: &[T], i: usize) -> T {
 }
 
 /// Origins and directions (H,W,3) through the pixels, as float32 if `single`, else float64; row 0 is the top. `offsets`
-/// is where in the pixel, `lens` where in the lens, `time` when while the shutter is open: one for all, or for each.
+/// is where in the pixel, `lens` where in the lens, `time` when while the shutter is open: one for all, or one for
+/// each.
 #[pyfunction]
 pub fn camera_rays<'py>(
     py: Python<'py>,

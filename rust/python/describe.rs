@@ -111,7 +111,7 @@ fn describe<'py>(
 }
 
 impl Mesh<'_> {
-    /// Of what is there of its vertices, only what is needed is read.
+    /// Of what the vertices have beside their places, only what is needed is read.
     fn describe(&self, precision: Precision, needs: Needs) -> PyResult<scene::Mesh> {
         let (given, faces) = (self.vertices.rows("vertices")?, rows("faces", &self.faces)?.to_vec());
         let count = given.len();

@@ -82,8 +82,8 @@ pub fn intersect_all<'py>(
         before[0] = 0;
         let (mut t, mut shape) = (t.as_slice_mut()?, shape.as_slice_mut()?);
         let (mut primitive, mut uv) = (primitive.as_slice_mut()?, uv.as_slice_mut()?.as_chunks_mut().0);
-        // Each with the places it fills: a chunk's hits go when they are written down, so that they are never held
-        // twice.
+        // Each with the places it fills: a chunk's hits are dropped once they are written down, so that they are never
+        // held twice.
         let mut from = 0i64;
         let places = found.iter_mut().map(take).map(|chunk| {
             let (rays, hits) = (chunk.lengths.len(), chunk.hits.len());

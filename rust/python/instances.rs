@@ -59,7 +59,7 @@ pub fn is_instance(shape: &Bound<'_, PyAny>) -> PyResult<bool> {
     Ok(shape.get_type().name()?.to_str()? == "Instance")
 }
 
-/// What reads the shapes of a group; what has to live as long as groups among them is added to the last.
+/// What reads the shapes of a group; what has to live as long as groups among them is added to the last argument.
 type ReadShapes<'a> = &'a dyn Fn(&[Bound<'_, PyAny>], &mut Vec<Py<PyAny>>) -> PyResult<Vec<scene::Shape>>;
 
 /// Reads an instance. `read_shapes` reads what is in it; what has to live as long as the group is added to `kept`.

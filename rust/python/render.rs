@@ -175,9 +175,9 @@ impl Rendering {
         self.0.take(answer).map_err(malformed)
     }
 
-    /// Goes on until the first of `samples` (per pixel), `error` (relMSE) or `seconds` is met, which it says, or until
-    /// it has been at it for `pause` seconds. `look` is called whenever signals are heard, and may raise to end the
-    /// render.
+    /// Goes on until the first of `samples` (per pixel), `error` (relMSE) or `seconds` is met, or until it has been at
+    /// it for `pause` seconds; says whether one was met. `look` is called whenever signals are heard, and may raise to
+    /// end the render.
     #[allow(clippy::too_many_arguments)]
     fn go_on(
         &mut self,

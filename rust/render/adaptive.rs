@@ -25,9 +25,9 @@ use rayon::prelude::*;
 /// the end. The error of a sum of pixels is least for counts that are proportional to the root of what one sample of a
 /// pixel adds to it (Neyman, 1934), here to relMSE. That is estimated from few samples, and smoothed over the
 /// neighbours, without which as much is lost as is won. In a Cornell box, whose optimum would need 1.5 times fewer
-/// samples than the same number everywhere, 1.3 to 1.35 of these are had.
+/// samples than the same number everywhere, it takes 1.3 to 1.35 times fewer.
 ///
-/// Pixels of a patch take their samples together, so they have as many, by the mean of what they would have each.
+/// Pixels of a patch take their samples together, so they all have the same number: the mean of what each would have.
 ///
 /// How many samples a cell has depends on the seed and on the mean number of samples alone, not on passes or threads.
 #[derive(Clone, Debug)]
@@ -38,7 +38,7 @@ pub(super) struct Adaptive {
     to: u32,
     /// Samples of each cell that are evidence when it ends.
     evidence: u32,
-    /// The side of the patches of pixels that get as many.
+    /// The side of the patches of pixels that get the same number.
     patch: u32,
     /// What each cell of each tile has when the epoch begins, and when it ends.
     shares: Vec<Vec<[u32; 2]>>,
@@ -55,7 +55,7 @@ impl Adaptive {
     /// says.
     const GROWTH: f64 = 4.0;
 
-    /// The weight that each pixel has whatever it was seen to do, of the mean: it may only have been lucky.
+    /// The least weight of a pixel, as a share of the mean, whatever it was seen to do: it may only have been lucky.
     const LEAST: f64 = 0.01;
 
     /// The first epoch of an empty film in halves.
@@ -221,7 +221,7 @@ fn in_patches(mut values: Vec<f64>, width: usize, patch: usize) -> Vec<f64> {
     values
 }
 
-/// The level at which weights times it, each between its limits, sum up to `total`.
+/// The level by which the weights, multiplied and kept between their limits, sum up to `total`.
 fn level(weights: &[f64], limits: &[[f64; 2]], total: f64) -> f64 {
     let sum = |level: f64| ordered_sum(weights.len(), |i| (level * weights[i]).clamp(limits[i][0], limits[i][1]));
     let mut low = total / ordered_sum(weights.len(), |i| weights[i]);

@@ -52,7 +52,7 @@ words!(u32, u64);
 #[derive(Default)]
 pub(super) struct Writer(pub Vec<u8>);
 
-/// How many numbers of one kind are stored: all the same, or one by one.
+/// How numbers of one kind are stored: all the same, or one by one.
 const SAME: u8 = 0;
 const EACH: u8 = 1;
 
@@ -69,7 +69,7 @@ impl Writer {
         self.word(value.to_bits());
     }
 
-    /// Numbers whose number the reader knows; those that are all the same take the room of one.
+    /// Numbers whose count the reader knows; those that are all the same take the room of one.
     pub fn words<W: Word>(&mut self, values: impl Iterator<Item = W> + Clone) {
         let mut rest = values.clone();
         let Some(first) = rest.next() else { return };

@@ -23,8 +23,8 @@ pub struct ErrorEstimate {
 /// What is added to the square of a brightness, so that the dark does not count infinitely.
 const FLOOR: f64 = 0.01;
 
-/// The error of a picture that is right to a millionth: what is left of it is mostly rounding, and who carries it tells
-/// nothing.
+/// The error of a picture that is right to a millionth: what is left of it is mostly rounding, and what carries it
+/// tells nothing.
 const ROUNDING: f64 = 1e-12;
 
 /// Estimates the error of a film; `None` where a pixel has fewer than two batches of samples, which say nothing of it.
@@ -92,10 +92,10 @@ pub(super) fn cross(means: &[Rgb], width: usize, x: usize, y: usize) -> [Rgb; 5]
 /// large for them (both were tried, as was the variance of one half of the samples over the mean of the other).
 ///
 /// So μ is taken from the neighbourhood: the median of the pixel and the four beside it. A mean of neighbours is much
-/// too bright next to a light, by which errors there are lost (8 to 13 % of all at 16 samples); medians or trimmed
-/// means of all eight lose too much beside dark corners. Below 16 samples the pixel itself has no vote, which would
-/// cost 10 % of the error at 8 samples. From there on it has: where neighbours have nothing to do with each other, it
-/// is worth more. Two bounds keep the median where it can be right.
+/// too bright next to a light, so that errors there are lost (8 to 13 % of all at 16 samples); medians or trimmed means
+/// of all eight lose too much beside dark corners. Below 16 samples the pixel itself has no vote, which would cost 10 %
+/// of the error at 8 samples. From there on it has one: where neighbours have nothing to do with each other, it is
+/// worth more. Two bounds keep the median where it can be right.
 ///
 /// It may contradict the pixel's own mean by 5/√n standard errors at most. Weighed by s², a mean of n samples is off by
 /// γ/√n standard errors, where γ is the skewness of the samples, some 2 to 5 in global illumination: there is that much
@@ -122,7 +122,7 @@ impl Denominators {
         let [mean, a, b, c, d] = *cross;
         let leeway = 5.0 / batches.sqrt();
         let off = Rgb::new(variance.x.sqrt(), variance.y.sqrt(), variance.z.sqrt()) * leeway;
-        // The middle two of four, in order: what is left of the larger of the smaller, and the smaller of the larger.
+        // The middle two of four: the larger of the two smaller, and the smaller of the two larger; then in order.
         let (low, high) = (a.min(b).max(c.min(d)), a.max(b).min(c.max(d)));
         let (low, high) = (low.min(high), low.max(high));
         let middle = if batches < 16.0 { (low + high) / 2.0 } else { mean.max(low).min(high) };
@@ -155,8 +155,8 @@ struct Patch {
     error: f64,
     own: f64,
     most: f64,
-    /// What the largest batches bring, of each kind of cell: those of neighbours mostly are the same, which all of them
-    /// share.
+    /// What the largest batches bring, by kind of cell: those of neighbours are mostly one and the same, which the
+    /// patch shares.
     peaks: [f64; 2],
 }
 
@@ -206,14 +206,14 @@ impl Sums {
     /// Three things are uncertain, and taken as independent.
     ///
     /// The true error of each patch is one draw of (x − μ)², summed as if channels err together, as they nearly do, and
-    /// patches apart, as they do. (Pixels of a patch that take samples together err together, by how much is not known,
-    /// and the interval is a little wide where it is not all.) Let m be its mean, which the estimate tells. Of a normal
-    /// x, the cumulants are m, 2m² and 8m³. But means of few bright samples and many dark ones are skewed. If there are
-    /// λ bright ones, as in Poisson's distribution, the cumulants are m, (2 + 1/λ)m² and (8 + 22/λ + 1/λ²)m³, and the
-    /// share of the largest in the estimate is 1/λ. Samples of other kinds have smaller cumulants for that share, which
-    /// bounds Σδ⁴/(Σδ²)². All this comes from the rare large errors, so only the upper end goes by it. A few such
-    /// pixels, as on the rim of a lamp, may hold most of the variance; so the sum is skewed too, and an interval that
-    /// takes it for symmetric is missed above only.
+    /// patches apart, as they do. (Pixels of a patch that take samples together err together; how much so is not known,
+    /// and where it is not fully so the interval is a little wide.) Let m be its mean, which the estimate tells. Of a
+    /// normal x, the cumulants are m, 2m² and 8m³. But means of few bright samples and many dark ones are skewed. If
+    /// there are λ bright ones, as in Poisson's distribution, the cumulants are m, (2 + 1/λ)m² and (8 + 22/λ + 1/λ²)m³,
+    /// and the share of the largest in the estimate is 1/λ. Samples of other kinds have smaller cumulants for that
+    /// share, which bounds Σδ⁴/(Σδ²)². All this comes from the rare large errors, so only the upper end goes by it. A
+    /// few such pixels, as on the rim of a lamp, may hold most of the variance; so the sum is skewed too, and an
+    /// interval that takes it for symmetric is missed above only.
     ///
     /// The estimate is a sum over samples, and its variance is m²/λ. That an outlier makes both the error and its
     /// estimate larger does not bring them together: it makes its pixel's denominator larger as well.

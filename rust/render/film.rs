@@ -18,8 +18,9 @@ use rayon::prelude::*;
 /// patches, and where `error.rs` asks where the error comes from, a patch counts as one.
 ///
 /// Sums depend on the order of adding, so the order is part of the film: samples are added up one by one in blocks of
-/// 16, and blocks one by one. Hence how samples are split into passes, who works on a tile and how large tiles are does
-/// not change a bit, and neither does appending films of single blocks, wherever these were made.
+/// 16, or of a batch if that is more, and blocks one by one. Hence how samples are split into passes, who works on a
+/// tile and how large tiles are does not change a bit, and neither does appending films of single blocks, wherever
+/// these were made.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Film {
     width: u32,

@@ -1,6 +1,6 @@
-//! Whether few samples make most of an estimate.
+//! Whether a few samples make most of an estimate.
 
-/// Few samples that carry most of an estimated error.
+/// The few samples that carry most of an estimated error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Carried {
     /// How many: batches, where samples belong together.

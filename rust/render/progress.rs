@@ -1,4 +1,4 @@
-//! Who watches a render.
+//! What watches a render.
 
 use super::HistoryRow;
 use std::ops::ControlFlow;

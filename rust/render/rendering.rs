@@ -22,7 +22,7 @@ pub struct HistoryRow {
 /// A render: its picture so far, and what it takes to go on with it, here or elsewhere, now or later.
 ///
 /// It is worked on in passes. Within one, some cells have more samples already and others have not; each has the first
-/// of its samples and nothing else, so a pass can be left at any time and gone on with, and no bit tells.
+/// of its samples and nothing else, so a pass can be left at any time and gone on with, and no bit tells of it.
 #[derive(Clone, Debug)]
 pub struct Rendering {
     /// The picture.
@@ -123,7 +123,7 @@ impl Rendering {
         row
     }
 
-    /// It as bytes, which tell neither what it is a picture of nor how large that is.
+    /// The render as bytes, which tell neither what it is a picture of nor how large that is.
     pub fn to_bytes(&self) -> Vec<u8> {
         let mut to = Writer::default();
         to.word(self.film.side());

@@ -80,14 +80,14 @@ pub fn go_on(
         if progress.pass(&row).is_break() {
             return Err(RenderError::Interrupted);
         }
-        // Passes may be too short for anyone to look up within.
+        // Passes may be too short for anyone to look up during one.
         if progress.pauses() {
             return Ok(false);
         }
     }
 }
 
-/// Works on a pass. Whether it is done: else it is to be left for now.
+/// Works on a pass, and says whether it is done: if not, it is to be left for now.
 fn pass(
     exposure: &Exposure,
     rendering: &mut Rendering,
@@ -117,10 +117,10 @@ fn pass(
             }
             !ended
         };
-        // Who watches may end a pass that has just been done.
+        // Whoever watches may still end a pass that has just been done.
         watched(threads, |_| exposure.expose(tiles, goal, &stop), watch).map_err(RenderError::Threads)? && !ended
     };
-    // It is raised by who watches, or by an integrator that cannot go on.
+    // It is raised by whoever watches, or by an integrator that cannot go on.
     if stop.cancel.is_raised() { Err(RenderError::Interrupted) } else { Ok(reached) }
 }
 
@@ -241,7 +241,7 @@ mod tests {
             let here = Here(std::thread::current().id(), usize::MAX.into());
             let result = render(&scene, &camera, &here, &settings, &mut Quiet);
             assert_eq!(result.err(), Some(RenderError::Interrupted));
-            // So can who watches.
+            // So can whoever watches.
             let (here, (_, large)) = (Here(std::thread::current().id(), Default::default()), cornell(300, 300));
             let result = render(&scene, &large, &here, &settings, &mut Impatient(None));
             assert_eq!(result.err(), Some(RenderError::Interrupted));

@@ -20,8 +20,8 @@ impl Until {
     /// Samples of a pass, once there are enough.
     const PASS: u32 = 16;
 
-    /// Samples of the next pass, of which there have been `done` in `elapsed` seconds, the last ones at `rate` seconds
-    /// each; 0 to end. `batch` of them belong together.
+    /// How many samples the next pass takes, after `done` in `elapsed` seconds, the last ones at `rate` seconds each; 0
+    /// to end. `batch` of them belong together.
     ///
     /// Passes double (1, 1, 2, 4, 8) so that there is soon something to see, then keep to 16, or to a batch if that is
     /// more. Their sizes do not depend on time unless that is limited, so that an error ends a render at the same
@@ -47,7 +47,7 @@ impl Until {
         if let Some(seconds) = self.seconds
             && done > 0
         {
-            // To the nearest sample: one that would end a little late is as good as a little early.
+            // To the nearest sample: one that would end a little late is as good as one that would end a little early.
             let affordable = (seconds - elapsed) / rate + 0.5;
             next = next.min(affordable.max(0.0) as u32);
         }

@@ -3,7 +3,7 @@
 use super::bytes::{Malformed, Reader, Writer, check};
 use crate::optics::{Rgb, is_radiance};
 
-/// Sums from which a mean and its error are had.
+/// Sums that a mean and its error are computed from.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Moments {
     /// Sum of samples.
@@ -247,7 +247,7 @@ impl FilmTile {
         self.clamped += next.clamped;
     }
 
-    /// Samples of a cell, and those of one kind, that bytes can tell of: sums of them are far from what numbers hold.
+    /// The most samples of a cell that bytes may tell of: sums of them stay far below what numbers hold.
     pub(super) const MOST: u32 = u32::MAX / 4;
 
     /// All that has been added to it, as bytes.

@@ -40,7 +40,7 @@ pub(super) struct Exposure<'a> {
 /// How many samples cells shall have.
 #[derive(Clone, Copy)]
 pub(super) enum Goal<'a> {
-    /// All as many, counted with the `before` that are on another film.
+    /// The same number in all, counted with the `before` that are on another film.
     Even { before: u32, samples: u32 },
     /// As it is decided for so many on average.
     Planned { plan: &'a Adaptive, samples: u32 },
@@ -65,7 +65,7 @@ impl Goal<'_> {
 /// What may keep a goal from being reached.
 #[derive(Default)]
 pub(super) struct Stop {
-    /// Raised to end all work at once, by who watches or by an integrator that cannot go on.
+    /// Raised to end all work at once, by whoever watches or by an integrator that cannot go on.
     pub cancel: Cancel,
     /// Raised to end it when what has been begun is done.
     pub pause: Cancel,
@@ -81,7 +81,7 @@ impl Stop {
 struct Bench<'a> {
     worker: Box<dyn Worker + 'a>,
     samples: Vec<CameraSample>,
-    /// What each sample counts by the filter and the camera: also of those for which the camera has no ray, and the
+    /// How much each sample counts, by the filter and the camera: also those for which the camera has no ray, and the
     /// integrator is not asked.
     weights: Vec<f64>,
     radiance: Vec<Rgb>,
@@ -216,7 +216,7 @@ impl<'a> Exposure<'a> {
         Footprint { width: spread.width, spread: spread.angle }
     }
 
-    /// A sample of a pixel, placed by the filter, and what it counts. Where anything moves, it is uniform over the
+    /// A sample of a pixel, placed by the filter, and how much it counts. Where anything moves, it is uniform over the
     /// shutter's time too, and over the lens if there is one.
     fn camera_sample(&self, (x, y): (u32, u32), number: u32) -> (CameraSample, f64) {
         let mut sampler = self.sampler.sampler(self.seed, y * self.camera.width() + x, number);
@@ -261,8 +261,8 @@ impl Bench<'_> {
         }
     }
 
-    /// Adds the radiance of the samples gathered to the cells that they are of, and clears them away. Whether it did:
-    /// what a cancelled integrator says is not heard.
+    /// Adds the radiance of the gathered samples to their cells, and clears them away. Says whether it did: what a
+    /// cancelled integrator says is not heard.
     fn develop(&mut self, tiles: &mut [FilmTile], cancel: &Cancel) -> bool {
         if self.weights.is_empty() {
             return true;

@@ -1,8 +1,7 @@
 //! Choosing one of many by weight.
 
-/// Chooses an entry with probability proportional to its weight, in constant time
-/// (Walker, 1977; built in linear time as in Vose, "A Linear Algorithm for Generating Random Numbers with a Given
-/// Distribution", 1991).
+/// Chooses an entry with probability proportional to its weight, in constant time (Walker, 1977; built in linear time
+/// as in Vose, "A Linear Algorithm for Generating Random Numbers with a Given Distribution", 1991).
 #[derive(Clone, Debug)]
 pub struct AliasTable {
     /// Each column of the table belongs to its own entry below the threshold, and to its alias from there on.

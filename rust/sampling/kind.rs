@@ -13,7 +13,7 @@ impl BatchSize {
     const LEAST_BATCHES: u32 = 8;
 
     /// From so many samples on, 1.96 standard errors of a pixel, either way, should hold the truth in about 93 of 100
-    /// cases; and how many batches that takes. Eight give 91 even of even noise (Student's t), and that of dim pixels
+    /// cases; and how many batches that takes. Eight give only 91 for even noise (Student's t), and that of dim pixels
     /// is uneven.
     const MANY: [u32; 2] = [256, 64];
 
@@ -25,8 +25,8 @@ impl BatchSize {
     /// The largest batch of which so many samples make eight or more, and 64 where they are many; the default where
     /// their number is not known.
     ///
-    /// The larger, the smaller the error of as many samples, as these are placed with regard to more others. Samples
-    /// that are no multiple of it end in part of a batch, which is unbiased too, but not worth as much.
+    /// The larger it is, the smaller the error of the same number of samples, as each is placed with regard to more
+    /// others. Samples that are no multiple of it end in part of a batch, which is unbiased too, but not worth as much.
     pub fn for_budget(samples: Option<u32>) -> Self {
         samples.map_or(Self::default(), |samples| {
             let [many, batches] = Self::MANY;
@@ -66,9 +66,9 @@ impl Default for BatchSize {
 /// Which point set the numbers come from.
 ///
 /// Every number of every sample is uniform by itself, and those of different dimensions are independent, whatever the
-/// kind: the mean of a picture over all seeds is the same. Kinds differ in how the samples of a batch lie to each
-/// other. A dimension takes its numbers from a set of two or three dimensions, and sets are put together at random
-/// ("padding"): Sobol's own points of many dimensions have worse pairs, and lose more by that than they win.
+/// kind: the mean of a picture over all seeds is the same. Kinds differ in how the samples of a batch lie relative to
+/// each other. A dimension takes its numbers from a set of two or three dimensions, and sets are put together at random
+/// ("padding"): Sobol's own points of many dimensions have worse pairs, and lose more by that than they gain.
 ///
 /// `benches/samplers.py` compares them. Lattices leave the least error in most batches; of 4 points, those of rank 1
 /// all lie on a diagonal, and Sobol's nets are better. Blue noise over the picture is no kind: it changes how errors

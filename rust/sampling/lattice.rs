@@ -5,7 +5,7 @@ use super::permutation::permute;
 use super::stream::Stream;
 
 /// Generators (1, a, b) of the lattices of 1, 2, 4, ... points: those of the least P₂, summed over the pair (1, a) and
-/// the three (Sloan and Joe, "Lattice Methods for Multiple Integration", 1994), by trying all.
+/// the triple (Sloan and Joe, "Lattice Methods for Multiple Integration", 1994), by trying all.
 const GENERATORS: [[u32; 2]; BatchSize::MOST_BITS as usize + 1] =
     [[1, 1], [1, 1], [1, 1], [3, 1], [7, 3], [5, 15], [19, 29]];
 

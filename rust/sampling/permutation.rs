@@ -42,8 +42,8 @@ static FIELDS: [Field; Field::POLYNOMIALS.len()] = Field::ALL;
 ///
 /// It is i ↦ a·i + b in the field of that many elements, a ≠ 0, which takes any two elements to any two places equally
 /// often. No more is asked for: the variance of a mean depends on its samples two at a time, so it is as if all
-/// permutations were as likely. Owen's scrambling of the index (Burley, "Practical Hash-Based Owen Scrambling", 2020)
-/// keeps neighbours neighbours in all dimensions, which makes errors larger.
+/// permutations were equally likely. Owen's scrambling of the index (Burley, "Practical Hash-Based Owen Scrambling",
+/// 2020) keeps neighbours neighbours in all dimensions, which makes errors larger.
 #[inline]
 pub(super) fn permute(size: BatchSize, index: u32, random: u64) -> u32 {
     let field = &FIELDS[size.bits() as usize];
@@ -51,7 +51,7 @@ pub(super) fn permute(size: BatchSize, index: u32, random: u64) -> u32 {
     if index == 0 {
         return (random >> 32) as u32 & others;
     }
-    // Off by 2⁻³² at most from all factors equally often.
+    // All factors come equally often, to within 2⁻³².
     let factor = (((random & 0xFFFF_FFFF) * u64::from(others)) >> 32) as usize;
     let exponent = usize::from(field.logarithms[index as usize % Field::MOST]) + factor;
     u32::from(field.powers[exponent % (2 * Field::MOST)]) ^ (random >> 32) as u32 & others

@@ -3,8 +3,7 @@
 use super::stream::Stream;
 use super::{SamplerKind, halton, lattice, philox4x32, sobol, stratified};
 
-/// How many dimensions stand before those of the first bounce: film position, lens, and two to spare
-/// (time, wavelength).
+/// How many dimensions stand before those of the first bounce: film position, lens, one to spare, and time.
 pub const CAMERA_DIMENSIONS: u32 = 4;
 
 /// The numbers of one sample of one pixel. Each is named by its dimension, so none depends on which were asked for
@@ -23,9 +22,9 @@ pub struct Sampler {
     kind: SamplerKind,
     key: [u32; 2],
     pixel: u32,
-    /// Of the pixel's samples.
+    /// Its number among the pixel's samples.
     number: u32,
-    /// The same, or of those of its batch.
+    /// The same, or among those of its batch.
     sample: u32,
     /// The Philox block last made: it holds two dimensions, which are mostly asked for one after the other.
     block: u32,
@@ -63,7 +62,7 @@ impl Sampler {
         self.pixel
     }
 
-    /// The how manieth sample of its pixel it is.
+    /// Its number among the samples of its pixel, from 0 on.
     pub fn number(&self) -> u32 {
         self.number
     }

@@ -7,8 +7,8 @@ use super::stream::Stream;
 
 /// A number of 64 bits for a dimension.
 ///
-/// One at an even dimension is placed with the pair at the dimension that follows: a choice and what it chooses of make
-/// a (0, m, 3)-net together, so that the pairs of each half, quarter, ... of the choices are a net of their own.
+/// One at an even dimension is placed with the pair at the dimension that follows: together they make a (0, m, 3)-net,
+/// so that the pairs of each half, quarter, ... of the choices are a net of their own.
 #[inline]
 pub(super) fn one(size: BatchSize, stream: Stream, index: u32, dimension: u32) -> u64 {
     let index = permute(size, index, stream.word(dimension | 1, 2));

@@ -20,7 +20,7 @@ pub(super) fn two(size: BatchSize, stream: Stream, index: u32, dimension: u32) -
     let columns = size.halved();
     let rows = BatchSize(size.0 - columns.0);
     let (column, row) = (cell & (columns.samples() - 1), cell >> columns.bits());
-    // A column of cells has as many rows of the fine grid's to give as there are columns of them, and the other way
+    // A column of cells has as many rows of the fine grid to give as there are columns of cells, and the other way
     // round.
     let across = column << rows.bits() | permute(rows, row, stream.word(dimension, 0));
     let down = row << columns.bits() | permute(columns, column, stream.word(dimension, 1));

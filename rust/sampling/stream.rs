@@ -6,7 +6,7 @@ use super::philox4x32;
 ///
 /// They are the SplitMix64 sequence (Steele, Lea and Flood, "Fast Splittable Pseudorandom Number Generators", 2014;
 /// constants of Stafford's thirteenth variant), begun at a random place and with a random key in the midst of it, so
-/// that no two batches share a part of it. Two multiplications a word make numbers from a net cost no more than
+/// that no two batches share a part of it. Three multiplications a word make numbers from a net cost no more than
 /// independent ones.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Stream {

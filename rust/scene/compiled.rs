@@ -20,8 +20,8 @@ pub struct Scene {
     built_cost: f64,
 }
 
-/// Ways out for [`Scene::contains`]: in no special position to anything that people make, and with a largest coordinate
-/// between 1 and 2, so that `t` is not scaled.
+/// Ways out for [`Scene::contains`]: in no special position relative to anything that people make, and with a largest
+/// coordinate between 1 and 2, so that `t` is not scaled.
 const WAYS_OUT: [DVec3; 7] = [
     DVec3::new(1.289_430_857_193_402_8, 0.371_920_584_301_275_66, 0.587_109_384_750_921_3),
     DVec3::new(-1.289_430_857_193_402_8, -0.371_920_584_301_275_66, -0.587_109_384_750_921_3),
@@ -95,8 +95,8 @@ impl Scene {
 
     /// Whether each point is inside the surface or on it: on the way out it is crossed an odd number of times.
     ///
-    /// A closed surface is crossed as often, but for twos, on any way out, so one way and the opposite one agree. Where
-    /// they do not, there is a hole, and what most of seven ways find is told.
+    /// On any two ways out of a closed surface, the numbers of crossings differ by an even number, so one way and the
+    /// opposite one agree. Where they do not, there is a hole, and what most of seven ways find is told.
     pub fn contains(&self, points: &[DVec3], inside: &mut [bool]) {
         assert_eq!(points.len(), inside.len(), "an answer for each point");
         inside.fill(false);
@@ -162,8 +162,7 @@ impl Scene {
         &self.plan
     }
 
-    /// From where light comes by way of mirrors and glass, kept from when it was first `found`; `None` where it does
-    /// not.
+    /// Where light comes from by way of mirrors and glass, kept from when it was first `found`; `None` where none does.
     pub(super) fn kept_caustics(&self, found: impl FnOnce(&Self) -> Option<Caustics>) -> Option<&Caustics> {
         if self.caustics.get().is_none() {
             // Not within the lock: threads that wait for others take up work of theirs, which may come here too.

@@ -43,14 +43,14 @@ pub struct SceneDescription {
     pub lights: Vec<Arc<dyn Light>>,
 }
 
-/// Why a description cannot be.
+/// Why there can be no such scene.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum DescriptionError {
-    /// The material of this shape cannot be, and why.
+    /// What is wrong with the material of this shape.
     Material(usize, String),
     /// This shape emits less than nothing, or NaN, or infinitely much.
     Emission(usize),
-    /// This light that is no surface cannot be, and why.
+    /// What is wrong with this light that is no surface.
     Light(usize, String),
     /// A group has so many primitives, all copies in it counted.
     TooMany(u64),
@@ -73,7 +73,7 @@ impl fmt::Display for DescriptionError {
 impl std::error::Error for DescriptionError {}
 
 impl SceneDescription {
-    /// Whether it can be.
+    /// Whether there can be such a scene.
     pub fn validate(&self) -> Result<(), DescriptionError> {
         for (i, shape) in self.shapes.iter().enumerate() {
             shape.material.validate().map_err(|why| DescriptionError::Material(i, why))?;
@@ -119,8 +119,7 @@ impl Group {
     /// Compiles shapes, with an accelerator made for their geometry.
     ///
     /// # Errors
-    /// If a shape is made of what cannot be, or there are 2³¹ primitives or more, flattened: arrays count them as
-    /// int32.
+    /// If a shape's material is impossible, or there are 2³¹ primitives or more, flattened: arrays count them as int32.
     pub fn new(
         shapes: Vec<Shape>,
         accelerator: impl FnOnce(&Geometry) -> Box<dyn Accelerator>,

@@ -9,7 +9,7 @@
 //!
 //! Where the triangles of a tile are so many or so large that looking at them takes longer than asking the tree would,
 //! the tree answers the tile. It answers the whole picture where there are too many triangles to look at each, or
-//! something is none, or the camera is another than a pinhole that stands still.
+//! something is no triangle, or the camera is anything but a pinhole that stands still.
 
 use super::Scene;
 use super::cameras::{Camera, Perspective};

@@ -238,8 +238,8 @@ impl<S: Scatters> Interaction<S> {
         })
     }
 
-    /// What light of a direction counts on its way to the horizon of either normal: 0 where it lies above the one and
-    /// below the other.
+    /// How much light from a direction counts as that nears the horizon of either normal: 0 where it lies above the one
+    /// and below the other.
     ///
     /// Where the normals differ, and light comes from the ray's side, it fades by −G³ + G² + G with G = min(1, (ng·ω) /
     /// ((ns·ω) (ng·ns))), and so reaches 0 at the geometric horizon with a slope, not a step (Chiang, Li and Burley,
@@ -261,7 +261,7 @@ impl<S: Scatters> Interaction<S> {
     }
 }
 
-/// What light counts near the horizon of the geometric normal, as [`Interaction`] has it: by its cosines to the
+/// How much light counts near the horizon of the geometric normal, as [`Interaction`] has it: by its cosines to the
 /// geometric and to the shading normal, both positive and up to the same factor, and that between the two.
 #[inline]
 pub fn fading(geometric: f64, shading: f64, between: f64) -> f64 {

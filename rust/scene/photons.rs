@@ -23,7 +23,7 @@ const MATT: u32 = 2;
 const SHARP: f64 = 4.0;
 
 impl Scene {
-    /// From where light comes by way of mirrors and glass; `None` where it does not. Photons are sent when it is first
+    /// Where light comes from by way of mirrors and glass; `None` where none does. Photons are sent when it is first
     /// asked for.
     pub fn caustics(&self) -> Option<&Caustics> {
         self.kept_caustics(|scene| {
@@ -145,7 +145,7 @@ struct Flying {
     /// Whether its light shines into this direction only, or from one point: where that is scattered into single
     /// directions, no path can find the light.
     is_single: bool,
-    /// The last surface, and by which it came.
+    /// The last surface, and by which ones it came.
     target: DVec3,
     chain: u64,
     /// How often it was scattered sharply since the light or a matt surface, and at matt surfaces.
@@ -174,7 +174,7 @@ impl Flight {
             Some(source) => source.ray(-light.direction),
             None => Ray::new(point + light.direction * (4.0 * scene.region().radius), -light.direction),
         };
-        // What is hit may be in front of the point; a closed surface counts twice so.
+        // What is hit may be in front of the point; so a closed surface counts twice.
         let cosine = normal.map_or(0.5, |normal| normal.dot(light.direction).abs());
         let flux = strength(&light) * cosine * targets.area / f64::from(SENT);
         if flux > 0.0 && flux.is_finite() {
@@ -221,7 +221,7 @@ impl Flight {
 }
 
 impl Flying {
-    /// Where it goes on to from a surface, its how manieth; `None` if that is its end.
+    /// Where it goes on to from the surface of this number on its way; `None` if that is its end.
     fn scattered(&self, here: &Interaction, time: f64, surface: u32) -> Option<(Ray, Self)> {
         let mut sampler = Sampler::new(0, self.number, surface + 1);
         let (next, counts) = branch(here, sampler.one(0), sampler.two(1))?;
@@ -247,8 +247,9 @@ impl Flying {
     }
 }
 
-/// Draws where a photon goes on to, and what it counts. Of two parts of scattering, each is drawn in a quarter of all
-/// cases at least: what glass reflects is seldom drawn otherwise, and as bright, where it falls, as what goes through.
+/// Draws where a photon goes on to, and how much it counts. Of two parts of scattering, each is drawn in a quarter of
+/// all cases at least: what glass reflects is seldom drawn otherwise, and as bright, where it falls, as what goes
+/// through.
 fn branch(here: &Interaction, choice: f64, u: [f64; 2]) -> Option<(Scattered, f64)> {
     /// How often the choice between parts is halved to know how likely each is.
     const HALVINGS: u32 = 6;

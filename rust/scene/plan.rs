@@ -71,7 +71,7 @@ pub enum Kernel {
 }
 
 impl Kernel {
-    /// Every one, from that which can least on.
+    /// Every one, from the one that can do least on.
     pub const ALL: [Self; 3] = [Self::Plain, Self::Open, Self::General];
 
     /// What it is called.
@@ -90,7 +90,7 @@ pub struct Plan {
     needs: SceneNeeds,
     /// What rounding to f32 did to vertices, or would have done: of the mesh, in groups too, to which that is most.
     rounding: Rounding,
-    /// How many lights are asked one by one where light is scattered sharply; 0 if it is one of all.
+    /// How many lights are asked one by one where light is scattered sharply; 0 where one of all is asked.
     few: u32,
     /// How each shape scatters, if it does so alike everywhere ([`Material::constant`]).
     constants: Vec<Option<Bsdf>>,

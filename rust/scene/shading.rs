@@ -31,7 +31,7 @@ pub struct ShadingPoint {
 pub struct Footprint {
     /// At the ray's origin.
     pub width: f64,
-    /// By how much it widens a length; negative where rays come together.
+    /// By how much it widens per length; negative where rays come together.
     pub spread: f64,
 }
 

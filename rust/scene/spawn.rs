@@ -45,7 +45,7 @@ impl Departure {
     /// that leave it start beyond them.
     #[inline]
     pub fn reach(surface: &SurfacePoint, ray: &Ray) -> f64 {
-        // The offset along the normal, as the ray meets the plane; what grazes it comes too close to too much.
+        // The offset along the normal, as the ray meets the plane; bounded for rays that graze it.
         let slope = ray.direction.dot(surface.normal).abs().max(1e-3 * ray.direction.length());
         Self::SAFETY * surface.error / slope
     }

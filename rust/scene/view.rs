@@ -1,4 +1,4 @@
-//! Triangles as a camera sees them: which pixels they may cover, for certain to include all that they do.
+//! Triangles as a camera sees them: which pixels they may cover, certain to include all that they do.
 //!
 //! In view space a point relative to the camera has the coordinates (X, Y, W) along the picture's width and height and
 //! the view, such that a ray through (x, y), each from −1 to 1 across the picture, goes along (x, y, 1).
@@ -171,7 +171,7 @@ impl View {
 }
 
 impl Seen {
-    /// By edge, what is multiplied with a ray's (x, y, 1) to tell on which side of the edge it passes.
+    /// By edge, what is multiplied by a ray's (x, y, 1) to tell on which side of the edge it passes.
     #[inline(always)]
     pub fn sides(&self) -> [DVec3; 3] {
         let [a, b, c] = self.corners;

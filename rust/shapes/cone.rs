@@ -8,8 +8,8 @@ impl Revolution {
     /// The cone about the segment from `base` to `tip`, which differ, with a radius at either end: one may be 0, and
     /// neither is less.
     ///
-    /// What a straight line draws when it is turned about a segment, from its one end's plane to the other's; closed by
-    /// disks or open.
+    /// What a straight line draws when it is turned about a segment, from the plane of one end to that of the other;
+    /// closed by disks or open.
     ///
     /// Its coordinates are the angle about the axis, in turns, and the way along the profile: of an open one from the
     /// base to the tip, of a closed one from the middle of the base cap over its rim and up the side to the middle of

@@ -9,7 +9,7 @@ pub struct Candidate {
     pub uv: [f64; 2],
     /// How.
     pub contact: Contact,
-    /// Of an instance, which primitive in it; 0 for what is none.
+    /// Of an instance, which primitive in it; 0 for what is no instance.
     pub inner: u32,
 }
 

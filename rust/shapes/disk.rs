@@ -23,7 +23,7 @@ pub struct Disk {
     pub normal: DVec3,
     /// The distance of its rim.
     pub radius: f64,
-    /// The distance of the hole's rim; 0 of a whole disk.
+    /// The distance of the hole's rim; 0 for a whole disk.
     pub inner_radius: f64,
 }
 
@@ -128,8 +128,7 @@ impl Seen {
 }
 
 impl Disk {
-    /// How many times as far as its radius the centre of a distant disk is, at least: there, drawing by area is as
-    /// good.
+    /// How far away the centre of a distant disk is at least, in radii: there, drawing by area is as good.
     const DISTANT: f64 = 3.0;
 
     /// How it is seen from a place that is given in its frame, unless by area.

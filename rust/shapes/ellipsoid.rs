@@ -11,7 +11,7 @@ use crate::sampling::warp::{UNIFORM_SPHERE_PDF, uniform_sphere};
 
 /// A sphere that is scaled along the axes; closed.
 ///
-/// Its coordinates are those of the sphere that it comes of ([`Sphere`]).
+/// Its coordinates are those of the sphere that it comes from ([`Sphere`]).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ellipsoid {
     /// Its centre.
@@ -118,14 +118,14 @@ impl Shape for Ellipsoid {
         ellipsoid_area_under(map, self.semi_axes)
     }
 
-    /// Even on the sphere that it comes of, and so not on itself: denser where it bends more.
+    /// Even on the sphere that it comes from, and so not on itself: denser where it bends more.
     fn sample(&self, u: [f64; 2]) -> Option<Drawn> {
         let unit = uniform_sphere(u);
         let point = self.at(longitude_latitude(unit));
         Some(Drawn { point, pdf: UNIFORM_SPHERE_PDF / self.stretch(unit) })
     }
 
-    /// As seen from a place the sphere that it comes of fills a cone, from which a direction is drawn evenly and
+    /// As seen from a place, the sphere that it comes from fills a cone, from which a direction is drawn evenly and
     /// brought back.
     fn sample_from(&self, place: DVec3, u: [f64; 2]) -> Option<Drawn> {
         let place = (place - self.center) / self.semi_axes;
@@ -142,8 +142,8 @@ impl Shape for Ellipsoid {
 }
 
 impl Ellipsoid {
-    /// How many directions about one of the sphere's space there are to one of its own: |S⁻¹ d|⁻³ / det S of a unit
-    /// vector d, which is given as S⁻¹ d of any length.
+    /// How much solid angle of the sphere's space there is to one of its own: |S⁻¹ d|⁻³ / det S about a unit vector d,
+    /// which is given as S⁻¹ d of any length.
     fn crowding(&self, way: DVec3) -> f64 {
         let stretched = (way.normalize() * self.semi_axes).length();
         stretched.powi(3) / self.semi_axes.element_product()

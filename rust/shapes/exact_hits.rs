@@ -23,7 +23,7 @@ fn check(shape: &dyn Shape, oracle: &Oracle<'_>, ray: &Ray) -> Result<usize, Tes
     let found = meets(shape, ray);
     let (wanted, tangent) = oracle.meets(ray);
     if found.len() == 1 && wanted.len() == 2 {
-        // Nearer to each other than f64 can tell: told as one, that no crossing counts.
+        // Nearer to each other than f64 can tell: told as one, which counts as no crossing.
         prop_assert_eq!(found[0].contact, Contact::Touching);
     } else {
         prop_assert_eq!(found.len(), wanted.len(), "{:?} of {:?}: {:?}", ray, shape, found);

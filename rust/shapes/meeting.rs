@@ -128,7 +128,7 @@ pub(super) struct Root<N> {
 
 /// The roots of `a t² + 2 b t + c`, the lesser first, where `b² − a c` is `discriminant` > 0 and `a` is not 0.
 ///
-/// Of the two formulas for each, that is used which subtracts nothing (Goldberg 1991).
+/// Of the two formulas for each, the one that subtracts nothing is used (Goldberg 1991).
 #[inline(always)]
 pub(super) fn roots<N: Number>(a: &N, b: &N, c: &N, discriminant: &N) -> Option<[Root<N>; 2]> {
     let root = discriminant.sqrt();

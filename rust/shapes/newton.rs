@@ -26,7 +26,7 @@ pub(super) fn refined(solid: &impl Solid, ray: &Carried<'_>, meet: &Meet<Bounded
         let f = solid.surface(meet.surface, &point, &unit);
         let wander = (slope.error + bend * reach) * SLACK;
         let least = slope.value.abs() - wander;
-        // Not a number is not above 0, and nothing is less than it.
+        // NaN is not above 0, and nothing is less than it.
         if !(least > 0.0 && t.is_finite()) {
             return None;
         }

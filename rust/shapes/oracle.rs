@@ -1,7 +1,7 @@
 //! Where a line meets a quadric between two planes, to more than 60 digits, for tests.
 //!
 //! It knows the surface as a polynomial of a point and nothing of how the shapes go about it: the coefficients along
-//! the line come from three of its values, and roots by the schoolbook's formula in integers of any length.
+//! the line come from three of its values, and the roots come by the schoolbook formula in integers of any length.
 
 use crate::math::{DVec3, Ray};
 use num_bigint::BigInt;

@@ -30,7 +30,7 @@ impl Placed {
 
     /// A point of the shape, in the world.
     ///
-    /// The map is computed with twice the digits and rounded once; what the point was off, it takes along.
+    /// The map is computed with twice the digits and rounded once; the error that the point had goes along.
     fn carried(&self, point: Point) -> Point {
         let map = &self.to_world;
         let position = map.point(point.position);
@@ -47,8 +47,8 @@ impl Placed {
         Point { position, error, normal, uv: point.uv, dp: point.dp.map(|d| map.vector(d)), dn }
     }
 
-    /// How many directions about one of the shape's space there are to one of the world's: |det L⁻¹| / |L⁻¹ d|³ of a
-    /// unit vector d.
+    /// How much solid angle of the shape's space there is to one of the world's: |det L⁻¹| / |L⁻¹ d|³ about a unit
+    /// vector d.
     fn crowding(&self, direction: DVec3) -> f64 {
         let own = self.to_object.vector(direction.normalize());
         self.to_object.determinant().abs() / own.length().powi(3)
@@ -60,8 +60,8 @@ impl Shape for Placed {
         Bounds::of_support(|d| self.support(d))
     }
 
-    /// That of the shape along the direction taken back, which is exact but for roundings of the few products in it: of
-    /// a shape whose own is tight, so is this.
+    /// That of the shape along the direction taken back, which is exact but for roundings of the few products in it:
+    /// where the shape's own is tight, so is this.
     fn support(&self, d: DVec3) -> f64 {
         let own = self.to_world.transposed(d);
         let reach = self.shape.support(own);

@@ -85,7 +85,7 @@ impl Shape for Plane {
     /// The ray's own point, moved along the normal by the distance that it is off.
     ///
     /// That distance is an inner product of four rounded differences, wrong by 6 UNIT of their sizes; as much again is
-    /// the frame's normal.
+    /// for the frame's normal.
     fn point(&self, ray: &Ray, t: f64, uv: [f64; 2]) -> Point {
         let Frame { tangent, bitangent, normal } = self.frame();
         let away = Carried::Ray(ray).line().from(self.point).at(t);

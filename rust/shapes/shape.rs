@@ -34,7 +34,7 @@ impl Bounds {
         let (mut sum, mut size) = (0.0, 0.0);
         for i in 0..3 {
             let far = if d[i] > 0.0 { self.max[i] } else { self.min[i] };
-            // A direction along which it has no end does not count where it is not gone along.
+            // An axis along which it has no end does not count where the direction has no part along it.
             if d[i] != 0.0 {
                 sum += d[i] * far;
                 size += (d[i] * far).abs();
@@ -111,7 +111,7 @@ pub trait Shape: Debug + Send + Sync {
     }
 
     /// Calls `met` with every point where the line meets the shape and `t_min ≤ t ≤ t_max`, both ends included, by
-    /// increasing `t`, until it says true; then that is said.
+    /// increasing `t`, until it says true; says whether it did.
     ///
     /// The direction need not be unit, and `t` counts in its lengths: it is the f64 next to the exact one, or next but
     /// one, and it is what is compared with the ends. Whether there is a hit is decided for the numbers as they are
@@ -120,8 +120,8 @@ pub trait Shape: Debug + Send + Sync {
     /// meets nothing.
     fn meet(&self, ray: &Ray, met: &mut dyn FnMut(Candidate) -> bool) -> bool;
 
-    /// The same for a ray of another space. Shapes that can, decide for ray and maps as they are given; others take the
-    /// ray rounded to f64 in their own space.
+    /// The same for a ray of another space. Where they can, shapes decide for the ray and the maps as they are given;
+    /// others take the ray rounded to f64 in their own space.
     fn meet_carried(&self, ray: &Carried<'_>, met: &mut dyn FnMut(Candidate) -> bool) -> bool {
         self.meet(&ray.rounded(), met)
     }
@@ -168,7 +168,7 @@ pub trait Shape: Debug + Send + Sync {
     }
 
     /// A point drawn by area, from two numbers in [0, 1); `pdf` is the density there, 1 / area where it is even. None
-    /// of a shape without end, or of no area.
+    /// for a shape without end, or of no area.
     fn sample(&self, u: [f64; 2]) -> Option<Drawn>;
 
     /// The first point of a direction drawn by solid angle as seen from a place, and the density of that direction,
@@ -191,7 +191,7 @@ pub trait Shape: Debug + Send + Sync {
         (pdf.is_finite() && pdf > 0.0).then_some(Drawn { point, pdf })
     }
 
-    /// The same for who does not ask where the point lies in coordinates, which shapes may know a shorter way to.
+    /// The same without the point's coordinates, for which shapes may know a shorter way.
     fn sight_from(&self, place: DVec3, u: [f64; 2]) -> Option<Seen> {
         let Drawn { point, pdf } = self.sample_from(place, u)?;
         Some(Seen { site: point.site(), pdf })

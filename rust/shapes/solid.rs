@@ -11,7 +11,7 @@ pub(super) struct Meet<N> {
     pub t: N,
     /// The derivative by `t`, there, of what [`Solid::surface`] is along the line.
     pub slope: N,
-    /// Half of the second derivative; 0 of a plane.
+    /// Half of the second derivative; 0 for a plane.
     pub bend: N,
     /// Which surface, counted as the shape likes.
     pub surface: usize,

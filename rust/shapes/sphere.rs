@@ -46,7 +46,7 @@ impl Sphere {
     fn cone(&self, place: DVec3) -> Option<Cone> {
         let way = place - self.center;
         let distance = way.length();
-        // By as much may the way to a place on the sphere be too long.
+        // By so much the way to a place on the sphere may be too long.
         let rounding = 4.0 * UNIT * (place.abs().max_element() + 5.0 * self.radius);
         if distance < self.radius + rounding {
             return None;

@@ -209,8 +209,8 @@ fn points_are_drawn_by_area_with_their_density() {
             let [x, y] = drawn.point.uv.map(|x| ((x * 8.0) as usize).min(7));
             counts[8 * x + y] += 1;
         }
-        // An even one's density is one over its area; an ellipsoid is drawn from as the unit sphere is that it comes
-        // of; a placed one as it was before, where the map back shrinks areas by as much as the map stretched them.
+        // An even one's density is one over its area; an ellipsoid is drawn from as the unit sphere that it comes from
+        // is; a placed one as it was before, where the map back shrinks areas by as much as the map stretched them.
         let (area, round) = (shapes[name % own].area(), format!("{shape:?}").contains("Ellipsoid"));
         let density = |point: &Point| {
             if round {
@@ -259,8 +259,8 @@ fn directions_are_drawn_with_their_density() {
             let drawn = shape.sample_from(place, Sampler::new(4, name, i).two(0)).unwrap();
             let way = drawn.point.position - place;
             let pdf = shape.pdf_from(place, way * 3.0);
-            // Rounding turns the direction by next to nothing, and by 1 / cos of that moves a point that is seen at
-            // that angle: the density, which goes with 1 / cos, changes by 1 / cos² of it.
+            // Rounding turns the direction by next to nothing, which moves a point that is seen at an angle by 1 / cos
+            // of that: the density, which goes with 1 / cos, changes by 1 / cos² of it.
             let limit = 1e-9 + 1e-15 * pdf * pdf;
             assert!((pdf / drawn.pdf - 1.0).abs() < limit, "{shape:?}: {pdf} {}", drawn.pdf);
             let d = way.normalize();
@@ -363,7 +363,7 @@ fn spheres_are_drawn_from_at_any_distance() {
     }
 }
 
-/// Who asks for no coordinates is told the same point.
+/// Whoever asks for no coordinates is told the same point.
 #[test]
 fn sights_are_what_is_drawn_without_coordinates() {
     for (name, shape) in (0..).zip(&shapes()) {

@@ -45,7 +45,7 @@ fn all_accelerators_agree() {
     let mut random = Random(11);
     for (count, size, reach) in [(0, 1.0, 1.0), (1, 1.0, 2.0), (9, 0.5, 2.0), (300, 0.3, 3.0), (1500, 0.05, 2.0)] {
         let mut soup = random.soup(count, size);
-        // Points, lines, and what can not be hit.
+        // Points, lines, and what cannot be hit.
         for i in (0..count).step_by(7) {
             soup.0[i][2] = soup.0[i][0];
             soup.0[i][1] = if i % 2 == 0 { soup.0[i][0] } else { soup.0[i][1] };

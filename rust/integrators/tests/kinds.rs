@@ -100,7 +100,7 @@ fn window() -> Scene {
 
 #[test]
 fn whitted_follows_both_the_reflected_and_the_refracted_ray() {
-    // Without noise: 4 % of what is before, and 96 % of what is behind, as bright as the index squared makes it.
+    // Without noise: 4 % of what is in front, and 96 % of what is behind, as bright as the index squared makes it.
     let ray = Ray::new(DVec3::new(0.1, 0.2, 2.0), DVec3::NEG_Z);
     let expected = 0.04 * 5.0 + 0.96 * 2.0 / 2.25;
     for value in samples_of(&window(), &Whitted::default(), ray, 10) {
@@ -117,7 +117,7 @@ fn whitted_follows_both_the_reflected_and_the_refracted_ray() {
 
 #[test]
 fn mirrors_face_to_face_end_at_the_depth() {
-    // Two mirrors of 0.5, of which one shines: 1 + 1/4 + 1/16 ... as often as it is come back to.
+    // Two mirrors of 0.5, of which one shines: 1 + 1/4 + 1/16 ..., a term for each return to it.
     let up = rectangle([-9.0, -9.0, 0.0], [18.0, 0.0, 0.0], [0.0, 18.0, 0.0]);
     let down = rectangle([-9.0, -9.0, 1.0], [0.0, 18.0, 0.0], [18.0, 0.0, 0.0]);
     let mirror = Mirror { reflectance: Rgb::splat(0.5) };

@@ -62,7 +62,7 @@ fn veils_multiply() {
         // Nothing, and everything.
         assert_radiance(&at(vec![veil(1.0, 0.0), veil(2.0, 0.0)]), &path, DOWN, 100, 2.0);
         assert_eq!(radiance(&at(vec![veil(1.0, 1.0)]), &path, DOWN, 100), (0.0, 0.0));
-        // Of coincident ones, one is there.
+        // Of those that coincide, one counts.
         assert_radiance(&at(vec![veil(1.0, 0.25), veil(1.0, 0.25)]), &path, DOWN, 60_000, 1.5);
     }
 }

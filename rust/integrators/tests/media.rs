@@ -111,7 +111,7 @@ fn the_index_may_be_one_or_nearly_or_ten() {
 #[test]
 fn glass_in_an_even_light_cannot_be_seen_from_outside_or_inside() {
     // Radiance over the square of the index is the same everywhere. Seen from outside, from within one, and from within
-    // both. No way is one on which a block holds light for ever by total reflection.
+    // both. Along none of these ways does a block hold light for ever by total reflection.
     let ways = [DVec3::new(0.3, 0.2, 0.93), DVec3::new(-0.2, -0.96, 0.25), DVec3::new(0.01, -0.999_95, 0.0)];
     for alpha in [0.0, 0.3] {
         for gap in [0.0, 1e-6, 0.25] {
@@ -123,7 +123,7 @@ fn glass_in_an_even_light_cannot_be_seen_from_outside_or_inside() {
             for way in ways {
                 let way = way.normalize();
                 // Rough glass gives back on average what it loses, to half a percent. In smooth glass roulette ends
-                // about one path of these, and what chance ends is more than ten of them once in ten million.
+                // about one of these paths, and by chance more than ten once in ten million.
                 let slack = if alpha == 0.0 { 5e-4 } else { 0.005 };
                 for (origin, index) in
                     [(-3.0 * way, 1.0f64), (DVec3::new(0.75, 0.8, 0.7), 1.5), (DVec3::new(0.1, 0.2, -0.1), 1.8)]
@@ -139,8 +139,8 @@ fn glass_in_an_even_light_cannot_be_seen_from_outside_or_inside() {
 
 #[test]
 fn shadow_rays_pass_surfaces_that_are_none() {
-    // A floor and a lamp, both in a glass that nothing is refracted by since they are in it, and a glass of less
-    // priority between them: as if nothing were there.
+    // A floor and a lamp, both in a glass, which refracts nothing since they are in it, and a glass of less priority
+    // between them: as if nothing were there.
     let floor = rectangle([-0.5, -0.5, 0.1], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]);
     let lamp = rectangle([-0.5, -0.5, 1.1], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]);
     let all = |more: Vec<Shape>| {

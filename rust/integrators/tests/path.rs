@@ -41,8 +41,8 @@ fn a_furnace_shines_so_many_bounces() {
 
 #[test]
 fn a_furnace_of_copies_shines_as_one_of_walls() {
-    // Six copies of one wall, each under a map of its own, and a copy of that moving out of shape: light that is not
-    // sampled but found, and rays that leave walls under such maps without meeting them.
+    // Six copies of one wall, each under a map of its own, in a copy that is still or moves out of shape: light that is
+    // not sampled but found, and rays that leave walls under such maps without meeting them.
     let wall =
         Group::new(vec![shape(rectangle([-1.0, -1.0, 0.0], [2.0, 0.0, 0.0], [0.0, 2.0, 0.0]), [0.5; 3], 2.0)], brute);
     let place = |x: DVec3, y: DVec3, z: DVec3| -> Matrix {

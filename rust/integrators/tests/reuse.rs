@@ -58,7 +58,7 @@ fn told(values: &[Rgb], group: usize) -> (f64, f64, f64) {
 
 #[test]
 fn a_furnace_shines_by_its_geometric_series() {
-    // Groups of rays from one point within, in directions up to 60 degrees apart.
+    // Groups of rays from one point within, in directions up to 71 degrees apart.
     let samples: Vec<_> = (0..40_000u32)
         .map(|i| {
             let turned = DVec3::new(f64::from(i % 4) - 1.5, f64::from(i / 4 % 4) - 1.5, 3.0).normalize();

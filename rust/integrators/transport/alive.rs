@@ -14,7 +14,7 @@ pub(super) struct Alive {
     pub(super) pdf: f64,
     /// How much less radiance is here than where the path started, because of the index of refraction alone.
     pub(super) scale: f64,
-    /// Whose sample it is; as many more as there are samples, where what is found is for sharing.
+    /// Whose sample it is, plus the number of samples where what is found is for sharing.
     pub(super) sample: u32,
     /// Surfaces that it has been scattered at.
     pub(super) bounce: u32,
@@ -36,7 +36,7 @@ impl Alive {
         self.aimed = (self.aimed * denser as f32).min(MOST);
     }
 
-    /// It comes to a surface that leaves so much of its light if it has been at such a one before
+    /// It comes to a surface that leaves so much of its light if it has been at such a surface before
     /// ([`crate::optics::Bsdf::again`]).
     #[inline]
     pub(super) fn meet(&mut self, again: Rgb) {

@@ -10,7 +10,7 @@ pub(super) struct Dimensions(u32);
 impl Dimensions {
     const EACH: u32 = 6;
 
-    /// What of a group's light is shared: one of the two that cameras leave to spare.
+    /// What of a group's light is shared: the one of the camera's dimensions that it leaves unused.
     pub const SHARING: u32 = 2;
 
     /// Bounces that the branches of a split path have to themselves. Beyond, they draw the same numbers, of different

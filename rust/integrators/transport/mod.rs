@@ -75,7 +75,7 @@ impl Settings {
         }
     }
 
-    /// Whether they are those of a path tracer, which the special kernels know alone.
+    /// Whether they are those of a path tracer, the only ones that the special kernels know.
     fn are_plain(&self) -> bool {
         self.light_samples == 1
             && self.splits == 1
@@ -90,7 +90,7 @@ impl Settings {
         self.worker_of(scene, footprint, scene.plan().kernel())
     }
 
-    /// As [`Settings::worker`], by this kernel or one that can more.
+    /// As [`Settings::worker`], by this kernel or one that can do more.
     pub fn worker_of<'a>(self, scene: &'a Scene, footprint: Footprint, kernel: Kernel) -> Box<dyn Worker + 'a> {
         match kernel {
             Kernel::Plain if self.shares => Box::new(TransportWorker::<Sharing<Plain>>::new(self, scene, footprint)),

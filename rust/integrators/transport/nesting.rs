@@ -68,7 +68,7 @@ impl Inside {
     }
 
     /// What rays from these origins start in: each surface that encloses a medium is crossed outwards once more than
-    /// inwards, on the way out, from inside of it. Open surfaces, and a camera in a wall, may be told wrongly.
+    /// inwards, on the way out, from inside of it. With open surfaces, or a camera in a wall, it may be wrong.
     pub(super) fn at(scene: &Scene, rays: &[Ray], inside: &mut Vec<Self>) {
         inside.clear();
         let region = scene.region();
@@ -124,7 +124,7 @@ fn crossed(crossings: &Crossings, ray: usize) -> impl DoubleEndedIterator<Item =
 /// What a hit is to a ray among media.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Boundary {
-    /// None: the same medium is on both sides. The ray goes on in these.
+    /// None: the same medium is on both sides. The ray goes on in these media.
     None(Inside),
     /// The surface hit is where one medium ends and another begins.
     Between {
@@ -132,7 +132,7 @@ pub(super) enum Boundary {
         hit: Hit,
         /// The index of refraction on the side of it that is not its own medium's.
         outside: f64,
-        /// What a ray is in that goes through.
+        /// What a ray that goes through is in.
         through: Inside,
     },
 }
@@ -147,7 +147,7 @@ pub(super) fn around(scene: &Scene, ray: &Ray, hit: &Hit) -> Option<Ray> {
 }
 
 impl Boundary {
-    /// What a ray comes to that is in some media, by what it crosses around its hit ([`around`]).
+    /// What a ray in some media comes to, by what it crosses around its hit ([`around`]).
     pub(super) fn new(scene: &Scene, ray: &Ray, inside: &Inside, crossings: &Crossings, number: usize) -> Self {
         let mut through = *inside;
         let mut owner: Option<(Interior, bool, Hit)> = None;
@@ -158,7 +158,7 @@ impl Boundary {
             }
         }
         let Some((_, enters, hit)) = owner else { return Self::None(*inside) };
-        // What the path never entered, as where the camera was told wrongly, it leaves like anything else.
+        // What the path never entered, as where the camera's media were told wrongly, it leaves like anything else.
         if inside.top() == through.top() && (enters || inside.top().is_some()) {
             return Self::None(through);
         }

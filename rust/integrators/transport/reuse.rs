@@ -18,9 +18,9 @@ use std::ops::Range;
 /// G(xᵢ, yⱼ) / Σₖ G(xₖ, yⱼ), times its reflectance. The sum knows all mutual visibilities, so the mean is as without
 /// sharing whatever lies between; shares are at most 1, so nothing is made large that was not.
 ///
-/// What a path finds at its first point, and what yⱼ emits itself, stays its own. So does the rest of a path that does
-/// not come to a diffuse second point, or from where the shading normal had to be bent ([`Interaction::GRAZING`]), and
-/// with it yⱼ were another: these directions are in the domain of no technique that shares, for whoever takes.
+/// What a path finds at its first point, and what yⱼ emits itself, stays its own. So does the rest of a path whose
+/// second point is not diffuse, or has a shading normal that had to be bent ([`Interaction::GRAZING`]), so that it is
+/// another for each who looks: these directions are in the domain of no technique that shares, for whoever takes.
 #[derive(Default)]
 pub(super) struct Reuse {
     /// The first point of each sample.
@@ -95,11 +95,11 @@ impl Pair {
 /// Rays that are sent together: enough to keep the accelerator's kernels full, few enough to stay in cache.
 const TOGETHER: usize = 4096;
 
-/// Rays that the accelerator takes through its tree as one packet. With those of two origins in it, none would go
-/// together, so that a few of the same are added to fill it.
+/// Rays that the accelerator takes through its tree as one packet. With rays of two origins in it, none would go
+/// together, so copies of one are added to fill it.
 const BUNDLE: usize = 16;
 
-/// Fewer rays than these go alone.
+/// Fewer rays than this go alone.
 const FEW: usize = 5;
 
 impl First {
@@ -152,8 +152,8 @@ impl Reuse {
         self.strays.rays.clear();
     }
 
-    /// A path comes to a surface. Where what it finds from there on is to be shared, it goes on with it as that of
-    /// sample number `samples` and more.
+    /// A path comes to a surface. Where what it finds from there on is to be shared, it goes on as the path of a sample
+    /// of number `samples` or more.
     #[inline]
     pub fn visit<S: Scatters>(&mut self, mut path: Alive, here: &Interaction<S>) -> Alive {
         if path.bounce > 1 {
@@ -328,7 +328,7 @@ mod tests {
         ] {
             assert_eq!(floor.geometry(&second(position, normal, normal)), None);
         }
-        // Its shading normal would be bent for who looks from here.
+        // Its shading normal would be bent if seen from here.
         let grazed = second(DVec3::Z, DVec3::NEG_Z, DVec3::new(1.0, 0.0, -5e-4).normalize());
         assert_eq!(floor.geometry(&grazed), None);
     }

@@ -1,4 +1,4 @@
-//! Whether light arrives that was drawn.
+//! Whether light that was drawn arrives.
 
 use super::nesting::{Boundary, Inside, around};
 use crate::math::{Hit, Ray};
@@ -39,7 +39,7 @@ impl Shadows {
         self.inside.push(inside);
     }
 
-    /// Adds to each sample what arrives at it, were nothing opaque in any way.
+    /// Adds to each sample what arrives at it, as if nothing were in the way.
     pub fn add_all(&mut self, radiance: &mut [Rgb]) {
         for &(sample, arriving) in &self.arriving {
             radiance[sample as usize] += arriving;

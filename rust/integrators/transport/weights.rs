@@ -2,9 +2,8 @@
 
 use crate::optics::Rgb;
 
-/// The weight of a draw of one technique, of density `pdf`, beside another of density `other`
-/// (Veach and Guibas, 1995, with the exponent 2). Written by the ratio, squares cannot overflow, and an infinite
-/// density gets the weight 1.
+/// The weight of a draw of one technique, of density `pdf`, beside another of density `other` (Veach and Guibas, 1995,
+/// with the exponent 2). Written by the ratio, so that no square overflows and an infinite density gets the weight 1.
 #[inline]
 pub(super) fn power_heuristic(pdf: f64, other: f64) -> f64 {
     let ratio = other / pdf;
@@ -22,11 +21,11 @@ const SURVIVAL: f64 = 1.0 - 1.0 / 4096.0;
 /// is how much less radiance is where the path is than where it started, because of the index of refraction alone:
 /// light that is spread so is not lost.
 ///
-/// Dividing by it must not let the throughput grow from round to round: after k rounds of reflectance ρ and survival
-/// q the second moment is (ρ²/q)ᵏ, whose sum over k is finite only for q > ρ². A fixed bound such as the usual 0.95
-/// breaks that in bright surroundings, and the error bar with it. By the root of the throughput, both settle at ρ,
-/// and up to a reflectance of 0.9998 the bound is never reached. The throughput itself would do as well, but ends
-/// paths earlier than pays: less time for more than as much error, and a longer tail.
+/// Dividing by it must not let the throughput grow from round to round: after k rounds of reflectance ρ and survival q
+/// the second moment is (ρ²/q)ᵏ, whose sum over k is finite only for q > ρ². A fixed bound such as the usual 0.95
+/// breaks that in bright surroundings, and the error bar with it. By the root of the throughput, both settle at ρ, and
+/// up to a reflectance of 0.9998 the bound is never reached. The throughput itself would do as well, but ends paths
+/// earlier than pays: it costs more in error than it saves in time, and has a longer tail.
 #[inline]
 pub(super) fn survival(throughput: Rgb, scale: f64) -> f64 {
     (throughput.max_element() * scale).sqrt().min(SURVIVAL)

@@ -50,7 +50,7 @@ pub(super) struct Vertex<'p, S> {
     pub(super) path: &'p Alive,
     pub(super) baggage: &'p Baggage,
     pub(super) dimensions: Dimensions,
-    /// What is behind the surface for who goes through it.
+    /// What is behind the surface, for a path that goes through it.
     pub(super) through: &'p Inside,
     /// The width there.
     pub(super) width: f64,
@@ -161,7 +161,7 @@ impl<'a, N: Features> TransportWorker<'a, N> {
             }
             let (time, through) = (ray.time, behind.as_ref().unwrap_or(&baggage.inside));
             if N::PLAIN {
-                // Said once more which kind it is, so that nothing is asked of it at each use.
+                // Says once more which kind it is, so that nothing is asked of it at each use.
                 let Some(&Bsdf::Diffuse(diffuse)) = self.scene.plan().constant(surface.shape) else { continue };
                 let shading = surface.shading_normal;
                 let here = Interaction::with(&ray, surface, (shading, None), Bsdf::Diffuse(diffuse));
@@ -199,7 +199,7 @@ impl<'a, N: Features> TransportWorker<'a, N> {
         if N::SHARES && index >= samples { index - samples } else { index }
     }
 
-    /// A path that comes to a surface, as that which goes on from there.
+    /// A path that comes to a surface, as the one that goes on from there.
     #[inline]
     fn known<S: Scatters>(&mut self, path: Alive, here: &Interaction<S>) -> Alive {
         if N::SHARES { self.reuse.visit(path, here) } else { path }
@@ -218,7 +218,7 @@ impl<'a, N: Features> TransportWorker<'a, N> {
         if !is_matt(here.scattering()) {
             return (None, Arrival::GoesOn);
         }
-        // With what density a path comes to the second point that it shares is to be known.
+        // The density with which a path comes to the second point that it shares must be known.
         let aims = !N::SHARES || path.bounce > 0;
         let aim = if aims { caustics.aim(here.position()) } else { None };
         let arrival = arrive(path, aim.as_ref(), number);
@@ -382,7 +382,7 @@ impl<'a, N: Features> TransportWorker<'a, N> {
         if N::BAGGAGE && path.throughput.max_element() * path.scale < self.settings.least {
             return;
         }
-        // With what density a path comes to its second point is to be known.
+        // The density with which a path comes to its second point must be known.
         let is_played = (!N::SHARES || path.bounce > 1) && vertex.arrival == Arrival::GoesOn;
         if is_played && path.bounce >= self.settings.roulette_depth.min(ROULETTE_AT_LATEST) {
             let dimensions = if N::BAGGAGE { Dimensions::of(vertex.path.bounce, branch) } else { vertex.dimensions };

@@ -7,9 +7,9 @@ use std::fmt;
 /// How a conductor of an index of refraction that varies with the wavelength reflects daylight, in linear Rec. 709.
 ///
 /// The reflectance is Fresnel's at each wavelength, and its colour that of daylight (D65) of such shares, where all of
-/// it is (1, 1, 1). A light of (1, 1, 1) on gold is (1.022, 0.782, 0.344) so at normal incidence, as spectral renderers
-/// have it that take white for daylight. Under light that is even over wavelengths it would be (1.20, 0.75, 0.31), of
-/// an even light of (1.20, 0.95, 0.91).
+/// it is (1, 1, 1). So light of (1, 1, 1) on gold becomes (1.022, 0.782, 0.344) at normal incidence, as spectral
+/// renderers have it that take white for daylight. Under light that is even over wavelengths it would be (1.20, 0.75,
+/// 0.31), of an even light of (1.20, 0.95, 0.91).
 ///
 /// A channel may exceed 1, as gold's red does: the screen's three lights cannot mix that orange, and it is told as more
 /// red than there is and less green. That is right for light that is reflected once. Its powers are not: they would
@@ -90,16 +90,16 @@ impl Curve {
         self.lines.iter().map(|line| line.weight * of_mean(mean(line))).sum()
     }
 
-    /// By what the reflectance is to be multiplied for light that such a metal has reflected before. It is less than 1
+    /// What the reflectance is to be multiplied by for light that such a metal has reflected before. It is less than 1
     /// in a channel that exceeds 1: then at most so much is left of that as of the wavelength that is reflected best,
-    /// at normal incidence. Of gold in gold, the red after two and after five reflections is right to 3 % so.
+    /// at normal incidence. So the red of gold in gold is right to 3 % after two and after five reflections.
     #[inline]
     pub fn again(&self) -> Rgb {
         self.again
     }
 }
 
-/// What of it white light becomes at normal incidence: tables are not for telling.
+/// What white light becomes at normal incidence: tables are not for printing.
 impl fmt::Debug for Curve {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_tuple("Curve").field(&self.reflectance(1.0)).finish()
@@ -174,7 +174,7 @@ mod tests {
             for i in 0..=200 {
                 // Denser towards grazing incidence.
                 let cosine = (f64::from(i) / 200.0).powi(2);
-                // Each tenth is compared with the finest integral, all with every nm.
+                // Every tenth is compared with the finest integral, the others with one in steps of 1 nm.
                 let truth = if i % 10 == 0 {
                     integral(cosine, 1.0, |wavelength| metal.index_at(wavelength))
                 } else {

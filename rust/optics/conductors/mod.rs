@@ -44,7 +44,7 @@ impl Metal {
     }
 }
 
-/// Its symbol: tables are not for telling.
+/// Its symbol: tables are not for printing.
 impl fmt::Debug for Metal {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.symbol)

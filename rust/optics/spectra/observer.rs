@@ -3,7 +3,7 @@
 use super::{FIRST, LAST};
 use glam::DVec3;
 
-/// How the CIE's standard observer of 1931, who looks at 2 degrees, responds to a wavelength: x̄, ȳ and z̄ (CIE
+/// How the CIE's standard observer of 1931, for a field of 2 degrees, responds to a wavelength: x̄, ȳ and z̄ (CIE
 /// 018:2019, table 6, of which this has every fifth nm and is linear between). Zero outside of what is seen.
 #[inline]
 pub fn matching(wavelength: f64) -> DVec3 {

@@ -14,8 +14,8 @@ pub enum Illuminant {
 }
 
 /// What is seen of a spectrum, in linear Rec. 709, as the sum of its values with these weights: of light, if its values
-/// say how much more there is than of the illuminant, or of a reflectance in that light. The illuminant has a luminance
-/// of 1.
+/// say how many times as much there is as of the illuminant, or of a reflectance in that light. The illuminant has a
+/// luminance of 1.
 ///
 /// A value stands for its neighbours as far as the next, in hats over lines: sums are exact for spectra that are linear
 /// from one wavelength to the next, whatever bends the eye's response has in between.

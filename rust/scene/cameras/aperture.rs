@@ -8,7 +8,7 @@ use std::f64::consts::TAU;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Aperture {
     radius: f64,
-    /// How many sides the polygon has; 0 of a disk.
+    /// How many sides the polygon has; 0 for a disk.
     blades: u32,
     /// By how much the polygon is turned, counterclockwise as the camera looks, from where a corner is to the right.
     rotation: f64,

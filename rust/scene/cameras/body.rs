@@ -27,7 +27,7 @@ impl Body {
         Ok(Self { width, height, start: viewpoint, way: None, open: 0.0, duration: 1.0 })
     }
 
-    /// It with a shutter that is open from one of the scene's times to another, both from 0 to 1.
+    /// The same with a shutter that is open from one of the scene's times to another, both from 0 to 1.
     ///
     /// # Errors
     /// If it closes before it opens, or is open outside of that.
@@ -38,7 +38,7 @@ impl Body {
         Ok(Self { open, duration: close - open, ..self })
     }
 
-    /// It moving, to be at another viewpoint as the shutter closes.
+    /// The same, moving so as to be at another viewpoint as the shutter closes.
     pub fn moved_to(self, end: Viewpoint) -> Self {
         Self { way: (end != self.start).then(|| Way::new(self.start, end)), ..self }
     }

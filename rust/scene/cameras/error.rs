@@ -13,9 +13,9 @@ pub enum CameraError {
     NoUp,
     /// The field of view is not one that the kind of camera can have.
     FieldOfView,
-    /// There is no pixel, or more than 2³¹ of them.
+    /// There is no pixel, or 2³¹ of them or more.
     Size,
-    /// The shutter closes before it opens, or not within the scene's time.
+    /// The shutter closes before it opens, or is open outside of the scene's time.
     Shutter,
     /// A focal length is zero, or the film's numbers are not finite.
     Film,

@@ -19,7 +19,7 @@ pub enum Mapping {
 }
 
 impl Mapping {
-    /// The widest angle of view in degrees, and whether it can be had itself.
+    /// The widest angle of view in degrees, and whether that angle itself can be had.
     pub fn widest(self) -> (f64, bool) {
         match self {
             Self::Equidistant | Self::Equisolid => (360.0, true),
@@ -28,7 +28,7 @@ impl Mapping {
         }
     }
 
-    /// How far from the middle an angle is, near which it is the angle itself.
+    /// How far from the middle an angle is seen: near the middle, the angle itself.
     fn radius(self, angle: f64) -> f64 {
         match self {
             Self::Equidistant => angle,
@@ -43,7 +43,7 @@ impl Mapping {
         match self {
             Self::Equidistant => radius.sin_cos(),
             Self::Equisolid => {
-                // The sine of half the angle, of which the whole is had without its arc.
+                // The sine of half the angle, from which the whole is had without an arc sine.
                 let half = (0.5 * radius).min(1.0);
                 (2.0 * half * ((1.0 - half) * (1.0 + half)).sqrt(), 1.0 - 2.0 * half * half)
             }
@@ -100,7 +100,7 @@ impl Camera for Fisheye {
         let pixels = right.hypot(up);
         let radius = self.scale * pixels;
         let (from, time) = (self.body.at(time), self.body.scene_time(time));
-        // Not a number is not seen either.
+        // NaN is not seen either.
         let is_seen = radius <= self.edge * ROOM;
         if !is_seen {
             return CameraRay::unseen(from.position, time);

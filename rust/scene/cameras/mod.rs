@@ -50,7 +50,7 @@ pub trait Camera: Debug + Send + Sync {
         self.body().moves()
     }
 
-    /// It as a pinhole that stays where it is, whose pictures can be rasterised; none if it is another.
+    /// The camera as a pinhole that stays where it is, whose pictures can be rasterised; none if it is no such one.
     fn as_perspective(&self) -> Option<&Perspective> {
         None
     }
@@ -66,13 +66,13 @@ pub trait Camera: Debug + Send + Sync {
     }
 }
 
-/// A ray of a camera, and what it counts.
+/// A ray of a camera, and how much it counts.
 #[derive(Clone, Copy, Debug)]
 pub struct CameraRay {
-    /// Of unit direction, at a time of the scene. Where the weight is 0 it is none: its direction is no number, and it
-    /// hits nothing.
+    /// Of unit direction, at a time of the scene. Where the weight is 0 it is none: its direction is NaN, and it hits
+    /// nothing.
     pub ray: Ray,
-    /// What the radiance along it is multiplied with; 0 where the camera sees nothing.
+    /// What the radiance along it is multiplied by; 0 where the camera sees nothing.
     pub weight: f64,
 }
 

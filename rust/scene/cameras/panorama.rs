@@ -6,7 +6,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// A camera that sees the whole sphere, in an equirectangular picture: columns are longitudes and rows latitudes. The
 /// middle of the picture is where the camera looks, the top row is up, a quarter of the width to the right of the
-/// middle is to the right, and left and right edge are what is behind.
+/// middle is to the right, and the left and the right edge are what is behind.
 ///
 /// So the picture of a camera that looks along −z with +y up has, at the fractions (u, v) of its width from the left
 /// and of its height from the top, the direction (sin φ sin θ, cos θ, −cos φ sin θ) with φ = 2π (u − ½) and θ = π v.

@@ -5,7 +5,8 @@ use super::{Aperture, Body, Camera, CameraError, CameraRay, Spread, Window};
 use crate::math::Ray;
 
 /// A camera with a thin lens (Potmesil and Chakravarty, "A Lens and Aperture Camera Model for Synthetic Image
-/// Generation", 1981): what lies in a plane across the view is sharp, and the rest blurred as the lens is wide.
+/// Generation", 1981): what lies in a plane across the view is sharp, and the rest is blurred, the more the wider the
+/// lens is.
 ///
 /// What its picture holds of that plane is what a pinhole at its middle sees.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,8 +41,8 @@ impl Camera for ThinLens {
         let [x, y] = self.window.point(from_middle(film, self.body.size()));
         let [right, up] = self.aperture.point(lens);
         let origin = from.position + from.right * right + from.up * up;
-        // From the lens to the point in focus, over the distance there. No position is in it, so that it is as right
-        // far from the origin.
+        // From the lens to the point in focus, over the distance there. No position is in it, so that it is just as
+        // right far from the origin.
         let direction = from.direction(x - right / self.focus, y - up / self.focus, 1.0).normalize();
         CameraRay::seen(Ray { time: self.body.scene_time(time), ..Ray::new(origin, direction) })
     }

@@ -80,7 +80,7 @@ impl Way {
         if time >= 1.0 {
             return self.end;
         }
-        // Not a number counts as 0.
+        // NaN counts as 0.
         let has_begun = time > 0.0;
         if !has_begun {
             return self.start;

@@ -83,7 +83,8 @@ impl Window {
         window.seen_from(principal, [width, height])
     }
 
-    /// It shifted, so that the middle of the view is seen at a point of the film, in pixels from the left and the top.
+    /// The same, shifted so that the middle of the view is seen at a point of the film, in pixels from the left and the
+    /// top.
     ///
     /// # Errors
     /// If a number is not finite.
@@ -113,7 +114,7 @@ impl Window {
         [middle, from.right * self.half[0], up]
     }
 
-    /// What a point relative to a viewpoint is multiplied with to give its x, its y, and its distance along the view,
+    /// What a point relative to a viewpoint is multiplied by to give its x, its y, and its distance along the view,
     /// such that it is seen at x and y over the distance; and what bounds each of these, and how roundings grow, as
     /// multiples of the point's distance.
     pub fn onto_film(&self, from: &Viewpoint) -> ([DVec3; 3], f64) {

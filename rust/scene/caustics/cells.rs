@@ -21,7 +21,7 @@ enum Node {
     Leaf(usize),
 }
 
-/// A cell, and about where photons came to it.
+/// A cell, and roughly where photons came to it.
 #[derive(Clone, Debug)]
 struct Leaf {
     min: DVec3,
@@ -61,7 +61,7 @@ const SHARES: [f64; 2] = [0.1, 0.6];
 const BRIGHTEST: f64 = 1e6;
 
 impl Cells {
-    /// Those of some photons, where so much light falls over area usually.
+    /// Those of some photons, where so much light over area is usual.
     pub fn new(mut photons: Vec<Photon>, usual: f64) -> Self {
         let mut all = Self { nodes: Vec::new(), leaves: Vec::new(), lobes: Vec::new() };
         let mut ranges = Vec::new();

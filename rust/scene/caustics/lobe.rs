@@ -6,8 +6,8 @@ use crate::math::{DVec3, Frame};
 use glam::DMat3;
 use std::f64::consts::TAU;
 
-/// A ball that light comes from. As the image of a lamp in a mirror moves with who looks, its place depends on that of
-/// who looks: linearly, as photons tell by least squares.
+/// A ball that light comes from. As the image of a lamp in a mirror moves with the viewer, its place depends on the
+/// viewer's: linearly, as photons tell by least squares.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Lobe {
     /// The middle of the places that it is seen from.
@@ -23,10 +23,10 @@ pub(super) struct Lobe {
 }
 
 impl Lobe {
-    /// Fewer photons than these do not tell how it moves.
+    /// Fewer photons than this do not tell how it moves.
     const FEW: usize = 6;
 
-    /// That which holds where some photons came from, at least one, whose places lie within so much of each other.
+    /// The ball that holds where some photons came from, at least one, whose places lie within `size` of each other.
     pub fn around(photons: &[Photon], size: f64) -> Self {
         let count = photons.len() as f64;
         let place = photons.iter().map(|p| p.position).sum::<DVec3>() / count;
@@ -35,7 +35,7 @@ impl Lobe {
         let fitted = (photons.len() >= Self::FEW).then(|| still.fitted(photons, size));
         let lobe = fitted.filter(|fitted| 2.0 * fitted.spread(photons) < still.spread(photons)).unwrap_or(still);
         let farthest = photons.iter().map(|p| lobe.off(p).length_squared()).fold(0.0, f64::max);
-        // A few photons do not come from as far out as others will. And neighbours see something else than what a few
+        // A few photons do not come from as far out as others will. And neighbours see something other than what a few
         // saw from one place.
         let radius = farthest.sqrt() * (1.0 + 2.0 / count) + if photons.len() < Self::FEW { size / count } else { 0.0 };
         // Not so small that squares of cosines could not tell its directions from others.
@@ -54,7 +54,8 @@ impl Lobe {
         self.target + self.moves * (place - self.place)
     }
 
-    /// The share of its surroundings that it fills, as seen from the middle: about its solid angle over that of a half.
+    /// The share of its surroundings that it fills, as seen from the middle: about its solid angle over that of a
+    /// hemisphere.
     pub fn fills(&self) -> f64 {
         let far = self.target.distance_squared(self.place);
         self.square / (self.square + far)

@@ -1,4 +1,4 @@
-//! From where light comes by way of mirrors and glass.
+//! Where light comes from by way of mirrors and glass.
 
 mod aim;
 mod cells;
@@ -14,7 +14,7 @@ use super::Scatters;
 use crate::math::DVec3;
 use cells::Cells;
 
-/// From where light comes to the places of a scene by way of mirrors and glass: paths that want to find it had better
+/// Where light comes from, to the places of a scene, by way of mirrors and glass: paths that want to find it had better
 /// go where photons came from (Jensen, "Importance Driven Path Tracing using the Photon Map", 1995).
 ///
 /// A path from a matt surface finds a lamp behind a ball of glass only by chance, the less often the smaller the lamp's
@@ -23,7 +23,8 @@ use cells::Cells;
 /// (`scene/photons.rs`); places are divided into cells of about as many of them (`cells.rs`), and photons of a cell
 /// that came by the same surfaces are taken together for a ball that light comes from (`lobe.rs`). A path draws its
 /// direction from the cones to these or from its surface, and is weighed by the density of both together (`aim.rs`). So
-/// photons that are missing, or wrong, make a picture noisier and never another one, and nothing of them need be exact.
+/// photons that are missing, or wrong, make a picture noisier and never another one, and nothing about them need be
+/// exact.
 ///
 /// It depends on the scene alone: not on the camera, nor on threads.
 #[derive(Debug)]

@@ -31,7 +31,7 @@ enum Places {
     Moving(Vec<[Matrix; 2]>),
 }
 
-/// Which transform cannot be, and why.
+/// Which transform is of no use, and why.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BadTransform {
     /// Its index.
@@ -84,8 +84,7 @@ impl Copies {
     }
 
     /// Copies that move while the shutter is open: the matrix of each at its opening and at its closing. Every point
-    /// moves on a straight line; should the matrix between have no inverse at some moment, the copy is not seen at
-    /// that.
+    /// moves on a straight line; should the matrix between have no inverse at some moment, the copy is not seen then.
     ///
     /// # Errors
     /// If one of the matrices given has no inverse.
@@ -125,7 +124,7 @@ impl Copies {
         }
     }
 
-    /// Where a copy stands at a time; none at a moment at which that has no inverse.
+    /// Where a copy stands at a time; none at a moment when its matrix has no inverse.
     #[inline]
     pub(in crate::scene) fn pose(&self, copy: u32, time: f64) -> Option<Pose> {
         match &*self.places {

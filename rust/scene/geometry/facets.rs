@@ -5,7 +5,7 @@ use crate::math::DVec3;
 /// The normal of a face, and which shape it is of.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Facet {
-    /// Unit normal as the winding gives it; NaN of a face without area.
+    /// Unit normal as the winding gives it; NaN for a face without area.
     pub normal: DVec3,
     /// Which shape.
     pub shape: u32,

@@ -40,7 +40,7 @@ impl Group {
     /// Of surfaces, what each is made of and how it shines, with an accelerator made for them.
     ///
     /// # Errors
-    /// If there are 2³¹ primitives or more, flattened: so many.
+    /// If there are 2³¹ primitives or more, flattened: how many.
     pub(in crate::scene) fn of(
         geometry: Geometry,
         materials: Vec<Arc<dyn Material>>,
@@ -171,7 +171,7 @@ impl Group {
         sides[0]
     }
 
-    /// Memory held, without groups in it that were `seen`; it and they are from then on.
+    /// Memory held, without groups in it that were `seen`; it and they count as seen from then on.
     pub fn bytes(&self, seen: &mut Vec<*const Self>) -> usize {
         let me = std::ptr::from_ref(self);
         if seen.contains(&me) {

@@ -27,7 +27,7 @@ use facets::Facets;
 use per_vertex::PerVertex;
 use std::sync::Arc;
 
-/// One triangle mesh as it is described: what it is made of and how it shines.
+/// One triangle mesh as it is described.
 #[derive(Clone, Debug, Default)]
 pub struct Mesh {
     /// Corners.
@@ -182,7 +182,8 @@ impl Geometry {
     /// Joins surfaces; the index of one becomes its shape number.
     ///
     /// # Panics
-    /// If a face names a vertex that its mesh does not have, or there are more than 2³¹ primitives or vertices in all.
+    /// If a face names a vertex that its mesh does not have, there is not a value for each vertex, or there are 2³¹
+    /// primitives or 2³² vertices in all.
     pub fn new<S: Into<Surface>>(surfaces: impl IntoIterator<Item = S>) -> Self {
         let mut all = Self { first: vec![0], ..Self::default() };
         let mut others = Surfaces::default();
@@ -311,7 +312,7 @@ impl Geometry {
         self.bytes_but(&mut Vec::new())
     }
 
-    /// The memory held, without groups that were `seen`; those in it are from then on.
+    /// The memory held, without groups that were `seen`; those in it count as seen from then on.
     pub fn bytes_but(&self, seen: &mut Vec<*const Group>) -> usize {
         self.vertices.bytes()
             + self.normals.bytes()

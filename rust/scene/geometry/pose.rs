@@ -5,7 +5,7 @@
 //! part `L`, rounded once; the copy is where `M`, as rounded, says that it is. The difference from what `L` says is
 //! that of a vertex rounded to f64.
 //!
-//! The bounds, with u = 2⁻⁵³ and κ the greatest row sum of |L| |M|, at least 1 and 3 for a turn at most. A coordinate
+//! The bounds, with u = 2⁻⁵³ and κ the greatest row sum of |L| |M|, at least 1, and for a turn at most 3. A coordinate
 //! of `o'` errs by less than 4u (|M| |o − s|), of which the world sees 4uκ |o − s|, and so for `d'`; three products and
 //! their sum are five roundings, and the difference one. A point `p` of the group is at `L p + s`, where `L`, if it is
 //! not that of which `M` is the inverse but the inverse of `M`, is known by its residual `R = 1 − L M`: the point is
@@ -99,12 +99,12 @@ impl Pose {
         }
     }
 
-    /// The linear part: the inverse of the inverse. None if f64 does not hold it, which it did.
+    /// The linear part: the inverse of the inverse. None if f64 does not hold it, though it held the original.
     fn rows(&self) -> Option<Rows> {
         inverse(&self.inverse).ok()
     }
 
-    /// The box around a box that is put there, and room: it is as large again by 2⁻²² of itself.
+    /// The box around a box that is put there, with room: it is larger by 2⁻²² of itself.
     ///
     /// The room is for `t`, which in the group's space may be off by 2⁻²⁶ of nine radii at most
     /// ([`crate::shapes::triangle::EdgeRay::T_ERROR`]), and for a ray's own roundings, 8uκ of how far it comes. So
@@ -169,14 +169,14 @@ impl Pose {
         })
     }
 
-    /// How many directions about one of the group's space there are to one of the space that it is put into, which is
-    /// unit.
+    /// How much solid angle of the group's space there is to one of the space that it is put into, about a unit
+    /// direction of the latter.
     pub(in crate::scene) fn crowding(&self, direction: DVec3) -> f64 {
         let [a, b, c] = self.inverse;
         a.dot(b.cross(c)).abs() / times(&self.inverse, direction).length().powi(3)
     }
 
-    /// The map itself; none if f64 does not hold it, which it did.
+    /// The map itself; none if f64 does not hold it, though it held the original.
     pub(in crate::scene) fn map(&self) -> Option<Affine> {
         Some(Affine::new(self.rows()?, self.shift))
     }
@@ -235,7 +235,7 @@ pub fn between(start: &[[f64; 4]; 3], end: &[[f64; 4]; 3], time: f64) -> [[f64; 
     if time >= 1.0 {
         return *end;
     }
-    // Not a number counts as 0.
+    // NaN counts as 0.
     let time = if time > 0.0 { time } else { 0.0 };
     std::array::from_fn(|i| std::array::from_fn(|j| start[i][j] + (end[i][j] - start[i][j]) * time))
 }

@@ -16,7 +16,7 @@ pub enum Precision {
 }
 
 impl Precision {
-    /// Whether meshes keep all of their digits of which rounding does this to one.
+    /// Whether meshes keep all of their digits where rounding does this to one of them.
     pub fn is_double(self, rounding: Rounding) -> bool {
         match self {
             Self::Auto => rounding.is_loss(),

@@ -39,7 +39,7 @@ impl Surfaces {
         !self.copies.is_empty()
     }
 
-    /// Which copy of what a number is; none of what is no copy.
+    /// Which copy of what a number is; none for what is no copy.
     #[inline]
     pub fn copy(&self, number: u32) -> Option<(&Copies, u32)> {
         let before = self.copies.partition_point(|&(first, _)| first <= number);
@@ -54,14 +54,14 @@ impl Surfaces {
         self.numbers.first().copied().into_iter().chain(copies).min()
     }
 
-    /// The shape of a number; none of a triangle.
+    /// The shape of a number; none for a triangle.
     #[inline]
     pub fn get(&self, number: u32) -> Option<&dyn Shape> {
         self.numbers.binary_search(&number).ok().map(|i| self.shapes[i].as_ref())
     }
 
-    /// Memory held, without that of shapes themselves, and without groups that were `seen`; those here are from then
-    /// on.
+    /// Memory held, without that of shapes themselves, and without groups that were `seen`; those here count as seen
+    /// from then on.
     pub fn bytes(&self, seen: &mut Vec<*const Group>) -> usize {
         let of_copies = |(_, copies): &(u32, Copies)| copies.bytes() + copies.group().bytes(seen);
         size_of_val(self.numbers.as_slice())

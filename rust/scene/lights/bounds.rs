@@ -74,8 +74,8 @@ impl LightBounds {
             // Within the ball around the box, all ways to it are possible.
             return if radius > 0.0 { self.intensity / radius } else { 0.0 };
         }
-        // Sines and cosines are taken times the distance, so that they need no quotient, and their roots not wait for
-        // each other.
+        // Sines and cosines are taken times the distance, so that they need no quotient, and their roots need not wait
+        // for each other.
         let inverse = 1.0 / square;
         let (sin_ball, cos_ball) = (radius.sqrt(), (square - radius).sqrt());
         let to_ball = |sin: f64, cos: f64| {

@@ -49,9 +49,9 @@ impl Lamp {
 }
 
 impl Few {
-    /// The most that are asked one by one: over metal of alpha 0.1, error times time is by that half as great among 4,
-    /// 8 and 12 panels, and 0.6 times as great among 16. Among more, four candidates of one choice each were tried, of
-    /// which one got the shadow ray: for half the error they took twice the time.
+    /// The most that are asked one by one: over metal of alpha 0.1, that halves error times time among 4, 8 and 12
+    /// panels, and leaves 0.6 of it among 16. Among more, four candidates of one choice each were tried, of which one
+    /// got the shadow ray: for half the error they took twice the time.
     const MOST: usize = 16;
 
     /// Of lights with these strengths within a scene, and so many outside. `pairs` are the numbers of those that are
@@ -91,8 +91,8 @@ impl Lights {
         self.few.count
     }
 
-    /// Draws light of one of the few that reaches a receiver: `choice`, uniform in [0, 1), whether it is asked at all
-    /// (only asked for where it is not always), `u` for the direction. `None` if the draw gives none.
+    /// Draws light of one of the few that reaches a receiver: `choice`, uniform in [0, 1), decides whether it is asked
+    /// at all (only asked for where it is not always), `u` for the direction. `None` if the draw gives none.
     #[inline]
     pub fn sample_one(
         &self,

@@ -1,4 +1,4 @@
-//! What every light can be asked that is no surface, and what is drawn from one.
+//! What every light that is no surface can be asked, and what is drawn from one.
 
 use super::{LightBounds, Receiver};
 use crate::math::DVec3;
@@ -21,7 +21,8 @@ pub struct LightSample {
 }
 
 impl LightSample {
-    /// Light that comes from a point, and what it brings to a receiver at distance 1 along the way, were it all.
+    /// Light from a point of this intensity along a direction away from it; `None` where that is 0, or at the point
+    /// itself.
     #[inline]
     pub(super) fn of_point(position: DVec3, receiver: &Receiver, intensity: impl FnOnce(DVec3) -> Rgb) -> Option<Self> {
         let way = position - receiver.position;
@@ -43,7 +44,7 @@ impl LightSample {
     }
 }
 
-/// From where a light shines: lights are chosen by it.
+/// Where a light shines from: lights are chosen by it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Reach {
     /// From within the scene.
@@ -57,8 +58,8 @@ pub enum Reach {
     Outside {
         /// Its radiance integrated over all directions, a mean of the channels.
         flux: f64,
-        /// The share of all directions that it effectively comes from, (∫L)² / (4π ∫L²): 1 of the same light from
-        /// everywhere, 0 of that from a single direction. The less it is, the less often does scattering find the
+        /// The share of all directions that it effectively comes from, (∫L)² / (4π ∫L²): 1 for the same light from
+        /// everywhere, 0 for light from a single direction. The less it is, the less often does scattering find the
         /// light.
         spread: f64,
     },
@@ -66,18 +67,18 @@ pub enum Reach {
 
 /// A light that is no surface.
 pub trait Light: Debug + Send + Sync {
-    /// What of it cannot be, in a few words; `Ok` if all can.
+    /// What is wrong with it, in a few words; `Ok` if nothing is.
     fn validate(&self) -> Result<(), String>;
 
-    /// From where it shines. The power or flux of one that is dark is 0, and it is never asked for a sample.
+    /// Where it shines from. The power or flux of one that is dark is 0, and it is never asked for a sample.
     fn reach(&self) -> Reach;
 
     /// Draws light that reaches a receiver, as if it were the only light, by two numbers in [0, 1). `None` if the draw
     /// gives none. Light below a receiver's horizon need not be left out.
     fn sample(&self, receiver: &Receiver, u: [f64; 2]) -> Option<LightSample>;
 
-    /// The radiance that comes from outside along a direction, which is unit and points there; none of a light that is
-    /// found by its samples only.
+    /// The radiance that comes from outside along a direction, which is unit and points there; black for a light that
+    /// is found by its samples only.
     fn outside(&self, _direction: DVec3) -> Rgb {
         Rgb::ZERO
     }

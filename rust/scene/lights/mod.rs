@@ -176,8 +176,8 @@ impl Lights {
     }
 
     /// The density with which [`Lights::sample`] draws, for a receiver, the direction of a ray from there, which is
-    /// unit and meets an emitting primitive under the cosine of an angle to its normal. 0 of what shines in copies that
-    /// move, or in copies of copies, or in too many: it is never drawn, and found by rays that meet it.
+    /// unit and meets an emitting primitive under the cosine of an angle to its normal. 0 for what shines in copies
+    /// that move, or in copies of copies, or in too many: it is never drawn, and found by rays that meet it.
     #[inline]
     pub fn surface_pdf(&self, geometry: &Geometry, receiver: &Receiver, ray: &Ray, hit: &Hit, cosine: f64) -> f64 {
         let Some(choice) = &self.choice else { return 0.0 };

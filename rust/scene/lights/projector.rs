@@ -27,7 +27,7 @@ impl Projector {
     /// radians. Between the middles of its texels the picture is interpolated.
     ///
     /// # Errors
-    /// If the positions are one, or `up` points along their line; in a few words.
+    /// If the positions are the same, or `up` points along their line; in a few words.
     pub fn new(
         picture: Arc<Picture>,
         [position, target, up]: [DVec3; 3],

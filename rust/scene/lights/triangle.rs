@@ -14,7 +14,7 @@ pub(super) struct SeenTriangle {
     edges: [DVec3; 2],
     /// Along the normal, twice the area long.
     area: DVec3,
-    /// Unless it is drawn from by area.
+    /// None where points are drawn by area.
     spherical: Option<Spherical>,
 }
 
@@ -29,7 +29,7 @@ struct Spherical {
 }
 
 impl SeenTriangle {
-    /// How many times as far as its longer edge the first corner of a distant triangle is, at least. Of a point drawn
+    /// How far away the first corner of a distant triangle is at least, in lengths of its longer edge. Of a point drawn
     /// by area the distance then varies by a factor of 3 at most.
     const DISTANT: f64 = 2.0;
 
@@ -76,7 +76,7 @@ impl SeenTriangle {
         }
     }
 
-    /// Where a direction meets it, which does but for roundings (by Cramer's rule).
+    /// Where a direction meets it, as it does but for roundings (by Cramer's rule).
     fn meet(&self, direction: DVec3) -> [f64; 2] {
         let [first, second] = self.edges;
         let across = direction.cross(second);

@@ -45,5 +45,5 @@ impl Coats {
     }
 }
 
-/// Of all roughnesses so many parts.
+/// How many parts the whole range of roughness is cut into.
 const STEPS: f64 = 24.0;

@@ -61,7 +61,7 @@ pub trait Material: Debug + Send + Sync {
         None
     }
 
-    /// What of it cannot be, in a few words; `Ok` if all can.
+    /// What is wrong with it, in a few words; `Ok` if nothing is.
     fn validate(&self) -> Result<(), String>;
 
     /// The share of rays that meet it, 0 to 1: the others go on as if nothing were there.
@@ -96,8 +96,8 @@ pub trait Material: Debug + Send + Sync {
     }
 
     /// The share of an even light from nowhere that it reflects: the ambient coefficient of the classic models of light
-    /// (Phong, "Illumination for Computer Generated Pictures", 1975). Where these have no word for it, that of light
-    /// from everywhere which it does not scatter into single directions.
+    /// (Phong, "Illumination for Computer Generated Pictures", 1975). Where these have no word for it, the share of
+    /// light from everywhere that it scatters into other than single directions.
     fn ambient(&self, at: &ShadingPoint) -> Rgb {
         self.scattering(at).matt_albedo()
     }

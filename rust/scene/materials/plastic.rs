@@ -32,7 +32,7 @@ impl PlasticMaterial {
         }
     }
 
-    /// Of a coat whose facets scatter once; of one without, if it is smooth.
+    /// Of a coat whose facets scatter once; of one without facets, if it is smooth.
     fn once<F: Facets>(&self, reflectance: Rgb, eta: f64, alpha: f64) -> Bsdf
     where
         Bsdf: From<CoatedOnce<F>>,

@@ -6,7 +6,8 @@ use crate::scene::ShadingPoint;
 use crate::scene::textures::{Needs, TexturePoint, Value};
 
 /// How rough a surface of small facets is, along u and along v: as an artist's number between 0 and 1, whose square is
-/// the α of the facets' distribution (Burley, "Physically-Based Shading at Disney", 2012; so has it glTF), or as that.
+/// the α of the facets' distribution (Burley, "Physically-Based Shading at Disney", 2012; glTF has it so too), or as α
+/// itself.
 #[derive(Clone, Debug)]
 pub struct Roughness {
     /// Along u and along v; the same value twice for what is alike in all directions.

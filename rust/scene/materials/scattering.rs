@@ -57,7 +57,7 @@ impl Scattering {
         }
     }
 
-    /// By what all of it is to be multiplied for light that came to such a surface before, as [`Bsdf::again`] has it;
+    /// What all of it is to be multiplied by for light that came to such a surface before, as [`Bsdf::again`] has it;
     /// of several, as much as their shares ask for.
     #[inline]
     pub fn again(&self) -> Rgb {

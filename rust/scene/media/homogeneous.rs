@@ -36,8 +36,8 @@ impl Medium for Homogeneous {
         self.left(ray.t_max - ray.t_min)
     }
 
-    /// By the extinction of one channel, of which each is as likely: the weight is over the mean density of all three,
-    /// and so at most 3 however much they differ.
+    /// By the extinction of one channel, each equally likely: the weight is over the mean density of all three, and so
+    /// at most 3 however much they differ.
     fn sample_distance(&self, ray: &Ray, choice: f64, u: f64) -> MediumSample {
         let extinction = self.extinction();
         let chosen = extinction[((choice * 3.0) as usize).min(2)];
@@ -107,7 +107,7 @@ mod tests {
             for (sums, expected) in [(through, left), (scattered, albedo * (Rgb::ONE - left))] {
                 let [mean, square] = sums.map(|sum| sum / f64::from(count));
                 let error = ((square - mean * mean).max(Rgb::ZERO) / f64::from(count)).map(f64::sqrt);
-                // Of what is too seldom to be drawn, three draws of weight 3 are no surprise.
+                // Where something is too rare to be drawn, three draws of weight 3 are no surprise.
                 let rare = 9.0 / f64::from(count);
                 assert!(
                     ((mean - expected).abs() - 4.0 * error).max_element() < rare,

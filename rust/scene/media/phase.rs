@@ -33,8 +33,8 @@ impl HenyeyGreenstein {
 
     /// Draws a direction to go on along, with the density of [`HenyeyGreenstein::pdf`].
     ///
-    /// The inverse of the distribution is had for 1 − cos θ, in which nothing cancels, and g = 0 is no exception:
-    /// 1 − cos θ = 2 (1 − u)(1 + gu) ((1 − g) / (1 − g + 2gu))².
+    /// The inverse of the distribution is taken for 1 − cos θ, in which nothing cancels, and g = 0 is no exception: 1 −
+    /// cos θ = 2 (1 − u)(1 + gu) ((1 − g) / (1 − g + 2gu))².
     #[inline]
     pub fn sample(&self, before: DVec3, u: [f64; 2]) -> DVec3 {
         let g = self.g;

@@ -68,7 +68,7 @@ impl Octaves {
     }
 }
 
-/// Fractional Brownian motion: clouds, stains, terrain (Mandelbrot and Van Ness, 1968; as a sum of noises Perlin, "An
+/// Fractional Brownian motion: clouds, stains, terrain (Mandelbrot and Van Ness, 1968; as a sum of noises: Perlin, "An
 /// Image Synthesizer", 1985). A sum beyond ±1, which is rare, counts as that.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fbm {

@@ -131,7 +131,7 @@ impl fmt::Debug for Picture {
     }
 }
 
-/// Why a picture cannot be.
+/// Why there can be no such picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PictureError {
     /// It has no points, or another number of them than its width times its height.

@@ -25,8 +25,8 @@ use tape::Tape;
 /// No root within the box is skipped: along a ray they are isolated by interval arithmetic with outward rounding
 /// (`roots.rs`). What f64 cannot tell from zero counts as zero, so that two roots closer together than rounding can
 /// tell apart are one touch. A stretch on which the expression is zero all along is met once, where it begins. A pole
-/// or a jump is no root. After 4096 intervals a line is taken as it is known by then, so that no expression
-/// hangs. The surface is cut open where the box ends.
+/// or a jump is no root. After 4096 intervals a line is taken as it is known by then, so that no expression hangs. The
+/// surface is cut open where the box ends.
 ///
 /// `u` and `v` are the position in the box, each from 0 to 1, along the two axes that follow the one to which the
 /// normal is nearest: x and y for z, y and z for x, z and x for y. So they are smooth wherever that axis does not
@@ -193,7 +193,7 @@ impl Shape for Implicit {
         let mut stopped = false;
         roots::roots(&mut along, span, wanted, self.shortest(), &mut |root| {
             let along = far.low + root.place;
-            // Where a ray starts on the surface as far as f64 tell, it does.
+            // Where a ray starts on the surface as far as f64 can tell, it does.
             let start = along.abs() <= 2.0 * self.shortest() && self.enclosed(ray.origin).contains(0.0);
             let t = if start { 0.0 } else { along * scale };
             if t >= ray.t_min && t <= ray.t_max && t.is_finite() {

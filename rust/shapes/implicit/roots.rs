@@ -2,11 +2,11 @@
 //!
 //! What is known of the function is an enclosure of its values and first two derivatives over any interval. An interval
 //! whose values exclude zero has no root. Where the slope excludes zero there is one if the signs at the ends differ,
-//! and none else. Where the second derivative excludes it the slope has at most one zero, which splits the interval
-//! into two of that kind. What is left is halved (Moore 1966; Mitchell, "Robust Ray Intersection with Interval
-//! Arithmetic", 1990).
+//! else none. Where the second derivative excludes it the slope has at most one zero, which splits the interval into
+//! two of that kind. What is left is halved (Moore 1966; Mitchell, "Robust Ray Intersection with Interval Arithmetic",
+//! 1990).
 //!
-//! At single points f64 leave a sign open where the value is zero to within rounding. Such points, and intervals too
+//! At single points f64 leaves a sign open where the value is zero to within rounding. Such points, and intervals too
 //! short to halve, make a *zone*. When the next sign is certain, the zone is told once: as a crossing if it differs
 //! from the last one, as a touch if not. So roots that rounding cannot tell apart count as one, or as none that is
 //! crossed, and signs always alternate between crossings.
@@ -84,10 +84,10 @@ struct Search<'a, F> {
 }
 
 /// Calls `met` with every root from `span.low` to `span.high` that is not certainly outside of `wanted`, in order,
-/// until it says true; then says that.
+/// until it says true, and says whether it did.
 ///
-/// Which roots there are does not depend on `wanted`, which only saves work. Some units of `shortest` are what places
-/// are told to.
+/// Which roots there are does not depend on `wanted`, which only saves work. Places are told to within some units of
+/// `shortest`.
 pub fn roots<F: Function>(
     function: &mut F,
     span: Interval,

@@ -53,7 +53,7 @@ proptest! {
         let mut roots = roots;
         roots.sort_unstable();
         roots.dedup_by_key(|r| r.0);
-        // Roots that f64 hold exactly, and others.
+        // Roots that f64 holds exactly, and others.
         for scale in [0.03125, 0.03] {
             let factor = |(r, power): &(_, _)| format!("(x - {:?})**{power}", f64::from(*r) * scale);
             let factors: Vec<String> = roots.iter().map(factor).collect();

@@ -12,7 +12,7 @@ use std::cmp::Ordering;
 impl Revolution {
     /// Where a line meets it, with the foot of the axis as the line's origin of space.
     ///
-    /// On the line the surface is `a t² + 2 b t + c = 0`. Inside it is the left side at most 0, if the axis is long
+    /// On the line the surface is `a t² + 2 b t + c = 0`. Inside, the left side is at most 0, if the axis is long
     /// enough; between the two planes the closed shape is convex, so that the line lies within from the first to the
     /// last of its meetings with side and caps. Which root lies between the planes, and which plane is met within its
     /// disk, follows from the signs of the left side and of its derivative where the line meets the planes: no root is
@@ -101,8 +101,8 @@ impl Revolution {
     /// r |d × v|, for most lines that come near and meet nothing.
     ///
     /// With u = [`UNIT`], and the rounded ways w and v: a cross product errs by 3√2 u of the product of its factors'
-    /// lengths, and the triple product by 3√2 + 4 of |d| |w| |v|. Lengths that are not extreme leave underflow no part
-    /// in it.
+    /// lengths, and the triple product by (3√2 + 4) u of |d| |w| |v|. Lengths that are not extreme leave underflow no
+    /// part in it.
     #[inline]
     pub(in crate::shapes) fn is_passed_by(&self, ray: &Ray) -> bool {
         const LEAST: f64 = f64::from_bits((1023 - 200) << 52);

@@ -136,8 +136,8 @@ impl Revolution {
 
     /// The point of given coordinates.
     ///
-    /// The error of a coordinate is that of its last sum, one unit of its own, and those of the summands, which come of
-    /// a few roundings each: 8 of the height's and 16 of the radius', with the frame's.
+    /// The error of a coordinate is that of its last sum, one unit of its own, and those of the summands, which come
+    /// from a few roundings each: 8 of the height's and 16 of the radius', with the frame's.
     pub(in crate::shapes) fn at(&self, [u, v]: [f64; 2]) -> Point {
         let (frame, height) = self.frame();
         let [base, tip] = self.radii();

@@ -38,7 +38,7 @@ pub struct Meeting {
     pub contact: Contact,
 }
 
-/// What counts as nothing along the line: far below what f64 tell of coordinates of the torus's size.
+/// What counts as nothing along the line: far below what f64 tells of coordinates of the torus's size.
 const NOTHING: f64 = 1.0 / (1u128 << 88) as f64;
 
 fn dot(a: &[DoubleDouble; 3], b: &[DoubleDouble; 3]) -> DoubleDouble {
@@ -66,7 +66,7 @@ struct Line<'a> {
 
 impl<'a> Line<'a> {
     /// For an origin relative to the centre and a direction with its largest coordinate in [1, 2). None where the line
-    /// passes by the sphere around.
+    /// passes by the sphere around the torus.
     fn new(tube: &'a Tube, q: [DoubleDouble; 3], d: DVec3) -> Option<Self> {
         let far = DVec3::from_array(q.map(|x| x.high));
         let (around, length) = (tube.major + tube.minor, d.length());

@@ -16,8 +16,8 @@
 //!
 //! With each weight off by e, and S their sum, the mean of the corners' depths, which `t` is, moves by at most 3e ·
 //! range / (|S| − 3e). For slivers, and for what is grazed, that is more than a ray starts off the surface that it
-//! leaves. So a `t` that is not negative but may be by this is computed from exact weights: what a ray meets lies
-//! before it.
+//! leaves. So a `t` that is not negative but may be by this is computed from exact weights: what a ray meets lies ahead
+//! of it.
 
 use crate::math::robust::{UNIT, greater, lesser, normalising_scale};
 use crate::math::{DVec3, Ray, Region, exact_edges, exact_turn};
@@ -99,8 +99,8 @@ impl EdgeRay {
         }
     }
 
-    /// Makes a ray ready for the triangles of a region. None if it cannot hit anything: something
-    /// is NaN or infinite, the direction is zero (or has no coordinate that is a normal number), or `t_min > t_max`.
+    /// Makes a ray ready for the triangles of a region. None if it cannot hit anything: something is NaN or infinite,
+    /// the direction is zero (or has no coordinate that is a normal number), or `t_min > t_max`.
     #[inline(always)]
     pub fn new(ray: &Ray, region: &Region) -> Option<Self> {
         // Zero times infinity or NaN is NaN: one comparison for six numbers.

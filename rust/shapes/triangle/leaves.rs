@@ -77,7 +77,7 @@ pub trait Leaves<const N: usize>: Send + Sync + Sized + 'static {
         if Self::EDGES { [a, sum(simd, a, b), sum(simd, a, c)] } else { [a, b, c] }
     }
 
-    /// Calls `met` with each triangle of a leaf that the ray meets, until it says true; then that is said.
+    /// Calls `met` with each triangle of a leaf that the ray meets, until it says true; says whether it did.
     #[inline(always)]
     fn meet<S: Simd<N>>(
         &self,

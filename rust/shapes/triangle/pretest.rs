@@ -19,7 +19,7 @@
 //! Most of what is left lies behind the ray: the surface that it leaves. The ray's parameter is t = f · q / e · p,
 //! negative where numerator and denominator are certainly of opposite sign, and then the triangle is rejected if t must
 //! not be. A product in f · q errs by 2εLE² + 10εLE² + 2εLE², and the sum by 52εLE²: 64εLE² is allowed, and 128εE² for
-//! the denominator. With L below 2⁴⁰ no sum exceeds 6LE² < 2¹²⁵; beyond it nothing is rejected so.
+//! the denominator. With L below 2⁴⁰ no sum exceeds 6LE² < 2¹²⁵; beyond it nothing is rejected by t.
 //!
 //! Corners that are f64 are kept relative to the scene's centre, in box units: a corner, and the edges from there as
 //! f64 has them. All of it is rounded to f32. Then an edge errs by εE as before, and s by ε|corner| more, which with

@@ -3,7 +3,7 @@
 use num_bigint::{BigInt, Sign};
 use raywright::math::DVec3;
 
-/// What every coordinate is multiplied with to make it an integer, as a power of two.
+/// What every coordinate is multiplied by to make it an integer, as a power of two.
 pub const SHIFT: usize = 1074;
 
 /// A point times 2¹⁰⁷⁴.

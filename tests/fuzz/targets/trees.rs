@@ -38,7 +38,7 @@ fn boxes(u: &mut Unstructured) -> Result<()> {
     let mut boxes = Vec::new();
     for _ in 0..u.int_in_range(0..=40)? {
         let [a, b] = [single_point(u, Range::Any)?, single_point(u, Range::Any)?];
-        // Of numbers that are no numbers there are no boxes: whoever makes them leaves those out.
+        // Of NaN and infinity there are no boxes: whoever makes boxes leaves those out.
         let is_box = a.is_finite() && b.is_finite();
         let sorted = Aabb { min: a.min(b), max: a.max(b) };
         boxes.push(if !is_box || u.ratio(1, 16)? { Aabb::EMPTY } else { sorted });

@@ -127,7 +127,7 @@ fn environments_add_up() {
     let lit = under(all.into_iter().chain([Arc::new(lamp) as _]).collect());
     assert_near(irradiance_at(&lit, &FLOOR, 50_000), 2.3 * PI + 7.0, 0.02);
     assert_near(irradiance_at(&lit, &Receiver::free(DVec3::ZERO), 50_000), 2.3 * 4.0 * PI + 7.0, 0.02);
-    // The density is that of the draws' directions, whichever light they come of.
+    // The density is that of the draws' directions, whichever light they come from.
     let grid = Grid { rows: 8, columns: 12 };
     let sum: f64 = grid.integrals(40, |d| lit.lights().outside_pdf(&FLOOR, d)).iter().sum();
     let outside = (0..20_000).filter_map(|n| super::draw(&lit, &FLOOR, n)).filter(|s| s.source.is_none()).count();

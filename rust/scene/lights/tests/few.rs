@@ -128,7 +128,7 @@ fn few_are_two_to_sixteen_that_can_be_drawn() {
     assert_eq!(few(panels(16), vec![]), 16);
     assert_eq!(few(panels(16), vec![point()]), 0);
     assert_eq!(few(panels(17), vec![]), 0);
-    // What cannot be drawn is none of them, and is told no density.
+    // What cannot be drawn is none of them, and is given no density.
     let endless = Plane { point: DVec3::Z, normal: DVec3::NEG_Z };
     let shapes = vec![panel(0), round(endless, 1.0), panel(1)];
     let lit = lit(shapes, vec![]);

@@ -16,7 +16,7 @@ fn sky(radiance: f64) -> Arc<dyn Light> {
     Arc::new(ConstantEnvironment { radiance: Rgb::splat(radiance) })
 }
 
-/// That a scene gives the floor an irradiance, to a percent.
+/// Asserts that a scene gives the floor an irradiance, to a percent.
 fn assert_irradiance(scene: &Scene, expected: f64) {
     assert_near(irradiance_at(scene, &FLOOR, DRAWS), expected, 0.01);
 }

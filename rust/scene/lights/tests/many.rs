@@ -156,7 +156,7 @@ fn estimate(choice: &Choice, lights: &[PointLight], receiver: &Receiver) -> (f64
 
 #[test]
 fn in_a_hall_of_lamps_a_tree_leaves_a_small_part_of_the_variance() {
-    // A thousand lamps over a long floor: by power, next to all draws go to lamps far away.
+    // A thousand lamps over a long floor: by power, nearly all draws go to lamps far away.
     let lamp = |i: u32| PointLight {
         position: DVec3::new(f64::from(i % 100), f64::from(i / 100), 1.0 + f64::from(i % 7) / 7.0),
         intensity: white(1.0 + f64::from(i % 5)),

@@ -27,7 +27,7 @@ fn draw(scene: &Scene, receiver: &Receiver, number: u32) -> Option<LightSample> 
     scene.lights().sample(scene.geometry(), receiver, choice, u)
 }
 
-/// Mean and standard error of the irradiance at a receiver, nothing shadowing: of a free one, of all light that comes
+/// Mean and standard error of the irradiance at a receiver, nothing shadowing: for a free one, of all light that comes
 /// to it.
 fn irradiance_at(scene: &Scene, receiver: &Receiver, draws: u32) -> (f64, f64) {
     let (mut sum, mut squares) = (0.0, 0.0);
@@ -66,7 +66,7 @@ impl Grid {
     }
 
     /// The integral of a function over each cell, by the midpoints of so many parts each way, of the colatitude and of
-    /// the turn: what goes with the inverse of the sine is smooth so.
+    /// the turn: what goes with the inverse of the sine becomes smooth.
     fn integrals(&self, parts: usize, of: impl Fn(DVec3) -> f64) -> Vec<f64> {
         let mut sums = vec![0.0; self.rows * self.columns];
         for row in 0..self.rows {
@@ -86,7 +86,7 @@ impl Grid {
     }
 }
 
-/// That the density from outside integrates to 1, to a share, and is that of the draws.
+/// Asserts that the density from outside integrates to 1, to within a share, and is that of the draws.
 fn assert_density(light: &dyn Light, receiver: &Receiver, parts: usize, share: f64) {
     let grid = Grid { rows: 8, columns: 12 };
     let expected = grid.integrals(parts, |d| light.outside_pdf(receiver, d));

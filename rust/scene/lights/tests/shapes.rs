@@ -57,8 +57,8 @@ fn triangles_give_lamberts_irradiance_at_any_distance() {
 
 #[test]
 fn next_to_its_plane_a_triangle_keeps_its_digits() {
-    // Above its plane by less and less, up to its being drawn by area. All of its light is its solid angle (van
-    // Oosterom and Strackee, 1983), in which the determinant of the corners is the height.
+    // Above its plane by less and less, until it is drawn by area. All of its light is its solid angle (van Oosterom
+    // and Strackee, 1983), in which the determinant of the corners is the height.
     let corners = [DVec3::ZERO, DVec3::X, DVec3::Y];
     for height in [1e-1, 1e-3, 1e-6, 1e-8, 1e-10, 1e-14] {
         for (x, y) in [(-0.01, 0.5), (0.7, 0.7), (0.25, 0.25), (-0.3, -0.3)] {
@@ -104,7 +104,7 @@ fn near_triangles_are_drawn_evenly_by_solid_angle() {
     for number in 0..20_000 {
         counts[grid.cell(draw(&lit, &FLOOR, number).unwrap().direction)] += 1;
     }
-    // Cells that the triangle's border crosses are measured roughly: they are one.
+    // Cells that the triangle's border crosses are measured roughly: they count as one.
     let whole: f64 = seen.iter().sum();
     let full = 4.0 * PI / seen.len() as f64 * (1.0 - 1e-9);
     let (mut sure, mut expected, mut rest) = (vec![0], vec![0.0], 0);
@@ -174,7 +174,7 @@ fn within_what_shines_inwards_there_is_light_from_everywhere() {
 
 #[test]
 fn disks_give_the_textbook_irradiance() {
-    // E = π L r² / (r² + h²) below the middle (Howell, C-41 with one small disk), as far as a disk of area 10⁻¹².
+    // E = π L r² / (r² + h²) below the middle (Howell, C-41 with one small disk), down to a disk of area 10⁻¹².
     for (radius, height) in
         [(1.0, 1.0), (1.0, 0.3), (1.0, 1e-3), (0.01, 1.0), (5.641_895_835_477_563e-7, 1.0), (2.0, 1e7)]
     {
@@ -264,7 +264,7 @@ fn a_draw_of_any_primitive_has_the_density_that_its_hit_is_told() {
             found += 1;
             let cosine = -lit.geometry().surface(&ray, &hits[0]).normal.dot(light.direction);
             let pdf = lit.lights().surface_pdf(lit.geometry(), &FLOOR, &ray, &hits[0], cosine);
-            // As a rounding of the direction moves the point by 1 / cos.
+            // A rounding of the direction moves the point by 1 / cos of it.
             assert!((pdf / light.pdf - 1.0).abs() < 1e-9 / cosine, "{pdf} {}", light.pdf);
         }
         assert!(found > 200, "{found}");

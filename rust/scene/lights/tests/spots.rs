@@ -1,4 +1,4 @@
-//! Lights without extent: their power, and what of them cannot be.
+//! Lights without extent: their power, and which are refused.
 
 use super::super::{
     DirectionalLight, Light, LightSample, Picture, PointLight, Profile, Projector, Reach, Receiver, SpotLight,

@@ -1,5 +1,4 @@
-//! The ways to meet a triangle that the literature knows, one ray and one triangle at a time: to be read, and
-//! compared.
+//! The ways to meet a triangle that the literature knows, one ray and one triangle at a time: to be read, and compared.
 //!
 //! Each file is one of them as it was published, but for three things that all share, so that they answer the same
 //! question on the same numbers: rays and corners come in f32; both sides of a triangle are hit; and a hit has a
