@@ -70,7 +70,7 @@ class Pbr(NamedTuple):
     emission : (3,) array, optional
         Radiance.
     alpha_mode : str, optional
-        ``"MASK"`` and ``"BLEND"`` have alpha count.
+        ``"MASK"`` and ``"BLEND"`` make alpha count.
     alpha_cutoff : float, optional
         Of a mask: the least alpha that is there; 0.5 if not given.
     both_sides : bool

@@ -184,8 +184,7 @@ class Queries:
         """Find what the closest hit of each ray takes: nodes visited and primitives tested.
 
         Takes and raises what `intersect` does. Neighbouring rays share visits, so a ray's cost may depend on
-        which others are asked with it. A copy of an instance counts as one primitive, whatever it
-        takes there.
+        which others are asked with it. A copy of an instance counts as one primitive, whatever it takes.
 
         Returns
         -------
@@ -403,8 +402,8 @@ class Queries:
         Raises
         ------
         ValueError
-            If the last dimension is not 3, shapes do not broadcast, `max_distance` is negative or NaN, or the
-            scene has instances, of which closest points are not told.
+            If the last dimension is not 3, shapes do not broadcast, `max_distance` is negative or NaN, or
+            something in the scene is no mesh, such as an instance.
         TypeError
             If an array does not hold real numbers.
 
@@ -436,7 +435,7 @@ class Queries:
         Raises
         ------
         ValueError
-            If the last dimension is not 3.
+            If the last dimension is not 3, or something in the scene is no mesh, such as an instance.
         TypeError
             If the array does not hold real numbers.
         """

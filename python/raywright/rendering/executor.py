@@ -367,7 +367,7 @@ class _Courier:
                 os.unlink(self._spool)
 
     def check(self) -> None:
-        """Scatter the job unless it is, which it is no longer where all workers that had it were lost."""
+        """Scatter the job unless it is scattered; it is no longer once all workers that had it are lost."""
         if self._client is not None and getattr(self._scattered, "status", None) != "finished":
             self._scattered = self._client.scatter(self._bytes, broadcast=True, hash=False)
 

@@ -50,7 +50,7 @@ class Scene(Queries):
         all vertices are float32 numbers anyway.
     quality : {"balanced", "fast build", "fast rays"}
         How long the accelerator may take to build for the sake of rays. Unless it is "fast build", what is
-        long and diagonal may be cut to pieces for it, and for "fast rays" what else is long; such a tree is
+        long and diagonal may be cut into pieces for it, and for "fast rays" what else is long; such a tree is
         built anew by `refit`.
 
     Raises
@@ -208,9 +208,9 @@ class Scene(Queries):
         Notes
         -----
         What cannot be refitted is built anew, for example where other faces than before have a corner that
-        is NaN or infinite, or where the accelerator holds pieces of faces;
-        ``scene.accelerator.kind`` then does not end in "refitted". With ``quality="fast build"`` the default
-        accelerator holds no pieces. A scene that was not asked anything yet is built when it is.
+        is NaN or infinite, or where the accelerator holds pieces of faces; ``scene.accelerator.kind`` then
+        does not end in "refitted". With ``quality="fast build"`` the default accelerator holds no pieces. A
+        scene that was not asked anything yet is built when it is.
         """
         after = Scene(self._moved(vertices), *self._parts()[1:])
         with self._lock:

@@ -42,7 +42,7 @@ def studio(
         The axis of the mesh that points up.
     width, height : int
         Size of the picture in pixels.
-    accelerator : BVH, Grid, NestedGrid or BruteForce
+    accelerator : BVH or another accelerator
         The structure that finds hits.
 
     Raises

@@ -2,8 +2,8 @@
 
 The models are those of the format's own illum (Alias|Wavefront, 1995): a matt surface; highlights by the
 formula of Blinn (1977); mirrors; panes; and glass that refracts. What the statements for physically based
-rendering say (Pr, Pm) goes before, and Blender, which fits a material of another kind to the numbers of this
-one, is read by the rule by which it writes.
+rendering say (Pr, Pm) takes precedence, and Blender, which fits a material of another kind to the numbers of
+this one, is read by the rule by which it writes.
 """
 
 import math
