@@ -194,7 +194,7 @@ class CompiledScene:
         """((3,) least, (3,) greatest) as (2,3); None for an empty scene."""
     @property
     def bytes(self) -> int:
-        """Memory held by the compiled scene: accelerator, vertices and faces."""
+        """Bytes held by the compiled scene: accelerators, faces, vertices with all they have, transforms."""
 
 @final
 class Rendering:

@@ -1,4 +1,4 @@
-"""The material of glTF 2.0, of this library's materials: metal and matt, clear, cut out, and shining."""
+"""The material of glTF 2.0, made of this library's materials: metal and matt, clear, cut out, and shining."""
 
 from typing import Any, NamedTuple
 

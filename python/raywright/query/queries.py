@@ -142,10 +142,10 @@ class Queries:
         Notes
         -----
         A surface is crossed once where a ray goes through an edge or a vertex of it, not once for each face
-        there. Where a ray only touches an edge or a vertex, it is told twice, as if in and out: two faces, or
-        twice the same one where the ray meets no other. So a closed surface has an even number of hits seen
-        from outside, and an odd number from inside, however the ray is aimed. Faces that lie upon each other
-        are all told.
+        there. Where a ray only touches an edge or a vertex, that is told twice, as if in and out: by two
+        faces, or twice by the same one where the ray meets no other. So a closed surface has an even number
+        of hits seen from outside, and an odd number from inside, however the ray is aimed. Faces that lie
+        upon each other are all told.
         """
         rays = ray_arguments(origins, directions, t_min, t_max, threads, time)
         core = self._core or self._compiled()
@@ -258,7 +258,7 @@ class Queries:
         Faces are projected into the picture (Catmull 1974), and at the pixels that one may cover it is
         decided for the pixel's ray, exactly, as `intersect` does. Parts of the picture with too many faces
         are asked of the accelerator, and all of it is if there are more faces than a quarter of its pixels,
-        something in the scene is no mesh, or the camera is another than a pinhole that stands still.
+        something in the scene is no mesh, or the camera is not a pinhole that stands still.
         ``report.first_hits`` tells where it pays.
 
         Parameters

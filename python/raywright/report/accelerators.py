@@ -83,8 +83,8 @@ def accelerators(
     """Compare accelerators on the same rays: what they cost to build and to hold, and what rays cost.
 
     Every accelerator is built over the scene's shapes. They take turns, set of rays by set of rays, and each
-    turn begins with another, so that each has its share of whatever else the machine does; what is told are
-    medians over the turns. All are in memory at once.
+    turn begins with another, so that each has its share of whatever else the machine does; medians over the
+    turns are told. All are in memory at once.
 
     Parameters
     ----------

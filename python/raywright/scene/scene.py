@@ -139,7 +139,10 @@ class Scene(Queries):
 
     @property
     def bytes(self) -> int:
-        """Memory that the compiled scene holds: accelerators, vertices, faces, normals and transforms."""
+        """Bytes that the compiled scene holds: accelerators, faces, vertices with all they have, transforms.
+
+        Textures do not count.
+        """
         return self._compiled().bytes
 
     @property
@@ -188,9 +191,8 @@ class Scene(Queries):
         ----------
         vertices : (V, 3) array, or list of them
             The vertices of the only shape, or of each shape; as many as it has. None in the list leaves a
-            shape where it is, which is all that can be said of a curved one. Of an `Instance` the transforms,
-            (4, 4) or (N, 4, 4), or a tuple of two such arrays for copies that move; its shapes stay as they
-            are.
+            shape where it is, the only choice for a curved one. Of an `Instance` the transforms, (4, 4) or
+            (N, 4, 4), or a tuple of two such arrays for copies that move; its shapes stay as they are.
 
         Returns
         -------

@@ -28,7 +28,7 @@ def load(
     """Read a scene, or a mesh, with all that it takes to make a picture of it.
 
     What a file holds is shown in its own light where it has some: lights, or surfaces that shine and give
-    off enough, 0.02 W·sr⁻¹·m⁻² and more on average over all of its surface, or anything that shines where
+    off enough, 0.02 W·sr⁻¹·m⁻² or more on average over all of its surface, or anything that shines where
     the file has a camera. What has no light is lit as in `scenes.studio`: for a camera of its own, or else
     framed, and on a floor.
 

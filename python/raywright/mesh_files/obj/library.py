@@ -16,7 +16,7 @@ from .text import name_of, text_of, told
 
 LOST_FILES = "files of materials are left out"
 LOST_MATERIALS = "materials that are in no file beside it are left out"
-# More files than this no program names, and each is looked for.
+# No program names more files than this, and each is looked for.
 _MOST = 256
 _ONE = re.compile(r"\S.*?\.mtl\b|\S+", re.IGNORECASE)
 

@@ -1,4 +1,4 @@
-"""Spectra that are told by wavelength, as linear red, green and blue (Rec. 709)."""
+"""Spectra that are given by wavelength, as linear red, green and blue (Rec. 709)."""
 
 import numpy as np
 from numpy.typing import NDArray
