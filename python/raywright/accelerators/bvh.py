@@ -81,7 +81,7 @@ class BVH:
         How many orders ``"threaded"`` has: one for each half of each axis, or one for each octant; 8 if not
         given. Each takes 8 bytes a node.
     bounds : {"box", "oriented", "slabs"}
-        What nodes have beside their boxes, for ``"stack"``: nothing; turned boxes, where these have less
+        What nodes have besides their boxes, for ``"stack"``: nothing; turned boxes, where these have less
         surface (Gottschalk, Lin and Manocha 1996, "OBBTree"); or slabs along ten diagonals (Kay and Kajiya
         1986). That saves tests of diagonal geometry, costs up to 80 bytes a node and a longer test of each,
         and takes longer to build.

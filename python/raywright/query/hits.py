@@ -16,7 +16,7 @@ _ASKED = ("position", "normal", "_error")
 
 
 class Known:
-    """What points know beside their fields, so that `dataclasses.asdict` gives what is public."""
+    """What points know besides their fields, so that `dataclasses.asdict` gives what is public."""
 
     primitive: NDArray[np.int32]
     _compiled: _core.CompiledScene
@@ -168,7 +168,7 @@ class SurfacePoints(Known):
         return _restored, (type(self), kept, {**self._more(), **{name: vars(self)[name] for name in more}})
 
     def _more(self) -> dict[str, Any]:
-        """Give what is kept beside the arrays."""
+        """Give what is kept besides the arrays."""
         return {}
 
 

@@ -24,7 +24,7 @@ from typing import Any
 from .. import _core
 from .worker import Done, Job, Missing, Raised, keep, work
 
-# Seconds that a piece of work should take: long beside what it costs to send it, short beside a render.
+# Seconds that a piece of work should take: long against what sending it costs, short against a render.
 _PIECE = 0.4
 _LEAST_PIECE = 0.05
 # How often the same piece may be lost before the executor counts as broken.

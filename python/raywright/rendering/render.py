@@ -110,7 +110,7 @@ def render(
         worker is done again; if the executor breaks, the rest is rendered here, and ``image.warnings`` says
         so. Scene, camera and integrator are pickled, and compiled once in each process.
     aov : str or several, optional
-        What is seen first beside the picture, by the names in `AOVS`: ``image.aov["depth"]`` and so on, as
+        What is seen first, besides the picture, by the names in `AOVS`: ``image.aov["depth"]`` and so on, as
         `aovs` gives it.
     stop : threading.Event, or anything with a method is_set, optional
         Ends the render at once when it is set, from another thread or from `progress`. The picture so far is

@@ -38,7 +38,7 @@ class Shot:
     seed : int
         Picks the random numbers.
     aov : tuple of str
-        What is seen first beside the picture, as `raywright.render` takes it.
+        What is seen first, besides the picture, as `raywright.render` takes it.
     """
 
     scene: Scene

@@ -24,7 +24,7 @@ def read_gltf(path: str | PathLike[str], width: int | None = None, height: int |
     Parameters
     ----------
     path : str or path
-        The file. What it names beside itself must be in its folder, or in a folder within that.
+        The file. Others that it names must be in its folder, or in a folder within that.
     width, height : int, optional
         Size of the picture in pixels, as `load` has them.
 
