@@ -11,7 +11,7 @@ What is printed for each mesh, as Markdown:
   triangle by which a fresh process grows;
 - for each number of threads the medians of Mrays/s, and then how many times as fast raywright is as each of
   the others and as the fastest peer: the median ratio of turns taken side by side (`peers_turns.py`). The
-  last column is raywright beside itself on the fewest threads;
+  last column is raywright against itself on the fewest threads;
 - the rays, per million, on which an engine says hit where raywright says miss or the other way round, or
   differs in t by more than a ten-thousandth.
 

@@ -25,7 +25,7 @@ def engines_table(records):
 class SpeedTable:
     """Mrays/s of each engine, and then how many times as fast as each of the others raywright is.
 
-    `engines` are those beside raywright. The last column is raywright beside itself on the fewest threads
+    `engines` are those besides raywright. The last column is raywright against itself on the fewest threads
     that were asked for; where those are the same it says 1, but for noise.
     """
 

@@ -3,7 +3,7 @@
     python benches/samplers.py [--scene NAME ...] [--side 128] [--samples 16 64 256] [--batch 4 64]
 
 Of every picture the relMSE is taken against a long one of other seeds; what that has of noise itself is
-taken off. How errors lie beside each other it does not tell: seeds that make them blue noise over the
+taken off. It does not tell how errors lie beside each other: seeds that make them blue noise over the
 picture change no pixel's error.
 """
 

@@ -85,10 +85,9 @@ def sayings(of):
             for wall in ("straight wall", "diagonal wall")
         )
         yield (
-            "Spatial splits repair rotation: turned by 45 degrees, the wall takes "
-            + ", ".join(
-                f"{turned[name] / straight[name]:.2f} times the tests a ray of the {name}" for name in turned
-            )
+            "Spatial splits repair rotation: turned by 45 degrees, the wall takes so many times the tests of "
+            + "the straight one: "
+            + ", ".join(f"{turned[name] / straight[name]:.2f} ({name})" for name in turned)
             + "."
         )
     if "turned room" in of:

@@ -195,7 +195,7 @@ def page(record: dict[str, Any]) -> list[str]:
         "# Gallery",
         "",
         "Every picture here was made by the command that stands under it, on two cores of a virtual machine.",
-        "The error is the relMSE that the render itself told, without a picture to compare with.",
+        "The error is the relMSE that the render itself estimated, without a picture to compare with.",
         "",
     ]
     for name, (text, _) in PICTURES.items():

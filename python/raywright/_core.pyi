@@ -194,7 +194,7 @@ class CompiledScene:
         """((3,) least, (3,) greatest) as (2,3); None for an empty scene."""
     @property
     def bytes(self) -> int:
-        """Memory held by the compiled scene: accelerator, vertices and faces."""
+        """Bytes held by the compiled scene: accelerators, faces, vertices with all they have, transforms."""
 
 @final
 class Rendering:
@@ -425,7 +425,7 @@ def metal_index(name: str) -> list[list[float]]:
     """Tell what was measured of a metal: rows of wavelength (nm), real and imaginary part of its index."""
 
 def spectrum_rgb(rows: Sequence[Sequence[float]], of_daylight: bool) -> list[float]:
-    """Tell the linear Rec. 709 of values at rising wavelengths (nm): shares of daylight, or of even light."""
+    """Tell the linear Rec. 709 colour of shares of daylight, or of even light, at rising wavelengths (nm)."""
 
 def polygon_trouble(
     outline: Sequence[Sequence[float]], holes: Sequence[Sequence[Sequence[float]]]

@@ -14,7 +14,7 @@ FACE = "f 1/1 2/2 3/3 4/4\n"
 
 
 def write(folder: Path, statements: str, geometry: str = SQUARE, faces: str = FACE, head: str = "") -> Path:
-    """Write a mesh of one material, which is told by statements, and return its path."""
+    """Write a mesh of one material, which is given by statements, and return its path."""
     (folder / "file.mtl").write_text(f"{head}newmtl it\n{statements}\n", encoding="utf-8")
     path = folder / "file.obj"
     path.write_text(f"mtllib file.mtl\n{geometry}usemtl it\n{faces}", encoding="utf-8")

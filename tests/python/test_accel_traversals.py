@@ -183,7 +183,7 @@ def test_volumes_beside_boxes_spare_tests_where_geometry_is_diagonal(bounds):
     mesh = sticks(2000)
     rays = np.random.default_rng(3).normal(size=(2, 3000, 3))
     box, fit = (rw.BVH(traversal="stack", bounds=b) for b in ("box", bounds))
-    # Cut to pieces, sticks would leave less to spare.
+    # Cut into pieces, sticks would leave less to spare.
     box, fit = (rw.Scene(mesh, accelerator=tree, quality="fast build") for tree in (box, fit))
     before, after = box.cost(*rays), fit.cost(*rays)
     assert fit.accelerator.bytes > box.accelerator.bytes

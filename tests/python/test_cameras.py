@@ -161,7 +161,7 @@ def test_an_edge_is_blurred_by_the_cameras_motion():
     )
     image = rw.render(rw.Scene(half), camera, rw.Path(max_depth=0), samples=2000, seed=1, progress=False)
     left = np.arange(-5, 5)
-    # Of the pixel [left, left + 1] + 3 t the part beyond 0, in the mean over t: a step's second integral.
+    # Of the pixel [left, left + 1] + 3 t the part beyond 0, on average over t: a step's second integral.
     whole = [np.maximum(left + end, 0) ** 2 / 2 for end in (4, 1, 3, 0)]
     expected = (whole[0] - whole[1] - whole[2] + whole[3]) / 3
     # As above.

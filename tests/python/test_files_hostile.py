@@ -153,7 +153,7 @@ def test_pictures_are_refused_in_one_line(tmp_path, reader, name):
 
 @pytest.mark.parametrize("kind", ["ply", "ply_ascii", "stl", "stl_ascii", "off"])
 def test_meshes_that_are_cut_anywhere_are_missed(tmp_path, kind):
-    """All but what ends no more than a last line."""
+    """Unless no more than the end of the last line is missing."""
     path = tmp_path / f"box.{kind.removesuffix('_ascii')}"
     box = trimesh.creation.box()
     if kind.startswith("ply"):

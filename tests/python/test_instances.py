@@ -72,7 +72,7 @@ def test_any_transform_puts_a_point_where_it_says(size: float, far: float) -> No
     transforms[:, :3, :3] = (rng.normal(size=(30, 3, 3)) + 2 * np.eye(3)) * size
     transforms[:, :3, 3] = rng.uniform(-1, 1, (30, 3)) * far
     corners = mesh.vertices[mesh.faces].astype(np.float64)
-    # Towards points of the triangles, from so far as they are large.
+    # Towards points of the triangles, from as far away as these are large.
     copy, face = rng.integers(0, 30, 4000), rng.integers(0, 50, 4000)
     weights = rng.dirichlet((1, 1, 1), 4000)
     inside = np.einsum("nk,nkd->nd", weights, corners[face])

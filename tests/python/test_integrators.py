@@ -46,7 +46,7 @@ def test_each_gives_lamberts_irradiance(integrator, expected):
     assert error < 0.01 * expected
 
 
-CHECKED = rw.Checker(0.2, 0.6, 2)  # a quarter of the floor, about its origin, is of one of both
+CHECKED = rw.Checker(0.2, 0.6, 2)  # two cells to a unit; the camera sees one of them
 
 
 @pytest.mark.parametrize("make", [rw.RayCast, rw.Whitted, rw.Distributed])
@@ -59,7 +59,7 @@ CHECKED = rw.Checker(0.2, 0.6, 2)  # a quarter of the floor, about its origin, i
         (rw.Phong(0.5, 0.25), 0.5),
         (rw.BlinnPhong((0.1, 0.2, 0.3), 0.25), (0.1, 0.2, 0.3)),
         (rw.Phong(0.5, 0.25, ambient=CHECKED), 0.2),
-        # Of mixtures the mean, in which a mirror has none; of masks and maps that of their material.
+        # Of mixtures the mean, to which a mirror adds none; of masks and maps that of their material.
         (rw.Mix(rw.Phong(0.5, 0.25, ambient=0.1), rw.Diffuse(0.7), 0.25), 0.75 * 0.1 + 0.25 * 0.7),
         (rw.Mix(rw.Phong(0.5, 0.25, ambient=0.8), rw.Mirror(), 0.5), 0.4),
         (rw.Mask(rw.Phong(ambient=0.3), 1.0), 0.3),

@@ -292,7 +292,7 @@ def test_normals_and_bumps(tmp_path):
     for keyword in ("map_Bump", "bump", "map_bump"):
         assert material(tmp_path, f"{keyword} -bm 0.5 normals.png") == rw.NormalMap(matt, normals, 0.5)
         assert material(tmp_path, f"{keyword} -bm 0.5 heights.png") == rw.BumpMap(matt, heights, 0.005)
-    # Heights are a hundredth of the picture's width, however large the mesh and often it is repeated.
+    # Heights are a hundredth of the picture's width, however large the mesh and however often it is repeated.
     large = SQUARE.replace("v 1 0 0", "v 8 0 0").replace("v 1 1 0", "v 8 8 0").replace("v 0 1 0", "v 0 8 0")
     assert loaded(write(tmp_path, "bump heights.png", large)).material == rw.BumpMap(matt, heights, 0.08)
     twice = loaded(write(tmp_path, "bump -s 2 2 2 heights.png", large)).material

@@ -150,7 +150,7 @@ def test_the_mean_is_what_it_is_without(name):
             [render(scene, camera, caustics, seed=s, **how).rgb.mean(axis=(0, 1)) for s in range(40)]
         )
         mean[caustics], error[caustics] = few.mean(axis=0), few.std(axis=0, ddof=1) / np.sqrt(40)
-    # Four and a half standard errors of 80 pictures are exceeded once in some 10,000 cases, of 27.
+    # By Student's t, one of the 27 such numbers of all scenes is off by more once in some 1,600 tries.
     assert (np.abs(mean[True] - mean[False]) <= 4.5 * np.hypot(error[True], error[False])).all()
     # A hundredth, so that much that is lost or counted twice is seen.
     assert (np.hypot(error[True], error[False]) < 0.01 * mean[False]).all()
@@ -181,7 +181,7 @@ def test_threads_pieces_and_checkpoints_change_no_bit(how, tmp_path):
     with ThreadPoolExecutor(2) as executor:
         assert_same(render(*glass(), True, samples=48, executor=executor, **how), one)
     if "sampler" not in how:
-        # Whose batches are made for the samples that are asked for.
+        # Sobol's batches are made for the samples that are asked for, which are others here.
         render(*glass(), True, samples=16, checkpoint=tmp_path / "a", **how)
         assert_same(render(*glass(), True, samples=48, checkpoint=tmp_path / "a", **how), one)
 

@@ -92,7 +92,7 @@ def crossed(triangles, on_edges, origin, direction):
     """How many triangles of those that a ray meets on an edge it crosses when it is moved a little."""
     count = 0
     # Along x, by next to nothing of that along y, and again along z: any way does for closed surfaces, but
-    # which of the edges a ray crosses that has faces edge-on depends on it.
+    # where faces are edge-on, which of their edges a ray crosses depends on it.
     shift = [Fraction(1, 2**100), Fraction(1, 2**200), Fraction(1, 2**300)]
     start = [Fraction(x) + s for x, s in zip(origin.tolist(), shift, strict=True)]
     way = [Fraction(x) for x in direction.tolist()]

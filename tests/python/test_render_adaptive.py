@@ -50,7 +50,7 @@ def test_the_same_error_takes_fewer_samples(cornell):
         [relmse(render(scene, camera, samples=64, seed=s, adaptive=a), reference) for s in range(6)]
         for a in (False, True)
     ]
-    # A third less in the mean; each mean of six is known to 4 %.
+    # A third less on average; each mean of six is known to 4 %.
     assert np.mean(errors[0]) > 1.2 * np.mean(errors[1])
 
 

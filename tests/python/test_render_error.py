@@ -28,7 +28,7 @@ def test_estimate_of_a_cornell_box_is_close_to_its_true_error():
         inside.append(image.error.low <= truth <= image.error.high)
     ratios = np.array(ratios)
     assert np.sum((ratios > 0.8) & (ratios < 1.25)) >= 95
-    # 88 of 100 are fewer than chance brings once in 200, were the intervals' 95 % exact.
+    # Were the intervals' 95 % exact, chance would bring fewer than 88 of 100 once in 680 cases.
     assert np.sum(inside) >= 88
 
 

@@ -79,7 +79,7 @@ def test_a_camera_of_the_file_stays_and_gets_the_studios_light(tmp_path):
     studio, _ = rw.scenes.studio(square)
     assert shot.scene.environment == studio.environment
     assert lamp.emission == studio.shapes[-1].emission
-    # It is 60 degrees to the left of who looks along -z, 55 above, and 5 times as far as the mesh reaches.
+    # It is 60 degrees to the left of one who looks along -z, 55 above, 5 times as far as the mesh reaches.
     middle = lamp.vertices.mean(axis=0) - (0.5, 0.5, 0)
     assert np.allclose(middle, 5 * np.sqrt(0.5) * leftward((0, 0, 1)), rtol=0, atol=1e-12)
     # Seen from where the studio has its own camera, it is the studio's.
@@ -102,7 +102,7 @@ def test_the_lamp_goes_with_the_camera_and_out_of_its_picture(way, up, near):
     scene = shown(box, camera=camera).scene
     assert np.allclose(scene.shapes[1].vertices.mean(axis=0), 40 * leftward(near), rtol=0, atol=1e-9)
     hits = scene.intersect(*camera.rays())
-    # Who looks up sees it.
+    # Whoever looks up sees it.
     assert set(np.unique(hits.shape_id)) == ({-1, 0} if way[1] >= 0 else {-1, 0, 1})
 
 

@@ -113,7 +113,7 @@ def test_light_from_behind_the_camera(light):
         shapes = [rw.Disk(above, (0, 0, -1), 1, material=rw.Diffuse(0), emission=3)]
         expected = math.pi * 3 / 5
     else:
-        # A map whose upper half, behind who looks straight down, shines; the other is below the floor.
+        # A map whose upper half, behind whoever looks straight down, shines; the other is below the floor.
         sky = rw.EnvironmentMap(np.repeat([[1.0], [0.0]], 64, axis=0), [[1, 0, 0], [0, 0, -1], [0, 1, 0]])
         expected = math.pi
     floor = rw.Disk((0, 0, 0), (0, 0, 1), 9, material=rw.Diffuse(0.8))

@@ -150,7 +150,7 @@ def test_what_is_no_request_is_refused_in_one_line(viewer):
         with closing(socket.create_connection((at.hostname, at.port), timeout=20)) as connection:
             connection.sendall(said)
             told = b"".join(iter(lambda: connection.recv(65536), b""))
-        # Before its version is known, a browser of the first days is answered, which knows no headers.
+        # Before the version is known, the answer is one for the first browsers, which know no headers.
         line = told.rpartition(b"\r\n\r\n")[2]
         assert line.count(b"\n") == 1, told
         assert b"<" not in line

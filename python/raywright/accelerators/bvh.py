@@ -29,7 +29,7 @@ class BVH:
           Booth 1990, "Heuristics for ray tracing using space subdivision").
         - ``"spatial"``: by the surface area heuristic with spatial splits, which part what straddles a plane
           (Stich, Friedrich and Dietrich 2009, "Spatial splits in bounding volume hierarchies"), after what
-          is long and diagonal has been cut to pieces (Ernst and Greiner 2007, "Early split clipping for
+          is long and diagonal has been cut into pieces (Ernst and Greiner 2007, "Early split clipping for
           bounding volume hierarchies"). A scene that moves has to build it again.
         - ``"morton"``: a linear tree in the order of Morton codes of 63 bits (Lauterbach et al. 2009, "Fast
           BVH construction on GPUs").
@@ -55,7 +55,7 @@ class BVH:
         treelets of seven leaves together anew (Karras and Aila 2013, "Fast parallel construction of
         high-quality bounding volume hierarchies"). If not given, what suits the scene's ``quality`` for
         ``"binned"``, and nothing for the others; with ``()`` nothing at all. What suits the quality may be,
-        for long and diagonal geometry, that it is cut to pieces first.
+        for long and diagonal geometry, that it is cut into pieces first.
     traversal : {"wide", "wide4", "wide8", "stack", "threaded", "packets4", "packets64"}
         How rays go through the tree. Hits are the same.
 
@@ -81,7 +81,7 @@ class BVH:
         How many orders ``"threaded"`` has: one for each half of each axis, or one for each octant; 8 if not
         given. Each takes 8 bytes a node.
     bounds : {"box", "oriented", "slabs"}
-        What nodes have beside their boxes, for ``"stack"``: nothing; turned boxes, where these have less
+        What nodes have besides their boxes, for ``"stack"``: nothing; turned boxes, where these have less
         surface (Gottschalk, Lin and Manocha 1996, "OBBTree"); or slabs along ten diagonals (Kay and Kajiya
         1986). That saves tests of diagonal geometry, costs up to 80 bytes a node and a longer test of each,
         and takes longer to build.

@@ -37,11 +37,11 @@ class KdTree:
         Cost of visiting a node and of testing a primitive, in any one unit; only their ratio matters. For
         ``"sah"``.
     empty_bonus : float
-        By what part a plane's cost is taken to be less that has nothing on one side, 0 to 1. For ``"sah"``.
+        By what part the cost of a plane with nothing on one side is taken to be less, 0 to 1. For ``"sah"``.
     max_depth : int, optional
         Most levels below the root, 0 to 60; 8 + 1.3 log2(n) for n primitives if not given.
     leaf_size : int
-        So many primitives are not parted any more.
+        A cell with no more primitives than that is not parted.
 
     Raises
     ------
@@ -82,7 +82,7 @@ class Octree:
     max_depth : int
         Most levels below the root, 0 to 18.
     leaf_size : int
-        So many primitives are not parted any more. Nor are those that parting would not save tests of.
+        A cell with no more primitives than that is not parted. Nor is one where that would save no tests.
 
     Raises
     ------
@@ -112,13 +112,13 @@ class BSP:
     Parameters
     ----------
     candidates : int
-        So many polygons of a cell give planes, 1 to 1024.
+        How many polygons of a cell give planes, 1 to 1024.
     traversal_cost, intersection_cost : float
         Cost of visiting a node and of testing a primitive, in any one unit; only their ratio matters.
     max_depth : int, optional
         Most levels below the root, 0 to 60; 8 + 1.3 log2(n) for n primitives if not given.
     leaf_size : int
-        So many primitives are not parted any more.
+        A cell with no more primitives than that is not parted.
 
     Raises
     ------

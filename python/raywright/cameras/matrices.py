@@ -1,4 +1,4 @@
-"""Where a camera stands, as matrices tell it: of scene files, and of computer vision."""
+"""Where a camera stands, as matrices give it: those of scene files, and of computer vision."""
 
 from typing import Any, NamedTuple
 

@@ -1,4 +1,4 @@
-"""The pinhole camera, told by an angle or by a matrix."""
+"""The pinhole camera, given by an angle or by a matrix."""
 
 import math
 from dataclasses import dataclass, replace
@@ -45,8 +45,8 @@ class Camera(AnyCamera):
         `rays_through` has them; the middle if not given. Elsewhere it is a shifted lens, or a part of a
         picture.
     skew : float
-        How many pixels farther to the right a point is seen for lying lower by its distance: K[0, 1] of a
-        camera matrix. With `focal` only.
+        How many pixels farther to the right a point is seen that lies lower by as much as it is away: K[0, 1]
+        of a camera matrix. With `focal` only.
     moved_to : Pose, optional
         Where the camera is as the shutter closes; another camera will do.
     shutter : 2 floats

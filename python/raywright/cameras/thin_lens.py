@@ -19,8 +19,8 @@ _SENSOR = 0.024
 class ThinLens(AnyCamera):
     """A camera with a thin lens (Potmesil and Chakravarty 1981): sharp in one plane across its view.
 
-    How much the rest is blurred is told by `aperture_radius`, or by `f_stop` as photographers do. What is in
-    focus is told by `focus_distance`, by `focus_point`, or is the target. The angle of view is that of the
+    How much the rest is blurred is given by `aperture_radius`, or by `f_stop` as photographers do. What is in
+    focus is given by `focus_distance` or `focus_point`, or is the target. The angle of view is that of the
     lens in focus at infinity, whatever it is in focus at.
 
     Parameters
@@ -59,7 +59,7 @@ class ThinLens(AnyCamera):
     Raises
     ------
     ValueError
-        If a number is out of range or not finite, something is told twice or not at all, or what is in focus
+        If a number is out of range or not finite, something is given twice or not at all, or what is in focus
         is not in front of the camera.
     TypeError
         If something is not a number.

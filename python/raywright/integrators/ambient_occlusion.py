@@ -16,7 +16,7 @@ class AmbientOcclusion:
     Parameters
     ----------
     radius : float
-        How near what occludes has to be, above 0; infinite for anything.
+        How near what occludes has to be, in the scene's unit, above 0; infinite for anything.
     cosine : bool
         Whether directions count by their cosine, as even light does, or all alike.
     samples : int

@@ -38,6 +38,6 @@ class Integrator(ABC):
         Returns
         -------
         (N, 3) array
-            Red, green and blue, in W·sr⁻¹·m⁻²; what is not finite or negative counts as black, with a
+            Red, green and blue, in W·sr⁻¹·m⁻²; what is negative or not finite counts as black, with a
             warning.
         """

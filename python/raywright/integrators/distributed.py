@@ -12,8 +12,8 @@ from . import counts
 class Distributed:
     """Distributed ray tracing (Cook, Porter and Carpenter 1984): soft shadows, gloss, depth of field, motion.
 
-    Directions are followed into which a surface scatters with more than 1 per steradian, three times the most
-    that a matt one has. Diffuse light between surfaces is left to `ambient`.
+    A direction is followed where the surface scatters into it with a density of more than 1 per steradian,
+    three times the most that a matt one has. Diffuse light between surfaces is left to `ambient`.
 
     Parameters
     ----------

@@ -29,7 +29,7 @@ class Path:
         there, which leaves no bias. It pays where surfaces are matt and most light is indirect, as in a
         room: rays between all these points cost time, and direct light gains nothing.
 
-        Shared is what goes from one `Diffuse` surface to another; all else is as without. Nothing is shared
+        What goes from one `Diffuse` surface to another is shared; all else is as without. Nothing is shared
         where something moves, and in scenes with masks, with media in one another or with textures that are
         filtered by width. Pixels of a patch err together, so that noise comes in patches. The error estimate
         knows it: its interval is wider than without, most so in small pictures.

@@ -18,7 +18,7 @@ class RayCast:
     ----------
     ambient : float or 3 floats
         Radiance that arrives from everywhere, unshadowed. Surfaces reflect their ambient share of it: `Phong`
-        and `BlinnPhong` one of their own, smooth ones none, others what they reflect of white light, about.
+        and `BlinnPhong` one of their own, smooth ones none, others about what they reflect of white light.
     shadows : bool
         Whether what lies on the way to a light shadows it.
     light_samples : int

@@ -17,7 +17,7 @@ class Rng:
     seed : int
         That of the picture.
     pixel, sample : (N,) uint32
-        Of which pixel each entry is a sample, and the how manieth.
+        Of which pixel each entry is a sample, and which of its samples.
     """
 
     def __init__(self, seed: int, pixel: NDArray[np.uint32], sample: NDArray[np.uint32]) -> None:

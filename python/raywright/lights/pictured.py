@@ -1,4 +1,4 @@
-"""What lights keep pictures as, and how those that do compare."""
+"""How lights keep pictures, and how those that do compare."""
 
 from dataclasses import fields
 from os import PathLike

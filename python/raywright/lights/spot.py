@@ -27,8 +27,8 @@ class SpotLight:
     falloff : float
         Over how many degrees, inwards from the rim, it falls off: 0 to `angle`.
     profile : {"smooth", "linear"}
-        How: "smooth" takes the cosine to the axis through the cubic ``x² (3 - 2x)``, as level at both ends as
-        can be; "linear" goes evenly with the angle to the axis.
+        How: "smooth" takes the cosine to the axis through the cubic ``x² (3 - 2x)``, which is level at both
+        ends; "linear" goes evenly with the angle to the axis.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""The material of glTF 2.0, of this library's materials: metal and matt, clear, cut out, and shining."""
+"""The material of glTF 2.0, made of this library's materials: metal and matt, clear, cut out, and shining."""
 
 from typing import Any, NamedTuple
 
@@ -70,7 +70,7 @@ class Pbr(NamedTuple):
     emission : (3,) array, optional
         Radiance.
     alpha_mode : str, optional
-        ``"MASK"`` and ``"BLEND"`` have alpha count.
+        ``"MASK"`` and ``"BLEND"`` make alpha count.
     alpha_cutoff : float, optional
         Of a mask: the least alpha that is there; 0.5 if not given.
     both_sides : bool

@@ -16,7 +16,7 @@ _ASKED = ("position", "normal", "_error")
 
 
 class Known:
-    """What points know beside their fields, so that `dataclasses.asdict` gives what is public."""
+    """What points know besides their fields, so that `dataclasses.asdict` gives what is public."""
 
     primitive: NDArray[np.int32]
     _compiled: _core.CompiledScene
@@ -39,10 +39,11 @@ class SurfacePoints(Known):
     shape_id : (...) int32
         Which of ``scene.shapes``; -1 for none.
     primitive : (...) int32
-        Which face of that shape, or of an instance what `Instance.locate` tells; -1 for none.
+        Which face of that shape, 0 where it is no mesh, or of an instance what `Instance.locate` tells; -1
+        for none.
     uv : (..., 2) float64
         Barycentric weights of the face's second and third corner, so that the point is at
-        ``(1 - u - v) * a + u * b + v * c`` for corners a, b, c.
+        ``(1 - u - v) * a + u * b + v * c`` for corners a, b, c; on a shape that is no mesh, its own u and v.
     """
 
     shape_id: NDArray[np.int32]
@@ -115,7 +116,7 @@ class SurfacePoints(Known):
         Of a face, a copy's face and a flat shape, no ray meets what it leaves; of a curved shape, only those
         that go through it meet it again. A direction along the surface, at right angles to the normal, starts
         on the side of the normal and stays there. Where the angle to the surface is within rounding, 1e-16 or
-        so, or on a sliver within that times its length over its height, so is the side.
+        so (on a sliver, that times its length over its height), so is the side.
 
         Where copies move, rays are to be asked at the `time` of the hits.
         """
@@ -167,7 +168,7 @@ class SurfacePoints(Known):
         return _restored, (type(self), kept, {**self._more(), **{name: vars(self)[name] for name in more}})
 
     def _more(self) -> dict[str, Any]:
-        """Give what is kept beside the arrays."""
+        """Give what is kept besides the arrays."""
         return {}
 
 
@@ -183,10 +184,11 @@ class Hits(SurfacePoints):
     shape_id : (...) int32
         Which of ``scene.shapes``; -1 for a miss.
     primitive : (...) int32
-        Which face of that shape, or of an instance what `Instance.locate` tells; -1 for a miss.
+        Which face of that shape, 0 where it is no mesh, or of an instance what `Instance.locate` tells; -1
+        for a miss.
     uv : (..., 2) float64
         Barycentric weights of the face's second and third corner, so that the hit is at
-        ``(1 - u - v) * a + u * b + v * c`` for corners a, b, c.
+        ``(1 - u - v) * a + u * b + v * c`` for corners a, b, c; on a shape that is no mesh, its own u and v.
     """
 
     t: NDArray[np.float64]
@@ -244,10 +246,10 @@ class AllHits(SurfacePoints):
     shape_id : (K,) int32
         Which of ``scene.shapes``.
     primitive : (K,) int32
-        Which face of that shape, or of an instance what `Instance.locate` tells.
+        Which face of that shape, 0 where it is no mesh, or of an instance what `Instance.locate` tells.
     uv : (K, 2) float64
         Barycentric weights of the face's second and third corner, so that the hit is at
-        ``(1 - u - v) * a + u * b + v * c`` for corners a, b, c.
+        ``(1 - u - v) * a + u * b + v * c`` for corners a, b, c; on a shape that is no mesh, its own u and v.
     shape : tuple of int
         Leading shape of the rays.
     """

@@ -142,10 +142,10 @@ class Queries:
         Notes
         -----
         A surface is crossed once where a ray goes through an edge or a vertex of it, not once for each face
-        there. Where a ray only touches an edge or a vertex, it is told twice, as if in and out: two faces, or
-        twice the same one where the ray meets no other. So a closed surface has an even number of hits seen
-        from outside, and an odd number from inside, however the ray is aimed. Faces that lie upon each other
-        are all told.
+        there. Where a ray only touches an edge or a vertex, that is told twice, as if in and out: by two
+        faces, or twice by the same one where the ray meets no other. So a closed surface has an even number
+        of hits seen from outside, and an odd number from inside, however the ray is aimed. Faces that lie
+        upon each other are all told.
         """
         rays = ray_arguments(origins, directions, t_min, t_max, threads, time)
         core = self._core or self._compiled()
@@ -184,8 +184,7 @@ class Queries:
         """Find what the closest hit of each ray takes: nodes visited and primitives tested.
 
         Takes and raises what `intersect` does. Neighbouring rays share visits, so a ray's cost may depend on
-        which others are asked with it. A copy of an instance counts as one primitive, whatever it
-        takes there.
+        which others are asked with it. A copy of an instance counts as one primitive, whatever it takes.
 
         Returns
         -------
@@ -259,7 +258,7 @@ class Queries:
         Faces are projected into the picture (Catmull 1974), and at the pixels that one may cover it is
         decided for the pixel's ray, exactly, as `intersect` does. Parts of the picture with too many faces
         are asked of the accelerator, and all of it is if there are more faces than a quarter of its pixels,
-        something in the scene is no mesh, or the camera is another than a pinhole that stands still.
+        something in the scene is no mesh, or the camera is not a pinhole that stands still.
         ``report.first_hits`` tells where it pays.
 
         Parameters
@@ -403,8 +402,8 @@ class Queries:
         Raises
         ------
         ValueError
-            If the last dimension is not 3, shapes do not broadcast, `max_distance` is negative or NaN, or the
-            scene has instances, of which closest points are not told.
+            If the last dimension is not 3, shapes do not broadcast, `max_distance` is negative or NaN, or
+            something in the scene is no mesh, such as an instance.
         TypeError
             If an array does not hold real numbers.
 
@@ -436,7 +435,7 @@ class Queries:
         Raises
         ------
         ValueError
-            If the last dimension is not 3.
+            If the last dimension is not 3, or something in the scene is no mesh, such as an instance.
         TypeError
             If the array does not hold real numbers.
         """

@@ -15,7 +15,7 @@ from typing import Any, NoReturn
 
 from .. import _core
 
-# How often a file is written, and the least that the time between is of the time that writing took.
+# How often a file is written, and how many times as long as writing it took the time between is at least.
 _SECONDS = 60.0
 _SHARE = 20.0
 

@@ -24,7 +24,7 @@ from typing import Any
 from .. import _core
 from .worker import Done, Job, Missing, Raised, keep, work
 
-# Seconds that a piece of work should take: long beside what it costs to send it, short beside a render.
+# Seconds that a piece of work should take: long against what sending it costs, short against a render.
 _PIECE = 0.4
 _LEAST_PIECE = 0.05
 # How often the same piece may be lost before the executor counts as broken.
@@ -367,7 +367,7 @@ class _Courier:
                 os.unlink(self._spool)
 
     def check(self) -> None:
-        """Scatter the job unless it is, which it is no longer where all workers that had it were lost."""
+        """Scatter the job unless it is scattered; it is no longer once all workers that had it are lost."""
         if self._client is not None and getattr(self._scattered, "status", None) != "finished":
             self._scattered = self._client.scatter(self._bytes, broadcast=True, hash=False)
 

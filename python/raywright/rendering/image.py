@@ -130,7 +130,7 @@ class Image:
         Parameters
         ----------
         rows : int
-            The most rows to print; a longer history is thinned so that samples grow evenly by factors.
+            The most rows to print; a longer history is thinned so that samples grow by even factors.
         """
         lines = [f"{'seconds':>9} {'samples':>9} {'relMSE':>10}"]
         for i in _thinned(self.history["samples"], rows):

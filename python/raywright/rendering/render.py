@@ -101,16 +101,16 @@ def render(
         A file that is kept up to date with the render: every minute, at its end, and when it is interrupted.
         If there is such a file, the render goes on from it, with all limits counted from its first start, and
         ends with the same bits as one that was never interrupted, even by ``kill -9``. A sampler that was
-        given no batch has that of the file. The file stays when
-        the render is done, so that it can be taken further by other limits. That it cannot be written is told
-        in ``image.warnings`` and as a RuntimeWarning, and costs nothing else.
+        given no batch has that of the file. The file stays when the render is done, so that it can be taken
+        further by other limits. If it cannot be written, ``image.warnings`` and a RuntimeWarning tell so, and
+        it costs nothing else.
     executor : concurrent.futures.Executor, optional
         Who does the work: a ``ProcessPoolExecutor``, ``client.get_executor()`` of `dask.distributed`, the
         pool of `mpi4py.futures`, or any other. The picture has the same bits as without. What is lost with a
         worker is done again; if the executor breaks, the rest is rendered here, and ``image.warnings`` says
         so. Scene, camera and integrator are pickled, and compiled once in each process.
     aov : str or several, optional
-        What is seen first beside the picture, by the names in `AOVS`: ``image.aov["depth"]`` and so on, as
+        What is seen first, besides the picture, by the names in `AOVS`: ``image.aov["depth"]`` and so on, as
         `aovs` gives it.
     stop : threading.Event, or anything with a method is_set, optional
         Ends the render at once when it is set, from another thread or from `progress`. The picture so far is
@@ -295,7 +295,7 @@ def _elsewhere(
     look: Callable[[], None],
 ) -> list[str]:
     """Render by an executor; if it breaks, return what there is to say of that."""
-    # Who renders here does not wait for the import.
+    # Whoever renders here does not wait for the import.
     from .executor import BrokenError, Distribution
     from .worker import Job
 

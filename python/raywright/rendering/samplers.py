@@ -1,8 +1,8 @@
 """Where the random numbers of a picture come from.
 
 The numbers of each sample are uniform, and those of its dimensions independent, for every kind: pictures
-differ in their noise only. Those with a `batch` place so many consecutive samples of a pixel evenly with
-regard to each other; batches are independent, and the spread between them tells the error.
+differ in their noise only. Those with a `batch` spread that many consecutive samples of a pixel evenly among
+each other; batches are independent, and the spread between them tells the error.
 """
 
 from dataclasses import dataclass, replace
@@ -27,9 +27,9 @@ class Stratified:
     Parameters
     ----------
     batch : int, optional
-        Samples of a batch: 1, 2, 4, ... 64. If not given, the most of which the samples that are asked for
-        make at least 8 batches, and 64 from 256 samples on, or half as many if the render is adaptive; 1
-        if time may end it before.
+        Samples of a batch: 1, 2, 4, ... 64. If not given, as many as make 8 batches at least of the samples
+        that are asked for, and 64 batches at least from 256 samples on; 4 if only an error is asked for; half
+        of that if the render is adaptive; 1 if time may end it.
 
     Raises
     ------
@@ -54,9 +54,9 @@ class Halton:
     Parameters
     ----------
     batch : int, optional
-        Samples of a batch: 1, 2, 4, ... 64. If not given, the most of which the samples that are asked for
-        make at least 8 batches, and 64 from 256 samples on, or half as many if the render is adaptive; 1
-        if time may end it before.
+        Samples of a batch: 1, 2, 4, ... 64. If not given, as many as make 8 batches at least of the samples
+        that are asked for, and 64 batches at least from 256 samples on; 4 if only an error is asked for; half
+        of that if the render is adaptive; 1 if time may end it.
 
     Raises
     ------
@@ -81,9 +81,9 @@ class Sobol:
     Parameters
     ----------
     batch : int, optional
-        Samples of a batch: 1, 2, 4, ... 64. If not given, the most of which the samples that are asked for
-        make at least 8 batches, and 64 from 256 samples on, or half as many if the render is adaptive; 1
-        if time may end it before.
+        Samples of a batch: 1, 2, 4, ... 64. If not given, as many as make 8 batches at least of the samples
+        that are asked for, and 64 batches at least from 256 samples on; 4 if only an error is asked for; half
+        of that if the render is adaptive; 1 if time may end it.
 
     Raises
     ------
@@ -109,9 +109,9 @@ class Lattice:
     Parameters
     ----------
     batch : int, optional
-        Samples of a batch: 1, 2, 4, ... 64. If not given, the most of which the samples that are asked for
-        make at least 8 batches, and 64 from 256 samples on, or half as many if the render is adaptive; 1
-        if time may end it before.
+        Samples of a batch: 1, 2, 4, ... 64. If not given, as many as make 8 batches at least of the samples
+        that are asked for, and 64 batches at least from 256 samples on; 4 if only an error is asked for; half
+        of that if the render is adaptive; 1 if time may end it.
 
     Raises
     ------

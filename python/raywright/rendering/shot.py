@@ -38,7 +38,7 @@ class Shot:
     seed : int
         Picks the random numbers.
     aov : tuple of str
-        What is seen first beside the picture, as `raywright.render` takes it.
+        What is seen first, besides the picture, as `raywright.render` takes it.
     """
 
     scene: Scene
@@ -56,8 +56,8 @@ class Shot:
         Parameters
         ----------
         **overrides
-            Arguments of `raywright.render`, in place of what the shot has. The samples of the shot are of
-            account only where none of `samples`, `error` and `seconds` is given.
+            Arguments of `raywright.render`, in place of what the shot has. The samples of the shot count
+            only where none of `samples`, `error` and `seconds` is given.
 
         Returns
         -------
@@ -107,7 +107,7 @@ class Shot:
             height = max(round(before.height * integer("width", width, 1) / before.width), 1)
         lens: dict[str, Any] = {}
         if isinstance(before, Camera):
-            # What is told in pixels grows with them.
+            # What is given in pixels grows with them.
             by = width / before.width, height / before.height
             for name in ("focal", "principal"):
                 if (pair := getattr(before, name)) is not None:

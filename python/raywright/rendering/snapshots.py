@@ -5,7 +5,7 @@ from collections.abc import Callable
 
 from .image import Image
 
-# The least time between two, and the least that it is of the time that showing one took.
+# The least time between two, and how many times as long as showing one took it is at least.
 _SECONDS = 0.1
 _SHARE = 9.0
 

@@ -83,15 +83,16 @@ def accelerators(
     """Compare accelerators on the same rays: what they cost to build and to hold, and what rays cost.
 
     Every accelerator is built over the scene's shapes. They take turns, set of rays by set of rays, and each
-    turn begins with another, so that each has its share of whatever else the machine does; what is told are
-    medians over the turns. All are in memory at once.
+    turn begins with another, so that each has its share of whatever else the machine does; medians over the
+    turns are told. All are in memory at once.
 
     Parameters
     ----------
     scene : Scene
         What is hit; its own accelerator does not matter.
     rays : Camera, Rays, (origins, directions), or dict of these by names, optional
-        Of a camera, or if not given, primary, diffuse and shadow rays, as `typical_rays` makes them.
+        What is asked. A camera stands for its primary, diffuse and shadow rays, as `typical_rays` makes them;
+        if not given, it is one that sees all of the scene from outside.
     accelerators : accelerator, list of them, or dict of them by names, optional
         All that there are, each with its default options and with each builder and traversal, if not given.
     threads : int or None
@@ -125,8 +126,7 @@ def accelerators(
     Notes
     -----
     An accelerator that would take more than about a second for a set is timed on fewer rays of it, evenly
-    spread, and a note tells on how many. Fewer rays of an image lie further apart, and may take more
-    each.
+    spread, and a note tells on how many. Fewer rays of an image lie further apart, and may take more each.
     """
     if not isinstance(scene, Scene):
         raise TypeError(f"scene must be a Scene, got {type(scene).__name__}")

@@ -102,7 +102,7 @@ def convergence(
     seconds : float
         The longest budget of one render; all of them take twice as long, times contenders and seeds.
     reference : Image, (H, W, 3) array, or float, optional
-        The right picture, or seconds to make one in, with what the first contender is. If not given, errors
+        The right picture, or seconds to make one in, in the way of the first contender. If not given, errors
         are the renders' own estimates.
     seeds : int or sequence of int
         How many, or which.

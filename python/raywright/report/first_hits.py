@@ -36,7 +36,7 @@ def first_hits(scene: Scene, camera: AnyCamera, threads: int | None = 1, repeats
     scene : Scene
         What is seen.
     camera : Camera or another kind
-        By whom.
+        Whose picture it is.
     threads : int, optional
         How many to use; all cores if None.
     repeats : int

@@ -193,8 +193,8 @@ def heatmap(
     what : {"nodes", "primitives"}
         What the picture shows: nodes visited, or primitives tested.
     most : int, optional
-        The count that has the last colour, at least 1; the greatest there is if not given. Pictures are to be
-        compared with the same one.
+        The count that has the last colour, at least 1; the greatest there is if not given. Pictures to be
+        compared need the same one.
     repeats : int
         How often rays are timed for the shares of time (`time_share`); 0 leaves them out.
     threads : int, optional

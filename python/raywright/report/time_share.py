@@ -69,7 +69,7 @@ def time_share(scene: Scene, rays: Any, repeats: int = 7) -> TimeShare:
 
     It is an estimate and no measurement: where the counts of nodes and of primitives rise and fall together,
     the fit cannot tell them apart, which the intervals show (a bootstrap over batches); and whatever else
-    goes with a count, such as waiting for memory or sorting children, is held for its cost.
+    goes with a count, such as waiting for memory or sorting children, counts as its cost.
 
     Parameters
     ----------

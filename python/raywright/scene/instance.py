@@ -1,4 +1,4 @@
-"""Shapes put to many places."""
+"""Shapes put in many places."""
 
 import bisect
 import sys
@@ -55,7 +55,7 @@ class Location(NamedTuple):
 
 @dataclass(frozen=True, init=False, eq=False, repr=False)
 class Instance:
-    """Shapes put to one place or to many, compiled once: a copy takes some 150 bytes, whatever is copied.
+    """Shapes put in one place or in many, compiled once: a copy takes some 150 bytes, whatever is copied.
 
     Materials and emission are those of the shapes. What shines in copies is sampled as a light, each copy of
     each face by itself, where the copies stand still and are at most 4096 in all; what shines in copies that
@@ -95,7 +95,7 @@ class Instance:
     exact for it as it is taken there. Compared with shapes that are moved themselves, hits differ by what
     rounding moved vertices makes, and not at all where neither rounds, as with integers and powers of two.
 
-    Closed surfaces in copies count for ``contains``; ``closest_point`` is not told of scenes with instances.
+    Closed surfaces in copies count for ``contains``; ``closest_point`` refuses scenes with instances.
     """
 
     shapes: tuple[AnyShape, ...]

@@ -50,7 +50,7 @@ class Scene(Queries):
         all vertices are float32 numbers anyway.
     quality : {"balanced", "fast build", "fast rays"}
         How long the accelerator may take to build for the sake of rays. Unless it is "fast build", what is
-        long and diagonal may be cut to pieces for it, and for "fast rays" what else is long; such a tree is
+        long and diagonal may be cut into pieces for it, and for "fast rays" what else is long; such a tree is
         built anew by `refit`.
 
     Raises
@@ -139,7 +139,10 @@ class Scene(Queries):
 
     @property
     def bytes(self) -> int:
-        """Memory that the compiled scene holds: accelerators, vertices, faces, normals and transforms."""
+        """Bytes that the compiled scene holds: accelerators, faces, vertices with all they have, transforms.
+
+        Textures do not count.
+        """
         return self._compiled().bytes
 
     @property
@@ -188,9 +191,8 @@ class Scene(Queries):
         ----------
         vertices : (V, 3) array, or list of them
             The vertices of the only shape, or of each shape; as many as it has. None in the list leaves a
-            shape where it is, which is all that can be said of a curved one. Of an `Instance` the transforms,
-            (4, 4) or (N, 4, 4), or a tuple of two such arrays for copies that move; its shapes stay as they
-            are.
+            shape where it is, the only choice for a curved one. Of an `Instance` the transforms, (4, 4) or
+            (N, 4, 4), or a tuple of two such arrays for copies that move; its shapes stay as they are.
 
         Returns
         -------
@@ -208,9 +210,9 @@ class Scene(Queries):
         Notes
         -----
         What cannot be refitted is built anew, for example where other faces than before have a corner that
-        is NaN or infinite, or where the accelerator holds pieces of faces;
-        ``scene.accelerator.kind`` then does not end in "refitted". With ``quality="fast build"`` the default
-        accelerator holds no pieces. A scene that was not asked anything yet is built when it is.
+        is NaN or infinite, or where the accelerator holds pieces of faces; ``scene.accelerator.kind`` then
+        does not end in "refitted". With ``quality="fast build"`` the default accelerator holds no pieces. A
+        scene that was not asked anything yet is built when it is.
         """
         after = Scene(self._moved(vertices), *self._parts()[1:])
         with self._lock:

@@ -28,7 +28,7 @@ def load(
     """Read a scene, or a mesh, with all that it takes to make a picture of it.
 
     What a file holds is shown in its own light where it has some: lights, or surfaces that shine and give
-    off enough, 0.02 W·sr⁻¹·m⁻² and more in the mean over all of its surface, or anything that shines where
+    off enough, 0.02 W·sr⁻¹·m⁻² or more on average over all of its surface, or anything that shines where
     the file has a camera. What has no light is lit as in `scenes.studio`: for a camera of its own, or else
     framed, and on a floor.
 
@@ -40,8 +40,8 @@ def load(
     up : {"y", "z"}
         The axis that points up in a mesh file that does not say so; in glTF it is y.
     width, height : int, optional
-        Size of the picture in pixels, without them the file's own; if only one is given, the other keeps its
-        proportions. Of a file without a camera they are 640 and 480 where they are not given.
+        Size of the picture in pixels: the file's own if not given; if only one is given, the other keeps its
+        proportions. For a file without a camera they are 640 and 480 where they are not given.
 
     Returns
     -------

@@ -72,7 +72,7 @@ def shown(
 
 
 def own_radiance(shapes: Sequence[AnyShape]) -> float:
-    """Return the radiance that meshes, and copies of them, give off in the mean over all their surface."""
+    """Return the radiance that meshes, and copies of them, give off on average over all their surface."""
     area, power = _measured(shapes)
     return power / area if area > 0 else 0.0
 

@@ -89,7 +89,7 @@ def cornell_box(
 
 
 def camera(width: int, height: int) -> Camera:
-    """Return the box's camera: a lens of 35 mm behind a film of 25 mm by 25 mm."""
+    """Return the box's camera: a lens of 35 mm before a film of 25 mm by 25 mm."""
     fov = math.degrees(2 * math.atan(0.0125 / 0.035))
     return Camera((278, 273, -800), (278, 273, 0), fov=fov, width=width, height=height)
 

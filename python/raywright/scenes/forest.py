@@ -13,7 +13,7 @@ from ..shapes.mesh import Mesh
 Array = NDArray[np.float64]
 
 _SIDES = 5
-# Children of a branch, how long and how thick they are beside it, and how far they lean away from it.
+# Children of a branch, how long and thick they are against it, and how far they lean away from it.
 _CHILDREN, _LONG, _THICK, _LEAN = 3, 0.72, 0.6, 0.65
 _LEVELS = 4
 

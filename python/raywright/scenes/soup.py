@@ -33,7 +33,7 @@ def soup(triangles: int = 10_000, size: float | None = None, seed: int = 0) -> l
     """
     count = integer("triangles", triangles, 1)
     # A ray meets as many in a unit of length as there is area across it in a unit of volume: of a triangle
-    # half its area, which is 0.26 of the squared size in the mean.
+    # half its area, which is 0.26 of the squared size on average.
     reach = (23 / count) ** 0.5 if size is None else positive("size", size)
     rng = np.random.default_rng(integer("seed", seed, 0))
     spokes = rng.normal(size=(count, 3, 3))

@@ -42,7 +42,7 @@ def studio(
         The axis of the mesh that points up.
     width, height : int
         Size of the picture in pixels.
-    accelerator : BVH, Grid, NestedGrid or BruteForce
+    accelerator : BVH or another accelerator
         The structure that finds hits.
 
     Raises
@@ -65,8 +65,8 @@ def studio(
 def lit(shapes: Any, camera: AnyCamera) -> Scene:
     """Return shapes in the light of the studio, without its floor, for a camera that stands elsewhere.
 
-    The lamp stands to the camera's left as it does in the studio, as large as it is there for who stands at
-    the mesh, and no nearer than the camera, so that only who looks up has it in the picture.
+    The lamp stands to the camera's left as it does in the studio, as large as it is there as seen from
+    the mesh, and no nearer than the camera, so that it is in the picture only for cameras that look up.
 
     Parameters
     ----------

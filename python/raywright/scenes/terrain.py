@@ -56,7 +56,7 @@ def terrain(side: int = 160, blades: int = 50_000, seed: int = 0) -> list[Mesh]:
 def _heights(rng: "np.random.Generator", points: int) -> Array:
     """Random waves on a grid of points, from 0 to the height of the hills."""
     frequency = np.hypot(np.fft.fftfreq(points)[:, np.newaxis], np.fft.rfftfreq(points))
-    # Amplitude with the square of the frequency: power with the fourth. The mean is of no interest.
+    # Amplitude falls with the square of the frequency, power with the fourth. The mean is of no interest.
     amplitude = np.divide(1.0, frequency**2, out=np.zeros_like(frequency), where=frequency > 0)
     waves = np.fft.rfft2(rng.normal(size=(points, points))) * amplitude
     heights = np.fft.irfft2(waves, s=(points, points))

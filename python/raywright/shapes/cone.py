@@ -12,9 +12,9 @@ from .shape import Shape, segment, switch
 
 @dataclass(frozen=True, init=False, eq=False, repr=False)
 class Cone(Shape):
-    """What a line draws that is turned about a segment, between its ends' planes.
+    """What a line draws as it turns about a segment, between the planes of the segment's ends.
 
-    Whether a ray meets it is decided without error, through its point too.
+    Whether a ray meets it is decided without error, at its point too.
 
     Parameters
     ----------

@@ -26,7 +26,7 @@ class Implicit(Shape):
         sin, cos, tan, asin, acos, atan, atan2, sinh, cosh, tanh, pow, min and max. A power that is no whole
         number written out is defined where its base is not negative.
     min, max : 3 floats
-        The least and the greatest corner of the box. The surface is cut open where it ends.
+        The least and the greatest corner of the box. The surface is cut open where the box ends.
     transform : (4, 4) array, optional
         An affine matrix that acts on column vectors (x, y, z, 1), as from the shape's own space to the world.
         Rays are taken into the shape's own space and rounded there once.

@@ -12,7 +12,7 @@ from .shape import Shape, segment, switch
 
 @dataclass(frozen=True, init=False, eq=False, repr=False)
 class Paraboloid(Shape):
-    """What a parabola draws that is turned about its axis, from its apex to a rim.
+    """What a parabola draws as it turns about its axis, from its apex to a rim.
 
     With the radius ``r`` and the distance ``h`` from apex to tip it is ``z = h ρ² / r²``, and its focus
     lies ``r² / 4h`` above the apex: a mirror of focal length ``f`` and radius ``r`` is as high as ``r² /

@@ -20,8 +20,8 @@ class Polygon(Shape):
     """A flat face, convex or not, with or without holes.
 
     Whether a ray passes through it is decided by its edges without error, so nothing leaks where two of them
-    share an edge, or one and a mesh in float64. How far away it is hit is told by the plane that is fitted to
-    its points.
+    share an edge, or one and a mesh in float64. How far away it is hit follows from the plane that is fitted
+    to its points.
 
     Parameters
     ----------

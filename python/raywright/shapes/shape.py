@@ -1,4 +1,4 @@
-"""What all shapes have in common that are no meshes."""
+"""What all shapes that are no meshes have in common."""
 
 from dataclasses import dataclass, fields
 from typing import Any

@@ -25,8 +25,8 @@ class ImageTexture(Texture):
     ----------
     image : (H, W), (H, W, C) array, or path
         Rows from the top, of 1 to 4 channels: a grey, grey and alpha, red, green and blue, or these and
-        alpha. uint8 is kept as it is, float32 too; uint16 and other floats become
-        float32. A path may be of a PNG, an EXR, an NPY or any other picture that Pillow reads.
+        alpha. uint8 is kept as it is, float32 too; uint16 and other floats become float32. A path may be of a
+        PNG, an EXR, an NPY or any other picture that Pillow reads.
     linear : bool
         Whether integers are amounts of light as they are; if not, they are sRGB and decoded. Floats, and
         alpha, always are.
@@ -58,8 +58,8 @@ class ImageTexture(Texture):
 
     Notes
     -----
-    What is not asked for is not kept once the scene is compiled: a channel of uint8 takes 1 byte a point, and
-    a third as many points of float32 for "trilinear".
+    What is not asked for is not kept once the scene is compiled: a channel of uint8 takes 1 byte a point and,
+    for "trilinear", a third as many points more, of float32.
     """
 
     image: NDArray[Any]

@@ -20,7 +20,7 @@ class Noise(Texture):
     Parameters
     ----------
     a, b : float, 3 floats or Texture
-        What is where the noise is least, and where it is greatest; half of either is where it is 0.
+        What is where the noise is least, and where it is greatest; half of each is where it is 0.
     transform : ObjectTransform, UvTransform or float, optional
         Where they lie: in the space of the shape, or in texture coordinates. A number is how many there are
         to a unit of the shape's space.

@@ -26,7 +26,7 @@ class UvTransform:
     offset : 2 floats
         By how much they move.
     matrix : (2, 3) array, optional
-        All of it at once: acts on column vectors (u, v, 1). The others are left alone then.
+        All of it at once: acts on column vectors (u, v, 1). The others then do not count.
 
     Attributes
     ----------
@@ -77,7 +77,7 @@ class ObjectTransform:
     offset : 3 floats
         By how much points move, in units of the texture.
     matrix : (3, 4) or (4, 4) array, optional
-        All of it at once: acts on column vectors (x, y, z, 1). The others are left alone then.
+        All of it at once: acts on column vectors (x, y, z, 1). The others then do not count.
 
     Attributes
     ----------

@@ -56,7 +56,7 @@ class Viewer:
     def wait(self) -> None:
         """Wait until it is closed, or Ctrl-C is pressed, which closes it."""
         try:
-            # Not for ever at once: where signals do not end that, they are heard in between.
+            # Not for ever in one go: where signals do not end the wait, they are heard in between.
             while not self._closed.wait(0.5):
                 pass
         except KeyboardInterrupt:
@@ -143,7 +143,7 @@ def view(
         "sampler": sampler,
         "filter": filter,
     }
-    # Who does not look does not wait for the import.
+    # Whoever does not look does not wait for the import.
     from .server import Server
     from .session import Session
 

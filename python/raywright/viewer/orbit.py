@@ -136,7 +136,7 @@ def reduced(camera: AnyCamera, divisor: int) -> AnyCamera:
     width, height = (max(round(size / divisor), 1) for size in (camera.width, camera.height))
     across, down = width / camera.width, height / camera.height
     changes: dict[str, Any] = {"width": width, "height": height}
-    # What is told in pixels has fewer of them.
+    # What is given in pixels has fewer of them.
     if isinstance(camera, Camera):
         for name, pair in (("focal", camera.focal), ("principal", camera.principal)):
             if pair is not None:

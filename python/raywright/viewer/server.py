@@ -35,7 +35,7 @@ _MOST_PAGES = 32
 # How soon it is seen that a page was closed, and how long a silent connection is kept.
 _LOOK = 0.1
 _SILENCE = 10.0
-# How long, and how many bytes at most, a browser is listened to that still sends what is refused.
+# How long, and for how many bytes at most, a browser that still sends what is refused is listened to.
 _LINGER = 2.0
 _MOST_UNREAD = 1 << 20
 _HEADERS = {
@@ -104,9 +104,9 @@ class Server(ThreadingHTTPServer):
     def shutdown_request(self, request: Any) -> None:
         """Close a connection so that the last answer arrives.
 
-        If something that was sent is left unread, closing resets the connection, and who is still sending may
-        never see why it was refused (RFC 9112, section 9.6). So first our side is closed alone, and the rest is
-        read and thrown away.
+        If something that was sent is left unread, closing resets the connection, and whoever is still sending
+        may never see why it was refused (RFC 9112, section 9.6). So first our side is closed alone, and the
+        rest is read and thrown away.
         """
         try:
             request.shutdown(socket.SHUT_WR)

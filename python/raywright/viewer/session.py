@@ -255,7 +255,7 @@ class _Job:
     session: Session
     number: int
     view: View
-    # It is not left when the camera is moved on: else nothing would be seen while it is.
+    # It is not left when the camera moves on: else nothing would be seen while that moves.
     is_preview: bool = False
 
     def is_set(self) -> bool:

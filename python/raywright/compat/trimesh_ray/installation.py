@@ -83,7 +83,7 @@ def install() -> Installation:
 
     So all of trimesh that casts rays does it with raywright (``mesh.contains``, thickness, voxels, ...), and
     so do packages that look for embree there, such as pyvista's ``PolyData.multi_ray_trace``. It holds for
-    meshes that there are already as for new ones, whatever was assigned to ``mesh.ray``. That counts again
+    meshes that there are already and for new ones, whatever was assigned to ``mesh.ray``; that counts again
     after `uninstall`.
 
     Returns
@@ -98,7 +98,7 @@ def install() -> Installation:
     _before = _Engines()
     # A property comes before what an instance holds, and so holds for meshes that there are already.
     _TRIMESH.ray = property(_ray, _set_ray)
-    # Who asks for embree is served: what is looked for in its module is in this package.
+    # Whoever asks for embree is served: what is looked for in its module is in this package.
     trimesh.ray.has_embree = True
     trimesh.ray.ray_pyembree = sys.modules[__package__]
     return Installation(True)

@@ -11,7 +11,7 @@ from .part import Part
 _KINDS = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
 _COLUMNS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT4": 16}
 _INDICES = ("|u1", "<u2", "<u4")
-# Zeros that stand for what is not in the file: as many bytes, at most.
+# Zeros that stand for what is not in the file: at most this many bytes.
 _MOST_ZEROS = 2**27
 
 

@@ -73,7 +73,7 @@ class Part:
         return tuple(values)
 
     def flag(self, name: str) -> bool:
-        """Return true or false, which is what is not there."""
+        """Return true or false; what is not there is false."""
         value = self._fields.get(name, False)
         if not isinstance(value, bool):
             raise ValueError(f"{self.at(name)} must be true or false, and is {_told(value)}")

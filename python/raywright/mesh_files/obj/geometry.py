@@ -188,7 +188,7 @@ def _corners(lines: list[bytes]) -> tuple[Integers, Integers]:
         chosen = forms == form
         rows = np.repeat(chosen, counts)
         text = b" ".join(compress(lines, chosen))
-        # As many as there should be in all are as many in each where none has more.
+        # Where none has more than it should, the right number in all is the right number in each.
         alike = form < 3 and _MORE[int(form)].search(text) is None
         found = _numbers(text.replace(b"//", b"/0/").replace(b"/", b" "), np.int64) if alike else ()
         columns = int(form) + 1

@@ -22,7 +22,7 @@ def is_held(material: Any) -> bool:
 
 
 def look_of_held(material: Any) -> Look:
-    """Return how a surface looks that has a SimpleMaterial of trimesh from a material library.
+    """Return how a surface with a SimpleMaterial of trimesh from a material library looks.
 
     Warns
     -----

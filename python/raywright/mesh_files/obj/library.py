@@ -16,7 +16,7 @@ from .text import name_of, text_of, told
 
 LOST_FILES = "files of materials are left out"
 LOST_MATERIALS = "materials that are in no file beside it are left out"
-# More files than this no program names, and each is looked for.
+# No program names more files than this, and each is looked for.
 _MOST = 256
 _ONE = re.compile(r"\S.*?\.mtl\b|\S+", re.IGNORECASE)
 
@@ -85,7 +85,7 @@ class Library:
 
 
 def span_of(vertices: NDArray[np.float64], faces: NDArray[np.int64], uv: NDArray[np.float64]) -> float:
-    """Return how long on the surface 1 is in texture coordinates, in the mean; 0 if it cannot be told."""
+    """Return how long on the surface 1 is in texture coordinates, on average; 0 if it cannot be told."""
     a, b, c = (vertices[faces[:, i]] for i in range(3))
     p, q, r = (uv[faces[:, i]] for i in range(3))
     with np.errstate(all="ignore"):

@@ -35,7 +35,7 @@ _NOTHING = {
     "-type": ("sphere",),
 }
 _CHANNELS: dict[str, Channel | None] = {"r": "r", "g": "g", "b": "b", "m": "a", "l": None}
-# As far as numbers of options make sense, and radiance, which is of 32 bits where it is added up.
+# The greatest number that makes sense in an option, and radiance, which is added up in 32 bits.
 _MOST = 1e6
 BRIGHTEST = 1e30
 

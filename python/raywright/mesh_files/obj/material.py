@@ -1,9 +1,9 @@
-"""What a material library says of a material, of this library's materials.
+"""What a material library says of a material, made of this library's materials.
 
 The models are those of the format's own illum (Alias|Wavefront, 1995): a matt surface; highlights by the
 formula of Blinn (1977); mirrors; panes; and glass that refracts. What the statements for physically based
-rendering say (Pr, Pm) goes before, and Blender, which fits a material of another kind to the numbers of this
-one, is read by the rule by which it writes.
+rendering say (Pr, Pm) takes precedence, and Blender, which fits a material of another kind to the numbers of
+this one, is read by the rule by which it writes.
 """
 
 import math
@@ -43,7 +43,7 @@ _BUMP = 0.01
 
 
 def look_of_mtl(said: Description, pictures: Pictures, span: float | None) -> Look:
-    """Return how a surface looks of which a material library says something.
+    """Return how a surface looks, by what a material library says of it.
 
     Parameters
     ----------
@@ -55,7 +55,7 @@ def look_of_mtl(said: Description, pictures: Pictures, span: float | None) -> Lo
         How long on the surface 1 is in texture coordinates; None where there are none.
     """
     look = _Reading(said, pictures, span).look()
-    # Of ambient light there is none of its own here, and what only smooths pictures changes nothing.
+    # Ambient light has no place here, and what only smooths pictures changes nothing.
     said.take("Ka", "map_Ka", "map_aat", "sharpness", "Ni", "Ns")
     said.unless_zero("Ps", "Pc", "aniso", "anisor")
     if "Pc" not in said.left:
@@ -83,7 +83,7 @@ class _Reading:
         opacity = self._opacity()
         body = self._glass()
         if body is not None:
-            # What goes through is bent, and not what is behind.
+            # Glass shows what it bends, and nothing straight behind it.
             opacity = 1.0
         elif any(keyword in said for keyword in ("Pr", "map_Pr", "Pm", "map_Pm")):
             body = self._metallic_rough()

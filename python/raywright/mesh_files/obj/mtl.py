@@ -1,7 +1,7 @@
 """Material libraries, MTL files: what they say of each material, statement by statement.
 
 The format is "MTL material format" in "File Formats, Version 4.2" (Alias|Wavefront, 1995), with the
-statements for physically based rendering that are in use beside it (Pr, Pm, norm, ...).
+statements for physically based rendering that are in use besides it (Pr, Pm, norm, ...).
 """
 
 import math

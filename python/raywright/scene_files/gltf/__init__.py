@@ -24,7 +24,7 @@ def read_gltf(path: str | PathLike[str], width: int | None = None, height: int |
     Parameters
     ----------
     path : str or path
-        The file. What it names beside itself must be in its folder, or in a folder within that.
+        The file. Others that it names must be in its folder, or in a folder within that.
     width, height : int, optional
         Size of the picture in pixels, as `load` has them.
 
@@ -54,7 +54,7 @@ def read_gltf(path: str | PathLike[str], width: int | None = None, height: int |
 
     Notes
     -----
-    Lights are told in candela and lux, which are divided by 683 lm/W, channel by channel, to be W·sr⁻¹ and
+    Lights are given in candela and lux, which are divided by 683 lm/W, channel by channel, to be W·sr⁻¹ and
     W·m⁻²; Blender multiplies by as much when it writes them. Emission is taken as it is, so that a factor of
     1 is a radiance of 1 W·sr⁻¹·m⁻²: that, too, is as Blender writes it, and as most programs show it.
 

@@ -74,7 +74,7 @@ SMOOTH = Facets(0.0)
 def facets(plugin: Plugin, uv: Uv) -> Facets:
     """Return the facets of a rough BSDF, which scatter once in Mitsuba.
 
-    Of ``sample_visible`` only the noise depends.
+    Only the noise depends on ``sample_visible``.
     """
     distribution = plugin.choice("distribution", "beckmann", ("beckmann", "ggx"))
     plugin.ignore("sample_visible")

@@ -15,8 +15,8 @@ Triple = tuple[float, float, float]
 # What a plugin may have whatever its type, and what changes no picture.
 _COMMON = ("type", "id")
 _MOST_LEVELS = 64
-# Deeper than any scene has plugins within plugins, references followed. What refers to the same twice grows
-# by as many powers of two.
+# Deeper than plugins lie within plugins in any scene, references followed. Where each refers to the next
+# twice, what is read doubles at every level.
 _MOST_WITHIN = 12
 
 

@@ -11,7 +11,7 @@ from .plugin import Plugin
 from .transforms import Matrix, straightened
 
 TYPES = ("perspective", "thinlens", "orthographic")
-# What Mitsuba has, or had, beside these.
+# What Mitsuba has, or had, besides these.
 OTHERS = (
     "batch",
     "distant",

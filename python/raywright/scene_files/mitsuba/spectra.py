@@ -1,4 +1,4 @@
-"""Spectra that are told by wavelength, as linear red, green and blue (Rec. 709)."""
+"""Spectra that are given by wavelength, as linear red, green and blue (Rec. 709)."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,8 +13,8 @@ EVEN = np.array((1.204794, 0.948291, 0.908916))
 def rgb(table: NDArray[np.float64], emits: bool) -> NDArray[np.float64]:
     """Return the colour of values at wavelengths, in nm, linear between them and 0 outside.
 
-    As the standard observer sees them (CIE 1931). What no mixture of red, green and blue looks like is as
-    near as one without less than none of any.
+    As the standard observer sees them (CIE 1931). Where a colour would need less than none of red, green or
+    blue, it gets none of that.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Transforms as scenes tell them: steps of XML, nested lists, arrays, or objects with a ``matrix``."""
+"""Transforms as scenes give them: steps of XML, nested lists, arrays, or objects with a ``matrix``."""
 
 from collections.abc import Callable
 from typing import Any, NoReturn
@@ -102,7 +102,7 @@ def matrix_of(value: Any) -> Matrix:
 
 
 def uv_matrix(value: Any) -> Matrix:
-    """Return the (3, 3) matrix of a transform of texture coordinates, which may be told as (4, 4).
+    """Return the (3, 3) matrix of a transform of texture coordinates, which may be given as (4, 4).
 
     Of the latter the third row and column count for nothing.
     """
@@ -130,7 +130,7 @@ def _array(value: Any) -> Matrix:
         array = np.array(given, dtype=np.float64)
     except (TypeError, ValueError):
         raise ValueError(f"must be a matrix, got {type(value).__name__}") from None
-    # Those of Mitsuba's variants that work on many numbers at once are of one.
+    # Where Mitsuba's variants work on many numbers at once, a matrix is an array of one.
     return array[..., 0] if array.ndim == 3 and array.shape[2] == 1 else array
 
 
