@@ -125,6 +125,9 @@ macro_rules! faceted {
 }
 
 faceted! {
+    Conductor<Beckmann>,
+    Dielectric<Beckmann>,
+    Coated<Beckmann>,
     Conductor<Once<Ggx>>,
     Conductor<Once<Beckmann>>,
     Dielectric<Once<Ggx>>,

@@ -1,6 +1,7 @@
 //! What holds of every kind of scattering.
 
 use super::conductors::Reflectance;
+use super::losses::Lossy;
 use super::*;
 use crate::sampling::Sampler;
 use glam::DVec3;
@@ -19,13 +20,13 @@ fn gold(outside: f64, alpha: [f64; 2]) -> Bsdf {
     Conductor::metal(conductors::metal("gold").unwrap(), outside, alpha).into()
 }
 
-/// Silver and glass of facets that scatter once.
-fn once<F: Facets>(alpha: [f64; 2], eta: f64) -> [Bsdf; 2]
+/// Silver and glass of some facets.
+fn faceted<F: Lossy>(alpha: [f64; 2], eta: f64) -> [Bsdf; 2]
 where
-    Bsdf: From<Conductor<Once<F>>> + From<Dielectric<Once<F>>>,
+    Bsdf: From<Conductor<F>> + From<Dielectric<F>>,
 {
     let silver = Reflectance::Index(fresnel::ConductorIndex::new(SILVER.0, SILVER.1));
-    let (brushed, alike) = (Once::<F>::new(alpha), Once::<F>::new([alpha[0]; 2]));
+    let (brushed, alike) = (F::new(alpha), F::new([alpha[0]; 2]));
     [Conductor::of(silver, Some(brushed)).into(), Dielectric::of(eta, Some(alike)).into()]
 }
 
@@ -77,9 +78,13 @@ fn kinds() -> Vec<Bsdf> {
         kinds.push(MetallicRough::new(red, 0.5, alpha.sqrt()).into());
         kinds.push(MetallicRough::new(grey, 1.0, alpha.sqrt()).into());
         for eta in [1.01, 1.5] {
-            kinds.extend(once::<Ggx>([alpha, 0.3], eta));
-            kinds.extend(once::<Beckmann>([alpha, 0.3], eta));
+            kinds.extend(faceted::<Once<Ggx>>([alpha, 0.3], eta));
+            kinds.extend(faceted::<Once<Beckmann>>([alpha, 0.3], eta));
         }
+        for eta in [1.00001, 1.01, 1.5, 1.0 / 1.5, 3.0] {
+            kinds.extend(faceted::<Beckmann>([alpha, 0.3], eta));
+        }
+        kinds.push(Coated::of(red, 1.5, Beckmann::rough([alpha; 2])).into());
     }
     kinds.extend(plastics_once());
     kinds
@@ -89,6 +94,7 @@ fn kinds() -> Vec<Bsdf> {
 fn index(bsdf: &Bsdf) -> f64 {
     match bsdf {
         Bsdf::Dielectric(d) => d.eta(),
+        Bsdf::Faceted(Faceted::BeckmannDielectric(d)) => d.eta(),
         Bsdf::Faceted(Faceted::DielectricOnce(d)) => d.eta(),
         Bsdf::Faceted(Faceted::BeckmannDielectricOnce(d)) => d.eta(),
         _ => 1.0,
@@ -190,7 +196,8 @@ fn draws_weigh_what_is_evaluated() {
                 }
                 assert!(!bsdf.is_delta());
                 let (value, pdf) = bsdf.evaluate(wo, s.wi);
-                let off = (value - s.weight * s.pdf).abs().max_element() / value.max_element();
+                // Nothing is scattered where a facet's density underflows and nothing is lost.
+                let off = (value - s.weight * s.pdf).abs().max_element() / value.max_element().max(f64::MIN_POSITIVE);
                 // Directions are right to 10⁻¹⁶; what is evaluated from them, to that over a lobe's width.
                 let bound = 1e-9 + 1e-12 * s.pdf.sqrt();
                 assert!(off < bound && (pdf / s.pdf - 1.0).abs() < bound, "{off:e} {pdf} {s:?} {bsdf:?} {wo}");
@@ -243,8 +250,10 @@ proptest! {
         kinds.push(Coated::new(Rgb::ONE, eta.max(1.0), alpha).into());
         kinds.push(MetallicRough::new(Rgb::ONE, across, alpha).into());
         kinds.push(OrenNayar::new(Rgb::ONE, alpha).into());
-        kinds.extend(once::<Ggx>([alpha, across], eta));
-        kinds.extend(once::<Beckmann>([alpha, across], eta));
+        kinds.extend(faceted::<Beckmann>([alpha, across], eta));
+        kinds.extend(faceted::<Once<Ggx>>([alpha, across], eta));
+        kinds.extend(faceted::<Once<Beckmann>>([alpha, across], eta));
+        kinds.push(Coated::of(Rgb::ONE, eta.max(1.0), Beckmann::rough([alpha; 2])).into());
         for bsdf in kinds {
             let (value, pdf) = bsdf.evaluate(wo, wi);
             prop_assert!(is_radiance(value) && pdf.is_finite() && pdf >= 0.0, "{value} {pdf} {bsdf:?} {wo} {wi}");

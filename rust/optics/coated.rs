@@ -1,6 +1,6 @@
 //! Plastic, varnish, glaze: a matt base under a clear coat.
 
-use super::albedo::{MirrorLoss, coat, coat_average};
+use super::albedo::{Coat, Tabulated};
 use super::conductor::above;
 use super::lobes::diffuse;
 use super::mirror::mirrored;
@@ -8,40 +8,50 @@ use super::{BsdfSample, Facets, Ggx, Rgb, Scatter, fresnel};
 use glam::DVec3;
 use std::f64::consts::FRAC_1_PI;
 
-/// A dielectric coat, smooth or with GGX microfacets, over a diffuse base. The coat reflects R(ω); the rest reaches the
+/// A dielectric coat, smooth or with microfacets, over a diffuse base. The coat reflects R(ω); the rest reaches the
 /// base, and light from there is reflected back to it under the coat any number of times (Wolff, Nayar and Oren,
 /// "Improved Diffuse Reflection Models for Computer Vision", 1998): with F̄ the mean reflectance of the coat from
 /// within, (1 − R(wo)) (1 − R(wi)) / (π (1 − R̄)) ρ (1 − F̄) / (1 − ρ F̄). Reciprocal, and a white base is white under
 /// any coat. Light that a rough coat's facets throw on facets is taken to reach the base. Both sides reflect.
 #[derive(Clone, Copy, Debug)]
-pub struct Coated {
+pub struct Coated<F: Tabulated = Ggx> {
     eta: f64,
-    ggx: Option<Ggx>,
+    rough: Option<Rough<F>>,
     /// What the base gives back of the light that reaches it.
     base: Rgb,
     /// Mean reflectance of the coat from outside.
     average: f64,
 }
 
+#[derive(Clone, Copy, Debug)]
+struct Rough<F> {
+    facets: F,
+    coat: Coat,
+}
+
 impl Coated {
     /// Of a base's reflectance, 0 to 1, the coat's index of refraction relative to what is outside, `eta` ≥ 1, and its
-    /// roughness, 0 to 1. Below [`Ggx::SMOOTH`] it reflects in one direction.
+    /// roughness of GGX, 0 to 1. Below [`Facets::SMOOTH`] it reflects in one direction.
     pub fn new(reflectance: Rgb, eta: f64, alpha: f64) -> Self {
-        let ggx = Ggx::rough([alpha; 2]);
+        Self::of(reflectance, eta, Ggx::rough([alpha; 2]))
+    }
+}
+
+impl<F: Tabulated> Coated<F> {
+    /// Of facets that are alike in all directions; without them the coat reflects in one direction.
+    pub fn of(reflectance: Rgb, eta: f64, facets: Option<F>) -> Self {
+        let rough = facets.map(|facets| Rough { facets, coat: Coat::new(facets, eta) });
         let within = fresnel::dielectric_average(1.0 / eta);
-        let average = match &ggx {
-            None => fresnel::dielectric_average(eta),
-            Some(ggx) => coat_average(ggx.alpha()[0], eta),
-        };
-        Self { eta, ggx, base: reflectance * (1.0 - within) / (Rgb::ONE - reflectance * within), average }
+        let average = rough.as_ref().map_or_else(|| fresnel::dielectric_average(eta), |rough| rough.coat.average());
+        Self { eta, rough, base: reflectance * (1.0 - within) / (Rgb::ONE - reflectance * within), average }
     }
 
     /// The share of light from `w` that the coat reflects.
     #[inline]
     fn reflectance(&self, w: DVec3) -> f64 {
-        match &self.ggx {
+        match &self.rough {
             None => fresnel::dielectric(w.z.abs(), self.eta),
-            Some(ggx) => coat(ggx.alpha()[0], self.eta, w.z) * (1.0 - MirrorLoss::new(*ggx).of(w)),
+            Some(rough) => rough.coat.of(w.z),
         }
     }
 
@@ -53,10 +63,10 @@ impl Coated {
     }
 }
 
-impl Scatter for Coated {
+impl<F: Tabulated> Scatter for Coated<F> {
     #[inline]
     fn evaluate(&self, wo: DVec3, wi: DVec3) -> (Rgb, f64) {
-        if !Ggx::sees(wo) || !Ggx::sees(wi) || wo.z * wi.z <= 0.0 {
+        if !F::sees(wo) || !F::sees(wi) || wo.z * wi.z <= 0.0 {
             return (Rgb::ZERO, 0.0);
         }
         let (wo, wi) = (above(wo), above(wi));
@@ -65,26 +75,26 @@ impl Scatter for Coated {
         let reaching = (1.0 - reflectance) * (1.0 - self.reflectance(wi));
         let base = self.base * (reaching * FRAC_1_PI * wi.z / (1.0 - self.average));
         let diffuse = (1.0 - share) * wi.z * FRAC_1_PI;
-        let Some(ggx) = &self.ggx else { return (base, diffuse) };
-        let (density, cosine) = ggx.mirroring(wo, wi);
-        let coat = fresnel::dielectric(cosine, self.eta) * density * ggx.reflection_geometry(wo, wi);
-        (base + coat, share * ggx.reflected_pdf(wo, density) + diffuse)
+        let Some(Rough { facets, .. }) = &self.rough else { return (base, diffuse) };
+        let (density, cosine) = facets.mirroring(wo, wi);
+        let coat = fresnel::dielectric(cosine, self.eta) * density * facets.reflection_geometry(wo, wi);
+        (base + coat, share * facets.reflected_pdf(wo, density) + diffuse)
     }
 
     #[inline]
     fn sample(&self, wo: DVec3, choice: impl FnOnce() -> f64, u: [f64; 2]) -> Option<BsdfSample> {
-        if !Ggx::sees(wo) {
+        if !F::sees(wo) {
             return None;
         }
         let up = above(wo);
         let reflectance = self.reflectance(up);
         let share = self.share(reflectance);
         let coat = choice() < share;
-        let mut wi = match &self.ggx {
+        let mut wi = match &self.rough {
             None if coat => {
                 return Some(BsdfSample::delta(mirrored(wo), Rgb::splat(reflectance / share)));
             }
-            Some(ggx) if coat => ggx.sample_reflection(up, u),
+            Some(rough) if coat => rough.facets.sample_reflection(up, u),
             _ => diffuse(up, u),
         };
         if wi.z <= 0.0 {
@@ -100,6 +110,6 @@ impl Scatter for Coated {
     }
 
     fn roughness(&self) -> f64 {
-        self.ggx.as_ref().map_or(0.0, Ggx::mean_alpha)
+        self.rough.as_ref().map_or(0.0, |rough| rough.facets.mean_alpha())
     }
 }

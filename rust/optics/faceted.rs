@@ -1,6 +1,6 @@
 //! Rough surfaces that are not of GGX's facets, or not with all of the light.
 
-use super::{Beckmann, BsdfSample, CoatedOnce, Conductor, Dielectric, Ggx, Once, Rgb, Scatter};
+use super::{Beckmann, BsdfSample, Coated, CoatedOnce, Conductor, Dielectric, Ggx, Once, Rgb, Scatter};
 use crate::math::DVec3;
 
 /// Makes [`Faceted`] of its kinds.
@@ -70,6 +70,12 @@ macro_rules! kinds {
 }
 
 kinds! {
+    /// Metal of Beckmann's facets.
+    BeckmannConductor(Conductor<Beckmann>),
+    /// Glass of Beckmann's facets.
+    BeckmannDielectric(Dielectric<Beckmann>),
+    /// Plastic with a coat of Beckmann's facets.
+    BeckmannCoated(Coated<Beckmann>),
     /// Metal, scattering once.
     ConductorOnce(Conductor<Once<Ggx>>),
     /// Metal of Beckmann's facets, scattering once.

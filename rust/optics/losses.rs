@@ -1,7 +1,7 @@
 //! What facets throw on facets, and what materials make of it.
 
-use super::albedo::{Interface, MirrorLoss};
-use super::{Facets, Ggx, Once};
+use super::albedo::{Interface, MirrorLoss, Tabulated};
+use super::{Facets, Once};
 use crate::math::DVec3;
 use std::fmt::Debug;
 
@@ -44,7 +44,7 @@ pub trait LostBetween: Copy + Debug {
     fn given_back(&self, loss: f64, wo: DVec3, wi: DVec3) -> f64;
 }
 
-impl Lossy for Ggx {
+impl<F: Tabulated> Lossy for F {
     type Mirror = MirrorLoss;
     type Interface = Interface;
 
@@ -55,7 +55,7 @@ impl Lossy for Ggx {
 
     #[inline]
     fn interface(self, eta: f64) -> Interface {
-        Interface::new(self.mean_alpha(), eta)
+        Interface::new(self, eta)
     }
 }
 

@@ -1,6 +1,6 @@
 //! The material of glTF.
 
-use super::albedo::{MirrorLoss, schlick_share, schlick_share_average};
+use super::albedo::{MirrorLoss, SchlickShare};
 use super::conductor::{above, made_up};
 use super::lobes::{Grazing, diffuse};
 use super::mirror::mirrored;
@@ -17,7 +17,7 @@ use std::f64::consts::FRAC_1_PI;
 /// A white base is white at every roughness and metalness. Both sides reflect.
 #[derive(Clone, Copy, Debug)]
 pub struct MetallicRough {
-    ggx: Option<Ggx>,
+    rough: Option<Rough>,
     /// Reflectance at normal incidence.
     f0: Rgb,
     /// The base's share, over π and the mean of what reaches it.
@@ -31,6 +31,19 @@ pub struct MetallicRough {
     grazing: Grazing,
 }
 
+#[derive(Clone, Copy, Debug)]
+struct Rough {
+    ggx: Ggx,
+    loss: MirrorLoss,
+    schlick: SchlickShare,
+}
+
+impl Rough {
+    fn new(ggx: Ggx) -> Self {
+        Self { ggx, loss: MirrorLoss::new(ggx), schlick: SchlickShare::new(ggx) }
+    }
+}
+
 impl MetallicRough {
     /// The reflectance of what is not metal at normal incidence, that of index 1.5.
     const DIELECTRIC: f64 = 0.04;
@@ -39,42 +52,38 @@ impl MetallicRough {
     /// reflect in one direction.
     pub fn new(base_color: Rgb, metallic: f64, roughness: f64) -> Self {
         let metallic = metallic.clamp(0.0, 1.0);
-        let ggx = Ggx::rough([roughness * roughness; 2]);
+        let rough = Ggx::rough([roughness * roughness; 2]).map(Rough::new);
         let f0 = base_color * metallic + Self::DIELECTRIC * (1.0 - metallic);
         // Schlick's (1 − cos)⁵ has the mean 1/21 over even light.
-        let average = match &ggx {
-            None => Self::DIELECTRIC + (1.0 - Self::DIELECTRIC) / 21.0,
-            Some(ggx) => {
-                let kept = 1.0 - MirrorLoss::new(*ggx).average();
-                Self::DIELECTRIC * kept + (1.0 - Self::DIELECTRIC) * schlick_share_average(ggx.alpha()[0])
-            }
-        };
+        let lost = rough.as_ref().map_or(0.0, |rough| rough.loss.average());
+        let schlick = rough.as_ref().map_or(1.0 / 21.0, |rough| rough.schlick.average());
+        let average = Self::dielectric((schlick, 1.0 - lost));
         let metal = base_color + (Rgb::ONE - base_color) / 21.0;
-        let multiple = ggx.as_ref().map_or(Rgb::ZERO, |ggx| made_up(MirrorLoss::new(*ggx).average(), metal) * metallic);
+        let multiple = if lost > 0.0 { made_up(lost, metal) * metallic } else { Rgb::ZERO };
         let base = base_color * ((1.0 - metallic) * FRAC_1_PI / (1.0 - average));
-        let grazing = Grazing::new(ggx.as_ref().map_or(1.0, |ggx| ggx.alpha()[0]));
-        Self { ggx, f0, base, multiple, color: base_color, metallic, grazing }
+        let grazing = Grazing::new(rough.as_ref().map_or(1.0, |rough| rough.ggx.alpha()[0]));
+        Self { rough, f0, base, multiple, color: base_color, metallic, grazing }
     }
 
-    /// The mean of Schlick's term and the share that is kept, for light from `w`.
+    /// What facets reflect once of light from `w` whose reflectance is Schlick's term, and if it is 1.
     #[inline]
     fn once(&self, w: DVec3) -> (f64, f64) {
-        match &self.ggx {
+        match &self.rough {
             None => (fresnel::schlick_weight(w.z), 1.0),
-            Some(ggx) => (schlick_share(ggx.alpha()[0], w.z), 1.0 - MirrorLoss::new(*ggx).of(w)),
+            Some(rough) => (rough.schlick.of(w.z), 1.0 - rough.loss.of(w)),
         }
     }
 
     /// The share of light that facets of a dielectric reflect once.
     #[inline]
     fn dielectric((schlick, kept): (f64, f64)) -> f64 {
-        (Self::DIELECTRIC + (1.0 - Self::DIELECTRIC) * schlick) * kept
+        Self::DIELECTRIC * kept + (1.0 - Self::DIELECTRIC) * schlick
     }
 
     /// The probabilities with which a draw is one reflection by a facet, and what metal scatters more than once.
     #[inline]
     fn shares(&self, once: (f64, f64)) -> [f64; 2] {
-        let facets = (self.f0 + (Rgb::ONE - self.f0) * once.0).max_element() * once.1;
+        let facets = (self.f0 * once.1 + (Rgb::ONE - self.f0) * once.0).max_element();
         let color = self.color.max_element();
         let (metal, base) =
             (color * self.metallic * (1.0 - once.1), color * (1.0 - self.metallic) * (1.0 - Self::dielectric(once)));
@@ -95,9 +104,9 @@ impl Scatter for MetallicRough {
         let lost = (1.0 - once_o.1) * (1.0 - once_i.1);
         let wide = (self.base * reaching + self.multiple * lost) * wi.z;
         let [facets, metal] = self.shares(once_o);
-        let (once, facet) = match &self.ggx {
+        let (once, facet) = match &self.rough {
             None => (Rgb::ZERO, 0.0),
-            Some(ggx) => {
+            Some(Rough { ggx, .. }) => {
                 let (density, cosine) = ggx.mirroring(wo, wi);
                 let facets = density * ggx.reflection_geometry(wo, wi);
                 (fresnel::schlick(cosine, self.f0) * facets, ggx.reflected_pdf(wo, density))
@@ -116,11 +125,11 @@ impl Scatter for MetallicRough {
         let [facets, metal] = self.shares(self.once(up));
         let choice = choice();
         let facet = choice < facets;
-        let mut wi = match &self.ggx {
+        let mut wi = match &self.rough {
             None if facet => {
                 return Some(BsdfSample::delta(mirrored(wo), fresnel::schlick(up.z, self.f0) / facets));
             }
-            Some(ggx) if facet => ggx.sample_reflection(up, u),
+            Some(rough) if facet => rough.ggx.sample_reflection(up, u),
             _ if choice < facets + metal => self.grazing.sample(u),
             _ => diffuse(up, u),
         };
@@ -137,10 +146,10 @@ impl Scatter for MetallicRough {
     }
 
     fn is_delta(&self) -> bool {
-        self.ggx.is_none() && self.base == Rgb::ZERO
+        self.rough.is_none() && self.base == Rgb::ZERO
     }
 
     fn roughness(&self) -> f64 {
-        self.ggx.as_ref().map_or(0.0, Ggx::mean_alpha)
+        self.rough.as_ref().map_or(0.0, |rough| rough.ggx.mean_alpha())
     }
 }

@@ -17,6 +17,7 @@ mod diffuse;
 mod faceted;
 mod facets;
 pub mod fresnel;
+pub mod furnace;
 mod ggx;
 mod lobes;
 mod losses;

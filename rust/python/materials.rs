@@ -106,7 +106,8 @@ impl Looks {
         };
         let distribution: String = given.getattr("distribution")?.extract()?;
         let facets = match (distribution.as_str(), given.getattr("multiple_scattering")?.extract()?) {
-            ("beckmann", _) => FacetKind::BeckmannOnce,
+            ("beckmann", true) => FacetKind::Beckmann,
+            ("beckmann", false) => FacetKind::BeckmannOnce,
             (_, true) => FacetKind::Ggx,
             (_, false) => FacetKind::GgxOnce,
         };

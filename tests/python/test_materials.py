@@ -277,10 +277,7 @@ def test_facets_are_told_and_checked(kind):
         of_facets(kind, distribution="phong")
     with pytest.raises(TypeError, match="multiple_scattering must be True or False, got 1"):
         of_facets(kind, multiple_scattering=1)
-    with pytest.raises(
-        ValueError, match="multiple_scattering must be False where distribution is 'beckmann'"
-    ):
-        of_facets(kind, distribution="beckmann")
+    assert of_facets(kind, distribution="beckmann").multiple_scattering is True
 
 
 def test_highlights_are_those_of_the_distribution():

@@ -70,6 +70,19 @@ def test_a_glass_ball_in_an_even_light_cannot_be_seen(ior, alpha):
     assert not any("finite" in warning for warning in image.warnings)
 
 
+@pytest.mark.parametrize("distribution", ["ggx", "beckmann"])
+@pytest.mark.parametrize(("ior", "alpha"), [(1.5, 0.05), (1.5, 0.3), (1.33, 0.7), (1 / 1.5, 0.3)])
+def test_a_ball_of_rough_glass_gains_and_loses_nothing(ior, alpha, distribution):
+    """Light goes through two surfaces, and is thrown back within now and then."""
+    material = rw.Dielectric(ior, alpha=alpha, distribution=distribution)
+    camera = rw.Camera((0, 0, 10), (0, 0, 0), fov=8, width=32, height=32)
+    ball = rw.Sphere((0, 0, 0), 1, material=material)
+    image = rw.render(rw.Scene(ball, environment=1), camera, samples=512, progress=False)
+    error = math.sqrt(float(np.square(image.standard_error[..., 1].astype(float)).sum())) / 1024
+    assert abs(float(image.rgb[..., 1].mean()) - 1) <= 0.002 + 5 * error
+    assert error < 0.001
+
+
 def fresnel(cosine, ratio):
     """Reflectance for unpolarised light; `ratio` is the index beyond over that before (Born and Wolf)."""
     sine = np.sqrt(np.maximum(1 - cosine**2, 0)) / ratio

@@ -46,8 +46,7 @@ class Conductor(Material):
     multiple_scattering : bool
         Whether light that facets throw on each other goes on. If not, it is lost, so that a surface is the
         darker the rougher it is, and what is hidden from either side is independent of the other: the model
-        of Walter et al., which many renderers have as it stands. It must be False for Beckmann's facets, of
-        which it is not known what they throw on each other.
+        of Walter et al., which many renderers have as it stands.
 
     Attributes
     ----------

@@ -68,15 +68,13 @@ def facets(distribution: str, multiple_scattering: bool) -> dict[str, Any]:
     Raises
     ------
     ValueError
-        If there is no such distribution, or it is not known what its facets throw on each other.
+        If there is no such distribution.
     TypeError
         If `multiple_scattering` is no bool.
     """
     choice("distribution", distribution, DISTRIBUTIONS)
     if not isinstance(multiple_scattering, bool):
         raise TypeError(f"multiple_scattering must be True or False, got {multiple_scattering!r}")
-    if distribution == "beckmann" and multiple_scattering:
-        raise ValueError("multiple_scattering must be False where distribution is 'beckmann', got True")
     return {"distribution": distribution, "multiple_scattering": multiple_scattering}
 
 

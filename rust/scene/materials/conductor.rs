@@ -44,6 +44,7 @@ impl ConductorMaterial {
         let alpha = self.roughness.alpha(point);
         match self.roughness.facets {
             FacetKind::Ggx => Conductor::of(fresnel, Ggx::rough(alpha)).into(),
+            FacetKind::Beckmann => Conductor::of(fresnel, Beckmann::rough(alpha)).into(),
             FacetKind::GgxOnce => Conductor::of(fresnel, Once::<Ggx>::rough(alpha)).into(),
             FacetKind::BeckmannOnce => Conductor::of(fresnel, Once::<Beckmann>::rough(alpha)).into(),
         }

@@ -21,6 +21,7 @@ impl DielectricMaterial {
         let ([alpha, _], eta) = (self.roughness.alpha(point), self.interior.ior / outside);
         match self.roughness.facets {
             FacetKind::Ggx => Dielectric::of(eta, Ggx::rough([alpha; 2])).into(),
+            FacetKind::Beckmann => Dielectric::of(eta, Beckmann::rough([alpha; 2])).into(),
             FacetKind::GgxOnce => Dielectric::of(eta, Once::<Ggx>::rough([alpha; 2])).into(),
             FacetKind::BeckmannOnce => Dielectric::of(eta, Once::<Beckmann>::rough([alpha; 2])).into(),
         }

@@ -27,6 +27,7 @@ impl PlasticMaterial {
         let reflectance = self.reflectance.at(point);
         match self.roughness.facets {
             FacetKind::Ggx => Coated::new(reflectance, eta, alpha).into(),
+            FacetKind::Beckmann => Coated::of(reflectance, eta, Beckmann::rough([alpha; 2])).into(),
             FacetKind::GgxOnce => self.once::<Ggx>(reflectance, eta, alpha),
             FacetKind::BeckmannOnce => self.once::<Beckmann>(reflectance, eta, alpha),
         }

@@ -24,6 +24,8 @@ pub enum FacetKind {
     /// GGX's, with all of the light.
     #[default]
     Ggx,
+    /// Beckmann's, with all of the light.
+    Beckmann,
     /// GGX's, with what is scattered once.
     GgxOnce,
     /// Beckmann's, with what is scattered once.
