@@ -147,3 +147,10 @@ def test_instances_are_among_what_asdict_gives():
     told = dataclasses.asdict(hits)["instance"]
     assert np.array_equal(told, hits.instance)
     assert set(told.ravel().tolist()) > {-1}
+
+
+def test_all_about_points_is_told_whatever_was_asked_before(scene):
+    down = ([[0.1, 0.2, 3.0], [9.0, 9.0, 3.0]], (0, 0, -2.0))
+    asked, other = scene.intersect(*down), scene.intersect(*down)
+    assert (asked.instance == -1).all()
+    np.testing.assert_array_equal(asked.surface.normal, other.surface.normal)

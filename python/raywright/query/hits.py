@@ -139,7 +139,7 @@ class SurfacePoints(Known):
             self._compiled,
             self.shape_id.reshape(-1),
             self.primitive.reshape(-1),
-            None if instance is None else instance.reshape(-1),
+            None if instance is None else np.ascontiguousarray(instance).reshape(-1),
             self.uv.reshape(-1, 2),
             t,
             origins.reshape(-1, 3),
