@@ -4,9 +4,9 @@ use super::{Facets, Ggx, Scatter, fresnel};
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// The share of even light that is scattered towards `wo`, ∫ f(wo, wi) |cos θi| dωi with the η² of radiance taken out, in
-/// the first channel: 1 where nothing is lost or gained. `eta` is the index below over that above. What goes in single
-/// directions is not in it.
+/// The share of even light that is scattered towards `wo`, ∫ f(wo, wi) |cos θi| dωi with the η² of radiance taken out,
+/// in the first channel: 1 where nothing is lost or gained. `eta` is the index below over that above. What goes in
+/// single directions is not in it.
 ///
 /// It asks [`Scatter::evaluate`] alone, in cells of elevation and azimuth that are halved until Gauss's rule of 3 by 3
 /// points agrees with that of the cell's quarters to `precision`. They are narrow, down to the `width` of its sharpest

@@ -6,7 +6,8 @@ use super::tables::{BRUSHED, BRUSHED_AVERAGE};
 use super::variables::{EVEN, of_alpha, of_root};
 use glam::DVec3;
 
-/// How many times as rough a surface may be one way as the other: where it is rougher still, it loses as if it were not.
+/// How many times as rough a surface may be one way as the other: where it is rougher still, it loses as if it were
+/// not.
 pub const STEEPEST: f64 = 1e3;
 
 /// How many times as smooth one way as the other facets of a variable are, as [`of_ratio`] has it.
@@ -87,9 +88,9 @@ pub fn of_cosine(along: f64, rough: f64, cosine: f64) -> f64 {
     even * cosine + (1.0 - even) * 0.5 * (of_root(root, along.sqrt()) + of_root(root, rough.sqrt()))
 }
 
-/// A variable from 0 to 1 for the roughness at an azimuth between the lesser and the greater: by its logarithm, for what
-/// happens along the lesser, and evenly, for what does along the greater. `scale` is one over the logarithm of one over
-/// the other.
+/// A variable from 0 to 1 for the roughness at an azimuth between the lesser and the greater: by its logarithm, for
+/// what happens along the lesser, and evenly, for what does along the greater. `scale` is one over the logarithm of one
+/// over the other.
 #[inline]
 pub fn of_along(along: f64, [smooth, rough]: [f64; 2], scale: f64) -> f64 {
     if scale == 0.0 { 0.5 } else { 0.5 * ((along / smooth).ln() * scale + (along - smooth) / (rough - smooth)) }

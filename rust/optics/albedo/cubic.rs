@@ -2,9 +2,9 @@
 
 use std::fmt;
 
-/// Where a variable lies between the entries of a table, and what each of the four about it counts for: the cubic through the
-/// middle two whose slopes are those of their neighbours' secants (Catmull and Rom, "A Class of Local Interpolating Splines",
-/// 1974). At an end the missing neighbour is that of the parabola through the last three.
+/// Where a variable lies between the entries of a table, and what each of the four about it counts for: the cubic
+/// through the middle two whose slopes are those of their neighbours' secants (Catmull and Rom, "A Class of Local
+/// Interpolating Splines", 1974). At an end the missing neighbour is that of the parabola through the last three.
 #[derive(Clone, Copy, Debug)]
 pub struct Cubic {
     first: u32,

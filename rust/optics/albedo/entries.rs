@@ -89,7 +89,8 @@ fn integrated<F: Facets + Sync>(like: &Tables) -> &'static Tables {
     Box::leak(Box::new(Tables { mirror, brushed, thin, dense, coat, schlick, ..*like }))
 }
 
-/// The same tables with averages of what they give between their entries, so that what is given back sums to what is lost.
+/// The same tables with averages of what they give between their entries, so that what is given back sums to what is
+/// lost.
 fn averaged(once: &'static Tables) -> &'static Tables {
     let like = once;
     let mirror_average = filled("mirror_average", &like.mirror_average, |[a]| {

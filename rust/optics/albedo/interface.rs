@@ -46,9 +46,9 @@ impl Interface {
             table.at(&row, &column).exp() * rough.unit()
         };
         let averages = [average(eta < 1.0), average(eta > 1.0)];
-        // A share t of a loss L̄ that crosses from side a to b is reciprocal if na² ta L̄a = nb² tb L̄b (Kulla and Conty,
-        // "Revisiting Physically Based Shading at Imageworks", 2017). A smooth interface lets through 1 − F̄, for which
-        // na² (1 − F̄a) = nb² (1 − F̄b): so t = (1 − F̄) / L̄ times what keeps both at most 1 − F̄.
+        // A share t of a loss L̄ that crosses from side a to b is reciprocal if na² ta L̄a = nb² tb L̄b (Kulla and
+        // Conty, "Revisiting Physically Based Shading at Imageworks", 2017). A smooth interface lets through 1 − F̄,
+        // for which na² (1 − F̄a) = nb² (1 − F̄b): so t = (1 − F̄) / L̄ times what keeps both at most 1 − F̄.
         let least = averages[0].min(averages[1]);
         let side = |below: bool| {
             let (own, average) = (if below { 1.0 / eta } else { eta }, averages[usize::from(below)]);
@@ -85,8 +85,8 @@ impl Interface {
         if self.side(w).dense { (self.rough.alpha * self.rough.bent).max(1e-8) } else { self.rough.alpha }
     }
 
-    /// What is given back to `wo` of light from `wi`, per solid angle, with the cosine of `wi` in it and without the 1 / η²
-    /// of radiance. `loss` is that of `wo`.
+    /// What is given back to `wo` of light from `wi`, per solid angle, with the cosine of `wi` in it and without the 1
+    /// / η² of radiance. `loss` is that of `wo`.
     #[inline]
     pub fn given_back(&self, loss: f64, wo: DVec3, wi: DVec3) -> f64 {
         loss * self.given_back_density(wo, wi)

@@ -3,15 +3,15 @@
 use crate::optics::{Facets, fresnel};
 use glam::DVec3;
 
-/// So many points go to the facets' slope and to their azimuth: what is refracted ends at lines between the facets, to whose
-/// course the first of them owes its number. Means are within 10⁻⁴, and mostly within 10⁻⁵.
+/// So many points go to the facets' slope and to their azimuth: what is refracted ends at lines between the facets, to
+/// whose course the first of them owes its number. Means are within 10⁻⁴, and mostly within 10⁻⁵.
 const STEPS: [usize; 2] = [2500, 32];
 
 /// What is reflected changes less.
 const FEWER: [usize; 2] = [800, 32];
 
-/// The mean over the facets that `w` sees of a function of their normal. Half the azimuths are enough by symmetry where `w` lies
-/// in the plane of x and z.
+/// The mean over the facets that `w` sees of a function of their normal. Half the azimuths are enough by symmetry where
+/// `w` lies in the plane of x and z.
 fn mean_over_facets(facets: &impl Facets, w: DVec3, steps: [usize; 2], value: impl Fn(DVec3) -> f64) -> f64 {
     let azimuths = if w.y == 0.0 { 0.5 } else { 1.0 };
     let mut sum = 0.0;
@@ -75,7 +75,8 @@ pub fn inverse(at: f64, f: impl Fn(f64) -> f64) -> f64 {
     0.5 * (low + high)
 }
 
-/// The mean over even light, ∫ f(μ) 2μ dμ, of what falls off from a scale on as 1 / μ² at the most: by midpoints of ln μ.
+/// The mean over even light, ∫ f(μ) 2μ dμ, of what falls off from a scale on as 1 / μ² at the most: by midpoints of ln
+/// μ.
 pub fn even_light(scale: f64, f: impl Fn(f64) -> f64) -> f64 {
     const STEPS: usize = 2000;
     // Next to nothing comes from below.

@@ -7,7 +7,8 @@ use glam::DVec3;
 #[derive(Clone, Copy, Debug)]
 pub struct Rough {
     pub alpha: f64,
-    /// The part of x = μ / s(ω) in which light from the denser side is bent so far that it leaves the surface again, up to 1.
+    /// The part of x = μ / s(ω) in which light from the denser side is bent so far that it leaves the surface again, up
+    /// to 1.
     pub bent: f64,
     /// The cosine of the critical angle.
     critical: f64,

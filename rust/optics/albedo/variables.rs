@@ -50,8 +50,8 @@ pub fn alpha_of_root(variable: f64) -> f64 {
     (least + variable * (1.0 - least)).powi(3)
 }
 
-/// w / α with w = √(η² − 1), for an index of refraction η ≥ 1: about w is the cosine at which reflection sets in towards
-/// grazing, and it matters on the scale of α.
+/// w / α with w = √(η² − 1), for an index of refraction η ≥ 1: about w is the cosine at which reflection sets in
+/// towards grazing, and it matters on the scale of α.
 #[inline]
 pub fn scale(alpha: f64, eta: f64) -> f64 {
     ((eta - 1.0) * (eta + 1.0)).max(0.0).sqrt() / alpha
@@ -64,8 +64,8 @@ pub fn of_index(alpha: f64, eta: f64) -> f64 {
     variable(eta) / variable(DENSEST)
 }
 
-/// The index of refraction of a variable at a roughness. In place of 1, where nothing is lost, stands one so near to it that
-/// what is lost does not change any more in units of what is.
+/// The index of refraction of a variable at a roughness. In place of 1, where nothing is lost, stands one so near to it
+/// that what is lost does not change any more in units of what is.
 #[cfg(test)]
 pub fn index(alpha: f64, variable: f64) -> f64 {
     let top = 1.0 - (1.0 + scale(alpha, DENSEST)).cbrt().recip();
@@ -73,7 +73,8 @@ pub fn index(alpha: f64, variable: f64) -> f64 {
     (alpha * scale.max(0.003)).hypot(1.0)
 }
 
-/// About the cosine at which facets are met that reflect to a direction of this cosine: at grazing, that of a slope of α.
+/// About the cosine at which facets are met that reflect to a direction of this cosine: at grazing, that of a slope of
+/// α.
 #[inline]
 pub fn effective_cosine(alpha: f64, cosine: f64) -> f64 {
     let square = FACET_SLOPE * alpha * alpha;
