@@ -1,4 +1,5 @@
-//! Tables written by `entries.rs`; `cargo test --release write_tables -- --ignored` writes them anew.
+//! Tables written by `entries.rs`: `cargo test write_tables -- --ignored` integrates them anew, which takes two cores
+//! some half an hour. With TABLES=coat,coat_average it writes these alone.
 
 use super::cubic::Table;
 
