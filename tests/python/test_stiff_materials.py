@@ -77,7 +77,7 @@ def test_a_ball_of_rough_glass_gains_and_loses_nothing(ior, alpha, distribution)
     material = rw.Dielectric(ior, alpha=alpha, distribution=distribution)
     camera = rw.Camera((0, 0, 10), (0, 0, 0), fov=8, width=32, height=32)
     ball = rw.Sphere((0, 0, 0), 1, material=material)
-    image = rw.render(rw.Scene(ball, environment=1), camera, samples=512, progress=False)
+    image = rw.render(rw.Scene(ball, environment=1), camera, samples=1024, progress=False)
     error = math.sqrt(float(np.square(image.standard_error[..., 1].astype(float)).sum())) / 1024
     assert abs(float(image.rgb[..., 1].mean()) - 1) <= 0.002 + 5 * error
     assert error < 0.001
