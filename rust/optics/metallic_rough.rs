@@ -18,8 +18,6 @@ use std::f64::consts::FRAC_1_PI;
 #[derive(Clone, Copy, Debug)]
 pub struct MetallicRough {
     rough: Option<Rough>,
-    /// Reflectance at normal incidence.
-    f0: Rgb,
     /// The base's share, over π and the mean of what reaches it.
     base: Rgb,
     /// What metal scatters more than once, over π and the mean loss.
@@ -53,7 +51,6 @@ impl MetallicRough {
     pub fn new(base_color: Rgb, metallic: f64, roughness: f64) -> Self {
         let metallic = metallic.clamp(0.0, 1.0);
         let rough = Ggx::rough([roughness * roughness; 2]).map(Rough::new);
-        let f0 = base_color * metallic + Self::DIELECTRIC * (1.0 - metallic);
         // Schlick's (1 − cos)⁵ has the mean 1/21 over even light.
         let lost = rough.as_ref().map_or(0.0, |rough| rough.loss.average());
         let schlick = rough.as_ref().map_or(1.0 / 21.0, |rough| rough.schlick.average());
@@ -62,7 +59,13 @@ impl MetallicRough {
         let multiple = if lost > 0.0 { made_up(lost, metal) * metallic } else { Rgb::ZERO };
         let base = base_color * ((1.0 - metallic) * FRAC_1_PI / (1.0 - average));
         let grazing = Grazing::new(rough.as_ref().map_or(1.0, |rough| rough.ggx.alpha()[0]));
-        Self { rough, f0, base, multiple, color: base_color, metallic, grazing }
+        Self { rough, base, multiple, color: base_color, metallic, grazing }
+    }
+
+    /// Reflectance at normal incidence.
+    #[inline]
+    fn f0(&self) -> Rgb {
+        self.color * self.metallic + Self::DIELECTRIC * (1.0 - self.metallic)
     }
 
     /// What facets reflect once of light from `w` whose reflectance is Schlick's term, and if it is 1.
@@ -83,7 +86,7 @@ impl MetallicRough {
     /// The probabilities with which a draw is one reflection by a facet, and what metal scatters more than once.
     #[inline]
     fn shares(&self, once: (f64, f64)) -> [f64; 2] {
-        let facets = (self.f0 * once.1 + (Rgb::ONE - self.f0) * once.0).max_element();
+        let facets = (self.f0() * once.1 + (Rgb::ONE - self.f0()) * once.0).max_element();
         let color = self.color.max_element();
         let (metal, base) =
             (color * self.metallic * (1.0 - once.1), color * (1.0 - self.metallic) * (1.0 - Self::dielectric(once)));
@@ -109,7 +112,7 @@ impl Scatter for MetallicRough {
             Some(Rough { ggx, .. }) => {
                 let (density, cosine) = ggx.mirroring(wo, wi);
                 let facets = density * ggx.reflection_geometry(wo, wi);
-                (fresnel::schlick(cosine, self.f0) * facets, ggx.reflected_pdf(wo, density))
+                (fresnel::schlick(cosine, self.f0()) * facets, ggx.reflected_pdf(wo, density))
             }
         };
         let spread = metal * self.grazing.pdf(wi.z);
@@ -127,7 +130,7 @@ impl Scatter for MetallicRough {
         let facet = choice < facets;
         let mut wi = match &self.rough {
             None if facet => {
-                return Some(BsdfSample::delta(mirrored(wo), fresnel::schlick(up.z, self.f0) / facets));
+                return Some(BsdfSample::delta(mirrored(wo), fresnel::schlick(up.z, self.f0()) / facets));
             }
             Some(rough) if facet => rough.ggx.sample_reflection(up, u),
             _ if choice < facets + metal => self.grazing.sample(u),
@@ -142,7 +145,7 @@ impl Scatter for MetallicRough {
     }
 
     fn albedo(&self) -> Rgb {
-        self.color * (1.0 - self.f0) + self.f0
+        self.color * (1.0 - self.f0()) + self.f0()
     }
 
     fn is_delta(&self) -> bool {

@@ -16,7 +16,8 @@ pub fn ratio(variable: f64) -> f64 {
     (1.0 - variable * (1.0 - STEEPEST.sqrt().recip())).powi(2)
 }
 
-/// Facets of two roughnesses, and where they are in the table.
+/// Facets of two roughnesses. Where they are in the table is found anew each time: materials stay small so, and few
+/// are brushed.
 #[derive(Clone, Copy, Debug)]
 pub struct Brushed {
     tables: &'static Tables,
@@ -26,8 +27,6 @@ pub struct Brushed {
     turned: bool,
     /// Over the logarithm of one over the other.
     scale: f64,
-    ratio: Cubic,
-    rough: Cubic,
 }
 
 impl Brushed {
@@ -35,15 +34,12 @@ impl Brushed {
     pub fn new(tables: &'static Tables, [x, y]: [f64; 2]) -> Self {
         let rough = x.max(y);
         let smooth = x.min(y).max(rough / STEEPEST);
-        let ratio = of_ratio(smooth, rough);
         Self {
             tables,
             alpha: [smooth, rough],
             turned: y < x,
             // Of all but the same roughness no azimuth differs from another.
-            scale: if ratio > 1e-9 { (rough / smooth).ln().recip() } else { 0.0 },
-            ratio: Cubic::new(ratio, BRUSHED[2]),
-            rough: Cubic::new(of_alpha(rough), BRUSHED[3]),
+            scale: if of_ratio(smooth, rough) > 1e-9 { (rough / smooth).ln().recip() } else { 0.0 },
         }
     }
 
@@ -57,8 +53,9 @@ impl Brushed {
         let along = if plane > 0.0 { (across / plane).sqrt() } else { b };
         let azimuth = Cubic::new(of_along(along, self.alpha, self.scale), BRUSHED[1]);
         let cosine = Cubic::new(of_cosine(along, b, w.z.abs()), BRUSHED[0]);
+        let (ratio, rough) = (Cubic::new(of_ratio(a, b), BRUSHED[2]), Cubic::new(of_alpha(b), BRUSHED[3]));
         let most = (across + z * mean_square(self.alpha)) / (across + z);
-        (most * self.tables.brushed.at(&cosine, &azimuth, &self.ratio, &self.rough)).clamp(0.0, 1.0)
+        (most * self.tables.brushed.at(&cosine, &azimuth, &ratio, &rough)).clamp(0.0, 1.0)
     }
 
     /// Its mean over even light.
