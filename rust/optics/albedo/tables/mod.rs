@@ -71,6 +71,23 @@ impl Tables {
 
 /// The tables in a folder.
 macro_rules! tables {
+    ($folder:literal) => {
+        tables! {
+            $folder,
+            mirror: MIRROR, [0.0, 1.5];
+            mirror_average: MIRROR_AVERAGE, [-4.0, 4.0];
+            brushed: BRUSHED, [0.0, 3.0];
+            brushed_average: BRUSHED_AVERAGE, [-4.0, 4.0];
+            thin: THIN, [0.0, 1.0];
+            dense: DENSE, [0.0, 2.0];
+            thin_average: INTERFACE_AVERAGE, [-8.0, 4.0];
+            dense_average: INTERFACE_AVERAGE, [-8.0, 4.0];
+            coat: COAT, [-0.5, 0.5];
+            coat_average: COAT_AVERAGE, [-0.5, 0.5];
+            schlick: SCHLICK, [-0.5, 0.5];
+            schlick_average: SCHLICK_AVERAGE, [0.0, 0.1];
+        }
+    };
     ($folder:literal, $($name:ident: $sizes:expr, $range:expr;)+) => {
         Tables {
             $($name: Table {
@@ -83,35 +100,7 @@ macro_rules! tables {
 }
 
 /// Those of [`crate::optics::Ggx`].
-pub(super) static GGX: Tables = tables! {
-    "ggx",
-    mirror: MIRROR, [0.0, 1.5];
-    mirror_average: MIRROR_AVERAGE, [-4.0, 4.0];
-    brushed: BRUSHED, [0.0, 3.0];
-    brushed_average: BRUSHED_AVERAGE, [-4.0, 4.0];
-    thin: THIN, [0.0, 1.0];
-    dense: DENSE, [0.0, 2.0];
-    thin_average: INTERFACE_AVERAGE, [-8.0, 4.0];
-    dense_average: INTERFACE_AVERAGE, [-8.0, 4.0];
-    coat: COAT, [-0.5, 0.5];
-    coat_average: COAT_AVERAGE, [-0.5, 0.5];
-    schlick: SCHLICK, [-0.5, 0.5];
-    schlick_average: SCHLICK_AVERAGE, [0.0, 0.1];
-};
+pub(super) static GGX: Tables = tables!("ggx");
 
 /// Those of [`crate::optics::Beckmann`].
-pub(super) static BECKMANN: Tables = tables! {
-    "beckmann",
-    mirror: MIRROR, [0.0, 1.5];
-    mirror_average: MIRROR_AVERAGE, [-4.0, 4.0];
-    brushed: BRUSHED, [0.0, 3.0];
-    brushed_average: BRUSHED_AVERAGE, [-4.0, 4.0];
-    thin: THIN, [0.0, 1.0];
-    dense: DENSE, [0.0, 2.0];
-    thin_average: INTERFACE_AVERAGE, [-8.0, 4.0];
-    dense_average: INTERFACE_AVERAGE, [-8.0, 4.0];
-    coat: COAT, [-0.5, 0.5];
-    coat_average: COAT_AVERAGE, [-0.5, 0.5];
-    schlick: SCHLICK, [-0.5, 0.5];
-    schlick_average: SCHLICK_AVERAGE, [0.0, 0.1];
-};
+pub(super) static BECKMANN: Tables = tables!("beckmann");
