@@ -29,11 +29,11 @@ pub use walked::walked;
 
 pub use query::Wanted;
 
-use crate::math::{DVec3, Hit, Ray, Region};
+use crate::math::{DVec3, Hit, HitColumns, Ray, RayColumns, Region};
 use crate::shapes::Bounds;
 use crate::shapes::triangle::SolidCone;
 use parity::Parity;
-use query::{Answers, Any, Closest, Counted, Every};
+use query::{Answers, Counted, Every};
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -106,6 +106,12 @@ pub trait Accelerator: Send + Sync {
     /// Whether each ray hits anything.
     fn occluded(&self, rays: &[Ray], occluded: &mut [bool]);
 
+    /// It as what takes rays by columns, if it does: where a ray's way in and out would otherwise take as long as its
+    /// way through the structure.
+    fn by_columns(&self) -> Option<&dyn ByColumns> {
+        None
+    }
+
     /// Every hit of each ray, of which there are fewer than 2³².
     fn crossings(&self, rays: &[Ray]) -> Crossings;
 
@@ -136,15 +142,28 @@ pub trait Accelerator: Send + Sync {
     fn info(&self) -> &Info;
 }
 
+/// An [`Accelerator`] over triangles that takes rays by columns, and gives the same answers.
+pub trait ByColumns: Send + Sync {
+    /// The closest hit of each ray.
+    fn intersect(&self, rays: &RayColumns<'_>, hits: HitColumns<'_>);
+
+    /// Whether each ray hits anything.
+    fn occluded(&self, rays: &RayColumns<'_>, occluded: &mut [bool]);
+}
+
 impl<A: Answers> Accelerator for A {
     fn intersect(&self, rays: &[Ray], hits: &mut [Hit]) {
         assert_eq!(rays.len(), hits.len(), "a hit for each ray");
-        self.answer(rays, &mut Closest(hits));
+        Answers::intersect(self, rays, hits);
     }
 
     fn occluded(&self, rays: &[Ray], occluded: &mut [bool]) {
         assert_eq!(rays.len(), occluded.len(), "an answer for each ray");
-        self.answer(rays, &mut Any(occluded));
+        Answers::occluded(self, rays, occluded);
+    }
+
+    fn by_columns(&self) -> Option<&dyn ByColumns> {
+        Answers::by_columns(self)
     }
 
     fn crossings(&self, rays: &[Ray]) -> Crossings {

@@ -5,7 +5,7 @@
 //! by expansions (Shewchuk, "Adaptive precision floating-point arithmetic and fast robust geometric predicates", 1997).
 
 use super::Primitives;
-use super::query::{Kernels, Query, Wanted};
+use super::query::{Query, Wanted};
 use crate::math::robust::{UNIT, normalising_scale};
 use crate::math::{DVec3, Ray, exact_edges};
 use crate::shapes::triangle::Along;
@@ -58,7 +58,6 @@ impl Parity<'_> {
 impl Query for Parity<'_> {
     type State = (u32, Side);
     const WANTED: Wanted = Wanted::Side;
-    const KERNELS: Kernels = Kernels::Waves;
 
     #[inline(always)]
     fn start(&self, i: usize, _: f64) -> (u32, Side) {

@@ -1,20 +1,9 @@
 //! What is asked of each ray: a type each, so that each question has kernels of its own.
 
-use super::{Cost, Info, Nearest, Primitives, Touches};
+use super::{ByColumns, Cost, Info, Nearest, Primitives, Touches};
 use crate::math::{DVec3, Hit, Ray};
 use crate::shapes::triangle::{Along, SolidCone};
 use crate::shapes::{Candidate, Contact};
-
-/// Ways to walk a batch.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kernels {
-    /// One ray after the other.
-    Single,
-    /// That, or many in flight.
-    Waves,
-    /// Those, or packets.
-    All,
-}
 
 /// How much has to be known of a ray.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -41,9 +30,6 @@ pub trait Query {
     /// Whether the nearest triangles should be looked at first.
     const NEAREST_FIRST: bool = matches!(Self::WANTED, Wanted::Closest);
 
-    /// Which kernels are worth their code.
-    const KERNELS: Kernels = Kernels::All;
-
     /// Nothing is known yet of ray `i`, asked for `t` up to `t_max` along its scaled direction.
     fn start(&self, i: usize, t_max: f64) -> Self::State;
     /// The greatest `t` that still matters.
@@ -53,8 +39,8 @@ pub trait Query {
     /// Writes down the answer for ray `i`; without a state, that of a ray that hits nothing.
     fn finish(&mut self, i: usize, answer: Option<(Along, Self::State)>);
 
-    /// Whether what is visited is counted. Such a question is asked of one ray after the other ([`Kernels::Single`]):
-    /// other kernels have not even the places where it would be told.
+    /// Whether what is visited is counted. Such a question is asked of one ray after the other: what a ray costs is its
+    /// own work.
     const COUNTED: bool = false;
 
     /// A node is about to be tested.
@@ -156,7 +142,6 @@ impl Every {
 impl Query for Every {
     type State = (u32, f64);
     const WANTED: Wanted = Wanted::Every;
-    const KERNELS: Kernels = Kernels::Waves;
 
     #[inline(always)]
     fn start(&self, i: usize, t_max: f64) -> (u32, f64) {
@@ -187,8 +172,6 @@ impl Query for Counted<'_> {
     type State = (Hit, Cost);
     const WANTED: Wanted = Wanted::Closest;
     const COUNTED: bool = true;
-    // What a ray costs is its own work, not that of a packet.
-    const KERNELS: Kernels = Kernels::Single;
 
     #[inline(always)]
     fn start(&self, i: usize, t_max: f64) -> (Hit, Cost) {
@@ -220,6 +203,21 @@ impl Query for Counted<'_> {
 pub trait Answers: Send + Sync + Sized + 'static {
     /// Answers every ray once.
     fn answer<Q: Query>(&self, rays: &[Ray], query: &mut Q);
+
+    /// See [`super::Accelerator::intersect`].
+    fn intersect(&self, rays: &[Ray], hits: &mut [Hit]) {
+        self.answer(rays, &mut Closest(hits));
+    }
+
+    /// See [`super::Accelerator::occluded`].
+    fn occluded(&self, rays: &[Ray], occluded: &mut [bool]) {
+        self.answer(rays, &mut Any(occluded));
+    }
+
+    /// See [`super::Accelerator::by_columns`].
+    fn by_columns(&self) -> Option<&dyn ByColumns> {
+        None
+    }
 
     /// See [`super::Accelerator::nearest`].
     fn nearest(&self, points: &[DVec3], max_distances: &[f64], nearest: &mut [Nearest]);

@@ -54,6 +54,19 @@ impl Clock {
         Self { to_box: region.scale, start: 0.0 }
     }
 
+    /// Of a ray of which [`Clock::start`] is this.
+    #[inline(always)]
+    pub fn started(region: &Region, start: f64) -> Self {
+        // What meets every box never loses interest.
+        if start == f64::NEG_INFINITY { SlabRay::EVERYWHERE.clock } else { Self { to_box: region.scale, start } }
+    }
+
+    /// How far along the origin was moved, in box units; −∞ where the ray is said to meet every box.
+    #[inline(always)]
+    pub fn start(self) -> f64 {
+        if self.to_box == 0.0 { f64::NEG_INFINITY } else { self.start }
+    }
+
     /// A `t` in box units, rounded up, and never NaN: no box that starts beyond it can improve on it.
     #[inline(always)]
     pub fn limit(self, t: f64) -> f32 {
@@ -202,7 +215,7 @@ impl Default for SlabRays {
 }
 
 impl SlabRays {
-    /// Makes rays ready that [`EdgeRays::prepare`] has.
+    /// Makes rays ready that [`EdgeRays::prepare`] has; of those that are not plain nothing is said.
     #[inline(always)]
     pub fn prepare(&mut self, rays: &EdgeRays, region: &Region) {
         // Rays that are not far have their largest coordinate for reach.
@@ -224,6 +237,26 @@ impl SlabRays {
                 self.far[axis][i] = shift + room;
             }
         }
+    }
+
+    /// Rays that may meet a box, at any `t` from their `t_min` on.
+    #[inline(always)]
+    pub fn meeting(&self, aabb: &Aabb) -> u32 {
+        let (min, max) = (aabb.min.to_array(), aabb.max.to_array());
+        let (mut nears, mut fars) = (self.t_min, [f32::INFINITY; RAYS]);
+        for axis in 0..3 {
+            for i in 0..RAYS {
+                let inverse = self.inverse[axis][i];
+                let (first, last) = if inverse < 0.0 { (max[axis], min[axis]) } else { (min[axis], max[axis]) };
+                nears[i] = greater(nears[i], first * inverse + self.near[axis][i]);
+                fars[i] = lesser(fars[i], last * inverse + self.far[axis][i]);
+            }
+        }
+        let mut meeting = [0u32; RAYS];
+        for i in 0..RAYS {
+            meeting[i] = u32::from(nears[i] <= fars[i]);
+        }
+        bits(&meeting)
     }
 
     /// Which plane is met first by axis (0 the lower, 1 the upper), if it is the same for all rays.

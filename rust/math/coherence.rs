@@ -1,6 +1,6 @@
 //! Whether the rays of a batch go much the same way.
 
-use super::Ray;
+use super::RayBatch;
 
 /// Pairs of neighbours looked at.
 const PAIRS: usize = 16;
@@ -8,12 +8,12 @@ const PAIRS: usize = 16;
 /// Whether most neighbours in a batch start within a hundredth of `extent` of each other, in directions less than 8
 /// degrees apart, and so visit much the same of a scene. A few neighbours are looked at, spread evenly over the batch;
 /// which answer is given matters to speed alone.
-pub fn is_coherent(rays: &[Ray], extent: f64) -> bool {
+pub fn is_coherent(rays: RayBatch<'_>, extent: f64) -> bool {
     const COSINE_SQUARED: f64 = 0.98;
     let step = (rays.len() / PAIRS).max(2);
     let (mut near, mut all) = (0, 0);
-    for pair in rays.chunks(step).filter(|c| c.len() > 1) {
-        let [a, b] = [&pair[0], &pair[1]];
+    for at in (0..rays.len().saturating_sub(1)).step_by(step) {
+        let [a, b] = [rays.get(at), rays.get(at + 1)];
         let cosine = a.direction.dot(b.direction);
         let lengths = a.direction.length_squared() * b.direction.length_squared();
         // Of directions so short or long that this under- or overflows, neither comparison holds.
@@ -26,6 +26,7 @@ pub fn is_coherent(rays: &[Ray], extent: f64) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use super::super::Ray;
     use super::*;
     use glam::DVec3;
 
@@ -38,19 +39,19 @@ mod tests {
 
     #[test]
     fn a_camera_is_coherent_and_scattered_light_is_not() {
-        assert!(is_coherent(&fan(0.05, 0.0), 1.0));
-        assert!(!is_coherent(&fan(3.0, 0.0), 1.0));
-        assert!(!is_coherent(&fan(0.05, 1.0), 1.0));
-        assert!(is_coherent(&fan(0.05, 1.0), 1000.0));
+        assert!(is_coherent(RayBatch::Rows(&fan(0.05, 0.0)), 1.0));
+        assert!(!is_coherent(RayBatch::Rows(&fan(3.0, 0.0)), 1.0));
+        assert!(!is_coherent(RayBatch::Rows(&fan(0.05, 1.0)), 1.0));
+        assert!(is_coherent(RayBatch::Rows(&fan(0.05, 1.0)), 1000.0));
         let back_and_forth: Vec<_> =
             (0..64).map(|i| Ray::new(DVec3::ZERO, if i % 2 == 0 { DVec3::Z } else { -DVec3::Z })).collect();
-        assert!(!is_coherent(&back_and_forth, 1.0));
+        assert!(!is_coherent(RayBatch::Rows(&back_and_forth), 1.0));
     }
 
     #[test]
     fn any_number_of_rays_has_an_answer() {
         for count in 0..50 {
-            assert!(is_coherent(&vec![Ray::new(DVec3::ZERO, DVec3::Z); count], 1.0));
+            assert!(is_coherent(RayBatch::Rows(&vec![Ray::new(DVec3::ZERO, DVec3::Z); count]), 1.0));
         }
     }
 }

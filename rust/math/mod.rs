@@ -3,6 +3,7 @@
 mod aabb;
 mod affine;
 pub mod coherence;
+mod columns;
 mod double;
 mod double_double;
 mod dyadic;
@@ -20,6 +21,7 @@ pub(crate) mod turn;
 
 pub use aabb::Aabb;
 pub use affine::{Affine, Singular};
+pub use columns::{HitColumns, Numbers, RayBatch, RayColumns, Vectors};
 pub(crate) use double::Double;
 pub(crate) use double_double::DoubleDouble;
 pub(crate) use dyadic::Dyadic;

@@ -23,6 +23,11 @@ impl Tiling {
         Self { row: if is_image { row } else { 0 } }
     }
 
+    /// Whether it is a plain sequence, whose order is its own.
+    pub fn is_sequence(&self) -> bool {
+        self.row == 0
+    }
+
     /// The least number of pixels, `wanted` or more, that are whole bands of tiles: an image may be cut after so many.
     pub fn chunk(&self, wanted: usize) -> usize {
         if self.row == 0 { wanted } else { wanted.next_multiple_of(SIDE * self.row) }

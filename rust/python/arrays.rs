@@ -1,7 +1,8 @@
 //! numpy arrays as slices of numbers or of vectors.
 
 use numpy::{
-    Element, PyArrayDyn, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArrayDyn, PyUntypedArrayMethods,
+    Element, PyArrayDyn, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArrayDyn, PyReadwriteArrayDyn,
+    PyUntypedArrayMethods,
 };
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
@@ -204,6 +205,23 @@ pub fn unwritten<'py, T: Element>(
     }
     let empty = EMPTY.import(py, "numpy", "empty")?;
     Ok(empty.call1((PyTuple::new(py, shape)?, T::get_dtype(py)))?.cast_into()?)
+}
+
+/// The array, to be written to: of the shape that [`unwritten`] would give it, C-contiguous, and shared with none that
+/// is read meanwhile. `name` is the argument's.
+pub fn writable<'py, T: Element>(
+    name: &str,
+    array: &Bound<'py, PyArrayDyn<T>>,
+    lead: &[usize],
+    width: Option<usize>,
+) -> PyResult<PyReadwriteArrayDyn<'py, T>> {
+    let is_fit = array.is_c_contiguous() && array.shape().iter().eq(lead.iter().chain(&width));
+    if !is_fit {
+        let shape = array.shape();
+        return Err(PyValueError::new_err(format!("{name} has shape {shape:?}, expected C-contiguous, of {lead:?}")));
+    }
+    let why = "is read-only, or shares memory with what is asked";
+    array.try_readwrite().map_err(|_| PyValueError::new_err(format!("{name} cannot be written to: it {why}")))
 }
 
 /// The array, which can be read only from now on.

@@ -3,6 +3,7 @@
 mod accelerators;
 mod arrays;
 mod cameras;
+mod columns;
 mod cones;
 mod describe;
 mod every;

@@ -5,7 +5,8 @@ use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 
 use super::accelerators;
-use super::arrays::{Numbers, Triples, numbers, rows, sealed, unwritten};
+use super::arrays::{Numbers, Triples, numbers, rows, sealed, unwritten, writable};
+use super::columns::HitParts;
 use super::describe::Scene;
 use super::every;
 use super::info::AcceleratorInfo;
@@ -33,9 +34,6 @@ type Hits<'py> = (
     Bound<'py, PyArrayDyn<f64>>,
     Option<Bound<'py, PyArrayDyn<i32>>>,
 );
-
-/// Where t, shape_id, primitive and uv of some rays are written.
-type HitParts<'a> = (&'a mut [f64], &'a mut [i32], &'a mut [i32], &'a mut [[f64; 2]]);
 
 /// Nodes and primitives.
 type Costs<'py> = (Bound<'py, PyArrayDyn<i32>>, Bound<'py, PyArrayDyn<i32>>);
@@ -70,7 +68,7 @@ impl CompiledScene {
         compiled.map(|scene| scene.map(|scene| Self(scene, kept))).map_err(|e| PyValueError::new_err(e.to_string()))
     }
 
-    #[pyo3(signature = (origins, directions, t_min, t_max, shape, threads, time=None))]
+    #[pyo3(signature = (origins, directions, t_min, t_max, shape, threads, time=None, out=None))]
     fn intersect<'py>(
         &self,
         py: Python<'py>,
@@ -81,21 +79,36 @@ impl CompiledScene {
         shape: Vec<usize>,
         threads: Option<usize>,
         time: Option<Numbers<'py>>,
+        out: Option<Hits<'py>>,
     ) -> PyResult<Hits<'py>> {
         let arguments = RayArguments { origins, directions, t_min, t_max, time, shape };
         let (rays, lead) = (arguments.rays()?, &arguments.shape);
-        let (t, shape) = (unwritten(py, lead, None)?, unwritten(py, lead, None)?);
-        let (primitive, uv) = (unwritten(py, lead, None)?, unwritten(py, lead, Some(2))?);
-        let (mut to_t, mut to_shape, mut to_primitive, mut to_uv) =
-            (t.readwrite(), shape.readwrite(), primitive.readwrite(), uv.readwrite());
         let scene = &self.0;
-        let instance = scene.geometry().has_copies().then(|| unwritten(py, lead, None)).transpose()?;
-        let mut to_instance = instance.as_ref().map(|instance| instance.readwrite());
+        let (t, shape, primitive, uv, instance) = match out {
+            Some(out) => out,
+            None => {
+                let numbers = (unwritten(py, lead, None)?, unwritten(py, lead, None)?);
+                (unwritten(py, lead, None)?, numbers.0, numbers.1, unwritten(py, lead, Some(2))?, None)
+            }
+        };
+        let instance = match scene.geometry().has_copies() {
+            true => Some(instance.map_or_else(|| unwritten(py, lead, None), Ok)?),
+            false => None,
+        };
+        let (mut to_t, mut to_shape) =
+            (writable("out.t", &t, lead, None)?, writable("out.shape_id", &shape, lead, None)?);
+        let mut to_primitive = writable("out.primitive", &primitive, lead, None)?;
+        let mut to_uv = writable("out.uv", &uv, lead, Some(2))?;
+        let mut to_instance = instance.as_ref().map(|to| writable("out.instance", to, lead, None)).transpose()?;
+        let by_columns = scene.accelerator().by_columns();
         let (ts, shapes, primitives) = (to_t.as_slice_mut()?, to_shape.as_slice_mut()?, to_primitive.as_slice_mut()?);
         let copies = to_instance.as_mut().map(|to| to.as_slice_mut()).transpose()?;
         let parts = ((ts, shapes, primitives, to_uv.as_slice_mut()?.as_chunks_mut().0), copies);
         answer(py, rays.count, rays.chunk(), threads, parts, |start, ((t, shape, primitive, uv), mut instance)| {
             let count = t.len();
+            if let Some(tree) = by_columns {
+                return rays.closest(scene.geometry(), tree, start, (t, shape, primitive, uv));
+            }
             let mut hits = vec![Hit::MISS; BATCH.min(count)];
             rays.gathered(start, count, |batch, places| {
                 let hits = &mut hits[..batch.len()];
@@ -112,7 +125,7 @@ impl CompiledScene {
         Ok((t, shape, primitive, uv, instance))
     }
 
-    #[pyo3(signature = (origins, directions, t_min, t_max, shape, threads, time=None))]
+    #[pyo3(signature = (origins, directions, t_min, t_max, shape, threads, time=None, out=None))]
     fn occluded<'py>(
         &self,
         py: Python<'py>,
@@ -123,14 +136,18 @@ impl CompiledScene {
         shape: Vec<usize>,
         threads: Option<usize>,
         time: Option<Numbers<'py>>,
+        out: Option<Bound<'py, PyArrayDyn<bool>>>,
     ) -> PyResult<Bound<'py, PyArrayDyn<bool>>> {
         let arguments = RayArguments { origins, directions, t_min, t_max, time, shape };
         let rays = arguments.rays()?;
-        let out = unwritten(py, &arguments.shape, None)?;
+        let out = out.map_or_else(|| unwritten(py, &arguments.shape, None), Ok)?;
         {
-            let mut out = out.readwrite();
+            let mut out = writable("out", &out, &arguments.shape, None)?;
             let scene = &self.0;
             answer(py, rays.count, rays.chunk(), threads, out.as_slice_mut()?, |start, out| {
+                if let Some(tree) = scene.accelerator().by_columns() {
+                    return rays.occluded(tree, start, out);
+                }
                 let count = out.len();
                 let mut found = vec![false; BATCH.min(count)];
                 rays.gathered(start, count, |batch, places| {

@@ -24,14 +24,14 @@ pub fn share(count: usize) -> usize {
 /// A batch of rays as it came: each part one for all rays, or one a ray.
 #[derive(Clone, Copy)]
 pub struct RayArrays<'a> {
-    origins: Rows<'a>,
-    directions: Rows<'a>,
-    t_min: &'a [f64],
-    t_max: &'a [f64],
+    pub(super) origins: Rows<'a>,
+    pub(super) directions: Rows<'a>,
+    pub(super) t_min: &'a [f64],
+    pub(super) t_max: &'a [f64],
     time: &'a [f64],
     /// How many rays.
     pub count: usize,
-    tiling: Tiling,
+    pub(super) tiling: Tiling,
 }
 
 /// What the package gives for a batch of rays: arrays and numbers, and the leading shape of all.

@@ -15,8 +15,8 @@ use super::Scene;
 use super::cameras::{Camera, Perspective};
 use super::view::{Pixels, View};
 use crate::accel::Primitives;
-use crate::math::{DVec3, Hit, Ray, Tiling};
-use crate::shapes::triangle::{Column, EdgeRay, EdgeRays, RAYS, bits};
+use crate::math::{DVec3, Hit, Ray, RayBatch, Tiling};
+use crate::shapes::triangle::{ALL, Column, EdgeRay, EdgeRays, RAYS, bits};
 use crate::simd::{Dispatch, Kernel, Level, Simd};
 use rayon::prelude::*;
 
@@ -265,8 +265,8 @@ impl Kernel<4> for Rasterise<'_, '_> {
         let forward = pinhole.viewpoint().forward;
         let across = usize::from(pixels.x[1] - pixels.x[0]) + 1;
         for (row, rays) in rows.iter_mut().zip(rays.chunks(across)) {
-            row.edges.transpose(rays);
-            row.is_plain = row.edges.prepare(region);
+            row.edges.take(&RayBatch::Rows(rays), 0);
+            row.is_plain = row.edges.prepare(region) == ALL;
             row.beyond = [f64::INFINITY; RAYS];
         }
         let window = view.window(pixels);

@@ -48,6 +48,7 @@ impl Simd<4> for Neon {
         add(a: float32x4_t, b: float32x4_t) -> float32x4_t = vaddq_f32(a, b);
         sub(a: float32x4_t, b: float32x4_t) -> float32x4_t = vsubq_f32(a, b);
         mul(a: float32x4_t, b: float32x4_t) -> float32x4_t = vmulq_f32(a, b);
+        div(a: float32x4_t, b: float32x4_t) -> float32x4_t = vdivq_f32(a, b);
         neg(a: float32x4_t) -> float32x4_t = vnegq_f32(a);
         abs(a: float32x4_t) -> float32x4_t = vabsq_f32(a);
         mul_sub(a: float32x4_t, b: float32x4_t, c: float32x4_t) -> float32x4_t = vfmaq_f32(vnegq_f32(c), a, b);
@@ -55,6 +56,10 @@ impl Simd<4> for Neon {
         // Its own instructions give NaN where either is NaN, and tell zeros apart.
         min(a: float32x4_t, b: float32x4_t) -> float32x4_t = vbslq_f32(vcltq_f32(a, b), a, b);
         max(a: float32x4_t, b: float32x4_t) -> float32x4_t = vbslq_f32(vcgtq_f32(a, b), a, b);
+        select(mask: u32, a: float32x4_t, b: float32x4_t) -> float32x4_t = {
+            const BITS: [u32; 4] = [1, 2, 4, 8];
+            vbslq_f32(vtstq_u32(vdupq_n_u32(mask), vld1q_u32(BITS.as_ptr())), a, b)
+        };
         le(a: float32x4_t, b: float32x4_t) -> u32 = mask(vcleq_f32(a, b));
         gt(a: float32x4_t, b: float32x4_t) -> u32 = mask(vcgtq_f32(a, b));
     }

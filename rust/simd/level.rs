@@ -179,9 +179,13 @@ mod tests {
                 simd.add(a, b),
                 simd.sub(a, b),
                 simd.mul(a, b),
+                simd.div(a, b),
                 simd.neg(a),
                 simd.abs(a),
                 simd.splat(self.a[1]),
+                simd.select(0, a, b),
+                simd.select(0xa5, a, b),
+                simd.select(simd.gt(a, b), a, b),
             ] {
                 simd.store(x, &mut lanes);
                 out.extend(lanes.map(f32::to_bits));

@@ -37,6 +37,8 @@ pub trait Simd<const N: usize>: Copy + Send + Sync {
     fn sub(self, a: Self::F32, b: Self::F32) -> Self::F32;
     /// `a · b`.
     fn mul(self, a: Self::F32, b: Self::F32) -> Self::F32;
+    /// `a / b`.
+    fn div(self, a: Self::F32, b: Self::F32) -> Self::F32;
     /// `−a`.
     fn neg(self, a: Self::F32) -> Self::F32;
     /// `|a|`.
@@ -49,6 +51,8 @@ pub trait Simd<const N: usize>: Copy + Send + Sync {
     fn min(self, a: Self::F32, b: Self::F32) -> Self::F32;
     /// The greater of each pair.
     fn max(self, a: Self::F32, b: Self::F32) -> Self::F32;
+    /// The lanes of `a` that are in `mask`, and otherwise those of `b`.
+    fn select(self, mask: u32, a: Self::F32, b: Self::F32) -> Self::F32;
     /// Lanes where `a ≤ b`.
     fn le(self, a: Self::F32, b: Self::F32) -> u32;
     /// Lanes where `a > b`.

@@ -61,6 +61,10 @@ impl<const N: usize> Simd<N> for Scalar {
         from_fn(|i| a[i] * b[i])
     }
     #[inline(always)]
+    fn div(self, a: [f32; N], b: [f32; N]) -> [f32; N] {
+        from_fn(|i| a[i] / b[i])
+    }
+    #[inline(always)]
     fn neg(self, a: [f32; N]) -> [f32; N] {
         a.map(|x| -x)
     }
@@ -83,6 +87,10 @@ impl<const N: usize> Simd<N> for Scalar {
     #[inline(always)]
     fn max(self, a: [f32; N], b: [f32; N]) -> [f32; N] {
         from_fn(|i| if a[i] > b[i] { a[i] } else { b[i] })
+    }
+    #[inline(always)]
+    fn select(self, mask: u32, a: [f32; N], b: [f32; N]) -> [f32; N] {
+        from_fn(|i| if mask >> i & 1 == 1 { a[i] } else { b[i] })
     }
     #[inline(always)]
     fn le(self, a: [f32; N], b: [f32; N]) -> u32 {

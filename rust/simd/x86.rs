@@ -98,12 +98,18 @@ impl Simd<4> for Sse2 {
         add(a: __m128, b: __m128) -> __m128 = _mm_add_ps(a, b);
         sub(a: __m128, b: __m128) -> __m128 = _mm_sub_ps(a, b);
         mul(a: __m128, b: __m128) -> __m128 = _mm_mul_ps(a, b);
+        div(a: __m128, b: __m128) -> __m128 = _mm_div_ps(a, b);
         neg(a: __m128) -> __m128 = _mm_xor_ps(_mm_set1_ps(-0.0), a);
         abs(a: __m128) -> __m128 = _mm_andnot_ps(_mm_set1_ps(-0.0), a);
         mul_sub(a: __m128, b: __m128, c: __m128) -> __m128 = _mm_sub_ps(_mm_mul_ps(a, b), c);
         mul_add(a: __m128, b: __m128, c: __m128) -> __m128 = _mm_add_ps(_mm_mul_ps(a, b), c);
         min(a: __m128, b: __m128) -> __m128 = _mm_min_ps(a, b);
         max(a: __m128, b: __m128) -> __m128 = _mm_max_ps(a, b);
+        select(mask: u32, a: __m128, b: __m128) -> __m128 = {
+            let bit = _mm_setr_epi32(1, 2, 4, 8);
+            let lanes = _mm_castsi128_ps(_mm_cmpeq_epi32(_mm_and_si128(_mm_set1_epi32(mask as i32), bit), bit));
+            _mm_or_ps(_mm_and_ps(lanes, a), _mm_andnot_ps(lanes, b))
+        };
         le(a: __m128, b: __m128) -> u32 = _mm_movemask_ps(_mm_cmple_ps(a, b)) as u32;
         gt(a: __m128, b: __m128) -> u32 = _mm_movemask_ps(_mm_cmpgt_ps(a, b)) as u32;
     }
@@ -140,12 +146,18 @@ impl Simd<8> for Avx2 {
         add(a: __m256, b: __m256) -> __m256 = _mm256_add_ps(a, b);
         sub(a: __m256, b: __m256) -> __m256 = _mm256_sub_ps(a, b);
         mul(a: __m256, b: __m256) -> __m256 = _mm256_mul_ps(a, b);
+        div(a: __m256, b: __m256) -> __m256 = _mm256_div_ps(a, b);
         neg(a: __m256) -> __m256 = _mm256_xor_ps(_mm256_set1_ps(-0.0), a);
         abs(a: __m256) -> __m256 = _mm256_andnot_ps(_mm256_set1_ps(-0.0), a);
         mul_sub(a: __m256, b: __m256, c: __m256) -> __m256 = _mm256_fmsub_ps(a, b, c);
         mul_add(a: __m256, b: __m256, c: __m256) -> __m256 = _mm256_fmadd_ps(a, b, c);
         min(a: __m256, b: __m256) -> __m256 = _mm256_min_ps(a, b);
         max(a: __m256, b: __m256) -> __m256 = _mm256_max_ps(a, b);
+        select(mask: u32, a: __m256, b: __m256) -> __m256 = {
+            let bit = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
+            let lanes = _mm256_cmpeq_epi32(_mm256_and_si256(_mm256_set1_epi32(mask as i32), bit), bit);
+            _mm256_blendv_ps(b, a, _mm256_castsi256_ps(lanes))
+        };
         le(a: __m256, b: __m256) -> u32 = _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(a, b)) as u32;
         gt(a: __m256, b: __m256) -> u32 = _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_GT_OQ>(a, b)) as u32;
     }
@@ -193,12 +205,14 @@ impl Simd<8> for Avx512 {
         add(a: __m256, b: __m256) -> __m256 = _mm256_add_ps(a, b);
         sub(a: __m256, b: __m256) -> __m256 = _mm256_sub_ps(a, b);
         mul(a: __m256, b: __m256) -> __m256 = _mm256_mul_ps(a, b);
+        div(a: __m256, b: __m256) -> __m256 = _mm256_div_ps(a, b);
         neg(a: __m256) -> __m256 = _mm256_xor_ps(_mm256_set1_ps(-0.0), a);
         abs(a: __m256) -> __m256 = _mm256_andnot_ps(_mm256_set1_ps(-0.0), a);
         mul_sub(a: __m256, b: __m256, c: __m256) -> __m256 = _mm256_fmsub_ps(a, b, c);
         mul_add(a: __m256, b: __m256, c: __m256) -> __m256 = _mm256_fmadd_ps(a, b, c);
         min(a: __m256, b: __m256) -> __m256 = _mm256_min_ps(a, b);
         max(a: __m256, b: __m256) -> __m256 = _mm256_max_ps(a, b);
+        select(mask: u32, a: __m256, b: __m256) -> __m256 = _mm256_mask_blend_ps(mask as u8, b, a);
         le(a: __m256, b: __m256) -> u32 = u32::from(_mm256_cmp_ps_mask::<_CMP_LE_OQ>(a, b));
         gt(a: __m256, b: __m256) -> u32 = u32::from(_mm256_cmp_ps_mask::<_CMP_GT_OQ>(a, b));
     }

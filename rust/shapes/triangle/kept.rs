@@ -1,12 +1,10 @@
 //! Triangles of leaves as they are kept: with corners that are f32, or f64.
 
-use super::leaves::{Leaves, Sixteen};
+use super::leaves::Leaves;
 use super::pretest::{BlockRay, BlockRays};
 use super::rows::Rows;
 use super::{EdgeRay, EdgeRays};
 use crate::math::{DVec3, Region};
-use crate::shapes::Candidate;
-use crate::simd::Simd;
 use rayon::prelude::*;
 
 /// Triangles whose coordinates are f32.
@@ -55,16 +53,8 @@ impl<const N: usize> Leaves<N> for SingleLeaves<N> {
     }
 
     #[inline(always)]
-    fn meet_sixteen<S: Simd<N>>(
-        &self,
-        simd: S,
-        first: usize,
-        count: u32,
-        rays: &Sixteen,
-        active: u32,
-        met: impl FnMut(usize, u32, Candidate),
-    ) {
-        rays.meet(simd, self, first, count, active, met);
+    fn unit(_: &Region) -> f64 {
+        1.0
     }
 
     fn bytes(&self) -> usize {
@@ -106,16 +96,8 @@ impl<const N: usize> Leaves<N> for DoubleLeaves<N> {
     }
 
     #[inline(always)]
-    fn meet_sixteen<S: Simd<N>>(
-        &self,
-        simd: S,
-        first: usize,
-        count: u32,
-        rays: &Sixteen,
-        active: u32,
-        met: impl FnMut(usize, u32, Candidate),
-    ) {
-        rays.meet(simd, self, first, count, active, met);
+    fn unit(region: &Region) -> f64 {
+        region.scale
     }
 
     fn bytes(&self) -> usize {
@@ -127,7 +109,7 @@ impl<const N: usize> Leaves<N> for DoubleLeaves<N> {
 mod tests {
     use super::*;
     use crate::math::Ray;
-    use crate::simd::{Dispatch, Kernel, Level};
+    use crate::simd::{Dispatch, Kernel, Level, Simd};
     use proptest::prelude::*;
 
     /// What is not rejected of one leaf.

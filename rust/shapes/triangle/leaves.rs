@@ -1,10 +1,11 @@
 //! The triangles of a tree's leaves. Those of one leaf are tested side by side: most are rejected together in f32
 //! ([`super::pretest`]), the few that are left are decided in f64.
 
+use super::bracket::Bracket;
 use super::pretest::{BlockRay, BlockRays, sum};
 use super::rows::Rows;
 use super::{EdgeRay, EdgeRays};
-use crate::math::{DVec3, Ray, Region};
+use crate::math::{DVec3, Region};
 use crate::shapes::Candidate;
 use crate::simd::Simd;
 
@@ -60,10 +61,31 @@ pub trait Leaves<const N: usize>: Send + Sync + Sized + 'static {
         self.rows().not_rejected(simd, ray, first, count, Self::EDGES)
     }
 
-    /// Of sixteen rays, those for which the first test cannot reject the triangle in a lane of a leaf.
+    /// From `t` along a ray's scaled direction to that of the first test: a power of two.
+    fn unit(region: &Region) -> f64;
+
+    /// What f32 knows of a ray and the triangles of a leaf.
     #[inline(always)]
-    fn rays_not_rejected<S: Simd<N>>(&self, simd: S, rays: &BlockRays, first: usize, count: u32, lane: usize) -> u32 {
-        self.rows().rays_not_rejected(simd, rays, first, count, lane, Self::EDGES)
+    fn bracket<S: Simd<N>>(&self, simd: S, ray: &BlockRay, first: usize, count: u32) -> Bracket<S::F32> {
+        self.rows().bracket(simd, ray, first, count, Self::EDGES)
+    }
+
+    /// The triangle in a lane of a leaf as [`Leaves::rays_bracket`] takes it.
+    #[inline(always)]
+    fn splat<S: Simd<N>>(&self, simd: S, first: usize, count: u32, lane: usize) -> [[S::F32; 3]; 3] {
+        self.rows().splat(simd, first, count, lane, Self::EDGES)
+    }
+
+    /// What f32 knows of a vector of sixteen rays, the `part`-th, and a triangle.
+    #[inline(always)]
+    fn rays_bracket<S: Simd<N>>(
+        &self,
+        simd: S,
+        rays: &BlockRays,
+        part: usize,
+        triangle: [[S::F32; 3]; 3],
+    ) -> Bracket<S::F32> {
+        self.rows().rays_bracket(simd, rays, part, triangle)
     }
 
     /// The corners of the triangles of a leaf in f32, axis by axis: off by no more than four roundings of the largest
@@ -99,36 +121,5 @@ pub trait Leaves<const N: usize>: Send + Sync + Sized + 'static {
             }
         }
         false
-    }
-
-    /// Calls `met` with each of the rays in `active` and each triangle of a leaf that it meets.
-    fn meet_sixteen<S: Simd<N>>(
-        &self,
-        simd: S,
-        first: usize,
-        count: u32,
-        rays: &Sixteen,
-        active: u32,
-        met: impl FnMut(usize, u32, Candidate),
-    );
-}
-
-/// Sixteen rays, ready for leaves.
-pub struct Sixteen<'a> {
-    /// As given; fewer than sixteen at the end of a batch.
-    pub given: &'a [Ray],
-    /// Where the triangles lie.
-    pub region: &'a Region,
-    /// As the decision in f64 needs them.
-    pub edges: &'a EdgeRays,
-    /// As the test in f32 needs them.
-    pub blocks: &'a BlockRays,
-}
-
-impl Sixteen<'_> {
-    /// One of those that were given.
-    #[inline(always)]
-    pub fn one(&self, i: usize) -> Option<EdgeRay> {
-        EdgeRay::new(&self.given[i], self.region)
     }
 }

@@ -1,6 +1,6 @@
 //! Triangles: the exact decision whether a ray meets one, alone and by the block.
 
-mod at_leaf;
+mod bracket;
 mod clip;
 mod edge;
 mod in_cone;
@@ -12,11 +12,12 @@ pub mod routines;
 mod rows;
 mod sixteen;
 
+pub use bracket::Bracket;
 pub(crate) use clip::clipped;
 pub use edge::{Along, EdgeRay};
 pub use in_cone::SolidCone;
 pub use kept::{DoubleLeaves, SingleLeaves};
-pub use leaves::{Leaves, Sixteen};
+pub use leaves::Leaves;
 pub use nearest::{NearestPoint, length, nearest_point, point_of};
 pub use pretest::{BlockRay, BlockRays};
 pub use rows::Rows;

@@ -31,33 +31,65 @@ use crate::math::DVec3;
 use crate::math::robust::{greater, lesser};
 use crate::simd::Simd;
 
+/// What the signs of weights, and `t`, are computed from, lane by lane.
+pub(super) struct Weights<F> {
+    /// Of b, c and a.
+    weights: [F; 3],
+    denominator: F,
+    f: [F; 3],
+    q: [F; 3],
+    /// The largest coordinate of an edge.
+    largest: F,
+}
+
+impl<F: Copy> Weights<F> {
+    /// Those of triangles by corner and edges.
+    #[inline(always)]
+    pub fn new<const N: usize, S: Simd<N, F32 = F>>(simd: S, [a, e, f]: [[F; 3]; 3], o: [F; 3], d: [F; 3]) -> Self {
+        let s = difference(simd, o, a);
+        let p = cross(simd, d, f);
+        let q = cross(simd, s, e);
+        let u = dot(simd, s, p);
+        let v = dot(simd, d, q);
+        let denominator = dot(simd, e, p);
+        let w = simd.sub(simd.sub(denominator, u), v);
+        let largest = simd.max(largest(simd, e), largest(simd, f));
+        Self { weights: [u, v, w], denominator, f, q, largest }
+    }
+
+    /// Lanes of which some weight is certainly positive, some certainly negative, and all certainly of one sign.
+    #[inline(always)]
+    pub fn signs<const N: usize, S: Simd<N, F32 = F>>(&self, simd: S, errors: &Bounds) -> (u32, u32, u32) {
+        let [u, v, w] = self.weights;
+        let above = simd.mul_add(self.largest, simd.splat(errors.weight), simd.splat(errors.least));
+        let below = simd.neg(above);
+        let [pu, pv, pw] = [simd.gt(u, above), simd.gt(v, above), simd.gt(w, above)];
+        let [nu, nv, nw] = [simd.gt(below, u), simd.gt(below, v), simd.gt(below, w)];
+        (pu | pv | pw, nu | nv | nw, pu & pv & pw | nu & nv & nw)
+    }
+
+    /// The numerator of t, how far it may be off, the denominator, and how far that may be off.
+    #[inline(always)]
+    pub fn depth<const N: usize, S: Simd<N, F32 = F>>(&self, simd: S, numerator: f32, least: f32) -> (F, F, F, F) {
+        let (largest, least) = (self.largest, simd.splat(least));
+        let above = simd.mul_add(largest, simd.mul(largest, simd.splat(numerator)), least);
+        let over = simd.mul_add(largest, simd.mul(largest, simd.splat(128.0 / (1u32 << 24) as f32)), least);
+        (dot(simd, self.f, self.q), above, self.denominator, over)
+    }
+}
+
 /// Lanes in which f32 cannot reject that a ray meets a triangle; bits above the lanes are set.
 #[inline(always)]
 pub(super) fn not_rejected<const N: usize, S: Simd<N>>(
     simd: S,
-    [a, e, f]: [[S::F32; 3]; 3],
+    triangle: [[S::F32; 3]; 3],
     o: [S::F32; 3],
     d: [S::F32; 3],
     errors: &Bounds,
 ) -> u32 {
-    let s = difference(simd, o, a);
-    let p = cross(simd, d, f);
-    let q = cross(simd, s, e);
-    let u = dot(simd, s, p);
-    let v = dot(simd, d, q);
-    let denominator = dot(simd, e, p);
-    let w = simd.sub(simd.sub(denominator, u), v);
-
-    let largest = simd.max(largest(simd, e), largest(simd, f));
-    let least = simd.splat(errors.least);
-    let above = simd.mul_add(largest, simd.splat(errors.weight), least);
-    let below = simd.neg(above);
-    let positive = simd.gt(u, above) | simd.gt(v, above) | simd.gt(w, above);
-    let negative = simd.gt(below, u) | simd.gt(below, v) | simd.gt(below, w);
-
-    let numerator = dot(simd, f, q);
-    let above = simd.mul_add(largest, simd.mul(largest, simd.splat(errors.numerator)), least);
-    let over = simd.mul_add(largest, simd.mul(largest, simd.splat(128.0 / (1u32 << 24) as f32)), least);
+    let weights = Weights::new(simd, triangle, o, d);
+    let (positive, negative, _) = weights.signs(simd, errors);
+    let (numerator, above, denominator, over) = weights.depth(simd, errors.numerator, errors.least);
     let behind = simd.gt(numerator, above) & simd.gt(simd.neg(over), denominator)
         | simd.gt(simd.neg(above), numerator) & simd.gt(denominator, over);
     !(positive & negative | behind)
@@ -89,8 +121,17 @@ impl BlockRay {
     #[inline(always)]
     pub(super) fn new(origin: DVec3, ray: &EdgeRay, largest: f64) -> Self {
         let (o, d) = (origin.as_vec3(), ray.direction.as_vec3());
-        let errors = Bounds::new(largest, ray.t_min >= 0.0);
+        let errors = Bounds::new(largest, ray.t_min >= 0.0, ray.scale);
         Self { origin: [o.x, o.y, o.z], direction: [d.x, d.y, d.z], errors }
+    }
+
+    /// Origin and direction in every lane.
+    // Written out, axis by axis, as all that is called from here on: closures and iterators between here and the
+    // kernel's entry are not always compiled for its level, and then every operation is a call.
+    #[inline(always)]
+    pub(super) fn splat<const N: usize, S: Simd<N>>(&self, simd: S) -> ([S::F32; 3], [S::F32; 3]) {
+        let (o, d) = (&self.origin, &self.direction);
+        ([simd.splat(o[0]), simd.splat(o[1]), simd.splat(o[2])], [simd.splat(d[0]), simd.splat(d[1]), simd.splat(d[2])])
     }
 }
 
@@ -98,12 +139,13 @@ impl BlockRays {
     /// Sixteen rays rounded to f32, with origins and L times `scale`. The greatest bounds serve all.
     #[inline(always)]
     pub(super) fn new(origin: &[Column<f64>; 3], rays: &EdgeRays, largest: &Column<f64>, scale: f64) -> Self {
-        let (mut most, mut least) = (0.0, f64::INFINITY);
+        let (mut most, mut least, mut longest) = (0.0, f64::INFINITY, 0.0);
         for i in 0..RAYS {
             most = greater(largest[i], most);
             least = lesser(rays.t_min[i], least);
+            longest = greater(rays.scale[i], longest);
         }
-        let errors = Bounds::new(most * scale, least >= 0.0);
+        let errors = Bounds::new(most * scale, least >= 0.0, longest);
         let mut block = Self { origin: [[0.0; RAYS]; 3], direction: [[0.0; RAYS]; 3], errors };
         for axis in 0..3 {
             for i in 0..RAYS {
@@ -112,6 +154,16 @@ impl BlockRays {
             }
         }
         block
+    }
+
+    /// Origins and directions of some of them: a vector of each.
+    #[inline(always)]
+    pub(super) fn part<const N: usize, S: Simd<N>>(&self, simd: S, part: usize) -> ([S::F32; 3], [S::F32; 3]) {
+        let (o, d) = (&self.origin, &self.direction);
+        (
+            [part_of(simd, &o[0], part), part_of(simd, &o[1], part), part_of(simd, &o[2], part)],
+            [part_of(simd, &d[0], part), part_of(simd, &d[1], part), part_of(simd, &d[2], part)],
+        )
     }
 
     /// One of them.
@@ -127,17 +179,20 @@ impl BlockRays {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Bounds {
     /// Of a weight over the largest edge.
-    weight: f32,
+    pub(super) weight: f32,
     /// Of the numerator of t over the square of the largest edge.
     numerator: f32,
     /// What is added to every bound.
-    least: f32,
+    pub(super) least: f32,
+    /// Of t itself ([`EdgeRay::depth_error`]).
+    pub(super) depth: f32,
 }
 
 impl Bounds {
-    /// Those where L is `largest`, of rays that are asked for no t below 0, or for some.
+    /// Those where L is `largest`, of rays that are asked for no t below 0, or for some, and whose `t` as given is at
+    /// most `scale` times that along the scaled direction.
     #[inline(always)]
-    fn new(largest: f64, forwards: bool) -> Self {
+    fn new(largest: f64, forwards: bool, scale: f64) -> Self {
         const UNIT: f64 = 1.0 / (1u64 << 24) as f64;
         const OVERFLOW: f64 = (1u64 << 60) as f64;
         const NUMERATOR_OVERFLOW: f64 = (1u64 << 40) as f64;
@@ -149,8 +204,15 @@ impl Bounds {
             weight: (UNIT * weight) as f32,
             numerator: (UNIT * numerator) as f32,
             least: (UNDERFLOW * largest) as f32 + f32::MIN_POSITIVE,
+            depth: EdgeRay::depth_error(largest, scale),
         }
     }
+}
+
+/// One vector of a column.
+#[inline(always)]
+pub(super) fn part_of<const N: usize, S: Simd<N>>(simd: S, column: &Column<f32>, part: usize) -> S::F32 {
+    simd.load(&column.as_chunks::<N>().0[part])
 }
 
 #[inline(always)]

@@ -1,7 +1,6 @@
 //! The triangles of a tree's leaves in f32, side by side, and the first test of them.
 
-use super::pretest::{BlockRay, BlockRays, difference, not_rejected};
-use super::sixteen::{Column, RAYS};
+use super::pretest::{BlockRay, difference, not_rejected};
 use crate::math::Vec3;
 use crate::simd::Simd;
 use rayon::prelude::*;
@@ -92,9 +91,40 @@ impl<const N: usize> Rows<N> {
         [simd.load(row(0)), simd.load(row(1)), simd.load(row(2))]
     }
 
+    /// The triangles of a leaf as a corner and the edges from there, axis by axis. `edges` says that they are kept so.
+    #[inline(always)]
+    pub(super) fn edges<S: Simd<N>>(&self, simd: S, first: usize, count: u32, edges: bool) -> [[S::F32; 3]; 3] {
+        let a = self.numbers(simd, first, count, 0);
+        let mut e = self.numbers(simd, first, count, 1);
+        let mut f = self.numbers(simd, first, count, 2);
+        if !edges {
+            (e, f) = (difference(simd, e, a), difference(simd, f, a));
+        }
+        [a, e, f]
+    }
+
+    /// The triangle in a lane of a leaf, in every lane of vectors.
+    #[inline(always)]
+    pub(super) fn splat<S: Simd<N>>(
+        &self,
+        simd: S,
+        first: usize,
+        count: u32,
+        lane: usize,
+        edges: bool,
+    ) -> [[S::F32; 3]; 3] {
+        let [a, mut e, mut f] = self.vectors(first, count, lane);
+        if !edges {
+            (e, f) = (e - a, f - a);
+        }
+        [
+            [simd.splat(a.x), simd.splat(a.y), simd.splat(a.z)],
+            [simd.splat(e.x), simd.splat(e.y), simd.splat(e.z)],
+            [simd.splat(f.x), simd.splat(f.y), simd.splat(f.z)],
+        ]
+    }
+
     /// Of the lanes of a leaf, those that f32 cannot reject.
-    // Written out, axis by axis: closures and iterators between here and the kernel's entry are not always compiled for
-    // its level, and then every operation is a call.
     #[inline(always)]
     pub(super) fn not_rejected<S: Simd<N>>(
         &self,
@@ -104,48 +134,7 @@ impl<const N: usize> Rows<N> {
         count: u32,
         edges: bool,
     ) -> u32 {
-        let o = [simd.splat(ray.origin[0]), simd.splat(ray.origin[1]), simd.splat(ray.origin[2])];
-        let d = [simd.splat(ray.direction[0]), simd.splat(ray.direction[1]), simd.splat(ray.direction[2])];
-        let a = self.numbers(simd, first, count, 0);
-        let mut e = self.numbers(simd, first, count, 1);
-        let mut f = self.numbers(simd, first, count, 2);
-        if !edges {
-            (e, f) = (difference(simd, e, a), difference(simd, f, a));
-        }
-        not_rejected(simd, [a, e, f], o, d, &ray.errors) & ((1 << count) - 1)
+        let (o, d) = ray.splat(simd);
+        not_rejected(simd, self.edges(simd, first, count, edges), o, d, &ray.errors) & ((1 << count) - 1)
     }
-
-    /// Of sixteen rays, those for which f32 cannot reject the triangle in a lane of a leaf.
-    #[inline(always)]
-    pub(super) fn rays_not_rejected<S: Simd<N>>(
-        &self,
-        simd: S,
-        rays: &BlockRays,
-        first: usize,
-        count: u32,
-        lane: usize,
-        edges: bool,
-    ) -> u32 {
-        let [a, mut e, mut f] = self.vectors(first, count, lane);
-        if !edges {
-            (e, f) = (e - a, f - a);
-        }
-        let a = [simd.splat(a.x), simd.splat(a.y), simd.splat(a.z)];
-        let e = [simd.splat(e.x), simd.splat(e.y), simd.splat(e.z)];
-        let f = [simd.splat(f.x), simd.splat(f.y), simd.splat(f.z)];
-        let mut left = 0;
-        for part in 0..RAYS / N {
-            let (o, d) = (&rays.origin, &rays.direction);
-            let o = [part_of(simd, &o[0], part), part_of(simd, &o[1], part), part_of(simd, &o[2], part)];
-            let d = [part_of(simd, &d[0], part), part_of(simd, &d[1], part), part_of(simd, &d[2], part)];
-            left |= (not_rejected(simd, [a, e, f], o, d, &rays.errors) & ((1 << N) - 1)) << (part * N);
-        }
-        left
-    }
-}
-
-/// One vector of a column.
-#[inline(always)]
-fn part_of<const N: usize, S: Simd<N>>(simd: S, column: &Column<f32>, part: usize) -> S::F32 {
-    simd.load(&column.as_chunks::<N>().0[part])
 }

@@ -5,7 +5,7 @@
 
 use super::EdgeRay;
 use crate::math::robust::{greater, lesser};
-use crate::math::{DVec3, Ray, Region};
+use crate::math::{DVec3, Ray, RayBatch, Region};
 
 /// Rays that go together.
 pub const RAYS: usize = 16;
@@ -21,6 +21,8 @@ pub struct EdgeRays {
     pub origin: [Column<f64>; 3],
     /// The origin relative to the region's centre.
     pub local: [Column<f64>; 3],
+    /// The direction as given.
+    unscaled: [Column<f64>; 3],
     /// Scaled, once the rays are ready.
     pub direction: [Column<f64>; 3],
     /// Of the scaled direction, once the rays are ready.
@@ -47,12 +49,17 @@ pub struct Met {
     pub uv: [Column<f64>; 2],
 }
 
+impl Met {
+    const NONE: Self = Self { met: 0, open: 0, t: [0.0; RAYS], uv: [[0.0; RAYS]; 2] };
+}
+
 impl Default for EdgeRays {
     fn default() -> Self {
         let zero = [0.0; RAYS];
         Self {
             origin: [zero; 3],
             local: [zero; 3],
+            unscaled: [zero; 3],
             direction: [zero; 3],
             t_min: zero,
             t_max: zero,
@@ -77,30 +84,44 @@ pub fn bits(flags: &Column<u32>) -> u32 {
 pub const ALL: u32 = u32::MAX >> (32 - RAYS);
 
 impl EdgeRays {
-    /// Takes up to sixteen rays, at least one; the last stands for those that are missing.
+    /// Takes up to sixteen rays of a batch, at least one; the last stands for those that are missing.
     #[inline(always)]
-    pub fn transpose(&mut self, rays: &[Ray]) {
-        for i in 0..RAYS {
-            let ray = &rays[if i < rays.len() { i } else { rays.len() - 1 }];
-            self.origin[0][i] = ray.origin.x;
-            self.origin[1][i] = ray.origin.y;
-            self.origin[2][i] = ray.origin.z;
-            self.direction[0][i] = ray.direction.x;
-            self.direction[1][i] = ray.direction.y;
-            self.direction[2][i] = ray.direction.z;
-            self.t_min[i] = ray.t_min;
-            self.t_max[i] = ray.t_max;
+    pub fn take(&mut self, rays: &RayBatch<'_>, from: usize) {
+        match rays {
+            RayBatch::Rows(rays) => {
+                let rays = &rays[from..];
+                for i in 0..RAYS {
+                    self.put(i, &rays[if i < rays.len() { i } else { rays.len() - 1 }]);
+                }
+            }
+            RayBatch::Columns(columns) => {
+                let (origin, direction, t_min, t_max) = columns.parts();
+                origin.read(from, &mut self.origin);
+                direction.read(from, &mut self.unscaled);
+                t_min.read(from, &mut self.t_min);
+                t_max.read(from, &mut self.t_max);
+            }
         }
     }
 
-    /// Makes rays that were transposed ready. False if one of them cannot hit anything, or is far from the scene, or
-    /// has a direction at the end of the range of f64: those are better asked one by one.
+    /// Takes a ray in the place of the `i`-th.
     #[inline(always)]
-    pub fn prepare(&mut self, region: &Region) -> bool {
+    pub fn put(&mut self, i: usize, ray: &Ray) {
+        let i = i & (RAYS - 1);
+        (self.origin[0][i], self.origin[1][i], self.origin[2][i]) = (ray.origin.x, ray.origin.y, ray.origin.z);
+        let d = ray.direction;
+        (self.unscaled[0][i], self.unscaled[1][i], self.unscaled[2][i]) = (d.x, d.y, d.z);
+        (self.t_min[i], self.t_max[i]) = (ray.t_min, ray.t_max);
+    }
+
+    /// Makes rays that were taken ready, and says which are plain: not those that cannot hit anything, or are far from
+    /// the scene, or have a direction at the end of the range of f64. Those are better asked one by one.
+    #[inline(always)]
+    pub fn prepare(&mut self, region: &Region) -> u32 {
         let mut plain = [0u32; RAYS];
         for i in 0..RAYS {
             let (ox, oy, oz) = (self.origin[0][i], self.origin[1][i], self.origin[2][i]);
-            let (dx, dy, dz) = (self.direction[0][i], self.direction[1][i], self.direction[2][i]);
+            let (dx, dy, dz) = (self.unscaled[0][i], self.unscaled[1][i], self.unscaled[2][i]);
             let longest = greater(greater(dx.abs(), dy.abs()), dz.abs());
             let finite = ox * 0.0 + dx * 0.0 + (oy * 0.0 + dy * 0.0) + (oz * 0.0 + dz * 0.0) == 0.0;
             let biased = longest.to_bits() >> 52;
@@ -124,74 +145,105 @@ impl EdgeRays {
             let normal = (biased > 0) & (biased < 2046);
             plain[i] = u32::from(finite & ordered & near & normal);
         }
-        bits(&plain) == ALL
+        bits(&plain)
+    }
+
+    /// One that is plain, as [`EdgeRay::new`] makes it.
+    #[inline(always)]
+    pub fn one(&self, i: usize) -> EdgeRay {
+        let i = i & (RAYS - 1);
+        let of = |columns: &[Column<f64>; 3]| DVec3::new(columns[0][i], columns[1][i], columns[2][i]);
+        EdgeRay::of_plain(
+            [of(&self.origin), of(&self.local), of(&self.direction), of(&self.unscaled)],
+            [self.scale[i], self.t_min[i], self.t_max[i], self.largest[i], self.absolute[i]],
+        )
     }
 
     /// Tests all rays against a triangle; only the answers of those in `asked` count.
     #[inline(always)]
     pub fn meet(&self, [a, b, c]: [DVec3; 3], asked: u32) -> Met {
-        let mut met = Met { met: 0, open: 0, t: [0.0; RAYS], uv: [[0.0; RAYS]; 2] };
+        let mut met = Met::NONE;
         let (mut certain, mut open) = ([0u32; RAYS], [0u32; RAYS]);
         for i in 0..RAYS {
-            let (ox, oy, oz) = (self.origin[0][i], self.origin[1][i], self.origin[2][i]);
-            let (dx, dy, dz) = (self.direction[0][i], self.direction[1][i], self.direction[2][i]);
-            let (ax, ay, az) = (a.x - ox, a.y - oy, a.z - oz);
-            let (bx, by, bz) = (b.x - ox, b.y - oy, b.z - oz);
-            let (cx, cy, cz) = (c.x - ox, c.y - oy, c.z - oz);
-            let u = volume(dx, dy, dz, bx, by, bz, cx, cy, cz);
-            let v = volume(dx, dy, dz, cx, cy, cz, ax, ay, az);
-            let w = volume(dx, dy, dz, ax, ay, az, bx, by, bz);
-            let largest = self.largest[i];
-            let above = EdgeRay::sign_error(largest);
-            let passed = ((u > above) | (v > above) | (w > above)) & ((u < -above) | (v < -above) | (w < -above));
-            let (sx, sy, sz) = (dx.abs(), dy.abs(), dz.abs());
-            let longest = greater(greater(sx, sy), sz);
-            let (is_x, is_y) = (sx == longest, sy == longest);
-            let za = if is_x {
-                ax
-            } else if is_y {
-                ay
-            } else {
-                az
-            };
-            let zb = if is_x {
-                bx
-            } else if is_y {
-                by
-            } else {
-                bz
-            };
-            let zc = if is_x {
-                cx
-            } else if is_y {
-                cy
-            } else {
-                cz
-            };
-            let d = if is_x {
-                dx
-            } else if is_y {
-                dy
-            } else {
-                dz
-            };
-            let least = lesser(lesser(u.abs(), v.abs()), w.abs());
-            let sum = u + v + w;
-            let range = greater(greater(za, zb), zc) - lesser(lesser(za, zb), zc);
-            let t = (u * za + v * zb + w * zc) / (sum * d);
-            let is_certain = (least > above)
-                & (6.0 * above * range <= EdgeRay::T_ERROR * largest * sum.abs())
-                & !EdgeRay::may_be_behind(t, self.t_min[i], sum, range, above);
-            let counts = (t >= self.t_min[i]) & (t <= self.t_max[i]) & ((t * self.scale[i]).abs() <= f64::MAX);
-            certain[i] = u32::from(!passed & is_certain & counts);
-            open[i] = u32::from(!passed & !is_certain);
-            met.t[i] = t;
-            met.uv[0][i] = v / sum;
-            met.uv[1][i] = w / sum;
+            let corners = [[a.x, a.y, a.z], [b.x, b.y, b.z], [c.x, c.y, c.z]];
+            (certain[i], open[i], met.t[i], met.uv[0][i], met.uv[1][i]) = self.meet_one(i, corners);
         }
         met.met = bits(&certain) & asked;
         met.open = bits(&open) & asked;
         met
+    }
+
+    /// Tests each ray against a triangle of its own, given by corner and axis; only the answers of those in `asked`
+    /// count.
+    #[inline(always)]
+    pub fn meet_each(&self, [a, b, c]: &[[Column<f64>; 3]; 3], asked: u32) -> Met {
+        let mut met = Met::NONE;
+        let (mut certain, mut open) = ([0u32; RAYS], [0u32; RAYS]);
+        for i in 0..RAYS {
+            let corners = [[a[0][i], a[1][i], a[2][i]], [b[0][i], b[1][i], b[2][i]], [c[0][i], c[1][i], c[2][i]]];
+            (certain[i], open[i], met.t[i], met.uv[0][i], met.uv[1][i]) = self.meet_one(i, corners);
+        }
+        met.met = bits(&certain) & asked;
+        met.open = bits(&open) & asked;
+        met
+    }
+
+    /// Whether a ray meets a triangle for certain, whether that is open, and where it does: `t`, and the weights of the
+    /// second and the third corner.
+    #[inline(always)]
+    fn meet_one(&self, i: usize, corners: [[f64; 3]; 3]) -> (u32, u32, f64, f64, f64) {
+        let [[ax, ay, az], [bx, by, bz], [cx, cy, cz]] = corners;
+        let (ox, oy, oz) = (self.origin[0][i], self.origin[1][i], self.origin[2][i]);
+        let (dx, dy, dz) = (self.direction[0][i], self.direction[1][i], self.direction[2][i]);
+        let (ax, ay, az) = (ax - ox, ay - oy, az - oz);
+        let (bx, by, bz) = (bx - ox, by - oy, bz - oz);
+        let (cx, cy, cz) = (cx - ox, cy - oy, cz - oz);
+        let u = volume(dx, dy, dz, bx, by, bz, cx, cy, cz);
+        let v = volume(dx, dy, dz, cx, cy, cz, ax, ay, az);
+        let w = volume(dx, dy, dz, ax, ay, az, bx, by, bz);
+        let largest = self.largest[i];
+        let above = EdgeRay::sign_error(largest);
+        let passed = ((u > above) | (v > above) | (w > above)) & ((u < -above) | (v < -above) | (w < -above));
+        let (sx, sy, sz) = (dx.abs(), dy.abs(), dz.abs());
+        let longest = greater(greater(sx, sy), sz);
+        let (is_x, is_y) = (sx == longest, sy == longest);
+        let za = if is_x {
+            ax
+        } else if is_y {
+            ay
+        } else {
+            az
+        };
+        let zb = if is_x {
+            bx
+        } else if is_y {
+            by
+        } else {
+            bz
+        };
+        let zc = if is_x {
+            cx
+        } else if is_y {
+            cy
+        } else {
+            cz
+        };
+        let d = if is_x {
+            dx
+        } else if is_y {
+            dy
+        } else {
+            dz
+        };
+        let least = lesser(lesser(u.abs(), v.abs()), w.abs());
+        let sum = u + v + w;
+        let range = greater(greater(za, zb), zc) - lesser(lesser(za, zb), zc);
+        let t = (u * za + v * zb + w * zc) / (sum * d);
+        let is_certain = (least > above)
+            & (6.0 * above * range <= EdgeRay::T_ERROR * largest * sum.abs())
+            & !EdgeRay::may_be_behind(t, self.t_min[i], sum, range, above);
+        let counts = (t >= self.t_min[i]) & (t <= self.t_max[i]) & ((t * self.scale[i]).abs() <= f64::MAX);
+        (u32::from(!passed & is_certain & counts), u32::from(!passed & !is_certain), t, v / sum, w / sum)
     }
 }
 

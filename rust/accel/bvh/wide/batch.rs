@@ -1,41 +1,75 @@
 //! A batch of rays for one tree, by the kernel that suits them.
 
+use super::answer::Answer;
+use super::errand::{Errand, Telling};
+use super::first::First;
+use super::winners::Winners;
 use super::{WideBvh, packet, single, wave};
-use crate::accel::query::{Kernels, Query};
-use crate::math::{Ray, coherence};
+use crate::accel::query::Query;
+use crate::math::{RayBatch, coherence};
 use crate::shapes::triangle::Leaves;
 use crate::simd::{Kernel, Simd};
 
 /// Fewer rays than these leave a packet or a wave mostly empty.
 const FEW: usize = 8;
 
-/// A question about a batch of rays.
-pub struct Batch<'a, const N: usize, L, Q> {
+/// A question about all that a batch of rays meets.
+pub struct All<'a, const N: usize, L, Q> {
     pub bvh: &'a WideBvh<N, L>,
-    pub rays: &'a [Ray],
+    pub rays: RayBatch<'a>,
     pub query: &'a mut Q,
 }
 
-impl<const N: usize, L: Leaves<N>, Q: Query> Kernel<N> for Batch<'_, N, L, Q> {
+impl<const N: usize, L: Leaves<N>, Q: Query> Kernel<N> for All<'_, N, L, Q> {
     type Output = ();
 
     #[inline(always)]
     fn run<S: Simd<N>>(self, simd: S) {
-        const { assert!(!Q::COUNTED || matches!(Q::KERNELS, Kernels::Single), "only single rays count") };
         let Self { bvh, rays, query } = self;
+        let errand = &mut Telling(query);
         if bvh.nodes.is_empty() {
-            for i in 0..rays.len() {
-                query.finish(i, None);
-            }
-        } else if Q::KERNELS == Kernels::Single || rays.len() < FEW {
-            single::answer(simd, bvh, rays, query);
-        } else if Q::KERNELS == Kernels::All && coherence::is_coherent(rays, bvh.region.radius) {
-            packet::answer(simd, bvh, rays, query);
+            miss(bvh, rays.len(), errand);
+        } else if Q::COUNTED || rays.len() < FEW {
+            single::answer(simd, bvh, &rays, errand);
+        } else {
+            wave::answer(simd, bvh, &rays, errand);
+        }
+    }
+}
+
+/// The first hits of a batch of rays, or whether they have any.
+pub struct Firsts<'a, const N: usize, L, A> {
+    pub bvh: &'a WideBvh<N, L>,
+    pub rays: RayBatch<'a>,
+    pub answer: A,
+}
+
+impl<const N: usize, L: Leaves<N>, A: Answer> Kernel<N> for Firsts<'_, N, L, A> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd<N>>(self, simd: S) {
+        let Self { bvh, rays, mut answer } = self;
+        let errand = &mut First { rays: &rays, answer: &mut answer, winners: Winners::new() };
+        if bvh.nodes.is_empty() {
+            miss(bvh, rays.len(), errand);
+        } else if rays.len() < FEW {
+            single::answer(simd, bvh, &rays, errand);
+        } else if coherence::is_coherent(rays, bvh.region.radius) {
+            packet::answer(simd, bvh, errand);
         } else {
             // Scattered rays sorted by octant, so that packets would take them, are slower as soon as a tree has two
             // nodes.
-            wave::answer(simd, bvh, rays, query);
+            wave::answer(simd, bvh, &rays, errand);
         }
+    }
+}
+
+/// Says that no ray hits anything.
+#[inline(always)]
+fn miss<const N: usize, L: Leaves<N>, E: Errand<N, L>>(_: &WideBvh<N, L>, rays: usize, errand: &mut E) {
+    for i in 0..rays {
+        errand.miss(i);
     }
 }
 
@@ -43,9 +77,8 @@ impl<const N: usize, L: Leaves<N>, Q: Query> Kernel<N> for Batch<'_, N, L, Q> {
 mod tests {
     use super::*;
     use crate::accel::bvh::Options;
-    use crate::accel::query::{Any, Closest};
     use crate::accel::{BruteForce, Primitives};
-    use crate::math::{DVec3, Hit, Vec3};
+    use crate::math::{DVec3, Hit, HitColumns, Numbers, Ray, RayColumns, Vec3, Vectors};
     use crate::sampling::philox4x32;
     use crate::shapes::triangle::{DoubleLeaves, SingleLeaves};
     use crate::simd::{Dispatch, Level};
@@ -132,21 +165,22 @@ mod tests {
         Packet,
     }
 
-    struct By<'a, const N: usize, L, Q> {
+    struct By<'a, const N: usize, L, A> {
         which: Which,
-        batch: Batch<'a, N, L, Q>,
+        asked: Firsts<'a, N, L, A>,
     }
 
-    impl<const N: usize, L: Leaves<N>, Q: Query> Kernel<N> for By<'_, N, L, Q> {
+    impl<const N: usize, L: Leaves<N>, A: Answer> Kernel<N> for By<'_, N, L, A> {
         type Output = ();
 
         #[inline(always)]
         fn run<S: Simd<N>>(self, simd: S) {
-            let Batch { bvh, rays, query } = self.batch;
+            let Firsts { bvh, rays, mut answer } = self.asked;
+            let errand = &mut First { rays: &rays, answer: &mut answer, winners: Winners::new() };
             match self.which {
-                Which::Single => single::answer(simd, bvh, rays, query),
-                Which::Wave => wave::answer(simd, bvh, rays, query),
-                Which::Packet => packet::answer(simd, bvh, rays, query),
+                Which::Single => single::answer(simd, bvh, &rays, errand),
+                Which::Wave => wave::answer(simd, bvh, &rays, errand),
+                Which::Packet => packet::answer(simd, bvh, errand),
             }
         }
     }
@@ -173,14 +207,72 @@ mod tests {
                 assert!(wanted.iter().filter(|h| h.is_hit()).count() > 50, "a fan that misses shows nothing");
                 for which in [Which::Single, Which::Wave, Which::Packet] {
                     let mut hits = vec![Hit::MISS; rays.len()];
-                    level.dispatch(By {
-                        which,
-                        batch: Batch { bvh: &bvh, rays: &rays, query: &mut Closest(&mut hits) },
-                    });
+                    let rays = RayBatch::Rows(&rays);
+                    level.dispatch(By { which, asked: Firsts { bvh: &bvh, rays, answer: hits.as_mut_slice() } });
                     assert_eq!(hits, wanted, "{which:?} at {level:?}");
                     let mut any = vec![false; rays.len()];
-                    level.dispatch(By { which, batch: Batch { bvh: &bvh, rays: &rays, query: &mut Any(&mut any) } });
+                    level.dispatch(By { which, asked: Firsts { bvh: &bvh, rays, answer: any.as_mut_slice() } });
                     assert!(any.iter().zip(&wanted).all(|(&any, hit)| any == hit.is_hit()), "{which:?} at {level:?}");
+                }
+            }
+        }
+    }
+
+    /// Rays by columns; f32 if they are.
+    fn by_columns(rays: &[Ray], single: bool, ask: impl FnOnce(&RayColumns<'_>)) {
+        let column = |of: fn(&Ray) -> f64| rays.iter().map(of).collect::<Vec<f64>>();
+        let origin = [column(|r| r.origin.x), column(|r| r.origin.y), column(|r| r.origin.z)];
+        let direction = [column(|r| r.direction.x), column(|r| r.direction.y), column(|r| r.direction.z)];
+        let (t_min, t_max) = (column(|r| r.t_min), column(|r| r.t_max));
+        let small =
+            |columns: &[Vec<f64>; 3]| columns.each_ref().map(|c| c.iter().map(|&x| x as f32).collect::<Vec<_>>());
+        let (small_origin, small_direction) = (small(&origin), small(&direction));
+        let (origin, direction) = if single {
+            (
+                Vectors::Single(small_origin.each_ref().map(Vec::as_slice)),
+                Vectors::Single(small_direction.each_ref().map(Vec::as_slice)),
+            )
+        } else {
+            (
+                Vectors::Double(origin.each_ref().map(Vec::as_slice)),
+                Vectors::Double(direction.each_ref().map(Vec::as_slice)),
+            )
+        };
+        ask(&RayColumns::new(origin, direction, Numbers::Each(&t_min), Numbers::Each(&t_max)));
+    }
+
+    #[test]
+    fn rays_by_columns_are_answered_as_the_same_rays_one_after_the_other() {
+        let soup = soup();
+        for level in Level::ALL.into_iter().filter(|l| l.is_available()) {
+            let tree = crate::accel::bvh::widest(&soup, &Options::DEFAULT, level);
+            let columns = tree.by_columns().expect("a tree over triangles");
+            for (which, mut rays) in fans().into_iter().enumerate() {
+                let single = which % 2 == 1;
+                if single {
+                    for ray in &mut rays {
+                        (ray.origin, ray.direction) =
+                            (ray.origin.as_vec3().as_dvec3(), ray.direction.as_vec3().as_dvec3());
+                    }
+                }
+                // Scattered too, and of every number that leaves another rest.
+                if which % 3 == 2 {
+                    rays.sort_by_key(|r| (r.direction.x.to_bits() ^ r.origin.y.to_bits()).wrapping_mul(0x9e37_79b9));
+                }
+                rays.truncate(640 - 37 * which);
+                let mut wanted = vec![Hit::MISS; rays.len()];
+                tree.intersect(&rays, &mut wanted);
+                let (mut t, mut uv, mut primitive) =
+                    (vec![0.0; rays.len()], vec![[0.0; 2]; rays.len()], vec![0; rays.len()]);
+                let mut any = vec![false; rays.len()];
+                by_columns(&rays, single, |rays| {
+                    let hits = HitColumns { t: &mut t, uv: &mut uv, primitive: &mut primitive };
+                    columns.intersect(rays, hits);
+                    columns.occluded(rays, &mut any);
+                });
+                for (i, hit) in wanted.iter().enumerate() {
+                    assert_eq!((t[i], uv[i], primitive[i]), (hit.t, hit.uv, hit.primitive as i32), "{:?}", rays[i]);
+                    assert_eq!(any[i], hit.is_hit());
                 }
             }
         }

@@ -1,7 +1,12 @@
 //! Wide trees: `N` children a node, tested at once, and blocks of `N` triangles for leaves. They are what rays walk.
 
+mod answer;
 mod batch;
+mod best;
 mod collapse;
+mod errand;
+mod first;
+mod gate;
 mod nearest;
 mod node;
 mod objects;
@@ -11,17 +16,18 @@ mod single;
 mod step;
 mod touched;
 mod wave;
+mod winners;
 
 use super::build::{Builder, Leaves as LeafRule};
 use super::optimise::Optimisers;
 use super::parts::cover;
 use super::{Cuts, Quality, Steps};
 use crate::accel::query::{Answers, Query};
-use crate::accel::{Info, Nearest, Primitives, Touches};
-use crate::math::{Aabb, DVec3, Ray, Region};
+use crate::accel::{ByColumns, Info, Nearest, Primitives, Touches};
+use crate::math::{Aabb, DVec3, Hit, HitColumns, Ray, RayBatch, RayColumns, Region};
 use crate::shapes::triangle::{Leaves, SolidCone, clipped};
 use crate::simd::{Dispatch, Level};
-use batch::Batch;
+use batch::{All, Firsts};
 use node::{Child, WideNode};
 pub use objects::over as over_objects;
 use rayon::prelude::*;
@@ -139,12 +145,39 @@ fn clip(primitives: &dyn Primitives, region: &Region, primitive: u32, to: &Aabb)
     clipped(primitives.corners(primitive).map(|c| region.to_box(c)), to)
 }
 
+impl<const N: usize, L: Leaves<N>> ByColumns for WideBvh<N, L>
+where
+    Level: Dispatch<N>,
+{
+    fn intersect(&self, rays: &RayColumns<'_>, hits: HitColumns<'_>) {
+        assert_eq!(rays.len(), hits.len(), "a hit for each ray");
+        self.level.dispatch(Firsts { bvh: self, rays: RayBatch::Columns(*rays), answer: hits });
+    }
+
+    fn occluded(&self, rays: &RayColumns<'_>, occluded: &mut [bool]) {
+        assert_eq!(rays.len(), occluded.len(), "an answer for each ray");
+        self.level.dispatch(Firsts { bvh: self, rays: RayBatch::Columns(*rays), answer: occluded });
+    }
+}
+
 impl<const N: usize, L: Leaves<N>> Answers for WideBvh<N, L>
 where
     Level: Dispatch<N>,
 {
     fn answer<Q: Query>(&self, rays: &[Ray], query: &mut Q) {
-        self.level.dispatch(Batch { bvh: self, rays, query });
+        self.level.dispatch(All { bvh: self, rays: RayBatch::Rows(rays), query });
+    }
+
+    fn intersect(&self, rays: &[Ray], hits: &mut [Hit]) {
+        self.level.dispatch(Firsts { bvh: self, rays: RayBatch::Rows(rays), answer: hits });
+    }
+
+    fn occluded(&self, rays: &[Ray], occluded: &mut [bool]) {
+        self.level.dispatch(Firsts { bvh: self, rays: RayBatch::Rows(rays), answer: occluded });
+    }
+
+    fn by_columns(&self) -> Option<&dyn ByColumns> {
+        Some(self)
     }
 
     fn nearest(&self, points: &[DVec3], max_distances: &[f64], nearest: &mut [Nearest]) {

@@ -10,25 +10,34 @@
 //! and 2v + v of it for the inverse and the product: less than 6v·R in units of |r|.
 
 use super::WideBvh;
+use super::answer::Answer;
+use super::best::{Best, between, meet};
+use super::errand::Errand;
+use super::first::{First, Looking};
 use super::node::{Packed, WideNode};
-use super::single::{self, Alone};
+use super::single;
 use super::step::{Boxes, Stacks};
-use crate::accel::query::Query;
 use crate::accel::slab::{Clock, SlabRays};
-use crate::math::Ray;
 use crate::math::robust::{greater, lesser};
-use crate::shapes::triangle::{ALL, Along, Column, EdgeRays, Leaves, RAYS, Sixteen};
+use crate::shapes::triangle::{ALL, BlockRays, Column, EdgeRays, Leaves, RAYS};
 use crate::simd::Simd;
 
 /// So many rays or fewer go on alone.
 const FEW: u32 = 4;
 
 /// Rays of one packet, all plain ([`EdgeRays::prepare`]) and going the same way along every axis.
-struct Packet<'a, T> {
-    rays: Sixteen<'a>,
+struct Packet<'a> {
+    edges: &'a EdgeRays,
+    blocks: &'a BlockRays,
     slabs: &'a SlabRays,
-    states: [T; RAYS],
-    /// Where in box units the query loses interest; −∞ for rays that are answered or missing.
+    /// The best that is known of each; see [`Best`].
+    low: Column<f32>,
+    high: Column<f32>,
+    leaf: Column<Packed>,
+    lane: Column<u32>,
+    /// Between these lies the `t_min` of each.
+    t_min: [Column<f32>; 2],
+    /// Where in box units each loses interest; −∞ for rays that are answered or missing.
     limit: Column<f32>,
     bounds: Bounds,
     /// The plane that is met first, by axis; for all rays.
@@ -55,54 +64,41 @@ struct Entry {
 
 /// Answers all rays; the tree is not empty.
 #[inline(always)]
-pub fn answer<const N: usize, L: Leaves<N>, S: Simd<N>, Q: Query>(
+pub fn answer<const N: usize, L: Leaves<N>, S: Simd<N>, A: Answer>(
     simd: S,
     bvh: &WideBvh<N, L>,
-    rays: &[Ray],
-    query: &mut Q,
+    errand: &mut First<'_, A>,
 ) {
+    let rays = errand.rays;
     let mut stack = vec![Entry { near: 0.0, place: 0 }; bvh.stack];
     let mut lone = Stacks::new::<N>(1, bvh.stack);
     // The next packet's columns are written before this one is walked: a wide load must wait for narrow stores.
     let mut edges = [EdgeRays::default(), EdgeRays::default()];
     let mut slabs = SlabRays::default();
-    edges[0].transpose(&rays[..rays.len().min(RAYS)]);
-    for (turn, chunk) in rays.chunks(RAYS).enumerate() {
-        let start = turn * RAYS;
+    edges[0].take(rays, 0);
+    for (turn, start) in (0..rays.len()).step_by(RAYS).enumerate() {
+        let count = RAYS.min(rays.len() - start);
         if start + RAYS < rays.len() {
-            edges[(turn + 1) & 1].transpose(&rays[start + RAYS..rays.len().min(start + 2 * RAYS)]);
+            edges[(turn + 1) & 1].take(rays, start + RAYS);
         }
         let edges = &mut edges[turn & 1];
         let mut first = None;
-        if chunk.len() as u32 > FEW && edges.prepare(&bvh.region) {
+        if count as u32 > FEW && edges.prepare(&bvh.region) == ALL {
             slabs.prepare(edges, &bvh.region);
             first = slabs.first();
         }
         let Some(first) = first else {
-            for (i, ray) in chunk.iter().enumerate() {
-                single::ask(simd, bvh, ray, start + i, query, &mut lone);
+            for i in start..start + count {
+                single::ask(simd, bvh, rays, i, errand, &mut lone);
             }
             continue;
         };
         let blocks = L::rays(edges, &bvh.region);
-        let mut packet = Packet {
-            rays: Sixteen { given: chunk, region: &bvh.region, edges, blocks: &blocks },
-            slabs: &slabs,
-            states: [query.start(start, edges.t_max[0]); RAYS],
-            limit: [f32::NEG_INFINITY; RAYS],
-            bounds: Bounds::of(simd, &slabs, first),
-            first,
-        };
-        for i in 0..chunk.len() {
-            packet.states[i] = query.start(start + i, edges.t_max[i]);
-            packet.limit[i] = Clock::of(&bvh.region).limit(Q::limit(&packet.states[i]));
-        }
-        packet.walk(simd, bvh, query, &mut stack, &mut lone);
-        for i in 0..chunk.len() {
-            let along = Along { scale: edges.scale[i], largest: edges.largest[i] };
-            query.finish(start + i, Some((along, packet.states[i])));
-        }
+        let mut packet = Packet::new(simd, bvh, edges, &blocks, &slabs, first, count);
+        packet.walk(simd, bvh, start, errand, &mut stack, &mut lone);
+        packet.finish(bvh, start, count, errand);
     }
+    errand.end(bvh);
 }
 
 /// The least and the greatest of sixteen numbers without NaN, of which there are `16 / N` vectors.
@@ -161,7 +157,55 @@ impl Bounds {
     }
 }
 
-impl<T: Copy> Packet<'_, T> {
+impl<'a> Packet<'a> {
+    /// The first `count` of sixteen rays.
+    #[inline(always)]
+    fn new<const N: usize, L: Leaves<N>, S: Simd<N>>(
+        simd: S,
+        bvh: &WideBvh<N, L>,
+        edges: &'a EdgeRays,
+        blocks: &'a BlockRays,
+        slabs: &'a SlabRays,
+        first: [usize; 3],
+        count: usize,
+    ) -> Self {
+        let (unit, clock) = (L::unit(&bvh.region), Clock::of(&bvh.region));
+        let mut packet = Self {
+            edges,
+            blocks,
+            slabs,
+            low: [0.0; RAYS],
+            high: [0.0; RAYS],
+            leaf: [Packed::NONE; RAYS],
+            lane: [0; RAYS],
+            t_min: [[0.0; RAYS]; 2],
+            limit: [f32::NEG_INFINITY; RAYS],
+            bounds: Bounds::of(simd, slabs, first),
+            first,
+        };
+        for i in 0..RAYS {
+            (packet.t_min[0][i], packet.t_min[1][i]) = between(edges.t_min[i] * unit);
+            (packet.low[i], packet.high[i]) = between(edges.t_max[i] * unit);
+            let limit = clock.limit(edges.t_max[i]);
+            packet.limit[i] = if i < count { limit } else { f32::NEG_INFINITY };
+        }
+        packet
+    }
+
+    /// The first `count` have seen all that they have to; the first of them is `start` of the batch.
+    #[inline(always)]
+    fn finish<const N: usize, L: Leaves<N>, A: Answer>(
+        &self,
+        bvh: &WideBvh<N, L>,
+        start: usize,
+        count: usize,
+        errand: &mut First<'_, A>,
+    ) {
+        for i in 0..count {
+            errand.conclude(bvh, start + i, &self.best(i));
+        }
+    }
+
     /// Where the last ray loses interest.
     #[inline(always)]
     fn last_limit<const N: usize, S: Simd<N>>(&self, simd: S) -> f32 {
@@ -170,11 +214,12 @@ impl<T: Copy> Packet<'_, T> {
 
     /// Visits all that any ray may hit.
     #[inline(always)]
-    fn walk<const N: usize, L: Leaves<N>, S: Simd<N>, Q: Query<State = T>>(
+    fn walk<const N: usize, L: Leaves<N>, S: Simd<N>, A: Answer>(
         &mut self,
         simd: S,
         bvh: &WideBvh<N, L>,
-        query: &mut Q,
+        start: usize,
+        errand: &mut First<'_, A>,
         stack: &mut [Entry],
         lone: &mut Stacks,
     ) {
@@ -193,8 +238,7 @@ impl<T: Copy> Packet<'_, T> {
                 let child = Packed::of(parent.children[lane]);
                 if child.is_leaf() == 1 {
                     if active != 0 {
-                        let (first, count) = child.leaf();
-                        self.visit_leaf(simd, bvh, first, count, active, query);
+                        self.visit_leaf::<N, L, S, A>(simd, bvh, child, active, start, errand);
                         limit = self.last_limit(simd);
                     }
                     continue;
@@ -206,58 +250,196 @@ impl<T: Copy> Packet<'_, T> {
                 while active != 0 {
                     let i = active.trailing_zeros() as usize & (RAYS - 1);
                     active &= active - 1;
-                    self.walk_alone(simd, bvh, child, i, query, lone);
+                    self.walk_alone(simd, bvh, child, i, start, errand, lone);
                 }
                 limit = self.last_limit(simd);
             }
         }
     }
 
-    /// Tests a leaf against the rays in `active`.
+    /// Tests a leaf against the rays in `active`: each triangle against all of them, or each of them against all
+    /// triangles.
     #[inline(always)]
-    fn visit_leaf<const N: usize, L: Leaves<N>, S: Simd<N>, Q: Query<State = T>>(
+    fn visit_leaf<const N: usize, L: Leaves<N>, S: Simd<N>, A: Answer>(
         &mut self,
         simd: S,
         bvh: &WideBvh<N, L>,
-        first: usize,
-        count: u32,
+        leaf: Packed,
         active: u32,
-        query: &mut Q,
+        start: usize,
+        errand: &First<'_, A>,
     ) {
-        let (mut changed, states, limit) = (0u32, &mut self.states, &mut self.limit);
-        bvh.leaves.meet_sixteen(simd, first, count, &self.rays, active, |i, primitive, candidate| {
-            let i = i & (RAYS - 1);
-            changed |= 1 << i;
-            // Unless it is answered.
-            if limit[i] > f32::NEG_INFINITY && query.offer(&mut states[i], primitive, candidate) {
-                limit[i] = f32::NEG_INFINITY;
+        let (first, count) = leaf.leaf();
+        let mut changed = 0;
+        if active.count_ones() <= count {
+            let mut rest = active;
+            while rest != 0 {
+                let i = rest.trailing_zeros() as usize & (RAYS - 1);
+                rest &= rest - 1;
+                let mut ray = self.looking(i, start);
+                let has_changed = if A::ANY {
+                    ray.visit::<true, N, L, S>(simd, &bvh.leaves, &bvh.region, leaf, errand.rays)
+                } else {
+                    ray.visit::<false, N, L, S>(simd, &bvh.leaves, &bvh.region, leaf, errand.rays)
+                };
+                // What has won may lie no nearer in f32.
+                self.note(i, if A::ANY && has_changed { Best { leaf, ..ray.best } } else { ray.best });
+                changed |= u32::from(has_changed) << i;
             }
-        });
-        while changed != 0 {
-            let i = changed.trailing_zeros() as usize & (RAYS - 1);
-            changed &= changed - 1;
-            if self.limit[i] > f32::NEG_INFINITY {
-                self.limit[i] = Clock::of(&bvh.region).limit(Q::limit(&self.states[i]));
+        } else {
+            for lane in 0..count {
+                let triangle = bvh.leaves.splat(simd, first, count, lane as usize);
+                for part in 0..RAYS / N {
+                    // What is answered is asked no more.
+                    let asked = if A::ANY { active & !changed } else { active };
+                    changed |= self.visit_triangle::<N, L, S, A>(simd, bvh, leaf, lane, triangle, part, asked);
+                }
             }
+        }
+        self.lose_interest::<N, L, S, A>(simd, bvh, changed);
+    }
+
+    /// Takes note of new limits of some rays.
+    #[inline(always)]
+    fn lose_interest<const N: usize, L: Leaves<N>, S: Simd<N>, A: Answer>(
+        &mut self,
+        simd: S,
+        bvh: &WideBvh<N, L>,
+        changed: u32,
+    ) {
+        // A power of two, or too great for an f32, and then nothing is left out.
+        let to_box = (bvh.region.scale / L::unit(&bvh.region)) as f32;
+        for part in 0..RAYS / N {
+            let limit = if A::ANY {
+                simd.splat(f32::NEG_INFINITY)
+            } else if to_box <= f32::MAX {
+                let least = simd.splat(f32::MIN_POSITIVE);
+                simd.mul_add(part_of(simd, &self.high, part), simd.splat(to_box), least)
+            } else {
+                simd.splat(f32::INFINITY)
+            };
+            let limit = simd.select(changed >> (part * N), limit, part_of(simd, &self.limit, part));
+            simd.store(limit, &mut self.limit.as_chunks_mut::<N>().0[part]);
+        }
+    }
+
+    /// Tests a triangle against those of the rays in `active` that are in one vector; says of which what is known has
+    /// changed, or, if any hit will do, which are answered.
+    #[inline(always)]
+    #[allow(clippy::too_many_arguments)]
+    fn visit_triangle<const N: usize, L: Leaves<N>, S: Simd<N>, A: Answer>(
+        &mut self,
+        simd: S,
+        bvh: &WideBvh<N, L>,
+        leaf: Packed,
+        lane: u32,
+        triangle: [[S::F32; 3]; 3],
+        part: usize,
+        active: u32,
+    ) -> u32 {
+        let active = active >> (part * N) & ((1 << N) - 1);
+        if active == 0 {
+            return 0;
+        }
+        let bracket = bvh.leaves.rays_bracket(simd, self.blocks, part, triangle);
+        let [low, high] = [part_of(simd, &self.low, part), part_of(simd, &self.high, part)];
+        let [from, after] = [part_of(simd, &self.t_min[0], part), part_of(simd, &self.t_min[1], part)];
+        let beyond = simd.gt(bracket.low, high) | simd.gt(from, bracket.high);
+        let mut open = active & bracket.possible & !(bracket.known & beyond);
+        if open == 0 {
+            return 0;
+        }
+        let sure = bracket.known & bracket.inside & simd.gt(bracket.low, after) & simd.gt(low, bracket.high);
+        let mut sure = open & sure;
+        open &= !sure;
+        let mut changed = sure << (part * N);
+        // By vectors, since the next triangle reads them so.
+        simd.store(simd.select(sure, bracket.low, low), &mut self.low.as_chunks_mut::<N>().0[part]);
+        simd.store(simd.select(sure, bracket.high, high), &mut self.high.as_chunks_mut::<N>().0[part]);
+        while sure != 0 {
+            let i = (part * N + sure.trailing_zeros() as usize) & (RAYS - 1);
+            sure &= sure - 1;
+            (self.leaf[i], self.lane[i]) = (leaf, lane);
+        }
+        while open != 0 {
+            let i = part * N + open.trailing_zeros() as usize;
+            open &= open - 1;
+            if self.decide::<N, L, A>(bvh, i, leaf, lane) {
+                changed |= 1 << i;
+            }
+        }
+        changed
+    }
+
+    /// Decides about a ray and a triangle in f64.
+    #[inline(never)]
+    fn decide<const N: usize, L: Leaves<N>, A: Answer>(
+        &mut self,
+        bvh: &WideBvh<N, L>,
+        i: usize,
+        leaf: Packed,
+        lane: u32,
+    ) -> bool {
+        let mut best = self.best(i);
+        if A::ANY {
+            let is_met = meet(&bvh.leaves, &self.edges.one(i), leaf, lane).is_some();
+            if is_met {
+                self.note(i, Best { leaf, lane, ..best });
+            }
+            return is_met;
+        }
+        if best.is(&bvh.leaves, leaf, lane) {
+            return false;
+        }
+        let before = best.high;
+        best.decide(&bvh.leaves, L::unit(&bvh.region), &self.edges.one(i), leaf, lane);
+        self.note(i, best);
+        best.high < before
+    }
+
+    /// The best that is known of a ray.
+    #[inline(always)]
+    fn best(&self, i: usize) -> Best {
+        let i = i & (RAYS - 1);
+        Best { low: self.low[i], high: self.high[i], leaf: self.leaf[i], lane: self.lane[i] }
+    }
+
+    #[inline(always)]
+    fn note(&mut self, i: usize, best: Best) {
+        let i = i & (RAYS - 1);
+        (self.low[i], self.high[i], self.leaf[i], self.lane[i]) = (best.low, best.high, best.leaf, best.lane);
+    }
+
+    /// One of the rays, the first of which is `start` of the batch.
+    #[inline(always)]
+    fn looking(&self, i: usize, start: usize) -> Looking {
+        Looking {
+            lanes: self.blocks.of(i),
+            t_min: (self.t_min[0][i & (RAYS - 1)], self.t_min[1][i & (RAYS - 1)]),
+            best: self.best(i),
+            t_max: self.edges.t_max[i & (RAYS - 1)],
+            ray: start + i,
         }
     }
 
     #[inline(always)]
-    fn walk_alone<const N: usize, L: Leaves<N>, S: Simd<N>, Q: Query<State = T>>(
+    #[allow(clippy::too_many_arguments)]
+    fn walk_alone<const N: usize, L: Leaves<N>, S: Simd<N>, A: Answer>(
         &mut self,
         simd: S,
         bvh: &WideBvh<N, L>,
         child: Packed,
         i: usize,
-        query: &mut Q,
+        start: usize,
+        errand: &mut First<'_, A>,
         stacks: &mut Stacks,
     ) {
-        let Some(edges) = self.rays.one(i) else { return };
-        let alone = Alone { lanes: &self.rays.blocks.of(i), edges: &edges, clock: Clock::of(&bvh.region) };
-        let boxes = Boxes::of(self.slabs, self.first, i, self.limit[i], child, 0);
-        let answered = alone.walk(simd, bvh, boxes, query, &mut self.states[i], stacks);
-        self.limit[i] =
-            if answered { f32::NEG_INFINITY } else { Clock::of(&bvh.region).limit(Q::limit(&self.states[i])) };
+        let mut ray = self.looking(i, start);
+        let boxes = Boxes::of(self.slabs, i, self.limit[i], child, 0);
+        let is_answered = single::walk(simd, bvh, boxes, errand, &mut ray, stacks);
+        self.note(i, ray.best);
+        let limit = Clock::of(&bvh.region).limit(f64::from(ray.best.high) / L::unit(&bvh.region));
+        self.limit[i] = if is_answered { f32::NEG_INFINITY } else { limit };
     }
 
     /// From where at the earliest to where at the latest any ray is in each child.
@@ -296,6 +478,12 @@ impl<T: Copy> Packet<'_, T> {
         }
         meeting & ALL
     }
+}
+
+/// One vector of a column.
+#[inline(always)]
+fn part_of<const N: usize, S: Simd<N>>(simd: S, column: &Column<f32>, part: usize) -> S::F32 {
+    simd.load(&column.as_chunks::<N>().0[part])
 }
 
 /// The nearest of the children in the lanes of `hit`, the first of which is `place`; the others go on to the stack, the

@@ -1,96 +1,80 @@
 //! One ray after the other: for a few of them, and for those that a packet leaves behind.
 
 use super::WideBvh;
+use super::errand::{Errand, Visited};
 use super::node::Packed;
 use super::step::{Boxes, Stacks};
-use crate::accel::query::Query;
-use crate::accel::slab::{Clock, SlabRay};
-use crate::math::Ray;
-use crate::shapes::triangle::{BlockRay, EdgeRay, Leaves};
+use crate::accel::slab::SlabRay;
+use crate::math::RayBatch;
+use crate::shapes::triangle::Leaves;
 use crate::simd::Simd;
 
 /// Answers all rays; the tree is not empty.
 #[inline(always)]
-pub fn answer<const N: usize, L: Leaves<N>, S: Simd<N>, Q: Query>(
+pub fn answer<const N: usize, L: Leaves<N>, S: Simd<N>, E: Errand<N, L>>(
     simd: S,
     bvh: &WideBvh<N, L>,
-    rays: &[Ray],
-    query: &mut Q,
+    rays: &RayBatch<'_>,
+    errand: &mut E,
 ) {
     let mut stacks = Stacks::spare::<N>(bvh.stack);
-    for (i, ray) in rays.iter().enumerate() {
-        ask(simd, bvh, ray, i, query, &mut stacks);
+    for i in 0..rays.len() {
+        ask(simd, bvh, rays, i, errand, &mut stacks);
     }
     stacks.put_away();
+    errand.end(bvh);
 }
 
 /// Answers ray `i` of a batch.
 #[inline(always)]
-pub fn ask<const N: usize, L: Leaves<N>, S: Simd<N>, Q: Query>(
+pub fn ask<const N: usize, L: Leaves<N>, S: Simd<N>, E: Errand<N, L>>(
     simd: S,
     bvh: &WideBvh<N, L>,
-    ray: &Ray,
+    rays: &RayBatch<'_>,
     i: usize,
-    query: &mut Q,
+    errand: &mut E,
     stacks: &mut Stacks,
 ) {
-    let Some((edges, slabs)) = SlabRay::prepare(ray, &bvh.region) else {
-        query.finish(i, None);
+    let Some((edges, slabs)) = SlabRay::prepare(&rays.get(i), &bvh.region) else {
+        errand.miss(i);
         return;
     };
-    let mut state = query.start(i, edges.t_max);
-    let lanes = L::ray(&edges, &bvh.region);
-    let boxes = Boxes::new(&slabs, slabs.limit(Q::limit(&state)), Packed::ROOT, 0);
-    let alone = Alone { lanes: &lanes, edges: &edges, clock: slabs.clock };
-    alone.walk(simd, bvh, boxes, query, &mut state, stacks);
-    query.finish(i, Some((edges.along(), state)));
+    let mut flight = errand.start(bvh, i, &edges);
+    let boxes = Boxes::new(&slabs, slabs.limit(E::limit(&flight)), Packed::ROOT, 0);
+    walk(simd, bvh, boxes, errand, &mut flight, stacks);
+    errand.finish(bvh, &flight);
 }
 
-/// A ray, ready for everything.
-pub struct Alone<'a> {
-    pub lanes: &'a BlockRay,
-    pub edges: &'a EdgeRay,
-    pub clock: Clock,
-}
-
-impl Alone<'_> {
-    /// Visits all from where `ray` is, with an empty stack at the front of `stacks`; true if the question is answered.
-    #[inline(always)]
-    pub fn walk<const N: usize, L: Leaves<N>, S: Simd<N>, Q: Query>(
-        &self,
-        simd: S,
-        bvh: &WideBvh<N, L>,
-        mut ray: Boxes,
-        query: &mut Q,
-        state: &mut Q::State,
-        stacks: &mut Stacks,
-    ) -> bool {
-        loop {
-            match ray.at.kind() {
-                0 => {
-                    Q::visit_node(state);
-                    let node = &bvh.nodes[ray.at.node()];
-                    if Q::NEAREST_FIRST {
-                        ray.enter::<N, S, true>(simd, node, stacks);
-                    } else {
-                        ray.enter::<N, S, false>(simd, node, stacks);
-                    }
+/// Visits all from where a ray is, with an empty stack at the front of `stacks`; true if the question is answered.
+#[inline(always)]
+pub fn walk<const N: usize, L: Leaves<N>, S: Simd<N>, E: Errand<N, L>>(
+    simd: S,
+    bvh: &WideBvh<N, L>,
+    mut ray: Boxes,
+    errand: &mut E,
+    flight: &mut E::Flight,
+    stacks: &mut Stacks,
+) -> bool {
+    loop {
+        match ray.at.kind() {
+            0 => {
+                E::visit_node(flight);
+                let node = &bvh.nodes[ray.at.node()];
+                if E::NEAREST_FIRST {
+                    ray.enter::<N, S, true>(simd, node, stacks);
+                } else {
+                    ray.enter::<N, S, false>(simd, node, stacks);
                 }
-                1 => {
-                    let (first, count) = ray.at.leaf();
-                    Q::visit_leaf(state, count);
-                    let before = Q::limit(state);
-                    let offer = |p, candidate| query.offer(state, p, candidate);
-                    if bvh.leaves.meet(simd, first, count, self.lanes, self.edges, offer) {
-                        return true;
-                    }
-                    if Q::limit(state) < before {
-                        ray.shorten(simd, self.clock.limit(Q::limit(state)), stacks, 0);
-                    }
-                    ray.pop(stacks);
-                }
-                _ => return false,
             }
+            1 => {
+                match errand.visit(simd, bvh, flight, ray.at) {
+                    Visited::Nothing => {}
+                    Visited::Until(limit) => ray.shorten(simd, ray.clock(&bvh.region).limit(limit), stacks, 0),
+                    Visited::Answered => return true,
+                }
+                ray.pop(stacks);
+            }
+            _ => return false,
         }
     }
 }

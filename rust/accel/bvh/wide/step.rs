@@ -1,7 +1,8 @@
 //! What rays do at a node: test its children, and put those that they meet on to a stack.
 
 use super::node::{Packed, WideNode};
-use crate::accel::slab::{SlabRay, SlabRays};
+use crate::accel::slab::{Clock, SlabRay, SlabRays};
+use crate::math::Region;
 use crate::shapes::triangle::RAYS;
 use crate::simd::{ASCENDING, Simd};
 use std::cell::RefCell;
@@ -22,7 +23,11 @@ pub struct Boxes {
     top: u32,
     /// Where it is.
     pub at: Packed,
+    /// How far along its origin was moved, in box units.
+    start: f64,
 }
+
+const _: () = assert!(size_of::<Boxes>() == 64);
 
 impl Boxes {
     /// No ray.
@@ -35,6 +40,7 @@ impl Boxes {
         octant: 0,
         top: 0,
         at: Packed::NONE,
+        start: 0.0,
     };
 
     /// At a child, with nothing on the stack that starts at `bottom`.
@@ -42,25 +48,34 @@ impl Boxes {
     pub fn new(slabs: &SlabRay, limit: f32, at: Packed, bottom: usize) -> Self {
         let SlabRay { inverse, near, far, first, t_min, .. } = *slabs;
         let octant = (first[0] | first[1] << 1 | first[2] << 2) as u32;
-        Self { inverse, near, far, t_min, limit, octant, top: bottom as u32 + 1, at }
+        let start = slabs.clock.start();
+        Self { inverse, near, far, t_min, limit, octant, top: bottom as u32 + 1, at, start }
     }
 
     /// One of sixteen, at a child, with nothing on the stack that starts at `bottom`.
     #[inline(always)]
-    pub fn of(slabs: &SlabRays, first: [usize; 3], i: usize, limit: f32, at: Packed, bottom: usize) -> Self {
+    pub fn of(slabs: &SlabRays, i: usize, limit: f32, at: Packed, bottom: usize) -> Self {
         let i = i & (RAYS - 1);
         let SlabRays { inverse, near, far, t_min, .. } = slabs;
-        let octant = (first[0] | first[1] << 1 | first[2] << 2) as u32;
+        let inverse = [inverse[0][i], inverse[1][i], inverse[2][i]];
+        let down = |axis: usize| u32::from(inverse[axis] < 0.0) << axis;
         Self {
-            inverse: [inverse[0][i], inverse[1][i], inverse[2][i]],
+            inverse,
             near: [near[0][i], near[1][i], near[2][i]],
             far: [far[0][i], far[1][i], far[2][i]],
             t_min: t_min[i],
             limit,
-            octant,
+            octant: down(0) | down(1) | down(2),
             top: bottom as u32 + 1,
             at,
+            start: 0.0,
         }
+    }
+
+    /// From `t` along its scaled direction to box units.
+    #[inline(always)]
+    pub fn clock(&self, region: &Region) -> Clock {
+        Clock::started(region, self.start)
     }
 
     /// Goes on to what is on top of the stack.

@@ -1,0 +1,143 @@
+//! Triangles that have won, computed in f64 sixteen at a time.
+
+use super::WideBvh;
+use super::answer::Answer;
+use super::best::{Best, meet, primitive};
+use super::node::Packed;
+use crate::math::RayBatch;
+use crate::shapes::triangle::{Column, EdgeRay, EdgeRays, Leaves, RAYS};
+
+/// Rays that are done, each with the triangle that it hits. While one sixteen fill up, the sixteen before wait: what is
+/// written number by number is not to be read as vectors at once, since a wide load must wait for narrow stores.
+pub struct Winners {
+    sixteens: [Sixteen; 2],
+    /// Which of them fill up.
+    filling: usize,
+}
+
+/// Up to sixteen of them.
+struct Sixteen {
+    rays: [usize; RAYS],
+    leaves: Column<Packed>,
+    lanes: Column<u32>,
+    edges: EdgeRays,
+    /// Of the triangles, by corner and axis.
+    corners: [[Column<f64>; 3]; 3],
+    len: usize,
+}
+
+impl Winners {
+    /// None yet.
+    pub fn new() -> Self {
+        Self { sixteens: [Sixteen::new(), Sixteen::new()], filling: 0 }
+    }
+
+    /// One more, of ray `i`.
+    #[inline(always)]
+    pub fn add<const N: usize, L: Leaves<N>, A: Answer>(
+        &mut self,
+        bvh: &WideBvh<N, L>,
+        rays: &RayBatch<'_>,
+        i: usize,
+        best: &Best,
+        answer: &mut A,
+    ) {
+        let filling = &mut self.sixteens[self.filling & 1];
+        filling.put(bvh, rays, i, best);
+        if filling.len == RAYS {
+            self.filling ^= 1;
+            self.sixteens[self.filling & 1].settle(bvh, rays, answer);
+        }
+    }
+
+    /// Answers all that there are.
+    #[inline(always)]
+    pub fn settle<const N: usize, L: Leaves<N>, A: Answer>(
+        &mut self,
+        bvh: &WideBvh<N, L>,
+        rays: &RayBatch<'_>,
+        answer: &mut A,
+    ) {
+        for sixteen in &mut self.sixteens {
+            sixteen.settle(bvh, rays, answer);
+        }
+    }
+}
+
+impl Sixteen {
+    fn new() -> Self {
+        Self {
+            rays: [0; RAYS],
+            leaves: [Packed::NONE; RAYS],
+            lanes: [0; RAYS],
+            edges: EdgeRays::default(),
+            corners: [[[0.0; RAYS]; 3]; 3],
+            len: 0,
+        }
+    }
+
+    #[inline(always)]
+    fn put<const N: usize, L: Leaves<N>>(&mut self, bvh: &WideBvh<N, L>, rays: &RayBatch<'_>, i: usize, best: &Best) {
+        let at = self.len & (RAYS - 1);
+        (self.rays[at], self.leaves[at], self.lanes[at]) = (i, best.leaf, best.lane);
+        self.edges.put(at, &rays.get(i));
+        let (first, count) = best.leaf.leaf();
+        let [a, b, c] = bvh.leaves.corners(first, count, best.lane as usize & (N - 1));
+        let to = &mut self.corners;
+        (to[0][0][at], to[0][1][at], to[0][2][at]) = (a.x, a.y, a.z);
+        (to[1][0][at], to[1][1][at], to[1][2][at]) = (b.x, b.y, b.z);
+        (to[2][0][at], to[2][1][at], to[2][2][at]) = (c.x, c.y, c.z);
+        self.len = at + 1;
+    }
+
+    /// Answers those that there are, and is empty then.
+    #[inline(always)]
+    fn settle<const N: usize, L: Leaves<N>, A: Answer>(
+        &mut self,
+        bvh: &WideBvh<N, L>,
+        rays: &RayBatch<'_>,
+        answer: &mut A,
+    ) {
+        let count = std::mem::take(&mut self.len).min(RAYS);
+        if count == 0 {
+            return;
+        }
+        let here = !(u32::MAX << count);
+        let plain = self.edges.prepare(&bvh.region) & here;
+        let all = self.edges.meet_each(&self.corners, plain);
+        let mut met = all.met;
+        while met != 0 {
+            let i = met.trailing_zeros() as usize & (RAYS - 1);
+            met &= met - 1;
+            let number = primitive(&bvh.leaves, self.leaves[i], self.lanes[i]);
+            let uv = [all.uv[0][i], all.uv[1][i]];
+            answer.hit(self.rays[i], all.t[i] * self.edges.scale[i], uv, number);
+        }
+        let mut rest = here & !all.met;
+        while rest != 0 {
+            let i = rest.trailing_zeros() as usize & (RAYS - 1);
+            rest &= rest - 1;
+            alone(bvh, rays, self.rays[i], self.leaves[i], self.lanes[i], answer);
+        }
+    }
+}
+
+/// Answers one of which sixteen together do not know enough.
+#[inline(never)]
+fn alone<const N: usize, L: Leaves<N>, A: Answer>(
+    bvh: &WideBvh<N, L>,
+    rays: &RayBatch<'_>,
+    ray: usize,
+    leaf: Packed,
+    lane: u32,
+    answer: &mut A,
+) {
+    let edges = EdgeRay::new(&rays.get(ray), &bvh.region);
+    match edges.and_then(|edges| Some((edges.scale, meet(&bvh.leaves, &edges, leaf, lane)?))) {
+        Some((scale, met)) => answer.hit(ray, met.t * scale, met.uv, primitive(&bvh.leaves, leaf, lane)),
+        None => {
+            debug_assert!(L::PRECISION == "plain", "what has won is met");
+            answer.miss(ray);
+        }
+    }
+}

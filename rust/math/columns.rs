@@ -1,0 +1,234 @@
+//! Rays and hits by columns: each of their numbers in an array of its own, so that any sixteen neighbours are vectors.
+
+use super::{DVec3, Ray};
+
+/// Three coordinates of each ray, by axis, as precisely as they are.
+#[derive(Clone, Copy, Debug)]
+pub enum Vectors<'a> {
+    /// f32.
+    Single([&'a [f32]; 3]),
+    /// f64.
+    Double([&'a [f64]; 3]),
+}
+
+/// A number of each ray.
+#[derive(Clone, Copy, Debug)]
+pub enum Numbers<'a> {
+    /// The same for all of them.
+    One(f64),
+    /// One each.
+    Each(&'a [f64]),
+}
+
+/// Rays by columns, all of the same length; see [`Ray`] for what each is. They are asked where nothing moves: they have
+/// no time.
+#[derive(Clone, Copy, Debug)]
+pub struct RayColumns<'a> {
+    origin: Vectors<'a>,
+    direction: Vectors<'a>,
+    t_min: Numbers<'a>,
+    t_max: Numbers<'a>,
+}
+
+/// Rays as whoever asks has them.
+#[derive(Clone, Copy, Debug)]
+pub enum RayBatch<'a> {
+    /// One after the other.
+    Rows(&'a [Ray]),
+    /// By columns.
+    Columns(RayColumns<'a>),
+}
+
+/// Where the closest hits of rays are written, by columns, all of the same length; see [`super::Hit`] for what each is.
+#[derive(Debug)]
+pub struct HitColumns<'a> {
+    /// Distance in lengths of the ray's direction; infinite for a miss.
+    pub t: &'a mut [f64],
+    /// Weights of the triangle's second and third corner.
+    pub uv: &'a mut [[f64; 2]],
+    /// Index among all primitives of the scene; −1 for a miss.
+    pub primitive: &'a mut [i32],
+}
+
+impl Vectors<'_> {
+    fn len(&self) -> usize {
+        match self {
+            Self::Single([x, y, z]) if x.len() == y.len() && y.len() == z.len() => x.len(),
+            Self::Double([x, y, z]) if x.len() == y.len() && y.len() == z.len() => x.len(),
+            _ => panic!("three columns of one length"),
+        }
+    }
+
+    #[inline(always)]
+    fn get(&self, i: usize) -> DVec3 {
+        match self {
+            Self::Single([x, y, z]) => DVec3::new(x[i].into(), y[i].into(), z[i].into()),
+            Self::Double([x, y, z]) => DVec3::new(x[i], y[i], z[i]),
+        }
+    }
+
+    /// Up to so many from a place on as f64, by axis; the last stands for those that are missing.
+    #[inline(always)]
+    pub fn read<const K: usize>(&self, from: usize, to: &mut [[f64; K]; 3]) {
+        for axis in 0..3 {
+            match self {
+                Self::Single(columns) => read(columns[axis], from, &mut to[axis]),
+                Self::Double(columns) => read(columns[axis], from, &mut to[axis]),
+            }
+        }
+    }
+}
+
+impl Numbers<'_> {
+    #[inline(always)]
+    fn get(&self, i: usize) -> f64 {
+        match self {
+            Self::One(number) => *number,
+            Self::Each(numbers) => numbers[i],
+        }
+    }
+
+    /// Up to so many from a place on; the last stands for those that are missing.
+    #[inline(always)]
+    pub fn read<const K: usize>(&self, from: usize, to: &mut [f64; K]) {
+        match self {
+            Self::One(number) => *to = [*number; K],
+            Self::Each(numbers) => read(numbers, from, to),
+        }
+    }
+}
+
+#[inline(always)]
+fn read<const K: usize, T: Copy + Into<f64>>(column: &[T], from: usize, to: &mut [f64; K]) {
+    let rest = &column[from..];
+    if let Some(some) = rest.first_chunk::<K>() {
+        for i in 0..K {
+            to[i] = some[i].into();
+        }
+    } else {
+        for i in 0..K {
+            to[i] = rest[if i < rest.len() { i } else { rest.len() - 1 }].into();
+        }
+    }
+}
+
+impl<'a> RayColumns<'a> {
+    /// Rays of these numbers.
+    ///
+    /// # Panics
+    /// If columns differ in length.
+    pub fn new(origin: Vectors<'a>, direction: Vectors<'a>, t_min: Numbers<'a>, t_max: Numbers<'a>) -> Self {
+        let count = origin.len();
+        assert_eq!(direction.len(), count, "a direction for each origin");
+        for numbers in [t_min, t_max] {
+            assert!(!matches!(numbers, Numbers::Each(each) if each.len() != count), "a number for each ray");
+        }
+        Self { origin, direction, t_min, t_max }
+    }
+
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        self.origin.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Origin, direction, `t_min` and `t_max`.
+    #[inline(always)]
+    pub fn parts(&self) -> (Vectors<'a>, Vectors<'a>, Numbers<'a>, Numbers<'a>) {
+        (self.origin, self.direction, self.t_min, self.t_max)
+    }
+
+    /// One of them.
+    #[inline(always)]
+    pub fn get(&self, i: usize) -> Ray {
+        Ray {
+            origin: self.origin.get(i),
+            direction: self.direction.get(i),
+            t_min: self.t_min.get(i),
+            t_max: self.t_max.get(i),
+            time: 0.0,
+        }
+    }
+}
+
+impl RayBatch<'_> {
+    /// How many there are.
+    #[inline]
+    pub fn len(&self) -> usize {
+        match self {
+            Self::Rows(rays) => rays.len(),
+            Self::Columns(columns) => columns.len(),
+        }
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// One of them.
+    #[inline(always)]
+    pub fn get(&self, i: usize) -> Ray {
+        match self {
+            Self::Rows(rays) => rays[i],
+            Self::Columns(columns) => columns.get(i),
+        }
+    }
+}
+
+impl HitColumns<'_> {
+    /// How many hits there is room for.
+    ///
+    /// # Panics
+    /// If columns differ in length.
+    pub fn len(&self) -> usize {
+        let count = self.t.len();
+        assert!(self.uv.len() == count && self.primitive.len() == count, "columns of one length");
+        count
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sixteen_are_read_from_anywhere_and_the_last_stands_for_what_is_missing() {
+        let numbers: Vec<f64> = (0..40).map(f64::from).collect();
+        let single: Vec<f32> = (0..40).map(|i| i as f32 / 3.0).collect();
+        for (count, from) in [(40, 0), (40, 7), (40, 24), (40, 30), (1, 0), (5, 3)] {
+            let (numbers, single) = (&numbers[..count], &single[..count]);
+            let (doubles, singles) = (Vectors::Double([numbers; 3]), Vectors::Single([single; 3]));
+            let rays = RayColumns::new(singles, doubles, Numbers::One(0.5), Numbers::Each(numbers));
+            let (mut o, mut d, mut near, mut far) = ([[0.0; 16]; 3], [[0.0; 16]; 3], [0.0; 16], [0.0; 16]);
+            singles.read(from, &mut o);
+            doubles.read(from, &mut d);
+            rays.t_min.read(from, &mut near);
+            rays.t_max.read(from, &mut far);
+            for i in 0..16 {
+                let ray = rays.get((from + i).min(count - 1));
+                assert_eq!(ray.origin, DVec3::new(o[0][i], o[1][i], o[2][i]));
+                assert_eq!(ray.direction, DVec3::new(d[0][i], d[1][i], d[2][i]));
+                assert_eq!((ray.t_min, ray.t_max, ray.time), (near[i], far[i], 0.0));
+            }
+            assert_eq!((rays.len(), RayBatch::Columns(rays).len()), (count, count));
+        }
+    }
+
+    #[test]
+    #[should_panic(expected = "a direction for each origin")]
+    fn columns_have_one_length() {
+        let number = [0.0];
+        let (two, one) = ([0.0; 2], Vectors::Double([&number; 3]));
+        let _ = RayColumns::new(Vectors::Double([&two; 3]), one, Numbers::One(0.0), Numbers::One(1.0));
+    }
+}
