@@ -89,6 +89,14 @@ class CompiledScene:
         shape: tuple[int, ...],
         threads: int | None,
         time: _Numbers | None = None,
+        out: tuple[
+            NDArray[np.float64],
+            NDArray[np.int32],
+            NDArray[np.int32],
+            NDArray[np.float64],
+            NDArray[np.int32] | None,
+        ]
+        | None = None,
     ) -> tuple[
         NDArray[np.float64],
         NDArray[np.int32],
@@ -102,7 +110,7 @@ class CompiledScene:
 
         ``origins`` and ``directions`` have shape (..., 3) and are float32 or float64, each of either type;
         ``t_min`` and ``t_max`` are floats or arrays. Each has one row, or one for each ray. Rays of two or
-        more dimensions are an image, and traced in tiles.
+        more dimensions are an image, and traced in tiles. ``out`` is written to and given back.
         """
     def occluded(
         self,
@@ -113,6 +121,7 @@ class CompiledScene:
         shape: tuple[int, ...],
         threads: int | None,
         time: _Numbers | None = None,
+        out: NDArray[np.bool_] | None = None,
     ) -> NDArray[np.bool_]:
         """Whether each ray hits anything. Arguments as `intersect`."""
     def intersect_all(

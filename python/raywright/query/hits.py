@@ -1,5 +1,7 @@
 """What rays hit."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, ClassVar
@@ -205,6 +207,20 @@ class Hits(SurfacePoints):
         compiled: _core.CompiledScene,
         rays: tuple[Any, ...] | None = None,
     ) -> None:
+        self._tell(t, shape_id, primitive, uv, instance, compiled, rays)
+
+    def _tell(
+        self,
+        t: NDArray[np.float64],
+        shape_id: NDArray[np.int32],
+        primitive: NDArray[np.int32],
+        uv: NDArray[np.float64],
+        instance: NDArray[np.int32] | None,
+        compiled: _core.CompiledScene,
+        rays: tuple[Any, ...] | None,
+    ) -> None:
+        """Tell of these hits, and forget what was worked out of others."""
+        self.__dict__.clear()
         # A frozen dataclass's own way of setting its fields takes longer than tracing a ray.
         self.__dict__.update(
             t=t, shape_id=shape_id, primitive=primitive, uv=uv, _compiled=compiled, _rays=rays
@@ -375,6 +391,30 @@ class QueryCost:
         return same(self.nodes, other.nodes) and same(self.primitives, other.primitives)
 
     __hash__ = None  # type: ignore[assignment]
+
+
+@contextmanager
+def rewritten(out: Hits, shape: tuple[int, ...]) -> Iterator[tuple[Any, ...]]:
+    """Give the arrays of hits of rays of a leading shape, which can be written to meanwhile."""
+    if not isinstance(out, Hits):
+        raise TypeError(f"out must be Hits, got {type(out).__name__}")
+    if out.shape != shape:
+        raise ValueError(f"out has shape {out.shape}, expected {shape}")
+    instance = vars(out).get("instance")
+    if instance is not None and not instance.flags.owndata:
+        # One number that is seen from every index.
+        instance = None
+    arrays = (out.t, out.shape_id, out.primitive, out.uv)
+    known = [array for array in (*arrays, instance) if array is not None]
+    try:
+        for array in known:
+            if not array.flags.owndata:
+                raise ValueError("out cannot be written to: its arrays are views of other memory")
+            array.setflags(write=True)
+        yield (*arrays, instance)
+    finally:
+        for array in known:
+            array.setflags(write=False)
 
 
 def sealed(array: NDArray[Any]) -> NDArray[Any]:

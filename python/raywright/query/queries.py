@@ -10,9 +10,9 @@ from .._core import CompiledScene
 from ..arrays import indices, integer, last_axis, number
 from ..cameras import AnyCamera, pixel_offsets
 from .cones import ConeTouches, cone_arguments
-from .hits import AllHits, ClosestPoints, Hits, QueryCost
+from .hits import AllHits, ClosestPoints, Hits, QueryCost, rewritten
 from .interactions import Interactions, Rays
-from .rays import RayArguments, nearest_arguments, point_arguments, ray_arguments
+from .rays import RayArguments, flags, nearest_arguments, point_arguments, ray_arguments
 
 
 class Queries:
@@ -31,6 +31,7 @@ class Queries:
         t_max: ArrayLike = np.inf,
         threads: int | None = None,
         time: ArrayLike | None = None,
+        out: Hits | None = None,
     ) -> Hits:
         """Find the closest hit of each ray.
 
@@ -46,6 +47,10 @@ class Queries:
         time : float or (...) array, optional
             When the rays are asked, from 0 as the shutter opens, which it is if not given, to 1 as it closes:
             instances that move are where they then are.
+        out : Hits, optional
+            An earlier answer, of this scene or another, to as many rays of the same leading shape. Its arrays
+            are written to and it is returned, so that a loop over batches allocates nothing; what it told
+            before is gone.
 
         Returns
         -------
@@ -57,9 +62,10 @@ class Queries:
         ------
         ValueError
             If a last dimension is not 3, leading shapes do not broadcast, `t_min` or `t_max` is NaN, or
-            `time` is not between 0 and 1.
+            `time` is not between 0 and 1; if `out` is of another shape, or its arrays are among the rays or
+            cannot be written to.
         TypeError
-            If an array does not hold real numbers.
+            If an array does not hold real numbers, or `out` is no `Hits`.
 
         Notes
         -----
@@ -68,7 +74,12 @@ class Queries:
         """
         rays = ray_arguments(origins, directions, t_min, t_max, threads, time)
         core = self._core or self._compiled()
-        return Hits(*core.intersect(*rays), core, known_by(core, rays))
+        if out is None:
+            return Hits(*core.intersect(*rays), core, known_by(core, rays))
+        with rewritten(out, rays[4]) as arrays:
+            answer = core.intersect(*rays, arrays)
+        out._tell(*answer, core, known_by(core, rays))
+        return out
 
     def occluded(
         self,
@@ -78,11 +89,19 @@ class Queries:
         t_max: ArrayLike = np.inf,
         threads: int | None = None,
         time: ArrayLike | None = None,
+        out: NDArray[np.bool_] | None = None,
     ) -> NDArray[np.bool_]:
         """Find whether each ray hits anything between `t_min` and `t_max`.
 
         The same as ``intersect(...).hit``, and faster: a ray ends at the first hit that it meets. Takes and
-        raises what `intersect` does.
+        raises what `intersect` does, but for `out`.
+
+        Parameters
+        ----------
+        origins, directions, t_min, t_max, threads, time
+            As for `intersect`.
+        out : (...) bool array, optional
+            Where the answer is written, with the leading shape of the rays and C-contiguous; it is returned.
 
         Returns
         -------
@@ -90,7 +109,8 @@ class Queries:
             With the leading shape of the rays.
         """
         rays = ray_arguments(origins, directions, t_min, t_max, threads, time)
-        return (self._core or self._compiled()).occluded(*rays)
+        core = self._core or self._compiled()
+        return core.occluded(*rays) if out is None else core.occluded(*rays, flags("out", out, rays[4]))
 
     def interactions(self, rays: Rays) -> Interactions:
         """Find what each ray of a batch meets, and all that shading needs of it.

@@ -64,6 +64,18 @@ def ray_arguments(
     return spread(starts, shape, (3,)), spread(ways, shape, (3,)), near, far, shape, threads, when
 
 
+def flags(name: str, array: NDArray[np.bool_], shape: tuple[int, ...]) -> NDArray[np.bool_]:
+    """Check an array that a bool for each ray is written to, and return it."""
+    if not isinstance(array, np.ndarray) or array.dtype != np.bool_:
+        came = f"dtype {array.dtype}" if isinstance(array, np.ndarray) else type(array).__name__
+        raise TypeError(f"{name} must be an array of bool, got {came}")
+    if array.shape != shape:
+        raise ValueError(f"{name} has shape {array.shape}, expected {shape}")
+    if not (array.flags.c_contiguous and array.flags.writeable):
+        raise ValueError(f"{name} must be C-contiguous and writable")
+    return array
+
+
 def point_arguments(points: ArrayLike, threads: int | None) -> tuple[Floats, tuple[int, ...], int | None]:
     """Check points, and give what the core's queries take: the points, their leading shape, and threads."""
     array = _in_order(last_axis("points", points, 3))
