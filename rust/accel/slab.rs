@@ -15,7 +15,8 @@
 
 use crate::math::robust::{greater, lesser};
 use crate::math::{Aabb, Ray, Region};
-use crate::shapes::triangle::{ALL, Column, EdgeRay, EdgeRays, RAYS, bits};
+use crate::shapes::triangle::{ALL, Column, EdgeRay, PlainRays, RAYS};
+use crate::simd::Lanes;
 use glam::Vec3A;
 
 /// What slab tests of a ray need.
@@ -199,76 +200,72 @@ pub struct SlabRays {
     pub near: [Column<f32>; 3],
     /// Per axis, what is added for the plane that is met last.
     pub far: [Column<f32>; 3],
-    /// Where they start, in box units.
-    pub origin: [Column<f32>; 3],
-    /// In box units.
+    /// How far outside of a box they may pass, in box units, and still be said to meet it.
     pub pad: Column<f32>,
     /// In box units.
     pub t_min: Column<f32>,
+    /// Where in box units each loses interest.
+    pub limit: Column<f32>,
 }
 
 impl Default for SlabRays {
     fn default() -> Self {
         let zero = [0.0; RAYS];
-        Self { inverse: [zero; 3], near: [zero; 3], far: [zero; 3], origin: [zero; 3], pad: zero, t_min: zero }
+        Self { inverse: [zero; 3], near: [zero; 3], far: [zero; 3], pad: zero, t_min: zero, limit: zero }
     }
 }
 
 impl SlabRays {
-    /// Makes rays ready that [`EdgeRays::prepare`] has; of those that are not plain nothing is said.
+    /// Makes rays ready; of those that are not plain nothing is said.
     #[inline(always)]
-    pub fn prepare(&mut self, rays: &EdgeRays, region: &Region) {
+    pub fn prepare<S: Lanes<RAYS>>(&mut self, simd: S, rays: &PlainRays, region: &Region) {
         // Rays that are not far have their largest coordinate for reach.
-        for i in 0..RAYS {
-            let largest = rays.largest[i] * region.scale;
-            self.pad[i] = (PAD * largest + FAR_PAD * largest) as f32;
-            self.t_min[i] = earliest(rays.t_min[i] * region.scale);
-        }
+        let pad = simd.mul(simd.load(&rays.largest), simd.splat((PAD + FAR_PAD) as f32));
+        simd.store(pad, &mut self.pad);
+        // As `earliest` and `Clock::limit` have it.
+        let (to_box, most) = (simd.splat(region.scale as f32), simd.splat(f32::MAX));
+        let t_min = simd.min(simd.mul(simd.load(&rays.t_min), to_box), most);
+        let t_min = simd.sub(t_min, simd.mul(simd.abs(t_min), simd.splat(ULPS)));
+        simd.store(t_min, &mut self.t_min);
+        let limit = simd.max(simd.mul(simd.load(&rays.t_max), to_box), simd.neg(most));
+        let limit = simd.add(limit, simd.mul(simd.abs(limit), simd.splat(ULPS)));
+        simd.store(limit, &mut self.limit);
+        let smallest = simd.splat(SMALLEST);
         for axis in 0..3 {
-            for i in 0..RAYS {
-                let origin = (rays.local[axis][i] * region.scale) as f32;
-                let d = rays.direction[axis][i] as f32;
-                let d = if d.abs() < SMALLEST { SMALLEST.copysign(d) } else { d };
-                let inverse = 1.0 / d;
-                let (shift, room) = (-origin * inverse, self.pad[i] * inverse.abs());
-                self.origin[axis][i] = origin;
-                self.inverse[axis][i] = inverse;
-                self.near[axis][i] = shift - room;
-                self.far[axis][i] = shift + room;
-            }
+            let d = simd.load(&rays.direction[axis]);
+            let away = simd.select(simd.gt(simd.splat(0.0), d), simd.neg(smallest), smallest);
+            let d = simd.select(simd.gt(smallest, simd.abs(d)), away, d);
+            let inverse = simd.div(simd.splat(1.0), d);
+            let shift = simd.neg(simd.mul(simd.load(&rays.local[axis]), inverse));
+            let room = simd.mul(pad, simd.abs(inverse));
+            simd.store(inverse, &mut self.inverse[axis]);
+            simd.store(simd.sub(shift, room), &mut self.near[axis]);
+            simd.store(simd.add(shift, room), &mut self.far[axis]);
         }
     }
 
     /// Rays that may meet a box, at any `t` from their `t_min` on.
     #[inline(always)]
-    pub fn meeting(&self, aabb: &Aabb) -> u32 {
+    pub fn meeting<S: Lanes<RAYS>>(&self, simd: S, aabb: &Aabb) -> u32 {
         let (min, max) = (aabb.min.to_array(), aabb.max.to_array());
-        let (mut nears, mut fars) = (self.t_min, [f32::INFINITY; RAYS]);
+        let (mut nears, mut fars) = (simd.load(&self.t_min), simd.splat(f32::INFINITY));
         for axis in 0..3 {
-            for i in 0..RAYS {
-                let inverse = self.inverse[axis][i];
-                let (first, last) = if inverse < 0.0 { (max[axis], min[axis]) } else { (min[axis], max[axis]) };
-                nears[i] = greater(nears[i], first * inverse + self.near[axis][i]);
-                fars[i] = lesser(fars[i], last * inverse + self.far[axis][i]);
-            }
+            let inverse = simd.load(&self.inverse[axis]);
+            let (lower, upper) = (simd.splat(min[axis]), simd.splat(max[axis]));
+            let down = simd.gt(simd.splat(0.0), inverse);
+            let (first, last) = (simd.select(down, upper, lower), simd.select(down, lower, upper));
+            nears = simd.max(nears, simd.mul_add(first, inverse, simd.load(&self.near[axis])));
+            fars = simd.min(fars, simd.mul_add(last, inverse, simd.load(&self.far[axis])));
         }
-        let mut meeting = [0u32; RAYS];
-        for i in 0..RAYS {
-            meeting[i] = u32::from(nears[i] <= fars[i]);
-        }
-        bits(&meeting)
+        simd.le(nears, fars)
     }
 
     /// Which plane is met first by axis (0 the lower, 1 the upper), if it is the same for all rays.
     #[inline(always)]
-    pub fn first(&self) -> Option<[usize; 3]> {
+    pub fn first<S: Lanes<RAYS>>(&self, simd: S) -> Option<[usize; 3]> {
         let mut first = [0; 3];
         for axis in 0..3 {
-            let mut down = [0u32; RAYS];
-            for i in 0..RAYS {
-                down[i] = u32::from(self.inverse[axis][i] < 0.0);
-            }
-            first[axis] = match bits(&down) {
+            first[axis] = match simd.gt(simd.splat(0.0), simd.load(&self.inverse[axis])) {
                 0 => 0,
                 ALL => 1,
                 _ => return None,

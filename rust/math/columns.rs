@@ -72,8 +72,8 @@ impl Vectors<'_> {
     pub fn read<const K: usize>(&self, from: usize, to: &mut [[f64; K]; 3]) {
         for axis in 0..3 {
             match self {
-                Self::Single(columns) => read(columns[axis], from, &mut to[axis]),
-                Self::Double(columns) => read(columns[axis], from, &mut to[axis]),
+                Self::Single(columns) => read_column(columns[axis], from, &mut to[axis]),
+                Self::Double(columns) => read_column(columns[axis], from, &mut to[axis]),
             }
         }
     }
@@ -93,13 +93,14 @@ impl Numbers<'_> {
     pub fn read<const K: usize>(&self, from: usize, to: &mut [f64; K]) {
         match self {
             Self::One(number) => *to = [*number; K],
-            Self::Each(numbers) => read(numbers, from, to),
+            Self::Each(numbers) => read_column(numbers, from, to),
         }
     }
 }
 
+/// Up to so many of a column from a place on; the last stands for those that are missing.
 #[inline(always)]
-fn read<const K: usize, T: Copy + Into<f64>>(column: &[T], from: usize, to: &mut [f64; K]) {
+pub fn read_column<const K: usize, T: Copy + Into<U>, U>(column: &[T], from: usize, to: &mut [U; K]) {
     let rest = &column[from..];
     if let Some(some) = rest.first_chunk::<K>() {
         for i in 0..K {

@@ -21,7 +21,7 @@ pub(crate) mod turn;
 
 pub use aabb::Aabb;
 pub use affine::{Affine, Singular};
-pub use columns::{HitColumns, Numbers, RayBatch, RayColumns, Vectors};
+pub use columns::{HitColumns, Numbers, RayBatch, RayColumns, Vectors, read_column};
 pub(crate) use double::Double;
 pub(crate) use double_double::DoubleDouble;
 pub(crate) use dyadic::Dyadic;

@@ -5,6 +5,7 @@ use super::rays::{BATCH, RayArrays};
 use crate::accel::ByColumns;
 use crate::math::{HitColumns, Numbers, RayColumns, Vectors};
 use crate::scene::Geometry;
+use crate::simd::columns_of_four;
 
 /// Where t, shape_id, primitive and uv of some rays are written.
 pub type HitParts<'a> = (&'a mut [f64], &'a mut [i32], &'a mut [i32], &'a mut [[f64; 2]]);
@@ -43,8 +44,28 @@ impl Room {
     }
 }
 
+/// Numbers that vectors are made of.
+trait Coordinate: Copy {
+    /// Some neighbours by axis.
+    fn columns(rows: &[[Self; 3]; RUN]) -> [[Self; RUN]; 3];
+}
+
+impl Coordinate for f32 {
+    #[inline(always)]
+    fn columns(rows: &[[f32; 3]; RUN]) -> [[f32; RUN]; 3] {
+        columns_of_four(rows)
+    }
+}
+
+impl Coordinate for f64 {
+    #[inline(always)]
+    fn columns(rows: &[[f64; 3]; RUN]) -> [[f64; RUN]; 3] {
+        [0, 1, 2].map(|axis| [rows[0][axis], rows[1][axis], rows[2][axis], rows[3][axis]])
+    }
+}
+
 /// The first `count` of each column, filled with the rows at some places.
-fn fill<'a, T: Copy>(
+fn fill<'a, T: Coordinate>(
     room: &'a mut [Vec<T>; 3],
     rows: &[[T; 3]],
     start: usize,
@@ -53,36 +74,34 @@ fn fill<'a, T: Copy>(
 ) -> [&'a [T]; 3] {
     let [x, y, z] = room;
     let (x, y, z) = (&mut x[..count], &mut y[..count], &mut z[..count]);
-    match places {
-        // One that serves for all.
-        _ if rows.len() == 1 => {
-            for (column, number) in [&mut *x, &mut *y, &mut *z].into_iter().zip(rows[0]) {
-                column.fill(number);
+    // One that serves for all.
+    if let [row] = rows {
+        for (column, number) in [&mut *x, &mut *y, &mut *z].into_iter().zip(row) {
+            column.fill(*number);
+        }
+        return [x, y, z];
+    }
+    let rows = &rows[start..];
+    let runs = x.as_chunks_mut::<RUN>().0.iter_mut().zip(y.as_chunks_mut::<RUN>().0).zip(z.as_chunks_mut::<RUN>().0);
+    for (at, ((x, y), z)) in runs.enumerate() {
+        let from = match places {
+            Places::From(from) => Some(from + at * RUN),
+            Places::At(places) => run(&places[at * RUN..][..RUN]),
+        };
+        if let Some(from) = from {
+            [*x, *y, *z] = T::columns(rows[from..].first_chunk().expect("places of rows"));
+        } else if let Places::At(places) = places {
+            for (i, &place) in places[at * RUN..][..RUN].iter().enumerate() {
+                [x[i], y[i], z[i]] = rows[place];
             }
         }
-        Places::From(from) => {
-            let rows = &rows[start + from..][..count];
-            for i in 0..count {
-                [x[i], y[i], z[i]] = rows[i];
-            }
-        }
-        Places::At(places) => {
-            let rows = &rows[start..];
-            for at in (0..count).step_by(RUN) {
-                let places = &places[at..count.min(at + RUN)];
-                if let Some(from) = run(places) {
-                    let rows: &[[T; 3]; RUN] = rows[from..].first_chunk().expect("places of rows");
-                    let [x, y, z] = [&mut x[at..][..RUN], &mut y[at..][..RUN], &mut z[at..][..RUN]];
-                    for i in 0..RUN {
-                        [x[i], y[i], z[i]] = rows[i];
-                    }
-                } else {
-                    for (i, &place) in (at..).zip(places) {
-                        [x[i], y[i], z[i]] = rows[place];
-                    }
-                }
-            }
-        }
+    }
+    for i in count / RUN * RUN..count {
+        let place = match places {
+            Places::From(from) => from + i,
+            Places::At(places) => places[i],
+        };
+        [x[i], y[i], z[i]] = rows[place];
     }
     [x, y, z]
 }
@@ -183,8 +202,15 @@ impl RayArrays<'_> {
             Places::At(places) => {
                 let found = &mut found[..rays.len()];
                 tree.occluded(rays, found);
-                for (&place, &found) in places.iter().zip(&*found) {
-                    to[place] = found;
+                for at in (0..found.len()).step_by(RUN) {
+                    let places = &places[at..found.len().min(at + RUN)];
+                    if let Some(from) = run(places) {
+                        to[from..][..RUN].copy_from_slice(&found[at..][..RUN]);
+                        continue;
+                    }
+                    for (&place, &found) in places.iter().zip(&found[at..]) {
+                        to[place] = found;
+                    }
                 }
             }
         });

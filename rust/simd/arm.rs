@@ -1,7 +1,7 @@
 //! Lanes of 64-bit ARM: NEON, which every such processor has.
 
-use super::Simd;
 use super::scalar::pick_by_lane;
+use super::{Lanes, Pair, Simd};
 use std::arch::aarch64::*;
 use std::arch::asm;
 
@@ -38,7 +38,7 @@ macro_rules! lanes {
     )*};
 }
 
-impl Simd<4> for Neon {
+impl Lanes<4> for Neon {
     type F32 = float32x4_t;
 
     lanes! {
@@ -62,6 +62,16 @@ impl Simd<4> for Neon {
         };
         le(a: float32x4_t, b: float32x4_t) -> u32 = mask(vcleq_f32(a, b));
         gt(a: float32x4_t, b: float32x4_t) -> u32 = mask(vcgtq_f32(a, b));
+        greatest(a: float32x4_t) -> f32 = vmaxvq_f32(a);
+    }
+}
+
+impl Simd<4> for Neon {
+    type Sixteen = Pair<Pair<Self>>;
+
+    #[inline(always)]
+    fn sixteen(self) -> Pair<Pair<Self>> {
+        Pair(Pair(self))
     }
 
     #[inline(always)]

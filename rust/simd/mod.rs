@@ -7,21 +7,25 @@
 #[cfg(target_arch = "aarch64")]
 mod arm;
 mod level;
+mod pair;
 mod scalar;
+mod transpose;
 #[cfg(target_arch = "x86_64")]
 mod x86;
 
 #[cfg(target_arch = "aarch64")]
 pub use arm::Neon;
 pub use level::{Dispatch, Kernel, Level};
+pub use pair::Pair;
 pub use scalar::Scalar;
+pub use transpose::columns_of_four;
 #[cfg(target_arch = "x86_64")]
 pub use x86::{Avx2, Avx512, Sse2};
 
-/// Vectors of `N` lanes. A value of a type that implements it proves that the processor has what it needs.
+/// Arithmetic on vectors of `N` lanes. A value of a type that implements it proves that the processor has what it needs.
 ///
 /// Masks are bits of a `u32`, lane 0 lowest. Comparisons with NaN are false.
-pub trait Simd<const N: usize>: Copy + Send + Sync {
+pub trait Lanes<const N: usize>: Copy + Send + Sync {
     /// `N` lanes of f32.
     type F32: Copy;
 
@@ -57,6 +61,23 @@ pub trait Simd<const N: usize>: Copy + Send + Sync {
     fn le(self, a: Self::F32, b: Self::F32) -> u32;
     /// Lanes where `a > b`.
     fn gt(self, a: Self::F32, b: Self::F32) -> u32;
+    /// The greatest of all lanes, none of which is NaN.
+    fn greatest(self, a: Self::F32) -> f32;
+
+    /// The least of all lanes, none of which is NaN.
+    #[inline(always)]
+    fn least(self, a: Self::F32) -> f32 {
+        -self.greatest(self.neg(a))
+    }
+}
+
+/// A level's vectors of `N` lanes, as many as a node has children, and what else nodes and queues of rays need.
+pub trait Simd<const N: usize>: Lanes<N> {
+    /// Vectors for sixteen rays together, of as many registers as it takes.
+    type Sixteen: Lanes<16>;
+
+    /// These.
+    fn sixteen(self) -> Self::Sixteen;
 
     /// Writes some lanes of `nears` and `items` to the front of `to_nears` and `to_items`, and says how many they are;
     /// what is behind them is undefined. They are those of the first `count` in `order`, three bits each from the

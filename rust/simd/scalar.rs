@@ -1,6 +1,6 @@
 //! Lanes as plain arrays: for processors without a level of their own, and as the reading of what the others do.
 
-use super::Simd;
+use super::{Lanes, Simd};
 use std::array::from_fn;
 
 /// No vector instructions beyond what the compiler makes of arrays.
@@ -33,7 +33,7 @@ pub(super) fn pick_by_lane<const N: usize>(
     to
 }
 
-impl<const N: usize> Simd<N> for Scalar {
+impl<const N: usize> Lanes<N> for Scalar {
     type F32 = [f32; N];
 
     #[inline(always)]
@@ -99,6 +99,19 @@ impl<const N: usize> Simd<N> for Scalar {
     #[inline(always)]
     fn gt(self, a: [f32; N], b: [f32; N]) -> u32 {
         mask::<N>(|i| a[i] > b[i])
+    }
+    #[inline(always)]
+    fn greatest(self, a: [f32; N]) -> f32 {
+        a.into_iter().fold(f32::NEG_INFINITY, |most, x| if x > most { x } else { most })
+    }
+}
+
+impl<const N: usize> Simd<N> for Scalar {
+    type Sixteen = Self;
+
+    #[inline(always)]
+    fn sixteen(self) -> Self {
+        self
     }
     #[inline(always)]
     fn pick(

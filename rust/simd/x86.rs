@@ -1,7 +1,7 @@
 //! Lanes of x86-64: SSE2, which every such processor has, AVX2 with FMA, and AVX-512.
 
-use super::Simd;
 use super::scalar::pick_by_lane;
+use super::{Lanes, Pair, Simd};
 use std::arch::x86_64::*;
 
 /// SSE2: four lanes.
@@ -34,7 +34,7 @@ impl Avx2 {
     }
 }
 
-/// AVX-512 with vectors of every length: eight lanes, and moves by mask.
+/// AVX-512 with vectors of every length: eight lanes or sixteen, and moves by mask.
 #[derive(Clone, Copy, Debug)]
 pub struct Avx512(());
 
@@ -76,10 +76,21 @@ fn prefetch(start: *const u8, lines: usize) {
     }
 }
 
+/// The greatest of four.
+#[inline(always)]
+fn greatest(a: __m128) -> f32 {
+    // SAFETY: every x86-64 processor has the instructions.
+    unsafe {
+        let a = _mm_max_ps(a, _mm_movehl_ps(a, a));
+        _mm_cvtss_f32(_mm_max_ss(a, _mm_shuffle_ps::<1>(a, a)))
+    }
+}
+
 /// Makes safe, always inlined methods of intrinsics.
 macro_rules! lanes {
     ($($name:ident($($arg:ident: $type:ty),*) $(-> $ret:ty)? = $body:expr;)*) => {$(
         #[inline(always)]
+        #[allow(unused_unsafe)]
         fn $name(self, $($arg: $type),*) $(-> $ret)? {
             // SAFETY: `self` exists only where the processor has the instructions, and references to arrays of N
             // numbers are valid for N numbers; no alignment is assumed.
@@ -88,7 +99,7 @@ macro_rules! lanes {
     )*};
 }
 
-impl Simd<4> for Sse2 {
+impl Lanes<4> for Sse2 {
     type F32 = __m128;
 
     lanes! {
@@ -112,6 +123,16 @@ impl Simd<4> for Sse2 {
         };
         le(a: __m128, b: __m128) -> u32 = _mm_movemask_ps(_mm_cmple_ps(a, b)) as u32;
         gt(a: __m128, b: __m128) -> u32 = _mm_movemask_ps(_mm_cmpgt_ps(a, b)) as u32;
+        greatest(a: __m128) -> f32 = greatest(a);
+    }
+}
+
+impl Simd<4> for Sse2 {
+    type Sixteen = Pair<Pair<Self>>;
+
+    #[inline(always)]
+    fn sixteen(self) -> Pair<Pair<Self>> {
+        Pair(Pair(self))
     }
 
     #[inline(always)]
@@ -126,8 +147,8 @@ impl Simd<4> for Sse2 {
         to_items: &mut [u32; 4],
     ) -> usize {
         let mut distances = [0.0; 4];
-        Simd::<4>::store(self, nears, &mut distances);
-        pick_by_lane(distances, Simd::<4>::le(self, nears, fars), items, order, count, to_nears, to_items)
+        self.store(nears, &mut distances);
+        pick_by_lane(distances, self.le(nears, fars), items, order, count, to_nears, to_items)
     }
 
     #[inline(always)]
@@ -136,7 +157,7 @@ impl Simd<4> for Sse2 {
     }
 }
 
-impl Simd<8> for Avx2 {
+impl Lanes<8> for Avx2 {
     type F32 = __m256;
 
     lanes! {
@@ -160,6 +181,16 @@ impl Simd<8> for Avx2 {
         };
         le(a: __m256, b: __m256) -> u32 = _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(a, b)) as u32;
         gt(a: __m256, b: __m256) -> u32 = _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_GT_OQ>(a, b)) as u32;
+        greatest(a: __m256) -> f32 = greatest(_mm_max_ps(_mm256_castps256_ps128(a), _mm256_extractf128_ps::<1>(a)));
+    }
+}
+
+impl Simd<8> for Avx2 {
+    type Sixteen = Pair<Self>;
+
+    #[inline(always)]
+    fn sixteen(self) -> Pair<Self> {
+        Pair(self)
     }
 
     #[inline(always)]
@@ -195,7 +226,7 @@ impl Simd<8> for Avx2 {
     }
 }
 
-impl Simd<8> for Avx512 {
+impl Lanes<8> for Avx512 {
     type F32 = __m256;
 
     lanes! {
@@ -215,6 +246,43 @@ impl Simd<8> for Avx512 {
         select(mask: u32, a: __m256, b: __m256) -> __m256 = _mm256_mask_blend_ps(mask as u8, b, a);
         le(a: __m256, b: __m256) -> u32 = u32::from(_mm256_cmp_ps_mask::<_CMP_LE_OQ>(a, b));
         gt(a: __m256, b: __m256) -> u32 = u32::from(_mm256_cmp_ps_mask::<_CMP_GT_OQ>(a, b));
+        greatest(a: __m256) -> f32 = greatest(_mm_max_ps(_mm256_castps256_ps128(a), _mm256_extractf128_ps::<1>(a)));
+    }
+}
+
+impl Lanes<16> for Avx512 {
+    type F32 = __m512;
+
+    lanes! {
+        splat(x: f32) -> __m512 = _mm512_set1_ps(x);
+        load(from: &[f32; 16]) -> __m512 = _mm512_loadu_ps(from.as_ptr());
+        store(x: __m512, to: &mut [f32; 16]) = _mm512_storeu_ps(to.as_mut_ptr(), x);
+        add(a: __m512, b: __m512) -> __m512 = _mm512_add_ps(a, b);
+        sub(a: __m512, b: __m512) -> __m512 = _mm512_sub_ps(a, b);
+        mul(a: __m512, b: __m512) -> __m512 = _mm512_mul_ps(a, b);
+        div(a: __m512, b: __m512) -> __m512 = _mm512_div_ps(a, b);
+        neg(a: __m512) -> __m512 = _mm512_xor_ps(_mm512_set1_ps(-0.0), a);
+        abs(a: __m512) -> __m512 = _mm512_andnot_ps(_mm512_set1_ps(-0.0), a);
+        mul_sub(a: __m512, b: __m512, c: __m512) -> __m512 = _mm512_fmsub_ps(a, b, c);
+        mul_add(a: __m512, b: __m512, c: __m512) -> __m512 = _mm512_fmadd_ps(a, b, c);
+        min(a: __m512, b: __m512) -> __m512 = _mm512_min_ps(a, b);
+        max(a: __m512, b: __m512) -> __m512 = _mm512_max_ps(a, b);
+        select(mask: u32, a: __m512, b: __m512) -> __m512 = _mm512_mask_blend_ps(mask as u16, b, a);
+        le(a: __m512, b: __m512) -> u32 = u32::from(_mm512_cmp_ps_mask::<_CMP_LE_OQ>(a, b));
+        gt(a: __m512, b: __m512) -> u32 = u32::from(_mm512_cmp_ps_mask::<_CMP_GT_OQ>(a, b));
+        greatest(a: __m512) -> f32 = {
+            let a = _mm256_max_ps(_mm512_castps512_ps256(a), _mm512_extractf32x8_ps::<1>(a));
+            greatest(_mm_max_ps(_mm256_castps256_ps128(a), _mm256_extractf128_ps::<1>(a)))
+        };
+    }
+}
+
+impl Simd<8> for Avx512 {
+    type Sixteen = Self;
+
+    #[inline(always)]
+    fn sixteen(self) -> Self {
+        self
     }
 
     #[inline(always)]

@@ -21,7 +21,7 @@ use super::pretest::{BlockRay, Bounds, Weights};
 use super::rows::Rows;
 use super::sixteen::RAYS;
 use super::{BlockRays, EdgeRay};
-use crate::simd::Simd;
+use crate::simd::Lanes;
 
 /// What is known of some triangles and one ray, or of one triangle and some rays; bits above the lanes mean nothing.
 pub struct Bracket<F> {
@@ -37,17 +37,16 @@ pub struct Bracket<F> {
     pub high: F,
 }
 
-/// What is known of triangles by corner and edges.
+/// What is known of triangles by their weights for rays, of which those in `possible` may meet them and those in
+/// `inside` do.
 #[inline(always)]
-pub(super) fn bracket<const N: usize, S: Simd<N>>(
+fn bracket<const N: usize, S: Lanes<N>>(
     simd: S,
-    triangle: [[S::F32; 3]; 3],
-    o: [S::F32; 3],
-    d: [S::F32; 3],
+    weights: &Weights<S::F32>,
     errors: &Bounds,
+    possible: u32,
+    inside: u32,
 ) -> Bracket<S::F32> {
-    let weights = Weights::new(simd, triangle, o, d);
-    let (positive, negative, inside) = weights.signs(simd, errors);
     let (numerator, above, denominator, over) = weights.depth(simd, errors.weight * 0.125, errors.least);
     let size = simd.abs(denominator);
     let known = simd.le(simd.mul(over, simd.splat(4.0)), size);
@@ -57,7 +56,7 @@ pub(super) fn bracket<const N: usize, S: Simd<N>>(
     let room = simd.mul(simd.mul_add(distance, over, above), simd.mul(simd.abs(inverse), simd.splat(2.0)));
     let rounding = simd.mul_add(distance, simd.splat(4.0 / (1u32 << 24) as f32), simd.splat(errors.depth));
     let room = simd.add(room, rounding);
-    Bracket { possible: !(positive & negative), inside, known, low: simd.sub(t, room), high: simd.add(t, room) }
+    Bracket { possible, inside, known, low: simd.sub(t, room), high: simd.add(t, room) }
 }
 
 impl EdgeRay {
@@ -80,7 +79,7 @@ impl EdgeRay {
 impl<const N: usize> Rows<N> {
     /// What is known of a ray and the triangles of a leaf.
     #[inline(always)]
-    pub(super) fn bracket<S: Simd<N>>(
+    pub(super) fn bracket<S: Lanes<N>>(
         &self,
         simd: S,
         ray: &BlockRay,
@@ -89,26 +88,36 @@ impl<const N: usize> Rows<N> {
         edges: bool,
     ) -> Bracket<S::F32> {
         let (o, d) = ray.splat(simd);
-        let mut bracket = bracket(simd, self.edges(simd, first, count, edges), o, d, &ray.errors);
-        bracket.possible &= (1 << count) - 1;
-        bracket
+        let weights = Weights::new(simd, self.edges(simd, first, count, edges), o, d);
+        let (positive, negative, inside) = weights.signs(simd, &ray.errors);
+        // To leave here where nothing is possible is slower: whether that is so is hard to foresee, and whether
+        // anything is left after the depths has to be asked anyway.
+        let possible = !(positive & negative) & ((1 << count) - 1);
+        bracket(simd, &weights, &ray.errors, possible, inside)
     }
 
-    /// What is known of some of sixteen rays, of which there are as many parts as it takes vectors, and of the triangle
-    /// in a lane of a leaf.
+    /// What is known of those in `asked` of sixteen rays and the triangle in a lane of a leaf; nothing if none of them
+    /// meets it.
     #[inline(always)]
-    pub(super) fn rays_bracket<S: Simd<N>>(
+    #[allow(clippy::too_many_arguments)]
+    pub(super) fn rays_bracket<S: Lanes<RAYS>>(
         &self,
         simd: S,
         rays: &BlockRays,
-        part: usize,
-        triangle: [[S::F32; 3]; 3],
-    ) -> Bracket<S::F32> {
-        debug_assert!(part < RAYS / N);
-        let (o, d) = rays.part(simd, part);
-        let mut bracket = bracket(simd, triangle, o, d, &rays.errors);
-        bracket.possible &= (1 << N) - 1;
-        bracket
+        first: usize,
+        count: u32,
+        lane: usize,
+        edges: bool,
+        asked: u32,
+    ) -> Option<Bracket<S::F32>> {
+        let (o, d) = rays.load(simd);
+        let weights = Weights::new(simd, self.splat(simd, first, count, lane, edges), o, d);
+        let (positive, negative, inside) = weights.signs(simd, &rays.errors);
+        let possible = asked & !(positive & negative);
+        if possible == 0 {
+            return None;
+        }
+        Some(bracket(simd, &weights, &rays.errors, possible, inside))
     }
 }
 
@@ -117,8 +126,8 @@ mod tests {
     use super::*;
     use crate::math::RayBatch;
     use crate::math::{DVec3, Ray, Region};
-    use crate::shapes::triangle::{DoubleLeaves, EdgeRays, Leaves, SingleLeaves};
-    use crate::simd::{Dispatch, Kernel, Level};
+    use crate::shapes::triangle::{DoubleLeaves, Leaves, PlainRays, SingleLeaves};
+    use crate::simd::{Dispatch, Kernel, Level, Simd};
     use proptest::prelude::*;
     use proptest::strategy::ValueTree;
     use proptest::test_runner::{Config, TestRng, TestRunner};
@@ -138,20 +147,19 @@ mod tests {
 
         #[inline(always)]
         fn run<S: Simd<N>>(self, simd: S) -> Vec<Said> {
-            let mut said = vec![read(simd, &self.leaves.bracket(simd, self.ray, 0, 1), 0)];
+            let mut said = vec![read(simd, Some(&self.leaves.bracket(simd, self.ray, 0, 1)), 0)];
             if let Some(rays) = self.sixteen {
-                let triangle = self.leaves.splat(simd, 0, 1, 0);
-                for part in 0..RAYS / N {
-                    let bracket = self.leaves.rays_bracket(simd, rays, part, triangle);
-                    said.extend((0..N).map(|lane| read(simd, &bracket, lane)));
-                }
+                let sixteen = simd.sixteen();
+                let bracket = self.leaves.rays_bracket(sixteen, rays, 0, 1, 0, ALL);
+                said.extend((0..RAYS).map(|lane| read(sixteen, bracket.as_ref(), lane)));
             }
             said
         }
     }
 
     #[inline(always)]
-    fn read<const N: usize, S: Simd<N>>(simd: S, bracket: &Bracket<S::F32>, lane: usize) -> Said {
+    fn read<const N: usize, S: Lanes<N>>(simd: S, bracket: Option<&Bracket<S::F32>>, lane: usize) -> Said {
+        let Some(bracket) = bracket else { return (false, false, false, 0.0, 0.0) };
         let (mut low, mut high) = ([0.0; N], [0.0; N]);
         simd.store(bracket.low, &mut low);
         simd.store(bracket.high, &mut high);
@@ -170,9 +178,9 @@ mod tests {
         let met = edges.meet(triangle).map(|met| met.t * L::unit(&region));
         let mut block = L::ray(&edges, &region);
         block.errors.weight *= share;
-        let mut columns = EdgeRays::default();
-        columns.take(&RayBatch::Rows(&[*ray]), 0);
-        let is_plain = columns.prepare(&region) & 1 == 1;
+        let mut columns = PlainRays::default();
+        columns.take(&RayBatch::Rows(&[*ray]), 0, &region);
+        let is_plain = columns.plain & 1 == 1;
         let mut blocks = L::rays(&columns, &region);
         blocks.errors.weight *= share;
         let levels = Level::ALL.into_iter().filter(|l| l.is_available() && l.lanes() >= N);

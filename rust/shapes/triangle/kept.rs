@@ -3,8 +3,9 @@
 use super::leaves::Leaves;
 use super::pretest::{BlockRay, BlockRays};
 use super::rows::Rows;
-use super::{EdgeRay, EdgeRays};
+use super::{EdgeRay, PlainRays, RAYS};
 use crate::math::{DVec3, Region};
+use crate::simd::Lanes;
 use rayon::prelude::*;
 
 /// Triangles whose coordinates are f32.
@@ -48,8 +49,8 @@ impl<const N: usize> Leaves<N> for SingleLeaves<N> {
     }
 
     #[inline(always)]
-    fn rays(rays: &EdgeRays, _: &Region) -> BlockRays {
-        BlockRays::new(&rays.origin, rays, &rays.absolute, 1.0)
+    fn rays<S: Lanes<RAYS>>(simd: S, rays: &PlainRays, region: &Region) -> BlockRays {
+        BlockRays::new(&rays.origin, rays, rays.absolute(simd, region))
     }
 
     #[inline(always)]
@@ -91,8 +92,8 @@ impl<const N: usize> Leaves<N> for DoubleLeaves<N> {
     }
 
     #[inline(always)]
-    fn rays(rays: &EdgeRays, region: &Region) -> BlockRays {
-        BlockRays::new(&rays.local, rays, &rays.largest, region.scale)
+    fn rays<S: Lanes<RAYS>>(simd: S, rays: &PlainRays, _: &Region) -> BlockRays {
+        BlockRays::new(&rays.local, rays, rays.most(simd))
     }
 
     #[inline(always)]

@@ -4,10 +4,10 @@
 use super::bracket::Bracket;
 use super::pretest::{BlockRay, BlockRays, sum};
 use super::rows::Rows;
-use super::{EdgeRay, EdgeRays};
+use super::{EdgeRay, PlainRays, RAYS};
 use crate::math::{DVec3, Region};
 use crate::shapes::Candidate;
-use crate::simd::Simd;
+use crate::simd::Lanes;
 
 /// All triangles of a tree, leaf by leaf: at most `N` a leaf, known by where its first stands and how many they are.
 pub trait Leaves<const N: usize>: Send + Sync + Sized + 'static {
@@ -30,7 +30,7 @@ pub trait Leaves<const N: usize>: Send + Sync + Sized + 'static {
     fn ray(ray: &EdgeRay, region: &Region) -> BlockRay;
 
     /// Sixteen rays as the first test needs them.
-    fn rays(rays: &EdgeRays, region: &Region) -> BlockRays;
+    fn rays<S: Lanes<RAYS>>(simd: S, rays: &PlainRays, region: &Region) -> BlockRays;
 
     /// Memory held.
     fn bytes(&self) -> usize;
@@ -57,7 +57,7 @@ pub trait Leaves<const N: usize>: Send + Sync + Sized + 'static {
 
     /// Of the lanes of a leaf, those that the first test cannot reject.
     #[inline(always)]
-    fn not_rejected<S: Simd<N>>(&self, simd: S, ray: &BlockRay, first: usize, count: u32) -> u32 {
+    fn not_rejected<S: Lanes<N>>(&self, simd: S, ray: &BlockRay, first: usize, count: u32) -> u32 {
         self.rows().not_rejected(simd, ray, first, count, Self::EDGES)
     }
 
@@ -66,32 +66,30 @@ pub trait Leaves<const N: usize>: Send + Sync + Sized + 'static {
 
     /// What f32 knows of a ray and the triangles of a leaf.
     #[inline(always)]
-    fn bracket<S: Simd<N>>(&self, simd: S, ray: &BlockRay, first: usize, count: u32) -> Bracket<S::F32> {
+    fn bracket<S: Lanes<N>>(&self, simd: S, ray: &BlockRay, first: usize, count: u32) -> Bracket<S::F32> {
         self.rows().bracket(simd, ray, first, count, Self::EDGES)
     }
 
-    /// The triangle in a lane of a leaf as [`Leaves::rays_bracket`] takes it.
+    /// What f32 knows of those in `asked` of sixteen rays and the triangle in a lane of a leaf; nothing if none of them
+    /// meets it.
     #[inline(always)]
-    fn splat<S: Simd<N>>(&self, simd: S, first: usize, count: u32, lane: usize) -> [[S::F32; 3]; 3] {
-        self.rows().splat(simd, first, count, lane, Self::EDGES)
-    }
-
-    /// What f32 knows of a vector of sixteen rays, the `part`-th, and a triangle.
-    #[inline(always)]
-    fn rays_bracket<S: Simd<N>>(
+    #[allow(clippy::too_many_arguments)]
+    fn rays_bracket<S: Lanes<RAYS>>(
         &self,
         simd: S,
         rays: &BlockRays,
-        part: usize,
-        triangle: [[S::F32; 3]; 3],
-    ) -> Bracket<S::F32> {
-        self.rows().rays_bracket(simd, rays, part, triangle)
+        first: usize,
+        count: u32,
+        lane: usize,
+        asked: u32,
+    ) -> Option<Bracket<S::F32>> {
+        self.rows().rays_bracket(simd, rays, first, count, lane, Self::EDGES, asked)
     }
 
     /// The corners of the triangles of a leaf in f32, axis by axis: off by no more than four roundings of the largest
     /// coordinate.
     #[inline(always)]
-    fn nearly<S: Simd<N>>(&self, simd: S, first: usize, count: u32) -> [[S::F32; 3]; 3] {
+    fn nearly<S: Lanes<N>>(&self, simd: S, first: usize, count: u32) -> [[S::F32; 3]; 3] {
         let rows = self.rows();
         let a = rows.numbers(simd, first, count, 0);
         let b = rows.numbers(simd, first, count, 1);
@@ -101,7 +99,7 @@ pub trait Leaves<const N: usize>: Send + Sync + Sized + 'static {
 
     /// Calls `met` with each triangle of a leaf that the ray meets, until it says true; says whether it did.
     #[inline(always)]
-    fn meet<S: Simd<N>>(
+    fn meet<S: Lanes<N>>(
         &self,
         simd: S,
         first: usize,

@@ -26,10 +26,9 @@
 //! ε|origin| is εL: the bounds are the same. (With edges taken between rounded corners they would have terms in L² that
 //! do not shrink with the triangle, and next to nothing of a fine mesh would be rejected.)
 
-use super::{Column, EdgeRay, EdgeRays, RAYS};
+use super::{Column, EdgeRay, PlainRays, RAYS};
 use crate::math::DVec3;
-use crate::math::robust::{greater, lesser};
-use crate::simd::Simd;
+use crate::simd::Lanes;
 
 /// What the signs of weights, and `t`, are computed from, lane by lane.
 pub(super) struct Weights<F> {
@@ -45,7 +44,7 @@ pub(super) struct Weights<F> {
 impl<F: Copy> Weights<F> {
     /// Those of triangles by corner and edges.
     #[inline(always)]
-    pub fn new<const N: usize, S: Simd<N, F32 = F>>(simd: S, [a, e, f]: [[F; 3]; 3], o: [F; 3], d: [F; 3]) -> Self {
+    pub fn new<const N: usize, S: Lanes<N, F32 = F>>(simd: S, [a, e, f]: [[F; 3]; 3], o: [F; 3], d: [F; 3]) -> Self {
         let s = difference(simd, o, a);
         let p = cross(simd, d, f);
         let q = cross(simd, s, e);
@@ -59,7 +58,7 @@ impl<F: Copy> Weights<F> {
 
     /// Lanes of which some weight is certainly positive, some certainly negative, and all certainly of one sign.
     #[inline(always)]
-    pub fn signs<const N: usize, S: Simd<N, F32 = F>>(&self, simd: S, errors: &Bounds) -> (u32, u32, u32) {
+    pub fn signs<const N: usize, S: Lanes<N, F32 = F>>(&self, simd: S, errors: &Bounds) -> (u32, u32, u32) {
         let [u, v, w] = self.weights;
         let above = simd.mul_add(self.largest, simd.splat(errors.weight), simd.splat(errors.least));
         let below = simd.neg(above);
@@ -70,7 +69,7 @@ impl<F: Copy> Weights<F> {
 
     /// The numerator of t, how far it may be off, the denominator, and how far that may be off.
     #[inline(always)]
-    pub fn depth<const N: usize, S: Simd<N, F32 = F>>(&self, simd: S, numerator: f32, least: f32) -> (F, F, F, F) {
+    pub fn depth<const N: usize, S: Lanes<N, F32 = F>>(&self, simd: S, numerator: f32, least: f32) -> (F, F, F, F) {
         let (largest, least) = (self.largest, simd.splat(least));
         let above = simd.mul_add(largest, simd.mul(largest, simd.splat(numerator)), least);
         let over = simd.mul_add(largest, simd.mul(largest, simd.splat(128.0 / (1u32 << 24) as f32)), least);
@@ -80,7 +79,7 @@ impl<F: Copy> Weights<F> {
 
 /// Lanes in which f32 cannot reject that a ray meets a triangle; bits above the lanes are set.
 #[inline(always)]
-pub(super) fn not_rejected<const N: usize, S: Simd<N>>(
+pub(super) fn not_rejected<const N: usize, S: Lanes<N>>(
     simd: S,
     triangle: [[S::F32; 3]; 3],
     o: [S::F32; 3],
@@ -106,7 +105,7 @@ pub struct BlockRay {
 }
 
 /// What the test in f32 needs of sixteen rays.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 #[repr(C, align(64))]
 pub struct BlockRays {
     /// Where they start, in the units that leaves keep, by axis.
@@ -129,40 +128,28 @@ impl BlockRay {
     // Written out, axis by axis, as all that is called from here on: closures and iterators between here and the
     // kernel's entry are not always compiled for its level, and then every operation is a call.
     #[inline(always)]
-    pub(super) fn splat<const N: usize, S: Simd<N>>(&self, simd: S) -> ([S::F32; 3], [S::F32; 3]) {
+    pub(super) fn splat<const N: usize, S: Lanes<N>>(&self, simd: S) -> ([S::F32; 3], [S::F32; 3]) {
         let (o, d) = (&self.origin, &self.direction);
         ([simd.splat(o[0]), simd.splat(o[1]), simd.splat(o[2])], [simd.splat(d[0]), simd.splat(d[1]), simd.splat(d[2])])
     }
 }
 
 impl BlockRays {
-    /// Sixteen rays rounded to f32, with origins and L times `scale`. The greatest bounds serve all.
+    /// Sixteen rays from origins in the leaves' units; `largest` is the greatest L.
     #[inline(always)]
-    pub(super) fn new(origin: &[Column<f64>; 3], rays: &EdgeRays, largest: &Column<f64>, scale: f64) -> Self {
-        let (mut most, mut least, mut longest) = (0.0, f64::INFINITY, 0.0);
-        for i in 0..RAYS {
-            most = greater(largest[i], most);
-            least = lesser(rays.t_min[i], least);
-            longest = greater(rays.scale[i], longest);
-        }
-        let errors = Bounds::new(most * scale, least >= 0.0, longest);
-        let mut block = Self { origin: [[0.0; RAYS]; 3], direction: [[0.0; RAYS]; 3], errors };
-        for axis in 0..3 {
-            for i in 0..RAYS {
-                block.origin[axis][i] = (origin[axis][i] * scale) as f32;
-                block.direction[axis][i] = rays.direction[axis][i] as f32;
-            }
-        }
-        block
+    pub(super) fn new(origin: &[Column<f32>; 3], rays: &PlainRays, largest: f64) -> Self {
+        // What lies behind a ray is told by the interval of its `t`.
+        let errors = Bounds::new(largest, false, rays.scale);
+        Self { origin: *origin, direction: rays.direction, errors }
     }
 
-    /// Origins and directions of some of them: a vector of each.
+    /// Origins and directions, a vector of each coordinate.
     #[inline(always)]
-    pub(super) fn part<const N: usize, S: Simd<N>>(&self, simd: S, part: usize) -> ([S::F32; 3], [S::F32; 3]) {
+    pub(super) fn load<S: Lanes<RAYS>>(&self, simd: S) -> ([S::F32; 3], [S::F32; 3]) {
         let (o, d) = (&self.origin, &self.direction);
         (
-            [part_of(simd, &o[0], part), part_of(simd, &o[1], part), part_of(simd, &o[2], part)],
-            [part_of(simd, &d[0], part), part_of(simd, &d[1], part), part_of(simd, &d[2], part)],
+            [simd.load(&o[0]), simd.load(&o[1]), simd.load(&o[2])],
+            [simd.load(&d[0]), simd.load(&d[1]), simd.load(&d[2])],
         )
     }
 
@@ -176,7 +163,7 @@ impl BlockRays {
 }
 
 /// Bounds on the errors of the test in f32.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Bounds {
     /// Of a weight over the largest edge.
     pub(super) weight: f32,
@@ -209,30 +196,24 @@ impl Bounds {
     }
 }
 
-/// One vector of a column.
 #[inline(always)]
-pub(super) fn part_of<const N: usize, S: Simd<N>>(simd: S, column: &Column<f32>, part: usize) -> S::F32 {
-    simd.load(&column.as_chunks::<N>().0[part])
-}
-
-#[inline(always)]
-pub(super) fn difference<const N: usize, S: Simd<N>>(simd: S, a: [S::F32; 3], b: [S::F32; 3]) -> [S::F32; 3] {
+pub(super) fn difference<const N: usize, S: Lanes<N>>(simd: S, a: [S::F32; 3], b: [S::F32; 3]) -> [S::F32; 3] {
     [simd.sub(a[0], b[0]), simd.sub(a[1], b[1]), simd.sub(a[2], b[2])]
 }
 
 #[inline(always)]
-pub(super) fn sum<const N: usize, S: Simd<N>>(simd: S, a: [S::F32; 3], b: [S::F32; 3]) -> [S::F32; 3] {
+pub(super) fn sum<const N: usize, S: Lanes<N>>(simd: S, a: [S::F32; 3], b: [S::F32; 3]) -> [S::F32; 3] {
     [simd.add(a[0], b[0]), simd.add(a[1], b[1]), simd.add(a[2], b[2])]
 }
 
 /// The largest coordinate in magnitude.
 #[inline(always)]
-fn largest<const N: usize, S: Simd<N>>(simd: S, v: [S::F32; 3]) -> S::F32 {
+fn largest<const N: usize, S: Lanes<N>>(simd: S, v: [S::F32; 3]) -> S::F32 {
     simd.max(simd.max(simd.abs(v[0]), simd.abs(v[1])), simd.abs(v[2]))
 }
 
 #[inline(always)]
-fn cross<const N: usize, S: Simd<N>>(simd: S, a: [S::F32; 3], b: [S::F32; 3]) -> [S::F32; 3] {
+fn cross<const N: usize, S: Lanes<N>>(simd: S, a: [S::F32; 3], b: [S::F32; 3]) -> [S::F32; 3] {
     [
         simd.mul_sub(a[1], b[2], simd.mul(a[2], b[1])),
         simd.mul_sub(a[2], b[0], simd.mul(a[0], b[2])),
@@ -241,6 +222,6 @@ fn cross<const N: usize, S: Simd<N>>(simd: S, a: [S::F32; 3], b: [S::F32; 3]) ->
 }
 
 #[inline(always)]
-fn dot<const N: usize, S: Simd<N>>(simd: S, a: [S::F32; 3], b: [S::F32; 3]) -> S::F32 {
+fn dot<const N: usize, S: Lanes<N>>(simd: S, a: [S::F32; 3], b: [S::F32; 3]) -> S::F32 {
     simd.mul_add(a[2], b[2], simd.mul_add(a[1], b[1], simd.mul(a[0], b[0])))
 }

@@ -1,8 +1,9 @@
 //! The triangles of a tree's leaves in f32, side by side, and the first test of them.
 
+use super::RAYS;
 use super::pretest::{BlockRay, difference, not_rejected};
 use crate::math::Vec3;
-use crate::simd::Simd;
+use crate::simd::Lanes;
 use rayon::prelude::*;
 
 /// Numbers of a triangle: nine coordinates and which it is.
@@ -84,7 +85,7 @@ impl<const N: usize> Rows<N> {
 
     /// One of the three vectors of the triangles of a leaf, axis by axis.
     #[inline(always)]
-    pub fn numbers<S: Simd<N>>(&self, simd: S, first: usize, count: u32, which: usize) -> [S::F32; 3] {
+    pub fn numbers<S: Lanes<N>>(&self, simd: S, first: usize, count: u32, which: usize) -> [S::F32; 3] {
         let count = count as usize;
         let rows = &self.numbers[first * ROWS + 3 * which * count..][..2 * count + N];
         let row = |axis: usize| rows[axis * count..].first_chunk().expect("rows of the right length");
@@ -93,7 +94,7 @@ impl<const N: usize> Rows<N> {
 
     /// The triangles of a leaf as a corner and the edges from there, axis by axis. `edges` says that they are kept so.
     #[inline(always)]
-    pub(super) fn edges<S: Simd<N>>(&self, simd: S, first: usize, count: u32, edges: bool) -> [[S::F32; 3]; 3] {
+    pub(super) fn edges<S: Lanes<N>>(&self, simd: S, first: usize, count: u32, edges: bool) -> [[S::F32; 3]; 3] {
         let a = self.numbers(simd, first, count, 0);
         let mut e = self.numbers(simd, first, count, 1);
         let mut f = self.numbers(simd, first, count, 2);
@@ -105,7 +106,7 @@ impl<const N: usize> Rows<N> {
 
     /// The triangle in a lane of a leaf, in every lane of vectors.
     #[inline(always)]
-    pub(super) fn splat<S: Simd<N>>(
+    pub(super) fn splat<S: Lanes<RAYS>>(
         &self,
         simd: S,
         first: usize,
@@ -126,7 +127,7 @@ impl<const N: usize> Rows<N> {
 
     /// Of the lanes of a leaf, those that f32 cannot reject.
     #[inline(always)]
-    pub(super) fn not_rejected<S: Simd<N>>(
+    pub(super) fn not_rejected<S: Lanes<N>>(
         &self,
         simd: S,
         ray: &BlockRay,

@@ -50,7 +50,8 @@ pub struct Met {
 }
 
 impl Met {
-    const NONE: Self = Self { met: 0, open: 0, t: [0.0; RAYS], uv: [[0.0; RAYS]; 2] };
+    /// None of them.
+    pub const NONE: Self = Self { met: 0, open: 0, t: [0.0; RAYS], uv: [[0.0; RAYS]; 2] };
 }
 
 impl Default for EdgeRays {

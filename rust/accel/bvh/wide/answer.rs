@@ -1,6 +1,7 @@
 //! Where first hits are written.
 
 use crate::math::{Hit, HitColumns};
+use crate::shapes::triangle::{Column, Met, RAYS};
 
 /// Where answers go.
 pub trait Answer {
@@ -12,6 +13,18 @@ pub trait Answer {
 
     /// Ray `i` hits a primitive, at `t` in lengths of its own direction.
     fn hit(&mut self, i: usize, t: f64, uv: [f64; 2], primitive: u32);
+
+    /// Up to sixteen neighbours, the first of which is `start`: those in `hits` hit something, the others nothing.
+    #[inline(always)]
+    fn some(&mut self, start: usize, count: usize, hits: u32, all: &Met, primitives: &Column<u32>) {
+        for i in 0..count.min(RAYS) {
+            if hits >> i & 1 == 1 {
+                self.hit(start + i, all.t[i], [all.uv[0][i], all.uv[1][i]], primitives[i]);
+            } else {
+                self.miss(start + i);
+            }
+        }
+    }
 }
 
 impl Answer for &mut [Hit] {
@@ -39,6 +52,19 @@ impl Answer for HitColumns<'_> {
     #[inline(always)]
     fn hit(&mut self, i: usize, t: f64, uv: [f64; 2], primitive: u32) {
         (self.t[i], self.uv[i], self.primitive[i]) = (t, uv, primitive as i32);
+    }
+
+    #[inline(always)]
+    fn some(&mut self, start: usize, count: usize, hits: u32, all: &Met, primitives: &Column<u32>) {
+        let (t, uv) = (&mut self.t[start..][..count], &mut self.uv[start..][..count]);
+        let primitive = &mut self.primitive[start..][..count];
+        for i in 0..count.min(RAYS) {
+            let is_hit = hits >> i & 1 == 1;
+            t[i] = if is_hit { all.t[i] } else { Hit::MISS.t };
+            uv[i][0] = if is_hit { all.uv[0][i] } else { Hit::MISS.uv[0] };
+            uv[i][1] = if is_hit { all.uv[1][i] } else { Hit::MISS.uv[1] };
+            primitive[i] = if is_hit { primitives[i] as i32 } else { -1 };
+        }
     }
 }
 

@@ -26,7 +26,7 @@ impl<const N: usize, L: Leaves<N>, Q: Query> Kernel<N> for All<'_, N, L, Q> {
     #[inline(always)]
     fn run<S: Simd<N>>(self, simd: S) {
         let Self { bvh, rays, query } = self;
-        let errand = &mut Telling(query);
+        let errand = &mut Telling { rays: &rays, query };
         if bvh.nodes.is_empty() {
             miss(bvh, rays.len(), errand);
         } else if Q::COUNTED || rays.len() < FEW {

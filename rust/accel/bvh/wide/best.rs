@@ -4,6 +4,7 @@ use super::node::Packed;
 use crate::math::robust::{greater, lesser};
 use crate::shapes::Candidate;
 use crate::shapes::triangle::{EdgeRay, Leaves};
+use crate::simd::Lanes;
 
 /// The best that is known, in the units of leaves ([`Leaves::unit`]).
 #[derive(Clone, Copy, Debug)]
@@ -17,15 +18,24 @@ pub struct Best {
     pub lane: u32,
 }
 
+/// Four times the error of rounding to f32.
+const ULPS: f32 = 1.0 / (1u32 << 22) as f32;
+
 /// A number as two of f32, between which it lies: the first is never infinite above, nor the second below.
 // Without a branch, unlike the nearest two.
 #[inline(always)]
 pub fn between(x: f64) -> (f32, f32) {
-    /// Four times the error of rounding to f32.
-    const ULPS: f32 = 1.0 / (1u32 << 22) as f32;
     let y = greater(lesser(x as f32, f32::MAX), f32::MIN);
     let room = y.abs() * ULPS + f32::MIN_POSITIVE;
     (y - room, y + room)
+}
+
+/// The same of many that have been rounded already.
+#[inline(always)]
+pub fn between_all<const N: usize, S: Lanes<N>>(simd: S, x: S::F32) -> (S::F32, S::F32) {
+    let y = simd.max(simd.min(x, simd.splat(f32::MAX)), simd.splat(f32::MIN));
+    let room = simd.add(simd.mul(simd.abs(y), simd.splat(ULPS)), simd.splat(f32::MIN_POSITIVE));
+    (simd.sub(y, room), simd.add(y, room))
 }
 
 impl Best {

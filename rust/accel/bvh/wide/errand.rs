@@ -2,7 +2,10 @@
 
 use super::WideBvh;
 use super::node::Packed;
+use super::sixteen::Sixteen;
 use crate::accel::query::Query;
+use crate::accel::slab::Clock;
+use crate::math::RayBatch;
 use crate::shapes::triangle::{BlockRay, EdgeRay, Leaves};
 use crate::simd::Simd;
 
@@ -29,7 +32,11 @@ pub trait Errand<const N: usize, L: Leaves<N>>: Sized {
     fn start(&mut self, bvh: &WideBvh<N, L>, i: usize, edges: &EdgeRay) -> Self::Flight;
 
     /// Up to which `t` along its scaled direction a ray is asked, at first.
-    fn limit(flight: &Self::Flight) -> f64;
+    fn limit(bvh: &WideBvh<N, L>, flight: &Self::Flight) -> f64;
+
+    /// What is known at first of a plain ray, one of sixteen, and where in box units it loses interest; nothing if it
+    /// hits nothing.
+    fn launch(&mut self, bvh: &WideBvh<N, L>, i: usize, rays: &Sixteen, lane: usize) -> Option<(Self::Flight, f32)>;
 
     /// A ray has tested a node's boxes.
     #[inline(always)]
@@ -50,7 +57,10 @@ pub trait Errand<const N: usize, L: Leaves<N>>: Sized {
 }
 
 /// Tells a query all that rays meet.
-pub struct Telling<'a, Q>(pub &'a mut Q);
+pub struct Telling<'a, Q> {
+    pub rays: &'a RayBatch<'a>,
+    pub query: &'a mut Q,
+}
 
 /// A ray whose meetings are told.
 pub struct Told<T> {
@@ -66,13 +76,20 @@ impl<const N: usize, L: Leaves<N>, Q: Query> Errand<N, L> for Telling<'_, Q> {
 
     #[inline(always)]
     fn start(&mut self, bvh: &WideBvh<N, L>, i: usize, edges: &EdgeRay) -> Told<Q::State> {
-        let state = self.0.start(i, edges.t_max);
+        let state = self.query.start(i, edges.t_max);
         Told { lanes: L::ray(edges, &bvh.region), edges: *edges, state, ray: i }
     }
 
     #[inline(always)]
-    fn limit(flight: &Told<Q::State>) -> f64 {
+    fn limit(_: &WideBvh<N, L>, flight: &Told<Q::State>) -> f64 {
         Q::limit(&flight.state)
+    }
+
+    #[inline(always)]
+    fn launch(&mut self, bvh: &WideBvh<N, L>, i: usize, _: &Sixteen, _: usize) -> Option<(Told<Q::State>, f32)> {
+        let flight = self.start(bvh, i, &EdgeRay::new(&self.rays.get(i), &bvh.region)?);
+        let limit = Clock::of(&bvh.region).limit(Q::limit(&flight.state));
+        Some((flight, limit))
     }
 
     #[inline(always)]
@@ -86,7 +103,7 @@ impl<const N: usize, L: Leaves<N>, Q: Query> Errand<N, L> for Telling<'_, Q> {
         let Told { lanes, edges, state, .. } = flight;
         Q::visit_leaf(state, count);
         let before = Q::limit(state);
-        if bvh.leaves.meet(simd, first, count, lanes, edges, |p, candidate| self.0.offer(state, p, candidate)) {
+        if bvh.leaves.meet(simd, first, count, lanes, edges, |p, candidate| self.query.offer(state, p, candidate)) {
             return Visited::Answered;
         }
         let limit = Q::limit(state);
@@ -95,11 +112,11 @@ impl<const N: usize, L: Leaves<N>, Q: Query> Errand<N, L> for Telling<'_, Q> {
 
     #[inline(always)]
     fn finish(&mut self, _: &WideBvh<N, L>, flight: &Told<Q::State>) {
-        self.0.finish(flight.ray, Some((flight.edges.along(), flight.state)));
+        self.query.finish(flight.ray, Some((flight.edges.along(), flight.state)));
     }
 
     #[inline(always)]
     fn miss(&mut self, i: usize) {
-        self.0.finish(i, None);
+        self.query.finish(i, None);
     }
 }

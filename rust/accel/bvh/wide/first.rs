@@ -7,9 +7,10 @@ use super::answer::Answer;
 use super::best::{Best, between, meet};
 use super::errand::{Errand, Visited};
 use super::node::Packed;
+use super::sixteen::Sixteen;
 use super::winners::Winners;
 use crate::math::{Ray, RayBatch, Region};
-use crate::shapes::triangle::{BlockRay, EdgeRay, Leaves};
+use crate::shapes::triangle::{BlockRay, EdgeRay, Leaves, RAYS};
 use crate::simd::Simd;
 
 /// The first hits of rays, or whether they have any.
@@ -39,12 +40,22 @@ pub struct Looking {
     /// Between these its `t_min` lies.
     pub t_min: (f32, f32),
     pub best: Best,
-    /// Along the scaled direction.
-    pub t_max: f64,
     pub ray: usize,
 }
 
 impl Looking {
+    /// One of sixteen, ray `ray` of the batch.
+    #[inline(always)]
+    pub fn of(rays: &Sixteen, i: usize, ray: usize) -> Self {
+        let i = i & (RAYS - 1);
+        Self {
+            lanes: rays.blocks.of(i),
+            t_min: (rays.t_min[0][i], rays.t_min[1][i]),
+            best: Best { leaf: Packed::NONE, lane: 0, low: rays.t_max[0][i], high: rays.t_max[1][i] },
+            ray,
+        }
+    }
+
     /// Tests the triangles of a leaf. Whether what is known has changed; if any hit will do, whether there is one.
     #[inline(always)]
     pub fn visit<const ANY: bool, const N: usize, L: Leaves<N>, S: Simd<N>>(
@@ -138,14 +149,18 @@ impl<const N: usize, L: Leaves<N>, A: Answer> Errand<N, L> for First<'_, A> {
             lanes: L::ray(edges, &bvh.region),
             t_min: between(edges.t_min * unit),
             best: Best::until(edges.t_max * unit),
-            t_max: edges.t_max,
             ray: i,
         }
     }
 
     #[inline(always)]
-    fn limit(flight: &Looking) -> f64 {
-        flight.t_max
+    fn limit(bvh: &WideBvh<N, L>, flight: &Looking) -> f64 {
+        f64::from(flight.best.high) / L::unit(&bvh.region)
+    }
+
+    #[inline(always)]
+    fn launch(&mut self, _: &WideBvh<N, L>, i: usize, rays: &Sixteen, lane: usize) -> Option<(Looking, f32)> {
+        Some((Looking::of(rays, lane, i), rays.slabs.limit[lane & (RAYS - 1)]))
     }
 
     #[inline(always)]

@@ -3,6 +3,7 @@
 mod answer;
 mod batch;
 mod best;
+mod bests;
 mod collapse;
 mod errand;
 mod first;
@@ -13,6 +14,7 @@ mod objects;
 mod packet;
 mod refit;
 mod single;
+mod sixteen;
 mod step;
 mod touched;
 mod wave;

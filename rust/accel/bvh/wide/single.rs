@@ -40,7 +40,7 @@ pub fn ask<const N: usize, L: Leaves<N>, S: Simd<N>, E: Errand<N, L>>(
         return;
     };
     let mut flight = errand.start(bvh, i, &edges);
-    let boxes = Boxes::new(&slabs, slabs.limit(E::limit(&flight)), Packed::ROOT, 0);
+    let boxes = Boxes::new(&slabs, slabs.limit(E::limit(bvh, &flight)), Packed::ROOT, 0);
     walk(simd, bvh, boxes, errand, &mut flight, stacks);
     errand.finish(bvh, &flight);
 }

@@ -110,8 +110,7 @@ impl Boxes {
         let fars = simd.min(simd.min(far_x, far_y), simd.min(far_z, simd.splat(self.limit)));
         let order = if NEAREST_FIRST { node.order(octant) } else { ASCENDING };
         let top = self.top as usize;
-        let (to_nears, to_items) = (room::<N, _>(&mut stacks.nears[top..]), room::<N, _>(&mut stacks.items[top..]));
-        self.top += simd.pick(nears, fars, &node.children, order, N as u32, to_nears, to_items) as u32;
+        self.top += stacks.push(simd, top, nears, fars, &node.children, order) as u32;
         self.pop(stacks);
     }
 
@@ -172,6 +171,28 @@ impl Stacks {
     /// changes.
     pub fn put_away(self) {
         SPARE.with_borrow_mut(|spare| spare.push(self));
+    }
+
+    /// Puts those of a node's children on top, which is `top`, for which `nears ≤ fars`, the last in `order` the
+    /// highest; says how many they are.
+    #[inline(always)]
+    pub fn push<const N: usize, S: Simd<N>>(
+        &mut self,
+        simd: S,
+        top: usize,
+        nears: S::F32,
+        fars: S::F32,
+        items: &[u32; N],
+        order: u32,
+    ) -> usize {
+        let (to_nears, to_items) = (room::<N, _>(&mut self.nears[top..]), room::<N, _>(&mut self.items[top..]));
+        simd.pick(nears, fars, items, order, N as u32, to_nears, to_items)
+    }
+
+    /// What was put at a place, and from where on it is met.
+    #[inline(always)]
+    pub fn entry(&self, at: usize) -> (f32, u32) {
+        (self.nears[at], self.items[at])
     }
 
     /// Where the stack of one of them starts.

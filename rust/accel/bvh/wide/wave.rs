@@ -57,7 +57,7 @@ pub fn answer<const N: usize, L: Leaves<N>, S: Simd<N>, E: Errand<N, L>>(
     let mut stacks = Stacks::new::<N>(width, bvh.stack);
     let mut queues = Queues { places: [[0; WAVE]; 2], lens: [0; 2] };
     while flights.len() < width
-        && let Some((b, flight)) = gate.launch(bvh, stacks.bottom(flights.len()), errand)
+        && let Some((b, flight)) = gate.launch(simd, bvh, stacks.bottom(flights.len()), errand)
     {
         queues.push(0, flights.len());
         boxes[flights.len()] = b;
@@ -94,7 +94,7 @@ pub fn answer<const N: usize, L: Leaves<N>, S: Simd<N>, E: Errand<N, L>>(
             }
             if done {
                 errand.finish(bvh, flight);
-                if let Some((b, new)) = gate.launch(bvh, bottom, errand) {
+                if let Some((b, new)) = gate.launch(simd, bvh, bottom, errand) {
                     boxes[place & (WAVE - 1)] = b;
                     *flight = new;
                     queues.push(0, place);

@@ -3,9 +3,10 @@
 use super::WideBvh;
 use super::answer::Answer;
 use super::best::{Best, meet, primitive};
+use super::bests::Bests;
 use super::node::Packed;
 use crate::math::RayBatch;
-use crate::shapes::triangle::{Column, EdgeRay, EdgeRays, Leaves, RAYS};
+use crate::shapes::triangle::{Column, EdgeRay, EdgeRays, Leaves, Met, RAYS};
 
 /// Rays that are done, each with the triangle that it hits. While one sixteen fill up, the sixteen before wait: what is
 /// written number by number is not to be read as vectors at once, since a wide load must wait for narrow stores.
@@ -119,6 +120,52 @@ impl Sixteen {
             rest &= rest - 1;
             alone(bvh, rays, self.rays[i], self.leaves[i], self.lanes[i], answer);
         }
+    }
+}
+
+/// Answers up to sixteen neighbours of a batch, the first of which is `start`.
+#[inline(always)]
+pub fn settle<const N: usize, L: Leaves<N>, A: Answer>(
+    bvh: &WideBvh<N, L>,
+    rays: &RayBatch<'_>,
+    start: usize,
+    count: usize,
+    bests: &Bests,
+    answer: &mut A,
+) {
+    let hits = bests.hits();
+    let mut primitives = [0; RAYS];
+    if hits == 0 {
+        answer.some(start, count, 0, &Met::NONE, &primitives);
+        return;
+    }
+    let mut edges = EdgeRays::default();
+    edges.take(rays, start);
+    let plain = edges.prepare(&bvh.region) & hits;
+    let mut corners = [[[0.0; RAYS]; 3]; 3];
+    let mut rest = hits;
+    while rest != 0 {
+        let i = rest.trailing_zeros() as usize & (RAYS - 1);
+        rest &= rest - 1;
+        let best = bests.get(i);
+        let (first, count) = best.leaf.leaf();
+        let lane = best.lane as usize & (N - 1);
+        primitives[i] = bvh.leaves.primitive(first, count, lane);
+        for (to, corner) in corners.iter_mut().zip(bvh.leaves.corners(first, count, lane)) {
+            (to[0][i], to[1][i], to[2][i]) = (corner.x, corner.y, corner.z);
+        }
+    }
+    let mut all = edges.meet_each(&corners, plain);
+    for i in 0..RAYS {
+        all.t[i] *= edges.scale[i];
+    }
+    answer.some(start, count, all.met, &all, &primitives);
+    let mut rest = hits & !all.met;
+    while rest != 0 {
+        let i = rest.trailing_zeros() as usize & (RAYS - 1);
+        rest &= rest - 1;
+        let best = bests.get(i);
+        alone(bvh, rays, start + i, best.leaf, best.lane, answer);
     }
 }
 

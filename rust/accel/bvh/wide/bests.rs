@@ -1,0 +1,132 @@
+//! The best that is known of sixteen rays together, and triangles that are tested against all of them.
+
+use super::WideBvh;
+use super::best::{Best, meet};
+use super::first::Looking;
+use super::node::Packed;
+use super::sixteen::Sixteen;
+use crate::math::RayBatch;
+use crate::shapes::triangle::{Column, EdgeRay, Leaves, RAYS};
+use crate::simd::Lanes;
+
+/// The best that is known of sixteen rays, by columns; see [`Best`].
+pub struct Bests {
+    low: Column<f32>,
+    pub high: Column<f32>,
+    /// Bits of a [`Packed`], to be moved as f32.
+    leaf: Column<f32>,
+    /// Bits of a lane.
+    lane: Column<f32>,
+    /// Where any hit will do, those that have one.
+    pub answered: u32,
+}
+
+impl Bests {
+    /// Nothing, up to the `t_max` of each.
+    #[inline(always)]
+    pub fn none(rays: &Sixteen) -> Self {
+        let [low, high] = rays.t_max;
+        let (leaf, lane) = ([f32::from_bits(Packed::NONE.bits()); RAYS], [0.0; RAYS]);
+        Self { low, high, leaf, lane, answered: 0 }
+    }
+
+    /// The best that is known of a ray.
+    #[inline(always)]
+    pub fn get(&self, i: usize) -> Best {
+        let i = i & (RAYS - 1);
+        let (leaf, lane) = (Packed::of(self.leaf[i].to_bits()), self.lane[i].to_bits());
+        Best { low: self.low[i], high: self.high[i], leaf, lane }
+    }
+
+    #[inline(always)]
+    pub fn note(&mut self, i: usize, best: Best) {
+        let i = i & (RAYS - 1);
+        (self.low[i], self.high[i]) = (best.low, best.high);
+        (self.leaf[i], self.lane[i]) = (f32::from_bits(best.leaf.bits()), f32::from_bits(best.lane));
+    }
+
+    /// One of the rays alone, the first of which is `start` of the batch.
+    #[inline(always)]
+    pub fn looking(&self, rays: &Sixteen, i: usize, start: usize) -> Looking {
+        Looking { best: self.get(i), ..Looking::of(rays, i, start + i) }
+    }
+
+    /// Those that have hit something.
+    #[inline(always)]
+    pub fn hits(&self) -> u32 {
+        let mut hits = 0;
+        for i in 0..RAYS {
+            hits |= u32::from(self.leaf[i].to_bits() != Packed::NONE.bits()) << i;
+        }
+        hits
+    }
+
+    /// Tests the triangle in a lane of a leaf against those of the rays in `asked`; says of which what is known has
+    /// changed, or, if any hit will do, which are answered.
+    #[inline(always)]
+    #[allow(clippy::too_many_arguments)]
+    pub fn test<const ANY: bool, const N: usize, L: Leaves<N>, S: Lanes<RAYS>>(
+        &mut self,
+        simd: S,
+        bvh: &WideBvh<N, L>,
+        rays: &Sixteen,
+        from: (&RayBatch<'_>, usize),
+        leaf: Packed,
+        lane: u32,
+        asked: u32,
+    ) -> u32 {
+        let (first, count) = leaf.leaf();
+        let bracket = bvh.leaves.rays_bracket(simd, &rays.blocks, first, count, lane as usize, asked);
+        let Some(bracket) = bracket else { return 0 };
+        let (low, high) = (simd.load(&self.low), simd.load(&self.high));
+        let (earliest, latest) = (simd.load(&rays.t_min[0]), simd.load(&rays.t_min[1]));
+        let beyond = simd.gt(bracket.low, high) | simd.gt(earliest, bracket.high);
+        let mut open = bracket.possible & !(bracket.known & beyond);
+        if open == 0 {
+            return 0;
+        }
+        let sure = bracket.known & bracket.inside & simd.gt(bracket.low, latest) & simd.gt(low, bracket.high);
+        let sure = open & sure;
+        open &= !sure;
+        let mut changed = sure;
+        if !ANY {
+            simd.store(simd.select(sure, bracket.low, low), &mut self.low);
+            simd.store(simd.select(sure, bracket.high, high), &mut self.high);
+            let which = simd.select(sure, simd.splat(f32::from_bits(leaf.bits())), simd.load(&self.leaf));
+            simd.store(which, &mut self.leaf);
+            let which = simd.select(sure, simd.splat(f32::from_bits(lane)), simd.load(&self.lane));
+            simd.store(which, &mut self.lane);
+        }
+        while open != 0 {
+            let i = open.trailing_zeros() as usize;
+            open &= open - 1;
+            changed |= u32::from(self.decide::<ANY, N, L>(bvh, from.0, from.1, i, leaf, lane)) << i;
+        }
+        changed
+    }
+
+    /// Decides about a ray and a triangle in f64.
+    #[inline(never)]
+    fn decide<const ANY: bool, const N: usize, L: Leaves<N>>(
+        &mut self,
+        bvh: &WideBvh<N, L>,
+        rays: &RayBatch<'_>,
+        start: usize,
+        i: usize,
+        leaf: Packed,
+        lane: u32,
+    ) -> bool {
+        let mut best = self.get(i);
+        if !ANY && best.is(&bvh.leaves, leaf, lane) {
+            return false;
+        }
+        let Some(ray) = EdgeRay::new(&rays.get(start + i), &bvh.region) else { return false };
+        if ANY {
+            return meet(&bvh.leaves, &ray, leaf, lane).is_some();
+        }
+        let before = best.high;
+        best.decide(&bvh.leaves, L::unit(&bvh.region), &ray, leaf, lane);
+        self.note(i, best);
+        best.high < before
+    }
+}

@@ -1,0 +1,49 @@
+//! Sixteen rays made ready for nodes and for leaves.
+
+use super::best::between_all;
+use super::node::Packed;
+use super::step::Boxes;
+use crate::accel::slab::SlabRays;
+use crate::math::{RayBatch, Region};
+use crate::shapes::triangle::{BlockRays, Column, Leaves, PlainRays, RAYS};
+use crate::simd::Lanes;
+
+/// Sixteen rays of a batch; of those that are not plain nothing is said.
+#[derive(Debug, Default)]
+pub struct Sixteen {
+    pub plain: PlainRays,
+    pub slabs: SlabRays,
+    pub blocks: BlockRays,
+    /// Between these lies the `t_min` of each, in the units of leaves ([`Leaves::unit`]).
+    pub t_min: [Column<f32>; 2],
+    /// Between these lies the `t_max` of each.
+    pub t_max: [Column<f32>; 2],
+}
+
+impl Sixteen {
+    /// Takes up to sixteen rays, at least one; the last stands for those that are missing.
+    #[inline(always)]
+    pub fn take<const N: usize, L: Leaves<N>, S: Lanes<RAYS>>(
+        &mut self,
+        simd: S,
+        rays: &RayBatch<'_>,
+        from: usize,
+        region: &Region,
+    ) {
+        self.plain.take(simd, rays, from, region);
+        self.slabs.prepare(simd, &self.plain, region);
+        self.blocks = L::rays(simd, &self.plain, region);
+        let unit = simd.splat(L::unit(region) as f32);
+        for (to, t) in [(&mut self.t_min, &self.plain.t_min), (&mut self.t_max, &self.plain.t_max)] {
+            let (low, high) = between_all(simd, simd.mul(simd.load(t), unit));
+            simd.store(low, &mut to[0]);
+            simd.store(high, &mut to[1]);
+        }
+    }
+
+    /// One of them, at a child, with nothing on the stack that starts at `bottom`.
+    #[inline(always)]
+    pub fn boxes(&self, i: usize, limit: f32, at: Packed, bottom: usize) -> Boxes {
+        Boxes::of(&self.slabs, i, limit, at, bottom)
+    }
+}
