@@ -1,10 +1,8 @@
 //! Leaves as most ray tracers have them: the test of Möller and Trumbore (1997) in f32, whose answer is believed.
 
 use raywright::math::{DVec3, Region};
-use raywright::shapes::triangle::{
-    BlockRay, BlockRays, Bracket, Column, EdgeRay, EdgeRays, Leaves, Rows, SingleLeaves,
-};
-use raywright::simd::Simd;
+use raywright::shapes::triangle::{BlockRay, BlockRays, Bracket, EdgeRay, Leaves, PlainRays, RAYS, Rows, SingleLeaves};
+use raywright::simd::Lanes;
 
 /// Triangles kept as [`SingleLeaves`] keeps them, in the same order.
 pub struct PlainLeaves<const N: usize>(SingleLeaves<N>);
@@ -33,8 +31,8 @@ impl<const N: usize> Leaves<N> for PlainLeaves<N> {
     }
 
     #[inline(always)]
-    fn rays(rays: &EdgeRays, region: &Region) -> BlockRays {
-        <SingleLeaves<N> as Leaves<N>>::rays(rays, region)
+    fn rays<S: Lanes<RAYS>>(simd: S, rays: &PlainRays, region: &Region) -> BlockRays {
+        <SingleLeaves<N> as Leaves<N>>::rays(simd, rays, region).believed()
     }
 
     #[inline(always)]
@@ -47,7 +45,7 @@ impl<const N: usize> Leaves<N> for PlainLeaves<N> {
     }
 
     #[inline(always)]
-    fn bracket<S: Simd<N>>(&self, simd: S, ray: &BlockRay, first: usize, count: u32) -> Bracket<S::F32> {
+    fn bracket<S: Lanes<N>>(&self, simd: S, ray: &BlockRay, first: usize, count: u32) -> Bracket<S::F32> {
         let (o, d) = (&ray.origin, &ray.direction);
         let o = [simd.splat(o[0]), simd.splat(o[1]), simd.splat(o[2])];
         let d = [simd.splat(d[0]), simd.splat(d[1]), simd.splat(d[2])];
@@ -57,25 +55,11 @@ impl<const N: usize> Leaves<N> for PlainLeaves<N> {
         let triangle = [a, difference(simd, b, a), difference(simd, c, a)];
         moller_trumbore(simd, triangle, o, d, (1 << count) - 1)
     }
-
-    #[inline(always)]
-    fn rays_bracket<S: Simd<N>>(
-        &self,
-        simd: S,
-        rays: &BlockRays,
-        part: usize,
-        triangle: [[S::F32; 3]; 3],
-    ) -> Bracket<S::F32> {
-        let (o, d) = (&rays.origin, &rays.direction);
-        let o = [part_of(simd, &o[0], part), part_of(simd, &o[1], part), part_of(simd, &o[2], part)];
-        let d = [part_of(simd, &d[0], part), part_of(simd, &d[1], part), part_of(simd, &d[2], part)];
-        moller_trumbore(simd, triangle, o, d, u32::MAX >> (32 - N))
-    }
 }
 
 /// What is met of triangles by corner and edges, taken for certain.
 #[inline(always)]
-fn moller_trumbore<const N: usize, S: Simd<N>>(
+fn moller_trumbore<const N: usize, S: Lanes<N>>(
     simd: S,
     [a, e, f]: [[S::F32; 3]; 3],
     o: [S::F32; 3],
@@ -96,19 +80,13 @@ fn moller_trumbore<const N: usize, S: Simd<N>>(
     Bracket { possible: met, inside: met, known: lanes, low: t, high: t }
 }
 
-/// One vector of a column.
 #[inline(always)]
-fn part_of<const N: usize, S: Simd<N>>(simd: S, column: &Column<f32>, part: usize) -> S::F32 {
-    simd.load(&column.as_chunks::<N>().0[part])
-}
-
-#[inline(always)]
-fn difference<const N: usize, S: Simd<N>>(simd: S, a: [S::F32; 3], b: [S::F32; 3]) -> [S::F32; 3] {
+fn difference<const N: usize, S: Lanes<N>>(simd: S, a: [S::F32; 3], b: [S::F32; 3]) -> [S::F32; 3] {
     [simd.sub(a[0], b[0]), simd.sub(a[1], b[1]), simd.sub(a[2], b[2])]
 }
 
 #[inline(always)]
-fn cross<const N: usize, S: Simd<N>>(simd: S, a: [S::F32; 3], b: [S::F32; 3]) -> [S::F32; 3] {
+fn cross<const N: usize, S: Lanes<N>>(simd: S, a: [S::F32; 3], b: [S::F32; 3]) -> [S::F32; 3] {
     [
         simd.mul_sub(a[1], b[2], simd.mul(a[2], b[1])),
         simd.mul_sub(a[2], b[0], simd.mul(a[0], b[2])),
@@ -117,6 +95,6 @@ fn cross<const N: usize, S: Simd<N>>(simd: S, a: [S::F32; 3], b: [S::F32; 3]) ->
 }
 
 #[inline(always)]
-fn dot<const N: usize, S: Simd<N>>(simd: S, a: [S::F32; 3], b: [S::F32; 3]) -> S::F32 {
+fn dot<const N: usize, S: Lanes<N>>(simd: S, a: [S::F32; 3], b: [S::F32; 3]) -> S::F32 {
     simd.mul_add(a[0], b[0], simd.mul_add(a[1], b[1], simd.mul(a[2], b[2])))
 }

@@ -208,14 +208,17 @@ pub struct SlabRays {
     pub limit: Column<f32>,
 }
 
-impl Default for SlabRays {
-    fn default() -> Self {
-        let zero = [0.0; RAYS];
-        Self { inverse: [zero; 3], near: [zero; 3], far: [zero; 3], pad: zero, t_min: zero, limit: zero }
-    }
-}
-
 impl SlabRays {
+    /// No rays.
+    pub const NONE: Self = Self {
+        inverse: [[0.0; RAYS]; 3],
+        near: [[0.0; RAYS]; 3],
+        far: [[0.0; RAYS]; 3],
+        pad: [0.0; RAYS],
+        t_min: [0.0; RAYS],
+        limit: [0.0; RAYS],
+    };
+
     /// Makes rays ready; of those that are not plain nothing is said.
     #[inline(always)]
     pub fn prepare<S: Lanes<RAYS>>(&mut self, simd: S, rays: &PlainRays, region: &Region) {
@@ -244,11 +247,11 @@ impl SlabRays {
         }
     }
 
-    /// Rays that may meet a box, at any `t` from their `t_min` on.
+    /// Rays that may meet a box, at any `t` from their `t_min` on up to a limit in box units.
     #[inline(always)]
-    pub fn meeting<S: Lanes<RAYS>>(&self, simd: S, aabb: &Aabb) -> u32 {
+    pub fn meeting<S: Lanes<RAYS>>(&self, simd: S, aabb: &Aabb, limit: S::F32) -> u32 {
         let (min, max) = (aabb.min.to_array(), aabb.max.to_array());
-        let (mut nears, mut fars) = (simd.load(&self.t_min), simd.splat(f32::INFINITY));
+        let (mut nears, mut fars) = (simd.load(&self.t_min), limit);
         for axis in 0..3 {
             let inverse = simd.load(&self.inverse[axis]);
             let (lower, upper) = (simd.splat(min[axis]), simd.splat(max[axis]));

@@ -1,7 +1,13 @@
-//! The rays of an image in tiles of 4 × 4 pixels: neighbours in both directions, not along rows alone, share a packet.
+//! The rays of an image in tiles of 8 × 8 pixels, each in four of 4 × 4: neighbours in both directions, not along rows
+//! alone, share a packet.
+
+use super::DVec3;
 
 /// Pixels on a tile's side.
-const SIDE: usize = 4;
+const SIDE: usize = 8;
+
+/// Pixels on a side of its quarters.
+const HALF: usize = SIDE / 2;
 
 /// Pixels of a tile.
 const TILE: usize = SIDE * SIDE;
@@ -13,6 +19,14 @@ const LONGEST: usize = 1 << 14;
 #[derive(Clone, Copy, Debug)]
 pub struct Tiling {
     row: usize,
+}
+
+/// Where in a tile its `k`-th pixel lies.
+#[inline(always)]
+fn within(k: usize) -> [usize; 2] {
+    const QUARTER: usize = HALF * HALF;
+    let (quarter, k) = (k / QUARTER, k % QUARTER);
+    [quarter % 2 * HALF + k % HALF, quarter / 2 * HALF + k / HALF]
 }
 
 impl Tiling {
@@ -59,14 +73,16 @@ impl Tiling {
             {
                 // A whole tile at once: pixel by pixel would show as well.
                 for (k, place) in tile.iter_mut().enumerate() {
-                    *place = start + i / SIDE + k / SIDE * self.row + k % SIDE;
+                    let [x, y] = within(k);
+                    *place = start + i / SIDE + y * self.row + x;
                 }
                 i += TILE;
                 rest = &mut rest[TILE..];
                 continue;
             }
             let (x, y) = if is_tiled {
-                (i / TILE * SIDE + i % SIDE, i / SIDE % SIDE)
+                let [x, y] = within(i % TILE);
+                (i / TILE * SIDE + x, y)
             } else if start + band <= count {
                 (tiles * SIDE + (i - tiled) % more, (i - tiled) / more)
             } else {
@@ -77,6 +93,34 @@ impl Tiling {
             rest = &mut rest[1..];
         }
     }
+}
+
+/// How many of `count` vectors make a row, if they are those of an image, row after row, as a camera's directions are:
+/// along a row each differs a little from the one before, and every row begins with a leap back. 0 if they are not. A
+/// guess that is wrong costs no more than an order of rays that has nothing to say for itself.
+pub fn row_length(count: usize, vector: impl Fn(usize) -> DVec3) -> usize {
+    /// How much longer than a step a leap is, squared.
+    const LEAP: f64 = 64.0;
+    /// Rows that are looked at.
+    const ROWS: usize = 8;
+    let step = |i: usize| (vector(i + 1) - vector(i)).length_squared();
+    let is_leap = |i: usize, step: f64| step > 0.0 && (vector(i + 1) - vector(i)).length_squared() > LEAP * step;
+    let most = LONGEST.min(count / SIDE);
+    if most < SIDE {
+        return 0;
+    }
+    let first = step(0);
+    let Some(row) = (1..most).find(|&i| is_leap(i, first)).map(|i| i + 1) else { return 0 };
+    if row < SIDE || !count.is_multiple_of(row) {
+        return 0;
+    }
+    let rows = count / row;
+    let is_row = (1..ROWS).all(|k| {
+        let start = (rows - 2) * k / ROWS * row;
+        // Within, and from its end to the next one's start.
+        !is_leap(start + row / 2, step(start)) && is_leap(start + row - 1, step(start))
+    });
+    if is_row { row } else { 0 }
 }
 
 #[cfg(test)]
@@ -130,5 +174,48 @@ mod tests {
         let mut tile = [0; 16];
         tiling.places(16, 64, &mut tile);
         assert_eq!(tile, [4, 5, 6, 7, 12, 13, 14, 15, 20, 21, 22, 23, 28, 29, 30, 31]);
+    }
+
+    #[test]
+    fn sixty_four_pixels_are_a_square() {
+        let tiling = Tiling::new(16 * 16, 16);
+        let mut tile = [0; 64];
+        tiling.places(64, 256, &mut tile);
+        tile.sort_unstable();
+        let wanted: Vec<_> = (0..64).map(|i| i / 8 * 16 + 8 + i % 8).collect();
+        assert_eq!(tile.as_slice(), wanted);
+    }
+
+    #[test]
+    fn rows_of_images_are_found_and_nothing_else_is() {
+        let pixel = |i: usize, row: usize| DVec3::new((i % row) as f64 + 0.5, (i / row) as f64 + 0.5, 0.0);
+        for (width, height) in [(16, 16), (40, 30), (640, 480), (1000, 9), (4096, 8)] {
+            let count = width * height;
+            let size = height.max(width) as f64;
+            let forward = DVec3::new(size / 3.0, -size / 2.0, size);
+            // Through pixels, of any length or of length one, and the origins of parallel rays.
+            assert_eq!(row_length(count, |i| pixel(i, width) + forward), width);
+            assert_eq!(row_length(count, |i| (pixel(i, width) + forward).normalize()), width);
+            assert_eq!(row_length(count, |i| 1e-3 * pixel(i, width)), width);
+            // One more or less is no image.
+            assert_eq!(row_length(count + 1, |i| pixel(i, width)), 0);
+        }
+        // Digits of multiples that have nothing to do with each other (Steele, Lea and Flood, "Fast Splittable
+        // Pseudorandom Number Generators", 2014).
+        let mixed = |i: usize| {
+            let x = (i as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+            let x = (x ^ x >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+            let x = (x ^ x >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
+            (x ^ x >> 31) as f64
+        };
+        let scattered = |i: usize| DVec3::new(mixed(3 * i), mixed(3 * i + 1), mixed(3 * i + 2));
+        for count in [0, 1, 7, 64, 10_000, 1 << 20] {
+            assert_eq!(row_length(count, scattered), 0);
+            assert_eq!(row_length(count, |_| DVec3::Z), 0);
+            assert_eq!(row_length(count, |i| DVec3::X * i as f64), 0);
+            assert_eq!(row_length(count, |_| DVec3::NAN), 0);
+        }
+        // A leap that does not come again.
+        assert_eq!(row_length(10_000, |i| DVec3::X * if i < 100 { i as f64 } else { i as f64 - 1000.0 }), 0);
     }
 }

@@ -5,7 +5,7 @@ use pyo3::prelude::*;
 use rayon::prelude::*;
 
 use super::arrays::{Numbers, Row, Rows, Triples};
-use crate::math::{Ray, Tiling};
+use crate::math::{Ray, Tiling, row_length};
 use crate::workers;
 
 /// Rays that are gathered from the arrays and asked together, at most: few enough to stay in a near cache and for
@@ -58,8 +58,14 @@ impl RayArguments<'_> {
                 "origins, directions, t_min, t_max and time have lengths {lengths:?}, expected 1 or {count}"
             )));
         }
-        // Image-shaped rays are traced in tiles, where neighbours share more than along a row.
-        let row = if self.shape.len() >= 2 { self.shape[self.shape.len() - 1] } else { 0 };
+        // The rays of an image are traced in tiles, where neighbours share more than along a row.
+        let row = match self.shape.as_slice() {
+            [_, .., row] => *row,
+            _ => match row_length(directions.len(), |i| directions.get(i)) {
+                0 => row_length(origins.len(), |i| origins.get(i)),
+                row => row,
+            },
+        };
         Ok(RayArrays { origins, directions, t_min, t_max, time, count, tiling: Tiling::new(count, row) })
     }
 }

@@ -155,14 +155,42 @@ where
 
 #[cfg(test)]
 mod tests {
-    use super::super::ASCENDING;
+    use super::super::{ASCENDING, Lanes};
     use super::*;
     use proptest::prelude::*;
 
-    /// Every operation on the same numbers, as bits.
+    /// Every operation on the same numbers, as bits: by as many lanes as a node has, and by sixteen.
     struct Everything<const N: usize> {
-        a: [f32; N],
-        b: [f32; N],
+        a: [f32; 16],
+        b: [f32; 16],
+    }
+
+    /// All that lanes can do.
+    #[inline(always)]
+    fn arithmetic<const N: usize, S: Lanes<N>>(simd: S, a: &[f32; N], b: &[f32; N], out: &mut Vec<u32>) {
+        let one = simd.splat(a[1]);
+        let (a, b) = (simd.load(a), simd.load(b));
+        let mut lanes = [0f32; N];
+        out.extend([simd.le(a, b), simd.gt(a, b)]);
+        for x in [
+            simd.min(a, b),
+            simd.max(a, b),
+            simd.add(a, b),
+            simd.sub(a, b),
+            simd.mul(a, b),
+            simd.div(a, b),
+            simd.neg(a),
+            simd.abs(a),
+            one,
+            simd.select(0, a, b),
+            simd.select(0xa59c, a, b),
+            simd.select(simd.gt(a, b), a, b),
+        ] {
+            simd.store(x, &mut lanes);
+            out.extend(lanes.map(f32::to_bits));
+        }
+        // Which of two zeros is the greatest is not part of the promise.
+        out.extend([simd.greatest(a), simd.least(a)].map(|x| (x + 0.0).to_bits()));
     }
 
     impl<const N: usize> Kernel<N> for Everything<N> {
@@ -170,26 +198,11 @@ mod tests {
 
         #[inline(always)]
         fn run<S: Simd<N>>(self, simd: S) -> Vec<u32> {
-            let (a, b) = (simd.load(&self.a), simd.load(&self.b));
-            let mut lanes = [0f32; N];
-            let mut out = vec![simd.le(a, b), simd.gt(a, b)];
-            for x in [
-                simd.min(a, b),
-                simd.max(a, b),
-                simd.add(a, b),
-                simd.sub(a, b),
-                simd.mul(a, b),
-                simd.div(a, b),
-                simd.neg(a),
-                simd.abs(a),
-                simd.splat(self.a[1]),
-                simd.select(0, a, b),
-                simd.select(0xa5, a, b),
-                simd.select(simd.gt(a, b), a, b),
-            ] {
-                simd.store(x, &mut lanes);
-                out.extend(lanes.map(f32::to_bits));
-            }
+            let (few_a, few_b) = (self.a.first_chunk().unwrap(), self.b.first_chunk().unwrap());
+            let mut out = Vec::new();
+            arithmetic::<N, _>(simd, few_a, few_b, &mut out);
+            arithmetic::<16, _>(simd.sixteen(), &self.a, &self.b, &mut out);
+            let (a, b) = (simd.load(few_a), simd.load(few_b));
             for (order, count) in [(ASCENDING, N), (0o01234567, N - 1), (0o21306574, 3), (0o44332211, 0)] {
                 let items = std::array::from_fn(|i| 100 + i as u32);
                 let (mut nears, mut picked) = ([0.0; N], [0; N]);
@@ -201,7 +214,7 @@ mod tests {
         }
     }
 
-    fn agree<const N: usize>(a: [f32; N], b: [f32; N]) -> Result<(), TestCaseError>
+    fn agree<const N: usize>(a: [f32; 16], b: [f32; 16]) -> Result<(), TestCaseError>
     where
         Level: Dispatch<N>,
     {
@@ -209,7 +222,7 @@ mod tests {
         let plain = |bits: Vec<u32>| -> Vec<u32> {
             bits.into_iter().map(|x| if f32::from_bits(x).is_nan() { f32::NAN.to_bits() } else { x }).collect()
         };
-        let wanted = plain(Everything { a, b }.run(Scalar));
+        let wanted = plain(Everything::<N> { a, b }.run(Scalar));
         for level in levels::<N>() {
             prop_assert_eq!(&plain(level.dispatch(Everything { a, b })), &wanted, "{:?}", level);
         }
@@ -227,21 +240,22 @@ mod tests {
 
     proptest! {
         #[test]
-        fn all_levels_agree_bit_for_bit(a in prop::array::uniform8(ordered()), b in prop::array::uniform8(ordered())) {
-            agree(a, b)?;
-            agree([a[0], a[1], a[2], a[3]], [b[0], b[1], b[2], b[3]])?;
+        fn all_levels_agree_bit_for_bit(
+            a in prop::array::uniform16(ordered()), b in prop::array::uniform16(ordered()),
+        ) {
+            agree::<8>(a, b)?;
+            agree::<4>(a, b)?;
         }
     }
 
     #[test]
     fn comparisons_with_nan_are_false() {
+        let (a, b) = ([f32::NAN; 16], [1.0; 16]);
         for level in levels::<4>() {
-            let out = level.dispatch(Everything { a: [f32::NAN; 4], b: [1.0; 4] });
-            assert_eq!(out[..2], [0, 0], "{level:?}");
+            assert_eq!(level.dispatch(Everything::<4> { a, b })[..2], [0, 0], "{level:?}");
         }
         for level in levels::<8>() {
-            let out = level.dispatch(Everything { a: [f32::NAN; 8], b: [1.0; 8] });
-            assert_eq!(out[..2], [0, 0], "{level:?}");
+            assert_eq!(level.dispatch(Everything::<8> { a, b })[..2], [0, 0], "{level:?}");
         }
     }
 }

@@ -17,10 +17,9 @@
 //! Where |m| < 4M, or L is so large that the numerator may overflow, nothing is known of `t`. Nor is it where `t` as
 //! given might be more than an f64 holds.
 
+use super::EdgeRay;
 use super::pretest::{BlockRay, Bounds, Weights};
 use super::rows::Rows;
-use super::sixteen::RAYS;
-use super::{BlockRays, EdgeRay};
 use crate::simd::Lanes;
 
 /// What is known of some triangles and one ray, or of one triangle and some rays; bits above the lanes mean nothing.
@@ -37,17 +36,20 @@ pub struct Bracket<F> {
     pub high: F,
 }
 
-/// What is known of triangles by their weights for rays, of which those in `possible` may meet them and those in
-/// `inside` do.
+/// What is known of `t` by its numerator and its denominator, and how far they may be off; those in `possible` may be
+/// met, and those in `inside` are.
 #[inline(always)]
-fn bracket<const N: usize, S: Lanes<N>>(
+#[allow(clippy::too_many_arguments)]
+pub(super) fn bracket<const N: usize, S: Lanes<N>>(
     simd: S,
-    weights: &Weights<S::F32>,
+    numerator: S::F32,
+    above: S::F32,
+    denominator: S::F32,
+    over: S::F32,
     errors: &Bounds,
     possible: u32,
     inside: u32,
 ) -> Bracket<S::F32> {
-    let (numerator, above, denominator, over) = weights.depth(simd, errors.weight * 0.125, errors.least);
     let size = simd.abs(denominator);
     let known = simd.le(simd.mul(over, simd.splat(4.0)), size);
     let inverse = simd.div(simd.splat(1.0), denominator);
@@ -88,36 +90,13 @@ impl<const N: usize> Rows<N> {
         edges: bool,
     ) -> Bracket<S::F32> {
         let (o, d) = ray.splat(simd);
-        let weights = Weights::new(simd, self.edges(simd, first, count, edges), o, d);
-        let (positive, negative, inside) = weights.signs(simd, &ray.errors);
+        let (weights, numerator, largest) = Weights::new(simd, self.edges(simd, first, count, edges), o, d);
+        let (of_weight, above, over) = ray.errors.of(simd, largest);
+        let (possible, inside) = weights.signs(simd, of_weight);
         // To leave here where nothing is possible is slower: whether that is so is hard to foresee, and whether
         // anything is left after the depths has to be asked anyway.
-        let possible = !(positive & negative) & ((1 << count) - 1);
-        bracket(simd, &weights, &ray.errors, possible, inside)
-    }
-
-    /// What is known of those in `asked` of sixteen rays and the triangle in a lane of a leaf; nothing if none of them
-    /// meets it.
-    #[inline(always)]
-    #[allow(clippy::too_many_arguments)]
-    pub(super) fn rays_bracket<S: Lanes<RAYS>>(
-        &self,
-        simd: S,
-        rays: &BlockRays,
-        first: usize,
-        count: u32,
-        lane: usize,
-        edges: bool,
-        asked: u32,
-    ) -> Option<Bracket<S::F32>> {
-        let (o, d) = rays.load(simd);
-        let weights = Weights::new(simd, self.splat(simd, first, count, lane, edges), o, d);
-        let (positive, negative, inside) = weights.signs(simd, &rays.errors);
-        let possible = asked & !(positive & negative);
-        if possible == 0 {
-            return None;
-        }
-        Some(bracket(simd, &weights, &rays.errors, possible, inside))
+        let possible = possible & ((1 << count) - 1);
+        bracket(simd, numerator, above, weights.denominator, over, &ray.errors, possible, inside)
     }
 }
 
@@ -126,7 +105,7 @@ mod tests {
     use super::*;
     use crate::math::RayBatch;
     use crate::math::{DVec3, Ray, Region};
-    use crate::shapes::triangle::{DoubleLeaves, Leaves, PlainRays, SingleLeaves};
+    use crate::shapes::triangle::{ALL, BlockRays, DoubleLeaves, Leaves, PlainRays, RAYS, SingleLeaves};
     use crate::simd::{Dispatch, Kernel, Level, Simd};
     use proptest::prelude::*;
     use proptest::strategy::ValueTree;
@@ -150,7 +129,7 @@ mod tests {
             let mut said = vec![read(simd, Some(&self.leaves.bracket(simd, self.ray, 0, 1)), 0)];
             if let Some(rays) = self.sixteen {
                 let sixteen = simd.sixteen();
-                let bracket = self.leaves.rays_bracket(sixteen, rays, 0, 1, 0, ALL);
+                let bracket = self.leaves.spread(simd, rays, 0, 1).bracket(sixteen, rays, 0, ALL);
                 said.extend((0..RAYS).map(|lane| read(sixteen, bracket.as_ref(), lane)));
             }
             said
@@ -178,7 +157,7 @@ mod tests {
         let met = edges.meet(triangle).map(|met| met.t * L::unit(&region));
         let mut block = L::ray(&edges, &region);
         block.errors.weight *= share;
-        let mut columns = PlainRays::default();
+        let mut columns = PlainRays::NONE;
         columns.take(&RayBatch::Rows(&[*ray]), 0, &region);
         let is_plain = columns.plain & 1 == 1;
         let mut blocks = L::rays(&columns, &region);

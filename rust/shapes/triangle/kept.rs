@@ -50,7 +50,7 @@ impl<const N: usize> Leaves<N> for SingleLeaves<N> {
 
     #[inline(always)]
     fn rays<S: Lanes<RAYS>>(simd: S, rays: &PlainRays, region: &Region) -> BlockRays {
-        BlockRays::new(&rays.origin, rays, rays.absolute(simd, region))
+        BlockRays::new(simd, &rays.origin, rays, rays.absolute(simd, region))
     }
 
     #[inline(always)]
@@ -93,7 +93,7 @@ impl<const N: usize> Leaves<N> for DoubleLeaves<N> {
 
     #[inline(always)]
     fn rays<S: Lanes<RAYS>>(simd: S, rays: &PlainRays, _: &Region) -> BlockRays {
-        BlockRays::new(&rays.local, rays, rays.most(simd))
+        BlockRays::new(simd, &rays.local, rays, rays.most(simd))
     }
 
     #[inline(always)]

@@ -4,6 +4,7 @@
 use super::bracket::Bracket;
 use super::pretest::{BlockRay, BlockRays, sum};
 use super::rows::Rows;
+use super::spread::Spread;
 use super::{EdgeRay, PlainRays, RAYS};
 use crate::math::{DVec3, Region};
 use crate::shapes::Candidate;
@@ -70,20 +71,10 @@ pub trait Leaves<const N: usize>: Send + Sync + Sized + 'static {
         self.rows().bracket(simd, ray, first, count, Self::EDGES)
     }
 
-    /// What f32 knows of those in `asked` of sixteen rays and the triangle in a lane of a leaf; nothing if none of them
-    /// meets it.
+    /// The triangles of a leaf for sixteen rays.
     #[inline(always)]
-    #[allow(clippy::too_many_arguments)]
-    fn rays_bracket<S: Lanes<RAYS>>(
-        &self,
-        simd: S,
-        rays: &BlockRays,
-        first: usize,
-        count: u32,
-        lane: usize,
-        asked: u32,
-    ) -> Option<Bracket<S::F32>> {
-        self.rows().rays_bracket(simd, rays, first, count, lane, Self::EDGES, asked)
+    fn spread<S: Lanes<N>>(&self, simd: S, rays: &BlockRays, first: usize, count: u32) -> Spread<N> {
+        self.rows().spread(simd, rays, first, count, Self::EDGES)
     }
 
     /// The corners of the triangles of a leaf in f32, axis by axis: off by no more than four roundings of the largest

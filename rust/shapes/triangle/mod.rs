@@ -12,6 +12,7 @@ mod pretest;
 pub mod routines;
 mod rows;
 mod sixteen;
+mod spread;
 
 pub use bracket::Bracket;
 pub(crate) use clip::clipped;
@@ -24,3 +25,4 @@ pub use plain::PlainRays;
 pub use pretest::{BlockRay, BlockRays};
 pub use rows::Rows;
 pub use sixteen::{ALL, Column, EdgeRays, Met, RAYS, bits};
+pub use spread::Spread;

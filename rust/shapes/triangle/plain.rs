@@ -111,23 +111,19 @@ impl Real for f64 {
     }
 }
 
-impl Default for PlainRays {
-    fn default() -> Self {
-        let zero = [0.0; RAYS];
-        Self {
-            origin: [zero; 3],
-            local: [zero; 3],
-            direction: [zero; 3],
-            t_min: zero,
-            t_max: zero,
-            largest: zero,
-            scale: 1.0,
-            plain: 0,
-        }
-    }
-}
-
 impl PlainRays {
+    /// No rays.
+    pub const NONE: Self = Self {
+        origin: [[0.0; RAYS]; 3],
+        local: [[0.0; RAYS]; 3],
+        direction: [[0.0; RAYS]; 3],
+        t_min: [0.0; RAYS],
+        t_max: [0.0; RAYS],
+        largest: [0.0; RAYS],
+        scale: 1.0,
+        plain: 0,
+    };
+
     /// Takes up to sixteen rays of a batch, at least one; the last stands for those that are missing.
     #[inline(always)]
     pub fn take<S: Lanes<RAYS>>(&mut self, simd: S, rays: &RayBatch<'_>, from: usize, region: &Region) {
@@ -215,18 +211,95 @@ impl PlainRays {
         self.scale = T::greatest(&scales);
     }
 
-    /// In box units, a bound on every coordinate of a corner relative to an origin.
+    /// In box units, a bound on every coordinate of a corner relative to the origin of a plain ray.
     #[inline(always)]
     pub fn most<S: Lanes<RAYS>>(&self, simd: S) -> f64 {
-        simd.greatest(simd.load(&self.largest)).into()
+        // What is no number in the others must not hide what is.
+        simd.greatest(simd.select(self.plain, simd.load(&self.largest), simd.splat(0.0))).into()
     }
 
-    /// Bounds |origin| + |corner|, as given.
+    /// Bounds |origin| + |corner| of plain rays, as given.
     #[inline(always)]
     pub fn absolute<S: Lanes<RAYS>>(&self, simd: S, region: &Region) -> f64 {
         let [x, y, z] = [simd.load(&self.origin[0]), simd.load(&self.origin[1]), simd.load(&self.origin[2])];
         let away = simd.max(simd.max(simd.abs(x), simd.abs(y)), simd.abs(z));
         // The origins are rounded.
+        let away = simd.select(self.plain, away, simd.splat(0.0));
         (f64::from(simd.greatest(away)) + region.extent) * (1.0 + 1.0 / (1u32 << 22) as f64)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::ALL;
+    use super::*;
+    use crate::math::{DVec3, Numbers, Ray, RayColumns};
+    use crate::simd::Scalar;
+
+    fn region() -> Region {
+        Region::around([DVec3::new(-3.0, 2.0, 5.0), DVec3::new(4.0, 9.0, 7.0)])
+    }
+
+    fn rays() -> Vec<Ray> {
+        let number = |i: usize| (i as f64 * 0.618_034).fract() - 0.5;
+        let vector =
+            |i: usize| DVec3::new(number(3 * i + 1), number(3 * i + 2), number(3 * i + 3)).as_vec3().as_dvec3();
+        (0..RAYS).map(|i| Ray::new(8.0 * vector(i), vector(i + RAYS) * 2f64.powi(i as i32 * 4 - 30))).collect()
+    }
+
+    #[test]
+    fn f32_and_f64_are_made_ready_alike() {
+        let (rays, region) = (rays(), region());
+        let column = |of: fn(&Ray) -> f64| rays.iter().map(|r| of(r) as f32).collect::<Vec<_>>();
+        let o = [column(|r| r.origin.x), column(|r| r.origin.y), column(|r| r.origin.z)];
+        let d = [column(|r| r.direction.x), column(|r| r.direction.y), column(|r| r.direction.z)];
+        let (o, d) = (o.each_ref().map(Vec::as_slice), d.each_ref().map(Vec::as_slice));
+        let columns =
+            RayColumns::new(Vectors::Single(o), Vectors::Single(d), Numbers::One(0.0), Numbers::One(f64::INFINITY));
+        let (mut rows, mut single) = (PlainRays::NONE, PlainRays::NONE);
+        rows.take(Scalar, &RayBatch::Rows(&rays), 0, &region);
+        single.take(Scalar, &RayBatch::Columns(columns), 0, &region);
+        assert_eq!((rows.plain, single.plain), (ALL, ALL));
+        assert_eq!((rows.direction, rows.local, rows.largest), (single.direction, single.local, single.largest));
+        assert_eq!((rows.t_min, rows.t_max), (single.t_min, single.t_max));
+        for i in 0..RAYS {
+            let edges = EdgeRay::new(&rays[i], &region).expect("a ray");
+            let of = |columns: &[Column<f32>; 3]| {
+                DVec3::new(columns[0][i].into(), columns[1][i].into(), columns[2][i].into())
+            };
+            assert_eq!(of(&rows.direction), edges.direction.as_vec3().as_dvec3());
+            assert_eq!(of(&rows.local), (edges.local * region.scale).as_vec3().as_dvec3());
+            assert!(f64::from(rows.largest[i]) >= edges.largest * region.scale);
+        }
+    }
+
+    #[test]
+    fn rays_that_are_none_do_not_change_what_is_said_of_others() {
+        let (rays, region) = (rays(), region());
+        let mut all = PlainRays::NONE;
+        all.take(Scalar, &RayBatch::Rows(&rays), 0, &region);
+        let bounds = |plain: &PlainRays| (plain.most(Scalar), plain.absolute(Scalar, &region));
+        for spoilt in [
+            Ray::new(DVec3::NAN, DVec3::X),
+            Ray::new(DVec3::splat(f64::INFINITY), DVec3::X),
+            Ray::new(DVec3::ZERO, DVec3::NAN),
+            Ray::new(DVec3::ZERO, DVec3::ZERO),
+            Ray::new(DVec3::splat(1e9), DVec3::X),
+            Ray { t_min: 1.0, t_max: 0.0, ..rays[0] },
+            Ray { t_min: f64::NAN, ..rays[0] },
+        ] {
+            for at in 0..RAYS {
+                let mut some = rays.clone();
+                some[at] = spoilt;
+                let mut plain = PlainRays::NONE;
+                plain.take(Scalar, &RayBatch::Rows(&some), 0, &region);
+                assert_eq!(plain.plain, ALL & !(1 << at), "{spoilt:?}");
+                // What the others need, and no more than all need.
+                let others: Vec<_> = (0..RAYS).filter(|&i| i != at).map(|i| rays[i]).collect();
+                let mut wanted = PlainRays::NONE;
+                wanted.take(Scalar, &RayBatch::Rows(&others), 0, &region);
+                assert_eq!(bounds(&plain), bounds(&wanted));
+            }
+        }
     }
 }

@@ -28,23 +28,25 @@
 
 use super::{Column, EdgeRay, PlainRays, RAYS};
 use crate::math::DVec3;
+use crate::math::robust::greater;
 use crate::simd::Lanes;
 
-/// What the signs of weights, and `t`, are computed from, lane by lane.
+/// What tells whether triangles are met, lane by lane.
 pub(super) struct Weights<F> {
     /// Of b, c and a.
-    weights: [F; 3],
-    denominator: F,
-    f: [F; 3],
-    q: [F; 3],
-    /// The largest coordinate of an edge.
-    largest: F,
+    pub weights: [F; 3],
+    pub denominator: F,
 }
 
 impl<F: Copy> Weights<F> {
-    /// Those of triangles by corner and edges.
+    /// Those of triangles by corner and edges; the numerator of t; and the largest coordinate of an edge.
     #[inline(always)]
-    pub fn new<const N: usize, S: Lanes<N, F32 = F>>(simd: S, [a, e, f]: [[F; 3]; 3], o: [F; 3], d: [F; 3]) -> Self {
+    pub fn new<const N: usize, S: Lanes<N, F32 = F>>(
+        simd: S,
+        [a, e, f]: [[F; 3]; 3],
+        o: [F; 3],
+        d: [F; 3],
+    ) -> (Self, F, F) {
         let s = difference(simd, o, a);
         let p = cross(simd, d, f);
         let q = cross(simd, s, e);
@@ -53,27 +55,18 @@ impl<F: Copy> Weights<F> {
         let denominator = dot(simd, e, p);
         let w = simd.sub(simd.sub(denominator, u), v);
         let largest = simd.max(largest(simd, e), largest(simd, f));
-        Self { weights: [u, v, w], denominator, f, q, largest }
+        (Self { weights: [u, v, w], denominator }, dot(simd, f, q), largest)
     }
 
-    /// Lanes of which some weight is certainly positive, some certainly negative, and all certainly of one sign.
+    /// Lanes of which no two weights are certainly of different signs, and those of which all are certainly of one, where
+    /// `above` bounds their errors.
     #[inline(always)]
-    pub fn signs<const N: usize, S: Lanes<N, F32 = F>>(&self, simd: S, errors: &Bounds) -> (u32, u32, u32) {
+    pub fn signs<const N: usize, S: Lanes<N, F32 = F>>(&self, simd: S, above: F) -> (u32, u32) {
         let [u, v, w] = self.weights;
-        let above = simd.mul_add(self.largest, simd.splat(errors.weight), simd.splat(errors.least));
+        let (least, greatest) = (simd.min(simd.min(u, v), w), simd.max(simd.max(u, v), w));
         let below = simd.neg(above);
-        let [pu, pv, pw] = [simd.gt(u, above), simd.gt(v, above), simd.gt(w, above)];
-        let [nu, nv, nw] = [simd.gt(below, u), simd.gt(below, v), simd.gt(below, w)];
-        (pu | pv | pw, nu | nv | nw, pu & pv & pw | nu & nv & nw)
-    }
-
-    /// The numerator of t, how far it may be off, the denominator, and how far that may be off.
-    #[inline(always)]
-    pub fn depth<const N: usize, S: Lanes<N, F32 = F>>(&self, simd: S, numerator: f32, least: f32) -> (F, F, F, F) {
-        let (largest, least) = (self.largest, simd.splat(least));
-        let above = simd.mul_add(largest, simd.mul(largest, simd.splat(numerator)), least);
-        let over = simd.mul_add(largest, simd.mul(largest, simd.splat(128.0 / (1u32 << 24) as f32)), least);
-        (dot(simd, self.f, self.q), above, self.denominator, over)
+        let passed = simd.gt(greatest, above) & simd.gt(below, least);
+        (!passed, simd.gt(least, above) | simd.gt(below, greatest))
     }
 }
 
@@ -86,12 +79,14 @@ pub(super) fn not_rejected<const N: usize, S: Lanes<N>>(
     d: [S::F32; 3],
     errors: &Bounds,
 ) -> u32 {
-    let weights = Weights::new(simd, triangle, o, d);
-    let (positive, negative, _) = weights.signs(simd, errors);
-    let (numerator, above, denominator, over) = weights.depth(simd, errors.numerator, errors.least);
+    let (weights, numerator, largest) = Weights::new(simd, triangle, o, d);
+    let (of_weight, _, over) = errors.of(simd, largest);
+    let (possible, _) = weights.signs(simd, of_weight);
+    let of_numerator = simd.mul(largest, simd.mul(largest, simd.splat(errors.numerator)));
+    let (above, denominator) = (simd.add(of_numerator, simd.splat(errors.least)), weights.denominator);
     let behind = simd.gt(numerator, above) & simd.gt(simd.neg(over), denominator)
         | simd.gt(simd.neg(above), numerator) & simd.gt(denominator, over);
-    !(positive & negative | behind)
+    possible & !behind
 }
 
 /// What the test in f32 needs of a ray.
@@ -105,13 +100,15 @@ pub struct BlockRay {
 }
 
 /// What the test in f32 needs of sixteen rays.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 #[repr(C, align(64))]
 pub struct BlockRays {
     /// Where they start, in the units that leaves keep, by axis.
     pub origin: [Column<f32>; 3],
     /// Scaled, by axis.
     pub direction: [Column<f32>; 3],
+    /// Whether all start at one point.
+    pub(super) share_origin: bool,
     pub(super) errors: Bounds,
 }
 
@@ -135,22 +132,52 @@ impl BlockRay {
 }
 
 impl BlockRays {
+    /// No rays.
+    pub const NONE: Self = Self {
+        origin: [[0.0; RAYS]; 3],
+        direction: [[0.0; RAYS]; 3],
+        share_origin: false,
+        errors: Bounds { weight: 0.0, numerator: 0.0, least: 0.0, depth: 0.0 },
+    };
+
+    /// The same with all that is computed in f32 taken for certain, as most ray tracers take it: what that would save can
+    /// be measured.
+    pub fn believed(mut self) -> Self {
+        self.errors = Bounds { weight: 0.0, numerator: 0.0, least: 0.0, depth: 0.0 };
+        self
+    }
+
+    /// Makes what it says of these rays true of others as well.
+    #[inline(always)]
+    pub fn unite(&mut self, others: &Self) {
+        let (a, b) = (&self.origin, &others.origin);
+        let is_shared = a[0][0] == b[0][0] && a[1][0] == b[1][0] && a[2][0] == b[2][0];
+        self.share_origin &= others.share_origin & is_shared;
+        let (errors, other) = (&mut self.errors, &others.errors);
+        errors.weight = greater(errors.weight, other.weight);
+        errors.numerator = greater(errors.numerator, other.numerator);
+        errors.least = greater(errors.least, other.least);
+        errors.depth = greater(errors.depth, other.depth);
+    }
+
     /// Sixteen rays from origins in the leaves' units; `largest` is the greatest L.
     #[inline(always)]
-    pub(super) fn new(origin: &[Column<f32>; 3], rays: &PlainRays, largest: f64) -> Self {
+    pub(super) fn new<S: Lanes<RAYS>>(simd: S, origin: &[Column<f32>; 3], rays: &PlainRays, largest: f64) -> Self {
         // What lies behind a ray is told by the interval of its `t`.
         let errors = Bounds::new(largest, false, rays.scale);
-        Self { origin: *origin, direction: rays.direction, errors }
+        let mut differ = 0;
+        for column in origin {
+            let (numbers, first) = (simd.load(column), simd.splat(column[0]));
+            differ |= simd.gt(numbers, first) | simd.gt(first, numbers);
+        }
+        Self { origin: *origin, direction: rays.direction, share_origin: differ == 0, errors }
     }
 
     /// Origins and directions, a vector of each coordinate.
     #[inline(always)]
     pub(super) fn load<S: Lanes<RAYS>>(&self, simd: S) -> ([S::F32; 3], [S::F32; 3]) {
         let (o, d) = (&self.origin, &self.direction);
-        (
-            [simd.load(&o[0]), simd.load(&o[1]), simd.load(&o[2])],
-            [simd.load(&d[0]), simd.load(&d[1]), simd.load(&d[2])],
-        )
+        ([simd.load(&o[0]), simd.load(&o[1]), simd.load(&o[2])], [simd.load(&d[0]), simd.load(&d[1]), simd.load(&d[2])])
     }
 
     /// One of them.
@@ -163,7 +190,7 @@ impl BlockRays {
 }
 
 /// Bounds on the errors of the test in f32.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Bounds {
     /// Of a weight over the largest edge.
     pub(super) weight: f32,
@@ -194,6 +221,18 @@ impl Bounds {
             depth: EdgeRay::depth_error(largest, scale),
         }
     }
+
+    /// Bounds on the errors of a weight, of the numerator and of the denominator of t, where the largest coordinate of
+    /// an edge is this.
+    #[inline(always)]
+    pub(super) fn of<const N: usize, S: Lanes<N>>(&self, simd: S, largest: S::F32) -> (S::F32, S::F32, S::F32) {
+        const DENOMINATOR: f32 = 128.0 / (1u32 << 24) as f32;
+        let (weight, least) = (simd.mul(largest, simd.splat(self.weight)), simd.splat(self.least));
+        // 64εLE² where the weight has 512εLE.
+        let numerator = simd.mul_add(simd.mul(largest, weight), simd.splat(0.125), least);
+        let denominator = simd.mul_add(simd.mul(largest, largest), simd.splat(DENOMINATOR), least);
+        (simd.add(weight, least), numerator, denominator)
+    }
 }
 
 #[inline(always)]
@@ -208,12 +247,12 @@ pub(super) fn sum<const N: usize, S: Lanes<N>>(simd: S, a: [S::F32; 3], b: [S::F
 
 /// The largest coordinate in magnitude.
 #[inline(always)]
-fn largest<const N: usize, S: Lanes<N>>(simd: S, v: [S::F32; 3]) -> S::F32 {
+pub(super) fn largest<const N: usize, S: Lanes<N>>(simd: S, v: [S::F32; 3]) -> S::F32 {
     simd.max(simd.max(simd.abs(v[0]), simd.abs(v[1])), simd.abs(v[2]))
 }
 
 #[inline(always)]
-fn cross<const N: usize, S: Lanes<N>>(simd: S, a: [S::F32; 3], b: [S::F32; 3]) -> [S::F32; 3] {
+pub(super) fn cross<const N: usize, S: Lanes<N>>(simd: S, a: [S::F32; 3], b: [S::F32; 3]) -> [S::F32; 3] {
     [
         simd.mul_sub(a[1], b[2], simd.mul(a[2], b[1])),
         simd.mul_sub(a[2], b[0], simd.mul(a[0], b[2])),
@@ -222,6 +261,6 @@ fn cross<const N: usize, S: Lanes<N>>(simd: S, a: [S::F32; 3], b: [S::F32; 3]) -
 }
 
 #[inline(always)]
-fn dot<const N: usize, S: Lanes<N>>(simd: S, a: [S::F32; 3], b: [S::F32; 3]) -> S::F32 {
+pub(super) fn dot<const N: usize, S: Lanes<N>>(simd: S, a: [S::F32; 3], b: [S::F32; 3]) -> S::F32 {
     simd.mul_add(a[2], b[2], simd.mul_add(a[1], b[1], simd.mul(a[0], b[0])))
 }

@@ -1,6 +1,5 @@
 //! The triangles of a tree's leaves in f32, side by side, and the first test of them.
 
-use super::RAYS;
 use super::pretest::{BlockRay, difference, not_rejected};
 use crate::math::Vec3;
 use crate::simd::Lanes;
@@ -102,27 +101,6 @@ impl<const N: usize> Rows<N> {
             (e, f) = (difference(simd, e, a), difference(simd, f, a));
         }
         [a, e, f]
-    }
-
-    /// The triangle in a lane of a leaf, in every lane of vectors.
-    #[inline(always)]
-    pub(super) fn splat<S: Lanes<RAYS>>(
-        &self,
-        simd: S,
-        first: usize,
-        count: u32,
-        lane: usize,
-        edges: bool,
-    ) -> [[S::F32; 3]; 3] {
-        let [a, mut e, mut f] = self.vectors(first, count, lane);
-        if !edges {
-            (e, f) = (e - a, f - a);
-        }
-        [
-            [simd.splat(a.x), simd.splat(a.y), simd.splat(a.z)],
-            [simd.splat(e.x), simd.splat(e.y), simd.splat(e.z)],
-            [simd.splat(f.x), simd.splat(f.y), simd.splat(f.z)],
-        ]
     }
 
     /// Of the lanes of a leaf, those that f32 cannot reject.

@@ -4,7 +4,7 @@ use super::answer::Answer;
 use super::errand::{Errand, Telling};
 use super::first::First;
 use super::winners::Winners;
-use super::{WideBvh, packet, single, wave};
+use super::{WideBvh, few, packet, single, wave};
 use crate::accel::query::Query;
 use crate::math::{RayBatch, coherence};
 use crate::shapes::triangle::Leaves;
@@ -55,6 +55,8 @@ impl<const N: usize, L: Leaves<N>, A: Answer> Kernel<N> for Firsts<'_, N, L, A> 
             miss(bvh, rays.len(), errand);
         } else if rays.len() < FEW {
             single::answer(simd, bvh, &rays, errand);
+        } else if let Some(leaves) = few::leaves(bvh) {
+            few::answer(simd, bvh, &leaves, errand);
         } else if coherence::is_coherent(rays, bvh.region.radius) {
             packet::answer(simd, bvh, errand);
         } else {

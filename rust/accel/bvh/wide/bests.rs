@@ -6,7 +6,7 @@ use super::first::Looking;
 use super::node::Packed;
 use super::sixteen::Sixteen;
 use crate::math::RayBatch;
-use crate::shapes::triangle::{Column, EdgeRay, Leaves, RAYS};
+use crate::shapes::triangle::{Column, EdgeRay, Leaves, RAYS, Spread};
 use crate::simd::Lanes;
 
 /// The best that is known of sixteen rays, by columns; see [`Best`].
@@ -22,12 +22,20 @@ pub struct Bests {
 }
 
 impl Bests {
+    /// Of no rays.
+    pub const NOTHING: Self = Self {
+        low: [0.0; RAYS],
+        high: [0.0; RAYS],
+        leaf: [f32::from_bits(Packed::NONE.bits()); RAYS],
+        lane: [0.0; RAYS],
+        answered: 0,
+    };
+
     /// Nothing, up to the `t_max` of each.
     #[inline(always)]
     pub fn none(rays: &Sixteen) -> Self {
         let [low, high] = rays.t_max;
-        let (leaf, lane) = ([f32::from_bits(Packed::NONE.bits()); RAYS], [0.0; RAYS]);
-        Self { low, high, leaf, lane, answered: 0 }
+        Self { low, high, ..Self::NOTHING }
     }
 
     /// The best that is known of a ray.
@@ -71,13 +79,12 @@ impl Bests {
         bvh: &WideBvh<N, L>,
         rays: &Sixteen,
         from: (&RayBatch<'_>, usize),
+        triangles: &Spread<N>,
         leaf: Packed,
         lane: u32,
         asked: u32,
     ) -> u32 {
-        let (first, count) = leaf.leaf();
-        let bracket = bvh.leaves.rays_bracket(simd, &rays.blocks, first, count, lane as usize, asked);
-        let Some(bracket) = bracket else { return 0 };
+        let Some(bracket) = triangles.bracket(simd, &rays.blocks, lane as usize, asked) else { return 0 };
         let (low, high) = (simd.load(&self.low), simd.load(&self.high));
         let (earliest, latest) = (simd.load(&rays.t_min[0]), simd.load(&rays.t_min[1]));
         let beyond = simd.gt(bracket.low, high) | simd.gt(earliest, bracket.high);

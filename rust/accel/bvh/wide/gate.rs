@@ -27,7 +27,7 @@ pub struct Gate<'a> {
 impl<'a> Gate<'a> {
     /// All rays of a batch; the tree is not empty.
     pub fn new<const N: usize, L>(bvh: &WideBvh<N, L>, rays: &'a RayBatch<'a>) -> Self {
-        Self { rays, bounds: bvh.nodes[0].bounds(), sixteen: Sixteen::default(), start: 0, next: 0, waiting: 0 }
+        Self { rays, bounds: bvh.nodes[0].bounds(), sixteen: Sixteen::NONE, start: 0, next: 0, waiting: 0 }
     }
 
     /// Looks at the next sixteen, of which there is at least one.
@@ -44,7 +44,7 @@ impl<'a> Gate<'a> {
         self.next += count;
         self.sixteen.take::<N, L, S>(simd, self.rays, self.start, &bvh.region);
         let Sixteen { plain, slabs, .. } = &self.sixteen;
-        let mut passing = here & plain.plain & !slabs.meeting(simd, &self.bounds);
+        let mut passing = here & plain.plain & !slabs.meeting(simd, &self.bounds, simd.load(&slabs.limit));
         self.waiting = here & !passing;
         while passing != 0 {
             errand.miss(self.start + passing.trailing_zeros() as usize);

@@ -6,6 +6,7 @@ mod best;
 mod bests;
 mod collapse;
 mod errand;
+mod few;
 mod first;
 mod gate;
 mod nearest;

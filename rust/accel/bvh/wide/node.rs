@@ -71,7 +71,7 @@ impl Packed {
 
     /// As it stands in [`WideNode::children`].
     #[inline(always)]
-    pub fn bits(self) -> u32 {
+    pub const fn bits(self) -> u32 {
         self.0
     }
 

@@ -1,7 +1,10 @@
-//! Sixteen rays together: nodes are tested against all of them at once, by intervals; only before what is below a child
-//! is visited are its box and each ray tested, and where few are left they go on alone. (Boulos et al., "Packet-based
-//! Whitted and Distribution Ray Tracing", 2007.) In leaves, a triangle is tested against all rays, or a ray against all
-//! triangles, whichever is less work.
+//! Up to four times sixteen rays together: nodes are tested against all of them at once, by intervals; only before what
+//! is below a child is visited are its box and each ray tested, sixteen at a time, and where few are left they go on
+//! alone. (Boulos et al., "Packet-based Whitted and Distribution Ray Tracing", 2007.) In leaves, a triangle is tested
+//! against sixteen rays, or a ray against all triangles, whichever is less work.
+//!
+//! A step waits for the one before, and for its outcome: what is done for many rays at once hides that. Sixteen alone
+//! take up to twice as long.
 //!
 //! The interval test: along an axis on which all rays go the same way, ray i meets the nearer plane of a box no earlier
 //! than `(plane − o) · r`, with o the latest origin of all rays, moved on by the pad, and r the least or the greatest
@@ -21,15 +24,18 @@ use crate::accel::slab::Clock;
 use crate::shapes::triangle::{ALL, Column, Leaves, Met, RAYS};
 use crate::simd::{Lanes, Simd};
 
-/// So many rays or fewer go on alone.
-const FEW: u32 = 4;
+/// So many rays or fewer go on alone, and so many more for each further sixteen that they are among.
+const FEW: [u32; 2] = [3, 2];
+
+/// Sixteens of a packet, at most.
+const SIXTEENS: usize = 4;
 
 /// Rays of one packet, all plain ([`Sixteen`]) and going the same way along every axis.
 struct Packet<'a> {
-    rays: &'a Sixteen,
-    bests: Bests,
+    rays: &'a [Sixteen],
+    bests: [Bests; SIXTEENS],
     /// Where in box units each loses interest; −∞ for rays that are answered or missing.
-    limit: Column<f32>,
+    limits: [Column<f32>; SIXTEENS],
     bounds: Bounds,
     /// The plane that is met first, by axis; for all rays.
     first: [usize; 3],
@@ -58,80 +64,110 @@ pub fn answer<const N: usize, L: Leaves<N>, S: Simd<N>, A: Answer>(
     let batch = errand.rays;
     let mut stack = Stacks::new::<N>(1, bvh.stack);
     let mut lone = Stacks::new::<N>(1, bvh.stack);
-    let mut rays = Sixteen::default();
-    for start in (0..batch.len()).step_by(RAYS) {
-        let count = RAYS.min(batch.len() - start);
-        let mut first = None;
-        if count as u32 > FEW {
-            rays.take::<N, L, _>(simd.sixteen(), batch, start, &bvh.region);
-            if rays.plain.plain == ALL {
-                first = rays.slabs.first(simd.sixteen());
+    let mut masks = vec![0; bvh.stack + 1 + N];
+    let mut rays = [const { Sixteen::NONE }; SIXTEENS];
+    let mut start = 0;
+    while start < batch.len() {
+        let (mut first, mut together) = (None, 0);
+        while together < SIXTEENS && start + together * RAYS + FEW[0] as usize <= batch.len() {
+            let sixteen = &mut rays[together];
+            sixteen.take::<N, L, _>(simd.sixteen(), batch, start + together * RAYS, &bvh.region);
+            let here = if sixteen.plain.plain == ALL { sixteen.slabs.first(simd.sixteen()) } else { None };
+            if here.is_none() || together > 0 && here != first {
+                break;
             }
+            (first, together) = (here, together + 1);
         }
-        let Some(first) = first else {
+        let count = (RAYS * together.max(1)).min(batch.len() - start);
+        if let Some(first) = first {
+            let rays = &mut rays[..together];
+            Sixteen::unite(rays);
+            let mut packet = Packet::new(simd.sixteen(), rays, first, start, count);
+            packet.walk(simd, bvh, errand, (&mut stack, &mut masks), &mut lone);
+            for (which, bests) in packet.bests[..together].iter().enumerate() {
+                let (start, count) = (start + which * RAYS, RAYS.min(count - which * RAYS));
+                if A::ANY {
+                    errand.answer.some(start, count, bests.answered, &Met::NONE, &[0; RAYS]);
+                } else {
+                    winners::settle(bvh, batch, start, count, bests, errand.answer);
+                }
+            }
+        } else {
             for i in start..start + count {
                 single::ask(simd, bvh, batch, i, errand, &mut lone);
             }
-            continue;
-        };
-        let mut packet = Packet::new(simd.sixteen(), &rays, first, start, count);
-        packet.walk(simd, bvh, errand, &mut stack, &mut lone);
-        if A::ANY {
-            errand.answer.some(start, count, packet.bests.answered, &Met::NONE, &[0; RAYS]);
-        } else {
-            winners::settle(bvh, batch, start, count, &packet.bests, errand.answer);
         }
+        start += count;
     }
     errand.winners.settle(bvh, batch, errand.answer);
 }
 
 impl Bounds {
     #[inline(always)]
-    fn of<S: Lanes<RAYS>>(simd: S, rays: &Sixteen, first: [usize; 3]) -> Self {
-        let (slabs, pad) = (&rays.slabs, simd.load(&rays.slabs.pad));
-        let t_min = simd.least(simd.load(&slabs.t_min));
+    fn of<S: Lanes<RAYS>>(simd: S, rays: &[Sixteen], first: [usize; 3]) -> Self {
+        let mut earliest = simd.splat(f32::INFINITY);
+        for sixteen in rays {
+            earliest = simd.min(earliest, simd.load(&sixteen.slabs.t_min));
+        }
+        let t_min = simd.least(earliest);
         let mut bounds = Self { near: [0.0; 3], far: [0.0; 3], inverse: [[0.0; 2]; 3], t_min };
         for axis in 0..3 {
             let towards = if first[axis] == 0 { 1.0 } else { -1.0 };
-            let origin = simd.mul(simd.load(&rays.plain.local[axis]), simd.splat(towards));
-            let size = simd.abs(simd.load(&slabs.inverse[axis]));
-            bounds.near[axis] = simd.greatest(simd.add(origin, pad)) * towards;
-            bounds.far[axis] = simd.least(simd.sub(origin, pad)) * towards;
-            bounds.inverse[axis] = [simd.least(size) * towards, simd.greatest(size) * towards];
+            let (mut near, mut longest) = (simd.splat(f32::NEG_INFINITY), simd.splat(f32::NEG_INFINITY));
+            let (mut far, mut shortest) = (simd.splat(f32::INFINITY), simd.splat(f32::INFINITY));
+            for sixteen in rays {
+                let pad = simd.load(&sixteen.slabs.pad);
+                let origin = simd.mul(simd.load(&sixteen.plain.local[axis]), simd.splat(towards));
+                near = simd.max(near, simd.add(origin, pad));
+                far = simd.min(far, simd.sub(origin, pad));
+                let size = simd.abs(simd.load(&sixteen.slabs.inverse[axis]));
+                longest = simd.max(longest, size);
+                shortest = simd.min(shortest, size);
+            }
+            bounds.near[axis] = simd.greatest(near) * towards;
+            bounds.far[axis] = simd.least(far) * towards;
+            bounds.inverse[axis] = [simd.least(shortest) * towards, simd.greatest(longest) * towards];
         }
         bounds
     }
 }
 
 impl<'a> Packet<'a> {
-    /// The first `count` of sixteen rays.
+    /// The first `count` of some sixteens.
     #[inline(always)]
-    fn new<S: Lanes<RAYS>>(simd: S, rays: &'a Sixteen, first: [usize; 3], start: usize, count: usize) -> Self {
-        let (mut limit, none) = ([0.0; RAYS], simd.splat(f32::NEG_INFINITY));
-        simd.store(simd.select(ALL >> (RAYS - count), simd.load(&rays.slabs.limit), none), &mut limit);
-        Self { rays, bests: Bests::none(rays), limit, bounds: Bounds::of(simd, rays, first), first, start }
+    fn new<S: Lanes<RAYS>>(simd: S, rays: &'a [Sixteen], first: [usize; 3], start: usize, count: usize) -> Self {
+        let none = simd.splat(f32::NEG_INFINITY);
+        let (mut limits, mut bests) = ([[f32::NEG_INFINITY; RAYS]; SIXTEENS], [const { Bests::NOTHING }; SIXTEENS]);
+        for (which, sixteen) in rays.iter().enumerate() {
+            let here = ALL >> (RAYS - RAYS.min(count - which * RAYS));
+            simd.store(simd.select(here, simd.load(&sixteen.slabs.limit), none), &mut limits[which]);
+            bests[which] = Bests::none(sixteen);
+        }
+        Self { rays, bests, limits, bounds: Bounds::of(simd, rays, first), first, start }
     }
 
     /// Where the last ray loses interest.
     #[inline(always)]
     fn last_limit<S: Lanes<RAYS>>(&self, simd: S) -> f32 {
-        simd.greatest(simd.load(&self.limit))
+        let [a, b, c, d] = &self.limits;
+        let most = simd.max(simd.max(simd.load(a), simd.load(b)), simd.max(simd.load(c), simd.load(d)));
+        simd.greatest(most)
     }
 
-    /// Visits all that any ray may hit.
+    /// Visits all that any ray may hit. With each child on the stack goes which of the sixteens may meet it.
     #[inline(always)]
     fn walk<const N: usize, L: Leaves<N>, S: Simd<N>, A: Answer>(
         &mut self,
         simd: S,
         bvh: &WideBvh<N, L>,
         errand: &mut First<'_, A>,
-        stack: &mut Stacks,
+        (stack, masks): (&mut Stacks, &mut [u8]),
         lone: &mut Stacks,
     ) {
         let octant = self.first[0] | self.first[1] << 1 | self.first[2] << 2;
         let mut limit = self.last_limit(simd.sixteen());
         let (bottom, mut index) = (1, 0);
-        let mut top = bottom;
+        let (mut top, mut mask) = (bottom, (1u8 << self.rays.len()) - 1);
         'down: loop {
             let node = &bvh.nodes[index];
             let (nears, fars) = self.interval(simd, node, limit);
@@ -140,6 +176,7 @@ impl<'a> Packet<'a> {
             for (lane, place) in places.iter_mut().enumerate() {
                 *place += lane as u32;
             }
+            *masks[top..].first_chunk_mut::<N>().expect("as long as the stack") = [mask; N];
             top += stack.push(simd, top, nears, fars, &places, node.order(octant));
             loop {
                 if top == bottom {
@@ -152,29 +189,44 @@ impl<'a> Packet<'a> {
                     continue;
                 }
                 let (parent, lane) = (&bvh.nodes[place as usize / N], place as usize & (N - 1));
-                let mut active = self.meeting(simd.sixteen(), parent, lane);
-                let child = Packed::of(parent.children[lane]);
+                let (asked, child) = (masks[top], Packed::of(parent.children[lane]));
+                let mut active = [0; SIXTEENS];
+                let mut count = 0;
+                mask = 0;
+                for which in 0..self.rays.len() {
+                    if asked >> which & 1 == 1 {
+                        active[which] = self.meeting(simd.sixteen(), which, parent, lane);
+                        mask |= u8::from(active[which] != 0) << which;
+                        count += active[which].count_ones();
+                    }
+                }
                 if child.is_leaf() == 1 {
-                    if active != 0 && self.visit_leaf::<N, L, S, A>(simd, bvh, child, active, errand) {
+                    if mask != 0 && self.visit_leaf::<N, L, S, A>(simd, bvh, child, active, errand) {
                         limit = self.last_limit(simd.sixteen());
                     }
                     continue;
                 }
-                if active.count_ones() > FEW {
+                if count == 0 {
+                    continue;
+                }
+                if count > FEW[0] + FEW[1] * (mask.count_ones() - 1) {
                     index = child.node();
                     continue 'down;
                 }
-                while active != 0 {
-                    let i = active.trailing_zeros() as usize & (RAYS - 1);
-                    active &= active - 1;
-                    self.walk_alone(simd, bvh, child, i, errand, lone);
+                for which in 0..self.rays.len() {
+                    let mut active = active[which];
+                    while active != 0 {
+                        let i = active.trailing_zeros() as usize & (RAYS - 1);
+                        active &= active - 1;
+                        self.walk_alone(simd, bvh, child, which, i, errand, lone);
+                    }
                 }
                 limit = self.last_limit(simd.sixteen());
             }
         }
     }
 
-    /// Tests a leaf against the rays in `active`: each triangle against all of them, or each of them against all
+    /// Tests a leaf against the rays in `active`: each triangle against sixteen of them, or each of them against all
     /// triangles. Whether some have a new limit.
     #[inline(always)]
     fn visit_leaf<const N: usize, L: Leaves<N>, S: Simd<N>, A: Answer>(
@@ -182,45 +234,53 @@ impl<'a> Packet<'a> {
         simd: S,
         bvh: &WideBvh<N, L>,
         leaf: Packed,
-        active: u32,
+        active: [u32; SIXTEENS],
         errand: &First<'_, A>,
     ) -> bool {
-        let (_, count) = leaf.leaf();
-        let mut changed = 0;
-        if active.count_ones() <= count {
-            let mut rest = active;
-            while rest != 0 {
-                let i = rest.trailing_zeros() as usize & (RAYS - 1);
-                rest &= rest - 1;
-                let mut ray = self.bests.looking(self.rays, i, self.start);
-                let has_changed = if A::ANY {
-                    ray.visit::<true, N, L, S>(simd, &bvh.leaves, &bvh.region, leaf, errand.rays)
-                } else {
-                    ray.visit::<false, N, L, S>(simd, &bvh.leaves, &bvh.region, leaf, errand.rays)
-                };
-                if !A::ANY {
-                    // What has won may lie no nearer in f32.
-                    self.bests.note(i, ray.best);
-                }
-                changed |= u32::from(has_changed) << i;
+        let (first, count) = leaf.leaf();
+        let triangles = bvh.leaves.spread(simd, &self.rays[0].blocks, first, count);
+        let mut has_changed = false;
+        for which in 0..self.rays.len() {
+            let (active, mut changed) = (active[which], 0);
+            if active == 0 {
+                continue;
             }
-        } else {
-            let from = (errand.rays, self.start);
-            for lane in 0..count {
-                if A::ANY {
-                    // What is answered is asked no more.
-                    let asked = active & !changed;
-                    changed |= self.bests.test::<true, N, L, _>(simd.sixteen(), bvh, self.rays, from, leaf, lane, asked);
-                } else {
-                    changed |=
-                        self.bests.test::<false, N, L, _>(simd.sixteen(), bvh, self.rays, from, leaf, lane, active);
+            let (rays, bests, start) = (&self.rays[which], &mut self.bests[which], self.start + which * RAYS);
+            if 3 * active.count_ones() <= 2 * count {
+                let mut rest = active;
+                while rest != 0 {
+                    let i = rest.trailing_zeros() as usize & (RAYS - 1);
+                    rest &= rest - 1;
+                    let mut ray = bests.looking(rays, i, start);
+                    let has_changed = if A::ANY {
+                        ray.visit::<true, N, L, S>(simd, &bvh.leaves, &bvh.region, leaf, errand.rays)
+                    } else {
+                        ray.visit::<false, N, L, S>(simd, &bvh.leaves, &bvh.region, leaf, errand.rays)
+                    };
+                    if !A::ANY {
+                        // What has won may lie no nearer in f32.
+                        bests.note(i, ray.best);
+                    }
+                    changed |= u32::from(has_changed) << i;
                 }
+            } else {
+                let from = (errand.rays, start);
+                for lane in 0..count {
+                    let simd = simd.sixteen();
+                    changed |= if A::ANY {
+                        // What is answered is asked no more.
+                        bests.test::<true, N, L, _>(simd, bvh, rays, from, &triangles, leaf, lane, active & !changed)
+                    } else {
+                        bests.test::<false, N, L, _>(simd, bvh, rays, from, &triangles, leaf, lane, active)
+                    };
+                }
+            }
+            if changed != 0 {
+                has_changed = true;
+                self.lose_interest::<N, L, _, A>(simd.sixteen(), bvh, which, changed);
             }
         }
-        if changed != 0 {
-            self.lose_interest::<N, L, _, A>(simd.sixteen(), bvh, changed);
-        }
-        changed != 0
+        has_changed
     }
 
     /// Takes note of new limits of some rays.
@@ -229,40 +289,46 @@ impl<'a> Packet<'a> {
         &mut self,
         simd: S,
         bvh: &WideBvh<N, L>,
+        which: usize,
         changed: u32,
     ) {
         // A power of two, or too great for an f32, and then nothing is left out.
         let to_box = (bvh.region.scale / L::unit(&bvh.region)) as f32;
+        let (bests, limits) = (&mut self.bests[which], &mut self.limits[which]);
         let limit = if A::ANY {
-            self.bests.answered |= changed;
+            bests.answered |= changed;
             simd.splat(f32::NEG_INFINITY)
         } else if to_box <= f32::MAX {
             let least = simd.splat(f32::MIN_POSITIVE);
-            simd.mul_add(simd.load(&self.bests.high), simd.splat(to_box), least)
+            simd.mul_add(simd.load(&bests.high), simd.splat(to_box), least)
         } else {
             simd.splat(f32::INFINITY)
         };
-        simd.store(simd.select(changed, limit, simd.load(&self.limit)), &mut self.limit);
+        let limit = simd.select(changed, limit, simd.load(limits));
+        simd.store(limit, limits);
     }
 
     #[inline(always)]
+    #[allow(clippy::too_many_arguments)]
     fn walk_alone<const N: usize, L: Leaves<N>, S: Simd<N>, A: Answer>(
         &mut self,
         simd: S,
         bvh: &WideBvh<N, L>,
         child: Packed,
+        which: usize,
         i: usize,
         errand: &mut First<'_, A>,
         stacks: &mut Stacks,
     ) {
-        let mut ray = self.bests.looking(self.rays, i, self.start);
-        let boxes = self.rays.boxes(i, self.limit[i], child, 0);
+        let (rays, bests, limits) = (&self.rays[which], &mut self.bests[which], &mut self.limits[which]);
+        let mut ray = bests.looking(rays, i, self.start + which * RAYS);
+        let boxes = rays.boxes(i, limits[i], child, 0);
         if single::walk(simd, bvh, boxes, errand, &mut ray, stacks) {
-            self.bests.answered |= 1 << i;
-            self.limit[i] = f32::NEG_INFINITY;
+            bests.answered |= 1 << i;
+            limits[i] = f32::NEG_INFINITY;
         } else if !A::ANY {
-            self.bests.note(i, ray.best);
-            self.limit[i] = Clock::of(&bvh.region).limit(f64::from(ray.best.high) / L::unit(&bvh.region));
+            bests.note(i, ray.best);
+            limits[i] = Clock::of(&bvh.region).limit(f64::from(ray.best.high) / L::unit(&bvh.region));
         }
     }
 
@@ -283,11 +349,11 @@ impl<'a> Packet<'a> {
         (nears, fars)
     }
 
-    /// The rays that meet the box in one lane of a node.
+    /// Those of sixteen rays that meet the box in one lane of a node.
     #[inline(always)]
-    fn meeting<const N: usize, S: Lanes<RAYS>>(&self, simd: S, node: &WideNode<N>, lane: usize) -> u32 {
-        let slabs = &self.rays.slabs;
-        let (mut nears, mut fars) = (simd.load(&slabs.t_min), simd.load(&self.limit));
+    fn meeting<const N: usize, S: Lanes<RAYS>>(&self, simd: S, which: usize, node: &WideNode<N>, lane: usize) -> u32 {
+        let slabs = &self.rays[which].slabs;
+        let (mut nears, mut fars) = (simd.load(&slabs.t_min), simd.load(&self.limits[which]));
         for axis in 0..3 {
             let first = self.first[axis] & 1;
             let inverse = simd.load(&slabs.inverse[axis]);

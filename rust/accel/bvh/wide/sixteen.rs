@@ -9,7 +9,7 @@ use crate::shapes::triangle::{BlockRays, Column, Leaves, PlainRays, RAYS};
 use crate::simd::Lanes;
 
 /// Sixteen rays of a batch; of those that are not plain nothing is said.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct Sixteen {
     pub plain: PlainRays,
     pub slabs: SlabRays,
@@ -21,6 +21,27 @@ pub struct Sixteen {
 }
 
 impl Sixteen {
+    /// No rays.
+    pub const NONE: Self = Self {
+        plain: PlainRays::NONE,
+        slabs: SlabRays::NONE,
+        blocks: BlockRays::NONE,
+        t_min: [[0.0; RAYS]; 2],
+        t_max: [[0.0; RAYS]; 2],
+    };
+
+    /// Has some of them meet triangles by the same bounds.
+    #[inline(always)]
+    pub fn unite(some: &mut [Self]) {
+        let Some((sixteen, others)) = some.split_first_mut() else { return };
+        for other in &*others {
+            sixteen.blocks.unite(&other.blocks);
+        }
+        for other in others {
+            other.blocks.unite(&sixteen.blocks);
+        }
+    }
+
     /// Takes up to sixteen rays, at least one; the last stands for those that are missing.
     #[inline(always)]
     pub fn take<const N: usize, L: Leaves<N>, S: Lanes<RAYS>>(
