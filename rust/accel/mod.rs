@@ -32,6 +32,7 @@ pub use query::Wanted;
 use crate::math::{DVec3, Hit, Ray, Region};
 use crate::shapes::Bounds;
 use crate::shapes::triangle::SolidCone;
+use crate::work::Work;
 use parity::Parity;
 use query::{Answers, Any, Closest, Counted, Every};
 use rayon::prelude::*;
@@ -54,6 +55,13 @@ pub trait Primitives: Sync {
     /// What is no triangle; none if there is no such thing.
     fn objects(&self) -> Option<Arc<dyn Objects>> {
         None
+    }
+
+    /// Who watches what is made over them, and may stop it: nobody, unless it is said.
+    ///
+    /// An accelerator that was stopped holds nothing, and is of no use: whoever stops it drops it.
+    fn work(&self) -> Work<'_> {
+        Work::UNWATCHED
     }
 
     /// Whether it is a triangle that can be hit: not if a corner is NaN or infinite.

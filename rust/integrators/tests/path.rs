@@ -71,7 +71,7 @@ fn a_furnace_of_copies_shines_as_one_of_walls() {
     }
 }
 
-fn brute(geometry: &Geometry) -> Box<dyn Accelerator> {
+fn brute(geometry: &dyn Primitives) -> Box<dyn Accelerator> {
     BruteForce::over(geometry, Level::Scalar)
 }
 

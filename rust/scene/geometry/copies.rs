@@ -222,11 +222,11 @@ mod tests {
     use crate::scene::{Departure, Geometry, Mesh, Scene, SceneDescription, Shape};
     use crate::simd::Level;
 
-    fn tree(geometry: &Geometry) -> Box<dyn Accelerator> {
+    fn tree(geometry: &dyn Primitives) -> Box<dyn Accelerator> {
         trees::over(geometry, &Options::default(), Level::current().unwrap())
     }
 
-    fn brute(geometry: &Geometry) -> Box<dyn Accelerator> {
+    fn brute(geometry: &dyn Primitives) -> Box<dyn Accelerator> {
         BruteForce::over(geometry, Level::Scalar)
     }
 
@@ -234,7 +234,7 @@ mod tests {
         Shape { surface: copies.into(), ..Shape::default() }
     }
 
-    fn compiled(shapes: Vec<Shape>, build: fn(&Geometry) -> Box<dyn Accelerator>) -> Scene {
+    fn compiled(shapes: Vec<Shape>, build: fn(&dyn Primitives) -> Box<dyn Accelerator>) -> Scene {
         Scene::new(SceneDescription { shapes, ..Default::default() }, build).unwrap()
     }
 

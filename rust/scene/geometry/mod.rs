@@ -11,12 +11,14 @@ mod pose;
 mod rounding;
 mod surfaces;
 mod vertices;
+mod watched;
 
 pub use copies::{BadTransform, Copies, Matrix, check_transforms};
 pub use group::Group;
 pub use rounding::{Precision, Rounding, rounded};
 pub use surfaces::Surfaces;
 pub use vertices::Vertices;
+pub(in crate::scene) use watched::Watched;
 
 use super::SurfacePoint;
 use super::textures::Needs;
