@@ -78,17 +78,22 @@ pub trait Primitives: Sync {
         self.objects()?.bounds(primitive)
     }
 
-    /// Where the primitives lie that can be hit, but for those without end.
+    /// Where the primitives lie that can be hit, but for those without end: [`region`], unless that is known.
     fn region(&self) -> Region {
-        let nothing = || (DVec3::INFINITY, DVec3::NEG_INFINITY);
-        let join = |a: (DVec3, DVec3), b: (DVec3, DVec3)| (a.0.min(b.0), a.1.max(b.1));
-        let (min, max) = (0..self.count() as u32)
-            .into_par_iter()
-            .filter_map(|p| self.bounds(p).filter(Bounds::is_finite))
-            .map(|b| (b.min, b.max))
-            .reduce(nothing, join);
-        Region::new(min, max)
+        region(self.count(), |p| self.bounds(p))
     }
+}
+
+/// Where all of so many lie that have bounds, and an end.
+pub fn region(count: usize, bounds: impl Fn(u32) -> Option<Bounds> + Sync) -> Region {
+    let nothing = || (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    let join = |a: (DVec3, DVec3), b: (DVec3, DVec3)| (a.0.min(b.0), a.1.max(b.1));
+    let (min, max) = (0..count as u32)
+        .into_par_iter()
+        .filter_map(|p| bounds(p).filter(Bounds::is_finite))
+        .map(|b| (b.min, b.max))
+        .reduce(nothing, join);
+    Region::new(min, max)
 }
 
 /// Finds hits among primitives. Every accelerator gives the same answers, ties included: of equal `t`, the lowest

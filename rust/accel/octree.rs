@@ -124,10 +124,8 @@ pub fn build(input: &Input, options: &Options) -> (Box<dyn Structure>, Lists) {
         let Some((children, rooms)) = parted else {
             tree.depth = tree.depth.max(cell.depth);
             told += room.steps();
-            if told > Room::STEPS / 1000 {
-                if steps.did(std::mem::take(&mut told)).is_err() {
-                    break;
-                }
+            if told > Room::STEPS / 1000 && steps.did(std::mem::take(&mut told)).is_err() {
+                break;
             }
             tree.sah_cost += share * parts.len() as f64;
             if !parts.is_empty() {

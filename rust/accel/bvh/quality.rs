@@ -130,7 +130,8 @@ impl Steps {
         // What is not wanted any more is cut no further.
         let clip = |p: u32, to: &Aabb| if work.is_stopped() { Aabb::EMPTY } else { clip(p, to) };
         let cut = self.cuts.and_then(|cuts| Some((cuts.builder, Pieces::cut(&boxes, clip, &cuts.options)?)));
-        cut_first.steps(1).did(1)?;
+        cut_first.done();
+        work.goes_on()?;
         let (mut bvh, mut name) = if let Some((builder, pieces)) = cut {
             let builder = builder.over_pieces(boxes.len(), pieces.boxes.len());
             drop(boxes);

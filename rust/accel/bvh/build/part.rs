@@ -57,7 +57,8 @@ impl Part {
 
     /// Makes a tree of it, over primitives in some order: that which the parts list, if they do.
     pub fn assemble(self, mut order: Vec<u32>, work: Work) -> Result<BinaryBvh, Stopped> {
-        let mut nodes = work.collect(self.below() + 1, |_| Node::leaf(Aabb::EMPTY, 0, 0))?;
+        let [make, place] = work.parts([1.0, 3.0]);
+        let mut nodes = make.collect(self.below() + 1, |_| Node::leaf(Aabb::EMPTY, 0, 0))?;
         let (root, below) = nodes.split_at_mut(1);
         if self.listed() > 0 {
             order = vec![0; self.listed()];
@@ -65,6 +66,7 @@ impl Part {
         } else {
             self.place(&mut root[0], Target { base: 1, below, first: 0, order: &mut [] });
         }
+        place.done();
         Ok(BinaryBvh { nodes, order })
     }
 

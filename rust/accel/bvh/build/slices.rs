@@ -30,6 +30,7 @@ pub fn write(root: impl Subtree, count: usize, work: Work) -> Result<BinaryBvh, 
     let (mut order, steps) = (vec![0; count], fill.steps(count));
     let (top, below) = nodes.split_at_mut(1);
     subtree(root, &mut top[0], Target { base: 1, below, first: 0, order: &mut order }, &steps)?;
+    fill.done();
     Ok(BinaryBvh { nodes, order })
 }
 

@@ -50,7 +50,8 @@ pub fn optimise(bvh: &mut BinaryBvh, options: &Options, work: Work) -> Result<()
     let worthwhile = f64::from(options.worthwhile) * tree.cost();
     let batch = (tree.len() as f64 * f64::from(options.share)) as usize;
     let mut rests_until = vec![0; tree.len()];
-    open.steps(1).did(1)?;
+    open.done();
+    open.goes_on()?;
     let steps = improve.steps(options.rounds as usize);
     for round in 0..options.rounds {
         let seekers = largest(&tree, batch, |node| rests_until[node as usize] <= round);
@@ -77,7 +78,8 @@ pub fn optimise(bvh: &mut BinaryBvh, options: &Options, work: Work) -> Result<()
         }
     }
     *bvh = tree.lay_out(bvh);
-    place.steps(1).did(1)
+    place.done();
+    Ok(())
 }
 
 /// About so many of the largest nodes for which `is_asked` holds, in the order of their numbers; the root is none of

@@ -25,7 +25,8 @@ impl<const N: usize, L: Leaves<N>> WideBvh<N, L> {
         // Leaves take more memory than anything else that is kept.
         drop(binary);
         let wide = Self::with(nodes, &outline, primitives, region, options);
-        last.steps(1).did(1)?;
+        last.done();
+        last.goes_on()?;
         Ok(wide)
     }
 
@@ -243,8 +244,8 @@ impl<const N: usize> Outline<N> {
     }
 
     fn new(binary: &BinaryBvh, plan: &Plan<N>, work: Work) -> Result<Self, Stopped> {
-        /// So many nodes between two looks up.
-        const SOME: usize = 4096;
+        /// So many primitives between two looks up.
+        const SOME: usize = 1 << 14;
         let steps = work.steps(binary.order.len());
         let mut told = 0;
         let order = Vec::with_capacity(binary.order.len());
@@ -252,7 +253,7 @@ impl<const N: usize> Outline<N> {
         let mut open = vec![(0, 0u32, 0)];
         while let Some((index, top, depth)) = open.pop() {
             outline.depth = outline.depth.max(depth + 1);
-            if outline.nodes.len() % SOME == 0 {
+            if outline.order.len() - told >= SOME {
                 steps.did(outline.order.len() - told)?;
                 told = outline.order.len();
             }
