@@ -124,8 +124,8 @@ impl Steps {
         work: Work,
     ) -> Result<(BinaryBvh, String), Stopped> {
         let boxes = boxes.into();
-        let cutting = if self.cuts.is_some() { 1.0 } else { 0.0 };
-        let improving = 4.0 * self.optimisers.iter().count() as f32;
+        let cutting = if self.cuts.is_some() { 4.0 } else { 0.0 };
+        let improving = 2.0 * self.optimisers.iter().count() as f32;
         let [cut_first, grow, improve] = work.parts([cutting, 8.0, improving]);
         // What is not wanted any more is cut no further.
         let clip = |p: u32, to: &Aabb| if work.is_stopped() { Aabb::EMPTY } else { clip(p, to) };

@@ -34,7 +34,7 @@ pub fn build<'a>(boxes: impl Into<Cow<'a, [Aabb]>>, options: &Options, work: Wor
     let Options { bins, leaves } = *options;
     assert!((2..=MAX_BINS).contains(&bins), "bins is {bins}, not from 2 to {MAX_BINS}");
     leaves.check();
-    let [gather, grow, list, place] = work.parts([2.0, 40.0, 1.0, 4.0]);
+    let [gather, grow, list, place] = work.parts([2.0, 36.0, 2.0, 6.0]);
     let mut references = references(boxes, gather)?;
     if references.is_empty() {
         return Ok(BinaryBvh::default());

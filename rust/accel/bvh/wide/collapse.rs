@@ -20,7 +20,7 @@ impl<const N: usize, L: Leaves<N>> WideBvh<N, L> {
         options: &Options,
         work: Work,
     ) -> Result<Self, Stopped> {
-        let [outline, last] = work.parts([3.0, 2.0]);
+        let [outline, last] = work.parts([1.0, 1.0]);
         let (outline, nodes) = Outline::of(&binary, options, N as u32, outline)?;
         // Leaves take more memory than anything else that is kept.
         drop(binary);

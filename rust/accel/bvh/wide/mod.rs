@@ -123,7 +123,7 @@ impl<const N: usize, L: Leaves<N>> WideBvh<N, L> {
 
     fn build(primitives: &dyn Primitives, options: &Options) -> Result<Self, Stopped> {
         let region = primitives.region();
-        let [surround, grow, collapse] = primitives.work().parts([2.0, 20.0, 5.0]);
+        let [surround, grow, collapse] = primitives.work().parts([3.0, 14.0, 5.0]);
         let boxes = surround.collect(primitives.count(), |p| aabb(primitives, &region, p as u32))?;
         let count = boxes.par_iter().filter(|b| !b.is_empty()).count();
         let (binary, name) = options.steps(N).build(boxes, |p, to| clip(primitives, &region, p, to), grow)?;
