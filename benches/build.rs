@@ -10,6 +10,7 @@ use raywright::accel::Primitives;
 use raywright::accel::bvh::build::{Leaves, binned};
 use raywright::accel::bvh::{self, Options, Quality};
 use raywright::simd::Level;
+use raywright::work::Work;
 
 const SIZES: [usize; 4] = [1_000, 10_000, 100_000, 1_000_000];
 
@@ -23,8 +24,8 @@ fn binary(bencher: Bencher, size: usize) {
     let region = triangles.region();
     let boxes: Vec<_> = (0..triangles.count() as u32).map(|p| region.aabb(triangles.corners(p))).collect();
     let options = binned::Options { bins: Quality::FastBuild.bins(), leaves: Leaves::for_blocks(8) };
-    binned::build(&boxes, &options).validate(&boxes).expect("a valid tree");
-    bencher.counter(ItemsCount::new(boxes.len())).bench_local(|| binned::build(&boxes, &options));
+    binned::build(&boxes, &options, Work::UNWATCHED).unwrap().validate(&boxes).expect("a valid tree");
+    bencher.counter(ItemsCount::new(boxes.len())).bench_local(|| binned::build(&boxes, &options, Work::UNWATCHED));
 }
 
 #[divan::bench(args = SIZES, sample_count = 3, sample_size = 1)]

@@ -2,7 +2,9 @@
 
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::collections::HashMap;
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::time::Duration;
 
@@ -95,6 +97,33 @@ pub fn watched<T: Send>(
     Ok(value.expect("work that does not panic leaves a result"))
 }
 
+/// Does `work` on the pool of so many threads while the calling thread calls `watch` 50 times a second. When that says
+/// false, nobody waits any longer, and nothing is given. What is left so ends on its own, and had better be told to.
+pub fn unless_left<T: Send + 'static>(
+    threads: Option<usize>,
+    work: impl FnOnce() -> T + Send + 'static,
+    mut watch: impl FnMut() -> bool,
+) -> Result<Option<T>, String> {
+    let pool = pool(threads)?;
+    if pool.current_thread_index().is_some() {
+        // As in `watched`.
+        return Ok(Some(work()));
+    }
+    let (send, receive) = channel();
+    pool.spawn(move || {
+        // Whoever has left receives nothing; what was made is dropped here.
+        let _ = send.send(catch_unwind(AssertUnwindSafe(work)));
+    });
+    loop {
+        match receive.recv_timeout(WATCH) {
+            Ok(done) => return done.map_or_else(|panic| resume_unwind(panic), |value| Ok(Some(value))),
+            Err(RecvTimeoutError::Timeout) if watch() => {}
+            Err(RecvTimeoutError::Timeout) => return Ok(None),
+            Err(RecvTimeoutError::Disconnected) => return Err("work has ended without a result".into()),
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -141,6 +170,32 @@ mod tests {
             },
         );
         assert_eq!((raised, looks), (Ok(true), 2));
+    }
+
+    #[test]
+    fn work_that_nobody_waits_for_is_left() {
+        assert_eq!(unless_left(Some(2), || 7, || true), Ok(Some(7)));
+        let (release, held) = channel::<()>();
+        let (start, mut looks) = (Instant::now(), 0);
+        let left = unless_left(
+            Some(1),
+            move || held.recv_timeout(Duration::from_secs(20)).is_ok(),
+            || {
+                looks += 1;
+                looks < 2
+            },
+        );
+        assert_eq!((left, looks), (Ok(None), 2));
+        assert!(start.elapsed() < Duration::from_secs(10));
+        // The one thread of its pool is free again once the work ends.
+        release.send(()).unwrap();
+        assert_eq!(unless_left(Some(1), || 8, || true), Ok(Some(8)));
+    }
+
+    #[test]
+    #[should_panic(expected = "from within")]
+    fn panics_of_what_can_be_left_come_through() {
+        let _ = unless_left(Some(1), || panic!("from within"), || true);
     }
 
     #[test]

@@ -77,7 +77,9 @@ class AcceleratorInfo:
 class CompiledScene:
     """A scene ready for rays, read by attribute from a `raywright.Scene` (shapes, lights, environment)."""
 
-    def __new__(cls, scene: Any, accelerator: Any) -> CompiledScene: ...
+    def __new__(
+        cls, scene: Any, accelerator: Any, progress: Callable[[float], object] | None = None
+    ) -> CompiledScene: ...
     def refitted(self, scene: Any) -> CompiledScene | None:
         """Fit the accelerator to a scene of the same faces; None if that cannot be done."""
     def intersect(

@@ -43,7 +43,7 @@ impl<L: Leaves<LANES>> BruteForce<L> {
         let order = all(primitives);
         let count = order.len();
         let lists = Lists { counts: vec![count as u32], order };
-        let contents = Contents::new(&Input { region, boxes: Vec::new(), primitives }, &lists);
+        let contents = Contents::new(&Input { region, boxes: Vec::new(), primitives, work: primitives.work() }, &lists);
         let info = Info {
             kind: format!("brute force, {}", L::PRECISION),
             precision: L::PRECISION,

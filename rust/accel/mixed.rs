@@ -7,6 +7,7 @@ use crate::math::{DVec3, Hit, Ray};
 use crate::shapes::Bounds;
 use crate::shapes::triangle::SolidCone;
 use crate::simd::Level;
+use crate::work::Work;
 use std::sync::Arc;
 
 /// An accelerator over both: `triangles` builds the one over triangles, `objects` that over the others. Where there is
@@ -18,8 +19,10 @@ pub fn mixed(
     objects: &Build,
 ) -> Box<dyn Accelerator> {
     let Some(kept) = primitives.objects() else { return triangles(primitives) };
-    let others = walked(&OnlyObjects(primitives, kept), level, Mailbox::Stamps, objects);
-    let triangles = triangles(&OnlyTriangles(primitives));
+    // One of them is no triangle, most are: what takes longer is seldom known before.
+    let [first, then] = primitives.work().parts([1.0, 3.0]);
+    let others = walked(&OnlyObjects(primitives, kept, first), level, Mailbox::Stamps, objects);
+    let triangles = triangles(&OnlyTriangles(primitives, then));
     if triangles.info().primitives == 0 {
         return others;
     }
@@ -27,7 +30,7 @@ pub fn mixed(
 }
 
 /// Primitives without those that are no triangles.
-struct OnlyTriangles<'a>(&'a dyn Primitives);
+struct OnlyTriangles<'a>(&'a dyn Primitives, Work<'a>);
 
 impl Primitives for OnlyTriangles<'_> {
     fn count(&self) -> usize {
@@ -39,15 +42,18 @@ impl Primitives for OnlyTriangles<'_> {
     fn is_single(&self) -> bool {
         self.0.is_single()
     }
+    fn work(&self) -> Work<'_> {
+        self.1
+    }
 }
 
 /// Primitives without triangles.
-struct OnlyObjects<'a>(&'a dyn Primitives, Arc<dyn Objects>);
+struct OnlyObjects<'a>(&'a dyn Primitives, Arc<dyn Objects>, Work<'a>);
 
 impl<'a> OnlyObjects<'a> {
     fn of(primitives: &'a dyn Primitives) -> Result<Self, String> {
         let objects = primitives.objects().ok_or("there are triangles only, and were others")?;
-        Ok(Self(primitives, objects))
+        Ok(Self(primitives, objects, primitives.work()))
     }
 }
 
@@ -60,6 +66,9 @@ impl Primitives for OnlyObjects<'_> {
     }
     fn is_single(&self) -> bool {
         true
+    }
+    fn work(&self) -> Work<'_> {
+        self.2
     }
     fn objects(&self) -> Option<Arc<dyn Objects>> {
         Some(self.1.clone())
@@ -185,13 +194,13 @@ impl Accelerator for Mixed {
     }
 
     fn refitted(&self, primitives: &dyn Primitives) -> Result<Box<dyn Accelerator>, String> {
-        let triangles = self.triangles.refitted(&OnlyTriangles(primitives))?;
+        let triangles = self.triangles.refitted(&OnlyTriangles(primitives, primitives.work()))?;
         let objects = self.objects.refitted(&OnlyObjects::of(primitives)?)?;
         Ok(Box::new(Self::of(triangles, objects)))
     }
 
     fn validate(&self, primitives: &dyn Primitives) -> Result<(), String> {
-        self.triangles.validate(&OnlyTriangles(primitives))?;
+        self.triangles.validate(&OnlyTriangles(primitives, primitives.work()))?;
         self.objects.validate(&OnlyObjects::of(primitives)?)
     }
 

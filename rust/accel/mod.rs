@@ -32,6 +32,7 @@ pub use query::Wanted;
 use crate::math::{DVec3, Hit, HitColumns, Ray, RayColumns, Region};
 use crate::shapes::Bounds;
 use crate::shapes::triangle::SolidCone;
+use crate::work::Work;
 use parity::Parity;
 use query::{Answers, Counted, Every};
 use rayon::prelude::*;
@@ -56,6 +57,13 @@ pub trait Primitives: Sync {
         None
     }
 
+    /// Who watches what is made over them, and may stop it: nobody, unless it is said.
+    ///
+    /// An accelerator that was stopped holds nothing, and is of no use: whoever stops it drops it.
+    fn work(&self) -> Work<'_> {
+        Work::UNWATCHED
+    }
+
     /// Whether it is a triangle that can be hit: not if a corner is NaN or infinite.
     fn is_finite(&self, primitive: u32) -> bool {
         self.corners(primitive).iter().all(|c| c.is_finite())
@@ -70,17 +78,22 @@ pub trait Primitives: Sync {
         self.objects()?.bounds(primitive)
     }
 
-    /// Where the primitives lie that can be hit, but for those without end.
+    /// Where the primitives lie that can be hit, but for those without end: [`region`], unless that is known.
     fn region(&self) -> Region {
-        let nothing = || (DVec3::INFINITY, DVec3::NEG_INFINITY);
-        let join = |a: (DVec3, DVec3), b: (DVec3, DVec3)| (a.0.min(b.0), a.1.max(b.1));
-        let (min, max) = (0..self.count() as u32)
-            .into_par_iter()
-            .filter_map(|p| self.bounds(p).filter(Bounds::is_finite))
-            .map(|b| (b.min, b.max))
-            .reduce(nothing, join);
-        Region::new(min, max)
+        region(self.count(), |p| self.bounds(p))
     }
+}
+
+/// Where all of so many lie that have bounds, and an end.
+pub fn region(count: usize, bounds: impl Fn(u32) -> Option<Bounds> + Sync) -> Region {
+    let nothing = || (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    let join = |a: (DVec3, DVec3), b: (DVec3, DVec3)| (a.0.min(b.0), a.1.max(b.1));
+    let (min, max) = (0..count as u32)
+        .into_par_iter()
+        .filter_map(|p| bounds(p).filter(Bounds::is_finite))
+        .map(|b| (b.min, b.max))
+        .reduce(nothing, join);
+    Region::new(min, max)
 }
 
 /// Finds hits among primitives. Every accelerator gives the same answers, ties included: of equal `t`, the lowest

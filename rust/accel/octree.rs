@@ -113,12 +113,20 @@ pub fn build(input: &Input, options: &Options) -> (Box<dyn Structure>, Lists) {
     tree.nodes.push(Node::EMPTY);
     let room = Room::new(parts.len(), max_depth);
     let mut open = vec![(Cell { node: 0, aabb: bounds, at: [0; 3], depth: 0 }, parts, room)];
+    let (steps, mut told) = (input.work.steps(Room::STEPS), 0);
     while let Some((cell, parts, room)) = open.pop() {
+        if parts.len() > SHARE && steps.is_stopped() {
+            break;
+        }
         // A child has a quarter of its parent's surface, and so as much of its rays.
         let share = 0.25f64.powi(cell.depth as i32);
         let parted = if parts.len() > leaf_size { tree.parted(input, &cell, &parts, room) } else { None };
         let Some((children, rooms)) = parted else {
             tree.depth = tree.depth.max(cell.depth);
+            told += room.steps();
+            if told > Room::STEPS / 1000 && steps.did(std::mem::take(&mut told)).is_err() {
+                break;
+            }
             tree.sah_cost += share * parts.len() as f64;
             if !parts.is_empty() {
                 tree.nodes[cell.node] = Node::leaf(lists.counts.len());

@@ -1,7 +1,7 @@
 //! Answers every question by walking a structure.
 
 use super::query::{Answers, Query, Wanted};
-use super::walk::{Build, Contents, Input, Mailbox, Mailboxes, Marks, Structure, TogetherBatch};
+use super::walk::{Build, Contents, Input, Lists, Mailbox, Mailboxes, Marks, Structure, TogetherBatch};
 use super::{Accelerator, Info, Nearest, Primitives, SlabRay, Touches, bvh};
 use crate::math::{Aabb, DVec3, Ray, Region};
 use crate::shapes::triangle::{DoubleLeaves, EdgeRay, Leaves, SingleLeaves, SolidCone};
@@ -45,15 +45,16 @@ impl<'a> Input<'a> {
     fn new(primitives: &'a dyn Primitives) -> (Self, Vec<u32>) {
         let region = primitives.region();
         let all = 0..primitives.count() as u32;
-        let boxes = all.clone().into_par_iter().map(|p| match primitives.bounds(p) {
+        let [surround, work] = primitives.work().parts([1.0, 20.0]);
+        let of = |p: usize| match primitives.bounds(p as u32) {
             Some(b) if b.is_finite() => region.aabb([b.min, b.max, b.max]),
             _ => Aabb::EMPTY,
-        });
-        let boxes = boxes.collect();
+        };
+        let boxes = surround.collect(primitives.count(), of).unwrap_or_default();
         let is_unbounded = |&p: &u32| primitives.bounds(p).is_some_and(|b| !b.is_finite());
         let has_objects = primitives.objects().is_some();
         let unbounded = if has_objects { all.into_par_iter().filter(is_unbounded).collect() } else { Vec::new() };
-        (Self { region, boxes, primitives }, unbounded)
+        (Self { region, boxes, primitives, work }, unbounded)
     }
 }
 
@@ -61,7 +62,10 @@ impl<const N: usize, L: Leaves<N>> Walked<N, L> {
     fn new(primitives: &dyn Primitives, level: Level, mailbox: Mailbox, build: &Build) -> Self {
         let start = Instant::now();
         let (input, unbounded) = Input::new(primitives);
-        let (structure, lists) = build(&input);
+        let (structure, mut lists) = build(&input);
+        if input.work.is_stopped() {
+            lists = Lists::default();
+        }
         let contents = Contents::new(&input, &lists);
         let bounded = input.boxes.iter().filter(|b| !b.is_empty()).count();
         let mailboxes = (lists.order.len() > bounded).then(|| Mailboxes::new(mailbox, primitives.count()));

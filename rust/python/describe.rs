@@ -3,8 +3,10 @@
 use numpy::PyReadonlyArray2;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+use std::collections::HashSet;
 
 use super::arrays::{Rows, Triples, pairs, rows};
+use super::builds::Builds;
 use super::instances::{self, Wishes};
 use super::lights;
 use super::materials::Looks;
@@ -35,7 +37,9 @@ struct Mesh<'py> {
 
 impl Scene<'_> {
     /// The core's own description of it, and what has to live as long as what is made of it.
-    pub fn describe(self) -> PyResult<(SceneDescription, Vec<Py<PyAny>>)> {
+    ///
+    /// Groups in it that nobody has yet are among the `builds`.
+    pub fn describe(self, builds: &Builds) -> PyResult<(SceneDescription, Vec<Py<PyAny>>)> {
         let precision = match self.precision.as_str() {
             "auto" => Precision::Auto,
             "single" => Precision::Single,
@@ -46,11 +50,17 @@ impl Scene<'_> {
                 )));
             }
         };
-        let (wishes, looks, mut kept) = (Wishes { precision, quality: &self.quality }, Looks::default(), Vec::new());
+        let wishes = Wishes { precision, quality: &self.quality, builds };
+        let (looks, mut kept) = (Looks::default(), Vec::new());
         let shapes = read(&self.shapes, wishes, &looks, &mut kept)?;
         let mut all = self.lights.iter().map(lights::read).collect::<PyResult<Vec<_>>>()?;
         all.extend(lights::read_environment(self.environment)?);
         Ok((SceneDescription { shapes, lights: all }, kept))
+    }
+
+    /// How much there is to build, groups included.
+    pub fn size(&self) -> PyResult<usize> {
+        instances::size(&self.shapes, &mut HashSet::new())
     }
 }
 
@@ -76,6 +86,7 @@ fn read(
             continue;
         }
         let (shape, given) = describe(one, wishes.precision, looks)?;
+        one.py().check_signals()?;
         rounded.extend(given.map(|given| (shapes.len(), given)));
         shapes.push(shape);
     }

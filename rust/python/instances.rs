@@ -1,14 +1,15 @@
 //! Instances as the package describes them: groups compiled once for whoever shares their shapes.
 
-use numpy::PyReadonlyArrayDyn;
+use numpy::{PyReadonlyArrayDyn, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::sync::{Arc, LazyLock, Mutex, Weak};
 
 use super::accelerators;
 use super::arrays::vectors;
+use super::builds::{self, Builds};
 use crate::math::Hit;
 use crate::scene::{self, Copies, Group, Matrix, Precision, Surface};
 use crate::workers;
@@ -29,6 +30,8 @@ pub struct Wishes<'a> {
     pub precision: Precision,
     /// How much a build may take.
     pub quality: &'a str,
+    /// How they are built.
+    pub builds: &'a Builds,
 }
 
 /// What makes two groups the same: the objects that their shapes are, their accelerator's description, and what the
@@ -111,12 +114,29 @@ fn group(
     }
     let inner = read_shapes(&shapes.iter().collect::<Vec<_>>(), kept)?;
     let build = accelerators::read(accelerator, wishes.quality)?;
-    let group = in_pool(py, || Group::new(inner, build))?.map_err(|e| PyValueError::new_err(e.to_string()))?;
-    let group = Arc::new(group);
+    let size = builds::size(&inner);
+    let group = Arc::new(wishes.builds.build(py, size, |work| Group::watched(inner, build, work))?);
     let mut known = known();
     known.retain(|_, group| group.strong_count() > 0);
     known.insert(key, Arc::downgrade(&group));
     Ok(group)
+}
+
+/// How much there is to build over shapes: faces, copies and others, and what is in groups once.
+pub fn size(shapes: &[Bound<'_, PyAny>], seen: &mut HashSet<usize>) -> PyResult<usize> {
+    let mut size = 0;
+    for shape in shapes {
+        if is_instance(shape)? {
+            let Instance { shapes, transform, .. } = shape.extract()?;
+            size += if transform.ndim() == 3 { transform.len() / 16 } else { 1 };
+            if seen.insert(shapes.as_ptr() as usize) {
+                size += self::size(&shapes.iter().collect::<Vec<_>>(), seen)?;
+            }
+        } else {
+            size += if shape.hasattr("faces")? { shape.getattr("faces")?.len()? } else { 1 };
+        }
+    }
+    Ok(size)
 }
 
 fn in_pool<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> PyResult<T> {

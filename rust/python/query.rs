@@ -6,6 +6,7 @@ use pyo3::prelude::*;
 
 use super::accelerators;
 use super::arrays::{Numbers, Triples, numbers, rows, sealed, unwritten, writable};
+use super::builds::{self, Builds};
 use super::columns::HitParts;
 use super::describe::Scene;
 use super::every;
@@ -15,6 +16,7 @@ use super::rays::{BATCH, RayArguments, answer, share};
 use crate::accel::{Cost, Nearest};
 use crate::math::Hit;
 use crate::scene;
+use crate::work::{Watch, Work};
 use crate::workers;
 
 /// A scene ready for rays.
@@ -50,21 +52,37 @@ type ClosestPoints<'py> = (
 #[pymethods]
 #[allow(clippy::too_many_arguments)]
 impl CompiledScene {
+    /// `progress` is called now and then with the share of the build that is done, and may raise to end it.
     #[new]
-    fn new(py: Python<'_>, scene: Scene<'_>, accelerator: &Bound<'_, PyAny>) -> PyResult<Self> {
+    #[pyo3(signature = (scene, accelerator, progress=None))]
+    fn new(
+        py: Python<'_>,
+        scene: Scene<'_>,
+        accelerator: &Bound<'_, PyAny>,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Self> {
         let build = accelerators::read(accelerator, &scene.quality)?;
-        let (description, kept) = scene.describe()?;
-        let compiled = py
-            .detach(|| workers::pool(None).map(|pool| pool.install(|| scene::Scene::new(description, build))))
-            .map_err(PyRuntimeError::new_err)?;
-        compiled.map(|scene| Self(scene, kept)).map_err(|e| PyValueError::new_err(e.to_string()))
+        let builds = Builds::new(progress, scene.size()?);
+        let (description, kept) = scene.describe(&builds)?;
+        let size = builds::size(&description.shapes);
+        let scene = builds.build(py, size, |work| scene::Scene::watched(description, build, work))?;
+        Ok(Self(scene, kept))
     }
 
     fn refitted(&self, py: Python<'_>, scene: Scene<'_>) -> PyResult<Option<Self>> {
-        let (description, kept) = scene.describe()?;
+        let (description, kept) = scene.describe(&Builds::new(None, 0))?;
+        let (watch, mut signal) = (Watch::default(), Ok(()));
+        let look = || {
+            signal = Python::attach(|py| py.check_signals());
+            signal.is_ok() || {
+                watch.stop();
+                false
+            }
+        };
         let compiled = py
-            .detach(|| workers::pool(None).map(|pool| pool.install(|| self.0.refitted(description))))
+            .detach(|| workers::watched(None, |_| self.0.refitted(description, Work::of(&watch)), look))
             .map_err(PyRuntimeError::new_err)?;
+        signal?;
         compiled.map(|scene| scene.map(|scene| Self(scene, kept))).map_err(|e| PyValueError::new_err(e.to_string()))
     }
 

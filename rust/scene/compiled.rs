@@ -1,9 +1,11 @@
 //! A scene ready for rays.
 
+use super::geometry::Watched;
 use super::{Caustics, DescriptionError, Emission, Geometry, Lights, Material, Plan, SceneDescription, SurfacePoint};
 use crate::accel::{Accelerator, Cost, Crossings, Nearest, Primitives, Side, Touches};
 use crate::math::{DVec3, Hit, Ray, Region};
 use crate::shapes::triangle::SolidCone;
+use crate::work::{Stopped, Work};
 use std::sync::{Arc, OnceLock};
 
 /// A scene ready for rays.
@@ -39,11 +41,28 @@ impl Scene {
     /// If a mesh is no mesh; see [`Geometry::new`].
     pub fn new(
         description: SceneDescription,
-        accelerator: impl FnOnce(&Geometry) -> Box<dyn Accelerator>,
+        accelerator: impl FnOnce(&dyn Primitives) -> Box<dyn Accelerator>,
     ) -> Result<Self, DescriptionError> {
+        Self::watched(description, accelerator, Work::UNWATCHED)
+    }
+
+    /// The same, as work that may be stopped, which is an error.
+    ///
+    /// # Panics
+    /// As [`Scene::new`].
+    pub fn watched(
+        description: SceneDescription,
+        accelerator: impl FnOnce(&dyn Primitives) -> Box<dyn Accelerator>,
+        work: Work,
+    ) -> Result<Self, DescriptionError> {
+        let goes_on = || work.goes_on().map_err(|Stopped| DescriptionError::Stopped);
         let parts = description.joined()?;
+        goes_on()?;
         let lights = Lights::new(&parts.geometry, parts.emission, parts.lights);
-        Ok(Self::with(accelerator(&parts.geometry), None, parts.geometry, parts.materials, lights))
+        goes_on()?;
+        let accelerator = accelerator(&Watched { geometry: &parts.geometry, work });
+        goes_on()?;
+        Ok(Self::with(accelerator, None, parts.geometry, parts.materials, lights))
     }
 
     /// The same scene over meshes that have moved, with the accelerator fitted to them. `None` if that cannot be done
@@ -51,10 +70,11 @@ impl Scene {
     ///
     /// # Panics
     /// As [`Scene::new`].
-    pub fn refitted(&self, description: SceneDescription) -> Result<Option<Self>, DescriptionError> {
+    pub fn refitted(&self, description: SceneDescription, work: Work) -> Result<Option<Self>, DescriptionError> {
         let parts = description.joined()?;
         let lights = Lights::new(&parts.geometry, parts.emission, parts.lights);
-        let accelerator = self.accelerator.refitted(&parts.geometry).ok();
+        let accelerator = self.accelerator.refitted(&Watched { geometry: &parts.geometry, work }).ok();
+        work.goes_on().map_err(|Stopped| DescriptionError::Stopped)?;
         Ok(accelerator.map(|a| Self::with(a, Some(self.built_cost), parts.geometry, parts.materials, lights)))
     }
 
@@ -274,7 +294,7 @@ mod tests {
             SceneDescription { shapes, ..Default::default() }
         };
         let (still, moved) = (scene(described(0.0)), scene(described(0.75)));
-        let refitted = still.refitted(described(0.75)).unwrap().unwrap();
+        let refitted = still.refitted(described(0.75), Work::UNWATCHED).unwrap().unwrap();
         let rays: Vec<_> =
             (0..100).map(|i| Ray::new(DVec3::new(0.1, 1.0, 0.2), DVec3::new(f64::from(i).sin(), 1.0, 0.3))).collect();
         let (mut a, mut b) = ([Hit::MISS; 100], [Hit::MISS; 100]);
@@ -289,6 +309,6 @@ mod tests {
         assert_ne!(light(&refitted), light(&still));
         // Another number of faces is another scene.
         let fewer = SceneDescription { shapes: vec![Shape::default()], ..Default::default() };
-        assert!(still.refitted(fewer).unwrap().is_none());
+        assert!(still.refitted(fewer, Work::UNWATCHED).unwrap().is_none());
     }
 }

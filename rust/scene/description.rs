@@ -1,8 +1,10 @@
 //! A scene as it is described, before it is compiled.
 
+use super::geometry::Watched;
 use super::textures::Needs;
 use super::{DiffuseMaterial, Emission, Geometry, Group, Light, Material, Surface};
-use crate::accel::Accelerator;
+use crate::accel::{Accelerator, Primitives};
+use crate::work::{Stopped, Work};
 use std::fmt;
 use std::sync::Arc;
 
@@ -54,6 +56,8 @@ pub enum DescriptionError {
     Light(usize, String),
     /// A group has so many primitives, all copies in it counted.
     TooMany(u64),
+    /// None: nobody wanted it any more before it was built.
+    Stopped,
 }
 
 impl fmt::Display for DescriptionError {
@@ -66,6 +70,7 @@ impl fmt::Display for DescriptionError {
                 f,
                 "an instance holds {n} primitives, all copies in it counted; fewer than 2^31 can be told apart"
             ),
+            Self::Stopped => write!(f, "building was stopped"),
         }
     }
 }
@@ -122,10 +127,25 @@ impl Group {
     /// If a shape's material is impossible, or there are 2³¹ primitives or more, flattened: arrays count them as int32.
     pub fn new(
         shapes: Vec<Shape>,
-        accelerator: impl FnOnce(&Geometry) -> Box<dyn Accelerator>,
+        accelerator: impl FnOnce(&dyn Primitives) -> Box<dyn Accelerator>,
+    ) -> Result<Self, DescriptionError> {
+        Self::watched(shapes, accelerator, Work::UNWATCHED)
+    }
+
+    /// The same, as work that may be stopped.
+    ///
+    /// # Errors
+    /// If it was stopped, too.
+    pub fn watched(
+        shapes: Vec<Shape>,
+        accelerator: impl FnOnce(&dyn Primitives) -> Box<dyn Accelerator>,
+        work: Work,
     ) -> Result<Self, DescriptionError> {
         let parts = SceneDescription { shapes, ..SceneDescription::default() }.joined()?;
-        Self::of(parts.geometry, parts.materials, parts.emission, accelerator).map_err(DescriptionError::TooMany)
+        let accelerator = |geometry: &Geometry| accelerator(&Watched { geometry, work });
+        let group = Self::of(parts.geometry, parts.materials, parts.emission, accelerator);
+        work.goes_on().map_err(|Stopped| DescriptionError::Stopped)?;
+        group.map_err(DescriptionError::TooMany)
     }
 }
 

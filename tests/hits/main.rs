@@ -7,5 +7,6 @@ mod cones;
 mod nearest;
 mod signs;
 mod space;
+mod stopped;
 mod traversals;
 mod triangles;

@@ -80,7 +80,8 @@ def render(
     threads : int, optional
         How many to use; all cores if not given. With an executor, for each piece of its work; 1 if not given.
     progress : bool or callable
-        Whether to show a bar on stderr and, in a notebook, the picture as it comes. Or a function that is
+        Whether to show a bar on stderr and, in a notebook, the picture as it comes; before, where the scene
+        takes longer than two seconds to compile, a bar for that. Or a function that is
         called with the picture so far, an Image, ten times a second at most and less often where it takes
         long, and in the end with what is returned. Within a pass some pixels have more samples than others;
         before the end of the first, ``image.samples`` is 0. What the function raises ends the render.
@@ -153,11 +154,11 @@ def render(
     if checkpoint is not None:
         identity = _identity(scene, camera, integrator, seed, adaptive, clamp, sampler, filter)
         kept = Checkpoints(checkpoint, identity)
-    patch = _patch(scene, integrator)
-    rendering = _begun(kept, camera, threads, adaptive, clamp, sampler, patch)
     if executor is None:
         # Here, so that what there is to warn of is told to the caller.
-        scene._compiled()
+        scene._compiled(progress is True)
+    patch = _patch(scene, integrator)
+    rendering = _begun(kept, camera, threads, adaptive, clamp, sampler, patch)
     of = (scene, camera, integrator, seed, sampler, filter)
     snapshots = None if show is None else Snapshots(show)
 

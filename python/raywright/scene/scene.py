@@ -2,7 +2,8 @@
 
 import threading
 import warnings
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from typing import Any, Literal, TypeAlias, get_args
 
 import numpy as np
@@ -17,6 +18,7 @@ from ..query.queries import Queries
 from ..shapes.mesh import face_count, moved
 from .instance import AnyShape, Instance, Shapes, meshes
 from .plan import Plan, PlanRow
+from .progress import BuildProgress, check_progress, watcher
 
 Precision: TypeAlias = Literal["auto", "single", "double"]
 Quality: TypeAlias = Literal["fast build", "balanced", "fast rays"]
@@ -28,7 +30,7 @@ class Scene(Queries):
     """Shapes and lights; compiled for rays the first time that it is asked.
 
     Nothing about it changes but where the vertices are, by `refit`. It may be asked from many threads at
-    once.
+    once. To compile a large one takes a while: `build` does so when it suits, and shows how far it is.
 
     Parameters
     ----------
@@ -97,7 +99,9 @@ class Scene(Queries):
         self._precision, self._quality = precision, quality
         self._core: _core.CompiledScene | None = None
         self._is_loss_told = False
-        self._lock = threading.Lock()
+        # What watches a build runs in the thread that builds, which must not wait for itself.
+        self._lock = threading.RLock()
+        self._is_building = False
 
     @property
     def shapes(self) -> tuple[AnyShape, ...]:
@@ -215,7 +219,7 @@ class Scene(Queries):
         scene that was not asked anything yet is built when it is.
         """
         after = Scene(self._moved(vertices), *self._parts()[1:])
-        with self._lock:
+        with self._unless_building():
             core = self._core and self._core.refitted(after)
             built, self._shapes, self._core = self._core is not None, after.shapes, core
         if core is None and built:
@@ -224,11 +228,47 @@ class Scene(Queries):
             self._tell_loss(core, stacklevel=3)
         return core.growth if core else 1.0
 
-    def rebuild(self) -> None:
-        """Build the accelerator anew, for where the vertices are now."""
-        with self._lock:
+    def build(self, progress: BuildProgress = True) -> None:
+        """Compile the scene for rays now, unless it is; otherwise the first question does.
+
+        Parameters
+        ----------
+        progress : bool or callable
+            Whether to show a bar on stderr where it takes longer than two seconds. Or a function that is
+            called with the share that is done, from 0 to 1 and never less than before: ten times a second at
+            most, and in the end with 1. What the function raises ends the build; it cannot ask the scene.
+            Where a question compiles the scene, there is a bar if stderr is a terminal.
+
+        Raises
+        ------
+        TypeError
+            If `progress` is anything else.
+        ValueError
+            If something in the scene cannot be.
+        KeyboardInterrupt
+            At once, when Ctrl-C is pressed, as in any question that compiles the scene. It is as it was
+            before, and can be compiled again.
+        """
+        check_progress(progress)
+        self._compiled(progress)
+
+    def rebuild(self, progress: BuildProgress = True) -> None:
+        """Build the accelerator anew, for where the vertices are now.
+
+        Parameters
+        ----------
+        progress : bool or callable
+            As for `build`.
+
+        Raises
+        ------
+        TypeError, KeyboardInterrupt
+            As `build` does.
+        """
+        check_progress(progress)
+        with self._unless_building():
             self._core = None
-        self._compiled()
+        self._compiled(progress)
 
     def _moved(self, vertices: ArrayLike | Sequence[ArrayLike | None]) -> tuple[AnyShape, ...]:
         count = len(self._shapes)
@@ -254,11 +294,27 @@ class Scene(Queries):
         kernel, rows = _core.plan(self._compiled())
         return Plan(kernel, tuple(PlanRow(*row) for row in rows))
 
-    def _compiled(self) -> _core.CompiledScene:
+    @contextmanager
+    def _unless_building(self) -> Iterator[None]:
+        """Wait for whoever builds the scene, but for oneself."""
         with self._lock:
+            if self._is_building:
+                raise RuntimeError("the scene is being built: what watches that cannot ask it")
+            yield
+
+    def _compiled(self, progress: BuildProgress | None = None) -> _core.CompiledScene:
+        with self._unless_building():
             if self._core is not None:
+                if callable(progress):
+                    progress(1.0)
                 return self._core
-            self._core = compiled = _core.CompiledScene(self, self._accelerator)
+            self._is_building = True
+            try:
+                with watcher(progress) as report:
+                    compiled = _core.CompiledScene(self, self._accelerator, report)
+                self._core = compiled
+            finally:
+                self._is_building = False
         if compiled.dropped:
             faces = sum(map(face_count, self._shapes))
             warnings.warn(

@@ -12,6 +12,7 @@ use super::plane::{Plane, Side};
 use super::{Child, MAX_DEPTH, Node, Options};
 use crate::accel::walk::{Input, Lists, Room};
 use crate::math::DVec3;
+use crate::work::Steps;
 
 /// How many pieces tell how good a plane may be.
 const ASKED: usize = 128;
@@ -24,6 +25,9 @@ const LEAST: f64 = 1.0 / (1u64 << 30) as f64;
 
 /// From so many pieces on, both sides are built at once.
 const PARALLEL: usize = 1024;
+
+/// Up to so many pieces, nobody asks whether to go on.
+const FEW: usize = 64;
 
 /// What is built: nodes, whose places are counted from the first.
 #[derive(Default)]
@@ -44,9 +48,10 @@ pub fn build(input: &Input, options: &Options) -> (Child, Grown) {
     let room = Room::new(parts.len(), depth);
     let cell = Cell::new(&bounds);
     let area = cell.area();
+    let steps = input.work.steps(Room::STEPS);
     let root = match pieces.is_empty() {
         true => Child::EMPTY,
-        false => Builder { input, options }.grow(pieces, &cell, 0, room, &mut grown),
+        false => Builder { input, options, steps: &steps }.grow(pieces, &cell, 0, room, &mut grown),
     };
     grown.cost = if area > 0.0 { grown.cost / area } else { parts.len() as f64 };
     (root, grown)
@@ -56,6 +61,7 @@ pub fn build(input: &Input, options: &Options) -> (Child, Grown) {
 struct Builder<'a> {
     input: &'a Input<'a>,
     options: &'a Options,
+    steps: &'a Steps<'a>,
 }
 
 /// A plane with what it makes of a cell.
@@ -70,6 +76,9 @@ impl Builder<'_> {
     /// Builds what is in a cell.
     fn grow(self, pieces: Vec<Piece>, cell: &Cell, depth: usize, room: Room, grown: &mut Grown) -> Child {
         let count = pieces.len();
+        if count > FEW && self.steps.is_stopped() {
+            return Child::EMPTY;
+        }
         let area = cell.area();
         let split = if count > self.options.leaf_size && room.depth > 0 && area > 0.0 {
             self.split(pieces, cell, area, room)
@@ -88,18 +97,21 @@ impl Builder<'_> {
         let place = grown.nodes.len();
         grown.nodes.push(Node { plane, children: [Child::EMPTY; 2] });
         let [back, front] = sides;
+        let child = |pieces: Vec<Piece>, side: usize, grown: &mut Grown| {
+            let few = pieces.len() <= PARALLEL;
+            let child = self.grow(pieces, &cells[side], depth + 1, rooms[side], grown);
+            if few && count > PARALLEL {
+                // Whether to go on is asked before nodes are made.
+                let _ = self.steps.did(rooms[side].steps());
+            }
+            child
+        };
         let children = if count > PARALLEL {
             let mut other = Grown::default();
-            let (back, front) = rayon::join(
-                || self.grow(back, &cells[0], depth + 1, rooms[0], grown),
-                || self.grow(front, &cells[1], depth + 1, rooms[1], &mut other),
-            );
+            let (back, front) = rayon::join(|| child(back, 0, grown), || child(front, 1, &mut other));
             [back, grown.append(front, other)]
         } else {
-            [
-                self.grow(back, &cells[0], depth + 1, rooms[0], grown),
-                self.grow(front, &cells[1], depth + 1, rooms[1], grown),
-            ]
+            [child(back, 0, grown), child(front, 1, grown)]
         };
         grown.nodes[place].children = children;
         Child::node(place)

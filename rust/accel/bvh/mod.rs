@@ -21,7 +21,8 @@ use crate::simd::{Dispatch, Level};
 /// A tree over what is tested one by one: a wide one, or a binary one of moving boxes if anything moves.
 pub(super) fn over_objects(input: &Input, options: &Options, level: Level) -> Built {
     if input.primitives.objects().is_some_and(|objects| objects.moves()) {
-        let (tree, name) = options.quality.steps(1).whole(&input.boxes);
+        let built = options.quality.steps(1).whole(&input.boxes, input.work);
+        let (tree, name) = built.unwrap_or_default();
         traverse::Moving::over(tree, input, &name)
     } else {
         wide::over_objects(input, options, level)

@@ -6,6 +6,8 @@ use super::build::spatial::MAX_BUDGET;
 use super::build::{Builder, Leaves};
 use super::optimise::{Optimiser, Optimisers, reinsertion, treelet};
 use crate::math::Aabb;
+use crate::work::{Stopped, Work};
+use std::borrow::Cow;
 
 /// A choice between a tree soon and a tree that rays walk fast.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -106,8 +108,8 @@ pub struct Steps {
 
 impl Steps {
     /// Makes a tree over boxes none of which is cut, leaving out empty ones, and says how.
-    pub fn whole(self, boxes: &[Aabb]) -> (BinaryBvh, String) {
-        Self { cuts: None, ..self }.build(boxes, |p, to| boxes[p as usize].intersection(*to))
+    pub fn whole(self, boxes: &[Aabb], work: Work) -> Result<(BinaryBvh, String), Stopped> {
+        Self { cuts: None, ..self }.build(boxes, |p, to| boxes[p as usize].intersection(*to), work)
     }
 
     /// Makes a tree over boxes, leaving out empty ones, and tells how it was made, for people. `clip` is as
@@ -115,25 +117,40 @@ impl Steps {
     ///
     /// # Panics
     /// If an option is out of range.
-    pub fn build(&self, boxes: &[Aabb], clip: impl Fn(u32, &Aabb) -> Aabb + Sync) -> (BinaryBvh, String) {
-        let cut = self.cuts.and_then(|cuts| Some((cuts.builder, Pieces::cut(boxes, &clip, &cuts.options)?)));
+    pub fn build<'a>(
+        &self,
+        boxes: impl Into<Cow<'a, [Aabb]>>,
+        clip: impl Fn(u32, &Aabb) -> Aabb + Sync,
+        work: Work,
+    ) -> Result<(BinaryBvh, String), Stopped> {
+        let boxes = boxes.into();
+        let cutting = if self.cuts.is_some() { 4.0 } else { 0.0 };
+        let improving = 2.0 * self.optimisers.iter().count() as f32;
+        let [cut_first, grow, improve] = work.parts([cutting, 8.0, improving]);
+        // What is not wanted any more is cut no further.
+        let clip = |p: u32, to: &Aabb| if work.is_stopped() { Aabb::EMPTY } else { clip(p, to) };
+        let cut = self.cuts.and_then(|cuts| Some((cuts.builder, Pieces::cut(&boxes, clip, &cuts.options)?)));
+        cut_first.done();
+        work.goes_on()?;
         let (mut bvh, mut name) = if let Some((builder, pieces)) = cut {
             let builder = builder.over_pieces(boxes.len(), pieces.boxes.len());
+            drop(boxes);
             let clip_piece = |piece: u32, to: &Aabb| clip(pieces.primitives[piece as usize], to);
-            let mut bvh = builder.build(&pieces.boxes, clip_piece, &self.leaves);
+            let mut bvh = builder.build(&pieces.boxes, clip_piece, &self.leaves, grow)?;
             pieces.put_together(&mut bvh);
             (bvh, format!("{} of pieces", builder.name()))
         } else {
-            (self.builder.build(boxes, clip, &self.leaves), self.builder.name().into())
+            (self.builder.build(boxes, clip, &self.leaves, grow)?, self.builder.name().into())
         };
-        for optimiser in self.optimisers.iter() {
+        let second = self.optimisers.iter().skip(1).count() as f32;
+        for (optimiser, work) in self.optimisers.iter().zip(improve.parts([1.0, second])) {
             match optimiser {
-                Optimiser::Reinsertion => reinsertion::optimise(&mut bvh, &self.reinsertion),
-                Optimiser::Treelet => treelet::optimise(&mut bvh, &self.treelet),
+                Optimiser::Reinsertion => reinsertion::optimise(&mut bvh, &self.reinsertion, work)?,
+                Optimiser::Treelet => treelet::optimise(&mut bvh, &self.treelet, work)?,
             }
             name = format!("{name} and {}", optimiser.name());
         }
-        (bvh, name)
+        Ok((bvh, name))
     }
 }
 
@@ -144,6 +161,10 @@ mod tests {
     use crate::math::{DVec3, Vec3};
     use crate::sampling::philox4x32;
     use crate::shapes::triangle::clipped;
+
+    fn built(quality: Quality, boxes: &[Aabb], clip: impl Fn(u32, &Aabb) -> Aabb + Sync) -> (BinaryBvh, String) {
+        quality.steps(8).build(boxes, clip, Work::UNWATCHED).unwrap()
+    }
 
     #[test]
     fn more_time_makes_trees_of_less_area() {
@@ -157,7 +178,7 @@ mod tests {
             })
             .collect();
         let costs = Quality::ALL.map(|quality| {
-            let (bvh, _) = quality.steps(8).build(&boxes, |p, to| boxes[p as usize].intersection(*to));
+            let (bvh, _) = built(quality, &boxes, |p, to| boxes[p as usize].intersection(*to));
             bvh.validate(&boxes).unwrap();
             bvh.nodes.iter().filter(|n| !n.is_leaf()).map(|n| f64::from(n.aabb().half_area())).sum::<f64>()
         });
@@ -174,7 +195,7 @@ mod tests {
         let clip = |p: u32, to: &Aabb| clipped(triangles[p as usize], to);
         let boxes: Vec<_> =
             (0..3000).map(|p| clip(p, &Aabb { min: Vec3::splat(-4.0), max: Vec3::splat(4.0) })).collect();
-        let [fast, balanced, best] = Quality::ALL.map(|quality| quality.steps(8).build(&boxes, clip));
+        let [fast, balanced, best] = Quality::ALL.map(|quality| built(quality, &boxes, clip));
         fast.0.validate(&boxes).unwrap();
         for (bvh, name) in [&balanced, &best] {
             bvh.validate_parts(&boxes, clip).unwrap();

@@ -37,6 +37,8 @@ impl Filled {
     /// Puts primitives into a grid around `bounds` of so many cells, or of fewer if that takes more than it may.
     pub fn new(input: &Input, primitives: &[u32], bounds: &Aabb, mut cells: [u32; 3], budget: Budget) -> Self {
         loop {
+            // Whoever has stopped it takes anything.
+            cells = if input.work.is_stopped() { [1; 3] } else { cells };
             let touching = Touching { input, lattice: Lattice::around(bounds, cells) };
             let is_last = cells == [1; 3];
             let looked_at: u64 = shared(primitives).map(|&p| touching.in_box(p)).sum();

@@ -62,6 +62,7 @@ mod tests {
     use crate::accel::walk::{Input, Lists, Structure};
     use crate::math::{DVec3, Ray, Region};
     use crate::sampling::philox4x32;
+    use crate::work::Work;
 
     struct Triangles(Vec<[DVec3; 3]>);
 
@@ -91,7 +92,12 @@ mod tests {
 
         fn input(&self) -> Input<'_> {
             let region = self.region();
-            Input { region, boxes: self.0.iter().map(|&corners| region.aabb(corners)).collect(), primitives: self }
+            Input {
+                region,
+                boxes: self.0.iter().map(|&corners| region.aabb(corners)).collect(),
+                primitives: self,
+                work: Work::UNWATCHED,
+            }
         }
     }
 

@@ -110,7 +110,8 @@ fn levels(input: &Input, primitives: &[u32], options: &Options) -> (Vec<Made>, u
     let share = filled.lattice.cell_area() / filled.lattice.area();
     let mut made = vec![Made { filled, inner: Vec::new(), share }];
     let (mut depth, mut from) = (1, 0);
-    while depth < options.depth as usize {
+    let steps = input.work.steps(options.depth as usize);
+    while depth < options.depth as usize && steps.did(1).is_ok() {
         let dense = (from..made.len()).flat_map(|outer| {
             let lists = made[outer].filled.lists().filter(|(_, own)| own.len() > options.leaf as usize);
             lists.map(move |(cell, own)| (outer, cell, own))

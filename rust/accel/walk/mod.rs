@@ -25,6 +25,7 @@ pub use together::{MOST_TOGETHER, Together};
 use super::{Info, Primitives, SlabRay};
 use crate::math::{Aabb, Region};
 use crate::simd::Level;
+use crate::work::Work;
 
 /// What a structure is built from.
 pub struct Input<'a> {
@@ -34,6 +35,8 @@ pub struct Input<'a> {
     pub boxes: Vec<Aabb>,
     /// The primitives themselves.
     pub primitives: &'a dyn Primitives,
+    /// The build as it is watched. One that is stopped may make a structure over anything, nothing included.
+    pub work: Work<'a>,
 }
 
 /// Which primitives stand in which leaf. One may stand in several.

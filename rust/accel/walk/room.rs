@@ -8,18 +8,28 @@ pub struct Room {
     /// Parts added to the primitives by parting them. A node shares what it has left among its children by how many
     /// parts these have, so that threads need not agree.
     spare: usize,
+    /// What is below as a share of the work: a node shares it alike.
+    steps: usize,
 }
 
 impl Room {
     /// Parts that may be added, over the number of primitives.
     const SPARE: usize = 8;
 
+    /// What all work is counted as.
+    pub const STEPS: usize = 1 << 40;
+
     /// And to however few.
     const AT_LEAST: usize = 64;
 
     /// For so many primitives, down to some depth.
     pub fn new(primitives: usize, depth: usize) -> Self {
-        Self { depth, spare: Self::SPARE * primitives + Self::AT_LEAST }
+        Self { depth, spare: Self::SPARE * primitives + Self::AT_LEAST, steps: Self::STEPS }
+    }
+
+    /// How many steps of work there are below.
+    pub fn steps(self) -> usize {
+        self.steps
     }
 
     /// How deep a tree of planes should be at most: 8 + 1.3 log₂ n, which Havran found to be enough ("Heuristic Ray
@@ -33,8 +43,8 @@ impl Room {
         let sum: usize = children.iter().sum();
         let spare = self.spare.checked_sub(sum.saturating_sub(parts))?;
         let depth = self.depth.checked_sub(1)?;
-        let share = |child: usize| (spare as u128 * child as u128 / sum.max(1) as u128) as usize;
-        Some(children.map(|child| Self { depth, spare: share(child) }))
+        let share = |of: usize, child: usize| (of as u128 * child as u128 / sum.max(1) as u128) as usize;
+        Some(children.map(|child| Self { depth, spare: share(spare, child), steps: share(self.steps, child) }))
     }
 }
 

@@ -1,15 +1,14 @@
 //! Path tracing.
 
 use super::{assert_radiance, radiance, samples_of};
-use crate::accel::{Accelerator, BruteForce};
+use crate::accel::{Accelerator, BruteForce, Primitives};
 use crate::integrators::{CameraSample, Integrator, Path};
 use crate::math::{DVec3, Ray};
 use crate::optics::Rgb;
 use crate::sampling::Sampler;
 use crate::scene::fixtures::{cornell, furnace, inward_box, rectangle, scene, shape};
 use crate::scene::{
-    Camera, ConstantEnvironment, Copies, Footprint, Geometry, Group, Kernel, Matrix, PointLight, Scene,
-    SceneDescription, Shape,
+    Camera, ConstantEnvironment, Copies, Footprint, Group, Kernel, Matrix, PointLight, Scene, SceneDescription, Shape,
 };
 use crate::simd::Level;
 use crate::workers::Cancel;
@@ -71,7 +70,7 @@ fn a_furnace_of_copies_shines_as_one_of_walls() {
     }
 }
 
-fn brute(geometry: &Geometry) -> Box<dyn Accelerator> {
+fn brute(geometry: &dyn Primitives) -> Box<dyn Accelerator> {
     BruteForce::over(geometry, Level::Scalar)
 }
 

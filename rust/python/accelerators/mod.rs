@@ -11,12 +11,11 @@ use std::ops::RangeInclusive;
 
 use super::level;
 use crate::accel::walk::{Built, Input, Mailbox};
-use crate::accel::{Accelerator, BruteForce, walked};
-use crate::scene::Geometry;
+use crate::accel::{Accelerator, BruteForce, Primitives, walked};
 use crate::simd::Level;
 
 /// Builds an accelerator, in the thread pool that is current.
-pub type Build = Box<dyn FnOnce(&Geometry) -> Box<dyn Accelerator> + Send>;
+pub type Build = Box<dyn FnOnce(&dyn Primitives) -> Box<dyn Accelerator> + Send>;
 
 /// Reads a choice by the name of its class; `quality` says how much the build may take.
 pub fn read(choice: &Bound<'_, PyAny>, quality: &str) -> PyResult<Build> {

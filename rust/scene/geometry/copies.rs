@@ -215,18 +215,19 @@ impl Copies {
 mod tests {
     use super::*;
     use crate::accel::bvh::Options;
-    use crate::accel::{Accelerator, BruteForce, trees};
+    use crate::accel::{Accelerator, BruteForce, Primitives, trees};
     use crate::math::{DVec3, Vec3};
     use crate::sampling::{Sampler, warp};
     use crate::scene::fixtures::{inward_box, shape};
-    use crate::scene::{Departure, Geometry, Mesh, Scene, SceneDescription, Shape};
+    use crate::scene::{Departure, Mesh, Scene, SceneDescription, Shape};
     use crate::simd::Level;
+    use crate::work::Work;
 
-    fn tree(geometry: &Geometry) -> Box<dyn Accelerator> {
+    fn tree(geometry: &dyn Primitives) -> Box<dyn Accelerator> {
         trees::over(geometry, &Options::default(), Level::current().unwrap())
     }
 
-    fn brute(geometry: &Geometry) -> Box<dyn Accelerator> {
+    fn brute(geometry: &dyn Primitives) -> Box<dyn Accelerator> {
         BruteForce::over(geometry, Level::Scalar)
     }
 
@@ -234,7 +235,7 @@ mod tests {
         Shape { surface: copies.into(), ..Shape::default() }
     }
 
-    fn compiled(shapes: Vec<Shape>, build: fn(&Geometry) -> Box<dyn Accelerator>) -> Scene {
+    fn compiled(shapes: Vec<Shape>, build: fn(&dyn Primitives) -> Box<dyn Accelerator>) -> Scene {
         Scene::new(SceneDescription { shapes, ..Default::default() }, build).unwrap()
     }
 
@@ -280,9 +281,12 @@ mod tests {
     fn every_structure_at_every_level_answers_alike() {
         let soup = || vec![shape(soup(200), [0.5; 3], 0.0)];
         let mut scenes = Vec::new();
-        for (within, outside) in
-            [(tree as fn(&Geometry) -> _, tree as fn(&Geometry) -> _), (brute, tree), (tree, brute), (brute, brute)]
-        {
+        for (within, outside) in [
+            (tree as fn(&dyn Primitives) -> _, tree as fn(&dyn Primitives) -> _),
+            (brute, tree),
+            (tree, brute),
+            (brute, brute),
+        ] {
             let group = Arc::new(Group::new(soup(), within).unwrap());
             let few = Copies::new(group.clone(), &[0, 1, 2].map(|i| mild(i, 2.0)));
             // The same again within another group, among triangles, some of which move.
@@ -428,7 +432,8 @@ mod tests {
         for (before, after) in [(place(0), place(100)), (moving(0), moving(100))] {
             let still = compiled(before, tree);
             let description = SceneDescription { shapes: after.clone(), ..Default::default() };
-            let (refitted, built) = (still.refitted(description).unwrap().unwrap(), compiled(after, tree));
+            let (refitted, built) =
+                (still.refitted(description, Work::UNWATCHED).unwrap().unwrap(), compiled(after, tree));
             let (mut a, mut b) = (vec![Hit::MISS; 500], vec![Hit::MISS; 500]);
             refitted.intersect(&rays, &mut a);
             built.intersect(&rays, &mut b);

@@ -11,21 +11,24 @@ mod pose;
 mod rounding;
 mod surfaces;
 mod vertices;
+mod watched;
 
 pub use copies::{BadTransform, Copies, Matrix, check_transforms};
 pub use group::Group;
 pub use rounding::{Precision, Rounding, rounded};
 pub use surfaces::Surfaces;
 pub use vertices::Vertices;
+pub(in crate::scene) use watched::Watched;
 
 use super::SurfacePoint;
 use super::textures::Needs;
-use crate::accel::{Objects, Primitives};
-use crate::math::{DVec3, Hit, Ray, Vec3};
+use crate::accel::{Objects, Primitives, region};
+use crate::math::{DVec3, Hit, Ray, Region, Vec3};
 use crate::shapes::{Bounds, Shape, Site};
 use facets::Facets;
 use per_vertex::PerVertex;
-use std::sync::Arc;
+use rayon::prelude::*;
+use std::sync::{Arc, OnceLock};
 
 /// One triangle mesh as it is described.
 #[derive(Clone, Debug, Default)]
@@ -141,6 +144,8 @@ pub struct Geometry {
     dropped: usize,
     /// Of the mesh that it does most to.
     rounding: Rounding,
+    /// Where all of it lies, once that was asked.
+    region: OnceLock<Region>,
 }
 
 impl Primitives for Geometry {
@@ -171,6 +176,13 @@ impl Primitives for Geometry {
 
     fn objects(&self) -> Option<Arc<dyn Objects>> {
         self.others.clone().map(|others| others as _)
+    }
+
+    fn region(&self) -> Region {
+        // Not within the lock: threads that wait for others take up work of theirs, which may come here too.
+        let region = self.region.get().copied().unwrap_or_else(|| region(self.count(), |p| self.bounds(p)));
+        let _ = self.region.set(region);
+        region
     }
 
     fn is_single(&self) -> bool {
@@ -223,10 +235,13 @@ impl Geometry {
             all.rounding = all.rounding.worst(mesh.rounding);
             all.vertices = std::mem::take(&mut all.vertices).joined(mesh.vertices.shortened());
             let number = all.count() + mesh.faces.len();
-            all.faces.reserve(mesh.faces.len());
-            for face in mesh.faces {
-                assert!(face.iter().all(|&v| v < end), "a face names a vertex that its mesh has");
-                all.faces.push(face.map(|v| v + base));
+            let names_own = |face: &[u32; 3]| face.iter().all(|&v| v < end);
+            assert!(mesh.faces.par_iter().all(names_own), "a face names a vertex that its mesh has");
+            if all.faces.is_empty() && base == 0 {
+                // The only mesh of many scenes, which may be large.
+                all.faces = mesh.faces;
+            } else {
+                all.faces.extend(mesh.faces.into_iter().map(|face| face.map(|v| v + base)));
             }
             assert!(number < 1 << 31, "fewer than 2^31 primitives");
             all.first.push(number as u32);
@@ -235,7 +250,7 @@ impl Geometry {
         all.others = (!others.is_empty()).then(|| Arc::new(others));
         let is_finite = |v: u32| all.vertices.get(v).is_finite();
         let is_dropped = |face: &&[u32; 3]| **face != NO_FACE && !face.iter().all(|&v| is_finite(v));
-        all.dropped = all.faces.iter().filter(is_dropped).count();
+        all.dropped = all.faces.par_iter().filter(is_dropped).count();
         // Copies are many, and each shall be small.
         let faces = if all.gaps.is_empty() { all.count() } else { 0 };
         all.facets = Facets::new(faces, |primitive| (all.computed_normal(primitive), all.located(primitive).0));

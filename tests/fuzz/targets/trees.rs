@@ -11,6 +11,7 @@ use raywright::accel::bvh::{Cuts, Options, Quality, Steps};
 use raywright::accel::{BruteForce, Primitives};
 use raywright::math::{Aabb, DVec3, Hit};
 use raywright::simd::Level;
+use raywright::work::Work;
 
 /// Panics where a tree is not valid.
 pub fn check(data: &[u8]) {
@@ -50,8 +51,8 @@ fn boxes(u: &mut Unstructured) -> Result<()> {
         boxes.extend(once.iter().map(|b| Aabb { min: b.min + shift, max: b.max + shift }));
     }
     let clip = |p: u32, to: &Aabb| boxes[p as usize].intersection(*to);
-    let built = steps.builder.build(&boxes, clip, &steps.leaves);
-    let (improved, _) = steps.build(&boxes, clip);
+    let built = steps.builder.build(&boxes, clip, &steps.leaves, Work::UNWATCHED).unwrap();
+    let (improved, _) = steps.build(&boxes, clip, Work::UNWATCHED).unwrap();
     for tree in [&built, &improved] {
         let valid = if steps.builder.parts() { tree.validate_parts(&boxes, clip) } else { tree.validate(&boxes) };
         valid.unwrap_or_else(|e| panic!("{e}, of {boxes:?} by {steps:?}"));

@@ -6,9 +6,11 @@
 use super::bins::{Bins, Split};
 use super::part::Part;
 use super::reference::{Bounds, Extents, MANY, Reference, median, partition, references};
+use super::top_down::{TASK, levels};
 use super::{BinaryBvh, Leaves, Node, spare};
 use crate::math::Aabb;
-use rayon::prelude::*;
+use crate::work::{Steps, Stopped, Work};
+use std::borrow::Cow;
 
 pub use super::bins::MAX_BINS;
 
@@ -21,9 +23,6 @@ pub struct Options {
     pub leaves: Leaves,
 }
 
-/// Up to so many primitives, a subtree is built by one thread.
-const TASK: usize = 1024;
-
 /// Builds a tree over boxes, leaving out empty ones.
 ///
 /// Takes time n log n on any input: a split that makes no progress by area gives way to the median, and so do all
@@ -31,37 +30,45 @@ const TASK: usize = 1024;
 ///
 /// # Panics
 /// If an option is out of range.
-pub fn build(boxes: &[Aabb], options: &Options) -> BinaryBvh {
+pub fn build<'a>(boxes: impl Into<Cow<'a, [Aabb]>>, options: &Options, work: Work) -> Result<BinaryBvh, Stopped> {
     let Options { bins, leaves } = *options;
     assert!((2..=MAX_BINS).contains(&bins), "bins is {bins}, not from 2 to {MAX_BINS}");
     leaves.check();
-    let mut references = references(boxes);
+    let [gather, grow, list, place] = work.parts([2.0, 36.0, 2.0, 6.0]);
+    let mut references = references(boxes, gather)?;
     if references.is_empty() {
-        return BinaryBvh::default();
+        return Ok(BinaryBvh::default());
     }
-    let task = Task { bins, leaves, first: 0, spare: spare(references.len()) };
+    let (count, levels) = (references.len(), levels(references.len()));
+    let steps = grow.steps(count * levels);
+    let task = Task { bins, leaves, first: 0, spare: spare(count), levels, steps: &steps };
     let extents = Extents::around_many(&references);
-    let part = task.build(&mut references, extents);
-    let order = references.par_iter().map(Reference::primitive).collect();
+    let part = task.build(&mut references, extents)?;
+    let order = list.collect(count, |i| references[i].primitive())?;
     drop(references);
-    part.assemble(order)
+    part.assemble(order, place)
 }
 
 /// What to build of a slice of the references.
 #[derive(Clone, Copy)]
-struct Task {
+struct Task<'a> {
     bins: usize,
     leaves: Leaves,
     /// The first primitive, as leaves refer to it.
     first: u32,
     /// How many more levels may be split by area.
     spare: usize,
+    /// How many times its references count as gone through when it is done.
+    levels: usize,
+    steps: &'a Steps<'a>,
 }
 
-impl Task {
-    fn build(self, references: &mut [Reference], extents: Extents) -> Part {
+impl Task<'_> {
+    fn build(self, references: &mut [Reference], extents: Extents) -> Result<Part, Stopped> {
         if references.len() <= TASK {
-            return self.build_alone(references, extents);
+            let part = self.build_alone(references, extents);
+            self.steps.did(references.len() * self.levels)?;
+            return Ok(part);
         }
         let by_area = if self.spare == 0 {
             None
@@ -74,14 +81,16 @@ impl Task {
             Some(split) => partition(references, |r| split.is_left(r)),
             None => median(references, &extents.centres),
         };
+        self.steps.did(references.len() * self.levels.min(1))?;
         let (left, right) = references.split_at_mut(middle);
-        let left_task = Self { spare: self.spare.saturating_sub(1), ..self };
+        let (spare, levels) = (self.spare.saturating_sub(1), self.levels.saturating_sub(1));
+        let left_task = Self { spare, levels, ..self };
         let right_task = Self { first: self.first + middle as u32, ..left_task };
         let (left, right) = rayon::join(
             || left_task.build(left, Extents::around_many(left)),
             || right_task.build(right, Extents::around_many(right)),
         );
-        Part::pair(extents.all.aabb(), left, right)
+        Ok(Part::pair(extents.all.aabb(), left?, right?))
     }
 
     /// Builds a subtree on this thread.
@@ -187,7 +196,8 @@ mod tests {
     use proptest::prelude::*;
 
     fn check(boxes: &[Aabb], block: usize) -> BinaryBvh {
-        let bvh = build(boxes, &Options { bins: 16, leaves: Leaves::for_blocks(block) });
+        let options = Options { bins: 16, leaves: Leaves::for_blocks(block) };
+        let bvh = build(boxes, &options, Work::UNWATCHED).unwrap();
         bvh.validate(boxes).unwrap();
         let n = boxes.iter().filter(|b| !b.is_empty()).count();
         assert_eq!(bvh.order.len(), n);
@@ -267,7 +277,8 @@ mod tests {
             .collect();
         let on = |threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            pool.install(|| build(&boxes, &Options { bins: 16, leaves: Leaves::for_blocks(8) })).order
+            let options = Options { bins: 16, leaves: Leaves::for_blocks(8) };
+            pool.install(|| build(&boxes, &options, Work::UNWATCHED)).unwrap().order
         };
         assert_eq!(on(1), on(3));
     }

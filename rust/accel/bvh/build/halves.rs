@@ -6,7 +6,9 @@ use super::reference::{Extents, Reference, SHARE, median, partition, references}
 use super::top_down::{self, Set};
 use super::{BinaryBvh, Leaves, spare};
 use crate::math::Aabb;
+use crate::work::{Stopped, Work};
 use rayon::prelude::*;
+use std::borrow::Cow;
 
 /// Where to halve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,14 +39,20 @@ impl Way {
 ///
 /// # Panics
 /// If an option is out of range.
-pub fn build(boxes: &[Aabb], way: Way, leaves: &Leaves) -> BinaryBvh {
+pub fn build<'a>(
+    boxes: impl Into<Cow<'a, [Aabb]>>,
+    way: Way,
+    leaves: &Leaves,
+    work: Work,
+) -> Result<BinaryBvh, Stopped> {
     leaves.check();
-    let mut references = references(boxes);
+    let [gather, grow] = work.parts([1.0, 20.0]);
+    let mut references = references(boxes, gather)?;
     if references.is_empty() {
-        return BinaryBvh::default();
+        return Ok(BinaryBvh::default());
     }
     let (spare, extents) = (spare(references.len()), Extents::around_many(&references));
-    top_down::build(Half { references: &mut references, extents, way, whole: leaves.whole, spare })
+    top_down::build(Half { references: &mut references, extents, way, whole: leaves.whole, spare }, grow)
 }
 
 struct Half<'a> {

@@ -27,7 +27,9 @@ pub(super) use reference::Bounds;
 
 use super::{BinaryBvh, Node};
 use crate::math::Aabb;
+use crate::work::{Stopped, Work};
 use halves::Way;
+use std::borrow::Cow;
 
 /// How a binary tree is built.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -104,22 +106,30 @@ impl Builder {
     /// `clip` gives a box around what of a primitive lies in another box, or around more; only spatial splits ask for
     /// it. It must be empty only where there is nothing, and lie within the primitive's own box and the other one.
     ///
+    /// Boxes that are given away are freed as soon as they are not needed any more.
+    ///
     /// # Panics
     /// If an option is out of range.
-    pub fn build(&self, boxes: &[Aabb], clip: impl Fn(u32, &Aabb) -> Aabb + Sync, leaves: &Leaves) -> BinaryBvh {
+    pub fn build<'a>(
+        &self,
+        boxes: impl Into<Cow<'a, [Aabb]>>,
+        clip: impl Fn(u32, &Aabb) -> Aabb + Sync,
+        leaves: &Leaves,
+        work: Work,
+    ) -> Result<BinaryBvh, Stopped> {
         let leaves = *leaves;
         match *self {
             Self::Binned { bins } => {
-                binned::build(boxes, &binned::Options { bins: bins.unwrap_or(Self::BINS), leaves })
+                binned::build(boxes, &binned::Options { bins: bins.unwrap_or(Self::BINS), leaves }, work)
             }
-            Self::Sweep => sweep::build(boxes, &leaves),
+            Self::Sweep => sweep::build(boxes, &leaves, work),
             Self::Spatial { bins, budget } => {
                 let bins = bins.unwrap_or(Self::BINS);
-                spatial::build(boxes, clip, &spatial::Options { bins, budget, leaves })
+                spatial::build(boxes, clip, &spatial::Options { bins, budget, leaves }, work)
             }
-            Self::Morton(bits) => morton::build(boxes, bits),
-            Self::Ploc { radius } => ploc::build(boxes, &ploc::Options { radius }),
-            Self::Halves(way) => halves::build(boxes, way, &leaves),
+            Self::Morton(bits) => morton::build(boxes, bits, work),
+            Self::Ploc { radius } => ploc::build(boxes, &ploc::Options { radius }, work),
+            Self::Halves(way) => halves::build(boxes, way, &leaves, work),
         }
     }
 }

@@ -9,7 +9,8 @@ use super::reference::{Extents, Reference, references};
 use super::slices::{self, Opened, Subtree};
 use super::{BinaryBvh, radix};
 use crate::math::Aabb;
-use rayon::prelude::*;
+use crate::work::{Stopped, Work};
+use std::borrow::Cow;
 
 /// How fine the codes are.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -33,17 +34,18 @@ impl Bits {
 
 /// Builds a tree over boxes, leaving out empty ones. It is no deeper than codes have bits, plus the logarithm of how
 /// many share a code: these are halved by number.
-pub fn build(boxes: &[Aabb], bits: Bits) -> BinaryBvh {
-    let references = references(boxes);
+pub fn build<'a>(boxes: impl Into<Cow<'a, [Aabb]>>, bits: Bits, work: Work) -> Result<BinaryBvh, Stopped> {
+    let [gather, sort, write] = work.parts([1.0, 8.0, 10.0]);
+    let references = references(boxes, gather)?;
     if references.is_empty() {
-        return BinaryBvh::default();
+        return Ok(BinaryBvh::default());
     }
-    let sorted = sorted(&references, bits);
-    slices::write(Codes { sorted: &sorted, references: &references }, references.len())
+    let sorted = sorted(&references, bits, sort)?;
+    slices::write(Codes { sorted: &sorted, references: &references }, references.len(), write)
 }
 
 /// Morton codes, and whose they are by their place; in order of the code, then of the place.
-pub fn sorted(references: &[Reference], bits: Bits) -> Vec<(u64, u32)> {
+pub fn sorted(references: &[Reference], bits: Bits, work: Work) -> Result<Vec<(u64, u32)>, Stopped> {
     let centres = Extents::around_many(references).centres.aabb();
     let (min, max) = (centres.min.as_dvec3(), centres.max.as_dvec3());
     // The same along all axes, so that cells are cubes.
@@ -57,9 +59,10 @@ pub fn sorted(references: &[Reference], bits: Bits) -> Vec<(u64, u32)> {
         let place = |at: f32, min: f64| (((f64::from(at) - min) * scale) as u64).min(last);
         spread(place(x, min.x)) << 2 | spread(place(y, min.y)) << 1 | spread(place(z, min.z))
     };
-    let mut sorted: Vec<_> = references.par_iter().map(code).zip(0..references.len() as u32).collect();
-    radix::sort(&mut sorted, bits.count());
-    sorted
+    let [encode, sort] = work.parts([1.0, 8.0]);
+    let mut sorted = encode.collect(references.len(), |i| (code(&references[i]), i as u32))?;
+    radix::sort(&mut sorted, bits.count(), sort)?;
+    Ok(sorted)
 }
 
 /// Puts two clear bits between any two of the lowest 21.
@@ -118,7 +121,7 @@ mod tests {
         let boxes: Vec<_> =
             (0..512).map(|i| Aabb::around([Vec3::new((i % 8) as f32, (i / 8 % 8) as f32, (i / 64) as f32)])).collect();
         for bits in [Bits::Thirty, Bits::SixtyThree] {
-            let bvh = build(&boxes, bits);
+            let bvh = build(&boxes, bits, Work::UNWATCHED).unwrap();
             bvh.validate(&boxes).unwrap();
             assert_eq!(bvh.depth(), 9);
             assert_eq!(bvh.nodes[1].aabb(), Aabb { min: Vec3::ZERO, max: Vec3::new(3.0, 7.0, 7.0) });

@@ -2,7 +2,7 @@
 
 use super::{BinaryBvh, Node};
 use crate::math::Aabb;
-use rayon::prelude::*;
+use crate::work::{Stopped, Work};
 
 /// A part of a tree.
 pub enum Part {
@@ -56,8 +56,9 @@ impl Part {
     }
 
     /// Makes a tree of it, over primitives in some order: that which the parts list, if they do.
-    pub fn assemble(self, mut order: Vec<u32>) -> BinaryBvh {
-        let mut nodes: Vec<Node> = (0..=self.below()).into_par_iter().map(|_| Node::leaf(Aabb::EMPTY, 0, 0)).collect();
+    pub fn assemble(self, mut order: Vec<u32>, work: Work) -> Result<BinaryBvh, Stopped> {
+        let [make, place] = work.parts([1.0, 3.0]);
+        let mut nodes = make.collect(self.below() + 1, |_| Node::leaf(Aabb::EMPTY, 0, 0))?;
         let (root, below) = nodes.split_at_mut(1);
         if self.listed() > 0 {
             order = vec![0; self.listed()];
@@ -65,7 +66,8 @@ impl Part {
         } else {
             self.place(&mut root[0], Target { base: 1, below, first: 0, order: &mut [] });
         }
-        BinaryBvh { nodes, order }
+        place.done();
+        Ok(BinaryBvh { nodes, order })
     }
 
     /// Writes its root, and what is below.

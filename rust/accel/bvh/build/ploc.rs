@@ -14,7 +14,9 @@ use super::reference::{Bounds, Reference, references};
 use super::slices::{self, Opened, Subtree};
 use super::{BinaryBvh, spare};
 use crate::math::Aabb;
+use crate::work::{Stopped, Work};
 use rayon::prelude::*;
+use std::borrow::Cow;
 
 /// How to cluster.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,26 +39,31 @@ const SHARE: usize = 1 << 12;
 ///
 /// # Panics
 /// If the radius is out of range.
-pub fn build(boxes: &[Aabb], options: &Options) -> BinaryBvh {
+pub fn build<'a>(boxes: impl Into<Cow<'a, [Aabb]>>, options: &Options, work: Work) -> Result<BinaryBvh, Stopped> {
     let Options { radius } = *options;
     assert!((1..=MAX_RADIUS).contains(&radius), "radius is {radius}, not from 1 to {MAX_RADIUS}");
-    let mut sorted = references(boxes);
+    let [gather, sort, merge, write] = work.parts([1.0, 8.0, 30.0, 10.0]);
+    let mut sorted = references(boxes, gather)?;
     if sorted.is_empty() {
-        return BinaryBvh::default();
+        return Ok(BinaryBvh::default());
     }
-    sorted =
-        morton::sorted(&sorted, Bits::SixtyThree).into_par_iter().map(|(_, place)| sorted[place as usize]).collect();
+    sorted = morton::sorted(&sorted, Bits::SixtyThree, sort)?
+        .into_par_iter()
+        .map(|(_, place)| sorted[place as usize])
+        .collect();
     let count = sorted.len();
     let cluster = |(link, r): (u32, &Reference)| Cluster { bounds: r.bounds, link, count: 1 };
     let mut clusters: Vec<Cluster> = (0..count as u32).into_par_iter().zip(&sorted).map(cluster).collect();
     let mut pairs = Vec::with_capacity(count - 1);
-    let mut rounds = spare(count);
+    let (mut rounds, steps) = (spare(count), merge.steps(count));
     while clusters.len() > 1 {
+        let before = clusters.len();
         let sought = if rounds > 0 { nearest(&clusters, radius) } else { beside(clusters.len()) };
         clusters = merged(&clusters, &sought, count, &mut pairs);
         rounds = rounds.saturating_sub(1);
+        steps.did(before - clusters.len())?;
     }
-    slices::write(Merged { link: clusters[0].link, leaves: &sorted, pairs: &pairs }, count)
+    slices::write(Merged { link: clusters[0].link, leaves: &sorted, pairs: &pairs }, count, write)
 }
 
 /// Some primitives that are a subtree by now.
@@ -196,7 +203,7 @@ mod tests {
         // Two and two close together, in an order that the codes do not tell.
         let boxes =
             [0.0, 0.1, 7.0, 7.1].map(|x: f32| Aabb::around([Vec3::new(x, 0.0, 0.0), Vec3::new(x + 0.05, 1.0, 1.0)]));
-        let bvh = build(&boxes, &Options { radius: RADIUS });
+        let bvh = build(&boxes, &Options { radius: RADIUS }, Work::UNWATCHED).unwrap();
         bvh.validate(&boxes).unwrap();
         let [left, right] = bvh.nodes[0].children().map(|child| bvh.nodes[child].aabb());
         assert_eq!([left, right], [boxes[0].union(boxes[1]), boxes[2].union(boxes[3])]);
@@ -204,7 +211,8 @@ mod tests {
 
     #[test]
     fn coinciding_boxes_make_a_tree_of_least_depth() {
-        let bvh = build(&vec![Aabb::around([Vec3::ONE]); 1 << 14], &Options { radius: RADIUS });
+        let boxes = vec![Aabb::around([Vec3::ONE]); 1 << 14];
+        let bvh = build(boxes, &Options { radius: RADIUS }, Work::UNWATCHED).unwrap();
         assert_eq!(bvh.depth(), 14);
     }
 }

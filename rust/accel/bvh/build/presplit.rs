@@ -229,6 +229,7 @@ mod tests {
     use crate::math::{DVec3, Vec3};
     use crate::sampling::philox4x32;
     use crate::shapes::triangle::clipped;
+    use crate::work::Work;
 
     /// Triangles of some size, the second corner in a direction from the first, which for the third is turned by a
     /// right angle.
@@ -265,7 +266,8 @@ mod tests {
             assert!(0.45 * last < now && now < share * last, "{now} from {last}");
             last = now;
             let builder = Builder::Ploc { radius: 14 };
-            let mut bvh = builder.build(&pieces.boxes, |_, to| *to, &Leaves::for_blocks(8));
+            let leaves = Leaves::for_blocks(8);
+            let mut bvh = builder.build(&pieces.boxes, |_, to| *to, &leaves, Work::UNWATCHED).unwrap();
             pieces.put_together(&mut bvh);
             bvh.validate_parts(&whole, |p, to| clipped(sticks[p as usize], to)).unwrap();
         }

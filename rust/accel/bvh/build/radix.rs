@@ -1,6 +1,7 @@
 //! A stable parallel radix sort by whole-number keys (Zagha and Blelloch, "Radix Sort for Vector Multiprocessors",
 //! 1991).
 
+use crate::work::{Stopped, Work};
 use rayon::prelude::*;
 
 /// Bits of a digit.
@@ -12,13 +13,16 @@ const DIGITS: usize = 1 << DIGIT;
 const SHARE: usize = 1 << 14;
 
 /// Sorts pairs by the lowest `bits` of the first, and keeps pairs of one key in the order they had.
-pub fn sort(pairs: &mut Vec<(u64, u32)>, bits: u32) {
+pub fn sort(pairs: &mut Vec<(u64, u32)>, bits: u32, work: Work) -> Result<(), Stopped> {
     let mut other = vec![(0, 0); pairs.len()];
+    let steps = work.steps(bits.div_ceil(DIGIT) as usize);
     for shift in (0..bits).step_by(DIGIT as usize) {
         if pass(pairs, &mut other, shift) {
             std::mem::swap(pairs, &mut other);
         }
+        steps.did(1)?;
     }
+    Ok(())
 }
 
 fn digit(key: u64, shift: u32) -> usize {
@@ -63,7 +67,7 @@ mod tests {
 
     fn sorted(keys: &[u64], bits: u32) -> Vec<(u64, u32)> {
         let mut pairs: Vec<_> = keys.iter().copied().zip(0..).collect();
-        sort(&mut pairs, bits);
+        sort(&mut pairs, bits, Work::UNWATCHED).unwrap();
         pairs
     }
 

@@ -1,8 +1,10 @@
 //! What builders sort: boxes with the numbers of their primitives.
 
 use crate::math::{Aabb, Vec3};
+use crate::work::{Stopped, Work};
 use glam::{Vec4, Vec4Swizzles};
 use rayon::prelude::*;
+use std::borrow::Cow;
 
 /// So many references are one thread's share of a large node.
 pub const SHARE: usize = 1 << 14;
@@ -172,15 +174,16 @@ impl Extents {
     }
 }
 
-/// References to all boxes but empty ones.
-pub fn references(boxes: &[Aabb]) -> Vec<Reference> {
-    let numbered = || boxes.par_iter().enumerate();
-    let reference = |(i, b): (usize, &Aabb)| Reference::new(b, i as u32);
-    if numbered().any(|(_, b)| b.is_empty()) {
-        numbered().filter(|(_, b)| !b.is_empty()).map(reference).collect()
+/// References to all boxes but empty ones. Boxes that are given away are freed.
+pub fn references<'a>(boxes: impl Into<Cow<'a, [Aabb]>>, work: Work) -> Result<Vec<Reference>, Stopped> {
+    let boxes = boxes.into();
+    let reference = |i: usize| Reference::new(&boxes[i], i as u32);
+    if boxes.par_iter().any(Aabb::is_empty) {
+        work.goes_on()?;
+        Ok((0..boxes.len()).into_par_iter().filter(|&i| !boxes[i].is_empty()).map(reference).collect())
     } else {
         // Where each belongs is known, so it is written there at once.
-        numbered().map(reference).collect()
+        work.collect(boxes.len(), reference)
     }
 }
 

@@ -15,7 +15,9 @@ use super::reference::{Bounds, Extents, MANY, Reference, SHARE, median, partitio
 use super::top_down::{self, Set};
 use super::{BinaryBvh, Leaves, spare};
 use crate::math::Aabb;
+use crate::work::{Stopped, Work};
 use rayon::prelude::*;
+use std::borrow::Cow;
 
 /// How to build.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,20 +55,26 @@ const OWN_OVERLAP: f32 = 0.2;
 ///
 /// # Panics
 /// If an option is out of range.
-pub fn build(boxes: &[Aabb], clip: impl Fn(u32, &Aabb) -> Aabb + Sync, options: &Options) -> BinaryBvh {
+pub fn build<'a>(
+    boxes: impl Into<Cow<'a, [Aabb]>>,
+    clip: impl Fn(u32, &Aabb) -> Aabb + Sync,
+    options: &Options,
+    work: Work,
+) -> Result<BinaryBvh, Stopped> {
     let Options { bins, budget, leaves } = *options;
     assert!((2..=MAX_BINS).contains(&bins), "bins is {bins}, not from 2 to {MAX_BINS}");
     assert!((0.0..=MAX_BUDGET).contains(&budget), "budget is {budget}, not from 0 to {MAX_BUDGET}");
     leaves.check();
-    let references = references(boxes);
+    let [gather, grow] = work.parts([1.0, 40.0]);
+    let references = references(boxes, gather)?;
     if references.is_empty() {
-        return BinaryBvh::default();
+        return Ok(BinaryBvh::default());
     }
     let count = references.len();
     let budget = ((f64::from(budget) * count as f64) as usize).min(MOST.saturating_sub(count));
     let extents = Extents::around_many(&references);
     let shared = Shared { clip, bins, leaves, overlap: OVERLAP * extents.all.half_area() };
-    top_down::build(Parts { references, extents, spare: spare(count), budget, shared: &shared })
+    top_down::build(Parts { references, extents, spare: spare(count), budget, shared: &shared }, grow)
 }
 
 struct Shared<C> {

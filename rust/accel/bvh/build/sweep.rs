@@ -9,8 +9,10 @@ use super::reference::{Bounds, Reference, references};
 use super::top_down::{self, Set};
 use super::{BinaryBvh, Leaves, spare};
 use crate::math::Aabb;
+use crate::work::{Stopped, Work};
 use glam::Vec4;
 use rayon::prelude::*;
+use std::borrow::Cow;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 /// From so many primitives on, each axis has a thread.
@@ -23,11 +25,12 @@ const MANY: usize = 4096;
 ///
 /// # Panics
 /// If an option is out of range.
-pub fn build(boxes: &[Aabb], leaves: &Leaves) -> BinaryBvh {
+pub fn build<'a>(boxes: impl Into<Cow<'a, [Aabb]>>, leaves: &Leaves, work: Work) -> Result<BinaryBvh, Stopped> {
     leaves.check();
-    let references = references(boxes);
+    let [gather, sort, grow] = work.parts([1.0, 20.0, 100.0]);
+    let references = references(boxes, gather)?;
     if references.is_empty() {
-        return BinaryBvh::default();
+        return Ok(BinaryBvh::default());
     }
     let count = references.len();
     let sorted = |axis: usize| {
@@ -38,7 +41,11 @@ pub fn build(boxes: &[Aabb], leaves: &Leaves) -> BinaryBvh {
         });
         order
     };
-    let mut orders = [0, 1, 2].map(sorted);
+    let (steps, mut orders) = (sort.steps(3), [const { Vec::new() }; 3]);
+    for (axis, order) in orders.iter_mut().enumerate() {
+        *order = sorted(axis);
+        steps.did(1)?;
+    }
     let mut spaces = [0, 1, 2].map(|_| vec![0; count]);
     let right: Vec<_> = (0..count).into_par_iter().map(|_| AtomicBool::new(false)).collect();
     let [x, y, z] = &mut orders;
@@ -47,7 +54,7 @@ pub fn build(boxes: &[Aabb], leaves: &Leaves) -> BinaryBvh {
     let axes = [axis(x, u), axis(y, v), axis(z, w)];
     let all = around(&references, axes[0].order);
     let shared = Shared { references: &references, right: &right, leaves: *leaves };
-    top_down::build(Sweep { axes, all, spare: spare(count), shared: &shared })
+    top_down::build(Sweep { axes, all, spare: spare(count), shared: &shared }, grow)
 }
 
 struct Shared<'a> {

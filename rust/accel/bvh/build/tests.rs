@@ -5,6 +5,7 @@ use crate::accel::bvh::optimise::{reinsertion, treelet};
 use crate::math::{DVec3, Vec3};
 use crate::sampling::philox4x32;
 use crate::shapes::triangle::clipped;
+use crate::work::Watch;
 use proptest::prelude::*;
 
 const ALL: [Builder; 9] = [
@@ -44,18 +45,18 @@ fn assert_sound(bvh: &BinaryBvh, boxes: &[Aabb], builder: Builder, clip: impl Fn
 /// Builds with every builder, and improves with every optimiser.
 fn check(boxes: &[Aabb], clip: impl Fn(u32, &Aabb) -> Aabb + Sync, block: usize) {
     for builder in ALL {
-        let mut bvh = builder.build(boxes, &clip, &Leaves::for_blocks(block));
+        let mut bvh = builder.build(boxes, &clip, &Leaves::for_blocks(block), Work::UNWATCHED).unwrap();
         assert_sound(&bvh, boxes, builder, &clip);
         assert!(bvh.nodes.iter().all(|n| n.count as usize <= Leaves::for_blocks(block).whole));
         let before = cost(&bvh);
         let mut other = bvh.clone();
-        treelet::optimise(&mut bvh, &treelet::Options { rounds: 3, worthwhile: 0.0, block });
+        treelet::optimise(&mut bvh, &treelet::Options { rounds: 3, worthwhile: 0.0, block }, Work::UNWATCHED).unwrap();
         assert_sound(&bvh, boxes, builder, &clip);
         let between = cost(&bvh);
         assert!(between <= before * (1.0 + 1e-6), "{}: {between} from {before}", builder.name());
         let options = reinsertion::Options { rounds: 3, share: 0.5, worthwhile: 0.0, block };
         for bvh in [&mut bvh, &mut other] {
-            reinsertion::optimise(bvh, &options);
+            reinsertion::optimise(bvh, &options, Work::UNWATCHED).unwrap();
             assert_sound(bvh, boxes, builder, &clip);
         }
         assert!(cost(&bvh) <= between * (1.0 + 1e-6), "{}: {} from {between}", builder.name(), cost(&bvh));
@@ -116,7 +117,7 @@ fn a_million_copies_end_soon() {
     let boxes = vec![Aabb { min: Vec3::ZERO, max: Vec3::new(1.0, 0.0, 1.0) }; 1_000_000];
     let start = std::time::Instant::now();
     for builder in ALL {
-        let bvh = builder.build(&boxes, fill(&boxes), &Leaves::for_blocks(8));
+        let bvh = builder.build(&boxes, fill(&boxes), &Leaves::for_blocks(8), Work::UNWATCHED).unwrap();
         assert!(bvh.depth() <= 22 && bvh.order.len() >= boxes.len(), "{}", builder.name());
     }
     assert!(start.elapsed().as_secs() < 120, "{:?}", start.elapsed());
@@ -149,7 +150,7 @@ fn parted_sticks_are_held_and_cost_less() {
     let clip = |p: u32, to: &Aabb| clipped(triangles[p as usize], to);
     check(&boxes, clip, 8);
     let leaves = Leaves::by_cost(8, 1.0, 1.0);
-    let build = |builder: Builder| builder.build(&boxes, clip, &leaves);
+    let build = |builder: Builder| builder.build(&boxes, clip, &leaves, Work::UNWATCHED).unwrap();
     let whole = build(Builder::Sweep);
     let mut last = sah(&whole);
     for budget in [1.0, 4.0, 8.0] {
@@ -166,7 +167,7 @@ fn looking_everywhere_costs_no_more_than_looking_at_borders_of_bins() {
     let (_, boxes) = sticks(20_000);
     for leaves in [Leaves::for_blocks(1), Leaves::by_cost(16, 1.0, 1.0)] {
         let [sweep, binned, median] = [Builder::Sweep, Builder::Binned { bins: Some(8) }, Builder::Halves(Way::Median)]
-            .map(|builder| sah(&builder.build(&boxes, fill(&boxes), &leaves)));
+            .map(|builder| sah(&builder.build(&boxes, fill(&boxes), &leaves, Work::UNWATCHED).unwrap()));
         assert!(sweep < binned && binned < median, "{sweep} {binned} {median}");
     }
 }
@@ -179,7 +180,8 @@ fn a_leaf_is_made_where_splitting_does_not_lower_the_cost() {
         (0..12).map(|i| Aabb::around([Vec3::new(i as f32, 0.0, 0.0), Vec3::new(i as f32 + 0.1, 1.0, 1.0)])).collect();
     for builder in [Builder::Binned { bins: None }, Builder::Sweep, Builder::Spatial { bins: None, budget: 1.0 }] {
         let nodes = |boxes: &[Aabb], traversal_cost| {
-            builder.build(boxes, fill(boxes), &Leaves::by_cost(16, traversal_cost, 1.0)).nodes.len()
+            let leaves = Leaves::by_cost(16, traversal_cost, 1.0);
+            builder.build(boxes, fill(boxes), &leaves, Work::UNWATCHED).unwrap().nodes.len()
         };
         assert_eq!(nodes(&equal, 0.1), 1, "{}", builder.name());
         assert_eq!(nodes(&apart, 0.1), 23, "{}", builder.name());
@@ -196,8 +198,9 @@ fn the_number_of_threads_does_not_matter() {
         // Planes are sought by several threads only in the largest nodes.
         let boxes = &all[..if builder.parts() { all.len() } else { 10_000 }];
         pool.install(|| {
-            let mut bvh = builder.build(boxes, clip, &Leaves::for_blocks(8));
-            treelet::optimise(&mut bvh, &treelet::Options { rounds: 1, worthwhile: 0.0, block: 8 });
+            let mut bvh = builder.build(boxes, clip, &Leaves::for_blocks(8), Work::UNWATCHED).unwrap();
+            treelet::optimise(&mut bvh, &treelet::Options { rounds: 1, worthwhile: 0.0, block: 8 }, Work::UNWATCHED)
+                .unwrap();
             bvh
         })
     };
@@ -211,16 +214,39 @@ fn the_number_of_threads_does_not_matter() {
 }
 
 #[test]
+fn builds_tell_all_that_they_do_and_end_when_they_are_stopped() {
+    let (triangles, boxes) = sticks(20_000);
+    for builder in ALL {
+        let (watch, stopped) = (Watch::default(), Watch::default());
+        let leaves = Leaves::for_blocks(8);
+        let clip = |p: u32, to: &Aabb| clipped(triangles[p as usize], to);
+        let bvh = builder.build(&boxes, clip, &leaves, Work::of(&watch)).unwrap();
+        // What is told of the parts adds up to all there was.
+        assert!(watch.share() > 0.99 && watch.share() <= 1.0, "{}: {}", builder.name(), watch.share());
+        stopped.stop();
+        let early = builder.build(boxes.clone(), clip, &leaves, Work::of(&stopped));
+        assert!(early.is_err() && stopped.share() < 0.5, "{}: {}", builder.name(), stopped.share());
+        // An optimiser that is stopped leaves the tree as it is.
+        let mut same = bvh.clone();
+        let options = treelet::Options { rounds: 1, worthwhile: 0.0, block: 8 };
+        assert_eq!(treelet::optimise(&mut same, &options, Work::of(&stopped)), Err(Stopped));
+        let options = reinsertion::Options { rounds: 3, share: 0.5, worthwhile: 0.0, block: 8 };
+        assert_eq!(reinsertion::optimise(&mut same, &options, Work::of(&stopped)), Err(Stopped));
+        assert!(same.order == bvh.order && same.nodes.len() == bvh.nodes.len());
+    }
+}
+
+#[test]
 fn halves_are_made_where_they_say() {
     // Of centres 0, 1, 2, 9 the middle is 4.5, the mean is 3, and the median parts two from two.
     let boxes = [0.0, 1.0, 2.0, 9.0].map(|x| Aabb::around([Vec3::new(x, 0.0, 0.0)]));
     for (way, left) in [(Way::Midpoint, 2.0), (Way::Mean, 2.0), (Way::Median, 1.0)] {
-        let bvh = halves::build(&boxes, way, &Leaves::for_blocks(1));
+        let bvh = halves::build(&boxes, way, &Leaves::for_blocks(1), Work::UNWATCHED).unwrap();
         assert_eq!(bvh.nodes[1].max.x, left, "{way:?}");
     }
     let boxes = [0.0, 4.0, 5.0, 7.0].map(|x| Aabb::around([Vec3::new(x, 0.0, 0.0)]));
     for (way, left) in [(Way::Midpoint, 0.0), (Way::Mean, 0.0), (Way::Median, 4.0)] {
-        let bvh = halves::build(&boxes, way, &Leaves::for_blocks(1));
+        let bvh = halves::build(&boxes, way, &Leaves::for_blocks(1), Work::UNWATCHED).unwrap();
         assert_eq!(bvh.nodes[1].max.x, left, "{way:?}");
     }
 }

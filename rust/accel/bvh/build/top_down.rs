@@ -3,9 +3,17 @@
 use super::part::Part;
 use super::{BinaryBvh, Node};
 use crate::math::Aabb;
+use crate::work::{Steps, Stopped, Work};
 
 /// Up to so many primitives, a subtree is built by one thread.
-const TASK: usize = 1024;
+pub const TASK: usize = 1024;
+
+/// How many times it takes to go through so many primitives: once a level as long as subtrees are large, and what is
+/// below takes as long as so many of these.
+pub fn levels(count: usize) -> usize {
+    const BELOW: usize = 8;
+    (count / TASK).max(1).ilog2() as usize + BELOW
+}
 
 /// A set of primitives that may be split in two.
 pub trait Set: Sized + Send {
@@ -26,21 +34,34 @@ pub trait Set: Sized + Send {
 }
 
 /// Builds a tree over a set. The sets must not be split much more often in a row than a stack can hold.
-pub fn build<S: Set>(set: S) -> BinaryBvh {
-    part(set).assemble(Vec::new())
+pub fn build<S: Set>(set: S, work: Work) -> Result<BinaryBvh, Stopped> {
+    let [grow, place] = work.parts([10.0, 1.0]);
+    let levels = levels(set.len());
+    let steps = grow.steps(levels * set.len());
+    part(set, levels, &steps)?.assemble(Vec::new(), place)
 }
 
-fn part<S: Set>(set: S) -> Part {
-    if set.len() <= TASK {
-        return alone(set, &mut S::Workspace::default());
-    }
-    let aabb = set.aabb();
-    match set.split(&mut S::Workspace::default()) {
-        Ok([left, right]) => {
-            let (left, right) = rayon::join(|| part(left), || part(right));
-            Part::pair(aabb, left, right)
+/// A subtree; `levels` is how many times its primitives count as gone through when it is done.
+fn part<S: Set>(set: S, levels: usize, steps: &Steps) -> Result<Part, Stopped> {
+    let count = set.len();
+    let below = if count <= TASK {
+        Err(set)
+    } else {
+        let aabb = set.aabb();
+        set.split(&mut S::Workspace::default()).map(|sides| (aabb, sides))
+    };
+    match below {
+        Ok((aabb, [left, right])) => {
+            steps.did(count * levels.min(1))?;
+            let levels = levels.saturating_sub(1);
+            let (left, right) = rayon::join(|| part(left, levels, steps), || part(right, levels, steps));
+            Ok(Part::pair(aabb, left?, right?))
         }
-        Err(leaf) => alone(leaf, &mut S::Workspace::default()),
+        Err(leaf) => {
+            let part = alone(leaf, &mut S::Workspace::default());
+            steps.did(count * levels)?;
+            Ok(part)
+        }
     }
 }
 

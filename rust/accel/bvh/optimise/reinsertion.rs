@@ -15,6 +15,7 @@
 use super::tree::{Move, Tree, sibling};
 use crate::accel::bvh::BinaryBvh;
 use crate::accel::bvh::build::Bounds;
+use crate::work::{Stopped, Work};
 use rayon::prelude::*;
 
 /// How long to look for better places.
@@ -38,20 +39,28 @@ const PATIENCE: u32 = 256;
 
 /// Moves subtrees of a tree, which is laid out depth first and is so again afterwards. Its inner nodes have no more
 /// area then, and it is no deeper than it was or than three times the logarithm of its primitives and some.
-pub fn optimise(bvh: &mut BinaryBvh, options: &Options) {
+pub fn optimise(bvh: &mut BinaryBvh, options: &Options, work: Work) -> Result<(), Stopped> {
     if options.rounds == 0 || bvh.nodes.is_empty() {
-        return;
+        return Ok(());
     }
+    let [open, improve, place] = work.parts([1.0, options.rounds as f32, 1.5]);
     let mut tree = Tree::new(bvh, options.block as u32);
     // Stacks are made for the depth, and a tree of least cost can be a chain.
     let deepest = tree.height().max(3 * bvh.order.len().ilog2() + 42);
     let worthwhile = f64::from(options.worthwhile) * tree.cost();
     let batch = (tree.len() as f64 * f64::from(options.share)) as usize;
     let mut rests_until = vec![0; tree.len()];
+    open.done();
+    open.goes_on()?;
+    let steps = improve.steps(options.rounds as usize);
     for round in 0..options.rounds {
         let seekers = largest(&tree, batch, |node| rests_until[node as usize] <= round);
-        let mut found: Vec<Found> =
-            seekers.par_iter().map_init(Vec::new, |open, &node| best_place(&tree, node, open)).flatten().collect();
+        let seek = |open: &mut Vec<Pair>, &node: &u32| match steps.is_stopped() {
+            true => None,
+            false => best_place(&tree, node, open),
+        };
+        let mut found: Vec<Found> = seekers.par_iter().map_init(Vec::new, seek).flatten().collect();
+        steps.did(1)?;
         seekers.iter().for_each(|&node| rests_until[node as usize] = round + REST);
         found.iter().for_each(|found| rests_until[found.step.node as usize] = 0);
         found.par_sort_unstable_by(|a, b| b.saved.total_cmp(&a.saved).then(a.step.node.cmp(&b.step.node)));
@@ -63,12 +72,14 @@ pub fn optimise(bvh: &mut BinaryBvh, options: &Options) {
         }
         if harm || made.is_empty() || saved < worthwhile {
             if round == 0 {
-                return;
+                return Ok(());
             }
             break;
         }
     }
     *bvh = tree.lay_out(bvh);
+    place.done();
+    Ok(())
 }
 
 /// About so many of the largest nodes for which `is_asked` holds, in the order of their numbers; the root is none of
@@ -200,9 +211,10 @@ mod tests {
 
     /// A tree before and after, both valid.
     fn check(boxes: &[Aabb], options: &Options) -> [BinaryBvh; 2] {
-        let before = binned::build(boxes, &binned::Options { bins: 16, leaves: Leaves::for_blocks(options.block) });
+        let leaves = Leaves::for_blocks(options.block);
+        let before = binned::build(boxes, &binned::Options { bins: 16, leaves }, Work::UNWATCHED).unwrap();
         let mut after = before.clone();
-        optimise(&mut after, options);
+        optimise(&mut after, options, Work::UNWATCHED).unwrap();
         after.validate(boxes).unwrap();
         assert_depth_first(&after);
         assert_eq!(after.nodes.len(), before.nodes.len());
@@ -275,7 +287,7 @@ mod tests {
             order: vec![0, 1, 2, 3],
         };
         bvh.validate(&boxes).unwrap();
-        optimise(&mut bvh, &THOROUGH);
+        optimise(&mut bvh, &THOROUGH, Work::UNWATCHED).unwrap();
         bvh.validate(&boxes).unwrap();
         let best = [node(0, 3), node(0, 2), node(1, 3)].iter().map(|b| f64::from(b.half_area())).sum::<f64>();
         assert!((cost(&bvh) - best).abs() < 1e-5, "{} is not {best}", cost(&bvh));

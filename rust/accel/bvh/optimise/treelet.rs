@@ -10,6 +10,7 @@
 use super::tree::{Tree, Treelet};
 use crate::accel::bvh::BinaryBvh;
 use crate::accel::bvh::build::Bounds;
+use crate::work::{Stopped, Work};
 use rayon::prelude::*;
 
 /// How much to try.
@@ -28,10 +29,12 @@ const LEAVES: usize = 7;
 
 /// Goes through a tree, which is laid out depth first and is so again afterwards. Its inner nodes have no more area
 /// then, and it is no deeper than it was or than three times the logarithm of its primitives and some.
-pub fn optimise(bvh: &mut BinaryBvh, options: &Options) {
+pub fn optimise(bvh: &mut BinaryBvh, options: &Options, work: Work) -> Result<(), Stopped> {
     if options.rounds == 0 || bvh.nodes.is_empty() {
-        return;
+        return Ok(());
     }
+    // Each looks at half as many nodes as the one before.
+    let steps = work.steps(2 * bvh.order.len());
     let mut tree = Tree::new(bvh, options.block as u32);
     // Stacks are made for the depth, and a tree of least cost can be a chain.
     let deepest = tree.height().max(3 * bvh.order.len().ilog2() + 42);
@@ -43,6 +46,9 @@ pub fn optimise(bvh: &mut BinaryBvh, options: &Options) {
             // What is below has changed.
             level.iter().for_each(|seen| tree.measure(seen.node));
             let best = |seen: &Seen| {
+                if steps.is_stopped() {
+                    return None;
+                }
                 // No way down becomes longer than the longest that was there, or than all are allowed to be.
                 let highest = seen.height.max(deepest.saturating_sub(depth as u32));
                 if seen.leaves >= (LEAVES as u32) << round { best(&tree, seen.node, highest) } else { None }
@@ -52,6 +58,7 @@ pub fn optimise(bvh: &mut BinaryBvh, options: &Options) {
                 tree.regrow(treelet);
                 saved += gain;
             }
+            steps.did((level.len() * options.block) >> (2 + round))?;
         }
         changed |= saved > 0.0;
         if saved <= worthwhile {
@@ -61,6 +68,7 @@ pub fn optimise(bvh: &mut BinaryBvh, options: &Options) {
     if changed {
         *bvh = tree.lay_out(bvh);
     }
+    Ok(())
 }
 
 /// An inner node before anything below it has changed.

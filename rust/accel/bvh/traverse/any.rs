@@ -90,6 +90,7 @@ mod tests {
     use crate::accel::bvh::Quality;
     use crate::math::{Aabb, Vec3};
     use crate::sampling::philox4x32;
+    use crate::work::Work;
 
     #[test]
     fn the_larger_child_comes_first_and_the_tree_stays_valid() {
@@ -99,7 +100,7 @@ mod tests {
                 Aabb { min: Vec3::new(x, y, z), max: Vec3::new(x, y, z) + 0.1 * size }
             })
             .collect();
-        let (mut bvh, _) = Quality::Balanced.steps(1).whole(&boxes);
+        let (mut bvh, _) = Quality::Balanced.steps(1).whole(&boxes, Work::UNWATCHED).unwrap();
         larger_first(&mut bvh);
         bvh.validate(&boxes).unwrap();
         for node in bvh.nodes.iter().filter(|n| !n.is_leaf()) {

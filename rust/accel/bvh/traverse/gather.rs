@@ -87,6 +87,7 @@ mod tests {
     use crate::accel::bvh::build::{Builder, Leaves, assert_depth_first};
     use crate::math::{Aabb, Vec3};
     use crate::sampling::philox4x32;
+    use crate::work::Work;
 
     fn tree(count: u32) -> (Vec<Aabb>, BinaryBvh) {
         let boxes: Vec<_> = (0..count)
@@ -96,7 +97,8 @@ mod tests {
             })
             .collect();
         let clip = |p: u32, to: &Aabb| boxes[p as usize].intersection(*to);
-        let bvh = Builder::Morton(Bits::default()).build(&boxes, clip, &Leaves::for_blocks(1));
+        let builder = Builder::Morton(Bits::default());
+        let bvh = builder.build(&boxes, clip, &Leaves::for_blocks(1), Work::UNWATCHED).unwrap();
         (boxes, bvh)
     }
 

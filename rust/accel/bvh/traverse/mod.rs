@@ -69,7 +69,8 @@ impl Traversal {
         // What is no triangle is tested one by one.
         let block = if input.primitives.objects().is_some() { 1 } else { BLOCK };
         let steps = options.steps(block);
-        let (bvh, name) = steps.build(&input.boxes, |p, to| clip(input, p, to));
+        let built = steps.build(&input.boxes, |p, to| clip(input, p, to), input.work);
+        let (bvh, name) = built.unwrap_or_default();
         let (traversal, intersection) = (options.traversal_cost, options.intersection_cost);
         self.over(gather(&bvh, Costs { traversal, intersection, block }), input, &name)
     }

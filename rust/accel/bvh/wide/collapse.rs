@@ -9,22 +9,35 @@ use super::{Child, Info, Leaves, Options, Primitives, WideBvh, WideNode};
 use crate::accel::bvh::{BinaryBvh, Node};
 use crate::math::{Aabb, Region};
 use crate::simd::Level;
-use rayon::prelude::*;
+use crate::work::{Steps, Stopped, Work};
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
 impl<const N: usize, L: Leaves<N>> WideBvh<N, L> {
     pub(super) fn collapse(
-        binary: &BinaryBvh,
+        binary: BinaryBvh,
+        primitives: &dyn Primitives,
+        region: &Region,
+        options: &Options,
+        work: Work,
+    ) -> Result<Self, Stopped> {
+        let [outline, last] = work.parts([1.0, 1.0]);
+        let (outline, nodes) = Outline::of(&binary, options, N as u32, outline)?;
+        // Leaves take more memory than anything else that is kept.
+        drop(binary);
+        let wide = Self::with(nodes, &outline, primitives, region, options);
+        last.done();
+        last.goes_on()?;
+        Ok(wide)
+    }
+
+    /// A tree of these nodes, with the triangles of its leaves.
+    pub(super) fn with(
+        nodes: Vec<WideNode<N>>,
+        outline: &Outline<N>,
         primitives: &dyn Primitives,
         region: &Region,
         options: &Options,
     ) -> Self {
-        let outline = if binary.nodes.is_empty() {
-            Outline::NOTHING
-        } else {
-            Outline::new(binary, &Plan::<N>::new(binary, options, N as u32))
-        };
-        let nodes: Vec<_> = outline.nodes.par_iter().map(|node| node.build(binary)).collect();
         let leaves = L::new(region, &outline.order, &outline.counts, |p| primitives.corners(p));
         let info = Info {
             primitives: outline.order.len(),
@@ -55,7 +68,7 @@ fn area(node: &Node) -> f32 {
 }
 
 /// The best ways to show every binary node as 1 to N roots.
-pub(super) struct Plan<const N: usize> {
+struct Plan<const N: usize> {
     /// How many primitives fit a leaf.
     block: u32,
     /// Of every inner node, by the pair of its children.
@@ -96,12 +109,13 @@ impl Choice {
 }
 
 impl<const N: usize> Plan<N> {
-    pub(super) fn new(binary: &BinaryBvh, options: &Options, block: u32) -> Self {
+    fn new(binary: &BinaryBvh, options: &Options, block: u32, work: Work) -> Result<Self, Stopped> {
         const { assert!(2 <= N && N <= 8, "choices have three bits") };
         let mut plan = Self { block, choices: Vec::new() };
         plan.choices.resize_with(binary.nodes.len() / 2, AtomicU32::default);
-        plan.plan(binary, options, 0, 0);
-        plan
+        plan.plan(binary, options, 0, 0, &work.steps(binary.order.len()));
+        work.goes_on()?;
+        Ok(plan)
     }
 
     /// The choice at an inner node. Pairs of children fill the array from its second node on.
@@ -113,17 +127,27 @@ impl<const N: usize> Plan<N> {
         if node.is_leaf() { Choice(Choice::BLOCK) } else { Choice(self.at(node).load(Relaxed)) }
     }
 
-    /// Plans all from `node` down, which lies `depth` steps below the root.
-    fn plan(&self, binary: &BinaryBvh, options: &Options, node: usize, depth: usize) -> Planned<N> {
+    /// Plans all from `node` down, which lies `depth` steps below the root; no matter how, once that is stopped.
+    fn plan(&self, binary: &BinaryBvh, options: &Options, node: usize, depth: usize, steps: &Steps) -> Planned<N> {
         /// Down to here, halves are planned side by side.
         const PARALLEL: usize = 10;
+        if depth == PARALLEL && steps.is_stopped() {
+            return Planned { cost: [0.0; N], count: 0, leaf: true };
+        }
         let node = &binary.nodes[node];
         let area = area(node);
         if node.is_leaf() {
             assert!(node.count <= self.block, "a leaf fits a block");
             return Planned { cost: [area * options.intersection_cost; N], count: node.count, leaf: true };
         }
-        let below = |child| self.plan(binary, options, child, depth + 1);
+        let below = |child| {
+            let planned = self.plan(binary, options, child, depth + 1, steps);
+            if depth + 1 == PARALLEL {
+                // Whether it goes on is asked by what comes next.
+                let _ = steps.did(planned.count as usize);
+            }
+            planned
+        };
         let [left, right] = node.children();
         let (left, right) =
             if depth < PARALLEL { rayon::join(|| below(left), || below(right)) } else { (below(left), below(right)) };
@@ -188,7 +212,7 @@ pub(super) struct NodeOutline<const N: usize> {
 impl<const N: usize> NodeOutline<N> {
     const EMPTY: Self = Self { roots: [0; N], children: [Child::None; N] };
 
-    pub(super) fn build(&self, binary: &BinaryBvh) -> WideNode<N> {
+    fn build(&self, binary: &BinaryBvh) -> WideNode<N> {
         let mut children = [(Aabb::EMPTY, Child::None); N];
         let mut count = 0;
         for (&root, &child) in self.roots.iter().zip(&self.children).filter(|(_, c)| **c != Child::None) {
@@ -202,12 +226,37 @@ impl<const N: usize> NodeOutline<N> {
 impl<const N: usize> Outline<N> {
     pub(super) const NOTHING: Self = Self { nodes: Vec::new(), order: Vec::new(), counts: Vec::new(), depth: 0 };
 
-    pub(super) fn new(binary: &BinaryBvh, plan: &Plan<N>) -> Self {
+    /// Where everything stands in the wide tree of least cost, with leaves of at most `block`; and its nodes.
+    pub(super) fn of(
+        binary: &BinaryBvh,
+        options: &Options,
+        block: u32,
+        work: Work,
+    ) -> Result<(Self, Vec<WideNode<N>>), Stopped> {
+        if binary.nodes.is_empty() {
+            return Ok((Self::NOTHING, Vec::new()));
+        }
+        let [plan, outline, make] = work.parts([4.0, 4.0, 1.0]);
+        let plan = Plan::<N>::new(binary, options, block, plan)?;
+        let outline = Self::new(binary, &plan, outline)?;
+        let nodes = make.collect(outline.nodes.len(), |i| outline.nodes[i].build(binary))?;
+        Ok((outline, nodes))
+    }
+
+    fn new(binary: &BinaryBvh, plan: &Plan<N>, work: Work) -> Result<Self, Stopped> {
+        /// So many primitives between two looks up.
+        const SOME: usize = 1 << 14;
+        let steps = work.steps(binary.order.len());
+        let mut told = 0;
         let order = Vec::with_capacity(binary.order.len());
         let mut outline = Self { nodes: vec![NodeOutline::EMPTY], order, counts: Vec::new(), depth: 0 };
         let mut open = vec![(0, 0u32, 0)];
         while let Some((index, top, depth)) = open.pop() {
             outline.depth = outline.depth.max(depth + 1);
+            if outline.order.len() - told >= SOME {
+                steps.did(outline.order.len() - told)?;
+                told = outline.order.len();
+            }
             let mut roots = Held::<N>::new();
             if plan.choice(&binary.nodes[top as usize]).is_block() {
                 // A single leaf has no box to stand in, so the root is always a node.
@@ -233,7 +282,7 @@ impl<const N: usize> Outline<N> {
                 (node.roots[lane], node.children[lane]) = (root, child);
             }
         }
-        outline
+        Ok(outline)
     }
 }
 

@@ -30,7 +30,9 @@ use crate::accel::{ByColumns, Info, Nearest, Primitives, Touches};
 use crate::math::{Aabb, DVec3, Hit, HitColumns, Ray, RayBatch, RayColumns, Region};
 use crate::shapes::triangle::{Leaves, SolidCone, clipped};
 use crate::simd::{Dispatch, Level};
+use crate::work::Stopped;
 use batch::{All, Firsts};
+use collapse::Outline;
 use node::{Child, WideNode};
 pub use objects::over as over_objects;
 use rayon::prelude::*;
@@ -118,22 +120,27 @@ impl<const N: usize, L: Leaves<N>> WideBvh<N, L> {
     pub fn new(primitives: &dyn Primitives, options: &Options, level: Level) -> Self {
         assert!(level.lanes() >= N, "{N} lanes at {}", level.name());
         let start = Instant::now();
-        let region = primitives.region();
-        let boxes: Vec<Aabb> =
-            (0..primitives.count() as u32).into_par_iter().map(|p| aabb(primitives, &region, p)).collect();
-        let steps = options.steps(N);
-        let (binary, name) = steps.build(&boxes, |p, to| clip(primitives, &region, p, to));
-        let count = boxes.par_iter().filter(|b| !b.is_empty()).count();
-        drop(boxes);
-        let mut bvh = Self::collapse(&binary, primitives, &region, options);
+        let nowhere = Region::new(DVec3::INFINITY, DVec3::NEG_INFINITY);
+        let nothing = || Self::with(Vec::new(), &Outline::NOTHING, primitives, &nowhere, options);
+        let mut bvh = Self::build(primitives, options).unwrap_or_else(|Stopped| nothing());
         bvh.level = level;
-        bvh.in_parts = bvh.info.primitives > count;
-        bvh.info.primitives = count;
-        bvh.info.kind = format!("BVH, {N} wide, {name}, {}", L::PRECISION);
         bvh.info.precision = L::PRECISION;
         bvh.info.bytes = size_of_val(bvh.nodes.as_slice()) + bvh.leaves.bytes();
         bvh.info.build_seconds = start.elapsed().as_secs_f64();
         bvh
+    }
+
+    fn build(primitives: &dyn Primitives, options: &Options) -> Result<Self, Stopped> {
+        let region = primitives.region();
+        let [surround, grow, collapse] = primitives.work().parts([3.0, 14.0, 5.0]);
+        let boxes = surround.collect(primitives.count(), |p| aabb(primitives, &region, p as u32))?;
+        let count = boxes.par_iter().filter(|b| !b.is_empty()).count();
+        let (binary, name) = options.steps(N).build(boxes, |p, to| clip(primitives, &region, p, to), grow)?;
+        let mut bvh = Self::collapse(binary, primitives, &region, options, collapse)?;
+        bvh.in_parts = bvh.info.primitives > count;
+        bvh.info.primitives = count;
+        bvh.info.kind = format!("BVH, {N} wide, {name}, {}", L::PRECISION);
+        Ok(bvh)
     }
 }
 

@@ -1,7 +1,7 @@
 //! A wide tree over what is tested one by one: a leaf for each, walked by one ray at a time.
 
 use super::Options;
-use super::collapse::{Outline, Plan};
+use super::collapse::Outline;
 use super::node::{Child, Packed, WideNode};
 use super::step::{Boxes, Stacks};
 use crate::accel::bvh::BinaryBvh;
@@ -9,7 +9,7 @@ use crate::accel::walk::{Built, Input, Lists, Structure, Walker};
 use crate::accel::{Info, SlabRay};
 use crate::math::Aabb;
 use crate::simd::{Dispatch, Kernel, Level, Simd};
-use rayon::prelude::*;
+use crate::work::{Stopped, Work};
 
 /// A tree of up to `N` children a node and one object a leaf.
 #[derive(Debug)]
@@ -25,22 +25,20 @@ struct Objects<const N: usize> {
 /// Builds a tree over boxes, as wide as the level's registers.
 pub fn over(input: &Input, options: &Options, level: Level) -> Built {
     // Objects are not parted, whatever is done with triangles.
-    let (binary, name) = options.quality.steps(1).whole(&input.boxes);
+    let [grow, collapse] = input.work.parts([3.0, 1.0]);
+    let (binary, name) = options.quality.steps(1).whole(&input.boxes, grow).unwrap_or_default();
     match level.lanes() {
-        8 => collapsed::<8>(&binary, options, &name, level),
-        _ => collapsed::<4>(&binary, options, &name, level),
+        8 => collapsed::<8>(&binary, options, &name, level, collapse),
+        _ => collapsed::<4>(&binary, options, &name, level, collapse),
     }
 }
 
-fn collapsed<const N: usize>(binary: &BinaryBvh, options: &Options, name: &str, level: Level) -> Built
+fn collapsed<const N: usize>(binary: &BinaryBvh, options: &Options, name: &str, level: Level, work: Work) -> Built
 where
     Level: Dispatch<N>,
 {
-    let outline = match binary.nodes.is_empty() {
-        true => Outline::NOTHING,
-        false => Outline::new(binary, &Plan::<N>::new(binary, options, 1)),
-    };
-    let nodes = outline.nodes.par_iter().map(|node| node.build(binary)).collect();
+    let (outline, nodes) =
+        Outline::of(binary, options, 1, work).unwrap_or_else(|Stopped| (Outline::NOTHING, Vec::new()));
     let kind = format!("BVH, {N} wide, {name}");
     let objects = Objects::<N> { nodes, depth: outline.depth, leaves: outline.order.len(), level, kind };
     (Box::new(objects), Lists { counts: outline.counts, order: outline.order })

@@ -5,6 +5,7 @@ use super::{WideBvh, aabb};
 use crate::accel::{Info, Primitives};
 use crate::math::Aabb;
 use crate::shapes::triangle::Leaves;
+use crate::work::Stopped;
 use rayon::prelude::*;
 use std::time::Instant;
 
@@ -32,6 +33,8 @@ impl<const N: usize, L: Leaves<N>> WideBvh<N, L> {
             }
         }
         leaves.sort_unstable();
+        let ended = |Stopped| "it was stopped".to_string();
+        primitives.work().goes_on().map_err(ended)?;
         let numbers: Vec<u32> =
             leaves.iter().flat_map(|&(first, count)| self.leaves.primitives(first, count)).collect();
         if let Some(&p) = numbers.iter().find(|&&p| p as usize >= primitives.count() || !primitives.is_finite(p)) {
@@ -39,7 +42,8 @@ impl<const N: usize, L: Leaves<N>> WideBvh<N, L> {
         }
         let counts: Vec<u32> = leaves.iter().map(|&(_, count)| count).collect();
         let new = L::new(&region, &numbers, &counts, |p| primitives.corners(p));
-        let boxes: Vec<Aabb> = numbers.par_iter().map(|&p| aabb(primitives, &region, p)).collect();
+        let boxes =
+            primitives.work().collect(numbers.len(), |i| aabb(primitives, &region, numbers[i])).map_err(ended)?;
         let mut nodes = self.nodes.clone();
         let mut around = vec![Aabb::EMPTY; nodes.len()];
         // Children come after their parents.

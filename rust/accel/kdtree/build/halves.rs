@@ -1,8 +1,9 @@
 //! Planes that do not look at what they cost: in the middle, or at the median.
 
-use super::{Builder, Grown, Node, Options, PARALLEL};
+use super::{Builder, Grown, Node, Options, PARALLEL, is_stopped, told};
 use crate::accel::walk::{Halves, Input, Part, Plane, Room};
 use crate::math::Aabb;
+use crate::work::Steps;
 
 /// A builder at work.
 #[derive(Clone, Copy)]
@@ -10,6 +11,7 @@ pub struct Halving<'a> {
     pub input: &'a Input<'a>,
     pub builder: Builder,
     pub options: &'a Options,
+    pub steps: &'a Steps<'a>,
 }
 
 /// What goes to each side of a plane, and what may yet be done there.
@@ -18,6 +20,9 @@ type Sides = ([Vec<Part>; 2], [Room; 2]);
 impl Halving<'_> {
     /// Builds what is in a cell; gives its node.
     pub fn grow(self, parts: Vec<Part>, cell: Aabb, room: Room, grown: &mut Grown) -> Node {
+        if is_stopped(self.steps, parts.len()) {
+            return Node::EMPTY;
+        }
         if parts.len() <= self.options.leaf_size || room.depth == 0 {
             return grown.leaf(&parts);
         }
@@ -27,10 +32,16 @@ impl Halving<'_> {
         let many = parts.len() > PARALLEL;
         drop(parts);
         let [below_cell, above_cell] = plane.cut(&cell);
+        let child = |parts: Vec<Part>, cell, room, grown: &mut Grown| {
+            let count = parts.len();
+            let node = self.grow(parts, cell, room, grown);
+            told(self.steps, count, room, many);
+            node
+        };
         let pair = grown.pair(
             many,
-            |grown| self.grow(below, below_cell, below_room, grown),
-            |grown| self.grow(above, above_cell, above_room, grown),
+            |grown| child(below, below_cell, below_room, grown),
+            |grown| child(above, above_cell, above_room, grown),
         );
         Node::inner(plane.axis, plane.at, pair)
     }

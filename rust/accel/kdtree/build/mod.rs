@@ -6,6 +6,7 @@ mod sah;
 use super::{MAX_DEPTH, Node, Traversal};
 use crate::accel::walk::{Input, Lists, Part, Room};
 use crate::math::Aabb;
+use crate::work::Steps;
 
 /// Ways to choose a plane.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -94,6 +95,20 @@ impl Default for Options {
 /// once.
 const PARALLEL: usize = 4096;
 
+/// Tells that so many parts are built, if that was one thread's work and all of it.
+fn told(steps: &Steps, parts: usize, room: Room, is_all: bool) {
+    if is_all && parts <= PARALLEL {
+        // Whether to go on is asked before nodes are made.
+        let _ = steps.did(room.steps());
+    }
+}
+
+/// Whether it is time to ask whether to go on: of few parts, much is built in no time.
+fn is_stopped(steps: &Steps, parts: usize) -> bool {
+    const FEW: usize = 256;
+    parts > FEW && steps.is_stopped()
+}
+
 /// Nodes and leaves, and the box around everything.
 pub fn build(input: &Input, options: &Options) -> (Vec<Node>, Lists, Aabb) {
     options.check();
@@ -106,9 +121,12 @@ pub fn build(input: &Input, options: &Options) -> (Vec<Node>, Lists, Aabb) {
     let room = Room::new(count, depth);
     // The root, and what stands beside it so that all pairs of children begin at even numbers.
     let mut grown = Grown { nodes: vec![Node::EMPTY; 2], lists: Lists::default() };
+    let steps = input.work.steps(Room::STEPS);
     grown.nodes[0] = match options.builder {
         Builder::Sah => sah::grow(input, options, parts, bounds, room, &mut grown),
-        other => halves::Halving { input, builder: other, options }.grow(parts, bounds, room, &mut grown),
+        other => {
+            halves::Halving { input, builder: other, options, steps: &steps }.grow(parts, bounds, room, &mut grown)
+        }
     };
     let Grown { nodes, lists } = grown;
     (nodes, lists, bounds)

@@ -2,9 +2,10 @@
 //! out (Wald and Havran, "On Building Fast kd-Trees for Ray Tracing, and on Doing That in O(N log N)", 2006).
 
 use super::super::area;
-use super::{Grown, Node, Options, PARALLEL};
+use super::{Grown, Node, Options, PARALLEL, is_stopped, told};
 use crate::accel::walk::{Halves, Input, Part, Plane, Room};
 use crate::math::Aabb;
+use crate::work::Steps;
 use rayon::prelude::*;
 
 /// An end of a part along an axis. In the order of its bits are: where it lies; whether the part ends there, lies flat
@@ -88,19 +89,30 @@ pub fn grow(input: &Input, options: &Options, parts: Vec<Part>, cell: Aabb, room
         events.par_sort_unstable();
         events
     };
-    let events = [sorted(0), sorted(1), sorted(2)];
-    Builder { input, options }.grow(Set { parts, events, cell, room }, grown)
+    let [sort, grow] = input.work.parts([1.0, 10.0]);
+    let (steps, mut events) = (sort.steps(3), [const { Vec::new() }; 3]);
+    for (axis, events) in events.iter_mut().enumerate() {
+        *events = sorted(axis);
+        if steps.did(1).is_err() {
+            return Node::EMPTY;
+        }
+    }
+    Builder { input, options, steps: &grow.steps(Room::STEPS) }.grow(Set { parts, events, cell, room }, grown)
 }
 
 #[derive(Clone, Copy)]
 struct Builder<'a> {
     input: &'a Input<'a>,
     options: &'a Options,
+    steps: &'a Steps<'a>,
 }
 
 impl Builder<'_> {
     fn grow(self, set: Set, grown: &mut Grown) -> Node {
         let count = set.parts.len();
+        if is_stopped(self.steps, count) {
+            return Node::EMPTY;
+        }
         if count <= self.options.leaf_size || set.room.depth == 0 || count >= Event::MOST {
             return grown.leaf(&set.parts);
         }
@@ -108,7 +120,14 @@ impl Builder<'_> {
         let Some(split) = split else { return grown.leaf(&set.parts) };
         let Some([below, above]) = self.parted(&set, split) else { return grown.leaf(&set.parts) };
         drop(set);
-        let pair = grown.pair(count > PARALLEL, |grown| self.grow(below, grown), |grown| self.grow(above, grown));
+        let many = count > PARALLEL;
+        let child = |set: Set, grown: &mut Grown| {
+            let (count, room) = (set.parts.len(), set.room);
+            let node = self.grow(set, grown);
+            told(self.steps, count, room, many);
+            node
+        };
+        let pair = grown.pair(many, |grown| child(below, grown), |grown| child(above, grown));
         Node::inner(split.plane.axis, split.plane.at, pair)
     }
 

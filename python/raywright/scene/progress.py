@@ -1,0 +1,64 @@
+"""What watches a scene while it is built: a bar on stderr where that takes long, or a function."""
+
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, contextmanager, nullcontext
+from typing import TypeAlias
+
+Report: TypeAlias = Callable[[float], object]
+BuildProgress: TypeAlias = bool | Report
+
+# Builds that take no longer than so many seconds are over before a bar would be of use.
+_PATIENCE = 2.0
+
+
+def check_progress(progress: object) -> None:
+    """Raise a TypeError unless it says how a build is watched."""
+    if not (callable(progress) or isinstance(progress, bool)):
+        raise TypeError(f"progress must be True, False or a function, got {progress!r}")
+
+
+def watcher(progress: BuildProgress | None) -> AbstractContextManager[Report | None]:
+    """Give what is called with the share of a build that is done; None if nobody wants to know.
+
+    With no word on `progress`, a bar is shown to who sits at a terminal.
+    """
+    if progress is None:
+        progress = sys.stderr is not None and sys.stderr.isatty()
+    if callable(progress):
+        return _to_the_end(progress)
+    return bar() if progress else nullcontext()
+
+
+@contextmanager
+def _to_the_end(report: Report) -> Iterator[Report]:
+    yield report
+    report(1.0)
+
+
+@contextmanager
+def bar() -> Iterator[Report]:
+    """Show a bar on stderr once a build has taken two seconds."""
+    start, shown = time.monotonic(), None
+
+    def report(share: float) -> None:
+        nonlocal shown
+        if shown is None:
+            if time.monotonic() - start < _PATIENCE:
+                return
+            from tqdm import tqdm
+
+            form = "{desc}: {percentage:3.0f}%|{bar}| {elapsed}"
+            shown = tqdm(total=1.0, desc="build", bar_format=form, file=sys.stderr)
+        shown.update(share - shown.n)
+        # The time is told, however long nothing comes of it.
+        shown.refresh()
+
+    try:
+        yield report
+        if shown is not None:
+            shown.update(1.0 - shown.n)
+    finally:
+        if shown is not None:
+            shown.close()

@@ -1,0 +1,189 @@
+//! Work that takes a while: how far it is, and whether it is still wanted.
+//!
+//! Who does it asks at coarse steps, of some milliseconds each, whether to go on, and tells at the same time what is
+//! done. Nobody waits for an answer: both are plain numbers that threads share.
+
+use rayon::prelude::*;
+use std::ops::Range;
+use std::sync::atomic::{AtomicBool, AtomicU32, AtomicUsize, Ordering::Relaxed};
+
+/// What is known of some work by those who do it, and by those who watch it.
+#[derive(Debug, Default)]
+pub struct Watch {
+    stopped: AtomicBool,
+    /// The bits of a share that is not negative, which are ordered as the numbers are.
+    share: AtomicU32,
+}
+
+impl Watch {
+    /// Asks for the work to end soon: what comes of it is of no use to anyone.
+    pub fn stop(&self) {
+        self.stopped.store(true, Relaxed);
+    }
+
+    /// Whether that was asked.
+    pub fn is_stopped(&self) -> bool {
+        self.stopped.load(Relaxed)
+    }
+
+    /// What share of the work is done, from 0 to 1; never less than it was.
+    pub fn share(&self) -> f32 {
+        f32::from_bits(self.share.load(Relaxed))
+    }
+}
+
+/// Work was stopped before its end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Stopped;
+
+/// Some work, or a part of it that follows upon other parts: from which share of the whole to which.
+#[derive(Clone, Copy, Debug)]
+pub struct Work<'a> {
+    watch: Option<&'a Watch>,
+    from: f32,
+    to: f32,
+}
+
+impl<'a> Work<'a> {
+    /// That nobody watches, and nobody stops.
+    pub const UNWATCHED: Self = Self { watch: None, from: 0.0, to: 1.0 };
+
+    /// Items of a round of work that all threads share, for each of them: some milliseconds.
+    const ROUND: usize = 1 << 16;
+
+    /// All that is watched.
+    pub fn of(watch: &'a Watch) -> Self {
+        Self { watch: Some(watch), ..Self::UNWATCHED }
+    }
+
+    /// Whether nobody wants it any more.
+    #[inline]
+    pub fn is_stopped(self) -> bool {
+        self.watch.is_some_and(Watch::is_stopped)
+    }
+
+    /// Nothing, unless nobody wants it any more.
+    #[inline]
+    pub fn goes_on(self) -> Result<(), Stopped> {
+        if self.is_stopped() { Err(Stopped) } else { Ok(()) }
+    }
+
+    /// Parts that are done one after the other, each of which takes about so much of the time.
+    pub fn parts<const K: usize>(self, weights: [f32; K]) -> [Self; K] {
+        let each = (self.to - self.from) / weights.iter().sum::<f32>();
+        let mut from = self.from;
+        weights.map(|weight| {
+            let part = Self { from, to: (from + weight * each).min(self.to), ..self };
+            from = part.to;
+            part
+        })
+    }
+
+    /// The work as so many steps, which threads may share.
+    pub fn steps(self, all: usize) -> Steps<'a> {
+        Steps { work: self, all: all.max(1), done: AtomicUsize::new(0) }
+    }
+
+    /// So many items in rounds, for loops that end early: what is done of a round when the next is asked for is told.
+    pub fn rounds(self, count: usize) -> impl Iterator<Item = Result<Range<usize>, Stopped>> {
+        let (steps, round) = (self.steps(count), Self::ROUND * rayon::current_num_threads());
+        (0..count).step_by(round).map(move |start| {
+            steps.did(if start == 0 { 0 } else { round })?;
+            Ok(start..(start + round).min(count))
+        })
+    }
+
+    /// What `make` gives for each number from 0 on, in order, by all threads.
+    pub fn collect<T: Send>(self, count: usize, make: impl Fn(usize) -> T + Sync) -> Result<Vec<T>, Stopped> {
+        let mut made = Vec::with_capacity(count);
+        for round in self.rounds(count) {
+            made.par_extend(round?.into_par_iter().map(&make));
+        }
+        self.done();
+        Ok(made)
+    }
+
+    /// Tells that all of it is done.
+    pub fn done(self) {
+        self.reaches(1.0);
+    }
+
+    fn reaches(self, share: f32) {
+        if let Some(watch) = self.watch {
+            let share = (self.from + (self.to - self.from) * share.min(1.0)).clamp(0.0, 1.0);
+            watch.share.fetch_max(share.to_bits(), Relaxed);
+        }
+    }
+}
+
+/// Steps of some work, done in any order and by any thread.
+#[derive(Debug)]
+pub struct Steps<'a> {
+    work: Work<'a>,
+    all: usize,
+    done: AtomicUsize,
+}
+
+impl Steps<'_> {
+    /// So many more are done: tells it, and whether to go on. To be called once in some milliseconds.
+    pub fn did(&self, count: usize) -> Result<(), Stopped> {
+        if self.work.watch.is_some() {
+            let done = self.done.fetch_add(count, Relaxed) + count;
+            self.work.reaches((done as f64 / self.all as f64) as f32);
+        }
+        self.work.goes_on()
+    }
+
+    /// Whether nobody wants the work any more.
+    #[inline]
+    pub fn is_stopped(&self) -> bool {
+        self.work.is_stopped()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parts_follow_upon_each_other_up_to_the_whole() {
+        let watch = Watch::default();
+        let [first, second, last] = Work::of(&watch).parts([1.0, 2.0, 1.0]);
+        let mut seen = vec![watch.share()];
+        for part in [first, second, last] {
+            let steps = part.steps(4);
+            for _ in 0..4 {
+                steps.did(1).unwrap();
+                seen.push(watch.share());
+            }
+        }
+        let wanted = [0.0, 1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 10.0, 12.0, 13.0, 14.0, 15.0, 16.0].map(|x| x / 16.0);
+        assert_eq!(seen, wanted);
+    }
+
+    #[test]
+    fn the_share_never_falls_nor_passes_one() {
+        let watch = Watch::default();
+        let [first, last] = Work::of(&watch).parts([1.0, 1.0]);
+        last.steps(1).did(5).unwrap();
+        assert_eq!(watch.share(), 1.0);
+        first.steps(2).did(1).unwrap();
+        assert_eq!(watch.share(), 1.0);
+    }
+
+    #[test]
+    fn what_is_collected_is_in_order_and_ends_when_it_is_stopped() {
+        let count = 5 * Work::ROUND * rayon::current_num_threads() + 7;
+        let watch = Watch::default();
+        assert_eq!(Work::of(&watch).collect(count, |i| i).unwrap(), (0..count).collect::<Vec<_>>());
+        assert_eq!(watch.share(), 1.0);
+        let made = AtomicUsize::new(0);
+        let stopped = Work::of(&watch).collect(count, |_| {
+            watch.stop();
+            made.fetch_add(1, Relaxed)
+        });
+        assert_eq!(stopped, Err(Stopped));
+        assert!(made.into_inner() < count / 2);
+        assert_eq!(Work::UNWATCHED.collect(3, |i| i), Ok(vec![0, 1, 2]));
+    }
+}
