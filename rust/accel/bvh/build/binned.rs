@@ -39,7 +39,7 @@ pub fn build(boxes: &[Aabb], options: &Options) -> BinaryBvh {
     if references.is_empty() {
         return BinaryBvh::default();
     }
-    let task = Task { bins, leaves, first: 0, spare: spare(references.len()) };
+    let task = Task { bins, leaves, spare: spare(references.len()), first: Some(0) };
     let extents = Extents::around_many(&references);
     let part = task.build(&mut references, extents);
     let order = references.par_iter().map(Reference::primitive).collect();
@@ -49,17 +49,20 @@ pub fn build(boxes: &[Aabb], options: &Options) -> BinaryBvh {
 
 /// What to build of a slice of the references.
 #[derive(Clone, Copy)]
-struct Task {
-    bins: usize,
-    leaves: Leaves,
-    /// The first primitive, as leaves refer to it.
-    first: u32,
+pub struct Task {
+    /// Bins an axis.
+    pub bins: usize,
+    /// When a leaf is made.
+    pub leaves: Leaves,
     /// How many more levels may be split by area.
-    spare: usize,
+    pub spare: usize,
+    /// The first primitive, as leaves refer to it; none if parts are to list theirs.
+    pub first: Option<u32>,
 }
 
 impl Task {
-    fn build(self, references: &mut [Reference], extents: Extents) -> Part {
+    /// Builds a subtree.
+    pub fn build(self, references: &mut [Reference], extents: Extents) -> Part {
         if references.len() <= TASK {
             return self.build_alone(references, extents);
         }
@@ -76,7 +79,7 @@ impl Task {
         };
         let (left, right) = references.split_at_mut(middle);
         let left_task = Self { spare: self.spare.saturating_sub(1), ..self };
-        let right_task = Self { first: self.first + middle as u32, ..left_task };
+        let right_task = Self { first: self.first.map(|first| first + middle as u32), ..left_task };
         let (left, right) = rayon::join(
             || left_task.build(left, Extents::around_many(left)),
             || right_task.build(right, Extents::around_many(right)),
@@ -97,6 +100,7 @@ impl Task {
         }
         let nothing = Node::leaf(Aabb::EMPTY, 0, 0);
         let (mut root, mut below) = (nothing, Vec::with_capacity(references.len()));
+        let first = self.first.unwrap_or(0);
         let mut bins = Bins::new();
         let mut open = vec![Open { node: None, start: 0, end: references.len(), extents, spare: self.spare }];
         while let Some(Open { node, start, end, extents, spare }) = open.pop() {
@@ -106,7 +110,7 @@ impl Task {
             let child = below.len();
             let made = match split {
                 Some(_) => Node::inner(aabb, child as u32),
-                None => Node::leaf(aabb, self.first + start as u32, own.len() as u32),
+                None => Node::leaf(aabb, first + start as u32, own.len() as u32),
             };
             *node.map_or(&mut root, |node| &mut below[node]) = made;
             let Some((middle, [left, right])) = split else { continue };
@@ -116,7 +120,9 @@ impl Task {
             open.push(Open { node: Some(child + 1), start: middle, end, extents: right, spare });
             open.push(Open { node: Some(child), start, end: middle, extents: left, spare });
         }
-        Part::Whole { root, below, order: Vec::new() }
+        let order =
+            if self.first.is_none() { references.iter().map(Reference::primitive).collect() } else { Vec::new() };
+        Part::Whole { root, below, order }
     }
 
     /// Splits some primitives, unless they are to be a leaf: how many go left, and the extents of both sides.

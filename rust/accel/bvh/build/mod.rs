@@ -6,6 +6,7 @@
 
 pub mod binned;
 mod bins;
+mod chop;
 mod chopped;
 pub mod halves;
 mod leaves;
@@ -26,8 +27,26 @@ pub use leaves::Leaves;
 pub(super) use reference::Bounds;
 
 use super::{BinaryBvh, Node};
-use crate::math::Aabb;
+use crate::math::{Aabb, Vec3};
 use halves::Way;
+
+/// What is in the boxes, as far as it can be parted. A function that clips will do.
+pub trait Shapes: Sync {
+    /// A box around what of a primitive lies in another box, or around more. It must be empty only where there is
+    /// nothing, and lie within the primitive's own box and the other one.
+    fn clip(&self, primitive: u32, to: &Aabb) -> Aabb;
+
+    /// About where a triangle's corners are, by which its parts are estimated; none if it is asked to clip for that.
+    fn corners(&self, _primitive: u32) -> Option<[Vec3; 3]> {
+        None
+    }
+}
+
+impl<F: Fn(u32, &Aabb) -> Aabb + Sync> Shapes for F {
+    fn clip(&self, primitive: u32, to: &Aabb) -> Aabb {
+        self(primitive, to)
+    }
+}
 
 /// How a binary tree is built.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,6 +79,15 @@ pub enum Builder {
 impl Builder {
     /// What is meant by bins where nobody says how many.
     const BINS: usize = 16;
+
+    /// The same with so many bins, if it has any.
+    pub fn with_bins(self, bins: usize) -> Self {
+        match self {
+            Self::Binned { .. } => Self::Binned { bins: Some(bins) },
+            Self::Spatial { budget, .. } => Self::Spatial { bins: Some(bins), budget },
+            other => other,
+        }
+    }
 
     /// The same with so many bins where nobody has said how many.
     pub fn or_bins(self, some: usize) -> Self {
@@ -101,12 +129,11 @@ impl Builder {
 
     /// Makes a tree over boxes, leaving out empty ones.
     ///
-    /// `clip` gives a box around what of a primitive lies in another box, or around more; only spatial splits ask for
-    /// it. It must be empty only where there is nothing, and lie within the primitive's own box and the other one.
+    /// Only spatial splits ask what is in the boxes.
     ///
     /// # Panics
     /// If an option is out of range.
-    pub fn build(&self, boxes: &[Aabb], clip: impl Fn(u32, &Aabb) -> Aabb + Sync, leaves: &Leaves) -> BinaryBvh {
+    pub fn build(&self, boxes: &[Aabb], shapes: impl Shapes, leaves: &Leaves) -> BinaryBvh {
         let leaves = *leaves;
         match *self {
             Self::Binned { bins } => {
@@ -115,7 +142,7 @@ impl Builder {
             Self::Sweep => sweep::build(boxes, &leaves),
             Self::Spatial { bins, budget } => {
                 let bins = bins.unwrap_or(Self::BINS);
-                spatial::build(boxes, clip, &spatial::Options { bins, budget, leaves })
+                spatial::build(boxes, &shapes, &spatial::Options { bins, budget, leaves })
             }
             Self::Morton(bits) => morton::build(boxes, bits),
             Self::Ploc { radius } => ploc::build(boxes, &ploc::Options { radius }),

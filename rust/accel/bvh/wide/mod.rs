@@ -13,6 +13,7 @@ mod touched;
 mod wave;
 
 use super::build::{Builder, Leaves as LeafRule};
+use super::contents::Contents;
 use super::optimise::Optimisers;
 use super::parts::cover;
 use super::{Cuts, Quality, Steps};
@@ -113,7 +114,8 @@ impl<const N: usize, L: Leaves<N>> WideBvh<N, L> {
         let boxes: Vec<Aabb> =
             (0..primitives.count() as u32).into_par_iter().map(|p| aabb(primitives, &region, p)).collect();
         let steps = options.steps(N);
-        let (binary, name) = steps.build(&boxes, |p, to| clip(primitives, &region, p, to));
+        let contents = Contents { primitives, region: &region, boxes: &boxes };
+        let (binary, name) = steps.build(&boxes, contents);
         let count = boxes.par_iter().filter(|b| !b.is_empty()).count();
         drop(boxes);
         let mut bvh = Self::collapse(&binary, primitives, &region, options);
