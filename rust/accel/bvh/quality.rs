@@ -166,7 +166,7 @@ mod tests {
             })
             .collect();
         let costs = Quality::ALL.map(|quality| {
-            let (bvh, _) = quality.steps(8).build(&boxes, |p, to| boxes[p as usize].intersection(*to));
+            let (bvh, _) = quality.steps(8).build(&boxes, |p: u32, to: &Aabb| boxes[p as usize].intersection(*to));
             bvh.validate(&boxes).unwrap();
             bvh.nodes.iter().filter(|n| !n.is_leaf()).map(|n| f64::from(n.aabb().half_area())).sum::<f64>()
         });

@@ -96,7 +96,9 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(2000))]
         #[test]
-        fn parts_are_what_clipping_leaves(corners in [point(), point(), point()], axis in 0usize..3, count in 2usize..9) {
+        fn parts_are_what_clipping_leaves(
+            corners in [point(), point(), point()], axis in 0usize..3, count in 2usize..9,
+        ) {
             let (min, max) =
                 (corners[0].min(corners[1]).min(corners[2]), corners[0].max(corners[1]).max(corners[2]));
             let width = (max[axis] - min[axis]) / count as f32;
@@ -120,7 +122,9 @@ mod tests {
         fn parts_of_pieces_hold_what_is_left(
             corners in [point(), point(), point()], ends in [point(), point()], axis in 0usize..3,
         ) {
-            let to = Aabb { min: ends[0].min(ends[1]), max: ends[0].max(ends[1]) };
+            // A box around the triangle's middle, which it therefore meets.
+            let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
+            let to = Aabb { min: middle - ends[0].abs(), max: middle + ends[1].abs() };
             let corners_of: [DVec3; 3] = corners.map(Vec3::as_dvec3);
             let piece = clipped(corners_of, &to);
             prop_assume!(!piece.is_empty());

@@ -335,7 +335,7 @@ mod tests {
             assert!(0.45 * last < now && now < share * last, "{now} from {last}");
             last = now;
             let builder = Builder::Ploc { radius: 14 };
-            let mut bvh = builder.build(&pieces.boxes, |_, to| *to, &Leaves::for_blocks(8));
+            let mut bvh = builder.build(&pieces.boxes, |_: u32, to: &Aabb| *to, &Leaves::for_blocks(8));
             pieces.put_together(&mut bvh);
             bvh.validate_parts(&whole, |p, to| clipped(sticks[p as usize], to)).unwrap();
         }
