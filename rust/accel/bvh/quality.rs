@@ -189,7 +189,7 @@ mod tests {
     fn planes_part_a_few_long_ones_among_many() {
         let triangle = |i: u32| {
             let [x, y, z, _] = philox4x32([i, 0, 0, 0], [0, 0]).map(|bits| f64::from(bits) / 2f64.powi(32));
-            let size = if i % 50 == 0 { 0.8 } else { 0.004 };
+            let size = if i.is_multiple_of(50) { 0.8 } else { 0.004 };
             let (from, along) = (DVec3::new(x, y, z), size * DVec3::new(1.0, 0.9, 0.8));
             [from, from + along, from + along + DVec3::new(0.004, 0.0, 0.0)]
         };
