@@ -28,9 +28,9 @@ class BVH:
         - ``"sweep"``: by the surface area heuristic wherever a set can be parted along an axis (MacDonald and
           Booth 1990, "Heuristics for ray tracing using space subdivision").
         - ``"spatial"``: by the surface area heuristic with spatial splits, which part what straddles a plane
-          (Stich, Friedrich and Dietrich 2009, "Spatial splits in bounding volume hierarchies"), after what
-          is long and diagonal has been cut into pieces (Ernst and Greiner 2007, "Early split clipping for
-          bounding volume hierarchies"). A scene that moves has to build it again.
+          (Stich, Friedrich and Dietrich 2009, "Spatial splits in bounding volume hierarchies"). Where much is
+          long and diagonal, that has been cut into pieces before (Ernst and Greiner 2007, "Early split
+          clipping for bounding volume hierarchies"). A scene that moves has to build it again.
         - ``"morton"``: a linear tree in the order of Morton codes of 63 bits (Lauterbach et al. 2009, "Fast
           BVH construction on GPUs").
         - ``"ploc"``: from the bottom up (Meister and Bittner 2018, "Parallel locally-ordered clustering for
@@ -55,7 +55,7 @@ class BVH:
         treelets of seven leaves together anew (Karras and Aila 2013, "Fast parallel construction of
         high-quality bounding volume hierarchies"). If not given, what suits the scene's ``quality`` for
         ``"binned"``, and nothing for the others; with ``()`` nothing at all. What suits the quality may be,
-        for long and diagonal geometry, that it is cut into pieces first.
+        for long and diagonal geometry, that spatial splits part it, or that it is cut into pieces first.
     traversal : {"wide", "wide4", "wide8", "stack", "threaded", "packets4", "packets64"}
         How rays go through the tree. Hits are the same.
 

@@ -52,8 +52,8 @@ class Scene(Queries):
         all vertices are float32 numbers anyway.
     quality : {"balanced", "fast build", "fast rays"}
         How long the accelerator may take to build for the sake of rays. Unless it is "fast build", what is
-        long and diagonal may be cut into pieces for it, and for "fast rays" what else is long; such a tree is
-        built anew by `refit`.
+        long and diagonal may be parted for it, by spatial splits where it is little and before the build
+        where it is much, and for "fast rays" what else is long; such a tree is built anew by `refit`.
 
     Raises
     ------

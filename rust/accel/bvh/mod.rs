@@ -1,6 +1,7 @@
 //! Bounding volume hierarchies: a binary tree that builders make, and wide trees that rays walk.
 
 pub mod build;
+mod contents;
 mod node;
 pub mod optimise;
 mod parts;

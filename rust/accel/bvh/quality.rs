@@ -1,11 +1,11 @@
 //! How a tree is made, step by step, and how much time that may take for the sake of the rays.
 
 use super::BinaryBvh;
-use super::build::presplit::{self, Pieces};
-use super::build::spatial::MAX_BUDGET;
-use super::build::{Builder, Leaves};
+use super::build::presplit::{self, Pieces, Remedy};
+use super::build::spatial::{BUDGET, MAX_BUDGET};
+use super::build::{Builder, Leaves, Shapes};
 use super::optimise::{Optimiser, Optimisers, reinsertion, treelet};
-use crate::math::Aabb;
+use crate::math::{Aabb, Vec3};
 use crate::work::{Stopped, Work};
 use std::borrow::Cow;
 
@@ -14,8 +14,9 @@ use std::borrow::Cow;
 pub enum Quality {
     /// For few rays, or for geometry that changes all the time.
     FastBuild,
-    /// For most scenes: what is long and thin is taken care of, and a mesh of even triangles takes no more time than it
-    /// takes to see that nothing in it is.
+    /// For most scenes: what is long and diagonal is taken care of, by spatial splits where it is little and by cuts
+    /// before the build where it is much, and a mesh of even triangles takes no more time than it takes to see that
+    /// nothing in it is.
     #[default]
     Balanced,
     /// For many rays on one scene, which does not move: what straddles a plane may be parted by it.
@@ -48,7 +49,10 @@ impl Quality {
             Self::FastBuild => None,
             // A tree over pieces cannot be refitted, so a ray must meet less than half as many boxes. With more pieces
             // it would meet fewer still, but be slower for want of cache.
-            Self::Balanced => Some(Cuts { options: presplit::Options { budget: 4.0, worthwhile: 0.5 }, builder }),
+            Self::Balanced => {
+                let planes = Builder::Spatial { bins: Some(self.bins()), budget: BUDGET };
+                Some(Cuts { options: presplit::Options { budget: 4.0, worthwhile: 0.5 }, builder, planes })
+            }
             Self::FastRays => Some(Cuts::and_splits(Some(self.bins()), MAX_BUDGET)),
         };
         Steps {
@@ -62,30 +66,29 @@ impl Quality {
     }
 }
 
-/// What is cut before a build.
+/// What is done about what fills little of its box.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cuts {
-    /// How much.
+    /// How much is cut before a build, where there is much of it.
     pub options: presplit::Options,
     /// How the tree is built then.
     pub builder: Builder,
+    /// How it is built where there is less of it, so that nothing need be cut before.
+    pub planes: Builder,
 }
 
 impl Cuts {
     /// The same with so many bins.
     pub fn with_bins(self, bins: usize) -> Self {
-        let builder = match self.builder {
-            Builder::Binned { .. } => Builder::Binned { bins: Some(bins) },
-            Builder::Spatial { budget, .. } => Builder::Spatial { bins: Some(bins), budget },
-            other => other,
-        };
-        Self { builder, ..self }
+        let [builder, planes] = [self.builder, self.planes].map(|builder| builder.with_bins(bins));
+        Self { builder, planes, ..self }
     }
 
     /// Spatial splits, and the cuts that they need before. Together they add at most `budget` references for each
     /// primitive.
     pub const fn and_splits(bins: Option<usize>, budget: f32) -> Self {
-        Self { options: presplit::Options { budget, worthwhile: 0.125 }, builder: Builder::Spatial { bins, budget } }
+        let builder = Builder::Spatial { bins, budget };
+        Self { options: presplit::Options { budget, worthwhile: 0.125 }, builder, planes: builder }
     }
 }
 
@@ -109,38 +112,53 @@ pub struct Steps {
 impl Steps {
     /// Makes a tree over boxes none of which is cut, leaving out empty ones, and says how.
     pub fn whole(self, boxes: &[Aabb], work: Work) -> Result<(BinaryBvh, String), Stopped> {
-        Self { cuts: None, ..self }.build(boxes, |p, to| boxes[p as usize].intersection(*to), work)
+        let fill = |p: u32, to: &Aabb| boxes[p as usize].intersection(*to);
+        Self { cuts: None, ..self }.build(boxes, fill, work)
     }
 
-    /// Makes a tree over boxes, leaving out empty ones, and tells how it was made, for people. `clip` is as
-    /// [`Builder::build`] says.
+    /// Makes a tree over boxes, leaving out empty ones, and tells how it was made, for people.
     ///
     /// # Panics
     /// If an option is out of range.
     pub fn build<'a>(
         &self,
         boxes: impl Into<Cow<'a, [Aabb]>>,
-        clip: impl Fn(u32, &Aabb) -> Aabb + Sync,
+        shapes: impl Shapes,
         work: Work,
     ) -> Result<(BinaryBvh, String), Stopped> {
         let boxes = boxes.into();
-        let cutting = if self.cuts.is_some() { 4.0 } else { 0.0 };
-        let improving = 2.0 * self.optimisers.iter().count() as f32;
-        let [cut_first, grow, improve] = work.parts([cutting, 8.0, improving]);
-        // What is not wanted any more is cut no further.
-        let clip = |p: u32, to: &Aabb| if work.is_stopped() { Aabb::EMPTY } else { clip(p, to) };
-        let cut = self.cuts.and_then(|cuts| Some((cuts.builder, Pieces::cut(&boxes, clip, &cuts.options)?)));
-        cut_first.done();
+        let shapes = Wanted { shapes, work };
+        let [look, make] = work.parts([if self.cuts.is_some() { 1.0 } else { 0.0 }, 24.0]);
+        let remedy = self.cuts.map(|cuts| (cuts, Remedy::of(&boxes, &shapes, &cuts.options)));
         work.goes_on()?;
-        let (mut bvh, mut name) = if let Some((builder, pieces)) = cut {
-            let builder = builder.over_pieces(boxes.len(), pieces.boxes.len());
+        look.done();
+        // Planes take some five times as long as whole primitives do, and cuts longer than a tree of their pieces.
+        let (cutting, growing) = match remedy {
+            Some((_, Remedy::Pieces)) => (12.0, 5.0),
+            Some((_, Remedy::Planes)) => (0.0, 24.0),
+            _ => (0.0, 8.0),
+        };
+        let improving = 2.0 * self.optimisers.iter().count() as f32;
+        let [cut, grow, improve] = make.parts([cutting, growing, improving]);
+        let pieces = match remedy {
+            Some((cuts, Remedy::Pieces)) => Pieces::cut(&boxes, &shapes, &cuts.options).map(|pieces| (cuts, pieces)),
+            _ => None,
+        };
+        work.goes_on()?;
+        cut.done();
+        let (mut bvh, mut name) = if let Some((cuts, mut pieces)) = pieces {
+            let builder = cuts.builder.over_pieces(boxes.len(), pieces.boxes.len());
             drop(boxes);
-            let clip_piece = |piece: u32, to: &Aabb| clip(pieces.primitives[piece as usize], to);
-            let mut bvh = builder.build(&pieces.boxes, clip_piece, &self.leaves, grow)?;
+            let boxes = std::mem::take(&mut pieces.boxes);
+            let mut bvh = builder.build(boxes, pieces.shapes(&shapes), &self.leaves, grow)?;
             pieces.put_together(&mut bvh);
             (bvh, format!("{} of pieces", builder.name()))
         } else {
-            (self.builder.build(boxes, clip, &self.leaves, grow)?, self.builder.name().into())
+            let builder = match remedy {
+                Some((cuts, Remedy::Planes)) => cuts.planes,
+                _ => self.builder,
+            };
+            (builder.build(boxes, shapes, &self.leaves, grow)?, builder.name().into())
         };
         let second = self.optimisers.iter().skip(1).count() as f32;
         for (optimiser, work) in self.optimisers.iter().zip(improve.parts([1.0, second])) {
@@ -154,16 +172,32 @@ impl Steps {
     }
 }
 
+/// Shapes that are clipped as long as that is wanted: then nothing is cut any further.
+struct Wanted<'a, S> {
+    shapes: S,
+    work: Work<'a>,
+}
+
+impl<S: Shapes> Shapes for Wanted<'_, S> {
+    fn clip(&self, primitive: u32, to: &Aabb) -> Aabb {
+        if self.work.is_stopped() { Aabb::EMPTY } else { self.shapes.clip(primitive, to) }
+    }
+
+    fn corners(&self, primitive: u32) -> Option<[Vec3; 3]> {
+        self.shapes.corners(primitive)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::accel::bvh::Node;
-    use crate::math::{DVec3, Vec3};
+    use crate::math::DVec3;
     use crate::sampling::philox4x32;
     use crate::shapes::triangle::clipped;
 
-    fn built(quality: Quality, boxes: &[Aabb], clip: impl Fn(u32, &Aabb) -> Aabb + Sync) -> (BinaryBvh, String) {
-        quality.steps(8).build(boxes, clip, Work::UNWATCHED).unwrap()
+    fn built(quality: Quality, boxes: &[Aabb], shapes: impl Shapes) -> (BinaryBvh, String) {
+        quality.steps(8).build(boxes, shapes, Work::UNWATCHED).unwrap()
     }
 
     #[test]
@@ -178,12 +212,67 @@ mod tests {
             })
             .collect();
         let costs = Quality::ALL.map(|quality| {
-            let (bvh, _) = built(quality, &boxes, |p, to| boxes[p as usize].intersection(*to));
+            let (bvh, _) = built(quality, &boxes, |p: u32, to: &Aabb| boxes[p as usize].intersection(*to));
             bvh.validate(&boxes).unwrap();
             bvh.nodes.iter().filter(|n| !n.is_leaf()).map(|n| f64::from(n.aabb().half_area())).sum::<f64>()
         });
         assert!(costs[1] < costs[0] && costs[2] < costs[1], "{costs:?}");
     }
+
+    /// Triangles, whose parts are estimated by their corners.
+    struct Triangles(Vec<[DVec3; 3]>);
+
+    impl Shapes for Triangles {
+        fn clip(&self, primitive: u32, to: &Aabb) -> Aabb {
+            clipped(self.0[primitive as usize], to)
+        }
+
+        fn corners(&self, primitive: u32) -> Option<[Vec3; 3]> {
+            Some(self.0[primitive as usize].map(|c| c.as_vec3()))
+        }
+    }
+
+    #[test]
+    fn planes_part_a_few_long_ones_among_many() {
+        let triangle = |i: u32| {
+            let [x, y, z, _] = philox4x32([i, 0, 0, 0], [0, 0]).map(|bits| f64::from(bits) / 2f64.powi(32));
+            let size = if i.is_multiple_of(50) { 0.8 } else { 0.004 };
+            let (from, along) = (DVec3::new(x, y, z), size * DVec3::new(1.0, 0.9, 0.8));
+            [from, from + along, from + along + DVec3::new(0.004, 0.0, 0.0)]
+        };
+        let triangles = Triangles((0..30_000).map(triangle).collect());
+        let everywhere = Aabb { min: Vec3::splat(-4.0), max: Vec3::splat(4.0) };
+        let boxes: Vec<_> = (0..30_000).map(|p| triangles.clip(p, &everywhere)).collect();
+        let build = |quality: Quality, threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| built(quality, &boxes, |p: u32, to: &Aabb| triangles.clip(p, to)))
+        };
+        let estimated = |quality: Quality, threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            let shapes = Triangles(triangles.0.clone());
+            pool.install(|| built(quality, &boxes, shapes))
+        };
+        // Inner nodes and leaves by area, over the root's.
+        let cost = |bvh: &BinaryBvh| {
+            let area = |n: &Node| f64::from(n.aabb().half_area()) * f64::from(n.count.max(1));
+            bvh.nodes.iter().map(area).sum::<f64>() / f64::from(bvh.nodes[0].aabb().half_area())
+        };
+        let (whole, _) = build(Quality::FastBuild, 2);
+        let (clipped, _) = build(Quality::Balanced, 2);
+        let (one, name) = estimated(Quality::Balanced, 1);
+        let (three, _) = estimated(Quality::Balanced, 3);
+        assert_eq!(name, "SAH with spatial splits and reinsertion");
+        one.validate_parts(&boxes, |p, to| triangles.clip(p, to)).unwrap();
+        assert!(cost(&one) < 0.6 * cost(&whole), "{} from {}", cost(&one), cost(&whole));
+        // Planes found by estimates are as good as planes found by clipping.
+        assert!(cost(&one) < 1.02 * cost(&clipped), "{}, not {}", cost(&one), cost(&clipped));
+        assert!(one.order.len() < 45_000, "{}", one.order.len());
+        let nodes = |bvh: &BinaryBvh| -> Vec<_> {
+            bvh.nodes.iter().map(|n| (n.min.to_array(), n.index, n.max.to_array(), n.count)).collect()
+        };
+        assert!(one.order == three.order && nodes(&one) == nodes(&three));
+    }
+
     #[test]
     fn diagonals_are_cut_where_that_is_worthwhile() {
         let triangle = |i| {

@@ -95,7 +95,8 @@ fn moved(u: &mut Unstructured) -> Result<()> {
             }
             Err(e) => {
                 // Where triangles are cut, boxes do not follow them.
-                let is_cut = accelerator.info().kind.contains("pieces");
+                let kind = &accelerator.info().kind;
+                let is_cut = kind.contains("pieces") || kind.contains("spatial splits");
                 assert!(
                     is_cut || !same || !keeps_precision,
                     "{name} is not refitted from {before:?} to {after:?}: {e}"

@@ -6,10 +6,10 @@
 use super::bins::{Bins, Split};
 use super::part::Part;
 use super::reference::{Bounds, Extents, MANY, Reference, median, partition, references};
-use super::top_down::{TASK, levels};
+use super::top_down::{Due, TASK};
 use super::{BinaryBvh, Leaves, Node, spare};
 use crate::math::Aabb;
-use crate::work::{Steps, Stopped, Work};
+use crate::work::{Stopped, Work};
 use std::borrow::Cow;
 
 pub use super::bins::MAX_BINS;
@@ -39,11 +39,11 @@ pub fn build<'a>(boxes: impl Into<Cow<'a, [Aabb]>>, options: &Options, work: Wor
     if references.is_empty() {
         return Ok(BinaryBvh::default());
     }
-    let (count, levels) = (references.len(), levels(references.len()));
-    let steps = grow.steps(count * levels);
-    let task = Task { bins, leaves, first: 0, spare: spare(count), levels, steps: &steps };
+    let count = references.len();
+    let steps = Due::steps(count, grow);
+    let task = Task { bins, leaves, spare: spare(count), first: Some(0) };
     let extents = Extents::around_many(&references);
-    let part = task.build(&mut references, extents)?;
+    let part = task.build(&mut references, extents, Due::all(count, &steps))?;
     let order = list.collect(count, |i| references[i].primitive())?;
     drop(references);
     part.assemble(order, place)
@@ -51,23 +51,23 @@ pub fn build<'a>(boxes: impl Into<Cow<'a, [Aabb]>>, options: &Options, work: Wor
 
 /// What to build of a slice of the references.
 #[derive(Clone, Copy)]
-struct Task<'a> {
-    bins: usize,
-    leaves: Leaves,
-    /// The first primitive, as leaves refer to it.
-    first: u32,
+pub struct Task {
+    /// Bins an axis.
+    pub bins: usize,
+    /// When a leaf is made.
+    pub leaves: Leaves,
     /// How many more levels may be split by area.
-    spare: usize,
-    /// How many times its references count as gone through when it is done.
-    levels: usize,
-    steps: &'a Steps<'a>,
+    pub spare: usize,
+    /// The first primitive, as leaves refer to it; none if parts are to list theirs.
+    pub first: Option<u32>,
 }
 
-impl Task<'_> {
-    fn build(self, references: &mut [Reference], extents: Extents) -> Result<Part, Stopped> {
+impl Task {
+    /// Builds a subtree.
+    pub fn build(self, references: &mut [Reference], extents: Extents, due: Due) -> Result<Part, Stopped> {
         if references.len() <= TASK {
             let part = self.build_alone(references, extents);
-            self.steps.did(references.len() * self.levels)?;
+            due.tell()?;
             return Ok(part);
         }
         let by_area = if self.spare == 0 {
@@ -81,20 +81,19 @@ impl Task<'_> {
             Some(split) => partition(references, |r| split.is_left(r)),
             None => median(references, &extents.centres),
         };
-        self.steps.did(references.len() * self.levels.min(1))?;
         let (left, right) = references.split_at_mut(middle);
-        let (spare, levels) = (self.spare.saturating_sub(1), self.levels.saturating_sub(1));
-        let left_task = Self { spare, levels, ..self };
-        let right_task = Self { first: self.first + middle as u32, ..left_task };
+        let [of_left, of_right] = due.split([left.len(), right.len()])?;
+        let left_task = Self { spare: self.spare.saturating_sub(1), ..self };
+        let right_task = Self { first: self.first.map(|first| first + middle as u32), ..left_task };
         let (left, right) = rayon::join(
-            || left_task.build(left, Extents::around_many(left)),
-            || right_task.build(right, Extents::around_many(right)),
+            || left_task.build(left, Extents::around_many(left), of_left),
+            || right_task.build(right, Extents::around_many(right), of_right),
         );
         Ok(Part::pair(extents.all.aabb(), left?, right?))
     }
 
     /// Builds a subtree on this thread.
-    fn build_alone(self, references: &mut [Reference], extents: Extents) -> Part {
+    pub fn build_alone(self, references: &mut [Reference], extents: Extents) -> Part {
         /// A node to be made.
         struct Open {
             /// Its place below the root, or none for the root.
@@ -106,6 +105,7 @@ impl Task<'_> {
         }
         let nothing = Node::leaf(Aabb::EMPTY, 0, 0);
         let (mut root, mut below) = (nothing, Vec::with_capacity(references.len()));
+        let first = self.first.unwrap_or(0);
         let mut bins = Bins::new();
         let mut open = vec![Open { node: None, start: 0, end: references.len(), extents, spare: self.spare }];
         while let Some(Open { node, start, end, extents, spare }) = open.pop() {
@@ -115,7 +115,7 @@ impl Task<'_> {
             let child = below.len();
             let made = match split {
                 Some(_) => Node::inner(aabb, child as u32),
-                None => Node::leaf(aabb, self.first + start as u32, own.len() as u32),
+                None => Node::leaf(aabb, first + start as u32, own.len() as u32),
             };
             *node.map_or(&mut root, |node| &mut below[node]) = made;
             let Some((middle, [left, right])) = split else { continue };
@@ -125,7 +125,9 @@ impl Task<'_> {
             open.push(Open { node: Some(child + 1), start: middle, end, extents: right, spare });
             open.push(Open { node: Some(child), start, end: middle, extents: left, spare });
         }
-        Part::Whole { root, below, order: Vec::new() }
+        let order =
+            if self.first.is_none() { references.iter().map(Reference::primitive).collect() } else { Vec::new() };
+        Part::Whole { root, below, order }
     }
 
     /// Splits some primitives, unless they are to be a leaf: how many go left, and the extents of both sides.

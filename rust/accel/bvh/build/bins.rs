@@ -1,12 +1,15 @@
 //! Where to split a set of boxes: the surface-area heuristic at the borders of equal bins (Wald, "On fast Construction
 //! of SAH-based Bounding Volume Hierarchies", 2007).
 
-use super::reference::{Bounds, Extents, Reference, SHARE};
+use super::reference::{Bounds, Extents, MANY, Reference, SHARE};
 use glam::Vec4;
 use rayon::prelude::*;
 
 /// Most bins that may be asked for.
 pub const MAX_BINS: usize = 64;
+
+/// How many references there are on a side of a plane, and what is around them.
+pub type Side = (usize, Bounds);
 
 /// A plane between bins.
 #[derive(Clone, Copy)]
@@ -31,13 +34,28 @@ impl Split {
 
     /// The same, by several threads.
     pub fn best_of_many(references: &[Reference], extents: &Extents, bins: usize) -> Option<Self> {
+        Self::filled_by_many(references, extents, bins).0
+    }
+
+    /// The cheapest plane by several threads where references are many, and what lies on either side of it.
+    pub fn best_with_sides(references: &[Reference], extents: &Extents, bins: usize) -> Option<(Self, [Side; 2])> {
+        let (split, bins) = if references.len() < MANY {
+            let mut filled = Bins::new();
+            (Self::best(references, extents, bins, &mut filled), filled)
+        } else {
+            Self::filled_by_many(references, extents, bins)
+        };
+        split.map(|split| (split, bins.sides(&split)))
+    }
+
+    fn filled_by_many(references: &[Reference], extents: &Extents, bins: usize) -> (Option<Self>, Bins) {
         let binning = Binning::new(&extents.centres, bins);
         let add = |mut filled: Bins, share: &[Reference]| {
             filled.add(share, &binning);
             filled
         };
         let filled = references.par_chunks(SHARE).fold(Bins::new, add).reduce(Bins::new, |a, b| a.join(&b, bins));
-        filled.best(bins, binning)
+        (filled.best(bins, binning), filled)
     }
 
     /// On which side a reference is.
@@ -47,6 +65,9 @@ impl Split {
     }
 }
 
+/// Adding it rounds to a whole number, which then is the lower bits: quicker than a conversion.
+pub const WHOLE: f32 = 1.5 * (1 << 23) as f32;
+
 /// From a centre to its bin. Binning and partitioning round alike, so they always agree.
 #[derive(Clone, Copy)]
 struct Binning {
@@ -55,9 +76,6 @@ struct Binning {
 }
 
 impl Binning {
-    /// Adding it rounds to a whole number, which then is the lower bits: quicker than a conversion.
-    const WHOLE: f32 = 1.5 * (1 << 23) as f32;
-
     fn new(centres: &Bounds, bins: usize) -> Self {
         let size = centres.size();
         // Just under the number of bins, so that the last centre falls into the last bin. Flat axes get bin 0 alone.
@@ -69,16 +87,16 @@ impl Binning {
     /// The bins of a reference along the three axes.
     #[inline(always)]
     fn bins(&self, r: &Reference) -> [usize; 3] {
-        let places = ((r.centre() - self.origin) * self.scale - 0.5) + Self::WHOLE;
+        let places = ((r.centre() - self.origin) * self.scale - 0.5) + WHOLE;
         let [x, y, z, _] = places.to_array();
         let bin = |place: f32| place.to_bits() as usize & (MAX_BINS - 1);
         [bin(x), bin(y), bin(z)]
     }
 
-    /// The bin of a reference along an axis, plus [`Self::WHOLE`].
+    /// The bin of a reference along an axis, plus [`WHOLE`].
     #[inline(always)]
     fn place(&self, r: &Reference, axis: usize) -> f32 {
-        ((r.centre_on(axis) - self.origin.as_ref()[axis]) * self.scale.as_ref()[axis] - 0.5) + Self::WHOLE
+        ((r.centre_on(axis) - self.origin.as_ref()[axis]) * self.scale.as_ref()[axis] - 0.5) + WHOLE
     }
 }
 
@@ -135,6 +153,18 @@ impl Bins {
         self
     }
 
+    /// What lies on either side of a plane.
+    fn sides(&self, split: &Split) -> [Side; 2] {
+        let last = (split.last - WHOLE) as usize;
+        let mut sides = [(0, Bounds::EMPTY); 2];
+        for (i, (bounds, &count)) in self.bounds[split.axis].iter().zip(&self.counts[split.axis]).enumerate() {
+            let side = &mut sides[usize::from(i > last)];
+            side.0 += count as usize;
+            side.1.grow(bounds);
+        }
+        sides
+    }
+
     #[inline(always)]
     fn best(&self, bins: usize, binning: Binning) -> Option<Split> {
         let (mut least, mut best) = (f32::INFINITY, None);
@@ -158,7 +188,7 @@ impl Bins {
                 // With nothing on the left it is no number, which is not less than anything.
                 let cost = grown.half_area() * count as f32 + right[i + 1];
                 if cost < least {
-                    (least, best) = (cost, Some(Split { axis, last: Binning::WHOLE + i as f32, binning }));
+                    (least, best) = (cost, Some(Split { axis, last: WHOLE + i as f32, binning }));
                 }
             }
         }

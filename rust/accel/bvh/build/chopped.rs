@@ -1,71 +1,81 @@
 //! Planes that part what they cut: bins of equal width that hold the parts of each reference (Stich, Friedrich and
 //! Dietrich, "Spatial Splits in Bounding Volume Hierarchies", 2009; "chopped binning" after Popov, Günther, Seidel and
 //! Slusallek 2006).
+//!
+//! What planes are weighed by are estimates: the parts of a triangle between two planes are bounded by where these cut
+//! its edges, and by the reference's box, in f32. Only what straddles the plane that is chosen is clipped with care.
 
 use super::binned::MAX_BINS;
+use super::bins::WHOLE;
 use super::reference::{Bounds, Reference};
+use super::{Shapes, chop};
 use crate::math::Aabb;
+use crate::work::Work;
+use glam::Vec4;
 use rayon::prelude::*;
 
-/// From so many references on, several threads look at them: to cut one takes much longer than to look at its box.
-const MANY: usize = 1 << 12;
+/// From so many references on, several threads look at them.
+const MANY: usize = 1 << 13;
 
 /// So many are one thread's share then.
-const SHARE: usize = 1 << 10;
+const SHARE: usize = 1 << 12;
 
-/// Bins of equal width along an axis.
+/// Planes are weighed along axes along which a set is at least so long, over the longest: others hardly ever win.
+const LENGTH: f32 = 0.5;
+
+/// Bins of equal width along the three axes.
 #[derive(Clone, Copy)]
 struct Grid {
-    axis: usize,
-    origin: f32,
-    width: f32,
-    bins: usize,
+    origin: Vec4,
+    width: Vec4,
+    /// Bins over length; 0 along an axis that is not worth it.
+    scale: Vec4,
+    /// The last bin, as a number.
+    last: Vec4,
 }
 
 impl Grid {
-    /// None where there is nothing to cut, or too little.
-    fn new(axis: usize, around: &Aabb, bins: usize) -> Option<Self> {
-        let (origin, width) = (around.min[axis], (around.max[axis] - around.min[axis]) / bins as f32);
-        (width.is_normal() && width > 0.0).then_some(Self { axis, origin, width, bins })
+    fn new(around: &Bounds, bins: usize) -> Self {
+        let width = around.size() / bins as f32;
+        let scale = width.recip();
+        let worth = width.cmpge(Vec4::splat(LENGTH * width.truncate().max_element()));
+        let usable = worth & width.cmpge(Vec4::splat(f32::MIN_POSITIVE)) & scale.is_finite_mask();
+        let scale = Vec4::select(usable, scale, Vec4::ZERO);
+        Self { origin: around.least(), width, scale, last: Vec4::splat((bins - 1) as f32) }
+    }
+
+    /// Those along which planes are weighed.
+    fn axes(&self) -> impl Iterator<Item = usize> {
+        let scale = self.scale.to_array();
+        (0..3).filter(move |&axis| scale[axis] > 0.0)
     }
 
     /// The lower border of a bin.
     #[inline(always)]
-    fn border(&self, bin: usize) -> f32 {
-        self.origin + self.width * bin as f32
+    fn border(&self, axis: usize, bin: usize) -> f32 {
+        self.origin.as_ref()[axis] + self.width.as_ref()[axis] * bin as f32
     }
 
-    /// The first and the last bin that an interval reaches into, which is that of its lower end if it only touches the
-    /// next.
+    /// The first and the last bin that a reference reaches into along each axis; not one that it only touches.
     #[inline(always)]
-    fn place(&self, min: f32, max: f32) -> [usize; 2] {
-        let guess = |x: f32| (((x - self.origin) / self.width) as usize).min(self.bins - 1);
-        let (mut first, mut last) = (guess(min), guess(max));
-        // The borders as they are computed decide.
-        while first > 0 && self.border(first) > min {
-            first -= 1;
-        }
-        while first + 1 < self.bins && self.border(first + 1) <= min {
-            first += 1;
-        }
-        while last > 0 && self.border(last) >= max {
-            last -= 1;
-        }
-        while last + 1 < self.bins && self.border(last + 1) < max {
-            last += 1;
-        }
-        [first, last.max(first)]
-    }
-
-    #[inline(always)]
-    fn place_of(&self, r: &Reference) -> [usize; 2] {
-        let Aabb { min, max } = r.bounds.aabb();
-        self.place(min[self.axis], max[self.axis])
+    fn places(&self, r: &Reference) -> [[usize; 3]; 2] {
+        let whole = Vec4::splat(WHOLE);
+        let below = (r.bounds.least() - self.origin) * self.scale;
+        let above = (r.bounds.greatest() - self.origin) * self.scale;
+        // To the next whole number, and one down or up where that is on the wrong side.
+        let (near_below, near_above) = ((below + whole) - whole, (above + whole) - whole);
+        let down = Vec4::select(near_below.cmpgt(below), Vec4::ONE, Vec4::ZERO);
+        let up = Vec4::select(near_above.cmplt(above), Vec4::ZERO, Vec4::ONE);
+        let first = (near_below - down).max(Vec4::ZERO).min(self.last);
+        let last = (near_above - up).max(first).min(self.last);
+        [first, last].map(|places| {
+            let [x, y, z, _] = (places + whole).to_array();
+            [x, y, z].map(|place| place.to_bits() as usize & (MAX_BINS - 1))
+        })
     }
 }
 
 /// The bins of the three axes: around the parts in each, and how many references begin and end there.
-#[derive(Clone)]
 pub struct Chopped {
     bounds: Box<[[Bounds; MAX_BINS]; 3]>,
     begin: [[u32; MAX_BINS]; 3],
@@ -73,47 +83,63 @@ pub struct Chopped {
 }
 
 impl Chopped {
-    /// All of them, empty.
-    pub fn new() -> Self {
+    fn new() -> Self {
         let none = [[0; MAX_BINS]; 3];
         Self { bounds: Box::new([[Bounds::EMPTY; MAX_BINS]; 3]), begin: none, end: none }
     }
 
-    fn clear(&mut self, bins: usize) {
-        for axis in 0..3 {
-            self.bounds[axis][..bins].fill(Bounds::EMPTY);
-            self.begin[axis][..bins].fill(0);
-            self.end[axis][..bins].fill(0);
+    fn add(&mut self, references: &[Reference], grid: &Grid, shapes: &impl Shapes) {
+        let (mut axes, mut count) = ([0; 3], 0);
+        for axis in grid.axes() {
+            axes[count] = axis;
+            count += 1;
+        }
+        // Neighbours often fall into the same bin, where the second would wait for the first: take turns with some from
+        // afar.
+        let (first, second) = references.split_at(references.len() / 2);
+        for (i, r) in second.iter().enumerate() {
+            self.add_one(r, grid, &axes[..count], shapes);
+            if let Some(r) = first.get(i) {
+                self.add_one(r, grid, &axes[..count], shapes);
+            }
         }
     }
 
-    fn add(&mut self, references: &[Reference], grids: &[Option<Grid>; 3], clip: &impl Fn(u32, &Aabb) -> Aabb) {
-        for r in references {
+    #[inline(always)]
+    fn add_one(&mut self, r: &Reference, grid: &Grid, axes: &[usize], shapes: &impl Shapes) {
+        let [first, last] = grid.places(r);
+        let mut corners = None;
+        for &axis in axes {
+            let (first, last) = (first[axis], last[axis]);
+            self.begin[axis][first] += 1;
+            self.end[axis][last] += 1;
+            let bins = &mut self.bounds[axis];
+            if first == last {
+                bins[first].grow(&r.bounds);
+                continue;
+            }
+            let whole = || shapes.corners(r.primitive()).map(|corners| corners.map(|c| c.extend(0.0)));
+            if let Some(corners) = corners.get_or_insert_with(whole) {
+                let border = |bin: usize| grid.border(axis, bin);
+                chop::parts(corners, &r.bounds, axis, first..=last, border, |bin, part| bins[bin].grow(part));
+                continue;
+            }
             let whole = r.bounds.aabb();
-            for grid in grids.iter().flatten() {
-                let (axis, [first, last]) = (grid.axis, grid.place_of(r));
-                self.begin[axis][first] += 1;
-                self.end[axis][last] += 1;
-                if first == last {
-                    self.bounds[axis][first].grow(&r.bounds);
-                    continue;
-                }
-                for bin in first..=last {
-                    let mut slab = whole;
-                    slab.min[axis] = if bin > first { grid.border(bin) } else { whole.min[axis] };
-                    slab.max[axis] = if bin < last { grid.border(bin + 1) } else { whole.max[axis] };
-                    let part = clip(r.primitive(), &slab);
-                    if !part.is_empty() {
-                        self.bounds[axis][bin].grow(&Bounds::from(&part));
-                    }
+            for bin in first..=last {
+                let mut slab = whole;
+                slab.min[axis] = if bin > first { grid.border(axis, bin) } else { whole.min[axis] };
+                slab.max[axis] = if bin < last { grid.border(axis, bin + 1) } else { whole.max[axis] };
+                let part = shapes.clip(r.primitive(), &slab);
+                if !part.is_empty() {
+                    bins[bin].grow(&Bounds::from(&part));
                 }
             }
         }
     }
 
-    fn join(mut self, other: &Self) -> Self {
+    fn join(mut self, other: &Self, bins: usize) -> Self {
         for axis in 0..3 {
-            for bin in 0..MAX_BINS {
+            for bin in 0..bins {
                 self.bounds[axis][bin].grow(&other.bounds[axis][bin]);
                 self.begin[axis][bin] += other.begin[axis][bin];
                 self.end[axis][bin] += other.end[axis][bin];
@@ -121,46 +147,75 @@ impl Chopped {
         }
         self
     }
+
+    /// The cheapest plane along an axis.
+    fn best(&self, grid: &Grid, axis: usize, bins: usize, count: usize, budget: usize) -> Option<Plane> {
+        let mut after = [(Bounds::EMPTY, 0usize); MAX_BINS];
+        let mut right = (Bounds::EMPTY, 0);
+        for bin in (1..bins).rev() {
+            right.0.grow(&self.bounds[axis][bin]);
+            right.1 += self.end[axis][bin] as usize;
+            after[bin] = right;
+        }
+        let mut left = (Bounds::EMPTY, 0);
+        let mut best: Option<Plane> = None;
+        for last in 0..bins - 1 {
+            left.0.grow(&self.bounds[axis][last]);
+            left.1 += self.begin[axis][last] as usize;
+            let right = after[last + 1];
+            let plane = Plane { grid: *grid, axis, last, left, right };
+            let allowed = left.1 > 0 && right.1 > 0 && left.1 + right.1 - count <= budget;
+            // A cost that is no number is not less than any.
+            if allowed && plane.cost() < best.as_ref().map_or(f32::INFINITY, Plane::cost) {
+                best = Some(plane);
+            }
+        }
+        best
+    }
 }
 
 /// A plane between two bins.
 #[derive(Clone, Copy)]
 pub struct Plane {
     grid: Grid,
+    axis: usize,
     /// The last bin on the left.
     last: usize,
-    /// What is there if all that straddle are parted, and how many.
+    /// What is there if all that straddle are parted, about, and how many.
     left: (Bounds, usize),
     right: (Bounds, usize),
 }
 
 impl Plane {
-    /// The cheapest plane that adds no more references than the budget.
+    /// The cheapest plane that adds no more references than the budget. None is told once the work is stopped.
     pub fn best(
         references: &[Reference],
         around: &Bounds,
         bins: usize,
-        clip: &(impl Fn(u32, &Aabb) -> Aabb + Sync),
+        shapes: &impl Shapes,
         budget: usize,
-        workspace: &mut Chopped,
+        work: Work,
     ) -> Option<Self> {
-        let around = around.aabb();
-        // Half as many as for whole references, and fewer for few: what is long is cut in each that it passes, and
-        // planes found so are hardly worse.
-        let bins = bins.div_ceil(2).min(references.len() / 2).max(4);
-        let grids = [0, 1, 2].map(|axis| Grid::new(axis, &around, bins));
-        workspace.clear(bins);
-        if references.len() < MANY {
-            workspace.add(references, &grids, clip);
+        // Half as many as for whole references, and fewer for few: planes found so are hardly worse.
+        let bins = bins.div_ceil(2).min(references.len() / 256).max(bins.div_ceil(4)).max(4);
+        let grid = Grid::new(around, bins);
+        let add = |mut filled: Chopped, share: &[Reference]| {
+            if !work.is_stopped() {
+                filled.add(share, &grid, shapes);
+            }
+            filled
+        };
+        let filled = if references.len() < MANY {
+            add(Chopped::new(), references)
         } else {
-            let add = |mut filled: Chopped, share: &[Reference]| {
-                filled.add(share, &grids, clip);
-                filled
-            };
             let shares = references.par_chunks(SHARE).fold(Chopped::new, add);
-            *workspace = shares.reduce(Chopped::new, |a, b| a.join(&b));
+            shares.reduce(Chopped::new, |a, b| a.join(&b, bins))
+        };
+        if work.is_stopped() {
+            // Some may not have been counted.
+            return None;
         }
-        let planes = grids.iter().flatten().filter_map(|grid| workspace.best(*grid, references.len(), budget));
+        let planes = grid.axes().filter_map(|axis| filled.best(&grid, axis, bins, references.len(), budget));
         // Of equals the first.
         planes.reduce(|best, plane| if plane.cost() < best.cost() { plane } else { best })
     }
@@ -171,16 +226,12 @@ impl Plane {
     }
 
     /// Both sides: what straddles is parted, or goes to one side as a whole where that costs less.
-    pub fn part(
-        &self,
-        references: &[Reference],
-        clip: &(impl Fn(u32, &Aabb) -> Aabb + Sync),
-    ) -> (Vec<Reference>, Vec<Reference>) {
+    pub fn part(&self, references: &[Reference], shapes: &impl Shapes) -> (Vec<Reference>, Vec<Reference>) {
         let Self { left: (mut left_bounds, mut left_count), right: (mut right_bounds, mut right_count), .. } = *self;
         let Sorted { mut left, mut right, across } = if references.len() < MANY {
-            self.sort(references, clip)
+            self.sort(references, shapes)
         } else {
-            let shares: Vec<_> = references.par_chunks(SHARE).map(|share| self.sort(share, clip)).collect();
+            let shares: Vec<_> = references.par_chunks(SHARE).map(|share| self.sort(share, shapes)).collect();
             shares.into_iter().fold(Sorted::default(), Sorted::then)
         };
         for Across { whole, halves: [below, above] } in across {
@@ -208,21 +259,22 @@ impl Plane {
     }
 
     /// Tells what lies on either side, and cuts what straddles.
-    fn sort(&self, references: &[Reference], clip: &impl Fn(u32, &Aabb) -> Aabb) -> Sorted {
-        let Self { grid, last, .. } = *self;
-        let at = grid.border(last + 1);
-        let mut sorted = Sorted::default();
+    fn sort(&self, references: &[Reference], shapes: &impl Shapes) -> Sorted {
+        let Self { grid, axis, last, .. } = *self;
+        let at = grid.border(axis, last + 1);
+        let room = || Vec::with_capacity(references.len());
+        let mut sorted = Sorted { left: room(), right: room(), across: Vec::new() };
         for &whole in references {
-            let [begin, end] = grid.place_of(&whole);
+            let [begin, end] = grid.places(&whole).map(|places| places[axis]);
             if end <= last {
                 sorted.left.push(whole);
             } else if begin > last {
                 sorted.right.push(whole);
             } else {
                 let (mut below, mut above) = (whole.bounds.aabb(), whole.bounds.aabb());
-                (below.max[grid.axis], above.min[grid.axis]) = (at, at);
-                let halves = [below, above].map(|half| clip(whole.primitive(), &half));
-                sorted.across.push(Across { whole, halves });
+                (below.max[axis], above.min[axis]) = (at, at);
+                let clip = |half: Aabb| if half.is_empty() { half } else { shapes.clip(whole.primitive(), &half) };
+                sorted.across.push(Across { whole, halves: [clip(below), clip(above)] });
             }
         }
         sorted
@@ -252,32 +304,4 @@ struct Across {
     whole: Reference,
     /// What of it lies below the plane, and above.
     halves: [Aabb; 2],
-}
-
-impl Chopped {
-    /// The cheapest plane along an axis.
-    fn best(&self, grid: Grid, count: usize, budget: usize) -> Option<Plane> {
-        let Grid { axis, bins, .. } = grid;
-        let mut after = [(Bounds::EMPTY, 0usize); MAX_BINS];
-        let mut right = (Bounds::EMPTY, 0);
-        for bin in (1..bins).rev() {
-            right.0.grow(&self.bounds[axis][bin]);
-            right.1 += self.end[axis][bin] as usize;
-            after[bin] = right;
-        }
-        let mut left = (Bounds::EMPTY, 0);
-        let mut best: Option<Plane> = None;
-        for last in 0..bins - 1 {
-            left.0.grow(&self.bounds[axis][last]);
-            left.1 += self.begin[axis][last] as usize;
-            let right = after[last + 1];
-            let plane = Plane { grid, last, left, right };
-            let allowed = left.1 > 0 && right.1 > 0 && left.1 + right.1 - count <= budget;
-            // A cost that is no number is not less than any.
-            if allowed && plane.cost() < best.as_ref().map_or(f32::INFINITY, Plane::cost) {
-                best = Some(plane);
-            }
-        }
-        best
-    }
 }

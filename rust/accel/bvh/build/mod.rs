@@ -6,6 +6,7 @@
 
 pub mod binned;
 mod bins;
+mod chop;
 mod chopped;
 pub mod halves;
 mod leaves;
@@ -26,10 +27,28 @@ pub use leaves::Leaves;
 pub(super) use reference::Bounds;
 
 use super::{BinaryBvh, Node};
-use crate::math::Aabb;
+use crate::math::{Aabb, Vec3};
 use crate::work::{Stopped, Work};
 use halves::Way;
 use std::borrow::Cow;
+
+/// What is in the boxes, as far as it can be parted. A function that clips will do.
+pub trait Shapes: Sync {
+    /// A box around what of a primitive lies in another box, or around more. It must be empty only where there is
+    /// nothing, and lie within the primitive's own box and the other one.
+    fn clip(&self, primitive: u32, to: &Aabb) -> Aabb;
+
+    /// About where a triangle's corners are, by which its parts are estimated; none if it is asked to clip for that.
+    fn corners(&self, _primitive: u32) -> Option<[Vec3; 3]> {
+        None
+    }
+}
+
+impl<F: Fn(u32, &Aabb) -> Aabb + Sync> Shapes for F {
+    fn clip(&self, primitive: u32, to: &Aabb) -> Aabb {
+        self(primitive, to)
+    }
+}
 
 /// How a binary tree is built.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -62,6 +81,15 @@ pub enum Builder {
 impl Builder {
     /// What is meant by bins where nobody says how many.
     const BINS: usize = 16;
+
+    /// The same with so many bins, if it has any.
+    pub fn with_bins(self, bins: usize) -> Self {
+        match self {
+            Self::Binned { .. } => Self::Binned { bins: Some(bins) },
+            Self::Spatial { budget, .. } => Self::Spatial { bins: Some(bins), budget },
+            other => other,
+        }
+    }
 
     /// The same with so many bins where nobody has said how many.
     pub fn or_bins(self, some: usize) -> Self {
@@ -103,8 +131,7 @@ impl Builder {
 
     /// Makes a tree over boxes, leaving out empty ones.
     ///
-    /// `clip` gives a box around what of a primitive lies in another box, or around more; only spatial splits ask for
-    /// it. It must be empty only where there is nothing, and lie within the primitive's own box and the other one.
+    /// Only spatial splits ask what is in the boxes.
     ///
     /// Boxes that are given away are freed as soon as they are not needed any more.
     ///
@@ -113,7 +140,7 @@ impl Builder {
     pub fn build<'a>(
         &self,
         boxes: impl Into<Cow<'a, [Aabb]>>,
-        clip: impl Fn(u32, &Aabb) -> Aabb + Sync,
+        shapes: impl Shapes,
         leaves: &Leaves,
         work: Work,
     ) -> Result<BinaryBvh, Stopped> {
@@ -125,7 +152,7 @@ impl Builder {
             Self::Sweep => sweep::build(boxes, &leaves, work),
             Self::Spatial { bins, budget } => {
                 let bins = bins.unwrap_or(Self::BINS);
-                spatial::build(boxes, clip, &spatial::Options { bins, budget, leaves }, work)
+                spatial::build(boxes, &shapes, &spatial::Options { bins, budget, leaves }, work)
             }
             Self::Morton(bits) => morton::build(boxes, bits, work),
             Self::Ploc { radius } => ploc::build(boxes, &ploc::Options { radius }, work),

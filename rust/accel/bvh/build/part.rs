@@ -1,5 +1,6 @@
 //! Subtrees before they have a place: how long one gets is known only when it is built.
 
+use super::reference::Reference;
 use super::{BinaryBvh, Node};
 use crate::math::Aabb;
 use crate::work::{Stopped, Work};
@@ -32,6 +33,12 @@ pub struct Pair {
 }
 
 impl Part {
+    /// A leaf that lists what is in it.
+    pub fn leaf(aabb: Aabb, references: &[Reference]) -> Self {
+        let order: Vec<_> = references.iter().map(Reference::primitive).collect();
+        Self::Whole { root: Node::leaf(aabb, 0, order.len() as u32), below: Vec::new(), order }
+    }
+
     /// Puts two parts side by side.
     pub fn pair(aabb: Aabb, left: Self, right: Self) -> Self {
         let nodes = 2 + left.below() + right.below();

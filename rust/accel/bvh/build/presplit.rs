@@ -10,10 +10,10 @@
 //! Even meshes gain nothing by it, since a piece takes a place in a block as its whole did. So nothing is cut where not
 //! much is gained in all.
 
-use super::BinaryBvh;
 use super::reference::SHARE;
 use super::spatial::MAX_BUDGET;
-use crate::math::Aabb;
+use super::{BinaryBvh, Shapes};
+use crate::math::{Aabb, Vec3};
 use rayon::prelude::*;
 
 /// How much to cut.
@@ -33,8 +33,44 @@ const LEAST: f32 = 5.0;
 /// gains a quarter, which is lost again in the nodes above its pieces.
 const LEAST_SHARE: f32 = 0.3;
 
+/// Whether cuts are worthwhile is told by those that gain at least so much, as long as they are not too few.
+const COARSE: f32 = 100.0;
+
+/// Cuts of this share of the primitives in number are too many to be left to planes, which would spend a budget where
+/// less is gained.
+const MANY: f32 = 0.5;
+
 /// So many pieces can be told apart by a wide tree.
 const MOST: usize = (1 << 28) - 2;
+
+/// What to do about primitives that fill little of their boxes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Remedy {
+    /// Nothing: there are not enough of them.
+    Nothing,
+    /// Planes may part them where these are, since they are few: spatial splits.
+    Planes,
+    /// They are best cut before the build, since the budget is spent where most is gained.
+    Pieces,
+}
+
+impl Remedy {
+    /// Makes the cuts that gain most and tells by these.
+    pub fn of(boxes: &[Aabb], shapes: &impl Shapes, options: &Options) -> Self {
+        let total = Total::of(boxes);
+        let coarse = (total.count as f32 * 1e-3).clamp(LEAST, COARSE);
+        let least = coarse * total.around.half_area() / total.count as f32;
+        let many = (MANY.min(options.budget) * total.count as f32) as usize;
+        let made = Made::of(boxes, shapes, least, many);
+        if many > 0 && made.cuts == many {
+            Self::Pieces
+        } else if made.saved > f64::from(options.worthwhile) * total.area {
+            Self::Planes
+        } else {
+            Self::Nothing
+        }
+    }
+}
 
 /// Pieces of primitives, over which a tree may be built in place of these.
 pub struct Pieces {
@@ -45,28 +81,25 @@ pub struct Pieces {
 }
 
 impl Pieces {
-    /// Cuts primitives, given by their boxes; none if that is not worthwhile. `clip` is as
-    /// [`Builder::build`](super::Builder::build) says.
+    /// Cuts primitives, given by their boxes; none if that is not worthwhile.
     ///
     /// Takes time in proportion to the pieces that there are, and the pieces are the same for any number of threads.
     ///
     /// # Panics
     /// If the budget is out of range.
-    pub fn cut(boxes: &[Aabb], clip: impl Fn(u32, &Aabb) -> Aabb + Sync, options: &Options) -> Option<Self> {
+    pub fn cut(boxes: &[Aabb], shapes: &impl Shapes, options: &Options) -> Option<Self> {
         let Options { budget, worthwhile } = *options;
         assert!((0.0..=MAX_BUDGET).contains(&budget), "budget is {budget}, not from 0 to {MAX_BUDGET}");
         let total = Total::of(boxes);
         let least = LEAST * total.around.half_area() / total.count as f32;
         let wanted = f64::from(worthwhile) * total.area;
         // More than its area a box cannot gain.
-        let long = || (0u32..).zip(boxes).filter(|(_, b)| !b.is_empty() && b.half_area() > least);
-        if long().map(|(_, b)| f64::from(b.half_area())).sum::<f64>() <= wanted {
+        let most: f64 = long(boxes, least).map(|(_, b)| f64::from(b.half_area())).sum();
+        if most <= wanted {
             return None;
         }
-        let long: Vec<_> = long().collect();
         let budget = ((f64::from(budget) * total.count as f64) as usize).min(MOST.saturating_sub(total.count));
-        let mut made = Made::default();
-        made.cut(&long, |p, whole| Cut::new(p, whole, &clip, least), budget);
+        let mut made = Made::of(boxes, shapes, least, budget);
         if made.saved <= wanted {
             return None;
         }
@@ -85,6 +118,11 @@ impl Pieces {
             all.primitives.resize(all.boxes.len(), p);
         }
         Some(all)
+    }
+
+    /// What is in the boxes of the pieces.
+    pub fn shapes<'a, S: Shapes>(&'a self, of: &'a S) -> Pieced<'a, S> {
+        Pieced { of, pieces: &self.primitives }
     }
 
     /// Makes a tree over pieces one over primitives: several pieces of one that share a leaf are there once.
@@ -139,6 +177,22 @@ impl Total {
     }
 }
 
+/// Pieces, each known by what it is a piece of.
+pub struct Pieced<'a, S> {
+    of: &'a S,
+    pieces: &'a [u32],
+}
+
+impl<S: Shapes> Shapes for Pieced<'_, S> {
+    fn clip(&self, piece: u32, to: &Aabb) -> Aabb {
+        self.of.clip(self.pieces[piece as usize], to)
+    }
+
+    fn corners(&self, piece: u32) -> Option<[Vec3; 3]> {
+        self.of.corners(self.pieces[piece as usize])
+    }
+}
+
 /// A cut through a primitive or a piece of it, in the middle of its box where that is longest.
 struct Cut {
     primitive: u32,
@@ -150,7 +204,7 @@ struct Cut {
 
 impl Cut {
     /// None if it gains too little.
-    fn new(primitive: u32, whole: &Aabb, clip: &impl Fn(u32, &Aabb) -> Aabb, least: f32) -> Option<Self> {
+    fn new(primitive: u32, whole: &Aabb, shapes: &impl Shapes, least: f32) -> Option<Self> {
         let area = whole.half_area();
         let least = least.max(LEAST_SHARE * area);
         if area <= least {
@@ -161,7 +215,7 @@ impl Cut {
         let middle = whole.min[axis] + size[axis] / 2.0;
         let (mut below, mut above) = (*whole, *whole);
         (below.max[axis], above.min[axis]) = (middle, middle);
-        let halves = [below, above].map(|half| clip(primitive, &half));
+        let halves = [below, above].map(|half| shapes.clip(primitive, &half));
         if halves.iter().any(Aabb::is_empty) {
             return None;
         }
@@ -170,16 +224,31 @@ impl Cut {
     }
 }
 
+/// Those that are more than so large.
+fn long(boxes: &[Aabb], least: f32) -> impl Iterator<Item = (u32, &Aabb)> {
+    (0u32..).zip(boxes).filter(move |(_, b)| !b.is_empty() && b.half_area() > least)
+}
+
 /// What has been cut.
 #[derive(Default)]
 struct Made {
     /// All that was worth a look, with their primitives.
     pieces: Vec<(u32, Aabb)>,
+    /// How many cuts were made.
+    cuts: usize,
     /// How much area was saved.
     saved: f64,
 }
 
 impl Made {
+    /// Makes at most so many cuts that gain at least so much.
+    fn of(boxes: &[Aabb], shapes: &impl Shapes, least: f32, budget: usize) -> Self {
+        let mut made = Self::default();
+        let long: Vec<_> = long(boxes, least).collect();
+        made.cut(&long, |p, whole| Cut::new(p, whole, shapes, least), budget);
+        made
+    }
+
     /// Cuts so often at most, the cuts that gain most first, to a factor of two.
     fn cut(&mut self, long: &[(u32, &Aabb)], cut: impl Fn(u32, &Aabb) -> Option<Cut> + Sync, mut budget: usize) {
         let first: Vec<_> = long.par_iter().map(|&(p, whole)| cut(p, whole)).collect();
@@ -207,6 +276,7 @@ impl Made {
                 self.pieces.extend(batch.drain(budget..).map(|cut| (cut.primitive, cut.whole)));
             }
             budget -= batch.len();
+            self.cuts += batch.len();
             self.saved += batch.iter().map(|cut| f64::from(cut.gain)).sum::<f64>();
             let halves: Vec<_> =
                 batch.par_iter().map(|made| made.halves.each_ref().map(|half| cut(made.primitive, half))).collect();
@@ -245,7 +315,7 @@ mod tests {
     }
 
     fn cut(triangles: &[[DVec3; 3]], boxes: &[Aabb], budget: f32, worthwhile: f32) -> Option<Pieces> {
-        Pieces::cut(boxes, |p, to| clipped(triangles[p as usize], to), &Options { budget, worthwhile })
+        Pieces::cut(boxes, &|p: u32, to: &Aabb| clipped(triangles[p as usize], to), &Options { budget, worthwhile })
     }
 
     fn area(boxes: &[Aabb]) -> f64 {
@@ -267,7 +337,8 @@ mod tests {
             last = now;
             let builder = Builder::Ploc { radius: 14 };
             let leaves = Leaves::for_blocks(8);
-            let mut bvh = builder.build(&pieces.boxes, |_, to| *to, &leaves, Work::UNWATCHED).unwrap();
+            let fill = |_: u32, to: &Aabb| *to;
+            let mut bvh = builder.build(&pieces.boxes, fill, &leaves, Work::UNWATCHED).unwrap();
             pieces.put_together(&mut bvh);
             bvh.validate_parts(&whole, |p, to| clipped(sticks[p as usize], to)).unwrap();
         }
@@ -288,7 +359,37 @@ mod tests {
         // The box around all has an area of 3; boxes of less than 5 thousandths of it are not even looked at.
         let small = triangles(1000, DVec3::splat(0.07), DVec3::new(0.0, 1e-3, 0.0));
         let boxes = boxes(&small);
-        assert!(Pieces::cut(&boxes, |_, _| unreachable!(), &Options { budget: 8.0, worthwhile: 0.0 }).is_none());
+        assert!(
+            Pieces::cut(
+                &boxes,
+                &|_: u32, _: &Aabb| -> Aabb { unreachable!() },
+                &Options { budget: 8.0, worthwhile: 0.0 }
+            )
+            .is_none()
+        );
+    }
+
+    #[test]
+    fn planes_are_for_few_and_cuts_for_many() {
+        let along = DVec3::new(0.9, 0.8, -0.9);
+        let remedy = |long: u32, small: u32| {
+            let mut some = triangles(long, along, DVec3::new(1e-3, 0.0, 0.0));
+            some.extend(triangles(small, DVec3::splat(0.01), DVec3::new(0.0, 1e-2, 0.0)));
+            let options = Options { budget: 4.0, worthwhile: 0.5 };
+            Remedy::of(&boxes(&some), &|p: u32, to: &Aabb| clipped(some[p as usize], to), &options)
+        };
+        assert_eq!(remedy(0, 5000), Remedy::Nothing);
+        assert_eq!(remedy(100, 5000), Remedy::Planes);
+        assert_eq!(remedy(3000, 5000), Remedy::Pieces);
+        assert_eq!(
+            Remedy::of(&[], &|_: u32, to: &Aabb| *to, &Options { budget: 4.0, worthwhile: 0.5 }),
+            Remedy::Nothing
+        );
+        // A gain that is not asked for is none.
+        let straight = triangles(5000, DVec3::X, 1e-3 * DVec3::Y);
+        let clip = |p: u32, to: &Aabb| clipped(straight[p as usize], to);
+        let options = Options { budget: 4.0, worthwhile: 0.5 };
+        assert_eq!(Remedy::of(&boxes(&straight), &clip, &options), Remedy::Nothing);
     }
 
     #[test]

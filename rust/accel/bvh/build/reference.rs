@@ -68,6 +68,12 @@ impl Bounds {
         self.min
     }
 
+    /// The greatest corner.
+    #[inline(always)]
+    pub fn greatest(&self) -> Vec4 {
+        -self.neg_max
+    }
+
     /// How long it is along each axis; not positive where it is flat, or empty.
     #[inline(always)]
     pub fn size(&self) -> Vec4 {

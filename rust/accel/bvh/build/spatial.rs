@@ -6,17 +6,17 @@
 //! parts. A straddling reference that costs less when it is left whole goes to one side ("reference unsplitting"). How
 //! many references may be added is bounded; a subtree gets what its parent has left in proportion to its references, so
 //! that threads need not share it. That spends it badly where some need many cuts and others none, so what gains most
-//! is better cut before, wherever it is: `presplit`.
+//! is better cut before, wherever it is: `presplit`. Sets that are small beside the scene are left to `binned`.
 
-use super::binned::MAX_BINS;
-use super::bins::{Bins, Split};
-use super::chopped::{Chopped, Plane};
-use super::reference::{Bounds, Extents, MANY, Reference, SHARE, median, partition, references};
-use super::top_down::{self, Set};
-use super::{BinaryBvh, Leaves, spare};
+use super::binned::{MAX_BINS, Task};
+use super::bins::{Side, Split};
+use super::chopped::Plane;
+use super::part::Part;
+use super::reference::{Extents, Reference, median, partition, references};
+use super::top_down::{Due, TASK};
+use super::{BinaryBvh, Leaves, Shapes, spare};
 use crate::math::Aabb;
 use crate::work::{Stopped, Work};
-use rayon::prelude::*;
 use std::borrow::Cow;
 
 /// How to build.
@@ -48,7 +48,7 @@ const OVERLAP: f32 = 1e-3;
 const OWN_OVERLAP: f32 = 0.2;
 
 /// Builds a tree over boxes, leaving out empty ones; a primitive may stand in several leaves, each of which holds what
-/// is left of it in a box. `clip` is as [`Builder::build`](super::Builder::build) says.
+/// is left of it in a box.
 ///
 /// Takes time n log n on any input: sets that cannot be parted by area are halved by number, and so are all from a
 /// depth on that a reasonable tree does not reach.
@@ -57,7 +57,7 @@ const OWN_OVERLAP: f32 = 0.2;
 /// If an option is out of range.
 pub fn build<'a>(
     boxes: impl Into<Cow<'a, [Aabb]>>,
-    clip: impl Fn(u32, &Aabb) -> Aabb + Sync,
+    shapes: &impl Shapes,
     options: &Options,
     work: Work,
 ) -> Result<BinaryBvh, Stopped> {
@@ -65,7 +65,7 @@ pub fn build<'a>(
     assert!((2..=MAX_BINS).contains(&bins), "bins is {bins}, not from 2 to {MAX_BINS}");
     assert!((0.0..=MAX_BUDGET).contains(&budget), "budget is {budget}, not from 0 to {MAX_BUDGET}");
     leaves.check();
-    let [gather, grow] = work.parts([1.0, 40.0]);
+    let [gather, grow, place] = work.parts([1.0, 40.0, 3.0]);
     let references = references(boxes, gather)?;
     if references.is_empty() {
         return Ok(BinaryBvh::default());
@@ -73,66 +73,89 @@ pub fn build<'a>(
     let count = references.len();
     let budget = ((f64::from(budget) * count as f64) as usize).min(MOST.saturating_sub(count));
     let extents = Extents::around_many(&references);
-    let shared = Shared { clip, bins, leaves, overlap: OVERLAP * extents.all.half_area() };
-    top_down::build(Parts { references, extents, spare: spare(count), budget, shared: &shared }, grow)
+    let steps = Due::steps(count, grow);
+    let shared = Shared { shapes, bins, leaves, overlap: OVERLAP * extents.all.half_area(), work };
+    let all = Parts { references, extents, spare: spare(count), budget, shared: &shared };
+    all.build(Due::all(count, &steps))?.assemble(Vec::new(), place)
 }
 
-struct Shared<C> {
-    clip: C,
+struct Shared<'a, S> {
+    shapes: &'a S,
     bins: usize,
     leaves: Leaves,
     /// Half the surface that sides may have in common before planes are weighed.
     overlap: f32,
+    work: Work<'a>,
 }
 
-struct Parts<'a, C> {
+struct Parts<'a, S> {
     references: Vec<Reference>,
     extents: Extents,
     /// How many more levels may be split by area.
     spare: usize,
     /// How many more references there may be.
     budget: usize,
-    shared: &'a Shared<C>,
+    shared: &'a Shared<'a, S>,
 }
 
-/// What is reused from node to node.
-pub struct Workspace {
-    whole: Bins,
-    chopped: Chopped,
-}
-
-impl Default for Workspace {
-    fn default() -> Self {
-        Self { whole: Bins::new(), chopped: Chopped::new() }
-    }
-}
-
-impl<C: Fn(u32, &Aabb) -> Aabb + Sync> Set for Parts<'_, C> {
-    type Workspace = Workspace;
-
-    fn len(&self) -> usize {
-        self.references.len()
-    }
-
-    fn aabb(&self) -> Aabb {
-        self.extents.all.aabb()
-    }
-
-    fn split(self, workspace: &mut Workspace) -> Result<[Self; 2], Self> {
-        let (count, shared) = (self.len(), self.shared);
-        if count <= shared.leaves.whole {
-            return Err(self);
+impl<S: Shapes> Parts<'_, S> {
+    fn build(mut self, due: Due) -> Result<Part, Stopped> {
+        if self.references.len() <= TASK {
+            let part = self.build_alone();
+            due.tell()?;
+            return Ok(part);
         }
-        let whole = if self.spare > 0 { self.best_whole(&mut workspace.whole) } else { None };
-        let plane = if self.spare > 0 { self.best_plane(whole.as_ref(), &mut workspace.chopped) } else { None };
-        let Self { mut references, extents, spare, budget, .. } = self;
+        if let Some(task) = self.without_planes() {
+            return task.build(&mut self.references, self.extents, due);
+        }
+        let aabb = self.extents.all.aabb();
+        match self.split() {
+            Ok([left, right]) => {
+                let [of_left, of_right] = due.split([&left, &right].map(|side| side.references.len()))?;
+                let (left, right) = rayon::join(|| left.build(of_left), || right.build(of_right));
+                Ok(Part::pair(aabb, left?, right?))
+            }
+            Err(leaf) => {
+                due.tell()?;
+                Ok(Part::leaf(aabb, &leaf))
+            }
+        }
+    }
+
+    /// Builds a subtree on this thread.
+    fn build_alone(mut self) -> Part {
+        if let Some(task) = self.without_planes() {
+            return task.build_alone(&mut self.references, self.extents);
+        }
+        let aabb = self.extents.all.aabb();
+        match self.split() {
+            Ok([left, right]) => Part::pair(aabb, left.build_alone(), right.build_alone()),
+            Err(leaf) => Part::leaf(aabb, &leaf),
+        }
+    }
+
+    /// How to build where nothing is to be parted any more.
+    fn without_planes(&self) -> Option<Task> {
+        let Shared { bins, leaves, overlap, .. } = *self.shared;
+        // Sides have no more in common than the set has, nor do those of its parts.
+        let is_small = self.references.len() <= leaves.block || self.extents.all.half_area() <= overlap;
+        let is_over = self.budget == 0 || self.spare == 0;
+        (is_small || is_over).then_some(Task { bins, leaves, spare: self.spare, first: None })
+    }
+
+    /// Two sets of it, neither empty; or what is in it, if it is to be a leaf.
+    fn split(self) -> Result<[Self; 2], Vec<Reference>> {
+        let Self { mut references, extents, spare, budget, shared } = self;
+        let count = references.len();
+        let whole = Split::best_with_sides(&references, &extents, shared.bins);
+        let plane = shared.best_plane(&references, &extents, whole.map(|whole| whole.1), budget);
         // Where nothing is parted after all, one side may be empty.
-        let parted = plane.map(|plane| plane.part(&references, &shared.clip));
+        let parted = plane.map(|plane| plane.part(&references, shared.shapes));
         let (mut left, right) = match parted.filter(|(left, right)| !left.is_empty() && !right.is_empty()) {
             Some(sides) => sides,
             None => {
                 let middle = match whole {
-                    Some(Whole { split, .. }) => partition(&mut references, |r| split.is_left(r)),
+                    Some((split, _)) => partition(&mut references, |r| split.is_left(r)),
                     None => median(&mut references, &extents.centres),
                 };
                 let right = references.split_off(middle);
@@ -146,77 +169,35 @@ impl<C: Fn(u32, &Aabb) -> Aabb + Sync> Set for Parts<'_, C> {
                 left.extend(right);
                 references = left;
             }
-            return Err(Self { references, extents, spare, budget, shared });
+            return Err(references);
         }
         let both = left.len() + right.len();
         let unused = budget - (both - count);
         let share = (unused as u64 * left.len() as u64 / both as u64) as usize;
-        let side = |references, extents, budget| {
-            let spare = spare.saturating_sub(1);
-            Self { references, extents, spare, budget, shared }
-        };
+        let side = |references, extents, budget| Self { references, extents, spare: spare - 1, budget, shared };
         Ok([side(left, around[0], share), side(right, around[1], unused - share)])
     }
-
-    fn list(&self, order: &mut Vec<u32>) {
-        order.extend(self.references.iter().map(Reference::primitive));
-    }
 }
 
-/// The best split of a set, each reference as a whole.
-struct Whole {
-    split: Split,
-    cost: f32,
-    /// Half the surface that the sides have in common.
-    overlap: f32,
-}
-
-impl<C: Fn(u32, &Aabb) -> Aabb + Sync> Parts<'_, C> {
-    fn best_whole(&self, bins: &mut Bins) -> Option<Whole> {
-        let (references, count) = (&self.references, self.shared.bins);
-        let few = references.len() < MANY;
-        let split = if few {
-            Split::best(references, &self.extents, count, bins)
-        } else {
-            Split::best_of_many(references, &self.extents, count)
-        }?;
-        let none = [(0, Bounds::EMPTY); 2];
-        let grown = |mut sides: [(usize, Bounds); 2], share: &[Reference]| {
-            for r in share {
-                let (count, bounds) = &mut sides[usize::from(!split.is_left(r))];
-                *count += 1;
-                bounds.grow(&r.bounds);
+impl<S: Shapes> Shared<'_, S> {
+    /// The best plane, where it costs less than the best split without, of which this lies on either side.
+    fn best_plane(
+        &self,
+        references: &[Reference],
+        extents: &Extents,
+        whole: Option<[Side; 2]>,
+        budget: usize,
+    ) -> Option<Plane> {
+        let area = extents.all.half_area();
+        let mut least = area * references.len() as f32;
+        if let Some([left, right]) = whole {
+            let common = left.1.common(&right.1);
+            if common.is_empty() || common.half_area() <= self.overlap.max(OWN_OVERLAP * area) {
+                return None;
             }
-            sides
-        };
-        let join = |a: [(usize, Bounds); 2], b: [(usize, Bounds); 2]| {
-            [0, 1].map(|side| (a[side].0 + b[side].0, a[side].1.union(&b[side].1)))
-        };
-        let sides = if few {
-            grown(none, references)
-        } else {
-            references.par_chunks(SHARE).fold(|| none, grown).reduce(|| none, join)
-        };
-        let [left, right] = sides;
-        let common = left.1.common(&right.1);
-        Some(Whole {
-            split,
-            cost: left.1.half_area() * left.0 as f32 + right.1.half_area() * right.0 as f32,
-            overlap: if common.is_empty() { 0.0 } else { common.half_area() },
-        })
-    }
-
-    /// The best plane, where it costs less than the best split without.
-    fn best_plane(&self, whole: Option<&Whole>, chopped: &mut Chopped) -> Option<Plane> {
-        let area = self.extents.all.half_area();
-        let worth = whole.is_none_or(|whole| whole.overlap > self.shared.overlap.max(OWN_OVERLAP * area));
-        if !worth || self.budget == 0 {
-            return None;
+            least = least.min(left.1.half_area() * left.0 as f32 + right.1.half_area() * right.0 as f32);
         }
-        let unsplit = area * self.references.len() as f32;
-        let least = whole.map_or(unsplit, |whole| whole.cost.min(unsplit));
-        let bins = self.shared.bins;
-        Plane::best(&self.references, &self.extents.all, bins, &self.shared.clip, self.budget, chopped)
-            .filter(|plane| plane.cost() < least)
+        let plane = Plane::best(references, &extents.all, self.bins, self.shapes, budget, self.work);
+        plane.filter(|plane| plane.cost() < least)
     }
 }

@@ -8,11 +8,49 @@ use crate::work::{Steps, Stopped, Work};
 /// Up to so many primitives, a subtree is built by one thread.
 pub const TASK: usize = 1024;
 
-/// How many times it takes to go through so many primitives: once a level as long as subtrees are large, and what is
-/// below takes as long as so many of these.
-pub fn levels(count: usize) -> usize {
+/// How much is told once a subtree is built.
+#[derive(Clone, Copy)]
+pub struct Due<'a> {
+    amount: usize,
+    /// How many levels it is for, at least one.
+    levels: usize,
+    steps: &'a Steps<'a>,
+}
+
+impl<'a> Due<'a> {
+    /// It takes as long to go through all once a level where subtrees are large, and so many times as long to build
+    /// what is below.
     const BELOW: usize = 8;
-    (count / TASK).max(1).ilog2() as usize + BELOW
+
+    fn levels(count: usize) -> usize {
+        (count / TASK).max(1).ilog2() as usize + Self::BELOW
+    }
+
+    /// A build of so many primitives in steps.
+    pub fn steps(count: usize, work: Work) -> Steps {
+        work.steps(count * Self::levels(count))
+    }
+
+    /// All of these steps.
+    pub fn all(count: usize, steps: &'a Steps<'a>) -> Self {
+        let levels = Self::levels(count);
+        Self { amount: count * levels, levels, steps }
+    }
+
+    /// Tells that a set is split: what is due for either side, of so many primitives.
+    pub fn split(self, [left, right]: [usize; 2]) -> Result<[Self; 2], Stopped> {
+        let Self { amount, levels, steps } = self;
+        let now = amount / levels;
+        steps.did(now)?;
+        let rest = amount - now;
+        let of_left = (rest as u128 * left as u128 / (left + right).max(1) as u128) as usize;
+        Ok([of_left, rest - of_left].map(|amount| Self { amount, levels: levels.saturating_sub(1).max(1), steps }))
+    }
+
+    /// Tells all of it.
+    pub fn tell(self) -> Result<(), Stopped> {
+        self.steps.did(self.amount)
+    }
 }
 
 /// A set of primitives that may be split in two.
@@ -36,15 +74,13 @@ pub trait Set: Sized + Send {
 /// Builds a tree over a set. The sets must not be split much more often in a row than a stack can hold.
 pub fn build<S: Set>(set: S, work: Work) -> Result<BinaryBvh, Stopped> {
     let [grow, place] = work.parts([10.0, 1.0]);
-    let levels = levels(set.len());
-    let steps = grow.steps(levels * set.len());
-    part(set, levels, &steps)?.assemble(Vec::new(), place)
+    let count = set.len();
+    let steps = Due::steps(count, grow);
+    part(set, Due::all(count, &steps))?.assemble(Vec::new(), place)
 }
 
-/// A subtree; `levels` is how many times its primitives count as gone through when it is done.
-fn part<S: Set>(set: S, levels: usize, steps: &Steps) -> Result<Part, Stopped> {
-    let count = set.len();
-    let below = if count <= TASK {
+fn part<S: Set>(set: S, due: Due) -> Result<Part, Stopped> {
+    let below = if set.len() <= TASK {
         Err(set)
     } else {
         let aabb = set.aabb();
@@ -52,14 +88,13 @@ fn part<S: Set>(set: S, levels: usize, steps: &Steps) -> Result<Part, Stopped> {
     };
     match below {
         Ok((aabb, [left, right])) => {
-            steps.did(count * levels.min(1))?;
-            let levels = levels.saturating_sub(1);
-            let (left, right) = rayon::join(|| part(left, levels, steps), || part(right, levels, steps));
+            let [of_left, of_right] = due.split([left.len(), right.len()])?;
+            let (left, right) = rayon::join(|| part(left, of_left), || part(right, of_right));
             Ok(Part::pair(aabb, left?, right?))
         }
         Err(leaf) => {
             let part = alone(leaf, &mut S::Workspace::default());
-            steps.did(count * levels)?;
+            due.tell()?;
             Ok(part)
         }
     }

@@ -18,10 +18,10 @@ use ordered::Ordered;
 pub use ordered::Rays;
 pub use threaded::{Orders, Threaded};
 
+use super::contents::Contents;
 use super::{BinaryBvh, Options};
 use crate::accel::walk::{Built, Input};
 use crate::math::Aabb;
-use crate::shapes::triangle::clipped;
 use gather::{Costs, gather};
 use oriented::Oriented;
 use slabs::Slabs;
@@ -69,21 +69,16 @@ impl Traversal {
         // What is no triangle is tested one by one.
         let block = if input.primitives.objects().is_some() { 1 } else { BLOCK };
         let steps = options.steps(block);
-        let built = steps.build(&input.boxes, |p, to| clip(input, p, to), input.work);
+        let built = steps.build(&input.boxes, contents(input), input.work);
         let (bvh, name) = built.unwrap_or_default();
         let (traversal, intersection) = (options.traversal_cost, options.intersection_cost);
         self.over(gather(&bvh, Costs { traversal, intersection, block }), input, &name)
     }
 }
 
-/// A box around what of a primitive lies in another box.
-fn clip(input: &Input, primitive: u32, to: &Aabb) -> Aabb {
-    let corners = input.primitives.corners(primitive);
-    if corners.iter().all(|c| c.is_finite()) {
-        clipped(corners.map(|c| input.region.to_box(c)), to)
-    } else {
-        input.boxes[primitive as usize].intersection(*to)
-    }
+/// What builders see of primitives.
+fn contents<'a>(input: &'a Input) -> Contents<'a> {
+    Contents { primitives: input.primitives, region: &input.region, boxes: &input.boxes }
 }
 
 /// The surface-area heuristic's cost of a tree, in tests of a node: of every inner node its two boxes, of every leaf

@@ -1,8 +1,9 @@
 //! The tree that all these ways share: leaves are known by numbers of their own, and what is in them is for others to
 //! keep.
 
-use super::{clip, sah_cost};
+use super::{contents, sah_cost};
 use crate::accel::Info;
+use crate::accel::bvh::build::Shapes;
 use crate::accel::bvh::{BinaryBvh, Node};
 use crate::accel::walk::{Input, Lists};
 use crate::math::Aabb;
@@ -67,7 +68,7 @@ impl Numbered {
         let whole = self.whole(primitives)?;
         match whole.depth() {
             depth if depth != self.depth => Err(format!("depth is {depth}, not {}", self.depth)),
-            _ if self.in_parts => whole.validate_parts(&input.boxes, |p, to| clip(input, p, to)),
+            _ if self.in_parts => whole.validate_parts(&input.boxes, |p, to| contents(input).clip(p, to)),
             _ => whole.validate(&input.boxes),
         }
     }

@@ -22,6 +22,7 @@ mod wave;
 mod winners;
 
 use super::build::{Builder, Leaves as LeafRule};
+use super::contents::Contents;
 use super::optimise::Optimisers;
 use super::parts::cover;
 use super::{Cuts, Quality, Steps};
@@ -135,7 +136,9 @@ impl<const N: usize, L: Leaves<N>> WideBvh<N, L> {
         let [surround, grow, collapse] = primitives.work().parts([3.0, 14.0, 5.0]);
         let boxes = surround.collect(primitives.count(), |p| aabb(primitives, &region, p as u32))?;
         let count = boxes.par_iter().filter(|b| !b.is_empty()).count();
-        let (binary, name) = options.steps(N).build(boxes, |p, to| clip(primitives, &region, p, to), grow)?;
+        // What is no triangle here is nowhere.
+        let contents = Contents { primitives, region: &region, boxes: &[] };
+        let (binary, name) = options.steps(N).build(boxes, contents, grow)?;
         let mut bvh = Self::collapse(binary, primitives, &region, options, collapse)?;
         bvh.in_parts = bvh.info.primitives > count;
         bvh.info.primitives = count;

