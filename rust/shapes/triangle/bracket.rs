@@ -106,7 +106,7 @@ mod tests {
     use crate::math::RayBatch;
     use crate::math::{DVec3, Ray, Region};
     use crate::shapes::triangle::{ALL, BlockRays, DoubleLeaves, Leaves, PlainRays, RAYS, SingleLeaves};
-    use crate::simd::{Dispatch, Kernel, Level, Simd};
+    use crate::simd::{Dispatch, Kernel, Level, Scalar, Simd};
     use proptest::prelude::*;
     use proptest::strategy::ValueTree;
     use proptest::test_runner::{Config, TestRng, TestRunner};
@@ -118,7 +118,7 @@ mod tests {
     struct Ask<'a, L> {
         leaves: &'a L,
         ray: &'a BlockRay,
-        sixteen: Option<&'a BlockRays>,
+        sixteens: &'a [BlockRays],
     }
 
     impl<const N: usize, L: Leaves<N>> Kernel<N> for Ask<'_, L> {
@@ -127,7 +127,7 @@ mod tests {
         #[inline(always)]
         fn run<S: Simd<N>>(self, simd: S) -> Vec<Said> {
             let mut said = vec![read(simd, Some(&self.leaves.bracket(simd, self.ray, 0, 1)), 0)];
-            if let Some(rays) = self.sixteen {
+            for rays in self.sixteens {
                 let sixteen = simd.sixteen();
                 let bracket = self.leaves.spread(simd, rays, 0, 1).bracket(sixteen, rays, 0, ALL);
                 said.extend((0..RAYS).map(|lane| read(sixteen, bracket.as_ref(), lane)));
@@ -158,14 +158,16 @@ mod tests {
         let mut block = L::ray(&edges, &region);
         block.errors.weight *= share;
         let mut columns = PlainRays::NONE;
-        columns.take(&RayBatch::Rows(&[*ray]), 0, &region);
+        columns.take(Scalar, &RayBatch::Rows(&[*ray]), 0, &region);
         let is_plain = columns.plain & 1 == 1;
-        let mut blocks = L::rays(&columns, &region);
-        blocks.errors.weight *= share;
+        // They start at one point; and as others that do not.
+        let mut shared = L::rays(Scalar, &columns, &region);
+        assert!(shared.share_origin || !is_plain);
+        shared.errors.weight *= share;
+        let scattered = BlockRays { share_origin: false, ..shared.clone() };
+        let sixteens = if is_plain { vec![shared, scattered] } else { Vec::new() };
         let levels = Level::ALL.into_iter().filter(|l| l.is_available() && l.lanes() >= N);
-        let all = levels.flat_map(|level| {
-            level.dispatch(Ask { leaves: &leaves, ray: &block, sixteen: is_plain.then_some(&blocks) })
-        });
+        let all = levels.flat_map(|level| level.dispatch(Ask { leaves: &leaves, ray: &block, sixteens: &sixteens }));
         all.map(|said| (said, met)).collect()
     }
 

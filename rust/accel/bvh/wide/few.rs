@@ -14,7 +14,7 @@ use crate::simd::{Lanes, Simd};
 
 /// So many triangles are few, in so many leaves: a tree of more is walked sooner.
 pub const TRIANGLES: usize = 64;
-const LEAVES: usize = 16;
+const LEAVES: usize = 32;
 
 /// The leaves of a tree and their boxes, if they are few.
 pub fn leaves<const N: usize, L: Leaves<N>>(bvh: &WideBvh<N, L>) -> Option<Vec<(Packed, Aabb)>> {
