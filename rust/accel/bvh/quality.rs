@@ -168,6 +168,8 @@ impl Steps {
             }
             name = format!("{name} and {}", optimiser.name());
         }
+        // Who finds nothing more to gain ends early.
+        improve.done();
         Ok((bvh, name))
     }
 }
@@ -195,6 +197,8 @@ mod tests {
     use crate::math::DVec3;
     use crate::sampling::philox4x32;
     use crate::shapes::triangle::clipped;
+    use crate::work::Watch;
+    use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
     fn built(quality: Quality, boxes: &[Aabb], shapes: impl Shapes) -> (BinaryBvh, String) {
         quality.steps(8).build(boxes, shapes, Work::UNWATCHED).unwrap()
@@ -232,17 +236,23 @@ mod tests {
         }
     }
 
-    #[test]
-    fn planes_part_a_few_long_ones_among_many() {
+    /// Triangles along a diagonal, one in so many of which is long, and their boxes.
+    fn triangles(long_one_in: u32) -> (Triangles, Vec<Aabb>) {
         let triangle = |i: u32| {
             let [x, y, z, _] = philox4x32([i, 0, 0, 0], [0, 0]).map(|bits| f64::from(bits) / 2f64.powi(32));
-            let size = if i.is_multiple_of(50) { 0.8 } else { 0.004 };
+            let size = if i.is_multiple_of(long_one_in) { 0.8 } else { 0.004 };
             let (from, along) = (DVec3::new(x, y, z), size * DVec3::new(1.0, 0.9, 0.8));
             [from, from + along, from + along + DVec3::new(0.004, 0.0, 0.0)]
         };
         let triangles = Triangles((0..30_000).map(triangle).collect());
         let everywhere = Aabb { min: Vec3::splat(-4.0), max: Vec3::splat(4.0) };
         let boxes: Vec<_> = (0..30_000).map(|p| triangles.clip(p, &everywhere)).collect();
+        (triangles, boxes)
+    }
+
+    #[test]
+    fn planes_part_a_few_long_ones_among_many() {
+        let (triangles, boxes) = triangles(50);
         let build = |quality: Quality, threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             pool.install(|| built(quality, &boxes, |p: u32, to: &Aabb| triangles.clip(p, to)))
@@ -271,6 +281,49 @@ mod tests {
             bvh.nodes.iter().map(|n| (n.min.to_array(), n.index, n.max.to_array(), n.count)).collect()
         };
         assert!(one.order == three.order && nodes(&one) == nodes(&three));
+    }
+
+    #[test]
+    fn planes_and_cuts_tell_all_that_they_do_and_end_when_they_are_stopped() {
+        /// Stops the work when so many have been clipped.
+        struct Stopping<'a> {
+            triangles: &'a Triangles,
+            watch: &'a Watch,
+            clips: AtomicUsize,
+            most: usize,
+        }
+
+        impl Shapes for &Stopping<'_> {
+            fn clip(&self, primitive: u32, to: &Aabb) -> Aabb {
+                if self.clips.fetch_add(1, Relaxed) + 1 == self.most {
+                    self.watch.stop();
+                }
+                self.triangles.clip(primitive, to)
+            }
+
+            fn corners(&self, primitive: u32) -> Option<[Vec3; 3]> {
+                self.triangles.corners(primitive)
+            }
+        }
+
+        for (long_one_in, made) in [(50, "SAH with spatial splits and"), (1, "binned SAH of pieces and")] {
+            let (triangles, boxes) = triangles(long_one_in);
+            let build = |most: usize| {
+                let watch = Watch::default();
+                let shapes = Stopping { triangles: &triangles, watch: &watch, clips: AtomicUsize::new(0), most };
+                let built = Quality::Balanced.steps(8).build(&boxes, &shapes, Work::of(&watch));
+                (built.map(|built| built.1), shapes.clips.into_inner(), watch.share())
+            };
+            let (name, clips, share) = build(usize::MAX);
+            assert!(name.as_ref().is_ok_and(|name| name.starts_with(made)), "{name:?}");
+            assert_eq!(share, 1.0);
+            // Wherever it is stopped, hardly anything is clipped any more.
+            for most in [1, clips / 10, clips / 2, 9 * clips / 10] {
+                let (stopped, after, share) = build(most);
+                assert_eq!(stopped, Err(Stopped), "at {most} of {clips}");
+                assert!(after < most + 1000 && share < 1.0, "{after} after {most} of {clips}, {share}");
+            }
+        }
     }
 
     #[test]

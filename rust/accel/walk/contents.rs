@@ -39,7 +39,8 @@ impl<const N: usize, L: Leaves<N>> Contents<N, L> {
             rest = others;
             let before = order.len();
             for &p in leaf {
-                if primitives.is_finite(p) { order.push(p) } else { numbers.push(p) }
+                // What nothing can hit is in no leaf.
+                if primitives.objects().is_none() || primitives.is_finite(p) { order.push(p) } else { numbers.push(p) }
             }
             let triangles = order.len() - before;
             blocks.extend((0..triangles).step_by(N).map(|i| (triangles - i).min(N) as u32));
