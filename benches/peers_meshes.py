@@ -58,6 +58,18 @@ def room(triangles, rng):
     return Subject("room", mesh.vertices, mesh.faces.astype(np.int64), EYE, TARGET, LAMP)
 
 
+def triangle(triangles, rng):
+    """Return one triangle, however many are asked for."""
+    vertices = np.array([[-1.0, -0.7, 0.2], [1.1, -0.5, -0.1], [0.1, 1.0, 0.0]])
+    return seen_from_outside("triangle", vertices, np.array([[0, 1, 2]]))
+
+
+def box(triangles, rng):
+    """Return the twelve triangles of a box, however many are asked for."""
+    mesh = trimesh.creation.box((2.0, 1.0, 1.5))
+    return seen_from_outside("box", np.array(mesh.vertices), np.array(mesh.faces))
+
+
 def given(path):
     """Return all triangles of a mesh file: an .npz with `vertices` and `faces`, or what trimesh reads."""
     if path.endswith(".npz"):
@@ -71,4 +83,4 @@ def given(path):
 
 
 #: What `--mesh` calls the meshes that are made here.
-MADE = {"sphere": sphere, "torus": torus, "room": room}
+MADE = {"sphere": sphere, "torus": torus, "room": room, "box": box, "triangle": triangle}
