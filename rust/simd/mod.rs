@@ -22,7 +22,8 @@ pub use transpose::columns_of_four;
 #[cfg(target_arch = "x86_64")]
 pub use x86::{Avx2, Avx512, Sse2};
 
-/// Arithmetic on vectors of `N` lanes. A value of a type that implements it proves that the processor has what it needs.
+/// Arithmetic on vectors of `N` lanes. A value of a type that implements it proves that the processor has what it
+/// needs.
 ///
 /// Masks are bits of a `u32`, lane 0 lowest. Comparisons with NaN are false.
 pub trait Lanes<const N: usize>: Copy + Send + Sync {

@@ -58,8 +58,8 @@ impl<F: Copy> Weights<F> {
         (Self { weights: [u, v, w], denominator }, dot(simd, f, q), largest)
     }
 
-    /// Lanes of which no two weights are certainly of different signs, and those of which all are certainly of one, where
-    /// `above` bounds their errors.
+    /// Lanes of which no two weights are certainly of different signs, and those of which all are certainly of one,
+    /// where `above` bounds their errors.
     #[inline(always)]
     pub fn signs<const N: usize, S: Lanes<N, F32 = F>>(&self, simd: S, above: F) -> (u32, u32) {
         let [u, v, w] = self.weights;
@@ -140,8 +140,8 @@ impl BlockRays {
         errors: Bounds { weight: 0.0, numerator: 0.0, least: 0.0, depth: 0.0 },
     };
 
-    /// The same with all that is computed in f32 taken for certain, as most ray tracers take it: what that would save can
-    /// be measured.
+    /// The same with all that is computed in f32 taken for certain, as most ray tracers take it: what that would save
+    /// can be measured.
     pub fn believed(mut self) -> Self {
         self.errors = Bounds { weight: 0.0, numerator: 0.0, least: 0.0, depth: 0.0 };
         self

@@ -1,12 +1,12 @@
 //! The triangles of a leaf spread out for sixteen rays at once: what depends on the triangle alone is computed for all
 //! of the leaf side by side, so that little is left to do for each ray.
 //!
-//! The weights are those of [`super::pretest`], in an order that leaves the edges for last: with n = f × e and c = d × s,
-//! the weight of b is −f · c, that of c is e · c, their sum with that of a is d · n, and the numerator of t is −s · n.
-//! The bounds hold as they are. A product in c errs by 4εL + 2εL + 2εL, and so c by 16εL + 4εL = 20εL; it is at most 4L.
-//! A product in f · c errs by 4εLE + 20εLE + 4εLE, and the weight by 84εLE + 20εLE = 104εLE, as before. A product in n
-//! errs by 3εE², and so n by 8εE²; it is at most 2E². A product in d · n errs by 4εE² + 16εE² + 4εE², and the sum by
-//! 92εE², as before; one in s · n by 4εLE² + 8εLE² + 2εLE², and the sum by 52εLE², as before.
+//! The weights are those of [`super::pretest`], in an order that leaves the edges for last: with n = f × e and c = d
+//! × s, the weight of b is −f · c, that of c is e · c, their sum with that of a is d · n, and the numerator of t is
+//! −s · n. The bounds hold as they are. A product in c errs by 4εL + 2εL + 2εL, and so c by 16εL + 4εL = 20εL; it is
+//! at most 4L. A product in f · c errs by 4εLE + 20εLE + 4εLE, and the weight by 84εLE + 20εLE = 104εLE, as before. A
+//! product in n errs by 3εE², and so n by 8εE²; it is at most 2E². A product in d · n errs by 4εE² + 16εE² + 4εE²,
+//! and the sum by 92εE², as before; one in s · n by 4εLE² + 8εLE² + 2εLE², and the sum by 52εLE², as before.
 //!
 //! Where all rays start at one point, as a camera's do, s is the triangle's as well: then the weight of b is d · r with
 //! r = f × s, that of c is d · q with q = s × e. Both vectors err by 10εLE, as q does there, and the weights by 104εLE.

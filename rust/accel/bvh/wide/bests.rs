@@ -2,7 +2,7 @@
 
 use super::WideBvh;
 use super::best::{Best, meet};
-use super::first::Looking;
+use super::looking::Looking;
 use super::node::Packed;
 use super::sixteen::Sixteen;
 use crate::math::RayBatch;

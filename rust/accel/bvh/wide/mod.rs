@@ -9,6 +9,7 @@ mod errand;
 mod few;
 mod first;
 mod gate;
+mod looking;
 mod nearest;
 mod node;
 mod objects;
