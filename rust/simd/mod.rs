@@ -1,8 +1,8 @@
 //! Floor 0: one vocabulary for every width and level of the processor's vector units.
 //!
 //! A kernel is written once against [`Simd`] and compiled whole for each level ([`Dispatch`]); which one runs is
-//! decided once. All levels round alike: only [`Simd::mul_add`] and [`Simd::mul_sub`] may or may not be fused, and they
-//! serve tests whose bounds allow for both.
+//! decided once. All levels round alike: only [`Lanes::mul_add`] and [`Lanes::mul_sub`] may or may not be fused, and
+//! they serve tests whose bounds allow for both.
 
 #[cfg(target_arch = "aarch64")]
 mod arm;

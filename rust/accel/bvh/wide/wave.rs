@@ -16,7 +16,7 @@ use crate::shapes::triangle::Leaves;
 use crate::simd::Simd;
 
 /// Rays in flight: enough that what one has asked for is there when its turn comes.
-const WAVE: usize = 64;
+const WAVE: usize = 32;
 
 /// The places of rays that wait for the same kind of step: at a node, or at a leaf and done.
 struct Queues {
@@ -114,6 +114,6 @@ pub fn answer<const N: usize, L: Leaves<N>, S: Simd<N>, E: Errand<N, L>>(
 fn fetch<const N: usize, L: Leaves<N>, S: Simd<N>>(simd: S, bvh: &WideBvh<N, L>, at: Packed) {
     let leaf = bvh.leaves.place(at.leaf().0);
     let node = bvh.nodes.as_ptr().wrapping_add(at.node()).cast::<u8>();
-    // The lines of a node, and of most leaves.
-    simd.prefetch(if at.is_leaf() == 1 { leaf } else { node }, 4);
+    // The lines of a node, and of most leaves, which begin anywhere in a line.
+    simd.prefetch(if at.is_leaf() == 1 { leaf } else { node }, 5);
 }
