@@ -1,6 +1,6 @@
 """The same rays through every engine that is installed, from numpy arrays to numpy arrays.
 
-    python benches/peers.py                                   # an icosphere, a torus, a room, a box, a triangle
+    python benches/peers.py                                   # a sphere, a torus, a room, a box, a triangle
     python benches/peers.py --mesh bunny.ply --mesh room      # a file that trimesh reads, or .npz
     python benches/peers.py --triangles 1000000 --threads 1,8 --json figures.json
     python benches/peers.py --mesh torus --rows primary,diffuse --engines mitsuba    # while at work
