@@ -33,4 +33,4 @@ pub(crate) use interval::Interval;
 pub(crate) use number::{Bounded, Number, Triple};
 pub use ray::{Hit, Ray};
 pub use region::Region;
-pub use tiling::{Tiling, row_length};
+pub use tiling::{Run, Tiling, row_length};

@@ -12,8 +12,22 @@ const HALF: usize = SIDE / 2;
 /// Pixels of a tile.
 const TILE: usize = SIDE * SIDE;
 
+/// Tiles that are read line by line: few enough that what is made of them stays in the nearest cache.
+const TOGETHER: usize = 1;
+
 /// Rows longer than this are not cut into tiles: a band of them would be too much for one thread.
 const LONGEST: usize = 1 << 14;
+
+/// Pixels that are neighbours in a row and are visited one after the other.
+#[derive(Clone, Copy, Debug)]
+pub struct Run {
+    /// Where the first lies.
+    pub place: usize,
+    /// When it is visited.
+    pub at: usize,
+    /// How many they are.
+    pub len: usize,
+}
 
 /// An order of the pixels of an image, or of a plain sequence.
 #[derive(Clone, Copy, Debug)]
@@ -50,47 +64,49 @@ impl Tiling {
     /// Where the pixels lie that are visited `from`-th and next, among `count` that begin with a band.
     #[inline]
     pub fn places(&self, from: usize, count: usize, places: &mut [usize]) {
-        if self.row == 0 {
-            for (i, place) in places.iter_mut().enumerate() {
-                *place = from + i;
+        self.runs(from, places.len(), count, |run| {
+            for (i, place) in places[run.at..][..run.len].iter_mut().enumerate() {
+                *place = run.place + i;
             }
-            return;
+        });
+    }
+
+    /// The same for `some` of them, as runs of neighbours: those of whole tiles line by line, as they lie in memory.
+    #[inline(always)]
+    pub fn runs(&self, from: usize, some: usize, count: usize, mut each: impl FnMut(Run)) {
+        if self.row == 0 {
+            return each(Run { place: from, at: 0, len: some });
         }
         let (band, tiles, more) = (SIDE * self.row, self.row / SIDE, self.row % SIDE);
         let tiled = tiles * TILE;
-        // Carried along from pixel to pixel, since a division for each would show in the time of a ray.
-        let (mut start, mut i) = (from / band * band, from % band);
-        let mut rest = places;
-        while !rest.is_empty() {
-            if i == band {
-                (start, i) = (start + band, 0);
-            }
-            // Where too few rows are left for tiles, pixels keep their order.
-            let is_tiled = start + band <= count && i < tiled;
-            if is_tiled
-                && i.is_multiple_of(TILE)
-                && let Some(tile) = rest.first_chunk_mut::<TILE>()
-            {
-                // A whole tile at once: pixel by pixel would show as well.
-                for (k, place) in tile.iter_mut().enumerate() {
-                    let [x, y] = within(k);
-                    *place = start + i / SIDE + y * self.row + x;
-                }
-                i += TILE;
-                rest = &mut rest[TILE..];
-                continue;
-            }
-            let (x, y) = if is_tiled {
-                let [x, y] = within(i % TILE);
-                (i / TILE * SIDE + x, y)
-            } else if start + band <= count {
-                (tiles * SIDE + (i - tiled) % more, (i - tiled) / more)
+        let mut at = 0;
+        while at < some {
+            let (i, rest) = ((from + at) % band, some - at);
+            let start = from + at - i;
+            // The first run, and how many lines of how many runs of whole tiles there are.
+            let (mut lines, mut runs) = (1, 1);
+            let (place, len) = if start + band > count {
+                // Where too few rows are left for tiles, pixels keep their order.
+                (start + i, rest)
+            } else if i >= tiled {
+                let (x, y) = ((i - tiled) % more, (i - tiled) / more);
+                (start + y * self.row + tiles * SIDE + x, rest.min(more - x))
             } else {
-                (i, 0)
+                let whole = (rest / TILE).min((tiled - i) / TILE).min(TOGETHER);
+                if whole > 0 && i.is_multiple_of(TILE) {
+                    (lines, runs) = (SIDE, 2 * whole);
+                }
+                let [x, y] = within(i % TILE);
+                (start + y * self.row + i / TILE * SIDE + x, rest.min(HALF - x % HALF))
             };
-            rest[0] = start + y * self.row + x;
-            i += 1;
-            rest = &mut rest[1..];
+            for y in 0..lines {
+                for run in 0..runs {
+                    let quarter = run / 2 * 4 + y / HALF * 2 + run % 2;
+                    let (place, at) = (place + y * self.row + run * HALF, at + (quarter * HALF + y % HALF) * HALF);
+                    each(Run { place, at, len });
+                }
+            }
+            at += len * lines * runs;
         }
     }
 }

@@ -3,49 +3,63 @@
 use super::arrays::Rows;
 use super::rays::{BATCH, RayArrays};
 use crate::accel::ByColumns;
-use crate::math::{HitColumns, Numbers, RayColumns, Vectors};
+use crate::math::{HitColumns, Numbers, RayColumns, Run, Tiling, Vectors};
 use crate::scene::Geometry;
-use crate::simd::columns_of_four;
+use crate::simd::{ask_for, columns_of_four};
+use std::cell::Cell;
 
 /// Where t, shape_id, primitive and uv of some rays are written.
 pub type HitParts<'a> = (&'a mut [f64], &'a mut [i32], &'a mut [i32], &'a mut [[f64; 2]]);
 
-/// Which of a chunk's rays are asked together.
+/// Rays that are asked together, of a chunk of `count`.
 #[derive(Clone, Copy)]
-pub enum Places<'a> {
-    /// Neighbours, from one on.
-    From(usize),
-    /// These, in this order.
-    At(&'a [usize]),
+struct Part {
+    tiling: Tiling,
+    from: usize,
+    len: usize,
+    count: usize,
 }
 
-/// Room for vectors by axis.
-enum Room {
-    Single([Vec<f32>; 3]),
-    Double([Vec<f64>; 3]),
+impl Part {
+    /// Where they lie in the chunk.
+    #[inline(always)]
+    fn runs(&self, each: impl FnMut(Run)) {
+        self.tiling.runs(self.from, self.len, self.count, each);
+    }
 }
 
-impl Room {
-    /// For so many of some rows.
-    fn new(rows: &Rows<'_>, count: usize) -> Self {
-        match rows {
-            Rows::Single(_) => Self::Single([0; 3].map(|_| vec![0.0; count])),
-            Rows::Double(_) => Self::Double([0; 3].map(|_| vec![0.0; count])),
-        }
-    }
+/// Neighbours of a tile that are neighbours in the arrays, too.
+const RUN: usize = 4;
 
-    /// The rows that lie at some places after `start`, by axis.
-    fn fill(&mut self, rows: &Rows<'_>, start: usize, count: usize, places: Places<'_>) -> Vectors<'_> {
-        match (self, rows) {
-            (Self::Single(room), Rows::Single(rows)) => Vectors::Single(fill(room, rows, start, count, places)),
-            (Self::Double(room), Rows::Double(rows)) => Vectors::Double(fill(room, rows, start, count, places)),
-            _ => unreachable!("room was made for these rows"),
-        }
-    }
+/// So many rays further along a row they are asked for: the next tiles but three.
+const AHEAD: usize = 32;
+
+/// What a thread needs for the rays that it asks together; kept, since to make it anew takes as long as many rays.
+#[derive(Default)]
+struct Room {
+    single: [[Vec<f32>; 3]; 2],
+    double: [[Vec<f64>; 3]; 2],
+    t_min: Vec<f64>,
+    t_max: Vec<f64>,
+    answers: Answers,
+}
+
+/// Room for answers in the order in which rays are asked.
+#[derive(Default)]
+struct Answers {
+    t: Vec<f64>,
+    uv: Vec<[f64; 2]>,
+    shape: Vec<i32>,
+    primitive: Vec<i32>,
+    found: Vec<bool>,
+}
+
+thread_local! {
+    static ROOM: Cell<Option<Box<Room>>> = const { Cell::new(None) };
 }
 
 /// Numbers that vectors are made of.
-trait Coordinate: Copy {
+trait Coordinate: Copy + Default {
     /// Some neighbours by axis.
     fn columns(rows: &[[Self; 3]; RUN]) -> [[Self; RUN]; 3];
 }
@@ -64,16 +78,43 @@ impl Coordinate for f64 {
     }
 }
 
-/// The first `count` of each column, filled with the rows at some places.
-fn fill<'a, T: Coordinate>(
-    room: &'a mut [Vec<T>; 3],
-    rows: &[[T; 3]],
+/// Copies as many numbers as there are: mostly [`RUN`], and then without a call.
+#[inline(always)]
+fn copy<T: Copy>(from: &[T], to: &mut [T]) {
+    let ((fours, others), (to_fours, to_others)) = (from.as_chunks::<RUN>(), to.as_chunks_mut::<RUN>());
+    for (from, to) in fours.iter().zip(to_fours) {
+        *to = *from;
+    }
+    for (from, to) in others.iter().zip(to_others) {
+        *to = *from;
+    }
+}
+
+/// Of some room, as much as is needed.
+fn some<T: Clone + Default>(room: &mut Vec<T>, count: usize) -> &mut [T] {
+    if room.len() < count {
+        room.resize(count, T::default());
+    }
+    &mut room[..count]
+}
+
+/// The rows of a part of a chunk, by axis.
+fn vectors<'a>(
+    single: &'a mut [Vec<f32>; 3],
+    double: &'a mut [Vec<f64>; 3],
+    rows: &Rows<'_>,
     start: usize,
-    count: usize,
-    places: Places<'_>,
-) -> [&'a [T]; 3] {
+    part: &Part,
+) -> Vectors<'a> {
+    match rows {
+        Rows::Single(rows) => Vectors::Single(fill(single, rows, start, part)),
+        Rows::Double(rows) => Vectors::Double(fill(double, rows, start, part)),
+    }
+}
+
+fn fill<'a, T: Coordinate>(room: &'a mut [Vec<T>; 3], rows: &[[T; 3]], start: usize, part: &Part) -> [&'a [T]; 3] {
     let [x, y, z] = room;
-    let (x, y, z) = (&mut x[..count], &mut y[..count], &mut z[..count]);
+    let (x, y, z) = (some(x, part.len), some(y, part.len), some(z, part.len));
     // One that serves for all.
     if let [row] = rows {
         for (column, number) in [&mut *x, &mut *y, &mut *z].into_iter().zip(row) {
@@ -82,137 +123,86 @@ fn fill<'a, T: Coordinate>(
         return [x, y, z];
     }
     let rows = &rows[start..];
-    let runs = x.as_chunks_mut::<RUN>().0.iter_mut().zip(y.as_chunks_mut::<RUN>().0).zip(z.as_chunks_mut::<RUN>().0);
-    for (at, ((x, y), z)) in runs.enumerate() {
-        let from = match places {
-            Places::From(from) => Some(from + at * RUN),
-            Places::At(places) => run(&places[at * RUN..][..RUN]),
-        };
-        if let Some(from) = from {
-            [*x, *y, *z] = T::columns(rows[from..].first_chunk().expect("places of rows"));
-        } else if let Places::At(places) = places {
-            for (i, &place) in places[at * RUN..][..RUN].iter().enumerate() {
-                [x[i], y[i], z[i]] = rows[place];
-            }
+    part.runs(|Run { place, at, len }| {
+        ask_for(rows.as_ptr().wrapping_add(place + AHEAD).cast());
+        let (rows, x, y, z) = (&rows[place..][..len], &mut x[at..][..len], &mut y[at..][..len], &mut z[at..][..len]);
+        let (fours, others) = rows.as_chunks::<RUN>();
+        let to = x.as_chunks_mut().0.iter_mut().zip(y.as_chunks_mut().0).zip(z.as_chunks_mut().0);
+        for (four, ((x, y), z)) in fours.iter().zip(to) {
+            [*x, *y, *z] = T::columns(four);
         }
-    }
-    for i in count / RUN * RUN..count {
-        let place = match places {
-            Places::From(from) => from + i,
-            Places::At(places) => places[i],
-        };
-        [x[i], y[i], z[i]] = rows[place];
-    }
+        for (i, &row) in (len - others.len()..).zip(others) {
+            [x[i], y[i], z[i]] = row;
+        }
+    });
     [x, y, z]
 }
 
-/// Neighbours of a tile that are neighbours in the arrays, too.
-const RUN: usize = 4;
-
-/// Where so many places begin that are one after the other, if they are.
-#[inline(always)]
-fn run(places: &[usize]) -> Option<usize> {
-    let places: &[usize; RUN] = places.try_into().ok()?;
-    let is_run = places[1] == places[0] + 1 && places[2] == places[0] + 2 && places[3] == places[0] + 3;
-    is_run.then_some(places[0])
-}
-
-/// The numbers at some places after `start`; `room` holds them where they are not neighbours.
-fn numbers<'a>(all: &'a [f64], start: usize, count: usize, places: Places<'_>, room: &'a mut Vec<f64>) -> Numbers<'a> {
-    match places {
-        _ if all.len() == 1 => Numbers::One(all[0]),
-        Places::From(from) => Numbers::Each(&all[start + from..][..count]),
-        Places::At(places) => {
-            room.clear();
-            room.extend(places[..count].iter().map(|&place| all[start + place]));
-            Numbers::Each(room)
-        }
+/// The numbers of a part of a chunk; `room` holds them where their order is another.
+fn numbers<'a>(all: &'a [f64], start: usize, part: &Part, room: &'a mut Vec<f64>) -> Numbers<'a> {
+    if let [one] = all {
+        return Numbers::One(*one);
     }
+    let all = &all[start..];
+    if part.tiling.is_sequence() {
+        return Numbers::Each(&all[part.from..][..part.len]);
+    }
+    let room = some(room, part.len);
+    part.runs(|Run { place, at, len }| copy(&all[place..][..len], &mut room[at..][..len]));
+    Numbers::Each(room)
 }
 
 impl RayArrays<'_> {
-    /// Calls `answer` with up to [`BATCH`] rays at a time of the `count` from `start` on, and with where they lie among
-    /// them.
-    fn columns(&self, start: usize, count: usize, mut answer: impl FnMut(&RayColumns<'_>, Places<'_>)) {
-        let some = BATCH.min(count);
-        let (mut origins, mut directions) = (Room::new(&self.origins, some), Room::new(&self.directions, some));
-        let (mut nears, mut fars) = (Vec::new(), Vec::new());
-        let mut order = vec![0; if self.tiling.is_sequence() { 0 } else { some }];
+    /// Calls `answer` with up to [`BATCH`] rays at a time of the `count` from `start` on, with where they lie among them,
+    /// and with room.
+    fn columns(&self, start: usize, count: usize, mut answer: impl FnMut(&RayColumns<'_>, &Part, &mut Answers)) {
+        let mut room = ROOM.take().unwrap_or_default();
         for from in (0..count).step_by(BATCH) {
-            let some = BATCH.min(count - from);
-            let places = if self.tiling.is_sequence() {
-                Places::From(from)
-            } else {
-                self.tiling.places(from, count, &mut order[..some]);
-                Places::At(&order[..some])
-            };
+            let part = Part { tiling: self.tiling, from, len: BATCH.min(count - from), count };
+            let Room { single: [o, d], double: [long_o, long_d], t_min, t_max, answers } = &mut *room;
             let rays = RayColumns::new(
-                origins.fill(&self.origins, start, some, places),
-                directions.fill(&self.directions, start, some, places),
-                numbers(self.t_min, start, some, places, &mut nears),
-                numbers(self.t_max, start, some, places, &mut fars),
+                vectors(o, long_o, &self.origins, start, &part),
+                vectors(d, long_d, &self.directions, start, &part),
+                numbers(self.t_min, start, &part, t_min),
+                numbers(self.t_max, start, &part, t_max),
             );
-            answer(&rays, places);
+            answer(&rays, &part, answers);
         }
+        ROOM.set(Some(room));
     }
 
     /// The closest hits of the rays from `start` on, of which there are as many as there is room for.
     pub fn closest(&self, geometry: &Geometry, tree: &dyn ByColumns, start: usize, to: HitParts<'_>) {
         let (t, shape, primitive, uv) = to;
-        let count = t.len();
-        let scattered = if self.tiling.is_sequence() { 0 } else { BATCH.min(count) };
-        let (mut ts, mut uvs) = (vec![0.0; scattered], vec![[0.0; 2]; scattered]);
-        let (mut shapes, mut primitives) = (vec![0; scattered], vec![0; scattered]);
-        self.columns(start, count, |rays, places| match places {
-            Places::From(from) => {
-                let here = from..from + rays.len();
+        self.columns(start, t.len(), |rays, part, room| {
+            if part.tiling.is_sequence() {
+                let here = part.from..part.from + part.len;
                 let (t, uv, primitive) = (&mut t[here.clone()], &mut uv[here.clone()], &mut primitive[here.clone()]);
                 tree.intersect(rays, HitColumns { t, uv, primitive });
-                locate(geometry, &mut shape[here], primitive);
+                return locate(geometry, &mut shape[here], primitive);
             }
-            Places::At(places) => {
-                let count = rays.len();
-                let (ts, uvs, primitives) = (&mut ts[..count], &mut uvs[..count], &mut primitives[..count]);
-                tree.intersect(rays, HitColumns { t: ts, uv: uvs, primitive: primitives });
-                locate(geometry, &mut shapes[..count], primitives);
-                for at in (0..count).step_by(RUN) {
-                    let places = &places[at..count.min(at + RUN)];
-                    if let Some(to) = run(places) {
-                        t[to..][..RUN].copy_from_slice(&ts[at..][..RUN]);
-                        uv[to..][..RUN].copy_from_slice(&uvs[at..][..RUN]);
-                        shape[to..][..RUN].copy_from_slice(&shapes[at..][..RUN]);
-                        primitive[to..][..RUN].copy_from_slice(&primitives[at..][..RUN]);
-                        continue;
-                    }
-                    for (i, &place) in (at..).zip(places) {
-                        (t[place], uv[place]) = (ts[i], uvs[i]);
-                        (shape[place], primitive[place]) = (shapes[i], primitives[i]);
-                    }
-                }
-            }
+            let (ts, uvs) = (some(&mut room.t, part.len), some(&mut room.uv, part.len));
+            let (shapes, primitives) = (some(&mut room.shape, part.len), some(&mut room.primitive, part.len));
+            tree.intersect(rays, HitColumns { t: ts, uv: uvs, primitive: primitives });
+            locate(geometry, shapes, primitives);
+            part.runs(|Run { place, at, len }| {
+                copy(&ts[at..][..len], &mut t[place..][..len]);
+                copy(&uvs[at..][..len], &mut uv[place..][..len]);
+                copy(&shapes[at..][..len], &mut shape[place..][..len]);
+                copy(&primitives[at..][..len], &mut primitive[place..][..len]);
+            });
         });
     }
 
     /// Whether the rays from `start` on hit anything, of which there are as many as there is room for.
     pub fn occluded(&self, tree: &dyn ByColumns, start: usize, to: &mut [bool]) {
-        let count = to.len();
-        let mut found = vec![false; if self.tiling.is_sequence() { 0 } else { BATCH.min(count) }];
-        self.columns(start, count, |rays, places| match places {
-            Places::From(from) => tree.occluded(rays, &mut to[from..][..rays.len()]),
-            Places::At(places) => {
-                let found = &mut found[..rays.len()];
-                tree.occluded(rays, found);
-                for at in (0..found.len()).step_by(RUN) {
-                    let places = &places[at..found.len().min(at + RUN)];
-                    if let Some(from) = run(places) {
-                        to[from..][..RUN].copy_from_slice(&found[at..][..RUN]);
-                        continue;
-                    }
-                    for (&place, &found) in places.iter().zip(&found[at..]) {
-                        to[place] = found;
-                    }
-                }
+        self.columns(start, to.len(), |rays, part, room| {
+            if part.tiling.is_sequence() {
+                return tree.occluded(rays, &mut to[part.from..][..part.len]);
             }
+            let found = some(&mut room.found, part.len);
+            tree.occluded(rays, found);
+            part.runs(|Run { place, at, len }| copy(&found[at..][..len], &mut to[place..][..len]));
         });
     }
 }

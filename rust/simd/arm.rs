@@ -62,6 +62,9 @@ impl Lanes<4> for Neon {
         };
         le(a: float32x4_t, b: float32x4_t) -> u32 = mask(vcleq_f32(a, b));
         gt(a: float32x4_t, b: float32x4_t) -> u32 = mask(vcgtq_f32(a, b));
+        same(a: float32x4_t, b: float32x4_t) -> u32 = {
+            mask(vceqq_u32(vreinterpretq_u32_f32(a), vreinterpretq_u32_f32(b)))
+        };
         greatest(a: float32x4_t) -> f32 = vmaxvq_f32(a);
     }
 }

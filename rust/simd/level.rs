@@ -189,6 +189,7 @@ mod tests {
             simd.store(x, &mut lanes);
             out.extend(lanes.map(f32::to_bits));
         }
+        out.extend([simd.same(a, b), simd.same(a, a)]);
         // Which of two zeros is the greatest is not part of the promise.
         out.extend([simd.greatest(a), simd.least(a)].map(|x| (x + 0.0).to_bits()));
     }

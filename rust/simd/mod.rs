@@ -19,6 +19,17 @@ pub use level::{Dispatch, Kernel, Level};
 pub use pair::Pair;
 pub use scalar::Scalar;
 pub use transpose::columns_of_four;
+
+/// Asks for the cache line of an address, which need not be valid.
+#[inline(always)]
+pub fn ask_for(line: *const u8) {
+    #[cfg(target_arch = "x86_64")]
+    x86::prefetch(line, 1);
+    #[cfg(target_arch = "aarch64")]
+    arm::prefetch(line, 1);
+    #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
+    let _ = line;
+}
 #[cfg(target_arch = "x86_64")]
 pub use x86::{Avx2, Avx512, Sse2};
 
@@ -62,6 +73,8 @@ pub trait Lanes<const N: usize>: Copy + Send + Sync {
     fn le(self, a: Self::F32, b: Self::F32) -> u32;
     /// Lanes where `a > b`.
     fn gt(self, a: Self::F32, b: Self::F32) -> u32;
+    /// Lanes in which `a` and `b` have the same bits.
+    fn same(self, a: Self::F32, b: Self::F32) -> u32;
     /// The greatest of all lanes, none of which is NaN.
     fn greatest(self, a: Self::F32) -> f32;
 

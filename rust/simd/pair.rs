@@ -57,6 +57,10 @@ macro_rules! halves {
                 self.0.gt(a[0], b[0]) | self.0.gt(a[1], b[1]) << $half
             }
             #[inline(always)]
+            fn same(self, a: [S::F32; 2], b: [S::F32; 2]) -> u32 {
+                self.0.same(a[0], b[0]) | self.0.same(a[1], b[1]) << $half
+            }
+            #[inline(always)]
             fn greatest(self, a: [S::F32; 2]) -> f32 {
                 self.0.greatest(self.0.max(a[0], a[1]))
             }

@@ -101,6 +101,10 @@ impl<const N: usize> Lanes<N> for Scalar {
         mask::<N>(|i| a[i] > b[i])
     }
     #[inline(always)]
+    fn same(self, a: [f32; N], b: [f32; N]) -> u32 {
+        mask::<N>(|i| a[i].to_bits() == b[i].to_bits())
+    }
+    #[inline(always)]
     fn greatest(self, a: [f32; N]) -> f32 {
         a.into_iter().fold(f32::NEG_INFINITY, |most, x| if x > most { x } else { most })
     }

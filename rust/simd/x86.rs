@@ -68,7 +68,7 @@ static FRONT: [u64; 256] = {
 };
 
 #[inline(always)]
-fn prefetch(start: *const u8, lines: usize) {
+pub(super) fn prefetch(start: *const u8, lines: usize) {
     const LINE: usize = 64;
     for line in 0..lines {
         // SAFETY: every x86-64 processor has the instruction, which never faults, whatever the address.
@@ -123,6 +123,10 @@ impl Lanes<4> for Sse2 {
         };
         le(a: __m128, b: __m128) -> u32 = _mm_movemask_ps(_mm_cmple_ps(a, b)) as u32;
         gt(a: __m128, b: __m128) -> u32 = _mm_movemask_ps(_mm_cmpgt_ps(a, b)) as u32;
+        same(a: __m128, b: __m128) -> u32 = {
+            let same = _mm_cmpeq_epi32(_mm_castps_si128(a), _mm_castps_si128(b));
+            _mm_movemask_ps(_mm_castsi128_ps(same)) as u32
+        };
         greatest(a: __m128) -> f32 = greatest(a);
     }
 }
@@ -181,6 +185,10 @@ impl Lanes<8> for Avx2 {
         };
         le(a: __m256, b: __m256) -> u32 = _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(a, b)) as u32;
         gt(a: __m256, b: __m256) -> u32 = _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_GT_OQ>(a, b)) as u32;
+        same(a: __m256, b: __m256) -> u32 = {
+            let same = _mm256_cmpeq_epi32(_mm256_castps_si256(a), _mm256_castps_si256(b));
+            _mm256_movemask_ps(_mm256_castsi256_ps(same)) as u32
+        };
         greatest(a: __m256) -> f32 = greatest(_mm_max_ps(_mm256_castps256_ps128(a), _mm256_extractf128_ps::<1>(a)));
     }
 }
@@ -246,6 +254,9 @@ impl Lanes<8> for Avx512 {
         select(mask: u32, a: __m256, b: __m256) -> __m256 = _mm256_mask_blend_ps(mask as u8, b, a);
         le(a: __m256, b: __m256) -> u32 = u32::from(_mm256_cmp_ps_mask::<_CMP_LE_OQ>(a, b));
         gt(a: __m256, b: __m256) -> u32 = u32::from(_mm256_cmp_ps_mask::<_CMP_GT_OQ>(a, b));
+        same(a: __m256, b: __m256) -> u32 = {
+            u32::from(_mm256_cmpeq_epi32_mask(_mm256_castps_si256(a), _mm256_castps_si256(b)))
+        };
         greatest(a: __m256) -> f32 = greatest(_mm_max_ps(_mm256_castps256_ps128(a), _mm256_extractf128_ps::<1>(a)));
     }
 }
@@ -270,6 +281,9 @@ impl Lanes<16> for Avx512 {
         select(mask: u32, a: __m512, b: __m512) -> __m512 = _mm512_mask_blend_ps(mask as u16, b, a);
         le(a: __m512, b: __m512) -> u32 = u32::from(_mm512_cmp_ps_mask::<_CMP_LE_OQ>(a, b));
         gt(a: __m512, b: __m512) -> u32 = u32::from(_mm512_cmp_ps_mask::<_CMP_GT_OQ>(a, b));
+        same(a: __m512, b: __m512) -> u32 = {
+            u32::from(_mm512_cmpeq_epi32_mask(_mm512_castps_si512(a), _mm512_castps_si512(b)))
+        };
         greatest(a: __m512) -> f32 = {
             let a = _mm256_max_ps(_mm512_castps512_ps256(a), _mm512_extractf32x8_ps::<1>(a));
             greatest(_mm_max_ps(_mm256_castps256_ps128(a), _mm256_extractf128_ps::<1>(a)))

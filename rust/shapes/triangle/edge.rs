@@ -139,33 +139,6 @@ impl EdgeRay {
         })
     }
 
-    /// One that is near the scene, of numbers that [`EdgeRays`](super::EdgeRays) has made ready: origin, the same
-    /// relative to the region's centre, direction, and that as given; scale, `t_min`, `t_max`, largest and absolute.
-    #[inline(always)]
-    pub(super) fn of_plain(
-        [origin, local, direction, unscaled]: [DVec3; 4],
-        [scale, t_min, t_max, largest, absolute]: [f64; 5],
-    ) -> Self {
-        let size = direction.abs();
-        let longest = greater(greater(size.x, size.y), size.z);
-        Self {
-            origin,
-            local,
-            direction,
-            unscaled,
-            scale,
-            t_min,
-            t_max,
-            axis: if size.x == longest { 0 } else { 2 - usize::from(size.y == longest) },
-            sign_error: Self::sign_error(largest),
-            t_error: Self::T_ERROR * largest,
-            reach: largest,
-            largest,
-            absolute,
-            is_far: false,
-        }
-    }
-
     /// Where a triangle is met, if it is: decided for certain. Every kernel ends here, so that all give the same bits.
     #[inline(always)]
     pub fn meet(&self, corners: [DVec3; 3]) -> Option<Candidate> {

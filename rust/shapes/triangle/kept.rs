@@ -24,6 +24,7 @@ pub struct DoubleLeaves<const N: usize> {
 
 impl<const N: usize> Leaves<N> for SingleLeaves<N> {
     const PRECISION: &'static str = "single";
+    type Real = f32;
     const EDGES: bool = false;
 
     fn new(_: &Region, order: &[u32], counts: &[u32], corners: impl Fn(u32) -> [DVec3; 3] + Sync) -> Self {
@@ -41,6 +42,12 @@ impl<const N: usize> Leaves<N> for SingleLeaves<N> {
         // Written out: `map` is not always compiled for a kernel's level.
         let [a, b, c] = self.rows.vectors(first, count, lane);
         [a.as_dvec3(), b.as_dvec3(), c.as_dvec3()]
+    }
+
+    #[inline(always)]
+    fn coordinates(&self, first: usize, count: u32, lane: usize) -> [[f32; 3]; 3] {
+        let [a, b, c] = self.rows.vectors(first, count, lane);
+        [a.to_array(), b.to_array(), c.to_array()]
     }
 
     #[inline(always)]
@@ -65,6 +72,7 @@ impl<const N: usize> Leaves<N> for SingleLeaves<N> {
 
 impl<const N: usize> Leaves<N> for DoubleLeaves<N> {
     const PRECISION: &'static str = "double";
+    type Real = f64;
     const EDGES: bool = true;
 
     fn new(region: &Region, order: &[u32], counts: &[u32], corners: impl Fn(u32) -> [DVec3; 3] + Sync) -> Self {
@@ -83,6 +91,12 @@ impl<const N: usize> Leaves<N> for DoubleLeaves<N> {
     #[inline(always)]
     fn corners(&self, first: usize, _: u32, lane: usize) -> [DVec3; 3] {
         self.corners[first + lane]
+    }
+
+    #[inline(always)]
+    fn coordinates(&self, first: usize, _: u32, lane: usize) -> [[f64; 3]; 3] {
+        let [a, b, c] = self.corners[first + lane];
+        [a.to_array(), b.to_array(), c.to_array()]
     }
 
     #[inline(always)]

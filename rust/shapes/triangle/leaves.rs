@@ -5,15 +5,40 @@ use super::bracket::Bracket;
 use super::pretest::{BlockRay, BlockRays, sum};
 use super::rows::Rows;
 use super::spread::Spread;
-use super::{EdgeRay, PlainRays, RAYS};
+use super::{Column, EdgeRay, PlainRays, RAYS};
 use crate::math::{DVec3, Region};
 use crate::shapes::Candidate;
 use crate::simd::Lanes;
+
+/// What coordinates are kept in.
+pub trait Real: Copy + Default + Into<f64> + Send + Sync + 'static {
+    /// Puts a number in the lanes of `mask`.
+    fn spread<S: Lanes<RAYS>>(self, simd: S, mask: u32, to: &mut Column<Self>);
+}
+
+impl Real for f32 {
+    #[inline(always)]
+    fn spread<S: Lanes<RAYS>>(self, simd: S, mask: u32, to: &mut Column<f32>) {
+        simd.store(simd.select(mask, simd.splat(self), simd.load(to)), to);
+    }
+}
+
+impl Real for f64 {
+    #[inline(always)]
+    fn spread<S: Lanes<RAYS>>(self, _: S, mask: u32, to: &mut Column<f64>) {
+        for (i, to) in to.iter_mut().enumerate() {
+            *to = if mask >> i & 1 == 1 { self } else { *to };
+        }
+    }
+}
 
 /// All triangles of a tree, leaf by leaf: at most `N` a leaf, known by where its first stands and how many they are.
 pub trait Leaves<const N: usize>: Send + Sync + Sized + 'static {
     /// How numbers are kept, in a word.
     const PRECISION: &'static str;
+
+    /// What coordinates are kept in.
+    type Real: Real;
 
     /// Triangles by their numbers, leaf by leaf; how many each leaf has; and where the corners of each are.
     ///
@@ -26,6 +51,9 @@ pub trait Leaves<const N: usize>: Send + Sync + Sized + 'static {
 
     /// The corners of the triangle in a lane of a leaf, as they were given.
     fn corners(&self, first: usize, count: u32, lane: usize) -> [DVec3; 3];
+
+    /// Their coordinates.
+    fn coordinates(&self, first: usize, count: u32, lane: usize) -> [[Self::Real; 3]; 3];
 
     /// A ray as the first test needs it.
     fn ray(ray: &EdgeRay, region: &Region) -> BlockRay;

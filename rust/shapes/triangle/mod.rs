@@ -19,7 +19,7 @@ pub(crate) use clip::clipped;
 pub use edge::{Along, EdgeRay};
 pub use in_cone::SolidCone;
 pub use kept::{DoubleLeaves, SingleLeaves};
-pub use leaves::Leaves;
+pub use leaves::{Leaves, Real};
 pub use nearest::{NearestPoint, length, nearest_point, point_of};
 pub use plain::PlainRays;
 pub use pretest::{BlockRay, BlockRays};

@@ -33,8 +33,6 @@ pub struct EdgeRays {
     pub scale: Column<f64>,
     /// Bounds every coordinate of a corner relative to the origin.
     pub largest: Column<f64>,
-    /// Bounds |origin| + |corner|.
-    pub absolute: Column<f64>,
 }
 
 /// How sixteen rays meet a triangle.
@@ -43,7 +41,7 @@ pub struct Met {
     pub met: u32,
     /// Rays for which f64 is not enough.
     pub open: u32,
-    /// Along the scaled directions.
+    /// Along the scaled directions, or the directions as given.
     pub t: Column<f64>,
     /// Weights of the second and the third corner.
     pub uv: [Column<f64>; 2],
@@ -66,7 +64,6 @@ impl Default for EdgeRays {
             t_max: zero,
             scale: zero,
             largest: zero,
-            absolute: zero,
         }
     }
 }
@@ -140,24 +137,12 @@ impl EdgeRays {
             self.local[2][i] = lz;
             let far = greater(greater(lx.abs(), ly.abs()), lz.abs());
             self.largest[i] = far + region.radius;
-            self.absolute[i] = greater(greater(ox.abs(), oy.abs()), oz.abs()) + region.extent;
             let near = far <= EdgeRay::FAR * region.radius;
             // The largest numbers have an inverse that is subnormal.
             let normal = (biased > 0) & (biased < 2046);
             plain[i] = u32::from(finite & ordered & near & normal);
         }
         bits(&plain)
-    }
-
-    /// One that is plain, as [`EdgeRay::new`] makes it.
-    #[inline(always)]
-    pub fn one(&self, i: usize) -> EdgeRay {
-        let i = i & (RAYS - 1);
-        let of = |columns: &[Column<f64>; 3]| DVec3::new(columns[0][i], columns[1][i], columns[2][i]);
-        EdgeRay::of_plain(
-            [of(&self.origin), of(&self.local), of(&self.direction), of(&self.unscaled)],
-            [self.scale[i], self.t_min[i], self.t_max[i], self.largest[i], self.absolute[i]],
-        )
     }
 
     /// Tests all rays against a triangle; only the answers of those in `asked` count.
@@ -167,32 +152,35 @@ impl EdgeRays {
         let (mut certain, mut open) = ([0u32; RAYS], [0u32; RAYS]);
         for i in 0..RAYS {
             let corners = [[a.x, a.y, a.z], [b.x, b.y, b.z], [c.x, c.y, c.z]];
-            (certain[i], open[i], met.t[i], met.uv[0][i], met.uv[1][i]) = self.meet_one(i, corners);
+            (certain[i], open[i], met.t[i], met.uv[0][i], met.uv[1][i]) = self.meet_one::<false>(i, corners);
         }
         met.met = bits(&certain) & asked;
         met.open = bits(&open) & asked;
         met
     }
 
-    /// Tests each ray against a triangle of its own, given by corner and axis; only the answers of those in `asked`
-    /// count.
+    /// Where each ray meets a triangle of its own, given by corner and axis, of which it is known to meet it between its
+    /// `t_min` and `t_max`. Open are those for which f64 does not say where; only those in `asked` count.
     #[inline(always)]
-    pub fn meet_each(&self, [a, b, c]: &[[Column<f64>; 3]; 3], asked: u32) -> Met {
+    pub fn won<T: Copy + Into<f64>>(&self, [a, b, c]: &[[Column<T>; 3]; 3], asked: u32) -> Met {
         let mut met = Met::NONE;
-        let (mut certain, mut open) = ([0u32; RAYS], [0u32; RAYS]);
+        let mut certain = [0u32; RAYS];
         for i in 0..RAYS {
-            let corners = [[a[0][i], a[1][i], a[2][i]], [b[0][i], b[1][i], b[2][i]], [c[0][i], c[1][i], c[2][i]]];
-            (certain[i], open[i], met.t[i], met.uv[0][i], met.uv[1][i]) = self.meet_one(i, corners);
+            let of = |corner: &[Column<T>; 3]| [corner[0][i].into(), corner[1][i].into(), corner[2][i].into()];
+            let (_, is_open, t, v, w) = self.meet_one::<true>(i, [of(a), of(b), of(c)]);
+            let t = t * self.scale[i];
+            certain[i] = u32::from((is_open == 0) & (t.abs() <= f64::MAX));
+            (met.t[i], met.uv[0][i], met.uv[1][i]) = (t, v, w);
         }
         met.met = bits(&certain) & asked;
-        met.open = bits(&open) & asked;
+        met.open = asked & !met.met;
         met
     }
 
     /// Whether a ray meets a triangle for certain, whether that is open, and where it does: `t`, and the weights of the
-    /// second and the third corner.
+    /// second and the third corner. Where it is known to, nobody asks for the first.
     #[inline(always)]
-    fn meet_one(&self, i: usize, corners: [[f64; 3]; 3]) -> (u32, u32, f64, f64, f64) {
+    fn meet_one<const WON: bool>(&self, i: usize, corners: [[f64; 3]; 3]) -> (u32, u32, f64, f64, f64) {
         let [[ax, ay, az], [bx, by, bz], [cx, cy, cz]] = corners;
         let (ox, oy, oz) = (self.origin[0][i], self.origin[1][i], self.origin[2][i]);
         let (dx, dy, dz) = (self.direction[0][i], self.direction[1][i], self.direction[2][i]);
@@ -204,7 +192,7 @@ impl EdgeRays {
         let w = volume(dx, dy, dz, ax, ay, az, bx, by, bz);
         let largest = self.largest[i];
         let above = EdgeRay::sign_error(largest);
-        let passed = ((u > above) | (v > above) | (w > above)) & ((u < -above) | (v < -above) | (w < -above));
+        let passed = !WON & ((u > above) | (v > above) | (w > above)) & ((u < -above) | (v < -above) | (w < -above));
         let (sx, sy, sz) = (dx.abs(), dy.abs(), dz.abs());
         let longest = greater(greater(sx, sy), sz);
         let (is_x, is_y) = (sx == longest, sy == longest);

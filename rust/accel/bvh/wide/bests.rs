@@ -6,7 +6,7 @@ use super::looking::Looking;
 use super::node::Packed;
 use super::sixteen::Sixteen;
 use crate::math::RayBatch;
-use crate::shapes::triangle::{Column, EdgeRay, Leaves, RAYS, Spread};
+use crate::shapes::triangle::{ALL, Column, EdgeRay, Leaves, RAYS, Spread};
 use crate::simd::Lanes;
 
 /// The best that is known of sixteen rays, by columns; see [`Best`].
@@ -61,12 +61,28 @@ impl Bests {
 
     /// Those that have hit something.
     #[inline(always)]
-    pub fn hits(&self) -> u32 {
-        let mut hits = 0;
-        for i in 0..RAYS {
-            hits |= u32::from(self.leaf[i].to_bits() != Packed::NONE.bits()) << i;
+    pub fn hits<S: Lanes<RAYS>>(&self, simd: S) -> u32 {
+        ALL & !simd.same(simd.load(&self.leaf), simd.splat(f32::from_bits(Packed::NONE.bits())))
+    }
+
+    /// Those that have hit what one of them has.
+    #[inline(always)]
+    pub fn like<S: Lanes<RAYS>>(&self, simd: S, i: usize) -> u32 {
+        let i = i & (RAYS - 1);
+        simd.same(simd.load(&self.leaf), simd.splat(self.leaf[i]))
+            & simd.same(simd.load(&self.lane), simd.splat(self.lane[i]))
+    }
+
+    /// Takes note of new limits of some rays, in box units: `limits` are those before.
+    #[inline(always)]
+    pub fn limits<S: Lanes<RAYS>>(&self, simd: S, to_box: f64, changed: u32, limits: S::F32) -> S::F32 {
+        // A power of two, or too great for an f32, and then nothing is left out.
+        let to_box = to_box as f32;
+        if to_box > f32::MAX {
+            return simd.select(changed, simd.splat(f32::INFINITY), limits);
         }
-        hits
+        let least = simd.splat(f32::MIN_POSITIVE);
+        simd.select(changed, simd.mul_add(simd.load(&self.high), simd.splat(to_box), least), limits)
     }
 
     /// Tests the triangle in a lane of a leaf against those of the rays in `asked`; says of which what is known has

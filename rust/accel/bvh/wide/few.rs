@@ -45,8 +45,6 @@ pub fn answer<const N: usize, L: Leaves<N>, S: Simd<N>, A: Answer>(
         rays.take::<N, L, _>(sixteen, batch, start, &bvh.region);
         let plain = here & rays.plain.plain;
         let mut bests = Bests::none(&rays);
-        // As in a packet.
-        let to_box = (bvh.region.scale / L::unit(&bvh.region)) as f32;
         let mut limit = sixteen.load(&rays.slabs.limit);
         for &(leaf, bounds) in leaves {
             let active = plain & !bests.answered & rays.slabs.meeting(sixteen, &bounds, limit);
@@ -70,15 +68,14 @@ pub fn answer<const N: usize, L: Leaves<N>, S: Simd<N>, A: Answer>(
                 if bests.answered == plain {
                     break;
                 }
-            } else if changed != 0 && to_box <= f32::MAX {
-                let least = sixteen.splat(f32::MIN_POSITIVE);
-                limit = sixteen.mul_add(sixteen.load(&bests.high), sixteen.splat(to_box), least);
+            } else if changed != 0 {
+                limit = bests.limits(sixteen, bvh.region.scale / L::unit(&bvh.region), changed, limit);
             }
         }
         if A::ANY {
             errand.answer.some(start, count, bests.answered, &Met::NONE, &[0; RAYS]);
         } else {
-            winners::settle(bvh, batch, start, count, &bests, errand.answer);
+            winners::settle(sixteen, bvh, batch, start, count, &bests, errand.answer);
         }
         let mut others = here & !plain;
         while others != 0 {

@@ -14,6 +14,7 @@ mod nearest;
 mod node;
 mod objects;
 mod packet;
+mod prospects;
 mod refit;
 mod single;
 mod sixteen;

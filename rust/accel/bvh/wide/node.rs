@@ -138,6 +138,31 @@ impl<const N: usize> WideNode<N> {
         node
     }
 
+    /// Puts those of these lanes, of all that are not empty, into the lanes from the first on.
+    pub fn permute(&mut self, lanes: &[usize]) {
+        let before = self.clone();
+        for (to, &from) in lanes.iter().enumerate() {
+            for (axis, planes) in self.planes.iter_mut().enumerate() {
+                for (side, plane) in planes.iter_mut().enumerate() {
+                    plane[to] = before.planes[axis][side][from];
+                }
+            }
+            self.children[to] = before.children[from];
+        }
+        // The same children in the same order, by the lanes where they stand now.
+        let mut now: [usize; N] = from_fn(|lane| lane);
+        for (to, &from) in lanes.iter().enumerate() {
+            now[from] = to;
+        }
+        self.orders = [0; N];
+        for octant in 0..8 {
+            let order = before.order(octant);
+            let lane = |i: usize| now[(order >> (3 * i)) as usize & (N - 1)] as u32;
+            let order = (0..N).fold(0, |bits, i| bits | lane(i) << (3 * i));
+            self.orders[octant % N] |= order << (16 * (octant / N) as u32);
+        }
+    }
+
     /// Notes for each octant in which order rays that go towards it should visit the children: by where the boxes'
     /// middles lie along the octant's diagonal.
     fn sort(&mut self, count: usize) {
@@ -227,6 +252,29 @@ mod tests {
         let node = WideNode::<8>::new(&children);
         let order: Vec<_> = node.children().map(|(_, child)| child).collect();
         assert_eq!(order, [Child::Node(2), Child::Node(1), leaf(1), leaf(2), leaf(0)]);
+    }
+
+    #[test]
+    fn children_that_change_places_are_still_visited_in_the_same_order() {
+        let cube = |at: f32| Aabb { min: Vec3::splat(at), max: Vec3::new(at + 1.0, 1.0 - at, at * at) };
+        let children: Vec<_> = (0..6).map(|i| (cube(i as f32), Child::Node(i))).collect();
+        fn of<const N: usize>(children: &[(Aabb, Child)], lanes: &[usize]) {
+            let before = WideNode::<N>::new(children);
+            let mut after = before.clone();
+            after.permute(lanes);
+            for (to, &from) in lanes.iter().enumerate() {
+                assert_eq!((after.child(to), after.aabb(to)), (before.child(from), before.aabb(from)));
+            }
+            for octant in 0..8 {
+                let visited = |node: &WideNode<N>| -> Vec<_> {
+                    (0..N).map(|i| node.child((node.order(octant) >> (3 * i)) as usize & (N - 1))).collect()
+                };
+                assert_eq!(visited(&after), visited(&before));
+            }
+        }
+        of::<8>(&children, &[5, 3, 0, 1, 4, 2]);
+        of::<4>(&children[..4], &[2, 0, 3, 1]);
+        of::<4>(&children[..3], &[2, 0, 1]);
     }
 
     fn coordinate() -> impl Strategy<Value = f32> {

@@ -89,7 +89,7 @@ pub fn answer<const N: usize, L: Leaves<N>, S: Simd<N>, A: Answer>(
                 if A::ANY {
                     errand.answer.some(start, count, bests.answered, &Met::NONE, &[0; RAYS]);
                 } else {
-                    winners::settle(bvh, batch, start, count, bests, errand.answer);
+                    winners::settle(simd.sixteen(), bvh, batch, start, count, bests, errand.answer);
                 }
             }
         } else {
@@ -292,19 +292,14 @@ impl<'a> Packet<'a> {
         which: usize,
         changed: u32,
     ) {
-        // A power of two, or too great for an f32, and then nothing is left out.
-        let to_box = (bvh.region.scale / L::unit(&bvh.region)) as f32;
         let (bests, limits) = (&mut self.bests[which], &mut self.limits[which]);
+        let before = simd.load(limits);
         let limit = if A::ANY {
             bests.answered |= changed;
-            simd.splat(f32::NEG_INFINITY)
-        } else if to_box <= f32::MAX {
-            let least = simd.splat(f32::MIN_POSITIVE);
-            simd.mul_add(simd.load(&bests.high), simd.splat(to_box), least)
+            simd.select(changed, simd.splat(f32::NEG_INFINITY), before)
         } else {
-            simd.splat(f32::INFINITY)
+            bests.limits(simd, bvh.region.scale / L::unit(&bvh.region), changed, before)
         };
-        let limit = simd.select(changed, limit, simd.load(limits));
         simd.store(limit, limits);
     }
 

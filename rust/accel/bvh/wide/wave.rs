@@ -114,6 +114,7 @@ pub fn answer<const N: usize, L: Leaves<N>, S: Simd<N>, E: Errand<N, L>>(
 fn fetch<const N: usize, L: Leaves<N>, S: Simd<N>>(simd: S, bvh: &WideBvh<N, L>, at: Packed) {
     let leaf = bvh.leaves.place(at.leaf().0);
     let node = bvh.nodes.as_ptr().wrapping_add(at.node()).cast::<u8>();
-    // The lines of a node, and of most leaves, which begin anywhere in a line.
+    // The lines of a node, and of most leaves, which begin anywhere in a line. To ask for just those that are needed
+    // takes up to a tenth longer.
     simd.prefetch(if at.is_leaf() == 1 { leaf } else { node }, 5);
 }

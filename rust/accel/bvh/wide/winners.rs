@@ -6,7 +6,8 @@ use super::best::{Best, meet, primitive};
 use super::bests::Bests;
 use super::node::Packed;
 use crate::math::RayBatch;
-use crate::shapes::triangle::{Column, EdgeRay, EdgeRays, Leaves, Met, RAYS};
+use crate::shapes::triangle::{Column, EdgeRay, EdgeRays, Leaves, Met, RAYS, Real};
+use crate::simd::Lanes;
 
 /// Rays that are done, each with the triangle that it hits. While one sixteen fill up, the sixteen before wait: what is
 /// written number by number is not to be read as vectors at once, since a wide load must wait for narrow stores.
@@ -105,14 +106,14 @@ impl Sixteen {
         }
         let here = !(u32::MAX << count);
         let plain = self.edges.prepare(&bvh.region) & here;
-        let all = self.edges.meet_each(&self.corners, plain);
+        let all = self.edges.won(&self.corners, plain);
         let mut met = all.met;
         while met != 0 {
             let i = met.trailing_zeros() as usize & (RAYS - 1);
             met &= met - 1;
             let number = primitive(&bvh.leaves, self.leaves[i], self.lanes[i]);
             let uv = [all.uv[0][i], all.uv[1][i]];
-            answer.hit(self.rays[i], all.t[i] * self.edges.scale[i], uv, number);
+            answer.hit(self.rays[i], all.t[i], uv, number);
         }
         let mut rest = here & !all.met;
         while rest != 0 {
@@ -123,9 +124,54 @@ impl Sixteen {
     }
 }
 
+/// The triangles that up to sixteen rays have hit.
+struct Triangles<T> {
+    /// By corner and axis.
+    corners: [[Column<T>; 3]; 3],
+    primitives: Column<u32>,
+}
+
+impl<T: Real> Triangles<T> {
+    /// Those of the rays in `hits`. Neighbours often hit the same, which is fetched once.
+    #[inline(always)]
+    fn of<const N: usize, L: Leaves<N, Real = T>, S: Lanes<RAYS>>(
+        simd: S,
+        leaves: &L,
+        bests: &Bests,
+        hits: u32,
+    ) -> Self {
+        let mut triangles = Self { corners: [[[T::default(); RAYS]; 3]; 3], primitives: [0; RAYS] };
+        let mut rest = hits;
+        while rest != 0 {
+            let i = rest.trailing_zeros() as usize & (RAYS - 1);
+            let like = rest & bests.like(simd, i);
+            rest &= !like;
+            let best = bests.get(i);
+            let (first, count) = best.leaf.leaf();
+            let lane = best.lane as usize & (N - 1);
+            let (primitive, corners) = (leaves.primitive(first, count, lane), leaves.coordinates(first, count, lane));
+            let is_lone = like & like.wrapping_sub(1) == 0;
+            for (to, corner) in triangles.corners.iter_mut().zip(corners) {
+                for (to, x) in to.iter_mut().zip(corner) {
+                    if is_lone {
+                        to[i] = x;
+                    } else {
+                        x.spread(simd, like, to);
+                    }
+                }
+            }
+            for (k, to) in triangles.primitives.iter_mut().enumerate() {
+                *to = if like >> k & 1 == 1 { primitive } else { *to };
+            }
+        }
+        triangles
+    }
+}
+
 /// Answers up to sixteen neighbours of a batch, the first of which is `start`.
 #[inline(always)]
-pub fn settle<const N: usize, L: Leaves<N>, A: Answer>(
+pub fn settle<const N: usize, L: Leaves<N>, A: Answer, S: Lanes<RAYS>>(
+    simd: S,
     bvh: &WideBvh<N, L>,
     rays: &RayBatch<'_>,
     start: usize,
@@ -133,33 +179,18 @@ pub fn settle<const N: usize, L: Leaves<N>, A: Answer>(
     bests: &Bests,
     answer: &mut A,
 ) {
-    let hits = bests.hits();
-    let mut primitives = [0; RAYS];
+    let hits = bests.hits(simd);
     if hits == 0 {
-        answer.some(start, count, 0, &Met::NONE, &primitives);
+        answer.some(start, count, 0, &Met::NONE, &[0; RAYS]);
         return;
     }
+    // Before the rays, so that what is written number by number is there when it is read as vectors.
+    let triangles = Triangles::of(simd, &bvh.leaves, bests, hits);
     let mut edges = EdgeRays::default();
     edges.take(rays, start);
     let plain = edges.prepare(&bvh.region) & hits;
-    let mut corners = [[[0.0; RAYS]; 3]; 3];
-    let mut rest = hits;
-    while rest != 0 {
-        let i = rest.trailing_zeros() as usize & (RAYS - 1);
-        rest &= rest - 1;
-        let best = bests.get(i);
-        let (first, count) = best.leaf.leaf();
-        let lane = best.lane as usize & (N - 1);
-        primitives[i] = bvh.leaves.primitive(first, count, lane);
-        for (to, corner) in corners.iter_mut().zip(bvh.leaves.corners(first, count, lane)) {
-            (to[0][i], to[1][i], to[2][i]) = (corner.x, corner.y, corner.z);
-        }
-    }
-    let mut all = edges.meet_each(&corners, plain);
-    for i in 0..RAYS {
-        all.t[i] *= edges.scale[i];
-    }
-    answer.some(start, count, all.met, &all, &primitives);
+    let all = edges.won(&triangles.corners, plain);
+    answer.some(start, count, all.met, &all, &triangles.primitives);
     let mut rest = hits & !all.met;
     while rest != 0 {
         let i = rest.trailing_zeros() as usize & (RAYS - 1);
