@@ -14,25 +14,13 @@ import json
 from pathlib import Path
 
 import numpy as np
-from peers_meshes import MADE, given
+from peers_meshes import MADE, given, turned
 from peers_rays import NAMES, ray_sets
 
 import raywright as rw
 
 #: How meshes stand.
 PLACES = ("straight", "turned", "turned double")
-
-
-def turned(subject, digits):
-    """Return the subject turned by a rotation in no special position, with vertices of so many digits."""
-    rotation = np.linalg.qr(np.random.default_rng(11).normal(size=(3, 3)))[0]
-    vertices = (subject.vertices.astype(np.float64) @ rotation.T).astype(digits)
-    return subject._replace(
-        vertices=vertices,
-        eye=rotation @ subject.eye,
-        target=rotation @ subject.target,
-        lamp=rotation @ subject.lamp,
-    )
 
 
 def placed(subject, place):

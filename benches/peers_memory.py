@@ -7,20 +7,22 @@ from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 
 import numpy as np
-from peers_engines import ENGINES
 
 
-def resident_bytes(name, vertices, faces):
-    """Return by how much a fresh process grows when the engine makes its scene; None where it cannot tell."""
+def resident_bytes(engine, vertices, faces):
+    """Return by how much a fresh process grows when an engine makes its scene; None where it cannot tell.
+
+    `engine` is its class.
+    """
     if not Path("/proc/self/statm").exists():
         return None
     with ProcessPoolExecutor(1, mp_context=multiprocessing.get_context("spawn")) as process:
-        return process.submit(_growth, name, vertices, faces).result()
+        return process.submit(_growth, engine, vertices, faces).result()
 
 
-def _growth(name, vertices, faces):
+def _growth(engine, vertices, faces):
     # A small scene first: libraries, threads and kernels are there once, whatever the mesh.
-    small, large = ENGINES[name](), ENGINES[name]()
+    small, large = engine(), engine()
     small.build(np.eye(3, dtype=np.float32), np.array([[0, 1, 2]]))
     before = _resident()
     large.build(vertices, faces)

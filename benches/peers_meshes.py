@@ -82,5 +82,18 @@ def given(path):
     return seen_from_outside(path, vertices, np.concatenate(faces))
 
 
+def turned(subject, digits):
+    """Return the subject turned by a rotation in no special position, with vertices of so many digits."""
+    rotation = np.linalg.qr(np.random.default_rng(11).normal(size=(3, 3)))[0]
+    vertices = (subject.vertices.astype(np.float64) @ rotation.T).astype(digits)
+    return subject._replace(
+        name=f"{subject.name}, turned",
+        vertices=vertices,
+        eye=rotation @ subject.eye,
+        target=rotation @ subject.target,
+        lamp=rotation @ subject.lamp,
+    )
+
+
 #: What `--mesh` calls the meshes that are made here.
 MADE = {"sphere": sphere, "torus": torus, "room": room, "box": box, "triangle": triangle}

@@ -48,7 +48,7 @@ def _seconds(engine, threads, rays, mode):
     engine.use(threads)
     _wait_for_quiet()
     start = time.perf_counter()
-    engine.trace(rays, mode)
+    engine.ask(rays, mode)
     return time.perf_counter() - start
 
 
