@@ -9,7 +9,6 @@
 //!
 //! What decides is the surface of all boxes, which is how many of them a ray may be expected to meet.
 
-use super::build::presplit::Total;
 use super::build::reference::SHARE;
 use crate::math::{Aabb, Axes, DVec3};
 use rayon::prelude::*;
@@ -82,9 +81,7 @@ pub fn find(boxes: &[Aabb], corners: impl Fn(u32) -> [DVec3; 3] + Sync) -> Optio
 /// are is that of all; none if there are few.
 fn sample(boxes: &[Aabb], corners: impl Fn(u32) -> [DVec3; 3] + Sync) -> Vec<Sampled> {
     let area = |b: &Aabb| if b.is_empty() { 0.0 } else { f64::from(b.half_area()) };
-    let total = Total::of(boxes);
-    let step = total.area / SAMPLE as f64;
-    if total.count <= FEW || step <= f64::MIN_POSITIVE {
+    if boxes.len() <= FEW {
         return Vec::new();
     }
     // From which share of the boxes on there is how much of the surface.
@@ -93,18 +90,21 @@ fn sample(boxes: &[Aabb], corners: impl Fn(u32) -> [DVec3; 3] + Sync) -> Vec<Sam
     for share in &mut shares {
         before += std::mem::replace(share, before);
     }
+    let step = before / SAMPLE as f64;
+    if step <= f64::MIN_POSITIVE {
+        return Vec::new();
+    }
     let of_share = |(share, mut at): (usize, f64)| {
         let first = share * SHARE;
-        let mut of_share = Vec::new();
+        let (mut of_share, mut next) = (Vec::new(), ((at / step).floor() + 1.0) * step);
         for (p, aabb) in (first..).zip(&boxes[first..(first + SHARE).min(boxes.len())]) {
             let own = area(aabb);
-            let steps = ((at + own) / step).floor() - (at / step).floor();
             at += own;
-            if steps > 0.0 {
+            while own > 0.0 && at >= next {
                 let [a, b, c] = corners(p as u32);
                 let scale = 1.0 / own.sqrt();
-                let one = Sampled { sides: [(b - a) * scale, (c - a) * scale] };
-                of_share.extend(std::iter::repeat_n(one, steps as usize));
+                of_share.push(Sampled { sides: [(b - a) * scale, (c - a) * scale] });
+                next += step;
             }
         }
         of_share
