@@ -5,9 +5,14 @@
 //! rounding to box units; a triangle's own distance errs by 2⁻⁴⁹ of the distance to its farthest corner, which is
 //! 16u·√3·(P + 2) at most. The point is widened by 64u·(P + 2) along every axis, so that no box is thought farther than
 //! the triangles in it are found to be.
+//!
+//! Along axes of a tree's own ([`Axes`]) all is half as long, and P the point's largest coordinate there, 2√3·P at most
+//! in box units. So a triangle's distance errs by 8u·√3·(2√3·P + 2), the point by 5u·2√3·P, and a box by 10u; and
+//! distances of up to √3·(P + √3) there are half of what they are to within 8u of themselves. In all that is less than
+//! 80u·(P + 2), and the point is widened by 128u·(P + 2).
 
 use crate::math::robust::{greater, lesser, normalising_scale};
-use crate::math::{DVec3, Region};
+use crate::math::{Axes, DVec3, Region};
 use crate::shapes::triangle::{length, nearest_point, point_of};
 use crate::simd::Simd;
 
@@ -67,6 +72,12 @@ impl Search {
     /// region empty.
     #[inline(always)]
     pub fn new(point: DVec3, max_distance: f64, region: &Region) -> Option<Self> {
+        Self::along(None, point, max_distance, region)
+    }
+
+    /// Begins where boxes lie along axes of a tree's own, if there are any.
+    #[inline(always)]
+    pub fn along(axes: Option<&Axes>, point: DVec3, max_distance: f64, region: &Region) -> Option<Self> {
         const FAR: f64 = (1u64 << 26) as f64;
         const PAD: f64 = 1.0 / (1u64 << 47) as f64;
         if !(point.is_finite() && max_distance >= 0.0) || region.is_empty() {
@@ -83,8 +94,9 @@ impl Search {
             point
         };
         // No coordinate of a region of one point is scaled, and a box there is farther than this if at all.
-        let [x, y, z] = region.to_box(searched).to_array().map(|x| greater(lesser(x, 1e300), -1e300));
-        let pad = PAD * (greater(greater(x.abs(), y.abs()), z.abs()) + 2.0);
+        let [x, y, z] = region.to_box_along(axes, searched).to_array().map(|x| greater(lesser(x, 1e300), -1e300));
+        let (widths, scale) = if axes.is_some() { (2.0, Axes::SCALE * region.scale) } else { (1.0, region.scale) };
+        let pad = widths * PAD * (greater(greater(x.abs(), y.abs()), z.abs()) + 2.0);
         let distance = if is_far { f64::INFINITY } else { max_distance };
         Some(Self {
             given: point,
@@ -96,8 +108,8 @@ impl Search {
             primitive: u32::MAX,
             corners: [DVec3::ZERO; 3],
             square: limit(distance),
-            pad: pad / region.scale,
-            scale: region.scale,
+            pad: pad / scale,
+            scale,
         })
     }
 

@@ -4,9 +4,13 @@
 //! which the largest coordinate of the apex and of the region, P + 2 box units, lies in [1, 2), a triangle is found up
 //! to 2⁻⁴³·2 outside of a cone, and apex and box err by 4u each for their rounding. Boxes are passed by from 2⁻⁴¹ on,
 //! which is four times that, and far less than what their f32 planes are rounded by.
+//!
+//! Along axes of a tree's own ([`Axes`]) all is half as long, and the unit is 2√3·P + 2 or more for an apex whose
+//! largest coordinate there is P: so no smaller than it would be otherwise, where half as far outside is as far. Apex,
+//! axis and box err by some 20u there.
 
 use crate::math::robust::{greater, normalising_scale};
-use crate::math::{DVec3, Region};
+use crate::math::{Axes, DVec3, Region};
 use crate::shapes::triangle::SolidCone;
 
 /// A primitive that a cone touches.
@@ -56,8 +60,8 @@ impl Touches {
 
 /// A cone that asks which boxes may hold something that it touches.
 #[derive(Clone, Copy, Debug)]
-pub struct Boxes<'a> {
-    cone: &'a SolidCone,
+pub struct Boxes {
+    cone: SolidCone,
     apex: DVec3,
     /// From box units to those of `apex`.
     scale: f64,
@@ -68,17 +72,22 @@ pub struct Boxes<'a> {
 /// How far outside of a cone a box is passed by, where the largest coordinate lies in [1, 2).
 const PAD: f64 = 1.0 / (1u64 << 41) as f64;
 
-impl<'a> Boxes<'a> {
-    /// Readies a cone for the boxes of a region. None if its apex is so far, in box units, that an f64 cannot say it:
-    /// then every box may hold something.
-    pub fn new(cone: &'a SolidCone, region: &Region) -> Option<Self> {
-        let apex = region.to_box(cone.apex);
-        let largest = apex.abs().max_element() + 2.0;
+impl Boxes {
+    /// Readies a cone for the boxes of a region, along axes of a tree's own if there are any. None if its apex is so
+    /// far, in box units, that an f64 cannot say it: then every box may hold something.
+    pub fn new(axes: Option<&Axes>, cone: &SolidCone, region: &Region) -> Option<Self> {
+        let apex = region.to_box_along(axes, cone.apex);
+        let mut cone = *cone;
+        let (mut largest, mut to_box) = (apex.abs().max_element() + 2.0, region.scale);
+        if let Some(axes) = axes {
+            cone.axis = axes.to(cone.axis) / Axes::SCALE;
+            (largest, to_box) = (4.0 * largest, Axes::SCALE * to_box);
+        }
         if !largest.is_finite() {
             return None;
         }
         let (scale, _) = normalising_scale(largest);
-        let most = cone.most * region.scale * scale + PAD;
+        let most = cone.most * to_box * scale + PAD;
         Some(Self { cone, apex: apex * scale, scale, most: most * most * (1.0 + PAD) })
     }
 
@@ -133,11 +142,11 @@ mod tests {
             let p = apex + (cone.axis * turned.cos() + side * turned.sin()) * t * away;
             let bounds = region.aabb([p, p + low.min(DVec3::ZERO), p + high.max(DVec3::ZERO)]);
             let planes = std::array::from_fn(|axis| [[bounds.min[axis]; 1], [bounds.max[axis]; 1]]);
-            prop_assert_eq!(Boxes::new(&cone, &region).unwrap().may_touch(&planes), 1);
+            prop_assert_eq!(Boxes::new(None, &cone, &region).unwrap().may_touch(&planes), 1);
             // And so within the distance of the point.
             let mut near = cone;
             near.most = (p - apex).length();
-            prop_assert_eq!(Boxes::new(&near, &region).unwrap().may_touch(&planes), 1);
+            prop_assert_eq!(Boxes::new(None, &near, &region).unwrap().may_touch(&planes), 1);
         }
     }
 
@@ -154,7 +163,7 @@ mod tests {
             })
         };
         let planes: [[[f32; 7]; 2]; 3] = std::array::from_fn(|axis| std::array::from_fn(|side| of(axis, side)));
-        assert_eq!(Boxes::new(&cone, &region).unwrap().may_touch(&planes), 0b010_0011);
+        assert_eq!(Boxes::new(None, &cone, &region).unwrap().may_touch(&planes), 0b010_0011);
     }
 
     #[test]

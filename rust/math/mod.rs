@@ -2,6 +2,7 @@
 
 mod aabb;
 mod affine;
+mod axes;
 pub mod coherence;
 mod columns;
 mod double;
@@ -21,6 +22,7 @@ pub(crate) mod turn;
 
 pub use aabb::Aabb;
 pub use affine::{Affine, Singular};
+pub use axes::Axes;
 pub use columns::{HitColumns, Numbers, RayBatch, RayColumns, Vectors, read_column};
 pub(crate) use double::Double;
 pub(crate) use double_double::DoubleDouble;

@@ -1,7 +1,7 @@
 //! Where a scene lies: what errors are measured against, and the units that boxes are kept in.
 
 use super::robust::normalising_scale;
-use super::{Aabb, DVec3, Vec3};
+use super::{Aabb, Axes, DVec3, Vec3};
 
 /// The box around a scene, in f64, with a centre and a scale of its own.
 ///
@@ -58,11 +58,24 @@ impl Region {
         (point - self.centre) * self.scale
     }
 
+    /// A point in box units, along axes of a tree's own if there are any.
+    #[inline(always)]
+    pub fn to_box_along(&self, axes: Option<&Axes>, point: DVec3) -> DVec3 {
+        let point = self.to_box(point);
+        axes.map_or(point, |axes| axes.to(point))
+    }
+
     /// The box around some points in box units, rounded outwards. It errs by what [`Region::to_box`] does in f64, half
     /// an ulp of its own numbers, and by no more.
     #[inline]
     pub fn aabb(&self, points: [DVec3; 3]) -> Aabb {
-        let [a, b, c] = points.map(|p| self.to_box(p));
+        self.aabb_along(None, points)
+    }
+
+    /// The same along axes of a tree's own, if there are any: then it errs by up to 2⁻⁵⁰.
+    #[inline]
+    pub fn aabb_along(&self, axes: Option<&Axes>, points: [DVec3; 3]) -> Aabb {
+        let [a, b, c] = points.map(|p| self.to_box_along(axes, p));
         let (min, max) = (a.min(b).min(c), a.max(b).max(c));
         Aabb { min: Vec3::new(down(min.x), down(min.y), down(min.z)), max: Vec3::new(up(max.x), up(max.y), up(max.z)) }
     }

@@ -7,7 +7,7 @@ use raywright::math::{DVec3, Hit, Vec3};
 use raywright::shapes::triangle::SolidCone;
 
 /// Cones from about a scene into it, narrow and wide.
-fn cones(random: &mut Random, triangles: &Triangles, count: usize, reach: f64) -> Vec<Option<SolidCone>> {
+pub fn cones(random: &mut Random, triangles: &Triangles, count: usize, reach: f64) -> Vec<Option<SolidCone>> {
     let mut one = || {
         let apex = random.point(reach);
         let way = random.target(triangles) - apex;
@@ -18,7 +18,7 @@ fn cones(random: &mut Random, triangles: &Triangles, count: usize, reach: f64) -
 }
 
 /// What all accelerators say, bit for bit: of each cone, distances and primitives.
-fn agreed(triangles: &Triangles, cones: &[Option<SolidCone>]) -> Vec<Vec<(u64, u32)>> {
+pub fn agreed(triangles: &Triangles, cones: &[Option<SolidCone>]) -> Vec<Vec<(u64, u32)>> {
     let wanted: Vec<Vec<_>> = cones
         .iter()
         .map(|cone| {

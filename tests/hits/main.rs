@@ -10,3 +10,4 @@ mod space;
 mod stopped;
 mod traversals;
 mod triangles;
+mod turned;

@@ -11,7 +11,7 @@ use raywright::shapes::triangle::{NearestPoint, nearest_point, point_of};
 
 /// Triangles whose corners are f64.
 #[derive(Clone, Debug)]
-struct Doubles(Vec<[DVec3; 3]>);
+pub struct Doubles(Vec<[DVec3; 3]>);
 
 impl Primitives for Doubles {
     fn count(&self) -> usize {
@@ -70,7 +70,7 @@ fn bits(nearest: &Nearest) -> ([u64; 6], u32) {
 }
 
 /// The nearest points, after seeing that every accelerator gives the same bits, one by one as in a batch.
-fn agreed(triangles: &Doubles, points: &[DVec3], max_distances: &[f64]) -> Vec<Nearest> {
+pub fn agreed(triangles: &Doubles, points: &[DVec3], max_distances: &[f64]) -> Vec<Nearest> {
     let mut wanted: Option<Vec<Nearest>> = None;
     for (name, accelerator) in accelerators(triangles) {
         let mut found = vec![Nearest::MISS; points.len()];
@@ -101,7 +101,7 @@ fn one_by_one(triangles: &Doubles, point: DVec3) -> (f64, u32) {
     best
 }
 
-fn assert_right(triangles: &Doubles, points: &[DVec3]) -> Vec<Nearest> {
+pub fn assert_right(triangles: &Doubles, points: &[DVec3]) -> Vec<Nearest> {
     let found = agreed(triangles, points, &[f64::INFINITY]);
     for (nearest, &point) in found.iter().zip(points) {
         assert_eq!((nearest.distance, nearest.primitive), one_by_one(triangles, point), "{point}");

@@ -22,11 +22,12 @@ KINDS = {
 }
 
 
-def sticks(count=400, seed=1):
-    """Return long thin triangles along diagonals, and rays among them."""
+def sticks(count=400, seed=1, crossed=False):
+    """Return long thin triangles along a diagonal, or along all four, and rays among them."""
     random = np.random.default_rng(seed)
     start = random.uniform(-1, 1, (count, 3))
-    end = start + np.array([1.5, 1.4, -1.5])
+    signs = random.choice([-1, 1], (count, 3)) if crossed else 1
+    end = start + np.array([1.5, 1.4, -1.5]) * signs
     corners = np.stack([start, end, end + random.uniform(-0.02, 0.02, (count, 3))], axis=1).astype(np.float32)
     mesh = rw.Mesh(corners.reshape(-1, 3), np.arange(3 * count).reshape(-1, 3))
     origins = random.uniform(-3, 3, (2000, 3))
@@ -114,7 +115,7 @@ def test_a_scene_with_spatial_splits_can_be_moved():
 
 @pytest.mark.parametrize("quality", ["balanced", "fast rays"])
 def test_diagonals_are_cut_where_quality_decides(quality):
-    mesh, origins, directions = sticks(3000)
+    mesh, origins, directions = sticks(3000, crossed=True)
     scene, plain = (rw.Scene(mesh, quality=wanted) for wanted in (quality, "fast build"))
     assert scene.intersect(origins, directions) == plain.intersect(origins, directions)
     assert " of pieces and reinsertion" in scene.accelerator.kind
@@ -125,6 +126,33 @@ def test_diagonals_are_cut_where_quality_decides(quality):
     assert plain.accelerator.kind.endswith("refitted")
     assert "pieces" not in rw.Scene(mesh, quality=quality, accelerator=rw.BVH(optimise=())).accelerator.kind
     assert "pieces" not in rw.Scene(rw.scenes.torus_knot(), quality=quality).accelerator.kind
+
+
+@pytest.mark.parametrize("quality", ["balanced", "fast rays"])
+def test_boxes_turn_where_all_stands_askew_and_quality_decides(quality):
+    (room,) = rw.scenes.turned(rw.scenes.room(3000), 33, (1, 2, 3))
+    for mesh, straight in ((sticks(3000)[0], None), (room, rw.scenes.room(3000)[0])):
+        scene, plain = (rw.Scene(mesh, quality=wanted) for wanted in (quality, "fast build"))
+        rng = np.random.default_rng(7)
+        origins = mesh.vertices[rng.integers(len(mesh.vertices), size=4000)] + rng.normal(size=(4000, 3))
+        directions = rng.normal(size=(4000, 3))
+        hits = plain.intersect(origins, directions)
+        assert scene.intersect(origins, directions) == hits
+        assert hits.hit.sum() > 1000
+        assert ", turned, " in scene.accelerator.kind
+        assert scene.accelerator.sah_cost < 0.5 * plain.accelerator.sah_cost
+        if straight is not None:
+            unturned = rw.Scene(straight, quality=quality).accelerator
+            assert "turned" not in unturned.kind
+            assert scene.accelerator.sah_cost < 1.1 * unturned.sah_cost
+            assert scene.accelerator.bytes < 1.1 * unturned.bytes
+        if quality == "balanced":
+            # Nothing had to be cut.
+            assert scene.accelerator.bytes < 60 * scene.accelerator.primitives
+        assert scene.refit(mesh.vertices * 2) == pytest.approx(1)
+        assert quality != "balanced" or scene.accelerator.kind.endswith("turned, single, refitted")
+        assert scene.intersect(origins * 2, directions * 2) == hits
+    assert "turned" not in rw.Scene(mesh, accelerator=rw.BVH(optimise=())).accelerator.kind
 
 
 @pytest.mark.parametrize("builder", BUILDERS)

@@ -51,9 +51,10 @@ class Scene(Queries):
         its mesh. Either way hits are exact for the vertices as they then are. "double" costs nothing where
         all vertices are float32 numbers anyway.
     quality : {"balanced", "fast build", "fast rays"}
-        How long the accelerator may take to build for the sake of rays. Unless it is "fast build", what is
-        long and diagonal may be parted for it, by spatial splits where it is little and before the build
-        where it is much, and for "fast rays" what else is long; such a tree is built anew by `refit`.
+        How long the accelerator may take to build for the sake of rays. Unless it is "fast build", what
+        stands askew as a whole has boxes turned as it is, and what else is long and diagonal may be parted,
+        by spatial splits where it is little and before the build where it is much, and for "fast rays" more
+        of it; a tree of parts is built anew by `refit`.
 
     Raises
     ------

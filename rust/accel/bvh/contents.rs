@@ -2,20 +2,22 @@
 
 use super::build::Shapes;
 use crate::accel::Primitives;
-use crate::math::{Aabb, DVec3, Region, Vec3};
+use crate::math::{Aabb, Axes, DVec3, Region, Vec3};
 use crate::shapes::triangle::clipped;
 
 /// Primitives in box units; those that are no triangles fill their boxes, or are nowhere if none are given.
 pub struct Contents<'a> {
     pub primitives: &'a dyn Primitives,
     pub region: &'a Region,
+    /// What boxes lie along, if not the scene's own axes.
+    pub axes: Option<&'a Axes>,
     pub boxes: &'a [Aabb],
 }
 
 impl Contents<'_> {
     fn triangle(&self, primitive: u32) -> Option<[DVec3; 3]> {
         let corners = self.primitives.corners(primitive);
-        corners.iter().all(|c| c.is_finite()).then(|| corners.map(|c| self.region.to_box(c)))
+        corners.iter().all(|c| c.is_finite()).then(|| corners.map(|c| self.region.to_box_along(self.axes, c)))
     }
 }
 

@@ -1,5 +1,6 @@
 //! Bounding volume hierarchies: a binary tree that builders make, and wide trees that rays walk.
 
+mod axes;
 pub mod build;
 mod contents;
 mod node;

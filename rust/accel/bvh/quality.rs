@@ -57,6 +57,7 @@ impl Quality {
         };
         Steps {
             cuts,
+            may_turn: cuts.is_some(),
             builder,
             leaves: Leaves::for_blocks(block),
             optimisers,
@@ -97,6 +98,8 @@ impl Cuts {
 pub struct Steps {
     /// What is cut before, where that is worthwhile.
     pub cuts: Option<Cuts>,
+    /// Whether boxes may lie along other axes than the scene's, where that serves ([`axes`](super::axes)).
+    pub may_turn: bool,
     /// How the tree is built where nothing is.
     pub builder: Builder,
     /// When a builder makes a leaf.

@@ -24,6 +24,7 @@ fn boxes(u: &mut Unstructured) -> Result<()> {
     let block = u.int_in_range(1..=Leaves::MAX_BLOCK)?;
     // Nothing is gained by cutting boxes, so nothing is cut.
     let steps = Steps {
+        may_turn: false,
         cuts: Some(Cuts::and_splits(None, 8.0)),
         builder: builder(u)?,
         leaves: if u.arbitrary()? { Leaves::for_blocks(block) } else { Leaves::by_cost(block, 1.0, 1.0) },

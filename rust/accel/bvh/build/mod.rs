@@ -15,7 +15,7 @@ mod part;
 pub mod ploc;
 pub(super) mod presplit;
 mod radix;
-mod reference;
+pub(super) mod reference;
 mod slices;
 pub mod spatial;
 pub mod sweep;

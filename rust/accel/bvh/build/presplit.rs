@@ -149,16 +149,18 @@ impl Pieces {
 }
 
 /// What there is before anything is cut.
-struct Total {
-    around: Aabb,
+pub struct Total {
+    /// The box around all.
+    pub around: Aabb,
     /// Half the surface of all boxes.
-    area: f64,
+    pub area: f64,
     /// How many are not empty.
-    count: usize,
+    pub count: usize,
 }
 
 impl Total {
-    fn of(boxes: &[Aabb]) -> Self {
+    /// Of some boxes; the same for any number of threads.
+    pub fn of(boxes: &[Aabb]) -> Self {
         let of_share = |share: &[Aabb]| {
             let none = Self { around: Aabb::EMPTY, area: 0.0, count: 0 };
             share.iter().filter(|b| !b.is_empty()).fold(none, |total, b| Self {

@@ -78,7 +78,7 @@ impl Traversal {
 
 /// What builders see of primitives.
 fn contents<'a>(input: &'a Input) -> Contents<'a> {
-    Contents { primitives: input.primitives, region: &input.region, boxes: &input.boxes }
+    Contents { primitives: input.primitives, region: &input.region, axes: None, boxes: &input.boxes }
 }
 
 /// The surface-area heuristic's cost of a tree, in tests of a node: of every inner node its two boxes, of every leaf

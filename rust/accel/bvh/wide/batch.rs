@@ -199,12 +199,25 @@ mod tests {
         let few: Vec<_> = (0..12).map(large).collect();
         for some in [&all[..], &few[..1], &few, &all[all.len() - 64..]] {
             let soup = Soup(some.to_vec());
-            kernels_agree_over::<N, SingleLeaves<N>>(&soup);
-            kernels_agree_over::<N, DoubleLeaves<N>>(&soup);
+            kernels_agree_over::<N, SingleLeaves<N>>(&soup, false);
+            kernels_agree_over::<N, DoubleLeaves<N>>(&soup, false);
         }
+        kernels_agree_over::<N, SingleLeaves<N>>(&sticks(), true);
+        kernels_agree_over::<N, DoubleLeaves<N>>(&sticks(), true);
     }
 
-    fn kernels_agree_over<const N: usize, L: Leaves<N>>(soup: &Soup)
+    /// Long thin triangles along axes of their own, and in planes at right angles to these.
+    fn sticks() -> Soup {
+        let x = DVec3::new(0.48, 0.64, 0.6);
+        let axes = [x, x.any_orthonormal_vector(), x.cross(x.any_orthonormal_vector())];
+        let stick = |i: u32| {
+            let (from, way) = (triple(i), i as usize % 3);
+            [from, from + axes[way], from + 0.02 * axes[(way + 1) % 3]].map(DVec3::as_vec3)
+        };
+        Soup((0..600).map(stick).collect())
+    }
+
+    fn kernels_agree_over<const N: usize, L: Leaves<N>>(soup: &Soup, is_turned: bool)
     where
         Level: Dispatch<N>,
     {
@@ -214,6 +227,7 @@ mod tests {
         for level in Level::ALL.into_iter().filter(|l| l.is_available() && l.lanes() >= N) {
             let brute = BruteForce::over(soup, level);
             let bvh = WideBvh::<N, L>::new(soup, &Options::DEFAULT, level);
+            assert_eq!(bvh.axes.is_some(), is_turned);
             let mut met = 0;
             for rays in fans() {
                 let mut wanted = vec![Hit::MISS; rays.len()];

@@ -53,6 +53,7 @@ impl<const N: usize, L: Leaves<N>> WideBvh<N, L> {
             nodes,
             leaves,
             region: *region,
+            axes: None,
             stack: outline.depth * (N - 1) + 1,
             level: Level::Scalar,
             options: *options,

@@ -42,7 +42,7 @@ pub fn answer<const N: usize, L: Leaves<N>, S: Simd<N>, A: Answer>(
     for start in (0..batch.len()).step_by(RAYS) {
         let count = RAYS.min(batch.len() - start);
         let here = ALL >> (RAYS - count);
-        rays.take::<N, L, _>(sixteen, batch, start, &bvh.region);
+        rays.take::<N, L, _>(sixteen, batch, start, &bvh.region, bvh.axes.as_ref());
         let plain = here & rays.plain.plain;
         let mut bests = Bests::none(&rays);
         let mut limit = sixteen.load(&rays.slabs.limit);

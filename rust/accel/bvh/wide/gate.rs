@@ -42,7 +42,7 @@ impl<'a> Gate<'a> {
         let here = ALL >> (RAYS - count);
         self.start = self.next;
         self.next += count;
-        self.sixteen.take::<N, L, S>(simd, self.rays, self.start, &bvh.region);
+        self.sixteen.take::<N, L, S>(simd, self.rays, self.start, &bvh.region, bvh.axes.as_ref());
         let Sixteen { plain, slabs, .. } = &self.sixteen;
         let mut passing = here & plain.plain & !slabs.meeting(simd, &self.bounds, simd.load(&slabs.limit));
         self.waiting = here & !passing;
@@ -75,7 +75,9 @@ impl<'a> Gate<'a> {
                 if let Some((flight, limit)) = errand.launch(bvh, ray, &self.sixteen, i) {
                     return Some((self.sixteen.boxes(i, limit, Packed::ROOT, bottom), flight));
                 }
-            } else if let Some((edges, slabs)) = SlabRay::prepare(&self.rays.get(ray), &bvh.region) {
+            } else if let Some((edges, slabs)) =
+                SlabRay::prepare_along(bvh.axes.as_ref(), &self.rays.get(ray), &bvh.region)
+            {
                 let flight = errand.start(bvh, ray, &edges);
                 let limit = slabs.limit(E::limit(bvh, &flight));
                 return Some((Boxes::new(&slabs, limit, Packed::ROOT, bottom), flight));

@@ -23,6 +23,8 @@ mod touched;
 mod wave;
 mod winners;
 
+use super::axes;
+use super::build::presplit::Total;
 use super::build::{Builder, Leaves as LeafRule};
 use super::contents::Contents;
 use super::optimise::Optimisers;
@@ -30,10 +32,10 @@ use super::parts::cover;
 use super::{Cuts, Quality, Steps};
 use crate::accel::query::{Answers, Query};
 use crate::accel::{ByColumns, Info, Nearest, Primitives, Touches};
-use crate::math::{Aabb, DVec3, Hit, HitColumns, Ray, RayBatch, RayColumns, Region};
+use crate::math::{Aabb, Axes, DVec3, Hit, HitColumns, Ray, RayBatch, RayColumns, Region};
 use crate::shapes::triangle::{Leaves, SolidCone, clipped};
 use crate::simd::{Dispatch, Level};
-use crate::work::Stopped;
+use crate::work::{Stopped, Work};
 use batch::{All, Firsts};
 use collapse::Outline;
 use node::{Child, WideNode};
@@ -74,16 +76,17 @@ impl Options {
         let by_quality = quality.steps(block);
         let builder = builder.or_bins(quality.bins());
         // What is named is not changed.
-        let (default, cuts) = match builder {
+        let (default, cuts, may_turn) = match builder {
             Builder::Binned { bins } if optimisers.is_none() => {
                 let cuts = by_quality.cuts.map(|cuts| cuts.with_bins(bins.unwrap_or(quality.bins())));
-                (by_quality.optimisers, cuts)
+                (by_quality.optimisers, cuts, by_quality.may_turn)
             }
-            Builder::Spatial { bins, budget } => (Optimisers::NONE, Some(Cuts::and_splits(bins, budget))),
-            _ => (Optimisers::NONE, None),
+            Builder::Spatial { bins, budget } => (Optimisers::NONE, Some(Cuts::and_splits(bins, budget)), false),
+            _ => (Optimisers::NONE, None, false),
         };
         Steps {
             cuts,
+            may_turn,
             builder,
             leaves: LeafRule { traversal_cost, intersection_cost, ..by_quality.leaves },
             optimisers: optimisers.unwrap_or(default),
@@ -106,6 +109,8 @@ pub struct WideBvh<const N: usize, L> {
     leaves: L,
     /// Where the triangles lie; boxes are kept in its units.
     region: Region,
+    /// What boxes lie along, if not the scene's own axes.
+    axes: Option<Axes>,
     /// Entries that a stack can need.
     stack: usize,
     level: Level,
@@ -135,29 +140,52 @@ impl<const N: usize, L: Leaves<N>> WideBvh<N, L> {
 
     fn build(primitives: &dyn Primitives, options: &Options) -> Result<Self, Stopped> {
         let region = primitives.region();
-        let [surround, grow, collapse] = primitives.work().parts([3.0, 14.0, 5.0]);
-        let boxes = surround.collect(primitives.count(), |p| aabb(primitives, &region, p as u32))?;
+        let steps = options.steps(N);
+        let [surround, turn, grow, collapse] = primitives.work().parts([3.0, 1.0, 14.0, 5.0]);
+        let boxes = surround.collect(primitives.count(), |p| aabb(primitives, &region, None, p as u32))?;
         let count = boxes.par_iter().filter(|b| !b.is_empty()).count();
+        let turned = if steps.may_turn { turned(primitives, &region, &boxes, turn)? } else { None };
+        turn.done();
+        let (axes, boxes) = turned.map_or((None, boxes), |(axes, boxes)| (Some(axes), boxes));
         // What is no triangle here is nowhere.
-        let contents = Contents { primitives, region: &region, boxes: &[] };
-        let (binary, name) = options.steps(N).build(boxes, contents, grow)?;
+        let contents = Contents { primitives, region: &region, axes: axes.as_ref(), boxes: &[] };
+        let (binary, name) = steps.build(boxes, contents, grow)?;
         let mut bvh = Self::collapse(binary, primitives, &region, options, collapse)?;
+        bvh.axes = axes;
         bvh.in_parts = bvh.info.primitives > count;
         bvh.info.primitives = count;
-        bvh.info.kind = format!("BVH, {N} wide, {name}, {}", L::PRECISION);
+        let turned = if axes.is_some() { ", turned" } else { "" };
+        bvh.info.kind = format!("BVH, {N} wide, {name}{turned}, {}", L::PRECISION);
         Ok(bvh)
     }
 }
 
-/// The box around a primitive in a region's units; empty if nothing can hit it.
-fn aabb(primitives: &dyn Primitives, region: &Region, primitive: u32) -> Aabb {
-    let corners = primitives.corners(primitive);
-    if corners.iter().all(|c| c.is_finite()) { region.aabb(corners) } else { Aabb::EMPTY }
+/// Axes along which boxes are worth their while, and the boxes along these; those along the scene's are given.
+fn turned(
+    primitives: &dyn Primitives,
+    region: &Region,
+    boxes: &[Aabb],
+    work: Work,
+) -> Result<Option<(Axes, Vec<Aabb>)>, Stopped> {
+    let Some(axes) = axes::find(boxes, |p| primitives.corners(p).map(|c| region.to_box(c))) else {
+        return Ok(None);
+    };
+    let along = work.collect(boxes.len(), |p| aabb(primitives, region, Some(&axes), p as u32))?;
+    // A sample does not see what has a small box along the scene's axes and a large one along others.
+    let area = |boxes: &[Aabb]| Total::of(boxes).area;
+    let is_worthwhile = area(&along) <= axes::WORTHWHILE * Axes::SCALE * Axes::SCALE * area(boxes);
+    Ok(is_worthwhile.then_some((axes, along)))
 }
 
-/// A box around what of a primitive lies in another box, in a region's units.
-fn clip(primitives: &dyn Primitives, region: &Region, primitive: u32, to: &Aabb) -> Aabb {
-    clipped(primitives.corners(primitive).map(|c| region.to_box(c)), to)
+/// The box around a primitive in a region's units, along axes of its own if there are any; empty if nothing can hit it.
+fn aabb(primitives: &dyn Primitives, region: &Region, axes: Option<&Axes>, primitive: u32) -> Aabb {
+    let corners = primitives.corners(primitive);
+    if corners.iter().all(|c| c.is_finite()) { region.aabb_along(axes, corners) } else { Aabb::EMPTY }
+}
+
+/// A box around what of a primitive lies in another box, in a region's units, along axes of its own if there are any.
+fn clip(primitives: &dyn Primitives, region: &Region, axes: Option<&Axes>, primitive: u32, to: &Aabb) -> Aabb {
+    clipped(primitives.corners(primitive).map(|c| region.to_box_along(axes, c)), to)
 }
 
 impl<const N: usize, L: Leaves<N>> ByColumns for WideBvh<N, L>
@@ -241,7 +269,7 @@ where
                             }
                             if self.in_parts {
                                 parts.push((p, outer));
-                            } else if !outer.contains(&aabb(primitives, &self.region, p)) {
+                            } else if !outer.contains(&aabb(primitives, &self.region, self.axes.as_ref(), p)) {
                                 return Err(format!("node {index} does not hold primitive {p}"));
                             }
                         }
@@ -259,8 +287,8 @@ where
         for of_one in parts.chunk_by(|a, b| a.0 == b.0) {
             let p = of_one[0].0;
             let boxes: Vec<Aabb> = of_one.iter().map(|part| part.1).collect();
-            let whole = aabb(primitives, &self.region, p);
-            if !cover(&boxes, &whole, |to| clip(primitives, &self.region, p, to)) {
+            let whole = aabb(primitives, &self.region, self.axes.as_ref(), p);
+            if !cover(&boxes, &whole, |to| clip(primitives, &self.region, self.axes.as_ref(), p, to)) {
                 return Err(format!("{} leaves do not hold primitive {p} together", boxes.len()));
             }
             // Several are as good as one.

@@ -33,7 +33,7 @@ impl<const N: usize, L: Leaves<N>> Kernel<N> for Points<'_, N, L> {
         // Where the last point ended is a good place for the next to begin: neighbours then pass most of the tree by.
         let mut last = None;
         for (i, (&point, nearest)) in points.iter().zip(nearest).enumerate() {
-            *nearest = match Search::new(point, of(max_distances, i), &bvh.region) {
+            *nearest = match Search::along(bvh.axes.as_ref(), point, of(max_distances, i), &bvh.region) {
                 Some(mut search) => {
                     if let Some((first, count, lane)) = last {
                         offer(bvh, &mut search, first, count, lane);

@@ -71,7 +71,7 @@ pub fn answer<const N: usize, L: Leaves<N>, S: Simd<N>, A: Answer>(
         let (mut first, mut together) = (None, 0);
         while together < SIXTEENS && start + together * RAYS + FEW[0] as usize <= batch.len() {
             let sixteen = &mut rays[together];
-            sixteen.take::<N, L, _>(simd.sixteen(), batch, start + together * RAYS, &bvh.region);
+            sixteen.take::<N, L, _>(simd.sixteen(), batch, start + together * RAYS, &bvh.region, bvh.axes.as_ref());
             let here = if sixteen.plain.plain == ALL { sixteen.slabs.first(simd.sixteen()) } else { None };
             if here.is_none() || together > 0 && here != first {
                 break;
@@ -117,7 +117,7 @@ impl Bounds {
             let (mut far, mut shortest) = (simd.splat(f32::INFINITY), simd.splat(f32::INFINITY));
             for sixteen in rays {
                 let pad = simd.load(&sixteen.slabs.pad);
-                let origin = simd.mul(simd.load(&sixteen.plain.local[axis]), simd.splat(towards));
+                let origin = simd.mul(simd.load(&sixteen.origins()[axis]), simd.splat(towards));
                 near = simd.max(near, simd.add(origin, pad));
                 far = simd.min(far, simd.sub(origin, pad));
                 let size = simd.abs(simd.load(&sixteen.slabs.inverse[axis]));

@@ -43,8 +43,10 @@ impl<const N: usize, L: Leaves<N>> WideBvh<N, L> {
         }
         let counts: Vec<u32> = leaves.iter().map(|&(_, count)| count).collect();
         let new = L::new(&region, &numbers, &counts, |p| primitives.corners(p));
-        let boxes =
-            primitives.work().collect(numbers.len(), |i| aabb(primitives, &region, numbers[i])).map_err(ended)?;
+        let boxes = primitives
+            .work()
+            .collect(numbers.len(), |i| aabb(primitives, &region, self.axes.as_ref(), numbers[i]))
+            .map_err(ended)?;
         let mut nodes = self.nodes.clone();
         let mut around = vec![Aabb::EMPTY; nodes.len()];
         // Children come after their parents.

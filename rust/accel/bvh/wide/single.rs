@@ -35,7 +35,7 @@ pub fn ask<const N: usize, L: Leaves<N>, S: Simd<N>, E: Errand<N, L>>(
     errand: &mut E,
     stacks: &mut Stacks,
 ) {
-    let Some((edges, slabs)) = SlabRay::prepare(&rays.get(i), &bvh.region) else {
+    let Some((edges, slabs)) = SlabRay::prepare_along(bvh.axes.as_ref(), &rays.get(i), &bvh.region) else {
         errand.miss(i);
         return;
     };

@@ -4,7 +4,7 @@ use super::best::between_all;
 use super::node::Packed;
 use super::step::Boxes;
 use crate::accel::slab::SlabRays;
-use crate::math::{RayBatch, Region};
+use crate::math::{Axes, RayBatch, Region};
 use crate::shapes::triangle::{BlockRays, Column, Leaves, PlainRays, RAYS};
 use crate::simd::Lanes;
 
@@ -50,9 +50,10 @@ impl Sixteen {
         rays: &RayBatch<'_>,
         from: usize,
         region: &Region,
+        axes: Option<&Axes>,
     ) {
         self.plain.take(simd, rays, from, region);
-        self.slabs.prepare(simd, &self.plain, region);
+        self.slabs.prepare(simd, &self.plain, region, axes);
         self.blocks = L::rays(simd, &self.plain, region);
         let unit = simd.splat(L::unit(region) as f32);
         for (to, t) in [(&mut self.t_min, &self.plain.t_min), (&mut self.t_max, &self.plain.t_max)] {
@@ -60,6 +61,12 @@ impl Sixteen {
             simd.store(low, &mut to[0]);
             simd.store(high, &mut to[1]);
         }
+    }
+
+    /// Where they start, by axes of the boxes, in their units.
+    #[inline(always)]
+    pub fn origins(&self) -> &[Column<f32>; 3] {
+        self.slabs.turned.as_ref().unwrap_or(&self.plain.local)
     }
 
     /// One of them, at a child, with nothing on the stack that starts at `bottom`.

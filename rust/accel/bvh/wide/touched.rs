@@ -37,7 +37,7 @@ fn walk<const N: usize, L: Leaves<N>>(
     stack: &mut Vec<u32>,
     touches: &mut Vec<Touch>,
 ) {
-    let boxes = Boxes::new(cone, &bvh.region);
+    let boxes = Boxes::new(bvh.axes.as_ref(), cone, &bvh.region);
     stack.extend((!bvh.nodes.is_empty()).then_some(0));
     while let Some(index) = stack.pop() {
         let node = &bvh.nodes[index as usize];
