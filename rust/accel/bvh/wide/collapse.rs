@@ -5,7 +5,6 @@
 //! at most i subtrees. A single root is either a block of triangles or a wide node whose N roots are shared out between
 //! the two children. A greedy collapse leaves more of the slots empty.
 
-use super::prospects;
 use super::{Child, Info, Leaves, Options, Primitives, WideBvh, WideNode};
 use crate::accel::bvh::{BinaryBvh, Node};
 use crate::math::{Aabb, Region};
@@ -33,14 +32,13 @@ impl<const N: usize, L: Leaves<N>> WideBvh<N, L> {
 
     /// A tree of these nodes, with the triangles of its leaves.
     pub(super) fn with(
-        mut nodes: Vec<WideNode<N>>,
+        nodes: Vec<WideNode<N>>,
         outline: &Outline<N>,
         primitives: &dyn Primitives,
         region: &Region,
         options: &Options,
     ) -> Self {
         let leaves = L::new(region, &outline.order, &outline.counts, |p| primitives.corners(p));
-        prospects::arrange(&mut nodes, &leaves, region);
         let info = Info {
             primitives: outline.order.len(),
             nodes: nodes.len(),

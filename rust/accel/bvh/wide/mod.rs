@@ -152,6 +152,7 @@ impl<const N: usize, L: Leaves<N>> WideBvh<N, L> {
         let (binary, name) = steps.build(boxes, contents, grow)?;
         let mut bvh = Self::collapse(binary, primitives, &region, options, collapse)?;
         bvh.axes = axes;
+        bvh.arrange();
         bvh.in_parts = bvh.info.primitives > count;
         bvh.info.primitives = count;
         let turned = if axes.is_some() { ", turned" } else { "" };

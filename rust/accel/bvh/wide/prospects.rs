@@ -7,8 +7,9 @@
 //! average (Cauchy's formula: shadows are a quarter of a convex body's surface and half of a triangle's), so one at
 //! all with a chance of about 1 − e^(−2T / S).
 
+use super::WideBvh;
 use super::node::{Packed, WideNode};
-use crate::math::{Aabb, Region};
+use crate::math::{Aabb, DVec3};
 use crate::shapes::triangle::Leaves;
 use rayon::prelude::*;
 
@@ -21,15 +22,27 @@ struct Prospect {
     cost: f32,
 }
 
-/// Puts the children of all nodes into the lanes in which such rays should find them: they go from the last to the
-/// first. Children come after their parents.
-pub fn arrange<const N: usize, L: Leaves<N>>(nodes: &mut [WideNode<N>], leaves: &L, region: &Region) {
+impl<const N: usize, L: Leaves<N>> WideBvh<N, L> {
+    /// Puts the children of all nodes into the lanes in which such rays should find them.
+    pub(super) fn arrange(&mut self) {
+        let (region, axes) = (self.region, self.axes);
+        arrange(&mut self.nodes, &self.leaves, |corner| region.to_box_along(axes.as_ref(), corner));
+    }
+}
+
+/// The same for these nodes; rays go from the last lane to the first, and children come after their parents. `to_box`
+/// takes corners to where the boxes are.
+fn arrange<const N: usize, L: Leaves<N>>(
+    nodes: &mut [WideNode<N>],
+    leaves: &L,
+    to_box: impl Fn(DVec3) -> DVec3 + Sync,
+) {
     let of_leaves: Vec<[Option<Prospect>; N]> = nodes
         .par_iter()
         .map(|node| {
             std::array::from_fn(|lane| {
                 let child = Packed::of(node.children[lane]);
-                (child.kind() == 1).then(|| leaf(leaves, region, child, &node.aabb(lane)))
+                (child.kind() == 1).then(|| leaf(leaves, &to_box, child, &node.aabb(lane)))
             })
         })
         .collect();
@@ -59,11 +72,16 @@ pub fn arrange<const N: usize, L: Leaves<N>>(nodes: &mut [WideNode<N>], leaves: 
 }
 
 /// What there is to expect of a leaf in a box.
-fn leaf<const N: usize, L: Leaves<N>>(leaves: &L, region: &Region, leaf: Packed, bounds: &Aabb) -> Prospect {
+fn leaf<const N: usize, L: Leaves<N>>(
+    leaves: &L,
+    to_box: &impl Fn(DVec3) -> DVec3,
+    leaf: Packed,
+    bounds: &Aabb,
+) -> Prospect {
     let (first, count) = leaf.leaf();
     let twice: f64 = (0..count as usize)
         .map(|lane| {
-            let [a, b, c] = leaves.corners(first, count, lane).map(|c| region.to_box(c));
+            let [a, b, c] = leaves.corners(first, count, lane).map(to_box);
             (b - a).cross(c - a).length()
         })
         .sum();
@@ -75,7 +93,7 @@ fn leaf<const N: usize, L: Leaves<N>>(leaves: &L, region: &Region, leaf: Packed,
 mod tests {
     use super::super::node::Child;
     use super::*;
-    use crate::math::{DVec3, Vec3};
+    use crate::math::{Region, Vec3};
     use crate::shapes::triangle::SingleLeaves;
 
     #[test]
@@ -99,7 +117,7 @@ mod tests {
             Aabb { min, max: Vec3::new(whole.max.x, whole.max.y, if z > 0.0 { whole.max.z } else { middle }) }
         };
         let mut nodes = [WideNode::<8>::new(&root), WideNode::new(&[(half(0.0), leaf(2)), (half(1.0), leaf(3))])];
-        arrange(&mut nodes, &leaves, &region);
+        arrange(&mut nodes, &leaves, |corner| region.to_box(corner));
         // The last is the first to be visited: a wall at once; walls after a step more; next to nothing.
         let order: Vec<_> = nodes[0].children().map(|(_, child)| child).collect();
         assert_eq!(order, [leaf(1), Child::Node(1), leaf(0)]);

@@ -1,7 +1,6 @@
 //! The same tree over triangles that have moved.
 
 use super::node::{Child, WideNode};
-use super::prospects;
 use super::{WideBvh, aabb};
 use crate::accel::{Info, Primitives};
 use crate::math::Aabb;
@@ -67,8 +66,8 @@ impl<const N: usize, L: Leaves<N>> WideBvh<N, L> {
             nodes[index] = WideNode::new(&children);
             around[index] = nodes[index].bounds();
         }
-        prospects::arrange(&mut nodes, &new, &region);
         let mut bvh = Self { nodes, leaves: new, region, info: self.info.clone(), ..*self };
+        bvh.arrange();
         bvh.info = Info {
             kind: if self.info.kind.ends_with(", refitted") {
                 self.info.kind.clone()
