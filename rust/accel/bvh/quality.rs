@@ -98,7 +98,7 @@ impl Cuts {
 pub struct Steps {
     /// What is cut before, where that is worthwhile.
     pub cuts: Option<Cuts>,
-    /// Whether boxes may lie along other axes than the scene's, where that serves ([`axes`](super::axes)).
+    /// Whether boxes may lie along other axes than the scene's, where that serves.
     pub may_turn: bool,
     /// How the tree is built where nothing is.
     pub builder: Builder,
