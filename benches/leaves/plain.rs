@@ -9,6 +9,7 @@ pub struct PlainLeaves<const N: usize>(SingleLeaves<N>);
 
 impl<const N: usize> Leaves<N> for PlainLeaves<N> {
     const PRECISION: &'static str = "plain";
+    type Real = f32;
     const EDGES: bool = false;
 
     fn new(region: &Region, order: &[u32], counts: &[u32], corners: impl Fn(u32) -> [DVec3; 3] + Sync) -> Self {
@@ -23,6 +24,11 @@ impl<const N: usize> Leaves<N> for PlainLeaves<N> {
     #[inline(always)]
     fn corners(&self, first: usize, count: u32, lane: usize) -> [DVec3; 3] {
         self.0.corners(first, count, lane)
+    }
+
+    #[inline(always)]
+    fn coordinates(&self, first: usize, count: u32, lane: usize) -> [[f32; 3]; 3] {
+        self.0.coordinates(first, count, lane)
     }
 
     #[inline(always)]
