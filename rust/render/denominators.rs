@@ -79,14 +79,15 @@ impl Denominators {
     /// that is smaller than a pixel; so that of the pixels around alone is the one that makes errors largest, and what
     /// the picture says at most is the one that makes them least.
     #[inline]
-    pub fn of_peak(&self, mean: Rgb, without: Rgb, around: Rgb, chance: &Chance) -> Peak {
+    pub fn of_peak(&self, mean: Rgb, without: Rgb, around: Rgb, chance: &Chance, batches: f64) -> Peak {
         let (low, high) = (mean.min(without), mean.max(without));
         let squared = |likely: Rgb| {
             let likely = likely.max(low).min(high);
             (likely * likely + FLOOR).recip()
         };
         let confirmed = |chance: f64| squared(around.max(without + (mean - without) * chance));
-        let alone = self.own.cmplt((without * without + FLOOR).recip() / HANGS);
+        let others = without.max(around);
+        let alone = self.own.cmplt((others * others + FLOOR).recip() / hangs(batches));
         let or = |bold: Rgb, plain: Rgb| Rgb::select(alone, bold.max(plain), plain);
         Peak {
             likely: or(confirmed(chance.likely), self.inverse),
@@ -96,8 +97,11 @@ impl Denominators {
     }
 }
 
-/// A mean hangs on a batch that makes the square of it, and what is added, larger by this factor.
-const HANGS: f64 = 2.0;
+/// A mean hangs on one of so many batches if its square, and what is added, is larger by this factor than the batches
+/// without that one make it, and the pixels around. Of a few batches of any kind one is by far the largest.
+fn hangs(batches: f64) -> f64 {
+    (1.0 + 8.0 / batches).powi(2).max(2.0)
+}
 
 /// One over what is to stand below what a single batch brings: the likely one, and those that make the error least and
 /// largest.

@@ -141,9 +141,9 @@ impl Patch {
         let denominators = Denominators::new(&cross(means, width, x, y), spread.variance, spread.batches);
         // Those of a patch share their samples, and are no witnesses for one another.
         let around = around(means, width, x, y, patch);
-        let mut rest = spread.variance;
+        let (mut rest, batches) = (spread.variance, spread.batches / cells as f64);
         for (sum, peak) in self.peaks.iter_mut().zip(&spread.peaks[..cells]) {
-            let of_peak = denominators.of_peak(mean, peak.without, around, chances.of(peak.brightness));
+            let of_peak = denominators.of_peak(mean, peak.without, around, chances.of(peak.brightness), batches);
             *sum += peak.variance.dot(of_peak.likely);
             self.error += peak.variance.dot(of_peak.likely);
             self.least += peak.variance.dot(of_peak.least);
@@ -210,10 +210,10 @@ impl Sums {
     /// The estimate is a sum over samples, and its variance is m²/λ. That an outlier makes both the error and its
     /// estimate larger does not bring them together: it makes its pixel's denominator larger as well.
     ///
-    /// And denominators are in doubt by as much as choosing them has changed, pixel by pixel and in sum. Pixel by pixel,
-    /// the larger error counts for the upper end. In sum, the least error counts for the lower end; for the upper it is
-    /// what other denominators for all batches of a pixel have changed, as those that batches which stand out may have
-    /// are in the larger errors already.
+    /// And denominators are in doubt by as much as choosing them has changed, pixel by pixel and in sum. Pixel by
+    /// pixel, the larger error counts for the upper end. In sum, the least error counts for the lower end; for the
+    /// upper it is what other denominators for all batches of a pixel have changed, as those that batches which stand
+    /// out may have are in the larger errors already.
     ///
     /// All three are factors, and their logarithms are added as what is independent is.
     fn estimate(&self, count: f64) -> ErrorEstimate {
