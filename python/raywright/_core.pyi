@@ -253,6 +253,9 @@ class Rendering:
     def counts(self) -> NDArray[np.uint32]:
         """Samples of each pixel (H,W)."""
     @property
+    def trusted(self) -> bool:
+        """Whether the error estimate rests on many samples that agree on it; True where there is none."""
+    @property
     def carried(self) -> tuple[int, float] | None:
         """How few samples carry more than half of the error estimate, and their share; None if many do."""
     @property
@@ -273,7 +276,7 @@ class Rendering:
         error: float | None,
         seconds: float | None,
         pause: float | None,
-        progress: Callable[[float, int, float], None] | None,
+        progress: Callable[[float, int, float, bool], None] | None,
         sampler: Any,
         filter: Any,
         look: Callable[[], None] | None,
@@ -281,7 +284,8 @@ class Rendering:
         """Go on until the first of `samples` (per pixel), `error` (relMSE) or `seconds` is met: True.
 
         False if that took more than `pause` seconds: what has been begun is done then, and it can go on.
-        ``progress`` is called with (seconds, samples done, error estimate or NaN) after every pass.
+        ``progress`` is called with (seconds, samples done, error estimate or NaN, whether that is trusted)
+        after every pass.
         Signals are checked ten times a second or more, and ``look`` is called as often; an exception raised
         by a handler, by ``progress`` or by ``look`` ends the render at once and is passed on. Even then it
         can be gone on with.
@@ -316,8 +320,8 @@ class Rendering:
         """
     def begin(self, aim: int) -> None:
         """Begin the pass to so many samples, or go on with it."""
-    def end(self, seconds: float) -> tuple[float, int, float]:
-        """End the pass, for which all samples are there: the row that it adds to the history."""
+    def end(self, seconds: float) -> tuple[float, int, float, bool]:
+        """End the pass, for which all samples are there: the row of the history, and whether to trust it."""
     def request(self, first: int, count: int, before: int | None, samples: int) -> bytes:
         """Ask `expose` for the samples of some tiles up to a number.
 

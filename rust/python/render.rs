@@ -98,6 +98,10 @@ impl Rendering {
         numpy::PyArray1::from_vec(py, self.0.film.counts()).reshape([height, width])
     }
     #[getter]
+    fn trusted(&self) -> bool {
+        self.0.is_trusted()
+    }
+    #[getter]
     fn carried(&self) -> Option<(u32, f64)> {
         self.0.error.and_then(|e| e.carried).map(|c| (c.samples, c.share))
     }
@@ -149,10 +153,10 @@ impl Rendering {
         Ok(())
     }
 
-    fn end(&mut self, py: Python<'_>, seconds: f64) -> PyResult<(f64, u32, f64)> {
+    fn end(&mut self, py: Python<'_>, seconds: f64) -> PyResult<(f64, u32, f64, bool)> {
         let pool = pool(None).map_err(PyRuntimeError::new_err)?;
         let row = py.detach(|| pool.install(|| self.0.end(seconds)));
-        Ok((row.seconds, row.samples, row.error))
+        Ok((row.seconds, row.samples, row.error, self.0.is_trusted()))
     }
 
     fn request<'py>(
@@ -318,11 +322,11 @@ impl Watcher<'_> {
 }
 
 impl Progress for Watcher<'_> {
-    fn pass(&mut self, row: &HistoryRow) -> ControlFlow<()> {
+    fn pass(&mut self, row: &HistoryRow, trusted: bool) -> ControlFlow<()> {
         let HistoryRow { seconds, samples, error } = *row;
         self.unless_raised(|py, progress| {
             if let Some(progress) = progress {
-                progress.call1(py, (seconds, samples, error))?;
+                progress.call1(py, (seconds, samples, error, trusted))?;
             }
             Ok(())
         })

@@ -1,7 +1,7 @@
 //! Samples where they are needed.
 
 use super::bytes::{Malformed, Reader, Writer, check};
-use super::error::{Denominators, cross};
+use super::denominators::{Denominators, cross};
 use super::film::Film;
 use super::tile::FilmTile;
 use crate::optics::Rgb;

@@ -1,8 +1,10 @@
 //! How wrong a picture still is, told from the picture alone.
 
 use super::Film;
+use super::denominators::{Denominators, around, cross};
 use super::film::Spread;
 use super::outliers::{Carried, Largest};
+use super::sightings::{Chances, Sightings};
 use crate::optics::Rgb;
 use rayon::prelude::*;
 
@@ -20,8 +22,16 @@ pub struct ErrorEstimate {
     pub carried: Option<Carried>,
 }
 
-/// What is added to the square of a brightness, so that the dark does not count infinitely.
-const FLOOR: f64 = 0.01;
+impl ErrorEstimate {
+    /// The widest interval that tells something, as the ratio of its ends.
+    const WIDEST: f64 = 30.0;
+
+    /// Whether the estimate rests on many samples, and samples agree on it: if a few carry it, the next of their kind
+    /// would make it another, and if its interval is wide, what they found is too rare to be weighed.
+    pub fn is_trusted(&self) -> bool {
+        self.carried.is_none() && (self.high <= Self::WIDEST * self.low || self.value <= ROUNDING)
+    }
+}
 
 /// The error of a picture that is right to a millionth: what is left of it is mostly rounding, and what carries it
 /// tells nothing.
@@ -30,106 +40,55 @@ const ROUNDING: f64 = 1e-12;
 /// Estimates the error of a film; `None` where a pixel has fewer than two batches of samples, which say nothing of it.
 ///
 /// The numerator is simple: the variance s²/n of a pixel's mean is an unbiased estimate of (x − μ)². The denominator is
-/// not, for μ is unknown: [`Denominators`] tells what stands in for it.
+/// not, for μ is unknown: [`Denominators`] tells what stands in for it. Light that no sample has met is in neither.
 pub(super) fn estimate(film: &Film) -> Option<ErrorEstimate> {
     if film.fewest_batches() < 2 {
         return None;
     }
     let means = film.means();
     let width = film.width() as usize;
-    let patch = film.patch();
+    let (patch, cells) = (film.patch(), film.cells());
     // Rows of patches are summed on all cores, and their sums in order, so that the estimate does not depend on the
     // threads.
-    let bands: Vec<Sums> = (0..film.height().div_ceil(patch))
-        .into_par_iter()
-        .map_init(
-            || vec![Spread::default(); width],
-            |spreads, band| {
-                let mut patches = vec![Patch::default(); width.div_ceil(patch as usize)];
-                for y in band * patch..film.height().min((band + 1) * patch) {
-                    film.spreads(y, spreads);
-                    for (x, spread) in spreads.iter().enumerate() {
-                        let cross = cross(&means, width, x, y as usize);
-                        let denominators = Denominators::new(&cross, spread.variance, spread.batches);
-                        patches[x / patch as usize].add(&denominators, spread);
-                    }
+    let bands = || (0..film.height().div_ceil(patch)).into_par_iter();
+    let rows = |band: u32| band * patch..film.height().min((band + 1) * patch);
+    let row = || vec![Spread::default(); width];
+    let seen: Vec<Sightings> = bands()
+        .map_init(row, |spreads, band| {
+            let mut seen = Sightings::default();
+            for y in rows(band) {
+                film.spreads(y, spreads);
+                let peaks = spreads.iter().flat_map(|spread| &spread.peaks[..cells]);
+                peaks.for_each(|peak| seen.add(peak.brightness, peak.again));
+            }
+            seen
+        })
+        .collect();
+    let mut sightings = Sightings::default();
+    seen.iter().for_each(|band| sightings.join(band));
+    let chances = sightings.chances();
+    let picture = Picture { means: &means, width, patch: patch as usize, cells, chances: &chances };
+    let sums: Vec<Sums> = bands()
+        .map_init(row, |spreads, band| {
+            let mut patches = vec![Patch::default(); width.div_ceil(patch as usize)];
+            for y in rows(band) {
+                film.spreads(y, spreads);
+                for (x, spread) in spreads.iter().enumerate() {
+                    patches[x / patch as usize].add(&picture, (x, y as usize), spread);
                 }
-                let mut sums = Sums::default();
-                for patch in &patches {
-                    sums.add(patch);
-                }
-                sums
-            },
-        )
+            }
+            let mut sums = Sums::default();
+            for patch in &patches {
+                sums.add(patch);
+            }
+            sums
+        })
         .collect();
     let mut all = Sums::default();
-    for band in &bands {
+    for band in &sums {
         all.join(band);
     }
     Some(all.estimate(3.0 * means.len() as f64))
-}
-
-/// The brightness of a pixel, and of the four beside it; at the border, its own instead.
-#[inline]
-pub(super) fn cross(means: &[Rgb], width: usize, x: usize, y: usize) -> [Rgb; 5] {
-    let here = y * width + x;
-    let or_here = |there: bool, index: usize| means[if there { index } else { here }];
-    [
-        means[here],
-        or_here(x > 0, here.wrapping_sub(1)),
-        or_here(x + 1 < width, here + 1),
-        or_here(y > 0, here.wrapping_sub(width)),
-        or_here(here + width < means.len(), here + width),
-    ]
-}
-
-/// What the squared errors of a pixel are divided by: an estimate of μ² + 0.01.
-///
-/// A pixel's own x will not do for μ: samples are skewed, so that the pixels which happen to have a large s² happen to
-/// be bright as well, and dividing the one by the other hides a part of the error. At 16 samples this makes it a sixth
-/// too small in a Cornell box, at 2 samples less than half, and more than twice too small with point-like highlights.
-/// Nor is it repaired by the usual corrections, of x² by s²/n or of 1/(x² + 0.01) by a Taylor series: the noise is too
-/// large for them (both were tried, as was the variance of one half of the samples over the mean of the other).
-///
-/// So μ is taken from the neighbourhood: the median of the pixel and the four beside it. A mean of neighbours is much
-/// too bright next to a light, so that errors there are lost (8 to 13 % of all at 16 samples); medians or trimmed means
-/// of all eight lose too much beside dark corners. Below 16 samples the pixel itself has no vote, which would cost 10 %
-/// of the error at 8 samples. From there on it has one: where neighbours have nothing to do with each other, it is
-/// worth more. Two bounds keep the median where it can be right.
-///
-/// It may contradict the pixel's own mean by 5/√n standard errors at most. Weighed by s², a mean of n samples is off by
-/// γ/√n standard errors, where γ is the skewness of the samples, some 2 to 5 in global illumination: there is that much
-/// to mend and no more. So detail finer than a pixel is not smoothed away, and with more samples each pixel speaks for
-/// itself.
-///
-/// And the denominator is at least a quarter of the one that the pixel gives. A pixel that one sample made bright may
-/// be a dark one with a stray sample or a bright one on the edge of a lamp; one sample cannot tell, and the error of a
-/// lamp over the square of its dark surroundings would drown all others in the sum. Of two samples this leaves a
-/// quarter of the error of a Cornell box out, and of four a tenth; with less of a bound, more than that would be made
-/// up where no lamp is near.
-pub(super) struct Denominators {
-    /// One over them.
-    pub inverse: Rgb,
-    /// One over what the pixel's own mean would make them.
-    own: Rgb,
-}
-
-impl Denominators {
-    /// From the brightness of a cross of pixels, the first the one in the middle, and the variance of that one's mean,
-    /// which is of so many batches.
-    #[inline]
-    pub fn new(cross: &[Rgb; 5], variance: Rgb, batches: f64) -> Self {
-        let [mean, a, b, c, d] = *cross;
-        let leeway = 5.0 / batches.sqrt();
-        let off = Rgb::new(variance.x.sqrt(), variance.y.sqrt(), variance.z.sqrt()) * leeway;
-        // The middle two of four: the larger of the two smaller, and the smaller of the two larger; then in order.
-        let (low, high) = (a.min(b).max(c.min(d)), a.max(b).min(c.max(d)));
-        let (low, high) = (low.min(high), low.max(high));
-        let middle = if batches < 16.0 { (low + high) / 2.0 } else { mean.max(low).min(high) };
-        let likely = middle.max(mean - off).min(mean + off);
-        let by_itself = mean * mean + FLOOR;
-        Self { inverse: (likely * likely + FLOOR).max(by_itself / 4.0).recip(), own: by_itself.recip() }
-    }
 }
 
 /// Sums over patches.
@@ -137,10 +96,13 @@ impl Denominators {
 struct Sums {
     /// The errors.
     error: f64,
-    /// The errors with each pixel's own mean in the denominator, and with whichever denominator makes them larger.
-    own: f64,
+    /// The errors with the denominators that make them least, and with those that make them largest.
+    least: f64,
     most: f64,
-    /// Squares and cubes of the latter.
+    /// The errors with the same denominator for all batches of a pixel, and with the pixel's own mean in that.
+    alike: f64,
+    own: f64,
+    /// Squares and cubes of the largest errors.
     squares: f64,
     cubes: f64,
     /// What rare samples may add to the second and the third cumulant.
@@ -153,22 +115,48 @@ struct Sums {
 #[derive(Clone, Copy, Default)]
 struct Patch {
     error: f64,
-    own: f64,
+    least: f64,
     most: f64,
+    alike: f64,
+    own: f64,
     /// What the largest batches bring, by kind of cell: those of neighbours are mostly one and the same, which the
     /// patch shares.
     peaks: [f64; 2],
 }
 
+/// Where pixels are seen from: all of a picture.
+struct Picture<'a> {
+    means: &'a [Rgb],
+    width: usize,
+    patch: usize,
+    cells: usize,
+    chances: &'a Chances,
+}
+
 impl Patch {
     #[inline]
-    fn add(&mut self, denominators: &Denominators, spread: &Spread) {
-        self.error += spread.variance.dot(denominators.inverse);
-        self.own += spread.variance.dot(denominators.own);
-        self.most += spread.variance.dot(denominators.inverse.max(denominators.own));
-        for (sum, peak) in self.peaks.iter_mut().zip(spread.peaks) {
-            *sum += peak.dot(denominators.inverse);
+    fn add(&mut self, picture: &Picture<'_>, (x, y): (usize, usize), spread: &Spread) {
+        let Picture { means, width, patch, cells, chances } = *picture;
+        let mean = means[y * width + x];
+        let denominators = Denominators::new(&cross(means, width, x, y), spread.variance, spread.batches);
+        // Those of a patch share their samples, and are no witnesses for one another.
+        let around = around(means, width, x, y, patch);
+        let (mut rest, batches) = (spread.variance, spread.batches / cells as f64);
+        for (sum, peak) in self.peaks.iter_mut().zip(&spread.peaks[..cells]) {
+            let of_peak = denominators.of_peak(mean, peak.without, around, chances.of(peak.brightness), batches);
+            *sum += peak.variance.dot(of_peak.likely);
+            self.error += peak.variance.dot(of_peak.likely);
+            self.least += peak.variance.dot(of_peak.least);
+            self.most += peak.variance.dot(of_peak.most);
+            rest -= peak.variance;
         }
+        // Rounding may leave less than nothing.
+        let rest = rest.max(Rgb::ZERO);
+        self.error += rest.dot(denominators.inverse);
+        self.least += rest.dot(denominators.own);
+        self.most += rest.dot(denominators.inverse.max(denominators.own));
+        self.alike += spread.variance.dot(denominators.inverse);
+        self.own += spread.variance.dot(denominators.own);
     }
 }
 
@@ -176,8 +164,10 @@ impl Sums {
     #[inline]
     fn add(&mut self, patch: &Patch) {
         self.error += patch.error;
-        self.own += patch.own;
+        self.least += patch.least;
         self.most += patch.most;
+        self.alike += patch.alike;
+        self.own += patch.own;
         patch.peaks.iter().for_each(|&peak| self.largest.add(peak));
         if patch.error > 0.0 {
             // At most all of it: rounding may make it more.
@@ -192,8 +182,10 @@ impl Sums {
 
     fn join(&mut self, other: &Self) {
         self.error += other.error;
-        self.own += other.own;
+        self.least += other.least;
         self.most += other.most;
+        self.alike += other.alike;
+        self.own += other.own;
         self.squares += other.squares;
         self.cubes += other.cubes;
         self.rare[0] += other.rare[0];
@@ -218,8 +210,10 @@ impl Sums {
     /// The estimate is a sum over samples, and its variance is m²/λ. That an outlier makes both the error and its
     /// estimate larger does not bring them together: it makes its pixel's denominator larger as well.
     ///
-    /// And denominators are in doubt by as much as choosing them has changed, pixel by pixel and in sum. In both, the
-    /// larger error counts for the upper end.
+    /// And denominators are in doubt by as much as choosing them has changed, pixel by pixel and in sum. Pixel by
+    /// pixel, the larger error counts for the upper end. In sum, the least error counts for the lower end; for the
+    /// upper it is what other denominators for all batches of a pixel have changed, as those that batches which stand
+    /// out may have are in the larger errors already.
     ///
     /// All three are factors, and their logarithms are added as what is independent is.
     fn estimate(&self, count: f64) -> ErrorEstimate {
@@ -235,8 +229,9 @@ impl Sums {
         // further then, and elsewhere not so far.
         let greatest = quantile(1.96, variance, skewed).max((1.96 * variance.sqrt()).exp());
         let estimate = 1.96 * (self.rare[0] / square).sqrt();
-        let doubt = (self.own / self.error).ln();
-        let [low, high] = [least, greatest].map(|factor| factor.ln().hypot(estimate).hypot(doubt).exp());
+        let doubts = [self.least / self.error, self.own / self.alike];
+        let factor = |of: f64, doubt: f64| of.ln().hypot(estimate).hypot(doubt.ln()).exp();
+        let (low, high) = (factor(least, doubts[0]), factor(greatest, doubts[1]));
         let carried = if value > ROUNDING { self.largest.carry(self.error) } else { None };
         ErrorEstimate { value, low: value / low, high: self.most / count * high, carried }
     }
@@ -257,6 +252,7 @@ fn quantile(normal: f64, variance: f64, skewed: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use super::super::denominators::FLOOR;
     use super::*;
     use crate::sampling::Sampler;
 

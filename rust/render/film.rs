@@ -41,8 +41,21 @@ pub(super) struct Spread {
     pub batches: f64,
     /// The estimated variance of its mean.
     pub variance: Rgb,
-    /// What of it comes from the largest batch of each cell.
-    pub peaks: [Rgb; 2],
+    /// The largest batch of each cell; of all zeros where there is no cell.
+    pub peaks: [Outlier; 2],
+}
+
+/// The largest batch of a cell.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Outlier {
+    /// What of the variance of the pixel's mean comes from it.
+    pub variance: Rgb,
+    /// The mean of the pixel without it.
+    pub without: Rgb,
+    /// Its largest channel, as of one sample.
+    pub brightness: f64,
+    /// How many more of its size would make up for the squares of the others.
+    pub again: f64,
 }
 
 impl Film {
@@ -270,6 +283,7 @@ impl Film {
 
     fn spread(&self, cells: &[Cell]) -> Spread {
         let mut spread = Spread::default();
+        let mean = average(cells, |cell| cell.sum / f64::from(cell.count.max(1)));
         for (cell, peak) in cells.iter().zip(&mut spread.peaks) {
             let batches = f64::from(cell.count / self.batch);
             // A batch that is not full yet is not in the squares; the spread of those that are says what a sample is
@@ -280,7 +294,17 @@ impl Film {
             // Where all samples agree, rounding may leave less than nothing.
             let variance = ((cell.squares - sum * sum / batches) / degrees).max(Rgb::ZERO);
             let off = cell.largest - sum / batches;
-            *peak = (off * off / degrees).min(variance);
+            let others = sum - cell.largest;
+            let squares = cell.squares - cell.largest * cell.largest - others * others / (batches - 1.0);
+            let above = cell.largest - others / (batches - 1.0);
+            let count = f64::from(cell.count);
+            let without = (cell.sum - cell.largest) / (count - f64::from(self.batch)) - cell.sum / count;
+            *peak = Outlier {
+                variance: (off * off / degrees).min(variance),
+                without: mean + without / cells.len() as f64,
+                brightness: cell.largest.abs().max_element() / f64::from(self.batch),
+                again: squares.element_sum() / above.length_squared().max(f64::MIN_POSITIVE),
+            };
             spread.variance += variance;
             spread.batches += batches;
         }
@@ -385,7 +409,7 @@ mod tests {
             let mut row = [Spread::default()];
             grey.spreads(0, &mut row);
             let (_, _, peak) = textbook(&green, batch as usize);
-            assert!((row[0].peaks[0].x / peak - 1.0).abs() < 1e-12);
+            assert!((row[0].peaks[0].variance.x / peak - 1.0).abs() < 1e-12);
             assert!((row[0].variance.x / variance - 1.0).abs() < 1e-12);
             grey.append(&grey.clone());
             assert_eq!(grey.tiles()[0].cell(0).count, 96);

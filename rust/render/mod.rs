@@ -2,6 +2,7 @@
 
 mod adaptive;
 mod bytes;
+mod denominators;
 mod error;
 mod film;
 pub mod filter;
@@ -14,6 +15,7 @@ mod rendering;
 mod run;
 mod schedule;
 mod settings;
+mod sightings;
 mod tile;
 mod tiles;
 

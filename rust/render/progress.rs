@@ -5,8 +5,8 @@ use std::ops::ControlFlow;
 
 /// Watches a render from the thread that asked for it, and may end it.
 pub trait Progress {
-    /// A pass is done.
-    fn pass(&mut self, row: &HistoryRow) -> ControlFlow<()>;
+    /// A pass is done, and its error is to be trusted or not.
+    fn pass(&mut self, row: &HistoryRow, trusted: bool) -> ControlFlow<()>;
 
     /// Called many times a second while a pass is being worked on.
     fn poll(&mut self) -> ControlFlow<()>;
@@ -22,7 +22,7 @@ pub trait Progress {
 pub struct Quiet;
 
 impl Progress for Quiet {
-    fn pass(&mut self, _row: &HistoryRow) -> ControlFlow<()> {
+    fn pass(&mut self, _row: &HistoryRow, _trusted: bool) -> ControlFlow<()> {
         ControlFlow::Continue(())
     }
 

@@ -58,6 +58,11 @@ impl Rendering {
         }
     }
 
+    /// Whether its error can be trusted, or nothing is said of it.
+    pub fn is_trusted(&self) -> bool {
+        self.error.is_none_or(|error| error.is_trusted())
+    }
+
     /// Samples that the film has after the pass that is being worked on; as many as it has if none is.
     pub fn aim(&self) -> u32 {
         self.aim
@@ -81,8 +86,10 @@ impl Rendering {
             return self.aim;
         }
         let error = self.error.as_ref().filter(|_| after == self.film.samples());
+        let above = |row: &&HistoryRow| row.error.is_nan() || until.error.is_some_and(|target| row.error > target);
+        let above = self.history.iter().rev().find(above).map_or(0, |row| row.samples);
         let limit = self.plan.as_ref().map_or(FilmTile::MOST, |plan| plan.limit(after).min(FilmTile::MOST));
-        after + until.next_pass(after, self.film.batch(), elapsed, rate, error).min(limit.saturating_sub(after))
+        after + until.next_pass(after, self.film.batch(), elapsed, rate, error, above).min(limit.saturating_sub(after))
     }
 
     /// Begins a pass to so many samples, or goes on with it.

@@ -77,7 +77,7 @@ pub fn go_on(
             return Ok(false);
         }
         let row = pool.install(|| rendering.end(spent()));
-        if progress.pass(&row).is_break() {
+        if progress.pass(&row, rendering.is_trusted()).is_break() {
             return Err(RenderError::Interrupted);
         }
         // Passes may be too short for anyone to look up during one.
@@ -283,7 +283,7 @@ mod tests {
     struct Impatient(Option<Instant>);
 
     impl Progress for Impatient {
-        fn pass(&mut self, _row: &HistoryRow) -> ControlFlow<()> {
+        fn pass(&mut self, _row: &HistoryRow, _trusted: bool) -> ControlFlow<()> {
             ControlFlow::Continue(())
         }
 
@@ -320,7 +320,7 @@ mod tests {
     }
 
     impl Progress for Restless {
-        fn pass(&mut self, _row: &HistoryRow) -> ControlFlow<()> {
+        fn pass(&mut self, _row: &HistoryRow, _trusted: bool) -> ControlFlow<()> {
             if self.ends && self.is_due() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         }
 

@@ -7,7 +7,8 @@ use super::ErrorEstimate;
 pub struct Until {
     /// Samples of each pixel, or of all on average.
     pub samples: Option<u32>,
-    /// relMSE of the picture: met when the whole 95 % interval of its estimate is at or below.
+    /// relMSE of the picture: met when the whole 95 % interval of its estimate is at or below, and can be trusted; or
+    /// when the estimate has been below, without being trusted, since so many samples that more will hardly help.
     pub error: Option<f64>,
     /// Wall-clock time.
     pub seconds: Option<f64>,
@@ -17,11 +18,17 @@ impl Until {
     /// Samples below which an estimated error ends nothing: what has not been found yet is not in the estimate.
     const LEAST_FOR_ERROR: u32 = 16;
 
+    /// How many times the samples may become, while an estimate that is not trusted stays below an error, before that
+    /// ends a render all the same: what is found once in as many samples has come many times by then, and what is
+    /// rarer may never come.
+    const PATIENCE: u32 = 64;
+
     /// Samples of a pass, once there are enough.
     const PASS: u32 = 16;
 
     /// How many samples the next pass takes, after `done` in `elapsed` seconds, the last ones at `rate` seconds each; 0
-    /// to end. `batch` of them belong together.
+    /// to end. `batch` of them belong together. When there were `above`, the error was larger than is wanted for the last
+    /// time.
     ///
     /// Passes double (1, 1, 2, 4, 8) so that there is soon something to see, then keep to 16, or to a batch if that is
     /// more. Their sizes do not depend on time unless that is limited, so that an error ends a render at the same
@@ -33,8 +40,12 @@ impl Until {
         elapsed: f64,
         rate: f64,
         error: Option<&ErrorEstimate>,
+        above: u32,
     ) -> u32 {
-        let met = |target| error.is_some_and(|e| e.high <= target);
+        let enough = above.max(Self::LEAST_FOR_ERROR).saturating_mul(Self::PATIENCE);
+        let met = |target| {
+            error.is_some_and(|e| if e.is_trusted() { e.high <= target } else { e.value <= target && done >= enough })
+        };
         if done >= Self::LEAST_FOR_ERROR && self.error.is_some_and(met) {
             return 0;
         }
@@ -65,7 +76,7 @@ mod tests {
         loop {
             let value = 1.0 / f64::from(done);
             let error = ErrorEstimate { value, low: 0.5 * value, high: 2.0 * value, carried: None };
-            let next = until.next_pass(done, 1, f64::from(done) * rate, rate, (done > 1).then_some(&error));
+            let next = until.next_pass(done, 1, f64::from(done) * rate, rate, (done > 1).then_some(&error), 0);
             if next == 0 {
                 return all;
             }
@@ -100,11 +111,37 @@ mod tests {
     }
 
     #[test]
+    fn an_error_that_is_not_trusted_takes_patience() {
+        let until = Until { error: Some(0.05), ..Until::default() };
+        let few = ErrorEstimate {
+            value: 0.01,
+            low: 0.005,
+            high: 0.02,
+            carried: Some(super::super::Carried { samples: 1, share: 0.9 }),
+        };
+        let wide = ErrorEstimate { low: 1e-4, high: 0.04, carried: None, ..few };
+        for error in [few, wide] {
+            let next = |done, above| until.next_pass(done, 1, 0.0, 0.0, Some(&error), above);
+            assert_eq!([1008, 1024].map(|done| next(done, 0)), [16, 0]);
+            // Found anew, light takes as many times what it took to be found.
+            assert_eq!([1024, 6384, 6400].map(|done| next(done, 100)), [16, 16, 0]);
+            let limited = Until { samples: Some(20), ..until };
+            assert_eq!(limited.next_pass(20, 1, 0.0, 0.0, Some(&error), 0), 0);
+            let limited = Until { seconds: Some(1.0), ..until };
+            assert_eq!(limited.next_pass(16, 1, 1.0, 0.1, Some(&error), 0), 0);
+            let above = ErrorEstimate { value: 0.06, ..error };
+            assert_eq!(until.next_pass(1 << 20, 1, 0.0, 0.0, Some(&above), 0), 16);
+        }
+        let sure = ErrorEstimate { carried: None, ..few };
+        assert_eq!(until.next_pass(16, 1, 0.0, 0.0, Some(&sure), 0), 0);
+    }
+
+    #[test]
     fn passes_grow_to_whole_batches() {
         let until = Until { samples: Some(200), ..Until::default() };
         let (mut all, mut done) = (Vec::new(), 0);
         while done < 200 {
-            all.push(until.next_pass(done, 64, 0.0, 0.0, None));
+            all.push(until.next_pass(done, 64, 0.0, 0.0, None, 0));
             done += all[all.len() - 1];
         }
         assert_eq!(all, [1, 1, 2, 4, 8, 16, 32, 64, 64, 8]);
@@ -112,7 +149,7 @@ mod tests {
 
     #[test]
     fn falls_in_step_again() {
-        let next = |done| Until::default().next_pass(done, 1, 0.0, 0.0, None);
+        let next = |done| Until::default().next_pass(done, 1, 0.0, 0.0, None, 0);
         assert_eq!([1, 3, 5, 9, 16, 19, 31, 100].map(next), [1, 3, 5, 7, 16, 13, 1, 12]);
     }
 

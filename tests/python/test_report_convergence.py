@@ -63,7 +63,7 @@ def test_a_row_tells_of_its_pictures(made):
     # How good they are is chance, and how many samples they have is for the machine to say.
     report, pictures = made
     assert len(pictures) == len(report.rows)
-    for name, budget, seconds, samples, error, ratio, _ in report.rows:
+    for name, budget, seconds, samples, error, ratio, _, trusted in report.rows:
         images = pictures[name, budget]
         assert len(images) == 2
         assert seconds == pytest.approx(np.mean([image.seconds for image in images]))
@@ -71,6 +71,7 @@ def test_a_row_tells_of_its_pictures(made):
         true = np.mean([relmse(image) for image in images])
         assert error == (pytest.approx(true) if true > 0 else None)
         told = np.mean([image.error.estimate for image in images])
+        assert trusted == np.mean([image.error.trusted for image in images])
         assert ratio == (pytest.approx(told / true) if true > 0 and told > 0 else None)
 
 
@@ -85,7 +86,7 @@ def test_another_seed_is_another_picture(made):
 
 def test_slopes_are_fitted_by_least_squares():
     columns = [
-        (f"{name}", s, s, 1, e * s**-p, None, e * s ** (1 - p))
+        (f"{name}", s, s, 1, e * s**-p, None, e * s ** (1 - p), 1.0)
         for name, e, p in (("a", 0.5, 1.0), ("b", 0.1, 1.5))
         for s in (1.0, 2.0, 4.0)
     ]

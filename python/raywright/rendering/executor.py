@@ -110,7 +110,7 @@ class Distribution:
         self._cost = 0.0
         self._landed, self._since = 0, 0.0
 
-    def run(self, report: Callable[[float, int, float], None] | None, rest: Callable[[], None]) -> None:
+    def run(self, report: Callable[[float, int, float, bool], None] | None, rest: Callable[[], None]) -> None:
         """Go on until a limit is met.
 
         `report` is called after each pass, `rest` often: the render is whole then, and may be looked at.
@@ -287,7 +287,7 @@ class Distribution:
             else:
                 of.answers.append(answer)
 
-    def _advance(self, report: Callable[[float, int, float], None] | None) -> None:
+    def _advance(self, report: Callable[[float, int, float, bool], None] | None) -> None:
         """End the passes that are complete."""
         while self._passes and self._passes[0].left == 0:
             self._passes.popleft()

@@ -20,14 +20,17 @@ class ErrorEstimate:
     """An estimate of the relative mean squared error (relMSE) of a picture, with its 95 % interval.
 
     relMSE is the mean of (x - ref)² / (ref² + 0.01) over pixels and channels. ``float()`` gives the estimate.
+    It is made of the samples: light that none of them has met is not in it.
 
     Attributes
     ----------
     estimate, low, high : float
         The estimate, and the ends of its interval; NaN where there are too few samples to know.
     trusted : bool
-        Whether the estimate rests on many samples. If not, a few carry more than half of it, as they do where
-        light is found rarely: one more of their kind, or one fewer, would make it another.
+        Whether the estimate rests on many samples that agree on it. If not, light is found so rarely that
+        a few samples carry more than half of the estimate, when one more of their kind, or one fewer, would
+        make it another; or that the interval is more than thirtyfold, when what they found may be a stray or
+        the first of many.
     """
 
     estimate: float
@@ -44,7 +47,8 @@ class ErrorEstimate:
     def __str__(self) -> str:
         if math.isnan(self.estimate):
             return "unknown"
-        return f"{self.estimate:.3g} (95 % interval {self.low:.3g} to {self.high:.3g})"
+        doubt = "" if self.trusted else ", not to be trusted yet"
+        return f"{self.estimate:.3g} (95 % interval {self.low:.3g} to {self.high:.3g}{doubt})"
 
     def _key(self) -> tuple[float | bool | None, ...]:
         # NaN does not equal itself, but one unknown error is like another.

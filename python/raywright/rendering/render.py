@@ -71,7 +71,10 @@ def render(
         Limit on samples per pixel; 64 if no limit at all is given.
     error : float, optional
         Limit on the relMSE of the picture (see `ErrorEstimate`): the whole 95 % interval of its estimate is
-        at or below. At least 16 samples a pixel are taken, as what was never seen is in no estimate.
+        at or below, and the estimate can be trusted. At least 16 samples a pixel are taken, as what was never
+        seen is in no estimate. Where light is so rare that the estimate stays below the limit and is not
+        trusted, the render goes on to 64 times the samples since which it has been below, or to another
+        limit; ``image.error.trusted`` is False then.
     seconds : float, optional
         Limit on run time in seconds, to the nearest sample of all pixels.
     seed : int
@@ -382,14 +385,20 @@ def _image(
             f"biased: {_samples(clamped)} clamped to {clamp:g}, "
             f"which took {100 * taken:.2g} % of the radiance"
         )
-    if done.carried is not None:
+    if done.carried is None and not done.trusted:
+        _, low, high = done.error
+        warnings.append(
+            f"light is found so rarely that the error may be {low:.2g} or {high:.2g}: "
+            "its estimate cannot be trusted yet"
+        )
+    elif done.carried is not None:
         few, share = done.carried
         carriers = "one sample carries" if few == 1 else f"{few} samples carry"
         warnings.append(f"{carriers} {100 * share:.0f} % of the error estimate: it cannot be trusted yet")
     return Image(
         done.rgb,
         done.standard_error,
-        ErrorEstimate(*done.error, trusted=done.carried is None),
+        ErrorEstimate(*done.error, trusted=done.trusted),
         history,
         done.seconds,
         done.samples,

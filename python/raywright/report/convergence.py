@@ -23,6 +23,9 @@ LEVELS = 6
 _TAKEN = ("scene", "camera", "samples", "error", "seconds", "seed", "progress")
 _REFERENCE_SEED = 2**63
 
+# Seconds, samples, the error told, the true one, and whether the former is trusted.
+_Run = tuple[float, float, float, float, bool]
+
 
 @dataclass(frozen=True)
 class Fit:
@@ -114,7 +117,8 @@ def convergence(
     ConvergenceReport
         Columns: `contender`; `budget`, seconds given; `seconds`, taken, the median over seeds; `samples` per
         pixel, the median; `relmse`, the mean over seeds; `ratio` of the mean estimate to the mean true
-        relMSE, None without a reference; `error_seconds`, relMSE times seconds, less being better. Where the
+        relMSE, None without a reference; `error_seconds`, relMSE times seconds, less being better; `trusted`,
+        the share of seeds whose renders trust their own estimates. Where the
         reference is an Image, or made, its own estimated relMSE is taken off what is measured against it.
 
     Raises
@@ -129,7 +133,7 @@ def convergence(
     seconds = positive("seconds", seconds)
     numbers = _seeds(seeds)
     truth, doubt = _reference(scene, camera, reference, next(iter(ways.values())))
-    runs: dict[tuple[str, int], list[tuple[float, float, float, float]]] = {}
+    runs: dict[tuple[str, int], list[_Run]] = {}
     for level in reversed(range(LEVELS)):
         for turn, seed in enumerate(numbers):
             for name in _rotated(list(ways), turn):
@@ -137,7 +141,7 @@ def convergence(
                     scene, camera, **ways[name], seconds=seconds / 2**level, seed=seed, progress=False
                 )
                 true = math.nan if truth is None else _relmse(image.rgb, truth) - doubt
-                run = (image.seconds, image.samples, float(image.error), true)
+                run = (image.seconds, image.samples, float(image.error), true, image.error.trusted)
                 runs.setdefault((name, level), []).append(run)
     rows = [
         _row(name, seconds / 2**level, runs[name, level], truth is not None)
@@ -206,16 +210,15 @@ def _relmse(picture: NDArray[np.float32], truth: NDArray[np.float64]) -> float:
     return float(np.mean(np.square(picture - truth) / (np.square(truth) + 0.01)))
 
 
-def _row(
-    name: str, budget: float, runs: list[tuple[float, float, float, float]], against: bool
-) -> tuple[Any, ...]:
-    seconds, samples, told, true = (list(values) for values in zip(*runs, strict=True))
+def _row(name: str, budget: float, runs: list[_Run], against: bool) -> tuple[Any, ...]:
+    seconds, samples, told, true, trusted = (list(values) for values in zip(*runs, strict=True))
     spent = statistics.median(seconds)
     estimate = _positive(statistics.fmean(told))
     error = _positive(statistics.fmean(true)) if against else estimate
     ratio = estimate / error if against and estimate is not None and error is not None else None
     product = None if error is None else error * spent
-    return name, budget, spent, statistics.median(samples), error, ratio, product
+    share = statistics.fmean(trusted)
+    return name, budget, spent, statistics.median(samples), error, ratio, product, share
 
 
 def _positive(value: float) -> float | None:
@@ -251,6 +254,7 @@ def _report(
         Column("relmse", "relMSE", ".3g"),
         Column("ratio", "estimate / true", ".2f"),
         Column("error_seconds", "relMSE x s", ".3g"),
+        Column("trusted", "trusted", ".0%"),
     )
     title = f"Error against run time, {camera.width} x {camera.height} pixels"
     chart = Chart("seconds", "relmse", "contender", "contender")
@@ -264,6 +268,8 @@ def _report(
             notes.append(f"The reference's own relMSE of about {doubt:.2g} is taken off.")
     else:
         notes = [f"relMSE: as estimated by the renders themselves, the mean over {many}."]
+    if any(row[-1] < 1 for row in rows):
+        notes.append("Renders that are not trusted have found light too rarely to know their error.")
     for fit in fits:
         told = [] if fit.slope is None else [f"relMSE falls as seconds to the power of {fit.slope:.2f}"]
         if fit.gain is not None and fit is not fits[0]:
