@@ -153,8 +153,8 @@ fn numbers<'a>(all: &'a [f64], start: usize, part: &Part, room: &'a mut Vec<f64>
 }
 
 impl RayArrays<'_> {
-    /// Calls `answer` with up to [`BATCH`] rays at a time of the `count` from `start` on, with where they lie among them,
-    /// and with room.
+    /// Calls `answer` with up to [`BATCH`] rays at a time of the `count` from `start` on, with where they lie among
+    /// them, and with room.
     fn columns(&self, start: usize, count: usize, mut answer: impl FnMut(&RayColumns<'_>, &Part, &mut Answers)) {
         let mut room = ROOM.take().unwrap_or_default();
         for from in (0..count).step_by(BATCH) {

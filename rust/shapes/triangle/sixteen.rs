@@ -159,8 +159,8 @@ impl EdgeRays {
         met
     }
 
-    /// Where each ray meets a triangle of its own, given by corner and axis, of which it is known to meet it between its
-    /// `t_min` and `t_max`. Open are those for which f64 does not say where; only those in `asked` count.
+    /// Where each ray meets a triangle of its own, given by corner and axis, of which it is known to meet it between
+    /// its `t_min` and `t_max`. Open are those for which f64 does not say where; only those in `asked` count.
     #[inline(always)]
     pub fn won<T: Copy + Into<f64>>(&self, [a, b, c]: &[[Column<T>; 3]; 3], asked: u32) -> Met {
         let mut met = Met::NONE;
