@@ -73,11 +73,11 @@ impl Denominators {
     ///
     /// A bright batch that is one of few makes its pixel's mean larger as well, and would divide its own error: where
     /// light is found by one sample of a pixel, an error of 1 or 100 would pass for 1/n. So where the mean hangs on one
-    /// batch, that is weighed by what the others say (leave one out). It is believed as far as it has witnesses:
-    /// the pixels around, next to a lamp or in a caustic; or the whole picture, if what is as bright is mostly seen again
-    /// ([`Chance`]). Without them its denominator is that of the others alone, which may be much too small for a lamp
-    /// that is smaller than a pixel; so that of the pixels around alone is the one that makes errors largest, and what
-    /// the picture says at most is the one that makes them least.
+    /// batch, that is weighed by what the others say (leave one out). It is believed as far as it has witnesses: the
+    /// pixels around, next to a lamp or in a caustic; or the whole picture, if what is as bright is mostly seen again
+    /// ([`Chance`]). Without them its denominator is that of the others alone, which is much too small for a lamp that
+    /// is smaller than a pixel. So errors are largest as the pixels around alone have it, and least by the most that
+    /// the picture says.
     #[inline]
     pub fn of_peak(&self, mean: Rgb, without: Rgb, around: Rgb, chance: &Chance, batches: f64) -> Peak {
         let (low, high) = (mean.min(without), mean.max(without));
@@ -129,4 +129,43 @@ pub(super) fn around(means: &[Rgb], width: usize, x: usize, y: usize, apart: usi
         }
     }
     sum / f64::max(count, 1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Of a pixel of 0.1 in which one of 64 samples was 64, as the pixels around are so bright, and what is as bright
+    /// is seen again so often.
+    fn peak(around: f64, likely: f64, most: f64) -> [f64; 3] {
+        let [mean, without, around] = [1.1, 0.1, around].map(Rgb::splat);
+        let denominators = Denominators::new(&[mean, around, around, around, around], Rgb::ONE, 64.0);
+        let peak = denominators.of_peak(mean, without, around, &Chance { likely, most }, 64.0);
+        [peak.least, peak.likely, peak.most].map(|inverse| 1.0 / inverse.x)
+    }
+
+    fn close(found: [f64; 3], brightness: [f64; 3]) -> bool {
+        found.iter().zip(brightness).all(|(found, b)| (found / (b * b + FLOOR) - 1.0).abs() < 1e-12)
+    }
+
+    #[test]
+    fn a_bright_batch_is_believed_as_far_as_it_has_witnesses() {
+        // None: it may be the first of many, or a stray.
+        assert!(close(peak(0.1, 0.0, 1.0), [1.1, 0.1, 0.1]));
+        // The picture says that a quarter of it is to be expected, and a half at most.
+        assert!(close(peak(0.1, 0.25, 0.5), [0.6, 0.35, 0.1]));
+        // The pixels around are of the same brightness, or half as bright.
+        assert!(close(peak(1.1, 0.0, 0.0), [1.1, 1.1, 1.1]));
+        assert!(close(peak(0.5, 0.0, 0.1), [0.5, 0.5, 0.5]));
+    }
+
+    #[test]
+    fn neighbours_are_those_that_there_are() {
+        let means: Vec<Rgb> = (0..12).map(|i| Rgb::splat(f64::from(1 << i))).collect();
+        // Four columns and three rows.
+        assert_eq!(around(&means, 4, 0, 0, 1), Rgb::splat(f64::from((1 << 1) + (1 << 4) + (1 << 5)) / 3.0));
+        assert_eq!(around(&means, 4, 1, 1, 1).x * 8.0, f64::from(0b0111_0101_0111));
+        assert_eq!(around(&means, 4, 1, 1, 2), Rgb::splat(f64::from(1 << 7)));
+        assert_eq!(around(&means[..1], 1, 0, 0, 1), Rgb::ZERO);
+    }
 }

@@ -27,8 +27,8 @@ impl Until {
     const PASS: u32 = 16;
 
     /// How many samples the next pass takes, after `done` in `elapsed` seconds, the last ones at `rate` seconds each; 0
-    /// to end. `batch` of them belong together. When there were `above`, the error was larger than is wanted for the last
-    /// time.
+    /// to end. `batch` of them belong together. When there were `above`, the error was larger than is wanted for the
+    /// last time.
     ///
     /// Passes double (1, 1, 2, 4, 8) so that there is soon something to see, then keep to 16, or to a batch if that is
     /// more. Their sizes do not depend on time unless that is limited, so that an error ends a render at the same
