@@ -16,7 +16,7 @@ pub struct Frame {
 impl Frame {
     /// A frame whose z is the unit vector `normal`, without a branch that jumps or a singular direction
     /// (Duff et al., "Building an Orthonormal Basis, Revisited", 2017).
-    #[inline]
+    #[inline(always)]
     pub fn new(normal: DVec3) -> Self {
         let sign = 1f64.copysign(normal.z);
         let a = -1.0 / (sign + normal.z);
@@ -43,13 +43,13 @@ impl Frame {
     }
 
     /// From local coordinates to the world's.
-    #[inline]
+    #[inline(always)]
     pub fn to_world(&self, v: DVec3) -> DVec3 {
         self.tangent * v.x + self.bitangent * v.y + self.normal * v.z
     }
 
     /// From the world's coordinates to local ones.
-    #[inline]
+    #[inline(always)]
     pub fn to_local(&self, v: DVec3) -> DVec3 {
         DVec3::new(self.tangent.dot(v), self.bitangent.dot(v), self.normal.dot(v))
     }

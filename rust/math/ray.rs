@@ -22,11 +22,13 @@ pub struct Ray {
 
 impl Ray {
     /// A ray asked for every `t` from 0 on.
+    #[inline(always)]
     pub fn new(origin: DVec3, direction: DVec3) -> Self {
         Self { origin, direction, t_min: 0.0, t_max: f64::INFINITY, time: 0.0 }
     }
 
     /// The segment from `a` to `b`: `t` runs from 0 to 1.
+    #[inline(always)]
     pub fn segment(a: DVec3, b: DVec3) -> Self {
         Self { origin: a, direction: b - a, t_min: 0.0, t_max: 1.0, time: 0.0 }
     }

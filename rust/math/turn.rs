@@ -1,10 +1,10 @@
-//! Sines and cosines of parts of a turn.
+//! Sines and cosines of parts of a turn, and the angle of a point.
 //!
 //! Directions are drawn by angles that are simple parts of a turn. Of these the quadrant is found exactly, before
 //! anything is rounded, and in an eighth of a turn to either side a few terms of the Taylor series are all there is to
 //! it; a sine for every argument has to do much more.
 
-use std::f64::consts::{FRAC_2_PI, TAU};
+use std::f64::consts::{FRAC_2_PI, FRAC_PI_2, FRAC_PI_4, PI, TAU};
 
 /// 1/3!, −1/5! and so on: what follows in the sine of x, after x, in powers of −x². The first term left out is 5·10⁻¹⁷
 /// at π/4.
@@ -29,6 +29,22 @@ const COSINE: [f64; 7] = [
     1.0 / 20_922_789_888_000.0,
 ];
 
+/// What follows in the arc tangent of x, after x, in powers of x²: the polynomial of least error up to tan² π/8, which
+/// is 4·10⁻¹⁷ of the last.
+const ARC: [f64; 11] = [
+    -0.333_333_333_333_333_3,
+    0.199_999_999_999_955_2,
+    -0.142_857_142_846_665_42,
+    0.111_111_110_152_563_61,
+    -0.090_909_045_781_239_03,
+    0.076_921_831_908_260_87,
+    -0.066_645_114_473_819_48,
+    0.058_581_489_128_022_1,
+    -0.050_854_497_379_402_6,
+    0.039_231_658_295_587_19,
+    -0.019_176_887_119_066_22,
+];
+
 /// A polynomial of degree 6, its terms in pairs so that they need not wait for each other (Estrin, 1960).
 #[inline(always)]
 fn polynomial(c: &[f64; 7], z: f64) -> f64 {
@@ -51,7 +67,7 @@ fn turned([sin, cos]: [f64; 2], quarters: i32) -> [f64; 2] {
 }
 
 /// The sine and the cosine of a part of a turn, from 0 to 1, to within 2⁻⁵¹ of 1.
-#[inline]
+#[inline(always)]
 pub fn sin_cos_turn(part: f64) -> [f64; 2] {
     let quarters = (4.0 * part + 0.5) as i32;
     // Exact: of two numbers so near each other.
@@ -60,13 +76,35 @@ pub fn sin_cos_turn(part: f64) -> [f64; 2] {
 }
 
 /// The sine and the cosine of an angle from 0 to 2π, to within 2⁻⁵¹ of 1.
-#[inline]
+#[inline(always)]
 pub fn sin_cos(angle: f64) -> [f64; 2] {
     /// π/2 in two parts, of which the first has so few digits that its multiples are exact.
     const QUARTER: [f64; 2] = [f64::from_bits(0x3FF9_21FB_5400_0000), 9.920_935_796_805_404e-10];
     let quarters = (angle * FRAC_2_PI + 0.5) as i32;
     let rest = (angle - f64::from(quarters) * QUARTER[0]) - f64::from(quarters) * QUARTER[1];
     turned(sin_cos_eighth(rest), quarters)
+}
+
+/// The angle from +x of a point that is not below the axis, from 0 to π, to within 2⁻⁵⁰ of itself; 0 at the origin.
+#[inline(always)]
+pub fn upper_angle(y: f64, x: f64) -> f64 {
+    /// tan π/8, and its inverse.
+    const EIGHTH: [f64; 2] = [0.414_213_562_373_095_03, 2.414_213_562_373_095];
+    let width = x.abs();
+    // Turned by a quarter or an eighth, so that it is no more than an eighth of half a turn from an axis.
+    let (is_steep, is_flat) = (y > EIGHTH[1] * width, y <= EIGHTH[0] * width);
+    let (over, under) = if is_steep { (-width, y) } else { (y - width, y + width) };
+    let (over, under) = if is_flat { (y, width) } else { (over, under) };
+    let turn = if is_steep { FRAC_PI_2 } else { FRAC_PI_4 };
+    let turn = if is_flat { 0.0 } else { turn };
+    let tangent = if under > 0.0 { over / under } else { 0.0 };
+    let z = tangent * tangent;
+    let (z2, z4) = (z * z, (z * z) * (z * z));
+    let low = (ARC[0] + ARC[1] * z) + (ARC[2] + ARC[3] * z) * z2;
+    let middle = (ARC[4] + ARC[5] * z) + (ARC[6] + ARC[7] * z) * z2;
+    let high = (ARC[8] + ARC[9] * z) + ARC[10] * z2;
+    let angle = turn + (tangent + tangent * (z * (low + (middle + high * z4) * z4)));
+    if x < 0.0 { PI - angle } else { angle }
 }
 
 #[cfg(test)]
@@ -93,7 +131,24 @@ mod tests {
         assert!((sin * sin - (2.0 - 2f64.sqrt()) / 4.0).abs() < 1e-16 && (sin * sin + cos * cos - 1.0).abs() < 3e-16);
     }
 
+    #[test]
+    fn angles_are_exact_on_the_axes_and_between() {
+        assert_eq!(
+            [(0.0, 3.0), (0.0, 0.0), (5.0, 0.0), (0.0, -2.0)].map(|(y, x)| upper_angle(y, x)),
+            [0.0, 0.0, FRAC_PI_2, PI]
+        );
+        assert_eq!([(2.0, 2.0), (7.0, -7.0)].map(|(y, x)| upper_angle(y, x)), [FRAC_PI_4, PI - FRAC_PI_4]);
+    }
+
     proptest! {
+        #[test]
+        fn angles_as_libm_has_them(y in -280.0..280.0f64, ratio in -25.0..25.0f64, negative: bool) {
+            let (y, x) = (10f64.powf(y), 10f64.powf(y - ratio));
+            let x = if negative { -x } else { x };
+            let [angle, wanted] = [upper_angle(y, x), y.atan2(x)];
+            prop_assert!((angle - wanted).abs() <= 4.0 * f64::EPSILON * wanted, "{y} {x}: {angle}, not {wanted}");
+        }
+
         #[test]
         fn as_libm_has_them(part in 0.0..=1.0f64) {
             let close = |[sin, cos]: [f64; 2], angle: f64, within: f64| {

@@ -14,14 +14,14 @@ pub struct Diffuse {
 }
 
 impl Scatter for Diffuse {
-    #[inline]
+    #[inline(always)]
     fn evaluate(&self, wo: DVec3, wi: DVec3) -> (Rgb, f64) {
         let pdf = if wo.z * wi.z > 0.0 { wi.z.abs() * FRAC_1_PI } else { 0.0 };
         (self.reflectance * pdf, pdf)
     }
 
     /// By the cosine, so that every draw weighs the reflectance.
-    #[inline]
+    #[inline(always)]
     fn sample(&self, wo: DVec3, _choice: impl FnOnce() -> f64, u: [f64; 2]) -> Option<BsdfSample> {
         if wo.z == 0.0 || self.reflectance == Rgb::ZERO {
             return None;

@@ -9,14 +9,14 @@ use super::stream::Stream;
 const BASES: [[u32; 2]; 8] = [[2, 3], [5, 7], [11, 13], [17, 19], [23, 29], [31, 37], [41, 43], [47, 53]];
 
 /// A number of 64 bits for a dimension: the first coordinate of its pair.
-#[inline]
+#[inline(always)]
 pub(super) fn one(size: BatchSize, stream: Stream, index: u32, dimension: u32) -> u64 {
     coordinate(size, stream, index, dimension, 0)
 }
 
 /// Two numbers of 32 bits for a dimension (Halton, "On the Efficiency of Certain Quasi-Random Sequences of Points in
 /// Evaluating Multi-Dimensional Integrals", 1960), its digits scrambled as Owen does (1995).
-#[inline]
+#[inline(always)]
 pub(super) fn two(size: BatchSize, stream: Stream, index: u32, dimension: u32) -> [u32; 2] {
     [0, 1].map(|axis| (coordinate(size, stream, index, dimension, axis) >> 32) as u32)
 }

@@ -37,19 +37,19 @@ impl BatchSize {
     }
 
     /// The columns of a grid of as many cells, which has as many rows or half as many.
-    #[inline]
+    #[inline(always)]
     pub(super) fn halved(self) -> Self {
         Self(self.0.div_ceil(2))
     }
 
     /// How many samples.
-    #[inline]
+    #[inline(always)]
     pub fn samples(self) -> u32 {
         1 << self.0
     }
 
     /// The logarithm of the number of samples to base 2.
-    #[inline]
+    #[inline(always)]
     pub fn bits(self) -> u32 {
         u32::from(self.0)
     }

@@ -11,7 +11,7 @@ const GENERATORS: [[u32; 2]; BatchSize::MOST_BITS as usize + 1] =
 
 /// A number of 64 bits for a dimension. One at an even dimension is the third coordinate of the pair at the dimension
 /// that follows.
-#[inline]
+#[inline(always)]
 pub(super) fn one(size: BatchSize, stream: Stream, index: u32, dimension: u32) -> u64 {
     let index = permute(size, index, stream.word(dimension | 1, 2));
     let factor = if dimension.is_multiple_of(2) { GENERATORS[size.bits() as usize][1] } else { 1 };
@@ -20,7 +20,7 @@ pub(super) fn one(size: BatchSize, stream: Stream, index: u32, dimension: u32) -
 
 /// Two numbers of 32 bits for a dimension: a point of a lattice, shifted around the square (Cranley and Patterson,
 /// "Randomization of Number Theoretic Methods for Multiple Integration", 1976).
-#[inline]
+#[inline(always)]
 pub(super) fn two(size: BatchSize, stream: Stream, index: u32, dimension: u32) -> [u32; 2] {
     let index = permute(size, index, stream.word(dimension, 2));
     let shift = stream.word(dimension, 0);

@@ -1,10 +1,12 @@
 //! Floor 0: random numbers, and what turns them into points, directions and choices.
 
+mod bits;
 #[cfg(test)]
 pub(crate) mod chi_square;
 mod discrete;
 mod halton;
 mod kind;
+mod lanes;
 mod lattice;
 mod permutation;
 mod philox;
@@ -20,5 +22,6 @@ mod tests;
 
 pub(crate) use discrete::AliasTable;
 pub use kind::{BatchSize, SamplerKind};
+pub use lanes::{Pairs, SamplerLanes};
 pub use philox::philox4x32;
 pub use sampler::{CAMERA_DIMENSIONS, Sampler};

@@ -44,7 +44,7 @@ static FIELDS: [Field; Field::POLYNOMIALS.len()] = Field::ALL;
 /// often. No more is asked for: the variance of a mean depends on its samples two at a time, so it is as if all
 /// permutations were equally likely. Owen's scrambling of the index (Burley, "Practical Hash-Based Owen Scrambling",
 /// 2020) keeps neighbours neighbours in all dimensions, which makes errors larger.
-#[inline]
+#[inline(always)]
 pub(super) fn permute(size: BatchSize, index: u32, random: u64) -> u32 {
     let field = &FIELDS[size.bits() as usize];
     let others = size.samples() - 1;

@@ -1,5 +1,6 @@
 //! The numbers of one sample of one pixel, by dimension.
 
+use super::bits::{number, step};
 use super::stream::Stream;
 use super::{SamplerKind, halton, lattice, philox4x32, sobol, stratified};
 
@@ -19,17 +20,17 @@ pub const CAMERA_DIMENSIONS: u32 = 4;
 /// the three together.
 #[derive(Clone, Debug)]
 pub struct Sampler {
-    kind: SamplerKind,
-    key: [u32; 2],
-    pixel: u32,
+    pub(super) kind: SamplerKind,
+    pub(super) key: [u32; 2],
+    pub(super) pixel: u32,
     /// Its number among the pixel's samples.
     number: u32,
     /// The same, or among those of its batch.
-    sample: u32,
+    pub(super) sample: u32,
     /// The Philox block last made: it holds two dimensions, which are mostly asked for one after the other.
     block: u32,
     /// That block, or where the batch's stream starts.
-    words: [u32; 4],
+    pub(super) words: [u32; 4],
 }
 
 impl SamplerKind {
@@ -81,7 +82,7 @@ impl Sampler {
             SamplerKind::Sobol(size) => sobol::one(size, stream, index, dimension),
             SamplerKind::Lattice(size) => lattice::one(size, stream, index, dimension),
         };
-        (bits >> 11) as f64 * 2f64.powi(-53)
+        number(bits)
     }
 
     /// Two numbers in (0, 1), each at the middle of one of 2³² equal steps: never 0 and never 1, so that no warp has
@@ -96,7 +97,7 @@ impl Sampler {
             SamplerKind::Sobol(size) => sobol::two(size, stream, index, dimension),
             SamplerKind::Lattice(size) => lattice::two(size, stream, index, dimension),
         };
-        bits.map(|word| (f64::from(word) + 0.5) * 2f64.powi(-32))
+        [step(bits[0]), step(bits[1])]
     }
 
     /// The 64 bits of a dimension, of independent numbers.

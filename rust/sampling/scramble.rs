@@ -8,13 +8,13 @@
 /// does d ↦ a·d + c modulo 2⁶⁴ with a random odd a and a random c, least significant bit first: the difference of two
 /// numbers is 2ᵏ times something odd, and a makes that 2ᵏ times anything odd, equally often. As variance depends on
 /// samples two at a time, one multiplication does the work of Owen's tree of coins, and does it exactly.
-#[inline]
+#[inline(always)]
 pub(super) fn scramble(digits: u32, random: [u64; 2]) -> u64 {
     u64::from(digits).wrapping_mul(random[0] | 1).wrapping_add(random[1]).reverse_bits()
 }
 
 /// As [`scramble`], with 32 digits.
-#[inline]
+#[inline(always)]
 pub(super) fn scramble_short(digits: u32, random: u64) -> u32 {
     digits.wrapping_mul(random as u32 | 1).wrapping_add((random >> 32) as u32).reverse_bits()
 }

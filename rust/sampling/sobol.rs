@@ -9,7 +9,7 @@ use super::stream::Stream;
 ///
 /// One at an even dimension is placed with the pair at the dimension that follows: together they make a (0, m, 3)-net,
 /// so that the pairs of each half, quarter, ... of the choices are a net of their own.
-#[inline]
+#[inline(always)]
 pub(super) fn one(size: BatchSize, stream: Stream, index: u32, dimension: u32) -> u64 {
     let index = permute(size, index, stream.word(dimension | 1, 2));
     // Of a net of three, the third coordinate is the index itself, greatest bit first (Niederreiter, 1992, lemma 4.22).
@@ -19,7 +19,7 @@ pub(super) fn one(size: BatchSize, stream: Stream, index: u32, dimension: u32) -
 
 /// Two numbers of 32 bits for a dimension: a point of the first two coordinates of Sobol's sequence (1967), a
 /// (0, m, 2)-net with every power of two of its points.
-#[inline]
+#[inline(always)]
 pub(super) fn two(size: BatchSize, stream: Stream, index: u32, dimension: u32) -> [u32; 2] {
     let index = permute(size, index, stream.word(dimension, 2));
     [scramble_short(index, stream.word(dimension, 0)), scramble_short(pascal(index), stream.word(dimension, 1))]
@@ -27,7 +27,7 @@ pub(super) fn two(size: BatchSize, stream: Stream, index: u32, dimension: u32) -
 
 /// The digits of the second coordinate, least significant bit first: Pascal's triangle modulo 2 times those of the
 /// first, for indices below 2⁸.
-#[inline]
+#[inline(always)]
 fn pascal(index: u32) -> u32 {
     let index = index ^ index >> 1 & 0x55;
     let index = index ^ index >> 2 & 0x33;

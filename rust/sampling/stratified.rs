@@ -5,7 +5,7 @@ use super::permutation::permute;
 use super::stream::Stream;
 
 /// A number of 64 bits for a dimension: anywhere in a stratum of its own.
-#[inline]
+#[inline(always)]
 pub(super) fn one(size: BatchSize, stream: Stream, index: u32, dimension: u32) -> u64 {
     let stratum = permute(size, index, stream.word(dimension, 2));
     u64::from(stratum).unbounded_shl(64 - size.bits()) | stream.word_of(index, dimension, 0) >> size.bits()
@@ -14,7 +14,7 @@ pub(super) fn one(size: BatchSize, stream: Stream, index: u32, dimension: u32) -
 /// Two numbers of 32 bits for a dimension: one point in each cell of a grid, and one in each row and column of the grid
 /// of 2ᵐ × 2ᵐ too (Chiu, Shirley and Wang, "Multi-Jittered Sampling", 1994), all columns of cells having their points
 /// in the same order, and all rows (Kensler, "Correlated Multi-Jittered Sampling", 2013).
-#[inline]
+#[inline(always)]
 pub(super) fn two(size: BatchSize, stream: Stream, index: u32, dimension: u32) -> [u32; 2] {
     let cell = permute(size, index, stream.word(dimension, 2));
     let columns = size.halved();

@@ -16,32 +16,32 @@ pub(super) struct Stream {
 
 impl Stream {
     /// The block of Philox numbers that starts a stream: one that no dimension of independent numbers has.
-    #[inline]
+    #[inline(always)]
     pub fn words(key: [u32; 2], pixel: u32, batch: u32) -> [u32; 4] {
         philox4x32([0, batch, pixel, 1], key)
     }
 
     /// The stream that starts from such words.
-    #[inline]
+    #[inline(always)]
     pub fn new(words: [u32; 4]) -> Self {
         let [a, b, c, d] = words.map(u64::from);
         Self { start: a << 32 | b, key: c << 32 | d }
     }
 
     /// Word number 0 to 3 of a dimension.
-    #[inline]
+    #[inline(always)]
     pub fn word(self, dimension: u32, number: u32) -> u64 {
         self.mixed(u64::from(dimension) << 2 | u64::from(number))
     }
 
     /// A word that belongs to one sample of the batch, or to any other number below 2²⁸, and to word 0 to 3 of a
     /// dimension.
-    #[inline]
+    #[inline(always)]
     pub fn word_of(self, sample: u32, dimension: u32, number: u32) -> u64 {
         self.mixed(u64::from(sample + 1) << 34 | u64::from(dimension) << 2 | u64::from(number))
     }
 
-    #[inline]
+    #[inline(always)]
     fn mixed(self, number: u64) -> u64 {
         let mut z = self.start.wrapping_add(number.wrapping_mul(0x9E37_79B9_7F4A_7C15));
         z = (z ^ z >> 30).wrapping_mul(0xBF58_476D_1CE4_E5B9) ^ self.key;

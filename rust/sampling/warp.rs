@@ -13,7 +13,7 @@ pub fn uniform_disk(u: [f64; 2]) -> DVec2 {
 }
 
 /// Radius of the concentric map, and the sine and the cosine of its angle.
-#[inline]
+#[inline(always)]
 fn concentric(u: [f64; 2]) -> (f64, [f64; 2]) {
     let (a, b) = (2.0 * u[0] - 1.0, 2.0 * u[1] - 1.0);
     let wide = a.abs() > b.abs();
@@ -24,7 +24,7 @@ fn concentric(u: [f64; 2]) -> (f64, [f64; 2]) {
 }
 
 /// A direction about +z with density cos θ / π (Malley's method).
-#[inline]
+#[inline(always)]
 pub fn cosine_hemisphere(u: [f64; 2]) -> DVec3 {
     let (radius, [sin, cos]) = concentric(u);
     // The product keeps the digits of a small height that 1 − r² would cancel, so a direction never lies in the plane.
@@ -32,13 +32,13 @@ pub fn cosine_hemisphere(u: [f64; 2]) -> DVec3 {
 }
 
 /// The density of [`cosine_hemisphere`] in solid angle, 0 below the plane.
-#[inline]
+#[inline(always)]
 pub fn cosine_hemisphere_pdf(direction: DVec3) -> f64 {
     direction.z.max(0.0) * FRAC_1_PI
 }
 
 /// A direction of the whole sphere, uniform in solid angle (Archimedes' hat box).
-#[inline]
+#[inline(always)]
 pub fn uniform_sphere(u: [f64; 2]) -> DVec3 {
     let z = 1.0 - 2.0 * u[0];
     let [sin, cos] = sin_cos_turn(u[1]);
@@ -53,7 +53,7 @@ pub const UNIFORM_SPHERE_PDF: f64 = 0.25 * FRAC_1_PI;
 /// Weights of a triangle's second and third corner, uniform in area. The square is folded along a diagonal, which
 /// crowds nothing into a corner as the map with the square root does (Heitz, "A Low-Distortion Map Between Triangle and
 /// Square", 2019). The density is 1 / area.
-#[inline]
+#[inline(always)]
 pub fn uniform_triangle(u: [f64; 2]) -> [f64; 2] {
     let [x, y] = u;
     if y > x { [0.5 * x, y - 0.5 * x] } else { [x - 0.5 * y, 0.5 * y] }

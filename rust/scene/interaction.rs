@@ -1,8 +1,12 @@
 //! A path's encounter with a surface.
 
+mod lanes;
+
+pub use lanes::InteractionLanes;
+
 use super::materials::Scattering;
 use super::{Departure, Receiver, Scatters, Scene, ShadingPoint, SurfacePoint};
-use crate::math::{DVec3, Frame, Hit, Ray};
+use crate::math::{DVec3, Frame, Hit, Ray, select};
 use crate::optics::{BsdfSample, Rgb};
 
 /// Where a ray has met a surface.
@@ -99,19 +103,17 @@ impl<S: Scatters> Interaction<S> {
 
     /// What a ray of unit direction meets at a point of a surface, given the shading normal there, the direction that
     /// the frame's x should have if that matters, and how the surface scatters.
-    #[inline]
+    #[inline(always)]
     pub fn with(ray: &Ray, surface: SurfacePoint, (shading, tangent): (DVec3, Option<DVec3>), scattering: S) -> Self {
         let back = -ray.direction;
         let side = 1f64.copysign(back.dot(surface.normal));
-        let is_flat = shading == surface.normal;
-        let (mut shading, mut is_bent) = (shading, false);
-        if !is_flat {
-            let cosine = shading.dot(back) * side;
-            if cosine < Self::GRAZING {
-                is_bent = true;
-                shading = (shading + back * (side * (Self::GRAZING - cosine))).normalize();
-            }
-        }
+        let other = surface.normal;
+        let is_flat = (shading.x == other.x) & (shading.y == other.y) & (shading.z == other.z);
+        // Both are computed, and one is taken: lanes have no branches.
+        let cosine = shading.dot(back) * side;
+        let is_bent = !is_flat & (cosine < Self::GRAZING);
+        let bent = (shading + back * (side * (Self::GRAZING - cosine))).normalize();
+        let shading = select(is_bent, bent, shading);
         let frame = match tangent {
             Some(tangent) => Frame::along(shading, tangent),
             None => Frame::new(shading),
@@ -120,43 +122,43 @@ impl<S: Scatters> Interaction<S> {
     }
 
     /// The point met.
-    #[inline]
+    #[inline(always)]
     pub fn position(&self) -> DVec3 {
         self.surface.position
     }
 
     /// The geometric normal on the side that the ray came from.
-    #[inline]
+    #[inline(always)]
     pub fn normal(&self) -> DVec3 {
         self.surface.normal * self.side
     }
 
     /// What is known of the point.
-    #[inline]
+    #[inline(always)]
     pub fn surface(&self) -> &SurfacePoint {
         &self.surface
     }
 
     /// The shading normal on the side that the ray came from.
-    #[inline]
+    #[inline(always)]
     pub fn shading_normal(&self) -> DVec3 {
         self.frame.normal * self.side
     }
 
     /// The cosine between the ray, back along it, and the shading normal on its side.
-    #[inline]
+    #[inline(always)]
     pub fn cosine(&self) -> f64 {
         self.wo.z * self.side
     }
 
     /// Whether the two normals are one.
-    #[inline]
+    #[inline(always)]
     pub fn is_flat(&self) -> bool {
         self.is_flat
     }
 
     /// Whether the shading normal was bent towards the ray, and is another for rays of other directions.
-    #[inline]
+    #[inline(always)]
     pub fn is_bent(&self) -> bool {
         self.is_bent
     }
@@ -166,7 +168,7 @@ impl<S: Scatters> Interaction<S> {
     /// A side is asked for where rays to it leave from. On the wall of a hollow ball that shines, nothing else tells
     /// whether light is asked for inside of it or outside, and the density of rays that meet the wall is asked from
     /// there too.
-    #[inline]
+    #[inline(always)]
     pub fn receiver(&self) -> Receiver {
         if self.scattering.transmits() {
             return Receiver::free(self.surface.position);
@@ -175,37 +177,37 @@ impl<S: Scatters> Interaction<S> {
     }
 
     /// How the point scatters.
-    #[inline]
+    #[inline(always)]
     pub fn scattering(&self) -> &S {
         &self.scattering
     }
 
     /// Back along the ray, in the shading frame.
-    #[inline]
+    #[inline(always)]
     pub fn wo(&self) -> DVec3 {
         self.wo
     }
 
     /// Where rays leave from.
-    #[inline]
+    #[inline(always)]
     pub fn departure(&self) -> Departure {
         Departure::new(&self.surface)
     }
 
     /// Mean curvature, positive where the surface bulges towards the ray; 0 unless a width was given.
-    #[inline]
+    #[inline(always)]
     pub fn curvature(&self) -> f64 {
         self.curvature
     }
 
     /// Whether a direction points to the other side of the surface than the ray came from.
-    #[inline]
+    #[inline(always)]
     pub fn is_through(&self, direction: DVec3) -> bool {
         self.surface.normal.dot(direction) * self.side < 0.0
     }
 
     /// Scattering function times cosine for light from a direction, and the density of [`Interaction::sample`] there.
-    #[inline]
+    #[inline(always)]
     pub fn evaluate(&self, direction: DVec3) -> (Rgb, f64) {
         let wi = self.frame.to_local(direction);
         let fading = self.fading(wi, direction);
@@ -217,13 +219,13 @@ impl<S: Scatters> Interaction<S> {
     }
 
     /// Draws where the path goes on to: `choice` and `u` as [`Scattering::sample`] takes them.
-    #[inline]
+    #[inline(always)]
     pub fn sample(&self, choice: impl FnOnce() -> f64, u: [f64; 2]) -> Option<Scattered> {
         self.scattered(&self.scattering.sample(self.wo, choice, u)?)
     }
 
     /// A draw from the scattering as one of directions in the world.
-    #[inline]
+    #[inline(always)]
     pub fn scattered(&self, sample: &BsdfSample) -> Option<Scattered> {
         let direction = self.frame.to_world(sample.wi);
         let fading = self.fading(sample.wi, direction);
@@ -247,7 +249,7 @@ impl<S: Scatters> Interaction<S> {
     /// so that energy is never made. Reciprocity is lost where the normals differ, as it is by any shading normal.
     /// Moving the origin of shadow rays instead (Hanika, "Hacking the Shadow Terminator", 2021) lets light through near
     /// contacts, and needs the light that the geometric horizon cuts off.
-    #[inline]
+    #[inline(always)]
     fn fading(&self, wi: DVec3, direction: DVec3) -> f64 {
         let geometric = self.surface.normal.dot(direction);
         if wi.z * geometric <= 0.0 {
@@ -263,7 +265,7 @@ impl<S: Scatters> Interaction<S> {
 
 /// How much light counts near the horizon of the geometric normal, as [`Interaction`] has it: by its cosines to the
 /// geometric and to the shading normal, both positive and up to the same factor, and that between the two.
-#[inline]
+#[inline(always)]
 pub fn fading(geometric: f64, shading: f64, between: f64) -> f64 {
     let g = geometric / (shading * between);
     // A shading normal of the other side, as a bump may have, has no such horizon.

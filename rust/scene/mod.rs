@@ -18,6 +18,7 @@ mod plan;
 mod scatters;
 mod shading;
 mod spawn;
+mod surface_lanes;
 mod surface_point;
 pub mod textures;
 mod view;
@@ -34,14 +35,15 @@ pub use geometry::{
     check_transforms, rounded,
 };
 pub(crate) use interaction::fading;
-pub use interaction::{Interaction, Scattered};
+pub use interaction::{Interaction, InteractionLanes, Scattered};
 pub use lights::{
-    ConstantEnvironment, DirectionalLight, EnvironmentMap, Light, LightBounds, LightSample, Lights, Picture,
-    PointLight, Profile, Projector, Reach, Receiver, SpotLight, SunSky,
+    ConstantEnvironment, DirectionalLight, EnvironmentMap, Light, LightBounds, LightLanes, LightSample, Lights,
+    Picture, PointLight, Profile, Projector, Reach, Receiver, ReceiverLanes, SpotLight, SunSky,
 };
 pub use materials::{DiffuseMaterial, Material};
 pub use plan::{Kernel, Plan, PlanRow, SceneNeeds};
 pub use scatters::Scatters;
 pub use shading::{Footprint, ShadingPoint};
 pub use spawn::Departure;
+pub use surface_lanes::SurfaceLanes;
 pub use surface_point::{HitPoint, SurfacePoint};

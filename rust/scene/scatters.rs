@@ -2,7 +2,7 @@
 
 use super::materials::Scattering;
 use crate::math::DVec3;
-use crate::optics::{Bsdf, BsdfSample, Rgb};
+use crate::optics::{Bsdf, BsdfSample, Diffuse, Rgb, Scatter};
 
 /// What an encounter asks of the scattering at its point. Directions as [`Bsdf`] has them.
 pub trait Scatters {
@@ -68,6 +68,43 @@ impl Scatters for Scattering {
     #[inline]
     fn again(&self) -> Rgb {
         Self::again(self)
+    }
+}
+
+impl Scatters for Diffuse {
+    #[inline(always)]
+    fn evaluate(&self, wo: DVec3, wi: DVec3) -> (Rgb, f64) {
+        Scatter::evaluate(self, wo, wi)
+    }
+
+    #[inline(always)]
+    fn sample(&self, wo: DVec3, choice: impl FnOnce() -> f64, u: [f64; 2]) -> Option<BsdfSample> {
+        Scatter::sample(self, wo, choice, u)
+    }
+
+    #[inline(always)]
+    fn transmits(&self) -> bool {
+        false
+    }
+
+    #[inline(always)]
+    fn is_delta(&self) -> bool {
+        false
+    }
+
+    #[inline(always)]
+    fn diffuse(&self) -> Option<Rgb> {
+        Some(self.reflectance)
+    }
+
+    #[inline(always)]
+    fn roughness(&self) -> f64 {
+        Scatter::roughness(self)
+    }
+
+    #[inline(always)]
+    fn again(&self) -> Rgb {
+        Rgb::ONE
     }
 }
 

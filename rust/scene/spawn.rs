@@ -30,15 +30,27 @@ impl Departure {
     const END: f64 = 1.0 - 1.0 / (1u64 << 45) as f64;
 
     /// Where rays from a point of a surface start.
-    #[inline]
+    #[inline(always)]
     pub fn new(surface: &SurfacePoint) -> Self {
         Self::off(surface.position, surface.error, surface.normal)
     }
 
     /// Where rays start from a point of a surface of this normal, of which each coordinate is known to within `error`.
-    #[inline]
+    #[inline(always)]
     pub fn off(position: DVec3, error: f64, normal: DVec3) -> Self {
         Self { position, offset: normal * (Self::SAFETY * error) }
+    }
+
+    /// A point, and the way off its surface.
+    #[inline(always)]
+    pub(super) fn with(position: DVec3, offset: DVec3) -> Self {
+        Self { position, offset }
+    }
+
+    /// The way off the surface.
+    #[inline(always)]
+    pub(super) fn offset(&self) -> DVec3 {
+        self.offset
     }
 
     /// How far around a hit of a ray, in lengths of its direction, surfaces count as one with the surface hit: rays
@@ -51,31 +63,31 @@ impl Departure {
     }
 
     /// The point itself.
-    #[inline]
+    #[inline(always)]
     pub fn position(&self) -> DVec3 {
         self.position
     }
 
     /// A point in free space.
-    #[inline]
+    #[inline(always)]
     pub const fn free(position: DVec3) -> Self {
         Self { position, offset: DVec3::ZERO }
     }
 
     /// The point a ray starts or ends at when it leaves or arrives along `direction`, which points away from here.
-    #[inline]
+    #[inline(always)]
     fn towards(&self, direction: DVec3) -> DVec3 {
         if self.offset.dot(direction) < 0.0 { self.position - self.offset } else { self.position + self.offset }
     }
 
     /// The ray that leaves along a direction.
-    #[inline]
+    #[inline(always)]
     pub fn ray(&self, direction: DVec3) -> Ray {
         Ray::new(self.towards(direction), direction)
     }
 
     /// The segment from here to there: what lies on it shadows the one from the other.
-    #[inline]
+    #[inline(always)]
     pub fn segment(&self, there: &Self) -> Ray {
         let direction = there.position - self.position;
         Ray { t_max: Self::END, ..Ray::segment(self.towards(direction), there.towards(-direction)) }

@@ -7,6 +7,7 @@
 #[cfg(target_arch = "aarch64")]
 mod arm;
 mod level;
+mod loops;
 mod pair;
 mod scalar;
 mod transpose;
@@ -16,6 +17,7 @@ mod x86;
 #[cfg(target_arch = "aarch64")]
 pub use arm::Neon;
 pub use level::{Dispatch, Kernel, Level};
+pub use loops::Loops;
 pub use pair::Pair;
 pub use scalar::Scalar;
 pub use transpose::columns_of_four;

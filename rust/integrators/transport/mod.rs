@@ -4,6 +4,7 @@ mod aiming;
 mod alive;
 mod asking;
 mod branches;
+mod diffuse;
 mod dimensions;
 mod features;
 mod nesting;

@@ -11,19 +11,20 @@ use super::shadows::{Shadows, opacity};
 use super::weights::{ROULETTE_AT_LATEST, power_heuristic, survival};
 use super::{Follow, Settings};
 use crate::integrators::{CameraSample, Worker};
-use crate::math::{DVec3, Hit, Ray};
+use crate::math::{DVec3, Hit, LANES, Ray};
 use crate::optics::{Bsdf, Rgb};
 use crate::sampling::Sampler;
 use crate::scene::textures::TexturePoint;
 use crate::scene::{
     Aim, Caustics, Departure, Footprint, Interaction, Receiver, Scattered, Scatters, Scene, SurfacePoint, is_matt,
 };
+use crate::simd::Level;
 use crate::workers::Cancel;
 use std::marker::PhantomData;
 
 /// What one thread works with, see [`Settings::worker`].
 pub(super) struct TransportWorker<'a, N> {
-    settings: Settings,
+    pub(super) settings: Settings,
     pub(super) scene: &'a Scene,
     /// That of a camera's ray.
     footprint: Footprint,
@@ -32,13 +33,18 @@ pub(super) struct TransportWorker<'a, N> {
     widths: bool,
     /// Where paths aim, if they do.
     caustics: Option<&'a Caustics>,
-    now: Queue,
-    next: Queue,
-    hits: Vec<Hit>,
+    /// Whether paths need no more of a diffuse surface than its colour.
+    pub(super) in_lanes: bool,
+    pub(super) level: Level,
+    pub(super) now: Queue,
+    pub(super) next: Queue,
+    pub(super) hits: Vec<Hit>,
+    /// The paths that have come to diffuse surfaces.
+    diffuse: Vec<u32>,
     /// The parts of rays around hits of what encloses a medium.
     windows: Vec<Ray>,
     pub(super) shadows: Shadows,
-    reuse: Reuse,
+    pub(super) reuse: Reuse,
     /// What samples find for themselves, and then what they find for sharing.
     found: Vec<Rgb>,
     features: PhantomData<N>,
@@ -72,6 +78,9 @@ impl<'a, N: Features> TransportWorker<'a, N> {
             nested: N::BAGGAGE && needs.nested,
             widths: N::BAGGAGE && needs.points.width,
             caustics: if settings.aims { scene.caustics() } else { None },
+            in_lanes: settings.are_plain() && !settings.aims && !(N::BAGGAGE && needs.points.width),
+            level: Level::current().unwrap_or(Level::Scalar),
+            diffuse: Vec::new(),
             now: Queue::default(),
             next: Queue::default(),
             hits: Vec::new(),
@@ -130,6 +139,12 @@ impl<'a, N: Features> TransportWorker<'a, N> {
                 *arriving += path.throughput * self.outside_light(&ray, &path);
                 continue;
             }
+            if !(N::BAGGAGE && (self.nested || self.masks))
+                && self.diffuse(self.scene.geometry().locate(hit.primitive).0).is_some()
+            {
+                self.diffuse.push(i as u32);
+                continue;
+            }
             let mut surface = self.scene.geometry().surface(&ray, &hit);
             let (mut outside, mut behind) = (1.0, None);
             let dimensions = Dimensions::of(path.bounce, own.branch);
@@ -152,6 +167,11 @@ impl<'a, N: Features> TransportWorker<'a, N> {
             }
             if N::BAGGAGE && self.masks && self.is_passed(&ray, &hit, &surface, &mut own, dimensions, sampler) {
                 self.pass(Ray { t_min: hit.t.next_up(), ..ray }, path, own);
+                continue;
+            }
+            if N::BAGGAGE && outside == 1.0 && self.diffuse(surface.shape).is_some() {
+                (self.hits[i], self.now.baggage[i]) = (hit, own);
+                self.diffuse.push(i as u32);
                 continue;
             }
             let baggage = if N::BAGGAGE { &own } else { &Baggage::NONE };
@@ -189,12 +209,18 @@ impl<'a, N: Features> TransportWorker<'a, N> {
                 self.scatter(vertex, sampler);
             }
         }
+        let diffuse = std::mem::take(&mut self.diffuse);
+        for which in diffuse.chunks(LANES) {
+            self.shade_diffuse(which, samples, radiance);
+        }
+        self.diffuse = diffuse;
+        self.diffuse.clear();
         std::mem::swap(&mut self.now, &mut self.next);
     }
 
     /// The index of a sample, for what a path finds for it or for sharing.
     #[inline]
-    fn own(sample: u32, samples: usize) -> usize {
+    pub(super) fn own(sample: u32, samples: usize) -> usize {
         let index = sample as usize;
         if N::SHARES && index >= samples { index - samples } else { index }
     }
@@ -250,7 +276,7 @@ impl<'a, N: Features> TransportWorker<'a, N> {
 
     /// What a surface sends back along a ray.
     #[inline]
-    fn emitted(&self, ray: &Ray, hit: &Hit, surface: &SurfacePoint, path: &Alive, baggage: &Baggage) -> Rgb {
+    pub(super) fn emitted(&self, ray: &Ray, hit: &Hit, surface: &SurfacePoint, path: &Alive, baggage: &Baggage) -> Rgb {
         let cosine = -ray.direction.dot(surface.normal);
         let emission = if N::PLAIN {
             self.scene.lights().emission(surface.shape).towards(cosine, &TexturePoint::NOWHERE)

@@ -3,6 +3,7 @@
 mod copies;
 mod facets;
 mod group;
+mod lanes;
 mod mapped;
 mod motion;
 mod per_vertex;
@@ -112,7 +113,7 @@ struct Gap {
 
 /// Bound on the error of each coordinate of a point that is computed from a triangle's corners and weights.
 #[inline(always)]
-fn error_among([a, b, c]: [DVec3; 3]) -> f64 {
+pub(in crate::scene) fn error_among([a, b, c]: [DVec3; 3]) -> f64 {
     // Weights carry up to 3 roundings, products and sums 3 more: 6 u of each term in all (pbrt 6.8.5 calls it γ₇).
     8.0 * f64::EPSILON * a.abs().max(b.abs()).max(c.abs()).max_element()
 }

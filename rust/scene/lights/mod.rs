@@ -6,6 +6,7 @@ mod constant;
 mod copied;
 mod directional;
 mod few;
+mod lanes;
 mod light;
 mod map;
 mod outside;
@@ -25,6 +26,7 @@ mod triangle;
 pub use bounds::LightBounds;
 pub use constant::ConstantEnvironment;
 pub use directional::DirectionalLight;
+pub use lanes::{LightLanes, ReceiverLanes};
 pub use light::{Light, LightSample, Reach};
 pub use map::EnvironmentMap;
 pub use picture::Picture;
@@ -65,6 +67,8 @@ pub struct Lights {
     choice: Option<Choice>,
     outside: Outside,
     few: Few,
+    /// Whether all that can be drawn are triangles that shine alike everywhere.
+    are_plain_triangles: bool,
 }
 
 impl Lights {
@@ -99,7 +103,12 @@ impl Lights {
         let choice = Choice::new(&strengths);
         let outside = Outside::new(outside, choice.is_some());
         let few = Few::new(&strengths, &pairs, outside.lights().len());
-        Self { emission, first, surfaces, copied, inside, choice, outside, few }
+        let is_plain = |&primitive: &u32| {
+            geometry.shape(primitive).is_none() && !emission[geometry.locate(primitive).0 as usize].needs().any()
+        };
+        let are_plain_triangles =
+            copied.len() == 0 && inside.is_empty() && outside.is_dark() && surfaces.iter().all(is_plain);
+        Self { emission, first, surfaces, copied, inside, choice, outside, few, are_plain_triangles }
     }
 
     /// How strong a primitive of the scene is. What no ray can hit must not shine either, and from what has no end no

@@ -19,7 +19,7 @@ impl Receiver {
     }
 
     /// Whether light from everywhere counts.
-    #[inline]
+    #[inline(always)]
     pub fn is_free(&self) -> bool {
         self.normal == DVec3::ZERO
     }

@@ -1,7 +1,8 @@
 //! Triangles that shine, as they are seen from a place.
 
 use crate::math::DVec3;
-use crate::math::turn::sin_cos;
+use crate::math::robust::greater;
+use crate::math::turn::{sin_cos, upper_angle};
 use crate::sampling::warp;
 
 /// A triangle as it is seen from a place. Where it is near, directions to it are drawn evenly by solid angle, after
@@ -14,17 +15,19 @@ pub(super) struct SeenTriangle {
     edges: [DVec3; 2],
     /// Along the normal, twice the area long.
     area: DVec3,
-    /// None where points are drawn by area.
-    spherical: Option<Spherical>,
+    /// What it is on the unit sphere, where directions are drawn.
+    spherical: Spherical,
 }
 
 /// What a near triangle is on the unit sphere.
+#[derive(Clone, Copy)]
 struct Spherical {
     /// The directions of the first two corners.
     a: DVec3,
     b: DVec3,
     /// From `a` to `b`.
     chord: DVec3,
+    /// 0 where points are drawn by area.
     solid_angle: f64,
 }
 
@@ -37,17 +40,18 @@ impl SeenTriangle {
     /// one would lose its digits, of which it has 7 here at least.
     const THIN: f64 = 1e-9;
 
-    /// As seen from a place, with `area` being the cross product of its edges.
-    #[inline]
+    /// As seen from a place.
+    #[inline(always)]
     pub fn new([a, b, c]: [DVec3; 3], place: DVec3) -> Self {
         let (corner, edges) = (a - place, [b - a, c - a]);
-        let longest = edges[0].length_squared().max(edges[1].length_squared());
+        let longest = greater(edges[0].length_squared(), edges[1].length_squared());
         let area = edges[0].cross(edges[1]);
-        let spherical = if corner.length_squared() > Self::DISTANT * Self::DISTANT * longest {
-            None
-        } else {
-            Spherical::new(corner, edges, area).filter(|s| s.solid_angle >= Self::THIN)
-        };
+        let is_distant = corner.length_squared() > Self::DISTANT * Self::DISTANT * longest;
+        let mut spherical = if is_distant { Spherical::NONE } else { Spherical::new(corner, edges, area) };
+        // Neither what is thin nor what is no number.
+        if !(spherical.solid_angle >= Self::THIN && spherical.solid_angle < f64::INFINITY) {
+            spherical.solid_angle = 0.0;
+        }
         Self { corner, edges, area, spherical }
     }
 
@@ -58,53 +62,60 @@ impl SeenTriangle {
     }
 
     /// Weights of the second and third corner of a point, drawn with [`SeenTriangle::pdf`].
-    #[inline]
+    #[inline(always)]
     pub fn sample(&self, u: [f64; 2]) -> [f64; 2] {
-        match &self.spherical {
-            None => warp::uniform_triangle(u),
-            Some(spherical) => self.meet(spherical.sample(self.edges[1], u)),
+        if self.spherical.solid_angle > 0.0 {
+            self.meet(self.spherical.sample(self.edges[1], u))
+        } else {
+            warp::uniform_triangle(u)
         }
     }
 
     /// The density in solid angle of a direction that meets it at a distance, under the cosine of an angle to its
     /// normal.
-    #[inline]
+    #[inline(always)]
     pub fn pdf(&self, distance: f64, cosine: f64) -> f64 {
-        match &self.spherical {
-            None => distance * distance / (0.5 * self.area.length() * cosine.abs()),
-            Some(spherical) => 1.0 / spherical.solid_angle,
+        let solid_angle = self.spherical.solid_angle;
+        if solid_angle > 0.0 {
+            1.0 / solid_angle
+        } else {
+            distance * distance / (0.5 * self.area.length() * cosine.abs())
         }
     }
 
     /// Where a direction meets it, as it does but for roundings (by Cramer's rule).
+    #[inline(always)]
     fn meet(&self, direction: DVec3) -> [f64; 2] {
         let [first, second] = self.edges;
         let across = direction.cross(second);
         let determinant = first.dot(across);
         let v = -self.corner.dot(across) / determinant;
         let w = -direction.dot(self.corner.cross(first)) / determinant;
-        let (v, w) = (v.max(0.0), w.max(0.0));
-        let sum = (v + w).max(1.0);
+        let (v, w) = (greater(v, 0.0), greater(w, 0.0));
+        let sum = greater(v + w, 1.0);
         [v / sum, w / sum]
     }
 }
 
 impl Spherical {
-    /// None where a corner is the place itself.
-    #[inline]
-    fn new(corner: DVec3, edges: [DVec3; 2], area: DVec3) -> Option<Self> {
+    /// That of what is distant.
+    const NONE: Self = Self { a: DVec3::ZERO, b: DVec3::ZERO, chord: DVec3::ZERO, solid_angle: 0.0 };
+
+    /// The solid angle is NaN where a corner is the place itself.
+    #[inline(always)]
+    fn new(corner: DVec3, edges: [DVec3; 2], area: DVec3) -> Self {
         let corners = [corner, corner + edges[0], corner + edges[1]];
-        let lengths = corners.map(DVec3::length);
-        let [a, b, c] = [0, 1, 2].map(|i| corners[i] / lengths[i]);
+        let lengths = [corners[0].length(), corners[1].length(), corners[2].length()];
+        let [a, b, c] = [corners[0] / lengths[0], corners[1] / lengths[1], corners[2] / lengths[2]];
         // tan(Ω/2) by van Oosterom and Strackee ("The Solid Angle of a Plane Triangle", 1983), its numerator by the
         // plane's distance.
         let determinant = corner.dot(area).abs() / (lengths[0] * lengths[1] * lengths[2]);
         let rest = 1.0 + a.dot(b) + b.dot(c) + c.dot(a);
-        let solid_angle = 2.0 * determinant.atan2(rest);
+        let solid_angle = 2.0 * upper_angle(determinant, rest);
         // 1/|b| − 1/|a|, by the difference of squares.
         let nearer = -edges[0].dot(corners[0] + corners[1]) / ((lengths[0] + lengths[1]) * lengths[0] * lengths[1]);
         let chord = edges[0] / lengths[1] + corner * nearer;
-        solid_angle.is_finite().then_some(Self { a, b, chord, solid_angle })
+        Self { a, b, chord, solid_angle }
     }
 
     /// A direction drawn evenly. The first number takes a part of the angle, bounded by an arc from `b` to a point `q`
@@ -115,7 +126,7 @@ impl Spherical {
     ///
     /// is solved by tan(φ/2) = tan(Ω'/2) (1 + a·b) / (det(a, b, t) − tan(Ω'/2) b·t). The second number goes along the
     /// arc from `b` to `q`, evenly by its height 1 − cos.
-    #[inline]
+    #[inline(always)]
     fn sample(&self, edge: DVec3, u: [f64; 2]) -> DVec3 {
         let Self { a, b, chord, solid_angle } = *self;
         let tangent = (edge - a * a.dot(edge)).normalize();
@@ -129,6 +140,6 @@ impl Spherical {
         // 1 − q·b is half the square of the chord between them.
         let height = 0.5 * arc.length_squared() * u[1];
         let side = (arc - b * b.dot(arc)).try_normalize().unwrap_or(DVec3::ZERO);
-        b * (1.0 - height) + side * (height * (2.0 - height)).max(0.0).sqrt()
+        b * (1.0 - height) + side * greater(height * (2.0 - height), 0.0).sqrt()
     }
 }

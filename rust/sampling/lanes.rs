@@ -1,0 +1,213 @@
+//! The numbers of sixteen samples at a time.
+
+use super::bits::{number, step};
+use super::sampler::Sampler;
+use super::stream::Stream;
+use super::{SamplerKind, halton, lattice, philox4x32, sobol, stratified};
+use crate::math::LANES;
+use crate::simd::{Level, Loops};
+
+/// Samples of one picture, a lane each.
+#[derive(Clone, Debug)]
+pub struct SamplerLanes {
+    kind: SamplerKind,
+    key: [u32; 2],
+    pixel: [u32; LANES],
+    sample: [u32; LANES],
+    /// Where each batch's stream starts; nothing where numbers are independent.
+    words: [[u32; 4]; LANES],
+}
+
+/// A pair a lane, each number in an array of its own.
+pub type Pairs = [[f64; LANES]; 2];
+
+impl SamplerLanes {
+    /// With samples like this one, which is in every lane.
+    pub fn new(sampler: &Sampler) -> Self {
+        let Sampler { kind, key, pixel, sample, words, .. } = *sampler;
+        Self { kind, key, pixel: [pixel; LANES], sample: [sample; LANES], words: [words; LANES] }
+    }
+
+    /// Puts a sample of the same picture into a lane.
+    #[inline(always)]
+    pub fn set(&mut self, lane: usize, sampler: &Sampler) {
+        self.pixel[lane] = sampler.pixel;
+        self.sample[lane] = sampler.sample;
+        if self.kind != SamplerKind::Independent {
+            self.words[lane] = sampler.words;
+        }
+    }
+
+    /// What [`Sampler::one`] gives for an even dimension of each lane, and [`Sampler::two`] for the one that follows.
+    #[inline]
+    pub fn one_and_two(&self, level: Level, dimensions: &[u32; LANES], one: &mut [f64; LANES], two: &mut Pairs) {
+        if self.kind == SamplerKind::Independent {
+            level.compiled(Independent { lanes: self, dimensions, one, two });
+            return;
+        }
+        self.one(level, dimensions, one);
+        self.two(level, &dimensions.map(|dimension| dimension + 1), two);
+    }
+
+    /// What [`Sampler::one`] gives for a dimension of each lane.
+    #[inline]
+    pub fn one(&self, level: Level, dimensions: &[u32; LANES], to: &mut [f64; LANES]) {
+        level.compiled(Ones { lanes: self, dimensions, to });
+    }
+
+    /// What [`Sampler::two`] gives for a dimension of each lane.
+    #[inline]
+    pub fn two(&self, level: Level, dimensions: &[u32; LANES], to: &mut Pairs) {
+        level.compiled(Twos { lanes: self, dimensions, to });
+    }
+
+    #[inline(always)]
+    fn block(&self, lane: usize, dimension: u32) -> [u32; 4] {
+        philox4x32([dimension / 2, self.sample[lane], self.pixel[lane], 0], self.key)
+    }
+}
+
+#[inline(always)]
+fn joined(low: u32, high: u32) -> u64 {
+    u64::from(high) << 32 | u64::from(low)
+}
+
+/// Both halves of a block of independent numbers.
+struct Independent<'a> {
+    lanes: &'a SamplerLanes,
+    dimensions: &'a [u32; LANES],
+    one: &'a mut [f64; LANES],
+    two: &'a mut Pairs,
+}
+
+impl Loops for Independent<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        for i in 0..LANES {
+            let [a, b, c, d] = self.lanes.block(i, self.dimensions[i]);
+            self.one[i] = number(joined(a, b));
+            self.two[0][i] = step(c);
+            self.two[1][i] = step(d);
+        }
+    }
+}
+
+struct Ones<'a> {
+    lanes: &'a SamplerLanes,
+    dimensions: &'a [u32; LANES],
+    to: &'a mut [f64; LANES],
+}
+
+impl Loops for Ones<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Self { lanes, dimensions, to } = self;
+        macro_rules! each {
+            ($one:expr) => {
+                for i in 0..LANES {
+                    to[i] = number($one(Stream::new(lanes.words[i]), lanes.sample[i], dimensions[i]));
+                }
+            };
+        }
+        match lanes.kind {
+            SamplerKind::Independent => {
+                for i in 0..LANES {
+                    let [a, b, c, d] = lanes.block(i, dimensions[i]);
+                    let is_even = dimensions[i] % 2 == 0;
+                    to[i] = number(if is_even { joined(a, b) } else { joined(c, d) });
+                }
+            }
+            SamplerKind::Stratified(size) => each!(|s, i, d| stratified::one(size, s, i, d)),
+            SamplerKind::Halton(size) => each!(|s, i, d| halton::one(size, s, i, d)),
+            SamplerKind::Sobol(size) => each!(|s, i, d| sobol::one(size, s, i, d)),
+            SamplerKind::Lattice(size) => each!(|s, i, d| lattice::one(size, s, i, d)),
+        }
+    }
+}
+
+struct Twos<'a> {
+    lanes: &'a SamplerLanes,
+    dimensions: &'a [u32; LANES],
+    to: &'a mut Pairs,
+}
+
+impl Loops for Twos<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Self { lanes, dimensions, to } = self;
+        macro_rules! each {
+            ($two:expr) => {
+                for i in 0..LANES {
+                    let [a, b] = $two(Stream::new(lanes.words[i]), lanes.sample[i], dimensions[i]);
+                    (to[0][i], to[1][i]) = (step(a), step(b));
+                }
+            };
+        }
+        match lanes.kind {
+            SamplerKind::Independent => {
+                for i in 0..LANES {
+                    let [a, b, c, d] = lanes.block(i, dimensions[i]);
+                    let is_even = dimensions[i] % 2 == 0;
+                    let (first, second) = if is_even { (a, b) } else { (c, d) };
+                    (to[0][i], to[1][i]) = (step(first), step(second));
+                }
+            }
+            SamplerKind::Stratified(size) => each!(|s, i, d| stratified::two(size, s, i, d)),
+            SamplerKind::Halton(size) => each!(|s, i, d| halton::two(size, s, i, d)),
+            SamplerKind::Sobol(size) => each!(|s, i, d| sobol::two(size, s, i, d)),
+            SamplerKind::Lattice(size) => each!(|s, i, d| lattice::two(size, s, i, d)),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::BatchSize;
+    use super::*;
+
+    #[test]
+    fn lanes_have_the_numbers_of_their_samples_at_every_level() {
+        let size = BatchSize::new(16).unwrap();
+        let kinds = [
+            SamplerKind::Independent,
+            SamplerKind::Stratified(size),
+            SamplerKind::Halton(size),
+            SamplerKind::Sobol(size),
+            SamplerKind::Lattice(size),
+        ];
+        for kind in kinds {
+            let mut samplers: [Sampler; LANES] =
+                std::array::from_fn(|i| kind.sampler(0x1234_5678_9abc, 1000 * i as u32, 7 * i as u32));
+            let mut lanes = SamplerLanes::new(&samplers[0]);
+            for (lane, sampler) in samplers.iter().enumerate() {
+                lanes.set(lane, sampler);
+            }
+            for level in Level::ALL.into_iter().filter(|level| level.is_available()) {
+                for first in [0, 4, 1 << 31] {
+                    let dimensions = std::array::from_fn(|i| first + 2 * (i as u32 % 5));
+                    let (mut one, mut two) = ([0.0; LANES], [[0.0; LANES]; 2]);
+                    lanes.one_and_two(level, &dimensions, &mut one, &mut two);
+                    for (lane, sampler) in samplers.iter_mut().enumerate() {
+                        assert_eq!(one[lane], sampler.one(dimensions[lane]), "{kind:?} {level:?}");
+                        assert_eq!([two[0][lane], two[1][lane]], sampler.two(dimensions[lane] + 1));
+                    }
+                    for odd in [0, 1] {
+                        let dimensions = dimensions.map(|dimension| dimension + odd);
+                        lanes.one(level, &dimensions, &mut one);
+                        lanes.two(level, &dimensions, &mut two);
+                        for (lane, sampler) in samplers.iter_mut().enumerate() {
+                            assert_eq!(one[lane], sampler.one(dimensions[lane]));
+                            assert_eq!([two[0][lane], two[1][lane]], sampler.two(dimensions[lane]));
+                        }
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,76 @@
+//! Points where rays have met surfaces, sixteen at a time.
+
+use super::{Geometry, error_among};
+use crate::accel::Primitives;
+use crate::math::{Hit, LANES, Ray, VectorLanes};
+use crate::sampling::Pairs;
+use crate::scene::SurfaceLanes;
+use crate::simd::{Level, Loops};
+
+/// Points of triangles, by their weights.
+struct Triangles<'a> {
+    corners: &'a [VectorLanes; 3],
+    uv: &'a Pairs,
+    position: &'a mut VectorLanes,
+    error: &'a mut [f64; LANES],
+}
+
+impl Loops for Triangles<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        points(self.corners, self.uv, self.position, self.error);
+    }
+}
+
+#[inline(always)]
+fn points(corners: &[VectorLanes; 3], uv: &Pairs, position: &mut VectorLanes, error: &mut [f64; LANES]) {
+    for i in 0..LANES {
+        let [a, b, c] = [corners[0].get(i), corners[1].get(i), corners[2].get(i)];
+        let [v, w] = [uv[0][i], uv[1][i]];
+        position.set(i, a * (1.0 - v - w) + b * v + c * w);
+        error[i] = error_among([a, b, c]);
+    }
+}
+
+impl Geometry {
+    /// What [`Geometry::surface`] gives for a ray and its hit, a lane each; of no copy.
+    ///
+    /// # Panics
+    /// If one is a miss.
+    pub fn surface_lanes(&self, level: Level, rays: &[Ray; LANES], hits: &[Hit; LANES], surfaces: &mut SurfaceLanes) {
+        let mut corners = [VectorLanes::ZERO; 3];
+        let mut uv = [[0.0; LANES]; 2];
+        for (lane, hit) in hits.iter().enumerate() {
+            let of_face = self.corners(hit.primitive);
+            for (corners, corner) in corners.iter_mut().zip(of_face) {
+                corners.set(lane, corner);
+            }
+            let (normal, shape) = match self.facets.get(hit.primitive) {
+                Some(facet) => (facet.normal, facet.shape),
+                None => (self.computed_normal(hit.primitive), self.located(hit.primitive).0),
+            };
+            surfaces.normal.set(lane, normal);
+            surfaces.shape[lane] = shape;
+            [uv[0][lane], uv[1][lane]] = hit.uv;
+        }
+        let SurfaceLanes { position, error, .. } = surfaces;
+        level.compiled(Triangles { corners: &corners, uv: &uv, position, error });
+        surfaces.shading_normal = surfaces.normal;
+        if !self.normals.is_empty() {
+            for (lane, hit) in hits.iter().enumerate() {
+                let [v, w] = hit.uv;
+                let normal = self.shading_normal(hit.primitive, [1.0 - v - w, v, w], surfaces.normal.get(lane));
+                surfaces.shading_normal.set(lane, normal);
+            }
+        }
+        if self.others.is_some() {
+            for (lane, hit) in hits.iter().enumerate() {
+                if self.shape(hit.primitive).is_some() {
+                    surfaces.set(lane, &self.surface(&rays[lane], hit));
+                }
+            }
+        }
+    }
+}
