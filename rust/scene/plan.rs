@@ -3,7 +3,7 @@
 use super::textures::Needs;
 use super::{Emission, Geometry, Lights, Material, Rounding};
 use crate::accel::Primitives;
-use crate::optics::Bsdf;
+use crate::optics::{Bsdf, Rgb};
 use std::borrow::Cow;
 use std::ops::BitOr;
 use std::sync::Arc;
@@ -94,6 +94,8 @@ pub struct Plan {
     few: u32,
     /// How each shape scatters, if it does so alike everywhere ([`Material::constant`]).
     constants: Vec<Option<Bsdf>>,
+    /// Of those that are diffuse, what each reflects.
+    diffuse: Vec<Option<Rgb>>,
 }
 
 /// What has less than this roughness, but does not scatter into single directions, counts as glossy. Over rougher
@@ -131,7 +133,12 @@ impl Plan {
             }
         }
         let few = if needs.scattering { lights.few() } else { 0 };
-        Self { needs, rounding, few, constants }
+        let colour = |bsdf: &Option<Bsdf>| match bsdf {
+            Some(Bsdf::Diffuse(diffuse)) => Some(diffuse.reflectance),
+            _ => None,
+        };
+        let diffuse = constants.iter().map(colour).collect();
+        Self { needs, rounding, few, constants, diffuse }
     }
 
     fn of(material: &dyn Material, emission: &Emission) -> SceneNeeds {
@@ -199,6 +206,12 @@ impl Plan {
     #[inline]
     pub fn constant(&self, shape: u32) -> Option<&Bsdf> {
         self.constants[shape as usize].as_ref()
+    }
+
+    /// What a shape reflects that scatters light by one diffuse colour everywhere.
+    #[inline]
+    pub fn diffuse(&self, shape: u32) -> Option<Rgb> {
+        self.diffuse[shape as usize]
     }
 
     /// The kernel that has what the scene needs, and the least beyond.

@@ -1,7 +1,7 @@
 //! Rays that leave a surface.
 
 use super::SurfacePoint;
-use crate::math::{DVec3, Ray};
+use crate::math::{DVec3, Ray, select};
 
 /// A point on a surface that rays leave from, or that they are sent to.
 ///
@@ -77,7 +77,8 @@ impl Departure {
     /// The point a ray starts or ends at when it leaves or arrives along `direction`, which points away from here.
     #[inline(always)]
     fn towards(&self, direction: DVec3) -> DVec3 {
-        if self.offset.dot(direction) < 0.0 { self.position - self.offset } else { self.position + self.offset }
+        let offset = select(self.offset.dot(direction) < 0.0, -self.offset, self.offset);
+        self.position + offset
     }
 
     /// The ray that leaves along a direction.

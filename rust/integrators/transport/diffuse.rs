@@ -7,7 +7,7 @@ use super::weights::{ROULETTE_AT_LATEST, power_heuristic, survival};
 use super::worker::TransportWorker;
 use crate::integrators::CameraSample;
 use crate::math::{LANES, Ray, VectorLanes};
-use crate::optics::{Bsdf, Diffuse, Rgb};
+use crate::optics::{Diffuse, Rgb};
 use crate::sampling::{Pairs, SamplerLanes};
 use crate::scene::{Interaction, InteractionLanes, LightLanes, ReceiverLanes, SurfaceLanes};
 use crate::simd::Loops;
@@ -16,7 +16,6 @@ use std::array;
 /// From rays that meet surfaces to what is known of the encounters.
 struct Meet<'a> {
     directions: &'a VectorLanes,
-    surfaces: &'a SurfaceLanes,
     reflectance: &'a VectorLanes,
     encounters: &'a mut InteractionLanes,
     receivers: &'a mut ReceiverLanes,
@@ -27,7 +26,7 @@ impl Loops for Meet<'_> {
 
     #[inline(always)]
     fn run(self) {
-        meet(self.directions, self.surfaces, self.reflectance, self.encounters, self.receivers);
+        meet(self.directions, self.reflectance, self.encounters, self.receivers);
     }
 }
 
@@ -35,13 +34,12 @@ impl Loops for Meet<'_> {
 #[allow(clippy::too_many_arguments)]
 fn meet(
     directions: &VectorLanes,
-    surfaces: &SurfaceLanes,
     reflectance: &VectorLanes,
     encounters: &mut InteractionLanes,
     receivers: &mut ReceiverLanes,
 ) {
     for i in 0..LANES {
-        let surface = surfaces.get(i);
+        let surface = encounters.surface(i);
         let scattering = Diffuse { reflectance: reflectance.get(i) };
         let ray = Ray::new(surface.position, directions.get(i));
         let here = Interaction::with(&ray, surface, (surface.shading_normal, None), scattering);
@@ -159,10 +157,7 @@ impl<N: Features> TransportWorker<'_, N> {
     /// How a shape scatters, if that is by one diffuse colour and paths need no more of it.
     #[inline]
     pub(super) fn diffuse(&self, shape: u32) -> Option<Rgb> {
-        match self.scene.plan().constant(shape) {
-            Some(Bsdf::Diffuse(diffuse)) if self.in_lanes => Some(diffuse.reflectance),
-            _ => None,
-        }
+        self.scene.plan().diffuse(shape).filter(|_| self.in_lanes)
     }
 
     /// Takes paths, at most sixteen, from their rays' hits on diffuse surfaces to their next rays.
@@ -183,7 +178,7 @@ impl<N: Features> TransportWorker<'_, N> {
         let mut goes_on = [false; LANES];
         for lane in 0..count {
             let path = &paths[lane];
-            if !self.scene.lights().emission(surfaces.shape(lane)).is_dark() {
+            if self.scene.lights().shines(surfaces.shape(lane)) {
                 let emitted = self.emitted(&rays[lane], &hits[lane], &surfaces.get(lane), path, baggage(lane));
                 radiance[path.sample as usize] += path.throughput * emitted;
             }
@@ -192,10 +187,9 @@ impl<N: Features> TransportWorker<'_, N> {
         if !goes_on.contains(&true) {
             return;
         }
-        let (mut encounters, mut receivers) = (InteractionLanes::NONE, ReceiverLanes::NONE);
+        let (mut encounters, mut receivers) = (InteractionLanes::at(&surfaces), ReceiverLanes::NONE);
         level.compiled(Meet {
             directions: &directions,
-            surfaces: &surfaces,
             reflectance: &reflectance,
             encounters: &mut encounters,
             receivers: &mut receivers,

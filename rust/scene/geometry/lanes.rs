@@ -2,7 +2,7 @@
 
 use super::{Geometry, error_among};
 use crate::accel::Primitives;
-use crate::math::{Hit, LANES, Ray, VectorLanes};
+use crate::math::{Hit, LANES, Ray, Vec3, VectorLanes};
 use crate::sampling::Pairs;
 use crate::scene::SurfaceLanes;
 use crate::simd::{Level, Loops};
@@ -42,15 +42,15 @@ impl Geometry {
     pub fn surface_lanes(&self, level: Level, rays: &[Ray; LANES], hits: &[Hit; LANES], surfaces: &mut SurfaceLanes) {
         let mut corners = [VectorLanes::ZERO; 3];
         let mut uv = [[0.0; LANES]; 2];
+        let has_facets = self.is_single() && self.facets.get(0).is_some();
         for (lane, hit) in hits.iter().enumerate() {
-            let of_face = self.corners(hit.primitive);
+            let (of_face, normal, shape) = match self.facets.get(hit.primitive) {
+                Some(facet) if has_facets => (facet.corners.map(Vec3::as_dvec3), facet.normal, facet.shape),
+                _ => (self.corners(hit.primitive), self.normal(hit.primitive), self.locate(hit.primitive).0),
+            };
             for (corners, corner) in corners.iter_mut().zip(of_face) {
                 corners.set(lane, corner);
             }
-            let (normal, shape) = match self.facets.get(hit.primitive) {
-                Some(facet) => (facet.normal, facet.shape),
-                None => (self.computed_normal(hit.primitive), self.located(hit.primitive).0),
-            };
             surfaces.normal.set(lane, normal);
             surfaces.shape[lane] = shape;
             [uv[0][lane], uv[1][lane]] = hit.uv;

@@ -26,7 +26,7 @@ use super::textures::Needs;
 use crate::accel::{Objects, Primitives, region};
 use crate::math::{DVec3, Hit, Ray, Region, Vec3};
 use crate::shapes::{Bounds, Shape, Site};
-use facets::Facets;
+use facets::{Facet, Facets};
 use per_vertex::PerVertex;
 use rayon::prelude::*;
 use std::sync::{Arc, OnceLock};
@@ -254,8 +254,17 @@ impl Geometry {
         all.dropped = all.faces.par_iter().filter(is_dropped).count();
         // Copies are many, and each shall be small.
         let faces = if all.gaps.is_empty() { all.count() } else { 0 };
-        all.facets = Facets::new(faces, |primitive| (all.computed_normal(primitive), all.located(primitive).0));
+        all.facets = Facets::new(faces, |primitive| all.facet(primitive));
         all
+    }
+
+    /// What is kept of a face where there are few.
+    fn facet(&self, primitive: u32) -> Facet {
+        let corners = match &self.vertices {
+            Vertices::Single(_) => self.corners(primitive).map(|corner| corner.as_vec3()),
+            Vertices::Double(_) => [Vec3::NAN; 3],
+        };
+        Facet { normal: self.computed_normal(primitive), corners, shape: self.located(primitive).0 }
     }
 
     /// Gives memory back that was reserved for more.

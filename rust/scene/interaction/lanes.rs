@@ -2,7 +2,7 @@
 
 use super::Interaction;
 use crate::math::{Frame, LANES, VectorLanes};
-use crate::scene::{Scatters, SurfaceLanes};
+use crate::scene::{Scatters, SurfaceLanes, SurfacePoint};
 
 /// Encounters, a lane each, but for how they scatter.
 #[derive(Clone, Debug)]
@@ -14,22 +14,26 @@ pub struct InteractionLanes {
     up: VectorLanes,
     wo: VectorLanes,
     side: [f64; LANES],
-    is_flat: [bool; LANES],
-    is_bent: [bool; LANES],
+    // Yes or no, as wide as the rest of a lane.
+    is_flat: [u64; LANES],
+    is_bent: [u64; LANES],
 }
 
 impl InteractionLanes {
-    /// With nothing.
-    pub const NONE: Self = Self {
-        surface: SurfaceLanes::NONE,
-        tangent: VectorLanes::ZERO,
-        bitangent: VectorLanes::ZERO,
-        up: VectorLanes::ZERO,
-        wo: VectorLanes::ZERO,
-        side: [0.0; LANES],
-        is_flat: [false; LANES],
-        is_bent: [false; LANES],
-    };
+    /// At these points; all else is to be set.
+    pub fn at(surface: &SurfaceLanes) -> Self {
+        let nothing = VectorLanes::ZERO;
+        Self {
+            surface: surface.clone(),
+            tangent: nothing,
+            bitangent: nothing,
+            up: nothing,
+            wo: nothing,
+            side: [0.0; LANES],
+            is_flat: [0; LANES],
+            is_bent: [0; LANES],
+        }
+    }
 
     /// The encounter of a lane, with what scatters there.
     #[inline(always)]
@@ -44,22 +48,27 @@ impl InteractionLanes {
             scattering,
             wo: self.wo.get(lane),
             side: self.side[lane],
-            is_flat: self.is_flat[lane],
-            is_bent: self.is_bent[lane],
+            is_flat: self.is_flat[lane] != 0,
+            is_bent: self.is_bent[lane] != 0,
             curvature: 0.0,
         }
     }
 
-    /// Sets the encounter of a lane.
+    /// The point of a lane.
+    #[inline(always)]
+    pub fn surface(&self, lane: usize) -> SurfacePoint {
+        self.surface.get(lane)
+    }
+
+    /// Sets the encounter of a lane, but for its point.
     #[inline(always)]
     pub fn set<S: Scatters>(&mut self, lane: usize, here: &Interaction<S>) {
-        self.surface.set(lane, &here.surface);
         self.tangent.set(lane, here.frame.tangent);
         self.bitangent.set(lane, here.frame.bitangent);
         self.up.set(lane, here.frame.normal);
         self.wo.set(lane, here.wo);
         self.side[lane] = here.side;
-        self.is_flat[lane] = here.is_flat;
-        self.is_bent[lane] = here.is_bent;
+        self.is_flat[lane] = here.is_flat.into();
+        self.is_bent[lane] = here.is_bent.into();
     }
 }

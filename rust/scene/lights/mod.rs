@@ -55,8 +55,9 @@ use std::sync::Arc;
 /// asked for.
 #[derive(Debug)]
 pub struct Lights {
-    /// How each shape shines.
+    /// How each shape shines, and whether it does.
     emission: Vec<Emission>,
+    shines: Vec<bool>,
     /// For each shape, the number of its first primitive among lights; it means nothing for one that is dark.
     first: Vec<u32>,
     /// The primitives that emit.
@@ -108,7 +109,8 @@ impl Lights {
         };
         let are_plain_triangles =
             copied.len() == 0 && inside.is_empty() && outside.is_dark() && surfaces.iter().all(is_plain);
-        Self { emission, first, surfaces, copied, inside, choice, outside, few, are_plain_triangles }
+        let shines = emission.iter().map(|emission| !emission.is_dark()).collect();
+        Self { emission, shines, first, surfaces, copied, inside, choice, outside, few, are_plain_triangles }
     }
 
     /// How strong a primitive of the scene is. What no ray can hit must not shine either, and from what has no end no
@@ -130,6 +132,7 @@ impl Lights {
     /// The memory held.
     pub fn bytes(&self) -> usize {
         size_of_val(self.emission.as_slice())
+            + size_of_val(self.shines.as_slice())
             + size_of_val(self.first.as_slice())
             + size_of_val(self.surfaces.as_slice())
             + self.copied.bytes()
@@ -143,6 +146,12 @@ impl Lights {
     #[inline]
     pub fn emission(&self, shape: u32) -> &Emission {
         &self.emission[shape as usize]
+    }
+
+    /// Whether a shape shines.
+    #[inline]
+    pub fn shines(&self, shape: u32) -> bool {
+        self.shines[shape as usize]
     }
 
     /// Radiance that comes from outside along a unit direction, of all lights there.
