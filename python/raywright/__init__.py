@@ -55,6 +55,7 @@ from .rendering.filters import (
     TriangleFilter,
 )
 from .rendering.image import ErrorEstimate, Image
+from .rendering.plan import Choice, RenderPlan
 from .rendering.render import render
 from .rendering.samplers import Halton, Independent, Lattice, Sobol, Stratified
 from .rendering.shot import Shot
@@ -100,6 +101,7 @@ __all__ = [
     "BumpMap",
     "Camera",
     "Checker",
+    "Choice",
     "ClosestPoints",
     "Conductor",
     "Cone",
@@ -166,6 +168,7 @@ __all__ = [
     "QueryCost",
     "RayCast",
     "Rays",
+    "RenderPlan",
     "Rng",
     "Scattered",
     "Scene",

@@ -39,6 +39,7 @@ __all__ = [
     "simd",
     "singular_transform",
     "spectrum_rgb",
+    "student",
 ]
 
 def simd() -> str:
@@ -238,7 +239,8 @@ class Rendering:
     @property
     def rgb(self) -> NDArray[np.float32]: ...
     @property
-    def standard_error(self) -> NDArray[np.float32]: ...
+    def uncertainty(self) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.float32]] | None:
+        """Standard error (H,W,3), the same by pixels around too, and degrees (H,W); None where unknown."""
     @property
     def error(self) -> tuple[float, float, float]:
         """Estimate of relMSE, and the low and high end of its 95 % interval; NaN where unknown."""
@@ -332,6 +334,9 @@ class Rendering:
         """Add the samples that `expose` took."""
 
 VERSION: str
+
+def student(level: float, degrees: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return how many standard errors either way hold a mean in so many cases, by degrees of freedom."""
 
 def patch(scene: CompiledScene, integrator: Any) -> int:
     """Return the side of the square patches of pixels whose samples an integrator takes together."""

@@ -74,7 +74,7 @@ mod _core {
     #[pymodule_export]
     use super::random::random_numbers;
     #[pymodule_export]
-    use super::render::{Rendering, expose, patch};
+    use super::render::{Rendering, expose, patch, student};
     #[pymodule_export]
     use super::report::KernelContest;
     #[pymodule_export]

@@ -70,9 +70,22 @@ impl Rendering {
     fn rgb<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f32>>> {
         self.picture(py, self.0.rgb())
     }
+    /// The standard error of each pixel, the same as far as pixels around tell of it, and degrees of freedom of that;
+    /// `None` where there are too few samples to say.
     #[getter]
-    fn standard_error<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f32>>> {
-        self.picture(py, self.0.standard_error())
+    #[allow(clippy::type_complexity)]
+    fn uncertainty<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> PyResult<Option<(Bound<'py, PyArray3<f32>>, Bound<'py, PyArray3<f32>>, Bound<'py, PyArray2<f32>>)>> {
+        let Some(known) = py.detach(|| self.0.uncertainty()) else { return Ok(None) };
+        let (width, height) = (self.0.film.width() as usize, self.0.film.height() as usize);
+        let degrees = known.degrees.into_iter().map(|degrees| degrees as f32).collect();
+        Ok(Some((
+            self.picture(py, render::roots(known.variances))?,
+            self.picture(py, render::roots(known.pooled))?,
+            numpy::PyArray1::from_vec(py, degrees).reshape([height, width])?,
+        )))
     }
     #[getter]
     fn error(&self) -> (f64, f64, f64) {
@@ -250,6 +263,17 @@ impl Chosen {
     fn written(&self) -> Option<&Written> {
         if let Self::Written(written) = self { Some(written) } else { None }
     }
+}
+
+/// How many standard errors either way hold a mean in a share of all cases, for each of these degrees of freedom.
+#[pyfunction]
+pub fn student<'py>(
+    py: Python<'py>,
+    level: f64,
+    degrees: numpy::PyReadonlyArray1<'py, f64>,
+) -> Bound<'py, numpy::PyArray1<f64>> {
+    let quantiles = degrees.as_array().iter().map(|&degrees| render::quantile(level, degrees)).collect();
+    numpy::PyArray1::from_vec(py, quantiles)
 }
 
 /// The side of the patches of pixels whose samples an integrator takes together.

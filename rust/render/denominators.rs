@@ -53,33 +53,33 @@ pub(super) struct Denominators {
 
 impl Denominators {
     /// From the brightness of a cross of pixels, the first the one in the middle, and the variance of that one's mean,
-    /// which is of so many batches.
+    /// which is of so many samples.
     #[inline]
-    pub fn new(cross: &[Rgb; 5], variance: Rgb, batches: f64) -> Self {
+    pub fn new(cross: &[Rgb; 5], variance: Rgb, samples: f64) -> Self {
         let [mean, a, b, c, d] = *cross;
-        let leeway = 5.0 / batches.sqrt();
+        let leeway = 5.0 / samples.sqrt();
         let off = Rgb::new(variance.x.sqrt(), variance.y.sqrt(), variance.z.sqrt()) * leeway;
         // The middle two of four: the larger of the two smaller, and the smaller of the two larger; then in order.
         let (low, high) = (a.min(b).max(c.min(d)), a.max(b).min(c.max(d)));
         let (low, high) = (low.min(high), low.max(high));
-        let middle = if batches < 16.0 { (low + high) / 2.0 } else { mean.max(low).min(high) };
+        let middle = if samples < 16.0 { (low + high) / 2.0 } else { mean.max(low).min(high) };
         let likely = middle.max(mean - off).min(mean + off);
         let by_itself = mean * mean + FLOOR;
         Self { inverse: (likely * likely + FLOOR).max(by_itself / 4.0).recip(), own: by_itself.recip() }
     }
 
-    /// For what comes from the batch that stands out most in the pixel, whose mean is `without` if that one is left
+    /// For what comes from the sample that stands out most in the pixel, whose mean is `without` if that one is left
     /// out. `around` is the mean of the pixels around.
     ///
-    /// A bright batch that is one of few makes its pixel's mean larger as well, and would divide its own error: where
+    /// A bright sample that is one of few makes its pixel's mean larger as well, and would divide its own error: where
     /// light is found by one sample of a pixel, an error of 1 or 100 would pass for 1/n. So where the mean hangs on one
-    /// batch, that is weighed by what the others say (leave one out). It is believed as far as it has witnesses: the
+    /// sample, that is weighed by what the others say (leave one out). It is believed as far as it has witnesses: the
     /// pixels around, next to a lamp or in a caustic; or the whole picture, if what is as bright is mostly seen again
     /// ([`Chance`]). Without them its denominator is that of the others alone, which is much too small for a lamp that
     /// is smaller than a pixel. So errors are largest as the pixels around alone have it, and least by the most that
     /// the picture says.
     #[inline]
-    pub fn of_peak(&self, mean: Rgb, without: Rgb, around: Rgb, chance: &Chance, batches: f64) -> Peak {
+    pub fn of_peak(&self, mean: Rgb, without: Rgb, around: Rgb, chance: &Chance, samples: f64) -> Peak {
         let (low, high) = (mean.min(without), mean.max(without));
         let squared = |likely: Rgb| {
             let likely = likely.max(low).min(high);
@@ -87,7 +87,7 @@ impl Denominators {
         };
         let confirmed = |chance: f64| squared(around.max(without + (mean - without) * chance));
         let others = without.max(around);
-        let alone = self.own.cmplt((others * others + FLOOR).recip() / hangs(batches));
+        let alone = self.own.cmplt((others * others + FLOOR).recip() / hangs(samples));
         let or = |bold: Rgb, plain: Rgb| Rgb::select(alone, bold.max(plain), plain);
         Peak {
             likely: or(confirmed(chance.likely), self.inverse),
@@ -97,13 +97,13 @@ impl Denominators {
     }
 }
 
-/// A mean hangs on one of so many batches if its square, and what is added, is larger by this factor than the batches
-/// without that one make it, and the pixels around. Of a few batches of any kind one is by far the largest.
-fn hangs(batches: f64) -> f64 {
-    (1.0 + 8.0 / batches).powi(2).max(2.0)
+/// A mean hangs on one of so many samples if its square, and what is added, is larger by this factor than the samples
+/// without that one make it, and the pixels around. Of a few samples of any kind one is by far the largest.
+fn hangs(samples: f64) -> f64 {
+    (1.0 + 8.0 / samples).powi(2).max(2.0)
 }
 
-/// One over what is to stand below what a single batch brings: the likely one, and those that make the error least and
+/// One over what is to stand below what a single sample brings: the likely one, and those that make the error least and
 /// largest.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Peak {

@@ -8,7 +8,8 @@ use rayon::prelude::*;
 /// The samples of a picture so far: for each pixel and channel their sum, and what it takes to know its error.
 ///
 /// The error comes from the spread of *batches* of samples that are independent of each other. A batch is one sample
-/// where all are independent, and several where they are placed with regard to each other.
+/// where all are independent, and several where they are placed with regard to each other. What single samples are like
+/// is kept as well: it tells of what is rare, and of the error while there are no two batches.
 ///
 /// A film may be in halves: each pixel then has two *cells*, whose samples are independent of each other and may differ
 /// in number, and the pixel is the mean of the two cells' means. What a film in halves is good for is told in
@@ -37,22 +38,29 @@ pub struct Film {
 /// What is known of a pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Spread {
-    /// Batches of samples.
-    pub batches: f64,
+    /// How many samples.
+    pub samples: f64,
     /// The estimated variance of its mean.
     pub variance: Rgb,
-    /// The largest batch of each cell; of all zeros where there is no cell.
+    /// What that would be if samples were independent of each other.
+    pub alone: Rgb,
+    /// Degrees of freedom of the variance: batches but for one of each cell, 0 where it is that of single samples.
+    pub degrees: f64,
+    /// The largest sample of each cell; of all zeros where there is no cell.
     pub peaks: [Outlier; 2],
 }
 
-/// The largest batch of a cell.
+/// The largest sample of a cell.
+///
+/// What is rare is found by one sample of a batch, whatever places the others of that. So its weight is told by samples,
+/// and is as well known from few batches as from many.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Outlier {
-    /// What of the variance of the pixel's mean comes from it.
+    /// What of the variance of the pixel's mean comes from it: all, at most.
     pub variance: Rgb,
     /// The mean of the pixel without it.
     pub without: Rgb,
-    /// Its largest channel, as of one sample.
+    /// Its largest channel.
     pub brightness: f64,
     /// How many more of its size would make up for the squares of the others.
     pub again: f64,
@@ -265,18 +273,23 @@ impl Film {
         self.pixels(|cells| cells.iter().map(|cell| cell.count).sum())
     }
 
-    /// Batches in the cell that has the fewest.
-    pub(super) fn fewest_batches(&self) -> u32 {
-        self.tiles.iter().map(FilmTile::fewest).min().unwrap_or(0) / self.batch
+    /// Samples of the cell that has the fewest.
+    pub(super) fn fewest(&self) -> u32 {
+        self.tiles.iter().map(FilmTile::fewest).min().unwrap_or(0)
     }
 
-    /// The estimated variance of each pixel's mean, unbiased; `None` where a pixel has fewer than two batches, which
-    /// say nothing of it.
+    /// The estimated variance of each pixel's mean: unbiased from two batches on, and before that, where samples are
+    /// taken for independent, too large if anything; `None` where a cell has fewer than two samples, which say nothing.
     pub fn variances(&self) -> Option<Vec<Rgb>> {
-        (self.fewest_batches() >= 2).then(|| self.pixels(|cells| self.spread(cells).variance))
+        Some(self.all_spreads()?.iter().map(|spread| spread.variance).collect())
     }
 
-    /// What is known of the pixels of a row, each of which has two batches at least.
+    /// What is known of each pixel; `None` where a cell has fewer than two samples.
+    pub(super) fn all_spreads(&self) -> Option<Vec<Spread>> {
+        (self.fewest() >= 2).then(|| self.pixels(|cells| self.spread(cells)))
+    }
+
+    /// What is known of the pixels of a row, each cell of which has two samples at least.
     pub(super) fn spreads(&self, y: u32, row: &mut [Spread]) {
         self.row(y, row, |cells| self.spread(cells));
     }
@@ -284,29 +297,38 @@ impl Film {
     fn spread(&self, cells: &[Cell]) -> Spread {
         let mut spread = Spread::default();
         let mean = average(cells, |cell| cell.sum / f64::from(cell.count.max(1)));
+        // The variance of the mean of halves is a quarter of the sum of theirs.
+        let cells_squared = cells.len().pow(2) as f64;
         for (cell, peak) in cells.iter().zip(&mut spread.peaks) {
-            let batches = f64::from(cell.count / self.batch);
-            // A batch that is not full yet is not in the squares; the spread of those that are says what a sample is
-            // worth.
-            let sum = cell.sum - cell.unfinished;
-            // The variance of the mean of halves is a quarter of the sum of theirs.
-            let degrees = (batches - 1.0) * f64::from(self.batch) * f64::from(cell.count) * (cells.len().pow(2) as f64);
-            // Where all samples agree, rounding may leave less than nothing.
-            let variance = ((cell.squares - sum * sum / batches) / degrees).max(Rgb::ZERO);
-            let off = cell.largest - sum / batches;
-            let others = sum - cell.largest;
-            let squares = cell.squares - cell.largest * cell.largest - others * others / (batches - 1.0);
-            let above = cell.largest - others / (batches - 1.0);
             let count = f64::from(cell.count);
-            let without = (cell.sum - cell.largest) / (count - f64::from(self.batch)) - cell.sum / count;
+            let others = cell.sum - cell.largest;
+            let degrees = (count - 1.0) * count * cells_squared;
+            // Where all samples agree, rounding may leave less than nothing.
+            let alone = ((cell.singles - cell.sum * cell.sum / count) / degrees).max(Rgb::ZERO);
+            let batches = cell.count / self.batch;
+            let variance = if batches < 2 || self.batch == 1 {
+                alone
+            } else {
+                // A batch that is not full yet is not in the squares; the spread of those that are says what a sample
+                // is worth.
+                let (batches, sum) = (f64::from(batches), cell.sum - cell.unfinished);
+                let degrees = (batches - 1.0) * f64::from(self.batch) * count * cells_squared;
+                ((cell.squares - sum * sum / batches) / degrees).max(Rgb::ZERO)
+            };
+            let off = cell.largest - cell.sum / count;
+            let squares = cell.singles - cell.largest * cell.largest - others * others / (count - 1.0);
+            let above = cell.largest - others / (count - 1.0);
+            let without = others / (count - 1.0) - cell.sum / count;
             *peak = Outlier {
                 variance: (off * off / degrees).min(variance),
                 without: mean + without / cells.len() as f64,
-                brightness: cell.largest.abs().max_element() / f64::from(self.batch),
+                brightness: cell.largest.abs().max_element(),
                 again: squares.element_sum() / above.length_squared().max(f64::MIN_POSITIVE),
             };
             spread.variance += variance;
-            spread.batches += batches;
+            spread.alone += alone;
+            spread.samples += count;
+            spread.degrees += f64::from(batches.max(1) - 1);
         }
         spread
     }
@@ -404,13 +426,15 @@ mod tests {
             let (mean, variance, _) = textbook(&green, batch as usize);
             assert!((film.means()[1].y / mean - 1.0).abs() < 1e-14);
             assert!((film.variances().unwrap()[1].y / variance - 1.0).abs() < 1e-12);
-            // The largest batch is the one with the largest channel: all of them, if all are alike.
+            // The largest sample is the one with the largest channel: all of them, if all are alike.
             let mut grey = film_of(&green, batch);
             let mut row = [Spread::default()];
             grey.spreads(0, &mut row);
-            let (_, _, peak) = textbook(&green, batch as usize);
-            assert!((row[0].peaks[0].variance.x / peak - 1.0).abs() < 1e-12);
+            let (_, alone, peak) = textbook(&green, 1);
+            assert!((row[0].peaks[0].variance.x / peak.min(variance) - 1.0).abs() < 1e-12);
             assert!((row[0].variance.x / variance - 1.0).abs() < 1e-12);
+            assert!((row[0].alone.x / alone - 1.0).abs() < 1e-12);
+            assert_eq!(row[0].degrees, f64::from(48 / batch - 1));
             grey.append(&grey.clone());
             assert_eq!(grey.tiles()[0].cell(0).count, 96);
         }
@@ -432,6 +456,18 @@ mod tests {
         assert!((film.means()[0].y / (green.iter().sum::<f64>() / 21.0) - 1.0).abs() < 1e-14);
         let (_, of_sixteen, _) = textbook(&green, 8);
         assert!((film.variances().unwrap()[0].y / (of_sixteen * 16.0 / 21.0) - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn before_there_are_two_batches_samples_speak_for_themselves() {
+        let mut film = film(1, 1, 16, 8);
+        expose(&mut film, 0, 15);
+        let green: Vec<f64> = (0..15).map(|n| sample(0, n).y).collect();
+        let (_, alone, _) = textbook(&green, 1);
+        assert!((film.variances().unwrap()[0].y / alone - 1.0).abs() < 1e-12);
+        let mut row = [Spread::default()];
+        film.spreads(0, &mut row);
+        assert_eq!((row[0].degrees, row[0].samples), (0.0, 15.0));
     }
 
     #[test]
@@ -495,15 +531,15 @@ mod tests {
 
     #[test]
     fn what_is_not_asked_for_takes_no_memory() {
-        // A count, five colours; a colour more where samples belong together, two where they are clamped. Halves double
-        // all, and have evidence: two colours and a count.
+        // A count, five colours; three colours more where samples belong together, two where they are clamped. Halves
+        // double all, and have evidence: two colours and a count.
         let (count, colour) = (size_of::<u32>(), size_of::<Rgb>());
         for (batch, halves, clamp, each) in [
             (1, false, None, count + 5 * colour),
-            (8, false, None, count + 6 * colour),
+            (8, false, None, count + 8 * colour),
             (1, false, Some(1.0), count + 7 * colour),
             (1, true, None, 2 * (2 * count + 7 * colour)),
-            (64, true, Some(1.0), 2 * (2 * count + 10 * colour)),
+            (64, true, Some(1.0), 2 * (2 * count + 12 * colour)),
         ] {
             let mut film = Film::new(13, 7, 4, batch, halves, clamp);
             assert_eq!(film.bytes(), 13 * 7 * each);

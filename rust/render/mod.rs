@@ -10,12 +10,14 @@ mod outliers;
 mod part;
 #[cfg(test)]
 mod patches;
+mod pooled;
 mod progress;
 mod rendering;
 mod run;
 mod schedule;
 mod settings;
 mod sightings;
+mod student;
 mod tile;
 mod tiles;
 
@@ -24,9 +26,11 @@ pub use error::ErrorEstimate;
 pub use film::Film;
 pub use outliers::Carried;
 pub use part::Request;
+pub use pooled::Uncertainty;
 pub use progress::{Progress, Quiet};
-pub use rendering::{HistoryRow, Rendering};
+pub use rendering::{HistoryRow, Rendering, roots};
 pub use run::{RenderError, go_on, render};
 pub use schedule::Until;
 pub use settings::Settings;
+pub use student::quantile;
 pub use tile::FilmTile;

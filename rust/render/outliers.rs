@@ -3,7 +3,7 @@
 /// The few samples that carry most of an estimated error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Carried {
-    /// How many: batches, where samples belong together.
+    /// How many.
     pub samples: u32,
     /// Their share of the estimate, above one half.
     pub share: f64,
@@ -16,7 +16,7 @@ const FEW: usize = 8;
 
 /// The largest of many numbers, from the largest down.
 ///
-/// Only the largest batch of each cell is looked at. That is enough: an outlier is one of few in all of the picture,
+/// Only the largest sample of each cell is looked at. That is enough: an outlier is one of few in all of the picture,
 /// and two of them are hardly ever in the same cell.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Largest([f64; FEW]);

@@ -3,6 +3,7 @@
 use super::adaptive::Adaptive;
 use super::bytes::{Malformed, Reader, Writer, check};
 use super::error::estimate;
+use super::pooled::{Uncertainty, uncertainty};
 use super::tile::FilmTile;
 use super::tiles::Goal;
 use super::{ErrorEstimate, Film, Until};
@@ -50,10 +51,15 @@ impl Rendering {
         single(self.film.means())
     }
 
+    /// How uncertain each pixel is; `None` if it has too few samples to say.
+    pub fn uncertainty(&self) -> Option<Uncertainty> {
+        uncertainty(&self.film)
+    }
+
     /// The standard error of each pixel; NaN if it has too few samples to say.
     pub fn standard_error(&self) -> Vec<[f32; 3]> {
         match self.film.variances() {
-            Some(variances) => single(variances.into_iter().map(|v| v.map(f64::sqrt)).collect()),
+            Some(variances) => roots(variances),
             None => vec![[f32::NAN; 3]; self.film.pixel_count()],
         }
     }
@@ -152,10 +158,10 @@ impl Rendering {
     /// How many bytes [`Rendering::to_bytes`] gives at most, for a film of this size and with a history of a million
     /// passes.
     pub fn most_bytes(width: u32, height: u32, halves: bool) -> usize {
-        // Of a cell 33 numbers of 8 bytes and 4 of 4, and as much again for what stands before them in the smallest
+        // Of a cell 39 numbers of 8 bytes and 4 of 4, and as much again for what stands before them in the smallest
         // tile.
         let cells = width as usize * height as usize * if halves { 2 } else { 1 };
-        cells * 2 * (33 * 8 + 4 * 4) + 20_000_000 + 1024
+        cells * 2 * (39 * 8 + 4 * 4) + 20_000_000 + 1024
     }
 
     /// From what [`Rendering::to_bytes`] gave for a film of the same size, batches, halves, clamping and patches,
@@ -213,6 +219,11 @@ impl Rendering {
 
 fn step(before: &HistoryRow, after: &HistoryRow) -> f64 {
     (after.seconds - before.seconds) / f64::from(after.samples - before.samples)
+}
+
+/// Roots, in single precision.
+pub fn roots(variances: Vec<Rgb>) -> Vec<[f32; 3]> {
+    single(variances.into_iter().map(|variance| variance.map(f64::sqrt)).collect())
 }
 
 fn single(pixels: Vec<Rgb>) -> Vec<[f32; 3]> {

@@ -1,9 +1,9 @@
 //! How often bright samples are seen again.
 
-/// The cells of a picture whose brightest batch stands out, by how bright that is and whether the cell has another.
+/// The cells of a picture whose brightest sample stands out, by how bright that is and whether the cell has another.
 ///
-/// A pixel with one bright batch may lie on the edge of a lamp, where many of its samples would be as bright, or have
-/// met what almost none does. It cannot tell, but all pixels together can. If bright batches come to a cell as rare
+/// A pixel with one bright sample may lie on the edge of a lamp, where many of its samples would be as bright, or have
+/// met what almost none does. It cannot tell, but all pixels together can. If bright samples come to a cell as rare
 /// events do, λ of them on average, cells with one and with two of them are as many as tells of it: of those with one,
 /// λ is twice the number of those with two over the number of those with one (Good, "The Population Frequencies of
 /// Species and the Estimation of Population Parameters", 1953, who credits Turing). What is rare differs by how bright
@@ -15,7 +15,7 @@ pub(super) struct Sightings([[u64; 2]; OCTAVES + 2]);
 /// last. One more at either end has nothing in it.
 const OCTAVES: usize = 96;
 
-/// How many batches as bright as its brightest a cell may have on average, of those that have one: 1 if each is as
+/// How many samples as bright as its brightest a cell may have on average, of those that have one: 1 if each is as
 /// bright as it says, and 0 if nothing so bright is to come again.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Chance {
@@ -32,7 +32,7 @@ impl Default for Sightings {
 }
 
 impl Sightings {
-    /// Counts a cell in: the brightness of its brightest batch, and the squares of what is left without it over that
+    /// Counts a cell in: the brightness of its brightest sample, and the squares of what is left without it over that
     /// one's, which is how many more of the same size would make them.
     #[inline]
     pub fn add(&mut self, brightness: f64, again: f64) {
@@ -53,7 +53,7 @@ impl Sightings {
         }
     }
 
-    /// The chances of batches of each octave.
+    /// The chances of samples of each octave.
     pub fn chances(&self) -> Chances {
         Chances(std::array::from_fn(|octave| {
             let around = if octave == 0 { &self.0[..2] } else { &self.0[octave - 1..(octave + 2).min(OCTAVES + 2)] };
@@ -72,7 +72,7 @@ impl Sightings {
 pub(super) struct Chances([Chance; OCTAVES + 2]);
 
 impl Chances {
-    /// Of batches as bright as that.
+    /// Of samples as bright as that.
     #[inline]
     pub fn of(&self, brightness: f64) -> &Chance {
         &self.0[octave(brightness)]
@@ -114,7 +114,7 @@ mod tests {
 
     #[test]
     fn finds_how_rare_events_are() {
-        // Cells of 64 batches, each of which is bright with a chance of λ/64: those that are bright once shall know λ.
+        // Cells of 64 samples, each of which is bright with a chance of λ/64: those that are bright once shall know λ.
         for lambda in [0.02, 0.1, 0.5] {
             let mut sightings = Sightings::default();
             for cell in 0..20_000u32 {

@@ -35,8 +35,10 @@ pub struct FilmTile {
     total: Vec<Moments>,
     /// The block that is being filled.
     partial: Vec<Moments>,
-    /// The sum of the largest batch, by its largest channel.
+    /// The largest sample, by its largest channel.
     largest: Vec<Rgb>,
+    /// Squares of samples of whole blocks, and of the one that is being filled; empty if each sample is a batch.
+    singles: Vec<[Rgb; 2]>,
     /// The batch that is being filled; empty if each sample is one.
     unfinished: Vec<Rgb>,
     /// What clamping took from whole blocks, and from the one that is being filled; empty without.
@@ -54,6 +56,8 @@ pub(super) struct Cell {
     pub count: u32,
     pub sum: Rgb,
     pub squares: Rgb,
+    /// The sum of the squares of samples.
+    pub singles: Rgb,
     pub largest: Rgb,
     pub unfinished: Rgb,
     pub taken: Rgb,
@@ -80,6 +84,7 @@ impl FilmTile {
             total: vec![Moments::default(); cells],
             partial: vec![Moments::default(); cells],
             largest: vec![Rgb::ZERO; cells],
+            singles: vec![[Rgb::ZERO; 2]; if_any(batch > 1)],
             unfinished: vec![Rgb::ZERO; if_any(batch > 1)],
             taken: vec![[Rgb::ZERO; 2]; if_any(clamp.is_some())],
             evidence: vec![(Rgb::ZERO, Rgb::ZERO); if_any(halves)],
@@ -146,19 +151,22 @@ impl FilmTile {
         let batch = if self.batch == 1 {
             Some(sample)
         } else {
+            self.singles[cell][1] += sample * sample;
             let unfinished = &mut self.unfinished[cell];
             *unfinished += sample;
             (number + 1).is_multiple_of(self.batch).then(|| std::mem::take(unfinished))
         };
         if let Some(batch) = batch {
             partial.squares += batch * batch;
-            keep_largest(&mut self.largest[cell], batch);
         }
+        keep_largest(&mut self.largest[cell], sample);
         if (number + 1).is_multiple_of(Self::BLOCK.max(self.batch)) {
             self.total[cell].add(partial);
             *partial = Moments::default();
-            if let Some([whole, now]) = self.taken.get_mut(cell) {
-                *whole += std::mem::take(now);
+            for pairs in [&mut self.taken, &mut self.singles] {
+                if let Some([whole, now]) = pairs.get_mut(cell) {
+                    *whole += std::mem::take(now);
+                }
             }
         }
     }
@@ -186,7 +194,7 @@ impl FilmTile {
         self.counts.capacity() * size_of::<u32>()
             + (self.total.capacity() + self.partial.capacity()) * size_of::<Moments>()
             + (self.largest.capacity() + self.unfinished.capacity()) * size_of::<Rgb>()
-            + self.taken.capacity() * size_of::<[Rgb; 2]>()
+            + (self.taken.capacity() + self.singles.capacity()) * size_of::<[Rgb; 2]>()
             + self.evidence.capacity() * size_of::<(Rgb, Rgb)>()
             + self.evidence_until.capacity() * size_of::<u32>()
     }
@@ -215,13 +223,15 @@ impl FilmTile {
         let mut moments = self.total[cell];
         moments.add(&self.partial[cell]);
         let or_nothing = |all: &[Rgb]| all.get(cell).copied().unwrap_or(Rgb::ZERO);
+        let both = |pairs: &[[Rgb; 2]]| pairs.get(cell).map(|[whole, now]| *whole + *now);
         Cell {
             count: self.counts[cell],
             sum: moments.sum,
             squares: moments.squares,
+            singles: both(&self.singles).unwrap_or(moments.squares),
             largest: self.largest[cell],
             unfinished: or_nothing(&self.unfinished),
-            taken: self.taken.get(cell).map_or(Rgb::ZERO, |[whole, now]| *whole + *now),
+            taken: both(&self.taken).unwrap_or(Rgb::ZERO),
             evidence: self.evidence.get(cell).copied().unwrap_or_default(),
         }
     }
@@ -234,9 +244,11 @@ impl FilmTile {
         for (largest, &next) in self.largest.iter_mut().zip(&next.largest) {
             keep_largest(largest, next);
         }
-        for ([whole, now], next) in self.taken.iter_mut().zip(&next.taken) {
-            *whole += next[0];
-            *now = next[1];
+        for (pairs, next) in [(&mut self.taken, &next.taken), (&mut self.singles, &next.singles)] {
+            for ([whole, now], next) in pairs.iter_mut().zip(next) {
+                *whole += next[0];
+                *now = next[1];
+            }
         }
         for (count, next) in self.counts.iter_mut().zip(&next.counts) {
             *count += next;
@@ -261,6 +273,7 @@ impl FilmTile {
         to.colours(&self.unfinished, |rgb| *rgb);
         for part in 0..2 {
             to.colours(&self.taken, |taken| taken[part]);
+            to.colours(&self.singles, |squares| squares[part]);
         }
         to.colours(&self.evidence, |(sum, _)| *sum);
         to.colours(&self.evidence, |(_, squares)| *squares);
@@ -281,6 +294,7 @@ impl FilmTile {
         from.colours(&mut self.unfinished, |rgb| rgb)?;
         for part in 0..2 {
             from.colours(&mut self.taken, |taken| &mut taken[part])?;
+            from.colours(&mut self.singles, |squares| &mut squares[part])?;
         }
         from.colours(&mut self.evidence, |(sum, _)| sum)?;
         from.colours(&mut self.evidence, |(_, squares)| squares)?;
@@ -291,10 +305,10 @@ impl FilmTile {
     }
 }
 
-/// Keeps the batch with the larger channel; filters may weigh samples negatively.
+/// Keeps the sample with the larger channel; filters may weigh samples negatively.
 #[inline]
-fn keep_largest(largest: &mut Rgb, batch: Rgb) {
-    if batch.abs().max_element() > largest.abs().max_element() {
-        *largest = batch;
+fn keep_largest(largest: &mut Rgb, sample: Rgb) {
+    if sample.abs().max_element() > largest.abs().max_element() {
+        *largest = sample;
     }
 }

@@ -8,30 +8,23 @@ impl BatchSize {
     /// Of the largest batch, the logarithm to base 2.
     pub const MOST_BITS: u32 = 6;
 
-    /// Batches that a picture has at least, where it is known how many samples it takes: with fewer, the spread between
-    /// them tells little of a pixel's error.
-    const LEAST_BATCHES: u32 = 8;
-
-    /// From so many samples on, 1.96 standard errors of a pixel, either way, should hold the truth in about 93 of 100
-    /// cases; and how many batches that takes. Eight give only 91 for even noise (Student's t), and that of dim pixels
-    /// is uneven.
-    const MANY: [u32; 2] = [256, 64];
+    /// Batches that a picture has at least, where it is known how many samples it takes. Of two, the spread of a pixel
+    /// would be known by one degree of freedom, and of pictures whose light is rare, too many would tell too small an
+    /// error: 10 of 30 of caustics at 16 samples, where one is to be expected.
+    const LEAST_BATCHES: u32 = 4;
 
     /// A batch of so many samples: 1, 2, 4, ... 64; `None` for another number.
     pub fn new(samples: u32) -> Option<Self> {
         (samples.is_power_of_two() && samples.ilog2() <= Self::MOST_BITS).then(|| Self(samples.ilog2() as u8))
     }
 
-    /// The largest batch of which so many samples make eight or more, and 64 where they are many; the default where
-    /// their number is not known.
+    /// The largest batch of which so many samples make four or more; the default where their number is not known.
     ///
     /// The larger it is, the smaller the error of the same number of samples, as each is placed with regard to more
     /// others. Samples that are no multiple of it end in part of a batch, which is unbiased too, but not worth as much.
     pub fn for_budget(samples: Option<u32>) -> Self {
         samples.map_or(Self::default(), |samples| {
-            let [many, batches] = Self::MANY;
-            let batches = if samples < many { Self::LEAST_BATCHES } else { batches };
-            let most = (samples / batches).clamp(1, 1 << Self::MOST_BITS);
+            let most = (samples / Self::LEAST_BATCHES).clamp(1, 1 << Self::MOST_BITS);
             Self(most.ilog2() as u8)
         })
     }
@@ -107,14 +100,11 @@ mod tests {
     fn batches_follow_from_the_samples_asked() {
         let of = |samples| BatchSize::for_budget(Some(samples)).samples();
         for (samples, batch) in
-            [(0, 1), (1, 1), (15, 1), (16, 2), (64, 8), (100, 8), (128, 16), (256, 4), (512, 8), (u32::MAX, 64)]
+            [(0, 1), (1, 1), (7, 1), (8, 2), (64, 16), (100, 16), (128, 32), (256, 64), (u32::MAX, 64)]
         {
             assert_eq!(of(samples), batch, "{samples}");
         }
-        for samples in 8..2000u32 {
-            assert!(samples.div_ceil(of(samples)) >= 8);
-            assert!(samples < 256 || samples.div_ceil(of(samples)) >= 64);
-        }
+        assert!((4..2000u32).all(|samples| samples / of(samples) >= 4));
         assert_eq!((BatchSize::for_budget(None).samples(), SamplerKind::Independent.batch()), (1, 1));
         assert_eq!(BatchSize::new(64).map(BatchSize::samples), Some(64));
         assert_eq!((BatchSize::new(0), BatchSize::new(12), BatchSize::new(128)), (None, None, None));

@@ -86,10 +86,25 @@ def test_a_sampler_goes_on_with_the_batches_it_began_with(box, path):
     few, many = ({"samples": samples, "seed": 5, "progress": False} for samples in (16, 64))
     begun = {"sampler": rw.Sobol(), "checkpoint": path}
     rw.render(*box, **few, **begun)
-    # Of 16 samples two make a batch, and of 64 eight.
-    assert_same(rw.render(*box, **many, **begun), rw.render(*box, **many, sampler=rw.Sobol(2)))
-    with pytest.raises(ValueError, match=r"it has sampler Sobol\(batch=2\) instead of Sobol\(batch=8\)"):
+    # Of 16 samples four make a batch, and of 64 sixteen.
+    assert_same(rw.render(*box, **many, **begun), rw.render(*box, **many, sampler=rw.Sobol(4)))
+    with pytest.raises(ValueError, match=r"it has sampler Sobol\(batch=4\) instead of Sobol\(batch=8\)"):
         rw.render(*box, **many, sampler=rw.Sobol(8), checkpoint=path)
+
+
+def test_a_sampler_that_was_chosen_is_kept(box, path):
+    few, many = ({"samples": samples, "seed": 5, "progress": False} for samples in (16, 256))
+    begun = rw.render(*box, **few, checkpoint=path)
+    gone_on = rw.render(*box, **many, checkpoint=path)
+    assert gone_on.plan.sampler == begun.plan.sampler
+    assert [row.why for row in gone_on.plan.rows] == ["as the checkpoint has it"] * 2
+    assert_same(gone_on, rw.render(*box, **many, sampler=begun.plan.sampler))
+    # What is named is used as named, or refused.
+    with pytest.raises(ValueError, match=r"it has sampler .* instead of Independent\(\)"):
+        rw.render(*box, **many, sampler=rw.Independent(), checkpoint=path)
+    alone = path.with_name("alone")
+    rw.render(*box, **few, sampler=rw.Independent(), checkpoint=alone)
+    assert rw.render(*box, **many, checkpoint=alone).plan.sampler == rw.Independent()
 
 
 def test_ctrl_c_writes_and_is_passed_on_within_a_pass(path):
@@ -103,7 +118,7 @@ def test_ctrl_c_writes_and_is_passed_on_within_a_pass(path):
     timer.join()
     of = rw.render(*box, seconds=1e-9, progress=False, checkpoint=path)
     # What was begun is done first, and no bit tells.
-    again = rw.render(*box, samples=of.samples, progress=False)
+    again = rw.render(*box, samples=of.samples, sampler=of.plan.sampler, progress=False)
     assert np.array_equal(of.rgb, again.rgb)
     assert of.error == again.error
 

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import rare_scenes
 
 import raywright as rw
 
@@ -38,9 +39,62 @@ def test_intervals_of_pixels_cover_the_reference():
     reference = render(scene, camera, samples=8192, seed=10**9, sampler=rw.Lattice(64)).rgb
     covered = []
     for seed in range(10):
-        image = render(scene, camera, samples=256, seed=seed)
+        image = render(scene, camera, samples=256, seed=seed, sampler=rw.Independent())
         covered.append(np.mean(np.abs(image.rgb - reference) <= 1.96 * image.standard_error))
     assert 0.93 <= np.mean(covered) <= 0.97
+
+
+def covered(make, side, samples, seeds, **how):
+    """The share of pixels' 95 % intervals that hold a long picture."""
+    scene, camera = make(side)
+    long = {"samples": 8192, "seed": 10**9, "sampler": rw.Lattice(64)}
+    reference = render(scene, camera, **long).rgb
+    held = []
+    for seed in range(seeds):
+        image = render(scene, camera, samples=samples, seed=seed, **how)
+        low, high = image.interval()
+        # Where nothing errs, such as in the sky, intervals hold always.
+        held.append(np.mean(((low <= reference) & (reference <= high))[image.standard_error > 0]))
+    return np.mean(held)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("adaptive", [False, True])
+@pytest.mark.parametrize("samples", [256, 500])
+def test_intervals_of_pixels_from_few_batches_cover_the_reference(samples, adaptive):
+    # Of some 30,000 values in 3,000 places chance makes less than half a per cent.
+    held = covered(rare_scenes.cornell, 32, samples, 10, adaptive=adaptive)
+    assert 0.93 <= held <= 0.97
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("make", "side"), [(rare_scenes.mesh_in_a_sky, 24), (rare_scenes.plates, 48)])
+def test_intervals_of_pixels_cover_the_reference_in_other_scenes(make, side):
+    assert 0.93 <= covered(make, side, 256, 6) <= 0.97
+
+
+def test_intervals_are_those_of_students_t():
+    scene, camera = rw.scenes.cornell_box(width=4, height=4)
+    # Three samples leave two degrees of freedom, of which the quantile has a closed form.
+    image = render(scene, camera, samples=3, sampler=rw.Independent())
+    for level in (0.5, 0.95, 0.99):
+        low, high = image.interval(level)
+        half = image.standard_error * np.sqrt(2) * level / np.sqrt(1 - level**2)
+        assert np.allclose(high - image.rgb, half, rtol=1e-4, atol=1e-6)
+        assert np.allclose(image.rgb - low, half, rtol=1e-4, atol=1e-6)
+    # What is taken as exact is normal.
+    plain = rw.Image(image.rgb, image.standard_error, image.error, image.history, 1.0, 3)
+    assert np.allclose(plain.interval()[1] - plain.rgb, 1.959964 * image.standard_error, rtol=1e-4, atol=1e-6)
+
+
+def test_intervals_refuse_what_is_no_share():
+    image = render(*rw.scenes.cornell_box(width=2, height=2), samples=1)
+    assert np.isnan(image.interval()).all()
+    for level in (0, 1, 95, -0.5):
+        with pytest.raises(ValueError, match=f"level must be between 0 and 1, got {level:g}"):
+            image.interval(level)
+    with pytest.raises(TypeError, match="level must be real numbers, got 'most'"):
+        image.interval("most")
 
 
 def test_standard_error_is_the_spread_over_seeds():
@@ -76,7 +130,8 @@ def test_rendering_to_an_error_reaches_it(cornell):
 
 def test_error_falls_as_one_over_samples():
     scene, camera = rw.scenes.cornell_box(width=48, height=48)
-    history = render(scene, camera, samples=512).history
+    # The larger batches are, the steeper it falls within the first of them.
+    history = render(scene, camera, samples=512, sampler=rw.Independent()).history
     late = history[history["samples"] >= 32]
     slope = np.polyfit(np.log(late["samples"]), np.log(late["error"]), 1)[0]
     assert -1.1 < slope < -0.9

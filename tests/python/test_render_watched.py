@@ -45,7 +45,8 @@ def test_watching_changes_no_bit_and_ends_with_what_is_returned(adaptive, execut
     image = rw.render(scene, camera, seconds=1.0, progress=watch, executor=executor, **how)
     assert len(watch) >= 3
     assert watch[-1] is image
-    again = rw.render(scene, camera, samples=image.samples, progress=False, **how)
+    how |= {"samples": image.samples, "sampler": image.plan.sampler}
+    again = rw.render(scene, camera, progress=False, **how)
     assert np.array_equal(again.rgb, image.rgb)
     assert np.array_equal(again.standard_error, image.standard_error)
 

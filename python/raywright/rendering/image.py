@@ -9,8 +9,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arrays import frozen
+from .. import _core
+from ..arrays import frozen, number
 from ..io import pictures
+from .plan import RenderPlan
 
 HISTORY = np.dtype([("seconds", np.float64), ("samples", np.int64), ("error", np.float64)])
 
@@ -71,7 +73,8 @@ class Image:
     rgb : (H, W, 3) float32
         Linear red, green and blue: radiance in W·sr⁻¹·m⁻².
     standard_error : (H, W, 3) float32
-        Standard error of `rgb`.
+        Standard error of `rgb`, by each pixel's own samples. Its square has no bias; where samples come in
+        few batches, it is quite uncertain itself, and `interval` is the better answer.
     error : ErrorEstimate
         relMSE of the whole picture, with its 95 % interval.
     history : (K,) structured array
@@ -87,6 +90,13 @@ class Image:
         Whether samples were clamped, so that the picture tends to something darker than the scene.
     aov : dict of str to (H, W, ...) arrays
         What else is known of the pixels, by name: ``samples`` (uint32) of each if the render was adaptive.
+    plan : RenderPlan
+        What was chosen for the render, such as its sampler, and why.
+    pooled_error : (H, W, 3) float32, optional
+        The standard error as far as pixels around tell of it too, which `interval` goes by: where samples
+        come in batches, one pixel has few of them. `standard_error` is taken if it is not given.
+    degrees : (H, W) float32, optional
+        Degrees of freedom of `pooled_error`; without them it is taken as exact.
     """
 
     rgb: NDArray[np.float32]
@@ -98,11 +108,50 @@ class Image:
     warnings: tuple[str, ...] = ()
     biased: bool = False
     aov: Mapping[str, NDArray[Any]] = field(default_factory=dict)
+    plan: RenderPlan = field(default_factory=RenderPlan)
+    pooled_error: NDArray[np.float32] | None = None
+    degrees: NDArray[np.float32] | None = None
 
     def __post_init__(self) -> None:
         for name in ("rgb", "standard_error", "history"):
             object.__setattr__(self, name, frozen(getattr(self, name)))
         object.__setattr__(self, "aov", {name: frozen(array) for name, array in self.aov.items()})
+        for name in ("pooled_error", "degrees"):
+            if getattr(self, name) is not None:
+                object.__setattr__(self, name, frozen(getattr(self, name)))
+
+    def interval(self, level: float = 0.95) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+        """Return between what and what each pixel lies, in that share of cases.
+
+        The ends are `rgb` ± `pooled_error` times a quantile of Student's t. What no sample has met is in no
+        interval.
+
+        Parameters
+        ----------
+        level : float
+            The share of cases, above 0 and below 1.
+
+        Returns
+        -------
+        low, high : (H, W, 3) float32
+            NaN where there are too few samples to know.
+
+        Raises
+        ------
+        ValueError
+            If `level` is out of its range.
+        TypeError
+            If it is not a number.
+        """
+        level = number("level", level)
+        if not 0 < level < 1:
+            raise ValueError(f"level must be between 0 and 1, got {level:g}")
+        # As many different ones as there are whole numbers, not pixels.
+        degrees = np.full((1, 1), 1e9) if self.degrees is None else np.floor(self.degrees.astype(float))
+        unique, where = np.unique(np.nan_to_num(degrees.clip(1, 1e9), nan=1), return_inverse=True)
+        times = _core.student(level, unique)[where].reshape(degrees.shape)[..., None]
+        away = times * (self.standard_error if self.pooled_error is None else self.pooled_error)
+        return (self.rgb - away).astype(np.float32), (self.rgb + away).astype(np.float32)
 
     def srgb(self) -> NDArray[np.uint8]:
         """Return the picture for the eye: (H, W, 3) uint8 with the sRGB transfer, clipped to 0..1."""
@@ -167,6 +216,9 @@ class Image:
             )
             and (self.error, self.seconds, self.samples, self.warnings, self.biased)
             == (other.error, other.seconds, other.samples, other.warnings, other.biased)
+            and self.plan == other.plan
+            and _same(self.pooled_error, other.pooled_error)
+            and _same(self.degrees, other.degrees)
             and self.aov.keys() == other.aov.keys()
             and all(
                 np.array_equal(array, other.aov[name], equal_nan=array.dtype.kind == "f")
@@ -188,6 +240,9 @@ class Image:
             self.warnings,
             self.biased,
             self.aov,
+            self.plan,
+            self.pooled_error,
+            self.degrees,
         )
         return Image, parts
 
@@ -200,6 +255,12 @@ class Image:
             f"relMSE {self.error}",
         ]
         return f"Image({', '.join([*parts, *self.warnings])})"
+
+
+def _same(one: NDArray[np.float32] | None, other: NDArray[np.float32] | None) -> bool:
+    if one is None or other is None:
+        return one is other
+    return np.array_equal(one, other, equal_nan=True)
 
 
 def _thinned(samples: NDArray[np.int64], rows: int) -> list[int]:

@@ -16,16 +16,17 @@ from ..integrators import AnyIntegrator, Path, check_integrator
 from ..scene.scene import Scene
 from .aovs import aovs, names_of
 from .checkpoints import Checkpoints, held
+from .choices import chosen
 from .digest import digest
 from .filters import BoxFilter, Filter
 from .image import HISTORY, ErrorEstimate, Image
 from .notebook import display
+from .plan import RenderPlan
 from .progress import Report, bar
-from .samplers import Independent, Sampler, as_begun, with_budget
+from .samplers import Sampler
 from .snapshots import Snapshots
 
 _PATH = Path()
-_SAMPLER: Sampler = Independent()
 _FILTER: Filter = BoxFilter()
 _DEFAULT_SAMPLES = 64
 
@@ -50,7 +51,7 @@ def render(
     progress: bool | Callable[[Image], object] = True,
     adaptive: bool = False,
     clamp: float | None = None,
-    sampler: Sampler = _SAMPLER,
+    sampler: Sampler | None = None,
     filter: Filter = _FILTER,
     checkpoint: str | os.PathLike[str] | None = None,
     executor: Executor | None = None,
@@ -78,8 +79,8 @@ def render(
     seconds : float, optional
         Limit on run time in seconds, to the nearest sample of all pixels.
     seed : int
-        Picks the random numbers, 0 to 2**64 - 1. The same seed and samples give the same picture, bit for
-        bit, for any number of threads.
+        Picks the random numbers, 0 to 2**64 - 1. The same seed, samples and sampler give the same picture,
+        bit for bit, for any number of threads. What sampler is chosen goes by the limits that are given.
     threads : int, optional
         How many to use; all cores if not given. With an executor, for each piece of its work; 1 if not given.
     progress : bool or callable
@@ -95,19 +96,21 @@ def render(
     clamp : float, optional
         Radiance, in the largest channel, to which brighter samples are dimmed. It takes fireflies away, and
         light with them: the picture is biased, and says so. If not given, samples count as they are.
-    sampler : Independent, Stratified, Halton, Sobol or Lattice
-        Where the random numbers come from. Those with batches take fewer samples to the same error, and tell
-        the error of a single pixel from fewer independent parts. A number of samples that is no multiple of
-        its batches is best avoided: part of a batch is right as well, but worth less.
+    sampler : Independent, Stratified, Halton, Sobol or Lattice, optional
+        Where the random numbers come from. If not given, it is chosen for the least error, and ``image.plan``
+        tells which and why: a `Lattice`, or `Sobol` where batches are of 4 samples or fewer.
+        Those with batches take fewer samples to the same error, and tell the error of a single pixel from
+        fewer independent parts. A number of samples that is no multiple of its batches is best avoided: part
+        of a batch is right as well, but worth less.
     filter : BoxFilter, TriangleFilter, GaussianFilter, MitchellFilter, BlackmanHarrisFilter or LanczosFilter
         What part of the film a pixel is the mean of.
     checkpoint : str or path, optional
         A file that is kept up to date with the render: every minute, at its end, and when it is interrupted.
         If there is such a file, the render goes on from it, with all limits counted from its first start, and
-        ends with the same bits as one that was never interrupted, even by ``kill -9``. A sampler that was
-        given no batch has that of the file. The file stays when the render is done, so that it can be taken
-        further by other limits. If it cannot be written, ``image.warnings`` and a RuntimeWarning tell so, and
-        it costs nothing else.
+        ends with the same bits as one that was never interrupted, even by ``kill -9``. A sampler that is
+        not given, or given no batch, is that of the file. The file stays when the render is done, so that it
+        can be taken further by other limits. If it cannot be written, ``image.warnings`` and a RuntimeWarning
+        tell so, and it costs nothing else.
     executor : concurrent.futures.Executor, optional
         Who does the work: a ``ProcessPoolExecutor``, ``client.get_executor()`` of `dask.distributed`, the
         pool of `mpi4py.futures`, or any other. The picture has the same bits as without. What is lost with a
@@ -148,12 +151,12 @@ def render(
     if executor is not None and not isinstance(executor, Executor):
         raise TypeError(f"executor must be a concurrent.futures.Executor, got {type(executor).__name__}")
     names = names_of(aov)
-    kept = None
+    kept, begun = None, None
     if checkpoint is not None:
         if not isinstance(checkpoint, str | os.PathLike):
             raise TypeError(f"checkpoint must be a path, got {type(checkpoint).__name__}")
-        sampler = as_begun(sampler, held(checkpoint).get("sampler"))
-    sampler = with_budget(sampler, *limits, adaptive)
+        begun = held(checkpoint).get("sampler")
+    sampler, plan = chosen(sampler, limits, adaptive, begun)
     if checkpoint is not None:
         identity = _identity(scene, camera, integrator, seed, adaptive, clamp, sampler, filter)
         kept = Checkpoints(checkpoint, identity)
@@ -166,7 +169,7 @@ def render(
     snapshots = None if show is None else Snapshots(show)
 
     def so_far() -> Image:
-        return _image(rendering, clamp, {"samples": rendering.counts} if adaptive else {}, [])
+        return _image(rendering, clamp, {"samples": rendering.counts} if adaptive else {}, [], plan)
 
     def wait() -> float | None:
         waits = [one.wait() for one in (kept, snapshots) if one is not None]
@@ -207,7 +210,7 @@ def render(
     seen: dict[str, NDArray[Any]] = {"samples": rendering.counts} if adaptive else {}
     if names:
         seen |= aovs(scene, camera, names, seed=seed, threads=threads)
-    image = _image(rendering, clamp, seen, problems)
+    image = _image(rendering, clamp, seen, problems, plan)
     if show is not None:
         show(image)
     return image
@@ -241,7 +244,7 @@ def check(
     threads: int | None,
     adaptive: bool,
     clamp: float | None,
-    sampler: Sampler,
+    sampler: Sampler | None,
     filter: Filter,
 ) -> Checked:
     """Raise a TypeError or a ValueError unless `render` can do what it is told."""
@@ -255,7 +258,7 @@ def check(
     check_integrator("integrator", integrator)
     if not isinstance(adaptive, bool):
         raise TypeError(f"adaptive must be True or False, got {adaptive!r}")
-    if not isinstance(sampler, Sampler):
+    if sampler is not None and not isinstance(sampler, Sampler):
         raise TypeError(f"sampler must be one of raywright's, got {type(sampler).__name__}")
     if not isinstance(filter, Filter):
         raise TypeError(f"filter must be one of raywright's, got {type(filter).__name__}")
@@ -371,12 +374,18 @@ def _begun(
 
 
 def _image(
-    done: _core.Rendering, clamp: float | None, aov: dict[str, NDArray[Any]], told: list[str]
+    done: _core.Rendering,
+    clamp: float | None,
+    aov: dict[str, NDArray[Any]],
+    told: list[str],
+    plan: RenderPlan,
 ) -> Image:
     history = np.empty(len(done.history), HISTORY)
     for i, name in enumerate(HISTORY.names or ()):
         history[name] = done.history[:, i]
     warnings = list(told)
+    unknown = np.full(done.rgb.shape, np.nan, np.float32), None, None
+    standard_error, pooled, degrees = done.uncertainty or unknown
     if done.dropped:
         warnings.append(f"{_samples(done.dropped)} not finite or negative, and count as black")
     clamped, taken = done.clamped
@@ -397,7 +406,7 @@ def _image(
         warnings.append(f"{carriers} {100 * share:.0f} % of the error estimate: it cannot be trusted yet")
     return Image(
         done.rgb,
-        done.standard_error,
+        standard_error,
         ErrorEstimate(*done.error, trusted=done.trusted),
         history,
         done.seconds,
@@ -405,6 +414,9 @@ def _image(
         tuple(warnings),
         biased=clamped > 0,
         aov=aov,
+        plan=plan,
+        pooled_error=pooled,
+        degrees=degrees,
     )
 
 

@@ -2,12 +2,12 @@
 
 The numbers of each sample are uniform, and those of its dimensions independent, for every kind: pictures
 differ in their noise only. Those with a `batch` spread that many consecutive samples of a pixel evenly among
-each other; batches are independent, and the spread between them tells the error.
+each other; batches are independent, and the spread between them tells the error. `render` takes lattices in
+few large batches unless another is named.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
-from .. import _core
 from ..arrays import integer
 
 _MOST = 64
@@ -27,9 +27,9 @@ class Stratified:
     Parameters
     ----------
     batch : int, optional
-        Samples of a batch: 1, 2, 4, ... 64. If not given, as many as make 8 batches at least of the samples
-        that are asked for, and 64 batches at least from 256 samples on; 4 if only an error is asked for; half
-        of that if the render is adaptive; 1 if time may end it.
+        Samples of a batch: 1, 2, 4, ... 64. If not given, as many as make 4 batches of the samples that are
+        asked for, or that an error is likely to take; 16 at most if time may end the render; half of that if
+        it is adaptive. ``image.plan`` tells.
 
     Raises
     ------
@@ -54,9 +54,9 @@ class Halton:
     Parameters
     ----------
     batch : int, optional
-        Samples of a batch: 1, 2, 4, ... 64. If not given, as many as make 8 batches at least of the samples
-        that are asked for, and 64 batches at least from 256 samples on; 4 if only an error is asked for; half
-        of that if the render is adaptive; 1 if time may end it.
+        Samples of a batch: 1, 2, 4, ... 64. If not given, as many as make 4 batches of the samples that are
+        asked for, or that an error is likely to take; 16 at most if time may end the render; half of that if
+        it is adaptive. ``image.plan`` tells.
 
     Raises
     ------
@@ -81,9 +81,9 @@ class Sobol:
     Parameters
     ----------
     batch : int, optional
-        Samples of a batch: 1, 2, 4, ... 64. If not given, as many as make 8 batches at least of the samples
-        that are asked for, and 64 batches at least from 256 samples on; 4 if only an error is asked for; half
-        of that if the render is adaptive; 1 if time may end it.
+        Samples of a batch: 1, 2, 4, ... 64. If not given, as many as make 4 batches of the samples that are
+        asked for, or that an error is likely to take; 16 at most if time may end the render; half of that if
+        it is adaptive. ``image.plan`` tells.
 
     Raises
     ------
@@ -109,9 +109,9 @@ class Lattice:
     Parameters
     ----------
     batch : int, optional
-        Samples of a batch: 1, 2, 4, ... 64. If not given, as many as make 8 batches at least of the samples
-        that are asked for, and 64 batches at least from 256 samples on; 4 if only an error is asked for; half
-        of that if the render is adaptive; 1 if time may end it.
+        Samples of a batch: 1, 2, 4, ... 64. If not given, as many as make 4 batches of the samples that are
+        asked for, or that an error is likely to take; 16 at most if time may end the render; half of that if
+        it is adaptive. ``image.plan`` tells.
 
     Raises
     ------
@@ -137,28 +137,3 @@ def _batch(batch: int | None) -> int | None:
     if size & (size - 1):
         raise ValueError(f"batch must be a power of two, got {batch}")
     return size
-
-
-def as_begun(sampler: Sampler, begun: object) -> Sampler:
-    """Return the sampler; if it has no batch, with that of one that has begun, known by its ``repr``."""
-    if not isinstance(sampler, Independent) and sampler.batch is None:
-        for size in range(_MOST.bit_length()):
-            if begun == repr(with_batch := replace(sampler, batch=1 << size)):
-                return with_batch
-    return sampler
-
-
-def with_budget(
-    sampler: Sampler, samples: int | None, error: float | None, seconds: float | None, adaptive: bool
-) -> Sampler:
-    """Return the sampler with batches for these limits of a render, if it was given none."""
-    if isinstance(sampler, Independent) or sampler.batch is not None:
-        return sampler
-    if seconds is not None:
-        # It takes two batches to tell an error, and a picture that is out of time has few samples.
-        samples = None
-    elif samples is None and error is not None:
-        # Of the fewest samples that a render to an error takes, four batches.
-        samples = 32
-    # The samples of an adaptive picture are in halves, each with batches of its own.
-    return replace(sampler, batch=max(_core.batch_for(samples) // (1 + adaptive), 1))

@@ -10,7 +10,7 @@ from ..scene.scene import Scene
 from .filters import BoxFilter, Filter
 from .image import Image
 from .render import render
-from .samplers import Independent, Sampler
+from .samplers import Sampler
 
 _LIMITS = ("samples", "error", "seconds")
 
@@ -31,8 +31,8 @@ class Shot:
         What turns rays into radiance.
     samples : int, optional
         Samples per pixel; None leaves it to `render`.
-    sampler : Independent, Stratified, Halton, Sobol or Lattice
-        Where the random numbers come from.
+    sampler : Independent, Stratified, Halton, Sobol or Lattice, optional
+        Where the random numbers come from; None leaves it to `render`.
     filter : BoxFilter, TriangleFilter, GaussianFilter, MitchellFilter, BlackmanHarrisFilter or LanczosFilter
         What part of the film a pixel is the mean of.
     seed : int
@@ -45,7 +45,7 @@ class Shot:
     camera: AnyCamera
     integrator: AnyIntegrator = field(default_factory=Path)
     samples: int | None = None
-    sampler: Sampler = field(default_factory=Independent)
+    sampler: Sampler | None = None
     filter: Filter = field(default_factory=BoxFilter)
     seed: int = 0
     aov: tuple[str, ...] = ()

@@ -9,7 +9,7 @@ from ..cameras import AnyCamera
 from ..integrators import AnyIntegrator, Path
 from ..rendering.filters import BoxFilter, Filter
 from ..rendering.render import check
-from ..rendering.samplers import Independent, Sampler
+from ..rendering.samplers import Sampler
 from ..scene.scene import Scene
 
 if TYPE_CHECKING:
@@ -19,7 +19,6 @@ if TYPE_CHECKING:
 __all__ = ["Viewer", "view"]
 
 _PATH = Path()
-_SAMPLER: Sampler = Independent()
 _FILTER: Filter = BoxFilter()
 _ERROR = 1e-4
 
@@ -96,7 +95,7 @@ def view(
     threads: int | None = None,
     adaptive: bool = False,
     clamp: float | None = None,
-    sampler: Sampler = _SAMPLER,
+    sampler: Sampler | None = None,
     filter: Filter = _FILTER,
     port: int = 0,
     open: bool = False,

@@ -100,10 +100,10 @@ def _aov(plugin: Plugin) -> Asked:
     return Asked(light, tuple(dict.fromkeys([*names, *more])))
 
 
-def sampler(plugin: Plugin | None) -> tuple[Sampler, int, int]:
-    """Return a sampler, how many samples a pixel it takes, and its seed."""
+def sampler(plugin: Plugin | None) -> tuple[Sampler | None, int, int]:
+    """Return a sampler if one is named, how many samples a pixel it takes, and its seed."""
     if plugin is None:
-        return Independent(), 4, 0
+        return None, 4, 0
     kinds: dict[str, Sampler] = {"independent": Independent(), "ldsampler": Sobol()}
     plugin.ignore("jitter", "strength")
     count, seed = plugin.integer("sample_count", 4), plugin.integer("seed", 0)

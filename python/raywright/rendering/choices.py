@@ -1,0 +1,90 @@
+"""What a render takes where nothing is named: it goes by what is told of its end."""
+
+from dataclasses import replace
+
+from .. import _core
+from .plan import Choice, RenderPlan
+from .samplers import Halton, Independent, Lattice, Sampler, Sobol, Stratified
+
+_Limits = tuple[int | None, float | None, float | None]
+
+_MOST = 64
+# Where time may end a render, after few samples perhaps: the error is known well from two batches on.
+_TIMED = 16
+# Where an error may end it: about how many samples it takes to a relMSE of 1, by the scenes of
+# `benches/samplers.py`, and the fewest that are taken.
+_EXPECTED = 0.25
+_FEWEST = 16
+# Up to so many points the best lattices lie badly.
+_FEW = 4
+
+
+def chosen(
+    sampler: Sampler | None, limits: _Limits, adaptive: bool, begun: object = None
+) -> tuple[Sampler, RenderPlan]:
+    """Return the sampler of a render, with its batches, and the plan that tells of it.
+
+    Parameters
+    ----------
+    sampler : Sampler, optional
+        What was named, if anything was.
+    limits : tuple
+        Samples, error and seconds; None where there is no limit.
+    adaptive : bool
+        Whether pixels have halves.
+    begun : str, optional
+        The ``repr`` of the sampler of a render that goes on.
+    """
+    if isinstance(sampler, Independent) or (sampler is not None and sampler.batch is not None):
+        return _planned(sampler, "as named", "as named")
+    if (before := _of(begun, sampler)) is not None:
+        kind = "as the checkpoint has it" if sampler is None else "as named"
+        return _planned(before, kind, "as the checkpoint has it")
+    batch, why = _batch(limits, adaptive)
+    if sampler is not None:
+        return _planned(replace(sampler, batch=batch), "as named", why)
+    if batch == 1:
+        return _planned(Independent(), "a batch of one has nothing to place", why)
+    if batch <= _FEW:
+        return _planned(Sobol(batch), f"lattices of {_FEW} points lie on a diagonal", why)
+    return _planned(Lattice(batch), f"the least error of all, in batches of more than {_FEW}", why)
+
+
+def _planned(sampler: Sampler, kind: str, batch: str) -> tuple[Sampler, RenderPlan]:
+    rows = [Choice("sampler", type(sampler).__name__, kind)]
+    if not isinstance(sampler, Independent):
+        rows.append(Choice("batch", str(sampler.batch), batch))
+    elif batch != "as named":
+        rows.append(Choice("batch", "1", batch))
+    return sampler, RenderPlan(tuple(rows), sampler)
+
+
+def _of(begun: object, sampler: Sampler | None) -> Sampler | None:
+    """Return the sampler that a ``repr`` is of, if it is one of those that are wanted."""
+    if sampler is None and begun == repr(Independent()):
+        return Independent()
+    batches = (1 << bits for bits in range(_MOST.bit_length()))
+    known = (kind(batch) for batch in batches for kind in (Stratified, Halton, Sobol, Lattice))
+    wanted = (one for one in known if sampler is None or type(one) is type(sampler))
+    return next((one for one in wanted if repr(one) == begun), None)
+
+
+def _batch(limits: _Limits, adaptive: bool) -> tuple[int, str]:
+    """Return the samples of a batch, and why it has as many."""
+    samples, error, seconds = limits
+    # The samples of an adaptive picture are in halves, each with batches of its own.
+    halves = 1 + adaptive
+    options = []
+    if samples is not None:
+        batch = _core.batch_for(samples)
+        told = "a batch" if samples < 2 * batch else f"{samples * halves // batch} batches"
+        options.append((batch, f"the error of {samples} samples is told by {told}"))
+    if error is not None:
+        expected = max(int(min(_EXPECTED / error, 2.0**31)), _FEWEST)
+        options.append(
+            (_core.batch_for(expected), f"an error of {error:g} may end it after {expected} samples")
+        )
+    if seconds is not None:
+        options.append((_TIMED, "time may end it after few samples"))
+    batch, why = min(options, key=lambda option: option[0])
+    return max(batch // halves, 1), why
