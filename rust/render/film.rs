@@ -52,8 +52,8 @@ pub(super) struct Spread {
 
 /// The largest sample of a cell.
 ///
-/// What is rare is found by one sample of a batch, whatever places the others of that. So its weight is told by samples,
-/// and is as well known from few batches as from many.
+/// What is rare is found by one sample of a batch, whatever places the others. So its weight is told by samples, and is
+/// as well known from few batches as from many.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Outlier {
     /// What of the variance of the pixel's mean comes from it: all, at most.
