@@ -80,15 +80,6 @@ impl Interaction {
         here
     }
 
-    /// The share of ambient light that is reflected here ([`Material::ambient`](super::Material::ambient)); the other
-    /// arguments are those that [`Interaction::new`] was given.
-    pub fn ambient(&self, scene: &Scene, ray: &Ray, hit: &Hit, width: f64, outside: f64) -> Rgb {
-        let material = scene.material_at(&self.surface);
-        let mut point = ShadingPoint::new(scene.geometry(), ray, hit, &self.surface, material.needs(), width);
-        point.outside = outside;
-        material.ambient(&point)
-    }
-
     /// Looks up a hit and what is there.
     #[inline]
     pub fn at(scene: &Scene, ray: &Ray, hit: &Hit) -> Self {
@@ -119,6 +110,15 @@ impl<S: Scatters> Interaction<S> {
             None => Frame::new(shading),
         };
         Self { surface, frame, scattering, wo: frame.to_local(back), side, is_flat, is_bent, curvature: 0.0 }
+    }
+
+    /// The share of ambient light that is reflected here ([`Material::ambient`](super::Material::ambient)); the other
+    /// arguments are those that [`Interaction::new`] was given.
+    pub fn ambient(&self, scene: &Scene, ray: &Ray, hit: &Hit, width: f64, outside: f64) -> Rgb {
+        let material = scene.material_at(&self.surface);
+        let mut point = ShadingPoint::new(scene.geometry(), ray, hit, &self.surface, material.needs(), width);
+        point.outside = outside;
+        material.ambient(&point)
     }
 
     /// The point met.
@@ -174,6 +174,11 @@ impl<S: Scatters> Interaction<S> {
             return Receiver::free(self.surface.position);
         }
         Receiver { position: self.departure().ray(self.normal()).origin, normal: self.shading_normal() }
+    }
+
+    /// How the point scatters, and nothing else.
+    pub fn into_scattering(self) -> S {
+        self.scattering
     }
 
     /// How the point scatters.

@@ -1,13 +1,16 @@
 //! What path tracing and its ancestors share: a batch of paths on their way, one bounce at a time.
 
 mod aiming;
-mod alive;
-mod asking;
-mod branches;
-mod diffuse;
+mod arrivals;
+mod block;
+mod continuation;
+mod delta_lobes;
 mod dimensions;
+mod direct_light;
+mod emission;
 mod features;
 mod nesting;
+mod path_state;
 mod resampling;
 mod reuse;
 mod shadows;
@@ -27,9 +30,9 @@ pub(super) enum Follow {
     /// All.
     All,
     /// Those drawn with a density, in solid angle, above this.
-    Sharper(f64),
+    MinDensity(f64),
     /// Single directions only, and of these every one: paths are split.
-    EachSingle,
+    DeltaLobes,
     /// None.
     Nothing,
 }

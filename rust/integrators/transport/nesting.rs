@@ -9,18 +9,18 @@ use crate::scene::{Departure, Scene};
 /// it, are not (Schmidt and Budge, "Simple Nested Dielectrics in Ray Traced Images", 2002). Of equal priority, the
 /// greater index.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Inside {
+pub(super) struct MediumStack {
     count: u32,
     interiors: [Interior; Self::MOST],
 }
 
-impl Default for Inside {
+impl Default for MediumStack {
     fn default() -> Self {
         Self::NONE
     }
 }
 
-impl Inside {
+impl MediumStack {
     /// How many of them are told apart. Beyond, those of the least priority are forgotten.
     const MOST: usize = 4;
 
@@ -125,7 +125,7 @@ fn crossed(crossings: &Crossings, ray: usize) -> impl DoubleEndedIterator<Item =
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Boundary {
     /// None: the same medium is on both sides. The ray goes on in these media.
-    None(Inside),
+    None(MediumStack),
     /// The surface hit is where one medium ends and another begins.
     Between {
         /// Which hit has the surface.
@@ -133,7 +133,7 @@ pub(super) enum Boundary {
         /// The index of refraction on the side of it that is not its own medium's.
         outside: f64,
         /// What a ray that goes through is in.
-        through: Inside,
+        through: MediumStack,
     },
 }
 
@@ -148,12 +148,12 @@ pub(super) fn around(scene: &Scene, ray: &Ray, hit: &Hit) -> Option<Ray> {
 
 impl Boundary {
     /// What a ray in some media comes to, by what it crosses around its hit ([`around`]).
-    pub(super) fn new(scene: &Scene, ray: &Ray, inside: &Inside, crossings: &Crossings, number: usize) -> Self {
+    pub(super) fn new(scene: &Scene, ray: &Ray, inside: &MediumStack, crossings: &Crossings, number: usize) -> Self {
         let mut through = *inside;
         let mut owner: Option<(Interior, bool, Hit)> = None;
         for hit in crossed(crossings, number) {
             let Some((interior, enters)) = through.pass(scene, ray, hit, false) else { continue };
-            if owner.as_ref().is_none_or(|(best, ..)| Inside::is_above(&interior, best)) {
+            if owner.as_ref().is_none_or(|(best, ..)| MediumStack::is_above(&interior, best)) {
                 owner = Some((interior, enters, *hit));
             }
         }

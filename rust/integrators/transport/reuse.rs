@@ -1,6 +1,6 @@
 //! Paths that share what they find.
 
-use super::alive::Alive;
+use super::path_state::PathState;
 use crate::math::{DVec3, Ray};
 use crate::optics::Rgb;
 use crate::scene::{Departure, Interaction, Scatters, Scene, fading};
@@ -155,7 +155,7 @@ impl Reuse {
     /// A path comes to a surface. Where what it finds from there on is to be shared, it goes on as the path of a sample
     /// of number `samples` or more.
     #[inline]
-    pub fn visit<S: Scatters>(&mut self, mut path: Alive, here: &Interaction<S>) -> Alive {
+    pub fn visit<S: Scatters>(&mut self, mut path: PathState, here: &Interaction<S>) -> PathState {
         if path.bounce > 1 {
             return path;
         }

@@ -1,6 +1,6 @@
 //! Whether light that was drawn arrives.
 
-use super::nesting::{Boundary, Inside, around};
+use super::nesting::{Boundary, MediumStack, around};
 use crate::math::{Hit, Ray};
 use crate::optics::Rgb;
 use crate::scene::textures::TexturePoint;
@@ -12,7 +12,7 @@ pub(super) struct Shadows {
     rays: Vec<Ray>,
     arriving: Vec<(u32, Rgb)>,
     /// What each starts in, in a scene of nested media.
-    inside: Vec<Inside>,
+    media: Vec<MediumStack>,
     occluded: Vec<bool>,
     hits: Vec<Hit>,
     windows: Vec<Ray>,
@@ -23,7 +23,7 @@ impl Shadows {
     pub fn clear(&mut self) {
         self.rays.clear();
         self.arriving.clear();
-        self.inside.clear();
+        self.media.clear();
     }
 
     /// A ray along which this much arrives at a sample.
@@ -35,8 +35,8 @@ impl Shadows {
 
     /// What the ray pushed last starts in.
     #[inline]
-    pub fn set_inside(&mut self, inside: Inside) {
-        self.inside.push(inside);
+    pub fn set_media(&mut self, media: MediumStack) {
+        self.media.push(media);
     }
 
     /// Adds to each sample what arrives at it, as if nothing were in the way.
@@ -82,11 +82,10 @@ impl Shadows {
                 }
                 if nested && around(scene, ray, hit).is_some() {
                     window += 1;
-                    if let Boundary::None(inside) =
-                        Boundary::new(scene, ray, &self.inside[which], &crossings, window - 1)
+                    if let Boundary::None(media) = Boundary::new(scene, ray, &self.media[which], &crossings, window - 1)
                     {
                         self.rays[which].t_min = self.windows[window - 1].t_max.next_up();
-                        self.inside[which] = inside;
+                        self.media[which] = media;
                         on_way[kept] = which;
                         kept += 1;
                         continue;

@@ -74,6 +74,12 @@ impl LightLanes {
         (Departure::with(self.position.get(lane), self.offset.get(lane)), self.is_within[lane])
     }
 
+    /// The light of a lane; none where the draw gave none.
+    pub fn sample(&self, lane: usize) -> Option<LightSample> {
+        let ((direction, weight, pdf), (source, is_within)) = (self.get(lane), self.source(lane));
+        (pdf > 0.0).then(|| LightSample { direction, weight, pdf, source: is_within.then_some(source) })
+    }
+
     /// Sets that of a lane.
     fn set(&mut self, lane: usize, sample: Option<LightSample>) {
         let Some(LightSample { direction, weight, pdf, source }) = sample else {
