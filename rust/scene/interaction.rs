@@ -56,7 +56,7 @@ impl Interaction {
     pub fn new(scene: &Scene, ray: &Ray, hit: &Hit, surface: SurfacePoint, width: f64, outside: f64) -> Self {
         if outside == 1.0
             && width == 0.0
-            && let Some(&bsdf) = scene.plan().constant(surface.shape)
+            && let Some(&bsdf) = scene.plan().constant(surface.shape, surface.is_front(ray))
         {
             let shading = surface.shading_normal;
             return Self::with(ray, surface, (shading, None), Scattering::One(bsdf));

@@ -92,10 +92,10 @@ pub struct Plan {
     rounding: Rounding,
     /// How many lights are asked one by one where light is scattered sharply; 0 where one of all is asked.
     few: u32,
-    /// How each shape scatters, if it does so alike everywhere ([`Material::constant`]).
-    constants: Vec<Option<Bsdf>>,
+    /// How each shape scatters on either side, if it does so alike everywhere ([`Material::constant_sides`]).
+    constants: Vec<Option<[Bsdf; 2]>>,
     /// Of those that are diffuse, what each reflects.
-    diffuse: Vec<Option<Rgb>>,
+    diffuse: Vec<Option<[Rgb; 2]>>,
 }
 
 /// What has less than this roughness, but does not scatter into single directions, counts as glossy. Over rougher
@@ -128,13 +128,13 @@ impl Plan {
                 }
                 None => {
                     needs = needs | Self::of(material.as_ref(), lights.emission(shape));
-                    constants.push(material.constant());
+                    constants.push(material.constant_sides());
                 }
             }
         }
         let few = if needs.scattering { lights.few() } else { 0 };
-        let colour = |bsdf: &Option<Bsdf>| match bsdf {
-            Some(Bsdf::Diffuse(diffuse)) => Some(diffuse.reflectance),
+        let colour = |sides: &Option<[Bsdf; 2]>| match sides {
+            Some([Bsdf::Diffuse(front), Bsdf::Diffuse(back)]) => Some([front.reflectance, back.reflectance]),
             _ => None,
         };
         let diffuse = constants.iter().map(colour).collect();
@@ -145,7 +145,7 @@ impl Plan {
         let is_dark = emission.is_dark();
         SceneNeeds {
             points: if is_dark { material.needs() } else { material.needs() | emission.needs() },
-            scattering: !matches!(material.constant(), Some(Bsdf::Diffuse(_))),
+            scattering: !matches!(material.constant_sides(), Some([Bsdf::Diffuse(_), Bsdf::Diffuse(_)])),
             masks: !material.is_opaque(),
             interiors: material.interior().is_some(),
             patterned_lights: !is_dark && emission.needs().any(),
@@ -204,13 +204,13 @@ impl Plan {
     /// How a shape scatters that is surrounded by nothing, if it does so alike everywhere; in a scene of
     /// [`Kernel::Plain`] each does, and is diffuse.
     #[inline]
-    pub fn constant(&self, shape: u32) -> Option<&Bsdf> {
-        self.constants[shape as usize].as_ref()
+    pub fn constant(&self, shape: u32, is_front: bool) -> Option<&Bsdf> {
+        self.constants[shape as usize].as_ref().map(|[front, back]| if is_front { front } else { back })
     }
 
-    /// What a shape reflects that scatters light by one diffuse colour everywhere.
+    /// What a shape reflects on the front and on the back, if each side scatters light by one diffuse colour.
     #[inline]
-    pub fn diffuse(&self, shape: u32) -> Option<Rgb> {
+    pub fn diffuse(&self, shape: u32) -> Option<[Rgb; 2]> {
         self.diffuse[shape as usize]
     }
 

@@ -88,9 +88,10 @@ impl<N: Features> TransportWorker<'_, N> {
         self.arrivals = arrivals;
     }
 
-    /// What a shape reflects, if it scatters by one diffuse colour and paths need no more of it.
+    /// What a shape reflects on the front and on the back, if each side scatters by one diffuse colour and paths need
+    /// no more of it.
     #[inline]
-    pub(super) fn diffuse(&self, shape: u32) -> Option<Rgb> {
+    pub(super) fn diffuse(&self, shape: u32) -> Option<[Rgb; 2]> {
         self.scene.plan().diffuse(shape).filter(|_| self.in_columns)
     }
 

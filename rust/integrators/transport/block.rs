@@ -140,7 +140,9 @@ impl<'a, N: Features> TransportWorker<'a, N> {
         }
         if block.is_diffuse {
             for lane in 0..LANES {
-                block.reflectance.set(lane, self.diffuse(block.surfaces.shape(lane)).unwrap_or(Rgb::ZERO));
+                let surface = block.surfaces.get(lane);
+                let [front, back] = self.diffuse(surface.shape).unwrap_or([Rgb::ZERO; 2]);
+                block.reflectance.set(lane, if surface.is_front(&block.rays[lane]) { front } else { back });
                 if N::SHARES && block.goes_on[lane] {
                     block.paths[lane] = self.reuse.visit(block.paths[lane], &block.diffuse(lane));
                 }
@@ -200,7 +202,7 @@ impl<'a, N: Features> TransportWorker<'a, N> {
             let (surface, width) = (block.surfaces.get(lane), block.width[lane]);
             let outside = if N::GENERAL && self.nested { self.boundary(block, lane).0 } else { 1.0 };
             let (ray, hit) = (block.rays[lane], block.hits[lane]);
-            let scattering = match self.scene.plan().constant(surface.shape) {
+            let scattering = match self.scene.plan().constant(surface.shape, surface.is_front(&ray)) {
                 Some(&bsdf) if outside == 1.0 && width == 0.0 => Scattering::One(bsdf),
                 _ => {
                     let here = Interaction::new(self.scene, &ray, &hit, surface, width, outside);
