@@ -240,7 +240,7 @@ impl Scene {
 mod tests {
     use super::*;
     use crate::scene::fixtures::{furnace, inward_box, scene, shape};
-    use crate::scene::{Receiver, Shape};
+    use crate::scene::{LightSampleContext, Shape};
 
     #[test]
     fn a_closed_surface_is_crossed_evenly_however_the_ray_is_aimed() {
@@ -303,7 +303,7 @@ mod tests {
         assert_eq!(a, b);
         assert_eq!(refitted.region(), moved.region());
         assert_eq!(still.growth(), 1.0);
-        let receiver = Receiver { position: rays[0].origin, normal: DVec3::Y };
+        let receiver = LightSampleContext { position: rays[0].origin, normal: DVec3::Y };
         let light = |s: &Scene| s.lights().sample(s.geometry(), &receiver, 0.5, [0.5; 2]).unwrap().direction;
         assert_eq!(light(&refitted), light(&moved));
         assert_ne!(light(&refitted), light(&still));

@@ -5,7 +5,7 @@ mod lanes;
 pub use lanes::InteractionLanes;
 
 use super::materials::Scattering;
-use super::{Departure, Receiver, Scatters, Scene, ShadingPoint, SurfacePoint};
+use super::{LightSampleContext, RayOrigin, Scatters, Scene, ShadingPoint, SurfacePoint};
 use crate::math::{DVec3, Frame, Hit, Ray, select};
 use crate::optics::{BsdfSample, Rgb};
 
@@ -169,11 +169,11 @@ impl<S: Scatters> Interaction<S> {
     /// whether light is asked for inside of it or outside, and the density of rays that meet the wall is asked from
     /// there too.
     #[inline(always)]
-    pub fn receiver(&self) -> Receiver {
+    pub fn light_context(&self) -> LightSampleContext {
         if self.scattering.transmits() {
-            return Receiver::free(self.surface.position);
+            return LightSampleContext::free(self.surface.position);
         }
-        Receiver { position: self.departure().ray(self.normal()).origin, normal: self.shading_normal() }
+        LightSampleContext { position: self.ray_origin().ray(self.normal()).origin, normal: self.shading_normal() }
     }
 
     /// How the point scatters, and nothing else.
@@ -195,8 +195,8 @@ impl<S: Scatters> Interaction<S> {
 
     /// Where rays leave from.
     #[inline(always)]
-    pub fn departure(&self) -> Departure {
-        Departure::new(&self.surface)
+    pub fn ray_origin(&self) -> RayOrigin {
+        RayOrigin::new(&self.surface)
     }
 
     /// Mean curvature, positive where the surface bulges towards the ray; 0 unless a width was given.

@@ -9,7 +9,7 @@ import pytest
 import raywright as rw
 
 # Scenes that go by every part of shading which is compiled for each level: diffuse rooms with lamps of
-# triangles, smooth normals and masks, one-sided sheets, metal and glass, lamps that are round, skies, and each
+# triangles, smooth normals and masks, sheets of two sides, metal and glass, round lamps, skies, and each
 # kind of sampler.
 PICTURES = """
 import hashlib

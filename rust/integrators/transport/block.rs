@@ -10,7 +10,7 @@ use crate::math::{Hit, LANES, Ray, VectorLanes};
 use crate::optics::{Diffuse, Rgb};
 use crate::sampling::SamplerLanes;
 use crate::scene::materials::Scattering;
-use crate::scene::{Aim, Interaction, InteractionLanes, Receiver, ReceiverLanes, Scatters, SurfaceLanes};
+use crate::scene::{Aim, Interaction, InteractionLanes, LightContextLanes, LightSampleContext, Scatters, SurfaceLanes};
 use crate::simd::Loops;
 use std::array;
 
@@ -28,7 +28,7 @@ pub(super) struct Block<'a> {
     pub numbers: SamplerLanes,
     pub surfaces: SurfaceLanes,
     pub encounters: InteractionLanes,
-    pub receivers: ReceiverLanes,
+    pub receivers: LightContextLanes,
     pub throughput: VectorLanes,
     /// Whether all of them are with what scatters by one diffuse colour.
     pub is_diffuse: bool,
@@ -57,7 +57,7 @@ impl Block<'_> {
             numbers: SamplerLanes::new(&sample.sampler),
             encounters: InteractionLanes::at(&surfaces),
             surfaces,
-            receivers: ReceiverLanes::NONE,
+            receivers: LightContextLanes::NONE,
             throughput: VectorLanes::ZERO,
             is_diffuse: false,
             reflectance: VectorLanes::ZERO,
@@ -86,7 +86,7 @@ impl Block<'_> {
 struct Meet<'a> {
     directions: &'a VectorLanes,
     encounters: &'a mut InteractionLanes,
-    receivers: &'a mut ReceiverLanes,
+    receivers: &'a mut LightContextLanes,
 }
 
 impl Loops for Meet<'_> {
@@ -99,13 +99,13 @@ impl Loops for Meet<'_> {
 }
 
 #[inline(always)]
-fn meet(directions: &VectorLanes, encounters: &mut InteractionLanes, receivers: &mut ReceiverLanes) {
+fn meet(directions: &VectorLanes, encounters: &mut InteractionLanes, receivers: &mut LightContextLanes) {
     for i in 0..LANES {
         let surface = encounters.surface(i);
         let ray = Ray::new(surface.position, directions.get(i));
         let here = Interaction::with(&ray, surface, (surface.shading_normal, None), Diffuse { reflectance: Rgb::ZERO });
         encounters.set(i, &here);
-        receivers.set(i, &here.receiver());
+        receivers.set(i, &here.light_context());
     }
 }
 
@@ -207,12 +207,12 @@ impl<'a, N: Features> TransportWorker<'a, N> {
                 _ => {
                     let here = Interaction::new(self.scene, &ray, &hit, surface, width, outside);
                     block.encounters.set(lane, &here);
-                    block.receivers.set(lane, &here.receiver());
+                    block.receivers.set(lane, &here.light_context());
                     here.into_scattering()
                 }
             };
             if scattering.transmits() {
-                block.receivers.set(lane, &Receiver::free(surface.position));
+                block.receivers.set(lane, &LightSampleContext::free(surface.position));
             }
             block.scattering.push(scattering);
             if !block.goes_on[lane] {

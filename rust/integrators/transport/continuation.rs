@@ -52,7 +52,7 @@ fn go_on(
             Some(next) => (next.direction, next.weight, next.pdf),
             None => (here.normal(), Rgb::ZERO, 0.0),
         };
-        let ray = here.departure().ray(towards);
+        let ray = here.ray_origin().ray(towards);
         origin.set(i, ray.origin);
         direction.set(i, ray.direction);
         weight.set(i, times);
@@ -231,7 +231,7 @@ impl<N: Features> TransportWorker<'_, N> {
         if !self.survives(&mut path, block.arrivals[lane], branch.chance) {
             return;
         }
-        let ray = block.other(lane).departure().ray(next.direction);
+        let ray = block.other(lane).ray_origin().ray(next.direction);
         self.next.rays.push(Ray { time: block.rays[lane].time, ..ray });
         self.next.paths.push(path);
         if N::GENERAL {

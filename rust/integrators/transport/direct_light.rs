@@ -50,7 +50,7 @@ fn ask(
         let all = throughput.get(i) * scattered * light * power_heuristic(drawn, pdf);
         arriving.set(i, if drawn > 0.0 { all } else { Rgb::ZERO });
         let (source, is_within) = lights.source(i);
-        let from = here.departure();
+        let from = here.ray_origin();
         let (segment, ray) = (from.segment(&source), from.ray(towards));
         let ray = if is_within { segment } else { ray };
         origin.set(i, ray.origin);
@@ -178,7 +178,7 @@ impl<N: Features> TransportWorker<'_, N> {
 
     /// Queues the shadow ray of light that was drawn.
     fn send_towards(&mut self, block: &Block, lane: usize, light: &LightSample, arriving: Rgb) {
-        let from = block.other(lane).departure();
+        let from = block.other(lane).ray_origin();
         let ray = match &light.source {
             Some(source) => from.segment(source),
             None => from.ray(light.direction),

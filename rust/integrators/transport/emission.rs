@@ -7,7 +7,7 @@ use super::worker::TransportWorker;
 use crate::math::{Hit, Ray};
 use crate::optics::Rgb;
 use crate::scene::textures::TexturePoint;
-use crate::scene::{Receiver, SurfacePoint};
+use crate::scene::{LightSampleContext, SurfacePoint};
 
 impl<N: Features> TransportWorker<'_, N> {
     /// What arrives from outside the scene at a ray that meets nothing.
@@ -18,7 +18,7 @@ impl<N: Features> TransportWorker<'_, N> {
         if arriving == Rgb::ZERO || path.pdf == f64::INFINITY {
             return arriving;
         }
-        let receiver = Receiver { position: ray.origin, normal: path.normal };
+        let receiver = LightSampleContext { position: ray.origin, normal: path.normal };
         if !N::PLAIN && path.each {
             let weight = |drawn: f64| power_heuristic(path.pdf, drawn * self.asked_from(path));
             return lights.outside_weighed(&receiver, ray.direction, weight);
@@ -47,7 +47,7 @@ impl<N: Features> TransportWorker<'_, N> {
         if emission == Rgb::ZERO || path.pdf == f64::INFINITY {
             return emission;
         }
-        let receiver = Receiver { position: ray.origin, normal: path.normal };
+        let receiver = LightSampleContext { position: ray.origin, normal: path.normal };
         let (lights, geometry) = (self.scene.lights(), self.scene.geometry());
         let drawn = if !N::PLAIN && path.each {
             lights.own_pdf(geometry, &receiver, ray, hit, cosine)

@@ -4,7 +4,7 @@ use super::nesting::MediumStack;
 use crate::scene::Footprint;
 use std::marker::PhantomData;
 
-/// What a loop over paths is compiled with: a type for each [`crate::scene::Kernel`].
+/// What a loop over paths is compiled with: a type for each [`crate::scene::ShadingVariant`].
 pub(super) trait Features: Send + Sync + 'static {
     /// Each shape scatters by one diffuse colour and shines by one number.
     const PLAIN: bool;
@@ -14,11 +14,11 @@ pub(super) trait Features: Send + Sync + 'static {
     const SHARES: bool = false;
 }
 
-/// See [`crate::scene::Kernel::Plain`].
+/// See [`crate::scene::ShadingVariant::Plain`].
 pub(super) struct Plain;
-/// See [`crate::scene::Kernel::Open`].
+/// See [`crate::scene::ShadingVariant::Open`].
 pub(super) struct Open;
-/// See [`crate::scene::Kernel::General`].
+/// See [`crate::scene::ShadingVariant::General`].
 pub(super) struct General;
 
 impl Features for Plain {

@@ -19,7 +19,7 @@ mod worker;
 
 use super::Worker;
 use crate::optics::Rgb;
-use crate::scene::{Footprint, Kernel, Scene};
+use crate::scene::{Footprint, Scene, ShadingVariant};
 use features::{General, Open, Plain, Sharing};
 use worker::TransportWorker;
 
@@ -79,7 +79,7 @@ impl Settings {
         }
     }
 
-    /// Whether they are those of a path tracer, the only ones that the special kernels know.
+    /// Whether they are those of a path tracer, the only ones that the special variants know.
     fn are_plain(&self) -> bool {
         self.light_samples == 1
             && self.splits == 1
@@ -89,18 +89,27 @@ impl Settings {
             && self.least == 0.0
     }
 
-    /// What one thread works with: the kernel that has what the scene and these settings need.
+    /// What one thread works with: the variant that has what the scene and these settings need.
     pub fn worker<'a>(self, scene: &'a Scene, footprint: Footprint) -> Box<dyn Worker + 'a> {
-        self.worker_of(scene, footprint, scene.plan().kernel())
+        self.worker_of(scene, footprint, scene.plan().variant())
     }
 
-    /// As [`Settings::worker`], by this kernel or one that can do more.
-    pub fn worker_of<'a>(self, scene: &'a Scene, footprint: Footprint, kernel: Kernel) -> Box<dyn Worker + 'a> {
-        match kernel {
-            Kernel::Plain if self.shares => Box::new(TransportWorker::<Sharing<Plain>>::new(self, scene, footprint)),
+    /// As [`Settings::worker`], by this variant or one that can do more.
+    pub fn worker_of<'a>(
+        self,
+        scene: &'a Scene,
+        footprint: Footprint,
+        variant: ShadingVariant,
+    ) -> Box<dyn Worker + 'a> {
+        match variant {
+            ShadingVariant::Plain if self.shares => {
+                Box::new(TransportWorker::<Sharing<Plain>>::new(self, scene, footprint))
+            }
             _ if self.shares => Box::new(TransportWorker::<Sharing<Open>>::new(self, scene, footprint)),
-            Kernel::Plain if self.are_plain() => Box::new(TransportWorker::<Plain>::new(self, scene, footprint)),
-            Kernel::Open if self.are_plain() => Box::new(TransportWorker::<Open>::new(self, scene, footprint)),
+            ShadingVariant::Plain if self.are_plain() => {
+                Box::new(TransportWorker::<Plain>::new(self, scene, footprint))
+            }
+            ShadingVariant::Open if self.are_plain() => Box::new(TransportWorker::<Open>::new(self, scene, footprint)),
             _ => Box::new(TransportWorker::<General>::new(self, scene, footprint)),
         }
     }
@@ -113,5 +122,5 @@ impl Settings {
 /// at times of their own; and a filtered texture shows to each what is of its own width.
 pub(super) fn can_share(scene: &Scene) -> bool {
     let needs = scene.plan().needs();
-    scene.plan().suits(Kernel::Open) && !needs.motion && !scene.lights().is_dark()
+    scene.plan().suits(ShadingVariant::Open) && !needs.motion && !scene.lights().is_dark()
 }

@@ -3,7 +3,7 @@
 use crate::accel::Crossings;
 use crate::math::{DVec3, Hit, Ray};
 use crate::scene::materials::Interior;
-use crate::scene::{Departure, Scene};
+use crate::scene::{RayOrigin, Scene};
 
 /// The media that a point lies in. The one of the greatest priority is there, and the surfaces of the others, within
 /// it, are not (Schmidt and Budge, "Simple Nested Dielectrics in Ray Traced Images", 2002). Of equal priority, the
@@ -142,7 +142,7 @@ pub(super) enum Boundary {
 pub(super) fn around(scene: &Scene, ray: &Ray, hit: &Hit) -> Option<Ray> {
     let surface = scene.geometry().surface(ray, hit);
     scene.material_at(&surface).interior()?;
-    let reach = Departure::reach(&surface, ray);
+    let reach = RayOrigin::reach(&surface, ray);
     Some(Ray { t_min: ray.t_min.max(hit.t - reach), t_max: (hit.t + reach).next_up(), ..*ray })
 }
 

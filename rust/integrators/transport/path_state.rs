@@ -8,7 +8,7 @@ use crate::optics::Rgb;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PathState {
     pub(super) throughput: Rgb,
-    /// The normal that lights were drawn by where it was scattered last ([`crate::scene::Receiver`]).
+    /// The normal that lights were drawn by where it was scattered last ([`crate::scene::LightSampleContext`]).
     pub(super) normal: DVec3,
     /// Density with which this direction was drawn, times the number of such draws; infinite for a camera's ray.
     pub(super) pdf: f64,
