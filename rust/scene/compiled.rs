@@ -208,6 +208,13 @@ impl Scene {
         }
     }
 
+    /// What that is made of which a ray has hit.
+    #[inline]
+    pub fn material_of(&self, hit: &Hit) -> &dyn Material {
+        let shape = self.geometry.locate(hit.primitive).0;
+        if self.geometry.copies_of(shape).is_some() { self.look(shape, hit.inner).0 } else { self.material(shape) }
+    }
+
     /// How a point of a surface shines.
     #[inline]
     pub fn emission_at(&self, surface: &SurfacePoint) -> &Emission {

@@ -2,6 +2,7 @@
 
 mod aiming;
 mod arrivals;
+mod arrive;
 mod block;
 mod continuation;
 mod delta_lobes;
@@ -13,6 +14,7 @@ mod nesting;
 mod path_state;
 mod resampling;
 mod reuse;
+mod shade;
 mod shadows;
 mod weights;
 mod worker;

@@ -99,8 +99,8 @@ impl MediumStack {
     /// Goes through what a ray hits, along it or back. Returns the medium that it enters or leaves, and whether it
     /// enters it.
     fn pass(&mut self, scene: &Scene, ray: &Ray, hit: &Hit, back: bool) -> Option<(Interior, bool)> {
+        let interior = scene.material_of(hit).interior()?;
         let surface = scene.geometry().surface(ray, hit);
-        let interior = scene.material_at(&surface).interior()?;
         let enters = (ray.direction.dot(surface.normal) < 0.0) != back;
         if enters {
             self.enter(interior);
@@ -140,8 +140,8 @@ pub(super) enum Boundary {
 /// The part of a ray around a hit on whose crossings [`Boundary::new`] decides: surfaces that lie in one another, or
 /// closer than rounding tells, are one boundary. `None` if the surface hit encloses nothing.
 pub(super) fn around(scene: &Scene, ray: &Ray, hit: &Hit) -> Option<Ray> {
+    scene.material_of(hit).interior()?;
     let surface = scene.geometry().surface(ray, hit);
-    scene.material_at(&surface).interior()?;
     let reach = RayOrigin::reach(&surface, ray);
     Some(Ray { t_min: ray.t_min.max(hit.t - reach), t_max: (hit.t + reach).next_up(), ..*ray })
 }

@@ -4,7 +4,7 @@ use super::nesting::{Boundary, MediumStack, around};
 use crate::math::{Hit, Ray};
 use crate::optics::Rgb;
 use crate::scene::textures::TexturePoint;
-use crate::scene::{Scene, ShadingPoint, SurfacePoint};
+use crate::scene::{Scene, ShadingPoint};
 
 /// Shadow rays of a batch, and what arrives along each if nothing lies on the way.
 #[derive(Default)]
@@ -15,7 +15,9 @@ pub(super) struct Shadows {
     media: Vec<MediumStack>,
     occluded: Vec<bool>,
     hits: Vec<Hit>,
+    /// The parts of rays around hits of what encloses a medium, and which rays' they are.
     windows: Vec<Ray>,
+    of: Vec<usize>,
 }
 
 impl Shadows {
@@ -68,9 +70,16 @@ impl Shadows {
             self.hits.resize(rays.len(), Hit::MISS);
             scene.intersect(&rays, &mut self.hits);
             self.windows.clear();
+            self.of.clear();
             if nested {
-                let hits = rays.iter().zip(&self.hits).filter(|(_, hit)| hit.is_hit());
-                self.windows.extend(hits.filter_map(|(ray, hit)| around(scene, ray, hit)));
+                for (i, (ray, hit)) in rays.iter().zip(&self.hits).enumerate() {
+                    if hit.is_hit()
+                        && let Some(window) = around(scene, ray, hit)
+                    {
+                        self.windows.push(window);
+                        self.of.push(i);
+                    }
+                }
             }
             let crossings = scene.crossings(&self.windows);
             let mut window = 0;
@@ -80,7 +89,7 @@ impl Shadows {
                 if !hit.is_hit() {
                     continue;
                 }
-                if nested && around(scene, ray, hit).is_some() {
+                if self.of.get(window) == Some(&i) {
                     window += 1;
                     if let Boundary::None(media) = Boundary::new(scene, ray, &self.media[which], &crossings, window - 1)
                     {
@@ -91,7 +100,7 @@ impl Shadows {
                         continue;
                     }
                 }
-                let opacity = opacity(scene, ray, hit, &scene.geometry().surface(ray, hit));
+                let opacity = opacity(scene, ray, hit);
                 self.arriving[which].1 *= 1.0 - opacity;
                 if opacity < 1.0 {
                     self.rays[which].t_min = hit.t.next_up();
@@ -106,12 +115,12 @@ impl Shadows {
 }
 
 /// The share of rays that meet what is hit.
-pub(super) fn opacity(scene: &Scene, ray: &Ray, hit: &Hit, surface: &SurfacePoint) -> f64 {
-    let material = scene.material_at(surface);
+pub(super) fn opacity(scene: &Scene, ray: &Ray, hit: &Hit) -> f64 {
+    let material = scene.material_of(hit);
     if material.is_opaque() {
         return 1.0;
     }
-    let needs = material.needs();
-    let texture: TexturePoint = ShadingPoint::new(scene.geometry(), ray, hit, surface, needs, 0.0).texture;
+    let (needs, surface) = (material.needs(), scene.geometry().surface(ray, hit));
+    let texture: TexturePoint = ShadingPoint::new(scene.geometry(), ray, hit, &surface, needs, 0.0).texture;
     material.opacity(&texture).clamp(0.0, 1.0)
 }

@@ -7,7 +7,7 @@ use super::triangles::Triangles;
 use arbitrary::{Result, Unstructured};
 use raywright::accel::bvh::Options;
 use raywright::math::{DVec3, Ray};
-use raywright::scene::{RayOrigin, Geometry, Mesh, SurfacePoint, Vertices};
+use raywright::scene::{Geometry, Mesh, RayOrigin, SurfacePoint, Vertices};
 
 /// Panics where a ray meets what it leaves, or misses what is in its way.
 pub fn check(data: &[u8]) {
