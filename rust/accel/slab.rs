@@ -134,8 +134,8 @@ impl SlabRay {
         clock: Clock { to_box: 0.0, start: 0.0 },
     };
 
-    /// Makes a ray ready for boxes in box units, which lie along axes of a tree's own if there are any; none if it passes
-    /// the scene by for certain.
+    /// Makes a ray ready for boxes in box units, which lie along axes of a tree's own if there are any; none if it
+    /// passes the scene by for certain.
     #[inline(always)]
     pub fn new(axes: Option<&Axes>, ray: &EdgeRay, region: &Region) -> Option<Self> {
         let mut origin = ray.local * region.scale;

@@ -98,14 +98,17 @@ impl Gathering {
         let mut halved = [0u32; 3];
         let mut size = spread.size;
         for bit in (0..BITS).rev() {
-            let longest = (0..3).fold(0, |best, axis| if size[axis] > size[best] { axis } else { best });
+            // Of those that a table has room for, also where all are as long, or none has a length.
+            let open = (0..3).filter(|&axis| halved[axis] < ALONG);
+            let longer = |best: usize, axis: usize| if size[axis] > size[best] { axis } else { best };
+            let longest = open.reduce(longer).expect("fewer bits than all tables have");
             // What is known of a place is known of both its halves.
             let to = &mut bits[longest];
             for place in (0..1 << halved[longest]).rev() {
                 (to[2 * place], to[2 * place + 1]) = (to[place], to[place] | 1 << bit);
             }
             halved[longest] += 1;
-            size[longest] = if halved[longest] < ALONG { size[longest] / 2.0 } else { 0.0 };
+            size[longest] /= 2.0;
         }
         // To whole numbers by adding so much that nothing else is left of the digits.
         const WHOLE: f32 = (1 << 23) as f32;
