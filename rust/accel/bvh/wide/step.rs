@@ -86,8 +86,8 @@ impl Boxes {
     }
 
     /// Tests the children of the node where the ray is and puts those that it meets on to the stack, the nearest on top
-    /// or, if not `NEAREST_FIRST`, what stands in the last lane. Where on the ray they are met is kept if `KEPT`, for [`Self::shorten`].
-    /// No branch depends on the ray.
+    /// or, if not `NEAREST_FIRST`, what stands in the last lane. Where on the ray they are met is kept if `KEPT`, for
+    /// [`Self::shorten`]. No branch depends on the ray.
     // Written out, axis by axis: closures between a kernel's entry and here are not always compiled for its level.
     #[inline(always)]
     pub fn enter<const N: usize, S: Simd<N>, const NEAREST_FIRST: bool, const KEPT: bool>(
