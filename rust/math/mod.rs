@@ -12,7 +12,6 @@ mod elliptic;
 pub mod erf;
 mod exact;
 mod frame;
-pub mod gathering;
 mod interval;
 mod lanes;
 mod number;
