@@ -14,6 +14,7 @@ use super::shadows::Shadows;
 use crate::integrators::{CameraSample, Worker};
 use crate::math::{Hit, LANES};
 use crate::optics::Rgb;
+use crate::sampling::SamplerLanes;
 use crate::scene::{Aim, Caustics, Footprint, Interaction, Scatters, Scene, is_matt};
 use crate::simd::Level;
 use crate::workers::Cancel;
@@ -96,6 +97,8 @@ impl<'a, N: Features> TransportWorker<'a, N> {
         self.next.clear();
         self.arrive(samples, radiance);
         let mut block = self.block.take().unwrap_or_else(|| Box::new(Block::new(&samples[0])));
+        // A worker may be given samples of another seed or kind each time.
+        block.numbers = SamplerLanes::new(&samples[0].sampler);
         for is_diffuse in [true, false] {
             block.is_diffuse = is_diffuse;
             let arrivals = &mut self.arrivals;
