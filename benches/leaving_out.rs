@@ -7,7 +7,7 @@ use raywright::integrators::{CameraSample, Path};
 use raywright::math::{DVec3, Ray, Vec3};
 use raywright::optics::Rgb;
 use raywright::sampling::Sampler;
-use raywright::scene::{DiffuseMaterial, Footprint, Kernel, Mesh, Scene, SceneDescription, Shape};
+use raywright::scene::{DiffuseMaterial, Footprint, Mesh, Scene, SceneDescription, ShadingVariant, Shape};
 use raywright::simd::Level;
 use raywright::workers::Cancel;
 use std::sync::Arc;
@@ -32,7 +32,7 @@ fn main() {
         worker.radiance(&mut samples, &Cancel::default(), &mut radiance);
         (start.elapsed().as_secs_f64(), radiance)
     };
-    let all = Kernel::ALL.map(run);
+    let all = ShadingVariant::ALL.map(run);
     assert!(all.iter().all(|(_, radiance)| *radiance == all[0].1), "the same bits");
     if !is_timed {
         return;
@@ -41,7 +41,7 @@ fn main() {
     for turn in 0..TURNS {
         for i in 0..3 {
             let which = (i + turn) % 3;
-            seconds[which].push(run(Kernel::ALL[which]).0);
+            seconds[which].push(run(ShadingVariant::ALL[which]).0);
         }
     }
     println!(
@@ -51,7 +51,7 @@ fn main() {
     println!();
     println!("| kernel | thousand paths a second | time over plain |");
     println!("|---|---|---|");
-    for (kernel, times) in Kernel::ALL.into_iter().zip(&seconds) {
+    for (kernel, times) in ShadingVariant::ALL.into_iter().zip(&seconds) {
         let ratios = times.iter().zip(&seconds[0]).map(|(mine, plain)| mine / plain).collect();
         let rate = f64::from(PATHS) / median(times.clone()) / 1e3;
         println!("| {} | {rate:.0} | {:.2} |", kernel.name(), median(ratios));

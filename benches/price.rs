@@ -13,7 +13,7 @@ use meshes::{Doubles, Mesh, Purpose, Triangles, rays, validate};
 use plain::PlainLeaves;
 use raywright::accel::bvh::{self, Options};
 use raywright::accel::{Accelerator, Primitives};
-use raywright::math::{Hit, Ray, RayBatch, coherence};
+use raywright::math::{Hit, Ray, coherence};
 use raywright::simd::Level;
 use std::hint::black_box;
 use std::time::Instant;
@@ -59,7 +59,8 @@ fn main() {
             if !is_timed {
                 continue;
             }
-            let in_packets = coherence::is_coherent(RayBatch::Rows(&rays), triangles.region().radius);
+            let ray = |i: usize| (rays[i].origin, rays[i].direction);
+            let in_packets = coherence::is_coherent(rays.len(), ray, triangles.region().radius);
             for asked in [Asked::Closest, Asked::Any] {
                 let seconds = turns(&trees, &rays, asked);
                 let speed = |i: usize| rays.len() as f64 / seconds[i] / 1e6;

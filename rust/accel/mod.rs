@@ -162,6 +162,9 @@ pub trait ByColumns: Send + Sync {
 
     /// Whether each ray hits anything.
     fn occluded(&self, rays: &RayColumns<'_>, occluded: &mut [bool]);
+
+    /// How large what rays meet is, if it matters to them in which order they come.
+    fn extent(&self) -> Option<f64>;
 }
 
 impl<A: Answers> Accelerator for A {

@@ -134,15 +134,10 @@ impl SlabRay {
         clock: Clock { to_box: 0.0, start: 0.0 },
     };
 
-    /// Makes a ray ready for boxes in box units; none if it passes the scene by for certain.
+    /// Makes a ray ready for boxes in box units, which lie along axes of a tree's own if there are any; none if it
+    /// passes the scene by for certain.
     #[inline(always)]
-    pub fn new(ray: &EdgeRay, region: &Region) -> Option<Self> {
-        Self::along(None, ray, region)
-    }
-
-    /// The same for boxes along axes of a tree's own, if there are any.
-    #[inline(always)]
-    pub fn along(axes: Option<&Axes>, ray: &EdgeRay, region: &Region) -> Option<Self> {
+    pub fn new(axes: Option<&Axes>, ray: &EdgeRay, region: &Region) -> Option<Self> {
         let mut origin = ray.local * region.scale;
         let mut direction = ray.direction;
         let largest = ray.largest * region.scale;
@@ -200,18 +195,12 @@ impl SlabRay {
         (enter <= leave).then_some((enter, leave))
     }
 
-    /// Readies a ray for a scene: for triangles and for boxes. None if it cannot hit anything, or passes the
-    /// scene by.
+    /// Readies a ray for a scene: for triangles, and for boxes, which lie along axes of a tree's own if there are any.
+    /// None if it cannot hit anything, or passes the scene by.
     #[inline(always)]
-    pub fn prepare(ray: &Ray, region: &Region) -> Option<(EdgeRay, Self)> {
-        Self::prepare_along(None, ray, region)
-    }
-
-    /// The same for boxes along axes of a tree's own, if there are any.
-    #[inline(always)]
-    pub fn prepare_along(axes: Option<&Axes>, ray: &Ray, region: &Region) -> Option<(EdgeRay, Self)> {
+    pub fn prepare(axes: Option<&Axes>, ray: &Ray, region: &Region) -> Option<(EdgeRay, Self)> {
         let edges = EdgeRay::new(ray, region)?;
-        let slabs = Self::along(axes, &edges, region)?;
+        let slabs = Self::new(axes, &edges, region)?;
         Some((edges, slabs))
     }
 }
@@ -375,7 +364,7 @@ mod tests {
             let ray = Ray::new(points[place] - direction * distance * size, direction);
             // Nothing but the point where the ray is after so long, which rounding moves by less than is allowed for.
             let bounds = region.aabb_along(axes.as_ref(), [points[place]; 3]);
-            let Some((_, slabs)) = SlabRay::prepare_along(axes.as_ref(), &ray, &region) else {
+            let Some((_, slabs)) = SlabRay::prepare(axes.as_ref(), &ray, &region) else {
                 return Err(TestCaseError::fail("it meets the scene"));
             };
             prop_assert!(slabs.passes(&bounds, f32::INFINITY).is_some(), "{:?}", slabs);

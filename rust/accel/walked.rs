@@ -237,7 +237,7 @@ impl<const N: usize, L: Leaves<N>, Q: Query> Kernel<N> for Batch<'_, N, L, Q> {
                 marks.next_ray();
             }
             let mut answered = contents.meet_objects(unbounded, &leaf_ray, &mut marks, query, &mut state);
-            if !answered && let Some(slabs) = SlabRay::new(&edges, region) {
+            if !answered && let Some(slabs) = SlabRay::new(None, &edges, region) {
                 walker.start_at(&slabs, ray.time);
                 while !answered && let Some(leaf) = walker.next(slabs.limit(Q::limit(&state))) {
                     answered = contents.meet(simd, leaf, &leaf_ray, &mut marks, query, &mut state);

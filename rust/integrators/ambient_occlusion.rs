@@ -4,7 +4,7 @@ use super::{CameraSample, Integrator, Worker};
 use crate::math::{Frame, Hit, Ray};
 use crate::optics::Rgb;
 use crate::sampling::{CAMERA_DIMENSIONS, warp};
-use crate::scene::{Departure, Footprint, Scene};
+use crate::scene::{Footprint, RayOrigin, Scene};
 use crate::workers::Cancel;
 
 /// How open the surroundings of what is seen are (Zhukov, Iones and Kronin, "An Ambient Light Illumination Model",
@@ -79,7 +79,7 @@ impl Worker for Openness<'_> {
                         let up = warp::uniform_sphere(u);
                         up.with_z(up.z.abs())
                     };
-                    let ray = Departure::new(&surface).ray(frame.to_world(local));
+                    let ray = RayOrigin::new(&surface).ray(frame.to_world(local));
                     self.rays.push(Ray { time: sample.ray.time, t_max: self.settings.radius, ..ray });
                     self.of.push(i as u32);
                 }

@@ -38,7 +38,7 @@ impl Integrator for Distributed {
     fn worker<'a>(&'a self, scene: &'a Scene, footprint: Footprint) -> Box<dyn Worker + 'a> {
         let splits = self.splits.max(1);
         Settings {
-            follow: Follow::Sharper(Self::GLOSS),
+            follow: Follow::MinDensity(Self::GLOSS),
             ambient: self.ambient,
             light_samples: splits,
             splits,

@@ -2,7 +2,7 @@
 
 use super::transport::{Settings, can_share};
 use super::{Integrator, Worker};
-use crate::scene::{Footprint, Kernel, Scene};
+use crate::scene::{Footprint, Scene, ShadingVariant};
 
 /// Unidirectional path tracing (Kajiya, "The Rendering Equation", 1986): at each bounce one light is asked directly,
 /// which is combined with running into lights by chance through multiple importance sampling (Veach and Guibas,
@@ -33,15 +33,20 @@ impl Path {
         Settings { shares, aims, ..Settings::path(self.max_depth, self.roulette_depth) }
     }
 
-    /// There must be something sharp, and light beyond it: scenes of the plain kernel have nothing sharp.
+    /// There must be something sharp, and light beyond it: scenes of the plain variant have nothing sharp.
     fn aims(&self, scene: &Scene) -> bool {
         self.caustics && self.max_depth.is_none_or(|depth| depth > 1) && scene.plan().needs().scattering
     }
 
-    /// What one thread works with, compiled as this kernel, or as one that can do more. Every kernel that suits a scene
-    /// gives the same bits.
-    pub fn worker_of<'a>(&self, scene: &'a Scene, footprint: Footprint, kernel: Kernel) -> Box<dyn Worker + 'a> {
-        self.settings(scene).worker_of(scene, footprint, kernel)
+    /// What one thread works with, compiled as this variant, or as one that can do more. Every variant that suits a
+    /// scene gives the same bits.
+    pub fn worker_of<'a>(
+        &self,
+        scene: &'a Scene,
+        footprint: Footprint,
+        variant: ShadingVariant,
+    ) -> Box<dyn Worker + 'a> {
+        self.settings(scene).worker_of(scene, footprint, variant)
     }
 }
 

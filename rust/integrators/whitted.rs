@@ -31,7 +31,7 @@ impl Default for Whitted {
 impl Integrator for Whitted {
     fn worker<'a>(&'a self, scene: &'a Scene, footprint: Footprint) -> Box<dyn Worker + 'a> {
         Settings {
-            follow: Follow::EachSingle,
+            follow: Follow::DeltaLobes,
             ambient: self.ambient,
             light_samples: self.light_samples.max(1),
             least: self.contribution,

@@ -1,24 +1,24 @@
 //! Whether the rays of a batch go much the same way.
 
-use super::RayBatch;
+use glam::DVec3;
 
 /// Pairs of neighbours looked at.
 const PAIRS: usize = 16;
 
-/// Whether most neighbours in a batch start within a hundredth of `extent` of each other, in directions less than 8
-/// degrees apart, and so visit much the same of a scene. A few neighbours are looked at, spread evenly over the batch;
-/// which answer is given matters to speed alone.
-pub fn is_coherent(rays: RayBatch<'_>, extent: f64) -> bool {
+/// Whether most neighbours among rays, each an origin and a direction, start within a hundredth of `extent` of each
+/// other, in directions less than 8 degrees apart, and so visit much the same of a scene. A few neighbours are looked
+/// at, spread evenly over the rays; which answer is given matters to speed alone.
+pub fn is_coherent(count: usize, ray: impl Fn(usize) -> (DVec3, DVec3), extent: f64) -> bool {
     const COSINE_SQUARED: f64 = 0.98;
-    let step = (rays.len() / PAIRS).max(2);
+    let step = (count / PAIRS).max(2);
     let (mut near, mut all) = (0, 0);
-    for at in (0..rays.len().saturating_sub(1)).step_by(step) {
-        let [a, b] = [rays.get(at), rays.get(at + 1)];
-        let cosine = a.direction.dot(b.direction);
-        let lengths = a.direction.length_squared() * b.direction.length_squared();
+    for at in (0..count.saturating_sub(1)).step_by(step) {
+        let [(from, a), (from_next, b)] = [ray(at), ray(at + 1)];
+        let cosine = a.dot(b);
+        let lengths = a.length_squared() * b.length_squared();
         // Of directions so short or long that this under- or overflows, neither comparison holds.
         let same_way = cosine > 0.0 && cosine * cosine >= COSINE_SQUARED * lengths;
-        near += usize::from(same_way && (a.origin - b.origin).length_squared() <= 1e-4 * extent * extent);
+        near += usize::from(same_way && (from - from_next).length_squared() <= 1e-4 * extent * extent);
         all += 1;
     }
     4 * near >= 3 * all
@@ -28,7 +28,10 @@ pub fn is_coherent(rays: RayBatch<'_>, extent: f64) -> bool {
 mod tests {
     use super::super::Ray;
     use super::*;
-    use glam::DVec3;
+
+    fn is_coherent(rays: &[Ray], extent: f64) -> bool {
+        super::is_coherent(rays.len(), |i| (rays[i].origin, rays[i].direction), extent)
+    }
 
     fn fan(spread: f64, shift: f64) -> Vec<Ray> {
         let at = |i: u32| f64::from(i.wrapping_mul(2_654_435_761) >> 8) / f64::from(1 << 24) - 0.5;
@@ -39,19 +42,19 @@ mod tests {
 
     #[test]
     fn a_camera_is_coherent_and_scattered_light_is_not() {
-        assert!(is_coherent(RayBatch::Rows(&fan(0.05, 0.0)), 1.0));
-        assert!(!is_coherent(RayBatch::Rows(&fan(3.0, 0.0)), 1.0));
-        assert!(!is_coherent(RayBatch::Rows(&fan(0.05, 1.0)), 1.0));
-        assert!(is_coherent(RayBatch::Rows(&fan(0.05, 1.0)), 1000.0));
+        assert!(is_coherent(&fan(0.05, 0.0), 1.0));
+        assert!(!is_coherent(&fan(3.0, 0.0), 1.0));
+        assert!(!is_coherent(&fan(0.05, 1.0), 1.0));
+        assert!(is_coherent(&fan(0.05, 1.0), 1000.0));
         let back_and_forth: Vec<_> =
             (0..64).map(|i| Ray::new(DVec3::ZERO, if i % 2 == 0 { DVec3::Z } else { -DVec3::Z })).collect();
-        assert!(!is_coherent(RayBatch::Rows(&back_and_forth), 1.0));
+        assert!(!is_coherent(&back_and_forth, 1.0));
     }
 
     #[test]
     fn any_number_of_rays_has_an_answer() {
         for count in 0..50 {
-            assert!(is_coherent(RayBatch::Rows(&vec![Ray::new(DVec3::ZERO, DVec3::Z); count]), 1.0));
+            assert!(is_coherent(&vec![Ray::new(DVec3::ZERO, DVec3::Z); count], 1.0));
         }
     }
 }

@@ -12,6 +12,7 @@ mod elliptic;
 pub mod erf;
 mod exact;
 mod frame;
+pub mod gathering;
 mod interval;
 mod lanes;
 mod number;

@@ -3,6 +3,8 @@
 use super::arrays::Rows;
 use super::rays::{BATCH, RayArrays};
 use crate::accel::ByColumns;
+use crate::math::coherence::is_coherent;
+use crate::math::gathering::{Gathering, RUN, Spread, WINDOW};
 use crate::math::{HitColumns, Numbers, RayColumns, Run, Tiling, Vectors};
 use crate::scene::Geometry;
 use crate::simd::{ask_for, columns_of_four};
@@ -13,26 +15,54 @@ pub type HitParts<'a> = (&'a mut [f64], &'a mut [i32], &'a mut [i32], &'a mut [[
 
 /// Rays that are asked together, of a chunk of `count`.
 #[derive(Clone, Copy)]
-struct Part {
+struct Part<'a> {
     tiling: Tiling,
     from: usize,
     len: usize,
     count: usize,
+    /// Which runs of neighbours after `window` they are, if they are asked in an order that is neither theirs nor an
+    /// image's. What is left of a window that is no whole run stands last.
+    order: Option<&'a [u16]>,
+    window: usize,
 }
 
-impl Part {
+impl Part<'_> {
+    /// Whether they are asked in the order in which they lie.
+    fn is_sequence(&self) -> bool {
+        self.tiling.is_sequence() && self.order.is_none()
+    }
+
     /// Where they lie in the chunk.
     #[inline(always)]
-    fn runs(&self, each: impl FnMut(Run)) {
-        self.tiling.runs(self.from, self.len, self.count, each);
+    fn runs(&self, mut each: impl FnMut(Run)) {
+        let Some(order) = self.order else { return self.tiling.runs(self.from, self.len, self.count, each) };
+        for (i, &run) in order.iter().enumerate() {
+            each(Run { place: self.window + RUN * usize::from(run), at: RUN * i, len: RUN });
+        }
+        let at = RUN * order.len();
+        if at < self.len {
+            each(Run { place: self.from + at, at, len: self.len - at });
+        }
+    }
+
+    /// Copies what belongs to them from where it lies to the order in which they are asked.
+    #[inline(always)]
+    fn read<T: Copy>(&self, from: &[T], to: &mut [T]) {
+        self.runs(|Run { place, at, len }| copy(&from[place..][..len], &mut to[at..][..len]));
+    }
+
+    /// The same the other way.
+    #[inline(always)]
+    fn write<T: Copy>(&self, from: &[T], to: &mut [T]) {
+        self.runs(|Run { place, at, len }| copy(&from[at..][..len], &mut to[place..][..len]));
     }
 }
 
-/// Neighbours of a tile that are neighbours in the arrays, too.
-const RUN: usize = 4;
-
 /// So many rays further along a row they are asked for: the next tiles but three.
 const AHEAD: usize = 32;
+
+/// Fewer rays than these are as near to each other as they can be.
+const FEW: usize = 256;
 
 /// What a thread needs for the rays that it asks together; kept, since to make it anew takes as long as many rays.
 #[derive(Default)]
@@ -42,6 +72,7 @@ struct Room {
     t_min: Vec<f64>,
     t_max: Vec<f64>,
     answers: Answers,
+    gathering: Gathering,
 }
 
 /// Room for answers in the order in which rays are asked.
@@ -98,13 +129,28 @@ fn some<T: Clone + Default>(room: &mut Vec<T>, count: usize) -> &mut [T] {
     &mut room[..count]
 }
 
+/// Some rows, or the one that serves for all.
+fn slice(rows: Rows<'_>, start: usize, count: usize) -> Rows<'_> {
+    match rows {
+        Rows::Single(rows) => Rows::Single(if rows.len() == 1 { rows } else { &rows[start..][..count] }),
+        Rows::Double(rows) => Rows::Double(if rows.len() == 1 { rows } else { &rows[start..][..count] }),
+    }
+}
+
+fn spread(rows: Rows<'_>) -> Spread {
+    match rows {
+        Rows::Single(rows) => Spread::of(rows),
+        Rows::Double(rows) => Spread::of(rows),
+    }
+}
+
 /// The rows of a part of a chunk, by axis.
 fn vectors<'a>(
     single: &'a mut [Vec<f32>; 3],
     double: &'a mut [Vec<f64>; 3],
     rows: &Rows<'_>,
     start: usize,
-    part: &Part,
+    part: &Part<'_>,
 ) -> Vectors<'a> {
     match rows {
         Rows::Single(rows) => Vectors::Single(fill(single, rows, start, part)),
@@ -112,7 +158,7 @@ fn vectors<'a>(
     }
 }
 
-fn fill<'a, T: Coordinate>(room: &'a mut [Vec<T>; 3], rows: &[[T; 3]], start: usize, part: &Part) -> [&'a [T]; 3] {
+fn fill<'a, T: Coordinate>(room: &'a mut [Vec<T>; 3], rows: &[[T; 3]], start: usize, part: &Part<'_>) -> [&'a [T]; 3] {
     let [x, y, z] = room;
     let (x, y, z) = (some(x, part.len), some(y, part.len), some(z, part.len));
     // One that serves for all.
@@ -139,43 +185,82 @@ fn fill<'a, T: Coordinate>(room: &'a mut [Vec<T>; 3], rows: &[[T; 3]], start: us
 }
 
 /// The numbers of a part of a chunk; `room` holds them where their order is another.
-fn numbers<'a>(all: &'a [f64], start: usize, part: &Part, room: &'a mut Vec<f64>) -> Numbers<'a> {
+fn numbers<'a>(all: &'a [f64], start: usize, part: &Part<'_>, room: &'a mut Vec<f64>) -> Numbers<'a> {
     if let [one] = all {
         return Numbers::One(*one);
     }
     let all = &all[start..];
-    if part.tiling.is_sequence() {
+    if part.is_sequence() {
         return Numbers::Each(&all[part.from..][..part.len]);
     }
     let room = some(room, part.len);
-    part.runs(|Run { place, at, len }| copy(&all[place..][..len], &mut room[at..][..len]));
+    part.read(all, room);
     Numbers::Each(room)
 }
 
 impl RayArrays<'_> {
     /// Calls `answer` with up to [`BATCH`] rays at a time of the `count` from `start` on, with where they lie among
     /// them, and with room.
-    fn columns(&self, start: usize, count: usize, mut answer: impl FnMut(&RayColumns<'_>, &Part, &mut Answers)) {
+    fn columns(
+        &self,
+        tree: &dyn ByColumns,
+        start: usize,
+        count: usize,
+        mut answer: impl FnMut(&RayColumns<'_>, &Part<'_>, &mut Answers),
+    ) {
         let mut room = ROOM.take().unwrap_or_default();
-        for from in (0..count).step_by(BATCH) {
-            let part = Part { tiling: self.tiling, from, len: BATCH.min(count - from), count };
-            let Room { single: [o, d], double: [long_o, long_d], t_min, t_max, answers } = &mut *room;
-            let rays = RayColumns::new(
-                vectors(o, long_o, &self.origins, start, &part),
-                vectors(d, long_d, &self.directions, start, &part),
-                numbers(self.t_min, start, &part, t_min),
-                numbers(self.t_max, start, &part, t_max),
-            );
-            answer(&rays, &part, answers);
+        for window in (0..count).step_by(WINDOW) {
+            let end = count.min(window + WINDOW);
+            let Room { single: [o, d], double: [long_o, long_d], t_min, t_max, answers, gathering } = &mut *room;
+            let order = self.gather_near(tree, start + window, end - window, gathering);
+            for from in (window..end).step_by(BATCH) {
+                let len = BATCH.min(end - from);
+                let order = order.map(|order| &order[(from - window) / RUN..][..len / RUN]);
+                let part = Part { tiling: self.tiling, from, len, count, order, window };
+                let rays = RayColumns::new(
+                    vectors(o, long_o, &self.origins, start, &part),
+                    vectors(d, long_d, &self.directions, start, &part),
+                    numbers(self.t_min, start, &part, t_min),
+                    numbers(self.t_max, start, &part, t_max),
+                );
+                answer(&rays, &part, answers);
+            }
         }
         ROOM.set(Some(room));
+    }
+
+    /// An order of some rays in which those near each other stand together, if that helps.
+    fn gather_near<'a>(
+        &self,
+        tree: &dyn ByColumns,
+        start: usize,
+        count: usize,
+        to: &'a mut Gathering,
+    ) -> Option<&'a [u16]> {
+        let extent = tree.extent()?;
+        let one = |rows: Rows<'_>, i: usize| rows.get(if rows.len() == 1 { 0 } else { start + i });
+        let ray = |i: usize| (one(self.origins, i), one(self.directions, i));
+        if !self.tiling.is_sequence() || count < FEW || !is_coherent(count, ray, extent) {
+            return None;
+        }
+        let (from, towards) = (slice(self.origins, start, count), slice(self.directions, start, count));
+        let (origins, directions) = (spread(from), spread(towards));
+        let (far, wide) = (origins.over(Some(extent)), directions.over(None));
+        let (rows, spread, size) = if far >= wide { (from, origins, far) } else { (towards, directions, wide) };
+        if !(size > 0.0 && size < f32::INFINITY) {
+            return None;
+        }
+        Some(match rows {
+            Rows::Single(rows) => to.of(rows, &spread),
+            Rows::Double(rows) => to.of(rows, &spread),
+        })
     }
 
     /// The closest hits of the rays from `start` on, of which there are as many as there is room for.
     pub fn closest(&self, geometry: &Geometry, tree: &dyn ByColumns, start: usize, to: HitParts<'_>) {
         let (t, shape, primitive, uv) = to;
-        self.columns(start, t.len(), |rays, part, room| {
-            if part.tiling.is_sequence() {
+        self.columns(tree, start, t.len(), |rays, part, room| {
+            if part.is_sequence() {
                 let here = part.from..part.from + part.len;
                 let (t, uv, primitive) = (&mut t[here.clone()], &mut uv[here.clone()], &mut primitive[here.clone()]);
                 tree.intersect(rays, HitColumns { t, uv, primitive });
@@ -185,24 +270,22 @@ impl RayArrays<'_> {
             let (shapes, primitives) = (some(&mut room.shape, part.len), some(&mut room.primitive, part.len));
             tree.intersect(rays, HitColumns { t: ts, uv: uvs, primitive: primitives });
             locate(geometry, shapes, primitives);
-            part.runs(|Run { place, at, len }| {
-                copy(&ts[at..][..len], &mut t[place..][..len]);
-                copy(&uvs[at..][..len], &mut uv[place..][..len]);
-                copy(&shapes[at..][..len], &mut shape[place..][..len]);
-                copy(&primitives[at..][..len], &mut primitive[place..][..len]);
-            });
+            part.write(ts, t);
+            part.write(uvs, uv);
+            part.write(shapes, shape);
+            part.write(primitives, primitive);
         });
     }
 
     /// Whether the rays from `start` on hit anything, of which there are as many as there is room for.
     pub fn occluded(&self, tree: &dyn ByColumns, start: usize, to: &mut [bool]) {
-        self.columns(start, to.len(), |rays, part, room| {
-            if part.tiling.is_sequence() {
+        self.columns(tree, start, to.len(), |rays, part, room| {
+            if part.is_sequence() {
                 return tree.occluded(rays, &mut to[part.from..][..part.len]);
             }
             let found = some(&mut room.found, part.len);
             tree.occluded(rays, found);
-            part.runs(|Run { place, at, len }| copy(&found[at..][..len], &mut to[place..][..len]));
+            part.write(found, to);
         });
     }
 }

@@ -114,5 +114,5 @@ pub fn aovs<'py>(
 #[pyfunction]
 pub fn plan(scene: &Bound<'_, CompiledScene>) -> (&'static str, Vec<PlanRow>) {
     let plan = scene.get().0.plan();
-    (plan.kernel().name(), plan.rows())
+    (plan.variant().name(), plan.rows())
 }

@@ -217,7 +217,7 @@ impl Interactions {
         self.check("directions", directions.len())?;
         filled(py, self.entries.len(), |i| {
             let here = self.entries[i].here.as_ref();
-            here.map_or(DVec3::NAN, |here| here.departure().ray(directions.get(i)).origin).to_array()
+            here.map_or(DVec3::NAN, |here| here.ray_origin().ray(directions.get(i)).origin).to_array()
         })
     }
 
@@ -267,10 +267,10 @@ impl Interactions {
         let scene = self.scene.get().scene();
         let draw = |i: usize| {
             let here = self.entries[i].here.as_ref()?;
-            let light = scene.lights().sample(scene.geometry(), &here.receiver(), choice[i], u[i])?;
+            let light = scene.lights().sample(scene.geometry(), &here.light_context(), choice[i], u[i])?;
             let ray = match &light.source {
-                Some(source) => here.departure().segment(source),
-                None => here.departure().ray(light.direction),
+                Some(source) => here.ray_origin().segment(source),
+                None => here.ray_origin().ray(light.direction),
             };
             Some((light, ray))
         };
@@ -291,9 +291,9 @@ impl Interactions {
             let Entry { ray, hit, here, emission, cosine } = &self.entries[i];
             let Some(from) = &before.entries[i].here else { return [0.0] };
             [match here {
-                None => lights.outside_pdf(&from.receiver(), ray.direction),
+                None => lights.outside_pdf(&from.light_context(), ray.direction),
                 Some(_) if *emission == Rgb::ZERO => 0.0,
-                Some(_) => lights.surface_pdf(geometry, &from.receiver(), ray, hit, *cosine),
+                Some(_) => lights.surface_pdf(geometry, &from.light_context(), ray, hit, *cosine),
             }]
         })
     }

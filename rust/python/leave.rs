@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 use super::arrays::{Triples, numbers, rows, sealed, unwritten};
 use super::rays::{answer, share};
 use crate::math::DVec3;
-use crate::scene::Departure;
+use crate::scene::RayOrigin;
 
 /// Where rays along some directions start, of leading shape `shape`: from the points that `which` names, or from all in
 /// turn, over and over. NaN for what is no point.
@@ -39,7 +39,7 @@ pub fn leave<'py>(
             let i = which.map_or_else(|| ray % points, |which| which[ray] as usize);
             let (position, normal) = (DVec3::from_array(position[i]), DVec3::from_array(normal[i]));
             let way = directions.get(if directions.len() == 1 { 0 } else { ray });
-            *origin = Departure::off(position, error[i], normal).ray(way).origin.to_array();
+            *origin = RayOrigin::off(position, error[i], normal).ray(way).origin.to_array();
         }
     })?;
     sealed(origins)

@@ -122,7 +122,8 @@ impl CompiledScene {
         let (ts, shapes, primitives) = (to_t.as_slice_mut()?, to_shape.as_slice_mut()?, to_primitive.as_slice_mut()?);
         let copies = to_instance.as_mut().map(|to| to.as_slice_mut()).transpose()?;
         let parts = ((ts, shapes, primitives, to_uv.as_slice_mut()?.as_chunks_mut().0), copies);
-        answer(py, rays.count, rays.chunk(), threads, parts, |start, ((t, shape, primitive, uv), mut instance)| {
+        let chunk = if by_columns.is_some() { rays.window() } else { rays.chunk() };
+        answer(py, rays.count, chunk, threads, parts, |start, ((t, shape, primitive, uv), mut instance)| {
             let count = t.len();
             if let Some(tree) = by_columns {
                 return rays.closest(scene.geometry(), tree, start, (t, shape, primitive, uv));
@@ -162,8 +163,10 @@ impl CompiledScene {
         {
             let mut out = writable("out", &out, &arguments.shape, None)?;
             let scene = &self.0;
-            answer(py, rays.count, rays.chunk(), threads, out.as_slice_mut()?, |start, out| {
-                if let Some(tree) = scene.accelerator().by_columns() {
+            let by_columns = scene.accelerator().by_columns();
+            let chunk = if by_columns.is_some() { rays.window() } else { rays.chunk() };
+            answer(py, rays.count, chunk, threads, out.as_slice_mut()?, |start, out| {
+                if let Some(tree) = by_columns {
                     return rays.occluded(tree, start, out);
                 }
                 let count = out.len();

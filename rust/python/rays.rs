@@ -5,6 +5,7 @@ use pyo3::prelude::*;
 use rayon::prelude::*;
 
 use super::arrays::{Numbers, Row, Rows, Triples};
+use crate::math::gathering::WINDOW;
 use crate::math::{Ray, Tiling, row_length};
 use crate::workers;
 
@@ -74,6 +75,15 @@ impl RayArrays<'_> {
     /// Rays that a thread takes at a time.
     pub fn chunk(&self) -> usize {
         self.tiling.chunk(share(self.count))
+    }
+
+    /// The same where rays are put in an order of their own.
+    pub fn window(&self) -> usize {
+        self.tiling.chunk(if self.tiling.is_sequence() {
+            (self.count / 32).clamp(LEAST, WINDOW)
+        } else {
+            share(self.count)
+        })
     }
 
     /// Calls `answer` with up to [`BATCH`] rays at a time of the `count` from `start` on, and with where each lies

@@ -208,6 +208,13 @@ impl Scene {
         }
     }
 
+    /// What that is made of which a ray has hit.
+    #[inline]
+    pub fn material_of(&self, hit: &Hit) -> &dyn Material {
+        let shape = self.geometry.locate(hit.primitive).0;
+        if self.geometry.copies_of(shape).is_some() { self.look(shape, hit.inner).0 } else { self.material(shape) }
+    }
+
     /// How a point of a surface shines.
     #[inline]
     pub fn emission_at(&self, surface: &SurfacePoint) -> &Emission {
@@ -240,7 +247,7 @@ impl Scene {
 mod tests {
     use super::*;
     use crate::scene::fixtures::{furnace, inward_box, scene, shape};
-    use crate::scene::{Receiver, Shape};
+    use crate::scene::{LightSampleContext, Shape};
 
     #[test]
     fn a_closed_surface_is_crossed_evenly_however_the_ray_is_aimed() {
@@ -303,7 +310,7 @@ mod tests {
         assert_eq!(a, b);
         assert_eq!(refitted.region(), moved.region());
         assert_eq!(still.growth(), 1.0);
-        let receiver = Receiver { position: rays[0].origin, normal: DVec3::Y };
+        let receiver = LightSampleContext { position: rays[0].origin, normal: DVec3::Y };
         let light = |s: &Scene| s.lights().sample(s.geometry(), &receiver, 0.5, [0.5; 2]).unwrap().direction;
         assert_eq!(light(&refitted), light(&moved));
         assert_ne!(light(&refitted), light(&still));

@@ -5,7 +5,7 @@ mod lanes;
 pub use lanes::InteractionLanes;
 
 use super::materials::Scattering;
-use super::{Departure, Receiver, Scatters, Scene, ShadingPoint, SurfacePoint};
+use super::{LightSampleContext, RayOrigin, Scatters, Scene, ShadingPoint, SurfacePoint};
 use crate::math::{DVec3, Frame, Hit, Ray, select};
 use crate::optics::{BsdfSample, Rgb};
 
@@ -56,7 +56,7 @@ impl Interaction {
     pub fn new(scene: &Scene, ray: &Ray, hit: &Hit, surface: SurfacePoint, width: f64, outside: f64) -> Self {
         if outside == 1.0
             && width == 0.0
-            && let Some(&bsdf) = scene.plan().constant(surface.shape)
+            && let Some(&bsdf) = scene.plan().constant(surface.shape, surface.is_front(ray))
         {
             let shading = surface.shading_normal;
             return Self::with(ray, surface, (shading, None), Scattering::One(bsdf));
@@ -78,15 +78,6 @@ impl Interaction {
             here.curvature = here.side * mean_curvature(&point);
         }
         here
-    }
-
-    /// The share of ambient light that is reflected here ([`Material::ambient`](super::Material::ambient)); the other
-    /// arguments are those that [`Interaction::new`] was given.
-    pub fn ambient(&self, scene: &Scene, ray: &Ray, hit: &Hit, width: f64, outside: f64) -> Rgb {
-        let material = scene.material_at(&self.surface);
-        let mut point = ShadingPoint::new(scene.geometry(), ray, hit, &self.surface, material.needs(), width);
-        point.outside = outside;
-        material.ambient(&point)
     }
 
     /// Looks up a hit and what is there.
@@ -119,6 +110,15 @@ impl<S: Scatters> Interaction<S> {
             None => Frame::new(shading),
         };
         Self { surface, frame, scattering, wo: frame.to_local(back), side, is_flat, is_bent, curvature: 0.0 }
+    }
+
+    /// The share of ambient light that is reflected here ([`Material::ambient`](super::Material::ambient)); the other
+    /// arguments are those that [`Interaction::new`] was given.
+    pub fn ambient(&self, scene: &Scene, ray: &Ray, hit: &Hit, width: f64, outside: f64) -> Rgb {
+        let material = scene.material_at(&self.surface);
+        let mut point = ShadingPoint::new(scene.geometry(), ray, hit, &self.surface, material.needs(), width);
+        point.outside = outside;
+        material.ambient(&point)
     }
 
     /// The point met.
@@ -169,11 +169,16 @@ impl<S: Scatters> Interaction<S> {
     /// whether light is asked for inside of it or outside, and the density of rays that meet the wall is asked from
     /// there too.
     #[inline(always)]
-    pub fn receiver(&self) -> Receiver {
+    pub fn light_context(&self) -> LightSampleContext {
         if self.scattering.transmits() {
-            return Receiver::free(self.surface.position);
+            return LightSampleContext::free(self.surface.position);
         }
-        Receiver { position: self.departure().ray(self.normal()).origin, normal: self.shading_normal() }
+        LightSampleContext { position: self.ray_origin().ray(self.normal()).origin, normal: self.shading_normal() }
+    }
+
+    /// How the point scatters, and nothing else.
+    pub fn into_scattering(self) -> S {
+        self.scattering
     }
 
     /// How the point scatters.
@@ -190,8 +195,8 @@ impl<S: Scatters> Interaction<S> {
 
     /// Where rays leave from.
     #[inline(always)]
-    pub fn departure(&self) -> Departure {
-        Departure::new(&self.surface)
+    pub fn ray_origin(&self) -> RayOrigin {
+        RayOrigin::new(&self.surface)
     }
 
     /// Mean curvature, positive where the surface bulges towards the ray; 0 unless a width was given.

@@ -15,9 +15,9 @@ pub mod materials;
 pub mod media;
 mod photons;
 mod plan;
+mod ray_origin;
 mod scatters;
 mod shading;
-mod spawn;
 mod surface_lanes;
 mod surface_point;
 pub mod textures;
@@ -37,13 +37,13 @@ pub use geometry::{
 pub(crate) use interaction::fading;
 pub use interaction::{Interaction, InteractionLanes, Scattered};
 pub use lights::{
-    ConstantEnvironment, DirectionalLight, EnvironmentMap, Light, LightBounds, LightLanes, LightSample, Lights,
-    Picture, PointLight, Profile, Projector, Reach, Receiver, ReceiverLanes, SpotLight, SunSky,
+    ConstantEnvironment, DirectionalLight, EnvironmentMap, Light, LightBounds, LightContextLanes, LightLanes,
+    LightSample, LightSampleContext, Lights, Picture, PointLight, Profile, Projector, Reach, SpotLight, SunSky,
 };
 pub use materials::{DiffuseMaterial, Material};
-pub use plan::{Kernel, Plan, PlanRow, SceneNeeds};
+pub use plan::{Plan, PlanRow, SceneNeeds, ShadingVariant};
+pub use ray_origin::RayOrigin;
 pub use scatters::Scatters;
 pub use shading::{Footprint, ShadingPoint};
-pub use spawn::Departure;
 pub use surface_lanes::SurfaceLanes;
 pub use surface_point::{HitPoint, SurfacePoint};

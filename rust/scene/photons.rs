@@ -1,7 +1,7 @@
 //! Photons that come to matt surfaces by way of sharp ones.
 
 use super::caustics::{Caustics, Photon, is_matt};
-use super::{Departure, Geometry, Interaction, LightSample, Receiver, Scattered, Scene};
+use super::{Geometry, Interaction, LightSample, LightSampleContext, RayOrigin, Scattered, Scene};
 use crate::math::{DVec3, Hit, Ray};
 use crate::optics::Bsdf;
 use crate::sampling::{AliasTable, Sampler, warp};
@@ -53,11 +53,12 @@ fn usual(scene: &Scene, photons: &[Photon]) -> f64 {
     for (number, photon) in (0..).zip(photons.iter().step_by(photons.len().div_ceil(ASKED).max(1))) {
         asked += 1.0;
         let mut sampler = Sampler::new(1, number, 0);
-        let (receiver, choice) = (Receiver { position: photon.position, normal: photon.normal }, sampler.one(0));
+        let (receiver, choice) =
+            (LightSampleContext { position: photon.position, normal: photon.normal }, sampler.one(0));
         let Some(light) = scene.lights().sample(scene.geometry(), &receiver, choice, sampler.two(1)) else { continue };
         let brings = strength(&light) * light.direction.dot(photon.normal);
         if brings > 0.0 && brings.is_finite() {
-            let from = Departure::free(photon.position);
+            let from = RayOrigin::free(photon.position);
             rays.push(light.source.as_ref().map_or_else(|| from.ray(light.direction), |source| from.segment(source)));
             arriving.push(brings);
         }
@@ -168,7 +169,7 @@ impl Flight {
         let mut sampler = Sampler::new(0, number, 0);
         let geometry = scene.geometry();
         let (point, normal) = targets.point(geometry, &mut sampler)?;
-        let receiver = Receiver::free(point);
+        let receiver = LightSampleContext::free(point);
         let light = scene.lights().sample(geometry, &receiver, sampler.one(2), sampler.two(3))?;
         let ray = match &light.source {
             Some(source) => source.ray(-light.direction),
@@ -201,7 +202,7 @@ impl Flight {
                 let one = &self.flying[i];
                 if one.sharp > 0 && is_matt(here.scattering()) {
                     fallen.push(Photon {
-                        position: here.departure().ray(here.normal()).origin,
+                        position: here.ray_origin().ray(here.normal()).origin,
                         normal: here.shading_normal(),
                         target: one.target,
                         flux: one.flux,
@@ -242,7 +243,7 @@ impl Flying {
         // The odd constant nearest to 2⁶⁴ over the golden ratio, as in Knuth's multiplicative hashing.
         let chain = (before ^ link).wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(29);
         let (sharp, matt) = if is_sharp { (self.sharp + 1, self.matt) } else { (0, self.matt + 1) };
-        let ray = Ray { time, ..here.departure().ray(next.direction) };
+        let ray = Ray { time, ..here.ray_origin().ray(next.direction) };
         Some((ray, Self { flux, target: here.position(), chain, sharp, matt, ..*self }))
     }
 }

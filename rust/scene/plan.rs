@@ -1,4 +1,4 @@
-//! What a scene needs, what is left out, and which kernel shades it.
+//! What a scene needs, what is left out, and which variant of shading it takes.
 
 use super::textures::Needs;
 use super::{Emission, Geometry, Lights, Material, Rounding};
@@ -61,7 +61,7 @@ impl BitOr for SceneNeeds {
 
 /// A loop over a batch of paths, compiled with what some scenes need and no more.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Kernel {
+pub enum ShadingVariant {
     /// One diffuse colour a shape: no material is asked, and nothing is passed through.
     Plain,
     /// Any material and any texture that is asked for points: no masks, no media in one another, no widths of rays.
@@ -70,7 +70,7 @@ pub enum Kernel {
     General,
 }
 
-impl Kernel {
+impl ShadingVariant {
     /// Every one, from the one that can do least on.
     pub const ALL: [Self; 3] = [Self::Plain, Self::Open, Self::General];
 
@@ -92,10 +92,10 @@ pub struct Plan {
     rounding: Rounding,
     /// How many lights are asked one by one where light is scattered sharply; 0 where one of all is asked.
     few: u32,
-    /// How each shape scatters, if it does so alike everywhere ([`Material::constant`]).
-    constants: Vec<Option<Bsdf>>,
+    /// How each shape scatters on either side, if it does so alike everywhere ([`Material::constant_sides`]).
+    constants: Vec<Option<[Bsdf; 2]>>,
     /// Of those that are diffuse, what each reflects.
-    diffuse: Vec<Option<Rgb>>,
+    diffuse: Vec<Option<[Rgb; 2]>>,
 }
 
 /// What has less than this roughness, but does not scatter into single directions, counts as glossy. Over rougher
@@ -128,13 +128,13 @@ impl Plan {
                 }
                 None => {
                     needs = needs | Self::of(material.as_ref(), lights.emission(shape));
-                    constants.push(material.constant());
+                    constants.push(material.constant_sides());
                 }
             }
         }
         let few = if needs.scattering { lights.few() } else { 0 };
-        let colour = |bsdf: &Option<Bsdf>| match bsdf {
-            Some(Bsdf::Diffuse(diffuse)) => Some(diffuse.reflectance),
+        let colour = |sides: &Option<[Bsdf; 2]>| match sides {
+            Some([Bsdf::Diffuse(front), Bsdf::Diffuse(back)]) => Some([front.reflectance, back.reflectance]),
             _ => None,
         };
         let diffuse = constants.iter().map(colour).collect();
@@ -145,7 +145,7 @@ impl Plan {
         let is_dark = emission.is_dark();
         SceneNeeds {
             points: if is_dark { material.needs() } else { material.needs() | emission.needs() },
-            scattering: !matches!(material.constant(), Some(Bsdf::Diffuse(_))),
+            scattering: !matches!(material.constant_sides(), Some([Bsdf::Diffuse(_), Bsdf::Diffuse(_)])),
             masks: !material.is_opaque(),
             interiors: material.interior().is_some(),
             patterned_lights: !is_dark && emission.needs().any(),
@@ -202,32 +202,32 @@ impl Plan {
     }
 
     /// How a shape scatters that is surrounded by nothing, if it does so alike everywhere; in a scene of
-    /// [`Kernel::Plain`] each does, and is diffuse.
+    /// [`ShadingVariant::Plain`] each does, and is diffuse.
     #[inline]
-    pub fn constant(&self, shape: u32) -> Option<&Bsdf> {
-        self.constants[shape as usize].as_ref()
+    pub fn constant(&self, shape: u32, is_front: bool) -> Option<&Bsdf> {
+        self.constants[shape as usize].as_ref().map(|[front, back]| if is_front { front } else { back })
     }
 
-    /// What a shape reflects that scatters light by one diffuse colour everywhere.
+    /// What a shape reflects on the front and on the back, if each side scatters light by one diffuse colour.
     #[inline]
-    pub fn diffuse(&self, shape: u32) -> Option<Rgb> {
+    pub fn diffuse(&self, shape: u32) -> Option<[Rgb; 2]> {
         self.diffuse[shape as usize]
     }
 
-    /// The kernel that has what the scene needs, and the least beyond.
-    pub fn kernel(&self) -> Kernel {
-        Kernel::ALL.into_iter().find(|&kernel| self.suits(kernel)).unwrap_or(Kernel::General)
+    /// The variant of shading that has what the scene needs, and the least beyond.
+    pub fn variant(&self) -> ShadingVariant {
+        ShadingVariant::ALL.into_iter().find(|&variant| self.suits(variant)).unwrap_or(ShadingVariant::General)
     }
 
-    /// Whether a kernel has what the scene needs.
-    pub fn suits(&self, kernel: Kernel) -> bool {
+    /// Whether a variant has what the scene needs.
+    pub fn suits(&self, variant: ShadingVariant) -> bool {
         let needs = &self.needs;
-        match kernel {
-            Kernel::Plain => {
+        match variant {
+            ShadingVariant::Plain => {
                 !(needs.scattering || needs.copies || needs.points.any() || needs.masks || needs.interiors)
             }
-            Kernel::Open => !(needs.masks || needs.nested || needs.points.width),
-            Kernel::General => true,
+            ShadingVariant::Open => !(needs.masks || needs.nested || needs.points.width),
+            ShadingVariant::General => true,
         }
     }
 
@@ -280,8 +280,8 @@ mod tests {
     #[test]
     fn diffuse_rooms_are_plain() {
         for scene in [furnace(0.5, 1.0), cornell(8, 8).0] {
-            assert_eq!(scene.plan().kernel(), Kernel::Plain);
-            assert!(Kernel::ALL.into_iter().all(|kernel| scene.plan().suits(kernel)));
+            assert_eq!(scene.plan().variant(), ShadingVariant::Plain);
+            assert!(ShadingVariant::ALL.into_iter().all(|variant| scene.plan().suits(variant)));
             let has: Vec<_> = scene.plan().rows().into_iter().filter(|row| row.1).map(|row| row.0).collect();
             assert_eq!(has, ["light"]);
         }
@@ -321,9 +321,9 @@ mod tests {
         };
         let plan =
             |shapes| crate::scene::fixtures::scene(SceneDescription { shapes, ..Default::default() }).plan().clone();
-        assert_eq!(plan(vec![sheet(glass())]).kernel(), Kernel::Open);
-        assert_eq!(plan(vec![sheet(glass()), sheet(glass())]).kernel(), Kernel::General);
+        assert_eq!(plan(vec![sheet(glass())]).variant(), ShadingVariant::Open);
+        assert_eq!(plan(vec![sheet(glass()), sheet(glass())]).variant(), ShadingVariant::General);
         let mask = Odd { interior: None, is_opaque: false };
-        assert_eq!(plan(vec![sheet(mask)]).kernel(), Kernel::General);
+        assert_eq!(plan(vec![sheet(mask)]).variant(), ShadingVariant::General);
     }
 }

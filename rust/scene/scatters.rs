@@ -28,6 +28,43 @@ pub trait Scatters {
     fn again(&self) -> Rgb;
 }
 
+impl<S: Scatters> Scatters for &S {
+    #[inline(always)]
+    fn evaluate(&self, wo: DVec3, wi: DVec3) -> (Rgb, f64) {
+        (**self).evaluate(wo, wi)
+    }
+
+    #[inline(always)]
+    fn sample(&self, wo: DVec3, choice: impl FnOnce() -> f64, u: [f64; 2]) -> Option<BsdfSample> {
+        (**self).sample(wo, choice, u)
+    }
+
+    #[inline(always)]
+    fn transmits(&self) -> bool {
+        (**self).transmits()
+    }
+
+    #[inline(always)]
+    fn is_delta(&self) -> bool {
+        (**self).is_delta()
+    }
+
+    #[inline(always)]
+    fn diffuse(&self) -> Option<Rgb> {
+        (**self).diffuse()
+    }
+
+    #[inline(always)]
+    fn roughness(&self) -> f64 {
+        (**self).roughness()
+    }
+
+    #[inline(always)]
+    fn again(&self) -> Rgb {
+        (**self).again()
+    }
+}
+
 impl Scatters for Scattering {
     #[inline]
     fn evaluate(&self, wo: DVec3, wi: DVec3) -> (Rgb, f64) {

@@ -11,6 +11,7 @@ pub struct SurfaceLanes {
     pub(super) normal: VectorLanes,
     pub(super) shading_normal: VectorLanes,
     pub(super) shape: [u32; LANES],
+    pub(super) inner: [Option<u32>; LANES],
 }
 
 impl SurfaceLanes {
@@ -21,9 +22,10 @@ impl SurfaceLanes {
         normal: VectorLanes::ZERO,
         shading_normal: VectorLanes::ZERO,
         shape: [0; LANES],
+        inner: [None; LANES],
     };
 
-    /// The point of a lane, of a surface that is in no copy.
+    /// The point of a lane.
     #[inline(always)]
     pub fn get(&self, lane: usize) -> SurfacePoint {
         SurfacePoint {
@@ -32,7 +34,7 @@ impl SurfaceLanes {
             normal: self.normal.get(lane),
             shading_normal: self.shading_normal.get(lane),
             shape: self.shape[lane],
-            inner: None,
+            inner: self.inner[lane],
         }
     }
 
@@ -50,5 +52,6 @@ impl SurfaceLanes {
         self.normal.set(lane, point.normal);
         self.shading_normal.set(lane, point.shading_normal);
         self.shape[lane] = point.shape;
+        self.inner[lane] = point.inner;
     }
 }

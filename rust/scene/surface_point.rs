@@ -1,6 +1,6 @@
 //! Points of surfaces, and what is known of them.
 
-use crate::math::DVec3;
+use crate::math::{DVec3, Ray};
 use crate::shapes::Point;
 
 /// What shading needs to know of a point on a surface.
@@ -18,6 +18,14 @@ pub struct SurfacePoint {
     pub shape: u32,
     /// Of a copy of a group, which primitive in it, flattened ([`Group`](super::Group)).
     pub inner: Option<u32>,
+}
+
+impl SurfacePoint {
+    /// Whether a ray meets it on the side that the normal points to.
+    #[inline(always)]
+    pub fn is_front(&self, ray: &Ray) -> bool {
+        ray.direction.dot(self.normal) <= 0.0
+    }
 }
 
 /// A point of a surface with all that is known of it.

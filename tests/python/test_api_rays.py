@@ -229,6 +229,36 @@ def test_each_ray_of_a_large_batch_gets_its_own_answer(shape, dtypes):
         assert np.array_equal(occluded.reshape(-1)[some], few.hit)
 
 
+@pytest.mark.parametrize("count", [256, 999, 5000, 40_001])
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+@pytest.mark.parametrize("one", ["origins", "directions", None])
+def test_rays_that_go_much_the_same_way_keep_their_places(count, dtype, one):
+    scene = rw.Scene(rw.scenes.torus_knot(along=60, around=8))
+    # From the points of a wavy floor, row after row, to a lamp; or from one point; or all one way.
+    x, y = np.arange(count) % 173 / 86 - 1, np.arange(count) // 173 * 173 / count - 0.5
+    floor = np.stack([2 * x, 2 * y, 0.2 * np.sin(9 * x) - 2], axis=-1)
+    lamp = np.array([0.3, 0.2, 4.0])
+    origins = (lamp if one == "origins" else floor).astype(dtype)
+    directions = (floor - lamp if one == "origins" else lamp if one == "directions" else lamp - floor).astype(
+        dtype
+    )
+    t_max = 0.5 + 0.5 * (np.arange(count) % 7)
+    whole = scene.intersect(origins, directions, t_max=t_max)
+    occluded = scene.occluded(origins, directions, t_max=t_max)
+    assert whole.hit.any()
+    assert not whole.hit.all()
+    assert np.array_equal(occluded, whole.hit)
+    # Too few to be put in another order.
+    origins, directions = np.broadcast_arrays(origins, directions)
+    for start in range(0, count, 200):
+        some = slice(start, start + 200)
+        few = scene.intersect(origins[some], directions[some], t_max=t_max[some])
+        assert np.array_equal(whole.t[some], few.t)
+        assert np.array_equal(whole.primitive[some], few.primitive)
+        assert np.array_equal(whole.uv[some], few.uv)
+        assert np.array_equal(whole.shape_id[some], few.shape_id)
+
+
 @pytest.mark.parametrize("threads", [1, 2, 5])
 def test_threads_do_not_change_the_answer(threads):
     scene = rw.Scene(rw.scenes.torus_knot(along=60, around=8))

@@ -164,10 +164,10 @@ mod tests {
         for exponent in 0..40 {
             let distance = 1.2f64.powi(exponent) * 3.9;
             let ray = Ray::new(DVec3::new(0.3, distance, 0.1), -DVec3::Y);
-            let (_, slabs) = SlabRay::prepare(&ray, &region).expect("it meets the region");
+            let (_, slabs) = SlabRay::prepare(None, &ray, &region).expect("it meets the region");
             assert!(can_step(&slabs), "{distance}: {} is more than {MOST_PAD}", slabs.pad);
         }
         let ray = Ray::new(DVec3::new(0.0, 4e11, 0.0), -DVec3::Y);
-        assert!(!can_step(&SlabRay::prepare(&ray, &region).expect("it meets the region").1));
+        assert!(!can_step(&SlabRay::prepare(None, &ray, &region).expect("it meets the region").1));
     }
 }

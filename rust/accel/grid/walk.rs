@@ -142,7 +142,8 @@ mod tests {
             cells in prop::array::uniform3(1u32..60),
         ) {
             let region = Region::new(DVec3::NEG_ONE, DVec3::ONE);
-            let Some((edges, ray)) = SlabRay::prepare(&Ray::new(origin, direction), &region) else { return Ok(()) };
+            let ray = Ray::new(origin, direction);
+            let Some((edges, ray)) = SlabRay::prepare(None, &ray, &region) else { return Ok(()) };
             prop_assert!(crate::accel::grid::can_step(&ray));
             let lattice = Lattice::around(&Aabb { min: Vec3::NEG_ONE, max: Vec3::ONE }, cells);
             let inside = |cell: usize, t: f32| {
@@ -177,7 +178,7 @@ mod tests {
         ) {
             let region = Region::new(DVec3::NEG_ONE, DVec3::ONE);
             let ray = Ray::new(origin, target - origin);
-            let Some((edges, slabs)) = SlabRay::prepare(&ray, &region) else { return Ok(()) };
+            let Some((edges, slabs)) = SlabRay::prepare(None, &ray, &region) else { return Ok(()) };
             let lattice = Lattice::around(&Aabb { min: Vec3::NEG_ONE, max: Vec3::ONE }, cells);
             let t = slabs.limit(1.0 / edges.scale);
             let walk = Walk::new(&lattice, &slabs, slabs.t_min, f32::INFINITY);

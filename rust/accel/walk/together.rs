@@ -66,7 +66,7 @@ impl<const N: usize, L: Leaves<N>> TogetherBatch<'_, N, L> {
             let leaf_ray = contents.ray(ray, &edges, region);
             let mut state = query.start(number, edges.t_max);
             let answered = contents.meet_objects(unbounded, &leaf_ray, &mut None, query, &mut state);
-            match SlabRay::new(&edges, region).filter(|_| !answered) {
+            match SlabRay::new(None, &edges, region).filter(|_| !answered) {
                 None => query.finish(number, Some((edges.along(), state))),
                 Some(ready) => {
                     let LeafRay { lanes, time, .. } = leaf_ray;

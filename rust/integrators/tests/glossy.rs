@@ -9,8 +9,8 @@ use crate::optics::{Bsdf, Coated, Conductor, Rgb};
 use crate::sampling::Sampler;
 use crate::scene::fixtures::{rectangle, scene, shape};
 use crate::scene::{
-    ConstantEnvironment, Copies, DirectionalLight, EnvironmentMap, Footprint, Group, Interaction, Kernel, Light, Mesh,
-    Picture, PointLight, Scene, SceneDescription, Shape,
+    ConstantEnvironment, Copies, DirectionalLight, EnvironmentMap, Footprint, Group, Interaction, Light, Mesh, Picture,
+    PointLight, Scene, SceneDescription, ShadingVariant, Shape,
 };
 use crate::shapes::{Plane, Sphere};
 use crate::simd::Level;
@@ -65,7 +65,7 @@ fn by_scattering(scene: &Scene, count: u32) -> (f64, f64) {
     for number in 0..count {
         let mut sampler = Sampler::new(11, 0, number);
         let Some(next) = here.sample(|| sampler.one(0), Sampler::new(11, 1, number).two(0)) else { continue };
-        let ray = here.departure().ray(next.direction);
+        let ray = here.ray_origin().ray(next.direction);
         scene.intersect(&[ray], &mut hit);
         let arriving = if hit[0].is_hit() {
             let surface = scene.geometry().surface(&ray, &hit[0]);
@@ -166,9 +166,9 @@ fn single_directions_are_shared_in_without_noise() {
 #[test]
 fn kernels_give_the_same_bits() {
     let scene = over(metal(), lamps(), vec![map()]);
-    assert_eq!(scene.plan().kernel(), Kernel::Open);
+    assert_eq!(scene.plan().variant(), ShadingVariant::Open);
     let samples: Vec<_> = (0..2000).map(|i| CameraSample { ray: DOWN, sampler: Sampler::new(5, 0, i) }).collect();
-    let [open, general] = [Kernel::Open, Kernel::General].map(|kernel| {
+    let [open, general] = [ShadingVariant::Open, ShadingVariant::General].map(|kernel| {
         let mut values = vec![Rgb::ZERO; samples.len()];
         let path = Path::default();
         let mut worker = path.worker_of(&scene, Footprint::default(), kernel);

@@ -8,7 +8,8 @@ use crate::optics::Rgb;
 use crate::sampling::Sampler;
 use crate::scene::fixtures::{cornell, furnace, inward_box, rectangle, scene, shape};
 use crate::scene::{
-    Camera, ConstantEnvironment, Copies, Footprint, Group, Kernel, Matrix, PointLight, Scene, SceneDescription, Shape,
+    Camera, ConstantEnvironment, Copies, Footprint, Group, Matrix, PointLight, Scene, SceneDescription, ShadingVariant,
+    Shape,
 };
 use crate::simd::Level;
 use crate::workers::Cancel;
@@ -174,7 +175,7 @@ fn every_kernel_gives_the_same_bits() {
     // From where the camera is, and from within the furnace.
     let within = ANYWHERE.origin;
     for (scene, from) in [(room, None), (furnace(0.9, 0.3), Some(within)), (scene(open), None)] {
-        assert_eq!(scene.plan().kernel(), Kernel::Plain);
+        assert_eq!(scene.plan().variant(), ShadingVariant::Plain);
         let samples: Vec<_> = (0..4000u32)
             .map(|i| {
                 let film = [f64::from(i % 8) + 0.3, f64::from(i / 8 % 8) + 0.6];
@@ -184,7 +185,7 @@ fn every_kernel_gives_the_same_bits() {
             })
             .collect();
         let path = Path::default();
-        let [plain, open, general] = Kernel::ALL.map(|kernel| {
+        let [plain, open, general] = ShadingVariant::ALL.map(|kernel| {
             let mut values = vec![Rgb::ZERO; samples.len()];
             let mut worker = path.worker_of(&scene, Footprint::default(), kernel);
             worker.radiance(&mut samples.clone(), &Cancel::default(), &mut values);

@@ -9,7 +9,7 @@ use crate::scene::fixtures::{cornell, furnace, inward_box, rectangle, scene, sha
 use crate::scene::materials::Scattering;
 use crate::scene::textures::Needs;
 use crate::scene::{
-    Camera, Footprint, Kernel, Material, Mesh, PointLight, Scene, SceneDescription, ShadingPoint, Shape,
+    Camera, Footprint, Material, Mesh, PointLight, Scene, SceneDescription, ShadingPoint, ShadingVariant, Shape,
 };
 use crate::workers::Cancel;
 use std::sync::Arc;
@@ -131,7 +131,7 @@ fn both_kernels_give_the_same_bits() {
         worker.radiance_in_groups(&mut samples.clone(), &[16; 100], &Cancel::default(), &mut values);
         values
     };
-    assert_eq!(run(Kernel::Plain), run(Kernel::Open));
+    assert_eq!(run(ShadingVariant::Plain), run(ShadingVariant::Open));
 }
 
 /// A box of grey walls with a lamp in it, and what else.

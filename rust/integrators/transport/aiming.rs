@@ -1,6 +1,6 @@
 //! Paths that aim at where light comes from by way of mirrors and glass.
 
-use super::alive::Alive;
+use super::path_state::PathState;
 use super::weights::survival;
 use crate::math::DVec3;
 use crate::optics::Rgb;
@@ -13,7 +13,7 @@ use crate::scene::{Aim, Interaction, Scattered, Scatters};
 /// chance to go on goes by what it brings, counted for more where more light comes to this place than to others. Other
 /// paths are left to the roulette that all paths play.
 #[inline]
-pub(super) fn arrive(path: &mut Alive, aim: Option<&Aim>, number: impl FnOnce() -> f64) -> Arrival {
+pub(super) fn arrive(path: &mut PathState, aim: Option<&Aim>, number: impl FnOnce() -> f64) -> Arrival {
     let denser = std::mem::replace(&mut path.aimed, 1.0);
     if denser <= 1.0 {
         return Arrival::GoesOn;

@@ -1,22 +1,27 @@
 //! What path tracing and its ancestors share: a batch of paths on their way, one bounce at a time.
 
 mod aiming;
-mod alive;
-mod asking;
-mod branches;
-mod diffuse;
+mod arrivals;
+mod arrive;
+mod block;
+mod continuation;
+mod delta_lobes;
 mod dimensions;
+mod direct_light;
+mod emission;
 mod features;
 mod nesting;
+mod path_state;
 mod resampling;
 mod reuse;
+mod shade;
 mod shadows;
 mod weights;
 mod worker;
 
 use super::Worker;
 use crate::optics::Rgb;
-use crate::scene::{Footprint, Kernel, Scene};
+use crate::scene::{Footprint, Scene, ShadingVariant};
 use features::{General, Open, Plain, Sharing};
 use worker::TransportWorker;
 
@@ -27,9 +32,9 @@ pub(super) enum Follow {
     /// All.
     All,
     /// Those drawn with a density, in solid angle, above this.
-    Sharper(f64),
+    MinDensity(f64),
     /// Single directions only, and of these every one: paths are split.
-    EachSingle,
+    DeltaLobes,
     /// None.
     Nothing,
 }
@@ -76,7 +81,7 @@ impl Settings {
         }
     }
 
-    /// Whether they are those of a path tracer, the only ones that the special kernels know.
+    /// Whether they are those of a path tracer, the only ones that the special variants know.
     fn are_plain(&self) -> bool {
         self.light_samples == 1
             && self.splits == 1
@@ -86,18 +91,27 @@ impl Settings {
             && self.least == 0.0
     }
 
-    /// What one thread works with: the kernel that has what the scene and these settings need.
+    /// What one thread works with: the variant that has what the scene and these settings need.
     pub fn worker<'a>(self, scene: &'a Scene, footprint: Footprint) -> Box<dyn Worker + 'a> {
-        self.worker_of(scene, footprint, scene.plan().kernel())
+        self.worker_of(scene, footprint, scene.plan().variant())
     }
 
-    /// As [`Settings::worker`], by this kernel or one that can do more.
-    pub fn worker_of<'a>(self, scene: &'a Scene, footprint: Footprint, kernel: Kernel) -> Box<dyn Worker + 'a> {
-        match kernel {
-            Kernel::Plain if self.shares => Box::new(TransportWorker::<Sharing<Plain>>::new(self, scene, footprint)),
+    /// As [`Settings::worker`], by this variant or one that can do more.
+    pub fn worker_of<'a>(
+        self,
+        scene: &'a Scene,
+        footprint: Footprint,
+        variant: ShadingVariant,
+    ) -> Box<dyn Worker + 'a> {
+        match variant {
+            ShadingVariant::Plain if self.shares => {
+                Box::new(TransportWorker::<Sharing<Plain>>::new(self, scene, footprint))
+            }
             _ if self.shares => Box::new(TransportWorker::<Sharing<Open>>::new(self, scene, footprint)),
-            Kernel::Plain if self.are_plain() => Box::new(TransportWorker::<Plain>::new(self, scene, footprint)),
-            Kernel::Open if self.are_plain() => Box::new(TransportWorker::<Open>::new(self, scene, footprint)),
+            ShadingVariant::Plain if self.are_plain() => {
+                Box::new(TransportWorker::<Plain>::new(self, scene, footprint))
+            }
+            ShadingVariant::Open if self.are_plain() => Box::new(TransportWorker::<Open>::new(self, scene, footprint)),
             _ => Box::new(TransportWorker::<General>::new(self, scene, footprint)),
         }
     }
@@ -110,5 +124,5 @@ impl Settings {
 /// at times of their own; and a filtered texture shows to each what is of its own width.
 pub(super) fn can_share(scene: &Scene) -> bool {
     let needs = scene.plan().needs();
-    scene.plan().suits(Kernel::Open) && !needs.motion && !scene.lights().is_dark()
+    scene.plan().suits(ShadingVariant::Open) && !needs.motion && !scene.lights().is_dark()
 }

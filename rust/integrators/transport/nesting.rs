@@ -3,24 +3,24 @@
 use crate::accel::Crossings;
 use crate::math::{DVec3, Hit, Ray};
 use crate::scene::materials::Interior;
-use crate::scene::{Departure, Scene};
+use crate::scene::{RayOrigin, Scene};
 
 /// The media that a point lies in. The one of the greatest priority is there, and the surfaces of the others, within
 /// it, are not (Schmidt and Budge, "Simple Nested Dielectrics in Ray Traced Images", 2002). Of equal priority, the
 /// greater index.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Inside {
+pub(super) struct MediumStack {
     count: u32,
     interiors: [Interior; Self::MOST],
 }
 
-impl Default for Inside {
+impl Default for MediumStack {
     fn default() -> Self {
         Self::NONE
     }
 }
 
-impl Inside {
+impl MediumStack {
     /// How many of them are told apart. Beyond, those of the least priority are forgotten.
     const MOST: usize = 4;
 
@@ -99,8 +99,8 @@ impl Inside {
     /// Goes through what a ray hits, along it or back. Returns the medium that it enters or leaves, and whether it
     /// enters it.
     fn pass(&mut self, scene: &Scene, ray: &Ray, hit: &Hit, back: bool) -> Option<(Interior, bool)> {
+        let interior = scene.material_of(hit).interior()?;
         let surface = scene.geometry().surface(ray, hit);
-        let interior = scene.material_at(&surface).interior()?;
         let enters = (ray.direction.dot(surface.normal) < 0.0) != back;
         if enters {
             self.enter(interior);
@@ -125,7 +125,7 @@ fn crossed(crossings: &Crossings, ray: usize) -> impl DoubleEndedIterator<Item =
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Boundary {
     /// None: the same medium is on both sides. The ray goes on in these media.
-    None(Inside),
+    None(MediumStack),
     /// The surface hit is where one medium ends and another begins.
     Between {
         /// Which hit has the surface.
@@ -133,27 +133,27 @@ pub(super) enum Boundary {
         /// The index of refraction on the side of it that is not its own medium's.
         outside: f64,
         /// What a ray that goes through is in.
-        through: Inside,
+        through: MediumStack,
     },
 }
 
 /// The part of a ray around a hit on whose crossings [`Boundary::new`] decides: surfaces that lie in one another, or
 /// closer than rounding tells, are one boundary. `None` if the surface hit encloses nothing.
 pub(super) fn around(scene: &Scene, ray: &Ray, hit: &Hit) -> Option<Ray> {
+    scene.material_of(hit).interior()?;
     let surface = scene.geometry().surface(ray, hit);
-    scene.material_at(&surface).interior()?;
-    let reach = Departure::reach(&surface, ray);
+    let reach = RayOrigin::reach(&surface, ray);
     Some(Ray { t_min: ray.t_min.max(hit.t - reach), t_max: (hit.t + reach).next_up(), ..*ray })
 }
 
 impl Boundary {
     /// What a ray in some media comes to, by what it crosses around its hit ([`around`]).
-    pub(super) fn new(scene: &Scene, ray: &Ray, inside: &Inside, crossings: &Crossings, number: usize) -> Self {
+    pub(super) fn new(scene: &Scene, ray: &Ray, inside: &MediumStack, crossings: &Crossings, number: usize) -> Self {
         let mut through = *inside;
         let mut owner: Option<(Interior, bool, Hit)> = None;
         for hit in crossed(crossings, number) {
             let Some((interior, enters)) = through.pass(scene, ray, hit, false) else { continue };
-            if owner.as_ref().is_none_or(|(best, ..)| Inside::is_above(&interior, best)) {
+            if owner.as_ref().is_none_or(|(best, ..)| MediumStack::is_above(&interior, best)) {
                 owner = Some((interior, enters, *hit));
             }
         }

@@ -1,9 +1,9 @@
 //! Paths that share what they find.
 
-use super::alive::Alive;
+use super::path_state::PathState;
 use crate::math::{DVec3, Ray};
 use crate::optics::Rgb;
-use crate::scene::{Departure, Interaction, Scatters, Scene, fading};
+use crate::scene::{Interaction, RayOrigin, Scatters, Scene, fading};
 use crate::workers::Cancel;
 use std::ops::Range;
 
@@ -51,7 +51,7 @@ impl Sight {
 /// A first point, which takes.
 #[derive(Clone, Copy)]
 struct First {
-    departure: Departure,
+    departure: RayOrigin,
     /// Shading normal and geometric normal on the side of the camera.
     shading: DVec3,
     normal: DVec3,
@@ -63,7 +63,7 @@ struct First {
 /// A second point, which gives.
 #[derive(Clone, Copy)]
 struct Second {
-    departure: Departure,
+    departure: RayOrigin,
     shading: DVec3,
     normal: DVec3,
     is_flat: bool,
@@ -104,7 +104,7 @@ const FEW: usize = 5;
 
 impl First {
     const NONE: Self = Self {
-        departure: Departure::free(DVec3::ZERO),
+        departure: RayOrigin::free(DVec3::ZERO),
         shading: DVec3::ZERO,
         normal: DVec3::ZERO,
         is_flat: true,
@@ -155,7 +155,7 @@ impl Reuse {
     /// A path comes to a surface. Where what it finds from there on is to be shared, it goes on as the path of a sample
     /// of number `samples` or more.
     #[inline]
-    pub fn visit<S: Scatters>(&mut self, mut path: Alive, here: &Interaction<S>) -> Alive {
+    pub fn visit<S: Scatters>(&mut self, mut path: PathState, here: &Interaction<S>) -> PathState {
         if path.bounce > 1 {
             return path;
         }
@@ -167,7 +167,7 @@ impl Reuse {
         if !is_lit {
             return path;
         }
-        let (departure, is_flat) = (here.departure(), here.is_flat());
+        let (departure, is_flat) = (here.ray_origin(), here.is_flat());
         if path.bounce == 0 {
             let reflectance = path.throughput * reflectance;
             self.first[path.sample as usize] = First { departure, shading, normal, is_flat, reflectance };
@@ -291,12 +291,12 @@ mod tests {
     use super::*;
 
     fn first(position: DVec3, normal: DVec3, shading: DVec3) -> First {
-        let departure = Departure::free(position);
+        let departure = RayOrigin::free(position);
         First { departure, shading, normal, is_flat: shading == normal, reflectance: Rgb::ONE }
     }
 
     fn second(position: DVec3, normal: DVec3, shading: DVec3) -> Second {
-        let departure = Departure::free(position);
+        let departure = RayOrigin::free(position);
         Second { departure, shading, normal, is_flat: shading == normal, sample: 0 }
     }
 

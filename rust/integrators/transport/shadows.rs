@@ -1,10 +1,10 @@
 //! Whether light that was drawn arrives.
 
-use super::nesting::{Boundary, Inside, around};
+use super::nesting::{Boundary, MediumStack, around};
 use crate::math::{Hit, Ray};
 use crate::optics::Rgb;
 use crate::scene::textures::TexturePoint;
-use crate::scene::{Scene, ShadingPoint, SurfacePoint};
+use crate::scene::{Scene, ShadingPoint};
 
 /// Shadow rays of a batch, and what arrives along each if nothing lies on the way.
 #[derive(Default)]
@@ -12,10 +12,12 @@ pub(super) struct Shadows {
     rays: Vec<Ray>,
     arriving: Vec<(u32, Rgb)>,
     /// What each starts in, in a scene of nested media.
-    inside: Vec<Inside>,
+    media: Vec<MediumStack>,
     occluded: Vec<bool>,
     hits: Vec<Hit>,
+    /// The parts of rays around hits of what encloses a medium, and which rays' they are.
     windows: Vec<Ray>,
+    of: Vec<usize>,
 }
 
 impl Shadows {
@@ -23,7 +25,7 @@ impl Shadows {
     pub fn clear(&mut self) {
         self.rays.clear();
         self.arriving.clear();
-        self.inside.clear();
+        self.media.clear();
     }
 
     /// A ray along which this much arrives at a sample.
@@ -35,8 +37,8 @@ impl Shadows {
 
     /// What the ray pushed last starts in.
     #[inline]
-    pub fn set_inside(&mut self, inside: Inside) {
-        self.inside.push(inside);
+    pub fn set_media(&mut self, media: MediumStack) {
+        self.media.push(media);
     }
 
     /// Adds to each sample what arrives at it, as if nothing were in the way.
@@ -68,9 +70,16 @@ impl Shadows {
             self.hits.resize(rays.len(), Hit::MISS);
             scene.intersect(&rays, &mut self.hits);
             self.windows.clear();
+            self.of.clear();
             if nested {
-                let hits = rays.iter().zip(&self.hits).filter(|(_, hit)| hit.is_hit());
-                self.windows.extend(hits.filter_map(|(ray, hit)| around(scene, ray, hit)));
+                for (i, (ray, hit)) in rays.iter().zip(&self.hits).enumerate() {
+                    if hit.is_hit()
+                        && let Some(window) = around(scene, ray, hit)
+                    {
+                        self.windows.push(window);
+                        self.of.push(i);
+                    }
+                }
             }
             let crossings = scene.crossings(&self.windows);
             let mut window = 0;
@@ -80,19 +89,18 @@ impl Shadows {
                 if !hit.is_hit() {
                     continue;
                 }
-                if nested && around(scene, ray, hit).is_some() {
+                if self.of.get(window) == Some(&i) {
                     window += 1;
-                    if let Boundary::None(inside) =
-                        Boundary::new(scene, ray, &self.inside[which], &crossings, window - 1)
+                    if let Boundary::None(media) = Boundary::new(scene, ray, &self.media[which], &crossings, window - 1)
                     {
                         self.rays[which].t_min = self.windows[window - 1].t_max.next_up();
-                        self.inside[which] = inside;
+                        self.media[which] = media;
                         on_way[kept] = which;
                         kept += 1;
                         continue;
                     }
                 }
-                let opacity = opacity(scene, ray, hit, &scene.geometry().surface(ray, hit));
+                let opacity = opacity(scene, ray, hit);
                 self.arriving[which].1 *= 1.0 - opacity;
                 if opacity < 1.0 {
                     self.rays[which].t_min = hit.t.next_up();
@@ -107,12 +115,12 @@ impl Shadows {
 }
 
 /// The share of rays that meet what is hit.
-pub(super) fn opacity(scene: &Scene, ray: &Ray, hit: &Hit, surface: &SurfacePoint) -> f64 {
-    let material = scene.material_at(surface);
+pub(super) fn opacity(scene: &Scene, ray: &Ray, hit: &Hit) -> f64 {
+    let material = scene.material_of(hit);
     if material.is_opaque() {
         return 1.0;
     }
-    let needs = material.needs();
-    let texture: TexturePoint = ShadingPoint::new(scene.geometry(), ray, hit, surface, needs, 0.0).texture;
+    let (needs, surface) = (material.needs(), scene.geometry().surface(ray, hit));
+    let texture: TexturePoint = ShadingPoint::new(scene.geometry(), ray, hit, &surface, needs, 0.0).texture;
     material.opacity(&texture).clamp(0.0, 1.0)
 }

@@ -219,7 +219,7 @@ mod tests {
     use crate::math::{DVec3, Vec3};
     use crate::sampling::{Sampler, warp};
     use crate::scene::fixtures::{inward_box, shape};
-    use crate::scene::{Departure, Mesh, Scene, SceneDescription, Shape};
+    use crate::scene::{Mesh, RayOrigin, Scene, SceneDescription, Shape};
     use crate::simd::Level;
     use crate::work::Work;
 
@@ -344,7 +344,7 @@ mod tests {
                 let hit = Hit { t: 0.0, uv: warp::uniform_triangle(sampler.two(0)), primitive: 0, inner: 0 };
                 let surface = scene.geometry().surface(&Ray::new(DVec3::ZERO, DVec3::Z), &hit);
                 let direction = warp::uniform_sphere(sampler.two(1));
-                let departure = Departure::new(&surface);
+                let departure = RayOrigin::new(&surface);
                 rays.push(departure.ray(direction));
                 // Grazing the plane, down to an angle of 10⁻¹².
                 let along = direction.cross(surface.normal).normalize();

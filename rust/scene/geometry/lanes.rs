@@ -1,6 +1,6 @@
 //! Points where rays have met surfaces, sixteen at a time.
 
-use super::{Geometry, error_among};
+use super::{Geometry, NO_FACE, error_among};
 use crate::accel::Primitives;
 use crate::math::{Hit, LANES, Ray, Vec3, VectorLanes};
 use crate::sampling::Pairs;
@@ -35,7 +35,7 @@ fn points(corners: &[VectorLanes; 3], uv: &Pairs, position: &mut VectorLanes, er
 }
 
 impl Geometry {
-    /// What [`Geometry::surface`] gives for a ray and its hit, a lane each; of no copy.
+    /// What [`Geometry::surface`] gives for a ray and its hit, a lane each.
     ///
     /// # Panics
     /// If one is a miss.
@@ -66,8 +66,9 @@ impl Geometry {
             }
         }
         if self.others.is_some() {
+            surfaces.inner = [None; LANES];
             for (lane, hit) in hits.iter().enumerate() {
-                if self.shape(hit.primitive).is_some() {
+                if self.face(hit.primitive) == NO_FACE {
                     surfaces.set(lane, &self.surface(&rays[lane], hit));
                 }
             }

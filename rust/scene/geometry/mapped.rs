@@ -80,7 +80,7 @@ impl ShadingPoint {
     /// What a hit of a ray needs, `width` being that of the footprint there.
     pub fn new(geometry: &Geometry, ray: &Ray, hit: &Hit, surface: &SurfacePoint, needs: Needs, width: f64) -> Self {
         let mut point = Self::plain(surface);
-        point.is_front = ray.direction.dot(surface.normal) <= 0.0;
+        point.is_front = surface.is_front(ray);
         if !needs.any() {
             return point;
         }

@@ -14,6 +14,7 @@ pub struct InteractionLanes {
     up: VectorLanes,
     wo: VectorLanes,
     side: [f64; LANES],
+    curvature: [f64; LANES],
     // Yes or no, as wide as the rest of a lane.
     is_flat: [u64; LANES],
     is_bent: [u64; LANES],
@@ -30,9 +31,15 @@ impl InteractionLanes {
             up: nothing,
             wo: nothing,
             side: [0.0; LANES],
+            curvature: [0.0; LANES],
             is_flat: [0; LANES],
             is_bent: [0; LANES],
         }
+    }
+
+    /// Moves to other points; all else is to be set.
+    pub fn set_surfaces(&mut self, surface: &SurfaceLanes) {
+        self.surface.clone_from(surface);
     }
 
     /// The encounter of a lane, with what scatters there.
@@ -50,7 +57,7 @@ impl InteractionLanes {
             side: self.side[lane],
             is_flat: self.is_flat[lane] != 0,
             is_bent: self.is_bent[lane] != 0,
-            curvature: 0.0,
+            curvature: self.curvature[lane],
         }
     }
 
@@ -68,6 +75,7 @@ impl InteractionLanes {
         self.up.set(lane, here.frame.normal);
         self.wo.set(lane, here.wo);
         self.side[lane] = here.side;
+        self.curvature[lane] = here.curvature;
         self.is_flat[lane] = here.is_flat.into();
         self.is_bent[lane] = here.is_bent.into();
     }

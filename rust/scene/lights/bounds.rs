@@ -1,6 +1,6 @@
 //! Where lights are and where they shine to: what a tree of lights knows of a part of them.
 
-use super::Receiver;
+use super::LightSampleContext;
 use crate::math::{DVec3, Frame};
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -67,7 +67,7 @@ impl LightBounds {
     /// As if all were at the middle, but facing the receiver as much as any of it can, and as far above the receiver's
     /// horizon.
     #[inline]
-    pub fn importance(&self, receiver: &Receiver) -> f64 {
+    pub fn importance(&self, receiver: &LightSampleContext) -> f64 {
         let way = receiver.position - self.centre();
         let (square, radius) = (way.length_squared(), 0.25 * (self.max - self.min).length_squared());
         if square <= radius {

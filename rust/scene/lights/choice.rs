@@ -1,6 +1,6 @@
 //! The choice among the lights within a scene.
 
-use super::{LightBounds, LightTree, Receiver, Sides};
+use super::{LightBounds, LightSampleContext, LightTree, Sides};
 use crate::math::DVec3;
 use crate::sampling::AliasTable;
 use std::f64::consts::PI;
@@ -83,7 +83,7 @@ impl Choice {
 
     /// A light for a receiver by a number in [0, 1), and its probability.
     #[inline]
-    pub fn sample(&self, receiver: &Receiver, u: f64) -> Option<(usize, f64)> {
+    pub fn sample(&self, receiver: &LightSampleContext, u: f64) -> Option<(usize, f64)> {
         match self {
             Self::Power(table) => {
                 let chosen = table.sample(u);
@@ -95,7 +95,7 @@ impl Choice {
 
     /// The probability of a light.
     #[inline]
-    pub fn probability(&self, light: usize, receiver: &Receiver) -> f64 {
+    pub fn probability(&self, light: usize, receiver: &LightSampleContext) -> f64 {
         match self {
             Self::Power(table) => table.probability(light),
             Self::Tree(tree) => tree.probability(light, receiver),

@@ -1,7 +1,7 @@
 //! The same light from everywhere.
 
 use super::light::strength;
-use super::{Light, LightSample, Reach, Receiver};
+use super::{Light, LightSample, LightSampleContext, Reach};
 use crate::math::{DVec3, Frame};
 use crate::optics::{Rgb, is_radiance};
 use crate::sampling::warp::{UNIFORM_SPHERE_PDF, cosine_hemisphere, uniform_sphere};
@@ -24,7 +24,7 @@ impl Light for ConstantEnvironment {
     }
 
     #[inline]
-    fn sample(&self, receiver: &Receiver, u: [f64; 2]) -> Option<LightSample> {
+    fn sample(&self, receiver: &LightSampleContext, u: [f64; 2]) -> Option<LightSample> {
         let direction = if receiver.is_free() {
             uniform_sphere(u)
         } else {
@@ -41,7 +41,7 @@ impl Light for ConstantEnvironment {
     }
 
     #[inline]
-    fn outside_pdf(&self, receiver: &Receiver, direction: DVec3) -> f64 {
+    fn outside_pdf(&self, receiver: &LightSampleContext, direction: DVec3) -> f64 {
         if receiver.is_free() { UNIFORM_SPHERE_PDF } else { receiver.normal.dot(direction).max(0.0) / PI }
     }
 

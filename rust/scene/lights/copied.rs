@@ -3,7 +3,7 @@
 use super::choice::Strength;
 use super::light::strength;
 use super::triangle::SeenTriangle;
-use super::{LightSample, Receiver, surface};
+use super::{LightSample, LightSampleContext, surface};
 use crate::accel::Primitives;
 use crate::math::{DVec3, Hit, Ray};
 use crate::scene::{Copies, Geometry, Group};
@@ -83,7 +83,13 @@ impl Copied {
     }
 
     /// Draws light from one.
-    pub fn sample(&self, light: usize, geometry: &Geometry, receiver: &Receiver, u: [f64; 2]) -> Option<LightSample> {
+    pub fn sample(
+        &self,
+        light: usize,
+        geometry: &Geometry,
+        receiver: &LightSampleContext,
+        u: [f64; 2],
+    ) -> Option<LightSample> {
         let Light { primitive, inner, corners } = &self.lights[light];
         let (copies, copy) = geometry.copy(*primitive)?;
         let (group, pose) = (copies.group(), copies.pose(copy, 0.0)?);
@@ -116,7 +122,7 @@ impl Copied {
         &self,
         light: usize,
         geometry: &Geometry,
-        receiver: &Receiver,
+        receiver: &LightSampleContext,
         (ray, hit): (&Ray, &Hit),
         cosine: f64,
     ) -> f64 {

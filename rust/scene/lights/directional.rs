@@ -1,7 +1,7 @@
 //! Light from a single direction.
 
 use super::light::strength;
-use super::{Light, LightSample, Reach, Receiver};
+use super::{Light, LightSample, LightSampleContext, Reach};
 use crate::math::DVec3;
 use crate::optics::{Rgb, is_radiance};
 
@@ -35,7 +35,7 @@ impl Light for DirectionalLight {
     }
 
     #[inline]
-    fn sample(&self, _: &Receiver, _: [f64; 2]) -> Option<LightSample> {
+    fn sample(&self, _: &LightSampleContext, _: [f64; 2]) -> Option<LightSample> {
         Some(LightSample { direction: self.from, weight: self.irradiance, pdf: f64::INFINITY, source: None })
     }
 

@@ -1,7 +1,7 @@
 //! Few lights, each of which is asked.
 
 use super::choice::{MOST, Strength};
-use super::{Light, LightSample, Lights, Receiver};
+use super::{Light, LightSample, LightSampleContext, Lights};
 use crate::math::{DVec3, Hit, Ray};
 use crate::optics::Rgb;
 use crate::scene::Geometry;
@@ -98,7 +98,7 @@ impl Lights {
         &self,
         one: u32,
         geometry: &Geometry,
-        receiver: &Receiver,
+        receiver: &LightSampleContext,
         choice: impl FnOnce() -> f64,
         u: [f64; 2],
     ) -> Option<LightSample> {
@@ -125,7 +125,14 @@ impl Lights {
     /// The density with which [`Lights::sample_one`] draws, for a receiver, the direction of a ray from there, of the
     /// light that it meets: as [`Lights::surface_pdf`] has it, without the choice.
     #[inline]
-    pub fn own_pdf(&self, geometry: &Geometry, receiver: &Receiver, ray: &Ray, hit: &Hit, cosine: f64) -> f64 {
+    pub fn own_pdf(
+        &self,
+        geometry: &Geometry,
+        receiver: &LightSampleContext,
+        ray: &Ray,
+        hit: &Hit,
+        cosine: f64,
+    ) -> f64 {
         let Some(number) = self.number_of(geometry, hit) else { return 0.0 };
         let share = self.few.within.iter().map(|lamp| lamp.share_of(number as u32)).find(|share| *share > 0.0);
         share.map_or(0.0, |share| share * self.pdf_within(number, geometry, receiver, (ray, hit), cosine))
@@ -134,7 +141,7 @@ impl Lights {
     /// Radiance that comes from outside along a unit direction to a receiver, that of each light there times a weight,
     /// by the density with which [`Lights::sample_one`] draws the direction.
     #[inline]
-    pub fn outside_weighed(&self, receiver: &Receiver, direction: DVec3, weight: impl Fn(f64) -> f64) -> Rgb {
+    pub fn outside_weighed(&self, receiver: &LightSampleContext, direction: DVec3, weight: impl Fn(f64) -> f64) -> Rgb {
         let each = self.outside.lights().iter().enumerate().map(|(one, light)| (one, light, light.outside(direction)));
         let seen = each.filter(|(.., radiance)| *radiance != Rgb::ZERO);
         let drawn =

@@ -1,36 +1,36 @@
 //! Light drawn for sixteen receivers at a time.
 
 use super::triangle::SeenTriangle;
-use super::{LightSample, Lights, Receiver, Sides};
+use super::{LightSample, LightSampleContext, Lights, Sides};
 use crate::accel::Primitives;
 use crate::math::{DVec3, LANES, VectorLanes};
 use crate::optics::Rgb;
 use crate::sampling::Pairs;
 use crate::scene::geometry::error_among;
 use crate::scene::textures::TexturePoint;
-use crate::scene::{Departure, Geometry};
+use crate::scene::{Geometry, RayOrigin};
 use crate::simd::{Level, Loops};
 
 /// Receivers, a lane each.
 #[derive(Clone, Debug)]
-pub struct ReceiverLanes {
+pub struct LightContextLanes {
     position: VectorLanes,
     normal: VectorLanes,
 }
 
-impl ReceiverLanes {
+impl LightContextLanes {
     /// Nowhere.
     pub const NONE: Self = Self { position: VectorLanes::ZERO, normal: VectorLanes::ZERO };
 
     /// That of a lane.
     #[inline(always)]
-    pub fn get(&self, lane: usize) -> Receiver {
-        Receiver { position: self.position.get(lane), normal: self.normal.get(lane) }
+    pub fn get(&self, lane: usize) -> LightSampleContext {
+        LightSampleContext { position: self.position.get(lane), normal: self.normal.get(lane) }
     }
 
     /// Sets that of a lane.
     #[inline(always)]
-    pub fn set(&mut self, lane: usize, receiver: &Receiver) {
+    pub fn set(&mut self, lane: usize, receiver: &LightSampleContext) {
         self.position.set(lane, receiver.position);
         self.normal.set(lane, receiver.normal);
     }
@@ -70,8 +70,14 @@ impl LightLanes {
 
     /// Where a lane's light sets out, and whether that is within the scene.
     #[inline(always)]
-    pub fn source(&self, lane: usize) -> (Departure, bool) {
-        (Departure::with(self.position.get(lane), self.offset.get(lane)), self.is_within[lane])
+    pub fn source(&self, lane: usize) -> (RayOrigin, bool) {
+        (RayOrigin::with(self.position.get(lane), self.offset.get(lane)), self.is_within[lane])
+    }
+
+    /// The light of a lane; none where the draw gave none.
+    pub fn sample(&self, lane: usize) -> Option<LightSample> {
+        let ((direction, weight, pdf), (source, is_within)) = (self.get(lane), self.source(lane));
+        (pdf > 0.0).then(|| LightSample { direction, weight, pdf, source: is_within.then_some(source) })
     }
 
     /// Sets that of a lane.
@@ -80,7 +86,7 @@ impl LightLanes {
             self.pdf[lane] = 0.0;
             return;
         };
-        let from = source.unwrap_or(Departure::free(DVec3::ZERO));
+        let from = source.unwrap_or(RayOrigin::free(DVec3::ZERO));
         self.direction.set(lane, direction);
         self.weight.set(lane, weight);
         self.pdf[lane] = pdf;
@@ -102,7 +108,7 @@ struct Lamps {
 
 /// What is drawn of them.
 struct Draw<'a> {
-    receivers: &'a ReceiverLanes,
+    receivers: &'a LightContextLanes,
     lamps: &'a Lamps,
     u: &'a Pairs,
     lights: &'a mut LightLanes,
@@ -118,7 +124,7 @@ impl Loops for Draw<'_> {
 }
 
 #[inline(always)]
-fn draw(receivers: &ReceiverLanes, lamps: &Lamps, u: &Pairs, lights: &mut LightLanes) {
+fn draw(receivers: &LightContextLanes, lamps: &Lamps, u: &Pairs, lights: &mut LightLanes) {
     for i in 0..LANES {
         let shine = |cosine: f64| (lamps.sides[0][i] & (cosine > 0.0)) | (lamps.sides[1][i] & (cosine < 0.0));
         let corners = [lamps.corners[0].get(i), lamps.corners[1].get(i), lamps.corners[2].get(i)];
@@ -134,7 +140,7 @@ fn draw(receivers: &ReceiverLanes, lamps: &Lamps, u: &Pairs, lights: &mut LightL
         let cosine = -direction.dot(normal);
         // Also false where the distance is 0 and the direction NaN.
         let is_lit = shine(seen.height()) & shine(cosine) & (pdf > 0.0) & (pdf < f64::INFINITY);
-        let from = Departure::off(position, error_among(corners), normal);
+        let from = RayOrigin::off(position, error_among(corners), normal);
         lights.direction.set(i, direction);
         lights.weight.set(i, lamps.radiance.get(i) / pdf / lamps.probability[i]);
         lights.pdf[i] = if is_lit { pdf * lamps.probability[i] } else { 0.0 };
@@ -150,7 +156,7 @@ impl Lights {
         &self,
         level: Level,
         geometry: &Geometry,
-        receivers: &ReceiverLanes,
+        receivers: &LightContextLanes,
         choice: &[f64; LANES],
         u: &Pairs,
         lights: &mut LightLanes,

@@ -1,9 +1,9 @@
 //! What every light that is no surface can be asked, and what is drawn from one.
 
-use super::{LightBounds, Receiver};
+use super::{LightBounds, LightSampleContext};
 use crate::math::DVec3;
 use crate::optics::Rgb;
-use crate::scene::Departure;
+use crate::scene::RayOrigin;
 use std::fmt::Debug;
 
 /// Light on its way to a point, drawn from a light.
@@ -17,14 +17,18 @@ pub struct LightSample {
     /// any other way to find this direction, such a sample then gets all the weight.
     pub pdf: f64,
     /// Where it sets out; `None` if from outside the scene.
-    pub source: Option<Departure>,
+    pub source: Option<RayOrigin>,
 }
 
 impl LightSample {
     /// Light from a point of this intensity along a direction away from it; `None` where that is 0, or at the point
     /// itself.
     #[inline]
-    pub(super) fn of_point(position: DVec3, receiver: &Receiver, intensity: impl FnOnce(DVec3) -> Rgb) -> Option<Self> {
+    pub(super) fn of_point(
+        position: DVec3,
+        receiver: &LightSampleContext,
+        intensity: impl FnOnce(DVec3) -> Rgb,
+    ) -> Option<Self> {
         let way = position - receiver.position;
         let distance = way.length();
         // At the light itself there is no direction.
@@ -33,7 +37,7 @@ impl LightSample {
         }
         let direction = way / distance;
         let weight = intensity(-direction) / (distance * distance);
-        let source = Some(Departure::free(position));
+        let source = Some(RayOrigin::free(position));
         (weight != Rgb::ZERO).then_some(Self { direction, weight, pdf: f64::INFINITY, source })
     }
 
@@ -75,7 +79,7 @@ pub trait Light: Debug + Send + Sync {
 
     /// Draws light that reaches a receiver, as if it were the only light, by two numbers in [0, 1). `None` if the draw
     /// gives none. Light below a receiver's horizon need not be left out.
-    fn sample(&self, receiver: &Receiver, u: [f64; 2]) -> Option<LightSample>;
+    fn sample(&self, receiver: &LightSampleContext, u: [f64; 2]) -> Option<LightSample>;
 
     /// The radiance that comes from outside along a direction, which is unit and points there; black for a light that
     /// is found by its samples only.
@@ -85,7 +89,7 @@ pub trait Light: Debug + Send + Sync {
 
     /// The density in solid angle with which [`Light::sample`] draws such a direction: above 0 wherever
     /// [`Light::outside`] is not black and the receiver's horizon is not above.
-    fn outside_pdf(&self, _receiver: &Receiver, _direction: DVec3) -> f64 {
+    fn outside_pdf(&self, _receiver: &LightSampleContext, _direction: DVec3) -> f64 {
         0.0
     }
 

@@ -2,7 +2,7 @@
 
 use super::light::strength;
 use super::pyramid::{Pyramid, linear};
-use super::{Light, LightSample, Picture, Reach, Receiver};
+use super::{Light, LightSample, LightSampleContext, Picture, Reach};
 use crate::math::DVec3;
 use crate::optics::Rgb;
 use std::f64::consts::{PI, TAU};
@@ -144,7 +144,7 @@ impl Light for EnvironmentMap {
     }
 
     #[inline]
-    fn sample(&self, _: &Receiver, u: [f64; 2]) -> Option<LightSample> {
+    fn sample(&self, _: &LightSampleContext, u: [f64; 2]) -> Option<LightSample> {
         let pyramid = self.pyramid.as_ref()?;
         let (cell, [u, v]) = pyramid.sample(u, |i, j| self.weight(i, j));
         let [a, b, c, d] = self.corners(cell[0], cell[1]).map(strength);
@@ -173,7 +173,7 @@ impl Light for EnvironmentMap {
     }
 
     #[inline]
-    fn outside_pdf(&self, _: &Receiver, direction: DVec3) -> f64 {
+    fn outside_pdf(&self, _: &LightSampleContext, direction: DVec3) -> f64 {
         let Some(pyramid) = &self.pyramid else { return 0.0 };
         let (cell, within, sine) = self.place(direction);
         self.within(pyramid, cell, within, sine).1

@@ -8,13 +8,13 @@ mod directional;
 mod few;
 mod lanes;
 mod light;
+mod light_sample_context;
 mod map;
 mod outside;
 mod picture;
 mod point;
 mod projector;
 mod pyramid;
-mod receiver;
 pub mod sky;
 mod spot;
 mod surface;
@@ -26,13 +26,13 @@ mod triangle;
 pub use bounds::LightBounds;
 pub use constant::ConstantEnvironment;
 pub use directional::DirectionalLight;
-pub use lanes::{LightLanes, ReceiverLanes};
+pub use lanes::{LightContextLanes, LightLanes};
 pub use light::{Light, LightSample, Reach};
+pub use light_sample_context::LightSampleContext;
 pub use map::EnvironmentMap;
 pub use picture::Picture;
 pub use point::PointLight;
 pub use projector::Projector;
-pub use receiver::Receiver;
 pub use sky::SunSky;
 pub use spot::{Profile, SpotLight};
 pub use tree::LightTree;
@@ -163,7 +163,13 @@ impl Lights {
     /// Draws light that reaches a receiver: a light by `choice`, and of that a direction by `u`. `None` if the draw
     /// gives none.
     #[inline]
-    pub fn sample(&self, geometry: &Geometry, receiver: &Receiver, choice: f64, u: [f64; 2]) -> Option<LightSample> {
+    pub fn sample(
+        &self,
+        geometry: &Geometry,
+        receiver: &LightSampleContext,
+        choice: f64,
+        u: [f64; 2],
+    ) -> Option<LightSample> {
         let share = self.outside.share();
         if choice < share {
             return Some(self.outside.sample(receiver, choice / share, u)?.chosen(share));
@@ -179,7 +185,7 @@ impl Lights {
         &self,
         number: usize,
         geometry: &Geometry,
-        receiver: &Receiver,
+        receiver: &LightSampleContext,
         u: [f64; 2],
     ) -> Option<LightSample> {
         if let Some(&primitive) = self.surfaces.get(number) {
@@ -197,7 +203,14 @@ impl Lights {
     /// unit and meets an emitting primitive under the cosine of an angle to its normal. 0 for what shines in copies
     /// that move, or in copies of copies, or in too many: it is never drawn, and found by rays that meet it.
     #[inline]
-    pub fn surface_pdf(&self, geometry: &Geometry, receiver: &Receiver, ray: &Ray, hit: &Hit, cosine: f64) -> f64 {
+    pub fn surface_pdf(
+        &self,
+        geometry: &Geometry,
+        receiver: &LightSampleContext,
+        ray: &Ray,
+        hit: &Hit,
+        cosine: f64,
+    ) -> f64 {
         let Some(choice) = &self.choice else { return 0.0 };
         let Some(number) = self.number_of(geometry, hit) else { return 0.0 };
         let probability = (1.0 - self.outside.share()) * choice.probability(number, receiver);
@@ -224,7 +237,7 @@ impl Lights {
         &self,
         number: usize,
         geometry: &Geometry,
-        receiver: &Receiver,
+        receiver: &LightSampleContext,
         (ray, hit): (&Ray, &Hit),
         cosine: f64,
     ) -> f64 {
@@ -236,7 +249,7 @@ impl Lights {
 
     /// The density with which [`Lights::sample`], for a receiver, draws a unit direction that leaves the scene.
     #[inline]
-    pub fn outside_pdf(&self, receiver: &Receiver, direction: DVec3) -> f64 {
+    pub fn outside_pdf(&self, receiver: &LightSampleContext, direction: DVec3) -> f64 {
         self.outside.share() * self.outside.pdf(receiver, direction)
     }
 }

@@ -1,6 +1,6 @@
 //! What comes from outside a scene: environments, suns, distant lights.
 
-use super::{Light, LightSample, Receiver};
+use super::{Light, LightSample, LightSampleContext};
 use crate::math::DVec3;
 use crate::optics::Rgb;
 use std::sync::Arc;
@@ -81,7 +81,7 @@ impl Outside {
 
     /// The density of [`Outside::sample`].
     #[inline]
-    pub fn pdf(&self, receiver: &Receiver, direction: DVec3) -> f64 {
+    pub fn pdf(&self, receiver: &LightSampleContext, direction: DVec3) -> f64 {
         let each = self.lights.iter().zip(&self.probabilities);
         each.map(|(light, probability)| probability * light.outside_pdf(receiver, direction)).sum()
     }
@@ -89,7 +89,7 @@ impl Outside {
     /// Draws light from one of them. Where several may have been the one, the density is that of all, and so is the
     /// radiance.
     #[inline]
-    pub fn sample(&self, receiver: &Receiver, mut choice: f64, u: [f64; 2]) -> Option<LightSample> {
+    pub fn sample(&self, receiver: &LightSampleContext, mut choice: f64, u: [f64; 2]) -> Option<LightSample> {
         let mut chosen = 0;
         while chosen + 1 < self.lights.len() && choice >= self.probabilities[chosen] {
             choice -= self.probabilities[chosen];

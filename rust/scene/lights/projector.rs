@@ -1,7 +1,7 @@
 //! A picture that is thrown.
 
 use super::light::strength;
-use super::{Light, LightBounds, LightSample, Picture, Reach, Receiver};
+use super::{Light, LightBounds, LightSample, LightSampleContext, Picture, Reach};
 use crate::math::DVec3;
 use crate::optics::Rgb;
 use std::sync::Arc;
@@ -93,7 +93,7 @@ impl Light for Projector {
     }
 
     #[inline]
-    fn sample(&self, receiver: &Receiver, _: [f64; 2]) -> Option<LightSample> {
+    fn sample(&self, receiver: &LightSampleContext, _: [f64; 2]) -> Option<LightSample> {
         LightSample::of_point(self.position, receiver, |direction| self.towards(direction))
     }
 

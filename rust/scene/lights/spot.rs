@@ -1,7 +1,7 @@
 //! A point that shines into a cone.
 
 use super::light::strength;
-use super::{Light, LightBounds, LightSample, Reach, Receiver};
+use super::{Light, LightBounds, LightSample, LightSampleContext, Reach};
 use crate::math::DVec3;
 use crate::optics::{Rgb, is_radiance};
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -96,7 +96,7 @@ impl Light for SpotLight {
     }
 
     #[inline]
-    fn sample(&self, receiver: &Receiver, _: [f64; 2]) -> Option<LightSample> {
+    fn sample(&self, receiver: &LightSampleContext, _: [f64; 2]) -> Option<LightSample> {
         LightSample::of_point(self.position, receiver, |direction| self.intensity * self.share(direction))
     }
 

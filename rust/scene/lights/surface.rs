@@ -1,12 +1,12 @@
 //! Light from surfaces.
 
 use super::triangle::SeenTriangle;
-use super::{Emission, LightSample, Receiver};
+use super::{Emission, LightSample, LightSampleContext};
 use crate::accel::Primitives;
 use crate::math::{DVec3, Hit, Ray};
 use crate::optics::Rgb;
 use crate::scene::textures::{Needs, TexturePoint};
-use crate::scene::{Departure, Geometry, ShadingPoint, SurfacePoint};
+use crate::scene::{Geometry, RayOrigin, ShadingPoint, SurfacePoint};
 use crate::shapes::{Drawn, Seen, Shape};
 
 impl Emission {
@@ -42,7 +42,7 @@ pub(super) fn seen(shape: &dyn Shape, needs: Needs, place: DVec3, u: [f64; 2]) -
 /// Light from a point drawn on a primitive. The last is what it sends, asked by the ray to it.
 #[inline]
 pub(super) fn sample(
-    receiver: &Receiver,
+    receiver: &LightSampleContext,
     surface: &SurfacePoint,
     (primitive, inner): (u32, u32),
     uv: [f64; 2],
@@ -63,7 +63,7 @@ pub(super) fn sample(
         direction,
         weight: radiance / pdf,
         pdf,
-        source: Some(Departure::new(surface)),
+        source: Some(RayOrigin::new(surface)),
     })
 }
 
@@ -73,7 +73,7 @@ pub(super) fn sample_primitive(
     geometry: &Geometry,
     emission: &Emission,
     primitive: u32,
-    receiver: &Receiver,
+    receiver: &LightSampleContext,
     u: [f64; 2],
 ) -> Option<LightSample> {
     match geometry.shape(primitive) {
@@ -100,7 +100,13 @@ pub(super) fn sample_primitive(
 /// The density with which [`sample_primitive`] draws the direction of a ray that meets the primitive under the cosine
 /// of an angle to its normal.
 #[inline]
-pub(super) fn primitive_pdf(geometry: &Geometry, receiver: &Receiver, ray: &Ray, hit: &Hit, cosine: f64) -> f64 {
+pub(super) fn primitive_pdf(
+    geometry: &Geometry,
+    receiver: &LightSampleContext,
+    ray: &Ray,
+    hit: &Hit,
+    cosine: f64,
+) -> f64 {
     match geometry.shape(hit.primitive) {
         Some(shape) => shape.pdf_of_met(ray.origin, ray.direction),
         None => SeenTriangle::new(geometry.corners(hit.primitive), receiver.position).pdf(hit.t, cosine),

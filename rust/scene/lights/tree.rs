@@ -1,6 +1,6 @@
 //! A tree over lights, which chooses among thousands by what each brings to a place.
 
-use super::{LightBounds, Receiver};
+use super::{LightBounds, LightSampleContext};
 use crate::math::DVec3;
 
 /// A binary tree over lights (Conty Estevez and Kulla, 2018; with pdfs as in Pharr, Jakob and Humphreys, "Physically
@@ -84,7 +84,7 @@ impl LightTree {
     /// Chooses a light for a receiver by a number in [0, 1), and tells its probability. `None` if none brings anything
     /// there.
     #[inline]
-    pub fn sample(&self, receiver: &Receiver, mut u: f64) -> Option<(usize, f64)> {
+    pub fn sample(&self, receiver: &LightSampleContext, mut u: f64) -> Option<(usize, f64)> {
         let (mut here, mut probability) = (0, 1.0);
         loop {
             let link = self.nodes[here].link;
@@ -104,7 +104,7 @@ impl LightTree {
 
     /// The probability with which a light is chosen for a receiver.
     #[inline]
-    pub fn probability(&self, light: usize, receiver: &Receiver) -> f64 {
+    pub fn probability(&self, light: usize, receiver: &LightSampleContext) -> f64 {
         let mut trail = self.trails[light];
         if trail == NOWHERE {
             return 0.0;
@@ -130,7 +130,7 @@ impl LightTree {
 
     /// The share of an inner node's first child; `None` if neither child brings anything.
     #[inline]
-    fn share(&self, node: usize, receiver: &Receiver) -> Option<f64> {
+    fn share(&self, node: usize, receiver: &LightSampleContext) -> Option<f64> {
         let first = self.nodes[node + 1].bounds.importance(receiver);
         let second = self.nodes[self.nodes[node].link as usize].bounds.importance(receiver);
         let sum = first + second;

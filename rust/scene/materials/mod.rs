@@ -61,6 +61,11 @@ pub trait Material: Debug + Send + Sync {
         None
     }
 
+    /// The same where the sides may differ: on the front and on the back.
+    fn constant_sides(&self) -> Option<[Bsdf; 2]> {
+        self.constant().map(|bsdf| [bsdf; 2])
+    }
+
     /// What is wrong with it, in a few words; `Ok` if nothing is.
     fn validate(&self) -> Result<(), String>;
 

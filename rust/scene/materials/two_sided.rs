@@ -2,7 +2,7 @@
 
 use super::{Material, Scattering};
 use crate::math::DVec3;
-use crate::optics::Rgb;
+use crate::optics::{Bsdf, Rgb};
 use crate::scene::ShadingPoint;
 use crate::scene::textures::Needs;
 use std::sync::Arc;
@@ -25,6 +25,11 @@ impl TwoSided {
 impl Material for TwoSided {
     fn scattering(&self, at: &ShadingPoint) -> Scattering {
         self.side(at).scattering(at)
+    }
+
+    fn constant_sides(&self) -> Option<[Bsdf; 2]> {
+        let ([front, _], [_, back]) = (self.front.constant_sides()?, self.back.constant_sides()?);
+        Some([front, back])
     }
 
     fn needs(&self) -> Needs {

@@ -8,12 +8,25 @@ use rayon::prelude::*;
 /// Numbers of a triangle: nine coordinates and which it is.
 const ROWS: usize = 10;
 
+/// Numbers from where a leaf begins, of which its first nine rows are a part however many triangles it has, up to eight:
+/// so one look says that all of them are there.
+const WHOLE: usize = 8 * MOST + MOST;
+
+/// Triangles of the largest leaf.
+const MOST: usize = 8;
+
 /// The triangles of all leaves in f32. A leaf of n has n numbers of each row, one row after the other: the coordinates
 /// of three vectors by axis, then the triangles' own numbers. So a leaf takes no more memory than its triangles need,
 /// and `N` numbers read from any row are those of the leaf and others that do not matter.
 #[derive(Clone, Debug)]
 pub struct Rows<const N: usize> {
     numbers: Vec<f32>,
+}
+
+/// One of the first nine rows of a leaf of so many.
+#[inline(always)]
+fn whole_row<const N: usize>(whole: &[f32; WHOLE], row: usize, count: u32) -> &[f32; N] {
+    whole[row * (count as usize).min(MOST)..].first_chunk().expect("within")
 }
 
 impl<const N: usize> Rows<N> {
@@ -25,8 +38,10 @@ impl<const N: usize> Rows<N> {
         /// Leaves that a thread fills at a time.
         const SOME: usize = 1024;
         assert_eq!(counts.iter().sum::<u32>() as usize, order.len(), "as many triangles as their counts say");
-        // The last row of the last leaf can be read as any other.
-        let mut numbers = vec![0.0; order.len() * ROWS + N];
+        const { assert!(N <= MOST) };
+        // The last leaf can be read as any other.
+        let last = counts.last().map_or(0, |&count| count as usize * ROWS);
+        let mut numbers = vec![0.0; order.len() * ROWS + WHOLE.saturating_sub(last)];
         let mut parts = Vec::with_capacity(counts.len().div_ceil(SOME));
         let (mut rest, mut order) = (numbers.as_mut_slice(), order);
         for counts in counts.chunks(SOME) {
@@ -82,13 +97,20 @@ impl<const N: usize> Rows<N> {
         [vector(0), vector(1), vector(2)]
     }
 
+    /// What stands from where a leaf begins.
+    #[inline(always)]
+    fn whole(&self, first: usize) -> &[f32; WHOLE] {
+        let start = first * ROWS;
+        (&self.numbers[start..start + WHOLE]).try_into().expect("as many")
+    }
+
     /// One of the three vectors of the triangles of a leaf, axis by axis.
     #[inline(always)]
     pub fn numbers<S: Lanes<N>>(&self, simd: S, first: usize, count: u32, which: usize) -> [S::F32; 3] {
-        let count = count as usize;
-        let rows = &self.numbers[first * ROWS + 3 * which * count..][..2 * count + N];
-        let row = |axis: usize| rows[axis * count..].first_chunk().expect("rows of the right length");
-        [simd.load(row(0)), simd.load(row(1)), simd.load(row(2))]
+        let (whole, row) = (self.whole(first), 3 * which);
+        let [x, y, z] =
+            [whole_row(whole, row, count), whole_row(whole, row + 1, count), whole_row(whole, row + 2, count)];
+        [simd.load(x), simd.load(y), simd.load(z)]
     }
 
     /// The triangles of a leaf as a corner and the edges from there, axis by axis. `edges` says that they are kept so.

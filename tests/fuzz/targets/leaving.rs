@@ -7,7 +7,7 @@ use super::triangles::Triangles;
 use arbitrary::{Result, Unstructured};
 use raywright::accel::bvh::Options;
 use raywright::math::{DVec3, Ray};
-use raywright::scene::{Departure, Geometry, Mesh, SurfacePoint, Vertices};
+use raywright::scene::{Geometry, Mesh, RayOrigin, SurfacePoint, Vertices};
 
 /// Panics where a ray meets what it leaves, or misses what is in its way.
 pub fn check(data: &[u8]) {
@@ -61,8 +61,8 @@ fn plate(u: &mut Unstructured) -> Result<()> {
     let flat = along - near.normal * along.dot(near.normal);
     let away = flat - near.normal * 1f64.copysign(thickness) * largest(&[flat]).max(1.0) * steepness;
     let alone = Triangles(vec![triangles.0[0]]);
-    let leaving = Departure::new(&near).ray(away);
-    let crossing = Departure::new(&near).ray(-away);
+    let leaving = RayOrigin::new(&near).ray(away);
+    let crossing = RayOrigin::new(&near).ray(-away);
     let answers = |triangles: &Triangles, rays: &[Ray], wanted: &[bool]| {
         for (name, accelerator) in accelerators::all(triangles, &Options::DEFAULT) {
             let mut occluded = vec![false; rays.len()];
@@ -77,8 +77,8 @@ fn plate(u: &mut Unstructured) -> Result<()> {
 
 /// Rays from one side of a gap to the other, and through it: on and on, as far as the other side, and beyond it.
 fn between(near: &SurfacePoint, far: &SurfacePoint) -> [Ray; 5] {
-    let (here, there) = (Departure::new(near), Departure::new(far));
+    let (here, there) = (RayOrigin::new(near), RayOrigin::new(far));
     let across = far.position - near.position;
-    let beyond = Departure::free(far.position + across);
+    let beyond = RayOrigin::free(far.position + across);
     [here.ray(across), here.segment(&there), there.segment(&here), here.segment(&beyond), beyond.segment(&here)]
 }

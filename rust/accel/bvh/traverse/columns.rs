@@ -140,7 +140,7 @@ mod tests {
             let rays: Vec<_> = (0..8)
                 .map(|k| {
                     let ray = Ray::new(1.5 * triple(i, k), triple(i, k + 20) + ahead);
-                    SlabRay::prepare(&Ray { t_min: -0.5, ..ray }, &region).unwrap().1
+                    SlabRay::prepare(None, &Ray { t_min: -0.5, ..ray }, &region).unwrap().1
                 })
                 .collect();
             let (a, b) = (triple(i, 40).as_vec3(), triple(i, 41).as_vec3());

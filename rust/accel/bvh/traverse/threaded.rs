@@ -217,7 +217,7 @@ mod tests {
                 let direction = orders.direction(way).as_dvec3();
                 for slant in [DVec3::ZERO, DVec3::new(0.3, -0.2, 0.1), DVec3::new(-0.4, 0.1, 0.2)] {
                     let ray = Ray::new(DVec3::ZERO, direction + slant);
-                    let (_, slabs) = SlabRay::prepare(&ray, &region).unwrap();
+                    let (_, slabs) = SlabRay::prepare(None, &ray, &region).unwrap();
                     assert_eq!(orders.way(&slabs), way, "{orders:?}, {direction}");
                 }
             }

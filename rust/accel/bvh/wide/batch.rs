@@ -57,7 +57,7 @@ impl<const N: usize, L: Leaves<N>, A: Answer> Kernel<N> for Firsts<'_, N, L, A> 
             single::answer(simd, bvh, &rays, errand);
         } else if let Some(leaves) = few::leaves(bvh) {
             few::answer(simd, bvh, &leaves, errand);
-        } else if coherence::is_coherent(rays, bvh.region.radius) {
+        } else if is_coherent(bvh, rays) {
             packet::answer(simd, bvh, errand);
         } else {
             // Scattered rays sorted by octant, so that packets would take them, are slower as soon as a tree has two
@@ -65,6 +65,16 @@ impl<const N: usize, L: Leaves<N>, A: Answer> Kernel<N> for Firsts<'_, N, L, A> 
             wave::answer(simd, bvh, &rays, errand);
         }
     }
+}
+
+/// Whether packets suit rays.
+#[inline(always)]
+fn is_coherent<const N: usize, L>(bvh: &WideBvh<N, L>, rays: RayBatch<'_>) -> bool {
+    let ray = |i: usize| {
+        let ray = rays.get(i);
+        (ray.origin, ray.direction)
+    };
+    coherence::is_coherent(rays.len(), ray, bvh.region.radius)
 }
 
 /// Says that no ray hits anything.

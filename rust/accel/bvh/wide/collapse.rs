@@ -4,6 +4,9 @@
 //! For every binary node and every number i of up to N roots, the least cost of showing its primitives to a parent as
 //! at most i subtrees. A single root is either a block of triangles or a wide node whose N roots are shared out between
 //! the two children. A greedy collapse leaves more of the slots empty.
+//!
+//! Sixteen children a node would take a ray through a quarter fewer nodes, by the same costs (5.6 instead of 7.6 on
+//! 69 k triangles; four take 11.5), and through as many leaves, with two and a half times the memory a node.
 
 use super::{Child, Info, Leaves, Options, Primitives, WideBvh, WideNode};
 use crate::accel::bvh::{BinaryBvh, Node};

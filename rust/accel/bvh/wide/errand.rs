@@ -1,8 +1,9 @@
 //! What rays are sent for: each kernel is compiled for each errand.
 
 use super::WideBvh;
-use super::node::Packed;
+use super::node::{Packed, WideNode};
 use super::sixteen::Sixteen;
+use super::step::{Boxes, Stacks};
 use crate::accel::query::Query;
 use crate::accel::slab::Clock;
 use crate::math::RayBatch;
@@ -27,6 +28,9 @@ pub trait Errand<const N: usize, L: Leaves<N>>: Sized {
 
     /// Whether the nearest triangles should be looked at first.
     const NEAREST_FIRST: bool;
+
+    /// Whether [`Visited::Until`] is ever said.
+    const SHORTENS: bool;
 
     /// What is known at first of ray `i` of the batch.
     fn start(&mut self, bvh: &WideBvh<N, L>, i: usize, edges: &EdgeRay) -> Self::Flight;
@@ -56,6 +60,21 @@ pub trait Errand<const N: usize, L: Leaves<N>>: Sized {
     fn end(&mut self, _: &WideBvh<N, L>) {}
 }
 
+/// A ray tests the children of a node, in the order that suits its errand.
+#[inline(always)]
+pub fn enter<const N: usize, L: Leaves<N>, S: Simd<N>, E: Errand<N, L>>(
+    simd: S,
+    ray: &mut Boxes,
+    node: &WideNode<N>,
+    stacks: &mut Stacks,
+) {
+    match (E::NEAREST_FIRST, E::SHORTENS) {
+        (true, _) => ray.enter::<N, S, true, true>(simd, node, stacks),
+        (false, true) => ray.enter::<N, S, false, true>(simd, node, stacks),
+        (false, false) => ray.enter::<N, S, false, false>(simd, node, stacks),
+    }
+}
+
 /// Tells a query all that rays meet.
 pub struct Telling<'a, Q> {
     pub rays: &'a RayBatch<'a>,
@@ -73,6 +92,7 @@ pub struct Told<T> {
 impl<const N: usize, L: Leaves<N>, Q: Query> Errand<N, L> for Telling<'_, Q> {
     type Flight = Told<Q::State>;
     const NEAREST_FIRST: bool = Q::NEAREST_FIRST;
+    const SHORTENS: bool = true;
 
     #[inline(always)]
     fn start(&mut self, bvh: &WideBvh<N, L>, i: usize, edges: &EdgeRay) -> Told<Q::State> {

@@ -37,6 +37,7 @@ impl<A: Answer> First<'_, A> {
 impl<const N: usize, L: Leaves<N>, A: Answer> Errand<N, L> for First<'_, A> {
     type Flight = Looking;
     const NEAREST_FIRST: bool = !A::ANY;
+    const SHORTENS: bool = !A::ANY;
 
     #[inline(always)]
     fn start(&mut self, bvh: &WideBvh<N, L>, i: usize, edges: &EdgeRay) -> Looking {

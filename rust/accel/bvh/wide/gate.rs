@@ -75,9 +75,7 @@ impl<'a> Gate<'a> {
                 if let Some((flight, limit)) = errand.launch(bvh, ray, &self.sixteen, i) {
                     return Some((self.sixteen.boxes(i, limit, Packed::ROOT, bottom), flight));
                 }
-            } else if let Some((edges, slabs)) =
-                SlabRay::prepare_along(bvh.axes.as_ref(), &self.rays.get(ray), &bvh.region)
-            {
+            } else if let Some((edges, slabs)) = SlabRay::prepare(bvh.axes.as_ref(), &self.rays.get(ray), &bvh.region) {
                 let flight = errand.start(bvh, ray, &edges);
                 let limit = slabs.limit(E::limit(bvh, &flight));
                 return Some((Boxes::new(&slabs, limit, Packed::ROOT, bottom), flight));

@@ -202,6 +202,10 @@ where
         assert_eq!(rays.len(), occluded.len(), "an answer for each ray");
         self.level.dispatch(Firsts { bvh: self, rays: RayBatch::Columns(*rays), answer: occluded });
     }
+
+    fn extent(&self) -> Option<f64> {
+        (self.info.primitives > few::TRIANGLES).then_some(self.region.radius)
+    }
 }
 
 impl<const N: usize, L: Leaves<N>> Answers for WideBvh<N, L>

@@ -138,10 +138,16 @@ impl<const N: usize> WideNode<N> {
         node
     }
 
+    /// How many children there are.
+    pub fn count(&self) -> usize {
+        self.children.iter().take_while(|&&child| child != Packed::NONE.bits()).count()
+    }
+
     /// Puts those of these lanes, of all that are not empty, into the lanes from the first on.
-    pub fn permute(&mut self, lanes: &[usize]) {
+    pub fn permute(&mut self, lanes: &[u8]) {
         let before = self.clone();
         for (to, &from) in lanes.iter().enumerate() {
+            let from = usize::from(from);
             for (axis, planes) in self.planes.iter_mut().enumerate() {
                 for (side, plane) in planes.iter_mut().enumerate() {
                     plane[to] = before.planes[axis][side][from];
@@ -152,7 +158,7 @@ impl<const N: usize> WideNode<N> {
         // The same children in the same order, by the lanes where they stand now.
         let mut now: [usize; N] = from_fn(|lane| lane);
         for (to, &from) in lanes.iter().enumerate() {
-            now[from] = to;
+            now[usize::from(from)] = to;
         }
         self.orders = [0; N];
         for octant in 0..8 {
@@ -258,11 +264,12 @@ mod tests {
     fn children_that_change_places_are_still_visited_in_the_same_order() {
         let cube = |at: f32| Aabb { min: Vec3::splat(at), max: Vec3::new(at + 1.0, 1.0 - at, at * at) };
         let children: Vec<_> = (0..6).map(|i| (cube(i as f32), Child::Node(i))).collect();
-        fn of<const N: usize>(children: &[(Aabb, Child)], lanes: &[usize]) {
+        fn of<const N: usize>(children: &[(Aabb, Child)], lanes: &[u8]) {
             let before = WideNode::<N>::new(children);
             let mut after = before.clone();
             after.permute(lanes);
             for (to, &from) in lanes.iter().enumerate() {
+                let from = usize::from(from);
                 assert_eq!((after.child(to), after.aabb(to)), (before.child(from), before.aabb(from)));
             }
             for octant in 0..8 {

@@ -196,7 +196,8 @@ impl<const N: usize, const COUNTED: bool> Kernel<N> for Next<'_, '_, N, COUNTED>
                     if COUNTED {
                         *nodes += 1;
                     }
-                    ray.enter::<N, S, true>(simd, &tree.nodes[ray.at.node()], stacks);
+                    ray.enter::<N, S, true, true>(simd, &tree.nodes[ray.at.node()], stacks);
+                    ray.pop(stacks);
                 }
                 1 => return Some(ray.at.leaf().0 as u32),
                 _ => {

@@ -12,6 +12,7 @@ use super::node::{Packed, WideNode};
 use crate::math::{Aabb, DVec3};
 use crate::shapes::triangle::Leaves;
 use rayon::prelude::*;
+use std::array::from_fn;
 
 /// What a ray that meets a child's box has to expect there.
 #[derive(Clone, Copy)]
@@ -20,6 +21,20 @@ struct Prospect {
     chance: f32,
     /// Steps until there is one or there is known to be none.
     cost: f32,
+}
+
+impl Prospect {
+    /// What is gained by a step there.
+    fn worth(self) -> f32 {
+        self.chance / self.cost
+    }
+}
+
+/// What a node knows of a child by itself.
+struct Known {
+    /// How likely a ray that meets the node meets the child.
+    met: f32,
+    of_leaf: Option<Prospect>,
 }
 
 impl<const N: usize, L: Leaves<N>> WideBvh<N, L> {
@@ -37,38 +52,39 @@ fn arrange<const N: usize, L: Leaves<N>>(
     leaves: &L,
     to_box: impl Fn(DVec3) -> DVec3 + Sync,
 ) {
-    let of_leaves: Vec<[Option<Prospect>; N]> = nodes
+    // What a node knows by itself, side by side; then what it knows from below, which is little work; then the moves.
+    let known: Vec<[Known; N]> = nodes
         .par_iter()
         .map(|node| {
-            std::array::from_fn(|lane| {
-                let child = Packed::of(node.children[lane]);
-                (child.kind() == 1).then(|| leaf(leaves, &to_box, child, &node.aabb(lane)))
+            let whole = node.bounds().half_area().max(f32::MIN_POSITIVE);
+            from_fn(|lane| {
+                let (child, bounds) = (Packed::of(node.children[lane]), node.aabb(lane));
+                let of_leaf = (child.kind() == 1).then(|| leaf(leaves, &to_box, child, &bounds));
+                Known { met: (bounds.half_area() / whole).min(1.0), of_leaf }
             })
         })
         .collect();
     let mut of_nodes = vec![Prospect { chance: 0.0, cost: 1.0 }; nodes.len()];
-    for index in (0..nodes.len()).rev() {
-        let node = &mut nodes[index];
-        let whole = node.bounds().half_area().max(f32::MIN_POSITIVE);
-        let count = node.children().count();
-        let mut below: Vec<(usize, Prospect)> = (0..count)
-            .map(|lane| {
-                let at = node.children[lane] as usize;
-                (lane, of_leaves[index][lane].unwrap_or_else(|| of_nodes[at]))
-            })
-            .collect();
-        below.sort_by(|(_, a), (_, b)| (a.chance * b.cost).total_cmp(&(b.chance * a.cost)));
+    let mut orders = vec![[0; N]; nodes.len()];
+    for (index, node) in nodes.iter().enumerate().rev() {
+        let of = |lane: u8| {
+            let of_leaf = known[index][usize::from(lane)].of_leaf;
+            of_leaf.unwrap_or_else(|| of_nodes[node.children[usize::from(lane)] as usize])
+        };
+        let lanes = &mut orders[index];
+        *lanes = from_fn(|lane| lane as u8);
+        let lanes = &mut lanes[..node.count()];
+        lanes.sort_by(|&a, &b| of(a).worth().total_cmp(&of(b).worth()));
         // From the last, which is visited first.
         let (mut still, mut cost) = (1.0, 1.0);
-        for &(lane, of) in below.iter().rev() {
-            let met = (node.aabb(lane).half_area() / whole).min(1.0);
+        for &lane in lanes.iter().rev() {
+            let (of, met) = (of(lane), known[index][usize::from(lane)].met);
             cost += still * met * of.cost;
             still *= 1.0 - met * of.chance;
         }
         of_nodes[index] = Prospect { chance: 1.0 - still, cost };
-        let lanes: Vec<usize> = below.iter().map(|&(lane, _)| lane).collect();
-        node.permute(&lanes);
     }
+    nodes.par_iter_mut().zip(&orders).for_each(|(node, lanes)| node.permute(&lanes[..node.count()]));
 }
 
 /// What there is to expect of a leaf in a box.

@@ -1,7 +1,7 @@
 //! One ray after the other: for a few of them, and for those that a packet leaves behind.
 
 use super::WideBvh;
-use super::errand::{Errand, Visited};
+use super::errand::{Errand, Visited, enter};
 use super::node::Packed;
 use super::step::{Boxes, Stacks};
 use crate::accel::slab::SlabRay;
@@ -35,7 +35,7 @@ pub fn ask<const N: usize, L: Leaves<N>, S: Simd<N>, E: Errand<N, L>>(
     errand: &mut E,
     stacks: &mut Stacks,
 ) {
-    let Some((edges, slabs)) = SlabRay::prepare_along(bvh.axes.as_ref(), &rays.get(i), &bvh.region) else {
+    let Some((edges, slabs)) = SlabRay::prepare(bvh.axes.as_ref(), &rays.get(i), &bvh.region) else {
         errand.miss(i);
         return;
     };
@@ -60,11 +60,8 @@ pub fn walk<const N: usize, L: Leaves<N>, S: Simd<N>, E: Errand<N, L>>(
             0 => {
                 E::visit_node(flight);
                 let node = &bvh.nodes[ray.at.node()];
-                if E::NEAREST_FIRST {
-                    ray.enter::<N, S, true>(simd, node, stacks);
-                } else {
-                    ray.enter::<N, S, false>(simd, node, stacks);
-                }
+                enter::<N, L, S, E>(simd, &mut ray, node, stacks);
+                ray.pop(stacks);
             }
             1 => {
                 match errand.visit(simd, bvh, flight, ray.at) {

@@ -17,8 +17,9 @@ pub struct Boxes {
     t_min: f32,
     /// Where in box units the query loses interest.
     pub limit: f32,
-    /// Which planes are met first: bit i for axis i, set where the ray goes down.
-    octant: u32,
+    /// Where in a pair of planes that stands which is met first, by axis: 0, or 8 where the ray goes down. Then the
+    /// octant that it goes towards, bit i for axis i.
+    first: [u8; 4],
     /// Where its stack ends.
     top: u32,
     /// Where it is.
@@ -37,7 +38,7 @@ impl Boxes {
         far: [0.0; 3],
         t_min: 0.0,
         limit: 0.0,
-        octant: 0,
+        first: [0; 4],
         top: 0,
         at: Packed::NONE,
         start: 0.0,
@@ -46,10 +47,9 @@ impl Boxes {
     /// At a child, with nothing on the stack that starts at `bottom`.
     #[inline(always)]
     pub fn new(slabs: &SlabRay, limit: f32, at: Packed, bottom: usize) -> Self {
-        let SlabRay { inverse, near, far, first, t_min, .. } = *slabs;
-        let octant = (first[0] | first[1] << 1 | first[2] << 2) as u32;
-        let start = slabs.clock.start();
-        Self { inverse, near, far, t_min, limit, octant, top: bottom as u32 + 1, at, start }
+        let SlabRay { inverse, near, far, t_min, .. } = *slabs;
+        let (first, start) = (first(inverse), slabs.clock.start());
+        Self { inverse, near, far, t_min, limit, first, top: bottom as u32 + 1, at, start }
     }
 
     /// One of sixteen, at a child, with nothing on the stack that starts at `bottom`.
@@ -59,14 +59,13 @@ impl Boxes {
         let i = i & (RAYS - 1);
         let SlabRays { inverse, near, far, t_min, .. } = slabs;
         let inverse = [inverse[0][i], inverse[1][i], inverse[2][i]];
-        let down = |axis: usize| u32::from(inverse[axis] < 0.0) << axis;
         Self {
             inverse,
             near: [near[0][i], near[1][i], near[2][i]],
             far: [far[0][i], far[1][i], far[2][i]],
             t_min: t_min[i],
             limit,
-            octant: down(0) | down(1) | down(2),
+            first: first(inverse),
             top: bottom as u32 + 1,
             at,
             start: 0.0,
@@ -86,33 +85,31 @@ impl Boxes {
         self.at = Packed::of(stacks.items[self.top as usize]);
     }
 
-    /// Tests the children of the node where the ray is and goes on to the nearest that it meets, or, if none, to the
-    /// top of the stack; what else it meets goes on to the stack, the farther the deeper. If not `NEAREST_FIRST`, it
-    /// goes on to what stands in the last lane. No branch depends on the ray.
+    /// Tests the children of the node where the ray is and puts those that it meets on to the stack, the nearest on top
+    /// or, if not `NEAREST_FIRST`, what stands in the last lane. Where on the ray they are met is kept if `KEPT`, for
+    /// [`Self::shorten`]. No branch depends on the ray.
     // Written out, axis by axis: closures between a kernel's entry and here are not always compiled for its level.
     #[inline(always)]
-    pub fn enter<const N: usize, S: Simd<N>, const NEAREST_FIRST: bool>(
+    pub fn enter<const N: usize, S: Simd<N>, const NEAREST_FIRST: bool, const KEPT: bool>(
         &mut self,
         simd: S,
         node: &WideNode<N>,
         stacks: &mut Stacks,
     ) {
-        let octant = self.octant as usize;
-        let [x, y, z] = [octant & 1, octant >> 1 & 1, octant >> 2 & 1];
-        let planes = &node.planes;
+        let [x, y, z, octant] = self.first;
+        let planes = [pair(&node.planes[0]), pair(&node.planes[1]), pair(&node.planes[2])];
         let inverse = [simd.splat(self.inverse[0]), simd.splat(self.inverse[1]), simd.splat(self.inverse[2])];
-        let near_x = simd.mul_add(simd.load(&planes[0][x]), inverse[0], simd.splat(self.near[0]));
-        let near_y = simd.mul_add(simd.load(&planes[1][y]), inverse[1], simd.splat(self.near[1]));
-        let near_z = simd.mul_add(simd.load(&planes[2][z]), inverse[2], simd.splat(self.near[2]));
-        let far_x = simd.mul_add(simd.load(&planes[0][x ^ 1]), inverse[0], simd.splat(self.far[0]));
-        let far_y = simd.mul_add(simd.load(&planes[1][y ^ 1]), inverse[1], simd.splat(self.far[1]));
-        let far_z = simd.mul_add(simd.load(&planes[2][z ^ 1]), inverse[2], simd.splat(self.far[2]));
+        let near_x = simd.mul_add(simd.load(plane(planes[0], x)), inverse[0], simd.splat(self.near[0]));
+        let near_y = simd.mul_add(simd.load(plane(planes[1], y)), inverse[1], simd.splat(self.near[1]));
+        let near_z = simd.mul_add(simd.load(plane(planes[2], z)), inverse[2], simd.splat(self.near[2]));
+        let far_x = simd.mul_add(simd.load(plane(planes[0], x ^ 8)), inverse[0], simd.splat(self.far[0]));
+        let far_y = simd.mul_add(simd.load(plane(planes[1], y ^ 8)), inverse[1], simd.splat(self.far[1]));
+        let far_z = simd.mul_add(simd.load(plane(planes[2], z ^ 8)), inverse[2], simd.splat(self.far[2]));
         let nears = simd.max(simd.max(near_x, near_y), simd.max(near_z, simd.splat(self.t_min)));
         let fars = simd.min(simd.min(far_x, far_y), simd.min(far_z, simd.splat(self.limit)));
-        let order = if NEAREST_FIRST { node.order(octant) } else { ASCENDING };
+        let order = if NEAREST_FIRST { node.order(octant.into()) } else { ASCENDING };
         let top = self.top as usize;
-        self.top += stacks.push(simd, top, nears, fars, &node.children, order) as u32;
-        self.pop(stacks);
+        self.top += stacks.push::<KEPT, N, S>(simd, top, nears, fars, &node.children, order) as u32;
     }
 
     /// Takes note of a new limit: rids the stack, which starts at `bottom`, of what starts beyond. What starts exactly
@@ -125,15 +122,33 @@ impl Boxes {
         let (mut kept, end) = (bottom + 1, self.top as usize);
         for from in (bottom + 1..end).step_by(N) {
             // Read whole before the same places are written.
-            let nears = simd.load(room::<N, _>(&mut stacks.nears[from..]));
-            let items = *room::<N, _>(&mut stacks.items[from..]);
+            let nears = simd.load(room::<N, _>(&mut stacks.nears, from));
+            let items = *room::<N, _>(&mut stacks.items, from);
             let count = (end - from).min(N) as u32;
-            let (to_nears, to_items) =
-                (room::<N, _>(&mut stacks.nears[kept..]), room::<N, _>(&mut stacks.items[kept..]));
+            let (to_nears, to_items) = (room::<N, _>(&mut stacks.nears, kept), room::<N, _>(&mut stacks.items, kept));
             kept += simd.pick(nears, limit, &items, ASCENDING, count, to_nears, to_items);
         }
         self.top = kept as u32;
     }
+}
+
+/// [`Boxes::first`] of a ray.
+#[inline(always)]
+fn first(inverse: [f32; 3]) -> [u8; 4] {
+    let [x, y, z] = [u8::from(inverse[0] < 0.0), u8::from(inverse[1] < 0.0), u8::from(inverse[2] < 0.0)];
+    [8 * x, 8 * y, 8 * z, x | y << 1 | z << 2]
+}
+
+/// The planes of both sides along an axis, one after the other.
+#[inline(always)]
+fn pair<const N: usize>(planes: &[[f32; N]; 2]) -> &[f32] {
+    planes.as_flattened()
+}
+
+/// One of them; the place is in eighths of a plane, so that it is an address as it stands where planes are of eight.
+#[inline(always)]
+fn plane<const N: usize>(planes: &[f32], place: u8) -> &[f32; N] {
+    planes[(usize::from(place) & 8) * N / 8..].first_chunk().expect("one of two")
 }
 
 thread_local! {
@@ -175,9 +190,9 @@ impl Stacks {
     }
 
     /// Puts those of a node's children on top, which is `top`, for which `nears ≤ fars`, the last in `order` the
-    /// highest; says how many they are.
+    /// highest; says how many they are. Unless `KEPT`, `nears` are forgotten.
     #[inline(always)]
-    pub fn push<const N: usize, S: Simd<N>>(
+    pub fn push<const KEPT: bool, const N: usize, S: Simd<N>>(
         &mut self,
         simd: S,
         top: usize,
@@ -186,7 +201,9 @@ impl Stacks {
         items: &[u32; N],
         order: u32,
     ) -> usize {
-        let (to_nears, to_items) = (room::<N, _>(&mut self.nears[top..]), room::<N, _>(&mut self.items[top..]));
+        let mut nowhere = [0.0; N];
+        let to_nears = if KEPT { room(&mut self.nears, top) } else { &mut nowhere };
+        let to_items = room(&mut self.items, top);
         simd.pick(nears, fars, items, order, N as u32, to_nears, to_items)
     }
 
@@ -203,8 +220,8 @@ impl Stacks {
     }
 }
 
-/// Room for a move of all lanes at the front of a stack's rest.
+/// Room for a move of all lanes from a place on.
 #[inline(always)]
-fn room<const N: usize, T>(stack: &mut [T]) -> &mut [T; N] {
-    stack.first_chunk_mut().expect("stacks end with room for one move more")
+fn room<const N: usize, T>(stack: &mut [T], from: usize) -> &mut [T; N] {
+    (&mut stack[from..from + N]).try_into().expect("stacks end with room for one move more")
 }

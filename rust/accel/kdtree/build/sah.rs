@@ -157,6 +157,7 @@ impl Builder<'_> {
         let Options { traversal_cost, intersection_cost, empty_bonus, .. } = *self.options;
         let (traversal, intersection) = (f64::from(traversal_cost), f64::from(intersection_cost));
         let bonus = 1.0 - f64::from(empty_bonus);
+        // To count the blocks in which leaves are tested instead of what is in them is no faster, and no slower.
         let cost = |areas: [f64; 2], below: usize, above: usize| {
             let cost = traversal + intersection * (areas[0] * below as f64 + areas[1] * above as f64);
             if below == 0 || above == 0 { bonus * cost } else { cost }

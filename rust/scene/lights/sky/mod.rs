@@ -10,7 +10,7 @@ pub use perez::Perez;
 
 use super::light::strength;
 use super::pyramid::Pyramid;
-use super::{Light, LightSample, Reach, Receiver};
+use super::{Light, LightSample, LightSampleContext, Reach};
 use crate::math::{DVec3, Frame};
 use crate::optics::{Rgb, is_radiance};
 use std::f64::consts::{PI, TAU};
@@ -135,7 +135,7 @@ impl SunSky {
 
     /// How often the sun, the sky and the ground are drawn for a receiver.
     #[inline]
-    fn shares(&self, receiver: &Receiver) -> [f64; 3] {
+    fn shares(&self, receiver: &LightSampleContext) -> [f64; 3] {
         let (sees_sun, above) = if receiver.is_free() {
             (true, 0.5)
         } else {
@@ -181,7 +181,7 @@ impl Light for SunSky {
         Reach::Outside { flux: self.flux.iter().sum(), spread: self.spread }
     }
 
-    fn sample(&self, receiver: &Receiver, [u, v]: [f64; 2]) -> Option<LightSample> {
+    fn sample(&self, receiver: &LightSampleContext, [u, v]: [f64; 2]) -> Option<LightSample> {
         let [sun, sky, ground] = self.shares(receiver);
         let left = |from: f64, share: f64| ((u - from) / share).clamp(0.0, 1.0 - f64::EPSILON / 2.0);
         let direction = if u < sun {
@@ -215,7 +215,7 @@ impl Light for SunSky {
         }
     }
 
-    fn outside_pdf(&self, receiver: &Receiver, direction: DVec3) -> f64 {
+    fn outside_pdf(&self, receiver: &LightSampleContext, direction: DVec3) -> f64 {
         let [sun, sky, ground] = self.shares(receiver);
         let local = self.frame.to_local(direction);
         let around = if local.z > 0.0 { sky * self.sky_pdf(local) } else { ground / TAU };

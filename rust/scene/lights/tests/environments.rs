@@ -1,6 +1,6 @@
 //! What surrounds a scene: its densities, and what it brings.
 
-use super::super::{ConstantEnvironment, EnvironmentMap, Light, Picture, PointLight, Receiver, SunSky};
+use super::super::{ConstantEnvironment, EnvironmentMap, Light, LightSampleContext, Picture, PointLight, SunSky};
 use super::{FLOOR, Grid, assert_density, assert_near, irradiance_at, white};
 use crate::math::DVec3;
 use crate::optics::Rgb;
@@ -48,7 +48,7 @@ fn all_light_of_a_map_is_its_integral() {
     for map in maps() {
         let grid = Grid { rows: 8, columns: 12 };
         let expected: f64 = grid.integrals(60, |d| map.outside(d).y).iter().sum();
-        let found = irradiance_at(&under(vec![Arc::new(map)]), &Receiver::free(DVec3::ZERO), 20_000);
+        let found = irradiance_at(&under(vec![Arc::new(map)]), &LightSampleContext::free(DVec3::ZERO), 20_000);
         assert!((found.0 / expected - 1.0).abs() < 3e-3 + 5.0 * found.1 / expected, "{found:?} {expected}");
     }
 }
@@ -126,7 +126,7 @@ fn environments_add_up() {
     let lamp = PointLight { position: DVec3::Z, intensity: white(7.0) };
     let lit = under(all.into_iter().chain([Arc::new(lamp) as _]).collect());
     assert_near(irradiance_at(&lit, &FLOOR, 50_000), 2.3 * PI + 7.0, 0.02);
-    assert_near(irradiance_at(&lit, &Receiver::free(DVec3::ZERO), 50_000), 2.3 * 4.0 * PI + 7.0, 0.02);
+    assert_near(irradiance_at(&lit, &LightSampleContext::free(DVec3::ZERO), 50_000), 2.3 * 4.0 * PI + 7.0, 0.02);
     // The density is that of the draws' directions, whichever light they come from.
     let grid = Grid { rows: 8, columns: 12 };
     let sum: f64 = grid.integrals(40, |d| lit.lights().outside_pdf(&FLOOR, d)).iter().sum();
@@ -142,7 +142,8 @@ fn daylight_is_drawn_by_its_density() {
         // The sun's own part is too small for the grid: without it.
         let sky = SunSky::new([sun, DVec3::Z], turbidity, white(0.3), [0.0, 1.0]);
         assert_eq!(sky.validate(), Ok(()));
-        for receiver in [FLOOR, Receiver::free(DVec3::ZERO), Receiver { normal: DVec3::X, ..FLOOR }] {
+        for receiver in [FLOOR, LightSampleContext::free(DVec3::ZERO), LightSampleContext { normal: DVec3::X, ..FLOOR }]
+        {
             assert_density(&sky, &receiver, 60, 2e-3);
         }
     }
@@ -162,9 +163,9 @@ fn a_receiver_is_lit_by_sun_and_sky_as_integrals_say() {
     let ground = day.outside(DVec3::new(0.6, 0.0, -0.8)).y;
     assert!((ground / (0.2 * (from_sky + from_sun) / PI) - 1.0).abs() < 1e-3, "{ground}");
     // What looks down sees no sun and no sky, and what looks away from the sun none of it.
-    let down = Receiver { normal: DVec3::NEG_Z, ..FLOOR };
+    let down = LightSampleContext { normal: DVec3::NEG_Z, ..FLOOR };
     assert_near(irradiance_at(&under(vec![Arc::new(day.clone())]), &down, 10_000), PI * ground, 0.02);
-    let away = Receiver { normal: -sun, ..FLOOR };
+    let away = LightSampleContext { normal: -sun, ..FLOOR };
     for number in 0..1000 {
         let sample = day.sample(&away, Sampler::new(8, 0, number).two(0));
         assert!(sample.is_none_or(|s| s.direction.dot(sun) < 0.9999), "no draw is spent on the sun");

@@ -1,6 +1,6 @@
 //! Few lights, asked one by one.
 
-use super::super::{ConstantEnvironment, DirectionalLight, Light, LightSample, PointLight, Receiver};
+use super::super::{ConstantEnvironment, DirectionalLight, Light, LightSample, LightSampleContext, PointLight};
 use super::shapes::lambert;
 use super::{FLOOR, assert_near, white};
 use crate::math::{DVec3, Hit, Ray};
@@ -35,7 +35,7 @@ fn sky(radiance: f64) -> Arc<dyn Light> {
     Arc::new(ConstantEnvironment { radiance: white(radiance) })
 }
 
-fn draw(scene: &Scene, one: u32, receiver: &Receiver, number: u32) -> Option<LightSample> {
+fn draw(scene: &Scene, one: u32, receiver: &LightSampleContext, number: u32) -> Option<LightSample> {
     let mut sampler = Sampler::new(1, one, number);
     let u = sampler.two(1);
     scene.lights().sample_one(one, scene.geometry(), receiver, || sampler.one(0), u)

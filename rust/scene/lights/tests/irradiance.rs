@@ -1,6 +1,6 @@
 //! Irradiances that have closed forms, and what densities say of draws.
 
-use super::super::{ConstantEnvironment, Light, PointLight, Receiver};
+use super::super::{ConstantEnvironment, Light, LightSampleContext, PointLight};
 use super::{FLOOR, assert_near, irradiance_at};
 use crate::math::{DVec3, Hit, Ray};
 use crate::optics::Rgb;
@@ -108,7 +108,7 @@ fn the_dark_stays_dark() {
     assert!(lit.lights().is_dark());
     assert!(
         lit.lights()
-            .sample(lit.geometry(), &Receiver { position: DVec3::Z, normal: DVec3::Z }, 0.5, [0.5; 2])
+            .sample(lit.geometry(), &LightSampleContext { position: DVec3::Z, normal: DVec3::Z }, 0.5, [0.5; 2])
             .is_none()
     );
 }

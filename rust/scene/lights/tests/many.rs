@@ -1,7 +1,7 @@
 //! The choice among many lights.
 
 use super::super::choice::{Choice, Strength};
-use super::super::{Light, LightBounds, LightTree, PointLight, Reach, Receiver, Sides, SpotLight};
+use super::super::{Light, LightBounds, LightSampleContext, LightTree, PointLight, Reach, Sides, SpotLight};
 use super::white;
 use crate::math::DVec3;
 use crate::sampling::Sampler;
@@ -43,13 +43,13 @@ fn inside(light: &dyn Light) -> Strength {
     }
 }
 
-fn receivers() -> Vec<Receiver> {
+fn receivers() -> Vec<LightSampleContext> {
     (0..20)
         .map(|number| {
             let mut sampler = Sampler::new(13, 0, number);
             let position = DVec3::new(sampler.one(0), sampler.one(1), sampler.one(2)) * DVec3::new(30.0, 15.0, 5.0);
             let normal = if number % 4 == 0 { DVec3::ZERO } else { uniform_sphere(sampler.two(3)) };
-            Receiver { position, normal }
+            LightSampleContext { position, normal }
         })
         .collect()
 }
@@ -89,7 +89,7 @@ fn probabilities_are_those_of_draws_and_add_up_to_one() {
 }
 
 /// What a light brings to a receiver at most: to be told apart from nothing.
-fn brings(strength: &Strength, receiver: &Receiver, number: u32) -> bool {
+fn brings(strength: &Strength, receiver: &LightSampleContext, number: u32) -> bool {
     let bounds = &strength.bounds;
     let mut sampler = Sampler::new(15, 0, number);
     // A point of a triangle lies in its box; all of the box is asked for more.
@@ -139,7 +139,7 @@ fn bounds_hold_both_that_they_are_of() {
 
 /// Mean and variance of the irradiance of point lights at a receiver, over an even grid of the choice: no chance is in
 /// it.
-fn estimate(choice: &Choice, lights: &[PointLight], receiver: &Receiver) -> (f64, f64) {
+fn estimate(choice: &Choice, lights: &[PointLight], receiver: &LightSampleContext) -> (f64, f64) {
     const DRAWS: u32 = 200_000;
     let (mut sum, mut squares) = (0.0, 0.0);
     for i in 0..DRAWS {
@@ -165,7 +165,7 @@ fn in_a_hall_of_lamps_a_tree_leaves_a_small_part_of_the_variance() {
     let strengths: Vec<Strength> = lamps.iter().map(|lamp| inside(lamp)).collect();
     let (tree, power) = (Choice::by_tree(&strengths).unwrap(), Choice::by_power(&strengths).unwrap());
     for (x, y) in [(0.0, 0.0), (50.3, 5.1), (99.0, 2.0)] {
-        let receiver = Receiver { position: DVec3::new(x, y, 0.0), normal: DVec3::Z };
+        let receiver = LightSampleContext { position: DVec3::new(x, y, 0.0), normal: DVec3::Z };
         let exact: f64 =
             lamps.iter().map(|lamp| lamp.sample(&receiver, [0.5; 2]).map_or(0.0, |s| s.weight.y * s.direction.z)).sum();
         let (mean, variance) = estimate(&tree, &lamps, &receiver);
@@ -184,7 +184,7 @@ fn degenerate_lights_have_a_tree() {
     let uneven: Vec<_> = (0..100).map(|i| point(f64::from(i), if i == 7 { 1e30 } else { 1e-30 })).collect();
     for lights in [same, row, uneven] {
         let choice = Choice::by_tree(&lights).unwrap();
-        let place = Receiver::free(DVec3::Y);
+        let place = LightSampleContext::free(DVec3::Y);
         let sum: f64 = (0..lights.len()).map(|i| choice.probability(i, &place)).sum();
         assert!((sum - 1.0).abs() < 1e-9, "{sum}");
         let (light, probability) = choice.sample(&place, 1.0 - f64::EPSILON / 2.0).unwrap();

@@ -9,7 +9,7 @@ mod many;
 mod shapes;
 mod spots;
 
-use super::{Light, LightSample, Receiver};
+use super::{Light, LightSample, LightSampleContext};
 use crate::math::DVec3;
 use crate::optics::Rgb;
 use crate::sampling::Sampler;
@@ -18,10 +18,10 @@ use crate::scene::Scene;
 use std::f64::consts::TAU;
 
 /// The origin on a plane that faces up.
-const FLOOR: Receiver = Receiver { position: DVec3::ZERO, normal: DVec3::Z };
+const FLOOR: LightSampleContext = LightSampleContext { position: DVec3::ZERO, normal: DVec3::Z };
 
 /// A draw of a scene's lights.
-fn draw(scene: &Scene, receiver: &Receiver, number: u32) -> Option<LightSample> {
+fn draw(scene: &Scene, receiver: &LightSampleContext, number: u32) -> Option<LightSample> {
     let mut sampler = Sampler::new(1, 0, number);
     let (choice, u) = (sampler.one(0), sampler.two(1));
     scene.lights().sample(scene.geometry(), receiver, choice, u)
@@ -29,7 +29,7 @@ fn draw(scene: &Scene, receiver: &Receiver, number: u32) -> Option<LightSample> 
 
 /// Mean and standard error of the irradiance at a receiver, nothing shadowing: for a free one, of all light that comes
 /// to it.
-fn irradiance_at(scene: &Scene, receiver: &Receiver, draws: u32) -> (f64, f64) {
+fn irradiance_at(scene: &Scene, receiver: &LightSampleContext, draws: u32) -> (f64, f64) {
     let (mut sum, mut squares) = (0.0, 0.0);
     for number in 0..draws {
         if let Some(light) = draw(scene, receiver, number) {
@@ -87,7 +87,7 @@ impl Grid {
 }
 
 /// Asserts that the density from outside integrates to 1, to within a share, and is that of the draws.
-fn assert_density(light: &dyn Light, receiver: &Receiver, parts: usize, share: f64) {
+fn assert_density(light: &dyn Light, receiver: &LightSampleContext, parts: usize, share: f64) {
     let grid = Grid { rows: 8, columns: 12 };
     let expected = grid.integrals(parts, |d| light.outside_pdf(receiver, d));
     let sum: f64 = expected.iter().sum();

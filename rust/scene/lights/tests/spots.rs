@@ -1,7 +1,7 @@
 //! Lights without extent: their power, and which are refused.
 
 use super::super::{
-    DirectionalLight, Light, LightSample, Picture, PointLight, Profile, Projector, Reach, Receiver, SpotLight,
+    DirectionalLight, Light, LightSample, LightSampleContext, Picture, PointLight, Profile, Projector, Reach, SpotLight,
 };
 use super::{FLOOR, white};
 use crate::math::DVec3;
@@ -15,7 +15,7 @@ fn power(light: &dyn Light) -> f64 {
     const SIDE: u32 = 600;
     let cell = |i: u32| (f64::from(i) + 0.5) / f64::from(SIDE);
     let sent = |i: u32, j: u32| {
-        let receiver = Receiver::free(uniform_sphere([cell(i), cell(j)]));
+        let receiver = LightSampleContext::free(uniform_sphere([cell(i), cell(j)]));
         light.sample(&receiver, [0.5; 2]).map_or(0.0, |sample| sample.weight.element_sum() / 3.0)
     };
     let sum: f64 = (0..SIDE).flat_map(|i| (0..SIDE).map(move |j| (i, j))).map(|(i, j)| sent(i, j)).sum();
@@ -61,7 +61,7 @@ fn powers_are_the_integrals_of_intensities() {
 fn a_spot_shines_within_its_cone_and_falls_off_between() {
     let light = SpotLight::new(DVec3::Z, DVec3::NEG_Z * 3.0, Rgb::ONE, 0.6, 0.2);
     let at = |angle: f64| {
-        let receiver = Receiver::free(DVec3::new(angle.tan(), 0.0, 0.0));
+        let receiver = LightSampleContext::free(DVec3::new(angle.tan(), 0.0, 0.0));
         let square = 1.0 + angle.tan().powi(2);
         light.sample(&receiver, [0.5; 2]).map_or(0.0, |sample| sample.weight.y * square)
     };
@@ -77,14 +77,14 @@ fn a_spot_shines_within_its_cone_and_falls_off_between() {
     // In angles, evenly.
     let straight = light.with_profile(Profile::Linear);
     for (angle, share) in [(0.0, 1.0), (0.4, 1.0), (0.45, 0.75), (0.5, 0.5), (0.59, 0.05), (0.61, 0.0)] {
-        let receiver = Receiver::free(DVec3::new(f64::tan(angle), 0.0, 0.0));
+        let receiver = LightSampleContext::free(DVec3::new(f64::tan(angle), 0.0, 0.0));
         let square = 1.0 + f64::tan(angle).powi(2);
         let found = straight.sample(&receiver, [0.5; 2]).map_or(0.0, |sample| sample.weight.y * square);
         assert!((found - share).abs() < 1e-12, "{angle}: {found}");
     }
     // Behind the light, and at it.
-    assert!(light.sample(&Receiver::free(DVec3::Z * 2.0), [0.5; 2]).is_none());
-    assert!(light.sample(&Receiver::free(DVec3::Z), [0.5; 2]).is_none());
+    assert!(light.sample(&LightSampleContext::free(DVec3::Z * 2.0), [0.5; 2]).is_none());
+    assert!(light.sample(&LightSampleContext::free(DVec3::Z), [0.5; 2]).is_none());
 }
 
 #[test]
@@ -94,7 +94,7 @@ fn a_slide_is_thrown_upright_and_evenly() {
     let picture = Arc::new(Picture::new(2, texels).unwrap());
     let projector = Projector::new(picture, [DVec3::ZERO, DVec3::NEG_Z, DVec3::Y], FRAC_PI_2, Rgb::splat(2.0)).unwrap();
     let screen = |x: f64, y: f64| {
-        let receiver = Receiver { position: DVec3::new(x, y, -1.0), normal: DVec3::Z };
+        let receiver = LightSampleContext { position: DVec3::new(x, y, -1.0), normal: DVec3::Z };
         projector.sample(&receiver, [0.5; 2]).map_or(Rgb::ZERO, |s| s.weight * s.direction.dot(DVec3::Z))
     };
     let close = |a: Rgb, b: Rgb| assert!((a - b).abs().max_element() < 1e-12, "{a} {b}");
@@ -104,7 +104,7 @@ fn a_slide_is_thrown_upright_and_evenly() {
     close(screen(0.0, 0.9), Rgb::new(9.0, 0.0, 9.0));
     close(screen(1.01, 0.0), Rgb::ZERO);
     close(screen(0.0, -1.01), Rgb::ZERO);
-    assert!(projector.sample(&Receiver::free(DVec3::Z), [0.5; 2]).is_none());
+    assert!(projector.sample(&LightSampleContext::free(DVec3::Z), [0.5; 2]).is_none());
 }
 
 #[test]

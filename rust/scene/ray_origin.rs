@@ -9,13 +9,13 @@ use crate::math::{DVec3, Ray, select};
 /// as far as rounding can matter and no farther, whatever the scale (Pharr, Jakob and Humphreys, "Physically Based
 /// Rendering", 4th ed., 2023, 6.8.6), rather than a fixed distance off.
 #[derive(Clone, Copy, Debug)]
-pub struct Departure {
+pub struct RayOrigin {
     position: DVec3,
     /// The way off the surface, on the side of its normal.
     offset: DVec3,
 }
 
-impl Departure {
+impl RayOrigin {
     /// How many times the error of the position a ray starts off the surface. With M the largest coordinate of the
     /// primitive, the position is within 8 ε M = 2⁻⁴⁹ M of its plane in each coordinate, at most 2⁻⁴⁸ M along the
     /// normal. The ray's own test takes the corners relative to its origin, up to 2 M long, and its distance from them
@@ -131,14 +131,14 @@ mod tests {
                     let surface = scene.geometry().on_triangle(0, uv);
                     // Half of them graze the plane, down to an angle of 10⁻¹².
                     let direction = warp::uniform_sphere(sampler.two(1));
-                    let departure = Departure::new(&surface);
+                    let departure = RayOrigin::new(&surface);
                     if draw % 2 == 0 {
                         let sine = 10f64.powf(-12.0 * sampler.one(2));
                         let along = direction.cross(surface.normal).normalize();
                         rays.push(departure.ray(along + surface.normal * sine));
                     } else {
                         rays.push(departure.ray(direction));
-                        rays.push(departure.segment(&Departure::free(surface.position + direction * size)));
+                        rays.push(departure.segment(&RayOrigin::free(surface.position + direction * size)));
                     }
                 }
                 let mut occluded = vec![false; rays.len()];
@@ -169,7 +169,7 @@ mod tests {
                 let direction = warp::uniform_sphere(sampler.two(1));
                 // The normal is known to within the aspect times a rounding: what is flatter has no side.
                 if direction.dot(surface.normal).abs() > 64.0 * f64::EPSILON * aspect * (1.0 + place) {
-                    rays.push(Departure::new(&surface).ray(direction));
+                    rays.push(RayOrigin::new(&surface).ray(direction));
                 }
             }
             let mut occluded = vec![false; rays.len()];
@@ -187,7 +187,7 @@ mod tests {
             ..Mesh::default()
         };
         let surface = Geometry::new([mesh]).on_triangle(0, [0.25, 0.25]);
-        let departure = Departure::new(&surface);
+        let departure = RayOrigin::new(&surface);
         for (direction, sign) in [(DVec3::Z, 1.0), (DVec3::NEG_Z, -1.0)] {
             let height = sign * (departure.ray(direction).origin.z - 3.0);
             assert!(height > 0.0 && height < 1e-13);
@@ -214,7 +214,7 @@ mod tests {
             let mut sampler = Sampler::new(4, 0, sample);
             let [a, b] = [0, 1].map(|primitive| {
                 let uv = warp::uniform_triangle(sampler.two(primitive));
-                Departure::new(&scene.geometry().on_triangle(primitive, uv))
+                RayOrigin::new(&scene.geometry().on_triangle(primitive, uv))
             });
             let mut occluded = [false; 2];
             scene.occluded(&[a.segment(&b), b.segment(&a)], &mut occluded);

@@ -1,14 +1,14 @@
 //! Paths on their way.
 
-use super::features::Baggage;
+use super::features::Carried;
 use crate::math::{DVec3, Ray};
 use crate::optics::Rgb;
 
 /// A path on its way.
-#[derive(Clone, Copy)]
-pub(super) struct Alive {
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PathState {
     pub(super) throughput: Rgb,
-    /// The normal that lights were drawn by where it was scattered last ([`crate::scene::Receiver`]).
+    /// The normal that lights were drawn by where it was scattered last ([`crate::scene::LightSampleContext`]).
     pub(super) normal: DVec3,
     /// Density with which this direction was drawn, times the number of such draws; infinite for a camera's ray.
     pub(super) pdf: f64,
@@ -27,7 +27,22 @@ pub(super) struct Alive {
     pub(super) aimed: f32,
 }
 
-impl Alive {
+impl PathState {
+    /// That of a camera's ray for a sample.
+    pub(super) fn of_camera(sample: u32) -> Self {
+        Self {
+            throughput: Rgb::ONE,
+            normal: DVec3::ZERO,
+            pdf: f64::INFINITY,
+            scale: 1.0,
+            sample,
+            bounce: 0,
+            each: false,
+            gilded: false,
+            aimed: 1.0,
+        }
+    }
+
     /// It goes on along a direction that was drawn so much more densely than the surface scatters into it.
     #[inline]
     pub(super) fn aim(&mut self, denser: f64) {
@@ -60,15 +75,15 @@ impl Alive {
 #[derive(Default)]
 pub(super) struct Queue {
     pub rays: Vec<Ray>,
-    pub alive: Vec<Alive>,
-    pub baggage: Vec<Baggage>,
+    pub paths: Vec<PathState>,
+    pub carried: Vec<Carried>,
 }
 
 impl Queue {
     /// Forgets all.
     pub fn clear(&mut self) {
         self.rays.clear();
-        self.alive.clear();
-        self.baggage.clear();
+        self.paths.clear();
+        self.carried.clear();
     }
 }

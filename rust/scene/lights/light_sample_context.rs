@@ -4,7 +4,7 @@ use crate::math::DVec3;
 
 /// A point that light is asked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Receiver {
+pub struct LightSampleContext {
     /// Where it is.
     pub position: DVec3,
     /// The unit shading normal on the side that light counts on; zero where light from everywhere does, as at surfaces
@@ -12,7 +12,7 @@ pub struct Receiver {
     pub normal: DVec3,
 }
 
-impl Receiver {
+impl LightSampleContext {
     /// A point that light reaches from everywhere.
     pub fn free(position: DVec3) -> Self {
         Self { position, normal: DVec3::ZERO }

@@ -1,0 +1,78 @@
+//! Sixteen encounters at a time.
+
+use super::aiming::Arrival;
+use super::dimensions::Dimensions;
+use super::path_state::PathState;
+use crate::integrators::CameraSample;
+use crate::math::{Hit, LANES, Ray, VectorLanes};
+use crate::optics::Diffuse;
+use crate::sampling::SamplerLanes;
+use crate::scene::materials::Scattering;
+use crate::scene::{Aim, Interaction, InteractionLanes, LightContextLanes, SurfaceLanes};
+
+/// Paths that have come to surfaces, at most sixteen, a lane each. The last stands in the lanes that are left.
+pub(super) struct Block<'a> {
+    pub count: usize,
+    /// Where each stands in the queue.
+    pub index: [u32; LANES],
+    pub rays: [Ray; LANES],
+    pub hits: [Hit; LANES],
+    pub paths: [PathState; LANES],
+    /// Whether they go on from there.
+    pub goes_on: [bool; LANES],
+    pub dimensions: [Dimensions; LANES],
+    pub numbers: SamplerLanes,
+    pub surfaces: SurfaceLanes,
+    pub encounters: InteractionLanes,
+    pub receivers: LightContextLanes,
+    pub throughput: VectorLanes,
+    /// Whether all of them are with what scatters by one diffuse colour.
+    pub is_diffuse: bool,
+    /// Those colours.
+    pub reflectance: VectorLanes,
+    /// Otherwise how each scatters, how wide its ray is, where light comes from by way of what is sharp, and whether
+    /// roulette has been played.
+    pub scattering: Vec<Scattering>,
+    pub width: [f64; LANES],
+    pub aims: [Option<Aim<'a>>; LANES],
+    pub arrivals: [Arrival; LANES],
+}
+
+impl Block<'_> {
+    /// Without any path.
+    pub fn new(sample: &CameraSample) -> Self {
+        let surfaces = SurfaceLanes::NONE;
+        Self {
+            count: 0,
+            index: [0; LANES],
+            rays: [sample.ray; LANES],
+            hits: [Hit::MISS; LANES],
+            paths: [PathState::of_camera(0); LANES],
+            goes_on: [false; LANES],
+            dimensions: [Dimensions::of(0, 0); LANES],
+            numbers: SamplerLanes::new(&sample.sampler),
+            encounters: InteractionLanes::at(&surfaces),
+            surfaces,
+            receivers: LightContextLanes::NONE,
+            throughput: VectorLanes::ZERO,
+            is_diffuse: false,
+            reflectance: VectorLanes::ZERO,
+            scattering: Vec::new(),
+            width: [0.0; LANES],
+            aims: [None; LANES],
+            arrivals: [Arrival::GoesOn; LANES],
+        }
+    }
+
+    /// The encounter of a lane with a diffuse surface.
+    #[inline(always)]
+    pub fn diffuse(&self, lane: usize) -> Interaction<Diffuse> {
+        self.encounters.get(lane, Diffuse { reflectance: self.reflectance.get(lane) })
+    }
+
+    /// The encounter of a lane with any other.
+    #[inline(always)]
+    pub fn other(&self, lane: usize) -> Interaction<&Scattering> {
+        self.encounters.get(lane, &self.scattering[lane])
+    }
+}

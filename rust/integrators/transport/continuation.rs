@@ -1,0 +1,262 @@
+//! Where paths go on to.
+
+use super::Follow;
+use super::aiming::{Arrival, draw};
+use super::block::Block;
+use super::delta_lobes::singles;
+use super::dimensions::Dimensions;
+use super::features::{Carried, Features};
+use super::path_state::PathState;
+use super::weights::{ROULETTE_AT_LATEST, survival};
+use super::worker::TransportWorker;
+use crate::math::{LANES, Ray, VectorLanes};
+use crate::optics::{Diffuse, Rgb};
+use crate::sampling::Pairs;
+use crate::scene::{Footprint, InteractionLanes, Scattered};
+use crate::simd::Loops;
+use std::array;
+
+/// From random numbers to where paths go on to from diffuse surfaces.
+struct GoOn<'a> {
+    encounters: &'a InteractionLanes,
+    reflectance: &'a VectorLanes,
+    u: &'a Pairs,
+    origin: &'a mut VectorLanes,
+    direction: &'a mut VectorLanes,
+    weight: &'a mut VectorLanes,
+    /// 0 where it ends.
+    pdf: &'a mut [f64; LANES],
+}
+
+impl Loops for GoOn<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Self { encounters, reflectance, u, origin, direction, weight, pdf } = self;
+        go_on((encounters, reflectance, u), origin, direction, weight, pdf);
+    }
+}
+
+#[inline(always)]
+fn go_on(
+    (encounters, reflectance, u): (&InteractionLanes, &VectorLanes, &Pairs),
+    origin: &mut VectorLanes,
+    direction: &mut VectorLanes,
+    weight: &mut VectorLanes,
+    pdf: &mut [f64; LANES],
+) {
+    for i in 0..LANES {
+        let here = encounters.get(i, Diffuse { reflectance: reflectance.get(i) });
+        let (towards, times, density) = match here.sample(|| 0.0, [u[0][i], u[1][i]]) {
+            Some(next) => (next.direction, next.weight, next.pdf),
+            None => (here.normal(), Rgb::ZERO, 0.0),
+        };
+        let ray = here.ray_origin().ray(towards);
+        origin.set(i, ray.origin);
+        direction.set(i, ray.direction);
+        weight.set(i, times);
+        pdf[i] = density;
+    }
+}
+
+/// One of so many ways that a path goes on.
+#[derive(Clone, Copy)]
+struct Branch {
+    /// Its number among all branches of the sample.
+    number: u32,
+    /// How many there are at this surface.
+    splits: u32,
+    /// How much more densely it was drawn than the surface scatters.
+    denser: f64,
+    /// The number for roulette.
+    chance: f64,
+}
+
+impl<N: Features> TransportWorker<'_, N> {
+    /// Sends paths on to where their surfaces scatter them.
+    pub(super) fn go_on(&mut self, block: &Block) {
+        if block.is_diffuse {
+            return self.go_on_diffuse(block);
+        }
+        if N::GENERAL && self.settings.follow == Follow::DeltaLobes {
+            (0..block.count).filter(|&lane| block.goes_on[lane]).for_each(|lane| self.split(block, lane));
+        }
+        if N::GENERAL && matches!(self.settings.follow, Follow::DeltaLobes | Follow::Nothing) {
+            return;
+        }
+        let splits = |lane: usize| if self.is_first(block, lane) { self.settings.splits } else { 1 };
+        let splits: [u32; LANES] = array::from_fn(splits);
+        for branch in 0..splits.into_iter().max().unwrap_or(1) {
+            // The first goes on as the path that it comes from.
+            let number = |lane: usize| if branch == 0 { self.carried(block, lane).branch } else { branch };
+            let numbers: [u32; LANES] = array::from_fn(number);
+            let dimensions: [Dimensions; LANES] = if N::GENERAL {
+                array::from_fn(|lane| Dimensions::of(block.paths[lane].bounce, numbers[lane]))
+            } else {
+                block.dimensions
+            };
+            let (mut choice, mut u) = ([0.0; LANES], [[0.0; LANES]; 2]);
+            let choices = dimensions.map(Dimensions::scattering_choice);
+            block.numbers.one_and_two(self.level, &choices, &mut choice, &mut u);
+            let chances = self.chances(block, &dimensions);
+            for lane in 0..block.count {
+                if !block.goes_on[lane] || branch >= splits[lane] {
+                    continue;
+                }
+                let (here, u) = (block.other(lane), [u[0][lane], u[1][lane]]);
+                let drawn = match &block.aims[lane] {
+                    None => here.sample(|| choice[lane], u).map(|next| (next, 1.0)),
+                    Some(aim) => draw(&here, aim, choice[lane], u),
+                };
+                let Some((next, denser)) = drawn else { continue };
+                if self.is_followed(next.pdf) {
+                    let (number, splits, chance) = (numbers[lane], splits[lane], chances[lane]);
+                    self.send(block, lane, &next, Branch { number, splits, denser, chance });
+                }
+            }
+        }
+    }
+
+    /// Whether paths go on along a direction that is drawn with this density.
+    #[inline]
+    pub(super) fn is_followed(&self, pdf: f64) -> bool {
+        if !N::GENERAL {
+            return true;
+        }
+        match self.settings.follow {
+            Follow::All => true,
+            Follow::MinDensity(than) => pdf > than,
+            Follow::DeltaLobes => pdf == f64::INFINITY,
+            Follow::Nothing => false,
+        }
+    }
+
+    /// Follows every single direction that the surface of a lane scatters into.
+    fn split(&mut self, block: &Block, lane: usize) {
+        let here = block.other(lane);
+        let mut branch =
+            Branch { number: self.carried(block, lane).branch.wrapping_mul(2), splits: 1, denser: 1.0, chance: 0.0 };
+        singles(&block.scattering[lane], here.wo(), |single| {
+            if let Some(next) = here.scattered(&single) {
+                self.send(block, lane, &next, branch);
+                branch.number = branch.number.wrapping_add(1);
+            }
+        });
+    }
+
+    fn go_on_diffuse(&mut self, block: &Block) {
+        let mut u = [[0.0; LANES]; 2];
+        block.numbers.two(self.level, &block.dimensions.map(Dimensions::direction), &mut u);
+        let ([mut origin, mut direction, mut weight], mut pdf) = ([VectorLanes::ZERO; 3], [0.0; LANES]);
+        self.level.compiled(GoOn {
+            encounters: &block.encounters,
+            reflectance: &block.reflectance,
+            u: &u,
+            origin: &mut origin,
+            direction: &mut direction,
+            weight: &mut weight,
+            pdf: &mut pdf,
+        });
+        let chances = self.chances(block, &block.dimensions);
+        for lane in 0..block.count {
+            if !block.goes_on[lane] || pdf[lane] == 0.0 {
+                continue;
+            }
+            let mut path = block.paths[lane];
+            path.throughput *= weight.get(lane);
+            path.pdf = pdf[lane];
+            path.normal = block.receivers.get(lane).normal;
+            path.each = false;
+            path.bounce = path.bounce.saturating_add(1);
+            if self.survives(&mut path, Arrival::GoesOn, chances[lane]) {
+                let ray = Ray { time: block.rays[lane].time, ..Ray::new(origin.get(lane), direction.get(lane)) };
+                self.next.rays.push(ray);
+                self.next.paths.push(path);
+                if N::GENERAL {
+                    self.next.carried.push(Carried { chance: -1.0, ..*self.carried(block, lane) });
+                }
+            }
+        }
+    }
+
+    /// The numbers for roulette, if any path of a block plays.
+    fn chances(&self, block: &Block, dimensions: &[Dimensions; LANES]) -> [f64; LANES] {
+        let mut chances = [0.0; LANES];
+        let plays = |lane: usize| self.plays(block.paths[lane].bounce.saturating_add(1));
+        if (0..block.count).any(|lane| block.goes_on[lane] && plays(lane)) {
+            block.numbers.one(self.level, &dimensions.map(Dimensions::roulette), &mut chances);
+        }
+        chances
+    }
+
+    /// Whether roulette is played for a path after so many surfaces. The density with which a path comes to the second
+    /// point that it shares must be known.
+    #[inline]
+    fn plays(&self, bounce: u32) -> bool {
+        (!N::SHARES || bounce > 1) && bounce >= self.settings.roulette_depth.min(ROULETTE_AT_LATEST)
+    }
+
+    /// Plays roulette where it is to be played, by a uniform number, and says whether the path goes on.
+    #[inline]
+    fn survives(&self, path: &mut PathState, arrival: Arrival, chance: f64) -> bool {
+        if arrival != Arrival::GoesOn || !self.plays(path.bounce) {
+            return true;
+        }
+        let survival = survival(path.throughput, path.importance());
+        if chance >= survival {
+            return false;
+        }
+        path.throughput /= survival;
+        true
+    }
+
+    /// Queues a path that goes on along a direction drawn, unless roulette ends it.
+    fn send(&mut self, block: &Block, lane: usize, next: &Scattered, branch: Branch) {
+        let mut path = block.paths[lane];
+        path.throughput *= next.weight;
+        path.pdf = next.pdf;
+        path.aim(branch.denser);
+        if N::GENERAL && branch.splits > 1 {
+            path.throughput /= f64::from(branch.splits);
+            path.pdf *= f64::from(branch.splits);
+        }
+        path.normal = block.receivers.get(lane).normal;
+        path.scale *= next.eta * next.eta;
+        path.each = self.asks_each(block, lane);
+        path.bounce = path.bounce.saturating_add(1);
+        if N::GENERAL && path.throughput.max_element() * path.scale < self.settings.least {
+            return;
+        }
+        if !self.survives(&mut path, block.arrivals[lane], branch.chance) {
+            return;
+        }
+        let ray = block.other(lane).ray_origin().ray(next.direction);
+        self.next.rays.push(Ray { time: block.rays[lane].time, ..ray });
+        self.next.paths.push(path);
+        if N::GENERAL {
+            let carried = self.carried(block, lane);
+            let footprint = if self.widths { self.widened(block, lane, next) } else { carried.footprint };
+            let media = if self.nested && next.is_through { self.boundary(block, lane).1 } else { carried.media };
+            self.next.carried.push(Carried { footprint, media, chance: -1.0, branch: branch.number });
+        }
+    }
+
+    /// The bundle of rays after a surface.
+    ///
+    /// A mirror of mean curvature H, seen by a bundle of width w, spreads it by 2Hw (Akenine-Möller et al., "Improved
+    /// Shader and Texture Level of Detail Using Ray Cones", 2021), and refraction by as much as it bends; a direction
+    /// drawn with density p has its neighbours, if some 256 are drawn for a pixel, about 1/√(256 p) away (after Suykens
+    /// and Willems, "Path Differentials and Applications", 2001).
+    fn widened(&self, block: &Block, lane: usize, next: &Scattered) -> Footprint {
+        let (before, width) = (self.carried(block, lane).footprint, block.width[lane]);
+        let curvature = block.other(lane).curvature();
+        let bent = if next.is_through {
+            before.spread / next.eta + curvature * width * (1.0 / next.eta - 1.0)
+        } else {
+            before.spread + 2.0 * curvature * width
+        };
+        let scattered = 1.0 / (16.0 * next.pdf.sqrt());
+        Footprint { width, spread: if scattered > 0.0 { bent.abs().max(scattered) } else { bent } }
+    }
+}

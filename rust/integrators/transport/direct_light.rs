@@ -1,0 +1,217 @@
+//! Light that is asked for where paths have come to.
+
+use super::aiming::density;
+use super::block::Block;
+use super::features::Features;
+use super::resampling::resampled;
+use super::weights::power_heuristic;
+use super::worker::TransportWorker;
+use crate::integrators::CameraSample;
+use crate::math::{DVec3, LANES, Ray, VectorLanes};
+use crate::optics::{Diffuse, Rgb};
+use crate::sampling::Sampler;
+use crate::scene::{InteractionLanes, LightLanes, LightSample};
+use crate::simd::Loops;
+
+/// From light that was drawn for diffuse surfaces to what arrives of it, and the rays that tell whether it does.
+struct Ask<'a> {
+    encounters: &'a InteractionLanes,
+    reflectance: &'a VectorLanes,
+    throughput: &'a VectorLanes,
+    lights: &'a LightLanes,
+    arriving: &'a mut VectorLanes,
+    origin: &'a mut VectorLanes,
+    direction: &'a mut VectorLanes,
+    t_max: &'a mut [f64; LANES],
+}
+
+impl Loops for Ask<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Self { encounters, reflectance, throughput, lights, arriving, origin, direction, t_max } = self;
+        ask((encounters, reflectance, throughput, lights), arriving, origin, direction, t_max);
+    }
+}
+
+#[inline(always)]
+fn ask(
+    (encounters, reflectance, throughput, lights): (&InteractionLanes, &VectorLanes, &VectorLanes, &LightLanes),
+    arriving: &mut VectorLanes,
+    origin: &mut VectorLanes,
+    direction: &mut VectorLanes,
+    t_max: &mut [f64; LANES],
+) {
+    for i in 0..LANES {
+        let here = encounters.get(i, Diffuse { reflectance: reflectance.get(i) });
+        let (towards, light, drawn) = lights.get(i);
+        let (scattered, pdf) = here.evaluate(towards);
+        let all = throughput.get(i) * scattered * light * power_heuristic(drawn, pdf);
+        arriving.set(i, if drawn > 0.0 { all } else { Rgb::ZERO });
+        let (source, is_within) = lights.source(i);
+        let from = here.ray_origin();
+        let (segment, ray) = (from.segment(&source), from.ray(towards));
+        let ray = if is_within { segment } else { ray };
+        origin.set(i, ray.origin);
+        direction.set(i, ray.direction);
+        t_max[i] = ray.t_max;
+    }
+}
+
+/// The choice of one of several draws: each makes its own in a share of all.
+#[inline]
+fn share(choice: f64, (number, asked): (u32, u32)) -> f64 {
+    if asked == 1 { choice } else { ((choice + f64::from(number)) / f64::from(asked)).min(1f64.next_down()) }
+}
+
+impl<N: Features> TransportWorker<'_, N> {
+    /// Next-event estimation: draws light for each lane and queues the shadow rays.
+    pub(super) fn direct_light(&mut self, block: &Block, samples: &mut [CameraSample]) {
+        if block.is_diffuse {
+            return self.ask_diffuse(block);
+        }
+        let mut numbers = [(0, 0); LANES];
+        for (lane, number) in numbers.iter_mut().enumerate().take(block.count) {
+            if block.goes_on[lane] && !block.scattering[lane].is_delta() {
+                number.1 = if self.is_first(block, lane) { self.settings.light_samples } else { 1 };
+            }
+        }
+        while numbers.iter().any(|(number, asked)| number < asked) {
+            self.ask_others(block, &numbers, samples);
+            numbers.iter_mut().for_each(|(number, _)| *number += 1);
+        }
+    }
+
+    /// Whether the path of a lane is at its first surface, where it may be split.
+    #[inline]
+    pub(super) fn is_first(&self, block: &Block, lane: usize) -> bool {
+        N::GENERAL && block.paths[lane].bounce == 0
+    }
+
+    fn ask_diffuse(&mut self, block: &Block) {
+        let (mut choice, mut u) = ([0.0; LANES], [[0.0; LANES]; 2]);
+        block.numbers.one_and_two(self.level, &block.dimensions.map(|d| d.light_choice(0)), &mut choice, &mut u);
+        let (mut lights, lit) = (LightLanes::NONE, self.scene.lights());
+        lit.sample_lanes(self.level, self.scene.geometry(), &block.receivers, &choice, &u, &mut lights);
+        let ([mut arriving, mut origin, mut direction], mut t_max) = ([VectorLanes::ZERO; 3], [0.0; LANES]);
+        self.level.compiled(Ask {
+            encounters: &block.encounters,
+            reflectance: &block.reflectance,
+            throughput: &block.throughput,
+            lights: &lights,
+            arriving: &mut arriving,
+            origin: &mut origin,
+            direction: &mut direction,
+            t_max: &mut t_max,
+        });
+        for lane in 0..block.count {
+            let arriving = arriving.get(lane);
+            if block.goes_on[lane] && arriving != Rgb::ZERO {
+                let ray = Ray { t_max: t_max[lane], ..Ray::new(origin.get(lane), direction.get(lane)) };
+                self.cast(block, lane, ray, direction.get(lane), arriving);
+            }
+        }
+    }
+
+    /// Asks once for each lane whose number is below how often it asks.
+    fn ask_others(&mut self, block: &Block, numbers: &[(u32, u32); LANES], samples: &mut [CameraSample]) {
+        let asks = |lane: usize| numbers[lane].0 < numbers[lane].1;
+        let is_each = |worker: &Self, lane: usize| asks(lane) && worker.asks_each(block, lane);
+        if (0..block.count).any(|lane| asks(lane) && !is_each(self, lane)) {
+            let (mut choice, mut u) = ([0.0; LANES], [[0.0; LANES]; 2]);
+            let dimensions = std::array::from_fn(|lane| block.dimensions[lane].light_choice(numbers[lane].0));
+            block.numbers.one_and_two(self.level, &dimensions, &mut choice, &mut u);
+            for lane in 0..LANES {
+                choice[lane] = share(choice[lane], (numbers[lane].0, numbers[lane].1.max(1)));
+            }
+            let (mut lights, lit) = (LightLanes::NONE, self.scene.lights());
+            lit.sample_lanes(self.level, self.scene.geometry(), &block.receivers, &choice, &u, &mut lights);
+            for lane in (0..block.count).filter(|&lane| asks(lane)) {
+                if !is_each(self, lane)
+                    && let Some(light) = lights.sample(lane)
+                {
+                    let arriving = self.arriving(block, lane, &light, numbers[lane].1);
+                    if arriving != Rgb::ZERO {
+                        self.send_towards(block, lane, &light, arriving);
+                    }
+                }
+            }
+        }
+        for lane in (0..block.count).filter(|&lane| asks(lane)) {
+            if is_each(self, lane) {
+                let sampler = &mut samples[Self::own(block.paths[lane].sample, samples.len())].sampler;
+                if let Some((light, arriving)) = self.ask_each_light(block, lane, numbers[lane], sampler) {
+                    self.send_towards(block, lane, &light, arriving);
+                }
+            }
+        }
+    }
+
+    /// Draws light of each of few lights, and of it one draw to stand for all.
+    #[inline(never)]
+    fn ask_each_light(
+        &self,
+        block: &Block,
+        lane: usize,
+        (number, asked): (u32, u32),
+        sampler: &mut Sampler,
+    ) -> Option<(LightSample, Rgb)> {
+        let (lights, receiver, dimensions) = (self.scene.lights(), block.receivers.get(lane), block.dimensions[lane]);
+        let first = number.wrapping_mul(lights.few());
+        let choice = share(sampler.one(dimensions.light_choice(first)), (number, asked));
+        let draw = |one: u32| {
+            let number = first.wrapping_add(one);
+            let u = sampler.two(dimensions.light_point(number));
+            let choice = || sampler.one(dimensions.light_choice(number));
+            let light = lights.sample_one(one, self.scene.geometry(), &receiver, choice, u)?;
+            Some((light, self.arriving(block, lane, &light, asked)))
+        };
+        resampled(choice, (0..lights.few()).filter_map(draw))
+    }
+
+    /// Whether each of few lights is asked where the path of a lane is.
+    #[inline]
+    pub(super) fn asks_each(&self, block: &Block, lane: usize) -> bool {
+        !N::PLAIN && !block.is_diffuse && self.scene.plan().asks_each(|| block.scattering[lane].roughness())
+    }
+
+    /// Queues the shadow ray of light that was drawn.
+    fn send_towards(&mut self, block: &Block, lane: usize, light: &LightSample, arriving: Rgb) {
+        let from = block.other(lane).ray_origin();
+        let ray = match &light.source {
+            Some(source) => from.segment(source),
+            None => from.ray(light.direction),
+        };
+        self.cast(block, lane, ray, light.direction, arriving);
+    }
+
+    #[inline]
+    fn cast(&mut self, block: &Block, lane: usize, ray: Ray, direction: DVec3, arriving: Rgb) {
+        self.shadows.push(Ray { time: block.rays[lane].time, ..ray }, block.paths[lane].sample, arriving);
+        if N::GENERAL && self.nested {
+            let is_through = !block.is_diffuse && block.other(lane).is_through(direction);
+            let media = if is_through { self.boundary(block, lane).1 } else { self.carried(block, lane).media };
+            self.shadows.set_media(media);
+        }
+    }
+
+    /// What light that was drawn adds to the sample, one of so many draws, if nothing is in its way.
+    #[inline]
+    fn arriving(&self, block: &Block, lane: usize, light: &LightSample, asked: u32) -> Rgb {
+        let (scattered, mut pdf) = block.other(lane).evaluate(light.direction);
+        if let Some(aim) = &block.aims[lane] {
+            pdf = density(aim, pdf, light.direction);
+        }
+        let splits = if self.is_first(block, lane) { self.settings.splits } else { 1 };
+        let mut weight = if self.is_followed(pdf) {
+            power_heuristic(light.pdf * f64::from(asked), pdf * f64::from(splits))
+        } else {
+            1.0
+        };
+        if N::GENERAL {
+            weight /= f64::from(asked);
+        }
+        block.paths[lane].throughput * scattered * light.weight * weight
+    }
+}

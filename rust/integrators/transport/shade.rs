@@ -1,0 +1,180 @@
+//! What happens where paths have come to.
+
+use super::aiming::Arrival;
+use super::block::Block;
+use super::dimensions::Dimensions;
+use super::features::{Carried, Features};
+use super::nesting::MediumStack;
+use super::worker::TransportWorker;
+use crate::integrators::CameraSample;
+use crate::math::{LANES, Ray, VectorLanes};
+use crate::optics::{Diffuse, Rgb};
+use crate::scene::materials::Scattering;
+use crate::scene::{Interaction, InteractionLanes, LightContextLanes, LightSampleContext, Scatters};
+use crate::simd::Loops;
+use std::array;
+
+/// From rays that meet surfaces to what is known of the encounters, where nothing is asked of a material but how it
+/// scatters, and it lets no light through.
+struct Meet<'a> {
+    directions: &'a VectorLanes,
+    encounters: &'a mut InteractionLanes,
+    receivers: &'a mut LightContextLanes,
+}
+
+impl Loops for Meet<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        meet(self.directions, self.encounters, self.receivers);
+    }
+}
+
+#[inline(always)]
+fn meet(directions: &VectorLanes, encounters: &mut InteractionLanes, receivers: &mut LightContextLanes) {
+    for i in 0..LANES {
+        let surface = encounters.surface(i);
+        let ray = Ray::new(surface.position, directions.get(i));
+        let here = Interaction::with(&ray, surface, (surface.shading_normal, None), Diffuse { reflectance: Rgb::ZERO });
+        encounters.set(i, &here);
+        receivers.set(i, &here.light_context());
+    }
+}
+
+impl<'a, N: Features> TransportWorker<'a, N> {
+    /// Takes paths, at most sixteen, from their rays' hits to their next rays.
+    pub(super) fn shade(
+        &mut self,
+        block: &mut Block<'a>,
+        which: &[u32],
+        samples: &mut [CameraSample],
+        radiance: &mut [Rgb],
+    ) {
+        self.gather(block, which);
+        self.add_emission(block, radiance);
+        if !block.goes_on.contains(&true) {
+            return;
+        }
+        let mut directions = VectorLanes::ZERO;
+        for lane in 0..LANES {
+            directions.set(lane, block.rays[lane].direction);
+        }
+        block.encounters.set_surfaces(&block.surfaces);
+        self.level.compiled(Meet {
+            directions: &directions,
+            encounters: &mut block.encounters,
+            receivers: &mut block.receivers,
+        });
+        for lane in 0..LANES {
+            let path = &block.paths[lane];
+            block.numbers.set(lane, &samples[Self::own(path.sample, samples.len())].sampler);
+            block.dimensions[lane] = Dimensions::of(path.bounce, self.carried(block, lane).branch);
+        }
+        if block.is_diffuse {
+            for lane in 0..LANES {
+                let surface = block.surfaces.get(lane);
+                let [front, back] = self.diffuse(surface.shape).unwrap_or([Rgb::ZERO; 2]);
+                block.reflectance.set(lane, if surface.is_front(&block.rays[lane]) { front } else { back });
+                if N::SHARES && block.goes_on[lane] {
+                    block.paths[lane] = self.reuse.visit(block.paths[lane], &block.diffuse(lane));
+                }
+            }
+        } else {
+            self.meet_others(block, samples, radiance);
+        }
+        for lane in 0..LANES {
+            block.throughput.set(lane, block.paths[lane].throughput);
+        }
+        if !self.scene.lights().is_dark() {
+            self.direct_light(block, samples);
+        }
+        self.go_on(block);
+    }
+
+    /// What the path of a lane carries.
+    #[inline]
+    pub(super) fn carried(&self, block: &Block, lane: usize) -> &Carried {
+        if N::GENERAL { &self.now.carried[block.index[lane] as usize] } else { &Carried::NONE }
+    }
+
+    /// Looks up where paths have come to.
+    fn gather(&self, block: &mut Block, which: &[u32]) {
+        block.count = which.len();
+        block.index = array::from_fn(|lane| which[lane.min(which.len() - 1)]);
+        for lane in 0..LANES {
+            let index = block.index[lane] as usize;
+            block.rays[lane] = self.now.rays[index];
+            block.hits[lane] = self.hits[index];
+            block.paths[lane] = self.now.paths[index];
+            block.goes_on[lane] = false;
+            block.width[lane] = 0.0;
+            if N::GENERAL && self.widths {
+                block.width[lane] = self.now.carried[index].footprint.at(self.hits[index].t).width;
+            }
+        }
+        self.scene.geometry().surface_lanes(self.level, &block.rays, &block.hits, &mut block.surfaces);
+    }
+
+    /// Adds what surfaces emit, and finds out which paths may go on.
+    fn add_emission(&self, block: &mut Block, radiance: &mut [Rgb]) {
+        for lane in 0..block.count {
+            let (path, surface) = (&block.paths[lane], block.surfaces.get(lane));
+            if self.shines(&surface) {
+                let emitted = self.emitted(&block.rays[lane], &block.hits[lane], &surface, path, block.width[lane]);
+                radiance[path.sample as usize] += path.throughput * emitted;
+            }
+            block.goes_on[lane] = self.settings.max_depth.is_none_or(|depth| path.bounce < depth);
+        }
+    }
+
+    /// Asks materials how they scatter, and all that follows from that.
+    fn meet_others(&mut self, block: &mut Block<'a>, samples: &mut [CameraSample], radiance: &mut [Rgb]) {
+        block.scattering.clear();
+        for lane in 0..block.count {
+            let (surface, width) = (block.surfaces.get(lane), block.width[lane]);
+            let outside = if N::GENERAL && self.nested { self.boundary(block, lane).0 } else { 1.0 };
+            let (ray, hit) = (block.rays[lane], block.hits[lane]);
+            let scattering = match self.scene.plan().constant(surface.shape, surface.is_front(&ray)) {
+                Some(&bsdf) if outside == 1.0 && width == 0.0 => Scattering::One(bsdf),
+                _ => {
+                    let here = Interaction::new(self.scene, &ray, &hit, surface, width, outside);
+                    block.encounters.set(lane, &here);
+                    block.receivers.set(lane, &here.light_context());
+                    here.into_scattering()
+                }
+            };
+            if scattering.transmits() {
+                block.receivers.set(lane, &LightSampleContext::free(surface.position));
+            }
+            block.scattering.push(scattering);
+            if !block.goes_on[lane] {
+                continue;
+            }
+            let mut path = block.paths[lane];
+            let here = block.encounters.get(lane, &block.scattering[lane]);
+            if N::SHARES {
+                path = self.reuse.visit(path, &here);
+            }
+            path.meet(here.scattering().again());
+            if self.caustics.is_some() {
+                let sampler = &mut samples[Self::own(path.sample, samples.len())].sampler;
+                let number = || sampler.one(block.dimensions[lane].roulette());
+                (block.aims[lane], block.arrivals[lane]) = self.aim(&mut path, &here, number);
+            }
+            block.goes_on[lane] = block.arrivals[lane] != Arrival::Ends;
+            if N::GENERAL && block.goes_on[lane] && self.settings.ambient != Rgb::ZERO {
+                let share = here.ambient(self.scene, &ray, &hit, width, outside);
+                radiance[path.sample as usize] += path.throughput * share * self.settings.ambient;
+            }
+            block.paths[lane] = path;
+        }
+    }
+
+    /// In a scene of nested media, the index of refraction on the other side of what the surface of a lane encloses,
+    /// and what a ray that goes through is in.
+    #[inline]
+    pub(super) fn boundary(&self, block: &Block, lane: usize) -> &(f64, MediumStack) {
+        &self.arrivals.boundaries[block.index[lane] as usize]
+    }
+}

@@ -1,0 +1,62 @@
+"""The same picture, bit for bit, at every level of the processor's vector instructions."""
+
+import os
+import subprocess
+import sys
+
+import pytest
+
+import raywright as rw
+
+# Scenes that go by every part of shading which is compiled for each level: diffuse rooms with lamps of
+# triangles, smooth normals and masks, sheets of two sides, metal and glass, round lamps, skies, and each
+# kind of sampler.
+PICTURES = """
+import hashlib
+import raywright as rw
+
+def tell(name, scene, camera, integrator=rw.Path(), **how):
+    image = rw.render(scene, camera, integrator, samples=8, progress=False, **how)
+    print(name, hashlib.sha256(image.rgb.tobytes()).hexdigest(), flush=True)
+
+size = {"width": 24, "height": 20}
+cornell = rw.scenes.cornell_box(**size)
+for sampler in (rw.Independent(), rw.Stratified(4), rw.Halton(4), rw.Sobol(4), rw.Lattice(4)):
+    tell(type(sampler).__name__, *cornell, sampler=sampler)
+tell("reuse", *cornell, rw.Path(reuse=4))
+tell("plates", *rw.scenes.veach_plates(**size))
+tell("spheres", *rw.scenes.glass_spheres(**size))
+tell("caustics", *rw.scenes.glass_spheres(**size), rw.Path(caustics=True))
+tell("whitted", *rw.scenes.glass_spheres(**size), rw.Whitted())
+tell("distributed", *rw.scenes.veach_plates(**size), rw.Distributed(splits=3))
+
+knot = rw.scenes.torus_knot(along=60, around=9)
+sheet = rw.TwoSided(rw.Diffuse((0.2, 0.5, 0.7)), rw.Diffuse(0.1))
+floor = rw.Mesh([(-4, -2, -4), (-4, -2, 4), (4, -2, 4), (4, -2, -4)], [(0, 1, 2), (0, 2, 3)], material=sheet)
+holes = rw.Mask(rw.Diffuse(0.6), 0.4)
+veil = rw.Mesh([(-2, -2, 2), (2, -2, 2), (0, 2, 2)], [(0, 1, 2)], material=holes)
+lamp = rw.Mesh([(-1, 3, -1), (1, 3, -1), (0, 3, 1)], [(0, 1, 2)], emission=5)
+camera = rw.Camera((0, 1, 6), (0, 0, 0), **size)
+tell("sky", rw.Scene([knot, floor], environment=0.7), camera)
+ball, point = rw.Sphere((1, 0, 1), 0.5), rw.PointLight((0, 3, 3), 2)
+tell("smooth", rw.Scene([knot, floor, lamp, ball], [point]), camera)
+tell("masks", rw.Scene([knot, floor, lamp, veil]), camera)
+"""
+
+
+@pytest.mark.skipif(rw.simd() == "scalar", reason="there is one level only")
+def test_levels_change_no_bit():
+    def told(level):
+        how = {**os.environ, "RAYWRIGHT_SIMD": level}
+        run = subprocess.run(
+            [sys.executable, "-c", PICTURES], capture_output=True, text=True, env=how, timeout=300
+        )
+        # A processor has some of the levels only.
+        assert run.returncode == 0 or "this processor has" in run.stderr, run.stderr
+        return run.stdout.splitlines() if run.returncode == 0 else None
+
+    reference = told("scalar")
+    assert len({line.split()[1] for line in reference}) == len(reference) == 14
+    others = [told(level) for level in ("neon", "sse2", "avx2", "avx512")]
+    assert any(others)
+    assert all(other == reference for other in others if other is not None)
