@@ -3,7 +3,7 @@
 use super::Film;
 use super::denominators::{Denominators, around, cross};
 use super::film::Spread;
-use super::outliers::{Carried, Largest};
+use super::outliers::{Carried, Largest, beside, is_find};
 use super::sightings::{Chances, Sightings};
 use crate::optics::Rgb;
 use rayon::prelude::*;
@@ -18,7 +18,8 @@ pub struct ErrorEstimate {
     pub low: f64,
     /// Its upper end.
     pub high: f64,
-    /// The few samples that carry most of the estimate, which cannot be trusted then; `None` if many carry it.
+    /// The few samples that carry most of the estimate, which cannot be trusted then; `None` if many carry it, or what
+    /// the next pixels show as well.
     pub carried: Option<Carried>,
 }
 
@@ -58,21 +59,23 @@ pub(super) fn estimate(film: &Film) -> Option<ErrorEstimate> {
     let bands = || (0..film.height().div_ceil(patch)).into_par_iter();
     let rows = |band: u32| band * patch..film.height().min((band + 1) * patch);
     let row = || vec![Spread::default(); width];
-    let seen: Vec<Sightings> = bands()
+    let seen: Vec<(Sightings, Vec<f64>)> = bands()
         .map_init(row, |spreads, band| {
-            let mut seen = Sightings::default();
+            let (mut seen, mut shown) = (Sightings::default(), Vec::new());
             for y in rows(band) {
                 film.spreads(y, spreads);
                 let peaks = spreads.iter().flat_map(|spread| &spread.peaks[..cells]);
                 peaks.for_each(|peak| seen.add(peak.brightness, peak.again));
+                shown.extend(spreads.iter().map(|spread| spread.others.abs().max_element()));
             }
-            seen
+            (seen, shown)
         })
         .collect();
     let mut sightings = Sightings::default();
-    seen.iter().for_each(|band| sightings.join(band));
+    seen.iter().for_each(|(band, _)| sightings.join(band));
     let chances = sightings.chances();
-    let picture = Picture { means: &means, width, patch: patch as usize, cells, chances: &chances };
+    let shown: Vec<f64> = seen.into_iter().flat_map(|(_, shown)| shown).collect();
+    let picture = Picture { means: &means, shown: &shown, width, patch: patch as usize, cells, chances: &chances };
     let sums: Vec<Sums> = bands()
         .map_init(row, |spreads, band| {
             let mut patches = vec![Patch::default(); width.div_ceil(patch as usize)];
@@ -114,7 +117,7 @@ struct Sums {
     cubes: f64,
     /// What rare samples may add to the second and the third cumulant.
     rare: [f64; 2],
-    /// What single samples bring.
+    /// What single finds bring.
     largest: Largest,
 }
 
@@ -129,11 +132,15 @@ struct Patch {
     /// What the largest samples bring, by kind of cell: those of neighbours are mostly one and the same, which the
     /// patch shares.
     peaks: [f64; 2],
+    /// What of that is shown nowhere beside.
+    finds: [f64; 2],
 }
 
 /// Where pixels are seen from: all of a picture.
 struct Picture<'a> {
     means: &'a [Rgb],
+    /// How bright pixels are without what stands out in them.
+    shown: &'a [f64],
     width: usize,
     patch: usize,
     cells: usize,
@@ -143,16 +150,21 @@ struct Picture<'a> {
 impl Patch {
     #[inline]
     fn add(&mut self, picture: &Picture<'_>, (x, y): (usize, usize), spread: &Spread) {
-        let Picture { means, width, patch, cells, chances } = *picture;
+        let Picture { means, shown, width, patch, cells, chances } = *picture;
         let mean = means[y * width + x];
         let denominators = Denominators::new(&cross(means, width, x, y), spread.variance, spread.samples);
         // Those of a patch share their samples, and are no witnesses for one another.
         let around = around(means, width, x, y, patch);
+        let beside = beside(shown, width, x, y, patch);
         let (mut rest, samples) = (spread.variance, spread.samples / cells as f64);
-        for (sum, peak) in self.peaks.iter_mut().zip(&spread.peaks[..cells]) {
+        for (cell, peak) in spread.peaks[..cells].iter().enumerate() {
             let of_peak = denominators.of_peak(mean, peak.without, around, chances.of(peak.brightness), samples);
-            *sum += peak.variance.dot(of_peak.likely);
-            self.error += peak.variance.dot(of_peak.likely);
+            let brings = peak.variance.dot(of_peak.likely);
+            self.peaks[cell] += brings;
+            if is_find(peak.brightness, beside) {
+                self.finds[cell] += brings;
+            }
+            self.error += brings;
             self.least += peak.variance.dot(of_peak.least);
             self.most += peak.variance.dot(of_peak.most);
             rest -= peak.variance;
@@ -175,7 +187,7 @@ impl Sums {
         self.most += patch.most;
         self.alike += patch.alike;
         self.own += patch.own;
-        patch.peaks.iter().for_each(|&peak| self.largest.add(peak));
+        patch.finds.iter().for_each(|&find| self.largest.add(find));
         if patch.error > 0.0 {
             // At most all of it: rounding may make it more.
             let share = (patch.peaks[0].max(patch.peaks[1]) / patch.error).min(1.0);
@@ -389,6 +401,41 @@ mod tests {
         let (large, small) = (off(1e-3), off(1e-5));
         assert!(large.value > ROUNDING && large.carried.is_some_and(|carried| carried.samples == 1));
         assert!((0.0..ROUNDING).contains(&small.value) && small.carried.is_none());
+    }
+
+    #[test]
+    fn what_the_next_pixels_show_by_all_their_samples_is_no_find() {
+        // A lamp, which two pixels on its rim meet by one sample of 16 each, and all samples agree elsewhere.
+        let carried = |lamp: [f64; 2], batch: u32, patch: u32| {
+            let mut film = Film::new(12, 12, 12, batch, false, None).in_patches(patch);
+            for tile in film.extend_to(16) {
+                for (i, (x, y)) in tile.pixels().enumerate() {
+                    for number in 0..16 {
+                        let met = number == 5 && (x == 3 && y < 4 && y % 2 == 0);
+                        let bright = if met {
+                            lamp[0]
+                        } else if x > 3 {
+                            lamp[1]
+                        } else {
+                            0.1
+                        };
+                        tile.add(i, Rgb::splat(bright), 1.0);
+                    }
+                }
+            }
+            estimate(&film).unwrap().carried
+        };
+        for batch in [1, 4] {
+            assert_eq!(carried([20.0, 20.0], batch, 1), None);
+            assert_eq!(carried([20.0, 11.0], batch, 1), None);
+            // A brighter one than is shown, and one that nothing shows.
+            for shown in [9.0, 0.1] {
+                let carried = carried([20.0, shown], batch, 1).expect("two samples are all there is");
+                assert!(carried.samples <= 2 && carried.share > 0.5, "{carried:?}");
+            }
+        }
+        // Pixels of one patch took their samples together; the next patch is as good as the next pixel.
+        assert_eq!(carried([20.0, 20.0], 1, 4), None);
     }
 
     #[test]

@@ -46,6 +46,8 @@ pub(super) struct Spread {
     pub alone: Rgb,
     /// Degrees of freedom of the variance: batches but for one of each cell, 0 where it is that of single samples.
     pub degrees: f64,
+    /// The mean without the largest sample of each cell.
+    pub others: Rgb,
     /// The largest sample of each cell; of all zeros where there is no cell.
     pub peaks: [Outlier; 2],
 }
@@ -327,6 +329,7 @@ impl Film {
             };
             spread.variance += variance;
             spread.alone += alone;
+            spread.others += others / ((count - 1.0) * cells.len() as f64);
             spread.samples += count;
             spread.degrees += f64::from(batches.max(1) - 1);
         }
@@ -434,6 +437,8 @@ mod tests {
             assert!((row[0].peaks[0].variance.x / peak.min(variance) - 1.0).abs() < 1e-12);
             assert!((row[0].variance.x / variance - 1.0).abs() < 1e-12);
             assert!((row[0].alone.x / alone - 1.0).abs() < 1e-12);
+            let others = green.iter().sum::<f64>() - green.iter().copied().fold(0.0, f64::max);
+            assert!((row[0].others.x * 47.0 / others - 1.0).abs() < 1e-12);
             assert_eq!(row[0].degrees, f64::from(48 / batch - 1));
             grey.append(&grey.clone());
             assert_eq!(grey.tiles()[0].cell(0).count, 96);

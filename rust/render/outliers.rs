@@ -16,7 +16,7 @@ const FEW: usize = 8;
 
 /// The largest of many numbers, from the largest down.
 ///
-/// Only the largest sample of each cell is looked at. That is enough: an outlier is one of few in all of the picture,
+/// Only the largest sample of each cell is looked at, if it is a find. That is enough: an outlier is one of few in all of the picture,
 /// and two of them are hardly ever in the same cell.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Largest([f64; FEW]);
@@ -55,6 +55,28 @@ impl Largest {
     }
 }
 
+/// Whether a sample so bright is a find: what the pixels beside it show, at most, is less than half of it.
+///
+/// The pixel on the rim of a lamp may meet it by one sample of many, and a few of these may carry the error: the more
+/// so if samples are placed, which leaves little error elsewhere. But how bright the lamp is, the next pixels show by
+/// all of their samples, and the next sample to meet it is no brighter. What is rare and unknown has no such witness:
+/// a lamp that is smaller than a pixel, light through a keyhole, a caustic that was met once.
+#[inline]
+pub(super) fn is_find(brightness: f64, beside: f64) -> bool {
+    brightness > 2.0 * beside
+}
+
+/// The largest of what the up to eight pixels show that are `apart` from one along either axis, or both.
+#[inline]
+pub(super) fn beside(shown: &[f64], width: usize, x: usize, y: usize, apart: usize) -> f64 {
+    let height = shown.len() / width;
+    let near = |at: usize, size: usize| [at.checked_sub(apart), Some(at), Some(at + apart).filter(|&at| at < size)];
+    let rows = near(y, height);
+    let places =
+        rows.into_iter().flatten().flat_map(|row| near(x, width).into_iter().flatten().map(move |at| (at, row)));
+    places.filter(|&place| place != (x, y)).map(|(x, y)| shown[y * width + x]).fold(0.0, f64::max)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -86,5 +108,15 @@ mod tests {
         assert_eq!(largest(&[1.0, 2.0, 2.0]).carry(7.0), Some(Carried { samples: 2, share: 4.0 / 7.0 }));
         assert_eq!(largest(&[1.0; 16]).carry(16.0), None);
         assert!(largest(&[1.0; 15]).carry(15.0).is_some());
+    }
+
+    #[test]
+    fn pixels_beside_are_those_around_in_the_picture() {
+        // Five columns and four rows, brighter from place to place.
+        let shown: Vec<f64> = (0..20).map(f64::from).collect();
+        let at = |x, y, apart| beside(&shown, 5, x, y, apart);
+        assert_eq!([at(0, 0, 1), at(2, 1, 1), at(4, 3, 1), at(0, 3, 1)], [6.0, 13.0, 18.0, 16.0]);
+        assert_eq!([at(0, 0, 2), at(2, 1, 2), at(4, 3, 2), at(0, 0, 8)], [12.0, 19.0, 17.0, 0.0]);
+        assert!(is_find(2.1, 1.0) && !is_find(2.0, 1.0) && !is_find(0.0, 0.0) && is_find(1e-9, 0.0));
     }
 }

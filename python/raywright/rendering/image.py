@@ -32,7 +32,8 @@ class ErrorEstimate:
         Whether the estimate rests on many samples that agree on it. If not, light is found so rarely that
         a few samples carry more than half of the estimate, when one more of their kind, or one fewer, would
         make it another; or that the interval is more than thirtyfold, when what they found may be a stray or
-        the first of many.
+        the first of many. Samples of what the next pixels show by all of theirs, as on the rim of a lamp, are
+        not such finds.
     """
 
     estimate: float
