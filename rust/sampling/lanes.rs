@@ -1,9 +1,10 @@
 //! The numbers of sixteen samples at a time.
 
 use super::bits::{number, step};
+use super::permutation::permute;
 use super::sampler::Sampler;
 use super::stream::Stream;
-use super::{SamplerKind, halton, lattice, philox4x32, sobol, stratified};
+use super::{BatchSize, SamplerKind, halton, lattice, philox4x32, sobol, stratified};
 use crate::math::LANES;
 use crate::simd::{Level, Loops};
 
@@ -41,12 +42,16 @@ impl SamplerLanes {
     /// What [`Sampler::one`] gives for an even dimension of each lane, and [`Sampler::two`] for the one that follows.
     #[inline]
     pub fn one_and_two(&self, level: Level, dimensions: &[u32; LANES], one: &mut [f64; LANES], two: &mut Pairs) {
-        if self.kind == SamplerKind::Independent {
-            level.compiled(Independent { lanes: self, dimensions, one, two });
-            return;
+        match self.kind {
+            SamplerKind::Independent => level.compiled(Independent { lanes: self, dimensions, one, two }),
+            SamplerKind::Sobol(size) | SamplerKind::Lattice(size) => {
+                level.compiled(Triples { lanes: self, size, dimensions, one, two });
+            }
+            SamplerKind::Stratified(_) | SamplerKind::Halton(_) => {
+                self.one(level, dimensions, one);
+                self.two(level, &dimensions.map(|dimension| dimension + 1), two);
+            }
         }
-        self.one(level, dimensions, one);
-        self.two(level, &dimensions.map(|dimension| dimension + 1), two);
     }
 
     /// What [`Sampler::one`] gives for a dimension of each lane.
@@ -64,6 +69,26 @@ impl SamplerLanes {
     #[inline(always)]
     fn block(&self, lane: usize, dimension: u32) -> [u32; 4] {
         philox4x32([dimension / 2, self.sample[lane], self.pixel[lane], 0], self.key)
+    }
+
+    /// Which point of its batch each sample is, for a pair of numbers. What a lane looks up in a table is no vector, and
+    /// stands in a loop of its own.
+    #[inline(always)]
+    fn points_of_pairs(&self, size: BatchSize, dimensions: &[u32; LANES]) -> [u32; LANES] {
+        let (mut random, mut points) = ([0; LANES], [0; LANES]);
+        for i in 0..LANES {
+            random[i] = Stream::new(self.words[i]).word(dimensions[i], 2);
+        }
+        for i in 0..LANES {
+            points[i] = permute(size, self.sample[i], random[i]);
+        }
+        points
+    }
+
+    /// The same for one number, which at an even dimension is placed with the pair that follows.
+    #[inline(always)]
+    fn points(&self, size: BatchSize, dimensions: &[u32; LANES]) -> [u32; LANES] {
+        self.points_of_pairs(size, &dimensions.map(|dimension| dimension | 1))
     }
 }
 
@@ -94,6 +119,48 @@ impl Loops for Independent<'_> {
     }
 }
 
+/// A choice and the pair that follows, which are three coordinates of one point.
+struct Triples<'a> {
+    lanes: &'a SamplerLanes,
+    size: BatchSize,
+    dimensions: &'a [u32; LANES],
+    one: &'a mut [f64; LANES],
+    two: &'a mut Pairs,
+}
+
+impl Loops for Triples<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Self { lanes, size, dimensions, one, two } = self;
+        let points = lanes.points(size, dimensions);
+        macro_rules! each {
+            ($i:ident, $one:expr, $two:expr) => {
+                for $i in 0..LANES {
+                    one[$i] = number($one);
+                    let [a, b] = $two;
+                    (two[0][$i], two[1][$i]) = (step(a), step(b));
+                }
+            };
+        }
+        let stream = |i: usize| Stream::new(lanes.words[i]);
+        if matches!(lanes.kind, SamplerKind::Lattice(_)) {
+            each!(
+                i,
+                lattice::one_at(size, stream(i), points[i], dimensions[i]),
+                lattice::two_at(size, stream(i), points[i], dimensions[i] + 1)
+            );
+        } else {
+            each!(
+                i,
+                sobol::one_at(size, stream(i), points[i], dimensions[i]),
+                sobol::two_at(stream(i), points[i], dimensions[i] + 1)
+            );
+        }
+    }
+}
+
 struct Ones<'a> {
     lanes: &'a SamplerLanes,
     dimensions: &'a [u32; LANES],
@@ -107,24 +174,31 @@ impl Loops for Ones<'_> {
     fn run(self) {
         let Self { lanes, dimensions, to } = self;
         macro_rules! each {
-            ($one:expr) => {
-                for i in 0..LANES {
-                    to[i] = number($one(Stream::new(lanes.words[i]), lanes.sample[i], dimensions[i]));
+            ($i:ident, $one:expr) => {
+                for $i in 0..LANES {
+                    to[$i] = number($one);
                 }
             };
         }
+        let stream = |i: usize| Stream::new(lanes.words[i]);
         match lanes.kind {
-            SamplerKind::Independent => {
-                for i in 0..LANES {
-                    let [a, b, c, d] = lanes.block(i, dimensions[i]);
-                    let is_even = dimensions[i] % 2 == 0;
-                    to[i] = number(if is_even { joined(a, b) } else { joined(c, d) });
-                }
+            SamplerKind::Independent => each!(i, {
+                let [a, b, c, d] = lanes.block(i, dimensions[i]);
+                let is_even = dimensions[i] % 2 == 0;
+                if is_even { joined(a, b) } else { joined(c, d) }
+            }),
+            SamplerKind::Stratified(size) => {
+                each!(i, stratified::one(size, stream(i), lanes.sample[i], dimensions[i]));
             }
-            SamplerKind::Stratified(size) => each!(|s, i, d| stratified::one(size, s, i, d)),
-            SamplerKind::Halton(size) => each!(|s, i, d| halton::one(size, s, i, d)),
-            SamplerKind::Sobol(size) => each!(|s, i, d| sobol::one(size, s, i, d)),
-            SamplerKind::Lattice(size) => each!(|s, i, d| lattice::one(size, s, i, d)),
+            SamplerKind::Halton(size) => each!(i, halton::one(size, stream(i), lanes.sample[i], dimensions[i])),
+            SamplerKind::Sobol(size) => {
+                let points = lanes.points(size, dimensions);
+                each!(i, sobol::one_at(size, stream(i), points[i], dimensions[i]));
+            }
+            SamplerKind::Lattice(size) => {
+                let points = lanes.points(size, dimensions);
+                each!(i, lattice::one_at(size, stream(i), points[i], dimensions[i]));
+            }
         }
     }
 }
@@ -142,26 +216,32 @@ impl Loops for Twos<'_> {
     fn run(self) {
         let Self { lanes, dimensions, to } = self;
         macro_rules! each {
-            ($two:expr) => {
-                for i in 0..LANES {
-                    let [a, b] = $two(Stream::new(lanes.words[i]), lanes.sample[i], dimensions[i]);
-                    (to[0][i], to[1][i]) = (step(a), step(b));
+            ($i:ident, $two:expr) => {
+                for $i in 0..LANES {
+                    let [a, b] = $two;
+                    (to[0][$i], to[1][$i]) = (step(a), step(b));
                 }
             };
         }
+        let stream = |i: usize| Stream::new(lanes.words[i]);
         match lanes.kind {
-            SamplerKind::Independent => {
-                for i in 0..LANES {
-                    let [a, b, c, d] = lanes.block(i, dimensions[i]);
-                    let is_even = dimensions[i] % 2 == 0;
-                    let (first, second) = if is_even { (a, b) } else { (c, d) };
-                    (to[0][i], to[1][i]) = (step(first), step(second));
-                }
+            SamplerKind::Independent => each!(i, {
+                let [a, b, c, d] = lanes.block(i, dimensions[i]);
+                let is_even = dimensions[i] % 2 == 0;
+                if is_even { [a, b] } else { [c, d] }
+            }),
+            SamplerKind::Stratified(size) => {
+                each!(i, stratified::two(size, stream(i), lanes.sample[i], dimensions[i]));
             }
-            SamplerKind::Stratified(size) => each!(|s, i, d| stratified::two(size, s, i, d)),
-            SamplerKind::Halton(size) => each!(|s, i, d| halton::two(size, s, i, d)),
-            SamplerKind::Sobol(size) => each!(|s, i, d| sobol::two(size, s, i, d)),
-            SamplerKind::Lattice(size) => each!(|s, i, d| lattice::two(size, s, i, d)),
+            SamplerKind::Halton(size) => each!(i, halton::two(size, stream(i), lanes.sample[i], dimensions[i])),
+            SamplerKind::Sobol(size) => {
+                let points = lanes.points_of_pairs(size, dimensions);
+                each!(i, sobol::two_at(stream(i), points[i], dimensions[i]));
+            }
+            SamplerKind::Lattice(size) => {
+                let points = lanes.points_of_pairs(size, dimensions);
+                each!(i, lattice::two_at(size, stream(i), points[i], dimensions[i]));
+            }
         }
     }
 }

@@ -13,7 +13,12 @@ const GENERATORS: [[u32; 2]; BatchSize::MOST_BITS as usize + 1] =
 /// that follows.
 #[inline(always)]
 pub(super) fn one(size: BatchSize, stream: Stream, index: u32, dimension: u32) -> u64 {
-    let index = permute(size, index, stream.word(dimension | 1, 2));
+    one_at(size, stream, permute(size, index, stream.word(dimension | 1, 2)), dimension)
+}
+
+/// As [`one`], of the point of this index.
+#[inline(always)]
+pub(super) fn one_at(size: BatchSize, stream: Stream, index: u32, dimension: u32) -> u64 {
     let factor = if dimension.is_multiple_of(2) { GENERATORS[size.bits() as usize][1] } else { 1 };
     u64::from(index * factor).unbounded_shl(64 - size.bits()).wrapping_add(stream.word(dimension, 0))
 }
@@ -22,7 +27,12 @@ pub(super) fn one(size: BatchSize, stream: Stream, index: u32, dimension: u32) -
 /// "Randomization of Number Theoretic Methods for Multiple Integration", 1976).
 #[inline(always)]
 pub(super) fn two(size: BatchSize, stream: Stream, index: u32, dimension: u32) -> [u32; 2] {
-    let index = permute(size, index, stream.word(dimension, 2));
+    two_at(size, stream, permute(size, index, stream.word(dimension, 2)), dimension)
+}
+
+/// As [`two`], of the point of this index.
+#[inline(always)]
+pub(super) fn two_at(size: BatchSize, stream: Stream, index: u32, dimension: u32) -> [u32; 2] {
     let shift = stream.word(dimension, 0);
     let at = |factor: u32| (index * factor).unbounded_shl(32 - size.bits());
     [at(1).wrapping_add(shift as u32), at(GENERATORS[size.bits() as usize][0]).wrapping_add((shift >> 32) as u32)]

@@ -11,7 +11,12 @@ use super::stream::Stream;
 /// so that the pairs of each half, quarter, ... of the choices are a net of their own.
 #[inline(always)]
 pub(super) fn one(size: BatchSize, stream: Stream, index: u32, dimension: u32) -> u64 {
-    let index = permute(size, index, stream.word(dimension | 1, 2));
+    one_at(size, stream, permute(size, index, stream.word(dimension | 1, 2)), dimension)
+}
+
+/// As [`one`], of the point of this index.
+#[inline(always)]
+pub(super) fn one_at(size: BatchSize, stream: Stream, index: u32, dimension: u32) -> u64 {
     // Of a net of three, the third coordinate is the index itself, greatest bit first (Niederreiter, 1992, lemma 4.22).
     let digits = if dimension.is_multiple_of(2) { index.reverse_bits().unbounded_shr(32 - size.bits()) } else { index };
     scramble(digits, [stream.word(dimension, 0), stream.word(dimension, 1)])
@@ -21,7 +26,12 @@ pub(super) fn one(size: BatchSize, stream: Stream, index: u32, dimension: u32) -
 /// (0, m, 2)-net with every power of two of its points.
 #[inline(always)]
 pub(super) fn two(size: BatchSize, stream: Stream, index: u32, dimension: u32) -> [u32; 2] {
-    let index = permute(size, index, stream.word(dimension, 2));
+    two_at(stream, permute(size, index, stream.word(dimension, 2)), dimension)
+}
+
+/// As [`two`], of the point of this index.
+#[inline(always)]
+pub(super) fn two_at(stream: Stream, index: u32, dimension: u32) -> [u32; 2] {
     [scramble_short(index, stream.word(dimension, 0)), scramble_short(pascal(index), stream.word(dimension, 1))]
 }
 
