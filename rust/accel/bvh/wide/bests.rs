@@ -1,7 +1,7 @@
 //! The best that is known of sixteen rays together, and triangles that are tested against all of them.
 
 use super::WideBvh;
-use super::best::{Best, meet};
+use super::best::{Best, meet, primitive};
 use super::looking::Looking;
 use super::node::Packed;
 use super::sixteen::Sixteen;
@@ -123,6 +123,9 @@ impl Bests {
         while open != 0 {
             let i = open.trailing_zeros() as usize;
             open &= open - 1;
+            if from.0.misses(from.1 + i, primitive(&bvh.leaves, leaf, lane)) {
+                continue;
+            }
             changed |= u32::from(self.decide::<ANY, N, L>(bvh, from.0, from.1, i, leaf, lane)) << i;
         }
         changed
