@@ -146,13 +146,8 @@ impl<'a> RayColumns<'a> {
     /// One of them.
     #[inline(always)]
     pub fn get(&self, i: usize) -> Ray {
-        Ray {
-            origin: self.origin.get(i),
-            direction: self.direction.get(i),
-            t_min: self.t_min.get(i),
-            t_max: self.t_max.get(i),
-            time: 0.0,
-        }
+        let (t_min, t_max) = (self.t_min.get(i), self.t_max.get(i));
+        Ray { t_min, t_max, ..Ray::new(self.origin.get(i), self.direction.get(i)) }
     }
 }
 
@@ -169,6 +164,15 @@ impl RayBatch<'_> {
     /// Whether there are none.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
+    }
+
+    /// Whether one of them is known to miss a triangle.
+    #[inline(always)]
+    pub fn misses(&self, i: usize, triangle: u32) -> bool {
+        match self {
+            Self::Rows(rays) => rays[i].misses.contains(&triangle),
+            Self::Columns(_) => false,
+        }
     }
 
     /// One of them.

@@ -18,19 +18,25 @@ pub struct Ray {
     pub t_max: f64,
     /// When it is asked, for what moves: 0 as the shutter opens, 1 as it closes.
     pub time: f64,
+    /// Triangles that it is known to miss, by their numbers among the primitives that it is asked of, such as the one
+    /// that it leaves and the one that it goes to. They need not be asked about; that changes no answer.
+    pub misses: [u32; 2],
 }
 
 impl Ray {
+    /// In place of a triangle that a ray is known to miss.
+    pub const NO_TRIANGLE: u32 = u32::MAX;
+
     /// A ray asked for every `t` from 0 on.
     #[inline(always)]
     pub fn new(origin: DVec3, direction: DVec3) -> Self {
-        Self { origin, direction, t_min: 0.0, t_max: f64::INFINITY, time: 0.0 }
+        Self { origin, direction, t_min: 0.0, t_max: f64::INFINITY, time: 0.0, misses: [Self::NO_TRIANGLE; 2] }
     }
 
     /// The segment from `a` to `b`: `t` runs from 0 to 1.
     #[inline(always)]
     pub fn segment(a: DVec3, b: DVec3) -> Self {
-        Self { origin: a, direction: b - a, t_min: 0.0, t_max: 1.0, time: 0.0 }
+        Self { t_max: 1.0, ..Self::new(a, b - a) }
     }
 
     /// The point at `t`.

@@ -130,6 +130,7 @@ impl RayArrays<'_> {
                 t_min: t_min[i * near],
                 t_max: t_max[i * far],
                 time: time[i * when],
+                misses: [Ray::NO_TRIANGLE; 2],
             }
         }));
     }

@@ -2,6 +2,7 @@
 
 mod adaptive;
 mod bytes;
+mod camera_samples;
 mod denominators;
 mod error;
 mod film;

@@ -1,12 +1,11 @@
 //! Work on a pass: samples of all pixels, tile by tile over the threads.
 
 use super::adaptive::Adaptive;
-use super::filter::Filter;
+use super::camera_samples::{CameraSampler, Wanted};
 use super::{FilmTile, Settings};
 use crate::integrators::{CameraSample, Integrator, Worker};
 use crate::optics::Rgb;
-use crate::sampling::SamplerKind;
-use crate::scene::{Camera, CameraRay, Footprint, Scene};
+use crate::scene::{Camera, Footprint, Scene};
 use crate::workers::Cancel;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -24,13 +23,7 @@ pub(super) struct Exposure<'a> {
     pub scene: &'a Scene,
     pub camera: &'a dyn Camera,
     pub integrator: &'a dyn Integrator,
-    pub sampler: SamplerKind,
-    pub filter: &'a dyn Filter,
-    pub seed: u64,
-    /// Whether samples are spread over the time that the shutter is open.
-    moves: bool,
-    /// Whether samples are spread over the lens.
-    uses_lens: bool,
+    samples: CameraSampler<'a>,
     /// The side of the patches of pixels whose samples work together.
     patch: u32,
     /// Workers that no thread is using: their memory is used again.
@@ -80,15 +73,18 @@ impl Stop {
 /// What a thread works with.
 struct Bench<'a> {
     worker: Box<dyn Worker + 'a>,
+    /// What is to be taken next.
+    wanted: Vec<Wanted>,
     samples: Vec<CameraSample>,
     /// How much each sample counts, by the filter and the camera: also those for which the camera has no ray, and the
     /// integrator is not asked.
     weights: Vec<f64>,
     radiance: Vec<Rgb>,
-    /// How many samples work together, group by group; empty where each is on its own.
+    /// Where each group of samples that work together ends among those that are to be taken; empty where each is on its
+    /// own.
+    ends: Vec<usize>,
+    /// How many they are.
     groups: Vec<u32>,
-    /// Samples in those.
-    grouped: usize,
     /// Whose the samples are.
     runs: Vec<Run>,
 }
@@ -115,10 +111,8 @@ impl<'a> Exposure<'a> {
         integrator: &'a dyn Integrator,
         settings: &'a Settings,
     ) -> Self {
-        let (sampler, filter, seed) = (settings.sampler, settings.filter.as_ref(), settings.seed);
-        let (moves, uses_lens) = (scene.geometry().moves() || camera.uses_time(), camera.uses_lens());
-        let patch = integrator.patch(scene);
-        Self { scene, camera, integrator, sampler, filter, seed, moves, uses_lens, patch, idle: Mutex::default() }
+        let (samples, patch) = (CameraSampler::new(scene, camera, settings), integrator.patch(scene));
+        Self { scene, camera, integrator, samples, patch, idle: Mutex::default() }
     }
 
     /// Adds samples until the goal is reached, and says whether it was: it returns soon when it is asked to stop. Even
@@ -150,11 +144,12 @@ impl<'a> Exposure<'a> {
         let idle = self.idle.lock().unwrap_or_else(PoisonError::into_inner).pop();
         idle.unwrap_or_else(|| Bench {
             worker: self.integrator.worker(self.scene, self.footprint()),
+            wanted: Vec::new(),
             samples: Vec::new(),
             weights: Vec::new(),
             radiance: Vec::new(),
+            ends: Vec::new(),
             groups: Vec::new(),
-            grouped: 0,
             runs: Vec::new(),
         })
     }
@@ -192,13 +187,13 @@ impl<'a> Exposure<'a> {
                 for nth in start..end {
                     let number = before + tiles[index].number(members[0].cell, nth);
                     for member in members.iter().filter(|m| m.samples.contains(&nth)) {
-                        bench.add(index, member.cell, self.camera_sample(member.position, number));
+                        bench.add(index, member.cell, Wanted { position: member.position, number });
                     }
                     if self.patch > 1 {
-                        bench.end_group();
+                        bench.ends.push(bench.wanted.len());
                     }
-                    if bench.weights.len() + members.len() > most {
-                        let developed = bench.develop(tiles, &stop.cancel);
+                    if bench.wanted.len() + members.len() > most {
+                        let developed = bench.develop(&self.samples, tiles, &stop.cancel);
                         poll();
                         if !developed || stop.is_raised() {
                             return false;
@@ -207,7 +202,7 @@ impl<'a> Exposure<'a> {
                 }
             }
         }
-        bench.develop(tiles, &stop.cancel)
+        bench.develop(&self.samples, tiles, &stop.cancel)
     }
 
     /// How wide the bundle of rays is that a pixel sees.
@@ -215,57 +210,42 @@ impl<'a> Exposure<'a> {
         let spread = self.camera.spread();
         Footprint { width: spread.width, spread: spread.angle }
     }
-
-    /// A sample of a pixel, placed by the filter, and how much it counts. Where anything moves, it is uniform over the
-    /// shutter's time too, and over the lens if there is one.
-    fn camera_sample(&self, (x, y): (u32, u32), number: u32) -> (CameraSample, f64) {
-        let mut sampler = self.sampler.sampler(self.seed, y * self.camera.width() + x, number);
-        let ([right, down], counts) = self.filter.sample(sampler.two(0));
-        let lens = if self.uses_lens { sampler.two(1) } else { [0.5; 2] };
-        let time = if self.moves { sampler.one(3) } else { 0.0 };
-        // Offsets from the centre are added to the half first, so that those of the pixel's own square are exact.
-        let film = [f64::from(x) + (0.5 + right), f64::from(y) + (0.5 + down)];
-        let CameraRay { ray, weight } = self.camera.ray(film, lens, time);
-        (CameraSample { ray, sampler }, counts * weight)
-    }
 }
 
 impl Bench<'_> {
     fn clear(&mut self) {
+        self.wanted.clear();
         self.samples.clear();
         self.weights.clear();
+        self.ends.clear();
         self.groups.clear();
-        self.grouped = 0;
         self.runs.clear();
     }
 
-    /// Adds a sample of a cell.
+    /// Has a sample of a cell taken next.
     #[inline]
-    fn add(&mut self, tile: usize, cell: usize, (sample, weight): (CameraSample, f64)) {
-        self.weights.push(weight);
-        if weight != 0.0 {
-            self.samples.push(sample);
-        }
+    fn add(&mut self, tile: usize, cell: usize, wanted: Wanted) {
+        self.wanted.push(wanted);
         match self.runs.last_mut() {
             Some(run) if (run.tile, run.cell) == (tile, cell) => run.count += 1,
             _ => self.runs.push(Run { tile, cell, count: 1 }),
         }
     }
 
-    /// The samples since the last group are one.
-    fn end_group(&mut self) {
-        let count = self.samples.len() - self.grouped;
-        if count > 0 {
-            self.groups.push(count as u32);
-            self.grouped = self.samples.len();
-        }
-    }
-
-    /// Adds the radiance of the gathered samples to their cells, and clears them away. Says whether it did: what a
+    /// Takes the samples, adds their radiance to their cells, and clears them away. Says whether it did: what a
     /// cancelled integrator says is not heard.
-    fn develop(&mut self, tiles: &mut [FilmTile], cancel: &Cancel) -> bool {
-        if self.weights.is_empty() {
+    fn develop(&mut self, sampler: &CameraSampler, tiles: &mut [FilmTile], cancel: &Cancel) -> bool {
+        if self.wanted.is_empty() {
             return true;
+        }
+        sampler.take(&self.wanted, &mut self.samples, &mut self.weights);
+        let mut start = 0;
+        for &end in &self.ends {
+            let seen = self.weights[start..end].iter().filter(|&&weight| weight != 0.0).count();
+            if seen > 0 {
+                self.groups.push(seen as u32);
+            }
+            start = end;
         }
         self.radiance.resize(self.samples.len(), Rgb::ZERO);
         if self.groups.is_empty() {

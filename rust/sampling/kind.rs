@@ -85,9 +85,15 @@ impl SamplerKind {
     /// How many consecutive samples of a pixel belong together. Batches are independent of each other, so the spread
     /// between them is an honest measure of the error; within a batch of a low-discrepancy set it would not be.
     pub fn batch(self) -> u32 {
+        self.batch_size().map_or(1, BatchSize::samples)
+    }
+
+    /// The same, of kinds that place samples with regard to each other.
+    #[inline]
+    pub(super) fn batch_size(self) -> Option<BatchSize> {
         match self {
-            Self::Independent => 1,
-            Self::Stratified(size) | Self::Halton(size) | Self::Sobol(size) | Self::Lattice(size) => size.samples(),
+            Self::Independent => None,
+            Self::Stratified(size) | Self::Halton(size) | Self::Sobol(size) | Self::Lattice(size) => Some(size),
         }
     }
 }

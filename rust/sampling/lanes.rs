@@ -29,6 +29,28 @@ impl SamplerLanes {
         Self { kind, key, pixel: [pixel; LANES], sample: [sample; LANES], words: [words; LANES] }
     }
 
+    /// Sample number `number` of a pixel, a lane each, as [`SamplerKind::sampler`] has it.
+    pub fn of(kind: SamplerKind, level: Level, seed: u64, pixel: &[u32; LANES], number: &[u32; LANES]) -> Self {
+        let first = kind.sampler(seed, 0, 0);
+        let mut lanes = Self { pixel: *pixel, sample: *number, ..Self::new(&first) };
+        if let Some(size) = kind.batch_size() {
+            lanes.sample = number.map(|number| number & (size.samples() - 1));
+            let batch = number.map(|number| number >> size.bits());
+            let [mut a, mut b, mut c, mut d] = [[0; LANES]; 4];
+            level.compiled(Starts { key: first.key, pixel, batch: &batch, words: [&mut a, &mut b, &mut c, &mut d] });
+            lanes.words = std::array::from_fn(|i| [a[i], b[i], c[i], d[i]]);
+        }
+        lanes
+    }
+
+    /// That of a lane, whose number among the samples of its pixel is `number`.
+    #[inline]
+    pub fn get(&self, lane: usize, number: u32) -> Sampler {
+        let mut sampler = Sampler::of(self.kind, self.key, self.pixel[lane], number);
+        (sampler.sample, sampler.words) = (self.sample[lane], self.words[lane]);
+        sampler
+    }
+
     /// Puts a sample of the same picture into a lane.
     #[inline(always)]
     pub fn set(&mut self, lane: usize, sampler: &Sampler) {
@@ -89,6 +111,26 @@ impl SamplerLanes {
     #[inline(always)]
     fn points(&self, size: BatchSize, dimensions: &[u32; LANES]) -> [u32; LANES] {
         self.points_of_pairs(size, &dimensions.map(|dimension| dimension | 1))
+    }
+}
+
+/// Where the streams of batches start.
+struct Starts<'a> {
+    key: [u32; 2],
+    pixel: &'a [u32; LANES],
+    batch: &'a [u32; LANES],
+    words: [&'a mut [u32; LANES]; 4],
+}
+
+impl Loops for Starts<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let [a, b, c, d] = self.words;
+        for i in 0..LANES {
+            [a[i], b[i], c[i], d[i]] = Stream::words(self.key, self.pixel[i], self.batch[i]);
+        }
     }
 }
 
@@ -264,6 +306,15 @@ mod tests {
         for kind in kinds {
             let mut samplers: [Sampler; LANES] =
                 std::array::from_fn(|i| kind.sampler(0x1234_5678_9abc, 1000 * i as u32, 7 * i as u32));
+            for level in Level::ALL.into_iter().filter(|level| level.is_available()) {
+                let [pixels, numbers] = [1000, 7].map(|step| std::array::from_fn(|i| step * i as u32));
+                let lanes = SamplerLanes::of(kind, level, 0x1234_5678_9abc, &pixels, &numbers);
+                for (lane, sampler) in samplers.iter_mut().enumerate() {
+                    let mut same = lanes.get(lane, numbers[lane]);
+                    assert_eq!((same.pixel(), same.number()), (sampler.pixel(), sampler.number()));
+                    assert_eq!((same.one(4), same.two(5)), (sampler.one(4), sampler.two(5)), "{kind:?} {level:?}");
+                }
+            }
             let mut lanes = SamplerLanes::new(&samplers[0]);
             for (lane, sampler) in samplers.iter().enumerate() {
                 lanes.set(lane, sampler);

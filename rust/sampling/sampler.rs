@@ -38,13 +38,10 @@ impl SamplerKind {
     #[inline]
     pub fn sampler(self, seed: u64, pixel: u32, sample: u32) -> Sampler {
         let mut sampler = Sampler::new(seed, pixel, sample);
-        match self {
-            Self::Independent => {}
-            Self::Stratified(size) | Self::Halton(size) | Self::Sobol(size) | Self::Lattice(size) => {
-                sampler.kind = self;
-                sampler.words = Stream::words(sampler.key, pixel, sample >> size.bits());
-                sampler.sample = sample & (size.samples() - 1);
-            }
+        if let Some(size) = self.batch_size() {
+            sampler.kind = self;
+            sampler.words = Stream::words(sampler.key, pixel, sample >> size.bits());
+            sampler.sample = sample & (size.samples() - 1);
         }
         sampler
     }
@@ -54,8 +51,13 @@ impl Sampler {
     /// Independent numbers of sample number `sample` of a pixel, for a seed of the whole picture.
     #[inline]
     pub fn new(seed: u64, pixel: u32, sample: u32) -> Self {
-        let key = [seed as u32, (seed >> 32) as u32];
-        Self { kind: SamplerKind::Independent, key, pixel, number: sample, sample, block: u32::MAX, words: [0; 4] }
+        Self::of(SamplerKind::Independent, [seed as u32, (seed >> 32) as u32], pixel, sample)
+    }
+
+    /// Before it is known where in which batch it stands.
+    #[inline]
+    pub(super) fn of(kind: SamplerKind, key: [u32; 2], pixel: u32, number: u32) -> Self {
+        Self { kind, key, pixel, number, sample: number, block: u32::MAX, words: [0; 4] }
     }
 
     /// Of which pixel it is a sample.

@@ -23,7 +23,7 @@ mod surface_point;
 pub mod textures;
 mod view;
 
-pub use cameras::{Camera, CameraError, CameraRay, Perspective};
+pub use cameras::{Camera, CameraError, CameraRay, CameraRayLanes, Perspective};
 pub(crate) use caustics::is_matt;
 pub use caustics::{Aim, Caustics};
 pub use compiled::Scene;

@@ -70,6 +70,12 @@ impl Block<'_> {
         self.encounters.get(lane, Diffuse { reflectance: self.reflectance.get(lane) })
     }
 
+    /// A ray that leaves the surface of a lane, at the time of the path that came there.
+    #[inline(always)]
+    pub fn leaving(&self, lane: usize, ray: Ray) -> Ray {
+        Ray { time: self.rays[lane].time, misses: [self.hits[lane].primitive, Ray::NO_TRIANGLE], ..ray }
+    }
+
     /// The encounter of a lane with any other.
     #[inline(always)]
     pub fn other(&self, lane: usize) -> Interaction<&Scattering> {

@@ -170,8 +170,7 @@ impl<N: Features> TransportWorker<'_, N> {
             path.each = false;
             path.bounce = path.bounce.saturating_add(1);
             if self.survives(&mut path, Arrival::GoesOn, chances[lane]) {
-                let ray = Ray { time: block.rays[lane].time, ..Ray::new(origin.get(lane), direction.get(lane)) };
-                self.next.rays.push(ray);
+                self.next.rays.push(block.leaving(lane, Ray::new(origin.get(lane), direction.get(lane))));
                 self.next.paths.push(path);
                 if N::GENERAL {
                     self.next.carried.push(Carried { chance: -1.0, ..*self.carried(block, lane) });
@@ -232,7 +231,7 @@ impl<N: Features> TransportWorker<'_, N> {
             return;
         }
         let ray = block.other(lane).ray_origin().ray(next.direction);
-        self.next.rays.push(Ray { time: block.rays[lane].time, ..ray });
+        self.next.rays.push(block.leaving(lane, ray));
         self.next.paths.push(path);
         if N::GENERAL {
             let carried = self.carried(block, lane);

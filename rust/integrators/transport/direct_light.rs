@@ -109,7 +109,7 @@ impl<N: Features> TransportWorker<'_, N> {
             let arriving = arriving.get(lane);
             if block.goes_on[lane] && arriving != Rgb::ZERO {
                 let ray = Ray { t_max: t_max[lane], ..Ray::new(origin.get(lane), direction.get(lane)) };
-                self.cast(block, lane, ray, direction.get(lane), arriving);
+                self.cast(block, lane, (ray, lights.primitive(lane)), direction.get(lane), arriving);
             }
         }
     }
@@ -183,12 +183,15 @@ impl<N: Features> TransportWorker<'_, N> {
             Some(source) => from.segment(source),
             None => from.ray(light.direction),
         };
-        self.cast(block, lane, ray, light.direction, arriving);
+        self.cast(block, lane, (ray, light.primitive), light.direction, arriving);
     }
 
+    /// Queues a shadow ray to light on a primitive.
     #[inline]
-    fn cast(&mut self, block: &Block, lane: usize, ray: Ray, direction: DVec3, arriving: Rgb) {
-        self.shadows.push(Ray { time: block.rays[lane].time, ..ray }, block.paths[lane].sample, arriving);
+    fn cast(&mut self, block: &Block, lane: usize, (ray, lamp): (Ray, u32), direction: DVec3, arriving: Rgb) {
+        let mut ray = block.leaving(lane, ray);
+        ray.misses[1] = lamp;
+        self.shadows.push(ray, block.paths[lane].sample, arriving);
         if N::GENERAL && self.nested {
             let is_through = !block.is_diffuse && block.other(lane).is_through(direction);
             let media = if is_through { self.boundary(block, lane).1 } else { self.carried(block, lane).media };

@@ -20,6 +20,8 @@ pub use mitchell::Mitchell;
 pub use separable::{Profile, Separable};
 pub use triangle::Triangle;
 
+use crate::math::LANES;
+use crate::sampling::Pairs;
 use std::fmt::Debug;
 
 /// A reconstruction filter, centred on its pixel. Lengths are in pixels.
@@ -33,6 +35,15 @@ pub trait Filter: Debug + Send + Sync {
     /// An offset for a uniform point of the unit square, and the weight of what is found there: the filter over the
     /// density of the draw, whose mean is 1. It is negative where the filter is.
     fn sample(&self, u: [f64; 2]) -> ([f64; 2], f64);
+
+    /// The same for a point of each lane.
+    fn sample_lanes(&self, u: &Pairs, offsets: &mut Pairs, weights: &mut [f64; LANES]) {
+        for lane in 0..LANES {
+            let offset;
+            (offset, weights[lane]) = self.sample([u[0][lane], u[1][lane]]);
+            [offsets[0][lane], offsets[1][lane]] = offset;
+        }
+    }
 }
 
 /// A length that makes sense, or why it does not.

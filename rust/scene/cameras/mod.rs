@@ -4,6 +4,7 @@ mod aperture;
 mod body;
 mod error;
 mod fisheye;
+mod lanes;
 mod orthographic;
 mod panorama;
 mod perspective;
@@ -15,6 +16,7 @@ pub use aperture::Aperture;
 pub use body::Body;
 pub use error::CameraError;
 pub use fisheye::{Fisheye, Mapping};
+pub use lanes::CameraRayLanes;
 pub use orthographic::Orthographic;
 pub use panorama::Panorama;
 pub use perspective::Perspective;
@@ -22,7 +24,9 @@ pub use thin_lens::ThinLens;
 pub use viewpoint::Viewpoint;
 pub use window::{Measured, Window};
 
-use crate::math::{DVec3, Ray};
+use crate::math::{DVec3, LANES, Ray};
+use crate::sampling::Pairs;
+use crate::simd::Level;
 use std::fmt::Debug;
 
 /// What turns points of a picture into rays.
@@ -36,6 +40,14 @@ pub trait Camera: Debug + Send + Sync {
     /// The ray through a point of the film and a point of the lens, each coordinate in (0, 1) and its centre at
     /// (0.5, 0.5), at a time from 0 as the shutter opens to 1 as it closes.
     fn ray(&self, film: [f64; 2], lens: [f64; 2], time: f64) -> CameraRay;
+
+    /// What [`Camera::ray`] gives for a point of the film, a point of the lens and a time of each lane.
+    fn rays(&self, _: Level, film: &Pairs, lens: &Pairs, time: &[f64; LANES], rays: &mut CameraRayLanes) {
+        for lane in 0..LANES {
+            let [film, lens] = [film, lens].map(|points| [points[0][lane], points[1][lane]]);
+            rays.set(lane, &self.ray(film, lens, time[lane]));
+        }
+    }
 
     /// What a pixel covers.
     fn spread(&self) -> Spread;

@@ -1,8 +1,10 @@
 //! The pinhole.
 
 use super::window::from_middle;
-use super::{Body, Camera, CameraError, CameraRay, Measured, Spread, Viewpoint, Window};
-use crate::math::{DVec3, Ray};
+use super::{Body, Camera, CameraError, CameraRay, CameraRayLanes, Measured, Spread, Viewpoint, Window};
+use crate::math::{DVec3, LANES, Ray, VectorLanes};
+use crate::sampling::Pairs;
+use crate::simd::{Level, Loops};
 
 /// A pinhole camera. It looks along its own −z with +y up; row 0 of its picture is at the top.
 #[derive(Clone, Debug, PartialEq)]
@@ -57,10 +59,36 @@ impl Perspective {
     }
 
     #[inline(always)]
-    fn ray_by(&self, position: DVec3, [middle, right, up]: &[DVec3; 3], film: [f64; 2], time: f64) -> Ray {
-        let [x, y] = from_middle(film, self.body.size());
-        let direction = (middle + right * x + up * y).normalize();
+    fn ray_by(&self, position: DVec3, window: &[DVec3; 3], film: [f64; 2], time: f64) -> Ray {
+        let direction = towards(window, film, self.body.size());
         Ray { time: self.body.scene_time(time), ..Ray::new(position, direction) }
+    }
+}
+
+/// The way to a point of the film, which is at distance 1.
+#[inline(always)]
+fn towards([middle, right, up]: &[DVec3; 3], film: [f64; 2], size: [f64; 2]) -> DVec3 {
+    let [x, y] = from_middle(film, size);
+    (middle + right * x + up * y).normalize()
+}
+
+/// Ways to points of a film.
+struct Towards<'a> {
+    film: &'a [DVec3; 3],
+    size: [f64; 2],
+    points: &'a Pairs,
+    directions: &'a mut VectorLanes,
+}
+
+impl Loops for Towards<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        for i in 0..LANES {
+            let point = [self.points[0][i], self.points[1][i]];
+            self.directions.set(i, towards(self.film, point, self.size));
+        }
     }
 }
 
@@ -75,6 +103,23 @@ impl Camera for Perspective {
         }
         let from = self.body.at(time);
         CameraRay::seen(self.ray_by(from.position, &self.window.axes(&from), film, time))
+    }
+
+    fn rays(&self, level: Level, film: &Pairs, lens: &Pairs, time: &[f64; LANES], rays: &mut CameraRayLanes) {
+        if self.body.moves() {
+            for lane in 0..LANES {
+                let [film, lens] = [film, lens].map(|points| [points[0][lane], points[1][lane]]);
+                rays.set(lane, &self.ray(film, lens, time[lane]));
+            }
+            return;
+        }
+        let CameraRayLanes { origin, direction, time: times, weight } = rays;
+        level.compiled(Towards { film: &self.film, size: self.body.size(), points: film, directions: direction });
+        for lane in 0..LANES {
+            origin.set(lane, self.body.start().position);
+            times[lane] = self.body.scene_time(time[lane]);
+            weight[lane] = 1.0;
+        }
     }
 
     fn spread(&self) -> Spread {

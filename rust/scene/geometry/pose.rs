@@ -95,6 +95,8 @@ impl Pose {
         Ray {
             origin: times(&self.inverse, ray.origin - self.shift),
             direction: times(&self.inverse, ray.direction),
+            // The group's primitives have numbers of their own.
+            misses: [Ray::NO_TRIANGLE; 2],
             ..*ray
         }
     }

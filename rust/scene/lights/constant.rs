@@ -32,7 +32,7 @@ impl Light for ConstantEnvironment {
         };
         let pdf = self.outside_pdf(receiver, direction);
         // Rounding may turn a direction in the plane to below it.
-        (pdf > 0.0).then(|| LightSample { direction, weight: self.radiance / pdf, pdf, source: None })
+        (pdf > 0.0).then(|| LightSample::of_outside(direction, self.radiance / pdf, pdf))
     }
 
     #[inline]

@@ -36,7 +36,7 @@ impl Light for DirectionalLight {
 
     #[inline]
     fn sample(&self, _: &LightSampleContext, _: [f64; 2]) -> Option<LightSample> {
-        Some(LightSample { direction: self.from, weight: self.irradiance, pdf: f64::INFINITY, source: None })
+        Some(LightSample::of_outside(self.from, self.irradiance, f64::INFINITY))
     }
 
     fn bytes(&self) -> usize {

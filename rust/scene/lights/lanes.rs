@@ -3,7 +3,7 @@
 use super::triangle::SeenTriangle;
 use super::{LightSample, LightSampleContext, Lights, Sides};
 use crate::accel::Primitives;
-use crate::math::{DVec3, LANES, VectorLanes};
+use crate::math::{DVec3, LANES, Ray, VectorLanes};
 use crate::optics::Rgb;
 use crate::sampling::Pairs;
 use crate::scene::geometry::error_among;
@@ -48,6 +48,8 @@ pub struct LightLanes {
     offset: VectorLanes,
     /// Whether that is within the scene.
     is_within: [bool; LANES],
+    /// On which primitive that is, as [`LightSample`] has it.
+    primitive: [u32; LANES],
 }
 
 impl LightLanes {
@@ -59,6 +61,7 @@ impl LightLanes {
         position: VectorLanes::ZERO,
         offset: VectorLanes::ZERO,
         is_within: [false; LANES],
+        primitive: [Ray::NO_TRIANGLE; LANES],
     };
 
     /// The direction that a lane's light comes from, and its weight and density, as [`LightSample`] has them; the
@@ -74,15 +77,22 @@ impl LightLanes {
         (RayOrigin::with(self.position.get(lane), self.offset.get(lane)), self.is_within[lane])
     }
 
+    /// On which primitive a lane's light sets out, as [`LightSample`] has it.
+    #[inline(always)]
+    pub fn primitive(&self, lane: usize) -> u32 {
+        self.primitive[lane]
+    }
+
     /// The light of a lane; none where the draw gave none.
     pub fn sample(&self, lane: usize) -> Option<LightSample> {
         let ((direction, weight, pdf), (source, is_within)) = (self.get(lane), self.source(lane));
-        (pdf > 0.0).then(|| LightSample { direction, weight, pdf, source: is_within.then_some(source) })
+        let (source, primitive) = (is_within.then_some(source), self.primitive[lane]);
+        (pdf > 0.0).then(|| LightSample { direction, weight, pdf, source, primitive })
     }
 
     /// Sets that of a lane.
     fn set(&mut self, lane: usize, sample: Option<LightSample>) {
-        let Some(LightSample { direction, weight, pdf, source }) = sample else {
+        let Some(LightSample { direction, weight, pdf, source, primitive }) = sample else {
             self.pdf[lane] = 0.0;
             return;
         };
@@ -93,6 +103,7 @@ impl LightLanes {
         self.position.set(lane, from.position());
         self.offset.set(lane, from.offset());
         self.is_within[lane] = source.is_some();
+        self.primitive[lane] = primitive;
     }
 }
 
@@ -183,6 +194,7 @@ impl Lights {
             for (corners, corner) in lamps.corners.iter_mut().zip(geometry.corners(primitive)) {
                 corners.set(lane, corner);
             }
+            lights.primitive[lane] = primitive;
             lamps.normal.set(lane, geometry.normal(primitive));
             lamps.radiance.set(lane, emission.radiance.at(&TexturePoint::NOWHERE));
             lamps.sides[0][lane] = emission.sides != Sides::Back;

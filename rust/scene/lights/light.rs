@@ -1,7 +1,7 @@
 //! What every light that is no surface can be asked, and what is drawn from one.
 
 use super::{LightBounds, LightSampleContext};
-use crate::math::DVec3;
+use crate::math::{DVec3, Ray};
 use crate::optics::Rgb;
 use crate::scene::RayOrigin;
 use std::fmt::Debug;
@@ -18,9 +18,17 @@ pub struct LightSample {
     pub pdf: f64,
     /// Where it sets out; `None` if from outside the scene.
     pub source: Option<RayOrigin>,
+    /// On which primitive of the scene that is; [`Ray::NO_TRIANGLE`] if on none.
+    pub primitive: u32,
 }
 
 impl LightSample {
+    /// Light from outside the scene.
+    #[inline]
+    pub(super) fn of_outside(direction: DVec3, weight: Rgb, pdf: f64) -> Self {
+        Self { direction, weight, pdf, source: None, primitive: Ray::NO_TRIANGLE }
+    }
+
     /// Light from a point of this intensity along a direction away from it; `None` where that is 0, or at the point
     /// itself.
     #[inline]
@@ -38,7 +46,8 @@ impl LightSample {
         let direction = way / distance;
         let weight = intensity(-direction) / (distance * distance);
         let source = Some(RayOrigin::free(position));
-        (weight != Rgb::ZERO).then_some(Self { direction, weight, pdf: f64::INFINITY, source })
+        let one = Self { direction, weight, pdf: f64::INFINITY, source, primitive: Ray::NO_TRIANGLE };
+        (weight != Rgb::ZERO).then_some(one)
     }
 
     /// The same, when its light is one of several and was chosen with a probability.

@@ -163,7 +163,7 @@ impl Light for EnvironmentMap {
         let direction: DVec3 = (0..3).map(|i| self.to_picture[i] * local[i]).sum();
         let (radiance, pdf) = self.within(pyramid, cell, [x, y], sine);
         let weight = radiance * (self.scale / pdf);
-        (pdf > 0.0 && sine > 0.0).then_some(LightSample { direction, weight, pdf, source: None })
+        (pdf > 0.0 && sine > 0.0).then_some(LightSample::of_outside(direction, weight, pdf))
     }
 
     #[inline]

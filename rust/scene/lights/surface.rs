@@ -64,6 +64,7 @@ pub(super) fn sample(
         weight: radiance / pdf,
         pdf,
         source: Some(RayOrigin::new(surface)),
+        primitive,
     })
 }
 

@@ -1,13 +1,19 @@
 //! The best that is known of sixteen rays together, and triangles that are tested against all of them.
 
 use super::WideBvh;
-use super::best::{Best, meet};
+use super::best::{Best, meet, primitive};
 use super::looking::Looking;
 use super::node::Packed;
 use super::sixteen::Sixteen;
 use crate::math::RayBatch;
 use crate::shapes::triangle::{ALL, Column, EdgeRay, Leaves, RAYS, Spread};
-use crate::simd::Lanes;
+use crate::simd::{Lanes, Simd};
+
+/// Whether so few of sixteen rays are asked about a leaf that each is tested alone.
+#[inline(always)]
+pub fn are_few(asked: u32, leaf: Packed) -> bool {
+    3 * asked.count_ones() <= 2 * leaf.leaf().1
+}
 
 /// The best that is known of sixteen rays, by columns; see [`Best`].
 pub struct Bests {
@@ -85,11 +91,60 @@ impl Bests {
         simd.select(changed, simd.mul_add(simd.load(&self.high), simd.splat(to_box), least), limits)
     }
 
+    /// Tests a leaf against so few of the rays that each is tested alone against all of its triangles; says what
+    /// [`Bests::test`] does.
+    #[inline(always)]
+    pub fn visit_alone<const ANY: bool, const N: usize, L: Leaves<N>, S: Simd<N>>(
+        &mut self,
+        simd: S,
+        bvh: &WideBvh<N, L>,
+        rays: &Sixteen,
+        from: (&RayBatch<'_>, usize),
+        leaf: Packed,
+        asked: u32,
+    ) -> u32 {
+        let (mut changed, mut rest) = (0, asked);
+        while rest != 0 {
+            let i = rest.trailing_zeros() as usize & (RAYS - 1);
+            rest &= rest - 1;
+            let mut ray = self.looking(rays, i, from.1);
+            let has_changed = ray.visit::<ANY, N, L, S>(simd, &bvh.leaves, &bvh.region, leaf, from.0);
+            if !ANY {
+                // What has won may lie no nearer in f32.
+                self.note(i, ray.best);
+            }
+            changed |= u32::from(has_changed) << i;
+        }
+        changed
+    }
+
+    /// Tests a leaf against the rays in `asked`, each triangle against all of them; says what [`Bests::test`] does.
+    #[inline(always)]
+    #[allow(clippy::too_many_arguments)]
+    pub fn visit<const ANY: bool, const N: usize, L: Leaves<N>, S: Simd<N>>(
+        &mut self,
+        simd: S,
+        bvh: &WideBvh<N, L>,
+        rays: &Sixteen,
+        from: (&RayBatch<'_>, usize),
+        triangles: &Spread<N>,
+        leaf: Packed,
+        asked: u32,
+    ) -> u32 {
+        let mut changed = 0;
+        for lane in 0..leaf.leaf().1 {
+            // Where any hit will do, what is answered is asked no more.
+            let asked = if ANY { asked & !changed } else { asked };
+            changed |= self.test::<ANY, N, L, _>(simd.sixteen(), bvh, rays, from, triangles, leaf, lane, asked);
+        }
+        changed
+    }
+
     /// Tests the triangle in a lane of a leaf against those of the rays in `asked`; says of which what is known has
     /// changed, or, if any hit will do, which are answered.
     #[inline(always)]
     #[allow(clippy::too_many_arguments)]
-    pub fn test<const ANY: bool, const N: usize, L: Leaves<N>, S: Lanes<RAYS>>(
+    fn test<const ANY: bool, const N: usize, L: Leaves<N>, S: Lanes<RAYS>>(
         &mut self,
         simd: S,
         bvh: &WideBvh<N, L>,
@@ -123,6 +178,9 @@ impl Bests {
         while open != 0 {
             let i = open.trailing_zeros() as usize;
             open &= open - 1;
+            if from.0.misses(from.1 + i, primitive(&bvh.leaves, leaf, lane)) {
+                continue;
+            }
             changed |= u32::from(self.decide::<ANY, N, L>(bvh, from.0, from.1, i, leaf, lane)) << i;
         }
         changed

@@ -2,7 +2,7 @@
 
 use super::WideBvh;
 use super::answer::Answer;
-use super::bests::Bests;
+use super::bests::{Bests, are_few};
 use super::first::First;
 use super::node::Packed;
 use super::sixteen::Sixteen;
@@ -51,18 +51,22 @@ pub fn answer<const N: usize, L: Leaves<N>, S: Simd<N>, A: Answer>(
             if active == 0 {
                 continue;
             }
-            let (first, triangles) = leaf.leaf();
-            let spread = bvh.leaves.spread(simd, &rays.blocks, first, triangles);
-            let mut changed = 0;
-            for lane in 0..triangles {
-                let from = (batch, start);
-                changed |= if A::ANY {
-                    // What is answered is asked no more.
-                    bests.test::<true, N, L, _>(sixteen, bvh, &rays, from, &spread, leaf, lane, active & !changed)
+            let from = (batch, start);
+            let changed = if are_few(active, leaf) {
+                if A::ANY {
+                    bests.visit_alone::<true, N, L, S>(simd, bvh, &rays, from, leaf, active)
                 } else {
-                    bests.test::<false, N, L, _>(sixteen, bvh, &rays, from, &spread, leaf, lane, active)
-                };
-            }
+                    bests.visit_alone::<false, N, L, S>(simd, bvh, &rays, from, leaf, active)
+                }
+            } else {
+                let (first, count) = leaf.leaf();
+                let triangles = bvh.leaves.spread(simd, &rays.blocks, first, count);
+                if A::ANY {
+                    bests.visit::<true, N, L, S>(simd, bvh, &rays, from, &triangles, leaf, active)
+                } else {
+                    bests.visit::<false, N, L, S>(simd, bvh, &rays, from, &triangles, leaf, active)
+                }
+            };
             if A::ANY {
                 bests.answered |= changed;
                 if bests.answered == plain {

@@ -1,7 +1,7 @@
 //! A ray that looks for its first hit, or for any: f32 says between which two numbers the `t` of a triangle lies, and
 //! decides wherever that is enough; f64 decides the rest.
 
-use super::best::{Best, meet};
+use super::best::{Best, meet, primitive};
 use super::node::Packed;
 use super::sixteen::Sixteen;
 use crate::math::{Ray, RayBatch, Region};
@@ -101,6 +101,9 @@ fn decide<const N: usize, L: Leaves<N>>(
     lane: u32,
     best: &mut Best,
 ) {
+    if ray.misses.contains(&primitive(leaves, leaf, lane)) {
+        return;
+    }
     if let Some(ray) = EdgeRay::new(ray, region) {
         best.decide(leaves, L::unit(region), &ray, leaf, lane);
     }
@@ -109,5 +112,6 @@ fn decide<const N: usize, L: Leaves<N>>(
 /// Whether a ray meets a triangle, decided in f64.
 #[inline(never)]
 fn decide_any<const N: usize, L: Leaves<N>>(leaves: &L, region: &Region, ray: &Ray, leaf: Packed, lane: u32) -> bool {
-    EdgeRay::new(ray, region).is_some_and(|ray| meet(leaves, &ray, leaf, lane).is_some())
+    !ray.misses.contains(&primitive(leaves, leaf, lane))
+        && EdgeRay::new(ray, region).is_some_and(|ray| meet(leaves, &ray, leaf, lane).is_some())
 }

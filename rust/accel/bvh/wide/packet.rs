@@ -14,7 +14,7 @@
 
 use super::WideBvh;
 use super::answer::Answer;
-use super::bests::Bests;
+use super::bests::{Bests, are_few};
 use super::first::First;
 use super::node::{Packed, WideNode};
 use super::sixteen::Sixteen;
@@ -243,40 +243,18 @@ impl<'a> Packet<'a> {
         let triangles = bvh.leaves.spread(simd, &self.rays[0].blocks, first, count);
         let mut has_changed = false;
         for which in 0..self.rays.len() {
-            let (active, mut changed) = (active[which], 0);
+            let active = active[which];
             if active == 0 {
                 continue;
             }
             let (rays, bests, start) = (&self.rays[which], &mut self.bests[which], self.start + which * RAYS);
-            if 3 * active.count_ones() <= 2 * count {
-                let mut rest = active;
-                while rest != 0 {
-                    let i = rest.trailing_zeros() as usize & (RAYS - 1);
-                    rest &= rest - 1;
-                    let mut ray = bests.looking(rays, i, start);
-                    let has_changed = if A::ANY {
-                        ray.visit::<true, N, L, S>(simd, &bvh.leaves, &bvh.region, leaf, errand.rays)
-                    } else {
-                        ray.visit::<false, N, L, S>(simd, &bvh.leaves, &bvh.region, leaf, errand.rays)
-                    };
-                    if !A::ANY {
-                        // What has won may lie no nearer in f32.
-                        bests.note(i, ray.best);
-                    }
-                    changed |= u32::from(has_changed) << i;
-                }
-            } else {
-                let from = (errand.rays, start);
-                for lane in 0..count {
-                    let simd = simd.sixteen();
-                    changed |= if A::ANY {
-                        // What is answered is asked no more.
-                        bests.test::<true, N, L, _>(simd, bvh, rays, from, &triangles, leaf, lane, active & !changed)
-                    } else {
-                        bests.test::<false, N, L, _>(simd, bvh, rays, from, &triangles, leaf, lane, active)
-                    };
-                }
-            }
+            let from = (errand.rays, start);
+            let changed = match (A::ANY, are_few(active, leaf)) {
+                (false, false) => bests.visit::<false, N, L, S>(simd, bvh, rays, from, &triangles, leaf, active),
+                (false, true) => bests.visit_alone::<false, N, L, S>(simd, bvh, rays, from, leaf, active),
+                (true, false) => bests.visit::<true, N, L, S>(simd, bvh, rays, from, &triangles, leaf, active),
+                (true, true) => bests.visit_alone::<true, N, L, S>(simd, bvh, rays, from, leaf, active),
+            };
             if changed != 0 {
                 has_changed = true;
                 self.lose_interest::<N, L, _, A>(simd.sixteen(), bvh, which, changed);

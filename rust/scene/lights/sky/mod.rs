@@ -201,7 +201,7 @@ impl Light for SunSky {
             return None;
         };
         let pdf = self.outside_pdf(receiver, direction);
-        (pdf > 0.0).then(|| LightSample { direction, weight: self.outside(direction) / pdf, pdf, source: None })
+        (pdf > 0.0).then(|| LightSample::of_outside(direction, self.outside(direction) / pdf, pdf))
     }
 
     fn outside(&self, direction: DVec3) -> Rgb {

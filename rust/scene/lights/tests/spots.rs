@@ -110,7 +110,7 @@ fn a_slide_is_thrown_upright_and_evenly() {
 #[test]
 fn a_distant_light_brings_its_irradiance_to_what_faces_it() {
     let light = DirectionalLight::new(DVec3::new(0.0, 3e-200, -4e-200), Rgb::new(1.0, 5.0, 2.0));
-    let LightSample { direction, weight, pdf, source } = light.sample(&FLOOR, [0.5; 2]).unwrap();
+    let LightSample { direction, weight, pdf, source, .. } = light.sample(&FLOOR, [0.5; 2]).unwrap();
     assert!((direction - DVec3::new(0.0, -0.6, 0.8)).length() < 1e-15);
     assert!((weight * direction.z).y - 4.0 < 1e-12 && pdf == f64::INFINITY && source.is_none());
     assert_eq!(light.outside(direction), Rgb::ZERO);
