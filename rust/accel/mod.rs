@@ -160,6 +160,9 @@ pub trait ByColumns: Send + Sync {
     /// The closest hit of each ray.
     fn intersect(&self, rays: &RayColumns<'_>, hits: HitColumns<'_>);
 
+    /// The closest hit of each ray, one after the other.
+    fn first_hits(&self, rays: &RayColumns<'_>, hits: &mut [Hit]);
+
     /// Whether each ray hits anything.
     fn occluded(&self, rays: &RayColumns<'_>, occluded: &mut [bool]);
 

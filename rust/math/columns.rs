@@ -28,6 +28,8 @@ pub struct RayColumns<'a> {
     direction: Vectors<'a>,
     t_min: Numbers<'a>,
     t_max: Numbers<'a>,
+    /// None where nothing is known.
+    misses: Option<&'a [[u32; 2]]>,
 }
 
 /// Rays as whoever asks has them.
@@ -124,7 +126,16 @@ impl<'a> RayColumns<'a> {
         for numbers in [t_min, t_max] {
             assert!(!matches!(numbers, Numbers::Each(each) if each.len() != count), "a number for each ray");
         }
-        Self { origin, direction, t_min, t_max }
+        Self { origin, direction, t_min, t_max, misses: None }
+    }
+
+    /// The same, of which each is known to miss two triangles.
+    ///
+    /// # Panics
+    /// If the column differs in length.
+    pub fn missing(self, misses: &'a [[u32; 2]]) -> Self {
+        assert_eq!(misses.len(), self.len(), "two triangles for each ray");
+        Self { misses: Some(misses), ..self }
     }
 
     /// How many there are.
@@ -147,7 +158,8 @@ impl<'a> RayColumns<'a> {
     #[inline(always)]
     pub fn get(&self, i: usize) -> Ray {
         let (t_min, t_max) = (self.t_min.get(i), self.t_max.get(i));
-        Ray { t_min, t_max, ..Ray::new(self.origin.get(i), self.direction.get(i)) }
+        let misses = self.misses.map_or([Ray::NO_TRIANGLE; 2], |misses| misses[i]);
+        Ray { t_min, t_max, misses, ..Ray::new(self.origin.get(i), self.direction.get(i)) }
     }
 }
 
@@ -171,7 +183,7 @@ impl RayBatch<'_> {
     pub fn misses(&self, i: usize, triangle: u32) -> bool {
         match self {
             Self::Rows(rays) => rays[i].misses.contains(&triangle),
-            Self::Columns(_) => false,
+            Self::Columns(columns) => columns.misses.is_some_and(|misses| misses[i].contains(&triangle)),
         }
     }
 

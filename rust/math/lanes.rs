@@ -29,6 +29,12 @@ impl VectorLanes {
         DVec3::new(self.x[lane], self.y[lane], self.z[lane])
     }
 
+    /// Each coordinate of all lanes.
+    #[inline(always)]
+    pub fn by_axis(&self) -> [&[f64; LANES]; 3] {
+        [&self.x, &self.y, &self.z]
+    }
+
     /// Sets that of a lane.
     #[inline(always)]
     pub fn set(&mut self, lane: usize, v: DVec3) {

@@ -3,7 +3,7 @@
 use super::geometry::Watched;
 use super::{Caustics, DescriptionError, Emission, Geometry, Lights, Material, Plan, SceneDescription, SurfacePoint};
 use crate::accel::{Accelerator, Cost, Crossings, Nearest, Primitives, Side, Touches};
-use crate::math::{DVec3, Hit, Ray, Region};
+use crate::math::{DVec3, Hit, Ray, RayQueue, Region};
 use crate::shapes::triangle::SolidCone;
 use crate::work::{Stopped, Work};
 use std::sync::{Arc, OnceLock};
@@ -106,6 +106,22 @@ impl Scene {
     /// Whether each ray hits anything.
     pub fn occluded(&self, rays: &[Ray], occluded: &mut [bool]) {
         self.accelerator.occluded(rays, occluded);
+    }
+
+    /// The closest hit of each ray of a queue.
+    pub fn intersect_queue(&self, rays: &mut RayQueue, hits: &mut [Hit]) {
+        match self.accelerator.by_columns() {
+            Some(tree) => tree.first_hits(&rays.columns(), hits),
+            None => self.accelerator.intersect(rays.rows(), hits),
+        }
+    }
+
+    /// Whether each ray of a queue hits anything.
+    pub fn occluded_queue(&self, rays: &mut RayQueue, occluded: &mut [bool]) {
+        match self.accelerator.by_columns() {
+            Some(tree) => tree.occluded(&rays.columns(), occluded),
+            None => self.accelerator.occluded(rays.rows(), occluded),
+        }
     }
 
     /// Every hit of each ray.

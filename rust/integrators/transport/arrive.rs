@@ -21,12 +21,12 @@ impl<N: Features> TransportWorker<'_, N> {
         arrivals.windows.clear();
         arrivals.of.clear();
         if self.nested {
-            for (i, (ray, hit)) in (0..).zip(self.now.rays.iter().zip(&self.hits)) {
+            for (i, hit) in self.hits.iter().enumerate() {
                 if hit.is_hit()
-                    && let Some(window) = around(self.scene, ray, hit)
+                    && let Some(window) = around(self.scene, &self.now.rays.get(i), hit)
                 {
                     arrivals.windows.push(window);
-                    arrivals.of.push(i);
+                    arrivals.of.push(i as u32);
                 }
             }
             arrivals.boundaries.resize(self.now.rays.len(), (1.0, MediumStack::NONE));
@@ -36,14 +36,14 @@ impl<N: Features> TransportWorker<'_, N> {
         for i in 0..self.now.rays.len() {
             let mut hit = self.hits[i];
             if !hit.is_hit() {
-                let (ray, path) = (&self.now.rays[i], &self.now.paths[i]);
+                let (ray, path) = (&self.now.rays.get(i), &self.now.paths[i]);
                 radiance[path.sample as usize] += path.throughput * self.infinite_light(ray, path);
                 continue;
             }
             let mut shape = self.scene.geometry().locate(hit.primitive).0;
             let mut outside = 1.0;
             if N::GENERAL && (self.masks || self.nested) {
-                let (ray, path, mut carried) = (self.now.rays[i], self.now.paths[i], self.now.carried[i]);
+                let (ray, path, mut carried) = (self.now.rays.get(i), self.now.paths[i], self.now.carried[i]);
                 if arrivals.of.get(window) == Some(&(i as u32)) {
                     window += 1;
                     match Boundary::new(self.scene, &ray, &carried.media, &crossings, window - 1) {
@@ -110,7 +110,7 @@ impl<N: Features> TransportWorker<'_, N> {
 
     /// Sends a path on along the ray that it was on: with the same origin, so that nothing but the surface is left out.
     fn pass(&mut self, ray: Ray, path: PathState, carried: Carried) {
-        self.next.rays.push(ray);
+        self.next.rays.push(&ray);
         self.next.paths.push(path);
         self.next.carried.push(carried);
     }

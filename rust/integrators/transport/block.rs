@@ -4,7 +4,7 @@ use super::aiming::Arrival;
 use super::dimensions::Dimensions;
 use super::path_state::PathState;
 use crate::integrators::CameraSample;
-use crate::math::{Hit, LANES, Ray, VectorLanes};
+use crate::math::{Hit, LANES, Ray, RayLanes, VectorLanes};
 use crate::optics::Diffuse;
 use crate::sampling::SamplerLanes;
 use crate::scene::materials::Scattering;
@@ -74,6 +74,17 @@ impl Block<'_> {
     #[inline(always)]
     pub fn leaving(&self, lane: usize, ray: Ray) -> Ray {
         Ray { time: self.rays[lane].time, misses: [self.hits[lane].primitive, Ray::NO_TRIANGLE], ..ray }
+    }
+
+    /// Rays that leave the surfaces of all lanes, at the times of the paths that came there.
+    #[inline(always)]
+    pub fn all_leaving(&self, origin: VectorLanes, direction: VectorLanes, t_max: [f64; LANES]) -> RayLanes {
+        let (mut time, mut misses) = ([0.0; LANES], [[Ray::NO_TRIANGLE; 2]; LANES]);
+        for lane in 0..LANES {
+            time[lane] = self.rays[lane].time;
+            misses[lane][0] = self.hits[lane].primitive;
+        }
+        RayLanes { origin, direction, t_max, time, misses }
     }
 
     /// The encounter of a lane with any other.

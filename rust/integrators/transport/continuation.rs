@@ -9,7 +9,7 @@ use super::features::{Carried, Features};
 use super::path_state::PathState;
 use super::weights::{ROULETTE_AT_LATEST, survival};
 use super::worker::TransportWorker;
-use crate::math::{LANES, Ray, VectorLanes};
+use crate::math::{LANES, VectorLanes};
 use crate::optics::{Diffuse, Rgb};
 use crate::sampling::Pairs;
 use crate::scene::{Footprint, InteractionLanes, Scattered};
@@ -159,6 +159,7 @@ impl<N: Features> TransportWorker<'_, N> {
             pdf: &mut pdf,
         });
         let chances = self.chances(block, &block.dimensions);
+        let mut going = 0;
         for lane in 0..block.count {
             if !block.goes_on[lane] || pdf[lane] == 0.0 {
                 continue;
@@ -170,13 +171,14 @@ impl<N: Features> TransportWorker<'_, N> {
             path.each = false;
             path.bounce = path.bounce.saturating_add(1);
             if self.survives(&mut path, Arrival::GoesOn, chances[lane]) {
-                self.next.rays.push(block.leaving(lane, Ray::new(origin.get(lane), direction.get(lane))));
+                going |= 1 << lane;
                 self.next.paths.push(path);
                 if N::GENERAL {
                     self.next.carried.push(Carried { chance: -1.0, ..*self.carried(block, lane) });
                 }
             }
         }
+        self.next.rays.push_lanes(&block.all_leaving(origin, direction, [f64::INFINITY; LANES]), going);
     }
 
     /// The numbers for roulette, if any path of a block plays.
@@ -231,7 +233,7 @@ impl<N: Features> TransportWorker<'_, N> {
             return;
         }
         let ray = block.other(lane).ray_origin().ray(next.direction);
-        self.next.rays.push(block.leaving(lane, ray));
+        self.next.rays.push(&block.leaving(lane, ray));
         self.next.paths.push(path);
         if N::GENERAL {
             let carried = self.carried(block, lane);

@@ -7,7 +7,7 @@ use super::resampling::resampled;
 use super::weights::power_heuristic;
 use super::worker::TransportWorker;
 use crate::integrators::CameraSample;
-use crate::math::{DVec3, LANES, Ray, VectorLanes};
+use crate::math::{DVec3, LANES, VectorLanes};
 use crate::optics::{Diffuse, Rgb};
 use crate::sampling::Sampler;
 use crate::scene::{InteractionLanes, LightLanes, LightSample};
@@ -105,13 +105,19 @@ impl<N: Features> TransportWorker<'_, N> {
             direction: &mut direction,
             t_max: &mut t_max,
         });
+        let mut asked = 0;
         for lane in 0..block.count {
             let arriving = arriving.get(lane);
             if block.goes_on[lane] && arriving != Rgb::ZERO {
-                let ray = Ray { t_max: t_max[lane], ..Ray::new(origin.get(lane), direction.get(lane)) };
-                self.cast(block, lane, (ray, lights.primitive(lane)), direction.get(lane), arriving);
+                asked |= 1 << lane;
+                self.bring(block, lane, direction.get(lane), arriving);
             }
         }
+        let mut rays = block.all_leaving(origin, direction, t_max);
+        for lane in 0..LANES {
+            rays.misses[lane][1] = lights.primitive(lane);
+        }
+        self.shadows.push_lanes(&rays, asked);
     }
 
     /// Asks once for each lane whose number is below how often it asks.
@@ -183,19 +189,20 @@ impl<N: Features> TransportWorker<'_, N> {
             Some(source) => from.segment(source),
             None => from.ray(light.direction),
         };
-        self.cast(block, lane, (ray, light.primitive), light.direction, arriving);
+        let mut ray = block.leaving(lane, ray);
+        ray.misses[1] = light.primitive;
+        self.shadows.push(&ray);
+        self.bring(block, lane, light.direction, arriving);
     }
 
-    /// Queues a shadow ray to light on a primitive.
+    /// Says what arrives at the sample of a lane along a shadow ray that leaves in a direction.
     #[inline]
-    fn cast(&mut self, block: &Block, lane: usize, (ray, lamp): (Ray, u32), direction: DVec3, arriving: Rgb) {
-        let mut ray = block.leaving(lane, ray);
-        ray.misses[1] = lamp;
-        self.shadows.push(ray, block.paths[lane].sample, arriving);
+    fn bring(&mut self, block: &Block, lane: usize, direction: DVec3, arriving: Rgb) {
+        self.shadows.bring(block.paths[lane].sample, arriving);
         if N::GENERAL && self.nested {
             let is_through = !block.is_diffuse && block.other(lane).is_through(direction);
             let media = if is_through { self.boundary(block, lane).1 } else { self.carried(block, lane).media };
-            self.shadows.set_media(media);
+            self.shadows.start_in(media);
         }
     }
 

@@ -1,7 +1,7 @@
 //! Paths on their way.
 
 use super::features::Carried;
-use crate::math::{DVec3, Ray};
+use crate::math::{DVec3, RayQueue};
 use crate::optics::Rgb;
 
 /// A path on its way.
@@ -74,7 +74,7 @@ impl PathState {
 /// Paths that go on, and the ray that each is about to follow.
 #[derive(Default)]
 pub(super) struct Queue {
-    pub rays: Vec<Ray>,
+    pub rays: RayQueue,
     pub paths: Vec<PathState>,
     pub carried: Vec<Carried>,
 }

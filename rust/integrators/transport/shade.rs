@@ -104,7 +104,7 @@ impl<'a, N: Features> TransportWorker<'a, N> {
         block.index = array::from_fn(|lane| which[lane.min(which.len() - 1)]);
         for lane in 0..LANES {
             let index = block.index[lane] as usize;
-            block.rays[lane] = self.now.rays[index];
+            block.rays[lane] = self.now.rays.get(index);
             block.hits[lane] = self.hits[index];
             block.paths[lane] = self.now.paths[index];
             block.goes_on[lane] = false;

@@ -1,7 +1,7 @@
 //! Whether light that was drawn arrives.
 
 use super::nesting::{Boundary, MediumStack, around};
-use crate::math::{Hit, Ray};
+use crate::math::{Hit, Ray, RayLanes, RayQueue};
 use crate::optics::Rgb;
 use crate::scene::textures::TexturePoint;
 use crate::scene::{Scene, ShadingPoint};
@@ -9,7 +9,7 @@ use crate::scene::{Scene, ShadingPoint};
 /// Shadow rays of a batch, and what arrives along each if nothing lies on the way.
 #[derive(Default)]
 pub(super) struct Shadows {
-    rays: Vec<Ray>,
+    rays: RayQueue,
     arriving: Vec<(u32, Rgb)>,
     /// What each starts in, in a scene of nested media.
     media: Vec<MediumStack>,
@@ -28,16 +28,27 @@ impl Shadows {
         self.media.clear();
     }
 
-    /// A ray along which this much arrives at a sample.
+    /// A ray.
     #[inline]
-    pub fn push(&mut self, ray: Ray, sample: u32, arriving: Rgb) {
+    pub fn push(&mut self, ray: &Ray) {
         self.rays.push(ray);
+    }
+
+    /// Rays of the lanes in a mask.
+    #[inline]
+    pub fn push_lanes(&mut self, rays: &RayLanes, mask: u32) {
+        self.rays.push_lanes(rays, mask);
+    }
+
+    /// How much arrives at a sample along the next ray, of those pushed, for which it is not said yet.
+    #[inline]
+    pub fn bring(&mut self, sample: u32, arriving: Rgb) {
         self.arriving.push((sample, arriving));
     }
 
-    /// What the ray pushed last starts in.
+    /// What the next ray starts in for which it is not said yet.
     #[inline]
-    pub fn set_media(&mut self, media: MediumStack) {
+    pub fn start_in(&mut self, media: MediumStack) {
         self.media.push(media);
     }
 
@@ -51,7 +62,7 @@ impl Shadows {
     /// Adds to each sample what arrives at it in a scene in which every hit blocks.
     pub fn add_unblocked(&mut self, scene: &Scene, radiance: &mut [Rgb]) {
         self.occluded.resize(self.rays.len(), false);
-        scene.occluded(&self.rays, &mut self.occluded);
+        scene.occluded_queue(&mut self.rays, &mut self.occluded);
         for (&(sample, arriving), &occluded) in self.arriving.iter().zip(&self.occluded) {
             if !occluded {
                 radiance[sample as usize] += arriving;
@@ -65,7 +76,7 @@ impl Shadows {
         // Light is added in the order of the rays, whichever of them are followed for longer.
         let mut on_way: Vec<usize> = (0..self.rays.len()).collect();
         while !on_way.is_empty() {
-            let rays: Vec<Ray> = on_way.iter().map(|&i| self.rays[i]).collect();
+            let rays: Vec<Ray> = on_way.iter().map(|&i| self.rays.get(i)).collect();
             self.hits.clear();
             self.hits.resize(rays.len(), Hit::MISS);
             scene.intersect(&rays, &mut self.hits);
@@ -93,7 +104,7 @@ impl Shadows {
                     window += 1;
                     if let Boundary::None(media) = Boundary::new(scene, ray, &self.media[which], &crossings, window - 1)
                     {
-                        self.rays[which].t_min = self.windows[window - 1].t_max.next_up();
+                        self.rays.set_t_min(which, self.windows[window - 1].t_max.next_up());
                         self.media[which] = media;
                         on_way[kept] = which;
                         kept += 1;
@@ -103,7 +114,7 @@ impl Shadows {
                 let opacity = opacity(scene, ray, hit);
                 self.arriving[which].1 *= 1.0 - opacity;
                 if opacity < 1.0 {
-                    self.rays[which].t_min = hit.t.next_up();
+                    self.rays.set_t_min(which, hit.t.next_up());
                     on_way[kept] = which;
                     kept += 1;
                 }

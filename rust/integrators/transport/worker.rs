@@ -76,14 +76,14 @@ impl<'a, N: Features> TransportWorker<'a, N> {
     /// Puts the camera's rays into the queue.
     fn start(&mut self, samples: &[CameraSample]) {
         self.now.clear();
-        self.now.rays.extend(samples.iter().map(|s| s.ray));
+        samples.iter().for_each(|sample| self.now.rays.push(&sample.ray));
         self.now.paths.extend((0u32..).zip(samples).map(|(sample, _)| PathState::of_camera(sample)));
         if N::GENERAL {
             let start = Carried { footprint: self.footprint, ..Carried::default() };
             self.now.carried.resize(samples.len(), start);
             if self.nested {
                 let mut media = Vec::new();
-                MediumStack::at(self.scene, &self.now.rays, &mut media);
+                MediumStack::at(self.scene, self.now.rays.rows(), &mut media);
                 for (carried, media) in self.now.carried.iter_mut().zip(media) {
                     carried.media = media;
                 }
@@ -147,7 +147,7 @@ impl<N: Features> TransportWorker<'_, N> {
         self.start(samples);
         while !self.now.rays.is_empty() && !cancel.is_raised() {
             self.hits.resize(self.now.rays.len(), Hit::MISS);
-            self.scene.intersect(&self.now.rays, &mut self.hits);
+            self.scene.intersect_queue(&mut self.now.rays, &mut self.hits);
             self.bounce(samples, radiance);
             if !self.settings.shadows {
                 self.shadows.add_all(radiance);

@@ -198,6 +198,11 @@ where
         self.level.dispatch(Firsts { bvh: self, rays: RayBatch::Columns(*rays), answer: hits });
     }
 
+    fn first_hits(&self, rays: &RayColumns<'_>, hits: &mut [Hit]) {
+        assert_eq!(rays.len(), hits.len(), "a hit for each ray");
+        self.level.dispatch(Firsts { bvh: self, rays: RayBatch::Columns(*rays), answer: hits });
+    }
+
     fn occluded(&self, rays: &RayColumns<'_>, occluded: &mut [bool]) {
         assert_eq!(rays.len(), occluded.len(), "an answer for each ray");
         self.level.dispatch(Firsts { bvh: self, rays: RayBatch::Columns(*rays), answer: occluded });
