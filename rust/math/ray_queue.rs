@@ -119,8 +119,7 @@ impl RayQueue {
             let [x, y, z] = columns;
             Vectors::Double([x, y, z])
         });
-        RayColumns::new(origin, direction, Numbers::Each(&self.t_min), Numbers::Each(&self.t_max))
-            .missing(&self.misses)
+        RayColumns::new(origin, direction, Numbers::Each(&self.t_min), Numbers::Each(&self.t_max)).missing(&self.misses)
     }
 
     /// All of them, one after the other.

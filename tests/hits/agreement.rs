@@ -315,6 +315,7 @@ fn ray() -> impl Strategy<Value = Ray> {
         t_min,
         t_max,
         time: 0.0,
+        misses: [Ray::NO_TRIANGLE; 2],
     })
 }
 

@@ -41,6 +41,7 @@ pub(super) const DOWN: Ray = Ray {
     t_min: 0.0,
     t_max: f64::INFINITY,
     time: 0.0,
+    misses: [Ray::NO_TRIANGLE; 2],
 };
 
 /// What a square of side 2 and radiance 3 gives the origin from height 1, over a floor of 0.8 (Lambert, 1760).

@@ -21,6 +21,7 @@ const ANYWHERE: Ray = Ray {
     t_min: 0.0,
     t_max: f64::INFINITY,
     time: 0.0,
+    misses: [Ray::NO_TRIANGLE; 2],
 };
 
 #[test]
