@@ -259,8 +259,7 @@ class Rendering:
         """Whether the error estimate rests on many samples that agree on it; True where there is none."""
     @property
     def carried(self) -> tuple[int, float] | None:
-        """How few samples, unlike all that pixels beside show, carry more than half of the error estimate, and
-        their share; None if many do."""
+        """How few finds carry more than half of the error estimate, and their share; None if many do."""
     @property
     def dropped(self) -> int:
         """Samples that were NaN, infinite or negative, and are counted as black."""

@@ -161,7 +161,7 @@ impl Patch {
             let of_peak = denominators.of_peak(mean, peak.without, around, chances.of(peak.brightness), samples);
             let brings = peak.variance.dot(of_peak.likely);
             self.peaks[cell] += brings;
-            if is_find(peak.brightness, beside) {
+            if is_find(peak.brightness, shown[y * width + x], beside) {
                 self.finds[cell] += brings;
             }
             self.error += brings;

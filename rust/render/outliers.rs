@@ -16,8 +16,8 @@ const FEW: usize = 8;
 
 /// The largest of many numbers, from the largest down.
 ///
-/// Only the largest sample of each cell is looked at, if it is a find. That is enough: an outlier is one of few in all of the picture,
-/// and two of them are hardly ever in the same cell.
+/// Only the largest sample of each cell is looked at, if it is a find. That is enough: an outlier is one of few in all
+/// of the picture, and two of them are hardly ever in the same cell.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Largest([f64; FEW]);
 
@@ -55,15 +55,16 @@ impl Largest {
     }
 }
 
-/// Whether a sample so bright is a find: what the pixels beside it show, at most, is less than half of it.
+/// Whether a sample is a find: it stands out from the others of its pixel by more than twice what the pixels beside it
+/// do, at most.
 ///
 /// The pixel on the rim of a lamp may meet it by one sample of many, and a few of these may carry the error: the more
 /// so if samples are placed, which leaves little error elsewhere. But how bright the lamp is, the next pixels show by
 /// all of their samples, and the next sample to meet it is no brighter. What is rare and unknown has no such witness:
 /// a lamp that is smaller than a pixel, light through a keyhole, a caustic that was met once.
 #[inline]
-pub(super) fn is_find(brightness: f64, beside: f64) -> bool {
-    brightness > 2.0 * beside
+pub(super) fn is_find(brightness: f64, others: f64, beside: f64) -> bool {
+    brightness - others > 2.0 * (beside - others).max(0.0)
 }
 
 /// The largest of what the up to eight pixels show that are `apart` from one along either axis, or both.
@@ -117,6 +118,8 @@ mod tests {
         let at = |x, y, apart| beside(&shown, 5, x, y, apart);
         assert_eq!([at(0, 0, 1), at(2, 1, 1), at(4, 3, 1), at(0, 3, 1)], [6.0, 13.0, 18.0, 16.0]);
         assert_eq!([at(0, 0, 2), at(2, 1, 2), at(4, 3, 2), at(0, 0, 8)], [12.0, 19.0, 17.0, 0.0]);
-        assert!(is_find(2.1, 1.0) && !is_find(2.0, 1.0) && !is_find(0.0, 0.0) && is_find(1e-9, 0.0));
+        assert!(is_find(2.1, 0.0, 1.0) && !is_find(2.0, 0.0, 1.0) && !is_find(0.0, 0.0, 0.0));
+        // A little more than all that is around, and than what is darker.
+        assert!(is_find(1.001, 1.0, 1.0) && is_find(1.001, 1.0, 0.5));
     }
 }

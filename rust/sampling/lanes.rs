@@ -93,8 +93,8 @@ impl SamplerLanes {
         philox4x32([dimension / 2, self.sample[lane], self.pixel[lane], 0], self.key)
     }
 
-    /// Which point of its batch each sample is, for a pair of numbers. What a lane looks up in a table is no vector, and
-    /// stands in a loop of its own.
+    /// Which point of its batch each sample is, for a pair of numbers. What a lane looks up in a table is no vector,
+    /// and stands in a loop of its own.
     #[inline(always)]
     fn points_of_pairs(&self, size: BatchSize, dimensions: &[u32; LANES]) -> [u32; LANES] {
         let (mut random, mut points) = ([0; LANES], [0; LANES]);

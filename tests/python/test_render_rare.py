@@ -96,7 +96,7 @@ def test_light_through_a_keyhole_is_known_to_be_rare():
 
 
 def test_the_rim_of_a_lamp_is_no_rare_find():
-    # Of these pictures four to eight pixels that met the lamp once carry most of the error that placing leaves.
+    # In these, four to eight pixels that met the lamp once carry most of the error that placing leaves.
     scene, camera = rare_scenes.cornell(32)
     for seed in (19, 30, 74, 120):
         image = rw.render(scene, camera, samples=16, seed=seed, progress=False)
