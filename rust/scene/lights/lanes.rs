@@ -1,111 +1,14 @@
 //! Light drawn for sixteen receivers at a time.
 
 use super::triangle::SeenTriangle;
-use super::{LightSample, LightSampleContext, Lights, Sides};
+use super::{LightContextLanes, LightLanes, Lights, Sides};
 use crate::accel::Primitives;
-use crate::math::{DVec3, LANES, Ray, VectorLanes};
-use crate::optics::Rgb;
+use crate::math::{LANES, VectorLanes};
 use crate::sampling::Pairs;
 use crate::scene::geometry::error_among;
 use crate::scene::textures::TexturePoint;
 use crate::scene::{Geometry, RayOrigin};
 use crate::simd::{Level, Loops};
-
-/// Receivers, a lane each.
-#[derive(Clone, Debug)]
-pub struct LightContextLanes {
-    position: VectorLanes,
-    normal: VectorLanes,
-}
-
-impl LightContextLanes {
-    /// Nowhere.
-    pub const NONE: Self = Self { position: VectorLanes::ZERO, normal: VectorLanes::ZERO };
-
-    /// That of a lane.
-    #[inline(always)]
-    pub fn get(&self, lane: usize) -> LightSampleContext {
-        LightSampleContext { position: self.position.get(lane), normal: self.normal.get(lane) }
-    }
-
-    /// Sets that of a lane.
-    #[inline(always)]
-    pub fn set(&mut self, lane: usize, receiver: &LightSampleContext) {
-        self.position.set(lane, receiver.position);
-        self.normal.set(lane, receiver.normal);
-    }
-}
-
-/// Light on its way to receivers, a lane each.
-#[derive(Clone, Debug)]
-pub struct LightLanes {
-    direction: VectorLanes,
-    weight: VectorLanes,
-    /// 0 where the draw gave none.
-    pdf: [f64; LANES],
-    /// Where it sets out, and the way off the surface there.
-    position: VectorLanes,
-    offset: VectorLanes,
-    /// Whether that is within the scene.
-    is_within: [bool; LANES],
-    /// On which primitive that is, as [`LightSample`] has it.
-    primitive: [u32; LANES],
-}
-
-impl LightLanes {
-    /// No light.
-    pub const NONE: Self = Self {
-        direction: VectorLanes::ZERO,
-        weight: VectorLanes::ZERO,
-        pdf: [0.0; LANES],
-        position: VectorLanes::ZERO,
-        offset: VectorLanes::ZERO,
-        is_within: [false; LANES],
-        primitive: [Ray::NO_TRIANGLE; LANES],
-    };
-
-    /// The direction that a lane's light comes from, and its weight and density, as [`LightSample`] has them; the
-    /// density is 0 where there is none.
-    #[inline(always)]
-    pub fn get(&self, lane: usize) -> (DVec3, Rgb, f64) {
-        (self.direction.get(lane), self.weight.get(lane), self.pdf[lane])
-    }
-
-    /// Where a lane's light sets out, and whether that is within the scene.
-    #[inline(always)]
-    pub fn source(&self, lane: usize) -> (RayOrigin, bool) {
-        (RayOrigin::with(self.position.get(lane), self.offset.get(lane)), self.is_within[lane])
-    }
-
-    /// On which primitive a lane's light sets out, as [`LightSample`] has it.
-    #[inline(always)]
-    pub fn primitive(&self, lane: usize) -> u32 {
-        self.primitive[lane]
-    }
-
-    /// The light of a lane; none where the draw gave none.
-    pub fn sample(&self, lane: usize) -> Option<LightSample> {
-        let ((direction, weight, pdf), (source, is_within)) = (self.get(lane), self.source(lane));
-        let (source, primitive) = (is_within.then_some(source), self.primitive[lane]);
-        (pdf > 0.0).then(|| LightSample { direction, weight, pdf, source, primitive })
-    }
-
-    /// Sets that of a lane.
-    fn set(&mut self, lane: usize, sample: Option<LightSample>) {
-        let Some(LightSample { direction, weight, pdf, source, primitive }) = sample else {
-            self.pdf[lane] = 0.0;
-            return;
-        };
-        let from = source.unwrap_or(RayOrigin::free(DVec3::ZERO));
-        self.direction.set(lane, direction);
-        self.weight.set(lane, weight);
-        self.pdf[lane] = pdf;
-        self.position.set(lane, from.position());
-        self.offset.set(lane, from.offset());
-        self.is_within[lane] = source.is_some();
-        self.primitive[lane] = primitive;
-    }
-}
 
 /// Triangles that shine, a lane each, and how likely each was chosen.
 struct Lamps {
@@ -172,6 +75,9 @@ impl Lights {
         u: &Pairs,
         lights: &mut LightLanes,
     ) {
+        if let (None, [sky]) = (&self.choice, self.outside.lights()) {
+            return sky.sample_lanes(level, receivers, u, lights);
+        }
         let (true, Some(choices)) = (self.are_plain_triangles, &self.choice) else {
             for lane in 0..LANES {
                 let u = [u[0][lane], u[1][lane]];
