@@ -87,7 +87,7 @@ impl<'a, N: Features> TransportWorker<'a, N> {
             block.throughput.set(lane, block.paths[lane].throughput);
         }
         if !self.scene.lights().is_dark() {
-            self.direct_light(block, samples);
+            self.direct_light(block);
         }
         self.go_on(block);
     }

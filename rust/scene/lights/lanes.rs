@@ -8,7 +8,9 @@ use crate::sampling::Pairs;
 use crate::scene::geometry::error_among;
 use crate::scene::textures::TexturePoint;
 use crate::scene::{Geometry, RayOrigin};
+use crate::shapes::{Seen, Sphere};
 use crate::simd::{Level, Loops};
+use std::array::from_fn;
 
 /// Triangles that shine, a lane each, and how likely each was chosen.
 struct Lamps {
@@ -64,6 +66,62 @@ fn draw(receivers: &LightContextLanes, lamps: &Lamps, u: &Pairs, lights: &mut Li
     }
 }
 
+/// Spheres that shine, a lane each.
+struct Balls {
+    center: VectorLanes,
+    radius: [f64; LANES],
+}
+
+/// What is drawn of them; of receivers inside, and of those on them, nothing is said.
+struct DrawBalls<'a> {
+    receivers: &'a LightContextLanes,
+    balls: &'a Balls,
+    lamps: &'a Lamps,
+    u: &'a Pairs,
+    lights: &'a mut LightLanes,
+    /// 1 where the receiver is outside.
+    outside: &'a mut [f64; LANES],
+}
+
+impl Loops for DrawBalls<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Self { receivers, balls, lamps, u, lights, outside } = self;
+        let LightLanes { direction, weight, pdf, position, offset, .. } = lights;
+        draw_balls((receivers, balls, lamps, u), direction, weight, pdf, (position, offset), outside);
+    }
+}
+
+#[inline(always)]
+fn draw_balls(
+    (receivers, balls, lamps, u): (&LightContextLanes, &Balls, &Lamps, &Pairs),
+    direction: &mut VectorLanes,
+    weight: &mut VectorLanes,
+    pdf: &mut [f64; LANES],
+    (position, offset): (&mut VectorLanes, &mut VectorLanes),
+    outside: &mut [f64; LANES],
+) {
+    for i in 0..LANES {
+        let shine = |cosine: f64| (lamps.sides[0][i] & (cosine > 0.0)) | (lamps.sides[1][i] & (cosine < 0.0));
+        let (place, sphere) =
+            (receivers.position.get(i), Sphere { center: balls.center.get(i), radius: balls.radius[i] });
+        let (Seen { site, pdf: density }, is_outside) = sphere.sight_from_outside(place, [u[0][i], u[1][i]]);
+        let way = site.position - place;
+        let towards = way / way.length();
+        // Also false where the distance is 0 and the direction NaN.
+        let is_lit = shine(-towards.dot(site.normal)) & (density > 0.0) & (density < f64::INFINITY);
+        let from = RayOrigin::off(site.position, site.error, site.normal);
+        direction.set(i, towards);
+        weight.set(i, lamps.radiance.get(i) / density / lamps.probability[i]);
+        pdf[i] = if is_lit { density * lamps.probability[i] } else { 0.0 };
+        position.set(i, from.position());
+        offset.set(i, from.offset());
+        outside[i] = if is_outside { 1.0 } else { 0.0 };
+    }
+}
+
 impl Lights {
     /// What [`Lights::sample`] gives, a lane each: `choice` and `u` are the numbers that it takes.
     pub fn sample_lanes(
@@ -78,35 +136,125 @@ impl Lights {
         if let (None, [sky]) = (&self.choice, self.outside.lights()) {
             return sky.sample_lanes(level, receivers, u, lights);
         }
-        let (true, Some(choices)) = (self.are_plain_triangles, &self.choice) else {
+        let (true, Some(choices)) = (self.outside.is_dark(), &self.choice) else {
             for lane in 0..LANES {
                 let u = [u[0][lane], u[1][lane]];
                 lights.set(lane, self.sample(geometry, &receivers.get(lane), choice[lane], u));
             }
             return;
         };
+        let chosen = from_fn(|lane| choices.sample(&receivers.get(lane), choice[lane]));
+        self.sample_chosen(level, geometry, receivers, &chosen, u, lights);
+    }
+
+    /// What [`Lights::sample_one`] gives, a lane each.
+    #[allow(clippy::too_many_arguments)]
+    pub fn sample_one_lanes(
+        &self,
+        one: u32,
+        level: Level,
+        geometry: &Geometry,
+        receivers: &LightContextLanes,
+        choice: &[f64; LANES],
+        u: &Pairs,
+        lights: &mut LightLanes,
+    ) {
+        if !self.is_within(one) {
+            for lane in 0..LANES {
+                let (receiver, u) = (receivers.get(lane), [u[0][lane], u[1][lane]]);
+                lights.set(lane, self.sample_one(one, geometry, &receiver, || choice[lane], u));
+            }
+            return;
+        }
+        let mut own = *u;
+        let chosen = from_fn(|lane| {
+            let (number, share, x) = self.one_within(one, u[0][lane]);
+            own[0][lane] = x;
+            Some((number, share))
+        });
+        self.sample_chosen(level, geometry, receivers, &chosen, &own, lights);
+    }
+
+    /// Draws light of those within the scene, by their numbers and how likely each was chosen.
+    fn sample_chosen(
+        &self,
+        level: Level,
+        geometry: &Geometry,
+        receivers: &LightContextLanes,
+        chosen: &[Option<(usize, f64)>; LANES],
+        u: &Pairs,
+        lights: &mut LightLanes,
+    ) {
         let mut lamps = Lamps {
             corners: [VectorLanes::ZERO; 3],
             normal: VectorLanes::ZERO,
             radiance: VectorLanes::ZERO,
+            // A lane without a light has sides that do not shine.
             sides: [[false; LANES]; 2],
             probability: [0.0; LANES],
         };
-        for (lane, &choice) in choice.iter().enumerate() {
-            // A lane without a light has sides that do not shine.
-            let Some((chosen, probability)) = choices.sample(&receivers.get(lane), choice) else { continue };
-            let primitive = self.surfaces[chosen];
+        let mut balls = Balls { center: VectorLanes::ZERO, radius: [1.0; LANES] };
+        let (mut triangles, mut spheres, mut others) = (0u32, 0u32, 0u32);
+        for (lane, &chosen) in chosen.iter().enumerate() {
+            let Some((number, probability)) = chosen else { continue };
+            let plain = self.surfaces.get(number).filter(|_| self.are_plain[number]);
+            let Some(&primitive) = plain else {
+                others |= 1 << lane;
+                continue;
+            };
             let emission = self.emission(geometry.locate(primitive).0);
-            for (corners, corner) in lamps.corners.iter_mut().zip(geometry.corners(primitive)) {
-                corners.set(lane, corner);
+            match geometry.shape(primitive).and_then(|shape| shape.ball()) {
+                Some((center, radius)) => {
+                    spheres |= 1 << lane;
+                    balls.center.set(lane, center);
+                    balls.radius[lane] = radius;
+                }
+                None => {
+                    triangles |= 1 << lane;
+                    for (corners, corner) in lamps.corners.iter_mut().zip(geometry.corners(primitive)) {
+                        corners.set(lane, corner);
+                    }
+                    lamps.normal.set(lane, geometry.normal(primitive));
+                }
             }
             lights.primitive[lane] = primitive;
-            lamps.normal.set(lane, geometry.normal(primitive));
             lamps.radiance.set(lane, emission.radiance.at(&TexturePoint::NOWHERE));
             lamps.sides[0][lane] = emission.sides != Sides::Back;
             lamps.sides[1][lane] = emission.sides != Sides::Front;
             lamps.probability[lane] = probability;
         }
-        level.compiled(Draw { receivers, lamps: &lamps, u, lights });
+        if spheres == 0 {
+            level.compiled(Draw { receivers, lamps: &lamps, u, lights });
+        } else {
+            let mut outside = [0.0; LANES];
+            let mut of_spheres = LightLanes::NONE;
+            let draw = DrawBalls {
+                receivers,
+                balls: &balls,
+                lamps: &lamps,
+                u,
+                lights: &mut of_spheres,
+                outside: &mut outside,
+            };
+            level.compiled(draw);
+            if triangles != 0 {
+                level.compiled(Draw { receivers, lamps: &lamps, u, lights });
+            }
+            for lane in (0..LANES).filter(|&lane| triangles >> lane & 1 == 0) {
+                of_spheres.primitive[lane] = lights.primitive[lane];
+                of_spheres.is_within[lane] = true;
+                lights.copy(lane, &of_spheres);
+                if spheres >> lane & 1 == 1 && outside[lane] == 0.0 {
+                    others |= 1 << lane;
+                }
+            }
+        }
+        for lane in (0..LANES).filter(|&lane| others >> lane & 1 == 1) {
+            let light = chosen[lane].and_then(|(number, probability)| {
+                let u = [u[0][lane], u[1][lane]];
+                Some(self.sample_within(number, geometry, &receivers.get(lane), u)?.chosen(probability))
+            });
+            lights.set(lane, light);
+        }
     }
 }

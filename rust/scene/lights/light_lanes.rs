@@ -84,6 +84,16 @@ impl LightLanes {
         (pdf > 0.0).then(|| LightSample { direction, weight, pdf, source, primitive })
     }
 
+    /// Takes that of a lane from others.
+    pub(super) fn copy(&mut self, lane: usize, others: &Self) {
+        self.direction.set(lane, others.direction.get(lane));
+        self.weight.set(lane, others.weight.get(lane));
+        self.pdf[lane] = others.pdf[lane];
+        self.position.set(lane, others.position.get(lane));
+        self.offset.set(lane, others.offset.get(lane));
+        (self.is_within[lane], self.primitive[lane]) = (others.is_within[lane], others.primitive[lane]);
+    }
+
     /// Sets that of a lane.
     pub(super) fn set(&mut self, lane: usize, sample: Option<LightSample>) {
         let Some(LightSample { direction, weight, pdf, source, primitive }) = sample else {
