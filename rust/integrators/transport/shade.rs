@@ -152,6 +152,8 @@ impl<'a, N: Features> TransportWorker<'a, N> {
                 continue;
             }
             let mut path = block.paths[lane];
+            let wo = block.encounters.get(lane, &block.scattering[lane]).wo();
+            block.scattering[lane].prepare(wo);
             let here = block.encounters.get(lane, &block.scattering[lane]);
             if N::SHARES {
                 path = self.reuse.visit(path, &here);
