@@ -29,7 +29,7 @@ impl Ray {
 
     /// A ray asked for every `t` from 0 on.
     #[inline(always)]
-    pub fn new(origin: DVec3, direction: DVec3) -> Self {
+    pub const fn new(origin: DVec3, direction: DVec3) -> Self {
         Self { origin, direction, t_min: 0.0, t_max: f64::INFINITY, time: 0.0, misses: [Self::NO_TRIANGLE; 2] }
     }
 

@@ -30,21 +30,35 @@ pub struct RayLanes {
     pub misses: [[u32; 2]; LANES],
 }
 
-/// Appends those of the lanes in a mask.
-#[inline(always)]
-fn append<T: Copy + Default>(column: &mut Vec<T>, lanes: &[T; LANES], mask: u32) {
-    let start = column.len();
-    column.extend_from_slice(lanes);
-    if mask.count_ones() == LANES as u32 {
-        return;
+/// Some of all lanes, in their order.
+struct Chosen {
+    lanes: [u8; LANES],
+    count: usize,
+}
+
+impl Chosen {
+    #[inline(always)]
+    fn of(mask: u32) -> Self {
+        let (mut lanes, mut count) = ([0; LANES], 0);
+        for lane in 0..LANES {
+            lanes[count & (LANES - 1)] = lane as u8;
+            count += (mask >> lane & 1) as usize;
+        }
+        Self { lanes, count }
     }
-    // Each is moved to the place of the first that is still free.
-    let (to, mut count) = (&mut column[start..], 0);
-    for lane in 0..LANES {
-        to[count] = to[lane];
-        count += (mask >> lane & 1) as usize;
+
+    /// Appends what they have.
+    #[inline(always)]
+    fn append<T: Copy>(&self, column: &mut Vec<T>, all: &[T; LANES]) {
+        if self.count == LANES {
+            return column.extend_from_slice(all);
+        }
+        let mut picked = *all;
+        for (picked, lane) in picked.iter_mut().zip(self.lanes) {
+            *picked = all[usize::from(lane) & (LANES - 1)];
+        }
+        column.extend_from_slice(&picked[..self.count]);
     }
-    column.truncate(start + count);
 }
 
 impl RayQueue {
@@ -83,15 +97,16 @@ impl RayQueue {
     /// Adds the rays of those lanes that are in a mask.
     #[inline]
     pub fn push_lanes(&mut self, rays: &RayLanes, mask: u32) {
+        let chosen = Chosen::of(mask);
         for (columns, lanes) in [(&mut self.origin, &rays.origin), (&mut self.direction, &rays.direction)] {
             for (column, lanes) in columns.iter_mut().zip(lanes.by_axis()) {
-                append(column, lanes, mask);
+                chosen.append(column, lanes);
             }
         }
-        append(&mut self.t_min, &[0.0; LANES], mask);
-        append(&mut self.t_max, &rays.t_max, mask);
-        append(&mut self.time, &rays.time, mask);
-        append(&mut self.misses, &rays.misses, mask);
+        chosen.append(&mut self.t_min, &[0.0; LANES]);
+        chosen.append(&mut self.t_max, &rays.t_max);
+        chosen.append(&mut self.time, &rays.time);
+        chosen.append(&mut self.misses, &rays.misses);
     }
 
     /// One of them.

@@ -41,6 +41,14 @@ macro_rules! kinds {
                 }
             }
 
+            /// See [`Scatter::prepare`].
+            #[inline]
+            pub fn prepare(&mut self, wo: DVec3) {
+                match self {
+                    $(Self::$kind(kind) => kind.prepare(wo),)+
+                }
+            }
+
             /// See [`Scatter::albedo`].
             #[inline]
             pub fn albedo(&self) -> Rgb {

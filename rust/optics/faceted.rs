@@ -36,6 +36,12 @@ macro_rules! kinds {
                 }
             }
 
+            fn prepare(&mut self, wo: DVec3) {
+                match self {
+                    $(Self::$kind(kind) => kind.prepare(wo),)+
+                }
+            }
+
             fn albedo(&self) -> Rgb {
                 match self {
                     $(Self::$kind(kind) => kind.albedo(),)+

@@ -22,6 +22,9 @@ pub trait Scatter {
     /// for when it has several), `u` for the direction. `None` if the draw scatters nothing.
     fn sample(&self, wo: DVec3, choice: impl FnOnce() -> f64, u: [f64; 2]) -> Option<BsdfSample>;
 
+    /// Computes beforehand what goes by `wo` alone: several questions are to follow that have the same.
+    fn prepare(&mut self, _wo: DVec3) {}
+
     /// About the share of white light that is scattered, for pictures of it: that of even light where the kind knows
     /// it.
     fn albedo(&self) -> Rgb;

@@ -197,6 +197,11 @@ pub trait Shape: Debug + Send + Sync {
         Some(Seen { site: point.site(), pdf })
     }
 
+    /// Centre and radius, if it is a sphere.
+    fn ball(&self) -> Option<(DVec3, f64)> {
+        None
+    }
+
     /// [`Shape::pdf_from`] of a direction that is known to meet it.
     fn pdf_of_met(&self, place: DVec3, direction: DVec3) -> f64 {
         self.pdf_from(place, direction)

@@ -33,9 +33,35 @@ impl Sphere {
         Point { position, error, normal, uv, dp: dn.map(|d| d * self.radius), dn }
     }
 
+    /// [`Shape::sight_from`] for a place outside; and whether it is one, without which nothing is said.
+    #[inline(always)]
+    pub fn sight_from_outside(&self, place: DVec3, u: [f64; 2]) -> (Seen, bool) {
+        let (cone, is_outside) = self.cone_from_outside(place);
+        (self.sight_in(&cone, u), is_outside)
+    }
+
+    /// A point drawn evenly in the cone that it fills.
+    #[inline(always)]
+    fn sight_in(&self, cone: &Cone, u: [f64; 2]) -> Seen {
+        // x = 1 − cos θ is even in [0, height), and sin² θ = x (2 − x) is the square of the cone's sine times that of
+        // the angle at which the sphere is met there.
+        let x = u[0] * cone.height();
+        let square = u[0] * cone.part * (2.0 - x);
+        let facing = (1.0 - square).max(0.0).sqrt();
+        // The angle between the place and the point as seen from the centre: that at which it is met less θ.
+        let cosine = (1.0 - x) * facing + square * cone.sine;
+        let across = square.sqrt() * (1.0 - x - cone.sine * facing);
+        let [sin, cos] = sin_cos_turn(u[1]);
+        let direction = Frame::new(cone.axis).to_world(DVec3::new(across * cos, across * sin, cosine));
+        // Unit but for some roundings: a step of Newton's is as good as a root and a quotient, and need not wait for
+        // them.
+        let direction = direction * (1.5 - 0.5 * direction.length_squared());
+        Seen { site: self.towards(direction), pdf: 1.0 / (TAU * cone.height()) }
+    }
+
     /// The point in a direction from the centre that is unit to within 4 UNIT in each coordinate; the last sum adds one
     /// UNIT of its own.
-    #[inline]
+    #[inline(always)]
     fn towards(&self, direction: DVec3) -> Site {
         let position = self.center + direction * self.radius;
         Site { position, error: UNIT * (position.abs().max_element() + 5.0 * self.radius), normal: direction }
@@ -44,17 +70,22 @@ impl Sphere {
     /// The cone that it fills as seen from a place; none from inside, and from places on it.
     #[inline]
     fn cone(&self, place: DVec3) -> Option<Cone> {
+        let (cone, is_outside) = self.cone_from_outside(place);
+        is_outside.then_some(cone)
+    }
+
+    /// The same, and whether there is one.
+    #[inline(always)]
+    fn cone_from_outside(&self, place: DVec3) -> (Cone, bool) {
         let way = place - self.center;
         let distance = way.length();
         // By so much the way to a place on the sphere may be too long.
         let rounding = 4.0 * UNIT * (place.abs().max_element() + 5.0 * self.radius);
-        if distance < self.radius + rounding {
-            return None;
-        }
         let inverse = 1.0 / distance;
         let sine = self.radius * inverse;
         let cosine = ((distance - self.radius) * (distance + self.radius)).sqrt() * inverse;
-        Some(Cone { axis: way * inverse, sine, part: 1.0 / (1.0 + cosine) })
+        let cone = Cone { axis: way * inverse, sine, part: 1.0 / (1.0 + cosine) };
+        (cone, distance >= self.radius + rounding)
     }
 }
 
@@ -70,7 +101,7 @@ struct Cone {
 
 impl Cone {
     /// 1 − cos of half its angle, by sin² / (1 + cos), so that a small one keeps its digits.
-    #[inline]
+    #[inline(always)]
     fn height(&self) -> f64 {
         self.sine * self.sine * self.part
     }
@@ -221,20 +252,7 @@ impl Shape for Sphere {
             });
             return Some(Seen { site: point?, pdf: UNIFORM_SPHERE_PDF });
         };
-        // x = 1 − cos θ is even in [0, height), and sin² θ = x (2 − x) is the square of the cone's sine times that of
-        // the angle at which the sphere is met there.
-        let x = u[0] * cone.height();
-        let square = u[0] * cone.part * (2.0 - x);
-        let facing = (1.0 - square).max(0.0).sqrt();
-        // The angle between the place and the point as seen from the centre: that at which it is met less θ.
-        let cosine = (1.0 - x) * facing + square * cone.sine;
-        let across = square.sqrt() * (1.0 - x - cone.sine * facing);
-        let [sin, cos] = sin_cos_turn(u[1]);
-        let direction = Frame::new(cone.axis).to_world(DVec3::new(across * cos, across * sin, cosine));
-        // Unit but for some roundings: a step of Newton's is as good as a root and a quotient, and need not wait for
-        // them.
-        let direction = direction * (1.5 - 0.5 * direction.length_squared());
-        Some(Seen { site: self.towards(direction), pdf: 1.0 / (TAU * cone.height()) })
+        Some(self.sight_in(&cone, u))
     }
 
     fn sample_from(&self, place: DVec3, u: [f64; 2]) -> Option<Drawn> {
@@ -245,6 +263,10 @@ impl Shape for Sphere {
     fn pdf_from(&self, place: DVec3, direction: DVec3) -> f64 {
         let is_met = self.cone(place).is_none() || self.meet(&Ray::new(place, direction), &mut |_| true);
         if is_met { self.pdf_of_met(place, direction) } else { 0.0 }
+    }
+
+    fn ball(&self) -> Option<(DVec3, f64)> {
+        Some((self.center, self.radius))
     }
 
     fn pdf_of_met(&self, place: DVec3, _: DVec3) -> f64 {

@@ -310,12 +310,9 @@ fn ray() -> impl Strategy<Value = Ray> {
     let from = prop_oneof![3 => Just(0.0), 1 => Just(f64::NEG_INFINITY), 1 => -2.0..2.0];
     let until = prop_oneof![3 => Just(f64::INFINITY), 1 => 0.0..4.0];
     (any(), any(), from, until).prop_map(|(origin, direction, t_min, t_max)| Ray {
-        origin,
-        direction,
         t_min,
         t_max,
-        time: 0.0,
-        misses: [Ray::NO_TRIANGLE; 2],
+        ..Ray::new(origin, direction)
     })
 }
 

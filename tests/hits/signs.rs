@@ -52,14 +52,7 @@ fn region(corners: [Vec3; 3]) -> Region {
 }
 
 fn check(origin: DVec3, direction: DVec3, corners: [Vec3; 3]) -> Result<(), TestCaseError> {
-    let ray = Ray {
-        origin,
-        direction,
-        t_min: f64::NEG_INFINITY,
-        t_max: f64::INFINITY,
-        time: 0.0,
-        misses: [Ray::NO_TRIANGLE; 2],
-    };
+    let ray = Ray { t_min: f64::NEG_INFINITY, ..Ray::new(origin, direction) };
     let wide = corners.map(|c| c.as_dvec3());
     let met = is_met(&weights(origin, direction, wide));
     match EdgeRay::new(&ray, &region(corners)) {
@@ -221,14 +214,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(20_000))]
     #[test]
     fn doubles_of_any_size_are_decided_exactly((corners, origin, direction) in scaled()) {
-        let ray = Ray {
-            origin,
-            direction,
-            t_min: f64::NEG_INFINITY,
-            t_max: f64::INFINITY,
-            time: 0.0,
-            misses: [Ray::NO_TRIANGLE; 2],
-        };
+        let ray = Ray { t_min: f64::NEG_INFINITY, ..Ray::new(origin, direction) };
         let met = is_met(&weights(origin, direction, corners));
         if let Some(edges) = EdgeRay::new(&ray, &Region::around(corners)) {
             prop_assert_eq!(edges.meet(corners).is_some(), met, "{:?} {:?}", ray, corners);

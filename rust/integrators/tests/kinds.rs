@@ -35,14 +35,7 @@ pub(super) fn floor() -> crate::scene::Mesh {
     rectangle([-9.0, -9.0, 0.0], [18.0, 0.0, 0.0], [0.0, 18.0, 0.0])
 }
 
-pub(super) const DOWN: Ray = Ray {
-    origin: DVec3::new(0.0, -0.6, 0.8),
-    direction: DVec3::new(0.0, 0.6, -0.8),
-    t_min: 0.0,
-    t_max: f64::INFINITY,
-    time: 0.0,
-    misses: [Ray::NO_TRIANGLE; 2],
-};
+pub(super) const DOWN: Ray = Ray::new(DVec3::new(0.0, -0.6, 0.8), DVec3::new(0.0, 0.6, -0.8));
 
 /// What a square of side 2 and radiance 3 gives the origin from height 1, over a floor of 0.8 (Lambert, 1760).
 const LIT: f64 = 0.8 / PI * 3.0 * 1.740_839_502_734_206;

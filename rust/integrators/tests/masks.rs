@@ -41,14 +41,7 @@ fn veil(height: f32, opacity: f64) -> Shape {
     Shape { material: Arc::new(Veil(opacity)), ..shape(sheet(height), [0.0; 3], 0.0) }
 }
 
-const DOWN: Ray = Ray {
-    origin: DVec3::new(0.1, 0.2, 5.0),
-    direction: DVec3::new(0.0, 0.6, -0.8),
-    t_min: 0.0,
-    t_max: f64::INFINITY,
-    time: 0.0,
-    misses: [Ray::NO_TRIANGLE; 2],
-};
+const DOWN: Ray = Ray::new(DVec3::new(0.1, 0.2, 5.0), DVec3::new(0.0, 0.6, -0.8));
 
 #[test]
 fn veils_multiply() {

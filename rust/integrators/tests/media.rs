@@ -56,14 +56,7 @@ fn over_a_lamp(slabs: Vec<Shape>) -> Scene {
     scene(SceneDescription { shapes, ..Default::default() })
 }
 
-const DOWN: Ray = Ray {
-    origin: DVec3::new(0.1, 0.2, 5.0),
-    direction: DVec3::NEG_Z,
-    t_min: 0.0,
-    t_max: f64::INFINITY,
-    time: 0.0,
-    misses: [Ray::NO_TRIANGLE; 2],
-};
+const DOWN: Ray = Ray::new(DVec3::new(0.1, 0.2, 5.0), DVec3::NEG_Z);
 
 /// What gets straight through interfaces between media of these indices, one after the other, all reflections between
 /// them counted (Stokes, 1862): of two stacks, T = T₁T₂ / (1 − R₁R₂).

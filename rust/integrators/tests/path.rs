@@ -15,14 +15,7 @@ use crate::simd::Level;
 use crate::workers::Cancel;
 use std::sync::Arc;
 
-const ANYWHERE: Ray = Ray {
-    origin: DVec3::new(0.1, -0.2, 0.3),
-    direction: DVec3::new(0.48, 0.6, 0.64),
-    t_min: 0.0,
-    t_max: f64::INFINITY,
-    time: 0.0,
-    misses: [Ray::NO_TRIANGLE; 2],
-};
+const ANYWHERE: Ray = Ray::new(DVec3::new(0.1, -0.2, 0.3), DVec3::new(0.48, 0.6, 0.64));
 
 #[test]
 fn a_furnace_shines_by_its_geometric_series() {

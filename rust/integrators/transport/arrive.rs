@@ -74,6 +74,7 @@ impl<N: Features> TransportWorker<'_, N> {
             }
             let is_diffuse = outside == 1.0 && self.diffuse(shape).is_some();
             let list = if is_diffuse { &mut arrivals.diffuse } else { &mut arrivals.others };
+            self.scene.geometry().expect(hit.primitive, false);
             list.push(i as u32);
         }
         self.arrivals = arrivals;

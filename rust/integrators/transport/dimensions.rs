@@ -27,15 +27,10 @@ impl Dimensions {
         let place = bounce.wrapping_add(branch.wrapping_mul(Self::BRANCH));
         Self(CAMERA_DIMENSIONS.wrapping_add(place.wrapping_mul(Self::EACH)))
     }
-    /// Which light the sample of this number asks.
+    /// Which light the sample of this number asks; where on it, the dimension that follows says.
     #[inline]
     pub fn light_choice(self, number: u32) -> u32 {
         if number == 0 { self.0 } else { self.more(number) }
-    }
-    /// Where on it.
-    #[inline]
-    pub fn light_point(self, number: u32) -> u32 {
-        if number == 0 { self.0 + 1 } else { self.more(number) + 1 }
     }
     fn more(self, number: u32) -> u32 {
         Self::MORE | self.0.wrapping_mul(64).wrapping_add(2 * number)

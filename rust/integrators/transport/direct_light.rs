@@ -3,15 +3,14 @@
 use super::aiming::density;
 use super::block::Block;
 use super::features::Features;
-use super::resampling::resampled;
+use super::resampling::Resampled;
 use super::weights::power_heuristic;
 use super::worker::TransportWorker;
-use crate::integrators::CameraSample;
 use crate::math::{DVec3, LANES, VectorLanes};
 use crate::optics::{Diffuse, Rgb};
-use crate::sampling::Sampler;
 use crate::scene::{InteractionLanes, LightLanes, LightSample};
 use crate::simd::Loops;
+use std::array;
 
 /// From light that was drawn for diffuse surfaces to what arrives of it, and the rays that tell whether it does.
 struct Ask<'a> {
@@ -67,7 +66,7 @@ fn share(choice: f64, (number, asked): (u32, u32)) -> f64 {
 
 impl<N: Features> TransportWorker<'_, N> {
     /// Next-event estimation: draws light for each lane and queues the shadow rays.
-    pub(super) fn direct_light(&mut self, block: &Block, samples: &mut [CameraSample]) {
+    pub(super) fn direct_light(&mut self, block: &Block) {
         if block.is_diffuse {
             return self.ask_diffuse(block);
         }
@@ -78,7 +77,7 @@ impl<N: Features> TransportWorker<'_, N> {
             }
         }
         while numbers.iter().any(|(number, asked)| number < asked) {
-            self.ask_others(block, &numbers, samples);
+            self.ask_others(block, &numbers);
             numbers.iter_mut().for_each(|(number, _)| *number += 1);
         }
     }
@@ -121,59 +120,62 @@ impl<N: Features> TransportWorker<'_, N> {
     }
 
     /// Asks once for each lane whose number is below how often it asks.
-    fn ask_others(&mut self, block: &Block, numbers: &[(u32, u32); LANES], samples: &mut [CameraSample]) {
-        let asks = |lane: usize| numbers[lane].0 < numbers[lane].1;
-        let is_each = |worker: &Self, lane: usize| asks(lane) && worker.asks_each(block, lane);
-        if (0..block.count).any(|lane| asks(lane) && !is_each(self, lane)) {
-            let (mut choice, mut u) = ([0.0; LANES], [[0.0; LANES]; 2]);
-            let dimensions = std::array::from_fn(|lane| block.dimensions[lane].light_choice(numbers[lane].0));
-            block.numbers.one_and_two(self.level, &dimensions, &mut choice, &mut u);
-            for lane in 0..LANES {
-                choice[lane] = share(choice[lane], (numbers[lane].0, numbers[lane].1.max(1)));
-            }
-            let (mut lights, lit) = (LightLanes::NONE, self.scene.lights());
-            lit.sample_lanes(self.level, self.scene.geometry(), &block.receivers, &choice, &u, &mut lights);
-            for lane in (0..block.count).filter(|&lane| asks(lane)) {
-                if !is_each(self, lane)
-                    && let Some(light) = lights.sample(lane)
-                {
-                    let arriving = self.arriving(block, lane, &light, numbers[lane].1);
-                    if arriving != Rgb::ZERO {
-                        self.send_towards(block, lane, &light, arriving);
-                    }
-                }
-            }
+    fn ask_others(&mut self, block: &Block, numbers: &[(u32, u32); LANES]) {
+        let asks: [bool; LANES] = array::from_fn(|lane| lane < block.count && numbers[lane].0 < numbers[lane].1);
+        let each: [bool; LANES] = array::from_fn(|lane| asks[lane] && self.asks_each(block, lane));
+        let one: [bool; LANES] = array::from_fn(|lane| asks[lane] && !each[lane]);
+        if one.contains(&true) {
+            self.ask_one_light(block, numbers, &one);
         }
-        for lane in (0..block.count).filter(|&lane| asks(lane)) {
-            if is_each(self, lane) {
-                let sampler = &mut samples[Self::own(block.paths[lane].sample, samples.len())].sampler;
-                if let Some((light, arriving)) = self.ask_each_light(block, lane, numbers[lane], sampler) {
+        if each.contains(&true) {
+            self.ask_each_light(block, numbers, &each);
+        }
+    }
+
+    /// Draws light of one light for some lanes.
+    fn ask_one_light(&mut self, block: &Block, numbers: &[(u32, u32); LANES], asks: &[bool; LANES]) {
+        let (mut choice, mut u) = ([0.0; LANES], [[0.0; LANES]; 2]);
+        let dimensions = array::from_fn(|lane| block.dimensions[lane].light_choice(numbers[lane].0));
+        block.numbers.one_and_two(self.level, &dimensions, &mut choice, &mut u);
+        for lane in 0..LANES {
+            choice[lane] = share(choice[lane], (numbers[lane].0, numbers[lane].1.max(1)));
+        }
+        let (mut lights, lit) = (LightLanes::NONE, self.scene.lights());
+        lit.sample_lanes(self.level, self.scene.geometry(), &block.receivers, &choice, &u, &mut lights);
+        for lane in (0..block.count).filter(|&lane| asks[lane]) {
+            if let Some(light) = lights.sample(lane) {
+                let arriving = self.arriving(block, lane, &light, numbers[lane].1);
+                if arriving != Rgb::ZERO {
                     self.send_towards(block, lane, &light, arriving);
                 }
             }
         }
     }
 
-    /// Draws light of each of few lights, and of it one draw to stand for all.
-    #[inline(never)]
-    fn ask_each_light(
-        &self,
-        block: &Block,
-        lane: usize,
-        (number, asked): (u32, u32),
-        sampler: &mut Sampler,
-    ) -> Option<(LightSample, Rgb)> {
-        let (lights, receiver, dimensions) = (self.scene.lights(), block.receivers.get(lane), block.dimensions[lane]);
-        let first = number.wrapping_mul(lights.few());
-        let choice = share(sampler.one(dimensions.light_choice(first)), (number, asked));
-        let draw = |one: u32| {
-            let number = first.wrapping_add(one);
-            let u = sampler.two(dimensions.light_point(number));
-            let choice = || sampler.one(dimensions.light_choice(number));
-            let light = lights.sample_one(one, self.scene.geometry(), &receiver, choice, u)?;
-            Some((light, self.arriving(block, lane, &light, asked)))
-        };
-        resampled(choice, (0..lights.few()).filter_map(draw))
+    /// Draws light of each of few lights for some lanes, and of it one draw to stand for all.
+    fn ask_each_light(&mut self, block: &Block, numbers: &[(u32, u32); LANES], asks: &[bool; LANES]) {
+        let (lit, geometry) = (self.scene.lights(), self.scene.geometry());
+        let first = numbers.map(|(number, _)| number.wrapping_mul(lit.few()));
+        let (mut choice, mut u, mut lights) = ([0.0; LANES], [[0.0; LANES]; 2], LightLanes::NONE);
+        let choices = array::from_fn(|lane| block.dimensions[lane].light_choice(first[lane]));
+        block.numbers.one(self.level, &choices, &mut choice);
+        let mut all: [Resampled<LightSample>; LANES] =
+            array::from_fn(|lane| Resampled::new(share(choice[lane], (numbers[lane].0, numbers[lane].1.max(1)))));
+        for one in 0..lit.few() {
+            let dimensions = array::from_fn(|lane| block.dimensions[lane].light_choice(first[lane].wrapping_add(one)));
+            block.numbers.one_and_two(self.level, &dimensions, &mut choice, &mut u);
+            lit.sample_one_lanes(one, self.level, geometry, &block.receivers, &choice, &u, &mut lights);
+            for lane in (0..block.count).filter(|&lane| asks[lane]) {
+                if let Some(light) = lights.sample(lane) {
+                    all[lane].add(light, self.arriving(block, lane, &light, numbers[lane].1));
+                }
+            }
+        }
+        for (lane, all) in all.into_iter().enumerate() {
+            if let Some((light, arriving)) = all.kept() {
+                self.send_towards(block, lane, &light, arriving);
+            }
+        }
     }
 
     /// Whether each of few lights is asked where the path of a lane is.

@@ -10,31 +10,56 @@ use crate::optics::Rgb;
 /// Each draw in turn takes the place of the one kept before (Chao, "A General Purpose Unequal Probability Sampling
 /// Plan", 1982), and what is left of the number once it has decided is uniform again. What is not finite is kept, so
 /// that it is not hidden.
-#[inline]
-pub(super) fn resampled<T>(mut choice: f64, draws: impl Iterator<Item = (T, Rgb)>) -> Option<(T, Rgb)> {
-    let (mut sum, mut kept) = (0.0, None);
-    for (draw, brings) in draws {
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Resampled<T> {
+    choice: f64,
+    sum: f64,
+    /// The draw, what it brings, and how much that is.
+    kept: Option<(T, Rgb, f64)>,
+}
+
+impl<T> Resampled<T> {
+    /// Of no draws yet.
+    #[inline]
+    pub fn new(choice: f64) -> Self {
+        Self { choice, sum: 0.0, kept: None }
+    }
+
+    /// Of one draw more.
+    #[inline]
+    pub fn add(&mut self, draw: T, brings: Rgb) {
         if brings == Rgb::ZERO {
-            continue;
+            return;
         }
         let strength = brings.element_sum();
-        sum += strength;
-        let probability = strength / sum;
-        if choice >= probability {
-            choice = (choice - probability) / (1.0 - probability);
+        self.sum += strength;
+        let probability = strength / self.sum;
+        if self.choice >= probability {
+            self.choice = (self.choice - probability) / (1.0 - probability);
         } else {
-            choice /= probability;
-            kept = Some((draw, brings, strength));
+            self.choice /= probability;
+            self.kept = Some((draw, brings, strength));
         }
         // A quotient may be rounded up to 1.
-        choice = choice.min(1f64.next_down());
+        self.choice = self.choice.min(1f64.next_down());
     }
-    kept.map(|(draw, brings, strength)| (draw, brings * (sum / strength)))
+
+    /// The one that is kept.
+    #[inline]
+    pub fn kept(self) -> Option<(T, Rgb)> {
+        self.kept.map(|(draw, brings, strength)| (draw, brings * (self.sum / strength)))
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn resampled<T>(choice: f64, draws: impl Iterator<Item = (T, Rgb)>) -> Option<(T, Rgb)> {
+        let mut all = Resampled::new(choice);
+        draws.for_each(|(draw, brings)| all.add(draw, brings));
+        all.kept()
+    }
 
     /// By the middles of so many equal steps.
     fn mean(brings: &[f64], seen: &[bool]) -> f64 {

@@ -87,7 +87,7 @@ impl<'a, N: Features> TransportWorker<'a, N> {
             block.throughput.set(lane, block.paths[lane].throughput);
         }
         if !self.scene.lights().is_dark() {
-            self.direct_light(block, samples);
+            self.direct_light(block);
         }
         self.go_on(block);
     }
@@ -152,6 +152,8 @@ impl<'a, N: Features> TransportWorker<'a, N> {
                 continue;
             }
             let mut path = block.paths[lane];
+            let wo = block.encounters.get(lane, &block.scattering[lane]).wo();
+            block.scattering[lane].prepare(wo);
             let here = block.encounters.get(lane, &block.scattering[lane]);
             if N::SHARES {
                 path = self.reuse.visit(path, &here);

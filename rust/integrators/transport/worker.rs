@@ -103,8 +103,10 @@ impl<'a, N: Features> TransportWorker<'a, N> {
             block.is_diffuse = is_diffuse;
             let arrivals = &mut self.arrivals;
             let which = std::mem::take(if is_diffuse { &mut arrivals.diffuse } else { &mut arrivals.others });
-            for which in which.chunks(LANES) {
-                self.shade(&mut block, which, samples, radiance);
+            for (number, some) in which.chunks(LANES).enumerate() {
+                let next = which.iter().skip((number + 1) * LANES).take(LANES);
+                next.for_each(|&i| self.scene.geometry().expect(self.hits[i as usize].primitive, true));
+                self.shade(&mut block, some, samples, radiance);
             }
             // Their memory is used again.
             let arrivals = &mut self.arrivals;

@@ -59,8 +59,11 @@ impl<const N: usize> Table<N> {
     /// The four entries from number `at` on.
     #[inline]
     fn four(&self, at: usize) -> [f32; 4] {
-        let bytes = &self.bytes[2 * at..][..8];
-        [0, 2, 4, 6].map(|k| f32::from(u16::from_le_bytes([bytes[k], bytes[k + 1]])))
+        let bytes = self.bytes[2 * at..].first_chunk().expect("four entries from there on");
+        // Not by a closure for each, which was a call.
+        let four = u64::from_le_bytes(*bytes);
+        let entry = |k: u32| f32::from((four >> (16 * k)) as u16);
+        [entry(0), entry(1), entry(2), entry(3)]
     }
 
     /// What a sum of entries, of weights that sum to 1, stands for.

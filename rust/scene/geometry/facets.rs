@@ -36,6 +36,12 @@ impl Facets {
         self.0.get(primitive as usize)
     }
 
+    /// Whether none are kept.
+    #[inline]
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
     /// The memory held.
     pub fn bytes(&self) -> usize {
         size_of_val(self.0.as_slice())

@@ -1,11 +1,28 @@
 //! Points where rays have met surfaces, sixteen at a time.
 
-use super::{Geometry, NO_FACE, error_among};
+use super::{Geometry, NO_FACE, error_among, unit_normal};
 use crate::accel::Primitives;
 use crate::math::{Hit, LANES, Ray, Vec3, VectorLanes};
 use crate::sampling::Pairs;
 use crate::scene::SurfaceLanes;
 use crate::simd::{Level, Loops};
+
+/// Normals of triangles, by their corners.
+struct Normals<'a> {
+    corners: &'a [VectorLanes; 3],
+    normal: &'a mut VectorLanes,
+}
+
+impl Loops for Normals<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        for i in 0..LANES {
+            self.normal.set(i, unit_normal(self.corners.each_ref().map(|corners| corners.get(i))));
+        }
+    }
+}
 
 /// Points of triangles, by their weights.
 struct Triangles<'a> {
@@ -44,16 +61,21 @@ impl Geometry {
         let mut uv = [[0.0; LANES]; 2];
         let has_facets = self.is_single() && self.facets.get(0).is_some();
         for (lane, hit) in hits.iter().enumerate() {
-            let (of_face, normal, shape) = match self.facets.get(hit.primitive) {
-                Some(facet) if has_facets => (facet.corners.map(Vec3::as_dvec3), facet.normal, facet.shape),
-                _ => (self.corners(hit.primitive), self.normal(hit.primitive), self.locate(hit.primitive).0),
+            let (of_face, shape) = match self.facets.get(hit.primitive) {
+                Some(facet) if has_facets => {
+                    surfaces.normal.set(lane, facet.normal);
+                    (facet.corners.map(Vec3::as_dvec3), facet.shape)
+                }
+                _ => (self.corners(hit.primitive), self.locate(hit.primitive).0),
             };
             for (corners, corner) in corners.iter_mut().zip(of_face) {
                 corners.set(lane, corner);
             }
-            surfaces.normal.set(lane, normal);
             surfaces.shape[lane] = shape;
             [uv[0][lane], uv[1][lane]] = hit.uv;
+        }
+        if !has_facets {
+            level.compiled(Normals { corners: &corners, normal: &mut surfaces.normal });
         }
         let SurfaceLanes { position, error, .. } = surfaces;
         level.compiled(Triangles { corners: &corners, uv: &uv, position, error });

@@ -26,9 +26,11 @@ use super::textures::Needs;
 use crate::accel::{Objects, Primitives, region};
 use crate::math::{DVec3, Hit, Ray, Region, Vec3};
 use crate::shapes::{Bounds, Shape, Site};
+use crate::simd::ask_for;
 use facets::{Facet, Facets};
 use per_vertex::PerVertex;
 use rayon::prelude::*;
+use std::ptr;
 use std::sync::{Arc, OnceLock};
 
 /// One triangle mesh as it is described.
@@ -147,6 +149,21 @@ pub struct Geometry {
     rounding: Rounding,
     /// Where all of it lies, once that was asked.
     region: OnceLock<Region>,
+}
+
+/// Twice the area of a triangle along its unit normal, as the winding gives it.
+#[inline(always)]
+fn area_vector([a, b, c]: [DVec3; 3]) -> DVec3 {
+    (b - a).cross(c - a)
+}
+
+/// The unit normal of a triangle; NaN for one without area.
+#[inline(always)]
+fn unit_normal(corners: [DVec3; 3]) -> DVec3 {
+    let n = area_vector(corners);
+    // Scaling by the largest component first keeps the squares of tiny and huge triangles in range.
+    let n = n / n.abs().max_element();
+    n / n.length()
 }
 
 impl Primitives for Geometry {
@@ -350,6 +367,29 @@ impl Geometry {
             + self.others.as_ref().map_or(0, |others| others.bytes(seen))
     }
 
+    /// Says that a primitive will be asked about, and, if its `corners` are wanted, that this was said before: what is
+    /// kept of it is fetched meanwhile. Of few primitives all is at hand.
+    #[inline]
+    pub fn expect(&self, primitive: u32, corners: bool) {
+        if !self.facets.is_empty() || !self.gaps.is_empty() {
+            return;
+        }
+        let Some(face) = self.faces.get(primitive as usize) else { return };
+        if !corners {
+            return ask_for(ptr::from_ref(face).cast());
+        }
+        for &vertex in face {
+            match &self.vertices {
+                Vertices::Single(v) => {
+                    v.get(vertex as usize).map_or((), |vertex| ask_for(ptr::from_ref(vertex).cast()))
+                }
+                Vertices::Double(v) => {
+                    v.get(vertex as usize).map_or((), |vertex| ask_for(ptr::from_ref(vertex).cast()))
+                }
+            }
+        }
+    }
+
     /// Which shape a primitive belongs to, and its index there.
     #[inline]
     pub fn locate(&self, primitive: u32) -> (u32, u32) {
@@ -407,8 +447,7 @@ impl Geometry {
 
     /// Twice the area of a triangle along its unit normal, as the winding gives it. Exact but for the f64 roundings.
     pub fn area_vector(&self, primitive: u32) -> DVec3 {
-        let [a, b, c] = self.corners(primitive);
-        (b - a).cross(c - a)
+        area_vector(self.corners(primitive))
     }
 
     /// The unit normal of a triangle; NaN for one without area.
@@ -418,10 +457,7 @@ impl Geometry {
 
     #[inline(always)]
     fn computed_normal(&self, primitive: u32) -> DVec3 {
-        let n = self.area_vector(primitive);
-        // Scaling by the largest component first keeps the squares of tiny and huge triangles in range.
-        let n = n / n.abs().max_element();
-        n / n.length()
+        unit_normal(self.corners(primitive))
     }
 
     /// All that shading needs at a hit of a ray.

@@ -1,10 +1,12 @@
 //! The same light from everywhere.
 
 use super::light::strength;
-use super::{Light, LightSample, LightSampleContext, Reach};
-use crate::math::{DVec3, Frame};
+use super::{Light, LightContextLanes, LightLanes, LightSample, LightSampleContext, Reach};
+use crate::math::{DVec3, Frame, LANES, Ray, VectorLanes};
 use crate::optics::{Rgb, is_radiance};
+use crate::sampling::Pairs;
 use crate::sampling::warp::{UNIFORM_SPHERE_PDF, cosine_hemisphere, uniform_sphere};
+use crate::simd::{Level, Loops};
 use std::f64::consts::PI;
 
 /// The same radiance from every direction that the scene leaves open. It is best drawn by the cosine of its arrival.
@@ -12,6 +14,55 @@ use std::f64::consts::PI;
 pub struct ConstantEnvironment {
     /// Its radiance, W·sr⁻¹·m⁻².
     pub radiance: Rgb,
+}
+
+/// A direction by the cosine of its arrival at a receiver of this normal.
+#[inline(always)]
+fn arriving(normal: DVec3, u: [f64; 2]) -> DVec3 {
+    Frame::new(normal).to_world(cosine_hemisphere(u))
+}
+
+/// The density with which it is drawn.
+#[inline(always)]
+fn arriving_pdf(normal: DVec3, direction: DVec3) -> f64 {
+    normal.dot(direction).max(0.0) / PI
+}
+
+/// What is drawn for receivers none of which is free.
+struct Draw<'a> {
+    radiance: Rgb,
+    normal: &'a VectorLanes,
+    u: &'a Pairs,
+    direction: &'a mut VectorLanes,
+    weight: &'a mut VectorLanes,
+    pdf: &'a mut [f64; LANES],
+}
+
+impl Loops for Draw<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Self { radiance, normal, u, direction, weight, pdf } = self;
+        draw((radiance, normal, u), direction, weight, pdf);
+    }
+}
+
+#[inline(always)]
+fn draw(
+    (radiance, normal, u): (Rgb, &VectorLanes, &Pairs),
+    direction: &mut VectorLanes,
+    weight: &mut VectorLanes,
+    pdf: &mut [f64; LANES],
+) {
+    for i in 0..LANES {
+        let normal = normal.get(i);
+        let drawn = arriving(normal, [u[0][i], u[1][i]]);
+        let density = arriving_pdf(normal, drawn);
+        direction.set(i, drawn);
+        weight.set(i, radiance / density);
+        pdf[i] = density;
+    }
 }
 
 impl Light for ConstantEnvironment {
@@ -25,14 +76,22 @@ impl Light for ConstantEnvironment {
 
     #[inline]
     fn sample(&self, receiver: &LightSampleContext, u: [f64; 2]) -> Option<LightSample> {
-        let direction = if receiver.is_free() {
-            uniform_sphere(u)
-        } else {
-            Frame::new(receiver.normal).to_world(cosine_hemisphere(u))
-        };
+        let direction = if receiver.is_free() { uniform_sphere(u) } else { arriving(receiver.normal, u) };
         let pdf = self.outside_pdf(receiver, direction);
         // Rounding may turn a direction in the plane to below it.
         (pdf > 0.0).then(|| LightSample::of_outside(direction, self.radiance / pdf, pdf))
+    }
+
+    fn sample_lanes(&self, level: Level, receivers: &LightContextLanes, u: &Pairs, lights: &mut LightLanes) {
+        if (0..LANES).any(|lane| receivers.get(lane).is_free()) {
+            for lane in 0..LANES {
+                lights.set(lane, self.sample(&receivers.get(lane), [u[0][lane], u[1][lane]]));
+            }
+            return;
+        }
+        let LightLanes { direction, weight, pdf, is_within, primitive, .. } = lights;
+        level.compiled(Draw { radiance: self.radiance, normal: &receivers.normal, u, direction, weight, pdf });
+        (*is_within, *primitive) = ([false; LANES], [Ray::NO_TRIANGLE; LANES]);
     }
 
     #[inline]
@@ -42,7 +101,7 @@ impl Light for ConstantEnvironment {
 
     #[inline]
     fn outside_pdf(&self, receiver: &LightSampleContext, direction: DVec3) -> f64 {
-        if receiver.is_free() { UNIFORM_SPHERE_PDF } else { receiver.normal.dot(direction).max(0.0) / PI }
+        if receiver.is_free() { UNIFORM_SPHERE_PDF } else { arriving_pdf(receiver.normal, direction) }
     }
 
     fn bytes(&self) -> usize {

@@ -35,6 +35,20 @@ impl Lamp {
         Self { numbers: [first, first + 1], share: 1.0 / (1.0 + b / a) }
     }
 
+    /// Which it is by a number in [0, 1), how likely that is, and the number that is left.
+    #[inline]
+    fn drawn(&self, x: f64) -> (usize, f64, f64) {
+        let ([first, second], share) = (self.numbers, self.share);
+        if share == 1.0 {
+            (first as usize, 1.0, x)
+        } else if x < share {
+            (first as usize, share, x / share)
+        } else {
+            let rest = 1.0 - share;
+            (second as usize, rest, ((x - share) / rest).min(1f64.next_down()))
+        }
+    }
+
     /// How often it is the one of this number.
     #[inline]
     fn share_of(&self, number: u32) -> f64 {
@@ -110,16 +124,21 @@ impl Lights {
             }
             return Some(self.outside.lights()[one].sample(receiver, u)?.chosen(share));
         };
-        let ([x, y], [first, second], share) = (u, lamp.numbers, lamp.share);
-        if share == 1.0 {
-            self.sample_within(first as usize, geometry, receiver, [x, y])
-        } else if x < share {
-            Some(self.sample_within(first as usize, geometry, receiver, [x / share, y])?.chosen(share))
-        } else {
-            let share = 1.0 - share;
-            let x = ((x - lamp.share) / share).min(1f64.next_down());
-            Some(self.sample_within(second as usize, geometry, receiver, [x, y])?.chosen(share))
-        }
+        let (number, share, x) = lamp.drawn(u[0]);
+        Some(self.sample_within(number, geometry, receiver, [x, u[1]])?.chosen(share))
+    }
+
+    /// Whether one of the few is within the scene.
+    #[inline]
+    pub(super) fn is_within(&self, one: u32) -> bool {
+        (one as usize) < self.few.within.len()
+    }
+
+    /// Of one that is, the number of the light that is drawn by a number in [0, 1), how likely that is, and the number
+    /// that is left.
+    #[inline]
+    pub(super) fn one_within(&self, one: u32, x: f64) -> (usize, f64, f64) {
+        self.few.within[one as usize].drawn(x)
     }
 
     /// The density with which [`Lights::sample_one`] draws, for a receiver, the direction of a ray from there, of the

@@ -1,111 +1,16 @@
 //! Light drawn for sixteen receivers at a time.
 
 use super::triangle::SeenTriangle;
-use super::{LightSample, LightSampleContext, Lights, Sides};
+use super::{LightContextLanes, LightLanes, Lights, Sides};
 use crate::accel::Primitives;
-use crate::math::{DVec3, LANES, Ray, VectorLanes};
-use crate::optics::Rgb;
+use crate::math::{LANES, VectorLanes};
 use crate::sampling::Pairs;
 use crate::scene::geometry::error_among;
 use crate::scene::textures::TexturePoint;
 use crate::scene::{Geometry, RayOrigin};
+use crate::shapes::{Seen, Sphere};
 use crate::simd::{Level, Loops};
-
-/// Receivers, a lane each.
-#[derive(Clone, Debug)]
-pub struct LightContextLanes {
-    position: VectorLanes,
-    normal: VectorLanes,
-}
-
-impl LightContextLanes {
-    /// Nowhere.
-    pub const NONE: Self = Self { position: VectorLanes::ZERO, normal: VectorLanes::ZERO };
-
-    /// That of a lane.
-    #[inline(always)]
-    pub fn get(&self, lane: usize) -> LightSampleContext {
-        LightSampleContext { position: self.position.get(lane), normal: self.normal.get(lane) }
-    }
-
-    /// Sets that of a lane.
-    #[inline(always)]
-    pub fn set(&mut self, lane: usize, receiver: &LightSampleContext) {
-        self.position.set(lane, receiver.position);
-        self.normal.set(lane, receiver.normal);
-    }
-}
-
-/// Light on its way to receivers, a lane each.
-#[derive(Clone, Debug)]
-pub struct LightLanes {
-    direction: VectorLanes,
-    weight: VectorLanes,
-    /// 0 where the draw gave none.
-    pdf: [f64; LANES],
-    /// Where it sets out, and the way off the surface there.
-    position: VectorLanes,
-    offset: VectorLanes,
-    /// Whether that is within the scene.
-    is_within: [bool; LANES],
-    /// On which primitive that is, as [`LightSample`] has it.
-    primitive: [u32; LANES],
-}
-
-impl LightLanes {
-    /// No light.
-    pub const NONE: Self = Self {
-        direction: VectorLanes::ZERO,
-        weight: VectorLanes::ZERO,
-        pdf: [0.0; LANES],
-        position: VectorLanes::ZERO,
-        offset: VectorLanes::ZERO,
-        is_within: [false; LANES],
-        primitive: [Ray::NO_TRIANGLE; LANES],
-    };
-
-    /// The direction that a lane's light comes from, and its weight and density, as [`LightSample`] has them; the
-    /// density is 0 where there is none.
-    #[inline(always)]
-    pub fn get(&self, lane: usize) -> (DVec3, Rgb, f64) {
-        (self.direction.get(lane), self.weight.get(lane), self.pdf[lane])
-    }
-
-    /// Where a lane's light sets out, and whether that is within the scene.
-    #[inline(always)]
-    pub fn source(&self, lane: usize) -> (RayOrigin, bool) {
-        (RayOrigin::with(self.position.get(lane), self.offset.get(lane)), self.is_within[lane])
-    }
-
-    /// On which primitive a lane's light sets out, as [`LightSample`] has it.
-    #[inline(always)]
-    pub fn primitive(&self, lane: usize) -> u32 {
-        self.primitive[lane]
-    }
-
-    /// The light of a lane; none where the draw gave none.
-    pub fn sample(&self, lane: usize) -> Option<LightSample> {
-        let ((direction, weight, pdf), (source, is_within)) = (self.get(lane), self.source(lane));
-        let (source, primitive) = (is_within.then_some(source), self.primitive[lane]);
-        (pdf > 0.0).then(|| LightSample { direction, weight, pdf, source, primitive })
-    }
-
-    /// Sets that of a lane.
-    fn set(&mut self, lane: usize, sample: Option<LightSample>) {
-        let Some(LightSample { direction, weight, pdf, source, primitive }) = sample else {
-            self.pdf[lane] = 0.0;
-            return;
-        };
-        let from = source.unwrap_or(RayOrigin::free(DVec3::ZERO));
-        self.direction.set(lane, direction);
-        self.weight.set(lane, weight);
-        self.pdf[lane] = pdf;
-        self.position.set(lane, from.position());
-        self.offset.set(lane, from.offset());
-        self.is_within[lane] = source.is_some();
-        self.primitive[lane] = primitive;
-    }
-}
+use std::array::from_fn;
 
 /// Triangles that shine, a lane each, and how likely each was chosen.
 struct Lamps {
@@ -161,6 +66,62 @@ fn draw(receivers: &LightContextLanes, lamps: &Lamps, u: &Pairs, lights: &mut Li
     }
 }
 
+/// Spheres that shine, a lane each.
+struct Balls {
+    center: VectorLanes,
+    radius: [f64; LANES],
+}
+
+/// What is drawn of them; of receivers inside, and of those on them, nothing is said.
+struct DrawBalls<'a> {
+    receivers: &'a LightContextLanes,
+    balls: &'a Balls,
+    lamps: &'a Lamps,
+    u: &'a Pairs,
+    lights: &'a mut LightLanes,
+    /// 1 where the receiver is outside.
+    outside: &'a mut [f64; LANES],
+}
+
+impl Loops for DrawBalls<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Self { receivers, balls, lamps, u, lights, outside } = self;
+        let LightLanes { direction, weight, pdf, position, offset, .. } = lights;
+        draw_balls((receivers, balls, lamps, u), direction, weight, pdf, (position, offset), outside);
+    }
+}
+
+#[inline(always)]
+fn draw_balls(
+    (receivers, balls, lamps, u): (&LightContextLanes, &Balls, &Lamps, &Pairs),
+    direction: &mut VectorLanes,
+    weight: &mut VectorLanes,
+    pdf: &mut [f64; LANES],
+    (position, offset): (&mut VectorLanes, &mut VectorLanes),
+    outside: &mut [f64; LANES],
+) {
+    for i in 0..LANES {
+        let shine = |cosine: f64| (lamps.sides[0][i] & (cosine > 0.0)) | (lamps.sides[1][i] & (cosine < 0.0));
+        let (place, sphere) =
+            (receivers.position.get(i), Sphere { center: balls.center.get(i), radius: balls.radius[i] });
+        let (Seen { site, pdf: density }, is_outside) = sphere.sight_from_outside(place, [u[0][i], u[1][i]]);
+        let way = site.position - place;
+        let towards = way / way.length();
+        // Also false where the distance is 0 and the direction NaN.
+        let is_lit = shine(-towards.dot(site.normal)) & (density > 0.0) & (density < f64::INFINITY);
+        let from = RayOrigin::off(site.position, site.error, site.normal);
+        direction.set(i, towards);
+        weight.set(i, lamps.radiance.get(i) / density / lamps.probability[i]);
+        pdf[i] = if is_lit { density * lamps.probability[i] } else { 0.0 };
+        position.set(i, from.position());
+        offset.set(i, from.offset());
+        outside[i] = if is_outside { 1.0 } else { 0.0 };
+    }
+}
+
 impl Lights {
     /// What [`Lights::sample`] gives, a lane each: `choice` and `u` are the numbers that it takes.
     pub fn sample_lanes(
@@ -172,35 +133,128 @@ impl Lights {
         u: &Pairs,
         lights: &mut LightLanes,
     ) {
-        let (true, Some(choices)) = (self.are_plain_triangles, &self.choice) else {
+        if let (None, [sky]) = (&self.choice, self.outside.lights()) {
+            return sky.sample_lanes(level, receivers, u, lights);
+        }
+        let (true, Some(choices)) = (self.outside.is_dark(), &self.choice) else {
             for lane in 0..LANES {
                 let u = [u[0][lane], u[1][lane]];
                 lights.set(lane, self.sample(geometry, &receivers.get(lane), choice[lane], u));
             }
             return;
         };
+        let chosen = from_fn(|lane| choices.sample(&receivers.get(lane), choice[lane]));
+        self.sample_chosen(level, geometry, receivers, &chosen, u, lights);
+    }
+
+    /// What [`Lights::sample_one`] gives, a lane each.
+    #[allow(clippy::too_many_arguments)]
+    pub fn sample_one_lanes(
+        &self,
+        one: u32,
+        level: Level,
+        geometry: &Geometry,
+        receivers: &LightContextLanes,
+        choice: &[f64; LANES],
+        u: &Pairs,
+        lights: &mut LightLanes,
+    ) {
+        if !self.is_within(one) {
+            for lane in 0..LANES {
+                let (receiver, u) = (receivers.get(lane), [u[0][lane], u[1][lane]]);
+                lights.set(lane, self.sample_one(one, geometry, &receiver, || choice[lane], u));
+            }
+            return;
+        }
+        let mut own = *u;
+        let chosen = from_fn(|lane| {
+            let (number, share, x) = self.one_within(one, u[0][lane]);
+            own[0][lane] = x;
+            Some((number, share))
+        });
+        self.sample_chosen(level, geometry, receivers, &chosen, &own, lights);
+    }
+
+    /// Draws light of those within the scene, by their numbers and how likely each was chosen.
+    fn sample_chosen(
+        &self,
+        level: Level,
+        geometry: &Geometry,
+        receivers: &LightContextLanes,
+        chosen: &[Option<(usize, f64)>; LANES],
+        u: &Pairs,
+        lights: &mut LightLanes,
+    ) {
         let mut lamps = Lamps {
             corners: [VectorLanes::ZERO; 3],
             normal: VectorLanes::ZERO,
             radiance: VectorLanes::ZERO,
+            // A lane without a light has sides that do not shine.
             sides: [[false; LANES]; 2],
             probability: [0.0; LANES],
         };
-        for (lane, &choice) in choice.iter().enumerate() {
-            // A lane without a light has sides that do not shine.
-            let Some((chosen, probability)) = choices.sample(&receivers.get(lane), choice) else { continue };
-            let primitive = self.surfaces[chosen];
+        let mut balls = Balls { center: VectorLanes::ZERO, radius: [1.0; LANES] };
+        let (mut triangles, mut spheres, mut others) = (0u32, 0u32, 0u32);
+        for (lane, &chosen) in chosen.iter().enumerate() {
+            let Some((number, probability)) = chosen else { continue };
+            let plain = self.surfaces.get(number).filter(|_| self.are_plain[number]);
+            let Some(&primitive) = plain else {
+                others |= 1 << lane;
+                continue;
+            };
             let emission = self.emission(geometry.locate(primitive).0);
-            for (corners, corner) in lamps.corners.iter_mut().zip(geometry.corners(primitive)) {
-                corners.set(lane, corner);
+            match geometry.shape(primitive).and_then(|shape| shape.ball()) {
+                Some((center, radius)) => {
+                    spheres |= 1 << lane;
+                    balls.center.set(lane, center);
+                    balls.radius[lane] = radius;
+                }
+                None => {
+                    triangles |= 1 << lane;
+                    for (corners, corner) in lamps.corners.iter_mut().zip(geometry.corners(primitive)) {
+                        corners.set(lane, corner);
+                    }
+                    lamps.normal.set(lane, geometry.normal(primitive));
+                }
             }
             lights.primitive[lane] = primitive;
-            lamps.normal.set(lane, geometry.normal(primitive));
             lamps.radiance.set(lane, emission.radiance.at(&TexturePoint::NOWHERE));
             lamps.sides[0][lane] = emission.sides != Sides::Back;
             lamps.sides[1][lane] = emission.sides != Sides::Front;
             lamps.probability[lane] = probability;
         }
-        level.compiled(Draw { receivers, lamps: &lamps, u, lights });
+        if spheres == 0 {
+            level.compiled(Draw { receivers, lamps: &lamps, u, lights });
+        } else {
+            let mut outside = [0.0; LANES];
+            let mut of_spheres = LightLanes::NONE;
+            let draw = DrawBalls {
+                receivers,
+                balls: &balls,
+                lamps: &lamps,
+                u,
+                lights: &mut of_spheres,
+                outside: &mut outside,
+            };
+            level.compiled(draw);
+            if triangles != 0 {
+                level.compiled(Draw { receivers, lamps: &lamps, u, lights });
+            }
+            for lane in (0..LANES).filter(|&lane| triangles >> lane & 1 == 0) {
+                of_spheres.primitive[lane] = lights.primitive[lane];
+                of_spheres.is_within[lane] = true;
+                lights.copy(lane, &of_spheres);
+                if spheres >> lane & 1 == 1 && outside[lane] == 0.0 {
+                    others |= 1 << lane;
+                }
+            }
+        }
+        for lane in (0..LANES).filter(|&lane| others >> lane & 1 == 1) {
+            let light = chosen[lane].and_then(|(number, probability)| {
+                let u = [u[0][lane], u[1][lane]];
+                Some(self.sample_within(number, geometry, &receivers.get(lane), u)?.chosen(probability))
+            });
+            lights.set(lane, light);
+        }
     }
 }

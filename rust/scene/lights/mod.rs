@@ -8,6 +8,8 @@ mod directional;
 mod few;
 mod lanes;
 mod light;
+mod light_lanes;
+mod light_sample;
 mod light_sample_context;
 mod map;
 mod outside;
@@ -26,8 +28,9 @@ mod triangle;
 pub use bounds::LightBounds;
 pub use constant::ConstantEnvironment;
 pub use directional::DirectionalLight;
-pub use lanes::{LightContextLanes, LightLanes};
-pub use light::{Light, LightSample, Reach};
+pub use light::{Light, Reach};
+pub use light_lanes::{LightContextLanes, LightLanes};
+pub use light_sample::LightSample;
 pub use light_sample_context::LightSampleContext;
 pub use map::EnvironmentMap;
 pub use picture::Picture;
@@ -68,8 +71,8 @@ pub struct Lights {
     choice: Option<Choice>,
     outside: Outside,
     few: Few,
-    /// Whether all that can be drawn are triangles that shine alike everywhere.
-    are_plain_triangles: bool,
+    /// Of each primitive that emits, whether it is a triangle or a sphere that shines alike everywhere.
+    are_plain: Vec<bool>,
 }
 
 impl Lights {
@@ -105,12 +108,12 @@ impl Lights {
         let outside = Outside::new(outside, choice.is_some());
         let few = Few::new(&strengths, &pairs, outside.lights().len());
         let is_plain = |&primitive: &u32| {
-            geometry.shape(primitive).is_none() && !emission[geometry.locate(primitive).0 as usize].needs().any()
+            geometry.shape(primitive).is_none_or(|shape| shape.ball().is_some())
+                && !emission[geometry.locate(primitive).0 as usize].needs().any()
         };
-        let are_plain_triangles =
-            copied.len() == 0 && inside.is_empty() && outside.is_dark() && surfaces.iter().all(is_plain);
+        let are_plain = surfaces.iter().map(is_plain).collect();
         let shines = emission.iter().map(|emission| !emission.is_dark()).collect();
-        Self { emission, shines, first, surfaces, copied, inside, choice, outside, few, are_plain_triangles }
+        Self { emission, shines, first, surfaces, copied, inside, choice, outside, few, are_plain }
     }
 
     /// How strong a primitive of the scene is. What no ray can hit must not shine either, and from what has no end no
@@ -135,6 +138,7 @@ impl Lights {
             + size_of_val(self.shines.as_slice())
             + size_of_val(self.first.as_slice())
             + size_of_val(self.surfaces.as_slice())
+            + size_of_val(self.are_plain.as_slice())
             + self.copied.bytes()
             + self.inside.iter().map(|light| light.bytes()).sum::<usize>()
             + self.choice.as_ref().map_or(0, Choice::bytes)

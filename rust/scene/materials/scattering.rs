@@ -96,6 +96,15 @@ impl Scattering {
         }
     }
 
+    /// Computes beforehand what goes by `wo` alone, as [`Bsdf::prepare`] does.
+    #[inline]
+    pub fn prepare(&mut self, wo: DVec3) {
+        match self {
+            Self::One(bsdf) => bsdf.prepare(wo),
+            Self::Several(parts) => parts.iter_mut().for_each(|(_, bsdf)| bsdf.prepare(wo)),
+        }
+    }
+
     /// The scattering function times |cos θ| of `wi`, and the density with which [`Scattering::sample`] draws `wi`,
     /// both without what has a single direction.
     #[inline]

@@ -79,7 +79,7 @@ fn ray(u: &mut Unstructured, triangles: &Triangles) -> Result<Ray> {
         4 => (-2.0, 0.0),
         _ => (0.0, f64::INFINITY),
     };
-    Ok(Ray { origin, direction, t_min, t_max, time: 0.0, misses: [Ray::NO_TRIANGLE; 2] })
+    Ok(Ray { t_min, t_max, ..Ray::new(origin, direction) })
 }
 
 /// Rays: first fans of sixteen from one point in much the same direction, then some of any kind.

@@ -5,6 +5,7 @@ mod copies;
 mod environments;
 mod few;
 mod irradiance;
+mod lanes;
 mod many;
 mod shapes;
 mod spots;
