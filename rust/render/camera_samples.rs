@@ -16,8 +16,8 @@ pub(super) struct Wanted {
     pub number: u32,
 }
 
-/// What places samples: they lie where the filter says, and, where anything moves, anywhere in the time that the shutter
-/// is open, and on the lens if there is one.
+/// What places samples: they lie where the filter says, and, where anything moves, anywhere in the time that the
+/// shutter is open, and on the lens if there is one.
 pub(super) struct CameraSampler<'a> {
     camera: &'a dyn Camera,
     filter: &'a dyn Filter,

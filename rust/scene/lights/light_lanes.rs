@@ -81,7 +81,7 @@ impl LightLanes {
     pub fn sample(&self, lane: usize) -> Option<LightSample> {
         let ((direction, weight, pdf), (source, is_within)) = (self.get(lane), self.source(lane));
         let (source, primitive) = (is_within.then_some(source), self.primitive[lane]);
-        (pdf > 0.0).then(|| LightSample { direction, weight, pdf, source, primitive })
+        (pdf > 0.0).then_some(LightSample { direction, weight, pdf, source, primitive })
     }
 
     /// Takes that of a lane from others.

@@ -8,8 +8,8 @@ use rayon::prelude::*;
 /// Numbers of a triangle: nine coordinates and which it is.
 const ROWS: usize = 10;
 
-/// Numbers from where a leaf begins, of which its first nine rows are a part however many triangles it has, up to eight:
-/// so one look says that all of them are there.
+/// Numbers from where a leaf begins, of which its first nine rows are a part however many triangles it has, up to
+/// eight: so one look says that all of them are there.
 const WHOLE: usize = 8 * MOST + MOST;
 
 /// Triangles of the largest leaf.
