@@ -5,7 +5,7 @@ use super::sampler::Sampler;
 use super::stream::Stream;
 use super::{SamplerKind, halton, lattice, philox4x32, sobol, stratified};
 use crate::math::LANES;
-use crate::simd::{Level, Loops};
+use crate::simd::{Level, loops};
 
 /// Samples of one picture, a lane each.
 #[derive(Clone, Debug)]
@@ -36,7 +36,7 @@ impl SamplerLanes {
             lanes.sample = number.map(|number| number & (size.samples() - 1));
             let batch = number.map(|number| number >> size.bits());
             let [mut a, mut b, mut c, mut d] = [[0; LANES]; 4];
-            level.compiled(Starts { key: first.key, pixel, batch: &batch, words: [&mut a, &mut b, &mut c, &mut d] });
+            starts(level, first.key, pixel, &batch, &mut a, &mut b, &mut c, &mut d);
             lanes.words = std::array::from_fn(|i| [a[i], b[i], c[i], d[i]]);
         }
         lanes
@@ -64,7 +64,7 @@ impl SamplerLanes {
     #[inline]
     pub fn one_and_two(&self, level: Level, dimensions: &[u32; LANES], one: &mut [f64; LANES], two: &mut Pairs) {
         if self.kind == SamplerKind::Independent {
-            level.compiled(Independent { lanes: self, dimensions, one, two });
+            independent(level, self, dimensions, one, two);
             return;
         }
         self.one(level, dimensions, one);
@@ -74,13 +74,13 @@ impl SamplerLanes {
     /// What [`Sampler::one`] gives for a dimension of each lane.
     #[inline]
     pub fn one(&self, level: Level, dimensions: &[u32; LANES], to: &mut [f64; LANES]) {
-        level.compiled(Ones { lanes: self, dimensions, to });
+        ones(level, self, dimensions, to);
     }
 
     /// What [`Sampler::two`] gives for a dimension of each lane.
     #[inline]
     pub fn two(&self, level: Level, dimensions: &[u32; LANES], to: &mut Pairs) {
-        level.compiled(Twos { lanes: self, dimensions, to });
+        twos(level, self, dimensions, to);
     }
 
     #[inline(always)]
@@ -89,22 +89,19 @@ impl SamplerLanes {
     }
 }
 
-/// Where the streams of batches start.
-struct Starts<'a> {
-    key: [u32; 2],
-    pixel: &'a [u32; LANES],
-    batch: &'a [u32; LANES],
-    words: [&'a mut [u32; LANES]; 4],
-}
-
-impl Loops for Starts<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run(self) {
-        let [a, b, c, d] = self.words;
+loops! {
+    /// Where the streams of batches start.
+    fn starts(
+        key: [u32; 2],
+        pixel: &[u32; LANES],
+        batch: &[u32; LANES],
+        a: &mut [u32; LANES],
+        b: &mut [u32; LANES],
+        c: &mut [u32; LANES],
+        d: &mut [u32; LANES],
+    ) {
         for i in 0..LANES {
-            [a[i], b[i], c[i], d[i]] = Stream::words(self.key, self.pixel[i], self.batch[i]);
+            [a[i], b[i], c[i], d[i]] = Stream::words(key, pixel[i], batch[i]);
         }
     }
 }
@@ -114,40 +111,26 @@ fn joined(low: u32, high: u32) -> u64 {
     u64::from(high) << 32 | u64::from(low)
 }
 
-/// Both halves of a block of independent numbers.
-struct Independent<'a> {
-    lanes: &'a SamplerLanes,
-    dimensions: &'a [u32; LANES],
-    one: &'a mut [f64; LANES],
-    two: &'a mut Pairs,
-}
-
-impl Loops for Independent<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run(self) {
+loops! {
+    /// Both halves of a block of independent numbers.
+    fn independent(
+        lanes: &SamplerLanes,
+        dimensions: &[u32; LANES],
+        one: &mut [f64; LANES],
+        two: &mut Pairs,
+    ) {
         for i in 0..LANES {
-            let [a, b, c, d] = self.lanes.block(i, self.dimensions[i]);
-            self.one[i] = number(joined(a, b));
-            self.two[0][i] = step(c);
-            self.two[1][i] = step(d);
+            let [a, b, c, d] = lanes.block(i, dimensions[i]);
+            one[i] = number(joined(a, b));
+            two[0][i] = step(c);
+            two[1][i] = step(d);
         }
     }
 }
 
-struct Ones<'a> {
-    lanes: &'a SamplerLanes,
-    dimensions: &'a [u32; LANES],
-    to: &'a mut [f64; LANES],
-}
-
-impl Loops for Ones<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run(self) {
-        let Self { lanes, dimensions, to } = self;
+loops! {
+    /// One number a lane.
+    fn ones(lanes: &SamplerLanes, dimensions: &[u32; LANES], to: &mut [f64; LANES]) {
         macro_rules! each {
             ($one:expr) => {
                 for i in 0..LANES {
@@ -159,7 +142,7 @@ impl Loops for Ones<'_> {
             SamplerKind::Independent => {
                 for i in 0..LANES {
                     let [a, b, c, d] = lanes.block(i, dimensions[i]);
-                    let is_even = dimensions[i] % 2 == 0;
+                    let is_even = dimensions[i].is_multiple_of(2);
                     to[i] = number(if is_even { joined(a, b) } else { joined(c, d) });
                 }
             }
@@ -171,18 +154,9 @@ impl Loops for Ones<'_> {
     }
 }
 
-struct Twos<'a> {
-    lanes: &'a SamplerLanes,
-    dimensions: &'a [u32; LANES],
-    to: &'a mut Pairs,
-}
-
-impl Loops for Twos<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run(self) {
-        let Self { lanes, dimensions, to } = self;
+loops! {
+    /// Two numbers a lane.
+    fn twos(lanes: &SamplerLanes, dimensions: &[u32; LANES], to: &mut Pairs) {
         macro_rules! each {
             ($two:expr) => {
                 for i in 0..LANES {
@@ -195,7 +169,7 @@ impl Loops for Twos<'_> {
             SamplerKind::Independent => {
                 for i in 0..LANES {
                     let [a, b, c, d] = lanes.block(i, dimensions[i]);
-                    let is_even = dimensions[i] % 2 == 0;
+                    let is_even = dimensions[i].is_multiple_of(2);
                     let (first, second) = if is_even { (a, b) } else { (c, d) };
                     (to[0][i], to[1][i]) = (step(first), step(second));
                 }
