@@ -6,7 +6,7 @@ use super::sampler::Sampler;
 use super::stream::Stream;
 use super::{BatchSize, SamplerKind, halton, lattice, philox4x32, sobol, stratified};
 use crate::math::LANES;
-use crate::simd::{Level, Loops};
+use crate::simd::{Level, loops};
 
 /// Samples of one picture, a lane each.
 #[derive(Clone, Debug)]
@@ -37,7 +37,7 @@ impl SamplerLanes {
             lanes.sample = number.map(|number| number & (size.samples() - 1));
             let batch = number.map(|number| number >> size.bits());
             let [mut a, mut b, mut c, mut d] = [[0; LANES]; 4];
-            level.compiled(Starts { key: first.key, pixel, batch: &batch, words: [&mut a, &mut b, &mut c, &mut d] });
+            starts(level, first.key, pixel, &batch, &mut a, &mut b, &mut c, &mut d);
             lanes.words = std::array::from_fn(|i| [a[i], b[i], c[i], d[i]]);
         }
         lanes
@@ -65,9 +65,9 @@ impl SamplerLanes {
     #[inline]
     pub fn one_and_two(&self, level: Level, dimensions: &[u32; LANES], one: &mut [f64; LANES], two: &mut Pairs) {
         match self.kind {
-            SamplerKind::Independent => level.compiled(Independent { lanes: self, dimensions, one, two }),
+            SamplerKind::Independent => independent(level, self, dimensions, one, two),
             SamplerKind::Sobol(size) | SamplerKind::Lattice(size) => {
-                level.compiled(Triples { lanes: self, size, dimensions, one, two });
+                triples(level, self, size, dimensions, one, two);
             }
             SamplerKind::Stratified(_) | SamplerKind::Halton(_) => {
                 self.one(level, dimensions, one);
@@ -79,13 +79,13 @@ impl SamplerLanes {
     /// What [`Sampler::one`] gives for a dimension of each lane.
     #[inline]
     pub fn one(&self, level: Level, dimensions: &[u32; LANES], to: &mut [f64; LANES]) {
-        level.compiled(Ones { lanes: self, dimensions, to });
+        ones(level, self, dimensions, to);
     }
 
     /// What [`Sampler::two`] gives for a dimension of each lane.
     #[inline]
     pub fn two(&self, level: Level, dimensions: &[u32; LANES], to: &mut Pairs) {
-        level.compiled(Twos { lanes: self, dimensions, to });
+        twos(level, self, dimensions, to);
     }
 
     #[inline(always)]
@@ -114,22 +114,19 @@ impl SamplerLanes {
     }
 }
 
-/// Where the streams of batches start.
-struct Starts<'a> {
-    key: [u32; 2],
-    pixel: &'a [u32; LANES],
-    batch: &'a [u32; LANES],
-    words: [&'a mut [u32; LANES]; 4],
-}
-
-impl Loops for Starts<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run(self) {
-        let [a, b, c, d] = self.words;
+loops! {
+    /// Where the streams of batches start.
+    fn starts(
+        key: [u32; 2],
+        pixel: &[u32; LANES],
+        batch: &[u32; LANES],
+        a: &mut [u32; LANES],
+        b: &mut [u32; LANES],
+        c: &mut [u32; LANES],
+        d: &mut [u32; LANES],
+    ) {
         for i in 0..LANES {
-            [a[i], b[i], c[i], d[i]] = Stream::words(self.key, self.pixel[i], self.batch[i]);
+            [a[i], b[i], c[i], d[i]] = Stream::words(key, pixel[i], batch[i]);
         }
     }
 }
@@ -139,43 +136,32 @@ fn joined(low: u32, high: u32) -> u64 {
     u64::from(high) << 32 | u64::from(low)
 }
 
-/// Both halves of a block of independent numbers.
-struct Independent<'a> {
-    lanes: &'a SamplerLanes,
-    dimensions: &'a [u32; LANES],
-    one: &'a mut [f64; LANES],
-    two: &'a mut Pairs,
-}
-
-impl Loops for Independent<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run(self) {
+loops! {
+    /// Both halves of a block of independent numbers.
+    fn independent(
+        lanes: &SamplerLanes,
+        dimensions: &[u32; LANES],
+        one: &mut [f64; LANES],
+        two: &mut Pairs,
+    ) {
         for i in 0..LANES {
-            let [a, b, c, d] = self.lanes.block(i, self.dimensions[i]);
-            self.one[i] = number(joined(a, b));
-            self.two[0][i] = step(c);
-            self.two[1][i] = step(d);
+            let [a, b, c, d] = lanes.block(i, dimensions[i]);
+            one[i] = number(joined(a, b));
+            two[0][i] = step(c);
+            two[1][i] = step(d);
         }
     }
 }
 
-/// A choice and the pair that follows, which are three coordinates of one point.
-struct Triples<'a> {
-    lanes: &'a SamplerLanes,
-    size: BatchSize,
-    dimensions: &'a [u32; LANES],
-    one: &'a mut [f64; LANES],
-    two: &'a mut Pairs,
-}
-
-impl Loops for Triples<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run(self) {
-        let Self { lanes, size, dimensions, one, two } = self;
+loops! {
+    /// A choice and the pair that follows, which are three coordinates of one point.
+    fn triples(
+        lanes: &SamplerLanes,
+        size: BatchSize,
+        dimensions: &[u32; LANES],
+        one: &mut [f64; LANES],
+        two: &mut Pairs,
+    ) {
         let points = lanes.points(size, dimensions);
         macro_rules! each {
             ($i:ident, $one:expr, $two:expr) => {
@@ -203,18 +189,9 @@ impl Loops for Triples<'_> {
     }
 }
 
-struct Ones<'a> {
-    lanes: &'a SamplerLanes,
-    dimensions: &'a [u32; LANES],
-    to: &'a mut [f64; LANES],
-}
-
-impl Loops for Ones<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run(self) {
-        let Self { lanes, dimensions, to } = self;
+loops! {
+    /// One number a lane.
+    fn ones(lanes: &SamplerLanes, dimensions: &[u32; LANES], to: &mut [f64; LANES]) {
         macro_rules! each {
             ($i:ident, $one:expr) => {
                 for $i in 0..LANES {
@@ -226,7 +203,7 @@ impl Loops for Ones<'_> {
         match lanes.kind {
             SamplerKind::Independent => each!(i, {
                 let [a, b, c, d] = lanes.block(i, dimensions[i]);
-                let is_even = dimensions[i] % 2 == 0;
+                let is_even = dimensions[i].is_multiple_of(2);
                 if is_even { joined(a, b) } else { joined(c, d) }
             }),
             SamplerKind::Stratified(size) => {
@@ -245,18 +222,9 @@ impl Loops for Ones<'_> {
     }
 }
 
-struct Twos<'a> {
-    lanes: &'a SamplerLanes,
-    dimensions: &'a [u32; LANES],
-    to: &'a mut Pairs,
-}
-
-impl Loops for Twos<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run(self) {
-        let Self { lanes, dimensions, to } = self;
+loops! {
+    /// Two numbers a lane.
+    fn twos(lanes: &SamplerLanes, dimensions: &[u32; LANES], to: &mut Pairs) {
         macro_rules! each {
             ($i:ident, $two:expr) => {
                 for $i in 0..LANES {
@@ -269,7 +237,7 @@ impl Loops for Twos<'_> {
         match lanes.kind {
             SamplerKind::Independent => each!(i, {
                 let [a, b, c, d] = lanes.block(i, dimensions[i]);
-                let is_even = dimensions[i] % 2 == 0;
+                let is_even = dimensions[i].is_multiple_of(2);
                 if is_even { [a, b] } else { [c, d] }
             }),
             SamplerKind::Stratified(size) => {

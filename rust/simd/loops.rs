@@ -1,71 +1,64 @@
 //! Loops over arrays that the compiler turns into vectors, compiled for each level.
 
-use super::Level;
-
-/// Loops over arrays, one turn a lane, whatever the level: the same arithmetic in every lane and at every level, so the
-/// same bits.
+/// Makes a function of loops over arrays, one turn a lane, compiled for each level: its first argument says which of
+/// them, which must be available, is run. Whatever the level, lanes have the same arithmetic, and so the same bits.
 ///
 /// What a level has is what the compiler may use; it fuses nothing by itself. A loop becomes vectors where its lanes do
 /// the same: no branch that jumps, no call, no index that depends on a lane. Such steps stand in loops of their own.
-pub trait Loops {
-    /// What they give.
-    type Output;
+/// What is called must be `#[inline(always)]`, down to the last, so that all is compiled for the level; and what is
+/// written must come as an argument each, for only of those is it known that they lie apart.
+macro_rules! loops {
+    ($(#[$attribute:meta])* $visibility:vis fn $name:ident($($argument:ident: $type:ty),* $(,)?) $body:block) => {
+        $(#[$attribute])*
+        #[inline]
+        #[allow(clippy::too_many_arguments)]
+        $visibility fn $name(level: $crate::simd::Level, $($argument: $type),*) {
+            #[inline(always)]
+            #[allow(clippy::too_many_arguments)]
+            fn run($($argument: $type),*) $body
 
-    /// Runs them. Implementations must be `#[inline(always)]`, down to every function that they call, so that all is
-    /// compiled for the level that [`Level::compiled`] chose.
-    fn run(self) -> Self::Output;
-}
+            #[cfg(target_arch = "x86_64")]
+            #[target_feature(enable = "avx2,fma,popcnt,bmi1,bmi2,lzcnt")]
+            #[allow(clippy::too_many_arguments)]
+            unsafe fn with_avx2($($argument: $type),*) {
+                run($($argument),*);
+            }
 
-impl Level {
-    /// Runs loops compiled for this level, which must be available.
-    #[inline]
-    pub fn compiled<L: Loops>(self, loops: L) -> L::Output {
-        match self {
             #[cfg(target_arch = "x86_64")]
-            Self::Avx512 if super::Avx512::detect().is_some() => {
-                // SAFETY: the processor was just seen to have what `with_avx512` is compiled for.
-                unsafe { with_avx512(loops) }
+            #[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw,avx2,fma,popcnt,bmi1,bmi2,lzcnt")]
+            #[allow(clippy::too_many_arguments)]
+            unsafe fn with_avx512($($argument: $type),*) {
+                run($($argument),*);
             }
-            #[cfg(target_arch = "x86_64")]
-            Self::Avx2 if super::Avx2::detect().is_some() => {
-                // SAFETY: the processor was just seen to have what `with_avx2` is compiled for.
-                unsafe { with_avx2(loops) }
+
+            match level {
+                #[cfg(target_arch = "x86_64")]
+                $crate::simd::Level::Avx512 if $crate::simd::Avx512::detect().is_some() => {
+                    // SAFETY: the processor was just seen to have what `with_avx512` is compiled for.
+                    unsafe { with_avx512($($argument),*) }
+                }
+                #[cfg(target_arch = "x86_64")]
+                $crate::simd::Level::Avx2 if $crate::simd::Avx2::detect().is_some() => {
+                    // SAFETY: the processor was just seen to have what `with_avx2` is compiled for.
+                    unsafe { with_avx2($($argument),*) }
+                }
+                _ => run($($argument),*),
             }
-            _ => loops.run(),
         }
-    }
+    };
 }
 
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2,fma,popcnt,bmi1,bmi2,lzcnt")]
-unsafe fn with_avx2<L: Loops>(loops: L) -> L::Output {
-    loops.run()
-}
-
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw,avx2,fma,popcnt,bmi1,bmi2,lzcnt")]
-unsafe fn with_avx512<L: Loops>(loops: L) -> L::Output {
-    loops.run()
-}
+pub(crate) use loops;
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use super::super::Level;
 
-    struct Roots<'a> {
-        of: &'a [f64; 16],
-        to: &'a mut [f64; 16],
-    }
-
-    impl Loops for Roots<'_> {
-        type Output = f64;
-
-        #[inline(always)]
-        fn run(self) -> f64 {
+    loops! {
+        fn roots(of: &[f64; 16], to: &mut [f64; 16]) {
             for i in 0..16 {
-                self.to[i] = (self.of[i] * self.of[i] + 1.0 / self.of[i]).sqrt();
+                to[i] = (of[i] * of[i] + 1.0 / of[i]).sqrt();
             }
-            self.to[3]
         }
     }
 
@@ -73,10 +66,11 @@ mod tests {
     fn levels_agree_to_the_bit() {
         let of = std::array::from_fn(|i| 0.1 + 0.7 * i as f64);
         let mut wanted = [0.0; 16];
-        let third = Roots { of: &of, to: &mut wanted }.run();
+        roots(Level::Scalar, &of, &mut wanted);
+        assert_eq!(wanted[1], (0.8f64 * 0.8 + 1.0 / 0.8).sqrt());
         for level in Level::ALL.into_iter().filter(|level| level.is_available()) {
             let mut to = [0.0; 16];
-            assert_eq!(level.compiled(Roots { of: &of, to: &mut to }), third);
+            roots(level, &of, &mut to);
             assert_eq!(to.map(f64::to_bits), wanted.map(f64::to_bits), "{level:?}");
         }
     }

@@ -17,7 +17,7 @@ mod x86;
 #[cfg(target_arch = "aarch64")]
 pub use arm::Neon;
 pub use level::{Dispatch, Kernel, Level};
-pub use loops::Loops;
+pub(crate) use loops::loops;
 pub use pair::Pair;
 pub use scalar::Scalar;
 pub use transpose::columns_of_four;

@@ -13,50 +13,32 @@ use crate::math::{LANES, VectorLanes};
 use crate::optics::{Diffuse, Rgb};
 use crate::sampling::Pairs;
 use crate::scene::{Footprint, InteractionLanes, Scattered};
-use crate::simd::Loops;
+use crate::simd::loops;
 use std::array;
 
-/// From random numbers to where paths go on to from diffuse surfaces.
-struct GoOn<'a> {
-    encounters: &'a InteractionLanes,
-    reflectance: &'a VectorLanes,
-    u: &'a Pairs,
-    origin: &'a mut VectorLanes,
-    direction: &'a mut VectorLanes,
-    weight: &'a mut VectorLanes,
-    /// 0 where it ends.
-    pdf: &'a mut [f64; LANES],
-}
-
-impl Loops for GoOn<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run(self) {
-        let Self { encounters, reflectance, u, origin, direction, weight, pdf } = self;
-        go_on((encounters, reflectance, u), origin, direction, weight, pdf);
-    }
-}
-
-#[inline(always)]
-fn go_on(
-    (encounters, reflectance, u): (&InteractionLanes, &VectorLanes, &Pairs),
-    origin: &mut VectorLanes,
-    direction: &mut VectorLanes,
-    weight: &mut VectorLanes,
-    pdf: &mut [f64; LANES],
-) {
-    for i in 0..LANES {
-        let here = encounters.get(i, Diffuse { reflectance: reflectance.get(i) });
-        let (towards, times, density) = match here.sample(|| 0.0, [u[0][i], u[1][i]]) {
-            Some(next) => (next.direction, next.weight, next.pdf),
-            None => (here.normal(), Rgb::ZERO, 0.0),
-        };
-        let ray = here.ray_origin().ray(towards);
-        origin.set(i, ray.origin);
-        direction.set(i, ray.direction);
-        weight.set(i, times);
-        pdf[i] = density;
+loops! {
+    /// From random numbers to where paths go on to from diffuse surfaces. `pdf` is 0 where it ends.
+    fn go_on(
+        encounters: &InteractionLanes,
+        reflectance: &VectorLanes,
+        u: &Pairs,
+        origin: &mut VectorLanes,
+        direction: &mut VectorLanes,
+        weight: &mut VectorLanes,
+        pdf: &mut [f64; LANES],
+    ) {
+        for i in 0..LANES {
+            let here = encounters.get(i, Diffuse { reflectance: reflectance.get(i) });
+            let (towards, times, density) = match here.sample(|| 0.0, [u[0][i], u[1][i]]) {
+                Some(next) => (next.direction, next.weight, next.pdf),
+                None => (here.normal(), Rgb::ZERO, 0.0),
+            };
+            let ray = here.ray_origin().ray(towards);
+            origin.set(i, ray.origin);
+            direction.set(i, ray.direction);
+            weight.set(i, times);
+            pdf[i] = density;
+        }
     }
 }
 
@@ -149,15 +131,16 @@ impl<N: Features> TransportWorker<'_, N> {
         let mut u = [[0.0; LANES]; 2];
         block.numbers.two(self.level, &block.dimensions.map(Dimensions::direction), &mut u);
         let ([mut origin, mut direction, mut weight], mut pdf) = ([VectorLanes::ZERO; 3], [0.0; LANES]);
-        self.level.compiled(GoOn {
-            encounters: &block.encounters,
-            reflectance: &block.reflectance,
-            u: &u,
-            origin: &mut origin,
-            direction: &mut direction,
-            weight: &mut weight,
-            pdf: &mut pdf,
-        });
+        go_on(
+            self.level,
+            &block.encounters,
+            &block.reflectance,
+            &u,
+            &mut origin,
+            &mut direction,
+            &mut weight,
+            &mut pdf,
+        );
         let chances = self.chances(block, &block.dimensions);
         let mut going = 0;
         for lane in 0..block.count {

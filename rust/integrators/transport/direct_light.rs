@@ -9,52 +9,35 @@ use super::worker::TransportWorker;
 use crate::math::{DVec3, LANES, VectorLanes};
 use crate::optics::{Diffuse, Rgb};
 use crate::scene::{InteractionLanes, LightLanes, LightSample};
-use crate::simd::Loops;
+use crate::simd::loops;
 use std::array;
 
-/// From light that was drawn for diffuse surfaces to what arrives of it, and the rays that tell whether it does.
-struct Ask<'a> {
-    encounters: &'a InteractionLanes,
-    reflectance: &'a VectorLanes,
-    throughput: &'a VectorLanes,
-    lights: &'a LightLanes,
-    arriving: &'a mut VectorLanes,
-    origin: &'a mut VectorLanes,
-    direction: &'a mut VectorLanes,
-    t_max: &'a mut [f64; LANES],
-}
-
-impl Loops for Ask<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run(self) {
-        let Self { encounters, reflectance, throughput, lights, arriving, origin, direction, t_max } = self;
-        ask((encounters, reflectance, throughput, lights), arriving, origin, direction, t_max);
-    }
-}
-
-#[inline(always)]
-fn ask(
-    (encounters, reflectance, throughput, lights): (&InteractionLanes, &VectorLanes, &VectorLanes, &LightLanes),
-    arriving: &mut VectorLanes,
-    origin: &mut VectorLanes,
-    direction: &mut VectorLanes,
-    t_max: &mut [f64; LANES],
-) {
-    for i in 0..LANES {
-        let here = encounters.get(i, Diffuse { reflectance: reflectance.get(i) });
-        let (towards, light, drawn) = lights.get(i);
-        let (scattered, pdf) = here.evaluate(towards);
-        let all = throughput.get(i) * scattered * light * power_heuristic(drawn, pdf);
-        arriving.set(i, if drawn > 0.0 { all } else { Rgb::ZERO });
-        let (source, is_within) = lights.source(i);
-        let from = here.ray_origin();
-        let (segment, ray) = (from.segment(&source), from.ray(towards));
-        let ray = if is_within { segment } else { ray };
-        origin.set(i, ray.origin);
-        direction.set(i, ray.direction);
-        t_max[i] = ray.t_max;
+loops! {
+    /// From light that was drawn for diffuse surfaces to what arrives of it, and the rays that tell whether it does.
+    fn ask(
+        encounters: &InteractionLanes,
+        reflectance: &VectorLanes,
+        throughput: &VectorLanes,
+        lights: &LightLanes,
+        arriving: &mut VectorLanes,
+        origin: &mut VectorLanes,
+        direction: &mut VectorLanes,
+        t_max: &mut [f64; LANES],
+    ) {
+        for i in 0..LANES {
+            let here = encounters.get(i, Diffuse { reflectance: reflectance.get(i) });
+            let (towards, light, drawn) = lights.get(i);
+            let (scattered, pdf) = here.evaluate(towards);
+            let all = throughput.get(i) * scattered * light * power_heuristic(drawn, pdf);
+            arriving.set(i, if drawn > 0.0 { all } else { Rgb::ZERO });
+            let (source, is_within) = lights.source(i);
+            let from = here.ray_origin();
+            let (segment, ray) = (from.segment(&source), from.ray(towards));
+            let ray = if is_within { segment } else { ray };
+            origin.set(i, ray.origin);
+            direction.set(i, ray.direction);
+            t_max[i] = ray.t_max;
+        }
     }
 }
 
@@ -94,16 +77,17 @@ impl<N: Features> TransportWorker<'_, N> {
         let (mut lights, lit) = (LightLanes::NONE, self.scene.lights());
         lit.sample_lanes(self.level, self.scene.geometry(), &block.receivers, &choice, &u, &mut lights);
         let ([mut arriving, mut origin, mut direction], mut t_max) = ([VectorLanes::ZERO; 3], [0.0; LANES]);
-        self.level.compiled(Ask {
-            encounters: &block.encounters,
-            reflectance: &block.reflectance,
-            throughput: &block.throughput,
-            lights: &lights,
-            arriving: &mut arriving,
-            origin: &mut origin,
-            direction: &mut direction,
-            t_max: &mut t_max,
-        });
+        ask(
+            self.level,
+            &block.encounters,
+            &block.reflectance,
+            &block.throughput,
+            &lights,
+            &mut arriving,
+            &mut origin,
+            &mut direction,
+            &mut t_max,
+        );
         let mut asked = 0;
         for lane in 0..block.count {
             let arriving = arriving.get(lane);

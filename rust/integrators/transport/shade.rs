@@ -11,34 +11,25 @@ use crate::math::{LANES, Ray, VectorLanes};
 use crate::optics::{Diffuse, Rgb};
 use crate::scene::materials::Scattering;
 use crate::scene::{Interaction, InteractionLanes, LightContextLanes, LightSampleContext, Scatters};
-use crate::simd::Loops;
+use crate::simd::loops;
 use std::array;
 
-/// From rays that meet surfaces to what is known of the encounters, where nothing is asked of a material but how it
-/// scatters, and it lets no light through.
-struct Meet<'a> {
-    directions: &'a VectorLanes,
-    encounters: &'a mut InteractionLanes,
-    receivers: &'a mut LightContextLanes,
-}
-
-impl Loops for Meet<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run(self) {
-        meet(self.directions, self.encounters, self.receivers);
-    }
-}
-
-#[inline(always)]
-fn meet(directions: &VectorLanes, encounters: &mut InteractionLanes, receivers: &mut LightContextLanes) {
-    for i in 0..LANES {
-        let surface = encounters.surface(i);
-        let ray = Ray::new(surface.position, directions.get(i));
-        let here = Interaction::with(&ray, surface, (surface.shading_normal, None), Diffuse { reflectance: Rgb::ZERO });
-        encounters.set(i, &here);
-        receivers.set(i, &here.light_context());
+loops! {
+    /// From rays that meet surfaces to what is known of the encounters, where nothing is asked of a material but how it
+    /// scatters, and it lets no light through.
+    fn meet(
+        directions: &VectorLanes,
+        encounters: &mut InteractionLanes,
+        receivers: &mut LightContextLanes,
+    ) {
+        for i in 0..LANES {
+            let surface = encounters.surface(i);
+            let ray = Ray::new(surface.position, directions.get(i));
+            let normal = (surface.shading_normal, None);
+            let here = Interaction::with(&ray, surface, normal, Diffuse { reflectance: Rgb::ZERO });
+            encounters.set(i, &here);
+            receivers.set(i, &here.light_context());
+        }
     }
 }
 
@@ -61,11 +52,7 @@ impl<'a, N: Features> TransportWorker<'a, N> {
             directions.set(lane, block.rays[lane].direction);
         }
         block.encounters.set_surfaces(&block.surfaces);
-        self.level.compiled(Meet {
-            directions: &directions,
-            encounters: &mut block.encounters,
-            receivers: &mut block.receivers,
-        });
+        meet(self.level, &directions, &mut block.encounters, &mut block.receivers);
         for lane in 0..LANES {
             let path = &block.paths[lane];
             block.numbers.set(lane, &samples[Self::own(path.sample, samples.len())].sampler);

@@ -4,7 +4,7 @@ use super::window::from_middle;
 use super::{Body, Camera, CameraError, CameraRay, CameraRayLanes, Measured, Spread, Viewpoint, Window};
 use crate::math::{DVec3, LANES, Ray, VectorLanes};
 use crate::sampling::Pairs;
-use crate::simd::{Level, Loops};
+use crate::simd::{Level, loops};
 
 /// A pinhole camera. It looks along its own −z with +y up; row 0 of its picture is at the top.
 #[derive(Clone, Debug, PartialEq)]
@@ -72,22 +72,16 @@ fn towards([middle, right, up]: &[DVec3; 3], film: [f64; 2], size: [f64; 2]) -> 
     (middle + right * x + up * y).normalize()
 }
 
-/// Ways to points of a film.
-struct Towards<'a> {
-    film: &'a [DVec3; 3],
-    size: [f64; 2],
-    points: &'a Pairs,
-    directions: &'a mut VectorLanes,
-}
-
-impl Loops for Towards<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run(self) {
+loops! {
+    /// Ways to points of a film.
+    fn all_towards(
+        film: &[DVec3; 3],
+        size: [f64; 2],
+        points: &Pairs,
+        directions: &mut VectorLanes,
+    ) {
         for i in 0..LANES {
-            let point = [self.points[0][i], self.points[1][i]];
-            self.directions.set(i, towards(self.film, point, self.size));
+            directions.set(i, towards(film, [points[0][i], points[1][i]], size));
         }
     }
 }
@@ -114,7 +108,7 @@ impl Camera for Perspective {
             return;
         }
         let CameraRayLanes { origin, direction, time: times, weight } = rays;
-        level.compiled(Towards { film: &self.film, size: self.body.size(), points: film, directions: direction });
+        all_towards(level, &self.film, self.body.size(), film, direction);
         for lane in 0..LANES {
             origin.set(lane, self.body.start().position);
             times[lane] = self.body.scene_time(time[lane]);

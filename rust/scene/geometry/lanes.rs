@@ -5,49 +5,31 @@ use crate::accel::Primitives;
 use crate::math::{Hit, LANES, Ray, Vec3, VectorLanes};
 use crate::sampling::Pairs;
 use crate::scene::SurfaceLanes;
-use crate::simd::{Level, Loops};
+use crate::simd::{Level, loops};
 
-/// Normals of triangles, by their corners.
-struct Normals<'a> {
-    corners: &'a [VectorLanes; 3],
-    normal: &'a mut VectorLanes,
-}
-
-impl Loops for Normals<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run(self) {
+loops! {
+    /// Normals of triangles, by their corners.
+    fn normals(corners: &[VectorLanes; 3], normal: &mut VectorLanes) {
         for i in 0..LANES {
-            self.normal.set(i, unit_normal(self.corners.each_ref().map(|corners| corners.get(i))));
+            normal.set(i, unit_normal([corners[0].get(i), corners[1].get(i), corners[2].get(i)]));
         }
     }
 }
 
-/// Points of triangles, by their weights.
-struct Triangles<'a> {
-    corners: &'a [VectorLanes; 3],
-    uv: &'a Pairs,
-    position: &'a mut VectorLanes,
-    error: &'a mut [f64; LANES],
-}
-
-impl Loops for Triangles<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run(self) {
-        points(self.corners, self.uv, self.position, self.error);
-    }
-}
-
-#[inline(always)]
-fn points(corners: &[VectorLanes; 3], uv: &Pairs, position: &mut VectorLanes, error: &mut [f64; LANES]) {
-    for i in 0..LANES {
-        let [a, b, c] = [corners[0].get(i), corners[1].get(i), corners[2].get(i)];
-        let [v, w] = [uv[0][i], uv[1][i]];
-        position.set(i, a * (1.0 - v - w) + b * v + c * w);
-        error[i] = error_among([a, b, c]);
+loops! {
+    /// Points of triangles, by their weights.
+    fn points(
+        corners: &[VectorLanes; 3],
+        uv: &Pairs,
+        position: &mut VectorLanes,
+        error: &mut [f64; LANES],
+    ) {
+        for i in 0..LANES {
+            let [a, b, c] = [corners[0].get(i), corners[1].get(i), corners[2].get(i)];
+            let [v, w] = [uv[0][i], uv[1][i]];
+            position.set(i, a * (1.0 - v - w) + b * v + c * w);
+            error[i] = error_among([a, b, c]);
+        }
     }
 }
 
@@ -75,10 +57,10 @@ impl Geometry {
             [uv[0][lane], uv[1][lane]] = hit.uv;
         }
         if !has_facets {
-            level.compiled(Normals { corners: &corners, normal: &mut surfaces.normal });
+            normals(level, &corners, &mut surfaces.normal);
         }
         let SurfaceLanes { position, error, .. } = surfaces;
-        level.compiled(Triangles { corners: &corners, uv: &uv, position, error });
+        points(level, &corners, &uv, position, error);
         surfaces.shading_normal = surfaces.normal;
         if !self.normals.is_empty() {
             for (lane, hit) in hits.iter().enumerate() {

@@ -6,7 +6,7 @@ use crate::math::{DVec3, Frame, LANES, Ray, VectorLanes};
 use crate::optics::{Rgb, is_radiance};
 use crate::sampling::Pairs;
 use crate::sampling::warp::{UNIFORM_SPHERE_PDF, cosine_hemisphere, uniform_sphere};
-use crate::simd::{Level, Loops};
+use crate::simd::{Level, loops};
 use std::f64::consts::PI;
 
 /// The same radiance from every direction that the scene leaves open. It is best drawn by the cosine of its arrival.
@@ -28,40 +28,24 @@ fn arriving_pdf(normal: DVec3, direction: DVec3) -> f64 {
     normal.dot(direction).max(0.0) / PI
 }
 
-/// What is drawn for receivers none of which is free.
-struct Draw<'a> {
-    radiance: Rgb,
-    normal: &'a VectorLanes,
-    u: &'a Pairs,
-    direction: &'a mut VectorLanes,
-    weight: &'a mut VectorLanes,
-    pdf: &'a mut [f64; LANES],
-}
-
-impl Loops for Draw<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run(self) {
-        let Self { radiance, normal, u, direction, weight, pdf } = self;
-        draw((radiance, normal, u), direction, weight, pdf);
-    }
-}
-
-#[inline(always)]
-fn draw(
-    (radiance, normal, u): (Rgb, &VectorLanes, &Pairs),
-    direction: &mut VectorLanes,
-    weight: &mut VectorLanes,
-    pdf: &mut [f64; LANES],
-) {
-    for i in 0..LANES {
-        let normal = normal.get(i);
-        let drawn = arriving(normal, [u[0][i], u[1][i]]);
-        let density = arriving_pdf(normal, drawn);
-        direction.set(i, drawn);
-        weight.set(i, radiance / density);
-        pdf[i] = density;
+loops! {
+    /// What is drawn for receivers none of which is free.
+    fn draw(
+        radiance: Rgb,
+        normal: &VectorLanes,
+        u: &Pairs,
+        direction: &mut VectorLanes,
+        weight: &mut VectorLanes,
+        pdf: &mut [f64; LANES],
+    ) {
+        for i in 0..LANES {
+            let normal = normal.get(i);
+            let drawn = arriving(normal, [u[0][i], u[1][i]]);
+            let density = arriving_pdf(normal, drawn);
+            direction.set(i, drawn);
+            weight.set(i, radiance / density);
+            pdf[i] = density;
+        }
     }
 }
 
@@ -90,7 +74,7 @@ impl Light for ConstantEnvironment {
             return;
         }
         let LightLanes { direction, weight, pdf, is_within, primitive, .. } = lights;
-        level.compiled(Draw { radiance: self.radiance, normal: &receivers.normal, u, direction, weight, pdf });
+        draw(level, self.radiance, &receivers.normal, u, direction, weight, pdf);
         (*is_within, *primitive) = ([false; LANES], [Ray::NO_TRIANGLE; LANES]);
     }
 

@@ -9,7 +9,7 @@ use crate::scene::geometry::error_among;
 use crate::scene::textures::TexturePoint;
 use crate::scene::{Geometry, RayOrigin};
 use crate::shapes::{Seen, Sphere};
-use crate::simd::{Level, Loops};
+use crate::simd::{Level, loops};
 use std::array::from_fn;
 
 /// Triangles that shine, a lane each, and how likely each was chosen.
@@ -22,47 +22,32 @@ struct Lamps {
     probability: [f64; LANES],
 }
 
-/// What is drawn of them.
-struct Draw<'a> {
-    receivers: &'a LightContextLanes,
-    lamps: &'a Lamps,
-    u: &'a Pairs,
-    lights: &'a mut LightLanes,
-}
-
-impl Loops for Draw<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run(self) {
-        draw(self.receivers, self.lamps, self.u, self.lights);
-    }
-}
-
-#[inline(always)]
-fn draw(receivers: &LightContextLanes, lamps: &Lamps, u: &Pairs, lights: &mut LightLanes) {
-    for i in 0..LANES {
-        let shine = |cosine: f64| (lamps.sides[0][i] & (cosine > 0.0)) | (lamps.sides[1][i] & (cosine < 0.0));
-        let corners = [lamps.corners[0].get(i), lamps.corners[1].get(i), lamps.corners[2].get(i)];
-        let ([a, b, c], normal) = (corners, lamps.normal.get(i));
-        let place = receivers.position.get(i);
-        let seen = SeenTriangle::new(corners, place);
-        let [v, w] = seen.sample([u[0][i], u[1][i]]);
-        let position = a * (1.0 - v - w) + b * v + c * w;
-        let way = position - place;
-        let distance = way.length();
-        let direction = way / distance;
-        let pdf = seen.pdf(distance, direction.dot(normal));
-        let cosine = -direction.dot(normal);
-        // Also false where the distance is 0 and the direction NaN.
-        let is_lit = shine(seen.height()) & shine(cosine) & (pdf > 0.0) & (pdf < f64::INFINITY);
-        let from = RayOrigin::off(position, error_among(corners), normal);
-        lights.direction.set(i, direction);
-        lights.weight.set(i, lamps.radiance.get(i) / pdf / lamps.probability[i]);
-        lights.pdf[i] = if is_lit { pdf * lamps.probability[i] } else { 0.0 };
-        lights.position.set(i, from.position());
-        lights.offset.set(i, from.offset());
-        lights.is_within[i] = true;
+loops! {
+    /// What is drawn of them.
+    fn draw(receivers: &LightContextLanes, lamps: &Lamps, u: &Pairs, lights: &mut LightLanes) {
+        for i in 0..LANES {
+            let shine = |cosine: f64| (lamps.sides[0][i] & (cosine > 0.0)) | (lamps.sides[1][i] & (cosine < 0.0));
+            let corners = [lamps.corners[0].get(i), lamps.corners[1].get(i), lamps.corners[2].get(i)];
+            let ([a, b, c], normal) = (corners, lamps.normal.get(i));
+            let place = receivers.position.get(i);
+            let seen = SeenTriangle::new(corners, place);
+            let [v, w] = seen.sample([u[0][i], u[1][i]]);
+            let position = a * (1.0 - v - w) + b * v + c * w;
+            let way = position - place;
+            let distance = way.length();
+            let direction = way / distance;
+            let pdf = seen.pdf(distance, direction.dot(normal));
+            let cosine = -direction.dot(normal);
+            // Also false where the distance is 0 and the direction NaN.
+            let is_lit = shine(seen.height()) & shine(cosine) & (pdf > 0.0) & (pdf < f64::INFINITY);
+            let from = RayOrigin::off(position, error_among(corners), normal);
+            lights.direction.set(i, direction);
+            lights.weight.set(i, lamps.radiance.get(i) / pdf / lamps.probability[i]);
+            lights.pdf[i] = if is_lit { pdf * lamps.probability[i] } else { 0.0 };
+            lights.position.set(i, from.position());
+            lights.offset.set(i, from.offset());
+            lights.is_within[i] = true;
+        }
     }
 }
 
@@ -72,53 +57,38 @@ struct Balls {
     radius: [f64; LANES],
 }
 
-/// What is drawn of them; of receivers inside, and of those on them, nothing is said.
-struct DrawBalls<'a> {
-    receivers: &'a LightContextLanes,
-    balls: &'a Balls,
-    lamps: &'a Lamps,
-    u: &'a Pairs,
-    lights: &'a mut LightLanes,
-    /// 1 where the receiver is outside.
-    outside: &'a mut [f64; LANES],
-}
-
-impl Loops for DrawBalls<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run(self) {
-        let Self { receivers, balls, lamps, u, lights, outside } = self;
-        let LightLanes { direction, weight, pdf, position, offset, .. } = lights;
-        draw_balls((receivers, balls, lamps, u), direction, weight, pdf, (position, offset), outside);
-    }
-}
-
-#[inline(always)]
-fn draw_balls(
-    (receivers, balls, lamps, u): (&LightContextLanes, &Balls, &Lamps, &Pairs),
-    direction: &mut VectorLanes,
-    weight: &mut VectorLanes,
-    pdf: &mut [f64; LANES],
-    (position, offset): (&mut VectorLanes, &mut VectorLanes),
-    outside: &mut [f64; LANES],
-) {
-    for i in 0..LANES {
-        let shine = |cosine: f64| (lamps.sides[0][i] & (cosine > 0.0)) | (lamps.sides[1][i] & (cosine < 0.0));
-        let (place, sphere) =
-            (receivers.position.get(i), Sphere { center: balls.center.get(i), radius: balls.radius[i] });
-        let (Seen { site, pdf: density }, is_outside) = sphere.sight_from_outside(place, [u[0][i], u[1][i]]);
-        let way = site.position - place;
-        let towards = way / way.length();
-        // Also false where the distance is 0 and the direction NaN.
-        let is_lit = shine(-towards.dot(site.normal)) & (density > 0.0) & (density < f64::INFINITY);
-        let from = RayOrigin::off(site.position, site.error, site.normal);
-        direction.set(i, towards);
-        weight.set(i, lamps.radiance.get(i) / density / lamps.probability[i]);
-        pdf[i] = if is_lit { density * lamps.probability[i] } else { 0.0 };
-        position.set(i, from.position());
-        offset.set(i, from.offset());
-        outside[i] = if is_outside { 1.0 } else { 0.0 };
+loops! {
+    /// What is drawn of them; of receivers inside, and of those on them, nothing is said. `outside` is 1 for the
+    /// others.
+    fn draw_balls(
+        receivers: &LightContextLanes,
+        balls: &Balls,
+        lamps: &Lamps,
+        u: &Pairs,
+        direction: &mut VectorLanes,
+        weight: &mut VectorLanes,
+        pdf: &mut [f64; LANES],
+        position: &mut VectorLanes,
+        offset: &mut VectorLanes,
+        outside: &mut [f64; LANES],
+    ) {
+        for i in 0..LANES {
+            let shine = |cosine: f64| (lamps.sides[0][i] & (cosine > 0.0)) | (lamps.sides[1][i] & (cosine < 0.0));
+            let (place, sphere) =
+                (receivers.position.get(i), Sphere { center: balls.center.get(i), radius: balls.radius[i] });
+            let (Seen { site, pdf: density }, is_outside) = sphere.sight_from_outside(place, [u[0][i], u[1][i]]);
+            let way = site.position - place;
+            let towards = way / way.length();
+            // Also false where the distance is 0 and the direction NaN.
+            let is_lit = shine(-towards.dot(site.normal)) & (density > 0.0) & (density < f64::INFINITY);
+            let from = RayOrigin::off(site.position, site.error, site.normal);
+            direction.set(i, towards);
+            weight.set(i, lamps.radiance.get(i) / density / lamps.probability[i]);
+            pdf[i] = if is_lit { density * lamps.probability[i] } else { 0.0 };
+            position.set(i, from.position());
+            offset.set(i, from.offset());
+            outside[i] = if is_outside { 1.0 } else { 0.0 };
+        }
     }
 }
 
@@ -224,21 +194,14 @@ impl Lights {
             lamps.probability[lane] = probability;
         }
         if spheres == 0 {
-            level.compiled(Draw { receivers, lamps: &lamps, u, lights });
+            draw(level, receivers, &lamps, u, lights);
         } else {
             let mut outside = [0.0; LANES];
             let mut of_spheres = LightLanes::NONE;
-            let draw = DrawBalls {
-                receivers,
-                balls: &balls,
-                lamps: &lamps,
-                u,
-                lights: &mut of_spheres,
-                outside: &mut outside,
-            };
-            level.compiled(draw);
+            let LightLanes { direction, weight, pdf, position, offset, .. } = &mut of_spheres;
+            draw_balls(level, receivers, &balls, &lamps, u, direction, weight, pdf, position, offset, &mut outside);
             if triangles != 0 {
-                level.compiled(Draw { receivers, lamps: &lamps, u, lights });
+                draw(level, receivers, &lamps, u, lights);
             }
             for lane in (0..LANES).filter(|&lane| triangles >> lane & 1 == 0) {
                 of_spheres.primitive[lane] = lights.primitive[lane];
