@@ -77,7 +77,7 @@ impl Denominators {
     /// pixels around, next to a lamp or in a caustic; or the whole picture, if what is as bright is mostly seen again
     /// ([`Chance`]). Without them its denominator is that of the others alone, which is much too small for a lamp that
     /// is smaller than a pixel. So errors are largest as the pixels around alone have it, and least by the most that
-    /// the picture says.
+    /// the picture says; and if few pixels are even darker than that, `jumps.rs` tells what they add.
     #[inline]
     pub fn of_peak(&self, mean: Rgb, without: Rgb, around: Rgb, chance: &Chance, samples: f64) -> Peak {
         let (low, high) = (mean.min(without), mean.max(without));
@@ -93,6 +93,7 @@ impl Denominators {
             likely: or(confirmed(chance.likely), self.inverse),
             least: or(confirmed(chance.most), self.own),
             most: or(squared(around), self.inverse.max(self.own)),
+            hangs: self.own.cmplt((without * without + FLOOR).recip() / hangs(samples)).any(),
         }
     }
 }
@@ -110,6 +111,8 @@ pub(super) struct Peak {
     pub likely: Rgb,
     pub least: Rgb,
     pub most: Rgb,
+    /// Whether the mean hangs on this one sample, whatever the pixels around say.
+    pub hangs: bool,
 }
 
 /// The mean brightness of the up to eight pixels around one, `apart` from it along both axes; black if there are none.

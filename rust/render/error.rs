@@ -3,6 +3,7 @@
 use super::Film;
 use super::denominators::{Denominators, around, cross};
 use super::film::Spread;
+use super::jumps::Jumps;
 use super::outliers::{Carried, Largest, beside, is_find};
 use super::sightings::{Chances, Sightings};
 use crate::optics::Rgb;
@@ -78,14 +79,14 @@ pub(super) fn estimate(film: &Film) -> Option<ErrorEstimate> {
     let picture = Picture { means: &means, shown: &shown, width, patch: patch as usize, cells, chances: &chances };
     let sums: Vec<Sums> = bands()
         .map_init(row, |spreads, band| {
+            let mut sums = Sums::default();
             let mut patches = vec![Patch::default(); width.div_ceil(patch as usize)];
             for y in rows(band) {
                 film.spreads(y, spreads);
                 for (x, spread) in spreads.iter().enumerate() {
-                    patches[x / patch as usize].add(&picture, (x, y as usize), spread);
+                    patches[x / patch as usize].add(&picture, (x, y as usize), spread, &mut sums.jumps);
                 }
             }
-            let mut sums = Sums::default();
             for patch in &patches {
                 sums.add(patch);
             }
@@ -119,6 +120,8 @@ struct Sums {
     rare: [f64; 2],
     /// What single finds bring.
     largest: Largest,
+    /// What pixels may err more than the largest error has it.
+    jumps: Jumps,
 }
 
 /// Sums over the pixels of a patch.
@@ -149,7 +152,7 @@ struct Picture<'a> {
 
 impl Patch {
     #[inline]
-    fn add(&mut self, picture: &Picture<'_>, (x, y): (usize, usize), spread: &Spread) {
+    fn add(&mut self, picture: &Picture<'_>, (x, y): (usize, usize), spread: &Spread, jumps: &mut Jumps) {
         let Picture { means, shown, width, patch, cells, chances } = *picture;
         let mean = means[y * width + x];
         let denominators = Denominators::new(&cross(means, width, x, y), spread.variance, spread.samples);
@@ -164,9 +167,13 @@ impl Patch {
             if is_find(peak.brightness, shown[y * width + x], beside) {
                 self.finds[cell] += brings;
             }
+            let most = peak.variance.dot(of_peak.most);
+            if of_peak.hangs {
+                jumps.add(peak.variance, mean, peak.without, most);
+            }
             self.error += brings;
             self.least += peak.variance.dot(of_peak.least);
-            self.most += peak.variance.dot(of_peak.most);
+            self.most += most;
             rest -= peak.variance;
         }
         // Rounding may leave less than nothing.
@@ -210,6 +217,7 @@ impl Sums {
         self.rare[0] += other.rare[0];
         self.rare[1] += other.rare[1];
         self.largest.join(&other.largest);
+        self.jumps.join(&other.jumps);
     }
 
     /// The estimate, over so many values in all.
@@ -234,7 +242,9 @@ impl Sums {
     /// upper it is what other denominators for all samples of a pixel have changed, as those that samples which stand
     /// out may have are in the larger errors already.
     ///
-    /// All three are factors, and their logarithms are added as what is independent is.
+    /// All three are factors, and their logarithms are added as what is independent is. To them comes that one
+    /// pixel of many errs by much more than it can tell ([`Jumps`]): a term, which is added to the upper end in the
+    /// same manner.
     fn estimate(&self, count: f64) -> ErrorEstimate {
         let value = self.error / count;
         if value == 0.0 {
@@ -252,7 +262,8 @@ impl Sums {
         let factor = |of: f64, doubt: f64| of.ln().hypot(estimate).hypot(doubt.ln()).exp();
         let (low, high) = (factor(least, doubts[0]), factor(greatest, doubts[1]));
         let carried = if value > ROUNDING { self.largest.carry(self.error) } else { None };
-        ErrorEstimate { value, low: value / low, high: self.most / count * high, carried }
+        let beyond = (self.most * (high - 1.0)).hypot(self.jumps.with(0.025));
+        ErrorEstimate { value, low: value / low, high: (self.most + beyond) / count, carried }
     }
 }
 

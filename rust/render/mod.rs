@@ -7,6 +7,7 @@ mod denominators;
 mod error;
 mod film;
 pub mod filter;
+mod jumps;
 mod outliers;
 mod part;
 #[cfg(test)]
