@@ -8,9 +8,9 @@ use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 ///
 /// On the rim of a lamp a pixel is in part as bright as the next ones, and in which part its samples say. If one of n
 /// met the lamp, the part is 1/n, or a tenth of that: rarely, as rarely as a sample meets so little, but the error over
-/// the square of what the pixel is would be a hundred times what it seems to be. A picture has many such pixels, and one
-/// that is of the rare kind makes as much error as all others do. Variances say nothing of sums like that. What does is
-/// that they are large by their largest term: the sum is above x as often as one of its terms is (Embrechts,
+/// the square of what the pixel is would be a hundred times what it seems to be. A picture has many such pixels, and
+/// one that is of the rare kind makes as much error as all others do. Variances say nothing of sums like that. What
+/// does is that they are large by their largest term: the sum is above x as often as one of its terms is (Embrechts,
 /// Klüppelberg and Mikosch, "Modelling Extremal Events", 1997, section 1.3).
 ///
 /// Rims lie anywhere in pixels, so parts are uniform before there is a sample, and proportional to themselves after one
@@ -80,7 +80,8 @@ fn bin(error: f64) -> Option<usize> {
 
 /// The errors of a bin, which they are off by a fifth at most.
 fn middle(bin: usize) -> f64 {
-    f64::exp2(f64::from(bin as i32 / 2 + LEAST)) * if bin % 2 == 0 { SQRT_2.sqrt() } else { SQRT_2.sqrt() * SQRT_2 }
+    const QUARTER: f64 = MIDDLE * SQRT_2;
+    f64::exp2(f64::from(bin as i32 / 2 + LEAST)) * if bin.is_multiple_of(2) { QUARTER } else { QUARTER * SQRT_2 }
 }
 
 #[cfg(test)]
