@@ -167,12 +167,13 @@ FACES = [(0, 1, 2), (0, 2, 3)]
 UV = [(0.0, 0), (1, 0), (1, 1), (0, 1)]
 
 
-def seen(material, size=8, samples=16, **more) -> rw.Image:
+def seen(material, size=8, samples=16, sampler=None, **more) -> rw.Image:
     """A square that fills the picture, in light of radiance 1: a matt one is as bright as it reflects."""
     mesh = rw.Mesh(SQUARE, FACES, uv=UV, material=material, **more)
     fov = 2 * math.degrees(math.atan(0.1))
     camera = rw.Camera((0, 0, 10), (0, 0, 0), fov=fov, width=size, height=size)
-    return rw.render(rw.Scene(mesh, environment=1), camera, rw.Path(max_depth=1), samples=samples)
+    scene = rw.Scene(mesh, environment=1)
+    return rw.render(scene, camera, rw.Path(max_depth=1), samples=samples, sampler=sampler)
 
 
 def test_pictures_lie_with_their_lower_left_at_zero():
@@ -202,10 +203,10 @@ def test_procedurals_lie_in_coordinates_or_in_space():
 
 def test_colours_of_vertices_are_seen():
     colors = [(0.0, 0, 0.5), (1, 0, 0.5), (1, 1, 0.5), (0, 1, 0.5)]
-    image = seen(rw.Diffuse(rw.VertexColors()), samples=64, colors=colors)
+    image = seen(rw.Diffuse(rw.VertexColors()), samples=64, sampler=rw.Independent(), colors=colors)
     rows, columns = np.indices((8, 8))
     expected = np.stack([(columns + 0.5) / 8, (7.5 - rows) / 8, np.full((8, 8), 0.5)], axis=-1)
-    # Of 192 numbers each within 8 standard errors of its own, from 64 samples.
+    # Of 192 numbers each within 8 standard errors of its own, from 64 independent samples.
     assert (np.abs(image.rgb - expected) <= 8 * image.standard_error + 1e-5).all()
     # White where a mesh has none.
     assert seen(rw.Diffuse(rw.VertexColors())).rgb == pytest.approx(np.ones((8, 8, 3)), abs=2e-6)
