@@ -2,8 +2,8 @@
 
 use super::bytes::{Malformed, Reader, Writer, check};
 use super::denominators::{Denominators, cross};
+use super::epoch::{Epoch, dither};
 use super::film::Film;
-use super::tile::FilmTile;
 use crate::optics::Rgb;
 use rayon::prelude::*;
 
@@ -32,16 +32,9 @@ use rayon::prelude::*;
 /// How many samples a cell has depends on the seed and on the mean number of samples alone, not on passes or threads.
 #[derive(Clone, Debug)]
 pub(super) struct Adaptive {
-    /// Mean samples of a pixel when the epoch begins.
-    from: u32,
-    /// Mean samples of a pixel when it ends.
-    to: u32,
+    epoch: Epoch,
     /// Samples of each cell that are evidence when it ends.
     evidence: u32,
-    /// The side of the patches of pixels that get the same number.
-    patch: u32,
-    /// What each cell of each tile has when the epoch begins, and when it ends.
-    shares: Vec<Vec<[u32; 2]>>,
 }
 
 impl Adaptive {
@@ -63,70 +56,49 @@ impl Adaptive {
         let first = Self::FIRST.max(2 * film.batch());
         film.take_evidence(first / 2);
         let shares = film.tiles().iter().map(|tile| vec![[0, first / 2]; tile.counts().len()]).collect();
-        Self { from: 0, to: first, evidence: first / 2, patch: film.patch(), shares }
+        Self { epoch: Epoch { from: 0, to: first, patch: film.patch(), shares }, evidence: first / 2 }
     }
 
     /// Mean samples of a pixel up to which a film that has `done` can go at once.
     pub fn limit(&self, done: u32) -> u32 {
-        if done < self.to { self.to } else { self.to.saturating_mul(2) }
+        let end = self.epoch.to;
+        if done < end { end } else { end.saturating_mul(2) }
     }
 
-    /// Mean samples of a pixel at the end of the epoch.
-    pub fn end(&self) -> u32 {
-        self.to
+    /// What was decided last.
+    pub fn epoch(&self) -> &Epoch {
+        &self.epoch
     }
 
     /// Begins the next epoch if the last is over.
     pub fn prepare(&mut self, film: &mut Film) {
-        if film.samples() == self.to {
+        if film.samples() == self.epoch.to {
             self.decide(film, |half| 1 - half);
         }
     }
 
-    /// How many samples a cell has when all pixels have `samples` on average.
-    #[inline]
-    pub fn goal(&self, tile: usize, cell: usize, position: (u32, u32), samples: u32) -> u32 {
-        let [start, end] = self.shares[tile][cell];
-        let part = f64::from(samples - self.from) / f64::from(self.to - self.from);
-        start + (f64::from(end - start) * part + dither(position, self.patch, cell % 2)) as u32
-    }
-
     /// What was decided, as bytes.
     pub fn write(&self, to: &mut Writer) {
-        for number in [self.from, self.to, self.evidence] {
-            to.word(number);
-        }
-        for tile in &self.shares {
-            for end in 0..2 {
-                to.words(tile.iter().map(|share| share[end]));
-            }
-        }
+        to.word(self.evidence);
+        self.epoch.write(0..self.epoch.shares.len(), to);
     }
 
     /// Reads what was decided for the film, which has been read. If that fails, this plan is of no use.
     pub fn read(&mut self, film: &Film, from: &mut Reader) -> Result<(), Malformed> {
-        (self.from, self.to, self.evidence) = (from.word()?, from.word()?, from.word()?);
-        let epoch = self.from..=self.to;
-        check(self.from < self.to && epoch.contains(&film.samples()), "an epoch ends before it begins")?;
-        check(self.to <= FilmTile::MOST, "an epoch has too many samples")?;
-        check(self.evidence > 0 && self.evidence <= self.to, "there is no evidence")?;
-        let mut all = 0;
-        for (tile, shares) in film.tiles().iter().zip(&mut self.shares) {
-            for end in 0..2 {
-                from.words(shares.iter_mut().map(|share| &mut share[end]))?;
-            }
-            let holds = |(&count, &[start, end]): (&u32, &[u32; 2])| start <= count && count <= end;
-            check(tile.counts().iter().zip(&*shares).all(holds), "a cell has other samples than it was given")?;
-            all += shares.iter().map(|&[_, end]| u64::from(end)).sum::<u64>();
-        }
+        self.evidence = from.word()?;
+        self.epoch = Epoch::read(film.tiles().iter(), film.patch(), from)?;
+        let Epoch { from: start, to, shares, .. } = &self.epoch;
+        check((*start..=*to).contains(&film.samples()), "an epoch ends before it begins")?;
+        check(self.evidence > 0 && self.evidence <= *to, "there is no evidence")?;
+        let all: u64 = shares.iter().flatten().map(|&[_, end]| u64::from(end)).sum();
         // No one shall wait for a pass that never ends. Cells are rounded to whole batches.
-        let most = (u64::from(self.to) + 2 * u64::from(film.batch())) * film.pixel_count() as u64;
+        let most = (u64::from(*to) + 2 * u64::from(film.batch())) * film.pixel_count() as u64;
         check(all <= most, "cells were given more samples than there are")
     }
 
     /// Begins an epoch, in which the half `decider(half)` decides for each half.
     fn decide(&mut self, film: &mut Film, decider: impl Fn(usize) -> usize) {
-        let (from, to) = (self.to, self.to.saturating_mul(2));
+        let (from, to, patch) = (self.epoch.to, self.epoch.to.saturating_mul(2), self.epoch.patch);
         let batch = film.batch();
         let mean = f64::from(from / 2);
         let more = ((mean * Self::EVIDENCE).ceil() as u32).next_multiple_of(batch);
@@ -148,21 +120,13 @@ impl Adaptive {
                     let pixel = y as usize * width + x as usize;
                     let [start, end] = &mut shares[cell];
                     let more = (level * weights[pixel]).clamp(limits[pixel][0], limits[pixel][1]) - f64::from(*start);
-                    *end = *start + batch * (more / f64::from(batch) + dither((x, y), self.patch, half)) as u32;
+                    *end = *start + batch * (more / f64::from(batch) + dither((x, y), patch, half)) as u32;
                 }
             }
         }
         film.take_evidence(more);
-        *self = Self { from, to, evidence: self.evidence + more, patch: self.patch, shares };
+        *self = Self { epoch: Epoch { from, to, patch, shares }, evidence: self.evidence + more };
     }
-}
-
-/// What is added to a number of samples before it is rounded down: evenly spread over neighbours, so that hardly any
-/// are lost or won in sum (the R2 sequence of Roberts, 2018), and one half apart for the halves of a pixel. Neighbours
-/// are patches of so many pixels a side.
-fn dither((x, y): (u32, u32), patch: u32, half: usize) -> f64 {
-    let (x, y) = (x / patch, y / patch);
-    (f64::from(x) * 0.754_877_666_246_692_8 + f64::from(y) * 0.569_840_290_998_053_3 + 0.5 * (1 - half) as f64).fract()
 }
 
 /// The number of samples that each pixel should have, up to a factor, as so many samples of one of its halves see it.
@@ -272,14 +236,14 @@ mod tests {
         let mut film = Film::new(8, 8, 4, batch, true, None);
         let mut plan = Adaptive::new(&mut film);
         while film.samples() < samples {
-            if film.samples() == plan.to {
+            if film.samples() == plan.epoch.to {
                 plan.decide(&mut film, decider);
             }
-            let goal = samples.min(plan.to);
+            let goal = samples.min(plan.epoch.to);
             for (i, tile) in film.extend_to(goal).iter_mut().enumerate() {
                 for cell in 0..tile.counts().len() {
                     let (x, y) = tile.position(cell);
-                    for nth in tile.counts()[cell]..plan.goal(i, cell, (x, y), goal) {
+                    for nth in tile.counts()[cell]..plan.epoch.goal(i, cell, (x, y), goal) {
                         let number = tile.number(cell, nth);
                         let rare = Sampler::new(seed, y * 8 + x, number).one(0) < chance;
                         tile.add(cell, Rgb::splat(1.0 + f64::from(rare) / chance), 1.0);
@@ -344,7 +308,7 @@ mod tests {
             for (i, tile) in film.extend_to(goal).iter_mut().enumerate() {
                 for cell in 0..tile.counts().len() {
                     let (x, y) = tile.position(cell);
-                    for nth in tile.counts()[cell]..plan.goal(i, cell, (x, y), goal) {
+                    for nth in tile.counts()[cell]..plan.epoch.goal(i, cell, (x, y), goal) {
                         let number = tile.number(cell, nth);
                         let draw = 2.0 * Sampler::new(5, y * 32 + x, number).one(0) - 1.0;
                         tile.add(cell, Rgb::splat(1.0 + noise(x) * draw), 1.0);

@@ -5,6 +5,7 @@ use super::denominators::{Denominators, around, cross};
 use super::film::Spread;
 use super::jumps::Jumps;
 use super::outliers::{Carried, Largest, beside, is_find};
+use super::patchwork::Patchwork;
 use super::sightings::{Chances, Sightings};
 use crate::optics::Rgb;
 use rayon::prelude::*;
@@ -97,7 +98,7 @@ pub(super) fn estimate(film: &Film) -> Option<ErrorEstimate> {
     for band in &sums {
         all.join(band);
     }
-    let estimate = all.estimate(3.0 * means.len() as f64);
+    let estimate = all.estimate(3.0 * means.len() as f64, Patchwork { patch }.evenness());
     let leeway = if fewest < 2 * film.batch() && film.batch() > 1 { EVENNESS } else { 1.0 };
     Some(ErrorEstimate { low: estimate.low / leeway, ..estimate })
 }
@@ -220,7 +221,8 @@ impl Sums {
         self.jumps.join(&other.jumps);
     }
 
-    /// The estimate, over so many values in all.
+    /// The estimate, over so many values in all, where errors vary `evenness` times as much as if pixels of a patch
+    /// always erred together and others never ([`Patchwork::evenness`]).
     ///
     /// Three things are uncertain, and taken as independent.
     ///
@@ -245,13 +247,13 @@ impl Sums {
     /// All three are factors, and their logarithms are added as what is independent is. To them comes that one
     /// pixel of many errs by much more than it can tell ([`Jumps`]): a term, which is added to the upper end in the
     /// same manner.
-    fn estimate(&self, count: f64) -> ErrorEstimate {
+    fn estimate(&self, count: f64, evenness: f64) -> ErrorEstimate {
         let value = self.error / count;
         if value == 0.0 {
             return ErrorEstimate { value, low: 0.0, high: 0.0, carried: None };
         }
         let (square, cube) = (self.most.powi(2), self.most.powi(3));
-        let (variance, skewed) = (2.0 * self.squares, 8.0 * self.cubes);
+        let (variance, skewed) = (2.0 * self.squares * evenness, 8.0 * self.cubes * evenness.powi(2));
         let least = quantile(-1.96, variance / square, skewed / cube);
         let (variance, skewed) = ((variance + self.rare[0]) / square, (skewed + self.rare[1]) / cube);
         // Where a few samples are all there is, how rare they are is not known either. A factor's logarithm goes

@@ -4,6 +4,7 @@ mod adaptive;
 mod bytes;
 mod camera_samples;
 mod denominators;
+mod epoch;
 mod error;
 mod film;
 pub mod filter;
@@ -12,6 +13,7 @@ mod outliers;
 mod part;
 #[cfg(test)]
 mod patches;
+mod patchwork;
 mod pooled;
 mod progress;
 mod rendering;

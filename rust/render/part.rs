@@ -5,6 +5,7 @@
 //! more. Either way nobody can tell from the bits of a picture where its samples were taken.
 
 use super::bytes::{Malformed, Reader, Writer, check};
+use super::epoch::Epoch;
 use super::tile::FilmTile;
 use super::tiles::{Exposure, Goal, Stop};
 use super::{Film, Progress, RenderError, Rendering, Settings};
@@ -24,10 +25,17 @@ pub struct Request {
 #[derive(Debug)]
 enum Wanted {
     /// Those between two numbers, of cells that have none here.
-    Between(u32, u32),
+    Alone(u32, u32),
     /// As many as this in each cell, counting those that it has.
-    Counts(Vec<Vec<u32>>),
+    Even(u32),
+    /// As an epoch has it for so many on average, where all pixels have had as many on average.
+    Planned { epoch: Epoch, done: u32, samples: u32 },
 }
+
+/// How samples are wanted, as a byte.
+const ALONE: u8 = 0;
+const EVEN: u8 = 1;
+const PLANNED: u8 = 2;
 
 impl Rendering {
     /// Asks for the samples of some tiles that take them to `samples`. With `before`, these follow as many others,
@@ -45,17 +53,24 @@ impl Rendering {
         to.float(film.clamp().unwrap_or(0.0));
         to.word(tiles.start as u32);
         to.word(tiles.len() as u32);
-        to.byte(u8::from(before.is_some()));
+        to.byte(match self.epoch() {
+            _ if before.is_some() => ALONE,
+            None => EVEN,
+            Some(_) => PLANNED,
+        });
         if let Some(before) = before {
             assert!(film.appends() && before.is_multiple_of(film.block()), "whole blocks");
             to.word(before);
             to.word(samples);
-        } else {
-            for tile in tiles {
-                film.tiles()[tile].write(&mut to);
-                to.words(self.counts(tile, samples).into_iter());
-            }
+            return to.0;
         }
+        film.tiles()[tiles.clone()].iter().for_each(|tile| tile.write(&mut to));
+        if let Some(epoch) = self.epoch() {
+            to.word(epoch.patch);
+            epoch.write(tiles, &mut to);
+            to.word(film.samples());
+        }
+        to.word(samples);
         to.0
     }
 
@@ -104,26 +119,35 @@ impl Request {
         let all = film.tile_count();
         check(first as usize <= all && count as usize <= all - first as usize, "there are no such tiles")?;
         let numbers = first as usize..first as usize + count as usize;
-        if from.flag()? {
+        let kind = from.byte()?;
+        let mut tiles: Vec<FilmTile> = numbers.map(|number| film.empty_tile(number)).collect();
+        if kind == ALONE {
             let (before, samples): (u32, u32) = (from.word()?, from.word()?);
             let blocks = film.appends() && before.is_multiple_of(film.block());
             check(blocks && before <= samples && samples - before <= film.block(), "they are no block")?;
             from.end()?;
-            let tiles = numbers.map(|number| film.empty_tile(number)).collect();
-            return Ok(Self { first, tiles, wanted: Wanted::Between(before, samples) });
+            return Ok(Self { first, tiles, wanted: Wanted::Alone(before, samples) });
         }
-        let (mut tiles, mut counts) = (Vec::new(), Vec::new());
-        for number in numbers {
-            let mut tile = film.empty_tile(number);
-            tile.read(&mut from)?;
-            let mut wanted = vec![0; tile.counts().len()];
-            from.words(wanted.iter_mut())?;
-            check(wanted.iter().all(|&count| count <= FilmTile::MOST), "a cell wants too many samples")?;
-            tiles.push(tile);
-            counts.push(wanted);
-        }
+        check(kind <= PLANNED && (kind == PLANNED) == halves, "they are of no kind")?;
+        tiles.iter_mut().try_for_each(|tile| tile.read(&mut from))?;
+        let planned = if kind == PLANNED {
+            let patch = from.word()?;
+            check((1..=64).contains(&patch), "patches have no size")?;
+            Some((Epoch::read(tiles.iter(), patch, &mut from)?, from.word()?))
+        } else {
+            None
+        };
+        let samples = from.word()?;
         from.end()?;
-        Ok(Self { first, tiles, wanted: Wanted::Counts(counts) })
+        check(samples <= FilmTile::MOST, "a cell wants too many samples")?;
+        let wanted = match planned {
+            None => Wanted::Even(samples),
+            Some((epoch, done)) => {
+                check(epoch.from <= done && done <= samples && samples <= epoch.to, "they are of another epoch")?;
+                Wanted::Planned { epoch, done, samples }
+            }
+        };
+        Ok(Self { first, tiles, wanted })
     }
 
     /// Takes the samples, and gives what [`Rendering::take`] takes. A single thread is the calling one, so that many
@@ -139,8 +163,9 @@ impl Request {
         let exposure = Exposure::new(scene, camera, integrator, settings);
         let stop = Stop::default();
         let goal = match &self.wanted {
-            Wanted::Between(before, samples) => Goal::Even { before: *before, samples: *samples },
-            Wanted::Counts(counts) => Goal::Given(counts),
+            &Wanted::Alone(before, samples) => Goal::Even { before, samples },
+            &Wanted::Even(samples) => Goal::Even { before: 0, samples },
+            Wanted::Planned { epoch, done, samples } => Goal::Planned { epoch, done: *done, samples: *samples },
         };
         let tiles = &mut self.tiles[..];
         let pool = pool(settings.threads).map_err(RenderError::Threads)?;
@@ -167,7 +192,7 @@ impl Request {
         let mut to = Writer::default();
         to.word(self.first);
         to.word(self.tiles.len() as u32);
-        let before = if let Wanted::Between(before, _) = self.wanted { Some(before) } else { None };
+        let before = if let Wanted::Alone(before, _) = self.wanted { Some(before) } else { None };
         to.byte(u8::from(before.is_some()));
         if let Some(before) = before {
             to.word(before);

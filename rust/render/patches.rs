@@ -1,6 +1,6 @@
 //! Patches of pixels that take samples together, through all that a picture goes through.
 
-use super::{Film, Quiet, Rendering, Request, Settings, Until, go_on, render};
+use super::{Quiet, Rendering, Request, Settings, Until, render};
 use crate::integrators::{Integrator, Path};
 use crate::scene::Camera;
 use crate::scene::fixtures::cornell;
@@ -38,12 +38,16 @@ fn threads_tiles_and_passes_change_no_bit() {
         let timed = picture(reuse, &Settings { until, ..settings(0, 2, adaptive) });
         let again = picture(reuse, &settings(timed.film.samples(), 1, adaptive));
         assert_eq!(again.film.means(), timed.film.means());
-        // Tiles of another size hold whole patches too.
-        let (scene, camera) = cornell(SIZE[0], SIZE[1]);
-        let film = Film::new(SIZE[0], SIZE[1], 16, 1, adaptive, None).in_patches(reuse);
-        let mut large = Rendering::new(film);
-        assert!(go_on(&mut large, &scene, &camera, &path(reuse), &settings(37, 2, adaptive), &mut Quiet).unwrap());
-        assert_eq!((large.rgb(), large.error), (one.rgb(), one.error));
+    }
+}
+
+#[test]
+fn tiles_go_by_the_picture_alone() {
+    let (_, camera) = cornell(600, 300);
+    for reuse in PATCHES {
+        let sides = [1, 2, 64].map(|threads| settings(1, threads, false).film(&camera, threads, reuse).side());
+        assert_eq!(sides, [32; 3]);
+        assert_eq!(settings(1, 1, false).film(&cornell(SIZE[0], SIZE[1]).1, 1, reuse).side(), 4 * reuse);
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::adaptive::Adaptive;
 use super::bytes::{Malformed, Reader, Writer, check};
+use super::epoch::Epoch;
 use super::error::estimate;
 use super::pooled::{Uncertainty, uncertainty};
 use super::tile::FilmTile;
@@ -108,21 +109,17 @@ impl Rendering {
 
     /// The tiles, and what they shall have after the pass.
     pub(super) fn goal(&mut self) -> (&mut [FilmTile], Goal<'_>) {
+        let (done, samples) = (self.film.samples(), self.aim);
         let goal = match &self.plan {
-            Some(plan) => Goal::Planned { plan, samples: self.aim },
-            None => Goal::Even { before: 0, samples: self.aim },
+            Some(plan) => Goal::Planned { epoch: plan.epoch(), done, samples },
+            None => Goal::Even { before: 0, samples },
         };
         (self.film.tiles_mut(), goal)
     }
 
-    /// What the cells of a tile shall have when the film has `samples`.
-    pub(super) fn counts(&self, tile: usize, samples: u32) -> Vec<u32> {
-        let goal = match &self.plan {
-            Some(plan) => Goal::Planned { plan, samples },
-            None => Goal::Even { before: 0, samples },
-        };
-        let of = &self.film.tiles()[tile];
-        (0..of.counts().len()).map(|cell| goal.of(tile, of, cell)).collect()
+    /// Who gets how many samples, where that is not the same for all.
+    pub(super) fn epoch(&self) -> Option<&Epoch> {
+        self.plan.as_ref().map(Adaptive::epoch)
     }
 
     /// Ends a pass, whose samples are all there, after so much time in all.
@@ -204,7 +201,7 @@ impl Rendering {
         check(done <= aim && aim <= FilmTile::MOST, "a pass ends before it begins")?;
         // No one shall wait for a pass that never ends.
         check(aim - done <= self.film.block(), "a pass is too long")?;
-        let decided = self.plan.as_ref().is_none_or(|plan| aim == done || aim <= plan.end());
+        let decided = self.plan.as_ref().is_none_or(|plan| aim == done || aim <= plan.epoch().to);
         check(decided, "a pass goes on after its epoch")?;
         let even = |count: &u32| (done..=aim).contains(count);
         let fits = self.plan.is_some() || self.film.tiles().iter().all(|tile| tile.counts().iter().all(even));

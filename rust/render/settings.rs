@@ -41,13 +41,23 @@ impl Default for Settings {
 
 impl Settings {
     /// An empty film for the pictures of a camera, in patches as the integrator has them
-    /// ([`Integrator::patch`](crate::integrators::Integrator::patch)), and in tiles for so many threads: of 16 pixels a
-    /// side, or less where that would leave threads without work.
+    /// ([`Integrator::patch`](crate::integrators::Integrator::patch)).
+    ///
+    /// Tiles have 16 pixels a side, or less where that would leave some of so many threads without work. Where pixels
+    /// work together, nothing goes over the borders of tiles: so these depend on the picture alone, and hold some
+    /// patches a side, for the borders would be seen.
     pub fn film(&self, camera: &dyn Camera, threads: usize, patch: u32) -> Film {
+        /// Patches a side that a tile has at least, and tiles of a picture, where there may be as many.
+        const PATCHES: u32 = 4;
+        const TILES: usize = 64;
         let (width, height) = (camera.width(), camera.height());
         let tiles = |side: u32| width.div_ceil(side) as usize * height.div_ceil(side) as usize;
-        let fits = |side: u32| side.is_multiple_of(patch) && tiles(side) >= 8 * threads;
-        let side = [16, 8, 4].into_iter().find(|&side| fits(side)).unwrap_or(2u32.next_multiple_of(patch));
+        let side = if patch > 1 {
+            let fits = |side: u32| side > PATCHES * patch && tiles(side) >= TILES;
+            [32, 16].into_iter().find(|&side| fits(side)).unwrap_or(PATCHES * patch)
+        } else {
+            [16, 8, 4].into_iter().find(|&side| tiles(side) >= 8 * threads).unwrap_or(2)
+        };
         Film::new(width, height, side, self.sampler.batch(), self.adaptive, self.clamp).in_patches(patch)
     }
 }

@@ -1,6 +1,7 @@
 //! A rectangle of a film.
 
 use super::bytes::{Malformed, Reader, Writer, check};
+use super::patchwork::Patchwork;
 use crate::optics::{Rgb, is_radiance};
 
 /// Sums that a mean and its error are computed from.
@@ -106,15 +107,19 @@ impl FilmTile {
         (self.corner[0] + pixel % self.size[0], self.corner[1] + pixel / self.size[0])
     }
 
-    /// Its cells, patch by patch of so many pixels a side, and one kind of cell after the other.
-    pub(super) fn together(&self, patch: u32) -> impl Iterator<Item = impl Iterator<Item = usize> + use<>> + use<> {
-        let ([width, height], kinds) = (self.size, if self.halves { 2 } else { 1 });
-        let columns = width.div_ceil(patch);
-        (0..columns * height.div_ceil(patch) * kinds).map(move |number| {
-            let (number, kind) = (number / kinds, number % kinds);
-            let (left, top) = (number % columns * patch, number / columns * patch);
-            let pixels = move |y: u32| (left..width.min(left + patch)).map(move |x| y * width + x);
-            (top..height.min(top + patch)).flat_map(pixels).map(move |pixel| (pixel * kinds + kind) as usize)
+    /// Its cells, patch by patch as they take the sample of a number, and one kind of cell after the other.
+    pub(super) fn together(
+        &self,
+        patchwork: Patchwork,
+        number: u32,
+    ) -> impl Iterator<Item = impl Iterator<Item = usize> + use<>> + use<> {
+        let (width, kinds) = (self.size[0], if self.halves { 2 } else { 1 });
+        patchwork.patches(self.size, number).flat_map(move |[columns, rows]| {
+            (0..kinds).map(move |kind| {
+                let columns = columns.clone();
+                let pixels = rows.clone().flat_map(move |y| columns.clone().map(move |x| y * width + x));
+                pixels.map(move |pixel| (pixel * kinds + kind) as usize)
+            })
         })
     }
 

@@ -1,7 +1,8 @@
 //! Work on a pass: samples of all pixels, tile by tile over the threads.
 
-use super::adaptive::Adaptive;
 use super::camera_samples::{CameraSampler, Wanted};
+use super::epoch::Epoch;
+use super::patchwork::Patchwork;
 use super::{FilmTile, Settings};
 use crate::integrators::{CameraSample, Integrator, Worker};
 use crate::optics::Rgb;
@@ -24,29 +25,37 @@ pub(super) struct Exposure<'a> {
     pub camera: &'a dyn Camera,
     pub integrator: &'a dyn Integrator,
     samples: CameraSampler<'a>,
-    /// The side of the patches of pixels whose samples work together.
-    patch: u32,
+    /// Whose samples work together.
+    patchwork: Patchwork,
     /// Workers that no thread is using: their memory is used again.
     idle: Mutex<Vec<Bench<'a>>>,
 }
 
-/// How many samples cells shall have.
+/// How many samples cells shall have. It is reached in steps, of one sample of all pixels on average, in each of which
+/// pixels of a patch work together: who works with whom depends on nothing but the step.
 #[derive(Clone, Copy)]
 pub(super) enum Goal<'a> {
     /// The same number in all, counted with the `before` that are on another film.
     Even { before: u32, samples: u32 },
-    /// As it is decided for so many on average.
-    Planned { plan: &'a Adaptive, samples: u32 },
-    /// These, by tile and cell.
-    Given(&'a [Vec<u32>]),
+    /// As it is decided for so many on average, where all pixels have had `done` on average.
+    Planned { epoch: &'a Epoch, done: u32, samples: u32 },
 }
 
 impl Goal<'_> {
-    pub fn of(&self, number: usize, tile: &FilmTile, cell: usize) -> u32 {
+    /// How many samples a cell of a tile has after so many on average.
+    #[inline]
+    fn at(&self, number: usize, tile: &FilmTile, cell: usize, samples: u32) -> u32 {
         match *self {
-            Self::Even { before, samples } => samples - before,
-            Self::Planned { plan, samples } => plan.goal(number, cell, tile.position(cell), samples),
-            Self::Given(counts) => counts[number][cell],
+            Self::Even { before, .. } => samples - before,
+            Self::Planned { epoch, .. } => epoch.goal(number, cell, tile.position(cell), samples),
+        }
+    }
+
+    /// The steps that a tile has to go.
+    fn steps(&self, tile: &FilmTile) -> Range<u32> {
+        match *self {
+            Self::Even { before, samples } => before + tile.fewest()..samples,
+            Self::Planned { done, samples, .. } => done..samples,
         }
     }
 
@@ -93,8 +102,19 @@ struct Bench<'a> {
 struct Member {
     cell: usize,
     position: (u32, u32),
-    /// Those that it lacks.
+    /// Those of a step.
     samples: Range<u32>,
+    /// How many it has.
+    count: u32,
+}
+
+impl Member {
+    /// Its own number of a sample of a step, if that is there and has not been taken.
+    #[inline]
+    fn wants(&self, of_step: u32) -> Option<u32> {
+        let nth = self.samples.start + of_step;
+        (nth < self.samples.end && nth >= self.count).then_some(nth)
+    }
 }
 
 /// Consecutive samples of one cell.
@@ -111,8 +131,9 @@ impl<'a> Exposure<'a> {
         integrator: &'a dyn Integrator,
         settings: &'a Settings,
     ) -> Self {
-        let (samples, patch) = (CameraSampler::new(scene, camera, settings), integrator.patch(scene));
-        Self { scene, camera, integrator, samples, patch, idle: Mutex::default() }
+        let samples = CameraSampler::new(scene, camera, settings);
+        let patchwork = Patchwork { patch: integrator.patch(scene) };
+        Self { scene, camera, integrator, samples, patchwork, idle: Mutex::default() }
     }
 
     /// Adds samples until the goal is reached, and says whether it was: it returns soon when it is asked to stop. Even
@@ -172,31 +193,38 @@ impl<'a> Exposure<'a> {
     ) -> bool {
         bench.clear();
         let before = goal.before();
+        let works_together = self.patchwork.patch > 1;
         let mut members: Vec<Member> = Vec::new();
         for index in 0..tiles.len() {
-            for cells in tiles[index].together(self.patch) {
-                let tile = &tiles[index];
-                members.clear();
-                members.extend(cells.map(|cell| Member {
-                    cell,
-                    position: tile.position(cell),
-                    samples: tile.counts()[cell]..goal.of(first + index, tile, cell),
-                }));
-                let start = members.iter().map(|m| m.samples.start).min().unwrap_or(0);
-                let end = members.iter().map(|m| m.samples.end).max().unwrap_or(0);
-                for nth in start..end {
-                    let number = before + tiles[index].number(members[0].cell, nth);
-                    for member in members.iter().filter(|m| m.samples.contains(&nth)) {
-                        bench.add(index, member.cell, Wanted { position: member.position, number });
-                    }
-                    if self.patch > 1 {
-                        bench.ends.push(bench.wanted.len());
-                    }
-                    if bench.wanted.len() + members.len() > most {
-                        let developed = bench.develop(&self.samples, tiles, &stop.cancel);
-                        poll();
-                        if !developed || stop.is_raised() {
-                            return false;
+            let (number, steps) = (first + index, goal.steps(&tiles[index]));
+            // Pixels on their own take all of their samples one after the other: the rays of one are near each other.
+            let stride = if works_together { 1 } else { steps.len().max(1) as u32 };
+            for step in steps.clone().step_by(stride as usize) {
+                let end = steps.end.min(step + stride);
+                for cells in tiles[index].together(self.patchwork, step) {
+                    let tile = &tiles[index];
+                    members.clear();
+                    members.extend(cells.map(|cell| Member {
+                        cell,
+                        position: tile.position(cell),
+                        samples: goal.at(number, tile, cell, step)..goal.at(number, tile, cell, end),
+                        count: tile.counts()[cell],
+                    }));
+                    for of_step in 0..members.iter().map(|member| member.samples.len()).max().unwrap_or(0) as u32 {
+                        for member in &members {
+                            let Some(nth) = member.wants(of_step) else { continue };
+                            let number = before + tiles[index].number(member.cell, nth);
+                            bench.add(index, member.cell, Wanted { position: member.position, number });
+                        }
+                        if works_together && bench.ends.last().copied().unwrap_or(0) < bench.wanted.len() {
+                            bench.ends.push(bench.wanted.len());
+                        }
+                        if bench.wanted.len() + members.len() > most {
+                            let developed = bench.develop(&self.samples, tiles, &stop.cancel);
+                            poll();
+                            if !developed || stop.is_raised() {
+                                return false;
+                            }
                         }
                     }
                 }
