@@ -2,9 +2,10 @@
 
     python benches/render_peers.py [--scene NAME ...] [--side 256] [--samples 64] [--repeat 5] [--mesh FILE]
 
-Both render the same scenes in turns, on all cores; of Mitsuba the sampler counts that gets the least error
-times seconds, error being relMSE against a long picture of its own. Before anything is timed, the long
-pictures of both have to agree. Mitsuba wants LLVM: name Debian's libLLVM in DRJIT_LIBLLVM_PATH.
+Both render the same scenes in turns, on all cores, raywright as it does by itself and with what it could have
+chosen named; of Mitsuba the sampler counts that gets the least error times seconds, error being relMSE
+against a long picture of its own. Before anything is timed, the long pictures of both have to agree. Mitsuba
+wants LLVM: name Debian's libLLVM in DRJIT_LIBLLVM_PATH.
 
 What a picture needs is error times seconds: with independent samples the one falls as the other grows. The
 last column is how much of the time of the best of Mitsuba raywright takes to the same error.
@@ -32,11 +33,14 @@ REUSE = 8
 
 
 class Raywright:
-    """raywright on all cores."""
+    """raywright on all cores; what is not named is chosen."""
 
-    def __init__(self, scene, camera, integrator, sampler):
-        ways = " reuse" * (integrator.reuse > 1) + " caustics" * integrator.caustics
-        self.name = f"raywright {type(sampler).__name__.lower()}{ways}"
+    def __init__(self, scene, camera, integrator, sampler=None):
+        if sampler is None:
+            self.name = "raywright"
+        else:
+            ways = " reuse" * (integrator.reuse > 1) + " caustics" * integrator.caustics
+            self.name = f"raywright {type(sampler).__name__.lower()}{ways}"
         self.sampler = sampler
         self.scene, self.camera, self.integrator = scene, camera, integrator
 
@@ -124,9 +128,11 @@ def _blocks(picture):
 def contest(name, make, arguments):
     """Render a scene by all in turns; returns lines of a table."""
     scene, camera, depth = make()
-    ways = {}, {"reuse": REUSE}, {"caustics": True}
-    kinds = [(rw.Independent(), {})] + [(rw.Sobol(), way) for way in ways]
-    ours = [Raywright(scene, camera, rw.Path(max_depth=depth, **way), sampler) for sampler, way in kinds]
+    plain = {"reuse": 1, "caustics": False}
+    ways = plain, plain | {"reuse": REUSE}, plain | {"caustics": True}
+    kinds = [(rw.Independent(), plain)] + [(rw.Sobol(), way) for way in ways]
+    ours = [Raywright(scene, camera, rw.Path(max_depth=depth))]
+    ours += [Raywright(scene, camera, rw.Path(max_depth=depth, **way), sampler) for sampler, way in kinds]
     with_mitsuba = importlib.util.find_spec("mitsuba") is not None
     others = [Mitsuba(scene, camera, depth, sampler) for sampler in SAMPLERS] if with_mitsuba else []
     mine, blocks, errors = reference(ours[-1], arguments.reference, 8)

@@ -10,6 +10,7 @@ _Floats: TypeAlias = NDArray[np.floating[Any]]
 _Numbers: TypeAlias = float | NDArray[np.float64]
 
 __all__ = [
+    "PILOT",
     "VERSION",
     "AcceleratorInfo",
     "CompiledScene",
@@ -20,6 +21,7 @@ __all__ = [
     "batch_for",
     "camera_rays",
     "camera_rays_through",
+    "chances",
     "cones",
     "expose",
     "first_hits",
@@ -30,6 +32,7 @@ __all__ = [
     "metal_index",
     "metals",
     "patch",
+    "pilot",
     "plan",
     "points",
     "polygon_trouble",
@@ -333,6 +336,8 @@ class Rendering:
     def take(self, answer: bytes) -> None:
         """Add the samples that `expose` took."""
 
+PILOT: int
+"""The most samples that a pilot takes of each path."""
 VERSION: str
 
 def student(level: float, degrees: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -340,6 +345,22 @@ def student(level: float, degrees: NDArray[np.float64]) -> NDArray[np.float64]:
 
 def patch(scene: CompiledScene, integrator: Any) -> int:
     """Return the side of the square patches of pixels whose samples an integrator takes together."""
+
+def chances(scene: CompiledScene, path: Any) -> tuple[bool, bool]:
+    """Whether paths can share what they find in a scene, and whether there are mirrors or glass to aim at."""
+
+def pilot(
+    scene: CompiledScene,
+    camera: Any,
+    paths: Sequence[Any],
+    threads: int | None,
+    clamp: float | None,
+    filter: Any,
+) -> list[float]:
+    """Return about the relMSE that each of some paths leaves, told from a few parts of a picture.
+
+    It depends on scene, camera and filter alone. Signals are checked as by `Rendering.go_on`.
+    """
 
 def expose(
     scene: CompiledScene,

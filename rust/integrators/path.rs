@@ -33,8 +33,9 @@ impl Path {
         Settings { shares, aims, ..Settings::path(self.max_depth, self.roulette_depth) }
     }
 
-    /// There must be something sharp, and light beyond it: scenes of the plain variant have nothing sharp.
-    fn aims(&self, scene: &Scene) -> bool {
+    /// Whether it aims in a scene, as far as can be told without photons. There must be something sharp, and light
+    /// beyond it: scenes of the plain variant have nothing sharp.
+    pub fn aims(&self, scene: &Scene) -> bool {
         self.caustics && self.max_depth.is_none_or(|depth| depth > 1) && scene.plan().needs().scattering
     }
 

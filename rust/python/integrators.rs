@@ -26,6 +26,16 @@ fn rgb(of: &Bound<'_, PyAny>, name: &str) -> PyResult<Rgb> {
     attribute::<[f64; 3]>(of, name).map(Rgb::from_array)
 }
 
+/// A path tracer; what it leaves open is plain where nobody has chosen.
+pub fn path(of: &Bound<'_, PyAny>) -> PyResult<Path> {
+    Ok(Path {
+        max_depth: attribute(of, "max_depth")?,
+        roulette_depth: attribute(of, "roulette_depth")?,
+        reuse: attribute::<Option<u32>>(of, "reuse")?.unwrap_or(1),
+        caustics: attribute::<Option<bool>>(of, "caustics")?.unwrap_or(false),
+    })
+}
+
 impl<'a, 'py> FromPyObject<'a, 'py> for AnyIntegrator {
     type Error = PyErr;
 
@@ -34,12 +44,7 @@ impl<'a, 'py> FromPyObject<'a, 'py> for AnyIntegrator {
         let of = &*of;
         let light_samples = || attribute(of, "light_samples");
         Ok(Self(match kind.as_str() {
-            "Path" => Box::new(Path {
-                max_depth: attribute(of, "max_depth")?,
-                roulette_depth: attribute(of, "roulette_depth")?,
-                reuse: attribute(of, "reuse")?,
-                caustics: attribute(of, "caustics")?,
-            }),
+            "Path" => Box::new(path(of)?),
             "Direct" => {
                 Box::new(Direct { light_samples: light_samples()?, surface_samples: attribute(of, "surface_samples")? })
             }

@@ -74,7 +74,7 @@ mod _core {
     #[pymodule_export]
     use super::random::random_numbers;
     #[pymodule_export]
-    use super::render::{Rendering, expose, patch, student};
+    use super::render::{Rendering, chances, expose, patch, pilot, student};
     #[pymodule_export]
     use super::report::KernelContest;
     #[pymodule_export]
@@ -85,6 +85,9 @@ mod _core {
     use super::simd;
     #[pymodule_export]
     use super::spectra::spectrum_rgb;
+    /// The most samples that a pilot takes of each way.
+    #[pymodule_export]
+    const PILOT: u32 = crate::render::PILOT;
     #[pymodule_export]
     const VERSION: &str = env!("CARGO_PKG_VERSION");
 }

@@ -8,11 +8,11 @@ use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
 use super::cameras::AnyCamera;
-use super::integrators::AnyIntegrator;
+use super::integrators::{self, AnyIntegrator};
 use super::query::CompiledScene;
 use super::samplers;
 use super::written::Written;
-use crate::integrators::Integrator;
+use crate::integrators::{Integrator, Path};
 use crate::render::{self, HistoryRow, Malformed, Progress, RenderError, Request, Settings, Until};
 use crate::workers::pool;
 
@@ -280,6 +280,35 @@ pub fn student<'py>(
 #[pyfunction]
 pub fn patch(scene: &Bound<'_, CompiledScene>, integrator: AnyIntegrator) -> u32 {
     integrator.0.patch(&scene.get().0)
+}
+
+/// Whether paths could share what they find in a scene, and whether there is anything to aim at by way of mirrors and
+/// glass, whatever the path says of the two; photons are sent for the latter.
+#[pyfunction]
+pub fn chances(py: Python<'_>, scene: &Bound<'_, CompiledScene>, path: &Bound<'_, PyAny>) -> PyResult<(bool, bool)> {
+    let (scene, path) = (&scene.get().0, integrators::path(path)?);
+    let any = Path { reuse: 2, caustics: true, ..path };
+    Ok(py.detach(|| (any.patch(scene) > 1, any.aims(scene) && scene.caustics().is_some())))
+}
+
+/// About the relMSE that each of some path tracers leaves with few samples, told from a few parts of a picture.
+#[pyfunction]
+pub fn pilot(
+    py: Python<'_>,
+    scene: &Bound<'_, CompiledScene>,
+    camera: AnyCamera,
+    paths: Vec<Bound<'_, PyAny>>,
+    threads: Option<usize>,
+    clamp: Option<f64>,
+    filter: &Bound<'_, PyAny>,
+) -> PyResult<Vec<f64>> {
+    let paths: Vec<Path> = paths.iter().map(integrators::path).collect::<PyResult<_>>()?;
+    let filter = samplers::filter(filter)?.into();
+    let settings = Settings { threads, clamp, filter, ..Settings::default() };
+    let mut watcher = Watcher { progress: None, look: None, raised: None, pause: None, written: None };
+    let scene = &scene.get().0;
+    let result = py.detach(|| render::pilot(scene, &*camera.0, &paths, &settings, &mut watcher));
+    result.map_err(|error| watcher.error(error))
 }
 
 /// Takes the samples that a request of `Rendering.request` wants, and gives what `Rendering.take` takes.

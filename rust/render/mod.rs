@@ -14,6 +14,7 @@ mod part;
 #[cfg(test)]
 mod patches;
 mod patchwork;
+mod pilot;
 mod pooled;
 mod progress;
 mod rendering;
@@ -30,6 +31,7 @@ pub use error::ErrorEstimate;
 pub use film::Film;
 pub use outliers::Carried;
 pub use part::Request;
+pub use pilot::{PILOT, pilot};
 pub use pooled::Uncertainty;
 pub use progress::{Progress, Quiet};
 pub use rendering::{HistoryRow, Rendering, roots};

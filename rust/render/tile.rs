@@ -123,6 +123,11 @@ impl FilmTile {
         })
     }
 
+    /// Pixels in a row of it, and rows.
+    pub(super) fn size(&self) -> [u32; 2] {
+        self.size
+    }
+
     /// Samples of each cell.
     pub fn counts(&self) -> &[u32] {
         &self.counts

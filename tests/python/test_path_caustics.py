@@ -213,5 +213,5 @@ def test_fireflies_are_found_by_most_paths():
 
 
 def test_what_is_neither_true_nor_false_is_refused():
-    with pytest.raises(TypeError, match="caustics must be True or False, got 1"):
+    with pytest.raises(TypeError, match="caustics must be True, False or None, got 1"):
         rw.Path(caustics=1)

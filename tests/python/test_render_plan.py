@@ -1,12 +1,13 @@
 """What is chosen for a render where nothing is named, and that a picture says so."""
 
 import pickle
-from dataclasses import FrozenInstanceError
+from dataclasses import FrozenInstanceError, replace
 
 import numpy as np
 import pytest
 
 import raywright as rw
+from raywright import _core
 
 
 @pytest.fixture(scope="module")
@@ -23,7 +24,7 @@ def test_samples_are_placed_where_nothing_is_named(box):
     assert image.samples == 64
     assert isinstance(image.plan.sampler, rw.Lattice)
     assert np.array_equal(image.rgb, render(box, samples=64, sampler=image.plan.sampler).rgb)
-    assert [row.what for row in image.plan.rows] == ["sampler", "batch"]
+    assert [row.what for row in image.plan.rows] == ["sampler", "batch", "reuse", "caustics"]
     assert image.plan["sampler"].chosen == "Lattice"
     assert int(image.plan["batch"].chosen) == image.plan.sampler.batch
     assert all(row.why for row in image.plan.rows)
@@ -46,9 +47,11 @@ def test_lattices_unless_of_few_points(box, limits, adaptive):
 
 
 def test_what_is_named_is_used_as_named(box):
+    path = rw.Path(reuse=2, caustics=False)
     for sampler in (rw.Independent(), rw.Halton(8), rw.Sobol(2), rw.Stratified(64)):
-        image = render(box, samples=16, sampler=sampler)
+        image = render(box, integrator=path, samples=16, sampler=sampler)
         assert image.plan.sampler == sampler
+        assert image.plan.path == path
         assert {row.why for row in image.plan.rows} == {"as named"}
     image = render(box, samples=64, sampler=rw.Sobol())
     assert isinstance(image.plan.sampler, rw.Sobol)
@@ -96,3 +99,97 @@ def test_shots_and_views_leave_it_to_render(box):
     assert isinstance(rw.Shot(*box).render(samples=64, progress=False).plan.sampler, rw.Lattice)
     named = rw.Shot(*box, sampler=rw.Halton(4)).render(samples=64, progress=False)
     assert named.plan.sampler == rw.Halton(4)
+
+
+# So many samples, and a pilot goes ahead.
+SIDE, SAMPLES = 128, 64
+WAYS = [rw.Path(reuse=reuse, caustics=caustics) for reuse in (1, 4) for caustics in (False, True)]
+
+
+def made(name, side=SIDE):
+    return getattr(rw.scenes, name)(width=side, height=side)
+
+
+@pytest.mark.parametrize(
+    ("name", "reuse", "caustics", "why"),
+    [
+        ("cornell_box", 4, False, ("error times time is 0.", "no light comes by way of mirrors or glass")),
+        ("veach_plates", 1, False, ("error times time is ", "error times time is ")),
+        ("glass_spheres", 1, True, ("error times time is ", "error times time is 0.")),
+    ],
+)
+def test_paths_go_as_a_pilot_finds(name, reuse, caustics, why):
+    scene, camera = made(name)
+    image = rw.render(scene, camera, samples=SAMPLES, progress=False)
+    plan = image.plan
+    assert plan.path == rw.Path(reuse=reuse, caustics=caustics)
+    assert (plan["reuse"].chosen, plan["caustics"].chosen) == (str(reuse), str(caustics))
+    assert why[0] in plan["reuse"].why
+    assert why[1] in plan["caustics"].why
+    # Neither the seed nor threads have a say, and named it is the same picture.
+    again = rw.render(scene, camera, plan.path, samples=SAMPLES, threads=3, progress=False)
+    assert np.array_equal(again.rgb, image.rgb)
+    assert rw.render(scene, camera, samples=SAMPLES, seed=5, progress=False).plan == plan
+
+
+def test_a_pilot_says_the_same_on_any_number_of_threads():
+    scene, camera = made("glass_spheres", 40)
+    said = [_core.pilot(scene._compiled(), camera, WAYS, n, None, rw.BoxFilter()) for n in (1, 2, 5, None)]
+    assert said == [said[0]] * 4
+    assert _core.pilot(scene._compiled(), camera, [], None, None, rw.BoxFilter()) == []
+
+
+def test_a_pilot_tells_the_error_of_the_picture():
+    # Two parts are all of it.
+    box = rw.scenes.cornell_box(width=32, height=16)
+    for path in (rw.Path(reuse=1, caustics=False), rw.Path(reuse=4, caustics=False)):
+        truth = render(box, integrator=path, samples=8192).rgb.astype(float)
+        pictures = [
+            render(box, integrator=path, samples=8, sampler=rw.Sobol(4), seed=seed).rgb for seed in range(50)
+        ]
+        errors = [np.mean((rgb - truth) ** 2 / (truth**2 + 0.01)) for rgb in pictures]
+        (said,) = _core.pilot(box[0]._compiled(), box[1], [path], None, None, rw.BoxFilter())
+        # It is one picture, whose pixels have two batches each.
+        off = (said - np.mean(errors)) / np.std(errors)
+        assert abs(off) < 4, (said, np.mean(errors), np.std(errors))
+
+
+def test_pilots_stay_where_there_is_nothing_to_choose():
+    scene, camera = made("cornell_box")
+    for path, why in (
+        (rw.Path(max_depth=1), "no paths can be shared here"),
+        (rw.Path(reuse=1), "as named"),
+    ):
+        plan = rw.render(scene, camera, path, samples=SAMPLES, progress=False).plan
+        assert plan.path == replace(path, reuse=1, caustics=False)
+        assert plan["reuse"].why == why
+        assert plan["caustics"].why == "no light comes by way of mirrors or glass"
+    for limits in ({"samples": SAMPLES - 1}, {"seconds": 1e-3}, {"error": 10.0}):
+        plan = rw.render(scene, camera, **limits, progress=False).plan
+        assert plan.path == rw.Path(reuse=1, caustics=False)
+        assert {plan[what].why for what in ("reuse", "caustics")} == {
+            "the picture has too few samples to send a pilot"
+        }
+
+
+def test_what_is_no_path_has_none(box):
+    plan = render(box, integrator=rw.Direct(), samples=16).plan
+    assert plan.path is None
+    with pytest.raises(KeyError, match="reuse"):
+        plan["reuse"]
+
+
+def test_checkpoints_keep_what_was_chosen(box, tmp_path):
+    scene, camera = made("cornell_box")
+    begun = rw.render(scene, camera, samples=SAMPLES, checkpoint=tmp_path / "large", progress=False)
+    assert begun.plan.path.reuse == 4
+    # Too few to send a pilot, had there been none.
+    on = rw.render(scene, camera, samples=1, checkpoint=tmp_path / "large", progress=False)
+    assert on.plan.path == begun.plan.path
+    assert {on.plan[what].why for what in ("reuse", "caustics")} == {"as the checkpoint has it"}
+    assert np.array_equal(on.rgb, begun.rgb)
+    with pytest.raises(ValueError, match="another integrator, reuse 4 instead of 8"):
+        render((scene, camera), integrator=rw.Path(reuse=8), checkpoint=tmp_path / "large")
+    # What began without sharing goes on without.
+    render(box, samples=16, checkpoint=tmp_path / "small")
+    assert render(box, samples=20, checkpoint=tmp_path / "small").plan.path.reuse == 1

@@ -22,8 +22,9 @@ class Path:
         Russian roulette alone, which leaves no bias.
     roulette_depth : int
         Bounces before Russian roulette begins, at least 0.
-    reuse : int
-        Side of the square patches of pixels that share paths: 1, 2, 4 or 8, where 1 shares nothing. What a
+    reuse : int, optional
+        Side of the square patches of pixels that share paths: 1, 2, 4 or 8, where 1 shares nothing. If not
+        given, `render` chooses 4 or 1 by what a pilot finds, and 1 for small pictures of few samples. What a
         path finds from its second surface on counts for every pixel of the patch whose own first surface
         sees that second one (Bekaert, Sbert and Halton 2002), in proportion to how likely each was to come
         there, which leaves no bias. It pays where surfaces are matt and most light is indirect, as in a
@@ -31,14 +32,16 @@ class Path:
 
         What goes from one `Diffuse` surface to another is shared; all else is as without. Nothing is shared
         where something moves, and in scenes with masks, with media in one another or with textures that are
-        filtered by width. Pixels of a patch err together, so that noise comes in patches. The error estimate
-        knows it: its interval is wider than without, most so in small pictures.
-    caustics : bool
-        Whether matt surfaces look for light where it comes to them by way of mirrors and glass: photons are
-        sent from the lights before the first render of a scene, and paths draw some of their directions from
-        where those came from (Jensen 1995), the others as ever, weighed by the density of both, which leaves
-        no bias. It pays where small lamps shine through glass or into mirrors: what would be fireflies is
-        found by most paths. Elsewhere it takes samples from other light, and time, and it has no effect where
+        filtered by width. Patches are cut elsewhere for each sample, so pixels err together with those around
+        them, and noise is as coarse as a patch. The error estimate knows it: its interval is wider than
+        without, most so in small pictures.
+    caustics : bool, optional
+        Whether matt surfaces look for light where it comes to them by way of mirrors and glass; if not given,
+        `render` chooses by what a pilot finds, and False for small pictures of few samples. Photons are sent
+        from the lights before the first render of a scene, and paths draw some of their directions from where
+        those came from (Jensen 1995), the others as ever, weighed by the density of both, which leaves no
+        bias. It pays where small lamps shine through glass or into mirrors: what would be fireflies is found
+        by most paths. Elsewhere it takes samples from other light, and time, and it has no effect where
         nothing is sharp. With `reuse`, first surfaces do not aim where paths are shared.
 
     Raises
@@ -46,22 +49,23 @@ class Path:
     ValueError
         If a number is negative, or `reuse` none of the four.
     TypeError
-        If it is not an integer, or `caustics` is not True or False.
+        If it is not an integer, or `caustics` is not True, False or None.
     """
 
     max_depth: int | None = None
     roulette_depth: int = 4
-    reuse: int = 1
-    caustics: bool = False
+    reuse: int | None = None
+    caustics: bool | None = None
 
     def __post_init__(self) -> None:
         most = 2**32 - 1
         if self.max_depth is not None:
             object.__setattr__(self, "max_depth", integer("max_depth", self.max_depth, 0, most))
         object.__setattr__(self, "roulette_depth", integer("roulette_depth", self.roulette_depth, 0, most))
-        reuse = integer("reuse", self.reuse, 1, _SIDES[-1])
-        if reuse not in _SIDES:
-            raise ValueError(f"reuse must be 1, 2, 4 or 8, got {reuse}")
-        object.__setattr__(self, "reuse", reuse)
-        if not isinstance(self.caustics, bool):
-            raise TypeError(f"caustics must be True or False, got {self.caustics!r}")
+        if self.reuse is not None:
+            reuse = integer("reuse", self.reuse, 1, _SIDES[-1])
+            if reuse not in _SIDES:
+                raise ValueError(f"reuse must be 1, 2, 4 or 8, got {reuse}")
+            object.__setattr__(self, "reuse", reuse)
+        if not isinstance(self.caustics, bool | None):
+            raise TypeError(f"caustics must be True, False or None, got {self.caustics!r}")

@@ -25,7 +25,19 @@ _MOST_HEADER = 1 << 16
 
 
 def held(path: str | PathLike[str]) -> dict[str, Any]:
-    """Return what the file at a path says that it is a render of; nothing where there is no such file."""
+    """Return what the file at a path says that it is a render of; nothing where there is no such file.
+
+    Raises
+    ------
+    FileNotFoundError
+        If the folder is missing.
+    IsADirectoryError
+        If the path is a folder.
+    """
+    if Path(path).is_dir():
+        raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
+    if not Path(path).absolute().parent.is_dir():
+        raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), str(Path(path).parent))
     with suppress(OSError, ValueError), open(path, "rb") as file:
         if file.read(len(_MAGIC)) == _MAGIC:
             length = int.from_bytes(file.read(4), "little")
@@ -46,13 +58,6 @@ class Checkpoints:
         The file.
     identity : dict of str to str, number or None
         What the render is of, by names that users know: a checkpoint of anything else is refused.
-
-    Raises
-    ------
-    FileNotFoundError
-        If the folder is missing.
-    IsADirectoryError
-        If the path is a folder.
     """
 
     def __init__(self, path: str | PathLike[str], identity: Mapping[str, Any]) -> None:
@@ -62,10 +67,6 @@ class Checkpoints:
         self._cost = 0.0
         self._last = time.monotonic()
         self._writer: threading.Thread | None = None
-        if self.path.is_dir():
-            raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(self.path))
-        if not self.path.absolute().parent.is_dir():
-            raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), str(self.path.parent))
 
     def read(self, most: int) -> bytes | None:
         """Return the film that the file holds, of so many bytes at most; None if there is no file.

@@ -1,12 +1,14 @@
-"""What a render takes where nothing is named: it goes by what is told of its end."""
+"""Where a render takes its numbers from where nothing is named: it goes by what is told of its end."""
 
 from dataclasses import replace
+from typing import TypeAlias
 
 from .. import _core
 from .plan import Choice, RenderPlan
 from .samplers import Halton, Independent, Lattice, Sampler, Sobol, Stratified
 
-_Limits = tuple[int | None, float | None, float | None]
+Limits: TypeAlias = tuple[int | None, float | None, float | None]
+"""Samples, error and seconds; None where there is no limit."""
 
 _MOST = 64
 # Where time may end a render, after few samples perhaps: the error is known well from two batches on.
@@ -15,12 +17,27 @@ _TIMED = 16
 # `benches/samplers.py`, and the fewest that are taken.
 _EXPECTED = 0.25
 _FEWEST = 16
+# About how many samples a core or two take in a second.
+_RATE = 1e6
 # Up to so many points the best lattices lie badly.
 _FEW = 4
 
 
+def expected(limits: Limits, pixels: int) -> float:
+    """Return about how many samples of each pixel a render takes."""
+    samples, error, seconds = limits
+    options = []
+    if samples is not None:
+        options.append(float(samples))
+    if error is not None:
+        options.append(max(_EXPECTED / error, _FEWEST))
+    if seconds is not None:
+        options.append(seconds * _RATE / pixels)
+    return min(options)
+
+
 def chosen(
-    sampler: Sampler | None, limits: _Limits, adaptive: bool, begun: object = None
+    sampler: Sampler | None, limits: Limits, adaptive: bool, begun: object = None
 ) -> tuple[Sampler, RenderPlan]:
     """Return the sampler of a render, with its batches, and the plan that tells of it.
 
@@ -69,7 +86,7 @@ def _of(begun: object, sampler: Sampler | None) -> Sampler | None:
     return next((one for one in wanted if repr(one) == begun), None)
 
 
-def _batch(limits: _Limits, adaptive: bool) -> tuple[int, str]:
+def _batch(limits: Limits, adaptive: bool) -> tuple[int, str]:
     """Return the samples of a batch, and why it has as many."""
     samples, error, seconds = limits
     # The samples of an adaptive picture are in halves, each with batches of its own.
@@ -80,10 +97,8 @@ def _batch(limits: _Limits, adaptive: bool) -> tuple[int, str]:
         told = "a batch" if samples < 2 * batch else f"{samples * halves // batch} batches"
         options.append((batch, f"the error of {samples} samples is told by {told}"))
     if error is not None:
-        expected = max(int(min(_EXPECTED / error, 2.0**31)), _FEWEST)
-        options.append(
-            (_core.batch_for(expected), f"an error of {error:g} may end it after {expected} samples")
-        )
+        likely = int(min(expected((None, error, None), 1), 2.0**31))
+        options.append((_core.batch_for(likely), f"an error of {error:g} may end it after {likely} samples"))
     if seconds is not None:
         options.append((_TIMED, "time may end it after few samples"))
     batch, why = min(options, key=lambda option: option[0])

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from ..integrators import Path
 from .samplers import Sampler
 
 
@@ -27,10 +28,13 @@ class RenderPlan:
     sampler : Independent, Stratified, Halton, Sobol or Lattice, or None
         Where the random numbers came from. With this, and as many samples, the same seed gives the same
         picture, whatever ended it.
+    path : Path or None
+        The path tracer, with all that was chosen for it; None for other kinds of integrators.
     """
 
     rows: tuple[Choice, ...] = ()
     sampler: Sampler | None = None
+    path: Path | None = None
 
     def __getitem__(self, what: str) -> Choice:
         """Return the row about something.

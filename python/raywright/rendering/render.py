@@ -4,6 +4,7 @@ import os
 import warnings as python_warnings
 from collections.abc import Callable, Iterable
 from concurrent.futures import Executor
+from dataclasses import replace
 from typing import Any, NamedTuple, Protocol
 
 import numpy as np
@@ -16,7 +17,7 @@ from ..integrators import AnyIntegrator, Path, check_integrator
 from ..scene.scene import Scene
 from .aovs import aovs, names_of
 from .checkpoints import Checkpoints, held
-from .choices import chosen
+from .choices import Limits, chosen
 from .digest import digest
 from .filters import BoxFilter, Filter
 from .image import HISTORY, ErrorEstimate, Image
@@ -25,6 +26,7 @@ from .plan import RenderPlan
 from .progress import Report, bar
 from .samplers import Sampler
 from .snapshots import Snapshots
+from .ways import followed
 
 _PATH = Path()
 _FILTER: Filter = BoxFilter()
@@ -67,7 +69,9 @@ def render(
     camera : Camera or another kind
         From where.
     integrator : Path or another kind
-        What turns rays into radiance; an `Integrator` may be written in Python.
+        What turns rays into radiance; an `Integrator` may be written in Python. What a `Path` leaves open is
+        chosen: where the picture has a million samples or more, by a pilot, which renders a few parts of it
+        in each way. ``image.plan`` tells what and why.
     samples : int, optional
         Limit on samples per pixel; 64 if no limit at all is given.
     error : float, optional
@@ -80,7 +84,8 @@ def render(
         Limit on run time in seconds, to the nearest sample of all pixels.
     seed : int
         Picks the random numbers, 0 to 2**64 - 1. The same seed, samples and sampler give the same picture,
-        bit for bit, for any number of threads. What sampler is chosen goes by the limits that are given.
+        bit for bit, for any number of threads. What is chosen where it is not named goes by the limits that
+        are given.
     threads : int, optional
         How many to use; all cores if not given. With an executor, for each piece of its work; 1 if not given.
     progress : bool or callable
@@ -151,18 +156,21 @@ def render(
     if executor is not None and not isinstance(executor, Executor):
         raise TypeError(f"executor must be a concurrent.futures.Executor, got {type(executor).__name__}")
     names = names_of(aov)
-    kept, begun = None, None
+    kept, begun = None, {}
     if checkpoint is not None:
         if not isinstance(checkpoint, str | os.PathLike):
             raise TypeError(f"checkpoint must be a path, got {type(checkpoint).__name__}")
-        begun = held(checkpoint).get("sampler")
-    sampler, plan = chosen(sampler, limits, adaptive, begun)
-    if checkpoint is not None:
-        identity = _identity(scene, camera, integrator, seed, adaptive, clamp, sampler, filter)
-        kept = Checkpoints(checkpoint, identity)
+        begun = held(checkpoint)
+    sampler, plan = chosen(sampler, limits, adaptive, begun.get("sampler"))
     if executor is None:
         # Here, so that what there is to warn of is told to the caller.
         scene._compiled(progress is True)
+    if isinstance(integrator, Path):
+        integrator, rows = followed(integrator, scene, camera, limits, threads, clamp, filter, begun)
+        plan = replace(plan, rows=plan.rows + rows, path=integrator)
+    if checkpoint is not None:
+        identity = _identity(scene, camera, integrator, seed, adaptive, clamp, sampler, filter)
+        kept = Checkpoints(checkpoint, identity)
     patch = _patch(scene, integrator)
     rendering = _begun(kept, camera, threads, adaptive, clamp, sampler, patch)
     of = (scene, camera, integrator, seed, sampler, filter)
@@ -216,7 +224,6 @@ def render(
     return image
 
 
-_Limits = tuple[int | None, float | None, float | None]
 _Of = tuple[Scene, AnyCamera, AnyIntegrator, int, Sampler, Filter]
 
 
@@ -227,7 +234,7 @@ class _StoppedError(Exception):
 class Checked(NamedTuple):
     """What `render` was told, as the core takes it."""
 
-    limits: _Limits
+    limits: Limits
     seed: int
     threads: int | None
     clamp: float | None
@@ -276,7 +283,7 @@ def check(
 def _here(
     rendering: _core.Rendering,
     of: _Of,
-    limits: _Limits,
+    limits: Limits,
     threads: int | None,
     report: Report | None,
     wait: Callable[[], float | None],
@@ -295,7 +302,7 @@ def _elsewhere(
     rendering: _core.Rendering,
     of: _Of,
     executor: Executor,
-    limits: _Limits,
+    limits: Limits,
     threads: int | None,
     report: Report | None,
     rest: Callable[[], None],
@@ -339,6 +346,8 @@ def _identity(
         "scene": digest(scene),
         "camera": digest(camera),
         "integrator": digest(integrator),
+        "reuse": integrator.reuse if isinstance(integrator, Path) else None,
+        "caustics": integrator.caustics if isinstance(integrator, Path) else None,
         "seed": seed,
         "adaptive": adaptive,
         "clamp": clamp,

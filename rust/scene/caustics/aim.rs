@@ -29,6 +29,12 @@ impl<'a> Aim<'a> {
         self.cell.gain
     }
 
+    /// How much the light that comes by way of what is sharp varies among samples of surfaces that do not aim, over the
+    /// square of what comes straight and so together.
+    pub fn rarity(&self) -> f64 {
+        self.cell.rarity
+    }
+
     /// Draws a direction: `choice` among the balls, `u` of those to one, all uniform in [0, 1).
     #[inline]
     pub fn sample(&self, mut choice: f64, u: [f64; 2]) -> DVec3 {

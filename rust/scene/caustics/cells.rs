@@ -28,6 +28,7 @@ struct Leaf {
     max: DVec3,
     share: f64,
     gain: f64,
+    rarity: f64,
     lobes: Range<usize>,
 }
 
@@ -40,6 +41,8 @@ pub(super) struct Cell<'a> {
     pub share: f64,
     /// How much brighter than usual it is there.
     pub gain: f64,
+    /// How rarely that light is found: see [`Aim::rarity`](super::Aim::rarity).
+    pub rarity: f64,
 }
 
 /// The most photons in a cell. With 32 or 128 there is more noise in pictures of balls of glass.
@@ -56,6 +59,9 @@ const WIDE: f64 = 0.1;
 
 /// How often paths aim, at least and at most.
 const SHARES: [f64; 2] = [0.1, 0.6];
+
+/// The smallest share of all directions that light is told to come from.
+const SMALLEST: f64 = 1e-8;
 
 /// The most that a cell is brighter than usual.
 const BRIGHTEST: f64 = 1e6;
@@ -126,11 +132,15 @@ impl Cells {
         // Where no light comes straight, or on no area, all that comes is by way of what is sharp.
         let brighter = if usual > 0.0 { (light / area / usual).min(BRIGHTEST) } else { BRIGHTEST };
         let all = Lobe::around(near, size);
+        let of_all = if usual > 0.0 { brighter / (1.0 + brighter) } else { 1.0 };
         near.sort_by_key(|photon| photon.chain);
         let mut each = Vec::new();
         for group in near.chunk_by_mut(|a, b| a.chain == b.chain) {
             Lobe::divide(group, size, 3, &mut each);
         }
+        // What comes from a lobe is found with the share of directions that it fills.
+        let found = |(lobe, of_lobe): &(Lobe, f64)| (of_lobe / light).powi(2) / lobe.fills().max(SMALLEST);
+        let rarity = if light > 0.0 { of_all * of_all * each.iter().map(found).sum::<f64>() } else { 0.0 };
         // The variance of what is sought in a lobe is its light times its brightness times its solid angle, over how
         // often it is drawn: so it is best drawn in proportion to the root of their product. The larger ones are mostly
         // less bright, so that of both together a root of the solid angle is left.
@@ -147,7 +157,7 @@ impl Cells {
         // By how much noise it takes from what paths find of the rest, and adds to it, were each lobe half filled by
         // what is sought.
         let share = (2.0 * brighter / (2.0 * brighter + 1.0)).clamp(SHARES[0], SHARES[1]);
-        self.leaves.push(Leaf { min, max, share, gain: 1.0 + brighter, lobes: first..self.lobes.len() });
+        self.leaves.push(Leaf { min, max, share, gain: 1.0 + brighter, rarity, lobes: first..self.lobes.len() });
     }
 
     /// The cell of a place; `None` where no photon has been about.
@@ -160,8 +170,8 @@ impl Cells {
                 Node::Leaf(number) => {
                     let leaf = &self.leaves[number];
                     let inside = place.cmpge(leaf.min).all() && place.cmple(leaf.max).all();
-                    let cell = Cell { lobes: &self.lobes[leaf.lobes.clone()], share: leaf.share, gain: leaf.gain };
-                    return inside.then_some(cell);
+                    let &Leaf { share, gain, rarity, .. } = leaf;
+                    return inside.then(|| Cell { lobes: &self.lobes[leaf.lobes.clone()], share, gain, rarity });
                 }
             }
         }

@@ -1,0 +1,102 @@
+"""How paths go where nothing is named: by what a pilot finds to be worth its while."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from itertools import product
+from typing import Any
+
+from .. import _core
+from ..cameras import AnyCamera
+from ..integrators import Path
+from ..scene.scene import Scene
+from .choices import Limits, expected
+from .filters import Filter
+from .plan import Choice
+
+# The side of patches that share paths, where any do: larger ones have coarser noise, and gain little.
+_REUSE = 4
+# How much longer samples take that share paths, or that aim, by `benches/choices.py`, in times of a plain
+# one. It is not measured on the spot: the same has to be chosen everywhere, every time.
+_COSTS = {"reuse": 0.9, "caustics": 0.9}
+# What is more than plain has to be better by so much: a pilot may be wrong.
+_BETTER = 0.9
+# The share of a render's samples that a pilot of each way may take.
+_SHARE = 64
+_PLAIN: dict[str, Any] = {"reuse": 1, "caustics": False}
+_MORE: dict[str, Any] = {"reuse": _REUSE, "caustics": True}
+_NEVER = {
+    "reuse": "no paths can be shared here",
+    "caustics": "no light comes by way of mirrors or glass",
+}
+
+
+def followed(
+    path: Path,
+    scene: Scene,
+    camera: AnyCamera,
+    limits: Limits,
+    threads: int | None,
+    clamp: float | None,
+    filter: Filter,
+    begun: Mapping[str, Any],
+) -> tuple[Path, tuple[Choice, ...]]:
+    """Return a path tracer that leaves nothing open, and the rows of the plan that tell of it.
+
+    Parameters
+    ----------
+    path : Path
+        What was named.
+    scene, camera, threads, clamp, filter
+        What `render` was told.
+    limits : tuple
+        Samples, error and seconds; None where there is no limit.
+    begun : dict
+        What the render is that goes on; empty if it begins.
+    """
+    named = {name: getattr(path, name) for name in _PLAIN}
+    why = {name: "as named" for name, value in named.items() if value is not None}
+    for name, plain in _PLAIN.items():
+        if name not in why and type(begun.get(name)) is type(plain):
+            named[name], why[name] = begun[name], "as the checkpoint has it"
+    pixels = camera.width * camera.height
+    open_ = [name for name in _PLAIN if name not in why]
+    if open_ and expected(limits, pixels) * pixels < _SHARE * _core.PILOT:
+        why |= dict.fromkeys(open_, "the picture has too few samples to send a pilot")
+        open_ = []
+    if open_:
+        can = dict(zip(_PLAIN, _core.chances(scene._compiled(), path), strict=True))
+        why |= {name: _NEVER[name] for name in open_ if not can[name]}
+        open_ = [name for name in open_ if can[name]]
+    fixed = {name: _PLAIN[name] if value is None else value for name, value in named.items()}
+    ways = [fixed | dict(zip(open_, way, strict=True)) for way in product(*_options(open_))]
+    chosen = ways[0]
+    if open_:
+        paths = [replace(path, **way) for way in ways]
+        errors = _core.pilot(scene._compiled(), camera, paths, threads, clamp, filter)
+        worth = [error * _cost(way) for error, way in zip(errors, ways, strict=True)]
+        least = min(worth)
+        if least < _BETTER * worth[0]:
+            chosen = ways[worth.index(least)]
+        why |= {name: _told(name, ways, worth) for name in open_}
+    rows = tuple(Choice(name, str(chosen[name]), why[name]) for name in _PLAIN)
+    return replace(path, **chosen), rows
+
+
+def _options(names: list[str]) -> list[tuple[Any, Any]]:
+    return [(_PLAIN[name], _MORE[name]) for name in names]
+
+
+def _cost(way: Mapping[str, Any]) -> float:
+    """Return how many times as long a sample takes as one of a plain path."""
+    return 1 + sum(_COSTS[name] for name, value in way.items() if value != _PLAIN[name])
+
+
+def _told(name: str, ways: list[dict[str, Any]], worth: list[float]) -> str:
+    """Return what a pilot found of a way."""
+    with_, without = (
+        min(w for way, w in zip(ways, worth, strict=True) if (way[name] != _PLAIN[name]) is more)
+        for more in (True, False)
+    )
+    if without == 0:
+        return "a pilot found no error"
+    return f"by a pilot, error times time is {with_ / without:.2g} of what it is without"
