@@ -97,7 +97,7 @@ def test_a_sampler_that_was_chosen_is_kept(box, path):
     begun = rw.render(*box, **few, checkpoint=path)
     gone_on = rw.render(*box, **many, checkpoint=path)
     assert gone_on.plan.sampler == begun.plan.sampler
-    assert [row.why for row in gone_on.plan.rows] == ["as the checkpoint has it"] * 2
+    assert [row.why for row in gone_on.plan.rows] == ["as the checkpoint has it"] * 4
     assert_same(gone_on, rw.render(*box, **many, sampler=begun.plan.sampler))
     # What is named is used as named, or refused.
     with pytest.raises(ValueError, match=r"it has sampler .* instead of Independent\(\)"):
@@ -118,7 +118,7 @@ def test_ctrl_c_writes_and_is_passed_on_within_a_pass(path):
     timer.join()
     of = rw.render(*box, seconds=1e-9, progress=False, checkpoint=path)
     # What was begun is done first, and no bit tells.
-    again = rw.render(*box, samples=of.samples, sampler=of.plan.sampler, progress=False)
+    again = rw.render(*box, of.plan.path, samples=of.samples, sampler=of.plan.sampler, progress=False)
     assert np.array_equal(of.rgb, again.rgb)
     assert of.error == again.error
 

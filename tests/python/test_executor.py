@@ -162,7 +162,8 @@ def test_time_ends_it(box, pool):
     image = rw.render(*box, seconds=2, progress=False, executor=pool)
     assert 1 < time.perf_counter() - began < 10
     # Other passes, the same picture.
-    again = rw.render(*box, samples=image.samples, sampler=image.plan.sampler, progress=False)
+    plan = image.plan
+    again = rw.render(*box, plan.path, samples=image.samples, sampler=plan.sampler, progress=False)
     assert np.array_equal(image.rgb, again.rgb)
     assert image.error == again.error
 

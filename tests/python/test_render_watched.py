@@ -101,7 +101,7 @@ def test_another_thread_may_stop_a_render_at_once(executor):
 def test_a_function_that_watches_may_stop_the_render():
     stop = threading.Event()
     watch = Watch(lambda image: stop.set() if image.samples >= 16 else None)
-    image = rw.render(*cornell(), error=1e-9, progress=watch, stop=stop)
+    image = rw.render(*cornell(), rw.Path(reuse=1), error=1e-9, progress=watch, stop=stop)
     assert watch[-1] is image
     assert image.samples >= 16
     assert image.warnings == ()
