@@ -3,7 +3,7 @@
 //! bits, which is checked before anything is timed.
 
 use raywright::accel::bvh::{self, Options};
-use raywright::integrators::{CameraSample, Path};
+use raywright::integrators::{CameraSample, Job, Path};
 use raywright::math::{DVec3, Ray, Vec3};
 use raywright::optics::Rgb;
 use raywright::sampling::Sampler;
@@ -27,7 +27,9 @@ fn main() {
         let mut samples: Vec<_> = (0..PATHS).map(sample).collect();
         let mut radiance = vec![Rgb::ZERO; samples.len()];
         let path = Path::default();
-        let mut worker = path.worker_of(&scene, Footprint::default(), kernel);
+        let job = Job { scene: &scene, footprint: Footprint::default() };
+        let session = path.begin_as(job, kernel, &Cancel::default());
+        let mut worker = session.worker();
         let start = Instant::now();
         worker.radiance(&mut samples, &Cancel::default(), &mut radiance);
         (start.elapsed().as_secs_f64(), radiance)

@@ -1,10 +1,10 @@
 //! Ambient occlusion.
 
-use super::{CameraSample, Integrator, Worker};
+use super::{CameraSample, Integrator, Job, Session, Worker};
 use crate::math::{Frame, Hit, Ray};
 use crate::optics::Rgb;
 use crate::sampling::{CAMERA_DIMENSIONS, warp};
-use crate::scene::{Footprint, RayOrigin, Scene};
+use crate::scene::{RayOrigin, Scene};
 use crate::workers::Cancel;
 
 /// How open the surroundings of what is seen are (Zhukov, Iones and Kronin, "An Ambient Light Illumination Model",
@@ -27,10 +27,22 @@ impl Default for AmbientOcclusion {
 }
 
 impl Integrator for AmbientOcclusion {
-    fn worker<'a>(&'a self, scene: &'a Scene, _footprint: Footprint) -> Box<dyn Worker + 'a> {
-        Box::new(Openness {
-            settings: *self,
-            scene,
+    fn begin<'a>(&'a self, job: Job<'a>, _cancel: &Cancel) -> Box<dyn Session + 'a> {
+        Box::new(Openness { settings: *self, scene: job.scene })
+    }
+}
+
+/// What there is to ask.
+struct Openness<'a> {
+    settings: AmbientOcclusion,
+    scene: &'a Scene,
+}
+
+impl Session for Openness<'_> {
+    fn worker(&self) -> Box<dyn Worker + '_> {
+        Box::new(Asking {
+            settings: self.settings,
+            scene: self.scene,
             hits: Vec::new(),
             rays: Vec::new(),
             of: Vec::new(),
@@ -39,7 +51,7 @@ impl Integrator for AmbientOcclusion {
     }
 }
 
-struct Openness<'a> {
+struct Asking<'a> {
     settings: AmbientOcclusion,
     scene: &'a Scene,
     hits: Vec<Hit>,
@@ -49,7 +61,7 @@ struct Openness<'a> {
     occluded: Vec<bool>,
 }
 
-impl Worker for Openness<'_> {
+impl Worker for Asking<'_> {
     fn radiance(&mut self, samples: &mut [CameraSample], cancel: &Cancel, radiance: &mut [Rgb]) {
         let count = self.settings.samples.max(1);
         let part = (4096 / count as usize).max(16);

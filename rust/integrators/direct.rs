@@ -1,8 +1,8 @@
 //! Direct light.
 
 use super::transport::Settings;
-use super::{Integrator, Worker};
-use crate::scene::{Footprint, Scene};
+use super::{Integrator, Job, Session};
+use crate::workers::Cancel;
 
 /// What shines, and what is lit by it: one bounce. Lights are sampled and so are surfaces, combined through multiple
 /// importance sampling (Veach and Guibas, "Optimally Combining Sampling Techniques", 1995).
@@ -21,8 +21,8 @@ impl Default for Direct {
 }
 
 impl Integrator for Direct {
-    fn worker<'a>(&'a self, scene: &'a Scene, footprint: Footprint) -> Box<dyn Worker + 'a> {
+    fn begin<'a>(&'a self, job: Job<'a>, cancel: &Cancel) -> Box<dyn Session + 'a> {
         let (light_samples, splits) = (self.light_samples.max(1), self.surface_samples.max(1));
-        Settings { light_samples, splits, ..Settings::path(Some(1), u32::MAX) }.worker(scene, footprint)
+        Settings { light_samples, splits, ..Settings::path(Some(1), u32::MAX) }.begin(job, cancel)
     }
 }

@@ -1,9 +1,9 @@
 //! Distributed ray tracing.
 
 use super::transport::{Follow, Settings};
-use super::{Integrator, Worker};
+use super::{Integrator, Job, Session};
 use crate::optics::Rgb;
-use crate::scene::{Footprint, Scene};
+use crate::workers::Cancel;
 
 /// Distributed ray tracing (Cook, Porter and Carpenter, "Distributed Ray Tracing", 1984): rays are spread over lights,
 /// lobes, lens and shutter, for soft shadows, gloss, depth of field and motion blur. Diffuse light between surfaces is
@@ -35,7 +35,7 @@ impl Default for Distributed {
 }
 
 impl Integrator for Distributed {
-    fn worker<'a>(&'a self, scene: &'a Scene, footprint: Footprint) -> Box<dyn Worker + 'a> {
+    fn begin<'a>(&'a self, job: Job<'a>, cancel: &Cancel) -> Box<dyn Session + 'a> {
         let splits = self.splits.max(1);
         Settings {
             follow: Follow::MinDensity(Self::GLOSS),
@@ -44,6 +44,6 @@ impl Integrator for Distributed {
             splits,
             ..Settings::path(Some(self.max_depth), u32::MAX)
         }
-        .worker(scene, footprint)
+        .begin(job, cancel)
     }
 }

@@ -4,6 +4,7 @@ mod ambient_occlusion;
 mod aov;
 mod direct;
 mod distributed;
+mod guiding;
 mod path;
 mod ray_cast;
 #[cfg(test)]
@@ -15,6 +16,7 @@ pub use ambient_occlusion::AmbientOcclusion;
 pub use aov::{Channel, aovs};
 pub use direct::Direct;
 pub use distributed::Distributed;
+pub use guiding::{Guide, LocalGuide, is_matt};
 pub use path::Path;
 pub use ray_cast::RayCast;
 pub use whitted::Whitted;
@@ -22,7 +24,7 @@ pub use whitted::Whitted;
 use crate::math::Ray;
 use crate::optics::Rgb;
 use crate::sampling::Sampler;
-use crate::scene::{Footprint, Scene};
+use crate::scene::{Camera, Footprint, Scene};
 use crate::workers::Cancel;
 
 /// One sample of one pixel: the ray that the camera sends, and the numbers for what follows.
@@ -34,11 +36,28 @@ pub struct CameraSample {
     pub sampler: Sampler,
 }
 
+/// What there is to be rendered.
+#[derive(Clone, Copy)]
+pub struct Job<'a> {
+    /// What is looked at.
+    pub scene: &'a Scene,
+    /// That of the camera's rays, for the filtering of textures.
+    pub footprint: Footprint,
+}
+
+impl<'a> Job<'a> {
+    /// A picture of a scene by a camera.
+    pub fn new(scene: &'a Scene, camera: &dyn Camera) -> Self {
+        let spread = camera.spread();
+        Self { scene, footprint: Footprint { width: spread.width, spread: spread.angle } }
+    }
+}
+
 /// A way to turn rays into radiance.
 pub trait Integrator: Send + Sync {
-    /// What one thread works with on a scene: the integrator and the memory it needs, to be used again and again.
-    /// `footprint` is that of the camera's rays, for the filtering of textures.
-    fn worker<'a>(&'a self, scene: &'a Scene, footprint: Footprint) -> Box<dyn Worker + 'a>;
+    /// Begins to work on a picture: makes all that its workers share. That may take long, on the current pool of
+    /// threads; it returns soon after `cancel` is raised, with what is of no use.
+    fn begin<'a>(&'a self, job: Job<'a>, cancel: &Cancel) -> Box<dyn Session + 'a>;
 
     /// The side of the square patches of pixels whose samples of the same number work together; 1 where each sample is
     /// on its own.
@@ -46,14 +65,21 @@ pub trait Integrator: Send + Sync {
         1
     }
 
-    /// Makes what workers need of a scene, once for all of them: it is called before there are any.
-    fn prepare(&self, _scene: &Scene) {}
-
     /// Whether workers must run on the thread that asked for the picture, as what is written in Python must. They are
     /// then handed batches of tens of thousands of samples, and may raise the cancel themselves to end the render.
     fn runs_on_caller(&self) -> bool {
         false
     }
+}
+
+/// An integrator at work on a picture, and what all of its threads share.
+pub trait Session: Send + Sync {
+    /// What one thread works with: the memory that it needs, to be used again and again.
+    fn worker(&self) -> Box<dyn Worker + '_>;
+
+    /// Called before each pass, when so many samples of each pixel are done, and again if it has to be begun anew. What
+    /// changes from pass to pass must depend on that number alone. Returns soon after `cancel` is raised.
+    fn before_pass(&self, _done: u32, _cancel: &Cancel) {}
 }
 
 /// An integrator at work on batches of camera samples. It advances all paths of a batch together, one bounce at a

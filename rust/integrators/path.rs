@@ -1,8 +1,9 @@
 //! Path tracing.
 
 use super::transport::{Settings, can_share};
-use super::{Integrator, Worker};
-use crate::scene::{Footprint, Scene, ShadingVariant};
+use super::{Integrator, Job, Session};
+use crate::scene::{Scene, ShadingVariant};
+use crate::workers::Cancel;
 
 /// Unidirectional path tracing (Kajiya, "The Rendering Equation", 1986): at each bounce one light is asked directly,
 /// which is combined with running into lights by chance through multiple importance sampling (Veach and Guibas,
@@ -17,7 +18,7 @@ pub struct Path {
     /// both that and the first are diffuse; 1 for none ([`Integrator::patch`]).
     pub reuse: u32,
     /// Whether matt surfaces draw directions also from where light comes by way of mirrors and glass
-    /// ([`crate::scene::Caustics`]).
+    /// ([`super::Guide`]).
     pub caustics: bool,
 }
 
@@ -29,37 +30,26 @@ impl Default for Path {
 
 impl Path {
     fn settings(&self, scene: &Scene) -> Settings {
-        let (shares, aims) = (self.patch(scene) > 1, self.aims(scene));
-        Settings { shares, aims, ..Settings::path(self.max_depth, self.roulette_depth) }
+        let (shares, guided) = (self.patch(scene) > 1, self.is_guided(scene));
+        Settings { shares, guided, ..Settings::path(self.max_depth, self.roulette_depth) }
     }
 
-    /// Whether it aims in a scene, as far as can be told without photons. There must be something sharp, and light
+    /// Whether it is guided in a scene, as far as can be told without photons. There must be something sharp, and light
     /// beyond it: scenes of the plain variant have nothing sharp.
-    pub fn aims(&self, scene: &Scene) -> bool {
+    pub fn is_guided(&self, scene: &Scene) -> bool {
         self.caustics && self.max_depth.is_none_or(|depth| depth > 1) && scene.plan().needs().scattering
     }
 
-    /// What one thread works with, compiled as this variant, or as one that can do more. Every variant that suits a
-    /// scene gives the same bits.
-    pub fn worker_of<'a>(
-        &self,
-        scene: &'a Scene,
-        footprint: Footprint,
-        variant: ShadingVariant,
-    ) -> Box<dyn Worker + 'a> {
-        self.settings(scene).worker_of(scene, footprint, variant)
+    /// As [`Integrator::begin`], compiled as this variant, or as one that can do more. Every variant that suits a scene
+    /// gives the same bits.
+    pub fn begin_as<'a>(&self, job: Job<'a>, variant: ShadingVariant, cancel: &Cancel) -> Box<dyn Session + 'a> {
+        self.settings(job.scene).begin_as(job, variant, cancel)
     }
 }
 
 impl Integrator for Path {
-    fn worker<'a>(&'a self, scene: &'a Scene, footprint: Footprint) -> Box<dyn Worker + 'a> {
-        self.settings(scene).worker(scene, footprint)
-    }
-
-    fn prepare(&self, scene: &Scene) {
-        if self.aims(scene) {
-            scene.caustics();
-        }
+    fn begin<'a>(&'a self, job: Job<'a>, cancel: &Cancel) -> Box<dyn Session + 'a> {
+        self.settings(job.scene).begin(job, cancel)
     }
 
     /// 1 where nothing can be shared, or no path goes on from its second surface.

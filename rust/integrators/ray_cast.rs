@@ -1,9 +1,9 @@
 //! Ray casting.
 
 use super::transport::{Follow, Settings};
-use super::{Integrator, Worker};
+use super::{Integrator, Job, Session};
 use crate::optics::Rgb;
-use crate::scene::{Footprint, Scene};
+use crate::workers::Cancel;
 
 /// Ray casting with shadows (Appel, "Some Techniques for Shading Machine Renderings of Solids", 1968): what shines,
 /// what the lights give a surface by its scattering, and ambient light. Nothing is followed further, so that mirrors
@@ -26,7 +26,7 @@ impl Default for RayCast {
 }
 
 impl Integrator for RayCast {
-    fn worker<'a>(&'a self, scene: &'a Scene, footprint: Footprint) -> Box<dyn Worker + 'a> {
+    fn begin<'a>(&'a self, job: Job<'a>, cancel: &Cancel) -> Box<dyn Session + 'a> {
         Settings {
             follow: Follow::Nothing,
             shadows: self.shadows,
@@ -34,6 +34,6 @@ impl Integrator for RayCast {
             light_samples: self.light_samples.max(1),
             ..Settings::path(Some(1), u32::MAX)
         }
-        .worker(scene, footprint)
+        .begin(job, cancel)
     }
 }

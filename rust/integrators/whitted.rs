@@ -1,9 +1,9 @@
 //! Recursive ray tracing, as a loop.
 
 use super::transport::{Follow, Settings};
-use super::{Integrator, Worker};
+use super::{Integrator, Job, Session};
 use crate::optics::Rgb;
-use crate::scene::{Footprint, Scene};
+use crate::workers::Cancel;
 
 /// Whitted's ray tracing ("An Improved Illumination Model for Shaded Display", 1980): lights and ambient light at each
 /// surface by its scattering, and both the reflected and the refracted ray of smooth ones, followed to a depth, or for
@@ -29,7 +29,7 @@ impl Default for Whitted {
 }
 
 impl Integrator for Whitted {
-    fn worker<'a>(&'a self, scene: &'a Scene, footprint: Footprint) -> Box<dyn Worker + 'a> {
+    fn begin<'a>(&'a self, job: Job<'a>, cancel: &Cancel) -> Box<dyn Session + 'a> {
         Settings {
             follow: Follow::DeltaLobes,
             ambient: self.ambient,
@@ -37,6 +37,6 @@ impl Integrator for Whitted {
             least: self.contribution,
             ..Settings::path(Some(self.max_depth), u32::MAX)
         }
-        .worker(scene, footprint)
+        .begin(job, cancel)
     }
 }

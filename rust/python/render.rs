@@ -12,9 +12,9 @@ use super::integrators::{self, AnyIntegrator};
 use super::query::CompiledScene;
 use super::samplers;
 use super::written::Written;
-use crate::integrators::{Integrator, Path};
+use crate::integrators::{Guide, Integrator, Path};
 use crate::render::{self, HistoryRow, Malformed, Progress, RenderError, Request, Settings, Until};
-use crate::workers::pool;
+use crate::workers::{Cancel, pool};
 
 /// A render: its picture so far, and what it takes to go on with it.
 #[pyclass(module = "raywright._core")]
@@ -288,7 +288,7 @@ pub fn patch(scene: &Bound<'_, CompiledScene>, integrator: AnyIntegrator) -> u32
 pub fn chances(py: Python<'_>, scene: &Bound<'_, CompiledScene>, path: &Bound<'_, PyAny>) -> PyResult<(bool, bool)> {
     let (scene, path) = (&scene.get().0, integrators::path(path)?);
     let any = Path { reuse: 2, caustics: true, ..path };
-    Ok(py.detach(|| (any.patch(scene) > 1, any.aims(scene) && scene.caustics().is_some())))
+    Ok(py.detach(|| (any.patch(scene) > 1, any.is_guided(scene) && Guide::of(scene, &Cancel::default()).is_some())))
 }
 
 /// About the relMSE that each of some path tracers leaves with few samples, told from a few parts of a picture.

@@ -7,10 +7,9 @@ use pyo3::types::PyDict;
 use std::sync::{Mutex, PoisonError};
 
 use super::arrays::vectors;
-use crate::integrators::{CameraSample, Integrator, Worker};
+use crate::integrators::{CameraSample, Integrator, Job, Session, Worker};
 use crate::math::DVec3;
 use crate::optics::Rgb;
-use crate::scene::{Footprint, Scene};
 use crate::workers::Cancel;
 
 /// `raywright.Integrator`. What it raises ends the render.
@@ -70,7 +69,7 @@ impl Written {
 }
 
 impl Integrator for Written {
-    fn worker<'a>(&'a self, _scene: &'a Scene, _footprint: Footprint) -> Box<dyn Worker + 'a> {
+    fn begin<'a>(&'a self, _job: Job<'a>, _cancel: &Cancel) -> Box<dyn Session + 'a> {
         Box::new(At(self))
     }
 
@@ -79,7 +78,14 @@ impl Integrator for Written {
     }
 }
 
+#[derive(Clone, Copy)]
 struct At<'a>(&'a Written);
+
+impl Session for At<'_> {
+    fn worker(&self) -> Box<dyn Worker + '_> {
+        Box::new(*self)
+    }
+}
 
 impl Worker for At<'_> {
     fn radiance(&mut self, samples: &mut [CameraSample], cancel: &Cancel, radiance: &mut [Rgb]) {

@@ -6,10 +6,11 @@
 
 use super::bytes::{Malformed, Reader, Writer, check};
 use super::epoch::Epoch;
+use super::run::begin;
 use super::tile::FilmTile;
 use super::tiles::{Exposure, Goal, Stop};
 use super::{Film, Progress, RenderError, Rendering, Settings};
-use crate::integrators::Integrator;
+use crate::integrators::{Integrator, Job};
 use crate::scene::{Camera, Scene};
 use crate::workers::{pool, watched};
 use std::ops::Range;
@@ -26,8 +27,8 @@ pub struct Request {
 enum Wanted {
     /// Those between two numbers, of cells that have none here.
     Alone(u32, u32),
-    /// As many as this in each cell, counting those that it has.
-    Even(u32),
+    /// As many in each cell, counting those that it has, in a pass that begins with so many.
+    Even { done: u32, samples: u32 },
     /// As an epoch has it for so many on average, where all pixels have had as many on average.
     Planned { epoch: Epoch, done: u32, samples: u32 },
 }
@@ -68,8 +69,8 @@ impl Rendering {
         if let Some(epoch) = self.epoch() {
             to.word(epoch.patch);
             epoch.write(tiles, &mut to);
-            to.word(film.samples());
         }
+        to.word(film.samples());
         to.word(samples);
         to.0
     }
@@ -133,17 +134,17 @@ impl Request {
         let planned = if kind == PLANNED {
             let patch = from.word()?;
             check((1..=64).contains(&patch), "patches have no size")?;
-            Some((Epoch::read(tiles.iter(), patch, &mut from)?, from.word()?))
+            Some(Epoch::read(tiles.iter(), patch, &mut from)?)
         } else {
             None
         };
-        let samples = from.word()?;
+        let (done, samples) = (from.word()?, from.word()?);
         from.end()?;
-        check(samples <= FilmTile::MOST, "a cell wants too many samples")?;
+        check(done <= samples && samples <= FilmTile::MOST, "a cell wants too many samples")?;
         let wanted = match planned {
-            None => Wanted::Even(samples),
-            Some((epoch, done)) => {
-                check(epoch.from <= done && done <= samples && samples <= epoch.to, "they are of another epoch")?;
+            None => Wanted::Even { done, samples },
+            Some(epoch) => {
+                check(epoch.from <= done && samples <= epoch.to, "they are of another epoch")?;
                 Wanted::Planned { epoch, done, samples }
             }
         };
@@ -160,18 +161,23 @@ impl Request {
         settings: &Settings,
         progress: &mut dyn Progress,
     ) -> Result<Vec<u8>, RenderError> {
-        let exposure = Exposure::new(scene, camera, integrator, settings);
         let stop = Stop::default();
-        let goal = match &self.wanted {
-            &Wanted::Alone(before, samples) => Goal::Even { before, samples },
-            &Wanted::Even(samples) => Goal::Even { before: 0, samples },
-            Wanted::Planned { epoch, done, samples } => Goal::Planned { epoch, done: *done, samples: *samples },
+        let (done, goal) = match &self.wanted {
+            &Wanted::Alone(before, samples) => (before, Goal::Even { before, samples }),
+            &Wanted::Even { done, samples } => (done, Goal::Even { before: 0, samples }),
+            &Wanted::Planned { ref epoch, done, samples } => (done, Goal::Planned { epoch, done, samples }),
         };
         let tiles = &mut self.tiles[..];
         let pool = pool(settings.threads).map_err(RenderError::Threads)?;
-        pool.install(|| integrator.prepare(scene));
-        let reached = if integrator.runs_on_caller() || pool.current_num_threads() == 1 {
-            exposure.expose_here(tiles, goal, &stop, || {
+        let job = Job::new(scene, camera);
+        let session = if pool.current_num_threads() == 1 {
+            pool.install(|| integrator.begin(job, &stop.cancel))
+        } else {
+            begin(integrator, job, settings.threads, progress)?
+        };
+        let exposure = Exposure::new(scene, camera, integrator, &*session, settings);
+        let reached = if exposure.stays || pool.current_num_threads() == 1 {
+            exposure.expose_here(tiles, done, goal, &stop, || {
                 if progress.poll().is_break() {
                     stop.cancel.raise();
                 }
@@ -184,7 +190,8 @@ impl Request {
                 }
                 goes_on
             };
-            watched(settings.threads, |_| exposure.expose(tiles, goal, &stop), watch).map_err(RenderError::Threads)?
+            watched(settings.threads, |_| exposure.expose(tiles, done, goal, &stop), watch)
+                .map_err(RenderError::Threads)?
         };
         if !reached {
             return Err(RenderError::Interrupted);

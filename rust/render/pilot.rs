@@ -5,12 +5,12 @@ use super::settings::Settings;
 use super::tile::FilmTile;
 use super::tiles::{Exposure, Goal, Stop};
 use super::{Film, Progress, RenderError};
-use crate::integrators::{Integrator, Path};
+use crate::integrators::{Guide, Integrator, Job, Path, is_matt};
 use crate::math::Hit;
 use crate::optics::Rgb;
 use crate::sampling::{BatchSize, SamplerKind};
-use crate::scene::{Camera, Interaction, Scene, is_matt};
-use crate::workers::{pool, watched};
+use crate::scene::{Camera, Interaction, Scene};
+use crate::workers::watched;
 use rayon::prelude::*;
 
 /// Pixels on the side of the parts that are looked at, and how many parts there are at most.
@@ -28,7 +28,7 @@ pub const PILOT: u32 = PARTS * SIDE * SIDE * SAMPLES;
 ///
 /// All ways are measured by the same pixels, and against the same picture: the mean of what all of them find. What
 /// [`Path::caustics`] is there for is met by few of the paths that do not aim, and by none of so few most likely; so it
-/// is told by photons what such paths would have to find ([`crate::scene::Aim::rarity`]), and that is added to the
+/// is told by photons what such paths would have to find ([`crate::integrators::LocalGuide::rarity`]), and that is added to the
 /// ways that do not.
 ///
 /// It depends on the scene, the camera and the filter alone: not on seeds, times or threads. `settings` that are about
@@ -44,8 +44,9 @@ pub fn pilot(
     let settings = Settings { sampler, seed: 0, ..settings.clone() };
     let stop = Stop::default();
     let work = || {
+        let guide = if ways.iter().any(|way| way.caustics) { Guide::of(scene, &stop.cancel) } else { None };
         let seen = ways.par_iter().map(|way| expose(scene, camera, way, &settings, &stop)).collect();
-        Seen { ways: seen, rare: ways.iter().any(|way| way.caustics).then(|| rarity(scene, camera)) }
+        Seen { ways: seen, rare: guide.map(|guide| rarity(scene, camera, &guide)) }
     };
     let mut ended = false;
     let watch = || {
@@ -55,8 +56,6 @@ pub fn pilot(
         }
         !ended
     };
-    let pool = pool(settings.threads).map_err(RenderError::Threads)?;
-    pool.install(|| ways.iter().for_each(|way| way.prepare(scene)));
     let seen = watched(settings.threads, |_| work(), watch).map_err(RenderError::Threads)?;
     if ended {
         return Err(RenderError::Interrupted);
@@ -114,14 +113,15 @@ fn parts(camera: &dyn Camera, clamp: Option<f64>) -> Vec<FilmTile> {
 
 fn expose(scene: &Scene, camera: &dyn Camera, way: &Path, settings: &Settings, stop: &Stop) -> Vec<FilmTile> {
     let mut tiles = parts(camera, settings.clamp);
-    let exposure = Exposure::new(scene, camera, way, settings);
-    exposure.expose(&mut tiles, Goal::Even { before: 0, samples: SAMPLES }, stop);
+    let session = way.begin(Job::new(scene, camera), &stop.cancel);
+    let exposure = Exposure::new(scene, camera, way, &*session, settings);
+    exposure.expose(&mut tiles, 0, Goal::Even { before: 0, samples: SAMPLES }, stop);
     tiles
 }
 
-/// For each part and pixel, [`crate::scene::Aim::rarity`] of the place that the middle of the pixel sees; 0 where that
+/// For each part and pixel, [`crate::integrators::LocalGuide::rarity`] of the place that the middle of the pixel sees; 0 where that
 /// is not matt or no photon has been about.
-fn rarity(scene: &Scene, camera: &dyn Camera) -> Vec<Vec<f64>> {
+fn rarity(scene: &Scene, camera: &dyn Camera, guide: &Guide) -> Vec<Vec<f64>> {
     let tell = |position: (u32, u32)| {
         let at = [f64::from(position.0) + 0.5, f64::from(position.1) + 0.5];
         let seen = camera.ray(at, [0.5; 2], 0.0);
@@ -137,7 +137,7 @@ fn rarity(scene: &Scene, camera: &dyn Camera) -> Vec<Vec<f64>> {
         if !is_matt(here.scattering()) {
             return None;
         }
-        scene.caustics()?.aim(place).map(|aim| aim.rarity())
+        guide.at(place).map(|local| local.rarity())
     };
     let part = |tile: &FilmTile| tile.pixels().map(|at| tell(at).unwrap_or(0.0)).collect();
     parts(camera, None).par_iter().map(part).collect()

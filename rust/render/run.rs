@@ -2,7 +2,7 @@
 
 use super::tiles::{Exposure, Stop};
 use super::{Progress, Rendering, Settings};
-use crate::integrators::Integrator;
+use crate::integrators::{Integrator, Job, Session};
 use crate::scene::{Camera, Scene};
 use crate::workers::{pool, watched};
 use std::fmt;
@@ -60,9 +60,9 @@ pub fn go_on(
 ) -> Result<bool, RenderError> {
     let (start, earlier) = (Instant::now(), rendering.seconds);
     let spent = || earlier + start.elapsed().as_secs_f64();
-    let exposure = Exposure::new(scene, camera, integrator, settings);
+    let session = begin(integrator, Job::new(scene, camera), settings.threads, progress)?;
+    let exposure = Exposure::new(scene, camera, integrator, &*session, settings);
     let pool = pool(settings.threads).map_err(RenderError::Threads)?;
-    pool.install(|| integrator.prepare(scene));
     loop {
         rendering.seconds = spent();
         let done = rendering.film.samples();
@@ -87,6 +87,22 @@ pub fn go_on(
     }
 }
 
+/// Begins to work on a picture, on as many threads.
+pub(super) fn begin<'a>(
+    integrator: &'a dyn Integrator,
+    job: Job<'a>,
+    threads: Option<usize>,
+    progress: &mut dyn Progress,
+) -> Result<Box<dyn Session + 'a>, RenderError> {
+    let mut goes_on = true;
+    let watch = || {
+        goes_on = progress.poll().is_continue();
+        goes_on
+    };
+    let session = watched(threads, |cancel| integrator.begin(job, cancel), watch).map_err(RenderError::Threads)?;
+    if goes_on { Ok(session) } else { Err(RenderError::Interrupted) }
+}
+
 /// Works on a pass, and says whether it is done: if not, it is to be left for now.
 fn pass(
     exposure: &Exposure,
@@ -95,6 +111,7 @@ fn pass(
     progress: &mut dyn Progress,
 ) -> Result<bool, RenderError> {
     let stop = Stop::default();
+    let done = rendering.film.samples();
     let (tiles, goal) = rendering.goal();
     let mut look = || {
         if progress.pauses() {
@@ -102,8 +119,8 @@ fn pass(
         }
         progress.poll().is_continue()
     };
-    let reached = if exposure.integrator.runs_on_caller() {
-        exposure.expose_here(tiles, goal, &stop, || {
+    let reached = if exposure.stays {
+        exposure.expose_here(tiles, done, goal, &stop, || {
             if !look() {
                 stop.cancel.raise();
             }
@@ -118,7 +135,7 @@ fn pass(
             !ended
         };
         // Whoever watches may still end a pass that has just been done.
-        watched(threads, |_| exposure.expose(tiles, goal, &stop), watch).map_err(RenderError::Threads)? && !ended
+        watched(threads, |_| exposure.expose(tiles, done, goal, &stop), watch).map_err(RenderError::Threads)? && !ended
     };
     // It is raised by whoever watches, or by an integrator that cannot go on.
     if stop.cancel.is_raised() { Err(RenderError::Interrupted) } else { Ok(reached) }
@@ -130,7 +147,6 @@ mod tests {
     use super::*;
     use crate::integrators::{CameraSample, Path, Worker};
     use crate::optics::Rgb;
-    use crate::scene::Footprint;
     use crate::scene::fixtures::{cornell, furnace};
     use crate::workers::Cancel;
     use std::ops::ControlFlow;
@@ -203,15 +219,23 @@ mod tests {
     /// Works where it is told, and remembers the largest batch that it was given.
     struct Here(std::thread::ThreadId, std::sync::atomic::AtomicUsize);
 
+    struct HereSession<'a>(&'a Here, Box<dyn Session + 'a>);
+
     struct HereWorker<'a>(&'a Here, Box<dyn Worker + 'a>);
 
     impl Integrator for Here {
-        fn worker<'a>(&'a self, scene: &'a Scene, footprint: Footprint) -> Box<dyn Worker + 'a> {
+        fn begin<'a>(&'a self, job: Job<'a>, cancel: &Cancel) -> Box<dyn Session + 'a> {
             static PATH: Path = Path { max_depth: None, roulette_depth: 4, reuse: 1, caustics: false };
-            Box::new(HereWorker(self, PATH.worker(scene, footprint)))
+            Box::new(HereSession(self, PATH.begin(job, cancel)))
         }
         fn runs_on_caller(&self) -> bool {
             true
+        }
+    }
+
+    impl Session for HereSession<'_> {
+        fn worker(&self) -> Box<dyn Worker + '_> {
+            Box::new(HereWorker(self.0, self.1.worker()))
         }
     }
 
@@ -222,6 +246,42 @@ mod tests {
                 cancel.raise();
             }
             self.1.radiance(samples, cancel, radiance);
+        }
+    }
+
+    /// Notes at which numbers of samples passes begin.
+    #[derive(Default)]
+    struct Noting(std::sync::Mutex<Vec<u32>>);
+
+    struct NotingSession<'a>(&'a Noting, Box<dyn Session + 'a>);
+
+    impl Integrator for Noting {
+        fn begin<'a>(&'a self, job: Job<'a>, cancel: &Cancel) -> Box<dyn Session + 'a> {
+            static PATH: Path = Path { max_depth: Some(1), roulette_depth: 4, reuse: 1, caustics: false };
+            Box::new(NotingSession(self, PATH.begin(job, cancel)))
+        }
+    }
+
+    impl Session for NotingSession<'_> {
+        fn worker(&self) -> Box<dyn Worker + '_> {
+            self.1.worker()
+        }
+
+        fn before_pass(&self, done: u32, _cancel: &Cancel) {
+            self.0.0.lock().unwrap().push(done);
+        }
+    }
+
+    #[test]
+    fn a_session_is_told_of_each_pass() {
+        let (scene, camera) = cornell(8, 8);
+        for adaptive in [false, true] {
+            let noting = Noting::default();
+            let settings = Settings { adaptive, ..settings(40, 2) };
+            let rendering = render(&scene, &camera, &noting, &settings, &mut Quiet).unwrap();
+            let began = noting.0.into_inner().unwrap();
+            let ended: Vec<u32> = rendering.history.iter().map(|row| row.samples).collect();
+            assert_eq!((began[0], &began[1..]), (0, &ended[..ended.len() - 1]));
         }
     }
 

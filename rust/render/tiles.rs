@@ -4,9 +4,9 @@ use super::camera_samples::{CameraSampler, Wanted};
 use super::epoch::Epoch;
 use super::patchwork::Patchwork;
 use super::{FilmTile, Settings};
-use crate::integrators::{CameraSample, Integrator, Worker};
+use crate::integrators::{CameraSample, Integrator, Session, Worker};
 use crate::optics::Rgb;
-use crate::scene::{Camera, Footprint, Scene};
+use crate::scene::{Camera, Scene};
 use crate::workers::Cancel;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -21,9 +21,9 @@ const LARGE_BATCH: usize = 65_536;
 
 /// A picture being taken: everything that stays the same from pass to pass.
 pub(super) struct Exposure<'a> {
-    pub scene: &'a Scene,
-    pub camera: &'a dyn Camera,
-    pub integrator: &'a dyn Integrator,
+    session: &'a dyn Session,
+    /// Whether all work is to be done on the calling thread.
+    pub stays: bool,
     samples: CameraSampler<'a>,
     /// Whose samples work together.
     patchwork: Patchwork,
@@ -125,20 +125,24 @@ struct Run {
 }
 
 impl<'a> Exposure<'a> {
+    /// One of a scene by a camera, in a session of an integrator.
     pub fn new(
-        scene: &'a Scene,
+        scene: &Scene,
         camera: &'a dyn Camera,
-        integrator: &'a dyn Integrator,
+        integrator: &dyn Integrator,
+        session: &'a dyn Session,
         settings: &'a Settings,
     ) -> Self {
         let samples = CameraSampler::new(scene, camera, settings);
         let patchwork = Patchwork { patch: integrator.patch(scene) };
-        Self { scene, camera, integrator, samples, patchwork, idle: Mutex::default() }
+        Self { session, stays: integrator.runs_on_caller(), samples, patchwork, idle: Mutex::default() }
     }
 
     /// Adds samples until the goal is reached, and says whether it was: it returns soon when it is asked to stop. Even
-    /// then each cell has the first of its samples and nothing else, and can be taken further.
-    pub fn expose(&self, tiles: &mut [FilmTile], goal: Goal, stop: &Stop) -> bool {
+    /// then each cell has the first of its samples and nothing else, and can be taken further. Before this, each pixel
+    /// has `done` samples, or all have on average.
+    pub fn expose(&self, tiles: &mut [FilmTile], done: u32, goal: Goal, stop: &Stop) -> bool {
+        self.session.before_pass(done, &stop.cancel);
         let reached = |(number, tile): (usize, &mut FilmTile)| {
             !stop.is_raised() && {
                 let mut bench = self.take_bench();
@@ -153,8 +157,16 @@ impl<'a> Exposure<'a> {
 
     /// As [`Exposure::expose`], with the integrator on this thread alone. After each batch, which is large for an
     /// integrator that wants to be here, `poll` is called, which may ask to stop.
-    pub fn expose_here(&self, tiles: &mut [FilmTile], goal: Goal, stop: &Stop, mut poll: impl FnMut()) -> bool {
-        let most = if self.integrator.runs_on_caller() { LARGE_BATCH } else { BATCH };
+    pub fn expose_here(
+        &self,
+        tiles: &mut [FilmTile],
+        done: u32,
+        goal: Goal,
+        stop: &Stop,
+        mut poll: impl FnMut(),
+    ) -> bool {
+        self.session.before_pass(done, &stop.cancel);
+        let most = if self.stays { LARGE_BATCH } else { BATCH };
         let mut bench = self.take_bench();
         let reached = self.expose_tiles(tiles, 0, goal, most, &mut bench, stop, &mut poll);
         self.put_bench(bench);
@@ -164,7 +176,7 @@ impl<'a> Exposure<'a> {
     fn take_bench(&self) -> Bench<'a> {
         let idle = self.idle.lock().unwrap_or_else(PoisonError::into_inner).pop();
         idle.unwrap_or_else(|| Bench {
-            worker: self.integrator.worker(self.scene, self.footprint()),
+            worker: self.session.worker(),
             wanted: Vec::new(),
             samples: Vec::new(),
             weights: Vec::new(),
@@ -231,12 +243,6 @@ impl<'a> Exposure<'a> {
             }
         }
         bench.develop(&self.samples, tiles, &stop.cancel)
-    }
-
-    /// How wide the bundle of rays is that a pixel sees.
-    fn footprint(&self) -> Footprint {
-        let spread = self.camera.spread();
-        Footprint { width: spread.width, spread: spread.angle }
     }
 }
 

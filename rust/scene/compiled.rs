@@ -1,12 +1,13 @@
 //! A scene ready for rays.
 
 use super::geometry::Watched;
-use super::{Caustics, DescriptionError, Emission, Geometry, Lights, Material, Plan, SceneDescription, SurfacePoint};
+use super::{DescriptionError, Emission, Geometry, Lights, Material, Plan, SceneDescription, SurfacePoint};
 use crate::accel::{Accelerator, Cost, Crossings, Nearest, Primitives, Side, Touches};
 use crate::math::{DVec3, Hit, Ray, RayQueue, Region};
 use crate::shapes::triangle::SolidCone;
 use crate::work::{Stopped, Work};
-use std::sync::{Arc, OnceLock};
+use std::any::Any;
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// A scene ready for rays.
 pub struct Scene {
@@ -14,8 +15,8 @@ pub struct Scene {
     materials: Vec<Arc<dyn Material>>,
     lights: Lights,
     plan: Plan,
-    /// `None` within if there are none; made when they are first asked for.
-    caustics: OnceLock<Option<Caustics>>,
+    /// What others have made of it, each of a type of its own.
+    kept: Mutex<Vec<Arc<dyn Any + Send + Sync>>>,
     accelerator: Box<dyn Accelerator>,
     region: Region,
     /// The accelerator's cost when it was built.
@@ -88,7 +89,7 @@ impl Scene {
         let (region, cost) = (geometry.region(), accelerator.info().sah_cost);
         let plan = Plan::new(&geometry, &materials, &lights);
         let built_cost = built_cost.unwrap_or(cost);
-        Self { geometry, materials, lights, plan, caustics: OnceLock::new(), accelerator, region, built_cost }
+        Self { geometry, materials, lights, plan, kept: Mutex::default(), accelerator, region, built_cost }
     }
 
     /// What the accelerator costs over what it did when it was built, by the surface-area heuristic; 1 until it is
@@ -198,15 +199,22 @@ impl Scene {
         &self.plan
     }
 
-    /// Where light comes from by way of mirrors and glass, kept from when it was first `found`; `None` where none does.
-    pub(super) fn kept_caustics(&self, found: impl FnOnce(&Self) -> Option<Caustics>) -> Option<&Caustics> {
-        if self.caustics.get().is_none() {
-            // Not within the lock: threads that wait for others take up work of theirs, which may come here too.
-            // Whoever makes them, they are the same.
-            let made = found(self);
-            let _ = self.caustics.set(made);
+    /// What is made of the scene, and kept with it for whoever asks next: one of each type. `None` if nothing was made.
+    pub fn kept<T: Any + Send + Sync>(&self, make: impl FnOnce() -> Option<T>) -> Option<Arc<T>> {
+        let lock = || self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+        let find =
+            |kept: &[Arc<dyn Any + Send + Sync>]| kept.iter().find_map(|one| Arc::clone(one).downcast::<T>().ok());
+        if let Some(found) = find(&lock()) {
+            return Some(found);
         }
-        self.caustics.get()?.as_ref()
+        // Not within the lock: threads that wait for others take up work of theirs, which may come here too. Of what
+        // several have made, all get the first.
+        let made = Arc::new(make()?);
+        let mut kept = lock();
+        Some(find(&kept).unwrap_or_else(|| {
+            kept.push(Arc::clone(&made) as Arc<dyn Any + Send + Sync>);
+            made
+        }))
     }
 
     /// What a shape is made of.

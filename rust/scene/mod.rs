@@ -1,7 +1,6 @@
 //! Floor 3: what a scene is made of, compiled for rays.
 
 pub mod cameras;
-mod caustics;
 mod compiled;
 mod description;
 mod emission;
@@ -13,7 +12,6 @@ mod interaction;
 pub mod lights;
 pub mod materials;
 pub mod media;
-mod photons;
 mod plan;
 mod ray_origin;
 mod scatters;
@@ -24,8 +22,6 @@ pub mod textures;
 mod view;
 
 pub use cameras::{Camera, CameraError, CameraRay, CameraRayLanes, Perspective};
-pub(crate) use caustics::is_matt;
-pub use caustics::{Aim, Caustics};
 pub use compiled::Scene;
 pub use description::{DescriptionError, SceneDescription, Shape};
 pub use emission::{Emission, Sides};

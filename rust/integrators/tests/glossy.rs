@@ -1,7 +1,7 @@
 //! Few lights over what is glossy, each of which is asked.
 
 use super::kinds::{DOWN, floor, of};
-use super::{radiance, samples_of};
+use super::{job, radiance, samples_of};
 use crate::accel::BruteForce;
 use crate::integrators::{CameraSample, Direct, Distributed, Integrator, Path, RayCast, Whitted};
 use crate::math::{DVec3, Frame, Hit};
@@ -9,7 +9,7 @@ use crate::optics::{Bsdf, Coated, Conductor, Rgb};
 use crate::sampling::Sampler;
 use crate::scene::fixtures::{rectangle, scene, shape};
 use crate::scene::{
-    ConstantEnvironment, Copies, DirectionalLight, EnvironmentMap, Footprint, Group, Interaction, Light, Mesh, Picture,
+    ConstantEnvironment, Copies, DirectionalLight, EnvironmentMap, Group, Interaction, Light, Mesh, Picture,
     PointLight, Scene, SceneDescription, ShadingVariant, Shape,
 };
 use crate::shapes::{Plane, Sphere};
@@ -171,7 +171,8 @@ fn kernels_give_the_same_bits() {
     let [open, general] = [ShadingVariant::Open, ShadingVariant::General].map(|kernel| {
         let mut values = vec![Rgb::ZERO; samples.len()];
         let path = Path::default();
-        let mut worker = path.worker_of(&scene, Footprint::default(), kernel);
+        let session = path.begin_as(job(&scene), kernel, &Cancel::default());
+        let mut worker = session.worker();
         worker.radiance(&mut samples.clone(), &Cancel::default(), &mut values);
         values
     });

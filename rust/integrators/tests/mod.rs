@@ -7,19 +7,25 @@ mod media;
 mod path;
 mod reuse;
 
-use super::{CameraSample, Integrator};
+use super::{CameraSample, Integrator, Job};
 use crate::math::Ray;
 use crate::optics::Rgb;
 use crate::sampling::Sampler;
 use crate::scene::{Footprint, Scene};
 use crate::workers::Cancel;
 
+/// That of rays without width.
+fn job(scene: &Scene) -> Job<'_> {
+    Job { scene, footprint: Footprint::default() }
+}
+
 /// The radiance of so many samples of a ray.
 fn samples_of(scene: &Scene, integrator: &dyn Integrator, ray: Ray, count: u32) -> Vec<Rgb> {
     let mut samples: Vec<_> =
         (0..count).map(|number| CameraSample { ray, sampler: Sampler::new(3, 0, number) }).collect();
     let mut values = vec![Rgb::ZERO; count as usize];
-    let mut worker = integrator.worker(scene, Footprint::default());
+    let session = integrator.begin(job(scene), &Cancel::default());
+    let mut worker = session.worker();
     for (samples, values) in samples.chunks_mut(4096).zip(values.chunks_mut(4096)) {
         worker.radiance(samples, &Cancel::default(), values);
     }

@@ -1,6 +1,6 @@
 //! Path tracing.
 
-use super::{assert_radiance, radiance, samples_of};
+use super::{assert_radiance, job, radiance, samples_of};
 use crate::accel::{Accelerator, BruteForce, Primitives};
 use crate::integrators::{CameraSample, Integrator, Path};
 use crate::math::{DVec3, Ray};
@@ -8,8 +8,7 @@ use crate::optics::Rgb;
 use crate::sampling::Sampler;
 use crate::scene::fixtures::{cornell, furnace, inward_box, rectangle, scene, shape};
 use crate::scene::{
-    Camera, ConstantEnvironment, Copies, Footprint, Group, Matrix, PointLight, Scene, SceneDescription, ShadingVariant,
-    Shape,
+    Camera, ConstantEnvironment, Copies, Group, Matrix, PointLight, Scene, SceneDescription, ShadingVariant, Shape,
 };
 use crate::simd::Level;
 use crate::workers::Cancel;
@@ -144,7 +143,8 @@ fn a_sample_does_not_depend_on_its_batch() {
     let samples: Vec<_> = (0..100).map(|n| CameraSample { ray: ANYWHERE, sampler: Sampler::new(8, n, n) }).collect();
     let run = |size: usize| {
         let path = Path::default();
-        let mut worker = path.worker(&scene, Footprint::default());
+        let session = path.begin(job(&scene), &Cancel::default());
+        let mut worker = session.worker();
         let mut all = Vec::new();
         for batch in samples.chunks(size) {
             let mut values = vec![Rgb::ZERO; batch.len()];
@@ -181,7 +181,8 @@ fn every_kernel_gives_the_same_bits() {
         let path = Path::default();
         let [plain, open, general] = ShadingVariant::ALL.map(|kernel| {
             let mut values = vec![Rgb::ZERO; samples.len()];
-            let mut worker = path.worker_of(&scene, Footprint::default(), kernel);
+            let session = path.begin_as(job(&scene), kernel, &Cancel::default());
+            let mut worker = session.worker();
             worker.radiance(&mut samples.clone(), &Cancel::default(), &mut values);
             values
         });

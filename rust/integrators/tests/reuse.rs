@@ -1,6 +1,6 @@
 //! Paths that share what they find.
 
-use super::samples_of;
+use super::{job, samples_of};
 use crate::integrators::{CameraSample, Integrator, Path};
 use crate::math::{DVec3, Ray};
 use crate::optics::{Diffuse, Rgb};
@@ -8,9 +8,7 @@ use crate::sampling::Sampler;
 use crate::scene::fixtures::{cornell, furnace, inward_box, rectangle, scene, shape};
 use crate::scene::materials::Scattering;
 use crate::scene::textures::Needs;
-use crate::scene::{
-    Camera, Footprint, Material, Mesh, PointLight, Scene, SceneDescription, ShadingPoint, ShadingVariant, Shape,
-};
+use crate::scene::{Camera, Material, Mesh, PointLight, Scene, SceneDescription, ShadingPoint, ShadingVariant, Shape};
 use crate::workers::Cancel;
 use std::sync::Arc;
 
@@ -34,7 +32,8 @@ fn groups(camera: &dyn Camera, side: u32, count: u32) -> Vec<CameraSample> {
 
 /// What arrives at samples that stand in groups of one size, which are worked on so many at a time.
 fn shared(scene: &Scene, path: &Path, samples: &[CameraSample], group: usize, together: usize) -> Vec<Rgb> {
-    let mut worker = path.worker(scene, Footprint::default());
+    let session = path.begin(job(scene), &Cancel::default());
+    let mut worker = session.worker();
     let mut all = Vec::new();
     for batch in samples.chunks(group * together) {
         let mut values = vec![Rgb::ZERO; batch.len()];
@@ -81,7 +80,9 @@ fn a_group_of_one_is_a_path_on_its_own() {
     let samples = groups(&camera, 8, 20);
     let alone = shared(&scene, &path(4), &samples, 1, 100);
     let mut plain = vec![Rgb::ZERO; samples.len()];
-    path(1).worker(&scene, Footprint::default()).radiance(&mut samples.clone(), &Cancel::default(), &mut plain);
+    let single = path(1);
+    let session = single.begin(job(&scene), &Cancel::default());
+    session.worker().radiance(&mut samples.clone(), &Cancel::default(), &mut plain);
     assert!(alone.iter().zip(&plain).all(|(a, b)| (*a - *b).abs().max_element() <= 1e-12 * b.max_element()));
     assert!(plain.iter().filter(|v| v.max_element() > 0.0).count() > 1000);
 }
@@ -127,7 +128,8 @@ fn both_kernels_give_the_same_bits() {
     let run = |kernel| {
         let mut values = vec![Rgb::ZERO; samples.len()];
         let path = Path { reuse: 4, ..Path::default() };
-        let mut worker = path.worker_of(&scene, Footprint::default(), kernel);
+        let session = path.begin_as(job(&scene), kernel, &Cancel::default());
+        let mut worker = session.worker();
         worker.radiance_in_groups(&mut samples.clone(), &[16; 100], &Cancel::default(), &mut values);
         values
     };

@@ -1,14 +1,14 @@
 //! Sixteen encounters at a time.
 
-use super::aiming::Arrival;
 use super::dimensions::Dimensions;
+use super::guided::Arrival;
 use super::path_state::PathState;
-use crate::integrators::CameraSample;
+use crate::integrators::{CameraSample, LocalGuide};
 use crate::math::{Hit, LANES, Ray, RayLanes, VectorLanes};
 use crate::optics::Diffuse;
 use crate::sampling::SamplerLanes;
 use crate::scene::materials::Scattering;
-use crate::scene::{Aim, Interaction, InteractionLanes, LightContextLanes, SurfaceLanes};
+use crate::scene::{Interaction, InteractionLanes, LightContextLanes, SurfaceLanes};
 
 /// Paths that have come to surfaces, at most sixteen, a lane each. The last stands in the lanes that are left.
 pub(super) struct Block<'a> {
@@ -34,7 +34,7 @@ pub(super) struct Block<'a> {
     /// roulette has been played.
     pub scattering: Vec<Scattering>,
     pub width: [f64; LANES],
-    pub aims: [Option<Aim<'a>>; LANES],
+    pub guides: [Option<LocalGuide<'a>>; LANES],
     pub arrivals: [Arrival; LANES],
 }
 
@@ -59,7 +59,7 @@ impl Block<'_> {
             reflectance: VectorLanes::ZERO,
             scattering: Vec::new(),
             width: [0.0; LANES],
-            aims: [None; LANES],
+            guides: [None; LANES],
             arrivals: [Arrival::GoesOn; LANES],
         }
     }

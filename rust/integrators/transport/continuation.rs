@@ -1,11 +1,11 @@
 //! Where paths go on to.
 
 use super::Follow;
-use super::aiming::{Arrival, draw};
 use super::block::Block;
 use super::delta_lobes::singles;
 use super::dimensions::Dimensions;
 use super::features::{Carried, Features};
+use super::guided::{Arrival, draw};
 use super::path_state::PathState;
 use super::weights::{ROULETTE_AT_LATEST, survival};
 use super::worker::TransportWorker;
@@ -87,9 +87,9 @@ impl<N: Features> TransportWorker<'_, N> {
                     continue;
                 }
                 let (here, u) = (block.other(lane), [u[0][lane], u[1][lane]]);
-                let drawn = match &block.aims[lane] {
+                let drawn = match &block.guides[lane] {
                     None => here.sample(|| choice[lane], u).map(|next| (next, 1.0)),
-                    Some(aim) => draw(&here, aim, choice[lane], u),
+                    Some(guide) => draw(&here, guide, choice[lane], u),
                 };
                 let Some((next, denser)) = drawn else { continue };
                 if self.is_followed(next.pdf) {

@@ -1,8 +1,8 @@
 //! Light that is asked for where paths have come to.
 
-use super::aiming::density;
 use super::block::Block;
 use super::features::Features;
+use super::guided::density;
 use super::resampling::Resampled;
 use super::weights::power_heuristic;
 use super::worker::TransportWorker;
@@ -196,8 +196,8 @@ impl<N: Features> TransportWorker<'_, N> {
     #[inline]
     fn arriving(&self, block: &Block, lane: usize, light: &LightSample, asked: u32) -> Rgb {
         let (scattered, mut pdf) = block.other(lane).evaluate(light.direction);
-        if let Some(aim) = &block.aims[lane] {
-            pdf = density(aim, pdf, light.direction);
+        if let Some(guide) = &block.guides[lane] {
+            pdf = density(guide, pdf, light.direction);
         }
         let splits = if self.is_first(block, lane) { self.settings.splits } else { 1 };
         let mut weight = if self.is_followed(pdf) {

@@ -1,6 +1,5 @@
 //! What path tracing and its ancestors share: a batch of paths on their way, one bounce at a time.
 
-mod aiming;
 mod arrivals;
 mod arrive;
 mod block;
@@ -10,6 +9,7 @@ mod dimensions;
 mod direct_light;
 mod emission;
 mod features;
+mod guided;
 mod nesting;
 mod path_state;
 mod resampling;
@@ -19,10 +19,12 @@ mod shadows;
 mod weights;
 mod worker;
 
-use super::Worker;
+use super::{Guide, Job, Session, Worker};
 use crate::optics::Rgb;
-use crate::scene::{Footprint, Scene, ShadingVariant};
-use features::{General, Open, Plain, Sharing};
+use crate::scene::{Scene, ShadingVariant};
+use crate::workers::Cancel;
+use features::{Features, General, Open, Plain, Sharing};
+use std::sync::Arc;
 use worker::TransportWorker;
 
 /// Along which of the directions that surfaces scatter into paths are followed. What is not followed is left to the
@@ -60,8 +62,8 @@ pub(super) struct Settings {
     pub least: f64,
     /// Whether paths of a group share what they find, in scenes where they can ([`can_share`]).
     pub shares: bool,
-    /// Whether paths aim at where light comes from by way of mirrors and glass.
-    pub aims: bool,
+    /// Whether paths are guided to where light comes from by way of mirrors and glass.
+    pub guided: bool,
 }
 
 impl Settings {
@@ -77,7 +79,7 @@ impl Settings {
             ambient: Rgb::ZERO,
             least: 0.0,
             shares: false,
-            aims: false,
+            guided: false,
         }
     }
 
@@ -91,28 +93,42 @@ impl Settings {
             && self.least == 0.0
     }
 
-    /// What one thread works with: the variant that has what the scene and these settings need.
-    pub fn worker<'a>(self, scene: &'a Scene, footprint: Footprint) -> Box<dyn Worker + 'a> {
-        self.worker_of(scene, footprint, scene.plan().variant())
+    /// Begins with the variant that has what the scene and these settings need.
+    pub fn begin<'a>(self, job: Job<'a>, cancel: &Cancel) -> Box<dyn Session + 'a> {
+        self.begin_as(job, job.scene.plan().variant(), cancel)
     }
 
-    /// As [`Settings::worker`], by this variant or one that can do more.
-    pub fn worker_of<'a>(
-        self,
-        scene: &'a Scene,
-        footprint: Footprint,
-        variant: ShadingVariant,
-    ) -> Box<dyn Worker + 'a> {
-        match variant {
-            ShadingVariant::Plain if self.shares => {
-                Box::new(TransportWorker::<Sharing<Plain>>::new(self, scene, footprint))
-            }
-            _ if self.shares => Box::new(TransportWorker::<Sharing<Open>>::new(self, scene, footprint)),
-            ShadingVariant::Plain if self.are_plain() => {
-                Box::new(TransportWorker::<Plain>::new(self, scene, footprint))
-            }
-            ShadingVariant::Open if self.are_plain() => Box::new(TransportWorker::<Open>::new(self, scene, footprint)),
-            _ => Box::new(TransportWorker::<General>::new(self, scene, footprint)),
+    /// As [`Settings::begin`], with this variant or one that can do more.
+    pub fn begin_as<'a>(self, job: Job<'a>, variant: ShadingVariant, cancel: &Cancel) -> Box<dyn Session + 'a> {
+        let guide = if self.guided { Guide::of(job.scene, cancel) } else { None };
+        Box::new(Transport { settings: self, job, variant, guide })
+    }
+}
+
+/// What workers on a picture share.
+struct Transport<'a> {
+    settings: Settings,
+    job: Job<'a>,
+    variant: ShadingVariant,
+    /// Where light comes from by way of what is sharp, if paths are guided and there is any.
+    guide: Option<Arc<Guide>>,
+}
+
+impl Transport<'_> {
+    fn at_work<N: Features>(&self) -> Box<dyn Worker + '_> {
+        Box::new(TransportWorker::<N>::new(self.settings, &self.job, self.guide.as_deref()))
+    }
+}
+
+impl Session for Transport<'_> {
+    fn worker(&self) -> Box<dyn Worker + '_> {
+        let (shares, are_plain) = (self.settings.shares, self.settings.are_plain());
+        match self.variant {
+            ShadingVariant::Plain if shares => self.at_work::<Sharing<Plain>>(),
+            _ if shares => self.at_work::<Sharing<Open>>(),
+            ShadingVariant::Plain if are_plain => self.at_work::<Plain>(),
+            ShadingVariant::Open if are_plain => self.at_work::<Open>(),
+            _ => self.at_work::<General>(),
         }
     }
 }

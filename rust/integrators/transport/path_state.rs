@@ -23,7 +23,7 @@ pub(super) struct PathState {
     /// Whether it has come to a surface that gives more than there is, in a channel.
     pub(super) gilded: bool,
     /// How much denser directions were drawn than surfaces scatter into them, since the last matt one
-    /// ([`super::aiming`]).
+    /// ([`super::guided`]).
     pub(super) aimed: f32,
 }
 

@@ -1,9 +1,9 @@
 //! What happens where paths have come to.
 
-use super::aiming::Arrival;
 use super::block::Block;
 use super::dimensions::Dimensions;
 use super::features::{Carried, Features};
+use super::guided::Arrival;
 use super::nesting::MediumStack;
 use super::worker::TransportWorker;
 use crate::integrators::CameraSample;
@@ -146,10 +146,10 @@ impl<'a, N: Features> TransportWorker<'a, N> {
                 path = self.reuse.visit(path, &here);
             }
             path.meet(here.scattering().again());
-            if self.caustics.is_some() {
+            if self.guide.is_some() {
                 let sampler = &mut samples[Self::own(path.sample, samples.len())].sampler;
                 let number = || sampler.one(block.dimensions[lane].roulette());
-                (block.aims[lane], block.arrivals[lane]) = self.aim(&mut path, &here, number);
+                (block.guides[lane], block.arrivals[lane]) = self.guided(&mut path, &here, number);
             }
             block.goes_on[lane] = block.arrivals[lane] != Arrival::Ends;
             if N::GENERAL && block.goes_on[lane] && self.settings.ambient != Rgb::ZERO {

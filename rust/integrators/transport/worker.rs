@@ -2,25 +2,25 @@
 
 use super::Follow;
 use super::Settings;
-use super::aiming::{Arrival, arrive};
 use super::arrivals::Arrivals;
 use super::block::Block;
 use super::dimensions::Dimensions;
 use super::features::{Carried, Features};
+use super::guided::{Arrival, arrive};
 use super::nesting::MediumStack;
 use super::path_state::{PathState, Queue};
 use super::reuse::Reuse;
 use super::shadows::Shadows;
-use crate::integrators::{CameraSample, Worker};
+use crate::integrators::{CameraSample, Guide, Job, LocalGuide, Worker, is_matt};
 use crate::math::{Hit, LANES};
 use crate::optics::Rgb;
 use crate::sampling::SamplerLanes;
-use crate::scene::{Aim, Caustics, Footprint, Interaction, Scatters, Scene, is_matt};
+use crate::scene::{Footprint, Interaction, Scatters, Scene};
 use crate::simd::Level;
 use crate::workers::Cancel;
 use std::marker::PhantomData;
 
-/// What one thread works with, see [`Settings::worker`].
+/// What one thread works with, see [`Settings::begin`].
 pub(super) struct TransportWorker<'a, N> {
     pub(super) settings: Settings,
     pub(super) scene: &'a Scene,
@@ -32,8 +32,8 @@ pub(super) struct TransportWorker<'a, N> {
     pub(super) widths: bool,
     /// Whether paths need no more of a diffuse surface than its colour.
     pub(super) in_columns: bool,
-    /// Where paths aim, if they do.
-    pub(super) caustics: Option<&'a Caustics>,
+    /// What guides paths, if anything does.
+    pub(super) guide: Option<&'a Guide>,
     pub(super) now: Queue,
     pub(super) next: Queue,
     pub(super) hits: Vec<Hit>,
@@ -48,7 +48,8 @@ pub(super) struct TransportWorker<'a, N> {
 }
 
 impl<'a, N: Features> TransportWorker<'a, N> {
-    pub fn new(settings: Settings, scene: &'a Scene, footprint: Footprint) -> Self {
+    pub fn new(settings: Settings, job: &Job<'a>, guide: Option<&'a Guide>) -> Self {
+        let &Job { scene, footprint } = job;
         let needs = scene.plan().needs();
         let widths = N::GENERAL && needs.points.width;
         Self {
@@ -59,8 +60,8 @@ impl<'a, N: Features> TransportWorker<'a, N> {
             masks: N::GENERAL && needs.masks,
             nested: N::GENERAL && needs.nested,
             widths,
-            in_columns: settings.are_plain() && !settings.aims && !widths,
-            caustics: if settings.aims { scene.caustics() } else { None },
+            in_columns: settings.are_plain() && !settings.guided && !widths,
+            guide,
             now: Queue::default(),
             next: Queue::default(),
             hits: Vec::new(),
@@ -125,21 +126,21 @@ impl<'a, N: Features> TransportWorker<'a, N> {
 
     /// Where light comes from by way of what is sharp, at a point that a path has come to; and whether the path goes on
     /// there.
-    pub(super) fn aim<S: Scatters>(
+    pub(super) fn guided<S: Scatters>(
         &self,
         path: &mut PathState,
         here: &Interaction<S>,
         number: impl FnOnce() -> f64,
-    ) -> (Option<Aim<'a>>, Arrival) {
-        let Some(caustics) = self.caustics else { return (None, Arrival::GoesOn) };
+    ) -> (Option<LocalGuide<'a>>, Arrival) {
+        let Some(guide) = self.guide else { return (None, Arrival::GoesOn) };
         if !is_matt(here.scattering()) {
             return (None, Arrival::GoesOn);
         }
         // The density with which a path comes to the second point that it shares must be known.
-        let aims = !N::SHARES || path.bounce > 0;
-        let aim = if aims { caustics.aim(here.position()) } else { None };
-        let arrival = arrive(path, aim.as_ref(), number);
-        (aim, arrival)
+        let may_aim = !N::SHARES || path.bounce > 0;
+        let local = if may_aim { guide.at(here.position()) } else { None };
+        let arrival = arrive(path, local.as_ref(), number);
+        (local, arrival)
     }
 }
 

@@ -416,7 +416,7 @@ impl Geometry {
 
     /// Which copy of what a primitive is, if it is one.
     #[inline]
-    pub(in crate::scene) fn copy(&self, primitive: u32) -> Option<(&Copies, u32)> {
+    pub(crate) fn copy(&self, primitive: u32) -> Option<(&Copies, u32)> {
         self.others.as_ref()?.copy(primitive)
     }
 

@@ -1,10 +1,11 @@
-//! Paths that aim at where light comes from by way of mirrors and glass.
+//! Paths that are guided to where light comes from by way of mirrors and glass.
 
 use super::path_state::PathState;
 use super::weights::survival;
+use crate::integrators::LocalGuide;
 use crate::math::DVec3;
 use crate::optics::Rgb;
-use crate::scene::{Aim, Interaction, Scattered, Scatters};
+use crate::scene::{Interaction, Scattered, Scatters};
 
 /// Plays roulette for a path that was aimed and comes to a matt surface, and tells whether that ended the path, was
 /// survived, or is still to be played because the path was not aimed.
@@ -13,12 +14,12 @@ use crate::scene::{Aim, Interaction, Scattered, Scatters};
 /// chance to go on goes by what it brings, counted for more where more light comes to this place than to others. Other
 /// paths are left to the roulette that all paths play.
 #[inline]
-pub(super) fn arrive(path: &mut PathState, aim: Option<&Aim>, number: impl FnOnce() -> f64) -> Arrival {
+pub(super) fn arrive(path: &mut PathState, guide: Option<&LocalGuide>, number: impl FnOnce() -> f64) -> Arrival {
     let denser = std::mem::replace(&mut path.aimed, 1.0);
     if denser <= 1.0 {
         return Arrival::GoesOn;
     }
-    let gain = aim.map_or(1.0, Aim::gain);
+    let gain = guide.map_or(1.0, LocalGuide::gain);
     path.aimed = denser.min((gain * gain) as f32);
     let survival = survival(path.throughput, path.importance());
     if number() >= survival {
@@ -41,26 +42,26 @@ pub(super) enum Arrival {
 
 /// The density of a direction that a surface draws with `pdf`, where paths aim as well.
 #[inline]
-pub(super) fn density(aim: &Aim, pdf: f64, direction: DVec3) -> f64 {
-    pdf + aim.share() * (aim.pdf(direction) - pdf)
+pub(super) fn density(guide: &LocalGuide, pdf: f64, direction: DVec3) -> f64 {
+    pdf + guide.share() * (guide.pdf(direction) - pdf)
 }
 
 /// A direction drawn by a surface or by where light comes from, weighed by the density of both together (Veach and
 /// Guibas, 1995: the one-sample model), and how much denser that is than the surface's.
 pub(super) fn draw<S: Scatters>(
     here: &Interaction<S>,
-    aim: &Aim,
+    guide: &LocalGuide,
     choice: f64,
     u: [f64; 2],
 ) -> Option<(Scattered, f64)> {
-    let share = aim.share();
+    let share = guide.share();
     if choice < share {
-        let direction = aim.sample(choice / share, u);
+        let direction = guide.sample(choice / share, u);
         let (value, pdf) = here.evaluate(direction);
         if value == Rgb::ZERO || pdf <= 0.0 {
             return None;
         }
-        let both = density(aim, pdf, direction);
+        let both = density(guide, pdf, direction);
         let next = Scattered { direction, weight: value / both, pdf: both, eta: 1.0, is_through: false };
         return Some((next, both / pdf));
     }
@@ -70,7 +71,7 @@ pub(super) fn draw<S: Scatters>(
         let denser = 1.0 - share;
         return Some((Scattered { weight: next.weight / denser, ..next }, denser));
     }
-    let both = density(aim, next.pdf, next.direction);
+    let both = density(guide, next.pdf, next.direction);
     let denser = both / next.pdf;
     Some((Scattered { weight: next.weight / denser, pdf: both, ..next }, denser))
 }

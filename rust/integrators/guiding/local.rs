@@ -5,12 +5,12 @@ use crate::math::DVec3;
 
 /// Directions from a place towards where light comes from: those to one of several balls.
 #[derive(Clone, Copy, Debug)]
-pub struct Aim<'a> {
+pub struct LocalGuide<'a> {
     cell: Cell<'a>,
     place: DVec3,
 }
 
-impl<'a> Aim<'a> {
+impl<'a> LocalGuide<'a> {
     /// Those from a place in a cell.
     #[inline]
     pub(super) fn new(cell: Cell<'a>, place: DVec3) -> Self {
@@ -50,7 +50,7 @@ impl<'a> Aim<'a> {
         chosen.sample(self.place, u)
     }
 
-    /// The density in solid angle with which [`Aim::sample`] draws a unit direction.
+    /// The density in solid angle with which [`LocalGuide::sample`] draws a unit direction.
     #[inline]
     pub fn pdf(&self, direction: DVec3) -> f64 {
         let mut sum = 0.0;

@@ -1,15 +1,16 @@
 //! Cones, images and cells, against what they are in closed form.
 
-use super::Caustics;
+use super::Guide;
 use super::cells::Cells;
+use super::flight::photons;
 use super::lobe::Lobe;
 use super::photon::Photon;
 use crate::math::DVec3;
 use crate::sampling::{Sampler, warp};
 use crate::scene::fixtures::{cornell, rectangle, scene, shape};
 use crate::scene::materials::MirrorMaterial;
-use crate::scene::photons::photons;
 use crate::scene::{PointLight, Scene, SceneDescription, Shape};
+use crate::workers::Cancel;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
@@ -89,21 +90,21 @@ fn cells_are_found_and_their_densities_integrate_to_one() {
             Photon { chain: u64::from(number % 5), ..photon(DVec3::new(u * u, v, 0.0), DVec3::Z + far) }
         })
         .collect();
-    let caustics = Caustics { cells: Cells::new(photons.clone(), 1.0) };
-    assert!(photons.iter().all(|photon| caustics.aim(photon.position).is_some()));
-    assert!(caustics.aim(DVec3::new(0.5, 0.5, 3.0)).is_none());
+    let guide = Guide { cells: Cells::new(photons.clone(), 1.0) };
+    assert!(photons.iter().all(|photon| guide.at(photon.position).is_some()));
+    assert!(guide.at(DVec3::new(0.5, 0.5, 3.0)).is_none());
     for place in [DVec3::new(0.1, 0.2, 0.0), DVec3::new(0.9, 0.6, 0.0)] {
-        let aim = caustics.aim(place).unwrap();
-        assert!((0.1..=0.6).contains(&aim.share()) && aim.gain() >= 1.0);
+        let local = guide.at(place).unwrap();
+        assert!((0.1..=0.6).contains(&local.share()) && local.gain() >= 1.0);
         let count = 200_000;
         let evenly = |number| warp::uniform_sphere(Sampler::new(6, 0, number).two(0));
-        let sum: f64 = (0..count).map(|number| aim.pdf(evenly(number))).sum();
+        let sum: f64 = (0..count).map(|number| local.pdf(evenly(number))).sum();
         // Cones are wide here: the densities spread by less than three times their mean.
         let integral = sum * 2.0 * TAU / f64::from(count);
         assert!((integral - 1.0).abs() < 4.0 * 3.0 / f64::from(count).sqrt(), "{integral}");
         for number in 0..1000 {
             let mut sampler = Sampler::new(7, 0, number);
-            assert!(aim.pdf(aim.sample(sampler.one(0), sampler.two(1))) > 0.0);
+            assert!(local.pdf(local.sample(sampler.one(0), sampler.two(1))) > 0.0);
         }
     }
 }
@@ -123,14 +124,18 @@ fn room(is_mirror: bool, lamp: f64, lights: Vec<Arc<dyn crate::scene::Light>>) -
     scene(SceneDescription { shapes, lights })
 }
 
+fn guides(scene: &Scene) -> bool {
+    Guide::of(scene, &Cancel::default()).is_some()
+}
+
 #[test]
 fn there_are_none_where_none_can_be_found() {
-    assert!(cornell(4, 4).0.caustics().is_none());
-    assert!(room(false, 5.0, Vec::new()).caustics().is_none());
-    assert!(room(true, 0.0, Vec::new()).caustics().is_none());
+    assert!(!guides(&cornell(4, 4).0));
+    assert!(!guides(&room(false, 5.0, Vec::new())));
+    assert!(!guides(&room(true, 0.0, Vec::new())));
     let point = || Arc::new(PointLight { position: DVec3::new(0.4, 1.0, 0.0), intensity: crate::optics::Rgb::ONE });
-    assert!(room(true, 0.0, vec![point()]).caustics().is_none());
-    assert!(room(true, 5.0, vec![point()]).caustics().is_some());
+    assert!(!guides(&room(true, 0.0, vec![point()])));
+    assert!(guides(&room(true, 5.0, vec![point()])));
 }
 
 #[test]
@@ -139,9 +144,41 @@ fn threads_change_no_photon() {
     let all = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         let told = |p: &Photon| (p.position.to_array(), p.target.to_array(), p.flux, p.chain);
-        pool.install(|| photons(&scene).iter().map(told).collect::<Vec<_>>())
+        pool.install(|| photons(&scene, &Cancel::default()).unwrap().iter().map(told).collect::<Vec<_>>())
     };
     let one = all(1);
     assert!(one.len() > 1000);
     assert_eq!(all(3), one);
+}
+
+#[test]
+fn what_is_cancelled_is_not_kept() {
+    let scene = room(true, 5.0, Vec::new());
+    let cancel = Cancel::default();
+    cancel.raise();
+    assert!(Guide::of(&scene, &cancel).is_none());
+    let found = Guide::of(&scene, &Cancel::default()).unwrap();
+    // From then on it is there, for whoever asks.
+    assert!(Arc::ptr_eq(&Guide::of(&scene, &cancel).unwrap(), &found));
+}
+
+#[test]
+fn light_is_the_rarer_the_smaller_what_it_comes_from() {
+    // From a ball above the middle of a square, on which as much light comes straight.
+    let from_ball = |radius: f64| {
+        let photons: Vec<Photon> = (0..64)
+            .map(|number| {
+                let mut sampler = Sampler::new(9, 0, number);
+                let [u, v] = sampler.two(0);
+                let ball = DVec3::new(0.5, 0.5, 2.0) + radius * warp::uniform_sphere(sampler.two(1));
+                Photon { flux: 1.0 / 64.0, ..photon(DVec3::new(u, v, 0.0), ball) }
+            })
+            .collect();
+        Guide { cells: Cells::new(photons, 1.0) }.at(DVec3::new(0.5, 0.5, 0.0)).unwrap().rarity()
+    };
+    for radius in [0.5, 0.05, 0.005] {
+        // Half of the light, squared, over the share of directions that the ball fills.
+        let told = from_ball(radius) / (0.25 * 4.0 / (radius * radius));
+        assert!((0.3..3.0).contains(&told), "{radius}: {told}");
+    }
 }

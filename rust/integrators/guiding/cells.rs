@@ -41,7 +41,7 @@ pub(super) struct Cell<'a> {
     pub share: f64,
     /// How much brighter than usual it is there.
     pub gain: f64,
-    /// How rarely that light is found: see [`Aim::rarity`](super::Aim::rarity).
+    /// How rarely that light is found: see [`LocalGuide::rarity`](super::LocalGuide::rarity).
     pub rarity: f64,
 }
 

@@ -1,10 +1,12 @@
 //! Photons that come to matt surfaces by way of sharp ones.
 
-use super::caustics::{Caustics, Photon, is_matt};
-use super::{Geometry, Interaction, LightSample, LightSampleContext, RayOrigin, Scattered, Scene};
+use super::is_matt;
+use super::photon::Photon;
 use crate::math::{DVec3, Hit, Ray};
 use crate::optics::Bsdf;
 use crate::sampling::{AliasTable, Sampler, warp};
+use crate::scene::{Geometry, Interaction, LightSample, LightSampleContext, RayOrigin, Scattered, Scene};
+use crate::workers::Cancel;
 use rayon::prelude::*;
 
 /// How many are sent.
@@ -22,31 +24,20 @@ const MATT: u32 = 2;
 /// What is drawn with a density above this, in solid angle, was scattered sharply: a matt surface has at most 1/π.
 const SHARP: f64 = 4.0;
 
-impl Scene {
-    /// Where light comes from by way of mirrors and glass; `None` where none does. Photons are sent when it is first
-    /// asked for.
-    pub fn caustics(&self) -> Option<&Caustics> {
-        self.kept_caustics(|scene| {
-            let photons = photons(scene);
-            let usual = usual(scene, &photons);
-            Caustics::new(photons, usual)
-        })
-    }
-}
-
-/// Photons that came to matt surfaces by way of sharp ones, in an order that depends on the scene only.
-pub(super) fn photons(scene: &Scene) -> Vec<Photon> {
+/// Photons that came to matt surfaces by way of sharp ones, in an order that depends on the scene only; `None` if
+/// cancelled.
+pub(super) fn photons(scene: &Scene, cancel: &Cancel) -> Option<Vec<Photon>> {
     if scene.lights().is_dark() {
-        return Vec::new();
+        return Some(Vec::new());
     }
-    let Some(targets) = Targets::new(scene) else { return Vec::new() };
-    let part = |part| Flight::new(scene, &targets, part).follow(scene);
-    let parts: Vec<Vec<Photon>> = (0..SENT / TOGETHER).into_par_iter().map(part).collect();
-    parts.concat()
+    let Some(targets) = Targets::new(scene) else { return Some(Vec::new()) };
+    let part = |part| (!cancel.is_raised()).then(|| Flight::new(scene, &targets, part).follow(scene));
+    let parts: Option<Vec<Vec<Photon>>> = (0..SENT / TOGETHER).into_par_iter().map(part).collect();
+    parts.map(|parts| parts.concat())
 }
 
 /// The light that comes straight from lights to where photons have fallen, over area, on average.
-fn usual(scene: &Scene, photons: &[Photon]) -> f64 {
+pub(super) fn usual(scene: &Scene, photons: &[Photon]) -> f64 {
     /// How many are asked.
     const ASKED: usize = 4096;
     let (mut rays, mut arriving, mut asked) = (Vec::new(), Vec::new(), 0.0);
