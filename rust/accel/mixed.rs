@@ -2,7 +2,7 @@
 
 use super::walk::{Build, Mailbox};
 use super::walked::walked;
-use super::{Accelerator, Cost, Crossings, Info, Nearest, Objects, Primitives, Side, Touches};
+use super::{Accelerator, Cost, Crossings, Info, Nearest, Primitives, Side, Touches, UserGeometry};
 use crate::math::{DVec3, Hit, Ray};
 use crate::shapes::Bounds;
 use crate::shapes::triangle::SolidCone;
@@ -48,7 +48,7 @@ impl Primitives for OnlyTriangles<'_> {
 }
 
 /// Primitives without triangles.
-struct OnlyObjects<'a>(&'a dyn Primitives, Arc<dyn Objects>, Work<'a>);
+struct OnlyObjects<'a>(&'a dyn Primitives, Arc<dyn UserGeometry>, Work<'a>);
 
 impl<'a> OnlyObjects<'a> {
     fn of(primitives: &'a dyn Primitives) -> Result<Self, String> {
@@ -70,7 +70,7 @@ impl Primitives for OnlyObjects<'_> {
     fn work(&self) -> Work<'_> {
         self.2
     }
-    fn objects(&self) -> Option<Arc<dyn Objects>> {
+    fn objects(&self) -> Option<Arc<dyn UserGeometry>> {
         Some(self.1.clone())
     }
     fn bounds(&self, primitive: u32) -> Option<Bounds> {

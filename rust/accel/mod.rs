@@ -8,23 +8,23 @@ pub mod grid;
 pub mod kdtree;
 mod mixed;
 mod nearest;
-mod objects;
 pub mod octree;
 mod parity;
 mod query;
 mod slab;
 mod touches;
 pub mod trees;
+mod user_geometry;
 pub mod walk;
 mod walked;
 
 pub use brute::BruteForce;
 pub use crossings::Crossings;
 pub use nearest::Nearest;
-pub use objects::Objects;
 pub use parity::Side;
 pub use slab::SlabRay;
 pub use touches::{Touch, Touches};
+pub use user_geometry::UserGeometry;
 pub use walked::walked;
 
 pub use query::Wanted;
@@ -53,7 +53,7 @@ pub trait Primitives: Sync {
     fn is_single(&self) -> bool;
 
     /// What is no triangle; none if there is no such thing.
-    fn objects(&self) -> Option<Arc<dyn Objects>> {
+    fn objects(&self) -> Option<Arc<dyn UserGeometry>> {
         None
     }
 

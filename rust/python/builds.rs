@@ -9,7 +9,7 @@ use crate::scene::{self, DescriptionError, Surface};
 use crate::work::{Watch, Work};
 use crate::workers;
 
-/// What is built for one scene: it, and before it groups that it needs and nobody has yet.
+/// What is built for one scene: it, and before it prototypes that it needs and nobody has yet.
 pub struct Builds {
     /// Called with the share of all that is done.
     progress: Option<Py<PyAny>>,
@@ -25,11 +25,11 @@ struct State {
     told: Instant,
 }
 
-/// How much there is to build over shapes, groups in them aside.
+/// How much there is to build over shapes, prototypes in them aside.
 pub fn size(shapes: &[scene::Shape]) -> usize {
     let of = |shape: &scene::Shape| match &shape.surface {
         Surface::Mesh(mesh) => mesh.faces.len(),
-        Surface::Copies(copies) => copies.count(),
+        Surface::Instances(instances) => instances.count(),
         Surface::Shape(_) => 1,
     };
     shapes.iter().map(of).sum()

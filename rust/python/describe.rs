@@ -9,7 +9,7 @@ use super::arrays::{Rows, Triples, pairs, rows};
 use super::builds::Builds;
 use super::instances::{self, Wishes};
 use super::lights;
-use super::materials::Looks;
+use super::materials::Appearances;
 use super::shapes;
 use crate::scene::textures::Needs;
 use crate::scene::{self, Precision, Rounding, SceneDescription, Surface};
@@ -51,41 +51,41 @@ impl Scene<'_> {
             }
         };
         let wishes = Wishes { precision, quality: &self.quality, builds };
-        let (looks, mut kept) = (Looks::default(), Vec::new());
-        let shapes = read(&self.shapes, wishes, &looks, &mut kept)?;
+        let (appearances, mut kept) = (Appearances::default(), Vec::new());
+        let shapes = read(&self.shapes, wishes, &appearances, &mut kept)?;
         let mut all = self.lights.iter().map(lights::read).collect::<PyResult<Vec<_>>>()?;
         all.extend(lights::read_environment(self.environment)?);
         Ok((SceneDescription { shapes, lights: all }, kept))
     }
 
-    /// How much there is to build, groups included.
+    /// How much there is to build, prototypes included.
     pub fn size(&self) -> PyResult<usize> {
         instances::size(&self.shapes, &mut HashSet::new())
     }
 }
 
-/// How any shape looks.
+/// How any shape appearances.
 #[derive(FromPyObject)]
-struct Look<'py> {
+struct Appearance<'py> {
     material: Bound<'py, PyAny>,
     emission: Option<Bound<'py, PyAny>>,
 }
 
-/// Reads the shapes of a scene, or of a group in it. Vertices are rounded as they are read, and read again where that
-/// is a loss: all of them, so that meshes which share some still do.
+/// Reads the shapes of a scene, or of a prototype in it. Vertices are rounded as they are read, and read again where
+/// that is a loss: all of them, so that meshes which share some still do.
 fn read(
     all: &[Bound<'_, PyAny>],
     wishes: Wishes<'_>,
-    looks: &Looks,
+    appearances: &Appearances,
     kept: &mut Vec<Py<PyAny>>,
 ) -> PyResult<Vec<scene::Shape>> {
     let (mut shapes, mut rounded) = (Vec::with_capacity(all.len()), Vec::new());
     for one in all {
         if instances::is_instance(one)? {
-            shapes.push(instances::read(one, wishes, kept, &|within, kept| read(within, wishes, looks, kept))?);
+            shapes.push(instances::read(one, wishes, kept, &|within, kept| read(within, wishes, appearances, kept))?);
             continue;
         }
-        let (shape, given) = describe(one, wishes.precision, looks)?;
+        let (shape, given) = describe(one, wishes.precision, appearances)?;
         one.py().check_signals()?;
         rounded.extend(given.map(|given| (shapes.len(), given)));
         shapes.push(shape);
@@ -105,20 +105,21 @@ fn read(
 fn describe<'py>(
     shape: &Bound<'py, PyAny>,
     precision: Precision,
-    looks: &Looks,
+    appearances: &Appearances,
 ) -> PyResult<(scene::Shape, Option<Triples<'py>>)> {
-    let look: Look<'_> = shape.extract()?;
-    let material = looks.material(&look.material)?;
-    let emission =
-        look.emission.map_or_else(|| Ok(scene::Emission::default()), |e| lights::read_emission(&e, &looks.textures))?;
-    let look = scene::Shape { material, emission, ..scene::Shape::default() };
+    let appearance: Appearance<'_> = shape.extract()?;
+    let material = appearances.material(&appearance.material)?;
+    let emission = appearance
+        .emission
+        .map_or_else(|| Ok(scene::Emission::default()), |e| lights::read_emission(&e, &appearances.textures))?;
+    let appearance = scene::Shape { material, emission, ..scene::Shape::default() };
     if shape.get_type().name()? != "Mesh" {
-        return Ok((scene::Shape { surface: shapes::read(shape)?.into(), ..look }, None));
+        return Ok((scene::Shape { surface: shapes::read(shape)?.into(), ..appearance }, None));
     }
     let given = shape.extract::<Mesh<'py>>()?;
-    let mesh = given.describe(precision, look.needs())?;
+    let mesh = given.describe(precision, appearance.needs())?;
     let is_rounded = mesh.rounding.moved > 0.0;
-    Ok((scene::Shape { surface: mesh.into(), ..look }, is_rounded.then_some(given.vertices)))
+    Ok((scene::Shape { surface: mesh.into(), ..appearance }, is_rounded.then_some(given.vertices)))
 }
 
 impl Mesh<'_> {

@@ -47,7 +47,7 @@ impl Chunk {
     }
 }
 
-/// Splits (N+1,), and t (K,), shape_id (K,), primitive (K,) and uv (K,2) of all hits, and in a scene with copies
+/// Splits (N+1,), and t (K,), shape_id (K,), primitive (K,) and uv (K,2) of all hits, and in a scene with instances
 /// instance (K,).
 pub type AllHits<'py> = (
     Bound<'py, PyArrayDyn<i64>>,
@@ -71,8 +71,8 @@ pub fn intersect_all<'py>(
     let (splits, t) = (unwritten(py, &[rays.count + 1], None)?, unwritten(py, &[total], None)?);
     let (shape, primitive) = (unwritten(py, &[total], None)?, unwritten(py, &[total], None)?);
     let uv = unwritten(py, &[total], Some(2))?;
-    let has_copies = scene.geometry().has_copies();
-    let instance = has_copies.then(|| unwritten(py, &[total], None)).transpose()?;
+    let has_instances = scene.geometry().has_instances();
+    let instance = has_instances.then(|| unwritten(py, &[total], None)).transpose()?;
     {
         let mut instance = instance.as_ref().map(|instance| instance.readwrite());
         let mut instance = instance.as_mut().map(|to| to.as_slice_mut()).transpose()?;
@@ -90,14 +90,14 @@ pub fn intersect_all<'py>(
             let at = from;
             from += hits as i64;
             let hit = (first(&mut t, hits), first(&mut shape, hits), first(&mut primitive, hits), first(&mut uv, hits));
-            let copies = instance.as_mut().map(|instance| first(instance, hits));
-            (chunk, at, first(&mut splits, rays), hit, copies)
+            let instances = instance.as_mut().map(|instance| first(instance, hits));
+            (chunk, at, first(&mut splits, rays), hit, instances)
         });
         each(
             py,
             threads,
             places.collect(),
-            |(chunk, mut at, splits, (t, shape, primitive, uv), mut copies): Place<'_>| {
+            |(chunk, mut at, splits, (t, shape, primitive, uv), mut instances): Place<'_>| {
                 for (split, length) in splits.iter_mut().zip(chunk.lengths) {
                     at += i64::from(length);
                     *split = at;
@@ -105,8 +105,8 @@ pub fn intersect_all<'py>(
                 for (i, hit) in chunk.hits.into_iter().enumerate() {
                     let (s, p) = scene.geometry().locate(hit.primitive);
                     (t[i], uv[i], shape[i], primitive[i]) = (hit.t, hit.uv, s as i32, p as i32);
-                    if let Some(copies) = &mut copies {
-                        (copies[i], primitive[i]) = located(scene, &hit, p as i32);
+                    if let Some(instances) = &mut instances {
+                        (instances[i], primitive[i]) = located(scene, &hit, p as i32);
                     }
                 }
             },

@@ -1,4 +1,4 @@
-//! Instances as the package describes them: groups compiled once for whoever shares their shapes.
+//! Instances as the package describes them: prototypes compiled once for whoever shares their shapes.
 
 use numpy::{PyReadonlyArrayDyn, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
@@ -11,7 +11,7 @@ use super::accelerators;
 use super::arrays::vectors;
 use super::builds::{self, Builds};
 use crate::math::Hit;
-use crate::scene::{self, Copies, Group, Matrix, Precision, Surface};
+use crate::scene::{self, Instances, Matrix, Precision, Prototype, Surface};
 use crate::workers;
 
 /// `raywright.Instance`.
@@ -23,7 +23,7 @@ struct Instance<'py> {
     accelerator: Bound<'py, PyAny>,
 }
 
-/// How a scene wants its groups.
+/// How a scene wants its prototypes.
 #[derive(Clone, Copy)]
 pub struct Wishes<'a> {
     /// How precisely vertices are kept.
@@ -34,7 +34,7 @@ pub struct Wishes<'a> {
     pub builds: &'a Builds,
 }
 
-/// What makes two groups the same: the objects that their shapes are, their accelerator's description, and what the
+/// What makes two prototypes the same: the objects that their shapes are, their accelerator's description, and what the
 /// scene wishes.
 #[derive(Clone, PartialEq, Eq, Hash)]
 struct Key {
@@ -44,9 +44,9 @@ struct Key {
     quality: String,
 }
 
-/// Groups that some scene holds. An object is known by its address, which no other object can get while the group
-/// lives: whoever holds a group holds its shapes ([`CompiledScene::kept`]).
-static GROUPS: LazyLock<Mutex<HashMap<Key, Weak<Group>>>> = LazyLock::new(Mutex::default);
+/// Groups that some scene holds. An object is known by its address, which no other object can get while the prototype
+/// lives: whoever holds a prototype holds its shapes ([`CompiledScene::kept`]).
+static GROUPS: LazyLock<Mutex<HashMap<Key, Weak<Prototype>>>> = LazyLock::new(Mutex::default);
 
 /// The rows of (4, 4) or (N, 4, 4) matrices but for the last of each.
 fn matrices(name: &str, array: &PyReadonlyArrayDyn<'_, f64>) -> PyResult<Vec<Matrix>> {
@@ -62,10 +62,11 @@ pub fn is_instance(shape: &Bound<'_, PyAny>) -> PyResult<bool> {
     Ok(shape.get_type().name()?.to_str()? == "Instance")
 }
 
-/// What reads the shapes of a group; what has to live as long as groups among them is added to the last argument.
+/// What reads the shapes of a prototype; what has to live as long as prototypes among them is added to the last
+/// argument.
 type ReadShapes<'a> = &'a dyn Fn(&[Bound<'_, PyAny>], &mut Vec<Py<PyAny>>) -> PyResult<Vec<scene::Shape>>;
 
-/// Reads an instance. `read_shapes` reads what is in it; what has to live as long as the group is added to `kept`.
+/// Reads an instance. `read_shapes` reads what is in it; what has to live as long as the prototype is added to `kept`.
 pub fn read(
     instance: &Bound<'_, PyAny>,
     wishes: Wishes<'_>,
@@ -74,31 +75,31 @@ pub fn read(
 ) -> PyResult<scene::Shape> {
     let py = instance.py();
     let Instance { shapes, transform, transform_end, accelerator } = instance.extract()?;
-    let group = group(&shapes, &accelerator, wishes, kept, read_shapes)?;
+    let prototype = prototype(&shapes, &accelerator, wishes, kept, read_shapes)?;
     let start = matrices("transform", &transform)?;
     let end = transform_end.as_ref().map(|end| matrices("transform_end", end)).transpose()?;
-    let copies = in_pool(py, || match end {
-        None => Copies::new(group, &start),
-        Some(end) => Copies::moving(group, start.into_iter().zip(end).map(|(a, b)| [a, b]).collect()),
+    let instances = in_pool(py, || match end {
+        None => Instances::new(prototype, &start),
+        Some(end) => Instances::moving(prototype, start.into_iter().zip(end).map(|(a, b)| [a, b]).collect()),
     })?;
-    let copies = copies.map_err(|e| PyValueError::new_err(e.to_string()))?;
-    if copies.count() >= 1 << 31 {
+    let instances = instances.map_err(|e| PyValueError::new_err(e.to_string()))?;
+    if instances.count() >= 1 << 31 {
         return Err(PyValueError::new_err(format!(
             "an instance has {} copies, expected fewer than 2^31",
-            copies.count()
+            instances.count()
         )));
     }
-    Ok(scene::Shape { surface: Surface::Copies(copies), ..scene::Shape::default() })
+    Ok(scene::Shape { surface: Surface::Instances(instances), ..scene::Shape::default() })
 }
 
-/// The group of an instance, which may be there already.
-fn group(
+/// The prototype of an instance, which may be there already.
+fn prototype(
     shapes: &Bound<'_, PyTuple>,
     accelerator: &Bound<'_, PyAny>,
     wishes: Wishes<'_>,
     kept: &mut Vec<Py<PyAny>>,
     read_shapes: ReadShapes<'_>,
-) -> PyResult<Arc<Group>> {
+) -> PyResult<Arc<Prototype>> {
     let py = shapes.py();
     let key = Key {
         shapes: shapes.iter().map(|s| s.as_ptr() as usize).collect(),
@@ -109,20 +110,20 @@ fn group(
     // Before it is looked for: from here on no other objects can stand at these addresses.
     kept.push(shapes.clone().into_any().unbind());
     let known = || GROUPS.lock().expect("nobody panics here");
-    if let Some(group) = known().get(&key).and_then(Weak::upgrade) {
-        return Ok(group);
+    if let Some(prototype) = known().get(&key).and_then(Weak::upgrade) {
+        return Ok(prototype);
     }
     let inner = read_shapes(&shapes.iter().collect::<Vec<_>>(), kept)?;
     let build = accelerators::read(accelerator, wishes.quality)?;
     let size = builds::size(&inner);
-    let group = Arc::new(wishes.builds.build(py, size, |work| Group::watched(inner, build, work))?);
+    let prototype = Arc::new(wishes.builds.build(py, size, |work| Prototype::watched(inner, build, work))?);
     let mut known = known();
-    known.retain(|_, group| group.strong_count() > 0);
-    known.insert(key, Arc::downgrade(&group));
-    Ok(group)
+    known.retain(|_, prototype| prototype.strong_count() > 0);
+    known.insert(key, Arc::downgrade(&prototype));
+    Ok(prototype)
 }
 
-/// How much there is to build over shapes: faces, copies and others, and what is in groups once.
+/// How much there is to build over shapes: faces, instances and others, and what is in prototypes once.
 pub fn size(shapes: &[Bound<'_, PyAny>], seen: &mut HashSet<usize>) -> PyResult<usize> {
     let mut size = 0;
     for shape in shapes {
@@ -151,8 +152,8 @@ pub fn singular_transform(py: Python<'_>, transform: PyReadonlyArrayDyn<'_, f64>
     Ok(checked.err().map(|bad| (bad.index, bad.why.to_string())))
 }
 
-/// Writes down which copies were hit, and what in them: `primitive` is that in the group, `instance` −1 where there is
-/// none.
+/// Writes down which instances were hit, and what in them: `primitive` is that in the prototype, `instance` −1 where
+/// there is none.
 pub fn write(scene: &scene::Scene, hits: &[Hit], places: &[usize], instance: &mut [i32], primitive: &mut [i32]) {
     for (hit, &i) in hits.iter().zip(places) {
         (instance[i], primitive[i]) = located(scene, hit, primitive[i]);
@@ -161,7 +162,7 @@ pub fn write(scene: &scene::Scene, hits: &[Hit], places: &[usize], instance: &mu
 
 /// The copy that was hit and what in it; −1 and `number` where it is none.
 pub fn located(scene: &scene::Scene, hit: &Hit, number: i32) -> (i32, i32) {
-    if !hit.is_hit() || scene.geometry().copies_of(scene.geometry().locate(hit.primitive).0).is_none() {
+    if !hit.is_hit() || scene.geometry().instances_of(scene.geometry().locate(hit.primitive).0).is_none() {
         return (-1, number);
     }
     (number, hit.inner as i32)

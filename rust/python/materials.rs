@@ -16,13 +16,13 @@ use crate::scene::textures::Value;
 
 /// Reads materials and textures: one that many shapes share is read once.
 #[derive(Default)]
-pub struct Looks {
+pub struct Appearances {
     materials: Cache<Arc<dyn Material>>,
     /// What materials and lights vary by.
     pub textures: Textures,
 }
 
-impl Looks {
+impl Appearances {
     /// The material of a description.
     ///
     /// # Errors

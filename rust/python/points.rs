@@ -40,11 +40,11 @@ pub fn points<'py>(
     let (shape, primitive) = (numbers("shape_id", &shape_id)?, numbers("primitive", &primitive)?);
     let (uv, t): (&[[f64; 2]], _) = (rows("uv", &uv)?, numbers("t", &t)?);
     let time = time.slice("time")?;
-    let copies = instance.as_ref().map(|i| numbers("instance", i)).transpose()?;
+    let instances = instance.as_ref().map(|i| numbers("instance", i)).transpose()?;
     let (origins, directions) = (origins.rows("origins")?, directions.rows("directions")?);
     let order = ray.as_ref().map(|r| numbers("ray", r)).transpose()?;
     let count = primitive.len();
-    let others = [copies.map_or(count, <[i32]>::len), order.map_or(count, <[i64]>::len)];
+    let others = [instances.map_or(count, <[i32]>::len), order.map_or(count, <[i64]>::len)];
     if [shape.len(), uv.len(), t.len()].iter().chain(&others).any(|&n| n != count) {
         return Err(PyValueError::new_err(format!("hits are told {count} times by some, not by all")));
     }
@@ -81,8 +81,8 @@ pub fn points<'py>(
                     ..Ray::new(origins.get(of(origins.len())), directions.get(of(directions.len())))
                 };
                 let first = geometry.primitives_of(shape).start;
-                let (primitive, inner) = match copies.map(|copies| u32::try_from(copies[i])) {
-                    Some(Ok(copy)) => (first + copy, number),
+                let (primitive, inner) = match instances.map(|instances| u32::try_from(instances[i])) {
+                    Some(Ok(instance)) => (first + instance, number),
                     _ => (first + number, 0),
                 };
                 let here = geometry.point(&ray, &Hit { t: t[i], uv: uv[i], primitive, inner });

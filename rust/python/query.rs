@@ -23,12 +23,12 @@ use crate::workers;
 #[pyclass(frozen, module = "raywright._core")]
 pub struct CompiledScene(
     pub scene::Scene,
-    /// What groups in it are known by: see `instances`.
+    /// What prototypes in it are known by: see `instances`.
     #[expect(dead_code, reason = "it is only held")]
     Vec<Py<PyAny>>,
 );
 
-/// t, shape_id, primitive and uv, and in a scene with copies instance.
+/// t, shape_id, primitive and uv, and in a scene with instances instance.
 type Hits<'py> = (
     Bound<'py, PyArrayDyn<f64>>,
     Bound<'py, PyArrayDyn<i32>>,
@@ -109,7 +109,7 @@ impl CompiledScene {
                 (unwritten(py, lead, None)?, numbers.0, numbers.1, unwritten(py, lead, Some(2))?, None)
             }
         };
-        let instance = match scene.geometry().has_copies() {
+        let instance = match scene.geometry().has_instances() {
             true => Some(instance.map_or_else(|| unwritten(py, lead, None), Ok)?),
             false => None,
         };
@@ -120,8 +120,8 @@ impl CompiledScene {
         let mut to_instance = instance.as_ref().map(|to| writable("out.instance", to, lead, None)).transpose()?;
         let by_columns = scene.accelerator().by_columns();
         let (ts, shapes, primitives) = (to_t.as_slice_mut()?, to_shape.as_slice_mut()?, to_primitive.as_slice_mut()?);
-        let copies = to_instance.as_mut().map(|to| to.as_slice_mut()).transpose()?;
-        let parts = ((ts, shapes, primitives, to_uv.as_slice_mut()?.as_chunks_mut().0), copies);
+        let instances = to_instance.as_mut().map(|to| to.as_slice_mut()).transpose()?;
+        let parts = ((ts, shapes, primitives, to_uv.as_slice_mut()?.as_chunks_mut().0), instances);
         let chunk = if by_columns.is_some() { rays.window() } else { rays.chunk() };
         answer(py, rays.count, chunk, threads, parts, |start, ((t, shape, primitive, uv), mut instance)| {
             let count = t.len();

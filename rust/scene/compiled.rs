@@ -227,7 +227,7 @@ impl Scene {
     #[inline]
     pub fn material_at(&self, surface: &SurfacePoint) -> &dyn Material {
         match surface.inner {
-            Some(inner) => self.look(surface.shape, inner).0,
+            Some(inner) => self.appearance(surface.shape, inner).0,
             None => self.material(surface.shape),
         }
     }
@@ -236,22 +236,27 @@ impl Scene {
     #[inline]
     pub fn material_of(&self, hit: &Hit) -> &dyn Material {
         let shape = self.geometry.locate(hit.primitive).0;
-        if self.geometry.copies_of(shape).is_some() { self.look(shape, hit.inner).0 } else { self.material(shape) }
+        if self.geometry.instances_of(shape).is_some() {
+            self.appearance(shape, hit.inner).0
+        } else {
+            self.material(shape)
+        }
     }
 
     /// How a point of a surface shines.
     #[inline]
     pub fn emission_at(&self, surface: &SurfacePoint) -> &Emission {
         match surface.inner {
-            Some(inner) => self.look(surface.shape, inner).1,
+            Some(inner) => self.appearance(surface.shape, inner).1,
             None => self.lights.emission(surface.shape),
         }
     }
 
-    /// Of a shape that is copies of a group, what the primitive of a flattened number is made of, and how it shines.
-    fn look(&self, shape: u32, inner: u32) -> (&dyn Material, &Emission) {
-        match self.geometry.copies_of(shape) {
-            Some(copies) => copies.group().look(inner),
+    /// Of a shape that is instances of a prototype, what the primitive of a flattened number is made of, and how it
+    /// shines.
+    fn appearance(&self, shape: u32, inner: u32) -> (&dyn Material, &Emission) {
+        match self.geometry.instances_of(shape) {
+            Some(instances) => instances.prototype().appearance(inner),
             None => (self.material(shape), self.lights.emission(shape)),
         }
     }

@@ -2,7 +2,7 @@
 
 use super::geometry::Watched;
 use super::textures::Needs;
-use super::{DiffuseMaterial, Emission, Geometry, Group, Light, Material, Surface};
+use super::{DiffuseMaterial, Emission, Geometry, Light, Material, Prototype, Surface};
 use crate::accel::{Accelerator, Primitives};
 use crate::work::{Stopped, Work};
 use std::fmt;
@@ -54,7 +54,7 @@ pub enum DescriptionError {
     Emission(usize),
     /// What is wrong with this light that is no surface.
     Light(usize, String),
-    /// A group has so many primitives, all copies in it counted.
+    /// A prototype has so many primitives, all copies in it counted.
     TooMany(u64),
     /// None: nobody wanted it any more before it was built.
     Stopped,
@@ -120,7 +120,7 @@ pub(super) struct Parts {
     pub lights: Vec<Arc<dyn Light>>,
 }
 
-impl Group {
+impl Prototype {
     /// Compiles shapes, with an accelerator made for their geometry.
     ///
     /// # Errors
@@ -143,9 +143,9 @@ impl Group {
     ) -> Result<Self, DescriptionError> {
         let parts = SceneDescription { shapes, ..SceneDescription::default() }.joined()?;
         let accelerator = |geometry: &Geometry| accelerator(&Watched { geometry, work });
-        let group = Self::of(parts.geometry, parts.materials, parts.emission, accelerator);
+        let prototype = Self::of(parts.geometry, parts.materials, parts.emission, accelerator);
         work.goes_on().map_err(|Stopped| DescriptionError::Stopped)?;
-        group.map_err(DescriptionError::TooMany)
+        prototype.map_err(DescriptionError::TooMany)
     }
 }
 

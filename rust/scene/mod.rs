@@ -27,7 +27,7 @@ pub use description::{DescriptionError, SceneDescription, Shape};
 pub use emission::{Emission, Sides};
 pub use first_hits::FirstHits;
 pub use geometry::{
-    BadTransform, Copies, Geometry, Group, Matrix, Mesh, Precision, Rounding, Surface, Surfaces, Vertices,
+    BadTransform, Geometry, Instances, Matrix, Mesh, Objects, Precision, Prototype, Rounding, Surface, Vertices,
     check_transforms, rounded,
 };
 pub(crate) use interaction::fading;

@@ -27,8 +27,8 @@ pub struct SceneNeeds {
     pub smooth: bool,
     /// Shapes that are no meshes.
     pub shapes: bool,
-    /// Copies of groups.
-    pub copies: bool,
+    /// Instances of prototypes.
+    pub instances: bool,
     /// What moves while the shutter is open.
     pub motion: bool,
     /// Vertices with more digits than f32 has.
@@ -51,7 +51,7 @@ impl BitOr for SceneNeeds {
             patterned_lights: self.patterned_lights | other.patterned_lights,
             smooth: self.smooth | other.smooth,
             shapes: self.shapes | other.shapes,
-            copies: self.copies | other.copies,
+            instances: self.instances | other.instances,
             motion: self.motion | other.motion,
             double: self.double | other.double,
             light: self.light | other.light,
@@ -88,7 +88,7 @@ impl ShadingVariant {
 #[derive(Clone, Debug)]
 pub struct Plan {
     needs: SceneNeeds,
-    /// What rounding to f32 did to vertices, or would have done: of the mesh, in groups too, to which that is most.
+    /// What rounding to f32 did to vertices, or would have done: of the mesh, in prototypes too, to which that is most.
     rounding: Rounding,
     /// How many lights are asked one by one where light is scattered sharply; 0 where one of all is asked.
     few: u32,
@@ -110,8 +110,8 @@ impl Plan {
     pub(super) fn new(geometry: &Geometry, materials: &[Arc<dyn Material>], lights: &Lights) -> Self {
         let mut needs = SceneNeeds {
             smooth: geometry.is_smooth(),
-            shapes: geometry.first_other().is_some_and(|first| geometry.copies_of(first).is_none()),
-            copies: geometry.has_copies(),
+            shapes: geometry.first_other().is_some_and(|first| geometry.instances_of(first).is_none()),
+            instances: geometry.has_instances(),
             motion: geometry.moves(),
             double: !geometry.is_single(),
             light: !lights.is_dark(),
@@ -121,9 +121,9 @@ impl Plan {
         let mut constants = Vec::with_capacity(materials.len());
         for (shape, material) in materials.iter().enumerate() {
             let shape = shape as u32;
-            match geometry.copies_of(shape) {
-                Some(copies) => {
-                    needs = needs | Self::of_copies(copies.group(), &mut rounding);
+            match geometry.instances_of(shape) {
+                Some(instances) => {
+                    needs = needs | Self::of_copies(instances.prototype(), &mut rounding);
                     constants.push(None);
                 }
                 None => {
@@ -154,16 +154,16 @@ impl Plan {
         }
     }
 
-    /// Of a group: with an interior in it, its copies may overlap.
-    fn of_copies(group: &super::Group, rounding: &mut Rounding) -> SceneNeeds {
-        let geometry = group.geometry();
+    /// Of a prototype: with an interior in it, its instances may overlap.
+    fn of_copies(prototype: &super::Prototype, rounding: &mut Rounding) -> SceneNeeds {
+        let geometry = prototype.geometry();
         *rounding = rounding.worst(geometry.rounding());
         let (smooth, double) = (geometry.is_smooth(), !geometry.is_single());
         let mut needs = SceneNeeds { smooth, double, ..SceneNeeds::default() };
-        for (shape, (material, emission)) in group.looks().enumerate() {
+        for (shape, (material, emission)) in prototype.appearances().enumerate() {
             needs = needs
-                | match geometry.copies_of(shape as u32) {
-                    Some(copies) => Self::of_copies(copies.group(), rounding),
+                | match geometry.instances_of(shape as u32) {
+                    Some(instances) => Self::of_copies(instances.prototype(), rounding),
                     None => Self::of(material, emission),
                 };
         }
@@ -224,7 +224,7 @@ impl Plan {
         let needs = &self.needs;
         match variant {
             ShadingVariant::Plain => {
-                !(needs.scattering || needs.copies || needs.points.any() || needs.masks || needs.interiors)
+                !(needs.scattering || needs.instances || needs.points.any() || needs.masks || needs.interiors)
             }
             ShadingVariant::Open => !(needs.masks || needs.nested || needs.points.width),
             ShadingVariant::General => true,
@@ -263,7 +263,7 @@ impl Plan {
             ),
             row("shading normals", needs.smooth, "interpolated, and faded at the terminator", "none kept or computed"),
             row("shapes", needs.shapes, "a tree of their own beside the triangles'", "no tree beside the triangles'"),
-            row("instances", needs.copies, "rays are taken to each copy's space", "rays stay in the world"),
+            row("instances", needs.instances, "rays are taken to each copy's space", "rays stay in the world"),
             row("motion", needs.motion, "rays are spread over the shutter's time", "all rays at one time"),
             ("float64 vertices", needs.double, self.digits()),
         ]

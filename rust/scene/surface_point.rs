@@ -16,7 +16,7 @@ pub struct SurfacePoint {
     pub shading_normal: DVec3,
     /// Which shape.
     pub shape: u32,
-    /// Of a copy of a group, which primitive in it, flattened ([`Group`](super::Group)).
+    /// Of an instance of a prototype, which primitive in it, flattened ([`Prototype`](super::Prototype)).
     pub inner: Option<u32>,
 }
 

@@ -5,7 +5,7 @@ use super::triangles::{Random, Triangles, levels};
 use raywright::accel::bvh::Options;
 use raywright::accel::bvh::optimise::Optimisers;
 use raywright::accel::bvh::traverse::{Orders, Rays, Traversal};
-use raywright::accel::{Accelerator, BruteForce, Cost, Crossings, Objects, Primitives, Side, Wanted, trees};
+use raywright::accel::{Accelerator, BruteForce, Cost, Crossings, Primitives, Side, UserGeometry, Wanted, trees};
 use raywright::math::{DVec3, Hit, Ray, Vec3};
 use raywright::shapes::{Bounds, Candidate, Contact};
 use raywright::simd::Level;
@@ -158,7 +158,7 @@ impl Primitives for Balls {
     fn is_single(&self) -> bool {
         true
     }
-    fn objects(&self) -> Option<Arc<dyn Objects>> {
+    fn objects(&self) -> Option<Arc<dyn UserGeometry>> {
         Some(Arc::new(self.ball()))
     }
 }
@@ -168,7 +168,7 @@ struct Found {
     first: u32,
 }
 
-impl Objects for Found {
+impl UserGeometry for Found {
     fn bounds(&self, primitive: u32) -> Option<Bounds> {
         match self.balls.get(primitive.checked_sub(self.first)? as usize) {
             Some(&(centre, radius)) => Some(Bounds { min: centre - 1.01 * radius, max: centre + 1.01 * radius }),

@@ -3,7 +3,7 @@
 use super::mailbox::Marks;
 use super::{Input, Lists};
 use crate::accel::query::Query;
-use crate::accel::{Objects, Primitives};
+use crate::accel::{Primitives, UserGeometry};
 use crate::math::{DVec3, Ray, Region};
 use crate::shapes::triangle::{BlockRay, EdgeRay, Leaves};
 use crate::simd::Simd;
@@ -21,7 +21,7 @@ pub struct Contents<const N: usize, L> {
     triangles: L,
     /// Where the triangles of each leaf begin, and where the last end. Empty where there are none.
     ends: Vec<u32>,
-    objects: Option<Arc<dyn Objects>>,
+    objects: Option<Arc<dyn UserGeometry>>,
     /// The numbers of objects, leaf by leaf; and where those of each leaf begin. Empty where there are none.
     numbers: Vec<u32>,
     number_ends: Vec<u32>,

@@ -135,8 +135,8 @@ impl Cells {
         let of_all = if usual > 0.0 { brighter / (1.0 + brighter) } else { 1.0 };
         near.sort_by_key(|photon| photon.chain);
         let mut each = Vec::new();
-        for group in near.chunk_by_mut(|a, b| a.chain == b.chain) {
-            Lobe::divide(group, size, 3, &mut each);
+        for prototype in near.chunk_by_mut(|a, b| a.chain == b.chain) {
+            Lobe::divide(prototype, size, 3, &mut each);
         }
         // What comes from a lobe is found with the share of directions that it fills.
         let found = |(lobe, of_lobe): &(Lobe, f64)| (of_lobe / light).powi(2) / lobe.fills().max(SMALLEST);

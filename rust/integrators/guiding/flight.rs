@@ -78,7 +78,7 @@ impl Targets {
         // What is not the same at every point may be sharp at some.
         let may_be_sharp = |bsdf: Bsdf| !is_matt(&bsdf) || bsdf.roughness() == 0.0;
         let is_target = |shape: u32| {
-            geometry.copies_of(shape).is_some() || scene.material(shape).constant().is_none_or(may_be_sharp)
+            geometry.instances_of(shape).is_some() || scene.material(shape).constant().is_none_or(may_be_sharp)
         };
         let (mut primitives, mut areas) = (Vec::new(), Vec::new());
         for shape in (0..geometry.shapes() as u32).filter(|&shape| is_target(shape)) {
@@ -94,12 +94,12 @@ impl Targets {
         Some(Self { primitives, choice, area: areas.iter().sum() })
     }
 
-    /// A point on one of them, and the normal there; of a copy, any point within the box around it, and no normal.
+    /// A point on one of them, and the normal there; of an instance, any point within the box around it, and no normal.
     fn point(&self, geometry: &Geometry, sampler: &mut Sampler) -> Option<(DVec3, Option<DVec3>)> {
         let primitive = self.primitives[self.choice.sample(sampler.one(0))];
         let u = sampler.two(1);
-        if let Some((copies, copy)) = geometry.copy(primitive) {
-            let bounds = copies.bounds(copy)?;
+        if let Some((instances, instance)) = geometry.instance(primitive) {
+            let bounds = instances.bounds(instance)?;
             let place = DVec3::new(u[0], u[1], sampler.one(5));
             return Some((bounds.min + (bounds.max - bounds.min) * place, None));
         }
@@ -113,10 +113,10 @@ impl Targets {
     }
 }
 
-/// The area of a primitive; of a copy, half of that of the box around it.
+/// The area of a primitive; of an instance, half of that of the box around it.
 fn area(geometry: &Geometry, primitive: u32) -> f64 {
-    let Some((copies, copy)) = geometry.copy(primitive) else { return geometry.area(primitive) };
-    copies.bounds(copy).map_or(0.0, |bounds| {
+    let Some((instances, instance)) = geometry.instance(primitive) else { return geometry.area(primitive) };
+    instances.bounds(instance).map_or(0.0, |bounds| {
         let size = bounds.max - bounds.min;
         size.x * size.y + size.y * size.z + size.z * size.x
     })

@@ -9,8 +9,8 @@ use crate::optics::{Bsdf, Coated, Conductor, Rgb};
 use crate::sampling::Sampler;
 use crate::scene::fixtures::{rectangle, scene, shape};
 use crate::scene::{
-    ConstantEnvironment, Copies, DirectionalLight, EnvironmentMap, Group, Interaction, Light, Mesh, Picture,
-    PointLight, Scene, SceneDescription, ShadingVariant, Shape,
+    ConstantEnvironment, DirectionalLight, EnvironmentMap, Instances, Interaction, Light, Mesh, Picture, PointLight,
+    Prototype, Scene, SceneDescription, ShadingVariant, Shape,
 };
 use crate::shapes::{Plane, Sphere};
 use crate::simd::Level;
@@ -81,13 +81,13 @@ fn by_scattering(scene: &Scene, count: u32) -> (f64, f64) {
     (mean, ((squares / count - mean * mean) / count).sqrt())
 }
 
-/// Lights in a group that moves, which are never drawn.
+/// Lights in a prototype that moves, which are never drawn.
 fn in_copies() -> Shape {
-    let group = vec![shape(panel(0.2, 0.9, 0.2), [0.0; 3], 2.0)];
-    let group = Group::new(group, |geometry| BruteForce::over(geometry, Level::Scalar)).unwrap();
+    let prototype = vec![shape(panel(0.2, 0.9, 0.2), [0.0; 3], 2.0)];
+    let prototype = Prototype::new(prototype, |geometry| BruteForce::over(geometry, Level::Scalar)).unwrap();
     let still = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, -0.3]];
-    let copies = Copies::moving(Arc::new(group), vec![[still, still]]).unwrap();
-    Shape { surface: copies.into(), ..Shape::default() }
+    let instances = Instances::moving(Arc::new(prototype), vec![[still, still]]).unwrap();
+    Shape { surface: instances.into(), ..Shape::default() }
 }
 
 #[test]

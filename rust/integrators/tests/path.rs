@@ -8,7 +8,8 @@ use crate::optics::Rgb;
 use crate::sampling::Sampler;
 use crate::scene::fixtures::{cornell, furnace, inward_box, rectangle, scene, shape};
 use crate::scene::{
-    Camera, ConstantEnvironment, Copies, Group, Matrix, PointLight, Scene, SceneDescription, ShadingVariant, Shape,
+    Camera, ConstantEnvironment, Instances, Matrix, PointLight, Prototype, Scene, SceneDescription, ShadingVariant,
+    Shape,
 };
 use crate::simd::Level;
 use crate::workers::Cancel;
@@ -34,10 +35,12 @@ fn a_furnace_shines_so_many_bounces() {
 
 #[test]
 fn a_furnace_of_copies_shines_as_one_of_walls() {
-    // Six copies of one wall, each under a map of its own, in a copy that is still or moves out of shape: light that is
-    // not sampled but found, and rays that leave walls under such maps without meeting them.
-    let wall =
-        Group::new(vec![shape(rectangle([-1.0, -1.0, 0.0], [2.0, 0.0, 0.0], [0.0, 2.0, 0.0]), [0.5; 3], 2.0)], brute);
+    // Six instances of one wall, each under a map of its own, in a copy that is still or moves out of shape: light that
+    // is not sampled but found, and rays that leave walls under such maps without meeting them.
+    let wall = Prototype::new(
+        vec![shape(rectangle([-1.0, -1.0, 0.0], [2.0, 0.0, 0.0], [0.0, 2.0, 0.0]), [0.5; 3], 2.0)],
+        brute,
+    );
     let place = |x: DVec3, y: DVec3, z: DVec3| -> Matrix {
         let at = -1.5 * z / z.length();
         std::array::from_fn(|i| [1.5 * x[i], 1.5 * y[i], z[i], at[i]])
@@ -51,13 +54,13 @@ fn a_furnace_of_copies_shines_as_one_of_walls() {
         place(z, x, y),
         place(x, z, -1e-3 * y),
     ];
-    let walls = Copies::new(Arc::new(wall.unwrap()), &walls).unwrap();
+    let walls = Instances::new(Arc::new(wall.unwrap()), &walls).unwrap();
     let walls = vec![Shape { surface: walls.into(), ..Shape::default() }];
-    let room = Arc::new(Group::new(walls, brute).unwrap());
+    let room = Arc::new(Prototype::new(walls, brute).unwrap());
     let whole: Matrix = [[30.0, 4.0, 0.0, 7.0], [-1.0, 0.1, 0.0, 1e4], [0.0, 0.2, 1e-2, -5.0]];
     let start: Matrix = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]];
-    for copies in [Copies::new(room.clone(), &[whole]), Copies::moving(room.clone(), vec![[start, whole]])] {
-        let shapes = vec![Shape { surface: copies.unwrap().into(), ..Shape::default() }];
+    for instances in [Instances::new(room.clone(), &[whole]), Instances::moving(room.clone(), vec![[start, whole]])] {
+        let shapes = vec![Shape { surface: instances.unwrap().into(), ..Shape::default() }];
         let scene = Scene::new(SceneDescription { shapes, ..Default::default() }, brute).unwrap();
         let ray = Ray { origin: DVec3::new(10.8, 1e4 - 0.08, -4.957), time: 1.0, ..ANYWHERE };
         assert_radiance(&scene, &Path::default(), ray, 20_000, 4.0);

@@ -34,8 +34,8 @@ impl Geometry {
     /// # Panics
     /// If it is a miss.
     pub(super) fn mapped(&self, ray: &Ray, hit: &Hit, needs: Needs) -> Mapped {
-        if let Some((copies, copy)) = self.copy(hit.primitive) {
-            return copies.mapped(copy, ray, hit, needs);
+        if let Some((instances, instance)) = self.instance(hit.primitive) {
+            return instances.mapped(instance, ray, hit, needs);
         }
         let here = self.point(ray, hit);
         let mut mapped = Mapped {
@@ -104,7 +104,7 @@ mod tests {
     use super::*;
     use crate::accel::BruteForce;
     use crate::scene::textures::{Between, Checker, Domain, ProductTexture, UvTransform, Value, VertexColours};
-    use crate::scene::{Copies, DiffuseMaterial, Group, Matrix, Mesh, Shape, Surface};
+    use crate::scene::{DiffuseMaterial, Instances, Matrix, Mesh, Prototype, Shape, Surface};
     use crate::simd::Level;
     use std::sync::Arc;
 
@@ -132,12 +132,12 @@ mod tests {
         let checker = Between { a: 0.2.into(), b: 0.8.into(), pattern: Checker(Domain::Uv(UvTransform::default())) };
         let both = ProductTexture { a: Value::Texture(Arc::new(checker)), b: Value::Texture(Arc::new(VertexColours)) };
         let material = Arc::new(DiffuseMaterial { reflectance: Value::Texture(Arc::new(both)) });
-        let group = Group::new(vec![Shape { surface: mesh().into(), material, ..Shape::default() }], |g| {
+        let prototype = Prototype::new(vec![Shape { surface: mesh().into(), material, ..Shape::default() }], |g| {
             BruteForce::over(g, Level::Scalar)
         });
-        let copies = Copies::new(Arc::new(group.unwrap()), &[place]).unwrap();
+        let instances = Instances::new(Arc::new(prototype.unwrap()), &[place]).unwrap();
         let ray = Ray::new(DVec3::ZERO, DVec3::Z);
-        for geometry in [Geometry::new([Surface::from(mesh())]), Geometry::new([Surface::from(copies)])] {
+        for geometry in [Geometry::new([Surface::from(mesh())]), Geometry::new([Surface::from(instances)])] {
             let at = |uv| {
                 let point = geometry.point(&ray, &hit(uv));
                 (geometry.mapped(&ray, &hit(uv), ALL), point.point.position, point.shading_normal)

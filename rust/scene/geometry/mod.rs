@@ -1,29 +1,29 @@
 //! The surfaces of a scene: every mesh's corners and faces, one after the other, and shapes among them.
 
-mod copies;
 mod facets;
-mod group;
+mod instances;
 mod lanes;
 mod mapped;
 mod motion;
+mod objects;
 mod per_vertex;
 mod points;
 mod pose;
+mod prototype;
 mod rounding;
-mod surfaces;
 mod vertices;
 mod watched;
 
-pub use copies::{BadTransform, Copies, Matrix, check_transforms};
-pub use group::Group;
+pub use instances::{BadTransform, Instances, Matrix, check_transforms};
+pub use objects::Objects;
+pub use prototype::Prototype;
 pub use rounding::{Precision, Rounding, rounded};
-pub use surfaces::Surfaces;
 pub use vertices::Vertices;
 pub(in crate::scene) use watched::Watched;
 
 use super::SurfacePoint;
 use super::textures::Needs;
-use crate::accel::{Objects, Primitives, region};
+use crate::accel::{Primitives, UserGeometry, region};
 use crate::math::{DVec3, Hit, Ray, Region, Vec3};
 use crate::shapes::{Bounds, Shape, Site};
 use crate::simd::ask_for;
@@ -67,7 +67,7 @@ pub enum Surface {
     /// Anything else.
     Shape(Arc<dyn Shape>),
     /// Other surfaces, put to many places.
-    Copies(Copies),
+    Instances(Instances),
 }
 
 impl Default for Surface {
@@ -98,13 +98,13 @@ impl From<Arc<dyn Shape>> for Surface {
     }
 }
 
-impl From<Copies> for Surface {
-    fn from(copies: Copies) -> Self {
-        Self::Copies(copies)
+impl From<Instances> for Surface {
+    fn from(instances: Instances) -> Self {
+        Self::Instances(instances)
     }
 }
 
-/// Primitives that have no entry among the faces: copies, which are many.
+/// Primitives that have no entry among the faces: instances, which are many.
 #[derive(Clone, Copy, Debug)]
 struct Gap {
     /// The first of them, and the first after them.
@@ -133,7 +133,7 @@ pub struct Geometry {
     /// Where primitives have no entry in `faces`, by their numbers.
     gaps: Vec<Gap>,
     /// What is no mesh; none if all are.
-    others: Option<Arc<Surfaces>>,
+    others: Option<Arc<Objects>>,
     /// Shading normals.
     normals: PerVertex<Vec3>,
     /// Texture coordinates.
@@ -192,7 +192,7 @@ impl Primitives for Geometry {
         }
     }
 
-    fn objects(&self) -> Option<Arc<dyn Objects>> {
+    fn objects(&self) -> Option<Arc<dyn UserGeometry>> {
         self.others.clone().map(|others| others as _)
     }
 
@@ -216,7 +216,7 @@ impl Geometry {
     /// primitives or 2³² vertices in all.
     pub fn new<S: Into<Surface>>(surfaces: impl IntoIterator<Item = S>) -> Self {
         let mut all = Self { first: vec![0], ..Self::default() };
-        let mut others = Surfaces::default();
+        let mut others = Objects::default();
         for surface in surfaces {
             let mesh = match surface.into() {
                 Surface::Mesh(mesh) => mesh,
@@ -227,13 +227,13 @@ impl Geometry {
                     all.first.push(number + 1);
                     continue;
                 }
-                Surface::Copies(copies) => {
+                Surface::Instances(instances) => {
                     let number = all.count();
-                    let end = number + copies.count();
+                    let end = number + instances.count();
                     assert!(end < 1 << 31, "fewer than 2^31 primitives");
-                    let before = all.gaps.last().map_or(0, |gap| gap.before) + copies.count() as u32;
+                    let before = all.gaps.last().map_or(0, |gap| gap.before) + instances.count() as u32;
                     all.gaps.push(Gap { primitives: [number as u32, end as u32], before });
-                    others.push_copies(number as u32, copies);
+                    others.push_instances(number as u32, instances);
                     all.first.push(end as u32);
                     continue;
                 }
@@ -269,7 +269,7 @@ impl Geometry {
         let is_finite = |v: u32| all.vertices.get(v).is_finite();
         let is_dropped = |face: &&[u32; 3]| **face != NO_FACE && !face.iter().all(|&v| is_finite(v));
         all.dropped = all.faces.par_iter().filter(is_dropped).count();
-        // Copies are many, and each shall be small.
+        // Instances are many, and each shall be small.
         let faces = if all.gaps.is_empty() { all.count() } else { 0 };
         all.facets = Facets::new(faces, |primitive| all.facet(primitive));
         all
@@ -333,15 +333,15 @@ impl Geometry {
         !self.normals.is_empty()
     }
 
-    /// Whether there are copies of groups.
-    pub fn has_copies(&self) -> bool {
-        self.others.as_ref().is_some_and(|others| others.has_copies())
+    /// Whether there are instances of prototypes.
+    pub fn has_instances(&self) -> bool {
+        self.others.as_ref().is_some_and(|others| others.has_instances())
     }
 
-    /// The copies that a shape is, if it is.
+    /// The instances that a shape is, if it is.
     #[inline]
-    pub fn copies_of(&self, shape: u32) -> Option<&Copies> {
-        self.others.as_ref()?.copy(self.first[shape as usize]).map(|(copies, _)| copies)
+    pub fn instances_of(&self, shape: u32) -> Option<&Instances> {
+        self.others.as_ref()?.instance(self.first[shape as usize]).map(|(instances, _)| instances)
     }
 
     /// Whether anything moves while the shutter is open.
@@ -354,8 +354,8 @@ impl Geometry {
         self.bytes_but(&mut Vec::new())
     }
 
-    /// The memory held, without groups that were `seen`; those in it count as seen from then on.
-    pub fn bytes_but(&self, seen: &mut Vec<*const Group>) -> usize {
+    /// The memory held, without prototypes that were `seen`; those in it count as seen from then on.
+    pub fn bytes_but(&self, seen: &mut Vec<*const Prototype>) -> usize {
         self.vertices.bytes()
             + self.normals.bytes()
             + self.uvs.bytes()
@@ -414,10 +414,10 @@ impl Geometry {
         self.first[shape as usize]..self.first[shape as usize + 1]
     }
 
-    /// Which copy of what a primitive is, if it is one.
+    /// Which instance of what a primitive is, if it is one.
     #[inline]
-    pub(crate) fn copy(&self, primitive: u32) -> Option<(&Copies, u32)> {
-        self.others.as_ref()?.copy(primitive)
+    pub(crate) fn instance(&self, primitive: u32) -> Option<(&Instances, u32)> {
+        self.others.as_ref()?.instance(primitive)
     }
 
     /// A primitive that is no triangle.
@@ -467,8 +467,8 @@ impl Geometry {
     #[inline]
     pub fn surface(&self, ray: &Ray, hit: &Hit) -> SurfacePoint {
         let Some(others) = &self.others else { return self.on_triangle(hit.primitive, hit.uv) };
-        if let Some((copies, copy)) = others.copy(hit.primitive) {
-            let point = copies.surface(copy, ray, hit);
+        if let Some((instances, instance)) = others.instance(hit.primitive) {
+            let point = instances.surface(instance, ray, hit);
             return SurfacePoint { shape: self.locate(hit.primitive).0, inner: Some(hit.inner), ..point };
         }
         match others.get(hit.primitive) {

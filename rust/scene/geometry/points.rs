@@ -12,8 +12,8 @@ impl Geometry {
     /// # Panics
     /// If it is a miss.
     pub fn point(&self, ray: &Ray, hit: &Hit) -> HitPoint {
-        if let Some((copies, copy)) = self.copy(hit.primitive) {
-            return copies.point(copy, ray, hit);
+        if let Some((instances, instance)) = self.instance(hit.primitive) {
+            return instances.point(instance, ray, hit);
         }
         if let Some(shape) = self.shape(hit.primitive) {
             let point = shape.point(ray, hit.t, hit.uv);

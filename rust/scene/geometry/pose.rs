@@ -1,14 +1,15 @@
-//! Where a copy stands: the map from a group's space to that which it is put into, as rays and as points take it.
+//! Where an instance stands: the map from a prototype's space to that which it is put into, as rays and as points take
+//! it.
 //!
-//! A ray is taken to the group's space by a matrix `M` and the shift `s` of the map: `o' = M (o − s)`, `d' = M d`, with
-//! its direction as long as it comes out, so that `t` is the same on both sides. `M` is the inverse of the map's linear
-//! part `L`, rounded once; the copy is where `M`, as rounded, says that it is. The difference from what `L` says is
-//! that of a vertex rounded to f64.
+//! A ray is taken to the prototype's space by a matrix `M` and the shift `s` of the map: `o' = M (o − s)`, `d' = M d`,
+//! with its direction as long as it comes out, so that `t` is the same on both sides. `M` is the inverse of the map's
+//! linear part `L`, rounded once; the instance is where `M`, as rounded, says that it is. The difference from what `L`
+//! says is that of a vertex rounded to f64.
 //!
 //! The bounds, with u = 2⁻⁵³ and κ the greatest row sum of |L| |M|, at least 1, and for a turn at most 3. A coordinate
 //! of `o'` errs by less than 4u (|M| |o − s|), of which the world sees 4uκ |o − s|, and so for `d'`; three products and
-//! their sum are five roundings, and the difference one. A point `p` of the group is at `L p + s`, where `L`, if it is
-//! not that of which `M` is the inverse but the inverse of `M`, is known by its residual `R = 1 − L M`: the point is
+//! their sum are five roundings, and the difference one. A point `p` of the prototype is at `L p + s`, where `L`, if it
+//! is not that of which `M` is the inverse but the inverse of `M`, is known by its residual `R = 1 − L M`: the point is
 //! off by `|R| |L p|`, and `R` is computed to within 4uκ.
 
 use super::mapped::Mapped;
@@ -20,12 +21,12 @@ use crate::shapes::{Bounds, Point};
 /// A linear map by its rows.
 pub type Rows = [DVec3; 3];
 
-/// A map from a group's space to another, ready for rays.
+/// A map from a prototype's space to another, ready for rays.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
     /// The inverse of the linear part.
     inverse: Rows,
-    /// Where the group's origin is.
+    /// Where the prototype's origin is.
     shift: DVec3,
 }
 
@@ -89,13 +90,13 @@ impl Pose {
         Ok(Self { inverse: inverse(&rows)?, shift })
     }
 
-    /// A ray as the group's space has it.
+    /// A ray as the prototype's space has it.
     #[inline(always)]
     pub fn enter(&self, ray: &Ray) -> Ray {
         Ray {
             origin: times(&self.inverse, ray.origin - self.shift),
             direction: times(&self.inverse, ray.direction),
-            // The group's primitives have numbers of their own.
+            // The prototype's primitives have numbers of their own.
             misses: [Ray::NO_TRIANGLE; 2],
             ..*ray
         }
@@ -108,16 +109,16 @@ impl Pose {
 
     /// The box around a box that is put there, with room: it is larger by 2⁻²² of itself.
     ///
-    /// The room is for `t`, which in the group's space may be off by 2⁻²⁶ of nine radii at most
+    /// The room is for `t`, which in the prototype's space may be off by 2⁻²⁶ of nine radii at most
     /// ([`crate::shapes::triangle::EdgeRay::T_ERROR`]), and for a ray's own roundings, 8uκ of how far it comes. So
     /// whatever a ray hits as it is taken back, it meets in the box too, if κ is at most 16, of which box tests take
-    /// care at any distance, or κ times the distance at most 2²⁷ times the size of the copy. Beyond, what it grazes
+    /// care at any distance, or κ times the distance at most 2²⁷ times the size of the instance. Beyond, what it grazes
     /// within its roundings may be found by one accelerator and not by another.
     pub fn around(&self, bounds: &Bounds) -> Option<Bounds> {
         Some(carried(&self.rows()?, self.shift, bounds))
     }
 
-    /// A point of the group's surface in the space that it is put into; none if there is none to be told.
+    /// A point of the prototype's surface in the space that it is put into; none if there is none to be told.
     ///
     /// With M the size of what it stands on, which the error of a point tells (8ε M of a triangle, as much as the
     /// coordinates of a point itself at least), the point errs by what it was off before, by the residual, and by the
@@ -149,7 +150,7 @@ impl Pose {
 }
 
 impl Pose {
-    /// All about a point of the group's surface in the space that it is put into; none if there is none to be told.
+    /// All about a point of the prototype's surface in the space that it is put into; none if there is none to be told.
     pub fn hit_point(&self, here: &HitPoint) -> Option<HitPoint> {
         let rows = self.rows()?;
         let SurfacePoint { position, error, normal, shading_normal, .. } = self.point(&here.surface())?;
@@ -158,7 +159,7 @@ impl Pose {
         Some(HitPoint { point, shading_normal })
     }
 
-    /// How a unit normal changes in the space that it is put into, of which it is known how it does in the group's.
+    /// How a unit normal changes in the space that it is put into, of which it is known how it does in the prototype's.
     fn turning(&self, normal: DVec3, dn: [DVec3; 2]) -> [DVec3; 2] {
         let across = |n: DVec3| self.inverse[0] * n.x + self.inverse[1] * n.y + self.inverse[2] * n.z;
         // The normal before it is made unit again; of its change only what turns it is left.
@@ -171,7 +172,7 @@ impl Pose {
         })
     }
 
-    /// How much solid angle of the group's space there is to one of the space that it is put into, about a unit
+    /// How much solid angle of the prototype's space there is to one of the space that it is put into, about a unit
     /// direction of the latter.
     pub(in crate::scene) fn crowding(&self, direction: DVec3) -> f64 {
         let [a, b, c] = self.inverse;
@@ -183,7 +184,7 @@ impl Pose {
         Some(Affine::new(self.rows()?, self.shift))
     }
 
-    /// How a point of the group lies in the space that it is put into.
+    /// How a point of the prototype lies in the space that it is put into.
     pub(super) fn mapped(&self, within: Mapped) -> Mapped {
         let Some(rows) = self.rows() else { return within };
         let dn = self.turning(within.shading_normal, within.dn);
@@ -293,7 +294,7 @@ mod tests {
             matrix in matrix(), p in vector(3.0), way in vector(1.0), t in 0.1..10.0f64,
         ) {
             let Ok(pose) = Pose::new(&matrix) else { return Err(TestCaseError::reject("singular")) };
-            // A point of the group, as one of a triangle of this size.
+            // A point of the prototype, as one of a triangle of this size.
             let own = SurfacePoint {
                 position: p, error: 16.0 * UNIT * 3.0, normal: DVec3::X, shading_normal: DVec3::X,
                 shape: 0, inner: None,
@@ -304,7 +305,7 @@ mod tests {
             let exact = Affine::new(map.rows, pose.shift).point(p);
             let off = (world.position - exact).abs().max_element();
             prop_assert!(off <= world.error, "{} {}", world.position, world.error);
-            // A ray towards it passes it in the group's space by no more than the error told, which is small.
+            // A ray towards it passes it in the prototype's space by no more than the error told, which is small.
             let ray = Ray::new(world.position - way * t, way);
             let taken = pose.enter(&ray);
             let off = (taken.origin + taken.direction * t - p).abs();

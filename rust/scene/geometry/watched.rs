@@ -1,7 +1,7 @@
 //! Surfaces while something is built over them that is watched.
 
 use super::Geometry;
-use crate::accel::{Objects, Primitives};
+use crate::accel::{Primitives, UserGeometry};
 use crate::math::{DVec3, Region};
 use crate::shapes::Bounds;
 use crate::work::Work;
@@ -28,7 +28,7 @@ impl Primitives for Watched<'_> {
         self.geometry.is_single()
     }
 
-    fn objects(&self) -> Option<Arc<dyn Objects>> {
+    fn objects(&self) -> Option<Arc<dyn UserGeometry>> {
         self.geometry.objects()
     }
 

@@ -3,9 +3,9 @@
 mod bounds;
 mod choice;
 mod constant;
-mod copied;
 mod directional;
 mod few;
+mod instanced;
 mod lanes;
 mod light;
 mod light_lanes;
@@ -45,17 +45,17 @@ use crate::accel::Primitives;
 use crate::math::{DVec3, Hit, Ray};
 use crate::optics::Rgb;
 use choice::{Choice, Strength};
-use copied::Copied;
 use few::Few;
+use instanced::Copied;
 use light::strength;
 use outside::Outside;
 use std::sync::Arc;
 
 /// The lights of a scene: emitting surfaces, others that stand within it, and what comes from outside.
 ///
-/// Those within are numbered: first the emitting primitives, shape after shape, then those in copies of groups, then
-/// what is no surface. One of them is chosen by its power or, where there are many, by what it brings to where it is
-/// asked for.
+/// Those within are numbered: first the emitting primitives, shape after shape, then those in instances of prototypes,
+/// then what is no surface. One of them is chosen by its power or, where there are many, by what it brings to where it
+/// is asked for.
 #[derive(Debug)]
 pub struct Lights {
     /// How each shape shines, and whether it does.
@@ -82,7 +82,7 @@ impl Lights {
         let mut pairs = Vec::new();
         for (shape, emission) in emission.iter().enumerate() {
             first.push(surfaces.len() as u32);
-            if !emission.is_dark() && geometry.copies_of(shape as u32).is_none() {
+            if !emission.is_dark() && geometry.instances_of(shape as u32).is_none() {
                 if geometry.primitives_of(shape as u32).len() == 2 {
                     pairs.push(surfaces.len() as u32);
                 }
@@ -204,8 +204,8 @@ impl Lights {
     }
 
     /// The density with which [`Lights::sample`] draws, for a receiver, the direction of a ray from there, which is
-    /// unit and meets an emitting primitive under the cosine of an angle to its normal. 0 for what shines in copies
-    /// that move, or in copies of copies, or in too many: it is never drawn, and found by rays that meet it.
+    /// unit and meets an emitting primitive under the cosine of an angle to its normal. 0 for what shines in instances
+    /// that move, or in instances of instances, or in too many: it is never drawn, and found by rays that meet it.
     #[inline]
     pub fn surface_pdf(
         &self,
@@ -225,11 +225,11 @@ impl Lights {
         }
     }
 
-    /// The number of the light that was hit; none if it is in copies and never drawn.
+    /// The number of the light that was hit; none if it is in instances and never drawn.
     #[inline]
     fn number_of(&self, geometry: &Geometry, hit: &Hit) -> Option<usize> {
         let (shape, number) = geometry.locate(hit.primitive);
-        if geometry.copies_of(shape).is_some() {
+        if geometry.instances_of(shape).is_some() {
             return Some(self.surfaces.len() + self.copied.find(shape, number, hit.inner)?);
         }
         Some((self.first[shape as usize] + number) as usize)

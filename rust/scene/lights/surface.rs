@@ -68,7 +68,7 @@ pub(super) fn sample(
     })
 }
 
-/// Light from a primitive of the scene that is no copy.
+/// Light from a primitive of the scene that is no instance.
 #[inline]
 pub(super) fn sample_primitive(
     geometry: &Geometry,

@@ -47,7 +47,7 @@ pub struct TexturePoint {
     /// How far apart in `uv` the points are that neighbouring rays meet, about: what is smaller cannot be told apart,
     /// and is to be averaged over. 0 for a point.
     pub width: f64,
-    /// The point in the space that its shape was described in: of what stands in an instance, in that of its group.
+    /// The point in the space that its shape was described in: of what stands in an instance, in that of its prototype.
     pub position: DVec3,
     /// As `width`, of the position.
     pub size: f64,

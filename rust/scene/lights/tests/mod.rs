@@ -1,9 +1,9 @@
 //! What is asked of all lights: that what they bring is what closed forms say, and that densities are those of their
 //! draws.
 
-mod copies;
 mod environments;
 mod few;
+mod instances;
 mod irradiance;
 mod lanes;
 mod many;

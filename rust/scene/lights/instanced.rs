@@ -1,4 +1,4 @@
-//! Light from surfaces in copies of groups.
+//! Light from surfaces in instances of prototypes.
 
 use super::choice::Strength;
 use super::light::strength;
@@ -6,33 +6,34 @@ use super::triangle::SeenTriangle;
 use super::{LightSample, LightSampleContext, surface};
 use crate::accel::Primitives;
 use crate::math::{DVec3, Hit, Ray};
-use crate::scene::{Copies, Geometry, Group};
+use crate::scene::{Geometry, Instances, Prototype};
 use crate::shapes::Bounds;
 
-/// The primitives that shine in copies of groups, each of every copy a light of its own: those of copies that stand
-/// still, and of what stands in a group itself, not in copies within it. Where there would be more than
-/// [`Copied::MOST`], the shapes that come last are left out. What is left out is found by rays that meet it by chance.
+/// The primitives that shine in instances of prototypes, each of every instance a light of its own: those of instances
+/// that stand still, and of what stands in a prototype itself, not in instances within it. Where there would be more
+/// than [`Copied::MOST`], the shapes that come last are left out. What is left out is found by rays that meet it by
+/// chance.
 #[derive(Debug, Default)]
 pub(super) struct Copied {
-    /// The shapes that are copies whose lights are here, in order.
+    /// The shapes that are instances whose lights are here, in order.
     shapes: Vec<Glow>,
     lights: Vec<Light>,
 }
 
-/// A shape that is copies of a group in which something shines.
+/// A shape that is instances of a prototype in which something shines.
 #[derive(Debug)]
 struct Glow {
     shape: u32,
     /// The first light.
     first: u32,
-    /// The primitives of the group that shine, flattened, in order.
+    /// The primitives of the prototype that shine, flattened, in order.
     flat: Vec<u32>,
 }
 
-/// One primitive of one copy.
+/// One primitive of one instance.
 #[derive(Debug)]
 struct Light {
-    /// The copy.
+    /// The instance.
     primitive: u32,
     /// Flattened.
     inner: u32,
@@ -41,25 +42,27 @@ struct Light {
 }
 
 impl Copied {
-    /// The most lights in copies, in a scene.
+    /// The most lights in instances, in a scene.
     pub const MOST: usize = 4096;
 
     /// Those of a geometry, and how strong each is.
     pub fn new(geometry: &Geometry) -> (Self, Vec<Strength>) {
         let (mut all, mut strengths) = (Self::default(), Vec::new());
-        if !geometry.has_copies() {
+        if !geometry.has_instances() {
             return (all, strengths);
         }
         for shape in 0..geometry.shapes() as u32 {
-            let Some(copies) = geometry.copies_of(shape).filter(|copies| copies.stand_still()) else { continue };
-            let flat: Vec<u32> = copies.group().shining().collect();
-            if flat.is_empty() || all.lights.len() + flat.len() * copies.count() > Self::MOST {
+            let Some(instances) = geometry.instances_of(shape).filter(|instances| instances.stand_still()) else {
+                continue;
+            };
+            let flat: Vec<u32> = instances.prototype().shining().collect();
+            if flat.is_empty() || all.lights.len() + flat.len() * instances.count() > Self::MOST {
                 continue;
             }
             let first = all.lights.len() as u32;
             for primitive in geometry.primitives_of(shape) {
                 for &inner in &flat {
-                    let (light, strength) = Light::new(geometry, copies, primitive, inner);
+                    let (light, strength) = Light::new(geometry, instances, primitive, inner);
                     all.lights.push(light);
                     strengths.push(strength);
                 }
@@ -74,12 +77,12 @@ impl Copied {
         self.lights.len()
     }
 
-    /// The light that was hit in a copy, if it is one.
+    /// The light that was hit in an instance, if it is one.
     #[inline]
-    pub fn find(&self, shape: u32, copy: u32, inner: u32) -> Option<usize> {
+    pub fn find(&self, shape: u32, instance: u32, inner: u32) -> Option<usize> {
         let glow = &self.shapes[self.shapes.binary_search_by_key(&shape, |glow| glow.shape).ok()?];
         let within = glow.flat.binary_search(&inner).ok()?;
-        Some(glow.first as usize + copy as usize * glow.flat.len() + within)
+        Some(glow.first as usize + instance as usize * glow.flat.len() + within)
     }
 
     /// Draws light from one.
@@ -91,16 +94,16 @@ impl Copied {
         u: [f64; 2],
     ) -> Option<LightSample> {
         let Light { primitive, inner, corners } = &self.lights[light];
-        let (copies, copy) = geometry.copy(*primitive)?;
-        let (group, pose) = (copies.group(), copies.pose(copy, 0.0)?);
-        let (own, _) = group.split(*inner);
-        let emission = group.look(*inner).1;
+        let (instances, instance) = geometry.instance(*primitive)?;
+        let (prototype, pose) = (instances.prototype(), instances.pose(instance, 0.0)?);
+        let (own, _) = prototype.split(*inner);
+        let emission = prototype.appearance(*inner).1;
         let place = (*primitive, *inner);
-        match group.geometry().shape(own) {
+        match prototype.geometry().shape(own) {
             Some(shape) => {
                 let from = pose.enter(&Ray::new(receiver.position, DVec3::Z)).origin;
                 let (seen, uv) = surface::seen(shape, emission.needs(), from, u)?;
-                let surface = pose.point(&group.geometry().on_shape(own, &seen.site))?;
+                let surface = pose.point(&prototype.geometry().on_shape(own, &seen.site))?;
                 let sends = |ray: &Ray, hit: &Hit| emission.sent(geometry, ray, hit, &surface, || 0.0);
                 let density = |direction: DVec3, _| seen.pdf * pose.crowding(direction);
                 surface::sample(receiver, &surface, place, uv, density, sends)
@@ -108,7 +111,7 @@ impl Copied {
             None => {
                 let seen = SeenTriangle::new(*corners, receiver.position);
                 let uv = seen.sample(u);
-                let surface = pose.point(&group.geometry().on_triangle(own, uv))?;
+                let surface = pose.point(&prototype.geometry().on_triangle(own, uv))?;
                 let sends = |ray: &Ray, hit: &Hit| emission.sent(geometry, ray, hit, &surface, || 0.0);
                 let density = |direction: DVec3, distance| seen.pdf(distance, direction.dot(surface.normal));
                 surface::sample(receiver, &surface, place, uv, density, sends)
@@ -127,10 +130,10 @@ impl Copied {
         cosine: f64,
     ) -> f64 {
         let Light { primitive, inner, corners } = &self.lights[light];
-        let Some((copies, copy)) = geometry.copy(*primitive) else { return 0.0 };
-        match copies.group().geometry().shape(copies.group().split(*inner).0) {
+        let Some((instances, instance)) = geometry.instance(*primitive) else { return 0.0 };
+        match instances.prototype().geometry().shape(instances.prototype().split(*inner).0) {
             Some(shape) => {
-                let Some(pose) = copies.pose(copy, 0.0) else { return 0.0 };
+                let Some(pose) = instances.pose(instance, 0.0) else { return 0.0 };
                 let own = pose.enter(ray);
                 let pdf = shape.pdf_of_met(own.origin, own.direction);
                 if pdf > 0.0 { pdf * pose.crowding(ray.direction) } else { 0.0 }
@@ -146,25 +149,28 @@ impl Copied {
     }
 }
 
-impl Group {
-    /// The primitives that shine, flattened, in order, without those in copies.
+impl Prototype {
+    /// The primitives that shine, flattened, in order, without those in instances.
     fn shining(&self) -> impl Iterator<Item = u32> {
-        let own = |shape: &u32| self.geometry().copies_of(*shape).is_none();
+        let own = |shape: &u32| self.geometry().instances_of(*shape).is_none();
         let flat = |shape: u32| {
             let primitives = self.geometry().primitives_of(shape);
             primitives.map(|primitive| self.flatten(&Hit { primitive, ..Hit::MISS }))
         };
-        (0..self.geometry().shapes() as u32).filter(own).flat_map(flat).filter(|&flat| !self.look(flat).1.is_dark())
+        (0..self.geometry().shapes() as u32)
+            .filter(own)
+            .flat_map(flat)
+            .filter(|&flat| !self.appearance(flat).1.is_dark())
     }
 }
 
 impl Light {
-    fn new(geometry: &Geometry, copies: &Copies, primitive: u32, inner: u32) -> (Self, Strength) {
-        let group = copies.group();
-        let (own, emission) = (group.split(inner).0, group.look(inner).1);
+    fn new(geometry: &Geometry, instances: &Instances, primitive: u32, inner: u32) -> (Self, Strength) {
+        let prototype = instances.prototype();
+        let (own, emission) = (prototype.split(inner).0, prototype.appearance(inner).1);
         let (radiance, sides) = (strength(emission.radiance.mean()), emission.sides);
-        let map = geometry.copy(primitive).and_then(|(copies, copy)| copies.pose(copy, 0.0)?.map());
-        let (corners, strength) = match (map, group.geometry().shape(own)) {
+        let map = geometry.instance(primitive).and_then(|(instances, instance)| instances.pose(instance, 0.0)?.map());
+        let (corners, strength) = match (map, prototype.geometry().shape(own)) {
             (None, _) => ([DVec3::NAN; 3], Strength::NONE),
             (Some(map), Some(shape)) => {
                 let bounds = Bounds::of_support(|d| shape.support(map.transposed(d)) + map.shift.dot(d));
@@ -174,7 +180,7 @@ impl Light {
                 ([DVec3::NAN; 3], strength)
             }
             (Some(map), None) => {
-                let corners = group.geometry().corners(own).map(|corner| map.point(corner));
+                let corners = prototype.geometry().corners(own).map(|corner| map.point(corner));
                 (corners, Strength::of_triangle(corners, map.determinant() < 0.0, radiance, sides))
             }
         };

@@ -15,28 +15,28 @@ use std::sync::Arc;
 /// Shapes that are put elsewhere together, compiled once.
 ///
 /// Their primitives are numbered through, *flattened*: shape after shape; a mesh has its faces, a shape that is no mesh
-/// one, and copies of a group for every copy, from the first to the last, all primitives of that group as it numbers
-/// them.
-pub struct Group {
+/// one, and instances of a prototype for every instance, from the first to the last, all primitives of that prototype
+/// as it numbers them.
+pub struct Prototype {
     geometry: Geometry,
     accelerator: Box<dyn Accelerator>,
     materials: Vec<Arc<dyn Material>>,
     emission: Vec<Emission>,
     /// The flattened number of each shape's first primitive, and how many there are.
     first: Vec<u64>,
-    has_copies: bool,
+    has_instances: bool,
     moves: bool,
     region: Region,
     bounds: Option<Bounds>,
 }
 
-impl fmt::Debug for Group {
+impl fmt::Debug for Prototype {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "Group({} shapes, {} primitives)", self.geometry.shapes(), self.count())
+        write!(f, "Prototype({} shapes, {} primitives)", self.geometry.shapes(), self.count())
     }
 }
 
-impl Group {
+impl Prototype {
     /// Of surfaces, what each is made of and how it shines, with an accelerator made for them.
     ///
     /// # Errors
@@ -50,14 +50,14 @@ impl Group {
         let mut first = vec![0u64];
         for shape in 0..geometry.shapes() as u32 {
             let primitives = geometry.primitives_of(shape).len() as u64;
-            let each = geometry.copies_of(shape).map_or(1, |copies| u64::from(copies.group().count()));
+            let each = geometry.instances_of(shape).map_or(1, |instances| u64::from(instances.prototype().count()));
             first.push(first[shape as usize] + primitives * each);
         }
         let count = first[first.len() - 1];
         if count >= 1 << 31 {
             return Err(count);
         }
-        let (has_copies, moves) = (geometry.has_copies(), geometry.moves());
+        let (has_instances, moves) = (geometry.has_instances(), geometry.moves());
         let region = geometry.region();
         let is_endless = |p: u32| geometry.bounds(p).is_some_and(|b| !b.is_finite());
         let bounds = if geometry.objects().is_some() && (0..geometry.count() as u32).into_par_iter().any(is_endless) {
@@ -66,7 +66,7 @@ impl Group {
             (!region.is_empty()).then_some(Bounds { min: region.min, max: region.max })
         };
         let accelerator = accelerator(&geometry);
-        Ok(Self { geometry, accelerator, materials, emission, first, has_copies, moves, region, bounds })
+        Ok(Self { geometry, accelerator, materials, emission, first, has_instances, moves, region, bounds })
     }
 
     /// How many primitives there are, flattened.
@@ -97,12 +97,12 @@ impl Group {
     /// The flattened number of what was hit.
     #[inline]
     pub fn flatten(&self, hit: &Hit) -> u32 {
-        if !self.has_copies {
+        if !self.has_instances {
             return hit.primitive;
         }
         let (shape, number) = self.geometry.locate(hit.primitive);
-        let within = match self.geometry.copies_of(shape) {
-            Some(copies) => number * copies.group().count() + hit.inner,
+        let within = match self.geometry.instances_of(shape) {
+            Some(instances) => number * instances.prototype().count() + hit.inner,
             None => number,
         };
         self.first[shape as usize] as u32 + within
@@ -111,13 +111,13 @@ impl Group {
     /// The primitive of a flattened number, and which in it.
     #[inline]
     pub fn split(&self, flat: u32) -> (u32, u32) {
-        if !self.has_copies {
+        if !self.has_instances {
             return (flat, 0);
         }
         let shape = self.first.partition_point(|&f| f <= u64::from(flat)) - 1;
         let rest = flat - self.first[shape] as u32;
-        let (number, inner) = match self.geometry.copies_of(shape as u32) {
-            Some(copies) => (rest / copies.group().count(), rest % copies.group().count()),
+        let (number, inner) = match self.geometry.instances_of(shape as u32) {
+            Some(instances) => (rest / instances.prototype().count(), rest % instances.prototype().count()),
             None => (rest, 0),
         };
         (self.geometry.primitives_of(shape as u32).start + number, inner)
@@ -142,17 +142,17 @@ impl Group {
     }
 
     /// What the primitive of a flattened number is made of, and how it shines.
-    pub fn look(&self, flat: u32) -> (&dyn Material, &Emission) {
+    pub fn appearance(&self, flat: u32) -> (&dyn Material, &Emission) {
         let (primitive, inner) = self.split(flat);
         let (shape, _) = self.geometry.locate(primitive);
-        match self.geometry.copies_of(shape) {
-            Some(copies) => copies.group().look(inner),
+        match self.geometry.instances_of(shape) {
+            Some(instances) => instances.prototype().appearance(inner),
             None => (&*self.materials[shape as usize], &self.emission[shape as usize]),
         }
     }
 
     /// What each of its shapes is made of, and how it shines.
-    pub fn looks(&self) -> impl Iterator<Item = (&dyn Material, &Emission)> {
+    pub fn appearances(&self) -> impl Iterator<Item = (&dyn Material, &Emission)> {
         self.materials.iter().map(|material| &**material).zip(&self.emission)
     }
 
@@ -171,7 +171,7 @@ impl Group {
         sides[0]
     }
 
-    /// Memory held, without groups in it that were `seen`; it and they count as seen from then on.
+    /// Memory held, without prototypes in it that were `seen`; it and they count as seen from then on.
     pub fn bytes(&self, seen: &mut Vec<*const Self>) -> usize {
         let me = std::ptr::from_ref(self);
         if seen.contains(&me) {
@@ -191,27 +191,28 @@ mod tests {
     use crate::accel::BruteForce;
     use crate::optics::Rgb;
     use crate::scene::fixtures::{rectangle, shape};
-    use crate::scene::{Copies, DescriptionError, Matrix, Shape};
+    use crate::scene::{DescriptionError, Instances, Matrix, Shape};
     use crate::simd::Level;
 
     const HERE: Matrix = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]];
 
-    fn group(shapes: Vec<Shape>) -> Result<Arc<Group>, DescriptionError> {
-        Group::new(shapes, |geometry| BruteForce::over(geometry, Level::Scalar)).map(Arc::new)
+    fn prototype(shapes: Vec<Shape>) -> Result<Arc<Prototype>, DescriptionError> {
+        Prototype::new(shapes, |geometry| BruteForce::over(geometry, Level::Scalar)).map(Arc::new)
     }
 
     fn sheet(emission: f64) -> Shape {
         shape(rectangle([0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]), [0.25; 3], emission)
     }
 
-    fn copies(group: &Arc<Group>, count: usize) -> Shape {
-        Shape { surface: Copies::new(group.clone(), &vec![HERE; count]).unwrap().into(), ..Shape::default() }
+    fn instances(prototype: &Arc<Prototype>, count: usize) -> Shape {
+        Shape { surface: Instances::new(prototype.clone(), &vec![HERE; count]).unwrap().into(), ..Shape::default() }
     }
 
     #[test]
     fn numbers_are_flattened_and_split() {
-        let pair = group(vec![sheet(1.0), sheet(2.0)]).unwrap();
-        let all = group(vec![sheet(3.0), copies(&pair, 3), sheet(4.0), copies(&pair, 0), sheet(5.0)]).unwrap();
+        let pair = prototype(vec![sheet(1.0), sheet(2.0)]).unwrap();
+        let all =
+            prototype(vec![sheet(3.0), instances(&pair, 3), sheet(4.0), instances(&pair, 0), sheet(5.0)]).unwrap();
         assert_eq!((pair.count(), all.count()), (4, 2 + 12 + 2 + 2));
         // Shape, number in the shape, and which in that, of each flattened number in turn.
         let mut flat = 0;
@@ -223,7 +224,7 @@ mod tests {
                     let primitive = all.geometry().primitives_of(shape).start + number;
                     let hit = Hit { primitive, inner, ..Hit::MISS };
                     assert_eq!((all.flatten(&hit), all.split(flat)), (flat, (primitive, inner)));
-                    assert_eq!(*all.look(flat).1, Rgb::splat(emission[inner as usize / 2]).into());
+                    assert_eq!(*all.appearance(flat).1, Rgb::splat(emission[inner as usize / 2]).into());
                     flat += 1;
                 }
             }
@@ -235,9 +236,9 @@ mod tests {
     fn what_cannot_be_counted_or_be_is_refused() {
         let mut shape = sheet(0.0);
         for _ in 0..6 {
-            shape = copies(&group(vec![shape]).unwrap(), 32);
+            shape = instances(&prototype(vec![shape]).unwrap(), 32);
         }
-        assert_eq!(group(vec![shape]).unwrap_err(), DescriptionError::TooMany(1 << 31));
-        assert_eq!(group(vec![sheet(0.0), sheet(f64::NAN)]).unwrap_err(), DescriptionError::Emission(1));
+        assert_eq!(prototype(vec![shape]).unwrap_err(), DescriptionError::TooMany(1 << 31));
+        assert_eq!(prototype(vec![sheet(0.0), sheet(f64::NAN)]).unwrap_err(), DescriptionError::Emission(1));
     }
 }

@@ -1,11 +1,11 @@
-//! Surfaces in copies of groups as lights.
+//! Surfaces in instances of prototypes as lights.
 
 use super::super::{Emission, LightSampleContext, Sides};
 use super::{FLOOR, assert_near, draw, irradiance_at, white};
 use crate::accel::BruteForce;
 use crate::math::{Affine, DVec3, Hit, Ray};
 use crate::scene::fixtures::{rectangle, scene, shape};
-use crate::scene::{Copies, Group, Matrix, Mesh, Scene, SceneDescription, Shape};
+use crate::scene::{Instances, Matrix, Mesh, Prototype, Scene, SceneDescription, Shape};
 use crate::shapes::{Placed, Sphere};
 use crate::simd::Level;
 use std::sync::Arc;
@@ -37,10 +37,10 @@ fn copied(matrices: &[Matrix]) -> Scene {
         shining(shape(panel(), [0.0; 3], 0.0)),
         of_shape(ball()),
     ];
-    let group = Group::new(inner, |geometry| BruteForce::over(geometry, Level::Scalar)).unwrap();
-    let copies = Copies::new(Arc::new(group), matrices).unwrap();
+    let prototype = Prototype::new(inner, |geometry| BruteForce::over(geometry, Level::Scalar)).unwrap();
+    let instances = Instances::new(Arc::new(prototype), matrices).unwrap();
     let shapes = vec![shape(rectangle([9.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]), [0.5; 3], 0.0)];
-    let shapes = shapes.into_iter().chain([Shape { surface: copies.into(), ..Shape::default() }]).collect();
+    let shapes = shapes.into_iter().chain([Shape { surface: instances.into(), ..Shape::default() }]).collect();
     scene(SceneDescription { shapes, ..Default::default() })
 }
 

@@ -5,7 +5,7 @@ use crate::math::Ray;
 use crate::shapes::{Bounds, Candidate};
 
 /// What is hit and is no triangle, known by its number among all primitives.
-pub trait Objects: Send + Sync {
+pub trait UserGeometry: Send + Sync {
     /// The box around one, rounded outwards. None of what nothing can hit, triangles among it.
     fn bounds(&self, primitive: u32) -> Option<Bounds>;
 

@@ -1,8 +1,8 @@
-//! A group put to many places.
+//! A prototype put to many places.
 
-use super::group::Group;
 use super::mapped::Mapped;
 use super::pose::{Pose, between, carried_by};
+use super::prototype::Prototype;
 use crate::accel::{Side, Wanted};
 use crate::math::{Hit, Ray, Singular};
 use crate::scene::textures::Needs;
@@ -14,13 +14,14 @@ use std::sync::Arc;
 /// An affine map of points (x, y, z, 1) by its first three rows.
 pub type Matrix = [[f64; 4]; 3];
 
-/// Copies of a group, each of them a primitive: 96 bytes for one that stands still.
+/// Instances of a prototype, each of them a primitive: 96 bytes for one that stands still.
 ///
-/// A ray is taken to the group's space and asked of the group's accelerator there, with the same `t`. So what is hit is
-/// what is hit in the group by the ray as it is taken there, and that is decided exactly, whatever finds the copies.
+/// A ray is taken to the prototype's space and asked of the prototype's accelerator there, with the same `t`. So what
+/// is hit is what is hit in the prototype by the ray as it is taken there, and that is decided exactly, whatever finds
+/// the instances.
 #[derive(Clone, Debug)]
-pub struct Copies {
-    group: Arc<Group>,
+pub struct Instances {
+    prototype: Arc<Prototype>,
     places: Arc<Places>,
 }
 
@@ -73,29 +74,30 @@ fn anywhere(t: f64) -> Candidate {
     Candidate { t, uv: [0.0; 2], contact: Contact::Inside, inner: 0 }
 }
 
-impl Copies {
-    /// Copies of a group that stand still.
+impl Instances {
+    /// Instances of a prototype that stand still.
     ///
     /// # Errors
     /// If a matrix has no inverse.
-    pub fn new(group: Arc<Group>, matrices: &[Matrix]) -> Result<Self, BadTransform> {
+    pub fn new(prototype: Arc<Prototype>, matrices: &[Matrix]) -> Result<Self, BadTransform> {
         let poses = each(matrices, Pose::new)?;
-        Ok(Self { group, places: Arc::new(Places::Still(poses)) })
+        Ok(Self { prototype, places: Arc::new(Places::Still(poses)) })
     }
 
-    /// Copies that move while the shutter is open: the matrix of each at its opening and at its closing. Every point
-    /// moves on a straight line; should the matrix between have no inverse at some moment, the copy is not seen then.
+    /// Instances that move while the shutter is open: the matrix of each at its opening and at its closing. Every point
+    /// moves on a straight line; should the matrix between have no inverse at some moment, the instance is not seen
+    /// then.
     ///
     /// # Errors
     /// If one of the matrices given has no inverse.
-    pub fn moving(group: Arc<Group>, matrices: Vec<[Matrix; 2]>) -> Result<Self, BadTransform> {
+    pub fn moving(prototype: Arc<Prototype>, matrices: Vec<[Matrix; 2]>) -> Result<Self, BadTransform> {
         each(&matrices, |[start, end]| Pose::new(start).and(Pose::new(end)))?;
-        Ok(Self { group, places: Arc::new(Places::Moving(matrices)) })
+        Ok(Self { prototype, places: Arc::new(Places::Moving(matrices)) })
     }
 
     /// What is copied.
-    pub fn group(&self) -> &Arc<Group> {
-        &self.group
+    pub fn prototype(&self) -> &Arc<Prototype> {
+        &self.prototype
     }
 
     /// How many there are.
@@ -108,7 +110,7 @@ impl Copies {
 
     /// Whether they move, or anything in them.
     pub fn moves(&self) -> bool {
-        matches!(&*self.places, Places::Moving(_)) || self.group.moves()
+        matches!(&*self.places, Places::Moving(_)) || self.prototype.moves()
     }
 
     /// Whether none of them moves as a whole.
@@ -116,7 +118,7 @@ impl Copies {
         matches!(&*self.places, Places::Still(_))
     }
 
-    /// Memory held without the group's.
+    /// Memory held without the prototype's.
     pub fn bytes(&self) -> usize {
         match &*self.places {
             Places::Still(poses) => size_of_val(poses.as_slice()),
@@ -124,40 +126,40 @@ impl Copies {
         }
     }
 
-    /// Where a copy stands at a time; none at a moment when its matrix has no inverse.
+    /// Where an instance stands at a time; none at a moment when its matrix has no inverse.
     #[inline]
-    pub(in crate::scene) fn pose(&self, copy: u32, time: f64) -> Option<Pose> {
+    pub(in crate::scene) fn pose(&self, instance: u32, time: f64) -> Option<Pose> {
         match &*self.places {
-            Places::Still(poses) => Some(poses[copy as usize]),
+            Places::Still(poses) => Some(poses[instance as usize]),
             Places::Moving(matrices) => {
-                let [start, end] = &matrices[copy as usize];
+                let [start, end] = &matrices[instance as usize];
                 Pose::new(&between(start, end, time)).ok()
             }
         }
     }
 
-    /// The boxes around a copy as the shutter opens and as it closes; between the two, interpolated number by number,
-    /// they hold it too. None if nothing in it can be hit.
-    pub fn ends(&self, copy: u32) -> Option<[Bounds; 2]> {
-        let inside = self.group.bounds()?;
+    /// The boxes around an instance as the shutter opens and as it closes; between the two, interpolated number by
+    /// number, they hold it too. None if nothing in it can be hit.
+    pub fn ends(&self, instance: u32) -> Option<[Bounds; 2]> {
+        let inside = self.prototype.bounds()?;
         match &*self.places {
-            Places::Still(poses) => poses[copy as usize].around(&inside).map(|b| [b, b]),
-            Places::Moving(matrices) => Some(matrices[copy as usize].map(|matrix| carried_by(&matrix, &inside))),
+            Places::Still(poses) => poses[instance as usize].around(&inside).map(|b| [b, b]),
+            Places::Moving(matrices) => Some(matrices[instance as usize].map(|matrix| carried_by(&matrix, &inside))),
         }
     }
 
-    /// The box around a copy at any time.
-    pub fn bounds(&self, copy: u32) -> Option<Bounds> {
-        let [a, b] = self.ends(copy)?;
+    /// The box around an instance at any time.
+    pub fn bounds(&self, instance: u32) -> Option<Bounds> {
+        let [a, b] = self.ends(instance)?;
         Some(Bounds { min: a.min.min(b.min), max: a.max.max(b.max) })
     }
 
-    /// As [`crate::accel::Objects::meet`] has it.
-    pub fn meet(&self, copy: u32, wanted: Wanted, ray: &Ray, met: &mut dyn FnMut(Candidate) -> bool) -> bool {
-        let Some(pose) = self.pose(copy, ray.time) else { return false };
+    /// As [`crate::accel::UserGeometry::meet`] has it.
+    pub fn meet(&self, instance: u32, wanted: Wanted, ray: &Ray, met: &mut dyn FnMut(Candidate) -> bool) -> bool {
+        let Some(pose) = self.pose(instance, ray.time) else { return false };
         let ray = pose.enter(ray);
-        let accelerator = self.group.accelerator();
-        let told = |hit: &Hit, contact| Candidate { t: hit.t, uv: hit.uv, contact, inner: self.group.flatten(hit) };
+        let accelerator = self.prototype.accelerator();
+        let told = |hit: &Hit, contact| Candidate { t: hit.t, uv: hit.uv, contact, inner: self.prototype.flatten(hit) };
         match wanted {
             Wanted::Closest => {
                 let hit = accelerator.intersect_one(&ray);
@@ -172,7 +174,7 @@ impl Copies {
                     twice.map(|same| (&same[0], if same.len() == 1 { Contact::Inside } else { Contact::Touching }));
                 each.any(|(hit, contact)| met(told(hit, contact)))
             }
-            Wanted::Side => match self.group.side(&ray) {
+            Wanted::Side => match self.prototype.side(&ray) {
                 Side::Outside => false,
                 Side::Inside => met(anywhere(f64::MAX)),
                 Side::Surface => met(anywhere(0.0)),
@@ -180,33 +182,33 @@ impl Copies {
         }
     }
 
-    /// What is where a ray hits a copy.
+    /// What is where a ray hits an instance.
     ///
     /// # Panics
     /// If it does not.
-    pub fn surface(&self, copy: u32, ray: &Ray, hit: &Hit) -> SurfacePoint {
-        let pose = self.pose(copy, ray.time).expect("what is hit has a place");
-        let inside = self.group.surface(&pose.enter(ray), hit);
+    pub fn surface(&self, instance: u32, ray: &Ray, hit: &Hit) -> SurfacePoint {
+        let pose = self.pose(instance, ray.time).expect("what is hit has a place");
+        let inside = self.prototype.surface(&pose.enter(ray), hit);
         pose.point(&inside).expect("what is hit has a place")
     }
 
-    /// All about where a ray hits a copy.
+    /// All about where a ray hits an instance.
     ///
     /// # Panics
     /// If it does not.
-    pub fn point(&self, copy: u32, ray: &Ray, hit: &Hit) -> HitPoint {
-        let pose = self.pose(copy, ray.time).expect("what is hit has a place");
-        let inside = self.group.point(&pose.enter(ray), hit);
+    pub fn point(&self, instance: u32, ray: &Ray, hit: &Hit) -> HitPoint {
+        let pose = self.pose(instance, ray.time).expect("what is hit has a place");
+        let inside = self.prototype.point(&pose.enter(ray), hit);
         pose.hit_point(&inside).expect("what is hit has a place")
     }
 
-    /// How a ray's hit of a copy lies.
+    /// How a ray's hit of an instance lies.
     ///
     /// # Panics
     /// If it is none.
-    pub(super) fn mapped(&self, copy: u32, ray: &Ray, hit: &Hit, needs: Needs) -> Mapped {
-        let pose = self.pose(copy, ray.time).expect("what is hit has a place");
-        let within = self.group.mapped(&pose.enter(ray), hit, needs);
+    pub(super) fn mapped(&self, instance: u32, ray: &Ray, hit: &Hit, needs: Needs) -> Mapped {
+        let pose = self.pose(instance, ray.time).expect("what is hit has a place");
+        let within = self.prototype.mapped(&pose.enter(ray), hit, needs);
         pose.mapped(within)
     }
 }
@@ -231,8 +233,8 @@ mod tests {
         BruteForce::over(geometry, Level::Scalar)
     }
 
-    fn copied(copies: Copies) -> Shape {
-        Shape { surface: copies.into(), ..Shape::default() }
+    fn copied(instances: Instances) -> Shape {
+        Shape { surface: instances.into(), ..Shape::default() }
     }
 
     fn compiled(shapes: Vec<Shape>, build: fn(&dyn Primitives) -> Box<dyn Accelerator>) -> Scene {
@@ -287,15 +289,15 @@ mod tests {
             (tree, brute),
             (brute, brute),
         ] {
-            let group = Arc::new(Group::new(soup(), within).unwrap());
-            let few = Copies::new(group.clone(), &[0, 1, 2].map(|i| mild(i, 2.0)));
-            // The same again within another group, among triangles, some of which move.
+            let prototype = Arc::new(Prototype::new(soup(), within).unwrap());
+            let few = Instances::new(prototype.clone(), &[0, 1, 2].map(|i| mild(i, 2.0)));
+            // The same again within another prototype, among triangles, some of which move.
             let mut inner = soup();
             inner.push(copied(few.unwrap()));
-            let nested = Arc::new(Group::new(inner, outside).unwrap());
+            let nested = Arc::new(Prototype::new(inner, outside).unwrap());
             let place = |i: u32| -> Matrix { mild(i, 3.0) };
-            let still = Copies::new(nested.clone(), &[place(5), place(6), place(5)]).unwrap();
-            let moving = Copies::moving(nested, vec![[place(7), place(8)], [place(9), place(10)]]).unwrap();
+            let still = Instances::new(nested.clone(), &[place(5), place(6), place(5)]).unwrap();
+            let moving = Instances::moving(nested, vec![[place(7), place(8)], [place(9), place(10)]]).unwrap();
             scenes.push(compiled(vec![copied(still.clone()), soup().remove(0)], within));
             scenes.push(compiled(vec![copied(still), soup().remove(0), copied(moving)], outside));
         }
@@ -333,11 +335,11 @@ mod tests {
             let mut next = draw(sample + 500);
             let corners: Vec<Vec3> = (0..3).map(|_| (next() * 2.0 + next()).as_vec3()).collect();
             let mesh = Mesh { vertices: corners.into(), faces: vec![[0, 1, 2]], normals: None, ..Mesh::default() };
-            let group = Arc::new(Group::new(vec![shape(mesh, [0.5; 3], 0.0)], brute).unwrap());
-            let inner = Copies::new(group, &[hostile(sample + 1000, 1.0)]).unwrap();
-            let nested = Arc::new(Group::new(vec![copied(inner)], brute).unwrap());
-            let copies = Copies::new(nested, &[hostile(sample, far)]).unwrap();
-            let scene = compiled(vec![copied(copies)], brute);
+            let prototype = Arc::new(Prototype::new(vec![shape(mesh, [0.5; 3], 0.0)], brute).unwrap());
+            let inner = Instances::new(prototype, &[hostile(sample + 1000, 1.0)]).unwrap();
+            let nested = Arc::new(Prototype::new(vec![copied(inner)], brute).unwrap());
+            let instances = Instances::new(nested, &[hostile(sample, far)]).unwrap();
+            let scene = compiled(vec![copied(instances)], brute);
             let mut rays = Vec::new();
             for number in 0..100 {
                 let mut sampler = Sampler::new(2, sample, number);
@@ -359,13 +361,13 @@ mod tests {
     #[test]
     fn points_are_inside_of_copies_to_the_last_bit() {
         let cube = || inward_box([-1.0; 3], [2.0; 3]).map(|mesh| shape(mesh, [0.5; 3], 0.0)).into();
-        let group = Arc::new(Group::new(cube(), tree).unwrap());
-        // A cube of side 4 around (8, 0, 0), turned by a quarter, and within another group at (8, 0, 16), mirrored.
+        let prototype = Arc::new(Prototype::new(cube(), tree).unwrap());
+        // A cube of side 4 around (8, 0, 0), turned by a quarter, and within another prototype at (8, 0, 16), mirrored.
         let matrix: Matrix = [[0.0, -2.0, 0.0, 8.0], [2.0, 0.0, 0.0, 0.0], [0.0, 0.0, 2.0, 0.0]];
-        let once = Copies::new(group, &[matrix]).unwrap();
-        let nested = Arc::new(Group::new(vec![copied(once.clone())], tree).unwrap());
+        let once = Instances::new(prototype, &[matrix]).unwrap();
+        let nested = Arc::new(Prototype::new(vec![copied(once.clone())], tree).unwrap());
         let up: Matrix = [[-1.0, 0.0, 0.0, 16.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 16.0]];
-        let scene = compiled(vec![copied(once), copied(Copies::new(nested, &[up]).unwrap())], tree);
+        let scene = compiled(vec![copied(once), copied(Instances::new(nested, &[up]).unwrap())], tree);
         let near = [-3.0, -2f64.next_up(), -2.0, (-2f64).next_up(), -0.0, 0.3, 2f64.next_down(), 2.0, 2f64.next_up()];
         let points = near.iter().flat_map(|&x| near.iter().flat_map(move |&y| near.map(|z| DVec3::new(x, y, z))));
         for centre in [DVec3::new(8.0, 0.0, 0.0), DVec3::new(8.0, 0.0, 16.0)] {
@@ -380,9 +382,9 @@ mod tests {
 
     #[test]
     fn of_copies_upon_each_other_the_first_is_hit_and_all_are_crossed() {
-        let group = Arc::new(Group::new(vec![shape(soup(20), [0.5; 3], 0.0)], tree).unwrap());
+        let prototype = Arc::new(Prototype::new(vec![shape(soup(20), [0.5; 3], 0.0)], tree).unwrap());
         let one = mild(3, 1.0);
-        let scene = compiled(vec![copied(Copies::new(group, &[one; 5]).unwrap())], tree);
+        let scene = compiled(vec![copied(Instances::new(prototype, &[one; 5]).unwrap())], tree);
         let rays: Vec<_> = (0..300).map(draw).map(|mut next| Ray::new(next() * 4.0, next())).collect();
         let mut hits = vec![Hit::MISS; rays.len()];
         scene.intersect(&rays, &mut hits);
@@ -393,7 +395,7 @@ mod tests {
 
     #[test]
     fn copies_take_so_many_bytes_and_their_group_counts_once() {
-        let group = Arc::new(Group::new(vec![shape(soup(1000), [0.5; 3], 0.0)], tree).unwrap());
+        let prototype = Arc::new(Prototype::new(vec![shape(soup(1000), [0.5; 3], 0.0)], tree).unwrap());
         let count = 100_000;
         let matrices: Vec<Matrix> = (0..count)
             .map(|i| {
@@ -403,10 +405,10 @@ mod tests {
                 })
             })
             .collect();
-        let copies = || copied(Copies::new(group.clone(), &matrices).unwrap());
+        let instances = || copied(Instances::new(prototype.clone(), &matrices).unwrap());
         let bytes = |scene: &Scene| scene.accelerator().info().bytes + scene.geometry().bytes();
-        let (once, twice) = (compiled(vec![copies()], tree), compiled(vec![copies(), copies()], tree));
-        let alone = group.bytes(&mut Vec::new());
+        let (once, twice) = (compiled(vec![instances()], tree), compiled(vec![instances(), instances()], tree));
+        let alone = prototype.bytes(&mut Vec::new());
         assert!(alone > 50_000);
         assert!(bytes(&once) - alone <= 160 * count as usize, "{}", bytes(&once) - alone);
         assert!(bytes(&twice) - alone <= 320 * count as usize);
@@ -414,13 +416,13 @@ mod tests {
 
     #[test]
     fn copies_that_are_put_elsewhere_keep_their_group() {
-        let group = Arc::new(Group::new(vec![shape(soup(30), [0.5; 3], 0.0)], tree).unwrap());
+        let prototype = Arc::new(Prototype::new(vec![shape(soup(30), [0.5; 3], 0.0)], tree).unwrap());
         let matrices = |by: u32| (0..40).map(|i| mild(i + by, 9.0)).collect::<Vec<_>>();
         let place =
-            |by| vec![copied(Copies::new(group.clone(), &matrices(by)).unwrap()), shape(soup(5), [0.5; 3], 0.0)];
+            |by| vec![copied(Instances::new(prototype.clone(), &matrices(by)).unwrap()), shape(soup(5), [0.5; 3], 0.0)];
         let moving = |by| {
             let ends = matrices(by).into_iter().zip(matrices(by + 7)).map(|(a, b)| [a, b]).collect();
-            vec![copied(Copies::moving(group.clone(), ends).unwrap())]
+            vec![copied(Instances::moving(prototype.clone(), ends).unwrap())]
         };
         let rays: Vec<_> = (0..500)
             .map(|i| {
