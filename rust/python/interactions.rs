@@ -36,7 +36,7 @@ struct Entry {
 impl Entry {
     fn new(scene: &Scene, ray: Ray, hit: Hit) -> Self {
         if !hit.is_hit() {
-            let emission = scene.lights().outside(ray.direction);
+            let emission = scene.lights().infinite_radiance(ray.direction);
             return Self { ray, hit, here: None, emission, cosine: 0.0 };
         }
         let surface = scene.geometry().surface(&ray, &hit);
@@ -291,7 +291,7 @@ impl Interactions {
             let Entry { ray, hit, here, emission, cosine } = &self.entries[i];
             let Some(from) = &before.entries[i].here else { return [0.0] };
             [match here {
-                None => lights.outside_pdf(&from.light_context(), ray.direction),
+                None => lights.infinite_pdf(&from.light_context(), ray.direction),
                 Some(_) if *emission == Rgb::ZERO => 0.0,
                 Some(_) => lights.surface_pdf(geometry, &from.light_context(), ray, hit, *cosine),
             }]

@@ -71,7 +71,7 @@ fn by_scattering(scene: &Scene, count: u32) -> (f64, f64) {
             let surface = scene.geometry().surface(&ray, &hit[0]);
             scene.emission_at(&surface).towards(-ray.direction.dot(surface.normal), &Default::default())
         } else {
-            scene.lights().outside(ray.direction)
+            scene.lights().infinite_radiance(ray.direction)
         };
         let x = (next.weight * arriving).y;
         sum += x;

@@ -14,7 +14,7 @@ impl<N: Features> TransportWorker<'_, N> {
     #[inline]
     pub(super) fn infinite_light(&self, ray: &Ray, path: &PathState) -> Rgb {
         let lights = self.scene.lights();
-        let arriving = lights.outside(ray.direction);
+        let arriving = lights.infinite_radiance(ray.direction);
         if arriving == Rgb::ZERO || path.pdf == f64::INFINITY {
             return arriving;
         }
@@ -23,7 +23,7 @@ impl<N: Features> TransportWorker<'_, N> {
             let weight = |drawn: f64| power_heuristic(path.pdf, drawn * self.asked_from(path));
             return lights.outside_weighed(&receiver, ray.direction, weight);
         }
-        let drawn = lights.outside_pdf(&receiver, ray.direction);
+        let drawn = lights.infinite_pdf(&receiver, ray.direction);
         arriving * power_heuristic(path.pdf, drawn * self.asked_from(path))
     }
 

@@ -55,15 +55,15 @@ impl Light for ConstantEnvironment {
     }
 
     fn reach(&self) -> Reach {
-        Reach::Outside { flux: 4.0 * PI * strength(self.radiance), spread: 1.0 }
+        Reach::Infinite { flux: 4.0 * PI * strength(self.radiance), spread: 1.0 }
     }
 
     #[inline]
     fn sample(&self, receiver: &LightSampleContext, u: [f64; 2]) -> Option<LightSample> {
         let direction = if receiver.is_free() { uniform_sphere(u) } else { arriving(receiver.normal, u) };
-        let pdf = self.outside_pdf(receiver, direction);
+        let pdf = self.infinite_pdf(receiver, direction);
         // Rounding may turn a direction in the plane to below it.
-        (pdf > 0.0).then(|| LightSample::of_outside(direction, self.radiance / pdf, pdf))
+        (pdf > 0.0).then(|| LightSample::of_infinite(direction, self.radiance / pdf, pdf))
     }
 
     fn sample_lanes(&self, level: Level, receivers: &LightContextLanes, u: &Pairs, lights: &mut LightLanes) {
@@ -79,12 +79,12 @@ impl Light for ConstantEnvironment {
     }
 
     #[inline]
-    fn outside(&self, _: DVec3) -> Rgb {
+    fn infinite_radiance(&self, _: DVec3) -> Rgb {
         self.radiance
     }
 
     #[inline]
-    fn outside_pdf(&self, receiver: &LightSampleContext, direction: DVec3) -> f64 {
+    fn infinite_pdf(&self, receiver: &LightSampleContext, direction: DVec3) -> f64 {
         if receiver.is_free() { UNIFORM_SPHERE_PDF } else { arriving_pdf(receiver.normal, direction) }
     }
 

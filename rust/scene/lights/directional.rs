@@ -31,12 +31,12 @@ impl Light for DirectionalLight {
     }
 
     fn reach(&self) -> Reach {
-        Reach::Outside { flux: strength(self.irradiance), spread: 0.0 }
+        Reach::Infinite { flux: strength(self.irradiance), spread: 0.0 }
     }
 
     #[inline]
     fn sample(&self, _: &LightSampleContext, _: [f64; 2]) -> Option<LightSample> {
-        Some(LightSample::of_outside(self.from, self.irradiance, f64::INFINITY))
+        Some(LightSample::of_infinite(self.from, self.irradiance, f64::INFINITY))
     }
 
     fn bytes(&self) -> usize {

@@ -118,11 +118,11 @@ impl Lights {
     ) -> Option<LightSample> {
         let Some(lamp) = self.few.within.get(one as usize) else {
             let one = one as usize - self.few.within.len();
-            let share = self.outside.own_share(one);
+            let share = self.infinite.own_share(one);
             if share < 1.0 && choice() >= share {
                 return None;
             }
-            return Some(self.outside.lights()[one].sample(receiver, u)?.chosen(share));
+            return Some(self.infinite.lights()[one].sample(receiver, u)?.chosen(share));
         };
         let (number, share, x) = lamp.drawn(u[0]);
         Some(self.sample_within(number, geometry, receiver, [x, u[1]])?.chosen(share))
@@ -161,10 +161,15 @@ impl Lights {
     /// by the density with which [`Lights::sample_one`] draws the direction.
     #[inline]
     pub fn outside_weighed(&self, receiver: &LightSampleContext, direction: DVec3, weight: impl Fn(f64) -> f64) -> Rgb {
-        let each = self.outside.lights().iter().enumerate().map(|(one, light)| (one, light, light.outside(direction)));
+        let each = self
+            .infinite
+            .lights()
+            .iter()
+            .enumerate()
+            .map(|(one, light)| (one, light, light.infinite_radiance(direction)));
         let seen = each.filter(|(.., radiance)| *radiance != Rgb::ZERO);
         let drawn =
-            |one: usize, light: &dyn Light| self.outside.own_share(one) * light.outside_pdf(receiver, direction);
+            |one: usize, light: &dyn Light| self.infinite.own_share(one) * light.infinite_pdf(receiver, direction);
         seen.map(|(one, light, radiance)| radiance * weight(drawn(one, light.as_ref()))).sum()
     }
 }

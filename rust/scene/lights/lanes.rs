@@ -103,10 +103,10 @@ impl Lights {
         u: &Pairs,
         lights: &mut LightLanes,
     ) {
-        if let (None, [sky]) = (&self.choice, self.outside.lights()) {
+        if let (None, [sky]) = (&self.choice, self.infinite.lights()) {
             return sky.sample_lanes(level, receivers, u, lights);
         }
-        let (true, Some(choices)) = (self.outside.is_dark(), &self.choice) else {
+        let (true, Some(choices)) = (self.infinite.is_dark(), &self.choice) else {
             for lane in 0..LANES {
                 let u = [u[0][lane], u[1][lane]];
                 lights.set(lane, self.sample(geometry, &receivers.get(lane), choice[lane], u));

@@ -11,14 +11,14 @@ use std::fmt::Debug;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Reach {
     /// From within the scene.
-    Inside {
+    Finite {
         /// Its power, W, a mean of the channels.
         power: f64,
         /// Where it is and where it shines to.
         bounds: LightBounds,
     },
-    /// From outside.
-    Outside {
+    /// From outside the scene.
+    Infinite {
         /// Its radiance integrated over all directions, a mean of the channels.
         flux: f64,
         /// The share of all directions that it effectively comes from, (∫L)² / (4π ∫L²): 1 for the same light from
@@ -49,13 +49,13 @@ pub trait Light: Debug + Send + Sync {
 
     /// The radiance that comes from outside along a direction, which is unit and points there; black for a light that
     /// is found by its samples only.
-    fn outside(&self, _direction: DVec3) -> Rgb {
+    fn infinite_radiance(&self, _direction: DVec3) -> Rgb {
         Rgb::ZERO
     }
 
     /// The density in solid angle with which [`Light::sample`] draws such a direction: above 0 wherever
-    /// [`Light::outside`] is not black and the receiver's horizon is not above.
-    fn outside_pdf(&self, _receiver: &LightSampleContext, _direction: DVec3) -> f64 {
+    /// [`Light::infinite_radiance`] is not black and the receiver's horizon is not above.
+    fn infinite_pdf(&self, _receiver: &LightSampleContext, _direction: DVec3) -> f64 {
         0.0
     }
 

@@ -24,7 +24,7 @@ pub struct LightSample {
 impl LightSample {
     /// Light from outside the scene.
     #[inline]
-    pub(super) fn of_outside(direction: DVec3, weight: Rgb, pdf: f64) -> Self {
+    pub(super) fn of_infinite(direction: DVec3, weight: Rgb, pdf: f64) -> Self {
         Self { direction, weight, pdf, source: None, primitive: Ray::NO_TRIANGLE }
     }
 

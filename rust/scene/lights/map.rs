@@ -26,7 +26,7 @@ pub struct EnvironmentMap {
     pyramid: Option<Pyramid>,
     /// The sines of the colatitudes between which each row of cells lies.
     sines: Vec<f64>,
-    /// Strength integrated over all directions, and how spread it is, as [`Reach::Outside`] has them, up to scale.
+    /// Strength integrated over all directions, and how spread it is, as [`Reach::Infinite`] has them, up to scale.
     flux: f64,
     spread: f64,
 }
@@ -140,7 +140,7 @@ impl Light for EnvironmentMap {
     }
 
     fn reach(&self) -> Reach {
-        Reach::Outside { flux: self.flux * self.scale, spread: self.spread }
+        Reach::Infinite { flux: self.flux * self.scale, spread: self.spread }
     }
 
     #[inline]
@@ -163,17 +163,17 @@ impl Light for EnvironmentMap {
         let direction: DVec3 = (0..3).map(|i| self.to_picture[i] * local[i]).sum();
         let (radiance, pdf) = self.within(pyramid, cell, [x, y], sine);
         let weight = radiance * (self.scale / pdf);
-        (pdf > 0.0 && sine > 0.0).then_some(LightSample::of_outside(direction, weight, pdf))
+        (pdf > 0.0 && sine > 0.0).then_some(LightSample::of_infinite(direction, weight, pdf))
     }
 
     #[inline]
-    fn outside(&self, direction: DVec3) -> Rgb {
+    fn infinite_radiance(&self, direction: DVec3) -> Rgb {
         let ([column, row], within, _) = self.place(direction);
         between(self.corners(column, row), within) * self.scale
     }
 
     #[inline]
-    fn outside_pdf(&self, _: &LightSampleContext, direction: DVec3) -> f64 {
+    fn infinite_pdf(&self, _: &LightSampleContext, direction: DVec3) -> f64 {
         let Some(pyramid) = &self.pyramid else { return 0.0 };
         let (cell, within, sine) = self.place(direction);
         self.within(pyramid, cell, within, sine).1

@@ -5,6 +5,7 @@ mod choice;
 mod constant;
 mod directional;
 mod few;
+mod infinite;
 mod instanced;
 mod lanes;
 mod light;
@@ -12,7 +13,6 @@ mod light_lanes;
 mod light_sample;
 mod light_sample_context;
 mod map;
-mod outside;
 mod picture;
 mod point;
 mod projector;
@@ -46,9 +46,9 @@ use crate::math::{DVec3, Hit, Ray};
 use crate::optics::Rgb;
 use choice::{Choice, Strength};
 use few::Few;
+use infinite::InfiniteLights;
 use instanced::Copied;
 use light::strength;
-use outside::Outside;
 use std::sync::Arc;
 
 /// The lights of a scene: emitting surfaces, others that stand within it, and what comes from outside.
@@ -69,7 +69,7 @@ pub struct Lights {
     inside: Vec<Arc<dyn Light>>,
     /// `None` if nothing within the scene shines.
     choice: Option<Choice>,
-    outside: Outside,
+    infinite: InfiniteLights,
     few: Few,
     /// Of each primitive that emits, whether it is a triangle or a sphere that shines alike everywhere.
     are_plain: Vec<bool>,
@@ -94,26 +94,26 @@ impl Lights {
         }
         let (copied, of_copies) = Copied::new(geometry);
         strengths.extend(of_copies);
-        let (mut inside, mut outside) = (Vec::new(), Vec::new());
+        let (mut inside, mut infinite) = (Vec::new(), Vec::new());
         for light in others {
             match light.reach() {
-                Reach::Inside { power, bounds } => {
+                Reach::Finite { power, bounds } => {
                     strengths.push(Strength { power, bounds });
                     inside.push(light);
                 }
-                Reach::Outside { flux, spread } => outside.push((light, flux, spread)),
+                Reach::Infinite { flux, spread } => infinite.push((light, flux, spread)),
             }
         }
         let choice = Choice::new(&strengths);
-        let outside = Outside::new(outside, choice.is_some());
-        let few = Few::new(&strengths, &pairs, outside.lights().len());
+        let infinite = InfiniteLights::new(infinite, choice.is_some());
+        let few = Few::new(&strengths, &pairs, infinite.lights().len());
         let is_plain = |&primitive: &u32| {
             geometry.shape(primitive).is_none_or(|shape| shape.ball().is_some())
                 && !emission[geometry.locate(primitive).0 as usize].needs().any()
         };
         let are_plain = surfaces.iter().map(is_plain).collect();
         let shines = emission.iter().map(|emission| !emission.is_dark()).collect();
-        Self { emission, shines, first, surfaces, copied, inside, choice, outside, few, are_plain }
+        Self { emission, shines, first, surfaces, copied, inside, choice, infinite, few, are_plain }
     }
 
     /// How strong a primitive of the scene is. What no ray can hit must not shine either, and from what has no end no
@@ -129,7 +129,7 @@ impl Lights {
 
     /// Whether nothing shines that could be drawn.
     pub fn is_dark(&self) -> bool {
-        self.choice.is_none() && self.outside.is_dark()
+        self.choice.is_none() && self.infinite.is_dark()
     }
 
     /// The memory held.
@@ -142,7 +142,7 @@ impl Lights {
             + self.copied.bytes()
             + self.inside.iter().map(|light| light.bytes()).sum::<usize>()
             + self.choice.as_ref().map_or(0, Choice::bytes)
-            + self.outside.bytes()
+            + self.infinite.bytes()
             + self.few.bytes()
     }
 
@@ -160,8 +160,8 @@ impl Lights {
 
     /// Radiance that comes from outside along a unit direction, of all lights there.
     #[inline]
-    pub fn outside(&self, direction: DVec3) -> Rgb {
-        self.outside.radiance(direction)
+    pub fn infinite_radiance(&self, direction: DVec3) -> Rgb {
+        self.infinite.radiance(direction)
     }
 
     /// Draws light that reaches a receiver: a light by `choice`, and of that a direction by `u`. `None` if the draw
@@ -174,9 +174,9 @@ impl Lights {
         choice: f64,
         u: [f64; 2],
     ) -> Option<LightSample> {
-        let share = self.outside.share();
+        let share = self.infinite.share();
         if choice < share {
-            return Some(self.outside.sample(receiver, choice / share, u)?.chosen(share));
+            return Some(self.infinite.sample(receiver, choice / share, u)?.chosen(share));
         }
         let choice = if share > 0.0 { ((choice - share) / (1.0 - share)).min(1.0 - f64::EPSILON) } else { choice };
         let (chosen, probability) = self.choice.as_ref()?.sample(receiver, choice)?;
@@ -217,7 +217,7 @@ impl Lights {
     ) -> f64 {
         let Some(choice) = &self.choice else { return 0.0 };
         let Some(number) = self.number_of(geometry, hit) else { return 0.0 };
-        let probability = (1.0 - self.outside.share()) * choice.probability(number, receiver);
+        let probability = (1.0 - self.infinite.share()) * choice.probability(number, receiver);
         if probability > 0.0 {
             probability * self.pdf_within(number, geometry, receiver, (ray, hit), cosine)
         } else {
@@ -253,7 +253,7 @@ impl Lights {
 
     /// The density with which [`Lights::sample`], for a receiver, draws a unit direction that leaves the scene.
     #[inline]
-    pub fn outside_pdf(&self, receiver: &LightSampleContext, direction: DVec3) -> f64 {
-        self.outside.share() * self.outside.pdf(receiver, direction)
+    pub fn infinite_pdf(&self, receiver: &LightSampleContext, direction: DVec3) -> f64 {
+        self.infinite.share() * self.infinite.pdf(receiver, direction)
     }
 }

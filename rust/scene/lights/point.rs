@@ -26,7 +26,7 @@ impl Light for PointLight {
 
     fn reach(&self) -> Reach {
         let intensity = strength(self.intensity);
-        Reach::Inside { power: 4.0 * PI * intensity, bounds: LightBounds::everywhere(self.position, intensity) }
+        Reach::Finite { power: 4.0 * PI * intensity, bounds: LightBounds::everywhere(self.position, intensity) }
     }
 
     #[inline]

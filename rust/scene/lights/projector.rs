@@ -86,7 +86,7 @@ impl Light for Projector {
             .fold((0.0, 0.0f64), |(sum, most), texel| (sum + texel, most.max(texel)));
         let corner = x.hypot(y);
         let peak = most * (1.0 + corner * corner).powf(1.5);
-        Reach::Inside {
+        Reach::Finite {
             power: sum / (width * height) as f64 * 4.0 * x * y,
             bounds: LightBounds::within(self.position, self.axes[2], corner.atan(), peak),
         }

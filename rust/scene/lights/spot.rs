@@ -92,7 +92,7 @@ impl Light for SpotLight {
             _ => 0.5 * (inner - outer),
         };
         let power = 2.0 * PI * intensity * (1.0 - inner + falling);
-        Reach::Inside { power, bounds: LightBounds::within(self.position, self.axis, self.angle, intensity) }
+        Reach::Finite { power, bounds: LightBounds::within(self.position, self.axis, self.angle, intensity) }
     }
 
     #[inline]

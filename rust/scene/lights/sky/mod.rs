@@ -178,7 +178,7 @@ impl Light for SunSky {
     }
 
     fn reach(&self) -> Reach {
-        Reach::Outside { flux: self.flux.iter().sum(), spread: self.spread }
+        Reach::Infinite { flux: self.flux.iter().sum(), spread: self.spread }
     }
 
     fn sample(&self, receiver: &LightSampleContext, [u, v]: [f64; 2]) -> Option<LightSample> {
@@ -200,11 +200,11 @@ impl Light for SunSky {
         } else {
             return None;
         };
-        let pdf = self.outside_pdf(receiver, direction);
-        (pdf > 0.0).then(|| LightSample::of_outside(direction, self.outside(direction) / pdf, pdf))
+        let pdf = self.infinite_pdf(receiver, direction);
+        (pdf > 0.0).then(|| LightSample::of_infinite(direction, self.infinite_radiance(direction) / pdf, pdf))
     }
 
-    fn outside(&self, direction: DVec3) -> Rgb {
+    fn infinite_radiance(&self, direction: DVec3) -> Rgb {
         // The plain hides what of the sun has set.
         if direction.dot(self.frame.normal) <= 0.0 {
             self.ground
@@ -215,7 +215,7 @@ impl Light for SunSky {
         }
     }
 
-    fn outside_pdf(&self, receiver: &LightSampleContext, direction: DVec3) -> f64 {
+    fn infinite_pdf(&self, receiver: &LightSampleContext, direction: DVec3) -> f64 {
         let [sun, sky, ground] = self.shares(receiver);
         let local = self.frame.to_local(direction);
         let around = if local.z > 0.0 { sky * self.sky_pdf(local) } else { ground / TAU };

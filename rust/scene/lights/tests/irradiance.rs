@@ -87,7 +87,7 @@ fn a_draw_has_the_density_that_a_hit_is_told() {
         };
         if light.source.is_none() {
             from_outside += 1;
-            assert_eq!(light.pdf, lit.lights().outside_pdf(&FLOOR, light.direction));
+            assert_eq!(light.pdf, lit.lights().infinite_pdf(&FLOOR, light.direction));
             continue;
         }
         from_surfaces += 1;

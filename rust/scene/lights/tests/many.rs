@@ -38,8 +38,8 @@ fn strengths(count: u32) -> Vec<Strength> {
 
 fn inside(light: &dyn Light) -> Strength {
     match light.reach() {
-        Reach::Inside { power, bounds } => Strength { power, bounds },
-        Reach::Outside { .. } => panic!("a light inside"),
+        Reach::Finite { power, bounds } => Strength { power, bounds },
+        Reach::Infinite { .. } => panic!("a light inside"),
     }
 }
 

@@ -90,16 +90,16 @@ impl Grid {
 /// Asserts that the density from outside integrates to 1, to within a share, and is that of the draws.
 fn assert_density(light: &dyn Light, receiver: &LightSampleContext, parts: usize, share: f64) {
     let grid = Grid { rows: 8, columns: 12 };
-    let expected = grid.integrals(parts, |d| light.outside_pdf(receiver, d));
+    let expected = grid.integrals(parts, |d| light.infinite_pdf(receiver, d));
     let sum: f64 = expected.iter().sum();
     assert!((sum - 1.0).abs() < share, "{light:?}: {sum}");
     let mut counts = vec![0; expected.len()];
     for number in 0..20_000 {
         let Some(sample) = light.sample(receiver, Sampler::new(5, 0, number).two(0)) else { continue };
         counts[grid.cell(sample.direction)] += 1;
-        let pdf = light.outside_pdf(receiver, sample.direction);
+        let pdf = light.infinite_pdf(receiver, sample.direction);
         assert!((pdf / sample.pdf - 1.0).abs() < 1e-6, "{pdf} {}", sample.pdf);
-        let weight = light.outside(sample.direction) / pdf;
+        let weight = light.infinite_radiance(sample.direction) / pdf;
         assert!((weight - sample.weight).abs().max_element() <= 1e-6 * weight.max_element(), "{weight}");
     }
     // The rest of the integral is its own error.

@@ -24,8 +24,8 @@ fn power(light: &dyn Light) -> f64 {
 
 fn told_power(light: &dyn Light) -> f64 {
     match light.reach() {
-        Reach::Inside { power, .. } => power,
-        Reach::Outside { .. } => panic!("a light inside"),
+        Reach::Finite { power, .. } => power,
+        Reach::Infinite { .. } => panic!("a light inside"),
     }
 }
 
@@ -113,7 +113,7 @@ fn a_distant_light_brings_its_irradiance_to_what_faces_it() {
     let LightSample { direction, weight, pdf, source, .. } = light.sample(&FLOOR, [0.5; 2]).unwrap();
     assert!((direction - DVec3::new(0.0, -0.6, 0.8)).length() < 1e-15);
     assert!((weight * direction.z).y - 4.0 < 1e-12 && pdf == f64::INFINITY && source.is_none());
-    assert_eq!(light.outside(direction), Rgb::ZERO);
+    assert_eq!(light.infinite_radiance(direction), Rgb::ZERO);
 }
 
 #[test]

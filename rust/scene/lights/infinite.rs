@@ -7,13 +7,13 @@ use std::sync::Arc;
 
 /// All lights that shine from outside.
 #[derive(Debug, Default)]
-pub(super) struct Outside {
+pub(super) struct InfiniteLights {
     lights: Vec<Arc<dyn Light>>,
     /// With which probability each is chosen, given that one is.
     probabilities: Vec<f64>,
     /// With which one is.
     share: f64,
-    /// See [`Outside::own_share`].
+    /// See [`InfiniteLights::own_share`].
     own_shares: Vec<f64>,
 }
 
@@ -28,8 +28,8 @@ const SHARE: f64 = 0.1;
 /// The share of light that comes from a single direction, which scattering never finds.
 const SHARP_SHARE: f64 = 0.5;
 
-impl Outside {
-    /// Lights with their flux and spread ([`super::Reach::Outside`]), where there are others inside or not.
+impl InfiniteLights {
+    /// Lights with their flux and spread ([`super::Reach::Infinite`]), where there are others inside or not.
     pub fn new(lights: Vec<(Arc<dyn Light>, f64, f64)>, others: bool) -> Self {
         let most = lights.iter().map(|(_, flux, _)| *flux).fold(0.0, f64::max);
         // Odds beside all that is inside. Among each other they go by their flux.
@@ -76,14 +76,14 @@ impl Outside {
     /// The sum of all radiance along a direction.
     #[inline]
     pub fn radiance(&self, direction: DVec3) -> Rgb {
-        self.lights.iter().map(|light| light.outside(direction)).sum()
+        self.lights.iter().map(|light| light.infinite_radiance(direction)).sum()
     }
 
-    /// The density of [`Outside::sample`].
+    /// The density of [`InfiniteLights::sample`].
     #[inline]
     pub fn pdf(&self, receiver: &LightSampleContext, direction: DVec3) -> f64 {
         let each = self.lights.iter().zip(&self.probabilities);
-        each.map(|(light, probability)| probability * light.outside_pdf(receiver, direction)).sum()
+        each.map(|(light, probability)| probability * light.infinite_pdf(receiver, direction)).sum()
     }
 
     /// Draws light from one of them. Where several may have been the one, the density is that of all, and so is the
