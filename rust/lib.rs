@@ -11,6 +11,7 @@ pub mod sampling;
 pub mod scene;
 pub mod shapes;
 pub mod simd;
+pub mod timing;
 pub mod work;
 pub mod workers;
 

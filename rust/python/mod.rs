@@ -73,6 +73,9 @@ mod _core {
     use super::query::CompiledScene;
     #[pymodule_export]
     use super::random::random_numbers;
+    #[cfg(feature = "timing")]
+    #[pymodule_export]
+    use super::render::timing;
     #[pymodule_export]
     use super::render::{Rendering, chances, expose, patch, pilot, student};
     #[pymodule_export]

@@ -311,6 +311,15 @@ pub fn pilot(
     result.map_err(|error| watcher.error(error))
 }
 
+/// Nanoseconds by part of what has been rendered since this was last asked, and at how many surfaces paths have been;
+/// there with the feature `timing` alone.
+#[cfg(feature = "timing")]
+#[pyfunction]
+pub fn timing() -> (Vec<(&'static str, f64)>, u64) {
+    let (spent, vertices) = crate::timing::take();
+    (crate::timing::Part::ALL.iter().zip(spent).map(|(&(_, name), spent)| (name, spent)).collect(), vertices)
+}
+
 /// Takes the samples that a request of `Rendering.request` wants, and gives what `Rendering.take` takes.
 #[pyfunction]
 #[allow(clippy::too_many_arguments)]

@@ -7,6 +7,7 @@ use super::{FilmTile, Settings};
 use crate::integrators::{CameraSample, Integrator, Session, Worker};
 use crate::optics::Rgb;
 use crate::scene::{Camera, Scene};
+use crate::timing::{Part, timed};
 use crate::workers::Cancel;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -272,7 +273,7 @@ impl Bench<'_> {
         if self.wanted.is_empty() {
             return true;
         }
-        sampler.take(&self.wanted, &mut self.samples, &mut self.weights);
+        timed(Part::Camera, || sampler.take(&self.wanted, &mut self.samples, &mut self.weights));
         let mut start = 0;
         for &end in &self.ends {
             let seen = self.weights[start..end].iter().filter(|&&weight| weight != 0.0).count();
@@ -290,13 +291,15 @@ impl Bench<'_> {
         if cancel.is_raised() {
             return false;
         }
-        let (mut radiance, mut weights) = (self.radiance.iter(), self.weights.iter());
-        for run in &self.runs {
-            for &weight in weights.by_ref().take(run.count as usize) {
-                let seen = if weight == 0.0 { None } else { radiance.next() };
-                tiles[run.tile].add(run.cell, seen.copied().unwrap_or(Rgb::ZERO), weight);
+        timed(Part::Film, || {
+            let (mut radiance, mut weights) = (self.radiance.iter(), self.weights.iter());
+            for run in &self.runs {
+                for &weight in weights.by_ref().take(run.count as usize) {
+                    let seen = if weight == 0.0 { None } else { radiance.next() };
+                    tiles[run.tile].add(run.cell, seen.copied().unwrap_or(Rgb::ZERO), weight);
+                }
             }
-        }
+        });
         self.clear();
         true
     }

@@ -7,6 +7,7 @@ use super::stream::Stream;
 use super::{BatchSize, SamplerKind, halton, lattice, philox4x32, sobol, stratified};
 use crate::math::LANES;
 use crate::simd::{Level, loops};
+use crate::timing::{Part, timed};
 
 /// Samples of one picture, a lane each.
 #[derive(Clone, Debug)]
@@ -64,7 +65,7 @@ impl SamplerLanes {
     /// What [`Sampler::one`] gives for an even dimension of each lane, and [`Sampler::two`] for the one that follows.
     #[inline]
     pub fn one_and_two(&self, level: Level, dimensions: &[u32; LANES], one: &mut [f64; LANES], two: &mut Pairs) {
-        match self.kind {
+        timed(Part::Numbers, || match self.kind {
             SamplerKind::Independent => independent(level, self, dimensions, one, two),
             SamplerKind::Sobol(size) | SamplerKind::Lattice(size) => {
                 triples(level, self, size, dimensions, one, two);
@@ -73,19 +74,19 @@ impl SamplerLanes {
                 self.one(level, dimensions, one);
                 self.two(level, &dimensions.map(|dimension| dimension + 1), two);
             }
-        }
+        });
     }
 
     /// What [`Sampler::one`] gives for a dimension of each lane.
     #[inline]
     pub fn one(&self, level: Level, dimensions: &[u32; LANES], to: &mut [f64; LANES]) {
-        ones(level, self, dimensions, to);
+        timed(Part::Numbers, || ones(level, self, dimensions, to));
     }
 
     /// What [`Sampler::two`] gives for a dimension of each lane.
     #[inline]
     pub fn two(&self, level: Level, dimensions: &[u32; LANES], to: &mut Pairs) {
-        twos(level, self, dimensions, to);
+        timed(Part::Numbers, || twos(level, self, dimensions, to));
     }
 
     #[inline(always)]

@@ -12,6 +12,7 @@ use crate::optics::{Diffuse, Rgb};
 use crate::scene::materials::Scattering;
 use crate::scene::{Interaction, InteractionLanes, LightContextLanes, LightSampleContext, Scatters};
 use crate::simd::loops;
+use crate::timing::{Part, count, timed};
 use std::array;
 
 loops! {
@@ -42,11 +43,21 @@ impl<'a, N: Features> TransportWorker<'a, N> {
         samples: &mut [CameraSample],
         radiance: &mut [Rgb],
     ) {
-        self.gather(block, which);
-        self.add_emission(block, radiance);
+        count(which.len());
+        timed(Part::Surface, || self.gather(block, which));
+        timed(Part::Emission, || self.add_emission(block, radiance));
         if !block.goes_on.contains(&true) {
             return;
         }
+        timed(Part::Scattering, || self.meet(block, samples, radiance));
+        if !self.scene.lights().is_dark() {
+            timed(Part::Light, || self.direct_light(block));
+        }
+        timed(Part::Continuation, || self.go_on(block));
+    }
+
+    /// Finds out how surfaces scatter.
+    fn meet(&mut self, block: &mut Block<'a>, samples: &mut [CameraSample], radiance: &mut [Rgb]) {
         let mut directions = VectorLanes::ZERO;
         for lane in 0..LANES {
             directions.set(lane, block.rays[lane].direction);
@@ -73,10 +84,6 @@ impl<'a, N: Features> TransportWorker<'a, N> {
         for lane in 0..LANES {
             block.throughput.set(lane, block.paths[lane].throughput);
         }
-        if !self.scene.lights().is_dark() {
-            self.direct_light(block);
-        }
-        self.go_on(block);
     }
 
     /// What the path of a lane carries.

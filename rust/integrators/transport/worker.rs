@@ -17,6 +17,7 @@ use crate::optics::Rgb;
 use crate::sampling::SamplerLanes;
 use crate::scene::{Footprint, Interaction, Scatters, Scene};
 use crate::simd::Level;
+use crate::timing::{Part, timed};
 use crate::workers::Cancel;
 use std::marker::PhantomData;
 
@@ -96,7 +97,7 @@ impl<'a, N: Features> TransportWorker<'a, N> {
     fn bounce(&mut self, samples: &mut [CameraSample], radiance: &mut [Rgb]) {
         self.shadows.clear();
         self.next.clear();
-        self.arrive(samples, radiance);
+        timed(Part::Arriving, || self.arrive(samples, radiance));
         let mut block = self.block.take().unwrap_or_else(|| Box::new(Block::new(&samples[0])));
         // A worker may be given samples of another seed or kind each time.
         block.numbers = SamplerLanes::new(&samples[0].sampler);
@@ -150,15 +151,17 @@ impl<N: Features> TransportWorker<'_, N> {
         self.start(samples);
         while !self.now.rays.is_empty() && !cancel.is_raised() {
             self.hits.resize(self.now.rays.len(), Hit::MISS);
-            self.scene.intersect_queue(&mut self.now.rays, &mut self.hits);
+            timed(Part::Closest, || self.scene.intersect_queue(&mut self.now.rays, &mut self.hits));
             self.bounce(samples, radiance);
-            if !self.settings.shadows {
-                self.shadows.add_all(radiance);
-            } else if self.masks || self.nested {
-                self.shadows.add_through(self.scene, self.nested, radiance);
-            } else {
-                self.shadows.add_unblocked(self.scene, radiance);
-            }
+            timed(Part::Shadow, || {
+                if !self.settings.shadows {
+                    self.shadows.add_all(radiance);
+                } else if self.masks || self.nested {
+                    self.shadows.add_through(self.scene, self.nested, radiance);
+                } else {
+                    self.shadows.add_unblocked(self.scene, radiance);
+                }
+            });
         }
     }
 }
