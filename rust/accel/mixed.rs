@@ -2,12 +2,13 @@
 
 use super::walk::{Build, Mailbox};
 use super::walked::walked;
-use super::{Accelerator, Cost, Crossings, Info, Nearest, Primitives, Side, Touches, UserGeometry};
-use crate::math::{DVec3, Hit, Ray};
+use super::{Accelerator, ByColumns, Cost, Crossings, Info, Nearest, Primitives, Side, Touches, UserGeometry};
+use crate::math::{DVec3, Hit, HitColumns, Ray, RayColumns};
 use crate::shapes::Bounds;
 use crate::shapes::triangle::SolidCone;
 use crate::simd::Level;
 use crate::work::Work;
+use std::cell::Cell;
 use std::sync::Arc;
 
 /// An accelerator over both: `triangles` builds the one over triangles, `objects` that over the others. Where there is
@@ -21,12 +22,13 @@ pub fn mixed(
     let Some(kept) = primitives.objects() else { return triangles(primitives) };
     // One of them is no triangle, most are: what takes longer is seldom known before.
     let [first, then] = primitives.work().parts([1.0, 3.0]);
+    let (kept_moves, kept_nests) = (kept.moves(), kept.is_nested());
     let others = walked(&OnlyObjects(primitives, kept, first), level, Mailbox::Stamps, objects);
     let triangles = triangles(&OnlyTriangles(primitives, then));
     if triangles.info().primitives == 0 {
         return others;
     }
-    Box::new(Mixed::of(triangles, others))
+    Box::new(Mixed::of(triangles, others, !kept_moves && !kept_nests))
 }
 
 /// Primitives without those that are no triangles.
@@ -81,11 +83,16 @@ impl Primitives for OnlyObjects<'_> {
 struct Mixed {
     triangles: Box<dyn Accelerator>,
     objects: Box<dyn Accelerator>,
+    /// Whether columns say all of a ray and of its hit: nothing moves, and there are no primitives within others.
+    is_plain: bool,
     info: Info,
 }
 
+/// Rays that objects are asked about together: more leave the cache before they are answered.
+const TOGETHER: usize = 256;
+
 impl Mixed {
-    fn of(triangles: Box<dyn Accelerator>, objects: Box<dyn Accelerator>) -> Self {
+    fn of(triangles: Box<dyn Accelerator>, objects: Box<dyn Accelerator>, is_plain: bool) -> Self {
         let (a, b) = (triangles.info(), objects.info());
         let info = Info {
             kind: format!("{}; beside it {}", a.kind, b.kind),
@@ -98,7 +105,50 @@ impl Mixed {
             build_seconds: a.build_seconds + b.build_seconds,
             sah_cost: a.sah_cost + b.sah_cost,
         };
-        Self { triangles, objects, info }
+        Self { triangles, objects, is_plain, info }
+    }
+
+    /// Asks objects for what is nearer than what was hit, and says for which rays it is.
+    fn nearer(
+        &self,
+        count: usize,
+        ray: impl Fn(usize) -> Ray,
+        hit: impl Fn(usize) -> Hit,
+        mut found: impl FnMut(usize, Hit),
+    ) {
+        let mut rays = Vec::with_capacity(TOGETHER.min(count));
+        let mut others = [Hit::MISS; TOGETHER];
+        for start in (0..count).step_by(TOGETHER) {
+            let these = start..count.min(start + TOGETHER);
+            rays.clear();
+            // A hit takes over at equal `t` too, if it is that of a lower primitive.
+            rays.extend(these.clone().map(|i| {
+                let ray = ray(i);
+                Ray { t_max: ray.t_max.min(hit(i).t), ..ray }
+            }));
+            let others = &mut others[..these.len()];
+            self.objects.intersect(&rays, others);
+            for (i, other) in these.zip(others) {
+                if is_before(other, &hit(i)) {
+                    found(i, *other);
+                }
+            }
+        }
+    }
+
+    /// Asks objects about rays on whose way no triangle is.
+    fn also(&self, ray: impl Fn(usize) -> Ray, occluded: &mut [bool]) {
+        let open: Vec<usize> = (0..occluded.len()).filter(|&i| !occluded[i]).collect();
+        let (mut rays, mut others) = (Vec::with_capacity(TOGETHER.min(open.len())), [false; TOGETHER]);
+        for open in open.chunks(TOGETHER) {
+            rays.clear();
+            rays.extend(open.iter().map(|&i| ray(i)));
+            let others = &mut others[..open.len()];
+            self.objects.occluded(&rays, others);
+            for (&i, other) in open.iter().zip(others) {
+                occluded[i] = *other;
+            }
+        }
     }
 }
 
@@ -110,15 +160,12 @@ fn is_before(a: &Hit, b: &Hit) -> bool {
 impl Accelerator for Mixed {
     fn intersect(&self, rays: &[Ray], hits: &mut [Hit]) {
         self.triangles.intersect(rays, hits);
-        // A hit takes over at equal `t` too, if it is that of a lower primitive.
-        let rays: Vec<_> = rays.iter().zip(&*hits).map(|(r, h)| Ray { t_max: r.t_max.min(h.t), ..*r }).collect();
-        let mut others = vec![Hit::MISS; rays.len()];
-        self.objects.intersect(&rays, &mut others);
-        for (hit, other) in hits.iter_mut().zip(others) {
-            if is_before(&other, hit) {
-                *hit = other;
-            }
-        }
+        let hits = Cell::from_mut(hits).as_slice_of_cells();
+        self.nearer(rays.len(), |i| rays[i], |i| hits[i].get(), |i, hit| hits[i].set(hit));
+    }
+
+    fn by_columns(&self) -> Option<&dyn ByColumns> {
+        (self.is_plain && self.triangles.by_columns().is_some()).then_some(self)
     }
 
     fn intersect_one(&self, ray: &Ray) -> Hit {
@@ -133,13 +180,7 @@ impl Accelerator for Mixed {
 
     fn occluded(&self, rays: &[Ray], occluded: &mut [bool]) {
         self.triangles.occluded(rays, occluded);
-        let open: Vec<usize> = (0..rays.len()).filter(|&i| !occluded[i]).collect();
-        let rays: Vec<_> = open.iter().map(|&i| rays[i]).collect();
-        let mut others = vec![false; rays.len()];
-        self.objects.occluded(&rays, &mut others);
-        for (i, other) in open.into_iter().zip(others) {
-            occluded[i] = other;
-        }
+        self.also(|i| rays[i], occluded);
     }
 
     fn crossings(&self, rays: &[Ray]) -> Crossings {
@@ -196,7 +237,7 @@ impl Accelerator for Mixed {
     fn refitted(&self, primitives: &dyn Primitives) -> Result<Box<dyn Accelerator>, String> {
         let triangles = self.triangles.refitted(&OnlyTriangles(primitives, primitives.work()))?;
         let objects = self.objects.refitted(&OnlyObjects::of(primitives)?)?;
-        Ok(Box::new(Self::of(triangles, objects)))
+        Ok(Box::new(Self::of(triangles, objects, self.is_plain)))
     }
 
     fn validate(&self, primitives: &dyn Primitives) -> Result<(), String> {
@@ -206,5 +247,47 @@ impl Accelerator for Mixed {
 
     fn info(&self) -> &Info {
         &self.info
+    }
+}
+
+impl Mixed {
+    /// The triangles, as what takes columns.
+    fn columns(&self) -> &dyn ByColumns {
+        self.triangles.by_columns().expect("asked only where they are")
+    }
+}
+
+impl ByColumns for Mixed {
+    fn intersect(&self, rays: &RayColumns<'_>, hits: HitColumns<'_>) {
+        let HitColumns { t, uv, primitive } = hits;
+        self.columns().intersect(rays, HitColumns { t, uv, primitive });
+        let (t, primitive) = (Cell::from_mut(t).as_slice_of_cells(), Cell::from_mut(primitive).as_slice_of_cells());
+        // Of what is missed, −1 is greater than any other.
+        let hit = |i: usize| Hit { t: t[i].get(), primitive: primitive[i].get() as u32, ..Hit::MISS };
+        self.nearer(
+            rays.len(),
+            |i| rays.get(i),
+            hit,
+            |i, hit| {
+                t[i].set(hit.t);
+                primitive[i].set(hit.primitive as i32);
+                uv[i] = hit.uv;
+            },
+        );
+    }
+
+    fn first_hits(&self, rays: &RayColumns<'_>, hits: &mut [Hit]) {
+        self.columns().first_hits(rays, hits);
+        let hits = Cell::from_mut(hits).as_slice_of_cells();
+        self.nearer(rays.len(), |i| rays.get(i), |i| hits[i].get(), |i, hit| hits[i].set(hit));
+    }
+
+    fn occluded(&self, rays: &RayColumns<'_>, occluded: &mut [bool]) {
+        self.columns().occluded(rays, occluded);
+        self.also(|i| rays.get(i), occluded);
+    }
+
+    fn extent(&self) -> Option<f64> {
+        self.columns().extent()
     }
 }

@@ -2,12 +2,22 @@
 
 use super::query::Wanted;
 use crate::math::Ray;
-use crate::shapes::{Bounds, Candidate};
+use crate::shapes::{Ball, Bounds, Candidate};
 
 /// What is hit and is no triangle, known by its number among all primitives.
 pub trait UserGeometry: Send + Sync {
     /// The box around one, rounded outwards. None of what nothing can hit, triangles among it.
     fn bounds(&self, primitive: u32) -> Option<Bounds>;
+
+    /// A ball around one that stands still.
+    fn around(&self, primitive: u32) -> Option<Ball> {
+        self.bounds(primitive).map(|bounds| bounds.around())
+    }
+
+    /// Whether hits tell of primitives within what is hit ([`crate::math::Hit::inner`]).
+    fn is_nested(&self) -> bool {
+        false
+    }
 
     /// Whether anything moves while the shutter is open.
     fn moves(&self) -> bool {

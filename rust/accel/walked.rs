@@ -1,9 +1,9 @@
 //! Answers every question by walking a structure.
 
 use super::query::{Answers, Query, Wanted};
-use super::walk::{Build, Contents, Input, Lists, Mailbox, Mailboxes, Marks, Structure, TogetherBatch};
+use super::walk::{Build, Contents, Few, Input, Lists, Mailbox, Mailboxes, Marks, Structure, TogetherBatch};
 use super::{Accelerator, Info, Nearest, Primitives, SlabRay, Touches, bvh};
-use crate::math::{Aabb, DVec3, Ray, Region};
+use crate::math::{Aabb, DVec3, LANES, Ray, Region};
 use crate::shapes::triangle::{DoubleLeaves, EdgeRay, Leaves, SingleLeaves, SolidCone};
 use crate::simd::{Dispatch, Kernel, Level, Simd};
 use rayon::prelude::*;
@@ -14,6 +14,8 @@ use std::time::Instant;
 pub struct Walked<const N: usize, L> {
     structure: Box<dyn Structure>,
     contents: Contents<N, L>,
+    /// All of them, if they are few objects.
+    few: Option<Few>,
     /// Objects without end, which every ray is tested against.
     unbounded: Vec<u32>,
     /// Where a primitive stands in several leaves.
@@ -71,7 +73,8 @@ impl<const N: usize, L: Leaves<N>> Walked<N, L> {
         let mailboxes = (lists.order.len() > bounded).then(|| Mailboxes::new(mailbox, primitives.count()));
         let info = Info { primitives: bounded + unbounded.len(), ..Info::default() };
         let (nearest, count, region) = (OnceLock::new(), primitives.count(), input.region);
-        let mut walked = Self { structure, contents, unbounded, mailboxes, nearest, count, region, level, info };
+        let few = contents.few().filter(|_| mailboxes.is_none());
+        let mut walked = Self { structure, contents, few, unbounded, mailboxes, nearest, count, region, level, info };
         walked.inform();
         walked.info.build_seconds = start.elapsed().as_secs_f64();
         walked
@@ -95,7 +98,10 @@ impl<const N: usize, L: Leaves<N>> Walked<N, L> {
         self.info = Info {
             kind: format!("{}, {}", of_structure.kind, L::PRECISION),
             precision: L::PRECISION,
-            bytes: of_structure.bytes + self.contents.bytes() + size_of_val(self.unbounded.as_slice()),
+            bytes: of_structure.bytes
+                + self.contents.bytes()
+                + self.few.as_ref().map_or(0, Few::bytes)
+                + size_of_val(self.unbounded.as_slice()),
             primitives: self.info.primitives,
             build_seconds: self.info.build_seconds,
             ..of_structure
@@ -140,9 +146,12 @@ where
             return Err(format!("{bounded} primitives can be hit, not {}", self.info.primitives));
         }
         let structure = self.structure.refitted(&input, &|leaf| self.contents.primitives(leaf))?;
+        let contents = Contents::new(&input, &lists);
+        let few = contents.few().filter(|_| self.few.is_some());
         let mut walked = Self {
             structure,
-            contents: Contents::new(&input, &lists),
+            contents,
+            few,
             unbounded,
             mailboxes: self.mailboxes.as_ref().map(Mailboxes::another),
             nearest: OnceLock::new(),
@@ -179,6 +188,31 @@ where
     }
 }
 
+impl<const N: usize, L: Leaves<N>> Walked<N, L> {
+    /// Answers all rays without the structure.
+    #[inline(always)]
+    fn answer_by_few<Q: Query>(&self, few: &Few, rays: &[Ray], query: &mut Q) {
+        let Self { contents, unbounded, region, .. } = self;
+        let mut may_meet = [0; LANES];
+        for (i, ray) in rays.iter().enumerate() {
+            if i % LANES == 0 {
+                few.ask(self.level, &rays[i..rays.len().min(i + LANES)], &mut may_meet);
+            }
+            let bits = may_meet[i % LANES];
+            let edges = if bits == 0 && unbounded.is_empty() { None } else { EdgeRay::new(ray, region) };
+            let Some(edges) = edges else {
+                query.finish(i, None);
+                continue;
+            };
+            let leaf_ray = contents.ray(ray, &edges, region);
+            let mut state = query.start(i, edges.t_max);
+            let mut meet = |numbers: &[u32]| contents.meet_objects(numbers, &leaf_ray, &mut None, query, &mut state);
+            let _ = meet(unbounded) || few.numbers(bits).any(|number| meet(&[number]));
+            query.finish(i, Some((edges.along(), state)));
+        }
+    }
+}
+
 /// The triangles of a structure, as a tree is built of them.
 struct Kept {
     corners: Vec<[DVec3; 3]>,
@@ -212,7 +246,13 @@ impl<const N: usize, L: Leaves<N>, Q: Query> Kernel<N> for Batch<'_, N, L, Q> {
     #[inline(always)]
     fn run<S: Simd<N>>(self, simd: S) {
         let Self { walked, rays, mut marks, query } = self;
-        let Walked { structure, contents, unbounded, region, level, .. } = walked;
+        let Walked { structure, contents, few, unbounded, region, level, .. } = walked;
+        if let Some(few) = few
+            && matches!(Q::WANTED, Wanted::Closest | Wanted::Any)
+            && !Q::COUNTED
+        {
+            return walked.answer_by_few(few, rays, query);
+        }
         if rays.len() > 1
             && let Some(mut walk) = structure.together(Q::COUNTED, *level)
         {

@@ -275,8 +275,11 @@ impl Scene {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::HitColumns;
     use crate::scene::fixtures::{furnace, inward_box, scene, shape};
     use crate::scene::{LightSampleContext, Shape};
+    use crate::shapes::{Plane, Sphere};
+    use crate::simd::Level;
 
     #[test]
     fn a_closed_surface_is_crossed_evenly_however_the_ray_is_aimed() {
@@ -317,6 +320,59 @@ mod tests {
         let mut inside = [false; 3];
         open.contains(&[DVec3::new(0.1, 0.2, -0.5), DVec3::NAN, DVec3::new(0.0, 0.0, 1.1)], &mut inside);
         assert_eq!(inside, [true, false, false]);
+    }
+
+    #[test]
+    fn queues_meet_objects_and_triangles_as_brute_force_has_it() {
+        // Few balls, and more than few; with something that has no end.
+        for (balls, has_plane) in [(1, false), (5, true), (16, false), (40, true)] {
+            let mut numbers = crate::sampling::Sampler::new(17, balls, 0);
+            let mut draw = |dimension| {
+                let ([x, y], z) = (numbers.two(dimension), numbers.one(dimension + 2));
+                2.0 * DVec3::new(x, y, z) - 1.0
+            };
+            let mut shapes: Vec<Shape> =
+                inward_box([-2.0; 3], [4.0; 3]).into_iter().take(4).map(|mesh| shape(mesh, [0.5; 3], 0.0)).collect();
+            for ball in 0..balls {
+                let center = draw(4 * ball);
+                let surface: Arc<dyn crate::shapes::Shape> =
+                    Arc::new(Sphere { center, radius: 0.02 + 0.1 * center.x.abs() });
+                shapes.push(Shape { surface: surface.into(), ..shape(Default::default(), [0.5; 3], 0.0) });
+            }
+            if has_plane {
+                let plane: Arc<dyn crate::shapes::Shape> = Arc::new(Plane { point: -0.9 * DVec3::Z, normal: DVec3::Z });
+                shapes.push(Shape { surface: plane.into(), ..shape(Default::default(), [0.5; 3], 0.0) });
+            }
+            let scene = scene(SceneDescription { shapes, ..Default::default() });
+            let brute = crate::accel::BruteForce::over(scene.geometry(), Level::current().unwrap());
+            let mut queue = RayQueue::default();
+            let rays: Vec<Ray> = (0..1500)
+                .map(|i| {
+                    let (origin, to) = (1.5 * draw(1000 + 8 * i), draw(1004 + 8 * i));
+                    let t_max = if i % 3 == 0 { 0.8 } else { f64::INFINITY };
+                    Ray { t_max, ..Ray::new(origin, to - origin) }
+                })
+                .collect();
+            rays.iter().for_each(|ray| queue.push(ray));
+            let (mut wanted, mut occluded) = (vec![Hit::MISS; rays.len()], vec![false; rays.len()]);
+            brute.intersect(&rays, &mut wanted);
+            brute.occluded(&rays, &mut occluded);
+            let (mut hits, mut any) = (vec![Hit::MISS; rays.len()], vec![false; rays.len()]);
+            scene.intersect_queue(&mut queue, &mut hits);
+            scene.occluded_queue(&mut queue, &mut any);
+            assert!(hits == wanted && any == occluded, "{balls}");
+            scene.intersect(&rays, &mut hits);
+            scene.occluded(&rays, &mut any);
+            assert!(hits == wanted && any == occluded, "{balls}");
+            let (mut t, mut uv, mut primitive) = (vec![0.0; 1500], vec![[0.0; 2]; 1500], vec![0; 1500]);
+            let columns = scene.accelerator().by_columns().expect("nothing moves");
+            columns.intersect(&queue.columns(), HitColumns { t: &mut t, uv: &mut uv, primitive: &mut primitive });
+            for (i, hit) in wanted.iter().enumerate() {
+                assert_eq!((t[i], uv[i], primitive[i]), (hit.t, hit.uv, hit.primitive as i32));
+            }
+            let of_balls = hits.iter().filter(|hit| hit.is_hit() && hit.primitive >= 8).count();
+            assert!(of_balls > 20 && hits.len() - of_balls > 200, "{of_balls}");
+        }
     }
 
     #[test]

@@ -38,6 +38,6 @@ pub use placed::Placed;
 pub use plane::Plane;
 pub use polygon::Polygon;
 pub use revolution::Revolution;
-pub use shape::{Bounds, Drawn, Point, Seen, Shape, Site};
+pub use shape::{Ball, Bounds, Drawn, Point, Seen, Shape, Site};
 pub use sphere::Sphere;
 pub use torus::Torus;

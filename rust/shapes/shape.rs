@@ -14,7 +14,24 @@ pub struct Bounds {
     pub max: DVec3,
 }
 
+/// A ball that holds a shape.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ball {
+    /// Its middle.
+    pub center: DVec3,
+    /// Its radius, rounded up.
+    pub radius: f64,
+}
+
 impl Bounds {
+    /// A ball around the box, if that ends on every side.
+    pub fn around(&self) -> Ball {
+        // Halves do not overflow; three roundings and a root are far below what is added.
+        let (center, half) = (0.5 * self.min + 0.5 * self.max, 0.5 * self.max - 0.5 * self.min);
+        let size = half.length() + self.min.abs().max(self.max.abs()).length() * UNIT;
+        Ball { center, radius: size * (1.0 + 16.0 * UNIT) }
+    }
+
     /// Whether it ends on every side.
     pub fn is_finite(&self) -> bool {
         self.min.is_finite() && self.max.is_finite()
@@ -103,6 +120,11 @@ pub struct Seen {
 pub trait Shape: Debug + Send + Sync {
     /// The least box around it, rounded outwards.
     fn bounds(&self) -> Bounds;
+
+    /// A ball around it; infinite where it is.
+    fn around(&self) -> Ball {
+        self.bounds().around()
+    }
 
     /// The greatest `d · x` of its points x, or of a box around them, rounded up: what boxes in other spaces are made
     /// of.

@@ -3,7 +3,7 @@
 use super::line::Line;
 use super::meeting::{ball, ball_surface, tell};
 use super::solid::{Meet, Meets, Solid};
-use super::{Bounds, Candidate, Carried, Contact, Drawn, Point, Seen, Shape, Site};
+use super::{Ball, Bounds, Candidate, Carried, Contact, Drawn, Point, Seen, Shape, Site};
 use crate::math::robust::UNIT;
 use crate::math::turn::sin_cos_turn;
 use crate::math::{Affine, Bounded, DVec3, Frame, Number, Ray, Triple, ellipsoid_area};
@@ -199,6 +199,10 @@ impl Shape for Sphere {
             min: (self.center - self.radius).to_array().map(f64::next_down).into(),
             max: (self.center + self.radius).to_array().map(f64::next_up).into(),
         }
+    }
+
+    fn around(&self) -> Ball {
+        Ball { center: self.center, radius: self.radius.next_up() }
     }
 
     fn support(&self, d: DVec3) -> f64 {

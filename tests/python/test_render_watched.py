@@ -46,7 +46,7 @@ def test_watching_changes_no_bit_and_ends_with_what_is_returned(adaptive, execut
     assert len(watch) >= 3
     assert watch[-1] is image
     how |= {"samples": image.samples, "sampler": image.plan.sampler}
-    again = rw.render(scene, camera, progress=False, **how)
+    again = rw.render(scene, camera, image.plan.path, progress=False, **how)
     assert np.array_equal(again.rgb, image.rgb)
     assert np.array_equal(again.standard_error, image.standard_error)
 

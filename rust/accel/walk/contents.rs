@@ -1,7 +1,7 @@
 //! What stands in the leaves of a structure: triangles by the block, and anything else by its number.
 
 use super::mailbox::Marks;
-use super::{Input, Lists};
+use super::{Few, Input, Lists};
 use crate::accel::query::Query;
 use crate::accel::{Primitives, UserGeometry};
 use crate::math::{DVec3, Ray, Region};
@@ -57,6 +57,12 @@ impl<const N: usize, L: Leaves<N>> Contents<N, L> {
         numbers.shrink_to_fit();
         let triangles = L::new(&input.region, &order, &blocks, |p| primitives.corners(p));
         Self { triangles, ends, objects: primitives.objects(), numbers, number_ends }
+    }
+
+    /// All there is, if that is a few objects.
+    pub fn few(&self) -> Option<Few> {
+        let objects = self.objects.as_deref().filter(|_| self.ends.is_empty())?;
+        Few::new(&self.numbers, objects)
     }
 
     /// Memory held.

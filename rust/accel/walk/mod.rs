@@ -9,12 +9,14 @@
 //! nothing.
 
 mod contents;
+mod few;
 mod mailbox;
 mod parts;
 mod room;
 mod together;
 
 pub(super) use contents::Contents;
+pub(super) use few::Few;
 pub use mailbox::Mailbox;
 pub(super) use mailbox::{Mailboxes, Marks};
 pub(super) use parts::{Halves, Part, Plane};

@@ -4,7 +4,7 @@ use super::instances::Instances;
 use super::prototype::Prototype;
 use crate::accel::{UserGeometry, Wanted};
 use crate::math::Ray;
-use crate::shapes::{Bounds, Candidate, Shape};
+use crate::shapes::{Ball, Bounds, Candidate, Shape};
 use std::sync::Arc;
 
 /// Shapes by their numbers among all primitives, which increase.
@@ -77,6 +77,17 @@ impl UserGeometry for Objects {
             Some(shape) => Some(shape.bounds()),
             None => self.instance(primitive).and_then(|(instances, instance)| instances.bounds(instance)),
         }
+    }
+
+    fn around(&self, primitive: u32) -> Option<Ball> {
+        match self.get(primitive) {
+            Some(shape) => Some(shape.around()),
+            None => self.bounds(primitive).map(|bounds| bounds.around()),
+        }
+    }
+
+    fn is_nested(&self) -> bool {
+        self.has_instances()
     }
 
     fn moves(&self) -> bool {
