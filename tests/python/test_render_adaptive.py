@@ -104,7 +104,8 @@ def test_threads_and_time_change_no_bit():
         assert np.array_equal(one.standard_error, other.standard_error)
         assert one.error == other.error
     timed = render(scene, camera, seconds=0.3, adaptive=True)
-    how = {"samples": timed.samples, "sampler": timed.plan.sampler}
+    plan = timed.plan
+    how = {"samples": timed.samples, "sampler": plan.sampler, "integrator": plan.path}
     assert np.array_equal(render(scene, camera, **how, adaptive=True).rgb, timed.rgb)
 
 

@@ -45,7 +45,8 @@ def test_accelerators_change_no_bit(knot):
 def test_passes_change_no_bit(knot):
     # A render that is ended by time makes passes of other sizes.
     timed = picture(knot, seconds=0.3)
-    assert_same(picture(knot, samples=timed.samples, sampler=timed.plan.sampler), timed)
+    plan = timed.plan
+    assert_same(picture(knot, integrator=plan.path, samples=timed.samples, sampler=plan.sampler), timed)
 
 
 def test_one_seed_is_one_picture_and_another_is_another(knot):
