@@ -10,10 +10,11 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// On which floor what stands in `rust/` is.
-const FLOORS: [(&str, u8); 12] = [
+const FLOORS: [(&str, u8); 13] = [
     ("math", 0),
     ("simd", 0),
     ("sampling", 0),
+    ("timing", 0),
     ("work", 0),
     ("workers", 0),
     ("shapes", 1),

@@ -333,8 +333,8 @@ mod tests {
             };
             let mut shapes: Vec<Shape> =
                 inward_box([-2.0; 3], [4.0; 3]).into_iter().take(4).map(|mesh| shape(mesh, [0.5; 3], 0.0)).collect();
-            for ball in 0..balls {
-                let center = draw(4 * ball);
+            let centers: Vec<DVec3> = (0..balls).map(|ball| draw(4 * ball)).collect();
+            for &center in &centers {
                 let surface: Arc<dyn crate::shapes::Shape> =
                     Arc::new(Sphere { center, radius: 0.02 + 0.1 * center.x.abs() });
                 shapes.push(Shape { surface: surface.into(), ..shape(Default::default(), [0.5; 3], 0.0) });
@@ -348,7 +348,8 @@ mod tests {
             let mut queue = RayQueue::default();
             let rays: Vec<Ray> = (0..1500)
                 .map(|i| {
-                    let (origin, to) = (1.5 * draw(1000 + 8 * i), draw(1004 + 8 * i));
+                    let origin = 1.5 * draw(1000 + 8 * i);
+                    let to = centers[(i % balls) as usize] + 0.3 * draw(1004 + 8 * i);
                     let t_max = if i % 3 == 0 { 0.8 } else { f64::INFINITY };
                     Ray { t_max, ..Ray::new(origin, to - origin) }
                 })
@@ -371,7 +372,7 @@ mod tests {
                 assert_eq!((t[i], uv[i], primitive[i]), (hit.t, hit.uv, hit.primitive as i32));
             }
             let of_balls = hits.iter().filter(|hit| hit.is_hit() && hit.primitive >= 8).count();
-            assert!(of_balls > 20 && hits.len() - of_balls > 200, "{of_balls}");
+            assert!(of_balls > 20 && hits.len() - of_balls > 200, "{of_balls} of {balls}");
         }
     }
 

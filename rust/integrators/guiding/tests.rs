@@ -164,7 +164,7 @@ fn what_is_cancelled_is_not_kept() {
 
 #[test]
 fn light_is_the_rarer_the_smaller_what_it_comes_from() {
-    // From a ball above the middle of a square, on which as much light comes straight.
+    // From a ball above the middle of a square. The cell is twice as wide, and as much light comes straight to it.
     let from_ball = |radius: f64| {
         let photons: Vec<Photon> = (0..64)
             .map(|number| {
@@ -174,7 +174,7 @@ fn light_is_the_rarer_the_smaller_what_it_comes_from() {
                 Photon { flux: 1.0 / 64.0, ..photon(DVec3::new(u, v, 0.0), ball) }
             })
             .collect();
-        Guide { cells: Cells::new(photons, 1.0) }.at(DVec3::new(0.5, 0.5, 0.0)).unwrap().rarity()
+        Guide { cells: Cells::new(photons, 0.25) }.at(DVec3::new(0.5, 0.5, 0.0)).unwrap().rarity()
     };
     for radius in [0.5, 0.05, 0.005] {
         // Half of the light, squared, over the share of directions that the ball fills.

@@ -1,8 +1,8 @@
 //! A node of a wide tree: the boxes of its children by axis and side, so that each plane of all is one vector.
 //!
-//! Planes of a byte, in steps from the node's own origin (Ylitie, Karras and Laine 2017), make a node half as large, but
-//! nodes are a fifth of a tree: on 69 k to 832 k triangles scattered rays took a tenth longer, for decoding, and on flat
-//! walls, which rays leave within coarse boxes, two fifths. Sixteen bits take a quarter off, and win nothing.
+//! Planes of a byte, in steps from the node's own origin (Ylitie, Karras and Laine 2017), make a node half as large,
+//! but nodes are a fifth of a tree: on 69 k to 832 k triangles scattered rays took a tenth longer, for decoding, and on
+//! flat walls, which rays leave within coarse boxes, two fifths. Planes of two bytes win nothing.
 
 use crate::math::{Aabb, Vec3};
 use std::array::from_fn;
