@@ -162,10 +162,10 @@ impl Request {
         progress: &mut dyn Progress,
     ) -> Result<Vec<u8>, RenderError> {
         let stop = Stop::default();
-        let (done, goal) = match &self.wanted {
-            &Wanted::Alone(before, samples) => (before, Goal::Even { before, samples }),
-            &Wanted::Even { done, samples } => (done, Goal::Even { before: 0, samples }),
-            &Wanted::Planned { ref epoch, done, samples } => (done, Goal::Planned { epoch, done, samples }),
+        let (done, goal) = match self.wanted {
+            Wanted::Alone(before, samples) => (before, Goal::Even { before, samples }),
+            Wanted::Even { done, samples } => (done, Goal::Even { before: 0, samples }),
+            Wanted::Planned { ref epoch, done, samples } => (done, Goal::Planned { epoch, done, samples }),
         };
         let tiles = &mut self.tiles[..];
         let pool = pool(settings.threads).map_err(RenderError::Threads)?;
