@@ -252,6 +252,8 @@ class Rendering:
         """(K,3): seconds, samples, error."""
     @property
     def seconds(self) -> float: ...
+    def spend(self, seconds: float) -> None:
+        """Count time that was spent on it elsewhere."""
     @property
     def samples(self) -> int: ...
     @property
@@ -356,10 +358,12 @@ def pilot(
     threads: int | None,
     clamp: float | None,
     filter: Any,
+    look: Callable[[], None] | None,
 ) -> list[float]:
     """Return about the relMSE that each of some paths leaves, told from a few parts of a picture.
 
-    It depends on scene, camera and filter alone. Signals are checked as by `Rendering.go_on`.
+    It depends on scene, camera, clamp and filter alone. Signals are checked, and ``look`` is called, as by
+    `Rendering.go_on`.
     """
 
 def expose(

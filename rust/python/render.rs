@@ -101,6 +101,10 @@ impl Rendering {
     fn seconds(&self) -> f64 {
         self.0.seconds
     }
+    /// Counts time that was spent on it elsewhere.
+    fn spend(&mut self, seconds: f64) {
+        self.0.seconds += seconds.max(0.0);
+    }
     #[getter]
     fn samples(&self) -> u32 {
         self.0.film.samples()
@@ -291,8 +295,10 @@ pub fn chances(py: Python<'_>, scene: &Bound<'_, CompiledScene>, path: &Bound<'_
     Ok(py.detach(|| (any.patch(scene) > 1, any.is_guided(scene) && Guide::of(scene, &Cancel::default()).is_some())))
 }
 
-/// About the relMSE that each of some path tracers leaves with few samples, told from a few parts of a picture.
+/// About the relMSE that each of some path tracers leaves with few samples, told from a few parts of a picture. `look`
+/// is called whenever signals are heard, and may raise to end it.
 #[pyfunction]
+#[allow(clippy::too_many_arguments)]
 pub fn pilot(
     py: Python<'_>,
     scene: &Bound<'_, CompiledScene>,
@@ -301,11 +307,12 @@ pub fn pilot(
     threads: Option<usize>,
     clamp: Option<f64>,
     filter: &Bound<'_, PyAny>,
+    look: Option<Py<PyAny>>,
 ) -> PyResult<Vec<f64>> {
     let paths: Vec<Path> = paths.iter().map(integrators::path).collect::<PyResult<_>>()?;
     let filter = samplers::filter(filter)?.into();
     let settings = Settings { threads, clamp, filter, ..Settings::default() };
-    let mut watcher = Watcher { progress: None, look: None, raised: None, pause: None, written: None };
+    let mut watcher = Watcher { progress: None, look, raised: None, pause: None, written: None };
     let scene = &scene.get().0;
     let result = py.detach(|| render::pilot(scene, &*camera.0, &paths, &settings, &mut watcher));
     result.map_err(|error| watcher.error(error))

@@ -1,6 +1,7 @@
 """What is chosen for a render where nothing is named, and that a picture says so."""
 
 import pickle
+import time
 from dataclasses import FrozenInstanceError, replace
 
 import numpy as np
@@ -134,9 +135,11 @@ def test_paths_go_as_a_pilot_finds(name, reuse, caustics, why):
 
 def test_a_pilot_says_the_same_on_any_number_of_threads():
     scene, camera = made("glass_spheres", 40)
-    said = [_core.pilot(scene._compiled(), camera, WAYS, n, None, rw.BoxFilter()) for n in (1, 2, 5, None)]
+    said = [
+        _core.pilot(scene._compiled(), camera, WAYS, n, None, rw.BoxFilter(), None) for n in (1, 2, 5, None)
+    ]
     assert said == [said[0]] * 4
-    assert _core.pilot(scene._compiled(), camera, [], None, None, rw.BoxFilter()) == []
+    assert _core.pilot(scene._compiled(), camera, [], None, None, rw.BoxFilter(), None) == []
 
 
 def test_a_pilot_tells_the_error_of_the_picture():
@@ -148,7 +151,7 @@ def test_a_pilot_tells_the_error_of_the_picture():
             render(box, integrator=path, samples=8, sampler=rw.Sobol(4), seed=seed).rgb for seed in range(50)
         ]
         errors = [np.mean((rgb - truth) ** 2 / (truth**2 + 0.01)) for rgb in pictures]
-        (said,) = _core.pilot(box[0]._compiled(), box[1], [path], None, None, rw.BoxFilter())
+        (said,) = _core.pilot(box[0]._compiled(), box[1], [path], None, None, rw.BoxFilter(), None)
         # It is one picture, whose pixels have two batches each.
         off = (said - np.mean(errors)) / np.std(errors)
         assert abs(off) < 4, (said, np.mean(errors), np.std(errors))
@@ -193,3 +196,39 @@ def test_checkpoints_keep_what_was_chosen(box, tmp_path):
     # What began without sharing goes on without.
     render(box, samples=16, checkpoint=tmp_path / "small")
     assert render(box, samples=20, checkpoint=tmp_path / "small").plan.path.reuse == 1
+
+
+class Stop:
+    """Says that it is set when it has been asked so often."""
+
+    def __init__(self, asked):
+        self.left = asked
+
+    def is_set(self):
+        self.left -= 1
+        return self.left < 0
+
+
+def test_a_pilot_is_called_back_when_the_render_is_stopped():
+    # A pilot over paths of thousands of bounces takes seconds, and is asked often.
+    walls = rw.Box((-1, -1, -1), (1, 1, 1), material=rw.Diffuse(0.9999))
+    lamp = rw.PointLight((0, 0, 0), 1.0)
+    camera = rw.Camera((0.5, 0.2, 0.1), (0, 0, -1), width=512, height=512)
+    began = time.perf_counter()
+    image = rw.render(
+        rw.Scene([walls], [lamp]), camera, rw.Path(roulette_depth=10**6), stop=Stop(1), progress=False
+    )
+    assert time.perf_counter() - began < 5
+    assert image.samples == 0
+    assert image.plan["reuse"].why == "it was stopped before a pilot was back"
+
+
+def test_a_pilot_is_part_of_the_time():
+    scene, camera = made("glass_spheres", 64)
+    scene.build()
+    began = time.perf_counter()
+    image = rw.render(scene, camera, seconds=1.5, progress=False)
+    took = time.perf_counter() - began
+    assert "by a pilot" in image.plan["caustics"].why
+    assert abs(image.seconds - took) < 0.3
+    assert took < 3

@@ -26,7 +26,7 @@ from .plan import RenderPlan
 from .progress import Report, bar
 from .samplers import Sampler
 from .snapshots import Snapshots
-from .ways import followed
+from .ways import StoppedError, followed
 
 _PATH = Path()
 _FILTER: Filter = BoxFilter()
@@ -165,14 +165,23 @@ def render(
     if executor is None:
         # Here, so that what there is to warn of is told to the caller.
         scene._compiled(progress is True)
+
+    def look() -> None:
+        if stop is not None and stop.is_set():
+            raise StoppedError
+
+    looks, spent = None if stop is None else look, 0.0
     if isinstance(integrator, Path):
-        integrator, rows = followed(integrator, scene, camera, limits, threads, clamp, filter, begun)
+        what = scene, camera, limits, threads, clamp, filter
+        integrator, rows, spent = followed(integrator, *what, begun, looks)
         plan = replace(plan, rows=plan.rows + rows, path=integrator)
     if checkpoint is not None:
         identity = _identity(scene, camera, integrator, seed, adaptive, clamp, sampler, filter)
         kept = Checkpoints(checkpoint, identity)
     patch = _patch(scene, integrator)
     rendering = _begun(kept, camera, threads, adaptive, clamp, sampler, patch)
+    # A pilot is part of what a picture takes.
+    rendering.spend(spent)
     of = (scene, camera, integrator, seed, sampler, filter)
     snapshots = None if show is None else Snapshots(show)
 
@@ -189,10 +198,6 @@ def render(
         if snapshots is not None and snapshots.wait() == 0:
             snapshots.take(so_far)
 
-    def look() -> None:
-        if stop is not None and stop.is_set():
-            raise _StoppedError
-
     def run(report: Report | None) -> list[str]:
         told: list[str] = []
         try:
@@ -200,8 +205,8 @@ def render(
             if executor is not None:
                 told += _elsewhere(rendering, of, executor, limits, threads, report, rest, look)
             if executor is None or told:
-                _here(rendering, of, limits, threads, report, wait, rest, None if stop is None else look)
-        except _StoppedError:
+                _here(rendering, of, limits, threads, report, wait, rest, looks)
+        except StoppedError:
             if not rendering.counts.all():
                 told.append("stopped before every pixel had a sample")
         finally:
@@ -225,10 +230,6 @@ def render(
 
 
 _Of = tuple[Scene, AnyCamera, AnyIntegrator, int, Sampler, Filter]
-
-
-class _StoppedError(Exception):
-    """A render was stopped from elsewhere."""
 
 
 class Checked(NamedTuple):

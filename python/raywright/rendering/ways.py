@@ -1,6 +1,7 @@
 """How paths go where nothing is named: by what a pilot finds to be worth its while."""
 
-from collections.abc import Mapping
+import time
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from itertools import product
 from typing import Any
@@ -30,6 +31,10 @@ _NEVER = {
 }
 
 
+class StoppedError(Exception):
+    """A render was stopped from elsewhere."""
+
+
 def followed(
     path: Path,
     scene: Scene,
@@ -39,8 +44,9 @@ def followed(
     clamp: float | None,
     filter: Filter,
     begun: Mapping[str, Any],
-) -> tuple[Path, tuple[Choice, ...]]:
-    """Return a path tracer that leaves nothing open, and the rows of the plan that tell of it.
+    look: Callable[[], None] | None,
+) -> tuple[Path, tuple[Choice, ...], float]:
+    """Return a path tracer that leaves nothing open, rows of the plan, and the seconds it took to choose.
 
     Parameters
     ----------
@@ -52,6 +58,9 @@ def followed(
         Samples, error and seconds; None where there is no limit.
     begun : dict
         What the render is that goes on; empty if it begins.
+    look : callable, optional
+        What is called while a pilot is out, and may raise `StoppedError` to call it back: then nothing but
+        what is plain is chosen.
     """
     named = {name: getattr(path, name) for name in _PLAIN}
     why = {name: "as named" for name, value in named.items() if value is not None}
@@ -63,23 +72,29 @@ def followed(
     if open_ and expected(limits, pixels) * pixels < _SHARE * _core.PILOT:
         why |= dict.fromkeys(open_, "the picture has too few samples to send a pilot")
         open_ = []
-    if open_:
-        can = dict(zip(_PLAIN, _core.chances(scene._compiled(), path), strict=True))
+    compiled = scene._compiled() if open_ else None
+    began = time.perf_counter()
+    if compiled is not None:
+        can = dict(zip(_PLAIN, _core.chances(compiled, path), strict=True))
         why |= {name: _NEVER[name] for name in open_ if not can[name]}
         open_ = [name for name in open_ if can[name]]
     fixed = {name: _PLAIN[name] if value is None else value for name, value in named.items()}
     ways = [fixed | dict(zip(open_, way, strict=True)) for way in product(*_options(open_))]
     chosen = ways[0]
-    if open_:
+    if compiled is not None and open_:
         paths = [replace(path, **way) for way in ways]
-        errors = _core.pilot(scene._compiled(), camera, paths, threads, clamp, filter)
-        worth = [error * _cost(way) for error, way in zip(errors, ways, strict=True)]
-        least = min(worth)
-        if least < _BETTER * worth[0]:
-            chosen = ways[worth.index(least)]
-        why |= {name: _told(name, ways, worth) for name in open_}
+        try:
+            errors = _core.pilot(compiled, camera, paths, threads, clamp, filter, look)
+        except StoppedError:
+            why |= dict.fromkeys(open_, "it was stopped before a pilot was back")
+        else:
+            worth = [error * _cost(way) for error, way in zip(errors, ways, strict=True)]
+            least = min(worth)
+            if least < _BETTER * worth[0]:
+                chosen = ways[worth.index(least)]
+            why |= {name: _told(name, ways, worth) for name in open_}
     rows = tuple(Choice(name, str(chosen[name]), why[name]) for name in _PLAIN)
-    return replace(path, **chosen), rows
+    return replace(path, **chosen), rows, time.perf_counter() - began
 
 
 def _options(names: list[str]) -> list[tuple[Any, Any]]:
