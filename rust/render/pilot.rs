@@ -28,8 +28,8 @@ pub const PILOT: u32 = PARTS * SIDE * SIDE * SAMPLES;
 ///
 /// All ways are measured by the same pixels, and against the same picture: the mean of what all of them find. What
 /// [`Path::caustics`] is there for is met by few of the paths that do not aim, and by none of so few most likely; so it
-/// is told by photons what such paths would have to find ([`crate::integrators::LocalGuide::rarity`]), and that is added to the
-/// ways that do not.
+/// is told by photons what such paths would have to find ([`crate::integrators::LocalGuide::rarity`]), and that is
+/// added to the ways that do not.
 ///
 /// It depends on the scene, the camera and the filter alone: not on seeds, times or threads. `settings` that are about
 /// other things are of no account.
@@ -119,8 +119,8 @@ fn expose(scene: &Scene, camera: &dyn Camera, way: &Path, settings: &Settings, s
     tiles
 }
 
-/// For each part and pixel, [`crate::integrators::LocalGuide::rarity`] of the place that the middle of the pixel sees; 0 where that
-/// is not matt or no photon has been about.
+/// For each part and pixel, [`crate::integrators::LocalGuide::rarity`] of the place that the middle of the pixel sees;
+/// 0 where that is not matt or no photon has been about.
 fn rarity(scene: &Scene, camera: &dyn Camera, guide: &Guide) -> Vec<Vec<f64>> {
     let tell = |position: (u32, u32)| {
         let at = [f64::from(position.0) + 0.5, f64::from(position.1) + 0.5];

@@ -349,7 +349,7 @@ mod tests {
             let rays: Vec<Ray> = (0..1500)
                 .map(|i| {
                     let origin = 1.5 * draw(1000 + 8 * i);
-                    let to = centers[(i % balls) as usize] + 0.3 * draw(1004 + 8 * i);
+                    let to = centers[(i % balls) as usize] + 0.1 * draw(1004 + 8 * i);
                     let t_max = if i % 3 == 0 { 0.8 } else { f64::INFINITY };
                     Ray { t_max, ..Ray::new(origin, to - origin) }
                 })

@@ -25,9 +25,9 @@ use std::sync::Arc;
 /// goes straight to it. So photons are sent from the lights to what is sharp, and followed to where they fall
 /// (`flight.rs`); places are divided into cells of about as many of them (`cells.rs`), and photons of a cell
 /// that came by the same surfaces are taken together for a ball that light comes from (`lobe.rs`). A path draws its
-/// direction from the cones to these or from its surface, and is weighed by the density of both together (`local.rs`). So
-/// photons that are missing, or wrong, make a picture noisier and never another one, and nothing about them need be
-/// exact.
+/// direction from the cones to these or from its surface, and is weighed by the density of both together
+/// (`local.rs`). So photons that are missing, or wrong, make a picture noisier and never another one, and nothing about
+/// them need be exact.
 ///
 /// It depends on the scene alone: not on the camera, nor on threads.
 #[derive(Debug)]
@@ -36,8 +36,8 @@ pub struct Guide {
 }
 
 impl Guide {
-    /// That of a scene, which keeps it. Photons are sent when it is first asked for. `None` where none comes anywhere by
-    /// way of what is sharp, and when it is cancelled before all have come.
+    /// That of a scene, which keeps it. Photons are sent when it is first asked for. `None` where none comes anywhere
+    /// by way of what is sharp, and when it is cancelled before all have come.
     pub fn of(scene: &Scene, cancel: &Cancel) -> Option<Arc<Self>> {
         let sent = || {
             let photons = flight::photons(scene, cancel)?;
