@@ -8,7 +8,7 @@ use raywright::optics::albedo::Tabulated;
 use raywright::optics::conductors::Reflectance;
 use raywright::optics::fresnel::ConductorIndex;
 use raywright::optics::furnace::{directional_albedo, drawn_albedo};
-use raywright::optics::{Beckmann, Coated, Conductor, Dielectric, Ggx, MetallicRough, OrenNayar, Rgb, Scatter};
+use raywright::optics::{Beckmann, Bsdf, Coated, Conductor, Dielectric, Ggx, MetallicRough, OrenNayar, Rgb};
 
 /// Roughnesses, a column each.
 const ALPHAS: [f64; 9] = [1e-4, 0.001, 0.01, 0.03, 0.1, 0.2, 0.35, 0.6, 1.0];
@@ -27,7 +27,7 @@ fn cosines() -> Vec<f64> {
 
 /// The greatest loss and gain, negative and positive, of one white material. `eta` is the index below over that above,
 /// and `width` that of its sharpest lobe; by draws where there is none.
-fn extremes(scatter: &(impl Scatter + Sync), eta: f64, width: Option<f64>) -> [f64; 2] {
+fn extremes(scatter: &(impl Bsdf + Sync), eta: f64, width: Option<f64>) -> [f64; 2] {
     let sides: &[f64] = if scatter.transmits() { &[1.0, -1.0] } else { &[1.0] };
     let ways: Vec<DVec3> = cosines()
         .into_iter()
@@ -90,7 +90,7 @@ fn main() {
     // Without this flag, as `cargo test --benches` has it, one column is enough.
     let is_whole = std::env::args().any(|arg| arg == "--bench");
     let alphas = if is_whole { &ALPHAS[..] } else { &ALPHAS[5..6] };
-    println!("Light lost and gained by white surfaces in one scattering, in per cent, at the worst angle and index.");
+    println!("Light lost and gained by white surfaces in one bsdf, in per cent, at the worst angle and index.");
     println!();
     let cells = |values: Vec<String>| values.join(" | ");
     println!("| α | {} |", cells(alphas.iter().map(|alpha| format!("{alpha}")).collect()));

@@ -1,11 +1,10 @@
 //! What is seen first, rather than how bright it is.
 
 use crate::math::{Hit, Ray};
-use crate::optics::Rgb;
+use crate::optics::Bsdf;
 use crate::sampling::SamplerKind;
-use crate::scene::materials::Scattering;
 use crate::scene::textures::Needs;
-use crate::scene::{Camera, Footprint, Interaction, Scene, ShadingPoint};
+use crate::scene::{Camera, Footprint, Scene, ShadingPoint, SurfaceInteraction};
 use crate::workers::Cancel;
 use rayon::prelude::*;
 
@@ -95,31 +94,23 @@ impl Channel {
             Self::ShadingNormal => {
                 let surface = geometry.surface(ray, hit);
                 let material = scene.material_at(&surface);
-                let point = ShadingPoint::new(geometry, ray, hit, &surface, material.needs(), width);
+                let point = ShadingPoint::new(geometry, ray, hit, surface, material.needs(), width);
                 material.normal(&point).unwrap_or(surface.shading_normal).to_array()
             }
             Self::Uv => {
                 let surface = geometry.surface(ray, hit);
                 let needs = Needs { uv: true, ..Needs::NONE };
-                let [u, v] = ShadingPoint::new(geometry, ray, hit, &surface, needs, width).texture.uv;
+                let [u, v] = ShadingPoint::new(geometry, ray, hit, surface, needs, width).texture.uv;
                 [u, v, 0.0]
             }
             Self::ShapeId => number(geometry.locate(hit.primitive).0),
             Self::Primitive => number(geometry.locate(hit.primitive).1),
             Self::Albedo => {
                 let surface = geometry.surface(ray, hit);
-                albedo(Interaction::new(scene, ray, hit, surface, width, 1.0).scattering()).to_array()
+                SurfaceInteraction::new(scene, ray, hit, surface, width, 1.0).bsdf().albedo().to_array()
             }
             Self::Motion => geometry.motion(ray, hit).to_array(),
         }
-    }
-}
-
-/// The share of light that is scattered, about.
-fn albedo(scattering: &Scattering) -> Rgb {
-    match scattering {
-        Scattering::One(bsdf) => bsdf.albedo(),
-        Scattering::Several(parts) => parts.iter().map(|(weight, bsdf)| *weight * bsdf.albedo()).sum(),
     }
 }
 

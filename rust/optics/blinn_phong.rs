@@ -1,7 +1,7 @@
 //! Blinn's lobe about the half vector.
 
 use super::lobes::{Lobes, diffuse, power_cosine};
-use super::{BsdfSample, Rgb, Scatter};
+use super::{Bsdf, BsdfSample, Rgb};
 use glam::DVec3;
 use std::f64::consts::{FRAC_1_PI, PI, TAU};
 
@@ -32,7 +32,7 @@ impl BlinnPhong {
     }
 }
 
-impl Scatter for BlinnPhong {
+impl Bsdf for BlinnPhong {
     #[inline]
     fn evaluate(&self, wo: DVec3, wi: DVec3) -> (Rgb, f64) {
         if wo.z * wi.z <= 0.0 {
@@ -49,14 +49,15 @@ impl Scatter for BlinnPhong {
         if wo.z == 0.0 || self.lobes.black() {
             return None;
         }
-        let wi = if self.lobes.is_specular(choice) {
+        let is_specular = self.lobes.is_specular(choice);
+        let wi = if is_specular {
             let h = power_cosine(DVec3::new(0.0, 0.0, 1f64.copysign(wo.z)), self.exponent, u);
             h * (2.0 * wo.dot(h)) - wo
         } else {
             diffuse(wo, u)
         };
         let (value, pdf) = self.evaluate(wo, wi);
-        (pdf > 0.0).then(|| BsdfSample::new(wi, value / pdf, pdf))
+        (pdf > 0.0).then(|| BsdfSample::new(wi, value / pdf, pdf).of_lobe(self.lobes.choices(is_specular)))
     }
 
     fn albedo(&self) -> Rgb {

@@ -16,14 +16,14 @@ fn direction(degrees: f64, turn: f64) -> DVec3 {
 /// Silver's index of refraction about the middles of red, green and blue.
 const SILVER: (Rgb, Rgb) = (Rgb::new(0.0569, 0.0540, 0.0469), Rgb::new(4.2543, 3.4290, 2.8028));
 
-fn gold(outside: f64, alpha: [f64; 2]) -> Bsdf {
+fn gold(outside: f64, alpha: [f64; 2]) -> AnyBsdf {
     Conductor::metal(conductors::metal("gold").unwrap(), outside, alpha).into()
 }
 
 /// Silver and glass of some facets.
-fn faceted<F: Lossy>(alpha: [f64; 2], eta: f64) -> [Bsdf; 2]
+fn faceted<F: Lossy>(alpha: [f64; 2], eta: f64) -> [AnyBsdf; 2]
 where
-    Bsdf: From<Conductor<F>> + From<Dielectric<F>>,
+    AnyBsdf: From<Conductor<F>> + From<Dielectric<F>>,
 {
     let silver = Reflectance::Index(fresnel::ConductorIndex::new(SILVER.0, SILVER.1));
     let (brushed, alike) = (F::new(alpha), F::new([alpha[0]; 2]));
@@ -31,11 +31,11 @@ where
 }
 
 /// Plastics whose coats scatter once. What goes through them is integrated, once.
-fn plastics_once() -> &'static [Bsdf] {
-    static MADE: OnceLock<Vec<Bsdf>> = OnceLock::new();
-    fn made<F: Facets>(alpha: f64, eta: f64) -> Bsdf
+fn plastics_once() -> &'static [AnyBsdf] {
+    static MADE: OnceLock<Vec<AnyBsdf>> = OnceLock::new();
+    fn made<F: Facets>(alpha: f64, eta: f64) -> AnyBsdf
     where
-        Bsdf: From<CoatedOnce<F>>,
+        AnyBsdf: From<CoatedOnce<F>>,
     {
         let facets = Once::<F>::new([alpha; 2]);
         CoatedOnce::new(Rgb::new(0.9, 0.3, 1.0), eta, facets, Through::new(&facets, eta)).into()
@@ -47,9 +47,9 @@ fn plastics_once() -> &'static [Bsdf] {
 }
 
 /// One or more of each kind.
-fn kinds() -> Vec<Bsdf> {
+fn kinds() -> Vec<AnyBsdf> {
     let (grey, red) = (Rgb::splat(0.6), Rgb::new(0.9, 0.3, 0.1));
-    let mut kinds: Vec<Bsdf> = vec![
+    let mut kinds: Vec<AnyBsdf> = vec![
         Diffuse { reflectance: red }.into(),
         OrenNayar::new(red, 0.7).into(),
         Mirror { reflectance: red }.into(),
@@ -91,12 +91,12 @@ fn kinds() -> Vec<Bsdf> {
 }
 
 /// The index of refraction below it over that above.
-fn index(bsdf: &Bsdf) -> f64 {
+fn index(bsdf: &AnyBsdf) -> f64 {
     match bsdf {
-        Bsdf::Dielectric(d) => d.eta(),
-        Bsdf::Faceted(Faceted::BeckmannDielectric(d)) => d.eta(),
-        Bsdf::Faceted(Faceted::DielectricOnce(d)) => d.eta(),
-        Bsdf::Faceted(Faceted::BeckmannDielectricOnce(d)) => d.eta(),
+        AnyBsdf::Dielectric(d) => d.eta(),
+        AnyBsdf::Faceted(Faceted::BeckmannDielectric(d)) => d.eta(),
+        AnyBsdf::Faceted(Faceted::DielectricOnce(d)) => d.eta(),
+        AnyBsdf::Faceted(Faceted::BeckmannDielectricOnce(d)) => d.eta(),
         _ => 1.0,
     }
 }
@@ -110,13 +110,13 @@ fn directions() -> Vec<DVec3> {
     directions
 }
 
-fn draw(bsdf: &Bsdf, wo: DVec3, numbers: &mut Sampler) -> Option<BsdfSample> {
+fn draw(bsdf: &AnyBsdf, wo: DVec3, numbers: &mut Sampler) -> Option<BsdfSample> {
     let (choice, u) = (numbers.one(2), numbers.two(0));
     bsdf.sample(wo, || choice, u)
 }
 
 /// The mean weight of draws without the 1 / η² of radiance, and its standard error: the share of light scattered.
-fn share(bsdf: &Bsdf, wo: DVec3, draws: u32) -> (Rgb, f64) {
+fn share(bsdf: &AnyBsdf, wo: DVec3, draws: u32) -> (Rgb, f64) {
     let (mut sum, mut squares) = (Rgb::ZERO, 0.0);
     for i in 0..draws {
         let mut numbers = Sampler::new(9, 1, i);
@@ -135,7 +135,7 @@ fn share(bsdf: &Bsdf, wo: DVec3, draws: u32) -> (Rgb, f64) {
 fn white_is_white_at_every_roughness_and_angle() {
     let mirror = |alpha: [f64; 2]| Conductor::new(Rgb::ONE, Rgb::splat(1e9), alpha);
     for alpha in [0.0, 1e-4, 0.001, 0.01, 0.03, 0.1, 0.2, 0.35, 0.5, 0.7, 0.85, 1.0] {
-        let mut white: Vec<(Bsdf, f64)> = vec![
+        let mut white: Vec<(AnyBsdf, f64)> = vec![
             (mirror([alpha; 2]).into(), 0.005),
             (mirror([alpha, 0.2]).into(), 0.01),
             (Coated::new(Rgb::ONE, 1.5, alpha).into(), 0.005),
@@ -201,6 +201,37 @@ fn draws_weigh_what_is_evaluated() {
                 // Directions are right to 10⁻¹⁶; what is evaluated from them, to that over a lobe's width.
                 let bound = 1e-9 + 1e-12 * s.pdf.sqrt();
                 assert!(off < bound && (pdf / s.pdf - 1.0).abs() < bound, "{off:e} {pdf} {s:?} {bsdf:?} {wo}");
+            }
+        }
+    }
+}
+
+#[test]
+fn choices_say_which_lobe_is_drawn() {
+    for bsdf in kinds() {
+        for wo in directions() {
+            for i in 0..60 {
+                let mut numbers = Sampler::new(4, 0, i);
+                let (choice, u) = (numbers.one(2), numbers.two(0));
+                let drawn = |choice: f64| bsdf.sample(wo, || choice, u);
+                let Some(s) = drawn(choice) else { continue };
+                let [from, to] = s.choices;
+                assert!(0.0 <= from && from <= choice && choice < to && to <= 1.0, "{choice} {s:?} {bsdf:?} {wo}");
+                // All choices between the ends lead there, and none beyond them; a rounding may lie between.
+                let rounding = if s.is_delta() { 0.0 } else { 1e-15 };
+                let is_same =
+                    |choice| drawn(choice).is_some_and(|other| (other.wi, other.choices) == (s.wi, s.choices));
+                let is_inside = |choice: f64| from <= choice && choice < to;
+                for inside in [from + rounding, from + 0.3 * (to - from), to.next_down() - rounding] {
+                    assert!(!is_inside(inside) || is_same(inside), "{inside} {s:?} {bsdf:?} {wo}");
+                }
+                for outside in [from - rounding - 1e-15, to + rounding] {
+                    assert!(!(0.0..1.0).contains(&outside) || !is_same(outside), "{outside} {s:?} {bsdf:?} {wo}");
+                }
+                assert_eq!(s.is_through, s.wi.z * wo.z < 0.0, "{s:?} {bsdf:?} {wo}");
+                // Single directions come first.
+                let before = if from > 0.0 { drawn(0.0) } else { None };
+                assert!(!s.is_delta() || before.is_none_or(|first| first.is_delta()), "{s:?} {bsdf:?} {wo}");
             }
         }
     }

@@ -96,7 +96,7 @@ impl Chart for Slopes {
 
 /// Fails if draws contradict the density, at an error rate of 10⁻⁴ a call. What has no cell, or single directions, is a
 /// class of its own that has the rest of the probability.
-fn assert_density(bsdf: &Bsdf, wo: DVec3, chart: &impl Chart) {
+fn assert_density(bsdf: &AnyBsdf, wo: DVec3, chart: &impl Chart) {
     let mut counts = vec![0; ROWS * COLUMNS + 1];
     for i in 0..DRAWS {
         let mut numbers = Sampler::new(18, 0, i);
@@ -149,7 +149,7 @@ fn directions() -> [DVec3; 4] {
 #[test]
 fn wide_lobes_have_their_density() {
     let half = Rgb::splat(0.5);
-    let mut kinds: Vec<Bsdf> = vec![OrenNayar::new(half, 0.8).into(), Coated::new(half, 1.5, 0.0).into()];
+    let mut kinds: Vec<AnyBsdf> = vec![OrenNayar::new(half, 0.8).into(), Coated::new(half, 1.5, 0.0).into()];
     kinds.push(Phong::new(half, half, 3.0).into());
     kinds.push(BlinnPhong::new(half, half, 3.0).into());
     kinds.push(MetallicRough::new(half, 0.0, 0.0).into());
@@ -182,7 +182,7 @@ fn reflections_have_their_density() {
 /// Of metal and plastic whose facets scatter once.
 fn once_reflected<F: Facets>(alpha: [f64; 2], wo: DVec3)
 where
-    Bsdf: From<Conductor<Once<F>>> + From<CoatedOnce<F>>,
+    AnyBsdf: From<Conductor<Once<F>>> + From<CoatedOnce<F>>,
 {
     let index = fresnel::ConductorIndex::new(Rgb::splat(0.2), Rgb::splat(3.0));
     let metal = Conductor::of(Reflectance::Index(index), Some(Once::<F>::new(alpha)));

@@ -1,10 +1,11 @@
 //! Plastic, varnish, glaze: a matt base under a clear coat.
 
 use super::albedo::{Coat, Tabulated};
+use super::bsdf::either;
 use super::conductor::above;
 use super::lobes::diffuse;
 use super::mirror::mirrored;
-use super::{BsdfSample, Facets, Ggx, Rgb, Scatter, fresnel};
+use super::{Bsdf, BsdfSample, Facets, Ggx, Rgb, fresnel};
 use glam::DVec3;
 use std::f64::consts::FRAC_1_PI;
 
@@ -63,7 +64,7 @@ impl<F: Tabulated> Coated<F> {
     }
 }
 
-impl<F: Tabulated> Scatter for Coated<F> {
+impl<F: Tabulated> Bsdf for Coated<F> {
     #[inline]
     fn evaluate(&self, wo: DVec3, wi: DVec3) -> (Rgb, f64) {
         if !F::sees(wo) || !F::sees(wi) || wo.z * wi.z <= 0.0 {
@@ -92,7 +93,8 @@ impl<F: Tabulated> Scatter for Coated<F> {
         let coat = choice() < share;
         let mut wi = match &self.rough {
             None if coat => {
-                return Some(BsdfSample::delta(mirrored(wo), Rgb::splat(reflectance / share)));
+                let weight = Rgb::splat(reflectance / share);
+                return Some(BsdfSample::delta(mirrored(wo), weight).of_lobe([0.0, share]));
             }
             Some(rough) if coat => rough.facets.sample_reflection(up, u),
             _ => diffuse(up, u),
@@ -102,7 +104,7 @@ impl<F: Tabulated> Scatter for Coated<F> {
         }
         wi.z = wi.z.copysign(wo.z);
         let (value, pdf) = self.evaluate(wo, wi);
-        (pdf > 0.0).then(|| BsdfSample::new(wi, value / pdf, pdf))
+        (pdf > 0.0).then(|| BsdfSample::new(wi, value / pdf, pdf).of_lobe(either(share, coat)))
     }
 
     fn albedo(&self) -> Rgb {

@@ -1,8 +1,9 @@
 //! Plastic whose coat scatters once each time it is met.
 
+use super::bsdf::either;
 use super::conductor::above;
 use super::lobes::diffuse;
-use super::{BsdfSample, Facets, Once, Rgb, Scatter, Through, fresnel};
+use super::{Bsdf, BsdfSample, Facets, Once, Rgb, Through, fresnel};
 use glam::DVec3;
 use std::f64::consts::FRAC_1_PI;
 
@@ -36,7 +37,7 @@ impl<F: Facets> CoatedOnce<F> {
     }
 }
 
-impl<F: Facets> Scatter for CoatedOnce<F> {
+impl<F: Facets> Bsdf for CoatedOnce<F> {
     fn evaluate(&self, wo: DVec3, wi: DVec3) -> (Rgb, f64) {
         if !F::sees(wo) || !F::sees(wi) || wo.z * wi.z <= 0.0 {
             return (Rgb::ZERO, 0.0);
@@ -56,13 +57,14 @@ impl<F: Facets> Scatter for CoatedOnce<F> {
         }
         let up = above(wo);
         let share = self.share(self.through.share(up.z));
-        let mut wi = if choice() < share { self.facets.sample_reflection(up, u) } else { diffuse(up, u) };
+        let coat = choice() < share;
+        let mut wi = if coat { self.facets.sample_reflection(up, u) } else { diffuse(up, u) };
         if wi.z <= 0.0 {
             return None;
         }
         wi.z = wi.z.copysign(wo.z);
         let (value, pdf) = self.evaluate(wo, wi);
-        (pdf > 0.0).then(|| BsdfSample::new(wi, value / pdf, pdf))
+        (pdf > 0.0).then(|| BsdfSample::new(wi, value / pdf, pdf).of_lobe(either(share, coat)))
     }
 
     fn albedo(&self) -> Rgb {

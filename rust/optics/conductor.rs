@@ -1,11 +1,12 @@
 //! Metals.
 
+use super::bsdf::either;
 use super::conductors::{Metal, Reflectance};
 use super::fresnel::ConductorIndex;
 use super::lobes::Grazing;
 use super::losses::{Lossy, Lost};
 use super::mirror::mirrored;
-use super::{BsdfSample, Facets, Ggx, Rgb, Scatter};
+use super::{Bsdf, BsdfSample, Facets, Ggx, Rgb};
 use glam::DVec3;
 use std::f64::consts::{FRAC_1_PI, PI};
 
@@ -97,7 +98,7 @@ pub(super) fn above(w: DVec3) -> DVec3 {
     DVec3::new(w.x, w.y, w.z.abs())
 }
 
-impl<F: Lossy> Scatter for Conductor<F> {
+impl<F: Lossy> Bsdf for Conductor<F> {
     #[inline]
     fn evaluate(&self, wo: DVec3, wi: DVec3) -> (Rgb, f64) {
         let Some(rough) = &self.rough else {
@@ -124,13 +125,14 @@ impl<F: Lossy> Scatter for Conductor<F> {
         };
         let up = above(wo);
         let lost = rough.lost(up);
-        let mut wi = if choice() < lost { rough.grazing.sample(u) } else { rough.facets.sample_reflection(up, u) };
+        let is_multiple = choice() < lost;
+        let mut wi = if is_multiple { rough.grazing.sample(u) } else { rough.facets.sample_reflection(up, u) };
         if wi.z <= 0.0 {
             return None;
         }
         wi.z = wi.z.copysign(wo.z);
         let (value, pdf) = self.evaluate(wo, wi);
-        (pdf > 0.0).then(|| BsdfSample::new(wi, value / pdf, pdf))
+        (pdf > 0.0).then(|| BsdfSample::new(wi, value / pdf, pdf).of_lobe(either(lost, is_multiple)))
     }
 
     fn prepare(&mut self, wo: DVec3) {

@@ -4,7 +4,7 @@ use super::conductor::above;
 use super::lobes::Grazing;
 use super::losses::{Lossy, LostBetween};
 use super::mirror::mirrored;
-use super::{BsdfSample, Facets, Ggx, Rgb, Scatter, fresnel};
+use super::{Bsdf, BsdfSample, Facets, Ggx, Rgb, fresnel};
 use glam::DVec3;
 
 /// A dielectric interface, smooth or with isotropic microfacets (Walter et al., "Microfacet Models for Refraction
@@ -116,40 +116,42 @@ impl<F: Lossy> Dielectric<F> {
     #[inline]
     fn smooth_sample(&self, wo: DVec3, choice: f64) -> Option<BsdfSample> {
         let eta = self.beyond(wo);
-        if choice < fresnel::dielectric(wo.z.abs(), eta) {
-            return Some(BsdfSample::delta(mirrored(wo), Rgb::ONE));
+        let reflectance = fresnel::dielectric(wo.z.abs(), eta);
+        if choice < reflectance {
+            return Some(BsdfSample::delta(mirrored(wo), Rgb::ONE).of_lobe([0.0, reflectance]));
         }
         let wi = fresnel::refract(wo, DVec3::new(0.0, 0.0, wo.z.signum()), eta)?;
-        Some(BsdfSample { wi, weight: Rgb::splat(1.0 / (eta * eta)), pdf: f64::INFINITY, eta })
+        let drawn = BsdfSample::delta(wi, Rgb::splat(1.0 / (eta * eta)));
+        Some(drawn.through(eta).of_lobe([reflectance, 1.0]))
     }
 
     #[inline]
     fn rough_sample(&self, rough: &Rough<F>, wo: DVec3, choice: f64, u: [f64; 2]) -> Option<BsdfSample> {
         let lost = rough.interface.loss(wo);
         let eta = self.beyond(wo);
-        let (wi, single) = if choice < lost {
-            let side = if choice < lost * rough.interface.crossing(wo) { -wo.z.signum() } else { wo.z.signum() };
+        let (wi, single, choices) = if choice < lost {
+            let crossing = lost * rough.interface.crossing(wo);
+            let (side, choices) =
+                if choice < crossing { (-wo.z.signum(), [0.0, crossing]) } else { (wo.z.signum(), [crossing, lost]) };
             let scale = rough.interface.scale(DVec3::new(0.0, 0.0, side));
             let wi = Grazing::new(scale).sample(u) * DVec3::new(1.0, 1.0, side);
             if !F::sees(wi) {
                 return None;
             }
-            (wi, self.single(rough, wo, wi))
+            (wi, self.single(rough, wo, wi), choices)
         } else {
             let choice = (choice - lost) / (1.0 - lost);
             let mut h = rough.facets.sample_visible(above(wo), u);
             h.z = h.z.copysign(wo.z);
             let o = wo.dot(h);
-            if choice < fresnel::dielectric(o, eta) {
+            let reflectance = fresnel::dielectric(o, eta);
+            let between = lost + (1.0 - lost) * reflectance;
+            if choice < reflectance {
                 let wi = h * (2.0 * o) - wo;
-                (
-                    wi,
-                    if wi.z * wo.z > 0.0 {
-                        self.single(rough, wo, wi)
-                    } else {
-                        return None;
-                    },
-                )
+                if wi.z * wo.z <= 0.0 {
+                    return None;
+                }
+                (wi, self.single(rough, wo, wi), [lost, between])
             } else {
                 let wi = fresnel::refract(wo, h, eta)?;
                 if wi.z * wo.z >= 0.0 || !F::sees(wi) {
@@ -158,16 +160,16 @@ impl<F: Lossy> Dielectric<F> {
                 // |wo + η wi| without the rounding of either: near index 1 it is all that tells directions apart.
                 let e = (eta - 1.0) * (eta + 1.0);
                 let g = (e + o * o).sqrt();
-                (wi, self.refraction(rough, wo, wi, h, [o, g / eta], (e / (o + g)).powi(2)))
+                (wi, self.refraction(rough, wo, wi, h, [o, g / eta], (e / (o + g)).powi(2)), [between, 1.0])
             }
         };
         let (value, pdf) = self.both(rough, wo, wi, single);
-        let eta = if wo.z * wi.z < 0.0 { eta } else { 1.0 };
-        (pdf > 0.0).then(|| BsdfSample { wi, weight: Rgb::splat(value / pdf), pdf, eta })
+        let drawn = BsdfSample::new(wi, Rgb::splat(value / pdf), pdf).of_lobe(choices);
+        (pdf > 0.0).then(|| if wo.z * wi.z < 0.0 { drawn.through(eta) } else { drawn })
     }
 }
 
-impl<F: Lossy> Scatter for Dielectric<F> {
+impl<F: Lossy> Bsdf for Dielectric<F> {
     #[inline]
     fn evaluate(&self, wo: DVec3, wi: DVec3) -> (Rgb, f64) {
         match &self.rough {

@@ -1,6 +1,6 @@
 //! Lambert's law.
 
-use super::{BsdfSample, Rgb, Scatter};
+use super::{Bsdf, BsdfSample, Rgb};
 use crate::sampling::warp;
 use glam::DVec3;
 use std::f64::consts::FRAC_1_PI;
@@ -13,7 +13,7 @@ pub struct Diffuse {
     pub reflectance: Rgb,
 }
 
-impl Scatter for Diffuse {
+impl Bsdf for Diffuse {
     #[inline(always)]
     fn evaluate(&self, wo: DVec3, wi: DVec3) -> (Rgb, f64) {
         let pdf = if wo.z * wi.z > 0.0 { wi.z.abs() * FRAC_1_PI } else { 0.0 };
@@ -35,11 +35,16 @@ impl Scatter for Diffuse {
     fn albedo(&self) -> Rgb {
         self.reflectance
     }
+
+    #[inline(always)]
+    fn diffuse(&self) -> Option<Rgb> {
+        Some(self.reflectance)
+    }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::Bsdf;
+    use super::super::AnyBsdf;
     use super::*;
     use crate::sampling::Sampler;
     use crate::sampling::chi_square::assert_frequencies;
@@ -56,7 +61,7 @@ mod tests {
             let mut sum = Rgb::ZERO;
             for sample in 0..count {
                 let wi = warp::uniform_sphere(Sampler::new(5, 0, sample).two(0));
-                sum += Bsdf::Diffuse(GREY).evaluate(wo, wi).0 / warp::UNIFORM_SPHERE_PDF;
+                sum += AnyBsdf::Diffuse(GREY).evaluate(wo, wi).0 / warp::UNIFORM_SPHERE_PDF;
             }
             assert!((sum / f64::from(count) / GREY.reflectance - 1.0).abs().max_element() < 0.008);
         }
@@ -77,7 +82,7 @@ mod tests {
             let mut counts = vec![0; 20 * 12];
             for sample in 0..100_000 {
                 let u = Sampler::new(6, 0, sample).two(0);
-                let s = Bsdf::Diffuse(GREY).sample(wo, || unreachable!("it has one part"), u).unwrap();
+                let s = AnyBsdf::Diffuse(GREY).sample(wo, || unreachable!("it has one part"), u).unwrap();
                 let (value, pdf) = GREY.evaluate(wo, s.wi);
                 assert!((s.weight * s.pdf - value).abs().max_element() < 1e-15);
                 assert_eq!(s.pdf, pdf);

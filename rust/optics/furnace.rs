@@ -1,6 +1,6 @@
 //! What a surface gives back in a white furnace, by quadrature.
 
-use super::{Facets, Ggx, Scatter, fresnel};
+use super::{Bsdf, Facets, Ggx, fresnel};
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -8,10 +8,10 @@ use std::f64::consts::{FRAC_PI_2, PI};
 /// in the first channel: 1 where nothing is lost or gained. `eta` is the index below over that above. What goes in
 /// single directions is not in it.
 ///
-/// It asks [`Scatter::evaluate`] alone, in cells of elevation and azimuth that are halved until Gauss's rule of 3 by 3
+/// It asks [`Bsdf::evaluate`] alone, in cells of elevation and azimuth that are halved until Gauss's rule of 3 by 3
 /// points agrees with that of the cell's quarters to `precision`. They are narrow, down to the `width` of its sharpest
 /// lobe, where light is mirrored or refracted to, and near the plane.
-pub fn directional_albedo(scatter: &impl Scatter, eta: f64, wo: DVec3, width: f64, precision: f64) -> f64 {
+pub fn directional_albedo(scatter: &impl Bsdf, eta: f64, wo: DVec3, width: f64, precision: f64) -> f64 {
     let width = width.max(Ggx::SMOOTH);
     let eta = if wo.z > 0.0 { eta } else { 1.0 / eta };
     let up = DVec3::new(wo.x, wo.y, wo.z.abs());
@@ -33,7 +33,7 @@ pub fn directional_albedo(scatter: &impl Scatter, eta: f64, wo: DVec3, width: f6
 /// The same as the mean weight of so many draws, for lobes that are too thin for cells. Their numbers are Hammersley's
 /// ("Monte Carlo Methods for Solving Multivariable Problems", 1960): with 2¹⁴ the mean is right to some 10⁻⁴. (Those of
 /// a Kronecker sequence were off by 70 times as much.)
-pub fn drawn_albedo(scatter: &impl Scatter, wo: DVec3, draws: u32) -> f64 {
+pub fn drawn_albedo(scatter: &impl Bsdf, wo: DVec3, draws: u32) -> f64 {
     let weight = |i: u32| {
         let u = [(f64::from(i) + 0.5) / f64::from(draws), radical_inverse(i, 3)];
         let choice = radical_inverse(i, 2);
@@ -54,7 +54,7 @@ fn radical_inverse(mut number: u32, base: u32) -> f64 {
 }
 
 /// What comes from the side of `wo`, 1, or from beyond, −1, with lobes at these elevations.
-fn side(scatter: &impl Scatter, wo: DVec3, side: f64, lobes: &[f64], width: f64, precision: f64) -> f64 {
+fn side(scatter: &impl Bsdf, wo: DVec3, side: f64, lobes: &[f64], width: f64, precision: f64) -> f64 {
     let radius = wo.x.hypot(wo.y);
     let ahead = if radius > 0.0 { [-wo.x / radius, -wo.y / radius] } else { [1.0, 0.0] };
     // What grazes facets is moved sideways by the square of their slope.
@@ -152,7 +152,7 @@ mod tests {
 
     /// Asserts of materials by name that they give back all there is, each from all directions: an index, the width of
     /// the sharpest lobe (none to draw instead), and the name.
-    fn assert_white<S: Scatter + Sync>(cases: Vec<(S, f64, Option<f64>, String)>) {
+    fn assert_white<S: Bsdf + Sync>(cases: Vec<(S, f64, Option<f64>, String)>) {
         // Of each material some directions, which change from one to the next; all where `RAYWRIGHT_SLOW` is set.
         let step = if std::env::var_os("RAYWRIGHT_SLOW").is_some() { 1 } else { 5 };
         let asked: Vec<_> = cases.iter().flat_map(|case| COSINES.map(|cosine| (case, cosine))).step_by(step).collect();
@@ -178,7 +178,7 @@ mod tests {
 
     fn glass<F: Tabulated + Send + Sync>()
     where
-        Dielectric<F>: Scatter,
+        Dielectric<F>: Bsdf,
     {
         let etas = [0.5, 0.66, 0.75, 0.9, 0.99, 1.01, 1.1, 1.33, 1.5, 1.8, 2.4, 3.0];
         let all = ALPHAS.iter().flat_map(|&alpha| etas.map(|eta| (alpha, eta)));
@@ -190,7 +190,7 @@ mod tests {
 
     fn metal<F: Tabulated + Send + Sync>()
     where
-        Conductor<F>: Scatter,
+        Conductor<F>: Bsdf,
     {
         let white = || Reflectance::Index(ConductorIndex::new(Rgb::ONE, Rgb::splat(1e12)));
         let all = ALPHAS.iter().flat_map(|&alpha| [alpha, 0.003, 0.05, 0.3].map(|across| [alpha, across]));
@@ -203,7 +203,7 @@ mod tests {
 
     fn plastic<F: Tabulated + Send + Sync>()
     where
-        Coated<F>: Scatter,
+        Coated<F>: Bsdf,
     {
         let all = ALPHAS.iter().flat_map(|&alpha| [1.0, 1.1, 1.33, 1.5, 2.0, 3.0].map(|eta| (alpha, eta)));
         let case = |(alpha, eta)| {

@@ -1,6 +1,7 @@
 //! A diffuse part and a lobe, as the classic models have them.
 
 use super::Rgb;
+use super::bsdf::either;
 use crate::math::Frame;
 use crate::math::turn::sin_cos_turn;
 use crate::sampling::warp;
@@ -30,6 +31,12 @@ impl Lobes {
     #[inline]
     pub fn is_specular(&self, choice: impl FnOnce() -> f64) -> bool {
         self.share == 1.0 || (self.share > 0.0 && choice() < self.share)
+    }
+
+    /// The choices of the specular part, or of the other.
+    #[inline]
+    pub fn choices(&self, is_specular: bool) -> [f64; 2] {
+        either(self.share, is_specular)
     }
 
     /// The density of a draw from either part.

@@ -4,7 +4,7 @@ use super::albedo::{MirrorLoss, SchlickShare};
 use super::conductor::{above, made_up};
 use super::lobes::{Grazing, diffuse};
 use super::mirror::mirrored;
-use super::{BsdfSample, Facets, Ggx, Rgb, Scatter, fresnel};
+use super::{Bsdf, BsdfSample, Facets, Ggx, Rgb, fresnel};
 use glam::DVec3;
 use std::f64::consts::FRAC_1_PI;
 
@@ -95,7 +95,7 @@ impl MetallicRough {
     }
 }
 
-impl Scatter for MetallicRough {
+impl Bsdf for MetallicRough {
     #[inline]
     fn evaluate(&self, wo: DVec3, wi: DVec3) -> (Rgb, f64) {
         if !Ggx::sees(wo) || !Ggx::sees(wi) || wo.z * wi.z <= 0.0 {
@@ -128,9 +128,17 @@ impl Scatter for MetallicRough {
         let [facets, metal] = self.shares(self.once(up));
         let choice = choice();
         let facet = choice < facets;
+        let choices = if facet {
+            [0.0, facets]
+        } else if choice < facets + metal {
+            [facets, facets + metal]
+        } else {
+            [facets + metal, 1.0]
+        };
         let mut wi = match &self.rough {
             None if facet => {
-                return Some(BsdfSample::delta(mirrored(wo), fresnel::schlick(up.z, self.f0()) / facets));
+                let weight = fresnel::schlick(up.z, self.f0()) / facets;
+                return Some(BsdfSample::delta(mirrored(wo), weight).of_lobe([0.0, facets]));
             }
             Some(rough) if facet => rough.ggx.sample_reflection(up, u),
             _ if choice < facets + metal => self.grazing.sample(u),
@@ -141,7 +149,7 @@ impl Scatter for MetallicRough {
         }
         wi.z = wi.z.copysign(wo.z);
         let (value, pdf) = self.evaluate(wo, wi);
-        (pdf > 0.0).then(|| BsdfSample::new(wi, value / pdf, pdf))
+        (pdf > 0.0).then(|| BsdfSample::new(wi, value / pdf, pdf).of_lobe(choices))
     }
 
     fn albedo(&self) -> Rgb {

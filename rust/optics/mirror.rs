@@ -1,6 +1,6 @@
 //! A perfect mirror.
 
-use super::{BsdfSample, Rgb, Scatter};
+use super::{Bsdf, BsdfSample, Rgb};
 use glam::DVec3;
 
 /// Reflects into the one direction that Euclid's law of reflection says, the same share at every angle. Both sides
@@ -17,7 +17,7 @@ pub(super) fn mirrored(w: DVec3) -> DVec3 {
     DVec3::new(-w.x, -w.y, w.z)
 }
 
-impl Scatter for Mirror {
+impl Bsdf for Mirror {
     #[inline]
     fn evaluate(&self, _wo: DVec3, _wi: DVec3) -> (Rgb, f64) {
         (Rgb::ZERO, 0.0)

@@ -1,6 +1,7 @@
 //! Floor 1: how much light there is, and how a surface scatters it.
 
 pub mod albedo;
+mod any_bsdf;
 mod beckmann;
 mod blinn_phong;
 mod bsdf;
@@ -25,18 +26,19 @@ mod metallic_rough;
 mod mirror;
 mod null;
 mod once;
+mod one_of;
 mod oren_nayar;
 mod phong;
-mod scatter;
 pub mod spectra;
 mod spectrum;
 mod thin_dielectric;
 mod through;
 mod transparent;
 
+pub use any_bsdf::AnyBsdf;
 pub use beckmann::Beckmann;
 pub use blinn_phong::BlinnPhong;
-pub use bsdf::Bsdf;
+pub use bsdf::{Bsdf, BsdfSample};
 pub use coated::Coated;
 pub use coated_once::CoatedOnce;
 pub use conductor::Conductor;
@@ -51,7 +53,6 @@ pub use null::Null;
 pub use once::Once;
 pub use oren_nayar::OrenNayar;
 pub use phong::Phong;
-pub use scatter::{BsdfSample, Scatter};
 pub use spectrum::{Rgb, is_radiance, luminance};
 pub use thin_dielectric::ThinDielectric;
 pub use through::Through;

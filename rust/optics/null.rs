@@ -1,6 +1,6 @@
 //! What scatters nothing.
 
-use super::{BsdfSample, Rgb, Scatter};
+use super::{Bsdf, BsdfSample, Rgb};
 use glam::DVec3;
 
 /// Takes all light and gives none back: a black surface, or a lamp that only shines. What light passes as if it were
@@ -8,7 +8,7 @@ use glam::DVec3;
 #[derive(Clone, Copy, Debug)]
 pub struct Null;
 
-impl Scatter for Null {
+impl Bsdf for Null {
     #[inline]
     fn evaluate(&self, _wo: DVec3, _wi: DVec3) -> (Rgb, f64) {
         (Rgb::ZERO, 0.0)

@@ -1,6 +1,6 @@
 //! Rough matt surfaces.
 
-use super::{BsdfSample, Rgb, Scatter};
+use super::{Bsdf, BsdfSample, Rgb};
 use crate::sampling::warp;
 use glam::DVec3;
 use std::f64::consts::{FRAC_1_PI, PI};
@@ -47,7 +47,7 @@ impl OrenNayar {
     }
 }
 
-impl Scatter for OrenNayar {
+impl Bsdf for OrenNayar {
     #[inline]
     fn evaluate(&self, wo: DVec3, wi: DVec3) -> (Rgb, f64) {
         if wo.z * wi.z <= 0.0 {

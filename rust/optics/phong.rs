@@ -2,7 +2,7 @@
 
 use super::lobes::{Lobes, diffuse};
 use super::mirror::mirrored;
-use super::{BsdfSample, Rgb, Scatter};
+use super::{Bsdf, BsdfSample, Rgb};
 use glam::DVec3;
 use std::f64::consts::{FRAC_1_PI, TAU};
 
@@ -22,7 +22,7 @@ impl Phong {
     }
 }
 
-impl Scatter for Phong {
+impl Bsdf for Phong {
     #[inline]
     fn evaluate(&self, wo: DVec3, wi: DVec3) -> (Rgb, f64) {
         if wo.z * wi.z <= 0.0 {
@@ -39,13 +39,10 @@ impl Scatter for Phong {
         if wo.z == 0.0 || self.lobes.black() {
             return None;
         }
-        let wi = if self.lobes.is_specular(choice) {
-            super::lobes::power_cosine(mirrored(wo), self.exponent, u)
-        } else {
-            diffuse(wo, u)
-        };
+        let is_specular = self.lobes.is_specular(choice);
+        let wi = if is_specular { super::lobes::power_cosine(mirrored(wo), self.exponent, u) } else { diffuse(wo, u) };
         let (value, pdf) = self.evaluate(wo, wi);
-        (pdf > 0.0).then(|| BsdfSample::new(wi, value / pdf, pdf))
+        (pdf > 0.0).then(|| BsdfSample::new(wi, value / pdf, pdf).of_lobe(self.lobes.choices(is_specular)))
     }
 
     fn albedo(&self) -> Rgb {

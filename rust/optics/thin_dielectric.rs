@@ -1,7 +1,8 @@
 //! A pane of glass.
 
+use super::bsdf::either;
 use super::mirror::mirrored;
-use super::{BsdfSample, Rgb, Scatter, fresnel};
+use super::{Bsdf, BsdfSample, Rgb, fresnel};
 use glam::DVec3;
 
 /// A plane-parallel dielectric plate without thickness, the same medium on both sides: light reflects and goes straight
@@ -25,7 +26,7 @@ impl ThinDielectric {
     }
 }
 
-impl Scatter for ThinDielectric {
+impl Bsdf for ThinDielectric {
     #[inline]
     fn evaluate(&self, _wo: DVec3, _wi: DVec3) -> (Rgb, f64) {
         (Rgb::ZERO, 0.0)
@@ -36,8 +37,14 @@ impl Scatter for ThinDielectric {
         if wo.z == 0.0 {
             return None;
         }
-        let wi = if choice() < self.reflectance(wo) { mirrored(wo) } else { -wo };
-        Some(BsdfSample::delta(wi, Rgb::ONE))
+        let reflectance = self.reflectance(wo);
+        let is_reflected = choice() < reflectance;
+        let drawn = if is_reflected {
+            BsdfSample::delta(mirrored(wo), Rgb::ONE)
+        } else {
+            BsdfSample::delta(-wo, Rgb::ONE).through(1.0)
+        };
+        Some(drawn.of_lobe(either(reflectance, is_reflected)))
     }
 
     fn albedo(&self) -> Rgb {

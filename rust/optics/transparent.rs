@@ -1,6 +1,6 @@
 //! What lets light straight through.
 
-use super::{BsdfSample, Rgb, Scatter};
+use super::{Bsdf, BsdfSample, Rgb};
 use glam::DVec3;
 
 /// Lets light through as if nothing were there, or a share of it: the holes of a mask.
@@ -10,7 +10,7 @@ pub struct Transparent {
     pub transmittance: Rgb,
 }
 
-impl Scatter for Transparent {
+impl Bsdf for Transparent {
     #[inline]
     fn evaluate(&self, _wo: DVec3, _wi: DVec3) -> (Rgb, f64) {
         (Rgb::ZERO, 0.0)
@@ -18,7 +18,7 @@ impl Scatter for Transparent {
 
     #[inline]
     fn sample(&self, wo: DVec3, _choice: impl FnOnce() -> f64, _u: [f64; 2]) -> Option<BsdfSample> {
-        (self.transmittance != Rgb::ZERO).then(|| BsdfSample::delta(-wo, self.transmittance))
+        (self.transmittance != Rgb::ZERO).then(|| BsdfSample::delta(-wo, self.transmittance).through(1.0))
     }
 
     fn albedo(&self) -> Rgb {

@@ -9,7 +9,7 @@ use super::query::CompiledScene;
 use super::rays::{Parts, answer, chunks, each, share};
 use crate::math::{DVec3, Hit, Ray};
 use crate::optics::Rgb;
-use crate::scene::{Interaction, Scene, ShadingPoint};
+use crate::scene::{Encounter, Scene, ShadingPoint, SurfaceInteraction};
 
 type Vectors<'py> = Bound<'py, PyArrayDyn<f64>>;
 
@@ -26,7 +26,7 @@ struct Entry {
     ray: Ray,
     hit: Hit,
     /// None if it has met nothing.
-    here: Option<Box<Interaction>>,
+    here: Option<Box<SurfaceInteraction>>,
     /// What comes along the ray from there.
     emission: Rgb,
     /// Cosine between the way back and the normal.
@@ -42,9 +42,9 @@ impl Entry {
         let surface = scene.geometry().surface(&ray, &hit);
         let cosine = -ray.direction.dot(surface.normal);
         let emission = scene.emission_at(&surface);
-        let point = ShadingPoint::new(scene.geometry(), &ray, &hit, &surface, emission.needs(), 0.0);
+        let point = ShadingPoint::new(scene.geometry(), &ray, &hit, surface, emission.needs(), 0.0);
         let emission = emission.towards(cosine, &point.texture);
-        let here = Interaction::new(scene, &ray, &hit, surface, 0.0, 1.0);
+        let here = SurfaceInteraction::new(scene, &ray, &hit, surface, 0.0, 1.0);
         Self { ray, hit, here: Some(Box::new(here)), emission, cosine }
     }
 }
@@ -151,7 +151,11 @@ impl Interactions {
         Err(PyValueError::new_err(format!("{name} has {count} rows, expected {expected}, one for each ray")))
     }
 
-    fn vectors<'py>(&self, py: Python<'py>, of: impl Fn(&Interaction) -> DVec3 + Sync) -> PyResult<Vectors<'py>> {
+    fn vectors<'py>(
+        &self,
+        py: Python<'py>,
+        of: impl Fn(&SurfaceInteraction) -> DVec3 + Sync,
+    ) -> PyResult<Vectors<'py>> {
         filled(py, self.entries.len(), |i| self.entries[i].here.as_ref().map_or(DVec3::NAN, |here| of(here)).to_array())
     }
 }
@@ -192,17 +196,17 @@ impl Interactions {
 
     #[getter]
     fn position<'py>(&self, py: Python<'py>) -> PyResult<Vectors<'py>> {
-        self.vectors(py, Interaction::position)
+        self.vectors(py, SurfaceInteraction::position)
     }
 
     #[getter]
     fn normal<'py>(&self, py: Python<'py>) -> PyResult<Vectors<'py>> {
-        self.vectors(py, Interaction::normal)
+        self.vectors(py, SurfaceInteraction::normal)
     }
 
     #[getter]
     fn shading_normal<'py>(&self, py: Python<'py>) -> PyResult<Vectors<'py>> {
-        self.vectors(py, Interaction::shading_normal)
+        self.vectors(py, SurfaceInteraction::shading_normal)
     }
 
     /// What comes along each ray without a bounce: of a miss, from outside the scene.
@@ -247,7 +251,7 @@ impl Interactions {
         self.check("u", u.len())?;
         let ([direction, weight], pdf) = all_filled(py, self.entries.len(), |i| {
             let drawn = self.entries[i].here.as_ref().and_then(|here| here.sample(|| choice[i], u[i]));
-            drawn.map_or(([DVec3::NAN, Rgb::ZERO], 0.0), |s| ([s.direction, s.weight], s.pdf))
+            drawn.map_or(([DVec3::NAN, Rgb::ZERO], 0.0), |s| ([s.wi, s.weight], s.pdf))
         })?;
         Ok((direction, weight, pdf))
     }

@@ -8,6 +8,7 @@ use super::arrays::{Numbers, Triples, numbers, rows, sealed, unwritten};
 use super::query::CompiledScene;
 use super::rays::{answer, share};
 use crate::math::{Hit, Ray};
+use crate::scene::textures::Needs;
 
 /// Position, error, normal, shading normal, dp/du, dp/dv, dn/du, dn/dv.
 type Points<'py> = (
@@ -85,13 +86,14 @@ pub fn points<'py>(
                     Some(Ok(instance)) => (first + instance, number),
                     _ => (first + number, 0),
                 };
-                let here = geometry.point(&ray, &Hit { t: t[i], uv: uv[i], primitive, inner });
+                let hit = Hit { t: t[i], uv: uv[i], primitive, inner };
+                let here = geometry.shading_point(&ray, &hit, geometry.surface(&ray, &hit), Needs::NONE);
                 error[at] = here.point.error;
-                let told = [here.point.position, here.point.normal, here.shading_normal];
+                let told = [here.point.position, here.point.normal, here.point.shading_normal];
                 let [p, n, s] = told.map(|v| v.to_array());
                 (position[at], normal[at], shading[at]) = (p, n, s);
-                [dp_du[at], dp_dv[at]] = here.point.dp.map(|d| d.to_array());
-                [dn_du[at], dn_dv[at]] = here.point.dn.map(|d| d.to_array());
+                [dp_du[at], dp_dv[at]] = here.dp.map(|d| d.to_array());
+                [dn_du[at], dn_dv[at]] = here.dn.map(|d| d.to_array());
             }
         })?;
     }

@@ -9,7 +9,7 @@ use crate::integrators::{Guide, Integrator, Job, Path, is_matt};
 use crate::math::Hit;
 use crate::optics::Rgb;
 use crate::sampling::{BatchSize, SamplerKind};
-use crate::scene::{Camera, Interaction, Scene};
+use crate::scene::{Camera, Scene, SurfaceInteraction};
 use crate::workers::watched;
 use rayon::prelude::*;
 
@@ -133,8 +133,8 @@ fn rarity(scene: &Scene, camera: &dyn Camera, guide: &Guide) -> Vec<Vec<f64>> {
         }
         let surface = scene.geometry().surface(&seen.ray, &hit);
         let place = surface.position;
-        let here = Interaction::new(scene, &seen.ray, &hit, surface, 0.0, 1.0);
-        if !is_matt(here.scattering()) {
+        let here = SurfaceInteraction::new(scene, &seen.ray, &hit, surface, 0.0, 1.0);
+        if !is_matt(here.bsdf()) {
             return None;
         }
         guide.at(place).map(|local| local.rarity())

@@ -4,18 +4,18 @@ pub mod cameras;
 mod compiled;
 mod description;
 mod emission;
+mod encounter;
 mod first_hits;
 #[cfg(test)]
 pub(crate) mod fixtures;
 mod geometry;
-mod interaction;
 pub mod lights;
 pub mod materials;
 pub mod media;
 mod plan;
 mod ray_origin;
-mod scatters;
 mod shading;
+mod surface_interaction;
 mod surface_lanes;
 mod surface_point;
 pub mod textures;
@@ -25,13 +25,12 @@ pub use cameras::{Camera, CameraError, CameraRay, CameraRayLanes, Perspective};
 pub use compiled::Scene;
 pub use description::{DescriptionError, SceneDescription, Shape};
 pub use emission::{Emission, Sides};
+pub use encounter::Encounter;
 pub use first_hits::FirstHits;
 pub use geometry::{
     BadTransform, Geometry, Instances, Matrix, Mesh, Objects, Precision, Prototype, Rounding, Surface, Vertices,
     check_transforms, rounded,
 };
-pub(crate) use interaction::fading;
-pub use interaction::{Interaction, InteractionLanes, Scattered};
 pub use lights::{
     ConstantEnvironment, DirectionalLight, EnvironmentMap, Light, LightBounds, LightContextLanes, LightLanes,
     LightSample, LightSampleContext, Lights, Picture, PointLight, Profile, Projector, Reach, SpotLight, SunSky,
@@ -39,7 +38,8 @@ pub use lights::{
 pub use materials::{DiffuseMaterial, Material};
 pub use plan::{Plan, PlanRow, SceneNeeds, ShadingVariant};
 pub use ray_origin::RayOrigin;
-pub use scatters::Scatters;
 pub use shading::{Footprint, ShadingPoint};
+pub(crate) use surface_interaction::fading;
+pub use surface_interaction::{SurfaceInteraction, SurfaceInteractionLanes};
 pub use surface_lanes::SurfaceLanes;
-pub use surface_point::{HitPoint, SurfacePoint};
+pub use surface_point::SurfacePoint;

@@ -3,7 +3,7 @@
 use super::textures::Needs;
 use super::{Emission, Geometry, Lights, Material, Rounding};
 use crate::accel::Primitives;
-use crate::optics::{Bsdf, Rgb};
+use crate::optics::{AnyBsdf, Rgb};
 use std::borrow::Cow;
 use std::ops::BitOr;
 use std::sync::Arc;
@@ -93,7 +93,7 @@ pub struct Plan {
     /// How many lights are asked one by one where light is scattered sharply; 0 where one of all is asked.
     few: u32,
     /// How each shape scatters on either side, if it does so alike everywhere ([`Material::constant_sides`]).
-    constants: Vec<Option<[Bsdf; 2]>>,
+    constants: Vec<Option<[AnyBsdf; 2]>>,
     /// Of those that are diffuse, what each reflects.
     diffuse: Vec<Option<[Rgb; 2]>>,
 }
@@ -133,8 +133,8 @@ impl Plan {
             }
         }
         let few = if needs.scattering { lights.few() } else { 0 };
-        let colour = |sides: &Option<[Bsdf; 2]>| match sides {
-            Some([Bsdf::Diffuse(front), Bsdf::Diffuse(back)]) => Some([front.reflectance, back.reflectance]),
+        let colour = |sides: &Option<[AnyBsdf; 2]>| match sides {
+            Some([AnyBsdf::Diffuse(front), AnyBsdf::Diffuse(back)]) => Some([front.reflectance, back.reflectance]),
             _ => None,
         };
         let diffuse = constants.iter().map(colour).collect();
@@ -145,7 +145,7 @@ impl Plan {
         let is_dark = emission.is_dark();
         SceneNeeds {
             points: if is_dark { material.needs() } else { material.needs() | emission.needs() },
-            scattering: !matches!(material.constant_sides(), Some([Bsdf::Diffuse(_), Bsdf::Diffuse(_)])),
+            scattering: !matches!(material.constant_sides(), Some([AnyBsdf::Diffuse(_), AnyBsdf::Diffuse(_)])),
             masks: !material.is_opaque(),
             interiors: material.interior().is_some(),
             patterned_lights: !is_dark && emission.needs().any(),
@@ -204,7 +204,7 @@ impl Plan {
     /// How a shape scatters that is surrounded by nothing, if it does so alike everywhere; in a scene of
     /// [`ShadingVariant::Plain`] each does, and is diffuse.
     #[inline]
-    pub fn constant(&self, shape: u32, is_front: bool) -> Option<&Bsdf> {
+    pub fn constant(&self, shape: u32, is_front: bool) -> Option<&AnyBsdf> {
         self.constants[shape as usize].as_ref().map(|[front, back]| if is_front { front } else { back })
     }
 
@@ -274,7 +274,7 @@ impl Plan {
 mod tests {
     use super::*;
     use crate::scene::fixtures::{cornell, furnace, rectangle, shape};
-    use crate::scene::materials::{Interior, Scattering};
+    use crate::scene::materials::{BsdfMix, Interior};
     use crate::scene::{SceneDescription, ShadingPoint, Shape};
 
     #[test]
@@ -295,7 +295,7 @@ mod tests {
     }
 
     impl Material for Odd {
-        fn scattering(&self, _at: &ShadingPoint) -> Scattering {
+        fn bsdf(&self, _at: &ShadingPoint) -> BsdfMix {
             crate::optics::Diffuse { reflectance: crate::optics::Rgb::ONE }.into()
         }
         fn needs(&self) -> Needs {

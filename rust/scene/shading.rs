@@ -4,21 +4,23 @@ use super::SurfacePoint;
 use super::textures::TexturePoint;
 use crate::math::DVec3;
 
-/// A point that is shaded. What nobody needs there is not computed ([`Needs`](super::textures::Needs)).
+/// A point that is shaded, and how the surface lies there. What nobody needs is not computed
+/// ([`Needs`](super::textures::Needs)).
 #[derive(Clone, Copy, Debug)]
 pub struct ShadingPoint {
-    /// Where textures are asked.
+    /// The point.
+    pub point: SurfacePoint,
+    /// Where textures are asked. Where texture coordinates are not needed, coordinates on the shape stand for them: of
+    /// a triangle the weights of its second and third corner.
     pub texture: TexturePoint,
-    /// Unit geometric normal, as the winding gives it.
-    pub normal: DVec3,
-    /// Unit shading normal, on the same side.
-    pub shading_normal: DVec3,
-    /// How the point changes with the texture coordinates; zero where that is not known.
+    /// How the point changes with the texture coordinates; zero where they do not tell points apart.
     pub dp: [DVec3; 2],
-    /// How the shading normal does.
+    /// How the unit shading normal does.
     pub dn: [DVec3; 2],
     /// How the point in the space of its shape does.
     pub object_dp: [DVec3; 2],
+    /// By how much lengths there differ from those of the world, about.
+    pub scale: f64,
     /// Whether it is seen from the side that the normal points to.
     pub is_front: bool,
     /// The index of refraction on the side of the normal.
@@ -44,16 +46,16 @@ impl Footprint {
 }
 
 impl ShadingPoint {
-    /// What is known of a hit of a ray from the front without asking for more.
+    /// What is known of a point from the front without asking for more.
     #[inline]
-    pub fn plain(surface: &SurfacePoint) -> Self {
+    pub fn plain(point: SurfacePoint) -> Self {
         Self {
-            texture: TexturePoint { position: surface.position, ..TexturePoint::default() },
-            normal: surface.normal,
-            shading_normal: surface.shading_normal,
+            texture: TexturePoint { position: point.position, ..TexturePoint::default() },
+            point,
             dp: [DVec3::ZERO; 2],
             dn: [DVec3::ZERO; 2],
             object_dp: [DVec3::ZERO; 2],
+            scale: 1.0,
             is_front: true,
             outside: 1.0,
         }

@@ -1,7 +1,6 @@
 //! Points of surfaces, and what is known of them.
 
 use crate::math::{DVec3, Ray};
-use crate::shapes::Point;
 
 /// What shading needs to know of a point on a surface.
 #[derive(Clone, Copy, Debug)]
@@ -25,23 +24,5 @@ impl SurfacePoint {
     #[inline(always)]
     pub fn is_front(&self, ray: &Ray) -> bool {
         ray.direction.dot(self.normal) <= 0.0
-    }
-}
-
-/// A point of a surface with all that is known of it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct HitPoint {
-    /// Where it is, how the surface lies there, and how that changes with its coordinates: of a triangle the weights of
-    /// its second and third corner, with which it is the shading normal that changes.
-    pub point: Point,
-    /// Unit shading normal, on the same side as the normal.
-    pub shading_normal: DVec3,
-}
-
-impl HitPoint {
-    /// Less of it.
-    pub(super) fn surface(&self) -> SurfacePoint {
-        let Point { position, error, normal, .. } = self.point;
-        SurfacePoint { position, error, normal, shading_normal: self.shading_normal, shape: 0, inner: None }
     }
 }

@@ -3,9 +3,9 @@
 use super::is_matt;
 use super::photon::Photon;
 use crate::math::{DVec3, Hit, Ray};
-use crate::optics::Bsdf;
+use crate::optics::{AnyBsdf, Bsdf, BsdfSample};
 use crate::sampling::{AliasTable, Sampler, warp};
-use crate::scene::{Geometry, Interaction, LightSample, LightSampleContext, RayOrigin, Scattered, Scene};
+use crate::scene::{Encounter, Geometry, LightSample, LightSampleContext, RayOrigin, Scene, SurfaceInteraction};
 use crate::workers::Cancel;
 use rayon::prelude::*;
 
@@ -76,7 +76,7 @@ impl Targets {
     fn new(scene: &Scene) -> Option<Self> {
         let geometry = scene.geometry();
         // What is not the same at every point may be sharp at some.
-        let may_be_sharp = |bsdf: Bsdf| !is_matt(&bsdf) || bsdf.roughness() == 0.0;
+        let may_be_sharp = |bsdf: AnyBsdf| !is_matt(&bsdf) || bsdf.roughness() == 0.0;
         let is_target = |shape: u32| {
             geometry.instances_of(shape).is_some() || scene.material(shape).constant().is_none_or(may_be_sharp)
         };
@@ -189,9 +189,9 @@ impl Flight {
                 if !hits[i].is_hit() {
                     continue;
                 }
-                let here = Interaction::at(scene, &self.rays[i], &hits[i]);
+                let here = SurfaceInteraction::at(scene, &self.rays[i], &hits[i]);
                 let one = &self.flying[i];
-                if one.sharp > 0 && is_matt(here.scattering()) {
+                if one.sharp > 0 && is_matt(here.bsdf()) {
                     fallen.push(Photon {
                         position: here.ray_origin().ray(here.normal()).origin,
                         normal: here.shading_normal(),
@@ -214,7 +214,7 @@ impl Flight {
 
 impl Flying {
     /// Where it goes on to from the surface of this number on its way; `None` if that is its end.
-    fn scattered(&self, here: &Interaction, time: f64, surface: u32) -> Option<(Ray, Self)> {
+    fn scattered(&self, here: &SurfaceInteraction, time: f64, surface: u32) -> Option<(Ray, Self)> {
         let mut sampler = Sampler::new(0, self.number, surface + 1);
         let (next, counts) = branch(here, sampler.one(0), sampler.two(1))?;
         let is_sharp = next.pdf >= SHARP;
@@ -234,49 +234,25 @@ impl Flying {
         // The odd constant nearest to 2⁶⁴ over the golden ratio, as in Knuth's multiplicative hashing.
         let chain = (before ^ link).wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(29);
         let (sharp, matt) = if is_sharp { (self.sharp + 1, self.matt) } else { (0, self.matt + 1) };
-        let ray = Ray { time, ..here.ray_origin().ray(next.direction) };
+        let ray = Ray { time, ..here.ray_origin().ray(next.wi) };
         Some((ray, Self { flux, target: here.position(), chain, sharp, matt, ..*self }))
     }
 }
 
-/// Draws where a photon goes on to, and how much it counts. Of two parts of scattering, each is drawn in a quarter of
-/// all cases at least: what glass reflects is seldom drawn otherwise, and as bright, where it falls, as what goes
-/// through.
-fn branch(here: &Interaction, choice: f64, u: [f64; 2]) -> Option<(Scattered, f64)> {
-    /// How often the choice between parts is halved to know how likely each is.
-    const HALVINGS: u32 = 6;
-    let last = 1f64.next_down();
+/// Draws where a photon goes on to, and how much it counts. Of several lobes, the first and the last are each drawn in
+/// a quarter of all cases at least: what glass reflects is seldom drawn otherwise, and as bright, where it falls, as
+/// what goes through.
+fn branch(here: &SurfaceInteraction, choice: f64, u: [f64; 2]) -> Option<(BsdfSample, f64)> {
     let choice = if choice < 0.5 {
         2.0 * choice
     } else if choice < 0.75 {
         0.0
     } else {
-        last
+        1f64.next_down()
     };
-    let mut is_asked = false;
-    let next = here.sample(
-        || {
-            is_asked = true;
-            choice
-        },
-        u,
-    )?;
-    let is_same = |choice: f64| {
-        here.sample(|| choice, u).is_some_and(|other| other.direction == next.direction && other.pdf == next.pdf)
-    };
-    if !is_asked {
-        return Some((next, 1.0));
-    }
-    let is_first = is_same(0.0);
-    if is_first == is_same(last) {
-        return Some((next, 1.0));
-    }
-    let (mut low, mut high) = (0.0, 1.0);
-    for _ in 0..HALVINGS {
-        let middle = 0.5 * (low + high);
-        if is_same(middle) == is_first { low = middle } else { high = middle }
-    }
-    let first = 0.5 * (low + high);
-    let likely = if is_first { first } else { 1.0 - first };
-    Some((next, likely / (0.5 * likely + 0.25)))
+    let next = here.sample(|| choice, u)?;
+    let is_end = |is_it| if is_it { 0.25 } else { 0.0 };
+    let ends = is_end(next.choices[0] == 0.0) + is_end(next.choices[1] == 1.0);
+    let likely = next.probability();
+    Some((next, likely / (0.5 * likely + ends)))
 }

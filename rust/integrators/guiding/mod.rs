@@ -11,7 +11,8 @@ mod tests;
 pub use local::LocalGuide;
 
 use crate::math::DVec3;
-use crate::scene::{Scatters, Scene};
+use crate::optics::Bsdf;
+use crate::scene::Scene;
 use crate::workers::Cancel;
 use cells::Cells;
 use photon::Photon;
@@ -63,9 +64,9 @@ impl Guide {
 /// Whether a surface scatters light so widely that it is worth while to aim: not in single directions alone, nor in a
 /// lobe that knows better where light matters, nor to both sides.
 #[inline]
-pub fn is_matt<S: Scatters>(scattering: &S) -> bool {
+pub fn is_matt<S: Bsdf>(bsdf: &S) -> bool {
     /// The roughness of what is sharp, at most.
     const SHARP: f64 = 0.2;
-    let roughness = scattering.roughness();
-    !scattering.is_delta() && !scattering.transmits() && (roughness == 0.0 || roughness > SHARP)
+    let roughness = bsdf.roughness();
+    !bsdf.is_delta() && !bsdf.transmits() && (roughness == 0.0 || roughness > SHARP)
 }

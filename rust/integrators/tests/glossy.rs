@@ -5,24 +5,24 @@ use super::{job, radiance, samples_of};
 use crate::accel::BruteForce;
 use crate::integrators::{CameraSample, Direct, Distributed, Integrator, Path, RayCast, Whitted};
 use crate::math::{DVec3, Frame, Hit};
-use crate::optics::{Bsdf, Coated, Conductor, Rgb};
+use crate::optics::{AnyBsdf, Bsdf, Coated, Conductor, Rgb};
 use crate::sampling::Sampler;
 use crate::scene::fixtures::{rectangle, scene, shape};
 use crate::scene::{
-    ConstantEnvironment, DirectionalLight, EnvironmentMap, Instances, Interaction, Light, Mesh, Picture, PointLight,
-    Prototype, Scene, SceneDescription, ShadingVariant, Shape,
+    ConstantEnvironment, DirectionalLight, Encounter, EnvironmentMap, Instances, Light, Mesh, Picture, PointLight,
+    Prototype, Scene, SceneDescription, ShadingVariant, Shape, SurfaceInteraction,
 };
 use crate::shapes::{Plane, Sphere};
 use crate::simd::Level;
 use crate::workers::Cancel;
 use std::sync::Arc;
 
-fn metal() -> Bsdf {
+fn metal() -> AnyBsdf {
     Conductor::new(Rgb::splat(0.2), Rgb::splat(3.9), [0.2; 2]).into()
 }
 
 /// Diffuse under a coat.
-fn glaze() -> Bsdf {
+fn glaze() -> AnyBsdf {
     Coated::new(Rgb::splat(0.5), 1.5, 0.2).into()
 }
 
@@ -51,7 +51,7 @@ fn map() -> Arc<dyn Light> {
     Arc::new(EnvironmentMap::new(Arc::new(Picture::new(8, texels).unwrap()), axes, 0.5))
 }
 
-fn over(bsdf: Bsdf, mut shapes: Vec<Shape>, lights: Vec<Arc<dyn Light>>) -> Scene {
+fn over(bsdf: AnyBsdf, mut shapes: Vec<Shape>, lights: Vec<Arc<dyn Light>>) -> Scene {
     shapes.push(of(floor(), bsdf));
     scene(SceneDescription { shapes, lights })
 }
@@ -60,12 +60,12 @@ fn over(bsdf: Bsdf, mut shapes: Vec<Shape>, lights: Vec<Arc<dyn Light>>) -> Scen
 fn by_scattering(scene: &Scene, count: u32) -> (f64, f64) {
     let mut hit = [Hit::MISS];
     scene.intersect(&[DOWN], &mut hit);
-    let here = Interaction::at(scene, &DOWN, &hit[0]);
+    let here = SurfaceInteraction::at(scene, &DOWN, &hit[0]);
     let (mut sum, mut squares) = (0.0, 0.0);
     for number in 0..count {
         let mut sampler = Sampler::new(11, 0, number);
         let Some(next) = here.sample(|| sampler.one(0), Sampler::new(11, 1, number).two(0)) else { continue };
-        let ray = here.ray_origin().ray(next.direction);
+        let ray = here.ray_origin().ray(next.wi);
         scene.intersect(&[ray], &mut hit);
         let arriving = if hit[0].is_hit() {
             let surface = scene.geometry().surface(&ray, &hit[0]);

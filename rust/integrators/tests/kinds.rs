@@ -5,7 +5,7 @@ use crate::integrators::{AmbientOcclusion, Direct, Distributed, Integrator, Path
 use crate::math::{DVec3, Ray};
 use crate::optics::{Conductor, Dielectric, Mirror, Rgb};
 use crate::scene::fixtures::{furnace, rectangle, scene, shape};
-use crate::scene::materials::Scattering;
+use crate::scene::materials::BsdfMix;
 use crate::scene::textures::Needs;
 use crate::scene::{Light, Material, PointLight, Scene, SceneDescription, ShadingPoint, Shape};
 use std::f64::consts::PI;
@@ -13,10 +13,10 @@ use std::sync::Arc;
 
 /// A kind of scattering that is the same everywhere.
 #[derive(Debug)]
-struct Of(Scattering);
+struct Of(BsdfMix);
 
 impl Material for Of {
-    fn scattering(&self, _at: &ShadingPoint) -> Scattering {
+    fn bsdf(&self, _at: &ShadingPoint) -> BsdfMix {
         self.0.clone()
     }
     fn needs(&self) -> Needs {
@@ -27,8 +27,8 @@ impl Material for Of {
     }
 }
 
-pub(super) fn of(mesh: crate::scene::Mesh, scattering: impl Into<Scattering>) -> Shape {
-    Shape { material: Arc::new(Of(scattering.into())), ..shape(mesh, [0.0; 3], 0.0) }
+pub(super) fn of(mesh: crate::scene::Mesh, bsdf: impl Into<BsdfMix>) -> Shape {
+    Shape { material: Arc::new(Of(bsdf.into())), ..shape(mesh, [0.0; 3], 0.0) }
 }
 
 pub(super) fn floor() -> crate::scene::Mesh {

@@ -5,7 +5,7 @@ use crate::integrators::{Path, RayCast};
 use crate::math::{DVec3, Ray};
 use crate::optics::{Diffuse, Rgb};
 use crate::scene::fixtures::{rectangle, scene, shape};
-use crate::scene::materials::Scattering;
+use crate::scene::materials::BsdfMix;
 use crate::scene::textures::{Needs, TexturePoint};
 use crate::scene::{Material, PointLight, SceneDescription, ShadingPoint, Shape};
 use std::f64::consts::PI;
@@ -16,7 +16,7 @@ use std::sync::Arc;
 struct Veil(f64);
 
 impl Material for Veil {
-    fn scattering(&self, _at: &ShadingPoint) -> Scattering {
+    fn bsdf(&self, _at: &ShadingPoint) -> BsdfMix {
         Diffuse { reflectance: Rgb::ZERO }.into()
     }
     fn needs(&self) -> Needs {

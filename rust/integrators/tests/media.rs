@@ -5,7 +5,7 @@ use crate::integrators::Path;
 use crate::math::{DVec3, Ray, Vec3};
 use crate::optics::{Dielectric, Rgb};
 use crate::scene::fixtures::{rectangle, scene, shape};
-use crate::scene::materials::{Interior, Scattering};
+use crate::scene::materials::{BsdfMix, Interior};
 use crate::scene::textures::Needs;
 use crate::scene::{ConstantEnvironment, Material, Mesh, Scene, SceneDescription, ShadingPoint, Shape};
 use std::sync::Arc;
@@ -15,7 +15,7 @@ use std::sync::Arc;
 struct Glass(Interior, f64);
 
 impl Material for Glass {
-    fn scattering(&self, at: &ShadingPoint) -> Scattering {
+    fn bsdf(&self, at: &ShadingPoint) -> BsdfMix {
         Dielectric::new(self.0.ior / at.outside, self.1).into()
     }
     fn needs(&self) -> Needs {

@@ -6,7 +6,7 @@ use crate::math::{DVec3, Ray};
 use crate::optics::{Diffuse, Rgb};
 use crate::sampling::Sampler;
 use crate::scene::fixtures::{cornell, furnace, inward_box, rectangle, scene, shape};
-use crate::scene::materials::Scattering;
+use crate::scene::materials::BsdfMix;
 use crate::scene::textures::Needs;
 use crate::scene::{Camera, Material, Mesh, PointLight, Scene, SceneDescription, ShadingPoint, ShadingVariant, Shape};
 use crate::workers::Cancel;
@@ -188,7 +188,7 @@ fn shading_normals_do_not_bias() {
 struct Lace;
 
 impl Material for Lace {
-    fn scattering(&self, _at: &ShadingPoint) -> Scattering {
+    fn bsdf(&self, _at: &ShadingPoint) -> BsdfMix {
         Diffuse { reflectance: Rgb::splat(0.5) }.into()
     }
     fn needs(&self) -> Needs {

@@ -7,8 +7,8 @@ use crate::integrators::{CameraSample, LocalGuide};
 use crate::math::{Hit, LANES, Ray, RayLanes, VectorLanes};
 use crate::optics::Diffuse;
 use crate::sampling::SamplerLanes;
-use crate::scene::materials::Scattering;
-use crate::scene::{Interaction, InteractionLanes, LightContextLanes, SurfaceLanes};
+use crate::scene::materials::BsdfMix;
+use crate::scene::{LightContextLanes, SurfaceInteraction, SurfaceInteractionLanes, SurfaceLanes};
 
 /// Paths that have come to surfaces, at most sixteen, a lane each. The last stands in the lanes that are left.
 pub(super) struct Block<'a> {
@@ -23,7 +23,7 @@ pub(super) struct Block<'a> {
     pub dimensions: [Dimensions; LANES],
     pub numbers: SamplerLanes,
     pub surfaces: SurfaceLanes,
-    pub encounters: InteractionLanes,
+    pub encounters: SurfaceInteractionLanes,
     pub receivers: LightContextLanes,
     pub throughput: VectorLanes,
     /// Whether all of them are with what scatters by one diffuse colour.
@@ -32,7 +32,7 @@ pub(super) struct Block<'a> {
     pub reflectance: VectorLanes,
     /// Otherwise how each scatters, how wide its ray is, where light comes from by way of what is sharp, and whether
     /// roulette has been played.
-    pub scattering: Vec<Scattering>,
+    pub bsdf: Vec<BsdfMix>,
     pub width: [f64; LANES],
     pub guides: [Option<LocalGuide<'a>>; LANES],
     pub arrivals: [Arrival; LANES],
@@ -51,13 +51,13 @@ impl Block<'_> {
             goes_on: [false; LANES],
             dimensions: [Dimensions::of(0, 0); LANES],
             numbers: SamplerLanes::new(&sample.sampler),
-            encounters: InteractionLanes::at(&surfaces),
+            encounters: SurfaceInteractionLanes::at(&surfaces),
             surfaces,
             receivers: LightContextLanes::NONE,
             throughput: VectorLanes::ZERO,
             is_diffuse: false,
             reflectance: VectorLanes::ZERO,
-            scattering: Vec::new(),
+            bsdf: Vec::new(),
             width: [0.0; LANES],
             guides: [None; LANES],
             arrivals: [Arrival::GoesOn; LANES],
@@ -66,7 +66,7 @@ impl Block<'_> {
 
     /// The encounter of a lane with a diffuse surface.
     #[inline(always)]
-    pub fn diffuse(&self, lane: usize) -> Interaction<Diffuse> {
+    pub fn diffuse(&self, lane: usize) -> SurfaceInteraction<Diffuse> {
         self.encounters.get(lane, Diffuse { reflectance: self.reflectance.get(lane) })
     }
 
@@ -89,7 +89,7 @@ impl Block<'_> {
 
     /// The encounter of a lane with any other.
     #[inline(always)]
-    pub fn other(&self, lane: usize) -> Interaction<&Scattering> {
-        self.encounters.get(lane, &self.scattering[lane])
+    pub fn other(&self, lane: usize) -> SurfaceInteraction<&BsdfMix> {
+        self.encounters.get(lane, &self.bsdf[lane])
     }
 }

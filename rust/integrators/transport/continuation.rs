@@ -2,7 +2,6 @@
 
 use super::Follow;
 use super::block::Block;
-use super::delta_lobes::singles;
 use super::dimensions::Dimensions;
 use super::features::{Carried, Features};
 use super::guided::{Arrival, draw};
@@ -10,16 +9,16 @@ use super::path_state::PathState;
 use super::weights::{ROULETTE_AT_LATEST, survival};
 use super::worker::TransportWorker;
 use crate::math::{LANES, VectorLanes};
-use crate::optics::{Diffuse, Rgb};
+use crate::optics::{BsdfSample, Diffuse, Rgb};
 use crate::sampling::Pairs;
-use crate::scene::{Footprint, InteractionLanes, Scattered};
+use crate::scene::{Encounter, Footprint, SurfaceInteractionLanes};
 use crate::simd::loops;
 use std::array;
 
 loops! {
     /// From random numbers to where paths go on to from diffuse surfaces. `pdf` is 0 where it ends.
     fn go_on(
-        encounters: &InteractionLanes,
+        encounters: &SurfaceInteractionLanes,
         reflectance: &VectorLanes,
         u: &Pairs,
         origin: &mut VectorLanes,
@@ -30,7 +29,7 @@ loops! {
         for i in 0..LANES {
             let here = encounters.get(i, Diffuse { reflectance: reflectance.get(i) });
             let (towards, times, density) = match here.sample(|| 0.0, [u[0][i], u[1][i]]) {
-                Some(next) => (next.direction, next.weight, next.pdf),
+                Some(next) => (next.wi, next.weight, next.pdf),
                 None => (here.normal(), Rgb::ZERO, 0.0),
             };
             let ray = here.ray_origin().ray(towards);
@@ -119,8 +118,8 @@ impl<N: Features> TransportWorker<'_, N> {
         let here = block.other(lane);
         let mut branch =
             Branch { number: self.carried(block, lane).branch.wrapping_mul(2), splits: 1, denser: 1.0, chance: 0.0 };
-        singles(&block.scattering[lane], here.wo(), |single| {
-            if let Some(next) = here.scattered(&single) {
+        block.bsdf[lane].delta_lobes(here.wo(), |single| {
+            if let Some(next) = here.to_world(single) {
                 self.send(block, lane, &next, branch);
                 branch.number = branch.number.wrapping_add(1);
             }
@@ -196,7 +195,7 @@ impl<N: Features> TransportWorker<'_, N> {
     }
 
     /// Queues a path that goes on along a direction drawn, unless roulette ends it.
-    fn send(&mut self, block: &Block, lane: usize, next: &Scattered, branch: Branch) {
+    fn send(&mut self, block: &Block, lane: usize, next: &BsdfSample, branch: Branch) {
         let mut path = block.paths[lane];
         path.throughput *= next.weight;
         path.pdf = next.pdf;
@@ -215,7 +214,7 @@ impl<N: Features> TransportWorker<'_, N> {
         if !self.survives(&mut path, block.arrivals[lane], branch.chance) {
             return;
         }
-        let ray = block.other(lane).ray_origin().ray(next.direction);
+        let ray = block.other(lane).ray_origin().ray(next.wi);
         self.next.rays.push(&block.leaving(lane, ray));
         self.next.paths.push(path);
         if N::GENERAL {
@@ -232,7 +231,7 @@ impl<N: Features> TransportWorker<'_, N> {
     /// Shader and Texture Level of Detail Using Ray Cones", 2021), and refraction by as much as it bends; a direction
     /// drawn with density p has its neighbours, if some 256 are drawn for a pixel, about 1/√(256 p) away (after Suykens
     /// and Willems, "Path Differentials and Applications", 2001).
-    fn widened(&self, block: &Block, lane: usize, next: &Scattered) -> Footprint {
+    fn widened(&self, block: &Block, lane: usize, next: &BsdfSample) -> Footprint {
         let (before, width) = (self.carried(block, lane).footprint, block.width[lane]);
         let curvature = block.other(lane).curvature();
         let bent = if next.is_through {

@@ -7,15 +7,15 @@ use super::resampling::Resampled;
 use super::weights::power_heuristic;
 use super::worker::TransportWorker;
 use crate::math::{DVec3, LANES, VectorLanes};
-use crate::optics::{Diffuse, Rgb};
-use crate::scene::{InteractionLanes, LightLanes, LightSample};
+use crate::optics::{Bsdf, Diffuse, Rgb};
+use crate::scene::{Encounter, LightLanes, LightSample, SurfaceInteractionLanes};
 use crate::simd::loops;
 use std::array;
 
 loops! {
     /// From light that was drawn for diffuse surfaces to what arrives of it, and the rays that tell whether it does.
     fn ask(
-        encounters: &InteractionLanes,
+        encounters: &SurfaceInteractionLanes,
         reflectance: &VectorLanes,
         throughput: &VectorLanes,
         lights: &LightLanes,
@@ -55,7 +55,7 @@ impl<N: Features> TransportWorker<'_, N> {
         }
         let mut numbers = [(0, 0); LANES];
         for (lane, number) in numbers.iter_mut().enumerate().take(block.count) {
-            if block.goes_on[lane] && !block.scattering[lane].is_delta() {
+            if block.goes_on[lane] && !block.bsdf[lane].is_delta() {
                 number.1 = if self.is_first(block, lane) { self.settings.light_samples } else { 1 };
             }
         }
@@ -165,7 +165,7 @@ impl<N: Features> TransportWorker<'_, N> {
     /// Whether each of few lights is asked where the path of a lane is.
     #[inline]
     pub(super) fn asks_each(&self, block: &Block, lane: usize) -> bool {
-        !N::PLAIN && !block.is_diffuse && self.scene.plan().asks_each(|| block.scattering[lane].roughness())
+        !N::PLAIN && !block.is_diffuse && self.scene.plan().asks_each(|| block.bsdf[lane].roughness())
     }
 
     /// Queues the shadow ray of light that was drawn.

@@ -4,8 +4,8 @@ use super::path_state::PathState;
 use super::weights::survival;
 use crate::integrators::LocalGuide;
 use crate::math::DVec3;
-use crate::optics::Rgb;
-use crate::scene::{Interaction, Scattered, Scatters};
+use crate::optics::{BsdfSample, Rgb};
+use crate::scene::Encounter;
 
 /// Plays roulette for a path that was aimed and comes to a matt surface, and tells whether that ended the path, was
 /// survived, or is still to be played because the path was not aimed.
@@ -48,12 +48,7 @@ pub(super) fn density(guide: &LocalGuide, pdf: f64, direction: DVec3) -> f64 {
 
 /// A direction drawn by a surface or by where light comes from, weighed by the density of both together (Veach and
 /// Guibas, 1995: the one-sample model), and how much denser that is than the surface's.
-pub(super) fn draw<S: Scatters>(
-    here: &Interaction<S>,
-    guide: &LocalGuide,
-    choice: f64,
-    u: [f64; 2],
-) -> Option<(Scattered, f64)> {
+pub(super) fn draw(here: &impl Encounter, guide: &LocalGuide, choice: f64, u: [f64; 2]) -> Option<(BsdfSample, f64)> {
     let share = guide.share();
     if choice < share {
         let direction = guide.sample(choice / share, u);
@@ -62,16 +57,15 @@ pub(super) fn draw<S: Scatters>(
             return None;
         }
         let both = density(guide, pdf, direction);
-        let next = Scattered { direction, weight: value / both, pdf: both, eta: 1.0, is_through: false };
-        return Some((next, both / pdf));
+        return Some((BsdfSample::new(direction, value / both, both), both / pdf));
     }
     // What is left of the choice is uniform again.
     let next = here.sample(|| ((choice - share) / (1.0 - share)).min(1f64.next_down()), u)?;
-    if next.pdf == f64::INFINITY {
+    if next.is_delta() {
         let denser = 1.0 - share;
-        return Some((Scattered { weight: next.weight / denser, ..next }, denser));
+        return Some((BsdfSample { weight: next.weight / denser, ..next }, denser));
     }
-    let both = density(guide, next.pdf, next.direction);
+    let both = density(guide, next.pdf, next.wi);
     let denser = both / next.pdf;
-    Some((Scattered { weight: next.weight / denser, pdf: both, ..next }, denser))
+    Some((BsdfSample { weight: next.weight / denser, pdf: both, ..next }, denser))
 }

@@ -4,7 +4,6 @@ mod arrivals;
 mod arrive;
 mod block;
 mod continuation;
-mod delta_lobes;
 mod dimensions;
 mod direct_light;
 mod emission;

@@ -2,8 +2,8 @@
 
 use super::path_state::PathState;
 use crate::math::{DVec3, Ray};
-use crate::optics::Rgb;
-use crate::scene::{Interaction, RayOrigin, Scatters, Scene, fading};
+use crate::optics::{Bsdf, Rgb};
+use crate::scene::{Encounter, RayOrigin, Scene, SurfaceInteraction, fading};
 use crate::workers::Cancel;
 use std::ops::Range;
 
@@ -19,8 +19,8 @@ use std::ops::Range;
 /// sharing whatever lies between; shares are at most 1, so nothing is made large that was not.
 ///
 /// What a path finds at its first point, and what yⱼ emits itself, stays its own. So does the rest of a path whose
-/// second point is not diffuse, or has a shading normal that had to be bent ([`Interaction::GRAZING`]), so that it is
-/// another for each who looks: these directions are in the domain of no technique that shares, for whoever takes.
+/// second point is not diffuse, or has a shading normal that had to be bent ([`SurfaceInteraction::GRAZING`]), so that
+/// it is another for each who looks: these directions are in the domain of no technique that shares, for whoever takes.
 #[derive(Default)]
 pub(super) struct Reuse {
     /// The first point of each sample.
@@ -130,7 +130,7 @@ impl First {
             fades = fading(geometric, leaving, self.shading.dot(self.normal));
         }
         if !there.is_flat {
-            const GRAZING: f64 = Interaction::<crate::optics::Bsdf>::GRAZING;
+            const GRAZING: f64 = SurfaceInteraction::<crate::optics::AnyBsdf>::GRAZING;
             let cosine = -there.shading.dot(way);
             if cosine <= 0.0 || cosine * cosine < GRAZING * GRAZING * square {
                 return None;
@@ -155,11 +155,11 @@ impl Reuse {
     /// A path comes to a surface. Where what it finds from there on is to be shared, it goes on as the path of a sample
     /// of number `samples` or more.
     #[inline]
-    pub fn visit<S: Scatters>(&mut self, mut path: PathState, here: &Interaction<S>) -> PathState {
+    pub fn visit<S: Bsdf>(&mut self, mut path: PathState, here: &SurfaceInteraction<S>) -> PathState {
         if path.bounce > 1 {
             return path;
         }
-        let Some(reflectance) = here.scattering().diffuse() else { return path };
+        let Some(reflectance) = here.bsdf().diffuse() else { return path };
         let (shading, normal) = (here.shading_normal(), here.normal());
         // Where the one normal is seen from above and the other from below, or both from the side, nothing is
         // scattered.

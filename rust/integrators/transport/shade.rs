@@ -8,9 +8,9 @@ use super::nesting::MediumStack;
 use super::worker::TransportWorker;
 use crate::integrators::CameraSample;
 use crate::math::{LANES, Ray, VectorLanes};
-use crate::optics::{Diffuse, Rgb};
-use crate::scene::materials::Scattering;
-use crate::scene::{Interaction, InteractionLanes, LightContextLanes, LightSampleContext, Scatters};
+use crate::optics::{Bsdf, Diffuse, Rgb};
+use crate::scene::materials::BsdfMix;
+use crate::scene::{Encounter, LightContextLanes, LightSampleContext, SurfaceInteraction, SurfaceInteractionLanes};
 use crate::simd::loops;
 use crate::timing::{Part, count, timed};
 use std::array;
@@ -20,14 +20,14 @@ loops! {
     /// scatters, and it lets no light through.
     fn meet(
         directions: &VectorLanes,
-        encounters: &mut InteractionLanes,
+        encounters: &mut SurfaceInteractionLanes,
         receivers: &mut LightContextLanes,
     ) {
         for i in 0..LANES {
             let surface = encounters.surface(i);
             let ray = Ray::new(surface.position, directions.get(i));
             let normal = (surface.shading_normal, None);
-            let here = Interaction::with(&ray, surface, normal, Diffuse { reflectance: Rgb::ZERO });
+            let here = SurfaceInteraction::with(&ray, surface, normal, Diffuse { reflectance: Rgb::ZERO });
             encounters.set(i, &here);
             receivers.set(i, &here.light_context());
         }
@@ -124,35 +124,35 @@ impl<'a, N: Features> TransportWorker<'a, N> {
 
     /// Asks materials how they scatter, and all that follows from that.
     fn meet_others(&mut self, block: &mut Block<'a>, samples: &mut [CameraSample], radiance: &mut [Rgb]) {
-        block.scattering.clear();
+        block.bsdf.clear();
         for lane in 0..block.count {
             let (surface, width) = (block.surfaces.get(lane), block.width[lane]);
             let outside = if N::GENERAL && self.nested { self.boundary(block, lane).0 } else { 1.0 };
             let (ray, hit) = (block.rays[lane], block.hits[lane]);
-            let scattering = match self.scene.plan().constant(surface.shape, surface.is_front(&ray)) {
-                Some(&bsdf) if outside == 1.0 && width == 0.0 => Scattering::One(bsdf),
+            let bsdf = match self.scene.plan().constant(surface.shape, surface.is_front(&ray)) {
+                Some(&bsdf) if outside == 1.0 && width == 0.0 => BsdfMix::One(bsdf),
                 _ => {
-                    let here = Interaction::new(self.scene, &ray, &hit, surface, width, outside);
+                    let here = SurfaceInteraction::new(self.scene, &ray, &hit, surface, width, outside);
                     block.encounters.set(lane, &here);
                     block.receivers.set(lane, &here.light_context());
-                    here.into_scattering()
+                    here.into_bsdf()
                 }
             };
-            if scattering.transmits() {
+            if bsdf.transmits() {
                 block.receivers.set(lane, &LightSampleContext::free(surface.position));
             }
-            block.scattering.push(scattering);
+            block.bsdf.push(bsdf);
             if !block.goes_on[lane] {
                 continue;
             }
             let mut path = block.paths[lane];
-            let wo = block.encounters.get(lane, &block.scattering[lane]).wo();
-            block.scattering[lane].prepare(wo);
-            let here = block.encounters.get(lane, &block.scattering[lane]);
+            let wo = block.encounters.get(lane, &block.bsdf[lane]).wo();
+            block.bsdf[lane].prepare(wo);
+            let here = block.encounters.get(lane, &block.bsdf[lane]);
             if N::SHARES {
                 path = self.reuse.visit(path, &here);
             }
-            path.meet(here.scattering().again());
+            path.meet(here.bsdf().again());
             if self.guide.is_some() {
                 let sampler = &mut samples[Self::own(path.sample, samples.len())].sampler;
                 let number = || sampler.one(block.dimensions[lane].roulette());

@@ -132,6 +132,6 @@ pub(super) fn opacity(scene: &Scene, ray: &Ray, hit: &Hit) -> f64 {
         return 1.0;
     }
     let (needs, surface) = (material.needs(), scene.geometry().surface(ray, hit));
-    let texture: TexturePoint = ShadingPoint::new(scene.geometry(), ray, hit, &surface, needs, 0.0).texture;
+    let texture: TexturePoint = ShadingPoint::new(scene.geometry(), ray, hit, surface, needs, 0.0).texture;
     material.opacity(&texture).clamp(0.0, 1.0)
 }

@@ -13,9 +13,9 @@ use super::reuse::Reuse;
 use super::shadows::Shadows;
 use crate::integrators::{CameraSample, Guide, Job, LocalGuide, Worker, is_matt};
 use crate::math::{Hit, LANES};
-use crate::optics::Rgb;
+use crate::optics::{Bsdf, Rgb};
 use crate::sampling::SamplerLanes;
-use crate::scene::{Footprint, Interaction, Scatters, Scene};
+use crate::scene::{Encounter, Footprint, Scene, SurfaceInteraction};
 use crate::simd::Level;
 use crate::timing::{Part, timed};
 use crate::workers::Cancel;
@@ -127,14 +127,14 @@ impl<'a, N: Features> TransportWorker<'a, N> {
 
     /// Where light comes from by way of what is sharp, at a point that a path has come to; and whether the path goes on
     /// there.
-    pub(super) fn guided<S: Scatters>(
+    pub(super) fn guided<S: Bsdf>(
         &self,
         path: &mut PathState,
-        here: &Interaction<S>,
+        here: &SurfaceInteraction<S>,
         number: impl FnOnce() -> f64,
     ) -> (Option<LocalGuide<'a>>, Arrival) {
         let Some(guide) = self.guide else { return (None, Arrival::GoesOn) };
-        if !is_matt(here.scattering()) {
+        if !is_matt(here.bsdf()) {
             return (None, Arrival::GoesOn);
         }
         // The density with which a path comes to the second point that it shares must be known.

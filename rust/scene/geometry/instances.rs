@@ -1,12 +1,11 @@
 //! A prototype put to many places.
 
-use super::mapped::Mapped;
 use super::pose::{Pose, between, carried_by};
 use super::prototype::Prototype;
 use crate::accel::{Side, Wanted};
 use crate::math::{Hit, Ray, Singular};
 use crate::scene::textures::Needs;
-use crate::scene::{HitPoint, SurfacePoint};
+use crate::scene::{ShadingPoint, SurfacePoint};
 use crate::shapes::{Bounds, Candidate, Contact};
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -192,24 +191,20 @@ impl Instances {
         pose.point(&inside).expect("what is hit has a place")
     }
 
-    /// All about where a ray hits an instance.
+    /// What is needed of the point where a ray hits an instance.
     ///
     /// # Panics
     /// If it does not.
-    pub fn point(&self, instance: u32, ray: &Ray, hit: &Hit) -> HitPoint {
+    pub(super) fn shading_point(
+        &self,
+        instance: u32,
+        ray: &Ray,
+        hit: &Hit,
+        point: SurfacePoint,
+        needs: Needs,
+    ) -> ShadingPoint {
         let pose = self.pose(instance, ray.time).expect("what is hit has a place");
-        let inside = self.prototype.point(&pose.enter(ray), hit);
-        pose.hit_point(&inside).expect("what is hit has a place")
-    }
-
-    /// How a ray's hit of an instance lies.
-    ///
-    /// # Panics
-    /// If it is none.
-    pub(super) fn mapped(&self, instance: u32, ray: &Ray, hit: &Hit, needs: Needs) -> Mapped {
-        let pose = self.pose(instance, ray.time).expect("what is hit has a place");
-        let within = self.prototype.mapped(&pose.enter(ray), hit, needs);
-        pose.mapped(within)
+        pose.shading_point(self.prototype.shading_point(&pose.enter(ray), hit, needs), point)
     }
 }
 

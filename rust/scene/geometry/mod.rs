@@ -3,14 +3,13 @@
 mod facets;
 mod instances;
 mod lanes;
-mod mapped;
 mod motion;
 mod objects;
 mod per_vertex;
-mod points;
 mod pose;
 mod prototype;
 mod rounding;
+mod shading;
 mod vertices;
 mod watched;
 

@@ -12,11 +12,10 @@
 //! is not that of which `M` is the inverse but the inverse of `M`, is known by its residual `R = 1 − L M`: the point is
 //! off by `|R| |L p|`, and `R` is computed to within 4uκ.
 
-use super::mapped::Mapped;
 use crate::math::robust::UNIT;
 use crate::math::{Affine, DVec3, Ray, Singular};
-use crate::scene::{HitPoint, SurfacePoint};
-use crate::shapes::{Bounds, Point};
+use crate::scene::{ShadingPoint, SurfacePoint};
+use crate::shapes::Bounds;
 
 /// A linear map by its rows.
 pub type Rows = [DVec3; 3];
@@ -150,15 +149,6 @@ impl Pose {
 }
 
 impl Pose {
-    /// All about a point of the prototype's surface in the space that it is put into; none if there is none to be told.
-    pub fn hit_point(&self, here: &HitPoint) -> Option<HitPoint> {
-        let rows = self.rows()?;
-        let SurfacePoint { position, error, normal, shading_normal, .. } = self.point(&here.surface())?;
-        let (dp, dn) = (here.point.dp.map(|d| times(&rows, d)), self.turning(here.shading_normal, here.point.dn));
-        let point = Point { position, error, normal, uv: here.point.uv, dp, dn };
-        Some(HitPoint { point, shading_normal })
-    }
-
     /// How a unit normal changes in the space that it is put into, of which it is known how it does in the prototype's.
     fn turning(&self, normal: DVec3, dn: [DVec3; 2]) -> [DVec3; 2] {
         let across = |n: DVec3| self.inverse[0] * n.x + self.inverse[1] * n.y + self.inverse[2] * n.z;
@@ -184,19 +174,15 @@ impl Pose {
         Some(Affine::new(self.rows()?, self.shift))
     }
 
-    /// How a point of the prototype lies in the space that it is put into.
-    pub(super) fn mapped(&self, within: Mapped) -> Mapped {
-        let Some(rows) = self.rows() else { return within };
-        let dn = self.turning(within.shading_normal, within.dn);
+    /// How the surface of the prototype lies in the space that it is put into, of which there is `point` there.
+    pub(super) fn shading_point(&self, within: ShadingPoint, point: SurfacePoint) -> ShadingPoint {
+        let Some(rows) = self.rows() else { return ShadingPoint { point, ..within } };
         let volume = rows[0].dot(rows[1].cross(rows[2])).abs();
-        let normal = self.inverse[0] * within.shading_normal.x
-            + self.inverse[1] * within.shading_normal.y
-            + self.inverse[2] * within.shading_normal.z;
-        Mapped {
+        ShadingPoint {
+            point,
             dp: within.dp.map(|d| times(&rows, d)),
-            dn,
+            dn: self.turning(within.point.shading_normal, within.dn),
             scale: within.scale / volume.cbrt(),
-            shading_normal: normal.try_normalize().unwrap_or(within.shading_normal),
             ..within
         }
     }

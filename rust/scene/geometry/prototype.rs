@@ -1,12 +1,11 @@
 //! What is put into a scene many times: shapes in a space of their own, with an accelerator of their own.
 
 use super::Geometry;
-use super::mapped::Mapped;
 use crate::accel::{Accelerator, Primitives, Side};
 use crate::math::robust::normalising_scale;
 use crate::math::{DVec3, Hit, Ray, Region};
 use crate::scene::textures::Needs;
-use crate::scene::{Emission, HitPoint, Material, SurfacePoint};
+use crate::scene::{Emission, Material, ShadingPoint, SurfacePoint};
 use crate::shapes::Bounds;
 use rayon::prelude::*;
 use std::fmt;
@@ -129,16 +128,11 @@ impl Prototype {
         self.geometry.surface(ray, &Hit { primitive, inner, ..*hit })
     }
 
-    /// All about where a ray in its space meets the primitive of a flattened number, `inner`.
-    pub fn point(&self, ray: &Ray, hit: &Hit) -> HitPoint {
+    /// What is needed of the point where a ray in its space hits the primitive of a flattened number, `inner`.
+    pub(super) fn shading_point(&self, ray: &Ray, hit: &Hit, needs: Needs) -> ShadingPoint {
         let (primitive, inner) = self.split(hit.inner);
-        self.geometry.point(ray, &Hit { primitive, inner, ..*hit })
-    }
-
-    /// How the hit of a ray in its space lies, of the primitive of a flattened number, `inner`.
-    pub(super) fn mapped(&self, ray: &Ray, hit: &Hit, needs: Needs) -> Mapped {
-        let (primitive, inner) = self.split(hit.inner);
-        self.geometry.mapped(ray, &Hit { primitive, inner, ..*hit }, needs)
+        let hit = Hit { primitive, inner, ..*hit };
+        self.geometry.shading_point(ray, &hit, self.geometry.surface(ray, &hit), needs)
     }
 
     /// What the primitive of a flattened number is made of, and how it shines.

@@ -25,7 +25,7 @@ impl Emission {
         if !needs.any() {
             return self.towards(cosine, &TexturePoint::NOWHERE);
         }
-        self.towards(cosine, &ShadingPoint::new(geometry, ray, hit, surface, needs, width()).texture)
+        self.towards(cosine, &ShadingPoint::new(geometry, ray, hit, *surface, needs, width()).texture)
     }
 }
 

@@ -1,8 +1,8 @@
 //! Blinn's form of Phong's model.
 
 use super::phong::{parts, shares};
-use super::{Material, Scattering};
-use crate::optics::{BlinnPhong, Bsdf, Rgb};
+use super::{BsdfMix, Material};
+use crate::optics::{AnyBsdf, BlinnPhong, Rgb};
 use crate::scene::ShadingPoint;
 use crate::scene::textures::{Needs, TexturePoint, Value};
 
@@ -27,11 +27,11 @@ impl BlinnPhongMaterial {
 }
 
 impl Material for BlinnPhongMaterial {
-    fn scattering(&self, at: &ShadingPoint) -> Scattering {
+    fn bsdf(&self, at: &ShadingPoint) -> BsdfMix {
         self.bsdf(&at.texture).into()
     }
 
-    fn constant(&self) -> Option<Bsdf> {
+    fn constant(&self) -> Option<AnyBsdf> {
         (!self.needs().any()).then(|| self.bsdf(&TexturePoint::default()).into())
     }
 

@@ -1,7 +1,7 @@
 //! Bumps.
 
 use super::checks::{number, within};
-use super::{Interior, Material, Scattering};
+use super::{BsdfMix, Interior, Material};
 use crate::math::DVec3;
 use crate::optics::Rgb;
 use crate::scene::ShadingPoint;
@@ -54,8 +54,8 @@ impl BumpMap {
 }
 
 impl Material for BumpMap {
-    fn scattering(&self, at: &ShadingPoint) -> Scattering {
-        self.material.scattering(at)
+    fn bsdf(&self, at: &ShadingPoint) -> BsdfMix {
+        self.material.bsdf(at)
     }
 
     fn needs(&self) -> Needs {
@@ -82,7 +82,7 @@ impl Material for BumpMap {
 
     fn normal(&self, at: &ShadingPoint) -> Option<DVec3> {
         let own = self.material.normal(at);
-        let normal = own.unwrap_or(at.shading_normal);
+        let normal = own.unwrap_or(at.point.shading_normal);
         // Where coordinates tell no points apart there is no slope.
         if at.dp[0].cross(at.dp[1]) == DVec3::ZERO {
             return own;
@@ -103,7 +103,7 @@ impl Material for BumpMap {
         // The tangents of the raised surface (Blinn, 1978; Pharr, Jakob and Humphreys, 2023, 10.5.3).
         let [du, dv] = [0, 1].map(|k| at.dp[k] + normal * slopes[k] + at.dn[k] * mean);
         let Some(raised) = du.cross(dv).try_normalize() else { return own };
-        Some(on_its_side(if raised.dot(normal) < 0.0 { -raised } else { raised }, at.normal))
+        Some(on_its_side(if raised.dot(normal) < 0.0 { -raised } else { raised }, at.point.normal))
     }
 
     fn tangent(&self, at: &ShadingPoint) -> Option<DVec3> {

@@ -1,11 +1,11 @@
 //! Metal.
 
 use super::checks::within;
-use super::{FacetKind, Material, Roughness, Scattering};
+use super::{BsdfMix, FacetKind, Material, Roughness};
 use crate::math::DVec3;
 use crate::optics::conductors::{Metal, Reflectance};
 use crate::optics::fresnel::ConductorIndex;
-use crate::optics::{Beckmann, Bsdf, Conductor, Facets, Ggx, Once};
+use crate::optics::{AnyBsdf, Beckmann, Conductor, Facets, Ggx, Once};
 use crate::scene::ShadingPoint;
 use crate::scene::textures::{Needs, TexturePoint, Value};
 
@@ -34,7 +34,7 @@ pub enum Index {
 
 impl ConductorMaterial {
     #[inline]
-    fn bsdf(&self, point: &TexturePoint, outside: f64) -> Bsdf {
+    fn bsdf(&self, point: &TexturePoint, outside: f64) -> AnyBsdf {
         let fresnel = match &self.index {
             Index::Constants { eta, k } => {
                 Reflectance::Index(ConductorIndex::new(eta.at(point) / outside, k.at(point) / outside))
@@ -52,11 +52,11 @@ impl ConductorMaterial {
 }
 
 impl Material for ConductorMaterial {
-    fn scattering(&self, at: &ShadingPoint) -> Scattering {
+    fn bsdf(&self, at: &ShadingPoint) -> BsdfMix {
         self.bsdf(&at.texture, at.outside).into()
     }
 
-    fn constant(&self) -> Option<Bsdf> {
+    fn constant(&self) -> Option<AnyBsdf> {
         (!self.needs().any()).then(|| self.bsdf(&TexturePoint::default(), 1.0))
     }
 

@@ -1,8 +1,8 @@
 //! Glass, water, diamond.
 
 use super::checks::number;
-use super::{FacetKind, Interior, Material, Roughness, Scattering};
-use crate::optics::{Beckmann, Bsdf, Dielectric, Facets, Ggx, Once};
+use super::{BsdfMix, FacetKind, Interior, Material, Roughness};
+use crate::optics::{AnyBsdf, Beckmann, Dielectric, Facets, Ggx, Once};
 use crate::scene::ShadingPoint;
 use crate::scene::textures::{Needs, TexturePoint};
 
@@ -17,7 +17,7 @@ pub struct DielectricMaterial {
 
 impl DielectricMaterial {
     #[inline]
-    fn bsdf(&self, point: &TexturePoint, outside: f64) -> Bsdf {
+    fn bsdf(&self, point: &TexturePoint, outside: f64) -> AnyBsdf {
         let ([alpha, _], eta) = (self.roughness.alpha(point), self.interior.ior / outside);
         match self.roughness.facets {
             FacetKind::Ggx => Dielectric::of(eta, Ggx::rough([alpha; 2])).into(),
@@ -29,11 +29,11 @@ impl DielectricMaterial {
 }
 
 impl Material for DielectricMaterial {
-    fn scattering(&self, at: &ShadingPoint) -> Scattering {
+    fn bsdf(&self, at: &ShadingPoint) -> BsdfMix {
         self.bsdf(&at.texture, at.outside).into()
     }
 
-    fn constant(&self) -> Option<Bsdf> {
+    fn constant(&self) -> Option<AnyBsdf> {
         (!self.needs().any()).then(|| self.bsdf(&TexturePoint::default(), 1.0))
     }
 

@@ -1,8 +1,8 @@
 //! A matt surface.
 
 use super::checks::within;
-use super::{Material, Scattering};
-use crate::optics::{Bsdf, Diffuse, Rgb};
+use super::{BsdfMix, Material};
+use crate::optics::{AnyBsdf, Diffuse, Rgb};
 use crate::scene::ShadingPoint;
 use crate::scene::textures::{Needs, Value};
 
@@ -22,11 +22,11 @@ impl Default for DiffuseMaterial {
 
 impl Material for DiffuseMaterial {
     #[inline]
-    fn scattering(&self, at: &ShadingPoint) -> Scattering {
+    fn bsdf(&self, at: &ShadingPoint) -> BsdfMix {
         Diffuse { reflectance: self.reflectance.at(&at.texture) }.into()
     }
 
-    fn constant(&self) -> Option<Bsdf> {
+    fn constant(&self) -> Option<AnyBsdf> {
         match self.reflectance {
             Value::Constant(reflectance) => Some(Diffuse { reflectance }.into()),
             Value::Texture(_) => None,

@@ -1,7 +1,7 @@
 //! Holes.
 
 use super::checks::within;
-use super::{Interior, Material, Scattering};
+use super::{BsdfMix, Interior, Material};
 use crate::math::DVec3;
 use crate::optics::Rgb;
 use crate::scene::ShadingPoint;
@@ -18,8 +18,8 @@ pub struct Mask {
 }
 
 impl Material for Mask {
-    fn scattering(&self, at: &ShadingPoint) -> Scattering {
-        self.material.scattering(at)
+    fn bsdf(&self, at: &ShadingPoint) -> BsdfMix {
+        self.material.bsdf(at)
     }
 
     fn needs(&self) -> Needs {

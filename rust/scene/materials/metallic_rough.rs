@@ -1,8 +1,8 @@
 //! The model of glTF.
 
 use super::checks::within;
-use super::{Material, Scattering};
-use crate::optics::{Bsdf, MetallicRough};
+use super::{BsdfMix, Material};
+use crate::optics::{AnyBsdf, MetallicRough};
 use crate::scene::ShadingPoint;
 use crate::scene::textures::{Needs, TexturePoint, Value};
 
@@ -24,11 +24,11 @@ impl MetallicRoughMaterial {
 }
 
 impl Material for MetallicRoughMaterial {
-    fn scattering(&self, at: &ShadingPoint) -> Scattering {
+    fn bsdf(&self, at: &ShadingPoint) -> BsdfMix {
         self.bsdf(&at.texture).into()
     }
 
-    fn constant(&self) -> Option<Bsdf> {
+    fn constant(&self) -> Option<AnyBsdf> {
         (!self.needs().any()).then(|| self.bsdf(&TexturePoint::default()).into())
     }
 

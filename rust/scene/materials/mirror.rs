@@ -1,8 +1,8 @@
 //! A perfect mirror.
 
 use super::checks::within;
-use super::{Material, Scattering};
-use crate::optics::{Bsdf, Mirror};
+use super::{BsdfMix, Material};
+use crate::optics::{AnyBsdf, Mirror};
 use crate::scene::ShadingPoint;
 use crate::scene::textures::{Needs, TexturePoint, Value};
 
@@ -20,11 +20,11 @@ impl MirrorMaterial {
 }
 
 impl Material for MirrorMaterial {
-    fn scattering(&self, at: &ShadingPoint) -> Scattering {
+    fn bsdf(&self, at: &ShadingPoint) -> BsdfMix {
         self.bsdf(&at.texture).into()
     }
 
-    fn constant(&self) -> Option<Bsdf> {
+    fn constant(&self) -> Option<AnyBsdf> {
         (!self.needs().any()).then(|| self.bsdf(&TexturePoint::default()).into())
     }
 

@@ -1,7 +1,7 @@
 //! Two materials at once.
 
 use super::checks::within;
-use super::{Interior, Material, Scattering};
+use super::{BsdfMix, Interior, Material};
 use crate::math::DVec3;
 use crate::optics::Rgb;
 use crate::scene::ShadingPoint;
@@ -36,16 +36,16 @@ impl MixMaterial {
 }
 
 impl Material for MixMaterial {
-    fn scattering(&self, at: &ShadingPoint) -> Scattering {
+    fn bsdf(&self, at: &ShadingPoint) -> BsdfMix {
         let [a, b] = self.shares(&at.texture);
         // Of what is not there nothing need be known.
         if b == 0.0 {
-            return self.a.scattering(at);
+            return self.a.bsdf(at);
         }
         if a == 0.0 {
-            return self.b.scattering(at);
+            return self.b.bsdf(at);
         }
-        Scattering::mixed((Rgb::splat(a), self.a.scattering(at)), (Rgb::splat(b), self.b.scattering(at)))
+        BsdfMix::mixed((Rgb::splat(a), self.a.bsdf(at)), (Rgb::splat(b), self.b.bsdf(at)))
     }
 
     fn needs(&self) -> Needs {
@@ -76,7 +76,7 @@ impl Material for MixMaterial {
         if normals == [None, None] {
             return None;
         }
-        let [a, b] = normals.map(|normal| normal.unwrap_or(at.shading_normal));
+        let [a, b] = normals.map(|normal| normal.unwrap_or(at.point.shading_normal));
         let [of_a, of_b] = self.shares(&at.texture);
         // Two on one side of a plane are never opposite.
         (a * of_a + b * of_b).try_normalize()

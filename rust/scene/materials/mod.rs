@@ -1,6 +1,7 @@
 //! What surfaces are made of: one interface over all materials.
 
 mod blinn_phong;
+mod bsdf_mix;
 mod bump;
 mod checks;
 mod coats;
@@ -16,13 +17,13 @@ mod oren_nayar;
 mod phong;
 mod plastic;
 mod roughness;
-mod scattering;
 #[cfg(test)]
 mod tests;
 mod thin_dielectric;
 mod two_sided;
 
 pub use blinn_phong::BlinnPhongMaterial;
+pub use bsdf_mix::BsdfMix;
 pub use bump::BumpMap;
 pub use coats::Coats;
 pub use conductor::{ConductorMaterial, Index};
@@ -37,32 +38,31 @@ pub use oren_nayar::OrenNayarMaterial;
 pub use phong::PhongMaterial;
 pub use plastic::PlasticMaterial;
 pub use roughness::{FacetKind, Roughness};
-pub use scattering::Scattering;
 pub use thin_dielectric::ThinDielectricMaterial;
 pub use two_sided::TwoSided;
 
 use super::ShadingPoint;
 use super::textures::{Needs, TexturePoint};
 use crate::math::DVec3;
-use crate::optics::{Bsdf, Rgb};
+use crate::optics::{AnyBsdf, Rgb};
 use std::fmt::Debug;
 
 /// What a surface is made of: says how light is scattered at each of its points.
 pub trait Material: Debug + Send + Sync {
     /// How it scatters at a point.
-    fn scattering(&self, at: &ShadingPoint) -> Scattering;
+    fn bsdf(&self, at: &ShadingPoint) -> BsdfMix;
 
     /// What it must know of a point.
     fn needs(&self) -> Needs;
 
     /// How it scatters where nothing else is around, of index of refraction 1, if that is the same at every point and
     /// on both sides, and it has neither a normal nor a tangent of its own.
-    fn constant(&self) -> Option<Bsdf> {
+    fn constant(&self) -> Option<AnyBsdf> {
         None
     }
 
     /// The same where the sides may differ: on the front and on the back.
-    fn constant_sides(&self) -> Option<[Bsdf; 2]> {
+    fn constant_sides(&self) -> Option<[AnyBsdf; 2]> {
         self.constant().map(|bsdf| [bsdf; 2])
     }
 
@@ -104,7 +104,7 @@ pub trait Material: Debug + Send + Sync {
     /// (Phong, "Illumination for Computer Generated Pictures", 1975). Where these have no word for it, the share of
     /// light from everywhere that it scatters into other than single directions.
     fn ambient(&self, at: &ShadingPoint) -> Rgb {
-        self.scattering(at).matt_albedo()
+        self.bsdf(at).matt_albedo()
     }
 }
 

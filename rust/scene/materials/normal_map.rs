@@ -2,7 +2,7 @@
 
 use super::bump::on_its_side;
 use super::checks::{number, within};
-use super::{Interior, Material, Scattering};
+use super::{BsdfMix, Interior, Material};
 use crate::math::DVec3;
 use crate::optics::Rgb;
 use crate::scene::ShadingPoint;
@@ -22,8 +22,8 @@ pub struct NormalMap {
 }
 
 impl Material for NormalMap {
-    fn scattering(&self, at: &ShadingPoint) -> Scattering {
-        self.material.scattering(at)
+    fn bsdf(&self, at: &ShadingPoint) -> BsdfMix {
+        self.material.bsdf(at)
     }
 
     fn needs(&self) -> Needs {
@@ -50,7 +50,7 @@ impl Material for NormalMap {
 
     fn normal(&self, at: &ShadingPoint) -> Option<DVec3> {
         let own = self.material.normal(at);
-        let normal = own.unwrap_or(at.shading_normal);
+        let normal = own.unwrap_or(at.point.shading_normal);
         let [x, y, z] = (self.normals.at(&at.texture) * 2.0 - 1.0).to_array();
         let (x, y) = (x * self.scale, y * self.scale);
         if x == 0.0 && y == 0.0 {
@@ -61,7 +61,7 @@ impl Material for NormalMap {
         let v = normal.cross(u);
         let v = if v.dot(at.dp[1]) < 0.0 { -v } else { v };
         let Some(turned) = (u * x + v * y + normal * z.max(0.0)).try_normalize() else { return own };
-        Some(on_its_side(turned, at.normal))
+        Some(on_its_side(turned, at.point.normal))
     }
 
     fn tangent(&self, at: &ShadingPoint) -> Option<DVec3> {

@@ -1,8 +1,8 @@
 //! A rough matt surface.
 
 use super::checks::within;
-use super::{Material, Scattering};
-use crate::optics::{Bsdf, OrenNayar};
+use super::{BsdfMix, Material};
+use crate::optics::{AnyBsdf, OrenNayar};
 use crate::scene::ShadingPoint;
 use crate::scene::textures::{Needs, TexturePoint, Value};
 
@@ -22,11 +22,11 @@ impl OrenNayarMaterial {
 }
 
 impl Material for OrenNayarMaterial {
-    fn scattering(&self, at: &ShadingPoint) -> Scattering {
+    fn bsdf(&self, at: &ShadingPoint) -> BsdfMix {
         self.bsdf(&at.texture).into()
     }
 
-    fn constant(&self) -> Option<Bsdf> {
+    fn constant(&self) -> Option<AnyBsdf> {
         (!self.needs().any()).then(|| self.bsdf(&TexturePoint::default()).into())
     }
 

@@ -1,8 +1,8 @@
 //! Phong's model.
 
 use super::checks::within;
-use super::{Material, Scattering};
-use crate::optics::{Bsdf, Phong, Rgb};
+use super::{BsdfMix, Material};
+use crate::optics::{AnyBsdf, Phong, Rgb};
 use crate::scene::ShadingPoint;
 use crate::scene::textures::{Needs, TexturePoint, Value};
 
@@ -52,11 +52,11 @@ impl PhongMaterial {
 }
 
 impl Material for PhongMaterial {
-    fn scattering(&self, at: &ShadingPoint) -> Scattering {
+    fn bsdf(&self, at: &ShadingPoint) -> BsdfMix {
         self.bsdf(&at.texture).into()
     }
 
-    fn constant(&self) -> Option<Bsdf> {
+    fn constant(&self) -> Option<AnyBsdf> {
         (!self.needs().any()).then(|| self.bsdf(&TexturePoint::default()).into())
     }
 

@@ -1,8 +1,8 @@
 //! Plastic, glaze, varnish.
 
 use super::checks::{number, within};
-use super::{Coats, FacetKind, Material, Roughness, Scattering};
-use crate::optics::{Beckmann, Bsdf, Coated, CoatedOnce, Facets, Ggx, Once, Rgb};
+use super::{BsdfMix, Coats, FacetKind, Material, Roughness};
+use crate::optics::{AnyBsdf, Beckmann, Coated, CoatedOnce, Facets, Ggx, Once, Rgb};
 use crate::scene::ShadingPoint;
 use crate::scene::textures::{Needs, TexturePoint, Value};
 use std::sync::Arc;
@@ -22,7 +22,7 @@ pub struct PlasticMaterial {
 
 impl PlasticMaterial {
     #[inline]
-    fn bsdf(&self, point: &TexturePoint, outside: f64) -> Bsdf {
+    fn bsdf(&self, point: &TexturePoint, outside: f64) -> AnyBsdf {
         let ([alpha, _], eta) = (self.roughness.alpha(point), (self.ior / outside).max(1.0));
         let reflectance = self.reflectance.at(point);
         match self.roughness.facets {
@@ -34,9 +34,9 @@ impl PlasticMaterial {
     }
 
     /// Of a coat whose facets scatter once; of one without facets, if it is smooth.
-    fn once<F: Facets>(&self, reflectance: Rgb, eta: f64, alpha: f64) -> Bsdf
+    fn once<F: Facets>(&self, reflectance: Rgb, eta: f64, alpha: f64) -> AnyBsdf
     where
-        Bsdf: From<CoatedOnce<F>>,
+        AnyBsdf: From<CoatedOnce<F>>,
     {
         let Some(facets) = Once::<F>::rough([alpha; 2]) else {
             return Coated::new(reflectance, eta, 0.0).into();
@@ -47,11 +47,11 @@ impl PlasticMaterial {
 }
 
 impl Material for PlasticMaterial {
-    fn scattering(&self, at: &ShadingPoint) -> Scattering {
+    fn bsdf(&self, at: &ShadingPoint) -> BsdfMix {
         self.bsdf(&at.texture, at.outside).into()
     }
 
-    fn constant(&self) -> Option<Bsdf> {
+    fn constant(&self) -> Option<AnyBsdf> {
         (!self.needs().any()).then(|| self.bsdf(&TexturePoint::default(), 1.0))
     }
 

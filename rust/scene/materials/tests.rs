@@ -2,27 +2,31 @@
 
 use super::*;
 use crate::math::{DVec3, Frame};
-use crate::optics::{Diffuse, Rgb, Transparent};
+use crate::optics::{Bsdf, Diffuse, Rgb, Transparent};
 use crate::sampling::chi_square::assert_frequencies;
 use crate::sampling::{Sampler, warp};
-use crate::scene::ShadingPoint;
 use crate::scene::textures::{Between, Checker, Domain, Noise, ObjectTransform, Texture, UvTransform, Value};
+use crate::scene::{ShadingPoint, SurfacePoint};
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
 /// A point of the plane z = 0 at texture coordinates u and v, which are x and y.
 fn at(u: f64, v: f64) -> ShadingPoint {
     let position = DVec3::new(u, v, 0.0);
+    let (normal, shading_normal) = (DVec3::Z, DVec3::Z);
+    let point = SurfacePoint { position, error: 0.0, normal, shading_normal, shape: 0, inner: None };
     ShadingPoint {
         texture: TexturePoint { uv: [u, v], position, ..TexturePoint::default() },
-        normal: DVec3::Z,
-        shading_normal: DVec3::Z,
         dp: [DVec3::X, DVec3::Y],
-        dn: [DVec3::ZERO; 2],
         object_dp: [DVec3::X, DVec3::Y],
-        is_front: true,
-        outside: 1.0,
+        ..ShadingPoint::plain(point)
     }
+}
+
+/// The same with another shading normal.
+fn tilted(shading_normal: DVec3, u: f64, v: f64) -> ShadingPoint {
+    let here = at(u, v);
+    ShadingPoint { point: SurfacePoint { shading_normal, ..here.point }, ..here }
 }
 
 fn checker(a: f64, b: f64) -> Value {
@@ -103,12 +107,12 @@ fn no_material_gives_more_light_than_it_gets() {
         for (point, cosine) in [(at(0.5, 0.5), 0.9), (at(1.5, 0.5), 0.3), (at(0.5, 0.5), -0.6)] {
             let point = ShadingPoint { is_front: cosine > 0.0, ..point };
             let wo = DVec3::new(f64::sqrt(1.0 - cosine * cosine), 0.0, cosine);
-            let scattering = material.scattering(&point);
+            let bsdf = material.bsdf(&point);
             let (draws, mut sum, mut squares) = (4000, Rgb::ZERO, Rgb::ZERO);
             for sample in 0..draws {
                 let mut sampler = Sampler::new(31, 2, sample);
                 let u = sampler.two(0);
-                let Some(drawn) = scattering.sample(wo, || sampler.one(1), u) else { continue };
+                let Some(drawn) = bsdf.sample(wo, || sampler.one(1), u) else { continue };
                 assert!((drawn.wi.length() - 1.0).abs() < 1e-9, "{material:?}");
                 // Radiance grows by the square of the index where it is squeezed into less of a solid angle.
                 let energy = drawn.weight * drawn.eta * drawn.eta;
@@ -116,7 +120,7 @@ fn no_material_gives_more_light_than_it_gets() {
                 sum += energy;
                 squares += energy * energy;
                 if drawn.pdf.is_finite() {
-                    let (value, pdf) = scattering.evaluate(wo, drawn.wi);
+                    let (value, pdf) = bsdf.evaluate(wo, drawn.wi);
                     assert!((pdf / drawn.pdf - 1.0).abs() < 1e-6, "{material:?} {pdf} {drawn:?}");
                     assert!((value - drawn.weight * pdf).abs().max_element() <= 1e-6 * value.max_element());
                 }
@@ -134,10 +138,10 @@ fn no_material_gives_more_light_than_it_gets() {
 fn a_mix_is_linear() {
     let (wo, wi) = (DVec3::new(0.6, 0.0, 0.8), DVec3::new(-0.48, 0.6, 0.64));
     let (a, b): (Arc<dyn Material>, Arc<dyn Material>) = (Arc::new(gold(0.6)), grey(0.7));
-    let alone = |material: &Arc<dyn Material>| material.scattering(&at(0.5, 0.5)).evaluate(wo, wi);
+    let alone = |material: &Arc<dyn Material>| material.bsdf(&at(0.5, 0.5)).evaluate(wo, wi);
     for amount in [0.0, 0.3, 0.5, 1.0] {
         let mix = MixMaterial { a: a.clone(), b: b.clone(), amount: amount.into() };
-        let (value, pdf) = mix.scattering(&at(0.5, 0.5)).evaluate(wo, wi);
+        let (value, pdf) = mix.bsdf(&at(0.5, 0.5)).evaluate(wo, wi);
         let expected = alone(&a).0 * (1.0 - amount) + alone(&b).0 * amount;
         assert!((value - expected).abs().max_element() < 1e-15);
         assert!((pdf - alone(&a).1 * (1.0 - amount) - alone(&b).1 * amount).abs() < 1e-15);
@@ -146,10 +150,10 @@ fn a_mix_is_linear() {
     let inner = Arc::new(MixMaterial { a: a.clone(), b: b.clone(), amount: 0.5.into() });
     let outer = MixMaterial { a: inner, b: a.clone(), amount: 0.25.into() };
     let expected = alone(&a).0 * 0.625 + alone(&b).0 * 0.375;
-    assert!((outer.scattering(&at(0.5, 0.5)).evaluate(wo, wi).0 - expected).abs().max_element() < 1e-15);
+    assert!((outer.bsdf(&at(0.5, 0.5)).evaluate(wo, wi).0 - expected).abs().max_element() < 1e-15);
     let same = MixMaterial { a: a.clone(), b: b.clone(), amount: checker(0.0, 1.0) };
-    assert!(matches!(same.scattering(&at(0.5, 0.5)), Scattering::One(_)));
-    assert!(matches!(same.scattering(&at(1.5, 0.5)), Scattering::One(_)));
+    assert!(matches!(same.bsdf(&at(0.5, 0.5)), BsdfMix::One(_)));
+    assert!(matches!(same.bsdf(&at(1.5, 0.5)), BsdfMix::One(_)));
 }
 
 #[test]
@@ -157,14 +161,14 @@ fn draws_of_mixes_have_their_density() {
     let wo = DVec3::new(0.6, 0.0, 0.8);
     let rough = Arc::new(gold(Roughness { along: [0.5.into(), 0.8.into()], is_alpha: true, facets: FacetKind::Ggx }));
     let mix = MixMaterial { a: rough, b: grey(0.8), amount: 0.4.into() };
-    let scattering = mix.scattering(&at(0.5, 0.5));
+    let bsdf = mix.bsdf(&at(0.5, 0.5));
     let (rows, columns, draws) = (12, 16, 100_000);
     // The last is for draws that scatter nothing.
     let mut counts = vec![0; rows * columns + 1];
     for sample in 0..draws {
         let mut sampler = Sampler::new(32, 3, sample);
         let u = sampler.two(0);
-        let Some(drawn) = scattering.sample(wo, || sampler.one(1), u) else {
+        let Some(drawn) = bsdf.sample(wo, || sampler.one(1), u) else {
             counts[rows * columns] += 1;
             continue;
         };
@@ -182,7 +186,7 @@ fn draws_of_mixes_have_their_density() {
                     let z = part(cell / columns, k / steps, rows);
                     let (sin, cos) = (TAU * part(cell % columns, k % steps, columns) - PI).sin_cos();
                     let radius = (1.0 - z * z).sqrt();
-                    scattering.evaluate(wo, DVec3::new(radius * cos, radius * sin, z)).1
+                    bsdf.evaluate(wo, DVec3::new(radius * cos, radius * sin, z)).1
                 })
                 .sum();
             sum * TAU / (rows * columns * steps * steps) as f64
@@ -196,16 +200,16 @@ fn draws_of_mixes_have_their_density() {
 fn black_parts_of_a_mix_are_never_drawn() {
     let wo = DVec3::new(0.6, 0.0, 0.8);
     let mix = MixMaterial { a: grey(0.0), b: grey(0.8), amount: 0.25.into() };
-    let scattering = mix.scattering(&at(0.0, 0.0));
+    let bsdf = mix.bsdf(&at(0.0, 0.0));
     for sample in 0..100 {
         let mut sampler = Sampler::new(35, 6, sample);
         let u = sampler.two(0);
-        let drawn = scattering.sample(wo, || sampler.one(1), u).unwrap();
+        let drawn = bsdf.sample(wo, || sampler.one(1), u).unwrap();
         assert!((drawn.weight - 0.2).abs().max_element() < 1e-15);
         assert!((drawn.pdf - drawn.wi.z / PI).abs() < 1e-15);
     }
     let black = MixMaterial { a: grey(0.0), b: grey(0.0), amount: 0.25.into() };
-    let black = black.scattering(&at(0.0, 0.0));
+    let black = black.bsdf(&at(0.0, 0.0));
     assert!(black.sample(wo, || 0.5, [0.5; 2]).is_none());
     assert_eq!(black.evaluate(wo, DVec3::Z), (Rgb::ZERO, 0.0));
 }
@@ -213,12 +217,12 @@ fn black_parts_of_a_mix_are_never_drawn() {
 #[test]
 fn mixes_with_single_directions_keep_both() {
     let mix = MixMaterial { a: grey(1.0), b: mirror(), amount: 0.25.into() };
-    let scattering = mix.scattering(&at(0.5, 0.5));
+    let bsdf = mix.bsdf(&at(0.5, 0.5));
     let (mut single, draws) = (0u32, 10_000);
     for sample in 0..draws {
         let mut sampler = Sampler::new(33, 4, sample);
         let u = sampler.two(0);
-        let drawn = scattering.sample(DVec3::new(0.6, 0.0, 0.8), || sampler.one(1), u).unwrap();
+        let drawn = bsdf.sample(DVec3::new(0.6, 0.0, 0.8), || sampler.one(1), u).unwrap();
         assert!((drawn.weight - 1.0).abs().max_element() < 1e-12);
         single += u32::from(drawn.pdf == f64::INFINITY);
     }
@@ -237,13 +241,13 @@ fn masks_let_their_share_through() {
     // Of a mix of what is there and a hole, all that is met is what is there.
     let mix = MixMaterial { a: grey(0.3), b: Arc::new(mask(0.0.into())), amount: 0.75.into() };
     assert_eq!(mix.opacity(&at(0.0, 0.0).texture), 0.25);
-    let met = mix.scattering(&at(0.0, 0.0));
-    assert!(matches!(met, Scattering::One(Bsdf::Diffuse(Diffuse { reflectance })) if reflectance == Rgb::splat(0.3)));
+    let met = mix.bsdf(&at(0.0, 0.0));
+    assert!(matches!(met, BsdfMix::One(AnyBsdf::Diffuse(Diffuse { reflectance })) if reflectance == Rgb::splat(0.3)));
     let half = Mask { material: grey(0.9), opacity: 0.5.into() };
     let mix = MixMaterial { a: grey(0.3), b: Arc::new(half), amount: 0.5.into() };
     // Three quarters are met: two thirds of one, a third of the other.
     assert_eq!(mix.opacity(&at(0.0, 0.0).texture), 0.75);
-    assert!((mix.scattering(&at(0.0, 0.0)).albedo().x - (0.6 + 0.9) / 3.0).abs() < 1e-15);
+    assert!((mix.bsdf(&at(0.0, 0.0)).albedo().x - (0.6 + 0.9) / 3.0).abs() < 1e-15);
 }
 
 /// Heights of a wave.
@@ -289,7 +293,8 @@ fn a_raised_sphere_keeps_its_normals() {
     let n = DVec3::new(0.48, 0.6, 0.64);
     let frame = Frame::new(n);
     let (dp, dn) = ([frame.tangent * 2.0, frame.bitangent], [frame.tangent * 2.0, frame.bitangent]);
-    let point = ShadingPoint { normal: n, shading_normal: n, dp, dn, ..at(0.0, 0.0) };
+    let here = tilted(n, 0.0, 0.0);
+    let point = ShadingPoint { point: SurfacePoint { normal: n, ..here.point }, dp, dn, ..here };
     assert!((bump.normal(&point).unwrap() - n).length() < 1e-15);
 }
 
@@ -314,8 +319,7 @@ fn bumps_of_space_follow_it() {
 #[test]
 fn normal_maps_turn_normals() {
     let map = |normals: Rgb, scale| NormalMap { material: grey(0.5), normals: normals.into(), scale };
-    let tilted = ShadingPoint { shading_normal: DVec3::new(0.6, 0.0, 0.8), ..at(0.0, 0.0) };
-    for point in [at(0.0, 0.0), tilted] {
+    for point in [at(0.0, 0.0), tilted(DVec3::new(0.6, 0.0, 0.8), 0.0, 0.0)] {
         assert_eq!(map(Rgb::new(0.5, 0.5, 1.0), 1.0).normal(&point), None);
     }
     let turned = map(Rgb::new(0.8, 0.5, 0.9), 1.0).normal(&at(0.0, 0.0)).unwrap();
@@ -334,7 +338,7 @@ fn normals_stay_on_their_side() {
         let mut sampler = Sampler::new(34, 5, sample);
         let colour = Rgb::new(sampler.one(0), sampler.one(1), sampler.one(2));
         let shading_normal = warp::cosine_hemisphere(sampler.two(3));
-        let point = ShadingPoint { shading_normal, ..at(sampler.one(4) * 9.0, sampler.one(5) * 9.0) };
+        let point = tilted(shading_normal, sampler.one(4) * 9.0, sampler.one(5) * 9.0);
         let map = NormalMap { material: grey(0.5), normals: colour.into(), scale: 10.0 * sampler.one(6) };
         let bump = BumpMap { material: Arc::new(map.clone()), height: Value::Texture(Arc::new(Wave)), scale: 50.0 };
         for normal in [map.normal(&point), bump.normal(&point)].into_iter().flatten() {
@@ -348,7 +352,7 @@ fn normals_stay_on_their_side() {
 #[test]
 fn sides_have_their_own() {
     let sheet = TwoSided { front: grey(0.2), back: grey(0.7) };
-    let albedo = |is_front| sheet.scattering(&ShadingPoint { is_front, ..at(0.0, 0.0) }).albedo();
+    let albedo = |is_front| sheet.bsdf(&ShadingPoint { is_front, ..at(0.0, 0.0) }).albedo();
     assert_eq!((albedo(true), albedo(false)), (Rgb::splat(0.2), Rgb::splat(0.7)));
     let wrong = |side: Arc<dyn Material>| TwoSided { front: grey(0.5), back: side }.validate().unwrap_err();
     assert!(wrong(Arc::new(glass(0.0))).starts_with("back must let no light through"));
@@ -359,7 +363,7 @@ fn sides_have_their_own() {
 #[test]
 fn glass_is_relative_to_what_is_outside() {
     let wo = DVec3::new(0.6, 0.0, 0.8);
-    let within = |outside| glass(0.0).scattering(&ShadingPoint { outside, ..at(0.0, 0.0) });
+    let within = |outside| glass(0.0).bsdf(&ShadingPoint { outside, ..at(0.0, 0.0) });
     // By Snell's law the sine is divided by the ratio; of the same index nothing is bent.
     for outside in [1.0, 1.2, 1.5, 2.0] {
         let refracted = (0..100).find_map(|i| {
@@ -382,7 +386,7 @@ fn what_is_the_same_everywhere_is_told_as_at_any_point() {
         for (u, v, is_front) in [(0.1, 0.2, true), (0.7, 0.9, false)] {
             let point = ShadingPoint { is_front, ..at(u, v) };
             assert!(material.normal(&point).is_none() && material.tangent(&point).is_none(), "{material:?}");
-            let here = material.scattering(&point);
+            let here = material.bsdf(&point);
             let sharply = |s: crate::optics::BsdfSample| (s.wi, s.weight, s.pdf, s.eta);
             for side in [wo, -wo] {
                 assert_eq!(bsdf.evaluate(side, wi), here.evaluate(side, wi), "{material:?}");
@@ -477,9 +481,8 @@ fn what_cannot_be_is_refused_in_a_line() {
 #[test]
 fn a_hole_in_scattering_is_no_mask() {
     // What lets light straight through may stand in a mix like any other kind.
-    let through = Scattering::from(Transparent { transmittance: Rgb::ONE });
-    let half =
-        Scattering::mixed((Rgb::splat(0.5), through), (Rgb::splat(0.5), Diffuse { reflectance: Rgb::ONE }.into()));
+    let through = BsdfMix::from(Transparent { transmittance: Rgb::ONE });
+    let half = BsdfMix::mixed((Rgb::splat(0.5), through), (Rgb::splat(0.5), Diffuse { reflectance: Rgb::ONE }.into()));
     assert!(half.transmits() && !half.is_delta());
     assert_eq!((half.albedo(), half.roughness()), (Rgb::ONE, 0.0));
 }

@@ -1,8 +1,8 @@
 //! A pane of glass.
 
 use super::checks::number;
-use super::{Material, Scattering};
-use crate::optics::{Bsdf, ThinDielectric};
+use super::{BsdfMix, Material};
+use crate::optics::{AnyBsdf, ThinDielectric};
 use crate::scene::ShadingPoint;
 use crate::scene::textures::Needs;
 
@@ -15,11 +15,11 @@ pub struct ThinDielectricMaterial {
 }
 
 impl Material for ThinDielectricMaterial {
-    fn scattering(&self, at: &ShadingPoint) -> Scattering {
+    fn bsdf(&self, at: &ShadingPoint) -> BsdfMix {
         ThinDielectric::new(self.ior / at.outside).into()
     }
 
-    fn constant(&self) -> Option<Bsdf> {
+    fn constant(&self) -> Option<AnyBsdf> {
         Some(ThinDielectric::new(self.ior).into())
     }
 

@@ -1,8 +1,8 @@
 //! One material on the front and another on the back.
 
-use super::{Material, Scattering};
+use super::{BsdfMix, Material};
 use crate::math::DVec3;
-use crate::optics::{Bsdf, Rgb};
+use crate::optics::{AnyBsdf, Rgb};
 use crate::scene::ShadingPoint;
 use crate::scene::textures::Needs;
 use std::sync::Arc;
@@ -23,11 +23,11 @@ impl TwoSided {
 }
 
 impl Material for TwoSided {
-    fn scattering(&self, at: &ShadingPoint) -> Scattering {
-        self.side(at).scattering(at)
+    fn bsdf(&self, at: &ShadingPoint) -> BsdfMix {
+        self.side(at).bsdf(at)
     }
 
-    fn constant_sides(&self) -> Option<[Bsdf; 2]> {
+    fn constant_sides(&self) -> Option<[AnyBsdf; 2]> {
         let ([front, _], [_, back]) = (self.front.constant_sides()?, self.back.constant_sides()?);
         Some([front, back])
     }

@@ -2,12 +2,12 @@
 
 mod lanes;
 
-pub use lanes::InteractionLanes;
+pub use lanes::SurfaceInteractionLanes;
 
-use super::materials::Scattering;
-use super::{LightSampleContext, RayOrigin, Scatters, Scene, ShadingPoint, SurfacePoint};
+use super::materials::BsdfMix;
+use super::{Encounter, LightSampleContext, RayOrigin, Scene, ShadingPoint, SurfacePoint};
 use crate::math::{DVec3, Frame, Hit, Ray, select};
-use crate::optics::{BsdfSample, Rgb};
+use crate::optics::{Bsdf, BsdfSample, Rgb};
 
 /// Where a ray has met a surface.
 ///
@@ -17,11 +17,11 @@ use crate::optics::{BsdfSample, Rgb};
 /// Transport Simulation", 1997, 5.3). What is cut off so would show the facets of a coarse mesh as hard steps where
 /// light grazes them; it fades out before instead (see `fading`).
 #[derive(Clone, Debug)]
-pub struct Interaction<S = Scattering> {
+pub struct SurfaceInteraction<B = BsdfMix> {
     surface: SurfacePoint,
     /// Shading frame.
     frame: Frame,
-    scattering: S,
+    bsdf: B,
     /// Back along the ray, in the shading frame.
     wo: DVec3,
     /// 1 where the ray comes from the side of the winding's normal, −1 on the other.
@@ -34,22 +34,7 @@ pub struct Interaction<S = Scattering> {
     curvature: f64,
 }
 
-/// A direction drawn from the scattering at a surface.
-#[derive(Clone, Copy, Debug)]
-pub struct Scattered {
-    /// Where the path goes on to, as a unit vector of the world.
-    pub direction: DVec3,
-    /// What its throughput is multiplied by.
-    pub weight: Rgb,
-    /// Density in solid angle; infinite for a single direction.
-    pub pdf: f64,
-    /// The index of refraction there over that where the ray came from.
-    pub eta: f64,
-    /// Whether it goes to the other side of the surface.
-    pub is_through: bool,
-}
-
-impl Interaction {
+impl SurfaceInteraction {
     /// What a ray of unit direction meets at a hit; `width` is how wide the bundle of its neighbours is there, 0 if
     /// nobody asks, and `outside` the index of refraction on the other side of what the surface encloses.
     #[inline]
@@ -59,7 +44,7 @@ impl Interaction {
             && let Some(&bsdf) = scene.plan().constant(surface.shape, surface.is_front(ray))
         {
             let shading = surface.shading_normal;
-            return Self::with(ray, surface, (shading, None), Scattering::One(bsdf));
+            return Self::with(ray, surface, (shading, None), BsdfMix::One(bsdf));
         }
         Self::mapped(scene, ray, hit, surface, width, outside)
     }
@@ -69,11 +54,11 @@ impl Interaction {
         let material = scene.material_at(&surface);
         let mut needs = material.needs();
         needs.tangents |= width > 0.0;
-        let mut point = ShadingPoint::new(scene.geometry(), ray, hit, &surface, needs, width);
+        let mut point = ShadingPoint::new(scene.geometry(), ray, hit, surface, needs, width);
         point.outside = outside;
         let shading = material.normal(&point).unwrap_or(surface.shading_normal);
         let tangent = material.tangent(&point);
-        let mut here = Self::with(ray, surface, (shading, tangent), material.scattering(&point));
+        let mut here = Self::with(ray, surface, (shading, tangent), material.bsdf(&point));
         if width > 0.0 {
             here.curvature = here.side * mean_curvature(&point);
         }
@@ -87,7 +72,7 @@ impl Interaction {
     }
 }
 
-impl<S: Scatters> Interaction<S> {
+impl<B: Bsdf> SurfaceInteraction<B> {
     /// The smallest cosine between shading normal and view. Beyond the horizon of the shading normal a surface would
     /// turn black though it faces the viewer, so there the normal is bent towards the viewer until it just faces him.
     pub const GRAZING: f64 = 1e-3;
@@ -95,7 +80,7 @@ impl<S: Scatters> Interaction<S> {
     /// What a ray of unit direction meets at a point of a surface, given the shading normal there, the direction that
     /// the frame's x should have if that matters, and how the surface scatters.
     #[inline(always)]
-    pub fn with(ray: &Ray, surface: SurfacePoint, (shading, tangent): (DVec3, Option<DVec3>), scattering: S) -> Self {
+    pub fn with(ray: &Ray, surface: SurfacePoint, (shading, tangent): (DVec3, Option<DVec3>), bsdf: B) -> Self {
         let back = -ray.direction;
         let side = 1f64.copysign(back.dot(surface.normal));
         let other = surface.normal;
@@ -109,22 +94,16 @@ impl<S: Scatters> Interaction<S> {
             Some(tangent) => Frame::along(shading, tangent),
             None => Frame::new(shading),
         };
-        Self { surface, frame, scattering, wo: frame.to_local(back), side, is_flat, is_bent, curvature: 0.0 }
+        Self { surface, frame, bsdf, wo: frame.to_local(back), side, is_flat, is_bent, curvature: 0.0 }
     }
 
     /// The share of ambient light that is reflected here ([`Material::ambient`](super::Material::ambient)); the other
-    /// arguments are those that [`Interaction::new`] was given.
+    /// arguments are those that [`SurfaceInteraction::new`] was given.
     pub fn ambient(&self, scene: &Scene, ray: &Ray, hit: &Hit, width: f64, outside: f64) -> Rgb {
         let material = scene.material_at(&self.surface);
-        let mut point = ShadingPoint::new(scene.geometry(), ray, hit, &self.surface, material.needs(), width);
+        let mut point = ShadingPoint::new(scene.geometry(), ray, hit, self.surface, material.needs(), width);
         point.outside = outside;
         material.ambient(&point)
-    }
-
-    /// The point met.
-    #[inline(always)]
-    pub fn position(&self) -> DVec3 {
-        self.surface.position
     }
 
     /// The geometric normal on the side that the ray came from.
@@ -163,40 +142,21 @@ impl<S: Scatters> Interaction<S> {
         self.is_bent
     }
 
-    /// What light is drawn for: the side that the ray came from, or both where light goes through.
-    ///
-    /// A side is asked for where rays to it leave from. On the wall of a hollow ball that shines, nothing else tells
-    /// whether light is asked for inside of it or outside, and the density of rays that meet the wall is asked from
-    /// there too.
-    #[inline(always)]
-    pub fn light_context(&self) -> LightSampleContext {
-        if self.scattering.transmits() {
-            return LightSampleContext::free(self.surface.position);
-        }
-        LightSampleContext { position: self.ray_origin().ray(self.normal()).origin, normal: self.shading_normal() }
-    }
-
     /// How the point scatters, and nothing else.
-    pub fn into_scattering(self) -> S {
-        self.scattering
+    pub fn into_bsdf(self) -> B {
+        self.bsdf
     }
 
     /// How the point scatters.
     #[inline(always)]
-    pub fn scattering(&self) -> &S {
-        &self.scattering
+    pub fn bsdf(&self) -> &B {
+        &self.bsdf
     }
 
     /// Back along the ray, in the shading frame.
     #[inline(always)]
     pub fn wo(&self) -> DVec3 {
         self.wo
-    }
-
-    /// Where rays leave from.
-    #[inline(always)]
-    pub fn ray_origin(&self) -> RayOrigin {
-        RayOrigin::new(&self.surface)
     }
 
     /// Mean curvature, positive where the surface bulges towards the ray; 0 unless a width was given.
@@ -211,38 +171,14 @@ impl<S: Scatters> Interaction<S> {
         self.surface.normal.dot(direction) * self.side < 0.0
     }
 
-    /// Scattering function times cosine for light from a direction, and the density of [`Interaction::sample`] there.
+    /// What was drawn in the shading frame, in the world.
     #[inline(always)]
-    pub fn evaluate(&self, direction: DVec3) -> (Rgb, f64) {
-        let wi = self.frame.to_local(direction);
-        let fading = self.fading(wi, direction);
-        if fading <= 0.0 {
-            return (Rgb::ZERO, 0.0);
-        }
-        let (value, pdf) = self.scattering.evaluate(self.wo, wi);
-        (value * fading, pdf)
-    }
-
-    /// Draws where the path goes on to: `choice` and `u` as [`Scattering::sample`] takes them.
-    #[inline(always)]
-    pub fn sample(&self, choice: impl FnOnce() -> f64, u: [f64; 2]) -> Option<Scattered> {
-        self.scattered(&self.scattering.sample(self.wo, choice, u)?)
-    }
-
-    /// A draw from the scattering as one of directions in the world.
-    #[inline(always)]
-    pub fn scattered(&self, sample: &BsdfSample) -> Option<Scattered> {
-        let direction = self.frame.to_world(sample.wi);
-        let fading = self.fading(sample.wi, direction);
+    pub fn to_world(&self, drawn: BsdfSample) -> Option<BsdfSample> {
+        let wi = self.frame.to_world(drawn.wi);
+        let fading = self.fading(drawn.wi, wi);
         // A single direction is not cut off along a line, and need not fade.
-        let fading = if sample.pdf == f64::INFINITY && fading > 0.0 { 1.0 } else { fading };
-        (fading > 0.0).then(|| Scattered {
-            direction,
-            weight: sample.weight * fading,
-            pdf: sample.pdf,
-            eta: sample.eta,
-            is_through: sample.wi.z * self.wo.z < 0.0,
-        })
+        let fading = if drawn.is_delta() && fading > 0.0 { 1.0 } else { fading };
+        (fading > 0.0).then(|| BsdfSample { wi, weight: drawn.weight * fading, ..drawn })
     }
 
     /// How much light from a direction counts as that nears the horizon of either normal: 0 where it lies above the one
@@ -268,8 +204,49 @@ impl<S: Scatters> Interaction<S> {
     }
 }
 
-/// How much light counts near the horizon of the geometric normal, as [`Interaction`] has it: by its cosines to the
-/// geometric and to the shading normal, both positive and up to the same factor, and that between the two.
+impl<B: Bsdf> Encounter for SurfaceInteraction<B> {
+    #[inline(always)]
+    fn position(&self) -> DVec3 {
+        self.surface.position
+    }
+
+    #[inline(always)]
+    fn ray_origin(&self) -> RayOrigin {
+        RayOrigin::new(&self.surface)
+    }
+
+    /// For the side that the ray came from, or both where light goes through.
+    ///
+    /// A side is asked for where rays to it leave from. On the wall of a hollow ball that shines, nothing else tells
+    /// whether light is asked for inside of it or outside, and the density of rays that meet the wall is asked from
+    /// there too.
+    #[inline(always)]
+    fn light_context(&self) -> LightSampleContext {
+        if self.bsdf.transmits() {
+            return LightSampleContext::free(self.surface.position);
+        }
+        LightSampleContext { position: self.ray_origin().ray(self.normal()).origin, normal: self.shading_normal() }
+    }
+
+    #[inline(always)]
+    fn evaluate(&self, direction: DVec3) -> (Rgb, f64) {
+        let wi = self.frame.to_local(direction);
+        let fading = self.fading(wi, direction);
+        if fading <= 0.0 {
+            return (Rgb::ZERO, 0.0);
+        }
+        let (value, pdf) = self.bsdf.evaluate(self.wo, wi);
+        (value * fading, pdf)
+    }
+
+    #[inline(always)]
+    fn sample(&self, choice: impl FnOnce() -> f64, u: [f64; 2]) -> Option<BsdfSample> {
+        self.to_world(self.bsdf.sample(self.wo, choice, u)?)
+    }
+}
+
+/// How much light counts near the horizon of the geometric normal, as [`SurfaceInteraction`] has it: by its cosines to
+/// the geometric and to the shading normal, both positive and up to the same factor, and that between the two.
 #[inline(always)]
 pub fn fading(geometric: f64, shading: f64, between: f64) -> f64 {
     let g = geometric / (shading * between);
@@ -303,11 +280,11 @@ mod tests {
         scene(SceneDescription { shapes: vec![shape(mesh, [0.8; 3], 0.0)], ..Default::default() })
     }
 
-    fn look(scene: &Scene, from: DVec3) -> Interaction {
+    fn look(scene: &Scene, from: DVec3) -> SurfaceInteraction {
         let ray = Ray::new(from, -from.normalize());
         let mut hits = [Hit::MISS];
         scene.intersect(&[ray], &mut hits);
-        Interaction::at(scene, &ray, &hits[0])
+        SurfaceInteraction::at(scene, &ray, &hits[0])
     }
 
     #[test]
@@ -323,9 +300,9 @@ mod tests {
                 assert!(scattered.is_finite() && pdf.is_finite());
                 assert!(scattered == Rgb::ZERO || other.z * from.z > 0.0, "light leaks");
                 if let Some(next) = here.sample(|| 0.5, sampler.two(2)) {
-                    assert!(next.direction.z * from.z > 0.0, "a path leaks");
-                    assert!((next.direction.length() - 1.0).abs() < 1e-12);
-                    let (scattered, pdf) = here.evaluate(next.direction);
+                    assert!(next.wi.z * from.z > 0.0, "a path leaks");
+                    assert!((next.wi.length() - 1.0).abs() < 1e-12);
+                    let (scattered, pdf) = here.evaluate(next.wi);
                     assert!((scattered - next.weight * next.pdf).abs().max_element() < 1e-12);
                     assert!((pdf - next.pdf).abs() < 1e-12);
                 }

@@ -1,12 +1,13 @@
 //! Encounters by lane.
 
-use super::Interaction;
+use super::SurfaceInteraction;
 use crate::math::{Frame, LANES, VectorLanes};
-use crate::scene::{Scatters, SurfaceLanes, SurfacePoint};
+use crate::optics::Bsdf;
+use crate::scene::{SurfaceLanes, SurfacePoint};
 
 /// Encounters, a lane each, but for how they scatter.
 #[derive(Clone, Debug)]
-pub struct InteractionLanes {
+pub struct SurfaceInteractionLanes {
     surface: SurfaceLanes,
     tangent: VectorLanes,
     bitangent: VectorLanes,
@@ -20,7 +21,7 @@ pub struct InteractionLanes {
     is_bent: [u64; LANES],
 }
 
-impl InteractionLanes {
+impl SurfaceInteractionLanes {
     /// At these points; all else is to be set.
     pub fn at(surface: &SurfaceLanes) -> Self {
         let nothing = VectorLanes::ZERO;
@@ -44,15 +45,15 @@ impl InteractionLanes {
 
     /// The encounter of a lane, with what scatters there.
     #[inline(always)]
-    pub fn get<S: Scatters>(&self, lane: usize, scattering: S) -> Interaction<S> {
-        Interaction {
+    pub fn get<B: Bsdf>(&self, lane: usize, bsdf: B) -> SurfaceInteraction<B> {
+        SurfaceInteraction {
             surface: self.surface.get(lane),
             frame: Frame {
                 tangent: self.tangent.get(lane),
                 bitangent: self.bitangent.get(lane),
                 normal: self.up.get(lane),
             },
-            scattering,
+            bsdf,
             wo: self.wo.get(lane),
             side: self.side[lane],
             is_flat: self.is_flat[lane] != 0,
@@ -69,7 +70,7 @@ impl InteractionLanes {
 
     /// Sets the encounter of a lane, but for its point.
     #[inline(always)]
-    pub fn set<S: Scatters>(&mut self, lane: usize, here: &Interaction<S>) {
+    pub fn set<B: Bsdf>(&mut self, lane: usize, here: &SurfaceInteraction<B>) {
         self.tangent.set(lane, here.frame.tangent);
         self.bitangent.set(lane, here.frame.bitangent);
         self.up.set(lane, here.frame.normal);

@@ -1,0 +1,65 @@
+//! What scatters light at a point: one type for all kinds.
+
+use super::one_of::one_of;
+use super::{
+    Beckmann, BlinnPhong, Coated, CoatedOnce, Conductor, Dielectric, Diffuse, Faceted, Ggx, MetallicRough, Mirror,
+    Null, Once, OrenNayar, Phong, ThinDielectric, Transparent,
+};
+
+one_of! {
+    /// A bidirectional scattering distribution function of any kind.
+    ///
+    /// A kind is one file and one line of this list. A batch calls it through a `match`, which predicts well and
+    /// inlines, rather than through a pointer.
+    AnyBsdf, inline, {
+        /// Lambert's: equally bright from everywhere.
+        Diffuse(Diffuse),
+        /// Rough and matt: brighter towards the light.
+        OrenNayar(OrenNayar),
+        /// Reflects into one direction.
+        Mirror(Mirror),
+        /// Metal, smooth or rough.
+        Conductor(Conductor),
+        /// Glass or water, smooth or rough: reflects and refracts.
+        Dielectric(Dielectric),
+        /// A pane of glass without thickness.
+        ThinDielectric(ThinDielectric),
+        /// Diffuse under a dielectric coat: plastic, varnish, glaze.
+        Coated(Coated),
+        /// Diffuse and a lobe about the mirror direction.
+        Phong(Phong),
+        /// Diffuse and a lobe about the half vector.
+        BlinnPhong(BlinnPhong),
+        /// The metallic-roughness model of glTF.
+        MetallicRough(MetallicRough),
+        /// Rough surfaces of other facets, or of facets that scatter once only.
+        Faceted(Faceted),
+        /// Lets light straight through.
+        Transparent(Transparent),
+        /// Scatters nothing.
+        Null(Null),
+    }
+}
+
+/// Makes [`AnyBsdf`] of less common facets too.
+macro_rules! faceted {
+    ($($of:ty,)+) => {
+        $(impl From<$of> for AnyBsdf {
+            fn from(kind: $of) -> Self {
+                Self::Faceted(kind.into())
+            }
+        })+
+    };
+}
+
+faceted! {
+    Conductor<Beckmann>,
+    Dielectric<Beckmann>,
+    Coated<Beckmann>,
+    Conductor<Once<Ggx>>,
+    Conductor<Once<Beckmann>>,
+    Dielectric<Once<Ggx>>,
+    Dielectric<Once<Beckmann>>,
+    CoatedOnce<Ggx>,
+    CoatedOnce<Beckmann>,
+}
