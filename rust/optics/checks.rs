@@ -123,12 +123,12 @@ fn share(bsdf: &AnyBsdf, wo: DVec3, draws: u32) -> (Rgb, f64) {
         if let Some(s) = draw(bsdf, wo, &mut numbers) {
             let weight = s.weight * s.eta * s.eta;
             sum += weight;
-            squares += weight.x * weight.x;
+            squares += weight[0] * weight[0];
         }
     }
     let n = f64::from(draws);
     let mean = sum / n;
-    (mean, ((squares / n - mean.x * mean.x).max(0.0) / n).sqrt())
+    (mean, ((squares / n - mean[0] * mean[0]).max(0.0) / n).sqrt())
 }
 
 #[test]
@@ -152,7 +152,7 @@ fn white_is_white_at_every_roughness_and_angle() {
             for wo in directions() {
                 let (mean, error) = share(&bsdf, wo, 4_000);
                 // Five standard errors beyond the bound: by luck one of these 4,900 means is, for one seed in 350.
-                let off = (mean - 1.0).abs().max_element();
+                let off = (mean - 1.0).abs().max();
                 assert!(off <= bound + 5.0 * error, "{mean} ± {error} {bsdf:?} {wo}");
             }
         }
@@ -173,8 +173,8 @@ fn light_is_scattered_alike_in_both_directions() {
                 let index = |w: DVec3| if w.z < 0.0 { index(&bsdf) } else { 1.0 };
                 let one = bsdf.evaluate(wo, wi).0 / wi.z.abs() * index(wi).powi(2);
                 let two = bsdf.evaluate(wi, wo).0 / wo.z.abs() * index(wo).powi(2);
-                let off = (one - two).abs().max_element();
-                assert!(off <= 1e-6 * one.max_element() + 1e-12, "{one} {two} {bsdf:?} {wo} {wi}");
+                let off = (one - two).abs().max();
+                assert!(off <= 1e-6 * one.max() + 1e-12, "{one} {two} {bsdf:?} {wo} {wi}");
             }
         }
     }
@@ -189,7 +189,7 @@ fn draws_weigh_what_is_evaluated() {
                 let Some(s) = draw(&bsdf, wo, &mut numbers) else {
                     continue;
                 };
-                assert!((s.wi.length() - 1.0).abs() < 1e-9 && is_radiance(s.weight) && s.pdf > 0.0);
+                assert!((s.wi.length() - 1.0).abs() < 1e-9 && s.weight.is_radiance() && s.pdf > 0.0);
                 assert_eq!(s.eta != 1.0, s.wi.z * wo.z < 0.0 && index(&bsdf) != 1.0, "{s:?}");
                 if s.pdf.is_infinite() {
                     continue;
@@ -197,7 +197,7 @@ fn draws_weigh_what_is_evaluated() {
                 assert!(!bsdf.is_delta());
                 let (value, pdf) = bsdf.evaluate(wo, s.wi);
                 // Nothing is scattered where a facet's density underflows and nothing is lost.
-                let off = (value - s.weight * s.pdf).abs().max_element() / value.max_element().max(f64::MIN_POSITIVE);
+                let off = (value - s.weight * s.pdf).abs().max() / value.max().max(f64::MIN_POSITIVE);
                 // Directions are right to 10⁻¹⁶; what is evaluated from them, to that over a lobe's width.
                 let bound = 1e-9 + 1e-12 * s.pdf.sqrt();
                 assert!(off < bound && (pdf / s.pdf - 1.0).abs() < bound, "{off:e} {pdf} {s:?} {bsdf:?} {wo}");
@@ -244,8 +244,8 @@ fn nothing_gains_light() {
             let (mean, error) = share(&bsdf, wo, 5_000);
             // What gains does so only once on its way.
             let again = mean * bsdf.again();
-            assert!(again.max_element() < 1.005 + 5.0 * error, "{mean} {bsdf:?} {wo}");
-            assert!(mean.max_element() < 1.03 + 5.0 * error, "{mean} {bsdf:?} {wo}");
+            assert!(again.max() < 1.005 + 5.0 * error, "{mean} {bsdf:?} {wo}");
+            assert!(mean.max() < 1.03 + 5.0 * error, "{mean} {bsdf:?} {wo}");
         }
     }
 }
@@ -287,13 +287,13 @@ proptest! {
         kinds.push(Coated::of(Rgb::ONE, eta.max(1.0), Beckmann::rough([alpha; 2])).into());
         for bsdf in kinds {
             let (value, pdf) = bsdf.evaluate(wo, wi);
-            prop_assert!(is_radiance(value) && pdf.is_finite() && pdf >= 0.0, "{value} {pdf} {bsdf:?} {wo} {wi}");
+            prop_assert!(value.is_radiance() && pdf.is_finite() && pdf >= 0.0, "{value} {pdf} {bsdf:?} {wo} {wi}");
             let albedo = bsdf.albedo() * bsdf.again();
-            prop_assert!(is_radiance(albedo) && albedo.max_element() <= 1.01, "{bsdf:?}");
+            prop_assert!(albedo.is_radiance() && albedo.max() <= 1.01, "{bsdf:?}");
             prop_assert!((0.0..=1.42).contains(&bsdf.roughness()));
-            prop_assert!(!bsdf.is_delta() || value == Rgb::ZERO);
+            prop_assert!(!bsdf.is_delta() || value.is_black());
             if let Some(s) = bsdf.sample(wo, || choice, [u, v]) {
-                prop_assert!(is_radiance(s.weight) && s.pdf > 0.0 && s.eta > 0.0, "{s:?} {bsdf:?} {wo}");
+                prop_assert!(s.weight.is_radiance() && s.pdf > 0.0 && s.eta > 0.0, "{s:?} {bsdf:?} {wo}");
                 prop_assert!((s.wi.length() - 1.0).abs() < 1e-9, "{s:?} {bsdf:?} {wo}");
                 prop_assert!(bsdf.transmits() || s.wi.z * wo.z >= 0.0);
             }

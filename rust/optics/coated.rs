@@ -59,7 +59,7 @@ impl<F: Tabulated> Coated<F> {
     /// The probability with which a draw is reflected by the coat, of which it reflects this share.
     #[inline]
     fn share(&self, reflectance: f64) -> f64 {
-        let base = self.base.max_element() * (1.0 - reflectance);
+        let base = self.base.max() * (1.0 - reflectance);
         if reflectance > 0.0 { reflectance / (reflectance + base) } else { 0.0 }
     }
 }

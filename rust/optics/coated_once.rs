@@ -31,7 +31,7 @@ impl<F: Facets> CoatedOnce<F> {
     /// The probability with which a draw is reflected by the coat, of which this share goes through.
     #[inline]
     fn share(&self, through: f64) -> f64 {
-        let base = self.base.max_element() * self.through.average() * through;
+        let base = self.base.max() * self.through.average() * through;
         let coat = 1.0 - through;
         if coat > 0.0 { coat / (coat + base) } else { 0.0 }
     }

@@ -60,7 +60,7 @@ impl<F: Lossy> Conductor<F> {
     pub fn of(fresnel: Reflectance, facets: Option<F>) -> Self {
         let rough = facets.map(|facets| {
             let loss = facets.mirror();
-            let multiple = fresnel.seen(|mean| made_up_of(loss.average(), mean)).max(Rgb::ZERO);
+            let multiple = fresnel.seen(|mean| made_up_of(loss.average(), mean)).at_least(Rgb::ZERO);
             let prepared = (DVec3::NAN, 0.0);
             Rough { facets, loss, grazing: Grazing::new(facets.mean_alpha()), multiple, prepared }
         });
@@ -79,7 +79,7 @@ impl<F: Lossy> Conductor<F> {
 #[inline]
 pub(super) fn made_up(lost: f64, reflectance: Rgb) -> Rgb {
     let of = |share| made_up_of(lost, share);
-    Rgb::new(of(reflectance.x), of(reflectance.y), of(reflectance.z))
+    Rgb::new(of(reflectance[0]), of(reflectance[1]), of(reflectance[2]))
 }
 
 /// The same of one channel, or one wavelength.

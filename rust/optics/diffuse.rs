@@ -23,7 +23,7 @@ impl Bsdf for Diffuse {
     /// By the cosine, so that every draw weighs the reflectance.
     #[inline(always)]
     fn sample(&self, wo: DVec3, _choice: impl FnOnce() -> f64, u: [f64; 2]) -> Option<BsdfSample> {
-        if wo.z == 0.0 || self.reflectance == Rgb::ZERO {
+        if wo.z == 0.0 || self.reflectance.is_black() {
             return None;
         }
         let mut wi = warp::cosine_hemisphere(u);
@@ -63,7 +63,7 @@ mod tests {
                 let wi = warp::uniform_sphere(Sampler::new(5, 0, sample).two(0));
                 sum += AnyBsdf::Diffuse(GREY).evaluate(wo, wi).0 / warp::UNIFORM_SPHERE_PDF;
             }
-            assert!((sum / f64::from(count) / GREY.reflectance - 1.0).abs().max_element() < 0.008);
+            assert!((sum / f64::from(count) / GREY.reflectance - 1.0).abs().max() < 0.008);
         }
     }
 
@@ -71,7 +71,7 @@ mod tests {
     fn is_reciprocal_and_on_one_side() {
         let wi = DVec3::new(0.0, 0.28, 0.96);
         let swapped = GREY.evaluate(wi, ABOVE).0 / ABOVE.z;
-        assert!((GREY.evaluate(ABOVE, wi).0 / wi.z - swapped).abs().max_element() < 1e-15);
+        assert!((GREY.evaluate(ABOVE, wi).0 / wi.z - swapped).abs().max() < 1e-15);
         assert_eq!(GREY.evaluate(ABOVE, -wi), (Rgb::ZERO, 0.0));
         assert_eq!(GREY.evaluate(-ABOVE, -wi), GREY.evaluate(ABOVE, wi));
     }
@@ -84,7 +84,7 @@ mod tests {
                 let u = Sampler::new(6, 0, sample).two(0);
                 let s = AnyBsdf::Diffuse(GREY).sample(wo, || unreachable!("it has one part"), u).unwrap();
                 let (value, pdf) = GREY.evaluate(wo, s.wi);
-                assert!((s.weight * s.pdf - value).abs().max_element() < 1e-15);
+                assert!((s.weight * s.pdf - value).abs().max() < 1e-15);
                 assert_eq!(s.pdf, pdf);
                 let row = (((s.wi.z + 1.0) * 10.0) as usize).min(19);
                 counts[row * 12 + (((s.wi.y.atan2(s.wi.x) + PI) / TAU * 12.0) as usize).min(11)] += 1;

@@ -86,7 +86,7 @@ impl ConductorIndex {
         let real = self.real - s2;
         // a² + b² = |η² − sin²θ| for the complex η.
         let norm = root(real * real + self.imaginary2);
-        let a = root(((norm + real) * 0.5).max(Rgb::ZERO));
+        let a = root(((norm + real) * 0.5).at_least(Rgb::ZERO));
         // The one polarisation is (sum − twice) / (sum + twice), and the other that times (even − odd) / (even + odd):
         // their mean.
         let (sum, twice) = (norm + c2, 2.0 * c * a);
@@ -108,7 +108,7 @@ impl ConductorIndex {
 /// The roots of all channels.
 #[inline]
 fn root(x: Rgb) -> Rgb {
-    Rgb::new(x.x.sqrt(), x.y.sqrt(), x.z.sqrt())
+    Rgb::new(x[0].sqrt(), x[1].sqrt(), x[2].sqrt())
 }
 
 /// The reflectance of a conductor of the index `eta` + i `k`, as [`ConductorIndex::reflectance`] has it.
@@ -219,12 +219,12 @@ mod tests {
     #[test]
     fn metals_reflect_as_in_born_and_wolf() {
         let (eta, k) = (Rgb::splat(0.2), Rgb::splat(3.9));
-        assert!((conductor(1.0, eta, k).x - 0.9519519519519519).abs() < 1e-14);
+        assert!((conductor(1.0, eta, k)[0] - 0.9519519519519519).abs() < 1e-14);
         let truth = 0.5 * (0.991742522 + 0.905072375);
-        assert!((conductor(f64::to_radians(80.0).cos(), eta, k).x - truth).abs() < 1e-9);
+        assert!((conductor(f64::to_radians(80.0).cos(), eta, k)[0] - truth).abs() < 1e-9);
         // Without absorption it is a dielectric.
         for cosine in [0.0, 0.01, 0.4, 1.0] {
-            let one = conductor(cosine, Rgb::splat(1.7), Rgb::ZERO).y;
+            let one = conductor(cosine, Rgb::splat(1.7), Rgb::ZERO)[1];
             assert!((one - dielectric(cosine, 1.7)).abs() < 1e-14);
         }
     }

@@ -37,7 +37,7 @@ pub fn drawn_albedo(scatter: &impl Bsdf, wo: DVec3, draws: u32) -> f64 {
     let weight = |i: u32| {
         let u = [(f64::from(i) + 0.5) / f64::from(draws), radical_inverse(i, 3)];
         let choice = radical_inverse(i, 2);
-        scatter.sample(wo, || choice, u).map_or(0.0, |drawn| drawn.weight.x * drawn.eta * drawn.eta)
+        scatter.sample(wo, || choice, u).map_or(0.0, |drawn| drawn.weight[0] * drawn.eta * drawn.eta)
     };
     (0..draws).map(weight).sum::<f64>() / f64::from(draws)
 }
@@ -74,7 +74,7 @@ fn side(scatter: &impl Bsdf, wo: DVec3, side: f64, lobes: &[f64], width: f64, pr
                     let x = radius * (ahead[0] * cos - ahead[1] * sin);
                     let y = radius * (ahead[1] * cos + ahead[0] * sin);
                     let wi = DVec3::new(x, y, z.copysign(side * wo.z));
-                    scatter.evaluate(wo, wi).0.x * radius * along * across
+                    scatter.evaluate(wo, wi).0[0] * radius * along * across
                 };
                 for k in 0..16 {
                     let at = [f64::from(k / 4) * 0.25, f64::from(k % 4) * 0.25];
@@ -134,7 +134,7 @@ mod tests {
     use super::super::albedo::Tabulated;
     use super::super::conductors::Reflectance;
     use super::super::fresnel::ConductorIndex;
-    use super::super::{Beckmann, Coated, Conductor, Dielectric, Diffuse, MetallicRough, OrenNayar, Rgb, is_radiance};
+    use super::super::{Beckmann, Coated, Conductor, Dielectric, Diffuse, MetallicRough, OrenNayar, Rgb};
     use super::*;
     use rayon::prelude::*;
 
@@ -261,7 +261,7 @@ mod tests {
         let grey = Diffuse { reflectance: Rgb::splat(0.3) };
         for cosine in COSINES {
             let found = directional_albedo(&grey, 1.0, turned(cosine), 1.0, 1e-9);
-            assert!((found - 0.3).abs() < 1e-7 && is_radiance(Rgb::splat(found)), "{cosine} {found}");
+            assert!((found - 0.3).abs() < 1e-7 && Rgb::splat(found).is_radiance(), "{cosine} {found}");
         }
     }
 }

@@ -19,13 +19,13 @@ pub(super) struct Lobes {
 
 impl Lobes {
     pub fn new(diffuse: Rgb, specular: Rgb) -> Self {
-        let (d, s) = (diffuse.max_element(), specular.max_element());
+        let (d, s) = (diffuse.max(), specular.max());
         Self { diffuse, specular, share: if s > 0.0 { s / (d + s) } else { 0.0 } }
     }
 
     #[inline]
     pub fn black(&self) -> bool {
-        self.diffuse == Rgb::ZERO && self.specular == Rgb::ZERO
+        self.diffuse.is_black() && self.specular.is_black()
     }
 
     #[inline]
@@ -47,7 +47,7 @@ impl Lobes {
 
     /// The roughness of an exponent as a microfacet distribution has it, α = √(2 / (n + 2)) (Walter et al., 2007).
     pub fn roughness(&self, exponent: f64) -> f64 {
-        if self.specular == Rgb::ZERO { 1.0 } else { (2.0 / (exponent + 2.0)).sqrt() }
+        if self.specular.is_black() { 1.0 } else { (2.0 / (exponent + 2.0)).sqrt() }
     }
 }
 

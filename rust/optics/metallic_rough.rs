@@ -86,8 +86,8 @@ impl MetallicRough {
     /// The probabilities with which a draw is one reflection by a facet, and what metal scatters more than once.
     #[inline]
     fn shares(&self, once: (f64, f64)) -> [f64; 2] {
-        let facets = (self.f0() * once.1 + (Rgb::ONE - self.f0()) * once.0).max_element();
-        let color = self.color.max_element();
+        let facets = (self.f0() * once.1 + (Rgb::ONE - self.f0()) * once.0).max();
+        let color = self.color.max();
         let (metal, base) =
             (color * self.metallic * (1.0 - once.1), color * (1.0 - self.metallic) * (1.0 - Self::dielectric(once)));
         let sum = facets + metal + base;
@@ -157,7 +157,7 @@ impl Bsdf for MetallicRough {
     }
 
     fn is_delta(&self) -> bool {
-        self.rough.is_none() && self.base == Rgb::ZERO
+        self.rough.is_none() && self.base.is_black()
     }
 
     fn roughness(&self) -> f64 {

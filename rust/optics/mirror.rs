@@ -25,7 +25,7 @@ impl Bsdf for Mirror {
 
     #[inline]
     fn sample(&self, wo: DVec3, _choice: impl FnOnce() -> f64, _u: [f64; 2]) -> Option<BsdfSample> {
-        (wo.z != 0.0 && self.reflectance != Rgb::ZERO).then(|| BsdfSample::delta(mirrored(wo), self.reflectance))
+        (wo.z != 0.0 && !self.reflectance.is_black()).then(|| BsdfSample::delta(mirrored(wo), self.reflectance))
     }
 
     fn albedo(&self) -> Rgb {

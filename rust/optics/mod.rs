@@ -53,7 +53,7 @@ pub use null::Null;
 pub use once::Once;
 pub use oren_nayar::OrenNayar;
 pub use phong::Phong;
-pub use spectrum::{Rgb, is_radiance, luminance};
+pub use spectrum::{Rgb, RgbLanes};
 pub use thin_dielectric::ThinDielectric;
 pub use through::Through;
 pub use transparent::Transparent;

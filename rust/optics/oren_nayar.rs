@@ -63,7 +63,7 @@ impl Bsdf for OrenNayar {
 
     #[inline]
     fn sample(&self, wo: DVec3, _choice: impl FnOnce() -> f64, u: [f64; 2]) -> Option<BsdfSample> {
-        if wo.z == 0.0 || self.reflectance == Rgb::ZERO {
+        if wo.z == 0.0 || self.reflectance.is_black() {
             return None;
         }
         let mut wi = warp::cosine_hemisphere(u);

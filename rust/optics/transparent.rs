@@ -18,7 +18,7 @@ impl Bsdf for Transparent {
 
     #[inline]
     fn sample(&self, wo: DVec3, _choice: impl FnOnce() -> f64, _u: [f64; 2]) -> Option<BsdfSample> {
-        (self.transmittance != Rgb::ZERO).then(|| BsdfSample::delta(-wo, self.transmittance).through(1.0))
+        (!self.transmittance.is_black()).then(|| BsdfSample::delta(-wo, self.transmittance).through(1.0))
     }
 
     fn albedo(&self) -> Rgb {

@@ -72,7 +72,7 @@ fn filled<'py, const K: usize>(
 fn all_filled<'py, const N: usize>(
     py: Python<'py>,
     count: usize,
-    of: impl Fn(usize) -> ([DVec3; N], f64) + Sync,
+    of: impl Fn(usize) -> ([[f64; 3]; N], f64) + Sync,
 ) -> PyResult<([Vectors<'py>; N], Vectors<'py>)> {
     let vectors: Vec<_> = (0..N).map(|_| unwritten::<f64>(py, &[count], Some(3))).collect::<PyResult<_>>()?;
     let vectors: [Vectors<'py>; N] = vectors.try_into().expect("as many as asked");
@@ -86,7 +86,7 @@ fn all_filled<'py, const N: usize>(
             for (i, last) in last.iter_mut().enumerate() {
                 let (values, one) = of(start + i);
                 for (row, value) in rows.0.iter_mut().zip(values) {
-                    row[i] = value.to_array();
+                    row[i] = value;
                 }
                 *last = one;
             }
@@ -232,9 +232,9 @@ impl Interactions {
         let ([value], pdf) = all_filled(py, self.entries.len(), |i| match &self.entries[i].here {
             Some(here) => {
                 let (value, pdf) = here.evaluate(directions.get(i));
-                ([value], pdf)
+                ([value.to_array()], pdf)
             }
-            None => ([Rgb::ZERO], 0.0),
+            None => ([[0.0; 3]], 0.0),
         })?;
         Ok((value, pdf))
     }
@@ -251,7 +251,7 @@ impl Interactions {
         self.check("u", u.len())?;
         let ([direction, weight], pdf) = all_filled(py, self.entries.len(), |i| {
             let drawn = self.entries[i].here.as_ref().and_then(|here| here.sample(|| choice[i], u[i]));
-            drawn.map_or(([DVec3::NAN, Rgb::ZERO], 0.0), |s| ([s.wi, s.weight], s.pdf))
+            drawn.map_or(([[f64::NAN; 3], [0.0; 3]], 0.0), |s| ([s.wi.to_array(), s.weight.to_array()], s.pdf))
         })?;
         Ok((direction, weight, pdf))
     }
@@ -279,8 +279,11 @@ impl Interactions {
             Some((light, ray))
         };
         let (four, pdf) = all_filled(py, self.entries.len(), |i| match draw(i) {
-            Some((light, ray)) => ([light.direction, light.weight, ray.origin, ray.direction], light.pdf),
-            None => ([DVec3::NAN, Rgb::ZERO, DVec3::NAN, DVec3::NAN], 0.0),
+            Some((light, ray)) => {
+                let [towards, origin, direction] = [light.direction, ray.origin, ray.direction].map(|v| v.to_array());
+                ([towards, light.weight.to_array(), origin, direction], light.pdf)
+            }
+            None => ([[f64::NAN; 3], [0.0; 3], [f64::NAN; 3], [f64::NAN; 3]], 0.0),
         })?;
         let most = filled(py, self.entries.len(), |i| [draw(i).map_or(0.0, |(_, ray)| ray.t_max)])?;
         Ok((four, most, pdf))
@@ -296,7 +299,7 @@ impl Interactions {
             let Some(from) = &before.entries[i].here else { return [0.0] };
             [match here {
                 None => lights.infinite_pdf(&from.light_context(), ray.direction),
-                Some(_) if *emission == Rgb::ZERO => 0.0,
+                Some(_) if emission.is_black() => 0.0,
                 Some(_) => lights.surface_pdf(geometry, &from.light_context(), ray, hit, *cosine),
             }]
         })

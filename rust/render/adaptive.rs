@@ -133,13 +133,13 @@ impl Adaptive {
 fn weights(film: &Film, half: usize, samples: u32) -> Vec<f64> {
     let (width, count) = (film.width() as usize, f64::from(samples));
     let evidence = film.evidence(half);
-    let means: Vec<Rgb> = evidence.par_iter().map(|(sum, _)| sum / count).collect();
+    let means: Vec<Rgb> = evidence.par_iter().map(|&(sum, _)| sum / count).collect();
     let errors: Vec<f64> = (0..evidence.len())
         .into_par_iter()
         .map(|pixel| {
             let (sum, squares) = evidence[pixel];
             // As of independent samples: where they are not, this is the wrong variance, and a fair guide.
-            let variance = ((squares - sum * sum / count) / (count * (count - 1.0))).max(Rgb::ZERO);
+            let variance = ((squares - sum * sum / count) / (count * (count - 1.0))).at_least(Rgb::ZERO);
             let cross = cross(&means, width, pixel % width, pixel / width);
             variance.dot(Denominators::new(&cross, variance, count).inverse)
         })
@@ -256,7 +256,7 @@ mod tests {
 
     /// How many standard errors the mean over seeds is off, and the mean.
     fn deviation(seeds: u64, batch: u32, decider: fn(usize) -> usize) -> (f64, f64) {
-        let brightness = |seed| film(seed, 0.01, 64, batch, decider).means().iter().map(|m| m.x).sum::<f64>() / 64.0;
+        let brightness = |seed| film(seed, 0.01, 64, batch, decider).means().iter().map(|m| m[0]).sum::<f64>() / 64.0;
         let means: Vec<f64> = (0..seeds).into_par_iter().map(brightness).collect();
         let count = seeds as f64;
         let mean = means.iter().sum::<f64>() / count;
@@ -287,8 +287,8 @@ mod tests {
         let ratios: Vec<f64> = films
             .chunks(100)
             .map(|films| {
-                let told: f64 = films.iter().flat_map(|f| f.variances().unwrap()).map(|v| v.x).sum();
-                let squares: f64 = films.iter().flat_map(Film::means).map(|m| (m.x - 2.0).powi(2)).sum();
+                let told: f64 = films.iter().flat_map(|f| f.variances().unwrap()).map(|v| v[0]).sum();
+                let squares: f64 = films.iter().flat_map(Film::means).map(|m| (m[0] - 2.0).powi(2)).sum();
                 told / squares
             })
             .collect();

@@ -58,14 +58,14 @@ impl Denominators {
     pub fn new(cross: &[Rgb; 5], variance: Rgb, samples: f64) -> Self {
         let [mean, a, b, c, d] = *cross;
         let leeway = 5.0 / samples.sqrt();
-        let off = Rgb::new(variance.x.sqrt(), variance.y.sqrt(), variance.z.sqrt()) * leeway;
+        let off = variance.sqrt() * leeway;
         // The middle two of four: the larger of the two smaller, and the smaller of the two larger; then in order.
-        let (low, high) = (a.min(b).max(c.min(d)), a.max(b).min(c.max(d)));
-        let (low, high) = (low.min(high), low.max(high));
-        let middle = if samples < 16.0 { (low + high) / 2.0 } else { mean.max(low).min(high) };
-        let likely = middle.max(mean - off).min(mean + off);
+        let (low, high) = (a.at_most(b).at_least(c.at_most(d)), a.at_least(b).at_most(c.at_least(d)));
+        let (low, high) = (low.at_most(high), low.at_least(high));
+        let middle = if samples < 16.0 { (low + high) / 2.0 } else { mean.at_least(low).at_most(high) };
+        let likely = middle.at_least(mean - off).at_most(mean + off);
         let by_itself = mean * mean + FLOOR;
-        Self { inverse: (likely * likely + FLOOR).max(by_itself / 4.0).recip(), own: by_itself.recip() }
+        Self { inverse: (likely * likely + FLOOR).at_least(by_itself / 4.0).recip(), own: by_itself.recip() }
     }
 
     /// For what comes from the sample that stands out most in the pixel, whose mean is `without` if that one is left
@@ -80,20 +80,27 @@ impl Denominators {
     /// the picture says; and if few pixels are even darker than that, `jumps.rs` tells what they add.
     #[inline]
     pub fn of_peak(&self, mean: Rgb, without: Rgb, around: Rgb, chance: &Chance, samples: f64) -> Peak {
-        let (low, high) = (mean.min(without), mean.max(without));
+        let (low, high) = (mean.at_most(without), mean.at_least(without));
         let squared = |likely: Rgb| {
-            let likely = likely.max(low).min(high);
+            let likely = likely.at_least(low).at_most(high);
             (likely * likely + FLOOR).recip()
         };
-        let confirmed = |chance: f64| squared(around.max(without + (mean - without) * chance));
-        let others = without.max(around);
-        let alone = self.own.cmplt((others * others + FLOOR).recip() / hangs(samples));
-        let or = |bold: Rgb, plain: Rgb| Rgb::select(alone, bold.max(plain), plain);
+        let confirmed = |chance: f64| squared(around.at_least(without + (mean - without) * chance));
+        let others = without.at_least(around);
+        let far = (others * others + FLOOR).recip() / hangs(samples);
+        let or = |bold: Rgb, plain: Rgb| {
+            let of = |channel: usize| {
+                let is_alone = self.own[channel] < far[channel];
+                if is_alone { bold[channel].max(plain[channel]) } else { plain[channel] }
+            };
+            Rgb::new(of(0), of(1), of(2))
+        };
+        let farther = (without * without + FLOOR).recip() / hangs(samples);
         Peak {
             likely: or(confirmed(chance.likely), self.inverse),
             least: or(confirmed(chance.most), self.own),
-            most: or(squared(around), self.inverse.max(self.own)),
-            hangs: self.own.cmplt((without * without + FLOOR).recip() / hangs(samples)).any(),
+            most: or(squared(around), self.inverse.at_least(self.own)),
+            hangs: (0..3).any(|channel| self.own[channel] < farther[channel]),
         }
     }
 }
@@ -144,7 +151,7 @@ mod tests {
         let [mean, without, around] = [1.1, 0.1, around].map(Rgb::splat);
         let denominators = Denominators::new(&[mean, around, around, around, around], Rgb::ONE, 64.0);
         let peak = denominators.of_peak(mean, without, around, &Chance { likely, most }, 64.0);
-        [peak.least, peak.likely, peak.most].map(|inverse| 1.0 / inverse.x)
+        [peak.least, peak.likely, peak.most].map(|inverse| 1.0 / inverse[0])
     }
 
     fn close(found: [f64; 3], brightness: [f64; 3]) -> bool {
@@ -167,7 +174,7 @@ mod tests {
         let means: Vec<Rgb> = (0..12).map(|i| Rgb::splat(f64::from(1 << i))).collect();
         // Four columns and three rows.
         assert_eq!(around(&means, 4, 0, 0, 1), Rgb::splat(f64::from((1 << 1) + (1 << 4) + (1 << 5)) / 3.0));
-        assert_eq!(around(&means, 4, 1, 1, 1).x * 8.0, f64::from(0b0111_0101_0111));
+        assert_eq!(around(&means, 4, 1, 1, 1)[0] * 8.0, f64::from(0b0111_0101_0111));
         assert_eq!(around(&means, 4, 1, 1, 2), Rgb::splat(f64::from(1 << 7)));
         assert_eq!(around(&means[..1], 1, 0, 0, 1), Rgb::ZERO);
     }

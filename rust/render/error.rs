@@ -68,7 +68,7 @@ pub(super) fn estimate(film: &Film) -> Option<ErrorEstimate> {
                 film.spreads(y, spreads);
                 let peaks = spreads.iter().flat_map(|spread| &spread.peaks[..cells]);
                 peaks.for_each(|peak| seen.add(peak.brightness, peak.again));
-                shown.extend(spreads.iter().map(|spread| spread.others.abs().max_element()));
+                shown.extend(spreads.iter().map(|spread| spread.others.abs().max()));
             }
             (seen, shown)
         })
@@ -178,10 +178,10 @@ impl Patch {
             rest -= peak.variance;
         }
         // Rounding may leave less than nothing.
-        let rest = rest.max(Rgb::ZERO);
+        let rest = rest.at_least(Rgb::ZERO);
         self.error += rest.dot(denominators.inverse);
         self.least += rest.dot(denominators.own);
-        self.most += rest.dot(denominators.inverse.max(denominators.own));
+        self.most += rest.dot(denominators.inverse.at_least(denominators.own));
         self.alike += spread.variance.dot(denominators.inverse);
         self.own += spread.variance.dot(denominators.own);
     }
@@ -311,7 +311,7 @@ mod tests {
             .enumerate()
             .map(|(i, mean)| {
                 let mu = brightness(i as u32 % film.width(), i as u32 / film.width());
-                (mean.x - mu).powi(2) / (mu * mu + FLOOR)
+                (mean[0] - mu).powi(2) / (mu * mu + FLOOR)
             })
             .sum();
         sum / means.len() as f64

@@ -164,7 +164,7 @@ impl Film {
         let mean = |of: fn(&Cell) -> Rgb| {
             // Row by row, so that the sum is the same for tiles of any size.
             let means = self.pixels(|cells| average(cells, |cell| of(cell) / f64::from(cell.count.max(1))));
-            means.iter().map(|rgb| rgb.element_sum()).sum::<f64>()
+            means.iter().map(|rgb| rgb.sum()).sum::<f64>()
         };
         let (left, taken) = (mean(|cell| cell.sum), mean(|cell| cell.taken));
         (count, taken / (left + taken))
@@ -306,7 +306,7 @@ impl Film {
             let others = cell.sum - cell.largest;
             let degrees = (count - 1.0) * count * cells_squared;
             // Where all samples agree, rounding may leave less than nothing.
-            let alone = ((cell.singles - cell.sum * cell.sum / count) / degrees).max(Rgb::ZERO);
+            let alone = ((cell.singles - cell.sum * cell.sum / count) / degrees).at_least(Rgb::ZERO);
             let batches = cell.count / self.batch;
             let variance = if batches < 2 || self.batch == 1 {
                 alone
@@ -315,17 +315,17 @@ impl Film {
                 // is worth.
                 let (batches, sum) = (f64::from(batches), cell.sum - cell.unfinished);
                 let degrees = (batches - 1.0) * f64::from(self.batch) * count * cells_squared;
-                ((cell.squares - sum * sum / batches) / degrees).max(Rgb::ZERO)
+                ((cell.squares - sum * sum / batches) / degrees).at_least(Rgb::ZERO)
             };
             let off = cell.largest - cell.sum / count;
             let squares = cell.singles - cell.largest * cell.largest - others * others / (count - 1.0);
             let above = cell.largest - others / (count - 1.0);
             let without = others / (count - 1.0) - cell.sum / count;
             *peak = Outlier {
-                variance: (off * off / degrees).min(variance),
+                variance: (off * off / degrees).at_most(variance),
                 without: mean + without / cells.len() as f64,
-                brightness: cell.largest.abs().max_element(),
-                again: squares.element_sum() / above.length_squared().max(f64::MIN_POSITIVE),
+                brightness: cell.largest.abs().max(),
+                again: squares.sum() / above.dot(above).max(f64::MIN_POSITIVE),
             };
             spread.variance += variance;
             spread.alone += alone;
@@ -425,20 +425,20 @@ mod tests {
         for batch in [1, 8] {
             let mut film = film(2, 1, 16, batch);
             expose(&mut film, 0, 48);
-            let green: Vec<f64> = (0..48).map(|n| sample(2, n).y).collect();
+            let green: Vec<f64> = (0..48).map(|n| sample(2, n)[1]).collect();
             let (mean, variance, _) = textbook(&green, batch as usize);
-            assert!((film.means()[1].y / mean - 1.0).abs() < 1e-14);
-            assert!((film.variances().unwrap()[1].y / variance - 1.0).abs() < 1e-12);
+            assert!((film.means()[1][1] / mean - 1.0).abs() < 1e-14);
+            assert!((film.variances().unwrap()[1][1] / variance - 1.0).abs() < 1e-12);
             // The largest sample is the one with the largest channel: all of them, if all are alike.
             let mut grey = film_of(&green, batch);
             let mut row = [Spread::default()];
             grey.spreads(0, &mut row);
             let (_, alone, peak) = textbook(&green, 1);
-            assert!((row[0].peaks[0].variance.x / peak.min(variance) - 1.0).abs() < 1e-12);
-            assert!((row[0].variance.x / variance - 1.0).abs() < 1e-12);
-            assert!((row[0].alone.x / alone - 1.0).abs() < 1e-12);
+            assert!((row[0].peaks[0].variance[0] / peak.min(variance) - 1.0).abs() < 1e-12);
+            assert!((row[0].variance[0] / variance - 1.0).abs() < 1e-12);
+            assert!((row[0].alone[0] / alone - 1.0).abs() < 1e-12);
             let others = green.iter().sum::<f64>() - green.iter().copied().fold(0.0, f64::max);
-            assert!((row[0].others.x * 47.0 / others - 1.0).abs() < 1e-12);
+            assert!((row[0].others[0] * 47.0 / others - 1.0).abs() < 1e-12);
             assert_eq!(row[0].degrees, f64::from(48 / batch - 1));
             grey.append(&grey.clone());
             assert_eq!(grey.tiles()[0].cell(0).count, 96);
@@ -457,19 +457,19 @@ mod tests {
     fn an_unfinished_batch_counts_for_the_mean_and_shares_the_spread_of_the_others() {
         let mut film = film(1, 1, 16, 8);
         expose(&mut film, 0, 21);
-        let green: Vec<f64> = (0..21).map(|n| sample(0, n).y).collect();
-        assert!((film.means()[0].y / (green.iter().sum::<f64>() / 21.0) - 1.0).abs() < 1e-14);
+        let green: Vec<f64> = (0..21).map(|n| sample(0, n)[1]).collect();
+        assert!((film.means()[0][1] / (green.iter().sum::<f64>() / 21.0) - 1.0).abs() < 1e-14);
         let (_, of_sixteen, _) = textbook(&green, 8);
-        assert!((film.variances().unwrap()[0].y / (of_sixteen * 16.0 / 21.0) - 1.0).abs() < 1e-12);
+        assert!((film.variances().unwrap()[0][1] / (of_sixteen * 16.0 / 21.0) - 1.0).abs() < 1e-12);
     }
 
     #[test]
     fn before_there_are_two_batches_samples_speak_for_themselves() {
         let mut film = film(1, 1, 16, 8);
         expose(&mut film, 0, 15);
-        let green: Vec<f64> = (0..15).map(|n| sample(0, n).y).collect();
+        let green: Vec<f64> = (0..15).map(|n| sample(0, n)[1]).collect();
         let (_, alone, _) = textbook(&green, 1);
-        assert!((film.variances().unwrap()[0].y / alone - 1.0).abs() < 1e-12);
+        assert!((film.variances().unwrap()[0][1] / alone - 1.0).abs() < 1e-12);
         let mut row = [Spread::default()];
         film.spreads(0, &mut row);
         assert_eq!((row[0].degrees, row[0].samples), (0.0, 15.0));
@@ -489,7 +489,7 @@ mod tests {
         assert_eq!(film.variances(), None);
         film.extend_to(5)[0].add(0, Rgb::splat(2.0), 1.0);
         // Variances of the two means: 8 / 2 and 4 / 3.
-        assert!((film.variances().unwrap()[0].x - (4.0 + 4.0 / 3.0) / 4.0).abs() < 1e-15);
+        assert!((film.variances().unwrap()[0][0] - (4.0 + 4.0 / 3.0) / 4.0).abs() < 1e-15);
     }
 
     #[test]

@@ -152,7 +152,7 @@ fn mean(tile: &FilmTile, pixel: usize) -> Rgb {
 fn variance(tile: &FilmTile, pixel: usize) -> Rgb {
     let cell = tile.cell(pixel);
     let (sums, batches) = (cell.sum, f64::from(SAMPLES / BATCH));
-    let spread = (cell.squares - sums * sums / batches).max(Rgb::ZERO);
+    let spread = (cell.squares - sums * sums / batches).at_least(Rgb::ZERO);
     spread / (batches * (batches - 1.0) * f64::from(BATCH).powi(2))
 }
 

@@ -51,7 +51,7 @@ pub(super) fn uncertainty(film: &Film) -> Option<Uncertainty> {
     let offset = digamma(prior / 2.0) - (prior / 2.0).ln();
     let each = |(i, spread): (usize, &Spread)| match (around[i], logs[i]) {
         (Some(mean), Some(_)) => {
-            let ratio = spread.variance.element_sum() / spread.alone.element_sum();
+            let ratio = spread.variance.sum() / spread.alone.sum();
             let all = own(spread) + prior;
             let likely = (own(spread) * ratio + prior * (mean + offset).exp()) / all;
             (spread.alone * likely, all.min(spread.samples - cells))
@@ -64,7 +64,7 @@ pub(super) fn uncertainty(film: &Film) -> Option<Uncertainty> {
 
 /// The logarithm of what the placing of samples leaves of a pixel's variance, without bias; `None` where there is none.
 fn log_ratio(spread: &Spread) -> Option<f64> {
-    let (variance, alone) = (spread.variance.element_sum(), spread.alone.element_sum());
+    let (variance, alone) = (spread.variance.sum(), spread.alone.sum());
     let half = spread.degrees / 2.0;
     // Batches that agree to the last bit say no more than that they agree well.
     (half > 0.0 && alone > 0.0).then(|| (variance / alone).max(1e-12).ln() - digamma(half) + half.ln())
@@ -135,11 +135,11 @@ mod tests {
             let known = uncertainty(&film).unwrap();
             for (i, mean) in film.means().iter().enumerate() {
                 let (x, y) = (i as u32 % SIDE, i as u32 / SIDE);
-                told += known.variances[i].x;
+                told += known.variances[i][0];
                 are += ratio(x, y) / 12.0 / f64::from(batches * BATCH);
                 let freedom = known.degrees[i];
-                let away = quantile(0.95, freedom) * known.pooled[i].x.sqrt();
-                held += f64::from(u8::from((mean.x - 1.0).abs() <= away));
+                let away = quantile(0.95, freedom) * known.pooled[i][0].sqrt();
+                held += f64::from(u8::from((mean[0] - 1.0).abs() <= away));
                 degrees += freedom;
             }
         }
@@ -187,7 +187,7 @@ mod tests {
             (0..16).for_each(|pixel| (0..8).for_each(|_| tile.add(pixel, Rgb::ZERO, 1.0)));
         }
         let known = uncertainty(&film).unwrap();
-        assert!(known.variances.iter().all(|&variance| variance == Rgb::ZERO));
+        assert!(known.variances.iter().all(|&variance| variance.is_black()));
         assert!(known.degrees.iter().all(|degrees| degrees.is_finite()));
     }
 }

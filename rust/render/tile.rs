@@ -2,7 +2,7 @@
 
 use super::bytes::{Malformed, Reader, Writer, check};
 use super::patchwork::Patchwork;
-use crate::optics::{Rgb, is_radiance};
+use crate::optics::Rgb;
 
 /// Sums that a mean and its error are computed from.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -184,8 +184,8 @@ impl FilmTile {
     /// What of a sample's radiance counts.
     #[inline]
     fn allowed(&mut self, cell: usize, radiance: Rgb) -> Rgb {
-        let greatest = radiance.max_element();
-        if !is_radiance(radiance) || greatest > Self::GREATEST {
+        let greatest = radiance.max();
+        if !radiance.is_radiance() || greatest > Self::GREATEST {
             self.dropped += 1;
             return Rgb::ZERO;
         }
@@ -318,7 +318,7 @@ impl FilmTile {
 /// Keeps the sample with the larger channel; filters may weigh samples negatively.
 #[inline]
 fn keep_largest(largest: &mut Rgb, sample: Rgb) {
-    if sample.abs().max_element() > largest.abs().max_element() {
+    if sample.abs().max() > largest.abs().max() {
         *largest = sample;
     }
 }

@@ -1,7 +1,7 @@
 //! How a surface shines.
 
 use crate::math::DVec3;
-use crate::optics::{Rgb, is_radiance};
+use crate::optics::Rgb;
 use crate::scene::textures::{Needs, TexturePoint, Value};
 
 /// Which sides of a surface shine.
@@ -83,6 +83,6 @@ impl Emission {
 
     /// Whether it can be: finite and not negative.
     pub fn is_physical(&self) -> bool {
-        self.radiance.range().into_iter().all(is_radiance)
+        self.radiance.range().into_iter().all(Rgb::is_radiance)
     }
 }

@@ -61,7 +61,7 @@ pub(super) fn usual(scene: &Scene, photons: &[Photon]) -> f64 {
 
 /// Radiance over density, a mean of the channels.
 fn strength(light: &LightSample) -> f64 {
-    light.weight.element_sum() / 3.0
+    light.weight.mean()
 }
 
 /// What photons are sent to: the primitives that may be sharp.
@@ -225,7 +225,7 @@ impl Flying {
             self.sharp > 0 && self.matt < MATT
         };
         // What is refracted stands for as much light as before, though it is another radiance.
-        let flux = self.flux * counts * (next.weight * (next.eta * next.eta)).element_sum() / 3.0;
+        let flux = self.flux * counts * (next.weight * (next.eta * next.eta)).mean();
         if !goes_on || flux <= 0.0 || !flux.is_finite() {
             return None;
         }

@@ -73,7 +73,7 @@ fn by_scattering(scene: &Scene, count: u32) -> (f64, f64) {
         } else {
             scene.lights().infinite_radiance(ray.direction)
         };
-        let x = (next.weight * arriving).y;
+        let x = (next.weight * arriving)[1];
         sum += x;
         squares += x * x;
     }
@@ -150,7 +150,7 @@ fn single_directions_are_shared_in_without_noise() {
     ];
     let frame = Frame::new(DVec3::Z);
     let wo = frame.to_local(-DOWN.direction);
-    let from = |direction: DVec3| metal().evaluate(wo, frame.to_local(direction)).0.y;
+    let from = |direction: DVec3| metal().evaluate(wo, frame.to_local(direction)).0[1];
     let expected = from(place.normalize()) * 2.0 / place.length_squared() + from(-way.normalize()) * 3.0;
     let lit = over(metal(), vec![], lights);
     assert!(lit.plan().asks_each(|| 0.2));
@@ -158,7 +158,7 @@ fn single_directions_are_shared_in_without_noise() {
         [&Path::default(), &Direct::default(), &RayCast::default(), &Whitted::default(), &Distributed::default()];
     for integrator in each {
         for value in samples_of(&lit, integrator, DOWN, 20) {
-            assert!((value.y / expected - 1.0).abs() < 1e-9, "{value}, not {expected}");
+            assert!((value[1] / expected - 1.0).abs() < 1e-9, "{value}, not {expected}");
         }
     }
 }
@@ -194,7 +194,7 @@ fn brightness_is_in_proportion_and_never_nan() {
     for strength in [1e-280, 1e-30, 1e30, 1e280] {
         let values = samples_of(&lit(strength), &path, DOWN, 2000);
         assert!(values.iter().all(|rgb| rgb.is_finite()));
-        let mean = values.iter().map(|rgb| rgb.y / strength).sum::<f64>() / 2000.0;
+        let mean = values.iter().map(|rgb| rgb[1] / strength).sum::<f64>() / 2000.0;
         assert!((mean / expected - 1.0).abs() < 1e-9, "{mean}, not {expected}");
     }
 }

@@ -98,7 +98,7 @@ fn whitted_follows_both_the_reflected_and_the_refracted_ray() {
     let ray = Ray::new(DVec3::new(0.1, 0.2, 2.0), DVec3::NEG_Z);
     let expected = 0.04 * 5.0 + 0.96 * 2.0 / 2.25;
     for value in samples_of(&window(), &Whitted::default(), ray, 10) {
-        assert!((value.y / expected - 1.0).abs() < 1e-8, "{value}");
+        assert!((value[1] / expected - 1.0).abs() < 1e-8, "{value}");
     }
     assert_radiance(&window(), &Path::default(), ray, 60_000, expected);
     // What contributes less than a tenth is not followed.

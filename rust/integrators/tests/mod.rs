@@ -35,8 +35,8 @@ fn samples_of(scene: &Scene, integrator: &dyn Integrator, ray: Ray, count: u32) 
 /// Mean and standard error of the green radiance along a ray.
 fn radiance(scene: &Scene, integrator: &dyn Integrator, ray: Ray, count: u32) -> (f64, f64) {
     let values = samples_of(scene, integrator, ray, count);
-    let mean = values.iter().map(|v| v.y).sum::<f64>() / f64::from(count);
-    let variance = values.iter().map(|v| (v.y - mean).powi(2)).sum::<f64>() / f64::from(count - 1);
+    let mean = values.iter().map(|v| v[1]).sum::<f64>() / f64::from(count);
+    let variance = values.iter().map(|v| (v[1] - mean).powi(2)).sum::<f64>() / f64::from(count - 1);
     (mean, (variance / f64::from(count)).sqrt())
 }
 

@@ -5,7 +5,7 @@ use super::guided::Arrival;
 use super::path_state::PathState;
 use crate::integrators::{CameraSample, LocalGuide};
 use crate::math::{Hit, LANES, Ray, RayLanes, VectorLanes};
-use crate::optics::Diffuse;
+use crate::optics::{Diffuse, RgbLanes};
 use crate::sampling::SamplerLanes;
 use crate::scene::materials::BsdfMix;
 use crate::scene::{LightContextLanes, SurfaceInteraction, SurfaceInteractionLanes, SurfaceLanes};
@@ -25,11 +25,11 @@ pub(super) struct Block<'a> {
     pub surfaces: SurfaceLanes,
     pub encounters: SurfaceInteractionLanes,
     pub receivers: LightContextLanes,
-    pub throughput: VectorLanes,
+    pub throughput: RgbLanes,
     /// Whether all of them are with what scatters by one diffuse colour.
     pub is_diffuse: bool,
     /// Those colours.
-    pub reflectance: VectorLanes,
+    pub reflectance: RgbLanes,
     /// Otherwise how each scatters, how wide its ray is, where light comes from by way of what is sharp, and whether
     /// roulette has been played.
     pub bsdf: Vec<BsdfMix>,
@@ -54,9 +54,9 @@ impl Block<'_> {
             encounters: SurfaceInteractionLanes::at(&surfaces),
             surfaces,
             receivers: LightContextLanes::NONE,
-            throughput: VectorLanes::ZERO,
+            throughput: RgbLanes::ZERO,
             is_diffuse: false,
-            reflectance: VectorLanes::ZERO,
+            reflectance: RgbLanes::ZERO,
             bsdf: Vec::new(),
             width: [0.0; LANES],
             guides: [None; LANES],

@@ -9,7 +9,7 @@ use super::path_state::PathState;
 use super::weights::{ROULETTE_AT_LATEST, survival};
 use super::worker::TransportWorker;
 use crate::math::{LANES, VectorLanes};
-use crate::optics::{BsdfSample, Diffuse, Rgb};
+use crate::optics::{BsdfSample, Diffuse, Rgb, RgbLanes};
 use crate::sampling::Pairs;
 use crate::scene::{Encounter, Footprint, SurfaceInteractionLanes};
 use crate::simd::loops;
@@ -19,11 +19,11 @@ loops! {
     /// From random numbers to where paths go on to from diffuse surfaces. `pdf` is 0 where it ends.
     fn go_on(
         encounters: &SurfaceInteractionLanes,
-        reflectance: &VectorLanes,
+        reflectance: &RgbLanes,
         u: &Pairs,
         origin: &mut VectorLanes,
         direction: &mut VectorLanes,
-        weight: &mut VectorLanes,
+        weight: &mut RgbLanes,
         pdf: &mut [f64; LANES],
     ) {
         for i in 0..LANES {
@@ -129,7 +129,8 @@ impl<N: Features> TransportWorker<'_, N> {
     fn go_on_diffuse(&mut self, block: &Block) {
         let mut u = [[0.0; LANES]; 2];
         block.numbers.two(self.level, &block.dimensions.map(Dimensions::direction), &mut u);
-        let ([mut origin, mut direction, mut weight], mut pdf) = ([VectorLanes::ZERO; 3], [0.0; LANES]);
+        let ([mut origin, mut direction], mut weight) = ([VectorLanes::ZERO; 2], RgbLanes::ZERO);
+        let mut pdf = [0.0; LANES];
         go_on(
             self.level,
             &block.encounters,
@@ -208,7 +209,7 @@ impl<N: Features> TransportWorker<'_, N> {
         path.scale *= next.eta * next.eta;
         path.each = self.asks_each(block, lane);
         path.bounce = path.bounce.saturating_add(1);
-        if N::GENERAL && path.throughput.max_element() * path.scale < self.settings.least {
+        if N::GENERAL && path.throughput.max() * path.scale < self.settings.least {
             return;
         }
         if !self.survives(&mut path, block.arrivals[lane], branch.chance) {

@@ -7,7 +7,7 @@ use super::resampling::Resampled;
 use super::weights::power_heuristic;
 use super::worker::TransportWorker;
 use crate::math::{DVec3, LANES, VectorLanes};
-use crate::optics::{Bsdf, Diffuse, Rgb};
+use crate::optics::{Bsdf, Diffuse, Rgb, RgbLanes};
 use crate::scene::{Encounter, LightLanes, LightSample, SurfaceInteractionLanes};
 use crate::simd::loops;
 use std::array;
@@ -16,10 +16,10 @@ loops! {
     /// From light that was drawn for diffuse surfaces to what arrives of it, and the rays that tell whether it does.
     fn ask(
         encounters: &SurfaceInteractionLanes,
-        reflectance: &VectorLanes,
-        throughput: &VectorLanes,
+        reflectance: &RgbLanes,
+        throughput: &RgbLanes,
         lights: &LightLanes,
-        arriving: &mut VectorLanes,
+        arriving: &mut RgbLanes,
         origin: &mut VectorLanes,
         direction: &mut VectorLanes,
         t_max: &mut [f64; LANES],
@@ -76,7 +76,8 @@ impl<N: Features> TransportWorker<'_, N> {
         block.numbers.one_and_two(self.level, &block.dimensions.map(|d| d.light_choice(0)), &mut choice, &mut u);
         let (mut lights, lit) = (LightLanes::NONE, self.scene.lights());
         lit.sample_lanes(self.level, self.scene.geometry(), &block.receivers, &choice, &u, &mut lights);
-        let ([mut arriving, mut origin, mut direction], mut t_max) = ([VectorLanes::ZERO; 3], [0.0; LANES]);
+        let ([mut origin, mut direction], mut t_max) = ([VectorLanes::ZERO; 2], [0.0; LANES]);
+        let mut arriving = RgbLanes::ZERO;
         ask(
             self.level,
             &block.encounters,
@@ -91,7 +92,7 @@ impl<N: Features> TransportWorker<'_, N> {
         let mut asked = 0;
         for lane in 0..block.count {
             let arriving = arriving.get(lane);
-            if block.goes_on[lane] && arriving != Rgb::ZERO {
+            if block.goes_on[lane] && !arriving.is_black() {
                 asked |= 1 << lane;
                 self.bring(block, lane, direction.get(lane), arriving);
             }
@@ -129,7 +130,7 @@ impl<N: Features> TransportWorker<'_, N> {
         for lane in (0..block.count).filter(|&lane| asks[lane]) {
             if let Some(light) = lights.sample(lane) {
                 let arriving = self.arriving(block, lane, &light, numbers[lane].1);
-                if arriving != Rgb::ZERO {
+                if !arriving.is_black() {
                     self.send_towards(block, lane, &light, arriving);
                 }
             }

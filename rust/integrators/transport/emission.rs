@@ -15,7 +15,7 @@ impl<N: Features> TransportWorker<'_, N> {
     pub(super) fn infinite_light(&self, ray: &Ray, path: &PathState) -> Rgb {
         let lights = self.scene.lights();
         let arriving = lights.infinite_radiance(ray.direction);
-        if arriving == Rgb::ZERO || path.pdf == f64::INFINITY {
+        if arriving.is_black() || path.pdf == f64::INFINITY {
             return arriving;
         }
         let receiver = LightSampleContext { position: ray.origin, normal: path.normal };
@@ -44,7 +44,7 @@ impl<N: Features> TransportWorker<'_, N> {
         } else {
             self.scene.emission_at(surface).sent(self.scene.geometry(), ray, hit, surface, || width)
         };
-        if emission == Rgb::ZERO || path.pdf == f64::INFINITY {
+        if emission.is_black() || path.pdf == f64::INFINITY {
             return emission;
         }
         let receiver = LightSampleContext { position: ray.origin, normal: path.normal };

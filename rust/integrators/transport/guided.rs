@@ -4,7 +4,7 @@ use super::path_state::PathState;
 use super::weights::survival;
 use crate::integrators::LocalGuide;
 use crate::math::DVec3;
-use crate::optics::{BsdfSample, Rgb};
+use crate::optics::BsdfSample;
 use crate::scene::Encounter;
 
 /// Plays roulette for a path that was aimed and comes to a matt surface, and tells whether that ended the path, was
@@ -53,7 +53,7 @@ pub(super) fn draw(here: &impl Encounter, guide: &LocalGuide, choice: f64, u: [f
     if choice < share {
         let direction = guide.sample(choice / share, u);
         let (value, pdf) = here.evaluate(direction);
-        if value == Rgb::ZERO || pdf <= 0.0 {
+        if value.is_black() || pdf <= 0.0 {
             return None;
         }
         let both = density(guide, pdf, direction);

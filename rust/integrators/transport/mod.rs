@@ -88,7 +88,7 @@ impl Settings {
             && self.splits == 1
             && self.follow == Follow::All
             && self.shadows
-            && self.ambient == Rgb::ZERO
+            && self.ambient.is_black()
             && self.least == 0.0
     }
 

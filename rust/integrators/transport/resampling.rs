@@ -28,10 +28,10 @@ impl<T> Resampled<T> {
     /// Of one draw more.
     #[inline]
     pub fn add(&mut self, draw: T, brings: Rgb) {
-        if brings == Rgb::ZERO {
+        if brings.is_black() {
             return;
         }
-        let strength = brings.element_sum();
+        let strength = brings.sum();
         self.sum += strength;
         let probability = strength / self.sum;
         if self.choice >= probability {
@@ -66,7 +66,7 @@ mod tests {
         const STEPS: u32 = 10_000;
         let draws = || brings.iter().enumerate().map(|(i, &x)| (i, Rgb::new(0.5 * x, x, 0.0)));
         let one = |step: u32| resampled((f64::from(step) + 0.5) / f64::from(STEPS), draws());
-        (0..STEPS).filter_map(one).map(|(i, x)| if seen[i] { x.y } else { 0.0 }).sum::<f64>() / f64::from(STEPS)
+        (0..STEPS).filter_map(one).map(|(i, x)| if seen[i] { x[1] } else { 0.0 }).sum::<f64>() / f64::from(STEPS)
     }
 
     #[test]
@@ -79,7 +79,7 @@ mod tests {
             assert!((mean(&brings, &seen) - expected).abs() <= 8.0 * 3.001 / 1e4, "{bits:b}");
         }
         // Unshadowed, it is the sum whatever the choice.
-        let all = |u: f64| resampled(u, brings.iter().map(|&x| ((), Rgb::splat(x)))).unwrap().1.y;
+        let all = |u: f64| resampled(u, brings.iter().map(|&x| ((), Rgb::splat(x)))).unwrap().1[1];
         for choice in [0.0, 0.1, 0.5, 0.999, 1f64.next_down()] {
             assert!((all(choice) - 3.001).abs() < 1e-15 * 4.0);
         }

@@ -163,7 +163,7 @@ impl Reuse {
         let (shading, normal) = (here.shading_normal(), here.normal());
         // Where the one normal is seen from above and the other from below, or both from the side, nothing is
         // scattered.
-        let is_lit = here.cosine() > 0.0 && reflectance != Rgb::ZERO;
+        let is_lit = here.cosine() > 0.0 && !reflectance.is_black();
         if !is_lit {
             return path;
         }
@@ -175,7 +175,7 @@ impl Reuse {
         }
         let second = Second { departure, shading, normal, is_flat, sample: path.sample };
         let first = &self.first[path.sample as usize];
-        if first.reflectance == Rgb::ZERO || here.is_bent() || first.geometry(&second).is_none() {
+        if first.reflectance.is_black() || here.is_bent() || first.geometry(&second).is_none() {
             return path;
         }
         self.second.push(second);
@@ -208,7 +208,7 @@ impl Reuse {
             let group = start..start + count;
             let seconds = next..self.second.partition_point(|second| second.sample < group.end);
             (start, next) = (group.end, seconds.end);
-            let brightness = |second: &Second| found[second.sample as usize].element_sum();
+            let brightness = |second: &Second| found[second.sample as usize].sum();
             let mean = self.second[seconds.clone()].iter().map(brightness).sum::<f64>() / seconds.len() as f64;
             let mut turn = if mean > 0.0 { chance(group.start) } else { 0.0 };
             for i in seconds {

@@ -28,7 +28,7 @@ const SURVIVAL: f64 = 1.0 - 1.0 / 4096.0;
 /// earlier than pays: it costs more in error than it saves in time, and has a longer tail.
 #[inline]
 pub(super) fn survival(throughput: Rgb, scale: f64) -> f64 {
-    (throughput.max_element() * scale).sqrt().min(SURVIVAL)
+    (throughput.max() * scale).sqrt().min(SURVIVAL)
 }
 
 #[cfg(test)]

@@ -57,10 +57,10 @@ impl Curve {
         for (i, value) in values.iter_mut().enumerate() {
             *value = sum(&lines, i as f64 / Self::STEPS as f64, 1.0);
         }
-        let most = values.iter().fold(Rgb::ONE, |most, &value| most.max(value));
+        let most = values.iter().fold(Rgb::ONE, |most, &value| most.at_least(value));
         // What is 1 but for rounding, at grazing incidence, is 1.
         let factor = |most: f64| if most > 1.0 + 1e-6 { brightest / most } else { 1.0 };
-        Self { values, lines, again: Rgb::new(factor(most.x), factor(most.y), factor(most.z)) }
+        Self { values, lines, again: Rgb::new(factor(most[0]), factor(most[1]), factor(most[2])) }
     }
 
     /// The reflectance for unpolarised light of a `cosine` of incidence, 0 to 1, in vacuum.
@@ -86,7 +86,7 @@ impl Curve {
     /// The same in a medium of index `outside`, by means that are right to 1e-3.
     pub fn seen_in(&self, outside: f64, of_mean: impl Fn(f64) -> f64) -> Rgb {
         let relative = |x: f64| Rgb::splat(x / outside);
-        let mean = |line: &Line| fresnel::ConductorIndex::new(relative(line.eta), relative(line.k)).average().x;
+        let mean = |line: &Line| fresnel::ConductorIndex::new(relative(line.eta), relative(line.k)).average()[0];
         self.lines.iter().map(|line| line.weight * of_mean(mean(line))).sum()
     }
 
@@ -108,7 +108,7 @@ impl fmt::Debug for Curve {
 
 /// The reflectance at one wavelength.
 fn at(cosine: f64, eta: f64, k: f64) -> f64 {
-    fresnel::conductor(cosine, Rgb::splat(eta), Rgb::splat(k)).x
+    fresnel::conductor(cosine, Rgb::splat(eta), Rgb::splat(k))[0]
 }
 
 /// The colour of a reflectance, in a medium of index `outside`.
@@ -136,11 +136,12 @@ mod tests {
     use super::*;
     use crate::optics::conductors::metal;
     use crate::optics::spectra::{daylight, matching, xyz_to_rgb};
+    use glam::DVec3;
 
     /// The integral over all that is seen, in steps of a tenth of a nm: Fresnel's equations in complex numbers, written
     /// out.
     fn integral(cosine: f64, outside: f64, index: impl Fn(f64) -> (f64, f64)) -> Rgb {
-        let (mut seen, mut white) = (Rgb::ZERO, 0.0);
+        let (mut seen, mut white) = (DVec3::ZERO, 0.0);
         for i in 0..=4700 {
             let wavelength = 360.0 + 0.1 * f64::from(i);
             let (eta, k) = index(wavelength.min(830.0));
@@ -184,9 +185,9 @@ mod tests {
                     })
                 };
                 let off = metal.curve().reflectance(cosine) / truth - Rgb::ONE;
-                assert!(off.abs().max_element() < 1e-3, "{metal:?} {cosine} {truth} {off}");
+                assert!(off.abs().max() < 1e-3, "{metal:?} {cosine} {truth} {off}");
             }
-            assert!((metal.curve().reflectance(0.0) - Rgb::ONE).abs().max_element() < 1e-12);
+            assert!((metal.curve().reflectance(0.0) - Rgb::ONE).abs().max() < 1e-12);
         }
     }
 
@@ -206,7 +207,7 @@ mod tests {
             ("W", [0.51530, 0.49590, 0.46760], 2e-3),
         ] {
             let off = metal(symbol).unwrap().curve().reflectance(1.0) / Rgb::from_array(truth) - Rgb::ONE;
-            assert!(off.abs().max_element() < bound, "{symbol} {off}");
+            assert!(off.abs().max() < bound, "{symbol} {off}");
         }
     }
 
@@ -217,7 +218,7 @@ mod tests {
             for cosine in [0.0, 0.05, 0.4, 1.0] {
                 let truth = integral(cosine, 1.33, |wavelength| metal.index_at(wavelength));
                 let off = metal.curve().reflectance_in(1.33, cosine) / truth - Rgb::ONE;
-                assert!(off.abs().max_element() < 1e-3, "{metal:?} {cosine} {off}");
+                assert!(off.abs().max() < 1e-3, "{metal:?} {cosine} {off}");
             }
         }
     }
@@ -227,10 +228,10 @@ mod tests {
         let grey = Curve::new(|_| (0.2, 3.9));
         for cosine in [0.0, 0.003, 0.5, 1.0] {
             let truth = Rgb::splat(textbook(cosine, 0.2, 3.9));
-            assert!((grey.reflectance(cosine) - truth).abs().max_element() < 1e-4, "{cosine}");
+            assert!((grey.reflectance(cosine) - truth).abs().max() < 1e-4, "{cosine}");
         }
         let mean = fresnel::ConductorIndex::new(Rgb::splat(0.2), Rgb::splat(3.9)).average();
-        assert!((grey.seen(|mean| mean) - mean).abs().max_element() < 1e-3);
+        assert!((grey.seen(|mean| mean) - mean).abs().max() < 1e-3);
         assert_eq!(grey.again(), Rgb::ONE);
     }
 
@@ -240,7 +241,7 @@ mod tests {
             let curve = metal.curve();
             let cosines = (0..2000).map(|i| (f64::from(i) + 0.5) / 2000.0);
             let mean: Rgb = cosines.map(|mu| curve.reflectance(mu) * mu / 1000.0).sum();
-            assert!((mean - curve.seen(|mean| mean)).abs().max_element() < 2e-4, "{metal:?}");
+            assert!((mean - curve.seen(|mean| mean)).abs().max() < 2e-4, "{metal:?}");
         }
     }
 
@@ -249,16 +250,16 @@ mod tests {
         for metal in &METALS {
             let curve = metal.curve();
             let once = |mu: f64| curve.reflectance(mu);
-            let most = (0..=100).map(|i| once(f64::from(i) / 100.0)).fold(Rgb::ZERO, Rgb::max);
-            assert!((most * curve.again()).max_element() <= 1.0 + 1e-12 && most.max_element() < 1.03, "{metal:?}");
-            assert!((0..=100).all(|i| once(f64::from(i) / 100.0).min_element() > 0.2), "{metal:?}");
+            let most = (0..=100).map(|i| once(f64::from(i) / 100.0)).fold(Rgb::ZERO, Rgb::at_least);
+            assert!((most * curve.again()).max() <= 1.0 + 1e-12 && most.max() < 1.03, "{metal:?}");
+            assert!((0..=100).all(|i| once(f64::from(i) / 100.0).min() > 0.2), "{metal:?}");
             // Only gold's red is beyond the screen's.
             assert_eq!(curve.again() == Rgb::ONE, metal.symbol != "Au", "{metal:?}");
             // What facets throw on facets for ever is what each wavelength's series gives.
             for lost in [0.1, 0.5, 0.999] {
                 let all = curve.seen(|mean| (1.0 - lost) / (1.0 - lost * mean));
                 let series: Rgb = (0..20_000).map(|n| curve.seen(|mean| (1.0 - lost) * (lost * mean).powi(n))).sum();
-                assert!((all - series).abs().max_element() < 1e-9 && all.max_element() < 1.0225, "{metal:?}");
+                assert!((all - series).abs().max() < 1e-9 && all.max() < 1.0225, "{metal:?}");
             }
         }
     }
@@ -271,9 +272,9 @@ mod tests {
                 let (eta, k) = gold.index_at(wavelength);
                 textbook(cosine, eta, k).powi(reflections)
             });
-            let once = gold.curve().reflectance(cosine).x;
-            let red = once * (once * gold.curve().again().x).powi(reflections - 1);
-            assert!((red / truth.x - 1.0).abs() < bound, "{reflections} {red} {truth}");
+            let once = gold.curve().reflectance(cosine)[0];
+            let red = once * (once * gold.curve().again()[0]).powi(reflections - 1);
+            assert!((red / truth[0] - 1.0).abs() < bound, "{reflections} {red} {truth}");
         }
     }
 }

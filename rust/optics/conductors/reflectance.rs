@@ -45,7 +45,7 @@ impl Reflectance {
         match self {
             Self::Index(index) => {
                 let mean = index.average();
-                Rgb::new(of_mean(mean.x), of_mean(mean.y), of_mean(mean.z))
+                Rgb::new(of_mean(mean[0]), of_mean(mean[1]), of_mean(mean[2]))
             }
             Self::Metal(curve) => curve.seen(of_mean),
             Self::Within(curve, outside) => curve.seen_in(*outside, of_mean),

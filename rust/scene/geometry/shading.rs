@@ -3,7 +3,8 @@
 
 use super::Geometry;
 use crate::accel::Primitives;
-use crate::math::{DVec3, Hit, Ray, Vec3};
+use crate::math::{DVec3, Hit, Ray};
+use crate::optics::Rgb;
 use crate::scene::textures::{Needs, TexturePoint};
 use crate::scene::{ShadingPoint, SurfacePoint};
 
@@ -49,7 +50,7 @@ impl Geometry {
         if needs.colours
             && let Some(colours) = self.colours_of(hit.primitive)
         {
-            texture.colour = (0..3).map(|i| Vec3::from(colours[i]).as_dvec3() * weights[i]).sum();
+            texture.colour = (0..3).map(|i| Rgb::from_array(colours[i].map(f64::from)) * weights[i]).sum();
         }
         if needs.uv
             && let Some(corners) = self.uvs_of(hit.primitive)
@@ -96,7 +97,7 @@ impl ShadingPoint {
 mod tests {
     use super::*;
     use crate::accel::BruteForce;
-    use crate::optics::Rgb;
+    use crate::math::Vec3;
     use crate::scene::textures::{Between, Checker, Domain, ProductTexture, UvTransform, Value, VertexColours};
     use crate::scene::{DiffuseMaterial, Instances, Matrix, Mesh, Prototype, Shape, Surface};
     use crate::shapes::Sphere;
@@ -150,7 +151,7 @@ mod tests {
                 let (there, told) = (there.texture.position - here.texture.position, here.object_dp);
                 assert!((there - told[0] * by[0] - told[1] * by[1]).length() < 1e-12, "{there}");
             }
-            assert!((here.texture.colour - Rgb::new(0.5, 0.2, 0.3)).length() < 1e-15);
+            assert!((here.texture.colour - Rgb::new(0.5, 0.2, 0.3)).abs().max() < 1e-15);
             assert!((here.texture.uv[0] - (0.05 + 0.18 + 0.09)).abs() < 1e-7);
         }
     }

@@ -3,7 +3,7 @@
 use super::light::strength;
 use super::{Light, LightContextLanes, LightLanes, LightSample, LightSampleContext, Reach};
 use crate::math::{DVec3, Frame, LANES, Ray, VectorLanes};
-use crate::optics::{Rgb, is_radiance};
+use crate::optics::{Rgb, RgbLanes};
 use crate::sampling::Pairs;
 use crate::sampling::warp::{UNIFORM_SPHERE_PDF, cosine_hemisphere, uniform_sphere};
 use crate::simd::{Level, loops};
@@ -35,7 +35,7 @@ loops! {
         normal: &VectorLanes,
         u: &Pairs,
         direction: &mut VectorLanes,
-        weight: &mut VectorLanes,
+        weight: &mut RgbLanes,
         pdf: &mut [f64; LANES],
     ) {
         for i in 0..LANES {
@@ -51,7 +51,7 @@ loops! {
 
 impl Light for ConstantEnvironment {
     fn validate(&self) -> Result<(), String> {
-        if is_radiance(self.radiance) { Ok(()) } else { Err("an environment must be finite and not negative".into()) }
+        if self.radiance.is_radiance() { Ok(()) } else { Err("an environment must be finite and not negative".into()) }
     }
 
     fn reach(&self) -> Reach {

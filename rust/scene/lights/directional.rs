@@ -3,7 +3,7 @@
 use super::light::strength;
 use super::{Light, LightSample, LightSampleContext, Reach};
 use crate::math::DVec3;
-use crate::optics::{Rgb, is_radiance};
+use crate::optics::Rgb;
 
 /// Light from outside along a single direction, as of a star.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,7 +21,7 @@ impl DirectionalLight {
 
 impl Light for DirectionalLight {
     fn validate(&self) -> Result<(), String> {
-        if self.from.is_finite() && is_radiance(self.irradiance) {
+        if self.from.is_finite() && self.irradiance.is_radiance() {
             Ok(())
         } else {
             Err("a directional light must have a direction of a length other than 0, and an irradiance that is \

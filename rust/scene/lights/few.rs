@@ -167,7 +167,7 @@ impl Lights {
             .iter()
             .enumerate()
             .map(|(one, light)| (one, light, light.infinite_radiance(direction)));
-        let seen = each.filter(|(.., radiance)| *radiance != Rgb::ZERO);
+        let seen = each.filter(|(.., radiance)| !radiance.is_black());
         let drawn =
             |one: usize, light: &dyn Light| self.infinite.own_share(one) * light.infinite_pdf(receiver, direction);
         seen.map(|(one, light, radiance)| radiance * weight(drawn(one, light.as_ref()))).sum()

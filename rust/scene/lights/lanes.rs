@@ -1,12 +1,12 @@
 //! Light drawn for sixteen receivers at a time.
 
+use super::plain::Figure;
 use super::triangle::SeenTriangle;
-use super::{LightContextLanes, LightLanes, Lights, Sides};
-use crate::accel::Primitives;
+use super::{LightContextLanes, LightLanes, Lights};
 use crate::math::{LANES, VectorLanes};
+use crate::optics::RgbLanes;
 use crate::sampling::Pairs;
 use crate::scene::geometry::error_among;
-use crate::scene::textures::TexturePoint;
 use crate::scene::{Geometry, RayOrigin};
 use crate::shapes::{Seen, Sphere};
 use crate::simd::{Level, loops};
@@ -16,7 +16,7 @@ use std::array::from_fn;
 struct Lamps {
     corners: [VectorLanes; 3],
     normal: VectorLanes,
-    radiance: VectorLanes,
+    radiance: RgbLanes,
     /// Whether the front shines, and the back.
     sides: [[bool; LANES]; 2],
     probability: [f64; LANES],
@@ -66,7 +66,7 @@ loops! {
         lamps: &Lamps,
         u: &Pairs,
         direction: &mut VectorLanes,
-        weight: &mut VectorLanes,
+        weight: &mut RgbLanes,
         pdf: &mut [f64; LANES],
         position: &mut VectorLanes,
         offset: &mut VectorLanes,
@@ -158,7 +158,7 @@ impl Lights {
         let mut lamps = Lamps {
             corners: [VectorLanes::ZERO; 3],
             normal: VectorLanes::ZERO,
-            radiance: VectorLanes::ZERO,
+            radiance: RgbLanes::ZERO,
             // A lane without a light has sides that do not shine.
             sides: [[false; LANES]; 2],
             probability: [0.0; LANES],
@@ -167,30 +167,27 @@ impl Lights {
         let (mut triangles, mut spheres, mut others) = (0u32, 0u32, 0u32);
         for (lane, &chosen) in chosen.iter().enumerate() {
             let Some((number, probability)) = chosen else { continue };
-            let plain = self.surfaces.get(number).filter(|_| self.are_plain[number]);
-            let Some(&primitive) = plain else {
+            let Some(light) = self.plain(geometry, number) else {
                 others |= 1 << lane;
                 continue;
             };
-            let emission = self.emission(geometry.locate(primitive).0);
-            match geometry.shape(primitive).and_then(|shape| shape.ball()) {
-                Some((center, radius)) => {
+            match light.figure {
+                Figure::Ball { center, radius } => {
                     spheres |= 1 << lane;
                     balls.center.set(lane, center);
                     balls.radius[lane] = radius;
                 }
-                None => {
+                Figure::Triangle { corners, normal } => {
                     triangles |= 1 << lane;
-                    for (corners, corner) in lamps.corners.iter_mut().zip(geometry.corners(primitive)) {
-                        corners.set(lane, corner);
+                    for (lanes, corner) in lamps.corners.iter_mut().zip(corners) {
+                        lanes.set(lane, corner);
                     }
-                    lamps.normal.set(lane, geometry.normal(primitive));
+                    lamps.normal.set(lane, normal);
                 }
             }
-            lights.primitive[lane] = primitive;
-            lamps.radiance.set(lane, emission.radiance.at(&TexturePoint::NOWHERE));
-            lamps.sides[0][lane] = emission.sides != Sides::Back;
-            lamps.sides[1][lane] = emission.sides != Sides::Front;
+            lights.primitive[lane] = light.primitive;
+            lamps.radiance.set(lane, light.radiance);
+            [lamps.sides[0][lane], lamps.sides[1][lane]] = light.sides;
             lamps.probability[lane] = probability;
         }
         if spheres == 0 {

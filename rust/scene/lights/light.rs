@@ -67,5 +67,5 @@ pub trait Light: Debug + Send + Sync {
 /// be by its luminance.
 #[inline]
 pub(super) fn strength(rgb: Rgb) -> f64 {
-    rgb.element_sum() / 3.0
+    rgb.mean()
 }

@@ -2,7 +2,7 @@
 
 use super::{LightSample, LightSampleContext};
 use crate::math::{DVec3, LANES, Ray, VectorLanes};
-use crate::optics::Rgb;
+use crate::optics::{Rgb, RgbLanes};
 use crate::scene::RayOrigin;
 
 /// Receivers, a lane each.
@@ -34,7 +34,7 @@ impl LightContextLanes {
 #[derive(Clone, Debug)]
 pub struct LightLanes {
     pub(super) direction: VectorLanes,
-    pub(super) weight: VectorLanes,
+    pub(super) weight: RgbLanes,
     /// 0 where the draw gave none.
     pub(super) pdf: [f64; LANES],
     /// Where it sets out, and the way off the surface there.
@@ -50,7 +50,7 @@ impl LightLanes {
     /// No light.
     pub const NONE: Self = Self {
         direction: VectorLanes::ZERO,
-        weight: VectorLanes::ZERO,
+        weight: RgbLanes::ZERO,
         pdf: [0.0; LANES],
         position: VectorLanes::ZERO,
         offset: VectorLanes::ZERO,

@@ -46,7 +46,7 @@ impl LightSample {
         let weight = intensity(-direction) / (distance * distance);
         let source = Some(RayOrigin::free(position));
         let one = Self { direction, weight, pdf: f64::INFINITY, source, primitive: Ray::NO_TRIANGLE };
-        (weight != Rgb::ZERO).then_some(one)
+        (!weight.is_black()).then_some(one)
     }
 
     /// The same, when its light is one of several and was chosen with a probability.

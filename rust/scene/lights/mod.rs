@@ -14,6 +14,7 @@ mod light_sample;
 mod light_sample_context;
 mod map;
 mod picture;
+mod plain;
 mod point;
 mod projector;
 mod pyramid;
@@ -49,6 +50,7 @@ use few::Few;
 use infinite::InfiniteLights;
 use instanced::Copied;
 use light::strength;
+use plain::PlainLight;
 use std::sync::Arc;
 
 /// The lights of a scene: emitting surfaces, others that stand within it, and what comes from outside.
@@ -71,11 +73,16 @@ pub struct Lights {
     choice: Option<Choice>,
     infinite: InfiniteLights,
     few: Few,
-    /// Of each primitive that emits, whether it is a triangle or a sphere that shines alike everywhere.
-    are_plain: Vec<bool>,
+    /// Of each primitive that emits, whether it is a triangle or a sphere that shines alike everywhere; none where there
+    /// are more than [`Lights::KEPT`].
+    kept: Vec<Option<PlainLight>>,
 }
 
 impl Lights {
+    /// What surfaces shine alike everywhere is kept of so many at most: 2/3 of a megabyte. To find it anew for each draw
+    /// from few takes as long as the draw.
+    const KEPT: usize = 1 << 12;
+
     /// Numbers the lights: the emission of each shape of a geometry, and what is no surface.
     pub(super) fn new(geometry: &Geometry, emission: Vec<Emission>, others: Vec<Arc<dyn Light>>) -> Self {
         let (mut first, mut surfaces, mut strengths) = (Vec::new(), Vec::new(), Vec::new());
@@ -107,13 +114,12 @@ impl Lights {
         let choice = Choice::new(&strengths);
         let infinite = InfiniteLights::new(infinite, choice.is_some());
         let few = Few::new(&strengths, &pairs, infinite.lights().len());
-        let is_plain = |&primitive: &u32| {
-            geometry.shape(primitive).is_none_or(|shape| shape.ball().is_some())
-                && !emission[geometry.locate(primitive).0 as usize].needs().any()
-        };
-        let are_plain = surfaces.iter().map(is_plain).collect();
+        let few_surfaces = if surfaces.len() <= Self::KEPT { surfaces.as_slice() } else { &[] };
+        let plain =
+            |&primitive: &u32| PlainLight::new(geometry, &emission[geometry.locate(primitive).0 as usize], primitive);
+        let kept = few_surfaces.iter().map(plain).collect();
         let shines = emission.iter().map(|emission| !emission.is_dark()).collect();
-        Self { emission, shines, first, surfaces, copied, inside, choice, infinite, few, are_plain }
+        Self { emission, shines, first, surfaces, copied, inside, choice, infinite, few, kept }
     }
 
     /// How strong a primitive of the scene is. What no ray can hit must not shine either, and from what has no end no
@@ -138,7 +144,7 @@ impl Lights {
             + size_of_val(self.shines.as_slice())
             + size_of_val(self.first.as_slice())
             + size_of_val(self.surfaces.as_slice())
-            + size_of_val(self.are_plain.as_slice())
+            + size_of_val(self.kept.as_slice())
             + self.copied.bytes()
             + self.inside.iter().map(|light| light.bytes()).sum::<usize>()
             + self.choice.as_ref().map_or(0, Choice::bytes)
@@ -223,6 +229,16 @@ impl Lights {
         } else {
             0.0
         }
+    }
+
+    /// The surface of a number, if it shines alike everywhere.
+    #[inline]
+    fn plain(&self, geometry: &Geometry, number: usize) -> Option<PlainLight> {
+        if let Some(kept) = self.kept.get(number) {
+            return *kept;
+        }
+        let &primitive = self.surfaces.get(number)?;
+        PlainLight::new(geometry, self.emission(geometry.locate(primitive).0), primitive)
     }
 
     /// The number of the light that was hit; none if it is in instances and never drawn.

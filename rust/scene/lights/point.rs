@@ -3,7 +3,7 @@
 use super::light::strength;
 use super::{Light, LightBounds, LightSample, LightSampleContext, Reach};
 use crate::math::DVec3;
-use crate::optics::{Rgb, is_radiance};
+use crate::optics::Rgb;
 use std::f64::consts::PI;
 
 /// A light without extent that shines equally in all directions.
@@ -17,7 +17,7 @@ pub struct PointLight {
 
 impl Light for PointLight {
     fn validate(&self) -> Result<(), String> {
-        if self.position.is_finite() && is_radiance(self.intensity) {
+        if self.position.is_finite() && self.intensity.is_radiance() {
             Ok(())
         } else {
             Err("a point light must have a finite position and an intensity that is finite and not negative".into())

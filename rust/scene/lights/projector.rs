@@ -68,7 +68,7 @@ impl Light for Projector {
             Err("a projector must have a finite position and target".into())
         } else if !(x > 0.0 && y > 0.0 && x.is_finite() && y < 1e9) {
             Err("a projector's fov must be above 0 and below 180 degrees".into())
-        } else if crate::optics::is_radiance(self.intensity) {
+        } else if self.intensity.is_radiance() {
             Ok(())
         } else {
             Err("a projector's intensity must be finite and not negative".into())

@@ -3,7 +3,7 @@
 use super::light::strength;
 use super::{Light, LightBounds, LightSample, LightSampleContext, Reach};
 use crate::math::DVec3;
-use crate::optics::{Rgb, is_radiance};
+use crate::optics::Rgb;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// How light falls off towards the rim of a cone.
@@ -65,7 +65,7 @@ impl SpotLight {
 
 impl Light for SpotLight {
     fn validate(&self) -> Result<(), String> {
-        if !(self.position.is_finite() && is_radiance(self.intensity)) {
+        if !(self.position.is_finite() && self.intensity.is_radiance()) {
             Err("a spot light must have a finite position and an intensity that is finite and not negative".into())
         } else if !self.axis.is_finite() {
             Err("a spot light must have a direction of a length other than 0".into())

@@ -55,7 +55,7 @@ pub(super) fn sample(
     let ray = Ray::new(receiver.position, direction);
     let radiance = radiance(&ray, &Hit { t: distance, uv, primitive, inner });
     // Also false where the distance is 0 and the direction NaN.
-    if radiance == Rgb::ZERO || direction.is_nan() {
+    if radiance.is_black() || direction.is_nan() {
         return None;
     }
     let pdf = pdf(direction, distance);

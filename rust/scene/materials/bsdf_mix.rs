@@ -24,7 +24,7 @@ impl BsdfMix {
     pub fn mixed(a: (Rgb, Self), b: (Rgb, Self)) -> Self {
         let mut all = Vec::new();
         for (weight, bsdf) in [a, b] {
-            if weight == Rgb::ZERO {
+            if weight.is_black() {
                 continue;
             }
             match bsdf {
@@ -33,7 +33,7 @@ impl BsdfMix {
             }
         }
         // What scatters nothing draws nothing, whatever its density says: it must not be chosen.
-        all.retain(|(_, bsdf)| bsdf.albedo() != Rgb::ZERO);
+        all.retain(|(_, bsdf)| !bsdf.albedo().is_black());
         match all[..] {
             [(Rgb::ONE, bsdf)] => Self::One(bsdf),
             _ => Self::Several(all),
@@ -181,7 +181,7 @@ impl Bsdf for BsdfMix {
 
 /// How often a part of this weight is chosen, over that of the others.
 fn share(weight: Rgb) -> f64 {
-    weight.max_element()
+    weight.max()
 }
 
 fn share_of_all(parts: &[(Rgb, AnyBsdf)]) -> f64 {

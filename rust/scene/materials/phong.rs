@@ -30,7 +30,7 @@ pub(super) fn shares(diffuse: &Value, specular: &Value, exponent: &Value, ambien
     within("ambient", ambient, 0.0, f64::MAX)?;
     match (diffuse, specular) {
         // Sums of shares such as 0.9 and 0.1 may be rounded up.
-        (Value::Constant(d), Value::Constant(s)) if (*d + *s).max_element() > 1.0 + 1e-12 => {
+        (Value::Constant(d), Value::Constant(s)) if (*d + *s).max() > 1.0 + 1e-12 => {
             Err(format!("diffuse and specular must add up to at most 1, got {}", *d + *s))
         }
         _ => Ok(()),
@@ -41,7 +41,7 @@ pub(super) fn shares(diffuse: &Value, specular: &Value, exponent: &Value, ambien
 /// diffuse.
 pub(super) fn parts(point: &TexturePoint, diffuse: &Value, specular: &Value) -> (Rgb, Rgb) {
     let specular = specular.at(point);
-    (diffuse.at(point).min(Rgb::ONE - specular), specular)
+    (diffuse.at(point).at_most(Rgb::ONE - specular), specular)
 }
 
 impl PhongMaterial {

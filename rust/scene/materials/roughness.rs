@@ -67,7 +67,7 @@ impl Roughness {
     /// The least and the greatest α along u.
     pub fn alpha_range(&self) -> [f64; 2] {
         self.along[0].range().map(|r| {
-            let r = (r.element_sum() / 3.0).clamp(0.0, 1.0);
+            let r = r.mean().clamp(0.0, 1.0);
             if self.is_alpha { r } else { r * r }
         })
     }

@@ -16,7 +16,7 @@ impl Homogeneous {
     /// A medium by its coefficients of absorption and scattering, each per unit of length. `None` if one is negative or
     /// not finite.
     pub fn new(absorption: Rgb, scattering: Rgb, phase: HenyeyGreenstein) -> Option<Self> {
-        let is_coefficient = |c: Rgb| c.is_finite() && c.cmpge(Rgb::ZERO).all();
+        let is_coefficient = Rgb::is_radiance;
         (is_coefficient(absorption) && is_coefficient(scattering)).then_some(Self { absorption, scattering, phase })
     }
 
@@ -45,11 +45,11 @@ impl Medium for Homogeneous {
         let way = ray.t_max - ray.t_min;
         if distance < way {
             let left = self.left(distance);
-            let density = (extinction * left).element_sum() / 3.0;
+            let density = (extinction * left).mean();
             MediumSample { t: Some(ray.t_min + distance), weight: self.scattering * left / density }
         } else {
             let left = self.left(way);
-            MediumSample { t: None, weight: left / (left.element_sum() / 3.0) }
+            MediumSample { t: None, weight: left / left.mean() }
         }
     }
 
@@ -78,7 +78,7 @@ mod tests {
             // e⁻¹⁰⁰⁰ is below what f64 holds.
             let medium = medium(Rgb::splat(0.25 * depth), Rgb::splat(0.75 * depth));
             let left = medium.transmittance(&way(1.0), 0.5);
-            assert!((left - expected).abs().max_element() <= 1e-15, "{depth}: {left}");
+            assert!((left - expected).abs().max() <= 1e-15, "{depth}: {left}");
         }
         assert_eq!(medium(Rgb::ZERO, Rgb::ZERO).transmittance(&way(f64::INFINITY), 0.5), Rgb::ONE);
         assert_eq!(medium(Rgb::ONE, Rgb::ZERO).transmittance(&way(f64::INFINITY), 0.5), Rgb::ZERO);
@@ -97,7 +97,7 @@ mod tests {
             for number in 0..count {
                 let mut sampler = Sampler::new(9, 0, number);
                 let drawn = medium.sample_distance(&way(1.0), sampler.one(0), sampler.one(1));
-                assert!(drawn.weight.is_finite() && drawn.weight.max_element() <= 3.0 + 1e-12);
+                assert!(drawn.weight.is_finite() && drawn.weight.max() <= 3.0 + 1e-12);
                 assert!(drawn.t.is_none_or(|t| (2.0..=3.0).contains(&t)));
                 let sums = if drawn.t.is_some() { &mut scattered } else { &mut through };
                 sums[0] += drawn.weight;
@@ -106,13 +106,10 @@ mod tests {
             let left = medium.transmittance(&way(1.0), 0.0);
             for (sums, expected) in [(through, left), (scattered, albedo * (Rgb::ONE - left))] {
                 let [mean, square] = sums.map(|sum| sum / f64::from(count));
-                let error = ((square - mean * mean).max(Rgb::ZERO) / f64::from(count)).map(f64::sqrt);
+                let error = ((square - mean * mean).at_least(Rgb::ZERO) / f64::from(count)).map(f64::sqrt);
                 // Where something is too rare to be drawn, three draws of weight 3 are no surprise.
                 let rare = 9.0 / f64::from(count);
-                assert!(
-                    ((mean - expected).abs() - 4.0 * error).max_element() < rare,
-                    "{depth}: {mean}, not {expected}"
-                );
+                assert!(((mean - expected).abs() - 4.0 * error).max() < rare, "{depth}: {mean}, not {expected}");
             }
         }
     }

@@ -34,5 +34,5 @@ impl Texture for MixTexture {
 }
 
 fn share(amount: Rgb) -> Rgb {
-    amount.max(Rgb::ZERO).min(Rgb::ONE)
+    amount.at_least(Rgb::ZERO).at_most(Rgb::ONE)
 }

@@ -50,11 +50,11 @@ impl<P: Pattern> Texture for Between<P> {
 /// What lies between two colours, channel by channel, and never outside them however sums are rounded.
 #[inline]
 pub(super) fn blend(a: Rgb, b: Rgb, amount: Rgb) -> Rgb {
-    (a + (b - a) * amount).max(a.min(b)).min(a.max(b))
+    (a + (b - a) * amount).at_least(a.at_most(b)).at_most(a.at_least(b))
 }
 
 /// The range of what is one of two values, or between them.
 pub(super) fn either(a: &Value, b: &Value) -> [Rgb; 2] {
     let ([low, high], [least, most]) = (a.range(), b.range());
-    [low.min(least), high.max(most)]
+    [low.at_most(least), high.at_least(most)]
 }

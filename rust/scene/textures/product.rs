@@ -21,7 +21,8 @@ impl Texture for ProductTexture {
         let ([a, b], [c, d]) = (self.a.range(), self.b.range());
         // The ends of a product of intervals are products of their ends, and rounding keeps order.
         let ends = [a * c, a * d, b * c, b * d];
-        [ends.into_iter().reduce(Rgb::min), ends.into_iter().reduce(Rgb::max)].map(|end| end.unwrap_or(Rgb::NAN))
+        [ends.into_iter().reduce(Rgb::at_most), ends.into_iter().reduce(Rgb::at_least)]
+            .map(|end| end.unwrap_or(Rgb::splat(f64::NAN)))
     }
 
     fn mean(&self) -> Rgb {
@@ -56,7 +57,7 @@ mod tests {
             let point = TexturePoint { uv: [0.9, 1.2], width, ..TexturePoint::default() };
             let (x, y) = (a.at(&point), b.at(&point));
             assert_eq!(product.at(&point), x * y);
-            assert_eq!(mix.at(&point), Rgb::new(0.5 * (x.x + y.x), x.y, y.z));
+            assert_eq!(mix.at(&point), Rgb::new(0.5 * (x[0] + y[0]), x[1], y[2]));
         }
     }
 }

@@ -29,7 +29,7 @@ impl Value {
     /// As one number: the mean of the channels.
     #[inline]
     pub fn number(&self, point: &TexturePoint) -> f64 {
-        self.at(point).element_sum() / 3.0
+        self.at(point).mean()
     }
 
     /// What its values lie between, channel by channel.
@@ -43,7 +43,7 @@ impl Value {
     /// Whether all its values lie between two numbers; NaN does not.
     pub fn is_within(&self, least: f64, most: f64) -> bool {
         let [low, high] = self.range();
-        low.cmpge(Rgb::splat(least)).all() && high.cmple(Rgb::splat(most)).all()
+        (0..3).all(|channel| low[channel] >= least && high[channel] <= most)
     }
 
     /// Its mean, about.

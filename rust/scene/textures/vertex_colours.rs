@@ -11,7 +11,7 @@ pub struct VertexColours;
 impl Texture for VertexColours {
     fn at(&self, point: &TexturePoint) -> Rgb {
         // Colours of one alike may come out a rounding apart from it.
-        point.colour.max(Rgb::ZERO).min(Rgb::ONE)
+        point.colour.at_least(Rgb::ZERO).at_most(Rgb::ONE)
     }
 
     fn range(&self) -> [Rgb; 2] {

@@ -12,7 +12,7 @@ use super::light::strength;
 use super::pyramid::Pyramid;
 use super::{Light, LightSample, LightSampleContext, Reach};
 use crate::math::{DVec3, Frame};
-use crate::optics::{Rgb, is_radiance};
+use crate::optics::Rgb;
 use std::f64::consts::{PI, TAU};
 
 /// A clear sky and the sun in it over a plain that reflects both evenly.
@@ -168,7 +168,7 @@ impl Light for SunSky {
             Err("a sun must have a direction".into())
         } else if !(2.0..=10.0).contains(&self.turbidity) {
             Err(format!("a sky's turbidity is {}, expected 2 to 10", self.turbidity))
-        } else if !(is_radiance(self.albedo) && self.albedo.max_element() <= 1.0) {
+        } else if !(self.albedo.is_radiance() && self.albedo.max() <= 1.0) {
             Err("a ground's albedo must be from 0 to 1".into())
         } else if self.sky_scale >= 0.0 && self.flux.iter().all(|flux| flux.is_finite() && *flux >= 0.0) {
             Ok(())

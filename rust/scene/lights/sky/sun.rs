@@ -73,7 +73,7 @@ pub fn from_xyz([x, y, z]: [f64; 3]) -> Rgb {
         -0.969_244 * x + 1.875_968 * y + 0.041_555 * z,
         0.055_630 * x - 0.203_977 * y + 1.056_972 * z,
     )
-    .max(Rgb::ZERO)
+    .at_least(Rgb::ZERO)
 }
 
 /// The radiance of the sun as it is seen from the ground: a black body of 5778 K through the air. Luminance over 683

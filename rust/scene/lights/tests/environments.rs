@@ -47,7 +47,7 @@ fn all_light_of_a_map_is_its_integral() {
     // By the weights of draws, which are all but even, and by brute force.
     for map in maps() {
         let grid = Grid { rows: 8, columns: 12 };
-        let expected: f64 = grid.integrals(60, |d| map.infinite_radiance(d).y).iter().sum();
+        let expected: f64 = grid.integrals(60, |d| map.infinite_radiance(d)[1]).iter().sum();
         let found = irradiance_at(&under(vec![Arc::new(map)]), &LightSampleContext::free(DVec3::ZERO), 20_000);
         assert!((found.0 / expected - 1.0).abs() < 3e-3 + 5.0 * found.1 / expected, "{found:?} {expected}");
     }
@@ -60,11 +60,11 @@ fn a_map_is_upright_and_not_mirrored() {
         // The picture's y is the world's z.
         map.infinite_radiance(d)
     };
-    assert!((at(DVec3::Z).x - 1.0).abs() < 1e-12 && at(DVec3::NEG_Z).x.abs() < 1e-12);
+    assert!((at(DVec3::Z)[0] - 1.0).abs() < 1e-12 && at(DVec3::NEG_Z)[0].abs() < 1e-12);
     // Its middle lies between columns 1 and 2; a quarter of a turn to the right is between 2 and 3.
-    let (middle, right) = (at(DVec3::Y).y, at(DVec3::X).y);
+    let (middle, right) = (at(DVec3::Y)[1], at(DVec3::X)[1]);
     assert!((middle - 1.5).abs() < 1e-12 && (right - 2.5).abs() < 1e-12, "{middle} {right}");
-    let behind = at(DVec3::NEG_Y).y;
+    let behind = at(DVec3::NEG_Y)[1];
     assert!((behind - 1.5).abs() < 1e-12, "{behind}");
 }
 
@@ -73,14 +73,14 @@ fn a_sun_of_one_texel_leaves_no_heavy_tail() {
     // A sun of 10⁷ in a sky of 1: every draw from above weighs nearly what the mean does.
     let map = map(64, 32, |i, j| if (i, j) == (20, 6) { [1e7; 3] } else { [1.0; 3] });
     let grid = Grid { rows: 64, columns: 64 };
-    let expected: f64 = grid.integrals(24, |d| map.infinite_radiance(d).y * d.z.max(0.0)).iter().sum();
+    let expected: f64 = grid.integrals(24, |d| map.infinite_radiance(d)[1] * d.z.max(0.0)).iter().sum();
     let lit = under(vec![Arc::new(map.clone())]);
     let found = irradiance_at(&lit, &FLOOR, 20_000);
     assert_near((found.0, found.1 + 1e-3 * expected / 5.0), expected, 0.01);
     for number in 0..20_000 {
         let sample = map.sample(&FLOOR, Sampler::new(6, 0, number).two(0)).unwrap();
         let whole = expected * 4.0;
-        assert!(sample.weight.y < whole, "{} of {whole}", sample.weight.y);
+        assert!(sample.weight[1] < whole, "{} of {whole}", sample.weight[1]);
     }
 }
 
@@ -89,7 +89,7 @@ fn a_map_of_one_radiance_is_that_radiance() {
     let map = map(32, 16, |_, _| [0.25, 0.5, 1.0]);
     for number in 0..1000 {
         let d = crate::sampling::warp::uniform_sphere(Sampler::new(7, 0, number).two(0));
-        assert!((map.infinite_radiance(d) - Rgb::new(0.25, 0.5, 1.0)).abs().max_element() < 1e-12);
+        assert!((map.infinite_radiance(d) - Rgb::new(0.25, 0.5, 1.0)).abs().max() < 1e-12);
     }
     for pole in [DVec3::Z, DVec3::NEG_Z] {
         assert!(map.infinite_radiance(pole).is_finite() && map.infinite_pdf(&FLOOR, pole) > 0.0);
@@ -121,7 +121,7 @@ fn environments_add_up() {
     ];
     let lit = under(all.clone());
     assert_near(irradiance_at(&lit, &FLOOR, 20_000), 2.3 * PI, 0.01);
-    assert!((lit.lights().infinite_radiance(DVec3::X) - white(2.3)).abs().max_element() < 1e-12);
+    assert!((lit.lights().infinite_radiance(DVec3::X) - white(2.3)).abs().max() < 1e-12);
     // With a lamp beside, and for light from everywhere.
     let lamp = PointLight { position: DVec3::Z, intensity: white(7.0) };
     let lit = under(all.into_iter().chain([Arc::new(lamp) as _]).collect());
@@ -155,12 +155,12 @@ fn a_receiver_is_lit_by_sun_and_sky_as_integrals_say() {
     let day = SunSky::new([sun, DVec3::Z], 3.0, white(0.2), [1.0, 1.0]);
     let sky = SunSky::new([sun, DVec3::Z], 3.0, white(0.0), [0.0, 1.0]);
     let grid = Grid { rows: 32, columns: 32 };
-    let from_sky: f64 = grid.integrals(24, |d| sky.infinite_radiance(d).y * d.z.max(0.0)).iter().sum();
-    let disk = day.infinite_radiance(sun).y - sky.infinite_radiance(sun).y;
+    let from_sky: f64 = grid.integrals(24, |d| sky.infinite_radiance(d)[1] * d.z.max(0.0)).iter().sum();
+    let disk = day.infinite_radiance(sun)[1] - sky.infinite_radiance(sun)[1];
     let from_sun = disk * super::super::sky::sun::solid_angle() * 0.6;
     assert_near(irradiance_at(&under(vec![Arc::new(day.clone())]), &FLOOR, 50_000), from_sky + from_sun, 0.01);
     // The plain below is what it reflects.
-    let ground = day.infinite_radiance(DVec3::new(0.6, 0.0, -0.8)).y;
+    let ground = day.infinite_radiance(DVec3::new(0.6, 0.0, -0.8))[1];
     assert!((ground / (0.2 * (from_sky + from_sun) / PI) - 1.0).abs() < 1e-3, "{ground}");
     // What looks down sees no sun and no sky, and what looks away from the sun none of it.
     let down = LightSampleContext { normal: DVec3::NEG_Z, ..FLOOR };
@@ -179,7 +179,7 @@ fn daylight_goes_out_as_the_sun_sets() {
         DVec3::new(cos, 0.0, sin)
     };
     let day = |degrees: f64| SunSky::new([way(degrees), DVec3::Z], 3.0, white(0.2), [1.0, 1.0]);
-    let zenith = |degrees: f64| day(degrees).infinite_radiance(DVec3::Z).y;
+    let zenith = |degrees: f64| day(degrees).infinite_radiance(DVec3::Z)[1];
     // No step at the horizon, the sky at 6 degrees below it as much darker as the ground is by the almanac, and then
     // night.
     assert!((zenith(-1e-7) / zenith(1e-7) - 1.0).abs() < 1e-5, "{} {}", zenith(-1e-7), zenith(1e-7));
@@ -196,7 +196,7 @@ fn daylight_goes_out_as_the_sun_sets() {
     assert_density(&day(-4.0), &FLOOR, 60, 2e-3);
     let edge = |degrees: f64| {
         let sky = SunSky::new([way(degrees), DVec3::Z], 3.0, white(0.2), [0.0, 1.0]);
-        day(degrees).infinite_radiance(way(0.005)).y - sky.infinite_radiance(way(0.005)).y
+        day(degrees).infinite_radiance(way(0.005))[1] - sky.infinite_radiance(way(0.005))[1]
     };
     assert!(edge(0.0) > 0.0 && edge(-0.25) > 0.0);
     assert_eq!((edge(-0.27), edge(0.28)), (0.0, 0.0));

@@ -46,7 +46,7 @@ fn irradiance(scene: &Scene, one: u32, draws: u32) -> (f64, f64) {
     let (mut sum, mut squares) = (0.0, 0.0);
     for number in 0..draws {
         let Some(light) = draw(scene, one, &FLOOR, number) else { continue };
-        let x = light.weight.y * light.direction.z.max(0.0);
+        let x = light.weight[1] * light.direction.z.max(0.0);
         sum += x;
         squares += x * x;
     }
@@ -99,7 +99,7 @@ fn a_draw_has_the_density_that_a_hit_is_told() {
         if light.source.is_none() {
             // Of two skies, each is weighed by itself.
             let both = lights.outside_weighed(&FLOOR, light.direction, |pdf| pdf / light.pdf);
-            assert!((both - white(1.5)).abs().max_element() < 1e-12, "{both}");
+            assert!((both - white(1.5)).abs().max() < 1e-12, "{both}");
             continue;
         }
         let ray = Ray::new(DVec3::ZERO, light.direction);
@@ -144,6 +144,6 @@ fn power_beyond_numbers_is_shared() {
     let bright = lit(vec![shape(overhead(), [0.0; 3], 1e308)], vec![sky(1.0)]);
     for number in 0..100 {
         let light = draw(&bright, 0, &FLOOR, number).unwrap();
-        assert!(light.pdf > 0.0 && light.pdf.is_finite() && light.weight.min_element() > 0.0);
+        assert!(light.pdf > 0.0 && light.pdf.is_finite() && light.weight.min() > 0.0);
     }
 }

@@ -56,8 +56,9 @@ fn receiver(number: u32) -> LightSampleContext {
 fn bits(light: Option<LightSample>) -> Option<Vec<u64>> {
     light.map(|light| {
         let source = light.source.map(|from| [from.position(), from.ray(light.direction).origin]);
-        let vectors = [light.direction, light.weight].into_iter().chain(source.into_iter().flatten());
-        let numbers = vectors.flat_map(|v: DVec3| v.to_array()).chain([light.pdf, f64::from(light.primitive)]);
+        let vectors = [light.direction].into_iter().chain(source.into_iter().flatten());
+        let numbers = vectors.flat_map(|v: DVec3| v.to_array()).chain(light.weight.to_array());
+        let numbers = numbers.chain([light.pdf, f64::from(light.primitive)]);
         numbers.map(f64::to_bits).collect()
     })
 }

@@ -147,7 +147,7 @@ fn estimate(choice: &Choice, lights: &[PointLight], receiver: &LightSampleContex
             continue;
         };
         let sample = lights[light].sample(receiver, [0.5; 2]).unwrap();
-        let x = sample.weight.y * sample.direction.dot(receiver.normal).max(0.0) / probability;
+        let x = sample.weight[1] * sample.direction.dot(receiver.normal).max(0.0) / probability;
         sum += x / f64::from(DRAWS);
         squares += x * x / f64::from(DRAWS);
     }
@@ -166,8 +166,10 @@ fn in_a_hall_of_lamps_a_tree_leaves_a_small_part_of_the_variance() {
     let (tree, power) = (Choice::by_tree(&strengths).unwrap(), Choice::by_power(&strengths).unwrap());
     for (x, y) in [(0.0, 0.0), (50.3, 5.1), (99.0, 2.0)] {
         let receiver = LightSampleContext { position: DVec3::new(x, y, 0.0), normal: DVec3::Z };
-        let exact: f64 =
-            lamps.iter().map(|lamp| lamp.sample(&receiver, [0.5; 2]).map_or(0.0, |s| s.weight.y * s.direction.z)).sum();
+        let exact: f64 = lamps
+            .iter()
+            .map(|lamp| lamp.sample(&receiver, [0.5; 2]).map_or(0.0, |s| s.weight[1] * s.direction.z))
+            .sum();
         let (mean, variance) = estimate(&tree, &lamps, &receiver);
         let (flat, more) = estimate(&power, &lamps, &receiver);
         assert!((mean / exact - 1.0).abs() < 1e-3 && (flat / exact - 1.0).abs() < 1e-3, "{mean} {flat} {exact}");

@@ -36,7 +36,7 @@ fn irradiance_at(scene: &Scene, receiver: &LightSampleContext, draws: u32) -> (f
         if let Some(light) = draw(scene, receiver, number) {
             assert!((light.direction.length() - 1.0).abs() < 1e-12 && light.pdf > 0.0);
             let cosine = if receiver.is_free() { 1.0 } else { light.direction.dot(receiver.normal).max(0.0) };
-            let x = light.weight.y * cosine;
+            let x = light.weight[1] * cosine;
             sum += x;
             squares += x * x;
         }
@@ -100,7 +100,7 @@ fn assert_density(light: &dyn Light, receiver: &LightSampleContext, parts: usize
         let pdf = light.infinite_pdf(receiver, sample.direction);
         assert!((pdf / sample.pdf - 1.0).abs() < 1e-6, "{pdf} {}", sample.pdf);
         let weight = light.infinite_radiance(sample.direction) / pdf;
-        assert!((weight - sample.weight).abs().max_element() <= 1e-6 * weight.max_element(), "{weight}");
+        assert!((weight - sample.weight).abs().max() <= 1e-6 * weight.max(), "{weight}");
     }
     // The rest of the integral is its own error.
     let expected: Vec<f64> = expected.iter().map(|p| p / sum).collect();
