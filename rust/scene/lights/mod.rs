@@ -73,14 +73,14 @@ pub struct Lights {
     choice: Option<Choice>,
     infinite: InfiniteLights,
     few: Few,
-    /// Of each primitive that emits, whether it is a triangle or a sphere that shines alike everywhere; none where there
-    /// are more than [`Lights::KEPT`].
+    /// Each primitive that emits, if it is a triangle or a sphere that shines alike everywhere; nothing where there are
+    /// more than [`Lights::KEPT`].
     kept: Vec<Option<PlainLight>>,
 }
 
 impl Lights {
-    /// What surfaces shine alike everywhere is kept of so many at most: 2/3 of a megabyte. To find it anew for each draw
-    /// from few takes as long as the draw.
+    /// Surfaces that shine alike everywhere are kept as they are drawn from where there are so many at most: 2/3 of a
+    /// megabyte.
     const KEPT: usize = 1 << 12;
 
     /// Numbers the lights: the emission of each shape of a geometry, and what is no surface.
