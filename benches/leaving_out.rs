@@ -7,7 +7,7 @@ use raywright::integrators::{CameraSample, Job, Path};
 use raywright::math::{DVec3, Ray, Vec3};
 use raywright::optics::Rgb;
 use raywright::sampling::Sampler;
-use raywright::scene::{DiffuseMaterial, Footprint, Mesh, Scene, SceneDescription, ShadingVariant, Shape};
+use raywright::scene::{DiffuseMaterial, Mesh, Perspective, Scene, SceneDescription, ShadingVariant, Shape};
 use raywright::simd::Level;
 use raywright::workers::Cancel;
 use std::sync::Arc;
@@ -23,11 +23,13 @@ fn main() {
     // Without this flag, as `cargo test --benches` has it, all is checked and nothing timed.
     let is_timed = std::env::args().any(|arg| arg == "--bench");
     let scene = room();
+    let camera =
+        Perspective::looking_at(DVec3::new(0.0, 0.0, 0.9), DVec3::ZERO, DVec3::Y, 60.0, 64, 64).expect("a camera");
     let run = |kernel| {
         let mut samples: Vec<_> = (0..PATHS).map(sample).collect();
         let mut radiance = vec![Rgb::ZERO; samples.len()];
         let path = Path::default();
-        let job = Job { scene: &scene, footprint: Footprint::default() };
+        let job = Job::new(&scene, &camera);
         let session = path.begin_as(job, kernel, &Cancel::default());
         let mut worker = session.worker();
         let start = Instant::now();

@@ -15,6 +15,7 @@ __all__ = [
     "AcceleratorInfo",
     "CompiledScene",
     "Interactions",
+    "Job",
     "KernelContest",
     "Rendering",
     "aovs",
@@ -23,7 +24,6 @@ __all__ = [
     "camera_rays_through",
     "chances",
     "cones",
-    "expose",
     "first_hits",
     "implicit_trouble",
     "interactions",
@@ -31,7 +31,6 @@ __all__ = [
     "matrix_trouble",
     "metal_index",
     "metals",
-    "patch",
     "pilot",
     "plan",
     "points",
@@ -212,32 +211,34 @@ class CompiledScene:
         """Bytes held by the compiled scene: accelerators, faces, vertices with all they have, transforms."""
 
 @final
-class Rendering:
-    """A render: its picture so far, and what it takes to go on with it."""
+class Job:
+    """All that a picture is made by but for the scene, which is compiled when it is needed: read once."""
 
     def __new__(
         cls,
+        scene: Any,
         camera: Any,
-        threads: int | None,
+        integrator: Any,
+        seed: int,
         adaptive: bool,
         clamp: float | None,
         sampler: Any,
-        patch: int,
-    ) -> Rendering: ...
-    @staticmethod
-    def from_bytes(
-        data: bytes,
-        camera: Any,
-        threads: int | None,
-        adaptive: bool,
-        clamp: float | None,
-        sampler: Any,
-        patch: int,
-    ) -> Rendering:
-        """From what `to_bytes` gave; a ValueError says why bytes are not that, whoever made them."""
-    @staticmethod
-    def most_bytes(camera: Any, adaptive: bool) -> int:
-        """Return how many bytes `to_bytes` gives at most."""
+        filter: Any,
+    ) -> Job: ...
+    def patch(self, scene: CompiledScene) -> int:
+        """Return the side of the square patches of pixels whose samples the integrator takes together."""
+    def begin(self, threads: int | None, patch: int) -> Rendering: ...
+    def resume(self, data: bytes, threads: int | None, patch: int) -> Rendering:
+        """From what `Rendering.to_bytes` gave; a ValueError says why bytes are not that."""
+    def most_bytes(self) -> int:
+        """Return how many bytes `Rendering.to_bytes` gives at most."""
+    def expose(self, scene: CompiledScene, request: bytes, threads: int | None) -> bytes:
+        """Take the samples that a request of `Rendering.request` wants. One thread is the calling one."""
+
+@final
+class Rendering:
+    """A render: its picture so far, and what it takes to go on with it."""
+
     def to_bytes(self) -> bytes: ...
     @property
     def rgb(self) -> NDArray[np.float32]: ...
@@ -273,19 +274,14 @@ class Rendering:
         """Samples that were clamped, and the share of the picture's radiance that this took."""
     def go_on(
         self,
+        job: Job,
         scene: CompiledScene,
-        camera: Any,
-        integrator: Any,
-        described: Any,
-        seed: int,
         threads: int | None,
         samples: int | None,
         error: float | None,
         seconds: float | None,
         pause: float | None,
         progress: Callable[[float, int, float, bool], None] | None,
-        sampler: Any,
-        filter: Any,
         look: Callable[[], None] | None,
     ) -> bool:
         """Go on until the first of `samples` (per pixel), `error` (relMSE) or `seconds` is met: True.
@@ -330,13 +326,13 @@ class Rendering:
     def end(self, seconds: float) -> tuple[float, int, float, bool]:
         """End the pass, for which all samples are there: the row of the history, and whether to trust it."""
     def request(self, first: int, count: int, before: int | None, samples: int) -> bytes:
-        """Ask `expose` for the samples of some tiles up to a number.
+        """Ask `Job.expose` for the samples of some tiles up to a number.
 
         With ``before``, a multiple of `block`, for those that follow so many others, whether these are there
         or not.
         """
     def take(self, answer: bytes) -> None:
-        """Add the samples that `expose` took."""
+        """Add the samples that `Job.expose` took."""
 
 PILOT: int
 """The most samples that a pilot takes of each path."""
@@ -344,9 +340,6 @@ VERSION: str
 
 def student(level: float, degrees: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return how many standard errors either way hold a mean in so many cases, by degrees of freedom."""
-
-def patch(scene: CompiledScene, integrator: Any) -> int:
-    """Return the side of the square patches of pixels whose samples an integrator takes together."""
 
 def chances(scene: CompiledScene, path: Any) -> tuple[bool, bool]:
     """Whether paths can share what they find in a scene, and whether there are mirrors or glass to aim at."""
@@ -365,19 +358,6 @@ def pilot(
     It depends on scene, camera, clamp and filter alone. Signals are checked, and ``look`` is called, as by
     `Rendering.go_on`.
     """
-
-def expose(
-    scene: CompiledScene,
-    camera: Any,
-    integrator: Any,
-    described: Any,
-    seed: int,
-    threads: int | None,
-    request: bytes,
-    sampler: Any,
-    filter: Any,
-) -> bytes:
-    """Take the samples that a request of `Rendering.request` wants. One thread is the calling one."""
 
 def aovs(
     scene: CompiledScene, camera: Any, names: list[str], samples: int, seed: int, threads: int | None

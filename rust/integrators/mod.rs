@@ -5,8 +5,13 @@ mod aov;
 mod direct;
 mod distributed;
 mod guiding;
+mod light_paths;
+mod light_traced;
+mod nesting;
+mod passing;
 mod path;
 mod ray_cast;
+mod shadows;
 #[cfg(test)]
 mod tests;
 mod transport;
@@ -17,6 +22,7 @@ pub use aov::{Channel, aovs};
 pub use direct::Direct;
 pub use distributed::Distributed;
 pub use guiding::{Guide, LocalGuide, is_matt};
+pub use light_traced::LightTraced;
 pub use path::Path;
 pub use ray_cast::RayCast;
 pub use whitted::Whitted;
@@ -41,15 +47,17 @@ pub struct CameraSample {
 pub struct Job<'a> {
     /// What is looked at.
     pub scene: &'a Scene,
+    /// What looks.
+    pub camera: &'a dyn Camera,
     /// That of the camera's rays, for the filtering of textures.
     pub footprint: Footprint,
 }
 
 impl<'a> Job<'a> {
     /// A picture of a scene by a camera.
-    pub fn new(scene: &'a Scene, camera: &dyn Camera) -> Self {
+    pub fn new(scene: &'a Scene, camera: &'a dyn Camera) -> Self {
         let spread = camera.spread();
-        Self { scene, footprint: Footprint { width: spread.width, spread: spread.angle } }
+        Self { scene, camera, footprint: Footprint { width: spread.width, spread: spread.angle } }
     }
 }
 
@@ -58,6 +66,12 @@ pub trait Integrator: Send + Sync {
     /// Begins to work on a picture: makes all that its workers share. That may take long, on the current pool of
     /// threads; it returns soon after `cancel` is raised, with what is of no use.
     fn begin<'a>(&'a self, job: Job<'a>, cancel: &Cancel) -> Box<dyn Session + 'a>;
+
+    /// Why it cannot take a picture of a scene, or none whose pixels have as many samples as their errors ask for, if
+    /// that is so: what the one is, and what to do instead.
+    fn objection(&self, _scene: &Scene, _adaptive: bool) -> Option<String> {
+        None
+    }
 
     /// The side of the square patches of pixels whose samples of the same number work together; 1 where each sample is
     /// on its own.
@@ -80,6 +94,28 @@ pub trait Session: Send + Sync {
     /// Called before each pass, when so many samples of each pixel are done, and again if it has to be begun anew. What
     /// changes from pass to pass must depend on that number alone. Returns soon after `cancel` is raised.
     fn before_pass(&self, _done: u32, _cancel: &Cancel) {}
+
+    /// What one thread follows paths from lights with; none where nothing comes to the film but by its own rays.
+    fn light_worker(&self) -> Option<Box<dyn LightWorker + '_>> {
+        None
+    }
+}
+
+/// Light that has come to the camera by itself, not along a ray that was sent for it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Splat {
+    /// Where on the film, in pixels as [`Camera`] counts them: beyond the picture too.
+    pub film: [f64; 2],
+    /// Radiance times pixels: over the number of paths, its sum over those in a pixel is, on average, the part of that
+    /// pixel's radiance that they find.
+    pub light: Rgb,
+}
+
+/// An integrator at work on paths that start at lights.
+pub trait LightWorker: Send {
+    /// Follows a path for each of these numbers, and adds what it brings to the film. What is added, and in which
+    /// order, depends on these paths alone. Returns soon after `cancel` is raised, with what is of no use.
+    fn follow(&mut self, paths: &mut [Sampler], cancel: &Cancel, splats: &mut Vec<Splat>);
 }
 
 /// An integrator at work on batches of camera samples. It advances all paths of a batch together, one bounce at a

@@ -23,6 +23,12 @@ impl Rgb {
         Self(DVec3::new(red, green, blue))
     }
 
+    /// Each channel with the sign of another's.
+    #[inline(always)]
+    pub fn copysign(self, sign: Self) -> Self {
+        Self(self.0.copysign(sign.0))
+    }
+
     /// The same in all channels.
     #[inline(always)]
     pub const fn splat(value: f64) -> Self {

@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 use super::cameras::AnyCamera;
 use super::query::CompiledScene;
 use crate::integrators::{
-    AmbientOcclusion, Channel, Direct, Distributed, Integrator, Path, RayCast, Whitted, aovs as observe,
+    AmbientOcclusion, Channel, Direct, Distributed, Integrator, LightTraced, Path, RayCast, Whitted, aovs as observe,
 };
 use crate::optics::Rgb;
 use crate::scene::PlanRow;
@@ -45,6 +45,10 @@ impl<'a, 'py> FromPyObject<'a, 'py> for AnyIntegrator {
         let light_samples = || attribute(of, "light_samples");
         Ok(Self(match kind.as_str() {
             "Path" => Box::new(path(of)?),
+            "LightTraced" => Box::new(LightTraced {
+                max_depth: attribute(of, "max_depth")?,
+                roulette_depth: attribute(of, "roulette_depth")?,
+            }),
             "Direct" => {
                 Box::new(Direct { light_samples: light_samples()?, surface_samples: attribute(of, "surface_samples")? })
             }

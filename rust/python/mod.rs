@@ -14,6 +14,7 @@ mod info;
 mod instances;
 mod integrators;
 mod interactions;
+mod job;
 mod leave;
 mod lights;
 mod materials;
@@ -64,6 +65,8 @@ mod _core {
     #[pymodule_export]
     use super::interactions::{Interactions, interactions};
     #[pymodule_export]
+    use super::job::Job;
+    #[pymodule_export]
     use super::leave::leave;
     #[pymodule_export]
     use super::materials::{metal_index, metals};
@@ -77,7 +80,7 @@ mod _core {
     #[pymodule_export]
     use super::render::timing;
     #[pymodule_export]
-    use super::render::{Rendering, chances, expose, patch, pilot, student};
+    use super::render::{Rendering, chances, pilot, student};
     #[pymodule_export]
     use super::report::KernelContest;
     #[pymodule_export]

@@ -8,60 +8,21 @@ use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
 use super::cameras::AnyCamera;
-use super::integrators::{self, AnyIntegrator};
+use super::integrators;
+use super::job::Job;
 use super::query::CompiledScene;
 use super::samplers;
 use super::written::Written;
 use crate::integrators::{Guide, Integrator, Path};
-use crate::render::{self, HistoryRow, Malformed, Progress, RenderError, Request, Settings, Until};
+use crate::render::{self, HistoryRow, Malformed, Progress, RenderError, Settings, Until};
 use crate::workers::{Cancel, pool};
 
 /// A render: its picture so far, and what it takes to go on with it.
 #[pyclass(module = "raywright._core")]
-pub struct Rendering(render::Rendering);
+pub struct Rendering(pub render::Rendering);
 
 #[pymethods]
 impl Rendering {
-    #[new]
-    fn new(
-        camera: AnyCamera,
-        threads: Option<usize>,
-        adaptive: bool,
-        clamp: Option<f64>,
-        sampler: &Bound<'_, PyAny>,
-        patch: u32,
-    ) -> PyResult<Self> {
-        let cores = pool(threads).map_err(PyRuntimeError::new_err)?.current_num_threads();
-        let settings = Settings { adaptive, clamp, sampler: samplers::sampler(sampler)?, ..Settings::default() };
-        Ok(Self(render::Rendering::new(settings.film(&*camera.0, cores, patch.max(1)))))
-    }
-
-    /// From what `to_bytes` gave; a `ValueError` says why bytes are not that.
-    #[staticmethod]
-    #[allow(clippy::too_many_arguments)]
-    fn from_bytes(
-        py: Python<'_>,
-        data: &[u8],
-        camera: AnyCamera,
-        threads: Option<usize>,
-        adaptive: bool,
-        clamp: Option<f64>,
-        sampler: &Bound<'_, PyAny>,
-        patch: u32,
-    ) -> PyResult<Self> {
-        let pool = pool(threads).map_err(PyRuntimeError::new_err)?;
-        let (width, height) = (camera.0.width(), camera.0.height());
-        let batch = samplers::sampler(sampler)?.batch();
-        let read = || render::Rendering::from_bytes(data, width, height, batch, adaptive, clamp, patch.max(1));
-        py.detach(|| pool.install(read)).map(Self).map_err(malformed)
-    }
-
-    /// How many bytes `to_bytes` gives at most.
-    #[staticmethod]
-    fn most_bytes(camera: AnyCamera, adaptive: bool) -> usize {
-        render::Rendering::most_bytes(camera.0.width(), camera.0.height(), adaptive)
-    }
-
     fn to_bytes<'py>(&self, py: Python<'py>) -> Bound<'py, PyBytes> {
         PyBytes::new(py, &py.detach(|| self.0.to_bytes()))
     }
@@ -203,30 +164,23 @@ impl Rendering {
     fn go_on(
         &mut self,
         py: Python<'_>,
+        job: &Bound<'_, Job>,
         scene: &Bound<'_, CompiledScene>,
-        camera: AnyCamera,
-        integrator: &Bound<'_, PyAny>,
-        described: Py<PyAny>,
-        seed: u64,
         threads: Option<usize>,
         samples: Option<u32>,
         error: Option<f64>,
         seconds: Option<f64>,
         pause: Option<f64>,
         progress: Option<Py<PyAny>>,
-        sampler: &Bound<'_, PyAny>,
-        filter: &Bound<'_, PyAny>,
         look: Option<Py<PyAny>>,
     ) -> PyResult<bool> {
-        let chosen = Chosen::read(integrator, described, seed)?;
-        let (sampler, filter) = (samplers::sampler(sampler)?, samplers::filter(filter)?.into());
-        let until = Until { samples, error, seconds };
-        let settings = Settings { until, seed, threads, sampler, filter, ..Settings::default() };
+        let (job, scene) = (job.get(), &scene.get().0);
+        let integrator = job.integrator(py);
+        let settings = job.settings(Until { samples, error, seconds }, threads);
         let pause = pause.map(|pause| Instant::now() + Duration::from_secs_f64(pause.clamp(0.0, 1e9)));
-        let mut watcher = Watcher { progress, look, raised: None, pause, written: chosen.written() };
-        let (scene, rendering) = (&scene.get().0, &mut self.0);
-        let result =
-            py.detach(|| render::go_on(rendering, scene, &*camera.0, chosen.chosen(), &settings, &mut watcher));
+        let mut watcher = Watcher { progress, look, raised: None, pause, written: integrator.written() };
+        let (rendering, camera) = (&mut self.0, job.camera());
+        let result = py.detach(|| render::go_on(rendering, scene, camera, integrator.get(), &settings, &mut watcher));
         result.map_err(|error| watcher.error(error))
     }
 }
@@ -238,35 +192,8 @@ impl Rendering {
     }
 }
 
-fn malformed(why: Malformed) -> PyErr {
+pub(super) fn malformed(why: Malformed) -> PyErr {
     PyValueError::new_err(why.to_string())
-}
-
-/// An integrator of the package, or one that is written in Python.
-enum Chosen {
-    Own(Box<dyn Integrator>),
-    Written(Box<Written>),
-}
-
-impl Chosen {
-    fn read(integrator: &Bound<'_, PyAny>, described: Py<PyAny>, seed: u64) -> PyResult<Self> {
-        let base = integrator.py().import("raywright.integrators.base")?.getattr("Integrator")?;
-        if integrator.is_instance(&base)? {
-            return Ok(Self::Written(Box::new(Written::new(integrator.clone().unbind(), described, seed))));
-        }
-        Ok(Self::Own(integrator.extract::<AnyIntegrator>()?.0))
-    }
-
-    fn chosen(&self) -> &dyn Integrator {
-        match self {
-            Self::Own(own) => &**own,
-            Self::Written(written) => &**written,
-        }
-    }
-
-    fn written(&self) -> Option<&Written> {
-        if let Self::Written(written) = self { Some(written) } else { None }
-    }
 }
 
 /// How many standard errors either way hold a mean in a share of all cases, for each of these degrees of freedom.
@@ -278,12 +205,6 @@ pub fn student<'py>(
 ) -> Bound<'py, numpy::PyArray1<f64>> {
     let quantiles = degrees.as_array().iter().map(|&degrees| render::quantile(level, degrees)).collect();
     numpy::PyArray1::from_vec(py, quantiles)
-}
-
-/// The side of the patches of pixels whose samples an integrator takes together.
-#[pyfunction]
-pub fn patch(scene: &Bound<'_, CompiledScene>, integrator: AnyIntegrator) -> u32 {
-    integrator.0.patch(&scene.get().0)
 }
 
 /// Whether paths could share what they find in a scene, and whether there is anything to aim at by way of mirrors and
@@ -327,47 +248,24 @@ pub fn timing() -> (Vec<(&'static str, f64)>, u64) {
     (crate::timing::Part::ALL.iter().zip(spent).map(|(&(_, name), spent)| (name, spent)).collect(), vertices)
 }
 
-/// Takes the samples that a request of `Rendering.request` wants, and gives what `Rendering.take` takes.
-#[pyfunction]
-#[allow(clippy::too_many_arguments)]
-pub fn expose(
-    py: Python<'_>,
-    scene: &Bound<'_, CompiledScene>,
-    camera: AnyCamera,
-    integrator: &Bound<'_, PyAny>,
-    described: Py<PyAny>,
-    seed: u64,
-    threads: Option<usize>,
-    request: &[u8],
-    sampler: &Bound<'_, PyAny>,
-    filter: &Bound<'_, PyAny>,
-) -> PyResult<Py<PyBytes>> {
-    let chosen = Chosen::read(integrator, described, seed)?;
-    let (sampler, filter) = (samplers::sampler(sampler)?, samplers::filter(filter)?.into());
-    let settings = Settings { seed, threads, sampler, filter, ..Settings::default() };
-    let mut watcher = Watcher { progress: None, look: None, raised: None, pause: None, written: chosen.written() };
-    let scene = &scene.get().0;
-    let request = Request::from_bytes(request, camera.0.width(), camera.0.height()).map_err(malformed)?;
-    let result = py.detach(|| request.expose(scene, &*camera.0, chosen.chosen(), &settings, &mut watcher));
-    let answer = result.map_err(|error| watcher.error(error))?;
-    Ok(PyBytes::new(py, &answer).unbind())
-}
-
 /// Passes on how a render goes to a Python function, and hears signals and whoever else may end it.
-struct Watcher<'a> {
-    progress: Option<Py<PyAny>>,
-    look: Option<Py<PyAny>>,
-    raised: Option<PyErr>,
+pub(super) struct Watcher<'a> {
+    pub progress: Option<Py<PyAny>>,
+    pub look: Option<Py<PyAny>>,
+    pub raised: Option<PyErr>,
     /// When to leave the render for now.
-    pause: Option<Instant>,
-    written: Option<&'a Written>,
+    pub pause: Option<Instant>,
+    pub written: Option<&'a Written>,
 }
 
 impl Watcher<'_> {
     /// What ended the render, for Python.
-    fn error(&mut self, error: RenderError) -> PyErr {
+    pub fn error(&mut self, error: RenderError) -> PyErr {
         let raised = self.raised.take().or_else(|| self.written.and_then(Written::raised));
-        raised.unwrap_or_else(|| PyRuntimeError::new_err(error.to_string()))
+        raised.unwrap_or_else(|| match error {
+            RenderError::Unsuited(why) => PyValueError::new_err(why),
+            error => PyRuntimeError::new_err(error.to_string()),
+        })
     }
 
     /// Goes on unless an exception is raised, which it keeps.

@@ -22,6 +22,7 @@ mod run;
 mod schedule;
 mod settings;
 mod sightings;
+mod splats;
 mod student;
 mod tile;
 mod tiles;

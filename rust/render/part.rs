@@ -6,7 +6,7 @@
 
 use super::bytes::{Malformed, Reader, Writer, check};
 use super::epoch::Epoch;
-use super::run::begin;
+use super::run::{self, begin};
 use super::tile::FilmTile;
 use super::tiles::{Exposure, Goal, Stop};
 use super::{Film, Progress, RenderError, Rendering, Settings};
@@ -161,6 +161,7 @@ impl Request {
         settings: &Settings,
         progress: &mut dyn Progress,
     ) -> Result<Vec<u8>, RenderError> {
+        run::check(integrator, scene, matches!(self.wanted, Wanted::Planned { .. }))?;
         let stop = Stop::default();
         let (done, goal) = match self.wanted {
             Wanted::Alone(before, samples) => (before, Goal::Even { before, samples }),

@@ -15,13 +15,15 @@ pub enum RenderError {
     Interrupted,
     /// The threads asked for are not to be had.
     Threads(String),
+    /// The integrator cannot take this picture.
+    Unsuited(String),
 }
 
 impl fmt::Display for RenderError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Interrupted => f.write_str("the render was interrupted"),
-            Self::Threads(why) => f.write_str(why),
+            Self::Threads(why) | Self::Unsuited(why) => f.write_str(why),
         }
     }
 }
@@ -60,6 +62,7 @@ pub fn go_on(
 ) -> Result<bool, RenderError> {
     let (start, earlier) = (Instant::now(), rendering.seconds);
     let spent = || earlier + start.elapsed().as_secs_f64();
+    check(integrator, scene, rendering.epoch().is_some())?;
     let session = begin(integrator, Job::new(scene, camera), settings.threads, progress)?;
     let exposure = Exposure::new(scene, camera, integrator, &*session, settings);
     let pool = pool(settings.threads).map_err(RenderError::Threads)?;
@@ -85,6 +88,11 @@ pub fn go_on(
             return Ok(false);
         }
     }
+}
+
+/// Whether an integrator can take a picture.
+pub(super) fn check(integrator: &dyn Integrator, scene: &Scene, adaptive: bool) -> Result<(), RenderError> {
+    integrator.objection(scene, adaptive).map_or(Ok(()), |why| Err(RenderError::Unsuited(why)))
 }
 
 /// Begins to work on a picture, on as many threads.

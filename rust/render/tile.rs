@@ -149,6 +149,20 @@ impl FilmTile {
     #[inline]
     pub fn add(&mut self, cell: usize, radiance: Rgb, weight: f64) {
         let sample = self.allowed(cell, radiance) * weight;
+        self.add_sample(cell, sample);
+    }
+
+    /// The same with light that came to the pixel by itself, which the filter has weighed, and which may be negative
+    /// where that is.
+    #[inline]
+    pub fn add_with(&mut self, cell: usize, radiance: Rgb, weight: f64, brought: Rgb) {
+        let brought = self.allowed(cell, brought.abs()).copysign(brought);
+        let sample = self.allowed(cell, radiance) * weight + brought;
+        self.add_sample(cell, sample);
+    }
+
+    #[inline]
+    fn add_sample(&mut self, cell: usize, sample: Rgb) {
         let number = self.counts[cell];
         self.counts[cell] += 1;
         let partial = &mut self.partial[cell];

@@ -3,11 +3,12 @@
 use super::camera_samples::{CameraSampler, Wanted};
 use super::epoch::Epoch;
 use super::patchwork::Patchwork;
+use super::splats::{Brought, LightTracer};
 use super::{FilmTile, Settings};
 use crate::integrators::{CameraSample, Integrator, Session, Worker};
 use crate::optics::Rgb;
 use crate::scene::{Camera, Scene};
-use crate::timing::{Part, timed};
+use crate::timing::{self, timed};
 use crate::workers::Cancel;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -26,6 +27,8 @@ pub(super) struct Exposure<'a> {
     /// Whether all work is to be done on the calling thread.
     pub stays: bool,
     samples: CameraSampler<'a>,
+    /// What follows paths from lights, if there are any.
+    light: Option<LightTracer<'a>>,
     /// Whose samples work together.
     patchwork: Patchwork,
     /// Workers that no thread is using: their memory is used again.
@@ -62,6 +65,21 @@ impl Goal<'_> {
 
     fn before(&self) -> u32 {
         if let Self::Even { before, .. } = *self { before } else { 0 }
+    }
+}
+
+/// A goal, and the light that comes to the film by itself on the way there.
+#[derive(Clone, Copy)]
+struct Part<'a> {
+    goal: Goal<'a>,
+    light: Option<&'a Brought>,
+}
+
+impl Part<'_> {
+    /// Whether it is to be left: light that was brought is used up first, or a pause that comes sooner than it is
+    /// brought would leave nothing done.
+    fn is_ended(&self, stop: &Stop) -> bool {
+        stop.cancel.is_raised() || self.light.is_none() && stop.pause.is_raised()
     }
 }
 
@@ -136,7 +154,8 @@ impl<'a> Exposure<'a> {
     ) -> Self {
         let samples = CameraSampler::new(scene, camera, settings);
         let patchwork = Patchwork { patch: integrator.patch(scene) };
-        Self { session, stays: integrator.runs_on_caller(), samples, patchwork, idle: Mutex::default() }
+        let (stays, light) = (integrator.runs_on_caller(), LightTracer::new(camera, session, settings));
+        Self { session, stays, samples, light, patchwork, idle: Mutex::default() }
     }
 
     /// Adds samples until the goal is reached, and says whether it was: it returns soon when it is asked to stop. Even
@@ -144,16 +163,18 @@ impl<'a> Exposure<'a> {
     /// has `done` samples, or all have on average.
     pub fn expose(&self, tiles: &mut [FilmTile], done: u32, goal: Goal, stop: &Stop) -> bool {
         self.session.before_pass(done, &stop.cancel);
-        let reached = |(number, tile): (usize, &mut FilmTile)| {
-            !stop.is_raised() && {
-                let mut bench = self.take_bench();
-                let reached =
-                    self.expose_tiles(slice::from_mut(tile), number, goal, BATCH, &mut bench, stop, &mut || {});
-                self.put_bench(bench);
-                reached
-            }
-        };
-        tiles.par_iter_mut().enumerate().with_max_len(1).map(reached).reduce(|| true, |a, b| a && b)
+        self.in_parts(tiles, goal, false, stop, |tiles, part| {
+            let reached = |(number, tile): (usize, &mut FilmTile)| {
+                !part.is_ended(stop) && {
+                    let mut bench = self.take_bench();
+                    let reached =
+                        self.expose_tiles(slice::from_mut(tile), number, part, BATCH, &mut bench, stop, &mut || {});
+                    self.put_bench(bench);
+                    reached
+                }
+            };
+            tiles.par_iter_mut().enumerate().with_max_len(1).map(reached).reduce(|| true, |a, b| a && b)
+        })
     }
 
     /// As [`Exposure::expose`], with the integrator on this thread alone. After each batch, which is large for an
@@ -168,10 +189,37 @@ impl<'a> Exposure<'a> {
     ) -> bool {
         self.session.before_pass(done, &stop.cancel);
         let most = if self.stays { LARGE_BATCH } else { BATCH };
-        let mut bench = self.take_bench();
-        let reached = self.expose_tiles(tiles, 0, goal, most, &mut bench, stop, &mut poll);
-        self.put_bench(bench);
-        reached
+        self.in_parts(tiles, goal, true, stop, |tiles, part| {
+            let mut bench = self.take_bench();
+            let reached = self.expose_tiles(tiles, 0, part, most, &mut bench, stop, &mut poll);
+            self.put_bench(bench);
+            reached
+        })
+    }
+
+    /// Works towards a goal: at once, or, where light comes to the film by itself, in parts of as many samples as that
+    /// is kept for. Says whether all parts were done.
+    fn in_parts(
+        &self,
+        tiles: &mut [FilmTile],
+        goal: Goal,
+        alone: bool,
+        stop: &Stop,
+        mut work: impl FnMut(&mut [FilmTile], Part) -> bool,
+    ) -> bool {
+        let (Some(light), Goal::Even { before, samples }) = (&self.light, goal) else {
+            return work(tiles, Part { goal, light: None });
+        };
+        let first = before + tiles.iter().map(FilmTile::fewest).min().unwrap_or(0);
+        (first..samples).step_by(light.at_once() as usize).all(|start| {
+            if start > first && stop.is_raised() {
+                return false;
+            }
+            let end = samples.min(start + light.at_once());
+            let brought = light.trace(start..end, alone, &stop.cancel);
+            let part = Part { goal: Goal::Even { before, samples: end }, light: Some(&brought) };
+            !stop.cancel.is_raised() && work(tiles, part)
+        })
     }
 
     fn take_bench(&self) -> Bench<'a> {
@@ -198,13 +246,14 @@ impl<'a> Exposure<'a> {
         &self,
         tiles: &mut [FilmTile],
         first: usize,
-        goal: Goal,
+        part: Part,
         most: usize,
         bench: &mut Bench,
         stop: &Stop,
         poll: &mut dyn FnMut(),
     ) -> bool {
         bench.clear();
+        let goal = part.goal;
         let before = goal.before();
         let works_together = self.patchwork.patch > 1;
         let mut members: Vec<Member> = Vec::new();
@@ -233,9 +282,9 @@ impl<'a> Exposure<'a> {
                             bench.ends.push(bench.wanted.len());
                         }
                         if bench.wanted.len() + members.len() > most {
-                            let developed = bench.develop(&self.samples, tiles, &stop.cancel);
+                            let developed = bench.develop(&self.samples, tiles, part.light, &stop.cancel);
                             poll();
-                            if !developed || stop.is_raised() {
+                            if !developed || part.is_ended(stop) {
                                 return false;
                             }
                         }
@@ -243,7 +292,7 @@ impl<'a> Exposure<'a> {
                 }
             }
         }
-        bench.develop(&self.samples, tiles, &stop.cancel)
+        bench.develop(&self.samples, tiles, part.light, &stop.cancel)
     }
 }
 
@@ -269,11 +318,17 @@ impl Bench<'_> {
 
     /// Takes the samples, adds their radiance to their cells, and clears them away. Says whether it did: what a
     /// cancelled integrator says is not heard.
-    fn develop(&mut self, sampler: &CameraSampler, tiles: &mut [FilmTile], cancel: &Cancel) -> bool {
+    fn develop(
+        &mut self,
+        sampler: &CameraSampler,
+        tiles: &mut [FilmTile],
+        light: Option<&Brought>,
+        cancel: &Cancel,
+    ) -> bool {
         if self.wanted.is_empty() {
             return true;
         }
-        timed(Part::Camera, || sampler.take(&self.wanted, &mut self.samples, &mut self.weights));
+        timed(timing::Part::Camera, || sampler.take(&self.wanted, &mut self.samples, &mut self.weights));
         let mut start = 0;
         for &end in &self.ends {
             let seen = self.weights[start..end].iter().filter(|&&weight| weight != 0.0).count();
@@ -291,12 +346,18 @@ impl Bench<'_> {
         if cancel.is_raised() {
             return false;
         }
-        timed(Part::Film, || {
-            let (mut radiance, mut weights) = (self.radiance.iter(), self.weights.iter());
+        timed(timing::Part::Film, || {
+            let (mut radiance, mut wanted) = (self.radiance.iter(), self.weights.iter().zip(&self.wanted));
             for run in &self.runs {
-                for &weight in weights.by_ref().take(run.count as usize) {
+                for (&weight, wanted) in wanted.by_ref().take(run.count as usize) {
                     let seen = if weight == 0.0 { None } else { radiance.next() };
-                    tiles[run.tile].add(run.cell, seen.copied().unwrap_or(Rgb::ZERO), weight);
+                    let (tile, seen) = (&mut tiles[run.tile], seen.copied().unwrap_or(Rgb::ZERO));
+                    match light {
+                        None => tile.add(run.cell, seen, weight),
+                        Some(light) => {
+                            tile.add_with(run.cell, seen, weight, light.to(wanted.position, wanted.number));
+                        }
+                    }
                 }
             }
         });

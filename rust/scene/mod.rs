@@ -21,7 +21,7 @@ mod surface_point;
 pub mod textures;
 mod view;
 
-pub use cameras::{Camera, CameraError, CameraRay, CameraRayLanes, Perspective};
+pub use cameras::{Camera, CameraConnection, CameraError, CameraRay, CameraRayLanes, Perspective};
 pub use compiled::Scene;
 pub use description::{DescriptionError, SceneDescription, Shape};
 pub use emission::{Emission, Sides};
@@ -32,8 +32,9 @@ pub use geometry::{
     check_transforms, rounded,
 };
 pub use lights::{
-    ConstantEnvironment, DirectionalLight, EnvironmentMap, Light, LightBounds, LightContextLanes, LightLanes,
-    LightSample, LightSampleContext, Lights, Picture, PointLight, Profile, Projector, Reach, SpotLight, SunSky,
+    ConstantEnvironment, DirectionalLight, EmissionNumbers, EmissionPdf, EmissionSample, Emitters, EnvironmentMap,
+    Light, LightBounds, LightContextLanes, LightLanes, LightSample, LightSampleContext, Lights, Picture, PointEmission,
+    PointLight, Profile, Projector, Reach, SpotLight, SunSky, not_drawn,
 };
 pub use materials::{DiffuseMaterial, Material};
 pub use plan::{Plan, PlanRow, SceneNeeds, ShadingVariant};

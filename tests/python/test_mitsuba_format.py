@@ -240,7 +240,7 @@ def test_a_part_of_a_film_sees_what_the_whole_does_there():
         ),
         ({"e": {"type": "spot", "texture": {"type": "bitmap"}}}, "spot 'e': a texture is not supported"),
         ({"e": {"type": "constant", "radiance": {"type": "blackbody"}}}, "must be the same everywhere"),
-        ({"i": {"type": "ptracer"}}, "ptracer 'i' is not supported here"),
+        ({"i": {"type": "stokes"}}, "stokes 'i' is not supported here"),
         ({"i": {"type": "path", "max_depth": 0}}, "path 'i': max_depth must be -1 or at least 1"),
         ({"i": {"type": "aov", "aovs": "x:boundary_test"}}, "aov 'i': aovs must be of depth,"),
         ({"e2": {"type": "distant"}}, "distant 'e2' is not supported here"),

@@ -6,17 +6,21 @@ from .ambient_occlusion import AmbientOcclusion
 from .base import Integrator
 from .direct import Direct
 from .distributed import Distributed
+from .light_traced import LightTraced
 from .path import Path
 from .ray_cast import RayCast
 from .whitted import Whitted
 
-AnyIntegrator: TypeAlias = Path | Direct | RayCast | Whitted | Distributed | AmbientOcclusion | Integrator
+AnyIntegrator: TypeAlias = (
+    Path | LightTraced | Direct | RayCast | Whitted | Distributed | AmbientOcclusion | Integrator
+)
 
 __all__ = [
     "AmbientOcclusion",
     "AnyIntegrator",
     "Direct",
     "Distributed",
+    "LightTraced",
     "Path",
     "RayCast",
     "Whitted",

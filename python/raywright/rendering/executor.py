@@ -22,7 +22,8 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from .. import _core
-from .worker import Done, Job, Missing, Raised, keep, work
+from .job import Job
+from .worker import Done, Missing, Raised, keep, work
 
 # Seconds that a piece of work should take: long against what sending it costs, short against a render.
 _PIECE = 0.4

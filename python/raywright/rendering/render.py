@@ -18,9 +18,9 @@ from ..scene.scene import Scene
 from .aovs import aovs, names_of
 from .checkpoints import Checkpoints, held
 from .choices import Limits, chosen
-from .digest import digest
 from .filters import BoxFilter, Filter
 from .image import HISTORY, ErrorEstimate, Image
+from .job import Job
 from .notebook import display
 from .plan import RenderPlan
 from .progress import Report, bar
@@ -175,14 +175,12 @@ def render(
         what = scene, camera, limits, threads, clamp, filter
         integrator, rows, spent = followed(integrator, *what, begun, looks)
         plan = replace(plan, rows=plan.rows + rows, path=integrator)
+    job = Job(scene, camera, integrator, seed, adaptive, clamp, sampler, filter)
     if checkpoint is not None:
-        identity = _identity(scene, camera, integrator, seed, adaptive, clamp, sampler, filter)
-        kept = Checkpoints(checkpoint, identity)
-    patch = _patch(scene, integrator)
-    rendering = _begun(kept, camera, threads, adaptive, clamp, sampler, patch)
+        kept = Checkpoints(checkpoint, job.identity())
+    rendering = _begun(kept, job, threads)
     # A pilot is part of what a picture takes.
     rendering.spend(spent)
-    of = (scene, camera, integrator, seed, sampler, filter)
     snapshots = None if show is None else Snapshots(show)
 
     def so_far() -> Image:
@@ -203,9 +201,9 @@ def render(
         try:
             look()
             if executor is not None:
-                told += _elsewhere(rendering, of, executor, limits, threads, report, rest, look)
+                told += _elsewhere(rendering, job, executor, limits, threads, report, rest, look)
             if executor is None or told:
-                _here(rendering, of, limits, threads, report, wait, rest, looks)
+                _here(rendering, job, limits, threads, report, wait, rest, looks)
         except StoppedError:
             if not rendering.counts.all():
                 told.append("stopped before every pixel had a sample")
@@ -227,9 +225,6 @@ def render(
     if show is not None:
         show(image)
     return image
-
-
-_Of = tuple[Scene, AnyCamera, AnyIntegrator, int, Sampler, Filter]
 
 
 class Checked(NamedTuple):
@@ -283,7 +278,7 @@ def check(
 
 def _here(
     rendering: _core.Rendering,
-    of: _Of,
+    job: Job,
     limits: Limits,
     threads: int | None,
     report: Report | None,
@@ -292,16 +287,14 @@ def _here(
     look: Callable[[], None] | None,
 ) -> None:
     """Render in this process; `rest` is called whenever `wait` is over."""
-    scene, camera, integrator, seed, sampler, filter = of
-    compiled = scene._compiled()
-    how = (compiled, camera, integrator, scene, seed, threads, *limits)
-    while not rendering.go_on(*how, wait(), report, sampler, filter, look):
+    compiled = job.scene._compiled()
+    while not rendering.go_on(job.core, compiled, threads, *limits, wait(), report, look):
         rest()
 
 
 def _elsewhere(
     rendering: _core.Rendering,
-    of: _Of,
+    job: Job,
     executor: Executor,
     limits: Limits,
     threads: int | None,
@@ -312,13 +305,12 @@ def _elsewhere(
     """Render by an executor; if it breaks, return what there is to say of that."""
     # Whoever renders here does not wait for the import.
     from .executor import BrokenError, Distribution
-    from .worker import Job
 
     def look_and_rest() -> None:
         look()
         rest()
 
-    distribution = Distribution(rendering, Job(*of), executor, limits, threads or 1)
+    distribution = Distribution(rendering, job, executor, limits, threads or 1)
     try:
         distribution.run(report, look_and_rest)
     except BrokenError as error:
@@ -329,56 +321,14 @@ def _elsewhere(
     return []
 
 
-def _identity(
-    scene: Scene,
-    camera: AnyCamera,
-    integrator: AnyIntegrator,
-    seed: int,
-    adaptive: bool,
-    clamp: float | None,
-    sampler: Sampler,
-    filter: Filter,
-) -> dict[str, str | int | float | bool | None]:
-    """Return all that the bits of a picture depend on, by names that users know."""
-    return {
-        "version": _core.VERSION,
-        "width": camera.width,
-        "height": camera.height,
-        "scene": digest(scene),
-        "camera": digest(camera),
-        "integrator": digest(integrator),
-        "reuse": integrator.reuse if isinstance(integrator, Path) else None,
-        "caustics": integrator.caustics if isinstance(integrator, Path) else None,
-        "seed": seed,
-        "adaptive": adaptive,
-        "clamp": clamp,
-        "sampler": repr(sampler),
-        "filter": repr(filter),
-    }
-
-
-def _patch(scene: Scene, integrator: AnyIntegrator) -> int:
-    """Return the side of the patches of pixels whose samples are taken together."""
-    if not isinstance(integrator, Path) or integrator.reuse == 1:
-        return 1
-    return _core.patch(scene._compiled(), integrator)
-
-
-def _begun(
-    kept: Checkpoints | None,
-    camera: AnyCamera,
-    threads: int | None,
-    adaptive: bool,
-    clamp: float | None,
-    sampler: Sampler,
-    patch: int,
-) -> _core.Rendering:
+def _begun(kept: Checkpoints | None, job: Job, threads: int | None) -> _core.Rendering:
     """Return an empty render, or that of a checkpoint."""
-    film = None if kept is None else kept.read(_core.Rendering.most_bytes(camera, adaptive))
+    patch = job.patch()
+    film = None if kept is None else kept.read(job.core.most_bytes())
     if kept is None or film is None:
-        return _core.Rendering(camera, threads, adaptive, clamp, sampler, patch)
+        return job.core.begin(threads, patch)
     try:
-        return _core.Rendering.from_bytes(film, camera, threads, adaptive, clamp, sampler, patch)
+        return job.core.resume(film, threads, patch)
     except ValueError as error:
         kept.refuse(f"is damaged: {error}")
 

@@ -12,67 +12,18 @@ import socket
 import threading
 import time
 import traceback
-import warnings
 from collections import OrderedDict
 from collections.abc import Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import NamedTuple
 
-from .. import _core
-
-if TYPE_CHECKING:
-    from ..cameras import AnyCamera
-    from ..scene.scene import Scene
+from .job import Job
 
 # Scenes that a process keeps compiled.
 _KEPT = 4
-_jobs: "OrderedDict[str, Job]" = OrderedDict()
+_jobs: OrderedDict[str, Job] = OrderedDict()
 _lock = threading.RLock()
-
-
-@dataclass
-class Job:
-    """What is to be rendered: all that is the same for each piece of the work."""
-
-    scene: "Scene"
-    camera: "AnyCamera"
-    integrator: Any
-    seed: int
-    sampler: Any
-    filter: Any
-    told: tuple[str, ...] = ()
-    _compiling: threading.Lock = field(default_factory=threading.Lock, repr=False)
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        return Job, (self.scene, self.camera, self.integrator, self.seed, self.sampler, self.filter)
-
-    def compiled(self) -> _core.CompiledScene:
-        """Return the scene, compiled the first time that it is asked for."""
-        if self.scene._core is not None:
-            return self.scene._core
-        # What there is to warn of is for whoever asked for the picture, who may be far away.
-        with self._compiling, warnings.catch_warnings(record=True) as caught:
-            warnings.simplefilter("always")
-            compiled = self.scene._compiled()
-            self.told += tuple(str(warning.message) for warning in caught)
-        return compiled
-
-    def expose(self, request: bytes, threads: int) -> bytes:
-        """Take the samples that a request wants."""
-        scene = self.compiled()
-        return _core.expose(
-            scene,
-            self.camera,
-            self.integrator,
-            self.scene,
-            self.seed,
-            threads,
-            request,
-            self.sampler,
-            self.filter,
-        )
 
 
 class Done(NamedTuple):

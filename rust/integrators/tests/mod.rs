@@ -8,15 +8,18 @@ mod path;
 mod reuse;
 
 use super::{CameraSample, Integrator, Job};
-use crate::math::Ray;
+use crate::math::{DVec3, Ray};
 use crate::optics::Rgb;
 use crate::sampling::Sampler;
-use crate::scene::{Footprint, Scene};
+use crate::scene::{Footprint, Perspective, Scene};
 use crate::workers::Cancel;
+use std::sync::LazyLock;
 
-/// That of rays without width.
+/// That of rays without width, which no camera sends.
 fn job(scene: &Scene) -> Job<'_> {
-    Job { scene, footprint: Footprint::default() }
+    static CAMERA: LazyLock<Perspective> =
+        LazyLock::new(|| Perspective::looking_at(DVec3::ZERO, DVec3::NEG_Z, DVec3::Y, 60.0, 1, 1).expect("a camera"));
+    Job { scene, camera: &*CAMERA, footprint: Footprint::default() }
 }
 
 /// The radiance of so many samples of a ray.

@@ -2,14 +2,13 @@
 
 use super::dimensions::Dimensions;
 use super::features::{Carried, Features};
-use super::nesting::{Boundary, MediumStack, around};
 use super::path_state::PathState;
-use super::shadows::opacity;
 use super::worker::TransportWorker;
 use crate::integrators::CameraSample;
-use crate::math::{Hit, Ray};
+use crate::integrators::nesting::MediumStack;
+use crate::integrators::passing::Met;
+use crate::math::Ray;
 use crate::optics::Rgb;
-use crate::sampling::Sampler;
 
 impl<N: Features> TransportWorker<'_, N> {
     /// Sorts paths by what their rays have come to: those that leave the scene take what light comes from there, and
@@ -18,21 +17,13 @@ impl<N: Features> TransportWorker<'_, N> {
         let mut arrivals = std::mem::take(&mut self.arrivals);
         arrivals.diffuse.clear();
         arrivals.others.clear();
-        arrivals.windows.clear();
-        arrivals.of.clear();
-        if self.nested {
-            for (i, hit) in self.hits.iter().enumerate() {
-                if hit.is_hit()
-                    && let Some(window) = around(self.scene, &self.now.rays.get(i), hit)
-                {
-                    arrivals.windows.push(window);
-                    arrivals.of.push(i as u32);
-                }
-            }
+        let is_nested = N::GENERAL && self.passing.is_nested();
+        if N::GENERAL {
+            self.passing.begin(self.scene, &self.now.rays, &self.hits);
+        }
+        if is_nested {
             arrivals.boundaries.resize(self.now.rays.len(), (1.0, MediumStack::NONE));
         }
-        let crossings = if self.nested { self.scene.crossings(&arrivals.windows) } else { Default::default() };
-        let mut window = 0;
         for i in 0..self.now.rays.len() {
             let mut hit = self.hits[i];
             if !hit.is_hit() {
@@ -42,32 +33,21 @@ impl<N: Features> TransportWorker<'_, N> {
             }
             let mut shape = self.scene.geometry().locate(hit.primitive).0;
             let mut outside = 1.0;
-            if N::GENERAL && (self.masks || self.nested) {
+            if N::GENERAL && self.passing.is_needed() {
                 let (ray, path, mut carried) = (self.now.rays.get(i), self.now.paths[i], self.now.carried[i]);
-                if arrivals.of.get(window) == Some(&(i as u32)) {
-                    window += 1;
-                    match Boundary::new(self.scene, &ray, &carried.media, &crossings, window - 1) {
-                        Boundary::None(media) => {
-                            carried.media = media;
-                            let t_min = arrivals.windows[window - 1].t_max.next_up();
-                            self.pass(Ray { t_min, ..ray }, path, carried);
-                            continue;
-                        }
-                        Boundary::Between { hit: owner, outside: ior, through } => {
-                            if owner.primitive != hit.primitive || owner.inner != hit.inner {
-                                hit = owner;
-                            }
-                            outside = ior;
+                let sampler = &mut samples[Self::own(path.sample, samples.len())].sampler;
+                let number = || sampler.one(Dimensions::of(path.bounce, carried.branch).mask());
+                match self.passing.meet(self.scene, i, (&ray, &hit), &carried.media, &mut carried.chance, number) {
+                    Met::Nothing(ray, media) => {
+                        self.pass(ray, path, Carried { media, ..carried });
+                        continue;
+                    }
+                    Met::Surface { hit: met, outside: ior, through } => {
+                        (hit, outside) = (met, ior);
+                        if is_nested {
                             arrivals.boundaries[i] = (ior, through);
                         }
                     }
-                } else if self.nested {
-                    arrivals.boundaries[i] = (1.0, carried.media);
-                }
-                let sampler = &mut samples[Self::own(path.sample, samples.len())].sampler;
-                if self.masks && self.is_passed(&ray, &hit, (&path, &mut carried), sampler) {
-                    self.pass(Ray { t_min: hit.t.next_up(), ..ray }, path, carried);
-                    continue;
                 }
                 (self.hits[i], self.now.carried[i]) = (hit, carried);
                 shape = self.scene.geometry().locate(hit.primitive).0;
@@ -85,28 +65,6 @@ impl<N: Features> TransportWorker<'_, N> {
     #[inline]
     pub(super) fn diffuse(&self, shape: u32) -> Option<[Rgb; 2]> {
         self.scene.plan().diffuse(shape).filter(|_| self.in_columns)
-    }
-
-    /// Whether a ray passes a mask.
-    fn is_passed(
-        &self,
-        ray: &Ray,
-        hit: &Hit,
-        (path, carried): (&PathState, &mut Carried),
-        sampler: &mut Sampler,
-    ) -> bool {
-        let opacity = opacity(self.scene, ray, hit);
-        if opacity >= 1.0 {
-            return false;
-        }
-        if carried.chance < 0.0 {
-            carried.chance = sampler.one(Dimensions::of(path.bounce, carried.branch).mask());
-        }
-        let is_passed = carried.chance >= opacity;
-        if is_passed {
-            carried.chance = (carried.chance - opacity) / (1.0 - opacity);
-        }
-        is_passed
     }
 
     /// Sends a path on along the ray that it was on: with the same origin, so that nothing but the surface is left out.

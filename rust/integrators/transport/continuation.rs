@@ -221,7 +221,8 @@ impl<N: Features> TransportWorker<'_, N> {
         if N::GENERAL {
             let carried = self.carried(block, lane);
             let footprint = if self.widths { self.widened(block, lane, next) } else { carried.footprint };
-            let media = if self.nested && next.is_through { self.boundary(block, lane).1 } else { carried.media };
+            let media =
+                if self.passing.is_nested() && next.is_through { self.boundary(block, lane).1 } else { carried.media };
             self.next.carried.push(Carried { footprint, media, chance: -1.0, branch: branch.number });
         }
     }

@@ -186,7 +186,7 @@ impl<N: Features> TransportWorker<'_, N> {
     #[inline]
     fn bring(&mut self, block: &Block, lane: usize, direction: DVec3, arriving: Rgb) {
         self.shadows.bring(block.paths[lane].sample, arriving);
-        if N::GENERAL && self.nested {
+        if N::GENERAL && self.passing.is_nested() {
             let is_through = !block.is_diffuse && block.other(lane).is_through(direction);
             let media = if is_through { self.boundary(block, lane).1 } else { self.carried(block, lane).media };
             self.shadows.start_in(media);

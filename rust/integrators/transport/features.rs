@@ -1,6 +1,6 @@
 //! What a loop over paths is compiled with.
 
-use super::nesting::MediumStack;
+use crate::integrators::nesting::MediumStack;
 use crate::scene::Footprint;
 use std::marker::PhantomData;
 

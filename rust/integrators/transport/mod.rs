@@ -9,12 +9,10 @@ mod direct_light;
 mod emission;
 mod features;
 mod guided;
-mod nesting;
 mod path_state;
 mod resampling;
 mod reuse;
 mod shade;
-mod shadows;
 mod weights;
 mod worker;
 

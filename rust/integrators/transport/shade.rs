@@ -4,9 +4,9 @@ use super::block::Block;
 use super::dimensions::Dimensions;
 use super::features::{Carried, Features};
 use super::guided::Arrival;
-use super::nesting::MediumStack;
 use super::worker::TransportWorker;
 use crate::integrators::CameraSample;
+use crate::integrators::nesting::MediumStack;
 use crate::math::{LANES, Ray, VectorLanes};
 use crate::optics::{Bsdf, Diffuse, Rgb};
 use crate::scene::materials::BsdfMix;
@@ -127,7 +127,7 @@ impl<'a, N: Features> TransportWorker<'a, N> {
         block.bsdf.clear();
         for lane in 0..block.count {
             let (surface, width) = (block.surfaces.get(lane), block.width[lane]);
-            let outside = if N::GENERAL && self.nested { self.boundary(block, lane).0 } else { 1.0 };
+            let outside = if N::GENERAL && self.passing.is_nested() { self.boundary(block, lane).0 } else { 1.0 };
             let (ray, hit) = (block.rays[lane], block.hits[lane]);
             let bsdf = match self.scene.plan().constant(surface.shape, surface.is_front(&ray)) {
                 Some(&bsdf) if outside == 1.0 && width == 0.0 => BsdfMix::One(bsdf),

@@ -7,10 +7,11 @@ use super::block::Block;
 use super::dimensions::Dimensions;
 use super::features::{Carried, Features};
 use super::guided::{Arrival, arrive};
-use super::nesting::MediumStack;
 use super::path_state::{PathState, Queue};
 use super::reuse::Reuse;
-use super::shadows::Shadows;
+use crate::integrators::nesting::MediumStack;
+use crate::integrators::passing::Passing;
+use crate::integrators::shadows::Shadows;
 use crate::integrators::{CameraSample, Guide, Job, LocalGuide, Worker, is_matt};
 use crate::math::{Hit, LANES};
 use crate::optics::{Bsdf, Rgb};
@@ -28,8 +29,8 @@ pub(super) struct TransportWorker<'a, N> {
     pub(super) level: Level,
     /// That of a camera's ray.
     footprint: Footprint,
-    pub(super) masks: bool,
-    pub(super) nested: bool,
+    /// Which surfaces are there for which rays.
+    pub(super) passing: Passing,
     pub(super) widths: bool,
     /// Whether paths need no more of a diffuse surface than its colour.
     pub(super) in_columns: bool,
@@ -50,7 +51,7 @@ pub(super) struct TransportWorker<'a, N> {
 
 impl<'a, N: Features> TransportWorker<'a, N> {
     pub fn new(settings: Settings, job: &Job<'a>, guide: Option<&'a Guide>) -> Self {
-        let &Job { scene, footprint } = job;
+        let &Job { scene, footprint, .. } = job;
         let needs = scene.plan().needs();
         let widths = N::GENERAL && needs.points.width;
         Self {
@@ -58,8 +59,7 @@ impl<'a, N: Features> TransportWorker<'a, N> {
             scene,
             level: Level::current().unwrap_or(Level::Scalar),
             footprint,
-            masks: N::GENERAL && needs.masks,
-            nested: N::GENERAL && needs.nested,
+            passing: Passing::new(N::GENERAL && needs.masks, N::GENERAL && needs.nested),
             widths,
             in_columns: settings.are_plain() && !settings.guided && !widths,
             guide,
@@ -83,7 +83,7 @@ impl<'a, N: Features> TransportWorker<'a, N> {
         if N::GENERAL {
             let start = Carried { footprint: self.footprint, ..Carried::default() };
             self.now.carried.resize(samples.len(), start);
-            if self.nested {
+            if self.passing.is_nested() {
                 let mut media = Vec::new();
                 MediumStack::at(self.scene, self.now.rays.rows(), &mut media);
                 for (carried, media) in self.now.carried.iter_mut().zip(media) {
@@ -156,8 +156,8 @@ impl<N: Features> TransportWorker<'_, N> {
             timed(Part::Shadow, || {
                 if !self.settings.shadows {
                     self.shadows.add_all(radiance);
-                } else if self.masks || self.nested {
-                    self.shadows.add_through(self.scene, self.nested, radiance);
+                } else if self.passing.is_needed() {
+                    self.shadows.add_through(self.scene, self.passing.is_nested(), radiance);
                 } else {
                     self.shadows.add_unblocked(self.scene, radiance);
                 }

@@ -1,7 +1,8 @@
 //! Wide angles in a circle.
 
-use super::{Body, Camera, CameraError, CameraRay, Measured, Spread};
-use crate::math::Ray;
+use super::connection::relative;
+use super::{Body, Camera, CameraConnection, CameraError, CameraRay, Measured, Spread};
+use crate::math::{DVec3, Ray};
 
 /// How far from the middle of the picture a direction is seen, by its angle θ from the view
 /// (Miyamoto, "Fish Eye Lens", 1964; names as in ISO and photography).
@@ -35,6 +36,20 @@ impl Mapping {
             Self::Equisolid => 2.0 * (0.5 * angle).sin(),
             Self::Stereographic => 2.0 * (0.5 * angle).tan(),
             Self::Orthographic => angle.sin(),
+        }
+    }
+
+    /// How much of the picture a solid angle takes at an angle θ, as a multiple of what it takes in the middle:
+    /// r (dr/dθ) / sin θ.
+    fn crowding(self, angle: f64) -> f64 {
+        match self {
+            Self::Equidistant => {
+                let sine = angle.sin();
+                if sine == 0.0 && angle < 1.0 { 1.0 } else { angle / sine }
+            }
+            Self::Equisolid => 1.0,
+            Self::Stereographic => (0.5 * angle).cos().powi(-4),
+            Self::Orthographic => angle.cos(),
         }
     }
 
@@ -111,6 +126,20 @@ impl Camera for Fisheye {
         CameraRay::seen(Ray { time, ..Ray::new(from.position, direction) })
     }
 
+    fn connect(&self, point: DVec3, _: [f64; 2], time: f64) -> Option<CameraConnection> {
+        let (from, [width, height]) = (self.body.at(time), self.body.size());
+        let [right, up, along] = relative(&from, point);
+        let aside = right.hypot(up);
+        let angle = aside.atan2(along);
+        // What folds back, as sin θ beyond a right angle, is not seen twice.
+        let radius = self.mapping.radius(angle);
+        let is_seen = radius <= self.edge && (self.mapping != Mapping::Orthographic || along > 0.0);
+        let pixels = if aside > 0.0 { radius / (self.scale * aside) } else { 0.0 };
+        let film = [0.5 * width + right * pixels, 0.5 * height - up * pixels];
+        let density = self.mapping.crowding(angle) / (self.scale * self.scale * (aside * aside + along * along));
+        CameraConnection { film, origin: from.position, density }.if_finite().filter(|_| is_seen)
+    }
+
     fn spread(&self) -> Spread {
         // In the middle every mapping's radius is the angle.
         Spread { angle: self.scale, width: 0.0 }
@@ -121,7 +150,6 @@ impl Camera for Fisheye {
 mod tests {
     use super::super::Viewpoint;
     use super::*;
-    use crate::math::DVec3;
 
     const ALL: [Mapping; 4] = [Mapping::Equidistant, Mapping::Equisolid, Mapping::Stereographic, Mapping::Orthographic];
 

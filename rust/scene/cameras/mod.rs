@@ -2,6 +2,7 @@
 
 mod aperture;
 mod body;
+mod connection;
 mod error;
 mod fisheye;
 mod lanes;
@@ -14,6 +15,7 @@ mod window;
 
 pub use aperture::Aperture;
 pub use body::Body;
+pub use connection::CameraConnection;
 pub use error::CameraError;
 pub use fisheye::{Fisheye, Mapping};
 pub use lanes::CameraRayLanes;
@@ -48,6 +50,10 @@ pub trait Camera: Debug + Send + Sync {
             rays.set(lane, &self.ray(film, lens, time[lane]));
         }
     }
+
+    /// How the camera sees a point of the scene from a point of the lens, at a time as [`Camera::ray`] has it; `None`
+    /// where it does not, whatever lies between.
+    fn connect(&self, point: DVec3, lens: [f64; 2], time: f64) -> Option<CameraConnection>;
 
     /// What a pixel covers.
     fn spread(&self) -> Spread;

@@ -1,8 +1,9 @@
 //! A camera of parallel rays.
 
-use super::window::from_middle;
-use super::{Body, Camera, CameraError, CameraRay, Measured, Spread};
-use crate::math::Ray;
+use super::connection::relative;
+use super::window::{from_middle, to_pixels};
+use super::{Body, Camera, CameraConnection, CameraError, CameraRay, Measured, Spread};
+use crate::math::{DVec3, Ray};
 
 /// A camera whose rays are parallel. They start in the plane through its position, so that what is behind it is not
 /// seen.
@@ -40,6 +41,17 @@ impl Camera for Orthographic {
         CameraRay::seen(Ray { time: self.body.scene_time(time), ..Ray::new(origin, from.forward) })
     }
 
+    fn connect(&self, point: DVec3, _: [f64; 2], time: f64) -> Option<CameraConnection> {
+        let (from, size) = (self.body.at(time), self.body.size());
+        let [right, up, along] = relative(&from, point);
+        let [width, height] = self.half;
+        let density = size[0] * size[1] / (4.0 * width * height);
+        let film = to_pixels([right / width, up / height], size);
+        // Where it starts does not depend on how far away the point is, which has more digits.
+        let origin = from.position + from.right * right + from.up * up;
+        CameraConnection { film, origin, density }.if_finite().filter(|_| along > 0.0)
+    }
+
     fn spread(&self) -> Spread {
         Spread { angle: 0.0, width: 2.0 * self.half[1] / self.body.size()[1] }
     }
@@ -49,7 +61,6 @@ impl Camera for Orthographic {
 mod tests {
     use super::super::Viewpoint;
     use super::*;
-    use crate::math::DVec3;
 
     fn body() -> Body {
         Body::new(Viewpoint::look_at(DVec3::new(1.0, 2.0, 3.0), DVec3::new(1.0, 2.0, 0.0), DVec3::Y).unwrap(), 8, 4)

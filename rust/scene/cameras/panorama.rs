@@ -1,6 +1,7 @@
 //! All directions at once.
 
-use super::{Body, Camera, CameraRay, Spread};
+use super::connection::relative;
+use super::{Body, Camera, CameraConnection, CameraRay, Spread};
 use crate::math::{DVec3, Ray};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -35,6 +36,17 @@ impl Camera for Panorama {
         let (up, level) = (FRAC_PI_2 - PI * y / height).sin_cos();
         let direction: DVec3 = from.direction(sin * level, up, cos * level);
         CameraRay::seen(Ray { time: self.body.scene_time(time), ..Ray::new(from.position, direction.normalize()) })
+    }
+
+    fn connect(&self, point: DVec3, _: [f64; 2], time: f64) -> Option<CameraConnection> {
+        let (from, [width, height]) = (self.body.at(time), self.body.size());
+        let [right, up, along] = relative(&from, point);
+        let level = right.hypot(along);
+        let film = [width * (0.5 + right.atan2(along) / TAU), height * (0.5 - up.atan2(level) / PI)];
+        // A solid angle takes one over the sine of the colatitude as much of the picture as it would at the horizon.
+        let distance = level.hypot(up);
+        let density = width * height / (TAU * PI * level * distance);
+        CameraConnection { film, origin: from.position, density }.if_finite()
     }
 
     fn spread(&self) -> Spread {

@@ -1,7 +1,10 @@
 //! The pinhole.
 
+use super::connection::relative;
 use super::window::from_middle;
-use super::{Body, Camera, CameraError, CameraRay, CameraRayLanes, Measured, Spread, Viewpoint, Window};
+use super::{
+    Body, Camera, CameraConnection, CameraError, CameraRay, CameraRayLanes, Measured, Spread, Viewpoint, Window,
+};
 use crate::math::{DVec3, LANES, Ray, VectorLanes};
 use crate::sampling::Pairs;
 use crate::simd::{Level, loops};
@@ -114,6 +117,12 @@ impl Camera for Perspective {
             times[lane] = self.body.scene_time(time[lane]);
             weight[lane] = 1.0;
         }
+    }
+
+    fn connect(&self, point: DVec3, _: [f64; 2], time: f64) -> Option<CameraConnection> {
+        let from = self.body.at(time);
+        let (film, density) = self.window.connect(relative(&from, point), [0.0; 2], self.body.size())?;
+        CameraConnection { film, origin: from.position, density }.if_finite()
     }
 
     fn spread(&self) -> Spread {

@@ -1,8 +1,9 @@
 //! A lens that is in focus at one distance.
 
+use super::connection::relative;
 use super::window::from_middle;
-use super::{Aperture, Body, Camera, CameraError, CameraRay, Spread, Window};
-use crate::math::Ray;
+use super::{Aperture, Body, Camera, CameraConnection, CameraError, CameraRay, Spread, Window};
+use crate::math::{DVec3, Ray};
 
 /// A camera with a thin lens (Potmesil and Chakravarty, "A Lens and Aperture Camera Model for Synthetic Image
 /// Generation", 1981): what lies in a plane across the view is sharp, and the rest is blurred, the more the wider the
@@ -47,6 +48,17 @@ impl Camera for ThinLens {
         CameraRay::seen(Ray { time: self.body.scene_time(time), ..Ray::new(origin, direction) })
     }
 
+    /// A point of the lens sees as a pinhole does that is there, but for a film that is moved.
+    fn connect(&self, point: DVec3, lens: [f64; 2], time: f64) -> Option<CameraConnection> {
+        let from = self.body.at(time);
+        let [right, up] = self.aperture.point(lens);
+        let [x, y, along] = relative(&from, point);
+        let moved = [right / self.focus, up / self.focus];
+        let (film, density) = self.window.connect([x - right, y - up, along], moved, self.body.size())?;
+        let origin = from.position + from.right * right + from.up * up;
+        CameraConnection { film, origin, density }.if_finite()
+    }
+
     fn spread(&self) -> Spread {
         Spread { angle: self.window.pixel_angle(self.body.size()), width: 0.0 }
     }
@@ -60,7 +72,6 @@ impl Camera for ThinLens {
 mod tests {
     use super::super::{Measured, Perspective, Viewpoint};
     use super::*;
-    use crate::math::DVec3;
 
     fn lens(radius: f64, blades: u32, focus: f64) -> (ThinLens, Perspective) {
         let viewpoint = Viewpoint::look_at(DVec3::new(1.0, 2.0, 3.0), DVec3::new(-1.0, 0.5, 0.0), DVec3::Y).unwrap();

@@ -105,6 +105,32 @@ impl Window {
         [self.centre[0] + self.half[0] * x + self.skew * y, self.centre[1] + self.half[1] * y]
     }
 
+    /// The point of the film that is there: the inverse of [`Window::point`].
+    pub(super) fn film(&self, [right, up]: [f64; 2]) -> [f64; 2] {
+        let y = (up - self.centre[1]) / self.half[1];
+        [(right - self.centre[0] - self.skew * y) / self.half[0], y]
+    }
+
+    /// How a point this far to the right, upwards and along the view is seen from where these are counted, through the
+    /// film moved so far to the right and upwards, in pixels of a picture of this size, and the density of
+    /// [`CameraConnection`](super::CameraConnection); `None` for what is not in front.
+    pub(super) fn connect(
+        &self,
+        [right, up, along]: [f64; 3],
+        shift: [f64; 2],
+        size: [f64; 2],
+    ) -> Option<([f64; 2], f64)> {
+        if along.is_nan() || along <= 0.0 {
+            return None;
+        }
+        let film = to_pixels(self.film([right / along + shift[0], up / along + shift[1]]), size);
+        // Pixels over area at distance 1. An area across the ray takes cos θ / z² times as much there, by the slant of
+        // the ray to the film's plane and the distance along the view, with cos θ = z / d.
+        let pixels = size[0] * size[1] / (4.0 * self.half[0] * self.half[1]).abs();
+        let slant = DVec3::new(right, up, along).length() / along;
+        Some((film, pixels * slant / (along * along)))
+    }
+
     /// From a viewpoint: the middle of the film, and what x and y add to it.
     pub fn axes(&self, from: &Viewpoint) -> [DVec3; 3] {
         let [x, y] = self.centre;
@@ -136,6 +162,11 @@ impl Window {
 #[inline(always)]
 pub(super) fn from_middle([x, y]: [f64; 2], [width, height]: [f64; 2]) -> [f64; 2] {
     [2.0 * x / width - 1.0, 1.0 - 2.0 * y / height]
+}
+
+/// The inverse of [`from_middle`].
+pub(super) fn to_pixels([x, y]: [f64; 2], [width, height]: [f64; 2]) -> [f64; 2] {
+    [0.5 * width * (1.0 + x), 0.5 * height * (1.0 - y)]
 }
 
 #[cfg(test)]

@@ -3,10 +3,11 @@
 use super::choice::Strength;
 use super::light::strength;
 use super::triangle::SeenTriangle;
-use super::{LightSample, LightSampleContext, surface};
+use super::{Emission, LightSample, LightSampleContext, surface};
 use crate::accel::Primitives;
 use crate::math::{DVec3, Hit, Ray};
-use crate::scene::{Geometry, Instances, Prototype};
+use crate::sampling::warp::uniform_triangle;
+use crate::scene::{Geometry, Instances, Prototype, SurfacePoint};
 use crate::shapes::Bounds;
 
 /// The primitives that shine in instances of prototypes, each of every instance a light of its own: those of instances
@@ -70,6 +71,48 @@ impl Copied {
             all.shapes.push(Glow { shape, first, flat });
         }
         (all, strengths)
+    }
+
+    /// How strong each is.
+    pub fn strengths(&self, geometry: &Geometry) -> impl Iterator<Item = Strength> {
+        self.lights.iter().map(|light| match geometry.instance(light.primitive) {
+            Some((instances, _)) => Light::new(geometry, instances, light.primitive, light.inner).1,
+            None => Strength::NONE,
+        })
+    }
+
+    /// Whether the lights of a shape are among them.
+    pub fn has(&self, shape: u32) -> bool {
+        self.shapes.binary_search_by_key(&shape, |glow| glow.shape).is_ok()
+    }
+
+    /// Draws a point of one by area, and gives how it shines, the point, a hit there from at distance 1, and the
+    /// density.
+    pub fn place<'a>(
+        &self,
+        light: usize,
+        geometry: &'a Geometry,
+        u: [f64; 2],
+    ) -> Option<(&'a Emission, SurfacePoint, Hit, f64)> {
+        let Light { primitive, inner, .. } = self.lights[light];
+        let (instances, instance) = geometry.instance(primitive)?;
+        let (prototype, pose) = (instances.prototype(), instances.pose(instance, 0.0)?);
+        let (own, _) = prototype.split(inner);
+        let (point, uv, pdf) = match prototype.geometry().shape(own) {
+            Some(shape) => {
+                let drawn = shape.sample(u)?;
+                (prototype.geometry().on_shape(own, &drawn.point.site()), drawn.point.uv, drawn.pdf)
+            }
+            None => {
+                let uv = uniform_triangle(u);
+                (prototype.geometry().on_triangle(own, uv), uv, 1.0 / prototype.geometry().area(own))
+            }
+        };
+        // An area there is so many times as large in the world.
+        let stretch = pose.map()?.normal(point.normal).length();
+        let mut surface = pose.point(&point)?;
+        (surface.shape, surface.inner) = (geometry.locate(primitive).0, Some(inner));
+        Some((prototype.appearance(inner).1, surface, Hit { t: 1.0, uv, primitive, inner }, pdf / stretch))
     }
 
     /// How many there are.

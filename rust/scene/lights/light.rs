@@ -1,6 +1,6 @@
 //! What every light that is no surface can be asked, and what is drawn from one.
 
-use super::{LightBounds, LightContextLanes, LightLanes, LightSample, LightSampleContext};
+use super::{LightBounds, LightContextLanes, LightLanes, LightSample, LightSampleContext, PointEmission};
 use crate::math::{DVec3, LANES};
 use crate::optics::Rgb;
 use crate::sampling::Pairs;
@@ -57,6 +57,11 @@ pub trait Light: Debug + Send + Sync {
     /// [`Light::infinite_radiance`] is not black and the receiver's horizon is not above.
     fn infinite_pdf(&self, _receiver: &LightSampleContext, _direction: DVec3) -> f64 {
         0.0
+    }
+
+    /// Draws light that sets out, of a light that is a single point; `None` for any other, or if the draw gives none.
+    fn sample_emission(&self, _u: [f64; 2]) -> Option<PointEmission> {
+        None
     }
 
     /// The memory held.

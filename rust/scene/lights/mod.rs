@@ -4,6 +4,8 @@ mod bounds;
 mod choice;
 mod constant;
 mod directional;
+mod emission_sample;
+mod emitters;
 mod few;
 mod infinite;
 mod instanced;
@@ -29,6 +31,8 @@ mod triangle;
 pub use bounds::LightBounds;
 pub use constant::ConstantEnvironment;
 pub use directional::DirectionalLight;
+pub use emission_sample::{EmissionPdf, EmissionSample, PointEmission};
+pub use emitters::{EmissionNumbers, Emitters, not_drawn};
 pub use light::{Light, Reach};
 pub use light_lanes::{LightContextLanes, LightLanes};
 pub use light_sample::LightSample;
@@ -131,6 +135,18 @@ impl Lights {
         };
         let (area, bounds) = (shape.area(), shape.bounds());
         Strength::of_shape(area, [bounds.min, bounds.max], shape.facing(), radiance, emission.sides)
+    }
+
+    /// How strong each light within the scene is, by its number.
+    fn strengths(&self, geometry: &Geometry) -> Vec<Strength> {
+        let of_primitive =
+            |&primitive: &u32| Self::of_primitive(geometry, primitive, self.emission(geometry.locate(primitive).0));
+        let of_light = |light: &Arc<dyn Light>| match light.reach() {
+            Reach::Finite { power, bounds } => Strength { power, bounds },
+            Reach::Infinite { .. } => Strength::NONE,
+        };
+        let surfaces = self.surfaces.iter().map(of_primitive);
+        surfaces.chain(self.copied.strengths(geometry)).chain(self.inside.iter().map(of_light)).collect()
     }
 
     /// Whether nothing shines that could be drawn.

@@ -1,9 +1,10 @@
 //! A point that shines evenly.
 
 use super::light::strength;
-use super::{Light, LightBounds, LightSample, LightSampleContext, Reach};
+use super::{Light, LightBounds, LightSample, LightSampleContext, PointEmission, Reach};
 use crate::math::DVec3;
 use crate::optics::Rgb;
+use crate::sampling::warp::{UNIFORM_SPHERE_PDF, uniform_sphere};
 use std::f64::consts::PI;
 
 /// A light without extent that shines equally in all directions.
@@ -32,6 +33,12 @@ impl Light for PointLight {
     #[inline]
     fn sample(&self, receiver: &LightSampleContext, _: [f64; 2]) -> Option<LightSample> {
         LightSample::of_point(self.position, receiver, |_| self.intensity)
+    }
+
+    fn sample_emission(&self, u: [f64; 2]) -> Option<PointEmission> {
+        let pdf = UNIFORM_SPHERE_PDF;
+        let (position, direction) = (self.position, uniform_sphere(u));
+        Some(PointEmission { position, direction, weight: self.intensity / pdf, pdf })
     }
 
     fn bytes(&self) -> usize {

@@ -1,7 +1,7 @@
 //! A picture that is thrown.
 
 use super::light::strength;
-use super::{Light, LightBounds, LightSample, LightSampleContext, Picture, Reach};
+use super::{Light, LightBounds, LightSample, LightSampleContext, Picture, PointEmission, Reach};
 use crate::math::DVec3;
 use crate::optics::Rgb;
 use std::sync::Arc;
@@ -95,6 +95,18 @@ impl Light for Projector {
     #[inline]
     fn sample(&self, receiver: &LightSampleContext, _: [f64; 2]) -> Option<LightSample> {
         LightSample::of_point(self.position, receiver, |direction| self.towards(direction))
+    }
+
+    /// Even in the picture as it is thrown.
+    fn sample_emission(&self, u: [f64; 2]) -> Option<PointEmission> {
+        let ([x, y], [right, up, ahead]) = (self.half, self.axes);
+        let [across, along] = u.map(|u| 2.0 * u - 1.0);
+        let way = ahead + right * (x * across) + up * (y * along);
+        let (direction, length) = (way.normalize(), way.length());
+        // A solid angle is the cube of the cosine, of one over the length, times what it takes of the plane at
+        // distance 1.
+        let pdf = length * length * length / (4.0 * x * y);
+        Some(PointEmission { position: self.position, direction, weight: self.towards(direction) / pdf, pdf })
     }
 
     fn bytes(&self) -> usize {

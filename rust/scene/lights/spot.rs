@@ -1,10 +1,10 @@
 //! A point that shines into a cone.
 
 use super::light::strength;
-use super::{Light, LightBounds, LightSample, LightSampleContext, Reach};
-use crate::math::DVec3;
+use super::{Light, LightBounds, LightSample, LightSampleContext, PointEmission, Reach};
+use crate::math::{DVec3, Frame};
 use crate::optics::Rgb;
-use std::f64::consts::{FRAC_PI_2, PI};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// How light falls off towards the rim of a cone.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -98,6 +98,18 @@ impl Light for SpotLight {
     #[inline]
     fn sample(&self, receiver: &LightSampleContext, _: [f64; 2]) -> Option<LightSample> {
         LightSample::of_point(self.position, receiver, |direction| self.intensity * self.share(direction))
+    }
+
+    /// Even in the cone.
+    fn sample_emission(&self, [u, v]: [f64; 2]) -> Option<PointEmission> {
+        // 1 − cos, by half the angle, which keeps its digits where the cone is narrow.
+        let most = if self.cosines[1] == 0.0 { 1.0 } else { 2.0 * (0.5 * self.angle).sin().powi(2) };
+        let height = most * u;
+        let ((sin, cos), out) = ((TAU * v).sin_cos(), (height * (2.0 - height)).sqrt());
+        let direction = Frame::new(self.axis).to_world(DVec3::new(out * cos, out * sin, 1.0 - height));
+        let pdf = 1.0 / (TAU * most);
+        let weight = self.intensity * (self.share(direction) / pdf);
+        Some(PointEmission { position: self.position, direction, weight, pdf })
     }
 
     fn bytes(&self) -> usize {

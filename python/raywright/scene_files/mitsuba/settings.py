@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from typing import NamedTuple
 
-from ...integrators import AmbientOcclusion, AnyIntegrator, Direct, Path
+from ...integrators import AmbientOcclusion, AnyIntegrator, Direct, LightTraced, Path
 from ...rendering.filters import (
     BoxFilter,
     Filter,
@@ -17,7 +17,7 @@ from .plugin import Plugin
 
 # Without media, and forwards, these are path tracing all the same.
 _PATHS = ("path", "volpath", "volpathmis", "prb", "prb_basic", "prbvolpath")
-INTEGRATORS = (*_PATHS, "direct", "ao", "aov")
+INTEGRATORS = (*_PATHS, "ptracer", "direct", "ao", "aov")
 SAMPLERS = ("independent", "stratified", "multijitter", "orthogonal", "ldsampler")
 FILTERS = ("box", "tent", "gaussian", "mitchell", "catmullrom", "lanczos")
 
@@ -62,20 +62,22 @@ def integrator(plugin: Plugin | None) -> Asked:
             radius = plugin.number("ray_length", -1.0)
             samples = plugin.integer("shading_samples", 1)
             result = Asked(AmbientOcclusion(radius if radius > 0 else float("inf"), samples=samples))
+        elif plugin.type == "ptracer":
+            result = Asked(LightTraced(*_depths(plugin)))
         else:
-            result = Asked(_path(plugin))
+            result = Asked(Path(*_depths(plugin)))
     plugin.done()
     return result
 
 
-def _path(plugin: Plugin) -> Path:
+def _depths(plugin: Plugin) -> tuple[int | None, int]:
     # Mitsuba counts what is seen as the first: at a depth of 1 there are emitters only.
     depth, roulette = plugin.integer("max_depth", -1), plugin.integer("rr_depth", 5)
     if depth == 0 or depth < -1 or roulette < 1:
         plugin.fail(
             f"max_depth must be -1 or at least 1, and rr_depth at least 1, got {depth} and {roulette}"
         )
-    return Path(None if depth < 0 else depth - 1, roulette - 1)
+    return None if depth < 0 else depth - 1, roulette - 1
 
 
 def _direct(plugin: Plugin) -> AnyIntegrator:

@@ -10,8 +10,8 @@ use crate::shapes::{Placed, Sphere};
 use crate::simd::Level;
 use std::sync::Arc;
 
-const STRETCHED: Matrix = [[1.5, 0.2, 0.0, 0.3], [-0.4, 0.8, 0.3, -0.2], [0.1, 0.2, -0.5, 2.0]];
-const MOVED: Matrix = [[1.0, 0.0, 0.0, -1.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 1.2]];
+pub(super) const STRETCHED: Matrix = [[1.5, 0.2, 0.0, 0.3], [-0.4, 0.8, 0.3, -0.2], [0.1, 0.2, -0.5, 2.0]];
+pub(super) const MOVED: Matrix = [[1.0, 0.0, 0.0, -1.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 1.2]];
 
 fn panel() -> Mesh {
     rectangle([-0.5, -0.5, 0.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0])

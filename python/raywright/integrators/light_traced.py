@@ -1,0 +1,44 @@
+"""Light tracing."""
+
+from dataclasses import dataclass
+
+from . import counts
+
+
+@dataclass(frozen=True, init=False)
+class LightTraced:
+    """Light tracing (Arvo 1986; Dutré, Lafortune and Willems 1993): paths that start at lights.
+
+    For each sample of each pixel a path starts at a light, chosen by its power, and is scattered from surface
+    to surface; at each of them it is connected to the camera, wherever on the film that is seen. What shines
+    is seen by the camera's own rays. So it finds what path tracing hardly does: light that mirrors and glass
+    throw on matt surfaces. It never finds light that the camera sees in a mirror or through glass: there only
+    what shines itself is seen.
+
+    The error is told as ever, for what comes to a pixel with one sample is independent of what comes with
+    another.
+
+    Parameters
+    ----------
+    max_depth : int or None
+        Greatest number of surface bounces: 0 shows emitters only, 1 adds direct light. None ends paths by
+        Russian roulette alone, which leaves no bias.
+    roulette_depth : int
+        Bounces before Russian roulette begins, at least 0.
+
+    Raises
+    ------
+    ValueError
+        If a number is negative. When rendering, with `adaptive=True`, and of a scene where a light is that no
+        path can start at: one that has no end, or that moves in instances.
+    TypeError
+        If it is not an integer.
+    """
+
+    max_depth: int | None
+    roulette_depth: int
+
+    def __init__(self, max_depth: int | None = None, roulette_depth: int = 4) -> None:
+        depth = None if max_depth is None else counts.depth("max_depth", max_depth)
+        object.__setattr__(self, "max_depth", depth)
+        object.__setattr__(self, "roulette_depth", counts.depth("roulette_depth", roulette_depth))

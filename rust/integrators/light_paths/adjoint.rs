@@ -1,0 +1,122 @@
+//! How light scatters along the way that it takes.
+//!
+//! Surfaces say how they scatter radiance towards a viewer ([`crate::optics::Bsdf`]). Light that comes from `i` and goes
+//! to `o` is flux instead, and must make the same picture: with F(o, i) what a viewer in `o` evaluates for `i`, cosine
+//! included, so much of it goes into a solid angle of `o` as
+//!
+//! F(o, i) |ng·o| / |ng·i|
+//!
+//! with ng the geometric normal, across which flux is counted (Veach, "Robust Monte Carlo Methods for Light Transport
+//! Simulation", 1997, 5.3). All that is not symmetric is in it: shading normals, the index of refraction, and that a
+//! shading normal is bent towards who looks. So what is evaluated is always what the viewer would see; what the light
+//! itself would see only says where to go.
+
+use crate::math::{DVec3, Frame, Hit, Ray};
+use crate::optics::{Bsdf, BsdfSample, Rgb};
+use crate::sampling::warp::{cosine_hemisphere, cosine_hemisphere_pdf};
+use crate::scene::{Encounter, Scene, SurfaceInteraction};
+
+/// Where light has come to, along a ray of its own.
+pub(super) struct Arrived<'a> {
+    pub scene: &'a Scene,
+    pub ray: Ray,
+    pub hit: Hit,
+    /// The index of refraction on the other side of what the surface encloses.
+    pub outside: f64,
+    /// As the light meets it.
+    pub here: SurfaceInteraction,
+}
+
+/// Where light goes on to.
+pub(super) struct Onward {
+    pub direction: DVec3,
+    /// What its flux is multiplied by.
+    pub weight: Rgb,
+    /// Whether it goes to the other side.
+    pub is_through: bool,
+}
+
+/// How often a direction is drawn about the geometric normal where the shading normal is another: the horizon of the one
+/// is not that of the other, and what a viewer sees below the latter is not drawn otherwise.
+const ABOUT_GEOMETRIC: f64 = 0.1;
+
+impl<'a> Arrived<'a> {
+    pub fn new(scene: &'a Scene, ray: Ray, hit: Hit, outside: f64) -> Self {
+        let surface = scene.geometry().surface(&ray, &hit);
+        let here = SurfaceInteraction::new(scene, &ray, &hit, surface, 0.0, outside);
+        Self { scene, ray, hit, outside, here }
+    }
+
+    /// As a viewer meets it who is in a direction at a distance, whose rays are so wide here.
+    fn met_from(&self, direction: DVec3, distance: f64, width: f64) -> SurfaceInteraction {
+        if width == 0.0
+            && let Some(here) = self.here.met_from(direction)
+        {
+            return here;
+        }
+        let origin = self.here.position() + direction * distance;
+        let ray = Ray { origin, direction: -direction, ..self.ray };
+        let hit = Hit { t: distance, ..self.hit };
+        SurfaceInteraction::new(self.scene, &ray, &hit, *self.here.surface(), width, self.outside)
+    }
+
+    /// The share of the flux that goes into a solid angle of a direction, as a viewer there sees it.
+    pub fn towards(&self, direction: DVec3, distance: f64, width: f64) -> Rgb {
+        let back = -self.ray.direction;
+        let normal = self.here.surface().normal;
+        let (arriving, leaving) = (normal.dot(back).abs(), normal.dot(direction).abs());
+        let scattered = self.met_from(direction, distance, width).evaluate(back).0;
+        if arriving > 0.0 { scattered * (leaving / arriving) } else { Rgb::ZERO }
+    }
+
+    /// Draws where light goes on to.
+    pub fn onward(&self, choice: impl FnOnce() -> f64, [u, v]: [f64; 2]) -> Option<Onward> {
+        let here = &self.here;
+        let is_mixed = !here.is_flat() && !here.bsdf().is_delta();
+        let transmits = here.bsdf().transmits();
+        let about = if is_mixed { ABOUT_GEOMETRIC } else { 0.0 };
+        let (direction, is_through, pdf) = if u < about {
+            // On either side where light goes through.
+            let (u, sign) = match (u / about, transmits) {
+                (u, true) if u < 0.5 => (2.0 * u, -1.0),
+                (u, true) => (2.0 * u - 1.0, 1.0),
+                (u, false) => (u, 1.0),
+            };
+            let direction = Frame::new(here.normal() * sign).to_world(cosine_hemisphere([u, v]));
+            (direction, sign < 0.0, None)
+        } else {
+            let drawn = here.sample(choice, [(u - about) / (1.0 - about), v])?;
+            if drawn.is_delta() {
+                return self.single(&drawn, 1.0 - about);
+            }
+            (drawn.wi, drawn.is_through, Some(drawn.pdf))
+        };
+        let pdf = if is_mixed {
+            let normal = here.normal().dot(direction);
+            let sides = if transmits { 2.0 } else { 1.0 };
+            let about_geometric = if transmits { normal.abs() } else { normal.max(0.0) };
+            let about_geometric = cosine_hemisphere_pdf(DVec3::new(0.0, 0.0, about_geometric)) / sides;
+            about * about_geometric + (1.0 - about) * pdf.unwrap_or_else(|| here.evaluate(direction).1)
+        } else {
+            pdf?
+        };
+        // From how far away a viewer looks does not matter to rays without width.
+        let weight = self.towards(direction, 1.0, 0.0) / pdf;
+        (pdf > 0.0).then_some(Onward { direction, weight, is_through })
+    }
+
+    /// A single direction, of those that are drawn with a probability. What a viewer there would draw is the same one back, and of it the same share; radiance that
+    /// is refracted has 1 / η² in it, which is the solid angles' doing.
+    fn single(&self, drawn: &BsdfSample, probability: f64) -> Option<Onward> {
+        let (here, back) = (&self.here, -self.ray.direction);
+        let (normal, shading) = (here.surface().normal, here.shading_normal());
+        let shaded = if here.is_flat() {
+            1.0
+        } else {
+            let ratio = |n: DVec3| n.dot(drawn.wi).abs() / n.dot(back).abs();
+            ratio(normal) / ratio(shading)
+        };
+        let weight = drawn.weight * (drawn.eta * drawn.eta * shaded / probability);
+        weight.is_radiance().then_some(Onward { direction: drawn.wi, weight, is_through: drawn.is_through })
+    }
+}

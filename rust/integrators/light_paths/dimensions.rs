@@ -1,0 +1,54 @@
+//! Which random number of a path from a light is for what.
+
+/// Which light the path starts at; where on it is told by the pair that follows.
+pub(super) const LIGHT_CHOICE: u32 = 0;
+/// Where it starts.
+pub(super) const PLACE: u32 = 1;
+/// Which of the lights outside.
+pub(super) const OUTSIDE: u32 = 2;
+/// Where it goes.
+pub(super) const DIRECTION: u32 = 3;
+/// When.
+pub(super) const TIME: u32 = 4;
+/// Those of the first surface.
+const FIRST: u32 = 6;
+
+/// The dimensions of a surface. A choice stands at an even one, before the pair that follows from it, with which
+/// samplers place it together.
+#[derive(Clone, Copy)]
+pub(super) struct Dimensions(u32);
+
+impl Dimensions {
+    const EACH: u32 = 6;
+
+    /// Those of the surface after so many.
+    pub fn of(bounce: u32) -> Self {
+        // Wrapping after 700 million bounces harms nobody.
+        Self(FIRST.wrapping_add(bounce.wrapping_mul(Self::EACH)))
+    }
+
+    /// Among several kinds of scattering, which.
+    pub fn scattering_choice(self) -> u32 {
+        self.0
+    }
+
+    /// Where the path goes on to.
+    pub fn direction(self) -> u32 {
+        self.0 + 1
+    }
+
+    /// Whether it goes on.
+    pub fn roulette(self) -> u32 {
+        self.0 + 2
+    }
+
+    /// From which point of the lens it is seen.
+    pub fn lens(self) -> u32 {
+        self.0 + 3
+    }
+
+    /// Which masks the ray passes.
+    pub fn mask(self) -> u32 {
+        self.0 + 4
+    }
+}

@@ -1,0 +1,43 @@
+//! Light that sets out.
+
+use crate::math::{DVec3, Ray};
+use crate::optics::Rgb;
+
+/// Light that sets out from a light along a ray, drawn with regard to nothing that it falls on.
+#[derive(Clone, Copy, Debug)]
+pub struct EmissionSample {
+    /// Its way, of unit direction.
+    pub ray: Ray,
+    /// The flux, W, that it stands for: radiance times the cosine over the density, or intensity over that of the
+    /// direction.
+    pub weight: Rgb,
+    /// With which it is drawn.
+    pub pdf: EmissionPdf,
+    /// The unit normal of the surface that it leaves, on that side; zero where it leaves none.
+    pub normal: DVec3,
+    /// Whether it comes from outside the scene: its place is one of the plane across its direction.
+    pub is_infinite: bool,
+}
+
+/// The density with which light that sets out is drawn: the product of the two.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EmissionPdf {
+    /// Of the place, by area: on a surface, or of light from outside on a plane across its direction. The probability
+    /// of a light that is a single point.
+    pub place: f64,
+    /// Of the direction, by solid angle; infinite where it is a single one.
+    pub direction: f64,
+}
+
+/// Light that sets out from a single point, drawn from a light that is one.
+#[derive(Clone, Copy, Debug)]
+pub struct PointEmission {
+    /// The point.
+    pub position: DVec3,
+    /// Where it goes to, as a unit vector.
+    pub direction: DVec3,
+    /// Intensity over density.
+    pub weight: Rgb,
+    /// Density of the direction, by solid angle.
+    pub pdf: f64,
+}

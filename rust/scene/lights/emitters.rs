@@ -1,0 +1,191 @@
+//! Light that sets out from the lights of a scene, drawn by their power.
+
+use super::choice::MOST;
+use super::emission_sample::{EmissionPdf, EmissionSample};
+use super::{Emission, LightSampleContext, Lights, Reach, Sides};
+use crate::math::{DVec3, Frame, Hit, Ray};
+use crate::sampling::AliasTable;
+use crate::sampling::warp::{cosine_hemisphere, uniform_triangle};
+use crate::scene::{Geometry, RayOrigin, Scene, SurfacePoint};
+use std::f64::consts::PI;
+
+/// What light that sets out is drawn from: surfaces, points, and the plane across any direction that light comes from
+/// outside along, of which a rectangle is taken that holds all that the scene's box covers.
+///
+/// A light is chosen by its power, a place on it by area, and a direction by the cosine (Dutré, Lafortune and Willems,
+/// "Monte Carlo Light Tracing with Direct Computation of Pixel Intensities", 1993).
+pub struct Emitters<'a> {
+    lights: &'a Lights,
+    geometry: &'a Geometry,
+    /// Over the lights within the scene, and after them all that comes from outside.
+    choice: AliasTable,
+    /// How many are within.
+    within: usize,
+    /// The scene's box: its middle, and half its size.
+    middle: DVec3,
+    half: DVec3,
+}
+
+/// The numbers that light that sets out is drawn by, each in [0, 1).
+#[derive(Clone, Copy, Debug)]
+pub struct EmissionNumbers {
+    /// Which light.
+    pub choice: f64,
+    /// Which of the lights outside.
+    pub outside: f64,
+    /// Where on it; of light from outside, along which direction.
+    pub place: [f64; 2],
+    /// Into which direction; of light from outside, where across it.
+    pub direction: [f64; 2],
+}
+
+impl<'a> Emitters<'a> {
+    /// Those of a scene; `None` if nothing shines that could be drawn.
+    pub fn new(scene: &'a Scene) -> Option<Self> {
+        let (lights, geometry, region) = (scene.lights(), scene.geometry(), scene.region());
+        let half = (region.max - region.min).max(DVec3::ZERO) * 0.5;
+        let mut powers: Vec<f64> = lights.strengths(geometry).iter().map(|one| one.power.min(MOST)).collect();
+        let within = powers.len();
+        // What a box covers across a direction, in the mean over all of them: a quarter of its surface (Cauchy).
+        let covered = 2.0 * (half.x * half.y + half.y * half.z + half.z * half.x);
+        let from_outside = lights.infinite.lights().iter().map(|light| match light.reach() {
+            Reach::Infinite { flux, .. } => flux * covered,
+            Reach::Finite { .. } => 0.0,
+        });
+        let from_outside = from_outside.sum::<f64>();
+        powers.push(if from_outside.is_finite() { from_outside.min(MOST) } else { 0.0 });
+        let middle = region.min + half;
+        Some(Self { lights, geometry, choice: AliasTable::new(&powers)?, within, middle, half })
+    }
+
+    /// Draws light that sets out; `None` if the draw gives none.
+    pub fn sample(&self, numbers: &EmissionNumbers) -> Option<EmissionSample> {
+        let chosen = self.choice.sample(numbers.choice);
+        let probability = self.choice.probability(chosen);
+        let drawn = if chosen == self.within {
+            self.of_infinite(numbers)?
+        } else if let Some(&primitive) = self.lights.surfaces.get(chosen) {
+            let emission = self.lights.emission(self.geometry.locate(primitive).0);
+            self.of_primitive(emission, primitive, numbers)?
+        } else {
+            let number = chosen - self.lights.surfaces.len();
+            match number.checked_sub(self.lights.copied.len()) {
+                None => {
+                    let (emission, surface, hit, pdf) =
+                        self.lights.copied.place(number, self.geometry, numbers.place)?;
+                    self.of_surface(emission, &surface, hit, pdf, numbers.direction)?
+                }
+                Some(number) => self.of_point(number, numbers)?,
+            }
+        };
+        let weight = drawn.weight / probability;
+        let pdf = EmissionPdf { place: drawn.pdf.place * probability, ..drawn.pdf };
+        let is_any = !weight.is_black() && weight.is_radiance();
+        is_any.then_some(EmissionSample { weight, pdf, ..drawn })
+    }
+
+    /// From a light that is a single point.
+    fn of_point(&self, number: usize, numbers: &EmissionNumbers) -> Option<EmissionSample> {
+        let drawn = self.lights.inside[number].sample_emission(numbers.direction)?;
+        Some(EmissionSample {
+            ray: Ray::new(drawn.position, drawn.direction),
+            weight: drawn.weight,
+            pdf: EmissionPdf { place: 1.0, direction: drawn.pdf },
+            normal: DVec3::ZERO,
+            is_infinite: false,
+        })
+    }
+
+    /// From a primitive of the scene that is no instance.
+    fn of_primitive(&self, emission: &Emission, primitive: u32, numbers: &EmissionNumbers) -> Option<EmissionSample> {
+        let (surface, uv, pdf) = match self.geometry.shape(primitive) {
+            Some(shape) => {
+                let drawn = shape.sample(numbers.place)?;
+                (self.geometry.on_shape(primitive, &drawn.point.site()), drawn.point.uv, drawn.pdf)
+            }
+            None => {
+                let uv = uniform_triangle(numbers.place);
+                (self.geometry.on_triangle(primitive, uv), uv, 1.0 / self.geometry.area(primitive))
+            }
+        };
+        let hit = Hit { t: 1.0, uv, primitive, inner: 0 };
+        self.of_surface(emission, &surface, hit, pdf, numbers.direction)
+    }
+
+    /// From a point of a surface that was drawn with a density, by area; the hit is that of a ray that meets it from at
+    /// distance 1.
+    fn of_surface(
+        &self,
+        emission: &Emission,
+        surface: &SurfacePoint,
+        hit: Hit,
+        pdf: f64,
+        [u, v]: [f64; 2],
+    ) -> Option<EmissionSample> {
+        let (normal, u) = match emission.sides {
+            Sides::Front => (surface.normal, u),
+            Sides::Back => (-surface.normal, u),
+            Sides::Both if u < 0.5 => (surface.normal, 2.0 * u),
+            Sides::Both => (-surface.normal, 2.0 * u - 1.0),
+        };
+        let local = cosine_hemisphere([u, v]);
+        let direction = Frame::new(normal).to_world(local);
+        // What a ray back along it would see.
+        let back = Ray::new(surface.position + direction, -direction);
+        let radiance = emission.sent(self.geometry, &back, &hit, surface, || 0.0);
+        let sides = emission.sides.count();
+        let ray = Ray { misses: [hit.primitive, Ray::NO_TRIANGLE], ..RayOrigin::new(surface).ray(direction) };
+        let is_drawn = pdf > 0.0 && pdf < f64::INFINITY && local.z > 0.0;
+        is_drawn.then(|| EmissionSample {
+            ray,
+            weight: radiance * (PI * sides / pdf),
+            pdf: EmissionPdf { place: pdf, direction: local.z / (PI * sides) },
+            normal,
+            is_infinite: false,
+        })
+    }
+
+    /// From outside: a direction, and a place on a rectangle across it from which all of the box is reached.
+    fn of_infinite(&self, numbers: &EmissionNumbers) -> Option<EmissionSample> {
+        let receiver = LightSampleContext::free(self.middle);
+        let drawn = self.lights.infinite.sample(&receiver, numbers.outside, numbers.place)?;
+        let frame = Frame::new(drawn.direction);
+        let covered = |axis: DVec3| axis.abs().dot(self.half);
+        let [across, other] = [frame.tangent, frame.bitangent].map(covered);
+        let [x, y] = numbers.direction.map(|u| 2.0 * u - 1.0);
+        // A little before the box, so that nothing of it is left out.
+        let back = covered(drawn.direction) + 0.01 * self.half.length();
+        let origin =
+            self.middle + frame.tangent * (across * x) + frame.bitangent * (other * y) + drawn.direction * back;
+        let area = 4.0 * across * other;
+        (area > 0.0).then(|| EmissionSample {
+            ray: Ray::new(origin, -drawn.direction),
+            weight: drawn.weight * area,
+            pdf: EmissionPdf { place: 1.0 / area, direction: drawn.pdf },
+            normal: DVec3::ZERO,
+            is_infinite: true,
+        })
+    }
+}
+
+/// Why the light of a scene cannot all be drawn as it sets out, if so: what shines has no end, moves within instances or
+/// is in too many of them, or light from outside falls on what has no end.
+pub fn not_drawn(scene: &Scene) -> Option<String> {
+    let (lights, geometry) = (scene.lights(), scene.geometry());
+    let endless = |primitive: u32| geometry.shape(primitive).is_some_and(|shape| !shape.bounds().is_finite());
+    (0..geometry.shapes() as u32).find_map(|shape| {
+        if let Some(instances) = geometry.instances_of(shape) {
+            let shines = instances.prototype().appearances().any(|(_, emission)| !emission.is_dark());
+            let is_missing = shines && !lights.copied.has(shape);
+            return is_missing.then(|| format!("shape {shape} shines in instances that move, nest or are too many"));
+        }
+        if !geometry.primitives_of(shape).any(endless) {
+            None
+        } else if lights.shines(shape) {
+            Some(format!("shape {shape} shines and has no end"))
+        } else {
+            let is_lit = !lights.infinite.is_dark();
+            is_lit.then(|| format!("light from outside falls on shape {shape}, which has no end"))
+        }
+    })
+}
