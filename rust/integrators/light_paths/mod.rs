@@ -139,8 +139,7 @@ impl<'a> LightPaths<'a> {
         self.next.clear();
         self.shadows.clear();
         self.seen.clear();
-        let mut passing = std::mem::take(&mut self.passing);
-        passing.begin(self.scene, &self.now.rays, &self.hits);
+        self.passing.begin(self.scene, &self.now.rays, &self.hits);
         for i in 0..self.now.rays.len() {
             let hit = self.hits[i];
             if !hit.is_hit() {
@@ -150,7 +149,7 @@ impl<'a> LightPaths<'a> {
             let sampler = &mut samplers[path.number as usize];
             let dimensions = Dimensions::of(path.bounce);
             let number = || sampler.one(dimensions.mask());
-            match passing.meet(self.scene, i, (&ray, &hit), &path.media, &mut path.chance, number) {
+            match self.passing.meet(self.scene, i, (&ray, &hit), &path.media, &mut path.chance, number) {
                 Met::Nothing(ray, media) => self.next.push(&ray, Flying { media, ..path }),
                 Met::Surface { hit, outside, through } => {
                     let arrived = Arrived::new(self.scene, ray, hit, outside);
@@ -165,7 +164,6 @@ impl<'a> LightPaths<'a> {
                 }
             }
         }
-        self.passing = passing;
         self.light.clear();
         self.light.resize(self.seen.len(), Rgb::ZERO);
         if self.passing.is_needed() {
@@ -235,7 +233,7 @@ impl<'a> LightPaths<'a> {
             if !survives {
                 return;
             }
-            flux = flux / goes_on;
+            flux /= goes_on;
         }
         if flux.is_black() || !flux.is_finite() {
             return;

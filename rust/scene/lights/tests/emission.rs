@@ -22,7 +22,7 @@ use std::sync::Arc;
 fn over_a_patch(shapes: Vec<Shape>, lights: Vec<Arc<dyn Light>>) -> Scene {
     let patch = shape(rectangle([-1.0, -1.0, 0.0], [2.0, 0.0, 0.0], [0.0, 2.0, 0.0]), [0.5; 3], 0.0);
     let shapes = std::iter::once(patch).chain(shapes).collect();
-    scene(SceneDescription { shapes, lights, ..Default::default() })
+    scene(SceneDescription { shapes, lights })
 }
 
 fn emit(emitters: &Emitters, number: u32) -> Option<EmissionSample> {
