@@ -1,8 +1,8 @@
 //! How light scatters along the way that it takes.
 //!
-//! Surfaces say how they scatter radiance towards a viewer ([`crate::optics::Bsdf`]). Light that comes from `i` and goes
-//! to `o` is flux instead, and must make the same picture: with F(o, i) what a viewer in `o` evaluates for `i`, cosine
-//! included, so much of it goes into a solid angle of `o` as
+//! Surfaces say how they scatter radiance towards a viewer ([`crate::optics::Bsdf`]). Light that comes from `i` and
+//! goes to `o` is flux instead, and must make the same picture: with F(o, i) what a viewer in `o` evaluates for `i`,
+//! cosine included, so much of it goes into a solid angle of `o` as
 //!
 //! F(o, i) |ng·o| / |ng·i|
 //!
@@ -36,8 +36,8 @@ pub(super) struct Onward {
     pub is_through: bool,
 }
 
-/// How often a direction is drawn about the geometric normal where the shading normal is another: the horizon of the one
-/// is not that of the other, and what a viewer sees below the latter is not drawn otherwise.
+/// How often a direction is drawn about the geometric normal where the shading normal is another: the horizon of the
+/// one is not that of the other, and what a viewer sees below the latter is not drawn otherwise.
 const ABOUT_GEOMETRIC: f64 = 0.1;
 
 impl<'a> Arrived<'a> {
@@ -105,8 +105,8 @@ impl<'a> Arrived<'a> {
         (pdf > 0.0).then_some(Onward { direction, weight, is_through })
     }
 
-    /// A single direction, of those that are drawn with a probability. What a viewer there would draw is the same one back, and of it the same share; radiance that
-    /// is refracted has 1 / η² in it, which is the solid angles' doing.
+    /// A single direction, of those that are drawn with a probability. What a viewer there would draw is the same one
+    /// back, and of it the same share; radiance that is refracted has 1 / η² in it, which is the solid angles' doing.
     fn single(&self, drawn: &BsdfSample, probability: f64) -> Option<Onward> {
         let (here, back) = (&self.here, -self.ray.direction);
         let (normal, shading) = (here.surface().normal, here.shading_normal());

@@ -81,8 +81,8 @@ struct Flying {
     media: MediumStack,
     /// As [`Passing::meet`] has it.
     chance: f64,
-    /// What the last surface leaves of light that comes to such a surface again ([`Bsdf::again`]), which counts once the
-    /// path has come to another: of all of them on a way, the one that is nearest to the viewer has none.
+    /// What the last surface leaves of light that comes to such a surface again ([`Bsdf::again`]), which counts once
+    /// the path has come to another: of all of them on a way, the one that is nearest to the viewer has none.
     again: Rgb,
 }
 

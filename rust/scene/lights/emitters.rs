@@ -168,8 +168,8 @@ impl<'a> Emitters<'a> {
     }
 }
 
-/// Why the light of a scene cannot all be drawn as it sets out, if so: what shines has no end, moves within instances or
-/// is in too many of them, or light from outside falls on what has no end.
+/// Why the light of a scene cannot all be drawn as it sets out, if so: what shines has no end, moves within instances
+/// or is in too many of them, or light from outside falls on what has no end.
 pub fn not_drawn(scene: &Scene) -> Option<String> {
     let (lights, geometry) = (scene.lights(), scene.geometry());
     let endless = |primitive: u32| geometry.shape(primitive).is_some_and(|shape| !shape.bounds().is_finite());
