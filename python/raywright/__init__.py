@@ -44,6 +44,7 @@ from .query.cones import ConeTouches
 from .query.hits import AllHits, ClosestPoints, Hits, QueryCost
 from .query.interactions import Interactions, LightSamples, Rays, Scattered, power_heuristic
 from .query.leaving import LeavingRays
+from .query.photons import Photons
 from .query.surface import Surface
 from .rendering.aovs import AOVS, aovs
 from .rendering.filters import (
@@ -157,6 +158,7 @@ __all__ = [
     "Paraboloid",
     "Path",
     "Phong",
+    "Photons",
     "Plan",
     "PlanRow",
     "Plane",

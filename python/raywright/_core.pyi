@@ -31,6 +31,7 @@ __all__ = [
     "matrix_trouble",
     "metal_index",
     "metals",
+    "photons",
     "pilot",
     "plan",
     "points",
@@ -389,6 +390,25 @@ def camera_rays_through(
     """Origins and directions (N,3) through points (N,2) of the film, in pixels from its left and its top.
 
     ``lens`` and ``time`` are those of `camera_rays`: one for all, or (N,2) and (N,).
+    """
+
+def photons(
+    scene: CompiledScene,
+    count: int,
+    max_depth: int | None,
+    roulette_depth: int,
+    seed: int,
+    threads: int | None,
+) -> tuple[
+    tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]],
+    tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.int64], NDArray[np.int64]],
+    NDArray[np.uint64],
+    tuple[tuple[float, float, float], tuple[float, float, float]],
+]:
+    """Return light at each surface that it comes to: positions, directions, normals and powers (K,3).
+
+    Then shape_id, primitive, path and bounces (K,), bits of which bounces were sharp, and what is emitted
+    and escapes. Signals are checked.
     """
 
 def cones(

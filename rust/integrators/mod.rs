@@ -22,6 +22,7 @@ pub use aov::{Channel, aovs};
 pub use direct::Direct;
 pub use distributed::Distributed;
 pub use guiding::{Guide, LocalGuide, is_matt};
+pub use light_paths::{Photon, Photons, photons};
 pub use light_traced::LightTraced;
 pub use path::Path;
 pub use ray_cast::RayCast;

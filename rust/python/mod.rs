@@ -18,6 +18,7 @@ mod job;
 mod leave;
 mod lights;
 mod materials;
+mod photons;
 mod points;
 mod query;
 mod random;
@@ -70,6 +71,8 @@ mod _core {
     use super::leave::leave;
     #[pymodule_export]
     use super::materials::{metal_index, metals};
+    #[pymodule_export]
+    use super::photons::photons;
     #[pymodule_export]
     use super::points::points;
     #[pymodule_export]

@@ -12,6 +12,7 @@ from ..cameras import AnyCamera, pixel_offsets
 from .cones import ConeTouches, cone_arguments
 from .hits import AllHits, ClosestPoints, Hits, QueryCost, rewritten
 from .interactions import Interactions, Rays
+from .photons import Photons, photon_arguments
 from .rays import RayArguments, flags, nearest_arguments, point_arguments, ray_arguments
 
 
@@ -365,6 +366,51 @@ class Queries:
         arguments = cone_arguments(origins, directions, half_angle, t_max, threads)
         splits, distance, shape_id, primitive = _core.cones(core, *arguments)
         return ConeTouches(splits, shape_id, primitive, distance, arguments[4])
+
+    def photons(
+        self,
+        count: int,
+        max_depth: int | None = None,
+        roulette_depth: int = 4,
+        seed: int = 0,
+        threads: int | None = None,
+    ) -> Photons:
+        """Follow light from the lights, and note it at each surface that it comes to.
+
+        So many paths start at lights, chosen by their power, at points by area and in directions by the
+        cosine, and are scattered from surface to surface as light is, until they leave the scene, are
+        absorbed by roulette, or have come to `max_depth` surfaces.
+
+        Parameters
+        ----------
+        count : int
+            Paths, 1 to 2**31 - 1. Each surface that one comes to is a photon of about 200 bytes.
+        max_depth : int, optional
+            The greatest number of surfaces that a path comes to, at least 1. No limit if not given.
+        roulette_depth : int
+            Surfaces before Russian roulette begins, at least 0.
+        seed : int
+            Picks the random numbers, 0 to 2**64 - 1.
+        threads : int, optional
+            How many to use; all cores if not given. The answer does not depend on it.
+
+        Returns
+        -------
+        Photons
+            In the order of the paths, and along each of the surfaces that it comes to.
+
+        Raises
+        ------
+        ValueError
+            If a number is out of its range, or light is in the scene that no path can start at: of what has
+            no end, or moves in instances, or from outside on what has no end.
+        TypeError
+            If a number is not an integer.
+        KeyboardInterrupt
+            At once, when Ctrl-C is pressed.
+        """
+        arguments = photon_arguments(count, max_depth, roulette_depth, seed, threads)
+        return Photons.of(*_core.photons(self._core or self._compiled(), *arguments))
 
     def contains(self, points: ArrayLike, threads: int | None = None) -> NDArray[np.bool_]:
         """Find whether each point is inside a closed surface.

@@ -34,6 +34,8 @@ pub(super) struct Onward {
     pub weight: Rgb,
     /// Whether it goes to the other side.
     pub is_through: bool,
+    /// Whether it is a single direction.
+    pub is_single: bool,
 }
 
 /// How often a direction is drawn about the geometric normal where the shading normal is another: the horizon of the
@@ -102,7 +104,7 @@ impl<'a> Arrived<'a> {
         };
         // From how far away a viewer looks does not matter to rays without width.
         let weight = self.towards(direction, 1.0, 0.0) / pdf;
-        (pdf > 0.0).then_some(Onward { direction, weight, is_through })
+        (pdf > 0.0).then_some(Onward { direction, weight, is_through, is_single: false })
     }
 
     /// A single direction, of those that are drawn with a probability. What a viewer there would draw is the same one
@@ -117,6 +119,7 @@ impl<'a> Arrived<'a> {
             ratio(normal) / ratio(shading)
         };
         let weight = drawn.weight * (drawn.eta * drawn.eta * shaded / probability);
-        weight.is_radiance().then_some(Onward { direction: drawn.wi, weight, is_through: drawn.is_through })
+        let is_through = drawn.is_through;
+        weight.is_radiance().then_some(Onward { direction: drawn.wi, weight, is_through, is_single: true })
     }
 }

@@ -1,0 +1,162 @@
+//! Photons, to be looked at.
+
+use super::adjoint::Arrived;
+use super::dimensions::Dimensions;
+use super::walk::{Flying, LightWalk, Limits, Visitor};
+use crate::integrators::nesting::MediumStack;
+use crate::math::DVec3;
+use crate::optics::Rgb;
+use crate::sampling::Sampler;
+use crate::scene::{Emitters, Encounter, Scene};
+use crate::workers::Cancel;
+use rayon::prelude::*;
+
+/// Light that has come to a surface.
+#[derive(Clone, Copy, Debug)]
+pub struct Photon {
+    /// Where.
+    pub position: DVec3,
+    /// The unit direction that it came along.
+    pub direction: DVec3,
+    /// The unit geometric normal there, on the side that it came to.
+    pub normal: DVec3,
+    /// The flux that it stands for, W.
+    pub power: Rgb,
+    /// Which shape, and which primitive of it.
+    pub shape: u32,
+    /// Which primitive of the shape.
+    pub primitive: u32,
+    /// Which of the paths.
+    pub path: u32,
+    /// How many surfaces it has been scattered at before.
+    pub bounces: u32,
+    /// At which of these, from the first on, it was scattered sharply: a bit each, of the first 64.
+    pub sharp: u64,
+}
+
+/// Paths of light, at each surface that they come to.
+#[derive(Clone, Debug, Default)]
+pub struct Photons {
+    /// In the order of the paths, and of surfaces along each.
+    pub photons: Vec<Photon>,
+    /// The flux that sets out, W.
+    pub emitted: Rgb,
+    /// What of it leaves the scene, at once or after it was scattered.
+    pub escaped: Rgb,
+}
+
+/// Follows so many paths from the lights of a scene, each by numbers of its own of a seed, to a greatest number of
+/// surfaces, and from another number on by roulette.
+///
+/// They depend on the seed alone, not on threads. Returns soon after `cancel` is raised, with what is of no use.
+pub fn photons(
+    scene: &Scene,
+    count: u32,
+    (max_depth, roulette_depth): (Option<u32>, u32),
+    seed: u64,
+    cancel: &Cancel,
+) -> Photons {
+    /// Paths that are followed together. It is part of the order in which what escapes is added up.
+    const TOGETHER: u32 = 4096;
+    let Some(emitters) = Emitters::new(scene) else { return Photons::default() };
+    let limits = Limits { max_depth, roulette_depth };
+    let follow = |chunk: u32| {
+        let paths = chunk * TOGETHER..count.min((chunk + 1).saturating_mul(TOGETHER));
+        let mut samplers: Vec<Sampler> = paths.clone().map(|path| Sampler::new(seed, path, 0)).collect();
+        let mut seen = Seen { scene, first: paths.start, share: 1.0 / f64::from(count), ..Seen::new(scene) };
+        if !cancel.is_raised() {
+            LightWalk::new(scene, &emitters, limits, None).follow(&mut samplers, cancel, &mut seen);
+        }
+        seen.found.photons.sort_by_key(|photon| (photon.path, photon.bounces));
+        seen.found
+    };
+    let chunks: Vec<Photons> = (0..count.div_ceil(TOGETHER)).into_par_iter().with_max_len(1).map(follow).collect();
+    chunks.into_iter().fold(Photons::default(), |mut all, chunk| {
+        all.photons.extend(chunk.photons);
+        all.emitted += chunk.emitted;
+        all.escaped += chunk.escaped;
+        all
+    })
+}
+
+/// Notes what there is to see.
+struct Seen<'a> {
+    scene: &'a Scene,
+    /// The number of the first path, and what of the light each stands for.
+    first: u32,
+    share: f64,
+    /// As [`Photon::sharp`], of each path.
+    sharp: Vec<u64>,
+    found: Photons,
+}
+
+impl<'a> Seen<'a> {
+    fn new(scene: &'a Scene) -> Self {
+        Self { scene, first: 0, share: 1.0, sharp: Vec::new(), found: Photons::default() }
+    }
+}
+
+impl Visitor for Seen<'_> {
+    fn set_out(&mut self, path: &Flying) {
+        self.found.emitted += path.flux * self.share;
+        self.sharp.resize(path.number as usize + 1, 0);
+    }
+
+    fn meet(&mut self, arrived: &Arrived, path: &Flying, _: &MediumStack, _: (&mut Sampler, Dimensions)) {
+        let bounces = path.bounce - 1;
+        let sharp = &mut self.sharp[path.number as usize];
+        if path.is_sharp && (1..=u64::BITS).contains(&bounces) {
+            *sharp |= 1 << (bounces - 1);
+        }
+        let (shape, primitive) = self.scene.geometry().locate(arrived.hit.primitive);
+        self.found.photons.push(Photon {
+            position: arrived.here.position(),
+            direction: arrived.ray.direction,
+            normal: arrived.here.normal(),
+            power: path.flux * self.share,
+            shape,
+            primitive,
+            path: self.first + path.number,
+            bounces,
+            sharp: *sharp,
+        });
+    }
+
+    fn leave(&mut self, path: &Flying) {
+        self.found.escaped += path.flux * self.share;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::fixtures::{cornell, furnace};
+
+    #[test]
+    fn light_that_sets_out_arrives_or_escapes() {
+        let (scene, _) = cornell(8, 8);
+        let limits = (Some(2), u32::MAX);
+        let found = photons(&scene, 20_000, limits, 3, &Cancel::default());
+        let first: Rgb = found.photons.iter().filter(|p| p.bounces == 0).map(|p| p.power).sum();
+        let off = (first + found.escaped - found.emitted).abs().max();
+        assert!(off < 1e-9 * found.emitted.max(), "{off}");
+        // Of one lamp each path stands for as much: π times area and radiance.
+        let power = std::f64::consts::PI * 0.09 * 15.0;
+        assert!((found.emitted.mean() / power - 1.0).abs() < 1e-5, "{:?}", found.emitted);
+        assert!(found.photons.iter().all(|p| p.bounces <= 1 && p.sharp == 0));
+        assert!(found.photons.is_sorted_by_key(|p| (p.path, p.bounces)));
+    }
+
+    #[test]
+    fn what_arrives_in_a_furnace_is_its_series() {
+        // Six walls of 4 that send π each, and of what arrives send on a half: 24 π / (1 − ½) arrive in all.
+        let found = photons(&furnace(0.5, 1.0), 100_000, (None, 4), 1, &Cancel::default());
+        let arrived: Rgb = found.photons.iter().map(|p| p.power).sum();
+        let expected = 24.0 * std::f64::consts::PI / 0.5;
+        // Before roulette all paths are alike; after it, of 4 bounces on, the rest is 1/16: its number is Poisson's.
+        assert!((arrived.mean() / expected - 1.0).abs() < 0.005, "{arrived:?}");
+        assert!(found.escaped.is_black());
+        let again = photons(&furnace(0.5, 1.0), 100_000, (None, 4), 1, &Cancel::default());
+        assert_eq!(again.photons.len(), found.photons.len());
+    }
+}

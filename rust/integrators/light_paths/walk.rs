@@ -1,0 +1,224 @@
+//! The way of paths that start at lights, one bounce at a time.
+
+use super::adjoint::Arrived;
+use super::dimensions::{DIRECTION, Dimensions, LIGHT_CHOICE, OUTSIDE, PLACE, TIME};
+use crate::integrators::is_matt;
+use crate::integrators::nesting::MediumStack;
+use crate::integrators::passing::{Met, Passing};
+use crate::math::{Hit, Ray, RayQueue};
+use crate::optics::{Bsdf, Rgb};
+use crate::sampling::Sampler;
+use crate::scene::{Camera, EmissionNumbers, Emitters, Encounter, Scene};
+use crate::workers::Cancel;
+
+/// When paths end.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::integrators) struct Limits {
+    /// The greatest number of bounces.
+    pub max_depth: Option<u32>,
+    /// Roulette is played from this number of bounces on.
+    pub roulette_depth: u32,
+}
+
+/// What one thread walks with.
+pub(super) struct LightWalk<'a> {
+    scene: &'a Scene,
+    emitters: &'a Emitters<'a>,
+    limits: Limits,
+    /// Whose shutter paths are on their way under; at any of the scene's times without one.
+    camera: Option<&'a dyn Camera>,
+    /// Whether anything moves, the camera included.
+    moves: bool,
+    passing: Passing,
+    now: Queue,
+    next: Queue,
+    hits: Vec<Hit>,
+}
+
+/// Who is told where paths have come to.
+pub(super) trait Visitor {
+    /// A path has set out.
+    fn set_out(&mut self, _path: &Flying) {}
+
+    /// A path has come to a surface, where a ray that goes through is in these media.
+    fn meet(&mut self, arrived: &Arrived, path: &Flying, through: &MediumStack, numbers: (&mut Sampler, Dimensions));
+
+    /// A path has left the scene.
+    fn leave(&mut self, _path: &Flying) {}
+
+    /// All paths have come to the ends of their rays.
+    fn pause(&mut self) {}
+}
+
+/// Paths that go on, and the ray that each is about to follow.
+#[derive(Default)]
+struct Queue {
+    rays: RayQueue,
+    paths: Vec<Flying>,
+}
+
+impl Queue {
+    fn clear(&mut self) {
+        self.rays.clear();
+        self.paths.clear();
+    }
+
+    fn push(&mut self, ray: &Ray, path: Flying) {
+        self.rays.push(ray);
+        self.paths.push(path);
+    }
+}
+
+/// A path on its way.
+#[derive(Clone, Copy)]
+pub(super) struct Flying {
+    /// Its number among those of the batch.
+    pub number: u32,
+    /// The flux that it stands for.
+    pub flux: Rgb,
+    /// A mean of that when it set out.
+    start: f64,
+    /// When it is on its way, while the shutter is open.
+    pub time: f64,
+    /// Surfaces that it has been scattered at.
+    pub bounce: u32,
+    pub media: MediumStack,
+    /// As [`Passing::meet`] has it.
+    chance: f64,
+    /// What the last surface leaves of light that comes to such a surface again ([`Bsdf::again`]), which counts once
+    /// the path has come to another: of all of them on a way, the one that is nearest to the viewer has none.
+    again: Rgb,
+    /// Whether it was scattered into a single direction, or nearly so, the last time.
+    pub is_sharp: bool,
+}
+
+impl<'a> LightWalk<'a> {
+    pub fn new(scene: &'a Scene, emitters: &'a Emitters<'a>, limits: Limits, camera: Option<&'a dyn Camera>) -> Self {
+        let needs = scene.plan().needs();
+        Self {
+            scene,
+            emitters,
+            limits,
+            camera,
+            moves: scene.geometry().moves() || camera.is_some_and(|camera| camera.uses_time()),
+            passing: Passing::new(needs.masks, needs.nested),
+            now: Queue::default(),
+            next: Queue::default(),
+            hits: Vec::new(),
+        }
+    }
+
+    /// Whether there is anything that rays may pass.
+    pub fn passes(&self) -> bool {
+        self.passing.is_needed()
+    }
+
+    /// Whether media lie in one another.
+    pub fn is_nested(&self) -> bool {
+        self.passing.is_nested()
+    }
+
+    /// Follows a path for each of these numbers to its end.
+    pub fn follow(&mut self, paths: &mut [Sampler], cancel: &Cancel, visitor: &mut impl Visitor) {
+        self.start(paths, visitor);
+        while !self.now.rays.is_empty() && !cancel.is_raised() {
+            self.hits.resize(self.now.rays.len(), Hit::MISS);
+            self.scene.intersect_queue(&mut self.now.rays, &mut self.hits);
+            self.bounce(paths, visitor);
+            visitor.pause();
+        }
+    }
+
+    /// Lets paths set out.
+    fn start(&mut self, paths: &mut [Sampler], visitor: &mut impl Visitor) {
+        self.now.clear();
+        for (number, sampler) in (0u32..).zip(paths) {
+            let numbers = EmissionNumbers {
+                choice: sampler.one(LIGHT_CHOICE),
+                outside: sampler.one(OUTSIDE),
+                place: sampler.two(PLACE),
+                direction: sampler.two(DIRECTION),
+            };
+            let Some(light) = self.emitters.sample(&numbers) else { continue };
+            let time = if self.moves { sampler.one(TIME) } else { 0.0 };
+            let ray = Ray { time: self.camera.map_or(time, |camera| camera.body().scene_time(time)), ..light.ray };
+            let (flux, start) = (light.weight, light.weight.mean());
+            let (media, chance, again) = (MediumStack::NONE, -1.0, Rgb::ONE);
+            let path = Flying { number, flux, start, time, bounce: 0, media, chance, again, is_sharp: false };
+            visitor.set_out(&path);
+            self.now.push(&ray, path);
+        }
+        if self.passing.is_nested() {
+            let mut media = Vec::new();
+            MediumStack::at(self.scene, self.now.rays.rows(), &mut media);
+            for (path, media) in self.now.paths.iter_mut().zip(media) {
+                path.media = media;
+            }
+        }
+    }
+
+    /// Takes all paths from their rays' hits to their next rays.
+    fn bounce(&mut self, samplers: &mut [Sampler], visitor: &mut impl Visitor) {
+        self.next.clear();
+        self.passing.begin(self.scene, &self.now.rays, &self.hits);
+        for i in 0..self.now.rays.len() {
+            let (hit, mut path) = (self.hits[i], self.now.paths[i]);
+            if !hit.is_hit() {
+                visitor.leave(&path);
+                continue;
+            }
+            let ray = self.now.rays.get(i);
+            let sampler = &mut samplers[path.number as usize];
+            let dimensions = Dimensions::of(path.bounce);
+            let number = || sampler.one(dimensions.mask());
+            match self.passing.meet(self.scene, i, (&ray, &hit), &path.media, &mut path.chance, number) {
+                Met::Nothing(ray, media) => self.next.push(&ray, Flying { media, ..path }),
+                Met::Surface { hit, outside, through } => {
+                    let arrived = Arrived::new(self.scene, ray, hit, outside);
+                    let again = arrived.here.bsdf().again();
+                    if again != Rgb::ONE {
+                        path.flux *= path.again;
+                        path.again = again;
+                    }
+                    path.bounce += 1;
+                    visitor.meet(&arrived, &path, &through, (sampler, dimensions));
+                    self.go_on(&arrived, path, through, sampler, dimensions);
+                }
+            }
+        }
+        std::mem::swap(&mut self.now, &mut self.next);
+    }
+
+    /// Sends a path on from a surface, unless it ends there.
+    fn go_on(
+        &mut self,
+        arrived: &Arrived,
+        path: Flying,
+        through: MediumStack,
+        sampler: &mut Sampler,
+        dimensions: Dimensions,
+    ) {
+        if self.limits.max_depth.is_some_and(|most| path.bounce >= most) {
+            return;
+        }
+        let u = sampler.two(dimensions.direction());
+        let Some(next) = arrived.onward(|| sampler.one(dimensions.scattering_choice()), u) else { return };
+        let mut flux = path.flux * next.weight;
+        if path.bounce >= self.limits.roulette_depth {
+            let goes_on = (flux.mean() / path.start).min(1.0);
+            let survives = sampler.one(dimensions.roulette()) < goes_on;
+            if !survives {
+                return;
+            }
+            flux /= goes_on;
+        }
+        if flux.is_black() || !flux.is_finite() {
+            return;
+        }
+        let ray = arrived.here.ray_origin().ray(next.direction);
+        let ray = Ray { time: arrived.ray.time, misses: [arrived.hit.primitive, Ray::NO_TRIANGLE], ..ray };
+        let media = if next.is_through { through } else { path.media };
+        let is_sharp = next.is_single || !is_matt(arrived.here.bsdf());
+        self.next.push(&ray, Flying { flux, media, chance: -1.0, is_sharp, ..path });
+    }
+}
