@@ -1,6 +1,6 @@
 """Light at the surfaces that it comes to."""
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from typing import Any
 
@@ -63,15 +63,17 @@ class Photons:
     @classmethod
     def of(cls, vectors: tuple[Any, ...], numbers: tuple[Any, ...], sharp: Any, flux: Any) -> "Photons":
         """Return what the core gave."""
-        emitted, escaped = map(tuple, flux)
-        return cls(*vectors, *numbers, sharp, emitted, escaped)
+        positions, directions, normals, powers = vectors
+        shape_id, primitive, path, bounces = numbers
+        hits = positions, directions, normals, powers, shape_id, primitive, path, bounces, sharp
+        return cls(*hits, flux[0], flux[1])
 
     @cached_property
     def chains(self) -> NDArray[np.str_]:
         """The ways that they took, (K,) str: "L" for the light, then a letter for each bounce.
 
-        "S" is a sharp one and "D" any other. The notation is Heckbert's (1990): "LS" has come from a lamp by one mirror, "LSS" through a ball of
-        glass. Of more than 64 bounces the first are told.
+        "S" is a sharp one and "D" any other. The notation is Heckbert's (1990): "LS" has come from a lamp by
+        one mirror, "LSS" through a ball of glass. Of more than 64 bounces the first are told.
         """
         told = min(int(self.bounces.max(initial=0)), _TOLD)
         places = np.arange(told, dtype=np.uint64)
@@ -85,9 +87,9 @@ class Photons:
         return len(self.path)
 
     def __getitem__(self, which: Any) -> "Photons":
-        arrays = (np.atleast_1d(getattr(self, name)[which]) for name in _ARRAYS[4:])
-        vectors = (getattr(self, name)[which].reshape(-1, 3) for name in _ARRAYS[:4])
-        return Photons(*vectors, *arrays, self.emitted, self.escaped)
+        vectors = {name: getattr(self, name)[which].reshape(-1, 3) for name in _ARRAYS[:4]}
+        numbers = {name: np.atleast_1d(getattr(self, name)[which]) for name in _ARRAYS[4:]}
+        return replace(self, **vectors, **numbers)
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Photons):
