@@ -12,7 +12,6 @@ use crate::scene::materials::{
     Mask, MetallicRoughMaterial, MirrorMaterial, MixMaterial, NormalMap, OrenNayarMaterial, PhongMaterial,
     PlasticMaterial, Roughness, ThinDielectricMaterial, TwoSided,
 };
-use crate::scene::textures::Value;
 
 /// Reads materials and textures: one that many shapes share is read once.
 #[derive(Default)]
@@ -35,13 +34,14 @@ impl Appearances {
     fn read(&self, given: &Bound<'_, PyAny>) -> PyResult<Arc<dyn Material>> {
         let name = given.get_type().name()?;
         let value = |name: &str| self.textures.attribute(given, name);
+        let number = |name: &str| PyResult::Ok(value(name)?.number());
         let float = |name: &str| given.getattr(name)?.extract::<f64>();
         let inner = |name: &str| self.material(&given.getattr(name)?);
         let roughness = || self.roughness(given);
         Ok(match name.to_str()? {
             "Diffuse" => Arc::new(DiffuseMaterial { reflectance: value("reflectance")? }),
             "OrenNayar" => {
-                Arc::new(OrenNayarMaterial { reflectance: value("reflectance")?, roughness: value("roughness")? })
+                Arc::new(OrenNayarMaterial { reflectance: value("reflectance")?, roughness: number("roughness")? })
             }
             "Mirror" => Arc::new(MirrorMaterial { reflectance: value("reflectance")? }),
             "Conductor" => {
@@ -65,24 +65,24 @@ impl Appearances {
             "Phong" => Arc::new(PhongMaterial {
                 diffuse: value("diffuse")?,
                 specular: value("specular")?,
-                exponent: value("exponent")?,
+                exponent: number("exponent")?,
                 ambient: value("ambient")?,
             }),
             "BlinnPhong" => Arc::new(BlinnPhongMaterial {
                 diffuse: value("diffuse")?,
                 specular: value("specular")?,
-                exponent: value("exponent")?,
+                exponent: number("exponent")?,
                 ambient: value("ambient")?,
             }),
             "MetallicRough" => Arc::new(MetallicRoughMaterial {
                 base_colour: value("base_color")?,
-                metallic: value("metallic")?,
-                roughness: value("roughness")?,
+                metallic: number("metallic")?,
+                roughness: number("roughness")?,
             }),
-            "Mix" => Arc::new(MixMaterial { a: inner("a")?, b: inner("b")?, amount: value("amount")? }),
-            "Mask" => Arc::new(Mask { material: inner("material")?, opacity: value("opacity")? }),
+            "Mix" => Arc::new(MixMaterial { a: inner("a")?, b: inner("b")?, amount: number("amount")? }),
+            "Mask" => Arc::new(Mask { material: inner("material")?, opacity: number("opacity")? }),
             "BumpMap" => {
-                Arc::new(BumpMap { material: inner("material")?, height: value("height")?, scale: float("scale")? })
+                Arc::new(BumpMap { material: inner("material")?, height: number("height")?, scale: float("scale")? })
             }
             "NormalMap" => {
                 Arc::new(NormalMap { material: inner("material")?, normals: value("normals")?, scale: float("scale")? })
@@ -98,9 +98,9 @@ impl Appearances {
         let is_alpha = !alpha.is_none();
         let told = if is_alpha { alpha } else { given.getattr("roughness")? };
         let along = match told.extract::<[Bound<'_, PyAny>; 2]>() {
-            Ok([u, v]) => [self.textures.value(&u)?, self.textures.value(&v)?],
+            Ok([u, v]) => [self.textures.value(&u)?.number(), self.textures.value(&v)?.number()],
             Err(_) => {
-                let both: Value = self.textures.value(&told)?;
+                let both = self.textures.value(&told)?.number();
                 [both.clone(), both]
             }
         };

@@ -66,7 +66,7 @@ class Photons:
         positions, directions, normals, powers = vectors
         shape_id, primitive, path, bounces = numbers
         hits = positions, directions, normals, powers, shape_id, primitive, path, bounces, sharp
-        return cls(*hits, flux[0], flux[1])
+        return cls(*hits, *map(tuple, flux))
 
     @cached_property
     def chains(self) -> NDArray[np.str_]:
@@ -87,9 +87,9 @@ class Photons:
         return len(self.path)
 
     def __getitem__(self, which: Any) -> "Photons":
-        vectors = {name: getattr(self, name)[which].reshape(-1, 3) for name in _ARRAYS[:4]}
-        numbers = {name: np.atleast_1d(getattr(self, name)[which]) for name in _ARRAYS[4:]}
-        return replace(self, **vectors, **numbers)
+        chosen: dict[str, Any] = {name: np.atleast_1d(getattr(self, name)[which]) for name in _ARRAYS[4:]}
+        chosen |= {name: getattr(self, name)[which].reshape(-1, 3) for name in _ARRAYS[:4]}
+        return replace(self, **chosen)
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Photons):

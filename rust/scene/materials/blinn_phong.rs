@@ -14,7 +14,7 @@ pub struct BlinnPhongMaterial {
     /// The share that makes highlights, 0 to 1; with the other at most 1.
     pub specular: Value,
     /// The power of the cosine, not negative.
-    pub exponent: Value,
+    pub exponent: Value<f64>,
     /// The share of ambient light that is reflected, for integrators that know one.
     pub ambient: Value,
 }
@@ -22,7 +22,7 @@ pub struct BlinnPhongMaterial {
 impl BlinnPhongMaterial {
     fn bsdf(&self, point: &TexturePoint) -> BlinnPhong {
         let (diffuse, specular) = parts(point, &self.diffuse, &self.specular);
-        BlinnPhong::new(diffuse, specular, self.exponent.number(point))
+        BlinnPhong::new(diffuse, specular, self.exponent.at(point))
     }
 }
 

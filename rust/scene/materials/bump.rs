@@ -15,7 +15,7 @@ pub struct BumpMap {
     /// The material.
     pub material: Arc<dyn Material>,
     /// The height along the normal.
-    pub height: Value,
+    pub height: Value<f64>,
     /// What heights are multiplied by, to be lengths of the scene's unit; negative where they are depths.
     pub scale: f64,
 }
@@ -38,7 +38,7 @@ impl BumpMap {
     const LEAST: f64 = 1e-6;
 
     fn height(&self, point: &TexturePoint) -> f64 {
-        self.scale * self.height.number(point)
+        self.scale * self.height.at(point)
     }
 
     /// How far to go for another height, in texture coordinates.

@@ -1,6 +1,6 @@
 //! What parameters of materials may be, in words.
 
-use crate::scene::textures::Value;
+use crate::scene::textures::{Quantity, Value};
 
 fn expected(least: f64, most: f64) -> String {
     match (least, most) {
@@ -16,7 +16,7 @@ fn expected(least: f64, most: f64) -> String {
 ///
 /// # Errors
 /// What they are, and what was expected.
-pub(super) fn within(name: &str, value: &Value, least: f64, most: f64) -> Result<(), String> {
+pub(super) fn within<T: Quantity>(name: &str, value: &Value<T>, least: f64, most: f64) -> Result<(), String> {
     if value.is_within(least, most) {
         return Ok(());
     }

@@ -14,7 +14,7 @@ pub struct Mask {
     /// What is between the holes.
     pub material: Arc<dyn Material>,
     /// How much of it is there: 0 in a hole, 1 beside it.
-    pub opacity: Value,
+    pub opacity: Value<f64>,
 }
 
 impl Material for Mask {
@@ -32,7 +32,7 @@ impl Material for Mask {
     }
 
     fn opacity(&self, at: &TexturePoint) -> f64 {
-        self.opacity.number(at).clamp(0.0, 1.0) * self.material.opacity(at)
+        self.opacity.at(at).clamp(0.0, 1.0) * self.material.opacity(at)
     }
 
     fn is_opaque(&self) -> bool {

@@ -12,14 +12,14 @@ pub struct MetallicRoughMaterial {
     /// The colour, 0 to 1 in each channel: of what is matt, or of what the metal reflects.
     pub base_colour: Value,
     /// From 0, none, to 1, metal.
-    pub metallic: Value,
+    pub metallic: Value<f64>,
     /// From 0 to 1; its square is the facets' α.
-    pub roughness: Value,
+    pub roughness: Value<f64>,
 }
 
 impl MetallicRoughMaterial {
     fn bsdf(&self, point: &TexturePoint) -> MetallicRough {
-        MetallicRough::new(self.base_colour.at(point), self.metallic.number(point), self.roughness.number(point))
+        MetallicRough::new(self.base_colour.at(point), self.metallic.at(point), self.roughness.at(point))
     }
 }
 

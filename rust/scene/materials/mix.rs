@@ -19,13 +19,13 @@ pub struct MixMaterial {
     /// The other.
     pub b: Arc<dyn Material>,
     /// The share of `b`, 0 to 1.
-    pub amount: Value,
+    pub amount: Value<f64>,
 }
 
 impl MixMaterial {
     /// How much of either there is: of all, or of what is met where not all is.
     fn shares(&self, point: &TexturePoint) -> [f64; 2] {
-        let amount = self.amount.number(point).clamp(0.0, 1.0);
+        let amount = self.amount.at(point).clamp(0.0, 1.0);
         let shares = [1.0 - amount, amount];
         if self.is_opaque() {
             return shares;
@@ -59,7 +59,7 @@ impl Material for MixMaterial {
     }
 
     fn opacity(&self, at: &TexturePoint) -> f64 {
-        let amount = self.amount.number(at).clamp(0.0, 1.0);
+        let amount = self.amount.at(at).clamp(0.0, 1.0);
         (1.0 - amount) * self.a.opacity(at) + amount * self.b.opacity(at)
     }
 

@@ -12,12 +12,12 @@ pub struct OrenNayarMaterial {
     /// The share of the light that a facet reflects, 0 to 1 in each channel.
     pub reflectance: Value,
     /// From 0, Lambert's law, to 1. It is no facets' α.
-    pub roughness: Value,
+    pub roughness: Value<f64>,
 }
 
 impl OrenNayarMaterial {
     fn bsdf(&self, point: &TexturePoint) -> OrenNayar {
-        OrenNayar::new(self.reflectance.at(point), self.roughness.number(point))
+        OrenNayar::new(self.reflectance.at(point), self.roughness.at(point))
     }
 }
 

@@ -14,7 +14,7 @@ pub struct PhongMaterial {
     /// The share that makes highlights, 0 to 1; with the other at most 1.
     pub specular: Value,
     /// The power of the cosine, not negative.
-    pub exponent: Value,
+    pub exponent: Value<f64>,
     /// The share of ambient light that is reflected, for integrators that know one.
     pub ambient: Value,
 }
@@ -23,7 +23,7 @@ pub struct PhongMaterial {
 ///
 /// # Errors
 /// What is wrong with them.
-pub(super) fn shares(diffuse: &Value, specular: &Value, exponent: &Value, ambient: &Value) -> Result<(), String> {
+pub(super) fn shares(diffuse: &Value, specular: &Value, exponent: &Value<f64>, ambient: &Value) -> Result<(), String> {
     within("diffuse", diffuse, 0.0, 1.0)?;
     within("specular", specular, 0.0, 1.0)?;
     within("exponent", exponent, 0.0, f64::MAX)?;
@@ -47,7 +47,7 @@ pub(super) fn parts(point: &TexturePoint, diffuse: &Value, specular: &Value) -> 
 impl PhongMaterial {
     fn bsdf(&self, point: &TexturePoint) -> Phong {
         let (diffuse, specular) = parts(point, &self.diffuse, &self.specular);
-        Phong::new(diffuse, specular, self.exponent.number(point))
+        Phong::new(diffuse, specular, self.exponent.at(point))
     }
 }
 

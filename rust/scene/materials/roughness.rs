@@ -11,7 +11,7 @@ use crate::scene::textures::{Needs, TexturePoint, Value};
 #[derive(Clone, Debug)]
 pub struct Roughness {
     /// Along u and along v; the same value twice for what is alike in all directions.
-    pub along: [Value; 2],
+    pub along: [Value<f64>; 2],
     /// Whether it is α itself.
     pub is_alpha: bool,
     /// Of which facets.
@@ -42,12 +42,12 @@ impl Default for Roughness {
 impl From<f64> for Roughness {
     /// Alike in all directions.
     fn from(roughness: f64) -> Self {
-        Value::from(roughness).into()
+        Value::<f64>::from(roughness).into()
     }
 }
 
-impl From<Value> for Roughness {
-    fn from(roughness: Value) -> Self {
+impl From<Value<f64>> for Roughness {
+    fn from(roughness: Value<f64>) -> Self {
         Self { along: [roughness.clone(), roughness], is_alpha: false, facets: FacetKind::default() }
     }
 }
@@ -56,8 +56,8 @@ impl Roughness {
     /// α along u and v at a point.
     #[inline]
     pub fn alpha(&self, point: &TexturePoint) -> [f64; 2] {
-        let alpha = |value: &Value| {
-            let r = value.number(point).clamp(0.0, 1.0);
+        let alpha = |value: &Value<f64>| {
+            let r = value.at(point).clamp(0.0, 1.0);
             if self.is_alpha { r } else { r * r }
         };
         let first = alpha(&self.along[0]);
@@ -67,7 +67,7 @@ impl Roughness {
     /// The least and the greatest α along u.
     pub fn alpha_range(&self) -> [f64; 2] {
         self.along[0].range().map(|r| {
-            let r = r.mean().clamp(0.0, 1.0);
+            let r = r.clamp(0.0, 1.0);
             if self.is_alpha { r } else { r * r }
         })
     }

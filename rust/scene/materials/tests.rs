@@ -69,19 +69,19 @@ fn all() -> Vec<Arc<dyn Material>> {
     let coat = PlasticMaterial {
         reflectance: checker(1.0, 0.2),
         ior: 1.5,
-        roughness: Roughness::from(checker(0.0, 0.6)),
+        roughness: Roughness::from(checker(0.0, 0.6).number()),
         coats: Arc::default(),
     };
     let gltf = MetallicRoughMaterial {
         base_colour: Rgb::new(1.0, 0.8, 0.2).into(),
-        metallic: checker(0.0, 1.0),
+        metallic: checker(0.0, 1.0).number(),
         roughness: 0.5.into(),
     };
     let brushed = gold(Roughness { along: [0.1.into(), 0.5.into()], is_alpha: true, facets: FacetKind::Ggx });
-    let mixed = MixMaterial { a: Arc::new(gold(0.4)), b: grey(1.0), amount: checker(0.25, 0.75) };
+    let mixed = MixMaterial { a: Arc::new(gold(0.4)), b: grey(1.0), amount: checker(0.25, 0.75).number() };
     vec![
         Arc::new(DiffuseMaterial { reflectance: checker(0.0, 1.0) }),
-        Arc::new(OrenNayarMaterial { reflectance: 1.0.into(), roughness: checker(0.0, 1.0) }),
+        Arc::new(OrenNayarMaterial { reflectance: 1.0.into(), roughness: checker(0.0, 1.0).number() }),
         mirror(),
         Arc::new(gold(0.0)),
         Arc::new(brushed.clone()),
@@ -94,7 +94,7 @@ fn all() -> Vec<Arc<dyn Material>> {
         Arc::new(gltf),
         Arc::new(mixed.clone()),
         Arc::new(Mask { material: Arc::new(coat), opacity: 0.5.into() }),
-        Arc::new(BumpMap { material: Arc::new(brushed), height: checker(0.0, 1.0), scale: 0.1 }),
+        Arc::new(BumpMap { material: Arc::new(brushed), height: checker(0.0, 1.0).number(), scale: 0.1 }),
         Arc::new(NormalMap { material: grey(0.5), normals: Rgb::new(0.6, 0.3, 0.9).into(), scale: 1.0 }),
         Arc::new(TwoSided { front: Arc::new(mixed), back: mirror() }),
     ]
@@ -151,7 +151,7 @@ fn a_mix_is_linear() {
     let outer = MixMaterial { a: inner, b: a.clone(), amount: 0.25.into() };
     let expected = alone(&a).0 * 0.625 + alone(&b).0 * 0.375;
     assert!((outer.bsdf(&at(0.5, 0.5)).evaluate(wo, wi).0 - expected).abs().max() < 1e-15);
-    let same = MixMaterial { a: a.clone(), b: b.clone(), amount: checker(0.0, 1.0) };
+    let same = MixMaterial { a: a.clone(), b: b.clone(), amount: checker(0.0, 1.0).number() };
     assert!(matches!(same.bsdf(&at(0.5, 0.5)), BsdfMix::One(_)));
     assert!(matches!(same.bsdf(&at(1.5, 0.5)), BsdfMix::One(_)));
 }
@@ -233,9 +233,9 @@ fn mixes_with_single_directions_keep_both() {
 #[test]
 fn masks_let_their_share_through() {
     let mask = |opacity| Mask { material: grey(0.5), opacity };
-    assert_eq!(mask(checker(0.0, 1.0)).opacity(&at(0.5, 0.5).texture), 0.0);
-    assert_eq!(mask(checker(0.0, 1.0)).opacity(&at(1.5, 0.5).texture), 1.0);
-    assert!(!mask(checker(0.0, 1.0)).is_opaque() && mask(1.0.into()).is_opaque());
+    assert_eq!(mask(checker(0.0, 1.0).number()).opacity(&at(0.5, 0.5).texture), 0.0);
+    assert_eq!(mask(checker(0.0, 1.0).number()).opacity(&at(1.5, 0.5).texture), 1.0);
+    assert!(!mask(checker(0.0, 1.0).number()).is_opaque() && mask(1.0.into()).is_opaque());
     let twice = Mask { material: Arc::new(mask(0.5.into())), opacity: 0.5.into() };
     assert_eq!(twice.opacity(&at(0.0, 0.0).texture), 0.25);
     // Of a mix of what is there and a hole, all that is met is what is there.
@@ -254,15 +254,15 @@ fn masks_let_their_share_through() {
 #[derive(Debug)]
 struct Wave;
 
-impl Texture for Wave {
-    fn at(&self, point: &TexturePoint) -> Rgb {
-        Rgb::splat((3.0 * point.uv[0]).sin() * (2.0 * point.uv[1]).cos())
+impl Texture<f64> for Wave {
+    fn at(&self, point: &TexturePoint) -> f64 {
+        (3.0 * point.uv[0]).sin() * (2.0 * point.uv[1]).cos()
     }
-    fn range(&self) -> [Rgb; 2] {
-        [-Rgb::ONE, Rgb::ONE]
+    fn range(&self) -> [f64; 2] {
+        [-1.0, 1.0]
     }
-    fn mean(&self) -> Rgb {
-        Rgb::ZERO
+    fn mean(&self) -> f64 {
+        0.0
     }
     fn needs(&self) -> Needs {
         Needs { uv: true, ..Needs::NONE }
@@ -305,7 +305,8 @@ fn bumps_of_space_follow_it() {
     let pattern = Noise { domain: Domain::Object(ObjectTransform::default()), seed: 5 };
     let height = Between { a: 0.0.into(), b: 1.0.into(), pattern };
     let value = |x: f64, y: f64| height.at(&at(x, y).texture)[0];
-    let bump = BumpMap { material: grey(0.5), height: Value::Texture(Arc::new(height.clone())), scale: 0.5 };
+    let bump =
+        BumpMap { material: grey(0.5), height: Value::<Rgb>::Texture(Arc::new(height.clone())).number(), scale: 0.5 };
     for (x, y) in [(0.3, 0.4), (7.7, 2.1), (-3.2, 0.9)] {
         let h = 1e-5;
         let slope = [(value(x + h, y) - value(x - h, y)) / (2.0 * h), (value(x, y + h) - value(x, y - h)) / (2.0 * h)];
@@ -398,7 +399,7 @@ fn what_is_the_same_everywhere_is_told_as_at_any_point() {
     assert_eq!(told, 5);
     // Brushed metal has a direction, and a texture has points.
     let brushed = Roughness { along: [0.1.into(), 0.4.into()], is_alpha: false, facets: FacetKind::Ggx };
-    assert!(gold(brushed).constant().is_none() && gold(checker(0.1, 0.4)).constant().is_none());
+    assert!(gold(brushed).constant().is_none() && gold(checker(0.1, 0.4).number()).constant().is_none());
     assert!(gold(0.3).constant().is_some() && glass(0.3).constant().is_some());
 }
 
@@ -454,7 +455,7 @@ fn what_cannot_be_is_refused_in_a_line() {
         refused(&OrenNayarMaterial { reflectance: 0.5.into(), roughness: bad.into() }, "roughness must");
         refused(&gold(bad), "roughness must");
         refused(&Mask { material: grey(0.5), opacity: bad.into() }, "opacity must");
-        refused(&MixMaterial { a: grey(0.5), b: grey(0.5), amount: checker(0.0, bad) }, "amount must");
+        refused(&MixMaterial { a: grey(0.5), b: grey(0.5), amount: checker(0.0, bad).number() }, "amount must");
         refused(&MixMaterial { a: grey(0.5), b: grey(bad), amount: 0.5.into() }, "in b: reflectance must");
     }
     for bad in [0.0, -1.5, f64::NAN, f64::INFINITY] {

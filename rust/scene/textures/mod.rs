@@ -5,6 +5,7 @@ mod domain;
 mod fbm;
 mod image;
 mod marble;
+mod mean;
 mod mix;
 mod needs;
 mod noise;
@@ -12,6 +13,7 @@ mod pattern;
 mod perlin;
 mod picture;
 mod product;
+mod quantity;
 mod stripes;
 mod value;
 mod vertex_colours;
@@ -30,6 +32,7 @@ pub use pattern::{Between, Pattern};
 pub use perlin::perlin;
 pub use picture::{Picture, PictureError, Texels};
 pub use product::ProductTexture;
+pub use quantity::Quantity;
 pub use stripes::Stripes;
 pub use value::Value;
 pub use vertex_colours::VertexColours;
@@ -66,16 +69,16 @@ impl Default for TexturePoint {
     }
 }
 
-/// What varies over surfaces.
-pub trait Texture: Debug + Send + Sync {
+/// What varies over surfaces: a colour, as of reflectance or radiance, or a number, as of roughness.
+pub trait Texture<T = Rgb>: Debug + Send + Sync {
     /// The value at a point, averaged over its width.
-    fn at(&self, point: &TexturePoint) -> Rgb;
+    fn at(&self, point: &TexturePoint) -> T;
 
     /// What its values lie between, channel by channel.
-    fn range(&self) -> [Rgb; 2];
+    fn range(&self) -> [T; 2];
 
     /// Its mean over what it is put on, about: lights are chosen by it.
-    fn mean(&self) -> Rgb;
+    fn mean(&self) -> T;
 
     /// What it must know of a point.
     fn needs(&self) -> Needs;

@@ -1,41 +1,36 @@
 //! What may be the same everywhere or a texture.
 
-use super::{Needs, Texture, TexturePoint};
+use super::mean::Mean;
+use super::{Needs, Quantity, Texture, TexturePoint};
 use crate::optics::Rgb;
 use std::sync::Arc;
 
-/// A parameter of a material or a light: the same everywhere, or a texture.
+/// A parameter of a material or a light, a colour or a number: the same everywhere, or a texture.
 #[derive(Clone, Debug)]
-pub enum Value {
+pub enum Value<T = Rgb> {
     /// The same everywhere.
-    Constant(Rgb),
+    Constant(T),
     /// What varies.
-    Texture(Arc<dyn Texture>),
+    Texture(Arc<dyn Texture<T>>),
 }
 
-impl Value {
-    /// Black.
-    pub const ZERO: Self = Self::Constant(Rgb::ZERO);
+impl<T: Quantity> Value<T> {
+    /// Black, or 0.
+    pub const ZERO: Self = Self::Constant(T::ZERO);
 
     /// Its value at a point.
     #[inline]
-    pub fn at(&self, point: &TexturePoint) -> Rgb {
+    pub fn at(&self, point: &TexturePoint) -> T {
         match self {
-            Self::Constant(rgb) => *rgb,
+            Self::Constant(value) => *value,
             Self::Texture(texture) => texture.at(point),
         }
     }
 
-    /// As one number: the mean of the channels.
-    #[inline]
-    pub fn number(&self, point: &TexturePoint) -> f64 {
-        self.at(point).mean()
-    }
-
     /// What its values lie between, channel by channel.
-    pub fn range(&self) -> [Rgb; 2] {
+    pub fn range(&self) -> [T; 2] {
         match self {
-            Self::Constant(rgb) => [*rgb; 2],
+            Self::Constant(value) => [*value; 2],
             Self::Texture(texture) => texture.range(),
         }
     }
@@ -43,13 +38,13 @@ impl Value {
     /// Whether all its values lie between two numbers; NaN does not.
     pub fn is_within(&self, least: f64, most: f64) -> bool {
         let [low, high] = self.range();
-        (0..3).all(|channel| low[channel] >= least && high[channel] <= most)
+        low.all(|low| low >= least) && high.all(|high| high <= most)
     }
 
     /// Its mean, about.
-    pub fn mean(&self) -> Rgb {
+    pub fn mean(&self) -> T {
         match self {
-            Self::Constant(rgb) => *rgb,
+            Self::Constant(value) => *value,
             Self::Texture(texture) => texture.mean(),
         }
     }
@@ -62,9 +57,19 @@ impl Value {
         }
     }
 
-    /// Whether it is black everywhere.
+    /// Whether it is black, or 0, everywhere.
     pub fn is_black(&self) -> bool {
-        self.range() == [Rgb::ZERO; 2]
+        self.range() == [T::ZERO; 2]
+    }
+}
+
+impl Value {
+    /// As a number: the mean of the channels.
+    pub fn number(&self) -> Value<f64> {
+        match self {
+            Self::Constant(rgb) => Value::Constant(rgb.mean()),
+            Self::Texture(texture) => Value::Texture(Arc::new(Mean(texture.clone()))),
+        }
     }
 }
 
@@ -80,8 +85,14 @@ impl From<f64> for Value {
     }
 }
 
+impl From<f64> for Value<f64> {
+    fn from(number: f64) -> Self {
+        Self::Constant(number)
+    }
+}
+
 /// Constants by their value, textures by identity.
-impl PartialEq for Value {
+impl<T: Quantity> PartialEq for Value<T> {
     fn eq(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Constant(a), Self::Constant(b)) => a == b,
