@@ -11,6 +11,7 @@ mod nesting;
 mod passing;
 mod path;
 mod ray_cast;
+mod roulette;
 mod shadows;
 #[cfg(test)]
 mod tests;

@@ -242,3 +242,11 @@ def test_a_floor_under_a_lamp_is_as_bright_as_lambert_says():
     error = math.sqrt(float(np.square(image.standard_error[..., 1].astype(float)).sum())) / 64
     assert abs(float(image.rgb[..., 1].mean(dtype=float)) - expected) < 4 * error
     assert error < 0.05 * expected
+
+
+def test_light_ends_where_nothing_absorbs_it():
+    white = rw.Box((-1, -1, -1), (1, 1, 1), material=rw.Diffuse(1.0), emission=rw.Emission(1, side="back"))
+    look = rw.Camera((0, 0, 0.5), (0, 0, 0), fov=90, width=4, height=4)
+    image = rw.render(rw.Scene(white), look, rw.LightTraced(roulette_depth=2**31), 1, progress=False)
+    # Some four thousand bounces, of 1 each.
+    assert 1000 < image.rgb.mean() < 20_000

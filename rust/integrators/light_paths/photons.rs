@@ -153,10 +153,16 @@ mod tests {
         let found = photons(&furnace(0.5, 1.0), 100_000, (None, 4), 1, &Cancel::default());
         let arrived: Rgb = found.photons.iter().map(|p| p.power).sum();
         let expected = 24.0 * std::f64::consts::PI / 0.5;
-        // Before roulette all paths are alike; after it, of 4 bounces on, the rest is 1/16: its number is Poisson's.
-        assert!((arrived.mean() / expected - 1.0).abs() < 0.005, "{arrived:?}");
+        // Before roulette all paths are alike, and what is left after it is 1/8 of all. A path brings that with a
+        // standard deviation below its mean: of 100,000 it is known to 0.05 %.
+        assert!((arrived.mean() / expected - 1.0).abs() < 0.002, "{arrived:?}");
         assert!(found.escaped.is_black());
         let again = photons(&furnace(0.5, 1.0), 100_000, (None, 4), 1, &Cancel::default());
         assert_eq!(again.photons.len(), found.photons.len());
+    }
+    #[test]
+    fn light_ends_where_nothing_absorbs_it() {
+        let found = photons(&furnace(1.0, 1.0), 64, (None, u32::MAX), 1, &Cancel::default());
+        assert!(found.photons.iter().any(|p| p.bounces > 4000));
     }
 }

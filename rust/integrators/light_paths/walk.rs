@@ -2,9 +2,9 @@
 
 use super::adjoint::Arrived;
 use super::dimensions::{DIRECTION, Dimensions, LIGHT_CHOICE, OUTSIDE, PLACE, TIME};
-use crate::integrators::is_matt;
 use crate::integrators::nesting::MediumStack;
 use crate::integrators::passing::{Met, Passing};
+use crate::integrators::{is_matt, roulette};
 use crate::math::{Hit, Ray, RayQueue};
 use crate::optics::{Bsdf, Rgb};
 use crate::sampling::Sampler;
@@ -76,7 +76,7 @@ pub(super) struct Flying {
     pub number: u32,
     /// The flux that it stands for.
     pub flux: Rgb,
-    /// A mean of that when it set out.
+    /// That when it set out, in its largest channel.
     start: f64,
     /// When it is on its way, while the shutter is open.
     pub time: f64,
@@ -142,7 +142,7 @@ impl<'a> LightWalk<'a> {
             let Some(light) = self.emitters.sample(&numbers) else { continue };
             let time = if self.moves { sampler.one(TIME) } else { 0.0 };
             let ray = Ray { time: self.camera.map_or(time, |camera| camera.body().scene_time(time)), ..light.ray };
-            let (flux, start) = (light.weight, light.weight.mean());
+            let (flux, start) = (light.weight, light.weight.max());
             let (media, chance, again) = (MediumStack::NONE, -1.0, Rgb::ONE);
             let path = Flying { number, flux, start, time, bounce: 0, media, chance, again, is_sharp: false };
             visitor.set_out(&path);
@@ -204,13 +204,13 @@ impl<'a> LightWalk<'a> {
         let u = sampler.two(dimensions.direction());
         let Some(next) = arrived.onward(|| sampler.one(dimensions.scattering_choice()), u) else { return };
         let mut flux = path.flux * next.weight;
-        if path.bounce >= self.limits.roulette_depth {
-            let goes_on = (flux.mean() / path.start).min(1.0);
-            let survives = sampler.one(dimensions.roulette()) < goes_on;
+        if path.bounce >= self.limits.roulette_depth.min(roulette::AT_LATEST) {
+            let survival = roulette::survival(flux / path.start, 1.0);
+            let survives = sampler.one(dimensions.roulette()) < survival;
             if !survives {
                 return;
             }
-            flux /= goes_on;
+            flux /= survival;
         }
         if flux.is_black() || !flux.is_finite() {
             return;

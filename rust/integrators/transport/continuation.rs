@@ -6,12 +6,13 @@ use super::dimensions::Dimensions;
 use super::features::{Carried, Features};
 use super::guided::{Arrival, draw};
 use super::path_state::PathState;
-use super::weights::{ROULETTE_AT_LATEST, survival};
+use super::splitting::Branch;
 use super::worker::TransportWorker;
+use crate::integrators::roulette;
 use crate::math::{LANES, VectorLanes};
 use crate::optics::{BsdfSample, Diffuse, Rgb, RgbLanes};
 use crate::sampling::Pairs;
-use crate::scene::{Encounter, Footprint, SurfaceInteractionLanes};
+use crate::scene::{Encounter, SurfaceInteractionLanes};
 use crate::simd::loops;
 use std::array;
 
@@ -41,19 +42,6 @@ loops! {
     }
 }
 
-/// One of so many ways that a path goes on.
-#[derive(Clone, Copy)]
-struct Branch {
-    /// Its number among all branches of the sample.
-    number: u32,
-    /// How many there are at this surface.
-    splits: u32,
-    /// How much more densely it was drawn than the surface scatters.
-    denser: f64,
-    /// The number for roulette.
-    chance: f64,
-}
-
 impl<N: Features> TransportWorker<'_, N> {
     /// Sends paths on to where their surfaces scatter them.
     pub(super) fn go_on(&mut self, block: &Block) {
@@ -66,8 +54,7 @@ impl<N: Features> TransportWorker<'_, N> {
         if N::GENERAL && matches!(self.settings.follow, Follow::DeltaLobes | Follow::Nothing) {
             return;
         }
-        let splits = |lane: usize| if self.is_first(block, lane) { self.settings.splits } else { 1 };
-        let splits: [u32; LANES] = array::from_fn(splits);
+        let splits: [u32; LANES] = array::from_fn(|lane| self.splits(block, lane));
         for branch in 0..splits.into_iter().max().unwrap_or(1) {
             // The first goes on as the path that it comes from.
             let number = |lane: usize| if branch == 0 { self.carried(block, lane).branch } else { branch };
@@ -111,19 +98,6 @@ impl<N: Features> TransportWorker<'_, N> {
             Follow::DeltaLobes => pdf == f64::INFINITY,
             Follow::Nothing => false,
         }
-    }
-
-    /// Follows every single direction that the surface of a lane scatters into.
-    fn split(&mut self, block: &Block, lane: usize) {
-        let here = block.other(lane);
-        let mut branch =
-            Branch { number: self.carried(block, lane).branch.wrapping_mul(2), splits: 1, denser: 1.0, chance: 0.0 };
-        block.bsdf[lane].delta_lobes(here.wo(), |single| {
-            if let Some(next) = here.to_world(single) {
-                self.send(block, lane, &next, branch);
-                branch.number = branch.number.wrapping_add(1);
-            }
-        });
     }
 
     fn go_on_diffuse(&mut self, block: &Block) {
@@ -178,7 +152,7 @@ impl<N: Features> TransportWorker<'_, N> {
     /// point that it shares must be known.
     #[inline]
     fn plays(&self, bounce: u32) -> bool {
-        (!N::SHARES || bounce > 1) && bounce >= self.settings.roulette_depth.min(ROULETTE_AT_LATEST)
+        (!N::SHARES || bounce > 1) && bounce >= self.settings.roulette_depth.min(roulette::AT_LATEST)
     }
 
     /// Plays roulette where it is to be played, by a uniform number, and says whether the path goes on.
@@ -187,7 +161,7 @@ impl<N: Features> TransportWorker<'_, N> {
         if arrival != Arrival::GoesOn || !self.plays(path.bounce) {
             return true;
         }
-        let survival = survival(path.throughput, path.importance());
+        let survival = roulette::survival(path.throughput, path.importance());
         if chance >= survival {
             return false;
         }
@@ -196,7 +170,7 @@ impl<N: Features> TransportWorker<'_, N> {
     }
 
     /// Queues a path that goes on along a direction drawn, unless roulette ends it.
-    fn send(&mut self, block: &Block, lane: usize, next: &BsdfSample, branch: Branch) {
+    pub(super) fn send(&mut self, block: &Block, lane: usize, next: &BsdfSample, branch: Branch) {
         let mut path = block.paths[lane];
         path.throughput *= next.weight;
         path.pdf = next.pdf;
@@ -225,23 +199,5 @@ impl<N: Features> TransportWorker<'_, N> {
                 if self.passing.is_nested() && next.is_through { self.boundary(block, lane).1 } else { carried.media };
             self.next.carried.push(Carried { footprint, media, chance: -1.0, branch: branch.number });
         }
-    }
-
-    /// The bundle of rays after a surface.
-    ///
-    /// A mirror of mean curvature H, seen by a bundle of width w, spreads it by 2Hw (Akenine-Möller et al., "Improved
-    /// Shader and Texture Level of Detail Using Ray Cones", 2021), and refraction by as much as it bends; a direction
-    /// drawn with density p has its neighbours, if some 256 are drawn for a pixel, about 1/√(256 p) away (after Suykens
-    /// and Willems, "Path Differentials and Applications", 2001).
-    fn widened(&self, block: &Block, lane: usize, next: &BsdfSample) -> Footprint {
-        let (before, width) = (self.carried(block, lane).footprint, block.width[lane]);
-        let curvature = block.other(lane).curvature();
-        let bent = if next.is_through {
-            before.spread / next.eta + curvature * width * (1.0 / next.eta - 1.0)
-        } else {
-            before.spread + 2.0 * curvature * width
-        };
-        let scattered = 1.0 / (16.0 * next.pdf.sqrt());
-        Footprint { width, spread: if scattered > 0.0 { bent.abs().max(scattered) } else { bent } }
     }
 }

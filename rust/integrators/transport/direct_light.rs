@@ -200,7 +200,7 @@ impl<N: Features> TransportWorker<'_, N> {
         if let Some(guide) = &block.guides[lane] {
             pdf = density(guide, pdf, light.direction);
         }
-        let splits = if self.is_first(block, lane) { self.settings.splits } else { 1 };
+        let splits = self.splits(block, lane);
         let mut weight = if self.is_followed(pdf) {
             power_heuristic(light.pdf * f64::from(asked), pdf * f64::from(splits))
         } else {

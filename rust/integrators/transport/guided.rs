@@ -1,8 +1,7 @@
 //! Paths that are guided to where light comes from by way of mirrors and glass.
 
 use super::path_state::PathState;
-use super::weights::survival;
-use crate::integrators::LocalGuide;
+use crate::integrators::{LocalGuide, roulette};
 use crate::math::DVec3;
 use crate::optics::BsdfSample;
 use crate::scene::Encounter;
@@ -21,7 +20,7 @@ pub(super) fn arrive(path: &mut PathState, guide: Option<&LocalGuide>, number: i
     }
     let gain = guide.map_or(1.0, LocalGuide::gain);
     path.aimed = denser.min((gain * gain) as f32);
-    let survival = survival(path.throughput, path.importance());
+    let survival = roulette::survival(path.throughput, path.importance());
     if number() >= survival {
         return Arrival::Ends;
     }

@@ -1,5 +1,6 @@
 //! What path tracing and its ancestors share: a batch of paths on their way, one bounce at a time.
 
+mod ambient;
 mod arrivals;
 mod arrive;
 mod block;
@@ -13,7 +14,9 @@ mod path_state;
 mod resampling;
 mod reuse;
 mod shade;
+mod splitting;
 mod weights;
+mod widths;
 mod worker;
 
 use super::{Guide, Job, Session, Worker};

@@ -159,9 +159,9 @@ impl<'a, N: Features> TransportWorker<'a, N> {
                 (block.guides[lane], block.arrivals[lane]) = self.guided(&mut path, &here, number);
             }
             block.goes_on[lane] = block.arrivals[lane] != Arrival::Ends;
-            if N::GENERAL && block.goes_on[lane] && !self.settings.ambient.is_black() {
-                let share = here.ambient(self.scene, &ray, &hit, width, outside);
-                radiance[path.sample as usize] += path.throughput * share * self.settings.ambient;
+            if N::GENERAL && block.goes_on[lane] {
+                let light = &mut radiance[path.sample as usize];
+                self.add_ambient(&here, (&ray, &hit), (width, outside), path.throughput, light);
             }
             block.paths[lane] = path;
         }

@@ -1,0 +1,25 @@
+//! Light that is taken to arrive from everywhere in place of what is not followed.
+
+use super::features::Features;
+use super::worker::TransportWorker;
+use crate::math::{Hit, Ray};
+use crate::optics::{Bsdf, Rgb};
+use crate::scene::SurfaceInteraction;
+
+impl<N: Features> TransportWorker<'_, N> {
+    /// Adds what a surface sends back of it to a path of this throughput, whose ray is so wide where it hits, with such
+    /// an index of refraction on the other side.
+    #[inline]
+    pub(super) fn add_ambient<B: Bsdf>(
+        &self,
+        here: &SurfaceInteraction<B>,
+        (ray, hit): (&Ray, &Hit),
+        (width, outside): (f64, f64),
+        throughput: Rgb,
+        light: &mut Rgb,
+    ) {
+        if !self.settings.ambient.is_black() {
+            *light += throughput * here.ambient(self.scene, ray, hit, width, outside) * self.settings.ambient;
+        }
+    }
+}
