@@ -342,8 +342,13 @@ VERSION: str
 def student(level: float, degrees: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return how many standard errors either way hold a mean in so many cases, by degrees of freedom."""
 
-def chances(scene: CompiledScene, path: Any) -> tuple[bool, bool]:
-    """Whether paths can share what they find in a scene, and whether there are mirrors or glass to aim at."""
+def chances(
+    scene: CompiledScene, path: Any, threads: int | None, look: Callable[[], None] | None
+) -> tuple[bool, bool]:
+    """Whether paths can share what they find in a scene, and whether there are mirrors or glass to aim at.
+
+    Signals are checked, and ``look`` is called, as by `Rendering.go_on`.
+    """
 
 def pilot(
     scene: CompiledScene,

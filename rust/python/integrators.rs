@@ -2,17 +2,17 @@
 
 use numpy::{PyArray1, PyArrayDyn, PyArrayMethods};
 use pyo3::conversion::FromPyObjectOwned;
-use pyo3::exceptions::{PyRuntimeError, PyTypeError, PyValueError};
+use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 
 use super::cameras::AnyCamera;
 use super::query::CompiledScene;
+use super::signals::heard;
 use crate::integrators::{
     AmbientOcclusion, Channel, Direct, Distributed, Integrator, LightTraced, Path, RayCast, Whitted, aovs as observe,
 };
 use crate::optics::Rgb;
 use crate::scene::PlanRow;
-use crate::workers::watched;
 
 /// Any integrator of the package.
 pub struct AnyIntegrator(pub Box<dyn Integrator>);
@@ -98,19 +98,7 @@ pub fn aovs<'py>(
     };
     let channels: Vec<Channel> = names.iter().map(named).collect::<PyResult<_>>()?;
     let (scene, camera) = (&scene.get().0, &*camera.0);
-    let mut raised = None;
-    let pictures = py
-        .detach(|| {
-            let work = |cancel: &_| observe(scene, camera, &channels, samples, seed, cancel);
-            watched(threads, work, || {
-                raised = Python::attach(|py| py.check_signals()).err();
-                raised.is_none()
-            })
-        })
-        .map_err(PyRuntimeError::new_err)?;
-    if let Some(raised) = raised {
-        return Err(raised);
-    }
+    let pictures = heard(py, threads, |cancel| observe(scene, camera, &channels, samples, seed, cancel))?;
     let size = [camera.height() as usize, camera.width() as usize];
     let array = |(channel, values): (&Channel, Vec<f64>)| match channel.width() {
         1 => PyArray1::from_vec(py, values).reshape(&size[..]),

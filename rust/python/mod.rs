@@ -27,6 +27,7 @@ mod render;
 mod report;
 mod samplers;
 mod shapes;
+mod signals;
 mod spectra;
 mod textures;
 mod written;

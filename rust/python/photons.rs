@@ -1,13 +1,13 @@
 //! Photons of a scene, from numbers to arrays.
 
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
-use pyo3::exceptions::{PyRuntimeError, PyValueError};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use super::query::CompiledScene;
+use super::signals::heard;
 use crate::integrators::{Photon, photons as follow};
 use crate::scene::not_drawn;
-use crate::workers::watched;
 
 /// Rows of three numbers.
 type Rows<'py> = Bound<'py, PyArray2<f64>>;
@@ -36,19 +36,7 @@ pub fn photons<'py>(
     if let Some(why) = not_drawn(scene) {
         return Err(PyValueError::new_err(format!("{why}, where no path from a light can start")));
     }
-    let mut raised = None;
-    let found = py
-        .detach(|| {
-            let work = |cancel: &_| follow(scene, count, (max_depth, roulette_depth), seed, cancel);
-            watched(threads, work, || {
-                raised = Python::attach(|py| py.check_signals()).err();
-                raised.is_none()
-            })
-        })
-        .map_err(PyRuntimeError::new_err)?;
-    if let Some(raised) = raised {
-        return Err(raised);
-    }
+    let found = heard(py, threads, |cancel| follow(scene, count, (max_depth, roulette_depth), seed, cancel))?;
     let all = &found.photons;
     let rows =
         |of: fn(&Photon) -> [f64; 3]| PyArray1::from_vec(py, all.iter().flat_map(of).collect()).reshape([all.len(), 3]);

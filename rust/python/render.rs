@@ -15,7 +15,7 @@ use super::samplers;
 use super::written::Written;
 use crate::integrators::{Guide, Integrator, Path};
 use crate::render::{self, HistoryRow, Malformed, Progress, RenderError, Settings, Until};
-use crate::workers::{Cancel, pool};
+use crate::workers::{Cancel, pool, watched};
 
 /// A render: its picture so far, and what it takes to go on with it.
 #[pyclass(module = "raywright._core")]
@@ -208,12 +208,29 @@ pub fn student<'py>(
 }
 
 /// Whether paths could share what they find in a scene, and whether there is anything to aim at by way of mirrors and
-/// glass, whatever the path says of the two; photons are sent for the latter.
+/// glass, whatever the path says of the two; photons are sent for the latter. `look` is called whenever signals are
+/// heard, and may raise to end it.
 #[pyfunction]
-pub fn chances(py: Python<'_>, scene: &Bound<'_, CompiledScene>, path: &Bound<'_, PyAny>) -> PyResult<(bool, bool)> {
+pub fn chances(
+    py: Python<'_>,
+    scene: &Bound<'_, CompiledScene>,
+    path: &Bound<'_, PyAny>,
+    threads: Option<usize>,
+    look: Option<Py<PyAny>>,
+) -> PyResult<(bool, bool)> {
     let (scene, path) = (&scene.get().0, integrators::path(path)?);
     let any = Path { reuse: 2, caustics: true, ..path };
-    Ok(py.detach(|| (any.patch(scene) > 1, any.is_guided(scene) && Guide::of(scene, &Cancel::default()).is_some())))
+    let mut watcher = Watcher { progress: None, look, raised: None, pause: None, written: None };
+    let aims = |cancel: &Cancel| any.is_guided(scene) && Guide::of(scene, cancel).is_some();
+    let mut goes_on = true;
+    let aims = py.detach(|| {
+        watched(threads, aims, || {
+            goes_on = watcher.poll().is_continue();
+            goes_on
+        })
+    });
+    let aims = aims.map_err(PyRuntimeError::new_err)?;
+    if goes_on { Ok((any.patch(scene) > 1, aims)) } else { Err(watcher.error(RenderError::Interrupted)) }
 }
 
 /// About the relMSE that each of some path tracers leaves with few samples, told from a few parts of a picture. `look`

@@ -9,6 +9,7 @@ import pytest
 
 import raywright as rw
 from raywright import _core
+from raywright.rendering.ways import StoppedError
 
 
 @pytest.fixture(scope="module")
@@ -221,6 +222,20 @@ def test_a_pilot_is_called_back_when_the_render_is_stopped():
     assert time.perf_counter() - began < 5
     assert image.samples == 0
     assert image.plan["reuse"].why == "it was stopped before a pilot was back"
+
+
+def test_so_are_photons():
+    scene = made("glass_spheres", 64)[0]
+    compiled = scene._compiled()
+
+    def look():
+        raise StoppedError
+
+    # On one thread they take many times as long as it takes to be asked.
+    with pytest.raises(StoppedError):
+        _core.chances(compiled, rw.Path(), 1, look)
+    # What did not come back is not taken for an answer.
+    assert _core.chances(compiled, rw.Path(), None, None) == (True, True)
 
 
 def test_a_pilot_is_part_of_the_time():

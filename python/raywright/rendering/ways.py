@@ -74,24 +74,23 @@ def followed(
         open_ = []
     compiled = scene._compiled() if open_ else None
     began = time.perf_counter()
-    if compiled is not None:
-        can = dict(zip(_PLAIN, _core.chances(compiled, path), strict=True))
-        why |= {name: _NEVER[name] for name in open_ if not can[name]}
-        open_ = [name for name in open_ if can[name]]
     fixed = {name: _PLAIN[name] if value is None else value for name, value in named.items()}
-    ways = [fixed | dict(zip(open_, way, strict=True)) for way in product(*_options(open_))]
-    chosen = ways[0]
-    if compiled is not None and open_:
-        paths = [replace(path, **way) for way in ways]
+    chosen = fixed
+    if compiled is not None:
         try:
-            errors = _core.pilot(compiled, camera, paths, threads, clamp, filter, look)
+            can = dict(zip(_PLAIN, _core.chances(compiled, path, threads, look), strict=True))
+            why |= {name: _NEVER[name] for name in open_ if not can[name]}
+            open_ = [name for name in open_ if can[name]]
+            ways = [fixed | dict(zip(open_, way, strict=True)) for way in product(*_options(open_))]
+            paths = [replace(path, **way) for way in ways]
+            # Nobody is sent where only one way is left.
+            errors = _core.pilot(compiled, camera, paths, threads, clamp, filter, look) if open_ else [0.0]
         except StoppedError:
             why |= dict.fromkeys(open_, "it was stopped before a pilot was back")
         else:
             worth = [error * _cost(way) for error, way in zip(errors, ways, strict=True)]
-            least = min(worth)
-            if least < _BETTER * worth[0]:
-                chosen = ways[worth.index(least)]
+            if min(worth) < _BETTER * worth[0]:
+                chosen = ways[worth.index(min(worth))]
             why |= {name: _told(name, ways, worth) for name in open_}
     rows = tuple(Choice(name, str(chosen[name]), why[name]) for name in _PLAIN)
     return replace(path, **chosen), rows, time.perf_counter() - began

@@ -2,6 +2,7 @@
 
 use super::CameraRay;
 use crate::math::{LANES, Ray, VectorLanes};
+use crate::sampling::Pairs;
 
 /// Rays of a camera, a lane each, as [`CameraRay`] has them.
 #[derive(Clone, Debug)]
@@ -24,9 +25,23 @@ impl CameraRayLanes {
         CameraRay { ray, weight: self.weight[lane] }
     }
 
+    /// Takes that of each lane by itself.
+    pub(super) fn take_each(
+        &mut self,
+        film: &Pairs,
+        lens: &Pairs,
+        time: &[f64; LANES],
+        ray: impl Fn([f64; 2], [f64; 2], f64) -> CameraRay,
+    ) {
+        for lane in 0..LANES {
+            let [film, lens] = [film, lens].map(|points| [points[0][lane], points[1][lane]]);
+            self.set(lane, &ray(film, lens, time[lane]));
+        }
+    }
+
     /// Sets that of a lane.
     #[inline(always)]
-    pub(super) fn set(&mut self, lane: usize, CameraRay { ray, weight }: &CameraRay) {
+    fn set(&mut self, lane: usize, CameraRay { ray, weight }: &CameraRay) {
         self.origin.set(lane, ray.origin);
         self.direction.set(lane, ray.direction);
         (self.time[lane], self.weight[lane]) = (ray.time, *weight);

@@ -45,10 +45,7 @@ pub trait Camera: Debug + Send + Sync {
 
     /// What [`Camera::ray`] gives for a point of the film, a point of the lens and a time of each lane.
     fn rays(&self, _: Level, film: &Pairs, lens: &Pairs, time: &[f64; LANES], rays: &mut CameraRayLanes) {
-        for lane in 0..LANES {
-            let [film, lens] = [film, lens].map(|points| [points[0][lane], points[1][lane]]);
-            rays.set(lane, &self.ray(film, lens, time[lane]));
-        }
+        rays.take_each(film, lens, time, |film, lens, time| self.ray(film, lens, time));
     }
 
     /// How the camera sees a point of the scene from a point of the lens, at a time as [`Camera::ray`] has it; `None`

@@ -104,11 +104,7 @@ impl Camera for Perspective {
 
     fn rays(&self, level: Level, film: &Pairs, lens: &Pairs, time: &[f64; LANES], rays: &mut CameraRayLanes) {
         if self.body.moves() {
-            for lane in 0..LANES {
-                let [film, lens] = [film, lens].map(|points| [points[0][lane], points[1][lane]]);
-                rays.set(lane, &self.ray(film, lens, time[lane]));
-            }
-            return;
+            return rays.take_each(film, lens, time, |film, lens, time| self.ray(film, lens, time));
         }
         let CameraRayLanes { origin, direction, time: times, weight } = rays;
         all_towards(level, &self.film, self.body.size(), film, direction);

@@ -68,10 +68,7 @@ impl Light for ConstantEnvironment {
 
     fn sample_lanes(&self, level: Level, receivers: &LightContextLanes, u: &Pairs, lights: &mut LightLanes) {
         if (0..LANES).any(|lane| receivers.get(lane).is_free()) {
-            for lane in 0..LANES {
-                lights.set(lane, self.sample(&receivers.get(lane), [u[0][lane], u[1][lane]]));
-            }
-            return;
+            return lights.draw_each(receivers, u, |receiver, u| self.sample(receiver, u));
         }
         let LightLanes { direction, weight, pdf, is_within, primitive, .. } = lights;
         draw(level, self.radiance, &receivers.normal, u, direction, weight, pdf);

@@ -1,7 +1,7 @@
 //! What every light that is no surface can be asked, and what is drawn from one.
 
 use super::{LightBounds, LightContextLanes, LightLanes, LightSample, LightSampleContext, PointEmission};
-use crate::math::{DVec3, LANES};
+use crate::math::DVec3;
 use crate::optics::Rgb;
 use crate::sampling::Pairs;
 use crate::simd::Level;
@@ -42,9 +42,7 @@ pub trait Light: Debug + Send + Sync {
 
     /// The same for the receiver and the numbers of each lane.
     fn sample_lanes(&self, _: Level, receivers: &LightContextLanes, u: &Pairs, lights: &mut LightLanes) {
-        for lane in 0..LANES {
-            lights.set(lane, self.sample(&receivers.get(lane), [u[0][lane], u[1][lane]]));
-        }
+        lights.draw_each(receivers, u, |receiver, u| self.sample(receiver, u));
     }
 
     /// The radiance that comes from outside along a direction, which is unit and points there; black for a light that

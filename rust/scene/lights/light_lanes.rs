@@ -3,6 +3,7 @@
 use super::{LightSample, LightSampleContext};
 use crate::math::{DVec3, LANES, Ray, VectorLanes};
 use crate::optics::{Rgb, RgbLanes};
+use crate::sampling::Pairs;
 use crate::scene::RayOrigin;
 
 /// Receivers, a lane each.
@@ -82,6 +83,18 @@ impl LightLanes {
         let ((direction, weight, pdf), (source, is_within)) = (self.get(lane), self.source(lane));
         let (source, primitive) = (is_within.then_some(source), self.primitive[lane]);
         (pdf > 0.0).then_some(LightSample { direction, weight, pdf, source, primitive })
+    }
+
+    /// Draws that of each lane by itself.
+    pub(super) fn draw_each(
+        &mut self,
+        receivers: &LightContextLanes,
+        u: &Pairs,
+        sample: impl Fn(&LightSampleContext, [f64; 2]) -> Option<LightSample>,
+    ) {
+        for lane in 0..LANES {
+            self.set(lane, sample(&receivers.get(lane), [u[0][lane], u[1][lane]]));
+        }
     }
 
     /// Takes that of a lane from others.
