@@ -72,17 +72,6 @@ impl SurfaceInteraction {
     }
 }
 
-impl<B: Bsdf + Clone> SurfaceInteraction<B> {
-    /// The same as somebody meets it whose rays come back along a direction; `None` where more than that would differ:
-    /// on the other side, and where a normal is bent for the one or the other.
-    pub fn met_from(&self, direction: DVec3) -> Option<Self> {
-        let wo = self.frame.to_local(direction);
-        let is_bent = self.is_bent || !self.is_flat && wo.z * self.side < Self::GRAZING;
-        let is_same_side = self.surface.normal.dot(direction) * self.side > 0.0;
-        (is_same_side && !is_bent).then(|| Self { wo, curvature: 0.0, ..self.clone() })
-    }
-}
-
 impl<B: Bsdf> SurfaceInteraction<B> {
     /// The smallest cosine between shading normal and view. Beyond the horizon of the shading normal a surface would
     /// turn black though it faces the viewer, so there the normal is bent towards the viewer until it just faces him.
@@ -106,6 +95,17 @@ impl<B: Bsdf> SurfaceInteraction<B> {
             None => Frame::new(shading),
         };
         Self { surface, frame, bsdf, wo: frame.to_local(back), side, is_flat, is_bent, curvature: 0.0 }
+    }
+
+    /// The same as somebody meets it whose rays come back along a direction; `None` where more than that would differ:
+    /// on the other side, and where a normal is bent for the one or the other.
+    pub fn met_from(&self, direction: DVec3) -> Option<SurfaceInteraction<&B>> {
+        let &Self { surface, frame, ref bsdf, side, is_flat, is_bent, .. } = self;
+        let wo = frame.to_local(direction);
+        let is_bent = is_bent || !is_flat && wo.z * side < Self::GRAZING;
+        let is_same_side = surface.normal.dot(direction) * side > 0.0;
+        let met = SurfaceInteraction { surface, frame, bsdf, wo, side, is_flat, is_bent, curvature: 0.0 };
+        (is_same_side && !is_bent).then_some(met)
     }
 
     /// The share of ambient light that is reflected here ([`Material::ambient`](super::Material::ambient)); the other

@@ -49,17 +49,20 @@ impl<'a> Arrived<'a> {
         Self { scene, ray, hit, outside, here }
     }
 
-    /// As a viewer meets it who is in a direction at a distance, whose rays are so wide here.
-    fn met_from(&self, direction: DVec3, distance: f64, width: f64) -> SurfaceInteraction {
+    /// What a viewer evaluates who is in a direction at a distance, whose rays are so wide here, for light that comes
+    /// as this does.
+    fn seen_from(&self, direction: DVec3, distance: f64, width: f64) -> Rgb {
+        let back = -self.ray.direction;
         if width == 0.0
             && let Some(here) = self.here.met_from(direction)
         {
-            return here;
+            return here.evaluate(back).0;
         }
         let origin = self.here.position() + direction * distance;
         let ray = Ray { origin, direction: -direction, ..self.ray };
         let hit = Hit { t: distance, ..self.hit };
-        SurfaceInteraction::new(self.scene, &ray, &hit, *self.here.surface(), width, self.outside)
+        let surface = *self.here.surface();
+        SurfaceInteraction::new(self.scene, &ray, &hit, surface, width, self.outside).evaluate(back).0
     }
 
     /// The share of the flux that goes into a solid angle of a direction, as a viewer there sees it.
@@ -67,8 +70,10 @@ impl<'a> Arrived<'a> {
         let back = -self.ray.direction;
         let normal = self.here.surface().normal;
         let (arriving, leaving) = (normal.dot(back).abs(), normal.dot(direction).abs());
-        let scattered = self.met_from(direction, distance, width).evaluate(back).0;
-        if arriving > 0.0 { scattered * (leaving / arriving) } else { Rgb::ZERO }
+        if arriving == 0.0 {
+            return Rgb::ZERO;
+        }
+        self.seen_from(direction, distance, width) * (leaving / arriving)
     }
 
     /// Draws where light goes on to.
