@@ -228,11 +228,6 @@ class Job:
     ) -> Job: ...
     def patch(self, scene: CompiledScene) -> int:
         """Return the side of the square patches of pixels whose samples the integrator takes together."""
-    def begin(self, threads: int | None, patch: int) -> Rendering: ...
-    def resume(self, data: bytes, threads: int | None, patch: int) -> Rendering:
-        """From what `Rendering.to_bytes` gave; a ValueError says why bytes are not that."""
-    def most_bytes(self) -> int:
-        """Return how many bytes `Rendering.to_bytes` gives at most."""
     def expose(self, scene: CompiledScene, request: bytes, threads: int | None) -> bytes:
         """Take the samples that a request of `Rendering.request` wants. One thread is the calling one."""
 
@@ -240,6 +235,13 @@ class Job:
 class Rendering:
     """A render: its picture so far, and what it takes to go on with it."""
 
+    def __new__(cls, job: Job, threads: int | None, patch: int) -> Rendering: ...
+    @staticmethod
+    def from_bytes(data: bytes, job: Job, threads: int | None, patch: int) -> Rendering:
+        """From what `to_bytes` gave; a ValueError says why bytes are not that, whoever made them."""
+    @staticmethod
+    def most_bytes(job: Job) -> int:
+        """Return how many bytes `to_bytes` gives at most."""
     def to_bytes(self) -> bytes: ...
     @property
     def rgb(self) -> NDArray[np.float32]: ...

@@ -3,7 +3,7 @@
 use super::light_paths::{LightPaths, Limits};
 use super::transport::Settings;
 use super::{Integrator, Job, LightWorker, Session, Worker};
-use crate::scene::{Emitters, Scene, not_drawn};
+use crate::scene::{Emitters, Scene};
 use crate::workers::Cancel;
 
 /// Light tracing (Arvo, "Backward Ray Tracing", 1986; Dutré, Lafortune and Willems, "Monte Carlo Light Tracing with
@@ -31,14 +31,14 @@ impl Integrator for LightTraced {
     fn begin<'a>(&'a self, job: Job<'a>, cancel: &Cancel) -> Box<dyn Session + 'a> {
         let seen = Settings::path(Some(0), u32::MAX).begin(job, cancel);
         let limits = Limits { max_depth: self.max_depth, roulette_depth: self.roulette_depth };
-        Box::new(LightTracing { limits, job, seen, emitters: Emitters::new(job.scene) })
+        Box::new(LightTracing { limits, job, seen, emitters: job.scene.emitters() })
     }
 
     fn objection(&self, scene: &Scene, adaptive: bool) -> Option<String> {
         if adaptive {
             return Some("light comes to all pixels alike, so samples cannot be adaptive: use adaptive=False".into());
         }
-        not_drawn(scene).map(|why| format!("{why}, where no path from a light can start: use Path"))
+        scene.not_drawn().map(|why| format!("{why}, where no path from a light can start: use Path"))
     }
 }
 

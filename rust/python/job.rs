@@ -1,19 +1,17 @@
 //! What a picture is made by, as the package describes it.
 
-use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
 use super::cameras::AnyCamera;
 use super::integrators::AnyIntegrator;
 use super::query::CompiledScene;
-use super::render::{Rendering, Watcher, malformed};
 use super::samplers;
+use super::watcher::{Watcher, malformed};
 use super::written::Written;
 use crate::integrators::Integrator;
-use crate::render::{self, Request, Settings, Until};
+use crate::render::{Request, Settings, Until};
 use crate::scene::Camera;
-use crate::workers::pool;
 
 /// All that a picture is made by but for the scene, which is compiled when it is needed: read once.
 #[pyclass(module = "raywright._core", frozen)]
@@ -101,27 +99,6 @@ impl Job {
     /// The side of the patches of pixels whose samples the integrator takes together.
     fn patch(&self, py: Python<'_>, scene: &Bound<'_, CompiledScene>) -> u32 {
         self.integrator(py).get().patch(&scene.get().0)
-    }
-
-    /// A render that has not begun.
-    fn begin(&self, threads: Option<usize>, patch: u32) -> PyResult<Rendering> {
-        let cores = pool(threads).map_err(PyRuntimeError::new_err)?.current_num_threads();
-        Ok(Rendering(render::Rendering::new(self.settings.film(self.camera(), cores, patch.max(1)))))
-    }
-
-    /// A render from what `Rendering.to_bytes` gave; a `ValueError` says why bytes are not that.
-    fn resume(&self, py: Python<'_>, data: &[u8], threads: Option<usize>, patch: u32) -> PyResult<Rendering> {
-        let pool = pool(threads).map_err(PyRuntimeError::new_err)?;
-        let (width, height) = (self.camera().width(), self.camera().height());
-        let Settings { sampler, adaptive, clamp, .. } = self.settings;
-        let read =
-            || render::Rendering::from_bytes(data, width, height, sampler.batch(), adaptive, clamp, patch.max(1));
-        py.detach(|| pool.install(read)).map(Rendering).map_err(malformed)
-    }
-
-    /// How many bytes `Rendering.to_bytes` gives at most.
-    fn most_bytes(&self) -> usize {
-        render::Rendering::most_bytes(self.camera().width(), self.camera().height(), self.settings.adaptive)
     }
 
     /// Takes the samples that a request of `Rendering.request` wants, and gives what `Rendering.take` takes.

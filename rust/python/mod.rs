@@ -30,6 +30,7 @@ mod shapes;
 mod signals;
 mod spectra;
 mod textures;
+mod watcher;
 mod written;
 
 use pyo3::exceptions::PyValueError;

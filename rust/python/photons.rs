@@ -7,7 +7,6 @@ use pyo3::prelude::*;
 use super::query::CompiledScene;
 use super::signals::heard;
 use crate::integrators::{Photon, photons as follow};
-use crate::scene::not_drawn;
 
 /// Rows of three numbers.
 type Rows<'py> = Bound<'py, PyArray2<f64>>;
@@ -33,7 +32,7 @@ pub fn photons<'py>(
     threads: Option<usize>,
 ) -> PyResult<Found<'py>> {
     let scene = &scene.get().0;
-    if let Some(why) = not_drawn(scene) {
+    if let Some(why) = scene.not_drawn() {
         return Err(PyValueError::new_err(format!("{why}, where no path from a light can start")));
     }
     let found = heard(py, threads, |cancel| follow(scene, count, (max_depth, roulette_depth), seed, cancel))?;

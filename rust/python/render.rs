@@ -4,7 +4,6 @@ use numpy::{PyArray2, PyArray3, PyArrayMethods};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
-use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
 use super::cameras::AnyCamera;
@@ -12,17 +11,49 @@ use super::integrators;
 use super::job::Job;
 use super::query::CompiledScene;
 use super::samplers;
-use super::written::Written;
+use super::watcher::{Watcher, malformed};
 use crate::integrators::{Guide, Integrator, Path};
-use crate::render::{self, HistoryRow, Malformed, Progress, RenderError, Settings, Until};
+use crate::render::{self, Progress, RenderError, Settings, Until};
 use crate::workers::{Cancel, pool, watched};
 
 /// A render: its picture so far, and what it takes to go on with it.
 #[pyclass(module = "raywright._core")]
-pub struct Rendering(pub render::Rendering);
+pub struct Rendering(render::Rendering);
 
 #[pymethods]
 impl Rendering {
+    /// One of a job, that has not begun.
+    #[new]
+    fn new(job: &Bound<'_, Job>, threads: Option<usize>, patch: u32) -> PyResult<Self> {
+        let (job, cores) = (job.get(), pool(threads).map_err(PyRuntimeError::new_err)?.current_num_threads());
+        let settings = job.settings(Until::default(), threads);
+        Ok(Self(render::Rendering::new(settings.film(job.camera(), cores, patch.max(1)))))
+    }
+
+    /// One of a job, from what `to_bytes` gave; a `ValueError` says why bytes are not that.
+    #[staticmethod]
+    fn from_bytes(
+        py: Python<'_>,
+        data: &[u8],
+        job: &Bound<'_, Job>,
+        threads: Option<usize>,
+        patch: u32,
+    ) -> PyResult<Self> {
+        let (job, pool) = (job.get(), pool(threads).map_err(PyRuntimeError::new_err)?);
+        let (width, height) = (job.camera().width(), job.camera().height());
+        let Settings { sampler, adaptive, clamp, .. } = job.settings(Until::default(), threads);
+        let read =
+            || render::Rendering::from_bytes(data, width, height, sampler.batch(), adaptive, clamp, patch.max(1));
+        py.detach(|| pool.install(read)).map(Self).map_err(malformed)
+    }
+
+    /// How many bytes `to_bytes` gives at most for a job.
+    #[staticmethod]
+    fn most_bytes(job: &Bound<'_, Job>) -> usize {
+        let (camera, settings) = (job.get().camera(), job.get().settings(Until::default(), None));
+        render::Rendering::most_bytes(camera.width(), camera.height(), settings.adaptive)
+    }
+
     fn to_bytes<'py>(&self, py: Python<'py>) -> Bound<'py, PyBytes> {
         PyBytes::new(py, &py.detach(|| self.0.to_bytes()))
     }
@@ -192,10 +223,6 @@ impl Rendering {
     }
 }
 
-pub(super) fn malformed(why: Malformed) -> PyErr {
-    PyValueError::new_err(why.to_string())
-}
-
 /// How many standard errors either way hold a mean in a share of all cases, for each of these degrees of freedom.
 #[pyfunction]
 pub fn student<'py>(
@@ -263,64 +290,4 @@ pub fn pilot(
 pub fn timing() -> (Vec<(&'static str, f64)>, u64) {
     let (spent, vertices) = crate::timing::take();
     (crate::timing::Part::ALL.iter().zip(spent).map(|(&(_, name), spent)| (name, spent)).collect(), vertices)
-}
-
-/// Passes on how a render goes to a Python function, and hears signals and whoever else may end it.
-pub(super) struct Watcher<'a> {
-    pub progress: Option<Py<PyAny>>,
-    pub look: Option<Py<PyAny>>,
-    pub raised: Option<PyErr>,
-    /// When to leave the render for now.
-    pub pause: Option<Instant>,
-    pub written: Option<&'a Written>,
-}
-
-impl Watcher<'_> {
-    /// What ended the render, for Python.
-    pub fn error(&mut self, error: RenderError) -> PyErr {
-        let raised = self.raised.take().or_else(|| self.written.and_then(Written::raised));
-        raised.unwrap_or_else(|| match error {
-            RenderError::Unsuited(why) => PyValueError::new_err(why),
-            error => PyRuntimeError::new_err(error.to_string()),
-        })
-    }
-
-    /// Goes on unless an exception is raised, which it keeps.
-    fn unless_raised(&mut self, then: impl FnOnce(Python<'_>, Option<&Py<PyAny>>) -> PyResult<()>) -> ControlFlow<()> {
-        let ask = |py: Python<'_>| {
-            py.check_signals()?;
-            if let Some(look) = &self.look {
-                look.call0(py)?;
-            }
-            then(py, self.progress.as_ref())
-        };
-        let raised = self.written.and_then(Written::raised);
-        match raised.map_or_else(|| Python::attach(ask), Err) {
-            Ok(()) => ControlFlow::Continue(()),
-            Err(raised) => {
-                self.raised = Some(raised);
-                ControlFlow::Break(())
-            }
-        }
-    }
-}
-
-impl Progress for Watcher<'_> {
-    fn pass(&mut self, row: &HistoryRow, trusted: bool) -> ControlFlow<()> {
-        let HistoryRow { seconds, samples, error } = *row;
-        self.unless_raised(|py, progress| {
-            if let Some(progress) = progress {
-                progress.call1(py, (seconds, samples, error, trusted))?;
-            }
-            Ok(())
-        })
-    }
-
-    fn poll(&mut self) -> ControlFlow<()> {
-        self.unless_raised(|_, _| Ok(()))
-    }
-
-    fn pauses(&mut self) -> bool {
-        self.pause.is_some_and(|pause| Instant::now() >= pause)
-    }
 }

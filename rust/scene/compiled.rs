@@ -1,6 +1,7 @@
 //! A scene ready for rays.
 
 use super::geometry::Watched;
+use super::lights::{Emitters, not_drawn};
 use super::{DescriptionError, Emission, Geometry, Lights, Material, Plan, SceneDescription, SurfacePoint};
 use crate::accel::{Accelerator, Cost, Crossings, Nearest, Primitives, Side, Touches};
 use crate::math::{DVec3, Hit, Ray, RayQueue, Region};
@@ -264,6 +265,16 @@ impl Scene {
     /// What finds its hits.
     pub fn accelerator(&self) -> &dyn Accelerator {
         self.accelerator.as_ref()
+    }
+
+    /// What light that sets out is drawn from; `None` if nothing shines that could be drawn.
+    pub fn emitters(&self) -> Option<Emitters<'_>> {
+        Emitters::new(&self.lights, &self.geometry, &self.region)
+    }
+
+    /// Why light cannot all be drawn as it sets out, if so.
+    pub fn not_drawn(&self) -> Option<String> {
+        not_drawn(&self.lights, &self.geometry)
     }
 
     /// Where all that can be hit lies.

@@ -34,7 +34,7 @@ pub use geometry::{
 pub use lights::{
     ConstantEnvironment, DirectionalLight, EmissionNumbers, EmissionPdf, EmissionSample, Emitters, EnvironmentMap,
     Light, LightBounds, LightContextLanes, LightLanes, LightSample, LightSampleContext, Lights, Picture, PointEmission,
-    PointLight, Profile, Projector, Reach, SpotLight, SunSky, not_drawn,
+    PointLight, Profile, Projector, Reach, SpotLight, SunSky,
 };
 pub use materials::{DiffuseMaterial, Material};
 pub use plan::{Plan, PlanRow, SceneNeeds, ShadingVariant};

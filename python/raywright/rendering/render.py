@@ -324,11 +324,11 @@ def _elsewhere(
 def _begun(kept: Checkpoints | None, job: Job, threads: int | None) -> _core.Rendering:
     """Return an empty render, or that of a checkpoint."""
     patch = job.patch()
-    film = None if kept is None else kept.read(job.core.most_bytes())
+    film = None if kept is None else kept.read(_core.Rendering.most_bytes(job.core))
     if kept is None or film is None:
-        return job.core.begin(threads, patch)
+        return _core.Rendering(job.core, threads, patch)
     try:
-        return job.core.resume(film, threads, patch)
+        return _core.Rendering.from_bytes(film, job.core, threads, patch)
     except ValueError as error:
         kept.refuse(f"is damaged: {error}")
 

@@ -7,7 +7,7 @@ use crate::integrators::nesting::MediumStack;
 use crate::math::DVec3;
 use crate::optics::Rgb;
 use crate::sampling::Sampler;
-use crate::scene::{Emitters, Encounter, Scene};
+use crate::scene::{Encounter, Scene};
 use crate::workers::Cancel;
 use rayon::prelude::*;
 
@@ -58,7 +58,7 @@ pub fn photons(
 ) -> Photons {
     /// Paths that are followed together. It is part of the order in which what escapes is added up.
     const TOGETHER: u32 = 4096;
-    let Some(emitters) = Emitters::new(scene) else { return Photons::default() };
+    let Some(emitters) = scene.emitters() else { return Photons::default() };
     let limits = Limits { max_depth, roulette_depth };
     let follow = |chunk: u32| {
         let paths = chunk * TOGETHER..count.min((chunk + 1).saturating_mul(TOGETHER));

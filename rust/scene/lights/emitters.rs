@@ -3,10 +3,10 @@
 use super::choice::MOST;
 use super::emission_sample::{EmissionPdf, EmissionSample};
 use super::{Emission, LightSampleContext, Lights, Reach, Sides};
-use crate::math::{DVec3, Frame, Hit, Ray};
+use crate::math::{DVec3, Frame, Hit, Ray, Region};
 use crate::sampling::AliasTable;
 use crate::sampling::warp::{cosine_hemisphere, uniform_triangle};
-use crate::scene::{Geometry, RayOrigin, Scene, SurfacePoint};
+use crate::scene::{Geometry, RayOrigin, SurfacePoint};
 use std::f64::consts::PI;
 
 /// What light that sets out is drawn from: surfaces, points, and the plane across any direction that light comes from
@@ -40,9 +40,8 @@ pub struct EmissionNumbers {
 }
 
 impl<'a> Emitters<'a> {
-    /// Those of a scene; `None` if nothing shines that could be drawn.
-    pub fn new(scene: &'a Scene) -> Option<Self> {
-        let (lights, geometry, region) = (scene.lights(), scene.geometry(), scene.region());
+    /// Those of a scene of these lights that lies in a region; `None` if nothing shines that could be drawn.
+    pub fn new(lights: &'a Lights, geometry: &'a Geometry, region: &Region) -> Option<Self> {
         let half = (region.max - region.min).max(DVec3::ZERO) * 0.5;
         let mut powers: Vec<f64> = lights.strengths(geometry).iter().map(|one| one.power.min(MOST)).collect();
         let within = powers.len();
@@ -170,8 +169,7 @@ impl<'a> Emitters<'a> {
 
 /// Why the light of a scene cannot all be drawn as it sets out, if so: what shines has no end, moves within instances
 /// or is in too many of them, or light from outside falls on what has no end.
-pub fn not_drawn(scene: &Scene) -> Option<String> {
-    let (lights, geometry) = (scene.lights(), scene.geometry());
+pub fn not_drawn(lights: &Lights, geometry: &Geometry) -> Option<String> {
     let endless = |primitive: u32| geometry.shape(primitive).is_some_and(|shape| !shape.bounds().is_finite());
     (0..geometry.shapes() as u32).find_map(|shape| {
         if let Some(instances) = geometry.instances_of(shape) {

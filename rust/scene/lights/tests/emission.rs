@@ -2,7 +2,7 @@
 
 use super::super::{
     ConstantEnvironment, DirectionalLight, Emission, EmissionNumbers, EmissionSample, Emitters, EnvironmentMap, Light,
-    LightSampleContext, Picture, PointLight, Profile, Projector, Sides, SpotLight, SunSky, not_drawn,
+    LightSampleContext, Picture, PointLight, Profile, Projector, Sides, SpotLight, SunSky,
 };
 use super::instances::{MOVED, STRETCHED};
 use super::white;
@@ -34,7 +34,7 @@ fn emit(emitters: &Emitters, number: u32) -> Option<EmissionSample> {
 
 /// Mean and standard error of what falls on the patch from either side, by light that sets out, nothing in its way.
 fn sent(scene: &Scene, draws: u32) -> (f64, f64) {
-    let emitters = Emitters::new(scene).expect("something shines");
+    let emitters = scene.emitters().expect("something shines");
     let (mut sum, mut squares) = (0.0, 0.0);
     for number in 0..draws {
         let Some(drawn) = emit(&emitters, number) else { continue };
@@ -113,7 +113,7 @@ fn so_do_instances() {
     let instances = Instances::new(Arc::new(prototype), &[STRETCHED, MOVED]).unwrap();
     let instances = Shape { surface: instances.into(), ..Shape::default() };
     let scene = over_a_patch(vec![instances], vec![]);
-    assert_eq!(not_drawn(&scene), None);
+    assert_eq!(scene.not_drawn(), None);
     assert_alike("instances", &scene);
 }
 
@@ -155,7 +155,7 @@ fn light_of_all_kinds_adds_up_to_its_power() {
     let ball = glowing(Arc::new(Sphere { center: DVec3::Z, radius: 0.5 }), Sides::Front);
     let point = PointLight { position: DVec3::Z, intensity: rgb };
     let scene = over_a_patch(vec![ball], vec![Arc::new(point)]);
-    let emitters = Emitters::new(&scene).unwrap();
+    let emitters = scene.emitters().unwrap();
     // Each is chosen by its power, so each draw of either stands for all of it.
     for number in 0..100 {
         let weight = emit(&emitters, number).unwrap().weight.mean();
@@ -166,16 +166,16 @@ fn light_of_all_kinds_adds_up_to_its_power() {
 #[test]
 fn what_cannot_be_drawn_is_named() {
     let dark = over_a_patch(vec![], vec![]);
-    assert!(Emitters::new(&dark).is_none() && not_drawn(&dark).is_none());
+    assert!(dark.emitters().is_none() && dark.not_drawn().is_none());
     let plane = || Plane { point: DVec3::NEG_Z, normal: DVec3::Z };
     let endless = |radiance: f64| Shape {
         surface: (Arc::new(plane()) as Arc<dyn crate::shapes::Shape>).into(),
         emission: Emission { radiance: Value::from(white(radiance)), sides: Sides::Front },
         ..Shape::default()
     };
-    let why = |scene: &Scene| not_drawn(scene).expect("a reason");
+    let why = |scene: &Scene| scene.not_drawn().expect("a reason");
     assert!(why(&over_a_patch(vec![endless(1.0)], vec![])).contains("shape 1 shines and has no end"));
     let sky = || Arc::new(ConstantEnvironment { radiance: white(1.0) });
     assert!(why(&over_a_patch(vec![endless(0.0)], vec![sky()])).contains("falls on shape 1"));
-    assert_eq!(not_drawn(&over_a_patch(vec![endless(0.0)], vec![])), None);
+    assert_eq!(over_a_patch(vec![endless(0.0)], vec![]).not_drawn(), None);
 }
