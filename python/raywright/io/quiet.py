@@ -1,6 +1,5 @@
 """Silence for other libraries while they read: what there is to say is in our own errors."""
 
-import logging
 import sys
 import threading
 import warnings
@@ -17,6 +16,9 @@ _lock = threading.RLock()
 @contextmanager
 def quiet(strictly: type[Warning] | None = None) -> Iterator[None]:
     """Keep trimesh's log, and all warnings, from being heard; those of one kind may be errors instead."""
+    # Whoever reads nothing does not wait for the import.
+    import logging
+
     log = logging.getLogger("trimesh")
     with _lock, warnings.catch_warnings(), np.errstate(all="ignore"):
         warnings.simplefilter("ignore")

@@ -1,6 +1,5 @@
 """What a render is of, in short: so that two can be told apart without keeping what they are of."""
 
-import hashlib
 import pickle
 from typing import Any
 
@@ -9,6 +8,9 @@ class _Digest:
     """A file that keeps nothing of what is written to it but a digest."""
 
     def __init__(self) -> None:
+        # Whoever keeps nothing and sends nothing does not wait for the import.
+        import hashlib
+
         self._hash = hashlib.sha256()
 
     def write(self, data: Any) -> int:

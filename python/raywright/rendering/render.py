@@ -3,9 +3,8 @@
 import os
 import warnings as python_warnings
 from collections.abc import Callable, Iterable
-from concurrent.futures import Executor
 from dataclasses import replace
-from typing import Any, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +15,6 @@ from ..cameras import AnyCamera
 from ..integrators import AnyIntegrator, Path, check_integrator
 from ..scene.scene import Scene
 from .aovs import aovs, names_of
-from .checkpoints import Checkpoints, held
 from .choices import Limits, chosen
 from .filters import BoxFilter, Filter
 from .image import HISTORY, ErrorEstimate, Image
@@ -27,6 +25,11 @@ from .progress import Report, bar
 from .samplers import Sampler
 from .snapshots import Snapshots
 from .ways import StoppedError, followed
+
+if TYPE_CHECKING:
+    from concurrent.futures import Executor
+
+    from .checkpoints import Checkpoints
 
 _PATH = Path()
 _FILTER: Filter = BoxFilter()
@@ -56,7 +59,7 @@ def render(
     sampler: Sampler | None = None,
     filter: Filter = _FILTER,
     checkpoint: str | os.PathLike[str] | None = None,
-    executor: Executor | None = None,
+    executor: "Executor | None" = None,
     aov: str | Iterable[str] = (),
     stop: Stop | None = None,
 ) -> Image:
@@ -153,13 +156,20 @@ def render(
     show = progress if callable(progress) else display() if progress else None
     if stop is not None and not callable(getattr(stop, "is_set", None)):
         raise TypeError(f"stop must be a threading.Event or the like, got {type(stop).__name__}")
-    if executor is not None and not isinstance(executor, Executor):
-        raise TypeError(f"executor must be a concurrent.futures.Executor, got {type(executor).__name__}")
+    if executor is not None:
+        # Whoever renders here does not wait for the import.
+        from concurrent.futures import Executor
+
+        if not isinstance(executor, Executor):
+            raise TypeError(f"executor must be a concurrent.futures.Executor, got {type(executor).__name__}")
     names = names_of(aov)
     kept, begun = None, {}
     if checkpoint is not None:
         if not isinstance(checkpoint, str | os.PathLike):
             raise TypeError(f"checkpoint must be a path, got {type(checkpoint).__name__}")
+        # Whoever keeps nothing does not wait for the import.
+        from .checkpoints import Checkpoints, held
+
         begun = held(checkpoint)
     sampler, plan = chosen(sampler, limits, adaptive, begun.get("sampler"))
     if executor is None:
@@ -295,7 +305,7 @@ def _here(
 def _elsewhere(
     rendering: _core.Rendering,
     job: Job,
-    executor: Executor,
+    executor: "Executor",
     limits: Limits,
     threads: int | None,
     report: Report | None,
@@ -321,7 +331,7 @@ def _elsewhere(
     return []
 
 
-def _begun(kept: Checkpoints | None, job: Job, threads: int | None) -> _core.Rendering:
+def _begun(kept: "Checkpoints | None", job: Job, threads: int | None) -> _core.Rendering:
     """Return an empty render, or that of a checkpoint."""
     patch = job.patch()
     film = None if kept is None else kept.read(_core.Rendering.most_bytes(job.core))
