@@ -30,10 +30,9 @@ def blocks(values):
     return values.astype(float).reshape(SIDE // 8, 8, SIDE // 8, 8, 3).mean((1, 3))
 
 
-def assert_same_picture(scene, camera, samples=256, paths=1024, light=None, path=None, seen=None):
-    """Blocks of 8 x 8 pixels agree within five of the two standard errors, which chance exceeds once in two
-    million; where few samples find what others do not, errors are found with them, and as many again are
-    allowed for those."""
+def assert_same_picture(scene, camera, samples=256, paths=1024, light=None, path=None):
+    """Blocks of 8 x 8 pixels agree within five of the joint standard errors, which chance exceeds once in two
+    million. In the middle block those are below a tenth."""
     ours = rw.render(scene, camera, light or rw.LightTraced(), samples, progress=False)
     theirs = rw.render(scene, camera, path or rw.Path(reuse=1), paths, progress=False)
     off = np.abs(blocks(ours.rgb) - blocks(theirs.rgb))
@@ -42,8 +41,6 @@ def assert_same_picture(scene, camera, samples=256, paths=1024, light=None, path
     )
     error = np.sqrt(variance / 64)
     ratio = off / (error + 1e-6 * blocks(theirs.rgb) + 1e-12)
-    if seen is not None:
-        ratio = ratio[seen]
     assert ratio.max() < 5, ratio.round(1)
     assert np.median(error / (blocks(theirs.rgb) + 1e-12)) < 0.1
     return ours, theirs
@@ -154,15 +151,16 @@ def test_depths_count_bounces(depth):
     assert_same_picture(scene, look, light=rw.LightTraced(depth), path=rw.Path(depth, reuse=1))
 
 
-def test_filters_and_lenses():
+def test_filters_with_negative_lobes():
     scene, look = rw.scenes.cornell_box(width=SIDE, height=SIDE)
     ours, theirs = (
         rw.render(scene, look, way, 400, filter=rw.LanczosFilter(), progress=False)
         for way in (rw.LightTraced(), rw.Path(reuse=1))
     )
     error = np.sqrt(blocks(ours.standard_error.astype(float) ** 2 + theirs.standard_error.astype(float) ** 2))
-    # Filters share samples among pixels: their errors go together, by up to the filter's size.
-    assert (np.abs(blocks(ours.rgb) - blocks(theirs.rgb)) < 5 * error / 2).all()
+    # The mean of 64 pixels has an eighth of their error where they are independent. Light that came by itself
+    # is shared by the pixels about it, whose errors go together: twice as much is allowed for that.
+    assert (np.abs(blocks(ours.rgb) - blocks(theirs.rgb)) < 5 * error / 4).all()
 
 
 def test_the_error_is_as_told():
