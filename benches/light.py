@@ -2,12 +2,12 @@
 
     python benches/light.py [--scene NAME ...] [--side 96] [--seconds 4] [--reference 60] [--plots FOLDER]
 
-Prints Markdown. On each scene all ways take turns, six budgets each, with errors against a long picture: relMSE
-is the mean of (x - ref)² / (ref² + 0.01). The long picture is by a way without bias that finds all the light of
-the scene; a way that cannot find it, or adds a bias, has that in its error. What a picture needs is error
-times seconds, where that is the same for all times; the last column is how many times more of it a way needs
-than the best. Where Mitsuba 3 is installed its path tracer and its light tracer render the same scenes for as
-long (it wants LLVM: name Debian's libLLVM in DRJIT_LIBLLVM_PATH).
+Prints Markdown. On each scene all ways take turns, six budgets each, with errors against a long picture:
+relMSE is the mean of (x - ref)² / (ref² + 0.01). The long picture is by a way without bias that finds all the
+light of the scene; a way that cannot find it, or adds a bias, has that in its error. What a picture needs is
+error times seconds, where that is the same for all times; the last column is how many times more of it a way
+needs than the best. Where Mitsuba 3 is installed its path tracer and its light tracer render the same scenes
+for as long (it wants LLVM: name Debian's libLLVM in DRJIT_LIBLLVM_PATH).
 """
 
 import argparse

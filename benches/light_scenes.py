@@ -1,4 +1,4 @@
-"""Eight scenes that ask different things of those who carry light, from a matt room to a lamp behind glass."""
+"""Eight scenes that ask different things of those who carry light, from a matt room to lamps behind glass."""
 
 import numpy as np
 
