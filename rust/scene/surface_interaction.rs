@@ -192,6 +192,13 @@ impl<B: Bsdf> SurfaceInteraction<B> {
         (fading > 0.0).then(|| BsdfSample { wi, weight: drawn.weight * fading, ..drawn })
     }
 
+    /// A direction of the world in the shading frame, and how much light from there counts: 0 where it is not seen.
+    #[inline(always)]
+    pub fn seen_from(&self, direction: DVec3) -> (DVec3, f64) {
+        let wi = self.frame.to_local(direction);
+        (wi, self.fading(wi, direction))
+    }
+
     /// How much light from a direction counts as that nears the horizon of either normal: 0 where it lies above the one
     /// and below the other.
     ///
@@ -241,8 +248,7 @@ impl<B: Bsdf> Encounter for SurfaceInteraction<B> {
 
     #[inline(always)]
     fn evaluate(&self, direction: DVec3) -> (Rgb, f64) {
-        let wi = self.frame.to_local(direction);
-        let fading = self.fading(wi, direction);
+        let (wi, fading) = self.seen_from(direction);
         if fading <= 0.0 {
             return (Rgb::ZERO, 0.0);
         }

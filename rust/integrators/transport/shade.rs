@@ -146,9 +146,9 @@ impl<'a, N: Features> TransportWorker<'a, N> {
                 continue;
             }
             let mut path = block.paths[lane];
-            let wo = block.encounters.get(lane, &block.bsdf[lane]).wo();
-            block.bsdf[lane].prepare(wo);
-            let here = block.encounters.get(lane, &block.bsdf[lane]);
+            let wo = block.encounters.get(lane, block.bsdf.get(lane)).wo();
+            block.bsdf.get_mut(lane).prepare(wo);
+            let here = block.encounters.get(lane, block.bsdf.get(lane));
             if N::SHARES {
                 path = self.reuse.visit(path, &here);
             }

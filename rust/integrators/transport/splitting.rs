@@ -29,7 +29,7 @@ impl<N: Features> TransportWorker<'_, N> {
         let here = block.other(lane);
         let mut branch =
             Branch { number: self.carried(block, lane).branch.wrapping_mul(2), splits: 1, denser: 1.0, chance: 0.0 };
-        block.bsdf[lane].delta_lobes(here.wo(), |single| {
+        block.bsdf.get(lane).delta_lobes(here.wo(), |single| {
             if let Some(next) = here.to_world(single) {
                 self.send(block, lane, &next, branch);
                 branch.number = branch.number.wrapping_add(1);

@@ -16,7 +16,7 @@ use crate::integrators::{CameraSample, Guide, Job, LocalGuide, Worker, is_matt};
 use crate::math::{Hit, LANES};
 use crate::optics::{Bsdf, Rgb};
 use crate::sampling::SamplerLanes;
-use crate::scene::{Encounter, Footprint, Scene, SurfaceInteraction};
+use crate::scene::{Encounter, Footprint, LightLanes, Scene, SurfaceInteraction};
 use crate::simd::Level;
 use crate::timing::{Part, timed};
 use crate::workers::Cancel;
@@ -43,6 +43,8 @@ pub(super) struct TransportWorker<'a, N> {
     /// The paths that are worked on; none before the first.
     block: Option<Box<Block<'a>>>,
     pub(super) shadows: Shadows,
+    /// What is drawn of each of few lights.
+    pub(super) each: Vec<LightLanes>,
     pub(super) reuse: Reuse,
     /// What samples find for themselves, and then what they find for sharing.
     found: Vec<Rgb>,
@@ -69,6 +71,7 @@ impl<'a, N: Features> TransportWorker<'a, N> {
             arrivals: Arrivals::default(),
             block: None,
             shadows: Shadows::default(),
+            each: Vec::new(),
             reuse: Reuse::default(),
             found: Vec::new(),
             features: PhantomData,

@@ -1,6 +1,7 @@
 //! What surfaces are made of: one interface over all materials.
 
 mod blinn_phong;
+mod bsdf_lanes;
 mod bsdf_mix;
 mod bump;
 mod checks;
@@ -23,6 +24,7 @@ mod thin_dielectric;
 mod two_sided;
 
 pub use blinn_phong::BlinnPhongMaterial;
+pub use bsdf_lanes::BsdfLanes;
 pub use bsdf_mix::BsdfMix;
 pub use bump::BumpMap;
 pub use coats::Coats;
