@@ -41,7 +41,7 @@ pub use blinn_phong::BlinnPhong;
 pub use bsdf::{Bsdf, BsdfSample};
 pub use coated::Coated;
 pub use coated_once::CoatedOnce;
-pub use conductor::Conductor;
+pub use conductor::{Conductor, ConductorLanes};
 pub use dielectric::Dielectric;
 pub use diffuse::Diffuse;
 pub use faceted::Faceted;

@@ -71,9 +71,18 @@ impl<'a, N: Features> TransportWorker<'a, N> {
         }
         if block.is_diffuse {
             for lane in 0..LANES {
-                let surface = block.surfaces.get(lane);
-                let [front, back] = self.diffuse(surface.shape).unwrap_or([Rgb::ZERO; 2]);
-                block.reflectance.set(lane, if surface.is_front(&block.rays[lane]) { front } else { back });
+                let (surface, ray) = (block.surfaces.get(lane), block.rays[lane]);
+                let reflectance = match self.scene.plan().diffuse(surface.shape) {
+                    Some([front, back]) => {
+                        if surface.is_front(&ray) {
+                            front
+                        } else {
+                            back
+                        }
+                    }
+                    None => self.textured(block, lane),
+                };
+                block.reflectance.set(lane, reflectance);
                 if N::SHARES && block.goes_on[lane] {
                     block.paths[lane] = self.reuse.visit(block.paths[lane], &block.diffuse(lane));
                 }
@@ -84,6 +93,18 @@ impl<'a, N: Features> TransportWorker<'a, N> {
         for lane in 0..LANES {
             block.throughput.set(lane, block.paths[lane].throughput);
         }
+    }
+
+    /// What a diffuse surface reflects that is not alike everywhere. A padded lane is left as it is.
+    fn textured(&self, block: &mut Block, lane: usize) -> Rgb {
+        if N::PLAIN || lane >= block.count {
+            return Rgb::ZERO;
+        }
+        let (ray, hit, surface) = (&block.rays[lane], &block.hits[lane], block.surfaces.get(lane));
+        let here = SurfaceInteraction::new(self.scene, ray, hit, surface, 0.0, 1.0);
+        block.encounters.set(lane, &here);
+        block.receivers.set(lane, &here.light_context());
+        here.bsdf().diffuse().unwrap_or(Rgb::ZERO)
     }
 
     /// What the path of a lane carries.
@@ -147,7 +168,7 @@ impl<'a, N: Features> TransportWorker<'a, N> {
             }
             let mut path = block.paths[lane];
             let wo = block.encounters.get(lane, block.bsdf.get(lane)).wo();
-            block.bsdf.get_mut(lane).prepare(wo);
+            block.bsdf.prepare(wo);
             let here = block.encounters.get(lane, block.bsdf.get(lane));
             if N::SHARES {
                 path = self.reuse.visit(path, &here);

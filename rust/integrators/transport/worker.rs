@@ -16,7 +16,7 @@ use crate::integrators::{CameraSample, Guide, Job, LocalGuide, Worker, is_matt};
 use crate::math::{Hit, LANES};
 use crate::optics::{Bsdf, Rgb};
 use crate::sampling::SamplerLanes;
-use crate::scene::{Encounter, Footprint, LightLanes, Scene, SurfaceInteraction};
+use crate::scene::{Encounter, Footprint, LightLanes, Plan, Scene, SurfaceInteraction};
 use crate::simd::Level;
 use crate::timing::{Part, timed};
 use crate::workers::Cancel;
@@ -104,18 +104,16 @@ impl<'a, N: Features> TransportWorker<'a, N> {
         let mut block = self.block.take().unwrap_or_else(|| Box::new(Block::new(&samples[0])));
         // A worker may be given samples of another seed or kind each time.
         block.numbers = SamplerLanes::new(&samples[0].sampler);
-        for is_diffuse in [true, false] {
-            block.is_diffuse = is_diffuse;
-            let arrivals = &mut self.arrivals;
-            let which = std::mem::take(if is_diffuse { &mut arrivals.diffuse } else { &mut arrivals.others });
+        for kind in 0..Plan::KINDS {
+            block.is_diffuse = kind == Plan::DIFFUSE;
+            let which = std::mem::take(&mut self.arrivals.kinds[kind]);
             for (number, some) in which.chunks(LANES).enumerate() {
                 let next = which.iter().skip((number + 1) * LANES).take(LANES);
                 next.for_each(|&i| self.scene.geometry().expect(self.hits[i as usize].primitive, true));
                 self.shade(&mut block, some, samples, radiance);
             }
             // Their memory is used again.
-            let arrivals = &mut self.arrivals;
-            *(if is_diffuse { &mut arrivals.diffuse } else { &mut arrivals.others }) = which;
+            self.arrivals.kinds[kind] = which;
         }
         self.block = Some(block);
         std::mem::swap(&mut self.now, &mut self.next);

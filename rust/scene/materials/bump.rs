@@ -58,6 +58,10 @@ impl Material for BumpMap {
         self.material.bsdf(at)
     }
 
+    fn kind(&self) -> Option<usize> {
+        self.material.kind()
+    }
+
     fn needs(&self) -> Needs {
         self.material.needs() | self.height.needs() | Needs { tangents: true, ..Needs::NONE }
     }

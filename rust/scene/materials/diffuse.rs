@@ -33,6 +33,10 @@ impl Material for DiffuseMaterial {
         }
     }
 
+    fn kind(&self) -> Option<usize> {
+        Some(AnyBsdf::DIFFUSE)
+    }
+
     fn needs(&self) -> Needs {
         self.reflectance.needs()
     }

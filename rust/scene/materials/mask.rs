@@ -22,6 +22,10 @@ impl Material for Mask {
         self.material.bsdf(at)
     }
 
+    fn kind(&self) -> Option<usize> {
+        self.material.kind()
+    }
+
     fn needs(&self) -> Needs {
         self.material.needs() | self.opacity.needs()
     }

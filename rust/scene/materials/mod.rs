@@ -68,6 +68,13 @@ pub trait Material: Debug + Send + Sync {
         self.constant().map(|bsdf| [bsdf; 2])
     }
 
+    /// The kind of function, as [`AnyBsdf::kind`] has it, by which it scatters at every point and on both sides, if
+    /// that is known beforehand.
+    fn kind(&self) -> Option<usize> {
+        let [front, back] = self.constant_sides()?.map(|bsdf| bsdf.kind());
+        (front == back).then_some(front)
+    }
+
     /// What is wrong with it, in a few words; `Ok` if nothing is.
     fn validate(&self) -> Result<(), String>;
 

@@ -26,6 +26,10 @@ impl Material for NormalMap {
         self.material.bsdf(at)
     }
 
+    fn kind(&self) -> Option<usize> {
+        self.material.kind()
+    }
+
     fn needs(&self) -> Needs {
         self.material.needs() | self.normals.needs() | Needs { uv: true, tangents: true, ..Needs::NONE }
     }

@@ -32,6 +32,10 @@ impl Material for TwoSided {
         Some([front, back])
     }
 
+    fn kind(&self) -> Option<usize> {
+        self.front.kind().filter(|_| self.front.kind() == self.back.kind())
+    }
+
     fn needs(&self) -> Needs {
         self.front.needs() | self.back.needs()
     }
