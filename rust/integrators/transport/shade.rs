@@ -117,9 +117,9 @@ impl<'a, N: Features> TransportWorker<'a, N> {
     fn gather(&self, block: &mut Block, which: &[u32]) {
         block.count = which.len();
         block.index = array::from_fn(|lane| which[lane.min(which.len() - 1)]);
+        self.now.rays.gather(&block.index, &mut block.rays);
         for lane in 0..LANES {
             let index = block.index[lane] as usize;
-            block.rays[lane] = self.now.rays.get(index);
             block.hits[lane] = self.hits[index];
             block.paths[lane] = self.now.paths[index];
             block.goes_on[lane] = false;

@@ -5,7 +5,8 @@ use crate::math::{DVec3, LANES, VectorLanes};
 use crate::optics::conductors::Reflectance;
 use crate::optics::fresnel::ConductorIndex;
 use crate::optics::lobes::Grazing;
-use crate::optics::{Facets, Ggx, Rgb, RgbLanes};
+use crate::optics::{BsdfSampleLanes, Facets, Ggx, Rgb, RgbLanes};
+use crate::sampling::Pairs;
 use crate::simd::{Level, loops};
 
 /// What is known of rough metals, a lane each, and of a direction that light goes to.
@@ -62,6 +63,35 @@ loops! {
             let is_seen = asks[i] & mirrors::<Ggx>(o, w);
             value.set(i, Rgb::select(is_seen, scattered, Rgb::ZERO));
             pdf[i] = if is_seen { drawn } else { 0.0 };
+        }
+    }
+}
+
+loops! {
+    /// Directions from which facets reflect, above.
+    fn draw(of: &ConductorLanes, u: &Pairs, wi: &mut VectorLanes) {
+        for i in 0..LANES {
+            wi.set(i, of.facets(i).sample_reflection(above(of.wo.get(i)), [u[0][i], u[1][i]]));
+        }
+    }
+}
+
+loops! {
+    /// From directions above to those on the side of `wo`, in the lanes that ask and are seen.
+    fn turn(of: &ConductorLanes, asks: &[bool; LANES], wi: &mut VectorLanes, goes: &mut [bool; LANES]) {
+        for i in 0..LANES {
+            let (wo, drawn) = (of.wo.get(i), wi.get(i));
+            goes[i] = asks[i] & Ggx::sees(wo) & (drawn.z > 0.0);
+            wi.set(i, DVec3::new(drawn.x, drawn.y, drawn.z.copysign(wo.z)));
+        }
+    }
+}
+
+loops! {
+    /// From what is scattered to what a throughput is multiplied by.
+    fn weigh(pdf: &[f64; LANES], value: &mut RgbLanes) {
+        for i in 0..LANES {
+            value.set(i, value.get(i) / pdf[i]);
         }
     }
 }
@@ -125,5 +155,27 @@ impl ConductorLanes {
             }
         }
         scatter(level, self, wi, &density, &reflectance, &lost, asks, value, pdf);
+    }
+
+    /// What [`crate::optics::Bsdf::sample`] gives, in the lanes that ask; nothing in the others.
+    pub fn sample<'a>(
+        &self,
+        level: Level,
+        metals: impl Fn(usize) -> Option<&'a Conductor>,
+        asks: &[bool; LANES],
+        (choice, u): (&[f64; LANES], &Pairs),
+        drawn: &mut BsdfSampleLanes,
+    ) {
+        let BsdfSampleLanes { wi, weight, pdf, eta, is_through } = drawn;
+        draw(level, self, u, wi);
+        for lane in (0..LANES).filter(|&lane| asks[lane] && choice[lane] < self.lost[lane]) {
+            let grazing = Grazing::with([self.grazing[0][lane], self.grazing[1][lane]]);
+            wi.set(lane, grazing.sample([u[0][lane], u[1][lane]]));
+        }
+        let mut goes = [false; LANES];
+        turn(level, self, asks, wi, &mut goes);
+        self.evaluate(level, metals, &goes, wi, weight, pdf);
+        weigh(level, pdf, weight);
+        (*eta, *is_through) = ([1.0; LANES], [false; LANES]);
     }
 }

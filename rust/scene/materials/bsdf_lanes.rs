@@ -2,7 +2,8 @@
 
 use super::BsdfMix;
 use crate::math::{DVec3, LANES, VectorLanes};
-use crate::optics::{AnyBsdf, Bsdf, Conductor, ConductorLanes, RgbLanes};
+use crate::optics::{AnyBsdf, Bsdf, BsdfSampleLanes, Conductor, ConductorLanes, RgbLanes};
+use crate::sampling::Pairs;
 use crate::scene::SurfaceInteractionLanes;
 use crate::simd::Level;
 
@@ -76,6 +77,25 @@ impl BsdfLanes {
             let (of_lane, density) = bsdf.evaluate(encounters.wo(lane), wi.get(lane));
             value.set(lane, of_lane);
             pdf[lane] = density;
+        }
+    }
+
+    /// What [`Bsdf::sample`] gives for their encounters, in shading frames, in the lanes that ask; nothing in the others.
+    pub fn sample(
+        &self,
+        level: Level,
+        asks: &[bool; LANES],
+        encounters: &SurfaceInteractionLanes,
+        (choice, u): (&[f64; LANES], &Pairs),
+        drawn: &mut BsdfSampleLanes,
+    ) {
+        if self.are_metals {
+            return self.metals.sample(level, |lane| self.metal(lane), asks, (choice, u), drawn);
+        }
+        drawn.pdf = [0.0; LANES];
+        for (lane, bsdf) in self.each.iter().enumerate().filter(|&(lane, _)| asks[lane]) {
+            let u = [u[0][lane], u[1][lane]];
+            drawn.set(lane, bsdf.sample(encounters.wo(lane), || choice[lane], u));
         }
     }
 }
