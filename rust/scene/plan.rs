@@ -96,8 +96,8 @@ pub struct Plan {
     constants: Vec<Option<[AnyBsdf; 2]>>,
     /// Of those that are diffuse, what each reflects.
     diffuse: Vec<Option<[Rgb; 2]>>,
-    /// By which kind of function each scatters.
-    kinds: Vec<u8>,
+    /// By which kinds of functions each scatters, on the front and on the back.
+    kinds: Vec<[u8; 2]>,
 }
 
 /// What has less than this roughness, but does not scatter into single directions, counts as glossy. Over rougher
@@ -128,12 +128,12 @@ impl Plan {
                 Some(instances) => {
                     needs = needs | Self::of_copies(instances.prototype(), &mut rounding);
                     constants.push(None);
-                    kinds.push(Self::MIXED as u8);
+                    kinds.push([Self::MIXED as u8; 2]);
                 }
                 None => {
                     needs = needs | Self::of(material.as_ref(), lights.emission(shape));
                     constants.push(material.constant_sides());
-                    kinds.push(material.kind().unwrap_or(Self::MIXED) as u8);
+                    kinds.push(material.kinds().unwrap_or([Self::MIXED; 2]).map(|kind| kind as u8));
                 }
             }
         }
@@ -225,13 +225,14 @@ impl Plan {
     /// The kind of what scatters by one colour at a point.
     pub const DIFFUSE: usize = AnyBsdf::DIFFUSE;
 
-    /// In place of the kind of what scatters by several, or by one on the front and by another on the back.
+    /// In place of the kind of what is not known beforehand, or scatters by several.
     pub const MIXED: usize = AnyBsdf::KINDS;
 
-    /// By which kind of function a shape scatters that is surrounded by nothing.
+    /// By which kind of function a shape scatters that is surrounded by nothing; it may be another on the back.
     #[inline]
-    pub fn kind(&self, shape: u32) -> usize {
-        self.kinds[shape as usize].into()
+    pub fn kind(&self, shape: u32, is_front: impl FnOnce() -> bool) -> usize {
+        let [front, back] = self.kinds[shape as usize];
+        (if front == back || is_front() { front } else { back }).into()
     }
 
     /// The variant of shading that has what the scene needs, and the least beyond.

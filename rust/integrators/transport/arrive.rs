@@ -52,9 +52,13 @@ impl<N: Features> TransportWorker<'_, N> {
                 (self.hits[i], self.now.carried[i]) = (hit, carried);
                 shape = self.scene.geometry().locate(hit.primitive).0;
             }
-            // In what branches, samples take light in the order of their paths, and one of its own is kept.
-            let may_sort = self.in_columns && outside == 1.0;
-            let kind = if may_sort { self.scene.plan().kind(shape) } else { Plan::MIXED };
+            // Of what branches, samples add what they find in the order of their paths, which is kept.
+            let kind = if self.in_columns && outside == 1.0 {
+                let ray = || self.now.rays.get(i);
+                self.scene.plan().kind(shape, || self.scene.geometry().surface(&ray(), &hit).is_front(&ray()))
+            } else {
+                Plan::MIXED
+            };
             self.scene.geometry().expect(hit.primitive, false);
             arrivals.kinds[kind].push(i as u32);
         }

@@ -165,7 +165,10 @@ impl<N: Features> TransportWorker<'_, N> {
                 going |= 1 << lane;
                 self.next.paths.push(path);
                 if N::GENERAL {
-                    self.next.carried.push(Carried { chance: -1.0, ..*self.carried(block, lane) });
+                    let carried = self.carried(block, lane);
+                    let next = || BsdfSample::new(direction.get(lane), weight.get(lane), pdf[lane]);
+                    let footprint = if self.widths { self.widened(block, lane, &next()) } else { carried.footprint };
+                    self.next.carried.push(Carried { footprint, chance: -1.0, ..*carried });
                 }
             }
         }

@@ -72,7 +72,8 @@ impl<'a, N: Features> TransportWorker<'a, N> {
         if block.is_diffuse {
             for lane in 0..LANES {
                 let (surface, ray) = (block.surfaces.get(lane), block.rays[lane]);
-                let reflectance = match self.scene.plan().diffuse(surface.shape) {
+                let constant = self.scene.plan().diffuse(surface.shape).filter(|_| block.width[lane] == 0.0);
+                let reflectance = match constant {
                     Some([front, back]) => {
                         if surface.is_front(&ray) {
                             front
@@ -95,13 +96,14 @@ impl<'a, N: Features> TransportWorker<'a, N> {
         }
     }
 
-    /// What a diffuse surface reflects that is not alike everywhere. A padded lane is left as it is.
+    /// What a diffuse surface reflects that is not alike everywhere, or is seen by a ray that has a width. A padded lane
+    /// is left as it is.
     fn textured(&self, block: &mut Block, lane: usize) -> Rgb {
         if N::PLAIN || lane >= block.count {
             return Rgb::ZERO;
         }
         let (ray, hit, surface) = (&block.rays[lane], &block.hits[lane], block.surfaces.get(lane));
-        let here = SurfaceInteraction::new(self.scene, ray, hit, surface, 0.0, 1.0);
+        let here = SurfaceInteraction::new(self.scene, ray, hit, surface, block.width[lane], 1.0);
         block.encounters.set(lane, &here);
         block.receivers.set(lane, &here.light_context());
         here.bsdf().diffuse().unwrap_or(Rgb::ZERO)

@@ -32,7 +32,7 @@ pub(super) struct TransportWorker<'a, N> {
     /// Which surfaces are there for which rays.
     pub(super) passing: Passing,
     pub(super) widths: bool,
-    /// Whether paths need no more of a diffuse surface than its colour.
+    /// Whether paths may be sorted by what scatters them, and need no more of a diffuse surface than its colour.
     pub(super) in_columns: bool,
     /// What guides paths, if anything does.
     pub(super) guide: Option<&'a Guide>,
@@ -63,7 +63,7 @@ impl<'a, N: Features> TransportWorker<'a, N> {
             footprint,
             passing: Passing::new(N::GENERAL && needs.masks, N::GENERAL && needs.nested),
             widths,
-            in_columns: settings.are_plain() && !settings.guided && !widths,
+            in_columns: settings.are_plain() && !settings.guided,
             guide,
             now: Queue::default(),
             next: Queue::default(),

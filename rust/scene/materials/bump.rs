@@ -58,8 +58,8 @@ impl Material for BumpMap {
         self.material.bsdf(at)
     }
 
-    fn kind(&self) -> Option<usize> {
-        self.material.kind()
+    fn kinds(&self) -> Option<[usize; 2]> {
+        self.material.kinds()
     }
 
     fn needs(&self) -> Needs {

@@ -33,8 +33,8 @@ impl Material for DiffuseMaterial {
         }
     }
 
-    fn kind(&self) -> Option<usize> {
-        Some(AnyBsdf::DIFFUSE)
+    fn kinds(&self) -> Option<[usize; 2]> {
+        Some([AnyBsdf::DIFFUSE; 2])
     }
 
     fn needs(&self) -> Needs {

@@ -22,8 +22,8 @@ impl Material for Mask {
         self.material.bsdf(at)
     }
 
-    fn kind(&self) -> Option<usize> {
-        self.material.kind()
+    fn kinds(&self) -> Option<[usize; 2]> {
+        self.material.kinds()
     }
 
     fn needs(&self) -> Needs {

@@ -68,11 +68,10 @@ pub trait Material: Debug + Send + Sync {
         self.constant().map(|bsdf| [bsdf; 2])
     }
 
-    /// The kind of function, as [`AnyBsdf::kind`] has it, by which it scatters at every point and on both sides, if
-    /// that is known beforehand.
-    fn kind(&self) -> Option<usize> {
-        let [front, back] = self.constant_sides()?.map(|bsdf| bsdf.kind());
-        (front == back).then_some(front)
+    /// The kinds of functions, as [`AnyBsdf::kind`] has them, by which it scatters at every point, on the front and on
+    /// the back, if they are known beforehand.
+    fn kinds(&self) -> Option<[usize; 2]> {
+        Some(self.constant_sides()?.map(|bsdf| bsdf.kind()))
     }
 
     /// What is wrong with it, in a few words; `Ok` if nothing is.

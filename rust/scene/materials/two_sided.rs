@@ -32,8 +32,8 @@ impl Material for TwoSided {
         Some([front, back])
     }
 
-    fn kind(&self) -> Option<usize> {
-        self.front.kind().filter(|_| self.front.kind() == self.back.kind())
+    fn kinds(&self) -> Option<[usize; 2]> {
+        Some([self.front.kinds()?[0], self.back.kinds()?[1]])
     }
 
     fn needs(&self) -> Needs {

@@ -74,6 +74,12 @@ impl SurfaceInteractionLanes {
         self.wo.get(lane)
     }
 
+    /// The mean curvature of a lane, as [`SurfaceInteraction::curvature`] has it.
+    #[inline(always)]
+    pub fn curvature(&self, lane: usize) -> f64 {
+        self.curvature[lane]
+    }
+
     /// Sets the encounter of a lane, but for its point.
     #[inline(always)]
     pub fn set<B: Bsdf>(&mut self, lane: usize, here: &SurfaceInteraction<B>) {
