@@ -1,6 +1,6 @@
 //! Rays that wait to be asked, by columns.
 
-use super::{LANES, Numbers, Ray, RayColumns, VectorLanes, Vectors};
+use super::{DVec3, LANES, Numbers, Ray, RayColumns, VectorLanes, Vectors};
 
 /// Rays that wait to be asked, by columns, and in f64: what leaves a surface must not be rounded.
 #[derive(Clone, Debug, Default)]
@@ -109,6 +109,32 @@ impl RayQueue {
         chosen.append(&mut self.misses, &rays.misses);
     }
 
+    /// Some of them, a lane each.
+    ///
+    /// # Panics
+    /// If one is not there.
+    #[inline]
+    pub fn gather(&self, which: &[u32; LANES], rays: &mut [Ray; LANES]) {
+        // All columns are as long as this one, which is seen here once for all lanes.
+        let count = self.len();
+        let [ox, oy, oz] = self.origin.each_ref().map(|column| &column[..count]);
+        let [dx, dy, dz] = self.direction.each_ref().map(|column| &column[..count]);
+        let [t_min, t_max, time] = [&self.t_min[..count], &self.t_max[..count], &self.time[..count]];
+        let misses = &self.misses[..count];
+        for lane in 0..LANES {
+            let i = which[lane] as usize;
+            assert!(i < count, "a ray that is there");
+            rays[lane] = Ray {
+                origin: DVec3::new(ox[i], oy[i], oz[i]),
+                direction: DVec3::new(dx[i], dy[i], dz[i]),
+                t_min: t_min[i],
+                t_max: t_max[i],
+                time: time[i],
+                misses: misses[i],
+            };
+        }
+    }
+
     /// One of them.
     #[inline(always)]
     pub fn get(&self, i: usize) -> Ray {
@@ -189,6 +215,9 @@ mod tests {
         let columns = RayBatch::Columns(queue.columns());
         assert_eq!((queue.len(), columns.len(), queue.is_empty()), (wanted.len(), wanted.len(), false));
         for (i, &ray) in wanted.iter().enumerate() {
+            let mut gathered = [Ray::new(DVec3::ZERO, DVec3::X); LANES];
+            queue.gather(&[i as u32; LANES], &mut gathered);
+            assert_eq!(gathered, [ray; LANES]);
             assert_eq!((queue.get(i), columns.get(i)), (ray, Ray { time: 0.0, ..ray }));
             assert!(columns.misses(i, ray.misses[1]) && !columns.misses(i, ray.misses[1] + 1));
         }

@@ -41,6 +41,11 @@ one_of! {
     }
 }
 
+impl AnyBsdf {
+    /// The kind of [`Diffuse`], the first.
+    pub const DIFFUSE: usize = 0;
+}
+
 /// Makes [`AnyBsdf`] of less common facets too.
 macro_rules! faceted {
     ($($of:ty,)+) => {

@@ -1,5 +1,9 @@
 //! Metals.
 
+mod lanes;
+
+pub use lanes::ConductorLanes;
+
 use super::bsdf::either;
 use super::conductors::{Metal, Reflectance};
 use super::fresnel::ConductorIndex;
@@ -35,6 +39,20 @@ struct Rough<F: Lossy> {
 }
 
 impl<F: Lossy> Rough<F> {
+    /// What is scattered between two directions above, and the density of the draw: by what [`Facets::mirroring`] tells
+    /// of them, the reflectance there, and what is lost of light from either.
+    #[inline(always)]
+    fn scattered(
+        (facets, multiple, grazing): (&F, Rgb, &Grazing),
+        [wo, wi]: [DVec3; 2],
+        (density, reflectance): (f64, Rgb),
+        [lost, lost_there]: [f64; 2],
+    ) -> (Rgb, f64) {
+        let single = density * facets.reflection_geometry(wo, wi);
+        let value = reflectance * single + multiple * (lost * lost_there * wi.z);
+        (value, (1.0 - lost) * facets.reflected_pdf(wo, density) + lost * grazing.pdf(wi.z))
+    }
+
     /// What is lost of light from `w`.
     #[inline]
     fn lost(&self, w: DVec3) -> f64 {
@@ -92,8 +110,14 @@ fn made_up_of(lost: f64, reflectance: f64) -> f64 {
     colour * (FRAC_1_PI / lost)
 }
 
+/// Whether facets mirror one direction to another: both are seen, on one side.
+#[inline(always)]
+fn mirrors<F: Facets>(wo: DVec3, wi: DVec3) -> bool {
+    F::sees(wo) & F::sees(wi) & (wo.z * wi.z > 0.0)
+}
+
 /// As seen from above: a direction and its mirror image below the surface see the same.
-#[inline]
+#[inline(always)]
 pub(super) fn above(w: DVec3) -> DVec3 {
     DVec3::new(w.x, w.y, w.z.abs())
 }
@@ -104,15 +128,14 @@ impl<F: Lossy> Bsdf for Conductor<F> {
         let Some(rough) = &self.rough else {
             return (Rgb::ZERO, 0.0);
         };
-        if !F::sees(wo) || !F::sees(wi) || wo.z * wi.z <= 0.0 {
+        if !mirrors::<F>(wo, wi) {
             return (Rgb::ZERO, 0.0);
         }
         let (wo, wi) = (above(wo), above(wi));
         let (density, cosine) = rough.facets.mirroring(wo, wi);
-        let single = density * rough.facets.reflection_geometry(wo, wi);
-        let lost = rough.lost(wo);
-        let value = self.reflectance(cosine) * single + rough.multiple * (lost * rough.loss.of(wi) * wi.z);
-        (value, (1.0 - lost) * rough.facets.reflected_pdf(wo, density) + lost * rough.grazing.pdf(wi.z))
+        let lost = [rough.lost(wo), rough.loss.of(wi)];
+        let parts = (&rough.facets, rough.multiple, &rough.grazing);
+        Rough::scattered(parts, [wo, wi], (density, self.reflectance(cosine)), lost)
     }
 
     #[inline]

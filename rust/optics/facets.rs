@@ -55,7 +55,7 @@ pub trait Facets: Copy + Debug + PartialEq {
 
     /// G₂(wo, wi) / (4 cos θo): what F D is multiplied by for reflection, with the cosine of `wi` in it. Here facets
     /// that are high are seen from both sides, and low ones from neither: G₂ is correlated by height.
-    #[inline]
+    #[inline(always)]
     fn reflection_geometry(&self, wo: DVec3, wi: DVec3) -> f64 {
         // G₂ = 1 / (1 + Λ(wo) + Λ(wi)), and 1 + 2Λ = s / z.
         0.5 * wi.z / (self.stretch(wo) * wi.z + self.stretch(wi) * wo.z)
@@ -78,21 +78,21 @@ pub trait Facets: Copy + Debug + PartialEq {
 
     /// The density, in solid angle, with which [`Facets::sample_reflection`] draws a direction to which facets of this
     /// density mirror.
-    #[inline]
+    #[inline(always)]
     fn reflected_pdf(&self, wo: DVec3, density: f64) -> f64 {
         // D G₁ (wo · h) / cos θo, over the 4 (wo · h) of mirroring.
         density * 0.5 / (wo.z + self.stretch(wo))
     }
 
     /// Draws the direction from which a facet that `wo` sees reflects. It may lie below the horizon.
-    #[inline]
+    #[inline(always)]
     fn sample_reflection(&self, wo: DVec3, u: [f64; 2]) -> DVec3 {
         let h = self.sample_visible(wo, u);
         h * (2.0 * wo.dot(h)) - wo
     }
 
     /// Whether a direction is far enough from the plane for products of cosines to be numbers: at 10⁻¹⁰⁰ everything is.
-    #[inline]
+    #[inline(always)]
     fn sees(w: DVec3) -> bool {
         w.z.abs() > 1e-100
     }

@@ -78,8 +78,20 @@ impl ConductorIndex {
         Self { real: eta2 - k2, imaginary2: 4.0 * eta2 * k2 }
     }
 
+    /// Of its parts.
+    #[inline(always)]
+    pub(super) fn with([real, imaginary2]: [Rgb; 2]) -> Self {
+        Self { real, imaginary2 }
+    }
+
+    /// What it consists of.
+    #[inline(always)]
+    pub(super) fn parts(&self) -> [Rgb; 2] {
+        [self.real, self.imaginary2]
+    }
+
     /// The reflectance for unpolarised light of a `cosine` of incidence (Born and Wolf, "Principles of Optics", 14.2).
-    #[inline]
+    #[inline(always)]
     pub fn reflectance(&self, cosine: f64) -> Rgb {
         let (c, c2) = (cosine, cosine * cosine);
         let s2 = (1.0 - c) * (1.0 + c);
@@ -106,7 +118,7 @@ impl ConductorIndex {
 }
 
 /// The roots of all channels.
-#[inline]
+#[inline(always)]
 fn root(x: Rgb) -> Rgb {
     Rgb::new(x[0].sqrt(), x[1].sqrt(), x[2].sqrt())
 }

@@ -13,18 +13,26 @@ pub struct Ggx {
     alpha: [f64; 2],
 }
 
+impl Ggx {
+    /// Of a roughness that another has.
+    #[inline(always)]
+    pub(super) fn with(alpha: [f64; 2]) -> Self {
+        Self { alpha }
+    }
+}
+
 impl Facets for Ggx {
     #[inline]
     fn new(alpha: [f64; 2]) -> Self {
         Self { alpha: alpha.map(|a| a.clamp(Self::SMOOTH, 1.0)) }
     }
 
-    #[inline]
+    #[inline(always)]
     fn alpha(&self) -> [f64; 2] {
         self.alpha
     }
 
-    #[inline]
+    #[inline(always)]
     fn density(&self, h: DVec3) -> f64 {
         let [ax, ay] = self.alpha;
         let (x, y) = (h.x / ax, h.y / ay);
@@ -34,22 +42,22 @@ impl Facets for Ggx {
 
     /// By the half vector as it is, not unit, and with α² divided out: with q = wo + wi and p = αx αy it is
     /// |q|⁴ p³ / (π (αy² qx² + αx² qy² + p² qz²)²), and the cosine is |q| / 2.
-    #[inline]
+    #[inline(always)]
     fn mirroring(&self, wo: DVec3, wi: DVec3) -> (f64, f64) {
         let ([ax, ay], q) = (self.alpha, wo + wi);
         let square = q.length_squared();
-        // Of opposite directions next to the plane nothing is told by their sum.
-        if square < 1e-60 {
-            return (self.density(DVec3::Z), wo.z);
-        }
         let product = ax * ay;
         let (x, y, z) = (ay * q.x, ax * q.y, product * q.z);
         let root = square * product / (x * x + y * y + z * z);
-        (FRAC_1_PI * product * (root * root), (0.5 * square.sqrt()).min(1.0))
+        let (density, cosine) = (FRAC_1_PI * product * (root * root), (0.5 * square.sqrt()).min(1.0));
+        // Of opposite directions next to the plane nothing is told by their sum. Both are computed: lanes have no
+        // branches.
+        let is_flat = square < 1e-60;
+        (if is_flat { self.density(DVec3::Z) } else { density }, if is_flat { wo.z } else { cosine })
     }
 
     /// |z| √(1 + α² tan² θ).
-    #[inline]
+    #[inline(always)]
     fn stretch(&self, w: DVec3) -> f64 {
         let [ax, ay] = self.alpha;
         let (x, y) = (ax * w.x, ay * w.y);
@@ -58,7 +66,7 @@ impl Facets for Ggx {
 
     /// Seen from a stretched direction, facets are a hemisphere of mirrors, which reflect to a uniform cap of the
     /// sphere (Dupuy and Benyoub, "Sampling Visible GGX Normals with Spherical Caps", 2023).
-    #[inline]
+    #[inline(always)]
     fn sample_visible(&self, wo: DVec3, u: [f64; 2]) -> DVec3 {
         let [ax, ay] = self.alpha;
         let w = DVec3::new(ax * wo.x, ay * wo.y, wo.z) / self.stretch(wo);

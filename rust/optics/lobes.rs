@@ -87,6 +87,18 @@ impl Grazing {
         Self { square, log: square.recip().ln_1p() }
     }
 
+    /// Of its parts.
+    #[inline(always)]
+    pub fn with([square, log]: [f64; 2]) -> Self {
+        Self { square, log }
+    }
+
+    /// What it consists of.
+    #[inline(always)]
+    pub fn parts(&self) -> [f64; 2] {
+        [self.square, self.log]
+    }
+
     /// Draws one.
     #[inline]
     pub fn sample(&self, u: [f64; 2]) -> DVec3 {
@@ -97,7 +109,7 @@ impl Grazing {
     }
 
     /// The density in solid angle of one of this cosine.
-    #[inline]
+    #[inline(always)]
     pub fn pdf(&self, cosine: f64) -> f64 {
         FRAC_1_PI * cosine / ((cosine * cosine + self.square) * self.log)
     }

@@ -1,6 +1,6 @@
 //! Several kinds of scattering as one type.
 
-/// Makes an enum of kinds that implement [`super::Bsdf`], which implements it too. `$inline` is how its functions are
+/// Makes an enum of kinds that implement [`super::Bsdf`], which implements it too and numbers them. `$inline` is how its functions are
 /// to be inlined.
 macro_rules! one_of {
     ($(#[$about:meta])* $name:ident, $inline:meta, { $($(#[$doc:meta])* $kind:ident($of:ty),)+ }) => {
@@ -8,6 +8,22 @@ macro_rules! one_of {
         #[derive(Clone, Copy, Debug)]
         pub enum $name {
             $($(#[$doc])* $kind($of),)+
+        }
+
+        impl $name {
+            /// How many kinds there are.
+            pub const KINDS: usize = [$(stringify!($kind)),+].len();
+
+            /// The number of its kind among them.
+            #[inline]
+            pub fn kind(&self) -> usize {
+                enum Kind {
+                    $($kind),+
+                }
+                match self {
+                    $(Self::$kind(_) => Kind::$kind as usize,)+
+                }
+            }
         }
 
         $(impl From<$of> for $name {

@@ -96,6 +96,8 @@ pub struct Plan {
     constants: Vec<Option<[AnyBsdf; 2]>>,
     /// Of those that are diffuse, what each reflects.
     diffuse: Vec<Option<[Rgb; 2]>>,
+    /// By which kinds of functions each scatters, on the front and on the back.
+    kinds: Vec<[u8; 2]>,
 }
 
 /// What has less than this roughness, but does not scatter into single directions, counts as glossy. Over rougher
@@ -119,16 +121,19 @@ impl Plan {
         };
         let mut rounding = geometry.rounding();
         let mut constants = Vec::with_capacity(materials.len());
+        let mut kinds = Vec::with_capacity(materials.len());
         for (shape, material) in materials.iter().enumerate() {
             let shape = shape as u32;
             match geometry.instances_of(shape) {
                 Some(instances) => {
                     needs = needs | Self::of_copies(instances.prototype(), &mut rounding);
                     constants.push(None);
+                    kinds.push([Self::MIXED as u8; 2]);
                 }
                 None => {
                     needs = needs | Self::of(material.as_ref(), lights.emission(shape));
                     constants.push(material.constant_sides());
+                    kinds.push(material.kinds().unwrap_or([Self::MIXED; 2]).map(|kind| kind as u8));
                 }
             }
         }
@@ -138,7 +143,7 @@ impl Plan {
             _ => None,
         };
         let diffuse = constants.iter().map(colour).collect();
-        Self { needs, rounding, few, constants, diffuse }
+        Self { needs, rounding, few, constants, diffuse, kinds }
     }
 
     fn of(material: &dyn Material, emission: &Emission) -> SceneNeeds {
@@ -212,6 +217,22 @@ impl Plan {
     #[inline]
     pub fn diffuse(&self, shape: u32) -> Option<[Rgb; 2]> {
         self.diffuse[shape as usize]
+    }
+
+    /// How many kinds there are of what scatters: those of [`AnyBsdf`], and what is of no one of them.
+    pub const KINDS: usize = AnyBsdf::KINDS + 1;
+
+    /// The kind of what scatters by one colour at a point.
+    pub const DIFFUSE: usize = AnyBsdf::DIFFUSE;
+
+    /// In place of the kind of what is not known beforehand, or scatters by several.
+    pub const MIXED: usize = AnyBsdf::KINDS;
+
+    /// By which kind of function a shape scatters that is surrounded by nothing; it may be another on the back.
+    #[inline]
+    pub fn kind(&self, shape: u32, is_front: impl FnOnce() -> bool) -> usize {
+        let [front, back] = self.kinds[shape as usize];
+        (if front == back || is_front() { front } else { back }).into()
     }
 
     /// The variant of shading that has what the scene needs, and the least beyond.

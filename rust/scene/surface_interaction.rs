@@ -185,11 +185,24 @@ impl<B: Bsdf> SurfaceInteraction<B> {
     /// What was drawn in the shading frame, in the world.
     #[inline(always)]
     pub fn to_world(&self, drawn: BsdfSample) -> Option<BsdfSample> {
-        let wi = self.frame.to_world(drawn.wi);
-        let fading = self.fading(drawn.wi, wi);
-        // A single direction is not cut off along a line, and need not fade.
-        let fading = if drawn.is_delta() && fading > 0.0 { 1.0 } else { fading };
+        let (wi, fading) = self.goes_to(drawn.wi, drawn.is_delta());
         (fading > 0.0).then(|| BsdfSample { wi, weight: drawn.weight * fading, ..drawn })
+    }
+
+    /// Where a direction of the shading frame goes in the world, and how much of what is drawn there counts.
+    #[inline(always)]
+    pub fn goes_to(&self, wi: DVec3, is_delta: bool) -> (DVec3, f64) {
+        let direction = self.frame.to_world(wi);
+        let fading = self.fading(wi, direction);
+        // A single direction is not cut off along a line, and need not fade.
+        (direction, if is_delta & (fading > 0.0) { 1.0 } else { fading })
+    }
+
+    /// A direction of the world in the shading frame, and how much light from there counts: 0 where it is not seen.
+    #[inline(always)]
+    pub fn seen_from(&self, direction: DVec3) -> (DVec3, f64) {
+        let wi = self.frame.to_local(direction);
+        (wi, self.fading(wi, direction))
     }
 
     /// How much light from a direction counts as that nears the horizon of either normal: 0 where it lies above the one
@@ -241,8 +254,7 @@ impl<B: Bsdf> Encounter for SurfaceInteraction<B> {
 
     #[inline(always)]
     fn evaluate(&self, direction: DVec3) -> (Rgb, f64) {
-        let wi = self.frame.to_local(direction);
-        let fading = self.fading(wi, direction);
+        let (wi, fading) = self.seen_from(direction);
         if fading <= 0.0 {
             return (Rgb::ZERO, 0.0);
         }

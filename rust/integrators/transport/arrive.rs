@@ -9,14 +9,14 @@ use crate::integrators::nesting::MediumStack;
 use crate::integrators::passing::Met;
 use crate::math::Ray;
 use crate::optics::Rgb;
+use crate::scene::Plan;
 
 impl<N: Features> TransportWorker<'_, N> {
-    /// Sorts paths by what their rays have come to: those that leave the scene take what light comes from there, and
+    /// Sorts paths by what their rays have come to, so that blocks of them scatter by one kind of function: those that leave the scene take what light comes from there, and
     /// those that pass what they hit go on at once.
     pub(super) fn arrive(&mut self, samples: &mut [CameraSample], radiance: &mut [Rgb]) {
         let mut arrivals = std::mem::take(&mut self.arrivals);
-        arrivals.diffuse.clear();
-        arrivals.others.clear();
+        arrivals.kinds.iter_mut().for_each(Vec::clear);
         let is_nested = N::GENERAL && self.passing.is_nested();
         if N::GENERAL {
             self.passing.begin(self.scene, &self.now.rays, &self.hits);
@@ -52,19 +52,17 @@ impl<N: Features> TransportWorker<'_, N> {
                 (self.hits[i], self.now.carried[i]) = (hit, carried);
                 shape = self.scene.geometry().locate(hit.primitive).0;
             }
-            let is_diffuse = outside == 1.0 && self.diffuse(shape).is_some();
-            let list = if is_diffuse { &mut arrivals.diffuse } else { &mut arrivals.others };
+            // Of what branches, samples add what they find in the order of their paths, which is kept.
+            let kind = if self.in_columns && outside == 1.0 {
+                let ray = || self.now.rays.get(i);
+                self.scene.plan().kind(shape, || self.scene.geometry().surface(&ray(), &hit).is_front(&ray()))
+            } else {
+                Plan::MIXED
+            };
             self.scene.geometry().expect(hit.primitive, false);
-            list.push(i as u32);
+            arrivals.kinds[kind].push(i as u32);
         }
         self.arrivals = arrivals;
-    }
-
-    /// What a shape reflects on the front and on the back, if each side scatters by one diffuse colour and paths need
-    /// no more of it.
-    #[inline]
-    pub(super) fn diffuse(&self, shape: u32) -> Option<[Rgb; 2]> {
-        self.scene.plan().diffuse(shape).filter(|_| self.in_columns)
     }
 
     /// Sends a path on along the ray that it was on: with the same origin, so that nothing but the surface is left out.

@@ -7,7 +7,7 @@ use crate::integrators::{CameraSample, LocalGuide};
 use crate::math::{Hit, LANES, Ray, RayLanes, VectorLanes};
 use crate::optics::{Diffuse, RgbLanes};
 use crate::sampling::SamplerLanes;
-use crate::scene::materials::BsdfMix;
+use crate::scene::materials::{BsdfLanes, BsdfMix};
 use crate::scene::{LightContextLanes, SurfaceInteraction, SurfaceInteractionLanes, SurfaceLanes};
 
 /// Paths that have come to surfaces, at most sixteen, a lane each. The last stands in the lanes that are left.
@@ -32,7 +32,7 @@ pub(super) struct Block<'a> {
     pub reflectance: RgbLanes,
     /// Otherwise how each scatters, how wide its ray is, where light comes from by way of what is sharp, and whether
     /// roulette has been played.
-    pub bsdf: Vec<BsdfMix>,
+    pub bsdf: BsdfLanes,
     pub width: [f64; LANES],
     pub guides: [Option<LocalGuide<'a>>; LANES],
     pub arrivals: [Arrival; LANES],
@@ -57,7 +57,7 @@ impl Block<'_> {
             throughput: RgbLanes::ZERO,
             is_diffuse: false,
             reflectance: RgbLanes::ZERO,
-            bsdf: Vec::new(),
+            bsdf: BsdfLanes::new(),
             width: [0.0; LANES],
             guides: [None; LANES],
             arrivals: [Arrival::GoesOn; LANES],
@@ -90,6 +90,6 @@ impl Block<'_> {
     /// The encounter of a lane with any other.
     #[inline(always)]
     pub fn other(&self, lane: usize) -> SurfaceInteraction<&BsdfMix> {
-        self.encounters.get(lane, &self.bsdf[lane])
+        self.encounters.get(lane, self.bsdf.get(lane))
     }
 }

@@ -10,7 +10,7 @@ use super::splitting::Branch;
 use super::worker::TransportWorker;
 use crate::integrators::roulette;
 use crate::math::{LANES, VectorLanes};
-use crate::optics::{BsdfSample, Diffuse, Rgb, RgbLanes};
+use crate::optics::{BsdfSample, BsdfSampleLanes, Diffuse, Null, Rgb, RgbLanes};
 use crate::sampling::Pairs;
 use crate::scene::{Encounter, SurfaceInteractionLanes};
 use crate::simd::loops;
@@ -42,6 +42,29 @@ loops! {
     }
 }
 
+loops! {
+    /// From what was drawn in shading frames to the world, and to the rays that leave. `pdf` is 0 where a path ends.
+    fn leave(
+        encounters: &SurfaceInteractionLanes,
+        wi: &mut VectorLanes,
+        weight: &mut RgbLanes,
+        pdf: &mut [f64; LANES],
+        origin: &mut VectorLanes,
+        direction: &mut VectorLanes,
+    ) {
+        for i in 0..LANES {
+            let here = encounters.get(i, Null);
+            let (towards, fading) = here.goes_to(wi.get(i), pdf[i] == f64::INFINITY);
+            let ray = here.ray_origin().ray(towards);
+            wi.set(i, towards);
+            weight.set(i, weight.get(i) * fading);
+            pdf[i] = if fading > 0.0 { pdf[i] } else { 0.0 };
+            origin.set(i, ray.origin);
+            direction.set(i, ray.direction);
+        }
+    }
+}
+
 impl<N: Features> TransportWorker<'_, N> {
     /// Sends paths on to where their surfaces scatter them.
     pub(super) fn go_on(&mut self, block: &Block) {
@@ -68,21 +91,32 @@ impl<N: Features> TransportWorker<'_, N> {
             let choices = dimensions.map(Dimensions::scattering_choice);
             block.numbers.one_and_two(self.level, &choices, &mut choice, &mut u);
             let chances = self.chances(block, &dimensions);
-            for lane in 0..block.count {
-                if !block.goes_on[lane] || branch >= splits[lane] {
-                    continue;
+            let goes: [bool; LANES] = array::from_fn(|lane| block.goes_on[lane] && branch < splits[lane]);
+            let ([mut origin, mut direction], mut drawn) = ([VectorLanes::ZERO; 2], BsdfSampleLanes::NONE);
+            block.bsdf.sample(self.level, &goes, &block.encounters, (&choice, &u), &mut drawn);
+            let BsdfSampleLanes { wi, weight, pdf, .. } = &mut drawn;
+            leave(self.level, &block.encounters, wi, weight, pdf, &mut origin, &mut direction);
+            let mut going = 0;
+            for lane in (0..block.count).filter(|&lane| goes[lane]) {
+                let mut denser = 1.0;
+                if let Some(guide) = &block.guides[lane] {
+                    let here = block.other(lane);
+                    let Some((next, by)) = draw(&here, guide, choice[lane], [u[0][lane], u[1][lane]]) else { continue };
+                    let ray = here.ray_origin().ray(next.wi);
+                    drawn.set(lane, Some(next));
+                    origin.set(lane, ray.origin);
+                    direction.set(lane, ray.direction);
+                    denser = by;
                 }
-                let (here, u) = (block.other(lane), [u[0][lane], u[1][lane]]);
-                let drawn = match &block.guides[lane] {
-                    None => here.sample(|| choice[lane], u).map(|next| (next, 1.0)),
-                    Some(guide) => draw(&here, guide, choice[lane], u),
-                };
-                let Some((next, denser)) = drawn else { continue };
-                if self.is_followed(next.pdf) {
-                    let (number, splits, chance) = (numbers[lane], splits[lane], chances[lane]);
-                    self.send(block, lane, &next, Branch { number, splits, denser, chance });
+                let Some(next) = drawn.get(lane) else { continue };
+                let (number, splits, chance) = (numbers[lane], splits[lane], chances[lane]);
+                if self.is_followed(next.pdf)
+                    && self.send(block, lane, &next, Branch { number, splits, denser, chance })
+                {
+                    going |= 1 << lane;
                 }
             }
+            self.next.rays.push_lanes(&block.all_leaving(origin, direction, [f64::INFINITY; LANES]), going);
         }
     }
 
@@ -131,7 +165,10 @@ impl<N: Features> TransportWorker<'_, N> {
                 going |= 1 << lane;
                 self.next.paths.push(path);
                 if N::GENERAL {
-                    self.next.carried.push(Carried { chance: -1.0, ..*self.carried(block, lane) });
+                    let carried = self.carried(block, lane);
+                    let next = || BsdfSample::new(direction.get(lane), weight.get(lane), pdf[lane]);
+                    let footprint = if self.widths { self.widened(block, lane, &next()) } else { carried.footprint };
+                    self.next.carried.push(Carried { footprint, chance: -1.0, ..*carried });
                 }
             }
         }
@@ -169,8 +206,9 @@ impl<N: Features> TransportWorker<'_, N> {
         true
     }
 
-    /// Queues a path that goes on along a direction drawn, unless roulette ends it.
-    pub(super) fn send(&mut self, block: &Block, lane: usize, next: &BsdfSample, branch: Branch) {
+    /// Queues a path that goes on along a direction drawn, unless roulette ends it, and says whether it did; its ray is
+    /// left to be queued.
+    pub(super) fn send(&mut self, block: &Block, lane: usize, next: &BsdfSample, branch: Branch) -> bool {
         let mut path = block.paths[lane];
         path.throughput *= next.weight;
         path.pdf = next.pdf;
@@ -184,13 +222,11 @@ impl<N: Features> TransportWorker<'_, N> {
         path.each = self.asks_each(block, lane);
         path.bounce = path.bounce.saturating_add(1);
         if N::GENERAL && path.throughput.max() * path.scale < self.settings.least {
-            return;
+            return false;
         }
         if !self.survives(&mut path, block.arrivals[lane], branch.chance) {
-            return;
+            return false;
         }
-        let ray = block.other(lane).ray_origin().ray(next.wi);
-        self.next.rays.push(&block.leaving(lane, ray));
         self.next.paths.push(path);
         if N::GENERAL {
             let carried = self.carried(block, lane);
@@ -199,5 +235,6 @@ impl<N: Features> TransportWorker<'_, N> {
                 if self.passing.is_nested() && next.is_through { self.boundary(block, lane).1 } else { carried.media };
             self.next.carried.push(Carried { footprint, media, chance: -1.0, branch: branch.number });
         }
+        true
     }
 }

@@ -3,12 +3,12 @@
 use super::block::Block;
 use super::features::Features;
 use super::guided::density;
-use super::resampling::Resampled;
+use super::resampling::{ResampledLanes, resample};
 use super::weights::power_heuristic;
 use super::worker::TransportWorker;
 use crate::math::{DVec3, LANES, VectorLanes};
-use crate::optics::{Bsdf, Diffuse, Rgb, RgbLanes};
-use crate::scene::{Encounter, LightLanes, LightSample, SurfaceInteractionLanes};
+use crate::optics::{Bsdf, Diffuse, Null, Rgb, RgbLanes};
+use crate::scene::{Encounter, LightLanes, SurfaceInteractionLanes};
 use crate::simd::loops;
 use std::array;
 
@@ -41,6 +41,69 @@ loops! {
     }
 }
 
+loops! {
+    /// From light that was drawn to where it comes from in the shading frames, and how much it counts there: 0 where
+    /// there is none.
+    fn turn(
+        encounters: &SurfaceInteractionLanes,
+        lights: &LightLanes,
+        wi: &mut VectorLanes,
+        counts: &mut [f64; LANES],
+    ) {
+        for i in 0..LANES {
+            let (direction, _, drawn) = lights.get(i);
+            let (local, fading) = encounters.get(i, Null).seen_from(direction);
+            wi.set(i, local);
+            counts[i] = if drawn > 0.0 { fading } else { 0.0 };
+        }
+    }
+}
+
+loops! {
+    /// What arrives of light that was drawn, by how it is scattered.
+    fn weigh(
+        throughput: &RgbLanes,
+        lights: &LightLanes,
+        scattered: &RgbLanes,
+        pdf: &[f64; LANES],
+        counts: &[f64; LANES],
+        asks: &[bool; LANES],
+        asked: &[f64; LANES],
+        splits: &[f64; LANES],
+        followed: &[f64; LANES],
+        arriving: &mut RgbLanes,
+    ) {
+        for i in 0..LANES {
+            let (_, light, drawn) = lights.get(i);
+            let beside = power_heuristic(drawn * asked[i], pdf[i] * splits[i]);
+            let weight = if followed[i] > 0.0 { beside } else { 1.0 } / asked[i];
+            let all = throughput.get(i) * (scattered.get(i) * counts[i]) * light * weight;
+            arriving.set(i, Rgb::select(asks[i] & (drawn > 0.0), all, Rgb::ZERO));
+        }
+    }
+}
+
+loops! {
+    /// The rays that tell whether light that was drawn arrives.
+    fn aim(
+        encounters: &SurfaceInteractionLanes,
+        lights: &LightLanes,
+        origin: &mut VectorLanes,
+        direction: &mut VectorLanes,
+        t_max: &mut [f64; LANES],
+    ) {
+        for i in 0..LANES {
+            let (source, is_within) = lights.source(i);
+            let from = encounters.get(i, Null).ray_origin();
+            let (segment, ray) = (from.segment(&source), from.ray(lights.get(i).0));
+            let ray = if is_within { segment } else { ray };
+            origin.set(i, ray.origin);
+            direction.set(i, ray.direction);
+            t_max[i] = ray.t_max;
+        }
+    }
+}
+
 /// The choice of one of several draws: each makes its own in a share of all.
 #[inline]
 fn share(choice: f64, (number, asked): (u32, u32)) -> f64 {
@@ -55,7 +118,7 @@ impl<N: Features> TransportWorker<'_, N> {
         }
         let mut numbers = [(0, 0); LANES];
         for (lane, number) in numbers.iter_mut().enumerate().take(block.count) {
-            if block.goes_on[lane] && !block.bsdf[lane].is_delta() {
+            if block.goes_on[lane] && !block.bsdf.get(lane).is_delta() {
                 number.1 = if self.is_first(block, lane) { self.settings.light_samples } else { 1 };
             }
         }
@@ -127,59 +190,63 @@ impl<N: Features> TransportWorker<'_, N> {
         }
         let (mut lights, lit) = (LightLanes::NONE, self.scene.lights());
         lit.sample_lanes(self.level, self.scene.geometry(), &block.receivers, &choice, &u, &mut lights);
-        for lane in (0..block.count).filter(|&lane| asks[lane]) {
-            if let Some(light) = lights.sample(lane) {
-                let arriving = self.arriving(block, lane, &light, numbers[lane].1);
-                if !arriving.is_black() {
-                    self.send_towards(block, lane, &light, arriving);
-                }
-            }
-        }
+        let arriving = self.arriving(block, &lights, numbers, asks);
+        self.send_towards(block, &lights, &arriving);
     }
 
     /// Draws light of each of few lights for some lanes, and of it one draw to stand for all.
     fn ask_each_light(&mut self, block: &Block, numbers: &[(u32, u32); LANES], asks: &[bool; LANES]) {
         let (lit, geometry) = (self.scene.lights(), self.scene.geometry());
         let first = numbers.map(|(number, _)| number.wrapping_mul(lit.few()));
-        let (mut choice, mut u, mut lights) = ([0.0; LANES], [[0.0; LANES]; 2], LightLanes::NONE);
+        let (mut choice, mut u) = ([0.0; LANES], [[0.0; LANES]; 2]);
         let choices = array::from_fn(|lane| block.dimensions[lane].light_choice(first[lane]));
         block.numbers.one(self.level, &choices, &mut choice);
-        let mut all: [Resampled<LightSample>; LANES] =
-            array::from_fn(|lane| Resampled::new(share(choice[lane], (numbers[lane].0, numbers[lane].1.max(1)))));
-        for one in 0..lit.few() {
+        let shares = array::from_fn(|lane| share(choice[lane], (numbers[lane].0, numbers[lane].1.max(1))));
+        let mut all = ResampledLanes::new(shares);
+        let mut each = std::mem::take(&mut self.each);
+        each.resize(lit.few() as usize, LightLanes::NONE);
+        for (one, lights) in (0u32..).zip(&mut each) {
             let dimensions = array::from_fn(|lane| block.dimensions[lane].light_choice(first[lane].wrapping_add(one)));
             block.numbers.one_and_two(self.level, &dimensions, &mut choice, &mut u);
-            lit.sample_one_lanes(one, self.level, geometry, &block.receivers, &choice, &u, &mut lights);
-            for lane in (0..block.count).filter(|&lane| asks[lane]) {
-                if let Some(light) = lights.sample(lane) {
-                    all[lane].add(light, self.arriving(block, lane, &light, numbers[lane].1));
-                }
+            lit.sample_one_lanes(one, self.level, geometry, &block.receivers, &choice, &u, lights);
+            resample(self.level, &mut all, one.into(), &self.arriving(block, lights, numbers, asks));
+        }
+        let (mut lights, mut arriving) = (LightLanes::NONE, RgbLanes::ZERO);
+        for lane in 0..block.count {
+            if let Some((one, brings)) = all.kept(lane) {
+                lights.copy(lane, &each[one]);
+                arriving.set(lane, brings);
             }
         }
-        for (lane, all) in all.into_iter().enumerate() {
-            if let Some((light, arriving)) = all.kept() {
-                self.send_towards(block, lane, &light, arriving);
-            }
-        }
+        self.each = each;
+        self.send_towards(block, &lights, &arriving);
     }
 
     /// Whether each of few lights is asked where the path of a lane is.
     #[inline]
     pub(super) fn asks_each(&self, block: &Block, lane: usize) -> bool {
-        !N::PLAIN && !block.is_diffuse && self.scene.plan().asks_each(|| block.bsdf[lane].roughness())
+        !N::PLAIN && !block.is_diffuse && self.scene.plan().asks_each(|| block.bsdf.get(lane).roughness())
     }
 
-    /// Queues the shadow ray of light that was drawn.
-    fn send_towards(&mut self, block: &Block, lane: usize, light: &LightSample, arriving: Rgb) {
-        let from = block.other(lane).ray_origin();
-        let ray = match &light.source {
-            Some(source) => from.segment(source),
-            None => from.ray(light.direction),
-        };
-        let mut ray = block.leaving(lane, ray);
-        ray.misses[1] = light.primitive;
-        self.shadows.push(&ray);
-        self.bring(block, lane, light.direction, arriving);
+    /// Queues the shadow rays of light that was drawn, in the lanes where anything arrives of it.
+    fn send_towards(&mut self, block: &Block, lights: &LightLanes, arriving: &RgbLanes) {
+        let mut asked = 0;
+        for lane in 0..block.count {
+            if !arriving.get(lane).is_black() {
+                asked |= 1 << lane;
+                self.bring(block, lane, lights.get(lane).0, arriving.get(lane));
+            }
+        }
+        if asked == 0 {
+            return;
+        }
+        let ([mut origin, mut direction], mut t_max) = ([VectorLanes::ZERO; 2], [0.0; LANES]);
+        aim(self.level, &block.encounters, lights, &mut origin, &mut direction, &mut t_max);
+        let mut rays = block.all_leaving(origin, direction, t_max);
+        for lane in 0..LANES {
+            rays.misses[lane][1] = lights.primitive(lane);
+        }
+        self.shadows.push_lanes(&rays, asked);
     }
 
     /// Says what arrives at the sample of a lane along a shadow ray that leaves in a direction.
@@ -193,22 +260,41 @@ impl<N: Features> TransportWorker<'_, N> {
         }
     }
 
-    /// What light that was drawn adds to the sample, one of so many draws, if nothing is in its way.
-    #[inline]
-    fn arriving(&self, block: &Block, lane: usize, light: &LightSample, asked: u32) -> Rgb {
-        let (scattered, mut pdf) = block.other(lane).evaluate(light.direction);
-        if let Some(guide) = &block.guides[lane] {
-            pdf = density(guide, pdf, light.direction);
+    /// What light that was drawn adds to samples, of so many draws each, if nothing is in its way.
+    fn arriving(
+        &self,
+        block: &Block,
+        lights: &LightLanes,
+        numbers: &[(u32, u32); LANES],
+        asks: &[bool; LANES],
+    ) -> RgbLanes {
+        let (mut wi, mut counts) = (VectorLanes::ZERO, [0.0; LANES]);
+        turn(self.level, &block.encounters, lights, &mut wi, &mut counts);
+        let (mut scattered, mut pdf) = (RgbLanes::ZERO, [0.0; LANES]);
+        let seen = array::from_fn(|lane| asks[lane] && counts[lane] > 0.0);
+        block.bsdf.evaluate(self.level, &seen, &block.encounters, &wi, &mut scattered, &mut pdf);
+        for lane in (0..block.count).filter(|&lane| asks[lane]) {
+            if let Some(guide) = &block.guides[lane] {
+                pdf[lane] = density(guide, pdf[lane], lights.get(lane).0);
+            }
         }
-        let splits = self.splits(block, lane);
-        let mut weight = if self.is_followed(pdf) {
-            power_heuristic(light.pdf * f64::from(asked), pdf * f64::from(splits))
-        } else {
-            1.0
-        };
-        if N::GENERAL {
-            weight /= f64::from(asked);
-        }
-        block.paths[lane].throughput * scattered * light.weight * weight
+        let asked = &numbers.map(|(_, asked)| f64::from(asked.max(1)));
+        let splits = array::from_fn(|lane| f64::from(self.splits(block, lane)));
+        let followed = array::from_fn(|lane| if self.is_followed(pdf[lane]) { 1.0 } else { 0.0 });
+        let mut arriving = RgbLanes::ZERO;
+        weigh(
+            self.level,
+            &block.throughput,
+            lights,
+            &scattered,
+            &pdf,
+            &counts,
+            asks,
+            asked,
+            &splits,
+            &followed,
+            &mut arriving,
+        );
+        arriving
     }
 }

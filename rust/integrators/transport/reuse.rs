@@ -201,6 +201,8 @@ impl Reuse {
     ) {
         let (mut start, mut next) = (0, 0);
         let mut given = Vec::new();
+        // Paths come to surfaces in the order of what these scatter by; each has one second point at most.
+        self.second.sort_unstable_by_key(|second| second.sample);
         for &count in groups {
             if cancel.is_raised() {
                 return;

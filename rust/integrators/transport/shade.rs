@@ -71,9 +71,19 @@ impl<'a, N: Features> TransportWorker<'a, N> {
         }
         if block.is_diffuse {
             for lane in 0..LANES {
-                let surface = block.surfaces.get(lane);
-                let [front, back] = self.diffuse(surface.shape).unwrap_or([Rgb::ZERO; 2]);
-                block.reflectance.set(lane, if surface.is_front(&block.rays[lane]) { front } else { back });
+                let (surface, ray) = (block.surfaces.get(lane), block.rays[lane]);
+                let constant = self.scene.plan().diffuse(surface.shape).filter(|_| block.width[lane] == 0.0);
+                let reflectance = match constant {
+                    Some([front, back]) => {
+                        if surface.is_front(&ray) {
+                            front
+                        } else {
+                            back
+                        }
+                    }
+                    None => self.textured(block, lane),
+                };
+                block.reflectance.set(lane, reflectance);
                 if N::SHARES && block.goes_on[lane] {
                     block.paths[lane] = self.reuse.visit(block.paths[lane], &block.diffuse(lane));
                 }
@@ -86,6 +96,19 @@ impl<'a, N: Features> TransportWorker<'a, N> {
         }
     }
 
+    /// What a diffuse surface reflects that is not alike everywhere, or is seen by a ray that has a width. A padded lane
+    /// is left as it is.
+    fn textured(&self, block: &mut Block, lane: usize) -> Rgb {
+        if N::PLAIN || lane >= block.count {
+            return Rgb::ZERO;
+        }
+        let (ray, hit, surface) = (&block.rays[lane], &block.hits[lane], block.surfaces.get(lane));
+        let here = SurfaceInteraction::new(self.scene, ray, hit, surface, block.width[lane], 1.0);
+        block.encounters.set(lane, &here);
+        block.receivers.set(lane, &here.light_context());
+        here.bsdf().diffuse().unwrap_or(Rgb::ZERO)
+    }
+
     /// What the path of a lane carries.
     #[inline]
     pub(super) fn carried(&self, block: &Block, lane: usize) -> &Carried {
@@ -96,9 +119,9 @@ impl<'a, N: Features> TransportWorker<'a, N> {
     fn gather(&self, block: &mut Block, which: &[u32]) {
         block.count = which.len();
         block.index = array::from_fn(|lane| which[lane.min(which.len() - 1)]);
+        self.now.rays.gather(&block.index, &mut block.rays);
         for lane in 0..LANES {
             let index = block.index[lane] as usize;
-            block.rays[lane] = self.now.rays.get(index);
             block.hits[lane] = self.hits[index];
             block.paths[lane] = self.now.paths[index];
             block.goes_on[lane] = false;
@@ -146,9 +169,9 @@ impl<'a, N: Features> TransportWorker<'a, N> {
                 continue;
             }
             let mut path = block.paths[lane];
-            let wo = block.encounters.get(lane, &block.bsdf[lane]).wo();
-            block.bsdf[lane].prepare(wo);
-            let here = block.encounters.get(lane, &block.bsdf[lane]);
+            let wo = block.encounters.get(lane, block.bsdf.get(lane)).wo();
+            block.bsdf.prepare(wo);
+            let here = block.encounters.get(lane, block.bsdf.get(lane));
             if N::SHARES {
                 path = self.reuse.visit(path, &here);
             }

@@ -3,6 +3,7 @@
 use super::block::Block;
 use super::features::Features;
 use super::worker::TransportWorker;
+use crate::scene::Encounter;
 
 /// One of so many ways that a path goes on.
 #[derive(Clone, Copy)]
@@ -29,9 +30,11 @@ impl<N: Features> TransportWorker<'_, N> {
         let here = block.other(lane);
         let mut branch =
             Branch { number: self.carried(block, lane).branch.wrapping_mul(2), splits: 1, denser: 1.0, chance: 0.0 };
-        block.bsdf[lane].delta_lobes(here.wo(), |single| {
+        block.bsdf.get(lane).delta_lobes(here.wo(), |single| {
             if let Some(next) = here.to_world(single) {
-                self.send(block, lane, &next, branch);
+                if self.send(block, lane, &next, branch) {
+                    self.next.rays.push(&block.leaving(lane, here.ray_origin().ray(next.wi)));
+                }
                 branch.number = branch.number.wrapping_add(1);
             }
         });

@@ -15,7 +15,7 @@ impl<N: Features> TransportWorker<'_, N> {
     /// and Willems, "Path Differentials and Applications", 2001).
     pub(super) fn widened(&self, block: &Block, lane: usize, next: &BsdfSample) -> Footprint {
         let (before, width) = (self.carried(block, lane).footprint, block.width[lane]);
-        let curvature = block.other(lane).curvature();
+        let curvature = block.encounters.curvature(lane);
         let bent = if next.is_through {
             before.spread / next.eta + curvature * width * (1.0 / next.eta - 1.0)
         } else {

@@ -16,7 +16,7 @@ use crate::integrators::{CameraSample, Guide, Job, LocalGuide, Worker, is_matt};
 use crate::math::{Hit, LANES};
 use crate::optics::{Bsdf, Rgb};
 use crate::sampling::SamplerLanes;
-use crate::scene::{Encounter, Footprint, Scene, SurfaceInteraction};
+use crate::scene::{Encounter, Footprint, LightLanes, Plan, Scene, SurfaceInteraction};
 use crate::simd::Level;
 use crate::timing::{Part, timed};
 use crate::workers::Cancel;
@@ -32,7 +32,7 @@ pub(super) struct TransportWorker<'a, N> {
     /// Which surfaces are there for which rays.
     pub(super) passing: Passing,
     pub(super) widths: bool,
-    /// Whether paths need no more of a diffuse surface than its colour.
+    /// Whether paths may be sorted by what scatters them, and need no more of a diffuse surface than its colour.
     pub(super) in_columns: bool,
     /// What guides paths, if anything does.
     pub(super) guide: Option<&'a Guide>,
@@ -43,6 +43,8 @@ pub(super) struct TransportWorker<'a, N> {
     /// The paths that are worked on; none before the first.
     block: Option<Box<Block<'a>>>,
     pub(super) shadows: Shadows,
+    /// What is drawn of each of few lights.
+    pub(super) each: Vec<LightLanes>,
     pub(super) reuse: Reuse,
     /// What samples find for themselves, and then what they find for sharing.
     found: Vec<Rgb>,
@@ -61,7 +63,7 @@ impl<'a, N: Features> TransportWorker<'a, N> {
             footprint,
             passing: Passing::new(N::GENERAL && needs.masks, N::GENERAL && needs.nested),
             widths,
-            in_columns: settings.are_plain() && !settings.guided && !widths,
+            in_columns: settings.are_plain() && !settings.guided,
             guide,
             now: Queue::default(),
             next: Queue::default(),
@@ -69,6 +71,7 @@ impl<'a, N: Features> TransportWorker<'a, N> {
             arrivals: Arrivals::default(),
             block: None,
             shadows: Shadows::default(),
+            each: Vec::new(),
             reuse: Reuse::default(),
             found: Vec::new(),
             features: PhantomData,
@@ -101,18 +104,16 @@ impl<'a, N: Features> TransportWorker<'a, N> {
         let mut block = self.block.take().unwrap_or_else(|| Box::new(Block::new(&samples[0])));
         // A worker may be given samples of another seed or kind each time.
         block.numbers = SamplerLanes::new(&samples[0].sampler);
-        for is_diffuse in [true, false] {
-            block.is_diffuse = is_diffuse;
-            let arrivals = &mut self.arrivals;
-            let which = std::mem::take(if is_diffuse { &mut arrivals.diffuse } else { &mut arrivals.others });
+        for kind in 0..Plan::KINDS {
+            block.is_diffuse = kind == Plan::DIFFUSE;
+            let which = std::mem::take(&mut self.arrivals.kinds[kind]);
             for (number, some) in which.chunks(LANES).enumerate() {
                 let next = which.iter().skip((number + 1) * LANES).take(LANES);
                 next.for_each(|&i| self.scene.geometry().expect(self.hits[i as usize].primitive, true));
                 self.shade(&mut block, some, samples, radiance);
             }
             // Their memory is used again.
-            let arrivals = &mut self.arrivals;
-            *(if is_diffuse { &mut arrivals.diffuse } else { &mut arrivals.others }) = which;
+            self.arrivals.kinds[kind] = which;
         }
         self.block = Some(block);
         std::mem::swap(&mut self.now, &mut self.next);

@@ -1,5 +1,6 @@
 //! Values between the entries of a table.
 
+use glam::Vec4;
 use std::fmt;
 
 /// Where a variable lies between the entries of a table, and what each of the four about it counts for: the cubic
@@ -57,13 +58,13 @@ impl<const N: usize> fmt::Debug for Table<N> {
 
 impl<const N: usize> Table<N> {
     /// The four entries from number `at` on.
-    #[inline]
-    fn four(&self, at: usize) -> [f32; 4] {
+    #[inline(always)]
+    fn four(&self, at: usize) -> Vec4 {
         let bytes = self.bytes[2 * at..].first_chunk().expect("four entries from there on");
-        // Not by a closure for each, which was a call.
+        // Written so, it is one load and one conversion of all four.
         let four = u64::from_le_bytes(*bytes);
-        let entry = |k: u32| f32::from((four >> (16 * k)) as u16);
-        [entry(0), entry(1), entry(2), entry(3)]
+        let entries = [four as u16, (four >> 16) as u16, (four >> 32) as u16, (four >> 48) as u16];
+        Vec4::from_array(entries.map(f32::from))
     }
 
     /// What a sum of entries, of weights that sum to 1, stands for.
@@ -74,17 +75,10 @@ impl<const N: usize> Table<N> {
     }
 }
 
-#[inline]
-fn dot(a: [f32; 4], b: [f32; 4]) -> f32 {
-    (a[0] * b[0] + a[1] * b[1]) + (a[2] * b[2] + a[3] * b[3])
-}
-
-/// Adds one with a weight to another.
-#[inline]
-fn add(sum: &mut [f32; 4], weight: f32, four: [f32; 4]) {
-    for k in 0..4 {
-        sum[k] += weight * four[k];
-    }
+#[inline(always)]
+fn dot(a: Vec4, b: [f32; 4]) -> f32 {
+    let [x, y, z, w] = (a * Vec4::from_array(b)).to_array();
+    (x + y) + (z + w)
 }
 
 impl Table<1> {
@@ -99,9 +93,9 @@ impl Table<2> {
     /// The value between its entries.
     #[inline]
     pub fn at(&self, a: &Cubic, b: &Cubic) -> f64 {
-        let mut sum = [0.0; 4];
+        let mut sum = Vec4::ZERO;
         for i in 0..4 {
-            add(&mut sum, a.weights[i], self.four((a.first() + i) * self.sizes[1] + b.first()));
+            sum += self.four((a.first() + i) * self.sizes[1] + b.first()) * a.weights[i];
         }
         self.scaled(dot(sum, b.weights))
     }
@@ -112,11 +106,11 @@ impl Table<3> {
     #[inline]
     pub fn at(&self, a: &Cubic, b: &Cubic, c: &Cubic) -> f64 {
         let [_, m, n] = self.sizes;
-        let mut sum = [0.0; 4];
+        let mut sum = Vec4::ZERO;
         for i in 0..4 {
             for j in 0..4 {
                 let four = self.four(((a.first() + i) * m + b.first() + j) * n + c.first());
-                add(&mut sum, a.weights[i] * b.weights[j], four);
+                sum += four * (a.weights[i] * b.weights[j]);
             }
         }
         self.scaled(dot(sum, c.weights))
@@ -128,13 +122,13 @@ impl Table<4> {
     #[inline]
     pub fn at(&self, a: &Cubic, b: &Cubic, c: &Cubic, d: &Cubic) -> f64 {
         let [_, l, m, n] = self.sizes;
-        let mut sum = [0.0; 4];
+        let mut sum = Vec4::ZERO;
         for i in 0..4 {
             for j in 0..4 {
                 let weight = a.weights[i] * b.weights[j];
                 for k in 0..4 {
                     let at = ((a.first() + i) * l + b.first() + j) * m + c.first() + k;
-                    add(&mut sum, weight * c.weights[k], self.four(at * n + d.first()));
+                    sum += self.four(at * n + d.first()) * (weight * c.weights[k]);
                 }
             }
         }

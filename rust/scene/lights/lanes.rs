@@ -12,9 +12,9 @@ use crate::shapes::{Seen, Sphere};
 use crate::simd::{Level, loops};
 use std::array::from_fn;
 
-/// Triangles that shine, a lane each, and how likely each was chosen.
+/// What shines, a lane each, and how likely each was chosen.
 struct Lamps {
-    corners: [VectorLanes; 3],
+    /// Of a triangle.
     normal: VectorLanes,
     radiance: RgbLanes,
     /// Whether the front shines, and the back.
@@ -24,10 +24,16 @@ struct Lamps {
 
 loops! {
     /// What is drawn of them.
-    fn draw(receivers: &LightContextLanes, lamps: &Lamps, u: &Pairs, lights: &mut LightLanes) {
+    fn draw(
+        receivers: &LightContextLanes,
+        corners: &[VectorLanes; 3],
+        lamps: &Lamps,
+        u: &Pairs,
+        lights: &mut LightLanes,
+    ) {
         for i in 0..LANES {
             let shine = |cosine: f64| (lamps.sides[0][i] & (cosine > 0.0)) | (lamps.sides[1][i] & (cosine < 0.0));
-            let corners = [lamps.corners[0].get(i), lamps.corners[1].get(i), lamps.corners[2].get(i)];
+            let corners = [corners[0].get(i), corners[1].get(i), corners[2].get(i)];
             let ([a, b, c], normal) = (corners, lamps.normal.get(i));
             let place = receivers.position.get(i);
             let seen = SeenTriangle::new(corners, place);
@@ -113,7 +119,10 @@ impl Lights {
             }
             return;
         };
-        let chosen = from_fn(|lane| choices.sample(&receivers.get(lane), choice[lane]));
+        let mut chosen = [None; LANES];
+        for lane in 0..LANES {
+            chosen[lane] = choices.sample(&receivers.get(lane), choice[lane]);
+        }
         self.sample_chosen(level, geometry, receivers, &chosen, u, lights);
     }
 
@@ -155,8 +164,9 @@ impl Lights {
         u: &Pairs,
         lights: &mut LightLanes,
     ) {
+        // Apart, as what is zeroed at once and has more than 2048 bytes takes a road that is slow to start.
+        let mut corners = [VectorLanes::ZERO; 3];
         let mut lamps = Lamps {
-            corners: [VectorLanes::ZERO; 3],
             normal: VectorLanes::ZERO,
             radiance: RgbLanes::ZERO,
             // A lane without a light has sides that do not shine.
@@ -177,9 +187,9 @@ impl Lights {
                     balls.center.set(lane, center);
                     balls.radius[lane] = radius;
                 }
-                Figure::Triangle { corners, normal } => {
+                Figure::Triangle { corners: of_lane, normal } => {
                     triangles |= 1 << lane;
-                    for (lanes, corner) in lamps.corners.iter_mut().zip(corners) {
+                    for (lanes, corner) in corners.iter_mut().zip(of_lane) {
                         lanes.set(lane, corner);
                     }
                     lamps.normal.set(lane, normal);
@@ -191,14 +201,14 @@ impl Lights {
             lamps.probability[lane] = probability;
         }
         if spheres == 0 {
-            draw(level, receivers, &lamps, u, lights);
+            draw(level, receivers, &corners, &lamps, u, lights);
         } else {
             let mut outside = [0.0; LANES];
             let mut of_spheres = LightLanes::NONE;
             let LightLanes { direction, weight, pdf, position, offset, .. } = &mut of_spheres;
             draw_balls(level, receivers, &balls, &lamps, u, direction, weight, pdf, position, offset, &mut outside);
             if triangles != 0 {
-                draw(level, receivers, &lamps, u, lights);
+                draw(level, receivers, &corners, &lamps, u, lights);
             }
             for lane in (0..LANES).filter(|&lane| triangles >> lane & 1 == 0) {
                 of_spheres.primitive[lane] = lights.primitive[lane];

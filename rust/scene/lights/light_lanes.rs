@@ -98,7 +98,7 @@ impl LightLanes {
     }
 
     /// Takes that of a lane from others.
-    pub(super) fn copy(&mut self, lane: usize, others: &Self) {
+    pub fn copy(&mut self, lane: usize, others: &Self) {
         self.direction.set(lane, others.direction.get(lane));
         self.weight.set(lane, others.weight.get(lane));
         self.pdf[lane] = others.pdf[lane];

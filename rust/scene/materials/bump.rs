@@ -58,6 +58,10 @@ impl Material for BumpMap {
         self.material.bsdf(at)
     }
 
+    fn kinds(&self) -> Option<[usize; 2]> {
+        self.material.kinds()
+    }
+
     fn needs(&self) -> Needs {
         self.material.needs() | self.height.needs() | Needs { tangents: true, ..Needs::NONE }
     }

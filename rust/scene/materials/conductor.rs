@@ -60,6 +60,10 @@ impl Material for ConductorMaterial {
         (!self.needs().any()).then(|| self.bsdf(&TexturePoint::default(), 1.0))
     }
 
+    fn kinds(&self) -> Option<[usize; 2]> {
+        Some([self.bsdf(&TexturePoint::default(), 1.0).kind(); 2])
+    }
+
     fn needs(&self) -> Needs {
         let index = match &self.index {
             Index::Constants { eta, k } => eta.needs() | k.needs(),

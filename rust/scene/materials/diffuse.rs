@@ -33,6 +33,10 @@ impl Material for DiffuseMaterial {
         }
     }
 
+    fn kinds(&self) -> Option<[usize; 2]> {
+        Some([AnyBsdf::DIFFUSE; 2])
+    }
+
     fn needs(&self) -> Needs {
         self.reflectance.needs()
     }

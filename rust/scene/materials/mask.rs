@@ -22,6 +22,10 @@ impl Material for Mask {
         self.material.bsdf(at)
     }
 
+    fn kinds(&self) -> Option<[usize; 2]> {
+        self.material.kinds()
+    }
+
     fn needs(&self) -> Needs {
         self.material.needs() | self.opacity.needs()
     }

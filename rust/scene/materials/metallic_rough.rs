@@ -32,6 +32,10 @@ impl Material for MetallicRoughMaterial {
         (!self.needs().any()).then(|| self.bsdf(&TexturePoint::default()).into())
     }
 
+    fn kinds(&self) -> Option<[usize; 2]> {
+        Some([AnyBsdf::from(self.bsdf(&TexturePoint::default())).kind(); 2])
+    }
+
     fn needs(&self) -> Needs {
         self.base_colour.needs() | self.metallic.needs() | self.roughness.needs()
     }

@@ -1,6 +1,7 @@
 //! What surfaces are made of: one interface over all materials.
 
 mod blinn_phong;
+mod bsdf_lanes;
 mod bsdf_mix;
 mod bump;
 mod checks;
@@ -23,6 +24,7 @@ mod thin_dielectric;
 mod two_sided;
 
 pub use blinn_phong::BlinnPhongMaterial;
+pub use bsdf_lanes::BsdfLanes;
 pub use bsdf_mix::BsdfMix;
 pub use bump::BumpMap;
 pub use coats::Coats;
@@ -64,6 +66,12 @@ pub trait Material: Debug + Send + Sync {
     /// The same where the sides may differ: on the front and on the back.
     fn constant_sides(&self) -> Option<[AnyBsdf; 2]> {
         self.constant().map(|bsdf| [bsdf; 2])
+    }
+
+    /// The kinds of functions, as [`AnyBsdf::kind`] has them, by which it scatters at every point, on the front and on
+    /// the back, if they are known beforehand.
+    fn kinds(&self) -> Option<[usize; 2]> {
+        Some(self.constant_sides()?.map(|bsdf| bsdf.kind()))
     }
 
     /// What is wrong with it, in a few words; `Ok` if nothing is.

@@ -26,6 +26,10 @@ impl Material for NormalMap {
         self.material.bsdf(at)
     }
 
+    fn kinds(&self) -> Option<[usize; 2]> {
+        self.material.kinds()
+    }
+
     fn needs(&self) -> Needs {
         self.material.needs() | self.normals.needs() | Needs { uv: true, tangents: true, ..Needs::NONE }
     }

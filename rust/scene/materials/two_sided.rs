@@ -32,6 +32,10 @@ impl Material for TwoSided {
         Some([front, back])
     }
 
+    fn kinds(&self) -> Option<[usize; 2]> {
+        Some([self.front.kinds()?[0], self.back.kinds()?[1]])
+    }
+
     fn needs(&self) -> Needs {
         self.front.needs() | self.back.needs()
     }

@@ -1,7 +1,7 @@
 //! Encounters by lane.
 
 use super::SurfaceInteraction;
-use crate::math::{Frame, LANES, VectorLanes};
+use crate::math::{DVec3, Frame, LANES, VectorLanes};
 use crate::optics::Bsdf;
 use crate::scene::{SurfaceLanes, SurfacePoint};
 
@@ -66,6 +66,18 @@ impl SurfaceInteractionLanes {
     #[inline(always)]
     pub fn surface(&self, lane: usize) -> SurfacePoint {
         self.surface.get(lane)
+    }
+
+    /// Back along the ray of a lane, in the shading frame.
+    #[inline(always)]
+    pub fn wo(&self, lane: usize) -> DVec3 {
+        self.wo.get(lane)
+    }
+
+    /// The mean curvature of a lane, as [`SurfaceInteraction::curvature`] has it.
+    #[inline(always)]
+    pub fn curvature(&self, lane: usize) -> f64 {
+        self.curvature[lane]
     }
 
     /// Sets the encounter of a lane, but for its point.

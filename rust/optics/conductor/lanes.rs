@@ -1,0 +1,181 @@
+//! Rough metals by lane.
+
+use super::{Conductor, Rough, above, mirrors};
+use crate::math::{DVec3, LANES, VectorLanes};
+use crate::optics::conductors::Reflectance;
+use crate::optics::fresnel::ConductorIndex;
+use crate::optics::lobes::Grazing;
+use crate::optics::{BsdfSampleLanes, Facets, Ggx, Rgb, RgbLanes};
+use crate::sampling::Pairs;
+use crate::simd::{Level, loops};
+
+/// What is known of rough metals, a lane each, and of a direction that light goes to.
+#[derive(Clone, Debug)]
+pub struct ConductorLanes {
+    alpha: [[f64; LANES]; 2],
+    multiple: RgbLanes,
+    grazing: [[f64; LANES]; 2],
+    /// Of those that are told by an index, this; the others are looked up.
+    index: [RgbLanes; 2],
+    is_by_index: [bool; LANES],
+    wo: VectorLanes,
+    /// What is lost of light to `wo`.
+    lost: [f64; LANES],
+}
+
+loops! {
+    /// How facets mirror between two directions, of metals with an index by what it says.
+    fn mirror(
+        of: &ConductorLanes,
+        wi: &VectorLanes,
+        density: &mut [f64; LANES],
+        cosine: &mut [f64; LANES],
+        reflectance: &mut RgbLanes,
+    ) {
+        for i in 0..LANES {
+            (density[i], cosine[i]) = of.facets(i).mirroring(above(of.wo.get(i)), above(wi.get(i)));
+        }
+        for i in 0..LANES {
+            let index = ConductorIndex::with([of.index[0].get(i), of.index[1].get(i)]);
+            reflectance.set(i, index.reflectance(cosine[i]));
+        }
+    }
+}
+
+loops! {
+    /// What is scattered, by what was told and looked up.
+    fn scatter(
+        of: &ConductorLanes,
+        wi: &VectorLanes,
+        density: &[f64; LANES],
+        reflectance: &RgbLanes,
+        lost: &[f64; LANES],
+        asks: &[bool; LANES],
+        value: &mut RgbLanes,
+        pdf: &mut [f64; LANES],
+    ) {
+        for i in 0..LANES {
+            let (o, w) = (of.wo.get(i), wi.get(i));
+            let (facets, grazing) = (of.facets(i), Grazing::with([of.grazing[0][i], of.grazing[1][i]]));
+            let parts = (&facets, of.multiple.get(i), &grazing);
+            let told = (density[i], reflectance.get(i));
+            let (scattered, drawn) = Rough::scattered(parts, [above(o), above(w)], told, [of.lost[i], lost[i]]);
+            let is_seen = asks[i] & mirrors::<Ggx>(o, w);
+            value.set(i, Rgb::select(is_seen, scattered, Rgb::ZERO));
+            pdf[i] = if is_seen { drawn } else { 0.0 };
+        }
+    }
+}
+
+loops! {
+    /// Directions from which facets reflect, above.
+    fn draw(of: &ConductorLanes, u: &Pairs, wi: &mut VectorLanes) {
+        for i in 0..LANES {
+            wi.set(i, of.facets(i).sample_reflection(above(of.wo.get(i)), [u[0][i], u[1][i]]));
+        }
+    }
+}
+
+loops! {
+    /// From directions above to those on the side of `wo`, in the lanes that ask and are seen.
+    fn turn(of: &ConductorLanes, asks: &[bool; LANES], wi: &mut VectorLanes, goes: &mut [bool; LANES]) {
+        for i in 0..LANES {
+            let (wo, drawn) = (of.wo.get(i), wi.get(i));
+            goes[i] = asks[i] & Ggx::sees(wo) & (drawn.z > 0.0);
+            wi.set(i, DVec3::new(drawn.x, drawn.y, drawn.z.copysign(wo.z)));
+        }
+    }
+}
+
+loops! {
+    /// From what is scattered to what a throughput is multiplied by.
+    fn weigh(pdf: &[f64; LANES], value: &mut RgbLanes) {
+        for i in 0..LANES {
+            value.set(i, value.get(i) / pdf[i]);
+        }
+    }
+}
+
+impl ConductorLanes {
+    /// Of nothing yet.
+    pub const NONE: Self = Self {
+        alpha: [[1.0; LANES]; 2],
+        multiple: RgbLanes::ZERO,
+        grazing: [[1.0; LANES]; 2],
+        index: [RgbLanes::ZERO; 2],
+        is_by_index: [false; LANES],
+        wo: VectorLanes::ZERO,
+        lost: [0.0; LANES],
+    };
+
+    /// Puts a metal into a lane, and the direction that it was prepared for; says whether it could, which is not the
+    /// case if it is smooth.
+    #[inline]
+    pub fn set(&mut self, lane: usize, metal: &Conductor, wo: DVec3) -> bool {
+        let Some(rough) = &metal.rough else { return false };
+        [self.alpha[0][lane], self.alpha[1][lane]] = rough.facets.alpha();
+        self.multiple.set(lane, rough.multiple);
+        [self.grazing[0][lane], self.grazing[1][lane]] = rough.grazing.parts();
+        self.is_by_index[lane] = false;
+        if let Reflectance::Index(index) = &metal.fresnel {
+            let [real, imaginary2] = index.parts();
+            self.index[0].set(lane, real);
+            self.index[1].set(lane, imaginary2);
+            self.is_by_index[lane] = true;
+        }
+        self.wo.set(lane, wo);
+        self.lost[lane] = rough.prepared.1;
+        true
+    }
+
+    #[inline(always)]
+    fn facets(&self, lane: usize) -> Ggx {
+        Ggx::with([self.alpha[0][lane], self.alpha[1][lane]])
+    }
+
+    /// What [`crate::optics::Bsdf::evaluate`] gives, in the lanes that ask, of the metals that were put there.
+    pub fn evaluate<'a>(
+        &self,
+        level: Level,
+        metals: impl Fn(usize) -> Option<&'a Conductor>,
+        asks: &[bool; LANES],
+        wi: &VectorLanes,
+        value: &mut RgbLanes,
+        pdf: &mut [f64; LANES],
+    ) {
+        let ([mut density, mut cosine, mut lost], mut reflectance) = ([[0.0; LANES]; 3], RgbLanes::ZERO);
+        mirror(level, self, wi, &mut density, &mut cosine, &mut reflectance);
+        for lane in (0..LANES).filter(|&lane| asks[lane]) {
+            let Some(metal) = metals(lane) else { continue };
+            if let Some(rough) = &metal.rough {
+                lost[lane] = rough.loss.of(above(wi.get(lane)));
+            }
+            if !self.is_by_index[lane] {
+                reflectance.set(lane, metal.reflectance(cosine[lane]));
+            }
+        }
+        scatter(level, self, wi, &density, &reflectance, &lost, asks, value, pdf);
+    }
+
+    /// What [`crate::optics::Bsdf::sample`] gives, in the lanes that ask; nothing in the others.
+    pub fn sample<'a>(
+        &self,
+        level: Level,
+        metals: impl Fn(usize) -> Option<&'a Conductor>,
+        asks: &[bool; LANES],
+        (choice, u): (&[f64; LANES], &Pairs),
+        drawn: &mut BsdfSampleLanes,
+    ) {
+        let BsdfSampleLanes { wi, weight, pdf, eta, is_through } = drawn;
+        draw(level, self, u, wi);
+        for lane in (0..LANES).filter(|&lane| asks[lane] && choice[lane] < self.lost[lane]) {
+            let grazing = Grazing::with([self.grazing[0][lane], self.grazing[1][lane]]);
+            wi.set(lane, grazing.sample([u[0][lane], u[1][lane]]));
+        }
+        let mut goes = [false; LANES];
+        turn(level, self, asks, wi, &mut goes);
+        self.evaluate(level, metals, &goes, wi, weight, pdf);
+        weigh(level, pdf, weight);
+        (*eta, *is_through) = ([1.0; LANES], [false; LANES]);
+    }
+}
