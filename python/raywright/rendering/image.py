@@ -11,7 +11,9 @@ from numpy.typing import NDArray
 
 from .. import _core
 from ..arrays import frozen, number
-from ..io import pictures
+from ..io import pictures, shown
+from ..io.exr_layers import write_exr
+from ..io.tone import DEFAULT, check_tone
 from .plan import RenderPlan
 
 HISTORY = np.dtype([("seconds", np.float64), ("samples", np.int64), ("error", np.float64)])
@@ -154,29 +156,64 @@ class Image:
         away = times * (self.standard_error if self.pooled_error is None else self.pooled_error)
         return (self.rgb - away).astype(np.float32), (self.rgb + away).astype(np.float32)
 
-    def srgb(self) -> NDArray[np.uint8]:
-        """Return the picture for the eye: (H, W, 3) uint8 with the sRGB transfer, clipped to 0..1."""
-        return pictures.srgb(self.rgb)
+    def srgb(self, exposure: float = 0.0, tone: str = DEFAULT) -> NDArray[np.uint8]:
+        """Return the picture for the eye, with the sRGB transfer.
 
-    def save(self, path: str | PathLike[str]) -> None:
+        Parameters
+        ----------
+        exposure : float
+            Stops by which it is made brighter: 1 is twice as bright.
+        tone : str
+            How what is brighter than white is brought into range: ``"filmic"`` keeps colours up to half of
+            white as they are, and rolls off what is brighter by the shoulder of the Khronos PBR Neutral tone
+            mapper (Khronos Group, 2024); ``"linear"`` clips.
+
+        Returns
+        -------
+        (H, W, 3) uint8
+            Red, green and blue.
+
+        Raises
+        ------
+        ValueError
+            If the exposure is out of -100..100, or the tone is not known.
+        TypeError
+            If the exposure is not a number.
+        """
+        return shown.srgb(self.rgb, None, check_tone(exposure, tone), tone)
+
+    def save(self, path: str | PathLike[str], exposure: float = 0.0, tone: str = DEFAULT) -> None:
         """Save the picture.
 
         Parameters
         ----------
         path : str or path
-            ``.png`` is for the eye: 8 bits, sRGB, clipped. ``.npy`` holds `rgb`. ``.exr`` holds `rgb` as
-            channels R, G, B and `standard_error` as channels standard_error.R, .G, .B, 32-bit floats.
+            ``.png``, ``.jpg``, ``.jpeg``, ``.webp`` and ``.avif`` are for the eye: 8 bits, as `srgb` gives
+            them. ``.npy`` holds `rgb`. ``.exr`` holds `rgb` as channels R, G, B and `standard_error` as
+            channels standard_error.R, .G, .B, 32-bit floats.
+        exposure : float
+            Stops by which a picture for the eye is made brighter.
+        tone : str
+            ``"filmic"`` or ``"linear"``, see `srgb`. Files that hold numbers have them as they are.
 
         Raises
         ------
         ValueError
-            If the suffix is another one.
+            If the suffix is another one, the exposure is out of -100..100, or the tone is not known.
         ImportError
-            If the suffix is .exr and OpenEXR is not installed (``pip install 'raywright[exr]'``).
+            If the suffix is .exr and OpenEXR is not installed (``pip install 'raywright[exr]'``), or if it is
+            one that the installed Pillow cannot write.
         OSError
             If the file cannot be written: FileNotFoundError if the folder is missing, and so on.
         """
-        pictures.write(pictures.check_writable(path), self.rgb, self.standard_error)
+        exposure, path = check_tone(exposure, tone), pictures.check_writable(path)
+        suffix = path.suffix.lower()
+        if suffix == ".npy":
+            np.save(path, self.rgb)
+        elif suffix == ".exr":
+            write_exr(path, self.rgb, self.standard_error)
+        else:
+            path.write_bytes(shown.encoded(self.srgb(exposure, tone), suffix))
 
     def table(self, rows: int = 12) -> str:
         """Return error against time as lines of text: seconds, samples per pixel, relMSE.
@@ -194,7 +231,7 @@ class Image:
         return "\n".join(lines)
 
     def _repr_png_(self) -> bytes:
-        return pictures.png(self.rgb)
+        return shown.png(self.rgb)
 
     def _ipython_display_(self) -> None:
         # Under the cell that rendered it, a notebook has the picture already: the numbers are enough there.
