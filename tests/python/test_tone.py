@@ -88,7 +88,13 @@ def test_a_share_of_a_pixel_has_the_colour_of_what_covers_it():
 @pytest.mark.parametrize(
     ("name", "format", "off"),
     # Lossy ones by how far they may be off at most; the mean is a tenth of that.
-    [("a.png", "PNG", 0), ("a.jpg", "JPEG", 12), ("a.JPEG", "JPEG", 12), ("a.webp", "WEBP", 40), ("a.avif", "AVIF", 20)],
+    [
+        ("a.png", "PNG", 0),
+        ("a.jpg", "JPEG", 12),
+        ("a.JPEG", "JPEG", 12),
+        ("a.webp", "WEBP", 40),
+        ("a.avif", "AVIF", 20),
+    ],
 )
 def test_files_for_the_eye_hold_what_is_shown(tmp_path, name, format, off):
     if format == "AVIF" and "avif" not in __import__("PIL.features").features.get_supported_modules():

@@ -74,7 +74,8 @@ class Image:
     Attributes
     ----------
     rgb : (H, W, 3) float32
-        Linear red, green and blue: radiance in W·sr⁻¹·m⁻².
+        Linear red, green and blue: radiance in W·sr⁻¹·m⁻². Of a transparent picture, that of what covers the
+        pixel, times its alpha.
     standard_error : (H, W, 3) float32
         Standard error of `rgb`, by each pixel's own samples. Its square has no bias; where samples come in
         few batches, it is quite uncertain itself, and `interval` is the better answer.
@@ -92,7 +93,8 @@ class Image:
     biased : bool
         Whether samples were clamped, so that the picture tends to something darker than the scene.
     aov : dict of str to (H, W, ...) arrays
-        What else is known of the pixels, by name: ``samples`` (uint32) of each if the render was adaptive.
+        What else is known of the pixels, by name: what `aov` of `render` asked for, and ``samples`` (uint32)
+        of each if the render was adaptive.
     plan : RenderPlan
         What was chosen for the render, such as its sampler, and why.
     pooled_error : (H, W, 3) float32, optional
@@ -100,6 +102,9 @@ class Image:
         come in batches, one pixel has few of them. `standard_error` is taken if it is not given.
     degrees : (H, W) float32, optional
         Degrees of freedom of `pooled_error`; without them it is taken as exact.
+    alpha : (H, W) float32, optional
+        The share of each pixel that is covered, of a picture with a transparent background; filters of
+        negative lobes may take it a little out of 0..1.
     """
 
     rgb: NDArray[np.float32]
@@ -114,12 +119,13 @@ class Image:
     plan: RenderPlan = field(default_factory=RenderPlan)
     pooled_error: NDArray[np.float32] | None = None
     degrees: NDArray[np.float32] | None = None
+    alpha: NDArray[np.float32] | None = None
 
     def __post_init__(self) -> None:
         for name in ("rgb", "standard_error", "history"):
             object.__setattr__(self, name, frozen(getattr(self, name)))
         object.__setattr__(self, "aov", {name: frozen(array) for name, array in self.aov.items()})
-        for name in ("pooled_error", "degrees"):
+        for name in ("pooled_error", "degrees", "alpha"):
             if getattr(self, name) is not None:
                 object.__setattr__(self, name, frozen(getattr(self, name)))
 
@@ -170,8 +176,8 @@ class Image:
 
         Returns
         -------
-        (H, W, 3) uint8
-            Red, green and blue.
+        (H, W, 3) or (H, W, 4) uint8
+            Red, green and blue; of a transparent picture also alpha, by which colours are not multiplied.
 
         Raises
         ------
@@ -180,7 +186,7 @@ class Image:
         TypeError
             If the exposure is not a number.
         """
-        return shown.srgb(self.rgb, None, check_tone(exposure, tone), tone)
+        return shown.srgb(self.rgb, self.alpha, check_tone(exposure, tone), tone)
 
     def save(self, path: str | PathLike[str], exposure: float = 0.0, tone: str = DEFAULT) -> None:
         """Save the picture.
@@ -189,8 +195,12 @@ class Image:
         ----------
         path : str or path
             ``.png``, ``.jpg``, ``.jpeg``, ``.webp`` and ``.avif`` are for the eye: 8 bits, as `srgb` gives
-            them. ``.npy`` holds `rgb`. ``.exr`` holds `rgb` as channels R, G, B and `standard_error` as
-            channels standard_error.R, .G, .B, 32-bit floats.
+            them, with alpha if the picture has one. JPEG knows none: there it stands before black. ``.npy``
+            holds `rgb`. ``.exr`` holds `rgb` as channels R, G, B, `alpha` as A, `standard_error` as
+            standard_error.R, .G, .B, and what is in `aov` as layers of their own, 32-bit floats, as
+            compositing programs call them: depth.Z, normal.X, .Y, .Z, albedo.R, .G, .B, and so on. Numbers
+            are of 32 bits without a sign (4294967295 for none), shapes also as Cryptomatte 1.2 has them, by
+            the names "shape 0", "shape 1", ...
         exposure : float
             Stops by which a picture for the eye is made brighter.
         tone : str
@@ -211,9 +221,10 @@ class Image:
         if suffix == ".npy":
             np.save(path, self.rgb)
         elif suffix == ".exr":
-            write_exr(path, self.rgb, self.standard_error)
+            write_exr(path, self.rgb, self.standard_error, self.alpha, self.aov)
         else:
-            path.write_bytes(shown.encoded(self.srgb(exposure, tone), suffix))
+            alpha = None if shown.FORMATS[suffix] == "JPEG" else self.alpha
+            path.write_bytes(shown.encoded(shown.srgb(self.rgb, alpha, exposure, tone), suffix))
 
     def table(self, rows: int = 12) -> str:
         """Return error against time as lines of text: seconds, samples per pixel, relMSE.
@@ -231,7 +242,7 @@ class Image:
         return "\n".join(lines)
 
     def _repr_png_(self) -> bytes:
-        return shown.png(self.rgb)
+        return shown.png(self.rgb, self.alpha)
 
     def _ipython_display_(self) -> None:
         # Under the cell that rendered it, a notebook has the picture already: the numbers are enough there.
@@ -257,6 +268,7 @@ class Image:
             and self.plan == other.plan
             and _same(self.pooled_error, other.pooled_error)
             and _same(self.degrees, other.degrees)
+            and _same(self.alpha, other.alpha)
             and self.aov.keys() == other.aov.keys()
             and all(
                 np.array_equal(array, other.aov[name], equal_nan=array.dtype.kind == "f")
@@ -281,6 +293,7 @@ class Image:
             self.plan,
             self.pooled_error,
             self.degrees,
+            self.alpha,
         )
         return Image, parts
 
