@@ -55,6 +55,7 @@ from .rendering.filters import (
     MitchellFilter,
     TriangleFilter,
 )
+from .rendering.frames import render_frames
 from .rendering.image import ErrorEstimate, Image
 from .rendering.plan import Choice, RenderPlan
 from .rendering.render import render
@@ -201,6 +202,7 @@ __all__ = [
     "metals",
     "power_heuristic",
     "render",
+    "render_frames",
     "report",
     "scenes",
     "simd",

@@ -225,6 +225,7 @@ class Job:
         clamp: float | None,
         sampler: Any,
         filter: Any,
+        transparent: bool,
     ) -> Job: ...
     def patch(self, scene: CompiledScene) -> int:
         """Return the side of the square patches of pixels whose samples the integrator takes together."""
@@ -275,6 +276,14 @@ class Rendering:
     @property
     def clamped(self) -> tuple[int, float]:
         """Samples that were clamped, and the share of the picture's radiance that this took."""
+    def cover(
+        self, job: Job, scene: CompiledScene, ranks: int, samples: int | None, threads: int | None
+    ) -> tuple[NDArray[np.float32], NDArray[np.int32], NDArray[np.float32]]:
+        """Return what covers pixels, by the samples that there are, or by so many each, with their filter.
+
+        The share (H,W) that anything does, and of so many shapes that cover most of a pixel (H,W,ranks) the
+        numbers, -1 where there are fewer, and shares.
+        """
     def go_on(
         self,
         job: Job,

@@ -9,7 +9,8 @@ from typing import Any, NoReturn
 
 from ._core import VERSION
 from .accelerators import Accelerator, every
-from .io.pictures import check_writable
+from .io.pictures import SUFFIXES, check_writable
+from .io.tone import DEFAULT, TONES, check_tone
 from .materials import Diffuse
 from .rendering.image import Image
 from .rendering.shot import Shot
@@ -155,7 +156,7 @@ def _tell_report(report: Any, options: argparse.Namespace) -> None:
 
 def _picture(shot: Shot, options: argparse.Namespace) -> None:
     image = shot.render(**_how(options, shot), progress=not options.quiet, checkpoint=options.checkpoint)
-    image.save(options.output)
+    image.save(options.output, options.exposure, options.tone)
     if not options.quiet:
         _tell(image, options.output)
 
@@ -324,7 +325,17 @@ def _add_picture(
         metavar="FILE",
         required=output is None,
         default=output,
-        help=".png, .exr or .npy" + (told if output else ""),
+        help=f"{', '.join(SUFFIXES)}" + (told if output else ""),
+    )
+    verb.add_argument(
+        "--exposure",
+        metavar="E",
+        type=_stops,
+        default=0.0,
+        help="stops by which a picture for the eye is made brighter" + told,
+    )
+    verb.add_argument(
+        "--tone", choices=TONES, default=DEFAULT, help="how it shows what is brighter than white" + told
     )
     _add_limits(verb, limit, width, height)
     verb.add_argument(
@@ -377,6 +388,15 @@ def _number(kind: type[Any], least: int | None = None, most: int | None = None) 
     # argparse names the function in "invalid ... value".
     read.__name__ = "whole number" if kind is int else "number"
     return read
+
+
+def _stops(text: str) -> float:
+    """Read an exposure."""
+    try:
+        return check_tone(float(text), DEFAULT)
+    except ValueError:
+        message = f"must be a number between -100 and 100, got {text}"
+        raise argparse.ArgumentTypeError(message) from None
 
 
 def _told(error: Exception) -> str:

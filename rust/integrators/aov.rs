@@ -29,11 +29,13 @@ pub enum Channel {
     Albedo,
     /// How far the point goes while the shutter is open.
     Motion,
+    /// How far it goes in the picture meanwhile, in pixels to the right and down, as the camera moves too.
+    ScreenMotion,
 }
 
 impl Channel {
     /// Every one.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Depth,
         Self::Position,
         Self::Normal,
@@ -43,6 +45,7 @@ impl Channel {
         Self::Primitive,
         Self::Albedo,
         Self::Motion,
+        Self::ScreenMotion,
     ];
 
     /// What it is called.
@@ -57,6 +60,7 @@ impl Channel {
             Self::Primitive => "primitive",
             Self::Albedo => "albedo",
             Self::Motion => "motion",
+            Self::ScreenMotion => "screen_motion",
         }
     }
 
@@ -64,7 +68,7 @@ impl Channel {
     pub fn width(self) -> usize {
         match self {
             Self::Depth | Self::ShapeId | Self::Primitive => 1,
-            Self::Uv => 2,
+            Self::Uv | Self::ScreenMotion => 2,
             _ => 3,
         }
     }
@@ -84,9 +88,10 @@ impl Channel {
     }
 
     /// Its numbers at a hit.
-    fn observe(self, scene: &Scene, ray: &Ray, hit: &Hit, width: f64) -> [f64; 3] {
+    fn observe(self, scene: &Scene, camera: &dyn Camera, (ray, hit): (&Ray, &Hit), width: f64) -> [f64; 3] {
         let geometry = scene.geometry();
         let number = |n: u32| [f64::from(n), 0.0, 0.0];
+        let ends = || geometry.positions(ray, hit, [0.0, 1.0].map(|time| camera.body().scene_time(time)));
         match self {
             Self::Depth => [hit.t, 0.0, 0.0],
             Self::Position => geometry.surface(ray, hit).position.to_array(),
@@ -109,7 +114,19 @@ impl Channel {
                 let surface = geometry.surface(ray, hit);
                 SurfaceInteraction::new(scene, ray, hit, surface, width, 1.0).bsdf().albedo().to_array()
             }
-            Self::Motion => geometry.motion(ray, hit).to_array(),
+            Self::Motion => {
+                let [start, end] = ends();
+                (end - start).to_array()
+            }
+            Self::ScreenMotion => {
+                let [start, end] = ends();
+                let seen = |point, time| camera.connect(point, [0.5; 2], time).map(|there| there.film);
+                match (seen(start, 0.0), seen(end, 1.0)) {
+                    (Some([x, y]), Some([right, down])) => [right - x, down - y, 0.0],
+                    // What one end of the way does not see has no way in the picture.
+                    _ => [0.0; 3],
+                }
+            }
         }
     }
 }
@@ -166,7 +183,7 @@ fn expose_row(
         let found = trace(&mut |_| ([0.5; 2], [0.5; 2], 0.0), &mut rays);
         for i in (0..channels.len()).filter(is_id) {
             for x in (0..width).filter(|&x| found[x].is_hit()) {
-                row[i][x] = channels[i].observe(scene, &rays[x], &found[x], 0.0)[0];
+                row[i][x] = channels[i].observe(scene, camera, (&rays[x], &found[x]), 0.0)[0];
             }
         }
     }
@@ -186,7 +203,8 @@ fn expose_row(
         for x in (0..width).filter(|&x| found[x].is_hit()) {
             seen[x] += 1;
             for i in (0..channels.len()).filter(|i| !is_id(i)) {
-                let values = channels[i].observe(scene, &rays[x], &found[x], footprint.at(found[x].t).width);
+                let met = (&rays[x], &found[x]);
+                let values = channels[i].observe(scene, camera, met, footprint.at(found[x].t).width);
                 let n = channels[i].width();
                 for (value, mean) in values.iter().zip(&mut row[i][x * n..(x + 1) * n]) {
                     // The first is the mean; it takes the place of nothing, which may be infinite.
@@ -230,7 +248,7 @@ mod tests {
                         Channel::ShapeId => assert_eq!(v, [0.0]),
                         Channel::Primitive => assert!(v[0] == 0.0 || v[0] == 1.0),
                         Channel::Albedo => assert!((DVec3::from_slice(v) - DVec3::new(0.2, 0.4, 0.6)).length() < 1e-12),
-                        Channel::Motion => assert_eq!(v, [0.0; 3]),
+                        Channel::Motion | Channel::ScreenMotion => assert!(v.iter().all(|&v| v == 0.0)),
                     }
                 }
             }

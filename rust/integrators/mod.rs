@@ -15,6 +15,7 @@ mod roulette;
 mod shadows;
 #[cfg(test)]
 mod tests;
+mod transparent;
 mod transport;
 mod whitted;
 
@@ -27,6 +28,8 @@ pub use light_paths::{Photon, Photons, photons};
 pub use light_traced::LightTraced;
 pub use path::Path;
 pub use ray_cast::RayCast;
+pub use transparent::Transparent;
+pub use transport::FirstSeen;
 pub use whitted::Whitted;
 
 use crate::math::Ray;

@@ -9,7 +9,7 @@ use super::query::CompiledScene;
 use super::samplers;
 use super::watcher::{Watcher, malformed};
 use super::written::Written;
-use crate::integrators::Integrator;
+use crate::integrators::{Integrator, Transparent};
 use crate::render::{Request, Settings, Until};
 use crate::scene::Camera;
 
@@ -19,6 +19,8 @@ pub struct Job {
     camera: AnyCamera,
     integrator: Chosen,
     settings: Settings,
+    /// Whether the background is left out where the camera sees it directly.
+    transparent: bool,
 }
 
 /// An integrator of the package, or one that is written in Python.
@@ -62,6 +64,11 @@ impl Job {
         Settings { until, threads, ..self.settings.clone() }
     }
 
+    /// Does something with an integrator that shows as much of the background as the picture is to have.
+    pub(super) fn showing<T>(&self, integrator: &dyn Integrator, work: impl FnOnce(&dyn Integrator) -> T) -> T {
+        if self.transparent { work(&Transparent(integrator)) } else { work(integrator) }
+    }
+
     pub(super) fn camera(&self) -> &dyn Camera {
         &*self.camera.0
     }
@@ -81,6 +88,7 @@ impl Job {
         clamp: Option<f64>,
         sampler: &Bound<'_, PyAny>,
         filter: &Bound<'_, PyAny>,
+        transparent: bool,
     ) -> PyResult<Self> {
         let (sampler, filter) = (samplers::sampler(sampler)?, samplers::filter(filter)?.into());
         let base = integrator.py().import("raywright.integrators.base")?.getattr("Integrator")?;
@@ -93,6 +101,7 @@ impl Job {
             camera,
             integrator,
             settings: Settings { seed, adaptive, clamp, sampler, filter, ..Settings::default() },
+            transparent,
         })
     }
 
@@ -114,7 +123,9 @@ impl Job {
             Watcher { progress: None, look: None, raised: None, pause: None, written: integrator.written() };
         let (scene, camera) = (&scene.get().0, self.camera());
         let request = Request::from_bytes(request, camera.width(), camera.height()).map_err(malformed)?;
-        let result = py.detach(|| request.expose(scene, camera, integrator.get(), &settings, &mut watcher));
+        let result = py.detach(|| {
+            self.showing(integrator.get(), |shown| request.expose(scene, camera, shown, &settings, &mut watcher))
+        });
         let answer = result.map_err(|error| watcher.error(error))?;
         Ok(PyBytes::new(py, &answer).unbind())
     }

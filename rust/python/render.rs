@@ -11,6 +11,7 @@ use super::integrators;
 use super::job::Job;
 use super::query::CompiledScene;
 use super::samplers;
+use super::signals::heard;
 use super::watcher::{Watcher, malformed};
 use crate::integrators::{Guide, Integrator, Path};
 use crate::render::{self, Progress, RenderError, Settings, Until};
@@ -188,6 +189,34 @@ impl Rendering {
         self.0.take(answer).map_err(malformed)
     }
 
+    /// What covers each pixel, by the samples that there are, or by so many `samples` each: the share of it that
+    /// anything does, and of so many shapes that cover most of it their numbers, -1 where there are fewer, and shares.
+    #[allow(clippy::type_complexity)]
+    fn cover<'py>(
+        &self,
+        py: Python<'py>,
+        job: &Bound<'_, Job>,
+        scene: &Bound<'_, CompiledScene>,
+        ranks: usize,
+        samples: Option<u32>,
+        threads: Option<usize>,
+    ) -> PyResult<(Bound<'py, PyArray2<f32>>, Bound<'py, PyArray3<i32>>, Bound<'py, PyArray3<f32>>)> {
+        let (job, scene, film) = (job.get(), &scene.get().0, &self.0.film);
+        let settings = job.settings(Until::default(), threads);
+        let all = heard(py, threads, |cancel| render::cover(film, samples, scene, job.camera(), &settings, cancel))?;
+        let (width, height) = (film.width() as usize, film.height() as usize);
+        let of = |cover: &render::Cover, rank: usize| cover.get(rank).copied();
+        let ranked = |cover| (0..ranks).map(move |rank| of(cover, rank));
+        let alpha = all.iter().map(|cover| cover.iter().fold(0.0, |sum, (_, share)| sum + share) as f32).collect();
+        let shapes = all.iter().flat_map(ranked).map(|one| one.map_or(-1, |(shape, _)| shape as i32)).collect();
+        let shares = all.iter().flat_map(ranked).map(|one| one.map_or(0.0, |(_, share)| share as f32)).collect();
+        Ok((
+            numpy::PyArray1::from_vec(py, alpha).reshape([height, width])?,
+            numpy::PyArray1::from_vec(py, shapes).reshape([height, width, ranks])?,
+            numpy::PyArray1::from_vec(py, shares).reshape([height, width, ranks])?,
+        ))
+    }
+
     /// Goes on until the first of `samples` (per pixel), `error` (relMSE) or `seconds` is met, or until it has been at
     /// it for `pause` seconds; says whether one was met. `look` is called whenever signals are heard, and may raise to
     /// end the render.
@@ -211,7 +240,11 @@ impl Rendering {
         let pause = pause.map(|pause| Instant::now() + Duration::from_secs_f64(pause.clamp(0.0, 1e9)));
         let mut watcher = Watcher { progress, look, raised: None, pause, written: integrator.written() };
         let (rendering, camera) = (&mut self.0, job.camera());
-        let result = py.detach(|| render::go_on(rendering, scene, camera, integrator.get(), &settings, &mut watcher));
+        let result = py.detach(|| {
+            job.showing(integrator.get(), |shown| {
+                render::go_on(rendering, scene, camera, shown, &settings, &mut watcher)
+            })
+        });
         result.map_err(|error| watcher.error(error))
     }
 }

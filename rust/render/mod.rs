@@ -3,6 +3,7 @@
 mod adaptive;
 mod bytes;
 mod camera_samples;
+mod cover;
 mod denominators;
 mod epoch;
 mod error;
@@ -28,6 +29,7 @@ mod tile;
 mod tiles;
 
 pub use bytes::Malformed;
+pub use cover::{Cover, cover};
 pub use error::ErrorEstimate;
 pub use film::Film;
 pub use outliers::Carried;

@@ -67,6 +67,20 @@ def test_render_repeats_itself_with_the_same_seed(ball, tmp_path):
     assert not np.array_equal(a, c)
 
 
+def test_pictures_for_the_eye_have_an_exposure_and_a_tone(ball, tmp_path):
+    options = ["--samples", 4, "--quiet", *SMALL]
+    for name, how in (("a.npy", []), ("a.webp", []), ("a.png", ["--exposure", -1.5, "--tone", "linear"])):
+        assert shell("render", ball, "-o", name, *options, *how, cwd=tmp_path).returncode == 0
+    with Pillow.open(tmp_path / "a.webp") as file:
+        assert (file.format, file.size) == ("WEBP", (16, 12))
+    with Pillow.open(tmp_path / "a.png") as file:
+        light = np.load(tmp_path / "a.npy") * 2.0**-1.5
+        assert np.array_equal(np.asarray(file), rw.io.shown.srgb(light, tone="linear"))
+    done = shell("render", ball, "-o", "b.png", "--exposure", "1e9", cwd=tmp_path)
+    assert done.returncode == 2
+    assert "argument --exposure: must be a number between -100 and 100, got 1e9" in done.stderr
+
+
 def test_info_tells_what_a_mesh_holds(ball, tmp_path):
     done = shell("info", ball, cwd=tmp_path)
     assert (done.returncode, done.stderr) == (0, "")
@@ -103,8 +117,8 @@ def test_nan_vertices_are_one_line_of_warning(tmp_path):
         (["info", "file.foo"], r"file\.foo: suffix \.foo is not a mesh format; known are .*"),
         (["render", "gone.ply", "-o", "a.png"], r"gone\.ply: no such file"),
         (
-            ["render", "ball.ply", "-o", "a.jpg"],
-            r"a picture is saved as \.png, \.exr, \.npy; a\.jpg is none of these",
+            ["render", "ball.ply", "-o", "a.gif"],
+            r"a picture is saved as \.png, .*\.npy; a\.gif is none of these",
         ),
         (["render", "gone.ply", "-o", "gone/a.png"], r"gone: no such folder"),
         (["demo", "-o", "folder.png"], r"folder\.png: is a folder"),

@@ -1,4 +1,4 @@
-"""Picture files: PNG, EXR and NPY; to read, HDR and what Pillow reads too."""
+"""Picture files: where they can be written, and what is in them."""
 
 import errno
 import importlib.util
@@ -13,8 +13,9 @@ from numpy.typing import NDArray
 from .exr_chunks import check_exr
 from .quiet import quiet, reason
 from .radiance_hdr import read_hdr
+from .shown import FORMATS, check_format
 
-SUFFIXES = (".png", ".exr", ".npy")
+SUFFIXES = (*FORMATS, ".exr", ".npy")
 
 
 def check_writable(
@@ -43,7 +44,7 @@ def check_writable(
     ValueError
         If the suffix is not one of those.
     ImportError
-        If the suffix is .exr and OpenEXR is not installed.
+        If the suffix is .exr and OpenEXR is not installed, or one that the installed Pillow cannot write.
     FileNotFoundError, IsADirectoryError, NotADirectoryError, PermissionError, OSError
         If the folder is missing, the path is a folder, or the file cannot be written.
     TypeError
@@ -55,7 +56,9 @@ def check_writable(
     if path.suffix.lower() not in suffixes:
         raise ValueError(f"{what} is saved as {', '.join(suffixes)}; {path} is none of these")
     if path.suffix.lower() == ".exr" and importlib.util.find_spec("OpenEXR") is None:
-        raise ImportError(_NO_EXR)
+        raise ImportError(NO_EXR)
+    if path.suffix.lower() in FORMATS:
+        check_format(path.suffix.lower())
     if path.is_dir():
         raise IsADirectoryError(errno.EISDIR, "is a folder", str(path))
     if not path.parent.exists():
@@ -177,7 +180,7 @@ def _read_exr(path: Path) -> NDArray[np.float32]:
     try:
         import OpenEXR
     except ImportError as error:
-        raise ImportError(_NO_EXR.replace("saving", "reading")) from error
+        raise ImportError(NO_EXR.replace("saving", "reading")) from error
 
     # The library tells of what is broken in lines of its own, and on stdout.
     check_exr(path)
@@ -189,47 +192,6 @@ def _read_exr(path: Path) -> NDArray[np.float32]:
     return np.stack([channels[name] for name in [*names, *(["A"] if "A" in channels else [])]], -1).astype(
         np.float32
     )
-
-
-def srgb(rgb: NDArray[np.floating[Any]]) -> NDArray[np.uint8]:
-    """Linear colours to 8 bits, with the sRGB transfer (IEC 61966-2-1); below 0 and above 1 are clipped."""
-    linear = np.clip(np.nan_to_num(rgb, nan=0.0), 0.0, 1.0)
-    curved = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
-    return np.asarray(curved * 255 + 0.5, np.uint8)
-
-
-def png(rgb: NDArray[np.floating[Any]]) -> bytes:
-    """Return a PNG file of linear colours."""
-    from PIL import Image
-
-    out = io.BytesIO()
-    Image.fromarray(srgb(rgb)).save(out, format="PNG")
-    return out.getvalue()
-
-
-def jpeg(rgb: NDArray[np.floating[Any]]) -> bytes:
-    """Return a JPEG file of linear colours: not as exact as PNG, and a small part of the work."""
-    from PIL import Image
-
-    out = io.BytesIO()
-    # Without subsampling, which would smear colours over neighbours.
-    Image.fromarray(srgb(rgb)).save(out, format="JPEG", quality=92, subsampling=0)
-    return out.getvalue()
-
-
-def write(path: Path, rgb: NDArray[np.float32], standard_error: NDArray[np.float32]) -> None:
-    """Write linear colours, (H, W, 3), to a path that `check_writable` has passed.
-
-    PNG is for the eye; NPY holds the linear colours; EXR holds them as channels R, G, B and their standard
-    error as channels standard_error.R, .G, .B, all of 32-bit floats.
-    """
-    suffix = path.suffix.lower()
-    if suffix == ".png":
-        path.write_bytes(png(rgb))
-    elif suffix == ".npy":
-        np.save(path, rgb)
-    else:
-        _write_exr(path, rgb, standard_error)
 
 
 def read_linear(path: str | PathLike[str]) -> NDArray[np.floating[Any]]:
@@ -248,20 +210,5 @@ def read_linear(path: str | PathLike[str]) -> NDArray[np.floating[Any]]:
     return np.broadcast_to(colours, (*colours.shape[:2], 3)).astype(np.float32)
 
 
-def _write_exr(path: Path, rgb: NDArray[np.float32], standard_error: NDArray[np.float32]) -> None:
-    try:
-        import OpenEXR
-    except ImportError as error:
-        raise ImportError(_NO_EXR) from error
-
-    channels = {}
-    for i, name in enumerate("RGB"):
-        channels[name] = np.ascontiguousarray(rgb[..., i], np.float32)
-        channels[f"standard_error.{name}"] = np.ascontiguousarray(standard_error[..., i], np.float32)
-    header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
-    with OpenEXR.File(header, channels) as file:
-        file.write(str(path))
-
-
 _TOO_MANY = "it has more than {} points by its header, which is PIL.Image.MAX_IMAGE_PIXELS"
-_NO_EXR = "saving .exr needs OpenEXR: pip install 'raywright[exr]'"
+NO_EXR = "saving .exr needs OpenEXR: pip install 'raywright[exr]'"

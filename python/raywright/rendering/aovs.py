@@ -1,4 +1,4 @@
-"""What is seen first, rather than how bright it is."""
+"""What is seen first, and what covers a pixel, rather than how bright it is."""
 
 from collections.abc import Iterable
 from typing import Any
@@ -9,9 +9,28 @@ from numpy.typing import NDArray
 from .. import _core
 from ..arrays import frozen, integer
 from ..cameras import AnyCamera
+from ..integrators import Path
 from ..scene.scene import Scene
+from .filters import BoxFilter
+from .job import Job
+from .samplers import Independent
 
-AOVS = ("depth", "position", "normal", "shading_normal", "uv", "shape_id", "primitive", "albedo", "motion")
+_SEEN = (
+    "depth",
+    "position",
+    "normal",
+    "shading_normal",
+    "uv",
+    "shape_id",
+    "primitive",
+    "albedo",
+    "motion",
+    "screen_motion",
+)
+_COVER = ("alpha", "cryptomatte")
+AOVS = _SEEN + _COVER
+# Shapes of a pixel that are told apart: the six of Cryptomatte's files.
+RANKS = 6
 
 
 def names_of(aov: str | Iterable[str]) -> tuple[str, ...]:
@@ -54,7 +73,11 @@ def aovs(
         ``"depth"`` (distance along the ray; infinite where nothing is seen), ``"position"``, ``"normal"``
         (unit geometric normal, as the winding gives it), ``"shading_normal"``, ``"uv"``, ``"shape_id"`` and
         ``"primitive"`` (-1 where nothing is seen), ``"albedo"``, ``"motion"`` (how far the point goes while
-        the shutter is open, in the scene's space). All of them if not given.
+        the shutter is open, in the scene's space), ``"screen_motion"`` (how far it goes in the picture, in
+        pixels to the right and down), ``"alpha"`` (the share of the pixel that anything covers, masks by what
+        of them is not open; glass covers what is behind it), ``"cryptomatte"`` (the six shapes that cover
+        most of the pixel, the largest first, each as its number, -1 for none, and its share of the pixel).
+        All of them if not given.
     samples : int
         Samples per pixel, over its square, the lens and the shutter: a pixel is the mean of those that see
         something. Numbers of shapes and primitives are those of its middle.
@@ -66,7 +89,8 @@ def aovs(
     Returns
     -------
     dict of str to array
-        (H, W) or (H, W, 2 or 3) float32, and int32 for numbers of things; read-only, row 0 the top.
+        (H, W), (H, W, 2 or 3) or (H, W, 6, 2) float32, and int32 for numbers of things alone; read-only, row
+        0 the top.
 
     Raises
     ------
@@ -79,9 +103,37 @@ def aovs(
     samples = integer("samples", samples, 1, 2**32 - 1)
     seed = integer("seed", seed, 0, 2**64 - 1)
     threads = None if threads is None else integer("threads", threads, 1)
-    arrays = _core.aovs(scene._compiled(), camera, list(names), samples, seed, threads)
+    found = seen(scene, camera, names, samples, seed, threads)
+    if any(name in _COVER for name in names):
+        job = Job(scene, camera, Path(), seed, False, None, Independent(), BoxFilter())
+        found |= covers(_core.Rendering(job.core, threads, 1), job, names, samples, threads)
+    return {name: found[name] for name in names}
+
+
+def seen(
+    scene: Scene, camera: AnyCamera, names: tuple[str, ...], samples: int, seed: int, threads: int | None
+) -> dict[str, NDArray[Any]]:
+    """Return those of the pictures that tell of what is seen first."""
+    mine = [name for name in names if name in _SEEN]
+    if not mine:
+        return {}
+    arrays = _core.aovs(scene._compiled(), camera, mine, samples, seed, threads)
     ids = ("shape_id", "primitive")
     return {
         name: frozen(array.astype(np.int32 if name in ids else np.float32))
-        for name, array in zip(names, arrays, strict=True)
+        for name, array in zip(mine, arrays, strict=True)
     }
+
+
+def covers(
+    rendering: _core.Rendering, job: Job, names: tuple[str, ...], samples: int | None, threads: int | None
+) -> dict[str, NDArray[Any]]:
+    """Return those of the pictures that tell of what covers pixels: by a render's own samples and its filter.
+
+    With `samples`, it is by so many of each pixel instead.
+    """
+    if not any(name in _COVER for name in names):
+        return {}
+    alpha, shapes, shares = rendering.cover(job.core, job.compiled(), RANKS, samples, threads)
+    every = {"alpha": alpha, "cryptomatte": np.stack([shapes.astype(np.float32), shares], axis=-1)}
+    return {name: frozen(every[name]) for name in names if name in _COVER}

@@ -11,7 +11,9 @@ from numpy.typing import NDArray
 
 from .. import _core
 from ..arrays import frozen, number
-from ..io import pictures
+from ..io import pictures, shown
+from ..io.exr_layers import write_exr
+from ..io.tone import DEFAULT, check_tone
 from .plan import RenderPlan
 
 HISTORY = np.dtype([("seconds", np.float64), ("samples", np.int64), ("error", np.float64)])
@@ -72,7 +74,8 @@ class Image:
     Attributes
     ----------
     rgb : (H, W, 3) float32
-        Linear red, green and blue: radiance in W·sr⁻¹·m⁻².
+        Linear red, green and blue: radiance in W·sr⁻¹·m⁻². Of a transparent picture, that of what covers the
+        pixel, times its alpha.
     standard_error : (H, W, 3) float32
         Standard error of `rgb`, by each pixel's own samples. Its square has no bias; where samples come in
         few batches, it is quite uncertain itself, and `interval` is the better answer.
@@ -90,7 +93,8 @@ class Image:
     biased : bool
         Whether samples were clamped, so that the picture tends to something darker than the scene.
     aov : dict of str to (H, W, ...) arrays
-        What else is known of the pixels, by name: ``samples`` (uint32) of each if the render was adaptive.
+        What else is known of the pixels, by name: what `aov` of `render` asked for, and ``samples`` (uint32)
+        of each if the render was adaptive.
     plan : RenderPlan
         What was chosen for the render, such as its sampler, and why.
     pooled_error : (H, W, 3) float32, optional
@@ -98,6 +102,9 @@ class Image:
         come in batches, one pixel has few of them. `standard_error` is taken if it is not given.
     degrees : (H, W) float32, optional
         Degrees of freedom of `pooled_error`; without them it is taken as exact.
+    alpha : (H, W) float32, optional
+        The share of each pixel that is covered, of a picture with a transparent background; filters of
+        negative lobes may take it a little out of 0..1.
     """
 
     rgb: NDArray[np.float32]
@@ -112,12 +119,13 @@ class Image:
     plan: RenderPlan = field(default_factory=RenderPlan)
     pooled_error: NDArray[np.float32] | None = None
     degrees: NDArray[np.float32] | None = None
+    alpha: NDArray[np.float32] | None = None
 
     def __post_init__(self) -> None:
         for name in ("rgb", "standard_error", "history"):
             object.__setattr__(self, name, frozen(getattr(self, name)))
         object.__setattr__(self, "aov", {name: frozen(array) for name, array in self.aov.items()})
-        for name in ("pooled_error", "degrees"):
+        for name in ("pooled_error", "degrees", "alpha"):
             if getattr(self, name) is not None:
                 object.__setattr__(self, name, frozen(getattr(self, name)))
 
@@ -154,29 +162,69 @@ class Image:
         away = times * (self.standard_error if self.pooled_error is None else self.pooled_error)
         return (self.rgb - away).astype(np.float32), (self.rgb + away).astype(np.float32)
 
-    def srgb(self) -> NDArray[np.uint8]:
-        """Return the picture for the eye: (H, W, 3) uint8 with the sRGB transfer, clipped to 0..1."""
-        return pictures.srgb(self.rgb)
+    def srgb(self, exposure: float = 0.0, tone: str = DEFAULT) -> NDArray[np.uint8]:
+        """Return the picture for the eye, with the sRGB transfer.
 
-    def save(self, path: str | PathLike[str]) -> None:
+        Parameters
+        ----------
+        exposure : float
+            Stops by which it is made brighter: 1 is twice as bright.
+        tone : str
+            How what is brighter than white is brought into range: ``"filmic"`` keeps colours up to half of
+            white as they are, and rolls off what is brighter by the shoulder of the Khronos PBR Neutral tone
+            mapper (Khronos Group, 2024); ``"linear"`` clips.
+
+        Returns
+        -------
+        (H, W, 3) or (H, W, 4) uint8
+            Red, green and blue; of a transparent picture also alpha, by which colours are not multiplied.
+
+        Raises
+        ------
+        ValueError
+            If the exposure is out of -100..100, or the tone is not known.
+        TypeError
+            If the exposure is not a number.
+        """
+        return shown.srgb(self.rgb, self.alpha, check_tone(exposure, tone), tone)
+
+    def save(self, path: str | PathLike[str], exposure: float = 0.0, tone: str = DEFAULT) -> None:
         """Save the picture.
 
         Parameters
         ----------
         path : str or path
-            ``.png`` is for the eye: 8 bits, sRGB, clipped. ``.npy`` holds `rgb`. ``.exr`` holds `rgb` as
-            channels R, G, B and `standard_error` as channels standard_error.R, .G, .B, 32-bit floats.
+            ``.png``, ``.jpg``, ``.jpeg``, ``.webp`` and ``.avif`` are for the eye: 8 bits, as `srgb` gives
+            them, with alpha if the picture has one. JPEG knows none: there it stands before black. ``.npy``
+            holds `rgb`. ``.exr`` holds `rgb` as channels R, G, B, `alpha` as A, `standard_error` as
+            standard_error.R, .G, .B, and what is in `aov` as layers of their own, 32-bit floats, as
+            compositing programs call them: depth.Z, normal.X, .Y, .Z, albedo.R, .G, .B, and so on. Numbers
+            are of 32 bits without a sign (4294967295 for none), shapes also as Cryptomatte 1.2 has them, by
+            the names "shape 0", "shape 1", ...
+        exposure : float
+            Stops by which a picture for the eye is made brighter.
+        tone : str
+            ``"filmic"`` or ``"linear"``, see `srgb`. Files that hold numbers have them as they are.
 
         Raises
         ------
         ValueError
-            If the suffix is another one.
+            If the suffix is another one, the exposure is out of -100..100, or the tone is not known.
         ImportError
-            If the suffix is .exr and OpenEXR is not installed (``pip install 'raywright[exr]'``).
+            If the suffix is .exr and OpenEXR is not installed (``pip install 'raywright[exr]'``), or if it is
+            one that the installed Pillow cannot write.
         OSError
             If the file cannot be written: FileNotFoundError if the folder is missing, and so on.
         """
-        pictures.write(pictures.check_writable(path), self.rgb, self.standard_error)
+        exposure, path = check_tone(exposure, tone), pictures.check_writable(path)
+        suffix = path.suffix.lower()
+        if suffix == ".npy":
+            np.save(path, self.rgb)
+        elif suffix == ".exr":
+            write_exr(path, self.rgb, self.standard_error, self.alpha, self.aov)
+        else:
+            alpha = None if shown.FORMATS[suffix] == "JPEG" else self.alpha
+            path.write_bytes(shown.encoded(shown.srgb(self.rgb, alpha, exposure, tone), suffix))
 
     def table(self, rows: int = 12) -> str:
         """Return error against time as lines of text: seconds, samples per pixel, relMSE.
@@ -194,7 +242,7 @@ class Image:
         return "\n".join(lines)
 
     def _repr_png_(self) -> bytes:
-        return pictures.png(self.rgb)
+        return shown.png(self.rgb, self.alpha)
 
     def _ipython_display_(self) -> None:
         # Under the cell that rendered it, a notebook has the picture already: the numbers are enough there.
@@ -220,6 +268,7 @@ class Image:
             and self.plan == other.plan
             and _same(self.pooled_error, other.pooled_error)
             and _same(self.degrees, other.degrees)
+            and _same(self.alpha, other.alpha)
             and self.aov.keys() == other.aov.keys()
             and all(
                 np.array_equal(array, other.aov[name], equal_nan=array.dtype.kind == "f")
@@ -244,6 +293,7 @@ class Image:
             self.plan,
             self.pooled_error,
             self.degrees,
+            self.alpha,
         )
         return Image, parts
 

@@ -27,11 +27,12 @@ class Job:
     clamp: float | None
     sampler: Sampler
     filter: Filter
+    transparent: bool = False
     told: tuple[str, ...] = ()
     _compiling: threading.Lock = field(default_factory=threading.Lock, repr=False)
 
     def _arguments(self) -> tuple[Any, ...]:
-        how = self.seed, self.adaptive, self.clamp, self.sampler, self.filter
+        how = self.seed, self.adaptive, self.clamp, self.sampler, self.filter, self.transparent
         return (self.scene, self.camera, self.integrator, *how)
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -80,4 +81,5 @@ class Job:
             "clamp": self.clamp,
             "sampler": repr(self.sampler),
             "filter": repr(self.filter),
+            "transparent": self.transparent,
         }

@@ -14,10 +14,11 @@ from ..arrays import integer, positive
 from ..cameras import AnyCamera
 from ..integrators import AnyIntegrator, Path, check_integrator
 from ..scene.scene import Scene
-from .aovs import aovs, names_of
+from .aovs import covers, names_of, seen
 from .choices import Limits, chosen
 from .filters import BoxFilter, Filter
 from .image import HISTORY, ErrorEstimate, Image
+from .interrupts import ON_INTERRUPT, unless_terminated
 from .job import Job
 from .notebook import display
 from .plan import RenderPlan
@@ -34,6 +35,9 @@ if TYPE_CHECKING:
 _PATH = Path()
 _FILTER: Filter = BoxFilter()
 _DEFAULT_SAMPLES = 64
+# Samples a pixel of what is seen first.
+_AOV_SAMPLES = 16
+BACKGROUNDS = ("shown", "transparent")
 
 
 class Stop(Protocol):
@@ -62,6 +66,8 @@ def render(
     executor: "Executor | None" = None,
     aov: str | Iterable[str] = (),
     stop: Stop | None = None,
+    background: str = "shown",
+    on_interrupt: str = "raise",
 ) -> Image:
     """Render a picture, until the first of the limits that are given is met.
 
@@ -126,10 +132,19 @@ def render(
         so. Scene, camera and integrator are pickled, and compiled once in each process.
     aov : str or several, optional
         What is seen first, besides the picture, by the names in `AOVS`: ``image.aov["depth"]`` and so on, as
-        `aovs` gives it.
+        `aovs` gives it; what covers a pixel is told by the picture's own samples and filter.
     stop : threading.Event, or anything with a method is_set, optional
         Ends the render at once when it is set, from another thread or from `progress`. The picture so far is
         returned, even if some of its pixels have no sample yet, which ``image.warnings`` then tells.
+    background : str
+        ``"transparent"`` leaves the background out where the camera sees it directly, past the scene and
+        through the holes of masks: ``image.alpha`` tells how much of each pixel is covered, and `rgb` and its
+        error are of what covers it, times that. The background lights the scene as ever; glass and mirrors
+        show it, and cover what is behind them. ``"shown"`` is the picture with its background.
+    on_interrupt : str
+        What Ctrl-C does once the render has begun: ``"raise"`` raises a KeyboardInterrupt at once, whose
+        ``image`` is the picture so far, without alpha and `aov`; ``"return"`` returns it whole. Either way
+        ``image.warnings`` tells of pixels without samples.
 
     Returns
     -------
@@ -145,7 +160,12 @@ def render(
     OSError
         If `checkpoint` cannot be read, or its folder is missing.
     KeyboardInterrupt
-        At once, when Ctrl-C is pressed; a checkpoint is written before.
+        At once, when Ctrl-C is pressed, unless `on_interrupt` says otherwise; a checkpoint is written before.
+
+    Notes
+    -----
+    With a checkpoint, SIGTERM writes it before it does what it would have done: by default, end the process.
+    It is heard in the main thread alone.
     """
     checked = check(
         scene, camera, integrator, samples, error, seconds, seed, threads, adaptive, clamp, sampler, filter
@@ -162,6 +182,12 @@ def render(
 
         if not isinstance(executor, Executor):
             raise TypeError(f"executor must be a concurrent.futures.Executor, got {type(executor).__name__}")
+    for name, value, choices in (
+        ("background", background, BACKGROUNDS),
+        ("on_interrupt", on_interrupt, ON_INTERRUPT),
+    ):
+        if value not in choices:
+            raise ValueError(f"{name} must be one of {', '.join(choices)}, got {value!r}")
     names = names_of(aov)
     kept, begun = None, {}
     if checkpoint is not None:
@@ -185,7 +211,8 @@ def render(
         what = scene, camera, limits, threads, clamp, filter
         integrator, rows, spent = followed(integrator, *what, begun, looks)
         plan = replace(plan, rows=plan.rows + rows, path=integrator)
-    job = Job(scene, camera, integrator, seed, adaptive, clamp, sampler, filter)
+    transparent = background == "transparent"
+    job = Job(scene, camera, integrator, seed, adaptive, clamp, sampler, filter, transparent)
     if checkpoint is not None:
         kept = Checkpoints(checkpoint, job.identity())
     rendering = _begun(kept, job, threads)
@@ -193,8 +220,8 @@ def render(
     rendering.spend(spent)
     snapshots = None if show is None else Snapshots(show)
 
-    def so_far() -> Image:
-        return _image(rendering, clamp, {"samples": rendering.counts} if adaptive else {}, [], plan)
+    def so_far(told: Iterable[str] = ()) -> Image:
+        return _image(rendering, clamp, {"samples": rendering.counts} if adaptive else {}, told, plan)
 
     def wait() -> float | None:
         waits = [one.wait() for one in (kept, snapshots) if one is not None]
@@ -206,21 +233,37 @@ def render(
         if snapshots is not None and snapshots.wait() == 0:
             snapshots.take(so_far)
 
+    def keep() -> None:
+        # Nothing is kept of a render that could not begin.
+        if kept is not None and rendering.aim:
+            kept.write(rendering)
+
     def run(report: Report | None) -> list[str]:
         told: list[str] = []
+
+        def work() -> None:
+            broken = []
+            if executor is not None:
+                broken = _elsewhere(rendering, job, executor, limits, threads, report, rest, look)
+                told.extend(broken)
+            if executor is None or broken:
+                _here(rendering, job, limits, threads, report, wait, rest, looks)
+
         try:
             look()
-            if executor is not None:
-                told += _elsewhere(rendering, job, executor, limits, threads, report, rest, look)
-            if executor is None or told:
-                _here(rendering, job, limits, threads, report, wait, rest, looks)
+            if kept is None:
+                work()
+            else:
+                unless_terminated(work, keep)
         except StoppedError:
-            if not rendering.counts.all():
-                told.append("stopped before every pixel had a sample")
+            told.extend(_unseen(rendering, "stopped"))
+        except KeyboardInterrupt as interrupt:
+            if on_interrupt == "raise":
+                interrupt.image = so_far(_unseen(rendering, "interrupted"))  # type: ignore[attr-defined]
+                raise
+            told += ["interrupted by Ctrl-C", *_unseen(rendering, "interrupted")]
         finally:
-            # Nothing is kept of a render that could not begin.
-            if kept is not None and rendering.aim:
-                kept.write(rendering)
+            keep()
         return told + ([kept.trouble] if kept is not None and kept.trouble else [])
 
     if progress is True:
@@ -228,10 +271,12 @@ def render(
             problems = run(report)
     else:
         problems = run(None)
-    seen: dict[str, NDArray[Any]] = {"samples": rendering.counts} if adaptive else {}
-    if names:
-        seen |= aovs(scene, camera, names, seed=seed, threads=threads)
-    image = _image(rendering, clamp, seen, problems, plan)
+    found: dict[str, NDArray[Any]] = {"samples": rendering.counts} if adaptive else {}
+    found |= seen(scene, camera, names, _AOV_SAMPLES, seed, threads)
+    asked = (*names, "alpha") if transparent else names
+    known = covers(rendering, job, asked, None, threads)
+    found |= {name: array for name, array in known.items() if name in names}
+    image = _image(rendering, clamp, found, problems, plan, known["alpha"] if transparent else None)
     if show is not None:
         show(image)
     return image
@@ -284,6 +329,11 @@ def check(
     seed = integer("seed", seed, 0, 2**64 - 1)
     threads = None if threads is None else integer("threads", threads, 1)
     return Checked((samples, error, seconds), seed, threads, clamp)
+
+
+def _unseen(rendering: _core.Rendering, how: str) -> list[str]:
+    """Return what there is to say of pixels without samples, in a picture that ended so."""
+    return [] if rendering.counts.all() else [f"{how} before every pixel had a sample"]
 
 
 def _here(
@@ -347,8 +397,9 @@ def _image(
     done: _core.Rendering,
     clamp: float | None,
     aov: dict[str, NDArray[Any]],
-    told: list[str],
+    told: Iterable[str],
     plan: RenderPlan,
+    alpha: NDArray[np.float32] | None = None,
 ) -> Image:
     history = np.empty(len(done.history), HISTORY)
     for i, name in enumerate(HISTORY.names or ()):
@@ -387,6 +438,7 @@ def _image(
         plan=plan,
         pooled_error=pooled,
         degrees=degrees,
+        alpha=alpha,
     )
 
 

@@ -11,7 +11,7 @@ from typing import Any
 
 from ..cameras import AnyCamera
 from ..integrators import AnyIntegrator
-from ..io import pictures
+from ..io import shown
 from ..rendering.image import Image
 from ..rendering.render import render
 from ..scene.scene import Scene
@@ -58,8 +58,8 @@ class Frame:
     @cached_property
     def _data(self) -> tuple[str, bytes]:
         if self.state == "done":
-            return "image/png", pictures.png(self.image.rgb)
-        return "image/jpeg", pictures.jpeg(self.image.rgb)
+            return "image/png", shown.png(self.image.rgb)
+        return "image/jpeg", shown.jpeg(self.image.rgb)
 
     def told(self) -> dict[str, Any]:
         """Return what there is to say of the picture, for JSON; None stands for what is not known."""

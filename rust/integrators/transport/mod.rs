@@ -9,6 +9,7 @@ mod dimensions;
 mod direct_light;
 mod emission;
 mod features;
+mod first_seen;
 mod guided;
 mod path_state;
 mod resampling;
@@ -23,6 +24,8 @@ use super::{Guide, Job, Session, Worker};
 use crate::optics::Rgb;
 use crate::scene::{Scene, ShadingVariant};
 use crate::workers::Cancel;
+pub use first_seen::FirstSeen;
+
 use features::{Features, General, Open, Plain, Sharing};
 use std::sync::Arc;
 use worker::TransportWorker;

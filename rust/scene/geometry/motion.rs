@@ -5,28 +5,27 @@ use crate::math::{DVec3, Hit, Ray};
 use crate::scene::SurfacePoint;
 
 impl Geometry {
-    /// How far the point of a surface that a ray hits goes from the shutter's opening to its closing.
+    /// Where the point of a surface that a ray hits is at each of two times of the scene.
     ///
     /// # Panics
     /// If it is a miss.
-    pub fn motion(&self, ray: &Ray, hit: &Hit) -> DVec3 {
+    pub fn positions(&self, ray: &Ray, hit: &Hit, times: [f64; 2]) -> [DVec3; 2] {
         if !self.moves() {
-            return DVec3::ZERO;
+            return [self.surface(ray, hit).position; 2];
         }
-        let [start, end] = self.ends(ray, hit);
-        end.position - start.position
+        self.points(ray, hit, times).map(|point| point.position)
     }
 
-    /// The point as the shutter opens and as it closes.
-    fn ends(&self, ray: &Ray, hit: &Hit) -> [SurfacePoint; 2] {
+    /// The same with all that is known of the point.
+    fn points(&self, ray: &Ray, hit: &Hit, times: [f64; 2]) -> [SurfacePoint; 2] {
         let Some((instances, instance)) = self.instance(hit.primitive) else { return [self.surface(ray, hit); 2] };
         let prototype = instances.prototype();
         let pose = |time| instances.pose(instance, time);
         let Some(now) = pose(ray.time) else { return [self.surface(ray, hit); 2] };
         let (primitive, inner) = prototype.split(hit.inner);
-        let within = prototype.geometry().ends(&now.enter(ray), &Hit { primitive, inner, ..*hit });
+        let within = prototype.geometry().points(&now.enter(ray), &Hit { primitive, inner, ..*hit }, times);
         let outside = |time: f64, point: &SurfacePoint| pose(time).and_then(|pose| pose.point(point));
-        match (outside(0.0, &within[0]), outside(1.0, &within[1])) {
+        match (outside(times[0], &within[0]), outside(times[1], &within[1])) {
             (Some(start), Some(end)) => [start, end],
             _ => [self.surface(ray, hit); 2],
         }
@@ -56,7 +55,14 @@ mod tests {
             Geometry::new([crate::scene::Surface::from(Instances::moving(inner, vec![[still, moved]]).unwrap())]);
         let ray = Ray::new(DVec3::new(0.25, -0.5, 5.0), DVec3::NEG_Z);
         let hit = BruteForce::over(&geometry, Level::Scalar).intersect_one(&ray);
-        let motion = geometry.motion(&ray, &hit);
-        assert!((motion - DVec3::new(0.75, 2.5, 0.25)).length() < 1e-12, "{motion}");
+        let way = |from, to| {
+            let [start, end] = geometry.positions(&ray, &hit, [from, to]);
+            end - start
+        };
+        let whole = way(0.0, 1.0);
+        assert!((whole - DVec3::new(0.75, 2.5, 0.25)).length() < 1e-12, "{whole}");
+        // Matrices are blended, so a point goes straight, and in half of the time half of the way.
+        assert!((way(0.5, 1.0) - whole / 2.0).length() < 1e-12);
+        assert_eq!(way(0.25, 0.25), DVec3::ZERO);
     }
 }

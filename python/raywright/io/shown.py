@@ -1,0 +1,78 @@
+"""Pictures for the eye: 8 bits with the sRGB transfer, as arrays and as files."""
+
+import io
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .tone import DEFAULT, toned
+
+# By the ending of a file, what Pillow calls the format.
+FORMATS = {".png": "PNG", ".jpg": "JPEG", ".jpeg": "JPEG", ".webp": "WEBP", ".avif": "AVIF"}
+# Close to what cannot be told apart; without subsampling, which would smear colours over neighbours.
+_HOW: dict[str, dict[str, Any]] = {
+    "PNG": {},
+    "JPEG": {"quality": 92, "subsampling": 0},
+    "WEBP": {"quality": 92, "method": 4},
+    "AVIF": {"quality": 85, "subsampling": "4:4:4"},
+}
+
+
+def check_format(suffix: str) -> None:
+    """Raise an ImportError if the installed Pillow cannot write files of such an ending."""
+    name = FORMATS[suffix]
+    if name in ("WEBP", "AVIF"):
+        from PIL import features
+
+        # A Pillow that has never heard of a format warns of the question.
+        known = features.get_supported_modules() if name.lower() in features.modules else []
+        if name.lower() not in known:
+            raise ImportError(f"saving {suffix} needs a Pillow that has {name}: pip install 'Pillow>=11.3'")
+
+
+def srgb(
+    rgb: NDArray[np.floating[Any]],
+    alpha: NDArray[np.floating[Any]] | None = None,
+    exposure: float = 0.0,
+    tone: str = DEFAULT,
+) -> NDArray[np.uint8]:
+    """Linear colours to 8 bits, with a tone (see `toned`) and the sRGB transfer (IEC 61966-2-1).
+
+    With `alpha`, (H, W), colours are taken as multiplied by it, and what comes back is (H, W, 4), of colours
+    that are not: it is the whole colour of what covers a pixel that has a tone, not its share of the pixel.
+    """
+    if alpha is None:
+        return _bytes(_transfer(toned(rgb, exposure, tone)))
+    cover = np.clip(np.nan_to_num(np.asarray(alpha, np.float64), nan=0.0), 0.0, 1.0)[..., np.newaxis]
+    whole = np.divide(rgb, cover, out=np.zeros(rgb.shape, np.float64), where=cover > 0)
+    # Alpha is no light, and is stored as it is.
+    return _bytes(np.concatenate([_transfer(toned(whole, exposure, tone)), cover], axis=-1))
+
+
+def encoded(pixels: NDArray[np.uint8], suffix: str) -> bytes:
+    """Return the bytes of a picture file of such an ending, of what `srgb` gives."""
+    from PIL import Image
+
+    name = FORMATS[suffix]
+    out = io.BytesIO()
+    Image.fromarray(pixels).save(out, format=name, **_HOW[name])
+    return out.getvalue()
+
+
+def png(rgb: NDArray[np.floating[Any]], alpha: NDArray[np.floating[Any]] | None = None) -> bytes:
+    """Return a PNG file of linear colours, with the tone that all pictures have."""
+    return encoded(srgb(rgb, alpha), ".png")
+
+
+def jpeg(rgb: NDArray[np.floating[Any]]) -> bytes:
+    """Return a JPEG file of the same: not as exact as PNG, and a small part of the work."""
+    return encoded(srgb(rgb), ".jpg")
+
+
+def _transfer(linear: NDArray[np.float64]) -> NDArray[np.float64]:
+    return np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
+
+
+def _bytes(shares: NDArray[np.float64]) -> NDArray[np.uint8]:
+    return np.asarray(shares * 255 + 0.5, np.uint8)

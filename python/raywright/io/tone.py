@@ -1,0 +1,62 @@
+"""From light, which has no upper end, to what a screen can show."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..arrays import number
+
+TONES = ("filmic", "linear")
+# The tone of whatever shows a picture, unless it is told another.
+DEFAULT = "filmic"
+
+# Up to here colours stay as they are.
+_KNEE = 0.5
+# How soon bright colours turn white: that of the Khronos PBR Neutral tone mapper.
+_DESATURATION = 0.15
+# More stops than any picture takes; far more would leave the range of float64.
+_MOST_STOPS = 100.0
+
+
+def check_tone(exposure: float, tone: str) -> float:
+    """Return an exposure, in stops.
+
+    Raises
+    ------
+    ValueError
+        If it is out of -100..100, or the tone is not known.
+    TypeError
+        If it is not a number.
+    """
+    exposure = number("exposure", exposure)
+    if not abs(exposure) <= _MOST_STOPS:
+        raise ValueError(f"exposure must be between -100 and 100 stops, got {exposure:g}")
+    if not isinstance(tone, str) or tone not in TONES:
+        raise ValueError(f"tone must be one of {', '.join(TONES)}, got {tone!r}")
+    return exposure
+
+
+def toned(rgb: NDArray[np.floating[Any]], exposure: float, tone: str) -> NDArray[np.float64]:
+    """Return linear colours between 0 and 1: exposed by so many stops, then brought into range.
+
+    ``"linear"`` clips. ``"filmic"`` keeps colours up to half of white as they are, and brings all that is
+    brighter in between there and white: the largest channel by the shoulder of the Khronos PBR Neutral tone
+    mapper (Khronos Group, 2024), and the others with it, so that hues stay; what is far brighter than white
+    fades to white, as on film. Its toe, which would darken mid-greys by more than a fifth, is left out, and
+    its shoulder begins at 0.5 rather than at 0.76, so that skies and lamps keep their shapes.
+    """
+    light = np.nan_to_num(np.asarray(rgb, np.float64), nan=0.0, posinf=np.finfo(np.float32).max)
+    light = np.maximum(light, 0.0) * 2.0**exposure
+    if tone == "linear":
+        return np.minimum(light, 1.0)
+    # Beyond this all is white, and squares would leave the range.
+    light = np.minimum(light, 1e30)
+    peak = light.max(axis=-1, keepdims=True)
+    over = np.maximum(peak - _KNEE, 0.0)
+    room = 1.0 - _KNEE
+    # Of slope 1 where it begins, and 1 at infinity.
+    shown = np.where(peak > _KNEE, 1.0 - room * room / (over + room), peak)
+    scaled = light * (shown / np.where(peak > 0, peak, 1.0))
+    white = 1.0 - 1.0 / (_DESATURATION * (peak - shown) + 1.0)
+    return np.asarray(scaled + (shown - scaled) * white)

@@ -1,0 +1,179 @@
+"""From scenes that change to animations."""
+
+import os
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import ExitStack, closing
+from pathlib import Path
+from typing import Any
+
+from ..arrays import integer, positive
+from ..cameras import AnyCamera
+from ..io.pictures import check_writable
+from ..io.tone import DEFAULT, check_tone
+from ..scene.scene import Scene
+from .image import Image
+from .render import render
+
+Frame = tuple[Scene, AnyCamera]
+# What films may be called.
+_FILMS = (".mp4", ".mov", ".mkv", ".webm")
+_NO_IMAGEIO = "a film needs imageio: pip install 'raywright[video]'"
+
+
+def render_frames(
+    frames: Callable[[int], Frame] | Iterable[Frame],
+    out: str | os.PathLike[str] | Callable[[int, Image], object],
+    count: int | None = None,
+    *,
+    seed: int = 0,
+    fps: float = 24.0,
+    exposure: float = 0.0,
+    tone: str = DEFAULT,
+    progress: bool = True,
+    **how: Any,
+) -> list[Path]:
+    """Render the frames of an animation, one after the other.
+
+    Parameters
+    ----------
+    frames : callable or iterable
+        Gives each frame its scene and its camera: a function of the frame's number, from 0 on, or something
+        to iterate over. What moves may be moved by `Scene.refit` in the same scene, which is much faster than
+        a new one: it is asked for the next frame when the last is done.
+    out : str, path or callable
+        ``"frames/{:04}.png"``, a name with a place for the number, of any picture that `Image.save` writes; or
+        a film, ``"film.mp4"`` (also .mov, .mkv, .webm), which needs imageio; or a function that is given the
+        number and the `Image`.
+    count : int, optional
+        How many frames; a function needs it, and something to iterate over ends there if it does not before.
+    seed : int
+        That of the first frame. Each of the others has that of the one before and one more, so that noise
+        does not stand still.
+    fps : float
+        Frames a second of a film.
+    exposure, tone
+        As for `Image.save`; the same for all frames.
+    progress : bool
+        Whether to show a bar on stderr that counts frames.
+    **how
+        Other arguments of `render`, for all frames: its integrator, limits, and so on.
+
+    Returns
+    -------
+    list of Path
+        The files that were written.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of its range, or `out` has no place for the number; and as `render` does.
+    TypeError
+        If an argument is of the wrong kind, or a frame is no scene and camera; and as `render` does.
+    ImportError
+        If imageio is missing for a film.
+    OSError
+        If a file cannot be written.
+    KeyboardInterrupt
+        When Ctrl-C is pressed. Frames that were done are kept, and a film ends with the last of them.
+    """
+    count = None if count is None else integer("count", count, 0)
+    seed = integer("seed", seed, 0, 2**64 - 1)
+    fps, exposure = positive("fps", fps), check_tone(exposure, tone)
+    if not isinstance(progress, bool):
+        raise TypeError(f"progress must be True or False, got {progress!r}")
+    every = _each(frames, count)
+    with ExitStack() as stack:
+        write = _writer(out, fps, exposure, tone, stack)
+        written: dict[Path, None] = {}
+        if progress:
+            from tqdm import tqdm
+
+            every = stack.enter_context(closing(tqdm(every, desc="frames", total=count, unit="frame")))
+        for number, frame in enumerate(every):
+            scene, camera = _checked(number, frame)
+            image = render(scene, camera, seed=(seed + number) % 2**64, progress=False, **how)
+            path = write(number, image)
+            if path is not None:
+                written[path] = None
+    return list(written)
+
+
+def _each(frames: Callable[[int], Frame] | Iterable[Frame], count: int | None) -> Iterable[Frame]:
+    if callable(frames):
+        if count is None:
+            raise ValueError("count must be given where frames is a function")
+        return map(frames, range(count))
+    try:
+        found = iter(frames)
+    except TypeError:
+        told = type(frames).__name__
+        raise TypeError(f"frames must be a function or give scenes and cameras, got {told}") from None
+    return found if count is None else _first(found, count)
+
+
+def _first(frames: Iterator[Frame], count: int) -> Iterator[Frame]:
+    # Not more are asked for than are wanted: they may be costly.
+    for _ in range(count):
+        try:
+            yield next(frames)
+        except StopIteration:
+            return
+
+
+def _checked(number: int, frame: Any) -> Frame:
+    if not (isinstance(frame, tuple | list) and len(frame) == 2):
+        raise TypeError(f"frame {number} must be a scene and a camera, got {type(frame).__name__}")
+    return frame[0], frame[1]
+
+
+def _writer(
+    out: str | os.PathLike[str] | Callable[[int, Image], object],
+    fps: float,
+    exposure: float,
+    tone: str,
+    stack: ExitStack,
+) -> Callable[[int, Image], Path | None]:
+    """Return what takes each picture to where it belongs, and gives the file that it is in."""
+    if callable(out):
+
+        def hand(number: int, image: Image) -> None:
+            out(number, image)
+
+        return hand
+    if not isinstance(out, str | os.PathLike):
+        raise TypeError(f"out must be a path or a function, got {type(out).__name__}")
+    name = os.fspath(out)
+    if Path(name).suffix.lower() in _FILMS:
+        return _film(check_writable(name, _FILMS, "a film"), fps, exposure, tone, stack)
+    try:
+        names = [name.format(number) for number in (0, 1)]
+    except (IndexError, KeyError, ValueError) as error:
+        raise ValueError(f"out must have one place for the frame's number, got {name!r}") from error
+    if names[0] == names[1]:
+        raise ValueError(f"out must have a place for the frame's number, as {{:04}} is, got {name!r}")
+    check_writable(names[0])
+
+    def save(number: int, image: Image) -> Path:
+        path = Path(name.format(number))
+        image.save(path, exposure, tone)
+        return path
+
+    return save
+
+
+def _film(
+    path: Path, fps: float, exposure: float, tone: str, stack: ExitStack
+) -> Callable[[int, Image], Path | None]:
+    try:
+        import imageio
+    except ImportError as error:
+        raise ImportError(_NO_IMAGEIO) from error
+
+    # Sizes are kept as they are: by default it would stretch pictures to multiples of 16.
+    film = stack.enter_context(closing(imageio.get_writer(path, fps=fps, macro_block_size=1)))
+
+    def add(_number: int, image: Image) -> Path:
+        film.append_data(image.srgb(exposure, tone)[..., :3])
+        return path
+
+    return add
