@@ -16,6 +16,8 @@ from .places import Floats, Places, SceneLike, places, scene_of, sealed, size_of
 Method = Literal["ray", "sphere"]
 # A ball shrinks towards its last size geometrically; so many steps are more than any took that was tried.
 _STEPS = 60
+# To how much of itself, or of the scene's size, a ball is found.
+_EXACT = 1e-9
 # Points are asked so many at a time, between which progress is told.
 _TOGETHER = 1 << 17
 
@@ -78,15 +80,33 @@ def thickness(
     scene = scene_of(scene)
     found = _middles(scene) if points is None else points
     out = places(scene, found, normals, offset)
-    inside = _left(found, out) if isinstance(found, SurfacePoints) else _inner(scene, found, out, offset)
+    middles, starts = _inward(scene, found, out, offset)
     result = np.empty(len(out))
     with watcher(progress, "thickness") as report:
-        for start in range(0, len(out), _TOGETHER):
-            some = slice(start, start + _TOGETHER)
-            result[some] = _of(scene, inside, some, method, threads)
+        for first in range(0, len(out), _TOGETHER):
+            some = slice(first, first + _TOGETHER)
+            points, ways = middles[some], -out.normals[some]
+            # Rays start a little inside.
+            skipped = np.linalg.norm(starts[some] - points, axis=1)
+            across = scene.intersect(starts[some], ways, threads=threads).t + skipped
+            if method == "sphere":
+                across = _balls(scene, points, ways, across, threads)
+            result[some] = np.where(np.isfinite(points).all(axis=1), across, np.nan)
             if report is not None:
-                report(min(1.0, (start + _TOGETHER) / len(out)))
+                report(min(1.0, some.stop / len(out)))
     return sealed(result.reshape(out.shape))
+
+
+def _inward(
+    scene: Scene, found: SurfacePoints | ArrayLike, out: Places, offset: float | None
+) -> tuple[Floats, Floats]:
+    """Return the points, and where rays start that go in."""
+    ways = -out.normals.reshape(*out.shape, 3)
+    if isinstance(found, SurfacePoints):
+        starts = found.leave(np.where(np.isfinite(ways), ways, 1.0)).origins
+        return found.position.reshape(-1, 3), starts.reshape(-1, 3)
+    points = np.broadcast_to(np.asarray(found, np.float64), ways.shape)
+    return points.reshape(-1, 3), places(scene, found, ways, offset).origins
 
 
 def _middles(scene: Scene) -> ClosestPoints:
@@ -105,47 +125,27 @@ def _middles(scene: Scene) -> ClosestPoints:
     return ClosestPoints(np.zeros(len(primitive)), position, shape_id, primitive, uv, core)
 
 
-def _left(found: SurfacePoints, out: Places) -> Places:
-    """Return the same places, from where rays go in."""
-    starts = found.leave(np.where(np.isfinite(out.normals), -out.normals, 1.0).reshape(*out.shape, 3)).origins
-    return Places(starts.reshape(-1, 3), out.normals, out.shape)
-
-
-def _inner(scene: Scene, found: ArrayLike, out: Places, offset: float | None) -> Places:
-    """Return the same of points that are plain numbers."""
-    inward = places(scene, found, -out.normals.reshape(*out.shape, 3), offset)
-    return Places(inward.origins, out.normals, out.shape)
-
-
-def _of(scene: Scene, inside: Places, some: slice, method: Method, threads: int | None) -> Floats:
-    starts, normals = inside.origins[some], inside.normals[some]
-    across = scene.intersect(starts, -normals, threads=threads).t
-    lost = ~np.isfinite(starts).all(axis=1)
-    if method == "sphere":
-        across = _balls(scene, starts, normals, across, threads)
-    return np.where(lost, np.nan, across)
-
-
-def _balls(scene: Scene, starts: Floats, normals: Floats, across: Floats, threads: int | None) -> Floats:
-    """Return the diameters of the largest balls inside that touch the surface where rays start."""
-    least = 1e-9 * size_of(scene, starts[np.isfinite(starts).all(axis=1)])
+def _balls(scene: Scene, points: Floats, ways: Floats, across: Floats, threads: int | None) -> Floats:
+    """Return the diameters of the largest balls inside that touch the surface, from where ways go in."""
+    known = np.isfinite(points).all(axis=1)
+    least = _EXACT * size_of(scene, points[known])
     bounds = scene.bounds
-    # A ball that is larger than the scene is met by nothing that a smaller one is not.
+    # A ball as large as the scene is met by all that a larger one is.
     most = math.inf if bounds is None else float(np.linalg.norm(bounds[1] - bounds[0]))
-    radius = np.minimum(across, 2.0 * most) / 2.0
-    open_ = np.flatnonzero(np.isfinite(radius) & np.isfinite(starts).all(axis=1))
+    radius = np.minimum(across / 2.0, most)
+    # Where numbers were given, the surface may be a little off: nothing touches both.
+    on = scene.closest_point(points, threads=threads).position
+    open_ = np.flatnonzero(np.isfinite(radius) & known)
     for _ in range(_STEPS):
         if not len(open_):
             break
-        point, normal, r = starts[open_], normals[open_], radius[open_]
-        near = scene.closest_point(point - r[:, None] * normal, threads=threads)
-        away = point - near.position
-        # The ball through the point that also touches the nearest one: |p - q|^2 / 2 n·(p - q).
-        depth = np.maximum((away * normal).sum(axis=1), 0.0)
-        square = (away * away).sum(axis=1)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            smaller = np.where(depth > 0, square / (2.0 * depth), r)
-        is_less = (near.distance < r - least) & (smaller < r - np.maximum(least, 1e-9 * r))
+        point, r = on[open_], radius[open_]
+        near = scene.closest_point(point + r[:, None] * ways[open_], threads=threads)
+        away = near.position - point
+        # The ball through the point that also touches the nearest one: |q - p|^2 / 2 w·(q - p).
+        depth = (away * ways[open_]).sum(axis=1)
+        smaller = np.divide((away * away).sum(axis=1), 2.0 * depth, out=r.copy(), where=depth > 0)
+        is_less = (near.distance < r - least) & (smaller < r - _EXACT * r)
         radius[open_] = np.where(is_less, smaller, r)
         open_ = open_[is_less]
     return np.where(np.isfinite(across), 2.0 * radius, across)

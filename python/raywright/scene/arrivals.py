@@ -20,7 +20,7 @@ class Arrival:
 
     @classmethod
     def of(cls, scene: object) -> "Arrival | None":
-        """Return what a scene is known by; None if it holds what other picklers than Python's have brought."""
+        """Return what a scene is known by; None if it holds what Python's own pickler cannot take."""
         try:
             return cls(digest(scene))
         except TypeError:
