@@ -40,8 +40,9 @@ from .materials import (
     metal_index,
     metals,
 )
+from .query.all_hits import AllHits
 from .query.cones import ConeTouches
-from .query.hits import AllHits, ClosestPoints, Hits, QueryCost
+from .query.hits import ClosestPoints, Hits, QueryCost
 from .query.interactions import Interactions, LightSamples, Rays, Scattered, power_heuristic
 from .query.leaving import LeavingRays
 from .query.photons import Photons
@@ -82,7 +83,7 @@ from .textures import (
 )
 
 if TYPE_CHECKING:
-    from . import report
+    from . import measure, report
     from .scene_files.load import load
     from .scene_files.mitsuba import from_mitsuba
     from .viewer import Viewer, view
@@ -198,6 +199,7 @@ __all__ = [
     "check_writable",
     "from_mitsuba",
     "load",
+    "measure",
     "metal_index",
     "metals",
     "power_heuristic",
@@ -217,6 +219,7 @@ if not TYPE_CHECKING:
         "Viewer": ".viewer",
         "from_mitsuba": ".scene_files.mitsuba",
         "load": ".scene_files.load",
+        "measure": ".measure",
         "report": ".report",
         "view": ".viewer",
     }
@@ -226,7 +229,7 @@ if not TYPE_CHECKING:
             from importlib import import_module
 
             module = import_module(_LATER[name], __name__)
-            return module if name == "report" else getattr(module, name)
+            return module if name in ("measure", "report") else getattr(module, name)
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
     def __dir__() -> list[str]:

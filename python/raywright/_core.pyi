@@ -103,6 +103,7 @@ class CompiledScene:
             NDArray[np.int32] | None,
         ]
         | None = None,
+        counted: tuple[list[bool] | None, bool] | None = None,
     ) -> tuple[
         NDArray[np.float64],
         NDArray[np.int32],
@@ -117,6 +118,7 @@ class CompiledScene:
         ``origins`` and ``directions`` have shape (..., 3) and are float32 or float64, each of either type;
         ``t_min`` and ``t_max`` are floats or arrays. Each has one row, or one for each ray. Rays of two or
         more dimensions are an image, and traced in tiles. ``out`` is written to and given back.
+        ``counted`` says of each shape whether it counts, and whether only what faces the ray does.
         """
     def occluded(
         self,
@@ -128,6 +130,7 @@ class CompiledScene:
         threads: int | None,
         time: _Numbers | None = None,
         out: NDArray[np.bool_] | None = None,
+        counted: tuple[list[bool] | None, bool] | None = None,
     ) -> NDArray[np.bool_]:
         """Whether each ray hits anything. Arguments as `intersect`."""
     def intersect_all(
@@ -139,6 +142,7 @@ class CompiledScene:
         shape: tuple[int, ...],
         threads: int | None,
         time: _Numbers | None = None,
+        counted: tuple[list[bool] | None, bool] | None = None,
     ) -> tuple[
         NDArray[np.int64],
         NDArray[np.float64],
@@ -189,6 +193,9 @@ class CompiledScene:
         """Find unit geometric normals: (N,3), NaN for misses."""
     def errors(self, shape_id: NDArray[np.int32], primitive: NDArray[np.int32]) -> NDArray[np.float64]:
         """Bound how far each coordinate of `positions` is from the surface: (N,1), NaN for misses."""
+    @property
+    def names(self) -> tuple[str, ...]:
+        """What its shapes are called, in their order; empty where one has no name."""
     @property
     def loss(self) -> tuple[float, float] | None:
         """How far rounding has moved vertices, and as a share of their mesh's extent, where it is a loss."""

@@ -125,6 +125,13 @@ def positive(name: str, value: float) -> float:
     return result
 
 
+def label(name: str, value: str | None) -> str | None:
+    """Return a text, or None."""
+    if value is not None and not isinstance(value, str):
+        raise TypeError(f"{name} must be a str, got {type(value).__name__}")
+    return value or None
+
+
 def integer(name: str, value: int, least: int, most: int | None = None) -> int:
     """Return an integer in least..most."""
     try:

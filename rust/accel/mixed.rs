@@ -2,7 +2,9 @@
 
 use super::walk::{Build, Mailbox};
 use super::walked::walked;
-use super::{Accelerator, ByColumns, Cost, Crossings, Info, Nearest, Primitives, Side, Touches, UserGeometry};
+use super::{
+    Accelerator, ByColumns, Cost, Counts, Crossings, Every, Info, Nearest, Primitives, Side, Touches, UserGeometry,
+};
 use crate::math::{DVec3, Hit, HitColumns, Ray, RayColumns};
 use crate::shapes::Bounds;
 use crate::shapes::triangle::SolidCone;
@@ -157,6 +159,23 @@ fn is_before(a: &Hit, b: &Hit) -> bool {
     (a.t, a.primitive, a.inner) < (b.t, b.primitive, b.inner)
 }
 
+/// The hits of two structures in one order.
+fn joined(count: usize, a: &Crossings, b: &Crossings) -> Crossings {
+    let mut all = Crossings { splits: vec![0], hits: Vec::with_capacity(a.hits.len() + b.hits.len()) };
+    for i in 0..count {
+        let of = |c: &Crossings| c.splits[i]..c.splits[i + 1];
+        let from = all.hits.len();
+        all.hits.extend_from_slice(&a.hits[of(a)]);
+        all.hits.extend_from_slice(&b.hits[of(b)]);
+        // Stable: what is told twice stays so. The sum with zero is zero for −0 too.
+        all.hits[from..].sort_by(|x, y| {
+            (x.t + 0.0).total_cmp(&(y.t + 0.0)).then((x.primitive, x.inner).cmp(&(y.primitive, y.inner)))
+        });
+        all.splits.push(all.hits.len());
+    }
+    all
+}
+
 impl Accelerator for Mixed {
     fn intersect(&self, rays: &[Ray], hits: &mut [Hit]) {
         self.triangles.intersect(rays, hits);
@@ -184,20 +203,35 @@ impl Accelerator for Mixed {
     }
 
     fn crossings(&self, rays: &[Ray]) -> Crossings {
-        let (a, b) = (self.triangles.crossings(rays), self.objects.crossings(rays));
-        let mut all = Crossings { splits: vec![0], hits: Vec::with_capacity(a.hits.len() + b.hits.len()) };
-        for i in 0..rays.len() {
-            let of = |c: &Crossings| c.splits[i]..c.splits[i + 1];
-            let from = all.hits.len();
-            all.hits.extend_from_slice(&a.hits[of(&a)]);
-            all.hits.extend_from_slice(&b.hits[of(&b)]);
-            // Stable: what is told twice stays so. The sum with zero is zero for −0 too.
-            all.hits[from..].sort_by(|x, y| {
-                (x.t + 0.0).total_cmp(&(y.t + 0.0)).then((x.primitive, x.inner).cmp(&(y.primitive, y.inner)))
-            });
-            all.splits.push(all.hits.len());
+        joined(rays.len(), &self.triangles.crossings(rays), &self.objects.crossings(rays))
+    }
+
+    fn kept(&self, rays: &[Ray], counts: &Counts<'_>, any: bool, hits: &mut [Hit]) {
+        self.triangles.kept(rays, counts, any, hits);
+        let left = |(ray, hit): (&Ray, &Hit)| Ray { t_max: ray.t_max.min(hit.t), ..*ray };
+        let left: Vec<_> = rays.iter().zip(&*hits).map(left).collect();
+        let mut others = vec![Hit::MISS; rays.len()];
+        self.objects.kept(&left, counts, any, &mut others);
+        for (hit, other) in hits.iter_mut().zip(&others) {
+            if is_before(other, hit) {
+                *hit = *other;
+            }
+        }
+    }
+
+    fn met(&self, rays: &[Ray]) -> Every {
+        let (mut all, others) = (self.triangles.met(rays), self.objects.met(rays));
+        all.met.extend(others.met);
+        // A ray that one of the two lets pass is not told about by it.
+        for (mine, other) in all.rays.iter_mut().zip(others.rays) {
+            *mine = if *mine == Every::UNTOLD { other } else { *mine };
         }
         all
+    }
+
+    fn crossings_kept(&self, rays: &[Ray], counts: &Counts<'_>) -> Crossings {
+        let (a, b) = (self.triangles.crossings_kept(rays, counts), self.objects.crossings_kept(rays, counts));
+        joined(rays.len(), &a, &b)
     }
 
     fn sides(&self, primitives: &dyn Primitives, rays: &[Ray], doubt: f64, sides: &mut [Side]) {

@@ -6,6 +6,7 @@ pub mod bvh;
 mod crossings;
 pub mod grid;
 pub mod kdtree;
+mod kept;
 mod mixed;
 mod nearest;
 pub mod octree;
@@ -20,6 +21,7 @@ mod walked;
 
 pub use brute::BruteForce;
 pub use crossings::Crossings;
+pub use kept::Counts;
 pub use nearest::Nearest;
 pub use parity::Side;
 pub use slab::SlabRay;
@@ -27,14 +29,15 @@ pub use touches::{Touch, Touches};
 pub use user_geometry::UserGeometry;
 pub use walked::walked;
 
-pub use query::Wanted;
+pub use query::{Every, Meeting, Wanted};
 
 use crate::math::{DVec3, Hit, HitColumns, Ray, RayColumns, Region};
-use crate::shapes::Bounds;
 use crate::shapes::triangle::SolidCone;
+use crate::shapes::{Bounds, Candidate};
 use crate::work::Work;
+use kept::Kept;
 use parity::Parity;
-use query::{Answers, Counted, Every};
+use query::{Answers, Counted};
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -128,6 +131,16 @@ pub trait Accelerator: Send + Sync {
     /// Every hit of each ray, of which there are fewer than 2³².
     fn crossings(&self, rays: &[Ray]) -> Crossings;
 
+    /// The closest hit of each ray among what counts for it or, if `any` will do, one of these: as if all else were not
+    /// there.
+    fn kept(&self, rays: &[Ray], counts: &Counts<'_>, any: bool, hits: &mut [Hit]);
+
+    /// All that each ray meets, by every triangle.
+    fn met(&self, rays: &[Ray]) -> Every;
+
+    /// Every hit of each ray among what counts for it.
+    fn crossings_kept(&self, rays: &[Ray], counts: &Counts<'_>) -> Crossings;
+
     /// On which side of the surface that the `primitives` make, which must be those that it holds, the origin of each
     /// ray lies: by the crossings from there on. Rays are asked from a `t_min` of minus `doubt` on; the sign of a `t`
     /// is only believed where it is farther from 0 than `doubt`.
@@ -186,8 +199,26 @@ impl<A: Answers> Accelerator for A {
     }
 
     fn crossings(&self, rays: &[Ray]) -> Crossings {
+        Crossings::of(self.met(rays))
+    }
+
+    fn kept(&self, rays: &[Ray], counts: &Counts<'_>, any: bool, hits: &mut [Hit]) {
+        assert_eq!(rays.len(), hits.len(), "a hit for each ray");
+        self.answer(rays, &mut Kept { counts, any, hits });
+    }
+
+    fn met(&self, rays: &[Ray]) -> Every {
         let mut every = Every::of(rays.len());
         self.answer(rays, &mut every);
+        every
+    }
+
+    fn crossings_kept(&self, rays: &[Ray], counts: &Counts<'_>) -> Crossings {
+        let mut every = self.met(rays);
+        every.met.retain(|(ray, meeting)| {
+            let Hit { t, uv, primitive, inner } = meeting.hit;
+            counts(*ray as usize, primitive, &Candidate { t, uv, contact: meeting.contact, inner })
+        });
         Crossings::of(every)
     }
 

@@ -12,8 +12,10 @@ pub enum Wanted {
     Closest,
     /// Whether anything is met.
     Any,
-    /// All that is met.
+    /// All that is met, points that triangles share once.
     Every,
+    /// All that is met, by every triangle: whoever asks looks for what counts among it.
+    Met,
     /// On which side of a closed surface the ray starts: what it crosses, an odd number of times or an even one, and
     /// whether it starts on the surface, where `t` is 0.
     Side,
@@ -133,9 +135,12 @@ pub struct Every {
 }
 
 impl Every {
+    /// What is said of a ray that meets nothing.
+    pub const UNTOLD: (f64, f64) = (1.0, 0.0);
+
     /// Nothing yet of so many rays.
     pub fn of(rays: usize) -> Self {
-        Self { met: Vec::new(), rays: vec![(1.0, 0.0); rays] }
+        Self { met: Vec::new(), rays: vec![Self::UNTOLD; rays] }
     }
 }
 

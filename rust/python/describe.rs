@@ -21,6 +21,8 @@ pub struct Scene<'py> {
     lights: Vec<Bound<'py, PyAny>>,
     environment: Option<Bound<'py, PyAny>>,
     precision: String,
+    /// What each of the shapes is called.
+    pub names: Py<PyAny>,
     /// How much the build may take for rays to be fast.
     pub quality: String,
 }

@@ -8,7 +8,7 @@ use super::arrays::{sealed, unwritten};
 use super::instances::located;
 use super::rays::{RayArrays, chunks, each};
 use crate::math::Hit;
-use crate::scene::Scene;
+use crate::scene::{Filter, Scene};
 
 /// The hits of a chunk of rays, in the order of the rays.
 #[derive(Default)]
@@ -19,12 +19,15 @@ struct Chunk {
 }
 
 impl Chunk {
-    fn of(scene: &Scene, rays: &RayArrays<'_>, start: usize, count: usize) -> Self {
+    fn of(scene: &Scene, rays: &RayArrays<'_>, start: usize, count: usize, filter: Option<&Filter>) -> Self {
         // An image comes in the order of its tiles.
         let mut batches = Vec::new();
         let mut lengths = vec![0u32; count];
         rays.gathered(start, count, |batch, places| {
-            let crossings = scene.crossings(batch);
+            let crossings = match filter {
+                Some(filter) => filter.crossings(scene, batch),
+                None => scene.crossings(batch),
+            };
             for (at, &place) in crossings.splits.windows(2).zip(places) {
                 lengths[place] = (at[1] - at[0]) as u32;
             }
@@ -58,15 +61,17 @@ pub type AllHits<'py> = (
     Option<Bound<'py, PyArrayDyn<i32>>>,
 );
 
-/// All hits of all rays.
+/// All hits of all rays, of what counts alone where a filter says so.
 pub fn intersect_all<'py>(
     py: Python<'py>,
     scene: &Scene,
     rays: &RayArrays<'_>,
     threads: Option<usize>,
+    filter: Option<&Filter>,
 ) -> PyResult<AllHits<'py>> {
-    let mut found =
-        each(py, threads, chunks(rays.count, rays.chunk()), |(start, count)| Chunk::of(scene, rays, start, count))?;
+    let mut found = each(py, threads, chunks(rays.count, rays.chunk()), |(start, count)| {
+        Chunk::of(scene, rays, start, count, filter)
+    })?;
     let total: usize = found.iter().map(|chunk| chunk.hits.len()).sum();
     let (splits, t) = (unwritten(py, &[rays.count + 1], None)?, unwritten(py, &[total], None)?);
     let (shape, primitive) = (unwritten(py, &[total], None)?, unwritten(py, &[total], None)?);

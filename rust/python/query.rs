@@ -26,6 +26,8 @@ pub struct CompiledScene(
     /// What prototypes in it are known by: see `instances`.
     #[expect(dead_code, reason = "it is only held")]
     Vec<Py<PyAny>>,
+    /// What its shapes are called, in their order.
+    Py<PyAny>,
 );
 
 /// t, shape_id, primitive and uv, and in a scene with instances instance.
@@ -36,6 +38,16 @@ type Hits<'py> = (
     Bound<'py, PyArrayDyn<f64>>,
     Option<Bound<'py, PyArrayDyn<i32>>>,
 );
+
+/// Whether each shape counts, and whether only what faces the ray does.
+#[derive(FromPyObject)]
+struct Counted(Option<Vec<bool>>, bool);
+
+impl From<Counted> for scene::Filter {
+    fn from(Counted(shapes, is_front_only): Counted) -> Self {
+        Self { shapes, is_front_only }
+    }
+}
 
 /// Nodes and primitives.
 type Costs<'py> = (Bound<'py, PyArrayDyn<i32>>, Bound<'py, PyArrayDyn<i32>>);
@@ -63,13 +75,15 @@ impl CompiledScene {
     ) -> PyResult<Self> {
         let build = accelerators::read(accelerator, &scene.quality)?;
         let builds = Builds::new(progress, scene.size()?);
+        let names = scene.names.clone_ref(py);
         let (description, kept) = scene.describe(&builds)?;
         let size = builds::size(&description.shapes);
         let scene = builds.build(py, size, |work| scene::Scene::watched(description, build, work))?;
-        Ok(Self(scene, kept))
+        Ok(Self(scene, kept, names))
     }
 
     fn refitted(&self, py: Python<'_>, scene: Scene<'_>) -> PyResult<Option<Self>> {
+        let names = scene.names.clone_ref(py);
         let (description, kept) = scene.describe(&Builds::new(None, 0))?;
         let (watch, mut signal) = (Watch::default(), Ok(()));
         let look = || {
@@ -83,10 +97,10 @@ impl CompiledScene {
             .detach(|| workers::watched(None, |_| self.0.refitted(description, Work::of(&watch)), look))
             .map_err(PyRuntimeError::new_err)?;
         signal?;
-        compiled.map(|scene| scene.map(|scene| Self(scene, kept))).map_err(|e| PyValueError::new_err(e.to_string()))
+        compiled.map(|scene| scene.map(|scene| Self(scene, kept, names))).map_err(|e| PyValueError::new_err(e.to_string()))
     }
 
-    #[pyo3(signature = (origins, directions, t_min, t_max, shape, threads, time=None, out=None))]
+    #[pyo3(signature = (origins, directions, t_min, t_max, shape, threads, time=None, out=None, counted=None))]
     fn intersect<'py>(
         &self,
         py: Python<'py>,
@@ -98,10 +112,11 @@ impl CompiledScene {
         threads: Option<usize>,
         time: Option<Numbers<'py>>,
         out: Option<Hits<'py>>,
+        counted: Option<Counted>,
     ) -> PyResult<Hits<'py>> {
         let arguments = RayArguments { origins, directions, t_min, t_max, time, shape };
         let (rays, lead) = (arguments.rays()?, &arguments.shape);
-        let scene = &self.0;
+        let (scene, filter) = (&self.0, counted.map(scene::Filter::from));
         let (t, shape, primitive, uv, instance) = match out {
             Some(out) => out,
             None => {
@@ -118,7 +133,7 @@ impl CompiledScene {
         let mut to_primitive = writable("out.primitive", &primitive, lead, None)?;
         let mut to_uv = writable("out.uv", &uv, lead, Some(2))?;
         let mut to_instance = instance.as_ref().map(|to| writable("out.instance", to, lead, None)).transpose()?;
-        let by_columns = scene.accelerator().by_columns();
+        let by_columns = scene.accelerator().by_columns().filter(|_| filter.is_none());
         let (ts, shapes, primitives) = (to_t.as_slice_mut()?, to_shape.as_slice_mut()?, to_primitive.as_slice_mut()?);
         let instances = to_instance.as_mut().map(|to| to.as_slice_mut()).transpose()?;
         let parts = ((ts, shapes, primitives, to_uv.as_slice_mut()?.as_chunks_mut().0), instances);
@@ -131,7 +146,10 @@ impl CompiledScene {
             let mut hits = vec![Hit::MISS; BATCH.min(count)];
             rays.gathered(start, count, |batch, places| {
                 let hits = &mut hits[..batch.len()];
-                scene.intersect(batch, hits);
+                match &filter {
+                    Some(filter) => filter.intersect(scene, batch, false, hits),
+                    None => scene.intersect(batch, hits),
+                }
                 write(scene, hits, places, (t, shape, primitive, uv));
                 if let Some(instance) = &mut instance {
                     instances::write(scene, hits, places, instance, primitive);
@@ -144,7 +162,7 @@ impl CompiledScene {
         Ok((t, shape, primitive, uv, instance))
     }
 
-    #[pyo3(signature = (origins, directions, t_min, t_max, shape, threads, time=None, out=None))]
+    #[pyo3(signature = (origins, directions, t_min, t_max, shape, threads, time=None, out=None, counted=None))]
     fn occluded<'py>(
         &self,
         py: Python<'py>,
@@ -156,14 +174,15 @@ impl CompiledScene {
         threads: Option<usize>,
         time: Option<Numbers<'py>>,
         out: Option<Bound<'py, PyArrayDyn<bool>>>,
+        counted: Option<Counted>,
     ) -> PyResult<Bound<'py, PyArrayDyn<bool>>> {
         let arguments = RayArguments { origins, directions, t_min, t_max, time, shape };
         let rays = arguments.rays()?;
         let out = out.map_or_else(|| unwritten(py, &arguments.shape, None), Ok)?;
         {
             let mut out = writable("out", &out, &arguments.shape, None)?;
-            let scene = &self.0;
-            let by_columns = scene.accelerator().by_columns();
+            let (scene, filter) = (&self.0, counted.map(scene::Filter::from));
+            let by_columns = scene.accelerator().by_columns().filter(|_| filter.is_none());
             let chunk = if by_columns.is_some() { rays.window() } else { rays.chunk() };
             answer(py, rays.count, chunk, threads, out.as_slice_mut()?, |start, out| {
                 if let Some(tree) = by_columns {
@@ -171,9 +190,17 @@ impl CompiledScene {
                 }
                 let count = out.len();
                 let mut found = vec![false; BATCH.min(count)];
+                let mut hits = vec![Hit::MISS; if filter.is_some() { found.len() } else { 0 }];
                 rays.gathered(start, count, |batch, places| {
                     let found = &mut found[..batch.len()];
-                    scene.occluded(batch, found);
+                    match &filter {
+                        Some(filter) => {
+                            let hits = &mut hits[..batch.len()];
+                            filter.intersect(scene, batch, true, hits);
+                            found.iter_mut().zip(hits).for_each(|(found, hit)| *found = hit.is_hit());
+                        }
+                        None => scene.occluded(batch, found),
+                    }
                     for (&found, &i) in found.iter().zip(places) {
                         out[i] = found;
                     }
@@ -183,7 +210,7 @@ impl CompiledScene {
         Ok(out)
     }
 
-    #[pyo3(signature = (origins, directions, t_min, t_max, shape, threads, time=None))]
+    #[pyo3(signature = (origins, directions, t_min, t_max, shape, threads, time=None, counted=None))]
     fn intersect_all<'py>(
         &self,
         py: Python<'py>,
@@ -194,9 +221,10 @@ impl CompiledScene {
         shape: Vec<usize>,
         threads: Option<usize>,
         time: Option<Numbers<'py>>,
+        counted: Option<Counted>,
     ) -> PyResult<every::AllHits<'py>> {
         let arguments = RayArguments { origins, directions, t_min, t_max, time, shape };
-        every::intersect_all(py, &self.0, &arguments.rays()?, threads)
+        every::intersect_all(py, &self.0, &arguments.rays()?, threads, counted.map(scene::Filter::from).as_ref())
     }
 
     #[pyo3(signature = (origins, directions, t_min, t_max, shape, threads, time=None))]
@@ -344,6 +372,12 @@ impl CompiledScene {
         primitive: PyReadonlyArray1<'py, i32>,
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         self.of_primitives(py, &shape_id, &primitive, |geometry, p, _| [geometry.error(p)])
+    }
+
+    /// What its shapes are called, in their order.
+    #[getter]
+    fn names(&self, py: Python<'_>) -> Py<PyAny> {
+        self.2.clone_ref(py)
     }
 
     #[getter]

@@ -5,6 +5,7 @@ mod compiled;
 mod description;
 mod emission;
 mod encounter;
+mod filter;
 mod first_hits;
 #[cfg(test)]
 pub(crate) mod fixtures;
@@ -26,6 +27,7 @@ pub use compiled::Scene;
 pub use description::{DescriptionError, SceneDescription, Shape};
 pub use emission::{Emission, Sides};
 pub use encounter::Encounter;
+pub use filter::Filter;
 pub use first_hits::FirstHits;
 pub use geometry::{
     BadTransform, Geometry, Instances, Matrix, Mesh, Objects, Precision, Prototype, Rounding, Surface, Vertices,

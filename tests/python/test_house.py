@@ -17,7 +17,7 @@ FLOORS = [
     {"shapes"},
     {"mesh_files", "query"},
     {"scene"},
-    {"integrators", "scenes"},
+    {"integrators", "measure", "scenes"},
     {"rendering"},
     {"compat", "report", "scene_files", "viewer"},
     {"cli"},

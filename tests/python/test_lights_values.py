@@ -10,7 +10,7 @@ import pytest
 
 import raywright as rw
 from raywright.io.pictures import read_linear
-from raywright.lights.sun_sky import sun_position
+from raywright.lights.sun_position import sun_positions
 
 PICTURE = np.arange(24, dtype=np.float32).reshape(2, 4, 3)
 NOON = datetime(2024, 6, 20, 12, tzinfo=timezone.utc)
@@ -144,13 +144,13 @@ def test_scenes_take_lights_and_environments_of_all_kinds():
 def test_the_sun_is_where_almanacs_have_it():
     # The example of Reda and Andreas, "Solar Position Algorithm for Solar Radiation Applications" (2003).
     when = datetime(2003, 10, 17, 12, 30, 30, tzinfo=timezone(timedelta(hours=-7)))
-    azimuth, elevation = (math.degrees(angle) for angle in sun_position(when, 39.742476, -105.1786))
+    azimuth, elevation = (math.degrees(angle[0]) for angle in sun_positions([when], 39.742476, -105.1786))
     assert azimuth == pytest.approx(194.34024, abs=0.02)
     assert elevation == pytest.approx(39.872046, abs=0.02)
     # At the pole the elevation is the declination: extreme at the solstices of 2024, none at the equinox.
     for day, expected in ((datetime(2024, 6, 20, 20, 51), 23.436), (datetime(2024, 12, 21, 9, 20), -23.436),
                           (datetime(2024, 3, 20, 3, 6), 0.0)):  # fmt: skip
-        assert math.degrees(sun_position(day.replace(tzinfo=timezone.utc), 90, 0)[1]) == pytest.approx(
+        assert math.degrees(sun_positions([day.replace(tzinfo=timezone.utc)], 90, 0)[1][0]) == pytest.approx(
             expected, abs=0.02
         )
 

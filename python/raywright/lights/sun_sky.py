@@ -2,16 +2,14 @@
 
 import math
 from dataclasses import dataclass
-from datetime import datetime, timezone
 from typing import overload
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arrays import Triple, colour, number, triple
+from ..arrays import Triple, colour, number
+from .sun_position import sun_directions, way
 from .times import Time, Times, one_or_many
-
-_EPOCH = datetime(2000, 1, 1, 12, tzinfo=timezone.utc)
 
 
 @dataclass(frozen=True, init=False)
@@ -65,10 +63,10 @@ class SunSky:
         sky_scale: float = 1.0,
     ) -> None:
         values = {
-            "sun": _way("sun", sun),
+            "sun": way("sun", sun),
             "turbidity": number("turbidity", turbidity),
             "ground_albedo": colour("ground_albedo", ground_albedo, most=1.0),
-            "up": _way("up", up),
+            "up": way("up", up),
             "sun_scale": number("sun_scale", sun_scale),
             "sky_scale": number("sky_scale", sky_scale),
         }
@@ -83,7 +81,7 @@ class SunSky:
     @property
     def elevation(self) -> float:
         """The angle of the sun above the horizon, in degrees; negative at night."""
-        sun, up = (np.array(way) / np.abs(way).max() for way in (self.sun, self.up))
+        sun, up = (np.array(to) / np.abs(to).max() for to in (self.sun, self.up))
         return math.degrees(math.atan2(float(sun @ up), float(np.linalg.norm(np.cross(sun, up)))))
 
     @overload
@@ -160,62 +158,7 @@ class SunSky:
             If `when` is something else; and as the class does.
         """
         times = one_or_many("when", when)
-        zenith, ahead = (np.array(_way(name, way)) for name, way in (("up", up), ("north", north)))
-        zenith /= np.linalg.norm(zenith)
-        ahead = ahead - zenith * (ahead @ zenith)
-        if not np.linalg.norm(ahead) > 1e-12:
-            raise ValueError(f"north must not be along up, got {north!r}")
-        ahead /= np.linalg.norm(ahead)
-        right = np.cross(ahead, zenith)
-
-        def day(time: datetime) -> "SunSky":
-            azimuth, elevation = sun_position(time, latitude, longitude)
-            level = ahead * math.cos(azimuth) + right * math.sin(azimuth)
-            sun = level * math.cos(elevation) + zenith * math.sin(elevation)
-            return cls(sun, turbidity, ground_albedo, up, sun_scale, sky_scale)
-
-        return tuple(map(day, times)) if isinstance(times, list) else day(times)
-
-
-def sun_position(when: datetime, latitude: float, longitude: float) -> tuple[float, float]:
-    """Return azimuth, from the north over the east, and elevation of the sun's centre, both in radians.
-
-    Parameters
-    ----------
-    when : datetime
-        With its time zone.
-    latitude, longitude : float
-        In degrees, north and east positive.
-
-    Raises
-    ------
-    ValueError
-        If the latitude is not between -90 and 90, or a number is not finite.
-    """
-    place, east = number("latitude", latitude), number("longitude", longitude)
-    if not -90 <= place <= 90:
-        raise ValueError(f"latitude must be between -90 and 90 degrees, got {latitude}")
-    days = (when - _EPOCH).total_seconds() / 86400.0
-    mean_longitude = math.radians((280.460 + 0.9856474 * days) % 360.0)
-    anomaly = math.radians((357.528 + 0.9856003 * days) % 360.0)
-    ecliptic = mean_longitude + math.radians(1.915 * math.sin(anomaly) + 0.020 * math.sin(2 * anomaly))
-    obliquity = math.radians(23.439 - 0.0000004 * days)
-    ascension = math.atan2(math.cos(obliquity) * math.sin(ecliptic), math.cos(ecliptic))
-    declination = math.asin(math.sin(obliquity) * math.sin(ecliptic))
-    # Greenwich's mean sidereal time: in a day the Earth turns once and a 365th.
-    sidereal = math.radians((280.46062 + 360.98564737 * days + east) % 360.0)
-    hour = sidereal - ascension
-    phi = math.radians(place)
-    height = math.sin(declination) * math.sin(phi) + math.cos(declination) * math.cos(phi) * math.cos(hour)
-    azimuth = math.atan2(
-        -math.cos(declination) * math.sin(hour),
-        math.sin(declination) * math.cos(phi) - math.cos(declination) * math.sin(phi) * math.cos(hour),
-    )
-    return azimuth % (2 * math.pi), math.asin(max(-1.0, min(1.0, height)))
-
-
-def _way(name: str, value: ArrayLike) -> Triple:
-    way = triple(name, value)
-    if way == (0, 0, 0):
-        raise ValueError(f"{name} must have a length, got {way}")
-    return way
+        many = times if isinstance(times, list) else [times]
+        suns = sun_directions(many, latitude, longitude, way("up", up), way("north", north))
+        days = tuple(cls(sun, turbidity, ground_albedo, up, sun_scale, sky_scale) for sun in suns)
+        return days if isinstance(times, list) else days[0]

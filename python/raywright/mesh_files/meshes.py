@@ -119,4 +119,5 @@ def _joined(mesh: Mesh) -> Mesh:
     rows = np.ascontiguousarray(mesh.vertices + 0.0)
     keys = rows.view(np.dtype((np.void, rows.dtype.itemsize * 3))).reshape(-1)
     _, first, inverse = np.unique(keys, return_index=True, return_inverse=True)
-    return Mesh(rows[first], inverse.reshape(-1)[mesh.faces], material=mesh.material, emission=mesh.emission)
+    faces = inverse.reshape(-1)[mesh.faces]
+    return Mesh(rows[first], faces, material=mesh.material, emission=mesh.emission, name=mesh.name)

@@ -20,12 +20,12 @@ def of_scene(scene: Any, loaded: bool = False) -> Iterator[Mesh]:
         if not hasattr(geometry, "faces"):
             continue  # points or curves
         if name not in made:
-            made[name] = of_trimesh(geometry, loaded)
+            made[name] = of_trimesh(geometry, loaded, name)
         moved = not np.array_equal(matrix, np.eye(4))
         yield made[name].transformed(matrix) if moved else made[name]
 
 
-def of_trimesh(mesh: Any, loaded: bool = False) -> Mesh:
+def of_trimesh(mesh: Any, loaded: bool = False, name: object = None) -> Mesh:
     """Return a trimesh.Trimesh as a mesh, with its looks."""
     vertices = np.asarray(mesh.vertices)
     faces = np.asarray(mesh.faces)
@@ -33,7 +33,9 @@ def of_trimesh(mesh: Any, loaded: bool = False) -> Mesh:
     if uv is not None and np.shape(uv) != (len(vertices), 2):
         uv = None
     look = look_of(mesh.visual, len(vertices))
-    return Mesh(vertices, faces, _given_normals(mesh, loaded), uv, look.material, look.emission, look.colors)
+    shines = (look.material, look.emission, look.colors)
+    called = name if isinstance(name, str) else None
+    return Mesh(vertices, faces, _given_normals(mesh, loaded), uv, *shines, called)
 
 
 def _given_normals(mesh: Any, loaded: bool) -> NDArray[np.float64] | None:

@@ -4,17 +4,21 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import Any, ClassVar, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .. import _core
+from . import rows
 from .leaving import LeavingRays, leaving
 from .surface import Surface
 
-# What is asked of the compiled scene when it is wanted, and kept by a pickle.
-_ASKED = ("position", "normal", "_error")
+# What is asked of the compiled scene when it is wanted. A pickle keeps it if it was.
+_ASKED = ("position", "normal", "_error", "surface", "names")
+
+
+Points = TypeVar("Points", bound="SurfacePoints")
 
 
 class Known:
@@ -58,11 +62,23 @@ class SurfacePoints(Known):
     _parts: ClassVar[tuple[str, ...]] = ("shape_id", "primitive", "uv")
 
     @cached_property
+    def names(self) -> NDArray[np.str_]:
+        """What the shape is called that the point is on: (...) str; "" for none, and where it has no name."""
+        # The last is that of shape -1.
+        return sealed(np.asarray(np.array([*self._known("names").names, ""])[self.shape_id]))
+
+    def _known(self, name: str) -> _core.CompiledScene:
+        """Return the scene that knows what is asked."""
+        if self._compiled is None:
+            raise ValueError(f"{name.strip('_')} is not kept in a pickle unless it was asked for before")
+        return self._compiled
+
+    @cached_property
     def position(self) -> NDArray[np.float64]:
         """Where the point is, from the corners of the face: (..., 3) float64; NaN for none."""
         if self._rays is not None:
             return self.surface.position
-        points = self._compiled.positions(
+        points = self._known("position").positions(
             self.shape_id.reshape(-1), self.primitive.reshape(-1), self.uv.reshape(-1, 2)
         )
         return sealed(points.reshape(*self.primitive.shape, 3))
@@ -72,7 +88,7 @@ class SurfacePoints(Known):
         """Unit geometric normal as the winding gives it: (..., 3) float64; NaN for none."""
         if self._rays is not None:
             return self.surface.normal
-        normals = self._compiled.normals(self.shape_id.reshape(-1), self.primitive.reshape(-1))
+        normals = self._known("normal").normals(self.shape_id.reshape(-1), self.primitive.reshape(-1))
         return sealed(normals.reshape(*self.primitive.shape, 3))
 
     @cached_property
@@ -80,7 +96,7 @@ class SurfacePoints(Known):
         """Bound on how far each coordinate of `position` is from the surface: (...) float64; NaN for none."""
         if self._rays is not None:
             return self.surface.error
-        errors = self._compiled.errors(self.shape_id.reshape(-1), self.primitive.reshape(-1))
+        errors = self._known("_error").errors(self.shape_id.reshape(-1), self.primitive.reshape(-1))
         return sealed(errors.reshape(self.primitive.shape))
 
     def leave(self, directions: ArrayLike) -> LeavingRays:
@@ -127,8 +143,6 @@ class SurfacePoints(Known):
     @cached_property
     def surface(self) -> Surface:
         """All about the points: normals, derivatives by the coordinates, bounds on errors."""
-        if self._compiled is None:
-            raise ValueError("surface is not kept in a pickle unless it was asked for before")
         return self._surface(None)
 
     def _surface(self, ray: NDArray[np.int64] | None) -> Surface:
@@ -138,7 +152,7 @@ class SurfacePoints(Known):
         origins, directions, time = self._rays or (np.zeros((1, 3)), np.ones((1, 3)), 0.0)
         instance = vars(self).get("instance")
         parts = _core.points(
-            self._compiled,
+            self._known("surface"),
             self.shape_id.reshape(-1),
             self.primitive.reshape(-1),
             None if instance is None else np.ascontiguousarray(instance).reshape(-1),
@@ -152,6 +166,27 @@ class SurfacePoints(Known):
         lead = self.primitive.shape
         return Surface(*(sealed(part.reshape(lead + part.shape[1:])) for part in parts))
 
+    def to_dict(self) -> dict[str, NDArray[Any]]:
+        """Return what is known as flat arrays by name, an entry or a row for each point.
+
+        Returns
+        -------
+        dict
+            Of `Hits` and `ClosestPoints` an entry a ray or a point, of `AllHits` one a hit, and `ray` tells
+            of which. Arrays of three columns are apart, as x, y and z, and those of two as u and v.
+        """
+        return rows.flat(self)
+
+    def to_dataframe(self) -> Any:
+        """Return what `to_dict` does as a ``pandas.DataFrame``.
+
+        Raises
+        ------
+        ImportError
+            If pandas is not installed.
+        """
+        return rows.frame(self.to_dict())
+
     def __eq__(self, other: object) -> bool:
         if type(other) is not type(self):
             return NotImplemented
@@ -163,11 +198,17 @@ class SurfacePoints(Known):
     __hash__ = None  # type: ignore[assignment]
 
     def __reduce__(self) -> tuple[Any, ...]:
-        # The compiled scene is not pickled, so what would be asked of it later is worked out now.
-        more = ("surface",) if "surface" in vars(self) else ()
-        copies = ("instance",) if "instance" in vars(self) else ()
-        kept = {name: getattr(self, name) for name in (*self._parts, *copies, *_ASKED)}
-        return _restored, (type(self), kept, {**self._more(), **{name: vars(self)[name] for name in more}})
+        # Nothing of the scene is pickled, and no array but those that there are.
+        own = vars(self)
+        kept = {name: own[name] for name in (*self._parts, "instance", *_ASKED) if name in own}
+        # Where hits know their points by their rays, and the scene is gone, those are of no use.
+        return restored, (type(self), kept, self._more())
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> "SurfacePoints":
+        # The compiled scene never changes, and serves the copy too; `out` may write to the arrays.
+        copy = restored(type(self), rows.copied(vars(self), memo), {})
+        vars(copy).update(_compiled=self._compiled, _rays=self._rays)
+        return copy
 
     def _more(self) -> dict[str, Any]:
         """Give what is kept besides the arrays."""
@@ -238,82 +279,20 @@ class Hits(SurfacePoints):
         """Leading shape of the rays."""
         return self.t.shape
 
+    def __getitem__(self, index: Any) -> "Hits":
+        """Return the hits at some places of the leading shape, which is indexed as arrays are."""
+        which = rows.places(self.shape, index)
+        return chosen(Hits, self, rows.picked(vars(self), which), which)
+
+    def __iter__(self) -> "Iterator[Hits]":
+        return (self[i] for i in range(len(self)))
+
     def __len__(self) -> int:
         return len(self.t)
 
     def __repr__(self) -> str:
         count = int(np.count_nonzero(self.hit))
         return f"Hits(shape={self.shape}, {count} of {self.t.size} rays hit)"
-
-
-@dataclass(frozen=True, eq=False, repr=False, init=False)
-class AllHits(SurfacePoints):
-    """Every hit of each ray, one after the other: by ray, then `t`, then (shape_id, primitive).
-
-    There are K hits of N rays in all, and those of ray i, counted along the rays in C order, are from
-    ``ray_splits[i]`` to ``ray_splits[i + 1]``. All arrays are read-only.
-
-    Attributes
-    ----------
-    ray_splits : (N + 1,) int64
-        Where the hits of each ray begin, and at the end how many there are.
-    t : (K,) float64
-        Distance in lengths of the ray's direction, so that the hit is at ``origin + t * direction``.
-    shape_id : (K,) int32
-        Which of ``scene.shapes``.
-    primitive : (K,) int32
-        Which face of that shape, 0 where it is no mesh, or of an instance what `Instance.locate` tells.
-    uv : (K, 2) float64
-        Barycentric weights of the face's second and third corner, so that the hit is at
-        ``(1 - u - v) * a + u * b + v * c`` for corners a, b, c; on a shape that is no mesh, its own u and v.
-    shape : tuple of int
-        Leading shape of the rays.
-    """
-
-    ray_splits: NDArray[np.int64]
-    t: NDArray[np.float64]
-    shape: tuple[int, ...]
-
-    _parts = ("ray_splits", "t", "shape_id", "primitive", "uv")
-
-    def __init__(
-        self,
-        ray_splits: NDArray[np.int64],
-        t: NDArray[np.float64],
-        shape_id: NDArray[np.int32],
-        primitive: NDArray[np.int32],
-        uv: NDArray[np.float64],
-        instance: NDArray[np.int32] | None,
-        shape: tuple[int, ...],
-        compiled: _core.CompiledScene,
-        rays: tuple[Any, ...] | None = None,
-    ) -> None:
-        parts = {"ray_splits": ray_splits, "t": t, "shape_id": shape_id, "primitive": primitive, "uv": uv}
-        self.__dict__.update(parts, shape=shape, _compiled=compiled, _rays=rays)
-        if instance is not None:
-            self.__dict__["instance"] = instance
-
-    def _surface(self, ray: NDArray[np.int64] | None) -> Surface:
-        return super()._surface(self.ray)
-
-    @cached_property
-    def ray(self) -> NDArray[np.int64]:
-        """Which ray each hit is of, counted along the rays in C order: (K,) int64."""
-        return sealed(np.repeat(np.arange(len(self.ray_splits) - 1), np.diff(self.ray_splits)))
-
-    @cached_property
-    def count(self) -> NDArray[np.int64]:
-        """How many hits each ray has: (...) int64."""
-        return sealed(np.diff(self.ray_splits).reshape(self.shape))
-
-    def _more(self) -> dict[str, Any]:
-        return {"shape": self.shape}
-
-    def __len__(self) -> int:
-        return len(self.t)
-
-    def __repr__(self) -> str:
-        return f"AllHits(shape={self.shape}, {len(self)} hits of {len(self.ray_splits) - 1} rays)"
 
 
 @dataclass(frozen=True, eq=False, repr=False, init=False)
@@ -361,6 +340,14 @@ class ClosestPoints(SurfacePoints):
     def shape(self) -> tuple[int, ...]:
         """Leading shape of the points."""
         return self.distance.shape
+
+    def __getitem__(self, index: Any) -> "ClosestPoints":
+        """Return the closest points at some places of the leading shape, which is indexed as arrays are."""
+        which = rows.places(self.shape, index)
+        return chosen(ClosestPoints, self, rows.picked(vars(self), which), which)
+
+    def __iter__(self) -> "Iterator[ClosestPoints]":
+        return (self[i] for i in range(len(self)))
 
     def __len__(self) -> int:
         return len(self.distance)
@@ -417,6 +404,13 @@ def rewritten(out: Hits, shape: tuple[int, ...]) -> Iterator[tuple[Any, ...]]:
             array.setflags(write=False)
 
 
+def chosen(kind: type[Points], of: SurfacePoints, own: dict[str, Any], rays: NDArray[np.int64]) -> Points:
+    """Return what is picked of points, which know as much as those do; `rays` are places of theirs."""
+    points = kind.__new__(kind)
+    vars(points).update(own, _compiled=of._compiled, _rays=rows.rays_of(of._rays, rays))
+    return points
+
+
 def sealed(array: NDArray[Any]) -> NDArray[Any]:
     """Return the array, which can be read only from now on."""
     array.setflags(write=False)
@@ -428,12 +422,12 @@ def same(a: NDArray[Any], b: NDArray[Any]) -> bool:
     return np.array_equal(a, b, equal_nan=a.dtype.kind == "f")
 
 
-def _restored(
-    kind: type[SurfacePoints], arrays: dict[str, NDArray[Any]], more: dict[str, Any]
-) -> SurfacePoints:
+def restored(kind: type[Points], arrays: dict[str, Any], more: dict[str, Any]) -> Points:
+    """Return points of which nobody knows more than their arrays."""
     points = kind.__new__(kind)
+    for array in arrays.values():
+        if isinstance(array, np.ndarray):
+            array.setflags(write=False)
     # Where cached_property keeps its values, too.
-    vars(points).update(
-        {name: sealed(array) for name, array in arrays.items()}, **more, _compiled=None, _rays=None
-    )
+    vars(points).update(arrays, **more, _compiled=None, _rays=None)
     return points

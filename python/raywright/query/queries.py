@@ -9,20 +9,18 @@ from .. import _core
 from .._core import CompiledScene
 from ..arrays import indices, integer, last_axis, number
 from ..cameras import AnyCamera, pixel_offsets
+from .all_hits import AllHits
 from .cones import ConeTouches, cone_arguments
-from .hits import AllHits, ClosestPoints, Hits, QueryCost, rewritten
+from .hits import Hits, QueryCost, rewritten
 from .interactions import Interactions, Rays
+from .masks import Cull, ShapeMask, asked, counted
 from .photons import Photons, photon_arguments
-from .rays import RayArguments, flags, nearest_arguments, point_arguments, ray_arguments
+from .points import PointQueries
+from .rays import RayArguments, flags, ray_arguments
 
 
-class Queries:
+class Queries(PointQueries):
     """What a compiled scene answers; asking compiles it."""
-
-    _core: CompiledScene | None
-
-    def _compiled(self) -> CompiledScene:
-        raise NotImplementedError
 
     def intersect(
         self,
@@ -33,6 +31,9 @@ class Queries:
         threads: int | None = None,
         time: ArrayLike | None = None,
         out: Hits | None = None,
+        mask: ArrayLike | None = None,
+        shapes: ShapeMask | None = None,
+        cull: Cull | None = None,
     ) -> Hits:
         """Find the closest hit of each ray.
 
@@ -52,6 +53,14 @@ class Queries:
             An earlier answer, of this scene or another, to as many rays of the same leading shape. Its arrays
             are written to and it is returned, so that a loop over batches allocates nothing; what it told
             before is gone.
+        mask : (...) bool array, optional
+            Which rays are asked, broadcast to their leading shape; the others hit nothing.
+        shapes : (S,) bool array, str or sequence of str, optional
+            Which of ``scene.shapes`` count, one bool for each of them or their names: as in a scene of these
+            alone. An `Instance` counts as a whole.
+        cull : {"back"}, optional
+            Leaves out what is met from behind, where the geometric normal goes along with the ray. Of
+            triangles that is decided exactly; of curved shapes and of copies by the normal as float64 has it.
 
         Returns
         -------
@@ -64,21 +73,24 @@ class Queries:
         ValueError
             If a last dimension is not 3, leading shapes do not broadcast, `t_min` or `t_max` is NaN, or
             `time` is not between 0 and 1; if `out` is of another shape, or its arrays are among the rays or
-            cannot be written to.
+            cannot be written to; if a mask has the wrong shape, or no shape has a name of `shapes`.
         TypeError
-            If an array does not hold real numbers, or `out` is no `Hits`.
+            If an array does not hold real numbers, `out` is no `Hits`, or a mask is not bool.
 
         Notes
         -----
         Rays with NaN, infinity or a zero direction (or one shorter than the least normal number) hit nothing.
-        Hits are watertight: no ray passes between two faces that share an edge or a corner.
+        Hits are watertight: no ray passes between two faces that share an edge or a corner and count.
         """
         rays = ray_arguments(origins, directions, t_min, t_max, threads, time)
         core = self._core or self._compiled()
+        what = None
+        if not (mask is None and shapes is None and cull is None):
+            rays, what = asked(rays, mask), counted(shapes, cull, core.names)
         if out is None:
-            return Hits(*core.intersect(*rays), core, known_by(core, rays))
+            return Hits(*core.intersect(*rays, None, what), core, known_by(core, rays))
         with rewritten(out, rays[4]) as arrays:
-            answer = core.intersect(*rays, arrays)
+            answer = core.intersect(*rays, arrays, what)
         out._tell(*answer, core, known_by(core, rays))
         return out
 
@@ -91,6 +103,9 @@ class Queries:
         threads: int | None = None,
         time: ArrayLike | None = None,
         out: NDArray[np.bool_] | None = None,
+        mask: ArrayLike | None = None,
+        shapes: ShapeMask | None = None,
+        cull: Cull | None = None,
     ) -> NDArray[np.bool_]:
         """Find whether each ray hits anything between `t_min` and `t_max`.
 
@@ -99,7 +114,7 @@ class Queries:
 
         Parameters
         ----------
-        origins, directions, t_min, t_max, threads, time
+        origins, directions, t_min, t_max, threads, time, mask, shapes, cull
             As for `intersect`.
         out : (...) bool array, optional
             Where the answer is written, with the leading shape of the rays and C-contiguous; it is returned.
@@ -109,9 +124,10 @@ class Queries:
         (...) bool
             With the leading shape of the rays.
         """
-        rays = ray_arguments(origins, directions, t_min, t_max, threads, time)
+        rays = asked(ray_arguments(origins, directions, t_min, t_max, threads, time), mask)
         core = self._core or self._compiled()
-        return core.occluded(*rays) if out is None else core.occluded(*rays, flags("out", out, rays[4]))
+        what = None if shapes is None and cull is None else counted(shapes, cull, core.names)
+        return core.occluded(*rays, None if out is None else flags("out", out, rays[4]), what)
 
     def interactions(self, rays: Rays) -> Interactions:
         """Find what each ray of a batch meets, and all that shading needs of it.
@@ -149,6 +165,9 @@ class Queries:
         t_max: ArrayLike = np.inf,
         threads: int | None = None,
         time: ArrayLike | None = None,
+        mask: ArrayLike | None = None,
+        shapes: ShapeMask | None = None,
+        cull: Cull | None = None,
     ) -> AllHits:
         """Find every hit of each ray, in order.
 
@@ -168,9 +187,10 @@ class Queries:
         of hits seen from outside, and an odd number from inside, however the ray is aimed. Faces that lie
         upon each other are all told.
         """
-        rays = ray_arguments(origins, directions, t_min, t_max, threads, time)
+        rays = asked(ray_arguments(origins, directions, t_min, t_max, threads, time), mask)
         core = self._core or self._compiled()
-        return AllHits(*core.intersect_all(*rays), rays[4], core, known_by(core, rays))
+        what = None if shapes is None and cull is None else counted(shapes, cull, core.names)
+        return AllHits(*core.intersect_all(*rays, what), rays[4], core, known_by(core, rays))
 
     def count(
         self,
@@ -411,104 +431,6 @@ class Queries:
         """
         arguments = photon_arguments(count, max_depth, roulette_depth, seed, threads)
         return Photons.of(*_core.photons(self._core or self._compiled(), *arguments))
-
-    def contains(self, points: ArrayLike, threads: int | None = None) -> NDArray[np.bool_]:
-        """Find whether each point is inside a closed surface.
-
-        A point is inside if a ray from there crosses the surface an odd number of times, which is decided
-        exactly; what is on the surface counts as inside. So where closed surfaces overlap, or one is within
-        the other, what is inside two of them is outside again (the even-odd rule).
-
-        Parameters
-        ----------
-        points : (..., 3) array
-            C-contiguous float32 and float64 are read without a copy.
-        threads : int, optional
-            How many to use; all cores if not given. The answer does not depend on it.
-
-        Returns
-        -------
-        (...) bool
-            With the leading shape of the points. False for points that are NaN or infinite.
-
-        Raises
-        ------
-        ValueError
-            If the last dimension is not 3.
-        TypeError
-            If the array does not hold real numbers.
-
-        Notes
-        -----
-        From a point two opposite ways out are tried, which agree if the surface is closed. Where they do not
-        there is a hole, and the majority of seven ways decides.
-        """
-        return (self._core or self._compiled()).contains(*point_arguments(points, threads))
-
-    def closest_point(
-        self, points: ArrayLike, max_distance: ArrayLike = np.inf, threads: int | None = None
-    ) -> ClosestPoints:
-        """Find the closest point of any surface to each point.
-
-        Parameters
-        ----------
-        points : (..., 3) array
-            C-contiguous float32 and float64 are read without a copy.
-        max_distance : float or (...) array
-            How far to look, this distance included; the less, the faster.
-        threads : int, optional
-            How many to use; all cores if not given. The answer does not depend on it.
-
-        Returns
-        -------
-        ClosestPoints
-            With the leading shape of the points. Of faces at the same distance, the one of the lowest
-            (shape_id, primitive).
-
-        Raises
-        ------
-        ValueError
-            If the last dimension is not 3, shapes do not broadcast, `max_distance` is negative or NaN, or
-            something in the scene is no mesh, such as an instance.
-        TypeError
-            If an array does not hold real numbers.
-
-        Notes
-        -----
-        Points that are NaN or infinite have no closest point.
-        """
-        core = self._core or self._compiled()
-        return ClosestPoints(*core.nearest(*nearest_arguments(points, max_distance, threads)), core)
-
-    def signed_distance(self, points: ArrayLike, threads: int | None = None) -> NDArray[np.float64]:
-        """Find how far each point is from the surface: negative inside, positive outside, zero on it.
-
-        Inside is what `contains` finds so. (Open3D and most of CAD have this sign, trimesh has the other.)
-
-        Parameters
-        ----------
-        points : (..., 3) array
-            C-contiguous float32 and float64 are read without a copy.
-        threads : int, optional
-            How many to use; all cores if not given. The answer does not depend on it.
-
-        Returns
-        -------
-        (...) float64
-            With the leading shape of the points; inf for points that are NaN or infinite, and for all if the
-            scene is empty.
-
-        Raises
-        ------
-        ValueError
-            If the last dimension is not 3, or something in the scene is no mesh, such as an instance.
-        TypeError
-            If the array does not hold real numbers.
-        """
-        core = self._core or self._compiled()
-        distance = core.nearest(*nearest_arguments(points, np.inf, threads))[0]
-        inside = core.contains(*point_arguments(points, threads)) & (distance > 0)
-        return np.asarray(np.where(inside, -distance, distance))
 
 
 def known_by(core: CompiledScene, rays: RayArguments) -> tuple[Any, ...] | None:

@@ -9,8 +9,8 @@ from typing import Any
 from .. import _core
 from ..cameras import AnyCamera
 from ..integrators import AnyIntegrator, Path
+from ..scene.digest import digest
 from ..scene.scene import Scene
-from .digest import digest
 from .filters import Filter
 from .samplers import Sampler
 

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from .. import _core
 from ..accelerators import BVH, Accelerator
-from ..arrays import frozen, integer, real_array
+from ..arrays import frozen, integer, label, real_array
 from ..mesh_files.meshes import load
 from ..mesh_files.trimesh_objects import of_scene, of_trimesh
 from ..shapes import Shape
@@ -76,6 +76,8 @@ class Instance:
         inverse, the copy is not seen then.
     accelerator : BVH or another accelerator, optional
         The structure that finds hits in the shapes, by itself; ``BVH()`` if not given.
+    name : str, optional
+        What `Hits.names` tells of it, whatever shape in it is hit.
 
     Raises
     ------
@@ -102,6 +104,7 @@ class Instance:
     transform: NDArray[np.float64]
     transform_end: NDArray[np.float64] | None
     accelerator: Accelerator
+    name: str | None
 
     def __init__(
         self,
@@ -109,6 +112,7 @@ class Instance:
         transform: ArrayLike,
         transform_end: ArrayLike | None = None,
         accelerator: Accelerator | None = None,
+        name: str | None = None,
     ) -> None:
         start = _matrices("transform", transform)
         end = None if transform_end is None else _matrices("transform_end", transform_end)
@@ -121,9 +125,10 @@ class Instance:
             "transform": start,
             "transform_end": end,
             "accelerator": _BVH if accelerator is None else accelerator,
+            "name": label("name", name),
         }
-        for name, value in values.items():
-            object.__setattr__(self, name, value)
+        for field, value in values.items():
+            object.__setattr__(self, field, value)
         if self.primitives >= _MOST:
             told = f"{self.primitives} primitives, all copies in it counted"
             raise ValueError(f"an instance must hold fewer than 2^31 primitives, got {told}")
@@ -172,13 +177,13 @@ class Instance:
 
     def moved(self, transform: ArrayLike, transform_end: ArrayLike | None = None) -> "Instance":
         """Return as many copies of the same shapes elsewhere; they share what is compiled."""
-        result = Instance(self.shapes, transform, transform_end, self.accelerator)
+        result = Instance(self.shapes, transform, transform_end, self.accelerator, self.name)
         if len(result) != len(self):
             raise ValueError(f"transform must have {len(self)} matrices, got {len(result)}")
         return result
 
     def _parts(self) -> tuple[Any, ...]:
-        return self.shapes, self.transform, self.transform_end, self.accelerator
+        return self.shapes, self.transform, self.transform_end, self.accelerator, self.name
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Instance):
@@ -186,6 +191,7 @@ class Instance:
         pairs = ((self.transform, other.transform), (self.transform_end, other.transform_end))
         return (
             self.accelerator == other.accelerator
+            and self.name == other.name
             and all(a is b or (a is not None and b is not None and np.array_equal(a, b)) for a, b in pairs)
             and self.shapes == other.shapes
         )
@@ -203,6 +209,7 @@ class Instance:
             f"{copies} {'copy' if copies == 1 else 'copies'}",
         ]
         parts += [] if self.transform_end is None else ["moving"]
+        parts += [] if self.name is None else [f"name={self.name!r}"]
         parts += [] if self.accelerator == _BVH else [repr(self.accelerator)]
         return f"Instance({', '.join(parts)})"
 
@@ -286,5 +293,11 @@ def _each(shapes: Any) -> Iterator[AnyShape]:
         came = f"{type(shapes).__module__}.{type(shapes).__qualname__}"
         raise TypeError(
             "shapes must be a Mesh, another raywright shape, an Instance, a trimesh.Trimesh, "
-            f"a trimesh.Scene, a path, or a list of these, got {came}"
+            f"a trimesh.Scene, a path, or a list of these, got {came}{_hint(shapes)}"
         )
+
+
+def _hint(given: Any) -> str:
+    """Return how arrays become a shape, if that is what came."""
+    is_array = isinstance(given, np.ndarray | np.generic | int | float)
+    return "; of vertices and faces make a mesh: raywright.Mesh(vertices, faces)" if is_array else ""

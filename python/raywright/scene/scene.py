@@ -16,6 +16,7 @@ from ..lights import Environment, Light, environments
 from ..lights import lights as checked_lights
 from ..query.queries import Queries
 from ..shapes.mesh import face_count, moved
+from .arrivals import Arrival
 from .instance import AnyShape, Instance, Shapes, meshes
 from .plan import Plan, PlanRow
 from .progress import BuildProgress, check_progress, watcher
@@ -76,7 +77,8 @@ class Scene(Queries):
 
     Faces with a corner that is NaN or infinite are left out when the scene is compiled, with one
     RuntimeWarning that tells how many. Scenes compare by what they hold, and pickle without what was
-    compiled.
+    compiled. Of what comes out of pickles a process keeps the last two that it has compiled: where a pool's
+    tasks bring the same scene along again and again, each process compiles it once.
     """
 
     def __init__(
@@ -99,6 +101,7 @@ class Scene(Queries):
         choice("quality", quality, get_args(Quality))
         self._precision, self._quality = precision, quality
         self._core: _core.CompiledScene | None = None
+        self._has_arrived = False
         self._is_loss_told = False
         # What watches a build runs in the thread that builds, which must not wait for itself.
         self._lock = threading.RLock()
@@ -108,6 +111,11 @@ class Scene(Queries):
     def shapes(self) -> tuple[AnyShape, ...]:
         """What can be hit; `Hits.shape_id` counts them."""
         return self._shapes
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """What each of the shapes is called, "" where it has no name."""
+        return tuple(shape.name or "" for shape in self._shapes)
 
     @property
     def lights(self) -> tuple[Light, ...]:
@@ -268,7 +276,8 @@ class Scene(Queries):
         """
         check_progress(progress)
         with self._unless_building():
-            self._core = None
+            # What came out of a pickle is not taken from what is kept, but built.
+            self._core, self._has_arrived = None, False
         self._compiled(progress)
 
     def _moved(self, vertices: ArrayLike | Sequence[ArrayLike | None]) -> tuple[AnyShape, ...]:
@@ -309,11 +318,19 @@ class Scene(Queries):
                 if callable(progress):
                     progress(1.0)
                 return self._core
+            arrival = Arrival.of(self) if self._has_arrived else None
+            if arrival is not None and (core := arrival.core()) is not None:
+                if callable(progress):
+                    progress(1.0)
+                self._core = core
+                return core
             self._is_building = True
             try:
                 with watcher(progress) as report:
                     compiled = _core.CompiledScene(self, self._accelerator, report)
                 self._core = compiled
+                if arrival is not None:
+                    arrival.keep(compiled)
             finally:
                 self._is_building = False
         if compiled.dropped:
@@ -359,7 +376,14 @@ class Scene(Queries):
         return hash(self._parts())
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return Scene, self._parts()
+        return _arrived, self._parts()
+
+    def __copy__(self) -> "Scene":
+        return Scene(*self._parts())
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> "Scene":
+        # Nothing that it holds can change.
+        return Scene(*self._parts())
 
     def __repr__(self) -> str:
         faces = sum(map(face_count, self._shapes))
@@ -372,6 +396,12 @@ class Scene(Queries):
         parts += [f"precision={self._precision!r}"] if self._precision != "auto" else []
         parts += [f"quality={self._quality!r}"] if self._quality != "balanced" else []
         return f"Scene({', '.join(parts)})"
+
+
+def _arrived(*parts: Any) -> Scene:
+    scene = Scene(*parts)
+    scene._has_arrived = True
+    return scene
 
 
 def _elsewhere(shape: AnyShape, name: str, to: Any) -> AnyShape:

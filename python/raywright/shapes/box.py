@@ -28,6 +28,8 @@ class Box(Shape):
         How the surface scatters; ``Diffuse()`` if not given.
     emission : float, 3 floats, Texture or Emission, optional
         Radiance in W·sr⁻¹·m⁻² that leaves the outer side; None, the default, for a shape that does not shine.
+    name : str, optional
+        What `Hits.names` tells of it.
 
     Raises
     ------
@@ -54,6 +56,7 @@ class Box(Shape):
         transform: ArrayLike | None = None,
         material: Material | None = None,
         emission: EmissionLike | None = None,
+        name: str | None = None,
     ) -> None:
         low, high = triple("min", min), triple("max", max)
         for axis, a, b in zip("xyz", low, high, strict=True):
@@ -65,6 +68,7 @@ class Box(Shape):
             transform,
             material,
             emission,
+            name,
             min=low,
             max=high,
         )

@@ -31,6 +31,8 @@ class Cone(Shape):
         How the surface scatters; ``Diffuse()`` if not given.
     emission : float, 3 floats, Texture or Emission, optional
         Radiance in W·sr⁻¹·m⁻² that leaves the outer side; None, the default, for a shape that does not shine.
+    name : str, optional
+        What `Hits.names` tells of it.
 
     Raises
     ------
@@ -64,6 +66,7 @@ class Cone(Shape):
         transform: ArrayLike | None = None,
         material: Material | None = None,
         emission: EmissionLike | None = None,
+        name: str | None = None,
     ) -> None:
         start, end = segment(("base", "tip"), base, tip)
         radii = number("base_radius", base_radius), number("tip_radius", tip_radius)
@@ -76,6 +79,7 @@ class Cone(Shape):
             transform,
             material,
             emission,
+            name,
             base=start,
             tip=end,
             base_radius=radii[0],

@@ -31,6 +31,8 @@ class Cylinder(Shape):
         How the surface scatters; ``Diffuse()`` if not given.
     emission : float, 3 floats, Texture or Emission, optional
         Radiance in W·sr⁻¹·m⁻² that leaves the outer side; None, the default, for a shape that does not shine.
+    name : str, optional
+        What `Hits.names` tells of it.
 
     Raises
     ------
@@ -62,12 +64,14 @@ class Cylinder(Shape):
         transform: ArrayLike | None = None,
         material: Material | None = None,
         emission: EmissionLike | None = None,
+        name: str | None = None,
     ) -> None:
         start, end = segment(("base", "tip"), base, tip)
         self._set(
             transform,
             material,
             emission,
+            name,
             base=start,
             tip=end,
             radius=positive("radius", radius),

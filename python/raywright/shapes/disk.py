@@ -31,6 +31,8 @@ class Disk(Shape):
         How the surface scatters; ``Diffuse()`` if not given.
     emission : float, 3 floats, Texture or Emission, optional
         Radiance in W·sr⁻¹·m⁻² that leaves the outer side; None, the default, for a shape that does not shine.
+    name : str, optional
+        What `Hits.names` tells of it.
 
     Raises
     ------
@@ -61,6 +63,7 @@ class Disk(Shape):
         transform: ArrayLike | None = None,
         material: Material | None = None,
         emission: EmissionLike | None = None,
+        name: str | None = None,
     ) -> None:
         outer, inner = positive("radius", radius), number("inner_radius", inner_radius)
         if not 0 <= inner < outer:
@@ -69,6 +72,7 @@ class Disk(Shape):
             transform,
             material,
             emission,
+            name,
             center=triple("center", center),
             normal=direction("normal", normal),
             radius=outer,

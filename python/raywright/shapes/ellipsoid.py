@@ -29,6 +29,8 @@ class Ellipsoid(Shape):
         How the surface scatters; ``Diffuse()`` if not given.
     emission : float, 3 floats, Texture or Emission, optional
         Radiance in W·sr⁻¹·m⁻² that leaves the outer side; None, the default, for a shape that does not shine.
+    name : str, optional
+        What `Hits.names` tells of it.
 
     Raises
     ------
@@ -55,6 +57,7 @@ class Ellipsoid(Shape):
         transform: ArrayLike | None = None,
         material: Material | None = None,
         emission: EmissionLike | None = None,
+        name: str | None = None,
     ) -> None:
         axes = triple("semi_axes", semi_axes)
         if min(axes) <= 0:
@@ -63,6 +66,7 @@ class Ellipsoid(Shape):
             transform,
             material,
             emission,
+            name,
             center=triple("center", center),
             semi_axes=axes,
         )

@@ -34,6 +34,8 @@ class Implicit(Shape):
         How the surface scatters; ``Diffuse()`` if not given.
     emission : float, 3 floats, Texture or Emission, optional
         Radiance in W·sr⁻¹·m⁻² that leaves the outer side; None, the default, for a shape that does not shine.
+    name : str, optional
+        What `Hits.names` tells of it.
 
     Raises
     ------
@@ -68,6 +70,7 @@ class Implicit(Shape):
         transform: ArrayLike | None = None,
         material: Material | None = None,
         emission: EmissionLike | None = None,
+        name: str | None = None,
     ) -> None:
         if not isinstance(expression, str):
             raise TypeError(f"expression must be a string, got {expression!r}")
@@ -75,4 +78,4 @@ class Implicit(Shape):
         trouble = implicit_trouble(expression, low, high)
         if trouble is not None:
             raise ValueError(trouble)
-        self._set(transform, material, emission, expression=expression, min=low, max=high)
+        self._set(transform, material, emission, name, expression=expression, min=low, max=high)

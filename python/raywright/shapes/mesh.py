@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..arrays import last_axis, rows, triangles
+from ..arrays import label, last_axis, rows, triangles
 from ..lights.emission import EmissionLike, Emitted
 from ..lights.emission import emission as checked_emission
 from ..materials import Diffuse, Material
@@ -35,6 +35,8 @@ class Mesh:
     colors : (V, 3) array, optional
         Linear red, green and blue, one colour a vertex, each between 0 and 1; a material shows them where it
         has `VertexColors`.
+    name : str, optional
+        What `Hits.names` tells of it.
 
     Raises
     ------
@@ -52,6 +54,7 @@ class Mesh:
     material: Material
     emission: Emitted | None
     colors: NDArray[np.floating[Any]] | None
+    name: str | None
 
     def __init__(
         self,
@@ -62,6 +65,7 @@ class Mesh:
         material: Material | None = None,
         emission: EmissionLike | None = None,
         colors: ArrayLike | None = None,
+        name: str | None = None,
     ) -> None:
         if material is None:
             material = Diffuse()
@@ -77,9 +81,10 @@ class Mesh:
             "material": material,
             "emission": checked_emission(emission),
             "colors": None if colors is None else _shares("colors", colors, count),
+            "name": label("name", name),
         }
-        for name, kept in values.items():
-            object.__setattr__(self, name, kept)
+        for field, kept in values.items():
+            object.__setattr__(self, field, kept)
 
     @property
     def bounds(self) -> NDArray[np.float64] | None:
@@ -132,6 +137,7 @@ class Mesh:
             self.material,
             self.emission,
             self.colors,
+            self.name,
         )
 
     def __eq__(self, other: object) -> bool:
@@ -145,6 +151,7 @@ class Mesh:
             and _same(self.colors, other.colors)
             and self.material == other.material
             and self.emission == other.emission
+            and self.name == other.name
         )
 
     def __hash__(self) -> int:
@@ -153,12 +160,13 @@ class Mesh:
 
     def __reduce__(self) -> tuple[Any, ...]:
         # Through the constructor, because unpickled arrays would be writeable.
-        look = (self.material, self.emission, self.colors)
+        look = (self.material, self.emission, self.colors, self.name)
         return Mesh, (self.vertices, self.faces, self.normals, self.uv, *look)
 
     def __repr__(self) -> str:
         parts = [f"{len(self.vertices)} vertices", f"{len(self.faces)} faces", repr(self.material)]
         parts += [name for name in ("normals", "uv", "colors") if getattr(self, name) is not None]
+        parts += [] if self.name is None else [f"name={self.name!r}"]
         if self.emission is not None:
             parts.append(f"emission={self.emission}")
         return f"Mesh({', '.join(parts)})"

@@ -33,6 +33,8 @@ class Paraboloid(Shape):
         How the surface scatters; ``Diffuse()`` if not given.
     emission : float, 3 floats, Texture or Emission, optional
         Radiance in W·sr⁻¹·m⁻² that leaves the outer side; None, the default, for a shape that does not shine.
+    name : str, optional
+        What `Hits.names` tells of it.
 
     Raises
     ------
@@ -64,12 +66,14 @@ class Paraboloid(Shape):
         transform: ArrayLike | None = None,
         material: Material | None = None,
         emission: EmissionLike | None = None,
+        name: str | None = None,
     ) -> None:
         start, end = segment(("apex", "tip"), apex, tip)
         self._set(
             transform,
             material,
             emission,
+            name,
             apex=start,
             tip=end,
             radius=positive("radius", radius),

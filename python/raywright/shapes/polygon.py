@@ -38,6 +38,8 @@ class Polygon(Shape):
         How the surface scatters; ``Diffuse()`` if not given.
     emission : float, 3 floats, Texture or Emission, optional
         Radiance in W·sr⁻¹·m⁻² that leaves the outer side; None, the default, for a shape that does not shine.
+    name : str, optional
+        What `Hits.names` tells of it.
 
     Raises
     ------
@@ -66,13 +68,14 @@ class Polygon(Shape):
         transform: ArrayLike | None = None,
         material: Material | None = None,
         emission: EmissionLike | None = None,
+        name: str | None = None,
     ) -> None:
         border = _ring("outline", outline)
         inner = tuple(_ring(f"holes[{i}]", hole) for i, hole in enumerate(holes))
         trouble = polygon_trouble(border, inner)
         if trouble is not None:
             raise ValueError(f"polygon: {trouble}")
-        self._set(transform, material, emission, outline=border, holes=inner)
+        self._set(transform, material, emission, name, outline=border, holes=inner)
 
 
 def _ring(name: str, value: ArrayLike) -> Ring:

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .._core import matrix_trouble, shape_area, shape_bounds
-from ..arrays import Triple, frozen, real_array, triple
+from ..arrays import Triple, frozen, label, real_array, triple
 from ..lights.emission import EmissionLike, Emitted
 from ..lights.emission import emission as checked_emission
 from ..materials import Diffuse, Material
@@ -23,12 +23,14 @@ class Shape:
     transform: NDArray[np.float64] | None
     material: Material
     emission: Emitted | None
+    name: str | None
 
     def _set(
         self,
         transform: ArrayLike | None,
         material: Material | None,
         emission: EmissionLike | None,
+        name: str | None,
         **parameters: Any,
     ) -> None:
         """Keep the parameters, and what every shape has once it is checked."""
@@ -41,6 +43,7 @@ class Shape:
             "transform": None if transform is None else affine("transform", transform),
             "material": material,
             "emission": checked_emission(emission),
+            "name": label("name", name),
         }
         for name, kept in values.items():
             object.__setattr__(self, name, kept)
@@ -89,7 +92,7 @@ class Shape:
         return f"{type(self).__name__}({', '.join(parts)})"
 
 
-_COMMON = ("transform", "material", "emission")
+_COMMON = ("transform", "material", "emission", "name")
 
 
 def _restored(kind: type[Shape], values: dict[str, Any]) -> Shape:

@@ -31,6 +31,8 @@ class Sphere(Shape):
         How the surface scatters; ``Diffuse()`` if not given.
     emission : float, 3 floats, Texture or Emission, optional
         Radiance in W·sr⁻¹·m⁻² that leaves the outer side; None, the default, for a shape that does not shine.
+    name : str, optional
+        What `Hits.names` tells of it.
 
     Raises
     ------
@@ -58,11 +60,13 @@ class Sphere(Shape):
         transform: ArrayLike | None = None,
         material: Material | None = None,
         emission: EmissionLike | None = None,
+        name: str | None = None,
     ) -> None:
         self._set(
             transform,
             material,
             emission,
+            name,
             center=triple("center", center),
             radius=positive("radius", radius),
         )

@@ -33,6 +33,8 @@ class Torus(Shape):
         How the surface scatters; ``Diffuse()`` if not given.
     emission : float, 3 floats, Texture or Emission, optional
         Radiance in W·sr⁻¹·m⁻² that leaves the outer side; None, the default, for a shape that does not shine.
+    name : str, optional
+        What `Hits.names` tells of it.
 
     Raises
     ------
@@ -65,6 +67,7 @@ class Torus(Shape):
         transform: ArrayLike | None = None,
         material: Material | None = None,
         emission: EmissionLike | None = None,
+        name: str | None = None,
     ) -> None:
         radii = positive("major_radius", major_radius), positive("minor_radius", minor_radius)
         for name, radius in zip(("major_radius", "minor_radius"), radii, strict=True):
@@ -79,6 +82,7 @@ class Torus(Shape):
             transform,
             material,
             emission,
+            name,
             center=triple("center", center),
             axis=direction("axis", axis),
             major_radius=radii[0],

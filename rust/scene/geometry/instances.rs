@@ -2,7 +2,7 @@
 
 use super::pose::{Pose, between, carried_by};
 use super::prototype::Prototype;
-use crate::accel::{Side, Wanted};
+use crate::accel::{Meeting, Side, Wanted};
 use crate::math::{Hit, Ray, Singular};
 use crate::scene::textures::Needs;
 use crate::scene::{ShadingPoint, SurfacePoint};
@@ -172,6 +172,12 @@ impl Instances {
                 let mut each =
                     twice.map(|same| (&same[0], if same.len() == 1 { Contact::Inside } else { Contact::Touching }));
                 each.any(|(hit, contact)| met(told(hit, contact)))
+            }
+            Wanted::Met => {
+                let all = accelerator.met(&[ray]);
+                let scale = all.rays[0].0;
+                let own = |meeting: &Meeting| Hit { t: meeting.hit.t * scale, ..meeting.hit };
+                all.met.iter().any(|(_, meeting)| met(told(&own(meeting), meeting.contact)))
             }
             Wanted::Side => match self.prototype.side(&ray) {
                 Side::Outside => false,

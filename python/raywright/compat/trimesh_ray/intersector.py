@@ -169,7 +169,7 @@ class RayMeshIntersector:
         most = None if max_hits is None else integer("max_hits", max_hits, 0)
         if multiple_hits and most != 1:
             found = self._scene.intersect_all(*rays)
-            depth = np.arange(len(found)) - found.ray_splits[found.ray]
+            depth = np.arange(found.t.size) - found.ray_splits[found.ray]
             # Small numbers are sorted by their digits, in linear time.
             depth = depth.astype(np.min_scalar_type(depth.max(initial=0)), copy=False)
             which = np.argsort(depth, kind="stable")

@@ -46,10 +46,11 @@ class Geometry:
         return self._all[index]
 
     def _primitives(self, index: int, deform: Deform | None) -> tuple[Mesh, ...]:
-        made = (self._mesh(part, deform) for part in self._all[index].parts("primitives"))
+        called = self._all[index].text("name", "")
+        made = (self._mesh(part, deform, called) for part in self._all[index].parts("primitives"))
         return tuple(mesh for mesh in made if mesh is not None)
 
-    def _mesh(self, primitive: Part, deform: Deform | None) -> Mesh | None:
+    def _mesh(self, primitive: Part, deform: Deform | None, name: str) -> Mesh | None:
         mode = primitive.integer("mode", _TRIANGLES, most=_FAN)
         attributes = primitive.part("attributes")
         if mode < _TRIANGLES or "POSITION" not in attributes:
@@ -81,6 +82,7 @@ class Geometry:
             surface.emission,
             # Linear here, unlike what trimesh has of other files.
             None if colors is None else np.clip(colors[used, :3], 0, 1),
+            name,
         )
 
     def _corners(self, primitive: Part, count: int) -> NDArray[np.int64]:

@@ -65,7 +65,9 @@ def read_obj_whole(path: Path) -> Mesh | None:
 def _mesh(part: Part, library: Library) -> Mesh:
     span = None if part.uv is None else span_of(part.vertices, part.faces, part.uv)
     look = library.look(part.material, span) or _colored(part)
-    return Mesh(part.vertices, part.faces, part.normals, part.uv, look.material, look.emission, look.colors)
+    shines = (look.material, look.emission, look.colors)
+    # What is parted by materials is called after them.
+    return Mesh(part.vertices, part.faces, part.normals, part.uv, *shines, part.material)
 
 
 def _colored(part: Part) -> Look:

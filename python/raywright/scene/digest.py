@@ -1,4 +1,4 @@
-"""What a render is of, in short: so that two can be told apart without keeping what they are of."""
+"""What something is, in short: so that two can be told apart without keeping them."""
 
 import pickle
 from typing import Any

@@ -1,0 +1,28 @@
+"""What people measure with rays: sky and sun, what scanners and eyes see, walls and cuts."""
+
+from .cuts import CrossSection, cross_section
+from .hemispheres import Estimate, ambient_visibility, sky_view
+from .scanners import RasterLidar, SpinningLidar
+from .scans import Lidar, LidarScan, lidar
+from .sight import LineOfSight, line_of_sight
+from .sun import SolarExposure, solar_exposure, sun_directions
+from .walls import thickness
+
+__all__ = [
+    "CrossSection",
+    "Estimate",
+    "Lidar",
+    "LidarScan",
+    "LineOfSight",
+    "RasterLidar",
+    "SolarExposure",
+    "SpinningLidar",
+    "ambient_visibility",
+    "cross_section",
+    "lidar",
+    "line_of_sight",
+    "sky_view",
+    "solar_exposure",
+    "sun_directions",
+    "thickness",
+]

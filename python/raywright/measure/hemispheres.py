@@ -1,0 +1,215 @@
+"""How open it is above points: shares of the directions in which nothing stands."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .. import _core
+from ..arrays import integer, positive
+from ..query.hits import SurfacePoints
+from ..scene.progress import BuildProgress, check_progress, watcher
+from ..scene.scene import Scene
+from .places import Floats, Places, SceneLike, frames, places, scene_of, sealed, unit
+
+# Rays that are sent together: few enough to stay in some ten megabytes.
+_TOGETHER = 1 << 19
+# Independent batches of directions, from whose spread the error is told.
+_BATCHES = 16
+_GOLDEN = (math.sqrt(5.0) - 1.0) / 2.0
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Estimate:
+    """Numbers found by sampling, and how far off they may be; arrays of the points' leading shape, read-only.
+
+    Attributes
+    ----------
+    value : (...) float64
+        The estimate; NaN where there is no point.
+    standard_error : (...) float64
+        Its standard error, from the spread of 16 independent batches of rays; 0 where all batches agree.
+    rays : int
+        How many rays each point has sent.
+    """
+
+    value: Floats
+    standard_error: Floats
+    rays: int
+
+    def __repr__(self) -> str:
+        return f"Estimate(shape={self.value.shape}, {self.rays} rays a point)"
+
+
+def sky_view(
+    scene: SceneLike,
+    points: SurfacePoints | ArrayLike,
+    normals: ArrayLike | None = None,
+    rays: int = 256,
+    up: ArrayLike | None = None,
+    offset: float | None = None,
+    seed: int = 0,
+    progress: BuildProgress | None = None,
+    threads: int | None = None,
+) -> Estimate:
+    """Find the sky view factor of points on surfaces: what share of an even sky's light reaches them.
+
+    That is the share of directions about the normal, weighted by their cosine to it, in which nothing stands;
+    1 for a plain under an open sky.
+
+    Parameters
+    ----------
+    scene : Scene, Mesh or anything else that a Scene is made of
+        What hides the sky.
+    points : Hits, ClosestPoints or (..., 3) array
+        Where. Rays leave what was hit exactly as `Hits.leave` has it, and plain points as `offset` tells.
+    normals : (..., 3) array, optional
+        Of any length; those of the surfaces if not given, which only what was hit has.
+    rays : int
+        Directions for each point, at least 16; rounded up to a multiple of 16.
+    up : 3 floats, optional
+        The zenith, for points on slopes and walls: below its horizon there is no sky. If not given, all that
+        is not hidden is sky.
+    offset : float, optional
+        How far from plain points along the normal rays start; a millionth of the scene's size if not given.
+    seed : int
+        Picks the random numbers, 0 to 2**64 - 1.
+    progress : bool or callable, optional
+        Whether to show a bar on stderr where it takes longer than two seconds, as at a terminal if not given;
+        or a function that is called with the share that is done.
+    threads : int, optional
+        How many to use; all cores if not given. The answer does not depend on it.
+
+    Returns
+    -------
+    Estimate
+        Of the leading shape of the points.
+
+    Raises
+    ------
+    ValueError
+        If shapes do not broadcast, a number is out of its range or not finite, a vector has no length, or
+        normals are missing.
+    TypeError
+        If something is of the wrong type.
+
+    Notes
+    -----
+    Each batch of directions is a lattice of the golden ratio on the square, moved at random (Cranley and
+    Patterson 1976), and mapped to the disk evenly (Shirley and Chiu 1997) and up to the hemisphere (Malley's
+    method). Batches are independent, each an unbiased estimate, and their mean errs less than that of as many
+    independent rays.
+    """
+    zenith = None if up is None else unit("up", up)
+    scene = scene_of(scene)
+    where = places(scene, points, normals, offset)
+    return _open_share(scene, where, rays, math.inf, zenith, seed, progress, threads, "sky view")
+
+
+def ambient_visibility(
+    scene: SceneLike,
+    points: SurfacePoints | ArrayLike,
+    normals: ArrayLike | None = None,
+    radius: float | None = None,
+    rays: int = 256,
+    offset: float | None = None,
+    seed: int = 0,
+    progress: BuildProgress | None = None,
+    threads: int | None = None,
+) -> Estimate:
+    """Find how open it is around points on surfaces: 1 less what is called ambient occlusion.
+
+    That is the share of directions about the normal, weighted by their cosine to it, in which nothing stands
+    within a radius.
+
+    Parameters
+    ----------
+    scene, points, normals, rays, offset, seed, progress, threads
+        As for `sky_view`.
+    radius : float, optional
+        How far away what stands in the way counts, this distance included; however far if not given.
+
+    Returns
+    -------
+    Estimate
+        Of the leading shape of the points.
+
+    Raises
+    ------
+    ValueError, TypeError
+        As `sky_view` does, and if the radius is not greater than 0.
+    """
+    most = math.inf if radius is None else positive("radius", radius)
+    scene = scene_of(scene)
+    where = places(scene, points, normals, offset)
+    return _open_share(scene, where, rays, most, None, seed, progress, threads, "visibility")
+
+
+def _open_share(
+    scene: Scene,
+    where: Places,
+    rays: int,
+    most: float,
+    up: Floats | None,
+    seed: int,
+    progress: BuildProgress | None,
+    threads: int | None,
+    what: str,
+) -> Estimate:
+    each = -(-integer("rays", rays, _BATCHES) // _BATCHES)
+    integer("seed", seed, 0, 2**64 - 1)
+    if progress is not None:
+        check_progress(progress)
+    count = len(where)
+    shares = np.empty((_BATCHES, count))
+    lattice = np.stack([(np.arange(each) + 0.5) / each, np.arange(each) * _GOLDEN % 1.0], axis=-1)
+    step = max(_TOGETHER // each, 1)
+    with watcher(progress, what) as report:
+        for batch in range(_BATCHES):
+            for start in range(0, count, step):
+                some = slice(start, min(start + step, count))
+                shares[batch, some] = _share(scene, where, some, lattice, batch, most, up, seed, threads)
+                if report is not None:
+                    report((batch + some.stop / count) / _BATCHES)
+    shares[:, ~np.isfinite(where.origins).all(axis=1)] = np.nan
+    error = shares.std(axis=0, ddof=1) / math.sqrt(_BATCHES)
+    lead = where.shape
+    return Estimate(sealed(shares.mean(axis=0).reshape(lead)), sealed(error.reshape(lead)), each * _BATCHES)
+
+
+def _share(
+    scene: Scene,
+    where: Places,
+    some: slice,
+    lattice: Floats,
+    batch: int,
+    most: float,
+    up: Floats | None,
+    seed: int,
+    threads: int | None,
+) -> Floats:
+    """Return the share of a batch of directions in which nothing stands, for each of some points."""
+    origins, normals = where.origins[some], where.normals[some]
+    index = np.arange(some.start, some.stop, dtype=np.uint32)
+    moved = _core.random_numbers(seed, index, np.full(len(index), batch, np.uint32), 0, True)
+    x, y = np.moveaxis(_to_disk((lattice[:, None] + moved) % 1.0), -1, 0)
+    first, second = frames(normals)
+    height = np.sqrt(np.maximum(0.0, 1.0 - x * x - y * y))
+    ways = x[..., None] * first + y[..., None] * second + height[..., None] * normals
+    free = ~scene.occluded(np.broadcast_to(origins, ways.shape), ways, t_max=most, threads=threads)
+    if up is not None:
+        free &= ways @ up > 0
+    share: Floats = free.mean(axis=0)
+    return share
+
+
+def _to_disk(square: NDArray[np.float64]) -> Floats:
+    """Map the unit square to the unit disk evenly, by rings (Shirley and Chiu 1997)."""
+    a, b = np.moveaxis(2.0 * square - 1.0, -1, 0)
+    is_wide = np.abs(a) > np.abs(b)
+    radius = np.where(is_wide, a, b)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        turn = np.where(is_wide, math.pi / 4 * (b / a), math.pi / 2 - math.pi / 4 * (a / b))
+    turn = np.where(radius == 0, 0.0, turn)
+    return np.stack([radius * np.cos(turn), radius * np.sin(turn)], axis=-1)

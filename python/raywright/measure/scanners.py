@@ -1,0 +1,183 @@
+"""Laser scanners: where they stand, and which beams they send."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..arrays import Triple, frozen, integer, number, positive, real_array, triple
+from .places import Floats, unit
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Scanner:
+    """What all scanners have."""
+
+    position: Triple = (0.0, 0.0, 0.0)
+    forward: Triple = (1.0, 0.0, 0.0)
+    up: Triple = (0.0, 0.0, 1.0)
+    min_range: float = 0.0
+    max_range: float = math.inf
+    divergence: float = 0.0
+    rays: int = 16
+    resolution: float = 0.3
+
+    def _check(self) -> None:
+        for name in ("position", "forward", "up"):
+            object.__setattr__(self, name, triple(name, getattr(self, name)))
+        axes(self.forward, self.up)
+        least = number("min_range", self.min_range)
+        if least < 0 or not self.max_range > least:
+            raise ValueError(
+                f"min_range must be at least 0 and less than max_range, got {least} and {self.max_range}"
+            )
+        positive("resolution", self.resolution)
+        if not 0 <= number("divergence", self.divergence) < 90:
+            raise ValueError(f"divergence must be at least 0 and less than 90 degrees, got {self.divergence}")
+        integer("rays", self.rays, 1)
+        if self.divergence == 0:
+            object.__setattr__(self, "rays", 1)
+
+
+@dataclass(frozen=True, kw_only=True)
+class SpinningLidar(_Scanner):
+    """A scanner whose beams, one above the other, turn about the vertical.
+
+    Parameters
+    ----------
+    elevations : (R,) array
+        Of the beams above the horizon, in degrees: a row each, in their order.
+    columns : int
+        How many times a turn they are sent.
+    start, stop : float
+        From which azimuth to which they turn, in degrees from `forward` on, anticlockwise as seen from above;
+        `stop` is not reached.
+    position : 3 floats
+        Where the scanner is.
+    forward, up : 3 floats
+        Its azimuth 0 and its vertical; only what of `forward` is at right angles to `up` counts.
+    min_range, max_range : float
+        Between which it measures, both included.
+    divergence : float
+        The full angle of a beam's cone, in degrees; 0 for one that is a line.
+    rays : int
+        How many a beam with a divergence is sampled with.
+    resolution : float
+        How far apart surfaces must be, in the scene's unit, for a beam to return from each.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of its range or not finite, `forward` is along `up`, or there are no beams.
+    TypeError
+        If something is no number.
+    """
+
+    elevations: ArrayLike
+    columns: int = 1800
+    start: float = 0.0
+    stop: float = 360.0
+
+    def __post_init__(self) -> None:
+        """Check all, and keep the elevations as a tuple."""
+        self._check()
+        rows = frozen(real_array("elevations", self.elevations).astype(np.float64))
+        if rows.ndim != 1 or not len(rows) or not (np.abs(rows) <= 90).all():
+            raise ValueError("elevations must be one or more numbers between -90 and 90 degrees")
+        object.__setattr__(self, "elevations", tuple(rows.tolist()))
+        integer("columns", self.columns, 1)
+        number("start", self.start)
+        number("stop", self.stop)
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Rows and columns of beams."""
+        return np.size(self.elevations), self.columns
+
+    def directions(self) -> Floats:
+        """Return the unit direction of each beam's middle: (R, C, 3)."""
+        ahead, left, above = axes(self.forward, self.up)
+        high = np.radians(np.asarray(self.elevations, np.float64))[:, None, None]
+        turn = self.start + (self.stop - self.start) * np.arange(self.columns) / self.columns
+        around = np.radians(turn)[:, None]
+        level = np.cos(around) * ahead + np.sin(around) * left
+        ways: Floats = np.cos(high) * level + np.sin(high) * above
+        return ways
+
+
+@dataclass(frozen=True, kw_only=True)
+class RasterLidar(_Scanner):
+    """A scanner whose beam goes over a field line by line, in even steps of both angles.
+
+    Parameters
+    ----------
+    horizontal, vertical : float
+        How wide and how high the field is, in degrees, up to 360 and 180; its outermost beams lie on its
+        edge.
+    columns, rows : int
+        Beams of a line, from the left to the right, and lines, from above to below.
+    position : 3 floats
+        Where the scanner is.
+    forward, up : 3 floats
+        The middle of the field's horizon, and the vertical; only what of `forward` is at right angles to `up`
+        counts.
+    min_range, max_range, divergence, rays, resolution
+        As for `SpinningLidar`.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of its range or not finite, or `forward` is along `up`.
+    TypeError
+        If something is no number.
+    """
+
+    horizontal: float = 60.0
+    vertical: float = 40.0
+    columns: int = 600
+    rows: int = 400
+
+    def __post_init__(self) -> None:
+        """Check all."""
+        self._check()
+        for name, most in (("horizontal", 360.0), ("vertical", 180.0)):
+            if not 0 <= number(name, getattr(self, name)) <= most:
+                raise ValueError(f"{name} must be between 0 and {most:g} degrees, got {getattr(self, name)}")
+        integer("columns", self.columns, 1)
+        integer("rows", self.rows, 1)
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Rows and columns of beams."""
+        return self.rows, self.columns
+
+    def directions(self) -> Floats:
+        """Return the unit direction of each beam's middle: (rows, columns, 3)."""
+        ahead, left, above = axes(self.forward, self.up)
+        high = np.radians(_steps(self.vertical, self.rows))[:, None, None]
+        around = np.radians(_steps(self.horizontal, self.columns))[:, None]
+        level = np.cos(around) * ahead + np.sin(around) * left
+        ways: Floats = np.cos(high) * level + np.sin(high) * above
+        return ways
+
+
+def _steps(width: float, count: int) -> Floats:
+    """Return angles from half the width down to minus half of it; the middle alone if there is one."""
+    return np.linspace(width / 2, -width / 2, count) if count > 1 else np.zeros(1)
+
+
+def axes(forward: Triple, up: Triple) -> tuple[Floats, Floats, Floats]:
+    """Return ahead, left and above as unit vectors.
+
+    Raises
+    ------
+    ValueError
+        If one has no length, or `forward` is along `up`.
+    """
+    ahead, above = unit("forward", forward), unit("up", up)
+    level = ahead - above * (ahead @ above)
+    if not np.linalg.norm(level) > 1e-12:
+        raise ValueError(f"forward must not be along up, got {forward} and {up}")
+    level = level / np.linalg.norm(level)
+    return level, np.cross(above, level), above

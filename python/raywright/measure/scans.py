@@ -1,0 +1,255 @@
+"""What a laser scanner measures of a scene."""
+
+import math
+from dataclasses import dataclass, field
+from typing import Any, Literal, TypeAlias, get_args
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..arrays import choice, integer, number, positive
+from ..query.hits import Hits
+from ..scene.progress import BuildProgress, check_progress, watcher
+from ..scene.scene import Scene
+from .noise import beams_of, normal, uniform
+from .places import Floats, SceneLike, scene_of, sealed
+from .scanners import RasterLidar, SpinningLidar
+
+Lidar: TypeAlias = SpinningLidar | RasterLidar
+Returns: TypeAlias = Literal["all", "first", "last", "strongest"]
+# Rays that are sent together.
+_TOGETHER = 1 << 19
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class LidarScan:
+    """What a scanner has measured: K returns in all, by beam and then by range. Arrays are read-only.
+
+    Attributes
+    ----------
+    beam : (K,) int64
+        Which beam each return is of, counted along `shape` in C order.
+    number : (K,) int32
+        Which return of its beam, from 0 on, before any were left out.
+    range : (K,) float64
+        As measured: with its noise.
+    position : (K, 3) float64
+        Where the scanner takes it to be: on the middle of the beam, at the range.
+    incidence : (K,) float64
+        Between the beam and the normal of the surface, in degrees, 0 to 90; the mean over what the beam
+        meets.
+    strength : (K,) float64
+        Share of the beam that came to the surface there, 0 to 1.
+    shape_id, primitive : (K,) int32
+        What was met, as `Hits` tells it: the first of it.
+    shape : tuple of int
+        Of the beams: rows and columns.
+    """
+
+    beam: NDArray[np.int64]
+    number: NDArray[np.int32]
+    range: Floats
+    position: Floats
+    incidence: Floats
+    strength: Floats
+    shape_id: NDArray[np.int32]
+    primitive: NDArray[np.int32]
+    shape: tuple[int, ...] = field(default=())
+
+    @property
+    def count(self) -> NDArray[np.int64]:
+        """How many returns each beam has: int64 of the scanner's shape."""
+        return np.bincount(self.beam, minlength=math.prod(self.shape)).reshape(self.shape)
+
+    def image(self, name: str = "range", fill: float = np.nan) -> Floats:
+        """Return the first return of each beam as an array of the scanner's shape.
+
+        Parameters
+        ----------
+        name : {"range", "incidence", "strength"}
+            What of it.
+        fill : float
+            What stands where a beam has no return.
+
+        Raises
+        ------
+        ValueError
+            If there is no such name.
+        """
+        choice("name", name, ("range", "incidence", "strength"))
+        whole = np.full(math.prod(self.shape), fill)
+        first = np.flatnonzero(np.diff(self.beam, prepend=-1))
+        whole[self.beam[first]] = getattr(self, name)[first]
+        return whole.reshape(self.shape)
+
+    def __len__(self) -> int:
+        return len(self.beam)
+
+    def __repr__(self) -> str:
+        return f"LidarScan(shape={self.shape}, {len(self)} returns of {math.prod(self.shape)} beams)"
+
+
+def lidar(
+    scene: SceneLike,
+    scanner: Lidar,
+    returns: Returns = "all",
+    range_sigma: float = 0.0,
+    range_sigma_share: float = 0.0,
+    dropout: float = 0.0,
+    fading_range: float | None = None,
+    incidence_power: float = 0.0,
+    seed: int = 0,
+    progress: BuildProgress | None = None,
+    threads: int | None = None,
+) -> LidarScan:
+    """Scan a scene with a laser scanner that stands still.
+
+    Parameters
+    ----------
+    scene : Scene, Mesh or anything else that a Scene is made of
+        What is scanned.
+    scanner : SpinningLidar or RasterLidar
+        Where it stands and which beams it sends.
+    returns : {"all", "first", "last", "strongest"}
+        Which of the returns of a beam are kept. A beam that does not widen has one at most.
+    range_sigma, range_sigma_share : float
+        Standard deviation of a measured range: so much, and so much of the range, independent of each other.
+    dropout : float
+        The share of returns that are lost wherever they come from, 0 to 1.
+    fading_range : float, optional
+        Returns are kept with a probability of exp(-(range / fading_range)^2), all if not given.
+    incidence_power : float
+        Returns are kept with a probability of the cosine of their incidence to this power, all at 0.
+    seed : int
+        Picks the random numbers, 0 to 2**64 - 1.
+    progress : bool or callable, optional
+        As for `sky_view`.
+    threads : int, optional
+        How many to use; all cores if not given. The answer does not depend on it.
+
+    Returns
+    -------
+    LidarScan
+        By beam, then by range.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of its range or not finite, or `returns` is none of these.
+    TypeError
+        If `scanner` is no scanner, or something else is of the wrong type.
+
+    Notes
+    -----
+    A beam with a divergence is many rays, spread evenly over its disk. What they meet is one return as long
+    as the next range is within the scanner's `resolution` of the one before, and its range is the mean.
+    Ranges are true before noise; losses are decided of true ranges. Random numbers belong to beam and return,
+    so that a scan is the same however it is cut into batches, and adding one kind of noise changes no other.
+    """
+    if not isinstance(scanner, SpinningLidar | RasterLidar):
+        raise TypeError(f"scanner must be a SpinningLidar or a RasterLidar, got {type(scanner).__name__}")
+    choice("returns", returns, get_args(Returns))
+    sigmas = _at_least_0("range_sigma", range_sigma), _at_least_0("range_sigma_share", range_sigma_share)
+    lost = number("dropout", dropout)
+    if not 0 <= lost <= 1:
+        raise ValueError(f"dropout must be between 0 and 1, got {dropout}")
+    fading = math.inf if fading_range is None else positive("fading_range", fading_range)
+    power = _at_least_0("incidence_power", incidence_power)
+    integer("seed", seed, 0, 2**64 - 1)
+    if progress is not None:
+        check_progress(progress)
+    scene = scene_of(scene)
+    middles = scanner.directions().reshape(-1, 3)
+    step = max(_TOGETHER // scanner.rays, 1)
+    parts = []
+    with watcher(progress, "lidar") as report:
+        for start in range(0, len(middles), step):
+            beams = np.arange(start, min(start + step, len(middles)))
+            parts.append(_scanned(scene, scanner, middles, beams, seed, threads))
+            if report is not None:
+                report((beams[-1] + 1) / len(middles))
+    found = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+    beam, which, true = found["beam"], found["number"], found["range"]
+    kept = np.full(len(beam), 1.0 - lost) * np.exp(-((true / fading) ** 2))
+    kept *= np.cos(np.radians(found["incidence"])) ** power
+    chosen = (uniform(seed, beam, which, 1) < kept) & _chosen(returns, beam, which, found["strength"])
+    spread = np.sqrt(sigmas[0] ** 2 + (sigmas[1] * true) ** 2)
+    found["range"] = np.maximum(true + spread * normal(seed, beam, which, 2), 0.0)
+    found["position"] = np.asarray(scanner.position) + found["range"][:, None] * middles[beam]
+    return LidarScan(**{k: sealed(v[chosen]) for k, v in found.items()}, shape=scanner.shape)
+
+
+def _at_least_0(name: str, value: float) -> float:
+    result = number(name, value)
+    if result < 0:
+        raise ValueError(f"{name} must be at least 0, got {value}")
+    return result
+
+
+def _scanned(
+    scene: Scene,
+    scanner: Lidar,
+    middles: Floats,
+    beams: NDArray[np.int64],
+    seed: int,
+    threads: int | None,
+) -> dict[str, NDArray[Any]]:
+    """Return what some beams come to, without noise."""
+    ways = beams_of(middles[beams], beams, scanner.divergence, scanner.rays, seed)
+    hits = scene.intersect(
+        scanner.position, ways, t_min=scanner.min_range, t_max=scanner.max_range, threads=threads
+    )
+    order = np.argsort(hits.t, axis=1, kind="stable")
+    t = np.take_along_axis(hits.t, order, axis=1)
+    is_met = np.isfinite(t)
+    is_new = np.ones_like(is_met)
+    with np.errstate(invalid="ignore"):
+        is_new[:, 1:] = t[:, 1:] - t[:, :-1] > scanner.resolution
+    is_new &= is_met
+    number = np.cumsum(is_new, axis=1) - 1
+    # Returns of all beams in a row, and which of them each ray is of.
+    group = (np.cumsum(is_new.reshape(-1)) - 1)[is_met.reshape(-1)]
+    first = is_new.reshape(-1)
+    total = int(first.sum())
+    members = np.bincount(group, minlength=total)
+
+    def mean(values: Floats) -> Floats:
+        means: Floats = np.bincount(group, values.reshape(-1)[is_met.reshape(-1)], total) / members
+        return means
+
+    def of_first(values: ArrayLike) -> NDArray[Any]:
+        return np.take_along_axis(np.asarray(values), order, axis=1).reshape(-1)[first]
+
+    return {
+        "beam": np.repeat(beams, t.shape[1])[first],
+        "number": number.reshape(-1)[first].astype(np.int32),
+        "range": mean(t),
+        "incidence": mean(np.take_along_axis(_incidence(hits, ways), order, axis=1)),
+        "strength": members / scanner.rays,
+        "shape_id": of_first(hits.shape_id),
+        "primitive": of_first(hits.primitive),
+    }
+
+
+def _incidence(hits: Hits, ways: Floats) -> Floats:
+    """Return the angle between rays and normals, in degrees from 0 to 90; NaN for misses."""
+    cosine = np.abs((hits.normal * ways).sum(axis=-1))
+    angles: Floats = np.degrees(np.arccos(np.minimum(cosine, 1.0)))
+    return angles
+
+
+def _chosen(
+    returns: Returns, beam: NDArray[np.int64], which: NDArray[np.int32], strength: Floats
+) -> NDArray[np.bool_]:
+    if returns == "all" or not len(beam):
+        return np.ones(len(beam), np.bool_)
+    if returns == "first":
+        return np.asarray(which == 0)
+    last = np.append(beam[1:] != beam[:-1], True)
+    if returns == "last":
+        return last
+    # The nearest of those that are as strong: the last of each beam in the order of strength.
+    order = np.lexsort((-which, strength, beam))
+    strongest = np.zeros(len(beam), np.bool_)
+    strongest[order[last]] = True
+    return strongest

@@ -1,0 +1,74 @@
+"""Whether points see each other."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..arrays import number
+from ..query.hits import Hits
+from .places import Floats, SceneLike, common, scene_of, sealed, vectors
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class LineOfSight:
+    """Whether points see each other; arrays of the leading shape of the pairs, read-only.
+
+    Attributes
+    ----------
+    visible : (...) bool
+        Whether nothing stands between.
+    obstruction : Hits
+        What stands in the way first, from `a` on; `t` is its share of the way.
+    distance : (...) float64
+        From the one point to the other.
+    """
+
+    visible: NDArray[np.bool_]
+    obstruction: Hits
+    distance: Floats
+
+    def __repr__(self) -> str:
+        seen = int(np.count_nonzero(self.visible))
+        return f"LineOfSight(shape={self.visible.shape}, {seen} of {self.visible.size} visible)"
+
+
+def line_of_sight(
+    scene: SceneLike, a: ArrayLike, b: ArrayLike, margin: float = 1e-6, threads: int | None = None
+) -> LineOfSight:
+    """Find whether points see each other, and what stands in the way first.
+
+    Parameters
+    ----------
+    scene : Scene, Mesh or anything else that a Scene is made of
+        What may stand in the way.
+    a, b : (..., 3) arrays
+        The points, broadcast against each other.
+    margin : float
+        The share of the way at either end that does not count, at least 0 and less than 0.5, so that points
+        on surfaces are not hidden by these. With 0, both points count.
+    threads : int, optional
+        How many to use; all cores if not given. The answer does not depend on it.
+
+    Returns
+    -------
+    LineOfSight
+        Of the shape that both broadcast to. A point sees itself.
+
+    Raises
+    ------
+    ValueError
+        If a last dimension is not 3, shapes do not broadcast, or a number is not finite or out of its range.
+    TypeError
+        If an array does not hold real numbers.
+    """
+    starts, ends = vectors("a", a), vectors("b", b)
+    least = number("margin", margin)
+    if not 0 <= least < 0.5:
+        raise ValueError(f"margin must be at least 0 and less than 0.5, got {margin}")
+    lead = common({"a": starts.shape[:-1], "b": ends.shape[:-1]})
+    way = np.broadcast_to(ends - starts, (*lead, 3))
+    hits = scene_of(scene).intersect(
+        np.broadcast_to(starts, (*lead, 3)), way, t_min=least, t_max=1.0 - least, threads=threads
+    )
+    return LineOfSight(sealed(~hits.hit), hits, sealed(np.asarray(np.linalg.norm(way, axis=-1))))

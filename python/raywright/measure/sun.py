@@ -1,0 +1,189 @@
+"""How much sun there is on surfaces."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..arrays import real_array
+from ..lights.sun_position import sun_directions as directions_at
+from ..lights.sun_position import way
+from ..lights.times import Time, Times, one_or_many
+from ..query.hits import SurfacePoints
+from ..scene.progress import BuildProgress, check_progress, watcher
+from .places import Floats, SceneLike, places, scene_of, sealed, unit, units
+
+_TOGETHER = 1 << 20
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class SolarExposure:
+    """What the sun sends to points; arrays of their leading shape, read-only. NaN where there is no point.
+
+    Attributes
+    ----------
+    exposure : (...) float64
+        The weights of the moments at which the sun reaches the point, each times the cosine of the sun to the
+        normal, summed: of weights that are direct normal irradiance times hours, what falls on the surface.
+    sunlit : (...) float64
+        The weights of these moments, summed: with a weight of 1 their number, with the hours between them the
+        hours of sun.
+    day : float
+        The weights of all moments at which the sun is above the horizon, summed.
+    """
+
+    exposure: Floats
+    sunlit: Floats
+    day: float
+
+    def __repr__(self) -> str:
+        return f"SolarExposure(shape={self.exposure.shape}, day={self.day:g})"
+
+
+def sun_directions(
+    times: Time | Times,
+    latitude: float,
+    longitude: float,
+    up: ArrayLike = (0.0, 1.0, 0.0),
+    north: ArrayLike = (0.0, 0.0, -1.0),
+) -> Floats:
+    """Return where the sun is at each of some times, seen from a place.
+
+    Parameters
+    ----------
+    times : datetime, numpy.datetime64, str, or sequence or (T,) array of these
+        As `SunSky.at` has them: with their zones, datetime64 in UTC.
+    latitude, longitude : float
+        The place in degrees, north and east positive.
+    up, north : 3 floats
+        The zenith and the north of the scene.
+
+    Returns
+    -------
+    (T, 3) or (3,) float64
+        Unit directions to the sun's centre, to 0.01° from 1950 to 2050; below the horizon at night.
+
+    Raises
+    ------
+    ValueError, TypeError
+        As `SunSky.at` does.
+    """
+    known = one_or_many("times", times)
+    suns = directions_at(
+        known if isinstance(known, list) else [known], latitude, longitude, way("up", up), way("north", north)
+    )
+    return suns if isinstance(known, list) else suns[0]
+
+
+def solar_exposure(
+    scene: SceneLike,
+    points: SurfacePoints | ArrayLike,
+    normals: ArrayLike | None = None,
+    sun: ArrayLike | None = None,
+    times: Times | None = None,
+    latitude: float | None = None,
+    longitude: float | None = None,
+    weights: ArrayLike | None = None,
+    up: ArrayLike = (0.0, 1.0, 0.0),
+    north: ArrayLike = (0.0, 0.0, -1.0),
+    offset: float | None = None,
+    progress: BuildProgress | None = None,
+    threads: int | None = None,
+) -> SolarExposure:
+    """Find when the sun reaches points on surfaces, and how much of it falls on these.
+
+    Parameters
+    ----------
+    scene : Scene, Mesh or anything else that a Scene is made of
+        What casts shadows.
+    points : Hits, ClosestPoints or (..., 3) array
+        Where. Rays leave what was hit exactly as `Hits.leave` has it, and plain points as `offset` tells.
+    normals : (..., 3) array, optional
+        Of any length; those of the surfaces if not given, which only what was hit has.
+    sun : (T, 3) array, optional
+        Directions to the sun, of any length; or `times` with `latitude` and `longitude`, as `sun_directions`
+        takes them.
+    weights : float or (T,) array, optional
+        What each moment counts, such as its share of the year or the direct normal irradiance; 1 if not
+        given.
+    up, north : 3 floats
+        The zenith, below whose horizon the sun does not count, and the north.
+    offset : float, optional
+        How far from plain points along the normal rays start; a millionth of the scene's size if not given.
+    progress : bool or callable, optional
+        As for `sky_view`.
+    threads : int, optional
+        How many to use; all cores if not given. The answer does not depend on it.
+
+    Returns
+    -------
+    SolarExposure
+        Of the leading shape of the points.
+
+    Raises
+    ------
+    ValueError
+        If neither the sun nor times and place are given, or both; if shapes do not fit, a number is not
+        finite, a vector has no length, or normals are missing; and as `sun_directions` does.
+    TypeError
+        If something is of the wrong type.
+
+    Notes
+    -----
+    The sun counts as a point. Where its centre is hidden it is down, so that edges of shadows, half a degree
+    wide, are sharp. Nothing is sampled.
+    """
+    suns = _suns(sun, times, latitude, longitude, up, north)
+    counted = np.ones(len(suns)) if weights is None else _weights(weights, len(suns))
+    if progress is not None:
+        check_progress(progress)
+    scene = scene_of(scene)
+    where = places(scene, points, normals, offset)
+    day = np.flatnonzero(suns @ unit("up", up) > 0)
+    exposure, sunlit = np.zeros(len(where)), np.zeros(len(where))
+    step = max(_TOGETHER // max(len(where), 1), 1)
+    with watcher(progress, "solar exposure") as report:
+        for start in range(0, len(day), step):
+            some = day[start : start + step]
+            cosine = suns[some] @ where.normals.T
+            ways = np.broadcast_to(suns[some][:, None], (*cosine.shape, 3))
+            starts = np.broadcast_to(where.origins, ways.shape)
+            shines = ~scene.occluded(starts, ways, mask=cosine > 0, threads=threads) & (cosine > 0)
+            exposure += counted[some] @ np.where(shines, cosine, 0.0)
+            sunlit += counted[some] @ shines
+            if report is not None:
+                report(min(1.0, (start + step) / len(day)))
+    for found in (exposure, sunlit):
+        found[~np.isfinite(where.origins).all(axis=1)] = np.nan
+    lead = where.shape
+    total = float(counted[day].sum())
+    return SolarExposure(sealed(exposure.reshape(lead)), sealed(sunlit.reshape(lead)), total)
+
+
+def _suns(
+    sun: ArrayLike | None,
+    times: Times | None,
+    latitude: float | None,
+    longitude: float | None,
+    up: ArrayLike,
+    north: ArrayLike,
+) -> Floats:
+    if sun is None:
+        if times is None or latitude is None or longitude is None:
+            raise ValueError("sun must be given, or times, latitude and longitude")
+        return np.atleast_2d(sun_directions(times, latitude, longitude, up, north))
+    if times is not None or latitude is not None or longitude is not None:
+        raise ValueError("sun is given, and times, latitude or longitude too: give one or the other")
+    suns = np.atleast_2d(units("sun", sun))
+    if suns.ndim != 2:
+        raise ValueError(f"sun must have shape (T, 3), got {suns.shape}")
+    return suns
+
+
+def _weights(given: ArrayLike, count: int) -> Floats:
+    array = real_array("weights", given).astype(np.float64)
+    if array.shape not in ((), (count,)):
+        raise ValueError(f"weights must be one number or have shape ({count},), got {array.shape}")
+    if not np.isfinite(array).all():
+        raise ValueError("weights must be finite, and have NaN or infinity")
+    return np.broadcast_to(array, count).astype(np.float64)

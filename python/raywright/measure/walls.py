@@ -1,0 +1,151 @@
+"""How thick walls are."""
+
+import math
+from typing import Literal, get_args
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..arrays import choice
+from ..query.hits import ClosestPoints, SurfacePoints
+from ..scene.progress import BuildProgress, check_progress, watcher
+from ..scene.scene import Scene
+from ..shapes.mesh import Mesh
+from .places import Floats, Places, SceneLike, places, scene_of, sealed, size_of
+
+Method = Literal["ray", "sphere"]
+# A ball shrinks towards its last size geometrically; so many steps are more than any took that was tried.
+_STEPS = 60
+# To how much of itself, or of the scene's size, a ball is found.
+_EXACT = 1e-9
+# Points are asked so many at a time, between which progress is told.
+_TOGETHER = 1 << 17
+
+
+def thickness(
+    scene: SceneLike,
+    points: SurfacePoints | ArrayLike | None = None,
+    normals: ArrayLike | None = None,
+    method: Method = "ray",
+    offset: float | None = None,
+    progress: BuildProgress | None = None,
+    threads: int | None = None,
+) -> Floats:
+    """Find how thick a body is at points of its surface.
+
+    Parameters
+    ----------
+    scene : Scene, Mesh or anything else that a Scene is made of
+        The body; normals point out of it.
+    points : Hits, ClosestPoints or (..., 3) array, optional
+        Where. The middle of every face if not given, which only meshes have.
+    normals : (..., 3) array, optional
+        Outward normals, of any length; those of the surfaces if not given, which only what was hit has.
+    method : {"ray", "sphere"}
+        "ray" goes straight in, against the normal, to where the surface is met next. "sphere" is the diameter
+        of the largest ball inside that touches the surface at the point, which is never more, does not depend
+        on how the far side is tilted, and needs closest points.
+    offset : float, optional
+        How far from plain points rays start; a millionth of the scene's size if not given.
+    progress : bool or callable, optional
+        As for `sky_view`.
+    threads : int, optional
+        How many to use; all cores if not given. The answer does not depend on it.
+
+    Returns
+    -------
+    (...) float64
+        In the scene's unit, of the leading shape of the points, or (F,) of all faces of all shapes in order;
+        inf where there is no other side, NaN where there is no point. Read-only.
+
+    Raises
+    ------
+    ValueError
+        If shapes do not broadcast, a number is not finite, a vector has no length, normals are missing, or
+        `method` is no such method; without points, if something in the scene is no mesh; for "sphere", if
+        something in it has no closest points.
+    TypeError
+        If something is of the wrong type.
+
+    Notes
+    -----
+    The ball shrinks from the one that the ray allows until nothing is nearer to its centre than the point
+    (Ma, Bae and Choi, "3D Medial Axis Point Approximation Using Nearest Neighbors and the Normal Field",
+    2012), to 1e-9 of itself or of the scene's size, at a convex edge to nothing. Rays and balls are exact
+    for the surface as it is: where a mesh stands for something round, its facets are what is measured.
+    """
+    choice("method", method, get_args(Method))
+    if progress is not None:
+        check_progress(progress)
+    scene = scene_of(scene)
+    found = _middles(scene) if points is None else points
+    out = places(scene, found, normals, offset)
+    middles, starts = _inward(scene, found, out, offset)
+    result = np.empty(len(out))
+    with watcher(progress, "thickness") as report:
+        for first in range(0, len(out), _TOGETHER):
+            some = slice(first, first + _TOGETHER)
+            points, ways = middles[some], -out.normals[some]
+            # Rays start a little inside.
+            skipped = np.linalg.norm(starts[some] - points, axis=1)
+            across = scene.intersect(starts[some], ways, threads=threads).t + skipped
+            if method == "sphere":
+                across = _balls(scene, points, ways, across, threads)
+            result[some] = np.where(np.isfinite(points).all(axis=1), across, np.nan)
+            if report is not None:
+                report(min(1.0, some.stop / len(out)))
+    return sealed(result.reshape(out.shape))
+
+
+def _inward(
+    scene: Scene, found: SurfacePoints | ArrayLike, out: Places, offset: float | None
+) -> tuple[Floats, Floats]:
+    """Return the points, and where rays start that go in."""
+    ways = -out.normals.reshape(*out.shape, 3)
+    if isinstance(found, SurfacePoints):
+        starts = found.leave(np.where(np.isfinite(ways), ways, 1.0)).origins
+        return found.position.reshape(-1, 3), starts.reshape(-1, 3)
+    points = np.broadcast_to(np.asarray(found, np.float64), ways.shape)
+    return points.reshape(-1, 3), places(scene, found, ways, offset).origins
+
+
+def _middles(scene: Scene) -> ClosestPoints:
+    """Return the middle of every face as a point of the surface."""
+    for i, shape in enumerate(scene.shapes):
+        if not isinstance(shape, Mesh):
+            raise ValueError(f"points must be given: shape {i} is no mesh but a {type(shape).__name__}")
+    counts = [len(shape.faces) for shape in scene.shapes if isinstance(shape, Mesh)]
+    shape_id = np.repeat(np.arange(len(counts), dtype=np.int32), counts)
+    primitive = np.concatenate(
+        [np.arange(0, dtype=np.int32), *(np.arange(n, dtype=np.int32) for n in counts)]
+    )
+    uv = np.full((len(primitive), 2), 1 / 3)
+    core = scene._compiled()
+    position = core.positions(shape_id, primitive, uv)
+    return ClosestPoints(np.zeros(len(primitive)), position, shape_id, primitive, uv, core)
+
+
+def _balls(scene: Scene, points: Floats, ways: Floats, across: Floats, threads: int | None) -> Floats:
+    """Return the diameters of the largest balls inside that touch the surface, from where ways go in."""
+    known = np.isfinite(points).all(axis=1)
+    least = _EXACT * size_of(scene, points[known])
+    bounds = scene.bounds
+    # A ball as large as the scene is met by all that a larger one is.
+    most = math.inf if bounds is None else float(np.linalg.norm(bounds[1] - bounds[0]))
+    radius = np.minimum(across / 2.0, most)
+    # Where numbers were given, the surface may be a little off: nothing touches both.
+    on = scene.closest_point(points, threads=threads).position
+    open_ = np.flatnonzero(np.isfinite(radius) & known)
+    for _ in range(_STEPS):
+        if not len(open_):
+            break
+        point, r = on[open_], radius[open_]
+        near = scene.closest_point(point + r[:, None] * ways[open_], threads=threads)
+        away = near.position - point
+        # The ball through the point that also touches the nearest one: |q - p|^2 / 2 w·(q - p).
+        depth = (away * ways[open_]).sum(axis=1)
+        smaller = np.divide((away * away).sum(axis=1), 2.0 * depth, out=r.copy(), where=depth > 0)
+        is_less = (near.distance < r - least) & (smaller < r - _EXACT * r)
+        radius[open_] = np.where(is_less, smaller, r)
+        open_ = open_[is_less]
+    return np.where(np.isfinite(across), 2.0 * radius, across)

@@ -1,0 +1,114 @@
+"""Every hit of rays."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .. import _core
+from . import rows
+from .hits import Hits, SurfacePoints, chosen, restored, sealed
+from .surface import Surface
+
+# What the arrays of hits hold for a miss.
+_MISSES = {"t": np.inf, "shape_id": -1, "primitive": -1, "uv": 0.0, "instance": -1}
+
+
+@dataclass(frozen=True, eq=False, repr=False, init=False)
+class AllHits(SurfacePoints):
+    """Every hit of each ray, one after the other: by ray, then `t`, then (shape_id, primitive).
+
+    There are K hits of N rays in all, and those of ray i, counted along the rays in C order, are from
+    ``ray_splits[i]`` to ``ray_splits[i + 1]``. All arrays are read-only.
+
+    Attributes
+    ----------
+    ray_splits : (N + 1,) int64
+        Where the hits of each ray begin, and at the end how many there are.
+    t : (K,) float64
+        Distance in lengths of the ray's direction, so that the hit is at ``origin + t * direction``.
+    shape_id : (K,) int32
+        Which of ``scene.shapes``.
+    primitive : (K,) int32
+        Which face of that shape, 0 where it is no mesh, or of an instance what `Instance.locate` tells.
+    uv : (K, 2) float64
+        Barycentric weights of the face's second and third corner, so that the hit is at
+        ``(1 - u - v) * a + u * b + v * c`` for corners a, b, c; on a shape that is no mesh, its own u and v.
+    shape : tuple of int
+        Leading shape of the rays.
+    """
+
+    ray_splits: NDArray[np.int64]
+    t: NDArray[np.float64]
+    shape: tuple[int, ...]
+
+    _parts = ("ray_splits", "t", "shape_id", "primitive", "uv")
+
+    def __init__(
+        self,
+        ray_splits: NDArray[np.int64],
+        t: NDArray[np.float64],
+        shape_id: NDArray[np.int32],
+        primitive: NDArray[np.int32],
+        uv: NDArray[np.float64],
+        instance: NDArray[np.int32] | None,
+        shape: tuple[int, ...],
+        compiled: _core.CompiledScene,
+        rays: tuple[Any, ...] | None = None,
+    ) -> None:
+        parts = {"ray_splits": ray_splits, "t": t, "shape_id": shape_id, "primitive": primitive, "uv": uv}
+        self.__dict__.update(parts, shape=shape, _compiled=compiled, _rays=rays)
+        if instance is not None:
+            self.__dict__["instance"] = instance
+
+    def _surface(self, ray: NDArray[np.int64] | None) -> Surface:
+        return super()._surface(self.ray)
+
+    @cached_property
+    def ray(self) -> NDArray[np.int64]:
+        """Which ray each hit is of, counted along the rays in C order: (K,) int64."""
+        return sealed(np.repeat(np.arange(len(self.ray_splits) - 1), np.diff(self.ray_splits)))
+
+    @cached_property
+    def count(self) -> NDArray[np.int64]:
+        """How many hits each ray has: (...) int64."""
+        return sealed(np.diff(self.ray_splits).reshape(self.shape))
+
+    @cached_property
+    def first(self) -> Hits:
+        """The first hit of each ray, as `Scene.intersect` finds it."""
+        has = self.count.reshape(-1) > 0
+        where = self.ray_splits[:-1][has]
+        own = {
+            name: rows.filled(array[where], has, self.shape, miss)
+            for name, miss in _MISSES.items()
+            if (array := vars(self).get(name)) is not None
+        }
+        first = restored(Hits, own, {})
+        vars(first).update(_compiled=self._compiled, _rays=self._rays)
+        return first
+
+    def __getitem__(self, index: Any) -> "AllHits":
+        """Return all hits of the rays at some places of the leading shape, which is indexed as arrays are."""
+        rays = rows.places(self.shape, index)
+        splits, which = rows.of_rays(self.ray_splits, rays.reshape(-1))
+        own = rows.picked({**vars(self), "_rays": None}, which)
+        some = chosen(AllHits, self, {**own, "ray_splits": sealed(splits), "shape": rays.shape}, rays)
+        for name in ("ray", "count", "first"):
+            vars(some).pop(name, None)
+        return some
+
+    def __iter__(self) -> "Iterator[AllHits]":
+        return (self[i] for i in range(len(self)))
+
+    def _more(self) -> dict[str, Any]:
+        return {"shape": self.shape}
+
+    def __len__(self) -> int:
+        return rows.length(self.shape)
+
+    def __repr__(self) -> str:
+        return f"AllHits(shape={self.shape}, {self.t.size} hits of {len(self.ray_splits) - 1} rays)"

@@ -1,0 +1,78 @@
+"""Which rays are asked, and what of a scene counts for them."""
+
+from collections.abc import Sequence
+from typing import Literal, TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .rays import RayArguments, spread
+
+ShapeMask: TypeAlias = str | Sequence[str] | ArrayLike
+Cull: TypeAlias = Literal["back"]
+# Whether each shape counts, and whether only what faces the ray does; None if all counts.
+Counted: TypeAlias = tuple[list[bool] | None, bool] | None
+
+
+def counted(shapes: ShapeMask | None, cull: Cull | None, names: tuple[str, ...]) -> Counted:
+    """Check what counts, and give what the core takes of it.
+
+    Raises
+    ------
+    ValueError
+        If a mask has not one entry a shape, a name is that of no shape, or `cull` is not "back".
+    TypeError
+        If `shapes` is neither bool nor names.
+    """
+    if cull is not None and cull != "back":
+        raise ValueError(f'cull must be "back" or None, got {cull!r}')
+    if shapes is None:
+        return None if cull is None else (None, True)
+    return _each(shapes, names), cull is not None
+
+
+def _each(shapes: ShapeMask, names: tuple[str, ...]) -> list[bool]:
+    wanted = [shapes] if isinstance(shapes, str) else shapes
+    if isinstance(wanted, list | tuple | set | frozenset) and all(isinstance(name, str) for name in wanted):
+        known = {name for name in names if name}
+        for name in wanted:
+            if name not in known:
+                told = f"its names are {', '.join(map(repr, sorted(known)))}" if known else "none has a name"
+                raise ValueError(f"shapes has {name!r}, but no shape of the scene is called so: {told}")
+        return [name in wanted for name in names]
+    mask = np.asarray(wanted)
+    if mask.dtype != np.bool_:
+        raise TypeError(f"shapes must be bool, one for each shape, or names, got dtype {mask.dtype}")
+    if mask.shape != (len(names),):
+        raise ValueError(f"shapes must have shape ({len(names)},), one bool a shape, got {mask.shape}")
+    kept: list[bool] = mask.tolist()
+    return kept
+
+
+def asked(rays: RayArguments, mask: ArrayLike | None) -> RayArguments:
+    """Return the rays, of which those without a True in `mask` meet nothing.
+
+    Raises
+    ------
+    ValueError
+        If the mask does not broadcast to the leading shape of the rays.
+    TypeError
+        If it is not bool.
+    """
+    if mask is None:
+        return rays
+    starts, ways, near, far, shape, threads, time = rays
+    which: NDArray[np.bool_] = np.asarray(mask)
+    if which.dtype != np.bool_:
+        raise TypeError(f"mask must be bool, one for each ray, got dtype {which.dtype}")
+    try:
+        which = np.broadcast_to(which, shape)
+    except ValueError:
+        raise ValueError(
+            f"mask has shape {which.shape}, which does not broadcast to rays of {shape}"
+        ) from None
+    # No t lies before minus infinity.
+    ends = np.where(
+        which, far.reshape(shape) if isinstance(far, np.ndarray) and far.size > 1 else far, -np.inf
+    )
+    return starts, ways, near, spread(ends, shape), shape, threads, time

@@ -1,0 +1,129 @@
+"""What rays and points find, picked by ray, and as columns of a table."""
+
+import copy
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .surface import Surface
+
+# What of points there are several numbers of.
+_WIDE = ("uv", "position", "normal")
+# Columns that arrays with a second dimension are told in, and what of hits they are told of.
+_AXES = {2: ("u", "v"), 3: ("x", "y", "z")}
+_TOLD = ("t", "distance", "shape_id", "names", "instance", "primitive", "uv", "position", "normal")
+
+
+def places(shape: tuple[int, ...], index: Any) -> NDArray[np.int64]:
+    """Return by number, in C order, the places of a leading shape that an index picks, in the shape picked.
+
+    Raises
+    ------
+    IndexError
+        As indexing an array of the shape does.
+    """
+    return np.asarray(np.arange(np.prod(shape, dtype=np.int64)).reshape(shape)[index])
+
+
+def picked(own: dict[str, Any], which: NDArray[np.int64]) -> dict[str, Any]:
+    """Return what is known of all, of some: copies that can be read only."""
+    parts = {name: value for name, value in own.items() if name not in ("_compiled", "_rays")}
+    return {name: _some(name, value, which) for name, value in parts.items()}
+
+
+def _some(name: str, value: Any, which: NDArray[np.int64]) -> Any:
+    if isinstance(value, Surface):
+        lead = value.error.ndim
+        return Surface(*(_rows(part, lead, which) for part in vars(value).values()))
+    if not isinstance(value, np.ndarray):
+        return value
+    return _rows(value, value.ndim - (name in _WIDE), which)
+
+
+def _rows(array: NDArray[Any], lead: int, which: NDArray[np.int64]) -> NDArray[Any]:
+    some = np.array(array.reshape(-1, *array.shape[lead:])[which])
+    some.setflags(write=False)
+    return some
+
+
+def rays_of(rays: tuple[Any, ...] | None, which: NDArray[np.int64]) -> tuple[Any, ...] | None:
+    """Return the origins, directions and times of some rays; one of any that serves for all still does."""
+    if rays is None:
+        return None
+    starts, ways, time = rays
+    if isinstance(time, np.ndarray) and time.size > 1:
+        time = time.reshape(-1)[which]
+    return (*(ends if ends.size == 3 else ends.reshape(-1, 3)[which] for ends in (starts, ways)), time)
+
+
+def of_rays(
+    splits: NDArray[np.int64], rays: NDArray[np.int64]
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Return where the hits of some rays begin once they follow each other, and which of all they are."""
+    counts = np.diff(splits)[rays]
+    begins = np.concatenate([[0], np.cumsum(counts)]).astype(np.int64)
+    return begins, np.repeat(splits[rays] - begins[:-1], counts) + np.arange(begins[-1])
+
+
+def filled(some: NDArray[Any], has: NDArray[np.bool_], shape: tuple[int, ...], miss: float) -> NDArray[Any]:
+    """Return an entry for each ray: the next of some for those that have one, and what stands for a miss."""
+    every = np.full((len(has), *some.shape[1:]), miss, some.dtype)
+    every[has] = some
+    every = every.reshape(*shape, *some.shape[1:])
+    every.setflags(write=False)
+    return every
+
+
+def length(shape: tuple[int, ...]) -> int:
+    """Return the first of a leading shape.
+
+    Raises
+    ------
+    TypeError
+        If it has none.
+    """
+    if not shape:
+        raise TypeError("hits of one ray have no length")
+    return shape[0]
+
+
+def copied(own: dict[str, Any], memo: dict[int, Any]) -> dict[str, Any]:
+    """Return copies of what is known, but of the scene."""
+    return {name: copy.deepcopy(v, memo) for name, v in own.items() if name not in ("_compiled", "_rays")}
+
+
+def flat(points: Any) -> dict[str, NDArray[Any]]:
+    """Return columns by name, with an entry for each point."""
+    columns: dict[str, NDArray[Any]] = {}
+    if hasattr(type(points), "ray"):
+        columns["ray"] = points.ray
+    for name in _TOLD:
+        # Of what comes out of a pickle, more is not known.
+        if not hasattr(type(points), name) and name not in vars(points):
+            continue
+        if points._compiled is None and name not in vars(points) and name != "instance":
+            continue
+        array = getattr(points, name)
+        axes = _AXES.get(array.shape[-1]) if name in _WIDE else None
+        if axes is None:
+            columns[name.removesuffix("s") if name == "names" else name] = array.reshape(-1)
+            continue
+        prefix = "" if name in ("uv", "position") else f"{name}_"
+        columns |= {f"{prefix}{axis}": array[..., i].reshape(-1) for i, axis in enumerate(axes)}
+    return columns
+
+
+def frame(columns: dict[str, NDArray[Any]]) -> Any:
+    """Return columns as a DataFrame.
+
+    Raises
+    ------
+    ImportError
+        If pandas is not installed.
+    """
+    try:
+        import pandas as pd
+    except ImportError:
+        raise ImportError("to_dataframe needs pandas, which is not installed: pip install pandas") from None
+    return pd.DataFrame(columns)

@@ -1,0 +1,42 @@
+"""Scenes that come out of pickles, of which a process compiles each once."""
+
+import threading
+from collections import OrderedDict
+
+from .. import _core
+from .digest import digest
+
+# More would hold the memory of scenes that nobody asks any more.
+_MOST = 2
+_kept: "OrderedDict[str, _core.CompiledScene]" = OrderedDict()
+_lock = threading.Lock()
+
+
+class Arrival:
+    """A scene that came out of a pickle, known by what it holds."""
+
+    def __init__(self, name: str) -> None:
+        self._name = name
+
+    @classmethod
+    def of(cls, scene: object) -> "Arrival | None":
+        """Return what a scene is known by; None if it holds what Python's own pickler cannot take."""
+        try:
+            return cls(digest(scene))
+        except TypeError:
+            return None
+
+    def core(self) -> _core.CompiledScene | None:
+        """Return what was compiled of such a scene in this process, if that is kept."""
+        with _lock:
+            found = _kept.get(self._name)
+            if found is not None:
+                _kept.move_to_end(self._name)
+            return found
+
+    def keep(self, core: _core.CompiledScene) -> None:
+        """Keep what was compiled of it; the oldest makes room."""
+        with _lock:
+            _kept[self._name] = core
+            while len(_kept) > _MOST:
+                _kept.popitem(last=False)

@@ -1,0 +1,153 @@
+"""Laser scans, against closed forms."""
+
+import numpy as np
+import pytest
+
+import raywright as rw
+
+measure = rw.measure
+
+BALL = rw.Sphere((6.0, 0.0, 0.0), 1.5, name="ball")
+RASTER = measure.RasterLidar(columns=81, rows=61, horizontal=40, vertical=30)
+
+
+def away(scanner, towards=(1.0, 0, 0)):
+    """The angle between each beam and a direction."""
+    ways = scanner.directions()
+    return np.arctan2(np.linalg.norm(np.cross(ways, towards), axis=-1), ways @ towards)
+
+
+def test_a_ball_is_as_far_as_it_is():
+    """At an angle a from its middle, a ball of radius r is D cos a - sqrt(r^2 - D^2 sin^2 a) away, and its normal is
+    tilted by arcsin(D sin a / r).
+    """
+    scan = measure.lidar(BALL, RASTER)
+    angle = away(RASTER)
+    side = 6.0 * np.sin(angle)
+    met = side < 1.5
+    assert scan.shape == (61, 81)
+    assert np.array_equal(scan.count == 1, met)
+    assert len(scan) == met.sum() > 500
+    expected = 6.0 * np.cos(angle[met]) - np.sqrt(1.5**2 - side[met] ** 2)
+    assert np.allclose(scan.range, expected, rtol=1e-13)
+    grazing = np.degrees(np.arcsin(side[met] / 1.5))
+    assert np.allclose(scan.incidence, grazing, rtol=0, atol=1e-5)
+    assert np.allclose(scan.position, scan.range[:, None] * RASTER.directions()[met], rtol=1e-15)
+    assert np.allclose(np.linalg.norm(scan.position - BALL.center, axis=1), 1.5, rtol=1e-13)
+    assert np.array_equal(scan.image()[met], scan.range)
+    assert np.isnan(scan.image()[~met]).all()
+    assert set(scan.strength) == {1.0}
+
+
+def test_beams_go_where_the_scanner_says():
+    spinning = measure.SpinningLidar(elevations=[-10, 0, 30], columns=8, forward=(0, 5, 0), up=(0, 0, 2))
+    ways = spinning.directions()
+    assert spinning.shape == ways.shape[:2] == (3, 8)
+    assert np.allclose(np.linalg.norm(ways, axis=-1), 1)
+    assert np.allclose(np.degrees(np.arcsin(ways[..., 2])), np.array([-10.0, 0, 30])[:, None] * np.ones(8))
+    assert np.allclose(ways[1, 0], (0, 1, 0))
+    assert np.allclose(ways[1, 2], (-1, 0, 0))  # to the left
+    corners = measure.RasterLidar(columns=3, rows=3, horizontal=60, vertical=40).directions()
+    turn, high = np.radians(30), np.radians(20)
+    assert np.allclose(corners[1, 1], (1, 0, 0))
+    first = (np.cos(high) * np.cos(turn), np.cos(high) * np.sin(turn), np.sin(high))
+    assert np.allclose(corners[0, 0], first)
+    assert np.allclose(corners[2, 2], (first[0], -first[1], -first[2]))
+
+
+def test_near_and_far_are_not_measured():
+    near = measure.RasterLidar(columns=3, rows=3, horizontal=1, vertical=1, min_range=5.0)
+    # Only the far side of the ball is beyond 5.
+    assert np.allclose(measure.lidar(BALL, near).range, 7.5, atol=0.01)
+    far = measure.RasterLidar(columns=3, rows=3, horizontal=1, vertical=1, max_range=4.0)
+    assert len(measure.lidar(BALL, far)) == 0
+
+
+def test_noise_has_the_spread_that_was_asked_for():
+    """Of n numbers the mean is within 4 / sqrt(n) deviations, and the deviation within 4 / sqrt(2 n) of itself: 1e-4 each."""
+    wall = rw.Plane((10.0, 0, 0), (1, 0, 0))
+    exact = measure.lidar(wall, RASTER)
+    n = len(exact)
+    noisy = measure.lidar(wall, RASTER, range_sigma=0.03, range_sigma_share=0.004, seed=7)
+    expected = np.sqrt(0.03**2 + (0.004 * exact.range) ** 2)
+    standard = (noisy.range - exact.range) / expected
+    assert abs(standard.mean()) < 4 / np.sqrt(n)
+    assert abs(standard.std() - 1) < 4 / np.sqrt(2 * n)
+    assert np.allclose(np.linalg.norm(noisy.position, axis=1), noisy.range)
+    again = measure.lidar(wall, RASTER, range_sigma=0.03, range_sigma_share=0.004, seed=7, threads=1)
+    assert np.array_equal(noisy.range, again.range)
+    assert not np.array_equal(noisy.range, measure.lidar(wall, RASTER, range_sigma=0.03, seed=8).range)
+    # Losses take returns away, and change none.
+    lossy = measure.lidar(wall, RASTER, range_sigma=0.03, range_sigma_share=0.004, seed=7, dropout=0.5)
+    assert np.array_equal(lossy.range, noisy.range[np.isin(noisy.beam, lossy.beam)])
+
+
+def test_losses_are_as_likely_as_told():
+    """The number of returns is within 4 deviations of the sum of their probabilities: 1e-4."""
+    wall = rw.Plane((10.0, 0, 0), (1, 0, 0))
+    exact = measure.lidar(wall, RASTER)
+    cosine = np.cos(np.radians(exact.incidence))
+    assert np.allclose(cosine, 10 / exact.range)
+    for options, kept in [
+        ({"dropout": 0.3}, np.full(len(exact), 0.7)),
+        ({"fading_range": 9.0}, np.exp(-((exact.range / 9.0) ** 2))),
+        ({"incidence_power": 8.0}, cosine**8),
+        ({"dropout": 0.1, "fading_range": 20.0, "incidence_power": 2.0},
+         0.9 * np.exp(-((exact.range / 20.0) ** 2)) * cosine**2),
+    ]:  # fmt: skip
+        found = len(measure.lidar(wall, RASTER, seed=2, **options))
+        assert abs(found - kept.sum()) < 4 * np.sqrt((kept * (1 - kept)).sum())
+    assert len(measure.lidar(wall, RASTER, dropout=1.0)) == 0
+
+
+def test_a_wide_beam_returns_from_all_that_it_meets():
+    """Of a beam that half passes an edge, half comes from behind: a spiral of n points tells a half-disk to 1 / sqrt(n)."""
+    edge = rw.Mesh([(5, 0, -9), (5, 9, -9), (5, 9, 9), (5, 0, 9)], [(0, 1, 2), (0, 2, 3)])
+    scene = rw.Scene([edge, rw.Plane((8.0, 0, 0), (1, 0, 0))])
+    options = {"elevations": [0.0], "columns": 1, "divergence": 1.0, "rays": 400}
+    scan = measure.lidar(scene, measure.SpinningLidar(**options))
+    assert np.array_equal(scan.number, [0, 1])
+    assert np.allclose(scan.range, (5, 8), rtol=1e-4)
+    assert np.allclose(scan.strength, 0.5, atol=0.05)
+    assert scan.strength.sum() == pytest.approx(1)
+    assert np.array_equal(scan.shape_id, [0, 1])
+    for returns, expected in (("first", [5.0]), ("last", [8.0])):
+        kept = measure.lidar(scene, measure.SpinningLidar(**options), returns=returns)
+        assert np.allclose(kept.range, expected, rtol=1e-4)
+    strong = measure.lidar(scene, measure.SpinningLidar(**options), returns="strongest")
+    assert strong.strength == scan.strength.max()
+    # What is nearer together than the scanner can tell apart is one.
+    coarse = measure.lidar(scene, measure.SpinningLidar(**options, resolution=4.0))
+    assert coarse.range == pytest.approx(5 * scan.strength[0] + 8 * scan.strength[1], rel=1e-3)
+    # All rays of a beam are within half its divergence: nothing of the edge is met from beside it.
+    aside = measure.SpinningLidar(**options, start=-0.51)
+    assert np.allclose(measure.lidar(scene, aside).range, 8, rtol=1e-3)
+
+
+def test_names_and_wrong_input():
+    told = []
+    measure.lidar(BALL, RASTER, progress=told.append)
+    assert told[-1] == 1
+    with pytest.raises(TypeError, match="scanner must be a SpinningLidar or a RasterLidar, got str"):
+        measure.lidar(BALL, "scanner")
+    for options, text in [
+        ({"returns": "second"}, "returns must be one of 'all', 'first', 'last', 'strongest', got 'second'"),
+        ({"dropout": 1.5}, "dropout must be between 0 and 1, got 1.5"),
+        ({"range_sigma": -1}, "range_sigma must be at least 0, got -1"),
+        ({"fading_range": 0}, "fading_range must be greater than 0, got 0"),
+    ]:
+        with pytest.raises(ValueError, match=text):
+            measure.lidar(BALL, RASTER, **options)
+    for kind, options, text in [
+        (measure.SpinningLidar, {"elevations": []}, "elevations must be one or more numbers between -90 and 90"),
+        (measure.SpinningLidar, {"elevations": [0], "columns": 0}, "columns must be at least 1, got 0"),
+        (measure.SpinningLidar, {"elevations": [0], "up": (1, 0, 0)}, "forward must not be along up"),
+        (measure.RasterLidar, {"vertical": 190}, "vertical must be between 0 and 180 degrees, got 190"),
+        (measure.RasterLidar, {"min_range": 3, "max_range": 2}, "min_range must be at least 0 and less than max_range"),
+        (measure.RasterLidar, {"divergence": -1}, "divergence must be at least 0 and less than 90 degrees"),
+    ]:
+        with pytest.raises(ValueError, match=text):
+            kind(**options)
+    scan = measure.lidar(BALL, RASTER)
+    with pytest.raises(ValueError, match="name must be one of 'range', 'incidence', 'strength', got 'colour'"):
+        scan.image("colour")
