@@ -10,6 +10,7 @@ mod light_traced;
 mod nesting;
 mod passing;
 mod path;
+mod radiosity;
 mod ray_cast;
 mod roulette;
 mod shadows;
@@ -26,6 +27,7 @@ pub use guiding::{Guide, LocalGuide, is_matt};
 pub use light_paths::{Photon, Photons, photons};
 pub use light_traced::LightTraced;
 pub use path::Path;
+pub use radiosity::Radiosity;
 pub use ray_cast::RayCast;
 pub use whitted::Whitted;
 
