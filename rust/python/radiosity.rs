@@ -29,7 +29,7 @@ fn colours(name: &str, array: &PyReadonlyArray2<'_, f64>) -> PyResult<Vec<Rgb>> 
 
 #[pymethods]
 impl RadiosityShots {
-    /// `cuts` (F,) says into how many strips each primitive is cut; `emission` and `reflectance`, a row a side, stand for
+    /// `cuts` (F,) says into how many strips each primitive is cut; `looks`, emission and reflectance by side, stand for
     /// what the scene says.
     #[new]
     #[pyo3(signature = (scene, lamps, cuts, both, looks=None, threads=None))]
@@ -132,15 +132,15 @@ impl RadiosityShots {
         PyArray1::from_vec(py, all.collect()).reshape([self.replicates.len(), self.enclosure.sources(), 3])
     }
 
-    /// The power that is unshot, has left, and has come to black sides, (R,3,3), W.
+    /// The power that set out, is unshot, has left, and has come to black sides, (R,4,3), W.
     #[getter]
     fn books<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f64>>> {
         let all = self.replicates.iter().flat_map(|one| {
             let unshot: Rgb = one.unshot().iter().copied().sum();
             let (escaped, behind) = one.lost();
-            [unshot, escaped, behind].into_iter().flat_map(Rgb::to_array)
+            [one.emitted(), unshot, escaped, behind].into_iter().flat_map(Rgb::to_array)
         });
-        PyArray1::from_vec(py, all.collect()).reshape([self.replicates.len(), 3, 3])
+        PyArray1::from_vec(py, all.collect()).reshape([self.replicates.len(), 4, 3])
     }
 
     /// The rays of all replicates.

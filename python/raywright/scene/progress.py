@@ -19,8 +19,8 @@ def check_progress(progress: object) -> None:
         raise TypeError(f"progress must be True, False or a function, got {progress!r}")
 
 
-def watcher(progress: BuildProgress | None) -> AbstractContextManager[Report | None]:
-    """Give what is called with the share of a build that is done; None if nobody wants to know.
+def watcher(progress: BuildProgress | None, name: str = "build") -> AbstractContextManager[Report | None]:
+    """Give what is called with the share of some work that is done; None if nobody wants to know.
 
     With no word on `progress`, a bar is shown to who sits at a terminal.
     """
@@ -28,7 +28,7 @@ def watcher(progress: BuildProgress | None) -> AbstractContextManager[Report | N
         progress = sys.stderr is not None and sys.stderr.isatty()
     if callable(progress):
         return _to_the_end(progress)
-    return bar() if progress else nullcontext()
+    return bar(name) if progress else nullcontext()
 
 
 @contextmanager
@@ -38,8 +38,8 @@ def _to_the_end(report: Report) -> Iterator[Report]:
 
 
 @contextmanager
-def bar() -> Iterator[Report]:
-    """Show a bar on stderr once a build has taken two seconds."""
+def bar(name: str = "build") -> Iterator[Report]:
+    """Show a bar on stderr once some work, a build if nothing else, has taken two seconds."""
     start, shown = time.monotonic(), None
 
     def report(share: float) -> None:
@@ -50,7 +50,7 @@ def bar() -> Iterator[Report]:
             from tqdm import tqdm
 
             form = "{desc}: {percentage:3.0f}%|{bar}| {elapsed}"
-            shown = tqdm(total=1.0, desc="build", bar_format=form, file=sys.stderr)
+            shown = tqdm(total=1.0, desc=name, bar_format=form, file=sys.stderr)
         shown.update(share - shown.n)
         # The time is told, however long nothing comes of it.
         shown.refresh()

@@ -11,7 +11,7 @@ use rayon::prelude::*;
 /// Sources that a thread looks at before it asks whether to go on.
 const TOGETHER: usize = 256;
 
-/// The irradiance of each source by the lights of a scene of nothing else, as each of them is drawn, over so many rays a
+/// The irradiance of each source by the lights of a scene of nothing else, as each is drawn, over so many rays a
 /// source. What stands in `scene` shadows it.
 pub(super) fn irradiance(
     scene: &Scene,

@@ -34,6 +34,8 @@ pub struct Shots {
     shot: u32,
     unshot: Vec<Rgb>,
     arrived: Vec<Rgb>,
+    /// What set out at first: what patches emit, and what came to them from other lights.
+    emitted: Rgb,
     /// What has left the scene, and what has come to black sides.
     escaped: Rgb,
     behind: Rgb,
@@ -71,7 +73,10 @@ impl Shots {
         };
         let unshot: Vec<Rgb> = sources.map(to_shoot).collect();
         let first = unshot.iter().map(|power| power.mean()).sum();
-        Self { replicate, shot: 0, unshot, arrived, escaped: Rgb::ZERO, behind: Rgb::ZERO, first, rays: drawn }
+        let each = arrived.iter().zip(&enclosure.emission).enumerate();
+        let emitted = each.map(|(at, (light, emission))| *light + *emission * enclosure.area(at as u32)).sum();
+        let (escaped, behind) = (Rgb::ZERO, Rgb::ZERO);
+        Self { replicate, shot: 0, unshot, arrived, emitted, escaped, behind, first, rays: drawn }
     }
 
     /// Shoots the unshot power of all sources. Were all power unshot, it took about `rays` rays, of which each source
@@ -157,6 +162,11 @@ impl Shots {
     /// The power that is unshot, W, of each source.
     pub fn unshot(&self) -> &[Rgb] {
         &self.unshot
+    }
+
+    /// The power that set out at first, W: by emission, and of other lights what came to patches.
+    pub fn emitted(&self) -> Rgb {
+        self.emitted
     }
 
     /// The power that has left the scene, and that has come to black sides, W.
@@ -246,7 +256,7 @@ mod tests {
         for sides in [Sides::Front, Sides::Both] {
             let enclosure = enclosure(&scene, 2, sides);
             let mut shots = Shots::new(&scene, None, &enclosure, (1, 0), &Cancel::default());
-            let emitted: Rgb = shots.unshot().iter().copied().sum();
+            let emitted = shots.emitted();
             for step in 0..6 {
                 if step % 2 == 0 {
                     shots.shoot_all(&scene, &enclosure, 5000, 1, &Cancel::default());
