@@ -1,6 +1,7 @@
 """Radiosity against closed forms, its books, and what it refuses."""
 
 import pickle
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -101,7 +102,7 @@ def test_two_squares_in_small_patches_approach_the_continuous_solution() -> None
     assert len(found) == 4 * 144
     assert_mean(found, 0, 1.01021805505982)
     assert_mean(found, 1, 0.100947189238679)
-    # Middle, corner and middle of an edge, by what meets there; patches are 1/12 wide, and near a corner change by 1 %.
+    # Middle, corner and middle of an edge, by what meets there: over 1/12, light changes by 1 %.
     places = found.corners.reshape(-1, 3)
     values = found.corner_radiosity.reshape(-1, 3)[:, 0]
     for place, truth in (
@@ -195,7 +196,7 @@ def test_the_cavity_of_a_cylinder(emissivity: float, depth: float, truth: tuple[
 def test_nearly_infinite_plates() -> None:
     corners = np.array(CUBE[0]) * 1000.0
     low = rw.Polygon(corners, material=rw.Diffuse(0.2), emission=0.8 / np.pi)
-    high = rw.Polygon(corners[::-1] + (0, 0, 1e-4), material=rw.Diffuse(0.7))
+    high = rw.Polygon(corners[::-1] + np.array((0, 0, 1e-4)), material=rw.Diffuse(0.7))
     found = solved(rw.Scene([low, high]), rays=2**14, error=1e-9)
     # What leaves between them is some 4e-7 of all.
     np.testing.assert_allclose(found.radiosity[:, 0], [0.930232558139535, 0.651162790697674], rtol=1e-5)
@@ -256,7 +257,7 @@ def test_progressive_states_come_nearer_shot_by_shot() -> None:
     )
     bounds = [state.bound for state in states]
     assert bounds[-1] <= 0.01 < bounds[-2]
-    assert all(a > b for a, b in zip(bounds, bounds[1:], strict=False))
+    assert all(a > b for a, b in pairwise(bounds))
     for state in states:
         assert_books(state)
     end = solved(scene, method="progressive", rays=2**15)

@@ -27,15 +27,12 @@ def solve(problem: Problem, error: float | None, rays: int | None) -> RadiosityS
         raise ValueError(
             f"method='matrix' is for {_MOST} patches at most, these are {count}: use 'stochastic'"
         )
-    options = {} if error is None else {"error": error}
     factors = view_factors(
         _of_patches(problem),
-        "face",
-        rays=rays,
+        error=error,
         seed=problem.seed,
         threads=problem.threads,
         progress=False,
-        **options,
     )
     matrix, spread = (
         np.asarray(_dense(part), np.float64) for part in (factors.matrix, factors.standard_error)

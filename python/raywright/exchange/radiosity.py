@@ -81,10 +81,12 @@ def radiosity(
     error : float, optional
         What is wanted, as a share: of "stochastic", `RadiositySolution.error`, with the bound on what is
         unshot below a tenth of it; of "progressive", that bound; of "matrix", the error of view factors that
-        take rays. By default 0.01, or for "stochastic" with `rays` what these give.
+        take rays. By default 0.01, or for "stochastic" with `rays` what these give, and for "matrix" that
+        of `view_factors`.
     rays : int, optional
         How many rays the first light takes, all replicates together, and what is reflected in proportion. By
         default as many as `error` needs, for "progressive" 64 a patch and at least 65536 for each replicate.
+        Of "matrix", those for lights that are no surfaces.
     patch_size : float, optional
         The longest side of a patch; each triangle is cut into n² that are similar to it. By default faces are
         not cut.
@@ -109,9 +111,10 @@ def radiosity(
     TypeError
         If something is of the wrong kind.
 
-    Notes ----- Eight replicates, each of rays of its own, give the standard error. Within each, what is
-    emitted is absorbed, has left or is unshot, to rounding. Iterations end by ‖unshot‖ / (1 - ρ), with ρ the
-    greatest reflectance.
+    Notes
+    -----
+    Eight replicates, each of rays of its own, give the standard error. Within each, what is emitted is absorbed,
+    has left or is unshot, to rounding. Iterations end by ‖unshot‖ / (1 - the greatest reflectance).
     """
     choice("per", per, get_args(Per))
     choice("method", method, get_args(Method))

@@ -31,10 +31,10 @@ pub struct Enclosure {
 const LOOKS: [[f64; 2]; 4] = [[1.0 / 3.0, 1.0 / 3.0], [2.0 / 3.0, 1.0 / 6.0], [1.0 / 6.0, 2.0 / 3.0], [1.0 / 6.0; 2]];
 
 impl Enclosure {
-    /// The patches of a scene whose materials are diffuse; textures have their mean of four points of a patch.
+    /// The patches of a scene. What is not diffuse counts as black; textures have their mean of four points of a patch.
     ///
     /// # Errors
-    /// If something has no area that could be told, or scatters otherwise.
+    /// If something has no area that could be told, or no points that could be drawn evenly.
     pub fn new(scene: &Scene, patches: Patches, sides: Sides) -> Result<Self, String> {
         let geometry = scene.geometry();
         if patches.primitives() != geometry.count() {
@@ -74,29 +74,26 @@ impl Enclosure {
     fn look(&self, scene: &Scene, source: u32) -> Result<(Rgb, Rgb), String> {
         let (patch, side) = self.side(source);
         let (geometry, cell) = (scene.geometry(), self.patches.cell(patch));
-        let is_triangle = geometry.shape(cell.primitive).is_none();
         let mut sums = (Rgb::ZERO, Rgb::ZERO);
         for look in LOOKS {
-            let uv = cell.at(look);
-            let surface = match geometry.shape(cell.primitive) {
-                None => geometry.on_triangle(cell.primitive, uv),
+            let (surface, uv) = match geometry.shape(cell.primitive) {
+                None => {
+                    let uv = cell.at(look);
+                    (geometry.on_triangle(cell.primitive, uv), uv)
+                }
                 Some(shape) => {
-                    let number = geometry.locate(cell.primitive).0;
                     let drawn = shape.sample(look).filter(|drawn| (drawn.pdf * shape.area() - 1.0).abs() < 1e-6);
                     let drawn = drawn.ok_or_else(|| {
+                        let number = geometry.locate(cell.primitive).0;
                         format!("shape {number} is stretched, and points cannot be drawn from it evenly: use a mesh")
                     })?;
-                    geometry.on_shape(cell.primitive, &drawn.point.site())
+                    (geometry.on_shape(cell.primitive, &drawn.point.site()), drawn.point.uv)
                 }
             };
             let back = surface.normal * side;
             let ray = Ray::new(surface.position + back, -back);
-            let hit = Hit { t: 1.0, uv: if is_triangle { uv } else { look }, primitive: cell.primitive, inner: 0 };
+            let hit = Hit { t: 1.0, uv, primitive: cell.primitive, inner: 0 };
             let (emission, reflectance) = seen(scene, &ray, &hit, surface);
-            let reflectance = reflectance.ok_or_else(|| {
-                let (shape, face) = geometry.locate(cell.primitive);
-                format!("face {face} of shape {shape} is not diffuse")
-            })?;
             sums = (sums.0 + emission, sums.1 + reflectance);
         }
         let share = 1.0 / LOOKS.len() as f64;
@@ -158,9 +155,9 @@ impl Enclosure {
     }
 }
 
-/// The radiance that a surface emits along a ray that meets it, and its reflectance if it is diffuse.
-fn seen(scene: &Scene, ray: &Ray, hit: &Hit, surface: SurfacePoint) -> (Rgb, Option<Rgb>) {
+/// The radiance that a surface emits along a ray that meets it, and its reflectance.
+fn seen(scene: &Scene, ray: &Ray, hit: &Hit, surface: SurfacePoint) -> (Rgb, Rgb) {
     let emission = scene.emission_at(&surface).sent(scene.geometry(), ray, hit, &surface, || 0.0);
     let here = SurfaceInteraction::new(scene, ray, hit, surface, 0.0, 1.0);
-    (emission, here.bsdf().diffuse())
+    (emission, here.bsdf().diffuse().unwrap_or(Rgb::ZERO))
 }
