@@ -6,7 +6,8 @@ from . import _core, scenes
 from ._core import AcceleratorInfo, simd
 from .accelerators import BSP, BVH, BruteForce, Grid, KdTree, NestedGrid, Octree
 from .cameras import AnyCamera, Camera, Fisheye, Orthographic, Panorama, Pose, ThinLens
-from .integrators import AmbientOcclusion, Direct, Distributed, LightTraced, Path, RayCast, Whitted
+from .exchange.solution import RadiositySolution, RadiosityStep
+from .integrators import AmbientOcclusion, Direct, Distributed, LightTraced, Path, Radiosity, RayCast, Whitted
 from .integrators.base import Integrator
 from .integrators.rng import Rng
 from .io.pictures import check_writable
@@ -84,6 +85,8 @@ from .textures import (
 
 if TYPE_CHECKING:
     from . import measure, report
+    from .exchange.radiative import RadiativeExchange, radiative_exchange
+    from .exchange.radiosity import radiosity
     from .scene_files.load import load
     from .scene_files.mitsuba import from_mitsuba
     from .viewer import Viewer, view
@@ -171,6 +174,10 @@ __all__ = [
     "ProductTexture",
     "ProjectorLight",
     "QueryCost",
+    "RadiativeExchange",
+    "Radiosity",
+    "RadiositySolution",
+    "RadiosityStep",
     "RayCast",
     "Rays",
     "RenderPlan",
@@ -203,6 +210,8 @@ __all__ = [
     "metal_index",
     "metals",
     "power_heuristic",
+    "radiative_exchange",
+    "radiosity",
     "render",
     "render_frames",
     "report",
@@ -216,10 +225,13 @@ __version__ = _core.VERSION
 if not TYPE_CHECKING:
     # These are for those who ask for them: nothing else waits for their import.
     _LATER = {
+        "RadiativeExchange": ".exchange.radiative",
         "Viewer": ".viewer",
         "from_mitsuba": ".scene_files.mitsuba",
         "load": ".scene_files.load",
         "measure": ".measure",
+        "radiative_exchange": ".exchange.radiative",
+        "radiosity": ".exchange.radiosity",
         "report": ".report",
         "view": ".viewer",
     }

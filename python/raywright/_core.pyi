@@ -17,6 +17,7 @@ __all__ = [
     "Interactions",
     "Job",
     "KernelContest",
+    "RadiosityShots",
     "Rendering",
     "aovs",
     "batch_for",
@@ -414,6 +415,43 @@ def camera_rays_through(
 
     ``lens`` and ``time`` are those of `camera_rays`: one for all, or (N,2) and (N,).
     """
+
+@final
+class RadiosityShots:
+    """Patches of a scene, and the replicates of a radiosity solution."""
+
+    def __new__(
+        cls,
+        scene: CompiledScene,
+        lamps: CompiledScene | None,
+        cuts: NDArray[np.uint32],
+        both: bool,
+        looks: tuple[NDArray[np.float64], NDArray[np.float64]] | None = None,
+        threads: int | None = None,
+    ) -> RadiosityShots: ...
+    def begin(self, seed: int, replicates: int, light_rays: int, threads: int | None) -> None:
+        """Begin so many replicates anew, each with so many rays for light that comes from no surface."""
+
+    def shoot_all(self, rays: int, threads: int | None) -> None:
+        """Shoot all unshot power; were it all there is, each replicate took so many rays."""
+
+    def shoot_greatest(self, count: int, rays: int, threads: int | None) -> None:
+        """Shoot so many sides of patches, each time that of most unshot power."""
+
+    @property
+    def areas(self) -> NDArray[np.float64]: ...
+    @property
+    def emission(self) -> NDArray[np.float64]: ...
+    @property
+    def reflectance(self) -> NDArray[np.float64]: ...
+    @property
+    def corners(self) -> NDArray[np.float64]: ...
+    @property
+    def arrived(self) -> NDArray[np.float64]: ...
+    @property
+    def books(self) -> NDArray[np.float64]: ...
+    @property
+    def rays(self) -> int: ...
 
 def photons(
     scene: CompiledScene,

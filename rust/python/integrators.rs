@@ -1,18 +1,20 @@
 //! Integrators as the package describes them, read by attribute, and pictures of what is seen first.
 
-use numpy::{PyArray1, PyArrayDyn, PyArrayMethods};
+use numpy::{PyArray1, PyArrayDyn, PyArrayMethods, PyReadonlyArray1, PyReadonlyArrayDyn};
 use pyo3::conversion::FromPyObjectOwned;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 
+use super::arrays::{numbers, vectors};
 use super::cameras::AnyCamera;
 use super::query::CompiledScene;
 use super::signals::heard;
 use crate::integrators::{
-    AmbientOcclusion, Channel, Direct, Distributed, Integrator, LightTraced, Path, RayCast, Whitted, aovs as observe,
+    AmbientOcclusion, Channel, Direct, Distributed, Integrator, LightTraced, Path, Radiosity, RayCast, Whitted,
+    aovs as observe,
 };
 use crate::optics::Rgb;
-use crate::scene::PlanRow;
+use crate::scene::{Patches, PlanRow};
 
 /// Any integrator of the package.
 pub struct AnyIntegrator(pub Box<dyn Integrator>);
@@ -36,6 +38,21 @@ pub fn path(of: &Bound<'_, PyAny>) -> PyResult<Path> {
     })
 }
 
+/// What is looked up: cuts (F,), irradiance at three corners (S,3,3), whether there are backs, and the area.
+type Table<'py> = (PyReadonlyArray1<'py, u32>, PyReadonlyArrayDyn<'py, f64>, bool, f64);
+
+fn radiosity(of: &Bound<'_, PyAny>) -> PyResult<Radiosity> {
+    let (cuts, irradiance, has_backs, area) = of.getattr("_table")?.extract::<Table<'_>>()?;
+    let patches = Patches::new(numbers("cuts", &cuts)?.to_vec()).map_err(PyValueError::new_err)?;
+    let corners: &[[f64; 3]] = vectors("irradiance", &irradiance)?;
+    let irradiance: Vec<_> = corners.as_chunks().0.iter().map(|all: &[_; 3]| all.map(Rgb::from_array)).collect();
+    let wanted = patches.count() * if has_backs { 2 } else { 1 };
+    if irradiance.len() != wanted {
+        return Err(PyValueError::new_err(format!("irradiance is of {} sides, not of {wanted}", irradiance.len())));
+    }
+    Ok(Radiosity { patches, has_backs, irradiance, area })
+}
+
 impl<'a, 'py> FromPyObject<'a, 'py> for AnyIntegrator {
     type Error = PyErr;
 
@@ -52,6 +69,7 @@ impl<'a, 'py> FromPyObject<'a, 'py> for AnyIntegrator {
             "Direct" => {
                 Box::new(Direct { light_samples: light_samples()?, surface_samples: attribute(of, "surface_samples")? })
             }
+            "Radiosity" => Box::new(radiosity(of)?),
             "RayCast" => Box::new(RayCast {
                 ambient: rgb(of, "ambient")?,
                 shadows: attribute(of, "shadows")?,

@@ -21,6 +21,7 @@ mod materials;
 mod photons;
 mod points;
 mod query;
+mod radiosity;
 mod random;
 mod rays;
 mod render;
@@ -79,6 +80,8 @@ mod _core {
     use super::points::points;
     #[pymodule_export]
     use super::query::CompiledScene;
+    #[pymodule_export]
+    use super::radiosity::RadiosityShots;
     #[pymodule_export]
     use super::random::random_numbers;
     #[cfg(feature = "timing")]

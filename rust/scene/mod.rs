@@ -13,6 +13,7 @@ mod geometry;
 pub mod lights;
 pub mod materials;
 pub mod media;
+mod patches;
 mod plan;
 mod ray_origin;
 mod shading;
@@ -39,6 +40,7 @@ pub use lights::{
     PointLight, Profile, Projector, Reach, SpotLight, SunSky,
 };
 pub use materials::{DiffuseMaterial, Material};
+pub use patches::{Cell, Patches};
 pub use plan::{Plan, PlanRow, SceneNeeds, ShadingVariant};
 pub use ray_origin::RayOrigin;
 pub use shading::{Footprint, ShadingPoint};

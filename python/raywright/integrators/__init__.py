@@ -8,11 +8,12 @@ from .direct import Direct
 from .distributed import Distributed
 from .light_traced import LightTraced
 from .path import Path
+from .radiosity import Radiosity
 from .ray_cast import RayCast
 from .whitted import Whitted
 
 AnyIntegrator: TypeAlias = (
-    Path | LightTraced | Direct | RayCast | Whitted | Distributed | AmbientOcclusion | Integrator
+    Path | LightTraced | Direct | Radiosity | RayCast | Whitted | Distributed | AmbientOcclusion | Integrator
 )
 
 __all__ = [
@@ -22,6 +23,7 @@ __all__ = [
     "Distributed",
     "LightTraced",
     "Path",
+    "Radiosity",
     "RayCast",
     "Whitted",
     "check_integrator",

@@ -1,0 +1,1 @@
+"""What surfaces send each other, as numbers."""

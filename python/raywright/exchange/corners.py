@@ -1,0 +1,63 @@
+"""From values of patches to values of their corners, so that what is shown is smooth."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+
+# Faces that meet at a sharper edge than this, in degrees, each keep their own light: a corner of a
+# room is none of a vault.
+_CREASE = 30.0
+
+
+def at_corners(
+    values: Floats, corners: Floats, areas: Floats, shapes: NDArray[np.int32]
+) -> NDArray[np.float64]:
+    """Return what patches have at each of their corners, (N, 3, 3).
+
+    At a corner it is the mean, by area, of the patches of the same shape that meet there and do not stand at
+    an edge to the patch itself.
+
+    Parameters
+    ----------
+    values : (N, 3)
+        Of the patches.
+    corners : (N, 3, 3)
+        Where they lie; NaN for what is no triangle, which has one value everywhere.
+    areas, shapes : (N,)
+        How large they are, and of which shape.
+    """
+    result = np.repeat(values[:, None, :], 3, axis=1)
+    flat = np.flatnonzero(np.isfinite(corners).all(axis=(1, 2)))
+    if not flat.size:
+        return result
+    places = corners[flat].reshape(-1, 3)
+    # Corners of neighbours are the same point but for roundings of what is computed from weights.
+    grid = max(float(np.ptp(places, axis=0).max()), float(np.abs(places).max())) * 2.0**-40
+    keys = np.column_stack([np.repeat(shapes[flat], 3), np.round(places / grid)])
+    _, group = np.unique(keys, axis=0, return_inverse=True)
+    group = group.reshape(-1)
+    a, b, c = (corners[flat, i] for i in range(3))
+    normals = np.cross(b - a, c - a)
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    mine, other = _pairs(group)
+    patch, neighbour = mine // 3, other // 3
+    near = np.einsum("ij,ij->i", normals[patch], normals[neighbour]) > np.cos(np.radians(_CREASE))
+    mine, neighbour = mine[near], neighbour[near]
+    weights = areas[flat][neighbour]
+    whole = np.bincount(mine, weights, len(group))
+    for channel in range(3):
+        sums = np.bincount(mine, weights * values[flat, channel][neighbour], len(group))
+        result[flat, :, channel] = (sums / whole).reshape(-1, 3)
+    return result
+
+
+def _pairs(group: NDArray[np.intp]) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Return all pairs of members of the same group, each with itself too."""
+    order = np.argsort(group, kind="stable")
+    sizes = np.bincount(group)
+    starts = np.cumsum(sizes) - sizes
+    size, start = sizes[group[order]], starts[group[order]]
+    first = np.repeat(order, size)
+    within = np.arange(len(first)) - np.repeat(np.cumsum(size) - size, size)
+    return first, order[np.repeat(start, size) + within]

@@ -1,0 +1,85 @@
+"""What exchanges light: the faces of a scene, cut into patches."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..arrays import positive
+from ..materials import Diffuse, Material, TwoSided
+from ..scene.instance import Instance
+from ..scene.scene import Scene
+from ..shapes.mesh import Mesh
+
+PATCH = np.dtype([("shape", np.int32), ("face", np.int32), ("cell", np.int32), ("side", np.int8)])
+# A face of so many strips has as many patches as fit into an array's int32 numbers.
+_MOST = 2**15
+
+
+def check_exchanging(scene: object, diffuse: bool = True) -> Scene:
+    """Return the scene, if its surfaces can exchange light.
+
+    Raises
+    ------
+    TypeError
+        If it is no scene, or holds copies of prototypes.
+    ValueError
+        If it is empty, or something in it scatters otherwise than diffusely, where that counts.
+    """
+    if not isinstance(scene, Scene):
+        raise TypeError(f"scene must be a raywright.Scene, got {type(scene).__name__}")
+    if not scene.shapes:
+        raise ValueError("scene has no shapes: nothing exchanges light")
+    for number, shape in enumerate(scene.shapes):
+        if isinstance(shape, Instance):
+            raise TypeError(f"shape {number} is an Instance, whose faces share one place: use its meshes")
+        if diffuse and not _is_diffuse(shape.material):
+            kind = type(shape.material).__name__
+            raise ValueError(
+                f"shape {number} is of {kind}: only Diffuse, and TwoSided of it, have one radiosity for "
+                "all directions"
+            )
+    return scene
+
+
+def _is_diffuse(material: Material) -> bool:
+    if isinstance(material, TwoSided):
+        return _is_diffuse(material.front) and _is_diffuse(material.back)
+    return isinstance(material, Diffuse)
+
+
+def cut(scene: Scene, patch_size: float | None) -> NDArray[np.uint32]:
+    """Return into how many strips each primitive is cut, (F,): patches are no longer than a size."""
+    size = None if patch_size is None else positive("patch_size", patch_size)
+    parts = []
+    for shape in scene.shapes:
+        if size is None or not isinstance(shape, Mesh):
+            parts.append(np.ones(len(shape.faces) if isinstance(shape, Mesh) else 1, np.uint32))
+            continue
+        corners = shape.vertices[shape.faces].astype(np.float64)
+        sides = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1, initial=0.0)
+        # A side that is a whole number of sizes long is cut into as many, whatever rounding says.
+        strips = np.ceil(sides / size * (1.0 - 1e-9))
+        if strips.size and not strips.max() < _MOST:
+            raise ValueError(
+                f"patch_size {size:g} cuts a side into more than {_MOST} parts: give a larger one"
+            )
+        parts.append(np.maximum(strips, 1.0).astype(np.uint32))
+    return np.concatenate(parts)
+
+
+def named(scene: Scene, cuts: NDArray[np.uint32], both: bool) -> NDArray[Any]:
+    """Return shape, face, cell and side of each row of a solution."""
+    faces = [len(shape.faces) if isinstance(shape, Mesh) else 1 for shape in scene.shapes]
+    counts = cuts.astype(np.int64) ** 2
+    shape = np.repeat(np.arange(len(faces)), faces)
+    face = np.arange(len(cuts)) - np.repeat(np.cumsum(faces) - faces, faces)
+    rows = np.empty(int(counts.sum()), PATCH)
+    rows["shape"], rows["face"] = np.repeat(shape, counts), np.repeat(face, counts)
+    rows["cell"] = np.arange(len(rows)) - np.repeat(np.cumsum(counts) - counts, counts)
+    rows["side"] = 1
+    if not both:
+        return rows
+    backs = rows.copy()
+    backs["side"] = -1
+    return np.concatenate([rows, backs])

@@ -1,0 +1,149 @@
+"""What there is to solve, and how replicates become a solution."""
+
+import time
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .. import _core
+from ..scene.scene import Scene
+from .patches import named
+from .solution import Floats, Method, Per, RadiositySolution, RadiosityStep
+
+# Independent solutions, whose spread is the error: with 7 degrees of freedom it is known to a quarter of
+# itself.
+REPLICATES = 8
+EMITTED, UNSHOT, ESCAPED, BEHIND = range(4)
+
+
+def lamps_of(scene: Scene) -> Scene | None:
+    """Return a scene of the lights that are no surfaces, and nothing else; None if there are none."""
+    if not scene.lights and scene.environment is None:
+        return None
+    return Scene([], scene.lights, scene.environment)
+
+
+@dataclass
+class Problem:
+    """Patches that exchange light, and the core that shoots it."""
+
+    scene: Scene
+    core: _core.RadiosityShots
+    cuts: NDArray[np.uint32]
+    both: bool
+    has_lamps: bool
+    per: Per
+    seed: int
+    threads: int | None
+    emission: Floats
+    reflectance: Floats
+    areas: Floats
+    began: float = field(default_factory=time.monotonic)
+    history: list[RadiosityStep] = field(default_factory=list)
+
+    @classmethod
+    def of(
+        cls,
+        scene: Scene,
+        cuts: NDArray[np.uint32],
+        both: bool,
+        per: Per,
+        seed: int,
+        threads: int | None,
+        lamps: Scene | None,
+        looks: tuple[Floats, Floats] | None = None,
+    ) -> "Problem":
+        """Return that of a scene lit by the lights of another, which has no shapes.
+
+        `looks` are emission and reflectance in place of the scene's own.
+        """
+        light = None if lamps is None else lamps._compiled()
+        core = _core.RadiosityShots(scene._compiled(), light, cuts, both, looks, threads)
+        areas = np.tile(core.areas, 2 if both else 1)
+        parts = core.emission, core.reflectance, areas
+        return cls(scene, core, cuts, both, lamps is not None, per, seed, threads, *parts)
+
+    def check(self) -> None:
+        """Refuse what has no solution that could be bounded.
+
+        Raises
+        ------
+        ValueError
+            If nothing shines, or a patch reflects all light of a channel.
+        """
+        if not (self.has_lamps or self.emission.any()):
+            raise ValueError(
+                "nothing shines: no shape that takes part has an emission, and there are no lights"
+            )
+        most = self.reflectance.max(axis=1)
+        if most.max() >= 1.0:
+            row = named(self.scene, self.cuts, self.both)[int(most.argmax())]
+            raise ValueError(
+                f"shape {row['shape']} reflects all light of a channel, so that what is unshot has no bound: "
+                "give it a reflectance below 1"
+            )
+
+    def begin(self, number: int, light_rays: int) -> None:
+        """Begin all replicates anew, by other rays for each number."""
+        seed = (self.seed + number * 0x9E3779B97F4A7C15) % 2**64
+        self.core.begin(seed, REPLICATES, max(light_rays, 1), self.threads)
+
+    def note(self, rays: int) -> float:
+        """Return the bound on what is unshot, as a share of all, and keep it with the history."""
+        arrived, books = self.core.arrived.mean(axis=0), self.core.books.mean(axis=0)
+        bound = self.bound(arrived, books[UNSHOT])
+        self.history.append(RadiosityStep(time.monotonic() - self.began, rays, bound))
+        return bound
+
+    def note_end(self, rays: int) -> None:
+        """Keep with the history that nothing is left."""
+        self.history.append(RadiosityStep(time.monotonic() - self.began, rays, 0.0))
+
+    def bound(self, arrived: Floats, unshot: NDArray[Any]) -> float:
+        """Return ‖unshot‖ / (1 - reflectance) over ‖radiosity‖, powers of the channel where it is most."""
+        whole = (self.emission * self.areas[:, None] + self.reflectance * arrived).sum(axis=0)
+        short = unshot / (1.0 - self.reflectance.max(axis=0))
+        return float(np.max(short[whole > 0] / whole[whole > 0], initial=0.0))
+
+    def solution(self, method: Method, arrived: Floats, books: Floats) -> RadiositySolution:
+        """Return the mean of replicates of what has arrived, (R, N, 3) W, with its standard error.
+
+        `books` are what set out, is unshot, has left and has come to black backs, (R, 4, 3) W.
+        """
+        irradiance = arrived.mean(axis=0) / self.areas[:, None]
+        spread = arrived.std(axis=0, ddof=1) / np.sqrt(len(arrived)) / self.areas[:, None]
+        return self.solved(method, irradiance, spread, books.mean(axis=0))
+
+    def solved(
+        self, method: Method, irradiance: Floats, irradiance_error: Floats, books: Floats
+    ) -> RadiositySolution:
+        """Return the solution of given irradiances and their errors."""
+        absorbed = ((1.0 - self.reflectance) * irradiance * self.areas[:, None]).sum(axis=0)
+        escaped = books[ESCAPED] + books[BEHIND]
+        corners = self.core.corners
+        return RadiositySolution(
+            radiosity=self.emission + self.reflectance * irradiance,
+            irradiance=irradiance,
+            standard_error=self.reflectance * irradiance_error,
+            irradiance_error=irradiance_error,
+            emission=self.emission,
+            reflectance=self.reflectance,
+            areas=self.areas,
+            patches=named(self.scene, self.cuts, self.both),
+            corners=np.concatenate([corners, corners]) if self.both else corners,
+            cuts=self.cuts,
+            per=self.per,
+            method=method,
+            emitted=_triple(books[EMITTED]),
+            absorbed=_triple(absorbed),
+            escaped=_triple(escaped),
+            unshot=_triple(books[UNSHOT]),
+            history=tuple(self.history),
+        )
+
+
+def _triple(values: Floats) -> tuple[float, float, float]:
+    red, green, blue = values.tolist()
+    return red, green, blue

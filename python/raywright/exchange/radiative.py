@@ -1,0 +1,270 @@
+"""Radiative exchange of grey surfaces: how much heat each gains or loses."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields
+from typing import Any, Literal, TypeAlias, get_args
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..arrays import choice, integer, number, real_array
+from ..lights import ConstantEnvironment
+from ..scene.progress import BuildProgress, check_progress, watcher
+from ..scene.scene import Scene
+from ..shapes.mesh import Mesh
+from .patches import check_exchanging
+from .problem import Problem, lamps_of
+from .shooting import to_the_end
+from .solution import Floats, RadiositySolution
+
+PerFace: TypeAlias = ArrayLike | Sequence[ArrayLike] | Mapping[int, ArrayLike]
+ExchangeMethod: TypeAlias = Literal["matrix", "stochastic"]
+
+# W·m⁻²·K⁻⁴: exact in the SI since 2019, by 2 π⁵ k⁴ / (15 h³ c²).
+STEFAN_BOLTZMANN = 5.670374419184429e-8
+# Up to so many faces the matrix is the default.
+_SMALL = 2048
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class RadiativeExchange:
+    """The heat that surfaces exchange by radiation; all arrays are read-only. Made by `radiative_exchange`.
+
+    There is a row a face of the scene, or a row a side: all fronts, and after them all backs.
+
+    Attributes
+    ----------
+    flux : (N,) float64
+        The net flux that a surface loses, W/m²: what leaves it less what arrives. Below 0 it gains.
+    power : (N,) float64
+        The same of all its area, W.
+    standard_error : (N,) float64
+        That of `flux`; 0 where nothing is drawn.
+    radiosity, irradiance : (N,) float64
+        What leaves and what arrives by heat, W/m²; light of the scene is in `absorbed_light`.
+    absorbed_light : (N,) float64
+        What is absorbed of the scene's lights, environment and emission, W/m²; `flux` is less by it.
+    areas : (N,) float64
+        In m².
+    patches : (N,) structured
+        Which "shape", "face" and "side" each row is of.
+    temperature, emissivity : (N,) float64
+        As given.
+    escaped : float
+        The power that leaves the scene by heat, W, or comes to black backs.
+    """
+
+    flux: Floats
+    power: Floats
+    standard_error: Floats
+    radiosity: Floats
+    irradiance: Floats
+    absorbed_light: Floats
+    areas: Floats
+    patches: NDArray[Any]
+    temperature: Floats
+    emissivity: Floats
+    escaped: float
+
+    def __post_init__(self) -> None:
+        for field in fields(self):
+            value = getattr(self, field.name)
+            if isinstance(value, np.ndarray):
+                value.setflags(write=False)
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        vars(self).update(state)
+        self.__post_init__()
+
+    def of(self, shape: int) -> float:
+        """Return the power that all faces of a shape lose together, W.
+
+        Raises
+        ------
+        ValueError
+            If there is no such shape.
+        """
+        last = int(self.patches["shape"].max())
+        return float(self.power[self.patches["shape"] == integer("shape", shape, 0, last)].sum())
+
+    def __len__(self) -> int:
+        return len(self.flux)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, RadiativeExchange):
+            return NotImplemented
+        pairs = ((getattr(self, field.name), getattr(other, field.name)) for field in fields(self))
+        return all(np.array_equal(a, b) for a, b in pairs)
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __repr__(self) -> str:
+        return f"RadiativeExchange({len(self)} surfaces, {self.power.sum():.4g} W lost in all)"
+
+
+def radiative_exchange(
+    scene: Scene,
+    temperature: PerFace,
+    emissivity: PerFace = 1.0,
+    sky_temperature: float | None = None,
+    absorptance: PerFace | None = None,
+    method: ExchangeMethod | None = None,
+    error: float | None = None,
+    rays: int | None = None,
+    sides: Literal["front", "both"] = "front",
+    seed: int = 0,
+    threads: int | None = None,
+    progress: BuildProgress = True,
+) -> RadiativeExchange:
+    """Return the net radiative flux of each face, of grey and diffuse surfaces.
+
+    Each emits ε times the Stefan-Boltzmann constant times T⁴, and of what arrives it absorbs the share ε and
+    reflects the rest: the net radiation method (Siegel and Howell, "Thermal Radiation Heat Transfer").
+    Materials do not count.
+
+    Parameters
+    ----------
+    scene : Scene
+        The surfaces; a shape that is no mesh is one of them.
+    temperature : float, list, dict or array
+        In kelvin, at least 0: one for all; a list of one a shape, or a dict by their numbers, where each is a
+        number or an array of one a face; or an array of one a face, shape after shape.
+    emissivity : the same
+        Above 0, and at most 1.
+    sky_temperature : float, optional
+        Of black surroundings, in kelvin, that are seen wherever a surface sees nothing else; 0 K by default.
+    absorptance : the same as emissivity, optional
+        The share that is absorbed of the light that the scene itself has: of its lights, its environment, as
+        the sun and the sky, and its emission. By default the emissivity. The mean of red, green and blue is
+        taken for all of the light, in W: ``DirectionalLight(down, 800.0)`` is a sun of 800 W/m².
+    method : {"matrix", "stochastic"}, optional
+        By `view_factors`, or by rays as `radiosity` has it. By default the first up to 2048 faces.
+    error, rays : optional
+        As of `radiosity`.
+    sides : {"front", "both"}
+        Whether backs take part, as those of fins do, or are black and cold. Both are for "stochastic".
+    seed, threads, progress
+        As of `radiosity`.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of its range, there are too few or too many of them, or a face has no area.
+    TypeError
+        If something is of the wrong kind.
+    """
+    check_exchanging(scene, diffuse=False)
+    choice("sides", sides, ("front", "both"))
+    faces = [len(shape.faces) if isinstance(shape, Mesh) else 1 for shape in scene.shapes]
+    both = sides == "both"
+    if method is None:
+        method = "matrix" if sum(faces) <= _SMALL and not both else "stochastic"
+    choice("method", method, get_args(ExchangeMethod))
+    if method == "matrix" and both:
+        raise ValueError("sides must be 'front' for method='matrix', whose view factors are of fronts")
+    kelvin = _per_face("temperature", temperature, faces)
+    _check("temperature", kelvin, kelvin >= 0, "at least 0")
+    grey = _per_face("emissivity", emissivity, faces)
+    _check("emissivity", grey, (grey > 0) & (grey <= 1), "above 0 and at most 1")
+    light = grey if absorptance is None else _per_face("absorptance", absorptance, faces)
+    _check("absorptance", light, (light > 0) & (light <= 1), "above 0 and at most 1")
+    sky = None
+    if sky_temperature is not None:
+        above = number("sky_temperature", sky_temperature)
+        if above < 0:
+            raise ValueError(f"sky_temperature must be at least 0, got {sky_temperature}")
+        sky = Scene([], environment=ConstantEnvironment(STEFAN_BOLTZMANN * above**4 / np.pi))
+    wanted = None if error is None else number("error", error)
+    if wanted is not None and wanted <= 0:
+        raise ValueError(f"error must be greater than 0, got {error}")
+    limit = None if rays is None else integer("rays", rays, 1, 2**50)
+    integer("seed", seed, 0, 2**64 - 1)
+    check_progress(progress)
+    kelvin, grey, light = (np.tile(part, 2 if both else 1) for part in (kelvin, grey, light))
+    cuts = np.ones(sum(faces), np.uint32)
+    sent = grey * STEFAN_BOLTZMANN * kelvin**4
+
+    def solve(lamps: Scene | None, emission: Floats, absorbing: Floats) -> RadiositySolution:
+        looks = tuple(
+            np.ascontiguousarray(np.repeat(part[:, None], 3, axis=1)) for part in (emission, 1.0 - absorbing)
+        )
+        problem = Problem.of(scene, cuts, both, "face", seed, threads, lamps, looks)
+        if method == "matrix":
+            from .matrix import solve as by_matrix
+
+            return by_matrix(problem, wanted, limit)
+        with watcher(progress, "exchange") as report:
+            return to_the_end(problem, "stochastic", wanted, limit, report)
+
+    heat = solve(sky, sent, grey)
+    arrives, off = heat.irradiance[:, 0], heat.irradiance_error[:, 0]
+    absorbed, light_off = _light(scene, cuts, both, light, solve)
+    leaves = heat.radiosity[:, 0]
+    flux = sent - grey * arrives - absorbed
+    return RadiativeExchange(
+        flux=flux,
+        power=flux * heat.areas,
+        standard_error=np.hypot(grey * off, light_off),
+        radiosity=leaves.copy(),
+        irradiance=arrives.copy(),
+        absorbed_light=absorbed,
+        areas=heat.areas,
+        patches=heat.patches,
+        temperature=kelvin,
+        emissivity=grey,
+        escaped=heat.escaped[0],
+    )
+
+
+def _light(
+    scene: Scene, cuts: NDArray[np.uint32], both: bool, absorbing: Floats, solve: Any
+) -> tuple[Floats, Floats]:
+    """Return what is absorbed of the scene's own light, W/m², and its error."""
+    shines = any(shape.emission is not None for shape in scene.shapes)
+    lamps = lamps_of(scene)
+    if lamps is None and not shines:
+        return np.zeros(len(absorbing)), np.zeros(len(absorbing))
+    emission = np.zeros(len(absorbing))
+    if shines:
+        own = Problem.of(scene, cuts, both, "face", 0, None, None)
+        emission = own.emission.mean(axis=1)
+    found = solve(lamps, emission, absorbing)
+    return absorbing * found.irradiance.mean(axis=1), absorbing * found.irradiance_error.mean(axis=1)
+
+
+def _per_face(name: str, given: PerFace, faces: list[int]) -> Floats:
+    """Return one number a face of what may be told in several ways."""
+    if isinstance(given, Mapping):
+        wrong = [key for key in given if key not in range(len(faces))]
+        missing = [shape for shape in range(len(faces)) if shape not in given]
+        if wrong or missing:
+            raise ValueError(
+                f"{name} must have an entry for each of {len(faces)} shapes by number, "
+                f"{'has none for ' + str(missing[0]) if missing else 'got one for ' + repr(wrong[0])}"
+            )
+        given = [given[shape] for shape in range(len(faces))]
+    if isinstance(given, list | tuple):
+        if len(given) != len(faces):
+            raise ValueError(f"{name} must have one entry a shape, {len(faces)}, got {len(given)}")
+        parts = [
+            _numbers(f"{name}[{i}]", one, count)
+            for i, (one, count) in enumerate(zip(given, faces, strict=True))
+        ]
+        return np.concatenate(parts)
+    return _numbers(name, given, sum(faces))
+
+
+def _numbers(name: str, given: Any, count: int) -> Floats:
+    array = real_array(name, given).astype(np.float64)
+    if array.shape not in ((), (count,)):
+        raise ValueError(
+            f"{name} must be one number, or one for each of {count} faces, got shape {array.shape}"
+        )
+    if not np.isfinite(array).all():
+        raise ValueError(f"{name} must be finite")
+    return np.broadcast_to(array, count).copy()
+
+
+def _check(name: str, values: Floats, fine: NDArray[np.bool_], allowed: str) -> None:
+    if not fine.all():
+        raise ValueError(f"{name} must be {allowed}, got {values[~fine][0]:g}")

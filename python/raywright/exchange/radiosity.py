@@ -1,0 +1,157 @@
+"""Radiosity of diffuse scenes."""
+
+from collections.abc import Callable, Iterator
+from typing import Any, Literal, get_args, overload
+
+from ..arrays import choice, integer, number
+from ..scene.progress import BuildProgress, check_progress, watcher
+from ..scene.scene import Scene
+from .patches import check_exchanging, cut
+from .problem import Problem, lamps_of
+from .shooting import states as shooting_states
+from .shooting import to_the_end
+from .solution import Method, Per, RadiositySolution
+
+Sides = Literal["front", "both"]
+
+
+@overload
+def radiosity(
+    scene: Scene,
+    per: Per = ...,
+    method: Method = ...,
+    error: float | None = ...,
+    rays: int | None = ...,
+    patch_size: float | None = ...,
+    sides: Sides | None = ...,
+    seed: int = ...,
+    threads: int | None = ...,
+    progress: BuildProgress = ...,
+    states: Literal[False] = ...,
+) -> RadiositySolution: ...
+
+
+@overload
+def radiosity(
+    scene: Scene,
+    per: Per = ...,
+    method: Method = ...,
+    error: float | None = ...,
+    rays: int | None = ...,
+    patch_size: float | None = ...,
+    sides: Sides | None = ...,
+    seed: int = ...,
+    threads: int | None = ...,
+    progress: BuildProgress = ...,
+    *,
+    states: Literal[True],
+) -> Iterator[RadiositySolution]: ...
+
+
+def radiosity(
+    scene: Scene,
+    per: Per = "face",
+    method: Method = "stochastic",
+    error: float | None = None,
+    rays: int | None = None,
+    patch_size: float | None = None,
+    sides: Sides | None = None,
+    seed: int = 0,
+    threads: int | None = None,
+    progress: BuildProgress = True,
+    states: bool = False,
+) -> RadiositySolution | Iterator[RadiositySolution]:
+    """Return the light that the diffuse surfaces of a scene send each other.
+
+    Faces, or what they are cut into, have one value each. `Radiosity` makes pictures of the solution.
+
+    Parameters
+    ----------
+    scene : Scene
+        Of `Diffuse` surfaces, or `TwoSided` of them. Surfaces that shine and all other lights and
+        environments count. A shape that is no mesh is one patch; shading normals do not count.
+    per : {"face", "vertex"}
+        Whether pictures have one value a patch, or are linear between corners, where patches of the same
+        shape meet without an edge.
+    method : {"stochastic", "progressive", "matrix"}
+        "stochastic" shoots all unshot light at once, along rays in proportion to its power, without a matrix
+        (Neumann 1995; Bekaert 1999). "progressive" shoots from one patch after the other, always that which
+        has most (Cohen, Chen, Wallace and Greenberg 1988). "matrix" solves with `view_factors`, for some
+        thousand patches at most.
+    error : float, optional
+        What is wanted, as a share: of "stochastic", `RadiositySolution.error`, with the bound on what is
+        unshot below a tenth of it; of "progressive", that bound; of "matrix", the error of view factors that
+        take rays. By default 0.01, or for "stochastic" with `rays` what these give, and for "matrix" that
+        of `view_factors`.
+    rays : int, optional
+        How many rays the first light takes, all replicates together, and what is reflected in proportion. By
+        default as many as `error` needs, for "progressive" 64 a patch and at least 65536 for each replicate.
+        Of "matrix", those for lights that are no surfaces.
+    patch_size : float, optional
+        The longest side of a patch; each triangle is cut into n² that are similar to it. By default faces are
+        not cut.
+    sides : {"front", "both"}, optional
+        Which sides of faces take part: those that normals point to, with black backs, or both, as `Path` has
+        them. By default both, and for "matrix", which knows fronts only, these.
+    seed : int
+        Which random numbers; the same seed gives the same bits.
+    threads : int, optional
+        How many threads; one a core by default.
+    progress : bool or callable
+        As for `Scene.build`: the share of the way to where it stops.
+    states : bool
+        Whether to give a generator of solutions on their way instead, of "progressive": one a shot, the last
+        of them the end.
+
+    Raises
+    ------
+    ValueError
+        If something is out of its range, a surface is not diffuse, reflects all of a channel or has no area,
+        or nothing shines.
+    TypeError
+        If something is of the wrong kind.
+
+    Notes
+    -----
+    Eight replicates, each of rays of its own, give the standard error. Within each, what is emitted is absorbed,
+    has left or is unshot, to rounding. Iterations end by ‖unshot‖ / (1 - the greatest reflectance).
+    """
+    choice("per", per, get_args(Per))
+    choice("method", method, get_args(Method))
+    if sides is not None:
+        choice("sides", sides, get_args(Sides))
+    if method == "matrix" and sides == "both":
+        raise ValueError("sides must be 'front' for method='matrix', whose view factors are of fronts")
+    wanted = None if error is None else number("error", error)
+    if wanted is not None and wanted <= 0:
+        raise ValueError(f"error must be greater than 0, got {error}")
+    limit = None if rays is None else integer("rays", rays, 1, 2**50)
+    integer("seed", seed, 0, 2**64 - 1)
+    if threads is not None:
+        integer("threads", threads, 1)
+    check_progress(progress)
+    if not isinstance(states, bool):
+        raise TypeError(f"states must be True or False, got {states!r}")
+    if states and method != "progressive":
+        raise ValueError(f"states are those of method='progressive', got {method!r}")
+    check_exchanging(scene)
+    both = method != "matrix" and sides != "front"
+    problem = Problem.of(scene, cut(scene, patch_size), both, per, seed, threads, lamps_of(scene))
+    problem.check()
+    if states:
+        return shooting_states(problem, wanted or 0.01, limit)
+    solve = _by_matrix if method == "matrix" else to_the_end
+    with watcher(progress, "radiosity") as report:
+        return solve(problem, method, wanted, limit, report)
+
+
+def _by_matrix(
+    problem: Problem,
+    method: Method,
+    error: float | None,
+    rays: int | None,
+    report: Callable[[float], Any] | None,
+) -> RadiositySolution:
+    from .matrix import solve
+
+    return solve(problem, error, rays)

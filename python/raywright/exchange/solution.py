@@ -1,0 +1,241 @@
+"""What radiosity finds."""
+
+import os
+from dataclasses import dataclass, fields
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..arrays import Triple, choice, number
+
+if TYPE_CHECKING:
+    import trimesh
+
+Floats = NDArray[np.float64]
+Per = Literal["face", "vertex"]
+Method = Literal["stochastic", "progressive", "matrix"]
+
+
+class RadiosityStep(NamedTuple):
+    """How far a solution was at some time.
+
+    Attributes
+    ----------
+    seconds : float
+        Since it began.
+    rays : int
+        Rays so far.
+    bound : float
+        The most that all radiosities together can be short by, for power that is not shot yet, as a share of
+        their sum: ‖unshot‖ / (1 - reflectance) over ‖radiosity‖.
+    """
+
+    seconds: float
+    rays: int
+    bound: float
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class RadiositySolution:
+    """The light that diffuse patches send each other; all arrays are read-only. Made by `radiosity`.
+
+    There is a row a side of a patch: all fronts, to which the normals point, and after them all backs, where
+    these take part.
+
+    Attributes
+    ----------
+    radiosity : (N, 3) float64
+        The flux that leaves, by emission and reflection, W/m²: π times the radiance.
+    irradiance : (N, 3) float64
+        The flux that arrives, W/m².
+    standard_error : (N, 3) float64
+        That of `radiosity`, from independent replicates; 0 where nothing is drawn. What patches of one value
+        each cannot show, as an edge of a shadow within one, is no part of it.
+    irradiance_error : (N, 3) float64
+        The standard error of `irradiance`.
+    emission, reflectance : (N, 3) float64
+        What each emits, W/m², and which share of what arrives it reflects: the means of four points.
+    areas : (N,) float64
+        In m².
+    patches : (N,) structured
+        Of which "shape" and "face" each is, which "cell" of that, and which "side": 1 for the front, -1 for
+        the back.
+    corners : (N, 3, 3) float64
+        Where the corners are, in the order of the face's; NaN for what is no triangle.
+    cuts : (F,) uint32
+        Into how many strips each face is cut.
+    per : {"face", "vertex"}
+        Whether look-ups have one value a patch, or are linear between the corners.
+    method : {"stochastic", "progressive", "matrix"}
+        How it was found.
+    emitted, absorbed, escaped, unshot : tuple of 3 floats
+        The books, W: what lights and surfaces send to patches, what these absorb, what leaves the scene or
+        comes to black backs, and what was not shot in the end. The first is the sum of the others.
+    history : tuple of RadiosityStep
+        How far it was, from time to time.
+    """
+
+    radiosity: Floats
+    irradiance: Floats
+    standard_error: Floats
+    irradiance_error: Floats
+    emission: Floats
+    reflectance: Floats
+    areas: Floats
+    patches: NDArray[Any]
+    corners: Floats
+    cuts: NDArray[np.uint32]
+    per: Per
+    method: Method
+    emitted: Triple
+    absorbed: Triple
+    escaped: Triple
+    unshot: Triple
+    history: tuple[RadiosityStep, ...]
+
+    def __post_init__(self) -> None:
+        for field in fields(self):
+            value = getattr(self, field.name)
+            if isinstance(value, np.ndarray):
+                value.setflags(write=False)
+
+    @property
+    def error(self) -> float:
+        """The root mean square, by area, of `irradiance_error` over that of `irradiance`."""
+        return relative_error(self.irradiance_error, self.irradiance, self.areas)
+
+    @property
+    def bound(self) -> float:
+        """The last of `history`'s bounds."""
+        return self.history[-1].bound if self.history else 0.0
+
+    @cached_property
+    def corner_irradiance(self) -> Floats:
+        """The irradiance at each patch's corners, (N, 3, 3): the patch's own, or that of `per="vertex"`."""
+        if self.per == "face":
+            result = np.repeat(self.irradiance[:, None, :], 3, axis=1)
+        else:
+            from .corners import at_corners
+
+            sides = [self.patches["side"] == side for side in (1, -1)]
+            result = np.empty((len(self.areas), 3, 3))
+            for rows in sides:
+                parts = (
+                    self.irradiance[rows],
+                    self.corners[rows],
+                    self.areas[rows],
+                    self.patches["shape"][rows],
+                )
+                result[rows] = at_corners(*parts)
+        result.setflags(write=False)
+        return result
+
+    @cached_property
+    def corner_radiosity(self) -> Floats:
+        """The radiosity at each patch's corners, (N, 3, 3), as `corner_irradiance`."""
+        result = self.emission[:, None, :] + self.reflectance[:, None, :] * self.corner_irradiance
+        result.setflags(write=False)
+        return result
+
+    def to_mesh(
+        self, exposure: float | None = None, side: Literal["front", "back"] = "front"
+    ) -> "trimesh.Trimesh":
+        """Return the patches with their light as vertex colours.
+
+        Each patch has corners of its own, so that what meets at an edge keeps its colours. What is no mesh is
+        left out.
+
+        Parameters
+        ----------
+        exposure : float, optional
+            What radiance is multiplied by before it is clipped to 0..1 and coded as sRGB; by default the one
+            that brings 99 % of the patches that reflect below 1.
+        side : {"front", "back"}
+            Which side.
+
+        Raises
+        ------
+        ValueError
+            If `exposure` is not above 0, the solution has no such side, or the scene is of no meshes.
+        """
+        import trimesh
+
+        from ..io.pictures import srgb
+
+        choice("side", side, ("front", "back"))
+        rows = self.patches["side"] == (1 if side == "front" else -1)
+        rows &= np.isfinite(self.corners).all(axis=(1, 2))
+        if not rows.any():
+            raise ValueError(f"the solution has no {side} of a mesh to draw")
+        radiance = self.corner_radiosity[rows] / np.pi
+        if exposure is None:
+            reflecting = radiance[~self.emission[rows].any(axis=1)]
+            most = float(np.percentile(reflecting if reflecting.size else radiance, 99))
+            exposure = 1.0 / most if most > 0 else 1.0
+        elif number("exposure", exposure) <= 0:
+            raise ValueError(f"exposure must be greater than 0, got {exposure}")
+        colours = srgb(exposure * radiance.reshape(-1, 3))
+        faces = np.arange(3 * int(rows.sum())).reshape(-1, 3)
+        if side == "back":
+            faces = faces[:, ::-1]
+        return trimesh.Trimesh(self.corners[rows].reshape(-1, 3), faces, vertex_colors=colours, process=False)
+
+    def save(
+        self,
+        path: str | os.PathLike[str],
+        exposure: float | None = None,
+        side: Literal["front", "back"] = "front",
+    ) -> None:
+        """Write `to_mesh` to a file of a format that holds vertex colours: ``.ply``, ``.glb`` or ``.obj``.
+
+        Raises
+        ------
+        ValueError
+            If the name ends otherwise, and as `to_mesh` does.
+        """
+        kind = os.path.splitext(os.fspath(path))[1].lower()
+        if kind not in (".ply", ".glb", ".obj"):
+            raise ValueError(f"path must end in .ply, .glb or .obj, got {os.fspath(path)!r}")
+        self.to_mesh(exposure, side).export(os.fspath(path))
+
+    def __len__(self) -> int:
+        return len(self.areas)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, RadiositySolution):
+            return NotImplemented
+        pairs = ((getattr(self, field.name), getattr(other, field.name)) for field in fields(self))
+        return all(_same(a, b) for a, b in pairs)
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        for value in state.values():
+            if isinstance(value, np.ndarray):
+                value.setflags(write=False)
+        vars(self).update(state)
+
+    def __getstate__(self) -> dict[str, Any]:
+        # What is computed from the rest need not travel.
+        return {field.name: getattr(self, field.name) for field in fields(self)}
+
+    def __repr__(self) -> str:
+        rays = self.history[-1].rays if self.history else 0
+        return (
+            f"RadiositySolution({len(self)} sides of patches, {self.method}, {rays} rays, "
+            f"error {self.error:.2g}, bound {self.bound:.2g})"
+        )
+
+
+def relative_error(standard_error: Floats, values: Floats, areas: Floats) -> float:
+    """Return the root mean square, by area, of errors over that of what they are of."""
+    whole = float((areas[:, None] * values**2).sum())
+    return float(np.sqrt((areas[:, None] * standard_error**2).sum() / whole)) if whole > 0 else 0.0
+
+
+def _same(a: Any, b: Any) -> bool:
+    if not isinstance(a, np.ndarray):
+        return bool(a == b)
+    return np.array_equal(a, b, equal_nan=a.dtype.kind == "f")
