@@ -9,7 +9,8 @@ use super::cameras::AnyCamera;
 use super::query::CompiledScene;
 use super::signals::heard;
 use crate::integrators::{
-    AmbientOcclusion, Channel, Direct, Distributed, Integrator, LightTraced, Path, RayCast, Whitted, aovs as observe,
+    AmbientOcclusion, BeamTraced, Channel, Direct, Distributed, Integrator, LightTraced, Path, RayCast, Whitted,
+    aovs as observe,
 };
 use crate::optics::Rgb;
 use crate::scene::PlanRow;
@@ -68,6 +69,9 @@ impl<'a, 'py> FromPyObject<'a, 'py> for AnyIntegrator {
                 splits: attribute(of, "splits")?,
                 ambient: rgb(of, "ambient")?,
             }),
+            "BeamTraced" => {
+                Box::new(BeamTraced { max_depth: attribute(of, "max_depth")?, ambient: rgb(of, "ambient")? })
+            }
             "AmbientOcclusion" => Box::new(AmbientOcclusion {
                 radius: attribute(of, "radius")?,
                 cosine: attribute(of, "cosine")?,
