@@ -7,7 +7,17 @@ from ._core import AcceleratorInfo, simd
 from .accelerators import BSP, BVH, BruteForce, Grid, KdTree, NestedGrid, Octree
 from .cameras import AnyCamera, Camera, Fisheye, Orthographic, Panorama, Pose, ThinLens
 from .exchange.solution import RadiositySolution, RadiosityStep
-from .integrators import AmbientOcclusion, Direct, Distributed, LightTraced, Path, Radiosity, RayCast, Whitted
+from .integrators import (
+    AmbientOcclusion,
+    BeamTraced,
+    Direct,
+    Distributed,
+    LightTraced,
+    Path,
+    Radiosity,
+    RayCast,
+    Whitted,
+)
 from .integrators.base import Integrator
 from .integrators.rng import Rng
 from .io.pictures import check_writable
@@ -99,6 +109,7 @@ __all__ = [
     "AllHits",
     "AmbientOcclusion",
     "AnyCamera",
+    "BeamTraced",
     "BlackmanHarrisFilter",
     "BlinnPhong",
     "Box",

@@ -2,6 +2,7 @@
 
 mod ambient_occlusion;
 mod aov;
+mod beam_traced;
 mod direct;
 mod distributed;
 mod guiding;
@@ -22,6 +23,7 @@ mod whitted;
 
 pub use ambient_occlusion::AmbientOcclusion;
 pub use aov::{Channel, aovs};
+pub use beam_traced::BeamTraced;
 pub use direct::Direct;
 pub use distributed::Distributed;
 pub use guiding::{Guide, LocalGuide, is_matt};
@@ -77,6 +79,11 @@ pub trait Integrator: Send + Sync {
     /// Why it cannot take a picture of a scene, or none whose pixels have as many samples as their errors ask for, if
     /// that is so: what the one is, and what to do instead.
     fn objection(&self, _scene: &Scene, _adaptive: bool) -> Option<String> {
+        None
+    }
+
+    /// Why it cannot take a picture by a camera, or by a filter of this radius, in pixels, if that is so.
+    fn view_objection(&self, _camera: &dyn Camera, _filter_radius: f64) -> Option<String> {
         None
     }
 

@@ -10,7 +10,8 @@ use super::cameras::AnyCamera;
 use super::query::CompiledScene;
 use super::signals::heard;
 use crate::integrators::{
-    AmbientOcclusion, Channel, Direct, Distributed, Integrator, LightTraced, Path, Radiosity, RayCast, Whitted,
+    AmbientOcclusion, BeamTraced, Channel, Direct, Distributed, Integrator, LightTraced, Path, Radiosity,
+    RayCast, Whitted,
     aovs as observe,
 };
 use crate::optics::Rgb;
@@ -86,6 +87,9 @@ impl<'a, 'py> FromPyObject<'a, 'py> for AnyIntegrator {
                 splits: attribute(of, "splits")?,
                 ambient: rgb(of, "ambient")?,
             }),
+            "BeamTraced" => {
+                Box::new(BeamTraced { max_depth: attribute(of, "max_depth")?, ambient: rgb(of, "ambient")? })
+            }
             "AmbientOcclusion" => Box::new(AmbientOcclusion {
                 radius: attribute(of, "radius")?,
                 cosine: attribute(of, "cosine")?,

@@ -161,7 +161,7 @@ impl Request {
         settings: &Settings,
         progress: &mut dyn Progress,
     ) -> Result<Vec<u8>, RenderError> {
-        run::check(integrator, scene, matches!(self.wanted, Wanted::Planned { .. }))?;
+        run::check(integrator, (scene, camera), settings, matches!(self.wanted, Wanted::Planned { .. }))?;
         let stop = Stop::default();
         let (done, goal) = match self.wanted {
             Wanted::Alone(before, samples) => (before, Goal::Even { before, samples }),

@@ -62,7 +62,7 @@ pub fn go_on(
 ) -> Result<bool, RenderError> {
     let (start, earlier) = (Instant::now(), rendering.seconds);
     let spent = || earlier + start.elapsed().as_secs_f64();
-    check(integrator, scene, rendering.epoch().is_some())?;
+    check(integrator, (scene, camera), settings, rendering.epoch().is_some())?;
     let session = begin(integrator, Job::new(scene, camera), settings.threads, progress)?;
     let exposure = Exposure::new(scene, camera, integrator, &*session, settings);
     let pool = pool(settings.threads).map_err(RenderError::Threads)?;
@@ -91,8 +91,15 @@ pub fn go_on(
 }
 
 /// Whether an integrator can take a picture.
-pub(super) fn check(integrator: &dyn Integrator, scene: &Scene, adaptive: bool) -> Result<(), RenderError> {
-    integrator.objection(scene, adaptive).map_or(Ok(()), |why| Err(RenderError::Unsuited(why)))
+pub(super) fn check(
+    integrator: &dyn Integrator,
+    (scene, camera): (&Scene, &dyn Camera),
+    settings: &Settings,
+    adaptive: bool,
+) -> Result<(), RenderError> {
+    let of_view = || integrator.view_objection(camera, settings.filter.radius());
+    let objection = integrator.objection(scene, adaptive).or_else(of_view);
+    objection.map_or(Ok(()), |why| Err(RenderError::Unsuited(why)))
 }
 
 /// Begins to work on a picture, on as many threads.

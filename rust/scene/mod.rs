@@ -36,8 +36,8 @@ pub use geometry::{
 };
 pub use lights::{
     ConstantEnvironment, DirectionalLight, EmissionNumbers, EmissionPdf, EmissionSample, Emitters, EnvironmentMap,
-    Light, LightBounds, LightContextLanes, LightLanes, LightSample, LightSampleContext, Lights, Picture, PointEmission,
-    PointLight, Profile, Projector, Reach, SpotLight, SunSky,
+    Light, LightBounds, LightContextLanes, LightLanes, LightSample, LightSampleContext, Lights, Picture, Place,
+    PointEmission, PointLight, Profile, Projector, Reach, SpotLight, SunSky,
 };
 pub use materials::{DiffuseMaterial, Material};
 pub use patches::{Cell, Patches};

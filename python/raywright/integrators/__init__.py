@@ -4,6 +4,7 @@ from typing import TypeAlias, get_args
 
 from .ambient_occlusion import AmbientOcclusion
 from .base import Integrator
+from .beam_traced import BeamTraced
 from .direct import Direct
 from .distributed import Distributed
 from .light_traced import LightTraced
@@ -13,12 +14,22 @@ from .ray_cast import RayCast
 from .whitted import Whitted
 
 AnyIntegrator: TypeAlias = (
-    Path | LightTraced | Direct | Radiosity | RayCast | Whitted | Distributed | AmbientOcclusion | Integrator
+    Path
+    | LightTraced
+    | Direct
+    | Radiosity
+    | RayCast
+    | Whitted
+    | Distributed
+    | BeamTraced
+    | AmbientOcclusion
+    | Integrator
 )
 
 __all__ = [
     "AmbientOcclusion",
     "AnyIntegrator",
+    "BeamTraced",
     "Direct",
     "Distributed",
     "LightTraced",

@@ -1,7 +1,7 @@
 //! Light from a single direction.
 
 use super::light::strength;
-use super::{Light, LightSample, LightSampleContext, Reach};
+use super::{Light, LightSample, LightSampleContext, Place, Reach};
 use crate::math::DVec3;
 use crate::optics::Rgb;
 
@@ -37,6 +37,10 @@ impl Light for DirectionalLight {
     #[inline]
     fn sample(&self, _: &LightSampleContext, _: [f64; 2]) -> Option<LightSample> {
         Some(LightSample::of_infinite(self.from, self.irradiance, f64::INFINITY))
+    }
+
+    fn place(&self) -> Option<Place> {
+        Some(Place::Direction(self.from))
     }
 
     fn bytes(&self) -> usize {

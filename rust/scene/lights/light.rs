@@ -28,6 +28,15 @@ pub enum Reach {
     },
 }
 
+/// Where a light is that has no extent.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Place {
+    /// At a point.
+    Point(DVec3),
+    /// Infinitely far away in a direction.
+    Direction(DVec3),
+}
+
 /// A light that is no surface.
 pub trait Light: Debug + Send + Sync {
     /// What is wrong with it, in a few words; `Ok` if nothing is.
@@ -55,6 +64,11 @@ pub trait Light: Debug + Send + Sync {
     /// [`Light::infinite_radiance`] is not black and the receiver's horizon is not above.
     fn infinite_pdf(&self, _receiver: &LightSampleContext, _direction: DVec3) -> f64 {
         0.0
+    }
+
+    /// Where it is if all of its light comes from there; `None` if it has an extent.
+    fn place(&self) -> Option<Place> {
+        None
     }
 
     /// Draws light that sets out, of a light that is a single point; `None` for any other, or if the draw gives none.

@@ -33,7 +33,7 @@ pub use constant::ConstantEnvironment;
 pub use directional::DirectionalLight;
 pub use emission_sample::{EmissionPdf, EmissionSample, PointEmission};
 pub use emitters::{EmissionNumbers, Emitters, not_drawn};
-pub use light::{Light, Reach};
+pub use light::{Light, Place, Reach};
 pub use light_lanes::{LightContextLanes, LightLanes};
 pub use light_sample::LightSample;
 pub use light_sample_context::LightSampleContext;
@@ -166,6 +166,11 @@ impl Lights {
             + self.choice.as_ref().map_or(0, Choice::bytes)
             + self.infinite.bytes()
             + self.few.bytes()
+    }
+
+    /// Those that are no surfaces.
+    pub fn others(&self) -> impl Iterator<Item = &dyn Light> {
+        self.inside.iter().chain(self.infinite.lights()).map(|light| &**light)
     }
 
     /// How a shape shines.

@@ -1,7 +1,7 @@
 //! A point that shines evenly.
 
 use super::light::strength;
-use super::{Light, LightBounds, LightSample, LightSampleContext, PointEmission, Reach};
+use super::{Light, LightBounds, LightSample, LightSampleContext, Place, PointEmission, Reach};
 use crate::math::DVec3;
 use crate::optics::Rgb;
 use crate::sampling::warp::{UNIFORM_SPHERE_PDF, uniform_sphere};
@@ -39,6 +39,10 @@ impl Light for PointLight {
         let pdf = UNIFORM_SPHERE_PDF;
         let (position, direction) = (self.position, uniform_sphere(u));
         Some(PointEmission { position, direction, weight: self.intensity / pdf, pdf })
+    }
+
+    fn place(&self) -> Option<Place> {
+        Some(Place::Point(self.position))
     }
 
     fn bytes(&self) -> usize {

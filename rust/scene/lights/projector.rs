@@ -1,7 +1,7 @@
 //! A picture that is thrown.
 
 use super::light::strength;
-use super::{Light, LightBounds, LightSample, LightSampleContext, Picture, PointEmission, Reach};
+use super::{Light, LightBounds, LightSample, LightSampleContext, Picture, Place, PointEmission, Reach};
 use crate::math::DVec3;
 use crate::optics::Rgb;
 use std::sync::Arc;
@@ -107,6 +107,10 @@ impl Light for Projector {
         // distance 1.
         let pdf = length * length * length / (4.0 * x * y);
         Some(PointEmission { position: self.position, direction, weight: self.towards(direction) / pdf, pdf })
+    }
+
+    fn place(&self) -> Option<Place> {
+        Some(Place::Point(self.position))
     }
 
     fn bytes(&self) -> usize {

@@ -1,7 +1,7 @@
 //! A point that shines into a cone.
 
 use super::light::strength;
-use super::{Light, LightBounds, LightSample, LightSampleContext, PointEmission, Reach};
+use super::{Light, LightBounds, LightSample, LightSampleContext, Place, PointEmission, Reach};
 use crate::math::{DVec3, Frame};
 use crate::optics::Rgb;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -110,6 +110,10 @@ impl Light for SpotLight {
         let pdf = 1.0 / (TAU * most);
         let weight = self.intensity * (self.share(direction) / pdf);
         Some(PointEmission { position: self.position, direction, weight, pdf })
+    }
+
+    fn place(&self) -> Option<Place> {
+        Some(Place::Point(self.position))
     }
 
     fn bytes(&self) -> usize {

@@ -1,0 +1,162 @@
+//! Beam tracing.
+
+mod beam;
+mod shading;
+mod shadow;
+mod tree;
+mod visible;
+
+use super::{CameraSample, Integrator, Job, Session, Worker};
+use crate::math::convex::{HalfPlane, area, centroid, clip};
+use crate::math::{DVec3, Hit, Ray};
+use crate::optics::Rgb;
+use crate::scene::{Camera, Scene, SurfaceInteraction};
+use crate::workers::Cancel;
+use tree::Tree;
+
+/// Beam tracing (Heckbert and Hanrahan, "Beam Tracing Polygonal Objects", 1984): in place of rays, the whole view is
+/// followed as a beam. What is seen in it parts it into polygons; flat mirrors throw these back, as beams from where
+/// the eye is seen in them, and beams from lights part them into lit and shadowed. Each pixel is the mean over its own
+/// square: of every polygon, its area there times its radiance at the middle of that. So edges are exact, and the
+/// picture has no noise.
+///
+/// It is Whitted's picture (what is scattered otherwise than as by a mirror is not followed) of meshes in the light of
+/// lights without extent. Its time grows with the square of the number of faces in view.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BeamTraced {
+    /// The greatest number of surfaces that light comes by, from the light on.
+    pub max_depth: u32,
+    /// Radiance that arrives from everywhere in place of what is not followed. Surfaces reflect their ambient share of
+    /// it ([`Material::ambient`](crate::scene::Material::ambient)).
+    pub ambient: Rgb,
+}
+
+impl Default for BeamTraced {
+    fn default() -> Self {
+        Self { max_depth: 8, ambient: Rgb::ZERO }
+    }
+}
+
+/// Lights that a piece of the film can tell apart.
+const MOST_LIGHTS: usize = u64::BITS as usize;
+
+impl Integrator for BeamTraced {
+    fn begin<'a>(&'a self, job: Job<'a>, cancel: &Cancel) -> Box<dyn Session + 'a> {
+        let tree = job.camera.as_perspective().map(|camera| Tree::new(&job, camera, self.max_depth, cancel));
+        let size = [job.camera.width(), job.camera.height()];
+        let blocks = tree.as_ref().map_or_else(Vec::new, |tree| tree.by_block(size, Film::SIDE));
+        Box::new(Film { job, ambient: self.ambient, tree, blocks })
+    }
+
+    fn objection(&self, scene: &Scene, _: bool) -> Option<String> {
+        let (geometry, lights) = (scene.geometry(), scene.lights());
+        if let Some(shape) = geometry.first_other() {
+            return Some(format!("beams meet meshes alone, and shape {shape} is none: use Whitted"));
+        }
+        let mut shapes = 0..geometry.shapes() as u32;
+        if let Some((shape, why)) = shapes.find_map(|shape| Some((shape, unsuited(scene, shape)?))) {
+            return Some(format!("shape {shape} {why}: use Whitted"));
+        }
+        if lights.others().any(|light| light.place().is_none()) {
+            return Some("beams come from lights without extent alone, and an environment has one: use Whitted".into());
+        }
+        let count = lights.others().count();
+        (count > MOST_LIGHTS).then(|| format!("beams come from {MOST_LIGHTS} lights at most, not {count}: use Whitted"))
+    }
+
+    fn view_objection(&self, camera: &dyn Camera, filter_radius: f64) -> Option<String> {
+        if camera.as_perspective().is_none() {
+            return Some("beams start from a pinhole that does not move: use a Camera, or Whitted".into());
+        }
+        (filter_radius != 0.5).then(|| "a beam's pixels are means over their own squares: use BoxFilter()".into())
+    }
+}
+
+/// What of a shape beams cannot do.
+fn unsuited(scene: &Scene, shape: u32) -> Option<&'static str> {
+    let material = scene.material(shape);
+    if scene.lights().shines(shape) {
+        Some("shines, and beams come from lights without extent alone")
+    } else if !material.is_opaque() {
+        Some("has a mask, which beams do not see")
+    } else if material.interior().is_some() {
+        Some("is of glass, and beams are not refracted")
+    } else {
+        is_curved_mirror(scene, shape).then_some("mirrors with bent normals, and beams need flat ones")
+    }
+}
+
+/// Whether the first face of a shape that has an area is a mirror with a normal other than its own.
+fn is_curved_mirror(scene: &Scene, shape: u32) -> bool {
+    let geometry = scene.geometry();
+    let Some(face) = geometry.primitives_of(shape).find(|&face| geometry.normal(face).is_finite()) else {
+        return false;
+    };
+    let third = [1.0 / 3.0; 2];
+    let (at, normal) = (geometry.position(face, third), geometry.normal(face));
+    let ray = Ray::new(at + normal, -normal);
+    let hit = Hit { t: 1.0, uv: third, primitive: face, inner: 0 };
+    let here = SurfaceInteraction::at(scene, &ray, &hit);
+    let mut mirrors = false;
+    here.bsdf().delta_lobes(here.wo(), |_| mirrors = true);
+    mirrors && !here.is_flat()
+}
+
+/// The film, in pieces.
+struct Film<'a> {
+    job: Job<'a>,
+    ambient: Rgb,
+    /// None for a camera that beams do not start from.
+    tree: Option<Tree>,
+    /// The pieces in each block of pixels.
+    blocks: Vec<Vec<u32>>,
+}
+
+impl Film<'_> {
+    /// Pixels along a side of a block.
+    const SIDE: u32 = 8;
+
+    /// The mean radiance over a pixel.
+    fn pixel(&self, pixel: u32) -> Rgb {
+        let width = self.job.camera.width();
+        let [x, y] = [pixel % width, pixel / width];
+        let block = y / Self::SIDE * width.div_ceil(Self::SIDE) + x / Self::SIDE;
+        let (Some(tree), Some(pieces)) = (&self.tree, self.blocks.get(block as usize)) else { return Rgb::ZERO };
+        let [x, y] = [x, y].map(f64::from);
+        let lines = [[1.0, 0.0, -x], [-1.0, 0.0, x + 1.0], [0.0, 1.0, -y], [0.0, -1.0, y + 1.0]];
+        let square = lines.map(|line| HalfPlane { line: DVec3::from_array(line), slack: 0.0 });
+        let mut light = Rgb::ZERO;
+        for &number in pieces {
+            let piece = &tree.pieces[number as usize];
+            let [low, high] = piece.bounds;
+            if low.x >= x + 1.0 || low.y >= y + 1.0 || high.x <= x || high.y <= y {
+                continue;
+            }
+            let here = clip(&piece.outline, &square);
+            if here.len() > 2 {
+                light += tree.radiance(&self.job, self.ambient, piece, centroid(&here)) * area(&here);
+            }
+        }
+        light
+    }
+}
+
+impl Session for Film<'_> {
+    fn worker(&self) -> Box<dyn Worker + '_> {
+        Box::new(Looking(self))
+    }
+}
+
+/// What looks pixels up.
+struct Looking<'a>(&'a Film<'a>);
+
+impl Worker for Looking<'_> {
+    fn radiance(&mut self, samples: &mut [CameraSample], cancel: &Cancel, radiance: &mut [Rgb]) {
+        for (sample, radiance) in samples.iter().zip(radiance) {
+            if cancel.is_raised() {
+                return;
+            }
+            *radiance = self.0.pixel(sample.sampler.pixel());
+        }
+    }
+}

@@ -1,0 +1,179 @@
+//! Convex polygons of a plane, cut by lines and by each other.
+//!
+//! A cut computes each point where a side crosses the line once, for both parts: so their areas add up to that of the
+//! whole to within rounding, and parts of neighbours meet without a gap.
+
+use super::DVec3;
+use glam::DVec2;
+
+/// The corners of a convex polygon, in order, one way round or the other.
+pub type Convex = Vec<DVec2>;
+
+/// A side of a line: where `line.x · x + line.y · y + line.z` is above 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HalfPlane {
+    /// The three factors.
+    pub line: DVec3,
+    /// Where the sum is no more than this from 0, a corner is on the line.
+    pub slack: f64,
+}
+
+impl HalfPlane {
+    /// The side of the line from `a` to `b` on which `within` is; `None` if all three are on a line.
+    pub fn through(a: DVec2, b: DVec2, within: DVec2, slack: f64) -> Option<Self> {
+        let normal = (b - a).perp();
+        let side = normal.dot(within - a);
+        let length = normal.length();
+        (side.abs() > slack * length).then(|| {
+            let normal = normal * (side.signum() / length);
+            Self { line: normal.extend(-normal.dot(a)), slack }
+        })
+    }
+
+    /// The sum, above 0 within; 0 for what is on the line.
+    #[inline]
+    pub fn value(&self, at: DVec2) -> f64 {
+        let value = self.line.x * at.x + self.line.y * at.y + self.line.z;
+        if value.abs() <= self.slack { 0.0 } else { value }
+    }
+}
+
+/// The half-planes that a convex polygon is what they share of, its sides lying on lines to within `slack`.
+pub fn sides(polygon: &[DVec2], slack: f64) -> Vec<HalfPlane> {
+    let middle = polygon.iter().sum::<DVec2>() / polygon.len() as f64;
+    let side = |i: usize| HalfPlane::through(polygon[i], polygon[(i + 1) % polygon.len()], middle, slack);
+    (0..polygon.len()).filter_map(side).collect()
+}
+
+/// Twice the area between the sides and a corner, by side, and where its triangle's middle is, times 3, from there.
+fn fans(polygon: &[DVec2]) -> impl Iterator<Item = (f64, DVec2)> {
+    polygon.windows(2).skip(1).map(|pair| {
+        let (a, b) = (pair[0] - polygon[0], pair[1] - polygon[0]);
+        (a.perp_dot(b), a + b)
+    })
+}
+
+/// The area of a convex polygon, whichever way round.
+pub fn area(polygon: &[DVec2]) -> f64 {
+    0.5 * fans(polygon).map(|(twice, _)| twice).sum::<f64>().abs()
+}
+
+/// The middle of a convex polygon's area; of one without area, that of its corners.
+pub fn centroid(polygon: &[DVec2]) -> DVec2 {
+    let (area, moment) =
+        fans(polygon).fold((0.0, DVec2::ZERO), |(area, moment), (twice, at)| (area + twice, moment + at * twice));
+    let middle = polygon[0] + moment / (3.0 * area);
+    if middle.is_finite() { middle } else { polygon.iter().sum::<DVec2>() / polygon.len() as f64 }
+}
+
+/// Cuts a convex polygon in two: what is within, and what is not. Either may be empty.
+pub fn cut(polygon: &[DVec2], by: &HalfPlane) -> [Convex; 2] {
+    let mut parts = [Convex::new(), Convex::new()];
+    let mut before = polygon[polygon.len() - 1];
+    let mut value_before = by.value(before);
+    for &corner in polygon {
+        let value = by.value(corner);
+        if value * value_before < 0.0 {
+            let crossing = before + (corner - before) * (value_before / (value_before - value));
+            parts.iter_mut().for_each(|part| part.push(crossing));
+        }
+        if value >= 0.0 {
+            parts[0].push(corner);
+        }
+        if value <= 0.0 {
+            parts[1].push(corner);
+        }
+        (before, value_before) = (corner, value);
+    }
+    parts.map(|part| if part.len() < 3 { Convex::new() } else { part })
+}
+
+/// What of a convex polygon is within all of some half-planes; empty if nothing is.
+pub fn clip(polygon: &[DVec2], region: &[HalfPlane]) -> Convex {
+    let mut left = polygon.to_vec();
+    for side in region {
+        if left.is_empty() {
+            break;
+        }
+        [left, _] = cut(&left, side);
+    }
+    left
+}
+
+/// Takes what some half-planes share out of a convex polygon: adds convex pieces of what is left to `outside`, and gives
+/// what was taken out; empty if that is nothing, and then the polygon is left whole.
+pub fn take_out(polygon: Convex, region: &[HalfPlane], outside: &mut Vec<Convex>) -> Convex {
+    let is_beyond = |side: &HalfPlane| polygon.iter().all(|&corner| side.value(corner) <= 0.0);
+    if region.iter().any(is_beyond) || clip(&polygon, region).is_empty() {
+        outside.push(polygon);
+        return Convex::new();
+    }
+    let mut left = polygon;
+    for side in region {
+        let [within, beyond] = cut(&left, side);
+        if area(&beyond) > 0.0 {
+            outside.push(beyond);
+        }
+        left = within;
+    }
+    left
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    const SLACK: f64 = 1e-12;
+
+    /// Points of a circle about a place, one after the other.
+    fn polygon() -> impl Strategy<Value = Convex> {
+        (-3.0..3.0f64, -3.0..3.0f64, 0.3..4.0f64, prop::collection::vec(0.3..1.5f64, 3..9)).prop_map(
+            |(x, y, r, gaps)| {
+                let all: f64 = gaps.iter().sum();
+                let mut angle = 0.0;
+                let corner = |gap: &f64| {
+                    angle += gap / all * std::f64::consts::TAU;
+                    DVec2::new(x, y) + DVec2::from_angle(angle) * r
+                };
+                gaps.iter().map(corner).collect()
+            },
+        )
+    }
+
+    proptest! {
+        #[test]
+        fn what_is_taken_out_and_what_is_left_are_the_whole(whole in polygon(), other in polygon()) {
+            let mut outside = Vec::new();
+            let inside = take_out(whole.clone(), &sides(&other, SLACK), &mut outside);
+            let left: f64 = outside.iter().map(|piece| area(piece)).sum();
+            prop_assert!((area(&inside) + left - area(&whole)).abs() < 1e-12 * (1.0 + area(&whole)));
+            // The other way round the same is shared.
+            let shared = take_out(other.clone(), &sides(&whole, SLACK), &mut Vec::new());
+            prop_assert!((area(&shared) - area(&inside)).abs() < 1e-10);
+            // The middle of the whole is that of its pieces.
+            let moment: DVec2 = outside.iter().chain([&inside]).filter(|p| !p.is_empty()).map(|p| centroid(p) * area(p)).sum();
+            prop_assert!((moment / area(&whole) - centroid(&whole)).length() < 1e-10);
+        }
+
+        #[test]
+        fn a_square_that_is_clipped_has_the_area_under_its_edge(slope in -1.0..1.0f64, height in 1.0..2.0f64) {
+            // Below y = height + slope (x - 1/2), over a square from 0 to 3: within it, a trapezoid of unit width.
+            let square = [[0.0, 0.0], [1.0, 0.0], [1.0, 3.0], [0.0, 3.0]].map(DVec2::from_array);
+            let below = HalfPlane { line: DVec3::new(slope, -1.0, height - 0.5 * slope), slack: 0.0 };
+            prop_assert!((area(&clip(&square, &[below])) - height).abs() < 1e-14);
+        }
+    }
+
+    #[test]
+    fn neighbours_take_nothing_from_each_other() {
+        let square = |x: f64| [[x, 0.0], [x + 0.1, 0.0], [x + 0.1, 1.0], [x, 1.0]].map(DVec2::from_array).to_vec();
+        let mut outside = Vec::new();
+        assert!(take_out(square(0.2), &sides(&square(0.3), SLACK), &mut outside).is_empty());
+        assert_eq!(outside, [square(0.2)]);
+        // Nothing is left of what is the same.
+        outside.clear();
+        assert_eq!(take_out(square(0.2), &sides(&square(0.2), SLACK), &mut outside), square(0.2));
+        assert!(outside.is_empty());
+    }
+}
