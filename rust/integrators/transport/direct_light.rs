@@ -55,7 +55,7 @@ impl<N: Features> TransportWorker<'_, N> {
         }
         let mut numbers = [(0, 0); LANES];
         for (lane, number) in numbers.iter_mut().enumerate().take(block.count) {
-            if block.goes_on[lane] && !block.bsdf[lane].is_delta() {
+            if block.goes_on[lane] && !block.bsdf[lane].is_delta() && !self.is_light_known(block, lane) {
                 number.1 = if self.is_first(block, lane) { self.settings.light_samples } else { 1 };
             }
         }
@@ -201,7 +201,7 @@ impl<N: Features> TransportWorker<'_, N> {
             pdf = density(guide, pdf, light.direction);
         }
         let splits = self.splits(block, lane);
-        let mut weight = if self.is_followed(pdf) {
+        let mut weight = if self.is_followed(block, lane, pdf) {
             power_heuristic(light.pdf * f64::from(asked), pdf * f64::from(splits))
         } else {
             1.0
