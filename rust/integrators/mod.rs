@@ -11,6 +11,7 @@ mod light_traced;
 mod nesting;
 mod passing;
 mod path;
+mod photon_map;
 mod radiosity;
 mod ray_cast;
 mod roulette;
@@ -30,6 +31,7 @@ pub use guiding::{Guide, LocalGuide, is_matt};
 pub use light_paths::{Photon, Photons, photons};
 pub use light_traced::LightTraced;
 pub use path::Path;
+pub use photon_map::{Kernel, PhotonMap, ProgressivePhotonMap};
 pub use radiosity::Radiosity;
 pub use ray_cast::RayCast;
 pub use transparent::Transparent;
@@ -41,6 +43,7 @@ use crate::optics::Rgb;
 use crate::sampling::Sampler;
 use crate::scene::{Camera, Footprint, Scene};
 use crate::workers::Cancel;
+use std::ops::Range;
 
 /// One sample of one pixel: the ray that the camera sends, and the numbers for what follows.
 #[derive(Clone, Debug)]
@@ -60,13 +63,18 @@ pub struct Job<'a> {
     pub camera: &'a dyn Camera,
     /// That of the camera's rays, for the filtering of textures.
     pub footprint: Footprint,
+    /// Which of all possible pictures.
+    pub seed: u64,
+    /// How many samples of a pixel, from its first on, belong together: only between these is their spread told.
+    pub batch: u32,
 }
 
 impl<'a> Job<'a> {
-    /// A picture of a scene by a camera.
-    pub fn new(scene: &'a Scene, camera: &'a dyn Camera) -> Self {
+    /// A picture of a scene by a camera, of a seed, whose samples come in batches of so many.
+    pub fn new(scene: &'a Scene, camera: &'a dyn Camera, seed: u64, batch: u32) -> Self {
         let spread = camera.spread();
-        Self { scene, camera, footprint: Footprint { width: spread.width, spread: spread.angle } }
+        let footprint = Footprint { width: spread.width, spread: spread.angle };
+        Self { scene, camera, footprint, seed, batch }
     }
 }
 
@@ -93,6 +101,12 @@ pub trait Integrator: Send + Sync {
         1
     }
 
+    /// The same, all of whose estimates gather light from so many times as far (at most 1), at the mean of the squared
+    /// radii that so many samples have; `None` of an integrator that is not biased by how far it gathers light from.
+    fn narrowed(&self, _scale: f64, _samples: u32) -> Option<Box<dyn Integrator>> {
+        None
+    }
+
     /// Whether workers must run on the thread that asked for the picture, as what is written in Python must. They are
     /// then handed batches of tens of thousands of samples, and may raise the cancel themselves to end the render.
     fn runs_on_caller(&self) -> bool {
@@ -108,6 +122,22 @@ pub trait Session: Send + Sync {
     /// Called before each pass, when so many samples of each pixel are done, and again if it has to be begun anew. What
     /// changes from pass to pass must depend on that number alone. Returns soon after `cancel` is raised.
     fn before_pass(&self, _done: u32, _cancel: &Cancel) {}
+
+    /// How many samples of each pixel it can be made ready for at a time; `None` where it need not be.
+    fn at_once(&self) -> Option<u32> {
+        None
+    }
+
+    /// Makes it ready for samples of these numbers, at most [`Session::at_once`], before they are taken: with all
+    /// threads of the current pool, or `alone`. What is made depends on their numbers, and not on which were asked for
+    /// before. Returns soon after `cancel` is raised, with what is of no use.
+    fn before_samples(&self, _numbers: Range<u32>, _alone: bool, _cancel: &Cancel) {}
+
+    /// When samples of a number see the scene, from 0 to 1 while the shutter is open; `None` where each pixel's does at
+    /// a time of its own.
+    fn time(&self, _number: u32) -> Option<f64> {
+        None
+    }
 
     /// What one thread follows paths from lights with; none where nothing comes to the film but by its own rays.
     fn light_worker(&self) -> Option<Box<dyn LightWorker + '_>> {

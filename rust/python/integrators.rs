@@ -10,9 +10,8 @@ use super::cameras::AnyCamera;
 use super::query::CompiledScene;
 use super::signals::heard;
 use crate::integrators::{
-    AmbientOcclusion, BeamTraced, Channel, Direct, Distributed, Integrator, LightTraced, Path, Radiosity,
-    RayCast, Whitted,
-    aovs as observe,
+    AmbientOcclusion, BeamTraced, Channel, Direct, Distributed, Integrator, Kernel, LightTraced, Path, PhotonMap,
+    ProgressivePhotonMap, Radiosity, RayCast, Whitted, aovs as observe,
 };
 use crate::optics::Rgb;
 use crate::scene::{Patches, PlanRow};
@@ -27,6 +26,15 @@ fn attribute<'py, T: FromPyObjectOwned<'py>>(of: &Bound<'py, PyAny>, name: &str)
 
 fn rgb(of: &Bound<'_, PyAny>, name: &str) -> PyResult<Rgb> {
     attribute::<[f64; 3]>(of, name).map(Rgb::from_array)
+}
+
+/// How photons count by their distance.
+fn kernel(of: &Bound<'_, PyAny>) -> PyResult<Kernel> {
+    match attribute::<String>(of, "filter")?.as_str() {
+        "cone" => Ok(Kernel::Cone),
+        "epanechnikov" => Ok(Kernel::Epanechnikov),
+        _ => Ok(Kernel::Box),
+    }
 }
 
 /// A path tracer; what it leaves open is plain where nobody has chosen.
@@ -66,6 +74,29 @@ impl<'a, 'py> FromPyObject<'a, 'py> for AnyIntegrator {
             "LightTraced" => Box::new(LightTraced {
                 max_depth: attribute(of, "max_depth")?,
                 roulette_depth: attribute(of, "roulette_depth")?,
+            }),
+            "PhotonMap" => Box::new(PhotonMap {
+                photons: attribute(of, "photons")?,
+                nearest: attribute(of, "nearest")?,
+                radius: attribute(of, "radius")?,
+                caustic: attribute(of, "caustic")?,
+                gather: attribute(of, "gather")?,
+                maps: attribute(of, "maps")?,
+                kernel: kernel(of)?,
+                max_depth: attribute(of, "max_depth")?,
+                roulette_depth: attribute(of, "roulette_depth")?,
+                scale: 1.0,
+            }),
+            "ProgressivePhotonMap" => Box::new(ProgressivePhotonMap {
+                photons: attribute(of, "photons")?,
+                radius: attribute(of, "radius")?,
+                alpha: attribute(of, "alpha")?,
+                gather: attribute(of, "gather")?,
+                kernel: kernel(of)?,
+                max_depth: attribute(of, "max_depth")?,
+                roulette_depth: attribute(of, "roulette_depth")?,
+                scale: 1.0,
+                mean_of: None,
             }),
             "Direct" => {
                 Box::new(Direct { light_samples: light_samples()?, surface_samples: attribute(of, "surface_samples")? })

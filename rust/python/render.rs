@@ -247,6 +247,26 @@ impl Rendering {
         });
         result.map_err(|error| watcher.error(error))
     }
+
+    /// The bias of each pixel where light is gathered from about it, else `None`. `look` is called whenever signals are
+    /// heard, and may raise to end it.
+    fn bias<'py>(
+        &self,
+        py: Python<'py>,
+        job: &Bound<'_, Job>,
+        scene: &Bound<'_, CompiledScene>,
+        threads: Option<usize>,
+        look: Option<Py<PyAny>>,
+    ) -> PyResult<Option<Bound<'py, PyArray3<f32>>>> {
+        let (job, scene) = (job.get(), &scene.get().0);
+        let (integrator, settings) = (job.integrator(py), job.settings(Until::default(), threads));
+        let mut watcher = Watcher { progress: None, look, raised: None, pause: None, written: integrator.written() };
+        let (camera, samples) = (job.camera(), self.0.film.samples());
+        let told = py.detach(|| render::bias(scene, camera, integrator.get(), &settings, samples, &mut watcher));
+        let Some(told) = told.map_err(|error| watcher.error(error))? else { return Ok(None) };
+        let pixels = told.into_iter().map(|bias| bias.to_array().map(|x| x as f32)).collect();
+        self.picture(py, pixels).map(Some)
+    }
 }
 
 impl Rendering {

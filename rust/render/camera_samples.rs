@@ -2,7 +2,7 @@
 
 use super::Settings;
 use super::filter::Filter;
-use crate::integrators::CameraSample;
+use crate::integrators::{CameraSample, Session};
 use crate::math::LANES;
 use crate::sampling::{SamplerKind, SamplerLanes};
 use crate::scene::{Camera, CameraRay, CameraRayLanes, Scene};
@@ -20,6 +20,7 @@ pub(super) struct Wanted {
 /// shutter is open, and on the lens if there is one.
 pub(super) struct CameraSampler<'a> {
     camera: &'a dyn Camera,
+    session: &'a dyn Session,
     filter: &'a dyn Filter,
     kind: SamplerKind,
     seed: u64,
@@ -31,9 +32,10 @@ pub(super) struct CameraSampler<'a> {
 }
 
 impl<'a> CameraSampler<'a> {
-    pub fn new(scene: &Scene, camera: &'a dyn Camera, settings: &'a Settings) -> Self {
+    pub fn new(scene: &Scene, camera: &'a dyn Camera, session: &'a dyn Session, settings: &'a Settings) -> Self {
         Self {
             camera,
+            session,
             filter: settings.filter.as_ref(),
             kind: settings.sampler,
             seed: settings.seed,
@@ -61,6 +63,9 @@ impl<'a> CameraSampler<'a> {
             }
             if self.moves {
                 samplers.one(self.level, &[3; LANES], &mut time);
+                for (time, &number) in time.iter_mut().zip(&numbers) {
+                    *time = self.session.time(number).unwrap_or(*time);
+                }
             }
             let [right, down] = offsets;
             // Offsets from the centre are added to the half first, so that those of the pixel's own square are exact.

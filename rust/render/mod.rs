@@ -1,6 +1,7 @@
 //! Floor 5: pictures, how wrong they still are, and what they cost.
 
 mod adaptive;
+mod bias;
 mod bytes;
 mod camera_samples;
 mod cover;
@@ -28,6 +29,7 @@ mod student;
 mod tile;
 mod tiles;
 
+pub use bias::bias;
 pub use bytes::Malformed;
 pub use cover::{Cover, cover};
 pub use error::ErrorEstimate;

@@ -10,7 +10,7 @@ use super::run::{self, begin};
 use super::tile::FilmTile;
 use super::tiles::{Exposure, Goal, Stop};
 use super::{Film, Progress, RenderError, Rendering, Settings};
-use crate::integrators::{Integrator, Job};
+use crate::integrators::Integrator;
 use crate::scene::{Camera, Scene};
 use crate::workers::{pool, watched};
 use std::ops::Range;
@@ -170,7 +170,7 @@ impl Request {
         };
         let tiles = &mut self.tiles[..];
         let pool = pool(settings.threads).map_err(RenderError::Threads)?;
-        let job = Job::new(scene, camera);
+        let job = settings.job(scene, camera);
         let session = if pool.current_num_threads() == 1 {
             pool.install(|| integrator.begin(job, &stop.cancel))
         } else {

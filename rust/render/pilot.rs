@@ -5,7 +5,7 @@ use super::settings::Settings;
 use super::tile::FilmTile;
 use super::tiles::{Exposure, Goal, Stop};
 use super::{Film, Progress, RenderError};
-use crate::integrators::{Guide, Integrator, Job, Path, is_matt};
+use crate::integrators::{Guide, Integrator, Path, is_matt};
 use crate::math::Hit;
 use crate::optics::Rgb;
 use crate::sampling::{BatchSize, SamplerKind};
@@ -113,7 +113,7 @@ fn parts(camera: &dyn Camera, clamp: Option<f64>) -> Vec<FilmTile> {
 
 fn expose(scene: &Scene, camera: &dyn Camera, way: &Path, settings: &Settings, stop: &Stop) -> Vec<FilmTile> {
     let mut tiles = parts(camera, settings.clamp);
-    let session = way.begin(Job::new(scene, camera), &stop.cancel);
+    let session = way.begin(settings.job(scene, camera), &stop.cancel);
     let exposure = Exposure::new(scene, camera, way, &*session, settings);
     exposure.expose(&mut tiles, 0, Goal::Even { before: 0, samples: SAMPLES }, stop);
     tiles

@@ -63,7 +63,7 @@ pub fn go_on(
     let (start, earlier) = (Instant::now(), rendering.seconds);
     let spent = || earlier + start.elapsed().as_secs_f64();
     check(integrator, (scene, camera), settings, rendering.epoch().is_some())?;
-    let session = begin(integrator, Job::new(scene, camera), settings.threads, progress)?;
+    let session = begin(integrator, settings.job(scene, camera), settings.threads, progress)?;
     let exposure = Exposure::new(scene, camera, integrator, &*session, settings);
     let pool = pool(settings.threads).map_err(RenderError::Threads)?;
     loop {

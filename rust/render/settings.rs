@@ -2,8 +2,9 @@
 
 use super::filter::{self, Filter};
 use super::{Film, Until};
+use crate::integrators::Job;
 use crate::sampling::SamplerKind;
-use crate::scene::Camera;
+use crate::scene::{Camera, Scene};
 use std::sync::Arc;
 
 /// How to render.
@@ -40,6 +41,11 @@ impl Default for Settings {
 }
 
 impl Settings {
+    /// What an integrator is told of a picture of a scene by a camera.
+    pub(super) fn job<'a>(&self, scene: &'a Scene, camera: &'a dyn Camera) -> Job<'a> {
+        Job::new(scene, camera, self.seed, self.sampler.batch())
+    }
+
     /// An empty film for the pictures of a camera, in patches as the integrator has them
     /// ([`Integrator::patch`](crate::integrators::Integrator::patch)).
     ///

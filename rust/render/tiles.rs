@@ -73,13 +73,15 @@ impl Goal<'_> {
 struct Part<'a> {
     goal: Goal<'a>,
     light: Option<&'a Brought>,
+    /// Whether a session was made ready for it.
+    is_ready: bool,
 }
 
 impl Part<'_> {
-    /// Whether it is to be left: light that was brought is used up first, or a pause that comes sooner than it is
-    /// brought would leave nothing done.
+    /// Whether it is to be left: light that was brought, or what a session was made ready with, is used up first, or a
+    /// pause that comes sooner would leave nothing done.
     fn is_ended(&self, stop: &Stop) -> bool {
-        stop.cancel.is_raised() || self.light.is_none() && stop.pause.is_raised()
+        stop.cancel.is_raised() || self.light.is_none() && !self.is_ready && stop.pause.is_raised()
     }
 }
 
@@ -152,7 +154,7 @@ impl<'a> Exposure<'a> {
         session: &'a dyn Session,
         settings: &'a Settings,
     ) -> Self {
-        let samples = CameraSampler::new(scene, camera, settings);
+        let samples = CameraSampler::new(scene, camera, session, settings);
         let patchwork = Patchwork { patch: integrator.patch(scene) };
         let (stays, light) = (integrator.runs_on_caller(), LightTracer::new(camera, session, settings));
         Self { session, stays, samples, light, patchwork, idle: Mutex::default() }
@@ -197,8 +199,8 @@ impl<'a> Exposure<'a> {
         })
     }
 
-    /// Works towards a goal: at once, or, where light comes to the film by itself, in parts of as many samples as that
-    /// is kept for. Says whether all parts were done.
+    /// Works towards a goal: at once, or, where light comes to the film by itself or a session is made ready, in parts
+    /// of as many samples as that is kept for. Says whether all parts were done.
     fn in_parts(
         &self,
         tiles: &mut [FilmTile],
@@ -207,17 +209,23 @@ impl<'a> Exposure<'a> {
         stop: &Stop,
         mut work: impl FnMut(&mut [FilmTile], Part) -> bool,
     ) -> bool {
-        let (Some(light), Goal::Even { before, samples }) = (&self.light, goal) else {
-            return work(tiles, Part { goal, light: None });
+        let ready = self.session.at_once();
+        let at_once = self.light.as_ref().map(LightTracer::at_once).into_iter().chain(ready).min();
+        let (Some(at_once), Goal::Even { before, samples }) = (at_once, goal) else {
+            return work(tiles, Part { goal, light: None, is_ready: false });
         };
         let first = before + tiles.iter().map(FilmTile::fewest).min().unwrap_or(0);
-        (first..samples).step_by(light.at_once() as usize).all(|start| {
+        (first..samples).step_by(at_once.max(1) as usize).all(|start| {
             if start > first && stop.is_raised() {
                 return false;
             }
-            let end = samples.min(start + light.at_once());
-            let brought = light.trace(start..end, alone, &stop.cancel);
-            let part = Part { goal: Goal::Even { before, samples: end }, light: Some(&brought) };
+            let end = samples.min(start.saturating_add(at_once.max(1)));
+            if ready.is_some() {
+                self.session.before_samples(start..end, alone, &stop.cancel);
+            }
+            let brought = self.light.as_ref().map(|light| light.trace(start..end, alone, &stop.cancel));
+            let goal = Goal::Even { before, samples: end };
+            let part = Part { goal, light: brought.as_ref(), is_ready: ready.is_some() };
             !stop.cancel.is_raised() && work(tiles, part)
         })
     }

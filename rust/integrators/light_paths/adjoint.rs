@@ -17,7 +17,7 @@ use crate::sampling::warp::{cosine_hemisphere, cosine_hemisphere_pdf};
 use crate::scene::{Encounter, Scene, SurfaceInteraction};
 
 /// Where light has come to, along a ray of its own.
-pub(super) struct Arrived<'a> {
+pub(in crate::integrators) struct Arrived<'a> {
     pub scene: &'a Scene,
     pub ray: Ray,
     pub hit: Hit,
@@ -28,7 +28,7 @@ pub(super) struct Arrived<'a> {
 }
 
 /// Where light goes on to.
-pub(super) struct Onward {
+pub(in crate::integrators) struct Onward {
     pub direction: DVec3,
     /// What its flux is multiplied by.
     pub weight: Rgb,

@@ -38,7 +38,7 @@ struct Connections<'a> {
 
 impl<'a> LightPaths<'a> {
     pub fn new(job: Job<'a>, emitters: &'a Emitters<'a>, limits: Limits) -> Self {
-        let Job { scene, camera, footprint } = job;
+        let Job { scene, camera, footprint, .. } = job;
         let walk = LightWalk::new(scene, emitters, limits, Some(camera));
         let connections = Connections {
             scene,

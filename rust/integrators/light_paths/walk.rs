@@ -21,7 +21,7 @@ pub(in crate::integrators) struct Limits {
 }
 
 /// What one thread walks with.
-pub(super) struct LightWalk<'a> {
+pub(in crate::integrators) struct LightWalk<'a> {
     scene: &'a Scene,
     emitters: &'a Emitters<'a>,
     limits: Limits,
@@ -29,6 +29,8 @@ pub(super) struct LightWalk<'a> {
     camera: Option<&'a dyn Camera>,
     /// Whether anything moves, the camera included.
     moves: bool,
+    /// When all paths are on their way, while the shutter is open; each at a time of its own without.
+    time: Option<f64>,
     passing: Passing,
     now: Queue,
     next: Queue,
@@ -36,7 +38,7 @@ pub(super) struct LightWalk<'a> {
 }
 
 /// Who is told where paths have come to.
-pub(super) trait Visitor {
+pub(in crate::integrators) trait Visitor {
     /// A path has set out.
     fn set_out(&mut self, _path: &Flying) {}
 
@@ -71,7 +73,7 @@ impl Queue {
 
 /// A path on its way.
 #[derive(Clone, Copy)]
-pub(super) struct Flying {
+pub(in crate::integrators) struct Flying {
     /// Its number among those of the batch.
     pub number: u32,
     /// The flux that it stands for.
@@ -101,11 +103,18 @@ impl<'a> LightWalk<'a> {
             limits,
             camera,
             moves: scene.geometry().moves() || camera.is_some_and(|camera| camera.uses_time()),
+            time: None,
             passing: Passing::new(needs.masks, needs.nested),
             now: Queue::default(),
             next: Queue::default(),
             hits: Vec::new(),
         }
+    }
+
+    /// The same with all paths at one time.
+    pub fn at(mut self, time: Option<f64>) -> Self {
+        self.time = time;
+        self
     }
 
     /// Whether there is anything that rays may pass.
@@ -140,7 +149,7 @@ impl<'a> LightWalk<'a> {
                 direction: sampler.two(DIRECTION),
             };
             let Some(light) = self.emitters.sample(&numbers) else { continue };
-            let time = if self.moves { sampler.one(TIME) } else { 0.0 };
+            let time = if self.moves { self.time.unwrap_or_else(|| sampler.one(TIME)) } else { 0.0 };
             let ray = Ray { time: self.camera.map_or(time, |camera| camera.body().scene_time(time)), ..light.ray };
             let (flux, start) = (light.weight, light.weight.max());
             let (media, chance, again) = (MediumStack::NONE, -1.0, Rgb::ONE);

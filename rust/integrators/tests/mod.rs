@@ -19,7 +19,7 @@ use std::sync::LazyLock;
 fn job(scene: &Scene) -> Job<'_> {
     static CAMERA: LazyLock<Perspective> =
         LazyLock::new(|| Perspective::looking_at(DVec3::ZERO, DVec3::NEG_Z, DVec3::Y, 60.0, 1, 1).expect("a camera"));
-    Job { scene, camera: &*CAMERA, footprint: Footprint::default() }
+    Job { scene, camera: &*CAMERA, footprint: Footprint::default(), seed: 0, batch: 1 }
 }
 
 /// The radiance of so many samples of a ray.

@@ -27,6 +27,9 @@ impl<N: Features> TransportWorker<'_, N> {
         for i in 0..self.now.rays.len() {
             let mut hit = self.hits[i];
             if !hit.is_hit() {
+                if N::GENERAL && self.is_known(&self.now.carried[i]) {
+                    continue;
+                }
                 let (ray, path) = (&self.now.rays.get(i), &self.now.paths[i]);
                 radiance[path.sample as usize] += path.throughput * self.infinite_light(ray, path);
                 continue;

@@ -110,7 +110,7 @@ impl<N: Features> TransportWorker<'_, N> {
                 }
                 let Some(next) = drawn.get(lane) else { continue };
                 let (number, splits, chance) = (numbers[lane], splits[lane], chances[lane]);
-                if self.is_followed(next.pdf)
+                if self.is_followed(block, lane, next.pdf)
                     && self.send(block, lane, &next, Branch { number, splits, denser, chance })
                 {
                     going |= 1 << lane;
@@ -120,11 +120,14 @@ impl<N: Features> TransportWorker<'_, N> {
         }
     }
 
-    /// Whether paths go on along a direction that is drawn with this density.
+    /// Whether the path of a lane goes on along a direction that is drawn with this density.
     #[inline]
-    pub(super) fn is_followed(&self, pdf: f64) -> bool {
+    pub(super) fn is_followed(&self, block: &Block, lane: usize, pdf: f64) -> bool {
         if !N::GENERAL {
             return true;
+        }
+        if self.is_at_known(block, lane) && !self.gathers_from(block, lane) {
+            return false;
         }
         match self.settings.follow {
             Follow::All => true,
@@ -233,7 +236,9 @@ impl<N: Features> TransportWorker<'_, N> {
             let footprint = if self.widths { self.widened(block, lane, next) } else { carried.footprint };
             let media =
                 if self.passing.is_nested() && next.is_through { self.boundary(block, lane).1 } else { carried.media };
-            self.next.carried.push(Carried { footprint, media, chance: -1.0, branch: branch.number });
+            let (is_gathered, is_sharp_since) = self.gathered(block, lane);
+            let (chance, branch) = (-1.0, branch.number);
+            self.next.carried.push(Carried { footprint, media, chance, branch, is_gathered, is_sharp_since });
         }
         true
     }

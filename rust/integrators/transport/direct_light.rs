@@ -118,7 +118,7 @@ impl<N: Features> TransportWorker<'_, N> {
         }
         let mut numbers = [(0, 0); LANES];
         for (lane, number) in numbers.iter_mut().enumerate().take(block.count) {
-            if block.goes_on[lane] && !block.bsdf.get(lane).is_delta() {
+            if block.goes_on[lane] && !block.bsdf.get(lane).is_delta() && !self.is_light_known(block, lane) {
                 number.1 = if self.is_first(block, lane) { self.settings.light_samples } else { 1 };
             }
         }
@@ -280,7 +280,7 @@ impl<N: Features> TransportWorker<'_, N> {
         }
         let asked = &numbers.map(|(_, asked)| f64::from(asked.max(1)));
         let splits = array::from_fn(|lane| f64::from(self.splits(block, lane)));
-        let followed = array::from_fn(|lane| if self.is_followed(pdf[lane]) { 1.0 } else { 0.0 });
+        let followed = array::from_fn(|lane| if self.is_followed(block, lane, pdf[lane]) { 1.0 } else { 0.0 });
         let mut arriving = RgbLanes::ZERO;
         weigh(
             self.level,

@@ -57,12 +57,21 @@ pub(super) struct Carried {
     pub chance: f64,
     /// Which of the branches that its sample has split into, so that each has numbers of its own.
     pub branch: u32,
+    /// Whether it has been scattered at a matt surface whose light is known, and at something sharp since.
+    pub is_gathered: bool,
+    pub is_sharp_since: bool,
 }
 
 impl Carried {
     /// That of paths which carry none.
-    pub const NONE: Self =
-        Self { footprint: Footprint { width: 0.0, spread: 0.0 }, media: MediumStack::NONE, chance: -1.0, branch: 0 };
+    pub const NONE: Self = Self {
+        footprint: Footprint { width: 0.0, spread: 0.0 },
+        media: MediumStack::NONE,
+        chance: -1.0,
+        branch: 0,
+        is_gathered: false,
+        is_sharp_since: false,
+    };
 }
 
 impl Default for Carried {

@@ -11,6 +11,7 @@ mod emission;
 mod features;
 mod first_seen;
 mod guided;
+mod matt;
 mod path_state;
 mod resampling;
 mod reuse;
@@ -27,6 +28,7 @@ use crate::workers::Cancel;
 pub use first_seen::FirstSeen;
 
 use features::{Features, General, Open, Plain, Sharing};
+pub(super) use matt::{Gather, MattLight, Visit};
 use std::sync::Arc;
 use worker::TransportWorker;
 
@@ -67,6 +69,9 @@ pub(super) struct Settings {
     pub shares: bool,
     /// Whether paths are guided to where light comes from by way of mirrors and glass.
     pub guided: bool,
+    /// What becomes of paths at matt surfaces whose light is known; where that is so, [`Settings::begin_with`] is told
+    /// of it. `None` where they go on.
+    pub gather: Option<Gather>,
 }
 
 impl Settings {
@@ -83,6 +88,7 @@ impl Settings {
             least: 0.0,
             shares: false,
             guided: false,
+            gather: None,
         }
     }
 
@@ -94,6 +100,7 @@ impl Settings {
             && self.shadows
             && self.ambient.is_black()
             && self.least == 0.0
+            && self.gather.is_none()
     }
 
     /// Begins with the variant that has what the scene and these settings need.
@@ -104,7 +111,13 @@ impl Settings {
     /// As [`Settings::begin`], with this variant or one that can do more.
     pub fn begin_as<'a>(self, job: Job<'a>, variant: ShadingVariant, cancel: &Cancel) -> Box<dyn Session + 'a> {
         let guide = if self.guided { Guide::of(job.scene, cancel) } else { None };
-        Box::new(Transport { settings: self, job, variant, guide })
+        Box::new(Transport { settings: self, job, variant, guide, known: None })
+    }
+
+    /// As [`Settings::begin`], where light at matt surfaces is known.
+    pub fn begin_with<'a>(self, job: Job<'a>, known: Arc<dyn MattLight + 'a>) -> Box<dyn Session + 'a> {
+        let variant = ShadingVariant::General;
+        Box::new(Transport { settings: self, job, variant, guide: None, known: Some(known) })
     }
 }
 
@@ -115,11 +128,13 @@ struct Transport<'a> {
     variant: ShadingVariant,
     /// Where light comes from by way of what is sharp, if paths are guided and there is any.
     guide: Option<Arc<Guide>>,
+    /// What is known of the light at matt surfaces.
+    known: Option<Arc<dyn MattLight + 'a>>,
 }
 
 impl Transport<'_> {
     fn at_work<N: Features>(&self) -> Box<dyn Worker + '_> {
-        Box::new(TransportWorker::<N>::new(self.settings, &self.job, self.guide.as_deref()))
+        Box::new(TransportWorker::<N>::new(self.settings, &self.job, self.guide.as_deref(), self.known.as_deref()))
     }
 }
 

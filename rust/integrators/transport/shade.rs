@@ -137,7 +137,7 @@ impl<'a, N: Features> TransportWorker<'a, N> {
     fn add_emission(&self, block: &mut Block, radiance: &mut [Rgb]) {
         for lane in 0..block.count {
             let (path, surface) = (&block.paths[lane], block.surfaces.get(lane));
-            if self.shines(&surface) {
+            if self.shines(&surface) && !self.is_known(self.carried(block, lane)) {
                 let emitted = self.emitted(&block.rays[lane], &block.hits[lane], &surface, path, block.width[lane]);
                 radiance[path.sample as usize] += path.throughput * emitted;
             }
@@ -187,6 +187,10 @@ impl<'a, N: Features> TransportWorker<'a, N> {
                 self.add_ambient(&here, (&ray, &hit), (width, outside), path.throughput, light);
             }
             block.paths[lane] = path;
+            if N::GENERAL && block.goes_on[lane] {
+                let number = samples[Self::own(path.sample, samples.len())].sampler.number();
+                radiance[path.sample as usize] += self.known_light(block, lane, number);
+            }
         }
     }
 

@@ -22,6 +22,9 @@ impl<N: Features> TransportWorker<'_, N> {
     /// Into how many the path of a lane is split.
     #[inline]
     pub(super) fn splits(&self, block: &Block, lane: usize) -> u32 {
+        if let Some(gather) = self.settings.gather.filter(|_| N::GENERAL) {
+            return if self.gathers_from(block, lane) { gather.rays.max(1) } else { 1 };
+        }
         if self.is_first(block, lane) { self.settings.splits } else { 1 }
     }
 

@@ -7,6 +7,7 @@ use super::block::Block;
 use super::dimensions::Dimensions;
 use super::features::{Carried, Features};
 use super::guided::{Arrival, arrive};
+use super::matt::MattLight;
 use super::path_state::{PathState, Queue};
 use super::reuse::Reuse;
 use crate::integrators::nesting::MediumStack;
@@ -36,6 +37,8 @@ pub(super) struct TransportWorker<'a, N> {
     pub(super) in_columns: bool,
     /// What guides paths, if anything does.
     pub(super) guide: Option<&'a Guide>,
+    /// What is known of the light at matt surfaces, if anything is.
+    pub(super) known: Option<&'a dyn MattLight>,
     pub(super) now: Queue,
     pub(super) next: Queue,
     pub(super) hits: Vec<Hit>,
@@ -52,7 +55,7 @@ pub(super) struct TransportWorker<'a, N> {
 }
 
 impl<'a, N: Features> TransportWorker<'a, N> {
-    pub fn new(settings: Settings, job: &Job<'a>, guide: Option<&'a Guide>) -> Self {
+    pub fn new(settings: Settings, job: &Job<'a>, guide: Option<&'a Guide>, known: Option<&'a dyn MattLight>) -> Self {
         let &Job { scene, footprint, .. } = job;
         let needs = scene.plan().needs();
         let widths = N::GENERAL && needs.points.width;
@@ -65,6 +68,7 @@ impl<'a, N: Features> TransportWorker<'a, N> {
             widths,
             in_columns: settings.are_plain() && !settings.guided,
             guide,
+            known,
             now: Queue::default(),
             next: Queue::default(),
             hits: Vec::new(),
@@ -175,7 +179,8 @@ impl<N: Features> Worker for TransportWorker<'_, N> {
         }
         radiance.fill(Rgb::ZERO);
         // Each sample is on its own, so that a batch of paths that split may be worked on in parts.
-        let splits = self.settings.splits.max(self.settings.light_samples) as usize;
+        let gathered = self.settings.gather.map_or(1, |gather| gather.rays.max(1));
+        let splits = self.settings.splits.max(self.settings.light_samples).max(gathered) as usize;
         let together = if N::GENERAL && self.settings.follow == Follow::DeltaLobes { 512 } else { 4096 };
         let part = if N::GENERAL { (together / splits).max(16) } else { samples.len().max(1) };
         for (samples, radiance) in samples.chunks_mut(part).zip(radiance.chunks_mut(part)) {

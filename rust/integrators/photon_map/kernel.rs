@@ -1,0 +1,63 @@
+//! How much photons count by their distance.
+
+use std::f64::consts::PI;
+
+/// A weight over a disk, whose integral is 1.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kernel {
+    /// The same everywhere: bias r²/8 ∇²E, variance over the density of photons 1/(π r²) (Silverman, "Density Estimation
+    /// for Statistics and Data Analysis", 1986).
+    Box,
+    /// 1 − s/r: Jensen's cone filter with k = 1 (2001). Bias 3/40 r² ∇²E, variance 3/(2π r²).
+    Cone,
+    /// 1 − s²/r² (Epanechnikov, 1969): of all kernels, the least error for as many photons. Bias r²/12 ∇²E, variance
+    /// 4/(3π r²).
+    Epanechnikov,
+}
+
+impl Kernel {
+    /// The weight, over area, of a photon at a distance of a disk with a radius, both squared; 0 from the rim on.
+    #[inline]
+    pub fn weight(self, squared: f64, radius: f64) -> f64 {
+        if squared >= radius {
+            return 0.0;
+        }
+        let share = squared / radius;
+        let shape = match self {
+            Self::Box => 1.0,
+            Self::Cone => 3.0 * (1.0 - share.sqrt()),
+            Self::Epanechnikov => 2.0 * (1.0 - share),
+        };
+        shape / (PI * radius)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Of a function of the distance over the disk of radius 1, by the midpoints of 100,000 rings: exact to 1e-9.
+    fn over_disk(f: impl Fn(f64) -> f64) -> f64 {
+        let steps = 100_000;
+        let at = |i| (f64::from(i) + 0.5) / f64::from(steps);
+        (0..steps).map(|i| f(at(i)) * 2.0 * PI * at(i)).sum::<f64>() / f64::from(steps)
+    }
+
+    #[test]
+    fn kernels_have_their_constants() {
+        // Each: a quarter of the mean square distance, and the integral of the square.
+        for (kernel, bias, variance) in [
+            (Kernel::Box, 1.0 / 8.0, 1.0 / PI),
+            (Kernel::Cone, 3.0 / 40.0, 3.0 / (2.0 * PI)),
+            (Kernel::Epanechnikov, 1.0 / 12.0, 4.0 / (3.0 * PI)),
+        ] {
+            let weight = |s: f64| kernel.weight(s * s, 1.0);
+            assert!((over_disk(weight) - 1.0).abs() < 1e-9);
+            assert!((0.25 * over_disk(|s| s * s * weight(s)) - bias).abs() < 1e-9);
+            assert!((over_disk(|s| weight(s) * weight(s)) - variance).abs() < 1e-9);
+            assert_eq!(kernel.weight(4.0, 4.0), 0.0);
+            // Over another disk it is as much in all.
+            assert!((kernel.weight(1.0, 16.0) * 16.0 - kernel.weight(0.0625, 1.0)).abs() < 1e-15);
+        }
+    }
+}

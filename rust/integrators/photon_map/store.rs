@@ -1,0 +1,43 @@
+//! Maps that are kept with their scene.
+
+use super::maps::Maps;
+use std::collections::VecDeque;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// All that the photons of a map, and what finds them, depend on besides the scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Key {
+    pub seed: u64,
+    pub number: u32,
+    pub paths: u32,
+    pub max_depth: Option<u32>,
+    pub roulette_depth: u32,
+    pub caustic: bool,
+    /// Bits of the radius of grids, and of the time in the scene.
+    pub radius: Option<u64>,
+    pub time: Option<u64>,
+}
+
+/// The maps that were made last: pieces of one picture that are rendered in one process one after the other, and
+/// pictures by the same maps, find them here.
+#[derive(Debug, Default)]
+pub(super) struct MapStore(Mutex<VecDeque<(Key, Arc<Maps>)>>);
+
+impl MapStore {
+    /// Photons that are kept, besides a last map that has more: 130 MB.
+    pub const MOST: usize = 1 << 21;
+
+    pub fn get(&self, key: &Key) -> Option<Arc<Maps>> {
+        let kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        kept.iter().find(|(other, _)| other == key).map(|(_, maps)| Arc::clone(maps))
+    }
+
+    pub fn put(&self, key: Key, maps: Arc<Maps>) {
+        let mut kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        kept.push_back((key, maps));
+        let mut all: usize = kept.iter().map(|(_, maps)| maps.len()).sum();
+        while all > Self::MOST && kept.len() > 1 {
+            all -= kept.pop_front().map_or(0, |(_, maps)| maps.len());
+        }
+    }
+}
