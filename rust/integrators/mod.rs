@@ -2,6 +2,7 @@
 
 mod ambient_occlusion;
 mod aov;
+mod bidirectional;
 mod direct;
 mod distributed;
 mod guiding;
@@ -20,6 +21,7 @@ mod whitted;
 
 pub use ambient_occlusion::AmbientOcclusion;
 pub use aov::{Channel, aovs};
+pub use bidirectional::Bidirectional;
 pub use direct::Direct;
 pub use distributed::Distributed;
 pub use guiding::{Guide, LocalGuide, is_matt};

@@ -9,7 +9,8 @@ use super::cameras::AnyCamera;
 use super::query::CompiledScene;
 use super::signals::heard;
 use crate::integrators::{
-    AmbientOcclusion, Channel, Direct, Distributed, Integrator, LightTraced, Path, RayCast, Whitted, aovs as observe,
+    AmbientOcclusion, Bidirectional, Channel, Direct, Distributed, Integrator, LightTraced, Path, RayCast, Whitted,
+    aovs as observe,
 };
 use crate::optics::Rgb;
 use crate::scene::PlanRow;
@@ -48,6 +49,11 @@ impl<'a, 'py> FromPyObject<'a, 'py> for AnyIntegrator {
             "LightTraced" => Box::new(LightTraced {
                 max_depth: attribute(of, "max_depth")?,
                 roulette_depth: attribute(of, "roulette_depth")?,
+            }),
+            "Bidirectional" => Box::new(Bidirectional {
+                max_depth: attribute(of, "max_depth")?,
+                roulette_depth: attribute(of, "roulette_depth")?,
+                alone: None,
             }),
             "Direct" => {
                 Box::new(Direct { light_samples: light_samples()?, surface_samples: attribute(of, "surface_samples")? })

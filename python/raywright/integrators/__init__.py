@@ -4,6 +4,7 @@ from typing import TypeAlias, get_args
 
 from .ambient_occlusion import AmbientOcclusion
 from .base import Integrator
+from .bidirectional import Bidirectional
 from .direct import Direct
 from .distributed import Distributed
 from .light_traced import LightTraced
@@ -12,12 +13,13 @@ from .ray_cast import RayCast
 from .whitted import Whitted
 
 AnyIntegrator: TypeAlias = (
-    Path | LightTraced | Direct | RayCast | Whitted | Distributed | AmbientOcclusion | Integrator
+    Path | Bidirectional | LightTraced | Direct | RayCast | Whitted | Distributed | AmbientOcclusion | Integrator
 )
 
 __all__ = [
     "AmbientOcclusion",
     "AnyIntegrator",
+    "Bidirectional",
     "Direct",
     "Distributed",
     "LightTraced",

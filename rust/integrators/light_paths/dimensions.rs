@@ -16,7 +16,7 @@ const FIRST: u32 = 6;
 /// The dimensions of a surface. A choice stands at an even one, before the pair that follows from it, with which
 /// samplers place it together.
 #[derive(Clone, Copy)]
-pub(super) struct Dimensions(u32);
+pub(in crate::integrators) struct Dimensions(u32);
 
 impl Dimensions {
     const EACH: u32 = 6;
@@ -50,5 +50,10 @@ impl Dimensions {
     /// Which masks the ray passes.
     pub fn mask(self) -> u32 {
         self.0 + 4
+    }
+
+    /// Whether it is kept where the path has come to.
+    pub fn keeping(self) -> u32 {
+        self.0 + 5
     }
 }

@@ -41,6 +41,10 @@ impl Light for PointLight {
         Some(PointEmission { position, direction, weight: self.intensity / pdf, pdf })
     }
 
+    fn emission_pdf(&self, _: DVec3) -> f64 {
+        UNIFORM_SPHERE_PDF
+    }
+
     fn bytes(&self) -> usize {
         size_of::<Self>()
     }
