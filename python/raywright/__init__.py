@@ -6,7 +6,16 @@ from . import _core, scenes
 from ._core import AcceleratorInfo, simd
 from .accelerators import BSP, BVH, BruteForce, Grid, KdTree, NestedGrid, Octree
 from .cameras import AnyCamera, Camera, Fisheye, Orthographic, Panorama, Pose, ThinLens
-from .integrators import AmbientOcclusion, Bidirectional, Direct, Distributed, LightTraced, Path, RayCast, Whitted
+from .integrators import (
+    AmbientOcclusion,
+    Bidirectional,
+    Direct,
+    Distributed,
+    LightTraced,
+    Path,
+    RayCast,
+    Whitted,
+)
 from .integrators.base import Integrator
 from .integrators.rng import Rng
 from .io.pictures import check_writable

@@ -1,4 +1,4 @@
-"""Bidirectional path tracing: the pictures of path tracing, and light that is hard to reach from either end."""
+"""Bidirectional path tracing: the pictures of path tracing, and light that is hard to reach."""
 
 import math
 import pickle
@@ -54,8 +54,8 @@ def mean(image):
 
 
 def assert_mean(image, expected, most):
-    """Within three standard errors, which are at most a share of what is expected: a seed that fails would be one
-    in 370, and seeds are fixed."""
+    """Within three standard errors, which are at most a share of what is expected. Chance exceeds three once
+    in 370 seeds, and seeds are fixed."""
     found, error = mean(image)
     assert error <= most * expected, error / expected
     assert abs(found - expected) <= 3 * error, (found, error, expected)
@@ -174,7 +174,15 @@ def test_media_that_lie_in_one_another():
 @pytest.mark.parametrize(
     "look",
     [
-        rw.ThinLens((0.5, 0.5, 2.4), (0.5, 0.4, 0), fov=39, width=SIDE, height=SIDE, aperture_radius=0.1, focus_distance=2.0),
+        rw.ThinLens(
+            (0.5, 0.5, 2.4),
+            (0.5, 0.4, 0),
+            fov=39,
+            width=SIDE,
+            height=SIDE,
+            aperture_radius=0.1,
+            focus_distance=2.0,
+        ),
         rw.Orthographic((0.5, 0.5, 2.4), (0.5, 0.4, 0), scale=1.1, width=SIDE, height=SIDE),
         rw.Panorama((0.4, 0.6, 0.9), (0.4, 0.4, 0), width=SIDE, height=SIDE),
         rw.Fisheye((0.4, 0.6, 0.9), (0.4, 0.4, 0), fov=150, width=SIDE, height=SIDE),
@@ -192,29 +200,28 @@ def test_depths_count_bounces(depth):
     assert_same_picture(scene, look, depth=depth)
 
 
-def hollow(aperture, *, centre=0.0, flip=False, rings=96, material=None, **kwargs):
-    """A sphere of radius 1 that is seen from inside, less the cap beyond a circle about +z, or -z."""
+def hollow(aperture, *, centre=0.0, up=True, rings=96, **kwargs):
+    """A sphere of radius 1 that faces inwards, less the cap beyond a circle about the top, or the bottom."""
     start = math.asin(aperture)
-    polar = np.concatenate([start + np.linspace(0, 1, rings) ** 1.5 * (math.pi - start)])
+    polar = start + np.linspace(0, 1, rings) ** 1.5 * (math.pi - start)
     around = np.arange(2 * rings) * (math.pi / rings)
-    z = np.cos(polar)[:, None] * np.ones_like(around)
-    x, y = (np.sin(polar)[:, None] * np.stack([np.cos(around), np.sin(around)])[:, None]).reshape(2, rings, -1)
-    vertices = np.stack([x, y, z], -1).reshape(-1, 3)
+    out, z = np.sin(polar)[:, None], np.cos(polar)[:, None]
+    x, y, z = np.broadcast_arrays(out * np.cos(around), out * np.sin(around), z if up else -z)
     i, j = np.meshgrid(np.arange(rings - 1), np.arange(2 * rings), indexing="ij")
     k = (j + 1) % (2 * rings)
     a, b, c, d = (r * 2 * rings + s for r, s in [(i, j), (i + 1, j), (i + 1, k), (i, k)])
-    # The last ring is the pole.
-    faces = np.concatenate([np.stack([a, c, b], -1).reshape(-1, 3), np.stack([a, d, c], -1)[:-1].reshape(-1, 3)])
-    faces = faces[~(vertices[faces[:, 0]] == vertices[faces[:, 1]]).all(1)]
-    if flip:
-        vertices, faces = vertices * (1, 1, -1), faces[:, ::-1]
-    return rw.Mesh(vertices + (0, 0, centre), faces, material=material or rw.Diffuse(0.5), **kwargs)
+    # The last ring is the pole, where one of the two triangles has no area.
+    faces = np.concatenate(
+        [np.stack(three, -1).reshape(-1, 3) for three in [(a[:-1], c[:-1], b[:-1]), (a, d, c)]]
+    )
+    vertices = np.stack([x, y, z + centre], -1).reshape(-1, 3)
+    return rw.Mesh(vertices, faces if up else faces[:, ::-1], **kwargs)
 
 
 def test_light_behind_a_port():
-    # A point light in a hollow sphere whose wall has a port: the receiver sees the wall alone. Of the wall's
-    # radiosity rho I / (1 - rho (1 - s)), with s the share of the sphere that is cut away, the port sends what a
-    # disk of that radiosity would.
+    # A point light in a hollow sphere whose wall has a port: the receiver sees the wall alone, whose radiosity
+    # is rho I / (1 - rho (1 - s)), with s the share of the sphere that is cut away. The port sends what a disk
+    # of that radiosity would.
     port, rho, far, aside = 0.1, 0.9, 0.5, 0.3
     rim = math.sqrt(1 - port**2)
     share = (1 - rim) / 2
@@ -252,20 +259,18 @@ def test_light_behind_a_port():
     ],
 )
 def test_chambers_that_light_each_other_through_a_hole(aperture, rho, expected):
-    # A point of a sphere sees the opening under the factor s wherever it lies, so each wall is as bright all over:
+    # A point of a sphere sees the opening under the factor s wherever it lies: each wall is even.
     # BA = 1 + rA ((1 - s) BA + s BB), BB = rB ((1 - s) BB + s BA).
     rim = math.sqrt(1 - aperture**2)
     s = (1 - rim) / 2
     matrix = np.array([[1 - rho[0] * (1 - s), -rho[0] * s], [-rho[1] * s, 1 - rho[1] * (1 - s)]])
     np.testing.assert_allclose(np.linalg.solve(matrix, [1, 0]), expected, rtol=1e-12)
     first = hollow(aperture, material=rw.Diffuse(rho[0]), emission=1 / math.pi)
-    second = hollow(aperture, centre=2 * rim, flip=True, material=rw.Diffuse(rho[1]))
+    second = hollow(aperture, centre=2 * rim, up=False, material=rw.Diffuse(rho[1]))
     scene = rw.Scene([first, second])
     for centre, radiosity, samples in [(0, expected[0], 64), (2 * rim, expected[1], 256)]:
         # Away from the hole, over what is as bright all over.
-        look = rw.Camera(
-            (0.1, 0.2, centre), (1, 0.3, centre), up=(0, 0, 1), fov=60, width=16, height=16
-        )
+        look = rw.Camera((0.1, 0.2, centre), (1, 0.3, centre), up=(0, 0, 1), fov=60, width=16, height=16)
         found, error = mean(rw.render(scene, look, rw.Bidirectional(), samples, progress=False))
         # Walls of straight pieces are off by less than a thousandth.
         assert abs(found - radiosity / math.pi) < 3 * error + 1e-3 * radiosity / math.pi
@@ -273,11 +278,13 @@ def test_chambers_that_light_each_other_through_a_hole(aperture, rho, expected):
 
 
 def test_a_lamp_under_a_ceiling():
-    # A point light of intensity 1 half a unit under a wide ceiling of reflectance 0.8: what comes to a floor at
-    # height 0, under the lamp, by way of the ceiling at 2.5 is
+    # A point light of intensity 1 half a unit under a wide ceiling of reflectance 0.8: what comes to a floor
+    # at height 0, under the lamp, by way of the ceiling at 2.5 is
     # 2 rho a H^2 times the integral of r dr / ((a^2 + r^2)^(3/2) (H^2 + r^2)^2), and directly 1 / 2^2.
     ceiling = square(200, 2.5, up=False, material=rw.Diffuse(0.8))
-    scene = rw.Scene([ceiling, square(0.01, 0, material=rw.Diffuse(1.0))], lights=[rw.PointLight((0, 0, 2), 1)])
+    scene = rw.Scene(
+        [ceiling, square(0.01, 0, material=rw.Diffuse(1.0))], lights=[rw.PointLight((0, 0, 2), 1)]
+    )
     look = rw.Camera((0.3, 0, 0.4), (0, 0, 0), up=(0, 0, 1), fov=0.5, width=8, height=8)
     direct = rw.render(scene, look, rw.Bidirectional(1), 64, progress=False)
     both = rw.render(scene, look, rw.Bidirectional(2), 20_000, progress=False)
@@ -286,8 +293,8 @@ def test_a_lamp_under_a_ceiling():
 
 
 def test_a_pane_before_a_point_light():
-    # A pane without thickness lets (1 - r) / (1 + r) through; straight on r = 0.04, and 12/13 arrive. No path from
-    # the floor comes upon a point, nor does a connection go through the pane: light itself does.
+    # A pane without thickness lets (1 - r) / (1 + r) through; straight on r = 0.04, and 12/13 arrive. No path
+    # from the floor comes upon a point, nor does a connection go through the pane: light itself does.
     pane = square(50, 1.0, material=rw.ThinDielectric(1.5))
     floor = square(2, 0, material=rw.Diffuse(1.0))
     scene = rw.Scene([pane, floor], lights=[rw.PointLight((0, 0, 2), 1)])
@@ -321,8 +328,9 @@ def test_a_tiny_lamp_and_light_close_to_a_surface():
 def test_a_keyhole_is_looked_through_with_less_noise():
     # A room behind a wall with a hole, lit by a lamp that no point of this one sees.
     aperture = 0.05
-    first = hollow(aperture, material=rw.Diffuse(0.7), rings=48)
-    second = hollow(aperture, centre=2 * math.sqrt(1 - aperture**2), flip=True, material=rw.Diffuse(0.7), rings=48)
+    matt = rw.Diffuse(0.7)
+    first = hollow(aperture, material=matt, rings=48)
+    second = hollow(aperture, centre=2 * math.sqrt(1 - aperture**2), up=False, material=matt, rings=48)
     bulb = rw.Sphere((0.5, 0, -0.3), 0.02, emission=1e4)
     scene = rw.Scene([first, second, bulb])
     look = rw.Camera((0.1, 0.2, 2), (1, 0.3, 2), up=(0, 0, 1), fov=60, width=16, height=16)

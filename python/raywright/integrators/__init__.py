@@ -13,7 +13,15 @@ from .ray_cast import RayCast
 from .whitted import Whitted
 
 AnyIntegrator: TypeAlias = (
-    Path | Bidirectional | LightTraced | Direct | RayCast | Whitted | Distributed | AmbientOcclusion | Integrator
+    Path
+    | Bidirectional
+    | LightTraced
+    | Direct
+    | RayCast
+    | Whitted
+    | Distributed
+    | AmbientOcclusion
+    | Integrator
 )
 
 __all__ = [
