@@ -10,6 +10,7 @@ from .exchange.solution import RadiositySolution, RadiosityStep
 from .integrators import (
     AmbientOcclusion,
     BeamTraced,
+    Bidirectional,
     Direct,
     Distributed,
     LightTraced,
@@ -110,6 +111,7 @@ __all__ = [
     "AmbientOcclusion",
     "AnyCamera",
     "BeamTraced",
+    "Bidirectional",
     "BlackmanHarrisFilter",
     "BlinnPhong",
     "Box",

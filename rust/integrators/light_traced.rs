@@ -59,6 +59,6 @@ impl Session for LightTracing<'_> {
 
     fn light_worker(&self) -> Option<Box<dyn LightWorker + '_>> {
         let emitters = self.emitters.as_ref().filter(|_| self.limits.max_depth != Some(0))?;
-        Some(Box::new(LightPaths::new(self.job, emitters, self.limits)))
+        Some(Box::new(LightPaths::new(self.job, emitters, self.limits, None)))
     }
 }

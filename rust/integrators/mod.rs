@@ -3,6 +3,7 @@
 mod ambient_occlusion;
 mod aov;
 mod beam_traced;
+mod bidirectional;
 mod direct;
 mod distributed;
 mod guiding;
@@ -25,6 +26,7 @@ mod whitted;
 pub use ambient_occlusion::AmbientOcclusion;
 pub use aov::{Channel, aovs};
 pub use beam_traced::BeamTraced;
+pub use bidirectional::Bidirectional;
 pub use direct::Direct;
 pub use distributed::Distributed;
 pub use guiding::{Guide, LocalGuide, is_matt};

@@ -5,6 +5,7 @@ use super::{CameraSample, Integrator, Job, LightWorker, Session, Worker};
 use crate::optics::Rgb;
 use crate::scene::Scene;
 use crate::workers::Cancel;
+use std::ops::Range;
 
 /// An integrator whose camera rays find nothing where they leave the scene without having come to a surface: the
 /// background is left out as the camera sees it directly. It lights the scene as before, and is seen in mirrors and
@@ -44,6 +45,18 @@ impl Session for Shown<'_> {
 
     fn before_pass(&self, done: u32, cancel: &Cancel) {
         self.inner.before_pass(done, cancel);
+    }
+
+    fn at_once(&self) -> Option<u32> {
+        self.inner.at_once()
+    }
+
+    fn before_samples(&self, numbers: Range<u32>, alone: bool, cancel: &Cancel) {
+        self.inner.before_samples(numbers, alone, cancel);
+    }
+
+    fn time(&self, number: u32) -> Option<f64> {
+        self.inner.time(number)
     }
 
     fn light_worker(&self) -> Option<Box<dyn LightWorker + '_>> {

@@ -10,8 +10,8 @@ use super::cameras::AnyCamera;
 use super::query::CompiledScene;
 use super::signals::heard;
 use crate::integrators::{
-    AmbientOcclusion, BeamTraced, Channel, Direct, Distributed, Integrator, Kernel, LightTraced, Path, PhotonMap,
-    ProgressivePhotonMap, Radiosity, RayCast, Whitted, aovs as observe,
+    AmbientOcclusion, BeamTraced, Bidirectional, Channel, Direct, Distributed, Integrator, Kernel, LightTraced, Path,
+    PhotonMap, ProgressivePhotonMap, Radiosity, RayCast, Whitted, aovs as observe,
 };
 use crate::optics::Rgb;
 use crate::scene::{Patches, PlanRow};
@@ -97,6 +97,11 @@ impl<'a, 'py> FromPyObject<'a, 'py> for AnyIntegrator {
                 roulette_depth: attribute(of, "roulette_depth")?,
                 scale: 1.0,
                 mean_of: None,
+            }),
+            "Bidirectional" => Box::new(Bidirectional {
+                max_depth: attribute(of, "max_depth")?,
+                roulette_depth: attribute(of, "roulette_depth")?,
+                alone: None,
             }),
             "Direct" => {
                 Box::new(Direct { light_samples: light_samples()?, surface_samples: attribute(of, "surface_samples")? })

@@ -202,8 +202,9 @@ impl Rendering {
         threads: Option<usize>,
     ) -> PyResult<(Bound<'py, PyArray2<f32>>, Bound<'py, PyArray3<i32>>, Bound<'py, PyArray3<f32>>)> {
         let (job, scene, film) = (job.get(), &scene.get().0, &self.0.film);
-        let settings = job.settings(Until::default(), threads);
-        let all = heard(py, threads, |cancel| render::cover(film, samples, scene, job.camera(), &settings, cancel))?;
+        let (integrator, settings) = (job.integrator(py), job.settings(Until::default(), threads));
+        let (seen, integrator) = ((scene, job.camera()), integrator.get());
+        let all = heard(py, threads, |cancel| render::cover(film, samples, seen, integrator, &settings, cancel))?;
         let (width, height) = (film.width() as usize, film.height() as usize);
         let of = |cover: &render::Cover, rank: usize| cover.get(rank).copied();
         let ranked = |cover| (0..ranks).map(move |rank| of(cover, rank));

@@ -3,7 +3,7 @@
 use super::camera_samples::{CameraSampler, Wanted};
 use super::tile::FilmTile;
 use super::{Film, Settings};
-use crate::integrators::FirstSeen;
+use crate::integrators::{FirstSeen, Integrator};
 use crate::scene::{Camera, Scene};
 use crate::workers::Cancel;
 use rayon::prelude::*;
@@ -21,12 +21,14 @@ pub type Cover = Vec<(u32, f64)>;
 pub fn cover(
     film: &Film,
     each: Option<u32>,
-    scene: &Scene,
-    camera: &dyn Camera,
+    (scene, camera): (&Scene, &dyn Camera),
+    integrator: &dyn Integrator,
     settings: &Settings,
     cancel: &Cancel,
 ) -> Vec<Cover> {
-    let sampler = CameraSampler::new(scene, camera, settings);
+    // It may know when samples see the scene.
+    let session = integrator.begin(settings.job(scene, camera), cancel);
+    let sampler = CameraSampler::new(scene, camera, &*session, settings);
     let of_tile = |tile: &FilmTile| -> Vec<((u32, u32), Cover)> {
         let mut first = FirstSeen::new(scene);
         let cells = film.cells();
@@ -140,7 +142,8 @@ mod tests {
         for (sampler, adaptive, filter) in kinds {
             let settings = Settings { until, adaptive, sampler, filter, threads: Some(2), ..Settings::default() };
             let rendering = rendered(&scene, &camera, &settings);
-            let cover = cover(&rendering.film, None, &scene, &camera, &settings, &Cancel::default());
+            let cover =
+                cover(&rendering.film, None, (&scene, &camera), &Path::default(), &settings, &Cancel::default());
             let means = rendering.film.means();
             assert_eq!(cover.len(), means.len());
             for (cover, mean) in cover.iter().zip(means) {
@@ -154,7 +157,10 @@ mod tests {
             assert!(cover.iter().any(|cover| cover.is_empty()));
             if !adaptive {
                 let empty = settings.film(&camera, 2, 1);
-                assert!(super::cover(&empty, Some(48), &scene, &camera, &settings, &Cancel::default()) == cover);
+                assert!(
+                    super::cover(&empty, Some(48), (&scene, &camera), &Path::default(), &settings, &Cancel::default())
+                        == cover
+                );
             }
         }
     }

@@ -60,6 +60,14 @@ impl Sampler {
         Self { kind, key, pixel, number, sample: number, block: u32::MAX, words: [0; 4] }
     }
 
+    /// Numbers of the same sample that have nothing to do with these, for what it is paired with.
+    pub fn paired(&self) -> Self {
+        /// Any number: none that somebody is likely to give for a seed.
+        const APART: u64 = 0x9e37_79b9_7f4a_7c15;
+        let seed = u64::from(self.key[1]) << 32 | u64::from(self.key[0]);
+        self.kind.sampler(seed ^ APART, self.pixel, self.number)
+    }
+
     /// Of which pixel it is a sample.
     pub fn pixel(&self) -> u32 {
         self.pixel

@@ -35,9 +35,9 @@ pub use geometry::{
     check_transforms, rounded,
 };
 pub use lights::{
-    ConstantEnvironment, DirectionalLight, EmissionNumbers, EmissionPdf, EmissionSample, Emitters, EnvironmentMap,
-    Light, LightBounds, LightContextLanes, LightLanes, LightSample, LightSampleContext, Lights, Picture, Place,
-    PointEmission, PointLight, Profile, Projector, Reach, SpotLight, SunSky,
+    ConstantEnvironment, Departure, DirectionalLight, EmissionNumbers, EmissionPdf, EmissionSample, Emitters,
+    EnvironmentMap, Light, LightBounds, LightContextLanes, LightLanes, LightSample, LightSampleContext, Lights,
+    Picture, Place, PointEmission, PointLight, Profile, Projector, Reach, Source, SpotLight, SunSky,
 };
 pub use materials::{DiffuseMaterial, Material};
 pub use patches::{Cell, Patches};

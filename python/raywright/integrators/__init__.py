@@ -5,6 +5,7 @@ from typing import TypeAlias, get_args
 from .ambient_occlusion import AmbientOcclusion
 from .base import Integrator
 from .beam_traced import BeamTraced
+from .bidirectional import Bidirectional
 from .direct import Direct
 from .distributed import Distributed
 from .light_traced import LightTraced
@@ -15,6 +16,7 @@ from .whitted import Whitted
 
 AnyIntegrator: TypeAlias = (
     Path
+    | Bidirectional
     | LightTraced
     | Direct
     | Radiosity
@@ -30,6 +32,7 @@ __all__ = [
     "AmbientOcclusion",
     "AnyIntegrator",
     "BeamTraced",
+    "Bidirectional",
     "Direct",
     "Distributed",
     "LightTraced",

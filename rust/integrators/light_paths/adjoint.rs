@@ -14,9 +14,11 @@
 use crate::math::{DVec3, Frame, Hit, Ray};
 use crate::optics::{Bsdf, BsdfSample, Rgb};
 use crate::sampling::warp::{cosine_hemisphere, cosine_hemisphere_pdf};
-use crate::scene::{Encounter, Scene, SurfaceInteraction};
+use crate::scene::materials::BsdfMix;
+use crate::scene::{Encounter, LightSampleContext, Scene, SurfaceInteraction};
 
-/// Where light has come to, along a ray of its own.
+/// Where light has come to, along a ray of its own; or a path from a camera, which light then meets from elsewhere.
+#[derive(Clone)]
 pub(in crate::integrators) struct Arrived<'a> {
     pub scene: &'a Scene,
     pub ray: Ray,
@@ -27,11 +29,47 @@ pub(in crate::integrators) struct Arrived<'a> {
     pub here: SurfaceInteraction,
 }
 
+/// The same point as it is met by what comes from elsewhere.
+pub(in crate::integrators) enum Met<'a> {
+    /// As before, but for the direction.
+    Alike(SurfaceInteraction<&'a BsdfMix>),
+    /// Otherwise.
+    Anew(Box<SurfaceInteraction>),
+}
+
+impl Met<'_> {
+    /// As [`Encounter::evaluate`].
+    pub fn evaluate(&self, direction: DVec3) -> (Rgb, f64) {
+        match self {
+            Self::Alike(here) => here.evaluate(direction),
+            Self::Anew(here) => here.evaluate(direction),
+        }
+    }
+
+    /// As [`Encounter::light_context`].
+    pub fn light_context(&self) -> LightSampleContext {
+        match self {
+            Self::Alike(here) => here.light_context(),
+            Self::Anew(here) => here.light_context(),
+        }
+    }
+
+    /// As [`onward_pdf`], if it is light that meets it.
+    pub fn onward_pdf(&self, direction: DVec3) -> f64 {
+        match self {
+            Self::Alike(here) => onward_pdf(here, direction),
+            Self::Anew(here) => onward_pdf(here, direction),
+        }
+    }
+}
+
 /// Where light goes on to.
 pub(in crate::integrators) struct Onward {
     pub direction: DVec3,
     /// What its flux is multiplied by.
     pub weight: Rgb,
+    /// The density with which it is drawn, by solid angle; without meaning for a single direction.
+    pub pdf: f64,
     /// Whether it goes to the other side.
     pub is_through: bool,
     /// Whether it is a single direction.
@@ -42,6 +80,30 @@ pub(in crate::integrators) struct Onward {
 /// one is not that of the other, and what a viewer sees below the latter is not drawn otherwise.
 const ABOUT_GEOMETRIC: f64 = 0.1;
 
+/// How often it is where light meets a surface.
+fn about_geometric<B: Bsdf>(here: &SurfaceInteraction<B>) -> f64 {
+    if here.is_flat() || here.bsdf().is_delta() { 0.0 } else { ABOUT_GEOMETRIC }
+}
+
+/// The density with which a direction is drawn in either way, where that of scattering is given.
+fn mixed_pdf<B: Bsdf>(here: &SurfaceInteraction<B>, direction: DVec3, scattering: f64) -> f64 {
+    let about = about_geometric(here);
+    if about == 0.0 {
+        return scattering;
+    }
+    let (normal, transmits) = (here.normal().dot(direction), here.bsdf().transmits());
+    let sides = if transmits { 2.0 } else { 1.0 };
+    let about_geometric = if transmits { normal.abs() } else { normal.max(0.0) };
+    let about_geometric = cosine_hemisphere_pdf(DVec3::new(0.0, 0.0, about_geometric)) / sides;
+    about * about_geometric + (1.0 - about) * scattering
+}
+
+/// The density with which light that meets a surface goes on along a direction, by solid angle
+/// ([`Arrived::onward`]).
+pub(in crate::integrators) fn onward_pdf<B: Bsdf>(here: &SurfaceInteraction<B>, direction: DVec3) -> f64 {
+    mixed_pdf(here, direction, here.evaluate(direction).1)
+}
+
 impl<'a> Arrived<'a> {
     pub fn new(scene: &'a Scene, ray: Ray, hit: Hit, outside: f64) -> Self {
         let surface = scene.geometry().surface(&ray, &hit);
@@ -49,39 +111,46 @@ impl<'a> Arrived<'a> {
         Self { scene, ray, hit, outside, here }
     }
 
-    /// What a viewer evaluates who is in a direction at a distance, whose rays are so wide here, for light that comes
-    /// as this does.
-    fn seen_from(&self, direction: DVec3, distance: f64, width: f64) -> Rgb {
-        let back = -self.ray.direction;
+    /// As what comes from a direction meets it, from a distance, whose rays are so wide here.
+    pub fn met_from(&self, direction: DVec3, distance: f64, width: f64) -> Met<'_> {
         if width == 0.0
             && let Some(here) = self.here.met_from(direction)
         {
-            return here.evaluate(back).0;
+            return Met::Alike(here);
         }
         let origin = self.here.position() + direction * distance;
         let ray = Ray { origin, direction: -direction, ..self.ray };
         let hit = Hit { t: distance, ..self.hit };
         let surface = *self.here.surface();
-        SurfaceInteraction::new(self.scene, &ray, &hit, surface, width, self.outside).evaluate(back).0
+        Met::Anew(Box::new(SurfaceInteraction::new(self.scene, &ray, &hit, surface, width, self.outside)))
+    }
+
+    /// Back to where it came from.
+    pub fn back(&self) -> DVec3 {
+        -self.ray.direction
+    }
+
+    /// The cosine between a direction and the geometric normal, on either side.
+    pub fn cosine(&self, direction: DVec3) -> f64 {
+        self.here.surface().normal.dot(direction).abs()
     }
 
     /// The share of the flux that goes into a solid angle of a direction, as a viewer there sees it.
     pub fn towards(&self, direction: DVec3, distance: f64, width: f64) -> Rgb {
-        let back = -self.ray.direction;
-        let normal = self.here.surface().normal;
-        let (arriving, leaving) = (normal.dot(back).abs(), normal.dot(direction).abs());
-        if arriving == 0.0 {
-            return Rgb::ZERO;
-        }
-        self.seen_from(direction, distance, width) * (leaving / arriving)
+        self.share(direction, || self.met_from(direction, distance, width).evaluate(self.back()).0)
+    }
+
+    /// The same by what a viewer evaluates.
+    pub fn share(&self, direction: DVec3, evaluated: impl FnOnce() -> Rgb) -> Rgb {
+        let (arriving, leaving) = (self.cosine(self.back()), self.cosine(direction));
+        if arriving == 0.0 { Rgb::ZERO } else { evaluated() * (leaving / arriving) }
     }
 
     /// Draws where light goes on to.
     pub fn onward(&self, choice: impl FnOnce() -> f64, [u, v]: [f64; 2]) -> Option<Onward> {
         let here = &self.here;
-        let is_mixed = !here.is_flat() && !here.bsdf().is_delta();
         let transmits = here.bsdf().transmits();
-        let about = if is_mixed { ABOUT_GEOMETRIC } else { 0.0 };
+        let about = about_geometric(here);
         let (direction, is_through, pdf) = if u < about {
             // On either side where light goes through.
             let (u, sign) = match (u / about, transmits) {
@@ -98,18 +167,10 @@ impl<'a> Arrived<'a> {
             }
             (drawn.wi, drawn.is_through, Some(drawn.pdf))
         };
-        let pdf = if is_mixed {
-            let normal = here.normal().dot(direction);
-            let sides = if transmits { 2.0 } else { 1.0 };
-            let about_geometric = if transmits { normal.abs() } else { normal.max(0.0) };
-            let about_geometric = cosine_hemisphere_pdf(DVec3::new(0.0, 0.0, about_geometric)) / sides;
-            about * about_geometric + (1.0 - about) * pdf.unwrap_or_else(|| here.evaluate(direction).1)
-        } else {
-            pdf?
-        };
+        let pdf = mixed_pdf(here, direction, pdf.unwrap_or_else(|| here.evaluate(direction).1));
         // From how far away a viewer looks does not matter to rays without width.
         let weight = self.towards(direction, 1.0, 0.0) / pdf;
-        (pdf > 0.0).then_some(Onward { direction, weight, is_through, is_single: false })
+        (pdf > 0.0).then_some(Onward { direction, weight, pdf, is_through, is_single: false })
     }
 
     /// A single direction, of those that are drawn with a probability. What a viewer there would draw is the same one
@@ -125,6 +186,12 @@ impl<'a> Arrived<'a> {
         };
         let weight = drawn.weight * (drawn.eta * drawn.eta * shaded / probability);
         let is_through = drawn.is_through;
-        weight.is_radiance().then_some(Onward { direction: drawn.wi, weight, is_through, is_single: true })
+        weight.is_radiance().then_some(Onward {
+            direction: drawn.wi,
+            weight,
+            pdf: f64::INFINITY,
+            is_through,
+            is_single: true,
+        })
     }
 }

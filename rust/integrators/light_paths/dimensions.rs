@@ -51,4 +51,9 @@ impl Dimensions {
     pub fn mask(self) -> u32 {
         self.0 + 4
     }
+
+    /// Whether it is kept where the path has come to.
+    pub fn keeping(self) -> u32 {
+        self.0 + 5
+    }
 }

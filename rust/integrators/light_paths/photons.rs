@@ -7,7 +7,7 @@ use crate::integrators::nesting::MediumStack;
 use crate::math::DVec3;
 use crate::optics::Rgb;
 use crate::sampling::Sampler;
-use crate::scene::{Encounter, Scene};
+use crate::scene::{EmissionSample, Encounter, Scene};
 use crate::workers::Cancel;
 use rayon::prelude::*;
 
@@ -96,13 +96,13 @@ impl<'a> Seen<'a> {
     }
 }
 
-impl Visitor for Seen<'_> {
-    fn set_out(&mut self, path: &Flying) {
+impl<'a> Visitor<'a> for Seen<'a> {
+    fn set_out(&mut self, path: &Flying, _: &EmissionSample) {
         self.found.emitted += path.flux * self.share;
         self.sharp.resize(path.number as usize + 1, 0);
     }
 
-    fn meet(&mut self, arrived: &Arrived, path: &Flying, _: &MediumStack, _: (&mut Sampler, Dimensions)) {
+    fn meet(&mut self, arrived: &Arrived<'a>, path: &Flying, _: &MediumStack, _: (&mut Sampler, Dimensions)) {
         let bounces = path.bounce - 1;
         let sharp = &mut self.sharp[path.number as usize];
         if path.is_sharp && (1..=u64::BITS).contains(&bounces) {

@@ -1,21 +1,32 @@
 //! Light that comes to a camera.
 
-use super::adjoint::Arrived;
+use super::adjoint::{Arrived, Onward};
 use super::dimensions::Dimensions;
+use super::partials::Partials;
 use super::walk::{Flying, LightWalk, Limits, Visitor};
+use super::weights::weight;
 use crate::integrators::nesting::MediumStack;
 use crate::integrators::shadows::Shadows;
 use crate::integrators::{Job, LightWorker, Splat};
-use crate::math::Ray;
+use crate::math::{DVec3, Ray};
 use crate::optics::{Bsdf, Rgb};
 use crate::sampling::Sampler;
-use crate::scene::{Camera, Emitters, Encounter, Footprint, RayOrigin, Scene};
+use crate::scene::{Camera, EmissionSample, Emitters, Encounter, Footprint, RayOrigin, Scene};
 use crate::workers::Cancel;
 
 /// What one thread follows paths from lights with to where a camera sees them.
 pub(in crate::integrators) struct LightPaths<'a> {
     walk: LightWalk<'a>,
     connections: Connections<'a>,
+}
+
+/// How what they bring is weighed beside what is found in other ways.
+pub(in crate::integrators) struct Weighing<'a> {
+    pub partials: Partials<'a>,
+    /// How many paths there are for all that the camera's rays find.
+    pub paths: f64,
+    /// The way that alone counts, in full, by its vertices on the light's side and on the camera's, if one does.
+    pub alone: Option<[u32; 2]>,
 }
 
 /// What a camera sees of paths.
@@ -33,11 +44,13 @@ struct Connections<'a> {
     /// What these bring, and where to.
     seen: Vec<[f64; 2]>,
     light: Vec<Rgb>,
+    /// None where all that is found counts in full.
+    weighing: Option<Weighing<'a>>,
     splats: Vec<Splat>,
 }
 
 impl<'a> LightPaths<'a> {
-    pub fn new(job: Job<'a>, emitters: &'a Emitters<'a>, limits: Limits) -> Self {
+    pub fn new(job: Job<'a>, emitters: &'a Emitters<'a>, limits: Limits, weighing: Option<Weighing<'a>>) -> Self {
         let Job { scene, camera, footprint, .. } = job;
         let walk = LightWalk::new(scene, emitters, limits, Some(camera));
         let connections = Connections {
@@ -50,6 +63,7 @@ impl<'a> LightPaths<'a> {
             shadows: Shadows::default(),
             seen: Vec::new(),
             light: Vec::new(),
+            weighing,
             splats: Vec::new(),
         };
         Self { walk, connections }
@@ -59,21 +73,52 @@ impl<'a> LightPaths<'a> {
 impl LightWorker for LightPaths<'_> {
     fn follow(&mut self, paths: &mut [Sampler], cancel: &Cancel, splats: &mut Vec<Splat>) {
         self.connections.splats.clear();
+        if let Some(weighing) = &mut self.connections.weighing {
+            weighing.partials.clear();
+        }
         self.walk.follow(paths, cancel, &mut self.connections);
         splats.append(&mut self.connections.splats);
     }
 }
 
-impl Visitor for Connections<'_> {
+impl Weighing<'_> {
+    /// The weight of a path that the camera sees in a direction at a distance.
+    fn weigh(&mut self, arrived: &Arrived, path: &Flying, (direction, distance): (DVec3, f64), seen: f64) -> f64 {
+        if let Some([light, camera]) = self.alone {
+            return if camera == 1 && light == path.bounce + 1 { 1.0 } else { 0.0 };
+        }
+        let comes = seen * arrived.cosine(direction) / self.paths;
+        let met = arrived.met_from(direction, distance, 0.0);
+        let emitters = self.partials.emitters();
+        weight(self.partials.end(path).others(emitters, arrived, &met, comes), 0.0)
+    }
+}
+
+impl<'a> Visitor<'a> for Connections<'a> {
+    fn set_out(&mut self, path: &Flying, light: &EmissionSample) {
+        if let Some(weighing) = &mut self.weighing {
+            weighing.partials.set_out(path, light);
+        }
+    }
+
+    fn go_on(&mut self, arrived: &Arrived<'a>, path: &Flying, next: &Onward) {
+        if let Some(weighing) = &mut self.weighing {
+            weighing.partials.go_on(path, arrived, next);
+        }
+    }
+
     /// Finds out where the camera sees light that has come to a surface, if nothing lies between.
     fn meet(
         &mut self,
-        arrived: &Arrived,
+        arrived: &Arrived<'a>,
         path: &Flying,
         through: &MediumStack,
         (sampler, dimensions): (&mut Sampler, Dimensions),
     ) {
         let here = &arrived.here;
+        if let Some(weighing) = &mut self.weighing {
+            weighing.partials.arrive(path, arrived);
+        }
         if here.bsdf().is_delta() {
             return;
         }
@@ -86,9 +131,12 @@ impl Visitor for Connections<'_> {
             return;
         }
         let width = if self.widths { self.footprint.at(distance).width } else { 0.0 };
-        let light = path.flux * arrived.towards(direction, distance, width) * seen.density;
+        let mut light = path.flux * arrived.towards(direction, distance, width) * seen.density;
         if light.is_black() || !light.is_finite() {
             return;
+        }
+        if let Some(weighing) = &mut self.weighing {
+            light *= weighing.weigh(arrived, path, (direction, distance), seen.density);
         }
         let segment = here.ray_origin().segment(&RayOrigin::free(seen.origin));
         let misses = [arrived.hit.primitive, Ray::NO_TRIANGLE];

@@ -1,6 +1,6 @@
 //! The way of paths that start at lights, one bounce at a time.
 
-use super::adjoint::Arrived;
+use super::adjoint::{Arrived, Onward};
 use super::dimensions::{DIRECTION, Dimensions, LIGHT_CHOICE, OUTSIDE, PLACE, TIME};
 use crate::integrators::nesting::MediumStack;
 use crate::integrators::passing::{Met, Passing};
@@ -8,7 +8,7 @@ use crate::integrators::{is_matt, roulette};
 use crate::math::{Hit, Ray, RayQueue};
 use crate::optics::{Bsdf, Rgb};
 use crate::sampling::Sampler;
-use crate::scene::{Camera, EmissionNumbers, Emitters, Encounter, Scene};
+use crate::scene::{Camera, EmissionNumbers, EmissionSample, Emitters, Encounter, Scene};
 use crate::workers::Cancel;
 
 /// When paths end.
@@ -35,15 +35,26 @@ pub(in crate::integrators) struct LightWalk<'a> {
     now: Queue,
     next: Queue,
     hits: Vec<Hit>,
+    /// When each path is on its way, as the scene counts time, if that is not for the path to draw.
+    times: Vec<f64>,
 }
 
 /// Who is told where paths have come to.
-pub(in crate::integrators) trait Visitor {
+pub(in crate::integrators) trait Visitor<'a> {
     /// A path has set out.
-    fn set_out(&mut self, _path: &Flying) {}
+    fn set_out(&mut self, _path: &Flying, _light: &EmissionSample) {}
 
     /// A path has come to a surface, where a ray that goes through is in these media.
-    fn meet(&mut self, arrived: &Arrived, path: &Flying, through: &MediumStack, numbers: (&mut Sampler, Dimensions));
+    fn meet(
+        &mut self,
+        arrived: &Arrived<'a>,
+        path: &Flying,
+        through: &MediumStack,
+        numbers: (&mut Sampler, Dimensions),
+    );
+
+    /// A path goes on from a surface, unless roulette ends it.
+    fn go_on(&mut self, _arrived: &Arrived<'a>, _path: &Flying, _next: &Onward) {}
 
     /// A path has left the scene.
     fn leave(&mut self, _path: &Flying) {}
@@ -89,7 +100,7 @@ pub(in crate::integrators) struct Flying {
     chance: f64,
     /// What the last surface leaves of light that comes to such a surface again ([`Bsdf::again`]), which counts once
     /// the path has come to another: of all of them on a way, the one that is nearest to the viewer has none.
-    again: Rgb,
+    pub again: Rgb,
     /// Whether it was scattered into a single direction, or nearly so, the last time.
     pub is_sharp: bool,
 }
@@ -108,6 +119,7 @@ impl<'a> LightWalk<'a> {
             now: Queue::default(),
             next: Queue::default(),
             hits: Vec::new(),
+            times: Vec::new(),
         }
     }
 
@@ -115,6 +127,12 @@ impl<'a> LightWalk<'a> {
     pub fn at(mut self, time: Option<f64>) -> Self {
         self.time = time;
         self
+    }
+
+    /// When each path is on its way that will be followed, as the scene counts time.
+    pub fn set_times(&mut self, times: impl Iterator<Item = f64>) {
+        self.times.clear();
+        self.times.extend(times);
     }
 
     /// Whether there is anything that rays may pass.
@@ -128,7 +146,7 @@ impl<'a> LightWalk<'a> {
     }
 
     /// Follows a path for each of these numbers to its end.
-    pub fn follow(&mut self, paths: &mut [Sampler], cancel: &Cancel, visitor: &mut impl Visitor) {
+    pub fn follow(&mut self, paths: &mut [Sampler], cancel: &Cancel, visitor: &mut impl Visitor<'a>) {
         self.start(paths, visitor);
         while !self.now.rays.is_empty() && !cancel.is_raised() {
             self.hits.resize(self.now.rays.len(), Hit::MISS);
@@ -139,7 +157,7 @@ impl<'a> LightWalk<'a> {
     }
 
     /// Lets paths set out.
-    fn start(&mut self, paths: &mut [Sampler], visitor: &mut impl Visitor) {
+    fn start(&mut self, paths: &mut [Sampler], visitor: &mut impl Visitor<'a>) {
         self.now.clear();
         for (number, sampler) in (0u32..).zip(paths) {
             let numbers = EmissionNumbers {
@@ -149,12 +167,14 @@ impl<'a> LightWalk<'a> {
                 direction: sampler.two(DIRECTION),
             };
             let Some(light) = self.emitters.sample(&numbers) else { continue };
-            let time = if self.moves { self.time.unwrap_or_else(|| sampler.one(TIME)) } else { 0.0 };
-            let ray = Ray { time: self.camera.map_or(time, |camera| camera.body().scene_time(time)), ..light.ray };
+            let time =
+                if self.moves && self.times.is_empty() { self.time.unwrap_or_else(|| sampler.one(TIME)) } else { 0.0 };
+            let of_scene = || self.camera.map_or(time, |camera| camera.body().scene_time(time));
+            let ray = Ray { time: self.times.get(number as usize).copied().unwrap_or_else(of_scene), ..light.ray };
             let (flux, start) = (light.weight, light.weight.max());
             let (media, chance, again) = (MediumStack::NONE, -1.0, Rgb::ONE);
             let path = Flying { number, flux, start, time, bounce: 0, media, chance, again, is_sharp: false };
-            visitor.set_out(&path);
+            visitor.set_out(&path, &light);
             self.now.push(&ray, path);
         }
         if self.passing.is_nested() {
@@ -167,7 +187,7 @@ impl<'a> LightWalk<'a> {
     }
 
     /// Takes all paths from their rays' hits to their next rays.
-    fn bounce(&mut self, samplers: &mut [Sampler], visitor: &mut impl Visitor) {
+    fn bounce(&mut self, samplers: &mut [Sampler], visitor: &mut impl Visitor<'a>) {
         self.next.clear();
         self.passing.begin(self.scene, &self.now.rays, &self.hits);
         for i in 0..self.now.rays.len() {
@@ -191,7 +211,7 @@ impl<'a> LightWalk<'a> {
                     }
                     path.bounce += 1;
                     visitor.meet(&arrived, &path, &through, (sampler, dimensions));
-                    self.go_on(&arrived, path, through, sampler, dimensions);
+                    self.go_on(&arrived, path, through, (sampler, dimensions), visitor);
                 }
             }
         }
@@ -201,17 +221,18 @@ impl<'a> LightWalk<'a> {
     /// Sends a path on from a surface, unless it ends there.
     fn go_on(
         &mut self,
-        arrived: &Arrived,
+        arrived: &Arrived<'a>,
         path: Flying,
         through: MediumStack,
-        sampler: &mut Sampler,
-        dimensions: Dimensions,
+        (sampler, dimensions): (&mut Sampler, Dimensions),
+        visitor: &mut impl Visitor<'a>,
     ) {
         if self.limits.max_depth.is_some_and(|most| path.bounce >= most) {
             return;
         }
         let u = sampler.two(dimensions.direction());
         let Some(next) = arrived.onward(|| sampler.one(dimensions.scattering_choice()), u) else { return };
+        visitor.go_on(arrived, &path, &next);
         let mut flux = path.flux * next.weight;
         if path.bounce >= self.limits.roulette_depth.min(roulette::AT_LATEST) {
             let survival = roulette::survival(flux / path.start, 1.0);

@@ -8,7 +8,7 @@ use crate::integrators::light_paths::{Arrived, Dimensions, Flying, LightWalk, Li
 use crate::integrators::nesting::MediumStack;
 use crate::math::DVec3;
 use crate::sampling::Sampler;
-use crate::scene::{Camera, Emitters, Encounter, Scene};
+use crate::scene::{Camera, EmissionSample, Emitters, Encounter, Scene};
 use crate::workers::Cancel;
 use rayon::prelude::*;
 
@@ -113,8 +113,8 @@ struct Storing {
     stored: [Vec<StoredPhoton>; 2],
 }
 
-impl Visitor for Storing {
-    fn set_out(&mut self, path: &Flying) {
+impl Visitor<'_> for Storing {
+    fn set_out(&mut self, path: &Flying, _: &EmissionSample) {
         self.chains.resize(path.number as usize + 1, true);
     }
 

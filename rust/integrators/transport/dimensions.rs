@@ -5,7 +5,7 @@ use crate::sampling::CAMERA_DIMENSIONS;
 /// The dimensions of a bounce. A choice stands at an even one, before the pair that follows from it, with which
 /// samplers place it together; and what every surface asks for stands in the first four.
 #[derive(Clone, Copy)]
-pub(super) struct Dimensions(u32);
+pub(in crate::integrators) struct Dimensions(u32);
 
 impl Dimensions {
     const EACH: u32 = 6;

@@ -38,7 +38,7 @@ impl<N: Features> TransportWorker<'_, N> {
     /// Whether light at the surface of a lane is known.
     #[inline]
     pub(super) fn is_at_known(&self, block: &Block, lane: usize) -> bool {
-        N::GENERAL && self.settings.gather.is_some() && !block.is_diffuse && is_matt(&block.bsdf[lane])
+        N::GENERAL && self.settings.gather.is_some() && !block.is_diffuse && is_matt(block.bsdf.get(lane))
     }
 
     /// Whether the path of a lane looks about from its surface.

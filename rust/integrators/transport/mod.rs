@@ -25,11 +25,12 @@ use super::{Guide, Job, Session, Worker};
 use crate::optics::Rgb;
 use crate::scene::{Scene, ShadingVariant};
 use crate::workers::Cancel;
-pub use first_seen::FirstSeen;
-
+pub(super) use dimensions::Dimensions;
 use features::{Features, General, Open, Plain, Sharing};
+pub use first_seen::FirstSeen;
 pub(super) use matt::{Gather, MattLight, Visit};
 use std::sync::Arc;
+pub(super) use widths::widened;
 use worker::TransportWorker;
 
 /// Along which of the directions that surfaces scatter into paths are followed. What is not followed is left to the

@@ -15,8 +15,23 @@ pub struct EmissionSample {
     pub pdf: EmissionPdf,
     /// The unit normal of the surface that it leaves, on that side; zero where it leaves none.
     pub normal: DVec3,
+    /// What it comes from.
+    pub source: Source,
     /// Whether it comes from outside the scene: its place is one of the plane across its direction.
     pub is_infinite: bool,
+}
+
+/// What light comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Source {
+    /// A surface: the number of the light.
+    Surface(u32),
+    /// A light that is a single point, by its number among those.
+    Point(u32),
+    /// Any of the lights outside, by a direction that several may have.
+    Outside,
+    /// The single direction of a light outside, by its number among those.
+    Direction(u32),
 }
 
 /// The density with which light that sets out is drawn: the product of the two.

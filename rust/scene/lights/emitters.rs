@@ -1,7 +1,7 @@
 //! Light that sets out from the lights of a scene, drawn by their power.
 
 use super::choice::MOST;
-use super::emission_sample::{EmissionPdf, EmissionSample};
+use super::emission_sample::{EmissionPdf, EmissionSample, Source};
 use super::{Emission, LightSampleContext, Lights, Reach, Sides};
 use crate::math::{DVec3, Frame, Hit, Ray, Region};
 use crate::sampling::AliasTable;
@@ -15,14 +15,14 @@ use std::f64::consts::PI;
 /// A light is chosen by its power, a place on it by area, and a direction by the cosine (Dutré, Lafortune and Willems,
 /// "Monte Carlo Light Tracing with Direct Computation of Pixel Intensities", 1993).
 pub struct Emitters<'a> {
-    lights: &'a Lights,
-    geometry: &'a Geometry,
+    pub(super) lights: &'a Lights,
+    pub(super) geometry: &'a Geometry,
     /// Over the lights within the scene, and after them all that comes from outside.
-    choice: AliasTable,
+    pub(super) choice: AliasTable,
     /// How many are within.
-    within: usize,
+    pub(super) within: usize,
     /// The scene's box: its middle, and half its size.
-    middle: DVec3,
+    pub(super) middle: DVec3,
     half: DVec3,
 }
 
@@ -65,14 +65,14 @@ impl<'a> Emitters<'a> {
             self.of_infinite(numbers)?
         } else if let Some(&primitive) = self.lights.surfaces.get(chosen) {
             let emission = self.lights.emission(self.geometry.locate(primitive).0);
-            self.of_primitive(emission, primitive, numbers)?
+            self.of_primitive(emission, chosen, primitive, numbers)?
         } else {
             let number = chosen - self.lights.surfaces.len();
             match number.checked_sub(self.lights.copied.len()) {
                 None => {
                     let (emission, surface, hit, pdf) =
                         self.lights.copied.place(number, self.geometry, numbers.place)?;
-                    self.of_surface(emission, &surface, hit, pdf, numbers.direction)?
+                    self.of_surface(emission, (chosen, &surface), hit, pdf, numbers.direction)?
                 }
                 Some(number) => self.of_point(number, numbers)?,
             }
@@ -91,12 +91,19 @@ impl<'a> Emitters<'a> {
             weight: drawn.weight,
             pdf: EmissionPdf { place: 1.0, direction: drawn.pdf },
             normal: DVec3::ZERO,
+            source: Source::Point(number as u32),
             is_infinite: false,
         })
     }
 
     /// From a primitive of the scene that is no instance.
-    fn of_primitive(&self, emission: &Emission, primitive: u32, numbers: &EmissionNumbers) -> Option<EmissionSample> {
+    fn of_primitive(
+        &self,
+        emission: &Emission,
+        light: usize,
+        primitive: u32,
+        numbers: &EmissionNumbers,
+    ) -> Option<EmissionSample> {
         let (surface, uv, pdf) = match self.geometry.shape(primitive) {
             Some(shape) => {
                 let drawn = shape.sample(numbers.place)?;
@@ -108,15 +115,15 @@ impl<'a> Emitters<'a> {
             }
         };
         let hit = Hit { t: 1.0, uv, primitive, inner: 0 };
-        self.of_surface(emission, &surface, hit, pdf, numbers.direction)
+        self.of_surface(emission, (light, &surface), hit, pdf, numbers.direction)
     }
 
-    /// From a point of a surface that was drawn with a density, by area; the hit is that of a ray that meets it from at
-    /// distance 1.
+    /// From a point of a surface, a light of this number, that was drawn with a density, by area; the hit is that of a
+    /// ray that meets it from at distance 1.
     fn of_surface(
         &self,
         emission: &Emission,
-        surface: &SurfacePoint,
+        (light, surface): (usize, &SurfacePoint),
         hit: Hit,
         pdf: f64,
         [u, v]: [f64; 2],
@@ -140,6 +147,7 @@ impl<'a> Emitters<'a> {
             weight: radiance * (PI * sides / pdf),
             pdf: EmissionPdf { place: pdf, direction: local.z / (PI * sides) },
             normal,
+            source: Source::Surface(light as u32),
             is_infinite: false,
         })
     }
@@ -147,13 +155,13 @@ impl<'a> Emitters<'a> {
     /// From outside: a direction, and a place on a rectangle across it from which all of the box is reached.
     fn of_infinite(&self, numbers: &EmissionNumbers) -> Option<EmissionSample> {
         let receiver = LightSampleContext::free(self.middle);
-        let drawn = self.lights.infinite.sample(&receiver, numbers.outside, numbers.place)?;
+        let chosen = self.lights.infinite.choose(numbers.outside);
+        let drawn = self.lights.infinite.sample_of(chosen, &receiver, numbers.place)?;
         let frame = Frame::new(drawn.direction);
-        let covered = |axis: DVec3| axis.abs().dot(self.half);
-        let [across, other] = [frame.tangent, frame.bitangent].map(covered);
+        let [across, other] = self.covered(&frame);
         let [x, y] = numbers.direction.map(|u| 2.0 * u - 1.0);
         // A little before the box, so that nothing of it is left out.
-        let back = covered(drawn.direction) + 0.01 * self.half.length();
+        let back = drawn.direction.abs().dot(self.half) + 0.01 * self.half.length();
         let origin =
             self.middle + frame.tangent * (across * x) + frame.bitangent * (other * y) + drawn.direction * back;
         let area = 4.0 * across * other;
@@ -162,8 +170,14 @@ impl<'a> Emitters<'a> {
             weight: drawn.weight * area,
             pdf: EmissionPdf { place: 1.0 / area, direction: drawn.pdf },
             normal: DVec3::ZERO,
+            source: if drawn.pdf == f64::INFINITY { Source::Direction(chosen as u32) } else { Source::Outside },
             is_infinite: true,
         })
+    }
+
+    /// Half of what the scene's box covers along the two axes across a direction.
+    pub(super) fn covered(&self, frame: &Frame) -> [f64; 2] {
+        [frame.tangent, frame.bitangent].map(|axis| axis.abs().dot(self.half))
     }
 }
 

@@ -86,15 +86,33 @@ impl InfiniteLights {
         each.map(|(light, probability)| probability * light.infinite_pdf(receiver, direction)).sum()
     }
 
-    /// Draws light from one of them. Where several may have been the one, the density is that of all, and so is the
-    /// radiance.
+    /// Which of them is chosen by a number in [0, 1).
     #[inline]
-    pub fn sample(&self, receiver: &LightSampleContext, mut choice: f64, u: [f64; 2]) -> Option<LightSample> {
+    pub fn choose(&self, mut choice: f64) -> usize {
         let mut chosen = 0;
         while chosen + 1 < self.lights.len() && choice >= self.probabilities[chosen] {
             choice -= self.probabilities[chosen];
             chosen += 1;
         }
+        chosen
+    }
+
+    /// The probability of one, given that one is chosen.
+    #[inline]
+    pub fn probability(&self, one: usize) -> f64 {
+        self.probabilities[one]
+    }
+
+    /// Draws light from one of them. Where several may have been the one, the density is that of all, and so is the
+    /// radiance.
+    #[inline]
+    pub fn sample(&self, receiver: &LightSampleContext, choice: f64, u: [f64; 2]) -> Option<LightSample> {
+        self.sample_of(self.choose(choice), receiver, u)
+    }
+
+    /// The same from the one that was chosen.
+    #[inline]
+    pub fn sample_of(&self, chosen: usize, receiver: &LightSampleContext, u: [f64; 2]) -> Option<LightSample> {
         let probability = self.probabilities[chosen];
         if probability == 0.0 {
             return None;

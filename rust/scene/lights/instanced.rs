@@ -115,6 +115,25 @@ impl Copied {
         Some((prototype.appearance(inner).1, surface, Hit { t: 1.0, uv, primitive, inner }, pdf / stretch))
     }
 
+    /// Which instance one is in.
+    pub fn primitive(&self, light: usize) -> u32 {
+        self.lights[light].primitive
+    }
+
+    /// How many sides of one shine, and about how large it is: what is no triangle as if its instance stretched it
+    /// alike in each direction.
+    pub fn extent(&self, light: usize, geometry: &Geometry) -> Option<(f64, f64)> {
+        let Light { primitive, inner, corners: [a, b, c] } = &self.lights[light];
+        let (instances, instance) = geometry.instance(*primitive)?;
+        let prototype = instances.prototype();
+        let (own, sides) = (prototype.split(*inner).0, prototype.appearance(*inner).1.sides.count());
+        let Some(shape) = prototype.geometry().shape(own) else {
+            return Some((sides, 0.5 * (*b - *a).cross(*c - *a).length()));
+        };
+        let stretch = instances.pose(instance, 0.0)?.map()?.determinant().abs().cbrt();
+        Some((sides, shape.area() * stretch * stretch))
+    }
+
     /// How many there are.
     pub fn len(&self) -> usize {
         self.lights.len()

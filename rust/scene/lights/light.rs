@@ -76,6 +76,11 @@ pub trait Light: Debug + Send + Sync {
         None
     }
 
+    /// The density, by solid angle, with which [`Light::sample_emission`] draws a unit direction.
+    fn emission_pdf(&self, _direction: DVec3) -> f64 {
+        0.0
+    }
+
     /// The memory held.
     fn bytes(&self) -> usize;
 }

@@ -3,6 +3,7 @@
 mod bounds;
 mod choice;
 mod constant;
+mod departures;
 mod directional;
 mod emission_sample;
 mod emitters;
@@ -30,8 +31,9 @@ mod triangle;
 
 pub use bounds::LightBounds;
 pub use constant::ConstantEnvironment;
+pub use departures::Departure;
 pub use directional::DirectionalLight;
-pub use emission_sample::{EmissionPdf, EmissionSample, PointEmission};
+pub use emission_sample::{EmissionPdf, EmissionSample, PointEmission, Source};
 pub use emitters::{EmissionNumbers, Emitters, not_drawn};
 pub use light::{Light, Place, Reach};
 pub use light_lanes::{LightContextLanes, LightLanes};

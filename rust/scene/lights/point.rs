@@ -45,6 +45,10 @@ impl Light for PointLight {
         Some(Place::Point(self.position))
     }
 
+    fn emission_pdf(&self, _: DVec3) -> f64 {
+        UNIFORM_SPHERE_PDF
+    }
+
     fn bytes(&self) -> usize {
         size_of::<Self>()
     }

@@ -113,6 +113,12 @@ impl Light for Projector {
         Some(Place::Point(self.position))
     }
 
+    /// Beside the picture it does not matter: nothing is sent there.
+    fn emission_pdf(&self, direction: DVec3) -> f64 {
+        let (ahead, [x, y]) = (self.axes[2].dot(direction), self.half);
+        if ahead > 0.0 { 1.0 / (ahead * ahead * ahead * 4.0 * x * y) } else { 0.0 }
+    }
+
     fn bytes(&self) -> usize {
         size_of::<Self>() + self.picture.bytes()
     }

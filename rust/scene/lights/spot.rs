@@ -63,6 +63,13 @@ impl SpotLight {
     }
 }
 
+impl SpotLight {
+    /// 1 − cos of the cone, by half the angle, which keeps its digits where the cone is narrow.
+    fn height(&self) -> f64 {
+        if self.cosines[1] == 0.0 { 1.0 } else { 2.0 * (0.5 * self.angle).sin().powi(2) }
+    }
+}
+
 impl Light for SpotLight {
     fn validate(&self) -> Result<(), String> {
         if !(self.position.is_finite() && self.intensity.is_radiance()) {
@@ -102,8 +109,7 @@ impl Light for SpotLight {
 
     /// Even in the cone.
     fn sample_emission(&self, [u, v]: [f64; 2]) -> Option<PointEmission> {
-        // 1 − cos, by half the angle, which keeps its digits where the cone is narrow.
-        let most = if self.cosines[1] == 0.0 { 1.0 } else { 2.0 * (0.5 * self.angle).sin().powi(2) };
+        let most = self.height();
         let height = most * u;
         let ((sin, cos), out) = ((TAU * v).sin_cos(), (height * (2.0 - height)).sqrt());
         let direction = Frame::new(self.axis).to_world(DVec3::new(out * cos, out * sin, 1.0 - height));
@@ -114,6 +120,11 @@ impl Light for SpotLight {
 
     fn place(&self) -> Option<Place> {
         Some(Place::Point(self.position))
+    }
+
+    /// Beyond the cone it does not matter: nothing is sent there.
+    fn emission_pdf(&self, _: DVec3) -> f64 {
+        1.0 / (TAU * self.height())
     }
 
     fn bytes(&self) -> usize {

@@ -1,0 +1,249 @@
+//! How much each of the ways counts in which one path may be found.
+//!
+//! A path of s vertices walked from a light and t from the camera, which is one of them, is found by every split of its
+//! vertices among the two. By the balance heuristic (Veach, "Robust Monte Carlo Methods for Light Transport
+//! Simulation", 1997, 9.2) each counts by its density over the sum of all. The ratios of the others' densities to one's
+//! own are gathered along both walks, each in two sums that are known without the other end (Georgiev, "Implementing
+//! Vertex Connection and Merging", 2012): no walk is looked at again.
+//!
+//! Weights of one path add up to 1 as long as all of its ways put the same numbers in, whatever these are. So roulette
+//! and masks, which are passed by chance, are left out, and where a direction is single, the chance that it was drawn
+//! with counts as the same from both ends.
+
+use crate::scene::Departure;
+
+/// What is known, where a walk has come to, of the other ways to find its vertices: Georgiev's d_VCM and d_VC.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::integrators) struct Partial {
+    /// Of the way in which the walk from the other end comes to this vertex, less the density of that: the inverse of
+    /// the density with which this one came here.
+    here: f64,
+    /// Of those in which the other walk goes on from here, less the density with which it does.
+    beyond: f64,
+}
+
+impl Partial {
+    /// That of light that sets out. At its first surface, [`Partial::asked`] comes before all else but arriving.
+    pub fn of_light(departure: &Departure) -> Self {
+        let share = departure.cosine / departure.density;
+        Self { here: share, beyond: if departure.is_single() { 0.0 } else { share } }
+    }
+
+    /// Light has come to its first surface, under the cosine of an angle to the normal.
+    pub fn arrived_first(self, cosine: f64) -> Self {
+        Self { here: self.here / cosine, beyond: self.beyond / cosine }
+    }
+
+    /// With the density with which light is asked for from the first surface.
+    pub fn asked(self, density: f64) -> Self {
+        Self { here: self.here * density, ..self }
+    }
+
+    /// That of what the camera sees first: `density` is that of its rays, of which there are as many as paths from
+    /// lights, by area.
+    pub fn of_camera(paths: f64, density: f64) -> Self {
+        Self { here: if density > 0.0 { paths / density } else { 0.0 }, beyond: 0.0 }
+    }
+
+    /// The walk has come to a surface over a distance, under the cosine of an angle to the normal.
+    pub fn arrived(self, distance: f64, cosine: f64) -> Self {
+        Self { here: self.here * (distance * distance / cosine), beyond: self.beyond / cosine }
+    }
+
+    /// The walk goes on under the cosine of an angle to the normal, in a direction of a density, where the other would
+    /// go back with another.
+    pub fn scattered(self, cosine: f64, forward: f64, reverse: f64) -> Self {
+        Self { here: 1.0 / forward, beyond: cosine / forward * (self.beyond * reverse + self.here) }
+    }
+
+    /// The same in a single direction: no other walk ends or begins here.
+    pub fn scattered_singly(self, cosine: f64) -> Self {
+        Self { here: 0.0, beyond: self.beyond * cosine }
+    }
+
+    /// The densities of all ways in which the other walk comes here and on, over that of a connection to here: it comes
+    /// with a density, by area, and goes back along this one with another.
+    pub fn others(&self, comes: f64, reverse: f64) -> f64 {
+        comes * (self.here + self.beyond * reverse)
+    }
+
+    /// How much it counts that a walk from the camera has come upon light that is asked for with a density, and sets
+    /// out so; `self` before arriving.
+    pub fn of_found(&self, asked: f64, departure: &Departure) -> f64 {
+        weight(self.here * asked, self.beyond * departure.density / departure.cosine)
+    }
+}
+
+/// How much it counts where light was asked for with a density, which sets out so: a ray of the walk comes upon it with
+/// another density, and light comes under the cosine of an angle to the normal, where the walk from the light would go
+/// on along the other with the last.
+pub(in crate::integrators) fn of_asked(
+    eye: &Partial,
+    (asked, departure): (f64, &Departure),
+    forward: f64,
+    cosine: f64,
+    reverse: f64,
+) -> f64 {
+    let found = if departure.is_single() { 0.0 } else { forward / asked };
+    weight(found, eye.others(departure.density * cosine / (asked * departure.cosine), reverse))
+}
+
+/// The weight of a way by what all others have, of vertices on either side.
+pub(in crate::integrators) fn weight(one: f64, other: f64) -> f64 {
+    let weight = 1.0 / (1.0 + one + other);
+    // Densities that no number holds, or that are known for none of the ways.
+    if weight.is_nan() { 0.0 } else { weight }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sampling::Sampler;
+    use crate::scene::Source;
+
+    /// A path of any densities: x₀ at the light, and then surfaces up to the one that the camera sees first.
+    struct Made {
+        /// Between a vertex and the next.
+        distance: Vec<f64>,
+        /// At a vertex, towards the one before and the one after.
+        before: Vec<f64>,
+        after: Vec<f64>,
+        /// With which light goes on at a vertex, and a walk from the camera goes back, by solid angle.
+        onward: Vec<f64>,
+        back: Vec<f64>,
+        is_single: Vec<bool>,
+        departure: Departure,
+        asked: f64,
+        seen: f64,
+        paths: f64,
+    }
+
+    fn made(number: u32, length: usize, is_point: bool) -> Made {
+        let mut sampler = Sampler::new(9, number, 0);
+        let mut dimension = 0;
+        let mut any = || {
+            dimension += 1;
+            0.05 + 3.0 * sampler.one(dimension)
+        };
+        let mut all = || (0..=length).map(|_| any()).collect::<Vec<f64>>();
+        let [distance, before, after, onward, back] = [(); 5].map(|()| all());
+        let single = all();
+        // Neither the light nor its neighbours in turn: of two singles in a row there is no other way.
+        let is_single = (0..=length).map(|i| i > 0 && single[i] < 1.0).collect();
+        let cosine = if is_point { 1.0 } else { after[0] };
+        let source = if is_point { Source::Point(0) } else { Source::Surface(0) };
+        let departure = Departure { source, density: any(), cosine };
+        Made { distance, before, after, onward, back, is_single, departure, asked: any(), seen: any(), paths: 64.0 }
+    }
+
+    impl Made {
+        fn last(&self) -> usize {
+            self.before.len() - 1
+        }
+
+        /// The density of the way that has s vertices from the light, up to a factor that all have; none if there is no
+        /// such way. Written out with no regard to the recursion.
+        fn density(&self, s: usize) -> Option<f64> {
+            let last = self.last();
+            // Vertices that either walk scatters at may be single; those that are connected may not.
+            if s > 0 && s <= last && (self.is_single[s] || s > 1 && self.is_single[s - 1]) {
+                return None;
+            }
+            if s == last + 1 && self.is_single[last] || s == 0 && self.departure.is_single() {
+                return None;
+            }
+            let area = |pdf: f64, cosine: f64, distance: f64| pdf * cosine / (distance * distance);
+            let scattered = |i: usize, pdf: f64| if self.is_single[i] { 1.0 } else { pdf };
+            let mut all = 1.0;
+            for i in 0..=last {
+                let is_of_light = i < s;
+                all *= match i {
+                    // Where the light is, times its direction to the first surface.
+                    0 if s > 1 => area(self.departure.density, self.before[1], self.distance[0]),
+                    0 if s == 1 => area(self.asked, self.departure.cosine, self.distance[0]),
+                    1 if is_of_light => 1.0,
+                    _ if is_of_light => {
+                        let pdf = scattered(i - 1, self.onward[i - 1]);
+                        area(pdf, self.before[i], self.distance[i - 1])
+                    }
+                    _ if i == last => self.seen / self.paths,
+                    _ => {
+                        let pdf = scattered(i + 1, self.back[i + 1]);
+                        let cosine = if i == 0 { self.departure.cosine } else { self.after[i] };
+                        area(pdf, cosine, self.distance[i])
+                    }
+                };
+            }
+            Some(all)
+        }
+
+        /// The weight of that way by the recursion.
+        fn weight(&self, s: usize) -> f64 {
+            let last = self.last();
+            let mut eye = Partial::of_camera(self.paths, self.seen);
+            let first = s.max(1);
+            for i in (first..=last).rev() {
+                if i < last {
+                    eye = eye.arrived(self.distance[i], self.after[i]);
+                }
+                let goes_on = i > first || s == 0;
+                if goes_on && self.is_single[i] {
+                    eye = eye.scattered_singly(self.before[i]);
+                } else if goes_on {
+                    eye = eye.scattered(self.before[i], self.back[i], self.onward[i]);
+                }
+            }
+            match s {
+                0 => return eye.of_found(self.asked, &self.departure),
+                1 => {
+                    let asked = (self.asked, &self.departure);
+                    return of_asked(&eye, asked, self.back[1], self.before[1], self.onward[1]);
+                }
+                _ => {}
+            }
+            let mut light = Partial::of_light(&self.departure);
+            for i in 1..s {
+                light = match i {
+                    1 => light.arrived_first(self.before[1]).asked(self.asked),
+                    _ => light.arrived(self.distance[i - 1], self.before[i]),
+                };
+                if i + 1 < s && self.is_single[i] {
+                    light = light.scattered_singly(self.after[i]);
+                } else if i + 1 < s {
+                    light = light.scattered(self.after[i], self.onward[i], self.back[i]);
+                }
+            }
+            let end = s - 1;
+            if s == last + 1 {
+                return weight(light.others(self.seen / self.paths, self.back[end]), 0.0);
+            }
+            let square = self.distance[end] * self.distance[end];
+            let one = light.others(self.back[s] * self.after[end] / square, self.back[end]);
+            let other = eye.others(self.onward[end] * self.before[s] / square, self.onward[s]);
+            weight(one, other)
+        }
+    }
+
+    #[test]
+    fn weights_are_the_balance_heuristic_and_add_up_to_one() {
+        let mut found = 0;
+        for number in 0..2000 {
+            let path = made(number, 1 + number as usize % 6, number % 3 == 0);
+            let ways: Vec<_> = (0..=path.last() + 1).filter_map(|s| Some((s, path.density(s)?))).collect();
+            let all: f64 = ways.iter().map(|(_, density)| density).sum();
+            for &(s, density) in &ways {
+                let weight = path.weight(s);
+                assert!((weight - density / all).abs() < 1e-12, "{number}, {s}: {weight} {}", density / all);
+            }
+            found += usize::from(ways.len() > 1);
+        }
+        assert!(found > 1000, "{found}");
+    }
+
+    #[test]
+    fn weights_of_extremes_are_numbers() {
+        for (one, other) in [(f64::INFINITY, 0.0), (f64::NAN, 1.0), (1e300, 1e300), (0.0, 0.0)] {
+            assert!((0.0..=1.0).contains(&weight(one, other)));
+        }
+    }
+}

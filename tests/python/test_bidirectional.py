@@ -1,0 +1,403 @@
+"""Bidirectional path tracing: the pictures of path tracing, and light that is hard to reach."""
+
+import math
+import pickle
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+import pytest
+
+import raywright as rw
+
+SIDE = 24
+
+
+def square(size, height, *, up=True, **kwargs):
+    corners = [(-size, -size, height), (size, -size, height), (size, size, height), (-size, size, height)]
+    faces = [(0, 1, 2), (0, 2, 3)] if up else [(0, 2, 1), (0, 3, 2)]
+    return rw.Mesh(corners, faces, **kwargs)
+
+
+def lamp(height=2.0, size=0.5, radiance=20.0):
+    return square(size, height, up=False, material=rw.Diffuse(0), emission=radiance)
+
+
+def camera(at=(3, -2, 2.5), target=(0, 0, 0.3), fov=40, side=SIDE):
+    return rw.Camera(at, target, up=(0, 0, 1), fov=fov, width=side, height=side)
+
+
+def blocks(values):
+    side = values.shape[0]
+    return values.astype(float).reshape(side // 8, 8, side // 8, 8, 3).mean((1, 3))
+
+
+def assert_same_picture(scene, camera, samples=64, paths=256, depth=None, path=None):
+    """Blocks of 8 x 8 pixels agree within five of the joint standard errors, which chance exceeds once in two
+    million. In the middle block those are below a tenth."""
+    ours = rw.render(scene, camera, rw.Bidirectional(depth), samples, progress=False)
+    theirs = rw.render(scene, camera, path or rw.Path(depth, reuse=1), paths, progress=False)
+    off = np.abs(blocks(ours.rgb) - blocks(theirs.rgb))
+    variance = blocks(ours.standard_error.astype(float) ** 2) + blocks(
+        theirs.standard_error.astype(float) ** 2
+    )
+    error = np.sqrt(variance / 64)
+    ratio = off / (error + 1e-6 * blocks(theirs.rgb) + 1e-12)
+    assert ratio.max() < 5, ratio.round(1)
+    assert np.median(error / (blocks(theirs.rgb) + 1e-12)) < 0.1
+    return ours, theirs
+
+
+def mean(image):
+    """Mean of green over the picture, and its standard error."""
+    error = np.square(image.standard_error[..., 1].astype(float)).sum()
+    return float(image.rgb[..., 1].mean(dtype=float)), math.sqrt(error) / image.rgb[..., 1].size
+
+
+def assert_mean(image, expected, most):
+    """Within three standard errors, which are at most a share of what is expected. Chance exceeds three once
+    in 370 seeds, and seeds are fixed."""
+    found, error = mean(image)
+    assert error <= most * expected, error / expected
+    assert abs(found - expected) <= 3 * error, (found, error, expected)
+
+
+def ball(divisions, material, centre=(0, 0, 0.6), radius=0.6):
+    """A ball of few triangles with the normals of a sphere."""
+    trimesh = pytest.importorskip("trimesh")
+    sphere = trimesh.creation.icosphere(divisions, radius)
+    normals = sphere.vertices / np.linalg.norm(sphere.vertices, axis=1, keepdims=True)
+    return rw.Mesh(sphere.vertices + centre, sphere.faces, normals=normals, material=material)
+
+
+MATERIALS = {
+    "diffuse": rw.Diffuse((0.8, 0.5, 0.2)),
+    "Oren-Nayar": rw.OrenNayar(0.7, 0.4),
+    "rough gold": rw.Conductor("Au", roughness=0.5),
+    "plastic": rw.Plastic((0.2, 0.4, 0.7), roughness=0.4),
+    "Phong": rw.Phong(0.4, 0.4, 20),
+    "rough glass": rw.Dielectric(1.5, roughness=0.6),
+    "metallic": rw.MetallicRough((0.7, 0.3, 0.2), 0.5, 0.5),
+}
+
+
+@pytest.mark.parametrize("name", MATERIALS)
+def test_every_material_scatters_as_paths_see_it(name):
+    # The geometric normals of twenty triangles are far from the shading normals.
+    scene = rw.Scene([square(3, 0, material=rw.Diffuse(0.6)), lamp(), ball(0, MATERIALS[name])])
+    assert_same_picture(scene, camera())
+
+
+def test_what_is_sharp_and_what_is_beside_it():
+    shapes = [
+        square(3, 0, material=rw.Diffuse(0.6)),
+        lamp(size=1.0),
+        rw.Sphere((0.3, 0, 0.6), 0.6, material=rw.Dielectric(1.5)),
+        rw.Sphere((-0.9, 0.3, 0.4), 0.4, material=rw.Mirror()),
+        rw.Sphere((-0.2, -1.1, 0.3), 0.3, material=rw.Plastic((0.2, 0.4, 0.7))),
+    ]
+    assert_same_picture(rw.Scene(shapes), camera(), paths=1024, path=rw.Path(reuse=1, caustics=False))
+
+
+def test_bumps_textures_masks_and_sides():
+    checker = rw.Checker((0.9, 0.2, 0.1), 0.3, 4)
+    floor = square(3, 0, material=rw.BumpMap(rw.Diffuse(checker), rw.Noise(), scale=0.2))
+    lace = square(0.8, 1.0, material=rw.Mask(rw.Diffuse(0.7), rw.Checker(1, 0.3, 6)))
+    wall = rw.Mesh(
+        [(-2, 2, 0), (2, 2, 0), (2, 2, 2), (-2, 2, 2)], [(0, 2, 1), (0, 3, 2)], material=rw.Diffuse(0.5)
+    )
+    assert_same_picture(rw.Scene([floor, lace, wall, lamp()]), camera())
+
+
+@pytest.mark.parametrize(
+    "light",
+    [
+        rw.PointLight((0.5, 0.2, 2), 6),
+        rw.SpotLight((0.5, 0.2, 2), (0, 0, 0), 9, angle=35, falloff=10),
+        rw.DirectionalLight((0.3, 0.2, -1), (2, 1, 1)),
+        rw.ConstantEnvironment((0.5, 0.7, 1)),
+        rw.SunSky((1, 1, 0.8), up=(0, 0, 1)),
+    ],
+    ids=lambda light: type(light).__name__,
+)
+def test_every_light_is_weighed(light):
+    shapes = [square(3, 0, material=rw.Diffuse(0.6)), ball(2, rw.Diffuse(0.8)), rw.Sphere((1, 1, 0.4), 0.4)]
+    is_around = isinstance(light, rw.ConstantEnvironment | rw.SunSky)
+    scene = rw.Scene(shapes, environment=light) if is_around else rw.Scene(shapes, lights=[light])
+    assert_same_picture(scene, camera())
+
+
+def test_lights_of_every_kind_together():
+    shapes = [
+        square(3, 0, material=rw.Diffuse(0.6)),
+        lamp(height=3.0),
+        rw.Sphere((0, 0, 2.2), 0.3, emission=8),
+        rw.Torus((0.3, 0, 0.6), 0.6, 0.2, emission=2),
+        rw.Ellipsoid((-0.8, -0.3, 0.4), (0.2, 0.3, 0.4), emission=3),
+    ]
+    lights = [
+        rw.PointLight((-1, 1, 2), 3),
+        rw.DirectionalLight((0.3, 0.2, -1), 1),
+        rw.DirectionalLight((-0.3, 0.2, -1), 0.5),
+    ]
+    scene = rw.Scene(shapes, lights=lights, environment=rw.ConstantEnvironment((0.5, 0.7, 1)))
+    assert_same_picture(scene, camera())
+
+
+def test_what_shines_in_instances_and_what_moves():
+    glow = rw.Mesh([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 2, 1)], material=rw.Diffuse(0), emission=9)
+    bulb = rw.Sphere((0, 0, 0.3), 0.2, emission=5)
+    places = np.tile(np.eye(4), (3, 1, 1))
+    places[:, :3, 3] = [(-1, -1, 1.5), (0.5, 0, 2), (0, 1, 1.2)]
+    places[1, 0, 0] = 0.3
+    flag = rw.Mesh([(-0.5, 0, 0.5), (0.5, 0, 0.5), (0, 0, 1.2)], [(0, 1, 2)], material=rw.Diffuse(0.9))
+    end = np.eye(4)
+    end[1, 3] = 1
+    moved = rw.Instance([flag], np.eye(4), end)
+    scene = rw.Scene([square(3, 0, material=rw.Diffuse(0.6)), rw.Instance([glow, bulb], places), moved])
+    assert_same_picture(scene, camera())
+
+
+def test_media_that_lie_in_one_another():
+    glass = rw.Dielectric(1.5, roughness=0.5, priority=1)
+    water = rw.Dielectric(1.33, roughness=0.5)
+    scene = rw.Scene(
+        [
+            square(3, 0, material=rw.Diffuse(0.6)),
+            rw.Sphere((0, 0, 0.7), 0.6, material=glass),
+            rw.Box((-0.4, -0.4, 0.3), (0.9, 0.4, 1.0), material=water),
+            lamp(size=1.0),
+        ]
+    )
+    assert_same_picture(scene, camera())
+
+
+@pytest.mark.parametrize(
+    "look",
+    [
+        rw.ThinLens(
+            (0.5, 0.5, 2.4),
+            (0.5, 0.4, 0),
+            fov=39,
+            width=SIDE,
+            height=SIDE,
+            aperture_radius=0.1,
+            focus_distance=2.0,
+        ),
+        rw.Orthographic((0.5, 0.5, 2.4), (0.5, 0.4, 0), scale=1.1, width=SIDE, height=SIDE),
+        rw.Panorama((0.4, 0.6, 0.9), (0.4, 0.4, 0), width=SIDE, height=SIDE),
+        rw.Fisheye((0.4, 0.6, 0.9), (0.4, 0.4, 0), fov=150, width=SIDE, height=SIDE),
+    ],
+    ids=lambda look: type(look).__name__,
+)
+def test_every_camera(look):
+    scene, _ = rw.scenes.cornell_box(width=SIDE, height=SIDE)
+    assert_same_picture(scene, look)
+
+
+@pytest.mark.parametrize("depth", [0, 1, 2, 3])
+def test_depths_count_bounces(depth):
+    scene, look = rw.scenes.cornell_box(width=SIDE, height=SIDE)
+    assert_same_picture(scene, look, depth=depth)
+
+
+def hollow(aperture, *, centre=0.0, up=True, rings=96, **kwargs):
+    """A sphere of radius 1 that faces inwards, less the cap beyond a circle about the top, or the bottom."""
+    start = math.asin(aperture)
+    polar = start + np.linspace(0, 1, rings) ** 1.5 * (math.pi - start)
+    around = np.arange(2 * rings) * (math.pi / rings)
+    out, z = np.sin(polar)[:, None], np.cos(polar)[:, None]
+    x, y, z = np.broadcast_arrays(out * np.cos(around), out * np.sin(around), z if up else -z)
+    i, j = np.meshgrid(np.arange(rings - 1), np.arange(2 * rings), indexing="ij")
+    k = (j + 1) % (2 * rings)
+    a, b, c, d = (r * 2 * rings + s for r, s in [(i, j), (i + 1, j), (i + 1, k), (i, k)])
+    # The last ring is the pole, where one of the two triangles has no area.
+    faces = np.concatenate(
+        [np.stack(three, -1).reshape(-1, 3) for three in [(a[:-1], c[:-1], b[:-1]), (a, d, c)]]
+    )
+    vertices = np.stack([x, y, z + centre], -1).reshape(-1, 3)
+    return rw.Mesh(vertices, faces if up else faces[:, ::-1], **kwargs)
+
+
+def test_light_behind_a_port():
+    # A point light in a hollow sphere whose wall has a port: the receiver sees the wall alone, whose radiosity
+    # is rho I / (1 - rho (1 - s)), with s the share of the sphere that is cut away. The port sends what a disk
+    # of that radiosity would.
+    port, rho, far, aside = 0.1, 0.9, 0.5, 0.3
+    rim = math.sqrt(1 - port**2)
+    share = (1 - rim) / 2
+    wall = rho / (1 - rho * (1 - share))
+    # The configuration factor of a disk for a parallel element (Walsh 1958).
+    h, r = far / port, aside / port
+    factor = 0.5 * (1 - (h * h + r * r - 1) / math.sqrt((h * h + r * r + 1) ** 2 - 4 * r * r))
+    expected = wall * factor
+    assert abs(wall - 8.80146936562785) < 1e-12
+    assert abs(expected - 0.189124193924197) < 1e-12
+    height = rim + far
+    size = 1e-3
+    receiver = rw.Mesh(
+        [(aside + x * size, y * size, height) for x, y in [(-1, -1), (1, -1), (1, 1), (-1, 1)]],
+        [(0, 2, 1), (0, 3, 2)],
+        material=rw.Diffuse(1e-3),
+    )
+    scene = rw.Scene([hollow(port, material=rw.Diffuse(rho)), receiver], lights=[rw.PointLight((0, 0, 0), 1)])
+    look = rw.Camera(
+        (aside + 0.3, 0, height - 0.3), (aside, 0, height), up=(0, 0, 1), fov=0.1, width=8, height=8
+    )
+    image = rw.render(scene, look, rw.Bidirectional(), 256, progress=False)
+    found, error = mean(image)
+    # The wall of straight pieces, and the receiver of 1e-3, are off by less than a thousandth.
+    assert abs(found - 1e-3 * expected / math.pi) < 3 * error + 1e-3 * 1e-3 * expected
+    assert error < 0.02 * found
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("aperture", "rho", "expected"),
+    [
+        (0.5, (0.5, 0.8), (1.89963972281447, 0.401441108742115)),
+        (0.01, (0.8, 0.8), (4.99950008748438, 0.000499912515622227)),
+    ],
+)
+def test_chambers_that_light_each_other_through_a_hole(aperture, rho, expected):
+    # A point of a sphere sees the opening under the factor s wherever it lies: each wall is even.
+    # BA = 1 + rA ((1 - s) BA + s BB), BB = rB ((1 - s) BB + s BA).
+    rim = math.sqrt(1 - aperture**2)
+    s = (1 - rim) / 2
+    matrix = np.array([[1 - rho[0] * (1 - s), -rho[0] * s], [-rho[1] * s, 1 - rho[1] * (1 - s)]])
+    np.testing.assert_allclose(np.linalg.solve(matrix, [1, 0]), expected, rtol=1e-12)
+    first = hollow(aperture, material=rw.Diffuse(rho[0]), emission=1 / math.pi)
+    second = hollow(aperture, centre=2 * rim, up=False, material=rw.Diffuse(rho[1]))
+    scene = rw.Scene([first, second])
+    for centre, radiosity, samples in [(0, expected[0], 64), (2 * rim, expected[1], 256)]:
+        # Away from the hole, over what is as bright all over.
+        look = rw.Camera((0.1, 0.2, centre), (1, 0.3, centre), up=(0, 0, 1), fov=60, width=16, height=16)
+        found, error = mean(rw.render(scene, look, rw.Bidirectional(), samples, progress=False))
+        # Walls of straight pieces are off by less than a thousandth.
+        assert abs(found - radiosity / math.pi) < 3 * error + 1e-3 * radiosity / math.pi
+        assert error < 0.02 * radiosity / math.pi
+
+
+def test_a_lamp_under_a_ceiling():
+    # A point light of intensity 1 half a unit under a wide ceiling of reflectance 0.8: what comes to a floor
+    # at height 0, under the lamp, by way of the ceiling at 2.5 is
+    # 2 rho a H^2 times the integral of r dr / ((a^2 + r^2)^(3/2) (H^2 + r^2)^2), and directly 1 / 2^2.
+    ceiling = square(200, 2.5, up=False, material=rw.Diffuse(0.8))
+    scene = rw.Scene(
+        [ceiling, square(0.01, 0, material=rw.Diffuse(1.0))], lights=[rw.PointLight((0, 0, 2), 1)]
+    )
+    look = rw.Camera((0.3, 0, 0.4), (0, 0, 0), up=(0, 0, 1), fov=0.5, width=8, height=8)
+    direct = rw.render(scene, look, rw.Bidirectional(1), 64, progress=False)
+    both = rw.render(scene, look, rw.Bidirectional(2), 20_000, progress=False)
+    assert_mean(direct, 0.25 / math.pi, 0.002)
+    assert_mean(both, (0.25 + 0.166860231636058) / math.pi, 0.002)
+
+
+def test_a_pane_before_a_point_light():
+    # A pane without thickness lets (1 - r) / (1 + r) through; straight on r = 0.04, and 12/13 arrive. No path
+    # from the floor comes upon a point, nor does a connection go through the pane: light itself does.
+    pane = square(50, 1.0, material=rw.ThinDielectric(1.5))
+    floor = square(2, 0, material=rw.Diffuse(1.0))
+    scene = rw.Scene([pane, floor], lights=[rw.PointLight((0, 0, 2), 1)])
+    for x, expected in [(0, 0.230769230769231), (1, 0.16483003912558)]:
+        look = rw.Camera((x, -0.8, 0.8), (x, 0, 0), up=(0, 0, 1), fov=6, width=8, height=8)
+        image = rw.render(scene, look, rw.Bidirectional(1), 16, progress=False)
+        assert not rw.render(scene, look, rw.Path(1, reuse=1), 16, progress=False).rgb.any()
+        image = rw.render(scene, look, rw.Bidirectional(2), 20_000, progress=False)
+        found, error = mean(image)
+        # Over the 0.12 that are seen, light falls off by less than a hundredth.
+        assert abs(found - expected / math.pi) < 3 * error + 0.005 * expected
+        assert error < 0.02 * found
+
+
+def test_a_tiny_lamp_and_light_close_to_a_surface():
+    # 1e-12 of area that shines by 1e12; and the same a thousandth above the floor.
+    for height in (1.0, 1e-3):
+        bulb = rw.Mesh(
+            [(0, 0, height), (1e-6, 0, height), (0, 2e-6, height)], [(0, 2, 1)],
+            material=rw.Diffuse(0), emission=1e12,
+        )  # fmt: skip
+        wall = rw.Mesh(
+            [(-2, 2, 0), (2, 2, 0), (2, 2, 2), (-2, 2, 2)], [(0, 2, 1), (0, 3, 2)], material=rw.Diffuse(0.5)
+        )
+        scene = rw.Scene([square(3, 0, material=rw.Diffuse(0.6)), wall, bulb])
+        ours, _ = assert_same_picture(scene, camera(), depth=3, paths=1024)
+        assert np.isfinite(ours.rgb).all()
+        assert (ours.rgb >= 0).all()
+
+
+def test_a_keyhole_is_looked_through_with_less_noise():
+    # A room behind a wall with a hole, lit by a lamp that no point of this one sees.
+    aperture = 0.05
+    matt = rw.Diffuse(0.7)
+    first = hollow(aperture, material=matt, rings=48)
+    second = hollow(aperture, centre=2 * math.sqrt(1 - aperture**2), up=False, material=matt, rings=48)
+    bulb = rw.Sphere((0.5, 0, -0.3), 0.02, emission=1e4)
+    scene = rw.Scene([first, second, bulb])
+    look = rw.Camera((0.1, 0.2, 2), (1, 0.3, 2), up=(0, 0, 1), fov=60, width=16, height=16)
+    ours, theirs = (
+        mean(rw.render(scene, look, way, samples, progress=False))
+        for way, samples in [(rw.Bidirectional(), 32), (rw.Path(reuse=1), 256)]
+    )
+    assert abs(ours[0] - theirs[0]) < 5 * math.hypot(ours[1], theirs[1])
+
+
+def test_the_error_is_as_told():
+    # The interval holds the truth in 95 of 100: fewer than 31 of 36 once in 100 such tests by chance.
+    scene, look = rw.scenes.cornell_box(width=8, height=8)
+    truth = rw.render(scene, look, rw.Path(4, reuse=1), 40_000, progress=False).rgb.astype(float)
+    held = 0
+    for seed in range(36):
+        image = rw.render(scene, look, rw.Bidirectional(4), 16, seed=seed, progress=False)
+        error = float(np.mean((image.rgb - truth) ** 2 / (truth**2 + 0.01)))
+        held += image.error.low <= error <= image.error.high or not image.error.trusted
+    assert held >= 31
+
+
+def test_bits_are_those_of_any_threads_passes_and_executors(tmp_path):
+    scene, look = rw.scenes.cornell_box(width=SIDE, height=SIDE)
+    way, options = rw.Bidirectional(), {"samples": 20, "progress": False}
+    one = rw.render(scene, look, way, threads=1, **options)
+    two = rw.render(scene, look, way, threads=2, **options)
+    np.testing.assert_array_equal(one.rgb, two.rgb)
+    with ThreadPoolExecutor(2) as executor:
+        there = rw.render(scene, look, way, executor=executor, **options)
+    np.testing.assert_array_equal(one.rgb, there.rgb)
+    rw.render(scene, look, way, 9, checkpoint=tmp_path / "c", sampler=one.plan.sampler, progress=False)
+    later = rw.render(scene, look, way, checkpoint=tmp_path / "c", **options)
+    np.testing.assert_array_equal(one.rgb, later.rgb)
+
+
+def test_wrong_input_gets_one_clear_line():
+    for arguments, kind, words in [
+        ({"max_depth": -1}, ValueError, "max_depth must be between 0 and"),
+        ({"max_depth": 2.5}, TypeError, "max_depth must be"),
+        ({"roulette_depth": "4"}, TypeError, "roulette_depth must be"),
+    ]:
+        with pytest.raises(kind, match=words):
+            rw.Bidirectional(**arguments)
+    scene, look = rw.scenes.cornell_box(width=8, height=8)
+    with pytest.raises(ValueError, match="use adaptive=False"):
+        rw.render(scene, look, rw.Bidirectional(), 4, adaptive=True, progress=False)
+    endless = rw.Scene([rw.Plane((0, 0, 0), (0, 0, 1))], environment=rw.ConstantEnvironment(1))
+    with pytest.raises(ValueError, match=r"shape 0, which has no end.*use Path"):
+        rw.render(endless, look, rw.Bidirectional(), 4, progress=False)
+
+
+def test_values():
+    way = rw.Bidirectional(3, roulette_depth=2)
+    assert repr(way) == "Bidirectional(max_depth=3, roulette_depth=2)"
+    assert pickle.loads(pickle.dumps(way)) == way != rw.Bidirectional()
+
+
+def test_what_is_dark_stays_black():
+    scene = rw.Scene([square(1, 0, material=rw.Diffuse(0.5))])
+    image = rw.render(scene, camera(), rw.Bidirectional(), 4, progress=False)
+    assert not image.rgb.any()
+
+
+def test_paths_end_where_nothing_absorbs_them():
+    white = rw.Box((-1, -1, -1), (1, 1, 1), material=rw.Diffuse(1.0), emission=rw.Emission(1, side="back"))
+    look = rw.Camera((0, 0, 0.5), (0, 0, 0), fov=90, width=1, height=1)
+    image = rw.render(rw.Scene(white), look, rw.Bidirectional(), 1, progress=False)
+    assert np.isfinite(image.rgb).all()
+    assert image.rgb.min() > 1
