@@ -99,3 +99,66 @@ impl BsdfLanes {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::Ray;
+    use crate::optics::{Dielectric, Diffuse, MetallicRough, Mirror, Null, Rgb};
+    use crate::sampling::Sampler;
+    use crate::sampling::warp::uniform_sphere;
+    use crate::scene::{SurfaceInteraction, SurfaceLanes, SurfacePoint};
+    use std::array::from_fn;
+
+    /// What scatters in a lane: all of it metal, or of several kinds.
+    fn kind(lane: usize, are_metals: bool) -> BsdfMix {
+        let metal = |alpha: f64| Conductor::new(Rgb::new(0.2, 0.9, 1.1), Rgb::splat(3.0), [alpha; 2]);
+        if are_metals {
+            return metal(0.1 + 0.05 * lane as f64).into();
+        }
+        match lane % 6 {
+            0 => metal(0.2).into(),
+            1 => Diffuse { reflectance: Rgb::new(0.2, 0.4, 0.6) }.into(),
+            2 => Dielectric::new(1.5, 0.3).into(),
+            3 => Mirror { reflectance: Rgb::splat(0.9) }.into(),
+            4 => MetallicRough::new(Rgb::splat(0.7), 0.5, 0.4).into(),
+            _ => BsdfMix::mixed(
+                (Rgb::splat(0.5), metal(0.4).into()),
+                (Rgb::splat(0.5), Diffuse { reflectance: Rgb::splat(0.5) }.into()),
+            ),
+        }
+    }
+
+    #[test]
+    fn lanes_answer_as_each_by_itself() {
+        for (turn, are_metals) in (0..40).flat_map(|turn| [(turn, false), (turn, true)]) {
+            let mut sampler: [Sampler; LANES] = from_fn(|lane| Sampler::new(8, turn, lane as u32));
+            let mut encounters = SurfaceInteractionLanes::at(&SurfaceLanes::NONE);
+            let (mut all, mut wi, mut u) = (BsdfLanes::new(), VectorLanes::ZERO, [[0.0; LANES]; 2]);
+            // Fewer than lanes.
+            for lane in 0..LANES - 3 {
+                let ray = Ray::new(DVec3::ZERO, uniform_sphere(sampler[lane].two(1)));
+                let place = SurfacePoint { normal: DVec3::Z, shading_normal: DVec3::Z, ..SurfaceLanes::NONE.get(lane) };
+                encounters.set(lane, &SurfaceInteraction::with(&ray, place, (DVec3::Z, None), Null));
+                all.push(kind(lane, are_metals));
+                all.prepare(encounters.wo(lane));
+                wi.set(lane, uniform_sphere(sampler[lane].two(3)));
+                [u[0][lane], u[1][lane]] = sampler[lane].two(5);
+            }
+            let choice = from_fn(|lane| sampler[lane].one(6));
+            let asks = from_fn(|lane| lane < LANES - 3 && lane as u32 != turn % 16);
+            let (mut value, mut pdf) = (RgbLanes::ZERO, [0.0; LANES]);
+            all.evaluate(Level::Scalar, &asks, &encounters, &wi, &mut value, &mut pdf);
+            let mut drawn = BsdfSampleLanes::NONE;
+            all.sample(Level::Scalar, &asks, &encounters, (&choice, &u), &mut drawn);
+            for lane in (0..LANES).filter(|&lane| asks[lane]) {
+                let (one, wo) = (kind(lane, are_metals), encounters.wo(lane));
+                assert_eq!((value.get(lane), pdf[lane]), one.evaluate(wo, wi.get(lane)));
+                let wanted = one.sample(wo, || choice[lane], [u[0][lane], u[1][lane]]);
+                let told = |of: crate::optics::BsdfSample| (of.wi, of.weight, of.pdf, of.eta, of.is_through);
+                assert_eq!(drawn.get(lane).map(told), wanted.map(told));
+            }
+            assert!((0..LANES).all(|lane| asks[lane] || drawn.get(lane).is_none()));
+        }
+    }
+}
