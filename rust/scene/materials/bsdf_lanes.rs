@@ -79,8 +79,8 @@ impl BsdfLanes {
         }
     }
 
-    /// What [`Bsdf::sample`] gives for directions that they were prepared for, in shading frames, in the lanes that ask;
-    /// nothing in the others.
+    /// What [`Bsdf::sample`] gives for directions that they were prepared for, in shading frames, in the lanes that
+    /// ask; nothing in the others.
     pub fn sample(
         &self,
         level: Level,
