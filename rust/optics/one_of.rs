@@ -1,7 +1,7 @@
 //! Several kinds of scattering as one type.
 
-/// Makes an enum of kinds that implement [`super::Bsdf`], which implements it too and numbers them. `$inline` is how its functions are
-/// to be inlined.
+/// Makes an enum of kinds that implement [`super::Bsdf`], which implements it too and numbers them. `$inline` is how
+/// its functions are to be inlined.
 macro_rules! one_of {
     ($(#[$about:meta])* $name:ident, $inline:meta, { $($(#[$doc:meta])* $kind:ident($of:ty),)+ }) => {
         $(#[$about])*

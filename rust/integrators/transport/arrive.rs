@@ -12,8 +12,8 @@ use crate::optics::Rgb;
 use crate::scene::Plan;
 
 impl<N: Features> TransportWorker<'_, N> {
-    /// Sorts paths by what their rays have come to, so that blocks of them scatter by one kind of function: those that leave the scene take what light comes from there, and
-    /// those that pass what they hit go on at once.
+    /// Sorts paths by what their rays have come to, so that blocks of them scatter by one kind of function: those that
+    /// leave the scene take what light comes from there, and those that pass what they hit go on at once.
     pub(super) fn arrive(&mut self, samples: &mut [CameraSample], radiance: &mut [Rgb]) {
         let mut arrivals = std::mem::take(&mut self.arrivals);
         arrivals.kinds.iter_mut().for_each(Vec::clear);

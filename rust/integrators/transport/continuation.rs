@@ -93,7 +93,7 @@ impl<N: Features> TransportWorker<'_, N> {
             let chances = self.chances(block, &dimensions);
             let goes: [bool; LANES] = array::from_fn(|lane| block.goes_on[lane] && branch < splits[lane]);
             let ([mut origin, mut direction], mut drawn) = ([VectorLanes::ZERO; 2], BsdfSampleLanes::NONE);
-            block.bsdf.sample(self.level, &goes, &block.encounters, (&choice, &u), &mut drawn);
+            block.bsdf.sample(self.level, &goes, block.encounters.wo_lanes(), (&choice, &u), &mut drawn);
             let BsdfSampleLanes { wi, weight, pdf, .. } = &mut drawn;
             leave(self.level, &block.encounters, wi, weight, pdf, &mut origin, &mut direction);
             let mut going = 0;

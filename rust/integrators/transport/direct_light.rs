@@ -272,7 +272,7 @@ impl<N: Features> TransportWorker<'_, N> {
         turn(self.level, &block.encounters, lights, &mut wi, &mut counts);
         let (mut scattered, mut pdf) = (RgbLanes::ZERO, [0.0; LANES]);
         let seen = array::from_fn(|lane| asks[lane] && counts[lane] > 0.0);
-        block.bsdf.evaluate(self.level, &seen, &block.encounters, &wi, &mut scattered, &mut pdf);
+        block.bsdf.evaluate(self.level, &seen, block.encounters.wo_lanes(), &wi, &mut scattered, &mut pdf);
         for lane in (0..block.count).filter(|&lane| asks[lane]) {
             if let Some(guide) = &block.guides[lane] {
                 pdf[lane] = density(guide, pdf[lane], lights.get(lane).0);

@@ -96,8 +96,8 @@ impl<'a, N: Features> TransportWorker<'a, N> {
         }
     }
 
-    /// What a diffuse surface reflects that is not alike everywhere, or is seen by a ray that has a width. A padded lane
-    /// is left as it is.
+    /// What a diffuse surface reflects that is not alike everywhere, or is seen by a ray that has a width. A padded
+    /// lane is left as it is.
     fn textured(&self, block: &mut Block, lane: usize) -> Rgb {
         if N::PLAIN || lane >= block.count {
             return Rgb::ZERO;

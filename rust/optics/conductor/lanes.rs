@@ -179,3 +179,80 @@ impl ConductorLanes {
         (*eta, *is_through) = ([1.0; LANES], [false; LANES]);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::optics::conductors::metal;
+    use crate::optics::{Bsdf, BsdfSample};
+    use crate::sampling::Sampler;
+    use crate::sampling::warp::uniform_sphere;
+    use std::array::from_fn;
+
+    /// Metals of an index and measured ones, alike in all directions and brushed.
+    fn metals() -> [Conductor; LANES] {
+        from_fn(|lane| {
+            let alpha = [[0.3; 2], [1e-4; 2], [0.05, 0.6], [1.0; 2]][lane % 4];
+            match metal("gold") {
+                Some(gold) if lane / 4 % 2 == 1 => Conductor::metal(gold, if lane < 8 { 1.0 } else { 1.33 }, alpha),
+                _ => Conductor::new(Rgb::new(0.2, 0.9, 1.1), Rgb::new(3.9, 2.4, 2.2), alpha),
+            }
+        })
+    }
+
+    /// Of some lanes, two directions, three numbers, and whether it asks.
+    fn case(turn: u32) -> [([DVec3; 2], [f64; 3], bool); LANES] {
+        from_fn(|lane| {
+            let mut sampler = Sampler::new(3, turn, lane as u32);
+            let [mut wo, mut wi] = [0, 1].map(|k| uniform_sphere(sampler.two(2 * k + 1)));
+            match turn % 8 {
+                // Grazing, in the plane, opposite in it, and mirrored exactly.
+                0 => wo = DVec3::new(wo.x, wo.y, 1e-9 * wo.z).normalize(),
+                1 => wi = DVec3::new(1.0, 0.0, 0.0),
+                2 => (wo, wi) = (DVec3::new(1.0, 0.0, 1e-90), DVec3::new(-1.0, 0.0, 1e-90)),
+                3 => wi = DVec3::new(-wo.x, -wo.y, wo.z),
+                _ => (),
+            }
+            let [a, b] = sampler.two(7);
+            ([wo, wi], [sampler.one(9), a, b], lane as u32 != turn % 16)
+        })
+    }
+
+    #[test]
+    fn lanes_have_the_bits_of_one() {
+        for turn in 0..200 {
+            let (metals, case) = (metals(), case(turn));
+            let (mut lanes, mut wi, mut u) = (ConductorLanes::NONE, VectorLanes::ZERO, [[0.0; LANES]; 2]);
+            let prepared = from_fn::<_, LANES, _>(|lane| {
+                let mut metal = metals[lane];
+                metal.prepare(case[lane].0[0]);
+                assert!(lanes.set(lane, &metal, case[lane].0[0]));
+                wi.set(lane, case[lane].0[1]);
+                [u[0][lane], u[1][lane]] = [case[lane].1[1], case[lane].1[2]];
+                metal
+            });
+            let (choice, asks) = (case.map(|of| of.1[0]), case.map(|of| of.2));
+            for level in Level::ALL.into_iter().filter(|level| level.is_available()) {
+                let metal = |lane: usize| Some(&prepared[lane]);
+                let (mut value, mut pdf) = (RgbLanes::ZERO, [f64::NAN; LANES]);
+                lanes.evaluate(level, metal, &asks, &wi, &mut value, &mut pdf);
+                let mut drawn = BsdfSampleLanes::NONE;
+                lanes.sample(level, metal, &asks, (&choice, &u), &mut drawn);
+                for lane in 0..LANES {
+                    let (one, [wo, wi], drawn) = (&metals[lane], case[lane].0, drawn.get(lane));
+                    if !asks[lane] {
+                        assert!(value.get(lane).is_black() && pdf[lane] == 0.0 && drawn.is_none());
+                        continue;
+                    }
+                    assert_eq!((value.get(lane), pdf[lane]), one.evaluate(wo, wi), "{level:?} {turn} {lane}");
+                    let wanted = one.sample(wo, || choice[lane], [u[0][lane], u[1][lane]]);
+                    let told = |of: BsdfSample| (of.wi, of.weight, of.pdf, of.eta, of.is_through);
+                    assert_eq!(drawn.map(told), wanted.map(told), "{level:?} {turn} {lane}");
+                }
+            }
+        }
+        let smooth = Conductor::new(Rgb::ONE, Rgb::ONE, [0.0; 2]);
+        let mut lanes = ConductorLanes::NONE;
+        assert!(!lanes.set(0, &smooth, DVec3::Z));
+    }
+}

@@ -45,6 +45,7 @@ impl LightBounds {
     }
 
     /// The middle of the box.
+    #[inline(always)]
     pub fn centre(&self) -> DVec3 {
         self.min * 0.5 + self.max * 0.5
     }
@@ -66,41 +67,35 @@ impl LightBounds {
     ///
     /// As if all were at the middle, but facing the receiver as much as any of it can, and as far above the receiver's
     /// horizon.
-    #[inline]
+    #[inline(always)]
     pub fn importance(&self, receiver: &LightSampleContext) -> f64 {
         let way = receiver.position - self.centre();
         let (square, radius) = (way.length_squared(), 0.25 * (self.max - self.min).length_squared());
-        if square <= radius {
-            // Within the ball around the box, all ways to it are possible.
-            return if radius > 0.0 { self.intensity / radius } else { 0.0 };
-        }
         // Sines and cosines are taken times the distance, so that they need no quotient, and their roots need not wait
-        // for each other.
+        // for each other. What does not count is computed too, and left: lanes have no branches.
         let inverse = 1.0 / square;
         let (sin_ball, cos_ball) = (radius.sqrt(), (square - radius).sqrt());
         let to_ball = |sin: f64, cos: f64| {
-            if cos >= cos_ball { 1.0 } else { (cos * cos_ball + sin * sin_ball) * inverse }
+            let outside = (cos * cos_ball + sin * sin_ball) * inverse;
+            if cos >= cos_ball { 1.0 } else { outside }
         };
-        let mut importance = self.intensity * inverse;
+        let (mut importance, mut is_missed) = (self.intensity * inverse, false);
         if self.cos_cone > -1.0 {
             let (cos, distance) = (self.axis.dot(way), square.sqrt());
             // The angle to the nearest normal, and then what of it is left by the nearest point.
-            let cos = if cos >= self.cos_cone * distance {
-                1.0
-            } else {
-                let (sin, sin_cone) = (across(cos, square), across(self.cos_cone, 1.0));
-                to_ball(sin * self.cos_cone - cos * sin_cone, cos * self.cos_cone + sin * sin_cone)
-            };
-            if cos < self.cos_reach {
-                return 0.0;
-            }
+            let (sin, sin_cone) = (across(cos, square), across(self.cos_cone, 1.0));
+            let nearest = to_ball(sin * self.cos_cone - cos * sin_cone, cos * self.cos_cone + sin * sin_cone);
+            let cos = if cos >= self.cos_cone * distance { 1.0 } else { nearest };
+            is_missed = cos < self.cos_reach;
             importance *= cos;
         }
-        if !receiver.is_free() {
-            let cos = -receiver.normal.dot(way);
-            importance *= to_ball(across(cos, square), cos).max(0.0);
-        }
-        importance
+        let cos = -receiver.normal.dot(way);
+        let above = importance * to_ball(across(cos, square), cos).max(0.0);
+        let importance = if receiver.is_free() { importance } else { above };
+        // Within the ball around the box, all ways to it are possible.
+        let within = if radius > 0.0 { self.intensity / radius } else { 0.0 };
+        let outside = if is_missed { 0.0 } else { importance };
+        if square <= radius { within } else { outside }
     }
 
     /// The cost of a part of a tree, up to what is the same for all: intensity times the area that it takes, times the
@@ -117,7 +112,7 @@ impl LightBounds {
 }
 
 /// The sine of an angle by its cosine, both times a length of this square.
-#[inline]
+#[inline(always)]
 fn across(cos: f64, square: f64) -> f64 {
     (square - cos * cos).max(0.0).sqrt()
 }

@@ -1,8 +1,9 @@
 //! The choice among the lights within a scene.
 
-use super::{LightBounds, LightSampleContext, LightTree, Sides};
-use crate::math::DVec3;
+use super::{LightBounds, LightContextLanes, LightSampleContext, LightTree, Sides};
+use crate::math::{DVec3, LANES};
 use crate::sampling::AliasTable;
+use crate::simd::Level;
 use std::f64::consts::PI;
 
 /// What a light is chosen by.
@@ -90,6 +91,25 @@ impl Choice {
                 Some((chosen, table.probability(chosen)))
             }
             Self::Tree(tree) => tree.sample(receiver, u),
+        }
+    }
+
+    /// The same for a lane each.
+    pub fn sample_lanes(
+        &self,
+        level: Level,
+        receivers: &LightContextLanes,
+        u: &[f64; LANES],
+        chosen: &mut [Option<(usize, f64)>; LANES],
+    ) {
+        match self {
+            Self::Power(table) => {
+                for lane in 0..LANES {
+                    let light = table.sample(u[lane]);
+                    chosen[lane] = Some((light, table.probability(light)));
+                }
+            }
+            Self::Tree(tree) => tree.sample_lanes(level, receivers, u, chosen),
         }
     }
 

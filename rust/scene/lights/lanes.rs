@@ -120,9 +120,7 @@ impl Lights {
             return;
         };
         let mut chosen = [None; LANES];
-        for lane in 0..LANES {
-            chosen[lane] = choices.sample(&receivers.get(lane), choice[lane]);
-        }
+        choices.sample_lanes(level, receivers, choice, &mut chosen);
         self.sample_chosen(level, geometry, receivers, &chosen, u, lights);
     }
 

@@ -21,6 +21,7 @@ impl LightSampleContext {
     /// Whether light from everywhere counts.
     #[inline(always)]
     pub fn is_free(&self) -> bool {
-        self.normal == DVec3::ZERO
+        // Without a branch, for lanes.
+        (self.normal.x == 0.0) & (self.normal.y == 0.0) & (self.normal.z == 0.0)
     }
 }

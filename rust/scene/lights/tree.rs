@@ -1,7 +1,8 @@
 //! A tree over lights, which chooses among thousands by what each brings to a place.
 
-use super::{LightBounds, LightSampleContext};
-use crate::math::DVec3;
+use super::{LightBounds, LightContextLanes, LightSampleContext};
+use crate::math::{DVec3, LANES};
+use crate::simd::{Level, loops};
 
 /// A binary tree over lights (Conty Estevez and Kulla, 2018; with pdfs as in Pharr, Jakob and Humphreys, "Physically
 /// Based Rendering", 4th edition, 2023, 12.6.3): from the root on, one of two children is taken with a probability that
@@ -41,6 +42,15 @@ struct Item {
     bounds: LightBounds,
     centre: DVec3,
     light: u32,
+}
+
+loops! {
+    /// What a part of a tree may bring to each receiver.
+    fn importances(of: &LightBounds, receivers: &LightContextLanes, brings: &mut [f64; LANES]) {
+        for i in 0..LANES {
+            brings[i] = of.importance(&receivers.get(i));
+        }
+    }
 }
 
 impl LightTree {
@@ -84,14 +94,46 @@ impl LightTree {
     /// Chooses a light for a receiver by a number in [0, 1), and tells its probability. `None` if none brings anything
     /// there.
     #[inline]
-    pub fn sample(&self, receiver: &LightSampleContext, mut u: f64) -> Option<(usize, f64)> {
+    pub fn sample(&self, receiver: &LightSampleContext, u: f64) -> Option<(usize, f64)> {
+        self.walk(u, |node| self.nodes[node].bounds.importance(receiver))
+    }
+
+    /// The same for a lane each: what each part of a small tree may bring is computed for all of them at once.
+    pub fn sample_lanes(
+        &self,
+        level: Level,
+        receivers: &LightContextLanes,
+        u: &[f64; LANES],
+        chosen: &mut [Option<(usize, f64)>; LANES],
+    ) {
+        /// Parts of a tree of eight lights. In a larger one, few of all parts are passed on the way to a light.
+        const MOST: usize = 15;
+        if self.nodes.len() > MOST {
+            for lane in 0..LANES {
+                chosen[lane] = self.sample(&receivers.get(lane), u[lane]);
+            }
+            return;
+        }
+        let mut brings = [[0.0; LANES]; MOST];
+        // Nobody asks about the root.
+        for (node, brings) in self.nodes.iter().zip(&mut brings).skip(1) {
+            importances(level, &node.bounds, receivers, brings);
+        }
+        for lane in 0..LANES {
+            chosen[lane] = self.walk(u[lane], |node| brings[node][lane]);
+        }
+    }
+
+    /// Goes from the root to a light, by what each part may bring.
+    #[inline(always)]
+    fn walk(&self, mut u: f64, importance: impl Fn(usize) -> f64) -> Option<(usize, f64)> {
         let (mut here, mut probability) = (0, 1.0);
         loop {
             let link = self.nodes[here].link;
             if link & Node::LEAF != 0 {
                 return Some(((link & !Node::LEAF) as usize, probability));
             }
-            let share = self.share(here, receiver)?;
+            let share = self.share(here, &importance)?;
             if u < share {
                 (here, u, probability) = (here + 1, u / share, probability * share);
             } else {
@@ -115,7 +157,8 @@ impl LightTree {
             if link & Node::LEAF != 0 {
                 return probability;
             }
-            let Some(share) = self.share(here, receiver) else { return 0.0 };
+            let importance = |node: usize| self.nodes[node].bounds.importance(receiver);
+            let Some(share) = self.share(here, importance) else { return 0.0 };
             if trail & 1 == 0 {
                 (here, probability) = (here + 1, probability * share);
             } else {
@@ -129,10 +172,10 @@ impl LightTree {
     }
 
     /// The share of an inner node's first child; `None` if neither child brings anything.
-    #[inline]
-    fn share(&self, node: usize, receiver: &LightSampleContext) -> Option<f64> {
-        let first = self.nodes[node + 1].bounds.importance(receiver);
-        let second = self.nodes[self.nodes[node].link as usize].bounds.importance(receiver);
+    #[inline(always)]
+    fn share(&self, node: usize, importance: impl Fn(usize) -> f64) -> Option<f64> {
+        let first = importance(node + 1);
+        let second = importance(self.nodes[node].link as usize);
         let sum = first + second;
         (sum > 0.0).then(|| first / sum)
     }

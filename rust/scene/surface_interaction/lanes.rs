@@ -1,7 +1,7 @@
 //! Encounters by lane.
 
 use super::SurfaceInteraction;
-use crate::math::{DVec3, Frame, LANES, VectorLanes};
+use crate::math::{Frame, LANES, VectorLanes};
 use crate::optics::Bsdf;
 use crate::scene::{SurfaceLanes, SurfacePoint};
 
@@ -68,10 +68,10 @@ impl SurfaceInteractionLanes {
         self.surface.get(lane)
     }
 
-    /// Back along the ray of a lane, in the shading frame.
+    /// Back along the rays of all lanes, in the shading frames.
     #[inline(always)]
-    pub fn wo(&self, lane: usize) -> DVec3 {
-        self.wo.get(lane)
+    pub fn wo_lanes(&self) -> &VectorLanes {
+        &self.wo
     }
 
     /// The mean curvature of a lane, as [`SurfaceInteraction::curvature`] has it.
