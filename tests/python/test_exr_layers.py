@@ -45,9 +45,9 @@ def saved(tmp_path_factory):
 def test_every_aov_is_a_layer(saved):
     image, channels, _ = saved
     names = {
-        "depth": "Z", "position": "XYZ", "normal": "XYZ", "shading_normal": "XYZ", "uv": "UV", "albedo": "RGB",
-        "motion": "XYZ", "screen_motion": "XY", "alpha": "A", "shape_id": "X", "primitive": "X", "samples": "X",
-        "standard_error": "RGB",
+        "depth": "Z", "position": "XYZ", "normal": "XYZ", "shading_normal": "XYZ", "uv": "UV",
+        "albedo": "RGB", "motion": "XYZ", "screen_motion": "XY", "alpha": "A", "shape_id": "X",
+        "primitive": "X", "samples": "X", "standard_error": "RGB",
     }  # fmt: skip
     expected = {*"RGB"} | {f"{layer}.{c}" for layer, all_ in names.items() for c in all_}
     assert set(channels) == expected | {f"CryptoObject{i:02}.{c}" for i in range(3) for c in "RGBA"}

@@ -19,7 +19,7 @@ def moving():
     camera = rw.Camera((0, 0, 4), (0, 0, 0), fov=40, width=16, height=12)
 
     def frame(number):
-        scene.refit(corners + (0.3 * number, 0, 0))
+        scene.refit(corners + np.array([0.3 * number, 0, 0]))
         return scene, camera
 
     return frame

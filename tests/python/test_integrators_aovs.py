@@ -61,6 +61,31 @@ def test_motion_is_what_instances_do():
     np.testing.assert_allclose(motion, np.broadcast_to([0.1, -0.2, 0.3], motion.shape), atol=1e-6)
 
 
+def test_the_way_in_the_picture_is_that_of_what_moves_and_of_what_looks():
+    ball = rw.Sphere((0, 0, 0), 1)
+    start, end = np.eye(4), np.eye(4)
+    end[:3, 3] = (0.1, -0.2, 0.0)
+    moving = rw.Scene(rw.Instance(ball, start, end))
+    parallel = {"scale": 2.0, "width": 10, "height": 10}
+    seen = ("motion", "screen_motion")
+    # Five pixels are one unit; up in the scene is up in the picture, where y points down.
+    camera = rw.Orthographic((0, 0, 5), (0, 0, 0), **parallel)
+    way = rw.aovs(moving, camera, seen, samples=4)
+    middle = way["screen_motion"][3:7, 3:7]
+    np.testing.assert_allclose(middle, np.broadcast_to([0.5, 1.0], middle.shape), atol=1e-6)
+    # While the shutter is open for half of the time, things go half of their way.
+    short = rw.Orthographic((0, 0, 5), (0, 0, 0), shutter=(0.5, 1.0), **parallel)
+    half = rw.aovs(moving, short, seen, samples=4)
+    for name in seen:
+        np.testing.assert_allclose(half[name][3:7, 3:7], way[name][3:7, 3:7] / 2, atol=1e-6)
+    # A camera that goes to the right sees what stands still go to the left.
+    going = rw.Orthographic((0, 0, 5), (0, 0, 0), moved_to=rw.Pose((0.2, 0, 5), (0.2, 0, 0)), **parallel)
+    still = rw.aovs(rw.Scene(ball), going, seen, samples=4)
+    middle = still["screen_motion"][3:7, 3:7]
+    np.testing.assert_allclose(middle, np.broadcast_to([-1.0, 0.0], middle.shape), atol=1e-6)
+    assert not still["motion"].any()
+
+
 def test_unknown_names_are_refused(room):
     with pytest.raises(ValueError, match=r"aov 'height' is not known, expected some of depth, "):
         rw.aovs(*room, "height")

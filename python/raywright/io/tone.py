@@ -15,6 +15,8 @@ DEFAULT = "filmic"
 _KNEE = 0.5
 # How soon bright colours turn white: that of the Khronos PBR Neutral tone mapper.
 _DESATURATION = 0.15
+# What float32 holds.
+_BRIGHTEST = float(np.finfo(np.float32).max)
 # More stops than any picture takes; far more would leave the range of float64.
 _MOST_STOPS = 100.0
 
@@ -46,10 +48,10 @@ def toned(rgb: NDArray[np.floating[Any]], exposure: float, tone: str) -> NDArray
     fades to white, as on film. Its toe, which would darken mid-greys by more than a fifth, is left out, and
     its shoulder begins at 0.5 rather than at 0.76, so that skies and lamps keep their shapes.
     """
-    light = np.nan_to_num(np.asarray(rgb, np.float64), nan=0.0, posinf=np.finfo(np.float32).max)
+    light = np.nan_to_num(np.asarray(rgb, np.float64), nan=0.0, posinf=_BRIGHTEST)
     light = np.maximum(light, 0.0) * 2.0**exposure
     if tone == "linear":
-        return np.minimum(light, 1.0)
+        return np.asarray(np.minimum(light, 1.0))
     # Beyond this all is white, and squares would leave the range.
     light = np.minimum(light, 1e30)
     peak = light.max(axis=-1, keepdims=True)

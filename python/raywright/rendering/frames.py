@@ -41,9 +41,9 @@ def render_frames(
         to iterate over. What moves may be moved by `Scene.refit` in the same scene, which is much faster than
         a new one: it is asked for the next frame when the last is done.
     out : str, path or callable
-        ``"frames/{:04}.png"``, a name with a place for the number, of any picture that `Image.save` writes; or
-        a film, ``"film.mp4"`` (also .mov, .mkv, .webm), which needs imageio; or a function that is given the
-        number and the `Image`.
+        ``"frames/{:04}.png"``, a name with a place for the number, of any picture that `Image.save` writes;
+        or a film, ``"film.mp4"`` (also .mov, .mkv, .webm), which needs imageio; or a function that is given
+        the number and the `Image`.
     count : int, optional
         How many frames; a function needs it, and something to iterate over ends there if it does not before.
     seed : int
