@@ -3,6 +3,7 @@
 //! The house has floors, and each uses only those under it; `ARCHITECTURE.md` draws them.
 
 pub mod accel;
+pub mod exchange;
 pub mod integrators;
 pub mod math;
 pub mod optics;

@@ -10,7 +10,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// On which floor what stands in `rust/` is.
-const FLOORS: [(&str, u8); 13] = [
+const FLOORS: [(&str, u8); 14] = [
     ("math", 0),
     ("simd", 0),
     ("sampling", 0),
@@ -21,6 +21,7 @@ const FLOORS: [(&str, u8); 13] = [
     ("optics", 1),
     ("accel", 2),
     ("scene", 3),
+    ("exchange", 4),
     ("integrators", 4),
     ("render", 5),
     ("python", 6),

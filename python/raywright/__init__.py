@@ -6,6 +6,7 @@ from . import _core, scenes
 from ._core import AcceleratorInfo, simd
 from .accelerators import BSP, BVH, BruteForce, Grid, KdTree, NestedGrid, Octree
 from .cameras import AnyCamera, Camera, Fisheye, Orthographic, Panorama, Pose, ThinLens
+from .exchange.view_factors import ViewFactors, view_factors
 from .integrators import AmbientOcclusion, Direct, Distributed, LightTraced, Path, RayCast, Whitted
 from .integrators.base import Integrator
 from .integrators.rng import Rng
@@ -190,6 +191,7 @@ __all__ = [
     "TwoSided",
     "UvTransform",
     "VertexColors",
+    "ViewFactors",
     "Viewer",
     "Whitted",
     "Wood",
@@ -205,6 +207,7 @@ __all__ = [
     "scenes",
     "simd",
     "view",
+    "view_factors",
 ]
 
 __version__ = _core.VERSION

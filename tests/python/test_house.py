@@ -17,6 +17,7 @@ FLOORS = [
     {"shapes"},
     {"mesh_files", "query"},
     {"scene"},
+    {"exchange"},
     {"integrators", "scenes"},
     {"rendering"},
     {"compat", "report", "scene_files", "viewer"},

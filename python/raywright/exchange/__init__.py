@@ -1,0 +1,1 @@
+"""Diffuse exchange between surfaces: view factors."""

@@ -1,0 +1,5 @@
+//! Floor 4: diffuse exchange between surfaces.
+
+mod view_factors;
+
+pub use view_factors::*;
