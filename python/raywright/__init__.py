@@ -98,6 +98,7 @@ if TYPE_CHECKING:
     from . import measure, report
     from .exchange.radiative import RadiativeExchange, radiative_exchange
     from .exchange.radiosity import radiosity
+    from .exchange.view_factors import ViewFactors, view_factors
     from .scene_files.load import load
     from .scene_files.mitsuba import from_mitsuba
     from .viewer import Viewer, view
@@ -212,6 +213,7 @@ __all__ = [
     "TwoSided",
     "UvTransform",
     "VertexColors",
+    "ViewFactors",
     "Viewer",
     "Whitted",
     "Wood",
@@ -231,6 +233,7 @@ __all__ = [
     "scenes",
     "simd",
     "view",
+    "view_factors",
 ]
 
 __version__ = _core.VERSION
@@ -239,6 +242,7 @@ if not TYPE_CHECKING:
     # These are for those who ask for them: nothing else waits for their import.
     _LATER = {
         "RadiativeExchange": ".exchange.radiative",
+        "ViewFactors": ".exchange.view_factors",
         "Viewer": ".viewer",
         "from_mitsuba": ".scene_files.mitsuba",
         "load": ".scene_files.load",
@@ -247,6 +251,7 @@ if not TYPE_CHECKING:
         "radiosity": ".exchange.radiosity",
         "report": ".report",
         "view": ".viewer",
+        "view_factors": ".exchange.view_factors",
     }
 
     def __getattr__(name: str) -> object:

@@ -34,6 +34,7 @@ pub use geometry::{
     BadTransform, Geometry, Instances, Matrix, Mesh, Objects, Precision, Prototype, Rounding, Surface, Vertices,
     check_transforms, rounded,
 };
+pub(crate) use lights::SeenTriangle;
 pub use lights::{
     ConstantEnvironment, Departure, DirectionalLight, EmissionNumbers, EmissionPdf, EmissionSample, Emitters,
     EnvironmentMap, Light, LightBounds, LightContextLanes, LightLanes, LightSample, LightSampleContext, Lights,
