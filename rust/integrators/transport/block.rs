@@ -57,7 +57,7 @@ impl Block<'_> {
             throughput: RgbLanes::ZERO,
             is_diffuse: false,
             reflectance: RgbLanes::ZERO,
-            bsdf: BsdfLanes::new(),
+            bsdf: BsdfLanes::default(),
             width: [0.0; LANES],
             guides: [None; LANES],
             arrivals: [Arrival::GoesOn; LANES],

@@ -16,12 +16,14 @@ pub struct BsdfLanes {
     are_metals: bool,
 }
 
-impl BsdfLanes {
+impl Default for BsdfLanes {
     /// None.
-    pub fn new() -> Self {
+    fn default() -> Self {
         Self { each: Vec::with_capacity(LANES), metals: ConductorLanes::NONE, are_metals: true }
     }
+}
 
+impl BsdfLanes {
     /// Forgets all.
     pub fn clear(&mut self) {
         self.each.clear();
@@ -132,7 +134,7 @@ mod tests {
         for (turn, are_metals) in (0..40).flat_map(|turn| [(turn, false), (turn, true)]) {
             let mut sampler: [Sampler; LANES] = from_fn(|lane| Sampler::new(8, turn, lane as u32));
             let (mut all, mut to, mut wi, mut u) =
-                (BsdfLanes::new(), VectorLanes::ZERO, VectorLanes::ZERO, [[0.0; LANES]; 2]);
+                (BsdfLanes::default(), VectorLanes::ZERO, VectorLanes::ZERO, [[0.0; LANES]; 2]);
             // Fewer than lanes.
             for lane in 0..LANES - 3 {
                 to.set(lane, uniform_sphere(sampler[lane].two(1)));
