@@ -13,6 +13,7 @@ from .io.pictures import SUFFIXES, check_writable
 from .io.tone import DEFAULT, TONES, check_tone
 from .materials import Diffuse
 from .rendering.image import Image
+from .rendering.render import BACKGROUNDS
 from .rendering.shot import Shot
 from .scene.scene import Scene
 from .scene.summary import described
@@ -156,7 +157,8 @@ def _tell_report(report: Any, options: argparse.Namespace) -> None:
 
 
 def _picture(shot: Shot, options: argparse.Namespace) -> None:
-    image = shot.render(**_how(options, shot), progress=not options.quiet, checkpoint=options.checkpoint)
+    kept = {"checkpoint": options.checkpoint, "background": options.background}
+    image = shot.render(**_how(options, shot), **kept, progress=not options.quiet)
     image.save(options.output, options.exposure, options.tone)
     if not options.quiet:
         _tell(image, options.output)
@@ -330,6 +332,12 @@ def _add_picture(
         help=f"{', '.join(SUFFIXES)}" + (told if output else ""),
     )
     _add_tone(verb)
+    verb.add_argument(
+        "--background",
+        choices=BACKGROUNDS,
+        default=BACKGROUNDS[0],
+        help="whether the camera sees it, or the picture has an alpha instead" + told,
+    )
     _add_limits(verb, limit, width, height)
     verb.add_argument(
         "--checkpoint", metavar="FILE", help="keep the render in a file, and go on from it if it is there"
