@@ -13,6 +13,7 @@ from .io.pictures import SUFFIXES, check_writable
 from .io.tone import DEFAULT, TONES, check_tone
 from .materials import Diffuse
 from .rendering.image import Image
+from .rendering.render import BACKGROUNDS
 from .rendering.shot import Shot
 from .scene.scene import Scene
 from .scene.summary import described
@@ -78,7 +79,8 @@ def _view(options: argparse.Namespace) -> None:
     shot = _shot(options)
     own: dict[str, Any] = {"integrator": shot.integrator, "sampler": shot.sampler, "filter": shot.filter}
     how = _how(options, shot)
-    with view(shot.scene, shot.camera, **own, **how, port=options.port, open=options.open) as viewer:
+    look = {"exposure": options.exposure, "tone": options.tone}
+    with view(shot.scene, shot.camera, **own, **how, **look, port=options.port, open=options.open) as viewer:
         print(f"{viewer.url}\n(Ctrl-C ends it)", flush=True)
         viewer.wait()
 
@@ -155,7 +157,8 @@ def _tell_report(report: Any, options: argparse.Namespace) -> None:
 
 
 def _picture(shot: Shot, options: argparse.Namespace) -> None:
-    image = shot.render(**_how(options, shot), progress=not options.quiet, checkpoint=options.checkpoint)
+    kept = {"checkpoint": options.checkpoint, "background": options.background}
+    image = shot.render(**_how(options, shot), **kept, progress=not options.quiet)
     image.save(options.output, options.exposure, options.tone)
     if not options.quiet:
         _tell(image, options.output)
@@ -221,6 +224,7 @@ def _add_view(verb: argparse.ArgumentParser) -> None:
         help="where on 127.0.0.1 to serve the page (default: any that is free)",
     )
     verb.add_argument("--open", action="store_true", help="open a browser")
+    _add_tone(verb)
     _add_limits(verb, "to a relMSE of 0.0001")
 
 
@@ -327,21 +331,33 @@ def _add_picture(
         default=output,
         help=f"{', '.join(SUFFIXES)}" + (told if output else ""),
     )
+    _add_tone(verb)
     verb.add_argument(
-        "--exposure",
-        metavar="E",
-        type=_stops,
-        default=0.0,
-        help="stops by which a picture for the eye is made brighter" + told,
-    )
-    verb.add_argument(
-        "--tone", choices=TONES, default=DEFAULT, help="how it shows what is brighter than white" + told
+        "--background",
+        choices=BACKGROUNDS,
+        default=BACKGROUNDS[0],
+        help="whether the camera sees it, or the picture has an alpha instead" + told,
     )
     _add_limits(verb, limit, width, height)
     verb.add_argument(
         "--checkpoint", metavar="FILE", help="keep the render in a file, and go on from it if it is there"
     )
     verb.add_argument("--quiet", action="store_true", help="print nothing but errors")
+
+
+def _add_tone(verb: argparse.ArgumentParser) -> None:
+    """Add how pictures are shown."""
+    told = " (default: %(default)s)"
+    verb.add_argument(
+        "--exposure",
+        metavar="E",
+        type=_stops,
+        default=0.0,
+        help="stops by which pictures for the eye are made brighter" + told,
+    )
+    verb.add_argument(
+        "--tone", choices=TONES, default=DEFAULT, help="how what is brighter than white is shown" + told
+    )
 
 
 def _add_limits(

@@ -16,8 +16,8 @@ const BATCH: usize = 4096;
 pub type Cover = Vec<(u32, f64)>;
 
 /// What covers each pixel of a film, row by row from the top: by the very samples that are on the film, and weighed as
-/// these are. So it is the same whoever took the samples, and however many each pixel has. With `each`, it is by so many
-/// in each cell instead, whatever is on the film. Returns soon after `cancel` is raised, with nothing of use.
+/// these are. So it is the same whoever took the samples, and however many each pixel has. With `each`, it is by so
+/// many in each cell instead, whatever is on the film. Returns soon after `cancel` is raised, with nothing of use.
 pub fn cover(
     film: &Film,
     each: Option<u32>,
@@ -119,7 +119,7 @@ mod tests {
         let front = rectangle([-0.31, -0.72, -2.0], [1.0, 0.1, 0.0], [0.2, 1.0, 0.0]);
         let shapes = vec![shape(back, [0.0; 3], 1.0), shape(front, [0.0; 3], 1.0)];
         let sky: Arc<dyn Light> = Arc::new(ConstantEnvironment { radiance: Rgb::splat(1e6) });
-        let scene = scene(SceneDescription { shapes, lights: vec![sky], ..Default::default() });
+        let scene = scene(SceneDescription { shapes, lights: vec![sky] });
         (scene, Perspective::looking_at(DVec3::ZERO, DVec3::NEG_Z, DVec3::Y, 60.0, 13, 9).unwrap())
     }
 

@@ -231,6 +231,24 @@ def test_a_changed_copy_has_the_rest_of_its_scene(box, triangle):
     assert pickle.dumps(scene) == before
 
 
+def test_other_light_falls_on_the_same_accelerator(box):
+    scene = rw.Scene([box, rw.Sphere((2, 0, 0), 0.5)])
+    # What was not built yet has none to give.
+    assert "refitted" not in scene.replace(environment=1.0).accelerator.kind
+    scene.build(progress=False)
+    lamp = rw.PointLight((0, 0, 4), 1.0)
+    lit = scene.replace(environment=1.0).replace(lights=lamp)
+    scene.refit([box.vertices + 9.0, None])
+    assert "refitted" in lit.accelerator.kind
+    assert "refitted" not in scene.replace(quality="fast build").accelerator.kind
+    new = rw.Scene(lit.shapes, lights=lamp, environment=1.0)
+    assert lit == new
+    camera = rw.Camera((0.5, 0.7, 4), (0.5, 0.5, 0.5), width=12, height=9)
+    pictures = [rw.render(one, camera, samples=4, progress=False).rgb for one in (lit, new)]
+    assert np.array_equal(*pictures)
+    assert pictures[0].max() > 0
+
+
 def test_copy_replace_makes_one_too(box):
     scene = rw.Scene(box)
     # What Python asks for it from 3.13 on.

@@ -81,6 +81,22 @@ def test_moving_the_camera_changes_the_picture_and_back_brings_it_back():
         assert until(events, is_done)["picture"] == start["picture"]
 
 
+def test_the_camera_is_where_it_was_moved_and_prints_as_what_makes_it():
+    scene, camera = rw.scenes.cornell_box(**SIZE)
+    look = {"exposure": 1.5, "tone": "linear"}
+    with rw.view(scene, camera, samples=4, **look) as viewer, page(viewer) as events:
+        assert viewer.camera == camera
+        until(events, is_done)
+        assert turn(viewer, azimuth=25, elevation=10, zoom=1.5) == 204
+        moved = until(events, is_done)
+        there = viewer.camera
+        assert ask(viewer, "picture.png")[2] == base64.b64decode(moved["picture"]["data"])
+    assert there != camera
+    assert eval(repr(there), vars(rw)) == there
+    image = rw.render(scene, there, samples=4, progress=False)
+    assert np.array_equal(pixels(moved), image.srgb(**look))
+
+
 def test_moving_the_camera_ends_what_is_rendered_at_once():
     # Left to itself the picture takes hours, and its next pass as long as all before it.
     scene, camera = rw.scenes.cornell_box(width=1000, height=1000)

@@ -65,11 +65,6 @@ def png(rgb: NDArray[np.floating[Any]], alpha: NDArray[np.floating[Any]] | None 
     return encoded(srgb(rgb, alpha), ".png")
 
 
-def jpeg(rgb: NDArray[np.floating[Any]]) -> bytes:
-    """Return a JPEG file of the same: not as exact as PNG, and a small part of the work."""
-    return encoded(srgb(rgb), ".jpg")
-
-
 def _transfer(linear: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
 

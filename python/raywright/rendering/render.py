@@ -140,7 +140,8 @@ def render(
         ``"transparent"`` leaves the background out where the camera sees it directly, past the scene and
         through the holes of masks: ``image.alpha`` tells how much of each pixel is covered, and `rgb` and its
         error are of what covers it, times that. The background lights the scene as ever; glass and mirrors
-        show it, and cover what is behind them. ``"shown"`` is the picture with its background.
+        show it, and cover what is behind them. ``"shown"`` is the picture with its background. The pictures
+        that `progress` is shown have no alpha yet, and stand before black.
     on_interrupt : str
         What Ctrl-C does once the render has begun: ``"raise"`` raises a KeyboardInterrupt at once, whose
         ``image`` is the picture so far, without alpha and `aov`; ``"return"`` returns it whole. Either way

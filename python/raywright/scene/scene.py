@@ -102,6 +102,8 @@ class Scene(Queries):
         self._precision, self._quality = precision, quality
         self._core: _core.CompiledScene | None = None
         self._has_arrived = False
+        # A compiled scene of the same shapes.
+        self._alike: _core.CompiledScene | None = None
         self._is_loss_told = False
         # What watches a build runs in the thread that builds, which must not wait for itself.
         self._lock = threading.RLock()
@@ -169,7 +171,8 @@ class Scene(Queries):
     def replace(self, **changes: Any) -> "Scene":
         """Return a scene that differs in what is named, and is as this one otherwise.
 
-        It is compiled anew when it is asked. ``copy.replace`` (Python 3.13) does the same.
+        It is compiled when it is asked: where it differs in lights and environment alone, with the
+        accelerator that this one has, and anew otherwise. ``copy.replace`` (Python 3.13) does the same.
 
         Parameters
         ----------
@@ -190,7 +193,10 @@ class Scene(Queries):
         for name in changes:
             if name not in _ARGUMENTS:
                 raise TypeError(f"a Scene has no {name!r} to replace; it has {', '.join(_ARGUMENTS)}")
-        return Scene(**{**dict(zip(_ARGUMENTS, self._parts(), strict=True)), **changes})
+        scene = Scene(**{**dict(zip(_ARGUMENTS, self._parts(), strict=True)), **changes})
+        if changes.keys() <= {"lights", "environment"}:
+            scene._alike = self._core or self._alike
+        return scene
 
     __replace__ = replace
 
@@ -231,6 +237,7 @@ class Scene(Queries):
         with self._unless_building():
             core = self._core and self._core.refitted(after)
             built, self._shapes, self._core = self._core is not None, after.shapes, core
+            self._alike = None
         if core is None and built:
             core = self._compiled()
         elif core is not None:
@@ -278,6 +285,7 @@ class Scene(Queries):
         with self._unless_building():
             # What came out of a pickle is not taken from what is kept, but built.
             self._core, self._has_arrived = None, False
+            self._alike = None
         self._compiled(progress)
 
     def _moved(self, vertices: ArrayLike | Sequence[ArrayLike | None]) -> tuple[AnyShape, ...]:
@@ -326,9 +334,13 @@ class Scene(Queries):
                 return core
             self._is_building = True
             try:
-                with watcher(progress) as report:
-                    compiled = _core.CompiledScene(self, self._accelerator, report)
-                self._core = compiled
+                compiled = self._alike and self._alike.refitted(self)
+                if compiled is None:
+                    with watcher(progress) as report:
+                        compiled = _core.CompiledScene(self, self._accelerator, report)
+                elif callable(progress):
+                    progress(1.0)
+                self._core, self._alike = compiled, None
                 if arrival is not None:
                     arrival.keep(compiled)
             finally:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 from ..arrays import integer
 from ..cameras import AnyCamera
 from ..integrators import AnyIntegrator, Path
+from ..io.tone import DEFAULT, check_tone
 from ..rendering.filters import BoxFilter, Filter
 from ..rendering.render import check
 from ..rendering.samplers import Sampler
@@ -51,6 +52,11 @@ class Viewer:
     def rendering(self) -> bool:
         """Whether a render is going on: not if nobody looks, nor if the picture is as good as it shall be."""
         return self._session.rendering
+
+    @property
+    def camera(self) -> AnyCamera:
+        """The camera as it was moved; what it prints as is the line that makes it."""
+        return self._session.camera
 
     def wait(self) -> None:
         """Wait until it is closed, or Ctrl-C is pressed, which closes it."""
@@ -97,6 +103,8 @@ def view(
     clamp: float | None = None,
     sampler: Sampler | None = None,
     filter: Filter = _FILTER,
+    exposure: float = 0.0,
+    tone: str = DEFAULT,
     port: int = 0,
     open: bool = False,
 ) -> Viewer:
@@ -110,6 +118,8 @@ def view(
     ----------
     scene, camera, integrator, samples, error, seconds, seed, threads, adaptive, clamp, sampler, filter
         As `render` has them. If no limit is given, it renders to a relMSE of 1e-4.
+    exposure, tone
+        How pictures are shown, as `Image.save` has it.
     port : int
         Where to listen; any free port if 0.
     open : bool
@@ -127,7 +137,7 @@ def view(
     OSError
         If the port is taken.
     """
-    port = integer("port", port, 0, 65535)
+    port, exposure = integer("port", port, 0, 65535), check_tone(exposure, tone)
     if samples is None and error is None and seconds is None:
         error = _ERROR
     check(scene, camera, integrator, samples, error, seconds, seed, threads, adaptive, clamp, sampler, filter)
@@ -146,7 +156,7 @@ def view(
     from .server import Server
     from .session import Session
 
-    session = Session(scene, camera, integrator, how)
+    session = Session(scene, camera, integrator, how, exposure, tone)
     try:
         server = Server(session, port)
     except BaseException:

@@ -19,7 +19,6 @@ from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from importlib.resources import files
 from typing import Any
 
-from ..io import shown
 from .orbit import View
 from .session import Session
 
@@ -182,7 +181,7 @@ class _Handler(BaseHTTPRequestHandler):
             if frame is None:
                 raise _RefusedError(HTTPStatus.NOT_FOUND, "there is no picture yet")
             more = {"Content-Disposition": 'attachment; filename="raywright.png"'}
-            self._send(HTTPStatus.OK, "image/png", shown.png(frame.image.rgb), more)
+            self._send(HTTPStatus.OK, "image/png", frame.file(".png"), more)
         elif path == "events":
             self._events()
         else:

@@ -12,6 +12,7 @@ from typing import Any
 from ..cameras import AnyCamera
 from ..integrators import AnyIntegrator
 from ..io import shown
+from ..io.tone import DEFAULT
 from ..rendering.image import Image
 from ..rendering.render import render
 from ..scene.scene import Scene
@@ -41,12 +42,16 @@ class Frame:
         Where from.
     state : str
         ``"preview"`` if it is a smaller one, ``"refining"``, or ``"done"``.
+    exposure, tone
+        How it is shown, as `Image.save` has it.
     """
 
     number: int
     image: Image
     view: View
     state: str
+    exposure: float = 0.0
+    tone: str = DEFAULT
     _lock: threading.Lock = field(default_factory=threading.Lock, repr=False, compare=False)
 
     @property
@@ -58,8 +63,12 @@ class Frame:
     @cached_property
     def _data(self) -> tuple[str, bytes]:
         if self.state == "done":
-            return "image/png", shown.png(self.image.rgb)
-        return "image/jpeg", shown.jpeg(self.image.rgb)
+            return "image/png", self.file(".png")
+        return "image/jpeg", self.file(".jpg")
+
+    def file(self, suffix: str) -> bytes:
+        """Return the picture as a file of such an ending."""
+        return shown.encoded(self.image.srgb(self.exposure, self.tone), suffix)
 
     def told(self) -> dict[str, Any]:
         """Return what there is to say of the picture, for JSON; None stands for what is not known."""
@@ -93,11 +102,20 @@ class Session:
         What turns rays into radiance.
     how : mapping
         What else `render` takes.
+    exposure, tone
+        How pictures are shown, as `Image.save` has it.
     """
 
     def __init__(
-        self, scene: Scene, camera: AnyCamera, integrator: AnyIntegrator, how: Mapping[str, Any]
+        self,
+        scene: Scene,
+        camera: AnyCamera,
+        integrator: AnyIntegrator,
+        how: Mapping[str, Any],
+        exposure: float = 0.0,
+        tone: str = DEFAULT,
     ) -> None:
+        self._exposure, self._tone = exposure, tone
         self._scene, self._integrator, self._how = scene, integrator, dict(how)
         self._size = (camera.width, camera.height)
         # Here, so that what there is to warn of is told to the caller, and Ctrl-C ends it.
@@ -140,6 +158,11 @@ class Session:
     def elevations(self) -> tuple[float, float]:
         """The least and greatest elevation of a view."""
         return self._orbit.elevations
+
+    @property
+    def camera(self) -> AnyCamera:
+        """The camera of the view that is wanted now."""
+        return self._orbit.camera(self._view)
 
     def turn(self, view: View) -> None:
         """Show another view. What is being rendered ends at once."""
@@ -240,7 +263,7 @@ class Session:
                     # A render that was left, and now begins anew, had come further.
                     return
             self._count += 1
-            self._frame = Frame(self._count, image, job.view, state)
+            self._frame = Frame(self._count, image, job.view, state, self._exposure, self._tone)
             self._changed.notify_all()
 
 
