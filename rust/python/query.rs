@@ -100,7 +100,9 @@ impl CompiledScene {
         compiled.map(|scene| scene.map(|scene| Self(scene, kept, names))).map_err(|e| PyValueError::new_err(e.to_string()))
     }
 
-    #[pyo3(signature = (origins, directions, t_min, t_max, shape, threads, time=None, out=None, counted=None))]
+    #[pyo3(signature = (
+        origins, directions, t_min, t_max, shape, threads, time=None, out=None, counted=None
+    ))]
     fn intersect<'py>(
         &self,
         py: Python<'py>,
@@ -162,7 +164,9 @@ impl CompiledScene {
         Ok((t, shape, primitive, uv, instance))
     }
 
-    #[pyo3(signature = (origins, directions, t_min, t_max, shape, threads, time=None, out=None, counted=None))]
+    #[pyo3(signature = (
+        origins, directions, t_min, t_max, shape, threads, time=None, out=None, counted=None
+    ))]
     fn occluded<'py>(
         &self,
         py: Python<'py>,
