@@ -97,7 +97,9 @@ impl CompiledScene {
             .detach(|| workers::watched(None, |_| self.0.refitted(description, Work::of(&watch)), look))
             .map_err(PyRuntimeError::new_err)?;
         signal?;
-        compiled.map(|scene| scene.map(|scene| Self(scene, kept, names))).map_err(|e| PyValueError::new_err(e.to_string()))
+        compiled
+            .map(|scene| scene.map(|scene| Self(scene, kept, names)))
+            .map_err(|e| PyValueError::new_err(e.to_string()))
     }
 
     #[pyo3(signature = (
