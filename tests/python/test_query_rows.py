@@ -86,6 +86,7 @@ def test_hits_are_iterated_by_rays(scene):
 def test_all_hits_by_rays(scene):
     every = scene.intersect_all(*RAYS)
     assert len(every) == 7
+    assert every.count.shape == every.first.shape == (7, 9)  # kept, and of no use to some
     assert every.t.size > 20
     for index in INDICES:
         some = every[index]
@@ -98,6 +99,9 @@ def test_all_hits_by_rays(scene):
             assert np.array_equal(getattr(some, name), np.concatenate([array[:0], *(array[part] for part in parts)]))
         assert some.first == scene.intersect(*RAYS)[index]
     assert [len(row) for row in every] == [9] * 7
+    # Many more hits than rays.
+    straight = scene.intersect_all(np.zeros((40, 3)) + (0, 0, 9.0), np.linspace((-0.1, 0, -1), (0.2, 0.1, -1), 40))
+    assert np.array_equal(straight[30:].t, straight.t[straight.ray_splits[30] :])
     with pytest.raises(TypeError, match="hits of one ray have no length"):
         len(every[0, 0])
 
