@@ -18,10 +18,7 @@ def houses(count: int = 14) -> list[rw.Box]:
     low = rng.uniform(4, SIDE - 14, (count, 2))
     size = rng.uniform(5, 11, (count, 2))
     high = rng.uniform(4, 22, count)
-    return [
-        rw.Box((x, 0, z), (x + a, h, z + b))
-        for (x, z), (a, b), h in zip(low, size, high, strict=True)
-    ]
+    return [rw.Box((x, 0, z), (x + a, h, z + b)) for (x, z), (a, b), h in zip(low, size, high, strict=True)]
 
 
 def main() -> None:

@@ -139,15 +139,25 @@ def test_names_and_wrong_input():
         with pytest.raises(ValueError, match=text):
             measure.lidar(BALL, RASTER, **options)
     for kind, options, text in [
-        (measure.SpinningLidar, {"elevations": []}, "elevations must be one or more numbers between -90 and 90"),
+        (
+            measure.SpinningLidar,
+            {"elevations": []},
+            "elevations must be one or more numbers between -90 and 90",
+        ),
         (measure.SpinningLidar, {"elevations": [0], "columns": 0}, "columns must be at least 1, got 0"),
         (measure.SpinningLidar, {"elevations": [0], "up": (1, 0, 0)}, "forward must not be along up"),
         (measure.RasterLidar, {"vertical": 190}, "vertical must be between 0 and 180 degrees, got 190"),
-        (measure.RasterLidar, {"min_range": 3, "max_range": 2}, "min_range must be at least 0 and less than max_range"),
+        (
+            measure.RasterLidar,
+            {"min_range": 3, "max_range": 2},
+            "min_range must be at least 0 and less than max_range",
+        ),
         (measure.RasterLidar, {"divergence": -1}, "divergence must be at least 0 and less than 90 degrees"),
     ]:
         with pytest.raises(ValueError, match=text):
             kind(**options)
     scan = measure.lidar(BALL, RASTER)
-    with pytest.raises(ValueError, match="name must be one of 'range', 'incidence', 'strength', got 'colour'"):
+    with pytest.raises(
+        ValueError, match="name must be one of 'range', 'incidence', 'strength', got 'colour'"
+    ):
         scan.image("colour")

@@ -123,7 +123,11 @@ def test_seeds_batches_and_threads():
         ({"normals": (0, 0, 0)}, ValueError, "normals must have a length, and one is 0"),
         ({"normals": None}, ValueError, "normals must be given, unless points are"),
         ({"points": (0, np.nan, 0)}, ValueError, "points must be finite"),
-        ({"points": np.zeros((3, 3)), "normals": np.ones((2, 3))}, ValueError, "leading shapes do not broadcast"),
+        (
+            {"points": np.zeros((3, 3)), "normals": np.ones((2, 3))},
+            ValueError,
+            "leading shapes do not broadcast",
+        ),
         ({"points": (0, 0)}, ValueError, r"points must have shape \(\.\.\., 3\)"),
         ({"offset": -1}, ValueError, "offset must be finite and at least 0"),
         ({"up": np.zeros(3)}, ValueError, "up must have a length"),

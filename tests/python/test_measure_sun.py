@@ -85,12 +85,21 @@ def test_wrong_suns_get_one_line(box):
     place = {"points": (0.5, 2.0, 0.5), "normals": (0, 1, 0)}
     for given, told in [
         ({}, "sun must be given, or times, latitude and longitude"),
-        ({"times": ["2025-06-21T12:00Z"], "latitude": 3}, "sun must be given, or times, latitude and longitude"),
+        (
+            {"times": ["2025-06-21T12:00Z"], "latitude": 3},
+            "sun must be given, or times, latitude and longitude",
+        ),
         ({"sun": (0, 1, 0), "latitude": 3}, "sun is given, and times, latitude or longitude too"),
         ({"sun": (0, 0, 0)}, "sun must have a length"),
-        ({"sun": (0, 1, 0), "weights": [1, 2]}, r"weights must be one number or have shape \(1,\), got \(2,\)"),
+        (
+            {"sun": (0, 1, 0), "weights": [1, 2]},
+            r"weights must be one number or have shape \(1,\), got \(2,\)",
+        ),
         ({"sun": (0, 1, 0), "weights": np.nan}, "weights must be finite"),
-        ({"times": ["2025-06-21T12:00Z"], "latitude": 91, "longitude": 0}, "latitude must be between -90 and 90"),
+        (
+            {"times": ["2025-06-21T12:00Z"], "latitude": 91, "longitude": 0},
+            "latitude must be between -90 and 90",
+        ),
         ({"times": ["2025-06-21T12:00"], "latitude": 1, "longitude": 0}, r"times\[0\] must have a time zone"),
     ]:
         with pytest.raises(ValueError, match=told):

@@ -5,8 +5,8 @@ import pytest
 
 import raywright as rw
 
-KINDS = [rw.BVH(), rw.BVH(traversal="ordered"), rw.KdTree(), rw.Octree(), rw.BSP(), rw.Grid(), rw.BruteForce()]
-IDS = ["wide", "ordered", "kdtree", "octree", "bsp", "grid", "brute"]
+KINDS = [rw.BVH(), rw.BVH(traversal="stack"), rw.KdTree(), rw.Octree(), rw.BSP(), rw.Grid(), rw.BruteForce()]
+IDS = ["wide", "stack", "kdtree", "octree", "bsp", "grid", "brute"]
 
 
 def soup(seed, count=300):
@@ -48,7 +48,9 @@ def as_alone(hits, kept):
 @pytest.mark.parametrize("accelerator", KINDS, ids=IDS)
 def test_what_does_not_count_is_as_if_it_were_not_there(accelerator):
     every = rw.Scene(SHAPES, accelerator=accelerator)
-    alone = rw.Scene([shape for shape, counts in zip(SHAPES, KEPT, strict=True) if counts], accelerator=accelerator)
+    alone = rw.Scene(
+        [shape for shape, counts in zip(SHAPES, KEPT, strict=True) if counts], accelerator=accelerator
+    )
     found, wanted = every.intersect(*rays(), shapes=KEPT), alone.intersect(*rays())
     assert 300 < wanted.hit.sum() < 1500
     for name in ("t", "primitive", "uv", "instance"):
@@ -98,8 +100,11 @@ def test_no_ray_slips_through_edges_that_face_it(box):
     assert culled.hit.sum() > 500
     # What is seen first of a closed surface from outside is its front, but at outlines, where it is both.
     assert np.array_equal(culled.hit, plain.hit)
-    assert np.array_equal(culled.t, plain.t)
-    inside = rw.Scene(box).intersect((0.5, 0.5, 0.5), np.array([(1, 1, 1), (1, 0, 0), (1, 1, 0)]) * 0.5, cull="back")
+    # Through an edge, another of its faces may be told, of which t is rounded anew.
+    assert np.allclose(culled.t, plain.t, rtol=1e-12)
+    inside = rw.Scene(box).intersect(
+        (0.5, 0.5, 0.5), np.array([(1, 1, 1), (1, 0, 0), (1, 1, 0)]) * 0.5, cull="back"
+    )
     assert not inside.hit.any()
 
 
@@ -111,14 +116,18 @@ def test_the_other_way_round_it_is_the_back():
     every = rw.Scene(mesh).intersect_all(*rays())
     assert one.t.size + other.t.size == every.t.size
     assert one.t.size > 500
-    assert np.array_equal(np.sort(np.concatenate([one.t, other.t])), np.sort(every.t))
+    # Of a triangle that is turned round, t is rounded anew.
+    assert np.allclose(np.sort(np.concatenate([one.t, other.t])), np.sort(every.t), rtol=1e-12)
 
 
 def test_rays_may_be_left_out():
     scene = rw.Scene(SHAPES)
     origins, ways = rays()
     which = np.arange(1500) % 3 == 0
-    plain, masked = scene.intersect(origins, ways, t_max=0.8), scene.intersect(origins, ways, t_max=0.8, mask=which)
+    plain, masked = (
+        scene.intersect(origins, ways, t_max=0.8),
+        scene.intersect(origins, ways, t_max=0.8, mask=which),
+    )
     assert np.array_equal(masked.t, np.where(which, plain.t, np.inf))
     assert np.array_equal(masked.primitive, np.where(which, plain.primitive, -1))
     assert np.array_equal(scene.occluded(origins, ways, mask=which), scene.occluded(origins, ways) & which)
@@ -129,7 +138,8 @@ def test_rays_may_be_left_out():
     row = np.arange(50) < 20
     far = np.linspace(0.1, 2, 1500).reshape(30, 50)
     assert np.array_equal(
-        scene.intersect(*grid, t_max=far, mask=row).t, np.where(row, scene.intersect(*grid, t_max=far).t, np.inf)
+        scene.intersect(*grid, t_max=far, mask=row).t,
+        np.where(row, scene.intersect(*grid, t_max=far).t, np.inf),
     )
 
 
@@ -158,10 +168,18 @@ def test_shapes_are_named():
     ("arguments", "error", "told"),
     [
         ({"cull": "front"}, ValueError, """cull must be "back" or None, got 'front'"""),
-        ({"shapes": "cube"}, ValueError, "shapes has 'cube', but no shape of the scene is called so: its names are"),
+        (
+            {"shapes": "cube"},
+            ValueError,
+            "shapes has 'cube', but no shape of the scene is called so: its names are",
+        ),
         ({"shapes": [True]}, ValueError, r"shapes must have shape \(6,\), one bool a shape, got \(1,\)"),
         ({"shapes": [0, 1]}, TypeError, "shapes must be bool, one for each shape, or names, got dtype int"),
-        ({"mask": [True, False]}, ValueError, r"mask has shape \(2,\), which does not broadcast to rays of \(1500,\)"),
+        (
+            {"mask": [True, False]},
+            ValueError,
+            r"mask has shape \(2,\), which does not broadcast to rays of \(1500,\)",
+        ),
         ({"mask": np.ones(1500)}, TypeError, "mask must be bool, one for each ray, got dtype float64"),
     ],
 )

@@ -15,7 +15,9 @@ def scene_of(kind):
         return rw.Scene(knot)
     places = np.tile(np.eye(4), (2, 1, 1))
     places[1, 0, 3] = 1.5
-    return rw.Scene([knot, rw.Sphere((0, 0, 0), 1.0), rw.Instance(rw.Torus((0, 0, 0), (0, 0, 1), 1.0, 0.2), places)])
+    return rw.Scene(
+        [knot, rw.Sphere((0, 0, 0), 1.0), rw.Instance(rw.Torus((0, 0, 0), (0, 0, 1), 1.0, 0.2), places)]
+    )
 
 
 @pytest.fixture(params=["mesh", "curved"])
@@ -80,7 +82,9 @@ def test_hits_are_iterated_by_rays(scene):
     # What is picked keeps nothing of the others, and may be written over by another answer.
     some = hits[:2]
     assert some.t.base is None
-    assert scene.intersect(RAYS[0][2:4] if RAYS[0].ndim == 3 else RAYS[0], RAYS[1][2:4], out=some) == hits[2:4]
+    assert (
+        scene.intersect(RAYS[0][2:4] if RAYS[0].ndim == 3 else RAYS[0], RAYS[1][2:4], out=some) == hits[2:4]
+    )
 
 
 def test_all_hits_by_rays(scene):
@@ -96,11 +100,15 @@ def test_all_hits_by_rays(scene):
         parts = [slice(every.ray_splits[i], every.ray_splits[i + 1]) for i in wanted.reshape(-1)]
         for name in ("t", "shape_id", "primitive", "uv", "position", "normal", "instance"):
             array = getattr(every, name)
-            assert np.array_equal(getattr(some, name), np.concatenate([array[:0], *(array[part] for part in parts)]))
+            assert np.array_equal(
+                getattr(some, name), np.concatenate([array[:0], *(array[part] for part in parts)])
+            )
         assert some.first == scene.intersect(*RAYS)[index]
     assert [len(row) for row in every] == [9] * 7
     # More hits than rays have ends.
-    straight = scene.intersect_all(np.zeros((40, 3)) + (0, 0, 9.0), np.linspace((-0.1, 0, -1), (0.2, 0.1, -1), 40))
+    straight = scene.intersect_all(
+        np.zeros((40, 3)) + (0, 0, 9.0), np.linspace((-0.1, 0, -1), (0.2, 0.1, -1), 40)
+    )
     assert straight.t.size > 50
     assert np.array_equal(straight[30:].t, straight.t[straight.ray_splits[30] :])
     with pytest.raises(TypeError, match="hits of one ray have no length"):
@@ -151,14 +159,16 @@ def test_frames():
     hits = scene_of("mesh").intersect(*RAYS)
     frame = hits.to_dataframe()
     assert isinstance(frame, pandas.DataFrame)
-    assert frame.shape == (63, 12)
+    assert frame.shape == (63, 13)
     assert np.array_equal(frame["t"], hits.t.reshape(-1))
     assert frame["name"][0] == ""
 
 
 def test_without_pandas_that_is_told(monkeypatch):
     monkeypatch.setitem(__import__("sys").modules, "pandas", None)
-    with pytest.raises(ImportError, match="to_dataframe needs pandas, which is not installed: pip install pandas"):
+    with pytest.raises(
+        ImportError, match="to_dataframe needs pandas, which is not installed: pip install pandas"
+    ):
         scene_of("mesh").intersect(*RAYS).to_dataframe()
 
 
@@ -171,7 +181,9 @@ def test_a_pickle_is_as_small_as_its_arrays(scene):
     back = pickle.loads(pickle.dumps(hits))
     assert back == hits
     for name in ("position", "normal", "surface", "names"):
-        with pytest.raises(ValueError, match=f"{name} is not kept in a pickle unless it was asked for before"):
+        with pytest.raises(
+            ValueError, match=f"{name} is not kept in a pickle unless it was asked for before"
+        ):
             getattr(back, name)
     with pytest.raises(ValueError, match="position is not kept"):
         back.leave((0, 0, 1.0))
@@ -201,7 +213,9 @@ def test_names_come_from_files(tmp_path, box):
     assert rw.Scene(parts).names == ("chair", "lamp")
     parts.export(tmp_path / "room.glb")
     assert set(rw.Scene(tmp_path / "room.glb").names) == {"chair", "lamp"}
-    (tmp_path / "two.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\nusemtl blue\nf 1 3 2\n")
+    (tmp_path / "two.obj").write_text(
+        "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\nusemtl blue\nf 1 3 2\n"
+    )
     with pytest.warns(RuntimeWarning):
         assert rw.Scene(tmp_path / "two.obj").names == ("red", "blue")
     named = rw.Mesh(box.vertices, box.faces, name="cube")
