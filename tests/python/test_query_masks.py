@@ -90,7 +90,9 @@ def test_back_faces_are_left_out(accelerator):
 
 
 def test_no_ray_slips_through_edges_that_face_it(box):
-    """Rays at the edges and corners of a closed mesh from outside meet a face that faces them, as near as any."""
+    """Rays at the edges and corners of a closed mesh from outside meet a face that faces them, as near
+    as any.
+    """
     knot = rw.scenes.torus_knot(along=40, around=7)
     scene = rw.Scene(knot, precision="double")
     corners = knot.vertices[knot.faces].astype(np.float64)
@@ -109,7 +111,9 @@ def test_no_ray_slips_through_edges_that_face_it(box):
 
 
 def test_the_other_way_round_it_is_the_back():
-    """With every triangle turned round, what was met from behind is met from the front: together they are all."""
+    """With every triangle turned round, what was met from behind is met from the front: together they
+    are all.
+    """
     mesh = soup(5)
     turned = rw.Mesh(mesh.vertices, mesh.faces[:, ::-1])
     one, other = (rw.Scene(m).intersect_all(*rays(), cull="back") for m in (mesh, turned))

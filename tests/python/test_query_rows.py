@@ -73,7 +73,7 @@ def test_hits_are_iterated_by_rays(scene):
     assert len(rows) == len(hits) == 7
     assert all(row.shape == (9,) for row in rows)
     assert np.array_equal(np.stack([row.t for row in rows]), hits.t)
-    single = [one for one in hits[2]]  # noqa: C416
+    single = [one for one in hits[2]]
     assert [one.shape for one in single] == [()] * 9
     with pytest.raises(IndexError):
         hits[7]
@@ -107,7 +107,7 @@ def test_all_hits_by_rays(scene):
     assert [len(row) for row in every] == [9] * 7
     # More hits than rays have ends.
     straight = scene.intersect_all(
-        np.zeros((40, 3)) + (0, 0, 9.0), np.linspace((-0.1, 0, -1), (0.2, 0.1, -1), 40)
+        (*np.zeros((40, 3)), 0, 0, 9.0), np.linspace((-0.1, 0, -1), (0.2, 0.1, -1), 40)
     )
     assert straight.t.size > 50
     assert np.array_equal(straight[30:].t, straight.t[straight.ray_splits[30] :])

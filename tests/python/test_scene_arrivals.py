@@ -30,7 +30,7 @@ def test_one_may_move_without_the_other(box):
     one, two = pickle.loads(data), pickle.loads(data)
     ray = (0.5, 0.4, 5.0), (0, 0, -1.0)
     assert same_core([one, two])
-    one.refit(box.vertices + (0, 0, 2))
+    one.refit(box.vertices + np.array([0, 0, 2]))
     assert (one.intersect(*ray).t, two.intersect(*ray).t) == (2, 4)
     moved = pickle.loads(pickle.dumps(one))
     assert moved.intersect(*ray).t == 2
