@@ -107,7 +107,7 @@ def test_all_hits_by_rays(scene):
     assert [len(row) for row in every] == [9] * 7
     # More hits than rays have ends.
     straight = scene.intersect_all(
-        (*np.zeros((40, 3)), 0, 0, 9.0), np.linspace((-0.1, 0, -1), (0.2, 0.1, -1), 40)
+        np.tile((0.0, 0, 9), (40, 1)), np.linspace((-0.1, 0, -1), (0.2, 0.1, -1), 40)
     )
     assert straight.t.size > 50
     assert np.array_equal(straight[30:].t, straight.t[straight.ray_splits[30] :])
