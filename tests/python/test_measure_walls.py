@@ -15,7 +15,7 @@ def test_a_shell_is_as_thick_as_its_radii_differ():
     ways /= np.linalg.norm(ways, axis=1, keepdims=True)
     hits = shell.intersect((1, 2, 3) + 5 * ways, -ways)
     assert np.allclose(measure.thickness(shell, hits), 0.2, rtol=0, atol=1e-13)
-    plain = measure.thickness(shell, (1, 2, 3, *ways), ways)
+    plain = measure.thickness(shell, np.array([1, 2, 3]) + ways, ways)
     assert np.allclose(plain, 0.2, rtol=0, atol=1e-12)
 
 
