@@ -102,7 +102,9 @@ impl CompiledScene {
             .map_err(|e| PyValueError::new_err(e.to_string()))
     }
 
-    #[pyo3(signature = (origins, directions, t_min, t_max, shape, threads, time=None, out=None, counted=None))]
+    #[pyo3(signature = (
+        origins, directions, t_min, t_max, shape, threads, time=None, out=None, counted=None
+    ))]
     fn intersect<'py>(
         &self,
         py: Python<'py>,
@@ -164,7 +166,9 @@ impl CompiledScene {
         Ok((t, shape, primitive, uv, instance))
     }
 
-    #[pyo3(signature = (origins, directions, t_min, t_max, shape, threads, time=None, out=None, counted=None))]
+    #[pyo3(signature = (
+        origins, directions, t_min, t_max, shape, threads, time=None, out=None, counted=None
+    ))]
     fn occluded<'py>(
         &self,
         py: Python<'py>,

@@ -101,6 +101,7 @@ def test_hits_cannot_be_written(hits):
     "again", [lambda h: pickle.loads(pickle.dumps(h)), copy.deepcopy], ids=["pickle", "copy"]
 )
 def test_pickled_hits_keep_all_they_knew(hits, again):
+    assert hits.position.shape == hits.normal.shape  # a pickle keeps what was asked for
     back = again(hits)
     assert back == hits
     assert np.array_equal(back.position, hits.position, equal_nan=True)

@@ -18,7 +18,8 @@ def away(scanner, towards=(1.0, 0, 0)):
 
 
 def test_a_ball_is_as_far_as_it_is():
-    """At an angle a from its middle, a ball of radius r is D cos a - sqrt(r^2 - D^2 sin^2 a) away, and its normal is
+    """At an angle a from its middle, a ball of radius r is D cos a - sqrt(r^2 - D^2 sin^2 a) away, and
+    its normal is
     tilted by arcsin(D sin a / r).
     """
     scan = measure.lidar(BALL, RASTER)
@@ -64,7 +65,9 @@ def test_near_and_far_are_not_measured():
 
 
 def test_noise_has_the_spread_that_was_asked_for():
-    """Of n numbers the mean is within 4 / sqrt(n) deviations, and the deviation within 4 / sqrt(2 n) of itself: 1e-4 each."""
+    """Of n numbers the mean is within 4 / sqrt(n) deviations, and the deviation within 4 / sqrt(2 n) of
+    itself: 1e-4 each.
+    """
     wall = rw.Plane((10.0, 0, 0), (1, 0, 0))
     exact = measure.lidar(wall, RASTER)
     n = len(exact)
@@ -101,7 +104,9 @@ def test_losses_are_as_likely_as_told():
 
 
 def test_a_wide_beam_returns_from_all_that_it_meets():
-    """Of a beam that half passes an edge, half comes from behind: a spiral of n points tells a half-disk to 1 / sqrt(n)."""
+    """Of a beam that half passes an edge, half comes from behind: a spiral of n points tells a half-disk
+    to 1 / sqrt(n).
+    """
     edge = rw.Mesh([(5, 0, -9), (5, 9, -9), (5, 9, 9), (5, 0, 9)], [(0, 1, 2), (0, 2, 3)])
     scene = rw.Scene([edge, rw.Plane((8.0, 0, 0), (1, 0, 0))])
     options = {"elevations": [0.0], "columns": 1, "divergence": 1.0, "rays": 400}
@@ -139,15 +144,25 @@ def test_names_and_wrong_input():
         with pytest.raises(ValueError, match=text):
             measure.lidar(BALL, RASTER, **options)
     for kind, options, text in [
-        (measure.SpinningLidar, {"elevations": []}, "elevations must be one or more numbers between -90 and 90"),
+        (
+            measure.SpinningLidar,
+            {"elevations": []},
+            "elevations must be one or more numbers between -90 and 90",
+        ),
         (measure.SpinningLidar, {"elevations": [0], "columns": 0}, "columns must be at least 1, got 0"),
         (measure.SpinningLidar, {"elevations": [0], "up": (1, 0, 0)}, "forward must not be along up"),
         (measure.RasterLidar, {"vertical": 190}, "vertical must be between 0 and 180 degrees, got 190"),
-        (measure.RasterLidar, {"min_range": 3, "max_range": 2}, "min_range must be at least 0 and less than max_range"),
+        (
+            measure.RasterLidar,
+            {"min_range": 3, "max_range": 2},
+            "min_range must be at least 0 and less than max_range",
+        ),
         (measure.RasterLidar, {"divergence": -1}, "divergence must be at least 0 and less than 90 degrees"),
     ]:
         with pytest.raises(ValueError, match=text):
             kind(**options)
     scan = measure.lidar(BALL, RASTER)
-    with pytest.raises(ValueError, match="name must be one of 'range', 'incidence', 'strength', got 'colour'"):
+    with pytest.raises(
+        ValueError, match="name must be one of 'range', 'incidence', 'strength', got 'colour'"
+    ):
         scan.image("colour")

@@ -23,7 +23,9 @@ def street(width, height, half=1e4, floor=True):
 
 
 def test_the_floor_of_a_street_sees_what_walls_leave():
-    """Of an endless street the share is (cos a + cos b) / 2, with a and b how high the walls stand above the place."""
+    """Of an endless street the share is (cos a + cos b) / 2, with a and b how high the walls stand above
+    the place.
+    """
     width, height = 10.0, 12.0
     scene = street(width, height)
     z = np.array([-4.9, -2.0, 0.0, 3.0])
@@ -50,7 +52,8 @@ def test_a_wall_of_a_street_sees_the_sky_above_the_other():
 
 def test_under_a_disk():
     """A point at a distance a from the axis of a disk of radius r, h above it, sees of it
-    (1 - (a^2 + h^2 - r^2) / sqrt((a^2 + h^2 + r^2)^2 - 4 a^2 r^2)) / 2 (Howell, Catalog of Configuration Factors, B-13).
+    (1 - (a^2 + h^2 - r^2) / sqrt((a^2 + h^2 + r^2)^2 - 4 a^2 r^2)) / 2 (Howell, Catalog of Configuration
+    Factors, B-13).
     """
     h, r = 2.0, 1.5
     a = np.array([0.0, 0.7, 2.5])
@@ -63,7 +66,8 @@ def test_under_a_disk():
 
 
 def test_errors_are_told_as_they_are():
-    """Of 400 independent estimates, 95 % lie within t standard errors of the truth: 3.3 deviations of a binomial are 3.6 %.
+    """Of 400 independent estimates, 95 % lie within t standard errors of the truth: 3.3 deviations of a
+    binomial are 3.6 %.
 
     Errors of 16 batches of few rays are not quite normal, which takes up to another 1.5 %.
     """
@@ -123,7 +127,11 @@ def test_seeds_batches_and_threads():
         ({"normals": (0, 0, 0)}, ValueError, "normals must have a length, and one is 0"),
         ({"normals": None}, ValueError, "normals must be given, unless points are"),
         ({"points": (0, np.nan, 0)}, ValueError, "points must be finite"),
-        ({"points": np.zeros((3, 3)), "normals": np.ones((2, 3))}, ValueError, "leading shapes do not broadcast"),
+        (
+            {"points": np.zeros((3, 3)), "normals": np.ones((2, 3))},
+            ValueError,
+            "leading shapes do not broadcast",
+        ),
         ({"points": (0, 0)}, ValueError, r"points must have shape \(\.\.\., 3\)"),
         ({"offset": -1}, ValueError, "offset must be finite and at least 0"),
         ({"up": np.zeros(3)}, ValueError, "up must have a length"),

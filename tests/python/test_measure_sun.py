@@ -9,7 +9,9 @@ measure = rw.measure
 
 
 def course(latitude, declination, count):
-    """The sun through a day of one declination, at the middles of even steps, y up and north along -z; and its hours."""
+    """The sun through a day of one declination, at the middles of even steps, y up and north along -z;
+    and its hours.
+    """
     hour = (np.arange(count) + 0.5) / count * 2 * np.pi - np.pi
     phi, delta = np.radians(latitude), np.radians(declination)
     up = np.sin(phi) * np.sin(delta) + np.cos(phi) * np.cos(delta) * np.cos(hour)
@@ -20,7 +22,8 @@ def course(latitude, declination, count):
 
 @pytest.mark.parametrize(("latitude", "declination"), [(47.4, 23.4), (-10.0, -5.0), (60.0, -15.0)])
 def test_a_day_on_level_ground(latitude, declination):
-    """The sun is up for 2 w hours of angle, cos w = -tan(latitude) tan(declination), and its sine integrates to
+    """The sun is up for 2 w hours of angle, cos w = -tan(latitude) tan(declination), and its sine
+    integrates to
     sin w cos cos + w sin sin. The midpoint rule of 20,000 steps errs by up to two steps of the day's length.
     """
     suns, hours = course(latitude, declination, 20_000)
@@ -34,7 +37,9 @@ def test_a_day_on_level_ground(latitude, declination):
 
 
 def test_a_wall_takes_the_sun_that_its_shadow_says():
-    """A place before a wall along z, of height h, at a distance d, is in the sun while it stands above h / d."""
+    """A place before a wall along z, of height h, at a distance d, is in the sun while it stands above h
+    / d.
+    """
     wall = rw.Mesh([(1, 0, -1e6), (1, 0, 1e6), (1, 2, 1e6), (1, 2, -1e6)], [(0, 1, 2), (0, 2, 3)])
     high = np.radians(np.linspace(1, 179, 357))
     suns = np.stack([np.cos(high), np.sin(high), np.zeros_like(high)], axis=-1)
@@ -85,12 +90,21 @@ def test_wrong_suns_get_one_line(box):
     place = {"points": (0.5, 2.0, 0.5), "normals": (0, 1, 0)}
     for given, told in [
         ({}, "sun must be given, or times, latitude and longitude"),
-        ({"times": ["2025-06-21T12:00Z"], "latitude": 3}, "sun must be given, or times, latitude and longitude"),
+        (
+            {"times": ["2025-06-21T12:00Z"], "latitude": 3},
+            "sun must be given, or times, latitude and longitude",
+        ),
         ({"sun": (0, 1, 0), "latitude": 3}, "sun is given, and times, latitude or longitude too"),
         ({"sun": (0, 0, 0)}, "sun must have a length"),
-        ({"sun": (0, 1, 0), "weights": [1, 2]}, r"weights must be one number or have shape \(1,\), got \(2,\)"),
+        (
+            {"sun": (0, 1, 0), "weights": [1, 2]},
+            r"weights must be one number or have shape \(1,\), got \(2,\)",
+        ),
         ({"sun": (0, 1, 0), "weights": np.nan}, "weights must be finite"),
-        ({"times": ["2025-06-21T12:00Z"], "latitude": 91, "longitude": 0}, "latitude must be between -90 and 90"),
+        (
+            {"times": ["2025-06-21T12:00Z"], "latitude": 91, "longitude": 0},
+            "latitude must be between -90 and 90",
+        ),
         ({"times": ["2025-06-21T12:00"], "latitude": 1, "longitude": 0}, r"times\[0\] must have a time zone"),
     ]:
         with pytest.raises(ValueError, match=told):

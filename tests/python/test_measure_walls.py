@@ -15,12 +15,14 @@ def test_a_shell_is_as_thick_as_its_radii_differ():
     ways /= np.linalg.norm(ways, axis=1, keepdims=True)
     hits = shell.intersect((1, 2, 3) + 5 * ways, -ways)
     assert np.allclose(measure.thickness(shell, hits), 0.2, rtol=0, atol=1e-13)
-    plain = measure.thickness(shell, (1, 2, 3) + ways, ways)
+    plain = measure.thickness(shell, np.array([1, 2, 3]) + ways, ways)
     assert np.allclose(plain, 0.2, rtol=0, atol=1e-12)
 
 
 def test_a_shell_of_faces_is_as_thick_as_its_faces_are_apart():
-    """Between two like polyhedra every pair of faces is the difference of the distances from the centre apart."""
+    """Between two like polyhedra every pair of faces is the difference of the distances from the centre
+    apart.
+    """
     outer = trimesh.creation.icosphere(subdivisions=3, radius=1.0)
     inner = outer.copy()
     inner.apply_scale(0.75)
@@ -51,7 +53,9 @@ def test_a_plate_is_as_thick_by_ball_as_by_ray():
 
 
 def test_the_ball_in_a_wedge():
-    """At a distance d from the edge of a wedge of angle a, the ball that touches both sides has radius d tan(a / 2)."""
+    """At a distance d from the edge of a wedge of angle a, the ball that touches both sides has radius d
+    tan(a / 2).
+    """
     angle = np.radians(50.0)
     far = 100.0
     tip = np.array([np.cos(angle), np.sin(angle)]) * far
@@ -120,7 +124,9 @@ def test_a_box_is_cut_in_a_rectangle_also_at_its_corners(z, area):
 
 
 def test_a_ball_is_cut_in_circles():
-    """Of a sphere of triangles whose corners lie on it and edges are e long, a cut lies between circles e^2 / 2 apart."""
+    """Of a sphere of triangles whose corners lie on it and edges are e long, a cut lies between circles
+    e^2 / 2 apart.
+    """
     ball = trimesh.creation.icosphere(subdivisions=4)
     edge = ball.edges_unique_length.max()
     for z in (0.0, 0.3, -0.77):

@@ -95,11 +95,9 @@ class AllHits(SurfacePoints):
         """Return all hits of the rays at some places of the leading shape, which is indexed as arrays are."""
         rays = rows.places(self.shape, index)
         splits, which = rows.of_rays(self.ray_splits, rays.reshape(-1))
-        own = rows.picked({**vars(self), "_rays": None}, which)
-        some = chosen(AllHits, self, {**own, "ray_splits": sealed(splits), "shape": rays.shape}, rays)
-        for name in ("ray", "count", "first"):
-            vars(some).pop(name, None)
-        return some
+        by_ray = ("ray_splits", "ray", "count", "first", "shape")
+        own = rows.picked({name: v for name, v in vars(self).items() if name not in by_ray}, which)
+        return chosen(AllHits, self, {**own, "ray_splits": sealed(splits), "shape": rays.shape}, rays)
 
     def __iter__(self) -> "Iterator[AllHits]":
         return (self[i] for i in range(len(self)))

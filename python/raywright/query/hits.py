@@ -204,6 +204,11 @@ class SurfacePoints(Known):
         # Where hits know their points by their rays, and the scene is gone, those are of no use.
         return restored, (type(self), kept, self._more())
 
+    def __copy__(self) -> "SurfacePoints":
+        copy = type(self).__new__(type(self))
+        vars(copy).update(vars(self))
+        return copy
+
     def __deepcopy__(self, memo: dict[int, Any]) -> "SurfacePoints":
         # The compiled scene never changes, and serves the copy too; `out` may write to the arrays.
         copy = restored(type(self), rows.copied(vars(self), memo), {})

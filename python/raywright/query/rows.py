@@ -70,7 +70,7 @@ def filled(some: NDArray[Any], has: NDArray[np.bool_], shape: tuple[int, ...], m
     """Return an entry for each ray: the next of some for those that have one, and what stands for a miss."""
     every = np.full((len(has), *some.shape[1:]), miss, some.dtype)
     every[has] = some
-    every = every.reshape(*shape, *some.shape[1:])
+    every = every.reshape((*shape, *some.shape[1:]))
     every.setflags(write=False)
     return every
 
