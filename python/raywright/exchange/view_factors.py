@@ -42,8 +42,8 @@ class ViewFactors:
         Whether a row is a face or a shape. Faces are numbered shape after shape, and a shape that is no mesh
         is one face.
     closed, hidden, sampled : int
-        How many pairs of faces that look at each other are in closed form, hidden from each other for certain, and
-        sampled by rays.
+        How many pairs of faces that look at each other are in closed form, hidden from each other for
+        certain, and sampled by rays.
     rays : int
         How many rays were sent.
     """
@@ -139,8 +139,8 @@ def view_factors(
         sends 4096 times as many, and in a scene of more than 10,000 faces each sends 32 times as many, where
         they will.
     error : float, optional
-        The standard error that no view factor between faces should exceed. Rays are doubled until it is met, or a
-        pair has had a thousand batches of them.
+        The standard error that no view factor between faces should exceed. Rays are doubled until it is met,
+        or a pair has had a thousand batches of them.
     seed : int
         Picks the random numbers, 0 to 2**64 - 1.
     threads : int, optional
@@ -155,8 +155,8 @@ def view_factors(
     Raises
     ------
     ValueError
-        If the scene has no faces, a face with a corner that is not finite, or a shape without end; if `per` or a
-        number is out of its range.
+        If the scene has no faces, a face with a corner that is not finite, or a shape without end; if `per`
+        or a number is out of its range.
     TypeError
         If something is of another kind, or the scene holds an `Instance`.
     KeyboardInterrupt
@@ -164,15 +164,16 @@ def view_factors(
 
     Notes
     -----
-    Of each pair A_i F_ij is found once, so that A_i F_ij = A_j F_ji to the last digit but one. In a closed room
-    each row adds up to 1: to 1e-9 where nothing hides anything, and within the standard errors elsewhere. What
-    has no area sees nothing.
+    Of each pair A_i F_ij is found once, so that A_i F_ij = A_j F_ji to the last digit but one. In a closed
+    room each row adds up to 1: to 1e-9 where nothing hides anything, and within the standard errors
+    elsewhere. What has no area sees nothing.
 
-    More than 10,000 faces have a sparse matrix (scipy is needed), each row of which is by rays: it adds up to 1 in
-    a closed room, and A_i F_ij = A_j F_ji within the standard errors. 100,000 faces take some 3 GB.
+    More than 10,000 faces have a sparse matrix (scipy is needed), each row of which is by rays: it adds up to
+    1 in a closed room, and A_i F_ij = A_j F_ji within the standard errors. It has at most as many entries in
+    a row as the row has rays, of 16 bytes each.
 
-    Closed forms: contour integrals, Schröder and Hanrahan (1993), Mitalas and Stephenson (1966). Shafts: Haines and
-    Wallace (1991).
+    Closed forms: contour integrals, Schröder and Hanrahan (1993), Mitalas and Stephenson (1966). Shafts:
+    Haines and Wallace (1991).
     """
     if not isinstance(scene, Scene):
         raise TypeError(f"scene must be a Scene, got {type(scene).__name__}")
@@ -205,7 +206,9 @@ def _first_faces(scene: Scene) -> NDArray[np.int64]:
         if isinstance(shape, Mesh):
             finite = np.isfinite(shape.vertices).all(axis=1)[shape.faces].all(axis=1)
             if not finite.all():
-                raise ValueError(f"face {int(np.argmin(finite))} of shapes[{i}] has a corner that is not finite")
+                raise ValueError(
+                    f"face {int(np.argmin(finite))} of shapes[{i}] has a corner that is not finite"
+                )
     first = np.cumsum([0, *map(face_count, scene.shapes)])
     if first[-1] == 0:
         raise ValueError("the scene has no faces, and so no view factors")
@@ -216,7 +219,9 @@ def _exact(scene: Scene) -> Scene:
     """Return the scene with all digits of its vertices, unless float32 was asked for or has them all."""
 
     def loses(shape: object) -> bool:
-        return isinstance(shape, Mesh) and not np.array_equal(shape.vertices, shape.vertices.astype(np.float32))
+        return isinstance(shape, Mesh) and not np.array_equal(
+            shape.vertices, shape.vertices.astype(np.float32)
+        )
 
     if scene.precision == "auto" and any(map(loses, scene.shapes)):
         return scene.replace(precision="double")
@@ -229,7 +234,9 @@ def _dense(core: _core.CompiledScene, rays: tuple[int, int], *how: Any) -> ViewF
     with np.errstate(divide="ignore", invalid="ignore"):
         there, back = (np.nan_to_num((errors / areas[of]) ** 2) for of in (one, other))
     two = one != other
-    variance = tuple(np.concatenate(both) for both in ((one, other[two]), (other, one[two]), (there, back[two])))
+    variance = tuple(
+        np.concatenate(both) for both in ((one, other[two]), (other, one[two]), (there, back[two]))
+    )
     return ViewFactors(frozen(matrix), frozen(areas), "face", *counts, sent, variance)
 
 
