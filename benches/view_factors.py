@@ -95,7 +95,8 @@ def main():
             error = np.sqrt((found.standard_error**2).sum(axis=1)).max()
             print(
                 f"{len(found)} triangles, {name}: {seconds:.2f} s; pairs: {found.closed} closed, "
-                f"{found.hidden} hidden, {found.sampled} sampled, {found.rays} rays; rows within {np.abs(found.rest).max():.1e}, "
+                f"{found.hidden} hidden, {found.sampled} sampled, {found.rays} rays; "
+                f"rows within {np.abs(found.rest).max():.1e}, "
                 f"errors of rows up to {error:.1e}",
                 flush=True,
             )

@@ -13,7 +13,7 @@ from ..scene.instance import Instance
 from ..scene.progress import BuildProgress, check_progress, watcher
 from ..scene.scene import Scene
 from ..shapes import Plane
-from ..shapes.mesh import Mesh, face_count
+from ..shapes.mesh import Mesh
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
@@ -25,6 +25,7 @@ _RAYS = 16
 # A row by rays holds all that a face sees, so it takes more of them than a pair does.
 _CURVED_RAYS = 4096
 _FACE_RAYS = 32
+_MOST_RAYS = 2**26
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -125,8 +126,8 @@ def view_factors(
 
     Every surface sends from its front alone, the side that the normal points to, and receives there alone,
     whatever its material: a `TwoSided` one too. What lies between hides from either side. Two triangles that
-    nothing lies between have a closed form, to 1e-9 of itself; that nothing does is proven by their shaft. Where
-    something may, stratified rays tell the difference from the closed form. What is no mesh sends rays.
+    nothing lies between have a closed form, to 1e-9 of itself; that nothing does is proven by their shaft.
+    Where something may, stratified rays tell the difference from the closed form. What is no mesh sends rays.
 
     Parameters
     ----------
@@ -135,9 +136,9 @@ def view_factors(
     per : {"face", "shape"}
         What a row is: a face, or a shape with all of its faces.
     rays : int, optional
-        How many go between two faces that something may lie between; 16 if not given. A shape that is no mesh
-        sends 4096 times as many, and in a scene of more than 10,000 faces each sends 32 times as many, where
-        they will.
+        How many go between two faces that something may lie between, up to 2**20; 16 if not given. A shape
+        that is no mesh sends 4096 times as many, up to 2**26. In a scene of more than 10,000 faces each face
+        sends 32 times as many.
     error : float, optional
         The standard error that no view factor between faces should exceed. Rays are doubled until it is met,
         or a pair has had a thousand batches of them.
@@ -178,7 +179,7 @@ def view_factors(
     if not isinstance(scene, Scene):
         raise TypeError(f"scene must be a Scene, got {type(scene).__name__}")
     choice("per", per, get_args(Per))
-    start = _RAYS if rays is None else integer("rays", rays, 1, 2**16)
+    start = _RAYS if rays is None else integer("rays", rays, 1, 2**20)
     aim = None if error is None else positive("error", error)
     number = integer("seed", seed, 0, 2**64 - 1)
     workers = None if threads is None else integer("threads", threads, 1)
@@ -190,7 +191,7 @@ def view_factors(
         if first[-1] > _MOST_DENSE:
             found = _by_rows(core, start * _FACE_RAYS, aim, number, workers, report)
         else:
-            found = _dense(core, (start, start * _CURVED_RAYS), aim, number, workers, report)
+            found = _dense(core, (start, min(start * _CURVED_RAYS, _MOST_RAYS)), aim, number, workers, report)
     return found if per == "face" else _of_shapes(found, first)
 
 
@@ -199,7 +200,7 @@ def _first_faces(scene: Scene) -> NDArray[np.int64]:
     for i, shape in enumerate(scene.shapes):
         if isinstance(shape, Instance):
             raise TypeError(
-                f"shapes[{i}] is an Instance, whose copies have no faces of their own: give a Mesh for each copy"
+                f"shapes[{i}] is an Instance, whose copies have no faces of their own: give a Mesh each"
             )
         if isinstance(shape, Plane):
             raise ValueError(f"shapes[{i}] is a Plane, which has no end and so no area: give a Mesh that has")
@@ -209,7 +210,8 @@ def _first_faces(scene: Scene) -> NDArray[np.int64]:
                 raise ValueError(
                     f"face {int(np.argmin(finite))} of shapes[{i}] has a corner that is not finite"
                 )
-    first = np.cumsum([0, *map(face_count, scene.shapes)])
+    counts = [len(shape.faces) if isinstance(shape, Mesh) else 1 for shape in scene.shapes]
+    first = np.cumsum([0, *counts])
     if first[-1] == 0:
         raise ValueError("the scene has no faces, and so no view factors")
     return first
@@ -272,7 +274,8 @@ def _of_shapes(faces: ViewFactors, first: NDArray[np.int64]) -> ViewFactors:
         matrix[np.ix_(used, used)] = np.add.reduceat(from_faces, first[used], axis=0)
         rows, columns, values = faces._variance
         cells = of[rows] * count + of[columns]
-        summed = np.bincount(cells, values * shares[rows] ** 2, count * count).reshape(count, count)
+        summed = np.bincount(cells, values * shares[rows] ** 2, count * count).astype(np.float64)
+        summed = summed.reshape(count, count)
         # Within a shape, both entries of a pair are one estimate: they err together.
         summed[np.diag_indices(count)] *= 2.0
     else:
