@@ -22,12 +22,7 @@ type Dense<'py> = (
 /// Areas; where rows start, faces, factors and their errors; and rays.
 type ByRays<'py> = (
     Bound<'py, PyArray1<f64>>,
-    (
-        Bound<'py, PyArray1<i64>>,
-        Bound<'py, PyArray1<i32>>,
-        Bound<'py, PyArray1<f64>>,
-        Bound<'py, PyArray1<f32>>,
-    ),
+    (Bound<'py, PyArray1<i64>>, Bound<'py, PyArray1<i32>>, Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f32>>),
     u64,
 );
 

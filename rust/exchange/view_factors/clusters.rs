@@ -101,8 +101,8 @@ impl Clusters {
 }
 
 fn around(facets: &[Facet], faces: &[u32]) -> (DVec3, DVec3) {
-    faces.iter().flat_map(|&face| facets[face as usize].corners).fold(
-        (DVec3::INFINITY, DVec3::NEG_INFINITY),
-        |(low, high), corner| (low.min(corner), high.max(corner)),
-    )
+    faces
+        .iter()
+        .flat_map(|&face| facets[face as usize].corners)
+        .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), corner| (low.min(corner), high.max(corner)))
 }

@@ -21,7 +21,8 @@ struct Rule {
 
 impl Rule {
     fn new(of: &[([f64; 2], f64)]) -> Self {
-        let mut rule = Self { points: of.len().next_multiple_of(8), second: [0.0; MOST], third: [0.0; MOST], weight: [0.0; MOST] };
+        let mut rule =
+            Self { points: of.len().next_multiple_of(8), second: [0.0; MOST], third: [0.0; MOST], weight: [0.0; MOST] };
         for (i, &([second, third], weight)) in of.iter().enumerate() {
             (rule.second[i], rule.third[i], rule.weight[i]) = (second, third, weight);
         }

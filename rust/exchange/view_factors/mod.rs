@@ -55,6 +55,8 @@ fn facets(scene: &Scene) -> Vec<Facet> {
 /// The areas of all primitives; 0 of what cannot be hit.
 pub fn areas(scene: &Scene) -> Vec<f64> {
     let geometry = scene.geometry();
-    let area = |primitive| geometry.shape(primitive).map_or_else(|| Facet::new(geometry.corners(primitive)).area, |s| s.area());
+    let area = |primitive| {
+        geometry.shape(primitive).map_or_else(|| Facet::new(geometry.corners(primitive)).area, |s| s.area())
+    };
     (0..geometry.count() as u32).map(area).map(|area| if area.is_finite() { area } else { 0.0 }).collect()
 }
