@@ -2,4 +2,4 @@
 
 mod view_factors;
 
-pub use view_factors::*;
+pub use view_factors::{Aim, Facet, Matrix, Quadrature, Sampled, Sparse, areas, matrix, pair, sparse};

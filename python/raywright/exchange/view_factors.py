@@ -16,7 +16,7 @@ from ..shapes import Plane
 from ..shapes.mesh import Mesh
 
 if TYPE_CHECKING:
-    from scipy.sparse import csr_array
+    from scipy.sparse import csr_array  # type: ignore[import-untyped]
 
 Per: TypeAlias = Literal["face", "shape"]
 # Of more faces than this, the matrix of all pairs takes more than 0.8 GB, and is sparse instead.
@@ -253,7 +253,7 @@ def _by_rows(core: _core.CompiledScene, rays: int, *how: Any) -> ViewFactors:
 
 def _sparse() -> Any:
     try:
-        from scipy.sparse import csr_array
+        from scipy.sparse import csr_array  # type: ignore[import-untyped]
     except ImportError as missing:
         raise ImportError("sparse view factors need scipy: pip install scipy") from missing
     return csr_array
@@ -282,7 +282,8 @@ def _of_shapes(faces: ViewFactors, first: NDArray[np.int64]) -> ViewFactors:
         sparse = _sparse()
         ends = np.arange(len(of) + 1)
         columns = sparse((np.ones(len(of)), of, ends), shape=(len(of), count))
-        matrix = (columns.T @ (faces.matrix.multiply(shares[:, None]).tocsr() @ columns)).toarray()
+        seen: Any = faces.matrix
+        matrix = (columns.T @ (seen.multiply(shares[:, None]).tocsr() @ columns)).toarray()
         summed = (columns.T @ (faces._variance.multiply(shares[:, None] ** 2).tocsr() @ columns)).toarray()
     where = np.nonzero(summed)
     return ViewFactors(frozen(matrix), frozen(areas), "shape", *counts, (*where, summed[where]))

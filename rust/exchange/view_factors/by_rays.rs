@@ -1,4 +1,5 @@
-//! Whole rows of the matrix by rays: of surfaces that are no triangles, and of scenes with too many faces for all pairs.
+//! Whole rows of the matrix by rays: of surfaces that are no triangles, and of scenes with too many faces for all
+//! pairs.
 
 use super::Aim;
 use super::facet::Facet;

@@ -249,8 +249,8 @@ impl Everything<'_> {
         self.factors[row * self.facets.len() + column].store(factor.to_bits(), Relaxed);
     }
 
-    /// The rows and columns of all that is no triangle. Of two such surfaces both rows tell what they exchange, A F, with
-    /// a variance of about A² F / n, so that the one of the smaller area counts more.
+    /// The rows and columns of all that is no triangle. Of two such surfaces both rows tell what they exchange, A F,
+    /// with a variance of about A² F / n, so that the one of the smaller area counts more.
     fn curved(&self, areas: &[f64]) -> Result<(), Stopped> {
         let geometry = self.scene.geometry();
         let is_curved = |i: u32| geometry.shape(i).is_some();
