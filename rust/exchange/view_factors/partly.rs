@@ -23,8 +23,8 @@ type Batch = [f64; 2];
 
 /// The estimates of some pairs, one each.
 ///
-/// A sample is a point x of the smaller triangle, drawn by area, and a direction from there to the other, drawn by solid
-/// angle; it counts w = A cos θ / (π p), V times that where it is seen. Of a batch the estimate is
+/// A sample is a point x of the smaller triangle, drawn by area, and a direction from there to the other, drawn by
+/// solid angle; it counts w = A cos θ / (π p), V times that where it is seen. Of a batch the estimate is
 ///
 /// mean(w V) + β (whole − mean(w)),
 ///

@@ -1,7 +1,8 @@
 //! What may lie between: the shaft of all segments from one thing to another (Haines and Wallace, "Shaft Culling for
 //! Efficient Ray-Traced Radiosity", 1991), as planes that it lies behind.
 //!
-//! What only touches a shaft hides nothing, so all comparisons let rounding pass: of a plane's distance, 2⁻⁴⁸ of the
+//! What only touches a shaft hides nothing, so all comparisons let rounding pass: of a plane's distance, 2⁻⁴⁸
+//! of the
 //! coordinates that it is computed from.
 
 use super::clusters::Cluster;
