@@ -21,7 +21,7 @@ def spheres(inner: float) -> rw.Scene:
 
 @pytest.mark.parametrize(("inner", "emissivity"), [(0.5, (0.9, 0.4)), (0.9, (0.3, 0.8))])
 def test_concentric_spheres(inner: float, emissivity: tuple[float, float]) -> None:
-    found = exchanged(spheres(inner), [400.0, 300.0], list(emissivity), sides="both", rays=2**20)
+    found = exchanged(spheres(inner), [400.0, 300.0], list(emissivity), sides="both", rays=2**18)
     share = inner**2
     truth = STEFAN_BOLTZMANN * (400.0**4 - 300.0**4) / (1 / emissivity[0] + share * (1 / emissivity[1] - 1))
     # Rows: fronts of both, backs of both; the ball is hollow, and within it nothing is exchanged.
