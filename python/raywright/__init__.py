@@ -7,6 +7,7 @@ from ._core import AcceleratorInfo, simd
 from .accelerators import BSP, BVH, BruteForce, Grid, KdTree, NestedGrid, Octree
 from .cameras import AnyCamera, Camera, Fisheye, Orthographic, Panorama, Pose, ThinLens
 from .exchange.solution import RadiositySolution, RadiosityStep
+from .exchange.view_factors import ViewFactors, view_factors
 from .integrators import AmbientOcclusion, Direct, Distributed, LightTraced, Path, Radiosity, RayCast, Whitted
 from .integrators.base import Integrator
 from .integrators.rng import Rng
@@ -197,6 +198,7 @@ __all__ = [
     "TwoSided",
     "UvTransform",
     "VertexColors",
+    "ViewFactors",
     "Viewer",
     "Whitted",
     "Wood",
@@ -214,6 +216,7 @@ __all__ = [
     "scenes",
     "simd",
     "view",
+    "view_factors",
 ]
 
 __version__ = _core.VERSION

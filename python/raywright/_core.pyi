@@ -44,6 +44,8 @@ __all__ = [
     "singular_transform",
     "spectrum_rgb",
     "student",
+    "view_factor_matrix",
+    "view_factor_rows",
 ]
 
 def simd() -> str:
@@ -589,4 +591,41 @@ def points(
 
     Position, error, normal, shading normal, dp/du, dp/dv, dn/du and dn/dv. `ray` says which ray each is of,
     where they are not in turn.
+    """
+
+def view_factor_matrix(
+    scene: CompiledScene,
+    rays: tuple[int, int],
+    error: float | None,
+    seed: int,
+    threads: int | None,
+    progress: Callable[[float], object] | None,
+) -> tuple[
+    NDArray[np.float64],
+    NDArray[np.float64],
+    tuple[NDArray[np.int64], NDArray[np.float64]],
+    tuple[int, int, int],
+    int,
+]:
+    """Return areas (N,), view factors (N,N), what is sampled, and how many pairs are closed, hidden and sampled.
+
+    What is sampled: pairs of faces (K,2), and standard errors (K,) of the area of each times its view factor
+    to the other. Last, the number of rays. ``rays`` are those between two faces, and those of a row.
+    """
+
+def view_factor_rows(
+    scene: CompiledScene,
+    rays: int,
+    error: float | None,
+    seed: int,
+    threads: int | None,
+    progress: Callable[[float], object] | None,
+) -> tuple[
+    NDArray[np.float64],
+    tuple[NDArray[np.int64], NDArray[np.int32], NDArray[np.float64], NDArray[np.float32]],
+    int,
+]:
+    """Return areas (N,), rows by rays as compressed sparse rows, and the number of rays.
+
+    The rows: where each starts (N+1,), and (K,) faces, view factors and their standard errors.
     """

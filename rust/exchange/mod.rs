@@ -1,5 +1,7 @@
 //! Floor 4: what surfaces send each other, as numbers instead of pictures.
 
 mod radiosity;
+mod view_factors;
 
 pub use radiosity::{Enclosure, Shots, Sides};
+pub use view_factors::*;

@@ -13,6 +13,7 @@ pub mod erf;
 mod exact;
 mod frame;
 pub mod gathering;
+pub(crate) mod gauss;
 mod interval;
 mod lanes;
 mod number;

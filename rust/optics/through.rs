@@ -2,6 +2,7 @@
 
 use super::{Facets, fresnel};
 use crate::math::DVec3;
+use crate::math::gauss::gauss;
 
 /// How much light facets between dielectrics let through, each share by one refraction with masking on either side: of
 /// light from the thinner side, by its cosine; and how much they reflect from within.
@@ -104,27 +105,6 @@ fn direction(cosine: f64) -> DVec3 {
     DVec3::new(((1.0 - cosine) * (1.0 + cosine)).sqrt(), 0.0, cosine)
 }
 
-/// Nodes and weights of Gauss's rule with so many points on [0, 1], by Newton's method on Legendre's polynomials.
-fn gauss(count: usize) -> Vec<(f64, f64)> {
-    let node = |i: usize| {
-        let mut x = (std::f64::consts::PI * (i as f64 + 0.75) / (count as f64 + 0.5)).cos();
-        loop {
-            let (mut last, mut now) = (1.0, x);
-            for k in 2..=count {
-                let k = k as f64;
-                (last, now) = (now, ((2.0 * k - 1.0) * x * now - (k - 1.0) * last) / k);
-            }
-            let slope = count as f64 * (x * now - last) / (x * x - 1.0);
-            let step = now / slope;
-            x -= step;
-            if step.abs() < 1e-14 {
-                return (0.5 * (1.0 + x), 1.0 / ((1.0 - x * x) * slope * slope));
-            }
-        }
-    };
-    (0..count).map(node).collect()
-}
-
 /// The integral over even light between two cosines, ∫ f(μ) 2μ dμ, dense at both.
 fn even_light(from: f64, to: f64, f: impl Fn(f64) -> f64) -> f64 {
     let length = to - from;
@@ -182,17 +162,6 @@ impl<'a, F: Facets> Seen<'a, F> {
 mod tests {
     use super::*;
     use crate::optics::{Beckmann, Ggx};
-
-    #[test]
-    fn gauss_integrates_polynomials() {
-        for count in [2, 7, 16, 32] {
-            let rule = gauss(count);
-            for power in 0..2 * count as i32 {
-                let sum: f64 = rule.iter().map(|(x, weight)| weight * x.powi(power)).sum();
-                assert!((sum * f64::from(power + 1) - 1.0).abs() < 1e-11, "{count} {power} {sum}");
-            }
-        }
-    }
 
     #[test]
     fn shares_are_the_integrals() {

@@ -31,6 +31,7 @@ mod shapes;
 mod signals;
 mod spectra;
 mod textures;
+mod view_factors;
 mod watcher;
 mod written;
 
@@ -99,6 +100,8 @@ mod _core {
     use super::simd;
     #[pymodule_export]
     use super::spectra::spectrum_rgb;
+    #[pymodule_export]
+    use super::view_factors::{view_factor_matrix, view_factor_rows};
     /// The most samples that a pilot takes of each way.
     #[pymodule_export]
     const PILOT: u32 = crate::render::PILOT;

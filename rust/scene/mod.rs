@@ -32,6 +32,7 @@ pub use geometry::{
     BadTransform, Geometry, Instances, Matrix, Mesh, Objects, Precision, Prototype, Rounding, Surface, Vertices,
     check_transforms, rounded,
 };
+pub(crate) use lights::SeenTriangle;
 pub use lights::{
     ConstantEnvironment, DirectionalLight, EmissionNumbers, EmissionPdf, EmissionSample, Emitters, EnvironmentMap,
     Light, LightBounds, LightContextLanes, LightLanes, LightSample, LightSampleContext, Lights, Picture, PointEmission,

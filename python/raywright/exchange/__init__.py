@@ -1,1 +1,1 @@
-"""What surfaces send each other, as numbers."""
+"""Diffuse exchange between surfaces: view factors, radiosity, heat."""

@@ -44,6 +44,7 @@ pub use projector::Projector;
 pub use sky::SunSky;
 pub use spot::{Profile, SpotLight};
 pub use tree::LightTree;
+pub(crate) use triangle::SeenTriangle;
 
 use super::{Emission, Geometry, Sides};
 use crate::accel::Primitives;

@@ -9,7 +9,7 @@ use crate::sampling::warp;
 /// Arvo ("Stratified Sampling of Spherical Triangles", 1995) but without an arc cosine: all is found from half angles,
 /// and from edges rather than from differences of directions, so that a thin triangle keeps its digits as well as a fat
 /// one. Where it is distant, or seen next to edge-on, points are drawn by area, which is as good there and cheaper.
-pub(super) struct SeenTriangle {
+pub(crate) struct SeenTriangle {
     /// The first corner, and the edges from it to the others, as seen from the place.
     corner: DVec3,
     edges: [DVec3; 2],

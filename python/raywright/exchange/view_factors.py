@@ -1,0 +1,278 @@
+"""View factors: which share of the light that leaves one surface comes to another."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias, get_args
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .. import _core
+from ..arrays import choice, frozen, integer, positive, real_array
+from ..scene.instance import Instance
+from ..scene.progress import BuildProgress, check_progress, watcher
+from ..scene.scene import Scene
+from ..shapes import Plane
+from ..shapes.mesh import Mesh, face_count
+
+if TYPE_CHECKING:
+    from scipy.sparse import csr_array
+
+Per: TypeAlias = Literal["face", "shape"]
+# Of more faces than this, the matrix of all pairs takes more than 0.8 GB, and is sparse instead.
+_MOST_DENSE = 10_000
+_RAYS = 16
+# A row by rays holds all that a face sees, so it takes more of them than a pair does.
+_CURVED_RAYS = 4096
+_FACE_RAYS = 32
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class ViewFactors:
+    """Which share of the light that leaves each surface, even and from its front, comes to each.
+
+    Attributes
+    ----------
+    matrix : (N, N) float64 array, or scipy.sparse.csr_array
+        Row i, column j: from i to j, 0 to 1. Sparse where the scene has more than 10,000 faces and `per` is
+        "face".
+    areas : (N,) float64 array
+        The area of each, in the square of the scene's unit.
+    per : {"face", "shape"}
+        Whether a row is a face or a shape. Faces are numbered shape after shape, and a shape that is no mesh
+        is one face.
+    closed, hidden, sampled : int
+        How many pairs of faces that look at each other are in closed form, hidden from each other for certain, and
+        sampled by rays.
+    rays : int
+        How many rays were sent.
+    """
+
+    matrix: "NDArray[np.float64] | csr_array"
+    areas: NDArray[np.float64]
+    per: Per
+    closed: int
+    hidden: int
+    sampled: int
+    rays: int
+    # The squares of errors: rows, columns and values of those that are not 0, or as the matrix is.
+    _variance: Any
+
+    @cached_property
+    def standard_error(self) -> "NDArray[np.float64] | csr_array":
+        """The standard error of each view factor, as `matrix`; 0 where it is in closed form."""
+        if not isinstance(self._variance, tuple):
+            return self._variance.sqrt()
+        rows, columns, values = self._variance
+        error = np.zeros(self.matrix.shape)
+        error[rows, columns] = np.sqrt(values)
+        return frozen(error)
+
+    @cached_property
+    def rest(self) -> NDArray[np.float64]:
+        """What comes to no front, (N,): 1 less the sum of each row."""
+        return frozen(1.0 - np.asarray(self.matrix.sum(axis=1)))
+
+    def matvec(self, x: ArrayLike) -> NDArray[np.float64]:
+        """Return ``matrix @ x``: of radiosities x, (N,) or (N, K), the irradiances.
+
+        Raises
+        ------
+        ValueError
+            If there is not one x for each row.
+        TypeError
+            If x does not hold real numbers.
+        """
+        return np.asarray(self.matrix @ self._checked(x))
+
+    def rmatvec(self, x: ArrayLike) -> NDArray[np.float64]:
+        """Return ``matrix.T @ x``: of powers x that leave each, (N,) or (N, K), the powers that arrive.
+
+        Raises
+        ------
+        ValueError, TypeError
+            As `matvec` does.
+        """
+        return np.asarray(self.matrix.T @ self._checked(x))
+
+    def _checked(self, x: ArrayLike) -> NDArray[Any]:
+        values = real_array("x", x)
+        if values.ndim not in (1, 2) or len(values) != len(self.areas):
+            raise ValueError(f"x must be ({len(self.areas)},) or ({len(self.areas)}, K), got {values.shape}")
+        return values
+
+    def __len__(self) -> int:
+        return len(self.areas)
+
+    def __repr__(self) -> str:
+        kind = "" if isinstance(self.matrix, np.ndarray) else ", sparse"
+        return (
+            f"ViewFactors({len(self)} {self.per}s{kind}; pairs: {self.closed} closed, {self.hidden} hidden, "
+            f"{self.sampled} sampled; {self.rays} rays; rest up to {max(self.rest, default=0.0):.3g})"
+        )
+
+
+def view_factors(
+    scene: Scene,
+    per: Per = "face",
+    rays: int | None = None,
+    error: float | None = None,
+    seed: int = 0,
+    threads: int | None = None,
+    progress: BuildProgress = True,
+) -> ViewFactors:
+    """Find which share of the light that leaves each surface comes to each other.
+
+    Every surface sends from its front alone, the side that the normal points to, and receives there alone,
+    whatever its material: a `TwoSided` one too. What lies between hides from either side. Two triangles that
+    nothing lies between have a closed form, to 1e-9 of itself; that nothing does is proven by their shaft. Where
+    something may, stratified rays tell the difference from the closed form. What is no mesh sends rays.
+
+    Parameters
+    ----------
+    scene : Scene
+        Meshes, and shapes other than `Plane`. Not `Instance`: each copy would need rows of its own.
+    per : {"face", "shape"}
+        What a row is: a face, or a shape with all of its faces.
+    rays : int, optional
+        How many go between two faces that something may lie between; 16 if not given. A shape that is no mesh
+        sends 4096 times as many, and in a scene of more than 10,000 faces each sends 32 times as many, where
+        they will.
+    error : float, optional
+        The standard error that no view factor between faces should exceed. Rays are doubled until it is met, or a
+        pair has had a thousand batches of them.
+    seed : int
+        Picks the random numbers, 0 to 2**64 - 1.
+    threads : int, optional
+        How many to use; all cores if not given. The answer does not depend on it.
+    progress : bool or callable
+        As for `Scene.build`.
+
+    Returns
+    -------
+    ViewFactors
+
+    Raises
+    ------
+    ValueError
+        If the scene has no faces, a face with a corner that is not finite, or a shape without end; if `per` or a
+        number is out of its range.
+    TypeError
+        If something is of another kind, or the scene holds an `Instance`.
+    KeyboardInterrupt
+        At once, when Ctrl-C is pressed.
+
+    Notes
+    -----
+    Of each pair A_i F_ij is found once, so that A_i F_ij = A_j F_ji to the last digit but one. In a closed room
+    each row adds up to 1: to 1e-9 where nothing hides anything, and within the standard errors elsewhere. What
+    has no area sees nothing.
+
+    More than 10,000 faces have a sparse matrix (scipy is needed), each row of which is by rays: it adds up to 1 in
+    a closed room, and A_i F_ij = A_j F_ji within the standard errors. 100,000 faces take some 3 GB.
+
+    Closed forms: contour integrals, Schröder and Hanrahan (1993), Mitalas and Stephenson (1966). Shafts: Haines and
+    Wallace (1991).
+    """
+    if not isinstance(scene, Scene):
+        raise TypeError(f"scene must be a Scene, got {type(scene).__name__}")
+    choice("per", per, get_args(Per))
+    start = _RAYS if rays is None else integer("rays", rays, 1, 2**16)
+    aim = None if error is None else positive("error", error)
+    number = integer("seed", seed, 0, 2**64 - 1)
+    workers = None if threads is None else integer("threads", threads, 1)
+    check_progress(progress)
+    first = _first_faces(scene)
+    exact = _exact(scene)
+    core = exact._compiled()
+    with watcher(progress) as report:
+        if first[-1] > _MOST_DENSE:
+            found = _by_rows(core, start * _FACE_RAYS, aim, number, workers, report)
+        else:
+            found = _dense(core, (start, start * _CURVED_RAYS), aim, number, workers, report)
+    return found if per == "face" else _of_shapes(found, first)
+
+
+def _first_faces(scene: Scene) -> NDArray[np.int64]:
+    """Return the number of the first face of each shape, and of all faces; check that all can send."""
+    for i, shape in enumerate(scene.shapes):
+        if isinstance(shape, Instance):
+            raise TypeError(
+                f"shapes[{i}] is an Instance, whose copies have no faces of their own: give a Mesh for each copy"
+            )
+        if isinstance(shape, Plane):
+            raise ValueError(f"shapes[{i}] is a Plane, which has no end and so no area: give a Mesh that has")
+        if isinstance(shape, Mesh):
+            finite = np.isfinite(shape.vertices).all(axis=1)[shape.faces].all(axis=1)
+            if not finite.all():
+                raise ValueError(f"face {int(np.argmin(finite))} of shapes[{i}] has a corner that is not finite")
+    first = np.cumsum([0, *map(face_count, scene.shapes)])
+    if first[-1] == 0:
+        raise ValueError("the scene has no faces, and so no view factors")
+    return first
+
+
+def _exact(scene: Scene) -> Scene:
+    """Return the scene with all digits of its vertices, unless float32 was asked for or has them all."""
+
+    def loses(shape: object) -> bool:
+        return isinstance(shape, Mesh) and not np.array_equal(shape.vertices, shape.vertices.astype(np.float32))
+
+    if scene.precision == "auto" and any(map(loses, scene.shapes)):
+        return scene.replace(precision="double")
+    return scene
+
+
+def _dense(core: _core.CompiledScene, rays: tuple[int, int], *how: Any) -> ViewFactors:
+    areas, matrix, (pairs, errors), counts, sent = _core.view_factor_matrix(core, rays, *how)
+    one, other = pairs.T
+    with np.errstate(divide="ignore", invalid="ignore"):
+        there, back = (np.nan_to_num((errors / areas[of]) ** 2) for of in (one, other))
+    two = one != other
+    variance = tuple(np.concatenate(both) for both in ((one, other[two]), (other, one[two]), (there, back[two])))
+    return ViewFactors(frozen(matrix), frozen(areas), "face", *counts, sent, variance)
+
+
+def _by_rows(core: _core.CompiledScene, rays: int, *how: Any) -> ViewFactors:
+    sparse = _sparse()
+    areas, (starts, faces, factors, errors), sent = _core.view_factor_rows(core, rays, *how)
+    shape = (len(areas), len(areas))
+    matrix = sparse((factors, faces, starts), shape=shape)
+    variance = sparse((errors**2, faces, starts), shape=shape)
+    return ViewFactors(matrix, frozen(areas), "face", 0, 0, len(factors), sent, variance)
+
+
+def _sparse() -> Any:
+    try:
+        from scipy.sparse import csr_array
+    except ImportError as missing:
+        raise ImportError("sparse view factors need scipy: pip install scipy") from missing
+    return csr_array
+
+
+def _of_shapes(faces: ViewFactors, first: NDArray[np.int64]) -> ViewFactors:
+    """Add up the faces of each shape, weighted by area."""
+    count = len(first) - 1
+    of = np.repeat(np.arange(count), np.diff(first))
+    areas = np.bincount(of, faces.areas, count)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        shares = np.nan_to_num(faces.areas / areas[of])
+    counts = faces.closed, faces.hidden, faces.sampled, faces.rays
+    if isinstance(faces._variance, tuple):
+        used = np.flatnonzero(np.diff(first))
+        from_faces = np.add.reduceat(faces.matrix, first[used], axis=1) * shares[:, None]
+        matrix = np.zeros((count, count))
+        matrix[np.ix_(used, used)] = np.add.reduceat(from_faces, first[used], axis=0)
+        rows, columns, values = faces._variance
+        cells = of[rows] * count + of[columns]
+        summed = np.bincount(cells, values * shares[rows] ** 2, count * count).reshape(count, count)
+        # Within a shape, both entries of a pair are one estimate: they err together.
+        summed[np.diag_indices(count)] *= 2.0
+    else:
+        sparse = _sparse()
+        ends = np.arange(len(of) + 1)
+        columns = sparse((np.ones(len(of)), of, ends), shape=(len(of), count))
+        matrix = (columns.T @ (faces.matrix.multiply(shares[:, None]).tocsr() @ columns)).toarray()
+        summed = (columns.T @ (faces._variance.multiply(shares[:, None] ** 2).tocsr() @ columns)).toarray()
+    where = np.nonzero(summed)
+    return ViewFactors(frozen(matrix), frozen(areas), "shape", *counts, (*where, summed[where]))

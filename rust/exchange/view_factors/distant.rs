@@ -1,0 +1,210 @@
+//! View factors of triangles that are far from each other, by rules of points on both.
+
+use super::facet::Facet;
+use crate::math::DVec3;
+use crate::math::gauss::gauss;
+use crate::simd::{Level, loops};
+use std::f64::consts::PI;
+use std::sync::OnceLock;
+
+/// The most points of a rule.
+const MOST: usize = 64;
+
+/// Points of a triangle, as weights of its second and third corner, and what each counts: 1 in all. As many as fill
+/// vectors; what is left over counts 0.
+struct Rule {
+    points: usize,
+    second: [f64; MOST],
+    third: [f64; MOST],
+    weight: [f64; MOST],
+}
+
+impl Rule {
+    fn new(of: &[([f64; 2], f64)]) -> Self {
+        let mut rule = Self { points: of.len().next_multiple_of(8), second: [0.0; MOST], third: [0.0; MOST], weight: [0.0; MOST] };
+        for (i, &([second, third], weight)) in of.iter().enumerate() {
+            (rule.second[i], rule.third[i], rule.weight[i]) = (second, third, weight);
+        }
+        rule
+    }
+
+    /// Exact to degree 5, of 7 points (Radon 1948).
+    fn seven() -> Self {
+        let root = 15f64.sqrt();
+        let mut of = vec![([1.0 / 3.0; 2], 9.0 / 40.0)];
+        for sign in [1.0, -1.0] {
+            let (a, weight) = ((6.0 - sign * root) / 21.0, (155.0 - sign * root) / 1200.0);
+            of.extend([[a, a], [a, 1.0 - 2.0 * a], [1.0 - 2.0 * a, a]].map(|point| (point, weight)));
+        }
+        Self::new(&of)
+    }
+
+    /// Exact to degree 2n − 2: Gauss's points along rows and across them, which shrink towards a corner.
+    fn rows(count: usize) -> Self {
+        let row = gauss(count);
+        let of: Vec<_> = row
+            .iter()
+            .flat_map(|&(x, wx)| row.iter().map(move |&(y, wy)| ([x, (1.0 - x) * y], 2.0 * (1.0 - x) * wx * wy)))
+            .collect();
+        Self::new(&of)
+    }
+}
+
+/// Rules, and up to which ratio of both radii to the distance they are taken.
+static RULES: OnceLock<[Rule; 5]> = OnceLock::new();
+const RATIOS: [f64; 5] = [0.05, 0.1, 0.18, 0.35, 0.7];
+
+/// Points of a triangle, and what each counts times how high it is above the other's plane.
+struct Points {
+    x: [f64; MOST],
+    y: [f64; MOST],
+    z: [f64; MOST],
+    weight: [f64; MOST],
+}
+
+impl Points {
+    const NONE: Self = Self { x: [0.0; MOST], y: [0.0; MOST], z: [0.0; MOST], weight: [0.0; MOST] };
+}
+
+loops! {
+    fn place(rule: &Rule, corners: &[DVec3; 3], heights: &[f64; 3], to: &mut Points) {
+        let [a, b, c] = *corners;
+        let (ab, ac) = (b - a, c - a);
+        for i in 0..rule.points {
+            let (second, third) = (rule.second[i], rule.third[i]);
+            to.x[i] = a.x + ab.x * second + ac.x * third;
+            to.y[i] = a.y + ab.y * second + ac.y * third;
+            to.z[i] = a.z + ab.z * second + ac.z * third;
+            let height = heights[0] * (1.0 - second - third) + heights[1] * second + heights[2] * third;
+            to.weight[i] = rule.weight[i] * height;
+        }
+    }
+}
+
+loops! {
+    fn sum(points: usize, one: &Points, other: &Points, to: &mut f64) {
+        let mut sums = [0.0; 8];
+        for i in 0..points {
+            let (x, y, z, weight) = (one.x[i], one.y[i], one.z[i], one.weight[i]);
+            let mut row = [0.0; 8];
+            for start in (0..points).step_by(8) {
+                let [xs, ys, zs, weights] =
+                    [&other.x, &other.y, &other.z, &other.weight].map(|of| &of[start..start + 8]);
+                for lane in 0..8 {
+                    let (dx, dy, dz) = (xs[lane] - x, ys[lane] - y, zs[lane] - z);
+                    let square = dx * dx + dy * dy + dz * dz;
+                    row[lane] += weights[lane] / (square * square);
+                }
+            }
+            for lane in 0..8 {
+                sums[lane] += weight * row[lane];
+            }
+        }
+        *to = sums.iter().sum();
+    }
+}
+
+/// What sums over the points of two triangles, with the memory that it needs.
+pub struct Quadrature {
+    level: Level,
+    rules: &'static [Rule; 5],
+    from: Points,
+    to: Points,
+}
+
+impl Quadrature {
+    /// At a level of the processor.
+    pub fn new(level: Level) -> Self {
+        let rules = RULES.get_or_init(|| [Rule::seven(), Rule::rows(4), Rule::rows(5), Rule::rows(6), Rule::rows(8)]);
+        Self { level, rules, from: Points::NONE, to: Points::NONE }
+    }
+
+    /// The area of one times its view factor to another, all of each in front of the other; none where they are too
+    /// near. The heights are those of the other's corners above the plane of the one, and of the one's above the
+    /// other's.
+    #[inline]
+    pub fn distant(&mut self, one: &Facet, other: &Facet, heights: [[f64; 3]; 2]) -> Option<f64> {
+        let reach = one.radius + other.radius;
+        let square = one.centre.distance_squared(other.centre);
+        let rule = RATIOS.iter().position(|&most| reach * reach <= most * most * square)?;
+        Some(self.by_rule(rule, one, other, heights))
+    }
+
+    fn by_rule(&mut self, rule: usize, one: &Facet, other: &Facet, [to_other, to_one]: [[f64; 3]; 2]) -> f64 {
+        let (level, rule) = (self.level, &self.rules[rule]);
+        // In units of the distance, from the one's centre.
+        let unit = 1.0 / other.centre.distance(one.centre);
+        let near = |facet: &Facet| facet.corners.map(|corner| (corner - one.centre) * unit);
+        place(level, rule, &near(one), &to_one.map(|h| h * unit), &mut self.from);
+        place(level, rule, &near(other), &to_other.map(|h| h * unit), &mut self.to);
+        let mut total = 0.0;
+        sum(level, rule.points, &self.from, &self.to, &mut total);
+        total * (one.area * unit) * (other.area * unit) / PI
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::exchange::view_factors::contour::contour;
+    use crate::sampling::Sampler;
+
+    #[test]
+    fn rules_integrate_polynomials() {
+        // The mean of x^p y^q over the triangle is 2 p! q! / (p + q + 2)!.
+        let factorial = |n: usize| (1..=n).map(|k| k as f64).product::<f64>();
+        for (rule, degree) in [(Rule::seven(), 5), (Rule::rows(4), 6), (Rule::rows(6), 10), (Rule::rows(8), 14)] {
+            for p in 0..=degree {
+                for q in 0..=degree - p {
+                    let term = |i: usize| rule.weight[i] * rule.second[i].powi(p as i32) * rule.third[i].powi(q as i32);
+                    let truth = 2.0 * factorial(p) * factorial(q) / factorial(p + q + 2);
+                    let sum: f64 = (0..rule.points).map(term).sum();
+                    assert!((sum / truth - 1.0).abs() < 1e-12, "{degree} {p} {q}: {sum} for {truth}");
+                }
+            }
+        }
+    }
+
+    /// Two triangles of corners in unit boxes, some way apart.
+    fn drawn(number: u32) -> [Facet; 2] {
+        let mut sampler = Sampler::new(1, number, 0);
+        let mut dimension = 0;
+        let mut next = || {
+            dimension += 1;
+            sampler.one(dimension)
+        };
+        let away = 0.5 * 100f64.powf(next());
+        let mut corner = || DVec3::new(next() - 0.5, next() - 0.5, next() - 0.5);
+        let at = corner().normalize() * away;
+        let one = Facet::new([corner(), corner(), corner()]);
+        [one, Facet::new([at + corner(), at + corner(), at + corner()])]
+    }
+
+    #[test]
+    fn points_agree_with_quarters_and_with_contours() {
+        let mut quadrature = Quadrature::new(Level::current().unwrap());
+        let mut asked = [0; 2];
+        for number in 0..4000 {
+            let [one, other] = drawn(number);
+            let heights = [one.heights(&other), other.heights(&one)];
+            if heights.iter().flatten().any(|&h| h <= 0.0) {
+                continue;
+            }
+            let Some(found) = quadrature.distant(&one, &other, heights) else { continue };
+            let mut truth = 0.0;
+            for a in one.quarters() {
+                for b in other.quarters() {
+                    truth += quadrature.by_rule(4, &a, &b, [a.heights(&b), b.heights(&a)]);
+                }
+            }
+            assert!((found / truth - 1.0).abs() < 1e-9, "{number}: {found} for {truth}");
+            asked[0] += 1;
+            // The terms of the integrals around both are of the order of the radii's product.
+            let around = contour(&one, &other);
+            let cancelled = 3e-13 * one.radius.max(other.radius).powi(2);
+            assert!((around - truth).abs() < 1e-10 * truth + cancelled, "{number}: {around} for {truth}");
+            asked[1] += usize::from(cancelled < 1e-9 * truth);
+        }
+        assert!(asked[0] > 300 && asked[1] > 50, "{asked:?}");
+    }
+}

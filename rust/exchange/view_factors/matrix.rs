@@ -1,0 +1,289 @@
+//! The whole matrix: pairs of clusters, and what may lie between them, down to pairs of faces.
+
+use super::by_rays::Rows;
+use super::clusters::{Cluster, Clusters};
+use super::distant::Quadrature;
+use super::facet::Facet;
+use super::pair::pair;
+use super::partly::{Open, sampled};
+use super::shaft::{Blocker, HalfSpace, between_boxes, between_facets, hides};
+use super::{Aim, Sampled, areas, facets};
+use crate::scene::Scene;
+use crate::simd::Level;
+use crate::work::{Steps, Stopped, Work};
+use rayon::prelude::*;
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+use std::sync::{Mutex, PoisonError};
+
+/// View factors between all faces of a scene.
+#[derive(Debug, Default)]
+pub struct Matrix {
+    /// By row: from each face to each.
+    pub factors: Vec<f64>,
+    /// What was sampled, and its errors.
+    pub sampled: Vec<Sampled>,
+    /// Pairs in closed form, pairs that are hidden for certain, and pairs by rays.
+    pub counts: [u64; 3],
+    /// Rays that were sent.
+    pub rays: u64,
+}
+
+/// All view factors of a scene. What has no area sees nothing.
+pub fn matrix(scene: &Scene, aim: &Aim, work: Work) -> Result<Matrix, Stopped> {
+    let facets = facets(scene);
+    let count = facets.len();
+    let sending = (0..count as u32).filter(|&i| facets[i as usize].area > 0.0).collect();
+    let tree = Clusters::new(&facets, sending);
+    let all = Everything {
+        scene,
+        facets: &facets,
+        tree: &tree,
+        blockers: blockers(scene, &facets, &tree),
+        aim,
+        level: Level::current().unwrap_or(Level::Scalar),
+        steps: work.steps(count * count),
+        factors: (0..count * count).map(|_| AtomicU64::new(0)).collect(),
+        sampled: Mutex::default(),
+        counts: Default::default(),
+        rays: AtomicU64::new(0),
+    };
+    if let Some(root) = tree.nodes.first() {
+        let may_hide: Vec<u32> = (0..all.blockers.len() as u32).collect();
+        all.visit(root, root, &may_hide);
+    }
+    all.curved(&areas(scene))?;
+    work.goes_on()?;
+    work.done();
+    let mut sampled = all.sampled.into_inner().unwrap_or_else(PoisonError::into_inner);
+    sampled.sort_unstable_by_key(|sampled| sampled.faces);
+    Ok(Matrix {
+        factors: all.factors.into_iter().map(|bits| f64::from_bits(bits.into_inner())).collect(),
+        sampled,
+        counts: all.counts.map(AtomicU64::into_inner),
+        rays: all.rays.into_inner(),
+    })
+}
+
+/// What may hide anything: all but those whose plane has the whole scene on one side, as every face of a convex room.
+fn blockers(scene: &Scene, facets: &[Facet], tree: &Clusters) -> Vec<Blocker> {
+    let geometry = scene.geometry();
+    let curved: Vec<u32> = (0..facets.len() as u32).filter(|&i| geometry.shape(i).is_some()).collect();
+    let parts = |facet: &Facet| {
+        let mut sides = [false; 2];
+        for &i in &curved {
+            let shape = geometry.shape(i);
+            let height = facet.normal.dot(facet.centre);
+            sides[0] |= shape.is_none_or(|shape| shape.support(facet.normal) > height);
+            sides[1] |= shape.is_none_or(|shape| -shape.support(-facet.normal) < height);
+        }
+        for some in tree.order.chunks(16) {
+            let [front, back] = facet.sides(some.iter().flat_map(|&i| facets[i as usize].corners));
+            sides = [sides[0] || front, sides[1] || back];
+            if sides == [true, true] {
+                return true;
+            }
+        }
+        false
+    };
+    let flat = tree.order.par_iter().map(|&i| facets[i as usize]).filter(|facet| parts(facet)).map(Blocker::Facet);
+    flat.chain(curved.par_iter().map(|&i| Blocker::Curved(i))).collect()
+}
+
+/// What all threads share.
+struct Everything<'a> {
+    scene: &'a Scene,
+    facets: &'a [Facet],
+    tree: &'a Clusters,
+    blockers: Vec<Blocker>,
+    aim: &'a Aim,
+    level: Level,
+    steps: Steps<'a>,
+    /// The bits of the view factors, each of which is written once.
+    factors: Vec<AtomicU64>,
+    sampled: Mutex<Vec<Sampled>>,
+    counts: [AtomicU64; 3],
+    rays: AtomicU64,
+}
+
+/// Pairs of faces that are worth a task of their own.
+const TASK: u64 = 1 << 14;
+
+impl Everything<'_> {
+    /// All pairs of two clusters, or of one with itself; what may lie between them is among these blockers.
+    fn visit(&self, one: &Cluster, other: &Cluster, may_hide: &[u32]) {
+        if self.steps.is_stopped() {
+            return;
+        }
+        let is_same = one.first == other.first && one.count == other.count;
+        let left = if is_same { may_hide.to_vec() } else { self.between(one, other, may_hide) };
+        let pairs = u64::from(one.count) * u64::from(other.count);
+        let is_done = one.is_leaf() && other.is_leaf();
+        if is_done || (left.is_empty() && pairs <= TASK) {
+            self.pairs(one, other, is_same, &left);
+            return;
+        }
+        let both: Vec<(&Cluster, &Cluster)> = if is_same {
+            let [first, second] = self.tree.parts(one);
+            vec![(first, first), (first, second), (second, second)]
+        } else if other.is_leaf() || (!one.is_leaf() && one.count >= other.count) {
+            self.tree.parts(one).map(|part| (part, other)).into()
+        } else {
+            self.tree.parts(other).map(|part| (one, part)).into()
+        };
+        if pairs > TASK {
+            both.into_par_iter().for_each(|(one, other)| self.visit(one, other, &left));
+        } else {
+            both.into_iter().for_each(|(one, other)| self.visit(one, other, &left));
+        }
+    }
+
+    /// Those blockers that may lie between faces of two clusters.
+    fn between(&self, one: &Cluster, other: &Cluster, may_hide: &[u32]) -> Vec<u32> {
+        if may_hide.is_empty() {
+            return Vec::new();
+        }
+        let geometry = self.scene.geometry();
+        let shaft = between_boxes(one, other);
+        let corners = [one.corners(), other.corners()];
+        let is_open = |blocker: &Blocker| {
+            !shaft.iter().any(|half| blocker.is_beyond(geometry, half))
+                && !blocker.has_aside(corners.iter().flatten().copied())
+        };
+        may_hide.iter().copied().filter(|&i| is_open(&self.blockers[i as usize])).collect()
+    }
+
+    /// All pairs of faces of two clusters.
+    fn pairs(&self, one: &Cluster, other: &Cluster, is_same: bool, may_hide: &[u32]) {
+        let (ones, others) = (self.tree.faces(one), self.tree.faces(other));
+        let mut quadrature = Quadrature::new(self.level);
+        let (mut open, mut counts) = (Vec::new(), [0; 3]);
+        for (k, &i) in ones.iter().enumerate() {
+            let rest = if is_same { &others[k + 1..] } else { others };
+            for &j in rest {
+                let (from, to) = (&self.facets[i as usize], &self.facets[j as usize]);
+                let faces = [i.min(j), i.max(j)];
+                // In the order of their numbers, whatever that of the tree.
+                let (from, to) = if i < j { (from, to) } else { (to, from) };
+                match self.hidden(from, to, may_hide) {
+                    Some(Hidden::Wholly) => counts[1] += 1,
+                    Some(Hidden::Partly) => {
+                        let whole = pair(&mut quadrature, from, to);
+                        if whole > 0.0 {
+                            open.push(Open { faces, whole });
+                        }
+                    }
+                    None => {
+                        let whole = pair(&mut quadrature, from, to);
+                        if whole > 0.0 {
+                            counts[0] += 1;
+                            self.store(faces, whole);
+                        }
+                    }
+                }
+            }
+        }
+        if !open.is_empty() {
+            let mut rays = 0;
+            let found = sampled(self.scene, self.facets, &open, self.aim, &mut rays);
+            for sampled in &found {
+                self.store(sampled.faces, sampled.value);
+            }
+            counts[2] += found.len() as u64;
+            self.rays.fetch_add(rays, Relaxed);
+            self.sampled.lock().unwrap_or_else(PoisonError::into_inner).extend(found);
+        }
+        for (all, count) in self.counts.iter().zip(counts) {
+            all.fetch_add(count, Relaxed);
+        }
+        let pairs = one.count as usize * other.count as usize;
+        // Whoever waits is told by the tree's next pair.
+        let _ = self.steps.did(if is_same { pairs } else { 2 * pairs });
+    }
+
+    /// How far two faces may be hidden from each other; not at all if none of these blockers touches their shaft.
+    fn hidden(&self, one: &Facet, other: &Facet, may_hide: &[u32]) -> Option<Hidden> {
+        if may_hide.is_empty() {
+            return None;
+        }
+        let looks = |one: &Facet, other: &Facet| one.sides(other.corners)[0];
+        if !looks(one, other) || !looks(other, one) {
+            return None;
+        }
+        let geometry = self.scene.geometry();
+        let points = [one.corners, other.corners];
+        let mut shaft: Option<Vec<HalfSpace>> = None;
+        let mut found = None;
+        for &i in may_hide {
+            let blocker = &self.blockers[i as usize];
+            if blocker.has_aside(points.iter().flatten().copied()) {
+                continue;
+            }
+            if let Blocker::Facet(facet) = blocker
+                && (!looks(one, facet) || !looks(other, facet))
+            {
+                continue;
+            }
+            let shaft = shaft.get_or_insert_with(|| between_facets(one, other));
+            if shaft.iter().any(|half| blocker.is_beyond(geometry, half)) {
+                continue;
+            }
+            if let Blocker::Facet(facet) = blocker
+                && hides(facet, one, other)
+            {
+                return Some(Hidden::Wholly);
+            }
+            found = Some(Hidden::Partly);
+        }
+        found
+    }
+
+    /// Writes what two faces exchange into both rows.
+    fn store(&self, [i, j]: [u32; 2], exchanged: f64) {
+        let (i, j) = (i as usize, j as usize);
+        self.write(i, j, exchanged / self.facets[i].area);
+        self.write(j, i, exchanged / self.facets[j].area);
+    }
+
+    fn write(&self, row: usize, column: usize, factor: f64) {
+        self.factors[row * self.facets.len() + column].store(factor.to_bits(), Relaxed);
+    }
+
+    /// The rows and columns of all that is no triangle. Between two such surfaces, the mean of what both rows say.
+    fn curved(&self, areas: &[f64]) -> Result<(), Stopped> {
+        let geometry = self.scene.geometry();
+        let which: Vec<u32> = (0..areas.len() as u32).filter(|&i| geometry.shape(i).is_some()).collect();
+        let mut exchanged = std::collections::BTreeMap::<[u32; 2], Vec<[f64; 2]>>::new();
+        let (mut rows, mut rays) = (Rows::new(self.scene, self.aim.seed), 0);
+        for &i in &which {
+            if areas[i as usize] <= 0.0 {
+                continue;
+            }
+            let row = rows.row(i, &self.facets[i as usize], self.aim.row_rays, self.aim.error, &mut rays);
+            for (j, factor, error) in row {
+                let known = areas[i as usize] * factor;
+                exchanged.entry([i.min(j), i.max(j)]).or_default().push([known, areas[i as usize] * error]);
+            }
+            self.steps.did(areas.len())?;
+        }
+        self.counts[2].fetch_add(exchanged.len() as u64, Relaxed);
+        let mut sampled = self.sampled.lock().unwrap_or_else(PoisonError::into_inner);
+        for (faces, known) in exchanged {
+            let [i, j] = faces.map(|face| face as usize);
+            let both = i != j && which.binary_search(&faces[0]).is_ok() && which.binary_search(&faces[1]).is_ok();
+            let count = if both { 2.0 } else { 1.0 };
+            let value = known.iter().map(|one| one[0]).sum::<f64>() / count;
+            let error = known.iter().map(|one| one[1] * one[1]).sum::<f64>().sqrt() / count;
+            self.write(i, j, value / areas[i]);
+            self.write(j, i, value / areas[j]);
+            sampled.push(Sampled { faces, value, error });
+        }
+        self.rays.fetch_add(rays, Relaxed);
+        Ok(())
+    }
+}
+
+/// How far one face is hidden from another.
+enum Hidden {
+    Partly,
+    Wholly,
+}

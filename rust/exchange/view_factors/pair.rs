@@ -1,0 +1,54 @@
+//! Two triangles that nothing lies between.
+
+use super::contour::contour;
+use super::distant::Quadrature;
+use super::facet::{Facet, in_front};
+
+/// How often a triangle is quartered to be no larger than another; what is left is then so near, and so small, that it
+/// does not count.
+const MOST_CUTS: u32 = 60;
+
+/// Radii that differ by more are made alike by quartering the larger one: integrals around both would cancel.
+const UNLIKE: f64 = 4.0;
+
+/// The area of one triangle times its view factor to another, which is the other's times that to the one.
+pub fn pair(quadrature: &mut Quadrature, one: &Facet, other: &Facet) -> f64 {
+    let heights = [one.heights(other), other.heights(one)];
+    if heights.iter().any(|of| of.iter().all(|&h| h <= 0.0)) {
+        return 0.0;
+    }
+    if heights.iter().flatten().all(|&h| h >= 0.0) {
+        return before(quadrature, one, other, heights, MOST_CUTS);
+    }
+    let (parts, others) = (in_front(one, heights[1]), in_front(other, heights[0]));
+    let mut sum = 0.0;
+    for part in parts.iter().flatten() {
+        for other_part in others.iter().flatten() {
+            // The heights that rounding has left behind the plane lie on it.
+            let positive = |of: [f64; 3]| of.map(|h| h.max(0.0));
+            let heights = [positive(one.heights(other_part)), positive(other.heights(part))];
+            sum += before(quadrature, part, other_part, heights, MOST_CUTS);
+        }
+    }
+    sum
+}
+
+/// The same of two that lie wholly in front of each other.
+fn before(quadrature: &mut Quadrature, one: &Facet, other: &Facet, heights: [[f64; 3]; 2], cuts: u32) -> f64 {
+    if let Some(found) = quadrature.distant(one, other, heights) {
+        return found;
+    }
+    let is_larger = one.radius > other.radius;
+    let (larger, smaller) = if is_larger { (one, other) } else { (other, one) };
+    if larger.radius <= UNLIKE * smaller.radius || cuts == 0 {
+        return contour(one, other);
+    }
+    let [above_larger, above_smaller] = if is_larger { heights } else { [heights[1], heights[0]] };
+    let [a, b, c] = above_smaller;
+    let [ab, bc, ca] = [0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a)];
+    let of_quarters = [[a, ab, ca], [ab, b, bc], [ca, bc, c], [bc, ca, ab]];
+    let quarters = larger.quarters();
+    // `heights[0]` is of the second's corners above the first.
+    let mut part = |i: usize| before(quadrature, &quarters[i], smaller, [above_larger, of_quarters[i]], cuts - 1);
+    (0..4).map(&mut part).sum()
+}
