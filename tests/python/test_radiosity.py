@@ -57,8 +57,7 @@ def test_what_is_missing_after_each_sweep_is_a_power_of_the_reflectance() -> Non
         whole = (problem.emission * problem.areas[:, None] + problem.reflectance * arrived).sum(axis=0)
         missing.append(1 - whole[0] / (6 * 2.5))
         bound = problem.bound(arrived, problem.core.books.mean(axis=0)[UNSHOT])
-        # Of what is unshot, 0.6 is reflected: where all reflect alike and nothing leaves, that is all the bound has
-        # too much.
+        # Where all reflect alike and nothing leaves, the bound is off by what of the unshot is absorbed.
         assert abs(0.6 * bound * whole[0] / 15 - missing[-1]) < 1e-12
         problem.core.shoot_all(1000, None)
     np.testing.assert_allclose(

@@ -24,8 +24,8 @@ def test_the_cornell_box_looks_as_paths_have_it(box: tuple[rw.Scene, rw.Camera, 
     paths = rw.render(scene, camera, rw.Path(reuse=1, caustics=False), 128, progress=False).rgb
     # Pixels that the lamp is in, however little, tell of it alone.
     lamp = paths.max(axis=2) > 0.4
-    # Of a picture without its lamp, patches of a fifth of the room's width keep the mean to 2 %, and, with its
-    # noise, blocks of 8 by 8 pixels to 10 % of it: shadows are blurred by a patch.
+    # Patches of a fifth of the room's width keep the mean of a picture to 2 %, and blocks of 8 by 8 pixels to
+    # 10 % of it: shadows are blurred by a patch.
     mean = paths[~lamp].mean(axis=0)
     assert (abs(ours[~lamp].mean(axis=0) / mean - 1) < 0.02).all()
     blocks = np.where(lamp[..., None], 0, ours - paths).reshape(4, 8, 4, 8, 3).mean(axis=(1, 3))

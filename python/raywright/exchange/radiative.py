@@ -22,6 +22,8 @@ ExchangeMethod: TypeAlias = Literal["matrix", "stochastic"]
 
 # W·m⁻²·K⁻⁴: exact in the SI since 2019, by 2 π⁵ k⁴ / (15 h³ c²).
 STEFAN_BOLTZMANN = 5.670374419184429e-8
+# Net fluxes are small differences, so that what is unshot must be next to nothing.
+_BIAS = 1e-5
 # Up to so many faces the matrix is the default.
 _SMALL = 2048
 
@@ -194,7 +196,7 @@ def radiative_exchange(
 
             return by_matrix(problem, wanted, limit)
         with watcher(progress, "exchange") as report:
-            return to_the_end(problem, "stochastic", wanted, limit, report)
+            return to_the_end(problem, "stochastic", wanted, limit, report, _BIAS)
 
     heat = solve(sky, sent, grey)
     arrives, off = heat.irradiance[:, 0], heat.irradiance_error[:, 0]
