@@ -45,6 +45,13 @@ def test_two_plates() -> None:
     assert found.of(0) == found.power[0]
 
 
+def test_what_shapes_shine_themselves_is_light_too() -> None:
+    found = exchanged(room(), 0.0, 0.25, method="stochastic", rays=2**12)
+    # All that is emitted, 1 W/m², is absorbed in the end.
+    assert abs(found.power.sum() + 6) < 1e-6
+    assert not found.radiosity.any()
+
+
 def test_a_plate_beneath_the_sky_and_the_sun() -> None:
     plate = rw.Scene([square(0, True)], rw.DirectionalLight((0, 0, -1), 800.0))
     found = exchanged(
@@ -58,12 +65,14 @@ def test_a_plate_beneath_the_sky_and_the_sun() -> None:
 
 
 def test_numbers_may_be_told_in_several_ways() -> None:
-    scene = room()
+    scene = room(0.6, (0,) * 6)
     each = np.array([300.0] * 2 + [310.0] * 10)
     ways = [each, [300.0] + [310.0] * 5, {0: [300.0, 300.0]} | {i: 310.0 for i in range(1, 6)}]
     found = [exchanged(scene, way, 0.8, method="stochastic", rays=2**16) for way in ways]
     assert found[0] == found[1] == found[2]
     assert found[0].of(0) < 0 < sum(found[0].of(shape) for shape in range(1, 6))
+    # What is not shot is below 1e-7 of the 3 kW that are emitted in all.
+    assert abs(found[0].power.sum()) < 3e-4
 
 
 @pytest.mark.parametrize(
