@@ -187,9 +187,7 @@ def radiative_exchange(
     sent = grey * STEFAN_BOLTZMANN * kelvin**4
 
     def solve(lamps: Scene | None, emission: Floats, absorbing: Floats) -> RadiositySolution:
-        looks = tuple(
-            np.ascontiguousarray(np.repeat(part[:, None], 3, axis=1)) for part in (emission, 1.0 - absorbing)
-        )
+        looks = _three(emission), _three(1.0 - absorbing)
         problem = Problem.of(scene, cuts, both, "face", seed, threads, lamps, looks)
         if method == "matrix":
             from .matrix import solve as by_matrix
@@ -222,7 +220,7 @@ def _light(
     scene: Scene, cuts: NDArray[np.uint32], both: bool, absorbing: Floats, solve: Any
 ) -> tuple[Floats, Floats]:
     """Return what is absorbed of the scene's own light, W/m², and its error."""
-    shines = any(shape.emission is not None for shape in scene.shapes)
+    shines = any(getattr(shape, "emission", None) is not None for shape in scene.shapes)
     lamps = lamps_of(scene)
     if lamps is None and not shines:
         return np.zeros(len(absorbing)), np.zeros(len(absorbing))
@@ -232,6 +230,11 @@ def _light(
         emission = own.emission.mean(axis=1)
     found = solve(lamps, emission, absorbing)
     return absorbing * found.irradiance.mean(axis=1), absorbing * found.irradiance_error.mean(axis=1)
+
+
+def _three(values: Floats) -> Floats:
+    """Return the same in all channels."""
+    return np.ascontiguousarray(np.repeat(values[:, None], 3, axis=1))
 
 
 def _per_face(name: str, given: PerFace, faces: list[int]) -> Floats:
