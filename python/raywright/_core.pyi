@@ -607,10 +607,11 @@ def view_factor_matrix(
     tuple[int, int, int],
     int,
 ]:
-    """Return areas (N,), view factors (N,N), what is sampled, and how many pairs are closed, hidden and sampled.
+    """Return areas (N,), view factors (N,N), what is sampled, and numbers of pairs.
 
-    What is sampled: pairs of faces (K,2), and standard errors (K,) of the area of each times its view factor
-    to the other. Last, the number of rays. ``rays`` are those between two faces, and those of a row.
+    Those are the pairs that are closed, hidden and sampled. What is sampled: pairs of faces (K,2), and
+    standard errors (K,) of the area of each times its view factor to the other. Last, the number of
+    rays. ``rays`` are those between two faces, and those of a row.
     """
 
 def view_factor_rows(

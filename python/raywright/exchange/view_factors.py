@@ -13,7 +13,7 @@ from ..scene.instance import Instance
 from ..scene.progress import BuildProgress, check_progress, watcher
 from ..scene.scene import Scene
 from ..shapes import Plane
-from ..shapes.mesh import Mesh, face_count
+from ..shapes.mesh import Mesh
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
@@ -25,6 +25,7 @@ _RAYS = 16
 # A row by rays holds all that a face sees, so it takes more of them than a pair does.
 _CURVED_RAYS = 4096
 _FACE_RAYS = 32
+_MOST_RAYS = 2**26
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -42,8 +43,8 @@ class ViewFactors:
         Whether a row is a face or a shape. Faces are numbered shape after shape, and a shape that is no mesh
         is one face.
     closed, hidden, sampled : int
-        How many pairs of faces that look at each other are in closed form, hidden from each other for certain, and
-        sampled by rays.
+        How many pairs of faces that look at each other are in closed form, hidden from each other for
+        certain, and sampled by rays.
     rays : int
         How many rays were sent.
     """
@@ -125,8 +126,8 @@ def view_factors(
 
     Every surface sends from its front alone, the side that the normal points to, and receives there alone,
     whatever its material: a `TwoSided` one too. What lies between hides from either side. Two triangles that
-    nothing lies between have a closed form, to 1e-9 of itself; that nothing does is proven by their shaft. Where
-    something may, stratified rays tell the difference from the closed form. What is no mesh sends rays.
+    nothing lies between have a closed form, to 1e-9 of itself; that nothing does is proven by their shaft.
+    Where something may, stratified rays tell the difference from the closed form. What is no mesh sends rays.
 
     Parameters
     ----------
@@ -135,12 +136,12 @@ def view_factors(
     per : {"face", "shape"}
         What a row is: a face, or a shape with all of its faces.
     rays : int, optional
-        How many go between two faces that something may lie between; 16 if not given. A shape that is no mesh
-        sends 4096 times as many, and in a scene of more than 10,000 faces each sends 32 times as many, where
-        they will.
+        How many go between two faces that something may lie between, up to 2**20; 16 if not given. A shape
+        that is no mesh sends 4096 times as many, up to 2**26. In a scene of more than 10,000 faces each face
+        sends 32 times as many.
     error : float, optional
-        The standard error that no view factor between faces should exceed. Rays are doubled until it is met, or a
-        pair has had a thousand batches of them.
+        The standard error that no view factor between faces should exceed. Rays are doubled until it is met,
+        or a pair has had a thousand batches of them.
     seed : int
         Picks the random numbers, 0 to 2**64 - 1.
     threads : int, optional
@@ -155,8 +156,8 @@ def view_factors(
     Raises
     ------
     ValueError
-        If the scene has no faces, a face with a corner that is not finite, or a shape without end; if `per` or a
-        number is out of its range.
+        If the scene has no faces, a face with a corner that is not finite, or a shape without end; if `per`
+        or a number is out of its range.
     TypeError
         If something is of another kind, or the scene holds an `Instance`.
     KeyboardInterrupt
@@ -164,20 +165,21 @@ def view_factors(
 
     Notes
     -----
-    Of each pair A_i F_ij is found once, so that A_i F_ij = A_j F_ji to the last digit but one. In a closed room
-    each row adds up to 1: to 1e-9 where nothing hides anything, and within the standard errors elsewhere. What
-    has no area sees nothing.
+    Of each pair A_i F_ij is found once, so that A_i F_ij = A_j F_ji to the last digit but one. In a closed
+    room each row adds up to 1: to 1e-9 where nothing hides anything, and within the standard errors
+    elsewhere. What has no area sees nothing.
 
-    More than 10,000 faces have a sparse matrix (scipy is needed), each row of which is by rays: it adds up to 1 in
-    a closed room, and A_i F_ij = A_j F_ji within the standard errors. 100,000 faces take some 3 GB.
+    More than 10,000 faces have a sparse matrix (scipy is needed), each row of which is by rays: it adds up to
+    1 in a closed room, and A_i F_ij = A_j F_ji within the standard errors. It has at most as many entries in
+    a row as the row has rays, of 16 bytes each.
 
-    Closed forms: contour integrals, Schröder and Hanrahan (1993), Mitalas and Stephenson (1966). Shafts: Haines and
-    Wallace (1991).
+    Closed forms: contour integrals, Schröder and Hanrahan (1993), Mitalas and Stephenson (1966). Shafts:
+    Haines and Wallace (1991).
     """
     if not isinstance(scene, Scene):
         raise TypeError(f"scene must be a Scene, got {type(scene).__name__}")
     choice("per", per, get_args(Per))
-    start = _RAYS if rays is None else integer("rays", rays, 1, 2**16)
+    start = _RAYS if rays is None else integer("rays", rays, 1, 2**20)
     aim = None if error is None else positive("error", error)
     number = integer("seed", seed, 0, 2**64 - 1)
     workers = None if threads is None else integer("threads", threads, 1)
@@ -189,7 +191,7 @@ def view_factors(
         if first[-1] > _MOST_DENSE:
             found = _by_rows(core, start * _FACE_RAYS, aim, number, workers, report)
         else:
-            found = _dense(core, (start, start * _CURVED_RAYS), aim, number, workers, report)
+            found = _dense(core, (start, min(start * _CURVED_RAYS, _MOST_RAYS)), aim, number, workers, report)
     return found if per == "face" else _of_shapes(found, first)
 
 
@@ -198,15 +200,18 @@ def _first_faces(scene: Scene) -> NDArray[np.int64]:
     for i, shape in enumerate(scene.shapes):
         if isinstance(shape, Instance):
             raise TypeError(
-                f"shapes[{i}] is an Instance, whose copies have no faces of their own: give a Mesh for each copy"
+                f"shapes[{i}] is an Instance, whose copies have no faces of their own: give a Mesh each"
             )
         if isinstance(shape, Plane):
             raise ValueError(f"shapes[{i}] is a Plane, which has no end and so no area: give a Mesh that has")
         if isinstance(shape, Mesh):
             finite = np.isfinite(shape.vertices).all(axis=1)[shape.faces].all(axis=1)
             if not finite.all():
-                raise ValueError(f"face {int(np.argmin(finite))} of shapes[{i}] has a corner that is not finite")
-    first = np.cumsum([0, *map(face_count, scene.shapes)])
+                raise ValueError(
+                    f"face {int(np.argmin(finite))} of shapes[{i}] has a corner that is not finite"
+                )
+    counts = [len(shape.faces) if isinstance(shape, Mesh) else 1 for shape in scene.shapes]
+    first = np.cumsum([0, *counts])
     if first[-1] == 0:
         raise ValueError("the scene has no faces, and so no view factors")
     return first
@@ -216,7 +221,9 @@ def _exact(scene: Scene) -> Scene:
     """Return the scene with all digits of its vertices, unless float32 was asked for or has them all."""
 
     def loses(shape: object) -> bool:
-        return isinstance(shape, Mesh) and not np.array_equal(shape.vertices, shape.vertices.astype(np.float32))
+        return isinstance(shape, Mesh) and not np.array_equal(
+            shape.vertices, shape.vertices.astype(np.float32)
+        )
 
     if scene.precision == "auto" and any(map(loses, scene.shapes)):
         return scene.replace(precision="double")
@@ -229,7 +236,9 @@ def _dense(core: _core.CompiledScene, rays: tuple[int, int], *how: Any) -> ViewF
     with np.errstate(divide="ignore", invalid="ignore"):
         there, back = (np.nan_to_num((errors / areas[of]) ** 2) for of in (one, other))
     two = one != other
-    variance = tuple(np.concatenate(both) for both in ((one, other[two]), (other, one[two]), (there, back[two])))
+    variance = tuple(
+        np.concatenate(both) for both in ((one, other[two]), (other, one[two]), (there, back[two]))
+    )
     return ViewFactors(frozen(matrix), frozen(areas), "face", *counts, sent, variance)
 
 
@@ -265,7 +274,8 @@ def _of_shapes(faces: ViewFactors, first: NDArray[np.int64]) -> ViewFactors:
         matrix[np.ix_(used, used)] = np.add.reduceat(from_faces, first[used], axis=0)
         rows, columns, values = faces._variance
         cells = of[rows] * count + of[columns]
-        summed = np.bincount(cells, values * shares[rows] ** 2, count * count).reshape(count, count)
+        summed = np.bincount(cells, values * shares[rows] ** 2, count * count).astype(np.float64)
+        summed = summed.reshape(count, count)
         # Within a shape, both entries of a pair are one estimate: they err together.
         summed[np.diag_indices(count)] *= 2.0
     else:

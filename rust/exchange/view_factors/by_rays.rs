@@ -1,8 +1,9 @@
 //! Whole rows of the matrix by rays: of surfaces that are no triangles, and of scenes with too many faces for all pairs.
 
+use super::Aim;
 use super::facet::Facet;
 use crate::accel::Primitives;
-use crate::math::{Frame, Hit, Ray};
+use crate::math::{DVec3, Frame, Hit, Ray};
 use crate::sampling::{BatchSize, SamplerKind, warp};
 use crate::scene::{RayOrigin, Scene};
 
@@ -50,7 +51,8 @@ impl<'a> Rows<'a> {
 
     /// The row of a face, by rays that leave even by area and by the cosine, each counted where it lands first, if it
     /// does so on a front. Doubled until no error is larger than is asked for.
-    pub fn row(&mut self, primitive: u32, facet: &Facet, rays: u32, error: Option<f64>, sent: &mut u64) -> Vec<Entry> {
+    pub fn row(&mut self, primitive: u32, facet: &Facet, aim: &Aim, sent: &mut u64) -> Vec<Entry> {
+        let rays = aim.row_rays;
         let size = BatchSize::for_budget(Some(rays));
         let (mut done, mut target) = (0, rays.next_multiple_of(size.samples()).max(2 * size.samples()));
         loop {
@@ -68,7 +70,7 @@ impl<'a> Rows<'a> {
                 (face, mean / each, variance.sqrt() / each)
             };
             let row: Vec<Entry> = self.touched.iter().map(entry).collect();
-            let is_met = error.is_none_or(|error| row.iter().all(|entry| entry.2 <= error));
+            let is_met = aim.error.is_none_or(|error| row.iter().all(|entry| entry.2 <= error));
             if is_met || target > MOST / 2 {
                 *sent += u64::from(done);
                 for face in self.touched.drain(..) {
@@ -109,7 +111,7 @@ impl<'a> Rows<'a> {
                 self.weights.push(weight);
             } else {
                 // A ray that counts nothing keeps its place in its batch.
-                self.rays.push(Ray::new(facet.centre, crate::math::DVec3::Z));
+                self.rays.push(Ray::new(facet.centre, DVec3::Z));
                 self.weights.push(0.0);
             }
         }

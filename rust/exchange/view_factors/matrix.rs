@@ -12,6 +12,7 @@ use crate::scene::Scene;
 use crate::simd::Level;
 use crate::work::{Steps, Stopped, Work};
 use rayon::prelude::*;
+use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use std::sync::{Mutex, PoisonError};
 
@@ -248,36 +249,33 @@ impl Everything<'_> {
         self.factors[row * self.facets.len() + column].store(factor.to_bits(), Relaxed);
     }
 
-    /// The rows and columns of all that is no triangle. Between two such surfaces, the mean of what both rows say.
+    /// The rows and columns of all that is no triangle. Of two such surfaces both rows tell what they exchange, A F, with
+    /// a variance of about A² F / n, so that the one of the smaller area counts more.
     fn curved(&self, areas: &[f64]) -> Result<(), Stopped> {
         let geometry = self.scene.geometry();
-        let which: Vec<u32> = (0..areas.len() as u32).filter(|&i| geometry.shape(i).is_some()).collect();
-        let mut exchanged = std::collections::BTreeMap::<[u32; 2], Vec<[f64; 2]>>::new();
+        let is_curved = |i: u32| geometry.shape(i).is_some();
+        let mut exchanged = BTreeMap::<[u32; 2], [f64; 2]>::new();
         let (mut rows, mut rays) = (Rows::new(self.scene, self.aim.seed), 0);
-        for &i in &which {
-            if areas[i as usize] <= 0.0 {
-                continue;
-            }
-            let row = rows.row(i, &self.facets[i as usize], self.aim.row_rays, self.aim.error, &mut rays);
-            for (j, factor, error) in row {
-                let known = areas[i as usize] * factor;
-                exchanged.entry([i.min(j), i.max(j)]).or_default().push([known, areas[i as usize] * error]);
+        for i in (0..areas.len() as u32).filter(|&i| is_curved(i) && areas[i as usize] > 0.0) {
+            let area = areas[i as usize];
+            for (j, factor, error) in rows.row(i, &self.facets[i as usize], self.aim, &mut rays) {
+                let other = areas[j as usize];
+                let share = if i != j && is_curved(j) { other / (area + other) } else { 1.0 };
+                let [value, variance] = exchanged.entry([i.min(j), i.max(j)]).or_default();
+                *value += share * area * factor;
+                *variance += (share * area * error).powi(2);
             }
             self.steps.did(areas.len())?;
         }
+        self.rays.fetch_add(rays, Relaxed);
         self.counts[2].fetch_add(exchanged.len() as u64, Relaxed);
         let mut sampled = self.sampled.lock().unwrap_or_else(PoisonError::into_inner);
-        for (faces, known) in exchanged {
+        for (faces, [value, variance]) in exchanged {
             let [i, j] = faces.map(|face| face as usize);
-            let both = i != j && which.binary_search(&faces[0]).is_ok() && which.binary_search(&faces[1]).is_ok();
-            let count = if both { 2.0 } else { 1.0 };
-            let value = known.iter().map(|one| one[0]).sum::<f64>() / count;
-            let error = known.iter().map(|one| one[1] * one[1]).sum::<f64>().sqrt() / count;
             self.write(i, j, value / areas[i]);
             self.write(j, i, value / areas[j]);
-            sampled.push(Sampled { faces, value, error });
+            sampled.push(Sampled { faces, value, error: variance.sqrt() });
         }
-        self.rays.fetch_add(rays, Relaxed);
         Ok(())
     }
 }

@@ -10,6 +10,8 @@ mod pair;
 mod partly;
 mod shaft;
 mod sparse;
+#[cfg(test)]
+mod tests;
 
 pub use distant::Quadrature;
 pub use facet::Facet;

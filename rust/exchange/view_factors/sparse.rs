@@ -42,7 +42,7 @@ pub fn sparse(scene: &Scene, aim: &Aim, work: Work) -> Result<Sparse, Stopped> {
                     if steps.is_stopped() {
                         return (Vec::new(), 0);
                     }
-                    let mut row = rows.row(face as u32, &facets[face], aim.row_rays, aim.error, &mut sent);
+                    let mut row = rows.row(face as u32, &facets[face], aim, &mut sent);
                     row.sort_unstable_by_key(|entry| entry.0);
                     (row, sent)
                 },

@@ -1,0 +1,108 @@
+"""View factors of a box with a block in it: time and error, beside pyViewFactor where that is installed.
+
+    python benches/view_factors.py [--cuts 13 18 26] [--rays 16] [--peer]
+
+Each side of the box is cut into squares; ours are of two triangles each, pyViewFactor's are whole. Before
+anything is timed, the empty box must have rows that add up to one, and sides as Howell's catalogue has them.
+"""
+
+import argparse
+import math
+import time
+
+import numpy as np
+
+import raywright as rw
+
+
+def side(corner, across, up, cuts):
+    """Cut a parallelogram into squares of two triangles each, which stand one after the other."""
+    at = [corner + across * i / cuts + up * j / cuts for i in range(cuts + 1) for j in range(cuts + 1)]
+    faces = []
+    for i in range(cuts):
+        for j in range(cuts):
+            a, b = i * (cuts + 1) + j, (i + 1) * (cuts + 1) + j
+            faces += [[a, b, b + 1], [a, b + 1, a + 1]]
+    return np.array(at), np.array(faces)
+
+
+def room(cuts):
+    """Cut up the inside of a unit box: six meshes."""
+    x, y, z = np.eye(3)
+    sides = [(0 * x, y, z), (x, z, y), (0 * x, z, x), (y, x, z), (0 * x, x, y), (z, y, x)]
+    return [rw.Mesh(*side(*place, cuts)) for place in sides]
+
+
+def block():
+    """Stand in the middle of the box, and look outwards."""
+    low, size = np.array([0.35, 0.3, 0.25]), np.diag([0.3, 0.35, 0.4])
+    x, y, z = size
+    far = low + x + y + z
+    sides = [(low, z, y), (low, x, z), (low, y, x), (far, -y, -z), (far, -z, -x), (far, -x, -y)]
+    return [rw.Mesh(*side(*place, 1)) for place in sides]
+
+
+def validate():
+    """Check the empty box against the catalogue (C-11, C-14), and that rows add up."""
+    sides = rw.view_factors(rw.Scene(room(4)), per="shape", progress=False)
+    opposed = (
+        2 / math.pi * (math.log(2 / math.sqrt(3)) + math.sqrt(8) * math.atan(math.sqrt(0.5)) - math.pi / 2)
+    )
+    for i in range(6):
+        for j in range(6):
+            truth = 0.0 if i == j else opposed if i // 2 == j // 2 else (1 - opposed) / 4
+            assert abs(sides.matrix[i, j] - truth) < 1e-10, (i, j)
+    assert np.abs(rw.view_factors(rw.Scene(room(4)), progress=False).rest).max() < 1e-9
+
+
+def peer(cuts):
+    """Time pyViewFactor on the squares of the empty box, and tell the greatest error of a row's sum."""
+    try:
+        import pyvista
+        from pyviewfactor import compute_viewfactor, get_visibility
+    except ImportError as missing:
+        return f"skipped: {missing}"
+    squares = []
+    for mesh in room(cuts):
+        for pair in mesh.faces.reshape(-1, 6):
+            corners = mesh.vertices[pair[[0, 1, 2, 5]]]
+            squares.append(pyvista.PolyData(corners, [4, 0, 1, 2, 3]))
+    start, rows = time.perf_counter(), np.zeros(len(squares))
+    for i, one in enumerate(squares):
+        for other in squares:
+            if one is not other and get_visibility(other, one)[0]:
+                rows[i] += compute_viewfactor(other, one)
+    return f"{time.perf_counter() - start:.1f} s, rows within {np.abs(rows - 1).max():.1e}"
+
+
+def main():
+    """Validate, time, and print the table."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--cuts", type=int, nargs="+", default=[13, 18, 26], help="of each side")
+    parser.add_argument(
+        "--rays", type=int, default=16, help="between two faces that something may lie between"
+    )
+    parser.add_argument("--peer", action="store_true", help="pyViewFactor too, which takes minutes")
+    arguments = parser.parse_args()
+    validate()
+    print("box and block are as the catalogue has them, and rows add up", flush=True)
+    for cuts in arguments.cuts:
+        for name, shapes in (("empty", room(cuts)), ("with a block", room(cuts) + block())):
+            scene = rw.Scene(shapes)
+            start = time.perf_counter()
+            found = rw.view_factors(scene, rays=arguments.rays, progress=False)
+            seconds = time.perf_counter() - start
+            error = np.sqrt((found.standard_error**2).sum(axis=1)).max()
+            print(
+                f"{len(found)} triangles, {name}: {seconds:.2f} s; pairs: {found.closed} closed, "
+                f"{found.hidden} hidden, {found.sampled} sampled, {found.rays} rays; "
+                f"rows within {np.abs(found.rest).max():.1e}, "
+                f"errors of rows up to {error:.1e}",
+                flush=True,
+            )
+        if arguments.peer:
+            print(f"{6 * cuts * cuts} squares, empty, pyViewFactor: {peer(cuts)}", flush=True)
+
+
+if __name__ == "__main__":
+    main()
