@@ -29,8 +29,8 @@ fn colours(name: &str, array: &PyReadonlyArray2<'_, f64>) -> PyResult<Vec<Rgb>> 
 
 #[pymethods]
 impl RadiosityShots {
-    /// `cuts` (F,) says into how many strips each primitive is cut; `looks`, emission and reflectance by side, stand for
-    /// what the scene says.
+    /// `cuts` (F,) says into how many strips each primitive is cut; `looks`, emission and reflectance by side, stand
+    /// for what the scene says.
     #[new]
     #[pyo3(signature = (scene, lamps, cuts, both, looks=None, threads=None))]
     fn new(

@@ -55,7 +55,7 @@ def square(
 
 
 def turned(profile: Sequence[tuple[float, float]], around: int) -> trimesh.Trimesh:
-    """What a line of (radius, z) sweeps around z, seen from the axis if it goes up."""
+    """What a line of (radius, z) sweeps around z: what goes up looks inwards, what goes outwards up."""
     angles = 2 * np.pi * np.arange(around) / around
     # Of the same area as the circle's polygon would have: radii a little larger.
     grown = np.sqrt(2 * np.pi / around / np.sin(2 * np.pi / around))

@@ -9,6 +9,9 @@ from radiosity_scenes import mean, room, square
 
 import raywright as rw
 
+# A room that is warm, and does not shine.
+DARK = room(0.6, (0,) * 6)
+
 
 def by_matrix(scene: rw.Scene, **options: Any) -> rw.RadiositySolution:
     return rw.radiosity(scene, method="matrix", progress=False, **options)
@@ -51,12 +54,12 @@ def test_two_squares_approach_the_continuous_solution() -> None:
 def test_rays_and_matrix_agree_on_the_cornell_box() -> None:
     scene, _ = rw.scenes.cornell_box()
     found = by_matrix(scene, patch_size=250.0)
-    rays = rw.radiosity(scene, error=0.01, patch_size=250.0, sides="front", progress=False)
+    rays = rw.radiosity(scene, error=0.02, patch_size=250.0, sides="front", progress=False)
     both = np.hypot(found.standard_error, rays.standard_error) + 0.002 * rays.radiosity.mean()
     off = np.abs(found.radiosity - rays.radiosity) / both
     # Errors of 7 degrees of freedom are beyond 5 in 1 of 600 cases.
     assert np.mean(off > 5) < 0.01
-    np.testing.assert_allclose(found.escaped, rays.escaped, rtol=0.01)
+    np.testing.assert_allclose(found.escaped, rays.escaped, rtol=0.02)
 
 
 def test_lights_that_are_no_surfaces_come_by_rays() -> None:
@@ -70,7 +73,7 @@ def test_lights_that_are_no_surfaces_come_by_rays() -> None:
 
 
 def test_an_even_temperature_exchanges_nothing() -> None:
-    found = rw.radiative_exchange(room(), 300.0, [0.2, 0.4, 0.6, 0.8, 0.9, 1.0], progress=False)
+    found = rw.radiative_exchange(DARK, 300.0, [0.2, 0.4, 0.6, 0.8, 0.9, 1.0], progress=False)
     sent = 5.670374419184429e-8 * 300.0**4
     assert abs(found.flux).max() < 1e-9 * sent
     np.testing.assert_allclose(found.radiosity, sent, rtol=1e-9)
@@ -78,11 +81,11 @@ def test_an_even_temperature_exchanges_nothing() -> None:
 
 
 def test_what_one_wall_loses_the_others_gain() -> None:
-    found = rw.radiative_exchange(room(), [400.0] + [300.0] * 5, 0.7, progress=False)
+    found = rw.radiative_exchange(DARK, [400.0] + [300.0] * 5, 0.7, progress=False)
     assert found.of(0) > 0
     assert abs(found.power.sum()) < 1e-9 * found.of(0)
     rays = rw.radiative_exchange(
-        room(), [400.0] + [300.0] * 5, 0.7, method="stochastic", error=2e-3, progress=False
+        DARK, [400.0] + [300.0] * 5, 0.7, method="stochastic", rays=2**16, progress=False
     )
     assert abs(rays.of(0) / found.of(0) - 1) < 0.01
 

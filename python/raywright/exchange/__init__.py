@@ -1,1 +1,1 @@
-"""What surfaces send each other, as numbers."""
+"""What surfaces send each other, as numbers: view factors, radiosity, heat."""

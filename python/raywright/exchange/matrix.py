@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from ..scene.instance import AnyShape
 from ..scene.scene import Scene
 from ..shapes.mesh import Mesh
 from .problem import EMITTED, ESCAPED, REPLICATES, Problem
@@ -76,8 +77,8 @@ def _of_patches(problem: Problem) -> Scene:
     scene = problem.scene
     if (problem.cuts == 1).all():
         return scene
-    shapes, corners, start = [], problem.core.corners, 0
-    first = 0
+    shapes: list[AnyShape] = []
+    corners, start, first = problem.core.corners, 0, 0
     for shape in scene.shapes:
         if not isinstance(shape, Mesh):
             shapes.append(shape)

@@ -22,6 +22,8 @@ ExchangeMethod: TypeAlias = Literal["matrix", "stochastic"]
 
 # W·m⁻²·K⁻⁴: exact in the SI since 2019, by 2 π⁵ k⁴ / (15 h³ c²).
 STEFAN_BOLTZMANN = 5.670374419184429e-8
+# Net fluxes are small differences, so that what is unshot must be next to nothing.
+_BIAS = 1e-5
 # Up to so many faces the matrix is the default.
 _SMALL = 2048
 
@@ -185,16 +187,14 @@ def radiative_exchange(
     sent = grey * STEFAN_BOLTZMANN * kelvin**4
 
     def solve(lamps: Scene | None, emission: Floats, absorbing: Floats) -> RadiositySolution:
-        looks = tuple(
-            np.ascontiguousarray(np.repeat(part[:, None], 3, axis=1)) for part in (emission, 1.0 - absorbing)
-        )
+        looks = _three(emission), _three(1.0 - absorbing)
         problem = Problem.of(scene, cuts, both, "face", seed, threads, lamps, looks)
         if method == "matrix":
             from .matrix import solve as by_matrix
 
             return by_matrix(problem, wanted, limit)
         with watcher(progress, "exchange") as report:
-            return to_the_end(problem, "stochastic", wanted, limit, report)
+            return to_the_end(problem, "stochastic", wanted, limit, report, _BIAS)
 
     heat = solve(sky, sent, grey)
     arrives, off = heat.irradiance[:, 0], heat.irradiance_error[:, 0]
@@ -220,7 +220,7 @@ def _light(
     scene: Scene, cuts: NDArray[np.uint32], both: bool, absorbing: Floats, solve: Any
 ) -> tuple[Floats, Floats]:
     """Return what is absorbed of the scene's own light, W/m², and its error."""
-    shines = any(shape.emission is not None for shape in scene.shapes)
+    shines = any(getattr(shape, "emission", None) is not None for shape in scene.shapes)
     lamps = lamps_of(scene)
     if lamps is None and not shines:
         return np.zeros(len(absorbing)), np.zeros(len(absorbing))
@@ -230,6 +230,11 @@ def _light(
         emission = own.emission.mean(axis=1)
     found = solve(lamps, emission, absorbing)
     return absorbing * found.irradiance.mean(axis=1), absorbing * found.irradiance_error.mean(axis=1)
+
+
+def _three(values: Floats) -> Floats:
+    """Return the same in all channels."""
+    return np.ascontiguousarray(np.repeat(values[:, None], 3, axis=1))
 
 
 def _per_face(name: str, given: PerFace, faces: list[int]) -> Floats:

@@ -113,8 +113,8 @@ def radiosity(
 
     Notes
     -----
-    Eight replicates, each of rays of its own, give the standard error. Within each, what is emitted is absorbed,
-    has left or is unshot, to rounding. Iterations end by ‖unshot‖ / (1 - the greatest reflectance).
+    Eight replicates, each of rays of its own, give the standard error. Within each, what is emitted is
+    absorbed, has left or is unshot, to rounding. Iterations end by ‖unshot‖ / (1 - the greatest reflectance).
     """
     choice("per", per, get_args(Per))
     choice("method", method, get_args(Method))

@@ -10,7 +10,7 @@ from .solution import Floats, Method, RadiositySolution
 
 # What is wanted where nothing is named.
 _ERROR = 0.01
-# What is unshot may add this share of the wanted error.
+# The share of the wanted error that what is unshot may add.
 _BIAS = 0.1
 # Rays of a replicate's first shot: of a patch on average, and at least.
 _A_PATCH, _LEAST = 8, 2**12
@@ -25,14 +25,18 @@ def to_the_end(
     error: float | None,
     rays: int | None,
     report: Callable[[float], object] | None,
+    bias: float = _BIAS,
 ) -> RadiositySolution:
-    """Return the solution by a method, at the first of an error and a number of rays that is met."""
+    """Return the solution by a method, at the first of an error and a number of rays that is met.
+
+    What is unshot may add the share `bias` of the wanted error.
+    """
     tell = _Teller(report)
     if method == "progressive":
         for _ in _shots(problem, error or _ERROR, rays, tell):
             pass
         return problem.solution(method, problem.core.arrived, problem.core.books)
-    return _rounds(problem, error, rays, tell)
+    return _rounds(problem, error, rays, bias, tell)
 
 
 def states(problem: Problem, error: float, rays: int | None) -> Iterator[RadiositySolution]:
@@ -71,10 +75,12 @@ def _shots(
         yield
 
 
-def _rounds(problem: Problem, error: float | None, rays: int | None, tell: _Teller) -> RadiositySolution:
+def _rounds(
+    problem: Problem, error: float | None, rays: int | None, bias: float, tell: _Teller
+) -> RadiositySolution:
     """Solve by all patches at once, again and again with more rays, until the error is met."""
     wanted = error if error is not None or rays is not None else _ERROR
-    least = _BIAS * (error if error is not None else _ERROR)
+    least = bias * (error if error is not None else _ERROR)
     mine = max(_A_PATCH * len(problem.areas), _LEAST)
     if rays is not None:
         limit = max(rays // REPLICATES, 1)

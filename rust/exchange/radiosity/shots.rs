@@ -8,6 +8,7 @@ use crate::sampling::{BatchSize, SamplerKind, philox4x32};
 use crate::scene::Scene;
 use crate::workers::Cancel;
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Of a ray that meets nothing, and of one that meets the black side of a face.
 const ESCAPED: u32 = u32::MAX;
@@ -125,7 +126,8 @@ impl Shots {
             .map(|&(source, rays)| std::mem::take(&mut self.unshot[source as usize]) / f64::from(rays))
             .collect();
         // Memory for the targets of some million rays at a time.
-        for (sources, carried) in parts(sources, &carried, 1 << 22) {
+        for part in parts(sources, 1 << 22) {
+            let (sources, carried) = (&sources[part.clone()], &carried[part]);
             let pieces = pieces(sources);
             let targets: Vec<Vec<u32>> = pieces
                 .into_par_iter()
@@ -186,13 +188,13 @@ fn key(seed: u64, replicate: u32, shot: u32) -> u64 {
     u64::from(a) << 32 | u64::from(b)
 }
 
-/// Sources with what their rays carry, in parts of about so many rays.
-fn parts<'a>(sources: &'a [(u32, u32)], carried: &'a [Rgb], most: u64) -> Vec<(&'a [(u32, u32)], &'a [Rgb])> {
+/// Sources in parts of about so many rays.
+fn parts(sources: &[(u32, u32)], most: u64) -> Vec<Range<usize>> {
     let (mut parts, mut start, mut rays) = (Vec::new(), 0, 0);
     for (i, &(_, more)) in sources.iter().enumerate() {
         rays += u64::from(more);
         if rays >= most || i + 1 == sources.len() {
-            parts.push((&sources[start..=i], &carried[start..=i]));
+            parts.push(start..i + 1);
             (start, rays) = (i + 1, 0);
         }
     }
