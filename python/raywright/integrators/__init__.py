@@ -13,15 +13,7 @@ from .ray_cast import RayCast
 from .whitted import Whitted
 
 AnyIntegrator: TypeAlias = (
-    Path
-    | LightTraced
-    | Direct
-    | RayCast
-    | Whitted
-    | Distributed
-    | BeamTraced
-    | AmbientOcclusion
-    | Integrator
+    Path | LightTraced | Direct | RayCast | Whitted | Distributed | BeamTraced | AmbientOcclusion | Integrator
 )
 
 __all__ = [
