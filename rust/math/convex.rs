@@ -100,8 +100,8 @@ pub fn clip(polygon: &[DVec2], region: &[HalfPlane]) -> Convex {
     left
 }
 
-/// Takes what some half-planes share out of a convex polygon: adds convex pieces of what is left to `outside`, and gives
-/// what was taken out; empty if that is nothing, and then the polygon is left whole.
+/// Takes what some half-planes share out of a convex polygon: adds convex pieces of what is left to `outside`, and
+/// gives what was taken out; empty if that is nothing, and then the polygon is left whole.
 pub fn take_out(polygon: Convex, region: &[HalfPlane], outside: &mut Vec<Convex>) -> Convex {
     let is_beyond = |side: &HalfPlane| polygon.iter().all(|&corner| side.value(corner) <= 0.0);
     if region.iter().any(is_beyond) || clip(&polygon, region).is_empty() {
@@ -152,7 +152,8 @@ mod tests {
             let shared = take_out(other.clone(), &sides(&whole, SLACK), &mut Vec::new());
             prop_assert!((area(&shared) - area(&inside)).abs() < 1e-10);
             // The middle of the whole is that of its pieces.
-            let moment: DVec2 = outside.iter().chain([&inside]).filter(|p| !p.is_empty()).map(|p| centroid(p) * area(p)).sum();
+            let all = outside.iter().chain([&inside]).filter(|piece| !piece.is_empty());
+            let moment: DVec2 = all.map(|piece| centroid(piece) * area(piece)).sum();
             prop_assert!((moment / area(&whole) - centroid(&whole)).length() < 1e-10);
         }
 

@@ -15,8 +15,8 @@ class BeamTraced:
     All that the camera sees is one beam. Faces part it into polygons, flat mirrors throw these back, panes
     let them through, and beams from lights part them into lit and shadowed. A pixel is the sum over the
     polygons in its square of their areas there, each times its radiance at the middle of that; so the picture
-    has no noise, and one sample is as good as many. It is `Whitted`'s picture: what is scattered otherwise
-    than as by a mirror is left to `ambient`.
+    has no noise, and one sample is as good as many (with two, the error is 0 where with one it is not known).
+    It is `Whitted`'s picture: what is scattered otherwise than as by a mirror is left to `ambient`.
 
     Beams meet meshes alone, of any opaque material or `ThinDielectric`, in the light of lights without extent
     (`PointLight`, `SpotLight`, `Projector`, `DirectionalLight`; 64 at most), seen through a pinhole and a
