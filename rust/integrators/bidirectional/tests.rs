@@ -68,8 +68,7 @@ fn inside(size: u32) -> Perspective {
 #[test]
 fn each_way_alone_finds_all_paths_of_its_length() {
     let light = PointLight { position: DVec3::ZERO, intensity: Rgb::splat(PI) };
-    let description =
-        SceneDescription { shapes: vec![ball(0.5, 0.0)], lights: vec![Arc::new(light)], ..Default::default() };
+    let description = SceneDescription { shapes: vec![ball(0.5, 0.0)], lights: vec![Arc::new(light)] };
     let (scene, camera) = (scene(description), inside(8));
     for bounces in 1..=4u32 {
         let expected = 0.5f64.powi(bounces as i32);
