@@ -17,8 +17,8 @@ class Bidirectional:
     A sample takes several times as long as one of `Path`: in a scene that has nothing hard in it, `Path` is
     better.
 
-    Without bias, and with an error that is told as ever. No connection reaches what the camera sees by way of a
-    mirror or glass if it is lit by way of another from a small light: that is found only where a path comes
+    Without bias, and with an error that is told as ever. No connection reaches what the camera sees by way of
+    a mirror or glass if it is lit by way of another from a small light: that is found only where a path comes
     upon the light.
 
     Parameters

@@ -64,7 +64,8 @@ fn inside(size: u32) -> Perspective {
 }
 
 /// Inside of a diffuse sphere of radius 1 and reflectance ρ with a point light of intensity I at its centre, light that
-/// was reflected k times has the radiance I ρᵏ / π everywhere: each way to find paths of so many vertices does so alone.
+/// was reflected k times has the radiance I ρᵏ / π everywhere: each way to find paths of so many vertices does so
+/// alone.
 #[test]
 fn each_way_alone_finds_all_paths_of_its_length() {
     let light = PointLight { position: DVec3::ZERO, intensity: Rgb::splat(PI) };
