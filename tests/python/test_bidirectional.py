@@ -54,8 +54,8 @@ def mean(image):
 
 
 def assert_mean(image, expected, most, off=0.0):
-    """Within three standard errors, which are at most a share of what is expected, and a share that the scene is
-    off by. Chance exceeds three once in 370 seeds, and seeds are fixed."""
+    """Within three standard errors, which are at most a share of what is expected, and a share that the scene
+    is off by. Chance exceeds three once in 370 seeds, and seeds are fixed."""
     found, error = mean(image)
     assert error <= most * expected, error / expected
     assert abs(found - expected) <= 3 * error + off * expected, (found, error, expected)
@@ -219,9 +219,9 @@ def hollow(aperture, *, centre=0.0, up=True, rings=96, **kwargs):
 
 
 def test_light_behind_a_port():
-    # A point light in a hollow sphere whose wall has a port: the receiver sees the wall alone. The radiosity of
-    # that is rho I / (1 - rho (1 - s)), with s the share of the sphere that is cut away, and the port sends what
-    # a disk of that radiosity would.
+    # A point light in a hollow sphere whose wall has a port: the receiver sees the wall alone. Its radiosity is
+    # rho I / (1 - rho (1 - s)), with s the share of the sphere that is cut away, and the port sends what a disk
+    # of that radiosity would.
     port, rho, far, aside = 0.1, 0.9, 0.5, 0.3
     rim = math.sqrt(1 - port**2)
     share = (1 - rim) / 2
