@@ -219,9 +219,9 @@ def hollow(aperture, *, centre=0.0, up=True, rings=96, **kwargs):
 
 
 def test_light_behind_a_port():
-    # A point light in a hollow sphere whose wall has a port: the receiver sees the wall alone, of a radiosity
-    # of rho I / (1 - rho (1 - s)), with s the share of the sphere that is cut away; and the port sends as much
-    # as a disk of that radiosity.
+    # A point light in a hollow sphere whose wall has a port: the receiver sees the wall alone. Its radiosity
+    # is rho I / (1 - rho (1 - s)), with s the share of the sphere that is cut away; and the port sends what
+    # a disk of it would.
     port, rho, far, aside = 0.1, 0.9, 0.5, 0.3
     rim = math.sqrt(1 - port**2)
     share = (1 - rim) / 2
