@@ -13,12 +13,12 @@ class Bidirectional:
     power, and every surface of the one is connected to every surface of the other, to a light and to the
     camera. Light that can be found in several of these ways counts in each by the balance heuristic, whose
     weights are gathered along the walks (Georgiev 2012). So it finds what `Path` finds and what `LightTraced`
-    does, and by connections also what is hard to reach from either end, such as a room lit through a keyhole.
-    A sample takes several times as long as one of `Path`: in a scene that has nothing hard in it, `Path` is
-    better.
+    does, and by connections also what is hard to reach from either end, such as a room lit by way of a door
+    ajar. A sample takes several times as long as one of `Path`, which is better in a scene that has nothing
+    hard in it.
 
-    Without bias, and with an error that is told as ever. No connection reaches what the camera sees by way of a
-    mirror or glass if it is lit by way of another from a small light: that is found only where a path comes
+    Without bias, and with an error that is told as ever. No connection reaches what the camera sees by way of
+    a mirror or glass if it is lit by way of another from a small light: that is found only where a path comes
     upon the light.
 
     Parameters

@@ -19,7 +19,7 @@ use worker::BidirectionalWorker;
 /// camera. A path that is found in several of these ways counts in each by the balance heuristic.
 ///
 /// What path tracing finds well, and what light tracing does, is found as well by both together, and light that is hard
-/// to reach from either end, such as behind a keyhole, by their connections. Only what is seen by way of something
+/// to reach from either end, such as behind a door ajar, by their connections. Only what is seen by way of something
 /// sharp, lit by way of something sharp from a small light, is found no better.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Bidirectional {

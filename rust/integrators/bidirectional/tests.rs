@@ -64,12 +64,12 @@ fn inside(size: u32) -> Perspective {
 }
 
 /// Inside of a diffuse sphere of radius 1 and reflectance ρ with a point light of intensity I at its centre, light that
-/// was reflected k times has the radiance I ρᵏ / π everywhere: each way to find paths of so many vertices does so alone.
+/// was reflected k times has the radiance I ρᵏ / π everywhere: each way to find paths of so many vertices does so
+/// alone.
 #[test]
 fn each_way_alone_finds_all_paths_of_its_length() {
     let light = PointLight { position: DVec3::ZERO, intensity: Rgb::splat(PI) };
-    let description =
-        SceneDescription { shapes: vec![ball(0.5, 0.0)], lights: vec![Arc::new(light)], ..Default::default() };
+    let description = SceneDescription { shapes: vec![ball(0.5, 0.0)], lights: vec![Arc::new(light)] };
     let (scene, camera) = (scene(description), inside(8));
     for bounces in 1..=4u32 {
         let expected = 0.5f64.powi(bounces as i32);

@@ -34,7 +34,7 @@ pub(in crate::integrators) enum Met<'a> {
     /// As before, but for the direction.
     Alike(SurfaceInteraction<&'a BsdfMix>),
     /// Otherwise.
-    Anew(Box<SurfaceInteraction>),
+    Anew(SurfaceInteraction),
 }
 
 impl Met<'_> {
@@ -122,7 +122,7 @@ impl<'a> Arrived<'a> {
         let ray = Ray { origin, direction: -direction, ..self.ray };
         let hit = Hit { t: distance, ..self.hit };
         let surface = *self.here.surface();
-        Met::Anew(Box::new(SurfaceInteraction::new(self.scene, &ray, &hit, surface, width, self.outside)))
+        Met::Anew(SurfaceInteraction::new(self.scene, &ray, &hit, surface, width, self.outside))
     }
 
     /// Back to where it came from.

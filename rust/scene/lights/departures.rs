@@ -36,21 +36,21 @@ impl Emitters<'_> {
     pub fn of_sample(&self, sample: &EmissionSample) -> Departure {
         let direction = sample.ray.direction;
         match sample.source {
-            Source::Surface(light) => self.of_light(light, sample.normal.dot(direction)),
-            Source::Point(_) => self.from_point(sample.source, direction),
-            Source::Outside | Source::Direction(_) => self.from_outside(sample.source, -direction),
+            Source::Surface(light) => self.departure_of_surface(light, sample.normal.dot(direction)),
+            Source::Point(_) => self.departure_of_point(sample.source, direction),
+            Source::Outside | Source::Direction(_) => self.departure_of_outside(sample.source, -direction),
         }
     }
 
     /// That of light from a surface, along a ray back to it; none from what is never drawn.
     pub fn of_hit(&self, ray: &Ray, hit: &Hit, surface: &SurfacePoint) -> Option<Departure> {
         let light = self.lights.number_of(self.geometry, hit)?;
-        Some(self.of_light(light as u32, -ray.direction.dot(surface.normal)))
+        Some(self.departure_of_surface(light as u32, -ray.direction.dot(surface.normal)))
     }
 
     /// That of light from outside that comes from a direction.
     pub fn of_outside(&self, direction: DVec3) -> Departure {
-        self.from_outside(Source::Outside, direction)
+        self.departure_of_outside(Source::Outside, direction)
     }
 
     /// Draws light as [`Lights::sample`] does, and tells how likely it sets out; and the density of the draw, as
@@ -67,7 +67,7 @@ impl Emitters<'_> {
             let chosen = infinite.choose(choice / share);
             let drawn = infinite.sample_of(chosen, receiver, u)?.chosen(share);
             let source = if drawn.pdf == f64::INFINITY { Source::Direction(chosen as u32) } else { Source::Outside };
-            let departure = self.from_outside(source, drawn.direction);
+            let departure = self.departure_of_outside(source, drawn.direction);
             let density = match source {
                 Source::Direction(_) => share * infinite.probability(chosen),
                 _ => drawn.pdf,
@@ -82,14 +82,14 @@ impl Emitters<'_> {
         let points = lights.surfaces.len() + lights.copied.len();
         if let Some(point) = number.checked_sub(points) {
             let distance = source.position().distance(receiver.position);
-            let departure = self.from_point(Source::Point(point as u32), -drawn.direction);
+            let departure = self.departure_of_point(Source::Point(point as u32), -drawn.direction);
             return Some((drawn, departure, probability * distance * distance));
         }
         // The way off a surface is along its normal.
         let off = source.offset();
         let largest = off.abs().max_element();
         let normal = if largest > 0.0 { (off / largest).normalize() } else { drawn.direction };
-        Some((drawn, self.of_light(number as u32, normal.dot(drawn.direction)), drawn.pdf))
+        Some((drawn, self.departure_of_surface(number as u32, normal.dot(drawn.direction)), drawn.pdf))
     }
 
     /// The density with which [`Lights::sample`] draws, for a receiver, the direction of light that comes to it along a
@@ -124,7 +124,7 @@ impl Emitters<'_> {
         }
     }
 
-    fn of_light(&self, light: u32, cosine: f64) -> Departure {
+    fn departure_of_surface(&self, light: u32, cosine: f64) -> Departure {
         let (probability, cosine) = (self.choice.probability(light as usize), cosine.abs());
         let density = match self.lights.extent(light as usize, self.geometry) {
             Some((sides, area)) if probability > 0.0 => probability / area * (cosine / (PI * sides)),
@@ -133,7 +133,7 @@ impl Emitters<'_> {
         Departure { source: Source::Surface(light), density, cosine }
     }
 
-    fn from_point(&self, source: Source, direction: DVec3) -> Departure {
+    fn departure_of_point(&self, source: Source, direction: DVec3) -> Departure {
         let Source::Point(point) = source else { return Departure { source, density: 0.0, cosine: 1.0 } };
         let number = self.within - self.lights.inside.len() + point as usize;
         let density = self.choice.probability(number) * self.lights.inside[point as usize].emission_pdf(direction);
@@ -141,7 +141,7 @@ impl Emitters<'_> {
     }
 
     /// Light that comes from a direction.
-    fn from_outside(&self, source: Source, direction: DVec3) -> Departure {
+    fn departure_of_outside(&self, source: Source, direction: DVec3) -> Departure {
         let [across, other] = self.covered(&Frame::new(direction));
         let infinite = &self.lights.infinite;
         let towards = match source {

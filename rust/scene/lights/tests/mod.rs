@@ -1,6 +1,7 @@
 //! What is asked of all lights: that what they bring is what closed forms say, and that densities are those of their
 //! draws.
 
+mod departures;
 mod emission;
 mod environments;
 mod few;
