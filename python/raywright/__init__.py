@@ -6,7 +6,17 @@ from . import _core, scenes
 from ._core import AcceleratorInfo, simd
 from .accelerators import BSP, BVH, BruteForce, Grid, KdTree, NestedGrid, Octree
 from .cameras import AnyCamera, Camera, Fisheye, Orthographic, Panorama, Pose, ThinLens
-from .integrators import AmbientOcclusion, Direct, Distributed, LightTraced, Path, RayCast, Whitted
+from .integrators import (
+    AmbientOcclusion,
+    Direct,
+    Distributed,
+    LightTraced,
+    Path,
+    PhotonMap,
+    ProgressivePhotonMap,
+    RayCast,
+    Whitted,
+)
 from .integrators.base import Integrator
 from .integrators.rng import Rng
 from .io.pictures import check_writable
@@ -158,6 +168,7 @@ __all__ = [
     "Paraboloid",
     "Path",
     "Phong",
+    "PhotonMap",
     "Photons",
     "Plan",
     "PlanRow",
@@ -167,6 +178,7 @@ __all__ = [
     "Polygon",
     "Pose",
     "ProductTexture",
+    "ProgressivePhotonMap",
     "ProjectorLight",
     "QueryCost",
     "RayCast",

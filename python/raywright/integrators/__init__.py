@@ -8,11 +8,21 @@ from .direct import Direct
 from .distributed import Distributed
 from .light_traced import LightTraced
 from .path import Path
+from .photon_maps import PhotonMap, ProgressivePhotonMap
 from .ray_cast import RayCast
 from .whitted import Whitted
 
 AnyIntegrator: TypeAlias = (
-    Path | LightTraced | Direct | RayCast | Whitted | Distributed | AmbientOcclusion | Integrator
+    Path
+    | LightTraced
+    | PhotonMap
+    | ProgressivePhotonMap
+    | Direct
+    | RayCast
+    | Whitted
+    | Distributed
+    | AmbientOcclusion
+    | Integrator
 )
 
 __all__ = [
@@ -22,6 +32,8 @@ __all__ = [
     "Distributed",
     "LightTraced",
     "Path",
+    "PhotonMap",
+    "ProgressivePhotonMap",
     "RayCast",
     "Whitted",
     "check_integrator",
