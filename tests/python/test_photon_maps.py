@@ -30,8 +30,8 @@ def blocks(values, size=4):
 def assert_agree(scene, camera, integrator, *, seeds=6, samples=16, paths=1024, blur=0.02, least=0.0):
     """Blocks of pixels agree within five joint standard errors, and twice the bias that is told, or `blur`.
 
-    Those of the maps are told by pictures of other seeds. Five standard errors of six pictures are exceeded in
-    one of 250 cases; with what is left for the bias, far more rarely.
+    Those of the maps are told by pictures of other seeds. Five standard errors of six pictures are exceeded
+    in one of 250 cases; with what is left for the bias, far more rarely.
     """
     ours = [picture(scene, camera, integrator, samples, seed=seed) for seed in range(seeds)]
     theirs = picture(scene, camera, rw.Path(integrator.max_depth, reuse=1, caustics=True), paths)
@@ -137,8 +137,8 @@ def test_progress_takes_the_bias_away(caustic):
 
 
 def test_standard_errors_hold_for_what_maps_tend_to(caustic):
-    # What the estimator tends to is told by many seeds. Intervals of 95 % hold it in 93 to 97 % of pixels of all
-    # pictures: those of one picture share their maps, so that many pictures are asked.
+    # What the estimator tends to is told by many seeds. Intervals of 95 % hold it in 93 to 97 % of pixels of
+    # all pictures: those of one picture share their maps, so that many pictures are asked.
     look = rw.Orthographic((0, 0, 0.4), (0, 0, 0), up=(0, 1, 0), width=6, height=6, scale=1.6)
     way = rw.PhotonMap(2000, nearest=None, radius=0.2, gather=0)
     options = {"sampler": rw.Independent(), "progress": False}
@@ -152,7 +152,7 @@ def test_standard_errors_hold_for_what_maps_tend_to(caustic):
 
 
 def behind_glass():
-    """A lamp in a block of glass, seen through a pane of glass: light that no path from a point finds straight."""
+    """A lamp in a block of glass, seen through a pane of glass."""
     trimesh = pytest.importorskip("trimesh")
     glass = rw.Dielectric(1.5)
 
@@ -179,8 +179,8 @@ def test_a_lamp_and_an_eye_both_behind_glass():
 
 
 def test_what_moves_is_lit_at_its_time():
-    # A white board goes past a lamp behind a pane, seen by a shutter that is open all the while: where it is, and
-    # where its light is, is one time for photons and the camera, or it would not lie in its own light.
+    # A white board goes past a lamp behind a pane, seen by a shutter that is open all the while: where it is,
+    # and where its light is, is one time for photons and the camera, or it would not lie in its own light.
     start, end = np.eye(4), np.eye(4)
     start[:3, 3], end[:3, 3] = (-0.6, 0, 0.2), (0.6, 0, 0.2)
     board = rw.Instance(square(0.3, 0.0, material=rw.Diffuse(0.8)), start, transform_end=end)

@@ -32,11 +32,11 @@ class PhotonMap:
     """Photon mapping (Jensen 1996, 2001): light is as bright as photons lie densely.
 
     Paths from the lights leave photons on matt surfaces, those whose scattering is wider than that of a
-    roughness of 0.2. Paths of the camera go through mirrors, glass and gloss until they come to such a surface.
-    There lights are asked directly, a caustic map tells what mirrors and glass throw together, and rays look
-    about for the surfaces beyond, where the same is asked, and a global map for all other light. So light is
-    found that was sent through glass and is seen through glass, which no path finds from a small lamp. Where
-    nothing is matt, the picture is that of paths.
+    roughness of 0.2. Paths of the camera go through mirrors, glass and gloss until they come to such a
+    surface. There lights are asked directly, a caustic map tells what mirrors and glass throw together, and
+    rays look about for the surfaces beyond, where the same is asked, and a global map for all other light. So
+    light is found that was sent through glass and is seen through glass, which no path finds from a small
+    lamp. Where nothing is matt, the picture is that of paths.
 
     Light that is gathered from about a point is blurred: the picture is biased, however many samples it has,
     and ``image.bias`` tells about how much, ``image.standard_error`` how much noise there is besides. Each
@@ -101,7 +101,7 @@ class PhotonMap:
 
 @dataclass(frozen=True)
 class ProgressivePhotonMap:
-    """Progressive photon mapping (Hachisuka et al. 2008; Knaus and Zwicker 2011): maps whose blur goes to zero.
+    """Progressive photon mapping (Hachisuka et al. 2008; Knaus and Zwicker 2011): blur that goes to zero.
 
     As `PhotonMap`, with a map of its own for each sample of all pixels, in which light is gathered from ever
     less far away: of the squared radii, that in map s + 1 is (s + alpha) / (s + 1) of that in map s. So both

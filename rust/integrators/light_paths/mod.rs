@@ -1,6 +1,6 @@
 //! Paths that start at lights: how they go (`walk`), how surfaces scatter along the way of light (`adjoint`), and who
-//! asks where they come to, cameras (`to_camera`) or those who want to see (`photons`). Maps of what comes to surfaces are
-//! a room of their own, `photon_map`.
+//! asks where they come to, cameras (`to_camera`) or those who want to see (`photons`). Maps of what comes to surfaces
+//! are a room of their own, `photon_map`.
 
 mod adjoint;
 mod dimensions;

@@ -21,12 +21,12 @@ pub(super) struct Estimate {
 /// The least cosine between the normals of surfaces that light is gathered from together.
 const SAME_SIDE: f64 = 0.5;
 
-/// How much thinner than wide the place is that light is gathered from: what lies off the plane of the surface counts as
-/// farther (Jensen 2001), so that photons of other surfaces are left out.
+/// How much thinner than wide the place is that light is gathered from: what lies off the plane of the surface counts
+/// as farther (Jensen 2001), so that photons of other surfaces are left out.
 const FLAT: f64 = 4.0;
 
-/// The square of a photon's distance from a point, if it came to the same side of a surface there and has been scattered
-/// at so many surfaces at most.
+/// The square of a photon's distance from a point, if it came to the same side of a surface there and has been
+/// scattered at so many surfaces at most.
 #[inline]
 fn measure<B: Bsdf>(
     photon: &StoredPhoton,
@@ -165,8 +165,8 @@ mod tests {
 
     #[test]
     fn edges_have_their_bias() {
-        // Light on a half plane and on a quarter: at the edge, in the corner, and half a radius from the edge. These lie
-        // between points of the lattice, whose number in a circle of 500 steps is its area to some 2e-5.
+        // Light on a half plane and on a quarter: at the edge, in the corner, and half a radius from the edge. These
+        // lie between points of the lattice, whose number in a circle of 500 steps is its area to some 2e-5.
         let scene = floor();
         let cases: [(fn(f64, f64) -> bool, f64, f64); 3] = [
             (|x, _| x > 0.0, 0.0, 0.5),
@@ -182,9 +182,9 @@ mod tests {
 
     #[test]
     fn the_nearest_are_n_less_one() {
-        // Photons that fall evenly on a square of 2 a side, 400 of them, of which 50 are gathered: on average the truth,
-        // with a relative standard deviation of 1/√48. Of 4,000 maps that is known to 0.2 %; 4 standard errors are
-        // exceeded once in 16,000 times.
+        // Photons that fall evenly on a square of 2 a side, 400 of them, of which 50 are gathered: on average the
+        // truth, with a relative standard deviation of 1/√48. Of 4,000 maps that is known to 0.2 %; 4 standard errors
+        // are exceeded once in 16,000 times.
         let scene = floor();
         let nearest = |kernel| Estimate { nearest: Some(50), kernel, ..FIXED };
         let maps = 4000;

@@ -9,8 +9,8 @@ use crate::math::DVec3;
 pub struct HashedGrid {
     radius: f64,
     origin: DVec3,
-    /// Where in `points` those of each bucket start, and where the last ends. A bucket has the points of one cell, or of
-    /// several that fall on it.
+    /// Where in `points` those of each bucket start, and where the last ends. A bucket has the points of one cell, or
+    /// of several that fall on it.
     starts: Vec<u32>,
     points: Vec<(DVec3, u32)>,
 }
@@ -55,8 +55,8 @@ impl HashedGrid {
         hash as u32 & (self.starts.len() as u32 - 2)
     }
 
-    /// Calls a function for each point nearer than the radius, with its number and the square of its distance: always in
-    /// the same order.
+    /// Calls a function for each point nearer than the radius, with its number and the square of its distance: always
+    /// in the same order.
     pub fn within(&self, place: DVec3, mut visit: impl FnMut(u32, f64)) {
         if self.points.is_empty() {
             return;

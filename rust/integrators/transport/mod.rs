@@ -10,6 +10,7 @@ mod direct_light;
 mod emission;
 mod features;
 mod guided;
+mod known;
 mod matt;
 mod path_state;
 mod resampling;
@@ -25,7 +26,7 @@ use crate::optics::Rgb;
 use crate::scene::{Scene, ShadingVariant};
 use crate::workers::Cancel;
 use features::{Features, General, Open, Plain, Sharing};
-pub(super) use matt::{Gather, MattLight, Visit};
+pub(super) use known::{Gather, MattLight, Visit};
 use std::sync::Arc;
 use worker::TransportWorker;
 
