@@ -315,6 +315,14 @@ class Rendering:
         by a handler, by ``progress`` or by ``look`` ends the render at once and is passed on. Even then it
         can be gone on with.
         """
+    def bias(
+        self,
+        job: Job,
+        scene: CompiledScene,
+        threads: int | None,
+        look: Callable[[], None] | None,
+    ) -> NDArray[np.float32] | None:
+        """Bias of each pixel (H,W,3) by how far light is gathered from; None where it is not."""
     @property
     def aim(self) -> int:
         """Samples after the pass that is being worked on; as many as there are if none is."""

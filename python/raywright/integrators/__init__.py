@@ -10,6 +10,7 @@ from .direct import Direct
 from .distributed import Distributed
 from .light_traced import LightTraced
 from .path import Path
+from .photon_maps import PhotonMap, ProgressivePhotonMap
 from .radiosity import Radiosity
 from .ray_cast import RayCast
 from .whitted import Whitted
@@ -18,6 +19,8 @@ AnyIntegrator: TypeAlias = (
     Path
     | Bidirectional
     | LightTraced
+    | PhotonMap
+    | ProgressivePhotonMap
     | Direct
     | Radiosity
     | RayCast
@@ -37,6 +40,8 @@ __all__ = [
     "Distributed",
     "LightTraced",
     "Path",
+    "PhotonMap",
+    "ProgressivePhotonMap",
     "Radiosity",
     "RayCast",
     "Whitted",

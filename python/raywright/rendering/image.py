@@ -91,7 +91,8 @@ class Image:
     warnings : tuple of str
         What to know before trusting the picture; empty if there is nothing.
     biased : bool
-        Whether samples were clamped, so that the picture tends to something darker than the scene.
+        Whether the picture tends to something else than the scene: darker, where samples were clamped, or
+        blurred, where light is gathered from about a point (`bias`).
     aov : dict of str to (H, W, ...) arrays
         What else is known of the pixels, by name: what `aov` of `render` asked for, and ``samples`` (uint32)
         of each if the render was adaptive.
@@ -105,6 +106,13 @@ class Image:
     alpha : (H, W) float32, optional
         The share of each pixel that is covered, of a picture with a transparent background; filters of
         negative lobes may take it a little out of 0..1.
+    bias : (H, W, 3) float32, optional
+        How much brighter each pixel tends to be than the scene because light is gathered from about a point;
+        None where it is not. It is no part of `standard_error` and `error`. It is told by at most 16 samples,
+        each taken of disks of the radius r, of r/√2 and of r/2 about the same points in the same photons (see
+        `PhotonMap`): twice the difference of the first two, as a bias that goes by r² has it, or four times
+        that of the last two, if it is more and they do not agree. It has noise of its own, and what is alike
+        in all three disks, such as a lack of light on an edge, is not in it.
     """
 
     rgb: NDArray[np.float32]
@@ -120,12 +128,13 @@ class Image:
     pooled_error: NDArray[np.float32] | None = None
     degrees: NDArray[np.float32] | None = None
     alpha: NDArray[np.float32] | None = None
+    bias: NDArray[np.float32] | None = None
 
     def __post_init__(self) -> None:
         for name in ("rgb", "standard_error", "history"):
             object.__setattr__(self, name, frozen(getattr(self, name)))
         object.__setattr__(self, "aov", {name: frozen(array) for name, array in self.aov.items()})
-        for name in ("pooled_error", "degrees", "alpha"):
+        for name in ("pooled_error", "degrees", "alpha", "bias"):
             if getattr(self, name) is not None:
                 object.__setattr__(self, name, frozen(getattr(self, name)))
 
@@ -269,6 +278,7 @@ class Image:
             and _same(self.pooled_error, other.pooled_error)
             and _same(self.degrees, other.degrees)
             and _same(self.alpha, other.alpha)
+            and _same(self.bias, other.bias)
             and self.aov.keys() == other.aov.keys()
             and all(
                 np.array_equal(array, other.aov[name], equal_nan=array.dtype.kind == "f")
@@ -294,6 +304,7 @@ class Image:
             self.pooled_error,
             self.degrees,
             self.alpha,
+            self.bias,
         )
         return Image, parts
 

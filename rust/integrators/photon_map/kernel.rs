@@ -5,8 +5,8 @@ use std::f64::consts::PI;
 /// A weight over a disk, whose integral is 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kernel {
-    /// The same everywhere: bias r²/8 ∇²E, variance over the density of photons 1/(π r²) (Silverman, "Density Estimation
-    /// for Statistics and Data Analysis", 1986).
+    /// The same everywhere: bias r²/8 ∇²E, variance over the density of photons 1/(π r²) (Silverman, "Density
+    /// Estimation for Statistics and Data Analysis", 1986).
     Box,
     /// 1 − s/r: Jensen's cone filter with k = 1 (2001). Bias 3/40 r² ∇²E, variance 3/(2π r²).
     Cone,

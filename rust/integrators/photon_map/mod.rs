@@ -1,5 +1,5 @@
-//! Photon maps: how photons are kept (`maps`, `photon`), found (`grid`, `kd_tree`) and weighed (`estimate`, `kernel`), how
-//! far light is gathered from (`radius`), and the pictures that are made of it (`session`).
+//! Photon maps: how photons are kept (`maps`, `photon`), found (`grid`, `kd_tree`) and weighed (`estimate`, `kernel`),
+//! how far light is gathered from (`radius`), and the pictures that are made of it (`session`).
 
 mod estimate;
 mod grid;
@@ -50,9 +50,9 @@ pub struct PhotonMap {
     pub scale: f64,
 }
 
-/// Progressive photon mapping (Hachisuka, Ogaki and Jensen 2008) with no statistics to keep (Knaus and Zwicker 2011): each
-/// sample of all pixels has a map and a radius of its own, which shrinks from one to the next so that both noise and
-/// bias go to zero.
+/// Progressive photon mapping (Hachisuka, Ogaki and Jensen 2008) with no statistics to keep (Knaus and Zwicker 2011):
+/// each sample of all pixels has a map and a radius of its own, which shrinks from one to the next so that both noise
+/// and bias go to zero.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ProgressivePhotonMap {
     /// Paths from lights for each map; at least 1.

@@ -120,14 +120,12 @@ impl<'a> Mapped<'a> {
         const MOST: u32 = 100_000;
         let paths = self.recipe.paths.min(MOST);
         let key = Key { seed: SEED, paths, radius: None, ..self.key(u32::MAX, None) };
-        let maps = self.stored(key, cancel, |this| {
-            let flight = Flight { seed: SEED, number: u32::MAX, paths, ..this.flight(u32::MAX) };
-            let [caustic, global] =
-                fly(this.job.scene, this.emitters.as_ref()?, this.job.camera, &flight, true, cancel);
-            Some(Maps { caustic: PhotonIndex::new(caustic, None), global: PhotonIndex::new(global, None) })
+        let told = self.store.radius(key, || {
+            let flight = Flight { seed: SEED, paths, ..self.flight(u32::MAX) };
+            let all = fly(self.job.scene, self.emitters.as_ref()?, self.job.camera, &flight, false, cancel);
+            first(&all.concat()).filter(|_| !cancel.is_raised())
         })?;
-        let all = [&maps.caustic.photons[..], &maps.global.photons].concat();
-        Some(first(&all)? * (f64::from(paths) / f64::from(self.recipe.paths)).sqrt())
+        Some(told * (f64::from(paths) / f64::from(self.recipe.paths)).sqrt())
     }
 
     /// A map that was made before, or is made now and kept.

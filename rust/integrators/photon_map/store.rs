@@ -21,23 +21,39 @@ pub(super) struct Key {
 /// The maps that were made last: pieces of one picture that are rendered in one process one after the other, and
 /// pictures by the same maps, find them here.
 #[derive(Debug, Default)]
-pub(super) struct MapStore(Mutex<VecDeque<(Key, Arc<Maps>)>>);
+pub(super) struct MapStore {
+    maps: Mutex<VecDeque<(Key, Arc<Maps>)>>,
+    /// Radii that suit, by the photons that tell them.
+    radii: Mutex<Vec<(Key, f64)>>,
+}
 
 impl MapStore {
     /// Photons that are kept, besides a last map that has more: 130 MB.
     pub const MOST: usize = 1 << 21;
 
     pub fn get(&self, key: &Key) -> Option<Arc<Maps>> {
-        let kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let kept = self.maps.lock().unwrap_or_else(PoisonError::into_inner);
         kept.iter().find(|(other, _)| other == key).map(|(_, maps)| Arc::clone(maps))
     }
 
     pub fn put(&self, key: Key, maps: Arc<Maps>) {
-        let mut kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut kept = self.maps.lock().unwrap_or_else(PoisonError::into_inner);
         kept.push_back((key, maps));
         let mut all: usize = kept.iter().map(|(_, maps)| maps.len()).sum();
         while all > Self::MOST && kept.len() > 1 {
             all -= kept.pop_front().map_or(0, |(_, maps)| maps.len());
         }
+    }
+
+    /// A radius that was told before, or is told now and kept.
+    pub fn radius(&self, key: Key, tell: impl FnOnce() -> Option<f64>) -> Option<f64> {
+        let lock = || self.radii.lock().unwrap_or_else(PoisonError::into_inner);
+        let found = lock().iter().find(|(other, _)| *other == key).map(|(_, radius)| *radius);
+        // Not within the lock: threads that wait for others take up work of theirs, which may come here too.
+        found.or_else(|| {
+            let told = tell()?;
+            lock().push((key, told));
+            Some(told)
+        })
     }
 }

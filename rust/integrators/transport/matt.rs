@@ -1,38 +1,11 @@
-//! Matt surfaces whose light is known, as by photons: paths end there, or after they have looked about once.
+//! Paths at matt surfaces whose light is known: they end there, or after they have looked about once.
 
 use super::block::Block;
 use super::features::{Carried, Features};
+use super::known::Visit;
 use super::worker::TransportWorker;
 use crate::integrators::is_matt;
 use crate::optics::Rgb;
-use crate::scene::SurfaceInteraction;
-use crate::scene::materials::BsdfMix;
-
-/// What becomes of paths at matt surfaces whose light is known.
-#[derive(Clone, Copy, Debug)]
-pub(in crate::integrators) struct Gather {
-    /// Into how many a path is split at the first of them; none goes on from the second. 0 where none goes on.
-    pub rays: u32,
-    /// Whether light that has come by way of sharp surfaces alone is known at the first.
-    pub caustic: bool,
-}
-
-/// A path that has come to a matt surface.
-#[derive(Clone, Copy, Debug)]
-pub(in crate::integrators) struct Visit {
-    /// Which sample of its pixel it is of.
-    pub number: u32,
-    /// Whether paths look about from there, so that what surfaces send each other is found by them.
-    pub looks_about: bool,
-    /// Surfaces that light may have been scattered at before.
-    pub bounces: Option<u32>,
-}
-
-/// What is known of light at matt surfaces, but for what comes there straight from lights.
-pub(in crate::integrators) trait MattLight: Send + Sync {
-    /// How much of it is scattered back along a ray.
-    fn radiance(&self, here: &SurfaceInteraction<&BsdfMix>, visit: Visit) -> Rgb;
-}
 
 impl<N: Features> TransportWorker<'_, N> {
     /// Whether light at the surface of a lane is known.

@@ -7,7 +7,7 @@ use super::block::Block;
 use super::dimensions::Dimensions;
 use super::features::{Carried, Features};
 use super::guided::{Arrival, arrive};
-use super::matt::MattLight;
+use super::known::MattLight;
 use super::path_state::{PathState, Queue};
 use super::reuse::Reuse;
 use crate::integrators::nesting::MediumStack;

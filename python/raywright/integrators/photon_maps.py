@@ -1,0 +1,154 @@
+"""Photon mapping."""
+
+from dataclasses import dataclass
+from typing import Literal, TypeAlias
+
+from ..arrays import choice, integer, number, positive
+from . import counts
+
+PhotonFilter: TypeAlias = Literal["box", "cone", "epanechnikov"]
+
+_FILTERS = ("box", "cone", "epanechnikov")
+_MOST_PHOTONS = 2**31 - 1
+_MOST_MAPS = 2**16
+
+
+def _settle(of: "PhotonMap | ProgressivePhotonMap") -> None:
+    """Check what both have, and settle its types."""
+    settled = {
+        "photons": integer("photons", of.photons, 1, _MOST_PHOTONS),
+        "radius": None if of.radius is None else positive("radius", of.radius),
+        "gather": integer("gather", of.gather, 0, counts.MOST_SAMPLES),
+        "max_depth": None if of.max_depth is None else counts.depth("max_depth", of.max_depth),
+        "roulette_depth": counts.depth("roulette_depth", of.roulette_depth),
+    }
+    choice("filter", of.filter, _FILTERS)
+    for name, value in settled.items():
+        object.__setattr__(of, name, value)
+
+
+@dataclass(frozen=True)
+class PhotonMap:
+    """Photon mapping (Jensen 1996, 2001): light is as bright as photons lie densely.
+
+    Paths from the lights leave photons on matt surfaces, those whose scattering is wider than that of a
+    roughness of 0.2. Paths of the camera go through mirrors, glass and gloss until they come to such a
+    surface. There lights are asked directly, a caustic map tells what mirrors and glass throw together, and
+    rays look about for the surfaces beyond, where the same is asked, and a global map for all other light. So
+    light is found that was sent through glass and is seen through glass, which no path finds from a small
+    lamp. Where nothing is matt, the picture is that of paths.
+
+    Light that is gathered from about a point is blurred: the picture is biased, however many samples it has,
+    and ``image.bias`` tells about how much, ``image.standard_error`` how much noise there is besides. Each
+    batch of samples (``image.plan.sampler``) has maps of its own, so the noise of maps is told as well.
+
+    Parameters
+    ----------
+    photons : int
+        Paths from lights for each map, 1 to 2**31 - 1. Maps take about 64 bytes for each photon kept.
+    nearest : int or None
+        How many photons tell a density: of N, the farthest gives the radius, and N - 1 count (García et al.
+        2012). With None, all within the radius.
+    radius : float, optional
+        How far they may lie. If not given, as far as it takes, or, with ``nearest=None``, as far as the
+        24th neighbour of a photon lies, in half of all cases.
+    caustic : bool
+        Whether light that mirrors and glass throw on matt surfaces has a map of its own, which is looked up
+        where the camera's paths end. If not, rays have to find it, or with ``gather=0`` it is part of the
+        global map.
+    gather : int
+        Rays from the first matt surface, 0 to 1024; with 0, the global map is looked up there at once.
+    maps : int
+        Maps that each batch of samples is spread over, where it has as many samples, 1 to 65536.
+    filter : {"box", "cone", "epanechnikov"}
+        How photons count by their distance: alike, or less the farther away (Jensen's cone with k = 1;
+        Epanechnikov 1969), which blurs less and is noisier.
+    max_depth : int or None
+        Greatest number of surface bounces: 0 shows emitters only, 1 adds direct light. None ends paths by
+        Russian roulette alone, which leaves no bias.
+    roulette_depth : int
+        Bounces before Russian roulette begins, at least 0.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of its range, or `filter` none of the three. When rendering, with `adaptive=True`,
+        and of a scene where a light is that no photon can start at: one that has no end, or that moves in
+        instances.
+    TypeError
+        If a number is none.
+    """
+
+    photons: int = 100_000
+    nearest: int | None = 64
+    radius: float | None = None
+    caustic: bool = True
+    gather: int = 1
+    maps: int = 8
+    filter: PhotonFilter = "box"
+    max_depth: int | None = None
+    roulette_depth: int = 4
+
+    def __post_init__(self) -> None:
+        _settle(self)
+        if self.nearest is not None:
+            # Of one photon, the N - 1 that count are none.
+            object.__setattr__(self, "nearest", integer("nearest", self.nearest, 2, _MOST_PHOTONS))
+        object.__setattr__(self, "maps", integer("maps", self.maps, 1, _MOST_MAPS))
+        if not isinstance(self.caustic, bool):
+            raise TypeError(f"caustic must be True or False, got {self.caustic!r}")
+
+
+@dataclass(frozen=True)
+class ProgressivePhotonMap:
+    """Progressive photon mapping (Hachisuka et al. 2008; Knaus and Zwicker 2011): blur that goes to zero.
+
+    As `PhotonMap`, with a map of its own for each sample of all pixels, in which light is gathered from ever
+    less far away: of the squared radii, that in map s + 1 is (s + alpha) / (s + 1) of that in map s. So both
+    noise and bias vanish with more samples, and ``error=`` and ``seconds=`` may take the picture as far as
+    they want. With ``alpha=2/3`` the error falls as the cube root of the samples' number, relMSE as its
+    2/3rd power, which is the most that can be had. ``image.error`` tells noise alone; ``image.bias`` tells
+    the bias that is left.
+
+    Parameters
+    ----------
+    photons : int
+        Paths from lights for each map, 1 to 2**31 - 1.
+    radius : float, optional
+        How far photons may lie in the first map. If not given, as far as the 24th neighbour of a photon lies
+        in half of all cases, which the scene and the number of photons tell.
+    alpha : float
+        The share of new photons that is kept, above 0 and at most 1: with more, radii shrink more slowly,
+        for less noise and more bias.
+    gather : int
+        Rays from the first matt surface, 0 to 1024; with 0, all is looked up there.
+    filter : {"box", "cone", "epanechnikov"}
+        How photons count by their distance.
+    max_depth : int or None
+        Greatest number of surface bounces: 0 shows emitters only, 1 adds direct light. None ends paths by
+        Russian roulette alone, which leaves no bias.
+    roulette_depth : int
+        Bounces before Russian roulette begins, at least 0.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of its range, or `filter` none of the three. When rendering, as of `PhotonMap`.
+    TypeError
+        If a number is none.
+    """
+
+    photons: int = 100_000
+    radius: float | None = None
+    alpha: float = 2 / 3
+    gather: int = 0
+    filter: PhotonFilter = "box"
+    max_depth: int | None = None
+    roulette_depth: int = 4
+
+    def __post_init__(self) -> None:
+        _settle(self)
+        alpha = number("alpha", self.alpha)
+        if not 0 < alpha <= 1:
+            raise ValueError(f"alpha must be above 0 and at most 1, got {alpha:g}")
+        object.__setattr__(self, "alpha", alpha)
