@@ -162,7 +162,7 @@ class RadiositySolution:
         """
         import trimesh
 
-        from ..io.pictures import srgb
+        from ..io.shown import srgb
 
         choice("side", side, ("front", "back"))
         rows = self.patches["side"] == (1 if side == "front" else -1)
@@ -176,7 +176,7 @@ class RadiositySolution:
             exposure = 1.0 / most if most > 0 else 1.0
         elif number("exposure", exposure) <= 0:
             raise ValueError(f"exposure must be greater than 0, got {exposure}")
-        colours = srgb(exposure * radiance.reshape(-1, 3))
+        colours = srgb(exposure * radiance.reshape(-1, 3), tone="linear")
         faces = np.arange(3 * int(rows.sum())).reshape(-1, 3)
         if side == "back":
             faces = faces[:, ::-1]

@@ -16,7 +16,7 @@ from ..shapes import Plane
 from ..shapes.mesh import Mesh
 
 if TYPE_CHECKING:
-    from scipy.sparse import csr_array  # type: ignore[import-untyped]
+    from scipy.sparse import csr_array
 
 Per: TypeAlias = Literal["face", "shape"]
 # Of more faces than this, the matrix of all pairs takes more than 0.8 GB, and is sparse instead.
@@ -253,7 +253,7 @@ def _by_rows(core: _core.CompiledScene, rays: int, *how: Any) -> ViewFactors:
 
 def _sparse() -> Any:
     try:
-        from scipy.sparse import csr_array  # type: ignore[import-untyped]
+        from scipy.sparse import csr_array
     except ImportError as missing:
         raise ImportError("sparse view factors need scipy: pip install scipy") from missing
     return csr_array
