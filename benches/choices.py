@@ -23,7 +23,7 @@ WAYS = [{"reuse": reuse, "caustics": caustics} for caustics in (False, True) for
 def mirror_room(side):
     """Return a ball of silver in a Cornell box, and its camera."""
     scene, camera = rw.scenes.cornell_box(width=side, height=side)
-    ball = rw.Sphere((0.35, 0.8, 0.35), 0.18, material=rw.Conductor("silver"))
+    ball = rw.Sphere((195.0, 440.0, 195.0), 100.0, material=rw.Conductor("silver"))
     return rw.Scene([*scene.shapes, ball], scene.lights, scene.environment), camera
 
 

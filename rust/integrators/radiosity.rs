@@ -115,7 +115,7 @@ mod tests {
         assert_eq!(radiosity.objection(&scene, false), None);
         let other = Radiosity { area: 2.0 * area, ..radiosity.clone() };
         assert!(other.objection(&scene, false).unwrap().contains("area"));
-        let session = radiosity.begin(Job::new(&scene, &camera), &Cancel::default());
+        let session = radiosity.begin(Job::new(&scene, &camera, 0, 1), &Cancel::default());
         let rays = (0..256).map(|i| camera.ray([f64::from(i % 16) + 0.5, f64::from(i / 16) + 0.5], [0.5; 2], 0.0).ray);
         let mut samples: Vec<_> = rays.map(|ray| CameraSample { ray, sampler: Sampler::new(0, 0, 0) }).collect();
         let mut seen = vec![Rgb::ZERO; 256];

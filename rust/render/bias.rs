@@ -39,7 +39,7 @@ pub fn bias(
 fn told(whole: Rgb, half: Rgb, quarter: Rgb) -> Rgb {
     let (first, second) = (2.0 * (whole - half), 4.0 * (half - quarter));
     let larger = |a: f64, b: f64| {
-        let agree = (a - b).abs() <= 0.5 * a.abs().max(b.abs());
+        let agree = (a - b).abs() <= 0.25 * a.abs().max(b.abs());
         if agree || a.abs() >= b.abs() { a } else { b }
     };
     let ([a, b, c], [d, e, f]) = (first.to_array(), second.to_array());

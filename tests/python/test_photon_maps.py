@@ -52,7 +52,7 @@ WAYS = {
     "looked up": rw.PhotonMap(5000, gather=0, filter="epanechnikov"),
     "one map": rw.PhotonMap(5000, caustic=False, gather=0, filter="cone"),
     "caustics by rays": rw.PhotonMap(5000, caustic=False, gather=2),
-    "fixed": rw.PhotonMap(5000, nearest=None, radius=0.1),
+    "fixed": rw.PhotonMap(5000, nearest=None, radius=20.0),
     "progressive": rw.ProgressivePhotonMap(5000),
     "short": rw.PhotonMap(5000, gather=0, max_depth=2),
     "short, gathered": rw.PhotonMap(5000, max_depth=3),
@@ -89,7 +89,7 @@ def water(n=1.33, depth=0.3):
 @pytest.mark.parametrize(
     "way",
     [
-        rw.PhotonMap(8000, nearest=None, radius=0.05, gather=0),
+        rw.PhotonMap(25_000, nearest=None, radius=0.05, gather=0),
         pytest.param(rw.ProgressivePhotonMap(10_000, 0.08), marks=pytest.mark.slow),
         pytest.param(rw.PhotonMap(20_000, nearest=30), marks=pytest.mark.slow),
     ],
@@ -119,7 +119,7 @@ def caustic():
 @pytest.mark.parametrize(("radius", "expected"), [(0.5, 0.844582472000673), (1.0, 0.585786437626905)])
 def test_a_disk_has_its_bias_and_tells_it(caustic, radius, expected):
     look = rw.Orthographic((0, 0, 0.4), (0, 0, 0), up=(0, 1, 0), width=1, height=1, scale=1e-3)
-    way = rw.PhotonMap(15_000, nearest=None, radius=radius, gather=0)
+    way = rw.PhotonMap(60_000, nearest=None, radius=radius, gather=0)
     images = [picture(caustic, look, way, 16, sampler=rw.Independent(), seed=seed) for seed in range(4)]
     light = [2 * math.pi * float(image.rgb.mean()) for image in images]
     error = np.std(light, ddof=1) / 2
@@ -129,10 +129,10 @@ def test_a_disk_has_its_bias_and_tells_it(caustic, radius, expected):
     for image in images:
         assert image.biased
         assert image.bias.shape == (1, 1, 3)
-        told = 2 * math.pi * float(image.bias.mean())
-        # Of a lamp so near, r⁴ counts as well as r²: by the disks' expected values, the bias told is 0.907
-        # and 0.782 of what it is. A single picture tells it to about 0.01.
-        assert abs(told / (expected - 1) - (0.907 if radius == 0.5 else 0.716)) < 0.3
+    # Of a lamp so near, r⁴ counts as well as r²: by the disks' expected values, the bias told is 0.907 and 0.716
+    # of what it is. Four pictures tell it to about 0.01, and the larger of two by noise is a little more.
+    told = 2 * math.pi * np.mean([image.bias.mean() for image in images])
+    assert abs(told / (expected - 1) - (0.907 if radius == 0.5 else 0.716)) < 0.3
     # Without it, what is left is less than a third.
     left = np.mean(light) - 2 * math.pi * np.mean([image.bias.mean() for image in images]) - 1
     assert abs(left) < (1 - expected) / 3 + 7 * error
@@ -141,12 +141,17 @@ def test_a_disk_has_its_bias_and_tells_it(caustic, radius, expected):
 def test_progress_takes_the_bias_away(caustic):
     look = rw.Orthographic((0, 0, 0.4), (0, 0, 0), up=(0, 1, 0), width=4, height=4, scale=0.05)
     way = rw.ProgressivePhotonMap(3000, radius=0.8)
-    images = [picture(caustic, look, way, samples, sampler=rw.Independent()) for samples in (4, 32, 256)]
-    bias = [float(image.bias.mean()) for image in images]
-    off = [2 * math.pi * float(image.rgb.mean()) - 1 for image in images]
+    bias, off = [], []
+    for samples in (4, 32, 256):
+        images = [
+            picture(caustic, look, way, samples, sampler=rw.Independent(), seed=seed)
+            for seed in range(max(64 // samples, 1))
+        ]
+        bias.append(np.mean([image.bias.mean() for image in images]))
+        off.append(2 * math.pi * np.mean([image.rgb.mean() for image in images]) - 1)
     # It is too dark under the lamp, and said to be; N^(-1/3) of it is left, 1/2 of 1/2.
     assert bias[0] < bias[2] < 0
-    assert off[0] < 1.4 * off[1] < 1.4 * 1.4 * off[2] < 0
+    assert off[0] < 1.2 * off[1] < 1.2 * 1.2 * off[2] < 0
     assert 0.1 < off[2] / off[0] < 0.45
 
 

@@ -15,7 +15,7 @@ use std::sync::Arc;
 /// Mean of a picture and its standard error, by samples of all pixels and as many paths of light.
 fn mean(scene: &Scene, camera: &dyn Camera, integrator: &Bidirectional, samples: u32) -> (f64, f64) {
     let cancel = Cancel::default();
-    let session = integrator.begin(Job::new(scene, camera), &cancel);
+    let session = integrator.begin(Job::new(scene, camera, 0, 1), &cancel);
     let (width, height) = (camera.width(), camera.height());
     let pixels = width * height;
     let (mut worker, mut light) = (session.worker(), session.light_worker());

@@ -280,7 +280,8 @@ impl<N: Features> TransportWorker<'_, N> {
         }
         let asked = &numbers.map(|(_, asked)| f64::from(asked.max(1)));
         let splits = array::from_fn(|lane| f64::from(self.splits(block, lane)));
-        let followed = array::from_fn(|lane| if self.is_followed(block, lane, pdf[lane]) { 1.0 } else { 0.0 });
+        let followed =
+            array::from_fn(|lane| if asks[lane] && self.is_followed(block, lane, pdf[lane]) { 1.0 } else { 0.0 });
         let mut arriving = RgbLanes::ZERO;
         weigh(
             self.level,

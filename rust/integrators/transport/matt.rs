@@ -11,7 +11,8 @@ impl<N: Features> TransportWorker<'_, N> {
     /// Whether light at the surface of a lane is known.
     #[inline]
     pub(super) fn is_at_known(&self, block: &Block, lane: usize) -> bool {
-        N::GENERAL && self.settings.gather.is_some() && !block.is_diffuse && is_matt(block.bsdf.get(lane))
+        let has_path = lane < block.count && !block.is_diffuse;
+        N::GENERAL && self.settings.gather.is_some() && has_path && is_matt(block.bsdf.get(lane))
     }
 
     /// Whether the path of a lane looks about from its surface.
