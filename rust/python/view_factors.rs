@@ -92,7 +92,7 @@ fn told<T: Send>(
     let look = |py: Python<'_>, share: f32, looks: u32| {
         py.check_signals()?;
         match &progress {
-            Some(progress) if looks % 5 == 0 => progress.call1(py, (share,)).map(drop),
+            Some(progress) if looks.is_multiple_of(5) => progress.call1(py, (share,)).map(drop),
             _ => Ok(()),
         }
     };

@@ -1,6 +1,5 @@
 """Which shapes cover a pixel, as compositing programs read it: Cryptomatte 1.2 (Friedman and Jones, 2015)."""
 
-import json
 from collections.abc import Iterable
 from typing import Any
 
@@ -55,6 +54,8 @@ def layers(ranked: NDArray[np.float32]) -> tuple[dict[str, NDArray[np.float32]],
 
 
 def _header(names: Iterable[str]) -> dict[str, Any]:
+    import json
+
     key = f"cryptomatte/{murmur3(LAYER.encode()):08x}"[: len("cryptomatte/") + 7]
     return {
         f"{key}/name": LAYER,

@@ -88,7 +88,7 @@ fn shadow(place: Place, geometry: &Geometry, primitive: u32) -> Option<[HalfSpac
     let corners = geometry.corners(primitive);
     let normal = geometry.normal(primitive);
     let facing = normal.dot(towards(place, corners[0]));
-    if !(facing.abs() > 0.0) {
+    if facing == 0.0 || facing.is_nan() {
         return None;
     }
     let behind = normal * -facing.signum();

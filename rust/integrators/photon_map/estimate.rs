@@ -168,7 +168,8 @@ mod tests {
         // Light on a half plane and on a quarter: at the edge, in the corner, and half a radius from the edge. These
         // lie between points of the lattice, whose number in a circle of 500 steps is its area to some 2e-5.
         let scene = floor();
-        let cases: [(fn(f64, f64) -> bool, f64, f64); 3] = [
+        type IsLit = fn(f64, f64) -> bool;
+        let cases: [(IsLit, f64, f64); 3] = [
             (|x, _| x > 0.0, 0.0, 0.5),
             (|x, y| x > 0.0 && y > 0.0, 0.0, 0.25),
             (|x, _| x > 0.0, 0.5, 0.804_498_890_522_115),
