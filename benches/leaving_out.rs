@@ -29,7 +29,7 @@ fn main() {
         let mut samples: Vec<_> = (0..PATHS).map(sample).collect();
         let mut radiance = vec![Rgb::ZERO; samples.len()];
         let path = Path::default();
-        let job = Job::new(&scene, &camera);
+        let job = Job::new(&scene, &camera, 0, 1);
         let session = path.begin_as(job, kernel, &Cancel::default());
         let mut worker = session.worker();
         let start = Instant::now();

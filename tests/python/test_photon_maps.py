@@ -129,8 +129,8 @@ def test_a_disk_has_its_bias_and_tells_it(caustic, radius, expected):
     for image in images:
         assert image.biased
         assert image.bias.shape == (1, 1, 3)
-    # Of a lamp so near, r⁴ counts as well as r²: by the disks' expected values, the bias told is 0.907 of what
-    # it is, and 1.068 for the wide one, whose law is another. Four pictures tell it to about 0.01.
+    # Of a lamp so near, r⁴ counts as well as r²: by the disks' expected values, the bias told is 0.907 of
+    # what it is, and 1.068 for the wide one, whose law is another. Four pictures tell it to about 0.01.
     told = 2 * math.pi * np.mean([image.bias.mean() for image in images])
     assert abs(told / (expected - 1) - (0.907 if radius == 0.5 else 1.068)) < 0.3
     # Without it, what is left is less than a third.

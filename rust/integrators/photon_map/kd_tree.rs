@@ -46,7 +46,8 @@ impl KdTree {
     pub fn new(points: impl Iterator<Item = DVec3>) -> Self {
         let node = |(number, point)| Node { point, number, axis: 0 };
         let mut nodes: Vec<Node> = (0u32..).zip(points).map(node).collect();
-        let mut ranges = Vec::from([0..nodes.len()]);
+        let mut ranges = Vec::new();
+        ranges.push(0..nodes.len());
         while let Some(range) = ranges.pop() {
             if range.len() < 2 {
                 continue;
