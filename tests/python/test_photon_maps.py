@@ -90,8 +90,7 @@ def water(n=1.33, depth=0.3):
     "way",
     [
         rw.PhotonMap(25_000, nearest=None, radius=0.05, gather=0),
-        pytest.param(rw.ProgressivePhotonMap(10_000, 0.08), marks=pytest.mark.slow),
-        pytest.param(rw.PhotonMap(20_000, nearest=30), marks=pytest.mark.slow),
+        pytest.param(rw.ProgressivePhotonMap(30_000, 0.08), marks=pytest.mark.slow),
     ],
 )
 def test_the_sky_over_water(way):

@@ -50,8 +50,8 @@ class PhotonMap:
         How many photons tell a density: of N, the farthest gives the radius, and N - 1 count (García et al.
         2012). With None, all within the radius.
     radius : float, optional
-        How far they may lie. If not given, as far as it takes, or, with ``nearest=None``, as far as the
-        24th neighbour of a photon lies, in half of all cases.
+        How far they may lie. If not given, 8 times as far as N neighbours of a photon lie, in half of all
+        cases, or, with ``nearest=None``, as far as the 24th does.
     caustic : bool
         Whether light that mirrors and glass throw on matt surfaces has a map of its own, which is looked up
         where the camera's paths end. If not, rays have to find it, or with ``gather=0`` it is part of the

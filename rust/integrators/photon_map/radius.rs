@@ -37,7 +37,7 @@ impl Radii {
 }
 
 /// Photons of which half of all have so many within the first radius.
-const NEIGHBOURS: usize = 24;
+pub(super) const NEIGHBOURS: usize = 24;
 
 /// A radius that suits a map: the median, over its photons, of the distance to the 24th nearest. So it goes by how
 /// densely light lies where most of it is. `None` if there are not as many.

@@ -3,7 +3,7 @@
 use super::estimate::Estimate;
 use super::kernel::Kernel;
 use super::maps::{Flight, Maps, PhotonIndex, fly};
-use super::radius::{Radii, first};
+use super::radius::{NEIGHBOURS, Radii, first};
 use super::store::{Key, MapStore};
 use crate::integrators::light_paths::Limits;
 use crate::integrators::transport::{Gather, MattLight, Settings, Visit};
@@ -14,7 +14,7 @@ use crate::scene::materials::BsdfMix;
 use crate::scene::{Emitters, SurfaceInteraction};
 use crate::workers::Cancel;
 use std::ops::Range;
-use std::sync::{Arc, Mutex, PoisonError, RwLock};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError, RwLock};
 
 /// How a picture is made of photons.
 #[derive(Clone, Copy, Debug)]
@@ -53,8 +53,8 @@ impl Spread {
 /// Maps that samples are being taken by.
 struct Known {
     recipe: Recipe,
-    /// The square of how far nearest photons may lie.
-    most: f64,
+    /// The square of how far nearest photons may lie, once that is known.
+    most: OnceLock<f64>,
     maps: RwLock<Vec<(u32, Arc<Maps>)>>,
 }
 
@@ -64,7 +64,7 @@ impl MattLight for Known {
         let number = self.recipe.spread.map(visit.number);
         let maps = self.maps.read().unwrap_or_else(PoisonError::into_inner);
         let Some((_, maps)) = maps.iter().find(|(map, _)| *map == number) else { return Rgb::ZERO };
-        let estimate = Estimate { nearest, most: self.most, kernel, scale };
+        let estimate = Estimate { nearest, most: *self.most.get().unwrap_or(&f64::INFINITY), kernel, scale };
         let mut light = estimate.radiance(&maps.caustic, here, visit.bounces);
         if !visit.looks_about {
             light += estimate.radiance(&maps.global, here, visit.bounces);
@@ -72,6 +72,10 @@ impl MattLight for Known {
         light
     }
 }
+
+/// How many times as far nearest photons are looked for as they lie where most are. Where there are hardly any, the
+/// whole map would be looked through at each place, and light is too dark there to need as many.
+const FARTHEST: f64 = 8.0;
 
 /// A radius where there are hardly any photons: a fiftieth of the scene.
 fn coarse(job: &Job) -> f64 {
@@ -98,7 +102,7 @@ impl<'a> Mapped<'a> {
     pub fn new(job: Job<'a>, recipe: Recipe, radius: Option<f64>, cancel: &Cancel) -> Self {
         let Limits { max_depth, roulette_depth } = recipe.limits;
         let emitters = job.scene.emitters().filter(|_| max_depth.is_none_or(|depth| depth > 1));
-        let most = radius.map_or(f64::INFINITY, |radius| radius * radius);
+        let most = radius.map(|radius| radius * radius).map_or_else(OnceLock::new, OnceLock::from);
         let known = Arc::new(Known { recipe, most, maps: RwLock::default() });
         let gather = Some(Gather { rays: recipe.gather, caustic: recipe.caustic });
         let settings = Settings { gather, ..Settings::path(max_depth, roulette_depth) };
@@ -107,8 +111,15 @@ impl<'a> Mapped<'a> {
         let alpha = if let Spread::Progressive { alpha, .. } = recipe.spread { alpha } else { 1.0 };
         let radii = Mutex::new(Radii::new(alpha));
         let mut this = Self { job, recipe, radius, radii, emitters, store, known, seen };
-        if recipe.nearest.is_none() && radius.is_none() {
-            this.radius = this.suitable(cancel).or_else(|| Some(coarse(&job)));
+        if radius.is_none() {
+            let suitable = this.suitable(cancel).unwrap_or_else(|| coarse(&job));
+            match recipe.nearest {
+                None => this.radius = Some(suitable),
+                Some(count) => {
+                    let most = FARTHEST * suitable * (f64::from(count) / NEIGHBOURS as f64).sqrt();
+                    let _ = this.known.most.set(most * most);
+                }
+            }
         }
         this
     }
