@@ -9,6 +9,7 @@ import sys
 import threading
 import time
 from contextlib import closing
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -95,6 +96,34 @@ def test_the_camera_is_where_it_was_moved_and_prints_as_what_makes_it():
     assert eval(repr(there), vars(rw)) == there
     image = rw.render(scene, there, samples=4, progress=False)
     assert np.array_equal(pixels(moved), image.srgb(**look))
+
+
+def test_it_has_as_many_pixels_as_the_window_has_room_for():
+    scene, camera = rw.scenes.cornell_box(**SIZE)
+    kind = {"Content_Type": "application/json"}
+    with rw.view(scene, camera, samples=4) as viewer, page(viewer) as events:
+        until(events, is_done)
+        # 96 by 72 comes to 200 / 72 of that.
+        assert ask(viewer, "window", "POST", b'{"width": 900, "height": 200}', **kind)[0] == 204
+        large = until(events, lambda frame: is_done(frame) and frame["height"] == 200)
+        assert large["size"] == [267, 200] == [large["width"], large["height"]]
+        assert viewer.camera == camera
+        assert eval(large["camera"], {"rw": rw}) == camera
+    image = rw.render(scene, replace(camera, width=267, height=200), samples=4, progress=False)
+    assert np.array_equal(pixels(large), image.srgb())
+
+
+def test_the_exposure_changes_without_a_new_render():
+    scene, camera = rw.scenes.cornell_box(**SIZE)
+    with rw.view(scene, camera, samples=4) as viewer, page(viewer) as events:
+        until(events, is_done)
+        body = b'{"exposure": 1.5}'
+        assert ask(viewer, "exposure", "POST", body, Content_Type="application/json")[0] == 204
+        brighter = until(events, lambda frame: frame["exposure"] == 1.5)
+        assert is_done(brighter)
+        assert not viewer.rendering
+    image = rw.render(scene, camera, samples=4, progress=False)
+    assert np.array_equal(pixels(brighter), image.srgb(exposure=1.5))
 
 
 def test_moving_the_camera_ends_what_is_rendered_at_once():
@@ -189,6 +218,8 @@ def test_bad_arguments_are_refused_before_anything_is_served():
         rw.view(scene, camera, samples=0)
     with pytest.raises(ValueError, match="port must be"):
         rw.view(scene, camera, port=70_000)
+    with pytest.raises(TypeError, match="fit must be True or False, got 1"):
+        rw.view(scene, camera, fit=1)
     with (
         closing(socket.create_server(("127.0.0.1", 0))) as taken,
         pytest.raises(OSError, match=r"in use|one usage"),

@@ -68,7 +68,7 @@ def is_state(state):
 
 def test_the_page_shows_a_picture_within_two_seconds_and_it_gets_better(page, knot):
     truth = rw.render(*knot, samples=100, seed=10**9, progress=False).srgb().astype(float)
-    with rw.view(*knot, error=1e-12) as viewer:
+    with rw.view(*knot, fit=False, error=1e-12) as viewer:
         began = time.monotonic()
         page.goto(viewer.url)
         number, first = shown(page, seconds=5)
@@ -91,7 +91,7 @@ def test_the_page_shows_a_picture_within_two_seconds_and_it_gets_better(page, kn
 
 
 def test_dragging_and_the_wheel_move_the_camera(page, knot):
-    with rw.view(*knot, samples=8) as viewer:
+    with rw.view(*knot, fit=False, samples=8) as viewer:
         page.goto(viewer.url)
         _, start = shown(page, is_state("done"))
         page.mouse.move(450, 300)
@@ -134,7 +134,7 @@ def test_nothing_under_the_picture_is_cut_in_a_narrow_window(page, knot):
         const inside = one.clientWidth - one.scrollWidth;
         return [one.id, left, innerWidth - right, innerHeight - bottom, inside];
     })"""
-    with rw.view(*knot, samples=1) as viewer:
+    with rw.view(*knot, fit=False, samples=1) as viewer:
         page.goto(viewer.url)
         shown(page, is_state("done"))
         for width, height in ((1600, 800), (1030, 600), (900, 600), (600, 400), (320, 480)):
@@ -147,8 +147,30 @@ def test_nothing_under_the_picture_is_cut_in_a_narrow_window(page, knot):
             assert page.evaluate("document.getElementById('picture').clientHeight") > height / 3
 
 
+def test_the_picture_fills_the_window_and_is_exposed_by_the_page(page, knot):
+    with rw.view(*knot, samples=4) as viewer:
+        page.goto(viewer.url)
+        shown(page, is_state("done"))
+        wide, high = page.evaluate("[canvas.clientWidth, canvas.clientHeight]")
+        _, plain = shown(page, f"canvas.height === {high} && {is_state('done')}")
+        assert plain.shape == (high, high, 3)
+        assert wide > high
+        page.set_viewport_size({"width": 500, "height": 700})
+        page.wait_for_function("() => canvas.height === 500 && canvas.width === 500", timeout=10_000)
+        _, plain = shown(page, is_state("done"))
+        for _ in range(4):
+            page.keyboard.press("]")
+        _, brighter = shown(page, f"canvas.dataset.exposure === '1' && {is_state('done')}")
+        assert told(page, "stops") == "1"
+        assert brighter.mean() > 1.2 * plain.mean()
+        page.keyboard.press("c")
+        page.wait_for_function("() => document.getElementById('message').textContent.includes('rw.Camera(')")
+        line = told(page, "message").removeprefix("copied: ")
+        assert eval(line, {"rw": rw}) == knot[1]
+
+
 def test_closing_the_page_stops_the_work(page, knot):
-    with rw.view(*knot, error=1e-12) as viewer:
+    with rw.view(*knot, fit=False, error=1e-12) as viewer:
         page.goto(viewer.url)
         shown(page)
         assert viewer.rendering
@@ -164,7 +186,7 @@ def test_closing_the_page_stops_the_work(page, knot):
 
 
 def test_loading_the_page_anew_goes_on(page, knot):
-    with rw.view(*knot, error=1e-12) as viewer:
+    with rw.view(*knot, fit=False, error=1e-12) as viewer:
         page.goto(viewer.url)
         number, _ = shown(page, "+document.getElementById('samples').textContent >= 4")
         samples = int(told(page, "samples"))
@@ -176,7 +198,7 @@ def test_loading_the_page_anew_goes_on(page, knot):
 
 def test_the_page_tells_that_the_viewer_has_ended(browser, knot):
     page = browser.new_page()
-    with rw.view(*knot, samples=4) as viewer:
+    with rw.view(*knot, fit=False, samples=4) as viewer:
         page.goto(viewer.url)
         _, last = shown(page, is_state("done"))
     _, after = shown(page, is_state("waiting"))
@@ -187,7 +209,7 @@ def test_the_page_tells_that_the_viewer_has_ended(browser, knot):
 
 def test_pages_from_elsewhere_get_nothing(browser, knot):
     page = browser.new_page()
-    with rw.view(*knot, samples=1) as viewer:
+    with rw.view(*knot, fit=False, samples=1) as viewer:
         page.goto("data:text/html,<title>elsewhere</title>")
         read = "url => fetch(url).then(() => 'read', () => 'refused')"
         for path in ("", "picture.png", "events"):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import raywright as rw
-from raywright.viewer.orbit import Orbit, View, reduced
+from raywright.viewer.orbit import Orbit, View, resized, scaled
 
 EYE = {"position": (1.0, 2.0, 6.0), "target": (0.5, 1.0, 0.0), "width": 120, "height": 90}
 POSE = {name: EYE[name] for name in ("position", "target")}
@@ -110,13 +110,12 @@ def test_moving_by_half_a_height_moves_the_picture_by_half_a_height(kind):
 
 
 def test_a_smaller_picture_is_of_the_same_view(camera):
-    small = reduced(camera, 3)
+    small = resized(camera, *scaled((120, 90), 1 / 3))
     assert (small.width, small.height) == (40, 30)
     points = np.random.default_rng(0).uniform((0, 0), (40, 30), (100, 2))
     for mine, theirs in zip(small.rays_through(points), camera.rays_through(3 * points), strict=True):
         assert np.allclose(mine, theirs, rtol=0, atol=1e-12, equal_nan=True)
-    tiny = reduced(camera, 1000)
-    assert (tiny.width, tiny.height) == (1, 1)
+    assert scaled((120, 90), 1 / 1000) == (1, 1)
 
 
 @pytest.mark.parametrize(

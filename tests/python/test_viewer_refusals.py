@@ -110,6 +110,26 @@ def test_bad_views_are_refused_in_one_line(viewer, body, line):
     assert re.fullmatch(f".*{line}.*\n", told.decode())
 
 
+@pytest.mark.parametrize(
+    ("path", "body", "line"),
+    [
+        ("window", b"[]", "a window must be an object with width and height"),
+        ("window", b'{"width": 100}', "a window must be an object with width and height"),
+        ("window", b'{"width": 100, "height": 1e9}', "height must be an integer"),
+        ("window", b'{"width": 100, "height": 5000}', "height must be .*4096.*got 5000"),
+        ("window", b'{"width": 0, "height": 100}', "width must be .*16.*got 0"),
+        ("exposure", b'{"exposure": 100}', "exposure must be between -20 and 20, got 100"),
+        ("exposure", b'{"exposure": "1"}', "exposure must be"),
+        ("exposure", b'{"exposure": NaN}', "exposure must be"),
+        ("exposure", b'{"tone": 1}', "an exposure must be an object with exposure"),
+    ],
+)
+def test_bad_windows_and_exposures_are_refused_in_one_line(viewer, path, body, line):
+    status, _, told = ask(viewer, path, "POST", body, Content_Type="application/json")
+    assert status == 400
+    assert re.fullmatch(f".*{line}.*\n", told.decode()), told
+
+
 def test_what_is_too_much_or_of_another_kind_is_refused(viewer):
     kind = {"Content_Type": "application/json"}
     assert ask(viewer, "view", "POST", b"{}")[0] == 400

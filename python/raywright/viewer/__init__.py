@@ -105,6 +105,7 @@ def view(
     filter: Filter = _FILTER,
     exposure: float = 0.0,
     tone: str = DEFAULT,
+    fit: bool = True,
     port: int = 0,
     open: bool = False,
 ) -> Viewer:
@@ -119,7 +120,10 @@ def view(
     scene, camera, integrator, samples, error, seconds, seed, threads, adaptive, clamp, sampler, filter
         As `render` has them. If no limit is given, it renders to a relMSE of 1e-4.
     exposure, tone
-        How pictures are shown, as `Image.save` has it.
+        How pictures are shown, as `Image.save` has it. The page changes the exposure without a new render.
+    fit : bool
+        Whether as many pixels are rendered as the window has room for, in the shape of the camera's picture,
+        or as many as the camera has. The camera that `Viewer.camera` gives back keeps its own.
     port : int
         Where to listen; any free port if 0.
     open : bool
@@ -137,6 +141,8 @@ def view(
     OSError
         If the port is taken.
     """
+    if not isinstance(fit, bool):
+        raise TypeError(f"fit must be True or False, got {fit!r}")
     port, exposure = integer("port", port, 0, 65535), check_tone(exposure, tone)
     if samples is None and error is None and seconds is None:
         error = _ERROR
@@ -156,7 +162,7 @@ def view(
     from .server import Server
     from .session import Session
 
-    session = Session(scene, camera, integrator, how, exposure, tone)
+    session = Session(scene, camera, integrator, how, exposure, tone, fit)
     try:
         server = Server(session, port)
     except BaseException:

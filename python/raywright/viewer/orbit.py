@@ -131,18 +131,22 @@ class Orbit:
         return replace(self._camera, **changes)
 
 
-def reduced(camera: AnyCamera, divisor: int) -> AnyCamera:
-    """Return the camera with a picture of the same view that has so many times fewer pixels a side."""
-    width, height = (max(round(size / divisor), 1) for size in (camera.width, camera.height))
+def resized(camera: AnyCamera, width: int, height: int) -> AnyCamera:
+    """Return the camera with a picture of the same view that has so many pixels."""
     across, down = width / camera.width, height / camera.height
     changes: dict[str, Any] = {"width": width, "height": height}
-    # What is given in pixels has fewer of them.
+    # What is given in pixels has as many more of them.
     if isinstance(camera, Camera):
         for name, pair in (("focal", camera.focal), ("principal", camera.principal)):
             if pair is not None:
                 changes[name] = (pair[0] * across, pair[1] * down)
         changes["skew"] = camera.skew * across
     return replace(camera, **changes)
+
+
+def scaled(size: tuple[int, int], factor: float) -> tuple[int, int]:
+    """Return a size of so many times as many pixels in each direction, of one at least."""
+    return max(round(size[0] * factor), 1), max(round(size[1] * factor), 1)
 
 
 def _distance(camera: AnyCamera, bounds: NDArray[np.float64] | None) -> float:

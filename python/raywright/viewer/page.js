@@ -21,29 +21,30 @@ let movedAt = -Infinity;
 
 // The camera.
 
+// The newest of what is to be told, by where to; what was not sent yet is not worth it any more.
+const unsent = new Map();
 let sending = false;
-let unsent = false;
 
-async function send() {
+async function send(path, body) {
+  unsent.set(path, body);
   if (sending) {
-    unsent = true;
     return;
   }
   sending = true;
-  try {
-    await fetch("view", {
-      method: "POST",
-      headers: { "Content-Type": "application/json" },
-      body: JSON.stringify(view),
-    });
-  } catch {
-    // The stream of pictures tells when the server is gone.
+  while (unsent.size) {
+    const [[where, what]] = unsent;
+    unsent.delete(where);
+    try {
+      await fetch(where, {
+        method: "POST",
+        headers: { "Content-Type": "application/json" },
+        body: JSON.stringify(what),
+      });
+    } catch {
+      // The stream of pictures tells when the server is gone.
+    }
   }
   sending = false;
-  if (unsent) {
-    unsent = false;
-    send();
-  }
 }
 
 function move(changes) {
@@ -51,7 +52,7 @@ function move(changes) {
   view.elevation = clamp(view.elevation, elevations);
   view.zoom = clamp(view.zoom, ZOOM);
   movedAt = performance.now();
-  send();
+  send("view", view);
 }
 
 const scale = () => Math.min(canvas.clientHeight, (canvas.clientWidth * canvas.height) / canvas.width) || 1;
@@ -104,11 +105,68 @@ canvas.addEventListener("keydown", (event) => {
 });
 byId("reset").addEventListener("click", () => move(START));
 
+// The window: as many pixels as it has room for, once it keeps its size for a moment.
+
+let fits = false;
+let resizing = 0;
+
+function fit() {
+  const [width, height] = [canvas.clientWidth, canvas.clientHeight].map((size) => clamp(Math.round(size), [16, 4096]));
+  if (fits) {
+    send("window", { width, height });
+  }
+}
+
+new ResizeObserver(() => {
+  clearTimeout(resizing);
+  resizing = setTimeout(fit, 100);
+}).observe(canvas);
+
+// How it is shown, and what it is seen by.
+
+const exposure = byId("exposure");
+let cameraLine = "";
+
+function expose(stops) {
+  exposure.value = stops;
+  byId("stops").textContent = exposure.value;
+}
+
+exposure.addEventListener("input", () => {
+  expose(exposure.value);
+  send("exposure", { exposure: Number(exposure.value) });
+});
+
+async function copyCamera() {
+  try {
+    await navigator.clipboard.writeText(cameraLine);
+    byId("message").textContent = `copied: ${cameraLine}`;
+  } catch {
+    byId("message").textContent = cameraLine;
+  }
+}
+
+byId("copy").addEventListener("click", copyCamera);
+document.addEventListener("keydown", (event) => {
+  if (event.ctrlKey || event.metaKey || event.altKey) {
+    return;
+  }
+  if (event.key === "[" || event.key === "]") {
+    exposure[event.key === "]" ? "stepUp" : "stepDown"]();
+    exposure.dispatchEvent(new Event("input"));
+  } else if (event.key === "c") {
+    copyCamera();
+  }
+});
+
 // The picture.
 
-async function draw({ type, data }) {
+async function draw({ picture: { type, data }, size }) {
   const bytes = Uint8Array.from(atob(data), (letter) => letter.charCodeAt(0));
   const bitmap = await createImageBitmap(new Blob([bytes], { type }));
+  if (canvas.width !== size[0] || canvas.height !== size[1]) {
+    [canvas.width, canvas.height] = size;
+  }
   drawing.imageSmoothingQuality = "high";
   drawing.drawImage(bitmap, 0, 0, canvas.width, canvas.height);
   bitmap.close();
@@ -118,6 +176,7 @@ const short = (value) => (value === null ? "–" : value.toPrecision(3));
 
 function tell(frame) {
   document.body.dataset.state = frame.state;
+  cameraLine = frame.camera;
   byId("message").textContent = frame.warnings.join(" · ");
   const isPreview = frame.state === "preview";
   byId("samples").textContent = isPreview ? "preview" : frame.samples;
@@ -135,7 +194,7 @@ let history = [];
 let historyOf = "";
 
 function remember(frame) {
-  const key = JSON.stringify(frame.view);
+  const key = JSON.stringify([frame.view, frame.size]);
   if (key !== historyOf || (history.length && frame.seconds < history[history.length - 1][0])) {
     [history, historyOf] = [[], key];
   }
@@ -186,10 +245,11 @@ async function show() {
   while (pending) {
     const frame = pending;
     pending = null;
-    await draw(frame.picture);
+    await draw(frame);
     tell(frame);
     remember(frame);
     canvas.dataset.number = frame.number;
+    canvas.dataset.exposure = frame.exposure;
   }
   showing = false;
 }
@@ -197,6 +257,9 @@ async function show() {
 events.addEventListener("scene", (event) => {
   const scene = JSON.parse(event.data);
   elevations = scene.elevations;
+  fits = scene.fits;
+  expose(scene.exposure);
+  fit();
   if (canvas.width !== scene.width || canvas.height !== scene.height) {
     [canvas.width, canvas.height] = [scene.width, scene.height];
   }

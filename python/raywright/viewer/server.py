@@ -19,6 +19,7 @@ from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from importlib.resources import files
 from typing import Any
 
+from ..arrays import integer, number
 from .orbit import View
 from .session import Session
 
@@ -30,6 +31,8 @@ _FILES = {
     "page.js": ("page.js", "text/javascript; charset=utf-8"),
 }
 _MOST_BODY = 4096
+# Pixels of a window, and stops of exposure.
+_WINDOW, _EXPOSURE = (16, 4096), (-20.0, 20.0)
 _MOST_PAGES = 32
 # How soon it is seen that a page was closed, and how long a silent connection is kept.
 _LOOK = 0.1
@@ -188,16 +191,30 @@ class _Handler(BaseHTTPRequestHandler):
             raise _RefusedError(HTTPStatus.NOT_FOUND, "nothing is here")
 
     def _post(self, path: str) -> None:
-        if path != "view":
+        asked = {"view": self._view, "window": self._window, "exposure": self._exposure}.get(path)
+        if asked is None:
             raise _RefusedError(HTTPStatus.NOT_FOUND, "nothing is here")
         if self.headers.get_content_type() != "application/json":
-            raise _RefusedError(HTTPStatus.BAD_REQUEST, "a view must be application/json")
+            raise _RefusedError(HTTPStatus.BAD_REQUEST, f"a {path} must be application/json")
         try:
-            view = View.read(json.loads(self._body()))
+            asked(json.loads(self._body()))
         except (ValueError, TypeError, RecursionError) as error:
             raise _RefusedError(HTTPStatus.BAD_REQUEST, " ".join(str(error).split())[:200]) from error
-        self.server.session.turn(view)
         self._send(HTTPStatus.NO_CONTENT, None, b"")
+
+    def _view(self, told: Any) -> None:
+        self.server.session.turn(View.read(told))
+
+    def _window(self, told: Any) -> None:
+        width, height = _named(told, "a window", "width", "height")
+        self.server.session.fit(integer("width", width, *_WINDOW), integer("height", height, *_WINDOW))
+
+    def _exposure(self, told: Any) -> None:
+        (given,) = _named(told, "an exposure", "exposure")
+        value, (least, most) = number("exposure", given), _EXPOSURE
+        if not least <= value <= most:
+            raise ValueError(f"exposure must be between {least:g} and {most:g}, got {value:g}")
+        self.server.session.expose(value)
 
     def _body(self) -> bytes:
         told = self.headers.get("Content-Length", "")
@@ -221,7 +238,13 @@ class _Handler(BaseHTTPRequestHandler):
         try:
             self._head(HTTPStatus.OK, {"Content-Type": "text/event-stream", "Connection": "close"})
             width, height = session.size
-            scene = {"width": width, "height": height, "elevations": session.elevations}
+            scene = {
+                "width": width,
+                "height": height,
+                "elevations": session.elevations,
+                "exposure": session.exposure,
+                "fits": session.fits,
+            }
             self._event("scene", scene)
             with session.watched():
                 self._pictures(session)
@@ -279,6 +302,13 @@ def _has_left(connection: socket.socket) -> bool:
     else:
         ready = bool(select.select([connection], [], [], 0)[0])
     return ready and not connection.recv(1, socket.MSG_PEEK)
+
+
+def _named(told: Any, what: str, *names: str) -> list[Any]:
+    """Return what an object has by these names, and by no others."""
+    if not isinstance(told, dict) or set(told) != set(names):
+        raise ValueError(f"{what} must be an object with {' and '.join(names)}")
+    return [told[name] for name in names]
 
 
 @lru_cache

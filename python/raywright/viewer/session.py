@@ -1,6 +1,7 @@
 """A render that goes on as long as someone looks, and begins anew when the camera is moved."""
 
 import math
+import re
 import threading
 import time
 from collections.abc import Iterator, Mapping
@@ -16,7 +17,7 @@ from ..io.tone import DEFAULT
 from ..rendering.image import Image
 from ..rendering.render import render
 from ..scene.scene import Scene
-from .orbit import Orbit, View, reduced
+from .orbit import Orbit, View, resized, scaled
 
 # What a preview may take: its samples, and its seconds.
 _SAMPLES = 4
@@ -42,6 +43,10 @@ class Frame:
         Where from.
     state : str
         ``"preview"`` if it is a smaller one, ``"refining"``, or ``"done"``.
+    size : (int, int)
+        Width and height in pixels of the picture that it is, or that a smaller one stands for.
+    camera : AnyCamera
+        What it is seen by, with the size that the caller gave it.
     exposure, tone
         How it is shown, as `Image.save` has it.
     """
@@ -50,6 +55,8 @@ class Frame:
     image: Image
     view: View
     state: str
+    size: tuple[int, int]
+    camera: AnyCamera
     exposure: float = 0.0
     tone: str = DEFAULT
     _lock: threading.Lock = field(default_factory=threading.Lock, repr=False, compare=False)
@@ -80,6 +87,9 @@ class Frame:
             "state": self.state,
             "width": width,
             "height": height,
+            "size": self.size,
+            "camera": re.sub(r"\b([A-Z]\w*\()", r"rw.\1", repr(self.camera)),
+            "exposure": self.exposure,
             "samples": image.samples,
             "seconds": image.seconds,
             "error": [None if math.isnan(value) else value for value in error],
@@ -104,6 +114,8 @@ class Session:
         What else `render` takes.
     exposure, tone
         How pictures are shown, as `Image.save` has it.
+    fits : bool
+        Whether the picture takes the size of the window that it is shown in.
     """
 
     def __init__(
@@ -114,10 +126,12 @@ class Session:
         how: Mapping[str, Any],
         exposure: float = 0.0,
         tone: str = DEFAULT,
+        fits: bool = True,
     ) -> None:
+        self.fits = fits
         self._exposure, self._tone = exposure, tone
         self._scene, self._integrator, self._how = scene, integrator, dict(how)
-        self._size = (camera.width, camera.height)
+        self._given = self._size = (camera.width, camera.height)
         # Here, so that what there is to warn of is told to the caller, and Ctrl-C ends it.
         self._orbit = Orbit(camera, scene._compiled().bounds)
         self._view = View()
@@ -145,6 +159,11 @@ class Session:
         return self._size
 
     @property
+    def exposure(self) -> float:
+        """By how many stops pictures are shown brighter."""
+        return self._exposure
+
+    @property
     def trouble(self) -> str | None:
         """Why there is no picture, in one line; None if all is well."""
         return self._trouble
@@ -170,6 +189,27 @@ class Session:
             if view != self._view:
                 self._view = view
                 self._wanted += 1
+                self._changed.notify_all()
+
+    def fit(self, width: int, height: int) -> None:
+        """Render as many pixels as a window of this size has room for. The render before ends at once."""
+        size = scaled(self._given, min(width / self._given[0], height / self._given[1]))
+        with self._changed:
+            if size != self._size:
+                self._size = size
+                self._divisor = _divisor(size[0] * size[1] / _PIXELS)
+                self._wanted += 1
+                self._changed.notify_all()
+
+    def expose(self, exposure: float) -> None:
+        """Show pictures brighter by so many stops, the last one too."""
+        with self._changed:
+            self._exposure = exposure
+            if self._frame is not None:
+                self._count += 1
+                self._frame = replace(
+                    self._frame, number=self._count, exposure=exposure, _lock=threading.Lock()
+                )
                 self._changed.notify_all()
 
     @contextmanager
@@ -218,7 +258,7 @@ class Session:
                 self._changed.wait_for(due)
                 if self._closed:
                     return
-                job = _Job(self, self._wanted, self._view)
+                job = _Job(self, self._wanted, self._view, self._size)
                 self._rendering = True
             try:
                 self._preview(replace(job, is_preview=True))
@@ -235,7 +275,7 @@ class Session:
 
     def _preview(self, job: "_Job") -> None:
         """Show something soon: fewer pixels, and few samples of them."""
-        small = reduced(self._orbit.camera(job.view), self._divisor)
+        small = resized(self._orbit.camera(job.view), *scaled(job.size, 1 / self._divisor))
         limits = {"samples": _SAMPLES, "seconds": _SECONDS, "error": None, "adaptive": False}
         image = render(self._scene, small, self._integrator, progress=False, stop=job, **self._how | limits)
         self._show(image, job, "preview")
@@ -249,7 +289,7 @@ class Session:
             if image.samples:
                 self._show(image, job, "refining")
 
-        camera = self._orbit.camera(job.view)
+        camera = resized(self._orbit.camera(job.view), *job.size)
         image = render(self._scene, camera, self._integrator, progress=show, stop=job, **self._how)
         self._done = job.number
         self._show(image, job, "done")
@@ -257,13 +297,20 @@ class Session:
     def _show(self, image: Image, job: "_Job", state: str) -> None:
         with self._changed:
             last = self._frame
-            if last is not None and last.view == job.view and last.state != "preview":
+            if (
+                last is not None
+                and (last.view, last.size) == (job.view, job.size)
+                and last.state != "preview"
+            ):
                 samples = 0 if state == "preview" else image.samples
                 if samples < last.image.samples:
                     # A render that was left, and now begins anew, had come further.
                     return
             self._count += 1
-            self._frame = Frame(self._count, image, job.view, state, self._exposure, self._tone)
+            seen_by = self._orbit.camera(job.view)
+            self._frame = Frame(
+                self._count, image, job.view, state, job.size, seen_by, self._exposure, self._tone
+            )
             self._changed.notify_all()
 
 
@@ -278,6 +325,8 @@ class _Job:
     session: Session
     number: int
     view: View
+    # Of the picture, in pixels.
+    size: tuple[int, int]
     # It is not left when the camera moves on: else nothing would be seen while that moves.
     is_preview: bool = False
 
