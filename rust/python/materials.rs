@@ -53,7 +53,7 @@ impl Appearances {
             }
             "Dielectric" => {
                 let interior = Interior { ior: float("ior")?, priority: given.getattr("priority")?.extract()? };
-                Arc::new(DielectricMaterial { interior, roughness: roughness()? })
+                Arc::new(DielectricMaterial { interior, roughness: roughness()?, medium: None })
             }
             "ThinDielectric" => Arc::new(ThinDielectricMaterial { ior: float("ior")? }),
             "Plastic" => Arc::new(PlasticMaterial {
