@@ -56,6 +56,11 @@ impl Volumes {
         Self { max_depth, roulette_depth, scatters: true, onwards, ambient, least: 0.0 }
     }
 
+    /// Those of what follows light among surfaces alone, to so many of them, and is dimmed between.
+    pub fn dimmed(max_depth: u32) -> Self {
+        Self { scatters: false, ..Self::path(Some(max_depth), u32::MAX) }
+    }
+
     /// Begins to work on a picture.
     pub fn begin<'a>(self, job: Job<'a>) -> Box<dyn Session + 'a> {
         let point = |light: &'a dyn Light| match light.place() {

@@ -263,7 +263,6 @@ impl<'a> Walker<'a> {
     /// Sends on a path for every single direction that a surface scatters into.
     fn split(&mut self, path: &PathState, here: &SurfaceInteraction, through: MediumStack<Filled>) -> bool {
         let mut branch = path.branch.wrapping_mul(2);
-        let first = self.waiting.len();
         let mut sent = Vec::new();
         here.bsdf().delta_lobes(here.wo(), |single| {
             if let Some(next) = here.to_world(single) {
@@ -275,7 +274,7 @@ impl<'a> Walker<'a> {
                 branch = branch.wrapping_add(1);
             }
         });
-        self.waiting.splice(first..first, sent);
+        self.waiting.extend(sent);
         false
     }
 
