@@ -13,7 +13,6 @@ use crate::integrators::transport::{Dimensions, power_heuristic};
 use crate::integrators::{CameraSample, Worker, roulette};
 use crate::math::{DVec3, Hit, Ray};
 use crate::optics::{Bsdf, BsdfSample, Rgb};
-use crate::scene::media::Content;
 use crate::scene::{Encounter, Light, LightSampleContext, Scene, SurfaceInteraction};
 use crate::workers::Cancel;
 
@@ -97,16 +96,9 @@ impl<'a> Walker<'a> {
         let may_scatter = self.settings.max_depth.is_none_or(|most| path.bounce < most);
         while !cancel.is_raised() {
             let around = filled::around(self.scene, &path.media, &path.ray);
-            let even = around.as_ref().and_then(|(medium, within)| {
-                let content = medium.stretches(within, [start, f64::INFINITY]).next()?.content;
-                match content {
-                    Content::Even(here) if self.settings.scatters && !here.scattering.is_black() => {
-                        Some((here, medium.is_even()))
-                    }
-                    _ => None,
-                }
-            });
-            let even = even.filter(|(_, is_even)| *is_even).map(|(here, _)| here);
+            let scattering = around.as_ref().filter(|(medium, _)| self.settings.scatters && medium.is_even());
+            let even = scattering.map(|(medium, within)| medium.at(within.origin));
+            let even = even.filter(|here| !here.scattering.is_black());
             let is_lit = even.is_some() && may_scatter && !self.points.is_empty();
             let mut asked = path.ray;
             if let Some(here) = even.filter(|here| here.emission.is_black() && !is_lit) {
@@ -306,11 +298,14 @@ impl<'a> Walker<'a> {
         if throughput.max() * path.scale < self.settings.least {
             return false;
         }
-        let is_played = path.bounce >= self.settings.roulette_depth.min(roulette::AT_LATEST);
-        if !is_played || (!may_never_end && throughput.max() * path.scale >= 1.0) {
+        if path.bounce < self.settings.roulette_depth.min(roulette::AT_LATEST) {
             return !throughput.is_black();
         }
-        let survival = roulette::survival(throughput, path.scale);
+        let survival = if may_never_end {
+            roulette::survival(throughput, path.scale)
+        } else {
+            (throughput.max() * path.scale).sqrt().min(1.0)
+        };
         if chance >= survival {
             return false;
         }

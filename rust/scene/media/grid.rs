@@ -201,3 +201,139 @@ impl<'m> BlockWalk<'m> {
         Some(Stretch { end, content })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::At;
+    use super::*;
+    use crate::sampling::{Sampler, warp};
+
+    const UNIT: [[f64; 4]; 3] = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]];
+
+    fn grid(size: [usize; 3], at: At, density: Vec<f32>, matrix: [[f64; 4]; 3]) -> GridMedium {
+        let values = Values::new(size, at, density.into_iter().map(|v| [v]).collect()).unwrap();
+        let absorbing = Coefficients::new(Rgb::ONE, Rgb::ZERO, Rgb::ZERO);
+        GridMedium::new(values, None, absorbing, Phase::Isotropic, matrix).unwrap()
+    }
+
+    /// The optical depth along a ray to `t`, by a rule that is exact where densities are cubic between so many points.
+    fn depth(medium: &GridMedium, ray: &Ray, to: f64, pieces: u32) -> f64 {
+        let step = to / f64::from(pieces);
+        let [(a, wa), (b, wb)] = [(-(1.0f64 / 3.0).sqrt(), 0.5), ((1.0f64 / 3.0).sqrt(), 0.5)];
+        let middle = |i: u32| (f64::from(i) + 0.5) * step;
+        let at = |t: f64| medium.at(ray.at(t)).extinction[1];
+        (0..pieces)
+            .map(|i| step * (wa * at(middle(i) + 0.5 * step * a) + wb * at(middle(i) + 0.5 * step * b)))
+            .sum()
+    }
+
+    #[test]
+    fn numbers_at_corners_are_interpolated_along_each_axis() {
+        // d[x][y][z] = [[[0, 1], [2, 3]], [[4, 0], [1, 6]]]: along the diagonal √3 · 29/12.
+        let cube = grid([2; 3], At::Corners, vec![0.0, 1.0, 2.0, 3.0, 4.0, 0.0, 1.0, 6.0], UNIT);
+        let ray = Ray::new(DVec3::ZERO, DVec3::ONE);
+        assert!((3f64.sqrt() * depth(&cube, &ray, 1.0, 1) - 4.18578945162479).abs() < 1e-12);
+        for (x, y, z, value) in [(0.0, 0.0, 1.0, 1.0), (0.0, 1.0, 0.0, 2.0), (1.0, 0.0, 0.0, 4.0), (1.0, 1.0, 1.0, 6.0)] {
+            assert_eq!(cube.at(DVec3::new(x, y, z)).extinction, Rgb::splat(value));
+        }
+        // In the middle of cells, they are those of the cells up to the faces.
+        let cells = grid([2, 1, 1], At::Centres, vec![1.0, 3.0], UNIT);
+        for (x, value) in [(0.0, 1.0), (0.25, 1.0), (0.5, 2.0), (0.75, 3.0), (1.0, 3.0)] {
+            assert_eq!(cells.at(DVec3::new(x, 0.3, 0.9)).extinction, Rgb::splat(value));
+        }
+    }
+
+    #[test]
+    fn optical_depths_are_those_of_the_densities() {
+        // 0.4 z from 0 to 3: linear, as the grid is.
+        let linear = grid([1, 1, 2], At::Corners, vec![0.0, 1.2], [UNIT[0], UNIT[1], [0.0, 0.0, 3.0, 0.0]]);
+        // Of a number that f32 rounds.
+        assert!((depth(&linear, &Ray::new(DVec3::ZERO, DVec3::Z), 3.0, 1) - 1.8).abs() < 1e-7);
+        // 1 + 0.9 sin 20x, and 3 exp(−(0.7² + s²) / 0.5) from s = −1 to 2: so many numbers that what lies between is
+        // off by less than their rounding.
+        let count = 20_001;
+        let along = |f: &dyn Fn(f64) -> f64| (0..count).map(|i| f(f64::from(i) / f64::from(count - 1)) as f32).collect();
+        let ray = Ray::new(DVec3::new(0.0, 0.5, 0.5), DVec3::X);
+        let waves = along(&|x| 1.0 + 0.9 * (20.0 * x).sin());
+        let waves = grid([count as usize, 1, 1], At::Corners, waves, UNIT);
+        assert!((depth(&waves, &ray, 1.0, 20_000) - 1.0266363072184).abs() < 1e-7);
+        let bump = along(&|x| 3.0 * (-(0.49 + (3.0 * x - 1.0).powi(2)) / 0.5).exp());
+        let bump = grid([count as usize, 1, 1], At::Corners, bump, [[3.0, 0.0, 0.0, -1.0], UNIT[1], UNIT[2]]);
+        let ray = Ray { origin: DVec3::new(-1.0, 0.5, 0.5), ..ray };
+        assert!((depth(&bump, &ray, 3.0, 20_000) - 1.37899961954379).abs() < 1e-7);
+    }
+
+    #[test]
+    fn stretches_follow_on_one_another_and_nothing_in_one_is_denser_than_it_says() {
+        let size = [19, 33, 8];
+        let numbers = (0..19 * 33 * 8).map(|i| Sampler::new(5, 0, i).one(0));
+        let dense = |u: f64| if u < 0.6 { 0.0 } else { u as f32 };
+        let matrix = [[2.0, 0.5, 0.0, 1.0], [0.0, 3.0, 0.1, -1.0], [0.3, 0.0, 1.0, 0.0]];
+        for at in [At::Corners, At::Centres] {
+            let medium = grid(size, at, numbers.clone().map(dense).collect(), matrix);
+            for draw in 0..300 {
+                let mut sampler = Sampler::new(6, 0, draw);
+                let origin = DVec3::new(2.0, 0.5, 0.6) + warp::uniform_sphere(sampler.two(0)) * 4.0 * sampler.one(1);
+                let ray = Ray::new(origin, warp::uniform_sphere(sampler.two(2)));
+                let (mut start, mut in_blocks) = (0.25, 0.0);
+                for stretch in medium.stretches(&ray, [0.25, 9.0]) {
+                    assert!(stretch.end >= start - 1e-12 && stretch.end <= 9.0);
+                    for step in 0..8 {
+                        let t = start + (stretch.end - start) * (f64::from(step) + 0.5) / 8.0;
+                        let within = medium.into.point(ray.at(t));
+                        let is_inside = within.cmpge(DVec3::ZERO).all() && within.cmple(DVec3::ONE).all();
+                        match stretch.content {
+                            Content::Varies(most) => {
+                                assert!(medium.at(ray.at(t)).extinction[0] <= most[0] + 1e-12);
+                                in_blocks += (stretch.end - start) / 8.0;
+                            }
+                            Content::Even(nothing) => {
+                                assert_eq!(nothing, Coefficients::NONE);
+                                assert!(!is_inside || medium.at(ray.at(t)).extinction.is_black());
+                            }
+                        }
+                    }
+                    start = stretch.end;
+                }
+                assert_eq!(start, 9.0);
+                assert!(in_blocks <= 8.75);
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_empty_or_of_one_cell_is_so() {
+        let empty = grid([40, 1, 1], At::Corners, vec![0.0; 40], UNIT);
+        let ray = Ray::new(DVec3::new(-1.0, 0.5, 0.5), DVec3::X);
+        let nothing = |stretch: Stretch| matches!(stretch.content, Content::Even(here) if here == Coefficients::NONE);
+        assert!(empty.stretches(&ray, [0.0, f64::INFINITY]).all(nothing));
+        let one = grid([1; 3], At::Centres, vec![2.5], UNIT);
+        let dense: Vec<_> = one.stretches(&ray, [0.0, f64::INFINITY]).map(|s| (s.end, nothing(s))).collect();
+        assert_eq!(dense, [(1.0, true), (2.0, false), (f64::INFINITY, true)]);
+        assert_eq!(one.at(DVec3::splat(0.9)).extinction, Rgb::splat(2.5));
+    }
+
+    #[test]
+    fn memory_is_that_of_the_numbers_and_little_more() {
+        // Of 512³ numbers the blocks take 1/128 more: 541 MB in all.
+        let medium = grid([64; 3], At::Corners, vec![0.0; 1 << 18], UNIT);
+        let whole = medium.bytes() * 512;
+        assert!(whole <= 600_000_000, "{whole}");
+    }
+
+    #[test]
+    fn refuses_what_is_no_density_and_what_lies_nowhere() {
+        for bad in [-1.0, f32::NAN, f32::INFINITY] {
+            let why = Values::new([1, 2, 2], At::Corners, vec![[1.0], [0.0], [1.0], [bad]]).unwrap_err();
+            assert!(why.contains("[0, 1, 1]"), "{why}");
+        }
+        assert!(Values::<1>::new([0, 1, 1], At::Corners, vec![]).is_err());
+        assert!(Values::new([2, 1, 1], At::Corners, vec![[1.0]]).is_err());
+        let flat = [UNIT[0], UNIT[1], [0.0; 4]];
+        let values = Values::new([1; 3], At::Corners, vec![[1.0]]).unwrap();
+        let new = |coefficients, matrix| GridMedium::new(values.clone(), None, coefficients, Phase::Isotropic, matrix);
+        assert!(new(Coefficients::NONE, flat).is_err());
+        assert!(new(Coefficients::new(Rgb::ONE, Rgb::splat(f64::NAN), Rgb::ZERO), UNIT).is_err());
+        assert!(new(Coefficients::NONE, UNIT).is_ok());
+    }
+}
