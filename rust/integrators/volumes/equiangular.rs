@@ -1,15 +1,14 @@
 //! Light of points, scattered into a path on its way.
 
-use super::filled::Filled;
 use super::numbers::Numbers;
 use super::path_state::PathState;
 use super::scattering::Scattering;
 use super::walker::Walker;
 use super::weights::Weights;
-use crate::integrators::nesting::MediumStack;
 use crate::integrators::transport::power_heuristic;
 use crate::math::{DVec3, Ray};
 use crate::optics::{Phase, Rgb};
+use crate::scene::Encounter;
 use crate::scene::media::Coefficients;
 use crate::workers::Cancel;
 
@@ -68,13 +67,12 @@ impl Walker<'_> {
         let pdf = ways.pdf(t) / count;
         let left = here.left(t - span[0]);
         let point = Scattering { position: path.ray.at(t), before: path.ray.direction, phase };
-        let Some(light) = light.sample(&crate::scene::Encounter::light_context(&point), [0.5; 2]) else {
+        let Some(light) = light.sample(&point.light_context(), [0.5; 2]) else {
             return Rgb::ZERO;
         };
         let weights = Weights { carried: path.weights.carried * here.scattering * left / pdf, ..path.weights };
-        let media: MediumStack<Filled> = path.media;
         let there = PathState { weights, ..*path };
-        let Some(arrives) = self.arriving(&point, &there, &light, media, hero, numbers, cancel) else {
+        let Some(arrives) = self.arriving(&point, &there, &light, path.media, hero, numbers, cancel) else {
             return Rgb::ZERO;
         };
         let drawn = (path.weights.drawn * here.extinction * left).mean() / path.weights.drawn.mean();

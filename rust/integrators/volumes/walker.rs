@@ -13,7 +13,7 @@ use crate::integrators::transport::{Dimensions, power_heuristic};
 use crate::integrators::{CameraSample, Worker, roulette};
 use crate::math::{DVec3, Hit, Ray};
 use crate::optics::{Bsdf, BsdfSample, Rgb};
-use crate::scene::{Encounter, Light, LightSampleContext, Scene, SurfaceInteraction};
+use crate::scene::{Encounter, Light, LightSample, LightSampleContext, Scene, SurfaceInteraction};
 use crate::workers::Cancel;
 
 /// What one thread works with.
@@ -236,7 +236,7 @@ impl<'a> Walker<'a> {
         }
         if !here.bsdf().is_delta() {
             let now = path.media;
-            let side = |drawn: &crate::scene::LightSample| if here.is_through(drawn.direction) { through } else { now };
+            let side = |drawn: &LightSample| if here.is_through(drawn.direction) { through } else { now };
             if let Some((_, arrives)) = self.direct_light(&here, path, side, hero, numbers, cancel) {
                 *light += arrives;
             }

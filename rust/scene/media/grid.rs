@@ -168,9 +168,13 @@ impl<'m> BlockWalk<'m> {
         }
         walk
     }
+}
+
+impl Iterator for BlockWalk<'_> {
+    type Item = Stretch;
 
     #[inline]
-    pub(super) fn next(&mut self) -> Option<Stretch> {
+    fn next(&mut self) -> Option<Stretch> {
         let nothing = Content::Even(Coefficients::NONE);
         if let Some(end) = self.enters.take() {
             return Some(Stretch { end, content: nothing });
@@ -222,9 +226,7 @@ mod tests {
         let [(a, wa), (b, wb)] = [(-(1.0f64 / 3.0).sqrt(), 0.5), ((1.0f64 / 3.0).sqrt(), 0.5)];
         let middle = |i: u32| (f64::from(i) + 0.5) * step;
         let at = |t: f64| medium.at(ray.at(t)).extinction[1];
-        (0..pieces)
-            .map(|i| step * (wa * at(middle(i) + 0.5 * step * a) + wb * at(middle(i) + 0.5 * step * b)))
-            .sum()
+        (0..pieces).map(|i| step * (wa * at(middle(i) + 0.5 * step * a) + wb * at(middle(i) + 0.5 * step * b))).sum()
     }
 
     #[test]
@@ -233,7 +235,8 @@ mod tests {
         let cube = grid([2; 3], At::Corners, vec![0.0, 1.0, 2.0, 3.0, 4.0, 0.0, 1.0, 6.0], UNIT);
         let ray = Ray::new(DVec3::ZERO, DVec3::ONE);
         assert!((3f64.sqrt() * depth(&cube, &ray, 1.0, 1) - 4.18578945162479).abs() < 1e-12);
-        for (x, y, z, value) in [(0.0, 0.0, 1.0, 1.0), (0.0, 1.0, 0.0, 2.0), (1.0, 0.0, 0.0, 4.0), (1.0, 1.0, 1.0, 6.0)] {
+        for (x, y, z, value) in [(0.0, 0.0, 1.0, 1.0), (0.0, 1.0, 0.0, 2.0), (1.0, 0.0, 0.0, 4.0), (1.0, 1.0, 1.0, 6.0)]
+        {
             assert_eq!(cube.at(DVec3::new(x, y, z)).extinction, Rgb::splat(value));
         }
         // In the middle of cells, they are those of the cells up to the faces.
@@ -252,7 +255,8 @@ mod tests {
         // 1 + 0.9 sin 20x, and 3 exp(−(0.7² + s²) / 0.5) from s = −1 to 2: so many numbers that what lies between is
         // off by less than their rounding.
         let count = 20_001;
-        let along = |f: &dyn Fn(f64) -> f64| (0..count).map(|i| f(f64::from(i) / f64::from(count - 1)) as f32).collect();
+        let along =
+            |f: &dyn Fn(f64) -> f64| (0..count).map(|i| f(f64::from(i) / f64::from(count - 1)) as f32).collect();
         let ray = Ray::new(DVec3::new(0.0, 0.5, 0.5), DVec3::X);
         let waves = along(&|x| 1.0 + 0.9 * (20.0 * x).sin());
         let waves = grid([count as usize, 1, 1], At::Corners, waves, UNIT);
