@@ -27,7 +27,9 @@ def looking(cosine=1.0, side=8, below=False, distance=0.5, azimuth=0.0):
     sine = math.sqrt(1 - cosine**2)
     turn = math.radians(azimuth)
     way = np.array([sine * math.cos(turn), sine * math.sin(turn), cosine if below else -cosine])
-    return rw.Orthographic(-way * distance, direction=way, up=(0, 1, 1e-3), scale=1e-3, width=side, height=side)
+    return rw.Orthographic(
+        -way * distance, direction=way, up=(0, 1, 1e-3), scale=1e-3, width=side, height=side
+    )
 
 
 def seen(scene, camera, samples, integrator=None, seed=0):

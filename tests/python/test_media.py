@@ -68,7 +68,9 @@ def test_so_is_one_of_noise_of_colours_and_of_glass():
 def test_so_is_one_of_an_optical_depth_of_ten_thousand():
     medium = rw.Homogeneous(0.0, 1e4)
     camera = rw.Camera((0, 0, 3), (0, 0, 0), fov=30, width=8, height=8)
-    image = rw.render(rw.Scene([ball(rw.Boundary(medium))], environment=SKY), camera, rw.Path(), 8, progress=False)
+    image = rw.render(
+        rw.Scene([ball(rw.Boundary(medium))], environment=SKY), camera, rw.Path(), 8, progress=False
+    )
     # Every path ends in the sky, and has lost nothing on its way.
     assert np.abs(image.rgb - 1).max() < 0.05
 
@@ -119,7 +121,9 @@ def test_light_comes_through_grids_as_their_optical_depth_says(name):
     scene = rw.Scene([rw.Box(*box, material=rw.Boundary(absorbing))], environment=SKY)
     media.assert_seen(scene, camera, 2048, expected)
     # By shadow rays: the sun through it, on a sheet behind.
-    sheet = rw.Mesh([(9, -1, -1), (9, 1, -1), (9, 1, 1), (9, -1, 1)], [(0, 2, 1), (0, 3, 2)], material=rw.Diffuse(0.5))
+    sheet = rw.Mesh(
+        [(9, -1, -1), (9, 1, -1), (9, 1, 1), (9, -1, 1)], [(0, 2, 1), (0, 3, 2)], material=rw.Diffuse(0.5)
+    )
     sun = rw.DirectionalLight((1, 0, 0), math.pi)
     lit = rw.Scene([rw.Box(*box, material=rw.Boundary(absorbing)), sheet], lights=[sun])
     close = rw.Orthographic((8, 0, 0), direction=(1, 0, 0), scale=1e-3, width=16, height=16)
@@ -157,7 +161,9 @@ def test_a_grid_of_the_same_numbers_is_as_a_medium_of_one():
     placed[:3, 3] = (-1, -1, -0.5)
     small = np.diag([2.0, 4.0, 1.0, 1.0])
     small[:3, 3] = (-1, -1, -0.5)
-    within = rw.Box((0, 0, 0), (1, 0.5, 1), material=rw.Boundary(rw.GridMedium(dense, [(0, 0, 0), (1, 0.5, 1)], **grid)))
+    within = rw.Box(
+        (0, 0, 0), (1, 0.5, 1), material=rw.Boundary(rw.GridMedium(dense, [(0, 0, 0), (1, 0.5, 1)], **grid))
+    )
     scenes = [
         rw.Box(*box, material=rw.Boundary(even)),
         rw.Box(*box, material=rw.Boundary(rw.GridMedium(dense, box, **grid))),
@@ -165,11 +171,17 @@ def test_a_grid_of_the_same_numbers_is_as_a_medium_of_one():
         rw.Instance([within], small),
     ]
     camera = rw.Camera((2, -3, 2), (0, 0, 0), up=(0, 0, 1), fov=40, width=24, height=24)
-    images = [rw.render(rw.Scene(s, lights=[sun], environment=0.3), camera, rw.Path(), 256, progress=False) for s in scenes]
+    images = [
+        rw.render(rw.Scene(s, lights=[sun], environment=0.3), camera, rw.Path(), 256, progress=False)
+        for s in scenes
+    ]
     truth = images[0]
     for image in images[1:]:
         blocks = [i.rgb.astype(float).reshape(3, 8, 3, 8, 3).mean((1, 3)) for i in (truth, image)]
-        errors = [(i.standard_error.astype(float) ** 2).reshape(3, 8, 3, 8, 3).sum((1, 3)) / 64**2 for i in (truth, image)]
+        errors = [
+            (i.standard_error.astype(float) ** 2).reshape(3, 8, 3, 8, 3).sum((1, 3)) / 64**2
+            for i in (truth, image)
+        ]
         # Five standard errors: chance exceeds them once in two million.
         assert (np.abs(blocks[0] - blocks[1]) <= 5 * np.sqrt(errors[0] + errors[1]) + 1e-6).all()
 
@@ -179,9 +191,7 @@ def test_max_depth_counts_what_scatters_and_no_boundary():
     floor = rw.Plane((0, 0, -5), material=rw.Diffuse(0.5))
     empty = rw.Boundary(rw.Homogeneous())
     matched = rw.Dielectric(1.0, interior=rw.Homogeneous())
-    layers = [
-        rw.Box((-9, -9, -i - 0.8), (9, 9, -i), material=matched if i % 2 else empty) for i in range(4)
-    ]
+    layers = [rw.Box((-9, -9, -i - 0.8), (9, 9, -i), material=matched if i % 2 else empty) for i in range(4)]
     camera = media.looking(side=2, distance=1.0)
     plain = rw.render(rw.Scene([floor], lights=[sun]), camera, rw.Path(1), 1, progress=False)
     through = rw.render(rw.Scene([floor, *layers], lights=[sun]), camera, rw.Path(1), 1, progress=False)
@@ -200,7 +210,7 @@ def test_of_what_overlaps_the_greatest_priority_is_there():
 
     thin, thick = rw.Homogeneous(1.0), rw.Homogeneous(3.0)
     for thin_first in (True, False):
-        # From 0 to 2 and from 1 to 3, with the one or the other in the middle; of the same priority, the later.
+        # From 0 to 2 and from 1 to 3, with one or the other in the middle; of the same priority, the later.
         for priorities, depth in [((1, 0), 1 + 1 + 3), ((0, 1), 1 + 3 + 3), ((0, 0), 7 if thin_first else 5)]:
             both = [box(0, 2, rw.Boundary(thin, priorities[0])), box(1, 3, rw.Boundary(thick, priorities[1]))]
             assert image(*(both if thin_first else both[::-1])) == pytest.approx(math.exp(-depth), rel=1e-5)
@@ -265,7 +275,9 @@ def test_who_knows_nothing_of_media_says_so(integrator):
     for scene in (
         rw.Scene([ball(rw.Boundary(rw.Homogeneous(1)))], lights=[lamp]),
         rw.Scene([ball(rw.Diffuse())], lights=[lamp], medium=rw.Homogeneous(1)),
-        rw.Scene([rw.Instance([ball(rw.Dielectric(1.5, interior=rw.Homogeneous(1)))], np.eye(4))], lights=[lamp]),
+        rw.Scene(
+            [rw.Instance([ball(rw.Dielectric(1.5, interior=rw.Homogeneous(1)))], np.eye(4))], lights=[lamp]
+        ),
     ):
         with pytest.raises(ValueError, match="knows nothing of media"):
             rw.render(scene, camera, integrator, 4, progress=False)
@@ -319,10 +331,22 @@ def test_media_compare_print_and_pickle():
         (lambda: rw.GridMedium(-np.ones((1, 1, 2))), ValueError, r"at least 0, got -1.0 at \[0, 0, 0\]"),
         (lambda: rw.GridMedium([[[1, float("nan")]]]), ValueError, r"got nan at \[0, 0, 1\]"),
         (lambda: rw.GridMedium([[[1, 1e39]]]), ValueError, "must be finite"),
-        (lambda: rw.GridMedium(np.ones((1, 1, 1)), [(0, 0, 0), (1, 0, 1)]), ValueError, "bounds must be finite"),
-        (lambda: rw.GridMedium(np.ones((1, 1, 1)), transform=np.eye(3)), ValueError, "transform must have shape"),
+        (
+            lambda: rw.GridMedium(np.ones((1, 1, 1)), [(0, 0, 0), (1, 0, 1)]),
+            ValueError,
+            "bounds must be finite",
+        ),
+        (
+            lambda: rw.GridMedium(np.ones((1, 1, 1)), transform=np.eye(3)),
+            ValueError,
+            "transform must have shape",
+        ),
         (lambda: rw.GridMedium(np.ones((1, 1, 1)), at="edges"), ValueError, "at must be one of"),
-        (lambda: rw.GridMedium(np.ones((1, 1, 1)), emission=np.ones((1, 1, 1, 2))), ValueError, "emission must"),
+        (
+            lambda: rw.GridMedium(np.ones((1, 1, 1)), emission=np.ones((1, 1, 1, 2))),
+            ValueError,
+            "emission must",
+        ),
         (lambda: rw.GridMedium("smoke.vdb"), TypeError, "density must be"),
         (lambda: rw.GridMedium.load("smoke.raw"), ValueError, ".npy or a .vol"),
         (lambda: rw.GridMedium.load(3), TypeError, "path must be"),
@@ -355,7 +379,9 @@ def test_densities_are_read_from_files(tmp_path):
     (tmp_path / "smoke.vol").write_bytes(header + data)
     loaded = rw.GridMedium.load(str(tmp_path / "smoke.vol"), absorption=1)
     assert loaded == rw.GridMedium(NOISE, [(-1, -2, -3), (1, 2, 3)], absorption=1, at="centres")
-    assert rw.GridMedium.load(tmp_path / "smoke.vol", [(0, 0, 0), (1, 1, 1)], at="corners") == rw.GridMedium(NOISE)
+    assert rw.GridMedium.load(tmp_path / "smoke.vol", [(0, 0, 0), (1, 1, 1)], at="corners") == rw.GridMedium(
+        NOISE
+    )
     with pytest.raises(FileNotFoundError):
         rw.GridMedium.load(tmp_path / "none.npy")
     for name, content, says in [

@@ -222,7 +222,11 @@ def fluence(albedo, r, samples, seed=0):
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("albedo", "r", "expected", "most"),
-    [(0.9, 1.0, 0.143283861525453, 0.01), (0.99, 5.0, 0.0198417362186256, 0.02), (0.9, 10.0, 0.000104897173898545, 0.1)],
+    [
+        (0.9, 1.0, 0.143283861525453, 0.01),
+        (0.99, 5.0, 0.0198417362186256, 0.02),
+        (0.9, 10.0, 0.000104897173898545, 0.1),
+    ],
 )
 def test_the_fluence_around_a_lamp_in_endless_fog(albedo, r, expected, most):
     # Case, de Hoffmann and Placzek 1953.
@@ -249,8 +253,8 @@ def test_a_ball_that_scatters_and_absorbs():
 @pytest.mark.parametrize("g", [0.0, 0.9, -0.9])
 @pytest.mark.parametrize("depth", [0.1, 1.0, 10.0])
 def test_the_mean_way_through_a_ball_is_that_of_its_chords(g, depth):
-    # 4 V / S, however light is scattered (Blanco and Fournier 2003): gas that scatters all and gives off 1 per
-    # length shows how long ways are.
+    # 4 V / S, however light is scattered (Blanco and Fournier 2003): gas that scatters all and gives off 1
+    # per length shows how long ways are.
     phase = rw.HenyeyGreenstein(g)
     gas = rw.Homogeneous(0.0, depth, phase, emission=1.0)
     scene = rw.Scene([rw.Sphere((0, 0, 0), 1.0, material=rw.Boundary(gas))])

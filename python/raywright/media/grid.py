@@ -99,7 +99,9 @@ class GridMedium(Medium):
             object.__setattr__(self, name, value)
 
     @classmethod
-    def load(cls, path: str | PathLike[str], bounds: ArrayLike | None = None, **arguments: Any) -> "GridMedium":
+    def load(
+        cls, path: str | PathLike[str], bounds: ArrayLike | None = None, **arguments: Any
+    ) -> "GridMedium":
         """Read the density from a file, with all else as the arguments of `GridMedium` say.
 
         Parameters
@@ -149,7 +151,8 @@ class GridMedium(Medium):
             return NotImplemented
         pairs = ((getattr(self, f.name), getattr(other, f.name)) for f in fields(self))
         return all(
-            type(a) is type(b) and (np.array_equal(a, b) if isinstance(a, np.ndarray) else a == b) for a, b in pairs
+            type(a) is type(b) and (np.array_equal(a, b) if isinstance(a, np.ndarray) else a == b)
+            for a, b in pairs
         )
 
     def __hash__(self) -> int:

@@ -88,3 +88,39 @@ impl Walker<'_> {
         power_heuristic(density, ways.pdf(t) / self.points.len() as f64)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sampling::Sampler;
+    use crate::sampling::chi_square::assert_frequencies;
+
+    #[test]
+    fn places_are_drawn_with_the_density_that_is_told() {
+        let ray = Ray::new(DVec3::new(1.0, 2.0, 3.0), DVec3::X);
+        for (point, span) in [
+            (DVec3::new(2.0, 2.5, 3.0), [0.0, 3.0]),
+            (DVec3::new(-4.0, 2.0, 2.0), [0.5, 20.0]),
+            (DVec3::new(3.0, 2.0, 3.01), [0.0, f64::INFINITY]),
+        ] {
+            let ways = Equiangular::new(&ray, span, point).unwrap();
+            // The places that part all into twenty of the same probability.
+            let cuts: Vec<f64> = (0..=20).map(|i| ways.sample(f64::from(i) / 20.0)).collect();
+            for pair in cuts.windows(2).filter(|pair| pair[1] < 1e6) {
+                let steps = 4000;
+                let step = (pair[1] - pair[0]) / f64::from(steps);
+                let sum: f64 = (0..steps).map(|i| ways.pdf(pair[0] + (f64::from(i) + 0.5) * step) * step).sum();
+                assert!((sum - 0.05).abs() < 1e-4, "{sum}");
+            }
+            let mut counts = vec![0; 20];
+            for number in 0..20_000 {
+                let t = ways.sample(Sampler::new(31, 0, number).one(0));
+                assert!(t >= span[0] - 1e-9 && t <= span[1] + 1e-9);
+                counts[(cuts.partition_point(|&cut| cut <= t).max(1) - 1).min(19)] += 1;
+            }
+            assert_frequencies(&counts, &[0.05; 20]);
+        }
+        // From a point on the ray itself, all is one direction.
+        assert!(Equiangular::new(&ray, [0.0, 5.0], DVec3::new(4.0, 2.0, 3.0)).is_none());
+    }
+}

@@ -20,7 +20,7 @@ _WITHIN, _AROUND = "media within", "media around"
 
 
 def filled(plugin: Plugin, material: Material | None) -> Material | None:
-    """Return the material of a shape with what is within; None if it has none, and needs none for that.
+    """Return the material of a shape, with what is within; None if it has none.
 
     Raises
     ------
@@ -125,10 +125,9 @@ def _read(plugin: Plugin) -> Medium:
 
 
 def _constant(plugin: Plugin, name: str, default: float) -> Triple:
-    value: Any = plugin.take(name, default)
     inner = plugin.child(name)
     if inner is None or inner.type not in _VOLUMES:
-        return colour(plugin, name, value if isinstance(value, int | float) else default)
+        return colour(plugin, name, default)
     if inner.type == "gridvolume":
         plugin.fail(f"{name} on a grid is not supported")
     result = colour(inner, "value", 1.0)
