@@ -36,6 +36,7 @@ from .lights import (
 )
 from .materials import (
     BlinnPhong,
+    Boundary,
     BumpMap,
     Conductor,
     Dielectric,
@@ -54,6 +55,7 @@ from .materials import (
     metal_index,
     metals,
 )
+from .media import GridMedium, HenyeyGreenstein, Homogeneous, Isotropic, Medium, Rayleigh
 from .query.all_hits import AllHits
 from .query.cones import ConeTouches
 from .query.hits import ClosestPoints, Hits, QueryCost
@@ -117,6 +119,7 @@ __all__ = [
     "Bidirectional",
     "BlackmanHarrisFilter",
     "BlinnPhong",
+    "Boundary",
     "Box",
     "BoxFilter",
     "BruteForce",
@@ -144,8 +147,11 @@ __all__ = [
     "Fisheye",
     "GaussianFilter",
     "Grid",
+    "GridMedium",
     "Halton",
+    "HenyeyGreenstein",
     "Hits",
+    "Homogeneous",
     "Image",
     "ImageTexture",
     "Implicit",
@@ -153,6 +159,7 @@ __all__ = [
     "Instance",
     "Integrator",
     "Interactions",
+    "Isotropic",
     "KdTree",
     "LanczosFilter",
     "Lattice",
@@ -161,6 +168,7 @@ __all__ = [
     "LightTraced",
     "Marble",
     "Mask",
+    "Medium",
     "Mesh",
     "MetalIndex",
     "MetallicRough",
@@ -197,6 +205,7 @@ __all__ = [
     "RadiositySolution",
     "RadiosityStep",
     "RayCast",
+    "Rayleigh",
     "Rays",
     "RenderPlan",
     "Rng",

@@ -1,6 +1,7 @@
 //! Direct light.
 
 use super::transport::Settings;
+use super::volumes::Volumes;
 use super::{Integrator, Job, Session};
 use crate::workers::Cancel;
 
@@ -22,7 +23,14 @@ impl Default for Direct {
 
 impl Integrator for Direct {
     fn begin<'a>(&'a self, job: Job<'a>, cancel: &Cancel) -> Box<dyn Session + 'a> {
+        if job.scene.plan().needs().media {
+            return Volumes::dimmed(1).begin(job);
+        }
         let (light_samples, splits) = (self.light_samples.max(1), self.surface_samples.max(1));
         Settings { light_samples, splits, ..Settings::path(Some(1), u32::MAX) }.begin(job, cancel)
+    }
+
+    fn takes_media(&self) -> bool {
+        true
     }
 }

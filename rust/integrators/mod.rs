@@ -21,6 +21,7 @@ mod shadows;
 mod tests;
 mod transparent;
 mod transport;
+mod volumes;
 mod whitted;
 
 pub use ambient_occlusion::AmbientOcclusion;
@@ -90,6 +91,11 @@ pub trait Integrator: Send + Sync {
     /// that is so: what the one is, and what to do instead.
     fn objection(&self, _scene: &Scene, _adaptive: bool) -> Option<String> {
         None
+    }
+
+    /// Whether it knows of media, which dim and scatter light between surfaces.
+    fn takes_media(&self) -> bool {
+        false
     }
 
     /// Why it cannot take a picture by a camera, or by a filter of this radius, in pixels, if that is so.

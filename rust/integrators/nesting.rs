@@ -5,61 +5,89 @@ use crate::math::{DVec3, Hit, Ray};
 use crate::scene::materials::Interior;
 use crate::scene::{RayOrigin, Scene};
 
+/// What fills a closed surface, as far as whoever asks must know of it.
+pub(super) trait Filling: Copy + PartialEq {
+    /// In place of one where there is none.
+    const NONE: Self;
+
+    /// What fills that which a ray has hit; none where it encloses nothing.
+    fn of(scene: &Scene, hit: &Hit) -> Option<Self>;
+
+    /// Whether it is there, and not another, where both are.
+    fn is_above(&self, other: &Self) -> bool;
+
+    /// Its index of refraction; none if that is what is around it.
+    fn ior(&self) -> Option<f64>;
+}
+
+impl Filling for Interior {
+    const NONE: Self = Self { ior: 1.0, priority: i32::MIN };
+
+    fn of(scene: &Scene, hit: &Hit) -> Option<Self> {
+        scene.material_of(hit).interior()
+    }
+
+    fn is_above(&self, other: &Self) -> bool {
+        (self.priority, self.ior) > (other.priority, other.ior)
+    }
+
+    fn ior(&self) -> Option<f64> {
+        Some(self.ior)
+    }
+}
+
 /// The media that a point lies in. The one of the greatest priority is there, and the surfaces of the others, within
 /// it, are not (Schmidt and Budge, "Simple Nested Dielectrics in Ray Traced Images", 2002). Of equal priority, the
 /// greater index.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct MediumStack {
+pub(super) struct MediumStack<F = Interior> {
     count: u32,
-    interiors: [Interior; Self::MOST],
+    interiors: [F; MOST],
 }
 
-impl Default for MediumStack {
+/// How many media are told apart that a point lies in. Beyond, those of the least priority are forgotten.
+const MOST: usize = 4;
+
+impl<F: Filling> Default for MediumStack<F> {
     fn default() -> Self {
         Self::NONE
     }
 }
 
-impl MediumStack {
-    /// How many of them are told apart. Beyond, those of the least priority are forgotten.
-    const MOST: usize = 4;
-
+impl<F: Filling> MediumStack<F> {
     /// In nothing.
-    pub const NONE: Self = Self { count: 0, interiors: [Interior { ior: 1.0, priority: i32::MIN }; Self::MOST] };
-
-    fn is_above(a: &Interior, b: &Interior) -> bool {
-        (a.priority, a.ior) > (b.priority, b.ior)
-    }
+    pub const NONE: Self = Self { count: 0, interiors: [F::NONE; MOST] };
 
     /// What is there; `None` where nothing encloses the point.
-    fn top(&self) -> Option<&Interior> {
-        self.interiors[..self.count as usize].iter().reduce(|a, b| if Self::is_above(b, a) { b } else { a })
+    pub(super) fn top(&self) -> Option<&F> {
+        self.interiors[..self.count as usize].iter().reduce(|a, b| if b.is_above(a) { b } else { a })
     }
 
     /// The index of refraction there.
     fn ior(&self) -> f64 {
-        self.top().map_or(1.0, |interior| interior.ior)
+        let all = self.interiors[..self.count as usize].iter().filter(|interior| interior.ior().is_some());
+        all.reduce(|a, b| if b.is_above(a) { b } else { a }).and_then(F::ior).unwrap_or(1.0)
     }
 
-    fn enter(&mut self, interior: Interior) {
-        if (self.count as usize) < Self::MOST {
+    fn enter(&mut self, interior: F) {
+        if (self.count as usize) < MOST {
             self.interiors[self.count as usize] = interior;
             self.count += 1;
             return;
         }
         let mut least = 0;
-        for i in 1..Self::MOST {
-            if Self::is_above(&self.interiors[least], &self.interiors[i]) {
+        for i in 1..MOST {
+            if self.interiors[least].is_above(&self.interiors[i]) {
                 least = i;
             }
         }
-        if Self::is_above(&interior, &self.interiors[least]) {
+        if interior.is_above(&self.interiors[least]) {
             self.interiors[least] = interior;
         }
     }
 
     /// Leaves one such medium; nothing if it is in none, as behind a surface that encloses nothing.
-    fn leave(&mut self, interior: &Interior) {
+    fn leave(&mut self, interior: &F) {
         let all = &mut self.interiors[..self.count as usize];
         if let Some(found) = all.iter().position(|i| i == interior) {
             all.swap(found, all.len() - 1);
@@ -98,8 +126,8 @@ impl MediumStack {
 
     /// Goes through what a ray hits, along it or back. Returns the medium that it enters or leaves, and whether it
     /// enters it.
-    fn pass(&mut self, scene: &Scene, ray: &Ray, hit: &Hit, back: bool) -> Option<(Interior, bool)> {
-        let interior = scene.material_of(hit).interior()?;
+    fn pass(&mut self, scene: &Scene, ray: &Ray, hit: &Hit, back: bool) -> Option<(F, bool)> {
+        let interior = F::of(scene, hit)?;
         let surface = scene.geometry().surface(ray, hit);
         let enters = (ray.direction.dot(surface.normal) < 0.0) != back;
         if enters {
@@ -123,9 +151,9 @@ fn crossed(crossings: &Crossings, ray: usize) -> impl DoubleEndedIterator<Item =
 
 /// What a hit is to a ray among media.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Boundary {
+pub(super) enum Boundary<F = Interior> {
     /// None: the same medium is on both sides. The ray goes on in these media.
-    None(MediumStack),
+    None(MediumStack<F>),
     /// The surface hit is where one medium ends and another begins.
     Between {
         /// Which hit has the surface.
@@ -133,27 +161,27 @@ pub(super) enum Boundary {
         /// The index of refraction on the side of it that is not its own medium's.
         outside: f64,
         /// What a ray that goes through is in.
-        through: MediumStack,
+        through: MediumStack<F>,
     },
 }
 
 /// The part of a ray around a hit on whose crossings [`Boundary::new`] decides: surfaces that lie in one another, or
 /// closer than rounding tells, are one boundary. `None` if the surface hit encloses nothing.
-pub(super) fn around(scene: &Scene, ray: &Ray, hit: &Hit) -> Option<Ray> {
-    scene.material_of(hit).interior()?;
+pub(super) fn around<F: Filling>(scene: &Scene, ray: &Ray, hit: &Hit) -> Option<Ray> {
+    F::of(scene, hit)?;
     let surface = scene.geometry().surface(ray, hit);
     let reach = RayOrigin::reach(&surface, ray);
     Some(Ray { t_min: ray.t_min.max(hit.t - reach), t_max: (hit.t + reach).next_up(), ..*ray })
 }
 
-impl Boundary {
+impl<F: Filling> Boundary<F> {
     /// What a ray in some media comes to, by what it crosses around its hit ([`around`]).
-    pub(super) fn new(scene: &Scene, ray: &Ray, inside: &MediumStack, crossings: &Crossings, number: usize) -> Self {
+    pub(super) fn new(scene: &Scene, ray: &Ray, inside: &MediumStack<F>, crossings: &Crossings, number: usize) -> Self {
         let mut through = *inside;
-        let mut owner: Option<(Interior, bool, Hit)> = None;
+        let mut owner: Option<(F, bool, Hit)> = None;
         for hit in crossed(crossings, number) {
             let Some((interior, enters)) = through.pass(scene, ray, hit, false) else { continue };
-            if owner.as_ref().is_none_or(|(best, ..)| MediumStack::is_above(&interior, best)) {
+            if owner.as_ref().is_none_or(|(best, ..)| interior.is_above(best)) {
                 owner = Some((interior, enters, *hit));
             }
         }

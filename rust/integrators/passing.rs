@@ -5,6 +5,7 @@ use super::shadows::opacity;
 use crate::accel::Crossings;
 use crate::math::{Hit, Ray, RayQueue};
 use crate::scene::Scene;
+use crate::scene::materials::Interior;
 
 /// Finds out which of the surfaces that rays hit are there for them.
 #[derive(Default)]
@@ -60,7 +61,7 @@ impl Passing {
         self.of.clear();
         for (i, hit) in (0u32..).zip(hits) {
             if hit.is_hit()
-                && let Some(window) = around(scene, &rays.get(i as usize), hit)
+                && let Some(window) = around::<Interior>(scene, &rays.get(i as usize), hit)
             {
                 self.windows.push(window);
                 self.of.push(i);

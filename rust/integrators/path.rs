@@ -1,6 +1,7 @@
 //! Path tracing.
 
 use super::transport::{Settings, can_share};
+use super::volumes::Volumes;
 use super::{Integrator, Job, Session};
 use crate::scene::{Scene, ShadingVariant};
 use crate::workers::Cancel;
@@ -35,9 +36,12 @@ impl Path {
     }
 
     /// Whether it is guided in a scene, as far as can be told without photons. There must be something sharp, and light
-    /// beyond it: scenes of the plain variant have nothing sharp.
+    /// beyond it: scenes of the plain variant have nothing sharp. Among media no path is.
     pub fn is_guided(&self, scene: &Scene) -> bool {
-        self.caustics && self.max_depth.is_none_or(|depth| depth > 1) && scene.plan().needs().scattering
+        self.caustics
+            && self.max_depth.is_none_or(|depth| depth > 1)
+            && scene.plan().needs().scattering
+            && !scene.plan().needs().media
     }
 
     /// As [`Integrator::begin`], compiled as this variant, or as one that can do more. Every variant that suits a scene
@@ -49,7 +53,14 @@ impl Path {
 
 impl Integrator for Path {
     fn begin<'a>(&'a self, job: Job<'a>, cancel: &Cancel) -> Box<dyn Session + 'a> {
+        if job.scene.plan().needs().media {
+            return Volumes::path(self.max_depth, self.roulette_depth).begin(job);
+        }
         self.settings(job.scene).begin(job, cancel)
+    }
+
+    fn takes_media(&self) -> bool {
+        true
     }
 
     /// 1 where nothing can be shared, or no path goes on from its second surface.

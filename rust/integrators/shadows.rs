@@ -3,6 +3,7 @@
 use super::nesting::{Boundary, MediumStack, around};
 use crate::math::{Hit, Ray, RayLanes, RayQueue};
 use crate::optics::Rgb;
+use crate::scene::materials::Interior;
 use crate::scene::textures::TexturePoint;
 use crate::scene::{Scene, ShadingPoint};
 
@@ -85,7 +86,7 @@ impl Shadows {
             if nested {
                 for (i, (ray, hit)) in rays.iter().zip(&self.hits).enumerate() {
                     if hit.is_hit()
-                        && let Some(window) = around(scene, ray, hit)
+                        && let Some(window) = around::<Interior>(scene, ray, hit)
                     {
                         self.windows.push(window);
                         self.of.push(i);

@@ -24,6 +24,10 @@ impl Integrator for Transparent<'_> {
         self.0.objection(scene, adaptive)
     }
 
+    fn takes_media(&self) -> bool {
+        self.0.takes_media()
+    }
+
     fn patch(&self, scene: &Scene) -> u32 {
         self.0.patch(scene)
     }

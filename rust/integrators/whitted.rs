@@ -1,6 +1,7 @@
 //! Recursive ray tracing, as a loop.
 
 use super::transport::{Follow, Settings};
+use super::volumes::{Onwards, Volumes};
 use super::{Integrator, Job, Session};
 use crate::optics::Rgb;
 use crate::workers::Cancel;
@@ -30,6 +31,10 @@ impl Default for Whitted {
 
 impl Integrator for Whitted {
     fn begin<'a>(&'a self, job: Job<'a>, cancel: &Cancel) -> Box<dyn Session + 'a> {
+        if job.scene.plan().needs().media {
+            let (onwards, ambient, least) = (Onwards::DeltaLobes, self.ambient, self.contribution);
+            return Volumes { onwards, ambient, least, ..Volumes::dimmed(self.max_depth) }.begin(job);
+        }
         Settings {
             follow: Follow::DeltaLobes,
             ambient: self.ambient,
@@ -38,5 +43,9 @@ impl Integrator for Whitted {
             ..Settings::path(Some(self.max_depth), u32::MAX)
         }
         .begin(job, cancel)
+    }
+
+    fn takes_media(&self) -> bool {
+        true
     }
 }

@@ -1,4 +1,4 @@
-//! Floor 1: how much light there is, and how a surface scatters it.
+//! Floor 1: how much light there is, and how a surface or a medium scatters it.
 
 pub mod albedo;
 mod any_bsdf;
@@ -28,6 +28,7 @@ mod null;
 mod once;
 mod one_of;
 mod oren_nayar;
+mod phase;
 mod phong;
 mod sample_lanes;
 pub mod spectra;
@@ -53,6 +54,7 @@ pub use mirror::Mirror;
 pub use null::Null;
 pub use once::Once;
 pub use oren_nayar::OrenNayar;
+pub use phase::{HenyeyGreenstein, Phase};
 pub use phong::Phong;
 pub use sample_lanes::BsdfSampleLanes;
 pub use spectrum::{Rgb, RgbLanes};

@@ -4,13 +4,16 @@ use numpy::PyReadonlyArray2;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use std::collections::HashSet;
+use std::sync::Arc;
 
 use super::arrays::{Rows, Triples, pairs, rows};
 use super::builds::Builds;
 use super::instances::{self, Wishes};
 use super::lights;
 use super::materials::Appearances;
+use super::media;
 use super::shapes;
+use crate::scene::media::Medium;
 use crate::scene::textures::Needs;
 use crate::scene::{self, Precision, Rounding, SceneDescription, Surface};
 
@@ -20,6 +23,7 @@ pub struct Scene<'py> {
     shapes: Vec<Bound<'py, PyAny>>,
     lights: Vec<Bound<'py, PyAny>>,
     environment: Option<Bound<'py, PyAny>>,
+    medium: Option<Bound<'py, PyAny>>,
     precision: String,
     /// What each of the shapes is called.
     pub names: Py<PyAny>,
@@ -58,6 +62,11 @@ impl Scene<'_> {
         let mut all = self.lights.iter().map(lights::read).collect::<PyResult<Vec<_>>>()?;
         all.extend(lights::read_environment(self.environment)?);
         Ok((SceneDescription { shapes, lights: all }, kept))
+    }
+
+    /// What fills the space in which nothing else is.
+    pub fn surrounding(&self) -> PyResult<Option<Arc<dyn Medium>>> {
+        self.medium.as_ref().map(media::read).transpose()
     }
 
     /// How much there is to build, prototypes included.

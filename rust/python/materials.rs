@@ -4,19 +4,22 @@ use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use std::sync::Arc;
 
+use super::media;
 use super::textures::{Cache, Textures};
 use crate::optics::conductors::{METALS, metal};
 use crate::scene::Material;
 use crate::scene::materials::{
-    BlinnPhongMaterial, BumpMap, ConductorMaterial, DielectricMaterial, DiffuseMaterial, FacetKind, Index, Interior,
-    Mask, MetallicRoughMaterial, MirrorMaterial, MixMaterial, NormalMap, OrenNayarMaterial, PhongMaterial,
-    PlasticMaterial, Roughness, ThinDielectricMaterial, TwoSided,
+    BlinnPhongMaterial, BoundaryMaterial, BumpMap, ConductorMaterial, DielectricMaterial, DiffuseMaterial, FacetKind,
+    Index, Interior, Mask, MetallicRoughMaterial, MirrorMaterial, MixMaterial, NormalMap, OrenNayarMaterial,
+    PhongMaterial, PlasticMaterial, Roughness, ThinDielectricMaterial, TwoSided,
 };
+use crate::scene::media::Medium;
 
 /// Reads materials and textures: one that many shapes share is read once.
 #[derive(Default)]
 pub struct Appearances {
     materials: Cache<Arc<dyn Material>>,
+    media: Cache<Arc<dyn Medium>>,
     /// What materials and lights vary by.
     pub textures: Textures,
 }
@@ -53,7 +56,11 @@ impl Appearances {
             }
             "Dielectric" => {
                 let interior = Interior { ior: float("ior")?, priority: given.getattr("priority")?.extract()? };
-                Arc::new(DielectricMaterial { interior, roughness: roughness()? })
+                Arc::new(DielectricMaterial { interior, roughness: roughness()?, medium: self.medium(given)? })
+            }
+            "Boundary" => {
+                let medium = self.medium(given)?.ok_or_else(|| PyTypeError::new_err("interior must be a medium"))?;
+                Arc::new(BoundaryMaterial { medium, priority: given.getattr("priority")?.extract()? })
             }
             "ThinDielectric" => Arc::new(ThinDielectricMaterial { ior: float("ior")? }),
             "Plastic" => Arc::new(PlasticMaterial {
@@ -90,6 +97,12 @@ impl Appearances {
             "TwoSided" => Arc::new(TwoSided { front: inner("front")?, back: inner("back")? }),
             other => return Err(PyTypeError::new_err(format!("material must be a raywright material, got {other}"))),
         })
+    }
+
+    /// What fills what a material encloses.
+    fn medium(&self, given: &Bound<'_, PyAny>) -> PyResult<Option<Arc<dyn Medium>>> {
+        let interior = given.getattr("interior")?;
+        if interior.is_none() { Ok(None) } else { self.media.of(&interior, || media::read(&interior)).map(Some) }
     }
 
     /// Roughness, or alpha where there is one, alike in all directions or of two; and of which facets.

@@ -18,6 +18,7 @@ mod job;
 mod leave;
 mod lights;
 mod materials;
+mod media;
 mod photons;
 mod points;
 mod query;

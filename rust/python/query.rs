@@ -76,14 +76,16 @@ impl CompiledScene {
         let build = accelerators::read(accelerator, &scene.quality)?;
         let builds = Builds::new(progress, scene.size()?);
         let names = scene.names.clone_ref(py);
+        let surrounding = scene.surrounding()?;
         let (description, kept) = scene.describe(&builds)?;
         let size = builds::size(&description.shapes);
         let scene = builds.build(py, size, |work| scene::Scene::watched(description, build, work))?;
-        Ok(Self(scene, kept, names))
+        Ok(Self(scene.surrounded_by(surrounding), kept, names))
     }
 
     fn refitted(&self, py: Python<'_>, scene: Scene<'_>) -> PyResult<Option<Self>> {
         let names = scene.names.clone_ref(py);
+        let surrounding = scene.surrounding()?;
         let (description, kept) = scene.describe(&Builds::new(None, 0))?;
         let (watch, mut signal) = (Watch::default(), Ok(()));
         let look = || {
@@ -98,7 +100,7 @@ impl CompiledScene {
             .map_err(PyRuntimeError::new_err)?;
         signal?;
         compiled
-            .map(|scene| scene.map(|scene| Self(scene, kept, names)))
+            .map(|scene| scene.map(|scene| Self(scene.surrounded_by(surrounding), kept, names)))
             .map_err(|e| PyValueError::new_err(e.to_string()))
     }
 

@@ -97,8 +97,16 @@ pub(super) fn check(
     settings: &Settings,
     adaptive: bool,
 ) -> Result<(), RenderError> {
+    let of_media = || {
+        let is_lost = scene.plan().needs().media && !integrator.takes_media();
+        is_lost.then(|| {
+            "this integrator knows nothing of media, and the scene has some; Path follows light through them, \
+             Direct and Whitted dim it"
+                .to_owned()
+        })
+    };
     let of_view = || integrator.view_objection(camera, settings.filter.radius());
-    let objection = integrator.objection(scene, adaptive).or_else(of_view);
+    let objection = of_media().or_else(|| integrator.objection(scene, adaptive)).or_else(of_view);
     objection.map_or(Ok(()), |why| Err(RenderError::Unsuited(why)))
 }
 

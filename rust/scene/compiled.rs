@@ -2,6 +2,7 @@
 
 use super::geometry::Watched;
 use super::lights::{Emitters, not_drawn};
+use super::media::Medium;
 use super::{DescriptionError, Emission, Geometry, Lights, Material, Plan, SceneDescription, SurfacePoint};
 use crate::accel::{Accelerator, Cost, Crossings, Nearest, Primitives, Side, Touches};
 use crate::math::{DVec3, Hit, Ray, RayQueue, Region};
@@ -20,6 +21,8 @@ pub struct Scene {
     kept: Mutex<Vec<Arc<dyn Any + Send + Sync>>>,
     accelerator: Box<dyn Accelerator>,
     region: Region,
+    /// What fills the space in which nothing else is.
+    surrounding: Option<Arc<dyn Medium>>,
     /// The accelerator's cost when it was built.
     built_cost: f64,
 }
@@ -90,7 +93,20 @@ impl Scene {
         let (region, cost) = (geometry.region(), accelerator.info().sah_cost);
         let plan = Plan::new(&geometry, &materials, &lights);
         let built_cost = built_cost.unwrap_or(cost);
-        Self { geometry, materials, lights, plan, kept: Mutex::default(), accelerator, region, built_cost }
+        let kept = Mutex::default();
+        Self { geometry, materials, lights, plan, kept, accelerator, region, surrounding: None, built_cost }
+    }
+
+    /// The same with a medium in all space in which nothing else is.
+    pub fn surrounded_by(self, medium: Option<Arc<dyn Medium>>) -> Self {
+        let plan = self.plan.with_medium_around(medium.is_some());
+        Self { plan, surrounding: medium, ..self }
+    }
+
+    /// What fills the space in which nothing else is; none if it is empty.
+    #[inline]
+    pub fn surrounding(&self) -> Option<&dyn Medium> {
+        self.surrounding.as_deref()
     }
 
     /// What the accelerator costs over what it did when it was built, by the surface-area heuristic; 1 until it is

@@ -21,6 +21,8 @@ pub struct SceneNeeds {
     pub interiors: bool,
     /// Several of those, which may lie in one another.
     pub nested: bool,
+    /// What dims or scatters light between surfaces.
+    pub media: bool,
     /// Emission that varies over a surface.
     pub patterned_lights: bool,
     /// Shading normals.
@@ -48,6 +50,7 @@ impl BitOr for SceneNeeds {
             interiors: self.interiors | other.interiors,
             // Two of what encloses something may overlap.
             nested: self.nested | other.nested | (self.interiors & other.interiors),
+            media: self.media | other.media,
             patterned_lights: self.patterned_lights | other.patterned_lights,
             smooth: self.smooth | other.smooth,
             shapes: self.shapes | other.shapes,
@@ -153,6 +156,7 @@ impl Plan {
             scattering: !matches!(material.constant_sides(), Some([AnyBsdf::Diffuse(_), AnyBsdf::Diffuse(_)])),
             masks: !material.is_opaque(),
             interiors: material.interior().is_some(),
+            media: material.medium().is_some(),
             patterned_lights: !is_dark && emission.needs().any(),
             light: !is_dark,
             ..SceneNeeds::default()
@@ -173,6 +177,11 @@ impl Plan {
                 };
         }
         SceneNeeds { nested: needs.nested | needs.interiors, ..needs }
+    }
+
+    /// The same plan of a scene that has a medium around all that is in it, or none.
+    pub(super) fn with_medium_around(&self, has: bool) -> Self {
+        Self { needs: SceneNeeds { media: self.needs.media || has, ..self.needs }, ..self.clone() }
     }
 
     /// What the scene needs.
@@ -245,9 +254,14 @@ impl Plan {
         let needs = &self.needs;
         match variant {
             ShadingVariant::Plain => {
-                !(needs.scattering || needs.instances || needs.points.any() || needs.masks || needs.interiors)
+                !(needs.scattering
+                    || needs.instances
+                    || needs.points.any()
+                    || needs.masks
+                    || needs.interiors
+                    || needs.media)
             }
-            ShadingVariant::Open => !(needs.masks || needs.nested || needs.points.width),
+            ShadingVariant::Open => !(needs.masks || needs.nested || needs.media || needs.points.width),
             ShadingVariant::General => true,
         }
     }
@@ -276,6 +290,7 @@ impl Plan {
             row("masks", needs.masks, "shadow rays are followed through", "the first hit ends a shadow ray"),
             row("media", needs.interiors, "surfaces have an outside", "no index of refraction kept"),
             row("nested media", needs.nested, "paths know what they are in", "paths carry no media"),
+            row("smoke and haze", needs.media, "paths go one by one, and scatter on their way", "space is clear"),
             row(
                 "patterned lights",
                 needs.patterned_lights,

@@ -12,7 +12,7 @@ FLOORS = [
     {"_core"},
     {"arrays"},
     {"accelerators", "cameras", "io"},
-    {"textures"},
+    {"media", "textures"},
     {"lights", "materials"},
     {"shapes"},
     {"mesh_files", "query"},

@@ -217,7 +217,7 @@ def test_a_part_of_a_film_sees_what_the_whole_does_there():
 @pytest.mark.parametrize(
     ("parts", "told"),
     [
-        ({"m": {"type": "homogeneous"}}, "scene: homogeneous 'm' is not supported here"),
+        ({"m": {"type": "piecewise"}}, "scene: piecewise 'm' is not supported here"),
         ({"s": {"type": "sphere", "b": {"type": "hair"}}}, "sphere 's': hair 'b' is not supported here"),
         ({"s": {"type": "sphere", "colour": 1}}, "sphere 's': parameter 'colour' is not supported"),
         ({"s": {"type": "sphere", "radius": -1.0}}, "sphere 's': radius must be greater than 0"),

@@ -1,6 +1,7 @@
 """What surfaces are made of: how they scatter light."""
 
 from .blinn_phong import BlinnPhong
+from .boundary import Boundary
 from .bump_map import BumpMap
 from .conductor import Conductor, MetalIndex, metal_index, metals
 from .dielectric import Dielectric
@@ -19,6 +20,7 @@ from .two_sided import TwoSided
 
 __all__ = [
     "BlinnPhong",
+    "Boundary",
     "BumpMap",
     "Conductor",
     "Dielectric",

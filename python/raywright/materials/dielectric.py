@@ -4,6 +4,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from ..arrays import integer, positive
+from ..media.medium import Medium
+from ..media.medium import medium as checked
 from .material import Material, Rough, facets, rough
 
 
@@ -34,6 +36,9 @@ class Dielectric(Material):
         darker the rougher it is, and what is hidden from either side is independent of the other: the model
         of Walter et al., which many renderers have as it stands.
 
+    interior : Homogeneous or GridMedium, optional
+        What is within, if it is not clear: what dims and scatters light there.
+
     Raises
     ------
     ValueError
@@ -48,6 +53,7 @@ class Dielectric(Material):
     priority: int
     distribution: str
     multiple_scattering: bool
+    interior: Medium | None
 
     def __init__(
         self,
@@ -58,10 +64,12 @@ class Dielectric(Material):
         *,
         distribution: str = "ggx",
         multiple_scattering: bool = True,
+        interior: Medium | None = None,
     ) -> None:
         self._set(
             ior=positive("ior", ior),
             **rough(roughness, alpha, pair=False),
             priority=integer("priority", priority, -(2**31), 2**31 - 1),
             **facets(distribution, multiple_scattering),
+            interior=checked("interior", interior),
         )

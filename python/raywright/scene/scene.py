@@ -14,6 +14,8 @@ from ..accelerators import BVH, Accelerator
 from ..arrays import choice
 from ..lights import Environment, Light, environments
 from ..lights import lights as checked_lights
+from ..media.medium import Medium
+from ..media.medium import medium as checked_medium
 from ..query.queries import Queries
 from ..shapes.mesh import face_count, moved
 from .arrivals import Arrival
@@ -24,7 +26,7 @@ from .progress import BuildProgress, check_progress, watcher
 Precision: TypeAlias = Literal["auto", "single", "double"]
 Quality: TypeAlias = Literal["fast build", "balanced", "fast rays"]
 _BINNED_BVH = BVH()
-_ARGUMENTS = ("shapes", "lights", "environment", "accelerator", "precision", "quality")
+_ARGUMENTS = ("shapes", "lights", "environment", "accelerator", "precision", "quality", "medium")
 
 
 class Scene(Queries):
@@ -56,6 +58,9 @@ class Scene(Queries):
         stands askew as a whole has boxes turned as it is, and what else is long and diagonal may be parted,
         by spatial splits where it is little and before the build where it is much, and for "fast rays" more
         of it; a tree of parts is built anew by `refit`.
+
+    medium : Homogeneous or GridMedium, optional
+        What fills the space in which nothing else is: haze, fog, sea. None is clear.
 
     Raises
     ------
@@ -89,6 +94,7 @@ class Scene(Queries):
         accelerator: Accelerator = _BINNED_BVH,
         precision: Precision = "auto",
         quality: Quality = "balanced",
+        medium: Medium | None = None,
     ) -> None:
         self._shapes = meshes(shapes)
         self._lights = checked_lights(lights)
@@ -100,6 +106,7 @@ class Scene(Queries):
         choice("precision", precision, get_args(Precision))
         choice("quality", quality, get_args(Quality))
         self._precision, self._quality = precision, quality
+        self._medium = checked_medium("medium", medium)
         self._core: _core.CompiledScene | None = None
         self._has_arrived = False
         # A compiled scene of the same shapes.
@@ -145,6 +152,11 @@ class Scene(Queries):
         return self._quality
 
     @property
+    def medium(self) -> Medium | None:
+        """What fills the space in which nothing else is; None is clear."""
+        return self._medium
+
+    @property
     def accelerator(self) -> _core.AcceleratorInfo:
         """What the accelerator came to be: kind, nodes, leaves, depth, bytes, build_seconds, sah_cost.
 
@@ -171,8 +183,8 @@ class Scene(Queries):
     def replace(self, **changes: Any) -> "Scene":
         """Return a scene that differs in what is named, and is as this one otherwise.
 
-        It is compiled when it is asked: where it differs in lights and environment alone, with the
-        accelerator that this one has, and anew otherwise. ``copy.replace`` (Python 3.13) does the same.
+        It is compiled when it is asked: where it differs in lights, environment and medium alone, with
+        the accelerator that this one has, and anew otherwise. ``copy.replace`` (Python 3.13) does the same.
 
         Parameters
         ----------
@@ -194,7 +206,7 @@ class Scene(Queries):
             if name not in _ARGUMENTS:
                 raise TypeError(f"a Scene has no {name!r} to replace; it has {', '.join(_ARGUMENTS)}")
         scene = Scene(**{**dict(zip(_ARGUMENTS, self._parts(), strict=True)), **changes})
-        if changes.keys() <= {"lights", "environment"}:
+        if changes.keys() <= {"lights", "environment", "medium"}:
             scene._alike = self._core or self._alike
         return scene
 
@@ -377,6 +389,7 @@ class Scene(Queries):
             self._accelerator,
             self._precision,
             self._quality,
+            self._medium,
         )
 
     def __eq__(self, other: object) -> bool:
@@ -407,6 +420,7 @@ class Scene(Queries):
         parts.append(repr(self._accelerator))
         parts += [f"precision={self._precision!r}"] if self._precision != "auto" else []
         parts += [f"quality={self._quality!r}"] if self._quality != "balanced" else []
+        parts += [f"medium={self._medium!r}"] if self._medium is not None else []
         return f"Scene({', '.join(parts)})"
 
 

@@ -31,6 +31,7 @@ use features::{Features, General, Open, Plain, Sharing};
 pub use first_seen::FirstSeen;
 pub(super) use known::{Gather, MattLight, Visit};
 use std::sync::Arc;
+pub(super) use weights::power_heuristic;
 pub(super) use widths::widened;
 use worker::TransportWorker;
 

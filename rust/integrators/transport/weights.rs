@@ -3,7 +3,7 @@
 /// The weight of a draw of one technique, of density `pdf`, beside another of density `other` (Veach and Guibas, 1995,
 /// with the exponent 2). Written by the ratio, so that no square overflows and an infinite density gets the weight 1.
 #[inline]
-pub(super) fn power_heuristic(pdf: f64, other: f64) -> f64 {
+pub(in crate::integrators) fn power_heuristic(pdf: f64, other: f64) -> f64 {
     let ratio = other / pdf;
     1.0 / (1.0 + ratio * ratio)
 }

@@ -419,6 +419,24 @@ impl Geometry {
         self.others.as_ref()?.instance(primitive)
     }
 
+    /// A ray in the space in which the shape was described that a primitive belongs to, and of an instance the
+    /// primitive in it of a flattened number: the world's, or that of a prototype. The same `t` are the same points.
+    /// None at a moment when there is no such place.
+    pub fn entered(&self, ray: &Ray, primitive: u32, inner: u32) -> Option<Ray> {
+        let Some((instances, number)) = self.instance(primitive) else { return Some(*ray) };
+        let (within, inner) = instances.prototype().split(inner);
+        instances.prototype().geometry().entered(&instances.pose(number, ray.time)?.enter(ray), within, inner)
+    }
+
+    /// The first primitive of the same shape, and of an instance of the same shape in the same copy: what stands for
+    /// the whole.
+    pub fn first_alike(&self, primitive: u32, inner: u32) -> (u32, u32) {
+        match self.instance(primitive) {
+            Some((instances, _)) => (primitive, instances.prototype().first_alike(inner)),
+            None => (self.first[self.locate(primitive).0 as usize], 0),
+        }
+    }
+
     /// A primitive that is no triangle.
     #[inline]
     pub fn shape(&self, primitive: u32) -> Option<&dyn Shape> {

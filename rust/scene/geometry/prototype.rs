@@ -122,6 +122,13 @@ impl Prototype {
         (self.geometry.primitives_of(shape as u32).start + number, inner)
     }
 
+    /// Of all primitives that belong to the same shape, copy by copy, as that of a flattened number, the first.
+    pub fn first_alike(&self, flat: u32) -> u32 {
+        let (primitive, inner) = self.split(flat);
+        let (primitive, inner) = self.geometry.first_alike(primitive, inner);
+        self.flatten(&Hit { primitive, inner, ..Hit::MISS })
+    }
+
     /// Where a ray in its space meets the primitive of a flattened number, `inner`, and how the surface lies there.
     pub fn surface(&self, ray: &Ray, hit: &Hit) -> SurfacePoint {
         let (primitive, inner) = self.split(hit.inner);

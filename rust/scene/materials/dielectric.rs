@@ -4,7 +4,9 @@ use super::checks::number;
 use super::{BsdfMix, FacetKind, Interior, Material, Roughness};
 use crate::optics::{AnyBsdf, Beckmann, Dielectric, Facets, Ggx, Once};
 use crate::scene::ShadingPoint;
+use crate::scene::media::Medium;
 use crate::scene::textures::{Needs, TexturePoint};
+use std::sync::Arc;
 
 /// The surface of a clear solid or liquid, smooth or rough, which reflects and refracts. Its normals point out.
 #[derive(Clone, Debug)]
@@ -13,6 +15,8 @@ pub struct DielectricMaterial {
     pub interior: Interior,
     /// How rough the surface is, alike in all directions.
     pub roughness: Roughness,
+    /// What dims and scatters light within; none where it is clear.
+    pub medium: Option<Arc<dyn Medium>>,
 }
 
 impl DielectricMaterial {
@@ -52,5 +56,13 @@ impl Material for DielectricMaterial {
 
     fn interior(&self) -> Option<Interior> {
         Some(self.interior)
+    }
+
+    fn is_clear(&self) -> bool {
+        true
+    }
+
+    fn medium(&self) -> Option<&Arc<dyn Medium>> {
+        self.medium.as_ref()
     }
 }

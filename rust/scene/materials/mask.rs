@@ -5,6 +5,7 @@ use super::{BsdfMix, Interior, Material};
 use crate::math::DVec3;
 use crate::optics::Rgb;
 use crate::scene::ShadingPoint;
+use crate::scene::media::Medium;
 use crate::scene::textures::{Needs, TexturePoint, Value};
 use std::sync::Arc;
 
@@ -57,6 +58,10 @@ impl Material for Mask {
 
     fn interior(&self) -> Option<Interior> {
         self.material.interior()
+    }
+
+    fn medium(&self) -> Option<&Arc<dyn Medium>> {
+        self.material.medium()
     }
 
     fn ambient(&self, at: &ShadingPoint) -> Rgb {

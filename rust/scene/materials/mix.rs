@@ -5,6 +5,7 @@ use super::{BsdfMix, Interior, Material};
 use crate::math::DVec3;
 use crate::optics::Rgb;
 use crate::scene::ShadingPoint;
+use crate::scene::media::Medium;
 use crate::scene::textures::{Needs, TexturePoint, Value};
 use std::sync::Arc;
 
@@ -88,6 +89,10 @@ impl Material for MixMaterial {
 
     fn interior(&self) -> Option<Interior> {
         self.a.interior().or_else(|| self.b.interior())
+    }
+
+    fn medium(&self) -> Option<&Arc<dyn Medium>> {
+        self.a.medium().or_else(|| self.b.medium())
     }
 
     fn ambient(&self, at: &ShadingPoint) -> Rgb {

@@ -1,6 +1,7 @@
 //! What surfaces are made of: one interface over all materials.
 
 mod blinn_phong;
+mod boundary;
 mod bsdf_lanes;
 mod bsdf_mix;
 mod bump;
@@ -24,6 +25,7 @@ mod thin_dielectric;
 mod two_sided;
 
 pub use blinn_phong::BlinnPhongMaterial;
+pub use boundary::BoundaryMaterial;
 pub use bsdf_lanes::BsdfLanes;
 pub use bsdf_mix::BsdfMix;
 pub use bump::BumpMap;
@@ -44,10 +46,12 @@ pub use thin_dielectric::ThinDielectricMaterial;
 pub use two_sided::TwoSided;
 
 use super::ShadingPoint;
+use super::media::Medium;
 use super::textures::{Needs, TexturePoint};
 use crate::math::DVec3;
 use crate::optics::{AnyBsdf, Rgb};
 use std::fmt::Debug;
+use std::sync::Arc;
 
 /// What a surface is made of: says how light is scattered at each of its points.
 pub trait Material: Debug + Send + Sync {
@@ -105,6 +109,21 @@ pub trait Material: Debug + Send + Sync {
 
     /// What fills what it encloses; none for what encloses nothing, as a sheet.
     fn interior(&self) -> Option<Interior> {
+        None
+    }
+
+    /// What fills it that dims and scatters light; none of what is clear.
+    fn medium(&self) -> Option<&Arc<dyn Medium>> {
+        None
+    }
+
+    /// Whether light passes it straight and whole where the same index of refraction is on both sides.
+    fn is_clear(&self) -> bool {
+        false
+    }
+
+    /// The priority of what it encloses where that is all: it is no surface, and what is within begins there.
+    fn boundary(&self) -> Option<i32> {
         None
     }
 

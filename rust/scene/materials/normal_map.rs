@@ -6,6 +6,7 @@ use super::{BsdfMix, Interior, Material};
 use crate::math::DVec3;
 use crate::optics::Rgb;
 use crate::scene::ShadingPoint;
+use crate::scene::media::Medium;
 use crate::scene::textures::{Needs, TexturePoint, Value};
 use std::sync::Arc;
 
@@ -74,6 +75,10 @@ impl Material for NormalMap {
 
     fn interior(&self) -> Option<Interior> {
         self.material.interior()
+    }
+
+    fn medium(&self) -> Option<&Arc<dyn Medium>> {
+        self.material.medium()
     }
 
     fn ambient(&self, at: &ShadingPoint) -> Rgb {

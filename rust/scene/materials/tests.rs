@@ -49,11 +49,11 @@ fn gold(roughness: impl Into<Roughness>) -> ConductorMaterial {
 
 fn conductor(eta: impl Into<Value>, k: impl Into<Value>, roughness: impl Into<Roughness>) -> ConductorMaterial {
     let index = Index::Constants { eta: eta.into(), k: k.into() };
-    ConductorMaterial { index, roughness: roughness.into() }
+    ConductorMaterial { index, roughness: roughness.into(), medium: None }
 }
 
 fn glass(roughness: f64) -> DielectricMaterial {
-    DielectricMaterial { interior: Interior { ior: 1.5, priority: 0 }, roughness: roughness.into() }
+    DielectricMaterial { interior: Interior { ior: 1.5, priority: 0 }, roughness: roughness.into(), medium: None }
 }
 
 /// One of each kind, and of most with a texture.

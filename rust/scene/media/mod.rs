@@ -1,35 +1,43 @@
 //! What fills space: one interface over all media.
 
+mod coefficients;
+mod grid;
 mod homogeneous;
-mod phase;
+mod stretches;
+mod values;
 
+pub use coefficients::Coefficients;
+pub use grid::GridMedium;
 pub use homogeneous::Homogeneous;
-pub use phase::HenyeyGreenstein;
+pub use stretches::{Content, Stretch, Stretches};
+pub use values::{At, Values};
 
-use crate::math::Ray;
-use crate::optics::Rgb;
+use crate::math::{DVec3, Ray};
+use crate::optics::Phase;
 use std::fmt::Debug;
 
-/// What fills space, and dims and scatters light on its way. Distances are those along a ray of unit direction.
+/// What fills space, and dims and scatters light on its way.
+///
+/// Coefficients are per unit of length in the world. Where a medium differs from place to place, places are those of
+/// the space that its shape is described in, which is not the world's in an instance.
 pub trait Medium: Debug + Send + Sync {
-    /// The share of light that gets along a ray from its `t_min` to its `t_max`, or an estimate of it that is right in
-    /// the mean; `u` is for that, uniform in [0, 1).
-    fn transmittance(&self, ray: &Ray, u: f64) -> Rgb;
-
-    /// Draws how far a ray gets, from its `t_min` to its `t_max` at most: `choice` is for the colour that the draw is
-    /// made for, `u` for the distance, both uniform in [0, 1).
-    fn sample_distance(&self, ray: &Ray, choice: f64, u: f64) -> MediumSample;
-
     /// How it scatters.
-    fn phase(&self) -> HenyeyGreenstein;
-}
+    fn phase(&self) -> Phase;
 
-/// How far a ray has come in a medium.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MediumSample {
-    /// Where it was scattered; `None` if it got to its end.
-    pub t: Option<f64>,
-    /// What its throughput is multiplied by: transmittance, times the scattering there if it was scattered, over the
-    /// density of the draw.
-    pub weight: Rgb,
+    /// Whether it scatters anything anywhere.
+    fn scatters(&self) -> bool;
+
+    /// Whether it is the same everywhere.
+    fn is_even(&self) -> bool {
+        false
+    }
+
+    /// What lies on a ray, one stretch after the other, between two `t` of it.
+    fn stretches(&self, ray: &Ray, span: [f64; 2]) -> Stretches<'_>;
+
+    /// What there is at a point.
+    fn at(&self, point: DVec3) -> Coefficients;
+
+    /// The memory held.
+    fn bytes(&self) -> usize;
 }

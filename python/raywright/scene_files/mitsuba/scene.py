@@ -9,13 +9,13 @@ from ...arrays import integer
 from ...lights import Environment, Light
 from ...rendering.shot import Shot
 from ...scene.scene import Scene
-from . import bsdfs, emitters, sensors, settings, shapes
+from . import bsdfs, emitters, media, sensors, settings, shapes
 from .errors import SceneError
 from .plugin import Context, Plugin
 from .xml import read_xml
 
 # What a scene may hold that others refer to: it is read where it is referred to.
-_SHARED = ("area", *bsdfs.TYPES, "bitmap", "checkerboard", shapes.GROUP, "alias")
+_SHARED = ("area", *bsdfs.TYPES, *media.TYPES, "null", "bitmap", "checkerboard", shapes.GROUP, "alias")
 
 
 def from_mitsuba(
@@ -103,7 +103,12 @@ def _read(scene: Plugin, number: int) -> Shot:
     rfilter = settings.rfilter(_only(film, *settings.FILTERS) if film is not None else None)
     sampler, samples, seed = settings.sampler(_only(eye, *settings.SAMPLERS))
     return Shot(
-        Scene(shapes.instances(found), lights, around[0] if len(around) == 1 else around or None),
+        Scene(
+            shapes.instances(found),
+            lights,
+            around[0] if len(around) == 1 else around or None,
+            medium=media.around(scene, eye),
+        ),
         sensors.camera(eye, film),
         asked.integrator,
         samples,

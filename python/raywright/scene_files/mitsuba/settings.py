@@ -15,7 +15,7 @@ from ...rendering.filters import (
 from ...rendering.samplers import Independent, Sampler, Sobol, Stratified
 from .plugin import Plugin
 
-# Without media, and forwards, these are path tracing all the same.
+# Among media or not, and forwards, these are path tracing all the same.
 _PATHS = ("path", "volpath", "volpathmis", "prb", "prb_basic", "prbvolpath")
 INTEGRATORS = (*_PATHS, "ptracer", "direct", "ao", "aov")
 SAMPLERS = ("independent", "stratified", "multijitter", "orthogonal", "ldsampler")

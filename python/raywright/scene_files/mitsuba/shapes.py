@@ -11,7 +11,7 @@ from ...materials import Diffuse, Material, TwoSided
 from ...scene.instance import AnyShape, Instance
 from ...shapes import Cylinder, Disk, Shape, Sphere
 from ...shapes.mesh import Mesh
-from . import bsdfs, mesh_files
+from . import bsdfs, media, mesh_files
 from .errors import SceneError
 from .plugin import Plugin
 from .textures import value
@@ -120,7 +120,7 @@ def _look(plugin: Plugin, uv: Uv, inside_out: bool = False) -> tuple[Material, E
         plugin.fail("a shape must have one BSDF only")
     # Lamps are black, and all else is grey on its front.
     default = bsdfs.BLACK if emission is not None else TwoSided(Diffuse(0.5), bsdfs.BLACK)
-    material = found[0] if found else default
+    material = media.filled(plugin, found[0] if found else None) or default
     plugin.ignore("silhouette_sampling_weight")
     return bsdfs.turned_round(material, plugin) if inside_out else material, emission
 

@@ -1,0 +1,41 @@
+"""The end of a medium that has no surface."""
+
+from dataclasses import dataclass
+
+from ..arrays import integer
+from ..media.medium import Medium
+from ..media.medium import medium as checked
+from .material import Material
+
+
+@dataclass(frozen=True, init=False)
+class Boundary(Material):
+    """Where a medium ends that has no surface, as smoke or a cloud: light passes as if nothing were there.
+
+    Its normals point out of the medium. `Scene.intersect` and the like hit the shape.
+
+    Parameters
+    ----------
+    interior : Homogeneous or GridMedium
+        What is within.
+    priority : int
+        Where several things overlap that are filled, the one of the greatest priority alone is there; of
+        equal ones, what has the greater index of refraction, so that glass stands in smoke; and of those,
+        what comes later in the scene. Media do not add up.
+
+    Raises
+    ------
+    ValueError
+        If `priority` is out of range.
+    TypeError
+        If something is not of the kinds above.
+    """
+
+    interior: Medium
+    priority: int
+
+    def __init__(self, interior: Medium, priority: int = 0) -> None:
+        within = checked("interior", interior)
+        if within is None:
+            raise TypeError("interior must be a raywright medium, got None")
+        self._set(interior=within, priority=integer("priority", priority, -(2**31), 2**31 - 1))

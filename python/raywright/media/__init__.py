@@ -1,0 +1,17 @@
+"""What fills space: smoke, haze, milk, clouds."""
+
+from .grid import GridMedium
+from .homogeneous import Homogeneous
+from .medium import Medium, medium
+from .phases import HenyeyGreenstein, Isotropic, Phase, Rayleigh
+
+__all__ = [
+    "GridMedium",
+    "HenyeyGreenstein",
+    "Homogeneous",
+    "Isotropic",
+    "Medium",
+    "Phase",
+    "Rayleigh",
+    "medium",
+]

@@ -1,0 +1,65 @@
+"""A medium that is the same everywhere."""
+
+from dataclasses import dataclass
+
+from numpy.typing import ArrayLike
+
+from ..arrays import Triple, colour
+from .medium import Medium
+from .phases import Isotropic, Phase, phase
+
+
+@dataclass(frozen=True, init=False)
+class Homogeneous(Medium):
+    """A medium that is the same everywhere.
+
+    Of light that goes through it, the share exp(-(absorption + scattering) · length) is left (Beer and
+    Lambert). Lengths are those of the world, in instances too.
+
+    Parameters
+    ----------
+    absorption, scattering : float or 3 floats
+        The share of light that is absorbed, and scattered, per unit of length: one number, or red, green and
+        blue, at least 0.
+    phase : HenyeyGreenstein, Rayleigh or Isotropic
+        Into which directions it scatters.
+    emission : float or 3 floats
+        The radiance that it gives off by itself, per unit of length, at least 0. What is deep then has the
+        radiance emission / absorption.
+
+    Raises
+    ------
+    ValueError
+        If a number is negative or not finite, or there are not 1 or 3 of them.
+    TypeError
+        If something is not of the kinds above.
+
+    Examples
+    --------
+    >>> import raywright as rw
+    >>> rw.Homogeneous(absorption=0.1, scattering=(0.2, 0.3, 0.5)).scattering
+    (0.2, 0.3, 0.5)
+    """
+
+    absorption: Triple
+    scattering: Triple
+    phase: Phase
+    emission: Triple
+
+    def __init__(
+        self,
+        absorption: ArrayLike = 0.0,
+        scattering: ArrayLike = 0.0,
+        phase: Phase = Isotropic(),  # noqa: B008
+        emission: ArrayLike = 0.0,
+    ) -> None:
+        _set(self, absorption=absorption, scattering=scattering, emission=emission)
+        object.__setattr__(self, "phase", _phase("phase", phase))
+
+
+_phase = phase
+
+
+def _set(medium: Medium, **values: ArrayLike) -> None:
+    for name, value in values.items():
+        object.__setattr__(medium, name, colour(name, value))

@@ -1,0 +1,160 @@
+"""Media: what fills shapes, and the space around them."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...materials import Boundary, Dielectric, Mask, Material
+from ...media import GridMedium, HenyeyGreenstein, Homogeneous, Isotropic, Medium, Phase, Rayleigh
+from ...media.files import read_density
+from .errors import SceneError
+from .plugin import Plugin, Triple
+from .values import colour
+
+TYPES = ("homogeneous", "heterogeneous")
+_PHASES = ("isotropic", "hg", "rayleigh")
+_VOLUMES = ("constvolume", "gridvolume")
+# Under which the plugins of a scene have told each other of media.
+_WITHIN, _AROUND = "media within", "media around"
+
+
+def filled(plugin: Plugin, material: Material | None) -> Material | None:
+    """Return the material of a shape, with what is within; None if it has none.
+
+    Raises
+    ------
+    ValueError
+        If a medium, or a parameter of it, is not supported; tells which.
+    """
+    is_null = False
+    for null in plugin.children("null"):
+        null.done()
+        is_null = True
+    interior, exterior = (_side(plugin, name) for name in ("interior", "exterior"))
+    kept = plugin.context.kept
+    if exterior is not None:
+        kept.setdefault(_AROUND, []).append(exterior)
+    if interior is not None:
+        kept.setdefault(_WITHIN, []).append(interior)
+    if (interior is not None or is_null) and plugin.values.get("flip_normals"):
+        plugin.fail("flip_normals with a medium within, or a null BSDF, is not supported")
+    if is_null:
+        # Without a medium that is a hole.
+        return Mask(Dielectric(), 0.0) if interior is None else Boundary(interior)
+    if interior is None or not isinstance(material, Dielectric):
+        # Nothing is seen of what is within an opaque shape.
+        return material
+    parts = {name: getattr(material, name) for name in ("ior", "roughness", "alpha", "priority")}
+    more = {name: getattr(material, name) for name in ("distribution", "multiple_scattering")}
+    return Dielectric(**parts, **more, interior=interior)
+
+
+def around(scene: Plugin, eye: Plugin) -> Medium | None:
+    """Return what fills the space around all shapes: what a sensor or a shape says is outside.
+
+    Raises
+    ------
+    ValueError
+        If several media are.
+    """
+    kept = scene.context.kept
+    found = list(kept.get(_AROUND, ()))
+    # A sensor may stand within a shape.
+    seen = (medium(inner) for inner in eye.children(*TYPES))
+    found += [one for one in seen if one not in kept.get(_WITHIN, ())]
+    # Shapes that stand in one another tell of what is around them alone.
+    outside = [one for one in found if one not in kept.get(_WITHIN, ())]
+    if any(one != outside[0] for one in outside):
+        scene.fail("several media are around shapes; one can fill the space")
+    return outside[0] if outside else None
+
+
+def _side(plugin: Plugin, name: str) -> Medium | None:
+    inner = plugin.child(name)
+    if inner is None:
+        return None
+    if inner.type not in TYPES:
+        plugin.fail(f"{name} must be one of {', '.join(TYPES)}, got {inner.type}")
+    return medium(inner)
+
+
+def medium(plugin: Plugin) -> Medium:
+    """Return the medium that a plugin stands for.
+
+    Raises
+    ------
+    FileNotFoundError
+        If its file is missing.
+    ValueError
+        If its type, or a parameter of it, is not supported; tells which.
+    """
+    key = ("medium", id(plugin.values))
+    if key in plugin.context.kept:
+        kept: Medium = plugin.context.kept[key]
+        return kept
+    try:
+        result = _read(plugin)
+    except (SceneError, FileNotFoundError):
+        raise
+    except (ValueError, TypeError) as error:
+        raise SceneError(f"{plugin}: {error}") from error
+    plugin.ignore("has_spectral_extinction", "sample_emitters")
+    plugin.done()
+    plugin.context.kept[key] = result
+    return result
+
+
+def _read(plugin: Plugin) -> Medium:
+    scale, phase = plugin.number("scale", 1.0), _phase(plugin)
+    albedo = np.array(_constant(plugin, "albedo", 0.75))
+    grid = plugin.child("sigma_t") if plugin.type == "heterogeneous" else None
+    if grid is not None and grid.type == "gridvolume":
+        density, bounds = _grid(grid)
+        return GridMedium(
+            density,
+            bounds,
+            transform=grid.to_world(),
+            absorption=scale * (1 - albedo),
+            scattering=scale * albedo,
+            phase=phase,
+            at="centres",
+        )
+    extinction = scale * np.array(_constant(plugin, "sigma_t", 1.0))
+    return Homogeneous(extinction * (1 - albedo), extinction * albedo, phase)
+
+
+def _constant(plugin: Plugin, name: str, default: float) -> Triple:
+    inner = plugin.child(name)
+    if inner is None or inner.type not in _VOLUMES:
+        return colour(plugin, name, default)
+    if inner.type == "gridvolume":
+        plugin.fail(f"{name} on a grid is not supported")
+    result = colour(inner, "value", 1.0)
+    inner.ignore("to_world")
+    inner.done()
+    return result
+
+
+def _grid(plugin: Plugin) -> tuple[NDArray[Any], Any]:
+    if not plugin.has("filename"):
+        plugin.fail("a grid must be given by its filename")
+    plugin.choice("filter_type", "trilinear", ("trilinear",))
+    plugin.choice("wrap_mode", "clamp", ("clamp",))
+    plugin.ignore("raw", "accel", "max_value")
+    density, box = read_density(plugin.path())
+    placed = plugin.switch("use_grid_bbox", False)
+    plugin.to_world()
+    plugin.done()
+    return density, box if placed else None
+
+
+def _phase(plugin: Plugin) -> Phase:
+    found: Phase = Isotropic()
+    for inner in plugin.children(*_PHASES):
+        if inner.type == "hg":
+            found = HenyeyGreenstein(inner.number("g", 0.8))
+        elif inner.type == "rayleigh":
+            found = Rayleigh()
+        inner.done()
+    return found

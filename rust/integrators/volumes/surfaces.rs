@@ -1,0 +1,41 @@
+//! What a ray among media comes to.
+
+use super::filled::Filled;
+use crate::integrators::nesting::{Boundary, MediumStack, around};
+use crate::math::{Hit, Ray};
+use crate::scene::Scene;
+
+/// What a ray has come to.
+pub(super) enum Met {
+    /// Nothing: another medium begins there, or not even that. The ray goes on from this `t` in these media.
+    Passed(f64, MediumStack<Filled>),
+    /// A surface.
+    Surface {
+        /// Which hit has it.
+        hit: Hit,
+        /// The index of refraction on the other side of what it encloses.
+        outside: f64,
+        /// What a ray that goes through is in.
+        through: MediumStack<Filled>,
+    },
+}
+
+/// What it is that a ray in some media has hit. Where neither light is reflected nor bent, there is no surface.
+pub(super) fn meet(scene: &Scene, ray: &Ray, hit: &Hit, media: &MediumStack<Filled>) -> Met {
+    let Some(window) = around::<Filled>(scene, ray, hit) else {
+        return Met::Surface { hit: *hit, outside: 1.0, through: *media };
+    };
+    let beyond = window.t_max.next_up();
+    match Boundary::new(scene, ray, media, &scene.crossings(&[window]), 0) {
+        Boundary::None(media) => Met::Passed(beyond, media),
+        Boundary::Between { hit: owner, outside, through } => {
+            let material = scene.material_of(&owner);
+            let is_matched = material.is_clear() && material.interior().is_some_and(|inside| inside.ior == outside);
+            if is_matched || material.boundary().is_some() {
+                return Met::Passed(beyond, through);
+            }
+            let is_same = owner.primitive == hit.primitive && owner.inner == hit.inner;
+            Met::Surface { hit: if is_same { *hit } else { owner }, outside, through }
+        }
+    }
+}

@@ -1,0 +1,330 @@
+//! One path after the other.
+
+use super::filled::{self, Filled};
+use super::flight::{Collision, Flight};
+use super::numbers::{Numbers, depth};
+use super::path_state::PathState;
+use super::scattering::Scattering;
+use super::surfaces::{Met, meet};
+use super::{Onwards, Volumes};
+use crate::integrators::nesting::MediumStack;
+use crate::integrators::shadows::opacity;
+use crate::integrators::transport::{Dimensions, power_heuristic};
+use crate::integrators::{CameraSample, Worker, roulette};
+use crate::math::{DVec3, Hit, Ray};
+use crate::optics::{Bsdf, BsdfSample, Rgb};
+use crate::scene::{Encounter, Light, LightSample, LightSampleContext, Scene, SurfaceInteraction};
+use crate::workers::Cancel;
+
+/// What one thread works with.
+pub(super) struct Walker<'a> {
+    pub(super) settings: Volumes,
+    pub(super) scene: &'a Scene,
+    /// Lights that are points.
+    pub(super) points: &'a [(DVec3, &'a dyn Light)],
+    /// Paths that have been split off and wait.
+    waiting: Vec<PathState>,
+}
+
+/// Where a path has come to.
+enum Place {
+    /// Where a medium scatters it.
+    Medium { here: Scattering, part: Option<Part> },
+    /// A surface.
+    Surface { hit: Hit, outside: f64, through: MediumStack<Filled> },
+}
+
+/// The part of a ray in an even medium in which it was scattered, and the density of the place.
+struct Part {
+    span: [f64; 2],
+    t: f64,
+    density: f64,
+}
+
+impl<'a> Walker<'a> {
+    pub fn new(settings: Volumes, scene: &'a Scene, points: &'a [(DVec3, &'a dyn Light)]) -> Self {
+        Self { settings, scene, points, waiting: Vec::new() }
+    }
+
+    /// Whether paths go on in all directions into which light is scattered.
+    pub(super) fn follows_all(&self) -> bool {
+        self.settings.onwards == Onwards::All
+    }
+
+    /// What arrives along a camera's ray.
+    fn follow(&mut self, sample: &mut CameraSample, media: MediumStack<Filled>, cancel: &Cancel) -> Rgb {
+        let mut light = Rgb::ZERO;
+        let hero = ((sample.sampler.one(Dimensions::SHARING) * 3.0) as usize).min(2);
+        self.waiting.clear();
+        self.waiting.push(PathState::of_camera(sample.ray, media));
+        let mut numbers = Numbers::new(&mut sample.sampler);
+        while let Some(mut path) = self.waiting.pop() {
+            while !cancel.is_raised() {
+                numbers.ray = Dimensions::of(path.bounce, path.branch);
+                let Some(place) = self.advance(&mut path, hero, &mut numbers, cancel, &mut light) else { break };
+                let goes_on = match place {
+                    Place::Medium { here, part } => {
+                        self.scatter(&mut path, &here, part, hero, &mut numbers, cancel, &mut light)
+                    }
+                    Place::Surface { hit, outside, through } => {
+                        let at = (hit, outside, through);
+                        self.reflect(&mut path, at, hero, &mut numbers, cancel, &mut light)
+                    }
+                };
+                if !goes_on {
+                    break;
+                }
+            }
+        }
+        light
+    }
+
+    /// Takes a path along its ray to where it is scattered next; none if it leaves the scene, and with what arrives
+    /// from there.
+    fn advance(
+        &self,
+        path: &mut PathState,
+        hero: usize,
+        numbers: &mut Numbers,
+        cancel: &Cancel,
+        light: &mut Rgb,
+    ) -> Option<Place> {
+        // How far the hero gets is drawn once for a ray, however many media it goes through.
+        let u = numbers.ray.mask();
+        let mut way = depth(numbers.one(u));
+        let mut start = path.ray.t_min;
+        let may_scatter = self.settings.max_depth.is_none_or(|most| path.bounce < most);
+        while !cancel.is_raised() {
+            let around = filled::around(self.scene, &path.media, &path.ray);
+            let scattering = around.as_ref().filter(|(medium, _)| self.settings.scatters && medium.is_even());
+            let even = scattering.map(|(medium, within)| medium.at(within.origin));
+            let even = even.filter(|here| !here.scattering.is_black());
+            let is_lit = even.is_some() && may_scatter && !self.points.is_empty();
+            let mut asked = path.ray;
+            if let Some(here) = even.filter(|here| here.emission.is_black() && !is_lit) {
+                // Nobody asks what lies beyond where it is scattered.
+                let reach = start + way / here.extinction[hero] * (1.0 + 1e-12);
+                asked.t_max = reach.next_up().min(asked.t_max);
+            }
+            let mut hits = [Hit::MISS];
+            self.scene.intersect(&[asked], &mut hits);
+            let [hit] = hits;
+            let end = if hit.is_hit() { hit.t } else { f64::INFINITY };
+            if let Some((medium, within)) = around {
+                let span = [start, end];
+                if let Some(here) = even.filter(|_| is_lit) {
+                    *light += self.lit_on_the_way(path, span, &here, medium.phase(), hero, numbers, cancel);
+                }
+                let flight = Flight { medium, ray: within, span, length: 1.0, scatters: self.settings.scatters };
+                let weights = &mut path.weights;
+                if let Some(Collision { t, density }) = flight.fly(weights, (hero, &mut way), numbers, cancel, light) {
+                    let phase = medium.phase();
+                    let here = Scattering { position: path.ray.at(t), before: path.ray.direction, phase };
+                    let part = density.map(|density| Part { span, t, density }).filter(|_| is_lit);
+                    return Some(Place::Medium { here, part });
+                }
+                if path.weights.carried.is_black() {
+                    return None;
+                }
+            }
+            if !hit.is_hit() {
+                *light += path.weights.throughput() * self.from_outside(path);
+                return None;
+            }
+            start = hit.t;
+            match meet(self.scene, &path.ray, &hit, &path.media) {
+                Met::Passed(beyond, media) => (path.ray.t_min, path.media) = (beyond, media),
+                Met::Surface { hit, outside, through } => {
+                    let opacity = opacity(self.scene, &path.ray, &hit);
+                    if opacity < 1.0 && numbers.next() >= opacity {
+                        path.ray.t_min = hit.t.next_up();
+                    } else {
+                        return Some(Place::Surface { hit, outside, through });
+                    }
+                }
+            }
+        }
+        None
+    }
+
+    /// What comes from outside the scene along a path's ray, weighed beside asking for it.
+    fn from_outside(&self, path: &PathState) -> Rgb {
+        let lights = self.scene.lights();
+        let arriving = lights.infinite_radiance(path.ray.direction);
+        if arriving.is_black() {
+            return arriving;
+        }
+        let receiver = LightSampleContext { position: path.ray.origin, normal: path.normal };
+        arriving * self.by_chance(path, || lights.infinite_pdf(&receiver, path.ray.direction))
+    }
+
+    /// How much light counts that a path has run into, beside asking for it where the path was scattered last, which
+    /// has this density.
+    fn by_chance(&self, path: &PathState, asked: impl FnOnce() -> f64) -> f64 {
+        if path.pdf == f64::INFINITY {
+            return 1.0;
+        }
+        let asked = asked();
+        if asked == 0.0 {
+            1.0
+        } else {
+            power_heuristic(path.pdf * path.weights.drawn.mean(), asked * path.weights.asked.mean())
+        }
+    }
+
+    /// Scatters a path in a medium, and says whether it goes on.
+    #[allow(clippy::too_many_arguments)]
+    fn scatter(
+        &self,
+        path: &mut PathState,
+        here: &Scattering,
+        part: Option<Part>,
+        hero: usize,
+        numbers: &mut Numbers,
+        cancel: &Cancel,
+        light: &mut Rgb,
+    ) -> bool {
+        if self.settings.max_depth.is_some_and(|most| path.bounce >= most) {
+            return false;
+        }
+        let media = path.media;
+        if let Some((drawn, arrives)) = self.direct_light(here, path, |_| media, hero, numbers, cancel) {
+            let place = drawn.source.filter(|_| drawn.pdf == f64::INFINITY).map(|source| source.position());
+            let weight = match (part, place) {
+                (Some(Part { span, t, density }), Some(place)) => {
+                    self.beside_the_way(&path.ray, span, t, density, place)
+                }
+                _ => 1.0,
+            };
+            *light += arrives * weight;
+        }
+        let u = numbers.ray.direction();
+        let Some(next) = here.sample(|| 0.0, numbers.two(u)) else { return false };
+        let chance = numbers.ray.roulette();
+        self.go_on(path, here, &next, media, numbers.one(chance), self.never_ends())
+    }
+
+    /// Scatters a path at a surface, and says whether it goes on.
+    fn reflect(
+        &mut self,
+        path: &mut PathState,
+        (hit, outside, through): (Hit, f64, MediumStack<Filled>),
+        hero: usize,
+        numbers: &mut Numbers,
+        cancel: &Cancel,
+        light: &mut Rgb,
+    ) -> bool {
+        let ray = path.ray;
+        let (scene, geometry) = (self.scene, self.scene.geometry());
+        let surface = geometry.surface(&ray, &hit);
+        let emission = scene.emission_at(&surface);
+        if !emission.is_dark() {
+            let sent = emission.sent(geometry, &ray, &hit, &surface, || 0.0);
+            let cosine = -ray.direction.dot(surface.normal);
+            let receiver = LightSampleContext { position: ray.origin, normal: path.normal };
+            let asked = || scene.lights().surface_pdf(geometry, &receiver, &ray, &hit, cosine);
+            *light += path.weights.throughput() * sent * self.by_chance(path, asked);
+        }
+        if self.settings.max_depth.is_some_and(|most| path.bounce >= most) {
+            return false;
+        }
+        let here = SurfaceInteraction::new(scene, &ray, &hit, surface, 0.0, outside);
+        path.meet(here.bsdf().again());
+        if !self.settings.ambient.is_black() {
+            let share = here.ambient(scene, &ray, &hit, 0.0, outside);
+            *light += path.weights.throughput() * share * self.settings.ambient;
+        }
+        if !here.bsdf().is_delta() {
+            let now = path.media;
+            let side = |drawn: &LightSample| if here.is_through(drawn.direction) { through } else { now };
+            if let Some((_, arrives)) = self.direct_light(&here, path, side, hero, numbers, cancel) {
+                *light += arrives;
+            }
+        }
+        if !self.follows_all() {
+            return self.split(path, &here, through);
+        }
+        let choice = numbers.ray.scattering_choice();
+        let u = numbers.two(choice + 1);
+        let Some(next) = here.sample(|| numbers.one(choice), u) else { return false };
+        let media = if next.is_through { through } else { path.media };
+        let chance = numbers.ray.roulette();
+        self.go_on(path, &here, &next, media, numbers.one(chance), true)
+    }
+
+    /// Sends on a path for every single direction that a surface scatters into.
+    fn split(&mut self, path: &PathState, here: &SurfaceInteraction, through: MediumStack<Filled>) -> bool {
+        let mut branch = path.branch.wrapping_mul(2);
+        let mut sent = Vec::new();
+        here.bsdf().delta_lobes(here.wo(), |single| {
+            if let Some(next) = here.to_world(single) {
+                let mut one = PathState { branch, ..*path };
+                let media = if next.is_through { through } else { path.media };
+                if self.go_on(&mut one, here, &next, media, 0.0, true) {
+                    sent.push(one);
+                }
+                branch = branch.wrapping_add(1);
+            }
+        });
+        self.waiting.extend(sent);
+        false
+    }
+
+    /// Whether paths could be scattered for ever between surfaces.
+    fn never_ends(&self) -> bool {
+        self.scene.surrounding().is_some()
+    }
+
+    /// Sends a path on along a direction drawn, unless roulette ends it by a uniform number, and says whether it did.
+    /// Where light leaves a medium sooner or later, none of it has to be ended that has lost nothing.
+    fn go_on(
+        &self,
+        path: &mut PathState,
+        here: &impl Encounter,
+        next: &BsdfSample,
+        media: MediumStack<Filled>,
+        chance: f64,
+        may_never_end: bool,
+    ) -> bool {
+        let receiver = here.light_context();
+        let ray = here.ray_origin().ray(next.wi);
+        path.weights.carried *= next.weight;
+        path.weights.asked = path.weights.drawn;
+        (path.pdf, path.normal, path.media) = (next.pdf, receiver.normal, media);
+        path.scale *= next.eta * next.eta;
+        path.bounce = path.bounce.saturating_add(1);
+        path.ray = Ray { time: path.ray.time, ..ray };
+        let throughput = path.weights.throughput();
+        if throughput.max() * path.scale < self.settings.least {
+            return false;
+        }
+        if path.bounce < self.settings.roulette_depth.min(roulette::AT_LATEST) {
+            return !throughput.is_black();
+        }
+        let survival = if may_never_end {
+            roulette::survival(throughput, path.scale)
+        } else {
+            (throughput.max() * path.scale).sqrt().min(1.0)
+        };
+        if chance >= survival {
+            return false;
+        }
+        path.weights.carried /= survival;
+        true
+    }
+}
+
+impl Worker for Walker<'_> {
+    fn radiance(&mut self, samples: &mut [CameraSample], cancel: &Cancel, radiance: &mut [Rgb]) {
+        assert_eq!(samples.len(), radiance.len());
+        let rays: Vec<Ray> = samples.iter().map(|sample| sample.ray).collect();
+        let mut media = Vec::new();
+        MediumStack::at(self.scene, &rays, &mut media);
+        for ((sample, media), radiance) in samples.iter_mut().zip(media).zip(radiance) {
+            if cancel.is_raised() {
+                return;
+            }
+            *radiance = self.follow(sample, media, cancel);
+        }
+    }
+}

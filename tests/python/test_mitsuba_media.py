@@ -1,0 +1,93 @@
+"""Media of scenes in Mitsuba's format."""
+
+import struct
+
+import numpy as np
+import pytest
+
+import raywright as rw
+
+EYE = {"type": "perspective", "film": {"type": "hdrfilm", "width": 8, "height": 4}}
+SMOKE = {"type": "homogeneous", "albedo": 0.75, "sigma_t": {"type": "rgb", "value": [1, 2, 4]}, "scale": 2.0}
+
+
+def shot(**parts):
+    return rw.from_mitsuba({"type": "scene", "sensor": EYE, **parts})
+
+
+def within(bsdf, medium, **more):
+    shape = {"type": "sphere", "interior": medium, **more}
+    return shot(one=shape if bsdf is None else {**shape, "bsdf": bsdf}).scene.shapes[0].material
+
+
+def test_what_is_within_a_shape():
+    smoke = rw.Homogeneous((0.5, 1.0, 2.0), (1.5, 3.0, 6.0))
+    assert within({"type": "null"}, SMOKE) == rw.Boundary(smoke)
+    glass = {"type": "dielectric", "int_ior": 1.5, "ext_ior": 1.0}
+    assert within(glass, SMOKE) == rw.Dielectric(1.5, interior=smoke)
+    constant = {"type": "heterogeneous", "albedo": 0.75, "sigma_t": {"type": "constvolume", "value": 2.0}}
+    for phase, expected in [
+        ({"type": "hg", "g": 0.5}, rw.HenyeyGreenstein(0.5)),
+        ({"type": "rayleigh"}, rw.Rayleigh()),
+        ({"type": "isotropic"}, rw.Isotropic()),
+    ]:
+        assert within({"type": "null"}, {**constant, "phase": phase}).interior == rw.Homogeneous(
+            0.5, 1.5, expected
+        )
+    # Nobody sees what is in a wall.
+    assert (
+        within({"type": "diffuse"}, SMOKE)
+        == shot(one={"type": "sphere", "b": {"type": "diffuse"}}).scene.shapes[0].material
+    )
+
+
+def test_densities_from_files(tmp_path):
+    numbers = np.arange(24, dtype=np.float32).reshape(2, 3, 4)
+    header = struct.pack("<3sBiiiii6f", b"VOL", 3, 1, 2, 3, 4, 1, 0, 0, 0, 2, 3, 4)
+    (tmp_path / "d.vol").write_bytes(header + numbers.transpose(2, 1, 0).tobytes())
+    moved = np.diag([2.0, 3.0, 4.0, 1.0])
+    grid = {"type": "gridvolume", "filename": "d.vol", "to_world": moved}
+    medium = {"type": "heterogeneous", "albedo": 0.5, "scale": 4.0, "sigma_t": grid}
+    scene = {
+        "type": "scene",
+        "sensor": EYE,
+        "s": {"type": "cube", "interior": medium, "bsdf": {"type": "null"}},
+    }
+    found = rw.from_mitsuba(scene, folder=tmp_path).scene.shapes[0].material.interior
+    assert found == rw.GridMedium(numbers, transform=moved, absorption=2, scattering=2, at="centres")
+    grid["use_grid_bbox"] = True
+    found = rw.from_mitsuba(scene, folder=tmp_path).scene.shapes[0].material.interior
+    assert found.bounds == ((0, 0, 0), (2, 3, 4))
+
+
+def test_what_is_around_all_shapes():
+    smoke = rw.Homogeneous((0.5, 1.0, 2.0), (1.5, 3.0, 6.0))
+    ball = {"type": "sphere", "bsdf": {"type": "dielectric"}}
+    assert shot(one=ball).scene.medium is None
+    assert shot(one={**ball, "exterior": SMOKE}).scene.medium == smoke
+    seen = {"type": "scene", "fog": {**SMOKE, "id": "fog"}, "one": ball}
+    assert rw.from_mitsuba({**seen, "eye": {**EYE, "m": {"type": "ref", "id": "fog"}}}).scene.medium == smoke
+    # A sensor in a ball of smoke has it around it, and the scene has not.
+    inside = {"type": "sphere", "interior": {"type": "ref", "id": "fog"}, "bsdf": {"type": "null"}}
+    assert (
+        rw.from_mitsuba(
+            {**seen, "two": inside, "eye": {**EYE, "m": {"type": "ref", "id": "fog"}}}
+        ).scene.medium
+        is None
+    )
+
+
+@pytest.mark.parametrize(
+    ("medium", "says"),
+    [
+        ({"type": "homogeneous", "albedo": 2.0}, "homogeneous 'one.interior': absorption must be at least 0"),
+        ({"type": "homogeneous", "phase": {"type": "hg", "g": 1.0}}, "g must be between -1 and 1"),
+        ({"type": "homogeneous", "phase": {"type": "sggx"}}, "sggx 'phase' is not supported here"),
+        ({"type": "heterogeneous", "albedo": {"type": "gridvolume"}}, "albedo on a grid is not supported"),
+        ({"type": "heterogeneous", "sigma_t": {"type": "gridvolume"}}, "must be given by its filename"),
+        ({"type": "rgb", "value": 1.0}, "interior must be one of homogeneous, heterogeneous, got rgb"),
+    ],
+)
+def test_what_is_not_read_is_refused(medium, says):
+    with pytest.raises(ValueError, match=says):
+        within({"type": "null"}, medium)
