@@ -11,6 +11,7 @@ from .integrators import (
     AmbientOcclusion,
     BeamTraced,
     Bidirectional,
+    ConeTraced,
     Direct,
     Distributed,
     LightTraced,
@@ -55,7 +56,7 @@ from .materials import (
     metals,
 )
 from .query.all_hits import AllHits
-from .query.cones import ConeTouches
+from .query.cones import ConeCoverage, ConeTouches
 from .query.hits import ClosestPoints, Hits, QueryCost
 from .query.interactions import Interactions, LightSamples, Rays, Scattered, power_heuristic
 from .query.leaving import LeavingRays
@@ -127,7 +128,9 @@ __all__ = [
     "ClosestPoints",
     "Conductor",
     "Cone",
+    "ConeCoverage",
     "ConeTouches",
+    "ConeTraced",
     "ConstantEnvironment",
     "Cylinder",
     "Dielectric",

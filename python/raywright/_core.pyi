@@ -24,6 +24,7 @@ __all__ = [
     "camera_rays",
     "camera_rays_through",
     "chances",
+    "cone_coverage",
     "cones",
     "first_hits",
     "implicit_trouble",
@@ -481,6 +482,17 @@ def photons(
     Then shape_id, primitive, path and bounces (K,), bits of which bounces were sharp, and what is emitted
     and escapes. Signals are checked.
     """
+
+def cone_coverage(
+    scene: CompiledScene,
+    origins: _Floats,
+    directions: _Floats,
+    half_angle: _Numbers,
+    t_max: _Numbers,
+    shape: tuple[int, ...],
+    threads: int | None,
+) -> NDArray[np.float64]:
+    """Return the share of each cone that is covered, of the given shape; arguments as `cones`."""
 
 def cones(
     scene: CompiledScene,

@@ -56,7 +56,7 @@ mod _core {
     #[pymodule_export]
     use super::cameras::{camera_rays, camera_rays_through};
     #[pymodule_export]
-    use super::cones::cones;
+    use super::cones::{cone_coverage, cones};
     #[pymodule_export]
     use super::first_hits::first_hits;
     #[pymodule_export]
