@@ -31,6 +31,7 @@ mod shapes;
 mod signals;
 mod spectra;
 mod textures;
+mod tree;
 mod view_factors;
 mod watcher;
 mod written;
@@ -100,6 +101,8 @@ mod _core {
     use super::simd;
     #[pymodule_export]
     use super::spectra::spectrum_rgb;
+    #[pymodule_export]
+    use super::tree::tree;
     #[pymodule_export]
     use super::view_factors::{view_factor_matrix, view_factor_rows};
     /// The most samples that a pilot takes of each way.
