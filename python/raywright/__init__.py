@@ -61,6 +61,7 @@ from .query.hits import ClosestPoints, Hits, QueryCost
 from .query.interactions import Interactions, LightSamples, Rays, Scattered, power_heuristic
 from .query.leaving import LeavingRays
 from .query.photons import Photons
+from .query.trees import TreeBoxes
 from .query.surface import Surface
 from .rendering.aovs import AOVS, aovs
 from .rendering.filters import (
@@ -216,6 +217,7 @@ __all__ = [
     "ThinDielectric",
     "ThinLens",
     "Torus",
+    "TreeBoxes",
     "TriangleFilter",
     "TwoSided",
     "UvTransform",

@@ -45,6 +45,7 @@ __all__ = [
     "singular_transform",
     "spectrum_rgb",
     "student",
+    "tree",
     "view_factor_matrix",
     "view_factor_rows",
 ]
@@ -572,6 +573,14 @@ class Interactions:
     @property
     def shape_id(self) -> NDArray[np.int32]: ...
     @property
+    def primitive(self) -> NDArray[np.int32]: ...
+    @property
+    def uv(self) -> NDArray[np.float64]: ...
+    @property
+    def albedo(self) -> NDArray[np.float64]: ...
+    @property
+    def ior(self) -> NDArray[np.float64]: ...
+    @property
     def position(self) -> NDArray[np.float64]: ...
     @property
     def normal(self) -> NDArray[np.float64]: ...
@@ -581,6 +590,9 @@ class Interactions:
     def emission(self) -> NDArray[np.float64]: ...
     def leave(self, directions: _Floats) -> NDArray[np.float64]: ...
     def evaluate(self, directions: _Floats) -> tuple[NDArray[np.float64], NDArray[np.float64]]: ...
+    def single(
+        self, is_through: bool
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]: ...
     def sample(
         self, choice: _Numbers, u: _Numbers
     ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]: ...
@@ -628,6 +640,11 @@ def points(
     Position, error, normal, shading normal, dp/du, dp/dv, dn/du and dn/dv. `ray` says which ray each is of,
     where they are not in turn.
     """
+
+def tree(
+    scene: CompiledScene,
+) -> tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.float64]] | None:
+    """Return depth (K,), primitives (K,), -1 of what is no leaf, and corners (K, 24) of the boxes of a tree."""
 
 def view_factor_matrix(
     scene: CompiledScene,

@@ -66,6 +66,22 @@ def test_faces_cover_exactly_and_inner_edges_never_show():
     assert found.share[0] > found.share[1]
 
 
+def test_shares_are_those_of_rays_through_faces_that_hide_each_other():
+    rng = np.random.default_rng(8)
+    corners = rng.normal(size=(30, 3, 3)) * (1, 1, 0.6) - (0, 0, 4)
+    scene = rw.Scene(rw.Mesh(corners.reshape(-1, 3), np.arange(90).reshape(-1, 3)))
+    count = 20_000
+    for angle in (3.0, 20.0, 60.0):
+        # Evenly over the cone.
+        cosine = 1 - (1 - np.cos(np.radians(angle))) * rng.random(count)
+        sine, turn = np.sqrt(1 - cosine**2), 2 * np.pi * rng.random(count)
+        ways = np.stack([sine * np.cos(turn), sine * np.sin(turn), -cosine], axis=1)
+        met = scene.occluded((0, 0, 0), ways).mean()
+        share = scene.cone_coverage((0, 0, 0), (0, 0, -1), angle).share
+        # One in a hundred thousand seeds is beyond 4.5 standard errors.
+        assert abs(share - met) < 4.5 * np.sqrt(max(share * (1 - share), 1e-4) / count)
+
+
 def test_spheres_blend_behind_each_other():
     near, far = rw.Sphere((0, 0, -5), 0.5), rw.Sphere((0, 0, -9), 1.5)
     share = [rw.Scene(s).cone_coverage((0, 0, 0), (0, 0, -1), 20).share for s in ([near], [far], [near, far])]
