@@ -61,8 +61,8 @@ from .query.hits import ClosestPoints, Hits, QueryCost
 from .query.interactions import Interactions, LightSamples, Rays, Scattered, power_heuristic
 from .query.leaving import LeavingRays
 from .query.photons import Photons
-from .query.trees import TreeBoxes
 from .query.surface import Surface
+from .query.trees import TreeBoxes
 from .rendering.aovs import AOVS, aovs
 from .rendering.filters import (
     BlackmanHarrisFilter,

@@ -644,7 +644,7 @@ def points(
 def tree(
     scene: CompiledScene,
 ) -> tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.float64]] | None:
-    """Return depth (K,), primitives (K,), -1 of what is no leaf, and corners (K, 24) of the boxes of a tree."""
+    """Return depth (K,), primitives (K,), -1 of what is no leaf, and corners (K, 24) of a tree's boxes."""
 
 def view_factor_matrix(
     scene: CompiledScene,

@@ -140,7 +140,7 @@ def test_windows_show_what_rays_see_through_them(degrees):
 
 
 def seen_at(ior, height, depth, at, across):
-    """Return the tangent x at which an eye at a height over water sees what lies at x = at in a depth, y given."""
+    """Return the tangent x at which an eye over water sees what lies at x = at in its depth, of a given y."""
     low, high = 0.0, at / height
     for _ in range(60):
         x = 0.5 * (low + high)
@@ -151,7 +151,9 @@ def seen_at(ior, height, depth, at, across):
     return 0.5 * (low + high)
 
 
-@pytest.mark.parametrize(("fov", "tolerance", "most"), [(2, np.inf, 0.002), (70, 0.02, 0.03), (70, 0.25, 0.3)])
+@pytest.mark.parametrize(
+    ("fov", "tolerance", "most"), [(2, np.inf, 0.002), (70, 0.02, 0.03), (70, 0.25, 0.3)]
+)
 def test_what_lies_in_water_is_seen_where_snell_says(fov, tolerance, most):
     ior, height, depth, size = 1.5, 2.0, 3.0, 16
     scale = size / 2 / np.tan(np.radians(fov) / 2)
@@ -159,7 +161,9 @@ def test_what_lies_in_water_is_seen_where_snell_says(fov, tolerance, most):
     at = (height + depth) * 4.5 / scale
     wide = 40.0
     water = block((-wide, -wide, -wide), (wide, wide, 0), material=rw.Dielectric(ior))
-    paper = quad((-wide / 2, -9, -depth), (at, -9, -depth), (at, 9, -depth), (-wide / 2, 9, -depth), material=PAPER)
+    paper = quad(
+        (-wide / 2, -9, -depth), (at, -9, -depth), (at, 9, -depth), (-wide / 2, 9, -depth), material=PAPER
+    )
     camera = rw.Camera((0, 0, height), (0, 0, 0), up=(0, 1, 0), fov=fov, width=size, height=size)
     scene = rw.Scene([water, paper], precision="double")
     rgb = look(scene, camera, rw.BeamTraced(2, ambient=1.0, tolerance=tolerance)).rgb[..., 0].astype(float)
@@ -173,14 +177,18 @@ def test_what_lies_in_water_is_seen_where_snell_says(fov, tolerance, most):
 
 
 def test_behind_a_window_directions_are_exact():
-    paper = [quad((-900, -900, -900), (11.3, -900, -900), (47.1, 900, -900), (-900, 900, -900), material=PAPER)]
+    paper = [
+        quad((-900, -900, -900), (11.3, -900, -900), (47.1, 900, -900), (-900, 900, -900), material=PAPER)
+    ]
     window = block((-3, -3, -1), (3, 3, -0.7), material=rw.Dielectric(1.5))
     camera = rw.Camera((0, 0, 0), (0, 0, -1), up=(0, 1, 0), fov=40, width=12, height=12)
     free, seen = (
-        look(rw.Scene(shapes, precision="double"), camera, rw.BeamTraced(3, ambient=1.0, tolerance=np.inf)).rgb
+        look(
+            rw.Scene(shapes, precision="double"), camera, rw.BeamTraced(3, ambient=1.0, tolerance=np.inf)
+        ).rgb
         for shapes in (paper, [*paper, window])
     )
-    # What is lost is what the window reflects, the same near and far; the shift by a third of its thickness is
+    # What is lost is what the window reflects, the same near and far; the shift by a third of its depth is
     # 2e-3 pixels at this distance, and where a pixel is wholly one or the other it changes nothing.
     share = seen[..., 0] / np.maximum(free[..., 0], 1e-9)
     covered, clear = free[..., 0] > 0.999, free[..., 0] == 0
@@ -197,7 +205,7 @@ def test_a_prism_reflects_all_where_light_cannot_leave():
     camera = rw.Camera((0.5, 0.5, 2.6), (0.5, 0.5, 0), up=(0, 1, 0), fov=30, width=16, height=16)
     beams = look(scene, camera, rw.BeamTraced(5, ambient=0.1, tolerance=0.05)).rgb.astype(float)
     rays = look(scene, camera, rw.Whitted(5, ambient=0.1, contribution=0), samples=1024)
-    # Where an edge is seen through two faces it may be off by a tenth of a pixel; elsewhere all is as rays see it.
+    # Where an edge is seen through two faces it may be off by a tenth of a pixel; else all is as rays see it.
     off = np.abs(beams - rays.rgb)
     within = off <= 4.5 * rays.standard_error + 2e-3 * rays.rgb + 1e-6
     assert np.mean(within) > 0.97
@@ -205,10 +213,12 @@ def test_a_prism_reflects_all_where_light_cannot_leave():
 
 
 def test_shading_errs_by_less_than_a_thousandth_where_light_is_steep():
-    # A lamp as near to the wall as a pixel is wide; means of 16 by 16 finer pixels tell what coarse ones should be.
+    # A lamp two pixels from the wall; means of 16 by 16 finer pixels tell what coarse ones should be.
     scene = rw.Scene([square(4, 0.0, material=PAPER)], lights=[rw.PointLight((0.13, 0.21, 0.5), 1.0)])
     coarse, fine = (
-        look(scene, rw.Camera((0, 0, 5), (0, 0, 0), up=(0, 1, 0), fov=40, width=n, height=n), rw.BeamTraced()).rgb
+        look(
+            scene, rw.Camera((0, 0, 5), (0, 0, 0), up=(0, 1, 0), fov=40, width=n, height=n), rw.BeamTraced()
+        ).rgb
         for n in (16, 256)
     )
     means = fine[..., 0].astype(float).reshape(16, 16, 16, 16).mean(axis=(1, 3))

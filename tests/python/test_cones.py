@@ -214,7 +214,11 @@ def covered(half_angle, **kwargs):
         (lambda: covered(90), ValueError, "half_angle must be at least"),
         (lambda: covered("wide"), TypeError, "half_angle"),
         (lambda: covered(10, t_max=np.nan), ValueError, "t_max"),
-        (lambda: rw.Scene([rw.Torus((0, 0, 0), (0, 0, 1), 1, 0.2)]).cone_coverage(*"xyz"), TypeError, "half_angle"),
+        (
+            lambda: rw.Scene([rw.Torus((0, 0, 0), (0, 0, 1), 1, 0.2)]).cone_coverage(*"xyz"),
+            TypeError,
+            "half_angle",
+        ),
         (
             lambda: rw.Scene([FLOOR, rw.Plane((0, 0, 0), (0, 0, 1))]).cone_coverage((0, 0, 1), (0, 0, 1), 5),
             ValueError,
@@ -231,7 +235,9 @@ def test_any_number_of_threads_makes_the_same_bits():
     box = [block((0.2, 0, 0.3), (0.45, 0.5, 0.55)), rw.Sphere((0.7, 0.3, 0.3), 0.2, material=rw.Mirror())]
     scene = rw.Scene([square(1, -0.1), *box], lights=[rw.PointLight((0.5, 0.6, 1.7), 1.0)])
     camera = rw.Camera((0.5, 0.5, 2.6), (0.5, 0.5, 0), up=(0, 1, 0), fov=38, width=9, height=7)
-    one, two = (rw.render(scene, camera, rw.ConeTraced(3), samples=1, threads=n, progress=False).rgb for n in (1, 2))
+    one, two = (
+        rw.render(scene, camera, rw.ConeTraced(3), samples=1, threads=n, progress=False).rgb for n in (1, 2)
+    )
     assert np.array_equal(one, two)
     rng = np.random.default_rng(2)
     cones = rng.normal(size=(2, 50, 3)) + 0.5

@@ -9,7 +9,9 @@ import raywright as rw
 def rays(origins, directions):
     directions = np.asarray(directions, float)
     directions = directions / np.linalg.norm(directions, axis=1)[:, None]
-    return rw.Rays(np.broadcast_to(np.asarray(origins, float), directions.shape), directions, np.zeros(len(directions)))
+    return rw.Rays(
+        np.broadcast_to(np.asarray(origins, float), directions.shape), directions, np.zeros(len(directions))
+    )
 
 
 def around(count, seed=0):
@@ -50,7 +52,9 @@ def test_mirrors_reflect_and_matt_surfaces_send_nothing_anywhere(box):
     assert not here.refracted().any.any()
     matt = rw.Scene(box).interactions(batch)
     for none in (matt.reflected(), matt.refracted()):
-        assert not none.any.any() and np.isnan(none.direction).all() and np.all(none.pdf == 0)
+        assert not none.any.any()
+        assert np.isnan(none.direction).all()
+        assert np.all(none.pdf == 0)
 
 
 @pytest.mark.parametrize("start", [(0, 0, 5), (0.2, 0.1, -0.3)])
@@ -86,8 +90,10 @@ def test_reports_make_frames_with_names(box):
     )
     frame = table.to_dataframe()
     assert list(frame.columns) == ["a", "b"]
-    assert frame["a"].tolist() == [1, 2] and frame["b"].tolist() == ["x", None]
+    assert frame["a"].tolist() == [1, 2]
+    assert frame["b"].tolist() == ["x", None]
     report = rw.report.accelerators(rw.Scene(box), accelerators=[rw.BVH(), rw.KdTree()], repeats=1)
     frame = report.to_dataframe()
     assert isinstance(frame, pandas.DataFrame)
-    assert list(frame.columns) == [column.name for column in report.columns] and len(frame) == len(report.rows)
+    assert list(frame.columns) == [column.name for column in report.columns]
+    assert len(frame) == len(report.rows)

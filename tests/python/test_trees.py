@@ -32,10 +32,12 @@ def test_boxes_are_the_trees(knot, accelerator):
     # Boxes are rounded to float32 in units of half the scene's size or so.
     assert tree.lower[0] == pytest.approx(scene.bounds[0], abs=1e-6)
     assert tree.upper[0] == pytest.approx(scene.bounds[1], abs=1e-6)
-    assert np.all(tree.lower >= tree.lower[0]) and np.all(tree.upper <= tree.upper[0])
+    assert np.all(tree.lower >= tree.lower[0])
+    assert np.all(tree.upper <= tree.upper[0])
     assert tree.primitives[tree.leaf].sum() >= len(knot.faces)
     below = tree.at(3)
-    assert len(below) == np.count_nonzero(tree.depth == 3) and np.all(below.depth == 3)
+    assert len(below) == np.count_nonzero(tree.depth == 3)
+    assert np.all(below.depth == 3)
 
 
 @pytest.mark.parametrize("accelerator", [rw.KdTree(), rw.Octree()], ids=repr)
@@ -69,7 +71,8 @@ def test_turned_boxes_are_told_by_their_corners():
     # No axis of the boxes is one of the scene's, and all that there is lies in the first.
     assert np.abs(sides / np.linalg.norm(sides, axis=1)[:, None]).max() < 0.99
     inside = (corners.reshape(-1, 3) - root[0]) @ (sides / np.diag(along)[:, None]).T
-    assert inside.min() > -1e-6 and inside.max() < 1 + 1e-6
+    assert inside.min() > -1e-6
+    assert inside.max() < 1 + 1e-6
 
 
 def test_meshes_and_other_shapes_have_a_tree_each(box):
@@ -95,7 +98,8 @@ def test_trees_are_drawn(box, tmp_path):
     assert (tmp_path / "tree.png").stat().st_size > 1000
     (lines,) = ax.collections
     assert len(lines.get_segments()) == 12 * len(tree)
-    assert ax.get_xlabel() == "x" and ax.get_ylabel() == "z"
+    assert ax.get_xlabel() == "x"
+    assert ax.get_ylabel() == "z"
     ax = rw.report.tree(scene, depth=1, leaves=True, ax=tmp_path / "leaves.svg")
     assert len(ax.collections[0].get_segments()) == 12 * np.count_nonzero(tree.leaf & (tree.depth <= 1))
 

@@ -58,4 +58,6 @@ class BeamTraced:
     def __init__(self, max_depth: int = 8, ambient: ArrayLike = 0.0, tolerance: float = 0.25) -> None:
         object.__setattr__(self, "max_depth", counts.depth("max_depth", max_depth))
         object.__setattr__(self, "ambient", colour("ambient", ambient))
-        object.__setattr__(self, "tolerance", np.inf if tolerance == np.inf else positive("tolerance", tolerance))
+        object.__setattr__(
+            self, "tolerance", np.inf if tolerance == np.inf else positive("tolerance", tolerance)
+        )
