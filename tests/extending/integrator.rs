@@ -49,7 +49,8 @@ impl Worker for Looking<'_> {
 fn fog_halves_what_is_seen_through_its_distance() {
     use raywright::accel::{bvh::Options, trees};
     use raywright::math::{DVec3, Vec3};
-    use raywright::sampling::Sampler;
+    use raywright::render::{Quiet, Settings, Until, render};
+    use raywright::scene::cameras::{Body, Measured, Perspective, Viewpoint, Window};
     use raywright::scene::{Mesh, SceneDescription, Shape};
     use raywright::simd::Level;
 
@@ -59,9 +60,13 @@ fn fog_halves_what_is_seen_through_its_distance() {
     let level = Level::current().unwrap();
     let described = SceneDescription { shapes, ..SceneDescription::default() };
     let scene = Scene::new(described, |primitives| trees::over(primitives, &Options::default(), level)).unwrap();
-    let sample = |way| CameraSample { ray: Ray::new(DVec3::ZERO, way), sampler: Sampler::new(0, 0, 0) };
-    let mut seen = [Rgb::ONE; 2];
-    let mut looking = Looking { scene: &scene, distance: 1.5 };
-    looking.radiance(&mut [DVec3::X, DVec3::NEG_X].map(sample), &Cancel::default(), &mut seen);
-    assert_eq!(seen, [Rgb::splat(0.25), Rgb::ZERO]);
+    let settings = Settings { until: Until { samples: Some(1), ..Until::default() }, ..Settings::default() };
+    let brightness = |towards| {
+        let viewpoint = Viewpoint::look_at(DVec3::ZERO, towards, DVec3::Z).unwrap();
+        let window = Window::of_view(0.001, Measured::Height, [2.0, 2.0]).unwrap();
+        let camera = Perspective::new(Body::new(viewpoint, 2, 2).unwrap(), window);
+        render(&scene, &camera, &Fog { distance: 1.5 }, &settings, &mut Quiet).unwrap().rgb()[0][0]
+    };
+    assert!((brightness(DVec3::X) - 0.25).abs() < 1e-6);
+    assert_eq!(brightness(DVec3::NEG_X), 0.0);
 }

@@ -222,7 +222,8 @@ def test_shading_errs_by_less_than_a_thousandth_where_light_is_steep():
         for n in (16, 256)
     )
     means = fine[..., 0].astype(float).reshape(16, 16, 16, 16).mean(axis=(1, 3))
-    assert np.abs(coarse[..., 0] / means - 1).max() < 5e-3
+    # At the middles of pixels alone it would err by 4 %.
+    assert np.abs(coarse[..., 0] / means - 1).max() < 1e-3
 
 
 FLOOR, SPHERE = square(2, 0), rw.Sphere((0, 0, 0), 1)

@@ -153,6 +153,30 @@ def test_a_ball_hides_a_round_lamp_as_caps_share():
     assert half / free == pytest.approx(1 - only, rel=2e-3)
 
 
+def test_rough_metal_shows_an_edge_as_blurred_as_rays_do():
+    # A plate of silver under the end of a wide white wall, seen from nearly straight above.
+    silver = rw.Conductor("Ag", alpha=0.15)
+    plate = square(20, 0.0, material=silver)
+    corners = [(0, -60, 10), (120, -60, 10), (120, 60, 10), (0, 60, 10)]
+    wall = quad(*corners, material=rw.Diffuse(0), emission=rw.Emission(1.0, side="both"))
+    lit = quad(*corners, material=PAPER)
+    camera = rw.Camera((0, 0, 5), (0, 0, 0), up=(0, 1, 0), fov=70, width=20, height=4)
+    # Cones see what is lit by an even light; rays are given what shines as much.
+    cones = look(rw.Scene([plate, lit]), camera, rw.ConeTraced(ambient=1.0)).rgb[..., 1].astype(float)
+    rays = look(rw.Scene([plate, wall]), camera, rw.Path(max_depth=1, caustics=False), samples=2048).rgb[
+        ..., 1
+    ]
+    cones, rays = cones.mean(axis=0), rays.mean(axis=0)
+    assert rays.min() < 0.1 * rays.max()
+    # An even cone has no tails: of all that is reflected, what differs is a twelfth at most.
+    assert np.abs(cones - rays).max() < rays.max() / 12
+    assert cones.sum() == pytest.approx(rays.sum(), rel=0.03)
+    # At roughness 0 it is the mirror's own picture.
+    plates = [square(20, 0.0, material=rw.Conductor("Ag", alpha=alpha)) for alpha in (0.0, 1e-3)]
+    one, other = (look(rw.Scene([smooth, lit]), camera, rw.ConeTraced(ambient=1.0)).rgb for smooth in plates)
+    assert np.abs(one - other).max() < 0.03
+
+
 def test_cones_see_no_moire_in_a_chequered_floor():
     pattern = rw.Checker(0.0, 1.0, transform=rw.UvTransform(scale=(40, 40)))
     floor = rw.Mesh(

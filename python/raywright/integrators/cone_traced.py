@@ -15,8 +15,9 @@ class ConeTraced:
     A cone has the solid angle of its pixel. What it meets counts by the share that it covers of it, the
     nearest first. A lamp throws a soft shadow by the share that is free of the cone to it: exact for the
     sphere that one sphere hides; a face is taken for a cone of its solid angle. Mirrors throw cones back,
-    wider where they bulge. So a picture has no noise, and one sample is as good as many (with two, the error
-    is 0 where with one it is not known). It is biased by design, as `Whitted` is, and where what a cone meets
+    wider where they bulge, and a rough `Conductor` (of GGX facets) throws them back as wide as half of its
+    light is spread. So a picture has no noise, and one sample is as good as many (with two, the error is 0
+    where with one it is not known). It is biased by design, as `Whitted` is, and where what a cone meets
     differs much within it: surfaces are shaded at one point of each face, spheres dim what is behind them
     evenly.
 

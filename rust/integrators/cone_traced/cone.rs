@@ -3,7 +3,7 @@
 use crate::accel::Primitives;
 use crate::integrators::Job;
 use crate::math::{DVec3, Hit, Ray};
-use crate::optics::{BsdfSample, Rgb};
+use crate::optics::{Bsdf, BsdfSample, Rgb};
 use crate::scene::{Geometry, SurfaceInteraction};
 use crate::shapes::triangle::SolidCone;
 
@@ -19,6 +19,8 @@ pub(super) struct Cone {
     pub weight: Rgb,
     /// How many surfaces it has met.
     pub bounce: u32,
+    /// Whether a rough surface has sent it, which has asked lamps itself.
+    pub is_dull: bool,
 }
 
 /// The least half angle of a cone, in radians, and the greatest.
@@ -73,30 +75,57 @@ impl Meeting {
         self.here.ambient(job.scene, &self.ray, &self.hit, self.width, 1.0) * radiance
     }
 
-    /// Calls with the cones that go on as from a mirror or through a pane.
+    /// The part of [`Meeting::ambient`]'s share that rough metals have, which cones follow.
+    pub fn dull_albedo(&self) -> Rgb {
+        let mut albedo = Rgb::ZERO;
+        self.here.bsdf().dull_lobes(|weight, metal| albedo += weight * metal.albedo());
+        albedo
+    }
+
+    /// Calls with the cones that go on as from a mirror or through a pane, and those of rough metals.
+    ///
+    /// The facets of a metal of roughness α deviate by more than atan α as often as by less, and light by twice that;
+    /// of an even cone half is within its half angle over √2.
+    pub fn goes_on(&self, cone: &Cone, share: f64, mut each: impl FnMut(Cone)) {
+        self.here.bsdf().delta_lobes(self.here.wo(), |single| {
+            let Some(BsdfSample { wi, weight, is_through, .. }) = self.here.to_world(single) else { return };
+            let bent = if is_through { cone.angle } else { cone.angle + self.here.curvature() * self.width };
+            each(self.onward(cone, (wi, is_through), bent, weight * share));
+        });
+        let (normal, way) = (self.here.shading_normal(), self.ray.direction);
+        let mirrored = way - normal * (2.0 * normal.dot(way));
+        if self.here.is_through(mirrored) {
+            return;
+        }
+        self.here.bsdf().dull_lobes(|weight, metal| {
+            let spread = 2.0 * std::f64::consts::SQRT_2 * metal.roughness().atan();
+            let bent = cone.angle + self.here.curvature() * self.width;
+            let weight = weight * metal.reflectance(self.here.cosine()) * share;
+            let onward = self.onward(cone, (mirrored, false), bent.abs() + spread, weight);
+            each(Cone { is_dull: true, ..onward });
+        });
+    }
+
+    /// The cone that goes on to a direction, with a half angle.
     ///
     /// A surface of mean curvature H, met by a cone of radius r, adds 2 H r to its half angle: neighbouring normals
     /// differ by H r (Amanatides 1984). So it starts at an apex behind the surface, with its radius there; light that
     /// comes together behind a hollow mirror is taken to spread as much instead.
-    pub fn goes_on(&self, cone: &Cone, share: f64, mut each: impl FnMut(Cone)) {
+    fn onward(&self, cone: &Cone, (wi, is_through): (DVec3, bool), bent: f64, weight: Rgb) -> Cone {
         let surface = self.here.surface();
         // The axis is thrown back as the ray is, from where it meets the plane that touches the surface: so a flat
         // mirror shows the very cone, whichever part of it is met.
         let along = surface.normal.dot(surface.position - cone.apex) / surface.normal.dot(cone.axis);
         let is_near = along > 0.5 * self.hit.t && along < 2.0 * self.hit.t;
         let (axis, distance) = if is_near { (cone.axis, along) } else { (self.ray.direction, self.hit.t) };
-        self.here.bsdf().delta_lobes(self.here.wo(), |single| {
-            let Some(BsdfSample { wi, weight, is_through, .. }) = self.here.to_world(single) else { return };
-            let bent = if is_through { cone.angle } else { cone.angle + self.here.curvature() * self.width };
-            let angle = bent.abs().clamp(ANGLES[0], ANGLES[1]);
-            let half = (wi - self.ray.direction).try_normalize().filter(|_| !is_through);
-            let onward = half.map_or(axis, |half| axis - half * (2.0 * half.dot(axis)));
-            let apex = cone.apex + axis * distance - onward * (distance * cone.angle.tan() / angle.tan());
-            let normal = if surface.normal.dot(wi) < 0.0 { -surface.normal } else { surface.normal };
-            let beyond = Some((normal, normal.dot(surface.position) + surface.error));
-            let weight = cone.weight * weight * share;
-            each(Cone { apex, axis: onward, angle, beyond, weight, bounce: cone.bounce + 1 });
-        });
+        let angle = bent.abs().clamp(ANGLES[0], ANGLES[1]);
+        let half = (wi - self.ray.direction).try_normalize().filter(|_| !is_through);
+        let onward = half.map_or(axis, |half| axis - half * (2.0 * half.dot(axis)));
+        let apex = cone.apex + axis * distance - onward * (distance * cone.angle.tan() / angle.tan());
+        let normal = if surface.normal.dot(wi) < 0.0 { -surface.normal } else { surface.normal };
+        let beyond = Some((normal, normal.dot(surface.position) + surface.error));
+        let weight = cone.weight * weight;
+        Cone { apex, axis: onward, angle, beyond, weight, bounce: cone.bounce + 1, is_dull: false }
     }
 }
 

@@ -13,8 +13,8 @@ use lamps::{Lamp, lamps, light};
 
 /// Cone tracing (Amanatides, "Ray Tracing with Cones", 1984): one cone a pixel, of its solid angle, in place of
 /// samples. What it meets counts by the share that it covers of the cone, the nearest first; lamps of some size throw
-/// soft shadows by the share of the cone to them that is free; mirrors throw cones back, wider where they are curved.
-/// So one sample has no noise.
+/// soft shadows by the share of the cone to them that is free; mirrors throw cones back, wider where they are curved,
+/// and rough metals as wide as they are dull. So one sample has no noise.
 ///
 /// It is Whitted's picture, and shares his limits. What the paper takes to be small is wrong where it is not: a surface
 /// is shaded at one point of what a cone meets, and spheres dim what is behind them evenly.
@@ -86,7 +86,7 @@ fn of_pixel(camera: &Perspective, [x, y]: [f64; 2]) -> Cone {
     };
     let solid_angle = triangle(a, b, c) + triangle(a, c, d);
     let angle = 2.0 * (solid_angle / (4.0 * std::f64::consts::PI)).sqrt().asin();
-    Cone { apex: middle.origin, axis: middle.direction, angle, beyond: None, weight: Rgb::ONE, bounce: 0 }
+    Cone { apex: middle.origin, axis: middle.direction, angle, beyond: None, weight: Rgb::ONE, bounce: 0, is_dull: false }
 }
 
 impl Tracing<'_> {
@@ -105,13 +105,18 @@ impl Tracing<'_> {
                 let Some(met) = Meeting::new(&self.job, &cone, covering.primitive, covering.direction) else {
                     return;
                 };
-                radiance += cone.weight * covering.share * met.own(&self.job);
+                if !cone.is_dull {
+                    radiance += cone.weight * covering.share * met.own(&self.job);
+                }
                 if cone.bounce >= self.settings.max_depth {
                     return;
                 }
                 let mut sent = light(&self.job, coverage, &self.lamps, &met);
                 if !self.settings.ambient.is_black() {
-                    sent += met.ambient(&self.job, self.settings.ambient);
+                    let followed = cone.bounce + 1 < self.settings.max_depth;
+                    let dull = if followed { met.dull_albedo() } else { Rgb::ZERO };
+                    let ambient = self.settings.ambient;
+                    sent += (met.ambient(&self.job, ambient) - dull * ambient).at_least(Rgb::ZERO);
                 }
                 radiance += cone.weight * covering.share * sent;
                 met.goes_on(&cone, covering.share, |next| {
