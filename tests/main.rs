@@ -3,6 +3,8 @@
 //! They are compiled with the crate's unit tests (see `rust/lib.rs`): as crates of their own they would have it
 //! compiled once more, and all that is generic again for each of them.
 
+#[path = "extending/main.rs"]
+mod extending;
 #[path = "fuzz/main.rs"]
 mod fuzz;
 #[path = "hits/main.rs"]

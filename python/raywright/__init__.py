@@ -11,6 +11,7 @@ from .integrators import (
     AmbientOcclusion,
     BeamTraced,
     Bidirectional,
+    ConeTraced,
     Direct,
     Distributed,
     LightTraced,
@@ -57,12 +58,13 @@ from .materials import (
 )
 from .media import GridMedium, HenyeyGreenstein, Homogeneous, Isotropic, Medium, Rayleigh
 from .query.all_hits import AllHits
-from .query.cones import ConeTouches
+from .query.cones import ConeCoverage, ConeTouches
 from .query.hits import ClosestPoints, Hits, QueryCost
 from .query.interactions import Interactions, LightSamples, Rays, Scattered, power_heuristic
 from .query.leaving import LeavingRays
 from .query.photons import Photons
 from .query.surface import Surface
+from .query.trees import TreeBoxes
 from .rendering.aovs import AOVS, aovs
 from .rendering.filters import (
     BlackmanHarrisFilter,
@@ -130,7 +132,9 @@ __all__ = [
     "ClosestPoints",
     "Conductor",
     "Cone",
+    "ConeCoverage",
     "ConeTouches",
+    "ConeTraced",
     "ConstantEnvironment",
     "Cylinder",
     "Dielectric",
@@ -222,6 +226,7 @@ __all__ = [
     "ThinDielectric",
     "ThinLens",
     "Torus",
+    "TreeBoxes",
     "TriangleFilter",
     "TwoSided",
     "UvTransform",

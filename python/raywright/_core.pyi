@@ -24,6 +24,7 @@ __all__ = [
     "camera_rays",
     "camera_rays_through",
     "chances",
+    "cone_coverage",
     "cones",
     "first_hits",
     "implicit_trouble",
@@ -44,6 +45,7 @@ __all__ = [
     "singular_transform",
     "spectrum_rgb",
     "student",
+    "tree",
     "view_factor_matrix",
     "view_factor_rows",
 ]
@@ -482,6 +484,17 @@ def photons(
     and escapes. Signals are checked.
     """
 
+def cone_coverage(
+    scene: CompiledScene,
+    origins: _Floats,
+    directions: _Floats,
+    half_angle: _Numbers,
+    t_max: _Numbers,
+    shape: tuple[int, ...],
+    threads: int | None,
+) -> NDArray[np.float64]:
+    """Return the share of each cone that is covered, of the given shape; arguments as `cones`."""
+
 def cones(
     scene: CompiledScene,
     origins: _Floats,
@@ -560,6 +573,14 @@ class Interactions:
     @property
     def shape_id(self) -> NDArray[np.int32]: ...
     @property
+    def primitive(self) -> NDArray[np.int32]: ...
+    @property
+    def uv(self) -> NDArray[np.float64]: ...
+    @property
+    def albedo(self) -> NDArray[np.float64]: ...
+    @property
+    def ior(self) -> NDArray[np.float64]: ...
+    @property
     def position(self) -> NDArray[np.float64]: ...
     @property
     def normal(self) -> NDArray[np.float64]: ...
@@ -569,6 +590,9 @@ class Interactions:
     def emission(self) -> NDArray[np.float64]: ...
     def leave(self, directions: _Floats) -> NDArray[np.float64]: ...
     def evaluate(self, directions: _Floats) -> tuple[NDArray[np.float64], NDArray[np.float64]]: ...
+    def single(
+        self, is_through: bool
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]: ...
     def sample(
         self, choice: _Numbers, u: _Numbers
     ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]: ...
@@ -616,6 +640,11 @@ def points(
     Position, error, normal, shading normal, dp/du, dp/dv, dn/du and dn/dv. `ray` says which ray each is of,
     where they are not in turn.
     """
+
+def tree(
+    scene: CompiledScene,
+) -> tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.float64]] | None:
+    """Return depth (K,), primitives (K,), -1 of what is no leaf, and corners (K, 24) of a tree's boxes."""
 
 def view_factor_matrix(
     scene: CompiledScene,

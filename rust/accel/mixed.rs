@@ -3,7 +3,7 @@
 use super::walk::{Build, Mailbox};
 use super::walked::walked;
 use super::{
-    Accelerator, ByColumns, Cost, Counts, Crossings, Every, Info, Nearest, Primitives, Side, Touches, UserGeometry,
+    Accelerator, Boxes, ByColumns, Cost, Counts, Crossings, Every, Info, Nearest, Primitives, Side, Touches, UserGeometry,
 };
 use crate::math::{DVec3, Hit, HitColumns, Ray, RayColumns};
 use crate::shapes::Bounds;
@@ -266,6 +266,12 @@ impl Accelerator for Mixed {
             cost.nodes += other.nodes;
             cost.primitives += other.primitives;
         }
+    }
+
+    fn boxes(&self) -> Option<Vec<Boxes>> {
+        let mut all = self.triangles.boxes()?;
+        all.append(&mut self.objects.boxes()?);
+        Some(all)
     }
 
     fn refitted(&self, primitives: &dyn Primitives) -> Result<Box<dyn Accelerator>, String> {

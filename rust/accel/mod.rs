@@ -1,5 +1,6 @@
 //! Floor 2: what finds hits.
 
+mod boxes;
 mod brute;
 pub mod bsp;
 pub mod bvh;
@@ -19,6 +20,7 @@ mod user_geometry;
 pub mod walk;
 mod walked;
 
+pub use boxes::{Boxes, NodeBox};
 pub use brute::BruteForce;
 pub use crossings::Crossings;
 pub use kept::Counts;
@@ -157,6 +159,9 @@ pub trait Accelerator: Send + Sync {
     /// What finding the closest hit of each ray takes, ray by ray.
     fn cost(&self, rays: &[Ray], costs: &mut [Cost]);
 
+    /// The boxes of all nodes, of each of the trees that it is; `None` of what has no boxes.
+    fn boxes(&self) -> Option<Vec<Boxes>>;
+
     /// The same structure over primitives that have moved: as many, of the same numbers and of which the same can be
     /// hit.
     fn refitted(&self, primitives: &dyn Primitives) -> Result<Box<dyn Accelerator>, String>;
@@ -242,6 +247,10 @@ impl<A: Answers> Accelerator for A {
     fn cost(&self, rays: &[Ray], costs: &mut [Cost]) {
         assert_eq!(rays.len(), costs.len(), "a cost for each ray");
         self.answer(rays, &mut Counted(costs));
+    }
+
+    fn boxes(&self) -> Option<Vec<Boxes>> {
+        Answers::boxes(self).map(|boxes| vec![boxes])
     }
 
     fn refitted(&self, primitives: &dyn Primitives) -> Result<Box<dyn Accelerator>, String> {

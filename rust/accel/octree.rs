@@ -9,7 +9,7 @@
 //! children it certainly is not; all others are visited.
 
 use super::walk::{Halves, Input, Lists, Part, Plane, Room, Structure, Walker};
-use super::{Info, SlabRay};
+use super::{Info, NodeBox, SlabRay};
 use crate::math::Aabb;
 use crate::math::robust::{greater, lesser};
 use rayon::prelude::*;
@@ -281,6 +281,14 @@ impl Structure for Octree {
             sah_cost: self.sah_cost,
             ..Info::default()
         }
+    }
+
+    fn boxes(&self, primitives: &dyn Fn(u32) -> usize) -> Option<Vec<NodeBox>> {
+        let of = |Cell { node, aabb, depth, .. }: Cell| {
+            let node = self.nodes[node];
+            NodeBox { aabb, depth, primitives: node.is_leaf().then(|| node.number().map_or(0, primitives)) }
+        };
+        Some(self.cells().map(of).collect())
     }
 
     fn validate(&self, input: &Input, primitives: &dyn Fn(u32) -> Vec<u32>) -> Result<(), String> {

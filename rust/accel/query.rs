@@ -1,6 +1,6 @@
 //! What is asked of each ray: a type each, so that each question has kernels of its own.
 
-use super::{ByColumns, Cost, Info, Nearest, Primitives, Touches};
+use super::{Boxes, ByColumns, Cost, Info, Nearest, Primitives, Touches};
 use crate::math::{DVec3, Hit, Ray};
 use crate::shapes::triangle::{Along, SolidCone};
 use crate::shapes::{Candidate, Contact};
@@ -229,6 +229,11 @@ pub trait Answers: Send + Sync + Sized + 'static {
 
     /// See [`super::Accelerator::touched`].
     fn touched(&self, cones: &[Option<SolidCone>]) -> Touches;
+
+    /// See [`super::Accelerator::boxes`].
+    fn boxes(&self) -> Option<Boxes> {
+        None
+    }
 
     /// See [`super::Accelerator::refitted`].
     fn refitted(&self, primitives: &dyn Primitives) -> Result<Self, String>;

@@ -2,7 +2,7 @@
 
 use super::query::{Answers, Query, Wanted};
 use super::walk::{Build, Contents, Few, Input, Lists, Mailbox, Mailboxes, Marks, Structure, TogetherBatch};
-use super::{Accelerator, Info, Nearest, Primitives, SlabRay, Touches, bvh};
+use super::{Accelerator, Boxes, Info, Nearest, Primitives, SlabRay, Touches, bvh};
 use crate::math::{Aabb, DVec3, LANES, Ray, Region};
 use crate::shapes::triangle::{DoubleLeaves, EdgeRay, Leaves, SingleLeaves, SolidCone};
 use crate::simd::{Dispatch, Kernel, Level, Simd};
@@ -128,6 +128,11 @@ where
 
     fn touched(&self, cones: &[Option<SolidCone>]) -> Touches {
         self.tree().touched(cones)
+    }
+
+    fn boxes(&self) -> Option<Boxes> {
+        let nodes = self.structure.boxes(&|leaf| self.contents.primitives(leaf).len())?;
+        Some(Boxes { nodes, region: self.region, axes: None })
     }
 
     fn refitted(&self, primitives: &dyn Primitives) -> Result<Self, String> {

@@ -41,6 +41,12 @@ impl Axes {
         DVec3::new(x.dot(v), y.dot(v), z.dot(v))
     }
 
+    /// What has these coordinates along the axes, to within rounding.
+    pub fn back(&self, along: DVec3) -> DVec3 {
+        let [x, y, z] = self.double;
+        (x * along.x + y * along.y + z * along.z) / (Self::SCALE * Self::SCALE)
+    }
+
     /// The vectors, rounded to f32.
     #[inline(always)]
     pub fn single(&self) -> &[[f32; 3]; 3] {
@@ -73,6 +79,7 @@ mod tests {
                 prop_assert!((a.dot(b) - product).abs() < 4.0 * f64::EPSILON, "{:?}", axes);
             }
             prop_assert!(x.cross(y).dot(z) > 0.0);
+            prop_assert!((axes.back(axes.to(along)) - along).length() < 1e-15);
             // What goes along the first and the second does so there.
             prop_assert!((axes.to(along) - DVec3::X * along.length() / 2.0).length() < 1e-15);
             prop_assert!(aside < 1.0 || axes.to(beside).z.abs() < 1e-12 && axes.to(beside).y > 0.0);

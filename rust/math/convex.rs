@@ -119,6 +119,26 @@ pub fn take_out(polygon: Convex, region: &[HalfPlane], outside: &mut Vec<Convex>
     left
 }
 
+/// What of a polygon in space has a value above 0, that is linear; corners of no more than the slack are on the border.
+pub fn above(polygon: &[DVec3], value: impl Fn(DVec3) -> f64, slack: f64) -> Vec<DVec3> {
+    let value = |at: DVec3| Some(value(at)).filter(|v| v.abs() > slack).unwrap_or(0.0);
+    if polygon.iter().all(|&corner| value(corner) <= 0.0) {
+        return Vec::new();
+    }
+    let mut kept = Vec::with_capacity(polygon.len() + 1);
+    for (i, &corner) in polygon.iter().enumerate() {
+        let before = polygon[(i + polygon.len() - 1) % polygon.len()];
+        let (here, there) = (value(corner), value(before));
+        if here * there < 0.0 {
+            kept.push(before + (corner - before) * (there / (there - here)));
+        }
+        if here >= 0.0 {
+            kept.push(corner);
+        }
+    }
+    kept
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

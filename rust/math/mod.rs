@@ -3,6 +3,7 @@
 mod aabb;
 mod affine;
 mod axes;
+pub mod cap;
 pub mod coherence;
 mod columns;
 pub mod convex;

@@ -10,8 +10,8 @@ use super::cameras::AnyCamera;
 use super::query::CompiledScene;
 use super::signals::heard;
 use crate::integrators::{
-    AmbientOcclusion, BeamTraced, Bidirectional, Channel, Direct, Distributed, Integrator, Kernel, LightTraced, Path,
-    PhotonMap, ProgressivePhotonMap, Radiosity, RayCast, Whitted, aovs as observe,
+    AmbientOcclusion, BeamTraced, Bidirectional, Channel, ConeTraced, Direct, Distributed, Integrator, Kernel,
+    LightTraced, Path, PhotonMap, ProgressivePhotonMap, Radiosity, RayCast, Whitted, aovs as observe,
 };
 use crate::optics::Rgb;
 use crate::scene::{Patches, PlanRow};
@@ -123,9 +123,16 @@ impl<'a, 'py> FromPyObject<'a, 'py> for AnyIntegrator {
                 splits: attribute(of, "splits")?,
                 ambient: rgb(of, "ambient")?,
             }),
-            "BeamTraced" => {
-                Box::new(BeamTraced { max_depth: attribute(of, "max_depth")?, ambient: rgb(of, "ambient")? })
-            }
+            "BeamTraced" => Box::new(BeamTraced {
+                max_depth: attribute(of, "max_depth")?,
+                ambient: rgb(of, "ambient")?,
+                tolerance: attribute(of, "tolerance")?,
+            }),
+            "ConeTraced" => Box::new(ConeTraced {
+                max_depth: attribute(of, "max_depth")?,
+                contribution: attribute(of, "contribution")?,
+                ambient: rgb(of, "ambient")?,
+            }),
             "AmbientOcclusion" => Box::new(AmbientOcclusion {
                 radius: attribute(of, "radius")?,
                 cosine: attribute(of, "cosine")?,

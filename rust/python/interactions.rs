@@ -8,7 +8,7 @@ use super::arrays::{Numbers, Triples, numbers, sealed, unwritten};
 use super::query::CompiledScene;
 use super::rays::{Parts, answer, chunks, each, share};
 use crate::math::{DVec3, Hit, Ray};
-use crate::optics::Rgb;
+use crate::optics::{Bsdf, BsdfSample, Rgb};
 use crate::scene::{Encounter, Scene, ShadingPoint, SurfaceInteraction};
 
 type Vectors<'py> = Bound<'py, PyArrayDyn<f64>>;
@@ -192,6 +192,64 @@ impl Interactions {
             *to = shape(entry);
         }
         sealed(array)
+    }
+
+    /// Which face of its shape; −1 for a miss.
+    #[getter]
+    fn primitive<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<i32>>> {
+        let geometry = self.scene.get().scene().geometry();
+        let primitive = |e: &Entry| e.here.as_ref().map_or(-1, |_| geometry.locate(e.hit.primitive).1 as i32);
+        let array = unwritten::<i32>(py, &[self.entries.len()], None)?;
+        for (to, entry) in array.readwrite().as_slice_mut()?.iter_mut().zip(&self.entries) {
+            *to = primitive(entry);
+        }
+        sealed(array)
+    }
+
+    #[getter]
+    fn uv<'py>(&self, py: Python<'py>) -> PyResult<Vectors<'py>> {
+        let uv = |e: &Entry| e.here.as_ref().map_or([f64::NAN; 2], |_| e.hit.uv);
+        filled(py, self.entries.len(), |i| uv(&self.entries[i]))
+    }
+
+    /// About the share of white light that is scattered.
+    #[getter]
+    fn albedo<'py>(&self, py: Python<'py>) -> PyResult<Vectors<'py>> {
+        let albedo = |here: &SurfaceInteraction| DVec3::from_array(here.bsdf().albedo().to_array());
+        self.vectors(py, albedo)
+    }
+
+    /// The index of refraction of what the surface encloses, 1 of what encloses nothing.
+    #[getter]
+    fn ior<'py>(&self, py: Python<'py>) -> PyResult<Vectors<'py>> {
+        let scene = self.scene.get().scene();
+        let within = |here: &SurfaceInteraction| scene.material(here.surface().shape).interior();
+        let ior = |e: &Entry| e.here.as_ref().map_or(f64::NAN, |here| within(here).map_or(1.0, |within| within.ior));
+        filled(py, self.entries.len(), |i| [ior(&self.entries[i])])
+    }
+
+    /// Where all light of a single direction comes from, reflected or from the other side, and its weight; pdf is
+    /// infinite where there is any.
+    fn single<'py>(&self, py: Python<'py>, is_through: bool) -> PyResult<(Vectors<'py>, Vectors<'py>, Vectors<'py>)> {
+        let single = |entry: &Entry| {
+            let here = entry.here.as_ref()?;
+            let mut found: Option<BsdfSample> = None;
+            here.bsdf().delta_lobes(here.wo(), |lobe| {
+                let Some(lobe) = here.to_world(lobe).filter(|lobe| lobe.is_through == is_through) else { return };
+                match &mut found {
+                    None => found = Some(lobe),
+                    // Of several parts of a material, those that bend light otherwise are left out.
+                    Some(first) if first.eta == lobe.eta => first.weight += lobe.weight,
+                    Some(_) => {}
+                }
+            });
+            found.filter(|found| !found.weight.is_black())
+        };
+        let ([direction, weight], pdf) = all_filled(py, self.entries.len(), |i| match single(&self.entries[i]) {
+            Some(found) => ([found.wi.to_array(), found.weight.to_array()], f64::INFINITY),
+            None => ([[f64::NAN; 3], [0.0; 3]], 0.0),
+        })?;
+        Ok((direction, weight, pdf))
     }
 
     #[getter]

@@ -32,6 +32,7 @@ mod shapes;
 mod signals;
 mod spectra;
 mod textures;
+mod tree;
 mod view_factors;
 mod watcher;
 mod written;
@@ -57,7 +58,7 @@ mod _core {
     #[pymodule_export]
     use super::cameras::{camera_rays, camera_rays_through};
     #[pymodule_export]
-    use super::cones::cones;
+    use super::cones::{cone_coverage, cones};
     #[pymodule_export]
     use super::first_hits::first_hits;
     #[pymodule_export]
@@ -101,6 +102,8 @@ mod _core {
     use super::simd;
     #[pymodule_export]
     use super::spectra::spectrum_rgb;
+    #[pymodule_export]
+    use super::tree::tree;
     #[pymodule_export]
     use super::view_factors::{view_factor_matrix, view_factor_rows};
     /// The most samples that a pilot takes of each way.

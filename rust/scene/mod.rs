@@ -2,6 +2,7 @@
 
 pub mod cameras;
 mod compiled;
+mod coverage;
 mod description;
 mod emission;
 mod encounter;
@@ -25,6 +26,7 @@ mod view;
 
 pub use cameras::{Camera, CameraConnection, CameraError, CameraRay, CameraRayLanes, Perspective};
 pub use compiled::Scene;
+pub use coverage::{Counted, Coverage, Covering};
 pub use description::{DescriptionError, SceneDescription, Shape};
 pub use emission::{Emission, Sides};
 pub use encounter::Encounter;

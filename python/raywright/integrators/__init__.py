@@ -6,6 +6,7 @@ from .ambient_occlusion import AmbientOcclusion
 from .base import Integrator
 from .beam_traced import BeamTraced
 from .bidirectional import Bidirectional
+from .cone_traced import ConeTraced
 from .direct import Direct
 from .distributed import Distributed
 from .light_traced import LightTraced
@@ -26,6 +27,7 @@ AnyIntegrator: TypeAlias = (
     | RayCast
     | Whitted
     | Distributed
+    | ConeTraced
     | BeamTraced
     | AmbientOcclusion
     | Integrator
@@ -36,6 +38,7 @@ __all__ = [
     "AnyIntegrator",
     "BeamTraced",
     "Bidirectional",
+    "ConeTraced",
     "Direct",
     "Distributed",
     "LightTraced",

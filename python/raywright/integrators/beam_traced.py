@@ -2,9 +2,10 @@
 
 from dataclasses import dataclass
 
+import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arrays import Triple, colour
+from ..arrays import Triple, colour, positive
 from . import counts
 
 
@@ -13,14 +14,21 @@ class BeamTraced:
     """Beam tracing (Heckbert and Hanrahan 1984): polygonal beams in place of rays, and edges that are exact.
 
     All that the camera sees is one beam. Faces part it into polygons, flat mirrors throw these back, panes
-    let them through, and beams from lights part them into lit and shadowed. A pixel is the sum over the
-    polygons in its square of their areas there, each times its radiance at the middle of that; so the picture
-    has no noise, and one sample is as good as many (with two, the error is 0 where with one it is not known).
-    It is `Whitted`'s picture: what is scattered otherwise than as by a mirror is left to `ambient`.
+    and flat faces of glass let them through, and beams from lights part them into lit and shadowed. A pixel
+    is the sum over the polygons in its square of their areas there, each times its radiance, taken at three
+    points of each of its triangles; so the picture has no noise, and one sample is as good as many (with two,
+    the error is 0 where with one it is not known). It is `Whitted`'s picture: what is scattered otherwise
+    than as by a mirror or smooth glass is left to `ambient`.
 
-    Beams meet meshes alone, of any opaque material or `ThinDielectric`, in the light of lights without extent
-    (`PointLight`, `SpotLight`, `Projector`, `DirectionalLight`; 64 at most), seen through a pinhole and a
-    `BoxFilter`. The time grows with the square of the number of faces in view.
+    Refraction is an approximation, as in the paper: behind a face of glass, rays have no point in common, and
+    the beam gets one from which its middle ray is exact and the others go by tangents in the place of Snell's
+    sines. Beams are cut until that is off by no more than `tolerance`. Behind a window of parallel faces,
+    directions are exact again, and places off by what is left of the tolerance within the glass.
+
+    Beams meet meshes alone, of any opaque material, `ThinDielectric` or `Dielectric`, in the light of lights
+    without extent (`PointLight`, `SpotLight`, `Projector`, `DirectionalLight`; 64 at most), seen through a
+    pinhole and a `BoxFilter`. Glass throws shadows as other things do. The time grows with the square of the
+    number of faces in view, and with that of refracted beams.
 
     Parameters
     ----------
@@ -29,19 +37,27 @@ class BeamTraced:
     ambient : float or 3 floats
         Radiance that arrives from everywhere in place of what is not followed; of which surfaces reflect
         their ambient share, as in `RayCast`.
+    tolerance : float
+        How many pixels a refracted ray may be off in its direction, above 0; infinity cuts no beam for it, as
+        the paper does not.
 
     Raises
     ------
     ValueError
         If a number is out of its range. When rendering, of what beams cannot do: shapes that are no meshes,
-        shine, have masks, are of glass, or mirror with bent normals; environments; other cameras and filters.
+        shine, have masks, mirror or refract with bent normals, or are two glasses whose boxes overlap;
+        environments; other cameras and filters.
     TypeError
         If an argument is of the wrong kind.
     """
 
     max_depth: int
     ambient: Triple
+    tolerance: float
 
-    def __init__(self, max_depth: int = 8, ambient: ArrayLike = 0.0) -> None:
+    def __init__(self, max_depth: int = 8, ambient: ArrayLike = 0.0, tolerance: float = 0.25) -> None:
         object.__setattr__(self, "max_depth", counts.depth("max_depth", max_depth))
         object.__setattr__(self, "ambient", colour("ambient", ambient))
+        object.__setattr__(
+            self, "tolerance", np.inf if tolerance == np.inf else positive("tolerance", tolerance)
+        )

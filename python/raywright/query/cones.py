@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -71,6 +71,29 @@ class ConeTouches:
 
     def __repr__(self) -> str:
         return f"ConeTouches(shape={self.shape}, {len(self)} touches of {len(self.cone_splits) - 1} cones)"
+
+
+class ConeCoverage(NamedTuple):
+    """How much solid cones see."""
+
+    solid_angle: NDArray[np.float64]
+    """Of what is covered, in steradians: (...) float64."""
+    share: NDArray[np.float64]
+    """The same over the cone's own, from 0 to 1: (...) float64."""
+
+
+def cone_solid_angle(half_angle: float | NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the solid angle of cones of these half angles, in degrees, above 0.
+
+    Raises
+    ------
+    ValueError
+        If one is 0.
+    """
+    angles = np.asarray(half_angle)
+    if not np.all(angles > 0):
+        raise ValueError("half_angle must be above 0, for a ray has no directions to be covered, got 0")
+    return np.asarray(4 * np.pi * np.sin(np.radians(angles) / 2) ** 2)
 
 
 def cone_arguments(

@@ -175,6 +175,16 @@ class Interactions:
         return self._core.shape_id
 
     @cached_property
+    def primitive(self) -> NDArray[np.int32]:
+        """Which face of that shape: (N,) int32; -1 for a miss."""
+        return self._core.primitive
+
+    @cached_property
+    def uv(self) -> Floats:
+        """Where on it, as `Hits.uv`: (N, 2)."""
+        return self._core.uv
+
+    @cached_property
     def position(self) -> Floats:
         """Where it was hit: (N, 3)."""
         return self._core.position
@@ -193,6 +203,39 @@ class Interactions:
     def emission(self) -> Floats:
         """Radiance along the ray that nothing has scattered: (N, 3); of a miss, that of the environment."""
         return self._core.emission
+
+    @cached_property
+    def albedo(self) -> Floats:
+        """About the share of white light that is scattered, by colour: (N, 3)."""
+        return self._core.albedo
+
+    @cached_property
+    def ior(self) -> Floats:
+        """Index of refraction of what the shape is filled with: (N,); 1 for what encloses nothing."""
+        return self._core.ior
+
+    def reflected(self) -> Scattered:
+        """Return where mirrors and smooth glass reflect the rays to.
+
+        Returns
+        -------
+        Scattered
+            One direction for each ray, with all of its weight: the share of the light from there that comes
+            back along the ray, by Fresnel's law where that says. No weight and NaN where nothing is reflected
+            so.
+        """
+        return Scattered(*self._core.single(False))
+
+    def refracted(self) -> Scattered:
+        """Return where smooth glass and panes let the rays through to.
+
+        Returns
+        -------
+        Scattered
+            As `reflected` has it, on the other side. Weights are those of radiance, which has the square of
+            the index of refraction in it. What is around a shape is taken for air.
+        """
+        return Scattered(*self._core.single(True))
 
     def evaluate(self, directions: ArrayLike) -> tuple[Floats, Floats]:
         """Return how light from some directions is scattered back along the rays.

@@ -10,7 +10,7 @@ from .._core import CompiledScene
 from ..arrays import indices, integer, last_axis, number
 from ..cameras import AnyCamera, pixel_offsets
 from .all_hits import AllHits
-from .cones import ConeTouches, cone_arguments
+from .cones import ConeCoverage, ConeTouches, cone_arguments, cone_solid_angle
 from .hits import Hits, QueryCost, rewritten
 from .interactions import Interactions, Rays
 from .masks import Cull, ShapeMask, asked, counted
@@ -386,6 +386,45 @@ class Queries(PointQueries):
         arguments = cone_arguments(origins, directions, half_angle, t_max, threads)
         splits, distance, shape_id, primitive = _core.cones(core, *arguments)
         return ConeTouches(splits, shape_id, primitive, distance, arguments[4])
+
+    def cone_coverage(
+        self,
+        origins: ArrayLike,
+        directions: ArrayLike,
+        half_angle: ArrayLike,
+        t_max: ArrayLike = np.inf,
+        threads: int | None = None,
+    ) -> ConeCoverage:
+        """Tell how much of solid cones is covered: the share of their directions that meet something.
+
+        It is exact for meshes, whose faces hide parts of each other, and for one sphere (Tovchigrechko and
+        Vakser 2001). Beyond that, what is behind a sphere counts by the share of the cone that the sphere
+        leaves, as if both were strewn over it (Amanatides 1984).
+
+        Parameters
+        ----------
+        origins, directions, half_angle, threads
+            As in `cone`; `half_angle` is above 0.
+        t_max : float or (...) array
+            What is farther from the apex at its nearest point does not count.
+
+        Returns
+        -------
+        ConeCoverage
+            Solid angles and shares, (...) float64 each; NaN for cones with NaN, infinity or no direction.
+
+        Raises
+        ------
+        ValueError
+            As `cone`, and if `half_angle` is 0, or something in the scene is neither a mesh nor a `Sphere`.
+        TypeError
+            If an array does not hold real numbers.
+        """
+        core = self._core or self._compiled()
+        arguments = cone_arguments(origins, directions, half_angle, t_max, threads)
+        whole = cone_solid_angle(arguments[2])
+        share = _core.cone_coverage(core, *arguments)
+        return ConeCoverage(share * whole.reshape(share.shape if whole.ndim else ()), share)
 
     def photons(
         self,

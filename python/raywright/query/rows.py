@@ -1,6 +1,7 @@
 """What rays and points find, picked by ray, and as columns of a table."""
 
 import copy
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -114,7 +115,7 @@ def flat(points: Any) -> dict[str, NDArray[Any]]:
     return columns
 
 
-def frame(columns: dict[str, NDArray[Any]]) -> Any:
+def frame(columns: Mapping[str, Sequence[Any] | NDArray[Any]]) -> Any:
     """Return columns as a DataFrame.
 
     Raises

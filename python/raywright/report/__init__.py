@@ -9,6 +9,7 @@ from .per_build import BuildRow, RaysPerBuild
 from .ray_sets import Rays, typical_rays
 from .table import Chart, Column, Table
 from .time_share import TimeShare, time_share
+from .tree import tree
 from .triangle_kernels import KernelReport, KernelRow, kernels
 
 __all__ = [
@@ -33,5 +34,6 @@ __all__ = [
     "kernels",
     "rays_per_build",
     "time_share",
+    "tree",
     "typical_rays",
 ]

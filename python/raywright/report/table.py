@@ -5,6 +5,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
+from ..query.rows import frame
 from .plots import plotted
 
 if TYPE_CHECKING:
@@ -129,6 +130,16 @@ class Table(Generic[Row]):
         rule = ["-" * w if is_left else "-" * (w - 1) + ":" for w, is_left in zip(widths, left, strict=True)]
         lines = [_aligned(line, widths, left) for line in texts]
         return "\n".join(f"| {' | '.join(line)} |" for line in (lines[0], rule, *lines[1:]))
+
+    def to_dataframe(self) -> Any:
+        """Return the table as a pandas DataFrame, whose columns have the names of these.
+
+        Raises
+        ------
+        ImportError
+            If pandas is not installed.
+        """
+        return frame({column.name: list(self.column(column.name)) for column in self.columns})
 
     def csv(self) -> str:
         """Return the table as CSV: names of columns, then rows with all digits; None is empty."""

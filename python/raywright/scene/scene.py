@@ -17,6 +17,7 @@ from ..lights import lights as checked_lights
 from ..media.medium import Medium
 from ..media.medium import medium as checked_medium
 from ..query.queries import Queries
+from ..query.trees import TreeBoxes
 from ..shapes.mesh import face_count, moved
 from .arrivals import Arrival
 from .instance import AnyShape, Instance, Shapes, meshes
@@ -323,6 +324,21 @@ class Scene(Queries):
         """
         kernel, rows = _core.plan(self._compiled())
         return Plan(kernel, tuple(PlanRow(*row) for row in rows))
+
+    def tree(self) -> TreeBoxes:
+        """Return the boxes of the accelerator's nodes, from the root down.
+
+        Raises
+        ------
+        ValueError
+            If the accelerator has no boxes: grids, BSP trees and `BruteForce` have none.
+        """
+        boxes = _core.tree(self._compiled())
+        if boxes is None:
+            kind = type(self._accelerator).__name__
+            raise ValueError(f"a {kind} has no tree of boxes; BVH, KdTree and Octree have")
+        depth, primitives, corners = boxes
+        return TreeBoxes(depth, primitives, corners.reshape(-1, 8, 3))
 
     @contextmanager
     def _unless_building(self) -> Iterator[None]:

@@ -14,7 +14,7 @@ mod stack;
 pub use build::{Builder, Options};
 pub use node::Node;
 
-use super::Info;
+use super::{Info, NodeBox};
 use super::walk::{Input, Lists, Plane, Structure, Walker};
 use crate::math::Aabb;
 
@@ -144,6 +144,14 @@ impl Structure for KdTree {
             sah_cost: self.sah_cost(),
             ..Info::default()
         }
+    }
+
+    fn boxes(&self, _: &dyn Fn(u32) -> usize) -> Option<Vec<NodeBox>> {
+        let of = |Cell { node, aabb, depth }: Cell| {
+            let node = self.nodes[node];
+            NodeBox { aabb, depth, primitives: node.is_leaf().then_some(node.count() as usize) }
+        };
+        Some(self.cells().map(of).collect())
     }
 
     fn validate(&self, input: &Input, primitives: &dyn Fn(u32) -> Vec<u32>) -> Result<(), String> {

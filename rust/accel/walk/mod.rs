@@ -24,7 +24,7 @@ pub(super) use room::Room;
 pub(super) use together::TogetherBatch;
 pub use together::{MOST_TOGETHER, Together};
 
-use super::{Info, Primitives, SlabRay};
+use super::{Info, NodeBox, Primitives, SlabRay};
 use crate::math::{Aabb, Region};
 use crate::simd::Level;
 use crate::work::Work;
@@ -88,6 +88,12 @@ pub trait Structure: Send + Sync {
 
     /// Its kind, nodes, leaves, depth, bytes and cost. The rest is for others to say.
     fn info(&self) -> Info;
+
+    /// The boxes of all nodes, told how many primitives stand in each leaf that has a number; `None` of what has none.
+    fn boxes(&self, primitives: &dyn Fn(u32) -> usize) -> Option<Vec<NodeBox>> {
+        let _ = primitives;
+        None
+    }
 
     /// Checks what walks rely on, given the primitives of each leaf.
     fn validate(&self, input: &Input, primitives: &dyn Fn(u32) -> Vec<u32>) -> Result<(), String>;

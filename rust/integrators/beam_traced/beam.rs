@@ -2,11 +2,12 @@
 //!
 //! A flat mirror turns a beam into one that comes from behind it, from where the eye is seen in the mirror. Told by the
 //! place on the film that it comes from, each of its rays is `apex + t · direction(x, y)`, and the direction is linear
-//! in x and y, however many mirrors it has met. So the film is the plane that all is cut in: straight edges are
-//! straight there, and 1 / t, the nearness, is linear in x and y on every plane.
+//! in x and y, however many mirrors it has met, and faces of glass where refraction is taken for linear (`onward.rs`).
+//! So the film is the plane that all is cut in: straight edges are straight there, and 1 / t, the nearness, is linear in
+//! x and y on every plane.
 
 use crate::accel::Primitives;
-use crate::math::convex::{Convex, HalfPlane, area, sides};
+use crate::math::convex::{Convex, HalfPlane, above, area, sides};
 use crate::math::{DVec2, DVec3, Ray};
 use crate::scene::{Camera, Geometry, Perspective};
 use glam::DMat3;
@@ -31,8 +32,8 @@ pub(super) struct Origin {
     pub beam: usize,
     pub primitive: u32,
     pub nearness: DVec3,
-    /// Whether the beam goes on on the other side.
-    pub is_through: bool,
+    /// Of one that goes on on the other side, how many times as far from the face it comes from: 1 if straight on.
+    pub through: Option<f64>,
 }
 
 /// A polygonal beam.
@@ -77,23 +78,36 @@ impl Beam {
         Self { apex, axes, inverse: axes.inverse(), window, beyond: None, origin: None, bounce: 0 }
     }
 
-    /// The beam that goes on from a part of a face: that which a mirror throws back, or which goes straight through.
+    /// The beam that goes on from a part of a face: that which a mirror throws back, or which goes through.
     pub fn goes_on(&self, part: Convex, geometry: &Geometry, origin: Origin) -> Self {
         let (normal, corner) = (geometry.normal(origin.primitive), geometry.corners(origin.primitive)[0]);
         let normal = if normal.dot(self.apex - corner) < 0.0 { -normal } else { normal };
         let offset = normal.dot(corner);
         let mut next = Self { window: part, origin: Some(origin), bounce: self.bounce + 1, ..self.clone() };
-        if origin.is_through {
+        if let Some(stretch) = origin.through {
+            let stretched = |way: DVec3| way + normal * ((stretch - 1.0) * normal.dot(way));
+            next.turn(stretched);
+            next.apex = self.apex + normal * ((stretch - 1.0) * (normal.dot(self.apex) - offset));
             next.beyond = Some(HalfSpace { normal: -normal, offset: -offset });
         } else {
-            let mirrored = |way: DVec3| way - normal * (2.0 * normal.dot(way));
+            next.turn(|way| way - normal * (2.0 * normal.dot(way)));
             next.apex = self.apex - normal * (2.0 * (normal.dot(self.apex) - offset));
-            next.axes =
-                DMat3::from_cols(mirrored(self.axes.x_axis), mirrored(self.axes.y_axis), mirrored(self.axes.z_axis));
-            next.inverse = next.axes.inverse();
             next.beyond = Some(HalfSpace { normal, offset });
         }
         next
+    }
+
+    /// Changes the way of each ray, linearly.
+    fn turn(&mut self, changed: impl Fn(DVec3) -> DVec3) {
+        let DMat3 { x_axis, y_axis, z_axis } = self.axes;
+        self.axes = DMat3::from_cols(changed(x_axis), changed(y_axis), changed(z_axis));
+        self.inverse = self.axes.inverse();
+    }
+
+    /// The place of the film whose ray has a direction; `None` if there is none.
+    pub fn place(&self, direction: DVec3) -> Option<DVec2> {
+        let at = self.inverse * direction;
+        (at.z > 0.0).then(|| at.truncate() / at.z)
     }
 
     /// The way of the ray through a place, of the length that t counts in.
@@ -145,24 +159,4 @@ impl Beam {
         let sides = sides(&outline, ON_LINE);
         Some(Seen { primitive, outline, sides, bounds: [low, high], nearness, nearest })
     }
-}
-
-/// What of a polygon in space has a value above 0, that is linear; corners of no more than the slack are on the border.
-fn above(polygon: &[DVec3], value: impl Fn(DVec3) -> f64, slack: f64) -> Vec<DVec3> {
-    let value = |at: DVec3| Some(value(at)).filter(|v| v.abs() > slack).unwrap_or(0.0);
-    if polygon.iter().all(|&corner| value(corner) <= 0.0) {
-        return Vec::new();
-    }
-    let mut kept = Vec::with_capacity(polygon.len() + 1);
-    for (i, &corner) in polygon.iter().enumerate() {
-        let before = polygon[(i + polygon.len() - 1) % polygon.len()];
-        let (here, there) = (value(corner), value(before));
-        if here * there < 0.0 {
-            kept.push(before + (corner - before) * (there / (there - here)));
-        }
-        if here >= 0.0 {
-            kept.push(corner);
-        }
-    }
-    kept
 }

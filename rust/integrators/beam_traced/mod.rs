@@ -1,13 +1,15 @@
 //! Beam tracing.
 
 mod beam;
+mod onward;
 mod shading;
 mod shadow;
 mod tree;
 mod visible;
 
 use super::{CameraSample, Integrator, Job, Session, Worker};
-use crate::math::convex::{HalfPlane, area, centroid, clip};
+use crate::accel::Primitives;
+use crate::math::convex::{HalfPlane, area, clip};
 use crate::math::{DVec3, Hit, Ray};
 use crate::optics::Rgb;
 use crate::scene::{Camera, Scene, SurfaceInteraction};
@@ -16,9 +18,10 @@ use tree::Tree;
 
 /// Beam tracing (Heckbert and Hanrahan, "Beam Tracing Polygonal Objects", 1984): in place of rays, the whole view is
 /// followed as a beam. What is seen in it parts it into polygons; flat mirrors throw these back, as beams from where
-/// the eye is seen in them, and beams from lights part them into lit and shadowed. Each pixel is the mean over its own
-/// square: of every polygon, its area there times its radiance at the middle of that. So edges are exact, and the
-/// picture has no noise.
+/// the eye is seen in them, flat faces of glass refract them, and beams from lights part them into lit and shadowed.
+/// Each pixel is the mean over its own
+/// square: of every polygon, its area there times its radiance, by three points of each triangle that it is cut into.
+/// So edges are exact, and the picture has no noise.
 ///
 /// It is Whitted's picture (what is scattered otherwise than as by a mirror is not followed) of meshes in the light of
 /// lights without extent. Its time grows with the square of the number of faces in view.
@@ -29,11 +32,14 @@ pub struct BeamTraced {
     /// Radiance that arrives from everywhere in place of what is not followed. Surfaces reflect their ambient share of
     /// it ([`Material::ambient`](crate::scene::Material::ambient)).
     pub ambient: Rgb,
+    /// How many pixels a refracted ray may be off, seen from afar; refracted beams are cut until none is. Infinite cuts
+    /// none, as the paper does.
+    pub tolerance: f64,
 }
 
 impl Default for BeamTraced {
     fn default() -> Self {
-        Self { max_depth: 8, ambient: Rgb::ZERO }
+        Self { max_depth: 8, ambient: Rgb::ZERO, tolerance: 0.25 }
     }
 }
 
@@ -42,7 +48,7 @@ const MOST_LIGHTS: usize = u64::BITS as usize;
 
 impl Integrator for BeamTraced {
     fn begin<'a>(&'a self, job: Job<'a>, cancel: &Cancel) -> Box<dyn Session + 'a> {
-        let tree = job.camera.as_perspective().map(|camera| Tree::new(&job, camera, self.max_depth, cancel));
+        let tree = job.camera.as_perspective().map(|camera| Tree::new(&job, camera, self, cancel));
         let size = [job.camera.width(), job.camera.height()];
         let blocks = tree.as_ref().map_or_else(Vec::new, |tree| tree.by_block(size, Film::SIDE));
         Box::new(Film { job, ambient: self.ambient, tree, blocks })
@@ -56,6 +62,12 @@ impl Integrator for BeamTraced {
         let mut shapes = 0..geometry.shapes() as u32;
         if let Some((shape, why)) = shapes.find_map(|shape| Some((shape, unsuited(scene, shape)?))) {
             return Some(format!("shape {shape} {why}: use Whitted"));
+        }
+        if let Some([a, b]) = nested(scene) {
+            return Some(format!(
+                "shapes {a} and {b} are of glass and may be within each other, and beams know of one glass at a time: \
+                 use Whitted"
+            ));
         }
         if lights.others().any(|light| light.place().is_none()) {
             return Some("beams come from lights without extent alone, and an environment has one: use Whitted".into());
@@ -79,27 +91,48 @@ fn unsuited(scene: &Scene, shape: u32) -> Option<&'static str> {
         Some("shines, and beams come from lights without extent alone")
     } else if !material.is_opaque() {
         Some("has a mask, which beams do not see")
-    } else if material.interior().is_some() {
-        Some("is of glass, and beams are not refracted")
     } else {
-        is_curved_mirror(scene, shape).then_some("mirrors with bent normals, and beams need flat ones")
+        is_unlike_paper(scene, shape)
     }
 }
 
-/// Whether the first face of a shape that has an area is a mirror with a normal other than its own.
-fn is_curved_mirror(scene: &Scene, shape: u32) -> bool {
+/// What beams cannot do of the single directions that the first face of a shape that has an area scatters into.
+fn is_unlike_paper(scene: &Scene, shape: u32) -> Option<&'static str> {
     let geometry = scene.geometry();
-    let Some(face) = geometry.primitives_of(shape).find(|&face| geometry.normal(face).is_finite()) else {
-        return false;
-    };
+    let face = geometry.primitives_of(shape).find(|&face| geometry.normal(face).is_finite())?;
     let third = [1.0 / 3.0; 2];
     let (at, normal) = (geometry.position(face, third), geometry.normal(face));
     let ray = Ray::new(at + normal, -normal);
     let hit = Hit { t: 1.0, uv: third, primitive: face, inner: 0 };
     let here = SurfaceInteraction::at(scene, &ray, &hit);
-    let mut mirrors = false;
-    here.bsdf().delta_lobes(here.wo(), |_| mirrors = true);
-    mirrors && !here.is_flat()
+    let (mut singles, mut etas) = (0, Vec::new());
+    here.bsdf().delta_lobes(here.wo(), |single| {
+        singles += 1;
+        if single.is_through && !etas.contains(&single.eta) {
+            etas.push(single.eta);
+        }
+    });
+    if singles > 0 && !here.is_flat() {
+        return Some("mirrors or refracts with bent normals, and beams need flat ones");
+    }
+    (etas.len() > 1).then_some("lets light through in two ways, and a beam goes one")
+}
+
+/// Two shapes of glass whose boxes have space in common.
+fn nested(scene: &Scene) -> Option<[u32; 2]> {
+    let geometry = scene.geometry();
+    let of = |shape: u32| {
+        let corners = geometry.primitives_of(shape).flat_map(|face| geometry.corners(face));
+        let whole = |(low, high): (DVec3, DVec3), corner: DVec3| (low.min(corner), high.max(corner));
+        corners.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), whole)
+    };
+    let is_glass = |&shape: &u32| scene.material(shape).interior().is_some();
+    let boxes: Vec<_> = (0..geometry.shapes() as u32).filter(is_glass).map(|shape| (shape, of(shape))).collect();
+    let overlap = |a: &(DVec3, DVec3), b: &(DVec3, DVec3)| a.0.cmplt(b.1).all() && b.0.cmplt(a.1).all();
+    boxes.iter().enumerate().find_map(|(i, (a, box_a))| {
+        let (b, _) = boxes[i + 1..].iter().find(|(_, box_b)| overlap(box_a, box_b))?;
+        Some([*a, *b])
+    })
 }
 
 /// The film, in pieces.
@@ -133,8 +166,14 @@ impl Film<'_> {
                 continue;
             }
             let here = clip(&piece.outline, &square);
-            if here.len() > 2 {
-                light += tree.radiance(&self.job, self.ambient, piece, centroid(&here)) * area(&here);
+            for i in 2..here.len() {
+                let corners = [here[0], here[i - 1], here[i]];
+                let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
+                // Exact where radiance is quadratic over the triangle.
+                for corner in corners {
+                    let at = middle + (corner - middle) * 0.5;
+                    light += tree.radiance(&self.job, self.ambient, piece, at) * (area(&corners) / 3.0);
+                }
             }
         }
         light

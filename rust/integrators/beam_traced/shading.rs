@@ -1,11 +1,10 @@
 //! What light a place on the film shows of a face.
 
 use super::beam::Beam;
-use crate::accel::Primitives;
 use crate::integrators::Job;
 use crate::math::{DVec2, DVec3, Hit, Ray};
 use crate::optics::{BsdfSample, Rgb};
-use crate::scene::{Encounter, Geometry, SurfaceInteraction};
+use crate::scene::{Encounter, SurfaceInteraction};
 
 /// Where the ray through a place on the film meets a face.
 pub(super) struct Met {
@@ -20,7 +19,7 @@ impl Met {
     pub fn new(job: &Job, beam: &Beam, primitive: u32, nearness: DVec3, at: DVec2) -> Self {
         let geometry = job.scene.geometry();
         let (ray, t) = beam.ray(at, nearness);
-        let hit = Hit { t, uv: weights(geometry, primitive, ray.at(t)), primitive, inner: 0 };
+        let hit = Hit { t, uv: geometry.weights(primitive, ray.at(t)), primitive, inner: 0 };
         let width = if job.scene.plan().needs().points.width { job.footprint.at(t).width } else { 0.0 };
         let surface = geometry.surface(&ray, &hit);
         Self { ray, hit, width, here: SurfaceInteraction::new(job.scene, &ray, &hit, surface, width, 1.0) }
@@ -60,15 +59,4 @@ impl Met {
         });
         share
     }
-}
-
-/// The weights of a triangle's second and third corner at a point of its plane, moved into it.
-fn weights(geometry: &Geometry, primitive: u32, at: DVec3) -> [f64; 2] {
-    let [a, b, c] = geometry.corners(primitive);
-    let (u, v, w) = (b - a, c - a, at - a);
-    let normal = u.cross(v);
-    let square = normal.length_squared();
-    let [second, third] = [w.cross(v), u.cross(w)].map(|part| (part.dot(normal) / square).clamp(0.0, 1.0));
-    let sum = (second + third).max(1.0);
-    [second / sum, third / sum]
 }

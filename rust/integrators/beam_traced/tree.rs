@@ -1,12 +1,14 @@
 //! The tree of beams, and the pieces of the film that its leaves are.
 
 use super::beam::{Beam, LEAST, Origin, Seen};
+use super::onward::Onward;
 use super::shading::Met;
 use super::shadow::Shadows;
 use super::visible::visible;
+use super::BeamTraced;
 use crate::accel::Primitives;
 use crate::integrators::Job;
-use crate::math::convex::{Convex, area, centroid};
+use crate::math::convex::{Convex, area};
 use crate::math::{DVec2, DVec3};
 use crate::optics::Rgb;
 use crate::scene::Perspective;
@@ -43,8 +45,8 @@ struct Found {
 const LEAST_FOLLOWED: f64 = 1e-10;
 
 impl Tree {
-    /// Follows the view of a camera, by so many surfaces.
-    pub fn new(job: &Job, camera: &Perspective, max_depth: u32, cancel: &Cancel) -> Self {
+    /// Follows the view of a camera.
+    pub fn new(job: &Job, camera: &Perspective, settings: &BeamTraced, cancel: &Cancel) -> Self {
         let scene = job.scene;
         let region = scene.region();
         let reach = region.min.abs().max(region.max.abs()).max_element();
@@ -52,13 +54,12 @@ impl Tree {
         let lights: Vec<Shadows> =
             places.par_iter().map(|&place| Shadows::new(place, scene.geometry(), reach)).collect();
         let mut tree = Self { beams: Vec::new(), pieces: Vec::new() };
-        let mut next = if max_depth > 0 { vec![Beam::of(camera)] } else { Vec::new() };
+        let mut next = if settings.max_depth > 0 { vec![Beam::of(camera)] } else { Vec::new() };
         while !next.is_empty() && !cancel.is_raised() {
             let first = tree.beams.len();
             tree.beams.append(&mut next);
             for number in first..tree.beams.len() {
-                let follows = tree.beams[number].bounce + 1 < max_depth;
-                for found in tree.trace(job, &lights, number, follows, cancel) {
+                for found in tree.trace(job, &lights, number, settings, cancel) {
                     tree.pieces.extend(found.pieces);
                     next.extend(found.next);
                 }
@@ -68,8 +69,16 @@ impl Tree {
     }
 
     /// What each face gives in a beam.
-    fn trace(&self, job: &Job, lights: &[Shadows], number: usize, follows: bool, cancel: &Cancel) -> Vec<Found> {
+    fn trace(
+        &self,
+        job: &Job,
+        lights: &[Shadows],
+        number: usize,
+        settings: &BeamTraced,
+        cancel: &Cancel,
+    ) -> Vec<Found> {
         let (beam, geometry) = (&self.beams[number], job.scene.geometry());
+        let follows = beam.bounce + 1 < settings.max_depth;
         let mut seen: Vec<Seen> =
             (0..geometry.count() as u32).into_par_iter().filter_map(|face| beam.see(geometry, face)).collect();
         // What is near hides most.
@@ -80,19 +89,10 @@ impl Tree {
                 return found;
             }
             let Seen { primitive, nearness, .. } = seen[which];
+            let onward = Onward { job, beam, number, seen: &seen[which], tolerance: settings.tolerance };
             for part in visible(&seen, which, cancel) {
-                let met = Met::new(job, beam, primitive, nearness, centroid(&part));
-                let mut goes_on = [false; 2];
                 if follows && area(&part) > LEAST_FOLLOWED {
-                    met.single_directions(|single| {
-                        goes_on[usize::from(single.is_through)] |= !single.weight.is_black()
-                    });
-                }
-                for is_through in [false, true] {
-                    if goes_on[usize::from(is_through)] {
-                        let origin = Origin { beam: number, primitive, nearness, is_through };
-                        found.next.push(beam.goes_on(part.clone(), geometry, origin));
-                    }
+                    found.next.extend(onward.beams(&part, cancel));
                 }
                 let transmits = job.scene.material(geometry.locate(primitive).0).transmits();
                 let mut pieces = vec![(part, 0)];
@@ -123,9 +123,9 @@ impl Tree {
     pub fn radiance(&self, job: &Job, ambient: Rgb, piece: &Piece, at: DVec2) -> Rgb {
         let mut beam = &self.beams[piece.beam];
         let mut light = Met::new(job, beam, piece.primitive, piece.nearness, at).light(job, piece.lit, ambient);
-        while let Some(Origin { beam: before, primitive, nearness, is_through }) = beam.origin {
+        while let Some(Origin { beam: before, primitive, nearness, through }) = beam.origin {
             beam = &self.beams[before];
-            light *= Met::new(job, beam, primitive, nearness, at).share(is_through);
+            light *= Met::new(job, beam, primitive, nearness, at).share(through.is_some());
         }
         light
     }

@@ -43,6 +43,17 @@ impl Geometry {
         here
     }
 
+    /// The weights of a triangle's second and third corner at a point of its plane, moved into the triangle.
+    pub fn weights(&self, primitive: u32, at: DVec3) -> [f64; 2] {
+        let [a, b, c] = self.corners(primitive);
+        let (u, v, w) = (b - a, c - a, at - a);
+        let normal = u.cross(v);
+        let square = normal.length_squared();
+        let [second, third] = [w.cross(v), u.cross(w)].map(|part| (part.dot(normal) / square).clamp(0.0, 1.0));
+        let sum = (second + third).max(1.0);
+        [second / sum, third / sum]
+    }
+
     /// What textures know of a hit of a triangle.
     fn textured(&self, hit: &Hit, needs: Needs, plain: TexturePoint) -> TexturePoint {
         let mut texture = TexturePoint { uv: hit.uv, ..plain };

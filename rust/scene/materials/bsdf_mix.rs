@@ -1,7 +1,7 @@
 //! All that scatters light at a point.
 
 use crate::math::DVec3;
-use crate::optics::{AnyBsdf, Bsdf, BsdfSample, Rgb};
+use crate::optics::{AnyBsdf, Bsdf, BsdfSample, Conductor, Rgb};
 
 /// All that scatters light at a point: one kind, or several that are weighed.
 #[derive(Clone, Debug)]
@@ -46,6 +46,18 @@ impl BsdfMix {
         match self {
             Self::One(bsdf) => of_one(bsdf),
             Self::Several(parts) => parts.iter().map(|(weight, bsdf)| *weight * of_one(bsdf)).sum(),
+        }
+    }
+
+    /// Calls with each rough metal, and its weight.
+    pub fn dull_lobes(&self, mut each: impl FnMut(Rgb, &Conductor)) {
+        let mut of_one = |weight: Rgb, bsdf: &AnyBsdf| match bsdf {
+            AnyBsdf::Conductor(metal) if !metal.is_delta() => each(weight, metal),
+            _ => {}
+        };
+        match self {
+            Self::One(bsdf) => of_one(Rgb::ONE, bsdf),
+            Self::Several(parts) => parts.iter().for_each(|(weight, bsdf)| of_one(*weight, bsdf)),
         }
     }
 

@@ -5,7 +5,7 @@
 use super::numbered::Numbered;
 use crate::accel::bvh::{BinaryBvh, Node};
 use crate::accel::walk::{Built, Input, Structure, Walker};
-use crate::accel::{Info, SlabRay};
+use crate::accel::{Info, NodeBox, SlabRay};
 use crate::math::{Aabb, Vec3};
 
 /// A binary tree whose boxes move.
@@ -89,6 +89,10 @@ impl Structure for Moving {
     fn info(&self) -> Info {
         let info = self.tree.info(&self.kind);
         Info { bytes: info.bytes + size_of_val(self.ends.as_slice()), ..info }
+    }
+
+    fn boxes(&self, _: &dyn Fn(u32) -> usize) -> Option<Vec<NodeBox>> {
+        Some(self.tree.boxes())
     }
 
     fn validate(&self, input: &Input, primitives: &dyn Fn(u32) -> Vec<u32>) -> Result<(), String> {

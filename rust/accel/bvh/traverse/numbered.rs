@@ -2,7 +2,7 @@
 //! keep.
 
 use super::{contents, sah_cost};
-use crate::accel::Info;
+use crate::accel::{Info, NodeBox};
 use crate::accel::bvh::build::Shapes;
 use crate::accel::bvh::{BinaryBvh, Node};
 use crate::accel::walk::{Input, Lists};
@@ -47,6 +47,19 @@ impl Numbered {
             sah_cost: self.sah_cost,
             ..Info::default()
         }
+    }
+
+    /// The boxes of all nodes.
+    pub fn boxes(&self) -> Vec<NodeBox> {
+        let mut depths = vec![0; self.nodes.len()];
+        for (i, node) in self.nodes.iter().enumerate().filter(|(_, node)| !node.is_leaf()) {
+            for child in node.children() {
+                depths[child] = depths[i] + 1;
+            }
+        }
+        let primitives = |node: &Node| node.is_leaf().then_some(node.count as usize);
+        let nodes = self.nodes.iter().zip(depths);
+        nodes.map(|(node, depth)| NodeBox { aabb: node.aabb(), depth, primitives: primitives(node) }).collect()
     }
 
     /// The tree as builders make it, given the primitives of each leaf.

@@ -8,7 +8,7 @@ use super::volumes::{Alone, Points, Volumes};
 use super::{bundle, packets};
 use crate::accel::bvh::BinaryBvh;
 use crate::accel::walk::{Built, Input, Lists, Structure, Together, Walker};
-use crate::accel::{Info, SlabRay};
+use crate::accel::{Info, NodeBox, SlabRay};
 use crate::simd::Level;
 
 /// How many rays go through a tree together.
@@ -81,6 +81,10 @@ impl<V: Volumes> Structure for Ordered<V> {
     fn info(&self) -> Info {
         let info = self.tree.info(&self.kind);
         Info { bytes: info.bytes + self.volumes.bytes(), ..info }
+    }
+
+    fn boxes(&self, _: &dyn Fn(u32) -> usize) -> Option<Vec<NodeBox>> {
+        Some(self.tree.boxes())
     }
 
     fn validate(&self, input: &Input, primitives: &dyn Fn(u32) -> Vec<u32>) -> Result<(), String> {

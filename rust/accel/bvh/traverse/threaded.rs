@@ -8,7 +8,7 @@
 use super::numbered::Numbered;
 use crate::accel::bvh::BinaryBvh;
 use crate::accel::walk::{Built, Input, Structure, Walker};
-use crate::accel::{Info, SlabRay};
+use crate::accel::{Info, NodeBox, SlabRay};
 use crate::math::Vec3;
 
 /// How ways to go are told apart.
@@ -121,6 +121,10 @@ impl Structure for Threaded {
     fn info(&self) -> Info {
         let info = self.tree.info(&self.kind);
         Info { bytes: info.bytes + size_of_val(self.links.as_slice()), ..info }
+    }
+
+    fn boxes(&self, _: &dyn Fn(u32) -> usize) -> Option<Vec<NodeBox>> {
+        Some(self.tree.boxes())
     }
 
     fn validate(&self, input: &Input, primitives: &dyn Fn(u32) -> Vec<u32>) -> Result<(), String> {

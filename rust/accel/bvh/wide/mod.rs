@@ -31,7 +31,7 @@ use super::optimise::Optimisers;
 use super::parts::cover;
 use super::{Cuts, Quality, Steps};
 use crate::accel::query::{Answers, Query};
-use crate::accel::{ByColumns, Info, Nearest, Primitives, Touches};
+use crate::accel::{Boxes, ByColumns, Info, Nearest, Primitives, Touches};
 use crate::math::{Aabb, Axes, DVec3, Hit, HitColumns, Ray, RayBatch, RayColumns, Region};
 use crate::shapes::triangle::{Leaves, SolidCone, clipped};
 use crate::simd::{Dispatch, Level};
@@ -239,6 +239,11 @@ where
 
     fn touched(&self, cones: &[Option<SolidCone>]) -> Touches {
         self.level.dispatch(touched::Cones { bvh: self, cones })
+    }
+
+    fn boxes(&self) -> Option<Boxes> {
+        let nodes = node::boxes(&self.nodes, |_, count| count as usize);
+        Some(Boxes { nodes, region: self.region, axes: self.axes })
     }
 
     fn refitted(&self, primitives: &dyn Primitives) -> Result<Self, String> {

@@ -2,11 +2,11 @@
 
 use super::Options;
 use super::collapse::Outline;
-use super::node::{Child, Packed, WideNode};
+use super::node::{Child, Packed, WideNode, boxes};
 use super::step::{Boxes, Stacks};
 use crate::accel::bvh::BinaryBvh;
 use crate::accel::walk::{Built, Input, Lists, Structure, Walker};
-use crate::accel::{Info, SlabRay};
+use crate::accel::{Info, NodeBox, SlabRay};
 use crate::math::Aabb;
 use crate::simd::{Dispatch, Kernel, Level, Simd};
 use crate::work::{Stopped, Work};
@@ -96,6 +96,10 @@ where
             sah_cost: sum / root + f64::from(u8::from(!self.nodes.is_empty())),
             ..Info::default()
         }
+    }
+
+    fn boxes(&self, primitives: &dyn Fn(u32) -> usize) -> Option<Vec<NodeBox>> {
+        Some(boxes(&self.nodes, |first, _| primitives(first)))
     }
 
     fn validate(&self, input: &Input, primitives: &dyn Fn(u32) -> Vec<u32>) -> Result<(), String> {

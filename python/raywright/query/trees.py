@@ -1,0 +1,59 @@
+"""The boxes of a scene's tree."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .hits import sealed
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class TreeBoxes:
+    """The boxes of all nodes of an accelerator, from the root down: `Scene.tree` makes it.
+
+    Arrays are read-only. Where a scene has meshes and other shapes, there are two trees, one over each,
+    and so two roots.
+
+    Attributes
+    ----------
+    depth : (K,) int32
+        Steps from the root, ascending.
+    primitives : (K,) int32
+        How many primitives stand in a leaf; -1 for an inner node.
+    corners : (K, 8, 3) float64
+        The corners of each box. Bits 0 to 2 of a corner's number are set where it is at the greater end of
+        the first to the third axis of its tree, which may be turned from the scene's.
+    """
+
+    depth: NDArray[np.int32]
+    primitives: NDArray[np.int32]
+    corners: NDArray[np.float64]
+
+    @property
+    def leaf(self) -> NDArray[np.bool_]:
+        """Whether each is a leaf: (K,) bool."""
+        return self.primitives >= 0
+
+    @cached_property
+    def lower(self) -> NDArray[np.float64]:
+        """Least corner along the scene's own axes: (K, 3) float64."""
+        return sealed(self.corners.min(axis=1))
+
+    @cached_property
+    def upper(self) -> NDArray[np.float64]:
+        """Greatest corner along the scene's own axes: (K, 3) float64."""
+        return sealed(self.corners.max(axis=1))
+
+    def at(self, depth: int) -> "TreeBoxes":
+        """Return those so many steps from the root."""
+        some = slice(*np.searchsorted(self.depth, (depth, depth + 1)))
+        return TreeBoxes(self.depth[some], self.primitives[some], self.corners[some])
+
+    def __len__(self) -> int:
+        return len(self.depth)
+
+    def __repr__(self) -> str:
+        depth = int(self.depth[-1]) if len(self) else 0
+        return f"TreeBoxes({len(self)} boxes, {np.count_nonzero(self.leaf)} leaves, depth {depth})"

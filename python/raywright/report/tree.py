@@ -1,0 +1,77 @@
+"""The boxes of a tree, drawn."""
+
+from typing import Any, Literal, TypeAlias, get_args
+
+import numpy as np
+
+from ..arrays import choice, integer
+from ..scene.scene import Scene
+from .heatmap import COLOURS
+from .plots import plotted
+
+Plane: TypeAlias = Literal["xy", "xz", "yz"]
+
+# Corners that differ in one bit of their number share an edge.
+_EDGES = np.array([(i, i | 1 << bit) for i in range(8) for bit in range(3) if not i >> bit & 1])
+
+
+def tree(
+    scene: Scene, depth: int | None = None, plane: Plane = "xy", leaves: bool = False, ax: Any = None
+) -> Any:
+    """Draw the boxes of a scene's accelerator, seen along an axis: the deeper, the lighter.
+
+    Parameters
+    ----------
+    scene : Scene
+        Whose tree it is; `Scene.tree` gives the boxes themselves.
+    depth : int, optional
+        The last level to be drawn; all, if not given.
+    plane : {"xy", "xz", "yz"}
+        What they are projected to.
+    leaves : bool
+        Whether leaves alone are drawn.
+    ax : matplotlib.axes.Axes, str or path, optional
+        Where to draw: a new figure if not given, or a file, .png, .svg or .pdf.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+
+    Raises
+    ------
+    ImportError
+        If matplotlib is not installed (``pip install 'raywright[plot]'``).
+    ValueError
+        If `plane` is not one of those, `depth` is negative, a file has another suffix, or the scene's
+        accelerator has no boxes.
+    OSError
+        If the file cannot be written.
+    TypeError
+        If `scene` or `ax` is of another kind.
+    """
+    if not isinstance(scene, Scene):
+        raise TypeError(f"scene must be a Scene, got {type(scene).__name__}")
+    choice("plane", plane, get_args(Plane))
+    boxes = scene.tree()
+    deepest = int(boxes.depth[-1]) if len(boxes) else 0
+    last = deepest if depth is None else min(integer("depth", depth, 0), deepest)
+    drawn = boxes.depth <= last
+    drawn &= boxes.leaf | (not leaves)
+    axes = ["xyz".index(axis) for axis in plane]
+    lines = boxes.corners[drawn][:, _EDGES][..., axes].reshape(-1, 2, 2)
+    # The darkest stay dark enough to be seen on white at any level.
+    shades = np.linspace(0, 180, last + 1).astype(int)[boxes.depth[drawn]]
+
+    def draw(ax: Any) -> None:
+        from matplotlib.collections import LineCollection
+
+        colours = np.repeat(COLOURS[shades] / 255, len(_EDGES), axis=0)
+        widths = np.repeat(2.0 / (1 + boxes.depth[drawn]) + 0.4, len(_EDGES))
+        ax.add_collection(LineCollection(list(lines), colors=colours, linewidths=widths))
+        ax.autoscale_view()
+        ax.set_aspect("equal")
+        count = f"{np.count_nonzero(drawn):,} {'leaves' if leaves else 'boxes'}"
+        title = f"{scene.accelerator.kind}\n{count} to depth {last} of {deepest}"
+        ax.set(xlabel=plane[0], ylabel=plane[1], title=title)
+
+    return plotted(ax, draw, figsize=(7, 7))
