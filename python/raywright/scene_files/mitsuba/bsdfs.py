@@ -25,6 +25,7 @@ from .errors import SceneError
 from .facets import SMOOTH, conductor, dielectric, facets, scaled
 from .iors import relative
 from .plugin import Plugin
+from .textures import TYPES as TEXTURES
 from .textures import normals, numbers, scalar, value
 from .uv import Uv
 from .values import colour
@@ -173,7 +174,7 @@ def _blend(plugin: Plugin, uv: Uv) -> Sides:
 def _bump_map(plugin: Plugin, uv: Uv) -> Sides:
     (inner,) = _inner(plugin, uv, 1)
     _soft_terminator(plugin)
-    textures = list(plugin.children("bitmap", "checkerboard"))
+    textures = list(plugin.children(*TEXTURES))
     if len(textures) != 1:
         plugin.fail(f"one texture must be within, got {len(textures)}")
     height = numbers(textures[0], uv)

@@ -9,13 +9,22 @@ from ...arrays import integer
 from ...lights import Environment, Light
 from ...rendering.shot import Shot
 from ...scene.scene import Scene
-from . import bsdfs, emitters, sensors, settings, shapes
+from . import bsdfs, emitters, sensors, settings, shapes, textures
 from .errors import SceneError
 from .plugin import Context, Plugin
 from .xml import read_xml
 
 # What a scene may hold that others refer to: it is read where it is referred to.
-_SHARED = ("area", *bsdfs.TYPES, "bitmap", "checkerboard", shapes.GROUP, "alias")
+_SHARED = (
+    "area",
+    *bsdfs.TYPES,
+    *textures.TYPES,
+    shapes.GROUP,
+    *settings.SAMPLERS,
+    *settings.FILTERS,
+    *sensors.FILMS,
+    "alias",
+)
 
 
 def from_mitsuba(
@@ -99,7 +108,7 @@ def _read(scene: Plugin, number: int) -> Shot:
         scene.fail(f"there is no sensor {number}: it has {len(looking)}")
     eye = looking[number]
     asked = settings.integrator(integrators[0] if integrators else None)
-    film = _only(eye, sensors.FILM)
+    film = _only(eye, *sensors.FILMS)
     rfilter = settings.rfilter(_only(film, *settings.FILTERS) if film is not None else None)
     sampler, samples, seed = settings.sampler(_only(eye, *settings.SAMPLERS))
     return Shot(

@@ -22,7 +22,7 @@ OTHERS = (
     "spherical",
     "telecentric",
 )
-FILM = "hdrfilm"
+FILMS = ("hdrfilm", "ldrfilm")
 
 
 class Crop(NamedTuple):
