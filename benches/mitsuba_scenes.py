@@ -31,13 +31,15 @@ def scenes(folder: Path) -> list[Path]:
     return found
 
 
-def told(path: Path, render: bool) -> tuple[bool, str]:
+def told(path: Path, root: Path, render: bool) -> tuple[bool, str]:
     """Return whether a scene loads, and what is said of it."""
     begin = time.perf_counter()
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         try:
-            shot = rw.from_mitsuba(path)
+            # Some say how many samples they take by a parameter alone, or rely on the folder of what all share.
+            given = {"spp": 4} if "$spp" in path.read_text(encoding="utf-8") else {}
+            shot = rw.from_mitsuba(path, folder=root / "common", parameters=given)
             if render:
                 shot.resized(32, 24).render(samples=1, progress=False)
         except (ValueError, OSError) as error:
@@ -59,7 +61,7 @@ def main() -> None:
     )
     loaded = 0
     for path in names:
-        good, text = told(path, asked.render)
+        good, text = told(path, asked.path, asked.render)
         loaded += good
         print(f"{'ok' if good else 'NO':4}{path.relative_to(asked.path)}  {text}", flush=True)
     print(f"{loaded} of {len(names)} load", file=sys.stderr)

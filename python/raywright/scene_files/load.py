@@ -3,7 +3,7 @@
 import errno
 from os import PathLike
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 from ..mesh_files import meshes
 from ..rendering.shot import Shot
@@ -24,6 +24,7 @@ def load(
     up: Literal["y", "z"] = "y",
     width: int | None = None,
     height: int | None = None,
+    **parameters: Any,
 ) -> Shot:
     """Read a scene, or a mesh, with all that it takes to make a picture of it.
 
@@ -42,6 +43,9 @@ def load(
     width, height : int, optional
         Size of the picture in pixels: the file's own if not given; if only one is given, the other keeps its
         proportions. For a file without a camera they are 640 and 480 where they are not given.
+    **parameters
+        What ``$name`` in a scene of Mitsuba stands for, in place of its defaults: ``spp=16``. Those of the
+        names above are given by ``from_mitsuba(parameters=)``.
 
     Returns
     -------
@@ -69,7 +73,9 @@ def load(
         raise FileNotFoundError(errno.ENOENT, "no such file", str(path))
     suffix = path.suffix.lower()
     if suffix == ".xml":
-        return from_mitsuba(path).resized(width, height)
+        return from_mitsuba(path, parameters=parameters).resized(width, height)
+    if parameters:
+        raise TypeError(f"{next(iter(parameters))} is no parameter of {path}: only scenes of Mitsuba have some")
     if suffix in SCENES:
         from .gltf import read_gltf
 

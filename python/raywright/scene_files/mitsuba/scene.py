@@ -45,11 +45,12 @@ def from_mitsuba(
         A scene as ``mitsuba.load_dict`` takes it, or an XML file. Transforms may be nested lists, arrays, or
         Mitsuba's own objects; Mitsuba is not needed.
     folder : path, optional
-        Where a dict's files are; the current one if not given. Those of an XML file are where it is.
+        Where a dict's files are; the current one if not given. Those of an XML file are where it is, or in
+        this folder if they are not there.
     sensor : int
         Which of the scene's sensors looks.
     parameters : dict, optional
-        What ``$name`` in an XML file stands for, in place of its defaults.
+        What ``$name`` in an XML file stands for, in place of its defaults: numbers, texts or bools by name.
 
     Returns
     -------
@@ -67,9 +68,11 @@ def from_mitsuba(
     """
     sensor = integer("sensor", sensor, 0)
     if isinstance(scene, Mapping):
+        if parameters:
+            raise ValueError("parameters are of an XML file; a dict has none")
         tree, folders = scene, [Path("." if folder is None else folder)]
     elif isinstance(scene, str | PathLike):
-        tree, folders = read_xml(Path(scene), parameters or {})
+        tree, folders = read_xml(Path(scene), parameters or {}, None if folder is None else Path(folder))
     else:
         raise TypeError(f"scene must be a dict or a path, got {type(scene).__name__}")
     if tree.get("type") != "scene":
@@ -108,18 +111,25 @@ def _read(scene: Plugin, number: int) -> Shot:
         scene.fail(f"there is no sensor {number}: it has {len(looking)}")
     eye = looking[number]
     asked = settings.integrator(integrators[0] if integrators else None)
+    if asked.hidden and any(shapes.shines(one) for one in found):
+        integrators[0].warn("hide_emitters hides what is around: surfaces that shine are seen")
+    if asked.unaimed:
+        # What has no size is met by no ray.
+        lights = []
     film = _only(eye, *sensors.FILMS)
     rfilter = settings.rfilter(_only(film, *settings.FILTERS) if film is not None else None)
     sampler, samples, seed = settings.sampler(_only(eye, *settings.SAMPLERS))
+    whole = Scene(shapes.instances(found), lights, around[0] if len(around) == 1 else around or None)
     return Shot(
-        Scene(shapes.instances(found), lights, around[0] if len(around) == 1 else around or None),
-        sensors.camera(eye, film),
+        whole,
+        sensors.camera(eye, film, whole),
         asked.integrator,
         samples,
         sampler=sampler,
         filter=rfilter,
         seed=seed,
         aov=asked.aov,
+        background="transparent" if asked.hidden else "shown",
     )
 
 

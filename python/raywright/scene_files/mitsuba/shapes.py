@@ -217,6 +217,13 @@ def group(plugin: Plugin) -> tuple[Mesh | Shape, ...]:
     return shapes
 
 
+def shines(one: "AnyShape | Placed") -> bool:
+    """Whether a shape, or one of a group, gives off light."""
+    if isinstance(one, Placed):
+        return any(map(shines, one.shapes))
+    return not isinstance(one, Instance) and one.emission is not None
+
+
 def instances(found: "list[Any]") -> list[AnyShape]:
     """Return shapes in which copies have become instances."""
     return [one.instance() if isinstance(one, Placed) else one for one in found]

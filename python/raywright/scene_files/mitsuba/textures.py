@@ -155,7 +155,7 @@ def _bitmap(plugin: Plugin, uv: Uv, change: Change | None, grey: bool) -> ImageT
     plugin.ignore("format", "accel")
     plugin.done()
     if change is not None and not (grey and array.shape[2] == 1):
-        array, linear = change(_linear(array, linear)).astype(np.float32), True
+        array, linear = change(linear_colours(array, linear)).astype(np.float32), True
         array = array[..., :1] if grey else array
     return ImageTexture(
         array,
@@ -166,7 +166,7 @@ def _bitmap(plugin: Plugin, uv: Uv, change: Change | None, grey: bool) -> ImageT
     )
 
 
-def _linear(array: NDArray[Any], linear: bool) -> NDArray[np.float64]:
+def linear_colours(array: NDArray[Any], linear: bool) -> NDArray[np.float64]:
     """Return a picture as linear colours, (H, W, 3)."""
     shares = array / np.iinfo(array.dtype).max if array.dtype.kind == "u" else array.astype(np.float64)
     if not linear:
