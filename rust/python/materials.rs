@@ -10,7 +10,7 @@ use crate::scene::Material;
 use crate::scene::materials::{
     BlinnPhongMaterial, BumpMap, ConductorMaterial, DielectricMaterial, DiffuseMaterial, FacetKind, Index, Interior,
     Mask, MetallicRoughMaterial, MirrorMaterial, MixMaterial, NormalMap, OrenNayarMaterial, PhongMaterial,
-    PlasticMaterial, Roughness, ThinDielectricMaterial, TwoSided,
+    Looks, PlasticMaterial, PrincipledMaterial, PrincipledThinMaterial, Roughness, ThinDielectricMaterial, TwoSided,
 };
 
 /// Reads materials and textures: one that many shapes share is read once.
@@ -79,6 +79,18 @@ impl Appearances {
                 metallic: number("metallic")?,
                 roughness: number("roughness")?,
             }),
+            "Principled" => Arc::new(PrincipledMaterial {
+                looks: self.looks(given)?,
+                interior: Interior { ior: float("ior")?, priority: given.getattr("priority")?.extract()? },
+                metallic: number("metallic")?,
+                clearcoat: number("clearcoat")?,
+                clearcoat_gloss: number("clearcoat_gloss")?,
+            }),
+            "PrincipledThin" => Arc::new(PrincipledThinMaterial {
+                looks: self.looks(given)?,
+                ior: float("ior")?,
+                diffuse_transmission: number("diffuse_transmission")?,
+            }),
             "Mix" => Arc::new(MixMaterial { a: inner("a")?, b: inner("b")?, amount: number("amount")? }),
             "Mask" => Arc::new(Mask { material: inner("material")?, opacity: number("opacity")? }),
             "BumpMap" => {
@@ -89,6 +101,21 @@ impl Appearances {
             }
             "TwoSided" => Arc::new(TwoSided { front: inner("front")?, back: inner("back")? }),
             other => return Err(PyTypeError::new_err(format!("material must be a raywright material, got {other}"))),
+        })
+    }
+
+    /// What the principled materials have in common.
+    fn looks(&self, given: &Bound<'_, PyAny>) -> PyResult<Looks> {
+        let number = |name: &str| PyResult::Ok(self.textures.attribute(given, name)?.number());
+        Ok(Looks {
+            base_color: self.textures.attribute(given, "base_color")?,
+            roughness: number("roughness")?,
+            anisotropic: number("anisotropic")?,
+            transmission: number("transmission")?,
+            specular_tint: number("specular_tint")?,
+            sheen: number("sheen")?,
+            sheen_tint: number("sheen_tint")?,
+            flatness: number("flatness")?,
         })
     }
 
