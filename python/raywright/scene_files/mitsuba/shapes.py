@@ -11,6 +11,7 @@ from ...materials import Diffuse, Material, TwoSided
 from ...scene.instance import AnyShape, Instance
 from ...shapes import Cylinder, Disk, Shape, Sphere
 from ...shapes.mesh import Mesh
+from .. import tubes
 from . import attributes, bsdfs, curves, mesh_files, sdf_grids
 from .errors import SceneError
 from .plugin import Plugin
@@ -69,7 +70,7 @@ def _mesh(plugin: Plugin) -> Mesh:
 
 
 def _curves(plugin: Plugin) -> Mesh:
-    least, swept = (2, curves.linear) if plugin.type == "linearcurve" else (4, curves.b_spline)
+    least, swept = (2, tubes.linear) if plugin.type == "linearcurve" else (4, tubes.b_spline)
     matrix = plugin.to_world()
     # The transform moves control points, and leaves radii as they are.
     placed = [
