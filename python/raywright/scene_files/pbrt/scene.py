@@ -25,8 +25,8 @@ from .textures import Textures
 from .tokens import Directive, directives
 
 _MOST_FILES, _MOST_DEPTH = 1000, 32
-# Turns a left-handed world into a right-handed one.
-_MIRROR = np.diag([-1.0, 1.0, 1.0, 1.0])
+# Turns a left-handed world into a right-handed one, and leaves one that a file has turned itself.
+_MIRROR, _AS_IT_IS = np.diag([-1.0, 1.0, 1.0, 1.0]), np.eye(4)
 
 
 def read_pbrt(path: Path) -> Shot:
@@ -83,6 +83,7 @@ class _Reader:
         self._files = 0
         self._in_world = False
         self._camera: tuple[str, Parameters, Floats] | None = None
+        self._mirror = _MIRROR
         self._size = (1280, 720)
         self._filter: Filter = GaussianFilter(1.5, 0.5)
         self._sampler: tuple[Sampler | None, int, int] = (Sobol(), 16, 0)
@@ -143,6 +144,8 @@ class _Reader:
         if one.name == "Camera":
             self._named["camera"] = np.linalg.inv(self._state.matrix)
             self._camera = kind, parameters, self._named["camera"]
+            # The camera's +x is to the right: a world is left-handed unless that is turned round.
+            self._mirror = _MIRROR if np.linalg.det(self._state.matrix[:3, :3]) > 0 else _AS_IT_IS
         elif one.name == "Film":
             self._size = views.film(kind, parameters)
         elif one.name == "PixelFilter":
@@ -169,7 +172,7 @@ class _Reader:
             self._set(emission=shapes.emission(parameters.over(self._defaults("light"))))
         elif one.name == "LightSource":
             made = lights.light(
-                texts[0], parameters.over(self._defaults("light")), _MIRROR @ state.matrix, self._textures
+                texts[0], parameters.over(self._defaults("light")), self._mirror @ state.matrix, self._textures
             )
             if isinstance(made, get_args(Light)):
                 self._lights.append(cast(Light, made))
@@ -189,14 +192,14 @@ class _Reader:
             self._group = None
             self._restore(one)
         else:
-            self._instances.append((texts[0], _MIRROR @ state.matrix, parameters))
+            self._instances.append((texts[0], self._mirror @ state.matrix, parameters))
 
     def _shape(self, kind: str, parameters: Parameters) -> None:
         state = self._state
         in_group = self._group is not None
         # What is in a group does not shine in pbrt, and is put in the mirrored world with it.
         look = shapes.Look(state.material, None if in_group else state.emission, state.flipped)
-        matrix = state.matrix if in_group else _MIRROR @ state.matrix
+        matrix = state.matrix if in_group else self._mirror @ state.matrix
         made = shapes.shape(kind, parameters, matrix, look, self._textures)
         (self._found if self._group is None else self._groups[self._group]).append(made)
 
@@ -232,14 +235,11 @@ class _Reader:
                 places.setdefault(name, []).append(matrix)
         found = self._found + [Instance(self._groups[name], np.stack(where)) for name, where in places.items()]
         kind, parameters, matrix = self._camera
-        mirrored = _MIRROR @ matrix
-        if np.linalg.det(mirrored[:3, :3]) > 0:
-            raise PbrtError(f"{parameters.where}: a camera that mirrors is not supported")
         sampler, samples, seed = self._sampler
         around = self._around[0] if len(self._around) == 1 else self._around or None
         return Shot(
             Scene(found, self._lights, around),
-            views.camera(kind, parameters, mirrored, self._size),
+            views.camera(kind, parameters, self._mirror @ matrix, self._size),
             self._integrator,
             samples,
             sampler=sampler,

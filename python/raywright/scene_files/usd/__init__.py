@@ -87,12 +87,10 @@ def read_usd(path: Path, width: int | None = None, height: int | None = None) ->
         if len(cameras) > 1:
             notes.tell(f"the first of its {len(cameras)} cameras is taken")
         eye = camera(*cameras[0], time) if cameras else None
-        if around:
-            lit = shown(found, lights, eye, up=up, width=width, height=height)
-            whole = Scene(found, lights, around[0] if len(around) == 1 else around)
-            shot = Shot(whole, lit.camera)
-        else:
-            shot = shown(found, lights, eye, up=up, width=width, height=height)
+        shot = shown(found, lights, eye, up=up, width=width, height=height)
+        if lights or around or any(getattr(one, "emission", None) is not None for one in found):
+            # It has light of its own, which surfaces that are no meshes give too.
+            shot = Shot(Scene(found, lights, around[0] if len(around) == 1 else around or None), shot.camera)
     except (ImportError, MemoryError):
         raise
     except Exception as error:

@@ -152,7 +152,7 @@ def _copies(instancer: Any, matrix: Matrix, time: Any, notes: Notes) -> list[Ins
         for prim in Usd.PrimRange(root, Usd.TraverseInstanceProxies()):
             own = home @ np.array(placed.GetLocalToWorldTransform(prim), np.float64).T
             parts += shapes(prim, own, time, notes)
-        there = [matrix @ np.array(places[k], np.float64).T for k in np.flatnonzero(which == number)]
+        there = [matrix @ np.array(places[int(k)], np.float64).T for k in np.flatnonzero(which == number)]
         if parts and there:
             found.append(Instance(parts, np.stack(there)))
     return found
