@@ -160,8 +160,7 @@ impl Principled {
     fn reflected(&self, is_front: bool, o: DVec3, i: DVec3) -> (Rgb, f64) {
         let [matt, coat] = self.shares(is_front);
         let (density, cosine) = self.facets.mirroring(o, i);
-        let mut value =
-            self.reflectance(is_front, cosine) * (density * self.facets.reflection_geometry(o, i));
+        let mut value = self.reflectance(is_front, cosine) * (density * self.facets.reflection_geometry(o, i));
         let drawn = self.reflecting(is_front, cosine) * self.facets.reflected_pdf(o, density);
         let mut pdf = (1.0 - matt - coat) * drawn;
         if is_front {
@@ -198,7 +197,10 @@ impl Principled {
         let fresnel = fresnel::dielectric(o, eta);
         let [matt, coat] = self.shares(is_front);
         let drawn = (1.0 - matt - coat) * (1.0 - self.reflecting(is_front, o));
-        (self.look.base_color.sqrt() * (through * (1.0 - fresnel) * crossing * both), drawn * crossing * seen * eta * eta)
+        (
+            self.look.base_color.sqrt() * (through * (1.0 - fresnel) * crossing * both),
+            drawn * crossing * seen * eta * eta,
+        )
     }
 }
 

@@ -9,8 +9,8 @@ use crate::optics::conductors::{METALS, metal};
 use crate::scene::Material;
 use crate::scene::materials::{
     BlinnPhongMaterial, BumpMap, ConductorMaterial, DielectricMaterial, DiffuseMaterial, FacetKind, Index, Interior,
-    Mask, MetallicRoughMaterial, MirrorMaterial, MixMaterial, NormalMap, OrenNayarMaterial, PhongMaterial,
-    Looks, PlasticMaterial, PrincipledMaterial, PrincipledThinMaterial, Roughness, ThinDielectricMaterial, TwoSided,
+    Looks, Mask, MetallicRoughMaterial, MirrorMaterial, MixMaterial, NormalMap, OrenNayarMaterial, PhongMaterial,
+    PlasticMaterial, PrincipledMaterial, PrincipledThinMaterial, Roughness, ThinDielectricMaterial, TwoSided,
 };
 
 /// Reads materials and textures: one that many shapes share is read once.

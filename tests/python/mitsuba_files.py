@@ -26,6 +26,7 @@ def write_files(folder):
     (folder / "gem.ply").write_text(gem())
     (folder / "dabs.ply").write_text(dabs())
     (folder / "curve.txt").write_text(curve())
+    (folder / "spline.txt").write_text(spline())
     (folder / "gem.serialized").write_bytes(serialized())
 
 
@@ -83,6 +84,14 @@ def curve():
     one = ["-1.5 0 -0.6 0.2", "-0.8 0.2 0.7 0.25", "0 -0.3 -0.4 0.3", "0.7 0.3 0.6 0.2", "1.4 0 -0.5 0.3"]
     two = ["-1 1 0.9 0.1", "0 1.1 1.1 0.15", "1 0.8 0.8 0.1", "1.5 1 0.6 0.12"]
     return "\n".join([*one, "", *two]) + "\n"
+
+
+def spline():
+    """Two curves whose ends are closed: a B-spline goes to where three points are one, of no radius."""
+    parts = [part.split("\n") for part in curve().strip().split("\n\n")]
+    ends = [[f"{part[k].rsplit(' ', 1)[0]} 0" for k in (0, -1)] for part in parts]
+    closed = [[a] * 3 + part + [b] * 3 for part, (a, b) in zip(parts, ends, strict=True)]
+    return "\n\n".join("\n".join(part) for part in closed) + "\n"
 
 
 def serialized(version=4, double=True):

@@ -78,7 +78,7 @@ def extended():
             a=FLOOR, b={"type": "linearcurve", "filename": "curve.txt", "to_world": high, "bsdf": sheet}, sky=SKY
         ),
         "bsplinecurve": scene(
-            a=FLOOR, b={"type": "bsplinecurve", "filename": "curve.txt", "to_world": high, "bsdf": sheet}, sky=SKY
+            a=FLOOR, b={"type": "bsplinecurve", "filename": "spline.txt", "to_world": high, "bsdf": sheet}, sky=SKY
         ),
         "serialized": scene(
             a=FLOOR,
@@ -86,6 +86,7 @@ def extended():
                 "type": "serialized",
                 "filename": "gem.serialized",
                 "shape_index": 1,
+                "face_normals": True,
                 "to_world": matrix((0, 0, 1), (1, 0, 0), (0, 1, 0), (0, 0, 1)),
                 "bsdf": {"type": "diffuse", "reflectance": checks(4.0, 4.0)},
             },
@@ -93,13 +94,13 @@ def extended():
             lamp=LAMP,
         ),
         "ply, colours of vertices": scene(
-            b={"type": "ply", "filename": "dabs.ply", "to_world": high, "bsdf": dabs}, sky=SKY
+            b={"type": "ply", "filename": "dabs.ply", "to_world": high, "face_normals": True, "bsdf": dabs}, sky=SKY
         ),
         "ply, colours of faces": scene(
-            b={"type": "ply", "filename": "dabs.ply", "to_world": high, "bsdf": tiles}, sky=SKY
+            b={"type": "ply", "filename": "dabs.ply", "to_world": high, "face_normals": True, "bsdf": tiles}, sky=SKY
         ),
         "ply, shares of faces": scene(
-            b={"type": "ply", "filename": "dabs.ply", "to_world": high, "bsdf": shared}, sky=SKY
+            b={"type": "ply", "filename": "dabs.ply", "to_world": high, "face_normals": True, "bsdf": shared}, sky=SKY
         ),
         "direct, lights": {
             **scene(a=TILED, b=ball({"type": "diffuse"}), lamp=LAMP, sky=SKY),

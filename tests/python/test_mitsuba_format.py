@@ -244,7 +244,7 @@ def test_a_part_of_a_film_sees_what_the_whole_does_there():
             "spot 'e': cutoff_angle must be above 0 and at most 80 with a texture, got 85",
         ),
         ({"e": {"type": "projector", "irradiance": {"type": "volume"}}}, "volume 'e.irradiance': this kind"),
-        ({"e": {"type": "constant", "radiance": {"type": "blackbody"}}}, "must be the same everywhere"),
+        ({"e": {"type": "constant", "radiance": {"type": "volume"}}}, "must be the same everywhere"),
         ({"i": {"type": "stokes"}}, "stokes 'i' is not supported here"),
         ({"i": {"type": "path", "max_depth": 0}}, "path 'i': max_depth must be -1 or at least 1"),
         ({"i": {"type": "aov", "aovs": "x:boundary_test"}}, "aov 'i': aovs must be of depth,"),
@@ -344,6 +344,27 @@ def test_principled_numbers_are_those_of_the_scene():
     assert front({"type": "principled", "eta": 1.7}).ior == 1.7
     sheet = material({"type": "principledthin", "diff_trans": 1.5, "eta": 1.2})
     assert (sheet.diffuse_transmission, sheet.ior) == (0.75, 1.2)
+
+
+def test_black_bodies_shine_as_hot_as_they_are():
+    """In Mitsuba's units, as spectral variants have them: about D65's white at 6,500 K, and Stefan's fourth power."""
+
+    def shine(kelvin, **more):
+        lamp = {"type": "constant", "radiance": {"type": "blackbody", "temperature": kelvin, **more}}
+        return np.array(shot(s=lamp).scene.environment.radiance)
+
+    white = shine(6500.0)
+    assert np.ptp(white) / white.mean() < 0.08
+    assert np.allclose(shine(6500.0, scale=0.5), white / 2, rtol=1e-12)
+    # At 560 nm, where the eye sees best, Planck's law has this; the luminance is a mean about it.
+    planck = 1.191042972e-16 / 560e-9**5 / np.expm1(0.01438776877 / (560e-9 * 6500)) * 1e-9
+    assert white @ (0.212671, 0.715160, 0.072169) == pytest.approx(planck, rel=0.02)
+
+
+def test_merged_shapes_are_themselves():
+    ball, disk = {"type": "sphere"}, {"type": "disk"}
+    apart = shot(a=ball, b=disk)
+    assert shot(m={"type": "merge", "a": ball, "n": {"type": "merge", "b": disk}}) == apart
 
 
 def test_names_of_plugins_are_known_in_capitals():

@@ -99,7 +99,10 @@ fn light_can_go_either_way() {
                 let there = bsdf.evaluate(a, b).0 * (a.z.abs() / square(a));
                 let back = bsdf.evaluate(b, a).0 * (b.z.abs() / square(b));
                 for c in 0..3 {
-                    assert!((there[c] - back[c]).abs() <= 1e-12 * there[c].abs().max(1e-3), "{a} {b} {there:?} {back:?}");
+                    assert!(
+                        (there[c] - back[c]).abs() <= 1e-12 * there[c].abs().max(1e-3),
+                        "{a} {b} {there:?} {back:?}"
+                    );
                 }
             }
         }

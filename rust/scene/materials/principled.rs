@@ -2,6 +2,7 @@
 
 use super::checks::{number, within};
 use super::{BsdfMix, Interior, Material};
+use crate::math::DVec3;
 use crate::optics::{Look, Principled, PrincipledThin};
 use crate::scene::ShadingPoint;
 use crate::scene::textures::{Needs, TexturePoint, Value};
@@ -54,7 +55,18 @@ impl Looks {
     }
 
     fn needs(&self) -> Needs {
-        self.numbers().into_iter().fold(self.base_color.needs(), |needs, (_, value)| needs | value.needs())
+        let along = if self.is_alike() { Needs::NONE } else { Needs { uv: true, tangents: true, ..Needs::NONE } };
+        self.numbers().into_iter().fold(self.base_color.needs() | along, |needs, (_, value)| needs | value.needs())
+    }
+
+    /// Whether highlights are the same in all directions.
+    fn is_alike(&self) -> bool {
+        self.anisotropic.range()[1] <= 0.0
+    }
+
+    /// Where u goes, if it makes a difference.
+    fn tangent(&self, at: &ShadingPoint) -> Option<DVec3> {
+        (!self.is_alike()).then_some(at.dp[0])
     }
 
     fn validate(&self) -> Result<(), String> {
@@ -110,6 +122,10 @@ impl Material for PrincipledMaterial {
         self.is_solid()
     }
 
+    fn tangent(&self, at: &ShadingPoint) -> Option<DVec3> {
+        self.looks.tangent(at)
+    }
+
     fn interior(&self) -> Option<Interior> {
         self.is_solid().then_some(self.interior)
     }
@@ -144,5 +160,9 @@ impl Material for PrincipledThinMaterial {
 
     fn transmits(&self) -> bool {
         true
+    }
+
+    fn tangent(&self, at: &ShadingPoint) -> Option<DVec3> {
+        self.looks.tangent(at)
     }
 }

@@ -131,9 +131,10 @@ def _projector(plugin: Plugin) -> ProjectorLight:
     if texture is None:
         image = np.broadcast_to(colour(plugin, "irradiance", 1.0, emits=True), (1, 1, 3))
     else:
-        if texture.type != "bitmap":
-            # Enough for the edges of a checkerboard.
-            width, height = _FEWEST, _FEWEST
+        # As many points to each of the picture's, or enough for the edges of a checkerboard: at its border Mitsuba
+        # goes on with what is beyond, and a projector here stays as it is for half a point.
+        finer = max(-(-_FEWEST // max(width, height)), 1)
+        width, height = width * finer, height * finer
         u, v = np.meshgrid((np.arange(width) + 0.5) / width, (np.arange(height) + 0.5) / height)
         image = thrown.at(texture, u, v)
     return _thrown(image, plugin.to_world(), tall, (scale, scale, scale))

@@ -85,9 +85,11 @@ def _read(scene: Plugin, number: int) -> Shot:
     copies = shapes.Copies()
     lights: list[Light] = []
     around: list[Environment] = []
-    for plugin in scene.children(*shapes.TYPES, shapes.COPY, *emitters.TYPES):
+    for plugin in scene.children(*shapes.TYPES, shapes.COPY, shapes.MERGED, *emitters.TYPES):
         if plugin.type == shapes.COPY:
             copies.add(plugin, found)
+        elif plugin.type == shapes.MERGED:
+            found += shapes.group(plugin)
         elif plugin.type in emitters.TYPES:
             one = emitters.emitter(plugin)
             if isinstance(one, get_args(Light)):

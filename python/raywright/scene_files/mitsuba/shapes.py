@@ -19,7 +19,7 @@ from .textures import value
 from .transforms import Matrix, frame
 from .uv import CUBE, DISK, SAME, SPHERE, Uv
 
-GROUP, COPY = "shapegroup", "instance"
+GROUP, COPY, MERGED = "shapegroup", "instance", "merge"
 
 
 def shape(plugin: Plugin) -> Mesh | Shape:
@@ -212,10 +212,15 @@ class Placed:
 
 
 def group(plugin: Plugin) -> tuple[Mesh | Shape, ...]:
-    """Return the shapes of a group."""
-    shapes = tuple(shape(inner) for inner in plugin.children(*TYPES))
+    """Return the shapes of a group, or of what is merged: how meshes lie in memory changes no picture."""
+    found: list[Mesh | Shape] = []
+    for inner in plugin.children(*TYPES, MERGED):
+        if inner.type == MERGED:
+            found += group(inner)
+        else:
+            found.append(shape(inner))
     plugin.done()
-    return shapes
+    return tuple(found)
 
 
 def shines(one: "AnyShape | Placed") -> bool:

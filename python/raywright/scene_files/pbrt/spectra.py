@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ... import _core
+from ..mitsuba.spectra import black_body as planck
 from .parameters import Parameters
 
 Triple = tuple[float, float, float]
@@ -20,7 +21,6 @@ GLASS = {
     "glass-F10": 1.72825,
     "glass-F11": 1.78472,
 }
-_WAVELENGTHS = np.arange(360.0, 831.0, 5.0)
 
 
 def colour(parameters: Parameters, name: str, default: float | Triple, emits: bool = False) -> Triple:
@@ -51,9 +51,8 @@ def colour(parameters: Parameters, name: str, default: float | Triple, emits: bo
 
 def black_body(kelvin: float) -> NDArray[np.float64]:
     """Return the colour of a black body (Planck, 1900), of any brightness."""
-    metres = _WAVELENGTHS * 1e-9
-    shine = metres**-5 / np.expm1(0.014387768775 / (metres * kelvin))
-    table = np.column_stack([_WAVELENGTHS, shine / shine.max()])
+    table = planck(kelvin)
+    table[:, 1] /= table[:, 1].max()
     return np.maximum(_core.spectrum_rgb(table.tolist(), False), 0.0)
 
 
