@@ -3,7 +3,7 @@
 use super::one_of::one_of;
 use super::{
     Beckmann, BlinnPhong, Coated, CoatedOnce, Conductor, Dielectric, Diffuse, Faceted, Ggx, MetallicRough, Mirror,
-    Null, Once, OrenNayar, Phong, ThinDielectric, Transparent,
+    Null, Once, OrenNayar, Phong, Principled, PrincipledThin, ThinDielectric, Transparent,
 };
 
 one_of! {
@@ -67,4 +67,6 @@ faceted! {
     Dielectric<Once<Beckmann>>,
     CoatedOnce<Ggx>,
     CoatedOnce<Beckmann>,
+    Principled,
+    PrincipledThin,
 }

@@ -1,10 +1,10 @@
-//! Rough surfaces that are not of GGX's facets, or not with all of the light.
+//! Rough surfaces that are not of GGX's facets, or not with all of the light, and principled ones.
 
 use super::one_of::one_of;
-use super::{Beckmann, Coated, CoatedOnce, Conductor, Dielectric, Ggx, Once};
+use super::{Beckmann, Coated, CoatedOnce, Conductor, Dielectric, Ggx, Once, Principled, PrincipledThin};
 
 one_of! {
-    /// A rough surface of less common facets: one of its kinds.
+    /// A rough surface of less common facets, or of many parts: one of its kinds.
     ///
     /// They are kept apart from the kinds of [`super::AnyBsdf`], and not inlined, so that these do not share their code
     /// with what most scenes do not have.
@@ -27,5 +27,9 @@ one_of! {
         CoatedOnce(CoatedOnce<Ggx>),
         /// Plastic with a coat of Beckmann's facets, scattering once.
         BeckmannCoatedOnce(CoatedOnce<Beckmann>),
+        /// The principled model.
+        Principled(Principled),
+        /// That of a sheet.
+        PrincipledThin(PrincipledThin),
     }
 }

@@ -10,8 +10,9 @@ use crate::optics::conductors::{METALS, metal};
 use crate::scene::Material;
 use crate::scene::materials::{
     BlinnPhongMaterial, BoundaryMaterial, BumpMap, ConductorMaterial, DielectricMaterial, DiffuseMaterial, FacetKind,
-    Index, Interior, Mask, MetallicRoughMaterial, MirrorMaterial, MixMaterial, NormalMap, OrenNayarMaterial,
-    PhongMaterial, PlasticMaterial, Roughness, ThinDielectricMaterial, TwoSided,
+    Index, Interior, Looks, Mask, MetallicRoughMaterial, MirrorMaterial, MixMaterial, NormalMap, OrenNayarMaterial,
+    PhongMaterial, PlasticMaterial, PrincipledMaterial, PrincipledThinMaterial, Roughness, ThinDielectricMaterial,
+    TwoSided,
 };
 use crate::scene::media::Medium;
 
@@ -86,6 +87,18 @@ impl Appearances {
                 metallic: number("metallic")?,
                 roughness: number("roughness")?,
             }),
+            "Principled" => Arc::new(PrincipledMaterial {
+                looks: self.looks(given)?,
+                interior: Interior { ior: float("ior")?, priority: given.getattr("priority")?.extract()? },
+                metallic: number("metallic")?,
+                clearcoat: number("clearcoat")?,
+                clearcoat_gloss: number("clearcoat_gloss")?,
+            }),
+            "PrincipledThin" => Arc::new(PrincipledThinMaterial {
+                looks: self.looks(given)?,
+                ior: float("ior")?,
+                diffuse_transmission: number("diffuse_transmission")?,
+            }),
             "Mix" => Arc::new(MixMaterial { a: inner("a")?, b: inner("b")?, amount: number("amount")? }),
             "Mask" => Arc::new(Mask { material: inner("material")?, opacity: number("opacity")? }),
             "BumpMap" => {
@@ -103,6 +116,21 @@ impl Appearances {
     fn medium(&self, given: &Bound<'_, PyAny>) -> PyResult<Option<Arc<dyn Medium>>> {
         let interior = given.getattr("interior")?;
         if interior.is_none() { Ok(None) } else { self.media.of(&interior, || media::read(&interior)).map(Some) }
+    }
+
+    /// What the principled materials have in common.
+    fn looks(&self, given: &Bound<'_, PyAny>) -> PyResult<Looks> {
+        let number = |name: &str| PyResult::Ok(self.textures.attribute(given, name)?.number());
+        Ok(Looks {
+            base_color: self.textures.attribute(given, "base_color")?,
+            roughness: number("roughness")?,
+            anisotropic: number("anisotropic")?,
+            transmission: number("transmission")?,
+            specular_tint: number("specular_tint")?,
+            sheen: number("sheen")?,
+            sheen_tint: number("sheen_tint")?,
+            flatness: number("flatness")?,
+        })
     }
 
     /// Roughness, or alpha where there is one, alike in all directions or of two; and of which facets.

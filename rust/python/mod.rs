@@ -8,6 +8,7 @@ mod columns;
 mod cones;
 mod describe;
 mod every;
+mod exr_files;
 mod first_hits;
 mod freeform;
 mod info;
@@ -59,6 +60,8 @@ mod _core {
     use super::cameras::{camera_rays, camera_rays_through};
     #[pymodule_export]
     use super::cones::{cone_coverage, cones};
+    #[pymodule_export]
+    use super::exr_files::exr_channels;
     #[pymodule_export]
     use super::first_hits::first_hits;
     #[pymodule_export]

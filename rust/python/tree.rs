@@ -21,8 +21,7 @@ pub fn tree<'py>(py: Python<'py>, scene: &Bound<'py, CompiledScene>) -> PyResult
     let (depth, primitives) = (unwritten(py, &[count], None)?, unwritten(py, &[count], None)?);
     let corners = unwritten(py, &[count], Some(24))?;
     {
-        let (mut depth, mut primitives, mut corners) =
-            (depth.readwrite(), primitives.readwrite(), corners.readwrite());
+        let (mut depth, mut primitives, mut corners) = (depth.readwrite(), primitives.readwrite(), corners.readwrite());
         let rows = corners.as_slice_mut()?.as_chunks_mut::<24>().0;
         let places = depth.as_slice_mut()?.iter_mut().zip(primitives.as_slice_mut()?).zip(rows);
         for (((depth, primitives), row), (node, tree)) in places.zip(all) {

@@ -1,4 +1,7 @@
-"""The files that the scenes of `mitsuba_scenes` name: pictures and meshes."""
+"""The files that the scenes of `mitsuba_scenes` name: pictures, meshes and curves."""
+
+import struct
+import zlib
 
 import numpy as np
 from PIL import Image
@@ -21,6 +24,10 @@ def write_files(folder):
     (folder / "around.hdr").write_bytes(b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 8 +X 16\n" + rows)
     (folder / "bowl.obj").write_text(bowl())
     (folder / "gem.ply").write_text(gem())
+    (folder / "dabs.ply").write_text(dabs())
+    (folder / "curve.txt").write_text(curve())
+    (folder / "spline.txt").write_text(spline())
+    (folder / "gem.serialized").write_bytes(serialized())
 
 
 def bowl(around=60, along=24):
@@ -48,3 +55,57 @@ def gem():
     header += ["element face 8", "property list uchar int vertex_indices", "end_header"]
     lines = [" ".join(map(str, point)) for point in points] + [f"3 {a} {b} {c}" for a, b, c in faces]
     return "\n".join(header + lines) + "\n"
+
+
+OCTAHEDRON = [(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1)]
+
+
+def eight():
+    """The faces of the octahedron, whose normals point out."""
+    return [(a, b, c) if (a + b + c) % 2 == 0 else (b, a, c) for a in (0, 1) for b in (2, 3) for c in (4, 5)]
+
+
+def dabs():
+    """An octahedron as a PLY, with colours of its vertices, and colours and shares of its faces."""
+    header = ["ply", "format ascii 1.0", "element vertex 6", *(f"property float {name}" for name in "xyz")]
+    header += [f"property float color_{k}" for k in range(3)]
+    header += ["element face 8", "property list uchar int vertex_indices"]
+    header += [f"property float color_{k}" for k in range(3)] + ["property float share_0", "end_header"]
+    rng = np.random.default_rng(4)
+    lines = [" ".join(f"{x:.4f}" for x in (*point, *rng.uniform(0.1, 0.9, 3))) for point in OCTAHEDRON]
+    lines += [
+        f"3 {a} {b} {c} " + " ".join(f"{x:.4f}" for x in rng.uniform(0.1, 0.9, 4)) for a, b, c in eight()
+    ]
+    return "\n".join(header + lines) + "\n"
+
+
+def curve():
+    """Two curves of points with a radius."""
+    one = ["-1.5 0 -0.6 0.2", "-0.8 0.2 0.7 0.25", "0 -0.3 -0.4 0.3", "0.7 0.3 0.6 0.2", "1.4 0 -0.5 0.3"]
+    two = ["-1 1 0.9 0.1", "0 1.1 1.1 0.15", "1 0.8 0.8 0.1", "1.5 1 0.6 0.12"]
+    return "\n".join([*one, "", *two]) + "\n"
+
+
+def spline():
+    """Two curves whose ends are closed: a B-spline goes to where three points are one, of no radius."""
+    parts = [part.split("\n") for part in curve().strip().split("\n\n")]
+    ends = [[f"{part[k].rsplit(' ', 1)[0]} 0" for k in (0, -1)] for part in parts]
+    closed = [[a] * 3 + part + [b] * 3 for part, (a, b) in zip(parts, ends, strict=True)]
+    return "\n\n".join("\n".join(part) for part in closed) + "\n"
+
+
+def serialized(version=4, double=True):
+    """Two meshes in Mitsuba's own format: a triangle, and an octahedron with coordinates and no normals."""
+    kind = "<f8" if double else "<f4"
+
+    def mesh(points, faces):
+        points = np.array(points, kind)
+        flags = (0x2000 if double else 0x1000) | 0x0002
+        parts = struct.pack("<I", flags) + (b"gem\0" if version == 4 else b"")
+        parts += struct.pack("<QQ", len(points), len(faces)) + points.tobytes() + points[:, :2].tobytes()
+        return struct.pack("<HH", 0x041C, version) + zlib.compress(parts + np.array(faces, "<u4").tobytes())
+
+    meshes = [mesh([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)]), mesh(OCTAHEDRON, eight())]
+    starts = [0, len(meshes[0])]
+    ends = struct.pack("<QQ" if version == 4 else "<II", *starts) + struct.pack("<I", 2)
+    return b"".join(meshes) + ends

@@ -21,6 +21,7 @@ from mitsuba_parts import (
     rgb,
     scene,
 )
+from mitsuba_scenes_extended import extended
 
 
 def scenes():
@@ -486,4 +487,5 @@ def scenes():
             a=FLOOR,
             b=ball({"type": "diffuse"}, emitter={"type": "area", "radiance": picture("colours.png")}),
         ),
+        **extended(),
     }

@@ -6,10 +6,11 @@ import numpy as np
 
 TAGS = {
     "bsdf": "diffuse dielectric roughdielectric thindielectric conductor roughconductor plastic roughplastic "
-    "principled twosided blendbsdf mask bumpmap normalmap",
-    "shape": "sphere disk rectangle cube cylinder obj ply shapegroup instance",
-    "emitter": "area point spot directional constant envmap",
-    "texture": "bitmap checkerboard",
+    "principled principledthin twosided blendbsdf mask bumpmap normalmap",
+    "shape": "sphere disk rectangle cube cylinder obj ply serialized linearcurve "
+    "bsplinecurve shapegroup instance",
+    "emitter": "area point spot projector directional constant envmap",
+    "texture": "bitmap checkerboard mesh_attribute",
     "sensor": "perspective thinlens orthographic",
     "film": "hdrfilm",
     "rfilter": "box",

@@ -10,6 +10,7 @@ import raywright as rw
 from raywright.scenes import cornell_spectra
 
 EYE = {"type": "perspective", "film": {"type": "hdrfilm", "width": 8, "height": 4}}
+POINT = {"type": "hdrfilm", "width": 1, "height": 1, "rfilter": {"type": "box"}}
 
 
 def shot(**parts):
@@ -238,12 +239,25 @@ def test_a_part_of_a_film_sees_what_the_whole_does_there():
             {"s": {"type": "sphere", "b": {"type": "diffuse", "reflectance": {"type": "volume"}}}},
             "volume 's.b.reflectance': this kind of texture is not supported",
         ),
-        ({"e": {"type": "spot", "texture": {"type": "bitmap"}}}, "spot 'e': a texture is not supported"),
-        ({"e": {"type": "constant", "radiance": {"type": "blackbody"}}}, "must be the same everywhere"),
+        (
+            {"e": {"type": "spot", "cutoff_angle": 85.0, "texture": {"type": "checkerboard"}}},
+            "spot 'e': cutoff_angle must be above 0 and at most 80 with a texture, got 85",
+        ),
+        ({"e": {"type": "projector", "irradiance": {"type": "volume"}}}, "volume 'e.irradiance': this kind"),
+        ({"e": {"type": "constant", "radiance": {"type": "volume"}}}, "must be the same everywhere"),
         ({"i": {"type": "stokes"}}, "stokes 'i' is not supported here"),
         ({"i": {"type": "path", "max_depth": 0}}, "path 'i': max_depth must be -1 or at least 1"),
         ({"i": {"type": "aov", "aovs": "x:boundary_test"}}, "aov 'i': aovs must be of depth,"),
-        ({"e2": {"type": "distant"}}, "distant 'e2' is not supported here"),
+        ({"e2": {"type": "batch"}}, "batch 'e2' is not supported here"),
+        ({"i": {"type": "moment"}}, "moment 'i': one integrator must be within, got 0"),
+        (
+            {"i": {"type": "direct", "emitter_samples": 0, "bsdf_samples": 0}},
+            "direct 'i': emitter_samples and bsdf_samples must be at least 0, and one of them 1, got 0 and 0",
+        ),
+        (
+            {"s": {"type": "sphere", "b": {"type": "principled", "eta": 1.5, "specular": 0.5}}},
+            "principled 's.b': either eta or specular must be given, got both",
+        ),
     ],
 )
 def test_what_is_not_supported_is_refused_by_name(parts, told):
@@ -253,16 +267,117 @@ def test_what_is_not_supported_is_refused_by_name(parts, told):
 
 
 def test_what_is_approximated_is_warned_of_once():
-    like_disney = {"type": "principled", "roughness": 0.2}
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
-        shot(
-            a={"type": "sphere", "b": like_disney},
-            c={"type": "disk", "b": {**like_disney, "roughness": 0.3}},
-        )
+        shot(a={"type": "sunsky"}, b={"type": "sunsky", "hour": 12.0})
     assert [str(one.message) for one in caught] == [
-        "principled 'a.b': a principled BSDF is approximated by glTF's: base_color, metallic and roughness"
+        "sunsky 'a': its sky is approximated by that of Preetham et al. (1999), which is brighter"
     ]
+
+
+def test_what_shines_is_hidden_as_a_transparent_background():
+    hidden = {"type": "path", "hide_emitters": True}
+    ball, sky = {"type": "sphere"}, {"type": "constant"}
+    assert shot(i=hidden, b=ball, s=sky).background == "transparent"
+    assert shot(i={"type": "path"}, b=ball, s=sky).background == "shown"
+    with pytest.warns(
+        RuntimeWarning, match="path 'i': hide_emitters hides what is around: surfaces that shine"
+    ):
+        shot(i=hidden, b={**ball, "e": {"type": "area"}})
+
+
+def test_direct_light_without_one_of_its_ways():
+    """By surfaces alone, what has no size is never found, and by lights alone all else is."""
+    parts = {"b": {"type": "sphere"}, "p": {"type": "point"}, "s": {"type": "constant"}}
+    with pytest.warns(RuntimeWarning, match="without emitter_samples"):
+        found = shot(i={"type": "direct", "emitter_samples": 0, "bsdf_samples": 3}, **parts)
+    assert (found.integrator, found.scene.lights) == (rw.Direct(1, 3), ())
+    with pytest.warns(RuntimeWarning, match="without bsdf_samples mirrors and smooth glass would be black"):
+        found = shot(i={"type": "direct", "emitter_samples": 2, "bsdf_samples": 0}, **parts)
+    assert found.integrator == rw.Direct(2, 1)
+    assert len(found.scene.lights) == 1
+
+
+def test_moments_are_told_of_any_integrator():
+    moment = {
+        "type": "moment",
+        "inner": {"type": "aov", "aovs": "d:depth", "light": {"type": "path", "max_depth": 3}},
+    }
+    found = shot(i=moment, b={"type": "sphere"})
+    assert (found.integrator, found.aov) == (rw.Path(2, 4), ("depth",))
+    assert shot(i={"type": "depth"}, b={"type": "sphere"}).aov == ("depth",)
+
+
+@pytest.mark.parametrize(
+    "eye",
+    [
+        {"type": "radiancemeter", "origin": [0.0, 0.0, 4.0], "direction": [0.0, 0.0, -1.0]},
+        {"type": "distant", "direction": [0.0, 0.0, -1.0], "target": [0.0, 0.0, 0.0]},
+    ],
+)
+def test_meters_measure_along_one_ray(eye):
+    """Of a matt ball under an even sky, its reflectance: this sees the pole, from where all of the sky is seen."""
+    grey = {"type": "diffuse", "reflectance": 0.6}
+    parts = {"b": {"type": "sphere", "bsdf": grey}, "s": {"type": "constant"}}
+    found = rw.from_mitsuba({"type": "scene", "eye": {**eye, "film": POINT}, **parts})
+    assert found.camera.rays()[1][0, 0].tolist() == [0.0, 0.0, -1.0]
+    image = found.render(samples=64, progress=False)
+    assert abs(image.rgb[0, 0] - 0.6).max() < 4 * image.standard_error.max() + 1e-4
+    with pytest.raises(ValueError, match="its film must be of 1 by 1 pixels, got 8 by 4"):
+        rw.from_mitsuba({"type": "scene", "eye": {**eye, "film": EYE["film"]}, **parts})
+
+
+def test_a_distant_meter_wants_a_point():
+    with pytest.raises(ValueError, match="distant 'eye': target must be a point"):
+        rw.from_mitsuba({"type": "scene", "eye": {"type": "distant", "film": POINT}, "b": {"type": "sphere"}})
+
+
+def test_the_sun_is_where_mitsuba_has_it():
+    """In Tokyo at three in the afternoon, by Mitsuba 3.9.1, to a hundredth of a degree."""
+    with pytest.warns(RuntimeWarning, match="sunsky 's': its sky is approximated"):
+        day = shot(s={"type": "sunsky"}).scene.environment
+    assert np.linalg.norm(np.subtract(day.sun, (0.0513854, 0.691748, 0.720308))) < np.radians(0.01)
+    with pytest.warns(RuntimeWarning):
+        told = shot(
+            s={"type": "sunsky", "sun_direction": [0.0, 3.0, 4.0], "turbidity": 5.0}
+        ).scene.environment
+    assert (told.sun, told.turbidity, told.up) == ((0.0, 3.0, 4.0), 5.0, (0.0, 0.0, 1.0))
+
+
+def test_principled_numbers_are_those_of_the_scene():
+    made = material({"type": "principled", "specular": 0.5, "spec_trans": 0.5, "sheen": 0.25})
+    assert (made.ior, made.transmission, made.sheen) == (pytest.approx(1.5, abs=1e-12), 0.5, 0.25)
+    # What lets nothing through is black behind.
+    assert front({"type": "principled", "eta": 1.7}).ior == 1.7
+    sheet = material({"type": "principledthin", "diff_trans": 1.5, "eta": 1.2})
+    assert (sheet.diffuse_transmission, sheet.ior) == (0.75, 1.2)
+
+
+def test_black_bodies_shine_as_hot_as_they_are():
+    """In Mitsuba's units, as spectral variants have them: about D65's white at 6,500 K, and Stefan's fourth power."""
+
+    def shine(kelvin, **more):
+        lamp = {"type": "constant", "radiance": {"type": "blackbody", "temperature": kelvin, **more}}
+        return np.array(shot(s=lamp).scene.environment.radiance)
+
+    white = shine(6500.0)
+    assert np.ptp(white) / white.mean() < 0.08
+    assert np.allclose(shine(6500.0, scale=0.5), white / 2, rtol=1e-12)
+    # At 560 nm, where the eye sees best, Planck's law has this; the luminance is a mean about it.
+    planck = 1.191042972e-16 / 560e-9**5 / np.expm1(0.01438776877 / (560e-9 * 6500)) * 1e-9
+    assert white @ (0.212671, 0.715160, 0.072169) == pytest.approx(planck, rel=0.02)
+
+
+def test_merged_shapes_are_themselves():
+    ball, disk = {"type": "sphere"}, {"type": "disk"}
+    apart = shot(a=ball, b=disk)
+    assert shot(m={"type": "merge", "a": ball, "n": {"type": "merge", "b": disk}}) == apart
+
+
+def test_names_of_plugins_are_known_in_capitals():
+    assert shot(one={"type": "Sphere", "b": {"type": "Diffuse"}}) == shot(
+        one={"type": "sphere", "b": {"type": "diffuse"}}
+    )
 
 
 def test_facets_are_those_of_the_scene():
@@ -300,9 +415,9 @@ def test_files_that_are_missing_are_told():
         rw.from_mitsuba({"type": "scene", "sensor": EYE}, sensor="eye")
 
 
-@pytest.mark.parametrize("kind", ["radiancemeter", "irradiancemeter", "distant", "batch"])
+@pytest.mark.parametrize("kind", ["irradiancemeter", "batch"])
 def test_a_sensor_that_is_not_supported_is_named(kind):
-    told = f"scene: {kind} 'eye' is not supported here; sensors are perspective, thinlens, orthographic"
+    told = f"scene: {kind} 'eye' is not supported here; sensors are perspective, thinlens, orthographic, "
     for others in ({}, {"sensor": EYE}):
         with pytest.raises(ValueError, match=re.escape(told)):
             rw.from_mitsuba({"type": "scene", **others, "eye": {"type": kind}})

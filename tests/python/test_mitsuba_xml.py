@@ -57,6 +57,34 @@ def test_defaults_fill_in_and_are_overridden(tmp_path):
         load(tmp_path, '<shape type="sphere"><float name="radius" value="$missing"/></shape>')
 
 
+def test_parameters_are_given_by_name(tmp_path):
+    body = '<shape type="sphere"><float name="radius" value="$r"/></shape>'
+    load(tmp_path, body, r=1)
+    path = tmp_path / "scene.xml"
+    assert rw.load(path, r=0.5).scene.shapes[0].radius == 0.5
+    assert rw.load(path, width=8, r=0.5).camera.width == 8
+    with pytest.raises(ValueError, match=r"^spp is no parameter of .*scene\.xml; it has r$"):
+        rw.load(path, r=0.5, spp=16)
+    with pytest.raises(ValueError, match="parameters are of an XML file; a dict has none"):
+        rw.from_mitsuba({"type": "scene"}, parameters={"r": 1})
+    (tmp_path / "a.stl").write_bytes(b"")
+    with pytest.raises(TypeError, match=r"spp is no parameter of .*a\.stl: only scenes of Mitsuba have some"):
+        rw.load(tmp_path / "a.stl", spp=16)
+
+
+def test_a_folder_more_is_looked_in_last(tmp_path):
+    (tmp_path / "more").mkdir()
+    ball = '<shape version="3.0.0" type="sphere"><float name="radius" value="2"/></shape>'
+    (tmp_path / "more" / "ball.xml").write_text(ball)
+    path = tmp_path / "scene.xml"
+    path.write_text(f'<scene version="3.0.0">{EYE}<include filename="ball.xml"/></scene>')
+    with pytest.raises(FileNotFoundError):
+        rw.from_mitsuba(path)
+    assert rw.from_mitsuba(path, folder=tmp_path / "more").scene.shapes[0].radius == 2
+    (tmp_path / "ball.xml").write_text(ball.replace('"2"', '"3"'))
+    assert rw.from_mitsuba(path, folder=tmp_path / "more").scene.shapes[0].radius == 3
+
+
 def test_files_are_included_and_found_in_folders(tmp_path):
     (tmp_path / "parts").mkdir()
     ball = '<shape version="3.0.0" type="sphere"><ref id="paint"/></shape>'
@@ -102,9 +130,9 @@ def test_scenes_of_version_one_have_their_names_renewed(tmp_path):
         <integrator type="path"><integer name="maxDepth" value="3"/></integrator>
         <texture type="checkerboard" id="theCells"/>
         <shape type="disk"><bsdf type="diffuse"><ref name="diffuseReflectance" id="theCells"/></bsdf></shape>
-        <shape type="sphere"><transform name="toWorld"><scale value="2"/></transform>
+        <shape type="sphere"><transform name="toWorld"><lookAt origin="0, 0, 0" target="0, 0, 1" up="0, 1, 0"/><scale value="2"/></transform>
         <bsdf type="dielectric"><float name="intIOR" value="1.5"/></bsdf></shape></scene>
-    """.replace("intIOR", "intIor")
+    """
     )
     shot = rw.load(path)
     assert shot.integrator == rw.Path(max_depth=2)

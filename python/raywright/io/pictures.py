@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from .._core import exr_channels
 from .exr_chunks import check_exr
 from .quiet import quiet, reason
 from .radiance_hdr import read_hdr
@@ -94,8 +95,6 @@ def read(path: str | PathLike[str]) -> NDArray[Any]:
     ------
     FileNotFoundError
         If the file is missing.
-    ImportError
-        If it is an EXR and OpenEXR is not installed.
     ValueError
         If it is no picture that can be read.
     """
@@ -177,21 +176,14 @@ def pixels_of(picture: Any) -> NDArray[Any]:
 
 
 def _read_exr(path: Path) -> NDArray[np.float32]:
-    try:
-        import OpenEXR
-    except ImportError as error:
-        raise ImportError(NO_EXR.replace("saving", "reading")) from error
-
-    # The library tells of what is broken in lines of its own, and on stdout.
+    # Nothing is made of a header that promises what the file does not hold.
     check_exr(path)
-    with OpenEXR.File(str(path), separate_channels=True) as file:
-        channels = {name: channel.pixels for name, channel in file.channels().items()}
+    width, height, found = exr_channels(path.read_bytes())
+    channels = {name: numbers.reshape(height, width) for name, numbers in found}
     names = ["R", "G", "B"] if "R" in channels else ["Y"]
     if missing := [name for name in names if name not in channels]:
         raise ValueError(f"it has no channel {missing[0]}, only {', '.join(channels)}")
-    return np.stack([channels[name] for name in [*names, *(["A"] if "A" in channels else [])]], -1).astype(
-        np.float32
-    )
+    return np.stack([channels[name] for name in [*names, *(["A"] if "A" in channels else [])]], -1)
 
 
 def read_linear(path: str | PathLike[str]) -> NDArray[np.floating[Any]]:

@@ -15,6 +15,7 @@ from .normal_map import NormalMap
 from .oren_nayar import OrenNayar
 from .phong import Phong
 from .plastic import Plastic
+from .principled import Principled, PrincipledThin
 from .thin_dielectric import ThinDielectric
 from .two_sided import TwoSided
 
@@ -35,6 +36,8 @@ __all__ = [
     "OrenNayar",
     "Phong",
     "Plastic",
+    "Principled",
+    "PrincipledThin",
     "ThinDielectric",
     "TwoSided",
     "metal_index",

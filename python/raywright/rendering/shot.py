@@ -39,6 +39,8 @@ class Shot:
         Picks the random numbers.
     aov : tuple of str
         What is seen first, besides the picture, as `raywright.render` takes it.
+    background : {"shown", "transparent"}
+        Whether what surrounds the scene is seen, as `raywright.render` takes it.
     """
 
     scene: Scene
@@ -49,6 +51,7 @@ class Shot:
     filter: Filter = field(default_factory=BoxFilter)
     seed: int = 0
     aov: tuple[str, ...] = ()
+    background: str = "shown"
 
     def render(self, **overrides: Any) -> Image:
         """Render the picture.
@@ -77,6 +80,7 @@ class Shot:
             "filter": self.filter,
             "seed": self.seed,
             "aov": self.aov,
+            "background": self.background,
         }
         if all(overrides.get(limit) is None for limit in _LIMITS):
             own["samples"] = self.samples

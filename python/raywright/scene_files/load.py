@@ -3,15 +3,16 @@
 import errno
 from os import PathLike
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 from ..mesh_files import meshes
 from ..rendering.shot import Shot
 from .mitsuba import from_mitsuba
 from .shown import shown
 
+USD = (".usd", ".usda", ".usdc", ".usdz")
 # Files that may have cameras and lights of their own.
-SCENES = (".xml", ".glb", ".gltf")
+SCENES = (".xml", ".pbrt", ".glb", ".gltf", *USD)
 
 
 def has_camera(path: str | PathLike[str]) -> bool:
@@ -24,6 +25,7 @@ def load(
     up: Literal["y", "z"] = "y",
     width: int | None = None,
     height: int | None = None,
+    **parameters: Any,
 ) -> Shot:
     """Read a scene, or a mesh, with all that it takes to make a picture of it.
 
@@ -35,13 +37,17 @@ def load(
     Parameters
     ----------
     path : str or path
-        ``.xml``, a scene of Mitsuba 3, as `from_mitsuba` reads it; ``.glb`` or ``.gltf``; or any other mesh
-        file that trimesh reads: OBJ with its materials, PLY, STL, ...
+        ``.xml``, a scene of Mitsuba 3, as `from_mitsuba` reads it; ``.pbrt``, one of pbrt-v4; ``.glb`` or
+        ``.gltf``; ``.usd``, ``.usda``, ``.usdc`` or ``.usdz``, which need ``pip install 'raywright[usd]'``; or
+        any other mesh file that trimesh reads: OBJ with its materials, PLY, STL, ...
     up : {"y", "z"}
         The axis that points up in a mesh file that does not say so; in glTF it is y.
     width, height : int, optional
         Size of the picture in pixels: the file's own if not given; if only one is given, the other keeps its
         proportions. For a file without a camera they are 640 and 480 where they are not given.
+    **parameters
+        What ``$name`` in a scene of Mitsuba stands for, in place of its defaults: ``spp=16``. Those of the
+        names above are given by ``from_mitsuba(parameters=)``.
 
     Returns
     -------
@@ -55,7 +61,9 @@ def load(
     ValueError
         If it cannot be read, or holds something that is not supported, or a number is out of range.
     TypeError
-        If `path` is no path, or a size is no integer.
+        If `path` is no path, a size is no integer, or there are parameters and it is no scene of Mitsuba.
+    ImportError
+        If it is a USD file and usd-core is not installed.
 
     Warns
     -----
@@ -69,7 +77,19 @@ def load(
         raise FileNotFoundError(errno.ENOENT, "no such file", str(path))
     suffix = path.suffix.lower()
     if suffix == ".xml":
-        return from_mitsuba(path).resized(width, height)
+        return from_mitsuba(path, parameters=parameters).resized(width, height)
+    if parameters:
+        raise TypeError(
+            f"{next(iter(parameters))} is no parameter of {path}: only scenes of Mitsuba have some"
+        )
+    if suffix == ".pbrt":
+        from .pbrt import read_pbrt
+
+        return read_pbrt(path).resized(width, height)
+    if suffix in USD:
+        from .usd import read_usd
+
+        return read_usd(path, width, height)
     if suffix in SCENES:
         from .gltf import read_gltf
 

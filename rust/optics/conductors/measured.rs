@@ -2,7 +2,7 @@
 
 use super::Metal;
 
-/// Every metal that is known, by symbol: wavelength in nm, η and k.
+/// Every metal that is known, and carbon, which reflects as one does, by symbol: wavelength in nm, η and k.
 ///
 /// Those of "Handbook of Optical Constants of Solids", of metals of which it has the better measurements, are as
 /// luxpop.com has them; the others as refractiveindex.info does (Polyanskiy, 2024). Of finer tables those rows are kept
@@ -10,7 +10,7 @@ use super::Metal;
 #[rustfmt::skip]
 // Tungsten's k only looks like e.
 #[allow(clippy::approx_constant)]
-pub static METALS: [Metal; 31] = [
+pub static METALS: [Metal; 32] = [
     // Lynch and Hunter, in Palik (ed.), "Handbook of Optical Constants of Solids", 1985.
     Metal::new("Ag", "silver", &[
         [354.24, 0.209, 1.44], [364.66, 0.186, 1.61], [375.71, 0.2, 1.67], [387.45, 0.192, 1.81],
@@ -244,5 +244,11 @@ pub static METALS: [Metal; 31] = [
         [600.0, 2.857, 3.503], [620.0, 2.968, 3.537], [640.0, 3.078, 3.566], [660.0, 3.179, 3.586],
         [680.0, 3.274, 3.603], [700.0, 3.364, 3.616], [720.0, 3.448, 3.623], [740.0, 3.526, 3.628],
         [760.0, 3.595, 3.63], [780.0, 3.66, 3.631], [800.0, 3.724, 3.627], [820.0, 3.76, 3.619], [840.0, 3.801, 3.627],
+    ]),
+    // Arakawa, Williams and Inagaki, "Optical properties of arc-evaporated carbon films between 0.6 and 3.8 eV", 1977.
+    Metal::new("a-C", "amorphous carbon", &[
+        [344.4, 1.94, 0.92], [364.7, 2.0, 0.92], [387.5, 2.06, 0.91], [413.3, 2.11, 0.9], [442.8, 2.17, 0.89],
+        [476.9, 2.24, 0.88], [516.6, 2.3, 0.87], [563.6, 2.38, 0.82], [619.9, 2.43, 0.75], [688.8, 2.43, 0.7],
+        [774.9, 2.33, 0.71], [885.6, 2.24, 0.8],
     ]),
 ];

@@ -18,6 +18,7 @@ mod normal_map;
 mod oren_nayar;
 mod phong;
 mod plastic;
+mod principled;
 mod roughness;
 #[cfg(test)]
 mod tests;
@@ -41,6 +42,7 @@ pub use normal_map::NormalMap;
 pub use oren_nayar::OrenNayarMaterial;
 pub use phong::PhongMaterial;
 pub use plastic::PlasticMaterial;
+pub use principled::{Looks, PrincipledMaterial, PrincipledThinMaterial};
 pub use roughness::{FacetKind, Roughness};
 pub use thin_dielectric::ThinDielectricMaterial;
 pub use two_sided::TwoSided;

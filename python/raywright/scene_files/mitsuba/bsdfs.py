@@ -13,7 +13,6 @@ from ...materials import (
     Diffuse,
     Mask,
     Material,
-    MetallicRough,
     Mix,
     NormalMap,
     Plastic,
@@ -25,6 +24,8 @@ from .errors import SceneError
 from .facets import SMOOTH, conductor, dielectric, facets, scaled
 from .iors import relative
 from .plugin import Plugin
+from .principled import principled, principled_thin
+from .textures import TYPES as TEXTURES
 from .textures import normals, numbers, scalar, value
 from .uv import Uv
 from .values import colour
@@ -130,26 +131,6 @@ def _plastic(plugin: Plugin, uv: Uv) -> Sides:
     return Sides(Plastic(reflectance, ior, **rough.arguments()), True)
 
 
-def _principled(plugin: Plugin, uv: Uv) -> Sides:
-    plugin.warn("a principled BSDF is approximated by glTF's: base_color, metallic and roughness")
-    left_out = {
-        "anisotropic", "spec_trans", "eta", "specular", "spec_tint", "sheen", "sheen_tint", "flatness",
-        "clearcoat", "clearcoat_gloss", "diffuse_reflectance_sampling_rate", "main_specular_sampling_rate",
-        "clearcoat_sampling_rate",
-    }  # fmt: skip
-    if plugin.take("spec_trans", 0.0) != 0.0:
-        plugin.fail("spec_trans is not supported")
-    plugin.ignore(*left_out)
-    return Sides(
-        MetallicRough(
-            value(plugin, "base_color", 0.5, uv),
-            scalar(plugin, "metallic", 0.0, uv),
-            scalar(plugin, "roughness", 0.5, uv),
-        ),
-        True,
-    )
-
-
 def _two_sided(plugin: Plugin, uv: Uv) -> Sides:
     inner = _inner(plugin, uv, 1, 2)
     if len(inner) == 1:
@@ -173,7 +154,7 @@ def _blend(plugin: Plugin, uv: Uv) -> Sides:
 def _bump_map(plugin: Plugin, uv: Uv) -> Sides:
     (inner,) = _inner(plugin, uv, 1)
     _soft_terminator(plugin)
-    textures = list(plugin.children("bitmap", "checkerboard"))
+    textures = list(plugin.children(*TEXTURES))
     if len(textures) != 1:
         plugin.fail(f"one texture must be within, got {len(textures)}")
     height = numbers(textures[0], uv)
@@ -211,7 +192,8 @@ _READERS: dict[str, Callable[[Plugin, Uv], Sides]] = {
     "roughconductor": _conductor,
     "plastic": _plastic,
     "roughplastic": _plastic,
-    "principled": _principled,
+    "principled": lambda plugin, uv: Sides(*principled(plugin, uv)),
+    "principledthin": lambda plugin, uv: Sides(principled_thin(plugin, uv), False),
     "twosided": _two_sided,
     "mask": _mask,
     "blendbsdf": _blend,

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable
+from datetime import datetime, timedelta, timezone
 from typing import Any
 
 import numpy as np
@@ -15,15 +16,25 @@ from ...lights import (
     EnvironmentMap,
     Light,
     PointLight,
+    ProjectorLight,
     SpotLight,
+    SunSky,
 )
+from . import thrown
 from .errors import SceneError
-from .plugin import Plugin
+from .plugin import Plugin, Triple
+from .sensors import field_of_view
 from .textures import picture
 from .transforms import Matrix, straightened
-from .values import colour
+from .values import UNIFORM, colour
 
-TYPES = ("point", "spot", "directional", "constant", "envmap")
+TYPES = ("point", "spot", "projector", "directional", "constant", "envmap", "sunsky")
+
+# Points across what a spot throws through a texture, and the widest that does: beyond it they lie too far apart.
+_FEWEST, _MOST, _WIDEST = 512, 1024, 80.0
+# What a luminance of the sky, in cd/m² over 683 lm/W, is divided by in Mitsuba: the integral of the observer's
+# green over wavelengths in nm (CIE 1931).
+_SKY = 106.856895
 
 # Rows to which smaller environment maps are refined.
 _ROWS = 1024
@@ -44,9 +55,11 @@ def emitter(plugin: Plugin) -> Light | Environment:
     readers: dict[str, Callable[[Plugin], Light | Environment]] = {
         "point": _point,
         "spot": _spot,
+        "projector": _projector,
         "directional": _directional,
         "constant": _constant,
         "envmap": _map,
+        "sunsky": _daylight,
     }
     plugin.ignore("sampling_weight")
     try:
@@ -69,12 +82,13 @@ def _point(plugin: Plugin) -> PointLight:
     return PointLight(position, colour(plugin, "intensity", 1.0, emits=True))
 
 
-def _spot(plugin: Plugin) -> SpotLight:
-    if plugin.has("texture"):
-        plugin.fail("a texture is not supported")
+def _spot(plugin: Plugin) -> SpotLight | ProjectorLight:
     matrix = plugin.to_world()
     cutoff = plugin.number("cutoff_angle", 20.0)
     beam = min(plugin.number("beam_width", 0.75 * cutoff), cutoff)
+    texture = plugin.child("texture")
+    if texture is not None and texture.type not in UNIFORM:
+        return _picture_spot(plugin, texture, matrix, (cutoff, beam))
     return SpotLight(
         matrix[:3, 3],
         matrix[:3, 3] + _unit(matrix[:3, 2]),
@@ -83,6 +97,54 @@ def _spot(plugin: Plugin) -> SpotLight:
         cutoff - beam,
         "linear",
     )
+
+
+def _picture_spot(
+    plugin: Plugin, texture: Plugin, matrix: Matrix, angles: tuple[float, float]
+) -> ProjectorLight:
+    """Return a spot with a texture as a projector, in whose picture the spot's fall-off is."""
+    cutoff, beam = angles
+    if not 0 < cutoff <= _WIDEST:
+        plugin.fail(f"cutoff_angle must be above 0 and at most {_WIDEST:g} with a texture, got {cutoff:g}")
+    count = min(max(_FEWEST, *thrown.size_of(texture)), _MOST)
+    tangent = math.tan(math.radians(cutoff))
+    # From the left of the picture, which is +x, to its right, and from its top, +y.
+    plane = 1 - 2 * (np.arange(count) + 0.5) / count
+    x, y = plane[None, :], plane[:, None]
+    cosine = 1 / np.sqrt(1 + tangent**2 * (x * x + y * y))
+    angle = np.degrees(np.arccos(cosine))
+    fading = (cutoff - angle) / (cutoff - beam) if beam < cutoff else np.ones_like(angle)
+    share = np.where(angle <= beam, 1.0, np.where(angle < cutoff, fading, 0.0))
+    u, v = np.broadcast_arrays(0.5 + 0.5 * x, 0.5 + 0.5 * y)
+    image = thrown.at(texture, u, v) * (share * cosine**3)[..., None]
+    return _thrown(image, matrix, 2 * cutoff, colour(plugin, "intensity", 1.0, emits=True))
+
+
+def _projector(plugin: Plugin) -> ProjectorLight:
+    texture = plugin.child("irradiance")
+    width, height = (1, 1) if texture is None else thrown.size_of(texture)
+    axes = {"x": width, "y": height, "diagonal": math.hypot(width, height)}
+    axes |= {"smaller": min(width, height), "larger": max(width, height)}
+    fov, axis = field_of_view(plugin)
+    tall = 2 * math.degrees(math.atan(math.tan(math.radians(0.5 * fov)) * height / axes[axis]))
+    scale = math.pi * plugin.number("scale", 1.0)
+    if texture is None:
+        image = np.broadcast_to(colour(plugin, "irradiance", 1.0, emits=True), (1, 1, 3))
+    else:
+        # As many points to each of the picture's, or enough for the edges of a checkerboard: at its border Mitsuba
+        # goes on with what is beyond, and a projector here stays as it is for half a point.
+        finer = max(-(-_FEWEST // max(width, height)), 1)
+        width, height = width * finer, height * finer
+        u, v = np.meshgrid((np.arange(width) + 0.5) / width, (np.arange(height) + 0.5) / height)
+        image = thrown.at(texture, u, v)
+    return _thrown(image, plugin.to_world(), tall, (scale, scale, scale))
+
+
+def _thrown(image: NDArray[Any], matrix: Matrix, tall: float, intensity: Triple) -> ProjectorLight:
+    place, ahead, up = matrix[:3, 3], _unit(matrix[:3, 2]), _unit(matrix[:3, 1])
+    if np.linalg.det(matrix[:3, :3]) < 0:
+        image = image[:, ::-1]
+    return ProjectorLight(image, place, place + ahead, up, tall, intensity)
 
 
 def _directional(plugin: Plugin) -> DirectionalLight:
@@ -111,6 +173,37 @@ def _map(plugin: Plugin) -> EnvironmentMap:
     # Lengths of the axes do not count, as directions are all that is asked.
     linear = straightened(plugin.to_world())[:3, :3]
     return EnvironmentMap(_rows(image), linear @ _HALF_TURN, plugin.number("scale", 1.0))
+
+
+def _daylight(plugin: Plugin) -> SunSky:
+    plugin.warn("its sky is approximated by that of Preetham et al. (1999), which is brighter")
+    plugin.ignore("complex_sun", "sun_aperture")
+    matrix = straightened(plugin.to_world())[:3, :3]
+    when = ("year", 2010), ("month", 7), ("day", 10), ("hour", 15.0), ("minute", 0.0), ("second", 0.0)
+    numbers = [plugin.number(name, default) for name, default in when]
+    place = plugin.number("latitude", 35.689), plugin.number("longitude", 139.6917)
+    zone = timedelta(hours=plugin.number("timezone", 9.0))
+    if plugin.has("sun_direction"):
+        sun = plugin.vector("sun_direction", (0.0, 0.0, 1.0))
+    else:
+        year, month, day = (int(one) for one in numbers[:3])
+        hour, minute, second = numbers[3:]
+        clock = timedelta(hours=hour, minutes=minute, seconds=second)
+        time = datetime(year, month, day, tzinfo=timezone(zone)) + clock
+        south, east, up = SunSky.at(time, *place, up=(0.0, 0.0, 1.0), north=(1.0, 0.0, 0.0)).sun
+        # Mitsuba (3.9) has its x to the south, and y to the west.
+        sun = np.array([-south, east, up])
+    turbidity = plugin.number("turbidity", 3.0)
+    if turbidity < 2:
+        plugin.warn("a turbidity below 2 is taken as 2")
+    return SunSky(
+        matrix @ sun,
+        max(turbidity, 2.0),
+        colour(plugin, "albedo", 0.3),
+        matrix[:, 2],
+        plugin.number("sun_scale", 1.0) / _SKY,
+        plugin.number("sky_scale", 1.0) / _SKY,
+    )
 
 
 def _rows(image: NDArray[Any]) -> NDArray[Any]:

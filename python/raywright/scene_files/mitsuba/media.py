@@ -13,8 +13,8 @@ from .plugin import Plugin, Triple
 from .values import colour
 
 TYPES = ("homogeneous", "heterogeneous")
-_PHASES = ("isotropic", "hg", "rayleigh")
-_VOLUMES = ("constvolume", "gridvolume")
+PHASES = ("isotropic", "hg", "rayleigh")
+VOLUMES = ("constvolume", "gridvolume")
 # Under which the plugins of a scene have told each other of media.
 _WITHIN, _AROUND = "media within", "media around"
 
@@ -126,7 +126,7 @@ def _read(plugin: Plugin) -> Medium:
 
 def _constant(plugin: Plugin, name: str, default: float) -> Triple:
     inner = plugin.child(name)
-    if inner is None or inner.type not in _VOLUMES:
+    if inner is None or inner.type not in VOLUMES:
         return colour(plugin, name, default)
     if inner.type == "gridvolume":
         plugin.fail(f"{name} on a grid is not supported")
@@ -151,7 +151,7 @@ def _grid(plugin: Plugin) -> tuple[NDArray[Any], Any]:
 
 def _phase(plugin: Plugin) -> Phase:
     found: Phase = Isotropic()
-    for inner in plugin.children(*_PHASES):
+    for inner in plugin.children(*PHASES):
         if inner.type == "hg":
             found = HenyeyGreenstein(inner.number("g", 0.8))
         elif inner.type == "rayleigh":

@@ -1,4 +1,4 @@
-"""Meshes as Mitsuba has them: of OBJ and PLY files, its rectangle and its cube."""
+"""Meshes as Mitsuba has them: of OBJ, PLY and its own files, its rectangle and its cube."""
 
 from typing import NamedTuple
 
@@ -6,7 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...mesh_files.meshes import load_whole
+from ...shapes.mesh import Mesh
 from .plugin import Plugin
+from .serialized import Stored, read_serialized
 from .transforms import Matrix
 
 Floats = NDArray[np.float64]
@@ -63,9 +65,18 @@ def cube() -> Triangles:
 
 
 def of_file(plugin: Plugin) -> tuple[Triangles, bool]:
-    """Return the mesh of an ``obj`` or ``ply``, and whether it is still to be made smooth where it stands."""
+    """Return the mesh of an ``obj``, ``ply`` or ``serialized``, and whether it is still to be made smooth.
+
+    What is to be made smooth is so where it stands.
+    """
     path = plugin.path()
-    mesh = load_whole(path, plugin.type)
+    mesh: Mesh | Stored
+    if plugin.type == "serialized":
+        mesh = read_serialized(path, plugin.integer("shape_index", 0))
+        if not len(mesh.faces):
+            plugin.fail(f"{path} holds no faces")
+    else:
+        mesh = load_whole(path, plugin.type)
     vertices, faces = mesh.vertices.astype(np.float64), mesh.faces.astype(np.int64)
     if not np.isfinite(vertices[faces]).all():
         plugin.fail(f"{path} has corners that are not finite")

@@ -89,7 +89,8 @@ class Plugin:
             raise SceneError(f"{where}: a plugin must have a type, got {kind!r}")
         if where.count(".") > _MOST_WITHIN:
             raise SceneError(f"{where[:60]} ...: plugins nest more than {_MOST_WITHIN} deep")
-        self.type, self.where, self.context = kind, where, context
+        # Mitsuba's own names are in lower case, and it takes some of them in capitals.
+        self.type, self.where, self.context = kind.lower(), where, context
         self.values = values
         self._left = {key for key in values if key not in _COMMON}
 
@@ -202,7 +203,7 @@ class Plugin:
         for name, value in self.values.items():
             if name in self._left and isinstance(value, Mapping):
                 found = self.context.follow(value, f"{self}: {name}")
-                if isinstance(found, Mapping) and found.get("type") in types:
+                if isinstance(found, Mapping) and str(found.get("type")).lower() in types:
                     self._left.discard(name)
                     yield Plugin(found, self._inner(name), self.context)
 

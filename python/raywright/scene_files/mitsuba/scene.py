@@ -9,13 +9,24 @@ from ...arrays import integer
 from ...lights import Environment, Light
 from ...rendering.shot import Shot
 from ...scene.scene import Scene
-from . import bsdfs, emitters, media, sensors, settings, shapes
+from . import bsdfs, emitters, media, sensors, settings, shapes, textures
 from .errors import SceneError
 from .plugin import Context, Plugin
 from .xml import read_xml
 
 # What a scene may hold that others refer to: it is read where it is referred to.
-_SHARED = ("area", *bsdfs.TYPES, *media.TYPES, "null", "bitmap", "checkerboard", shapes.GROUP, "alias")
+_SHARED = (
+    "area",
+    *bsdfs.TYPES,
+    *media.TYPES,
+    "null",
+    *textures.TYPES,
+    shapes.GROUP,
+    *settings.SAMPLERS,
+    *settings.FILTERS,
+    *sensors.FILMS,
+    "alias",
+)
 
 
 def from_mitsuba(
@@ -36,11 +47,12 @@ def from_mitsuba(
         A scene as ``mitsuba.load_dict`` takes it, or an XML file. Transforms may be nested lists, arrays, or
         Mitsuba's own objects; Mitsuba is not needed.
     folder : path, optional
-        Where a dict's files are; the current one if not given. Those of an XML file are where it is.
+        Where a dict's files are; the current one if not given. Those of an XML file are where it is, or in
+        this folder if they are not there.
     sensor : int
         Which of the scene's sensors looks.
     parameters : dict, optional
-        What ``$name`` in an XML file stands for, in place of its defaults.
+        What ``$name`` in an XML file stands for, in place of its defaults: numbers, texts or bools by name.
 
     Returns
     -------
@@ -58,9 +70,11 @@ def from_mitsuba(
     """
     sensor = integer("sensor", sensor, 0)
     if isinstance(scene, Mapping):
+        if parameters:
+            raise ValueError("parameters are of an XML file; a dict has none")
         tree, folders = scene, [Path("." if folder is None else folder)]
     elif isinstance(scene, str | PathLike):
-        tree, folders = read_xml(Path(scene), parameters or {})
+        tree, folders = read_xml(Path(scene), parameters or {}, None if folder is None else Path(folder))
     else:
         raise TypeError(f"scene must be a dict or a path, got {type(scene).__name__}")
     if tree.get("type") != "scene":
@@ -73,9 +87,11 @@ def _read(scene: Plugin, number: int) -> Shot:
     copies = shapes.Copies()
     lights: list[Light] = []
     around: list[Environment] = []
-    for plugin in scene.children(*shapes.TYPES, shapes.COPY, *emitters.TYPES):
+    for plugin in scene.children(*shapes.TYPES, shapes.COPY, shapes.MERGED, *emitters.TYPES):
         if plugin.type == shapes.COPY:
             copies.add(plugin, found)
+        elif plugin.type == shapes.MERGED:
+            found += shapes.group(plugin)
         elif plugin.type in emitters.TYPES:
             one = emitters.emitter(plugin)
             if isinstance(one, get_args(Light)):
@@ -99,23 +115,30 @@ def _read(scene: Plugin, number: int) -> Shot:
         scene.fail(f"there is no sensor {number}: it has {len(looking)}")
     eye = looking[number]
     asked = settings.integrator(integrators[0] if integrators else None)
-    film = _only(eye, sensors.FILM)
+    if asked.hidden and any(shapes.shines(one) for one in found):
+        integrators[0].warn("hide_emitters hides what is around: surfaces that shine are seen")
+    if asked.unaimed:
+        # What has no size is met by no ray.
+        lights = []
+    film = _only(eye, *sensors.FILMS)
     rfilter = settings.rfilter(_only(film, *settings.FILTERS) if film is not None else None)
     sampler, samples, seed = settings.sampler(_only(eye, *settings.SAMPLERS))
+    whole = Scene(
+        shapes.instances(found),
+        lights,
+        around[0] if len(around) == 1 else around or None,
+        medium=media.around(scene, eye),
+    )
     return Shot(
-        Scene(
-            shapes.instances(found),
-            lights,
-            around[0] if len(around) == 1 else around or None,
-            medium=media.around(scene, eye),
-        ),
-        sensors.camera(eye, film),
+        whole,
+        sensors.camera(eye, film, whole),
         asked.integrator,
         samples,
         sampler=sampler,
         filter=rfilter,
         seed=seed,
         aov=asked.aov,
+        background="transparent" if asked.hidden else "shown",
     )
 
 

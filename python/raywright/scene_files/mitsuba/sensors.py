@@ -1,28 +1,28 @@
 """Sensors to cameras, and their films."""
 
 import math
+from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
 
 from ...cameras import AnyCamera, Camera, Orthographic, ThinLens
+from ...scene.scene import Scene
 from .errors import SceneError
 from .plugin import Plugin
-from .transforms import Matrix, straightened
+from .transforms import Matrix, frame, straightened
 
-TYPES = ("perspective", "thinlens", "orthographic")
+TYPES = ("perspective", "thinlens", "orthographic", "radiancemeter", "distant")
 # What Mitsuba has, or had, besides these.
 OTHERS = (
     "batch",
-    "distant",
     "fluencemeter",
     "irradiancemeter",
     "perspective_rdist",
-    "radiancemeter",
     "spherical",
     "telecentric",
 )
-FILM = "hdrfilm"
+FILMS = ("hdrfilm", "ldrfilm")
 
 
 class Crop(NamedTuple):
@@ -44,7 +44,7 @@ class Crop(NamedTuple):
         return w - a == 2 * x and h - b == 2 * y and a * h == b * w
 
 
-def camera(plugin: Plugin, film: Plugin | None) -> AnyCamera:
+def camera(plugin: Plugin, film: Plugin | None, scene: Scene) -> AnyCamera:
     """Return the camera that a sensor stands for.
 
     Parameters
@@ -53,13 +53,21 @@ def camera(plugin: Plugin, film: Plugin | None) -> AnyCamera:
         The sensor, whose film, filter and sampler are taken.
     film : Plugin, optional
         Its film; Mitsuba's own of 768 by 576 if there is none.
+    scene : Scene
+        What is seen.
 
     Raises
     ------
     ValueError
         If its type, or a parameter of it, is not supported; tells which.
     """
-    readers = {"perspective": _perspective, "thinlens": _thin_lens, "orthographic": _orthographic}
+    readers = {
+        "perspective": _perspective,
+        "thinlens": _thin_lens,
+        "orthographic": _orthographic,
+        "radiancemeter": _radiance_meter,
+        "distant": lambda plugin, crop: _distant(plugin, crop, scene),
+    }
     plugin.ignore("near_clip", "far_clip", "shutter_open", "shutter_close")
     if plugin.type != "thinlens":
         plugin.ignore("focus_distance")
@@ -90,7 +98,7 @@ def _crop(film: Plugin | None) -> Crop:
 
 
 def _perspective(plugin: Plugin, crop: Crop) -> Camera:
-    fov, axis = _fov(plugin)
+    fov, axis = field_of_view(plugin)
     shift = [plugin.number(f"principal_point_offset_{name}", 0.0) for name in "xy"]
     width, height = crop.part
     if crop.whole and shift == [0.0, 0.0]:
@@ -115,7 +123,7 @@ def _perspective(plugin: Plugin, crop: Crop) -> Camera:
 
 
 def _thin_lens(plugin: Plugin, crop: Crop) -> ThinLens:
-    fov, axis = _fov(plugin)
+    fov, axis = field_of_view(plugin)
     if not crop.centred:
         plugin.fail("of a thin lens only the middle of the film can be rendered")
     # The same part of all lengths, so that the axis does not matter.
@@ -150,7 +158,47 @@ def _orthographic(plugin: Plugin, crop: Crop) -> Orthographic:
     )
 
 
-def _fov(plugin: Plugin) -> tuple[float, str]:
+def _radiance_meter(plugin: Plugin, crop: Crop) -> Orthographic:
+    if plugin.has("to_world"):
+        plugin.ignore("origin", "direction")
+        matrix = plugin.to_world()
+        return _one_ray(plugin, crop, matrix[:3, 3], matrix[:3, 2])
+    if plugin.has("origin") != plugin.has("direction"):
+        plugin.fail("origin and direction must be given together")
+    place, way = plugin.vector("origin", (0.0, 0.0, 0.0)), plugin.vector("direction", (0.0, 0.0, 1.0))
+    return _one_ray(plugin, crop, place, way)
+
+
+def _distant(plugin: Plugin, crop: Crop, scene: Scene) -> Orthographic:
+    """Return what sees one point from far away."""
+    if plugin.has("direction") and plugin.has("to_world"):
+        plugin.fail("either direction or to_world must be given, got both")
+    given = plugin.take("target")
+    if given is None or isinstance(given, Mapping):
+        plugin.fail(
+            "target must be a point; the mean over a shape, or over the whole scene, is not supported"
+        )
+    target = plugin.vector("target", (0.0, 0.0, 0.0))
+    way = plugin.vector("direction", (0.0, 0.0, 1.0)) if plugin.has("direction") else plugin.to_world()[:3, 2]
+    bounds = scene.bounds
+    corners = target[None] if bounds is None else np.where(np.isfinite(bounds), bounds, target)
+    # Twice as far as anything, and at least so that rays do not start on it.
+    away = 2 * float(np.linalg.norm(corners - target, axis=1).max()) + 1.0
+    return _one_ray(plugin, crop, target - way / np.linalg.norm(way) * away, way)
+
+
+def _one_ray(plugin: Plugin, crop: Crop, place: Matrix, way: Matrix) -> Orthographic:
+    if crop.part != (1, 1):
+        plugin.fail(f"its film must be of 1 by 1 pixels, got {crop.part[0]} by {crop.part[1]}")
+    if not np.linalg.norm(way) > 0:
+        plugin.fail("its direction must have a length")
+    # So little of the scene that all rays see the same.
+    scale = 1e-9 * max(1.0, float(np.abs(place).max()))
+    up = frame(way / np.linalg.norm(way))[1]
+    return Orthographic(place, direction=way, up=up, scale=scale, width=1, height=1)
+
+
+def field_of_view(plugin: Plugin) -> tuple[float, str]:
     """Return an angle of view in degrees, and what it is measured along."""
     if plugin.has("fov"):
         if plugin.has("focal_length"):

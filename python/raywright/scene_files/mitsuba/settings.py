@@ -12,13 +12,15 @@ from ...rendering.filters import (
     MitchellFilter,
     TriangleFilter,
 )
-from ...rendering.samplers import Independent, Sampler, Sobol, Stratified
+from ...rendering.samplers import Halton, Independent, Sampler, Sobol, Stratified
 from .plugin import Plugin
 
 # Among media or not, and forwards, these are path tracing all the same.
 _PATHS = ("path", "volpath", "volpathmis", "prb", "prb_basic", "prbvolpath")
-INTEGRATORS = (*_PATHS, "ptracer", "direct", "ao", "aov")
-SAMPLERS = ("independent", "stratified", "multijitter", "orthogonal", "ldsampler")
+INTEGRATORS = (*_PATHS, "ptracer", "direct", "ao", "aov", "depth", "moment")
+SAMPLERS = (
+    "independent", "stratified", "multijitter", "orthogonal", "ldsampler", "sobol", "halton", "hammersley",
+)  # fmt: skip
 FILTERS = ("box", "tent", "gaussian", "mitchell", "catmullrom", "lanczos")
 
 _AOVS = {
@@ -34,10 +36,24 @@ _AOVS = {
 
 
 class Asked(NamedTuple):
-    """What an integrator asks for: how light is found, and what else is seen."""
+    """What an integrator asks for.
+
+    Attributes
+    ----------
+    integrator : Path or another kind
+        How light is found.
+    aov : tuple of str
+        What else is seen.
+    hidden : bool
+        Whether what shines is not seen itself.
+    unaimed : bool
+        Whether nobody looks for lights: what has no size is never found.
+    """
 
     integrator: AnyIntegrator
     aov: tuple[str, ...] = ()
+    hidden: bool = False
+    unaimed: bool = False
 
 
 def integrator(plugin: Plugin | None) -> Asked:
@@ -53,11 +69,14 @@ def integrator(plugin: Plugin | None) -> Asked:
     plugin.ignore("timeout", "block_size", "samples_per_pass", "use_spectral_mis")
     if plugin.type == "aov":
         result = _aov(plugin)
+    elif plugin.type == "moment":
+        result = _moment(plugin)
+    elif plugin.type == "depth":
+        result = Asked(Path(0), ("depth",))
     else:
-        if plugin.switch("hide_emitters", False):
-            plugin.warn("hide_emitters is left out: what shines is seen")
+        hidden = plugin.switch("hide_emitters", False)
         if plugin.type == "direct":
-            result = Asked(_direct(plugin))
+            result = _direct(plugin)
         elif plugin.type == "ao":
             radius = plugin.number("ray_length", -1.0)
             samples = plugin.integer("shading_samples", 1)
@@ -66,8 +85,17 @@ def integrator(plugin: Plugin | None) -> Asked:
             result = Asked(LightTraced(*_depths(plugin)))
         else:
             result = Asked(Path(*_depths(plugin)))
+        result = result._replace(hidden=hidden)
     plugin.done()
     return result
+
+
+def _moment(plugin: Plugin) -> Asked:
+    """Return what the integrator within asks for: pictures tell their own error here, of any integrator."""
+    inner = [integrator(one) for one in plugin.children(*INTEGRATORS)]
+    if len(inner) != 1:
+        plugin.fail(f"one integrator must be within, got {len(inner)}")
+    return inner[0]
 
 
 def _depths(plugin: Plugin) -> tuple[int | None, int]:
@@ -80,12 +108,21 @@ def _depths(plugin: Plugin) -> tuple[int | None, int]:
     return None if depth < 0 else depth - 1, roulette - 1
 
 
-def _direct(plugin: Plugin) -> AnyIntegrator:
+def _direct(plugin: Plugin) -> Asked:
     both = plugin.integer("shading_samples", 1)
     light, surface = (plugin.integer(f"{name}_samples", both) for name in ("emitter", "bsdf"))
-    if light < 1 or surface < 1:
-        plugin.fail("emitter_samples and bsdf_samples must be at least 1")
-    return Direct(light, surface)
+    if light < 0 or surface < 0 or light + surface < 1:
+        plugin.fail(
+            f"emitter_samples and bsdf_samples must be at least 0, and one of them 1, got {light} and {surface}"
+        )
+    # Both ways alone find the same light on average, but for what only the other can find.
+    if surface == 0:
+        plugin.warn(
+            "without bsdf_samples mirrors and smooth glass would be black; here they show what shines"
+        )
+    elif light == 0:
+        plugin.warn("without emitter_samples pictures are noisier in Mitsuba than here, and else the same")
+    return Asked(Direct(max(light, 1), max(surface, 1)), unaimed=light == 0)
 
 
 def _aov(plugin: Plugin) -> Asked:
@@ -98,15 +135,21 @@ def _aov(plugin: Plugin) -> Asked:
         if kind not in _AOVS:
             plugin.fail(f"aovs must be of {', '.join(_AOVS)}, got {kind!r}")
         names.append(_AOVS[kind])
-    light, more = inner[0] if inner else Asked(Path(0))
-    return Asked(light, tuple(dict.fromkeys([*names, *more])))
+    light = inner[0] if inner else Asked(Path(0))
+    return light._replace(aov=tuple(dict.fromkeys([*names, *light.aov])))
 
 
 def sampler(plugin: Plugin | None) -> tuple[Sampler | None, int, int]:
     """Return a sampler if one is named, how many samples a pixel it takes, and its seed."""
     if plugin is None:
         return None, 4, 0
-    kinds: dict[str, Sampler] = {"independent": Independent(), "ldsampler": Sobol()}
+    kinds: dict[str, Sampler] = {
+        "independent": Independent(),
+        "ldsampler": Sobol(),
+        "sobol": Sobol(),
+        "halton": Halton(),
+        "hammersley": Halton(),
+    }
     plugin.ignore("jitter", "strength")
     count, seed = plugin.integer("sample_count", 4), plugin.integer("seed", 0)
     plugin.done()

@@ -11,14 +11,15 @@ from ...materials import Diffuse, Material, TwoSided
 from ...scene.instance import AnyShape, Instance
 from ...shapes import Cylinder, Disk, Shape, Sphere
 from ...shapes.mesh import Mesh
-from . import bsdfs, media, mesh_files
+from .. import tubes
+from . import attributes, bsdfs, curves, media, mesh_files, sdf_grids
 from .errors import SceneError
 from .plugin import Plugin
 from .textures import value
 from .transforms import Matrix, frame
 from .uv import CUBE, DISK, SAME, SPHERE, Uv
 
-GROUP, COPY = "shapegroup", "instance"
+GROUP, COPY, MERGED = "shapegroup", "instance", "merge"
 
 
 def shape(plugin: Plugin) -> Mesh | Shape:
@@ -43,6 +44,9 @@ def shape(plugin: Plugin) -> Mesh | Shape:
 
 def _mesh(plugin: Plugin) -> Mesh:
     own = {"rectangle": mesh_files.rectangle, "cube": mesh_files.cube}
+    names = attributes.named_within(plugin)
+    if len(names) > 1:
+        plugin.fail(f"one mesh_attribute of a mesh is read, got {', '.join(sorted(names))}")
     triangles, smooth = (own[plugin.type](), False) if plugin.type in own else mesh_files.of_file(plugin)
     vertices, faces, normals, uv = triangles.placed(plugin.to_world(), plugin.switch("flip_normals", False))
     if smooth:
@@ -50,7 +54,48 @@ def _mesh(plugin: Plugin) -> Mesh:
     elif plugin.type in own:
         # All corners of each face have its own normal.
         normals = None
-    return Mesh(vertices, faces, normals, uv, *_look(plugin, CUBE if plugin.type == "cube" else SAME))
+    look = _look(plugin, CUBE if plugin.type == "cube" else SAME)
+    if not names:
+        return Mesh(vertices, faces, normals, uv, *look)
+    if plugin.type != "ply":
+        plugin.fail(f"mesh_attribute is read of ply files only, and {plugin.type} has none")
+    of_faces, colours = attributes.read_attribute(plugin.path(), names.pop())
+    if of_faces:
+        # Corners of faces that differ are not shared.
+        corners = faces.reshape(-1)
+        vertices, colours = vertices[corners], np.repeat(colours, 3, axis=0)
+        normals, uv = (None if one is None else one[corners] for one in (normals, uv))
+        faces = np.arange(len(corners)).reshape(-1, 3)
+    return Mesh(vertices, faces, normals, uv, *look, colours)
+
+
+def _curves(plugin: Plugin) -> Mesh:
+    least, swept = (2, tubes.linear) if plugin.type == "linearcurve" else (4, tubes.b_spline)
+    matrix = plugin.to_world()
+    # The transform moves control points, and leaves radii as they are.
+    placed = [
+        np.column_stack([curve[:, :3] @ matrix[:3, :3].T + matrix[:3, 3], curve[:, 3]])
+        for curve in curves.read_curves(plugin, least)
+    ]
+    vertices, faces, normals, uv = swept(placed)
+    return Mesh(vertices, faces, normals, uv, *_look(plugin, SAME))
+
+
+def _distance_grid(plugin: Plugin) -> Mesh:
+    # Its shading goes evenly from cell to cell, or not at all.
+    plain = plugin.choice("normals", "smooth", ("smooth", "analytic")) == "analytic"
+    if plugin.has("grid"):
+        grid = np.asarray(plugin.take("grid"), np.float64)
+        if grid.ndim == 4 and grid.shape[3] == 1:
+            grid = grid[..., 0]
+        if grid.ndim != 3:
+            plugin.fail(f"grid must have shape (Z, Y, X) or (Z, Y, X, 1), got {grid.shape}")
+    else:
+        grid = sdf_grids.read_vol(plugin.path())
+    found = sdf_grids.surface(grid)
+    triangles = mesh_files.Triangles(found.vertices, found.faces, found.normals)
+    vertices, faces, normals, _ = triangles.placed(plugin.to_world(), plugin.switch("flip_normals", False))
+    return Mesh(vertices, faces, None if plain else normals, None, *_look(plugin, SAME))
 
 
 def _sphere(plugin: Plugin) -> Sphere:
@@ -92,11 +137,15 @@ def _cylinder(plugin: Plugin) -> Cylinder:
 _READERS: dict[str, Callable[[Plugin], Mesh | Shape]] = {
     "obj": _mesh,
     "ply": _mesh,
+    "serialized": _mesh,
     "rectangle": _mesh,
     "cube": _mesh,
     "sphere": _sphere,
     "disk": _disk,
     "cylinder": _cylinder,
+    "linearcurve": _curves,
+    "bsplinecurve": _curves,
+    "sdfgrid": _distance_grid,
 }
 TYPES = tuple(_READERS)
 
@@ -163,10 +212,22 @@ class Placed:
 
 
 def group(plugin: Plugin) -> tuple[Mesh | Shape, ...]:
-    """Return the shapes of a group."""
-    shapes = tuple(shape(inner) for inner in plugin.children(*TYPES))
+    """Return the shapes of a group, or of what is merged: how meshes lie in memory changes no picture."""
+    found: list[Mesh | Shape] = []
+    for inner in plugin.children(*TYPES, MERGED):
+        if inner.type == MERGED:
+            found += group(inner)
+        else:
+            found.append(shape(inner))
     plugin.done()
-    return shapes
+    return tuple(found)
+
+
+def shines(one: "AnyShape | Placed") -> bool:
+    """Whether a shape, or one of a group, gives off light."""
+    if isinstance(one, Placed):
+        return any(map(shines, one.shapes))
+    return not isinstance(one, Instance) and one.emission is not None
 
 
 def instances(found: "list[Any]") -> list[AnyShape]:

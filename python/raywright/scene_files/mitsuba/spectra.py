@@ -10,6 +10,16 @@ from ... import _core
 EVEN = np.array((1.204794, 0.948291, 0.908916))
 
 
+def black_body(kelvin: float) -> NDArray[np.float64]:
+    """Return the radiance of a black body by wavelength (Planck, 1900): rows of nm and W·sr⁻¹·m⁻²·nm⁻¹."""
+    wavelengths = np.arange(360.0, 831.0, 5.0)
+    metres = wavelengths * 1e-9
+    # 2 h c², and h c over Boltzmann's constant (SI, 2019).
+    with np.errstate(over="ignore"):
+        shine = 1.1910429723971884e-16 / metres**5 / np.expm1(0.014387768775039337 / (metres * kelvin))
+    return np.column_stack([wavelengths, 1e-9 * shine])
+
+
 def rgb(table: NDArray[np.float64], emits: bool) -> NDArray[np.float64]:
     """Return the colour of values at wavelengths, in nm, linear between them and 0 outside.
 

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...io.pictures import read
-from ...textures import Checker, ImageTexture, UvTransform
+from ...textures import Checker, ImageTexture, ProductTexture, UvTransform, VertexColors
 from ...textures.texture import Number, Texture, Value
 from .plugin import Plugin, Triple
 from .uv import UPRIGHT, Uv
@@ -15,6 +15,8 @@ from .values import UNIFORM, colour, of_plugin
 
 # Luminance of linear Rec. 709.
 _LUMINANCE = np.array([0.212671, 0.715160, 0.072169])
+
+TYPES = ("bitmap", "checkerboard", "mesh_attribute")
 
 # What is done to colours, of numbers and of every point of a picture.
 Change = Callable[[NDArray[np.float64]], NDArray[np.float64]]
@@ -83,7 +85,19 @@ def texture(plugin: Plugin, uv: Uv, change: Change | None = None, grey: bool = F
         return _bitmap(plugin, uv, change, grey)
     if plugin.type == "checkerboard":
         return _checkerboard(plugin, uv, change, ("color0", "color1"))
+    if plugin.type == "mesh_attribute":
+        return _attribute(plugin, None if grey else change)
     plugin.fail("this kind of texture is not supported")
+
+
+def _attribute(plugin: Plugin, change: Change | None) -> Texture:
+    """Return what the vertices of a mesh have, which is given to it with its shape."""
+    if change is not None:
+        plugin.fail("it cannot colour the base of a plastic")
+    plugin.text("name")
+    scale = plugin.number("scale", 1.0)
+    plugin.done()
+    return VertexColors() if scale == 1.0 else ProductTexture(VertexColors(), scale)
 
 
 def picture(plugin: Plugin) -> tuple[NDArray[Any], bool]:
@@ -117,8 +131,12 @@ def picture(plugin: Plugin) -> tuple[NDArray[Any], bool]:
 
 def normals(plugin: Plugin, uv: Uv) -> ImageTexture:
     """Return a picture of normals, along u and v as raywright has them."""
+    if plugin.type == "rawconstant":
+        tilted = np.array([[plugin.vector("value", (0.5, 0.5, 1.0))]], np.float32)
+        plugin.done()
+        return ImageTexture(tilted, linear=True)
     if plugin.type != "bitmap":
-        plugin.fail("a normal map must be a bitmap")
+        plugin.fail("a normal map must be a bitmap or a rawconstant")
     if uv.turned:
         plugin.fail("a normal map on a disk is not supported")
 
@@ -137,7 +155,7 @@ def _bitmap(plugin: Plugin, uv: Uv, change: Change | None, grey: bool) -> ImageT
     plugin.ignore("format", "accel")
     plugin.done()
     if change is not None and not (grey and array.shape[2] == 1):
-        array, linear = change(_linear(array, linear)).astype(np.float32), True
+        array, linear = change(linear_colours(array, linear)).astype(np.float32), True
         array = array[..., :1] if grey else array
     return ImageTexture(
         array,
@@ -148,7 +166,7 @@ def _bitmap(plugin: Plugin, uv: Uv, change: Change | None, grey: bool) -> ImageT
     )
 
 
-def _linear(array: NDArray[Any], linear: bool) -> NDArray[np.float64]:
+def linear_colours(array: NDArray[Any], linear: bool) -> NDArray[np.float64]:
     """Return a picture as linear colours, (H, W, 3)."""
     shares = array / np.iinfo(array.dtype).max if array.dtype.kind == "u" else array.astype(np.float64)
     if not linear:

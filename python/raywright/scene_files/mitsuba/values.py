@@ -9,7 +9,7 @@ from . import spectra
 from .plugin import Plugin, Triple
 
 # Types of plugins that are one colour, or one number, all over.
-UNIFORM = ("rgb", "srgb", "spectrum", "uniform", "d65", "rawconstant")
+UNIFORM = ("rgb", "srgb", "spectrum", "uniform", "d65", "rawconstant", "blackbody")
 
 
 def colour(plugin: Plugin, name: str, default: float | Triple, emits: bool = False) -> Triple:
@@ -49,6 +49,11 @@ def of_plugin(plugin: Plugin, emits: bool) -> Triple:
         scale = plugin.number("scale", 1.0)
         result = colour(plugin, "color", 1.0)
         result = _triple(np.multiply(result, scale))
+    elif kind == "blackbody":
+        kelvin, scale = plugin.number("temperature", 5000.0), plugin.number("scale", 1.0)
+        if not kelvin > 0:
+            plugin.fail(f"temperature must be greater than 0, got {kelvin:g}")
+        result = _triple(scale * np.maximum(spectra.rgb(spectra.black_body(kelvin), emits), 0.0))
     elif plugin.has("filename"):
         plugin.fail("spectra in files are not supported; give an rgb")
     elif kind == "uniform" or not isinstance(plugin.take("value"), list | tuple | np.ndarray):

@@ -22,6 +22,9 @@ _OBJECTS = (
     "rfilter",
     "integrator",
     "texture",
+    "medium",
+    "phase",
+    "volume",
 )
 # As deep as Mitsuba lets files include each other; more files, and deeper elements, than any scene has.
 _MOST_INCLUDES, _MOST_FILES, _MOST_LEVELS = 15, 1000, 64
@@ -39,7 +42,9 @@ class Element:
         self.children: list[Element] = []
 
 
-def read_xml(path: Path, parameters: Mapping[str, Any]) -> tuple[Tree, list[Path]]:
+def read_xml(
+    path: Path, parameters: Mapping[str, Any], folder: Path | None = None
+) -> tuple[Tree, list[Path]]:
     """Return the scene of an XML file as a dict, and the folders in which its files are looked for.
 
     Parameters
@@ -48,27 +53,37 @@ def read_xml(path: Path, parameters: Mapping[str, Any]) -> tuple[Tree, list[Path
         The file.
     parameters : mapping of str to anything
         What ``$name`` stands for, in place of the file's own defaults.
+    folder : Path, optional
+        Where files are looked for that are nowhere else.
 
     Raises
     ------
     FileNotFoundError
         If the file, or one that it includes, is missing.
     ValueError
-        If it is no XML, has a DOCTYPE, or is not as Mitsuba's scenes are; tells the line.
+        If it is no XML, has a DOCTYPE, or is not as Mitsuba's scenes are; tells the line. If a parameter is
+        asked for nowhere in it.
     """
-    reader = _Reader({name: _text(value) for name, value in parameters.items()})
+    reader = _Reader({name: _text(value) for name, value in parameters.items()}, folder)
     tree = reader.file(path, 0)
     if tree.get("type") != "scene":
         raise SceneError(f"{path} must hold a <scene>")
+    for name in parameters:
+        if name not in reader.asked:
+            known = ", ".join(sorted(reader.asked)) or "none"
+            raise SceneError(f"{name} is no parameter of {path}; it has {known}")
     return tree, reader.folders
 
 
 class _Reader:
     """What one scene's files share: the values of their parameters, and where files are looked for."""
 
-    def __init__(self, given: dict[str, str]) -> None:
+    def __init__(self, given: dict[str, str], folder: Path | None) -> None:
         self.values = dict(given)
-        self.folders: list[Path] = []
+        # The names of parameters that stand in the files.
+        self.asked: set[str] = set()
+        self.folders: list[Path] = [] if folder is None else [folder]
+        self._given = len(self.folders)
         self._here = ""
         self._depth = 0
         self._files = 0
@@ -78,7 +93,8 @@ class _Reader:
         if root.tag not in _OBJECTS:
             raise SceneError(f"{path}, line {root.line}: <{root.tag}> is no plugin")
         if path.parent not in self.folders:
-            self.folders.append(path.parent)
+            # The folder that somebody has named comes last.
+            self.folders.insert(max(len(self.folders) - self._given, 0), path.parent)
         before, self._here, self._depth = (self._here, self._depth), str(path), depth
         attributes = self._filled(root)
         version = attributes.get("version")
@@ -106,7 +122,9 @@ class _Reader:
         # A default is the file's own word on what the text after it may stand for.
         attributes = self._filled(element)
         if tag == "default":
-            self.values.setdefault(self._need(element, attributes, "name"), attributes.get("value", ""))
+            name = self._need(element, attributes, "name")
+            self.asked.add(name)
+            self.values.setdefault(name, attributes.get("value", ""))
         elif tag == "path":
             folder = Path(self._need(element, attributes, "value"))
             self.folders.insert(0, folder if folder.is_absolute() else Path(self._here).parent / folder)
@@ -148,7 +166,8 @@ class _Reader:
         if tag in _OBJECTS or (tag == "spectrum" and "type" in attributes):
             return self._object(element, attributes)
         if tag == "transform":
-            steps = [(step.tag, self._filled(step)) for step in element.children]
+            # What Mitsuba 0.6 calls lookAt.
+            steps = [(step.tag.lower(), self._filled(step)) for step in element.children]
             return of_elements(steps, lambda why: self._fail(element, why))
         if tag == "ref":
             return {"type": "ref", "id": self._need(element, attributes, "id")}
@@ -194,6 +213,7 @@ class _Reader:
             # The longest name that is known, as names may run on into what follows.
             for end in range(len(found[1]), 0, -1):
                 if (text := self.values.get(found[1][:end])) is not None:
+                    self.asked.add(found[1][:end])
                     return text + found[1][end:]
             self._fail(element, f"${found[1]} is not given, and has no <default>")
 
@@ -316,4 +336,4 @@ def _modern(tree: Tree) -> Tree:
 
 
 def _snake(name: str) -> str:
-    return re.sub(r"(?<=[a-z0-9])([A-Z])", lambda found: "_" + found[1].lower(), name)
+    return re.sub(r"(?<=[a-z0-9])([A-Z]+)", lambda found: "_" + found[1].lower(), name)

@@ -1,0 +1,161 @@
+"""The principled models of the film studios."""
+
+from dataclasses import dataclass
+
+from numpy.typing import ArrayLike
+
+from ..arrays import integer, positive
+from ..textures.texture import Number, Texture, Value, scalar, value
+from .material import Material
+
+_SHARES = (
+    "roughness", "anisotropic", "transmission", "specular_tint", "sheen", "sheen_tint", "flatness",
+)  # fmt: skip
+
+
+@dataclass(frozen=True, init=False)
+class Principled(Material):
+    """The principled model: many looks by a few numbers, from plastic to metal to glass, under a clear coat.
+
+    Burley's ("Physically Based Shading at Disney", 2012, and "Extending the Disney BRDF to a BSDF with
+    Integrated Subsurface Scattering", 2015), as Mitsuba 3 has it. Its facets are GGX's and scatter once, so
+    that what is rough loses light; at grazing angles rough matt surfaces give some percent more than they get.
+
+    What lets no light through is the same on both sides. What does is a solid: its normals point out, and
+    seen from within it reflects and refracts only.
+
+    Parameters
+    ----------
+    base_color : float, 3 floats or Texture
+        Colour of what is matt, of what metal reflects, and twice over of what goes through, in [0, 1].
+    roughness : float or Texture
+        From 0, smooth, to 1. Its square is the alpha of the facets, 0.001 at least.
+    metallic : float or Texture
+        From 0, none, to 1, metal.
+    ior : float
+        The index of refraction of what is no metal, above 0.
+    transmission : float or Texture
+        The share of what is no metal that is clear, in [0, 1].
+    anisotropic : float or Texture
+        How much longer highlights are along u than along v, in [0, 1].
+    specular_tint : float or Texture
+        How much of the colour highlights of what is no metal have, in [0, 1].
+    sheen, sheen_tint : float or Texture
+        Light along the edges, as of cloth, and how much of the colour it has, in [0, 1].
+    flatness : float or Texture
+        How much of what is matt is as flat as if light got deep into it, in [0, 1].
+    clearcoat, clearcoat_gloss : float or Texture
+        How much of a coat there is, and how glossy it is, in [0, 1].
+    priority : int
+        Where solids overlap, as `Dielectric` has it.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of range or not finite.
+    TypeError
+        If something is not of the kinds above.
+    """
+
+    base_color: Value
+    roughness: Number
+    metallic: Number
+    ior: float
+    transmission: Number
+    anisotropic: Number
+    specular_tint: Number
+    sheen: Number
+    sheen_tint: Number
+    flatness: Number
+    clearcoat: Number
+    clearcoat_gloss: Number
+    priority: int
+
+    def __init__(
+        self,
+        base_color: ArrayLike | Texture = 0.5,
+        roughness: "float | Texture" = 0.5,
+        metallic: "float | Texture" = 0.0,
+        *,
+        ior: float = 1.5,
+        transmission: "float | Texture" = 0.0,
+        anisotropic: "float | Texture" = 0.0,
+        specular_tint: "float | Texture" = 0.0,
+        sheen: "float | Texture" = 0.0,
+        sheen_tint: "float | Texture" = 0.0,
+        flatness: "float | Texture" = 0.0,
+        clearcoat: "float | Texture" = 0.0,
+        clearcoat_gloss: "float | Texture" = 0.0,
+        priority: int = 0,
+    ) -> None:
+        given = locals()
+        shares = (*_SHARES, "metallic", "clearcoat", "clearcoat_gloss")
+        self._set(
+            base_color=value("base_color", base_color, most=1.0),
+            ior=positive("ior", ior),
+            priority=integer("priority", priority, -(2**31), 2**31 - 1),
+            **{name: scalar(name, given[name], most=1.0) for name in shares},
+        )
+
+
+@dataclass(frozen=True, init=False)
+class PrincipledThin(Material):
+    """The principled model of a sheet: leaves, paper, bubbles.
+
+    Burley's ("Extending the Disney BRDF to a BSDF with Integrated Subsurface Scattering", 2015), as Mitsuba 3
+    has it. Both sides are alike, and nothing is enclosed: light goes on as it came, spread, or is scattered.
+
+    Parameters
+    ----------
+    base_color : float, 3 floats or Texture
+        Colour of what is matt and of what goes through, in [0, 1].
+    roughness : float or Texture
+        From 0, smooth, to 1. Its square is the alpha of the facets, 0.001 at least.
+    ior : float
+        The index of refraction, above 0.
+    transmission : float or Texture
+        The share that is clear, in [0, 1]; the rest is matt.
+    diffuse_transmission : float or Texture
+        The share of what is matt that is scattered on the other side, in [0, 1].
+    anisotropic, specular_tint, sheen, sheen_tint, flatness : float or Texture
+        As `Principled` has them.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of range or not finite.
+    TypeError
+        If something is not of the kinds above.
+    """
+
+    base_color: Value
+    roughness: Number
+    ior: float
+    transmission: Number
+    diffuse_transmission: Number
+    anisotropic: Number
+    specular_tint: Number
+    sheen: Number
+    sheen_tint: Number
+    flatness: Number
+
+    def __init__(
+        self,
+        base_color: ArrayLike | Texture = 0.5,
+        roughness: "float | Texture" = 0.5,
+        *,
+        ior: float = 1.5,
+        transmission: "float | Texture" = 0.0,
+        diffuse_transmission: "float | Texture" = 0.0,
+        anisotropic: "float | Texture" = 0.0,
+        specular_tint: "float | Texture" = 0.0,
+        sheen: "float | Texture" = 0.0,
+        sheen_tint: "float | Texture" = 0.0,
+        flatness: "float | Texture" = 0.0,
+    ) -> None:
+        given = locals()
+        self._set(
+            base_color=value("base_color", base_color, most=1.0),
+            ior=positive("ior", ior),
+            **{name: scalar(name, given[name], most=1.0) for name in (*_SHARES, "diffuse_transmission")},
+        )

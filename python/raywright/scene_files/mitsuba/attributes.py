@@ -1,0 +1,85 @@
+"""What the vertices or the faces of a PLY file have besides their places: colours, weights."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...io.quiet import quiet
+from ...mesh_files.claims import check_mesh_file
+from .errors import SceneError
+from .plugin import Plugin
+
+Floats = NDArray[np.float64]
+
+# How the parts of one attribute are told apart.
+_ENDINGS = ("rgb", "xyz", "012", "123")
+
+
+def named_within(plugin: Plugin) -> set[str]:
+    """Return the names of the attributes that the materials and lights of a shape ask for."""
+    found: set[str] = set()
+    seen: set[int] = set()
+
+    def look(values: Mapping[str, Any], where: str) -> None:
+        if id(values) in seen:
+            return
+        seen.add(id(values))
+        if str(values.get("type")).lower() == "mesh_attribute" and isinstance(values.get("name"), str):
+            found.add(values["name"])
+        for name, value in values.items():
+            if isinstance(value, Mapping):
+                inner = plugin.context.follow(value, where)
+                if isinstance(inner, Mapping):
+                    look(inner, f"{where}.{name}")
+
+    look(plugin.values, str(plugin))
+    return found
+
+
+def read_attribute(path: Path, name: str) -> tuple[bool, Floats]:
+    """Return whether an attribute is of faces rather than vertices, and its colours, (N, 3).
+
+    One number counts as a grey.
+
+    Raises
+    ------
+    ValueError
+        If the file has no attribute of the name, or it is no colour.
+    """
+    of, _, rest = name.partition("_")
+    if of not in ("vertex", "face") or not rest:
+        raise SceneError(f"an attribute's name must begin with vertex_ or face_, got {name!r}")
+    import trimesh
+
+    check_mesh_file(path)
+    with quiet(), open(path, "rb") as file:
+        mesh = trimesh.load(file, file_type="ply", process=False)
+    raw = mesh.metadata.get("_ply_raw", {}).get(of, {}).get("data")
+    columns = _columns(raw)
+    for parts in ([f"{rest}_{end}" for end in ending] for ending in _ENDINGS):
+        if all(part in columns for part in parts):
+            return of == "face", np.stack([columns[part] for part in parts], -1)
+    for parts in (("r", "g", "b"), ("red", "green", "blue")):
+        if rest == "color" and all(part in columns for part in parts):
+            whole = np.stack([columns[part] for part in parts], -1)
+            return of == "face", whole / 255 if raw[parts[0]].dtype.kind in "ui" else whole
+    for part in (f"{rest}_0", f"{rest}_1", f"{rest}_x", rest):
+        if part in columns:
+            return of == "face", np.repeat(columns[part][:, None], 3, axis=1)
+    raise SceneError(
+        f"{path} has no attribute {name!r}; of each {of} it has {', '.join(columns) or 'nothing'}"
+    )
+
+
+def _columns(raw: Any) -> dict[str, Floats]:
+    """Return what is one number for each vertex or face."""
+    names = raw.dtype.names or () if isinstance(raw, np.ndarray) else tuple(raw or ())
+    found = {name: np.asarray(raw[name]).squeeze() for name in names}
+    return {
+        name: one.astype(np.float64)
+        for name, one in found.items()
+        if one.ndim == 1 and one.dtype.kind in "iuf"
+    }

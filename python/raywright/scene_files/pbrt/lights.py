@@ -1,0 +1,140 @@
+"""Lights, and what surrounds a scene."""
+
+import math
+
+import numpy as np
+
+from ...io.pictures import read_linear
+from ...lights import (
+    ConstantEnvironment,
+    DirectionalLight,
+    Environment,
+    EnvironmentMap,
+    Light,
+    PointLight,
+    ProjectorLight,
+    SpotLight,
+)
+from .parameters import Floats, Parameters
+from .spectra import colour
+from .textures import Textures
+
+# Rows that a square picture of all directions is resampled to, for each of its own.
+_ROWS = 1.0
+
+
+def light(kind: str, parameters: Parameters, matrix: Floats, textures: Textures) -> Light | Environment:
+    """Return a light, or what surrounds the scene.
+
+    Parameters
+    ----------
+    kind : str
+        Its type.
+    parameters : Parameters
+        Its parameters.
+    matrix : (4, 4) array
+        To the world.
+    textures : Textures
+        Where files are looked for.
+
+    Raises
+    ------
+    ValueError
+        If its type, or a parameter of it, is not supported; tells which.
+    """
+    parameters.ignore("power") if not parameters.has("power") else parameters.fail("power is not supported")
+    scale = parameters.number("scale", 1.0)
+
+    def at(name: str, default: tuple[float, float, float]) -> Floats:
+        return matrix[:3, :3] @ parameters.vector(name, default) + matrix[:3, 3]
+
+    made: Light | Environment
+    if kind == "point":
+        made = PointLight(at("from", (0, 0, 0)), _shine(parameters, "I", scale))
+    elif kind == "spot":
+        angle, delta = parameters.number("coneangle", 30.0), parameters.number("conedelta", 5.0)
+        place, target = at("from", (0, 0, 0)), at("to", (0, 0, 1))
+        made = SpotLight(place, target, _shine(parameters, "I", scale), angle, min(delta, angle), "smooth")
+    elif kind == "distant":
+        way = at("to", (0, 0, 1)) - at("from", (0, 0, 0))
+        if parameters.has("illuminance"):
+            parameters.fail("illuminance is not supported")
+        made = DirectionalLight(way, _shine(parameters, "L", scale))
+    elif kind == "projection":
+        made = _projection(parameters, matrix, textures, scale)
+    elif kind == "infinite":
+        made = _around(parameters, matrix, textures, scale)
+    else:
+        parameters.fail(f"a light {kind!r} is not supported")
+    parameters.done()
+    return made
+
+
+def _shine(parameters: Parameters, name: str, scale: float) -> tuple[float, float, float]:
+    red, green, blue = (scale * x for x in colour(parameters, name, 1.0, emits=True))
+    return red, green, blue
+
+
+def _projection(parameters: Parameters, matrix: Floats, textures: Textures, scale: float) -> ProjectorLight:
+    image = read_linear(textures.folder / parameters.text("filename"))
+    fov = parameters.number("fov", 90.0)
+    height, width = image.shape[:2]
+    # Along the shorter side.
+    tall = math.tan(math.radians(0.5 * fov)) * max(1.0, height / width)
+    place, ahead, up = matrix[:3, 3], matrix[:3, 2], matrix[:3, 1]
+    # As a camera stands there: what is mirrored shows the picture mirrored.
+    if np.linalg.det(matrix[:3, :3]) > 0:
+        image = image[:, ::-1]
+    # pbrt's intensity is that of the picture, without the inverse cube of the cosine.
+    rows, columns = image.shape[:2]
+    y = (1 - 2 * (np.arange(rows) + 0.5) / rows) * tall
+    x = (1 - 2 * (np.arange(columns) + 0.5) / columns) * tall * width / height
+    cosine = 1 / np.sqrt(1 + x[None, :] ** 2 + y[:, None] ** 2)
+    angle = 2 * math.degrees(math.atan(tall))
+    return ProjectorLight(image * cosine[..., None] ** 3, place, place + ahead, up, angle, scale)
+
+
+def _around(parameters: Parameters, matrix: Floats, textures: Textures, scale: float) -> Environment:
+    if parameters.has("illuminance") or parameters.has("portal"):
+        parameters.fail("illuminance and portal are not supported")
+    if not parameters.has("filename"):
+        return ConstantEnvironment(_shine(parameters, "L", scale))
+    image = read_linear(textures.folder / parameters.text("filename"))
+    if image.shape[0] != image.shape[1]:
+        parameters.fail(f"its picture must be square, got {image.shape[1]} x {image.shape[0]}")
+    linear = matrix[:3, :3] / np.linalg.norm(matrix[:3, :3], axis=0)
+    return EnvironmentMap(unfolded(image), linear, scale)
+
+
+def unfolded(image: Floats) -> Floats:
+    """Return a square picture of all directions as an equirectangular one, of as many rows.
+
+    A square has the same area to each solid angle (Clarberg, "Fast Equal-Area Mapping of the (Hemi)Sphere
+    using SIMD", 2008). The middle of the result is seen along -z, its top at +y, and its right towards +x.
+    """
+    side = len(image)
+    rows, columns = side, 2 * side
+    polar = np.pi * (np.arange(rows) + 0.5) / rows
+    turn = 2 * np.pi * (np.arange(columns) + 0.5) / columns - np.pi
+    y = np.cos(polar)[:, None] * np.ones(columns)
+    x = np.sin(polar)[:, None] * np.sin(turn)
+    z = -np.sin(polar)[:, None] * np.cos(turn)
+    u, v = folded(x, y, z)
+    # As many points lie as densely here and there: the nearest is as good as any between.
+    column = np.minimum((u * side).astype(np.int64), side - 1)
+    row = np.minimum((v * side).astype(np.int64), side - 1)
+    return np.asarray(image[row, column])
+
+
+def folded(x: Floats, y: Floats, z: Floats) -> tuple[Floats, Floats]:
+    """Return where unit directions are in a square of equal areas, as u and v from 0 to 1."""
+    across, along = np.abs(x), np.abs(y)
+    radius = np.sqrt(np.maximum(1 - np.abs(z), 0.0))
+    most, least = np.maximum(across, along), np.minimum(across, along)
+    share = np.divide(least, most, out=np.zeros_like(most), where=most > 0)
+    phi = np.arctan(share) * 2 / np.pi
+    phi = np.where(across < along, 1 - phi, phi)
+    v = phi * radius
+    u = radius - v
+    u, v = np.where(z < 0, 1 - v, u), np.where(z < 0, 1 - u, v)
+    return 0.5 * (np.copysign(u, x) + 1), 0.5 * (np.copysign(v, y) + 1)

@@ -1,0 +1,119 @@
+"""What stands after a directive: parameters by type and name, each of which must be understood."""
+
+from collections.abc import Mapping
+from typing import Any, NoReturn
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .errors import PbrtError
+
+Floats = NDArray[np.float64]
+Given = Mapping[str, tuple[str, list[Any]]]
+
+
+class Parameters:
+    """The parameters of a directive, taken one by one; `done` refuses what is left.
+
+    Parameters
+    ----------
+    given : mapping
+        The type and the values of each, by name.
+    where : str
+        The file, the line and the directive.
+    """
+
+    def __init__(self, given: Given, where: str) -> None:
+        self.given, self.where = dict(given), where
+        self._left = set(given)
+
+    def over(self, defaults: Given) -> "Parameters":
+        """Return these with others for what is not among them, which need not be understood."""
+        both = Parameters({**defaults, **self.given}, self.where)
+        both._left = set(self.given)
+        return both
+
+    def fail(self, why: str) -> NoReturn:
+        """Refuse the directive."""
+        raise PbrtError(f"{self.where}: {why}")
+
+    def has(self, name: str) -> bool:
+        """Whether a parameter is given."""
+        return name in self.given
+
+    def ignore(self, *names: str) -> None:
+        """Take what changes no picture here."""
+        self._left.difference_update(names)
+
+    def take(self, name: str) -> tuple[str, list[Any]] | None:
+        """Return the type and the values of a parameter; None if it is not given."""
+        self._left.discard(name)
+        return self.given.get(name)
+
+    def numbers(self, name: str, columns: int = 1) -> Floats | None:
+        """Return the numbers of a parameter, (N, columns) or of one column (N,); None if it is not given."""
+        found = self.take(name)
+        if found is None:
+            return None
+        try:
+            array = np.array(found[1], np.float64)
+        except (TypeError, ValueError):
+            array = np.array([np.nan])
+        if not np.isfinite(array).all() or array.ndim != 1 or array.size % columns:
+            each = "" if columns == 1 else f", {columns} each"
+            self.fail(f"{name} must be finite numbers{each}")
+        return array if columns == 1 else array.reshape(-1, columns)
+
+    def number(self, name: str, default: float) -> float:
+        """Return one number."""
+        found = self.numbers(name)
+        if found is None:
+            return default
+        if found.shape != (1,):
+            self.fail(f"{name} must be one number, got {len(found)}")
+        return float(found[0])
+
+    def integer(self, name: str, default: int) -> int:
+        """Return one whole number."""
+        value = self.number(name, default)
+        if value != int(value):
+            self.fail(f"{name} must be a whole number, got {value:g}")
+        return int(value)
+
+    def vector(self, name: str, default: tuple[float, float, float]) -> Floats:
+        """Return three numbers."""
+        found = self.numbers(name)
+        if found is None:
+            return np.array(default)
+        if found.shape != (3,):
+            self.fail(f"{name} must be 3 numbers, got {len(found)}")
+        return found
+
+    def switch(self, name: str, default: bool) -> bool:
+        """Return a bool."""
+        found = self.take(name)
+        if found is None:
+            return default
+        values = [
+            {"true": True, "false": False}.get(one, one) if isinstance(one, str) else one for one in found[1]
+        ]
+        if len(values) != 1 or not isinstance(values[0], bool):
+            self.fail(f"{name} must be true or false")
+        return bool(values[0])
+
+    def text(self, name: str, default: str | None = None) -> str:
+        """Return a text, which must be there if it has no default."""
+        found = self.take(name)
+        if found is None:
+            if default is None:
+                self.fail(f"{name} must be given")
+            return default
+        if len(found[1]) != 1 or not isinstance(found[1][0], str):
+            self.fail(f"{name} must be one text in quotes")
+        return str(found[1][0])
+
+    def done(self) -> None:
+        """Refuse parameters that nobody has taken."""
+        for name in self.given:
+            if name in self._left:
+                self.fail(f"parameter {name!r} is not supported")

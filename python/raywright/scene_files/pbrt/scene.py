@@ -1,0 +1,287 @@
+"""A whole scene."""
+
+import errno
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any, cast, get_args
+
+import numpy as np
+
+from ...integrators import AnyIntegrator
+from ...integrators import Path as PathTraced
+from ...lights import Environment, Light
+from ...materials import Diffuse, Material
+from ...rendering.filters import Filter, GaussianFilter
+from ...rendering.samplers import Sampler, Sobol
+from ...rendering.shot import Shot
+from ...scene.instance import Instance
+from ...scene.scene import Scene
+from ..mitsuba.transforms import rotation
+from . import lights, shapes, views
+from .errors import PbrtError
+from .materials import Materials
+from .parameters import Floats, Given, Parameters
+from .textures import Textures
+from .tokens import Directive, directives
+
+_MOST_FILES, _MOST_DEPTH = 1000, 32
+# Turns a left-handed world into a right-handed one, and leaves one that a file has turned itself.
+_MIRROR, _AS_IT_IS = np.diag([-1.0, 1.0, 1.0, 1.0]), np.eye(4)
+
+
+def read_pbrt(path: Path) -> Shot:
+    """Read a scene in the format of pbrt, version 4.
+
+    Parameters
+    ----------
+    path : Path
+        The file; what it names is looked for in its folder.
+
+    Raises
+    ------
+    FileNotFoundError
+        If a file is missing.
+    ValueError
+        If something is not supported, or is not as it must be; tells the line.
+
+    Warns
+    -----
+    RuntimeWarning
+        Of what is approximated.
+    """
+    reader = _Reader(path)
+    reader.file(path, 0)
+    return reader.shot()
+
+
+@dataclass(frozen=True)
+class _State:
+    """What directives change, and what attributes keep."""
+
+    matrix: Floats = field(default_factory=lambda: np.eye(4))
+    material: Material = field(default_factory=Diffuse)
+    emission: Any = None
+    flipped: bool = False
+    defaults: tuple[tuple[str, Given], ...] = ()
+
+
+class _Reader:
+    """A scene, as far as it is read."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self._state = _State()
+        self._kept: list[_State] = []
+        self._named: dict[str, Floats] = {}
+        self._textures = Textures(path.parent)
+        self._materials = Materials(self._textures)
+        self._groups: dict[str, list[Any]] = {}
+        self._group: str | None = None
+        self._found: list[Any] = []
+        self._lights: list[Light] = []
+        self._around: list[Environment] = []
+        self._files = 0
+        self._in_world = False
+        self._camera: tuple[str, Parameters, Floats] | None = None
+        self._mirror = _MIRROR
+        self._size = (1280, 720)
+        self._filter: Filter = GaussianFilter(1.5, 0.5)
+        self._sampler: tuple[Sampler | None, int, int] = (Sobol(), 16, 0)
+        self._integrator: AnyIntegrator = PathTraced(5)
+        # Cameras, films and the like are read when all of their options are known.
+        self._instances: list[tuple[str, Floats, Parameters]] = []
+
+    def file(self, path: Path, depth: int) -> None:
+        """Read a file, and those that it includes."""
+        self._files += 1
+        if depth > _MOST_DEPTH or self._files > _MOST_FILES:
+            raise PbrtError(f"{path}: files include each other without end")
+        if not path.exists():
+            raise FileNotFoundError(errno.ENOENT, "no such file", str(path))
+        for one in directives(path):
+            if one.name in ("Include", "Import"):
+                self.file(self.path.parent / one.texts[0], depth + 1)
+            else:
+                self._directive(one)
+
+    def _directive(self, one: Directive) -> None:
+        name = one.name
+        if name in ("LookAt", "Translate", "Scale", "Rotate", "Transform", "ConcatTransform", "Identity"):
+            before = np.eye(4) if name in ("Transform", "Identity") else self._state.matrix
+            self._set(matrix=before @ _step(one))
+        elif name in ("AttributeBegin", "TransformBegin"):
+            self._kept.append(self._state)
+        elif name in ("AttributeEnd", "TransformEnd"):
+            self._restore(one, only_matrix=name == "TransformEnd")
+        elif name == "CoordinateSystem":
+            self._named[one.texts[0]] = self._state.matrix
+        elif name == "CoordSysTransform":
+            if one.texts[0] not in self._named:
+                raise PbrtError(f"{one.where}: there is no coordinate system {one.texts[0]!r}")
+            self._set(matrix=self._named[one.texts[0]])
+        elif name == "ReverseOrientation":
+            self._set(flipped=not self._state.flipped)
+        elif name == "Attribute":
+            self._set(defaults=(*self._state.defaults, (one.texts[0], one.parameters.given)))
+        elif name == "WorldBegin":
+            self._in_world = True
+            self._set(matrix=np.eye(4))
+        elif name in ("Option", "Accelerator"):
+            pass
+        elif name == "ColorSpace":
+            if one.texts[0] != "srgb":
+                raise PbrtError(f"{one.where}: a colour space must be srgb")
+        elif name in ("MakeNamedMedium", "MediumInterface"):
+            if name == "MakeNamedMedium" or any(one.texts):
+                raise PbrtError(f"{one.where}: {name} is not supported: there are no media")
+        elif name in ("Camera", "Film", "PixelFilter", "Sampler", "Integrator"):
+            self._option(one)
+        else:
+            self._part(one)
+
+    def _option(self, one: Directive) -> None:
+        (kind,), parameters = one.texts, one.parameters
+        if one.name == "Camera":
+            self._named["camera"] = np.linalg.inv(self._state.matrix)
+            self._camera = kind, parameters, self._named["camera"]
+            # The camera's +x is to the right: a world is left-handed unless that is turned round.
+            self._mirror = _MIRROR if np.linalg.det(self._state.matrix[:3, :3]) > 0 else _AS_IT_IS
+        elif one.name == "Film":
+            self._size = views.film(kind, parameters)
+        elif one.name == "PixelFilter":
+            self._filter = views.rfilter(kind, parameters)
+        elif one.name == "Sampler":
+            self._sampler = views.sampler(kind, parameters)
+        else:
+            self._integrator = views.integrator(kind, parameters)
+
+    def _part(self, one: Directive) -> None:
+        state, texts, parameters = self._state, one.texts, one.parameters
+        if one.name == "Texture":
+            name, of, kind = texts
+            self._textures.add(name, of, kind, parameters.over(self._defaults("texture")))
+        elif one.name == "Material":
+            self._set(
+                material=self._materials.material(texts[0], parameters.over(self._defaults("material")))
+            )
+        elif one.name == "MakeNamedMaterial":
+            self._materials.add(texts[0], parameters.over(self._defaults("material")))
+        elif one.name == "NamedMaterial":
+            self._set(material=self._materials.named(texts[0], parameters))
+        elif one.name == "AreaLightSource":
+            if texts[0] != "diffuse":
+                parameters.fail(f"an area light {texts[0]!r} is not supported")
+            self._set(emission=shapes.emission(parameters.over(self._defaults("light"))))
+        elif one.name == "LightSource":
+            made = lights.light(
+                texts[0],
+                parameters.over(self._defaults("light")),
+                self._mirror @ state.matrix,
+                self._textures,
+            )
+            if isinstance(made, get_args(Light)):
+                self._lights.append(cast(Light, made))
+            else:
+                self._around.append(cast(Environment, made))
+        elif one.name == "Shape":
+            self._shape(texts[0], parameters.over(self._defaults("shape")))
+        elif one.name == "ObjectBegin":
+            if self._group is not None:
+                raise PbrtError(f"{one.where}: an object within an object")
+            self._kept.append(state)
+            self._group = texts[0]
+            self._groups[texts[0]] = []
+        elif one.name == "ObjectEnd":
+            if self._group is None:
+                raise PbrtError(f"{one.where}: ObjectEnd without ObjectBegin")
+            self._group = None
+            self._restore(one)
+        else:
+            self._instances.append((texts[0], self._mirror @ state.matrix, parameters))
+
+    def _shape(self, kind: str, parameters: Parameters) -> None:
+        state = self._state
+        in_group = self._group is not None
+        # What is in a group does not shine in pbrt, and is put in the mirrored world with it.
+        look = shapes.Look(state.material, None if in_group else state.emission, state.flipped)
+        matrix = state.matrix if in_group else self._mirror @ state.matrix
+        made = shapes.shape(kind, parameters, matrix, look, self._textures)
+        (self._found if self._group is None else self._groups[self._group]).append(made)
+
+    def _defaults(self, target: str) -> Given:
+        found: dict[str, tuple[str, list[Any]]] = {}
+        for name, given in self._state.defaults:
+            if name == target:
+                found.update(given)
+        return found
+
+    def _set(self, **changes: Any) -> None:
+        self._state = replace(self._state, **changes)
+
+    def _restore(self, one: Directive, only_matrix: bool = False) -> None:
+        if not self._kept:
+            raise PbrtError(f"{one.where}: {one.name} without its beginning")
+        before = self._kept.pop()
+        self._state = replace(self._state, matrix=before.matrix) if only_matrix else before
+
+    def shot(self) -> Shot:
+        """Return what has been read."""
+        if not self._in_world:
+            raise PbrtError(f"{self.path} has no WorldBegin")
+        if self._camera is None:
+            raise PbrtError(f"{self.path} has no Camera")
+        if self._kept or self._group is not None:
+            raise PbrtError(f"{self.path} ends within an attribute or an object")
+        places: dict[str, list[Floats]] = {}
+        for name, matrix, parameters in self._instances:
+            if name not in self._groups:
+                parameters.fail(f"there is no object {name!r}")
+            if self._groups[name]:
+                places.setdefault(name, []).append(matrix)
+        found = self._found + [
+            Instance(self._groups[name], np.stack(where)) for name, where in places.items()
+        ]
+        kind, parameters, matrix = self._camera
+        sampler, samples, seed = self._sampler
+        around = self._around[0] if len(self._around) == 1 else self._around or None
+        return Shot(
+            Scene(found, self._lights, around),
+            views.camera(kind, parameters, self._mirror @ matrix, self._size),
+            self._integrator,
+            samples,
+            sampler=sampler,
+            filter=self._filter,
+            seed=seed,
+        )
+
+
+def _step(one: Directive) -> Floats:
+    """Return the matrix of a directive, which acts on what comes after it first."""
+    values = np.array(one.numbers)
+    if one.name in ("Transform", "ConcatTransform"):
+        matrix = values.reshape(4, 4).T
+        if not np.array_equal(matrix[3], (0, 0, 0, 1)):
+            raise PbrtError(f"{one.where}: {one.name} must be affine")
+        return matrix
+    matrix = np.eye(4)
+    if one.name == "Translate":
+        matrix[:3, 3] = values
+    elif one.name == "Scale":
+        if not values.all():
+            raise PbrtError(f"{one.where}: Scale must not be 0")
+        matrix[:3, :3] = np.diag(values)
+    elif one.name == "Rotate":
+        if not values[1:].any():
+            raise PbrtError(f"{one.where}: Rotate must have an axis")
+        matrix[:3, :3] = rotation(values[1:], values[0])
+    elif one.name == "LookAt":
+        eye, target, up = values[:3], values[3:6], values[6:]
+        forward = target - eye
+        right = np.cross(up, forward)
+        if not np.linalg.norm(right) > 0:
+            raise PbrtError(f"{one.where}: LookAt must have an up that is not along the view")
+        forward, right = forward / np.linalg.norm(forward), right / np.linalg.norm(right)
+        placed = np.eye(4)
+        placed[:3] = np.column_stack([right, np.cross(forward, right), forward, eye])
+        matrix = np.linalg.inv(placed)
+    return matrix

@@ -1,0 +1,70 @@
+"""Colours and spectra, as linear red, green and blue (Rec. 709)."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ... import _core
+from ..mitsuba.spectra import black_body as planck
+from .parameters import Parameters
+
+Triple = tuple[float, float, float]
+
+# Of glass at 587.6 nm, by the catalogues of their makers; those of F are Schott's SF.
+GLASS = {
+    "glass-BK7": 1.5168,
+    "glass-BAF10": 1.67003,
+    "glass-FK51A": 1.48656,
+    "glass-LASF9": 1.85025,
+    "glass-F5": 1.67270,
+    "glass-F10": 1.72825,
+    "glass-F11": 1.78472,
+}
+
+
+def colour(parameters: Parameters, name: str, default: float | Triple, emits: bool = False) -> Triple:
+    """Return a parameter that is one colour.
+
+    What emits, and is no rgb, has a luminance of 1, as pbrt makes it so.
+    """
+    found = parameters.take(name)
+    if found is None:
+        return _triple(np.broadcast_to(default, 3))
+    kind, values = found
+    if kind == "rgb":
+        if len(values) != 3:
+            parameters.fail(f"{name} must be 3 numbers, got {len(values)}")
+        return _triple(values)
+    if kind in ("float", "color", "xyz") and len(values) in (1, 3):
+        return _triple(np.broadcast_to(values, 3))
+    if kind == "blackbody" and emits and len(values) == 1:
+        return _bright(black_body(float(values[0])))
+    if kind == "spectrum" and len(values) >= 4 and len(values) % 2 == 0 and not isinstance(values[0], str):
+        table = np.array(values, np.float64).reshape(-1, 2)
+        if (np.diff(table[:, 0]) <= 0).any():
+            parameters.fail(f"{name} must have wavelengths that rise")
+        rgb = np.maximum(_core.spectrum_rgb(table.tolist(), not emits), 0.0)
+        return _bright(rgb) if emits else _triple(rgb)
+    parameters.fail(f"{name} must be an rgb or a spectrum of numbers, got a {kind} of {_told(values)}")
+
+
+def black_body(kelvin: float) -> NDArray[np.float64]:
+    """Return the colour of a black body (Planck, 1900), of any brightness."""
+    table = planck(kelvin)
+    table[:, 1] /= table[:, 1].max()
+    return np.maximum(_core.spectrum_rgb(table.tolist(), False), 0.0)
+
+
+def _bright(rgb: Any) -> Triple:
+    luminance = float(np.dot(rgb, (0.212671, 0.715160, 0.072169)))
+    return _triple(np.asarray(rgb) / luminance) if luminance > 0 else (0.0, 0.0, 0.0)
+
+
+def _told(values: list[Any]) -> str:
+    return repr(values[0])[:40] if len(values) == 1 else f"{len(values)} values"
+
+
+def _triple(values: Any) -> Triple:
+    red, green, blue = (float(x) for x in values)
+    return red, green, blue

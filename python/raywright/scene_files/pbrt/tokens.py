@@ -1,0 +1,163 @@
+"""Words of a file, and the directives that they make."""
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from .errors import PbrtError
+from .parameters import Parameters
+
+# A text in quotes, a bracket, or anything else without spaces; what follows # is a comment.
+_WORD = re.compile(r'"((?:[^"\\\n]|\\.)*)"|(#[^\n]*)|([\[\]])|([^\s"\[\]#]+)|(\n)')
+# Numbers and texts that stand before the parameters of each directive.
+_NUMBERS = {"LookAt": 9, "Translate": 3, "Scale": 3, "Rotate": 4, "Transform": 16, "ConcatTransform": 16}
+_TEXTS = {
+    "Accelerator": 1, "AreaLightSource": 1, "Attribute": 1, "Camera": 1, "ColorSpace": 1, "CoordinateSystem": 1,
+    "CoordSysTransform": 1, "Film": 1, "Import": 1, "Include": 1, "Integrator": 1, "LightSource": 1,
+    "MakeNamedMaterial": 1, "MakeNamedMedium": 1, "Material": 1, "MediumInterface": 2, "NamedMaterial": 1,
+    "ObjectBegin": 1, "ObjectInstance": 1, "Option": 0, "PixelFilter": 1, "Sampler": 1, "Shape": 1, "Texture": 3,
+}  # fmt: skip
+_BARE = (
+    "AttributeBegin", "AttributeEnd", "Identity", "ObjectEnd", "ReverseOrientation", "TransformBegin", "TransformEnd",
+    "WorldBegin",
+)  # fmt: skip
+
+
+class Word(NamedTuple):
+    """A word of a file, whether it was in quotes, and its line."""
+
+    text: str
+    quoted: bool
+    line: int
+
+
+class Directive(NamedTuple):
+    """What a file asks for: a name, and what stands after it."""
+
+    name: str
+    texts: tuple[str, ...]
+    numbers: tuple[float, ...]
+    parameters: Parameters
+    where: str
+
+
+def directives(path: Path) -> Iterator[Directive]:
+    """Yield the directives of a file, one after the other.
+
+    Raises
+    ------
+    FileNotFoundError
+        If the file is missing.
+    ValueError
+        If it is not as pbrt's files are; tells the line.
+    """
+    words = _Words(path)
+    while (word := words.next()) is not None:
+        where = f"{path}, line {word.line}"
+        name = word.text
+        if word.quoted or not (name in _NUMBERS or name in _TEXTS or name in _BARE):
+            raise PbrtError(f"{where}: {name[:40]!r} is no directive that is known")
+        numbers = words.numbers(_NUMBERS[name], where) if name in _NUMBERS else ()
+        texts = []
+        for _ in range(_TEXTS.get(name, 0)):
+            text = words.next()
+            if text is None or not text.quoted:
+                if name == "MediumInterface" and texts:
+                    # One name stands for both sides.
+                    words.back(text)
+                    break
+                raise PbrtError(f"{where}: {name} must have a text in quotes")
+            texts.append(text.text)
+        takes = name in _TEXTS and name not in ("Include", "Import", "NamedMaterial", "MediumInterface")
+        given = _parameters(words) if takes else {}
+        yield Directive(
+            name, tuple(texts), numbers, Parameters(given, f"{where}: {' '.join((name, *texts))}"), where
+        )
+
+
+def _parameters(words: "_Words") -> dict[str, tuple[str, list[Any]]]:
+    found: dict[str, tuple[str, list[Any]]] = {}
+    while (word := words.next()) is not None:
+        if not word.quoted:
+            words.back(word)
+            break
+        where = f"{words.path}, line {word.line}"
+        kind, _, name = word.text.strip().partition(" ")
+        name = name.strip()
+        if not name:
+            raise PbrtError(f"{where}: a parameter must be a type and a name, got {word.text[:40]!r}")
+        if name in found:
+            raise PbrtError(f"{where}: {name} is given twice")
+        found[name] = kind, words.values(where)
+    return found
+
+
+class _Words:
+    """The words of a file, one after the other, with one step back."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self._text = path.read_text(encoding="utf-8", errors="replace")
+        self._matches = _WORD.finditer(self._text)
+        self._line = 1
+        self._back: Word | None = None
+        self._at = 0
+
+    def next(self) -> Word | None:
+        if self._back is not None:
+            word, self._back = self._back, None
+            return word
+        for match in self._matches:
+            if self._text[self._at : match.start()].strip():
+                raise PbrtError(f"{self.path}, line {self._line}: a text in quotes does not end")
+            self._at = match.end()
+            if match[5] is not None:
+                self._line += 1
+            elif match[2] is None:
+                quoted = match[1] is not None
+                return Word(match[1] if quoted else match[3] or match[4], quoted, self._line)
+        if self._text[self._at :].strip():
+            raise PbrtError(f"{self.path}, line {self._line}: a text in quotes does not end")
+        return None
+
+    def back(self, word: Word | None) -> None:
+        self._back = word
+
+    def numbers(self, count: int, where: str) -> tuple[float, ...]:
+        values = [value for value in self._list(count, where) if isinstance(value, float)]
+        if len(values) != count:
+            raise PbrtError(f"{where}: {count} numbers are expected, got {len(values)}")
+        return tuple(values)
+
+    def values(self, where: str) -> list[Any]:
+        return self._list(1, where)
+
+    def _list(self, bare: int, where: str) -> list[Any]:
+        """Return what is in brackets, or so many values without."""
+        first = self.next()
+        if first is None:
+            raise PbrtError(f"{where}: values are missing")
+        if first.quoted or first.text != "[":
+            self.back(first)
+            return [self._value(self.next(), where) for _ in range(bare)]
+        found = []
+        while True:
+            word = self.next()
+            if word is None:
+                raise PbrtError(f"{where}: a bracket is not closed")
+            if not word.quoted and word.text == "]":
+                return found
+            found.append(self._value(word, where))
+
+    def _value(self, word: Word | None, where: str) -> Any:
+        if word is None:
+            raise PbrtError(f"{where}: values are missing")
+        if word.quoted:
+            return word.text
+        if word.text in ("true", "false"):
+            return word.text == "true"
+        try:
+            return float(word.text)
+        except ValueError:
+            raise PbrtError(f"{where}: {word.text[:40]!r} is no value") from None

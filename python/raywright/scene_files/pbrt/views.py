@@ -1,0 +1,176 @@
+"""Cameras, films, filters, samplers and integrators."""
+
+import math
+import warnings
+from typing import Any
+
+import numpy as np
+
+from ...cameras import AnyCamera, Camera, Orthographic, Panorama, ThinLens
+from ...integrators import AmbientOcclusion, AnyIntegrator, Bidirectional, LightTraced, Path
+from ...rendering.filters import (
+    BoxFilter,
+    Filter,
+    GaussianFilter,
+    LanczosFilter,
+    MitchellFilter,
+    TriangleFilter,
+)
+from ...rendering.samplers import Halton, Independent, Sampler, Sobol, Stratified
+from .parameters import Floats, Parameters
+
+# All that goes along paths; what they differ in is how, and the picture is the same.
+_PATHS = ("path", "volpath", "simplepath", "simplevolpath", "randomwalk", "mlt", "sppm")
+
+
+def camera(kind: str, parameters: Parameters, matrix: Floats, size: tuple[int, int]) -> AnyCamera:
+    """Return a camera.
+
+    Parameters
+    ----------
+    kind : str
+        Its type.
+    parameters : Parameters
+        Its parameters.
+    matrix : (4, 4) array
+        From the camera, which looks along its +z with its +x to the right, to a world that is right-handed.
+    size : tuple of 2 ints
+        The width and height of the film.
+
+    Raises
+    ------
+    ValueError
+        If its type, or a parameter of it, is not supported; tells which.
+    """
+    width, height = size
+    parameters.ignore("shutteropen", "shutterclose")
+    for name in ("frameaspectratio", "screenwindow"):
+        if parameters.has(name):
+            parameters.fail(f"{name} is not supported")
+    common: dict[str, Any] = {
+        "direction": matrix[:3, 2] / np.linalg.norm(matrix[:3, 2]),
+        "up": matrix[:3, 1] / np.linalg.norm(matrix[:3, 1]),
+        "width": width,
+        "height": height,
+    }
+    place = matrix[:3, 3]
+    made: AnyCamera
+    if kind == "perspective":
+        lens, distance = parameters.number("lensradius", 0.0), parameters.number("focaldistance", 1e6)
+        fov = parameters.number("fov", 90.0)
+        if lens > 0:
+            made = ThinLens(
+                place, fov=fov, fov_axis="smaller", aperture_radius=lens, focus_distance=distance, **common
+            )
+        else:
+            made = Camera(place, fov=fov, fov_axis="smaller", **common)
+    elif kind == "orthographic":
+        parameters.ignore("lensradius", "focaldistance")
+        scale = 2 * float(np.linalg.norm(matrix[:3, 0]))
+        made = Orthographic(place, scale=scale, scale_axis="smaller", **common)
+    elif kind == "spherical":
+        if parameters.text("mapping", "equalarea") != "equirectangular":
+            parameters.fail("mapping must be equirectangular")
+        made = Panorama(place, **common)
+    else:
+        parameters.fail(f"a camera {kind!r} is not supported")
+    parameters.done()
+    return made
+
+
+def film(kind: str, parameters: Parameters) -> tuple[int, int]:
+    """Return the size of a film in pixels."""
+    if kind not in ("rgb", "gbuffer", "spectral"):
+        parameters.fail(f"a film {kind!r} is not supported")
+    size = parameters.integer("xresolution", 1280), parameters.integer("yresolution", 720)
+    for name in ("cropwindow", "pixelbounds"):
+        if parameters.has(name):
+            parameters.fail(f"{name} is not supported")
+    if parameters.text("sensor", "cie1931") != "cie1931":
+        warnings.warn(
+            "a film's sensor is left out: colours are those that the eye sees", RuntimeWarning, stacklevel=2
+        )
+    parameters.ignore(
+        "filename", "savefp16", "diagonal", "iso", "exposuretime", "maxcomponentvalue", "whitebalance",
+        "coordinatesystem", "nbuckets", "lambdamin", "lambdamax",
+    )  # fmt: skip
+    parameters.done()
+    return size
+
+
+def rfilter(kind: str, parameters: Parameters) -> Filter:
+    """Return a filter."""
+    default = {"box": 0.5, "gaussian": 1.5, "mitchell": 2.0, "sinc": 4.0, "triangle": 2.0}
+    if kind not in default:
+        parameters.fail(f"a filter {kind!r} is not supported")
+    across, down = (parameters.number(f"{axis}radius", default[kind]) for axis in "xy")
+    if across != down:
+        parameters.fail(f"xradius and yradius must be the same, got {across:g} and {down:g}")
+    made: Filter
+    if kind == "box":
+        if across != 0.5:
+            parameters.fail(f"the radius of a box must be 0.5, got {across:g}")
+        made = BoxFilter()
+    elif kind == "gaussian":
+        made = GaussianFilter(across, parameters.number("sigma", 0.5))
+    elif kind == "mitchell":
+        made = MitchellFilter(across, parameters.number("B", 1 / 3), parameters.number("C", 1 / 3))
+    elif kind == "triangle":
+        made = TriangleFilter(across)
+    else:
+        parameters.ignore("tau")
+        made = LanczosFilter(max(round(across), 1))
+    parameters.done()
+    return made
+
+
+def sampler(kind: str, parameters: Parameters) -> tuple[Sampler | None, int, int]:
+    """Return a sampler, None for ours, how many samples a pixel there are, and the seed."""
+    kinds: dict[str, Sampler | None] = {
+        "independent": Independent(),
+        "stratified": Stratified(),
+        "halton": Halton(),
+        "sobol": Sobol(),
+        "paddedsobol": Sobol(),
+        "zsobol": Sobol(),
+        "pmj02bn": None,
+    }
+    if kind not in kinds:
+        parameters.fail(f"a sampler {kind!r} is not supported")
+    if kind == "stratified":
+        count = parameters.integer("xsamples", 4) * parameters.integer("ysamples", 4)
+    else:
+        count = parameters.integer("pixelsamples", 16)
+    seed = parameters.integer("seed", 0)
+    parameters.ignore("jitter", "randomization")
+    parameters.done()
+    if count < 1 or seed < 0:
+        parameters.fail(f"samples must be at least 1 and seed at least 0, got {count} and {seed}")
+    return kinds[kind], count, seed
+
+
+def integrator(kind: str, parameters: Parameters) -> AnyIntegrator:
+    """Return an integrator."""
+    depth = parameters.integer("maxdepth", 5)
+    if depth < 0:
+        parameters.fail(f"maxdepth must be at least 0, got {depth}")
+    parameters.ignore(
+        "regularize", "lightsampler", "bootstrapsamples", "chains", "mutationsperpixel", "largestepprobability",
+        "sigma", "photonsperiteration", "radius", "seed", "samplelights", "samplebsdf", "visualizestrategies",
+        "visualizeweights",
+    )  # fmt: skip
+    made: AnyIntegrator
+    if kind in _PATHS:
+        made = Path(depth)
+    elif kind == "bdpt":
+        made = Bidirectional(depth)
+    elif kind == "lightpath":
+        made = LightTraced(depth)
+    elif kind == "ambientocclusion":
+        distance = parameters.number("maxdistance", math.inf) if parameters.has("maxdistance") else math.inf
+        parameters.ignore("cossample")
+        made = AmbientOcclusion(distance)
+    else:
+        parameters.fail(f"an integrator {kind!r} is not supported")
+    parameters.done()
+    return made

@@ -1,0 +1,205 @@
+"""Meshes of Mitsuba's own kinds: compressed files, curves, grids of distances, and what vertices have besides."""
+
+import re
+
+import numpy as np
+import pytest
+from mitsuba_files import OCTAHEDRON, curve, dabs, eight, serialized
+
+import raywright as rw
+from raywright.scene_files import tubes
+from raywright.scene_files.mitsuba import sdf_grids
+
+EYE = {"type": "perspective", "film": {"type": "hdrfilm", "width": 8, "height": 4}}
+
+
+def shape(folder, **values):
+    return rw.from_mitsuba({"type": "scene", "eye": EYE, "one": values}, folder=folder).scene.shapes[0]
+
+
+def volume(mesh):
+    """By the divergence theorem: positive where faces turn anticlockwise as seen from outside."""
+    a, b, c = (mesh.vertices[mesh.faces[:, k]].astype(np.float64) for k in range(3))
+    return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6)
+
+
+@pytest.mark.parametrize("version", [3, 4])
+@pytest.mark.parametrize("double", [False, True])
+def test_compressed_meshes_are_read(tmp_path, version, double):
+    (tmp_path / "m.serialized").write_bytes(serialized(version, double))
+    gem = shape(tmp_path, type="serialized", filename="m.serialized", shape_index=1, face_normals=True)
+    assert np.array_equal(gem.vertices, OCTAHEDRON)
+    assert np.array_equal(gem.faces, eight())
+    assert np.array_equal(gem.uv, np.array(OCTAHEDRON)[:, :2])
+    assert gem.normals is None
+    smooth = shape(tmp_path, type="serialized", filename="m.serialized", shape_index=1)
+    assert np.allclose(smooth.normals, OCTAHEDRON, rtol=0, atol=1e-12)
+    assert len(shape(tmp_path, type="serialized", filename="m.serialized").faces) == 1
+
+
+def test_compressed_meshes_that_are_broken_are_refused(tmp_path):
+    data = serialized()
+    path = tmp_path / "m.serialized"
+
+    def refused(given, index=1):
+        path.write_bytes(given)
+        with pytest.raises(ValueError) as caught:
+            shape(tmp_path, type="serialized", filename="m.serialized", shape_index=index)
+        assert "\n" not in str(caught.value)
+        return str(caught.value)
+
+    assert "has no mesh 2: it has 2" in refused(data, 2)
+    assert "is no serialized mesh" in refused(b"PK" + data[2:])
+    assert "of version 9; 3 and 4 are read" in refused(data[:2] + b"\x09" + data[3:], 0)
+    for length in range(0, 21, 3):
+        refused(data[:length], 0)
+
+
+def test_vertices_and_faces_have_their_colours(tmp_path):
+    (tmp_path / "dabs.ply").write_text(dabs())
+    rows = [line.split() for line in dabs().splitlines()]
+    given = np.array([row[3:6] for row in rows if len(row) == 6 and row[0] != "property"], float)
+
+    def read(name, **more):
+        colour = {"type": "mesh_attribute", "name": name, **more}
+        return shape(tmp_path, type="ply", filename="dabs.ply", b={"type": "diffuse", "reflectance": colour})
+
+    assert np.allclose(read("vertex_color").colors, given, rtol=0, atol=1e-6)
+    by_face = read("face_color", scale=0.5)
+    assert by_face.material.front.reflectance == rw.ProductTexture(rw.VertexColors(), 0.5)
+    # Each face has its own corners, all of one colour.
+    assert by_face.vertices.shape == (24, 3)
+    assert (by_face.colors.reshape(8, 3, 3) == by_face.colors.reshape(8, 3, 3)[:, :1]).all()
+    tiles = np.array([row[4:7] for row in rows[-8:]], float)
+    assert np.allclose(by_face.colors[::3], tiles, rtol=0, atol=1e-6)
+    with pytest.raises(
+        ValueError, match=r"dabs.ply has no attribute 'vertex_heat'; of each vertex it has x, y, z, "
+    ):
+        read("vertex_heat")
+    with pytest.raises(ValueError, match="an attribute's name must begin with vertex_ or face_, got 'heat'"):
+        read("heat")
+
+
+@pytest.mark.parametrize("ends", [(0.3, 0.3), (0.2, 0.6)])
+def test_a_straight_curve_is_the_hull_of_two_balls(ends):
+    """What is hit across its axis is a cone and the parts of balls beyond it, less what 48 sides leave out."""
+    a, b = ends
+    length = 2.0
+    tube = tubes.linear([np.array([(0, 0, 0, a), (0, 0, length, b)], float)])
+    # The meridian's profile, turned about the axis: z and radius from pole to pole (Pappus, by Simpson's rule).
+    sin = (a - b) / length
+    cos = np.sqrt(1 - sin * sin)
+
+    def radius(z):
+        balls = np.sqrt(np.maximum(a * a - z * z, 0)), np.sqrt(np.maximum(b * b - (z - length) ** 2, 0))
+        return np.select([z < a * sin, z > length + b * sin], balls, (a - sin * z) / cos)
+
+    x, w = np.polynomial.legendre.leggauss(160)
+    heights = 0.5 * (length + b - a) + 0.5 * (length + a + b) * x
+    # The first hit from outside is that of the outermost part.
+    hits = rw.Scene(rw.Mesh(tube.vertices, tube.faces)).intersect(
+        np.stack([np.full(160, -5.0), np.zeros(160), heights], -1), np.broadcast_to((1.0, 0.0, 0.0), (160, 3))
+    )
+    found, truth = np.where(hits.hit, 5 - hits.t, 0.0), radius(heights)
+    # Chords of 48 sides lie within 0.22 % of the radius. At the poles that is more of the distance to the axis.
+    assert (found <= truth + 1e-7).all()
+    assert abs((w * found**2).sum() / (w * truth**2).sum() - 1) < 2 * 0.0022
+
+
+def test_b_splines_go_where_they_do(tmp_path):
+    """The middle line of a circle's sections is the spline; straight points give a straight tube of their radius."""
+    (tmp_path / "c.txt").write_text("\n".join(f"0 0 {k} 0.25" for k in range(6)))
+    tube = shape(tmp_path, type="bsplinecurve", filename="c.txt")
+    radius = np.hypot(*tube.vertices[:, :2].T)
+    assert np.allclose(radius, 0.25, rtol=1e-12)
+    # From the second to the last point but one, and open at both ends.
+    assert np.isclose(tube.vertices[:, 2].min(), 1, rtol=0, atol=1e-12)
+    assert np.isclose(tube.vertices[:, 2].max(), 4, rtol=0, atol=1e-12)
+    assert np.allclose(tube.normals[:, :2] * 0.25, tube.vertices[:, :2], rtol=0, atol=1e-9)
+    a, b, c = (tube.vertices[tube.faces[:, k]] for k in range(3))
+    outward = np.cross(b - a, c - a)[:, :2]
+    assert (np.einsum("ij,ij->i", outward, (a + b + c)[:, :2]) > 0).all()
+    assert (tube.uv.min(), tube.uv.max()) == (0, 1)
+    # The transform moves points, and leaves radii as they are.
+    large = shape(tmp_path, type="bsplinecurve", filename="c.txt", to_world=np.diag([3.0, 3, 3, 1]))
+    assert np.allclose(np.hypot(*large.vertices[:, :2].T), 0.25, rtol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("", "c.txt holds no curves"),
+        ("0 0 0 1\n0 0 1 1", "c.txt has a curve of 2 points, and 4 are needed"),
+        ("0 0 0 1\n0 0 one 1", "c.txt, line 2: must be x, y, z and a radius of at least 0"),
+        ("0 0 0 -1\n0 0 1 1", "c.txt, line 1: must be x, y, z and a radius"),
+    ],
+)
+def test_curves_that_are_broken_are_refused(tmp_path, text, told):
+    (tmp_path / "c.txt").write_text(text)
+    with pytest.raises(ValueError, match=re.escape(told)):
+        shape(tmp_path, type="bsplinecurve", filename="c.txt")
+
+
+def vol(grid):
+    z, y, x = grid.shape
+    head = (
+        b"VOL\x03"
+        + np.array([1, x, y, z, 1], "<i4").tobytes()
+        + np.array([0, 0, 0, 1, 1, 1], "<f4").tobytes()
+    )
+    return head + grid.astype("<f4").tobytes()
+
+
+def test_grids_of_distances_have_their_surface(tmp_path):
+    """Of a ball's distances on 24³ points it is where linear interpolation has 0, to a hundredth of a cell."""
+    axis = np.linspace(0, 1, 24)
+    z, y, x = np.meshgrid(axis, axis, axis, indexing="ij")
+    grid = np.sqrt((x - 0.5) ** 2 + (y - 0.45) ** 2 + (z - 0.55) ** 2) - 0.3
+    (tmp_path / "ball.vol").write_bytes(vol(grid))
+    mesh = shape(tmp_path, type="sdfgrid", filename="ball.vol")
+    distance = np.linalg.norm(mesh.vertices - (0.5, 0.45, 0.55), axis=1)
+    # A chord of a cell's length h within a ball of radius r strays by h² / 8r at most in each of 3 directions.
+    assert np.abs(distance - 0.3).max() < 3 * (1 / 23) ** 2 / (8 * 0.3)
+    # Three times as much of its volume.
+    assert volume(mesh) == pytest.approx(4 / 3 * np.pi * 0.3**3, rel=9 * (1 / 23) ** 2 / (8 * 0.3**2))
+    outward = (mesh.vertices - (0.5, 0.45, 0.55)) / distance[:, None]
+    assert np.einsum("ij,ij->i", mesh.normals, outward).min() > 0.99
+    # It is closed: every edge is that of two faces.
+    edges = np.sort(
+        np.concatenate([mesh.faces[:, [0, 1]], mesh.faces[:, [1, 2]], mesh.faces[:, [2, 0]]]), axis=1
+    )
+    assert (np.unique(edges, axis=0, return_counts=True)[1] == 2).all()
+    plain = shape(tmp_path, type="sdfgrid", grid=grid[..., None], normals="analytic")
+    assert plain.normals is None
+
+
+def test_a_plane_in_a_grid_is_a_plane():
+    grid = np.broadcast_to(np.linspace(-0.3, 0.7, 5)[:, None, None], (5, 4, 3))
+    found = sdf_grids.surface(grid)
+    assert np.allclose(found.vertices[:, 2], 0.3, rtol=0, atol=1e-9)
+    assert np.allclose(found.normals, (0, 0, 1), rtol=0, atol=1e-12)
+    a, b, c = (found.vertices[found.faces[:, k]] for k in range(3))
+    assert np.isclose(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2, 1.0, rtol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("data", "told"),
+    [
+        (b"VOX", "g.vol is no grid of Mitsuba's"),
+        (vol(np.ones((3, 3, 3))), "a grid must have numbers on both sides of 0"),
+        (vol(np.ones((3, 3, 3)))[:-4], "g.vol is cut short: it has 3 x 3 x 3 points by its header"),
+        (vol(np.ones((1, 3, 3))), "a grid must have at least 2 points along each axis, got (3, 3, 1)"),
+        (vol(np.full((3, 3, 3), np.nan)), "a grid must be finite"),
+    ],
+)
+def test_grids_that_are_broken_are_refused(tmp_path, data, told):
+    (tmp_path / "g.vol").write_bytes(data)
+    with pytest.raises(ValueError, match=re.escape(told)):
+        shape(tmp_path, type="sdfgrid", filename="g.vol")
+
+
+def test_curves_of_files_are_parted_by_empty_lines(tmp_path):
+    (tmp_path / "curve.txt").write_text(curve())
+    both = shape(tmp_path, type="linearcurve", filename="curve.txt")
+    # Of 5 and 4 points: 7 straight pieces and 9 balls.
+    assert len(both.vertices) == 7 * 2 * 49 + 9 * 25 * 49
