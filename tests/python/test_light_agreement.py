@@ -11,7 +11,6 @@ import raywright as rw
 pytestmark = pytest.mark.slow
 
 SIDE = 64
-SAMPLES = 256
 
 
 def _floor(half, **how):
@@ -90,21 +89,27 @@ SCENES = {
     "keyhole": lambda: keyhole(SIDE),
 }
 
+# Each with as many samples as tell its error: of light that comes to the lens few are bright.
 WAYS = {
-    "path": rw.Path(reuse=1, caustics=False),
-    "light traced": rw.LightTraced(),
-    "bidirectional": rw.Bidirectional(),
-    "progressive": rw.ProgressivePhotonMap(),
+    "path": (rw.Path(reuse=1, caustics=False), 256),
+    "light traced": (rw.LightTraced(), 1024),
+    "bidirectional": (rw.Bidirectional(), 256),
+    "progressive": (rw.ProgressivePhotonMap(), 256),
 }
+
+# Bars of two that err alike part once in 180 blocks, and those of blocks with few bright samples oftener:
+# 5 % of blocks may, and of the 64 of one pair of pictures three deviations of the binomial more.
+MOST = 0.05
+MOST_OF_ONE = MOST + 3 * np.sqrt(MOST * (1 - MOST) / 64)
 
 
 def _blocks(values):
     return values.astype(float).reshape(SIDE // 8, 8, SIDE // 8, 8, -1).mean((1, 3))
 
 
-def _told(scene, camera, way):
+def _told(scene, camera, way, samples):
     """Means of blocks, and half of the 95 % interval of each, bias included."""
-    image = rw.render(scene, camera, way, SAMPLES, progress=False)
+    image = rw.render(scene, camera, way, samples, progress=False)
     bar = 1.96 * np.sqrt(_blocks(image.standard_error.astype(float) ** 2) / 64)
     bias = getattr(image, "bias", None)
     if bias is not None:
@@ -114,10 +119,10 @@ def _told(scene, camera, way):
 
 @pytest.mark.parametrize("name", SCENES)
 def test_all_ways_make_the_same_picture(name):
-    # Bars of two that err alike part once in 180 blocks, and those of blocks with few bright samples oftener:
-    # 5 % of blocks may.
     scene, camera = SCENES[name]()
-    told = {way: _told(scene, camera, how) for way, how in WAYS.items()}
+    told = {way: _told(scene, camera, *how) for way, how in WAYS.items()}
+    shares = {}
     for (first, (a, bar_a)), (second, (b, bar_b)) in combinations(told.items(), 2):
-        apart = np.abs(a - b) > bar_a + bar_b + 1e-6 * np.abs(a)
-        assert apart.mean() <= 0.05, (first, second, apart.mean())
+        shares[first, second] = float((np.abs(a - b) > bar_a + bar_b + 1e-6 * np.abs(a)).mean())
+    assert np.mean(list(shares.values())) <= MOST, shares
+    assert max(shares.values()) <= MOST_OF_ONE, shares
