@@ -28,13 +28,13 @@ def ball(material, radius=1.0):
 
 def assert_invisible(scene, samples=64, camera=None, integrator=None):
     """Seen against an even sky of 1, within four standard errors of the mean, which chance exceeds once in
-    16,000, of at most a hundredth."""
+    16,000, of at most two hundredths."""
     camera = camera or rw.Camera((0, 0, 3), (0, 0, 0), fov=30, width=16, height=16)
     image = rw.render(scene, camera, integrator or rw.Path(), samples, progress=False)
     values = image.rgb.reshape(-1, 3).astype(float)
-    error = values.std(axis=0, ddof=1) / 16
+    error = values.std(axis=0, ddof=1) / math.sqrt(len(values))
     assert (np.abs(values.mean(axis=0) - 1) <= 4 * error + 1e-6).all(), (values.mean(axis=0), error)
-    assert error.max() < 0.01
+    assert error.max() < 0.02
 
 
 @pytest.mark.parametrize("name", PHASES)
@@ -114,7 +114,7 @@ GRIDS = {
 @pytest.mark.parametrize("name", GRIDS)
 def test_light_comes_through_grids_as_their_optical_depth_says(name):
     f, length, expected = GRIDS[name]
-    density = f(np.linspace(0, 1, 2001)).reshape(-1, 1, 1)
+    density = f(np.linspace(0, 1, 401)).reshape(-1, 1, 1)
     box = [(0, -1, -1), (length, 1, 1)]
     camera = rw.Orthographic((-1, 0, 0), direction=(1, 0, 0), scale=1e-3, width=16, height=16)
     absorbing = rw.GridMedium(density, box, absorption=1.0)
@@ -286,14 +286,14 @@ def test_who_knows_nothing_of_media_says_so(integrator):
 def test_scenes_without_media_are_as_they_were():
     clear = rw.Scene([ball(rw.Dielectric(1.5))], environment=SKY)
     assert clear.medium is None
-    assert not dict((row.what, row.has) for row in clear.plan().rows)["smoke and haze"]
+    assert "smoke and haze" not in clear.plan().needed
     hazy = clear.replace(medium=rw.Homogeneous(0.1))
     assert hazy != clear
     assert hazy.replace(medium=None) == clear
     assert hazy.medium == rw.Homogeneous(0.1)
     assert pickle.loads(pickle.dumps(hazy)) == hazy
     assert "medium=Homogeneous(" in repr(hazy)
-    assert dict((row.what, row.has) for row in hazy.plan().rows)["smoke and haze"]
+    assert "smoke and haze" in hazy.plan().needed
     camera = rw.Camera((0, 0, 4), (0, 0, 0), width=4, height=4)
     before, after = (
         rw.render(s, camera, rw.Path(), 4, progress=False).rgb for s in (clear, hazy.replace(medium=None))

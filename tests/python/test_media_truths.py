@@ -9,6 +9,7 @@ import pytest
 import raywright as rw
 
 SKY = rw.ConstantEnvironment(1.0)
+slow = pytest.mark.slow
 BLACK = rw.Diffuse(0.0)
 
 
@@ -32,7 +33,7 @@ def test_a_slab_of_glass_that_absorbs():
     through = rw.Scene([solid], environment=SKY)
     media.assert_seen(through, media.looking(), 4096, 0.0449900804155487 + 0.339111122903388)
     back = rw.Scene([solid, ground(-2.0)], environment=SKY)
-    media.assert_seen(back, media.looking(), 65536, 0.0449900804155487)
+    media.assert_seen(back, media.looking(), 4096, 0.0449900804155487, most=0.01)
 
 
 @pytest.mark.parametrize(("depth", "share"), [(1.0, 0.296997075145081), (20.0, 0.00125)])
@@ -76,21 +77,21 @@ def test_gas_that_glows_before_a_wall_that_does():
 @pytest.mark.parametrize(
     ("albedo", "cosine", "expected"),
     [
-        (0.5, 0.1, 0.241720776436028),
+        pytest.param(0.5, 0.1, 0.241720776436028, marks=slow),
         (0.5, 0.5, 0.160144433435235),
-        (0.5, 1.0, 0.115225877707205),
-        (0.9, 0.5, 0.5079389),
-        (0.9, 1.0, 0.414947479130817),
-        (0.95, 0.1, 0.732738042447422),
-        (0.95, 0.5, 0.626176773375176),
+        pytest.param(0.5, 1.0, 0.115225877707205, marks=slow),
+        pytest.param(0.9, 0.5, 0.5079389, marks=slow),
+        pytest.param(0.9, 1.0, 0.414947479130817, marks=slow),
+        pytest.param(0.95, 0.1, 0.732738042447422, marks=slow),
+        pytest.param(0.95, 0.5, 0.626176773375176, marks=slow),
         (0.95, 1.0, 0.535540989172548),
-        (0.99, 0.5, 0.815139898355215),
-        (0.99, 1.0, 0.752720717160297),
+        pytest.param(0.99, 0.5, 0.815139898355215, marks=slow),
+        pytest.param(0.99, 1.0, 0.752720717160297, marks=slow),
     ],
 )
 def test_half_spaces_reflect_what_chandrasekhar_says(albedo, cosine, expected):
     scene = rw.Scene([media.slab(media.of_depth(100.0, albedo)), ground(-2.0)], environment=SKY)
-    media.assert_seen(scene, media.looking(cosine), 2048 if albedo < 0.99 else 1024, expected, most=0.004)
+    media.assert_seen(scene, media.looking(cosine), 2048, expected, most=0.004)
 
 
 @pytest.mark.parametrize(("albedo", "expected"), [(0.5, 0.0394217495018523), (0.95, 0.175011324877836)])
@@ -100,7 +101,9 @@ def test_half_spaces_scatter_sunlight_where_they_should(albedo, expected):
     media.assert_seen(scene, media.looking(0.5), 4096, expected, most=0.004)
 
 
-@pytest.mark.parametrize("extinction", [60, 600, 6000, 1e6])
+@pytest.mark.parametrize(
+    "extinction", [60, pytest.param(600, marks=slow), pytest.param(6000, marks=slow), 1e6]
+)
 def test_no_optical_depth_is_lost_at_a_boundary(extinction):
     # However dense it is: half a space's albedo, of 0.9, from straight above.
     medium = rw.Homogeneous(0.1 * extinction, 0.9 * extinction)
@@ -117,7 +120,7 @@ SLABS = {
 }
 
 
-@pytest.mark.parametrize("name", SLABS)
+@pytest.mark.parametrize("name", ["3", *(pytest.param(name, marks=slow) for name in "149")])
 def test_slabs_reflect_and_let_through_what_discrete_ordinates_say(name):
     # van de Hulst 1980; Stamnes 1988. Under an even sky, over black.
     depth, albedo, g, reflected, let_through = SLABS[name]
@@ -129,7 +132,7 @@ def test_slabs_reflect_and_let_through_what_discrete_ordinates_say(name):
         media.assert_seen(scene, media.looking(cosine, below=True, distance=1.5), 2048, below, most=most)
 
 
-@pytest.mark.slow
+@slow
 def test_a_deep_white_slab():
     scene = rw.Scene([media.slab(media.of_depth(64.0, 1.0, 0.75)), ground(-2.0)], environment=SKY)
     for cosine, expected in [(1.0, 0.902856379523), (0.5, 0.933540952854)]:
@@ -137,6 +140,7 @@ def test_a_deep_white_slab():
     media.assert_seen(scene, media.looking(below=True, distance=1.5), 1024, 0.0971436204762, most=0.02)
 
 
+@slow
 def test_a_slab_over_ground_in_the_sun():
     slab = media.slab(media.of_depth(8.0, 0.99, 0.75))
     scene = rw.Scene([slab, ground(-2.0, 0.7)], environment=SKY)
@@ -219,7 +223,7 @@ def fluence(albedo, r, samples, seed=0):
     return (rgb * solid).sum(), math.sqrt(((error * solid) ** 2).sum())
 
 
-@pytest.mark.slow
+@slow
 @pytest.mark.parametrize(
     ("albedo", "r", "expected", "most"),
     [
@@ -266,6 +270,7 @@ def test_the_mean_way_through_a_ball_is_that_of_its_chords(g, depth):
     assert abs(mean - 4 / 3) < 4 * error, (mean, error)
 
 
+@slow
 @pytest.mark.parametrize(
     ("size", "mean_chord"),
     [((1, 1, 1), 0.666666666666667), ((1, 2, 3), 1.09090909090909)],
