@@ -111,7 +111,9 @@ GRIDS = {
 }
 
 
-@pytest.mark.parametrize("name", GRIDS)
+@pytest.mark.parametrize(
+    "name", ["linear", *(pytest.param(n, marks=pytest.mark.slow) for n in ("a bump", "waves"))]
+)
 def test_light_comes_through_grids_as_their_optical_depth_says(name):
     f, length, expected = GRIDS[name]
     density = f(np.linspace(0, 1, 401)).reshape(-1, 1, 1)
@@ -127,7 +129,7 @@ def test_light_comes_through_grids_as_their_optical_depth_says(name):
     sun = rw.DirectionalLight((1, 0, 0), math.pi)
     lit = rw.Scene([rw.Box(*box, material=rw.Boundary(absorbing)), sheet], lights=[sun])
     close = rw.Orthographic((8, 0, 0), direction=(1, 0, 0), scale=1e-3, width=16, height=16)
-    media.assert_seen(lit, close, 2048, 0.5 * expected, rw.Path(1))
+    media.assert_seen(lit, close, 4096, 0.5 * expected, rw.Path(1))
     # What is scattered away is lost as well, but for what is scattered into the ray: of a thin ray, nothing.
     scattering = rw.GridMedium(density, box, scattering=1.0)
     scene = rw.Scene([rw.Box(*box, material=rw.Boundary(scattering))], environment=SKY)
@@ -141,7 +143,7 @@ def test_numbers_stand_at_corners_or_in_the_middle_of_cells():
     scene = rw.Scene([rw.Box(material=rw.Boundary(medium))], environment=SKY)
     way = np.ones(3) / math.sqrt(3)
     camera = rw.Orthographic(-way, direction=way, scale=1e-6, width=16, height=16)
-    media.assert_seen(scene, camera, 4096, 0.015210193488951, most=0.01)
+    media.assert_seen(scene, camera, 1024, 0.015210193488951, most=0.02)
     # Along x through the middle of the cells of two: 1 and 3, half of the way each, and linear between.
     cells = rw.GridMedium(np.array([1.0, 3.0]).reshape(2, 1, 1), absorption=1.0, at="centres")
     scene = rw.Scene([rw.Box(material=rw.Boundary(cells))], environment=SKY)

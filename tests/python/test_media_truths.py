@@ -36,7 +36,9 @@ def test_a_slab_of_glass_that_absorbs():
     media.assert_seen(back, media.looking(), 4096, 0.0449900804155487, most=0.01)
 
 
-@pytest.mark.parametrize(("depth", "share"), [(1.0, 0.296997075145081), (20.0, 0.00125)])
+@pytest.mark.parametrize(
+    ("depth", "share"), [(1.0, 0.296997075145081), pytest.param(20.0, 0.00125, marks=slow)]
+)
 def test_a_ball_that_absorbs_lets_through_what_its_chords_do(depth, share):
     # van de Hulst, 1957. The picture is a square around the disk.
     ball = rw.Sphere((0, 0, 0), 1.0, material=rw.Boundary(media.of_depth(depth, 0.0)))
@@ -44,7 +46,7 @@ def test_a_ball_that_absorbs_lets_through_what_its_chords_do(depth, share):
     lit = rw.Plane((0, 0, -2), material=BLACK, emission=1.0)
     scene = rw.Scene([ball, lit])
     camera = rw.Orthographic((0, 0, 3), (0, 0, 0), scale=2.0, width=100, height=100)
-    mean = media.seen(scene, camera, 256)[0]
+    mean = media.seen(scene, camera, 32 if depth < 10 else 256)[0]
     disk = math.pi / 4
     assert (mean - (1 - disk)) / disk == pytest.approx(share, rel=0.002, abs=5e-5)
 
@@ -54,7 +56,7 @@ def test_an_absorbing_slab_lets_through_diffuse_light():
     scene = rw.Scene([media.slab(media.of_depth(0.7, 0.0)), ground(-1.5, 0.5)], environment=SKY)
     below = media.looking(distance=-1.2)
     for way in (rw.Path(1), rw.Direct()):
-        media.assert_seen(scene, below, 4096, 0.5 * 0.332122324321842, way)
+        media.assert_seen(scene, below, 256, 0.5 * 0.332122324321842, way)
 
 
 def test_gas_that_glows_before_a_wall_that_does():
@@ -84,7 +86,7 @@ def test_gas_that_glows_before_a_wall_that_does():
         pytest.param(0.9, 1.0, 0.414947479130817, marks=slow),
         pytest.param(0.95, 0.1, 0.732738042447422, marks=slow),
         pytest.param(0.95, 0.5, 0.626176773375176, marks=slow),
-        (0.95, 1.0, 0.535540989172548),
+        pytest.param(0.95, 1.0, 0.535540989172548, marks=slow),
         pytest.param(0.99, 0.5, 0.815139898355215, marks=slow),
         pytest.param(0.99, 1.0, 0.752720717160297, marks=slow),
     ],
@@ -94,15 +96,18 @@ def test_half_spaces_reflect_what_chandrasekhar_says(albedo, cosine, expected):
     media.assert_seen(scene, media.looking(cosine), 2048, expected, most=0.004)
 
 
-@pytest.mark.parametrize(("albedo", "expected"), [(0.5, 0.0394217495018523), (0.95, 0.175011324877836)])
+@pytest.mark.parametrize(
+    ("albedo", "expected"), [(0.5, 0.0394217495018523), pytest.param(0.95, 0.175011324877836, marks=slow)]
+)
 def test_half_spaces_scatter_sunlight_where_they_should(albedo, expected):
     sun = rw.DirectionalLight((0, 0, -1), 1.0)
     scene = rw.Scene([media.slab(media.of_depth(100.0, albedo))], lights=[sun])
-    media.assert_seen(scene, media.looking(0.5), 4096, expected, most=0.004)
+    media.assert_seen(scene, media.looking(0.5), 1024, expected, most=0.004)
 
 
 @pytest.mark.parametrize(
-    "extinction", [60, pytest.param(600, marks=slow), pytest.param(6000, marks=slow), 1e6]
+    "extinction",
+    [pytest.param(60, marks=slow), pytest.param(600, marks=slow), pytest.param(6000, marks=slow), 1e6],
 )
 def test_no_optical_depth_is_lost_at_a_boundary(extinction):
     # However dense it is: half a space's albedo, of 0.9, from straight above.
@@ -128,7 +133,8 @@ def test_slabs_reflect_and_let_through_what_discrete_ordinates_say(name):
     for cosine, above, below in zip((1.0, 0.5), reflected, let_through, strict=True):
         # What a thin slab scatters is found by one path in a thousand.
         most = 0.004 if depth > 0.01 else 0.03
-        media.assert_seen(scene, media.looking(cosine), 4096, above, most=most)
+        count = 1024 if name == "3" else 4096
+        media.assert_seen(scene, media.looking(cosine), count, above, most=most)
         media.assert_seen(
             scene, media.looking(cosine, below=True, distance=1.5 / cosine), 2048, below, most=most
         )
@@ -151,6 +157,7 @@ def test_a_slab_over_ground_in_the_sun():
     media.assert_seen(sunny, media.looking(distance=-1.5), 1024, 0.7 * 0.66720867236, most=0.01)
 
 
+@slow
 def test_a_slab_that_scatters_within_surfaces():
     # Albedo 1, optical depth 2, index 1.33: Fresnel's reflection at both surfaces with it.
     water = rw.Dielectric(1.33, interior=media.of_depth(2.0, 1.0))
@@ -179,10 +186,10 @@ def test_light_that_is_scattered_once(w, depth, mu0, mu, g, azimuth, expected):
     up, down = expected
     # Light goes on towards the viewer, so that the viewer looks from the other side.
     camera = media.looking(mu, azimuth=azimuth + 180)
-    media.assert_seen(scene, camera, 4096, up, rw.Path(1))
+    media.assert_seen(scene, camera, 1024, up, rw.Path(1))
     if down is not None:
         camera = media.looking(mu, azimuth=azimuth + 180, below=True, distance=3.0)
-        media.assert_seen(scene, camera, 4096, down, rw.Path(1))
+        media.assert_seen(scene, camera, 1024, down, rw.Path(1))
 
 
 @pytest.mark.parametrize(
@@ -247,9 +254,9 @@ def test_a_ball_that_scatters_and_absorbs():
     ball = rw.Sphere((0, 0, 0), 1.0, material=rw.Boundary(media.of_depth(1.0, 0.5)))
     scene = rw.Scene([ball], environment=SKY)
     centre = rw.Orthographic((0, 0, 3), (0, 0, 0), scale=1e-3, width=8, height=8)
-    media.assert_seen(scene, centre, 2048, 0.4104990458)
+    media.assert_seen(scene, centre, 512, 0.4104990458)
     disk = rw.Orthographic((0, 0, 3), (0, 0, 0), scale=2.0, width=64, height=64)
-    image = rw.render(scene, disk, rw.Path(), 64, progress=False)
+    image = rw.render(scene, disk, rw.Path(), 16, progress=False)
     mean, share = image.rgb[..., 1].mean(dtype=float), math.pi / 4
     error = math.sqrt((image.standard_error[..., 1].astype(float) ** 2).sum()) / 64**2
     assert error < 0.002
