@@ -132,7 +132,7 @@ def test_slabs_reflect_and_let_through_what_discrete_ordinates_say(name):
     scene = rw.Scene([media.slab(media.of_depth(depth, albedo, g)), ground(-2.0)], environment=SKY)
     for cosine, above, below in zip((1.0, 0.5), reflected, let_through, strict=True):
         # What a thin slab scatters is found by one path in a thousand.
-        most = 0.004 if depth > 0.01 else 0.03
+        most = 0.004 if depth > 0.01 else 0.1
         count = 1024 if name == "3" else 4096
         media.assert_seen(scene, media.looking(cosine), count, above, most=most)
         media.assert_seen(
@@ -144,7 +144,7 @@ def test_slabs_reflect_and_let_through_what_discrete_ordinates_say(name):
 def test_a_deep_white_slab():
     scene = rw.Scene([media.slab(media.of_depth(64.0, 1.0, 0.75)), ground(-2.0)], environment=SKY)
     for cosine, expected in [(1.0, 0.902856379523), (0.5, 0.933540952854)]:
-        media.assert_seen(scene, media.looking(cosine), 512, expected)
+        media.assert_seen(scene, media.looking(cosine), 512, expected, most=0.006)
     media.assert_seen(scene, media.looking(below=True, distance=1.5), 1024, 0.0971436204762, most=0.02)
 
 
@@ -243,7 +243,7 @@ def fluence(albedo, r, samples, seed=0):
 )
 def test_the_fluence_around_a_lamp_in_endless_fog(albedo, r, expected, most):
     # Case, de Hoffmann and Placzek 1953.
-    mean, error = fluence(albedo, r, 2048)
+    mean, error = fluence(albedo, r, 1024)
     scattered = expected - math.exp(-r) / (4 * math.pi * r * r)
     assert error < most * scattered, (error, scattered)
     assert abs(mean - scattered) < 4 * error, (mean, error, scattered)
