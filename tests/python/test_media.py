@@ -28,13 +28,13 @@ def ball(material, radius=1.0):
 
 def assert_invisible(scene, samples=64, camera=None, integrator=None):
     """Seen against an even sky of 1, within four standard errors of the mean, which chance exceeds once in
-    16,000, of at most a hundredth."""
+    16,000, of at most two hundredths."""
     camera = camera or rw.Camera((0, 0, 3), (0, 0, 0), fov=30, width=16, height=16)
     image = rw.render(scene, camera, integrator or rw.Path(), samples, progress=False)
     values = image.rgb.reshape(-1, 3).astype(float)
-    error = values.std(axis=0, ddof=1) / 16
+    error = values.std(axis=0, ddof=1) / math.sqrt(len(values))
     assert (np.abs(values.mean(axis=0) - 1) <= 4 * error + 1e-6).all(), (values.mean(axis=0), error)
-    assert error.max() < 0.01
+    assert error.max() < 0.02
 
 
 @pytest.mark.parametrize("name", PHASES)
@@ -111,10 +111,12 @@ GRIDS = {
 }
 
 
-@pytest.mark.parametrize("name", GRIDS)
+@pytest.mark.parametrize(
+    "name", ["linear", *(pytest.param(n, marks=pytest.mark.slow) for n in ("a bump", "waves"))]
+)
 def test_light_comes_through_grids_as_their_optical_depth_says(name):
     f, length, expected = GRIDS[name]
-    density = f(np.linspace(0, 1, 2001)).reshape(-1, 1, 1)
+    density = f(np.linspace(0, 1, 401)).reshape(-1, 1, 1)
     box = [(0, -1, -1), (length, 1, 1)]
     camera = rw.Orthographic((-1, 0, 0), direction=(1, 0, 0), scale=1e-3, width=16, height=16)
     absorbing = rw.GridMedium(density, box, absorption=1.0)
@@ -127,7 +129,7 @@ def test_light_comes_through_grids_as_their_optical_depth_says(name):
     sun = rw.DirectionalLight((1, 0, 0), math.pi)
     lit = rw.Scene([rw.Box(*box, material=rw.Boundary(absorbing)), sheet], lights=[sun])
     close = rw.Orthographic((8, 0, 0), direction=(1, 0, 0), scale=1e-3, width=16, height=16)
-    media.assert_seen(lit, close, 2048, 0.5 * expected, rw.Path(1))
+    media.assert_seen(lit, close, 4096, 0.5 * expected, rw.Path(1))
     # What is scattered away is lost as well, but for what is scattered into the ray: of a thin ray, nothing.
     scattering = rw.GridMedium(density, box, scattering=1.0)
     scene = rw.Scene([rw.Box(*box, material=rw.Boundary(scattering))], environment=SKY)
@@ -141,7 +143,7 @@ def test_numbers_stand_at_corners_or_in_the_middle_of_cells():
     scene = rw.Scene([rw.Box(material=rw.Boundary(medium))], environment=SKY)
     way = np.ones(3) / math.sqrt(3)
     camera = rw.Orthographic(-way, direction=way, scale=1e-6, width=16, height=16)
-    media.assert_seen(scene, camera, 4096, 0.015210193488951, most=0.01)
+    media.assert_seen(scene, camera, 1024, 0.015210193488951, most=0.02)
     # Along x through the middle of the cells of two: 1 and 3, half of the way each, and linear between.
     cells = rw.GridMedium(np.array([1.0, 3.0]).reshape(2, 1, 1), absorption=1.0, at="centres")
     scene = rw.Scene([rw.Box(material=rw.Boundary(cells))], environment=SKY)
@@ -286,14 +288,14 @@ def test_who_knows_nothing_of_media_says_so(integrator):
 def test_scenes_without_media_are_as_they_were():
     clear = rw.Scene([ball(rw.Dielectric(1.5))], environment=SKY)
     assert clear.medium is None
-    assert not dict((row.what, row.has) for row in clear.plan().rows)["smoke and haze"]
+    assert "smoke and haze" not in clear.plan().needed
     hazy = clear.replace(medium=rw.Homogeneous(0.1))
     assert hazy != clear
     assert hazy.replace(medium=None) == clear
     assert hazy.medium == rw.Homogeneous(0.1)
     assert pickle.loads(pickle.dumps(hazy)) == hazy
     assert "medium=Homogeneous(" in repr(hazy)
-    assert dict((row.what, row.has) for row in hazy.plan().rows)["smoke and haze"]
+    assert "smoke and haze" in hazy.plan().needed
     camera = rw.Camera((0, 0, 4), (0, 0, 0), width=4, height=4)
     before, after = (
         rw.render(s, camera, rw.Path(), 4, progress=False).rgb for s in (clear, hazy.replace(medium=None))

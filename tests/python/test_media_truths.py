@@ -9,6 +9,7 @@ import pytest
 import raywright as rw
 
 SKY = rw.ConstantEnvironment(1.0)
+slow = pytest.mark.slow
 BLACK = rw.Diffuse(0.0)
 
 
@@ -32,10 +33,12 @@ def test_a_slab_of_glass_that_absorbs():
     through = rw.Scene([solid], environment=SKY)
     media.assert_seen(through, media.looking(), 4096, 0.0449900804155487 + 0.339111122903388)
     back = rw.Scene([solid, ground(-2.0)], environment=SKY)
-    media.assert_seen(back, media.looking(), 65536, 0.0449900804155487)
+    media.assert_seen(back, media.looking(), 4096, 0.0449900804155487, most=0.01)
 
 
-@pytest.mark.parametrize(("depth", "share"), [(1.0, 0.296997075145081), (20.0, 0.00125)])
+@pytest.mark.parametrize(
+    ("depth", "share"), [(1.0, 0.296997075145081), pytest.param(20.0, 0.00125, marks=slow)]
+)
 def test_a_ball_that_absorbs_lets_through_what_its_chords_do(depth, share):
     # van de Hulst, 1957. The picture is a square around the disk.
     ball = rw.Sphere((0, 0, 0), 1.0, material=rw.Boundary(media.of_depth(depth, 0.0)))
@@ -43,7 +46,7 @@ def test_a_ball_that_absorbs_lets_through_what_its_chords_do(depth, share):
     lit = rw.Plane((0, 0, -2), material=BLACK, emission=1.0)
     scene = rw.Scene([ball, lit])
     camera = rw.Orthographic((0, 0, 3), (0, 0, 0), scale=2.0, width=100, height=100)
-    mean = media.seen(scene, camera, 256)[0]
+    mean = media.seen(scene, camera, 32 if depth < 10 else 256)[0]
     disk = math.pi / 4
     assert (mean - (1 - disk)) / disk == pytest.approx(share, rel=0.002, abs=5e-5)
 
@@ -51,9 +54,9 @@ def test_a_ball_that_absorbs_lets_through_what_its_chords_do(depth, share):
 def test_an_absorbing_slab_lets_through_diffuse_light():
     # 2 E3(0.7): what a matt sheet under it reflects, of half of the light.
     scene = rw.Scene([media.slab(media.of_depth(0.7, 0.0)), ground(-1.5, 0.5)], environment=SKY)
-    below = media.looking(distance=1.2)
+    below = media.looking(distance=-1.2)
     for way in (rw.Path(1), rw.Direct()):
-        media.assert_seen(scene, below, 4096, 0.5 * 0.332122324321842, way)
+        media.assert_seen(scene, below, 256, 0.5 * 0.332122324321842, way)
 
 
 def test_gas_that_glows_before_a_wall_that_does():
@@ -76,31 +79,36 @@ def test_gas_that_glows_before_a_wall_that_does():
 @pytest.mark.parametrize(
     ("albedo", "cosine", "expected"),
     [
-        (0.5, 0.1, 0.241720776436028),
+        pytest.param(0.5, 0.1, 0.241720776436028, marks=slow),
         (0.5, 0.5, 0.160144433435235),
-        (0.5, 1.0, 0.115225877707205),
-        (0.9, 0.5, 0.5079389),
-        (0.9, 1.0, 0.414947479130817),
-        (0.95, 0.1, 0.732738042447422),
-        (0.95, 0.5, 0.626176773375176),
-        (0.95, 1.0, 0.535540989172548),
-        (0.99, 0.5, 0.815139898355215),
-        (0.99, 1.0, 0.752720717160297),
+        pytest.param(0.5, 1.0, 0.115225877707205, marks=slow),
+        pytest.param(0.9, 0.5, 0.5079389, marks=slow),
+        pytest.param(0.9, 1.0, 0.414947479130817, marks=slow),
+        pytest.param(0.95, 0.1, 0.732738042447422, marks=slow),
+        pytest.param(0.95, 0.5, 0.626176773375176, marks=slow),
+        pytest.param(0.95, 1.0, 0.535540989172548, marks=slow),
+        pytest.param(0.99, 0.5, 0.815139898355215, marks=slow),
+        pytest.param(0.99, 1.0, 0.752720717160297, marks=slow),
     ],
 )
 def test_half_spaces_reflect_what_chandrasekhar_says(albedo, cosine, expected):
     scene = rw.Scene([media.slab(media.of_depth(100.0, albedo)), ground(-2.0)], environment=SKY)
-    media.assert_seen(scene, media.looking(cosine), 2048 if albedo < 0.99 else 1024, expected, most=0.004)
+    media.assert_seen(scene, media.looking(cosine), 2048, expected, most=0.004)
 
 
-@pytest.mark.parametrize(("albedo", "expected"), [(0.5, 0.0394217495018523), (0.95, 0.175011324877836)])
+@pytest.mark.parametrize(
+    ("albedo", "expected"), [(0.5, 0.0394217495018523), pytest.param(0.95, 0.175011324877836, marks=slow)]
+)
 def test_half_spaces_scatter_sunlight_where_they_should(albedo, expected):
     sun = rw.DirectionalLight((0, 0, -1), 1.0)
     scene = rw.Scene([media.slab(media.of_depth(100.0, albedo))], lights=[sun])
-    media.assert_seen(scene, media.looking(0.5), 4096, expected, most=0.004)
+    media.assert_seen(scene, media.looking(0.5), 1024, expected, most=0.004)
 
 
-@pytest.mark.parametrize("extinction", [60, 600, 6000, 1e6])
+@pytest.mark.parametrize(
+    "extinction",
+    [pytest.param(60, marks=slow), pytest.param(600, marks=slow), pytest.param(6000, marks=slow), 1e6],
+)
 def test_no_optical_depth_is_lost_at_a_boundary(extinction):
     # However dense it is: half a space's albedo, of 0.9, from straight above.
     medium = rw.Homogeneous(0.1 * extinction, 0.9 * extinction)
@@ -117,34 +125,39 @@ SLABS = {
 }
 
 
-@pytest.mark.parametrize("name", SLABS)
+@pytest.mark.parametrize("name", ["3", *(pytest.param(name, marks=slow) for name in "149")])
 def test_slabs_reflect_and_let_through_what_discrete_ordinates_say(name):
     # van de Hulst 1980; Stamnes 1988. Under an even sky, over black.
     depth, albedo, g, reflected, let_through = SLABS[name]
     scene = rw.Scene([media.slab(media.of_depth(depth, albedo, g)), ground(-2.0)], environment=SKY)
     for cosine, above, below in zip((1.0, 0.5), reflected, let_through, strict=True):
         # What a thin slab scatters is found by one path in a thousand.
-        most = 0.004 if depth > 0.01 else 0.03
-        media.assert_seen(scene, media.looking(cosine), 4096, above, most=most)
-        media.assert_seen(scene, media.looking(cosine, below=True, distance=1.5), 2048, below, most=most)
+        most = 0.004 if depth > 0.01 else 0.1
+        count = 1024 if name == "3" else 4096
+        media.assert_seen(scene, media.looking(cosine), count, above, most=most)
+        media.assert_seen(
+            scene, media.looking(cosine, below=True, distance=1.5 / cosine), 2048, below, most=most
+        )
 
 
-@pytest.mark.slow
+@slow
 def test_a_deep_white_slab():
     scene = rw.Scene([media.slab(media.of_depth(64.0, 1.0, 0.75)), ground(-2.0)], environment=SKY)
     for cosine, expected in [(1.0, 0.902856379523), (0.5, 0.933540952854)]:
-        media.assert_seen(scene, media.looking(cosine), 512, expected)
+        media.assert_seen(scene, media.looking(cosine), 512, expected, most=0.006)
     media.assert_seen(scene, media.looking(below=True, distance=1.5), 1024, 0.0971436204762, most=0.02)
 
 
+@slow
 def test_a_slab_over_ground_in_the_sun():
     slab = media.slab(media.of_depth(8.0, 0.99, 0.75))
     scene = rw.Scene([slab, ground(-2.0, 0.7)], environment=SKY)
     media.assert_seen(scene, media.looking(), 1024, 0.583448663125, most=0.004)
     sunny = rw.Scene([slab, ground(-2.0, 0.7)], lights=[rw.DirectionalLight((0, 0, -1), math.pi)])
-    media.assert_seen(sunny, media.looking(distance=1.5), 1024, 0.7 * 0.66720867236, most=0.01)
+    media.assert_seen(sunny, media.looking(distance=-1.5), 1024, 0.7 * 0.66720867236, most=0.01)
 
 
+@slow
 def test_a_slab_that_scatters_within_surfaces():
     # Albedo 1, optical depth 2, index 1.33: Fresnel's reflection at both surfaces with it.
     water = rw.Dielectric(1.33, interior=media.of_depth(2.0, 1.0))
@@ -173,10 +186,10 @@ def test_light_that_is_scattered_once(w, depth, mu0, mu, g, azimuth, expected):
     up, down = expected
     # Light goes on towards the viewer, so that the viewer looks from the other side.
     camera = media.looking(mu, azimuth=azimuth + 180)
-    media.assert_seen(scene, camera, 4096, up, rw.Path(1))
+    media.assert_seen(scene, camera, 1024, up, rw.Path(1))
     if down is not None:
         camera = media.looking(mu, azimuth=azimuth + 180, below=True, distance=3.0)
-        media.assert_seen(scene, camera, 4096, down, rw.Path(1))
+        media.assert_seen(scene, camera, 1024, down, rw.Path(1))
 
 
 @pytest.mark.parametrize(
@@ -219,7 +232,7 @@ def fluence(albedo, r, samples, seed=0):
     return (rgb * solid).sum(), math.sqrt(((error * solid) ** 2).sum())
 
 
-@pytest.mark.slow
+@slow
 @pytest.mark.parametrize(
     ("albedo", "r", "expected", "most"),
     [
@@ -230,7 +243,7 @@ def fluence(albedo, r, samples, seed=0):
 )
 def test_the_fluence_around_a_lamp_in_endless_fog(albedo, r, expected, most):
     # Case, de Hoffmann and Placzek 1953.
-    mean, error = fluence(albedo, r, 2048)
+    mean, error = fluence(albedo, r, 1024)
     scattered = expected - math.exp(-r) / (4 * math.pi * r * r)
     assert error < most * scattered, (error, scattered)
     assert abs(mean - scattered) < 4 * error, (mean, error, scattered)
@@ -241,9 +254,9 @@ def test_a_ball_that_scatters_and_absorbs():
     ball = rw.Sphere((0, 0, 0), 1.0, material=rw.Boundary(media.of_depth(1.0, 0.5)))
     scene = rw.Scene([ball], environment=SKY)
     centre = rw.Orthographic((0, 0, 3), (0, 0, 0), scale=1e-3, width=8, height=8)
-    media.assert_seen(scene, centre, 2048, 0.4104990458)
+    media.assert_seen(scene, centre, 512, 0.4104990458)
     disk = rw.Orthographic((0, 0, 3), (0, 0, 0), scale=2.0, width=64, height=64)
-    image = rw.render(scene, disk, rw.Path(), 64, progress=False)
+    image = rw.render(scene, disk, rw.Path(), 16, progress=False)
     mean, share = image.rgb[..., 1].mean(dtype=float), math.pi / 4
     error = math.sqrt((image.standard_error[..., 1].astype(float) ** 2).sum()) / 64**2
     assert error < 0.002
@@ -266,6 +279,7 @@ def test_the_mean_way_through_a_ball_is_that_of_its_chords(g, depth):
     assert abs(mean - 4 / 3) < 4 * error, (mean, error)
 
 
+@slow
 @pytest.mark.parametrize(
     ("size", "mean_chord"),
     [((1, 1, 1), 0.666666666666667), ((1, 2, 3), 1.09090909090909)],

@@ -24,7 +24,7 @@ def test_what_is_within_a_shape():
     smoke = rw.Homogeneous((0.5, 1.0, 2.0), (1.5, 3.0, 6.0))
     assert within({"type": "null"}, SMOKE) == rw.Boundary(smoke)
     glass = {"type": "dielectric", "int_ior": 1.5, "ext_ior": 1.0}
-    assert within(glass, SMOKE) == rw.Dielectric(1.5, interior=smoke)
+    assert within(glass, SMOKE) == rw.Dielectric(1.5, alpha=0.0, interior=smoke)
     constant = {"type": "heterogeneous", "albedo": 0.75, "sigma_t": {"type": "constvolume", "value": 2.0}}
     for phase, expected in [
         ({"type": "hg", "g": 0.5}, rw.HenyeyGreenstein(0.5)),

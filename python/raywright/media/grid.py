@@ -52,14 +52,6 @@ class GridMedium(Medium):
         If something is negative, not finite, or of another shape, or a transform has no inverse.
     TypeError
         If something is not of the kinds above.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> import raywright as rw
-    >>> cloud = rw.GridMedium(np.ones((8, 8, 4)), scattering=30.0, phase=rw.HenyeyGreenstein(0.85))
-    >>> cloud
-    GridMedium(<8 x 8 x 4>, scattering=(30.0, 30.0, 30.0), phase=HenyeyGreenstein(g=0.85))
     """
 
     density: Numbers

@@ -33,12 +33,6 @@ class Homogeneous(Medium):
         If a number is negative or not finite, or there are not 1 or 3 of them.
     TypeError
         If something is not of the kinds above.
-
-    Examples
-    --------
-    >>> import raywright as rw
-    >>> rw.Homogeneous(absorption=0.1, scattering=(0.2, 0.3, 0.5)).scattering
-    (0.2, 0.3, 0.5)
     """
 
     absorption: Triple

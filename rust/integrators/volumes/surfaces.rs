@@ -1,7 +1,7 @@
 //! What a ray among media comes to.
 
 use super::filled::Filled;
-use crate::integrators::nesting::{Boundary, MediumStack, around};
+use crate::integrators::nesting::{Boundary, Filling, MediumStack, around};
 use crate::math::{Hit, Ray};
 use crate::scene::Scene;
 
@@ -20,22 +20,28 @@ pub(super) enum Met {
     },
 }
 
-/// What it is that a ray in some media has hit. Where neither light is reflected nor bent, there is no surface.
+/// What it is that a ray in some media has hit. Where neither light is reflected nor bent, there is no surface, unless
+/// one that encloses nothing stands at the same place, as the floor that smoke lies on.
 pub(super) fn meet(scene: &Scene, ray: &Ray, hit: &Hit, media: &MediumStack<Filled>) -> Met {
     let Some(window) = around::<Filled>(scene, ray, hit) else {
         return Met::Surface { hit: *hit, outside: 1.0, through: *media };
     };
-    let beyond = window.t_max.next_up();
-    match Boundary::new(scene, ray, media, &scene.crossings(&[window]), 0) {
-        Boundary::None(media) => Met::Passed(beyond, media),
+    let crossings = scene.crossings(&[window]);
+    let through = match Boundary::new(scene, ray, media, &crossings, 0) {
+        Boundary::None(media) => media,
         Boundary::Between { hit: owner, outside, through } => {
             let material = scene.material_of(&owner);
             let is_matched = material.is_clear() && material.interior().is_some_and(|inside| inside.ior == outside);
-            if is_matched || material.boundary().is_some() {
-                return Met::Passed(beyond, through);
+            if !is_matched && material.boundary().is_none() {
+                let is_same = owner.primitive == hit.primitive && owner.inner == hit.inner;
+                return Met::Surface { hit: if is_same { *hit } else { owner }, outside, through };
             }
-            let is_same = owner.primitive == hit.primitive && owner.inner == hit.inner;
-            Met::Surface { hit: if is_same { *hit } else { owner }, outside, through }
+            through
         }
+    };
+    let is_sheet = |hit: &&Hit| Filled::of(scene, hit).is_none() && scene.material_of(hit).is_opaque();
+    match crossings.hits.iter().find(is_sheet) {
+        Some(sheet) => Met::Surface { hit: *sheet, outside: 1.0, through },
+        None => Met::Passed(window.t_max.next_up(), through),
     }
 }

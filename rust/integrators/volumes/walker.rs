@@ -128,7 +128,7 @@ impl<'a> Walker<'a> {
                 }
             }
             if !hit.is_hit() {
-                *light += path.weights.throughput() * self.from_outside(path);
+                *light += path.weights.throughput() * self.light_from_outside(path);
                 return None;
             }
             start = hit.t;
@@ -148,7 +148,7 @@ impl<'a> Walker<'a> {
     }
 
     /// What comes from outside the scene along a path's ray, weighed beside asking for it.
-    fn from_outside(&self, path: &PathState) -> Rgb {
+    fn light_from_outside(&self, path: &PathState) -> Rgb {
         let lights = self.scene.lights();
         let arriving = lights.infinite_radiance(path.ray.direction);
         if arriving.is_black() {

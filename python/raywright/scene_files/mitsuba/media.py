@@ -1,5 +1,6 @@
 """Media: what fills shapes, and the space around them."""
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -45,9 +46,7 @@ def filled(plugin: Plugin, material: Material | None) -> Material | None:
     if interior is None or not isinstance(material, Dielectric):
         # Nothing is seen of what is within an opaque shape.
         return material
-    parts = {name: getattr(material, name) for name in ("ior", "roughness", "alpha", "priority")}
-    more = {name: getattr(material, name) for name in ("distribution", "multiple_scattering")}
-    return Dielectric(**parts, **more, interior=interior)
+    return replace(material, interior=interior)
 
 
 def around(scene: Plugin, eye: Plugin) -> Medium | None:
