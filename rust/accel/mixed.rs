@@ -3,7 +3,8 @@
 use super::walk::{Build, Mailbox};
 use super::walked::walked;
 use super::{
-    Accelerator, Boxes, ByColumns, Cost, Counts, Crossings, Every, Info, Nearest, Primitives, Side, Touches, UserGeometry,
+    Accelerator, Boxes, ByColumns, Cost, Counts, Crossings, Every, Info, Nearest, Primitives, Side, Touches,
+    UserGeometry,
 };
 use crate::math::{DVec3, Hit, HitColumns, Ray, RayColumns};
 use crate::shapes::Bounds;

@@ -9,8 +9,8 @@ use super::query::CompiledScene;
 /// Depth (K,), primitives (K,) and corners (K,24) of all boxes.
 type Boxes<'py> = (Bound<'py, PyArrayDyn<i32>>, Bound<'py, PyArrayDyn<i32>>, Bound<'py, PyArrayDyn<f64>>);
 
-/// The boxes of all nodes of the scene's accelerator, from the root down; −1 primitives of what is no leaf. `None` if it
-/// has no boxes.
+/// The boxes of all nodes of the scene's accelerator, from the root down; −1 primitives of what is no leaf. `None` if
+/// it has no boxes.
 #[pyfunction]
 pub fn tree<'py>(py: Python<'py>, scene: &Bound<'py, CompiledScene>) -> PyResult<Option<Boxes<'py>>> {
     let scene = scene.get().scene();
@@ -21,8 +21,7 @@ pub fn tree<'py>(py: Python<'py>, scene: &Bound<'py, CompiledScene>) -> PyResult
     let (depth, primitives) = (unwritten(py, &[count], None)?, unwritten(py, &[count], None)?);
     let corners = unwritten(py, &[count], Some(24))?;
     {
-        let (mut depth, mut primitives, mut corners) =
-            (depth.readwrite(), primitives.readwrite(), corners.readwrite());
+        let (mut depth, mut primitives, mut corners) = (depth.readwrite(), primitives.readwrite(), corners.readwrite());
         let rows = corners.as_slice_mut()?.as_chunks_mut::<24>().0;
         let places = depth.as_slice_mut()?.iter_mut().zip(primitives.as_slice_mut()?).zip(rows);
         for (((depth, primitives), row), (node, tree)) in places.zip(all) {

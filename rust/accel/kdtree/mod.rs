@@ -14,8 +14,8 @@ mod stack;
 pub use build::{Builder, Options};
 pub use node::Node;
 
-use super::{Info, NodeBox};
 use super::walk::{Input, Lists, Plane, Structure, Walker};
+use super::{Info, NodeBox};
 use crate::math::Aabb;
 
 /// Most levels below the root that may be asked for.

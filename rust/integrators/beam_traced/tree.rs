@@ -1,11 +1,11 @@
 //! The tree of beams, and the pieces of the film that its leaves are.
 
+use super::BeamTraced;
 use super::beam::{Beam, LEAST, Origin, Seen};
 use super::onward::Onward;
 use super::shading::Met;
 use super::shadow::Shadows;
 use super::visible::visible;
-use super::BeamTraced;
 use crate::accel::Primitives;
 use crate::integrators::Job;
 use crate::math::convex::{Convex, area};

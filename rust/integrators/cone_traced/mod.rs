@@ -86,7 +86,15 @@ fn of_pixel(camera: &Perspective, [x, y]: [f64; 2]) -> Cone {
     };
     let solid_angle = triangle(a, b, c) + triangle(a, c, d);
     let angle = 2.0 * (solid_angle / (4.0 * std::f64::consts::PI)).sqrt().asin();
-    Cone { apex: middle.origin, axis: middle.direction, angle, beyond: None, weight: Rgb::ONE, bounce: 0, is_dull: false }
+    Cone {
+        apex: middle.origin,
+        axis: middle.direction,
+        angle,
+        beyond: None,
+        weight: Rgb::ONE,
+        bounce: 0,
+        is_dull: false,
+    }
 }
 
 impl Tracing<'_> {

@@ -2,10 +2,10 @@
 //! keep.
 
 use super::{contents, sah_cost};
-use crate::accel::{Info, NodeBox};
 use crate::accel::bvh::build::Shapes;
 use crate::accel::bvh::{BinaryBvh, Node};
 use crate::accel::walk::{Input, Lists};
+use crate::accel::{Info, NodeBox};
 use crate::math::Aabb;
 
 /// A binary tree whose leaves have their own number for `index`: they are numbered as their nodes are.
