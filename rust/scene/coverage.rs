@@ -58,7 +58,8 @@ impl<'a> Coverage<'a> {
             }
             let mut primitives = geometry.primitives_of(shape);
             if let Some((primitive, other)) = primitives.find_map(|p| Some((p, geometry.shape(p)?))) {
-                balls.push((primitive, other.as_ball().ok_or(shape)?));
+                let (center, radius) = other.ball().ok_or(shape)?;
+                balls.push((primitive, Ball { center, radius }));
             }
         }
         Ok(Self { scene, balls })

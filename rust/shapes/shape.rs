@@ -126,11 +126,6 @@ pub trait Shape: Debug + Send + Sync {
         self.bounds().around()
     }
 
-    /// The ball that it is the surface of, if it is one.
-    fn as_ball(&self) -> Option<Ball> {
-        None
-    }
-
     /// The greatest `d · x` of its points x, or of a box around them, rounded up: what boxes in other spaces are made
     /// of.
     fn support(&self, d: DVec3) -> f64 {

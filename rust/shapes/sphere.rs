@@ -205,10 +205,6 @@ impl Shape for Sphere {
         Ball { center: self.center, radius: self.radius.next_up() }
     }
 
-    fn as_ball(&self) -> Option<Ball> {
-        Some(Ball { center: self.center, radius: self.radius })
-    }
-
     fn support(&self, d: DVec3) -> f64 {
         let size = (d.abs() * self.center.abs()).element_sum();
         let reach = self.radius * d.length();

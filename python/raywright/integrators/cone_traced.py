@@ -19,7 +19,7 @@ class ConeTraced:
     light is spread. So a picture has no noise, and one sample is as good as many (with two, the error is 0
     where with one it is not known). It is biased by design, as `Whitted` is, and where what a cone meets
     differs much within it: surfaces are shaded at one point of each face, spheres dim what is behind them
-    evenly.
+    evenly, and rough metal seen at a grazing angle is too dark, by what of its cone is below the surface.
 
     Cones meet meshes and spheres, of any opaque material or `ThinDielectric`, in the light of surfaces that
     shine and of lights without extent, seen through a pinhole and a `BoxFilter`.

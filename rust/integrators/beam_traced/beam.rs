@@ -3,8 +3,8 @@
 //! A flat mirror turns a beam into one that comes from behind it, from where the eye is seen in the mirror. Told by the
 //! place on the film that it comes from, each of its rays is `apex + t · direction(x, y)`, and the direction is linear
 //! in x and y, however many mirrors it has met, and faces of glass where refraction is taken for linear (`onward.rs`).
-//! So the film is the plane that all is cut in: straight edges are straight there, and 1 / t, the nearness, is linear in
-//! x and y on every plane.
+//! So the film is the plane that all is cut in: straight edges are straight there, and 1 / t, the nearness, is linear
+//! in x and y on every plane.
 
 use crate::accel::Primitives;
 use crate::math::convex::{Convex, HalfPlane, above, area, sides};

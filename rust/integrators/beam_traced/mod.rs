@@ -19,9 +19,8 @@ use tree::Tree;
 /// Beam tracing (Heckbert and Hanrahan, "Beam Tracing Polygonal Objects", 1984): in place of rays, the whole view is
 /// followed as a beam. What is seen in it parts it into polygons; flat mirrors throw these back, as beams from where
 /// the eye is seen in them, flat faces of glass refract them, and beams from lights part them into lit and shadowed.
-/// Each pixel is the mean over its own
-/// square: of every polygon, its area there times its radiance, by three points of each triangle that it is cut into.
-/// So edges are exact, and the picture has no noise.
+/// Each pixel is the mean over its own square: of every polygon, its area there times its radiance, by three points of
+/// each triangle that it is cut into. So edges are exact, and the picture has no noise.
 ///
 /// It is Whitted's picture (what is scattered otherwise than as by a mirror is not followed) of meshes in the light of
 /// lights without extent. Its time grows with the square of the number of faces in view.

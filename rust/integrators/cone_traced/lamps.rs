@@ -37,10 +37,10 @@ impl Lamp {
     /// solid angle.
     fn seen_from(&self, job: &Job, from: DVec3) -> Option<Sight> {
         let geometry = job.scene.geometry();
-        if let Some(ball) = geometry.shape(self.primitive).and_then(|shape| shape.as_ball()) {
-            let way = ball.center - from;
+        if let Some((center, radius)) = geometry.shape(self.primitive).and_then(|shape| shape.ball()) {
+            let way = center - from;
             let distance = way.length();
-            let sine = ball.radius / distance;
+            let sine = radius / distance;
             // Of a sphere above the horizon, π sin² by the cosine to its middle is exact.
             return (sine < 1.0).then(|| Sight {
                 direction: way / distance,
