@@ -1,7 +1,7 @@
 """Mitsuba's plugins, one by one, and what becomes of each here.
 
-``python docs/mitsuba_plugins.py --write`` puts the table into ``docs/from_mitsuba.md``; a test checks that it is
-current. What is read is asked of the reader itself; what is approximated, and what is refused, is told here.
+``python docs/mitsuba_plugins.py --write`` puts the table into ``docs/from_mitsuba.md``; a test checks that it
+is current. What is read is asked of the reader itself; what is approximated or refused is told here.
 """
 
 import re
@@ -27,7 +27,7 @@ READ = {
 # What is another thing here, or not quite the same.
 NEARLY = {
     "linearcurve": "a mesh of 48 sides, within 0.22 % of the radius; fewer sides beyond 4 million triangles",
-    "bsplinecurve": "so too, cut in straight pieces that stray by 0.1 % of the radius; one sees into open ends",
+    "bsplinecurve": "so too, in straight pieces that stray by 0.1 % of the radius; one sees into open ends",
     "sdfgrid": "a mesh of a third of its cells, with corners on the surface",
     "mesh_attribute": "of PLY files: vertices or faces, one attribute a mesh, between 0 and 1",
     "spectrum": "by wavelength: red, green and blue, as white is D65; warned of",
@@ -50,7 +50,7 @@ NEARLY = {
     "prbvolpath": "as `path`",
     "moment": "the integrator within, whose error every picture tells",
     "direct": "with none of `emitter_samples` or `bsdf_samples`: the same light by the other; warned of",
-    "depth": "`aov=\"depth\"`",
+    "depth": '`aov="depth"`',
 }
 # What is not read, and is refused by its name.
 REFUSED = {
@@ -65,7 +65,9 @@ REFUSED = {
     "filters": (),
     "samplers": (),
     "integrators": ("stokes", "volprim_rf_basic"),
-    "media": ("homogeneous", "heterogeneous", "isotropic", "hg", "rayleigh", "sggx", "gridvolume", "constvolume"),
+    "media": (
+        "homogeneous", "heterogeneous", "isotropic", "hg", "rayleigh", "sggx", "gridvolume", "constvolume",
+    ),
 }  # fmt: skip
 
 
@@ -73,7 +75,9 @@ def table() -> str:
     """Return the table as a page has it."""
     lines = ["| Mitsuba | | |", "|---|---|---|"]
     for kind in REFUSED:
-        rows = [(name, "approximated" if name in NEARLY else "had") for name in dict.fromkeys(READ.get(kind, ()))]
+        rows = [
+            (name, "approximated" if name in NEARLY else "had") for name in dict.fromkeys(READ.get(kind, ()))
+        ]
         had = ", ".join(f"`{name}`" for name, what in rows if what == "had")
         if had:
             lines.append(f"| {kind} | had | {had} |")

@@ -72,10 +72,10 @@ def dabs():
     header += ["element face 8", "property list uchar int vertex_indices"]
     header += [f"property float color_{k}" for k in range(3)] + ["property float share_0", "end_header"]
     rng = np.random.default_rng(4)
-    lines = [
-        " ".join(f"{x:.4f}" for x in (*point, *rng.uniform(0.1, 0.9, 3))) for point in OCTAHEDRON
+    lines = [" ".join(f"{x:.4f}" for x in (*point, *rng.uniform(0.1, 0.9, 3))) for point in OCTAHEDRON]
+    lines += [
+        f"3 {a} {b} {c} " + " ".join(f"{x:.4f}" for x in rng.uniform(0.1, 0.9, 4)) for a, b, c in eight()
     ]
-    lines += [f"3 {a} {b} {c} " + " ".join(f"{x:.4f}" for x in rng.uniform(0.1, 0.9, 4)) for a, b, c in eight()]
     return "\n".join(header + lines) + "\n"
 
 

@@ -1,6 +1,20 @@
-"""More small scenes in Mitsuba's format: principled materials, curves and grids, attributes, pictures that are thrown."""
+"""More small scenes in Mitsuba's format: principled materials, curves, attributes, thrown pictures."""
 
-from mitsuba_parts import FLOOR, LAMP, SKY, TILED, ball, checks, looking, matrix, moved, picture, plate, rgb, scene
+from mitsuba_parts import (
+    FLOOR,
+    LAMP,
+    SKY,
+    TILED,
+    ball,
+    checks,
+    looking,
+    matrix,
+    moved,
+    picture,
+    plate,
+    rgb,
+    scene,
+)
 
 ABOVE = looking((0.3, -0.5, 4.0), (0.0, 0.2, 0.0), (0, 1, 0))
 
@@ -22,7 +36,13 @@ def extended():
         "clearcoat_gloss": 0.3,
         "specular": 0.6,
     }
-    glass = {"type": "principled", "base_color": rgb(0.9, 0.7, 0.5), "roughness": 0.5, "spec_trans": 0.8, "eta": 1.4}
+    glass = {
+        "type": "principled",
+        "base_color": rgb(0.9, 0.7, 0.5),
+        "roughness": 0.5,
+        "spec_trans": 0.8,
+        "eta": 1.4,
+    }
     leaf = {
         "type": "principledthin",
         "base_color": rgb(0.6, 0.7, 0.3),
@@ -45,11 +65,18 @@ def extended():
     return {
         "principled": scene(3, a=TILED, b=ball(clay), lamp=LAMP, sky=SKY),
         "principled, textured": scene(
-            3, a=FLOOR, b=ball({**clay, "roughness": 0.7, "metallic": checks(4.0, 2.0, a=0.9, b=0.1)}), lamp=LAMP
+            3,
+            a=FLOOR,
+            b=ball({**clay, "roughness": 0.7, "metallic": checks(4.0, 2.0, a=0.9, b=0.1)}),
+            lamp=LAMP,
         ),
         "principled, glass": scene(6, a=TILED, b=ball(glass), sky=SKY),
         "principledthin": scene(
-            4, a=TILED, b={"type": "rectangle", "to_world": plate(1.0, 1.0, 1.0), "bsdf": leaf}, lamp=LAMP, sky=SKY
+            4,
+            a=TILED,
+            b={"type": "rectangle", "to_world": plate(1.0, 1.0, 1.0), "bsdf": leaf},
+            lamp=LAMP,
+            sky=SKY,
         ),
         "spot, pictured": scene(
             2,
@@ -75,10 +102,14 @@ def extended():
             },
         ),
         "linearcurve": scene(
-            a=FLOOR, b={"type": "linearcurve", "filename": "curve.txt", "to_world": high, "bsdf": sheet}, sky=SKY
+            a=FLOOR,
+            b={"type": "linearcurve", "filename": "curve.txt", "to_world": high, "bsdf": sheet},
+            sky=SKY,
         ),
         "bsplinecurve": scene(
-            a=FLOOR, b={"type": "bsplinecurve", "filename": "spline.txt", "to_world": high, "bsdf": sheet}, sky=SKY
+            a=FLOOR,
+            b={"type": "bsplinecurve", "filename": "spline.txt", "to_world": high, "bsdf": sheet},
+            sky=SKY,
         ),
         "serialized": scene(
             a=FLOOR,
@@ -94,13 +125,16 @@ def extended():
             lamp=LAMP,
         ),
         "ply, colours of vertices": scene(
-            b={"type": "ply", "filename": "dabs.ply", "to_world": high, "face_normals": True, "bsdf": dabs}, sky=SKY
+            b={"type": "ply", "filename": "dabs.ply", "to_world": high, "face_normals": True, "bsdf": dabs},
+            sky=SKY,
         ),
         "ply, colours of faces": scene(
-            b={"type": "ply", "filename": "dabs.ply", "to_world": high, "face_normals": True, "bsdf": tiles}, sky=SKY
+            b={"type": "ply", "filename": "dabs.ply", "to_world": high, "face_normals": True, "bsdf": tiles},
+            sky=SKY,
         ),
         "ply, shares of faces": scene(
-            b={"type": "ply", "filename": "dabs.ply", "to_world": high, "face_normals": True, "bsdf": shared}, sky=SKY
+            b={"type": "ply", "filename": "dabs.ply", "to_world": high, "face_normals": True, "bsdf": shared},
+            sky=SKY,
         ),
         "direct, lights": {
             **scene(a=TILED, b=ball({"type": "diffuse"}), lamp=LAMP, sky=SKY),
@@ -108,7 +142,11 @@ def extended():
         },
         "direct, surfaces": {
             **scene(
-                a=TILED, b=ball({"type": "diffuse"}), lamp=LAMP, sky=SKY, p={"type": "point", "position": [0.0, 0.0, 5.0]}
+                a=TILED,
+                b=ball({"type": "diffuse"}),
+                lamp=LAMP,
+                sky=SKY,
+                p={"type": "point", "position": [0.0, 0.0, 5.0]},
             ),
             "integrator": {"type": "direct", "emitter_samples": 0, "bsdf_samples": 1},
         },

@@ -252,7 +252,7 @@ def test_a_part_of_a_film_sees_what_the_whole_does_there():
         ({"i": {"type": "moment"}}, "moment 'i': one integrator must be within, got 0"),
         (
             {"i": {"type": "direct", "emitter_samples": 0, "bsdf_samples": 0}},
-            "direct 'i': emitter_samples and bsdf_samples must be at least 0, and one of them 1, got 0 and 0",
+            "direct 'i': emitter_samples and bsdf_samples must be at least 0, and not both, got 0 and 0",
         ),
         (
             {"s": {"type": "sphere", "b": {"type": "principled", "eta": 1.5, "specular": 0.5}}},
@@ -280,7 +280,9 @@ def test_what_shines_is_hidden_as_a_transparent_background():
     ball, sky = {"type": "sphere"}, {"type": "constant"}
     assert shot(i=hidden, b=ball, s=sky).background == "transparent"
     assert shot(i={"type": "path"}, b=ball, s=sky).background == "shown"
-    with pytest.warns(RuntimeWarning, match="path 'i': hide_emitters hides what is around: surfaces that shine"):
+    with pytest.warns(
+        RuntimeWarning, match="path 'i': hide_emitters hides what is around: surfaces that shine"
+    ):
         shot(i=hidden, b={**ball, "e": {"type": "area"}})
 
 
@@ -297,7 +299,10 @@ def test_direct_light_without_one_of_its_ways():
 
 
 def test_moments_are_told_of_any_integrator():
-    moment = {"type": "moment", "inner": {"type": "aov", "aovs": "d:depth", "light": {"type": "path", "max_depth": 3}}}
+    moment = {
+        "type": "moment",
+        "inner": {"type": "aov", "aovs": "d:depth", "light": {"type": "path", "max_depth": 3}},
+    }
     found = shot(i=moment, b={"type": "sphere"})
     assert (found.integrator, found.aov) == (rw.Path(2, 4), ("depth",))
     assert shot(i={"type": "depth"}, b={"type": "sphere"}).aov == ("depth",)
@@ -311,7 +316,7 @@ def test_moments_are_told_of_any_integrator():
     ],
 )
 def test_meters_measure_along_one_ray(eye):
-    """Of a matt ball under an even sky, its reflectance: this sees the pole, from where all of the sky is seen."""
+    """Of a matt ball under an even sky, its reflectance: all of the sky is seen from its pole."""
     grey = {"type": "diffuse", "reflectance": 0.6}
     parts = {"b": {"type": "sphere", "bsdf": grey}, "s": {"type": "constant"}}
     found = rw.from_mitsuba({"type": "scene", "eye": {**eye, "film": POINT}, **parts})
@@ -333,7 +338,9 @@ def test_the_sun_is_where_mitsuba_has_it():
         day = shot(s={"type": "sunsky"}).scene.environment
     assert np.linalg.norm(np.subtract(day.sun, (0.0513854, 0.691748, 0.720308))) < np.radians(0.01)
     with pytest.warns(RuntimeWarning):
-        told = shot(s={"type": "sunsky", "sun_direction": [0.0, 3.0, 4.0], "turbidity": 5.0}).scene.environment
+        told = shot(
+            s={"type": "sunsky", "sun_direction": [0.0, 3.0, 4.0], "turbidity": 5.0}
+        ).scene.environment
     assert (told.sun, told.turbidity, told.up) == ((0.0, 3.0, 4.0), 5.0, (0.0, 0.0, 1.0))
 
 
@@ -347,7 +354,7 @@ def test_principled_numbers_are_those_of_the_scene():
 
 
 def test_black_bodies_shine_as_hot_as_they_are():
-    """In Mitsuba's units, as spectral variants have them: about D65's white at 6,500 K, and Stefan's fourth power."""
+    """In Mitsuba's units, as spectral variants have them: about D65's white at 6,500 K."""
 
     def shine(kelvin, **more):
         lamp = {"type": "constant", "radiance": {"type": "blackbody", "temperature": kelvin, **more}}
@@ -368,7 +375,9 @@ def test_merged_shapes_are_themselves():
 
 
 def test_names_of_plugins_are_known_in_capitals():
-    assert shot(one={"type": "Sphere", "b": {"type": "Diffuse"}}) == shot(one={"type": "sphere", "b": {"type": "diffuse"}})
+    assert shot(one={"type": "Sphere", "b": {"type": "Diffuse"}}) == shot(
+        one={"type": "sphere", "b": {"type": "diffuse"}}
+    )
 
 
 def test_facets_are_those_of_the_scene():

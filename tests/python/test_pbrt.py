@@ -39,7 +39,7 @@ def seen(shot, point):
 
 
 def test_the_world_is_left_handed(tmp_path):
-    """pbrt has +x on the right of a camera that looks along +z, and of one that looks along -z, on the left."""
+    """pbrt has +x on the right of a camera that looks along +z, and on the left of one along -z."""
     world = 'Translate 1 0.5 0\nShape "sphere" "float radius" 0.1'
     for eye, side in (("0 0 -5", 1), ("0 0 5", -1)):
         shot = load(tmp_path, world, HEAD.replace("0 0 5", eye))
@@ -52,12 +52,19 @@ def test_the_world_is_left_handed(tmp_path):
 
 def test_options_are_read(tmp_path):
     shot = load(tmp_path, 'Shape "sphere"')
-    assert (shot.camera.width, shot.camera.height, shot.camera.fov, shot.camera.fov_axis) == (40, 30, 50, "smaller")
+    assert (shot.camera.width, shot.camera.height, shot.camera.fov, shot.camera.fov_axis) == (
+        40,
+        30,
+        50,
+        "smaller",
+    )
     assert (shot.samples, shot.sampler, shot.integrator) == (8, rw.Independent(), rw.Path(3))
     assert shot.filter == rw.GaussianFilter(1.5, 0.5)
     lens = HEAD.replace('"float fov" 50', '"float fov" 50 "float lensradius" 0.1 "float focaldistance" 4')
     assert load(tmp_path, 'Shape "sphere"', lens).camera.focused_distance == 4
-    flat = load(tmp_path, 'Shape "sphere"', HEAD.replace('"perspective" "float fov" 50', '"orthographic"')).camera
+    flat = load(
+        tmp_path, 'Shape "sphere"', HEAD.replace('"perspective" "float fov" 50', '"orthographic"')
+    ).camera
     assert (flat.scale, flat.scale_axis) == (2, "smaller")
     boxed = load(tmp_path, 'Shape "sphere"', HEAD + 'PixelFilter "box"\n')
     assert boxed.filter == rw.BoxFilter()
@@ -83,14 +90,18 @@ def test_transforms_follow_each_other(tmp_path):
     """
     places = [ball.transform @ (0, 0, 0, 1) for ball in load(tmp_path, world).scene.shapes]
     # In a right-handed world x is turned round.
-    assert np.allclose(places, [(-1, 2, 3, 1), (-1, 2, 3, 1), (-6, 2, 3, 1), (0, 0, 7, 1)], rtol=0, atol=1e-12)
+    assert np.allclose(
+        places, [(-1, 2, 3, 1), (-1, 2, 3, 1), (-6, 2, 3, 1), (0, 0, 7, 1)], rtol=0, atol=1e-12
+    )
     first = load(tmp_path, world).scene.shapes[0].transform
     assert np.allclose(first[:3, :3] @ (1, 0, 0), (0, 2, 0), rtol=0, atol=1e-12)
 
 
 def test_materials(tmp_path):
     assert material(tmp_path, "") == rw.Diffuse(0.5)
-    assert material(tmp_path, 'Material "diffuse" "rgb reflectance" [.1 .2 .3]') == rw.Diffuse((0.1, 0.2, 0.3))
+    assert material(tmp_path, 'Material "diffuse" "rgb reflectance" [.1 .2 .3]') == rw.Diffuse(
+        (0.1, 0.2, 0.3)
+    )
     gold = material(tmp_path, 'Material "conductor" "spectrum eta" "metal-Au-eta" "spectrum k" "metal-Au-k"')
     assert gold == rw.Conductor("gold", alpha=(0.0, 0.0), multiple_scattering=False)
     # pbrt takes the root of a roughness for alpha, unless it is told not to.
@@ -135,7 +146,8 @@ def test_textures(tmp_path):
     ).reflectance
     assert tiles == rw.ProductTexture(rw.Checker(0.1, 0.0, rw.UvTransform(2.0)), 0.5)
     bumps = material(
-        tmp_path, 'Texture "h" "float" "constant" "float value" 0.1\nMaterial "diffuse" "texture displacement" "h"'
+        tmp_path,
+        'Texture "h" "float" "constant" "float value" 0.1\nMaterial "diffuse" "texture displacement" "h"',
     )
     assert bumps == rw.BumpMap(rw.Diffuse(), 0.1)
 
@@ -216,7 +228,9 @@ def test_squares_of_all_directions_have_equal_areas():
     flat = unfolded(names)
     polar, turn = np.pi * 100.5 / side, 2 * np.pi * 300.5 / (2 * side) - np.pi
     at = np.sin(polar) * np.sin(turn), np.cos(polar), -np.sin(polar) * np.cos(turn)
-    assert np.allclose(flat[100, 300], [one.item() for one in folded(*map(np.array, at))], rtol=0, atol=1 / side)
+    assert np.allclose(
+        flat[100, 300], [one.item() for one in folded(*map(np.array, at))], rtol=0, atol=1 / side
+    )
 
 
 def test_objects_are_copied(tmp_path):
@@ -253,23 +267,32 @@ def test_files_include_others(tmp_path):
         ('Shape "sphere" "float radius" [ 1', "a bracket is not closed"),
         ('Shape "sphere', "a text in quotes does not end"),
         ('Shape "sphere" "float radius" "one"', "radius must be finite numbers"),
-        ('Shape "sphere" "float size" 1', 'line 9: Shape sphere: parameter \'size\' is not supported'),
+        ('Shape "sphere" "float size" 1', "line 9: Shape sphere: parameter 'size' is not supported"),
         ('Shape "teapot"', "Shape teapot: a shape 'teapot' is not supported"),
         ('Shape "sphere" "float phimax" 90', "a part of it is not supported: phimax must be 360, got 90"),
         ('Material "hair"', "Material hair: a material 'hair' is not supported"),
         ('Material "diffuse" "texture reflectance" "x"', "reflectance: there is no texture of colours 'x'"),
         ('Texture "x" "spectrum" "ptex"', "a texture 'ptex' is not supported"),
         ('LightSource "goniometric"', "a light 'goniometric' is not supported"),
-        ('MakeNamedMedium "fog" "string type" "homogeneous"', "MakeNamedMedium is not supported: there are no media"),
+        (
+            'MakeNamedMedium "fog" "string type" "homogeneous"',
+            "MakeNamedMedium is not supported: there are no media",
+        ),
         ('MediumInterface "fog" ""', "MediumInterface is not supported: there are no media"),
-        ('Shape "trianglemesh" "point3 P" [0 0 0 1 0 0] "integer indices" [0 1 2]', "indices must be at least 0 and"),
+        (
+            'Shape "trianglemesh" "point3 P" [0 0 0 1 0 0] "integer indices" [0 1 2]',
+            "indices must be at least 0 and",
+        ),
         ('NamedMaterial "x"', "there is no material 'x'"),
         ('ObjectInstance "x"', "there is no object 'x'"),
         ("AttributeEnd", "AttributeEnd without its beginning"),
         ("AttributeBegin", "ends within an attribute or an object"),
         ("Scale 1 0 1", "Scale must not be 0"),
         ("Translate 1 2", "is no value"),
-        ('Shape "curve" "point3 P" [0 0 0  1 0 0  2 0 0  3 0 0] "integer degree" 2 "string type" "cylinder"', "a curve must be cubic"),
+        (
+            'Shape "curve" "point3 P" [0 0 0 1 0 0 2 0 0 3 0 0] "integer degree" 2 "string type" "cylinder"',
+            "a curve must be cubic",
+        ),
     ],
 )
 def test_what_is_wrong_is_told_with_its_line(tmp_path, world, told):

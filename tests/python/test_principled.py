@@ -23,9 +23,21 @@ def test_they_compare_and_pickle():
         (lambda: rw.Principled(1.5), ValueError, "base_color must be between 0 and 1, got 1.5"),
         (lambda: rw.Principled(sheen=-1), ValueError, "sheen must be between 0 and 1, got -1"),
         (lambda: rw.Principled(ior=0), ValueError, "ior must be greater than 0"),
-        (lambda: rw.Principled(clearcoat=(1, 0)), ValueError, r"clearcoat must be a texture or one number, got shape \(2,\)"),
-        (lambda: rw.PrincipledThin(roughness="rough"), TypeError, "roughness must be real numbers, got 'rough'"),
-        (lambda: rw.PrincipledThin(diffuse_transmission=2), ValueError, "diffuse_transmission must be between 0 and 1"),
+        (
+            lambda: rw.Principled(clearcoat=(1, 0)),
+            ValueError,
+            r"clearcoat must be a texture or one number, got shape \(2,\)",
+        ),
+        (
+            lambda: rw.PrincipledThin(roughness="rough"),
+            TypeError,
+            "roughness must be real numbers, got 'rough'",
+        ),
+        (
+            lambda: rw.PrincipledThin(diffuse_transmission=2),
+            ValueError,
+            "diffuse_transmission must be between 0 and 1",
+        ),
         (lambda: rw.Principled(priority=0.5), TypeError, "priority must be an integer"),
     ],
 )
@@ -40,7 +52,9 @@ def lit(material, samples=256):
     scene = rw.Scene([rw.Sphere(material=material)], environment=1.0)
     camera = rw.Orthographic((0, 0, 3), (0, 0, 0), scale=1.2, width=8, height=8)
     image = rw.render(scene, camera, rw.Path(64), samples=samples, progress=False)
-    return float(image.rgb.mean()), float(np.sqrt((image.standard_error.astype(float) ** 2).sum()) / image.rgb.size)
+    return float(image.rgb.mean()), float(
+        np.sqrt((image.standard_error.astype(float) ** 2).sum()) / image.rgb.size
+    )
 
 
 def test_smooth_glass_and_metal_lose_nothing():
@@ -62,17 +76,23 @@ def test_paper_lets_light_through():
 
 def test_opaque_ones_are_alike_on_both_sides():
     """A lamp above, and the same lamp below: a plate is as bright seen from either side."""
-    plate = rw.Polygon([(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0)], material=rw.Principled(0.5, 0.4, 0.5))
+    plate = rw.Polygon(
+        [(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0)], material=rw.Principled(0.5, 0.4, 0.5)
+    )
     seen = []
     for side in (1, -1):
         lamp = rw.PointLight((0.5, 0.2, 2 * side), 5.0)
         camera = rw.Orthographic((0, 0, 3 * side), (0, 0, 0), scale=0.5, width=4, height=4)
-        seen.append(rw.render(rw.Scene([plate], [lamp]), camera, rw.Path(1), samples=64, progress=False).rgb.mean())
+        seen.append(
+            rw.render(rw.Scene([plate], [lamp]), camera, rw.Path(1), samples=64, progress=False).rgb.mean()
+        )
     assert seen[0] == pytest.approx(seen[1], rel=1e-3)
     two = rw.TwoSided(rw.Principled(), rw.Diffuse(0.0))
     rw.Scene([rw.Sphere(material=two)]).build(progress=False)
     with pytest.raises(ValueError, match="front must let no light through"):
-        rw.Scene([rw.Sphere(material=rw.TwoSided(rw.Principled(transmission=0.5), rw.Diffuse()))]).build(progress=False)
+        rw.Scene([rw.Sphere(material=rw.TwoSided(rw.Principled(transmission=0.5), rw.Diffuse()))]).build(
+            progress=False
+        )
 
 
 def test_highlights_are_stretched_along_u():

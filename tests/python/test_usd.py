@@ -76,7 +76,9 @@ def test_meshes_stand_where_they_are(tmp_path):
 
 def test_faces_have_materials_of_their_own(tmp_path):
     parts = SQUARE.replace("[4]", "[3, 3]").replace("[0, 1, 2, 3]", "[0, 1, 2, 0, 2, 3]")
-    parts = parts.replace("[(0, 0), (1, 0), (1, 1), (0, 1)]", "[(0, 0), (1, 0), (1, 1), (0, 0), (1, 1), (0, 1)]")
+    parts = parts.replace(
+        "[(0, 0), (1, 0), (1, 1), (0, 1)]", "[(0, 0), (1, 0), (1, 1), (0, 0), (1, 1), (0, 1)]"
+    )
     other = paint("color3f inputs:diffuseColor = (1, 1, 1)").replace("Paint", "Other")
     subset = """
     def GeomSubset "Part" (prepend apiSchemas = ["MaterialBindingAPI"]) {
@@ -127,7 +129,9 @@ def test_surfaces_shine_and_are_clear(tmp_path):
     assert lamp.emission == (3, 2, 1)
     (glass,) = shapes(tmp_path, SQUARE + paint("float inputs:opacity = 0\n float inputs:ior = 1.25"))
     assert glass.material == rw.Dielectric(1.25, 0.5)
-    (lace,) = shapes(tmp_path, SQUARE + paint('float inputs:opacity = 0.25\n token inputs:opacityMode = "presence"'))
+    (lace,) = shapes(
+        tmp_path, SQUARE + paint('float inputs:opacity = 0.25\n token inputs:opacityMode = "presence"')
+    )
     assert isinstance(lace.material, rw.Mask)
     assert lace.material.opacity == 0.25
 
@@ -173,7 +177,9 @@ def test_the_sun_and_the_sky(tmp_path):
     assert scene.environment == rw.ConstantEnvironment(0.5)
     wide = LAMP.replace("bool inputs:normalize = 1", "float inputs:angle = 90")
     # What is not normalised is the radiance of a disk of so many degrees.
-    assert load(tmp_path, CAMERA + wide + SQUARE + paint("")).scene.lights[0].irradiance[0] == pytest.approx(np.pi)
+    assert load(tmp_path, CAMERA + wide + SQUARE + paint("")).scene.lights[0].irradiance[0] == pytest.approx(
+        np.pi
+    )
     image = np.zeros((4, 8, 3), np.float32)
     image[1, 2] = 1.0
     np.save(tmp_path / "sky.npy", image)
@@ -215,7 +221,9 @@ def Sphere "Hidden" {
 
 def test_what_is_left_out_is_told(tmp_path):
     text = SQUARE.replace('subdivisionScheme = "none"', 'subdivisionScheme = "catmullClark"')
-    with pytest.warns(RuntimeWarning, match=r"stage\.usda: meshes that are to be subdivided are shown as they are"):
+    with pytest.warns(
+        RuntimeWarning, match=r"stage\.usda: meshes that are to be subdivided are shown as they are"
+    ):
         shapes(tmp_path, text + paint(""))
 
 

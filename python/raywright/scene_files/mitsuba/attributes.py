@@ -62,18 +62,24 @@ def read_attribute(path: Path, name: str) -> tuple[bool, Floats]:
     for parts in ([f"{rest}_{end}" for end in ending] for ending in _ENDINGS):
         if all(part in columns for part in parts):
             return of == "face", np.stack([columns[part] for part in parts], -1)
-    for parts in (("r", "g", "b"), ("red", "green", "blue")):
+    for parts in (["r", "g", "b"], ["red", "green", "blue"]):
         if rest == "color" and all(part in columns for part in parts):
             whole = np.stack([columns[part] for part in parts], -1)
             return of == "face", whole / 255 if raw[parts[0]].dtype.kind in "ui" else whole
     for part in (f"{rest}_0", f"{rest}_1", f"{rest}_x", rest):
         if part in columns:
             return of == "face", np.repeat(columns[part][:, None], 3, axis=1)
-    raise SceneError(f"{path} has no attribute {name!r}; of each {of} it has {', '.join(columns) or 'nothing'}")
+    raise SceneError(
+        f"{path} has no attribute {name!r}; of each {of} it has {', '.join(columns) or 'nothing'}"
+    )
 
 
 def _columns(raw: Any) -> dict[str, Floats]:
     """Return what is one number for each vertex or face."""
     names = raw.dtype.names or () if isinstance(raw, np.ndarray) else tuple(raw or ())
     found = {name: np.asarray(raw[name]).squeeze() for name in names}
-    return {name: one.astype(np.float64) for name, one in found.items() if one.ndim == 1 and one.dtype.kind in "iuf"}
+    return {
+        name: one.astype(np.float64)
+        for name, one in found.items()
+        if one.ndim == 1 and one.dtype.kind in "iuf"
+    }

@@ -32,7 +32,9 @@ def read_curves(plugin: Plugin, least: int) -> list[Floats]:
         except ValueError:
             point = []
         if len(point) != 4 or not np.isfinite(point).all() or point[3] < 0:
-            raise SceneError(f"{path}, line {number}: must be x, y, z and a radius of at least 0, got {line[:60]!r}")
+            raise SceneError(
+                f"{path}, line {number}: must be x, y, z and a radius of at least 0, got {line[:60]!r}"
+            )
         curves[-1].append(point)
     found = [np.array(curve) for curve in curves if curve]
     if not found:

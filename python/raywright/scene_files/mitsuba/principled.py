@@ -26,7 +26,9 @@ _NAMES = {
 
 def principled(plugin: Plugin, uv: Uv) -> tuple[Material, bool]:
     """Return the material of a ``principled``, and whether its back is black."""
-    plugin.ignore("diffuse_reflectance_sampling_rate", "main_specular_sampling_rate", "clearcoat_sampling_rate")
+    plugin.ignore(
+        "diffuse_reflectance_sampling_rate", "main_specular_sampling_rate", "clearcoat_sampling_rate"
+    )
     if plugin.has("eta"):
         if plugin.has("specular"):
             plugin.fail("either eta or specular must be given, got both")
@@ -57,9 +59,7 @@ def principled_thin(plugin: Plugin, uv: Uv) -> Material:
     # From 0 to 2 there.
     across = scalar(plugin, "diff_trans", 0.0, uv)
     half: Number = ProductTexture(across, 0.5) if isinstance(across, Texture) else 0.5 * across
-    return PrincipledThin(
-        ior=plugin.number("eta", 1.5), diffuse_transmission=half, **_common(plugin, uv)
-    )
+    return PrincipledThin(ior=plugin.number("eta", 1.5), diffuse_transmission=half, **_common(plugin, uv))
 
 
 def _common(plugin: Plugin, uv: Uv) -> dict[str, Any]:

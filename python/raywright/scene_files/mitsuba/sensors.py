@@ -1,7 +1,7 @@
 """Sensors to cameras, and their films."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -61,7 +61,7 @@ def camera(plugin: Plugin, film: Plugin | None, scene: Scene) -> AnyCamera:
     ValueError
         If its type, or a parameter of it, is not supported; tells which.
     """
-    readers = {
+    readers: dict[str, Callable[[Plugin, Crop], AnyCamera]] = {
         "perspective": _perspective,
         "thinlens": _thin_lens,
         "orthographic": _orthographic,
@@ -175,7 +175,9 @@ def _distant(plugin: Plugin, crop: Crop, scene: Scene) -> Orthographic:
         plugin.fail("either direction or to_world must be given, got both")
     given = plugin.take("target")
     if given is None or isinstance(given, Mapping):
-        plugin.fail("target must be a point; the mean over a shape, or over the whole scene, is not supported")
+        plugin.fail(
+            "target must be a point; the mean over a shape, or over the whole scene, is not supported"
+        )
     target = plugin.vector("target", (0.0, 0.0, 0.0))
     way = plugin.vector("direction", (0.0, 0.0, 1.0)) if plugin.has("direction") else plugin.to_world()[:3, 2]
     bounds = scene.bounds

@@ -113,11 +113,13 @@ def _direct(plugin: Plugin) -> Asked:
     light, surface = (plugin.integer(f"{name}_samples", both) for name in ("emitter", "bsdf"))
     if light < 0 or surface < 0 or light + surface < 1:
         plugin.fail(
-            f"emitter_samples and bsdf_samples must be at least 0, and one of them 1, got {light} and {surface}"
+            f"emitter_samples and bsdf_samples must be at least 0, and not both, got {light} and {surface}"
         )
     # Both ways alone find the same light on average, but for what only the other can find.
     if surface == 0:
-        plugin.warn("without bsdf_samples mirrors and smooth glass would be black; here they show what shines")
+        plugin.warn(
+            "without bsdf_samples mirrors and smooth glass would be black; here they show what shines"
+        )
     elif light == 0:
         plugin.warn("without emitter_samples pictures are noisier in Mitsuba than here, and else the same")
     return Asked(Direct(max(light, 1), max(surface, 1)), unaimed=light == 0)

@@ -52,7 +52,9 @@ def at(plugin: Plugin, u: Floats, v: Floats) -> Floats:
     across, down = (x - 0.5 - left)[..., None], (y - 0.5 - top)[..., None]
     columns = [_wrapped(left + k, width, wrap) for k in range(2)]
     rows = [_wrapped(top + k, height, wrap) for k in range(2)]
-    above, below = (colours[row, columns[0]] * (1 - across) + colours[row, columns[1]] * across for row in rows)
+    above, below = (
+        colours[row, columns[0]] * (1 - across) + colours[row, columns[1]] * across for row in rows
+    )
     return np.asarray(above * (1 - down) + below * down)
 
 
@@ -60,8 +62,8 @@ def _wrapped(at: Any, count: int, wrap: str) -> NDArray[np.int64]:
     """Return which point of a row is at a place beyond its ends."""
     place = at.astype(np.int64)
     if wrap == "clamp":
-        return np.clip(place, 0, count - 1)
+        return np.asarray(np.clip(place, 0, count - 1))
     if wrap == "mirror":
         place = np.mod(place, 2 * count)
-        return np.minimum(place, 2 * count - 1 - place)
-    return np.mod(place, count)
+        return np.asarray(np.minimum(place, 2 * count - 1 - place))
+    return np.asarray(np.mod(place, count))

@@ -42,7 +42,9 @@ class Element:
         self.children: list[Element] = []
 
 
-def read_xml(path: Path, parameters: Mapping[str, Any], folder: Path | None = None) -> tuple[Tree, list[Path]]:
+def read_xml(
+    path: Path, parameters: Mapping[str, Any], folder: Path | None = None
+) -> tuple[Tree, list[Path]]:
     """Return the scene of an XML file as a dict, and the folders in which its files are looked for.
 
     Parameters

@@ -142,12 +142,16 @@ class Materials:
         if isinstance(u, Texture) or isinstance(v, Texture):
             parameters.fail("the roughness of a coat must be a number")
         return Plastic(
-            self._colour(parameters, "reflectance", 0.5), self._ior(parameters, "eta", 1.5), alpha=math.sqrt(u * v)
+            self._colour(parameters, "reflectance", 0.5),
+            self._ior(parameters, "eta", 1.5),
+            alpha=math.sqrt(u * v),
         )
 
     def _coated_conductor(self, parameters: Parameters) -> Material:
         self._warn("coatedconductor is approximated by its metal without the coat")
-        parameters.ignore("thickness", "maxdepth", "nsamples", "g", "albedo", "interface.roughness", "interface.eta")
+        parameters.ignore(
+            "thickness", "maxdepth", "nsamples", "g", "albedo", "interface.roughness", "interface.eta"
+        )
         parameters.ignore("interface.uroughness", "interface.vroughness")
         return self._metal(parameters, "conductor.")
 

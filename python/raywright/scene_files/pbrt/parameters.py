@@ -94,7 +94,9 @@ class Parameters:
         found = self.take(name)
         if found is None:
             return default
-        values = [{"true": True, "false": False}.get(one, one) if isinstance(one, str) else one for one in found[1]]
+        values = [
+            {"true": True, "false": False}.get(one, one) if isinstance(one, str) else one for one in found[1]
+        ]
         if len(values) != 1 or not isinstance(values[0], bool):
             self.fail(f"{name} must be true or false")
         return bool(values[0])

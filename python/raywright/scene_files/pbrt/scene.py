@@ -142,7 +142,7 @@ class _Reader:
     def _option(self, one: Directive) -> None:
         (kind,), parameters = one.texts, one.parameters
         if one.name == "Camera":
-            self._named["camera"] = np.linalg.inv(self._state.matrix)
+            self._named["camera"] = np.asarray(np.linalg.inv(self._state.matrix), np.float64)
             self._camera = kind, parameters, self._named["camera"]
             # The camera's +x is to the right: a world is left-handed unless that is turned round.
             self._mirror = _MIRROR if np.linalg.det(self._state.matrix[:3, :3]) > 0 else _AS_IT_IS
@@ -161,7 +161,9 @@ class _Reader:
             name, of, kind = texts
             self._textures.add(name, of, kind, parameters.over(self._defaults("texture")))
         elif one.name == "Material":
-            self._set(material=self._materials.material(texts[0], parameters.over(self._defaults("material"))))
+            self._set(
+                material=self._materials.material(texts[0], parameters.over(self._defaults("material")))
+            )
         elif one.name == "MakeNamedMaterial":
             self._materials.add(texts[0], parameters.over(self._defaults("material")))
         elif one.name == "NamedMaterial":
@@ -172,7 +174,10 @@ class _Reader:
             self._set(emission=shapes.emission(parameters.over(self._defaults("light"))))
         elif one.name == "LightSource":
             made = lights.light(
-                texts[0], parameters.over(self._defaults("light")), self._mirror @ state.matrix, self._textures
+                texts[0],
+                parameters.over(self._defaults("light")),
+                self._mirror @ state.matrix,
+                self._textures,
             )
             if isinstance(made, get_args(Light)):
                 self._lights.append(cast(Light, made))
@@ -233,7 +238,9 @@ class _Reader:
                 parameters.fail(f"there is no object {name!r}")
             if self._groups[name]:
                 places.setdefault(name, []).append(matrix)
-        found = self._found + [Instance(self._groups[name], np.stack(where)) for name, where in places.items()]
+        found = self._found + [
+            Instance(self._groups[name], np.stack(where)) for name, where in places.items()
+        ]
         kind, parameters, matrix = self._camera
         sampler, samples, seed = self._sampler
         around = self._around[0] if len(self._around) == 1 else self._around or None
@@ -277,4 +284,4 @@ def _step(one: Directive) -> Floats:
         placed = np.eye(4)
         placed[:3] = np.column_stack([right, np.cross(forward, right), forward, eye])
         matrix = np.linalg.inv(placed)
-    return matrix
+    return np.asarray(matrix, np.float64)

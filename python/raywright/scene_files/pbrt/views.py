@@ -8,7 +8,14 @@ import numpy as np
 
 from ...cameras import AnyCamera, Camera, Orthographic, Panorama, ThinLens
 from ...integrators import AmbientOcclusion, AnyIntegrator, Bidirectional, LightTraced, Path
-from ...rendering.filters import BoxFilter, Filter, GaussianFilter, LanczosFilter, MitchellFilter, TriangleFilter
+from ...rendering.filters import (
+    BoxFilter,
+    Filter,
+    GaussianFilter,
+    LanczosFilter,
+    MitchellFilter,
+    TriangleFilter,
+)
 from ...rendering.samplers import Halton, Independent, Sampler, Sobol, Stratified
 from .parameters import Floats, Parameters
 
@@ -80,7 +87,9 @@ def film(kind: str, parameters: Parameters) -> tuple[int, int]:
         if parameters.has(name):
             parameters.fail(f"{name} is not supported")
     if parameters.text("sensor", "cie1931") != "cie1931":
-        warnings.warn("a film's sensor is left out: colours are those that the eye sees", RuntimeWarning, stacklevel=2)
+        warnings.warn(
+            "a film's sensor is left out: colours are those that the eye sees", RuntimeWarning, stacklevel=2
+        )
     parameters.ignore(
         "filename", "savefp16", "diagonal", "iso", "exposuretime", "maxcomponentvalue", "whitebalance",
         "coordinatesystem", "nbuckets", "lambdamin", "lambdamax",
@@ -146,9 +155,9 @@ def integrator(kind: str, parameters: Parameters) -> AnyIntegrator:
     if depth < 0:
         parameters.fail(f"maxdepth must be at least 0, got {depth}")
     parameters.ignore(
-        "regularize", "lightsampler", "bootstrapsamples", "chains", "mutationsperpixel", "largestepprobability",
-        "sigma", "photonsperiteration", "radius", "seed", "samplelights", "samplebsdf", "visualizestrategies",
-        "visualizeweights",
+        "regularize", "lightsampler", "bootstrapsamples", "chains", "mutationsperpixel",
+        "largestepprobability", "sigma", "photonsperiteration", "radius", "seed", "samplelights",
+        "samplebsdf", "visualizestrategies", "visualizeweights",
     )  # fmt: skip
     made: AnyIntegrator
     if kind in _PATHS:

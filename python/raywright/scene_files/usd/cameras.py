@@ -32,7 +32,9 @@ def camera(prim: Any, matrix: NDArray[np.float64], time: Any) -> AnyCamera:
     fov = 2 * math.degrees(math.atan(high / (2 * length)))
     stop, distance = float(seen.fStop), float(seen.focusDistance)
     if stop > 0 and distance > 0:
-        return ThinLens(place, fov=fov, aperture_radius=0.05 * length / stop, focus_distance=distance, **common)
+        return ThinLens(
+            place, fov=fov, aperture_radius=0.05 * length / stop, focus_distance=distance, **common
+        )
     shift = [float(seen.horizontalApertureOffset) / across, float(seen.verticalApertureOffset) / high]
     if shift == [0.0, 0.0]:
         return Camera(place, fov=fov, **common)

@@ -14,7 +14,9 @@ from .notes import Notes
 Matrix = NDArray[np.float64]
 
 
-def shapes(prim: Any, matrix: Matrix, time: Any, notes: Notes, kept: dict[str, Surface] | None = None) -> list[Any]:
+def shapes(
+    prim: Any, matrix: Matrix, time: Any, notes: Notes, kept: dict[str, Surface] | None = None
+) -> list[Any]:
     """Return the shapes that a prim is; none if it is something else."""
     from pxr import UsdGeom
 
@@ -29,7 +31,7 @@ def shapes(prim: Any, matrix: Matrix, time: Any, notes: Notes, kept: dict[str, S
             notes.tell(f"shapes of type {kind} are left out")
         return []
     surface = bound(prim, notes, kept) or PLAIN
-    look = {"transform": matrix, "material": surface.material, "emission": surface.emission}
+    look: dict[str, Any] = {"transform": matrix, "material": surface.material, "emission": surface.emission}
 
     def number(name: str) -> float:
         return float(prim.GetAttribute(name).Get(time))
@@ -54,11 +56,13 @@ def _mesh(mesh: Any, matrix: Matrix, time: Any, notes: Notes, kept: dict[str, Su
     points = np.array(mesh.GetPointsAttr().Get(time), np.float64).reshape(-1, 3)
     counts = np.array(mesh.GetFaceVertexCountsAttr().Get(time), np.int64).reshape(-1)
     indices = np.array(mesh.GetFaceVertexIndicesAttr().Get(time), np.int64).reshape(-1)
-    if counts.sum() != len(indices) or (len(indices) and not (0 <= indices.min() and indices.max() < len(points))):
+    if counts.sum() != len(indices) or (
+        len(indices) and not (indices.min() >= 0 and indices.max() < len(points))
+    ):
         raise ValueError(f"{prim.GetPath()} has faces that do not fit its points")
-    if mesh.GetSubdivisionSchemeAttr().Get(time) != "none":
-        if mesh.GetSubdivisionSchemeAttr().HasAuthoredValue():
-            notes.tell("meshes that are to be subdivided are shown as they are")
+    scheme = mesh.GetSubdivisionSchemeAttr()
+    if scheme.HasAuthoredValue() and scheme.Get(time) != "none":
+        notes.tell("meshes that are to be subdivided are shown as they are")
     corner, face = _fans(counts)
     surface = bound(prim, notes, kept)
     parts = [(surface, np.ones(len(counts), np.bool_))]
@@ -83,18 +87,31 @@ def _mesh(mesh: Any, matrix: Matrix, time: Any, notes: Notes, kept: dict[str, Su
         look = one or (coloured() if colours is not None else PLAIN)
         uv = UsdGeom.PrimvarsAPI(prim).GetPrimvar(look.uv)
         coordinates = _primvar(uv, time, counts, indices, 2) if uv and uv.HasValue() else None
-        given = {"normals": normals, "uv": coordinates, "colors": None if colours is None else colours.clip(0, 1)}
+        given = {
+            "normals": normals,
+            "uv": coordinates,
+            "colors": None if colours is None else colours.clip(0, 1),
+        }
         flat = corners.reshape(-1)
         if any(values is not None for values in given.values()):
             # Corners may differ from face to face: each has its own.
             arrays = {name: None if values is None else values[flat] for name, values in given.items()}
             faces = np.arange(len(flat)).reshape(-1, 3)
             made = Mesh(
-                points[indices[flat]], faces, material=look.material, emission=look.emission, name=prim.GetName(), **arrays
+                points[indices[flat]],
+                faces,
+                material=look.material,
+                emission=look.emission,
+                name=prim.GetName(),
+                **arrays,
             )
         else:
             made = Mesh(
-                points, indices[flat].reshape(-1, 3), material=look.material, emission=look.emission, name=prim.GetName()
+                points,
+                indices[flat].reshape(-1, 3),
+                material=look.material,
+                emission=look.emission,
+                name=prim.GetName(),
             )
         found.append(made.transformed(matrix))
     return found
@@ -132,7 +149,9 @@ def _corners(values: Matrix, how: str, counts: Any, indices: Any) -> Matrix | No
     """Return values at the corners of faces; None where they do not fit."""
     if how == "constant":
         return np.repeat(values[:1], len(indices), axis=0)
-    at = {"uniform": np.repeat(np.arange(len(counts)), counts), "faceVarying": np.arange(len(indices))}.get(how, indices)
+    at = {"uniform": np.repeat(np.arange(len(counts)), counts), "faceVarying": np.arange(len(indices))}.get(
+        how, indices
+    )
     return values[at] if len(at) == 0 or at.max() < len(values) else None
 
 
