@@ -141,8 +141,8 @@ fn draws_are_as_dense_as_they_say() {
     }
 }
 
-/// White sheets and glass give no more than they get, but for what Burley's diffuse reflection gains at grazing angles
-/// where it is rough (2012, 5.3).
+/// What is white and matt gives more than it gets, as nothing takes from its base what its facets reflect (Burley, 2012):
+/// up to a sixth, and half towards grazing angles. It is no more than that.
 #[test]
 fn little_light_is_gained() {
     for roughness in [0.1, 0.5, 1.0] {
@@ -160,7 +160,7 @@ fn little_light_is_gained() {
                         let (choice, u) = (numbers.one(2), numbers.two(0));
                         sum += bsdf.sample(wo, || choice, u).map_or(0.0, |s| s.weight.max() * s.eta * s.eta);
                     }
-                    let most = if wo.z.abs() > 0.3 { 1.08 } else { 1.45 };
+                    let most = if wo.z.abs() > 0.3 { 1.17 } else { 1.5 };
                     assert!(sum / 4000.0 < most, "{roughness} {transmission} {wo}: {}", sum / 4000.0);
                 }
             }
