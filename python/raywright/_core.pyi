@@ -25,6 +25,7 @@ __all__ = [
     "camera_rays_through",
     "chances",
     "cones",
+    "exr_channels",
     "first_hits",
     "implicit_trouble",
     "interactions",
