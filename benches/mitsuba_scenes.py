@@ -37,7 +37,7 @@ def told(path: Path, root: Path, render: bool) -> tuple[bool, str]:
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         try:
-            # Some say how many samples they take by a parameter alone, or rely on the folder of what all share.
+            # Some say how many samples they take by a parameter alone, or rely on what all share.
             given = {"spp": 4} if "$spp" in path.read_text(encoding="utf-8") else {}
             shot = rw.from_mitsuba(path, folder=root / "common", parameters=given)
             if render:
@@ -49,6 +49,7 @@ def told(path: Path, root: Path, render: bool) -> tuple[bool, str]:
 
 
 def main() -> None:
+    """Print what is said of each."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("path", type=Path)
     parser.add_argument("--render", action="store_true", help="render each that loads, in small")

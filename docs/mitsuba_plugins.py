@@ -1,7 +1,7 @@
 """Mitsuba's plugins, one by one, and what becomes of each here.
 
-``python docs/mitsuba_plugins.py --write`` puts the table into ``docs/from_mitsuba.md``; a test checks that it is
-current. What is read is asked of the reader itself; what is approximated, and what is refused, is told here.
+``python docs/mitsuba_plugins.py --write`` puts the table into ``docs/from_mitsuba.md``; a test checks that it
+is current. What is read is asked of the reader itself; what is approximated or refused is told here.
 """
 
 import re
@@ -28,7 +28,7 @@ READ = {
 # What is another thing here, or not quite the same.
 NEARLY = {
     "linearcurve": "a mesh of 48 sides, within 0.22 % of the radius; fewer sides beyond 4 million triangles",
-    "bsplinecurve": "so too, cut in straight pieces that stray by 0.1 % of the radius; one sees into open ends",
+    "bsplinecurve": "so too, in straight pieces that stray by 0.1 % of the radius; one sees into open ends",
     "sdfgrid": "a mesh of a third of its cells, with corners on the surface",
     "mesh_attribute": "of PLY files: vertices or faces, one attribute a mesh, between 0 and 1",
     "spectrum": "by wavelength: red, green and blue, as white is D65; warned of",

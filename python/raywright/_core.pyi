@@ -26,6 +26,7 @@ __all__ = [
     "chances",
     "cone_coverage",
     "cones",
+    "exr_channels",
     "first_hits",
     "implicit_trouble",
     "interactions",
@@ -548,7 +549,7 @@ def matrix_trouble(matrix: list[list[float]]) -> str | None:
     """Why an affine matrix (4 rows of 4) has no inverse, or None if it has one."""
 
 def exr_channels(data: bytes) -> tuple[int, int, list[tuple[str, NDArray[np.float32]]]]:
-    """Read the channels of an EXR file's first part: width, height, and by name their numbers from the top."""
+    """Read the channels of an EXR file's first part: width, height, and numbers from the top by name."""
 
 def metals() -> list[tuple[str, str]]:
     """Tell the metals that are known: symbol and name."""

@@ -157,7 +157,9 @@ def _tell_report(report: Any, options: argparse.Namespace) -> None:
 
 
 def _picture(shot: Shot, options: argparse.Namespace) -> None:
-    kept = {"checkpoint": options.checkpoint, "background": options.background}
+    # What a scene hides stays hidden.
+    background = shot.background if options.background == BACKGROUNDS[0] else options.background
+    kept = {"checkpoint": options.checkpoint, "background": background}
     image = shot.render(**_how(options, shot), **kept, progress=not options.quiet)
     image.save(options.output, options.exposure, options.tone)
     if not options.quiet:

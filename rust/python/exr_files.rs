@@ -5,17 +5,17 @@ use numpy::PyArray1;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
+/// Numbers by name.
+type Channels<'py> = Vec<(String, Bound<'py, PyArray1<f32>>)>;
+
 /// The channels of the first part of an EXR file, from its bytes: width and height of its data, and by name the numbers
 /// of each from the top row on, as f32. Whoever calls has looked at the header: this reads what it promises.
 ///
 /// # Errors
-/// A `ValueError` for what is broken, is of depths, has channels of fewer points than the picture, or is compressed by a
-/// method that is not read.
+/// A `ValueError` for what is broken, is of depths, has channels of fewer points than the picture, or is compressed by
+/// a method that is not read.
 #[pyfunction]
-pub fn exr_channels<'py>(
-    py: Python<'py>,
-    data: &[u8],
-) -> PyResult<(usize, usize, Vec<(String, Bound<'py, PyArray1<f32>>)>)> {
+pub fn exr_channels<'py>(py: Python<'py>, data: &[u8]) -> PyResult<(usize, usize, Channels<'py>)> {
     let found = py.detach(|| {
         read()
             .no_deep_data()

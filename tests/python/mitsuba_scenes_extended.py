@@ -1,4 +1,4 @@
-"""More small scenes in Mitsuba's format: principled materials, curves and grids, attributes, pictures that are thrown."""
+"""More small scenes in Mitsuba's format: principled materials, curves, attributes, thrown pictures."""
 
 from mitsuba_parts import (
     FLOOR,

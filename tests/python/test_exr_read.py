@@ -64,6 +64,15 @@ def test_an_environment_is_read_without_the_library(tmp_path):
     assert float(done.stdout) == pytest.approx(float(image.sum()), rel=1e-5)
 
 
+def refusal(path):
+    """What is said of a file; nothing if it can be read."""
+    try:
+        read(path)
+    except ValueError as error:
+        return str(error)
+    return ""
+
+
 def test_broken_bytes_are_told_in_one_line(tmp_path):
     grey = np.random.default_rng(1).uniform(0, 1, (40, 30)).astype(np.float32)
     path = tmp_path / "b.exr"
@@ -78,7 +87,5 @@ def test_broken_bytes_are_told_in_one_line(tmp_path):
         for place in rng.integers(8, len(data), 3):
             broken[place] = rng.integers(256)
         path.write_bytes(bytes(broken))
-        try:
-            read(path)
-        except ValueError as error:
-            assert "\n" not in str(error)
+        told = refusal(path)
+        assert "\n" not in told

@@ -252,7 +252,7 @@ def test_a_part_of_a_film_sees_what_the_whole_does_there():
         ({"i": {"type": "moment"}}, "moment 'i': one integrator must be within, got 0"),
         (
             {"i": {"type": "direct", "emitter_samples": 0, "bsdf_samples": 0}},
-            "direct 'i': emitter_samples and bsdf_samples must be at least 0, and one of them 1, got 0 and 0",
+            "direct 'i': emitter_samples and bsdf_samples must be at least 0, and not both, got 0 and 0",
         ),
         (
             {"s": {"type": "sphere", "b": {"type": "principled", "eta": 1.5, "specular": 0.5}}},
@@ -316,7 +316,7 @@ def test_moments_are_told_of_any_integrator():
     ],
 )
 def test_meters_measure_along_one_ray(eye):
-    """Of a matt ball under an even sky, its reflectance: this sees the pole, from where all of the sky is seen."""
+    """Of a matt ball under an even sky, its reflectance: all of the sky is seen from its pole."""
     grey = {"type": "diffuse", "reflectance": 0.6}
     parts = {"b": {"type": "sphere", "bsdf": grey}, "s": {"type": "constant"}}
     found = rw.from_mitsuba({"type": "scene", "eye": {**eye, "film": POINT}, **parts})
@@ -354,7 +354,7 @@ def test_principled_numbers_are_those_of_the_scene():
 
 
 def test_black_bodies_shine_as_hot_as_they_are():
-    """In Mitsuba's units, as spectral variants have them: about D65's white at 6,500 K, and Stefan's fourth power."""
+    """In Mitsuba's units, as spectral variants have them: about D65's white at 6,500 K."""
 
     def shine(kelvin, **more):
         lamp = {"type": "constant", "radiance": {"type": "blackbody", "temperature": kelvin, **more}}

@@ -1,4 +1,4 @@
-"""Meshes of Mitsuba's own kinds: compressed files, curves, grids of distances, and what vertices have besides."""
+"""Meshes of Mitsuba's own kinds: compressed files, curves, grids of distances, attributes."""
 
 import re
 
@@ -43,7 +43,7 @@ def test_compressed_meshes_that_are_broken_are_refused(tmp_path):
 
     def refused(given, index=1):
         path.write_bytes(given)
-        with pytest.raises(ValueError) as caught:
+        with pytest.raises(ValueError, match="serialized") as caught:
             shape(tmp_path, type="serialized", filename="m.serialized", shape_index=index)
         assert "\n" not in str(caught.value)
         return str(caught.value)
@@ -82,11 +82,11 @@ def test_vertices_and_faces_have_their_colours(tmp_path):
 
 @pytest.mark.parametrize("ends", [(0.3, 0.3), (0.2, 0.6)])
 def test_a_straight_curve_is_the_hull_of_two_balls(ends):
-    """What is hit across its axis is a cone and the parts of balls beyond it, less what 48 sides leave out."""
+    """What is hit across its axis is a cone and parts of balls beyond it, less what 48 sides leave out."""
     a, b = ends
     length = 2.0
     tube = tubes.linear([np.array([(0, 0, 0, a), (0, 0, length, b)], float)])
-    # The meridian's profile, turned about the axis: z and radius from pole to pole (Pappus, by Simpson's rule).
+    # The radius at each height, from pole to pole.
     sin = (a - b) / length
     cos = np.sqrt(1 - sin * sin)
 
@@ -101,13 +101,13 @@ def test_a_straight_curve_is_the_hull_of_two_balls(ends):
         np.stack([np.full(160, -5.0), np.zeros(160), heights], -1), np.broadcast_to((1.0, 0.0, 0.0), (160, 3))
     )
     found, truth = np.where(hits.hit, 5 - hits.t, 0.0), radius(heights)
-    # Chords of 48 sides lie within 0.22 % of the radius. At the poles that is more of the distance to the axis.
+    # Chords of 48 sides lie within 0.22 % of the radius, and so do those along a ball.
     assert (found <= truth + 1e-7).all()
     assert abs((w * found**2).sum() / (w * truth**2).sum() - 1) < 2 * 0.0022
 
 
 def test_b_splines_go_where_they_do(tmp_path):
-    """The middle line of a circle's sections is the spline; straight points give a straight tube of their radius."""
+    """The middle line of a circle's sections is the spline; straight points give a straight tube."""
     (tmp_path / "c.txt").write_text("\n".join(f"0 0 {k} 0.25" for k in range(6)))
     tube = shape(tmp_path, type="bsplinecurve", filename="c.txt")
     radius = np.hypot(*tube.vertices[:, :2].T)
@@ -151,14 +151,14 @@ def vol(grid):
 
 
 def test_grids_of_distances_have_their_surface(tmp_path):
-    """Of a ball's distances on 24³ points it is where linear interpolation has 0, to a hundredth of a cell."""
+    """Of a ball's distances on 24³ points it is where linear interpolation has 0."""
     axis = np.linspace(0, 1, 24)
     z, y, x = np.meshgrid(axis, axis, axis, indexing="ij")
     grid = np.sqrt((x - 0.5) ** 2 + (y - 0.45) ** 2 + (z - 0.55) ** 2) - 0.3
     (tmp_path / "ball.vol").write_bytes(vol(grid))
     mesh = shape(tmp_path, type="sdfgrid", filename="ball.vol")
     distance = np.linalg.norm(mesh.vertices - (0.5, 0.45, 0.55), axis=1)
-    # A chord of a cell's length h within a ball of radius r strays by h² / 8r at most in each of 3 directions.
+    # A chord of a cell's length h within a ball of radius r strays by h² / 8r at most, in 3 directions.
     assert np.abs(distance - 0.3).max() < 3 * (1 / 23) ** 2 / (8 * 0.3)
     # Three times as much of its volume.
     assert volume(mesh) == pytest.approx(4 / 3 * np.pi * 0.3**3, rel=9 * (1 / 23) ** 2 / (8 * 0.3**2))

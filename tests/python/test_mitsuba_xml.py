@@ -130,7 +130,9 @@ def test_scenes_of_version_one_have_their_names_renewed(tmp_path):
         <integrator type="path"><integer name="maxDepth" value="3"/></integrator>
         <texture type="checkerboard" id="theCells"/>
         <shape type="disk"><bsdf type="diffuse"><ref name="diffuseReflectance" id="theCells"/></bsdf></shape>
-        <shape type="sphere"><transform name="toWorld"><lookAt origin="0, 0, 0" target="0, 0, 1" up="0, 1, 0"/><scale value="2"/></transform>
+        <shape type="sphere"><transform name="toWorld">
+        <lookAt origin="0, 0, 0" target="0, 0, 1" up="0, 1, 0"/>
+        <scale value="2"/></transform>
         <bsdf type="dielectric"><float name="intIOR" value="1.5"/></bsdf></shape></scene>
     """
     )

@@ -39,7 +39,7 @@ def seen(shot, point):
 
 
 def test_the_world_is_left_handed(tmp_path):
-    """pbrt has +x on the right of a camera that looks along +z, and of one that looks along -z, on the left."""
+    """pbrt has +x on the right of a camera that looks along +z, and on the left of one along -z."""
     world = 'Translate 1 0.5 0\nShape "sphere" "float radius" 0.1'
     for eye, side in (("0 0 -5", 1), ("0 0 5", -1)):
         shot = load(tmp_path, world, HEAD.replace("0 0 5", eye))
@@ -290,7 +290,7 @@ def test_files_include_others(tmp_path):
         ("Scale 1 0 1", "Scale must not be 0"),
         ("Translate 1 2", "is no value"),
         (
-            'Shape "curve" "point3 P" [0 0 0  1 0 0  2 0 0  3 0 0] "integer degree" 2 "string type" "cylinder"',
+            'Shape "curve" "point3 P" [0 0 0 1 0 0 2 0 0 3 0 0] "integer degree" 2 "string type" "cylinder"',
             "a curve must be cubic",
         ),
     ],

@@ -38,8 +38,9 @@ def load(
     ----------
     path : str or path
         ``.xml``, a scene of Mitsuba 3, as `from_mitsuba` reads it; ``.pbrt``, one of pbrt-v4; ``.glb`` or
-        ``.gltf``; ``.usd``, ``.usda``, ``.usdc`` or ``.usdz``, which need ``pip install 'raywright[usd]'``; or
-        any other mesh file that trimesh reads: OBJ with its materials, PLY, STL, ...
+        ``.gltf``; ``.usd``, ``.usda``, ``.usdc`` or ``.usdz``, for which there is
+        ``pip install 'raywright[usd]'``; or any other mesh file that trimesh reads: OBJ with its materials,
+        PLY, STL, ...
     up : {"y", "z"}
         The axis that points up in a mesh file that does not say so; in glTF it is y.
     width, height : int, optional

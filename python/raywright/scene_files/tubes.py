@@ -1,5 +1,6 @@
 """Curves with a radius, as meshes: straight ones with round joints, and cubic B-splines."""
 
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -11,8 +12,8 @@ Floats = NDArray[np.float64]
 _SIDES = 48
 # Where that many would be more triangles than this, there are half as many, and so on, down to the fewest.
 _MOST_TRIANGLES, _FEWEST = 4_000_000, 6
-# Pieces of one segment of a B-spline: between them the middle line strays from it by at most 1/8 of its second
-# difference over the square of these, which is told by `_pieces`.
+# Pieces of one segment of a B-spline: between them the middle line strays from it by at most 1/8 of its
+# second difference over the square of these, which is told by `_pieces`.
 _MOST_PIECES = 64
 _BENDS = 1e-3
 
@@ -27,13 +28,13 @@ class Tube(NamedTuple):
 
 
 def linear(curves: list[Floats]) -> Tube:
-    """Return what a ball sweeps that goes from point to point in straight lines, its radius changing evenly."""
+    """Return what a ball sweeps that goes straight from point to point, its radius changing evenly."""
     segments = sum(len(curve) - 1 for curve in curves)
     sides = _sides(segments, 2)
     parts = []
     first = 0
     for curve in curves:
-        for k, (a, b) in enumerate(zip(curve[:-1], curve[1:], strict=True)):
+        for k, (a, b) in enumerate(pairwise(curve)):
             span = (first + k) / segments, (first + k + 1) / segments
             if (tube := _cone(a, b, sides, span)) is not None:
                 parts.append(tube)
@@ -66,7 +67,7 @@ def _sides(segments: int, pieces: int) -> int:
 
 
 def _pieces(curves: list[Floats]) -> int:
-    """Return in how many straight pieces segments are cut: so that they stray by 1e-3 of the radius or of a hop."""
+    """Return in how many straight pieces segments are cut, which then stray by 1e-3 of the radius."""
     bend = 1e-30
     for curve in curves:
         second = np.linalg.norm(np.diff(curve[:, :3], 2, axis=0), axis=1).max()
@@ -77,7 +78,7 @@ def _pieces(curves: list[Floats]) -> int:
 
 
 def _spline(curve: Floats, at: Floats) -> tuple[Floats, Floats, Floats]:
-    """Return points, with their radii, (N, 4), and the first and second derivatives of a spline, (N, 4) each."""
+    """Return points of a spline with their radii, and its first and second derivatives, (N, 4) each."""
     which = np.minimum(at.astype(np.int64), len(curve) - 4)
     t = (at - which)[:, None]
     a, b, c, d = (curve[which + k] for k in range(4))

@@ -62,7 +62,7 @@ def read_attribute(path: Path, name: str) -> tuple[bool, Floats]:
     for parts in ([f"{rest}_{end}" for end in ending] for ending in _ENDINGS):
         if all(part in columns for part in parts):
             return of == "face", np.stack([columns[part] for part in parts], -1)
-    for parts in (("r", "g", "b"), ("red", "green", "blue")):
+    for parts in (["r", "g", "b"], ["red", "green", "blue"]):
         if rest == "color" and all(part in columns for part in parts):
             whole = np.stack([columns[part] for part in parts], -1)
             return of == "face", whole / 255 if raw[parts[0]].dtype.kind in "ui" else whole

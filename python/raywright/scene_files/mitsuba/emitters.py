@@ -30,10 +30,10 @@ from .values import UNIFORM, colour
 
 TYPES = ("point", "spot", "projector", "directional", "constant", "envmap", "sunsky")
 
-# Points across what a spot throws through a texture, and the widest that does: beyond it they lie too far apart.
+# Points across what a spot throws through a texture, and the widest that does: beyond they lie too far apart.
 _FEWEST, _MOST, _WIDEST = 512, 1024, 80.0
-# What a luminance of the sky, in cd/m² over 683 lm/W, is divided by in Mitsuba: the integral of the observer's
-# green over wavelengths in nm (CIE 1931).
+# What a luminance of the sky, in cd/m² over 683 lm/W, is divided by in Mitsuba: the integral of the
+# observer's green over wavelengths in nm (CIE 1931).
 _SKY = 106.856895
 
 # Rows to which smaller environment maps are refined.
@@ -131,8 +131,8 @@ def _projector(plugin: Plugin) -> ProjectorLight:
     if texture is None:
         image = np.broadcast_to(colour(plugin, "irradiance", 1.0, emits=True), (1, 1, 3))
     else:
-        # As many points to each of the picture's, or enough for the edges of a checkerboard: at its border Mitsuba
-        # goes on with what is beyond, and a projector here stays as it is for half a point.
+        # As many points to each of the picture's, or enough for the edges of a checkerboard: at its border
+        # Mitsuba goes on with what is beyond, and a projector here stays as it is for half a point.
         finer = max(-(-_FEWEST // max(width, height)), 1)
         width, height = width * finer, height * finer
         u, v = np.meshgrid((np.arange(width) + 0.5) / width, (np.arange(height) + 0.5) / height)

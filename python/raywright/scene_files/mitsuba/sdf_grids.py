@@ -49,14 +49,14 @@ def read_vol(path: Path) -> Floats:
         raise SceneError(
             f"{path} is cut short: it has {x} x {y} x {z} points by its header, in {len(data)} bytes"
         )
-    return np.frombuffer(data, "<f4", x * y * z, 48).reshape(z, y, x).astype(np.float64)
+    return np.asarray(np.frombuffer(data, "<f4", x * y * z, 48).reshape(z, y, x), np.float64)
 
 
 def surface(grid: Floats) -> Surface:
     """Return where a grid is 0 that is linear between its points along each axis, and fills the unit cube.
 
-    Cells are cut in three along each axis, and these in six tetrahedra (Doi and Koide, "An Efficient Method of
-    Triangulating Equi-Valued Surfaces", 1991). Corners lie on the surface itself, so that between them it is
+    Cells are cut in three along each axis, and these in six tetrahedra (Doi and Koide, "An Efficient Method
+    of Triangulating Equi-Valued Surfaces", 1991). Corners lie on the surface itself, and between them it is
     missed by at most an eighth of a cell's third squared, times its curvature.
 
     Raises
@@ -107,7 +107,7 @@ def _refined(grid: Floats, axis: int, times: int) -> Floats:
     at = np.arange((count - 1) * times + 1) / times
     low = np.minimum(at.astype(np.int64), count - 2)
     share = (at - low).reshape([-1 if k == axis else 1 for k in range(3)])
-    return np.take(grid, low, axis) * (1 - share) + np.take(grid, low + 1, axis) * share
+    return np.asarray(np.take(grid, low, axis) * (1 - share) + np.take(grid, low + 1, axis) * share)
 
 
 def _tetrahedra(points: NDArray[np.int64], values: Floats) -> NDArray[np.int64]:
@@ -128,7 +128,7 @@ def _tetrahedra(points: NDArray[np.int64], values: Floats) -> NDArray[np.int64]:
 
 
 def _triangles(*edges: tuple[NDArray[np.int64], NDArray[np.int64]]) -> NDArray[np.int64]:
-    return np.stack([np.stack(edge, -1) for edge in edges], 1)
+    return np.asarray(np.stack([np.stack(edge, -1) for edge in edges], 1), np.int64)
 
 
 def _on_edges(edges: NDArray[np.int64], grid: Floats, fine: Floats, finer: int) -> Floats:
@@ -170,4 +170,4 @@ def _gradients(grid: Floats, vertices: Floats) -> Floats:
     parts = np.gradient(grid)
     slopes = np.stack([_between(part, at)[0] for part in reversed(parts)], -1) * scale
     length = np.linalg.norm(slopes, axis=1, keepdims=True)
-    return np.divide(slopes, length, out=np.zeros_like(slopes), where=length > 0)
+    return np.asarray(np.divide(slopes, length, out=np.zeros_like(slopes), where=length > 0))

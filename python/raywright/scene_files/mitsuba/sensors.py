@@ -1,7 +1,7 @@
 """Sensors to cameras, and their films."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -61,7 +61,7 @@ def camera(plugin: Plugin, film: Plugin | None, scene: Scene) -> AnyCamera:
     ValueError
         If its type, or a parameter of it, is not supported; tells which.
     """
-    readers = {
+    readers: dict[str, Callable[[Plugin, Crop], AnyCamera]] = {
         "perspective": _perspective,
         "thinlens": _thin_lens,
         "orthographic": _orthographic,

@@ -113,7 +113,7 @@ def _direct(plugin: Plugin) -> Asked:
     light, surface = (plugin.integer(f"{name}_samples", both) for name in ("emitter", "bsdf"))
     if light < 0 or surface < 0 or light + surface < 1:
         plugin.fail(
-            f"emitter_samples and bsdf_samples must be at least 0, and one of them 1, got {light} and {surface}"
+            f"emitter_samples and bsdf_samples must be at least 0, and not both, got {light} and {surface}"
         )
     # Both ways alone find the same light on average, but for what only the other can find.
     if surface == 0:

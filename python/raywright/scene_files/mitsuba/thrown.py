@@ -62,8 +62,8 @@ def _wrapped(at: Any, count: int, wrap: str) -> NDArray[np.int64]:
     """Return which point of a row is at a place beyond its ends."""
     place = at.astype(np.int64)
     if wrap == "clamp":
-        return np.clip(place, 0, count - 1)
+        return np.asarray(np.clip(place, 0, count - 1))
     if wrap == "mirror":
         place = np.mod(place, 2 * count)
-        return np.minimum(place, 2 * count - 1 - place)
-    return np.mod(place, count)
+        return np.asarray(np.minimum(place, 2 * count - 1 - place))
+    return np.asarray(np.mod(place, count))

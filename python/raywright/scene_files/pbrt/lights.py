@@ -1,8 +1,10 @@
 """Lights, and what surrounds a scene."""
 
 import math
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...io.pictures import read_linear
 from ...lights import (
@@ -18,9 +20,6 @@ from ...lights import (
 from .parameters import Floats, Parameters
 from .spectra import colour
 from .textures import Textures
-
-# Rows that a square picture of all directions is resampled to, for each of its own.
-_ROWS = 1.0
 
 
 def light(kind: str, parameters: Parameters, matrix: Floats, textures: Textures) -> Light | Environment:
@@ -106,7 +105,7 @@ def _around(parameters: Parameters, matrix: Floats, textures: Textures, scale: f
     return EnvironmentMap(unfolded(image), linear, scale)
 
 
-def unfolded(image: Floats) -> Floats:
+def unfolded(image: NDArray[Any]) -> NDArray[Any]:
     """Return a square picture of all directions as an equirectangular one, of as many rows.
 
     A square has the same area to each solid angle (Clarberg, "Fast Equal-Area Mapping of the (Hemi)Sphere

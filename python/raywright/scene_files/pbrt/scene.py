@@ -142,7 +142,7 @@ class _Reader:
     def _option(self, one: Directive) -> None:
         (kind,), parameters = one.texts, one.parameters
         if one.name == "Camera":
-            self._named["camera"] = np.linalg.inv(self._state.matrix)
+            self._named["camera"] = np.asarray(np.linalg.inv(self._state.matrix), np.float64)
             self._camera = kind, parameters, self._named["camera"]
             # The camera's +x is to the right: a world is left-handed unless that is turned round.
             self._mirror = _MIRROR if np.linalg.det(self._state.matrix[:3, :3]) > 0 else _AS_IT_IS
@@ -284,4 +284,4 @@ def _step(one: Directive) -> Floats:
         placed = np.eye(4)
         placed[:3] = np.column_stack([right, np.cross(forward, right), forward, eye])
         matrix = np.linalg.inv(placed)
-    return matrix
+    return np.asarray(matrix, np.float64)

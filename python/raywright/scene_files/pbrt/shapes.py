@@ -46,7 +46,7 @@ def emission(parameters: Parameters) -> Emission:
     radiance = tuple(scale * x for x in colour(parameters, "L", 1.0, emits=True))
     side = "both" if parameters.switch("twosided", False) else "front"
     parameters.done()
-    return Emission(radiance, side=side)  # type: ignore[arg-type]
+    return Emission(radiance, side=side)
 
 
 def shape(kind: str, parameters: Parameters, matrix: Floats, look: Look, textures: Textures) -> Mesh | Shape:
@@ -84,23 +84,23 @@ def shape(kind: str, parameters: Parameters, matrix: Floats, look: Look, texture
 
 
 def _mesh(
-    vertices: Floats,
+    vertices: Any,
     faces: Any,
     matrix: Floats,
     look: Look,
-    normals: Floats | None = None,
-    uv: Floats | None = None,
+    normals: Any = None,
+    uv: Any = None,
 ) -> Mesh:
     """Return a mesh in the world. The outside is where faces turn anticlockwise, or where normals point."""
     mesh = Mesh(vertices, faces, normals, uv).transformed(matrix)
-    faces, normals = mesh.faces, mesh.normals
-    if normals is not None:
+    faces, pointing = mesh.faces, mesh.normals
+    if pointing is not None:
         a, b, c = (mesh.vertices[faces[:, k]] for k in range(3))
-        against = np.einsum("ij,ij->i", np.cross(b - a, c - a), normals[faces].sum(1)) < 0
+        against = np.einsum("ij,ij->i", np.cross(b - a, c - a), pointing[faces].sum(1)) < 0
         faces = np.where(against[:, None], faces[:, ::-1], faces)
     if look.flipped:
-        faces, normals = faces[:, ::-1], None if normals is None else -normals
-    return Mesh(mesh.vertices, faces, normals, mesh.uv, look.material, look.emission)
+        faces, pointing = faces[:, ::-1], None if pointing is None else -pointing
+    return Mesh(mesh.vertices, faces, pointing, mesh.uv, look.material, look.emission)
 
 
 def _triangles(parameters: Parameters, matrix: Floats, look: Look, _: Textures) -> Mesh:
@@ -113,16 +113,16 @@ def _corners(parameters: Parameters, count: int) -> tuple[Floats, Any]:
     vertices = parameters.numbers("P", 3)
     if vertices is None or not len(vertices):
         parameters.fail("P must be given")
-    indices = parameters.numbers("indices")
-    if indices is None:
-        if len(vertices) != count:
-            parameters.fail("indices must be given")
-        indices = np.arange(count)
-    if len(indices) % count or (indices != indices.astype(np.int64)).any():
+    given = parameters.numbers("indices")
+    if given is None and len(vertices) != count:
+        parameters.fail("indices must be given")
+    numbers = np.arange(count, dtype=np.float64) if given is None else given
+    indices = numbers.astype(np.int64)
+    if len(indices) % count or (indices != numbers).any():
         parameters.fail(f"indices must be whole numbers, {count} each")
-    if len(indices) and not (0 <= indices.min() and indices.max() < len(vertices)):
+    if len(indices) and not (indices.min() >= 0 and indices.max() < len(vertices)):
         parameters.fail(f"indices must be at least 0 and below {len(vertices)}")
-    return vertices, indices.astype(np.int64).reshape(-1, count)
+    return vertices, indices.reshape(-1, count)
 
 
 def _ply(parameters: Parameters, matrix: Floats, look: Look, textures: Textures) -> Mesh:
@@ -145,7 +145,7 @@ def _bilinear(parameters: Parameters, matrix: Floats, look: Look, _: Textures) -
     weights = np.stack([(1 - u) * (1 - v), u * (1 - v), (1 - u) * v, u * v])
 
     def between(values: Floats) -> Floats:
-        return np.einsum("kp,qkc->qpc", weights, values).reshape(-1, values.shape[-1])
+        return np.asarray(np.einsum("kp,qkc->qpc", weights, values).reshape(-1, values.shape[-1]))
 
     corner = np.arange((cells + 1) ** 2).reshape(cells + 1, cells + 1)
     a, b, c, d = (corner[rows, columns].reshape(-1) for rows, columns in _SQUARE)
@@ -167,14 +167,16 @@ _SQUARE = ((_LOW, _LOW), (_LOW, _HIGH), (_HIGH, _LOW), (_HIGH, _HIGH))
 
 
 def _subdivided(parameters: Parameters, matrix: Floats, look: Look, _: Textures) -> Mesh:
-    from trimesh.remesh import subdivide_loop
+    from trimesh import remesh
+
+    loop: Any = remesh.subdivide_loop
 
     vertices, faces = _corners(parameters, 3)
     parameters.ignore("scheme")
     levels = parameters.integer("levels", 3)
     if not 0 <= levels <= 7:
         parameters.fail(f"levels must be between 0 and 7, got {levels}")
-    vertices, faces = subdivide_loop(vertices, faces, levels) if levels else (vertices, faces)
+    vertices, faces = loop(vertices, faces, levels) if levels else (vertices, faces)
     a, b, c = (vertices[faces[:, k]] for k in range(3))
     normals = np.zeros_like(vertices)
     for k in range(3):

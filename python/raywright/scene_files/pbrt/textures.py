@@ -2,6 +2,7 @@
 
 import warnings
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -147,5 +148,5 @@ def bounded(given: Value, name: str) -> Value:
     return red, green, blue
 
 
-def _decoded(shares: np.ndarray) -> np.ndarray:  # type: ignore[type-arg]
+def _decoded(shares: Any) -> Any:
     return np.where(shares <= 0.04045, shares / 12.92, ((shares + 0.055) / 1.055) ** 2.4)

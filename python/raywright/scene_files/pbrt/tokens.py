@@ -13,14 +13,15 @@ _WORD = re.compile(r'"((?:[^"\\\n]|\\.)*)"|(#[^\n]*)|([\[\]])|([^\s"\[\]#]+)|(\n
 # Numbers and texts that stand before the parameters of each directive.
 _NUMBERS = {"LookAt": 9, "Translate": 3, "Scale": 3, "Rotate": 4, "Transform": 16, "ConcatTransform": 16}
 _TEXTS = {
-    "Accelerator": 1, "AreaLightSource": 1, "Attribute": 1, "Camera": 1, "ColorSpace": 1, "CoordinateSystem": 1,
-    "CoordSysTransform": 1, "Film": 1, "Import": 1, "Include": 1, "Integrator": 1, "LightSource": 1,
-    "MakeNamedMaterial": 1, "MakeNamedMedium": 1, "Material": 1, "MediumInterface": 2, "NamedMaterial": 1,
-    "ObjectBegin": 1, "ObjectInstance": 1, "Option": 0, "PixelFilter": 1, "Sampler": 1, "Shape": 1, "Texture": 3,
+    "Accelerator": 1, "AreaLightSource": 1, "Attribute": 1, "Camera": 1, "ColorSpace": 1,
+    "CoordinateSystem": 1, "CoordSysTransform": 1, "Film": 1, "Import": 1, "Include": 1, "Integrator": 1,
+    "LightSource": 1, "MakeNamedMaterial": 1, "MakeNamedMedium": 1, "Material": 1, "MediumInterface": 2,
+    "NamedMaterial": 1, "ObjectBegin": 1, "ObjectInstance": 1, "Option": 0, "PixelFilter": 1, "Sampler": 1,
+    "Shape": 1, "Texture": 3,
 }  # fmt: skip
 _BARE = (
-    "AttributeBegin", "AttributeEnd", "Identity", "ObjectEnd", "ReverseOrientation", "TransformBegin", "TransformEnd",
-    "WorldBegin",
+    "AttributeBegin", "AttributeEnd", "Identity", "ObjectEnd", "ReverseOrientation", "TransformBegin",
+    "TransformEnd", "WorldBegin",
 )  # fmt: skip
 
 
@@ -59,7 +60,7 @@ def directives(path: Path) -> Iterator[Directive]:
         if word.quoted or not (name in _NUMBERS or name in _TEXTS or name in _BARE):
             raise PbrtError(f"{where}: {name[:40]!r} is no directive that is known")
         numbers = words.numbers(_NUMBERS[name], where) if name in _NUMBERS else ()
-        texts = []
+        texts: list[str] = []
         for _ in range(_TEXTS.get(name, 0)):
             text = words.next()
             if text is None or not text.quoted:
@@ -141,7 +142,7 @@ class _Words:
         if first.quoted or first.text != "[":
             self.back(first)
             return [self._value(self.next(), where) for _ in range(bare)]
-        found = []
+        found: list[Any] = []
         while True:
             word = self.next()
             if word is None:

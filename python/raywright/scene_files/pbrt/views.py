@@ -155,9 +155,9 @@ def integrator(kind: str, parameters: Parameters) -> AnyIntegrator:
     if depth < 0:
         parameters.fail(f"maxdepth must be at least 0, got {depth}")
     parameters.ignore(
-        "regularize", "lightsampler", "bootstrapsamples", "chains", "mutationsperpixel", "largestepprobability",
-        "sigma", "photonsperiteration", "radius", "seed", "samplelights", "samplebsdf", "visualizestrategies",
-        "visualizeweights",
+        "regularize", "lightsampler", "bootstrapsamples", "chains", "mutationsperpixel",
+        "largestepprobability", "sigma", "photonsperiteration", "radius", "seed", "samplelights",
+        "samplebsdf", "visualizestrategies", "visualizeweights",
     )  # fmt: skip
     made: AnyIntegrator
     if kind in _PATHS:

@@ -1,7 +1,7 @@
 """Scenes of USD: meshes with their preview surfaces, cameras and lights, by PyPI's usd-core."""
 
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
@@ -66,7 +66,7 @@ def read_usd(path: Path, width: int | None = None, height: int | None = None) ->
     except Tf.ErrorException as error:
         raise refused(path, "USD file", ValueError("its stage cannot be opened")) from error
     notes = Notes(path)
-    up = "z" if UsdGeom.GetStageUpAxis(stage) == UsdGeom.Tokens.z else "y"
+    up: Literal["y", "z"] = "z" if UsdGeom.GetStageUpAxis(stage) == UsdGeom.Tokens.z else "y"
     try:
         found: list[Any] = []
         lights: list[Any] = []
@@ -90,7 +90,7 @@ def read_usd(path: Path, width: int | None = None, height: int | None = None) ->
             raise ValueError("it holds nothing that is seen")
         if len(cameras) > 1:
             notes.tell(f"the first of its {len(cameras)} cameras is taken")
-        eye = camera(*cameras[0], time) if cameras else None
+        eye = camera(cameras[0][0], cameras[0][1], time) if cameras else None
         shot = shown(found, lights, eye, up=up, width=width, height=height)
         if lights or around or any(getattr(one, "emission", None) is not None for one in found):
             # It has light of its own, which surfaces that are no meshes give too.

@@ -14,7 +14,7 @@ _WRAPS = {"clamp": "clamp", "mirror": "mirror", "black": "clamp", "repeat": "rep
 
 
 class Surface(NamedTuple):
-    """What a material looks like, what it gives off if anything, and the set of coordinates of its pictures."""
+    """What a material looks like, what it gives off, and the set of coordinates of its pictures."""
 
     material: Material
     emission: Value | None
@@ -131,7 +131,7 @@ class _Reader:
         image = ImageTexture(
             array if number or raw else array[..., : 3 if array.shape[2] > 2 else 1],
             linear=linear,
-            channel=channel,  # type: ignore[arg-type]
+            channel=channel,
             wrap=wrap,  # type: ignore[arg-type]
             transform=self._placed(shader),
         )

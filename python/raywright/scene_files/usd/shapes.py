@@ -31,7 +31,7 @@ def shapes(
             notes.tell(f"shapes of type {kind} are left out")
         return []
     surface = bound(prim, notes, kept) or PLAIN
-    look = {"transform": matrix, "material": surface.material, "emission": surface.emission}
+    look: dict[str, Any] = {"transform": matrix, "material": surface.material, "emission": surface.emission}
 
     def number(name: str) -> float:
         return float(prim.GetAttribute(name).Get(time))
@@ -57,12 +57,12 @@ def _mesh(mesh: Any, matrix: Matrix, time: Any, notes: Notes, kept: dict[str, Su
     counts = np.array(mesh.GetFaceVertexCountsAttr().Get(time), np.int64).reshape(-1)
     indices = np.array(mesh.GetFaceVertexIndicesAttr().Get(time), np.int64).reshape(-1)
     if counts.sum() != len(indices) or (
-        len(indices) and not (0 <= indices.min() and indices.max() < len(points))
+        len(indices) and not (indices.min() >= 0 and indices.max() < len(points))
     ):
         raise ValueError(f"{prim.GetPath()} has faces that do not fit its points")
-    if mesh.GetSubdivisionSchemeAttr().Get(time) != "none":
-        if mesh.GetSubdivisionSchemeAttr().HasAuthoredValue():
-            notes.tell("meshes that are to be subdivided are shown as they are")
+    scheme = mesh.GetSubdivisionSchemeAttr()
+    if scheme.HasAuthoredValue() and scheme.Get(time) != "none":
+        notes.tell("meshes that are to be subdivided are shown as they are")
     corner, face = _fans(counts)
     surface = bound(prim, notes, kept)
     parts = [(surface, np.ones(len(counts), np.bool_))]
