@@ -461,7 +461,10 @@ fn what_cannot_be_is_refused_in_a_line() {
     for bad in [0.0, -1.5, f64::NAN, f64::INFINITY] {
         refused(&ThinDielectricMaterial { ior: bad }, "ior must be finite and above 0, got");
         let interior = Interior { ior: bad, priority: 0 };
-        refused(&DielectricMaterial { interior, roughness: 0.0.into(), medium: None }, "ior must be finite and above 0");
+        refused(
+            &DielectricMaterial { interior, roughness: 0.0.into(), medium: None },
+            "ior must be finite and above 0",
+        );
         refused(&conductor(bad, 1.0, 0.0), "eta must be finite and above 0");
     }
     refused(&conductor(1.0, -1.0, 0.0), "k must be finite and not negative");
