@@ -25,6 +25,9 @@ const ROUNDING: f64 = 1.0 / (1u64 << 49) as f64;
 /// Heights that are a smaller part of the distance have lost more than 10⁻¹⁰ of themselves, and are computed anew.
 const FLAT: f64 = 1.0 / (1u64 << 18) as f64;
 
+/// What makes as much of the roundings of coordinates: of a height that is more, they are no part that counts.
+const STEEP: f64 = (1u64 << 31) as f64;
+
 impl Facet {
     /// Of these corners.
     pub fn new(corners: [DVec3; 3]) -> Self {
@@ -43,6 +46,18 @@ impl Facet {
     /// How far a point is in front of the plane: 0 where that is no more than rounding.
     #[inline]
     pub fn height(&self, point: DVec3) -> f64 {
+        let from = point - self.centre;
+        let height = self.normal.dot(from);
+        // Of a point well off the plane, all digits that count are right.
+        if height.abs() > FLAT * (from.abs().element_sum() + self.radius) + STEEP * self.noise {
+            return height;
+        }
+        self.low_height(point)
+    }
+
+    /// The same of a point that is not far from the plane.
+    #[inline(never)]
+    fn low_height(&self, point: DVec3) -> f64 {
         let [a, b, c] = self.corners.map(|corner| point - corner);
         let [aa, bb, cc] = [a, b, c].map(DVec3::length_squared);
         // From the nearest corner: exactly 0 of a corner that two have in common.
@@ -93,7 +108,8 @@ impl Facet {
     /// The heights of another's corners.
     #[inline]
     pub fn heights(&self, other: &Self) -> [f64; 3] {
-        other.corners.map(|corner| self.height(corner))
+        let [a, b, c] = other.corners;
+        [self.height(a), self.height(b), self.height(c)]
     }
 
     /// The four parts that halved edges make, all alike.

@@ -89,7 +89,8 @@ struct Bend {
 impl Bend {
     fn new(one: DVec3, other: DVec3) -> Self {
         let cosine = one.dot(other);
-        let short = if cosine > 0.0 { 0.5 * (one - other).length_squared() } else { 0.5 * (one + other).length_squared() };
+        let short =
+            if cosine > 0.0 { 0.5 * (one - other).length_squared() } else { 0.5 * (one + other).length_squared() };
         Self { cosine, short }
     }
 
@@ -144,7 +145,8 @@ fn slices(mut corners: [[f64; 2]; 3]) -> [Option<Slice>; 2] {
     let share = (middle[1] - low[1]) / (high[1] - low[1]);
     let across = low[0] + (high[0] - low[0]) * share;
     let wide = [across.min(middle[0]), across.max(middle[0])];
-    let slice = |start: f64, end: f64, from: [f64; 2], to: [f64; 2]| (end > start).then_some(Slice { start, end, from, to });
+    let slice =
+        |start: f64, end: f64, from: [f64; 2], to: [f64; 2]| (end > start).then_some(Slice { start, end, from, to });
     [slice(low[1], middle[1], [low[0]; 2], wide), slice(middle[1], high[1], wide, [high[0]; 2])]
 }
 
@@ -165,9 +167,9 @@ impl<'a> Slices<'a> {
             (slice.end > 2.0 * UNEVEN * least).then(|| slice.cut(least.max(slice.end / UNEVEN)))
         };
         if let Some(parts) = cut(&from, from.start.max(to.end)) {
-            parts.map(|from| Self { from, ..self }.graded(found));
+            parts.into_iter().for_each(|from| Self { from, ..self }.graded(found));
         } else if let Some(parts) = cut(&to, to.start.max(from.end)) {
-            parts.map(|to| Self { to, ..self }.graded(found));
+            parts.into_iter().for_each(|to| Self { to, ..self }.graded(found));
         } else if from.start + to.start < from.width() + to.width() {
             let near = self.layer() / (from.width() + to.width());
             found.extend([Fan::First, Fan::Second].map(|fan| Part { both: self, fan, near }));
@@ -349,7 +351,7 @@ mod tests {
     fn it_agrees_with_integrals_around_both() {
         let mut asked = [0; 3];
         let mut worst = [0.0f64; 3];
-        for number in 0..3000 {
+        for number in 0..1500 {
             let Some([one, other]) = drawn(number) else { continue };
             let found = hinge(&one, &other, [one.heights(&other), other.heights(&one)]);
             let around = contour(&one, &other);
@@ -359,8 +361,8 @@ mod tests {
             worst[kind] = worst[kind].max(off);
             asked[kind] += 1;
         }
-        println!("{asked:?} {worst:?}");
-        assert!(asked.iter().all(|&asked| asked > 50), "{asked:?}");
+        assert!(asked.iter().all(|&asked| asked > 20), "{asked:?}");
+        // Terms of integrals around both are of the order of the radii's product, and some hundred of them add up.
         assert!(worst.iter().all(|&off| off < 1e-13), "{worst:?}");
     }
 }
