@@ -373,6 +373,3 @@ def test_what_is_of_the_wrong_kind_is_refused() -> None:
         rw.radiosity(3)  # type: ignore[call-overload]
     with pytest.raises(TypeError, match=r"progress must be"):
         rw.radiosity(room(), progress=3)  # type: ignore[call-overload]
-    copies = rw.Instance([square(0, True)], [np.eye(4)])
-    with pytest.raises(TypeError, match=r"shape 0 is an Instance"):
-        rw.radiosity(rw.Scene([copies], rw.PointLight((0, 0, 1), 1)))
