@@ -82,7 +82,8 @@ def peer(cuts):
     rows, own = (np.abs(of.sum(axis=1) - 1).max() for of in (matrix, ours))
     return (
         f"{seconds:.1f} s, rows within {rows:.1e}; ours, of twice as many triangles: "
-        f"{time.perf_counter() - start:.2f} s, rows within {own:.1e}; apart by {np.abs(matrix - ours).max():.1e}"
+        f"{time.perf_counter() - start:.2f} s, rows within {own:.1e}; "
+        f"apart by {np.abs(matrix - ours).max():.1e}"
     )
 
 

@@ -92,10 +92,14 @@ def test_pictures_of_copies_are_those_of_moved_meshes() -> None:
     off = np.abs(shown[0] - shown[1]).max(axis=2)
     assert np.mean(off > 1e-3 * shown[1].mean()) < 0.01
     assert shown[0].max() > 0
+    copies, _ = scenes()
+    one = rw.Radiosity(rw.radiosity(copies, rays=64, progress=False))
+    fewer = rw.Scene([*copies.shapes[:6], rw.Instance([block()], places()[:1])])
     with pytest.raises(ValueError, match=r"of a scene of 14 faces, this one has 13: solve it anew"):
-        copies, _ = scenes()
-        fewer = rw.Scene([*copies.shapes[:6], rw.Instance([block()], places()[:1])])
-        rw.render(fewer, camera, rw.Radiosity(rw.radiosity(copies, rays=64, progress=False)), 1)
+        rw.render(fewer, camera, one, 1, progress=False)
+    other = rw.Scene([*copies.shapes[:6], rw.Instance([rw.Sphere((0, 0, 0), 0.1)], places())])
+    with pytest.raises(ValueError, match=r"whose shape 6 is another one: solve it anew"):
+        rw.render(other, camera, one, 1, progress=False)
 
 
 def test_heat_of_copies_is_that_of_moved_meshes() -> None:
@@ -111,7 +115,9 @@ def test_spheres_in_copies_send_and_receive() -> None:
     place = np.diag([0.5, 0.5, 0.5, 1.0])
     place[:3, 3] = 1.0
     ball = rw.Instance([rw.Sphere((0, 0, 0), 1.0)], place)
-    found = rw.view_factors(rw.Scene([*inward_box((2.0, 2.0, 2.0)), ball]), per="shape", rays=64, progress=False)
+    found = rw.view_factors(
+        rw.Scene([*inward_box((2.0, 2.0, 2.0)), ball]), per="shape", rays=64, progress=False
+    )
     for side in range(6):
         value, error = found.matrix[6, side], found.standard_error[6, side]
         assert error < 5e-3 / 6

@@ -19,7 +19,7 @@ def solved(scene: rw.Scene, **options: Any) -> rw.RadiositySolution:
 
 
 def assert_mean(solution: rw.RadiositySolution, shape: int, truth: float, patches: float = 0.0) -> None:
-    """Within three standard errors, of at most 0.2 %, and what is unshot or what patches of one value are off by."""
+    """Within three standard errors, of at most 0.2 %, and what is unshot or patches are off by."""
     rows = (solution.patches["shape"] == shape) & (solution.patches["side"] == 1)
     areas = solution.areas[rows]
     # What comes to one patch does not come to another: their errors add up to less than independent ones.

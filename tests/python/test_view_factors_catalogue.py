@@ -1,7 +1,7 @@
 """View factors of curved surfaces, elements and tubes against Howell's catalogue and Hottel's strings.
 
-What is sampled is within three standard errors, each of at most 0.2 %. Seeds are fixed, so that a test that passes
-goes on passing; of another stream, three errors would be passed by in 1 of 100 such tests, as few batches tell them.
+What is sampled is within three standard errors, each of at most 0.2 %. Seeds are fixed, so that a test that
+passes goes on passing; of another stream, 1 of 100 would be farther off, as few batches tell errors.
 """
 
 import math
@@ -47,7 +47,7 @@ def polygon(height: float, up: bool, corners: int) -> rw.Mesh:
 
 
 def test_disks_far_apart() -> None:
-    # Rays would hit once in a million. What the outline of a polygon of the same area is off by counts (r/h)².
+    # Rays would hit once in a million. What the outline of a polygon of the same area is off by is (r/h)² of it.
     found = factors(polygon(0.0, True, 48), polygon(1000.0, False, 48))
     assert found.matrix[0, 1] == pytest.approx(9.99998000005e-07, rel=1e-8)
     far = factors(rectangle((0, 0, 0), (1, 0, 0), (0, 1, 0)), rectangle((0, 0, 1000), (0, 1, 0), (1, 0, 0)))
@@ -130,7 +130,7 @@ def test_an_element_beside_an_upright_rectangle() -> None:
 
 
 def test_long_tubes_side_by_side() -> None:
-    # Hottel's strings are for tubes without end: of ten thousand radii, what passes by the ends is 1e-4 of it.
+    # Hottel's strings are for tubes without end: of ten thousand radii, what passes by is 1e-4 of it.
     long = 1e4
     tubes = [rw.Cylinder((x, 0, 0), (x, 0, long), 1.0) for x in (0.0, 2.5)]
     found = factors(*tubes, rays=128)

@@ -1,7 +1,7 @@
 """View factors of triangles that are nearly in one plane, against integrals around both of forty digits."""
 
 import math
-from itertools import product
+from itertools import pairwise, product
 from typing import Any
 
 import pytest
@@ -58,7 +58,7 @@ def along(p: Any, p_end: Any, q: Any, q_end: Any) -> Any:
         places.append((dot(way, u) - dot(way, v) * cosine) / (1 - cosine**2))
     cuts = sorted({mp.mpf(0), a, *(place for place in places if 0 < place < a)})
     finer = [cuts[0]]
-    for low, high in zip(cuts, cuts[1:], strict=False):
+    for low, high in pairwise(cuts):
         if high - low > a * mp.mpf(10) ** -25:
             near = [(high - low) * mp.mpf(10) ** -k for k in (12, 8, 4)]
             finer += [low + x for x in near] + [high - x for x in reversed(near)] + [high]

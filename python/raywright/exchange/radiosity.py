@@ -119,8 +119,8 @@ def radiosity(
     Eight replicates, each of rays of its own, give the standard error. Within each, what is emitted is
     absorbed, has left or is unshot, to rounding. Iterations end by ‖unshot‖ / (1 - the greatest reflectance).
 
-    The error of "stochastic" is the root mean square over the area, of patches each by itself: what comes to a
-    patch is known by the rays that land there, so that N patches take about N / `error`² rays for the light
+    The error of "stochastic" is the root mean square over the area, of patches each by itself: what comes to
+    a patch is known by the rays that land there, so that N patches take about N / `error`² rays for the light
     that is shot first, and as much more as is reflected. Half as long sides take four times the rays: a large
     `patch_size` with ``per="vertex"`` costs less than small ones. Means over many patches are known better.
     """

@@ -101,7 +101,7 @@ class ViewFactors:
         """
         squares = np.square(self._checked(x), dtype=np.float64)
         if not isinstance(self._variance, tuple):
-            return np.sqrt(self._variance @ squares)
+            return np.asarray(np.sqrt(self._variance @ squares))
         rows, columns, values = self._variance
         found = np.zeros(squares.shape)
         np.add.at(found, rows, (values * squares[columns].T).T)
@@ -191,8 +191,8 @@ def view_factors(
     room each row adds up to 1: to 1e-9 where nothing hides anything, and within the standard errors
     elsewhere. What has no area sees nothing.
 
-    More than 10,000 faces have a sparse matrix (scipy is needed), all of it by rays, however little is hidden:
-    of both rows that tell what two faces exchange, one number is made, and rows are scaled so that they add
+    More than 10,000 faces have a sparse matrix (scipy is needed), all of it by rays, however little is
+    hidden: of both rows that tell what two faces exchange, one number is made, and rows are scaled so that they add
     up to 1 in a closed room. It has at most about twice as many entries in a row as a face has rays, of 12
     bytes each, and as many of its errors: 100,000 faces of 256 rays take some 1.2 GB, and twice that while
     they are made.
