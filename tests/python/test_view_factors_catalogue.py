@@ -47,7 +47,7 @@ def polygon(height: float, up: bool, corners: int) -> rw.Mesh:
 
 
 def test_disks_far_apart() -> None:
-    # Rays would hit once in a million. What the outline of a polygon of the same area is off by is (r/h)² of it.
+    # Rays would hit once in a million. What the outline of a polygon of the same area is off by counts 1e-6.
     found = factors(polygon(0.0, True, 48), polygon(1000.0, False, 48))
     assert found.matrix[0, 1] == pytest.approx(9.99998000005e-07, rel=1e-8)
     far = factors(rectangle((0, 0, 0), (1, 0, 0), (0, 1, 0)), rectangle((0, 0, 1000), (0, 1, 0), (1, 0, 0)))

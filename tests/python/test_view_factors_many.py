@@ -46,8 +46,8 @@ def test_errors_of_rows_by_rays_are_those_of_their_spread(monkeypatch: pytest.Mo
         monkeypatch.undo()
         off.append(found.matrix.toarray() - truth.matrix)
         told.append(found.standard_error.toarray())
-    # Nets of 64 rays are better than the binomial law, and scaling mends rows. Of some 10,000 entries the mean
-    # of squares is known to some per cent.
+    # Nets of 64 rays are better than the binomial law, and scaling mends rows. Of 10,000 entries the mean of
+    # squares is known to some per cent.
     seen = truth.matrix > 1e-3
     ratio = np.sqrt(np.mean(np.square(off)[:, seen]) / np.mean(np.square(told)[:, seen]))
     assert 0.7 < ratio < 1.15
