@@ -12,13 +12,18 @@ use std::f64::consts::FRAC_1_PI;
 /// one ray a sample, from any camera. Textures are looked up where the ray meets them, not by the mean of a patch.
 #[derive(Clone, Debug)]
 pub struct Radiosity {
-    /// How the scene was cut.
+    /// How the scene was cut, all copies in it counted.
     pub patches: Patches,
+    /// The first of `patches`' primitives that each primitive of the scene stands for, and their number at the end: a
+    /// copy of a prototype stands for as many as there are in it.
+    pub first: Vec<u32>,
+    /// Which of `patches`' primitives are mirrored: their second and third corners have changed places.
+    pub mirrored: Vec<bool>,
     /// Whether backs follow fronts in `irradiance`; else they are black.
     pub has_backs: bool,
     /// The irradiance at the three corners of each side of a patch, W/m²: between them it is linear.
     pub irradiance: Vec<[Rgb; 3]>,
-    /// The area of all that was cut, by which another scene is told.
+    /// The area of all that was cut and stands in no copy, by which another scene is told.
     pub area: f64,
 }
 
@@ -30,11 +35,21 @@ impl Integrator for Radiosity {
     fn objection(&self, scene: &Scene, _adaptive: bool) -> Option<String> {
         let geometry = scene.geometry();
         let count = geometry.count();
-        if count != self.patches.primitives() {
-            let faces = self.patches.primitives();
+        let faces = self.first.len() - 1;
+        if count != faces {
             return Some(format!("the radiosity is of a scene of {faces} faces, this one has {count}: solve it anew"));
         }
-        let area: f64 = (0..count as u32).map(|primitive| geometry.area(primitive)).sum();
+        // The area of copies is not at hand; how many faces each of them has is.
+        let mut area = 0.0;
+        for primitive in 0..count as u32 {
+            let (shape, _) = geometry.locate(primitive);
+            let [first, next] = [0, 1].map(|more| self.first[primitive as usize + more]);
+            let inside = geometry.instances_of(shape).map(|copies| copies.prototype().count());
+            if next - first != inside.unwrap_or(1) {
+                return Some(format!("the radiosity is of a scene whose shape {shape} is another one: solve it anew"));
+            }
+            area += if inside.is_none() { geometry.area(primitive) } else { 0.0 };
+        }
         let is_same = (area - self.area).abs() <= 1e-9 * self.area;
         (!is_same).then(|| {
             format!("the radiosity is of a scene of area {:.6}, this one has {area:.6}: solve it anew", self.area)
@@ -62,7 +77,10 @@ impl Shown<'_> {
         let geometry = self.scene.geometry();
         let surface = geometry.surface(ray, hit);
         let emission = self.scene.emission_at(&surface).sent(geometry, ray, hit, &surface, || 0.0);
-        let (patch, [u, v]) = self.solution.patches.find(hit.primitive, hit.uv);
+        let primitive = self.solution.first[hit.primitive as usize] + hit.inner;
+        let [u, v] = hit.uv;
+        let uv = if self.solution.mirrored[primitive as usize] { [v, u] } else { [u, v] };
+        let (patch, [u, v]) = self.solution.patches.find(primitive, uv);
         let is_front = surface.is_front(ray);
         if !is_front && !self.solution.has_backs {
             return emission;
@@ -111,7 +129,9 @@ mod tests {
         let patches = Patches::new(vec![2; scene.geometry().count()]).unwrap();
         let irradiance = vec![[Rgb::splat(2.0); 3]; patches.count()];
         let area = (0..scene.geometry().count() as u32).map(|p| scene.geometry().area(p)).sum();
-        let radiosity = Radiosity { patches, has_backs: false, irradiance, area };
+        let count = patches.primitives();
+        let (first, mirrored) = ((0..=count as u32).collect(), vec![false; count]);
+        let radiosity = Radiosity { patches, first, mirrored, has_backs: false, irradiance, area };
         assert_eq!(radiosity.objection(&scene, false), None);
         let other = Radiosity { area: 2.0 * area, ..radiosity.clone() };
         assert!(other.objection(&scene, false).unwrap().contains("area"));

@@ -47,11 +47,19 @@ pub fn path(of: &Bound<'_, PyAny>) -> PyResult<Path> {
     })
 }
 
-/// What is looked up: cuts (F,), irradiance at three corners (S,3,3), whether there are backs, and the area.
-type Table<'py> = (PyReadonlyArray1<'py, u32>, PyReadonlyArrayDyn<'py, f64>, bool, f64);
+/// What is looked up: cuts (F,), the first face of each primitive of the scene (N + 1,), which faces are mirrored (F,),
+/// irradiance at three corners (S,3,3), whether there are backs, and the area of what stands in no copy.
+type Table<'py> = (
+    PyReadonlyArray1<'py, u32>,
+    PyReadonlyArray1<'py, u32>,
+    PyReadonlyArray1<'py, bool>,
+    PyReadonlyArrayDyn<'py, f64>,
+    bool,
+    f64,
+);
 
 fn radiosity(of: &Bound<'_, PyAny>) -> PyResult<Radiosity> {
-    let (cuts, irradiance, has_backs, area) = of.getattr("_table")?.extract::<Table<'_>>()?;
+    let (cuts, first, mirrored, irradiance, has_backs, area) = of.getattr("_table")?.extract::<Table<'_>>()?;
     let patches = Patches::new(numbers("cuts", &cuts)?.to_vec()).map_err(PyValueError::new_err)?;
     let corners: &[[f64; 3]] = vectors("irradiance", &irradiance)?;
     let irradiance: Vec<_> = corners.as_chunks().0.iter().map(|all: &[_; 3]| all.map(Rgb::from_array)).collect();
@@ -59,7 +67,11 @@ fn radiosity(of: &Bound<'_, PyAny>) -> PyResult<Radiosity> {
     if irradiance.len() != wanted {
         return Err(PyValueError::new_err(format!("irradiance is of {} sides, not of {wanted}", irradiance.len())));
     }
-    Ok(Radiosity { patches, has_backs, irradiance, area })
+    let (first, mirrored) = (numbers("first", &first)?.to_vec(), numbers("mirrored", &mirrored)?.to_vec());
+    if first.last().is_none_or(|&all| all as usize != patches.primitives()) || mirrored.len() != patches.primitives() {
+        return Err(PyValueError::new_err(format!("first and mirrored are not of {} faces", patches.primitives())));
+    }
+    Ok(Radiosity { patches, first, mirrored, has_backs, irradiance, area })
 }
 
 impl<'a, 'py> FromPyObject<'a, 'py> for AnyIntegrator {

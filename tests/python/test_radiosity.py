@@ -18,10 +18,15 @@ def solved(scene: rw.Scene, **options: Any) -> rw.RadiositySolution:
     return rw.radiosity(scene, **{"progress": False, "sides": "front", **options})
 
 
-def assert_mean(solution: rw.RadiositySolution, shape: int, truth: float, within: float = 0.006) -> None:
-    """Within three standard errors, of at most 0.2 %."""
+def assert_mean(solution: rw.RadiositySolution, shape: int, truth: float, patches: float = 0.0) -> None:
+    """Within three standard errors, of at most 0.2 %, and what is unshot or patches are off by."""
+    rows = (solution.patches["shape"] == shape) & (solution.patches["side"] == 1)
+    areas = solution.areas[rows]
+    # What comes to one patch does not come to another: their errors add up to less than independent ones.
+    error = float(np.linalg.norm(areas * solution.standard_error[rows, 0]) / areas.sum())
+    assert error <= 2e-3 * truth
     found = mean(solution, solution.radiosity, shape)
-    assert abs(found / truth - 1) < within + solution.bound
+    assert abs(found - truth) <= 3 * error + (solution.bound + patches) * truth
 
 
 def assert_books(solution: rw.RadiositySolution) -> None:
@@ -79,7 +84,7 @@ def test_every_face_of_an_even_enclosure_has_the_same() -> None:
 
 
 def test_a_cube_of_one_patch_a_side() -> None:
-    found = solved(cube((0.5, 0.7, 0.3, 0.3, 0.8, 0.8), (1, 0, 0, 0, 0, 0)), rays=2**18, error=1e-3)
+    found = solved(cube((0.5, 0.7, 0.3, 0.3, 0.8, 0.8), (1, 0, 0, 0, 0, 0)), rays=2**20, error=3e-4)
     truth = (1.117137782, 0.280955869, 0.129560233, 0.129560233, 0.315676279, 0.315676279)
     for shape, value in enumerate(truth):
         assert_mean(found, shape, value)
@@ -88,7 +93,7 @@ def test_a_cube_of_one_patch_a_side() -> None:
 def test_two_squares_of_one_patch_each() -> None:
     low = rw.Polygon(CUBE[0], material=rw.Diffuse(0.5), emission=1 / np.pi)
     high = rw.Polygon(CUBE[1], material=rw.Diffuse(0.5))
-    found = solved(rw.Scene([low, high]), rays=2**18, error=1e-3)
+    found = solved(rw.Scene([low, high]), rays=2**21, error=3e-4)
     assert_mean(found, 0, 1.0100831522749245)
     assert_mean(found, 1, 0.10091988027501761)
     assert_books(found)
@@ -96,11 +101,11 @@ def test_two_squares_of_one_patch_each() -> None:
 
 def test_two_squares_in_small_patches_approach_the_continuous_solution() -> None:
     scene = rw.Scene([square(0, True, 0.5, 1), square(1, False, 0.5)])
-    found = solved(scene, per="vertex", patch_size=np.sqrt(2) / 12, rays=2**19)
+    found = solved(scene, per="vertex", patch_size=np.sqrt(2) / 12, rays=2**21)
     assert len(found) == 4 * 144
     assert_mean(found, 0, 1.01021805505982)
     assert_mean(found, 1, 0.100947189238679)
-    # Middle, corner and middle of an edge, by what meets there: over 1/12, light changes by 1 %.
+    # Middle, corner and middle of an edge, by the middles of what meets there, up to 1/18 away.
     places = found.corners.reshape(-1, 3)
     values = found.corner_radiosity.reshape(-1, 3)[:, 0]
     for place, truth in (
@@ -110,7 +115,7 @@ def test_two_squares_in_small_patches_approach_the_continuous_solution() -> None
     ):
         here = np.linalg.norm(places - place, axis=1) < 1e-6
         assert here.any()
-        assert abs(values[here].mean() / truth - 1) < 0.03
+        assert abs(values[here].mean() / truth - 1) < 0.04
 
 
 def disk(height: float, up: bool, reflectance: float, emitted: float) -> rw.Mesh:
@@ -119,7 +124,7 @@ def disk(height: float, up: bool, reflectance: float, emitted: float) -> rw.Mesh
 
 
 def test_two_disks() -> None:
-    found = solved(rw.Scene([disk(0, True, 0.5, 1), disk(1, False, 0.8, 0)]), per="vertex", rays=2**19)
+    found = solved(rw.Scene([disk(0, True, 0.5, 1), disk(1, False, 0.8, 0)]), per="vertex", rays=2**20)
     assert_mean(found, 0, 1.06404273389228)
     assert_mean(found, 1, 0.325778564648401)
     centre = np.linalg.norm(found.corners.reshape(-1, 3) - (0, 0, 1), axis=1) < 1e-6
@@ -373,6 +378,3 @@ def test_what_is_of_the_wrong_kind_is_refused() -> None:
         rw.radiosity(3)  # type: ignore[call-overload]
     with pytest.raises(TypeError, match=r"progress must be"):
         rw.radiosity(room(), progress=3)  # type: ignore[call-overload]
-    copies = rw.Instance([square(0, True)], [np.eye(4)])
-    with pytest.raises(TypeError, match=r"shape 0 is an Instance"):
-        rw.radiosity(rw.Scene([copies], rw.PointLight((0, 0, 1), 1)))

@@ -276,7 +276,6 @@ def test_a_shape_of_no_area_sees_nothing() -> None:
         (lambda: factors(*inward_box(), threads=0), ValueError, "threads must be"),
         (lambda: factors(*inward_box(), progress="yes"), TypeError, "progress must be"),
         (lambda: factors(rw.Plane((0, 0, 0), (0, 0, 1))), ValueError, "shapes[0] is a Plane"),
-        (lambda: factors(rw.Instance(inward_box(), np.eye(4))), TypeError, "shapes[0] is an Instance"),
         (
             lambda: factors(rw.Mesh([[0, 0, 0], [1, 0, 0], [0, math.nan, 0]], [[0, 1, 2]])),
             ValueError,

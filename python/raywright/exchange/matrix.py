@@ -74,7 +74,7 @@ def _first_light(problem: Problem, rays: int | None) -> tuple[Floats, Floats, Fl
 
 def _of_patches(problem: Problem) -> Scene:
     """Return a scene whose faces are the patches, in their order."""
-    scene = problem.scene
+    scene = problem.laid.scene
     if (problem.cuts == 1).all():
         return scene
     shapes: list[AnyShape] = []

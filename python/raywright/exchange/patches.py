@@ -7,11 +7,14 @@ from numpy.typing import NDArray
 
 from ..arrays import positive
 from ..materials import Diffuse, Material, TwoSided
-from ..scene.instance import Instance
+from ..scene.instance import AnyShape, Instance
 from ..scene.scene import Scene
 from ..shapes.mesh import Mesh
+from .copies import LaidOut
 
-PATCH = np.dtype([("shape", np.int32), ("face", np.int32), ("cell", np.int32), ("side", np.int8)])
+PATCH = np.dtype(
+    [("shape", np.int32), ("copy", np.int32), ("face", np.int32), ("cell", np.int32), ("side", np.int8)]
+)
 # A face of so many strips has as many patches as fit into an array's int32 numbers.
 _MOST = 2**15
 
@@ -22,7 +25,7 @@ def check_exchanging(scene: object, diffuse: bool = True) -> Scene:
     Raises
     ------
     TypeError
-        If it is no scene, or holds copies of prototypes.
+        If it is no scene.
     ValueError
         If it is empty, or something in it scatters otherwise than diffusely, where that counts.
     """
@@ -31,15 +34,20 @@ def check_exchanging(scene: object, diffuse: bool = True) -> Scene:
     if not scene.shapes:
         raise ValueError("scene has no shapes: nothing exchanges light")
     for number, shape in enumerate(scene.shapes):
-        if isinstance(shape, Instance):
-            raise TypeError(f"shape {number} is an Instance, whose faces share one place: use its meshes")
-        if diffuse and not _is_diffuse(shape.material):
-            kind = type(shape.material).__name__
+        other = _not_diffuse(shape) if diffuse else None
+        if other is not None:
             raise ValueError(
-                f"shape {number} is of {kind}: only Diffuse, and TwoSided of it, have one radiosity for "
-                "all directions"
+                f"shape {number} is of {type(other).__name__}: only Diffuse, and TwoSided of it, have one "
+                "radiosity for all directions"
             )
     return scene
+
+
+def _not_diffuse(shape: AnyShape) -> Material | None:
+    """Return a material of a shape, or of one in an instance, that is not diffuse."""
+    if isinstance(shape, Instance):
+        return next((other for part in shape.shapes if (other := _not_diffuse(part)) is not None), None)
+    return None if _is_diffuse(shape.material) else shape.material
 
 
 def _is_diffuse(material: Material) -> bool:
@@ -68,14 +76,12 @@ def cut(scene: Scene, patch_size: float | None) -> NDArray[np.uint32]:
     return np.concatenate(parts)
 
 
-def named(scene: Scene, cuts: NDArray[np.uint32], both: bool) -> NDArray[Any]:
-    """Return shape, face, cell and side of each row of a solution."""
-    faces = [len(shape.faces) if isinstance(shape, Mesh) else 1 for shape in scene.shapes]
+def named(laid: LaidOut, cuts: NDArray[np.uint32], both: bool) -> NDArray[Any]:
+    """Return shape, copy, face, cell and side of each row of a solution."""
     counts = cuts.astype(np.int64) ** 2
-    shape = np.repeat(np.arange(len(faces)), faces)
-    face = np.arange(len(cuts)) - np.repeat(np.cumsum(faces) - faces, faces)
     rows = np.empty(int(counts.sum()), PATCH)
-    rows["shape"], rows["face"] = np.repeat(shape, counts), np.repeat(face, counts)
+    for part in ("shape", "copy", "face"):
+        rows[part] = np.repeat(getattr(laid, part), counts)
     rows["cell"] = np.arange(len(rows)) - np.repeat(np.cumsum(counts) - counts, counts)
     rows["side"] = 1
     if not both:

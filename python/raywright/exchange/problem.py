@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from .. import _core
 from ..scene.scene import Scene
+from .copies import LaidOut, laid_out
 from .patches import named
 from .solution import Floats, Method, Per, RadiositySolution, RadiosityStep
 
@@ -29,7 +30,7 @@ def lamps_of(scene: Scene) -> Scene | None:
 class Problem:
     """Patches that exchange light, and the core that shoots it."""
 
-    scene: Scene
+    laid: LaidOut
     core: _core.RadiosityShots
     cuts: NDArray[np.uint32]
     both: bool
@@ -46,7 +47,7 @@ class Problem:
     @classmethod
     def of(
         cls,
-        scene: Scene,
+        scene: Scene | LaidOut,
         cuts: NDArray[np.uint32],
         both: bool,
         per: Per,
@@ -55,15 +56,16 @@ class Problem:
         lamps: Scene | None,
         looks: tuple[Floats, Floats] | None = None,
     ) -> "Problem":
-        """Return that of a scene lit by the lights of another, which has no shapes.
+        """Return that of a scene, or of one that is laid out, lit by the lights of another without shapes.
 
         `looks` are emission and reflectance in place of the scene's own.
         """
         light = None if lamps is None else lamps._compiled()
-        core = _core.RadiosityShots(scene._compiled(), light, cuts, both, looks, threads)
+        laid = laid_out(scene) if isinstance(scene, Scene) else scene
+        core = _core.RadiosityShots(laid.scene._compiled(), light, cuts, both, looks, threads)
         areas = np.tile(core.areas, 2 if both else 1)
         parts = core.emission, core.reflectance, areas
-        return cls(scene, core, cuts, both, lamps is not None, per, seed, threads, *parts)
+        return cls(laid, core, cuts, both, lamps is not None, per, seed, threads, *parts)
 
     def check(self) -> None:
         """Refuse what has no solution that could be bounded.
@@ -79,7 +81,7 @@ class Problem:
             )
         most = self.reflectance.max(axis=1)
         if most.max() >= 1.0:
-            row = named(self.scene, self.cuts, self.both)[int(most.argmax())]
+            row = named(self.laid, self.cuts, self.both)[int(most.argmax())]
             raise ValueError(
                 f"shape {row['shape']} reflects all light of a channel, so that what is unshot has no bound: "
                 "give it a reflectance below 1"
@@ -131,9 +133,10 @@ class Problem:
             emission=self.emission,
             reflectance=self.reflectance,
             areas=self.areas,
-            patches=named(self.scene, self.cuts, self.both),
+            patches=named(self.laid, self.cuts, self.both),
             corners=np.concatenate([corners, corners]) if self.both else corners,
             cuts=self.cuts,
+            mirrored=self.laid.mirrored,
             per=self.per,
             method=method,
             emitted=_triple(books[EMITTED]),

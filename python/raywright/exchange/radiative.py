@@ -11,7 +11,7 @@ from ..arrays import choice, integer, number, real_array
 from ..lights import ConstantEnvironment
 from ..scene.progress import BuildProgress, check_progress, watcher
 from ..scene.scene import Scene
-from ..shapes.mesh import Mesh
+from .copies import LaidOut, laid_out
 from .patches import check_exchanging
 from .problem import Problem, lamps_of
 from .shooting import to_the_end
@@ -49,7 +49,7 @@ class RadiativeExchange:
     areas : (N,) float64
         In m².
     patches : (N,) structured
-        Which "shape", "face" and "side" each row is of.
+        Which "shape", "copy", "face" and "side" each row is of, as of `RadiositySolution`.
     temperature, emissivity : (N,) float64
         As given.
     escaped : float
@@ -127,7 +127,8 @@ def radiative_exchange(
     Parameters
     ----------
     scene : Scene
-        The surfaces; a shape that is no mesh is one of them.
+        The surfaces; a shape that is no mesh is one of them. The faces of an `Instance` are those of all its
+        copies, one after the other.
     temperature : float, list, dict or array
         In kelvin, at least 0: one for all; a list of one a shape, or a dict by their numbers, where each is a
         number or an array of one a face; or an array of one a face, shape after shape.
@@ -157,7 +158,8 @@ def radiative_exchange(
     """
     check_exchanging(scene, diffuse=False)
     choice("sides", sides, ("front", "both"))
-    faces = [len(shape.faces) if isinstance(shape, Mesh) else 1 for shape in scene.shapes]
+    laid = laid_out(scene)
+    faces = laid.counts.tolist()
     both = sides == "both"
     if method is None:
         method = "matrix" if sum(faces) <= _SMALL and not both else "stochastic"
@@ -188,7 +190,7 @@ def radiative_exchange(
 
     def solve(lamps: Scene | None, emission: Floats, absorbing: Floats) -> RadiositySolution:
         looks = _three(emission), _three(1.0 - absorbing)
-        problem = Problem.of(scene, cuts, both, "face", seed, threads, lamps, looks)
+        problem = Problem.of(laid, cuts, both, "face", seed, threads, lamps, looks)
         if method == "matrix":
             from .matrix import solve as by_matrix
 
@@ -198,7 +200,7 @@ def radiative_exchange(
 
     heat = solve(sky, sent, grey)
     arrives, off = heat.irradiance[:, 0], heat.irradiance_error[:, 0]
-    absorbed, light_off = _light(scene, cuts, both, light, solve)
+    absorbed, light_off = _light(laid, cuts, both, light, solve)
     leaves = heat.radiosity[:, 0]
     flux = sent - grey * arrives - absorbed
     return RadiativeExchange(
@@ -217,16 +219,16 @@ def radiative_exchange(
 
 
 def _light(
-    scene: Scene, cuts: NDArray[np.uint32], both: bool, absorbing: Floats, solve: Any
+    laid: LaidOut, cuts: NDArray[np.uint32], both: bool, absorbing: Floats, solve: Any
 ) -> tuple[Floats, Floats]:
     """Return what is absorbed of the scene's own light, W/m², and its error."""
-    shines = any(getattr(shape, "emission", None) is not None for shape in scene.shapes)
-    lamps = lamps_of(scene)
+    shines = any(getattr(shape, "emission", None) is not None for shape in laid.scene.shapes)
+    lamps = lamps_of(laid.scene)
     if lamps is None and not shines:
         return np.zeros(len(absorbing)), np.zeros(len(absorbing))
     emission = np.zeros(len(absorbing))
     if shines:
-        own = Problem.of(scene, cuts, both, "face", 0, None, None)
+        own = Problem.of(laid, cuts, both, "face", 0, None, None)
         emission = own.emission.mean(axis=1)
     found = solve(lamps, emission, absorbing)
     return absorbing * found.irradiance.mean(axis=1), absorbing * found.irradiance_error.mean(axis=1)

@@ -61,11 +61,14 @@ class RadiositySolution:
         In m².
     patches : (N,) structured
         Of which "shape" and "face" each is, which "cell" of that, and which "side": 1 for the front, -1 for
-        the back.
+        the back. Of an `Instance`, "copy" is which of its copies, and "face" is numbered as
+        `Instance.locate` has it; "copy" is -1 elsewhere.
     corners : (N, 3, 3) float64
         Where the corners are, in the order of the face's; NaN for what is no triangle.
     cuts : (F,) uint32
-        Into how many strips each face is cut.
+        Into how many strips each face is cut, all copies counted.
+    mirrored : (F,) bool
+        Which faces stand in copies that are mirrored: their second and third corners change places.
     per : {"face", "vertex"}
         Whether look-ups have one value a patch, or are linear between the corners.
     method : {"stochastic", "progressive", "matrix"}
@@ -87,6 +90,7 @@ class RadiositySolution:
     patches: NDArray[Any]
     corners: Floats
     cuts: NDArray[np.uint32]
+    mirrored: NDArray[np.bool_]
     per: Per
     method: Method
     emitted: Triple

@@ -9,11 +9,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from .. import _core
 from ..arrays import choice, frozen, integer, positive, real_array
-from ..scene.instance import Instance
 from ..scene.progress import BuildProgress, check_progress, watcher
 from ..scene.scene import Scene
 from ..shapes import Plane
 from ..shapes.mesh import Mesh
+from .copies import LaidOut, laid_out
+from .reciprocal import reciprocal
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
@@ -24,7 +25,7 @@ _MOST_DENSE = 10_000
 _RAYS = 16
 # A row by rays holds all that a face sees, so it takes more of them than a pair does.
 _CURVED_RAYS = 4096
-_FACE_RAYS = 32
+_FACE_RAYS = 16
 _MOST_RAYS = 2**26
 
 
@@ -41,7 +42,8 @@ class ViewFactors:
         The area of each, in the square of the scene's unit.
     per : {"face", "shape"}
         Whether a row is a face or a shape. Faces are numbered shape after shape, and a shape that is no mesh
-        is one face.
+        is one face. An `Instance` is one shape, whose faces are those of all copies, one copy after the
+        other, as `Instance.locate` numbers those of each.
     closed, hidden, sampled : int
         How many pairs of faces that look at each other are in closed form, hidden from each other for
         certain, and sampled by rays.
@@ -85,6 +87,25 @@ class ViewFactors:
             If x does not hold real numbers.
         """
         return np.asarray(self.matrix @ self._checked(x))
+
+    def matvec_error(self, x: ArrayLike) -> NDArray[np.float64]:
+        """Return the standard error of ``matvec(x)``, as if all view factors erred each for itself.
+
+        What rows of rays are too much off in one column they are too little in others, so that where x is
+        much the same everywhere, and nothing is left over, the error is less.
+
+        Raises
+        ------
+        ValueError, TypeError
+            As `matvec` does.
+        """
+        squares = np.square(self._checked(x), dtype=np.float64)
+        if not isinstance(self._variance, tuple):
+            return np.asarray(np.sqrt(self._variance @ squares))
+        rows, columns, values = self._variance
+        found = np.zeros(squares.shape)
+        np.add.at(found, rows, (values * squares[columns].T).T)
+        return np.sqrt(found)
 
     def rmatvec(self, x: ArrayLike) -> NDArray[np.float64]:
         """Return ``matrix.T @ x``: of powers x that leave each, (N,) or (N, K), the powers that arrive.
@@ -132,13 +153,14 @@ def view_factors(
     Parameters
     ----------
     scene : Scene
-        Meshes, and shapes other than `Plane`. Not `Instance`: each copy would need rows of its own.
+        Meshes, and shapes other than `Plane`. Each face of each copy of an `Instance` is a face of its own;
+        copies must stand still.
     per : {"face", "shape"}
         What a row is: a face, or a shape with all of its faces.
     rays : int, optional
         How many go between two faces that something may lie between, up to 2**20; 16 if not given. A shape
         that is no mesh sends 4096 times as many, up to 2**26. In a scene of more than 10,000 faces each face
-        sends 32 times as many.
+        sends 16 times as many.
     error : float, optional
         The standard error that no view factor between faces should exceed. Rays are doubled until it is met,
         or a pair has had a thousand batches of them.
@@ -156,10 +178,10 @@ def view_factors(
     Raises
     ------
     ValueError
-        If the scene has no faces, a face with a corner that is not finite, or a shape without end; if `per`
-        or a number is out of its range.
+        If the scene has no faces, a face with a corner that is not finite, a shape without end, or copies
+        that move; if `per` or a number is out of its range.
     TypeError
-        If something is of another kind, or the scene holds an `Instance`.
+        If something is of another kind.
     KeyboardInterrupt
         At once, when Ctrl-C is pressed.
 
@@ -169,9 +191,11 @@ def view_factors(
     room each row adds up to 1: to 1e-9 where nothing hides anything, and within the standard errors
     elsewhere. What has no area sees nothing.
 
-    More than 10,000 faces have a sparse matrix (scipy is needed), each row of which is by rays: it adds up to
-    1 in a closed room, and A_i F_ij = A_j F_ji within the standard errors. It has at most as many entries in
-    a row as the row has rays, of 16 bytes each.
+    More than 10,000 faces have a sparse matrix (scipy is needed), all of it by rays, however little is
+    hidden: of both rows that tell what two faces exchange, one number is made, and rows are scaled so that
+    they add up to 1 in a closed room. It has at most about twice as many entries in a row as a face has rays, of 12
+    bytes each, and as many of its errors: 100,000 faces of 256 rays take some 1.2 GB, and twice that while
+    they are made.
 
     Closed forms: contour integrals, Schröder and Hanrahan (1993), Mitalas and Stephenson (1966). Shafts:
     Haines and Wallace (1991).
@@ -184,8 +208,9 @@ def view_factors(
     number = integer("seed", seed, 0, 2**64 - 1)
     workers = None if threads is None else integer("threads", threads, 1)
     check_progress(progress)
-    first = _first_faces(scene)
-    exact = _exact(scene)
+    laid = laid_out(scene)
+    first = _first_faces(laid)
+    exact = _exact(laid.scene)
     core = exact._compiled()
     with watcher(progress) as report:
         if first[-1] > _MOST_DENSE:
@@ -195,13 +220,13 @@ def view_factors(
     return found if per == "face" else _of_shapes(found, first)
 
 
-def _first_faces(scene: Scene) -> NDArray[np.int64]:
+def _first_faces(laid: LaidOut) -> NDArray[np.int64]:
     """Return the number of the first face of each shape, and of all faces; check that all can send."""
-    for i, shape in enumerate(scene.shapes):
-        if isinstance(shape, Instance):
-            raise TypeError(
-                f"shapes[{i}] is an Instance, whose copies have no faces of their own: give a Mesh each"
-            )
+    start = 0
+    for shape in laid.scene.shapes:
+        # Of an empty mesh there is nothing to check.
+        i = int(laid.shape[min(start, len(laid.shape) - 1)]) if len(laid.shape) else 0
+        start += len(shape.faces) if isinstance(shape, Mesh) else 1
         if isinstance(shape, Plane):
             raise ValueError(f"shapes[{i}] is a Plane, which has no end and so no area: give a Mesh that has")
         if isinstance(shape, Mesh):
@@ -210,8 +235,7 @@ def _first_faces(scene: Scene) -> NDArray[np.int64]:
                 raise ValueError(
                     f"face {int(np.argmin(finite))} of shapes[{i}] has a corner that is not finite"
                 )
-    counts = [len(shape.faces) if isinstance(shape, Mesh) else 1 for shape in scene.shapes]
-    first = np.cumsum([0, *counts])
+    first = np.cumsum([0, *laid.counts])
     if first[-1] == 0:
         raise ValueError("the scene has no faces, and so no view factors")
     return first
@@ -247,8 +271,10 @@ def _by_rows(core: _core.CompiledScene, rays: int, *how: Any) -> ViewFactors:
     areas, (starts, faces, factors, errors), sent = _core.view_factor_rows(core, rays, *how)
     shape = (len(areas), len(areas))
     matrix = sparse((factors, faces, starts), shape=shape)
-    variance = sparse((errors**2, faces, starts), shape=shape)
-    return ViewFactors(matrix, frozen(areas), "face", 0, 0, len(factors), sent, variance)
+    variance = sparse((errors.astype(np.float64) ** 2, faces.copy(), starts.copy()), shape=shape)
+    del factors, faces, starts, errors
+    matrix, variance = reciprocal(matrix, variance, areas)
+    return ViewFactors(matrix, frozen(areas), "face", 0, 0, (matrix.nnz + len(areas)) // 2, sent, variance)
 
 
 def _sparse() -> Any:
@@ -276,8 +302,6 @@ def _of_shapes(faces: ViewFactors, first: NDArray[np.int64]) -> ViewFactors:
         cells = of[rows] * count + of[columns]
         summed = np.bincount(cells, values * shares[rows] ** 2, count * count).astype(np.float64)
         summed = summed.reshape(count, count)
-        # Within a shape, both entries of a pair are one estimate: they err together.
-        summed[np.diag_indices(count)] *= 2.0
     else:
         sparse = _sparse()
         ends = np.arange(len(of) + 1)
@@ -285,5 +309,7 @@ def _of_shapes(faces: ViewFactors, first: NDArray[np.int64]) -> ViewFactors:
         seen: Any = faces.matrix
         matrix = (columns.T @ (seen.multiply(shares[:, None]).tocsr() @ columns)).toarray()
         summed = (columns.T @ (faces._variance.multiply(shares[:, None] ** 2).tocsr() @ columns)).toarray()
+    # Within a shape, both entries of a pair are one estimate: they err together.
+    summed[np.diag_indices(count)] *= 2.0
     where = np.nonzero(summed)
     return ViewFactors(frozen(matrix), frozen(areas), "shape", *counts, (*where, summed[where]))

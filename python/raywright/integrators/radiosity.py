@@ -4,6 +4,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
+import numpy as np
+
 from ..exchange.solution import RadiositySolution
 
 
@@ -37,9 +39,15 @@ class Radiosity:
     def _table(self) -> tuple[Any, ...]:
         """What the core looks up."""
         solution = self.solution
-        is_front = solution.patches["side"] == 1
-        area = float(solution.areas[is_front].sum())
-        return solution.cuts, solution.corner_irradiance, not bool(is_front.all()), area
+        patches = solution.patches
+        is_front = patches["side"] == 1
+        area = float(solution.areas[is_front & (patches["copy"] < 0)].sum())
+        # A patch of each face, in their order, and where each primitive of the scene starts among them.
+        faces = patches[is_front & (patches["cell"] == 0)]
+        starts = np.flatnonzero((faces["copy"] < 0) | (faces["face"] == 0))
+        first = np.append(starts, len(faces)).astype(np.uint32)
+        has_backs = not bool(is_front.all())
+        return solution.cuts, first, solution.mirrored, solution.corner_irradiance, has_backs, area
 
     def __getstate__(self) -> dict[str, Any]:
         return {"solution": self.solution}

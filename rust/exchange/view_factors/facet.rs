@@ -1,6 +1,6 @@
 //! Triangles that send and receive, and what of them lies in front of another's plane.
 
-use crate::math::DVec3;
+use crate::math::{DVec3, DoubleDouble};
 
 /// A triangle that sends from the side of its normal.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,6 +22,12 @@ pub struct Facet {
 /// Roundings of a height, as a part of the distance and of the coordinates: 16 of 2⁻⁵³ each.
 const ROUNDING: f64 = 1.0 / (1u64 << 49) as f64;
 
+/// Heights that are a smaller part of the distance have lost more than 10⁻¹⁰ of themselves, and are computed anew.
+const FLAT: f64 = 1.0 / (1u64 << 18) as f64;
+
+/// What makes as much of the roundings of coordinates: of a height that is more, they are no part that counts.
+const STEEP: f64 = (1u64 << 31) as f64;
+
 impl Facet {
     /// Of these corners.
     pub fn new(corners: [DVec3; 3]) -> Self {
@@ -40,6 +46,18 @@ impl Facet {
     /// How far a point is in front of the plane: 0 where that is no more than rounding.
     #[inline]
     pub fn height(&self, point: DVec3) -> f64 {
+        let from = point - self.centre;
+        let height = self.normal.dot(from);
+        // Of a point well off the plane, all digits that count are right.
+        if height.abs() > FLAT * (from.abs().element_sum() + self.radius) + STEEP * self.noise {
+            return height;
+        }
+        self.low_height(point)
+    }
+
+    /// The same of a point that is not far from the plane.
+    #[inline(never)]
+    fn low_height(&self, point: DVec3) -> f64 {
         let [a, b, c] = self.corners.map(|corner| point - corner);
         let [aa, bb, cc] = [a, b, c].map(DVec3::length_squared);
         // From the nearest corner: exactly 0 of a corner that two have in common.
@@ -51,7 +69,26 @@ impl Facet {
             c
         };
         let height = self.normal.dot(from);
-        if height.abs() <= ROUNDING * (from.length() + self.radius) + self.noise { 0.0 } else { height }
+        let far = from.length() + self.radius;
+        if height.abs() > FLAT * far {
+            height
+        } else if height.abs() <= ROUNDING * far + self.noise {
+            0.0
+        } else {
+            self.flat_height(point)
+        }
+    }
+
+    /// The height of a point next to the plane, to all digits: a volume by numbers of twice the length, over an area.
+    #[cold]
+    fn flat_height(&self, point: DVec3) -> f64 {
+        let [a, b, c] = self.corners;
+        // A power of two, so that no product vanishes.
+        let unit = 2f64.powi(-(self.radius.log2().round() as i32));
+        let from = |p: DVec3| [0, 1, 2].map(|k| DoubleDouble::difference(p[k], a[k]).scaled(unit));
+        let ([ax, ay, az], [bx, by, bz], [px, py, pz]) = (from(b), from(c), from(point));
+        let volume = px * (ay * bz - az * by) + py * (az * bx - ax * bz) + pz * (ax * by - ay * bx);
+        volume.to_f64() / (2.0 * self.area * unit * unit * unit)
     }
 
     /// On which side of the plane points are at most: whether some are in front, and whether some are behind.
@@ -71,7 +108,8 @@ impl Facet {
     /// The heights of another's corners.
     #[inline]
     pub fn heights(&self, other: &Self) -> [f64; 3] {
-        other.corners.map(|corner| self.height(corner))
+        let [a, b, c] = other.corners;
+        [self.height(a), self.height(b), self.height(c)]
     }
 
     /// The four parts that halved edges make, all alike.
@@ -89,21 +127,22 @@ impl Facet {
     }
 }
 
-/// What of a triangle lies in front of a plane: one triangle or two, of its own plane; none if there is nothing.
-pub fn in_front(facet: &Facet, heights: [f64; 3]) -> [Option<Facet>; 2] {
+/// What of a triangle lies in front of a plane, and its heights above that: one triangle or two, of its own plane; none
+/// if there is nothing.
+pub fn in_front(facet: &Facet, heights: [f64; 3]) -> [Option<(Facet, [f64; 3])>; 2] {
     if heights.iter().all(|&h| h <= 0.0) {
         return [None, None];
     }
     if heights.iter().all(|&h| h >= 0.0) {
-        return [Some(*facet), None];
+        return [Some((*facet, heights)), None];
     }
-    let mut kept = [DVec3::ZERO; 4];
+    let mut kept = [(DVec3::ZERO, 0.0); 4];
     let mut count = 0;
     for i in 0..3 {
         let j = (i + 1) % 3;
         let (from, to) = (heights[i], heights[j]);
         if from >= 0.0 {
-            kept[count] = facet.corners[i];
+            kept[count] = (facet.corners[i], from);
             count += 1;
         }
         if (from > 0.0 && to < 0.0) || (from < 0.0 && to > 0.0) {
@@ -113,13 +152,14 @@ pub fn in_front(facet: &Facet, heights: [f64; 3]) -> [Option<Facet>; 2] {
             } else {
                 (facet.corners[j], facet.corners[i], to, from)
             };
-            kept[count] = near + (far - near) * (a / (a - b));
+            kept[count] = (near + (far - near) * (a / (a - b)), 0.0);
             count += 1;
         }
     }
-    let part = |corners: [DVec3; 3]| {
-        let part = Facet::new(corners);
-        (part.area > 0.0).then_some(Facet { normal: facet.normal, noise: facet.noise, ..part })
+    let part = |corners: [(DVec3, f64); 3]| {
+        let part = Facet::new(corners.map(|corner| corner.0));
+        let part = Facet { normal: facet.normal, noise: facet.noise, ..part };
+        (part.area > 0.0).then_some((part, corners.map(|corner| corner.1)))
     };
     match count {
         3 => [part([kept[0], kept[1], kept[2]]), None],
@@ -136,7 +176,7 @@ mod tests {
     fn what_lies_in_front_and_behind_make_the_whole() {
         let facet = Facet::new([DVec3::ZERO, DVec3::new(2.0, 0.0, 0.5), DVec3::new(0.3, 1.5, -0.25)]);
         for plane in [[1.0, -1.0, 2.0], [-1.0, 2.0, 0.25], [0.0, 1.0, -3.0], [1.0, 2.0, 3.0], [-1.0, -1.0, -1e-9]] {
-            let area = |heights| in_front(&facet, heights).iter().flatten().map(|part| part.area).sum::<f64>();
+            let area = |heights| in_front(&facet, heights).iter().flatten().map(|part| part.0.area).sum::<f64>();
             let both = area(plane) + area(plane.map(|h| -h));
             assert!((both - facet.area).abs() < 1e-15 * 8.0, "{plane:?} {both}");
         }

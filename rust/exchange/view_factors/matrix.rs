@@ -106,6 +106,9 @@ struct Everything<'a> {
     rays: AtomicU64,
 }
 
+/// Rows of surfaces that are no triangles, before they are added up.
+const ROWS: usize = 64;
+
 /// Pairs of faces that are worth a task of their own.
 const TASK: u64 = 1 << 14;
 
@@ -254,20 +257,32 @@ impl Everything<'_> {
     fn curved(&self, areas: &[f64]) -> Result<(), Stopped> {
         let geometry = self.scene.geometry();
         let is_curved = |i: u32| geometry.shape(i).is_some();
+        let curved: Vec<u32> = (0..areas.len() as u32).filter(|&i| is_curved(i) && areas[i as usize] > 0.0).collect();
         let mut exchanged = BTreeMap::<[u32; 2], [f64; 2]>::new();
-        let (mut rows, mut rays) = (Rows::new(self.scene, self.aim.seed), 0);
-        for i in (0..areas.len() as u32).filter(|&i| is_curved(i) && areas[i as usize] > 0.0) {
-            let area = areas[i as usize];
-            for (j, factor, error) in rows.row(i, &self.facets[i as usize], self.aim, &mut rays) {
-                let other = areas[j as usize];
-                let share = if i != j && is_curved(j) { other / (area + other) } else { 1.0 };
-                let [value, variance] = exchanged.entry([i.min(j), i.max(j)]).or_default();
-                *value += share * area * factor;
-                *variance += (share * area * error).powi(2);
+        for some in curved.chunks(ROWS) {
+            let row = |rows: &mut Rows, &i: &u32| {
+                let mut rays = 0;
+                if self.steps.is_stopped() {
+                    return Vec::new();
+                }
+                let row = rows.row(i, &self.facets[i as usize], self.aim, &mut rays);
+                self.rays.fetch_add(rays, Relaxed);
+                row
+            };
+            let rows: Vec<_> =
+                some.par_iter().with_max_len(1).map_init(|| Rows::new(self.scene, self.aim.seed), row).collect();
+            self.steps.did(some.len() * areas.len())?;
+            for (&i, row) in some.iter().zip(rows) {
+                let area = areas[i as usize];
+                for (j, factor, error) in row {
+                    let other = areas[j as usize];
+                    let share = if i != j && is_curved(j) { other / (area + other) } else { 1.0 };
+                    let [value, variance] = exchanged.entry([i.min(j), i.max(j)]).or_default();
+                    *value += share * area * factor;
+                    *variance += (share * area * error).powi(2);
+                }
             }
-            self.steps.did(areas.len())?;
         }
-        self.rays.fetch_add(rays, Relaxed);
         self.counts[2].fetch_add(exchanged.len() as u64, Relaxed);
         let mut sampled = self.sampled.lock().unwrap_or_else(PoisonError::into_inner);
         for (faces, [value, variance]) in exchanged {

@@ -5,6 +5,7 @@ mod clusters;
 mod contour;
 mod distant;
 mod facet;
+mod hinge;
 mod matrix;
 mod pair;
 mod partly;

@@ -3,6 +3,7 @@
 use super::contour::contour;
 use super::distant::Quadrature;
 use super::facet::{Facet, in_front};
+use super::hinge::hinge;
 
 /// How often a triangle is quartered to be no larger than another; what is left is then so near, and so small, that it
 /// does not count.
@@ -10,6 +11,10 @@ const MOST_CUTS: u32 = 60;
 
 /// Radii that differ by more are made alike by quartering the larger one: integrals around both would cancel.
 const UNLIKE: f64 = 4.0;
+
+/// Of the square of the radius, what is exchanged by so much more than roundings of integrals around both that they are
+/// 10⁻¹⁰ of it at most.
+const CANCELLED: f64 = 1e-5;
 
 /// The area of one triangle times its view factor to another, which is the other's times that to the one.
 pub fn pair(quadrature: &mut Quadrature, one: &Facet, other: &Facet) -> f64 {
@@ -22,12 +27,9 @@ pub fn pair(quadrature: &mut Quadrature, one: &Facet, other: &Facet) -> f64 {
     }
     let (parts, others) = (in_front(one, heights[1]), in_front(other, heights[0]));
     let mut sum = 0.0;
-    for part in parts.iter().flatten() {
-        for other_part in others.iter().flatten() {
-            // The heights that rounding has left behind the plane lie on it.
-            let positive = |of: [f64; 3]| of.map(|h| h.max(0.0));
-            let heights = [positive(one.heights(other_part)), positive(other.heights(part))];
-            sum += before(quadrature, part, other_part, heights, MOST_CUTS);
+    for (part, to_other) in parts.iter().flatten() {
+        for (other_part, to_one) in others.iter().flatten() {
+            sum += before(quadrature, part, other_part, [*to_one, *to_other], MOST_CUTS);
         }
     }
     sum
@@ -41,7 +43,9 @@ fn before(quadrature: &mut Quadrature, one: &Facet, other: &Facet, heights: [[f6
     let is_larger = one.radius > other.radius;
     let (larger, smaller) = if is_larger { (one, other) } else { (other, one) };
     if larger.radius <= UNLIKE * smaller.radius || cuts == 0 {
-        return contour(one, other);
+        let found = contour(one, other);
+        let least = CANCELLED * larger.radius * larger.radius;
+        return if found > least { found } else { hinge(one, other, heights) };
     }
     let [above_larger, above_smaller] = if is_larger { heights } else { [heights[1], heights[0]] };
     let [a, b, c] = above_smaller;

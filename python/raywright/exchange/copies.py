@@ -1,0 +1,108 @@
+"""Copies of instances as shapes of their own, each face of which exchanges light for itself."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, fields
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..scene.instance import AnyShape, Instance
+from ..scene.scene import Scene
+from ..shapes import Shape
+from ..shapes.mesh import Mesh
+
+Integers = NDArray[np.int64]
+# Of the faces of an instance that is not copied: of which copy they are.
+NO_COPY = -1
+
+
+@dataclass(frozen=True)
+class LaidOut:
+    """A scene without instances, and of what in the scene with them each face is.
+
+    Attributes
+    ----------
+    scene : Scene
+        Its faces are numbered as `Instance` does it: shape after shape, and of an instance copy after copy.
+    shape, copy, face : (F,) int64
+        Of each face: which shape it is of, which copy of that if it is an instance, or else -1, and which
+        face of the shape, or of the copy.
+    mirrored : (F,) bool
+        Whether it stands in a copy that is mirrored, so that its second and third corner changed places.
+    counts : (S,) int64
+        How many faces each shape has, with all of its copies.
+    """
+
+    scene: Scene
+    shape: Integers
+    copy: Integers
+    face: Integers
+    mirrored: NDArray[np.bool_]
+    counts: Integers
+
+
+def laid_out(scene: Scene) -> LaidOut:
+    """Return a scene whose instances are laid out as moved copies of their shapes.
+
+    Raises
+    ------
+    ValueError
+        If copies move: what they exchange is another at each moment.
+    """
+    shapes: list[AnyShape] = []
+    shape, copy, face, mirrored = [], [], [], []
+    for number, one in enumerate(scene.shapes):
+        if isinstance(one, Instance):
+            parts = list(_parts(one, np.eye(4), number))
+            shapes += [part for part, _ in parts]
+            turned = [np.full(_faces(part), is_mirrored) for part, is_mirrored in parts]
+            mirrored.append(np.concatenate([np.zeros(0, np.bool_), *turned]))
+            copies = np.repeat(np.arange(len(one)), one.primitives)
+            within = np.tile(np.arange(one.primitives), len(one))
+        else:
+            shapes.append(one)
+            mirrored.append(np.zeros(_faces(one), np.bool_))
+            copies, within = np.full(_faces(one), NO_COPY), np.arange(_faces(one))
+        shape.append(np.full(len(within), number))
+        copy.append(copies)
+        face.append(within)
+    has_copies = any(isinstance(one, Instance) for one in scene.shapes)
+    nothing = np.zeros(0, np.int64)
+    return LaidOut(
+        scene.replace(shapes=shapes) if has_copies else scene,
+        np.concatenate([nothing, *shape]),
+        np.concatenate([nothing, *copy]),
+        np.concatenate([nothing, *face]),
+        np.concatenate([nothing.astype(np.bool_), *mirrored]),
+        np.array([len(part) for part in face], np.int64),
+    )
+
+
+def _faces(shape: AnyShape) -> int:
+    return len(shape.faces) if isinstance(shape, Mesh) else 1
+
+
+def _parts(instance: Instance, outer: NDArray[np.float64], number: int) -> Iterator[tuple[AnyShape, bool]]:
+    """Give the shapes of all copies, moved, and whether they are mirrored meshes."""
+    if instance.transform_end is not None:
+        raise ValueError(
+            f"shape {number} has copies that move, and what they exchange is another at each moment: "
+            "give a transform alone"
+        )
+    for matrix in instance.transform.reshape(-1, 4, 4):
+        whole = outer @ matrix
+        for shape in instance.shapes:
+            if isinstance(shape, Instance):
+                yield from _parts(shape, whole, number)
+            elif isinstance(shape, Mesh):
+                yield shape.transformed(whole), bool(np.linalg.det(whole[:3, :3]) < 0)
+            else:
+                yield _moved(shape, whole), False
+
+
+def _moved(shape: Shape, matrix: NDArray[np.float64]) -> Shape:
+    values: dict[str, Any] = {field.name: getattr(shape, field.name) for field in fields(shape)}
+    own = values["transform"]
+    values["transform"] = matrix if own is None else matrix @ own
+    return type(shape)(**values)
