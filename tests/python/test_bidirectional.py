@@ -6,45 +6,13 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
+from light_pictures import MATERIALS, SIDE, assert_same, ball, camera, lamp, square
 
 import raywright as rw
 
-SIDE = 24
-
-
-def square(size, height, *, up=True, **kwargs):
-    corners = [(-size, -size, height), (size, -size, height), (size, size, height), (-size, size, height)]
-    faces = [(0, 1, 2), (0, 2, 3)] if up else [(0, 2, 1), (0, 3, 2)]
-    return rw.Mesh(corners, faces, **kwargs)
-
-
-def lamp(height=2.0, size=0.5, radiance=20.0):
-    return square(size, height, up=False, material=rw.Diffuse(0), emission=radiance)
-
-
-def camera(at=(3, -2, 2.5), target=(0, 0, 0.3), fov=40, side=SIDE):
-    return rw.Camera(at, target, up=(0, 0, 1), fov=fov, width=side, height=side)
-
-
-def blocks(values):
-    side = values.shape[0]
-    return values.astype(float).reshape(side // 8, 8, side // 8, 8, 3).mean((1, 3))
-
-
 def assert_same_picture(scene, camera, samples=64, paths=256, depth=None, path=None):
-    """Blocks of 8 x 8 pixels agree within five of the joint standard errors, which chance exceeds once in two
-    million. In the middle block those are below a tenth."""
-    ours = rw.render(scene, camera, rw.Bidirectional(depth), samples, progress=False)
-    theirs = rw.render(scene, camera, path or rw.Path(depth, reuse=1), paths, progress=False)
-    off = np.abs(blocks(ours.rgb) - blocks(theirs.rgb))
-    variance = blocks(ours.standard_error.astype(float) ** 2) + blocks(
-        theirs.standard_error.astype(float) ** 2
-    )
-    error = np.sqrt(variance / 64)
-    ratio = off / (error + 1e-6 * blocks(theirs.rgb) + 1e-12)
-    assert ratio.max() < 5, ratio.round(1)
-    assert np.median(error / (blocks(theirs.rgb) + 1e-12)) < 0.1
-    return ours, theirs
+    theirs = path or rw.Path(depth, reuse=1)
+    return assert_same(scene, camera, (rw.Bidirectional(depth), samples), (theirs, paths))
 
 
 def mean(image):
@@ -59,25 +27,6 @@ def assert_mean(image, expected, most, off=0.0):
     found, error = mean(image)
     assert error <= most * expected, error / expected
     assert abs(found - expected) <= 3 * error + off * expected, (found, error, expected)
-
-
-def ball(divisions, material, centre=(0, 0, 0.6), radius=0.6):
-    """A ball of few triangles with the normals of a sphere."""
-    trimesh = pytest.importorskip("trimesh")
-    sphere = trimesh.creation.icosphere(divisions, radius)
-    normals = sphere.vertices / np.linalg.norm(sphere.vertices, axis=1, keepdims=True)
-    return rw.Mesh(sphere.vertices + centre, sphere.faces, normals=normals, material=material)
-
-
-MATERIALS = {
-    "diffuse": rw.Diffuse((0.8, 0.5, 0.2)),
-    "Oren-Nayar": rw.OrenNayar(0.7, 0.4),
-    "rough gold": rw.Conductor("Au", roughness=0.5),
-    "plastic": rw.Plastic((0.2, 0.4, 0.7), roughness=0.4),
-    "Phong": rw.Phong(0.4, 0.4, 20),
-    "rough glass": rw.Dielectric(1.5, roughness=0.6),
-    "metallic": rw.MetallicRough((0.7, 0.3, 0.2), 0.5, 0.5),
-}
 
 
 @pytest.mark.parametrize("name", MATERIALS)
@@ -376,6 +325,12 @@ def test_wrong_input_gets_one_clear_line():
         ({"max_depth": -1}, ValueError, "max_depth must be between 0 and"),
         ({"max_depth": 2.5}, TypeError, "max_depth must be"),
         ({"roulette_depth": "4"}, TypeError, "roulette_depth must be"),
+        ({"merge": 1}, TypeError, "merge must be True or False, got 1"),
+        ({"radius": 0.1}, ValueError, "radius is of paths that are merged, and none are: give merge=True"),
+        ({"photons": 100}, ValueError, "photons is of paths that are merged"),
+        ({"merge": True, "radius": -1}, ValueError, "radius must be greater than 0"),
+        ({"merge": True, "radius": "1"}, TypeError, "radius must be"),
+        ({"merge": True, "photons": 0}, ValueError, "photons must be between 1 and"),
     ]:
         with pytest.raises(kind, match=words):
             rw.Bidirectional(**arguments)
@@ -389,7 +344,7 @@ def test_wrong_input_gets_one_clear_line():
 
 def test_values():
     way = rw.Bidirectional(3, roulette_depth=2)
-    assert repr(way) == "Bidirectional(max_depth=3, roulette_depth=2)"
+    assert repr(way).startswith("Bidirectional(max_depth=3, roulette_depth=2, merge=False")
     assert pickle.loads(pickle.dumps(way)) == way != rw.Bidirectional()
 
 

@@ -7,16 +7,11 @@ from functools import cache
 
 import numpy as np
 import pytest
+from light_pictures import behind_glass, square
 
 import raywright as rw
 
 SIDE = 16
-
-
-def square(size, height, *, up=True, **kwargs):
-    corners = [(-size, -size, height), (size, -size, height), (size, size, height), (-size, size, height)]
-    faces = [(0, 1, 2), (0, 2, 3)] if up else [(0, 2, 1), (0, 3, 2)]
-    return rw.Mesh(corners, faces, **kwargs)
 
 
 def picture(scene, camera, integrator, samples, **options):
@@ -170,20 +165,6 @@ def test_standard_errors_hold_for_what_maps_tend_to(caustic):
         low, high = image.interval()
         held.append((low <= truth) & (truth <= high))
     assert 0.93 < np.mean(held) < 0.97
-
-
-def behind_glass():
-    """A lamp in a block of glass, seen through a pane of glass."""
-    trimesh = pytest.importorskip("trimesh")
-    glass = rw.Dielectric(1.5)
-
-    def block(extents, centre):
-        box = trimesh.creation.box(extents)
-        return rw.Mesh(box.vertices + centre, box.faces, material=glass)
-
-    floor = square(1.5, 0.0, material=rw.Diffuse((0.7, 0.5, 0.3)))
-    lamp = square(0.25, 1.2, up=False, material=rw.Diffuse(0), emission=8)
-    return [floor, block((1.0, 1.0, 0.6), (0, 0, 1.15)), block((6.0, 0.1, 6.0), (0, -2.0, 0))], lamp
 
 
 def test_a_lamp_and_an_eye_both_behind_glass():

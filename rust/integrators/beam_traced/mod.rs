@@ -86,20 +86,25 @@ fn unsuited(scene: &Scene, shape: u32) -> Option<&'static str> {
     }
 }
 
-/// Whether the first face of a shape that has an area is a mirror with a normal other than its own.
+/// Whether a face of a shape that has an area is a mirror with a normal other than its own, in its middle.
 fn is_curved_mirror(scene: &Scene, shape: u32) -> bool {
     let geometry = scene.geometry();
-    let Some(face) = geometry.primitives_of(shape).find(|&face| geometry.normal(face).is_finite()) else {
-        return false;
-    };
     let third = [1.0 / 3.0; 2];
-    let (at, normal) = (geometry.position(face, third), geometry.normal(face));
-    let ray = Ray::new(at + normal, -normal);
-    let hit = Hit { t: 1.0, uv: third, primitive: face, inner: 0 };
-    let here = SurfaceInteraction::at(scene, &ray, &hit);
-    let mut mirrors = false;
-    here.bsdf().delta_lobes(here.wo(), |_| mirrors = true);
-    mirrors && !here.is_flat()
+    let is_curved = |face: u32| {
+        let (at, normal) = (geometry.position(face, third), geometry.normal(face));
+        if !normal.is_finite() {
+            return false;
+        }
+        let ray = Ray::new(at + normal, -normal);
+        let hit = Hit { t: 1.0, uv: third, primitive: face, inner: 0 };
+        let here = SurfaceInteraction::at(scene, &ray, &hit);
+        let mut mirrors = false;
+        if !here.is_flat() {
+            here.bsdf().delta_lobes(here.wo(), |_| mirrors = true);
+        }
+        mirrors
+    };
+    geometry.primitives_of(shape).any(is_curved)
 }
 
 /// The film, in pieces.
