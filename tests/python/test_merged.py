@@ -91,9 +91,7 @@ def test_what_moves_is_lit_at_its_time():
     pane = square(2.0, 0.8, material=rw.Dielectric(1.5))
     lamp = square(0.25, 1.2, up=False, material=rw.Diffuse(0), emission=8)
     eye = (0, -2.5, 0.7)
-    look = rw.Camera(
-        eye, (0, 0, 0), up=(0, 0, 1), fov=30, width=SIDE, height=SIDE, shutter=(0.0, 1.0)
-    )
+    look = rw.Camera(eye, (0, 0, 0), up=(0, 0, 1), fov=30, width=SIDE, height=SIDE, shutter=(0.0, 1.0))
     scene = rw.Scene([floor, board, pane, lamp])
     truth = picture(scene, look, rw.LightTraced(), 2048)
     error = np.sqrt(blocks(truth.standard_error.astype(float) ** 2) / 16)

@@ -1,4 +1,4 @@
-"""Pictures whose light is gathered from about a point: how fast their error falls, and what blur is in them."""
+"""Pictures whose light is gathered from about a point: how their error falls, and what blur is in them."""
 
 from collections.abc import Callable
 from dataclasses import replace
