@@ -135,6 +135,24 @@ def test_a_disk_has_its_bias_and_tells_it(caustic, radius, expected):
     assert abs(left) < (1 - expected) / 3 + 7 * error
 
 
+@pytest.mark.parametrize(("x", "y"), [(1.9999, 0.0), (1.9999, 1.9999), (1.9, 0.3)])
+@pytest.mark.parametrize("nearest", [None, 64])
+def test_edges_are_as_bright_as_what_is_in_the_middle(x, y, nearest):
+    # Even light on a floor that ends within the disk: half of that, or three quarters, has no photons, and
+    # what is gathered is over the area that exists. Sixteen probes tell that to a few in a hundred.
+    floor = square(2.0, 0.0, material=rw.Diffuse(0.5))
+    pane = square(3.0, 0.5, material=rw.Dielectric(1.0))
+    scene = rw.Scene([floor, pane], lights=[rw.DirectionalLight((0, 0, -1), 1.0)])
+    look = rw.Orthographic((x, y, 0.4), (x, y, 0), up=(0, 1, 0), width=1, height=1, scale=1e-6)
+    way = rw.PhotonMap(60_000, nearest=nearest, radius=0.25, gather=0)
+    light = [
+        2 * math.pi * float(picture(scene, look, way, 16, sampler=rw.Independent(), seed=seed).rgb.mean())
+        for seed in range(4)
+    ]
+    assert np.std(light, ddof=1) / 2 < 0.03
+    assert abs(np.mean(light) - 1) < 0.1
+
+
 def test_progress_takes_the_bias_away(caustic):
     look = rw.Orthographic((0, 0, 0.4), (0, 0, 0), up=(0, 1, 0), width=4, height=4, scale=0.05)
     way = rw.ProgressivePhotonMap(3000, radius=0.8)

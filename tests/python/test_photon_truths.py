@@ -61,6 +61,25 @@ def test_a_lamp_over_a_plane():
     assert abs(share - 0.2) < 3 * math.sqrt(0.2 * 0.8 / 1_000_000)
 
 
+def test_light_in_a_closed_room_is_its_series():
+    # Of what comes to a wall the share rho is sent on, whatever the shape: 1 / (1 - rho) comes in all,
+    # rho / (1 - rho) after the first wall, and rho^2 (1 - rho) stays where it comes to the third.
+    rho = 0.7
+    inwards = rw.Emission(1, side="back")
+    scene = rw.Scene(rw.Box((-1, -1, -1), (1, 1, 1), material=rw.Diffuse(rho), emission=inwards))
+    told = []
+    for seed in range(8):
+        found = scene.photons(25_000, seed=seed)
+        shares = found.powers[:, 1] / found.emitted[1]
+        third = shares[found.bounces == 2].sum() * (1 - rho)
+        told.append([shares.sum(), shares[found.bounces > 0].sum(), third])
+    mean, error = np.mean(told, 0), np.std(told, 0, ddof=1) / math.sqrt(8)
+    assert (error < 0.002 * mean).all()
+    # Roulette begins later than at the third wall: that is exact.
+    assert abs(mean[2] - 0.147) < 1e-9
+    assert (np.abs(mean[:2] - [3.33333333333333, 2.33333333333333]) < 3 * error[:2]).all(), (mean, error)
+
+
 @pytest.mark.slow
 def test_a_paraboloid_makes_a_beam():
     mirror = rw.Paraboloid((0, 0, 0), (0, 0, 0.5), radius=1, material=rw.Mirror(1.0))

@@ -114,9 +114,9 @@ fn each_way_alone_finds_light_of_a_surface() {
 }
 
 /// Merging at any one of the surfaces that are matt finds all paths of a length, but what comes straight from a light.
-/// Light is the same everywhere, so that disks have no bias but that a sphere is bent within them: photons at a distance
-/// d are off the plane by d²/2, and count where d² + (4² − 1) d⁴/4 is below r², on an area of π d². All ways together
-/// find as much as there is, less a part of that.
+/// Light is the same everywhere, so that disks have no bias but that a sphere is bent within them: photons at a
+/// distance d are off the plane by d²/2, and count where d² + (4² − 1) d⁴/4 is below r², on an area of π d². All ways
+/// together find as much as there is, less a part of that.
 #[test]
 fn merges_alone_find_all_paths_of_their_length() {
     let light = PointLight { position: DVec3::ZERO, intensity: Rgb::splat(PI) };

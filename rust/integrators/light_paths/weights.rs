@@ -6,9 +6,9 @@
 //! own are gathered along both walks, each in two sums that are known without the other end (Georgiev, "Implementing
 //! Vertex Connection and Merging", 2012): no walk is looked at again.
 //!
-//! Where walks merge, a path is found as well by walks that come to the same vertex from both ends: as nearly the same as
-//! photons count, of as many walks from lights as there are photons (Georgiev et al., "Light Transport Simulation with
-//! Vertex Connection and Merging", 2012; Hachisuka et al., "A Path Space Extension for Robust Light Transport
+//! Where walks merge, a path is found as well by walks that come to the same vertex from both ends: as nearly the same
+//! as photons count, of as many walks from lights as there are photons (Georgiev et al., "Light Transport Simulation
+//! with Vertex Connection and Merging", 2012; Hachisuka et al., "A Path Space Extension for Robust Light Transport
 //! Simulation", 2012). With the density with which either walk comes there, that has the disk's area times the number
 //! of photons: what all share, so that it is but one more summand where a vertex can be merged at. None merges where
 //! light comes first: that is found by asking for it.

@@ -133,13 +133,16 @@ mod tests {
             let (x, y) = (at + far * cos, far * sin);
             photon(x, y, density(x, y) * PI * radius * radius * weight / f64::from(turns))
         };
-        gauss(24).into_iter().flat_map(|ring| (0..turns).map(move |j| (ring, j))).map(|(ring, j)| of(ring, j)).collect()
+        // Half of the area is a disk of its own.
+        let half = |half: f64| gauss(16).into_iter().map(move |(x, weight)| (0.5 * (x + half), 0.5 * weight));
+        let rings = half(0.0).chain(half(1.0));
+        rings.flat_map(|ring| (0..turns).map(move |j| (ring, j))).map(|(ring, j)| of(ring, j)).collect()
     }
 
     #[test]
     fn disks_have_their_bias() {
         // A lamp of intensity 1, 1 above the floor: under it, and 1 aside. The rules are exact to more digits than
-        // photons keep of their power: 1500 roundings to single precision leave some 2e-9.
+        // photons keep of their power: 32 roundings to single precision, of a ring each, leave some 1e-8.
         let light = |x: f64, y: f64| (1.0 + x * x + y * y).powf(-1.5);
         let scene = floor();
         for (radius, under, aside) in
@@ -148,12 +151,12 @@ mod tests {
             for (x, expected) in [(0.0, under), (1.0, aside)] {
                 let of = PhotonIndex::new(rings(light, x, radius), Some(radius));
                 let found = irradiance(FIXED, &of, &scene, x);
-                assert!((found / expected - 1.0).abs() < 2e-8, "{found} {expected}");
+                assert!((found / expected - 1.0).abs() < 3e-8, "{found} {expected}");
                 if radius == 0.5 && x == 0.0 {
                     // Richardson's combination of two radii, of the same photons.
                     let half = Estimate { scale: 0.5f64.sqrt(), ..FIXED };
                     let better = 2.0 * irradiance(half, &of, &scene, x) - found;
-                    assert!((better - 0.985_528_197_373_299).abs() < 4e-8, "{better}");
+                    assert!((better - 0.985_528_197_373_299).abs() < 8e-8, "{better}");
                     assert!(((1.0 - better) / (1.0 - found) - 0.093_115_640_256_248).abs() < 1e-6);
                 }
             }

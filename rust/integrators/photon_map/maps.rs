@@ -68,9 +68,9 @@ impl Counted for Maps {
     }
 }
 
-/// Follows the paths of a flight, by all threads of the current pool or by this one alone: some thousands at a time, for
-/// each of which a visitor is made who is told of them. What they are told depends on the flight alone. Of no use once
-/// it is cancelled.
+/// Follows the paths of a flight, by all threads of the current pool or by this one alone: some thousands at a time,
+/// for each of which a visitor is made who is told of them. What they are told depends on the flight alone. Of no use
+/// once it is cancelled.
 pub(in crate::integrators) fn flown<'a, V: Visitor<'a> + Send>(
     scene: &'a Scene,
     emitters: &'a Emitters<'a>,
