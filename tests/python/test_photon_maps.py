@@ -216,6 +216,43 @@ def test_what_moves_is_lit_at_its_time():
     assert_agree(scene, look, rw.PhotonMap(3000, gather=0), truth, samples=32, blur=0.06)
 
 
+@pytest.mark.parametrize(
+    "way",
+    [
+        rw.PhotonMap(4000, nearest=None, radius=0.2, gather=0),
+        rw.PhotonMap(4000, caustic=False),
+        rw.ProgressivePhotonMap(4000, 0.2),
+        rw.Bidirectional(merge=True, radius=0.2),
+    ],
+    ids=lambda way: type(way).__name__,
+)
+def test_gold_at_both_ends_gives_no_more_than_there_is(way):
+    # Gold reflects a little more red than a screen's red can show. That is left out at all gold on a path but
+    # at the one nearest to the eye, where photons meet paths, too. The colour of light by way of gold, on a
+    # floor that is seen in it, is that of paths: it hardly depends on angles, and so has hardly any noise.
+    floor = square(1.5, 0.0, material=rw.Diffuse(0.5))
+    gold = rw.Mesh(
+        [(1.2, -2, 0), (1.2, 2, 0), (1.2, 2, 3), (1.2, -2, 3)],
+        [(0, 2, 1), (0, 3, 2)],
+        material=rw.Conductor("Au"),
+    )
+    # It shines towards the mirror alone, and the floor behind it is seen.
+    lamp = rw.Mesh(
+        [(0, -0.3, 1.2), (0, 0.3, 1.2), (0, 0.3, 1.8), (0, -0.3, 1.8)],
+        [(0, 1, 2), (0, 2, 3)],
+        material=rw.Diffuse(0),
+        emission=20,
+    )
+    scene = rw.Scene([floor, gold, lamp])
+    look = rw.Camera((0, -1, 1), (3.0, 0, 0), up=(0, 0, 1), fov=8, width=8, height=8)
+    tints = []
+    for one, samples in ((way, 32), (rw.Path(reuse=1, caustics=False), 1024)):
+        red, green, blue = picture(scene, look, one, samples).rgb.astype(float).mean((0, 1))
+        assert red > 1.5 * blue > 0
+        tints.append(red / green)
+    assert abs(tints[0] / tints[1] - 1) < 0.002
+
+
 LIGHTS = {
     "point": ([], {"lights": [rw.PointLight((0, 0, 1.5), 4)]}),
     "spot": ([], {"lights": [rw.SpotLight((0.3, 0, 1.5), (0, 0, 0), 8, angle=40, falloff=10)]}),
