@@ -28,7 +28,7 @@ mod whitted;
 pub use ambient_occlusion::AmbientOcclusion;
 pub use aov::{Channel, aovs};
 pub use beam_traced::BeamTraced;
-pub use bidirectional::Bidirectional;
+pub use bidirectional::{Alone, Bidirectional, Merge};
 pub use cone_traced::ConeTraced;
 pub use direct::Direct;
 pub use distributed::Distributed;

@@ -11,7 +11,7 @@ use super::query::CompiledScene;
 use super::signals::heard;
 use crate::integrators::{
     AmbientOcclusion, BeamTraced, Bidirectional, Channel, ConeTraced, Direct, Distributed, Integrator, Kernel,
-    LightTraced, Path, PhotonMap, ProgressivePhotonMap, Radiosity, RayCast, Whitted, aovs as observe,
+    LightTraced, Merge, Path, PhotonMap, ProgressivePhotonMap, Radiosity, RayCast, Whitted, aovs as observe,
 };
 use crate::optics::Rgb;
 use crate::scene::{Patches, PlanRow};
@@ -35,6 +35,15 @@ fn kernel(of: &Bound<'_, PyAny>) -> PyResult<Kernel> {
         "epanechnikov" => Ok(Kernel::Epanechnikov),
         _ => Ok(Kernel::Box),
     }
+}
+
+/// How paths from both ends are merged, if they are.
+fn merge(of: &Bound<'_, PyAny>) -> PyResult<Option<Merge>> {
+    if !attribute::<bool>(of, "merge")? {
+        return Ok(None);
+    }
+    let (radius, photons) = (attribute(of, "radius")?, attribute(of, "photons")?);
+    Ok(Some(Merge { radius, photons, ..Merge::default() }))
 }
 
 /// A path tracer; what it leaves open is plain where nobody has chosen.
@@ -113,6 +122,7 @@ impl<'a, 'py> FromPyObject<'a, 'py> for AnyIntegrator {
             "Bidirectional" => Box::new(Bidirectional {
                 max_depth: attribute(of, "max_depth")?,
                 roulette_depth: attribute(of, "roulette_depth")?,
+                merge: merge(of)?,
                 alone: None,
             }),
             "Direct" => {

@@ -6,45 +6,14 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
+from light_pictures import MATERIALS, SIDE, assert_same, ball, camera, lamp, square
 
 import raywright as rw
 
-SIDE = 24
-
-
-def square(size, height, *, up=True, **kwargs):
-    corners = [(-size, -size, height), (size, -size, height), (size, size, height), (-size, size, height)]
-    faces = [(0, 1, 2), (0, 2, 3)] if up else [(0, 2, 1), (0, 3, 2)]
-    return rw.Mesh(corners, faces, **kwargs)
-
-
-def lamp(height=2.0, size=0.5, radiance=20.0):
-    return square(size, height, up=False, material=rw.Diffuse(0), emission=radiance)
-
-
-def camera(at=(3, -2, 2.5), target=(0, 0, 0.3), fov=40, side=SIDE):
-    return rw.Camera(at, target, up=(0, 0, 1), fov=fov, width=side, height=side)
-
-
-def blocks(values):
-    side = values.shape[0]
-    return values.astype(float).reshape(side // 8, 8, side // 8, 8, 3).mean((1, 3))
-
 
 def assert_same_picture(scene, camera, samples=64, paths=256, depth=None, path=None):
-    """Blocks of 8 x 8 pixels agree within five of the joint standard errors, which chance exceeds once in two
-    million. In the middle block those are below a tenth."""
-    ours = rw.render(scene, camera, rw.Bidirectional(depth), samples, progress=False)
-    theirs = rw.render(scene, camera, path or rw.Path(depth, reuse=1), paths, progress=False)
-    off = np.abs(blocks(ours.rgb) - blocks(theirs.rgb))
-    variance = blocks(ours.standard_error.astype(float) ** 2) + blocks(
-        theirs.standard_error.astype(float) ** 2
-    )
-    error = np.sqrt(variance / 64)
-    ratio = off / (error + 1e-6 * blocks(theirs.rgb) + 1e-12)
-    assert ratio.max() < 5, ratio.round(1)
-    assert np.median(error / (blocks(theirs.rgb) + 1e-12)) < 0.1
-    return ours, theirs
+    theirs = path or rw.Path(depth, reuse=1)
+    return assert_same(scene, camera, (rw.Bidirectional(depth), samples), (theirs, paths))
 
 
 def mean(image):
@@ -59,25 +28,6 @@ def assert_mean(image, expected, most, off=0.0):
     found, error = mean(image)
     assert error <= most * expected, error / expected
     assert abs(found - expected) <= 3 * error + off * expected, (found, error, expected)
-
-
-def ball(divisions, material, centre=(0, 0, 0.6), radius=0.6):
-    """A ball of few triangles with the normals of a sphere."""
-    trimesh = pytest.importorskip("trimesh")
-    sphere = trimesh.creation.icosphere(divisions, radius)
-    normals = sphere.vertices / np.linalg.norm(sphere.vertices, axis=1, keepdims=True)
-    return rw.Mesh(sphere.vertices + centre, sphere.faces, normals=normals, material=material)
-
-
-MATERIALS = {
-    "diffuse": rw.Diffuse((0.8, 0.5, 0.2)),
-    "Oren-Nayar": rw.OrenNayar(0.7, 0.4),
-    "rough gold": rw.Conductor("Au", roughness=0.5),
-    "plastic": rw.Plastic((0.2, 0.4, 0.7), roughness=0.4),
-    "Phong": rw.Phong(0.4, 0.4, 20),
-    "rough glass": rw.Dielectric(1.5, roughness=0.6),
-    "metallic": rw.MetallicRough((0.7, 0.3, 0.2), 0.5, 0.5),
-}
 
 
 @pytest.mark.parametrize("name", MATERIALS)
@@ -218,10 +168,11 @@ def hollow(aperture, *, centre=0.0, up=True, rings=96, **kwargs):
     return rw.Mesh(vertices, faces if up else faces[:, ::-1], **kwargs)
 
 
+@pytest.mark.slow
 def test_light_behind_a_port():
     # A point light in a hollow sphere whose wall has a port: the receiver sees the wall alone. Its radiosity
     # is rho I / (1 - rho (1 - s)), with s the share of the sphere that is cut away; and the port sends what
-    # a disk of it would.
+    # a disk of it would. What comes to the receiver is what a camera there sees, by solid angle and cosine.
     port, rho, far, aside = 0.1, 0.9, 0.5, 0.3
     rim = math.sqrt(1 - port**2)
     share = (1 - rim) / 2
@@ -232,54 +183,77 @@ def test_light_behind_a_port():
     expected = wall * factor
     assert abs(wall - 8.80146936562785) < 1e-12
     assert abs(expected - 0.189124193924197) < 1e-12
-    height = rim + far
-    size = 1e-3
-    receiver = rw.Mesh(
-        [(aside + x * size, y * size, height) for x, y in [(-1, -1), (1, -1), (1, 1), (-1, 1)]],
-        [(0, 2, 1), (0, 3, 2)],
-        material=rw.Diffuse(1e-3),
-    )
-    scene = rw.Scene([hollow(port, material=rw.Diffuse(rho)), receiver], lights=[rw.PointLight((0, 0, 0), 1)])
-    look = rw.Camera(
-        (aside + 0.3, 0, height - 0.3), (aside, 0, height), up=(0, 0, 1), fov=0.1, width=8, height=8
-    )
-    image = rw.render(scene, look, rw.Bidirectional(roulette_depth=64), 256, progress=False)
-    # The wall of straight pieces is off by less than a thousandth, and the receiver's own light by as much.
-    assert_mean(image, 1e-3 * expected / math.pi, 0.02, off=2e-3)
+    side, fov = 48, 26
+    scene = rw.Scene([hollow(port, material=rw.Diffuse(rho))], lights=[rw.PointLight((0, 0, 0), 1)])
+    at, to = np.array([aside, 0.0, rim + far]), np.array([0.0, 0.0, rim])
+    look = rw.Camera(at, to, up=(0, 1, 0), fov=fov, width=side, height=side)
+    image = rw.render(scene, look, rw.Bidirectional(), 96, progress=False)
+    # Pixels as seen from there: the solid angle of each, and the cosine of its middle to the port's normal.
+    half = math.tan(math.radians(fov / 2))
+    u, v = np.meshgrid(*[((np.arange(side) + 0.5) / side * 2 - 1) * half] * 2)
+    axis = (to - at) / np.linalg.norm(to - at)
+    across = np.cross(axis, [0, 1, 0])
+    away = axis + u[..., None] * across - v[..., None] * np.array([0.0, 1.0, 0.0])
+    length = np.linalg.norm(away, axis=-1)
+    share = -away[..., 2] / length * (2 * half / side) ** 2 / length**3
+    found = float((image.rgb[..., 1] * share).sum())
+    error = math.sqrt(float(((image.standard_error[..., 1] * share) ** 2).sum()))
+    assert error < 0.002 * expected
+    # The wall of straight pieces, of 2 degrees, is off by less than a thousandth.
+    assert abs(found - expected) < 3 * error + 1e-3 * expected
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("depth", [0, 1, 2, 3, None])
 @pytest.mark.parametrize(
-    ("aperture", "rho", "expected"),
+    ("aperture", "rho", "expected", "most"),
     [
-        (0.5, (0.5, 0.8), (1.89963972281447, 0.401441108742115)),
-        (0.01, (0.8, 0.8), (4.99950008748438, 0.000499912515622227)),
+        (0.5, (0.5, 0.8), (1.89963972281447, 0.401441108742115), 0.002),
+        # One path in 8000 goes through the small hole: for 0.2 % there it would take 2 billion.
+        (0.01, (0.8, 0.8), (4.99950008748438, 0.000499912515622227), 0.06),
     ],
 )
-def test_chambers_that_light_each_other_through_a_hole(aperture, rho, expected, depth):
+def test_chambers_that_light_each_other_through_a_hole(aperture, rho, expected, most):
     # A point of a sphere sees the opening under the factor s wherever it lies: each wall is even.
     # BA = 1 + rA ((1 - s) BA + s BB), BB = rB ((1 - s) BB + s BA).
     rim = math.sqrt(1 - aperture**2)
     s = (1 - rim) / 2
     bounce = np.array([[rho[0] * (1 - s), rho[0] * s], [rho[1] * s, rho[1] * (1 - s)]])
     np.testing.assert_allclose(np.linalg.solve(np.eye(2) - bounce, [1, 0]), expected, rtol=1e-12)
-    radiosity = np.array(expected)
-    if depth is not None:
-        radiosity = sum(np.linalg.matrix_power(bounce, k) @ [1, 0] for k in range(depth + 1))
     first = hollow(aperture, material=rw.Diffuse(rho[0]), emission=1 / math.pi)
     second = hollow(aperture, centre=2 * rim, up=False, material=rw.Diffuse(rho[1]))
     scene = rw.Scene([first, second])
-    # Through the small hole so few connections go that the other chamber is told to no digit.
+    # By photons, to each depth: of what comes to a wall after so many bounces, a share is sent on.
+    depths, runs, count = 6, 12, 400_000
+    arrived = np.zeros((runs, 2, depths + 1))
+    for seed in range(runs):
+        found = scene.photons(count, seed=seed)
+        order = np.minimum(found.bounces, depths)
+        for wall in range(2):
+            here = found.shape_id == wall
+            sums = np.bincount(order[here], found.powers[here, 1], depths + 1)
+            arrived[seed, wall] = sums / found.emitted[1]
+    # Both walls have the same area, of which the first sends 1 each: what comes, in units of that.
+    of_depth = [np.linalg.matrix_power(bounce, k) @ [1, 0] for k in range(1, depths + 1)]
+    rest = np.array(expected) - [1, 0] - np.sum(of_depth, 0)
+    sent = arrived * np.array(rho)[:, None]
+    mean, error = sent.mean(0), sent.std(0, ddof=1) / math.sqrt(runs)
+    whole, doubt = sent.sum(2).mean(0), sent.sum(2).std(0, ddof=1) / math.sqrt(runs)
+    assert (doubt < most * whole).all(), doubt / whole
+    # Within three standard errors; seeds are fixed. Walls of straight pieces are off by less than a
+    # thousandth, and so is the hole between them.
+    off = np.abs(whole - (np.array(expected) - [1, 0]))
+    assert (off < 3 * doubt + 1e-3 * whole).all(), (whole, doubt)
+    for k, truth in enumerate([*of_depth, rest]):
+        off = np.abs(mean[:, k] - truth)
+        assert (off < 3 * error[:, k] + 1e-3 * truth + 1e-12).all(), (k, mean[:, k], truth)
+    # By connections, the picture of either; through the small hole they tell the other to no digit.
     for chamber in range(2 if aperture > 0.1 else 1):
         centre = 2 * rim * chamber
         look = rw.Camera((0.1, 0.2, centre), (1, 0.3, centre), up=(0, 0, 1), fov=60, width=16, height=16)
-        image = rw.render(scene, look, rw.Bidirectional(depth), 64, progress=False)
-        if chamber == 1 and depth == 0:
-            assert not image.rgb.any()
-            continue
-        # Walls of straight pieces are off by less than a thousandth.
-        assert_mean(image, radiosity[chamber] / math.pi, 0.03, off=1e-3)
+        for depth in (1, 2, None):
+            image = rw.render(scene, look, rw.Bidirectional(depth), 64, progress=False)
+            radiosity = expected if depth is None else np.add([1, 0], sum(of_depth[:depth]))
+            assert_mean(image, radiosity[chamber] / math.pi, 0.03, off=1e-3)
 
 
 def test_a_lamp_under_a_ceiling():
@@ -298,22 +272,20 @@ def test_a_lamp_under_a_ceiling():
     assert_mean(both, (0.25 + 0.166860231636058) / math.pi, 0.002, off=1e-5)
 
 
+@pytest.mark.slow
 def test_a_pane_before_a_point_light():
     # A pane without thickness lets (1 - r) / (1 + r) through; straight on r = 0.04, and 12/13 arrive. No path
     # from the floor comes upon a point, nor does a connection go through the pane: light itself does.
     pane, floor = square(50, 1.0, material=rw.ThinDielectric(1.5)), square(2, 0, material=rw.Diffuse(1.0))
     for x, expected in [(0, 0.230769230769231), (1, 0.16483003912558)]:
-        lamp = rw.SpotLight((0, 0, 2), (x, 0, 0), 1, angle=5, falloff=0)
+        # The cone lights little more than the 6 mm that are seen.
+        lamp = rw.SpotLight((0, 0, 2), (x, 0, 0), 1, angle=0.16, falloff=0)
         scene = rw.Scene([pane, floor], lights=[lamp])
-        look = rw.Camera((x, -0.8, 0.8), (x, 0, 0), up=(0, 0, 1), fov=3, width=8, height=8)
+        look = rw.Camera((x, -0.8, 0.8), (x, 0, 0), up=(0, 0, 1), fov=0.3, width=16, height=16)
         assert not rw.render(scene, look, rw.Path(1, reuse=1), 16, progress=False).rgb.any()
-        # Over the 6 cm that are seen, it differs by less than two thousandths.
-        assert_mean(
-            rw.render(scene, look, rw.Bidirectional(2), 4000, progress=False),
-            expected / math.pi,
-            0.02,
-            off=2e-3,
-        )
+        image = rw.render(scene, look, rw.Bidirectional(2), 4000, progress=False)
+        # Over what is seen it differs by less than a hundred-thousandth or so from its middle.
+        assert_mean(image, expected / math.pi, 0.002, off=5e-5)
 
 
 def bulb(height, *, up):
@@ -338,11 +310,11 @@ def test_a_lamp_close_to_a_surface():
     scene = rw.Scene([square(3, 0, material=rw.Diffuse(0.6)), bulb(1e-3, up=False)])
     at = np.array([3.0, -2.0, 2.5])
     far = np.linalg.norm(at)
-    image = rw.render(scene, camera(at, (0, 0, 0)), rw.Bidirectional(1), 64, progress=False)
+    image = rw.render(scene, camera(at, (0, 0, 0)), rw.Bidirectional(1), 400, progress=False)
     # The picture takes (2 tan 20 degrees)^2 at distance 1.
     expected = 0.6 * (at[2] / far) / (2 * far * math.tan(math.radians(20))) ** 2
-    # A few square millimetres are not one point: a thousandth of the distance, and what falls far away.
-    assert_mean(image, expected, 0.02, off=0.01)
+    # A few square millimetres are not one point, and a part in a thousand falls 3 cm away or farther.
+    assert_mean(image, expected, 0.002, off=1e-3)
 
 
 def test_the_error_is_as_told():
@@ -376,6 +348,12 @@ def test_wrong_input_gets_one_clear_line():
         ({"max_depth": -1}, ValueError, "max_depth must be between 0 and"),
         ({"max_depth": 2.5}, TypeError, "max_depth must be"),
         ({"roulette_depth": "4"}, TypeError, "roulette_depth must be"),
+        ({"merge": 1}, TypeError, "merge must be True or False, got 1"),
+        ({"radius": 0.1}, ValueError, "radius is of paths that are merged, and none are: give merge=True"),
+        ({"photons": 100}, ValueError, "photons is of paths that are merged"),
+        ({"merge": True, "radius": -1}, ValueError, "radius must be greater than 0"),
+        ({"merge": True, "radius": "1"}, TypeError, "radius must be"),
+        ({"merge": True, "photons": 0}, ValueError, "photons must be between 1 and"),
     ]:
         with pytest.raises(kind, match=words):
             rw.Bidirectional(**arguments)
@@ -389,7 +367,7 @@ def test_wrong_input_gets_one_clear_line():
 
 def test_values():
     way = rw.Bidirectional(3, roulette_depth=2)
-    assert repr(way) == "Bidirectional(max_depth=3, roulette_depth=2)"
+    assert repr(way).startswith("Bidirectional(max_depth=3, roulette_depth=2, merge=False")
     assert pickle.loads(pickle.dumps(way)) == way != rw.Bidirectional()
 
 

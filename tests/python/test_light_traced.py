@@ -6,63 +6,14 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
+from light_pictures import MATERIALS, SIDE, assert_same, ball, blocks, camera, lamp, square
 
 import raywright as rw
 
-SIDE = 24
-
-
-def square(size, height, *, up=True, **kwargs):
-    corners = [(-size, -size, height), (size, -size, height), (size, size, height), (-size, size, height)]
-    faces = [(0, 1, 2), (0, 2, 3)] if up else [(0, 2, 1), (0, 3, 2)]
-    return rw.Mesh(corners, faces, **kwargs)
-
-
-def lamp(height=2.0, size=0.5, radiance=20.0):
-    return square(size, height, up=False, material=rw.Diffuse(0), emission=radiance)
-
-
-def camera(at=(3, -2, 2.5), target=(0, 0, 0.3), fov=40):
-    return rw.Camera(at, target, up=(0, 0, 1), fov=fov, width=SIDE, height=SIDE)
-
-
-def blocks(values):
-    return values.astype(float).reshape(SIDE // 8, 8, SIDE // 8, 8, 3).mean((1, 3))
-
 
 def assert_same_picture(scene, camera, samples=256, paths=1024, light=None, path=None):
-    """Blocks of 8 x 8 pixels agree within five of the joint standard errors, which chance exceeds once in two
-    million. In the middle block those are below a tenth."""
-    ours = rw.render(scene, camera, light or rw.LightTraced(), samples, progress=False)
-    theirs = rw.render(scene, camera, path or rw.Path(reuse=1), paths, progress=False)
-    off = np.abs(blocks(ours.rgb) - blocks(theirs.rgb))
-    variance = blocks(ours.standard_error.astype(float) ** 2) + blocks(
-        theirs.standard_error.astype(float) ** 2
-    )
-    error = np.sqrt(variance / 64)
-    ratio = off / (error + 1e-6 * blocks(theirs.rgb) + 1e-12)
-    assert ratio.max() < 5, ratio.round(1)
-    assert np.median(error / (blocks(theirs.rgb) + 1e-12)) < 0.1
-    return ours, theirs
-
-
-def ball(divisions, material, centre=(0, 0, 0.6), radius=0.6):
-    """A ball of few triangles with the normals of a sphere."""
-    trimesh = pytest.importorskip("trimesh")
-    sphere = trimesh.creation.icosphere(divisions, radius)
-    normals = sphere.vertices / np.linalg.norm(sphere.vertices, axis=1, keepdims=True)
-    return rw.Mesh(sphere.vertices + centre, sphere.faces, normals=normals, material=material)
-
-
-MATERIALS = {
-    "diffuse": rw.Diffuse((0.8, 0.5, 0.2)),
-    "Oren-Nayar": rw.OrenNayar(0.7, 0.4),
-    "rough gold": rw.Conductor("Au", roughness=0.5),
-    "plastic": rw.Plastic((0.2, 0.4, 0.7), roughness=0.4),
-    "Phong": rw.Phong(0.4, 0.4, 20),
-    "rough glass": rw.Dielectric(1.5, roughness=0.6),
-    "metallic": rw.MetallicRough((0.7, 0.3, 0.2), 0.5, 0.5),
-}
+    ours, theirs = light or rw.LightTraced(), path or rw.Path(reuse=1)
+    return assert_same(scene, camera, (ours, samples), (theirs, paths))
 
 
 @pytest.mark.parametrize("name", MATERIALS)

@@ -3,6 +3,7 @@
 from ..arrays import integer
 
 MOST_SAMPLES = 1024
+MOST_PHOTONS = 2**31 - 1
 
 
 def samples(name: str, value: int) -> int:

@@ -9,14 +9,13 @@ from . import counts
 PhotonFilter: TypeAlias = Literal["box", "cone", "epanechnikov"]
 
 _FILTERS = ("box", "cone", "epanechnikov")
-_MOST_PHOTONS = 2**31 - 1
 _MOST_MAPS = 2**16
 
 
 def _settle(of: "PhotonMap | ProgressivePhotonMap") -> None:
     """Check what both have, and settle its types."""
     settled = {
-        "photons": integer("photons", of.photons, 1, _MOST_PHOTONS),
+        "photons": integer("photons", of.photons, 1, counts.MOST_PHOTONS),
         "radius": None if of.radius is None else positive("radius", of.radius),
         "gather": integer("gather", of.gather, 0, counts.MOST_SAMPLES),
         "max_depth": None if of.max_depth is None else counts.depth("max_depth", of.max_depth),
@@ -45,7 +44,7 @@ class PhotonMap:
     Parameters
     ----------
     photons : int
-        Paths from lights for each map, 1 to 2**31 - 1. Maps take about 64 bytes for each photon kept.
+        Paths from lights for each map, 1 to 2**31 - 1. Maps take about 100 bytes for each photon kept.
     nearest : int or None
         How many photons tell a density: of N, the farthest gives the radius, and N - 1 count (García et al.
         2012). With None, all within the radius.
@@ -93,7 +92,7 @@ class PhotonMap:
         _settle(self)
         if self.nearest is not None:
             # Of one photon, the N - 1 that count are none.
-            object.__setattr__(self, "nearest", integer("nearest", self.nearest, 2, _MOST_PHOTONS))
+            object.__setattr__(self, "nearest", integer("nearest", self.nearest, 2, counts.MOST_PHOTONS))
         object.__setattr__(self, "maps", integer("maps", self.maps, 1, _MOST_MAPS))
         if not isinstance(self.caustic, bool):
             raise TypeError(f"caustic must be True or False, got {self.caustic!r}")

@@ -112,7 +112,7 @@ class Image:
         each taken of disks of the radius r, of r/√2 and of r/2 about the same points in the same photons (see
         `PhotonMap`): twice the difference of the first two, as a bias that goes by r² has it, or four times
         that of the last two, if it is more and they do not agree. It has noise of its own, and what is alike
-        in all three disks, such as a lack of light on an edge, is not in it.
+        in all three disks, such as a shadow's edge through the point, is not in it.
     """
 
     rgb: NDArray[np.float32]

@@ -12,11 +12,12 @@ from numpy.typing import NDArray
 from .. import _core
 from ..arrays import integer, positive
 from ..cameras import AnyCamera
-from ..integrators import AnyIntegrator, Path, PhotonMap, ProgressivePhotonMap, check_integrator
+from ..integrators import AnyIntegrator, Path, check_integrator
 from ..scene.scene import Scene
 from .aovs import covers, names_of, seen
 from .choices import Limits, chosen
 from .filters import BoxFilter, Filter
+from .gathered import is_gathered, rate, with_bias
 from .image import HISTORY, ErrorEstimate, Image
 from .interrupts import ON_INTERRUPT, unless_terminated
 from .job import Job
@@ -268,7 +269,7 @@ def render(
         return told + ([kept.trouble] if kept is not None and kept.trouble else [])
 
     if progress is True:
-        with bar(*limits) as report:
+        with bar(*limits, rate(integrator)) as report:
             problems = run(report)
     else:
         problems = run(None)
@@ -278,8 +279,8 @@ def render(
     known = covers(rendering, job, asked, None, threads)
     found |= {name: array for name, array in known.items() if name in names}
     image = _image(rendering, clamp, found, problems, plan, known["alpha"] if transparent else None)
-    if isinstance(integrator, PhotonMap | ProgressivePhotonMap):
-        image = replace(image, biased=True, bias=_bias(rendering, job, threads, looks))
+    if is_gathered(integrator):
+        image = with_bias(image, limits[1], rendering, job, threads, looks)
     if show is not None:
         show(image)
     return image
@@ -394,17 +395,6 @@ def _begun(kept: "Checkpoints | None", job: Job, threads: int | None) -> _core.R
         return _core.Rendering.from_bytes(film, job.core, threads, patch)
     except ValueError as error:
         kept.refuse(f"is damaged: {error}")
-
-
-def _bias(
-    done: _core.Rendering, job: Job, threads: int | None, look: Callable[[], None] | None
-) -> NDArray[np.float32]:
-    """Return the bias of a picture; NaN where a render was stopped before it was told."""
-    try:
-        told = done.bias(job.core, job.scene._compiled(), threads, look)
-    except StoppedError:
-        told = None
-    return np.full(done.rgb.shape, np.nan, np.float32) if told is None else told
 
 
 def _image(

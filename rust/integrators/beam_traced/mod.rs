@@ -95,12 +95,19 @@ fn unsuited(scene: &Scene, shape: u32) -> Option<&'static str> {
     }
 }
 
-/// What beams cannot do of the single directions that the first face of a shape that has an area scatters into.
+/// What beams cannot do of the single directions that the faces of a shape scatter into in their middles.
 fn is_unlike_paper(scene: &Scene, shape: u32) -> Option<&'static str> {
+    scene.geometry().primitives_of(shape).find_map(|face| is_face_unlike_paper(scene, face))
+}
+
+/// The same of one face, if it has an area.
+fn is_face_unlike_paper(scene: &Scene, face: u32) -> Option<&'static str> {
     let geometry = scene.geometry();
-    let face = geometry.primitives_of(shape).find(|&face| geometry.normal(face).is_finite())?;
     let third = [1.0 / 3.0; 2];
     let (at, normal) = (geometry.position(face, third), geometry.normal(face));
+    if !normal.is_finite() {
+        return None;
+    }
     let ray = Ray::new(at + normal, -normal);
     let hit = Hit { t: 1.0, uv: third, primitive: face, inner: 0 };
     let here = SurfaceInteraction::at(scene, &ray, &hit);

@@ -1,5 +1,6 @@
 //! What a path from the camera is connected to: lights, and where light has come to.
 
+use super::Alone;
 use super::eye::{EyePath, EyeVertex};
 use super::light_vertices::LightVertex;
 use super::worker::BidirectionalWorker;
@@ -75,7 +76,8 @@ impl<'a> BidirectionalWorker<'a> {
 
     /// The weight of a way where one alone counts.
     pub(super) fn full(&self, light: u32, camera: u32) -> f64 {
-        if self.alone == Some([light, camera]) { 1.0 } else { 0.0 }
+        let way = Alone { vertices: [light, camera], merges: false };
+        if self.alone == Some(way) { 1.0 } else { 0.0 }
     }
 
     /// Queues the ray that tells whether light arrives.

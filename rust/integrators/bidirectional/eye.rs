@@ -24,6 +24,8 @@ pub(super) struct EyePath {
     /// Whether it has been at a surface that gives more than there is, in a channel ([`Bsdf::again`]).
     pub gilded: bool,
     pub partial: Partial,
+    /// As [`Partial::merging`] has it, 0 where paths do not merge.
+    pub disk: f64,
     /// The normal that lights were drawn by where it was scattered last.
     pub normal: DVec3,
 }

@@ -38,9 +38,9 @@ impl<'a> LightVertices<'a> {
         Self { partials, vertices: Vec::new(), last: Vec::new() }
     }
 
-    /// Forgets all, before so many paths are followed.
-    pub fn begin(&mut self, paths: usize) {
-        self.partials.clear();
+    /// Forgets all, before so many paths are followed, which merge by these disks, if they do.
+    pub fn begin(&mut self, paths: usize, disks: impl Iterator<Item = f64>) {
+        self.partials.begin(disks);
         self.vertices.clear();
         self.last.clear();
         self.last.resize(paths, None);

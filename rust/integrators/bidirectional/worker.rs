@@ -2,25 +2,28 @@
 
 use super::eye::{EyePath, EyeQueue, EyeVertex};
 use super::light_vertices::LightVertices;
-use crate::integrators::light_paths::{Arrived, LightWalk, Limits, Partial, Partials};
+use super::merging::{MergeMap, Merging};
+use super::{Alone, Bidirection};
+use crate::integrators::light_paths::{Arrived, LightWalk, Limits, Partial, Partials, Times};
 use crate::integrators::nesting::MediumStack;
 use crate::integrators::passing::{Met, Passing};
 use crate::integrators::roulette;
 use crate::integrators::shadows::Shadows;
 use crate::integrators::transport::{Dimensions, widened};
-use crate::integrators::{CameraSample, Job, Worker};
+use crate::integrators::{CameraSample, Job, Worker, is_matt};
 use crate::math::{DVec3, Hit, Ray};
 use crate::optics::{Bsdf, Rgb};
 use crate::sampling::Sampler;
 use crate::scene::{Emitters, Encounter, SurfaceInteraction};
 use crate::workers::Cancel;
+use std::sync::Arc;
 
 /// What one thread works with.
 pub(super) struct BidirectionalWorker<'a> {
     job: Job<'a>,
     emitters: Option<&'a Emitters<'a>>,
     limits: Limits,
-    pub(super) alone: Option<[u32; 2]>,
+    pub(super) alone: Option<Alone>,
     /// How many paths there are from lights to the camera for each of its samples.
     paths: f64,
     /// Whether the camera's samples are spread over time.
@@ -34,6 +37,9 @@ pub(super) struct BidirectionalWorker<'a> {
     pub(super) shadows: Shadows,
     /// Paths of light, if any light can be drawn.
     light: Option<(LightWalk<'a>, LightVertices<'a>)>,
+    /// How paths merge, if they do, and the maps of samples that are being worked on.
+    merging: Option<&'a Merging<'a>>,
+    maps: Vec<(u32, Arc<MergeMap>)>,
     samplers: Vec<Sampler>,
 }
 
@@ -41,7 +47,8 @@ impl<'a> BidirectionalWorker<'a> {
     /// Samples that are worked on together. What light finds is kept for so many: half a kilobyte for each surface.
     const TOGETHER: usize = 512;
 
-    pub fn new(job: Job<'a>, emitters: Option<&'a Emitters<'a>>, limits: Limits, alone: Option<[u32; 2]>) -> Self {
+    pub fn new(shared: &'a Bidirection<'a>) -> Self {
+        let (job, limits, emitters) = (shared.job, shared.limits, shared.emitters.as_ref());
         let (scene, camera, needs) = (job.scene, job.camera, job.scene.plan().needs());
         // A surface that is connected to another is a bounce, too.
         let within = Limits { max_depth: limits.max_depth.map(|depth| depth.saturating_sub(1)), ..limits };
@@ -53,7 +60,7 @@ impl<'a> BidirectionalWorker<'a> {
             job,
             emitters,
             limits,
-            alone,
+            alone: shared.alone,
             paths: f64::from(camera.width()) * f64::from(camera.height()),
             moves: scene.geometry().moves() || camera.uses_time(),
             widths: needs.points.width,
@@ -63,6 +70,8 @@ impl<'a> BidirectionalWorker<'a> {
             hits: Vec::new(),
             shadows: Shadows::default(),
             light: emitters.filter(|_| limits.max_depth.is_none_or(|depth| depth > 1)).map(light),
+            merging: shared.merging.as_ref(),
+            maps: Vec::new(),
             samplers: Vec::new(),
         }
     }
@@ -73,10 +82,12 @@ impl<'a> BidirectionalWorker<'a> {
         if let Some((walk, vertices)) = &mut light {
             self.samplers.clear();
             self.samplers.extend(samples.iter().map(|sample| sample.sampler.paired()));
-            vertices.begin(samples.len());
-            walk.set_times(samples.iter().map(|sample| sample.ray.time));
+            let disks = self.merging.map(|merging| samples.iter().map(|sample| merging.disk(sample.sampler.number())));
+            vertices.begin(samples.len(), disks.into_iter().flatten());
+            walk.set_times(Times::Each(samples.iter().map(|sample| sample.ray.time).collect()));
             walk.follow(&mut self.samplers, cancel, vertices);
         }
+        self.begin_merging(samples);
         self.start(samples);
         while !self.now.rays.is_empty() && !cancel.is_raised() {
             self.hits.resize(self.now.rays.len(), Hit::MISS);
@@ -90,6 +101,33 @@ impl<'a> BidirectionalWorker<'a> {
             self.shadows.clear();
         }
         self.light = light;
+    }
+
+    /// Gets the maps that samples are to be merged with.
+    fn begin_merging(&mut self, samples: &[CameraSample]) {
+        self.maps.clear();
+        let Some(merging) = self.merging else { return };
+        for number in samples.iter().map(|sample| sample.sampler.number()) {
+            if !self.maps.iter().any(|(other, _)| *other == number) {
+                self.maps.extend(merging.map(number).map(|map| (number, map)));
+            }
+        }
+    }
+
+    /// Adds what has come to about where a path is.
+    fn merge(&self, at: &EyeVertex<'a>, path: &EyePath, number: u32, most: Option<u32>) -> Rgb {
+        let Some(merging) = self.merging.filter(|_| is_matt(at.arrived.here.bsdf())) else { return Rgb::ZERO };
+        let Some((_, map)) = self.maps.iter().find(|(other, _)| *other == number) else { return Rgb::ZERO };
+        let alone = match self.alone {
+            None => None,
+            // The point that both have come to is a vertex of either; the light and this very surface scatter nothing
+            // on the way of the photon.
+            Some(Alone { vertices: [light, camera], merges: true }) if camera == path.bounce + 2 && light > 2 => {
+                Some(light - 2)
+            }
+            Some(_) => return Rgb::ZERO,
+        };
+        path.throughput * merging.found(map, (at, path), most, alone)
     }
 
     /// Puts the camera's rays into the queue.
@@ -106,6 +144,7 @@ impl<'a> BidirectionalWorker<'a> {
                 footprint: self.job.footprint,
                 gilded: false,
                 partial: Partial::of_camera(self.paths, 0.0),
+                disk: self.merging.map_or(0.0, |merging| merging.disk(sample.sampler.number())),
                 normal: DVec3::ZERO,
             };
             self.now.push(&sample.ray, path);
@@ -169,6 +208,9 @@ impl<'a> BidirectionalWorker<'a> {
         } else {
             path.partial.arrived(at.arrived.hit.t, cosine)
         };
+        if path.disk > 0.0 && is_matt(at.arrived.here.bsdf()) {
+            path.partial = path.partial.merging(path.disk);
+        }
         let again = here.bsdf().again();
         if again != Rgb::ONE {
             if path.gilded {
@@ -186,6 +228,7 @@ impl<'a> BidirectionalWorker<'a> {
                     self.connect(emitters, at, &path, vertex);
                 }
             }
+            *radiance += self.merge(at, &path, sampler.number(), most);
         }
         self.go_on(at, path, width, sampler, dimensions);
     }

@@ -16,5 +16,5 @@ pub(super) use dimensions::Dimensions;
 pub(super) use partials::{LightEnd, Partials};
 pub use photons::{Photon, Photons, photons};
 pub(super) use to_camera::{LightPaths, Weighing};
-pub(super) use walk::{Flying, LightWalk, Limits, Visitor};
-pub(super) use weights::{Partial, of_asked, weight};
+pub(super) use walk::{Flying, LightWalk, Limits, Times, Visitor};
+pub(super) use weights::{Partial, of_asked, of_merged, weight};

@@ -3,12 +3,15 @@
 use super::adjoint::{Arrived, Met, Onward};
 use super::walk::Flying;
 use super::weights::Partial;
+use crate::integrators::is_matt;
 use crate::scene::{Departure, EmissionSample, Emitters};
 
 /// That of each path of a batch.
 pub(in crate::integrators) struct Partials<'a> {
     emitters: &'a Emitters<'a>,
     ends: Vec<LightEnd>,
+    /// The disk of each path, where paths merge ([`Partial::merging`]).
+    disks: Vec<f64>,
 }
 
 /// That of one path.
@@ -21,6 +24,11 @@ pub(in crate::integrators) struct LightEnd {
 }
 
 impl LightEnd {
+    /// What it knows where it has come to by way of other surfaces.
+    pub fn partial(&self) -> Partial {
+        self.partial
+    }
+
     /// What it knows where it has come to, if somebody meets the point so.
     fn met(&self, emitters: &Emitters, arrived: &Arrived, met: &Met) -> Partial {
         let Some(departure) = &self.departure else { return self.partial };
@@ -36,7 +44,7 @@ impl LightEnd {
 
 impl<'a> Partials<'a> {
     pub fn new(emitters: &'a Emitters<'a>) -> Self {
-        Self { emitters, ends: Vec::new() }
+        Self { emitters, ends: Vec::new(), disks: Vec::new() }
     }
 
     /// What light that sets out is drawn from.
@@ -59,6 +67,10 @@ impl<'a> Partials<'a> {
         let cosine = arrived.cosine(arrived.back());
         end.partial = match end.departure {
             Some(_) => end.partial.arrived_first(cosine),
+            None if is_matt(arrived.here.bsdf()) => {
+                let disk = self.disks.get(path.number as usize).copied().unwrap_or(0.0);
+                end.partial.arrived(arrived.hit.t, cosine).merging(disk)
+            }
             None => end.partial.arrived(arrived.hit.t, cosine),
         };
     }
@@ -82,8 +94,10 @@ impl<'a> Partials<'a> {
         end.departure = None;
     }
 
-    /// Of none: others are to set out.
-    pub fn clear(&mut self) {
+    /// Of none: others are to set out, which merge by these disks, if they do.
+    pub fn begin(&mut self, disks: impl Iterator<Item = f64>) {
         self.ends.clear();
+        self.disks.clear();
+        self.disks.extend(disks);
     }
 }

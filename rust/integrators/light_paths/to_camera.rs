@@ -23,6 +23,8 @@ pub(in crate::integrators) struct LightPaths<'a> {
 /// How what they bring is weighed beside what is found in other ways.
 pub(in crate::integrators) struct Weighing<'a> {
     pub partials: Partials<'a>,
+    /// The disk by which paths merge that belong to samples of a number ([`super::Partial::merging`]), if they do.
+    pub disks: Option<Box<dyn Fn(u32) -> f64 + Send + 'a>>,
     /// How many paths there are for all that the camera's rays find.
     pub paths: f64,
     /// The way that alone counts, in full, by its vertices on the light's side and on the camera's, if one does.
@@ -74,7 +76,8 @@ impl LightWorker for LightPaths<'_> {
     fn follow(&mut self, paths: &mut [Sampler], cancel: &Cancel, splats: &mut Vec<Splat>) {
         self.connections.splats.clear();
         if let Some(weighing) = &mut self.connections.weighing {
-            weighing.partials.clear();
+            let disks = weighing.disks.as_ref().map(|disk| paths.iter().map(|path| disk(path.number())));
+            weighing.partials.begin(disks.into_iter().flatten());
         }
         self.walk.follow(paths, cancel, &mut self.connections);
         splats.append(&mut self.connections.splats);

@@ -29,14 +29,22 @@ pub(in crate::integrators) struct LightWalk<'a> {
     camera: Option<&'a dyn Camera>,
     /// Whether anything moves, the camera included.
     moves: bool,
-    /// When all paths are on their way, while the shutter is open; each at a time of its own without.
-    time: Option<f64>,
+    times: Times,
     passing: Passing,
     now: Queue,
     next: Queue,
     hits: Vec<Hit>,
-    /// When each path is on its way, as the scene counts time, if that is not for the path to draw.
-    times: Vec<f64>,
+}
+
+/// When paths are on their way.
+#[derive(Clone, Debug)]
+pub(in crate::integrators) enum Times {
+    /// Each at a time that it draws.
+    Drawn,
+    /// All at one, while the shutter is open from 0 to 1.
+    All(f64),
+    /// Each at its own, as the scene counts time.
+    Each(Vec<f64>),
 }
 
 /// Who is told where paths have come to.
@@ -114,25 +122,17 @@ impl<'a> LightWalk<'a> {
             limits,
             camera,
             moves: scene.geometry().moves() || camera.is_some_and(|camera| camera.uses_time()),
-            time: None,
+            times: Times::Drawn,
             passing: Passing::new(needs.masks, needs.nested),
             now: Queue::default(),
             next: Queue::default(),
             hits: Vec::new(),
-            times: Vec::new(),
         }
     }
 
-    /// The same with all paths at one time.
-    pub fn at(mut self, time: Option<f64>) -> Self {
-        self.time = time;
-        self
-    }
-
-    /// When each path is on its way that will be followed, as the scene counts time.
-    pub fn set_times(&mut self, times: impl Iterator<Item = f64>) {
-        self.times.clear();
-        self.times.extend(times);
+    /// When the paths that will be followed are on their way.
+    pub fn set_times(&mut self, times: Times) {
+        self.times = times;
     }
 
     /// Whether there is anything that rays may pass.
@@ -167,10 +167,18 @@ impl<'a> LightWalk<'a> {
                 direction: sampler.two(DIRECTION),
             };
             let Some(light) = self.emitters.sample(&numbers) else { continue };
-            let time =
-                if self.moves && self.times.is_empty() { self.time.unwrap_or_else(|| sampler.one(TIME)) } else { 0.0 };
-            let of_scene = || self.camera.map_or(time, |camera| camera.body().scene_time(time));
-            let ray = Ray { time: self.times.get(number as usize).copied().unwrap_or_else(of_scene), ..light.ray };
+            let time = match self.times {
+                _ if !self.moves => 0.0,
+                Times::Drawn => sampler.one(TIME),
+                Times::All(time) => time,
+                // Nobody asks where the camera is then.
+                Times::Each(_) => 0.0,
+            };
+            let of_scene = match &self.times {
+                Times::Each(times) => times[number as usize],
+                _ => self.camera.map_or(time, |camera| camera.body().scene_time(time)),
+            };
+            let ray = Ray { time: of_scene, ..light.ray };
             let (flux, start) = (light.weight, light.weight.max());
             let (media, chance, again) = (MediumStack::NONE, -1.0, Rgb::ONE);
             let path = Flying { number, flux, start, time, bounce: 0, media, chance, again, is_sharp: false };

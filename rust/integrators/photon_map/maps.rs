@@ -3,18 +3,18 @@
 use super::grid::HashedGrid;
 use super::kd_tree::KdTree;
 use super::photon::StoredPhoton;
+use super::store::Counted;
 use crate::integrators::is_matt;
-use crate::integrators::light_paths::{Arrived, Dimensions, Flying, LightWalk, Limits, Visitor};
+use crate::integrators::light_paths::{Arrived, Dimensions, Flying, LightWalk, Limits, Times, Visitor};
 use crate::integrators::nesting::MediumStack;
-use crate::math::DVec3;
 use crate::sampling::Sampler;
-use crate::scene::{Camera, EmissionSample, Emitters, Encounter, Scene};
+use crate::scene::{Camera, EmissionSample, Emitters, Scene};
 use crate::workers::Cancel;
 use rayon::prelude::*;
 
 /// How photons of one map are sent.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Flight {
+pub(in crate::integrators) struct Flight {
     /// How many paths start at lights.
     pub paths: u32,
     pub limits: Limits,
@@ -29,13 +29,13 @@ pub(super) struct Flight {
 
 /// Photons, and where they are found.
 #[derive(Debug)]
-pub(super) struct PhotonIndex {
+pub(in crate::integrators) struct PhotonIndex {
     pub photons: Vec<StoredPhoton>,
     pub places: Places,
 }
 
 #[derive(Debug)]
-pub(super) enum Places {
+pub(in crate::integrators) enum Places {
     /// For all within a radius.
     Grid(HashedGrid),
     /// For the nearest.
@@ -57,47 +57,62 @@ impl PhotonIndex {
 /// Photons of one flight: those that matt surfaces get by way of sharp ones alone, if they are kept apart, and all
 /// others that have been scattered.
 #[derive(Debug)]
-pub(super) struct Maps {
+pub(in crate::integrators) struct Maps {
     pub caustic: PhotonIndex,
     pub global: PhotonIndex,
 }
 
-impl Maps {
-    pub fn len(&self) -> usize {
+impl Counted for Maps {
+    fn count(&self) -> usize {
         self.caustic.photons.len() + self.global.photons.len()
     }
 }
 
-/// Sends photons, by all threads of the current pool or by this one alone, and gives those that came by way of sharp
-/// surfaces alone and the others. They depend on the flight alone. Of no use once it is cancelled.
-pub(super) fn fly(
-    scene: &Scene,
-    emitters: &Emitters,
-    camera: &dyn Camera,
+/// Follows the paths of a flight, by all threads of the current pool or by this one alone: some thousands at a time,
+/// for each of which a visitor is made who is told of them. What they are told depends on the flight alone. Of no use
+/// once it is cancelled.
+pub(in crate::integrators) fn flown<'a, V: Visitor<'a> + Send>(
+    scene: &'a Scene,
+    emitters: &'a Emitters<'a>,
+    camera: &'a dyn Camera,
     flight: &Flight,
-    alone: bool,
-    cancel: &Cancel,
-) -> [Vec<StoredPhoton>; 2] {
+    (alone, cancel): (bool, &Cancel),
+    visitor: impl Fn(usize) -> V + Sync,
+) -> Vec<V> {
     /// Paths that are followed together.
     const TOGETHER: u32 = 4096;
     /// Paths from lights are numbered as pixels that no picture has.
     const BEYOND: u32 = 1 << 31;
     let follow = |chunk: u32| {
-        let paths = chunk * TOGETHER..flight.paths.min((chunk + 1) * TOGETHER);
+        let paths = chunk * TOGETHER..flight.paths.min((chunk + 1).saturating_mul(TOGETHER));
         let mut samplers: Vec<Sampler> =
             paths.map(|path| Sampler::new(flight.seed, BEYOND | path, flight.number)).collect();
-        let share = 1.0 / f64::from(flight.paths);
-        let mut storing = Storing { share, caustic: flight.caustic, chains: Vec::new(), stored: Default::default() };
+        let mut visitor = visitor(samplers.len());
         if !cancel.is_raised() {
-            let walk = LightWalk::new(scene, emitters, flight.limits, Some(camera));
-            walk.at(flight.time).follow(&mut samplers, cancel, &mut storing);
+            let mut walk = LightWalk::new(scene, emitters, flight.limits, Some(camera));
+            walk.set_times(flight.time.map_or(Times::Drawn, Times::All));
+            walk.follow(&mut samplers, cancel, &mut visitor);
         }
-        storing.stored
+        visitor
     };
     let chunks = 0..flight.paths.div_ceil(TOGETHER);
-    let parts: Vec<[Vec<StoredPhoton>; 2]> =
-        if alone { chunks.map(follow).collect() } else { chunks.into_par_iter().with_max_len(1).map(follow).collect() };
-    parts.into_iter().fold(Default::default(), |[mut caustic, mut global], [c, g]: [Vec<_>; 2]| {
+    if alone { chunks.map(follow).collect() } else { chunks.into_par_iter().with_max_len(1).map(follow).collect() }
+}
+
+/// Sends photons, as [`flown`], and gives those that came by way of sharp surfaces alone and the others.
+pub(super) fn fly<'a>(
+    scene: &'a Scene,
+    emitters: &'a Emitters<'a>,
+    camera: &'a dyn Camera,
+    flight: &Flight,
+    alone: bool,
+    cancel: &Cancel,
+) -> [Vec<StoredPhoton>; 2] {
+    let share = 1.0 / f64::from(flight.paths);
+    let storing = |_| Storing { share, caustic: flight.caustic, chains: Vec::new(), stored: Default::default() };
+    let parts = flown(scene, emitters, camera, flight, (alone, cancel), storing);
+    parts.into_iter().fold(Default::default(), |[mut caustic, mut global], part| {
+        let [c, g] = part.stored;
         caustic.extend(c);
         global.extend(g);
         [caustic, global]
@@ -119,19 +134,16 @@ impl Visitor<'_> for Storing {
     }
 
     fn meet(&mut self, arrived: &Arrived, path: &Flying, _: &MediumStack, _: (&mut Sampler, Dimensions)) {
-        let (here, bounces) = (&arrived.here, path.bounce - 1);
         // What comes straight from a light is found by asking that.
-        if bounces == 0 {
+        if path.bounce == 1 {
             return;
         }
         let is_sharp = &mut self.chains[path.number as usize];
         *is_sharp &= path.is_sharp;
-        if !is_matt(here.bsdf()) {
-            return;
+        if is_matt(arrived.here.bsdf()) {
+            let photon = StoredPhoton::arrived(arrived, path, self.share);
+            self.stored[usize::from(!(self.caustic && *is_sharp))].push(photon);
         }
-        let (direction, normal): (DVec3, DVec3) = (arrived.ray.direction, here.normal());
-        let photon = StoredPhoton::new(here.position(), direction, normal, path.flux * self.share, bounces);
-        self.stored[usize::from(!(self.caustic && *is_sharp))].push(photon);
     }
 }
 
@@ -155,7 +167,7 @@ mod tests {
         let all = Limits { max_depth: None, roulette_depth: 4 };
         let [caustic, global] = fly(&scene, &emitters, &camera, &flight(100_000, all), false, &Cancel::default());
         assert!(caustic.is_empty());
-        let stored: Rgb = global.iter().map(StoredPhoton::power).sum();
+        let stored: Rgb = global.iter().map(|photon| photon.power(false)).sum();
         let expected = 24.0 * std::f64::consts::PI * rho / (1.0 - rho);
         // Before roulette, all are alike; after it a path brings what is left, 0.7⁴ of all, with a standard deviation
         // of about its mean: of 100,000 it is known to 0.1 %.
@@ -163,7 +175,9 @@ mod tests {
         // Each bounce leaves the share ρ, exactly, as long as there is no roulette.
         let exact = Limits { max_depth: Some(6), roulette_depth: u32::MAX };
         let [_, global] = fly(&scene, &emitters, &camera, &flight(2000, exact), true, &Cancel::default());
-        let of = |bounces| global.iter().filter(|p| p.bounces == bounces).map(StoredPhoton::power).sum::<Rgb>().mean();
+        let of = |bounces| {
+            global.iter().filter(|p| p.bounces == bounces).map(|photon| photon.power(false)).sum::<Rgb>().mean()
+        };
         for bounces in 1..6 {
             let expected = 24.0 * std::f64::consts::PI * rho.powi(bounces as i32);
             assert!((of(bounces) / expected - 1.0).abs() < 1e-6);

@@ -1,6 +1,8 @@
 //! Photon maps: how photons are kept (`maps`, `photon`), found (`grid`, `kd_tree`) and weighed (`estimate`, `kernel`),
-//! how far light is gathered from (`radius`), and the pictures that are made of it (`session`).
+//! how far light is gathered from (`radius`) and how much of that is surface (`cover`), the maps of a picture
+//! (`series`, `store`), and the pictures that are made of them (`session`).
 
+mod cover;
 mod estimate;
 mod grid;
 mod kd_tree;
@@ -8,16 +10,23 @@ mod kernel;
 mod maps;
 mod photon;
 mod radius;
+mod series;
 mod session;
 mod store;
 
+pub(super) use cover::cover;
+pub(super) use grid::HashedGrid;
 pub use kernel::Kernel;
+pub(super) use maps::flown;
+pub(super) use photon::StoredPhoton;
+pub(super) use series::{Sending, Series, Spread};
+pub(super) use store::Counted;
 
 use super::light_paths::Limits;
 use super::{Integrator, Job, Session};
 use crate::scene::Scene;
 use crate::workers::Cancel;
-use session::{Mapped, Recipe, Spread};
+use session::{Mapped, Recipe};
 
 /// Photon mapping (Jensen, "Global Illumination using Photon Maps", 1996; "Realistic Image Synthesis Using Photon
 /// Mapping", 2001): paths from lights leave photons on matt surfaces, and how densely they lie there is the light.
@@ -118,16 +127,14 @@ fn objection(scene: &Scene, adaptive: bool) -> Option<String> {
 
 impl Integrator for PhotonMap {
     fn begin<'a>(&'a self, job: Job<'a>, cancel: &Cancel) -> Box<dyn Session + 'a> {
-        let recipe = Recipe {
+        let sending = Sending {
             paths: self.photons,
             limits: Limits { max_depth: self.max_depth, roulette_depth: self.roulette_depth },
-            nearest: self.nearest,
             caustic: self.caustic,
-            gather: self.gather,
-            kernel: self.kernel,
-            scale: self.scale,
             spread: Spread::Batches { size: job.batch, maps: self.maps.clamp(1, job.batch) },
         };
+        let Self { nearest, gather, kernel, scale, .. } = *self;
+        let recipe = Recipe { sending, nearest, gather, kernel, scale };
         Box::new(Mapped::new(job, recipe, self.radius, cancel))
     }
 
@@ -142,17 +149,15 @@ impl Integrator for PhotonMap {
 
 impl Integrator for ProgressivePhotonMap {
     fn begin<'a>(&'a self, job: Job<'a>, cancel: &Cancel) -> Box<dyn Session + 'a> {
-        let recipe = Recipe {
+        let sending = Sending {
             paths: self.photons,
             limits: Limits { max_depth: self.max_depth, roulette_depth: self.roulette_depth },
-            nearest: None,
             // All light is gathered from as far, in one map; apart, it is known what rays need not look for.
             caustic: true,
-            gather: self.gather,
-            kernel: self.kernel,
-            scale: self.scale,
             spread: Spread::Progressive { alpha: self.alpha, mean_of: self.mean_of },
         };
+        let Self { gather, kernel, scale, .. } = *self;
+        let recipe = Recipe { sending, nearest: None, gather, kernel, scale };
         Box::new(Mapped::new(job, recipe, self.radius, cancel))
     }
 

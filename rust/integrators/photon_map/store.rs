@@ -1,12 +1,11 @@
 //! Maps that are kept with their scene.
 
-use super::maps::Maps;
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// All that the photons of a map, and what finds them, depend on besides the scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Key {
+pub(in crate::integrators) struct Key {
     pub seed: u64,
     pub number: u32,
     pub paths: u32,
@@ -18,38 +17,54 @@ pub(super) struct Key {
     pub time: Option<u64>,
 }
 
+/// What has so many photons.
+pub(in crate::integrators) trait Counted {
+    /// How many.
+    fn count(&self) -> usize;
+}
+
 /// The maps that were made last: pieces of one picture that are rendered in one process one after the other, and
 /// pictures by the same maps, find them here.
-#[derive(Debug, Default)]
-pub(super) struct MapStore {
-    maps: Mutex<VecDeque<(Key, Arc<Maps>)>>,
+#[derive(Debug)]
+pub(in crate::integrators) struct MapStore<M> {
+    maps: Mutex<VecDeque<(Key, Arc<M>)>>,
     /// Radii that suit, by the photons that tell them.
     radii: Mutex<Vec<(Key, f64)>>,
 }
 
-impl MapStore {
-    /// Photons that are kept, besides a last map that has more: 130 MB.
+impl<M> Default for MapStore<M> {
+    fn default() -> Self {
+        Self { maps: Mutex::default(), radii: Mutex::default() }
+    }
+}
+
+impl<M: Counted> MapStore<M> {
+    /// Photons that are kept, besides a last map that has more: some 200 MB.
     pub const MOST: usize = 1 << 21;
 
-    pub fn get(&self, key: &Key) -> Option<Arc<Maps>> {
-        let kept = self.maps.lock().unwrap_or_else(PoisonError::into_inner);
-        kept.iter().find(|(other, _)| other == key).map(|(_, maps)| Arc::clone(maps))
-    }
-
-    pub fn put(&self, key: Key, maps: Arc<Maps>) {
-        let mut kept = self.maps.lock().unwrap_or_else(PoisonError::into_inner);
-        kept.push_back((key, maps));
-        let mut all: usize = kept.iter().map(|(_, maps)| maps.len()).sum();
-        while all > Self::MOST && kept.len() > 1 {
-            all -= kept.pop_front().map_or(0, |(_, maps)| maps.len());
-        }
+    /// A map that was made before, or is made now and kept.
+    pub fn map(&self, key: Key, make: impl FnOnce() -> Option<M>) -> Option<Arc<M>> {
+        let lock = || self.maps.lock().unwrap_or_else(PoisonError::into_inner);
+        let found = lock().iter().find(|(other, _)| *other == key).map(|(_, maps)| Arc::clone(maps));
+        // Not within the lock: threads that wait for others take up work of theirs, which may come here too.
+        found.or_else(|| {
+            let made = Arc::new(make()?);
+            let mut kept = lock();
+            kept.push_back((key, Arc::clone(&made)));
+            let mut all: usize = kept.iter().map(|(_, maps)| maps.count()).sum();
+            while all > Self::MOST && kept.len() > 1 {
+                all -= kept.pop_front().map_or(0, |(_, maps)| maps.count());
+            }
+            drop(kept);
+            Some(made)
+        })
     }
 
     /// A radius that was told before, or is told now and kept.
     pub fn radius(&self, key: Key, tell: impl FnOnce() -> Option<f64>) -> Option<f64> {
         let lock = || self.radii.lock().unwrap_or_else(PoisonError::into_inner);
         let found = lock().iter().find(|(other, _)| *other == key).map(|(_, radius)| *radius);
-        // Not within the lock: threads that wait for others take up work of theirs, which may come here too.
+        // Nor here.
         found.or_else(|| {
             let told = tell()?;
             lock().push((key, told));

@@ -20,6 +20,8 @@ pub(in crate::integrators) struct Visit {
     pub number: u32,
     /// Whether paths look about from there, so that what surfaces send each other is found by them.
     pub looks_about: bool,
+    /// Whether the path has been at a surface that gives more than there is ([`crate::optics::Bsdf::again`]).
+    pub gilded: bool,
     /// Surfaces that light may have been scattered at before.
     pub bounces: Option<u32>,
 }

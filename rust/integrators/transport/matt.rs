@@ -41,7 +41,8 @@ impl<N: Features> TransportWorker<'_, N> {
         let Some(known) = self.known.filter(|_| self.is_at_known(block, lane)) else { return Rgb::ZERO };
         let path = &block.paths[lane];
         let bounces = self.settings.max_depth.map(|depth| depth.saturating_sub(path.bounce + 1));
-        let visit = Visit { number, looks_about: self.gathers_from(block, lane), bounces };
+        let (looks_about, gilded) = (self.gathers_from(block, lane), path.gilded);
+        let visit = Visit { number, looks_about, gilded, bounces };
         path.throughput * known.radiance(&block.other(lane), visit)
     }
 
