@@ -185,9 +185,9 @@ def test_a_plane_in_a_grid_is_a_plane():
 @pytest.mark.parametrize(
     ("data", "told"),
     [
-        (b"VOX", "g.vol is no grid of Mitsuba's"),
+        (b"VOX", "g.vol cannot be read: it does not begin as a .vol file does"),
         (vol(np.ones((3, 3, 3))), "a grid must have numbers on both sides of 0"),
-        (vol(np.ones((3, 3, 3)))[:-4], "g.vol is cut short: it has 3 x 3 x 3 points by its header"),
+        (vol(np.ones((3, 3, 3)))[:-4], "g.vol says 3 x 3 x 3 numbers, but holds 26"),
         (vol(np.ones((1, 3, 3))), "a grid must have at least 2 points along each axis, got (3, 3, 1)"),
         (vol(np.full((3, 3, 3), np.nan)), "a grid must be finite"),
     ],

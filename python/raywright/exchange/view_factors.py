@@ -193,9 +193,9 @@ def view_factors(
 
     More than 10,000 faces have a sparse matrix (scipy is needed), all of it by rays, however little is
     hidden: of both rows that tell what two faces exchange, one number is made, and rows are scaled so that
-    they add up to 1 in a closed room. It has at most about twice as many entries in a row as a face has rays, of 12
-    bytes each, and as many of its errors: 100,000 faces of 256 rays take some 1.2 GB, and twice that while
-    they are made.
+    they add up to 1 in a closed room. It has at most about twice as many entries in a row as a face has
+    rays, of 12 bytes each, and as many of its errors: 100,000 faces of 256 rays take some 1.2 GB, and twice
+    that while they are made.
 
     Closed forms: contour integrals, Schröder and Hanrahan (1993), Mitalas and Stephenson (1966). Shafts:
     Haines and Wallace (1991).

@@ -27,7 +27,7 @@ def read_density(path: str | PathLike[str]) -> tuple[NDArray[Any], Bounds | None
         raise TypeError(f"path must be a str or a path, got {type(path).__name__}")
     name = Path(fspath(path))
     if name.suffix == ".vol":
-        return _read_vol(name)
+        return read_vol(name)
     if name.suffix != ".npy":
         raise ValueError(f"{name} must be a .npy or a .vol file")
     try:
@@ -39,8 +39,16 @@ def read_density(path: str | PathLike[str]) -> tuple[NDArray[Any], Bounds | None
     return array, None
 
 
-def _read_vol(name: Path) -> tuple[NDArray[Any], Bounds]:
-    """Read the format of Mitsuba's grid volumes, in which x runs fastest."""
+def read_vol(name: Path) -> tuple[NDArray[np.float32], Bounds]:
+    """Return the numbers of one of Mitsuba's grid volumes, x first, and the box that it gives for them.
+
+    Raises
+    ------
+    FileNotFoundError
+        If there is no such file.
+    ValueError
+        If it is no such file, is of another version, or is cut short.
+    """
     data = name.read_bytes()
     if len(data) < _VOL.size or data[:3] != b"VOL":
         raise ValueError(f"{name} cannot be read: it does not begin as a .vol file does")

@@ -1,7 +1,5 @@
 """Surfaces that are told by the distance to them on a grid, as meshes."""
 
-import struct
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -24,32 +22,6 @@ class Surface(NamedTuple):
     vertices: Floats
     faces: NDArray[np.int64]
     normals: Floats
-
-
-def read_vol(path: Path) -> Floats:
-    """Read a grid of numbers in Mitsuba's format, (Z, Y, X).
-
-    Raises
-    ------
-    ValueError
-        If it is no such file, is cut short, or holds more than one number a point.
-    """
-    data = path.read_bytes()
-    if data[:3] != b"VOL" or len(data) < 48:
-        raise SceneError(f"{path} is no grid of Mitsuba's")
-    version, (kind, *size) = data[3], struct.unpack_from("<5i", data, 4)
-    x, y, z, channels = size
-    if version != 3 or kind != 1 or min(size) < 1:
-        raise SceneError(
-            f"{path} must be of version 3 and hold float32, got version {version} and kind {kind}"
-        )
-    if channels != 1:
-        raise SceneError(f"{path} must hold one number a point, got {channels}")
-    if len(data) < 48 + 4 * x * y * z:
-        raise SceneError(
-            f"{path} is cut short: it has {x} x {y} x {z} points by its header, in {len(data)} bytes"
-        )
-    return np.asarray(np.frombuffer(data, "<f4", x * y * z, 48).reshape(z, y, x), np.float64)
 
 
 def surface(grid: Floats) -> Surface:

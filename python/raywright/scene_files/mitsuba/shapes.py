@@ -8,6 +8,7 @@ import numpy as np
 from ...lights import Emission
 from ...lights.emission import Emitted
 from ...materials import Diffuse, Material, TwoSided
+from ...media.files import read_vol
 from ...scene.instance import AnyShape, Instance
 from ...shapes import Cylinder, Disk, Shape, Sphere
 from ...shapes.mesh import Mesh
@@ -91,7 +92,7 @@ def _distance_grid(plugin: Plugin) -> Mesh:
         if grid.ndim != 3:
             plugin.fail(f"grid must have shape (Z, Y, X) or (Z, Y, X, 1), got {grid.shape}")
     else:
-        grid = sdf_grids.read_vol(plugin.path())
+        grid = read_vol(plugin.path())[0].transpose(2, 1, 0).astype(np.float64)
     found = sdf_grids.surface(grid)
     triangles = mesh_files.Triangles(found.vertices, found.faces, found.normals)
     vertices, faces, normals, _ = triangles.placed(plugin.to_world(), plugin.switch("flip_normals", False))
