@@ -1,5 +1,7 @@
 """What is told of pictures whose light is gathered from about a point: how far a render is, and its blur."""
 
+import time
+
 import pytest
 
 import raywright as rw
@@ -17,6 +19,8 @@ def test_noise_falls_by_the_integrator():
 def test_a_bar_goes_by_that(rates, share, capsys):
     # Of 8 times the error that is wanted, an eighth of the samples is there; by the power of 2/3, a 23rd.
     with bar(None, 0.01, None, *rates) as report:
+        # A bar is not drawn anew before a tenth of a second.
+        time.sleep(0.15)
         report(1.0, 4, 0.08, True)
         told = capsys.readouterr().err
     assert share in told.replace(" ", "")

@@ -189,7 +189,7 @@ def test_light_that_is_scattered_once(w, depth, mu0, mu, g, azimuth, expected):
     media.assert_seen(scene, camera, 1024, up, rw.Path(1))
     if down is not None:
         camera = media.looking(mu, azimuth=azimuth + 180, below=True, distance=3.0)
-        media.assert_seen(scene, camera, 1024, down, rw.Path(1))
+        media.assert_seen(scene, camera, 2048, down, rw.Path(1))
 
 
 @pytest.mark.parametrize(

@@ -114,7 +114,7 @@ def test_dragging_and_the_wheel_move_the_camera(page, knot):
 
 def test_moving_the_camera_shows_something_else_at_once(page):
     scene, camera = rw.scenes.cornell_box(width=800, height=600)
-    with rw.view(scene, camera) as viewer:
+    with rw.view(scene, camera, fit=False) as viewer:
         page.goto(viewer.url)
         number, start = shown(page)
         page.focus("#picture")

@@ -12,9 +12,9 @@ const MOST_CUTS: u32 = 60;
 /// Radii that differ by more are made alike by quartering the larger one: integrals around both would cancel.
 const UNLIKE: f64 = 4.0;
 
-/// Of the square of the radius, what is exchanged by so much more than roundings of integrals around both that they are
-/// 10⁻¹⁰ of it at most.
-const CANCELLED: f64 = 1e-5;
+/// Of the square of the radius, what is exchanged by so much more than roundings of integrals around both, which are
+/// some 10⁻¹⁵ of it, that they are 10⁻⁹ at most.
+const CANCELLED: f64 = 1e-6;
 
 /// The area of one triangle times its view factor to another, which is the other's times that to the one.
 pub fn pair(quadrature: &mut Quadrature, one: &Facet, other: &Facet) -> f64 {
@@ -45,7 +45,7 @@ fn before(quadrature: &mut Quadrature, one: &Facet, other: &Facet, heights: [[f6
     if larger.radius <= UNLIKE * smaller.radius || cuts == 0 {
         let found = contour(one, other);
         let least = CANCELLED * larger.radius * larger.radius;
-        return if found > least { found } else { hinge(one, other, heights) };
+        return if found > least { found } else { hinge(one, other, heights).unwrap_or(found.max(0.0)) };
     }
     let [above_larger, above_smaller] = if is_larger { heights } else { [heights[1], heights[0]] };
     let [a, b, c] = above_smaller;

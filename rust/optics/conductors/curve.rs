@@ -252,7 +252,8 @@ mod tests {
             let once = |mu: f64| curve.reflectance(mu);
             let most = (0..=100).map(|i| once(f64::from(i) / 100.0)).fold(Rgb::ZERO, Rgb::at_least);
             assert!((most * curve.again()).max() <= 1.0 + 1e-12 && most.max() < 1.03, "{metal:?}");
-            assert!((0..=100).all(|i| once(f64::from(i) / 100.0).min() > 0.2), "{metal:?}");
+            // The darkest is carbon, which is no metal.
+            assert!((0..=100).all(|i| once(f64::from(i) / 100.0).min() > 0.1), "{metal:?}");
             // Only gold's red is beyond the screen's.
             assert_eq!(curve.again() == Rgb::ONE, metal.symbol != "Au", "{metal:?}");
             // What facets throw on facets for ever is what each wavelength's series gives.

@@ -1,7 +1,7 @@
 //! A medium that differs from place to place, by numbers on a grid.
 
-use super::stretches::{Content, Stretch, Stretches};
-use super::{Coefficients, Medium, Values};
+use super::stretch::{Content, Stretch};
+use super::{Coefficients, Medium, Stretches, Values};
 use crate::math::{Affine, DVec3, Ray};
 use crate::optics::{Phase, Rgb};
 

@@ -1,7 +1,7 @@
 //! A medium that is the same everywhere.
 
-use super::stretches::{Content, Stretch, Stretches};
-use super::{Coefficients, Medium};
+use super::stretch::{Content, Stretch};
+use super::{Coefficients, Medium, Stretches};
 use crate::math::{DVec3, Ray};
 use crate::optics::{Phase, Rgb};
 

@@ -3,17 +3,18 @@
 mod coefficients;
 mod grid;
 mod homogeneous;
-mod stretches;
+mod stretch;
 mod values;
 
 pub use coefficients::Coefficients;
 pub use grid::GridMedium;
 pub use homogeneous::Homogeneous;
-pub use stretches::{Content, Stretch, Stretches};
+pub use stretch::{Content, Stretch};
 pub use values::{At, Values};
 
 use crate::math::{DVec3, Ray};
 use crate::optics::Phase;
+use grid::BlockWalk;
 use std::fmt::Debug;
 
 /// What fills space, and dims and scatters light on its way.
@@ -40,4 +41,38 @@ pub trait Medium: Debug + Send + Sync {
 
     /// The memory held.
     fn bytes(&self) -> usize;
+}
+
+/// All stretches of a ray through a medium.
+#[derive(Clone, Debug)]
+pub struct Stretches<'m>(Kind<'m>);
+
+#[derive(Clone, Debug)]
+enum Kind<'m> {
+    Whole(Option<Stretch>),
+    Blocks(BlockWalk<'m>),
+}
+
+impl<'m> Stretches<'m> {
+    /// One, from end to end.
+    fn whole(stretch: Stretch) -> Self {
+        Self(Kind::Whole(Some(stretch)))
+    }
+
+    /// Those of blocks.
+    fn blocks(walk: BlockWalk<'m>) -> Self {
+        Self(Kind::Blocks(walk))
+    }
+}
+
+impl Iterator for Stretches<'_> {
+    type Item = Stretch;
+
+    #[inline]
+    fn next(&mut self) -> Option<Stretch> {
+        match &mut self.0 {
+            Kind::Whole(stretch) => stretch.take(),
+            Kind::Blocks(walk) => walk.next(),
+        }
+    }
 }
