@@ -16,6 +16,10 @@ const UNLIKE: f64 = 4.0;
 /// some 10⁻¹⁵ of it, that they are 10⁻⁹ at most.
 const CANCELLED: f64 = 1e-6;
 
+/// Heights that are a greater part of the radius are of triangles that exchange little because they are slender, and
+/// not because they are in one plane.
+const FLAT: f64 = 1.0 / 16.0;
+
 /// The area of one triangle times its view factor to another, which is the other's times that to the one.
 pub fn pair(quadrature: &mut Quadrature, one: &Facet, other: &Facet) -> f64 {
     let heights = [one.heights(other), other.heights(one)];
@@ -44,8 +48,11 @@ fn before(quadrature: &mut Quadrature, one: &Facet, other: &Facet, heights: [[f6
     let (larger, smaller) = if is_larger { (one, other) } else { (other, one) };
     if larger.radius <= UNLIKE * smaller.radius || cuts == 0 {
         let found = contour(one, other);
-        let least = CANCELLED * larger.radius * larger.radius;
-        return if found > least { found } else { hinge(one, other, heights).unwrap_or(found.max(0.0)) };
+        let is_flat = heights.as_flattened().iter().all(|&height| height <= FLAT * larger.radius);
+        if !is_flat || found > CANCELLED * larger.radius * larger.radius {
+            return found.max(0.0);
+        }
+        return hinge(one, other, heights).unwrap_or(found.max(0.0));
     }
     let [above_larger, above_smaller] = if is_larger { heights } else { [heights[1], heights[0]] };
     let [a, b, c] = above_smaller;

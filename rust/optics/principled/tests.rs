@@ -43,9 +43,12 @@ fn kinds() -> [AnyBsdf; 3] {
     ]
 }
 
-/// What Mitsuba 3.9.1 (scalar_rgb) says of these: which, wo, wi, the function with its cosine, and the density.
+/// Which of these, wo, wi, the function with its cosine, and the density.
+type Told = (usize, [f64; 3], [f64; 3], [f64; 3], f64);
+
+/// What Mitsuba 3.9.1 (scalar_rgb) says.
 #[rustfmt::skip]
-const MITSUBA: [(usize, [f64; 3], [f64; 3], [f64; 3], f64); 15] = [
+const MITSUBA: [Told; 15] = [
     (0, [0.341881729, 0.227921153, 0.911684612], [-0.577350269, 0.115470054, 0.808290377],
      [0.18356, 0.117941, 0.0523227], 0.214292),
     (0, [0.963086825, -0.120385853, 0.240771706], [-0.717137166, 0.358568583, 0.597614305],
