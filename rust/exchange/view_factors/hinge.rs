@@ -363,8 +363,8 @@ mod tests {
             let Some(found) = hinge(&one, &other, [one.heights(&other), other.heights(&one)]) else { continue };
             let around = contour(&one, &other);
             let radius = one.radius.max(other.radius);
-            // What is promised, and roundings: terms of integrals around both are of the order of the radii's product, and
-            // some hundred of them add up.
+            // What is promised, and roundings: terms of integrals around both are of the order of the radii's
+            // product, and some hundred of them add up.
             let enough = 1e-9 * found + 1e-13 * radius * radius;
             assert!((found - around).abs() < enough, "{number}: {found} {around}");
             asked[number as usize % 3] += 1;
