@@ -23,7 +23,7 @@ const POINTS: usize = 8;
 
 /// Rectangles that halves change by less than this share of all are not halved. What is smooth is then known far
 /// better: the halves of what converges at all are off by less than a hundredth of the change.
-const ENOUGH: f64 = 1e-9;
+const ENOUGH: f64 = 1e-11;
 
 /// No rectangle is halved more often.
 const MOST_CUTS: u32 = 96;
