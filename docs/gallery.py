@@ -204,6 +204,43 @@ def forest() -> rw.Image:
     return rw.render(scene, camera, rw.Path(max_depth=3), samples=64)
 
 
+def cloud() -> rw.Image:
+    """A cloud at sunset: a grid of densities, which scatters what light comes, as often as it takes."""
+    x, y, z = np.mgrid[-1:1:96j, -1:1:64j, -1:1:96j]
+    height = (y + 0.85) / 1.85
+    puffs = np.random.default_rng(4).uniform((-0.65, 0.0, -0.65, 0.16), (0.65, 0.35, 0.65, 0.4), (40, 4))
+    puffs = puffs[np.hypot(puffs[:, 0], puffs[:, 2]) < 0.6]
+    body = np.full(x.shape, -1.0)
+    for a, b, c, r in puffs:
+        body = np.maximum(body, 1 - np.sqrt((x - a) ** 2 + ((y + 0.5 - b) * 1.3) ** 2 + (z - c) ** 2) / r)
+    frill = np.zeros(x.shape)
+    for octave in range(4):
+        k = 5 * 2**octave
+        frill += np.sin(k * x + 1.3 * octave + 2 * np.sin(k * z)) * np.sin(k * y + np.cos(k * x)) / 2**octave
+    density = np.clip(2.5 * (body + 0.22 * frill), 0, 1) * np.clip(4 * height, 0, 1)
+    bounds = [(-3, 1, -3), (3, 4, 3)]
+    vapour = rw.GridMedium(density, bounds, scattering=14.0, phase=rw.HenyeyGreenstein(0.7), at="centres")
+    evening = rw.SunSky((-1, 0.12, 0.35), sun_scale=0.06, sky_scale=0.06)
+    ground = rw.Plane((0, 0, 0), (0, 1, 0), material=rw.Diffuse((0.25, 0.22, 0.16)))
+    scene = rw.Scene([rw.Box(*bounds, material=rw.Boundary(vapour)), ground], environment=evening)
+    camera = rw.Camera((1.5, 0.8, 9.5), (0, 2.2, 0), fov=38, width=1000, height=640)
+    return rw.render(scene, camera, samples=256)
+
+
+def haze() -> rw.Image:
+    """Beams of light in haze, from a lamp behind a wall with slits."""
+    bars = [rw.Box((-2 + 0.5 * i, 0, -0.05), (-1.72 + 0.5 * i, 3, 0.05)) for i in range(9)]
+    floor = rw.Plane((0, 0, 0), (0, 1, 0), material=rw.Diffuse(0.4))
+    ball = rw.Sphere((0.5, 0.55, 1.6), 0.55, material=rw.Plastic((0.6, 0.15, 0.1), roughness=0.2))
+    lamp = rw.PointLight((0.3, 2.2, -2.5), (260, 220, 170))
+    sides = [rw.Box((-9, 0, -0.05), (-2, 3, 0.05)), rw.Box((2.28, 0, -0.05), (9, 3, 0.05))]
+    top = rw.Box((-9, 3, -0.05), (9, 9, 0.05))
+    haze = rw.Homogeneous(absorption=0.005, scattering=0.07, phase=rw.HenyeyGreenstein(0.5))
+    scene = rw.Scene([*bars, *sides, top, floor, ball], lights=[lamp], medium=haze)
+    camera = rw.Camera((-3.4, 1.7, 6.2), (0.2, 1.0, 0.6), fov=40, width=1000, height=640)
+    return rw.render(scene, camera, samples=256)
+
+
 PICTURES = {
     each.__name__: each
     for each in (
@@ -211,6 +248,8 @@ PICTURES = {
         caustic,
         photons,
         keyhole,
+        cloud,
+        haze,
         radiosity,
         plates,
         glass,
