@@ -41,10 +41,10 @@ def test_a_slab_lets_through_what_its_passes_sum_to(ior, share, thickness):
     through, back = series * share, mirror + mirror * series * share**2
     lit = rw.Plane((0, 0, -2), material=rw.Diffuse(0.0), emission=1.0)
     below = rw.Scene([slab(ior, share, thickness), lit])
-    media.assert_seen(below, media.looking(), 4096, through, most=0.01)
+    media.assert_seen(below, media.looking(), 1024, through, most=0.01)
     dark = rw.Plane((0, 0, -2), material=rw.Diffuse(0.0))
     above = rw.Scene([slab(ior, share, thickness), dark], environment=SKY)
-    media.assert_seen(above, media.looking(), 4096, back, most=0.02)
+    media.assert_seen(above, media.looking(), 1024, back, most=0.04)
 
 
 @pytest.mark.parametrize("way", [rw.Path(), rw.Direct(), rw.Whitted()], ids=["path", "direct", "whitted"])
@@ -77,7 +77,7 @@ def test_whitted_sums_the_passes_that_its_depth_allows():
         ({"transmittance": math.nan}, r"transmittance must be finite"),
         ({"transmittance": (0.5, 0.5)}, r"transmittance must be one number or 3, got shape \(2,\)"),
         ({"transmittance": 0.5, "distance": 0}, r"distance must be greater than 0, got 0"),
-        ({"transmittance": 0.5, "distance": 1e-320}, r"distance must leave .* finite, got 1e-320 for 0\.5"),
+        ({"transmittance": 0.5, "distance": 1e-320}, r"distance leaves .* infinite: 1e-320 for 0\.5"),
         ({"distance": 2.0}, r"distance is that of transmittance, which is not given, got 2\.0"),
         (
             {"transmittance": 0.5, "interior": rw.Homogeneous(1.0)},

@@ -108,6 +108,6 @@ def _tint(transmittance: ArrayLike, distance: float | None) -> Homogeneous | Non
     absorption = [0.0 - math.log(share) / length for share in left]
     if not math.isfinite(max(absorption)):
         raise ValueError(
-            f"distance must leave -ln(transmittance) / distance finite, got {distance!r} for {transmittance!r}"
+            f"distance leaves -ln(transmittance) / distance infinite: {distance!r} for {transmittance!r}"
         )
     return Homogeneous(absorption) if max(absorption) > 0 else None
