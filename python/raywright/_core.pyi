@@ -195,6 +195,17 @@ class CompiledScene:
         self, shape_id: NDArray[np.int32], primitive: NDArray[np.int32], uv: NDArray[np.float64]
     ) -> NDArray[np.float64]:
         """Points on primitives: (N,3), NaN for misses."""
+    @property
+    def without_closest(self) -> int | None:
+        """Of shapes, the first of which closest points are not found."""
+    def sites(
+        self,
+        shape_id: NDArray[np.int32],
+        primitive: NDArray[np.int32],
+        uv: NDArray[np.float64],
+        position: NDArray[np.float64],
+    ) -> NDArray[np.float64]:
+        """Find unit normals at points, and bound the error of each coordinate: (N,4), NaN for misses."""
     def normals(self, shape_id: NDArray[np.int32], primitive: NDArray[np.int32]) -> NDArray[np.float64]:
         """Find unit geometric normals: (N,3), NaN for misses."""
     def errors(self, shape_id: NDArray[np.int32], primitive: NDArray[np.int32]) -> NDArray[np.float64]:

@@ -14,7 +14,7 @@ use super::info::AcceleratorInfo;
 use super::instances;
 use super::rays::{BATCH, RayArguments, answer, share};
 use crate::accel::{Cost, Nearest};
-use crate::math::Hit;
+use crate::math::{DVec3, Hit};
 use crate::scene;
 use crate::work::{Watch, Work};
 use crate::workers;
@@ -314,11 +314,6 @@ impl CompiledScene {
         shape: Vec<usize>,
         threads: Option<usize>,
     ) -> PyResult<ClosestPoints<'py>> {
-        if let Some(shape) = self.0.geometry().first_other() {
-            return Err(PyValueError::new_err(format!(
-                "closest points are found on meshes alone, and shape {shape} is none"
-            )));
-        }
         let (points, most) = (points.rows("points")?, max_distance.slice("max_distance")?);
         let (count, lead) = (shape.iter().product(), &shape);
         if [points.len(), most.len()].iter().any(|&n| n != 1 && n != count) {
@@ -362,6 +357,27 @@ impl CompiledScene {
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let uv = rows("uv", &uv)?;
         self.of_primitives(py, &shape_id, &primitive, |geometry, p, i| geometry.position(p, uv[i]).to_array())
+    }
+
+    /// Of shapes, the first of which closest points are not found.
+    #[getter]
+    fn without_closest(&self) -> Option<u32> {
+        self.0.geometry().first_without_closest()
+    }
+
+    fn sites<'py>(
+        &self,
+        py: Python<'py>,
+        shape_id: PyReadonlyArray1<'py, i32>,
+        primitive: PyReadonlyArray1<'py, i32>,
+        uv: PyReadonlyArray2<'py, f64>,
+        position: PyReadonlyArray2<'py, f64>,
+    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        let (uv, position) = (rows("uv", &uv)?, rows("position", &position)?);
+        self.of_primitives(py, &shape_id, &primitive, |geometry, p, i| {
+            let (normal, error) = geometry.site(p, DVec3::from_array(position[i]), uv[i]);
+            [normal.x, normal.y, normal.z, error]
+        })
     }
 
     fn normals<'py>(

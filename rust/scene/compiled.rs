@@ -187,7 +187,12 @@ impl Scene {
 
     /// The nearest point to each point, within its greatest distance: one for all of them, or one each.
     pub fn nearest(&self, points: &[DVec3], max_distances: &[f64], nearest: &mut [Nearest]) {
-        self.accelerator.nearest(points, max_distances, nearest);
+        if self.geometry.has_vertices() {
+            self.accelerator.nearest(points, max_distances, nearest);
+        } else {
+            nearest.fill(Nearest::MISS);
+        }
+        self.geometry.nearest_of_others(points, max_distances, nearest);
     }
 
     /// The triangles that each cone touches, nearest first.

@@ -3,7 +3,8 @@
 use super::line::Line;
 use super::meeting::tell;
 use super::solid::{Meet, Meets, Solid};
-use super::{Bounds, Candidate, Carried, Contact, Drawn, Point, Shape};
+use super::triangle::{nearest_point, point_of};
+use super::{Bounds, Candidate, Carried, Closest, Contact, Drawn, Point, Shape};
 use crate::math::robust::UNIT;
 use crate::math::{Affine, Bounded, DVec3, Number, Ray, Triple};
 use std::cmp::Ordering;
@@ -213,6 +214,43 @@ impl Solid for Cuboid {
 }
 
 impl Shape for Cuboid {
+    fn closest(&self, place: DVec3) -> Option<Closest> {
+        let (below, above) = (self.min - place, place - self.max);
+        // By face, how far the place is beyond it; of a place inside all are 0 at most, and the greatest is nearest.
+        let beyond = [below.x, above.x, below.y, above.y, below.z, above.z];
+        let part = (1..6).fold(0, |most, part| if beyond[part] > beyond[most] { part } else { most });
+        let mut position = place.clamp(self.min, self.max);
+        let (axis, greater) = (part / 2, part % 2 == 1);
+        position[axis] = if greater { self.max[axis] } else { self.min[axis] };
+        Some(Closest { position, uv: self.coordinates(part, position - self.min) })
+    }
+
+    /// Of the image, the nearest of its six sides, which are two triangles each.
+    fn closest_under(&self, to_world: &Affine, _: &Affine, place: DVec3) -> Option<Closest> {
+        let mut best: Option<(f64, Closest)> = None;
+        for part in 0..6 {
+            let axis = part / 2;
+            let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
+            let corner = |far: [bool; 2]| {
+                let mut at = if part % 2 == 1 { self.max } else { self.min };
+                at[i] = if far[0] { self.max[i] } else { self.min[i] };
+                at[j] = if far[1] { self.max[j] } else { self.min[j] };
+                at
+            };
+            let (from, to) = (corner([false, false]), corner([true, true]));
+            for middle in [corner([true, false]), corner([false, true])] {
+                let own = [from, middle, to];
+                let image = own.map(|at| to_world.point(at));
+                let found = nearest_point(image, place);
+                if best.is_none_or(|(distance, _)| found.distance < distance) {
+                    let uv = self.coordinates(part, point_of(own, found.uv) - self.min);
+                    best = Some((found.distance, Closest { position: point_of(image, found.uv), uv }));
+                }
+            }
+        }
+        best.map(|(_, closest)| closest)
+    }
+
     fn bounds(&self) -> Bounds {
         Bounds { min: self.min, max: self.max }
     }

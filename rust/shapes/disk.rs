@@ -4,7 +4,7 @@ use super::line::Line;
 use super::meeting::tell;
 use super::plane::crossing;
 use super::solid::{Meets, Solid};
-use super::{Bounds, Candidate, Carried, Drawn, Point, Shape};
+use super::{Bounds, Candidate, Carried, Closest, Drawn, Point, Shape};
 use crate::math::robust::UNIT;
 use crate::math::{Affine, DVec3, Frame, Number, Ray, Triple};
 use crate::sampling::warp::uniform_disk;
@@ -184,6 +184,16 @@ impl Solid for Disk {
 }
 
 impl Shape for Disk {
+    fn closest(&self, place: DVec3) -> Option<Closest> {
+        let frame = self.frame();
+        let local = frame.to_local(place - self.center);
+        let distance = local.x.hypot(local.y);
+        let [x, y] = if distance > 0.0 { [local.x / distance, local.y / distance] } else { [1.0, 0.0] };
+        let out = distance.clamp(self.inner_radius, self.radius);
+        let from_center = (frame.tangent * x + frame.bitangent * y) * out;
+        Some(Closest { position: self.center + from_center, uv: self.coordinates(0, from_center) })
+    }
+
     fn bounds(&self) -> Bounds {
         Bounds::of_support(|d| self.support(d))
     }

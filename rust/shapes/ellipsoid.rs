@@ -1,10 +1,11 @@
 //! The ellipsoid.
 
+use super::closest::{of_ellipsoid, semi_axes};
 use super::line::Line;
 use super::meeting::{ball, ball_surface, tell};
 use super::solid::{Meets, Solid};
 use super::sphere::{Sphere, ellipsoid_area_under, globe, longitude_latitude};
-use super::{Bounds, Candidate, Carried, Drawn, Point, Shape};
+use super::{Bounds, Candidate, Carried, Closest, Drawn, Point, Shape};
 use crate::math::robust::UNIT;
 use crate::math::{Affine, DVec3, Number, Ray, Triple, ellipsoid_area};
 use crate::sampling::warp::{UNIFORM_SPHERE_PDF, uniform_sphere};
@@ -83,6 +84,23 @@ impl Solid for Ellipsoid {
 }
 
 impl Shape for Ellipsoid {
+    fn closest(&self, place: DVec3) -> Option<Closest> {
+        let unit = of_ellipsoid(self.semi_axes, place - self.center);
+        Some(Closest { position: self.center + unit * self.semi_axes, uv: longitude_latitude(unit) })
+    }
+
+    /// The image is an ellipsoid too, about other axes.
+    fn closest_under(&self, to_world: &Affine, to_object: &Affine, place: DVec3) -> Option<Closest> {
+        let columns = [0, 1, 2].map(|i| to_world.vector(DVec3::AXES[i] * self.semi_axes[i]));
+        let (along, lengths) = semi_axes(columns);
+        let center = to_world.point(self.center);
+        let away = place - center;
+        let unit = of_ellipsoid(lengths, DVec3::from_array(along.map(|axis| axis.dot(away))));
+        let from_center: DVec3 = (0..3).map(|i| along[i] * (lengths[i] * unit[i])).sum();
+        let own = to_object.vector(from_center) / self.semi_axes;
+        Some(Closest { position: center + from_center, uv: longitude_latitude(own) })
+    }
+
     fn bounds(&self) -> Bounds {
         // One rounding each.
         Bounds {

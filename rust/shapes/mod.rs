@@ -1,5 +1,6 @@
 //! Floor 1: what can be hit, one shape a module.
 
+mod closest;
 mod cone;
 mod contact;
 mod cuboid;
@@ -28,6 +29,7 @@ mod surfaces;
 mod torus;
 pub mod triangle;
 
+pub use closest::Closest;
 pub use contact::{Candidate, Contact};
 pub use cuboid::Cuboid;
 pub use disk::Disk;

@@ -1,6 +1,6 @@
 //! Any shape, moved by an affine map.
 
-use super::{Bounds, Candidate, Carried, Drawn, Point, Shape};
+use super::{Bounds, Candidate, Carried, Closest, Drawn, Point, Shape};
 use crate::math::robust::UNIT;
 use crate::math::{Affine, DVec3, Ray, Singular};
 use std::sync::Arc;
@@ -117,6 +117,14 @@ impl Shape for Placed {
         let point = self.carried(point);
         let pdf = pdf * self.crowding(point.position - place);
         Some(Drawn { point, pdf })
+    }
+
+    fn closest(&self, place: DVec3) -> Option<Closest> {
+        self.shape.closest_under(&self.to_world, &self.to_object, place)
+    }
+
+    fn closest_under(&self, to_world: &Affine, to_object: &Affine, place: DVec3) -> Option<Closest> {
+        self.shape.closest_under(&to_world.compose(&self.to_world), &self.to_object.compose(to_object), place)
     }
 
     fn pdf_from(&self, place: DVec3, direction: DVec3) -> f64 {

@@ -3,7 +3,7 @@
 use super::line::Line;
 use super::meeting::tell;
 use super::solid::{Meet, Meets, Solid};
-use super::{Bounds, Candidate, Carried, Contact, Drawn, Point, Shape};
+use super::{Bounds, Candidate, Carried, Closest, Contact, Drawn, Point, Shape};
 use crate::math::robust::UNIT;
 use crate::math::{Affine, DVec3, Frame, Number, Ray, Triple};
 use std::cmp::Ordering;
@@ -60,6 +60,20 @@ pub(super) fn crossing<N: Number>(line: &Line<N>, normal: &Triple<N>) -> Option<
 }
 
 impl Shape for Plane {
+    fn closest(&self, place: DVec3) -> Option<Closest> {
+        let normal = self.frame().normal;
+        let away = place - self.point;
+        let along = away - normal * normal.dot(away);
+        Some(Closest { position: self.point + along, uv: self.coordinates(0, along) })
+    }
+
+    /// The image is a plane too.
+    fn closest_under(&self, to_world: &Affine, to_object: &Affine, place: DVec3) -> Option<Closest> {
+        let image = Self { point: to_world.point(self.point), normal: to_object.transposed(self.normal) };
+        let position = image.closest(place)?.position;
+        Some(Closest { position, uv: self.coordinates(0, to_object.point(position) - self.point) })
+    }
+
     /// Without end, but flat where the normal lies along an axis.
     fn bounds(&self) -> Bounds {
         Bounds::of_support(|d| self.support(d))

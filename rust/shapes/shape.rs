@@ -1,6 +1,6 @@
 //! What every shape that is no triangle can be asked.
 
-use super::{Candidate, Carried};
+use super::{Candidate, Carried, Closest};
 use crate::math::robust::UNIT;
 use crate::math::{Affine, DVec3, Ray};
 use std::fmt::Debug;
@@ -227,6 +227,20 @@ pub trait Shape: Debug + Send + Sync {
     /// [`Shape::pdf_from`] of a direction that is known to meet it.
     fn pdf_of_met(&self, place: DVec3, direction: DVec3) -> f64 {
         self.pdf_from(place, direction)
+    }
+
+    /// The point that is nearest to another, of several one; none where the shape does not know.
+    fn closest(&self, _place: DVec3) -> Option<Closest> {
+        None
+    }
+
+    /// The same of its image under a map, of which the inverse is given too.
+    ///
+    /// Here: none where the map scales some lengths more than others, which changes what is nearest.
+    fn closest_under(&self, to_world: &Affine, to_object: &Affine, place: DVec3) -> Option<Closest> {
+        to_world.uniform_scale()?;
+        let own = self.closest(to_object.point(place))?;
+        Some(Closest { position: to_world.point(own.position), ..own })
     }
 
     /// The density by solid angle with which [`Shape::sample_from`] draws a direction, of any length, from a place. 0

@@ -1,9 +1,10 @@
 //! The sphere.
 
+use super::closest::of_ellipsoid;
 use super::line::Line;
 use super::meeting::{ball, ball_surface, tell};
 use super::solid::{Meet, Meets, Solid};
-use super::{Ball, Bounds, Candidate, Carried, Contact, Drawn, Point, Seen, Shape, Site};
+use super::{Ball, Bounds, Candidate, Carried, Closest, Contact, Drawn, Ellipsoid, Point, Seen, Shape, Site};
 use crate::math::robust::UNIT;
 use crate::math::turn::sin_cos_turn;
 use crate::math::{Affine, Bounded, DVec3, Frame, Number, Ray, Triple, ellipsoid_area};
@@ -193,6 +194,16 @@ impl Solid for Sphere {
 }
 
 impl Shape for Sphere {
+    fn closest(&self, place: DVec3) -> Option<Closest> {
+        let unit = of_ellipsoid(DVec3::splat(self.radius), place - self.center);
+        Some(Closest { position: self.center + unit * self.radius, uv: longitude_latitude(unit) })
+    }
+
+    fn closest_under(&self, to_world: &Affine, to_object: &Affine, place: DVec3) -> Option<Closest> {
+        Ellipsoid { center: self.center, semi_axes: DVec3::splat(self.radius) }
+            .closest_under(to_world, to_object, place)
+    }
+
     fn bounds(&self) -> Bounds {
         // One rounding each.
         Bounds {

@@ -95,8 +95,7 @@ def true_answers(scene):
     """Return rays, and by brute force: hits, all hits, whether origins are inside, and what is nearest."""
     brute = rw.Scene(SCENES[scene], accelerator=rw.BruteForce())
     rays = rays_for(brute)
-    # What is nearest is told of meshes alone.
-    nearest = brute.closest_point(rays[0]) if scene != "shapes" else None
+    nearest = brute.closest_point(rays[0])
     return rays, brute.intersect(*rays), brute.intersect_all(*rays), brute.contains(rays[0]), nearest
 
 
@@ -111,7 +110,7 @@ def test_every_answer_is_that_of_brute_force(way, builder, scene):
     np.testing.assert_array_equal(tree.occluded(*rays), hits.hit)
     assert tree.intersect_all(*rays) == every_hit
     np.testing.assert_array_equal(tree.contains(rays[0]), inside)
-    assert nearest is None or tree.closest_point(rays[0]) == nearest
+    assert tree.closest_point(rays[0]) == nearest
     cost = tree.cost(*rays)
     assert (cost.primitives[hits.hit] >= 1).all()
     assert (cost.nodes[hits.hit] >= 1).sum() > 0.1 * hits.hit.sum() or not tree.shapes

@@ -1,9 +1,13 @@
 """Glass, water, diamond."""
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
-from ..arrays import integer, positive
+from numpy.typing import ArrayLike
+
+from ..arrays import colour, integer, positive
+from ..media.homogeneous import Homogeneous
 from ..media.medium import Medium
 from ..media.medium import medium as checked
 from .material import Material, Rough, facets, rough
@@ -38,11 +42,20 @@ class Dielectric(Material):
 
     interior : Homogeneous or GridMedium, optional
         What is within, if it is not clear: what dims and scatters light there.
+    transmittance : float or 3 floats, optional
+        The tint of what is within, in place of `interior`: the share of light, one number or red, green and
+        blue, above 0 and at most 1, that is left after a way of length `distance` inside (Bouguer, 1729;
+        Beer, 1852). It is kept as an `interior` of the absorption -ln(transmittance) / distance; where all
+        is left, there is none.
+    distance : float, optional
+        The length of that way, above 0, in units of the world. 1 if not given.
 
     Raises
     ------
     ValueError
-        If `ior` is not greater than 0, a roughness is outside [0, 1], or there is no such distribution.
+        If `ior` or `distance` is not greater than 0, a roughness is outside [0, 1], there is no such
+        distribution, `transmittance` is not above 0 and at most 1 or comes with `interior`, or `distance`
+        comes without it.
     TypeError
         If something is not of the kinds above.
     """
@@ -65,11 +78,36 @@ class Dielectric(Material):
         distribution: str = "ggx",
         multiple_scattering: bool = True,
         interior: Medium | None = None,
+        transmittance: ArrayLike | None = None,
+        distance: float | None = None,
     ) -> None:
+        if transmittance is not None and interior is not None:
+            raise ValueError("only one of interior and transmittance can be given: the tint is an interior")
+        if transmittance is None and distance is not None:
+            raise ValueError(f"distance is that of transmittance, which is not given, got {distance!r}")
         self._set(
             ior=positive("ior", ior),
             **rough(roughness, alpha, pair=False),
             priority=integer("priority", priority, -(2**31), 2**31 - 1),
             **facets(distribution, multiple_scattering),
-            interior=checked("interior", interior),
+            interior=checked("interior", interior)
+            if transmittance is None
+            else _tint(transmittance, distance),
         )
+
+
+def _tint(transmittance: ArrayLike, distance: float | None) -> Homogeneous | None:
+    """Return what leaves that share of light after that way, or None for what leaves all."""
+    length = positive("distance", 1.0 if distance is None else distance)
+    left = colour("transmittance", transmittance, most=1.0)
+    if min(left) == 0:
+        raise ValueError(
+            f"transmittance must be above 0, got {transmittance!r}: no way that has an end takes all of it"
+        )
+    # 0 - x, since -ln(1) is the negative zero.
+    absorption = [0.0 - math.log(share) / length for share in left]
+    if not math.isfinite(max(absorption)):
+        raise ValueError(
+            f"distance leaves -ln(transmittance) / distance infinite: {distance!r} for {transmittance!r}"
+        )
+    return Homogeneous(absorption) if max(absorption) > 0 else None

@@ -313,10 +313,10 @@ class ClosestPoints(SurfacePoints):
     shape_id : (...) int32
         Which of ``scene.shapes`` it is on; -1 for none.
     primitive : (...) int32
-        Which face of that shape; -1 for none.
+        Which face of that shape, 0 where it is no mesh; -1 for none.
     uv : (..., 2) float64
         Barycentric weights of the face's second and third corner, so that the closest point is at
-        ``(1 - u - v) * a + u * b + v * c`` for corners a, b, c.
+        ``(1 - u - v) * a + u * b + v * c`` for corners a, b, c; on a shape that is no mesh, its own u and v.
     """
 
     distance: NDArray[np.float64]
@@ -335,6 +335,23 @@ class ClosestPoints(SurfacePoints):
         parts = {"distance": distance, "shape_id": shape_id, "primitive": primitive, "uv": uv}
         # The position is known already, and stands where cached_property keeps its values.
         self.__dict__.update(parts, position=position, _compiled=compiled, _rays=None)
+
+    @cached_property
+    def _site(self) -> NDArray[np.float64]:
+        """The unit normal, and a bound on how far each coordinate of `position` is off: (..., 4) float64."""
+        places = self.uv.reshape(-1, 2), self.position.reshape(-1, 3)
+        known = self._known("normal")
+        sites = known.sites(self.shape_id.reshape(-1), self.primitive.reshape(-1), *places)
+        return sealed(sites.reshape(*self.primitive.shape, 4))
+
+    @cached_property
+    def normal(self) -> NDArray[np.float64]:
+        """Unit geometric normal, out of what is closed: (..., 3) float64; NaN for none."""
+        return sealed(self._site[..., :3].copy()) if self._known("normal").curved else super().normal
+
+    @cached_property
+    def _error(self) -> NDArray[np.float64]:
+        return sealed(self._site[..., 3].copy()) if self._known("_error").curved else super()._error
 
     @cached_property
     def found(self) -> NDArray[np.bool_]:

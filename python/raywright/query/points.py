@@ -1,5 +1,7 @@
 """The questions that points ask of a scene."""
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -13,8 +15,25 @@ class PointQueries:
 
     _core: CompiledScene | None
 
+    @property
+    def shapes(self) -> tuple[Any, ...]:
+        """The shapes in the scene."""
+        raise NotImplementedError
+
     def _compiled(self) -> CompiledScene:
         raise NotImplementedError
+
+    def _near(self) -> CompiledScene:
+        """Return what finds closest points, or refuse by the name of the shape of which none are found."""
+        core = self._core or self._compiled()
+        index = core.without_closest
+        if index is None:
+            return core
+        kind = type(self.shapes[index]).__name__
+        what = kind
+        if kind not in ("Implicit", "Instance", "Instances"):
+            what = f"a {kind} under a transform that scales some lengths more than others"
+        raise ValueError(f"closest points are not found on {what}, which shape {index} is")
 
     def contains(self, points: ArrayLike, threads: int | None = None) -> NDArray[np.bool_]:
         """Find whether each point is inside a closed surface.
@@ -72,16 +91,21 @@ class PointQueries:
         Raises
         ------
         ValueError
-            If the last dimension is not 3, shapes do not broadcast, `max_distance` is negative or NaN, or
-            something in the scene is no mesh, such as an instance.
+            If the last dimension is not 3, shapes do not broadcast, `max_distance` is negative or NaN, or the
+            scene has instances, an `Implicit`, or a disk, cylinder, cone, paraboloid, torus or polygon under
+            a transform that scales some lengths more than others.
         TypeError
             If an array does not hold real numbers.
 
         Notes
         -----
         Points that are NaN or infinite have no closest point.
+
+        Shapes that are no meshes are asked in turn, where their box is near enough. Most have a closed form;
+        of ellipsoids the closest point is where a sum that falls is 1, which halving finds to the last digit
+        (Eberly, "Distance from a Point to an Ellipse, an Ellipsoid, or a Hyperellipsoid", 2013).
         """
-        core = self._core or self._compiled()
+        core = self._near()
         return ClosestPoints(*core.nearest(*nearest_arguments(points, max_distance, threads)), core)
 
     def signed_distance(self, points: ArrayLike, threads: int | None = None) -> NDArray[np.float64]:
@@ -100,16 +124,16 @@ class PointQueries:
         -------
         (...) float64
             With the leading shape of the points; inf for points that are NaN or infinite, and for all if the
-            scene is empty.
+            scene is empty. On shapes that are no meshes it is 0 to within the rounding of the point.
 
         Raises
         ------
         ValueError
-            If the last dimension is not 3, or something in the scene is no mesh, such as an instance.
+            If the last dimension is not 3, or the scene has what `closest_point` refuses.
         TypeError
             If the array does not hold real numbers.
         """
-        core = self._core or self._compiled()
+        core = self._near()
         distance = core.nearest(*nearest_arguments(points, np.inf, threads))[0]
         inside = core.contains(*point_arguments(points, threads)) & (distance > 0)
         return np.asarray(np.where(inside, -distance, distance))

@@ -22,7 +22,7 @@ pub(in crate::scene) use watched::Watched;
 
 use super::SurfacePoint;
 use super::textures::Needs;
-use crate::accel::{Primitives, UserGeometry, region};
+use crate::accel::{Nearest, Primitives, UserGeometry, region};
 use crate::math::{DVec3, Hit, Ray, Region, Vec3};
 use crate::shapes::{Bounds, Shape, Site};
 use crate::simd::ask_for;
@@ -296,6 +296,36 @@ impl Geometry {
     /// The first shape that is no mesh, by its number among shapes.
     pub fn first_other(&self) -> Option<u32> {
         self.others.as_ref()?.first().map(|first| self.locate(first).0)
+    }
+
+    /// The first shape, by its number among shapes, that does not tell its nearest point.
+    pub fn first_without_closest(&self) -> Option<u32> {
+        self.others.as_ref()?.first_without_closest().map(|first| self.locate(first).0)
+    }
+
+    /// Puts the nearest points of shapes that are no meshes in the place of what was found on meshes and is farther.
+    pub(in crate::scene) fn nearest_of_others(&self, points: &[DVec3], most: &[f64], found: &mut [Nearest]) {
+        if let Some(others) = &self.others {
+            others.nearest(points, most, found);
+        }
+    }
+
+    /// Whether there is a mesh that has vertices.
+    pub(in crate::scene) fn has_vertices(&self) -> bool {
+        self.vertices.len() > 0
+    }
+
+    /// The unit normal of a primitive that is no instance at a point of it, and a bound on the error of each of the
+    /// point's coordinates.
+    pub fn site(&self, primitive: u32, position: DVec3, uv: [f64; 2]) -> (DVec3, f64) {
+        match self.others.as_ref().and_then(|others| others.get(primitive)) {
+            Some(shape) => {
+                let point = shape.point(&Ray::new(position, DVec3::X), 0.0, uv);
+                // What is nearest is found by a few roundings more than a point of given coordinates.
+                (point.normal, 4.0 * point.error)
+            }
+            None => (self.normal(primitive), self.error(primitive)),
+        }
     }
 
     /// How many shapes there are.

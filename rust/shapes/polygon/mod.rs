@@ -6,7 +6,8 @@ mod outline;
 mod tests;
 mod trapezoids;
 
-use super::{Bounds, Candidate, Drawn, Point, Shape};
+use super::triangle::{nearest_point, point_of};
+use super::{Bounds, Candidate, Closest, Drawn, Point, Shape};
 use crate::math::robust::{UNIT, normalising_scale};
 use crate::math::{DVec3, DoubleDouble, Ray};
 use crossing::Line;
@@ -207,6 +208,25 @@ impl Polygon {
 }
 
 impl Shape for Polygon {
+    fn closest(&self, place: DVec3) -> Option<Closest> {
+        let foot = place - self.normal * self.normal.dot(place - self.anchor);
+        let [i, j] = self.kept;
+        let edges = || self.rings.iter().flat_map(|ring| ring.iter().zip(ring.iter().cycle().skip(1)));
+        let is_crossed = |(a, b): &(&DVec3, &DVec3)| {
+            (a[j] > foot[j]) != (b[j] > foot[j]) && foot[i] < a[i] + (b[i] - a[i]) * ((foot[j] - a[j]) / (b[j] - a[j]))
+        };
+        let is_inside = edges().filter(is_crossed).count() % 2 == 1;
+        let position = if is_inside {
+            foot
+        } else {
+            // An edge is a triangle without area.
+            let near = edges().map(|(&a, &b)| ([a, b, b], nearest_point([a, b, b], place)));
+            let (edge, found) = near.min_by(|(_, a), (_, b)| a.distance.total_cmp(&b.distance))?;
+            point_of(edge, found.uv)
+        };
+        Some(Closest { position, uv: self.uv(position - self.corner) })
+    }
+
     fn bounds(&self) -> Bounds {
         // Points of the plane near the edges lie off them by no more.
         let room = DVec3::splat(self.deviation);

@@ -1,11 +1,12 @@
 //! A surface of revolution as a shape: what its own file and its neighbours work out, as others ask for it.
 
-use super::Revolution;
+use super::{BASE, Profile, Revolution, SIDE, TIP};
 use crate::math::{Affine, Bounded, DVec3, Number, Ray, Triple};
+use crate::shapes::closest::of_segment;
 use crate::shapes::line::Line;
 use crate::shapes::meeting::tell;
 use crate::shapes::solid::{Meets, Solid};
-use crate::shapes::{Bounds, Candidate, Carried, Drawn, Point, Shape};
+use crate::shapes::{Bounds, Candidate, Carried, Closest, Drawn, Point, Shape};
 
 impl Solid for Revolution {
     fn meets<N: Number>(&self, line: &Line<N>) -> Option<Meets<N>> {
@@ -34,7 +35,63 @@ impl Solid for Revolution {
     }
 }
 
+/// The point of the parabola from the origin to a rim that is nearest to a point on its right.
+///
+/// At a share q of the rim's radius r, the height is h q², and q is where `2 h² q³ + (r² − 2 h z) q − r ρ` is 0: below 0
+/// before it and above after, since there is one such q above 0 at most.
+fn of_parabola(rim: f64, height: f64, [across, up]: [f64; 2]) -> [f64; 2] {
+    // In units of the larger, lest powers vanish.
+    let size = rim.max(height);
+    let (r, h, rho, z) = (rim / size, height / size, across / size, up / size);
+    let is_before = |q: f64| (2.0 * h * (h * q * q - z) + r * r) * q - r * rho <= 0.0;
+    if is_before(1.0) {
+        return [rim, height];
+    }
+    let (mut low, mut high) = (0.0, 1.0);
+    // As many halvings as exhaust all f64; mostly 60 do.
+    for _ in 0..1100 {
+        let middle = 0.5 * (low + high);
+        if middle <= low || middle >= high {
+            break;
+        }
+        if is_before(middle) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    [rim * low, height * low * low]
+}
+
 impl Shape for Revolution {
+    fn closest(&self, place: DVec3) -> Option<Closest> {
+        let (frame, height) = self.frame();
+        let local = frame.to_local(place - self.base);
+        let across = local.x.hypot(local.y);
+        let [x, y] = if across > 0.0 { [local.x / across, local.y / across] } else { [1.0, 0.0] };
+        // The nearest lies in the half-plane of the place, in which the surface is its profile and its caps.
+        let from = [across, local.z];
+        let [base, tip] = self.radii();
+        let side = match self.profile {
+            Profile::Straight { .. } => of_segment([base, 0.0], [tip, height], from),
+            Profile::Parabola { tip } => of_parabola(tip, height, from),
+        };
+        let cap =
+            |radius: f64, at: f64| (self.capped && radius > 0.0).then(|| of_segment([0.0, at], [radius, at], from));
+        let parts = [(BASE, cap(base, 0.0)), (SIDE, Some(side)), (TIP, cap(tip, height))];
+        let mut best: Option<(f64, usize, [f64; 2])> = None;
+        for (part, at) in parts {
+            let Some(at) = at else { continue };
+            let distance = (at[0] - from[0]).hypot(at[1] - from[1]);
+            if best.is_none_or(|(least, ..)| distance < least) {
+                best = Some((distance, part, at));
+            }
+        }
+        let (_, part, [radius, up]) = best?;
+        let from_base = frame.to_world(DVec3::new(x * radius, y * radius, up));
+        Some(Closest { position: self.base + from_base, uv: self.coordinates(part, from_base) })
+    }
+
     fn bounds(&self) -> Bounds {
         self.bounds()
     }

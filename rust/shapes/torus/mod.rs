@@ -4,7 +4,7 @@ mod line;
 #[cfg(test)]
 mod tests;
 
-use super::{Bounds, Candidate, Drawn, Point, Shape};
+use super::{Bounds, Candidate, Closest, Drawn, Point, Shape};
 use crate::math::robust::{UNIT, normalising_scale};
 use crate::math::{DVec3, DoubleDouble, Frame, Ray};
 use line::Tube;
@@ -95,6 +95,19 @@ impl Torus {
 }
 
 impl Shape for Torus {
+    fn closest(&self, place: DVec3) -> Option<Closest> {
+        let local = self.frame.to_local(place - self.centre);
+        let across = local.x.hypot(local.y);
+        // Of the circle's points, all are as near to one on the axis; of the tube's, to one on the circle.
+        let [x, y] = if across > 0.0 { [local.x / across, local.y / across] } else { [1.0, 0.0] };
+        let (out, up) = (across - self.major, local.z);
+        let away = out.hypot(up);
+        let [out, up] = if away > 0.0 { [out / away, up / away] } else { [1.0, 0.0] };
+        let radius = self.major + self.minor * out;
+        let from_centre = self.frame.to_world(DVec3::new(x * radius, y * radius, self.minor * up));
+        Some(Closest { position: self.centre + from_centre, uv: self.uv(from_centre * self.scale) })
+    }
+
     fn bounds(&self) -> Bounds {
         let axis = self.frame.normal;
         let across = DVec3::new(axis.y.hypot(axis.z), axis.z.hypot(axis.x), axis.x.hypot(axis.y));
