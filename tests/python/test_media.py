@@ -67,8 +67,8 @@ def test_so_is_one_of_noise_of_colours_and_of_glass():
 @pytest.mark.slow
 def test_so_is_one_of_an_optical_depth_of_ten_thousand():
     """Where no light can be asked for, for it would have to come through glass, every path brings all that it
-    has kept: a path that is lost would be a black pixel. Rounds of roulette at the glass end one in 4,096, so that
-    more than two of 64 are lost once in a thousand times at most."""
+    has kept: a path that is lost would be a black pixel. Rounds of roulette at the glass end one in 4,096, so
+    that more than two of 64 are lost once in a thousand times at most."""
     medium = rw.Homogeneous(0.0, 1e4)
     camera = rw.Camera((0, 0, 3), (0, 0, 0), fov=30, width=8, height=8)
     glass = ball(rw.Dielectric(1.0001, interior=medium))
