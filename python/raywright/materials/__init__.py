@@ -6,6 +6,8 @@ from .bump_map import BumpMap
 from .conductor import Conductor, MetalIndex, metal_index, metals
 from .dielectric import Dielectric
 from .diffuse import Diffuse
+from .dispersion import Cauchy, Dispersion, Sellmeier
+from .glasses import Glasses, glasses
 from .mask import Mask
 from .material import Material
 from .metallic_rough import MetallicRough
@@ -23,9 +25,12 @@ __all__ = [
     "BlinnPhong",
     "Boundary",
     "BumpMap",
+    "Cauchy",
     "Conductor",
     "Dielectric",
     "Diffuse",
+    "Dispersion",
+    "Glasses",
     "Mask",
     "Material",
     "MetalIndex",
@@ -38,8 +43,10 @@ __all__ = [
     "Plastic",
     "Principled",
     "PrincipledThin",
+    "Sellmeier",
     "ThinDielectric",
     "TwoSided",
+    "glasses",
     "metal_index",
     "metals",
 ]
