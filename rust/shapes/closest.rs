@@ -1,6 +1,6 @@
 //! The point of a shape that is nearest to another point: what shapes share of finding it.
 
-use crate::math::DVec3;
+use crate::math::{Affine, DVec3};
 
 /// Where a shape is nearest to a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -74,6 +74,22 @@ pub(super) fn of_ellipsoid(semi_axes: DVec3, p: DVec3) -> DVec3 {
     unit(high).normalize()
 }
 
+/// The same of the image of an ellipsoid, which is an ellipsoid about other axes: the nearest point, and the place on the
+/// unit sphere that it comes from.
+pub(super) fn of_ellipsoid_under(
+    [to_world, to_object]: [&Affine; 2],
+    [center, axes]: [DVec3; 2],
+    place: DVec3,
+) -> (DVec3, DVec3) {
+    let columns = [0, 1, 2].map(|i| to_world.vector(DVec3::AXES[i] * axes[i]));
+    let (along, lengths) = semi_axes(columns);
+    let center = to_world.point(center);
+    let away = place - center;
+    let unit = of_ellipsoid(lengths, DVec3::from_array(along.map(|axis| axis.dot(away))));
+    let from_center: DVec3 = (0..3).map(|i| along[i] * (lengths[i] * unit[i])).sum();
+    (center + from_center, to_object.vector(from_center) / axes)
+}
+
 /// A quotient; 0 of nothing.
 fn share(of: f64, by: f64) -> f64 {
     if of == 0.0 { 0.0 } else { of / by }
@@ -83,7 +99,7 @@ fn share(of: f64, by: f64) -> f64 {
 /// what it makes of the unit sphere (Hestenes, "Inversion of Matrices by Biorthogonalization and Related Results", 1958).
 ///
 /// Columns are turned among each other until all are at right angles, so that short ones keep their digits.
-pub(super) fn semi_axes(mut columns: [DVec3; 3]) -> ([DVec3; 3], DVec3) {
+fn semi_axes(mut columns: [DVec3; 3]) -> ([DVec3; 3], DVec3) {
     let size = columns.iter().map(|c| c.abs().max_element()).fold(0.0, f64::max);
     columns = columns.map(|c| c / size);
     for _ in 0..60 {

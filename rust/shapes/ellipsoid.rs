@@ -1,6 +1,6 @@
 //! The ellipsoid.
 
-use super::closest::{of_ellipsoid, semi_axes};
+use super::closest::{of_ellipsoid, of_ellipsoid_under};
 use super::line::Line;
 use super::meeting::{ball, ball_surface, tell};
 use super::solid::{Meets, Solid};
@@ -89,16 +89,9 @@ impl Shape for Ellipsoid {
         Some(Closest { position: self.center + unit * self.semi_axes, uv: longitude_latitude(unit) })
     }
 
-    /// The image is an ellipsoid too, about other axes.
     fn closest_under(&self, to_world: &Affine, to_object: &Affine, place: DVec3) -> Option<Closest> {
-        let columns = [0, 1, 2].map(|i| to_world.vector(DVec3::AXES[i] * self.semi_axes[i]));
-        let (along, lengths) = semi_axes(columns);
-        let center = to_world.point(self.center);
-        let away = place - center;
-        let unit = of_ellipsoid(lengths, DVec3::from_array(along.map(|axis| axis.dot(away))));
-        let from_center: DVec3 = (0..3).map(|i| along[i] * (lengths[i] * unit[i])).sum();
-        let own = to_object.vector(from_center) / self.semi_axes;
-        Some(Closest { position: center + from_center, uv: longitude_latitude(own) })
+        let (position, unit) = of_ellipsoid_under([to_world, to_object], [self.center, self.semi_axes], place);
+        Some(Closest { position, uv: longitude_latitude(unit) })
     }
 
     fn bounds(&self) -> Bounds {

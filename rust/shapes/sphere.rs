@@ -1,10 +1,10 @@
 //! The sphere.
 
-use super::closest::of_ellipsoid;
+use super::closest::{of_ellipsoid, of_ellipsoid_under};
 use super::line::Line;
 use super::meeting::{ball, ball_surface, tell};
 use super::solid::{Meet, Meets, Solid};
-use super::{Ball, Bounds, Candidate, Carried, Closest, Contact, Drawn, Ellipsoid, Point, Seen, Shape, Site};
+use super::{Ball, Bounds, Candidate, Carried, Closest, Contact, Drawn, Point, Seen, Shape, Site};
 use crate::math::robust::UNIT;
 use crate::math::turn::sin_cos_turn;
 use crate::math::{Affine, Bounded, DVec3, Frame, Number, Ray, Triple, ellipsoid_area};
@@ -200,8 +200,9 @@ impl Shape for Sphere {
     }
 
     fn closest_under(&self, to_world: &Affine, to_object: &Affine, place: DVec3) -> Option<Closest> {
-        Ellipsoid { center: self.center, semi_axes: DVec3::splat(self.radius) }
-            .closest_under(to_world, to_object, place)
+        let axes = DVec3::splat(self.radius);
+        let (position, unit) = of_ellipsoid_under([to_world, to_object], [self.center, axes], place);
+        Some(Closest { position, uv: longitude_latitude(unit) })
     }
 
     fn bounds(&self) -> Bounds {

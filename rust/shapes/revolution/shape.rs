@@ -37,8 +37,8 @@ impl Solid for Revolution {
 
 /// The point of the parabola from the origin to a rim that is nearest to a point on its right.
 ///
-/// At a share q of the rim's radius r, the height is h q², and q is where `2 h² q³ + (r² − 2 h z) q − r ρ` is 0: below 0
-/// before it and above after, since there is one such q above 0 at most.
+/// At a share q of the rim's radius r, the height is h q², and q is where `2 h² q³ + (r² − 2 h z) q − r ρ` is 0: below
+/// 0 before it and above after, since there is one such q above 0 at most.
 fn of_parabola(rim: f64, height: f64, [across, up]: [f64; 2]) -> [f64; 2] {
     // In units of the larger, lest powers vanish.
     let size = rim.max(height);
