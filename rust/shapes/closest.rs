@@ -38,8 +38,8 @@ pub(super) fn of_segment(a: [f64; 2], b: [f64; 2], p: [f64; 2]) -> [f64; 2] {
 /// Hyperellipsoid", 2013).
 ///
 /// With the least semi-axis m, r = e² / m² of an axis e and z = p / e of the point, the nearest point has
-/// r z / (σ + r − 1) of each semi-axis, for the only σ > 0 with which those are a unit vector. Their length falls with σ, so that
-/// halving finds it to the last digit; σ is kept and not σ − 1, of which the least axis would lose digits.
+/// r z / (σ + r − 1) of each semi-axis, for the only σ > 0 with which those are a unit vector. Their length falls with
+/// σ, so that halving finds it to the last digit; σ is kept and not σ − 1, of which the least axis would lose digits.
 pub(super) fn of_ellipsoid(semi_axes: DVec3, p: DVec3) -> DVec3 {
     let least = semi_axes.min_element();
     let z = p / semi_axes;
