@@ -74,8 +74,8 @@ pub(super) fn of_ellipsoid(semi_axes: DVec3, p: DVec3) -> DVec3 {
     unit(high).normalize()
 }
 
-/// The same of the image of an ellipsoid, which is an ellipsoid about other axes: the nearest point, and the place on the
-/// unit sphere that it comes from.
+/// The same of the image of an ellipsoid, which is an ellipsoid about other axes: the nearest point, and the place on
+/// the unit sphere that it comes from.
 pub(super) fn of_ellipsoid_under(
     [to_world, to_object]: [&Affine; 2],
     [center, axes]: [DVec3; 2],
@@ -96,7 +96,8 @@ fn share(of: f64, by: f64) -> f64 {
 }
 
 /// The singular values of a linear map by its columns, with the unit directions that they lie along: an ellipsoid is
-/// what it makes of the unit sphere (Hestenes, "Inversion of Matrices by Biorthogonalization and Related Results", 1958).
+/// what it makes of the unit sphere (Hestenes, "Inversion of Matrices by Biorthogonalization and Related Results",
+/// 1958).
 ///
 /// Columns are turned among each other until all are at right angles, so that short ones keep their digits.
 fn semi_axes(mut columns: [DVec3; 3]) -> ([DVec3; 3], DVec3) {
