@@ -312,7 +312,7 @@ impl Geometry {
 
     /// Whether there is a mesh that has vertices.
     pub(in crate::scene) fn has_vertices(&self) -> bool {
-        self.vertices.len() > 0
+        !self.vertices.is_empty()
     }
 
     /// The unit normal of a primitive that is no instance at a point of it, and a bound on the error of each of the
