@@ -23,6 +23,7 @@ mod ray;
 mod ray_queue;
 mod region;
 pub mod robust;
+mod singular;
 mod tiling;
 pub(crate) mod turn;
 
@@ -43,4 +44,5 @@ pub(crate) use number::{Bounded, Number, Triple};
 pub use ray::{Hit, Ray};
 pub use ray_queue::{RayLanes, RayQueue};
 pub use region::Region;
+pub use singular::at_right_angles;
 pub use tiling::{Run, Tiling, row_length};

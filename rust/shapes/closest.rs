@@ -1,6 +1,6 @@
 //! The point of a shape that is nearest to another point: what shapes share of finding it.
 
-use crate::math::{Affine, DVec3};
+use crate::math::{Affine, DVec3, at_right_angles};
 
 /// Where a shape is nearest to a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -82,7 +82,11 @@ pub(super) fn of_ellipsoid_under(
     place: DVec3,
 ) -> (DVec3, DVec3) {
     let columns = [0, 1, 2].map(|i| to_world.vector(DVec3::AXES[i] * axes[i]));
-    let (along, lengths) = semi_axes(columns);
+    // In units of the largest, lest squares vanish.
+    let size = columns.iter().map(|c| c.abs().max_element()).fold(0.0, f64::max);
+    let columns = at_right_angles(columns.map(|column| column / size));
+    let along = columns.map(DVec3::normalize);
+    let lengths = DVec3::from_array(columns.map(DVec3::length)) * size;
     let center = to_world.point(center);
     let away = place - center;
     let unit = of_ellipsoid(lengths, DVec3::from_array(along.map(|axis| axis.dot(away))));
@@ -93,37 +97,6 @@ pub(super) fn of_ellipsoid_under(
 /// A quotient; 0 of nothing.
 fn share(of: f64, by: f64) -> f64 {
     if of == 0.0 { 0.0 } else { of / by }
-}
-
-/// The singular values of a linear map by its columns, with the unit directions that they lie along: an ellipsoid is
-/// what it makes of the unit sphere (Hestenes, "Inversion of Matrices by Biorthogonalization and Related Results",
-/// 1958).
-///
-/// Columns are turned among each other until all are at right angles, so that short ones keep their digits.
-fn semi_axes(mut columns: [DVec3; 3]) -> ([DVec3; 3], DVec3) {
-    let size = columns.iter().map(|c| c.abs().max_element()).fold(0.0, f64::max);
-    columns = columns.map(|c| c / size);
-    for _ in 0..60 {
-        let mut turned = false;
-        for (i, j) in [(0, 1), (0, 2), (1, 2)] {
-            let (a, b) = (columns[i], columns[j]);
-            let (aa, bb, ab) = (a.length_squared(), b.length_squared(), a.dot(b));
-            if ab.abs() <= f64::EPSILON * (aa * bb).sqrt() {
-                continue;
-            }
-            turned = true;
-            let zeta = (bb - aa) / (2.0 * ab);
-            let t = 1f64.copysign(zeta) / (zeta.abs() + zeta.hypot(1.0));
-            let cos = 1.0 / t.hypot(1.0);
-            let sin = t * cos;
-            (columns[i], columns[j]) = (a * cos - b * sin, a * sin + b * cos);
-        }
-        if !turned {
-            break;
-        }
-    }
-    let lengths = columns.map(DVec3::length);
-    ([0, 1, 2].map(|i| columns[i] / lengths[i]), DVec3::from_array(lengths) * size)
 }
 
 #[cfg(test)]
@@ -143,21 +116,5 @@ mod tests {
         }
         // As near to both poles of the shortest axis.
         assert_eq!(of_ellipsoid(axes, DVec3::ZERO), DVec3::Z);
-    }
-
-    #[test]
-    fn the_axes_of_a_scaled_and_turned_sphere_are_found() {
-        let (c, s) = (0.6, 0.8);
-        // Scaled by 1, 1e-5 and 4 along x, y, z after a turn about z, so that columns are not at right angles.
-        let (along, lengths) =
-            semi_axes([DVec3::new(c, 1e-5 * s, 0.0), DVec3::new(-s, 1e-5 * c, 0.0), DVec3::new(0.0, 0.0, 4.0)]);
-        let mut sorted = lengths.to_array();
-        sorted.sort_by(f64::total_cmp);
-        for (x, y) in sorted.iter().zip([1e-5, 1.0, 4.0]) {
-            assert!((x / y - 1.0).abs() < 1e-14, "{x} {y}");
-        }
-        for (i, j) in [(0, 1), (0, 2), (1, 2)] {
-            assert!(along[i].dot(along[j]).abs() < 1e-14);
-        }
     }
 }

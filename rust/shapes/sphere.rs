@@ -7,7 +7,7 @@ use super::solid::{Meet, Meets, Solid};
 use super::{Ball, Bounds, Candidate, Carried, Closest, Contact, Drawn, Point, Seen, Shape, Site};
 use crate::math::robust::UNIT;
 use crate::math::turn::sin_cos_turn;
-use crate::math::{Affine, Bounded, DVec3, Frame, Number, Ray, Triple, ellipsoid_area};
+use crate::math::{Affine, Bounded, DVec3, Frame, Number, Ray, Triple, at_right_angles, ellipsoid_area};
 use crate::sampling::warp::{UNIFORM_SPHERE_PDF, uniform_sphere};
 use std::f64::consts::{PI, TAU};
 
@@ -297,31 +297,5 @@ impl Shape for Sphere {
 pub(super) fn ellipsoid_area_under(map: &Affine, axes: DVec3) -> f64 {
     let [x, y, z] = axes.to_array();
     let columns = [DVec3::X * (y * z), DVec3::Y * (z * x), DVec3::Z * (x * y)].map(|c| map.cofactors(c));
-    ellipsoid_area(singular_values(columns))
-}
-
-/// The singular values of a matrix of three columns, by turning pairs of columns until they are at right angles
-/// (Hestenes, "Inversion of Matrices by Biorthogonalization", 1958). Small ones keep their digits as well as large ones
-/// do.
-fn singular_values(mut columns: [DVec3; 3]) -> [f64; 3] {
-    for _ in 0..40 {
-        let mut turned = false;
-        for (i, j) in [(0, 1), (0, 2), (1, 2)] {
-            let (a, b) = (columns[i], columns[j]);
-            let (aa, bb, ab) = (a.length_squared(), b.length_squared(), a.dot(b));
-            if ab.abs() <= UNIT * (aa * bb).sqrt() {
-                continue;
-            }
-            turned = true;
-            let slope = (bb - aa) / (2.0 * ab);
-            let tangent = 1f64.copysign(slope) / (slope.abs() + slope.hypot(1.0));
-            let cosine = 1.0 / tangent.hypot(1.0);
-            let sine = cosine * tangent;
-            (columns[i], columns[j]) = (a * cosine - b * sine, a * sine + b * cosine);
-        }
-        if !turned {
-            break;
-        }
-    }
-    columns.map(DVec3::length)
+    ellipsoid_area(at_right_angles(columns).map(DVec3::length))
 }
