@@ -36,11 +36,13 @@ def keyhole(width, height):
         ((2.06, 1.34), (4, 1.46)),
     ]
     between = [_rectangle(0, 4, low, high, material=GREY) for low, high in hole]
-    lamp = _rectangle(
-        2, 2.9, (5.5, 1.6), (6.2, 2.4), material=BLACK, emission=rw.Emission(6000.0, side="both")
-    )
+    # Up and down, a millimetre apart.
+    lamp = [
+        _rectangle(2, at, low, high, material=BLACK, emission=6000.0)
+        for at, low, high in ((2.9, (5.5, 1.6), (6.2, 2.4)), (2.899, (5.5, 2.4), (6.2, 1.6)))
+    ]
     camera = rw.Camera((0.4, 0.4, 1.7), (2.8, 2.8, 1.0), up=(0, 0, 1), fov=75, width=width, height=height)
-    return rw.Scene([*walls, *between, lamp]), camera
+    return rw.Scene([*walls, *between, *lamp]), camera
 
 
 def behind_glass(width, height):

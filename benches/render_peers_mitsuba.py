@@ -81,6 +81,10 @@ def _shape(mi, shape, path):
     kind = type(shape).__name__
     if kind == "Sphere" and shape.transform is None:
         return {"type": "sphere", "center": list(shape.center), "radius": shape.radius}
+    if kind == "Box" and shape.transform is None:
+        low, high = np.array(shape.min), np.array(shape.max)
+        place = mi.ScalarTransform4f().translate((low + high) / 2).scale((high - low) / 2)
+        return {"type": "cube", "to_world": place}
     if kind != "Mesh":
         raise TypeError(f"{kind} is not told to Mitsuba")
     mesh = mi.Mesh("mesh", len(shape.vertices), len(shape.faces))

@@ -91,6 +91,12 @@ impl Facet {
         volume.to_f64() / (2.0 * self.area * unit * unit * unit)
     }
 
+    /// The same with all digits, where what is taken for rounding may be a gap: 0 of corners in common alone.
+    #[cold]
+    pub fn exact_heights(&self, other: &Self) -> [f64; 3] {
+        other.corners.map(|corner| if self.corners.contains(&corner) { 0.0 } else { self.flat_height(corner) })
+    }
+
     /// On which side of the plane points are at most: whether some are in front, and whether some are behind.
     #[inline]
     pub fn sides(&self, points: impl IntoIterator<Item = DVec3>) -> [bool; 2] {

@@ -22,9 +22,14 @@ const FLAT: f64 = 1.0 / 16.0;
 
 /// The area of one triangle times its view factor to another, which is the other's times that to the one.
 pub fn pair(quadrature: &mut Quadrature, one: &Facet, other: &Facet) -> f64 {
-    let heights = [one.heights(other), other.heights(one)];
+    let mut heights = [one.heights(other), other.heights(one)];
     if heights.iter().any(|of| of.iter().all(|&h| h <= 0.0)) {
         return 0.0;
+    }
+    // Where all heights are low, the least of them count.
+    let flat = FLAT * one.radius.max(other.radius);
+    if heights.as_flattened().iter().all(|h| h.abs() <= flat) && heights.as_flattened().contains(&0.0) {
+        heights = [one.exact_heights(other), other.exact_heights(one)];
     }
     if heights.iter().flatten().all(|&h| h >= 0.0) {
         return before(quadrature, one, other, heights, MOST_CUTS);
