@@ -104,7 +104,8 @@ impl Facet {
         for point in points {
             let from = point - self.centre;
             let height = self.normal.dot(from);
-            let rounding = ROUNDING * (from.length() + self.radius) + self.noise;
+            // The sum of coordinates is no less than the distance, and takes no root.
+            let rounding = ROUNDING * (from.abs().element_sum() + self.radius) + self.noise;
             found[0] |= height > rounding;
             found[1] |= height < -rounding;
         }

@@ -111,10 +111,12 @@ pub fn between_facets(one: &Facet, other: &Facet) -> Vec<HalfSpace> {
                     continue;
                 }
                 let offset = normal.dot(from);
-                let heights = all.map(|of| of.map(|point| normal.dot(point) - offset));
-                if heights.iter().flatten().all(|&h| h <= rounding) {
+                // Without a branch for each: most planes are none of the shaft's.
+                let heights = all.as_flattened().iter().map(|&point| normal.dot(point) - offset);
+                let (low, high) = heights.fold((0.0f64, 0.0f64), |(low, high), h| (low.min(h), high.max(h)));
+                if high <= rounding {
                     found.push(HalfSpace { normal, offset, rounding });
-                } else if heights.iter().flatten().all(|&h| h >= -rounding) {
+                } else if low >= -rounding {
                     found.push(HalfSpace { normal: -normal, offset: -offset, rounding });
                 }
             }
