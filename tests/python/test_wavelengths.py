@@ -152,6 +152,101 @@ def test_a_prism_deviates_each_wavelength_as_computed(line, truth):
     assert_looks(scene, camera, 512, expected, rw.Whitted(max_depth=3, contribution=0.0), most=0.01)
 
 
+def reflectance(incidence, index):
+    """Fresnel's, of unpolarised light, by the index beyond over that before."""
+    inside = np.arcsin(np.sin(incidence) / index)
+    s = (np.cos(incidence) - index * np.cos(inside)) / (np.cos(incidence) + index * np.cos(inside))
+    p = (index * np.cos(incidence) - np.cos(inside)) / (index * np.cos(incidence) + np.cos(inside))
+    return (s**2 + p**2) / 2
+
+
+@pytest.mark.parametrize("ring", [(40.0, 41.0), (41.9, 42.6), (43.0, 50.0)])
+def test_the_rainbow_is_at_its_angles(ring):
+    """A drop of water sends back light: at the violet of its bow, at its red, and in the dark beyond.
+
+    The bow of 400 nm has a radius of 40.567 degrees, that of 700 nm 42.440 (Descartes, 1637).
+    """
+    water = rw.glasses["water"]
+    index = water.index(NM / 1000)[:, None]
+    impact = (np.arange(4000) + 0.5) / 4000
+    i = np.arcsin(impact)
+    r = np.arcsin(impact / index)
+    back = np.degrees(abs(4 * r - 2 * i))
+    assert [back[int(nm - 360)].max() for nm in (400, 700)] == pytest.approx([40.56742, 42.44048], abs=1e-4)
+    mirrored = reflectance(i, index)
+    once = (1 - mirrored) ** 2 * mirrored * ((ring[0] < back) & (back < ring[1]))
+    outside = mirrored * ((ring[0] < 2 * np.degrees(i)) & (2 * np.degrees(i) < ring[1]))
+    expected = daylit(((once + outside) * 2 * math.pi * impact).mean(axis=1) / 4)
+    near, far = (1e6 * math.tan(math.radians(angle)) for angle in ring)
+    light = rw.Disk((0, 0, 1e6), (0, 0, -1), far, inner_radius=near, emission=1.0)
+    drop = rw.Sphere((0, 0, 0), 1, material=rw.Dielectric(water))
+    camera = rw.Orthographic((0, 0, 2), direction=(0, 0, -1), up=(0, 1, 0), scale=2.0, width=32, height=32)
+    image = rw.render(
+        rw.Scene([drop, light]), camera, rw.Whitted(max_depth=3, contribution=0.0), 64, progress=False
+    )
+    mean = image.rgb.astype(float).mean(axis=(0, 1))
+    error = np.sqrt((image.standard_error.astype(float) ** 2).sum(axis=(0, 1))) / 32**2
+    print(mean, error, expected, (mean - expected) / error)
+    assert (abs(mean - expected) <= 3 * error).all(), (mean, error, expected)
+    assert (error <= 0.05 * abs(expected).max()).all()
+
+
+def solid(outline, material):
+    """A quadrilateral of the plane y = 0, anticlockwise seen from -y, drawn out along y."""
+    vertices = [(x, y, z) for y in (-2, 2) for x, z in outline]
+    sides = [(k, (k + 1) % 4) for k in range(4)]
+    faces = [(0, 1, 2), (0, 2, 3), (4, 6, 5), (4, 7, 6)]
+    faces += [face for a, b in sides for face in ((a, a + 4, b + 4), (a, b + 4, b))]
+    return rw.Mesh(vertices, faces, material=material)
+
+
+def test_the_edge_of_a_doublet_has_less_colour_than_that_of_a_lens():
+    """A wedge of crown, and one with flint on it: a wall that brightens evenly tells how far light is bent."""
+    crown, flint = rw.Dielectric(BK7), rw.Dielectric(rw.glasses["F2"])
+    a = math.radians(10.0)
+    spreads = [glass.ior.index(0.4861327) - glass.ior.index(0.6562725) for glass in (crown, flint)]
+    b = a * (1 - spreads[0] / spreads[1])
+    t, u = math.tan(a), math.tan(b)
+    first = solid([(0, -2), (1 + 2 * t, -2), (1 - 2 * t, 2), (0, 2)], crown)
+    second = solid([(1 + 2 * t, -2), (2 + 2 * u, -2), (2 - 2 * u, 2), (1 - 2 * t, 2)], flint)
+    n, m = (glass.ior.index(NM / 1000) for glass in (crown, flint))
+
+    def bent(way, normal, index):
+        """The angle of a ray beyond a face, and the share of light that goes through."""
+        return normal + np.arcsin(np.sin(way - normal) / index), 1 - reflectance(abs(way - normal), index)
+
+    straight = np.zeros_like(NM)
+    entered, share = bent(straight, 0.0, n)
+    colours = []
+    for shapes in ([first], [first, second]):
+        if len(shapes) == 1:
+            left, last = bent(entered, a, 1 / n)
+        else:
+            between, cemented = bent(entered, a, m / n)
+            left, last = bent(between, b, 1 / m)
+            last = last * cemented
+        far = 1e7
+        heights = far * np.tan(left)
+        middle, reach = heights[220], far * 0.01
+        corners = [(far, y, middle + z) for z in (-2 * reach, 2 * reach) for y in (-far, far)]
+        ramp = rw.ImageTexture(np.array([[[1.0] * 3], [[0.0] * 3]], np.float32), wrap="clamp")
+        wall = rw.Mesh(
+            corners,
+            [(0, 1, 3), (0, 3, 2)],
+            uv=[(0, 0), (1, 0), (0, 1), (1, 1)],
+            emission=rw.Emission(ramp, both_sides=True),
+        )
+        assert (abs(heights - middle) < reach).all()
+        expected = daylit(share * last * (0.5 + (heights - middle) / (2 * reach)))
+        camera = rw.Orthographic(
+            (-1, 0, 0), direction=(1, 0, 0), up=(0, 0, 1), scale=1e-3, width=16, height=16
+        )
+        scene = rw.Scene([*shapes, wall])
+        assert_looks(scene, camera, 64, expected, rw.Whitted(max_depth=4, contribution=0.0), most=0.01)
+        colours.append(abs(expected[0] - expected[2]))
+    assert colours[1] < 0.2 * colours[0], colours
+
+
 def test_a_formula_that_gives_one_index_gives_the_same_picture():
     """A grey room with glass, by wavelength and in red, green and blue: alike within both errors."""
 
@@ -166,7 +261,7 @@ def test_a_formula_that_gives_one_index_gives_the_same_picture():
         return rw.Scene(shapes, environment=0.2)
 
     camera = rw.Camera((0, -8, 3), (0, 0, 1), fov=40, width=12, height=12)
-    pictures = [rw.render(room(ior), camera, samples=256, progress=False) for ior in (1.5, SAME)]
+    pictures = [rw.render(room(ior), camera, samples=512, progress=False) for ior in (1.5, SAME)]
     assert pictures[1].plan["wavelengths"].chosen == "three a path"
     means = [picture.rgb.astype(float).mean(axis=(0, 1)) for picture in pictures]
     spreads = [picture.standard_error.astype(float) ** 2 for picture in pictures]
