@@ -201,7 +201,7 @@ def solid(outline, material):
 
 
 def test_the_edge_of_a_doublet_has_less_colour_than_that_of_a_lens():
-    """A wedge of crown, and one with flint on it: a wall that brightens evenly tells how far light is bent."""
+    """A wedge of crown, and one with flint on it: a wall that brightens evenly tells how light is bent."""
     crown, flint = rw.Dielectric(BK7), rw.Dielectric(rw.glasses["F2"])
     a = math.radians(10.0)
     spreads = [glass.ior.index(0.4861327) - glass.ior.index(0.6562725) for glass in (crown, flint)]
