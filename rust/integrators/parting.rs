@@ -23,16 +23,14 @@ impl Parting {
         (outside, around): (f64, Dispersive),
         waves: &Waves,
     ) -> (f64, Option<Self>) {
-        let interior = material.interior();
-        if !around.is_any() && !interior.is_some_and(|interior| interior.dispersion.is_any()) {
+        // What encloses nothing knows of nothing around it.
+        let Some(interior) = material.interior().filter(|within| around.is_any() || within.dispersion.is_any()) else {
             return (outside, None);
-        }
+        };
         let out = waves.lanes(|wavelength| around.at(wavelength).unwrap_or(outside));
         let eta = |within: Rgb| if is_front { within / out } else { out / within };
-        let within = interior
-            .filter(|_| material.is_clear())
-            .map(|interior| waves.lanes(|wavelength| interior.dispersion.at(wavelength).unwrap_or(interior.ior)));
-        (out[0], Some(Self { etas: within.map(eta) }))
+        let within = || waves.lanes(|wavelength| interior.dispersion.at(wavelength).unwrap_or(interior.ior));
+        (out[0], Some(Self { etas: material.is_clear().then(|| eta(within())) }))
     }
 
     /// Whether light may be mirrored first, by how the surface scatters: if all wavelengths are mirrored about alike,
@@ -54,7 +52,7 @@ impl Parting {
 mod tests {
     use super::*;
     use crate::optics::{Dielectric, Dispersion};
-    use crate::scene::materials::{DielectricMaterial, Interior};
+    use crate::scene::materials::{DielectricMaterial, DiffuseMaterial, Interior};
 
     #[test]
     fn mirrored_light_keeps_the_reflectance_of_each_wavelength() {
@@ -74,10 +72,12 @@ mod tests {
         // From within, all may be mirrored for one and hardly anything for another.
         let (_, within) = Parting::at(&glass, false, (1.0, Dispersive::NONE), &waves);
         assert!(!within.unwrap().waits(&Dielectric::new(0.6, 0.0)));
-        // Among what disperses, what encloses nothing has the hero's index around it.
-        let (around, parting) =
-            Parting::at(&crate::scene::DiffuseMaterial::default(), true, (1.66, dispersion), &waves);
+        // What is the same for all wavelengths parts them in what disperses, if it encloses anything.
+        let plain = DielectricMaterial { interior: Interior::new(1.2, 0), ..glass };
+        let (around, parting) = Parting::at(&plain, true, (1.66, dispersion), &waves);
         assert_eq!(around, dispersion.at(waves.hero()).unwrap());
-        assert!(!parting.unwrap().waits(&Dielectric::new(1.2, 0.0)));
+        assert!(!parting.unwrap().waits(&Dielectric::new(0.7, 0.0)));
+        let (around, parting) = Parting::at(&DiffuseMaterial::default(), true, (1.0, dispersion), &waves);
+        assert!(around == 1.0 && parting.is_none());
     }
 }

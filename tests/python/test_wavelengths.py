@@ -306,6 +306,12 @@ def test_media_absorb_by_wavelength():
     medium = rw.Homogeneous(rw.Spectrum(NM, sigma))
     slab = rw.Box((-9, -9, -1), (9, 9, 0), material=rw.Boundary(medium))
     assert_looks(rw.Scene(slab, environment=1.0), downwards(16), 64, daylit(np.exp(-sigma)), most=0.005)
+    # The same of a grid, through which light gets by chance.
+    grid = rw.GridMedium(
+        np.full((2, 2, 2), 0.5), ((-9, -9, -1), (9, 9, 0)), absorption=rw.Spectrum(NM, 2 * sigma)
+    )
+    slab = rw.Box((-9, -9, -1), (9, 9, 0), material=rw.Boundary(grid))
+    assert_looks(rw.Scene(slab, environment=1.0), downwards(16), 256, daylit(np.exp(-sigma)), most=0.02)
     # What scatters everything and absorbs nothing is white in white light, however much of which wavelength.
     fog = rw.Homogeneous(0.0, rw.Spectrum(NM, 2 * sigma))
     ball = rw.Sphere((0, 0, 0), 1, material=rw.Boundary(fog))
