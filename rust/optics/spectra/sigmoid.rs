@@ -33,12 +33,16 @@ impl Smooth {
     /// Of a colour that is nowhere negative.
     pub fn of(colour: Rgb, role: Role) -> Self {
         match Normal::of(colour, role) {
-            Ok(Normal { scale, colour, .. }) => Self { scale, polynomial: Some(fit(colour, None)) },
+            Ok(Normal { scale, colour, .. }) => {
+                let about = fit(colour, None);
+                Self { scale, polynomial: Some(approach(about, DVec3::from_array(colour.to_array()), &FINE)) }
+            }
             Err(grey) => grey,
         }
     }
 
-    /// About the same, by a table: to some thousandths of the greatest channel.
+    /// About the same, by a table: to a thousandth of the greatest channel in the mean, and to a hundredth where one is
+    /// next to nothing.
     pub fn looked_up(colour: Rgb, role: Role) -> Self {
         match Normal::of(colour, role) {
             Ok(normal) => Self { scale: normal.scale, polynomial: Some(TABLE.at(&normal)) },
@@ -112,16 +116,22 @@ fn sigmoid(x: f64) -> f64 {
     0.5 + x / (2.0 * (1.0 + x * x).sqrt())
 }
 
-/// What is seen of every fifth nm.
-static SEEN: LazyLock<Vec<(f64, DVec3)>> = LazyLock::new(|| {
-    let all = Response::new(Illuminant::Daylight, 5);
+/// What is seen of wavelengths.
+type Seen = Vec<(f64, DVec3)>;
+
+/// Of every fifth nm, by which colours are told to a thousandth, and of every one.
+static COARSE: LazyLock<Seen> = LazyLock::new(|| every(5));
+static FINE: LazyLock<Seen> = LazyLock::new(|| every(1));
+
+fn every(step: u32) -> Seen {
+    let all = Response::new(Illuminant::Daylight, step);
     all.weights().map(|(wavelength, weight)| (wavelength, DVec3::from_array(weight.to_array()))).collect()
-});
+}
 
 /// What a polynomial's sigmoid looks like, and how that changes with each coefficient.
-fn seen(polynomial: DVec3) -> (DVec3, DMat3) {
+fn seen(polynomial: DVec3, by: &Seen) -> (DVec3, DMat3) {
     let (mut colour, mut slopes) = (DVec3::ZERO, DMat3::ZERO);
-    for &(wavelength, weight) in SEEN.iter() {
+    for &(wavelength, weight) in by {
         let t = (wavelength - FIRST) / (LAST - FIRST);
         let x = argument(polynomial, wavelength);
         let root = 1.0 / (1.0 + x * x).sqrt();
@@ -142,17 +152,17 @@ fn fit(colour: Rgb, near: Option<DVec3>) -> DVec3 {
         let y = 2.0 * grey.x - 1.0;
         let mut polynomial = DVec3::new(0.0, 0.0, y / (1.0 - y * y).sqrt());
         for step in 1..=8 {
-            polynomial = approach(polynomial, grey.lerp(target, f64::from(step) / 8.0));
+            polynomial = approach(polynomial, grey.lerp(target, f64::from(step) / 8.0), &COARSE);
         }
         return polynomial;
     };
-    approach(near, target)
+    approach(near, target, &COARSE)
 }
 
 /// Goes from a polynomial to that of a colour, by damped steps of Gauss and Newton (Levenberg 1944, Marquardt 1963).
-fn approach(mut polynomial: DVec3, target: DVec3) -> DVec3 {
+fn approach(mut polynomial: DVec3, target: DVec3, by: &Seen) -> DVec3 {
     let mut damping = 1e-4;
-    let (mut colour, mut slopes) = seen(polynomial);
+    let (mut colour, mut slopes) = seen(polynomial, by);
     for _ in 0..40 {
         let off = target - colour;
         let error = off.length_squared();
@@ -172,7 +182,7 @@ fn approach(mut polynomial: DVec3, target: DVec3) -> DVec3 {
             }
             continue;
         }
-        let (there, turned) = seen(next);
+        let (there, turned) = seen(next, by);
         if (target - there).length_squared() < error {
             (polynomial, colour, slopes) = (next, there, turned);
             damping = (damping * 0.1).max(1e-12);
@@ -235,7 +245,7 @@ mod tests {
     use super::*;
 
     fn looks(smooth: &Smooth) -> Rgb {
-        Response::new(Illuminant::Daylight, 5).seen(|nm| smooth.at(nm))
+        Response::new(Illuminant::Daylight, 1).seen(|nm| smooth.at(nm))
     }
 
     #[test]
