@@ -92,18 +92,22 @@ from .scene.scene import Scene
 from .shapes import Box, Cone, Cylinder, Disk, Ellipsoid, Implicit, Paraboloid, Plane, Polygon, Sphere, Torus
 from .shapes.mesh import Mesh
 from .textures import (
+    Blackbody,
     Checker,
     FBm,
+    Illuminants,
     ImageTexture,
     Marble,
     MixTexture,
     Noise,
     ObjectTransform,
     ProductTexture,
+    Spectrum,
     Stripes,
     UvTransform,
     VertexColors,
     Wood,
+    illuminants,
 )
 
 if TYPE_CHECKING:
@@ -125,6 +129,7 @@ __all__ = [
     "AnyCamera",
     "BeamTraced",
     "Bidirectional",
+    "Blackbody",
     "BlackmanHarrisFilter",
     "BlinnPhong",
     "Boundary",
@@ -164,6 +169,7 @@ __all__ = [
     "HenyeyGreenstein",
     "Hits",
     "Homogeneous",
+    "Illuminants",
     "Image",
     "ImageTexture",
     "Implicit",
@@ -228,6 +234,7 @@ __all__ = [
     "Sellmeier",
     "Shot",
     "Sobol",
+    "Spectrum",
     "Sphere",
     "SpotLight",
     "Stratified",
@@ -250,6 +257,7 @@ __all__ = [
     "check_writable",
     "from_mitsuba",
     "glasses",
+    "illuminants",
     "load",
     "measure",
     "metal_index",

@@ -26,6 +26,7 @@ __all__ = [
     "chances",
     "cone_coverage",
     "cones",
+    "daylight_power",
     "exr_channels",
     "first_hits",
     "implicit_trouble",
@@ -44,6 +45,8 @@ __all__ = [
     "shape_bounds",
     "simd",
     "singular_transform",
+    "smooth_spectrum",
+    "spectrum_luminance",
     "spectrum_rgb",
     "student",
     "tree",
@@ -567,6 +570,17 @@ def metals() -> list[tuple[str, str]]:
 
 def metal_index(name: str) -> list[list[float]]:
     """Tell what was measured of a metal: rows of wavelength (nm), real and imaginary part of its index."""
+
+def daylight_power() -> list[float]:
+    """Tell the power of daylight (D65) at each nm from 360 to 830, 100 at 560."""
+
+def smooth_spectrum(
+    colour: Sequence[float], bounded: bool, looked_up: bool, wavelengths: Sequence[float]
+) -> list[float]:
+    """Tell the smooth spectrum of a colour at wavelengths (nm): exactly, or as textures look it up."""
+
+def spectrum_luminance(rows: Sequence[Sequence[float]]) -> float:
+    """Tell the luminance of light by wavelength (nm); 1 where it is 1 everywhere."""
 
 def spectrum_rgb(rows: Sequence[Sequence[float]], of_daylight: bool) -> list[float]:
     """Tell the linear Rec. 709 colour of shares of daylight, or of even light, at rising wavelengths (nm)."""

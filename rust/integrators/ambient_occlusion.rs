@@ -30,6 +30,10 @@ impl Integrator for AmbientOcclusion {
     fn begin<'a>(&'a self, job: Job<'a>, _cancel: &Cancel) -> Box<dyn Session + 'a> {
         Box::new(Openness { settings: *self, scene: job.scene })
     }
+
+    fn takes_waves(&self) -> bool {
+        true
+    }
 }
 
 /// What there is to ask.

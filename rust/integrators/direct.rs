@@ -33,4 +33,8 @@ impl Integrator for Direct {
     fn takes_media(&self) -> bool {
         true
     }
+
+    fn takes_waves(&self) -> bool {
+        true
+    }
 }

@@ -46,4 +46,8 @@ impl Integrator for Distributed {
         }
         .begin(job, cancel)
     }
+
+    fn takes_waves(&self) -> bool {
+        true
+    }
 }

@@ -11,6 +11,7 @@ mod guiding;
 mod light_paths;
 mod light_traced;
 mod nesting;
+mod parting;
 mod passing;
 mod path;
 mod photon_map;
@@ -97,6 +98,11 @@ pub trait Integrator: Send + Sync {
 
     /// Whether it knows of media, which dim and scatter light between surfaces.
     fn takes_media(&self) -> bool {
+        false
+    }
+
+    /// Whether its paths know of wavelengths, or nothing that it shows depends on these.
+    fn takes_waves(&self) -> bool {
         false
     }
 

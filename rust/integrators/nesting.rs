@@ -2,6 +2,7 @@
 
 use crate::accel::Crossings;
 use crate::math::{DVec3, Hit, Ray};
+use crate::optics::Dispersive;
 use crate::scene::materials::Interior;
 use crate::scene::{RayOrigin, Scene};
 
@@ -18,10 +19,13 @@ pub(super) trait Filling: Copy + PartialEq {
 
     /// Its index of refraction; none if that is what is around it.
     fn ior(&self) -> Option<f64>;
+
+    /// How that goes with wavelength.
+    fn dispersion(&self) -> Dispersive;
 }
 
 impl Filling for Interior {
-    const NONE: Self = Self { ior: 1.0, priority: i32::MIN };
+    const NONE: Self = Self::new(1.0, i32::MIN);
 
     fn of(scene: &Scene, hit: &Hit) -> Option<Self> {
         scene.material_of(hit).interior()
@@ -33,6 +37,10 @@ impl Filling for Interior {
 
     fn ior(&self) -> Option<f64> {
         Some(self.ior)
+    }
+
+    fn dispersion(&self) -> Dispersive {
+        self.dispersion
     }
 }
 
@@ -63,10 +71,20 @@ impl<F: Filling> MediumStack<F> {
         self.interiors[..self.count as usize].iter().reduce(|a, b| if b.is_above(a) { b } else { a })
     }
 
+    /// What bends light there.
+    fn clear(&self) -> Option<&F> {
+        let all = self.interiors[..self.count as usize].iter().filter(|interior| interior.ior().is_some());
+        all.reduce(|a, b| if b.is_above(a) { b } else { a })
+    }
+
     /// The index of refraction there.
     fn ior(&self) -> f64 {
-        let all = self.interiors[..self.count as usize].iter().filter(|interior| interior.ior().is_some());
-        all.reduce(|a, b| if b.is_above(a) { b } else { a }).and_then(F::ior).unwrap_or(1.0)
+        self.clear().and_then(F::ior).unwrap_or(1.0)
+    }
+
+    /// How the index of refraction there goes with wavelength.
+    pub(super) fn dispersion(&self) -> Dispersive {
+        self.clear().map_or(Dispersive::NONE, F::dispersion)
     }
 
     fn enter(&mut self, interior: F) {

@@ -36,12 +36,14 @@ impl Path {
     }
 
     /// Whether it is guided in a scene, as far as can be told without photons. There must be something sharp, and light
-    /// beyond it: scenes of the plain variant have nothing sharp. Among media no path is.
+    /// beyond it: scenes of the plain variant have nothing sharp. Among media no path is, nor one
+    /// of wavelengths.
     pub fn is_guided(&self, scene: &Scene) -> bool {
         self.caustics
             && self.max_depth.is_none_or(|depth| depth > 1)
             && scene.plan().needs().scattering
             && !scene.plan().needs().media
+            && !scene.plan().needs().waves
     }
 
     /// As [`Integrator::begin`], compiled as this variant, or as one that can do more. Every variant that suits a scene
@@ -60,6 +62,10 @@ impl Integrator for Path {
     }
 
     fn takes_media(&self) -> bool {
+        true
+    }
+
+    fn takes_waves(&self) -> bool {
         true
     }
 

@@ -36,4 +36,8 @@ impl Integrator for RayCast {
         }
         .begin(job, cancel)
     }
+
+    fn takes_waves(&self) -> bool {
+        true
+    }
 }

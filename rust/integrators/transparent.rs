@@ -28,6 +28,10 @@ impl Integrator for Transparent<'_> {
         self.0.takes_media()
     }
 
+    fn takes_waves(&self) -> bool {
+        self.0.takes_waves()
+    }
+
     fn patch(&self, scene: &Scene) -> u32 {
         self.0.patch(scene)
     }

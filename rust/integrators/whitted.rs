@@ -48,4 +48,8 @@ impl Integrator for Whitted {
     fn takes_media(&self) -> bool {
         true
     }
+
+    fn takes_waves(&self) -> bool {
+        true
+    }
 }

@@ -12,6 +12,8 @@ use std::f64::consts::{FRAC_1_PI, PI};
 pub struct Look {
     /// The colour of what is matt, of what metal reflects, and of what goes through.
     pub base_color: Rgb,
+    /// How bright that is to the eye.
+    pub luminance: f64,
     /// Its square is the α of the facets, 0.001 at least.
     pub roughness: f64,
     /// How much longer highlights are along x than along y.
@@ -37,8 +39,7 @@ impl Look {
 
     /// The colour at a luminance of 1.
     fn tint(&self) -> Rgb {
-        let luminance = self.base_color.luminance();
-        if luminance > 0.0 { self.base_color / luminance } else { Rgb::ONE }
+        if self.luminance > 0.0 { self.base_color / self.luminance } else { Rgb::ONE }
     }
 
     /// What is matt, with its cosine: Burley's diffuse reflection, part of it flattened as by Hanrahan and Krueger, and

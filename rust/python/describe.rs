@@ -25,6 +25,8 @@ pub struct Scene<'py> {
     environment: Option<Bound<'py, PyAny>>,
     medium: Option<Bound<'py, PyAny>>,
     precision: String,
+    /// Why paths are to carry wavelengths; none for red, green and blue.
+    wavelengths: Option<String>,
     /// What each of the shapes is called.
     pub names: Py<PyAny>,
     /// How much the build may take for rays to be fast.
@@ -56,17 +58,18 @@ impl Scene<'_> {
                 )));
             }
         };
-        let wishes = Wishes { precision, quality: &self.quality, builds };
-        let (appearances, mut kept) = (Appearances::default(), Vec::new());
+        let waves = self.wavelengths.is_some();
+        let wishes = Wishes { precision, quality: &self.quality, waves, builds };
+        let (appearances, mut kept) = (Appearances::new(waves), Vec::new());
         let shapes = read(&self.shapes, wishes, &appearances, &mut kept)?;
-        let mut all = self.lights.iter().map(lights::read).collect::<PyResult<Vec<_>>>()?;
-        all.extend(lights::read_environment(self.environment)?);
+        let mut all = self.lights.iter().map(|light| lights::read(light, waves)).collect::<PyResult<Vec<_>>>()?;
+        all.extend(lights::read_environment(self.environment, waves)?);
         Ok((SceneDescription { shapes, lights: all }, kept))
     }
 
     /// What fills the space in which nothing else is.
     pub fn surrounding(&self) -> PyResult<Option<Arc<dyn Medium>>> {
-        self.medium.as_ref().map(media::read).transpose()
+        self.medium.as_ref().map(|medium| media::read(medium, self.wavelengths.is_some())).transpose()
     }
 
     /// How much there is to build, prototypes included.

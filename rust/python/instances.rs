@@ -30,6 +30,8 @@ pub struct Wishes<'a> {
     pub precision: Precision,
     /// How much a build may take.
     pub quality: &'a str,
+    /// Whether colours are told by wavelength.
+    pub waves: bool,
     /// How they are built.
     pub builds: &'a Builds,
 }
@@ -42,6 +44,7 @@ struct Key {
     accelerator: String,
     precision: Precision,
     quality: String,
+    waves: bool,
 }
 
 /// Groups that some scene holds. An object is known by its address, which no other object can get while the prototype
@@ -106,6 +109,7 @@ fn prototype(
         accelerator: accelerator.repr()?.to_str()?.to_owned(),
         precision: wishes.precision,
         quality: wishes.quality.to_owned(),
+        waves: wishes.waves,
     };
     // Before it is looked for: from here on no other objects can stand at these addresses.
     kept.push(shapes.clone().into_any().unbind());

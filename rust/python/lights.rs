@@ -7,28 +7,29 @@ use pyo3::types::PyTuple;
 use std::sync::Arc;
 
 use super::arrays::vectors;
+use super::spectra::{self, Meaning};
 use super::textures::Textures;
 use crate::math::DVec3;
 use crate::optics::Rgb;
 
 use crate::scene::{
     ConstantEnvironment, DirectionalLight, Emission, EnvironmentMap, Light, Picture, PointLight, Profile, Projector,
-    Sides, SpotLight, SunSky,
+    Sides, SpotLight, SunSky, Waved,
 };
 
 /// `raywright.PointLight`.
 #[derive(FromPyObject)]
-struct PyPoint {
+struct PyPoint<'py> {
     position: [f64; 3],
-    intensity: [f64; 3],
+    intensity: Bound<'py, PyAny>,
 }
 
 /// `raywright.SpotLight`.
 #[derive(FromPyObject)]
-struct PySpot {
+struct PySpot<'py> {
     position: [f64; 3],
     target: [f64; 3],
-    intensity: [f64; 3],
+    intensity: Bound<'py, PyAny>,
     angle: f64,
     falloff: f64,
     profile: String,
@@ -36,9 +37,9 @@ struct PySpot {
 
 /// `raywright.DirectionalLight`.
 #[derive(FromPyObject)]
-struct PyDirectional {
+struct PyDirectional<'py> {
     direction: [f64; 3],
-    irradiance: [f64; 3],
+    irradiance: Bound<'py, PyAny>,
 }
 
 /// `raywright.ProjectorLight`.
@@ -49,13 +50,13 @@ struct PyProjector<'py> {
     target: [f64; 3],
     up: [f64; 3],
     fov: f64,
-    intensity: [f64; 3],
+    intensity: Bound<'py, PyAny>,
 }
 
 /// `raywright.ConstantEnvironment`.
 #[derive(FromPyObject)]
-struct PyConstant {
-    radiance: [f64; 3],
+struct PyConstant<'py> {
+    radiance: Bound<'py, PyAny>,
 }
 
 /// `raywright.EnvironmentMap`.
@@ -84,35 +85,45 @@ struct PyEmission<'py> {
     side: String,
 }
 
-/// Reads a light, or an environment, by the name of its class.
-pub fn read(light: &Bound<'_, PyAny>) -> PyResult<Arc<dyn Light>> {
+/// Reads a light, or an environment, by the name of its class; by wavelength where it is to be.
+pub fn read(light: &Bound<'_, PyAny>, waves: bool) -> PyResult<Arc<dyn Light>> {
     let (vector, rgb) = (DVec3::from_array, Rgb::from_array);
     let name = light.get_type().name()?;
     Ok(match name.to_str()? {
         "PointLight" => {
             let PyPoint { position, intensity } = light.extract()?;
-            Arc::new(PointLight { position: vector(position), intensity: rgb(intensity) })
+            let position = vector(position);
+            shining(&intensity, waves, false, |intensity| Ok(Arc::new(PointLight { position, intensity })))?
         }
         "SpotLight" => {
             let PySpot { position, target, intensity, angle, falloff, profile } = light.extract()?;
             let position = vector(position);
             let (angle, falloff) = (angle.to_radians(), falloff.to_radians());
-            let spot = SpotLight::new(position, vector(target) - position, rgb(intensity), angle, falloff);
-            Arc::new(spot.with_profile(if profile == "linear" { Profile::Linear } else { Profile::Smooth }))
+            let profile = if profile == "linear" { Profile::Linear } else { Profile::Smooth };
+            shining(&intensity, waves, false, |intensity| {
+                let spot = SpotLight::new(position, vector(target) - position, intensity, angle, falloff);
+                Ok(Arc::new(spot.with_profile(profile)))
+            })?
         }
         "DirectionalLight" => {
             let PyDirectional { direction, irradiance } = light.extract()?;
-            Arc::new(DirectionalLight::new(vector(direction), rgb(irradiance)))
+            let new = |irradiance| -> PyResult<Arc<dyn Light>> {
+                Ok(Arc::new(DirectionalLight::new(vector(direction), irradiance)))
+            };
+            shining(&irradiance, waves, false, new)?
         }
         "ProjectorLight" => {
             let PyProjector { image, position, target, up, fov, intensity } = light.extract()?;
             let places = [position, target, up].map(vector);
-            let projector = Projector::new(picture(&image)?, places, fov.to_radians(), rgb(intensity));
-            Arc::new(projector.map_err(PyValueError::new_err)?)
+            let image = picture(&image)?;
+            shining(&intensity, waves, true, |intensity| {
+                let projector = Projector::new(image, places, fov.to_radians(), intensity);
+                Ok(Arc::new(projector.map_err(PyValueError::new_err)?))
+            })?
         }
         "ConstantEnvironment" => {
             let PyConstant { radiance } = light.extract()?;
-            Arc::new(ConstantEnvironment { radiance: rgb(radiance) })
+            shining(&radiance, waves, false, |radiance| Ok(Arc::new(ConstantEnvironment { radiance })))?
         }
         "EnvironmentMap" => {
             let PyMap { image, to_world, scale } = light.extract()?;
@@ -120,32 +131,58 @@ pub fn read(light: &Bound<'_, PyAny>) -> PyResult<Arc<dyn Light>> {
             let &[x, y, z] = rows else {
                 return Err(PyValueError::new_err(format!("to_world has {} rows, expected 3", rows.len())));
             };
-            Arc::new(EnvironmentMap::new(picture(&image)?, [x, y, z].map(vector), scale))
+            coloured(EnvironmentMap::new(picture(&image)?, [x, y, z].map(vector), scale), waves)
         }
         "SunSky" => {
             let PySunSky { sun, turbidity, ground_albedo, up, sun_scale, sky_scale } = light.extract()?;
             let ways = [sun, up].map(vector);
-            Arc::new(SunSky::new(ways, turbidity, rgb(ground_albedo), [sun_scale, sky_scale]))
+            coloured(SunSky::new(ways, turbidity, rgb(ground_albedo), [sun_scale, sky_scale]), waves)
         }
         other => return Err(PyTypeError::new_err(format!("expected a raywright light, got {other}"))),
     })
 }
 
+/// A light by its colours, or by their smooth spectra.
+fn coloured(light: impl Light + 'static, waves: bool) -> Arc<dyn Light> {
+    let light = Arc::new(light);
+    if waves { Arc::new(Waved::coloured(light)) } else { light }
+}
+
+/// A light as bright as three numbers or a `raywright.Spectrum` says, made of a colour; whether it has colours beside.
+fn shining(
+    given: &Bound<'_, PyAny>,
+    waves: bool,
+    has_colours: bool,
+    make: impl FnOnce(Rgb) -> PyResult<Arc<dyn Light>>,
+) -> PyResult<Arc<dyn Light>> {
+    if let Ok(colour) = given.extract::<[f64; 3]>() {
+        let colour = Rgb::from_array(colour);
+        let is_grey = colour == Rgb::splat(colour[0]);
+        // What is negative or not a number is told of elsewhere.
+        if !waves || has_colours || is_grey || !colour.is_radiance() {
+            let light = make(colour)?;
+            return Ok(if waves && has_colours { Arc::new(Waved::coloured(light)) } else { light });
+        }
+    }
+    let tint = spectra::tint(given, Meaning::Light)?;
+    Ok(Arc::new(Waved::tinted(tint, has_colours, |mean| make(Rgb::splat(mean)))?))
+}
+
 /// What surrounds a scene: nothing, one environment, or a tuple of them.
-pub fn read_environment(environment: Option<Bound<'_, PyAny>>) -> PyResult<Vec<Arc<dyn Light>>> {
+pub fn read_environment(environment: Option<Bound<'_, PyAny>>, waves: bool) -> PyResult<Vec<Arc<dyn Light>>> {
     match environment {
         None => Ok(Vec::new()),
         Some(several) if several.is_instance_of::<PyTuple>() => {
-            several.cast::<PyTuple>()?.iter().map(|one| read(&one)).collect()
+            several.cast::<PyTuple>()?.iter().map(|one| read(&one, waves)).collect()
         }
-        Some(one) => Ok(vec![read(&one)?]),
+        Some(one) => Ok(vec![read(&one, waves)?]),
     }
 }
 
 /// How a shape shines: a radiance, or a `raywright.Emission`.
 pub fn read_emission(emission: &Bound<'_, PyAny>, textures: &Textures) -> PyResult<Emission> {
     if emission.get_type().name()?.to_str()? != "Emission" {
-        return Ok(Emission { radiance: textures.value(emission)?, ..Emission::default() });
+        return Ok(Emission { radiance: textures.value(emission, Meaning::Light)?, ..Emission::default() });
     }
     let PyEmission { radiance, side } = emission.extract()?;
     let sides = match side.as_str() {
@@ -153,7 +190,7 @@ pub fn read_emission(emission: &Bound<'_, PyAny>, textures: &Textures) -> PyResu
         "both" => Sides::Both,
         _ => Sides::Front,
     };
-    Ok(Emission { radiance: textures.value(&radiance)?, sides })
+    Ok(Emission { radiance: textures.value(&radiance, Meaning::Light)?, sides })
 }
 
 /// An (H, W, 3) array as a picture.

@@ -5,6 +5,7 @@ use pyo3::prelude::*;
 use std::sync::Arc;
 
 use super::media;
+use super::spectra::{self, Meaning};
 use super::textures::{Cache, Textures};
 use crate::optics::conductors::{METALS, metal};
 use crate::scene::Material;
@@ -17,7 +18,6 @@ use crate::scene::materials::{
 use crate::scene::media::Medium;
 
 /// Reads materials and textures: one that many shapes share is read once.
-#[derive(Default)]
 pub struct Appearances {
     materials: Cache<Arc<dyn Material>>,
     media: Cache<Arc<dyn Medium>>,
@@ -26,6 +26,11 @@ pub struct Appearances {
 }
 
 impl Appearances {
+    /// Those of a scene that needs wavelengths, or none.
+    pub fn new(waves: bool) -> Self {
+        Self { materials: Cache::default(), media: Cache::default(), textures: Textures::new(waves) }
+    }
+
     /// The material of a description.
     ///
     /// # Errors
@@ -37,8 +42,8 @@ impl Appearances {
     /// The material of a description, by the name of its class.
     fn read(&self, given: &Bound<'_, PyAny>) -> PyResult<Arc<dyn Material>> {
         let name = given.get_type().name()?;
-        let value = |name: &str| self.textures.attribute(given, name);
-        let number = |name: &str| PyResult::Ok(value(name)?.number());
+        let value = |name: &str| self.textures.attribute(given, name, Meaning::Share);
+        let number = |name: &str| self.textures.number(given, name);
         let float = |name: &str| given.getattr(name)?.extract::<f64>();
         let inner = |name: &str| self.material(&given.getattr(name)?);
         let roughness = || self.roughness(given);
@@ -50,13 +55,19 @@ impl Appearances {
             "Mirror" => Arc::new(MirrorMaterial { reflectance: value("reflectance")? }),
             "Conductor" => {
                 let index = match given.getattr("metal")?.extract::<Option<String>>()? {
-                    Some(name) => Index::Measured(metal(&name).ok_or_else(|| unknown(&name))?),
-                    None => Index::Constants { eta: value("eta")?, k: value("k")? },
+                    Some(name) => {
+                        Index::Measured(metal(&name).ok_or_else(|| unknown(&name))?, self.textures.has_waves())
+                    }
+                    None => {
+                        let value = |name: &str| self.textures.attribute(given, name, Meaning::Amount);
+                        Index::Constants { eta: value("eta")?, k: value("k")? }
+                    }
                 };
                 Arc::new(ConductorMaterial { index, roughness: roughness()? })
             }
             "Dielectric" => {
-                let interior = Interior { ior: float("ior")?, priority: given.getattr("priority")?.extract()? };
+                let (ior, dispersion) = spectra::index(&given.getattr("ior")?)?;
+                let interior = Interior { ior, dispersion, priority: given.getattr("priority")?.extract()? };
                 Arc::new(DielectricMaterial { interior, roughness: roughness()?, medium: self.medium(given)? })
             }
             "Boundary" => {
@@ -89,7 +100,7 @@ impl Appearances {
             }),
             "Principled" => Arc::new(PrincipledMaterial {
                 looks: self.looks(given)?,
-                interior: Interior { ior: float("ior")?, priority: given.getattr("priority")?.extract()? },
+                interior: Interior::new(float("ior")?, given.getattr("priority")?.extract()?),
                 metallic: number("metallic")?,
                 clearcoat: number("clearcoat")?,
                 clearcoat_gloss: number("clearcoat_gloss")?,
@@ -104,9 +115,11 @@ impl Appearances {
             "BumpMap" => {
                 Arc::new(BumpMap { material: inner("material")?, height: number("height")?, scale: float("scale")? })
             }
-            "NormalMap" => {
-                Arc::new(NormalMap { material: inner("material")?, normals: value("normals")?, scale: float("scale")? })
-            }
+            "NormalMap" => Arc::new(NormalMap {
+                material: inner("material")?,
+                normals: self.textures.attribute(given, "normals", Meaning::Numbers)?,
+                scale: float("scale")?,
+            }),
             "TwoSided" => Arc::new(TwoSided { front: inner("front")?, back: inner("back")? }),
             other => return Err(PyTypeError::new_err(format!("material must be a raywright material, got {other}"))),
         })
@@ -115,14 +128,18 @@ impl Appearances {
     /// What fills what a material encloses.
     fn medium(&self, given: &Bound<'_, PyAny>) -> PyResult<Option<Arc<dyn Medium>>> {
         let interior = given.getattr("interior")?;
-        if interior.is_none() { Ok(None) } else { self.media.of(&interior, || media::read(&interior)).map(Some) }
+        if interior.is_none() {
+            Ok(None)
+        } else {
+            self.media.of(&interior, || media::read(&interior, self.textures.has_waves())).map(Some)
+        }
     }
 
     /// What the principled materials have in common.
     fn looks(&self, given: &Bound<'_, PyAny>) -> PyResult<Looks> {
-        let number = |name: &str| PyResult::Ok(self.textures.attribute(given, name)?.number());
+        let number = |name: &str| self.textures.number(given, name);
         Ok(Looks {
-            base_color: self.textures.attribute(given, "base_color")?,
+            base_color: self.textures.attribute(given, "base_color", Meaning::Share)?,
             roughness: number("roughness")?,
             anisotropic: number("anisotropic")?,
             transmission: number("transmission")?,
@@ -139,9 +156,9 @@ impl Appearances {
         let is_alpha = !alpha.is_none();
         let told = if is_alpha { alpha } else { given.getattr("roughness")? };
         let along = match told.extract::<[Bound<'_, PyAny>; 2]>() {
-            Ok([u, v]) => [self.textures.value(&u)?.number(), self.textures.value(&v)?.number()],
+            Ok([u, v]) => [self.textures.plain(&u)?.number(), self.textures.plain(&v)?.number()],
             Err(_) => {
-                let both = self.textures.value(&told)?.number();
+                let both = self.textures.plain(&told)?.number();
                 [both.clone(), both]
             }
         };

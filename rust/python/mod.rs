@@ -104,7 +104,7 @@ mod _core {
     #[pymodule_export]
     use super::simd;
     #[pymodule_export]
-    use super::spectra::spectrum_rgb;
+    use super::spectra::{daylight_power, smooth_spectrum, spectrum_luminance, spectrum_rgb};
     #[pymodule_export]
     use super::tree::tree;
     #[pymodule_export]

@@ -7,10 +7,13 @@ use std::cell::RefCell;
 use std::collections::HashMap;
 use std::sync::Arc;
 
+use super::spectra::{self, Meaning};
 use crate::optics::Rgb;
+use crate::optics::spectra::Role;
 use crate::scene::textures::{
     Between, Checker, Domain, Fbm, Filter, ImageTexture, Marble, MixTexture, Noise, ObjectTransform, Octaves, Pattern,
-    Picture, ProductTexture, Stripes, Texels, Texture, UvTransform, Value, VertexColours, Wood, Wrap,
+    Picture, ProductTexture, Spectral, Stripes, Texels, Texture, Upsampled, UvTransform, Value, VertexColours, Wood,
+    Wrap,
 };
 
 /// What has been made of an object, which stays alive beside it so that no other can have its address.
@@ -52,9 +55,11 @@ type PictureKey = (usize, Option<usize>, bool, bool);
 type Taken<T> = (usize, usize, Result<Vec<T>, Vec<[T; 3]>>);
 
 /// Reads textures.
-#[derive(Default)]
 pub struct Textures {
-    textures: Cache<Arc<dyn Texture>>,
+    /// Whether colours are told by wavelength.
+    waves: bool,
+    /// By what their numbers stand for.
+    textures: [Cache<Arc<dyn Texture>>; 4],
     pictures: RefCell<HashMap<PictureKey, Known<Arc<Picture>>>>,
 }
 
@@ -116,65 +121,127 @@ struct PyImage<'py> {
 }
 
 impl Textures {
-    /// A number, three of them, or a texture.
+    /// Those of a scene that needs wavelengths, or none.
+    pub fn new(waves: bool) -> Self {
+        Self { waves, textures: Default::default(), pictures: RefCell::default() }
+    }
+
+    /// Whether colours are told by wavelength.
+    pub fn has_waves(&self) -> bool {
+        self.waves
+    }
+
+    /// A number, three of them, a spectrum, or a texture.
     ///
     /// # Errors
     /// A `TypeError` for what is none of these, and what reading a texture raises.
-    pub fn value(&self, given: &Bound<'_, PyAny>) -> PyResult<Value> {
+    pub fn value(&self, given: &Bound<'_, PyAny>, meaning: Meaning) -> PyResult<Value> {
         if let Ok(number) = given.extract::<f64>() {
             return Ok(number.into());
         }
         if let Ok(colour) = given.extract::<[f64; 3]>() {
-            return Ok(Rgb::from_array(colour).into());
+            return Ok(self.colour(Rgb::from_array(colour), meaning));
         }
-        self.textures.of(given, || self.read(given)).map(Value::Texture)
+        self.textures[meaning as usize].of(given, || self.read(given, meaning)).map(Value::Texture)
     }
 
-    /// An attribute that is a number, three of them, or a texture.
+    /// The same for what stands for no colour.
     ///
     /// # Errors
     /// As [`Textures::value`].
-    pub fn attribute(&self, object: &Bound<'_, PyAny>, name: &str) -> PyResult<Value> {
-        self.value(&object.getattr(name)?)
+    pub fn plain(&self, given: &Bound<'_, PyAny>) -> PyResult<Value> {
+        self.value(given, Meaning::Numbers)
+    }
+
+    /// An attribute that is a number, three of them, a spectrum, or a texture.
+    ///
+    /// # Errors
+    /// As [`Textures::value`].
+    pub fn attribute(&self, object: &Bound<'_, PyAny>, name: &str, meaning: Meaning) -> PyResult<Value> {
+        self.value(&object.getattr(name)?, meaning)
+    }
+
+    /// An attribute that is a number or a texture, of whose channels the mean counts.
+    ///
+    /// # Errors
+    /// As [`Textures::value`].
+    pub fn number(&self, object: &Bound<'_, PyAny>, name: &str) -> PyResult<Value<f64>> {
+        Ok(self.plain(&object.getattr(name)?)?.number())
+    }
+
+    /// What colours stand for by wavelength; none where they are told in red, green and blue.
+    fn role(&self, meaning: Meaning) -> Option<Role> {
+        match meaning {
+            Meaning::Share if self.waves => Some(Role::Share),
+            Meaning::Light | Meaning::Amount if self.waves => Some(Role::Amount),
+            _ => None,
+        }
+    }
+
+    fn colour(&self, colour: Rgb, meaning: Meaning) -> Value {
+        match self.role(meaning) {
+            Some(role) if colour.is_radiance() => Spectral::of(colour, role),
+            _ => colour.into(),
+        }
+    }
+
+    /// A texture that has colours of its own.
+    fn coloured(&self, colours: impl Texture + 'static, meaning: Meaning) -> Arc<dyn Texture> {
+        let colours = Arc::new(colours);
+        match self.role(meaning) {
+            Some(role) => Arc::new(Upsampled { colours, role }),
+            None => colours,
+        }
     }
 
     /// The texture of a description, by the name of its class.
-    fn read(&self, given: &Bound<'_, PyAny>) -> PyResult<Arc<dyn Texture>> {
+    fn read(&self, given: &Bound<'_, PyAny>, meaning: Meaning) -> PyResult<Arc<dyn Texture>> {
         let name = given.get_type().name()?;
         let domain = || given.getattr("transform")?.extract::<PyTransform>().map(Domain::from);
         let octaves = || given.extract::<PyOctaves>().map(Octaves::from);
         let float = |name: &str| given.getattr(name)?.extract::<f64>();
         Ok(match name.to_str()? {
-            "Checker" => self.between(given, Checker(domain()?))?,
-            "Stripes" => self.between(given, Stripes { domain: domain()?, fraction: float("fraction")? })?,
+            "Checker" => self.between(given, meaning, Checker(domain()?))?,
+            "Stripes" => self.between(given, meaning, Stripes { domain: domain()?, fraction: float("fraction")? })?,
             "Noise" => {
                 let seed = given.getattr("seed")?.extract()?;
-                self.between(given, Noise { domain: domain()?, seed })?
+                self.between(given, meaning, Noise { domain: domain()?, seed })?
             }
-            "FBm" => self.between(given, Fbm { domain: domain()?, octaves: octaves()? })?,
+            "FBm" => self.between(given, meaning, Fbm { domain: domain()?, octaves: octaves()? })?,
             "Marble" => {
                 let distortion = float("distortion")?;
-                self.between(given, Marble { domain: domain()?, distortion, octaves: octaves()? })?
+                self.between(given, meaning, Marble { domain: domain()?, distortion, octaves: octaves()? })?
             }
             "Wood" => {
                 let distortion = float("distortion")?;
-                self.between(given, Wood { domain: domain()?, distortion, octaves: octaves()? })?
+                self.between(given, meaning, Wood { domain: domain()?, distortion, octaves: octaves()? })?
             }
             "MixTexture" => {
-                let [a, b, amount] = [("a"), ("b"), ("amount")].map(|name| self.attribute(given, name));
+                let [a, b] = ["a", "b"].map(|name| self.attribute(given, name, meaning));
+                // A share of the one and of the other.
+                let amount = if meaning == Meaning::Numbers { meaning } else { Meaning::Share };
+                let amount = self.attribute(given, "amount", amount);
                 Arc::new(MixTexture { a: a?, b: b?, amount: amount? })
             }
             "ProductTexture" => {
-                Arc::new(ProductTexture { a: self.attribute(given, "a")?, b: self.attribute(given, "b")? })
+                let [a, b] = ["a", "b"].map(|name| self.attribute(given, name, meaning));
+                Arc::new(ProductTexture { a: a?, b: b? })
             }
-            "VertexColors" => Arc::new(VertexColours),
-            "ImageTexture" => Arc::new(self.image(given.extract()?)?),
+            "VertexColors" => self.coloured(VertexColours, meaning),
+            "ImageTexture" => self.coloured(self.image(given.extract()?)?, meaning),
+            "Spectrum" | "Blackbody" => Arc::new(Spectral::new(spectra::table(given, meaning)?)),
             other => return Err(PyTypeError::new_err(format!("expected a number, 3 or a texture, got {other}"))),
         })
     }
 
-    fn between(&self, given: &Bound<'_, PyAny>, pattern: impl Pattern + 'static) -> PyResult<Arc<dyn Texture>> {
-        Ok(Arc::new(Between { a: self.attribute(given, "a")?, b: self.attribute(given, "b")?, pattern }))
+    fn between(
+        &self,
+        given: &Bound<'_, PyAny>,
+        meaning: Meaning,
+        pattern: impl Pattern + 'static,
+    ) -> PyResult<Arc<dyn Texture>> {
+        let [a, b] = ["a", "b"].map(|name| self.attribute(given, name, meaning));
+        Ok(Arc::new(Between { a: a?, b: b?, pattern }))
     }
 
     fn image(&self, given: PyImage<'_>) -> PyResult<ImageTexture> {

@@ -73,6 +73,11 @@ impl Integrator for Written {
         Box::new(At(self))
     }
 
+    /// It is told of red, green and blue, and of yellow light's index of refraction.
+    fn takes_waves(&self) -> bool {
+        true
+    }
+
     fn runs_on_caller(&self) -> bool {
         true
     }

@@ -105,8 +105,17 @@ pub(super) fn check(
                 .to_owned()
         })
     };
+    let of_waves = || {
+        let is_lost = scene.plan().needs().waves && !integrator.takes_waves();
+        is_lost.then(|| {
+            "this integrator knows nothing of wavelengths, and the scene has a spectrum or an index of refraction \
+             that goes with wavelength; Path follows light by wavelength, and so do Direct, Whitted, Distributed and \
+             RayCast"
+                .to_owned()
+        })
+    };
     let of_view = || integrator.view_objection(camera, settings.filter.radius());
-    let objection = of_media().or_else(|| integrator.objection(scene, adaptive)).or_else(of_view);
+    let objection = of_media().or_else(of_waves).or_else(|| integrator.objection(scene, adaptive)).or_else(of_view);
     objection.map_or(Ok(()), |why| Err(RenderError::Unsuited(why)))
 }
 

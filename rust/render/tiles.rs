@@ -27,6 +27,8 @@ pub(super) struct Exposure<'a> {
     /// Whether all work is to be done on the calling thread.
     pub stays: bool,
     samples: CameraSampler<'a>,
+    /// Whether samples may be negative.
+    signed: bool,
     /// What follows paths from lights, if there are any.
     light: Option<LightTracer<'a>>,
     /// Whose samples work together.
@@ -103,6 +105,8 @@ impl Stop {
 /// What a thread works with.
 struct Bench<'a> {
     worker: Box<dyn Worker + 'a>,
+    /// Whether samples may be negative.
+    signed: bool,
     /// What is to be taken next.
     wanted: Vec<Wanted>,
     samples: Vec<CameraSample>,
@@ -157,7 +161,8 @@ impl<'a> Exposure<'a> {
         let samples = CameraSampler::new(scene, camera, session, settings);
         let patchwork = Patchwork { patch: integrator.patch(scene) };
         let (stays, light) = (integrator.runs_on_caller(), LightTracer::new(camera, session, settings));
-        Self { session, stays, samples, light, patchwork, idle: Mutex::default() }
+        let signed = scene.plan().needs().waves;
+        Self { session, stays, samples, signed, light, patchwork, idle: Mutex::default() }
     }
 
     /// Adds samples until the goal is reached, and says whether it was: it returns soon when it is asked to stop. Even
@@ -234,6 +239,7 @@ impl<'a> Exposure<'a> {
         let idle = self.idle.lock().unwrap_or_else(PoisonError::into_inner).pop();
         idle.unwrap_or_else(|| Bench {
             worker: self.session.worker(),
+            signed: self.signed,
             wanted: Vec::new(),
             samples: Vec::new(),
             weights: Vec::new(),
@@ -361,6 +367,8 @@ impl Bench<'_> {
                     let seen = if weight == 0.0 { None } else { radiance.next() };
                     let (tile, seen) = (&mut tiles[run.tile], seen.copied().unwrap_or(Rgb::ZERO));
                     match light {
+                        // What a wavelength looks like is less than nothing in some channels.
+                        None if self.signed => tile.add_with(run.cell, Rgb::ZERO, weight, seen * weight),
                         None => tile.add(run.cell, seen, weight),
                         Some(light) => {
                             tile.add_with(run.cell, seen, weight, light.to(wanted.position, wanted.number));

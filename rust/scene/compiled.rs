@@ -99,7 +99,7 @@ impl Scene {
 
     /// The same with a medium in all space in which nothing else is.
     pub fn surrounded_by(self, medium: Option<Arc<dyn Medium>>) -> Self {
-        let plan = self.plan.with_medium_around(medium.is_some());
+        let plan = self.plan.with_medium_around(medium.as_deref());
         Self { plan, surrounding: medium, ..self }
     }
 
@@ -428,7 +428,7 @@ mod tests {
         assert_eq!(a, b);
         assert_eq!(refitted.region(), moved.region());
         assert_eq!(still.growth(), 1.0);
-        let receiver = LightSampleContext { position: rays[0].origin, normal: DVec3::Y };
+        let receiver = LightSampleContext { position: rays[0].origin, normal: DVec3::Y, waves: None };
         let light = |s: &Scene| s.lights().sample(s.geometry(), &receiver, 0.5, [0.5; 2]).unwrap().direction;
         assert_eq!(light(&refitted), light(&moved));
         assert_ne!(light(&refitted), light(&still));

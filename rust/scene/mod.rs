@@ -10,6 +10,7 @@ mod filter;
 mod first_hits;
 #[cfg(test)]
 pub(crate) mod fixtures;
+mod gaze;
 mod geometry;
 pub mod lights;
 pub mod materials;
@@ -32,6 +33,7 @@ pub use emission::{Emission, Sides};
 pub use encounter::Encounter;
 pub use filter::Filter;
 pub use first_hits::FirstHits;
+pub use gaze::Gaze;
 pub use geometry::{
     BadTransform, Geometry, Instances, Matrix, Mesh, Objects, Precision, Prototype, Rounding, Surface, Vertices,
     check_transforms, rounded,
@@ -40,7 +42,7 @@ pub(crate) use lights::SeenTriangle;
 pub use lights::{
     ConstantEnvironment, Departure, DirectionalLight, EmissionNumbers, EmissionPdf, EmissionSample, Emitters,
     EnvironmentMap, Light, LightBounds, LightContextLanes, LightLanes, LightSample, LightSampleContext, Lights,
-    Picture, Place, PointEmission, PointLight, Profile, Projector, Reach, Source, SpotLight, SunSky,
+    Picture, Place, PointEmission, PointLight, Profile, Projector, Reach, Source, SpotLight, SunSky, Waved,
 };
 pub use materials::{DiffuseMaterial, Material};
 pub use patches::{Cell, Patches};

@@ -1,5 +1,6 @@
 //! What a scene needs, what is left out, and which variant of shading it takes.
 
+use super::media::Medium;
 use super::textures::Needs;
 use super::{Emission, Geometry, Lights, Material, Rounding};
 use crate::accel::Primitives;
@@ -37,6 +38,8 @@ pub struct SceneNeeds {
     pub double: bool,
     /// Anything that shines.
     pub light: bool,
+    /// Wavelengths in place of red, green and blue.
+    pub waves: bool,
 }
 
 impl BitOr for SceneNeeds {
@@ -58,6 +61,7 @@ impl BitOr for SceneNeeds {
             motion: self.motion | other.motion,
             double: self.double | other.double,
             light: self.light | other.light,
+            waves: self.waves | other.waves,
         }
     }
 }
@@ -120,6 +124,7 @@ impl Plan {
             motion: geometry.moves(),
             double: !geometry.is_single(),
             light: !lights.is_dark(),
+            waves: lights.others().any(|light| light.has_waves()),
             ..SceneNeeds::default()
         };
         let mut rounding = geometry.rounding();
@@ -140,6 +145,7 @@ impl Plan {
                 }
             }
         }
+        needs.waves |= needs.points.waves;
         let few = if needs.scattering { lights.few() } else { 0 };
         let colour = |sides: &Option<[AnyBsdf; 2]>| match sides {
             Some([AnyBsdf::Diffuse(front), AnyBsdf::Diffuse(back)]) => Some([front.reflectance, back.reflectance]),
@@ -157,7 +163,8 @@ impl Plan {
             masks: !material.is_opaque(),
             interiors: material.interior().is_some(),
             media: material.medium().is_some(),
-            patterned_lights: !is_dark && emission.needs().any(),
+            waves: material.medium().is_some_and(|medium| medium.has_waves()),
+            patterned_lights: !is_dark && emission.needs().of_place(),
             light: !is_dark,
             ..SceneNeeds::default()
         }
@@ -180,8 +187,10 @@ impl Plan {
     }
 
     /// The same plan of a scene that has a medium around all that is in it, or none.
-    pub(super) fn with_medium_around(&self, has: bool) -> Self {
-        Self { needs: SceneNeeds { media: self.needs.media || has, ..self.needs }, ..self.clone() }
+    pub(super) fn with_medium_around(&self, medium: Option<&dyn Medium>) -> Self {
+        let (media, waves) = (medium.is_some(), medium.is_some_and(Medium::has_waves));
+        let (media, waves) = (self.needs.media || media, self.needs.waves || waves);
+        Self { needs: SceneNeeds { media, waves, ..self.needs }, ..self.clone() }
     }
 
     /// What the scene needs.
@@ -259,9 +268,10 @@ impl Plan {
                     || needs.points.any()
                     || needs.masks
                     || needs.interiors
+                    || needs.waves
                     || needs.media)
             }
-            ShadingVariant::Open => !(needs.masks || needs.nested || needs.media || needs.points.width),
+            ShadingVariant::Open => !(needs.masks || needs.nested || needs.media || needs.points.width || needs.waves),
             ShadingVariant::General => true,
         }
     }
@@ -282,7 +292,7 @@ impl Plan {
             row("materials", needs.scattering, "asked at each point", "one diffuse colour a shape, asked once"),
             row(
                 "textures",
-                needs.points.any(),
+                needs.points.of_place(),
                 "coordinates are computed where asked for",
                 "no coordinates kept or computed",
             ),
@@ -290,6 +300,12 @@ impl Plan {
             row("masks", needs.masks, "shadow rays are followed through", "the first hit ends a shadow ray"),
             row("media", needs.interiors, "surfaces have an outside", "no index of refraction kept"),
             row("nested media", needs.nested, "paths know what they are in", "paths carry no media"),
+            row(
+                "wavelengths",
+                needs.waves,
+                "paths carry three, and two end where glass parts them",
+                "red, green and blue",
+            ),
             row("smoke and haze", needs.media, "paths go one by one, and scatter on their way", "space is clear"),
             row(
                 "patterned lights",
@@ -350,7 +366,7 @@ mod tests {
 
     #[test]
     fn what_lies_in_one_another_takes_two() {
-        let glass = || Odd { interior: Some(Interior { ior: 1.5, priority: 0 }), is_opaque: true };
+        let glass = || Odd { interior: Some(Interior::new(1.5, 0)), is_opaque: true };
         let sheet = |material: Odd| Shape {
             material: Arc::new(material),
             ..shape(rectangle([0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]), [0.5; 3], 0.0)

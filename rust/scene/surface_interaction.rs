@@ -5,7 +5,7 @@ mod lanes;
 pub use lanes::SurfaceInteractionLanes;
 
 use super::materials::BsdfMix;
-use super::{Encounter, LightSampleContext, RayOrigin, Scene, ShadingPoint, SurfacePoint};
+use super::{Encounter, Gaze, LightSampleContext, RayOrigin, Scene, ShadingPoint, SurfacePoint};
 use crate::math::{DVec3, Frame, Hit, Ray, select};
 use crate::optics::{Bsdf, BsdfSample, Rgb};
 
@@ -35,31 +35,39 @@ pub struct SurfaceInteraction<B = BsdfMix> {
 }
 
 impl SurfaceInteraction {
-    /// What a ray of unit direction meets at a hit; `width` is how wide the bundle of its neighbours is there, 0 if
-    /// nobody asks, and `outside` the index of refraction on the other side of what the surface encloses.
+    /// What a ray of unit direction meets at a hit, by how it is looked at; `outside` is the index of refraction on the
+    /// other side of what the surface encloses.
     #[inline]
-    pub fn new(scene: &Scene, ray: &Ray, hit: &Hit, surface: SurfacePoint, width: f64, outside: f64) -> Self {
+    pub fn new(
+        scene: &Scene,
+        ray: &Ray,
+        hit: &Hit,
+        surface: SurfacePoint,
+        gaze: impl Into<Gaze>,
+        outside: f64,
+    ) -> Self {
+        let gaze = gaze.into();
         if outside == 1.0
-            && width == 0.0
+            && gaze.width == 0.0
             && let Some(&bsdf) = scene.plan().constant(surface.shape, surface.is_front(ray))
         {
             let shading = surface.shading_normal;
             return Self::with(ray, surface, (shading, None), BsdfMix::One(bsdf));
         }
-        Self::mapped(scene, ray, hit, surface, width, outside)
+        Self::mapped(scene, ray, hit, surface, gaze, outside)
     }
 
     /// The same where the material has to be asked.
-    fn mapped(scene: &Scene, ray: &Ray, hit: &Hit, surface: SurfacePoint, width: f64, outside: f64) -> Self {
+    fn mapped(scene: &Scene, ray: &Ray, hit: &Hit, surface: SurfacePoint, gaze: Gaze, outside: f64) -> Self {
         let material = scene.material_at(&surface);
         let mut needs = material.needs();
-        needs.tangents |= width > 0.0;
-        let mut point = ShadingPoint::new(scene.geometry(), ray, hit, surface, needs, width);
+        needs.tangents |= gaze.width > 0.0;
+        let mut point = ShadingPoint::new(scene.geometry(), ray, hit, surface, needs, gaze);
         point.outside = outside;
         let shading = material.normal(&point).unwrap_or(surface.shading_normal);
         let tangent = material.tangent(&point);
         let mut here = Self::with(ray, surface, (shading, tangent), material.bsdf(&point));
-        if width > 0.0 {
+        if gaze.width > 0.0 {
             here.curvature = here.side * mean_curvature(&point);
         }
         here
@@ -110,9 +118,9 @@ impl<B: Bsdf> SurfaceInteraction<B> {
 
     /// The share of ambient light that is reflected here ([`Material::ambient`](super::Material::ambient)); the other
     /// arguments are those that [`SurfaceInteraction::new`] was given.
-    pub fn ambient(&self, scene: &Scene, ray: &Ray, hit: &Hit, width: f64, outside: f64) -> Rgb {
+    pub fn ambient(&self, scene: &Scene, ray: &Ray, hit: &Hit, gaze: impl Into<Gaze>, outside: f64) -> Rgb {
         let material = scene.material_at(&self.surface);
-        let mut point = ShadingPoint::new(scene.geometry(), ray, hit, self.surface, material.needs(), width);
+        let mut point = ShadingPoint::new(scene.geometry(), ray, hit, self.surface, material.needs(), gaze);
         point.outside = outside;
         material.ambient(&point)
     }
@@ -249,7 +257,8 @@ impl<B: Bsdf> Encounter for SurfaceInteraction<B> {
         if self.bsdf.transmits() {
             return LightSampleContext::free(self.surface.position);
         }
-        LightSampleContext { position: self.ray_origin().ray(self.normal()).origin, normal: self.shading_normal() }
+        let position = self.ray_origin().ray(self.normal()).origin;
+        LightSampleContext { position, normal: self.shading_normal(), waves: None }
     }
 
     #[inline(always)]

@@ -58,7 +58,7 @@ impl Light for Rings {
 fn rings_are_bright_along_the_axis_and_dark_between() {
     let lamp = Rings { position: DVec3::Z * 2.0, axis: DVec3::NEG_Z, rings: 3.0, intensity: Rgb::ONE };
     assert_eq!(lamp.validate(), Ok(()));
-    let at = |position| lamp.sample(&LightSampleContext { position, normal: DVec3::Z }, [0.5; 2]);
+    let at = |position| lamp.sample(&LightSampleContext { position, normal: DVec3::Z, waves: None }, [0.5; 2]);
     assert!((at(DVec3::ZERO).unwrap().weight.mean() - 0.25).abs() < 1e-12);
     // cos² 90°, at 30° from the axis.
     let dark = DVec3::X * 2.0 * (PI / 6.0).tan();

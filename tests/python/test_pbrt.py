@@ -112,7 +112,11 @@ def test_materials(tmp_path):
     # At normal incidence it reflects as much.
     eta, k = white.eta[0], white.k[0]
     assert ((eta - 1) ** 2 + k * k) / ((eta + 1) ** 2 + k * k) == pytest.approx(0.5, rel=1e-9)
-    assert material(tmp_path, 'Material "dielectric" "spectrum eta" "glass-BK7"').ior == 1.5168
+    glass = material(tmp_path, 'Material "dielectric" "spectrum eta" "glass-BK7"')
+    assert glass.ior == rw.glasses["N-BK7"]
+    assert material(tmp_path, 'Material "thindielectric" "spectrum eta" "glass-F10"').ior == pytest.approx(
+        1.72825, abs=1e-5
+    )
     assert material(tmp_path, 'Material "thindielectric" "float eta" 1.3') == rw.ThinDielectric(1.3)
     with pytest.warns(RuntimeWarning, match="coateddiffuse is approximated by a plastic without thickness"):
         assert material(tmp_path, 'Material "coateddiffuse"') == rw.Plastic(0.5, 1.5, alpha=0.0)

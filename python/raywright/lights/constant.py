@@ -4,7 +4,8 @@ from dataclasses import dataclass
 
 from numpy.typing import ArrayLike
 
-from ..arrays import Triple, colour
+from ..arrays import Triple
+from ..textures.spectrum import Spectrum, colour_or_spectrum
 
 
 @dataclass(frozen=True, init=False)
@@ -13,7 +14,7 @@ class ConstantEnvironment:
 
     Parameters
     ----------
-    radiance : float or 3 floats
+    radiance : float, 3 floats or Spectrum
         Radiance in W·sr⁻¹·m⁻², at least 0: one number, or red, green and blue.
 
     Raises
@@ -24,7 +25,7 @@ class ConstantEnvironment:
         If it is not a number.
     """
 
-    radiance: Triple
+    radiance: Triple | Spectrum
 
-    def __init__(self, radiance: ArrayLike = 1.0) -> None:
-        object.__setattr__(self, "radiance", colour("radiance", radiance))
+    def __init__(self, radiance: ArrayLike | Spectrum = 1.0) -> None:
+        object.__setattr__(self, "radiance", colour_or_spectrum("radiance", radiance))

@@ -4,7 +4,8 @@ from dataclasses import dataclass
 
 from numpy.typing import ArrayLike
 
-from ..arrays import Triple, colour, triple
+from ..arrays import Triple, triple
+from ..textures.spectrum import Spectrum, colour_or_spectrum
 
 
 @dataclass(frozen=True, init=False)
@@ -15,7 +16,7 @@ class DirectionalLight:
     ----------
     direction : 3 floats
         Where it travels to, of any length but 0.
-    irradiance : float or 3 floats
+    irradiance : float, 3 floats or Spectrum
         What a surface that faces it receives in W·m⁻², at least 0: one number, or red, green and blue.
 
     Raises
@@ -27,11 +28,11 @@ class DirectionalLight:
     """
 
     direction: Triple
-    irradiance: Triple
+    irradiance: Triple | Spectrum
 
-    def __init__(self, direction: ArrayLike, irradiance: ArrayLike) -> None:
+    def __init__(self, direction: ArrayLike, irradiance: ArrayLike | Spectrum) -> None:
         way = triple("direction", direction)
         if way == (0, 0, 0):
             raise ValueError(f"direction must have a length, got {way}")
         object.__setattr__(self, "direction", way)
-        object.__setattr__(self, "irradiance", colour("irradiance", irradiance))
+        object.__setattr__(self, "irradiance", colour_or_spectrum("irradiance", irradiance))

@@ -6,10 +6,11 @@ from typing import Any, TypeAlias, Union
 from numpy.typing import ArrayLike
 
 from ..arrays import choice
+from ..textures.spectrum import Spectrum
 from ..textures.texture import Texture, Value
 from ..textures.texture import value as checked_value
 
-EmissionLike: TypeAlias = Union[ArrayLike, Texture, "Emission"]
+EmissionLike: TypeAlias = Union[ArrayLike, Spectrum, Texture, "Emission"]
 Emitted: TypeAlias = Union[Value, "Emission"]
 
 SIDES = ("front", "back", "both")
@@ -24,8 +25,9 @@ class Emission:
 
     Parameters
     ----------
-    radiance : float, 3 floats or Texture
-        Radiance in W·sr⁻¹·m⁻², at least 0: one number, or red, green and blue, or what varies.
+    radiance : float, 3 floats, Spectrum or Texture
+        Radiance in W·sr⁻¹·m⁻², at least 0: one number, or red, green and blue, by wavelength, or what
+        varies.
     both_sides : bool
         Short for ``side="both"``.
     side : {"front", "back", "both"}, optional
@@ -43,7 +45,7 @@ class Emission:
     side: str
 
     def __init__(
-        self, radiance: ArrayLike | Texture, both_sides: bool = False, *, side: str | None = None
+        self, radiance: ArrayLike | Spectrum | Texture, both_sides: bool = False, *, side: str | None = None
     ) -> None:
         if not isinstance(both_sides, bool):
             raise TypeError(f"both_sides must be True or False, got {both_sides!r}")

@@ -4,7 +4,8 @@ from dataclasses import dataclass
 
 from numpy.typing import ArrayLike
 
-from ..arrays import Triple, colour, triple
+from ..arrays import Triple, triple
+from ..textures.spectrum import Spectrum, colour_or_spectrum
 
 
 @dataclass(frozen=True, init=False)
@@ -15,7 +16,7 @@ class PointLight:
     ----------
     position : 3 floats
         Where it is, in the scene's unit of length.
-    intensity : float or 3 floats
+    intensity : float, 3 floats or Spectrum
         Radiant intensity in W·sr⁻¹, at least 0: one number, or red, green and blue.
 
     Raises
@@ -27,8 +28,8 @@ class PointLight:
     """
 
     position: Triple
-    intensity: Triple
+    intensity: Triple | Spectrum
 
-    def __init__(self, position: ArrayLike, intensity: ArrayLike) -> None:
+    def __init__(self, position: ArrayLike, intensity: ArrayLike | Spectrum) -> None:
         object.__setattr__(self, "position", triple("position", position))
-        object.__setattr__(self, "intensity", colour("intensity", intensity))
+        object.__setattr__(self, "intensity", colour_or_spectrum("intensity", intensity))

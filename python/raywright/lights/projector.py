@@ -6,7 +6,8 @@ from os import PathLike
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arrays import Triple, colour, number, triple
+from ..arrays import Triple, number, triple
+from ..textures.spectrum import Spectrum, colour_or_spectrum
 from .pictured import Pictured, Texels, texels
 
 
@@ -30,7 +31,7 @@ class ProjectorLight(Pictured):
         The direction that points up in the picture as it is thrown.
     fov : float
         Vertical angle of the picture in degrees, between 0 and 180.
-    intensity : float or 3 floats
+    intensity : float, 3 floats or Spectrum
         Radiant intensity along the axis where the picture is 1, in W·sr⁻¹, at least 0.
 
     Raises
@@ -49,7 +50,7 @@ class ProjectorLight(Pictured):
     target: Triple
     up: Triple
     fov: float
-    intensity: Triple
+    intensity: Triple | Spectrum
 
     def __init__(
         self,
@@ -58,7 +59,7 @@ class ProjectorLight(Pictured):
         target: ArrayLike,
         up: ArrayLike = (0.0, 1.0, 0.0),
         fov: float = 40.0,
-        intensity: ArrayLike = 1.0,
+        intensity: ArrayLike | Spectrum = 1.0,
     ) -> None:
         values = {
             "image": texels("image", image),
@@ -66,7 +67,7 @@ class ProjectorLight(Pictured):
             "target": triple("target", target),
             "up": triple("up", up),
             "fov": number("fov", fov),
-            "intensity": colour("intensity", intensity),
+            "intensity": colour_or_spectrum("intensity", intensity),
         }
         for name, value in values.items():
             object.__setattr__(self, name, value)

@@ -5,7 +5,8 @@ from typing import Literal, TypeAlias, get_args
 
 from numpy.typing import ArrayLike
 
-from ..arrays import Triple, choice, colour, number, triple
+from ..arrays import Triple, choice, number, triple
+from ..textures.spectrum import Spectrum, colour_or_spectrum
 
 Profile: TypeAlias = Literal["smooth", "linear"]
 
@@ -20,7 +21,7 @@ class SpotLight:
         Where it is, in the scene's unit of length.
     target : 3 floats
         A point on the axis of the cone.
-    intensity : float or 3 floats
+    intensity : float, 3 floats or Spectrum
         Radiant intensity in the middle in W·sr⁻¹, at least 0: one number, or red, green and blue.
     angle : float
         Angle between the axis and the rim in degrees, above 0 and at most 90.
@@ -40,7 +41,7 @@ class SpotLight:
 
     position: Triple
     target: Triple
-    intensity: Triple
+    intensity: Triple | Spectrum
     angle: float
     falloff: float
     profile: Profile
@@ -49,7 +50,7 @@ class SpotLight:
         self,
         position: ArrayLike,
         target: ArrayLike,
-        intensity: ArrayLike,
+        intensity: ArrayLike | Spectrum,
         angle: float = 30.0,
         falloff: float = 5.0,
         profile: Profile = "smooth",
@@ -58,7 +59,7 @@ class SpotLight:
         values = {
             "position": triple("position", position),
             "target": triple("target", target),
-            "intensity": colour("intensity", intensity),
+            "intensity": colour_or_spectrum("intensity", intensity),
             "angle": number("angle", angle),
             "falloff": number("falloff", falloff),
             "profile": profile,

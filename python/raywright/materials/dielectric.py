@@ -10,6 +10,7 @@ from ..arrays import colour, integer, positive
 from ..media.homogeneous import Homogeneous
 from ..media.medium import Medium
 from ..media.medium import medium as checked
+from .dispersion import Dispersion
 from .material import Material, Rough, facets, rough
 
 
@@ -21,8 +22,9 @@ class Dielectric(Material):
 
     Parameters
     ----------
-    ior : float
-        The index of refraction within, above 0: 1.5 for glass, 1.33 for water, 2.42 for diamond.
+    ior : float, Cauchy or Sellmeier
+        The index of refraction within, above 0: 1.5 for glass, 1.33 for water, 2.42 for diamond. One that
+        goes with wavelength, as those of `glasses`, spreads light into its colours.
     roughness : float or Texture, optional
         How rough it is, from 0, smooth, to 1. Its square is the alpha of its facets' distribution, as in
         glTF. 0 if not given.
@@ -60,7 +62,7 @@ class Dielectric(Material):
         If something is not of the kinds above.
     """
 
-    ior: float
+    ior: float | Dispersion
     roughness: Rough | None
     alpha: Rough | None
     priority: int
@@ -70,7 +72,7 @@ class Dielectric(Material):
 
     def __init__(
         self,
-        ior: float = 1.5,
+        ior: float | Dispersion = 1.5,
         roughness: Any = None,
         alpha: Any = None,
         priority: int = 0,
@@ -86,7 +88,7 @@ class Dielectric(Material):
         if transmittance is None and distance is not None:
             raise ValueError(f"distance is that of transmittance, which is not given, got {distance!r}")
         self._set(
-            ior=positive("ior", ior),
+            ior=ior if isinstance(ior, Dispersion) else positive("ior", ior),
             **rough(roughness, alpha, pair=False),
             priority=integer("priority", priority, -(2**31), 2**31 - 1),
             **facets(distribution, multiple_scattering),

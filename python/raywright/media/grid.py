@@ -7,7 +7,8 @@ from typing import Any, Literal, TypeAlias, get_args
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..arrays import Triple, choice, colour, real_array
+from ..arrays import Triple, choice, real_array
+from ..textures.spectrum import Spectrum, colour_or_spectrum
 from .files import read_density
 from .medium import Medium
 from .phases import Isotropic, Phase
@@ -35,7 +36,7 @@ class GridMedium(Medium):
         Least and greatest corner of the grid; the unit cube if not given.
     transform : (4, 4) array, optional
         What takes the grid elsewhere from there.
-    absorption, scattering : float or 3 floats
+    absorption, scattering : float, 3 floats or Spectrum
         The share of light that is absorbed, and scattered, per unit of length where the density is 1.
     phase : HenyeyGreenstein, Rayleigh or Isotropic
         Into which directions it scatters.
@@ -57,10 +58,10 @@ class GridMedium(Medium):
     density: Numbers
     bounds: tuple[Triple, Triple]
     transform: NDArray[np.float64] | None
-    absorption: Triple
-    scattering: Triple
+    absorption: Triple | Spectrum
+    scattering: Triple | Spectrum
     phase: Phase
-    emission: Triple | Numbers
+    emission: Triple | Spectrum | Numbers
     at: At
 
     def __init__(
@@ -69,22 +70,24 @@ class GridMedium(Medium):
         bounds: ArrayLike | None = None,
         *,
         transform: ArrayLike | None = None,
-        absorption: ArrayLike = 0.0,
-        scattering: ArrayLike = 0.0,
+        absorption: ArrayLike | Spectrum = 0.0,
+        scattering: ArrayLike | Spectrum = 0.0,
         phase: Phase = Isotropic(),  # noqa: B008
-        emission: ArrayLike = 0.0,
+        emission: ArrayLike | Spectrum = 0.0,
         at: At = "corners",
     ) -> None:
         choice("at", at, get_args(At))
-        glow = real_array("emission", emission)
+        glow = emission if isinstance(emission, Spectrum) else real_array("emission", emission)
         values = {
             "density": _numbers("density", density, (3,)),
             "bounds": _UNIT if bounds is None else _bounds(bounds),
             "transform": None if transform is None else _transform(transform),
-            "absorption": colour("absorption", absorption),
-            "scattering": colour("scattering", scattering),
+            "absorption": colour_or_spectrum("absorption", absorption),
+            "scattering": colour_or_spectrum("scattering", scattering),
             "phase": checked("phase", phase),
-            "emission": colour("emission", glow) if glow.ndim < 3 else _numbers("emission", glow, (3, 4)),
+            "emission": _numbers("emission", glow, (3, 4))
+            if isinstance(glow, np.ndarray) and glow.ndim >= 3
+            else colour_or_spectrum("emission", glow),
             "at": at,
         }
         for name, value in values.items():

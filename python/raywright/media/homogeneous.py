@@ -4,7 +4,8 @@ from dataclasses import dataclass
 
 from numpy.typing import ArrayLike
 
-from ..arrays import Triple, colour
+from ..arrays import Triple
+from ..textures.spectrum import Spectrum, colour_or_spectrum
 from .medium import Medium
 from .phases import Isotropic, Phase, phase
 
@@ -18,12 +19,12 @@ class Homogeneous(Medium):
 
     Parameters
     ----------
-    absorption, scattering : float or 3 floats
+    absorption, scattering : float, 3 floats or Spectrum
         The share of light that is absorbed, and scattered, per unit of length: one number, or red, green and
         blue, at least 0.
     phase : HenyeyGreenstein, Rayleigh or Isotropic
         Into which directions it scatters.
-    emission : float or 3 floats
+    emission : float, 3 floats or Spectrum
         The radiance that it gives off by itself, per unit of length, at least 0. What is deep then has the
         radiance emission / absorption.
 
@@ -35,17 +36,17 @@ class Homogeneous(Medium):
         If something is not of the kinds above.
     """
 
-    absorption: Triple
-    scattering: Triple
+    absorption: Triple | Spectrum
+    scattering: Triple | Spectrum
     phase: Phase
-    emission: Triple
+    emission: Triple | Spectrum
 
     def __init__(
         self,
-        absorption: ArrayLike = 0.0,
-        scattering: ArrayLike = 0.0,
+        absorption: ArrayLike | Spectrum = 0.0,
+        scattering: ArrayLike | Spectrum = 0.0,
         phase: Phase = Isotropic(),  # noqa: B008
-        emission: ArrayLike = 0.0,
+        emission: ArrayLike | Spectrum = 0.0,
     ) -> None:
         _set(self, absorption=absorption, scattering=scattering, emission=emission)
         object.__setattr__(self, "phase", _phase("phase", phase))
@@ -54,6 +55,6 @@ class Homogeneous(Medium):
 _phase = phase
 
 
-def _set(medium: Medium, **values: ArrayLike) -> None:
+def _set(medium: Medium, **values: ArrayLike | Spectrum) -> None:
     for name, value in values.items():
-        object.__setattr__(medium, name, colour(name, value))
+        object.__setattr__(medium, name, colour_or_spectrum(name, value))

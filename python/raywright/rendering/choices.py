@@ -4,6 +4,7 @@ from dataclasses import replace
 from typing import TypeAlias
 
 from .. import _core
+from ..scene.scene import Scene
 from .plan import Choice, RenderPlan
 from .samplers import Halton, Independent, Lattice, Sampler, Sobol, Stratified
 
@@ -65,6 +66,12 @@ def chosen(
     if batch <= _FEW:
         return _planned(Sobol(batch), f"lattices of {_FEW} points lie on a diagonal", why)
     return _planned(Lattice(batch), f"the least error of all, in batches of more than {_FEW}", why)
+
+
+def waves(scene: Scene) -> tuple[Choice, ...]:
+    """Return why paths carry wavelengths, in a row of the plan; none where red, green and blue tell all."""
+    why = scene.wavelengths
+    return () if why is None else (Choice("wavelengths", "three a path", why),)
 
 
 def _planned(sampler: Sampler, kind: str, batch: str) -> tuple[Sampler, RenderPlan]:

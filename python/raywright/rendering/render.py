@@ -15,7 +15,7 @@ from ..cameras import AnyCamera
 from ..integrators import AnyIntegrator, Path, check_integrator
 from ..scene.scene import Scene
 from .aovs import covers, names_of, seen
-from .choices import Limits, chosen
+from .choices import Limits, chosen, waves
 from .filters import BoxFilter, Filter
 from .gathered import is_gathered, rate, with_bias
 from .image import HISTORY, ErrorEstimate, Image
@@ -213,6 +213,7 @@ def render(
         what = scene, camera, limits, threads, clamp, filter
         integrator, rows, spent = followed(integrator, *what, begun, looks)
         plan = replace(plan, rows=plan.rows + rows, path=integrator)
+    plan = replace(plan, rows=plan.rows + waves(scene))
     transparent = background == "transparent"
     job = Job(scene, camera, integrator, seed, adaptive, clamp, sampler, filter, transparent)
     if checkpoint is not None:

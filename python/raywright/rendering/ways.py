@@ -69,6 +69,9 @@ def followed(
             named[name], why[name] = begun[name], "as the checkpoint has it"
     pixels = camera.width * camera.height
     open_ = [name for name in _PLAIN if name not in why]
+    if open_ and scene.wavelengths is not None:
+        why |= dict.fromkeys(open_, "paths that carry wavelengths neither share nor aim")
+        open_ = []
     if open_ and expected(limits, pixels) * pixels < _SHARE * _core.PILOT:
         why |= dict.fromkeys(open_, "the picture has too few samples to send a pilot")
         open_ = []

@@ -23,6 +23,7 @@ from .arrivals import Arrival
 from .instance import AnyShape, Instance, Shapes, meshes
 from .plan import Plan, PlanRow
 from .progress import BuildProgress, check_progress, watcher
+from .wavelengths import reason
 
 Precision: TypeAlias = Literal["auto", "single", "double"]
 Quality: TypeAlias = Literal["fast build", "balanced", "fast rays"]
@@ -108,6 +109,8 @@ class Scene(Queries):
         choice("quality", quality, get_args(Quality))
         self._precision, self._quality = precision, quality
         self._medium = checked_medium("medium", medium)
+        surroundings = self._environment if isinstance(self._environment, tuple) else (self._environment,)
+        self._wavelengths = reason(self._shapes, (*self._lights, *surroundings, self._medium))
         self._core: _core.CompiledScene | None = None
         self._has_arrived = False
         # A compiled scene of the same shapes.
@@ -156,6 +159,11 @@ class Scene(Queries):
     def medium(self) -> Medium | None:
         """What fills the space in which nothing else is; None is clear."""
         return self._medium
+
+    @property
+    def wavelengths(self) -> str | None:
+        """What of it needs light to be followed by wavelength; None where red, green and blue do."""
+        return self._wavelengths
 
     @property
     def accelerator(self) -> _core.AcceleratorInfo:

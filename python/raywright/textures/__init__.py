@@ -1,12 +1,15 @@
 """What varies over surfaces: wherever a material takes a colour or a number, a texture may stand."""
 
+from .blackbody import Blackbody
 from .checker import Checker
 from .fbm import FBm
+from .illuminants import Illuminants, illuminants
 from .image import ImageTexture
 from .marble import Marble
 from .mix import MixTexture
 from .noise import Noise
 from .product import ProductTexture
+from .spectrum import Spectrum
 from .stripes import Stripes
 from .texture import Texture
 from .transform import ObjectTransform, UvTransform
@@ -14,17 +17,21 @@ from .vertex_colors import VertexColors
 from .wood import Wood
 
 __all__ = [
+    "Blackbody",
     "Checker",
     "FBm",
+    "Illuminants",
     "ImageTexture",
     "Marble",
     "MixTexture",
     "Noise",
     "ObjectTransform",
     "ProductTexture",
+    "Spectrum",
     "Stripes",
     "Texture",
     "UvTransform",
     "VertexColors",
     "Wood",
+    "illuminants",
 ]

@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import dataclass
-from typing import Any, TypeAlias, Union
+from typing import Any, ClassVar, TypeAlias, Union
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -16,6 +16,9 @@ Number: TypeAlias = Union[float, "Texture"]
 @dataclass(frozen=True, init=False)
 class Texture:
     """What varies over a surface. Its subclasses say how."""
+
+    # Whether it may stand for a number, such as a roughness.
+    _is_number: ClassVar[bool] = True
 
     @property
     def range(self) -> tuple[Triple, Triple]:
@@ -70,6 +73,8 @@ def scalar(
     Of a texture with colours, the mean of the channels counts.
     """
     if isinstance(given, Texture):
+        if not given._is_number:
+            raise TypeError(f"{name} must be a texture or one number, got a {type(given).__name__}")
         value(name, given, least, most, above)
         return given
     array = real_array(name, given)

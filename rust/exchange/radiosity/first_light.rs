@@ -29,7 +29,7 @@ pub(super) fn irradiance(
             let Some(origin) = Origin::draw(scene, enclosure, source, sampler.two(0)) else { continue };
             let normal = origin.surface.normal * origin.side;
             let from = RayOrigin::new(&origin.surface);
-            let receiver = LightSampleContext { position: from.ray(normal).origin, normal };
+            let receiver = LightSampleContext { position: from.ray(normal).origin, normal, waves: None };
             let drawn = lamps.lights().sample(lamps.geometry(), &receiver, sampler.one(2), sampler.two(3));
             let Some(light) = drawn else { continue };
             let cosine = light.direction.dot(normal);

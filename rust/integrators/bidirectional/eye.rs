@@ -33,7 +33,7 @@ pub(super) struct EyePath {
 impl EyePath {
     /// What light that comes upon its ray would have been asked for from.
     pub fn receiver(&self, ray: &Ray) -> LightSampleContext {
-        LightSampleContext { position: ray.origin, normal: self.normal }
+        LightSampleContext { position: ray.origin, normal: self.normal, waves: None }
     }
 }
 

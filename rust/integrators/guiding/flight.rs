@@ -45,7 +45,7 @@ pub(super) fn usual(scene: &Scene, photons: &[Photon]) -> f64 {
         asked += 1.0;
         let mut sampler = Sampler::new(1, number, 0);
         let (receiver, choice) =
-            (LightSampleContext { position: photon.position, normal: photon.normal }, sampler.one(0));
+            (LightSampleContext { position: photon.position, normal: photon.normal, waves: None }, sampler.one(0));
         let Some(light) = scene.lights().sample(scene.geometry(), &receiver, choice, sampler.two(1)) else { continue };
         let brings = strength(&light) * light.direction.dot(photon.normal);
         if brings > 0.0 && brings.is_finite() {

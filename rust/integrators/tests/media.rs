@@ -41,7 +41,7 @@ fn block(low: [f32; 3], high: [f32; 3]) -> Mesh {
 }
 
 fn glass(mesh: Mesh, ior: f64, priority: i32, alpha: f64) -> Shape {
-    Shape { material: Arc::new(Glass(Interior { ior, priority }, alpha)), ..shape(mesh, [0.0; 3], 0.0) }
+    Shape { material: Arc::new(Glass(Interior::new(ior, priority), alpha)), ..shape(mesh, [0.0; 3], 0.0) }
 }
 
 /// A slab from one height to another.

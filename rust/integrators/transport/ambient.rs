@@ -4,22 +4,22 @@ use super::features::Features;
 use super::worker::TransportWorker;
 use crate::math::{Hit, Ray};
 use crate::optics::{Bsdf, Rgb};
-use crate::scene::SurfaceInteraction;
+use crate::scene::{Gaze, SurfaceInteraction};
 
 impl<N: Features> TransportWorker<'_, N> {
-    /// Adds what a surface sends back of it to a path of this throughput, whose ray is so wide where it hits, with such
-    /// an index of refraction on the other side.
+    /// Adds what a surface sends back of it to a path of this throughput, that looks at it so, with such an index of
+    /// refraction on the other side.
     #[inline]
     pub(super) fn add_ambient<B: Bsdf>(
         &self,
         here: &SurfaceInteraction<B>,
         (ray, hit): (&Ray, &Hit),
-        (width, outside): (f64, f64),
+        (gaze, outside): (Gaze, f64),
         throughput: Rgb,
         light: &mut Rgb,
     ) {
         if !self.settings.ambient.is_black() {
-            *light += throughput * here.ambient(self.scene, ray, hit, width, outside) * self.settings.ambient;
+            *light += throughput * here.ambient(self.scene, ray, hit, gaze, outside) * self.settings.ambient;
         }
     }
 }

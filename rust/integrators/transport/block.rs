@@ -3,6 +3,7 @@
 use super::dimensions::Dimensions;
 use super::guided::Arrival;
 use super::path_state::PathState;
+use crate::integrators::parting::Parting;
 use crate::integrators::{CameraSample, LocalGuide};
 use crate::math::{Hit, LANES, Ray, RayLanes, VectorLanes};
 use crate::optics::{Diffuse, RgbLanes};
@@ -34,6 +35,8 @@ pub(super) struct Block<'a> {
     /// roulette has been played.
     pub bsdf: BsdfLanes,
     pub width: [f64; LANES],
+    /// What parts the wavelengths of their paths that are to go on.
+    pub parting: [Option<Parting>; LANES],
     pub guides: [Option<LocalGuide<'a>>; LANES],
     pub arrivals: [Arrival; LANES],
 }
@@ -59,6 +62,7 @@ impl Block<'_> {
             reflectance: RgbLanes::ZERO,
             bsdf: BsdfLanes::default(),
             width: [0.0; LANES],
+            parting: [None; LANES],
             guides: [None; LANES],
             arrivals: [Arrival::GoesOn; LANES],
         }

@@ -214,6 +214,7 @@ impl<N: Features> TransportWorker<'_, N> {
     pub(super) fn send(&mut self, block: &Block, lane: usize, next: &BsdfSample, branch: Branch) -> bool {
         let mut path = block.paths[lane];
         path.throughput *= next.weight;
+        self.part(block, lane, &mut path, next);
         path.pdf = next.pdf;
         path.aim(branch.denser);
         if N::GENERAL && branch.splits > 1 {

@@ -13,6 +13,9 @@ impl Dimensions {
     /// What of a group's light is shared: the one of the camera's dimensions that it leaves unused.
     pub const SHARING: u32 = 2;
 
+    /// Which wavelengths a path carries: the same, since such paths share nothing.
+    pub const WAVES: u32 = Self::SHARING;
+
     /// Bounces that the branches of a split path have to themselves. Beyond, they draw the same numbers, of different
     /// meaning.
     const BRANCH: u32 = 1 << 9;

@@ -7,18 +7,19 @@ use super::worker::TransportWorker;
 use crate::math::{Hit, Ray};
 use crate::optics::Rgb;
 use crate::scene::textures::TexturePoint;
-use crate::scene::{LightSampleContext, SurfacePoint};
+use crate::scene::{Gaze, LightSampleContext, SurfacePoint};
 
 impl<N: Features> TransportWorker<'_, N> {
     /// What arrives from outside the scene at a ray that meets nothing.
     #[inline]
     pub(super) fn infinite_light(&self, ray: &Ray, path: &PathState) -> Rgb {
         let lights = self.scene.lights();
-        let arriving = lights.infinite_radiance(ray.direction);
+        let waves = self.waves(path.sample);
+        let arriving = lights.infinite_radiance_at(ray.direction, waves.as_ref());
         if arriving.is_black() || path.pdf == f64::INFINITY {
             return arriving;
         }
-        let receiver = LightSampleContext { position: ray.origin, normal: path.normal };
+        let receiver = LightSampleContext { position: ray.origin, normal: path.normal, waves };
         if !N::PLAIN && path.each {
             let weight = |drawn: f64| power_heuristic(path.pdf, drawn * self.asked_from(path));
             return lights.outside_weighed(&receiver, ray.direction, weight);
@@ -36,18 +37,18 @@ impl<N: Features> TransportWorker<'_, N> {
         }
     }
 
-    /// What a surface sends back along a ray that is so wide where it meets it.
-    pub(super) fn emitted(&self, ray: &Ray, hit: &Hit, surface: &SurfacePoint, path: &PathState, width: f64) -> Rgb {
+    /// What a surface sends back along a ray, by how its path looks at it.
+    pub(super) fn emitted(&self, ray: &Ray, hit: &Hit, surface: &SurfacePoint, path: &PathState, gaze: Gaze) -> Rgb {
         let cosine = -ray.direction.dot(surface.normal);
         let emission = if N::PLAIN {
             self.scene.lights().emission(surface.shape).towards(cosine, &TexturePoint::NOWHERE)
         } else {
-            self.scene.emission_at(surface).sent(self.scene.geometry(), ray, hit, surface, || width)
+            self.scene.emission_at(surface).sent(self.scene.geometry(), ray, hit, surface, || gaze)
         };
         if emission.is_black() || path.pdf == f64::INFINITY {
             return emission;
         }
-        let receiver = LightSampleContext { position: ray.origin, normal: path.normal };
+        let receiver = LightSampleContext { position: ray.origin, normal: path.normal, waves: gaze.waves };
         let (lights, geometry) = (self.scene.lights(), self.scene.geometry());
         let drawn = if !N::PLAIN && path.each {
             lights.own_pdf(geometry, &receiver, ray, hit, cosine)

@@ -18,6 +18,7 @@ mod resampling;
 mod reuse;
 mod shade;
 mod splitting;
+mod waves;
 mod weights;
 mod widths;
 mod worker;

@@ -3,6 +3,7 @@
 use super::features::Carried;
 use crate::math::{DVec3, RayQueue};
 use crate::optics::Rgb;
+use crate::optics::spectra::Waves;
 
 /// A path on its way.
 #[derive(Clone, Copy, Debug)]
@@ -22,6 +23,8 @@ pub(super) struct PathState {
     pub(super) each: bool,
     /// Whether it has come to a surface that gives more than there is, in a channel.
     pub(super) gilded: bool,
+    /// Whether the hero of its wavelengths is all that it carries.
+    pub(super) single: bool,
     /// How much denser directions were drawn than surfaces scatter into them, since the last matt one
     /// ([`super::guided`]).
     pub(super) aimed: f32,
@@ -39,6 +42,7 @@ impl PathState {
             bounce: 0,
             each: false,
             gilded: false,
+            single: false,
             aimed: 1.0,
         }
     }
@@ -60,6 +64,14 @@ impl PathState {
                 self.throughput *= again;
             }
             self.gilded = true;
+        }
+    }
+
+    /// Leaves the hero of its wavelengths alone, which stands for all from here on.
+    pub(super) fn end_all_but_hero(&mut self) {
+        if !self.single {
+            self.throughput = Waves::ended(self.throughput);
+            self.single = true;
         }
     }
 

@@ -64,6 +64,7 @@ impl<'a, N: Features> TransportWorker<'a, N> {
         }
         block.encounters.set_surfaces(&block.surfaces);
         meet(self.level, &directions, &mut block.encounters, &mut block.receivers);
+        self.set_waves(block);
         for lane in 0..LANES {
             let path = &block.paths[lane];
             block.numbers.set(lane, &samples[Self::own(path.sample, samples.len())].sampler);
@@ -103,7 +104,7 @@ impl<'a, N: Features> TransportWorker<'a, N> {
             return Rgb::ZERO;
         }
         let (ray, hit, surface) = (&block.rays[lane], &block.hits[lane], block.surfaces.get(lane));
-        let here = SurfaceInteraction::new(self.scene, ray, hit, surface, block.width[lane], 1.0);
+        let here = SurfaceInteraction::new(self.scene, ray, hit, surface, self.gaze(block, lane), 1.0);
         block.encounters.set(lane, &here);
         block.receivers.set(lane, &here.light_context());
         here.bsdf().diffuse().unwrap_or(Rgb::ZERO)
@@ -138,7 +139,8 @@ impl<'a, N: Features> TransportWorker<'a, N> {
         for lane in 0..block.count {
             let (path, surface) = (&block.paths[lane], block.surfaces.get(lane));
             if self.shines(&surface) && !self.is_known(self.carried(block, lane)) {
-                let emitted = self.emitted(&block.rays[lane], &block.hits[lane], &surface, path, block.width[lane]);
+                let emitted =
+                    self.emitted(&block.rays[lane], &block.hits[lane], &surface, path, self.gaze(block, lane));
                 radiance[path.sample as usize] += path.throughput * emitted;
             }
             block.goes_on[lane] = self.settings.max_depth.is_none_or(|depth| path.bounce < depth);
@@ -152,15 +154,22 @@ impl<'a, N: Features> TransportWorker<'a, N> {
             let (surface, width) = (block.surfaces.get(lane), block.width[lane]);
             let outside = if N::GENERAL && self.passing.is_nested() { self.boundary(block, lane).0 } else { 1.0 };
             let (ray, hit) = (block.rays[lane], block.hits[lane]);
+            let (gaze, (outside, parting)) = (self.gaze(block, lane), self.parting(block, lane, &surface, outside));
             let bsdf = match self.scene.plan().constant(surface.shape, surface.is_front(&ray)) {
                 Some(&bsdf) if outside == 1.0 && width == 0.0 => BsdfMix::One(bsdf),
                 _ => {
-                    let here = SurfaceInteraction::new(self.scene, &ray, &hit, surface, width, outside);
+                    let here = SurfaceInteraction::new(self.scene, &ray, &hit, surface, gaze, outside);
                     block.encounters.set(lane, &here);
                     block.receivers.set(lane, &here.light_context());
                     here.into_bsdf()
                 }
             };
+            if N::GENERAL {
+                block.parting[lane] = parting.filter(|parting| parting.waits(&bsdf));
+                if parting.is_some() && block.parting[lane].is_none() {
+                    block.paths[lane].end_all_but_hero();
+                }
+            }
             if bsdf.transmits() {
                 block.receivers.set(lane, &LightSampleContext::free(surface.position));
             }
@@ -184,7 +193,7 @@ impl<'a, N: Features> TransportWorker<'a, N> {
             block.goes_on[lane] = block.arrivals[lane] != Arrival::Ends;
             if N::GENERAL && block.goes_on[lane] {
                 let light = &mut radiance[path.sample as usize];
-                self.add_ambient(&here, (&ray, &hit), (width, outside), path.throughput, light);
+                self.add_ambient(&here, (&ray, &hit), (gaze, outside), path.throughput, light);
             }
             block.paths[lane] = path;
             if N::GENERAL && block.goes_on[lane] {

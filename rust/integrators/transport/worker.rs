@@ -15,6 +15,7 @@ use crate::integrators::passing::Passing;
 use crate::integrators::shadows::Shadows;
 use crate::integrators::{CameraSample, Guide, Job, LocalGuide, Worker, is_matt};
 use crate::math::{Hit, LANES};
+use crate::optics::spectra::Waves;
 use crate::optics::{Bsdf, Rgb};
 use crate::sampling::SamplerLanes;
 use crate::scene::{Encounter, Footprint, LightLanes, Plan, Scene, SurfaceInteraction};
@@ -49,6 +50,8 @@ pub(super) struct TransportWorker<'a, N> {
     /// What is drawn of each of few lights.
     pub(super) each: Vec<LightLanes>,
     pub(super) reuse: Reuse,
+    /// The wavelengths of samples; none where they find red, green and blue.
+    pub(super) waves: Vec<Waves>,
     /// What samples find for themselves, and then what they find for sharing.
     found: Vec<Rgb>,
     features: PhantomData<N>,
@@ -77,6 +80,7 @@ impl<'a, N: Features> TransportWorker<'a, N> {
             shadows: Shadows::default(),
             each: Vec::new(),
             reuse: Reuse::default(),
+            waves: Vec::new(),
             found: Vec::new(),
             features: PhantomData,
         }
@@ -153,6 +157,7 @@ impl<'a, N: Features> TransportWorker<'a, N> {
 impl<N: Features> TransportWorker<'_, N> {
     /// Follows the paths of these samples to their ends, and adds what they find.
     fn follow(&mut self, samples: &mut [CameraSample], cancel: &Cancel, radiance: &mut [Rgb]) {
+        self.draw_waves(samples);
         self.start(samples);
         while !self.now.rays.is_empty() && !cancel.is_raised() {
             self.hits.resize(self.now.rays.len(), Hit::MISS);
@@ -168,6 +173,7 @@ impl<N: Features> TransportWorker<'_, N> {
                 }
             });
         }
+        self.see_waves(radiance);
     }
 }
 

@@ -12,7 +12,8 @@ use crate::integrators::shadows::opacity;
 use crate::integrators::transport::power_heuristic;
 use crate::math::{Hit, Ray};
 use crate::optics::Rgb;
-use crate::scene::{Encounter, LightSample};
+use crate::optics::spectra::Waves;
+use crate::scene::{Encounter, LightSample, LightSampleContext};
 use crate::workers::Cancel;
 
 impl Walker<'_> {
@@ -30,7 +31,8 @@ impl Walker<'_> {
         let choice = numbers.ray.light_choice(0);
         let (choice, u) = (numbers.one(choice), numbers.two(choice + 1));
         let (lights, geometry) = (self.scene.lights(), self.scene.geometry());
-        let light = lights.sample(geometry, &here.light_context(), choice, u)?;
+        let light =
+            lights.sample(geometry, &LightSampleContext { waves: path.waves, ..here.light_context() }, choice, u)?;
         let arrives = self.arriving(here, path, &light, media(&light), hero, numbers, cancel)?;
         Some((light, arrives))
     }
@@ -61,7 +63,7 @@ impl Walker<'_> {
         // Running into a light that is a point or of a single direction never happens.
         let by_chance = path.weights.drawn * if self.follows_all() { pdf / light.pdf } else { 0.0 };
         let mut weights = Weights { carried, drawn: by_chance, asked: path.weights.drawn };
-        self.shadow(ray, media, &mut weights, hero, numbers, cancel);
+        self.shadow(ray, media, &mut weights, (hero, path.waves), numbers, cancel);
         let asked = weights.asked.mean();
         Some(weights.carried / asked * power_heuristic(asked, weights.drawn.mean()))
     }
@@ -72,7 +74,7 @@ impl Walker<'_> {
         mut ray: Ray,
         mut media: MediumStack<Filled>,
         weights: &mut Weights,
-        hero: usize,
+        (hero, waves): (usize, Option<Waves>),
         numbers: &mut Numbers,
         cancel: &Cancel,
     ) {
@@ -94,7 +96,7 @@ impl Walker<'_> {
             let end = if hit.is_hit() { hit.t } else { ray.t_max };
             if let Some((medium, within)) = filled::around(self.scene, &media, &ray) {
                 let span = [start, end];
-                let flight = Flight { medium, ray: within, span, length, scatters: self.settings.scatters };
+                let flight = Flight { medium, ray: within, span, length, scatters: self.settings.scatters, waves };
                 flight.fade(weights, hero, numbers, cancel);
             }
             weights.carried *= left;

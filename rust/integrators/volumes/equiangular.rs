@@ -8,8 +8,8 @@ use super::weights::Weights;
 use crate::integrators::transport::power_heuristic;
 use crate::math::{DVec3, Ray};
 use crate::optics::{Phase, Rgb};
-use crate::scene::Encounter;
 use crate::scene::media::Coefficients;
+use crate::scene::{Encounter, LightSampleContext};
 use crate::workers::Cancel;
 
 /// A part of a ray of unit direction on which places are drawn as a point sees them, the same number in the same angle
@@ -67,7 +67,8 @@ impl Walker<'_> {
         let pdf = ways.pdf(t) / count;
         let left = here.left(t - span[0]);
         let point = Scattering { position: path.ray.at(t), before: path.ray.direction, phase };
-        let Some(light) = light.sample(&point.light_context(), [0.5; 2]) else {
+        let Some(light) = light.sample(&LightSampleContext { waves: path.waves, ..point.light_context() }, [0.5; 2])
+        else {
             return Rgb::ZERO;
         };
         let weights = Weights { carried: path.weights.carried * here.scattering * left / pdf, ..path.weights };

@@ -21,7 +21,7 @@ impl Flight<'_> {
         let scatters = self.scatters && self.medium.scatters();
         let mut start = self.span[0];
         for stretch in self.medium.stretches(&self.ray, self.span) {
-            match stretch.content {
+            match self.content(&stretch) {
                 Content::Even(here) => {
                     let left = here.left((stretch.end - start) * self.length);
                     let drawn = if self.scatters && !here.scattering.is_black() { left } else { Rgb::ONE };
@@ -61,7 +61,7 @@ impl Flight<'_> {
             t = (t + way / self.length).min(end);
             let left = (most * -way).map(f64::exp);
             let met = left / (most[hero] * left[hero]);
-            let nothing = (most - self.medium.at(self.ray.at(t)).extinction).at_least(Rgb::ZERO);
+            let nothing = (most - self.at(t).extinction).at_least(Rgb::ZERO);
             weights.times(nothing * met, if scatters { nothing * met } else { most * met }, most * met);
             if weights.carried.max() < FAINT * before {
                 if numbers.next() >= SURVIVAL {

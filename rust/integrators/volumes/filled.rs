@@ -2,6 +2,7 @@
 
 use crate::integrators::nesting::{Filling, MediumStack};
 use crate::math::{Hit, Ray};
+use crate::optics::Dispersive;
 use crate::scene::Scene;
 use crate::scene::media::Medium;
 
@@ -10,20 +11,21 @@ use crate::scene::media::Medium;
 pub(super) struct Filled {
     priority: i32,
     ior: Option<f64>,
+    dispersion: Dispersive,
     /// The primitive that stands for the shape, and of an instance the one in it.
     shape: (u32, u32),
 }
 
 impl Filling for Filled {
-    const NONE: Self = Self { priority: i32::MIN, ior: None, shape: (u32::MAX, 0) };
+    const NONE: Self = Self { priority: i32::MIN, ior: None, dispersion: Dispersive::NONE, shape: (u32::MAX, 0) };
 
     fn of(scene: &Scene, hit: &Hit) -> Option<Self> {
         let material = scene.material_of(hit);
-        let (priority, ior) = match material.interior() {
-            Some(interior) => (interior.priority, Some(interior.ior)),
-            None => (material.boundary()?, None),
+        let (priority, ior, dispersion) = match material.interior() {
+            Some(interior) => (interior.priority, Some(interior.ior), interior.dispersion),
+            None => (material.boundary()?, None, Dispersive::NONE),
         };
-        Some(Self { priority, ior, shape: scene.geometry().first_alike(hit.primitive, hit.inner) })
+        Some(Self { priority, ior, dispersion, shape: scene.geometry().first_alike(hit.primitive, hit.inner) })
     }
 
     /// By priority; of equal ones, what refracts more; of those, what was described later.
@@ -34,6 +36,10 @@ impl Filling for Filled {
 
     fn ior(&self) -> Option<f64> {
         self.ior
+    }
+
+    fn dispersion(&self) -> Dispersive {
+        self.dispersion
     }
 }
 

@@ -4,7 +4,8 @@ use super::numbers::Numbers;
 use super::weights::Weights;
 use crate::math::Ray;
 use crate::optics::Rgb;
-use crate::scene::media::{Coefficients, Content, Medium};
+use crate::optics::spectra::Waves;
+use crate::scene::media::{Coefficients, Content, Medium, Stretch};
 use crate::workers::Cancel;
 
 /// A part of a ray in a medium.
@@ -18,6 +19,8 @@ pub(super) struct Flight<'a> {
     pub length: f64,
     /// Whether what is scattered counts; if not, it is lost.
     pub scatters: bool,
+    /// The wavelengths of what is on the way; none for red, green and blue.
+    pub waves: Option<Waves>,
 }
 
 /// What a ray in a medium has come to.
@@ -37,6 +40,23 @@ impl Flight<'_> {
         (to - from) * self.length
     }
 
+    /// What is at a `t` of the ray.
+    #[inline]
+    pub(super) fn at(&self, t: f64) -> Coefficients {
+        let here = self.medium.at(self.ray.at(t));
+        self.waves.as_ref().map_or(here, |waves| self.medium.by_waves(here, waves))
+    }
+
+    /// What is in a stretch of it.
+    #[inline]
+    pub(super) fn content(&self, stretch: &Stretch) -> Content {
+        match (stretch.content, &self.waves) {
+            (Content::Even(here), Some(waves)) => Content::Even(self.medium.by_waves(here, waves)),
+            (Content::Varies(most), Some(waves)) => Content::Varies(self.medium.most_by_waves(most, waves)),
+            (content, None) => content,
+        }
+    }
+
     /// Draws how far it gets: where it is scattered, or none if it gets to its end. `depth` is the optical depth that
     /// it is still to get through before that, for its hero; `light` is added what it comes by that glows.
     ///
@@ -54,7 +74,7 @@ impl Flight<'_> {
         let mut start = self.span[0];
         for stretch in self.medium.stretches(&self.ray, self.span) {
             let span = [start, stretch.end];
-            let found = match stretch.content {
+            let found = match self.content(&stretch) {
                 Content::Even(here) => self.fly_evenly(&here, span, weights, (hero, depth), light),
                 Content::Varies(most) => self.track(most, span, weights, (hero, depth), numbers, cancel, light),
             };
@@ -125,7 +145,7 @@ impl Flight<'_> {
             *depth = numbers.depth();
             t = (t + way / self.length).min(end);
             let left = (most * -way).map(f64::exp);
-            let here = self.medium.at(self.ray.at(t));
+            let here = self.at(t);
             let met = left / (most[hero] * left[hero]);
             if !here.emission.is_black() {
                 *light += weights.carried * here.emission * met / (weights.drawn * most * met).mean();

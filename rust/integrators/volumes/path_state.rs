@@ -3,8 +3,11 @@
 use super::filled::Filled;
 use super::weights::Weights;
 use crate::integrators::nesting::MediumStack;
+use crate::integrators::parting::Parting;
 use crate::math::{DVec3, Ray};
-use crate::optics::Rgb;
+use crate::optics::spectra::Waves;
+use crate::optics::{BsdfSample, Rgb};
+use crate::scene::{Scene, SurfacePoint};
 
 /// A path on its way.
 #[derive(Clone, Copy, Debug)]
@@ -26,11 +29,14 @@ pub(super) struct PathState {
     pub branch: u32,
     /// Whether it has come to a surface that gives more than there is, in a channel.
     pub gilded: bool,
+    /// Its wavelengths; none for red, green and blue. And whether the first is all that it carries.
+    pub waves: Option<Waves>,
+    pub single: bool,
 }
 
 impl PathState {
     /// That of a camera's ray, which starts in these media.
-    pub fn of_camera(ray: Ray, media: MediumStack<Filled>) -> Self {
+    pub fn of_camera(ray: Ray, media: MediumStack<Filled>, waves: Option<Waves>) -> Self {
         Self {
             ray,
             weights: Weights::START,
@@ -41,6 +47,43 @@ impl PathState {
             bounce: 0,
             branch: 0,
             gilded: false,
+            waves,
+            single: false,
+        }
+    }
+
+    /// It comes to a surface, beyond which it would be in other media: what parts its wavelengths there, if anything
+    /// does, and the index of refraction around.
+    pub fn parting(
+        &self,
+        scene: &Scene,
+        surface: &SurfacePoint,
+        beyond: &MediumStack<Filled>,
+        outside: f64,
+    ) -> (f64, Option<Parting>) {
+        let Some(waves) = &self.waves else { return (outside, None) };
+        let is_front = surface.is_front(&self.ray);
+        let around = if is_front { &self.media } else { beyond }.dispersion();
+        Parting::at(scene.material_at(surface), is_front, (outside, around), waves)
+    }
+
+    /// It goes on along a direction drawn at a surface that parts wavelengths, if they have come together so far.
+    pub fn part(&mut self, parting: Option<&Parting>, wo: DVec3, next: &BsdfSample) {
+        match parting {
+            Some(_) if next.is_through => self.end_all_but_hero(),
+            Some(parting) if !self.single => {
+                let by = parting.mirrored(wo);
+                self.weights.times(by, by, Rgb::ONE);
+            }
+            _ => {}
+        }
+    }
+
+    /// Leaves the hero of its wavelengths alone, which stands for all from here on.
+    pub fn end_all_but_hero(&mut self) {
+        if !self.single {
+            self.weights.end_all_but_hero();
+            (self.waves, self.single) = (self.waves.map(|waves| waves.alone()), true);
         }
     }
 

@@ -8,10 +8,12 @@ use super::scattering::Scattering;
 use super::surfaces::{Met, meet};
 use super::{Onwards, Volumes};
 use crate::integrators::nesting::MediumStack;
+use crate::integrators::parting::Parting;
 use crate::integrators::shadows::opacity;
 use crate::integrators::transport::{Dimensions, power_heuristic};
 use crate::integrators::{CameraSample, Worker, roulette};
 use crate::math::{DVec3, Hit, Ray};
+use crate::optics::spectra::Waves;
 use crate::optics::{Bsdf, BsdfSample, Rgb};
 use crate::scene::{Encounter, Light, LightSample, LightSampleContext, Scene, SurfaceInteraction};
 use crate::workers::Cancel;
@@ -54,9 +56,12 @@ impl<'a> Walker<'a> {
     /// What arrives along a camera's ray.
     fn follow(&mut self, sample: &mut CameraSample, media: MediumStack<Filled>, cancel: &Cancel) -> Rgb {
         let mut light = Rgb::ZERO;
-        let hero = ((sample.sampler.one(Dimensions::SHARING) * 3.0) as usize).min(2);
+        let u = sample.sampler.one(Dimensions::WAVES);
+        let waves = self.scene.plan().needs().waves.then(|| Waves::of(u));
+        // The first of the wavelengths is the hero; of red, green and blue it is any.
+        let hero = if waves.is_some() { 0 } else { ((u * 3.0) as usize).min(2) };
         self.waiting.clear();
-        self.waiting.push(PathState::of_camera(sample.ray, media));
+        self.waiting.push(PathState::of_camera(sample.ray, media, waves));
         let mut numbers = Numbers::new(&mut sample.sampler);
         while let Some(mut path) = self.waiting.pop() {
             while !cancel.is_raised() {
@@ -76,7 +81,7 @@ impl<'a> Walker<'a> {
                 }
             }
         }
-        light
+        waves.map_or(light, |waves| waves.seen(light))
     }
 
     /// Takes a path along its ray to where it is scattered next; none if it leaves the scene, and with what arrives
@@ -97,7 +102,11 @@ impl<'a> Walker<'a> {
         while !cancel.is_raised() {
             let around = filled::around(self.scene, &path.media, &path.ray);
             let scattering = around.as_ref().filter(|(medium, _)| self.settings.scatters && medium.is_even());
-            let even = scattering.map(|(medium, within)| medium.at(within.origin));
+            let waves = path.waves;
+            let even = scattering.map(|(medium, within)| {
+                let here = medium.at(within.origin);
+                waves.as_ref().map_or(here, |waves| medium.by_waves(here, waves))
+            });
             let even = even.filter(|here| !here.scattering.is_black());
             let is_lit = even.is_some() && may_scatter && !self.points.is_empty();
             let mut asked = path.ray;
@@ -115,7 +124,7 @@ impl<'a> Walker<'a> {
                 if let Some(here) = even.filter(|_| is_lit) {
                     *light += self.lit_on_the_way(path, span, &here, medium.phase(), hero, numbers, cancel);
                 }
-                let flight = Flight { medium, ray: within, span, length: 1.0, scatters: self.settings.scatters };
+                let flight = Flight { medium, ray: within, span, length: 1.0, scatters: self.settings.scatters, waves };
                 let weights = &mut path.weights;
                 if let Some(Collision { t, density }) = flight.fly(weights, (hero, &mut way), numbers, cancel, light) {
                     let phase = medium.phase();
@@ -150,11 +159,11 @@ impl<'a> Walker<'a> {
     /// What comes from outside the scene along a path's ray, weighed beside asking for it.
     fn light_from_outside(&self, path: &PathState) -> Rgb {
         let lights = self.scene.lights();
-        let arriving = lights.infinite_radiance(path.ray.direction);
+        let arriving = lights.infinite_radiance_at(path.ray.direction, path.waves.as_ref());
         if arriving.is_black() {
             return arriving;
         }
-        let receiver = LightSampleContext { position: path.ray.origin, normal: path.normal };
+        let receiver = LightSampleContext { position: path.ray.origin, normal: path.normal, waves: path.waves };
         arriving * self.by_chance(path, || lights.infinite_pdf(&receiver, path.ray.direction))
     }
 
@@ -219,19 +228,24 @@ impl<'a> Walker<'a> {
         let surface = geometry.surface(&ray, &hit);
         let emission = scene.emission_at(&surface);
         if !emission.is_dark() {
-            let sent = emission.sent(geometry, &ray, &hit, &surface, || 0.0);
+            let sent = emission.sent(geometry, &ray, &hit, &surface, || path.waves);
             let cosine = -ray.direction.dot(surface.normal);
-            let receiver = LightSampleContext { position: ray.origin, normal: path.normal };
+            let receiver = LightSampleContext { position: ray.origin, normal: path.normal, waves: path.waves };
             let asked = || scene.lights().surface_pdf(geometry, &receiver, &ray, &hit, cosine);
             *light += path.weights.throughput() * sent * self.by_chance(path, asked);
         }
         if self.settings.max_depth.is_some_and(|most| path.bounce >= most) {
             return false;
         }
-        let here = SurfaceInteraction::new(scene, &ray, &hit, surface, 0.0, outside);
+        let (outside, parting) = path.parting(scene, &surface, &through, outside);
+        let here = SurfaceInteraction::new(scene, &ray, &hit, surface, path.waves, outside);
+        let waiting = parting.filter(|parting| parting.waits(here.bsdf()));
+        if parting.is_some() && waiting.is_none() {
+            path.end_all_but_hero();
+        }
         path.meet(here.bsdf().again());
         if !self.settings.ambient.is_black() {
-            let share = here.ambient(scene, &ray, &hit, 0.0, outside);
+            let share = here.ambient(scene, &ray, &hit, path.waves, outside);
             *light += path.weights.throughput() * share * self.settings.ambient;
         }
         if !here.bsdf().is_delta() {
@@ -242,23 +256,31 @@ impl<'a> Walker<'a> {
             }
         }
         if !self.follows_all() {
-            return self.split(path, &here, through);
+            return self.split(path, &here, through, waiting.as_ref());
         }
         let choice = numbers.ray.scattering_choice();
         let u = numbers.two(choice + 1);
         let Some(next) = here.sample(|| numbers.one(choice), u) else { return false };
         let media = if next.is_through { through } else { path.media };
         let chance = numbers.ray.roulette();
+        path.part(waiting.as_ref(), here.wo(), &next);
         self.go_on(path, &here, &next, media, numbers.one(chance), true)
     }
 
     /// Sends on a path for every single direction that a surface scatters into.
-    fn split(&mut self, path: &PathState, here: &SurfaceInteraction, through: MediumStack<Filled>) -> bool {
+    fn split(
+        &mut self,
+        path: &PathState,
+        here: &SurfaceInteraction,
+        through: MediumStack<Filled>,
+        parting: Option<&Parting>,
+    ) -> bool {
         let mut branch = path.branch.wrapping_mul(2);
         let mut sent = Vec::new();
         here.bsdf().delta_lobes(here.wo(), |single| {
             if let Some(next) = here.to_world(single) {
                 let mut one = PathState { branch, ..*path };
+                one.part(parting, here.wo(), &next);
                 let media = if next.is_through { through } else { path.media };
                 if self.go_on(&mut one, here, &next, media, 0.0, true) {
                     sent.push(one);

@@ -1,6 +1,7 @@
 //! How much what is found along a path counts.
 
 use crate::optics::Rgb;
+use crate::optics::spectra::Waves;
 
 /// What a path carries for three wavelengths, all over the density with which the one that decides, the hero, has
 /// drawn it so far: its own density there is 1, so that no mean of three is below a third.
@@ -22,6 +23,13 @@ impl Weights {
     #[inline]
     pub fn throughput(&self) -> Rgb {
         self.carried / self.drawn.mean()
+    }
+
+    /// Leaves the light of the first alone, the hero, which stands for all three: no other could have drawn what
+    /// follows, and so its own density is all that the path so far counts over.
+    pub fn end_all_but_hero(&mut self) {
+        let (carried, asked) = (Waves::ended(self.carried), Rgb::splat(self.asked[0]));
+        *self = Self { carried, drawn: Rgb::ONE, asked };
     }
 
     /// Multiplies all three.

@@ -5,6 +5,7 @@ use crate::sampling::Sampler;
 fn look() -> Look {
     Look {
         base_color: Rgb::new(0.8, 0.5, 0.2),
+        luminance: Rgb::new(0.8, 0.5, 0.2).luminance(),
         roughness: 0.5,
         anisotropic: 0.0,
         transmission: 0.0,
@@ -165,7 +166,7 @@ fn draws_are_as_dense_as_they_say() {
 fn little_light_is_gained() {
     for roughness in [0.1, 0.5, 1.0] {
         for transmission in [0.0, 0.5, 1.0] {
-            let white = Look { base_color: Rgb::ONE, roughness, transmission, ..look() };
+            let white = Look { base_color: Rgb::ONE, luminance: 1.0, roughness, transmission, ..look() };
             let kinds: [AnyBsdf; 2] = [
                 Principled::new(white, 1.5, 0.0, [0.0; 2], transmission > 0.0).into(),
                 PrincipledThin::new(white, 1.5, 0.5).into(),

@@ -2,17 +2,25 @@
 //!
 //! Wavelengths are in nm. What is seen lies between [`FIRST`] and [`LAST`], where the eye's response is tabulated.
 
+mod any;
 mod daylight;
 mod linear;
 mod observer;
 mod primaries;
 mod response;
+mod sigmoid;
+mod table;
+mod waves;
 
+pub use any::Spectrum;
 pub use daylight::daylight;
 pub use linear::at;
 pub use observer::matching;
 pub use primaries::{xyz_of_primaries, xyz_to_rgb};
 pub use response::{Illuminant, Response};
+pub use sigmoid::{Role, Smooth};
+pub use table::{Table, Told};
+pub use waves::Waves;
 
 /// The shortest wavelength that is seen, nm.
 pub const FIRST: f64 = 360.0;

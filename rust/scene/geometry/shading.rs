@@ -6,7 +6,7 @@ use crate::accel::Primitives;
 use crate::math::{DVec3, Hit, Ray};
 use crate::optics::Rgb;
 use crate::scene::textures::{Needs, TexturePoint};
-use crate::scene::{ShadingPoint, SurfacePoint};
+use crate::scene::{Gaze, ShadingPoint, SurfacePoint};
 
 impl Geometry {
     /// What is needed of the point where a ray hits a surface, as seen from the front.
@@ -85,13 +85,22 @@ impl Geometry {
 }
 
 impl ShadingPoint {
-    /// What is needed of the point where a ray hits a surface, `width` being that of the footprint there.
-    pub fn new(geometry: &Geometry, ray: &Ray, hit: &Hit, point: SurfacePoint, needs: Needs, width: f64) -> Self {
+    /// What is needed of the point where a ray hits a surface, by how it is looked at.
+    pub fn new(
+        geometry: &Geometry,
+        ray: &Ray,
+        hit: &Hit,
+        point: SurfacePoint,
+        needs: Needs,
+        gaze: impl Into<Gaze>,
+    ) -> Self {
+        let Gaze { width, waves } = gaze.into();
         let mut here = Self::plain(point);
-        if needs.any() {
+        if needs.of_place() {
             here = geometry.shading_point(ray, hit, point, needs);
         }
         here.is_front = point.is_front(ray);
+        here.texture.waves = waves;
         if needs.width {
             // An ellipse on the surface whose short axis is the width; the mean of its axes is taken for its size.
             let cosine = ray.direction.dot(point.normal).abs().max(1e-3);
@@ -115,7 +124,7 @@ mod tests {
     use crate::simd::Level;
     use std::sync::Arc;
 
-    const ALL: Needs = Needs { uv: true, colours: true, position: true, width: true, tangents: true };
+    const ALL: Needs = Needs { uv: true, colours: true, position: true, width: true, tangents: true, waves: false };
 
     fn mesh() -> Mesh {
         Mesh {

@@ -166,7 +166,7 @@ impl Lights {
             .lights()
             .iter()
             .enumerate()
-            .map(|(one, light)| (one, light, light.infinite_radiance(direction)));
+            .map(|(one, light)| (one, light, light.infinite_radiance_at(direction, receiver.waves.as_ref())));
         let seen = each.filter(|(.., radiance)| !radiance.is_black());
         let drawn =
             |one: usize, light: &dyn Light| self.infinite.own_share(one) * light.infinite_pdf(receiver, direction);

@@ -3,6 +3,7 @@
 use super::{Light, LightSample, LightSampleContext};
 use crate::math::DVec3;
 use crate::optics::Rgb;
+use crate::optics::spectra::Waves;
 use std::sync::Arc;
 
 /// All lights that shine from outside.
@@ -75,8 +76,8 @@ impl InfiniteLights {
 
     /// The sum of all radiance along a direction.
     #[inline]
-    pub fn radiance(&self, direction: DVec3) -> Rgb {
-        self.lights.iter().map(|light| light.infinite_radiance(direction)).sum()
+    pub fn radiance(&self, direction: DVec3, waves: Option<&Waves>) -> Rgb {
+        self.lights.iter().map(|light| light.infinite_radiance_at(direction, waves)).sum()
     }
 
     /// The density of [`InfiniteLights::sample`].
@@ -122,7 +123,11 @@ impl InfiniteLights {
             return Some(sample.chosen(probability));
         }
         let pdf = self.pdf(receiver, sample.direction);
-        (pdf > 0.0).then(|| LightSample { weight: self.radiance(sample.direction) / pdf, pdf, ..sample })
+        (pdf > 0.0).then(|| LightSample {
+            weight: self.radiance(sample.direction, receiver.waves.as_ref()) / pdf,
+            pdf,
+            ..sample
+        })
     }
 
     /// The memory held.

@@ -166,7 +166,7 @@ impl Copied {
                 let from = pose.enter(&Ray::new(receiver.position, DVec3::Z)).origin;
                 let (seen, uv) = surface::seen(shape, emission.needs(), from, u)?;
                 let surface = pose.point(&prototype.geometry().on_shape(own, &seen.site))?;
-                let sends = |ray: &Ray, hit: &Hit| emission.sent(geometry, ray, hit, &surface, || 0.0);
+                let sends = |ray: &Ray, hit: &Hit| emission.sent(geometry, ray, hit, &surface, || receiver.waves);
                 let density = |direction: DVec3, _| seen.pdf * pose.crowding(direction);
                 surface::sample(receiver, &surface, place, uv, density, sends)
             }
@@ -174,7 +174,7 @@ impl Copied {
                 let seen = SeenTriangle::new(*corners, receiver.position);
                 let uv = seen.sample(u);
                 let surface = pose.point(&prototype.geometry().on_triangle(own, uv))?;
-                let sends = |ray: &Ray, hit: &Hit| emission.sent(geometry, ray, hit, &surface, || 0.0);
+                let sends = |ray: &Ray, hit: &Hit| emission.sent(geometry, ray, hit, &surface, || receiver.waves);
                 let density = |direction: DVec3, distance| seen.pdf(distance, direction.dot(surface.normal));
                 surface::sample(receiver, &surface, place, uv, density, sends)
             }

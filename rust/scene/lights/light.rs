@@ -3,6 +3,7 @@
 use super::{LightBounds, LightContextLanes, LightLanes, LightSample, LightSampleContext, PointEmission};
 use crate::math::DVec3;
 use crate::optics::Rgb;
+use crate::optics::spectra::Waves;
 use crate::sampling::Pairs;
 use crate::simd::Level;
 use std::fmt::Debug;
@@ -58,6 +59,16 @@ pub trait Light: Debug + Send + Sync {
     /// is found by its samples only.
     fn infinite_radiance(&self, _direction: DVec3) -> Rgb {
         Rgb::ZERO
+    }
+
+    /// The same at some wavelengths, if it is asked for those.
+    fn infinite_radiance_at(&self, direction: DVec3, _waves: Option<&Waves>) -> Rgb {
+        self.infinite_radiance(direction)
+    }
+
+    /// Whether it is told by wavelength.
+    fn has_waves(&self) -> bool {
+        false
     }
 
     /// The density in solid angle with which [`Light::sample`] draws such a direction: above 0 wherever

@@ -2,6 +2,7 @@
 
 use super::{LightSample, LightSampleContext};
 use crate::math::{DVec3, LANES, Ray, VectorLanes};
+use crate::optics::spectra::Waves;
 use crate::optics::{Rgb, RgbLanes};
 use crate::sampling::Pairs;
 use crate::scene::RayOrigin;
@@ -11,19 +12,27 @@ use crate::scene::RayOrigin;
 pub struct LightContextLanes {
     pub(super) position: VectorLanes,
     pub(super) normal: VectorLanes,
+    waves: [Option<Waves>; LANES],
 }
 
 impl LightContextLanes {
     /// Nowhere.
-    pub const NONE: Self = Self { position: VectorLanes::ZERO, normal: VectorLanes::ZERO };
+    pub const NONE: Self = Self { position: VectorLanes::ZERO, normal: VectorLanes::ZERO, waves: [None; LANES] };
 
     /// That of a lane.
     #[inline(always)]
     pub fn get(&self, lane: usize) -> LightSampleContext {
-        LightSampleContext { position: self.position.get(lane), normal: self.normal.get(lane) }
+        let (position, normal) = (self.position.get(lane), self.normal.get(lane));
+        LightSampleContext { position, normal, waves: self.waves[lane] }
     }
 
-    /// Sets that of a lane.
+    /// Sets the wavelengths of a lane.
+    #[inline]
+    pub fn set_waves(&mut self, lane: usize, waves: Option<Waves>) {
+        self.waves[lane] = waves;
+    }
+
+    /// Sets that of a lane, but for its wavelengths.
     #[inline(always)]
     pub fn set(&mut self, lane: usize, receiver: &LightSampleContext) {
         self.position.set(lane, receiver.position);

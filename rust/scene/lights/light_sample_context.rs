@@ -1,6 +1,7 @@
 //! What light falls on.
 
 use crate::math::DVec3;
+use crate::optics::spectra::Waves;
 
 /// A point that light is asked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -10,12 +11,14 @@ pub struct LightSampleContext {
     /// The unit shading normal on the side that light counts on; zero where light from everywhere does, as at surfaces
     /// that let light through, and in media.
     pub normal: DVec3,
+    /// The wavelengths at which it is asked for; none for red, green and blue.
+    pub waves: Option<Waves>,
 }
 
 impl LightSampleContext {
     /// A point that light reaches from everywhere.
     pub fn free(position: DVec3) -> Self {
-        Self { position, normal: DVec3::ZERO }
+        Self { position, normal: DVec3::ZERO, waves: None }
     }
 
     /// Whether light from everywhere counts.

@@ -28,6 +28,7 @@ mod surface;
 mod tests;
 mod tree;
 mod triangle;
+mod waved;
 
 pub use bounds::LightBounds;
 pub use constant::ConstantEnvironment;
@@ -47,11 +48,13 @@ pub use sky::SunSky;
 pub use spot::{Profile, SpotLight};
 pub use tree::LightTree;
 pub(crate) use triangle::SeenTriangle;
+pub use waved::Waved;
 
 use super::{Emission, Geometry, Sides};
 use crate::accel::Primitives;
 use crate::math::{DVec3, Hit, Ray};
 use crate::optics::Rgb;
+use crate::optics::spectra::Waves;
 use choice::{Choice, Strength};
 use few::Few;
 use infinite::InfiniteLights;
@@ -191,7 +194,13 @@ impl Lights {
     /// Radiance that comes from outside along a unit direction, of all lights there.
     #[inline]
     pub fn infinite_radiance(&self, direction: DVec3) -> Rgb {
-        self.infinite.radiance(direction)
+        self.infinite.radiance(direction, None)
+    }
+
+    /// The same at some wavelengths.
+    #[inline]
+    pub fn infinite_radiance_at(&self, direction: DVec3, waves: Option<&Waves>) -> Rgb {
+        self.infinite.radiance(direction, waves)
     }
 
     /// Draws light that reaches a receiver: a light by `choice`, and of that a direction by `u`. `None` if the draw

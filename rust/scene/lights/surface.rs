@@ -6,26 +6,26 @@ use crate::accel::Primitives;
 use crate::math::{DVec3, Hit, Ray};
 use crate::optics::Rgb;
 use crate::scene::textures::{Needs, TexturePoint};
-use crate::scene::{Geometry, RayOrigin, ShadingPoint, SurfacePoint};
+use crate::scene::{Gaze, Geometry, RayOrigin, ShadingPoint, SurfacePoint};
 use crate::shapes::{Drawn, Seen, Shape};
 
 impl Emission {
-    /// What a surface sends back along a ray of unit direction that meets it; `width` is that of the footprint there,
-    /// if anybody asks.
+    /// What a surface sends back along a ray of unit direction that meets it; `gaze` is how it is looked at there, if
+    /// anybody asks.
     #[inline]
-    pub fn sent(
+    pub fn sent<G: Into<Gaze>>(
         &self,
         geometry: &Geometry,
         ray: &Ray,
         hit: &Hit,
         surface: &SurfacePoint,
-        width: impl FnOnce() -> f64,
+        gaze: impl FnOnce() -> G,
     ) -> Rgb {
         let (cosine, needs) = (-ray.direction.dot(surface.normal), self.needs());
         if !needs.any() {
             return self.towards(cosine, &TexturePoint::NOWHERE);
         }
-        self.towards(cosine, &ShadingPoint::new(geometry, ray, hit, *surface, needs, width()).texture)
+        self.towards(cosine, &ShadingPoint::new(geometry, ray, hit, *surface, needs, gaze()).texture)
     }
 }
 
@@ -81,7 +81,7 @@ pub(super) fn sample_primitive(
         Some(shape) => {
             let (seen, uv) = seen(shape, emission.needs(), receiver.position, u)?;
             let surface = geometry.on_shape(primitive, &seen.site);
-            let sends = |ray: &Ray, hit: &Hit| emission.sent(geometry, ray, hit, &surface, || 0.0);
+            let sends = |ray: &Ray, hit: &Hit| emission.sent(geometry, ray, hit, &surface, || receiver.waves);
             sample(receiver, &surface, (primitive, 0), uv, |_, _| seen.pdf, sends)
         }
         None => {
@@ -92,7 +92,7 @@ pub(super) fn sample_primitive(
             let uv = seen.sample(u);
             let surface = geometry.on_triangle(primitive, uv);
             let density = |direction: DVec3, distance| seen.pdf(distance, direction.dot(surface.normal));
-            let sends = |ray: &Ray, hit: &Hit| emission.sent(geometry, ray, hit, &surface, || 0.0);
+            let sends = |ray: &Ray, hit: &Hit| emission.sent(geometry, ray, hit, &surface, || receiver.waves);
             sample(receiver, &surface, (primitive, 0), uv, density, sends)
         }
     }

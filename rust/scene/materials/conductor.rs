@@ -28,8 +28,8 @@ pub enum Index {
         /// The imaginary part, not negative.
         k: Value,
     },
-    /// As it was measured, by wavelength.
-    Measured(&'static Metal),
+    /// As it was measured, by wavelength; and whether paths carry wavelengths.
+    Measured(&'static Metal, bool),
 }
 
 impl ConductorMaterial {
@@ -39,7 +39,13 @@ impl ConductorMaterial {
             Index::Constants { eta, k } => {
                 Reflectance::Index(ConductorIndex::new(eta.at(point) / outside, k.at(point) / outside))
             }
-            Index::Measured(metal) => Reflectance::of(metal, outside),
+            Index::Measured(metal, _) => match &point.waves {
+                Some(waves) => {
+                    let [eta, k] = [waves.lanes(|nm| metal.index_at(nm).0), waves.lanes(|nm| metal.index_at(nm).1)];
+                    Reflectance::Index(ConductorIndex::new(eta / outside, k / outside))
+                }
+                None => Reflectance::of(metal, outside),
+            },
         };
         let alpha = self.roughness.alpha(point);
         match self.roughness.facets {
@@ -67,7 +73,7 @@ impl Material for ConductorMaterial {
     fn needs(&self) -> Needs {
         let index = match &self.index {
             Index::Constants { eta, k } => eta.needs() | k.needs(),
-            Index::Measured(_) => Needs::default(),
+            Index::Measured(_, by_wave) => Needs { waves: *by_wave, ..Needs::NONE },
         };
         index | self.roughness.needs()
     }

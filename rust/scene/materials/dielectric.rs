@@ -22,7 +22,7 @@ pub struct DielectricMaterial {
 impl DielectricMaterial {
     #[inline]
     fn bsdf(&self, point: &TexturePoint, outside: f64) -> AnyBsdf {
-        let ([alpha, _], eta) = (self.roughness.alpha(point), self.interior.ior / outside);
+        let ([alpha, _], eta) = (self.roughness.alpha(point), self.interior.ior_at(point.waves.as_ref()) / outside);
         match self.roughness.facets {
             FacetKind::Ggx => Dielectric::of(eta, Ggx::rough([alpha; 2])).into(),
             FacetKind::Beckmann => Dielectric::of(eta, Beckmann::rough([alpha; 2])).into(),
@@ -42,7 +42,8 @@ impl Material for DielectricMaterial {
     }
 
     fn needs(&self) -> Needs {
-        self.roughness.needs()
+        let roughness = self.roughness.needs();
+        Needs { waves: roughness.waves | self.interior.dispersion.is_any(), ..roughness }
     }
 
     fn validate(&self) -> Result<(), String> {

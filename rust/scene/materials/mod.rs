@@ -51,7 +51,8 @@ use super::ShadingPoint;
 use super::media::Medium;
 use super::textures::{Needs, TexturePoint};
 use crate::math::DVec3;
-use crate::optics::{AnyBsdf, Rgb};
+use crate::optics::spectra::Waves;
+use crate::optics::{AnyBsdf, Dispersive, Rgb};
 use std::fmt::Debug;
 use std::sync::Arc;
 
@@ -140,9 +141,24 @@ pub trait Material: Debug + Send + Sync {
 /// What fills a closed surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interior {
-    /// Its index of refraction.
+    /// Its index of refraction, that of yellow light where it goes with wavelength.
     pub ior: f64,
+    /// How it goes with wavelength.
+    pub dispersion: Dispersive,
     /// Where several overlap, that of the greatest priority is there (Schmidt and Budge, "Simple Nested Dielectrics in
     /// Ray Traced Images", 2002).
     pub priority: i32,
+}
+
+impl Interior {
+    /// What has an index of refraction that is the same at all wavelengths.
+    pub const fn new(ior: f64, priority: i32) -> Self {
+        Self { ior, dispersion: Dispersive::NONE, priority }
+    }
+
+    /// The index of refraction for the hero of a path's wavelengths.
+    #[inline]
+    pub fn ior_at(&self, waves: Option<&Waves>) -> f64 {
+        waves.and_then(|waves| self.dispersion.at(waves.hero())).unwrap_or(self.ior)
+    }
 }

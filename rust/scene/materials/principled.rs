@@ -44,6 +44,7 @@ impl Looks {
     fn at(&self, point: &TexturePoint) -> Look {
         Look {
             base_color: self.base_color.at(point),
+            luminance: self.base_color.at(&TexturePoint { waves: None, ..*point }).luminance(),
             roughness: self.roughness.at(point),
             anisotropic: self.anisotropic.at(point),
             transmission: self.transmission.at(point),

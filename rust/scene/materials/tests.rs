@@ -53,7 +53,7 @@ fn conductor(eta: impl Into<Value>, k: impl Into<Value>, roughness: impl Into<Ro
 }
 
 fn glass(roughness: f64) -> DielectricMaterial {
-    DielectricMaterial { interior: Interior { ior: 1.5, priority: 0 }, roughness: roughness.into(), medium: None }
+    DielectricMaterial { interior: Interior::new(1.5, 0), roughness: roughness.into(), medium: None }
 }
 
 /// One of each kind, and of most with a texture.
@@ -374,7 +374,7 @@ fn glass_is_relative_to_what_is_outside() {
         assert!((refracted.wi.x + 0.6 * outside / 1.5).abs() < 1e-12, "{refracted:?}");
         assert!((refracted.eta - 1.5 / outside).abs() < 1e-12);
     }
-    assert_eq!(glass(0.0).interior(), Some(Interior { ior: 1.5, priority: 0 }));
+    assert_eq!(glass(0.0).interior(), Some(Interior::new(1.5, 0)));
 }
 
 #[test]
@@ -460,7 +460,7 @@ fn what_cannot_be_is_refused_in_a_line() {
     }
     for bad in [0.0, -1.5, f64::NAN, f64::INFINITY] {
         refused(&ThinDielectricMaterial { ior: bad }, "ior must be finite and above 0, got");
-        let interior = Interior { ior: bad, priority: 0 };
+        let interior = Interior::new(bad, 0);
         refused(
             &DielectricMaterial { interior, roughness: 0.0.into(), medium: None },
             "ior must be finite and above 0",

@@ -5,15 +5,18 @@ mod grid;
 mod homogeneous;
 mod stretch;
 mod values;
+mod waved;
 
 pub use coefficients::Coefficients;
 pub use grid::GridMedium;
 pub use homogeneous::Homogeneous;
 pub use stretch::{Content, Stretch};
 pub use values::{At, Values};
+pub use waved::WavedMedium;
 
 use crate::math::{DVec3, Ray};
-use crate::optics::Phase;
+use crate::optics::spectra::Waves;
+use crate::optics::{Phase, Rgb};
 use grid::BlockWalk;
 use std::fmt::Debug;
 
@@ -38,6 +41,21 @@ pub trait Medium: Debug + Send + Sync {
 
     /// What there is at a point.
     fn at(&self, point: DVec3) -> Coefficients;
+
+    /// What there is at a point is this, at a path's wavelengths, where it is told by wavelength.
+    fn by_waves(&self, here: Coefficients, _waves: &Waves) -> Coefficients {
+        here
+    }
+
+    /// The same of the greatest extinction in a stretch.
+    fn most_by_waves(&self, most: Rgb, _waves: &Waves) -> Rgb {
+        most
+    }
+
+    /// Whether it is told by wavelength.
+    fn has_waves(&self) -> bool {
+        false
+    }
 
     /// The memory held.
     fn bytes(&self) -> usize;

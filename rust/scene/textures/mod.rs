@@ -14,6 +14,7 @@ mod perlin;
 mod picture;
 mod product;
 mod quantity;
+mod spectral;
 mod stripes;
 mod value;
 mod vertex_colours;
@@ -33,6 +34,7 @@ pub use perlin::perlin;
 pub use picture::{Picture, PictureError, Texels};
 pub use product::ProductTexture;
 pub use quantity::Quantity;
+pub use spectral::{Spectral, Upsampled};
 pub use stripes::Stripes;
 pub use value::Value;
 pub use vertex_colours::VertexColours;
@@ -40,6 +42,7 @@ pub use wood::Wood;
 
 use crate::math::DVec3;
 use crate::optics::Rgb;
+use crate::optics::spectra::Waves;
 use std::fmt::Debug;
 
 /// Where a texture is asked.
@@ -56,11 +59,14 @@ pub struct TexturePoint {
     pub size: f64,
     /// The colour of the mesh's vertices there; white where it has none.
     pub colour: Rgb,
+    /// The wavelengths that are asked for, a lane each; none for red, green and blue.
+    pub waves: Option<Waves>,
 }
 
 impl TexturePoint {
     /// For what asks nothing of a point.
-    pub const NOWHERE: Self = Self { uv: [0.0; 2], width: 0.0, position: DVec3::ZERO, size: 0.0, colour: Rgb::ONE };
+    pub const NOWHERE: Self =
+        Self { uv: [0.0; 2], width: 0.0, position: DVec3::ZERO, size: 0.0, colour: Rgb::ONE, waves: None };
 }
 
 impl Default for TexturePoint {

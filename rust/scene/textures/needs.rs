@@ -15,15 +15,23 @@ pub struct Needs {
     pub width: bool,
     /// How the point and the shading normal change with the texture coordinates.
     pub tangents: bool,
+    /// The wavelengths that the path carries which has come there.
+    pub waves: bool,
 }
 
 impl Needs {
     /// Nothing.
-    pub const NONE: Self = Self { uv: false, colours: false, position: false, width: false, tangents: false };
+    pub const NONE: Self =
+        Self { uv: false, colours: false, position: false, width: false, tangents: false, waves: false };
 
     /// Whether anything is.
     pub fn any(self) -> bool {
         self != Self::NONE
+    }
+
+    /// Whether anything is of where it lies.
+    pub fn of_place(self) -> bool {
+        Self { waves: false, ..self }.any()
     }
 }
 
@@ -37,6 +45,7 @@ impl BitOr for Needs {
             position: self.position | other.position,
             width: self.width | other.width,
             tangents: self.tangents | other.tangents,
+            waves: self.waves | other.waves,
         }
     }
 }

@@ -89,7 +89,9 @@ def turned_round(given: Material, plugin: Plugin) -> Material:
         return Mask(turned_round(given.material, plugin), given.opacity)
     if isinstance(given, Mix):
         return Mix(turned_round(given.a, plugin), turned_round(given.b, plugin), given.amount)
-    return replace(given, ior=1 / given.ior) if isinstance(given, Dielectric) else given
+    if isinstance(given, Dielectric) and isinstance(given.ior, float):
+        return replace(given, ior=1 / given.ior)
+    return given
 
 
 def _diffuse(plugin: Plugin, uv: Uv) -> Sides:

@@ -20,6 +20,8 @@ from ...materials import (
     PrincipledThin,
     ThinDielectric,
 )
+from ...materials.dispersion import Dispersion
+from ...materials.glasses import glasses
 from ...textures import ImageTexture
 from ...textures.texture import Number, Texture
 from .parameters import Parameters
@@ -122,16 +124,21 @@ class Materials:
         return u, v
 
     def _ior(self, parameters: Parameters, name: str, default: float) -> float:
+        """Return an index of refraction for all light: that of yellow light."""
+        found = self._index(parameters, name, default)
+        return found.index() if isinstance(found, Dispersion) else found
+
+    def _index(self, parameters: Parameters, name: str, default: float) -> float | Dispersion:
         found = parameters.given.get(name)
         if found is not None and found[0] == "spectrum" and len(found[1]) == 1:
             key = parameters.text(name)
             if key not in GLASS:
                 parameters.fail(f"{name} must be a number or one of {', '.join(GLASS)}, got {key!r}")
-            return GLASS[key]
+            return glasses[GLASS[key]]
         if found is not None and found[0] == "spectrum":
             table = parameters.numbers(name, 2)
             assert table is not None
-            # In the middle of what is seen: there is no dispersion.
+            # In the middle of what is seen: no formula is known.
             return float(np.interp(587.6, table[:, 0], table[:, 1]))
         return parameters.number(name, default)
 
@@ -180,7 +187,7 @@ class Materials:
         u, v = self._alpha(parameters)
         if u != v:
             parameters.fail("uroughness and vroughness must be the same")
-        return Dielectric(self._ior(parameters, "eta", 1.5), alpha=u, multiple_scattering=False)
+        return Dielectric(self._index(parameters, "eta", 1.5), alpha=u, multiple_scattering=False)
 
     def _thin_dielectric(self, parameters: Parameters) -> Material:
         return ThinDielectric(self._ior(parameters, "eta", 1.5))

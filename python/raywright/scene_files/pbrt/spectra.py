@@ -11,15 +11,15 @@ from .parameters import Parameters
 
 Triple = tuple[float, float, float]
 
-# Of glass at 587.6 nm, by the catalogues of their makers; those of F are Schott's SF.
+# Of glass, by the catalogue of its maker; those of F are Schott's SF.
 GLASS = {
-    "glass-BK7": 1.5168,
-    "glass-BAF10": 1.67003,
-    "glass-FK51A": 1.48656,
-    "glass-LASF9": 1.85025,
-    "glass-F5": 1.67270,
-    "glass-F10": 1.72825,
-    "glass-F11": 1.78472,
+    "glass-BK7": "N-BK7",
+    "glass-BAF10": "N-BAF10",
+    "glass-FK51A": "N-FK51A",
+    "glass-LASF9": "N-LASF9",
+    "glass-F5": "SF5",
+    "glass-F10": "SF10",
+    "glass-F11": "N-SF11",
 }
 
 

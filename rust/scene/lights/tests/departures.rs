@@ -80,7 +80,7 @@ fn light_that_is_asked_for_is_as_likely_from_its_other_end() {
         let mut sampler = Sampler::new(4, 0, number);
         let position = DVec3::new(sampler.one(4), sampler.one(6), -sampler.one(8));
         let normal = if number % 2 == 0 { DVec3::ZERO } else { warp::uniform_sphere(sampler.two(5)) };
-        let receiver = LightSampleContext { position, normal };
+        let receiver = LightSampleContext { position, normal, waves: None };
         let Some((light, departure, density)) = emitters.sample_direct(&receiver, sampler.one(0), sampler.two(1))
         else {
             continue;

@@ -60,7 +60,7 @@ fn flat(matrices: &[Matrix]) -> Scene {
 #[test]
 fn copies_light_as_what_they_are_copies_of() {
     let matrices = [STRETCHED, MOVED];
-    for receiver in [FLOOR, LightSampleContext { position: DVec3::new(0.3, 0.2, 1.0), normal: DVec3::X }] {
+    for receiver in [FLOOR, LightSampleContext { position: DVec3::new(0.3, 0.2, 1.0), normal: DVec3::X, waves: None }] {
         let expected = irradiance_at(&flat(&matrices), &receiver, 100_000);
         let found = irradiance_at(&copied(&matrices), &receiver, 100_000);
         let error = 5.0 * expected.1.hypot(found.1);

@@ -108,7 +108,12 @@ fn the_dark_stays_dark() {
     assert!(lit.lights().is_dark());
     assert!(
         lit.lights()
-            .sample(lit.geometry(), &LightSampleContext { position: DVec3::Z, normal: DVec3::Z }, 0.5, [0.5; 2])
+            .sample(
+                lit.geometry(),
+                &LightSampleContext { position: DVec3::Z, normal: DVec3::Z, waves: None },
+                0.5,
+                [0.5; 2]
+            )
             .is_none()
     );
 }

@@ -50,7 +50,11 @@ fn receiver(number: u32) -> LightSampleContext {
         2 => FLOOR.position,
         _ => uniform_sphere(sampler.two(2)) * (4.0 * sampler.one(4)),
     };
-    if number.is_multiple_of(7) { LightSampleContext::free(position) } else { LightSampleContext { position, normal } }
+    if number.is_multiple_of(7) {
+        LightSampleContext::free(position)
+    } else {
+        LightSampleContext { position, normal, waves: None }
+    }
 }
 
 fn bits(light: Option<LightSample>) -> Option<Vec<u64>> {

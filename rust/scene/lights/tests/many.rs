@@ -49,7 +49,7 @@ fn receivers() -> Vec<LightSampleContext> {
             let mut sampler = Sampler::new(13, 0, number);
             let position = DVec3::new(sampler.one(0), sampler.one(1), sampler.one(2)) * DVec3::new(30.0, 15.0, 5.0);
             let normal = if number % 4 == 0 { DVec3::ZERO } else { uniform_sphere(sampler.two(3)) };
-            LightSampleContext { position, normal }
+            LightSampleContext { position, normal, waves: None }
         })
         .collect()
 }
@@ -165,7 +165,7 @@ fn in_a_hall_of_lamps_a_tree_leaves_a_small_part_of_the_variance() {
     let strengths: Vec<Strength> = lamps.iter().map(|lamp| inside(lamp)).collect();
     let (tree, power) = (Choice::by_tree(&strengths).unwrap(), Choice::by_power(&strengths).unwrap());
     for (x, y) in [(0.0, 0.0), (50.3, 5.1), (99.0, 2.0)] {
-        let receiver = LightSampleContext { position: DVec3::new(x, y, 0.0), normal: DVec3::Z };
+        let receiver = LightSampleContext { position: DVec3::new(x, y, 0.0), normal: DVec3::Z, waves: None };
         let exact: f64 = lamps
             .iter()
             .map(|lamp| lamp.sample(&receiver, [0.5; 2]).map_or(0.0, |s| s.weight[1] * s.direction.z))

@@ -21,7 +21,7 @@ use crate::scene::Scene;
 use std::f64::consts::TAU;
 
 /// The origin on a plane that faces up.
-const FLOOR: LightSampleContext = LightSampleContext { position: DVec3::ZERO, normal: DVec3::Z };
+const FLOOR: LightSampleContext = LightSampleContext { position: DVec3::ZERO, normal: DVec3::Z, waves: None };
 
 /// A draw of a scene's lights.
 fn draw(scene: &Scene, receiver: &LightSampleContext, number: u32) -> Option<LightSample> {

@@ -76,7 +76,11 @@ fn next_to_its_plane_a_triangle_keeps_its_digits() {
             // Drawn evenly, all draws bring the same.
             assert!(found.1 <= if expected > 1e-8 { 1e-6 } else { 0.2 } * expected, "{height:e} {x} {y}: {found:?}");
             // Where they come from: Lambert's formula has digits left where the height is not too small.
-            let towards = LightSampleContext { position, normal: (DVec3::new(0.3, 0.3, 0.0) - position).normalize() };
+            let towards = LightSampleContext {
+                position,
+                normal: (DVec3::new(0.3, 0.3, 0.0) - position).normalize(),
+                waves: None,
+            };
             if height >= 1e-6 && x != 0.25 {
                 let expected = lambert(corners, &towards);
                 let found = irradiance_at(&triangle(corners, 1.0), &towards, 4000);
@@ -86,7 +90,7 @@ fn next_to_its_plane_a_triangle_keeps_its_digits() {
     }
     // In the plane itself there is nothing to see, and nothing is found.
     for (x, y) in [(0.25, 0.25), (2.0, 2.0), (0.0, 0.0)] {
-        let receiver = LightSampleContext { position: DVec3::new(x, y, 0.0), normal: DVec3::X };
+        let receiver = LightSampleContext { position: DVec3::new(x, y, 0.0), normal: DVec3::X, waves: None };
         assert_eq!(irradiance_at(&triangle(corners, 1.0), &receiver, 200).0, 0.0);
     }
 }
@@ -132,7 +136,7 @@ fn sides_shine_where_they_are_to() {
         scene(SceneDescription { shapes: vec![Shape { emission, ..shape(mesh, [0.0; 3], 0.0) }], ..Default::default() })
     };
     let single = LAMP.map(|c| c.as_vec3().as_dvec3());
-    let above = LightSampleContext { position: DVec3::new(0.2, 0.3, 2.0), normal: DVec3::NEG_Z };
+    let above = LightSampleContext { position: DVec3::new(0.2, 0.3, 2.0), normal: DVec3::NEG_Z, waves: None };
     let faces_up = (LAMP[1] - LAMP[0]).cross(LAMP[2] - LAMP[0]).z > 0.0;
     let (front, back) = if faces_up { (above, FLOOR) } else { (FLOOR, above) };
     for (sides, lit) in [(Sides::Front, [true, false]), (Sides::Back, [false, true]), (Sides::Both, [true, true])] {
@@ -161,12 +165,12 @@ fn within_what_shines_inwards_there_is_light_from_everywhere() {
         };
         let within = [(DVec3::ZERO, DVec3::Z), (DVec3::new(0.4, 0.1, -0.3), DVec3::new(0.6, 0.0, -0.8))];
         for (position, normal) in within {
-            let receiver = LightSampleContext { position, normal };
+            let receiver = LightSampleContext { position, normal, waves: None };
             for (sides, expected) in [(Sides::Back, 2.0 * PI), (Sides::Both, 2.0 * PI), (Sides::Front, 0.0)] {
                 assert_near(irradiance_at(&of(sides), &receiver, 20_000), expected, 0.03);
             }
         }
-        let outside = LightSampleContext { position: DVec3::new(0.5, 0.3, -9.0), normal: DVec3::Z };
+        let outside = LightSampleContext { position: DVec3::new(0.5, 0.3, -9.0), normal: DVec3::Z, waves: None };
         assert_eq!(irradiance_at(&of(Sides::Back), &outside, 2000), (0.0, 0.0));
         assert!(irradiance_at(&of(Sides::Front), &outside, 2000).0 > 0.05);
     }

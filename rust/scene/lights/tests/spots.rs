@@ -94,7 +94,7 @@ fn a_slide_is_thrown_upright_and_evenly() {
     let picture = Arc::new(Picture::new(2, texels).unwrap());
     let projector = Projector::new(picture, [DVec3::ZERO, DVec3::NEG_Z, DVec3::Y], FRAC_PI_2, Rgb::splat(2.0)).unwrap();
     let screen = |x: f64, y: f64| {
-        let receiver = LightSampleContext { position: DVec3::new(x, y, -1.0), normal: DVec3::Z };
+        let receiver = LightSampleContext { position: DVec3::new(x, y, -1.0), normal: DVec3::Z, waves: None };
         projector.sample(&receiver, [0.5; 2]).map_or(Rgb::ZERO, |s| s.weight * s.direction.dot(DVec3::Z))
     };
     let close = |a: Rgb, b: Rgb| assert!((a - b).abs().max() < 1e-12, "{a} {b}");

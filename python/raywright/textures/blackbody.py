@@ -1,0 +1,61 @@
+"""What glows because it is hot."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..arrays import number, positive
+from .spectrum import Spectrum
+
+
+def planck(wavelengths: NDArray[np.float64], kelvin: float) -> NDArray[np.float64]:
+    """Return the radiance of a black body at wavelengths in nm (Planck, 1900), W·sr⁻¹·m⁻²·nm⁻¹."""
+    metres = wavelengths * 1e-9
+    # 2 h c², and h c over Boltzmann's constant (SI, 2019).
+    with np.errstate(over="ignore"):
+        return 1e-9 * 1.1910429723971884e-16 / metres**5 / np.expm1(0.014387768775039337 / (metres * kelvin))
+
+
+@dataclass(frozen=True, init=False, repr=False)
+class Blackbody(Spectrum):
+    """The light of a black body of a temperature (Planck, 1900), of a luminance that is given.
+
+    Parameters
+    ----------
+    kelvin : float
+        Its temperature, from 500: some 1900 for a candle, 2800 for a light bulb, 5800 for the sun.
+    luminance : float
+        How bright it is, at least 0; 1 is as bright as white light of (1, 1, 1). A body of that temperature
+        has a radiance of its own, which `radiance` tells; few scenes are told in it.
+
+    Raises
+    ------
+    ValueError
+        If `kelvin` is below 500, where nothing is seen, or a number is not finite.
+    TypeError
+        If one is no number.
+    """
+
+    kelvin: float
+
+    def __init__(self, kelvin: float, luminance: float = 1.0) -> None:
+        temperature = positive("kelvin", kelvin)
+        if temperature < 500:
+            raise ValueError(f"kelvin must be at least 500, got {kelvin}: nothing is seen of what is colder")
+        if number("luminance", luminance) < 0:
+            raise ValueError(f"luminance must be at least 0, got {luminance}")
+        wavelengths = np.arange(360.0, 831.0, 5.0)
+        told = planck(wavelengths, temperature)
+        # By the greatest, so that it can be told of any temperature.
+        plain = Spectrum(wavelengths, told / told.max())
+        values = np.asarray(plain.values) * (luminance / plain.luminance)
+        self._set(kelvin=temperature, wavelengths=plain.wavelengths, values=tuple(values.tolist()))
+
+    def radiance(self) -> Spectrum:
+        """Return what such a body radiates by itself, W·sr⁻¹·m⁻²·nm⁻¹."""
+        wavelengths = np.asarray(self.wavelengths)
+        return Spectrum(wavelengths, planck(wavelengths, self.kelvin))
+
+    def __repr__(self) -> str:
+        return f"Blackbody(kelvin={self.kelvin:g}, luminance={self.luminance:.6g})"

@@ -1,0 +1,120 @@
+"""Spectra by their values."""
+
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from .. import _core
+from ..arrays import Triple, colour, number, real_array
+from .texture import Texture
+
+
+@dataclass(frozen=True, init=False)
+class Spectrum(Texture):
+    """A colour, or light, by wavelength: linear between its values, and 0 beyond them.
+
+    It may stand wherever a colour may. A scene that has one is rendered by wavelength (see `Scene.plan`). As
+    a reflectance it tells shares of light; as a radiance, intensity or irradiance, light itself, in the unit
+    of that for each of red, green and blue: a value of 1 at all wavelengths has a luminance of 1, as a white
+    of (1, 1, 1) has. Such an even light is reddish, since white is daylight (CIE D65).
+
+    Parameters
+    ----------
+    wavelengths : (N,) array_like
+        In nm, two or more, rising. What is seen lies between 360 and 830.
+    values : (N,) array_like
+        How much of each there is, at least 0.
+
+    Raises
+    ------
+    ValueError
+        If they are not as many, wavelengths do not rise, or something is not finite or negative.
+    TypeError
+        If something is no number.
+    """
+
+    _is_number: ClassVar[bool] = False
+
+    wavelengths: tuple[float, ...]
+    values: tuple[float, ...]
+
+    def __init__(self, wavelengths: ArrayLike, values: ArrayLike) -> None:
+        nm, found = (
+            real_array(name, given).astype(np.float64)
+            for name, given in (("wavelengths", wavelengths), ("values", values))
+        )
+        if nm.ndim != 1 or len(nm) < 2 or not np.isfinite(nm).all() or not (np.diff(nm) > 0).all():
+            raise ValueError(f"wavelengths must be two or more finite numbers that rise, got {wavelengths!r}")
+        if found.shape != nm.shape:
+            raise ValueError(f"values must be as many as the {len(nm)} wavelengths, got shape {found.shape}")
+        if not (np.isfinite(found).all() and (found >= 0).all()):
+            raise ValueError(f"values must be finite and at least 0, got {values!r}")
+        self._set(wavelengths=tuple(nm.tolist()), values=tuple(found.tolist()))
+
+    @property
+    def range(self) -> tuple[Triple, Triple]:
+        """The least and the greatest of its values, for red, green and blue alike."""
+        low, high = min(self.values), max(self.values)
+        return (low, low, low), (high, high, high)
+
+    def at(self, wavelengths: ArrayLike) -> Any:
+        """Return the values at wavelengths, nm, of any shape.
+
+        Returns
+        -------
+        float or (...) float64
+
+        Raises
+        ------
+        TypeError
+            If wavelengths are no real numbers.
+        """
+        asked = real_array("wavelengths", wavelengths)
+        found = np.interp(asked, self.wavelengths, self.values, left=0.0, right=0.0)
+        return found if np.ndim(found) else float(found)
+
+    @property
+    def rgb(self) -> Triple:
+        """The linear red, green and blue (Rec. 709) of it as light, seen by the standard observer (CIE 1931).
+
+        What no mixture of these looks like is told with the one at 0 that it would have less than none of.
+        """
+        return self._rgb(emits=True)
+
+    @property
+    def reflected_rgb(self) -> Triple:
+        """The linear red, green and blue (Rec. 709) of what reflects so, in daylight (CIE D65)."""
+        return self._rgb(emits=False)
+
+    @property
+    def luminance(self) -> float:
+        """How bright it is as light: 1 for a value of 1 at all wavelengths."""
+        return _core.spectrum_luminance(self._rows())
+
+    def __mul__(self, factor: float) -> "Spectrum":
+        """Return so many times as much of it."""
+        return Spectrum(self.wavelengths, np.multiply(self.values, number("factor", factor)))
+
+    __rmul__ = __mul__
+
+    def _rows(self) -> list[list[float]]:
+        return [list(row) for row in zip(self.wavelengths, self.values, strict=True)]
+
+    def _rgb(self, emits: bool) -> Triple:
+        red, green, blue = np.maximum(_core.spectrum_rgb(self._rows(), not emits), 0.0).tolist()
+        return red, green, blue
+
+
+def colour_or_spectrum(name: str, value: "ArrayLike | Spectrum") -> "Triple | Spectrum":
+    """Return a spectrum as it is, or one number or three as three floats, each finite and at least 0.
+
+    Raises
+    ------
+    ValueError
+        If a number is negative or not finite, or there are not 1 or 3 of them.
+    TypeError
+        If they are not numbers.
+    """
+    return value if isinstance(value, Spectrum) else colour(name, value)

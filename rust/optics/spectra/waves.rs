@@ -1,0 +1,132 @@
+//! The wavelengths of a path.
+
+use super::super::Rgb;
+use super::{FIRST, Illuminant, LAST, Response};
+use std::sync::LazyLock;
+
+/// Three wavelengths that a path carries in place of red, green and blue (Wilkie et al., "Hero Wavelength Spectral
+/// Sampling", 2014), nm. Each by itself is drawn in proportion to how much of it is seen of white light, and all three
+/// share out what is seen evenly. The first is the hero: where wavelengths part, the path follows that one.
+///
+/// What a path finds at them is told relative to daylight, of which a share of 1 at all wavelengths is white.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Waves([f64; 3]);
+
+impl Waves {
+    /// Of a number in [0, 1).
+    pub fn of(u: f64) -> Self {
+        let drawn = &*DRAWN;
+        Self([0.0, 1.0, 2.0].map(|third| drawn.wavelength((u + third / 3.0).fract())))
+    }
+
+    /// The wavelength that decides where they part.
+    #[inline]
+    pub fn hero(&self) -> f64 {
+        self.0[0]
+    }
+
+    /// The hero in place of all three.
+    #[inline]
+    pub fn alone(&self) -> Self {
+        Self([self.0[0]; 3])
+    }
+
+    /// The wavelengths.
+    #[inline]
+    pub fn all(&self) -> [f64; 3] {
+        self.0
+    }
+
+    /// What a function of wavelength is at each, a lane each.
+    #[inline]
+    pub fn lanes(&self, f: impl Fn(f64) -> f64) -> Rgb {
+        Rgb::from_array(self.0.map(f))
+    }
+
+    /// What stands for light of which so much was found at each, in linear Rec. 709: its mean over the draw is what is
+    /// seen of all of it. A single draw has the colour of its wavelengths, which is negative in some channels.
+    #[inline]
+    pub fn seen(&self, light: Rgb) -> Rgb {
+        let of = |lane: usize| DRAWN.colours[cell(self.0[lane])] * light[lane];
+        of(0) + of(1) + of(2)
+    }
+
+    /// What carries the light of all wavelengths where only the hero goes on: its share stands for the three.
+    #[inline]
+    pub fn ended(light: Rgb) -> Rgb {
+        Rgb::new(3.0 * light[0], 0.0, 0.0)
+    }
+}
+
+/// How wavelengths are drawn: each nm by a probability of its own, and evenly within.
+struct Drawn {
+    /// With which probability one is drawn that comes before, and 1 in the end.
+    before: Vec<f64>,
+    /// What is seen of each nm, over the density of three draws.
+    colours: Vec<Rgb>,
+}
+
+static DRAWN: LazyLock<Drawn> = LazyLock::new(|| {
+    let seen: Vec<Rgb> = Response::new(Illuminant::Daylight, 1).weights().map(|(_, weight)| weight).collect();
+    // The errors of all three channels are least together for white light.
+    let wanted: Vec<f64> = seen.iter().map(|colour| colour.dot(*colour).sqrt()).collect();
+    let all: f64 = wanted.iter().sum();
+    let mut before = vec![0.0];
+    let mut sum = 0.0;
+    for one in &wanted {
+        sum += one / all;
+        before.push(sum);
+    }
+    *before.last_mut().expect("there are wavelengths") = 1.0;
+    let colours = seen.iter().zip(&wanted).map(|(&colour, &one)| colour * (all / (3.0 * one))).collect();
+    Drawn { before, colours }
+});
+
+impl Drawn {
+    fn wavelength(&self, u: f64) -> f64 {
+        let after = self.before.partition_point(|&before| before <= u).clamp(1, self.colours.len());
+        let (from, to) = (self.before[after - 1], self.before[after]);
+        let nm = FIRST + (after - 1) as f64 - 0.5 + (u - from) / (to - from);
+        nm.clamp(FIRST, LAST)
+    }
+}
+
+/// The nm that a wavelength belongs to.
+#[inline]
+fn cell(wavelength: f64) -> usize {
+    (wavelength - (FIRST - 0.5)) as usize
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The mean over draws that share out [0, 1) evenly.
+    fn mean(of: impl Fn(&Waves) -> Rgb) -> Rgb {
+        let count = 30_000;
+        (0..count).map(|i| of(&Waves::of((f64::from(i) + 0.5) / f64::from(count)))).sum::<Rgb>() / f64::from(count)
+    }
+
+    #[test]
+    fn white_is_white_and_colours_are_what_is_seen_of_them() {
+        assert!((mean(|waves| waves.seen(Rgb::ONE)) - Rgb::ONE).abs().max() < 1e-4);
+        let slope = |nm: f64| 0.2 + 0.6 * ((nm - 500.0) / 60.0).tanh().abs();
+        let truth = Response::new(Illuminant::Daylight, 1).seen(slope);
+        let found = mean(|waves| waves.seen(waves.lanes(slope)));
+        assert!((found - truth).abs().max() < 5e-4, "{found} {truth}");
+        // The same with the hero alone.
+        let found = mean(|waves| waves.seen(Waves::ended(waves.lanes(slope))));
+        assert!((found - truth).abs().max() < 5e-4, "{found} {truth}");
+    }
+
+    #[test]
+    fn wavelengths_are_seen_and_share_out_what_is() {
+        for i in 0..1000 {
+            let all = Waves::of(f64::from(i) / 1000.0).all();
+            assert!(all.iter().all(|nm| (FIRST..=LAST).contains(nm)));
+        }
+        let [a, b, c] = Waves::of(0.1).all();
+        assert!(a < b && b < c);
+        assert_eq!(Waves::of(0.1 + 1.0 / 3.0).hero(), b);
+    }
+}
