@@ -2,8 +2,8 @@
 
 use super::one_of::one_of;
 use super::{
-    Beckmann, BlinnPhong, Coated, CoatedOnce, Conductor, Dielectric, Diffuse, Faceted, Ggx, MetallicRough, Mirror,
-    Null, Once, OrenNayar, Phong, Principled, PrincipledThin, ThinDielectric, Transparent,
+    Beckmann, BlinnPhong, Coated, CoatedOnce, Conductor, Dielectric, Diffuse, Faceted, Filmed, Ggx, MetallicRough,
+    Mirror, Null, Once, OrenNayar, Phong, Principled, PrincipledThin, SoapFilm, ThinDielectric, Transparent,
 };
 
 one_of! {
@@ -32,7 +32,7 @@ one_of! {
         BlinnPhong(BlinnPhong),
         /// The metallic-roughness model of glTF.
         MetallicRough(MetallicRough),
-        /// Rough surfaces of other facets, or of facets that scatter once only.
+        /// Rough surfaces of other facets, or of facets that scatter once only, principled ones, and thin films.
         Faceted(Faceted),
         /// Lets light straight through.
         Transparent(Transparent),
@@ -69,4 +69,9 @@ faceted! {
     CoatedOnce<Beckmann>,
     Principled,
     PrincipledThin,
+    SoapFilm,
+    Dielectric<Ggx, Filmed>,
+    Dielectric<Beckmann, Filmed>,
+    Dielectric<Once<Ggx>, Filmed>,
+    Dielectric<Once<Beckmann>, Filmed>,
 }

@@ -46,6 +46,23 @@ fn plastics_once() -> &'static [AnyBsdf] {
     MADE.get_or_init(|| all.flat_map(both).collect())
 }
 
+/// Oil, a coat and a gap on what is clear, and oxide on silver and gold.
+fn filmed<F: Lossy>(alpha: f64) -> Vec<AnyBsdf>
+where
+    AnyBsdf: From<Dielectric<F, Filmed>> + From<Conductor<F>>,
+{
+    let films = [(300.0, [1.0, 1.47, 1.33]), (99.6, [1.0, 1.38, 1.52]), (80.0, [1.5, 1.0, 1.6])];
+    let clear = films.map(|(thickness, indices)| {
+        let eta = indices[2] / indices[0];
+        Dielectric::with(eta, F::rough([alpha; 2]), Filmed { thickness, indices }).into()
+    });
+    let silver = Reflectance::Filmed { thickness: 120.0, layers: [1.0, 1.5], index: SILVER };
+    let gold = conductors::FilmedCurve::of(conductors::metal("gold").unwrap(), 250.0, 1.5, 1.0);
+    let gold = Reflectance::FilmedMetal(conductors::FilmedMetal::One(gold));
+    let metal = [silver, gold].map(|metal| Conductor::of(metal, F::rough([alpha, 0.2])).into());
+    clear.into_iter().chain(metal).collect()
+}
+
 /// One or more of each kind.
 fn kinds() -> Vec<AnyBsdf> {
     let (grey, red) = (Rgb::splat(0.6), Rgb::new(0.9, 0.3, 0.1));
@@ -62,7 +79,9 @@ fn kinds() -> Vec<AnyBsdf> {
         Null.into(),
         gold(1.0, [0.0; 2]),
         gold(1.33, [0.2; 2]),
+        SoapFilm::new(300.0, 1.33, 1.0).into(),
     ];
+    kinds.extend(filmed::<Ggx>(0.0));
     for n in [0.0, 1.0, 30.0, 5000.0] {
         kinds.push(Phong::new(grey * 0.5, grey * 0.5, n).into());
         kinds.push(BlinnPhong::new(grey * 0.5, grey * 0.5, n).into());
@@ -86,6 +105,7 @@ fn kinds() -> Vec<AnyBsdf> {
         }
         kinds.push(Coated::of(red, 1.5, Beckmann::rough([alpha; 2])).into());
     }
+    kinds.extend(filmed::<Ggx>(0.1).into_iter().chain(filmed::<Beckmann>(0.4)).chain(filmed::<Once<Ggx>>(1.0)));
     kinds.extend(plastics_once());
     kinds
 }
@@ -97,6 +117,9 @@ fn index(bsdf: &AnyBsdf) -> f64 {
         AnyBsdf::Faceted(Faceted::BeckmannDielectric(d)) => d.eta(),
         AnyBsdf::Faceted(Faceted::DielectricOnce(d)) => d.eta(),
         AnyBsdf::Faceted(Faceted::BeckmannDielectricOnce(d)) => d.eta(),
+        AnyBsdf::Faceted(Faceted::FilmedDielectric(d)) => d.eta(),
+        AnyBsdf::Faceted(Faceted::BeckmannFilmedDielectric(d)) => d.eta(),
+        AnyBsdf::Faceted(Faceted::FilmedDielectricOnce(d)) => d.eta(),
         _ => 1.0,
     }
 }
@@ -246,6 +269,24 @@ fn nothing_gains_light() {
             let again = mean * bsdf.again();
             assert!(again.max() < 1.005 + 5.0 * error, "{mean} {bsdf:?} {wo}");
             assert!(mean.max() < 1.03 + 5.0 * error, "{mean} {bsdf:?} {wo}");
+        }
+    }
+}
+
+#[test]
+fn films_on_smooth_glass_keep_all_light_and_on_rough_glass_nearly_all() {
+    for [above, film, below] in [[1.0, 1.47, 1.33], [1.0, 1.38, 1.52], [1.0, 2.3, 1.5]] {
+        for thickness in [90.0, 300.0] {
+            let filmed = Filmed { thickness, indices: [above, film, below] };
+            for (alpha, most) in [(0.0, 1e-12), (0.05, 0.005), (0.2, 0.012), (0.5, 0.02), (1.0, 0.03)] {
+                let bsdf: AnyBsdf = Dielectric::with(below / above, Ggx::rough([alpha; 2]), filmed).into();
+                for wo in directions() {
+                    let (mean, error) = share(&bsdf, wo, 4_000);
+                    // Smooth ones divide light without chance, but for which way is drawn.
+                    let off = (mean - 1.0).abs().max();
+                    assert!(off <= most + 5.0 * error.max(0.003), "{mean} ± {error} {off} {bsdf:?} {wo}");
+                }
+            }
         }
     }
 }

@@ -4,6 +4,7 @@ use super::conductor::above;
 use super::lobes::Grazing;
 use super::losses::{Lossy, LostBetween};
 use super::mirror::mirrored;
+use super::split::{Bare, Share, Split};
 use super::{Bsdf, BsdfSample, Facets, Ggx, Rgb, fresnel};
 use glam::DVec3;
 
@@ -15,10 +16,12 @@ use glam::DVec3;
 /// straight on the closer the index is to 1. So at index 1 a surface is clear however rough it is. What is still lost
 /// is given back as `LostBetween` says.
 #[derive(Clone, Copy, Debug)]
-pub struct Dielectric<F: Lossy = Ggx> {
+pub struct Dielectric<F: Lossy = Ggx, S: Split = Bare> {
     /// Index below over index above.
     eta: f64,
     rough: Option<Rough<F>>,
+    /// How facets divide light.
+    split: S,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -36,15 +39,23 @@ impl Dielectric {
 }
 
 impl<F: Lossy> Dielectric<F> {
+    /// Of the index of refraction below the surface over that above, `eta` > 0, and facets that are alike in all
+    /// directions. Without them, or with `eta` within 10⁻⁶ of 1, directions are single.
+    pub fn of(eta: f64, facets: Option<F>) -> Self {
+        Self::with(eta, facets, Bare)
+    }
+}
+
+impl<F: Lossy, S: Split> Dielectric<F, S> {
     /// Nearer to 1 an index bends light by less than 10⁻⁶ radians at a rough surface, except within 10⁻³ of grazing. It
     /// then counts as smooth: Fresnel's reflection is all that can be told.
     const INVISIBLE: f64 = 1e-6;
 
-    /// Of the index of refraction below the surface over that above, `eta` > 0, and facets that are alike in all
-    /// directions. Without them, or with `eta` within 10⁻⁶ of 1, directions are single.
-    pub fn of(eta: f64, facets: Option<F>) -> Self {
+    /// As [`Dielectric::of`], of an interface that divides light as it says. What facets lose and give back is that of
+    /// bare ones.
+    pub fn with(eta: f64, facets: Option<F>, split: S) -> Self {
         let facets = facets.filter(|_| (eta - 1.0).abs() >= Self::INVISIBLE);
-        Self { eta, rough: facets.map(|facets| Rough { facets, interface: facets.interface(eta) }) }
+        Self { eta, rough: facets.map(|facets| Rough { facets, interface: facets.interface(eta) }), split }
     }
 
     /// The index below over the index above.
@@ -59,27 +70,34 @@ impl<F: Lossy> Dielectric<F> {
         if w.z > 0.0 { self.eta } else { 1.0 / self.eta }
     }
 
+    /// The share of light that is reflected at this cosine of incidence, on the side of `w`.
+    #[inline]
+    fn reflectance(&self, w: DVec3, cosine: f64) -> S::Share {
+        self.split.reflectance(cosine, self.beyond(w), w.z > 0.0)
+    }
+
     /// What one scattering does: the scattering function with its cosine, for radiance, and the density of a draw.
     #[inline]
-    fn single(&self, rough: &Rough<F>, wo: DVec3, wi: DVec3) -> (f64, f64) {
+    fn single(&self, rough: &Rough<F>, wo: DVec3, wi: DVec3) -> (S::Share, f64) {
         let (eta, facets) = (self.beyond(wo), &rough.facets);
         if wo.z * wi.z > 0.0 {
             let (o, i) = (above(wo), above(wi));
             let (density, cosine) = facets.mirroring(o, i);
-            let density = density * fresnel::dielectric(cosine, eta);
-            return (density * facets.reflection_geometry(o, i), facets.reflected_pdf(o, density));
+            let reflectance = self.reflectance(wo, cosine);
+            let value = reflectance * density * facets.reflection_geometry(o, i);
+            return (value, facets.reflected_pdf(o, reflectance.chance() * density));
         }
         // The facet's normal, on the side of wo; the length holds the Jacobian (Walter et al., 2007, eq. 16 and 17).
         let q = wo + wi * eta;
         let q = if q.z * wo.z < 0.0 { -q } else { q };
         let square = q.length_squared();
         if square == 0.0 {
-            return (0.0, 0.0);
+            return (S::Share::NONE, 0.0);
         }
         let h = q / square.sqrt();
         let (o, i) = (wo.dot(h), -wi.dot(h));
         if o <= 0.0 || i <= 0.0 {
-            return (0.0, 0.0);
+            return (S::Share::NONE, 0.0);
         }
         self.refraction(rough, wo, wi, h, [o, i], square)
     }
@@ -94,35 +112,39 @@ impl<F: Lossy> Dielectric<F> {
         h: DVec3,
         [o, i]: [f64; 2],
         square: f64,
-    ) -> (f64, f64) {
+    ) -> (S::Share, f64) {
         let (eta, facets) = (self.beyond(wo), &rough.facets);
-        let through = (1.0 - fresnel::dielectric(o, eta)) * facets.density(h) * o * i / square;
+        let reflectance = self.reflectance(wo, o);
+        let density = facets.density(h);
+        let through = reflectance.rest() * density * o * i / square;
         let [seen, both] = facets.refraction_geometry(wo, wi);
-        (through * both, through * seen * eta * eta)
+        (through * both, reflectance.chance().rest() * density * o * i / square * seen * eta * eta)
     }
 
     /// As [`Dielectric::single`], with what is given back of what facets lose.
     #[inline]
-    fn both(&self, rough: &Rough<F>, wo: DVec3, wi: DVec3, (value, pdf): (f64, f64)) -> (f64, f64) {
+    fn both(&self, rough: &Rough<F>, wo: DVec3, wi: DVec3, (value, pdf): (S::Share, f64)) -> (S::Share, f64) {
         let lost = rough.interface.loss(wo);
         let back =
             rough.interface.given_back(lost, wo, wi) / if wo.z * wi.z < 0.0 { self.beyond(wo).powi(2) } else { 1.0 };
         let crossing = rough.interface.crossing(wo);
         let share = if wo.z * wi.z < 0.0 { crossing } else { 1.0 - crossing };
         let scale = rough.interface.scale(wi);
-        (value + back, (1.0 - lost) * pdf + lost * share * Grazing::new(scale).pdf(wi.z.abs()))
+        (value.plus(back), (1.0 - lost) * pdf + lost * share * Grazing::new(scale).pdf(wi.z.abs()))
     }
 
     #[inline]
     fn smooth_sample(&self, wo: DVec3, choice: f64) -> Option<BsdfSample> {
         let eta = self.beyond(wo);
-        let reflectance = fresnel::dielectric(wo.z.abs(), eta);
-        if choice < reflectance {
-            return Some(BsdfSample::delta(mirrored(wo), Rgb::ONE).of_lobe([0.0, reflectance]));
+        let reflectance = self.reflectance(wo, wo.z.abs());
+        let chance = reflectance.chance();
+        if choice < chance {
+            return Some(BsdfSample::delta(mirrored(wo), (reflectance / chance).rgb()).of_lobe([0.0, chance]));
         }
         let wi = fresnel::refract(wo, DVec3::new(0.0, 0.0, wo.z.signum()), eta)?;
-        let drawn = BsdfSample::delta(wi, Rgb::splat(1.0 / (eta * eta)));
-        Some(drawn.through(eta).of_lobe([reflectance, 1.0]))
+        let left = reflectance.rest() / chance.rest();
+        let drawn = BsdfSample::delta(wi, (left * (1.0 / (eta * eta))).rgb());
+        Some(drawn.through(eta).of_lobe([chance, 1.0]))
     }
 
     #[inline]
@@ -144,9 +166,9 @@ impl<F: Lossy> Dielectric<F> {
             let mut h = rough.facets.sample_visible(above(wo), u);
             h.z = h.z.copysign(wo.z);
             let o = wo.dot(h);
-            let reflectance = fresnel::dielectric(o, eta);
-            let between = lost + (1.0 - lost) * reflectance;
-            if choice < reflectance {
+            let chance = self.reflectance(wo, o).chance();
+            let between = lost + (1.0 - lost) * chance;
+            if choice < chance {
                 let wi = h * (2.0 * o) - wo;
                 if wi.z * wo.z <= 0.0 {
                     return None;
@@ -164,18 +186,18 @@ impl<F: Lossy> Dielectric<F> {
             }
         };
         let (value, pdf) = self.both(rough, wo, wi, single);
-        let drawn = BsdfSample::new(wi, Rgb::splat(value / pdf), pdf).of_lobe(choices);
+        let drawn = BsdfSample::new(wi, (value / pdf).rgb(), pdf).of_lobe(choices);
         (pdf > 0.0).then(|| if wo.z * wi.z < 0.0 { drawn.through(eta) } else { drawn })
     }
 }
 
-impl<F: Lossy> Bsdf for Dielectric<F> {
+impl<F: Lossy, S: Split> Bsdf for Dielectric<F, S> {
     #[inline]
     fn evaluate(&self, wo: DVec3, wi: DVec3) -> (Rgb, f64) {
         match &self.rough {
             Some(rough) if F::sees(wo) && F::sees(wi) => {
                 let (value, pdf) = self.both(rough, wo, wi, self.single(rough, wo, wi));
-                (Rgb::splat(value), pdf)
+                (value.rgb(), pdf)
             }
             _ => (Rgb::ZERO, 0.0),
         }

@@ -1,10 +1,12 @@
-//! Rough surfaces that are not of GGX's facets, or not with all of the light, and principled ones.
+//! Rough surfaces that are not of GGX's facets, or not with all of the light, principled ones, and thin films.
 
 use super::one_of::one_of;
-use super::{Beckmann, Coated, CoatedOnce, Conductor, Dielectric, Ggx, Once, Principled, PrincipledThin};
+use super::{
+    Beckmann, Coated, CoatedOnce, Conductor, Dielectric, Filmed, Ggx, Once, Principled, PrincipledThin, SoapFilm,
+};
 
 one_of! {
-    /// A rough surface of less common facets, or of many parts: one of its kinds.
+    /// A rough surface of less common facets, of many parts, or with a film on it: one of its kinds.
     ///
     /// They are kept apart from the kinds of [`super::AnyBsdf`], and not inlined, so that these do not share their code
     /// with what most scenes do not have.
@@ -31,5 +33,15 @@ one_of! {
         Principled(Principled),
         /// That of a sheet.
         PrincipledThin(PrincipledThin),
+        /// A film by itself.
+        SoapFilm(SoapFilm),
+        /// A film on glass.
+        FilmedDielectric(Dielectric<Ggx, Filmed>),
+        /// A film on glass of Beckmann's facets.
+        BeckmannFilmedDielectric(Dielectric<Beckmann, Filmed>),
+        /// A film on glass, scattering once.
+        FilmedDielectricOnce(Dielectric<Once<Ggx>, Filmed>),
+        /// A film on glass of Beckmann's facets, scattering once.
+        BeckmannFilmedDielectricOnce(Dielectric<Once<Beckmann>, Filmed>),
     }
 }

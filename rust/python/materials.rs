@@ -11,9 +11,9 @@ use crate::optics::conductors::{METALS, metal};
 use crate::scene::Material;
 use crate::scene::materials::{
     BlinnPhongMaterial, BoundaryMaterial, BumpMap, ConductorMaterial, DielectricMaterial, DiffuseMaterial, FacetKind,
-    Index, Interior, Looks, Mask, MetallicRoughMaterial, MirrorMaterial, MixMaterial, NormalMap, OrenNayarMaterial,
-    PhongMaterial, PlasticMaterial, PrincipledMaterial, PrincipledThinMaterial, Roughness, ThinDielectricMaterial,
-    TwoSided,
+    FilmBase, FilmedMetals, Index, Interior, Looks, Mask, MetallicRoughMaterial, MirrorMaterial, MixMaterial,
+    NormalMap, OrenNayarMaterial, PhongMaterial, PlasticMaterial, PrincipledMaterial, PrincipledThinMaterial,
+    Roughness, SoapFilmMaterial, ThinDielectricMaterial, ThinFilmMaterial, TwoSided,
 };
 use crate::scene::media::Medium;
 
@@ -53,23 +53,14 @@ impl Appearances {
                 Arc::new(OrenNayarMaterial { reflectance: value("reflectance")?, roughness: number("roughness")? })
             }
             "Mirror" => Arc::new(MirrorMaterial { reflectance: value("reflectance")? }),
-            "Conductor" => {
-                let index = match given.getattr("metal")?.extract::<Option<String>>()? {
-                    Some(name) => {
-                        Index::Measured(metal(&name).ok_or_else(|| unknown(&name))?, self.textures.has_waves())
-                    }
-                    None => {
-                        let value = |name: &str| self.textures.attribute(given, name, Meaning::Amount);
-                        Index::Constants { eta: value("eta")?, k: value("k")? }
-                    }
-                };
-                Arc::new(ConductorMaterial { index, roughness: roughness()? })
-            }
-            "Dielectric" => {
-                let (ior, dispersion) = spectra::index(&given.getattr("ior")?)?;
-                let interior = Interior { ior, dispersion, priority: given.getattr("priority")?.extract()? };
-                Arc::new(DielectricMaterial { interior, roughness: roughness()?, medium: self.medium(given)? })
-            }
+            "Conductor" => Arc::new(self.conductor(given)?),
+            "Dielectric" => Arc::new(self.dielectric(given)?),
+            "ThinFilm" => Arc::new(ThinFilmMaterial {
+                thickness: number("thickness")?,
+                ior: float("ior")?,
+                base: self.film_base(&given.getattr("base")?)?,
+            }),
+            "SoapFilm" => Arc::new(SoapFilmMaterial { thickness: number("thickness")?, ior: float("ior")? }),
             "Boundary" => {
                 let medium = self.medium(given)?.ok_or_else(|| PyTypeError::new_err("interior must be a medium"))?;
                 Arc::new(BoundaryMaterial { medium, priority: given.getattr("priority")?.extract()? })
@@ -122,6 +113,34 @@ impl Appearances {
             }),
             "TwoSided" => Arc::new(TwoSided { front: inner("front")?, back: inner("back")? }),
             other => return Err(PyTypeError::new_err(format!("material must be a raywright material, got {other}"))),
+        })
+    }
+
+    fn conductor(&self, given: &Bound<'_, PyAny>) -> PyResult<ConductorMaterial> {
+        let index = match given.getattr("metal")?.extract::<Option<String>>()? {
+            Some(name) => Index::Measured(metal(&name).ok_or_else(|| unknown(&name))?, self.textures.has_waves()),
+            None => {
+                let value = |name: &str| self.textures.attribute(given, name, Meaning::Amount);
+                Index::Constants { eta: value("eta")?, k: value("k")? }
+            }
+        };
+        Ok(ConductorMaterial { index, roughness: self.roughness(given)? })
+    }
+
+    fn dielectric(&self, given: &Bound<'_, PyAny>) -> PyResult<DielectricMaterial> {
+        let (ior, dispersion) = spectra::index(&given.getattr("ior")?)?;
+        let interior = Interior { ior, dispersion, priority: given.getattr("priority")?.extract()? };
+        Ok(DielectricMaterial { interior, roughness: self.roughness(given)?, medium: self.medium(given)? })
+    }
+
+    /// What a film lies on.
+    fn film_base(&self, given: &Bound<'_, PyAny>) -> PyResult<FilmBase> {
+        Ok(match given.get_type().name()?.to_str()? {
+            "Dielectric" => FilmBase::Dielectric(self.dielectric(given)?),
+            "Conductor" => FilmBase::Conductor(self.conductor(given)?, FilmedMetals::default()),
+            other => {
+                return Err(PyTypeError::new_err(format!("base must be a Dielectric or a Conductor, got {other}")));
+            }
         })
     }
 

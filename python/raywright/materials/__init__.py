@@ -19,6 +19,7 @@ from .phong import Phong
 from .plastic import Plastic
 from .principled import Principled, PrincipledThin
 from .thin_dielectric import ThinDielectric
+from .thin_film import SoapFilm, ThinFilm
 from .two_sided import TwoSided
 
 __all__ = [
@@ -44,7 +45,9 @@ __all__ = [
     "Principled",
     "PrincipledThin",
     "Sellmeier",
+    "SoapFilm",
     "ThinDielectric",
+    "ThinFilm",
     "TwoSided",
     "glasses",
     "metal_index",

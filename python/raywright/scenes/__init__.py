@@ -4,6 +4,7 @@ from .ball import material_ball
 from .city import city
 from .classics import classics
 from .cornell import cornell_box
+from .films import oil_on_water, soap_bubble
 from .forest import Forest, forest
 from .glass import glass_spheres
 from .knot import torus_knot
@@ -29,7 +30,9 @@ __all__ = [
     "glass_spheres",
     "many_lights",
     "material_ball",
+    "oil_on_water",
     "room",
+    "soap_bubble",
     "soup",
     "studio",
     "teapot",

@@ -1,10 +1,12 @@
 //! Metals as they were measured.
 
 mod curve;
+mod filmed;
 mod measured;
 mod reflectance;
 
 pub use curve::Curve;
+pub use filmed::{FilmedCurve, FilmedMetal};
 pub use measured::METALS;
 pub use reflectance::Reflectance;
 

@@ -1,8 +1,8 @@
 //! What conductors reflect.
 
-use super::{Curve, Metal};
-use crate::optics::Rgb;
+use super::{Curve, FilmedMetal, Metal};
 use crate::optics::fresnel::ConductorIndex;
+use crate::optics::{Rgb, thin_film};
 
 /// What a conductor reflects, by the cosine of incidence.
 #[derive(Clone, Copy, Debug)]
@@ -13,6 +13,17 @@ pub enum Reflectance {
     Metal(&'static Curve),
     /// The same in a medium of an index of refraction.
     Within(&'static Curve, f64),
+    /// By an index of refraction η + ik, channel by channel, under a film.
+    Filmed {
+        /// How thick the film is, in nm.
+        thickness: f64,
+        /// The indices of refraction of the medium around and of the film.
+        layers: [f64; 2],
+        /// That of the conductor.
+        index: (Rgb, Rgb),
+    },
+    /// A measured metal's under a film, by wavelength.
+    FilmedMetal(FilmedMetal),
 }
 
 impl Reflectance {
@@ -28,6 +39,10 @@ impl Reflectance {
             Self::Index(index) => index.reflectance(cosine),
             Self::Metal(curve) => curve.reflectance(cosine),
             Self::Within(curve, outside) => curve.reflectance_in(*outside, cosine),
+            Self::Filmed { thickness, layers, index } => {
+                thin_film::on_conductor(*thickness, *layers, *index, cosine.min(1.0)).clamp(Rgb::ZERO, Rgb::ONE)
+            }
+            Self::FilmedMetal(metal) => metal.reflectance(cosine),
         }
     }
 
@@ -35,18 +50,18 @@ impl Reflectance {
     pub fn average(&self) -> Rgb {
         match self {
             Self::Index(index) => index.average(),
+            Self::Filmed { .. } => average(|cosine| self.at(cosine)),
+            Self::FilmedMetal(metal) => metal.average(),
             Self::Metal(_) | Self::Within(..) => self.seen(|mean| mean),
         }
     }
 
     /// What becomes of light by the mean reflectance for even light from a hemisphere: channel by channel, or of a
-    /// metal by wavelength, seen together.
+    /// bare metal by wavelength, seen together.
     pub fn seen(&self, of_mean: impl Fn(f64) -> f64) -> Rgb {
         match self {
-            Self::Index(index) => {
-                let mean = index.average();
-                Rgb::new(of_mean(mean[0]), of_mean(mean[1]), of_mean(mean[2]))
-            }
+            Self::Index(index) => index.average().map(of_mean),
+            Self::Filmed { .. } | Self::FilmedMetal(_) => self.average().clamp(Rgb::ZERO, Rgb::ONE).map(of_mean),
             Self::Metal(curve) => curve.seen(of_mean),
             Self::Within(curve, outside) => curve.seen_in(*outside, of_mean),
         }
@@ -56,8 +71,21 @@ impl Reflectance {
     #[inline]
     pub fn again(&self) -> Rgb {
         match self {
-            Self::Index(_) => Rgb::ONE,
+            Self::Index(_) | Self::Filmed { .. } => Rgb::ONE,
+            Self::FilmedMetal(metal) => metal.again(),
             Self::Metal(curve) | Self::Within(curve, _) => curve.again(),
         }
     }
+}
+
+/// ∫ 2 f(μ) μ dμ over cosines from 0 to 1, by Simpson's rule.
+fn average(f: impl Fn(f64) -> Rgb) -> Rgb {
+    const STEPS: u32 = 16;
+    let mut sum = Rgb::ZERO;
+    for i in 1..=STEPS {
+        let mu = f64::from(i) / f64::from(STEPS);
+        let weight = if i == STEPS { 1.0 } else { 2.0 + 2.0 * f64::from(i % 2) };
+        sum += f(mu) * (weight * mu);
+    }
+    sum * (2.0 / (3.0 * f64::from(STEPS)))
 }

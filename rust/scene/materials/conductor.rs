@@ -33,8 +33,9 @@ pub enum Index {
 }
 
 impl ConductorMaterial {
+    /// How it scatters at a point, in a medium of index `outside`.
     #[inline]
-    fn bsdf(&self, point: &TexturePoint, outside: f64) -> AnyBsdf {
+    pub(super) fn bare(&self, point: &TexturePoint, outside: f64) -> AnyBsdf {
         let fresnel = match &self.index {
             Index::Constants { eta, k } => {
                 Reflectance::Index(ConductorIndex::new(eta.at(point) / outside, k.at(point) / outside))
@@ -47,6 +48,12 @@ impl ConductorMaterial {
                 None => Reflectance::of(metal, outside),
             },
         };
+        self.reflecting(fresnel, point)
+    }
+
+    /// The same of what its facets reflect.
+    #[inline]
+    pub(super) fn reflecting(&self, fresnel: Reflectance, point: &TexturePoint) -> AnyBsdf {
         let alpha = self.roughness.alpha(point);
         match self.roughness.facets {
             FacetKind::Ggx => Conductor::of(fresnel, Ggx::rough(alpha)).into(),
@@ -59,15 +66,15 @@ impl ConductorMaterial {
 
 impl Material for ConductorMaterial {
     fn bsdf(&self, at: &ShadingPoint) -> BsdfMix {
-        self.bsdf(&at.texture, at.outside).into()
+        self.bare(&at.texture, at.outside).into()
     }
 
     fn constant(&self) -> Option<AnyBsdf> {
-        (!self.needs().any()).then(|| self.bsdf(&TexturePoint::default(), 1.0))
+        (!self.needs().any()).then(|| self.bare(&TexturePoint::default(), 1.0))
     }
 
     fn kinds(&self) -> Option<[usize; 2]> {
-        Some([self.bsdf(&TexturePoint::default(), 1.0).kind(); 2])
+        Some([self.bare(&TexturePoint::default(), 1.0).kind(); 2])
     }
 
     fn needs(&self) -> Needs {

@@ -20,8 +20,9 @@ pub struct DielectricMaterial {
 }
 
 impl DielectricMaterial {
+    /// How it scatters at a point, in a medium of index `outside`.
     #[inline]
-    fn bsdf(&self, point: &TexturePoint, outside: f64) -> AnyBsdf {
+    pub(super) fn bare(&self, point: &TexturePoint, outside: f64) -> AnyBsdf {
         let ([alpha, _], eta) = (self.roughness.alpha(point), self.interior.ior_at(point.waves.as_ref()) / outside);
         match self.roughness.facets {
             FacetKind::Ggx => Dielectric::of(eta, Ggx::rough([alpha; 2])).into(),
@@ -34,11 +35,11 @@ impl DielectricMaterial {
 
 impl Material for DielectricMaterial {
     fn bsdf(&self, at: &ShadingPoint) -> BsdfMix {
-        self.bsdf(&at.texture, at.outside).into()
+        self.bare(&at.texture, at.outside).into()
     }
 
     fn constant(&self) -> Option<AnyBsdf> {
-        (!self.needs().any()).then(|| self.bsdf(&TexturePoint::default(), 1.0))
+        (!self.needs().any()).then(|| self.bare(&TexturePoint::default(), 1.0))
     }
 
     fn needs(&self) -> Needs {

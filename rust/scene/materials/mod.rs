@@ -20,9 +20,11 @@ mod phong;
 mod plastic;
 mod principled;
 mod roughness;
+mod soap_film;
 #[cfg(test)]
 mod tests;
 mod thin_dielectric;
+mod thin_film;
 mod two_sided;
 
 pub use blinn_phong::BlinnPhongMaterial;
@@ -44,7 +46,9 @@ pub use phong::PhongMaterial;
 pub use plastic::PlasticMaterial;
 pub use principled::{Looks, PrincipledMaterial, PrincipledThinMaterial};
 pub use roughness::{FacetKind, Roughness};
+pub use soap_film::SoapFilmMaterial;
 pub use thin_dielectric::ThinDielectricMaterial;
+pub use thin_film::{FilmBase, FilmedMetals, ThinFilmMaterial};
 pub use two_sided::TwoSided;
 
 use super::ShadingPoint;

@@ -1,0 +1,66 @@
+//! A film by itself.
+
+use super::bsdf::either;
+use super::filmed::Filmed;
+use super::mirror::mirrored;
+use super::{Bsdf, BsdfSample, Rgb};
+use glam::DVec3;
+
+/// A film with the same medium on both sides: light reflects in the colours of the film, and the rest goes straight
+/// through.
+#[derive(Clone, Copy, Debug)]
+pub struct SoapFilm {
+    film: Filmed,
+}
+
+impl SoapFilm {
+    /// Of a thickness in nm, and the indices of refraction of the film and of what is around it.
+    pub fn new(thickness: f64, film: f64, around: f64) -> Self {
+        Self { film: Filmed { thickness, indices: [around, film, around] } }
+    }
+
+    /// The share of light along `w` that is reflected.
+    #[inline]
+    pub fn reflectance(&self, w: DVec3) -> Rgb {
+        self.film.reflectance(w.z.abs(), true)
+    }
+}
+
+impl Bsdf for SoapFilm {
+    #[inline]
+    fn evaluate(&self, _wo: DVec3, _wi: DVec3) -> (Rgb, f64) {
+        (Rgb::ZERO, 0.0)
+    }
+
+    #[inline]
+    fn sample(&self, wo: DVec3, choice: impl FnOnce() -> f64, _u: [f64; 2]) -> Option<BsdfSample> {
+        if wo.z == 0.0 {
+            return None;
+        }
+        let reflectance = self.reflectance(wo);
+        let chance = reflectance.mean();
+        let is_reflected = choice() < chance;
+        let drawn = if is_reflected {
+            BsdfSample::delta(mirrored(wo), reflectance / chance)
+        } else {
+            BsdfSample::delta(-wo, (Rgb::ONE - reflectance) / (1.0 - chance)).through(1.0)
+        };
+        Some(drawn.of_lobe(either(chance, is_reflected)))
+    }
+
+    fn albedo(&self) -> Rgb {
+        Rgb::ONE
+    }
+
+    fn is_delta(&self) -> bool {
+        true
+    }
+
+    fn transmits(&self) -> bool {
+        true
+    }
+
+    fn roughness(&self) -> f64 {
+        0.0
+    }
+}

@@ -1,0 +1,94 @@
+//! How an interface divides light between two ways.
+
+use super::{Rgb, fresnel};
+use std::fmt::Debug;
+use std::ops::{Div, Mul};
+
+/// What is reflected at an interface between two media that are clear; the rest goes through.
+pub trait Split: Copy + Debug {
+    /// A number where all light is divided alike, a colour where it is not.
+    type Share: Share;
+
+    /// The share of light that is reflected at a `cosine` of incidence, 0 to 1: `eta` is the index of refraction beyond
+    /// over that before, and light comes from above or from below the surface.
+    fn reflectance(&self, cosine: f64, eta: f64, is_above: bool) -> Self::Share;
+}
+
+/// A share of light, one for all of it or a colour.
+pub trait Share: Copy + Mul<f64, Output = Self> + Div<f64, Output = Self> {
+    /// No light.
+    const NONE: Self;
+
+    /// What is left.
+    fn rest(self) -> Self;
+
+    /// How often it is drawn: 0 or 1 only where all or nothing of the rest is left.
+    fn chance(self) -> f64;
+
+    /// With as much more in each channel.
+    fn plus(self, more: f64) -> Self;
+
+    /// As a colour.
+    fn rgb(self) -> Rgb;
+}
+
+impl Share for f64 {
+    const NONE: Self = 0.0;
+
+    #[inline(always)]
+    fn rest(self) -> Self {
+        1.0 - self
+    }
+
+    #[inline(always)]
+    fn chance(self) -> f64 {
+        self
+    }
+
+    #[inline(always)]
+    fn plus(self, more: f64) -> Self {
+        self + more
+    }
+
+    #[inline(always)]
+    fn rgb(self) -> Rgb {
+        Rgb::splat(self)
+    }
+}
+
+impl Share for Rgb {
+    const NONE: Self = Self::ZERO;
+
+    #[inline(always)]
+    fn rest(self) -> Self {
+        Self::ONE - self
+    }
+
+    #[inline(always)]
+    fn chance(self) -> f64 {
+        self.mean()
+    }
+
+    #[inline(always)]
+    fn plus(self, more: f64) -> Self {
+        self + Self::splat(more)
+    }
+
+    #[inline(always)]
+    fn rgb(self) -> Rgb {
+        self
+    }
+}
+
+/// Nothing but the two media: Fresnel's reflectance.
+#[derive(Clone, Copy, Debug)]
+pub struct Bare;
+
+impl Split for Bare {
+    type Share = f64;
+
+    #[inline(always)]
+    fn reflectance(&self, cosine: f64, eta: f64, _is_above: bool) -> f64 {
+        fresnel::dielectric(cosine, eta)
+    }
+}
