@@ -99,7 +99,7 @@ impl Scene {
 
     /// The same with a medium in all space in which nothing else is.
     pub fn surrounded_by(self, medium: Option<Arc<dyn Medium>>) -> Self {
-        let plan = self.plan.with_medium_around(medium.is_some());
+        let plan = self.plan.with_medium_around(medium.as_deref());
         Self { plan, surrounding: medium, ..self }
     }
 
@@ -296,6 +296,11 @@ impl Scene {
     /// Why light cannot all be drawn as it sets out, if so.
     pub fn not_drawn(&self) -> Option<String> {
         not_drawn(&self.lights, &self.geometry)
+    }
+
+    /// Why light does not all come from lights, if so.
+    pub fn glow(&self) -> Option<String> {
+        self.plan.needs().glow.then(|| "a medium glows".to_owned())
     }
 
     /// Where all that can be hit lies.

@@ -1,5 +1,6 @@
 //! What a scene needs, what is left out, and which variant of shading it takes.
 
+use super::media::Medium;
 use super::textures::Needs;
 use super::{Emission, Geometry, Lights, Material, Rounding};
 use crate::accel::Primitives;
@@ -23,6 +24,8 @@ pub struct SceneNeeds {
     pub nested: bool,
     /// What dims or scatters light between surfaces.
     pub media: bool,
+    /// What glows between surfaces.
+    pub glow: bool,
     /// Emission that varies over a surface.
     pub patterned_lights: bool,
     /// Shading normals.
@@ -51,6 +54,7 @@ impl BitOr for SceneNeeds {
             // Two of what encloses something may overlap.
             nested: self.nested | other.nested | (self.interiors & other.interiors),
             media: self.media | other.media,
+            glow: self.glow | other.glow,
             patterned_lights: self.patterned_lights | other.patterned_lights,
             smooth: self.smooth | other.smooth,
             shapes: self.shapes | other.shapes,
@@ -157,6 +161,7 @@ impl Plan {
             masks: !material.is_opaque(),
             interiors: material.interior().is_some(),
             media: material.medium().is_some(),
+            glow: material.medium().is_some_and(|medium| medium.glows()),
             patterned_lights: !is_dark && emission.needs().any(),
             light: !is_dark,
             ..SceneNeeds::default()
@@ -180,8 +185,10 @@ impl Plan {
     }
 
     /// The same plan of a scene that has a medium around all that is in it, or none.
-    pub(super) fn with_medium_around(&self, has: bool) -> Self {
-        Self { needs: SceneNeeds { media: self.needs.media || has, ..self.needs }, ..self.clone() }
+    pub(super) fn with_medium_around(&self, medium: Option<&dyn Medium>) -> Self {
+        let (media, glow) = (medium.is_some(), medium.is_some_and(Medium::glows));
+        let around = SceneNeeds { media, glow, ..SceneNeeds::default() };
+        Self { needs: self.needs | around, ..self.clone() }
     }
 
     /// What the scene needs.

@@ -7,7 +7,7 @@ use crate::scene::media::Medium;
 
 /// What fills a closed shape, or one copy of it: two of the same kind are two.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Filled {
+pub(in crate::integrators) struct Filled {
     priority: i32,
     ior: Option<f64>,
     /// The primitive that stands for the shape, and of an instance the one in it.
@@ -34,6 +34,13 @@ impl Filling for Filled {
 
     fn ior(&self) -> Option<f64> {
         self.ior
+    }
+}
+
+impl Filled {
+    /// What stands for the shape that is around a point in some media, the same for all points in it.
+    pub fn there(media: &MediumStack<Self>) -> (u32, u32) {
+        media.top().unwrap_or(&Self::NONE).shape
     }
 }
 

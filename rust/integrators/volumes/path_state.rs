@@ -26,6 +26,11 @@ pub(super) struct PathState {
     pub branch: u32,
     /// Whether it has come to a surface that gives more than there is, in a channel.
     pub gilded: bool,
+    /// Into how many it is split where it is; 0 where it ends.
+    pub splits: f64,
+    /// Whether it looks about from where light is known, and has been at something sharp since.
+    pub is_gathered: bool,
+    pub is_sharp_since: bool,
 }
 
 impl PathState {
@@ -41,6 +46,9 @@ impl PathState {
             bounce: 0,
             branch: 0,
             gilded: false,
+            splits: 1.0,
+            is_gathered: false,
+            is_sharp_since: false,
         }
     }
 
