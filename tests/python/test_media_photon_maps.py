@@ -42,7 +42,8 @@ SCENES = {
     "tinted": rw.Scene(
         [
             FLOOR,
-            LAMP,
+            # So large that its image in the ball is not bright.
+            lamp(1.8, 2.0, 1.0),
             rw.Sphere(
                 (0, 0, 0.6), 0.5, material=rw.Dielectric(1.5, transmittance=(0.3, 0.9, 0.5), distance=0.5)
             ),
@@ -140,10 +141,10 @@ def test_bias_is_told():
     # By a lamp in dense fog light falls off within the radius of balls. In them it is brighter on average.
     fog = rw.Homogeneous(2.0, 2.0)
     scene = rw.Scene([], lights=[rw.PointLight((0, 0, 0), 1.0)], medium=fog)
-    look = rw.Orthographic((0.5, 0, 0), (0.5, 0, -1), up=(0, 1, 0), scale=0.05, width=16, height=16)
-    truth = rw.render(scene, look, rw.Path(), 128, progress=False).rgb.mean(dtype=float)
+    look = rw.Orthographic((0.5, 0, 0), (0.5, 0, -1), up=(0, 1, 0), scale=0.05, width=8, height=8)
+    truth = rw.render(scene, look, rw.Path(), 512, progress=False).rgb.mean(dtype=float)
     images = [
-        rw.render(scene, look, rw.PhotonMap(10_000, nearest=None, radius=0.2), 16, seed=seed, progress=False)
+        rw.render(scene, look, rw.PhotonMap(20_000, nearest=None, radius=0.25), 16, seed=seed, progress=False)
         for seed in range(4)
     ]
     found = [image.rgb.mean(dtype=float) for image in images]
@@ -151,10 +152,9 @@ def test_bias_is_told():
     error = np.std(found, ddof=1) / 2
     assert error < 0.02 * truth
     off = np.mean(found) - truth
-    print(off / truth, bias / truth, error / truth)
-    assert off > 0.05 * truth
-    # Laws other than r² are told less well.
-    assert abs(bias - off) < 0.4 * off + 3 * error
+    assert off > 0.1 * truth
+    # Photons of which the balls of three sizes have fewer and fewer tell it to about a sixth.
+    assert abs(bias - off) < 0.5 * off + 3 * error
 
 
 def test_bits_go_by_the_seed_alone():
