@@ -490,13 +490,13 @@ def photons(
 ) -> tuple[
     tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]],
     tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.int64], NDArray[np.int64]],
-    NDArray[np.uint64],
-    tuple[tuple[float, float, float], tuple[float, float, float]],
+    tuple[NDArray[np.uint64], NDArray[np.uint64]],
+    tuple[tuple[float, float, float], tuple[float, float, float], tuple[float, float, float]],
 ]:
     """Return light at each surface that it comes to: positions, directions, normals and powers (K,3).
 
-    Then shape_id, primitive, path and bounces (K,), bits of which bounces were sharp, and what is emitted
-    and escapes. Signals are checked.
+    Then shape_id, primitive, path and bounces (K,), bits of which bounces were sharp and which by media, and
+    what is emitted, escapes and is absorbed by media. Signals are checked.
     """
 
 def cone_coverage(

@@ -2,6 +2,7 @@
 
 use super::light_paths::{LightPaths, Limits};
 use super::transport::Settings;
+use super::volumes::{Counting, MediaLightPaths, Volumes};
 use super::{Integrator, Job, LightWorker, Session, Worker};
 use crate::scene::{Emitters, Scene};
 use crate::workers::Cancel;
@@ -15,7 +16,7 @@ use crate::workers::Cancel;
 /// shines in them without being seen so.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LightTraced {
-    /// The greatest number of bounces off surfaces; 0 shows only what shines itself. `None` sets no limit.
+    /// The greatest number of times that light is scattered; 0 shows only what shines itself. `None` sets no limit.
     pub max_depth: Option<u32>,
     /// Roulette is played from this number of bounces on.
     pub roulette_depth: u32,
@@ -29,7 +30,11 @@ impl Default for LightTraced {
 
 impl Integrator for LightTraced {
     fn begin<'a>(&'a self, job: Job<'a>, cancel: &Cancel) -> Box<dyn Session + 'a> {
-        let seen = Settings::path(Some(0), u32::MAX).begin(job, cancel);
+        let seen = if job.scene.plan().needs().media {
+            Volumes::dimmed(0).begin(job)
+        } else {
+            Settings::path(Some(0), u32::MAX).begin(job, cancel)
+        };
         let limits = Limits { max_depth: self.max_depth, roulette_depth: self.roulette_depth };
         Box::new(LightTracing { limits, job, seen, emitters: job.scene.emitters() })
     }
@@ -38,7 +43,14 @@ impl Integrator for LightTraced {
         if adaptive {
             return Some("light comes to all pixels alike, so samples cannot be adaptive: use adaptive=False".into());
         }
-        scene.not_drawn().map(|why| format!("{why}, where no path from a light can start: use Path"))
+        scene
+            .not_drawn()
+            .or_else(|| scene.glow())
+            .map(|why| format!("{why}, where no path from a light can start: use Path"))
+    }
+
+    fn takes_media(&self) -> bool {
+        true
     }
 }
 
@@ -59,6 +71,9 @@ impl Session for LightTracing<'_> {
 
     fn light_worker(&self) -> Option<Box<dyn LightWorker + '_>> {
         let emitters = self.emitters.as_ref().filter(|_| self.limits.max_depth != Some(0))?;
+        if self.job.scene.plan().needs().media {
+            return Some(Box::new(MediaLightPaths::new(self.job, emitters, self.limits, Counting::Full)));
+        }
         Some(Box::new(LightPaths::new(self.job, emitters, self.limits, None)))
     }
 }

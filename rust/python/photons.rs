@@ -11,16 +11,16 @@ use crate::integrators::{Photon, photons as follow};
 /// Rows of three numbers.
 type Rows<'py> = Bound<'py, PyArray2<f64>>;
 
-/// Positions, directions, normals and powers (K,3); shape_id, primitive, path, bounces and sharp (K,); what is emitted
-/// and what escapes.
+/// Positions, directions, normals and powers (K,3); shape_id, primitive, path and bounces (K,); sharp and adrift (K,);
+/// what is emitted, what escapes and what media absorb.
 type Found<'py> = (
     (Rows<'py>, Rows<'py>, Rows<'py>, Rows<'py>),
     (Bound<'py, PyArray1<i32>>, Bound<'py, PyArray1<i32>>, Bound<'py, PyArray1<i64>>, Bound<'py, PyArray1<i64>>),
-    Bound<'py, PyArray1<u64>>,
-    ([f64; 3], [f64; 3]),
+    (Bound<'py, PyArray1<u64>>, Bound<'py, PyArray1<u64>>),
+    ([f64; 3], [f64; 3], [f64; 3]),
 );
 
-/// Light at each surface that it comes to, on so many paths.
+/// Light at each surface that it comes to, and where media take or scatter it, on so many paths.
 #[pyfunction]
 pub fn photons<'py>(
     py: Python<'py>,
@@ -32,7 +32,7 @@ pub fn photons<'py>(
     threads: Option<usize>,
 ) -> PyResult<Found<'py>> {
     let scene = &scene.get().0;
-    if let Some(why) = scene.not_drawn() {
+    if let Some(why) = scene.not_drawn().or_else(|| scene.glow()) {
         return Err(PyValueError::new_err(format!("{why}, where no path from a light can start")));
     }
     let found = heard(py, threads, |cancel| follow(scene, count, (max_depth, roulette_depth), seed, cancel))?;
@@ -47,12 +47,15 @@ pub fn photons<'py>(
             rows(|photon| photon.power.to_array())?,
         ),
         (
-            PyArray1::from_iter(py, all.iter().map(|photon| photon.shape as i32)),
-            PyArray1::from_iter(py, all.iter().map(|photon| photon.primitive as i32)),
+            PyArray1::from_iter(py, all.iter().map(|photon| photon.surface.map_or(-1, |(shape, _)| shape as i32))),
+            PyArray1::from_iter(py, all.iter().map(|photon| photon.surface.map_or(-1, |(_, face)| face as i32))),
             PyArray1::from_iter(py, all.iter().map(|photon| i64::from(photon.path))),
             PyArray1::from_iter(py, all.iter().map(|photon| i64::from(photon.bounces))),
         ),
-        PyArray1::from_iter(py, all.iter().map(|photon| photon.sharp)),
-        (found.emitted.to_array(), found.escaped.to_array()),
+        (
+            PyArray1::from_iter(py, all.iter().map(|photon| photon.sharp)),
+            PyArray1::from_iter(py, all.iter().map(|photon| photon.adrift)),
+        ),
+        (found.emitted.to_array(), found.escaped.to_array(), found.absorbed.to_array()),
     ))
 }

@@ -63,9 +63,19 @@ impl Sampler {
     /// Numbers of the same sample that have nothing to do with these, for what it is paired with.
     pub fn paired(&self) -> Self {
         /// Any number: none that somebody is likely to give for a seed.
-        const APART: u64 = 0x9e37_79b9_7f4a_7c15;
+        const PAIRED: u64 = 0x9e37_79b9_7f4a_7c15;
+        self.of_seed_with(PAIRED)
+    }
+
+    /// Numbers of the same sample that have nothing to do with these, nor with those paired with either.
+    pub fn apart(&self) -> Self {
+        const APART: u64 = 0xd1b5_4a32_d192_ed03;
+        self.of_seed_with(APART)
+    }
+
+    fn of_seed_with(&self, other: u64) -> Self {
         let seed = u64::from(self.key[1]) << 32 | u64::from(self.key[0]);
-        self.kind.sampler(seed ^ APART, self.pixel, self.number)
+        self.kind.sampler(seed ^ other, self.pixel, self.number)
     }
 
     /// Of which pixel it is a sample.

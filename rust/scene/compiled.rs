@@ -298,6 +298,11 @@ impl Scene {
         not_drawn(&self.lights, &self.geometry)
     }
 
+    /// Why light does not all come from lights, if so.
+    pub fn glow(&self) -> Option<String> {
+        self.plan.needs().glow.then(|| "a medium glows".to_owned())
+    }
+
     /// Where all that can be hit lies.
     pub fn region(&self) -> &Region {
         &self.region

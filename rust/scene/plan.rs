@@ -24,6 +24,8 @@ pub struct SceneNeeds {
     pub nested: bool,
     /// What dims or scatters light between surfaces.
     pub media: bool,
+    /// What glows between surfaces.
+    pub glow: bool,
     /// Emission that varies over a surface.
     pub patterned_lights: bool,
     /// Shading normals.
@@ -54,6 +56,7 @@ impl BitOr for SceneNeeds {
             // Two of what encloses something may overlap.
             nested: self.nested | other.nested | (self.interiors & other.interiors),
             media: self.media | other.media,
+            glow: self.glow | other.glow,
             patterned_lights: self.patterned_lights | other.patterned_lights,
             smooth: self.smooth | other.smooth,
             shapes: self.shapes | other.shapes,
@@ -163,6 +166,7 @@ impl Plan {
             masks: !material.is_opaque(),
             interiors: material.interior().is_some(),
             media: material.medium().is_some(),
+            glow: material.medium().is_some_and(|medium| medium.glows()),
             waves: material.medium().is_some_and(|medium| medium.has_waves()),
             patterned_lights: !is_dark && emission.needs().of_place(),
             light: !is_dark,
@@ -188,9 +192,10 @@ impl Plan {
 
     /// The same plan of a scene that has a medium around all that is in it, or none.
     pub(super) fn with_medium_around(&self, medium: Option<&dyn Medium>) -> Self {
-        let (media, waves) = (medium.is_some(), medium.is_some_and(Medium::has_waves));
-        let (media, waves) = (self.needs.media || media, self.needs.waves || waves);
-        Self { needs: SceneNeeds { media, waves, ..self.needs }, ..self.clone() }
+        let (media, glow) = (medium.is_some(), medium.is_some_and(Medium::glows));
+        let waves = medium.is_some_and(Medium::has_waves);
+        let around = SceneNeeds { media, glow, waves, ..SceneNeeds::default() };
+        Self { needs: self.needs | around, ..self.clone() }
     }
 
     /// What the scene needs.

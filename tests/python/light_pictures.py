@@ -1,5 +1,7 @@
 """Scenes for paths that start at lights, and how their pictures are compared with those of other paths."""
 
+import math
+
 import numpy as np
 import pytest
 
@@ -77,3 +79,30 @@ def assert_same(scene, camera, ours, theirs):
     assert ratio.max() < 5, ratio.round(1)
     assert np.median(error / (blocks(theirs.rgb) + 1e-12)) < 0.1
     return ours, theirs
+
+
+def small_blocks(values, size=4):
+    side = values.shape[0] // size
+    return values.astype(float).reshape(side, size, side, size, 3).mean((1, 3))
+
+
+def assert_agree(scene, camera, integrator, truth, *, seeds=5, samples=8, blur=0.04):
+    """Blocks of pixels agree within five joint standard errors, and twice the bias that is told, or `blur`.
+
+    Those of the maps are told by pictures of other seeds. Five standard errors of six pictures are exceeded
+    in one of 250 cases; with what is left for the bias, far more rarely.
+    """
+    ours = [rw.render(scene, camera, integrator, samples, seed=seed, progress=False) for seed in range(seeds)]
+    each = np.array([small_blocks(image.rgb) for image in ours])
+    mean, error = each.mean(0), each.std(0, ddof=1) / math.sqrt(seeds)
+    expected, other = (
+        small_blocks(truth.rgb),
+        np.sqrt(small_blocks(truth.standard_error.astype(float) ** 2) / 16),
+    )
+    bias = np.abs(np.mean([small_blocks(image.bias) for image in ours], 0))
+    allowed = 5 * np.hypot(error, other) + 2 * bias + blur * expected + 1e-6
+    off = np.abs(mean - expected) / allowed
+    assert off.max() < 1, off.round(2)
+    # The whole is told better than its parts.
+    whole = 5 * math.hypot(error.mean(), other.mean()) + 2 * bias.mean()
+    assert abs(mean.mean() - expected.mean()) < whole + 0.02 * expected.mean()

@@ -260,10 +260,6 @@ def test_standard_errors_cover():
 
 
 OTHERS = [
-    rw.Bidirectional(),
-    rw.LightTraced(),
-    rw.PhotonMap(),
-    rw.ProgressivePhotonMap(),
     rw.RayCast(),
     rw.Distributed(),
     rw.BeamTraced(),

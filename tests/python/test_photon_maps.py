@@ -7,7 +7,7 @@ from functools import cache
 
 import numpy as np
 import pytest
-from light_pictures import behind_glass, square
+from light_pictures import assert_agree, behind_glass, square
 
 import raywright as rw
 
@@ -16,30 +16,6 @@ SIDE = 16
 
 def picture(scene, camera, integrator, samples, **options):
     return rw.render(scene, camera, integrator, samples, progress=False, **options)
-
-
-def blocks(values, size=4):
-    side = values.shape[0] // size
-    return values.astype(float).reshape(side, size, side, size, 3).mean((1, 3))
-
-
-def assert_agree(scene, camera, integrator, truth, *, seeds=5, samples=8, blur=0.04):
-    """Blocks of pixels agree within five joint standard errors, and twice the bias that is told, or `blur`.
-
-    Those of the maps are told by pictures of other seeds. Five standard errors of six pictures are exceeded
-    in one of 250 cases; with what is left for the bias, far more rarely.
-    """
-    ours = [picture(scene, camera, integrator, samples, seed=seed) for seed in range(seeds)]
-    each = np.array([blocks(image.rgb) for image in ours])
-    mean, error = each.mean(0), each.std(0, ddof=1) / math.sqrt(seeds)
-    expected, other = blocks(truth.rgb), np.sqrt(blocks(truth.standard_error.astype(float) ** 2) / 16)
-    bias = np.abs(np.mean([blocks(image.bias) for image in ours], 0))
-    allowed = 5 * np.hypot(error, other) + 2 * bias + blur * expected + 1e-6
-    off = np.abs(mean - expected) / allowed
-    assert off.max() < 1, off.round(2)
-    # The whole is told better than its parts.
-    whole = 5 * math.hypot(error.mean(), other.mean()) + 2 * bias.mean()
-    assert abs(mean.mean() - expected.mean()) < whole + 0.02 * expected.mean()
 
 
 WAYS = {

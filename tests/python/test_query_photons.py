@@ -101,6 +101,17 @@ def test_long_ways_are_told_to_their_64th_bounce():
     assert set("".join(found.chains)) == {"L", "D"}
 
 
+def test_light_that_glass_holds_for_ever_ends_soon():
+    # Of a lamp in a cube of glass, whatever comes to a side within the critical angle gets out sooner or
+    # later, as its angles to all sides stay the same: six cones, 3 (1 - sqrt(1 - 1 / n^2)) of all. The rest
+    # never does, and is ended after some 96 bounces, not some 4,096.
+    cube = rw.Box((-1, -1, -1), (1, 1, 1), material=rw.Dielectric(1.5))
+    found = rw.Scene([cube], lights=[rw.PointLight((0.1, 0.2, 0.3), 1)]).photons(20_000)
+    out = 3 * (1 - math.sqrt(1 - 1 / 1.5**2))
+    assert abs(found.escaped[1] / found.emitted[1] - out) < 4 * math.sqrt(out * (1 - out) / 20_000)
+    assert len(found) < 40 * 20_000
+
+
 def test_what_cannot_be_is_refused_in_one_line():
     scene = caustic()
     for arguments, kind, words in [
@@ -116,6 +127,9 @@ def test_what_cannot_be_is_refused_in_one_line():
     endless = rw.Scene([rw.Plane((0, 0, 0), (0, 0, 1))], environment=rw.ConstantEnvironment(1))
     with pytest.raises(ValueError, match="shape 0, which has no end, where no path from a light can start"):
         endless.photons(1)
+    fire = rw.Sphere((0, 0, 0), 1, material=rw.Boundary(rw.Homogeneous(1, emission=1)))
+    with pytest.raises(ValueError, match="a medium glows, where no path from a light can start"):
+        rw.Scene([fire], lights=[rw.PointLight((0, 0, 2), 1)]).photons(1)
 
 
 def test_a_dark_scene_has_none():

@@ -29,11 +29,14 @@ class Bidirectional:
     that no other way finds is found. What is gathered is blurred as long as radii are: ``image.bias`` tells
     about how much. With more samples both noise and blur vanish.
 
+    Where media scatter light on its way counts as a surface, and is connected as such. There nothing can be
+    merged yet.
+
     Parameters
     ----------
     max_depth : int or None
-        Greatest number of surface bounces: 0 shows emitters only, 1 adds direct light. None ends paths by
-        Russian roulette alone, which leaves no bias.
+        Greatest number of bounces, off surfaces or in media: 0 shows emitters only, 1 adds direct light. None
+        ends paths by Russian roulette alone, which leaves no bias.
     roulette_depth : int
         Bounces before Russian roulette begins, from either end, at least 0.
     merge : bool
@@ -50,8 +53,8 @@ class Bidirectional:
     ------
     ValueError
         If a number is out of its range, or `radius` or `photons` are given and nothing is merged. When
-        rendering, with `adaptive=True`, and of a scene where a light is that no path can start at: one that
-        has no end, or that moves in instances.
+        rendering, with `adaptive=True`, of a scene where a light is that no path can start at: one that
+        has no end, or that moves in instances; and merged, of a scene that has media.
     TypeError
         If a number is none, or `merge` is neither True nor False.
     """

@@ -13,7 +13,7 @@ class LightTraced:
     to surface; at each of them it is connected to the camera, wherever on the film that is seen. What shines
     is seen by the camera's own rays. So it finds what path tracing hardly does: light that mirrors and glass
     throw on matt surfaces. It never finds light that the camera sees in a mirror or through glass: there only
-    what shines itself is seen.
+    what shines itself is seen. Where media scatter light on its way counts as a surface.
 
     The error is told as ever, for what comes to a pixel with one sample is independent of what comes with
     another.
@@ -21,8 +21,8 @@ class LightTraced:
     Parameters
     ----------
     max_depth : int or None
-        Greatest number of surface bounces: 0 shows emitters only, 1 adds direct light. None ends paths by
-        Russian roulette alone, which leaves no bias.
+        Greatest number of bounces, off surfaces or in media: 0 shows emitters only, 1 adds direct light. None
+        ends paths by Russian roulette alone, which leaves no bias.
     roulette_depth : int
         Bounces before Russian roulette begins, at least 0.
 
@@ -30,7 +30,7 @@ class LightTraced:
     ------
     ValueError
         If a number is negative. When rendering, with `adaptive=True`, and of a scene where a light is that no
-        path can start at: one that has no end, or that moves in instances.
+        path can start at: one that has no end, or that moves in instances, or a medium that glows.
     TypeError
         If it is not an integer.
     """

@@ -35,7 +35,8 @@ class PhotonMap:
     surface. There lights are asked directly, a caustic map tells what mirrors and glass throw together, and
     rays look about for the surfaces beyond, where the same is asked, and a global map for all other light. So
     light is found that was sent through glass and is seen through glass, which no path finds from a small
-    lamp. Where nothing is matt, the picture is that of paths.
+    lamp. Where nothing is matt, the picture is that of paths. Where a medium scatters the camera's path,
+    photons that came to be scattered about there tell all of its light (Jensen and Christensen 1998).
 
     Light that is gathered from about a point is blurred: the picture is biased, however many samples it has,
     and ``image.bias`` tells about how much, ``image.standard_error`` how much noise there is besides. Each
@@ -49,8 +50,8 @@ class PhotonMap:
         How many photons tell a density: of N, the farthest gives the radius, and N - 1 count (García et al.
         2012). With None, all within the radius.
     radius : float, optional
-        How far they may lie. If not given, 8 times as far as N neighbours of a photon lie, in half of all
-        cases, or, with ``nearest=None``, as far as the 24th does.
+        How far they may lie, at surfaces and in media. If not given, 8 times as far as N neighbours of a
+        photon lie there, in half of all cases, or, with ``nearest=None``, as far as the 24th does.
     caustic : bool
         Whether light that mirrors and glass throw on matt surfaces has a map of its own, which is looked up
         where the camera's paths end. If not, rays have to find it, or with ``gather=0`` it is part of the
@@ -63,8 +64,8 @@ class PhotonMap:
         How photons count by their distance: alike, or less the farther away (Jensen's cone with k = 1;
         Epanechnikov 1969), which blurs less and is noisier.
     max_depth : int or None
-        Greatest number of surface bounces: 0 shows emitters only, 1 adds direct light. None ends paths by
-        Russian roulette alone, which leaves no bias.
+        Greatest number of bounces, off surfaces or in media: 0 shows emitters only, 1 adds direct light. None
+        ends paths by Russian roulette alone, which leaves no bias.
     roulette_depth : int
         Bounces before Russian roulette begins, at least 0.
 
@@ -73,7 +74,7 @@ class PhotonMap:
     ValueError
         If a number is out of its range, or `filter` none of the three. When rendering, with `adaptive=True`,
         and of a scene where a light is that no photon can start at: one that has no end, or that moves in
-        instances.
+        instances, or a medium that glows.
     TypeError
         If a number is none.
     """
@@ -103,7 +104,8 @@ class ProgressivePhotonMap:
     """Progressive photon mapping (Hachisuka et al. 2008; Knaus and Zwicker 2011): blur that goes to zero.
 
     As `PhotonMap`, with a map of its own for each sample of all pixels, in which light is gathered from ever
-    less far away: of the squared radii, that in map s + 1 is (s + alpha) / (s + 1) of that in map s. So both
+    less far away: of the squared radii, or of the cubed ones in media, that in map s + 1 is
+    (s + alpha) / (s + 1) of that in map s. So both
     noise and bias vanish with more samples, and ``error=`` and ``seconds=`` may take the picture as far as
     they want. With ``alpha=2/3`` the error falls as the cube root of the samples' number, relMSE as its
     2/3rd power, which is the most that can be had. ``image.error`` tells noise alone; ``image.bias`` tells
@@ -114,8 +116,8 @@ class ProgressivePhotonMap:
     photons : int
         Paths from lights for each map, 1 to 2**31 - 1.
     radius : float, optional
-        How far photons may lie in the first map. If not given, as far as the 24th neighbour of a photon lies
-        in half of all cases, which the scene and the number of photons tell.
+        How far photons may lie in the first map, at surfaces and in media. If not given, as far as the 24th
+        neighbour of a photon lies there in half of all cases, which the scene and the number of photons tell.
     alpha : float
         The share of new photons that is kept, above 0 and at most 1: with more, radii shrink more slowly,
         for less noise and more bias.
@@ -124,8 +126,8 @@ class ProgressivePhotonMap:
     filter : {"box", "cone", "epanechnikov"}
         How photons count by their distance.
     max_depth : int or None
-        Greatest number of surface bounces: 0 shows emitters only, 1 adds direct light. None ends paths by
-        Russian roulette alone, which leaves no bias.
+        Greatest number of bounces, off surfaces or in media: 0 shows emitters only, 1 adds direct light. None
+        ends paths by Russian roulette alone, which leaves no bias.
     roulette_depth : int
         Bounces before Russian roulette begins, at least 0.
 

@@ -1,4 +1,4 @@
-"""Light at the surfaces that it comes to."""
+"""Light at the surfaces that it comes to, and among media."""
 
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
@@ -17,31 +17,37 @@ _TOLD = 64
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Photons:
-    """Light at the surfaces that it comes to: K photons, path by path, and along each in order.
+    """Light where it comes to surfaces and is scattered by media: K photons, in order along each path.
 
-    ``photons[mask]`` has some of them; `emitted` and `escaped` stay those of all. All arrays are read-only.
+    ``photons[mask]`` has some of them; what is emitted, escapes and is absorbed stays that of all. All arrays
+    are read-only.
 
     Attributes
     ----------
     positions : (K, 3) float64
-        Where they came to a surface.
+        Where they came to a surface, or to where a medium absorbs or scatters them.
     directions : (K, 3) float64
         Unit, along which they came.
     normals : (K, 3) float64
-        Unit geometric normals there, on the side that they came to.
+        Unit geometric normals there, on the side that they came to; 0 in a medium.
     powers : (K, 3) float64
-        The flux, W, that each stands for: power over area is irradiance.
+        The flux, W, that each stands for as it comes there: power over area is irradiance, and power over
+        volume and extinction is fluence.
     shape_id, primitive : (K,) int32
-        Which shape they came to, and which primitive of it.
+        Which shape they came to, and which primitive of it; -1 in a medium.
     path : (K,) int64
         On which path, from 0 on.
     bounces : (K,) int64
-        At how many surfaces they were scattered before.
+        How often they were scattered before.
     sharp : (K,) uint64
         At which of these sharply, by mirrors, glass or gloss: a bit each, of the first 64, the lowest for the
         first.
-    emitted, escaped : tuple of 3 floats
-        The flux of all light that sets out, and what of it leaves the scene.
+    adrift : (K,) uint64
+        At which by a medium, likewise.
+    emitted, escaped, absorbed : tuple of 3 floats
+        The flux of all light that sets out, what of it leaves the scene, and what of it media absorb. Where
+        red, green and blue are dimmed alike, each path's account is exact; where they are not, or where a
+        medium that scatters nothing differs from place to place, it is on average.
     """
 
     positions: Floats
@@ -53,32 +59,37 @@ class Photons:
     path: NDArray[np.int64]
     bounces: NDArray[np.int64]
     sharp: NDArray[np.uint64]
+    adrift: NDArray[np.uint64]
     emitted: Triple
     escaped: Triple
+    absorbed: Triple
 
     def __post_init__(self) -> None:
         for name in _ARRAYS:
             object.__setattr__(self, name, sealed(getattr(self, name)))
 
     @classmethod
-    def of(cls, vectors: tuple[Any, ...], numbers: tuple[Any, ...], sharp: Any, flux: Any) -> "Photons":
+    def of(cls, vectors: tuple[Any, ...], numbers: tuple[Any, ...], bits: Any, flux: Any) -> "Photons":
         """Return what the core gave."""
         positions, directions, normals, powers = vectors
         shape_id, primitive, path, bounces = numbers
-        hits = positions, directions, normals, powers, shape_id, primitive, path, bounces, sharp
+        hits = positions, directions, normals, powers, shape_id, primitive, path, bounces, *bits
         return cls(*hits, *map(tuple, flux))
 
     @cached_property
     def chains(self) -> NDArray[np.str_]:
         """The ways that they took, (K,) str: "L" for the light, then a letter for each bounce.
 
-        "S" is a sharp one and "D" any other. The notation is Heckbert's (1990): "LS" has come from a lamp by
-        one mirror, "LSS" through a ball of glass. Of more than 64 bounces the first are told.
+        "S" is a sharp one, "V" one by what fills a volume, and "D" any other. The notation is Heckbert's
+        (1990): "LS" has come from a lamp by one mirror, "LSS" through a ball of glass, "LVD" by smoke and a
+        wall. Of more than 64 bounces the first are told.
         """
         told = min(int(self.bounces.max(initial=0)), _TOLD)
         places = np.arange(told, dtype=np.uint64)
-        is_sharp = (self.sharp[:, None] >> places & np.uint64(1)).astype(bool)
-        letters = np.where(is_sharp, "S", "D").astype("U1")
+        is_sharp, is_adrift = (
+            (bits[:, None] >> places & np.uint64(1)).astype(bool) for bits in (self.sharp, self.adrift)
+        )
+        letters = np.where(is_adrift, "V", np.where(is_sharp, "S", "D")).astype("U1")
         letters[places[None, :] >= self.bounces[:, None].astype(np.uint64)] = ""
         whole = np.concatenate([np.full((len(self), 1), "L", "U1"), letters], axis=1)
         return sealed(np.ascontiguousarray(whole).view(f"U{told + 1}")[:, 0])
@@ -95,7 +106,7 @@ class Photons:
         if not isinstance(other, Photons):
             return NotImplemented
         arrays = all(same(getattr(self, name), getattr(other, name)) for name in _ARRAYS)
-        return arrays and (self.emitted, self.escaped) == (other.emitted, other.escaped)
+        return arrays and all(getattr(self, name) == getattr(other, name) for name in _FLUXES)
 
     __hash__ = None  # type: ignore[assignment]
 
@@ -104,7 +115,8 @@ class Photons:
         return f"Photons({len(self)} on {paths} paths, {sum(self.emitted) / 3:.4g} W emitted)"
 
 
-_ARRAYS = tuple(field.name for field in fields(Photons) if field.name not in ("emitted", "escaped"))
+_FLUXES = ("emitted", "escaped", "absorbed")
+_ARRAYS = tuple(field.name for field in fields(Photons) if field.name not in _FLUXES)
 
 
 def photon_arguments(

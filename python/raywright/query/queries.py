@@ -438,7 +438,8 @@ class Queries(PointQueries):
 
         So many paths start at lights, chosen by their power, at points by area and in directions by the
         cosine, and are scattered from surface to surface as light is, until they leave the scene, are
-        absorbed by roulette, or have come to `max_depth` surfaces.
+        absorbed by roulette, or have come to `max_depth` surfaces. Where a medium absorbs or scatters light
+        on its way counts as a surface, and is noted as well.
 
         Parameters
         ----------
@@ -462,7 +463,7 @@ class Queries(PointQueries):
         ------
         ValueError
             If a number is out of its range, or light is in the scene that no path can start at: of what has
-            no end, or moves in instances, or from outside on what has no end.
+            no end, or moves in instances, or from outside on what has no end, or of a medium that glows.
         TypeError
             If a number is not an integer.
         KeyboardInterrupt

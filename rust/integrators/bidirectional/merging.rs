@@ -68,7 +68,7 @@ impl<'a> Merging<'a> {
         let photons = merge.photons.unwrap_or(pixels.clamp(LEAST, MOST));
         let spread = Spread::Progressive { alpha: ALPHA, mean_of: merge.mean_of };
         let series = Series::new(job, Sending { paths: photons, limits, caustic: false, spread });
-        let radius = merge.radius.unwrap_or_else(|| series.suitable(Some(emitters), cancel));
+        let radius = merge.radius.unwrap_or_else(|| series.suitable(Some(emitters), cancel).disk);
         Self { job, series: series.with_radius(radius), photons, scale: merge.scale }
     }
 
@@ -162,7 +162,7 @@ impl<'a> Visitor<'a> for Keeping<'a> {
     fn meet(&mut self, arrived: &Arrived<'a>, path: &Flying, _: &MediumStack, _: (&mut Sampler, Dimensions)) {
         self.partials.arrive(path, arrived);
         if path.bounce > 1 && is_matt(arrived.here.bsdf()) {
-            let photon = StoredPhoton::arrived(arrived, path, self.share);
+            let photon = StoredPhoton::arrived(arrived, path.flux * self.share, path.bounce - 1, path.again);
             self.kept.push((photon, self.partials.end(path).partial()));
         }
     }

@@ -11,6 +11,7 @@ mod worker;
 pub use merging::Merge;
 
 use super::light_paths::{LightPaths, Limits, Partials, Weighing};
+use super::volumes::{BothEnds, Counting, MediaLightPaths};
 use super::{Integrator, Job, LightWorker, Session, Worker};
 use crate::scene::{Emitters, Scene};
 use crate::workers::Cancel;
@@ -33,7 +34,7 @@ use worker::BidirectionalWorker;
 /// sharp, lit by way of something sharp from a small light, is found no better unless walks are merged.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bidirectional {
-    /// The greatest number of bounces off surfaces; 0 shows only what shines itself. `None` sets no limit.
+    /// The greatest number of times that light is scattered; 0 shows only what shines itself. `None` sets no limit.
     pub max_depth: Option<u32>,
     /// Roulette is played from this number of bounces on, along either walk.
     pub roulette_depth: u32,
@@ -70,7 +71,16 @@ impl Integrator for Bidirectional {
     }
 
     fn objection(&self, scene: &Scene, adaptive: bool) -> Option<String> {
-        super::LightTraced::default().objection(scene, adaptive)
+        // What glows is found from the camera alone.
+        if adaptive || scene.not_drawn().is_some() {
+            return super::LightTraced::default().objection(scene, adaptive);
+        }
+        let is_merged = self.merge.is_some() && scene.plan().needs().media;
+        is_merged.then(|| "walks are not merged among media: use merge=False, or ProgressivePhotonMap".into())
+    }
+
+    fn takes_media(&self) -> bool {
+        true
     }
 
     fn narrowed(&self, scale: f64, samples: u32) -> Option<Box<dyn Integrator>> {
@@ -90,8 +100,22 @@ struct Bidirection<'a> {
     alone: Option<Alone>,
 }
 
+impl Bidirection<'_> {
+    fn among_media(&self) -> bool {
+        self.job.scene.plan().needs().media
+    }
+
+    /// The way that alone counts, if one does and is no merge: no way has no vertices.
+    fn way_alone(&self) -> Option<[u32; 2]> {
+        self.alone.map(|alone| if alone.merges { [0; 2] } else { alone.vertices })
+    }
+}
+
 impl Session for Bidirection<'_> {
     fn worker(&self) -> Box<dyn Worker + '_> {
+        if self.among_media() {
+            return Box::new(BothEnds::new(self.job, self.emitters.as_ref(), self.limits, self.way_alone()));
+        }
         Box::new(BidirectionalWorker::new(self))
     }
 
@@ -112,8 +136,15 @@ impl Session for Bidirection<'_> {
     fn light_worker(&self) -> Option<Box<dyn LightWorker + '_>> {
         let emitters = self.emitters.as_ref().filter(|_| self.limits.max_depth != Some(0))?;
         let paths = f64::from(self.job.camera.width()) * f64::from(self.job.camera.height());
-        // No way has no vertices.
-        let alone = self.alone.map(|alone| if alone.merges { [0; 2] } else { alone.vertices });
+        let alone = self.way_alone();
+        if self.among_media() {
+            let counting = match alone {
+                None => Counting::Beside(paths),
+                Some([light, 1]) => Counting::Alone(light),
+                Some(_) => Counting::Nothing,
+            };
+            return Some(Box::new(MediaLightPaths::new(self.job, emitters, self.limits, counting)));
+        }
         let disk = |merging| Box::new(move |number| Merging::disk(merging, number)) as Box<dyn Fn(u32) -> f64 + Send>;
         let disks = self.merging.as_ref().map(disk);
         let weighing = Weighing { partials: Partials::new(emitters), disks, paths, alone };

@@ -1,15 +1,36 @@
 //! Which random number of a path from a light is for what.
 
-/// Which light the path starts at; where on it is told by the pair that follows.
-pub(super) const LIGHT_CHOICE: u32 = 0;
-/// Where it starts.
-pub(super) const PLACE: u32 = 1;
-/// Which of the lights outside.
-pub(super) const OUTSIDE: u32 = 2;
-/// Where it goes.
-pub(super) const DIRECTION: u32 = 3;
-/// When.
-pub(super) const TIME: u32 = 4;
+use crate::sampling::Sampler;
+use crate::scene::EmissionNumbers;
+
+/// The dimensions of light that sets out.
+pub(in crate::integrators) struct EmissionDimensions;
+
+impl EmissionDimensions {
+    /// Which light the path starts at; where on it is told by the pair that follows.
+    const LIGHT_CHOICE: u32 = 0;
+    /// Where it starts.
+    const PLACE: u32 = 1;
+    /// Which of the lights outside.
+    const OUTSIDE: u32 = 2;
+    /// Where it goes.
+    const DIRECTION: u32 = 3;
+    /// When.
+    pub const TIME: u32 = 4;
+    /// Which wavelength decides how far it gets among media.
+    pub const HERO: u32 = 5;
+
+    /// What it is drawn by.
+    pub fn numbers(sampler: &mut Sampler) -> EmissionNumbers {
+        EmissionNumbers {
+            choice: sampler.one(Self::LIGHT_CHOICE),
+            outside: sampler.one(Self::OUTSIDE),
+            place: sampler.two(Self::PLACE),
+            direction: sampler.two(Self::DIRECTION),
+        }
+    }
+}
+
 /// Those of the first surface.
 const FIRST: u32 = 6;
 

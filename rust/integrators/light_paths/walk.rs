@@ -1,14 +1,14 @@
 //! The way of paths that start at lights, one bounce at a time.
 
 use super::adjoint::{Arrived, Onward};
-use super::dimensions::{DIRECTION, Dimensions, LIGHT_CHOICE, OUTSIDE, PLACE, TIME};
+use super::dimensions::{Dimensions, EmissionDimensions};
 use crate::integrators::nesting::MediumStack;
 use crate::integrators::passing::{Met, Passing};
 use crate::integrators::{is_matt, roulette};
 use crate::math::{Hit, Ray, RayQueue};
 use crate::optics::{Bsdf, Rgb};
 use crate::sampling::Sampler;
-use crate::scene::{Camera, EmissionNumbers, EmissionSample, Emitters, Encounter, Scene};
+use crate::scene::{Camera, EmissionSample, Emitters, Encounter, Scene};
 use crate::workers::Cancel;
 
 /// When paths end.
@@ -45,6 +45,23 @@ pub(in crate::integrators) enum Times {
     All(f64),
     /// Each at its own, as the scene counts time.
     Each(Vec<f64>),
+}
+
+impl Times {
+    /// When a path is on its way, while the shutter is open, and as the scene counts time.
+    pub fn of(&self, number: usize, moves: bool, camera: Option<&dyn Camera>, sampler: &mut Sampler) -> (f64, f64) {
+        let time = match self {
+            _ if !moves => 0.0,
+            Self::Drawn => sampler.one(EmissionDimensions::TIME),
+            Self::All(time) => *time,
+            // Nobody asks where the camera is then.
+            Self::Each(_) => 0.0,
+        };
+        match self {
+            Self::Each(times) => (time, times[number]),
+            _ => (time, camera.map_or(time, |camera| camera.body().scene_time(time))),
+        }
+    }
 }
 
 /// Who is told where paths have come to.
@@ -111,6 +128,8 @@ pub(in crate::integrators) struct Flying {
     pub again: Rgb,
     /// Whether it was scattered into a single direction, or nearly so, the last time.
     pub is_sharp: bool,
+    /// How many times in a row glass has held it ([`roulette::held`]).
+    held: u32,
 }
 
 impl<'a> LightWalk<'a> {
@@ -160,28 +179,12 @@ impl<'a> LightWalk<'a> {
     fn start(&mut self, paths: &mut [Sampler], visitor: &mut impl Visitor<'a>) {
         self.now.clear();
         for (number, sampler) in (0u32..).zip(paths) {
-            let numbers = EmissionNumbers {
-                choice: sampler.one(LIGHT_CHOICE),
-                outside: sampler.one(OUTSIDE),
-                place: sampler.two(PLACE),
-                direction: sampler.two(DIRECTION),
-            };
-            let Some(light) = self.emitters.sample(&numbers) else { continue };
-            let time = match self.times {
-                _ if !self.moves => 0.0,
-                Times::Drawn => sampler.one(TIME),
-                Times::All(time) => time,
-                // Nobody asks where the camera is then.
-                Times::Each(_) => 0.0,
-            };
-            let of_scene = match &self.times {
-                Times::Each(times) => times[number as usize],
-                _ => self.camera.map_or(time, |camera| camera.body().scene_time(time)),
-            };
+            let Some(light) = self.emitters.sample(&EmissionDimensions::numbers(sampler)) else { continue };
+            let (time, of_scene) = self.times.of(number as usize, self.moves, self.camera, sampler);
             let ray = Ray { time: of_scene, ..light.ray };
             let (flux, start) = (light.weight, light.weight.max());
             let (media, chance, again) = (MediumStack::NONE, -1.0, Rgb::ONE);
-            let path = Flying { number, flux, start, time, bounce: 0, media, chance, again, is_sharp: false };
+            let path = Flying { number, flux, start, time, bounce: 0, media, chance, again, is_sharp: false, held: 0 };
             visitor.set_out(&path, &light);
             self.now.push(&ray, path);
         }
@@ -243,7 +246,7 @@ impl<'a> LightWalk<'a> {
         visitor.go_on(arrived, &path, &next);
         let mut flux = path.flux * next.weight;
         if path.bounce >= self.limits.roulette_depth.min(roulette::AT_LATEST) {
-            let survival = roulette::survival(flux / path.start, 1.0);
+            let survival = roulette::survival(flux / path.start, 1.0).min(roulette::held(path.held));
             let survives = sampler.one(dimensions.roulette()) < survival;
             if !survives {
                 return;
@@ -257,6 +260,8 @@ impl<'a> LightWalk<'a> {
         let ray = Ray { time: arrived.ray.time, misses: [arrived.hit.primitive, Ray::NO_TRIANGLE], ..ray };
         let media = if next.is_through { through } else { path.media };
         let is_sharp = next.is_single || !is_matt(arrived.here.bsdf());
-        self.next.push(&ray, Flying { flux, media, chance: -1.0, is_sharp, ..path });
+        let is_held = roulette::is_held(arrived.here.bsdf().transmits(), next.is_single, next.is_through);
+        let held = if is_held { path.held.saturating_add(1) } else { 0 };
+        self.next.push(&ray, Flying { flux, media, chance: -1.0, is_sharp, held, ..path });
     }
 }

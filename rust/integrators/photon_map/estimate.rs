@@ -1,7 +1,7 @@
 //! From photons about a point to the light that is scattered there.
 
 use super::kernel::Kernel;
-use super::maps::{PhotonIndex, Places};
+use super::maps::PhotonIndex;
 use super::photon::StoredPhoton;
 use crate::integrators::transport::Visit;
 use crate::optics::{Bsdf, Rgb};
@@ -40,33 +40,11 @@ impl Estimate {
                 sum += scattered * photon.power(visit.gilded) * weight;
             }
         };
-        let squared_radius = match &of.places {
-            Places::Grid(grid) => {
-                let radius = grid.radius() * grid.radius();
-                grid.within(here.position(), |number, squared| {
-                    let photon = &of.photons[number as usize];
-                    if let Some(squared) = photon.measured(here, squared, bounces) {
-                        add(photon, squared, radius);
-                    }
-                });
-                radius
-            }
-            Places::Tree(tree) => {
-                let (count, mut found) = (self.nearest.unwrap_or(u32::MAX) as usize, Vec::new());
-                let measured = |number: u32, squared| of.photons[number as usize].measured(here, squared, bounces);
-                tree.nearest(here.position(), count, self.most, measured, &mut found);
-                // Where the farthest tells the radius, the others alone are counted: N − 1 of N (García et al., "On the
-                // Convergence of Density Estimation for Radiative Transfer", 2012).
-                let radius = match found.last() {
-                    Some(farthest) if found.len() == count || self.most == f64::INFINITY => farthest.squared,
-                    _ => self.most,
-                };
-                for near in &found {
-                    add(&of.photons[near.number as usize], near.squared, radius);
-                }
-                radius
-            }
-        };
+        let measured = |number: u32, squared: f64| of.photons[number as usize].measured(here, squared, bounces);
+        let squared_radius =
+            of.places.gather(here.position(), (self.nearest, self.most), measured, |number, squared, radius| {
+                add(&of.photons[number as usize], squared, radius);
+            });
         if sum.is_black() || !sum.is_radiance() {
             return Rgb::ZERO;
         }

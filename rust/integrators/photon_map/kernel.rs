@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-/// A weight over a disk, whose integral is 1.
+/// A weight over a disk, whose integral is 1, or over a ball.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kernel {
     /// The same everywhere: bias r²/8 ∇²E, variance over the density of photons 1/(π r²) (Silverman, "Density
@@ -29,6 +29,31 @@ impl Kernel {
             Self::Epanechnikov => 2.0 * (1.0 - share),
         };
         shape / (PI * radius)
+    }
+
+    /// The same over volume, of a ball with a radius; both squared.
+    #[inline]
+    pub fn ball_weight(self, squared: f64, radius: f64) -> f64 {
+        if squared >= radius {
+            return 0.0;
+        }
+        let share = squared / radius;
+        let shape = match self {
+            Self::Box => 1.0,
+            Self::Cone => 4.0 * (1.0 - share.sqrt()),
+            Self::Epanechnikov => 2.5 * (1.0 - share),
+        };
+        shape * 0.75 / (PI * radius * radius.sqrt())
+    }
+
+    /// The part of the ball's weight that lies within a share of its radius.
+    pub fn ball_share(self, x: f64) -> f64 {
+        let cube = x * x * x;
+        match self {
+            Self::Box => cube,
+            Self::Cone => cube * (4.0 - 3.0 * x),
+            Self::Epanechnikov => cube * (2.5 - 1.5 * x * x),
+        }
     }
 }
 
@@ -58,6 +83,22 @@ mod tests {
             assert_eq!(kernel.weight(4.0, 4.0), 0.0);
             // Over another disk it is as much in all.
             assert!((kernel.weight(1.0, 16.0) * 16.0 - kernel.weight(0.0625, 1.0)).abs() < 1e-15);
+        }
+    }
+
+    #[test]
+    fn balls_have_all_of_their_weight_within_them() {
+        for kernel in [Kernel::Box, Kernel::Cone, Kernel::Epanechnikov] {
+            for share in [0.3, 0.7, 1.0] {
+                // By the midpoints of shells, of a ball of radius 2.
+                let steps = 100_000;
+                let at = |i| 2.0 * share * (f64::from(i) + 0.5) / f64::from(steps);
+                let shell = |s: f64| 4.0 * PI * s * s * kernel.ball_weight(s * s, 4.0);
+                let sum = (0..steps).map(|i| shell(at(i))).sum::<f64>() * 2.0 * share / f64::from(steps);
+                assert!((sum - kernel.ball_share(share)).abs() < 1e-8);
+            }
+            assert_eq!(kernel.ball_share(1.0), 1.0);
+            assert_eq!(kernel.ball_weight(4.0, 4.0), 0.0);
         }
     }
 }

@@ -1,12 +1,14 @@
 //! Maps of photons, as they are made.
 
-use super::grid::HashedGrid;
-use super::kd_tree::KdTree;
 use super::photon::StoredPhoton;
+use super::places::Places;
 use super::store::Counted;
+use super::volume_photon::{VolumeIndex, VolumePhoton};
 use crate::integrators::is_matt;
 use crate::integrators::light_paths::{Arrived, Dimensions, Flying, LightWalk, Limits, Times, Visitor};
 use crate::integrators::nesting::MediumStack;
+use crate::integrators::volumes::{Drifting, MediaLightWalk, MediaVisitor, Numbers, Point, Vertex};
+use crate::optics::Rgb;
 use crate::sampling::Sampler;
 use crate::scene::{Camera, EmissionSample, Emitters, Scene};
 use crate::workers::Cancel;
@@ -34,50 +36,46 @@ pub(in crate::integrators) struct PhotonIndex {
     pub places: Places,
 }
 
-#[derive(Debug)]
-pub(in crate::integrators) enum Places {
-    /// For all within a radius.
-    Grid(HashedGrid),
-    /// For the nearest.
-    Tree(KdTree),
-}
-
 impl PhotonIndex {
     /// For all within a radius, or for the nearest.
     pub fn new(photons: Vec<StoredPhoton>, radius: Option<f64>) -> Self {
-        let positions = photons.iter().map(|photon| photon.position);
-        let places = match radius {
-            Some(radius) => Places::Grid(HashedGrid::new(positions, radius)),
-            None => Places::Tree(KdTree::new(positions)),
-        };
+        let places = Places::new(photons.iter().map(|photon| photon.position), radius);
         Self { photons, places }
     }
 }
 
 /// Photons of one flight: those that matt surfaces get by way of sharp ones alone, if they are kept apart, and all
-/// others that have been scattered.
+/// others that have been scattered; and all that media get.
 #[derive(Debug)]
 pub(in crate::integrators) struct Maps {
     pub caustic: PhotonIndex,
     pub global: PhotonIndex,
+    pub among: VolumeIndex,
 }
 
 impl Counted for Maps {
     fn count(&self) -> usize {
-        self.caustic.photons.len() + self.global.photons.len()
+        self.caustic.photons.len() + self.global.photons.len() + self.among.photons.len()
     }
 }
 
+/// Photons of one flight, in the order of their paths.
+#[derive(Default)]
+pub(super) struct Flown {
+    /// At surfaces: by way of sharp ones alone, if they are kept apart, and others.
+    pub surfaces: [Vec<StoredPhoton>; 2],
+    /// Among media.
+    pub among: Vec<VolumePhoton>,
+}
+
 /// Follows the paths of a flight, by all threads of the current pool or by this one alone: some thousands at a time,
-/// for each of which a visitor is made who is told of them. What they are told depends on the flight alone. Of no use
-/// once it is cancelled.
-pub(in crate::integrators) fn flown<'a, V: Visitor<'a> + Send>(
-    scene: &'a Scene,
-    emitters: &'a Emitters<'a>,
-    camera: &'a dyn Camera,
+/// for each of which a visitor is made, and sent along with `walk`. What they are told depends on the flight alone. Of
+/// no use once it is cancelled.
+fn chunked<V: Send>(
     flight: &Flight,
     (alone, cancel): (bool, &Cancel),
     visitor: impl Fn(usize) -> V + Sync,
+    walk: impl Fn(&mut [Sampler], &mut V) + Sync,
 ) -> Vec<V> {
     /// Paths that are followed together.
     const TOGETHER: u32 = 4096;
@@ -89,9 +87,7 @@ pub(in crate::integrators) fn flown<'a, V: Visitor<'a> + Send>(
             paths.map(|path| Sampler::new(flight.seed, BEYOND | path, flight.number)).collect();
         let mut visitor = visitor(samplers.len());
         if !cancel.is_raised() {
-            let mut walk = LightWalk::new(scene, emitters, flight.limits, Some(camera));
-            walk.set_times(flight.time.map_or(Times::Drawn, Times::All));
-            walk.follow(&mut samplers, cancel, &mut visitor);
+            walk(&mut samplers, &mut visitor);
         }
         visitor
     };
@@ -99,7 +95,23 @@ pub(in crate::integrators) fn flown<'a, V: Visitor<'a> + Send>(
     if alone { chunks.map(follow).collect() } else { chunks.into_par_iter().with_max_len(1).map(follow).collect() }
 }
 
-/// Sends photons, as [`flown`], and gives those that came by way of sharp surfaces alone and the others.
+/// Follows the paths of a flight from surface to surface, by all threads or by this one alone, each some of visitors.
+pub(in crate::integrators) fn flown<'a, V: Visitor<'a> + Send>(
+    scene: &'a Scene,
+    emitters: &'a Emitters<'a>,
+    camera: &'a dyn Camera,
+    flight: &Flight,
+    (alone, cancel): (bool, &Cancel),
+    visitor: impl Fn(usize) -> V + Sync,
+) -> Vec<V> {
+    chunked(flight, (alone, cancel), visitor, |samplers, visitor| {
+        let mut walk = LightWalk::new(scene, emitters, flight.limits, Some(camera));
+        walk.set_times(flight.time.map_or(Times::Drawn, Times::All));
+        walk.follow(samplers, cancel, visitor);
+    })
+}
+
+/// Sends photons, and gives what is kept of them.
 pub(super) fn fly<'a>(
     scene: &'a Scene,
     emitters: &'a Emitters<'a>,
@@ -107,30 +119,58 @@ pub(super) fn fly<'a>(
     flight: &Flight,
     alone: bool,
     cancel: &Cancel,
-) -> [Vec<StoredPhoton>; 2] {
+) -> Flown {
     let share = 1.0 / f64::from(flight.paths);
-    let storing = |_| Storing { share, caustic: flight.caustic, chains: Vec::new(), stored: Default::default() };
-    let parts = flown(scene, emitters, camera, flight, (alone, cancel), storing);
-    parts.into_iter().fold(Default::default(), |[mut caustic, mut global], part| {
-        let [c, g] = part.stored;
-        caustic.extend(c);
-        global.extend(g);
-        [caustic, global]
+    let storing = |_| Storing { share, caustic: flight.caustic, chains: Vec::new(), stored: Flown::default() };
+    let parts = if scene.plan().needs().media {
+        chunked(flight, (alone, cancel), storing, |samplers, visitor| {
+            let mut walk = MediaLightWalk::new(scene, emitters, flight.limits, Some(camera));
+            walk.set_times(flight.time.map_or(Times::Drawn, Times::All));
+            walk.follow(samplers, cancel, visitor);
+        })
+    } else {
+        flown(scene, emitters, camera, flight, (alone, cancel), storing)
+    };
+    parts.into_iter().fold(Flown::default(), |mut all, part| {
+        for (all, part) in all.surfaces.iter_mut().zip(part.stored.surfaces) {
+            all.extend(part);
+        }
+        all.among.extend(part.stored.among);
+        all
     })
 }
 
-/// Keeps what comes to matt surfaces.
+/// Keeps what comes to matt surfaces, and what media scatter.
 struct Storing {
     share: f64,
     caustic: bool,
-    /// Of each path, whether all surfaces that it has been scattered at were sharp.
+    /// Of each path, whether all that it has been scattered at was sharp.
     chains: Vec<bool>,
-    stored: [Vec<StoredPhoton>; 2],
+    stored: Flown,
+}
+
+impl Storing {
+    fn begin(&mut self, path: u32) {
+        self.chains.resize(path as usize + 1, true);
+    }
+
+    /// A path has been scattered, sharply or not.
+    fn scattered(&mut self, path: u32, is_sharp: bool) {
+        self.chains[path as usize] &= is_sharp;
+    }
+
+    fn keep(&mut self, arrived: &Arrived, path: u32, flux: Rgb, bounces: u32, again: Rgb) {
+        if is_matt(arrived.here.bsdf()) {
+            let photon = StoredPhoton::arrived(arrived, flux * self.share, bounces, again);
+            let is_sharp = self.chains[path as usize];
+            self.stored.surfaces[usize::from(!(self.caustic && is_sharp))].push(photon);
+        }
+    }
 }
 
 impl Visitor<'_> for Storing {
     fn set_out(&mut self, path: &Flying, _: &EmissionSample) {
-        self.chains.resize(path.number as usize + 1, true);
+        self.begin(path.number);
     }
 
     fn meet(&mut self, arrived: &Arrived, path: &Flying, _: &MediumStack, _: (&mut Sampler, Dimensions)) {
@@ -138,11 +178,31 @@ impl Visitor<'_> for Storing {
         if path.bounce == 1 {
             return;
         }
-        let is_sharp = &mut self.chains[path.number as usize];
-        *is_sharp &= path.is_sharp;
-        if is_matt(arrived.here.bsdf()) {
-            let photon = StoredPhoton::arrived(arrived, path, self.share);
-            self.stored[usize::from(!(self.caustic && *is_sharp))].push(photon);
+        self.scattered(path.number, path.is_sharp);
+        self.keep(arrived, path.number, path.flux, path.bounce - 1, path.again);
+    }
+}
+
+impl<'a> MediaVisitor<'a> for Storing {
+    fn set_out(&mut self, path: &Drifting, _: &EmissionSample) {
+        self.begin(path.number);
+    }
+
+    fn meet(&mut self, at: &Vertex<'a>, path: &Drifting, _: &mut Numbers, _: Dimensions, _: &Cancel) {
+        let bounces = path.bounce - 1;
+        if bounces > 0 {
+            self.scattered(path.number, path.is_sharp);
+        }
+        match &at.point {
+            Point::Surface { arrived, .. } => {
+                if bounces > 0 {
+                    self.keep(arrived, path.number, path.flux(), bounces, path.again);
+                }
+            }
+            Point::Medium { here, came, .. } => {
+                let power = *came * (self.share / path.going.weights.drawn.mean());
+                self.stored.among.push(VolumePhoton::new(here, power, path.again, bounces, &at.media));
+            }
         }
     }
 }
@@ -150,7 +210,6 @@ impl Visitor<'_> for Storing {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::optics::Rgb;
     use crate::scene::fixtures::{cornell, furnace};
 
     fn flight(paths: u32, limits: Limits) -> Flight {
@@ -165,7 +224,8 @@ mod tests {
         let (scene, rho) = (furnace(0.7, 1.0), 0.7);
         let emitters = scene.emitters().unwrap();
         let all = Limits { max_depth: None, roulette_depth: 4 };
-        let [caustic, global] = fly(&scene, &emitters, &camera, &flight(100_000, all), false, &Cancel::default());
+        let found = fly(&scene, &emitters, &camera, &flight(100_000, all), false, &Cancel::default());
+        let [caustic, global] = found.surfaces;
         assert!(caustic.is_empty());
         let stored: Rgb = global.iter().map(|photon| photon.power(false)).sum();
         let expected = 24.0 * std::f64::consts::PI * rho / (1.0 - rho);
@@ -174,7 +234,8 @@ mod tests {
         assert!((stored.mean() / expected - 1.0).abs() < 0.004, "{stored:?}");
         // Each bounce leaves the share ρ, exactly, as long as there is no roulette.
         let exact = Limits { max_depth: Some(6), roulette_depth: u32::MAX };
-        let [_, global] = fly(&scene, &emitters, &camera, &flight(2000, exact), true, &Cancel::default());
+        let found = fly(&scene, &emitters, &camera, &flight(2000, exact), true, &Cancel::default());
+        let [_, global] = found.surfaces;
         let of = |bounces| {
             global.iter().filter(|p| p.bounces == bounces).map(|photon| photon.power(false)).sum::<Rgb>().mean()
         };
@@ -190,7 +251,7 @@ mod tests {
         let emitters = scene.emitters().unwrap();
         let flight = flight(10_000, Limits { max_depth: None, roulette_depth: 2 });
         let [a, b] = [true, false].map(|alone| fly(&scene, &emitters, &camera, &flight, alone, &Cancel::default()));
-        let places = |all: &[Vec<StoredPhoton>; 2]| all[1].iter().map(|photon| photon.position).collect::<Vec<_>>();
+        let places = |all: &Flown| all.surfaces[1].iter().map(|photon| photon.position).collect::<Vec<_>>();
         assert_eq!(places(&a), places(&b));
         let other = Flight { number: 1, ..flight };
         assert_ne!(places(&fly(&scene, &emitters, &camera, &other, true, &Cancel::default())), places(&a));

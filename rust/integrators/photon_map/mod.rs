@@ -1,7 +1,8 @@
-//! Photon maps: how photons are kept (`maps`, `photon`), found (`grid`, `kd_tree`) and weighed (`estimate`, `kernel`),
-//! how far light is gathered from (`radius`) and how much of that is surface (`cover`), the maps of a picture
+//! Photon maps: how photons are kept (`maps`, `photon`), found (`places`, `grid`, `kd_tree`) and weighed (`estimate`,
+//! `kernel`), the same among media (`volume_photon`, `among`), how far light is gathered from (`radius`) and how much of that is surface (`cover`), the maps of a picture
 //! (`series`, `store`), and the pictures that are made of them (`session`).
 
+mod among;
 mod cover;
 mod estimate;
 mod grid;
@@ -9,10 +10,12 @@ mod kd_tree;
 mod kernel;
 mod maps;
 mod photon;
+mod places;
 mod radius;
 mod series;
 mod session;
 mod store;
+mod volume_photon;
 
 pub(super) use cover::cover;
 pub(super) use grid::HashedGrid;
@@ -35,6 +38,10 @@ use session::{Mapped, Recipe};
 /// at the matt surfaces that rays from the first one come to, or there at once. The camera's paths go through mirrors
 /// and glass to what is matt, so light is found that came through glass and is seen through glass. Samples of a batch
 /// are shared out among maps of its own, so that batches are independent and their spread tells the noise of maps too.
+///
+/// Media have a map of their own, of all light that comes to be scattered in them: a path from the camera draws where it
+/// is scattered, and asks the photons about that place for what comes back along it (Jensen and Christensen, "Efficient
+/// Simulation of Light Transport in Scenes with Participating Media using Photon Maps", 1998).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PhotonMap {
     /// Paths from lights for each map; at least 1.
@@ -61,7 +68,7 @@ pub struct PhotonMap {
 
 /// Progressive photon mapping (Hachisuka, Ogaki and Jensen 2008) with no statistics to keep (Knaus and Zwicker 2011):
 /// each sample of all pixels has a map and a radius of its own, which shrinks from one to the next so that both noise
-/// and bias go to zero.
+/// and bias go to zero. Among media the volume of balls shrinks as the area of disks does.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ProgressivePhotonMap {
     /// Paths from lights for each map; at least 1.
@@ -122,7 +129,7 @@ fn objection(scene: &Scene, adaptive: bool) -> Option<String> {
     if adaptive {
         return Some("maps are of samples of all pixels alike, so these cannot be adaptive: use adaptive=False".into());
     }
-    scene.not_drawn().map(|why| format!("{why}, where no photon can start: use Path"))
+    scene.not_drawn().or_else(|| scene.glow()).map(|why| format!("{why}, where no photon can start: use Path"))
 }
 
 impl Integrator for PhotonMap {
@@ -140,6 +147,10 @@ impl Integrator for PhotonMap {
 
     fn objection(&self, scene: &Scene, adaptive: bool) -> Option<String> {
         objection(scene, adaptive)
+    }
+
+    fn takes_media(&self) -> bool {
+        true
     }
 
     fn narrowed(&self, scale: f64, _samples: u32) -> Option<Box<dyn Integrator>> {
@@ -163,6 +174,10 @@ impl Integrator for ProgressivePhotonMap {
 
     fn objection(&self, scene: &Scene, adaptive: bool) -> Option<String> {
         objection(scene, adaptive)
+    }
+
+    fn takes_media(&self) -> bool {
+        true
     }
 
     fn narrowed(&self, scale: f64, samples: u32) -> Option<Box<dyn Integrator>> {

@@ -1,6 +1,6 @@
 //! Photons as maps keep them.
 
-use crate::integrators::light_paths::{Arrived, Flying};
+use crate::integrators::light_paths::Arrived;
 use crate::math::{DVec3, Vec3};
 use crate::optics::{Bsdf, Rgb};
 use crate::scene::{Encounter, SurfaceInteraction};
@@ -34,14 +34,14 @@ impl StoredPhoton {
         Self { position, direction: direction.as_vec3(), normal: normal.as_vec3(), power, again, bounces }
     }
 
-    /// That of a path which has come to a surface, as a share of it.
-    pub fn arrived(arrived: &Arrived, path: &Flying, share: f64) -> Self {
+    /// That of a path which has come to a surface, of so much flux, after so many others; with what is left of it for a
+    /// viewer who looks by way of what gives more than there is.
+    pub fn arrived(arrived: &Arrived, power: Rgb, bounces: u32, again: Rgb) -> Self {
         let here = &arrived.here;
-        let power = path.flux * share;
-        let photon = Self::new(here.position(), arrived.ray.direction, here.normal(), power, path.bounce - 1);
+        let photon = Self::new(here.position(), arrived.ray.direction, here.normal(), power, bounces);
         // Where this very surface gives more than there is, the viewer's path knows what it leaves of it.
         let own = here.bsdf().again() != Rgb::ONE;
-        let again = if own { Rgb::ONE } else { path.again };
+        let again = if own { Rgb::ONE } else { again };
         Self { again: again.to_array().map(|x| x as f32), ..photon }
     }
 

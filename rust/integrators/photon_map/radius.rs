@@ -1,7 +1,7 @@
 //! How wide light is gathered.
 
 use super::kd_tree::KdTree;
-use super::photon::StoredPhoton;
+use crate::math::DVec3;
 
 /// The square of a progressive estimate's radius in each of its maps, over that in the first: r²ₛ₊₁ / r²ₛ = (s + α) /
 /// (s + 1), s from 1 on (Knaus and Zwicker, "Progressive Photon Mapping: A Probabilistic Approach", 2011, eq. 17). It
@@ -34,6 +34,17 @@ impl Radii {
         let maps = maps.max(1);
         (0..maps).map(|map| self.square(map)).sum::<f64>() / f64::from(maps)
     }
+
+    /// That of a ball, of whose photons the same share is kept: what is true of disks' squares is true of balls' cubes.
+    pub fn ball(&mut self, map: u32) -> f64 {
+        self.square(map).powf(2.0 / 3.0)
+    }
+
+    /// As [`Radii::mean_square`], of balls.
+    pub fn mean_ball(&mut self, maps: u32) -> f64 {
+        let maps = maps.max(1);
+        (0..maps).map(|map| self.ball(map)).sum::<f64>() / f64::from(maps)
+    }
 }
 
 /// Photons of which half of all have so many within the first radius.
@@ -41,15 +52,15 @@ pub(super) const NEIGHBOURS: usize = 24;
 
 /// A radius that suits a map: the median, over its photons, of the distance to the 24th nearest. So it goes by how
 /// densely light lies where most of it is. `None` if there are not as many.
-pub(super) fn first(photons: &[StoredPhoton]) -> Option<f64> {
+pub(super) fn first(photons: &[DVec3]) -> Option<f64> {
     /// Photons that are asked, evenly spread over all.
     const ASKED: usize = 512;
-    let tree = KdTree::new(photons.iter().map(|photon| photon.position));
+    let tree = KdTree::new(photons.iter().copied());
     let mut found = Vec::new();
     let mut far: Vec<f64> = Vec::new();
-    for photon in photons.iter().step_by(photons.len().div_ceil(ASKED).max(1)) {
+    for place in photons.iter().step_by(photons.len().div_ceil(ASKED).max(1)) {
         // It is the nearest to itself.
-        tree.nearest(photon.position, NEIGHBOURS + 1, f64::INFINITY, |_, squared| Some(squared), &mut found);
+        tree.nearest(*place, NEIGHBOURS + 1, f64::INFINITY, |_, squared| Some(squared), &mut found);
         far.extend(found.get(NEIGHBOURS).map(|near| near.squared));
     }
     far.sort_unstable_by(f64::total_cmp);
@@ -69,6 +80,9 @@ mod tests {
             assert!((radii.square(map) / expected - 1.0).abs() < 1e-12);
         }
         assert_eq!([radii.square(0), Radii::new(1.0).square(50)], [1.0, 1.0]);
+        // Γ as above: r³ falls as r² does.
+        assert!((radii.ball(99).powf(1.5) / 0.23838878553836 - 1.0).abs() < 1e-12);
+        assert!((radii.mean_ball(2) - (1.0 + (5.0f64 / 6.0).powf(2.0 / 3.0)) / 2.0).abs() < 1e-15);
         assert!((radii.mean_square(2) - (1.0 + 5.0 / 6.0) / 2.0).abs() < 1e-15);
     }
 }

@@ -2,9 +2,10 @@
 
 use super::maps::{Flight, fly};
 use super::radius::{Radii, first};
-use super::store::{Counted, Key, MapStore};
+use super::store::{Counted, Key, MapStore, Suitable};
 use crate::integrators::Job;
 use crate::integrators::light_paths::Limits;
+use crate::math::DVec3;
 use crate::sampling::Sampler;
 use crate::scene::Emitters;
 use crate::workers::Cancel;
@@ -50,6 +51,8 @@ pub(in crate::integrators) struct Series<'a, M> {
     sending: Sending,
     /// How far light is gathered from in the first map; `None` where that is told by the nearest.
     radius: Option<f64>,
+    /// The same among media.
+    ball: Option<f64>,
     radii: Mutex<Radii>,
     store: Arc<MapStore<M>>,
     ready: RwLock<Vec<(u32, Arc<M>)>>,
@@ -69,6 +72,7 @@ impl<'a, M: Counted + Any + Send + Sync> Series<'a, M> {
             job,
             sending,
             radius: None,
+            ball: None,
             radii: Mutex::new(Radii::new(alpha)),
             store: job.scene.kept(|| Some(MapStore::default())).unwrap_or_default(),
             ready: RwLock::default(),
@@ -80,19 +84,31 @@ impl<'a, M: Counted + Any + Send + Sync> Series<'a, M> {
         Self { radius: Some(radius), ..self }
     }
 
-    /// A radius that suits the first map, told by photons of no picture: by the scene and the number of photons alone.
-    pub fn suitable(&self, emitters: Option<&Emitters>, cancel: &Cancel) -> f64 {
+    /// The same whose first map has a radius among media.
+    pub fn with_ball(self, radius: f64) -> Self {
+        Self { ball: Some(radius), ..self }
+    }
+
+    /// Radii that suit the first map, told by photons of no picture: by the scene and the number of photons alone.
+    pub fn suitable(&self, emitters: Option<&Emitters>, cancel: &Cancel) -> Suitable {
         const SEED: u64 = 0x7069_6c6f_7400;
-        /// One is told by no more photons, and others by the square root of their numbers.
+        /// They are told by no more photons, and others by the roots of their numbers.
         const MOST: u32 = 100_000;
         let all = self.sending.paths;
         let paths = all.min(MOST);
         let flight = Flight { seed: SEED, paths, ..self.flight(u32::MAX) };
-        let told = self.store.radius(self.key(&flight, None), || {
+        let told = self.store.radius(self.key(&flight, [None; 2]), || {
             let all = fly(self.job.scene, emitters?, self.job.camera, &flight, false, cancel);
-            first(&all.concat()).filter(|_| !cancel.is_raised())
+            let disks: Vec<DVec3> = all.surfaces.iter().flatten().map(|photon| photon.position).collect();
+            let balls: Vec<DVec3> = all.among.iter().map(|photon| photon.position).collect();
+            let told = Suitable { disk: first(&disks), ball: first(&balls) };
+            (!cancel.is_raised()).then_some(told)
         });
-        told.map_or_else(|| coarse(&self.job), |told| told * (f64::from(paths) / f64::from(all)).sqrt())
+        let fewer = f64::from(paths) / f64::from(all);
+        let of = |radius: fn(&Suitable<Option<f64>>) -> Option<f64>, by: f64| {
+            told.as_ref().and_then(radius).map_or_else(|| coarse(&self.job), |radius| radius * by)
+        };
+        Suitable { disk: of(|told| told.disk, fewer.sqrt()), ball: of(|told| told.ball, fewer.cbrt()) }
     }
 
     /// How far light is gathered from in a map; `None` where that is told by the nearest.
@@ -103,6 +119,16 @@ impl<'a, M: Counted + Any + Send + Sync> Series<'a, M> {
             _ => radii.square(map),
         };
         self.radius.map(|radius| radius * squared.sqrt())
+    }
+
+    /// The same among media.
+    pub fn ball(&self, map: u32) -> Option<f64> {
+        let mut radii = self.radii.lock().unwrap_or_else(PoisonError::into_inner);
+        let squared = match self.sending.spread {
+            Spread::Progressive { mean_of: Some(samples), .. } => radii.mean_ball(samples),
+            _ => radii.ball(map),
+        };
+        self.ball.map(|radius| radius * squared.sqrt())
     }
 
     /// How far light is gathered from in the map of a sample.
@@ -137,11 +163,12 @@ impl<'a, M: Counted + Any + Send + Sync> Series<'a, M> {
         Flight { paths, limits, caustic, seed: self.job.seed, number: map, time }
     }
 
-    fn key(&self, flight: &Flight, radius: Option<f64>) -> Key {
+    fn key(&self, flight: &Flight, radii: [Option<f64>; 2]) -> Key {
         let Flight { paths, limits, caustic, seed, number, time } = *flight;
         let Limits { max_depth, roulette_depth } = limits;
         let time = time.map(|time| self.job.camera.body().scene_time(time).to_bits());
-        Key { seed, number, paths, max_depth, roulette_depth, caustic, radius: radius.map(f64::to_bits), time }
+        let [radius, ball] = radii.map(|radius| radius.map(f64::to_bits));
+        Key { seed, number, paths, max_depth, roulette_depth, caustic, radius, ball, time }
     }
 
     /// How many samples of each pixel maps can be made ready for at a time.
@@ -165,7 +192,7 @@ impl<'a, M: Counted + Any + Send + Sync> Series<'a, M> {
             if !maps.iter().any(|(kept, _)| *kept == map) {
                 let (flight, radius) = (self.flight(map), self.radius(map));
                 let made = || make(&flight, radius).filter(|_| !cancel.is_raised());
-                maps.extend(self.store.map(self.key(&flight, radius), made).map(|made| (map, made)));
+                maps.extend(self.store.map(self.key(&flight, [radius, self.ball(map)]), made).map(|made| (map, made)));
             }
         }
         *lock() = maps;

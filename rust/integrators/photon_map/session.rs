@@ -1,14 +1,20 @@
 //! Pictures by photon maps.
 
+use super::among::room;
 use super::cover::cover;
 use super::estimate::Estimate;
 use super::kernel::Kernel;
 use super::maps::{Maps, PhotonIndex, fly};
 use super::radius::NEIGHBOURS;
 use super::series::{Sending, Series};
+use super::store::Suitable;
+use super::volume_photon::VolumeIndex;
+use crate::integrators::light_paths::Limits;
+use crate::integrators::nesting::MediumStack;
 use crate::integrators::transport::{Gather, MattLight, Settings, Visit};
+use crate::integrators::volumes::{Filled, KnownLight, Scattering, Volumes};
 use crate::integrators::{Job, Session, Worker};
-use crate::optics::Rgb;
+use crate::optics::{Bsdf, Rgb};
 use crate::scene::materials::BsdfMix;
 use crate::scene::{Emitters, Scene, SurfaceInteraction};
 use crate::workers::Cancel;
@@ -29,17 +35,37 @@ pub(super) struct Recipe {
 struct Known<'a> {
     scene: &'a Scene,
     estimate: Estimate,
+    /// That among media.
+    among: Estimate,
     series: Series<'a, Maps>,
 }
 
-impl MattLight for Known<'_> {
-    fn radiance(&self, here: &SurfaceInteraction<&BsdfMix>, visit: Visit) -> Rgb {
+impl Known<'_> {
+    fn matt<B: Bsdf>(&self, here: &SurfaceInteraction<B>, visit: Visit) -> Rgb {
         let Some(maps) = self.series.of(visit.number) else { return Rgb::ZERO };
         let time = || self.series.scene_time(visit.number);
         let share = |squared: f64| cover(self.scene, here, squared, self.estimate.kernel, time());
         let gathered = |of| self.estimate.radiance(of, here, &visit, share);
         let light = gathered(&maps.caustic);
         if visit.looks_about { light } else { light + gathered(&maps.global) }
+    }
+}
+
+impl MattLight for Known<'_> {
+    fn radiance(&self, here: &SurfaceInteraction<&BsdfMix>, visit: Visit) -> Rgb {
+        self.matt(here, visit)
+    }
+}
+
+impl KnownLight for Known<'_> {
+    fn at_surface(&self, here: &SurfaceInteraction, visit: Visit) -> Rgb {
+        self.matt(here, visit)
+    }
+
+    fn among(&self, here: &Scattering, media: &MediumStack<Filled>, time: f64, visit: Visit) -> Rgb {
+        let Some(maps) = self.series.of(visit.number) else { return Rgb::ZERO };
+        let share = |squared: f64| room(self.scene, here.position, media, squared, self.among.kernel, time);
+        self.among.scattered(&maps.among, here, media, &visit, share)
     }
 }
 
@@ -60,27 +86,42 @@ impl<'a> Mapped<'a> {
     pub fn new(job: Job<'a>, recipe: Recipe, radius: Option<f64>, cancel: &Cancel) -> Self {
         let Recipe { sending, nearest, gather, kernel, scale } = recipe;
         let limits = sending.limits;
-        let emitters = job.scene.emitters().filter(|_| limits.max_depth.is_none_or(|depth| depth > 1));
+        // What comes straight from lights is kept among media alone.
+        let media = job.scene.plan().needs().media;
+        let least = u32::from(!media);
+        let emitters = job.scene.emitters().filter(|_| limits.max_depth.is_none_or(|depth| depth > least));
         let series = Series::new(job, sending);
         let suitable = || series.suitable(emitters.as_ref(), cancel);
-        let mut most = f64::INFINITY;
-        let series = match nearest {
+        let far = |count: u32| {
+            let (suitable, more) = (suitable(), f64::from(count) / NEIGHBOURS as f64);
+            Suitable { disk: FARTHEST * suitable.disk * more.sqrt(), ball: FARTHEST * suitable.ball * more.cbrt() }
+        };
+        let given = radius.map(|radius| Suitable { disk: radius, ball: radius });
+        let (most, series) = match nearest {
             None => {
-                let radius = radius.unwrap_or_else(suitable);
-                series.with_radius(radius)
+                let radii = given.unwrap_or_else(suitable);
+                (
+                    Suitable { disk: f64::INFINITY, ball: f64::INFINITY },
+                    series.with_radius(radii.disk).with_ball(radii.ball),
+                )
             }
             Some(count) => {
-                let far = || FARTHEST * suitable() * (f64::from(count) / NEIGHBOURS as f64).sqrt();
-                let far = radius.unwrap_or_else(far);
-                most = far * far;
-                series
+                let radii = given.unwrap_or_else(|| far(count));
+                (Suitable { disk: radii.disk * radii.disk, ball: radii.ball * radii.ball }, series)
             }
         };
-        let estimate = Estimate { nearest, most, kernel, scale };
-        let known = Arc::new(Known { scene: job.scene, estimate, series });
+        let estimate = Estimate { nearest, most: most.disk, kernel, scale };
+        let among = Estimate { most: most.ball, ..estimate };
+        let known = Arc::new(Known { scene: job.scene, estimate, among, series });
         let gather = Some(Gather { rays: gather, caustic: sending.caustic });
-        let settings = Settings { gather, ..Settings::path(limits.max_depth, limits.roulette_depth) };
-        let seen = settings.begin_with(job, Arc::clone(&known) as Arc<dyn MattLight + 'a>);
+        let Limits { max_depth, roulette_depth } = limits;
+        let seen = if media {
+            let settings = Volumes { gather, ..Volumes::path(max_depth, roulette_depth) };
+            settings.begin_with(job, Arc::clone(&known) as Arc<dyn KnownLight + 'a>)
+        } else {
+            let settings = Settings { gather, ..Settings::path(max_depth, roulette_depth) };
+            settings.begin_with(job, Arc::clone(&known) as Arc<dyn MattLight + 'a>)
+        };
         Self { job, emitters, known, seen }
     }
 }
@@ -97,9 +138,9 @@ impl Session for Mapped<'_> {
     fn before_samples(&self, numbers: Range<u32>, alone: bool, cancel: &Cancel) {
         let Some(emitters) = &self.emitters else { return };
         self.known.series.prepare(numbers, cancel, |flight, radius| {
-            let [caustic, global] = fly(self.job.scene, emitters, self.job.camera, flight, alone, cancel);
-            let index = |photons| PhotonIndex::new(photons, radius);
-            Some(Maps { caustic: index(caustic), global: index(global) })
+            let found = fly(self.job.scene, emitters, self.job.camera, flight, alone, cancel);
+            let [caustic, global] = found.surfaces.map(|photons| PhotonIndex::new(photons, radius));
+            Some(Maps { caustic, global, among: VolumeIndex::new(found.among, self.known.series.ball(flight.number)) })
         });
     }
 

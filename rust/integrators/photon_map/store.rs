@@ -12,8 +12,9 @@ pub(in crate::integrators) struct Key {
     pub max_depth: Option<u32>,
     pub roulette_depth: u32,
     pub caustic: bool,
-    /// Bits of the radius of grids, and of the time in the scene.
+    /// Bits of the radius of grids, at surfaces and among media, and of the time in the scene.
     pub radius: Option<u64>,
+    pub ball: Option<u64>,
     pub time: Option<u64>,
 }
 
@@ -29,7 +30,14 @@ pub(in crate::integrators) trait Counted {
 pub(in crate::integrators) struct MapStore<M> {
     maps: Mutex<VecDeque<(Key, Arc<M>)>>,
     /// Radii that suit, by the photons that tell them.
-    radii: Mutex<Vec<(Key, f64)>>,
+    radii: Mutex<Vec<(Key, Suitable<Option<f64>>)>>,
+}
+
+/// Radii that suit a map, at surfaces and among media; none where there are too few photons.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::integrators) struct Suitable<T = f64> {
+    pub disk: T,
+    pub ball: T,
 }
 
 impl<M> Default for MapStore<M> {
@@ -60,8 +68,12 @@ impl<M: Counted> MapStore<M> {
         })
     }
 
-    /// A radius that was told before, or is told now and kept.
-    pub fn radius(&self, key: Key, tell: impl FnOnce() -> Option<f64>) -> Option<f64> {
+    /// Radii that were told before, or are told now and kept.
+    pub fn radius(
+        &self,
+        key: Key,
+        tell: impl FnOnce() -> Option<Suitable<Option<f64>>>,
+    ) -> Option<Suitable<Option<f64>>> {
         let lock = || self.radii.lock().unwrap_or_else(PoisonError::into_inner);
         let found = lock().iter().find(|(other, _)| *other == key).map(|(_, radius)| *radius);
         // Nor here.

@@ -8,7 +8,7 @@ use crate::scene::media::Medium;
 
 /// What fills a closed shape, or one copy of it: two of the same kind are two.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Filled {
+pub(in crate::integrators) struct Filled {
     priority: i32,
     ior: Option<f64>,
     dispersion: Dispersive,
@@ -40,6 +40,13 @@ impl Filling for Filled {
 
     fn dispersion(&self) -> Dispersive {
         self.dispersion
+    }
+}
+
+impl Filled {
+    /// What stands for the shape that is around a point in some media, the same for all points in it.
+    pub fn there(media: &MediumStack<Self>) -> (u32, u32) {
+        media.top().unwrap_or(&Self::NONE).shape
     }
 }
 

@@ -25,12 +25,16 @@ pub(super) struct Flight<'a> {
 
 /// What a ray in a medium has come to.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Collision {
+pub(in crate::integrators) struct Collision {
     /// Where.
     pub t: f64,
     /// The density, by length, with which such a place is drawn by all wavelengths together; none where that is not
     /// known.
     pub density: Option<f64>,
+    /// What the medium does to light there.
+    pub here: Coefficients,
+    /// What the path carries for each unit of scattering there: what has come, over the density of the place.
+    pub came: Rgb,
 }
 
 impl Flight<'_> {
@@ -108,8 +112,10 @@ impl Flight<'_> {
             let left = here.left(way);
             let density = (weights.drawn * here.extinction * left).mean() / weights.drawn.mean();
             let by = left / (extinction * left[hero]);
+            let came = weights.carried * by;
             weights.times(here.scattering * by, here.extinction * by, Rgb::ONE);
-            return Some(Collision { t: (start + way / self.length).min(end), density: Some(density) });
+            let t = (start + way / self.length).min(end);
+            return Some(Collision { t, density: Some(density), here: *here, came });
         }
         if extinction > 0.0 {
             *depth -= extinction * way;
@@ -155,8 +161,9 @@ impl Flight<'_> {
                 weights.times(nothing * met, most * met, most * met);
             } else if numbers.next() * most[hero] < here.extinction[hero] {
                 let by = left / (here.extinction[hero] * left[hero]);
+                let came = weights.carried * by;
                 weights.times(here.scattering * by, here.extinction * by, Rgb::ONE);
-                return Some(Collision { t, density: None });
+                return Some(Collision { t, density: None, here, came });
             } else {
                 let by = left / (nothing[hero] * left[hero]);
                 weights.times(nothing * by, nothing * by, most * by);

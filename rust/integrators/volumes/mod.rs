@@ -1,26 +1,47 @@
-//! Path tracing through smoke, haze and whatever else fills space: one path at a time.
+//! Paths through smoke, haze and whatever else fills space, one at a time: from the camera (`walker`), from lights
+//! (`light_walk`, `to_camera`), and from both ends (`both_ends`).
 //!
 //! Paths carry densities for three wavelengths, of which one decides how far they get; all count by the mean of what
 //! each of the three would have done (Wilkie et al., "Hero Wavelength Spectral Sampling", 2014; Miller, Georgiev and
 //! Jarosz, "A Null-Scattering Path Integral Formulation of Light Transport", 2019).
 
+mod both_ends;
+mod course;
 mod direct_light;
 mod equiangular;
 mod fading;
 mod filled;
 mod flight;
+mod gathering;
+mod known;
+mod light_end;
+mod light_walk;
 mod numbers;
 mod path_state;
 mod scattering;
 mod surfaces;
+mod to_camera;
+mod vertex;
 mod walker;
 mod weights;
 
+pub(super) use both_ends::BothEnds;
+pub(super) use filled::Filled;
+pub(super) use known::KnownLight;
+pub(super) use light_walk::{Drifting, MediaLightWalk, MediaVisitor};
+pub(super) use numbers::Numbers;
+pub(super) use scattering::Scattering;
+pub(super) use surfaces::{Met, meet};
+pub(super) use to_camera::{Counting, MediaLightPaths};
+pub(super) use vertex::{Point, Vertex};
+
+use super::transport::Gather;
 use super::{Job, Session, Worker};
 use crate::math::DVec3;
 use crate::optics::Rgb;
 use crate::scene::Scene;
-use crate::scene::lights::{Light, Place};
+use crate::scene::lights::{Light, Place as LightPlace};
+use std::sync::Arc;
 use walker::Walker;
 
 /// Along which of the directions into which light is scattered paths go on.
@@ -47,13 +68,16 @@ pub(super) struct Volumes {
     pub ambient: Rgb,
     /// Paths end that contribute less than this, in any colour.
     pub least: f64,
+    /// What becomes of paths at matt surfaces whose light is known, as it is among media then; where that is so,
+    /// [`Volumes::begin_with`] is told of it. `None` where they go on.
+    pub gather: Option<Gather>,
 }
 
 impl Volumes {
     /// Those of a path tracer.
     pub fn path(max_depth: Option<u32>, roulette_depth: u32) -> Self {
         let (onwards, ambient) = (Onwards::All, Rgb::ZERO);
-        Self { max_depth, roulette_depth, scatters: true, onwards, ambient, least: 0.0 }
+        Self { max_depth, roulette_depth, scatters: true, onwards, ambient, least: 0.0, gather: None }
     }
 
     /// Those of what follows light among surfaces alone, to so many of them, and is dimmed between.
@@ -63,12 +87,21 @@ impl Volumes {
 
     /// Begins to work on a picture.
     pub fn begin<'a>(self, job: Job<'a>) -> Box<dyn Session + 'a> {
+        self.among(job, None)
+    }
+
+    /// As [`Volumes::begin`], where light is known where paths are scattered.
+    pub fn begin_with<'a>(self, job: Job<'a>, known: Arc<dyn KnownLight + 'a>) -> Box<dyn Session + 'a> {
+        self.among(job, Some(known))
+    }
+
+    fn among<'a>(self, job: Job<'a>, known: Option<Arc<dyn KnownLight + 'a>>) -> Box<dyn Session + 'a> {
         let point = |light: &'a dyn Light| match light.place() {
-            Some(Place::Point(place)) => Some((place, light)),
+            Some(LightPlace::Point(place)) => Some((place, light)),
             _ => None,
         };
         let points = job.scene.lights().others().filter_map(point).collect();
-        Box::new(Among { settings: self, scene: job.scene, points })
+        Box::new(Among { settings: self, scene: job.scene, points, known })
     }
 }
 
@@ -78,10 +111,12 @@ struct Among<'a> {
     scene: &'a Scene,
     /// Lights that are points.
     points: Vec<(DVec3, &'a dyn Light)>,
+    /// What is known of light where paths are scattered.
+    known: Option<Arc<dyn KnownLight + 'a>>,
 }
 
 impl Session for Among<'_> {
     fn worker(&self) -> Box<dyn Worker + '_> {
-        Box::new(Walker::new(self.settings, self.scene, &self.points))
+        Box::new(Walker::new(self.settings, self.scene, &self.points, self.known.as_deref()))
     }
 }

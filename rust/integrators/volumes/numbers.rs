@@ -5,7 +5,7 @@ use crate::sampling::Sampler;
 
 /// The numbers of one path. Those of which every stage has its own come by their dimensions; of which a stage may need
 /// any number, such as the places where a ray meets nothing in the end, one after the other.
-pub(super) struct Numbers<'s> {
+pub(in crate::integrators) struct Numbers<'s> {
     sampler: &'s mut Sampler,
     /// Numbers that have nothing to do with these, and how many were taken.
     more: Sampler,
@@ -18,6 +18,12 @@ impl<'s> Numbers<'s> {
     /// Those of a sample.
     pub fn new(sampler: &'s mut Sampler) -> Self {
         let more = sampler.paired();
+        Self { sampler, more, taken: 0, ray: Dimensions::of(0, 0) }
+    }
+
+    /// The same where another path has the sample's paired numbers.
+    pub fn apart(sampler: &'s mut Sampler) -> Self {
+        let more = sampler.apart();
         Self { sampler, more, taken: 0, ray: Dimensions::of(0, 0) }
     }
 
@@ -44,6 +50,6 @@ impl<'s> Numbers<'s> {
 }
 
 /// The optical depth that a share of 1 − u of light gets through.
-pub(super) fn depth(u: f64) -> f64 {
+pub(in crate::integrators) fn depth(u: f64) -> f64 {
     -(-u).ln_1p()
 }

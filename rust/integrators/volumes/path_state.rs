@@ -32,6 +32,11 @@ pub(super) struct PathState {
     /// Its wavelengths; none for red, green and blue. And whether the first is all that it carries.
     pub waves: Option<Waves>,
     pub single: bool,
+    /// Into how many it is split where it is; 0 where it ends.
+    pub splits: f64,
+    /// Whether it looks about from where light is known, and has been at something sharp since.
+    pub is_gathered: bool,
+    pub is_sharp_since: bool,
 }
 
 impl PathState {
@@ -49,6 +54,9 @@ impl PathState {
             gilded: false,
             waves,
             single: false,
+            splits: 1.0,
+            is_gathered: false,
+            is_sharp_since: false,
         }
     }
 

@@ -6,7 +6,7 @@ use crate::scene::{Encounter, LightSampleContext, RayOrigin};
 
 /// Where a path is scattered by a medium. How much is scattered there is in the path's weights already.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Scattering {
+pub(in crate::integrators) struct Scattering {
     pub position: DVec3,
     /// The direction in which the path has come, which is unit.
     pub before: DVec3,

@@ -6,7 +6,7 @@ use crate::math::{Hit, Ray};
 use crate::scene::Scene;
 
 /// What a ray has come to.
-pub(super) enum Met {
+pub(in crate::integrators) enum Met {
     /// Nothing: another medium begins there, or not even that. The ray goes on from this `t` in these media.
     Passed(f64, MediumStack<Filled>),
     /// A surface.
@@ -22,7 +22,7 @@ pub(super) enum Met {
 
 /// What it is that a ray in some media has hit. Where neither light is reflected nor bent, there is no surface, unless
 /// one that encloses nothing stands at the same place, as the floor that smoke lies on.
-pub(super) fn meet(scene: &Scene, ray: &Ray, hit: &Hit, media: &MediumStack<Filled>) -> Met {
+pub(in crate::integrators) fn meet(scene: &Scene, ray: &Ray, hit: &Hit, media: &MediumStack<Filled>) -> Met {
     let Some(window) = around::<Filled>(scene, ray, hit) else {
         return Met::Surface { hit: *hit, outside: 1.0, through: *media };
     };

@@ -1,20 +1,20 @@
 //! One path after the other.
 
-use super::filled::{self, Filled};
-use super::flight::{Collision, Flight};
+use super::course::{Course, Going, OnTheWay, Place};
+use super::filled::Filled;
+use super::known::KnownLight;
 use super::numbers::{Numbers, depth};
 use super::path_state::PathState;
 use super::scattering::Scattering;
-use super::surfaces::{Met, meet};
 use super::{Onwards, Volumes};
 use crate::integrators::nesting::MediumStack;
 use crate::integrators::parting::Parting;
-use crate::integrators::shadows::opacity;
 use crate::integrators::transport::{Dimensions, power_heuristic};
 use crate::integrators::{CameraSample, Worker, roulette};
 use crate::math::{DVec3, Hit, Ray};
 use crate::optics::spectra::Waves;
-use crate::optics::{Bsdf, BsdfSample, Rgb};
+use crate::optics::{Bsdf, BsdfSample, Phase, Rgb};
+use crate::scene::media::Coefficients;
 use crate::scene::{Encounter, Light, LightSample, LightSampleContext, Scene, SurfaceInteraction};
 use crate::workers::Cancel;
 
@@ -24,16 +24,10 @@ pub(super) struct Walker<'a> {
     pub(super) scene: &'a Scene,
     /// Lights that are points.
     pub(super) points: &'a [(DVec3, &'a dyn Light)],
+    /// What is known of light where paths are scattered, if anything is.
+    pub(super) known: Option<&'a dyn KnownLight>,
     /// Paths that have been split off and wait.
     waiting: Vec<PathState>,
-}
-
-/// Where a path has come to.
-enum Place {
-    /// Where a medium scatters it.
-    Medium { here: Scattering, part: Option<Part> },
-    /// A surface.
-    Surface { hit: Hit, outside: f64, through: MediumStack<Filled> },
 }
 
 /// The part of a ray in an even medium in which it was scattered, and the density of the place.
@@ -44,8 +38,13 @@ struct Part {
 }
 
 impl<'a> Walker<'a> {
-    pub fn new(settings: Volumes, scene: &'a Scene, points: &'a [(DVec3, &'a dyn Light)]) -> Self {
-        Self { settings, scene, points, waiting: Vec::new() }
+    pub fn new(
+        settings: Volumes,
+        scene: &'a Scene,
+        points: &'a [(DVec3, &'a dyn Light)],
+        known: Option<&'a dyn KnownLight>,
+    ) -> Self {
+        Self { settings, scene, points, known, waiting: Vec::new() }
     }
 
     /// Whether paths go on in all directions into which light is scattered.
@@ -60,6 +59,7 @@ impl<'a> Walker<'a> {
         let waves = self.scene.plan().needs().waves.then(|| Waves::of(u));
         // The first of the wavelengths is the hero; of red, green and blue it is any.
         let hero = if waves.is_some() { 0 } else { ((u * 3.0) as usize).min(2) };
+        let number = sample.sampler.number();
         self.waiting.clear();
         self.waiting.push(PathState::of_camera(sample.ray, media, waves));
         let mut numbers = Numbers::new(&mut sample.sampler);
@@ -68,13 +68,20 @@ impl<'a> Walker<'a> {
                 numbers.ray = Dimensions::of(path.bounce, path.branch);
                 let Some(place) = self.advance(&mut path, hero, &mut numbers, cancel, &mut light) else { break };
                 let goes_on = match place {
-                    Place::Medium { here, part } => {
+                    Place::Medium { here, .. } if self.known.is_some() => {
+                        light += self.known_among(&path, &here, number);
+                        false
+                    }
+                    Place::Medium { here, collision, span } => {
+                        let part = collision.density.map(|density| Part { span, t: collision.t, density });
+                        let part = part.filter(|_| self.is_lit(&path));
                         self.scatter(&mut path, &here, part, hero, &mut numbers, cancel, &mut light)
                     }
                     Place::Surface { hit, outside, through } => {
                         let at = (hit, outside, through);
-                        self.reflect(&mut path, at, hero, &mut numbers, cancel, &mut light)
+                        self.reflect(&mut path, at, (hero, number), &mut numbers, cancel, &mut light)
                     }
+                    Place::Outside => false,
                 };
                 if !goes_on {
                     break;
@@ -82,6 +89,11 @@ impl<'a> Walker<'a> {
             }
         }
         waves.map_or(light, |waves| waves.seen(light))
+    }
+
+    /// What lies on the way of paths.
+    pub(super) fn course(&self, waves: Option<Waves>) -> Course<'a> {
+        Course { scene: self.scene, scatters: self.settings.scatters, waves }
     }
 
     /// Takes a path along its ray to where it is scattered next; none if it leaves the scene, and with what arrives
@@ -94,66 +106,30 @@ impl<'a> Walker<'a> {
         cancel: &Cancel,
         light: &mut Rgb,
     ) -> Option<Place> {
-        // How far the hero gets is drawn once for a ray, however many media it goes through.
         let u = numbers.ray.mask();
-        let mut way = depth(numbers.one(u));
-        let mut start = path.ray.t_min;
-        let may_scatter = self.settings.max_depth.is_none_or(|most| path.bounce < most);
-        while !cancel.is_raised() {
-            let around = filled::around(self.scene, &path.media, &path.ray);
-            let scattering = around.as_ref().filter(|(medium, _)| self.settings.scatters && medium.is_even());
-            let waves = path.waves;
-            let even = scattering.map(|(medium, within)| {
-                let here = medium.at(within.origin);
-                waves.as_ref().map_or(here, |waves| medium.by_waves(here, waves))
-            });
-            let even = even.filter(|here| !here.scattering.is_black());
-            let is_lit = even.is_some() && may_scatter && !self.points.is_empty();
-            let mut asked = path.ray;
-            if let Some(here) = even.filter(|here| here.emission.is_black() && !is_lit) {
-                // Nobody asks what lies beyond where it is scattered.
-                let reach = start + way / here.extinction[hero] * (1.0 + 1e-12);
-                asked.t_max = reach.next_up().min(asked.t_max);
-            }
-            let mut hits = [Hit::MISS];
-            self.scene.intersect(&[asked], &mut hits);
-            let [hit] = hits;
-            let end = if hit.is_hit() { hit.t } else { f64::INFINITY };
-            if let Some((medium, within)) = around {
-                let span = [start, end];
-                if let Some(here) = even.filter(|_| is_lit) {
-                    *light += self.lit_on_the_way(path, span, &here, medium.phase(), hero, numbers, cancel);
-                }
-                let flight = Flight { medium, ray: within, span, length: 1.0, scatters: self.settings.scatters, waves };
-                let weights = &mut path.weights;
-                if let Some(Collision { t, density }) = flight.fly(weights, (hero, &mut way), numbers, cancel, light) {
-                    let phase = medium.phase();
-                    let here = Scattering { position: path.ray.at(t), before: path.ray.direction, phase };
-                    let part = density.map(|density| Part { span, t, density }).filter(|_| is_lit);
-                    return Some(Place::Medium { here, part });
-                }
-                if path.weights.carried.is_black() {
-                    return None;
-                }
-            }
-            if !hit.is_hit() {
-                *light += path.weights.throughput() * self.light_from_outside(path);
-                return None;
-            }
-            start = hit.t;
-            match meet(self.scene, &path.ray, &hit, &path.media) {
-                Met::Passed(beyond, media) => (path.ray.t_min, path.media) = (beyond, media),
-                Met::Surface { hit, outside, through } => {
-                    let opacity = opacity(self.scene, &path.ray, &hit);
-                    if opacity < 1.0 && numbers.next() >= opacity {
-                        path.ray.t_min = hit.t.next_up();
-                    } else {
-                        return Some(Place::Surface { hit, outside, through });
-                    }
-                }
-            }
+        let way = depth(numbers.one(u));
+        let is_lit = self.is_lit(path);
+        let before = *path;
+        let mut add = |now: &Going, span: [f64; 2], here: &Coefficients, phase: Phase, numbers: &mut Numbers| {
+            let Going { ray, weights, media } = *now;
+            let path = PathState { ray, weights, media, ..before };
+            self.lit_on_the_way(&path, span, here, phase, hero, numbers, cancel)
+        };
+        let on_the_way: Option<OnTheWay> = if is_lit { Some(&mut add) } else { None };
+        let mut going = Going { ray: path.ray, weights: path.weights, media: path.media };
+        let place = self.course(before.waves).advance(&mut going, (hero, way), numbers, cancel, light, on_the_way);
+        (path.ray, path.weights, path.media) = (going.ray, going.weights, going.media);
+        if let Some(Place::Outside) = place {
+            *light += path.weights.throughput() * self.light_from_outside(path);
+            return None;
         }
-        None
+        place
+    }
+
+    /// Whether light of points is asked for on the way of a path through even media.
+    fn is_lit(&self, path: &PathState) -> bool {
+        let may_scatter = self.settings.max_depth.is_none_or(|most| path.bounce < most);
+        may_scatter && !self.points.is_empty() && self.known.is_none()
     }
 
     /// What comes from outside the scene along a path's ray, weighed beside asking for it.
@@ -218,7 +194,7 @@ impl<'a> Walker<'a> {
         &mut self,
         path: &mut PathState,
         (hit, outside, through): (Hit, f64, MediumStack<Filled>),
-        hero: usize,
+        (hero, number): (usize, u32),
         numbers: &mut Numbers,
         cancel: &Cancel,
         light: &mut Rgb,
@@ -227,7 +203,7 @@ impl<'a> Walker<'a> {
         let (scene, geometry) = (self.scene, self.scene.geometry());
         let surface = geometry.surface(&ray, &hit);
         let emission = scene.emission_at(&surface);
-        if !emission.is_dark() {
+        if !emission.is_dark() && !self.is_shining_known(path) {
             let sent = emission.sent(geometry, &ray, &hit, &surface, || path.waves);
             let cosine = -ray.direction.dot(surface.normal);
             let receiver = LightSampleContext { position: ray.origin, normal: path.normal, waves: path.waves };
@@ -248,7 +224,9 @@ impl<'a> Walker<'a> {
             let share = here.ambient(scene, &ray, &hit, path.waves, outside);
             *light += path.weights.throughput() * share * self.settings.ambient;
         }
-        if !here.bsdf().is_delta() {
+        let arrival = self.arrive(path, &here, number, light);
+        path.splits = arrival.splits();
+        if !here.bsdf().is_delta() && !arrival.is_lit() {
             let now = path.media;
             let side = |drawn: &LightSample| if here.is_through(drawn.direction) { through } else { now };
             if let Some((_, arrives)) = self.direct_light(&here, path, side, hero, numbers, cancel) {
@@ -258,10 +236,15 @@ impl<'a> Walker<'a> {
         if !self.follows_all() {
             return self.split(path, &here, through, waiting.as_ref());
         }
+        if arrival.is_known() {
+            self.look_about(path, &here, through, numbers);
+            return false;
+        }
         let choice = numbers.ray.scattering_choice();
         let u = numbers.two(choice + 1);
         let Some(next) = here.sample(|| numbers.one(choice), u) else { return false };
         let media = if next.is_through { through } else { path.media };
+        path.is_sharp_since = path.is_gathered;
         let chance = numbers.ray.roulette();
         path.part(waiting.as_ref(), here.wo(), &next);
         self.go_on(path, &here, &next, media, numbers.one(chance), true)
@@ -290,6 +273,32 @@ impl<'a> Walker<'a> {
         });
         self.waiting.extend(sent);
         false
+    }
+
+    /// Sends on as many paths as look about from where light is known.
+    fn look_about(
+        &mut self,
+        path: &PathState,
+        here: &SurfaceInteraction,
+        through: MediumStack<Filled>,
+        numbers: &mut Numbers,
+    ) {
+        for branch in 0..path.splits as u32 {
+            // The first goes on as the path that it comes from.
+            let branch = if branch == 0 { path.branch } else { branch };
+            let dimensions = Dimensions::of(path.bounce, branch);
+            let choice = dimensions.scattering_choice();
+            let u = numbers.two(choice + 1);
+            let Some(mut next) = here.sample(|| numbers.one(choice), u) else { continue };
+            let media = if next.is_through { through } else { path.media };
+            next.pdf *= path.splits;
+            next.weight /= path.splits;
+            let mut one = PathState { branch, is_gathered: true, is_sharp_since: false, splits: 1.0, ..*path };
+            let chance = numbers.one(dimensions.roulette());
+            if self.go_on(&mut one, here, &next, media, chance, true) {
+                self.waiting.push(one);
+            }
+        }
     }
 
     /// Whether paths could be scattered for ever between surfaces.

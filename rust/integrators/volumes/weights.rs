@@ -6,7 +6,7 @@ use crate::optics::spectra::Waves;
 /// What a path carries for three wavelengths, all over the density with which the one that decides, the hero, has
 /// drawn it so far: its own density there is 1, so that no mean of three is below a third.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Weights {
+pub(in crate::integrators) struct Weights {
     /// How much of the light from here gets back to where the path started.
     pub carried: Rgb,
     /// The density with which each would have drawn the path.

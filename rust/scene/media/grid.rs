@@ -85,6 +85,10 @@ impl Medium for GridMedium {
         !self.coefficients.scattering.is_black()
     }
 
+    fn glows(&self) -> bool {
+        !self.coefficients.emission.is_black() || self.brightest.iter().any(|&most| most > 0.0)
+    }
+
     fn stretches(&self, ray: &Ray, span: [f64; 2]) -> Stretches<'_> {
         Stretches::blocks(BlockWalk::new(self, self.into.point(ray.origin), self.into.vector(ray.direction), span))
     }

@@ -29,6 +29,10 @@ impl Medium for Homogeneous {
         !self.coefficients.scattering.is_black()
     }
 
+    fn glows(&self) -> bool {
+        !self.coefficients.emission.is_black()
+    }
+
     fn is_even(&self) -> bool {
         true
     }

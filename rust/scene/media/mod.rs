@@ -31,6 +31,9 @@ pub trait Medium: Debug + Send + Sync {
     /// Whether it scatters anything anywhere.
     fn scatters(&self) -> bool;
 
+    /// Whether it gives off light anywhere by itself.
+    fn glows(&self) -> bool;
+
     /// Whether it is the same everywhere.
     fn is_even(&self) -> bool {
         false

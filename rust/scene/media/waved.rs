@@ -56,6 +56,10 @@ impl Medium for WavedMedium {
         self.medium.scatters()
     }
 
+    fn glows(&self) -> bool {
+        self.medium.glows()
+    }
+
     fn is_even(&self) -> bool {
         self.medium.is_even()
     }

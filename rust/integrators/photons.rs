@@ -1,9 +1,8 @@
 //! Photons, to be looked at.
 
-use super::adjoint::Arrived;
-use super::dimensions::Dimensions;
-use super::walk::{Flying, LightWalk, Limits, Visitor};
-use crate::integrators::nesting::MediumStack;
+use super::light_paths::{Arrived, Dimensions, Flying, LightWalk, Limits, Visitor};
+use super::nesting::MediumStack;
+use super::volumes::{Drifting, MediaLightWalk, MediaVisitor, Numbers, Point, Vertex};
 use crate::math::DVec3;
 use crate::optics::Rgb;
 use crate::sampling::Sampler;
@@ -11,42 +10,44 @@ use crate::scene::{EmissionSample, Encounter, Scene};
 use crate::workers::Cancel;
 use rayon::prelude::*;
 
-/// Light that has come to a surface.
+/// Light that has come to a surface, or to where a medium absorbs or scatters it.
 #[derive(Clone, Copy, Debug)]
 pub struct Photon {
     /// Where.
     pub position: DVec3,
     /// The unit direction that it came along.
     pub direction: DVec3,
-    /// The unit geometric normal there, on the side that it came to.
+    /// The unit geometric normal there, on the side that it came to; zero in a medium.
     pub normal: DVec3,
     /// The flux that it stands for, W.
     pub power: Rgb,
-    /// Which shape, and which primitive of it.
-    pub shape: u32,
-    /// Which primitive of the shape.
-    pub primitive: u32,
+    /// Which shape, and which primitive of it; none in a medium.
+    pub surface: Option<(u32, u32)>,
     /// Which of the paths.
     pub path: u32,
-    /// How many surfaces it has been scattered at before.
+    /// How often it has been scattered before.
     pub bounces: u32,
     /// At which of these, from the first on, it was scattered sharply: a bit each, of the first 64.
     pub sharp: u64,
+    /// And at which by a medium.
+    pub adrift: u64,
 }
 
-/// Paths of light, at each surface that they come to.
+/// Paths of light, at each surface that they come to, and wherever a medium absorbs or scatters them.
 #[derive(Clone, Debug, Default)]
 pub struct Photons {
-    /// In the order of the paths, and of surfaces along each.
+    /// In the order of the paths, and along each.
     pub photons: Vec<Photon>,
     /// The flux that sets out, W.
     pub emitted: Rgb,
     /// What of it leaves the scene, at once or after it was scattered.
     pub escaped: Rgb,
+    /// What of it media absorb.
+    pub absorbed: Rgb,
 }
 
 /// Follows so many paths from the lights of a scene, each by numbers of its own of a seed, to a greatest number of
-/// surfaces, and from another number on by roulette.
+/// photons each, and from another number on by roulette.
 ///
 /// They depend on the seed alone, not on threads. Returns soon after `cancel` is raised, with what is of no use.
 pub fn photons(
@@ -64,7 +65,12 @@ pub fn photons(
         let paths = chunk * TOGETHER..count.min((chunk + 1).saturating_mul(TOGETHER));
         let mut samplers: Vec<Sampler> = paths.clone().map(|path| Sampler::new(seed, path, 0)).collect();
         let mut seen = Seen { scene, first: paths.start, share: 1.0 / f64::from(count), ..Seen::new(scene) };
-        if !cancel.is_raised() {
+        if cancel.is_raised() {
+            return seen.found;
+        }
+        if scene.plan().needs().media {
+            MediaLightWalk::new(scene, &emitters, limits, None).follow(&mut samplers, cancel, &mut seen);
+        } else {
             LightWalk::new(scene, &emitters, limits, None).follow(&mut samplers, cancel, &mut seen);
         }
         seen.found.photons.sort_by_key(|photon| (photon.path, photon.bounces));
@@ -75,6 +81,7 @@ pub fn photons(
         all.photons.extend(chunk.photons);
         all.emitted += chunk.emitted;
         all.escaped += chunk.escaped;
+        all.absorbed += chunk.absorbed;
         all
     })
 }
@@ -85,45 +92,95 @@ struct Seen<'a> {
     /// The number of the first path, and what of the light each stands for.
     first: u32,
     share: f64,
-    /// As [`Photon::sharp`], of each path.
-    sharp: Vec<u64>,
+    /// As [`Photon::sharp`] and [`Photon::adrift`], of each path.
+    chains: Vec<[u64; 2]>,
     found: Photons,
 }
 
 impl<'a> Seen<'a> {
     fn new(scene: &'a Scene) -> Self {
-        Self { scene, first: 0, share: 1.0, sharp: Vec::new(), found: Photons::default() }
+        Self { scene, first: 0, share: 1.0, chains: Vec::new(), found: Photons::default() }
+    }
+
+    fn begin(&mut self, path: u32, flux: Rgb) {
+        self.found.emitted += flux * self.share;
+        self.chains.resize(path as usize + 1, [0; 2]);
+    }
+
+    /// What is known of a path that has come somewhere, scattered before in such a way the last time.
+    fn photon(&mut self, path: u32, bounces: u32, is: [bool; 2], flux: Rgb) -> Photon {
+        let chain = &mut self.chains[path as usize];
+        if (1..=u64::BITS).contains(&bounces) {
+            for (chain, is) in chain.iter_mut().zip(is) {
+                *chain |= u64::from(is) << (bounces - 1);
+            }
+        }
+        let [sharp, adrift] = *chain;
+        Photon {
+            position: DVec3::ZERO,
+            direction: DVec3::ZERO,
+            normal: DVec3::ZERO,
+            power: flux * self.share,
+            surface: None,
+            path: self.first + path,
+            bounces,
+            sharp,
+            adrift,
+        }
+    }
+
+    fn keep(&mut self, photon: Photon, arrived: &Arrived) {
+        self.found.photons.push(Photon {
+            position: arrived.here.position(),
+            direction: arrived.ray.direction,
+            normal: arrived.here.normal(),
+            surface: Some(self.scene.geometry().locate(arrived.hit.primitive)),
+            ..photon
+        });
     }
 }
 
 impl<'a> Visitor<'a> for Seen<'a> {
     fn set_out(&mut self, path: &Flying, _: &EmissionSample) {
-        self.found.emitted += path.flux * self.share;
-        self.sharp.resize(path.number as usize + 1, 0);
+        self.begin(path.number, path.flux);
     }
 
     fn meet(&mut self, arrived: &Arrived<'a>, path: &Flying, _: &MediumStack, _: (&mut Sampler, Dimensions)) {
-        let bounces = path.bounce - 1;
-        let sharp = &mut self.sharp[path.number as usize];
-        if path.is_sharp && (1..=u64::BITS).contains(&bounces) {
-            *sharp |= 1 << (bounces - 1);
-        }
-        let (shape, primitive) = self.scene.geometry().locate(arrived.hit.primitive);
-        self.found.photons.push(Photon {
-            position: arrived.here.position(),
-            direction: arrived.ray.direction,
-            normal: arrived.here.normal(),
-            power: path.flux * self.share,
-            shape,
-            primitive,
-            path: self.first + path.number,
-            bounces,
-            sharp: *sharp,
-        });
+        let photon = self.photon(path.number, path.bounce - 1, [path.is_sharp, false], path.flux);
+        self.keep(photon, arrived);
     }
 
     fn leave(&mut self, path: &Flying) {
         self.found.escaped += path.flux * self.share;
+    }
+}
+
+impl<'a> MediaVisitor<'a> for Seen<'a> {
+    fn set_out(&mut self, path: &Drifting, _: &EmissionSample) {
+        self.begin(path.number, path.flux());
+    }
+
+    fn meet(&mut self, at: &Vertex<'a>, path: &Drifting, _: &mut Numbers, _: Dimensions, _: &Cancel) {
+        let last = [path.is_sharp, path.is_adrift];
+        match &at.point {
+            Point::Surface { arrived, .. } => {
+                let photon = self.photon(path.number, path.bounce - 1, last, path.flux());
+                self.keep(photon, arrived);
+            }
+            Point::Medium { here, medium, came } => {
+                let flux = *came * medium.extinction / path.going.weights.drawn.mean();
+                let photon = self.photon(path.number, path.bounce - 1, last, flux);
+                self.found.photons.push(Photon { position: here.position, direction: here.before, ..photon });
+            }
+        }
+    }
+
+    fn absorb(&mut self, flux: Rgb) {
+        self.found.absorbed += flux * self.share;
+    }
+
+    fn leave(&mut self, path: &Drifting) {
+        self.found.escaped += path.flux() * self.share;
     }
 }
 
@@ -160,6 +217,7 @@ mod tests {
         let again = photons(&furnace(0.5, 1.0), 100_000, (None, 4), 1, &Cancel::default());
         assert_eq!(again.photons.len(), found.photons.len());
     }
+
     #[test]
     fn light_ends_where_nothing_absorbs_it() {
         let found = photons(&furnace(1.0, 1.0), 64, (None, u32::MAX), 1, &Cancel::default());

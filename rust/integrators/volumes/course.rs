@@ -1,0 +1,180 @@
+//! How a path gets on among media, from where it was scattered last to where it is next.
+
+use super::filled::{self, Filled};
+use super::flight::{Collision, Flight};
+use super::numbers::Numbers;
+use super::scattering::Scattering;
+use super::surfaces::{Met, meet};
+use super::weights::Weights;
+use crate::integrators::nesting::MediumStack;
+use crate::integrators::shadows::opacity;
+use crate::math::{Hit, Ray};
+use crate::optics::spectra::Waves;
+use crate::optics::{Phase, Rgb};
+use crate::scene::Scene;
+use crate::scene::media::Coefficients;
+use crate::workers::Cancel;
+
+/// What lies on the way of any path.
+#[derive(Clone, Copy)]
+pub(in crate::integrators) struct Course<'a> {
+    pub scene: &'a Scene,
+    /// Whether what media scatter counts; if not, they only dim.
+    pub scatters: bool,
+    /// The wavelengths of what is on the way; none for red, green and blue.
+    pub waves: Option<Waves>,
+}
+
+/// What is on its way: its ray, what it carries, and what it is in.
+#[derive(Clone, Copy)]
+pub(in crate::integrators) struct Going {
+    pub ray: Ray,
+    pub weights: Weights,
+    pub media: MediumStack<Filled>,
+}
+
+/// Where a path has come to.
+pub(in crate::integrators) enum Place {
+    /// Where a medium scatters it, and the part of its ray in that medium.
+    Medium { here: Scattering, collision: Collision, span: [f64; 2] },
+    /// A surface.
+    Surface { hit: Hit, outside: f64, through: MediumStack<Filled> },
+    /// Out of the scene.
+    Outside,
+}
+
+/// Who adds what light comes to a path on a part of its ray in an even medium that scatters.
+pub(super) type OnTheWay<'f> = &'f mut dyn FnMut(&Going, [f64; 2], &Coefficients, Phase, &mut Numbers) -> Rgb;
+
+impl Course<'_> {
+    /// Takes a path along its ray to where it is scattered next; none if nothing of it is left. `way` is the optical
+    /// depth that it gets through before that, for its hero: drawn once for a ray, however many media it goes through.
+    /// `light` is added what it comes by that glows.
+    pub fn advance(
+        &self,
+        path: &mut Going,
+        (hero, mut way): (usize, f64),
+        numbers: &mut Numbers,
+        cancel: &Cancel,
+        light: &mut Rgb,
+        mut on_the_way: Option<OnTheWay>,
+    ) -> Option<Place> {
+        let mut start = path.ray.t_min;
+        while !cancel.is_raised() {
+            let around = filled::around(self.scene, &path.media, &path.ray);
+            let scattering = around.as_ref().filter(|(medium, _)| self.scatters && medium.is_even());
+            let waves = self.waves;
+            let even = scattering.map(|(medium, within)| {
+                let here = medium.at(within.origin);
+                waves.as_ref().map_or(here, |waves| medium.by_waves(here, waves))
+            });
+            let even = even.filter(|here| !here.scattering.is_black());
+            let mut asked = path.ray;
+            if let Some(here) = even.filter(|here| here.emission.is_black() && on_the_way.is_none()) {
+                // Nobody asks what lies beyond where it is scattered.
+                let reach = start + way / here.extinction[hero] * (1.0 + 1e-12);
+                asked.t_max = reach.next_up().min(asked.t_max);
+            }
+            let mut hits = [Hit::MISS];
+            self.scene.intersect(&[asked], &mut hits);
+            let [hit] = hits;
+            let end = if hit.is_hit() { hit.t } else { f64::INFINITY };
+            if let Some((medium, within)) = around {
+                let span = [start, end];
+                if let (Some(here), Some(add)) = (even, &mut on_the_way) {
+                    *light += add(path, span, &here, medium.phase(), numbers);
+                }
+                let flight = Flight { medium, ray: within, span, length: 1.0, scatters: self.scatters, waves };
+                let weights = &mut path.weights;
+                if let Some(collision) = flight.fly(weights, (hero, &mut way), numbers, cancel, light) {
+                    let (position, before) = (path.ray.at(collision.t), path.ray.direction);
+                    let here = Scattering { position, before, phase: medium.phase() };
+                    return Some(Place::Medium { here, collision, span });
+                }
+                if path.weights.carried.is_black() {
+                    return None;
+                }
+            }
+            if !hit.is_hit() {
+                return Some(Place::Outside);
+            }
+            start = hit.t;
+            match meet(self.scene, &path.ray, &hit, &path.media) {
+                Met::Passed(beyond, media) => (path.ray.t_min, path.media) = (beyond, media),
+                Met::Surface { hit, outside, through } => {
+                    let opacity = opacity(self.scene, &path.ray, &hit);
+                    if opacity < 1.0 && numbers.next() >= opacity {
+                        path.ray.t_min = hit.t.next_up();
+                    } else {
+                        return Some(Place::Surface { hit, outside, through });
+                    }
+                }
+            }
+        }
+        None
+    }
+
+    /// Dims light along a ray that starts in some media, by all that lies on it.
+    pub fn shadow(
+        &self,
+        mut ray: Ray,
+        mut media: MediumStack<Filled>,
+        weights: &mut Weights,
+        hero: usize,
+        numbers: &mut Numbers,
+        cancel: &Cancel,
+    ) {
+        let length = ray.direction.length();
+        let mut start = ray.t_min;
+        while !cancel.is_raised() {
+            let mut hits = [Hit::MISS];
+            self.scene.intersect(&[ray], &mut hits);
+            let [hit] = hits;
+            let met = hit.is_hit().then(|| meet(self.scene, &ray, &hit, &media));
+            let mut left = 1.0;
+            if let Some(Met::Surface { hit, .. }) = &met {
+                left -= opacity(self.scene, &ray, hit);
+                if left <= 0.0 {
+                    weights.carried = Rgb::ZERO;
+                    return;
+                }
+            }
+            let end = if hit.is_hit() { hit.t } else { ray.t_max };
+            if let Some((medium, within)) = filled::around(self.scene, &media, &ray) {
+                let span = [start, end];
+                let flight = Flight { medium, ray: within, span, length, scatters: self.scatters, waves: self.waves };
+                flight.fade(weights, hero, numbers, cancel);
+            }
+            weights.carried *= left;
+            if weights.carried.is_black() {
+                return;
+            }
+            start = end;
+            match met {
+                None => return,
+                Some(Met::Passed(beyond, now)) => (ray.t_min, media) = (beyond, now),
+                Some(Met::Surface { hit, .. }) => ray.t_min = hit.t.next_up(),
+            }
+            if ray.t_min > ray.t_max {
+                // The rest of the way is shorter than rounding tells.
+                return;
+            }
+        }
+        weights.carried = Rgb::ZERO;
+    }
+
+    /// What of some light gets along a ray that starts in some media: right on average where media are uneven.
+    pub fn through(
+        &self,
+        light: Rgb,
+        ray: Ray,
+        media: MediumStack<Filled>,
+        hero: usize,
+        numbers: &mut Numbers,
+        cancel: &Cancel,
+    ) -> Rgb {
+        let mut weights = Weights { carried: light, ..Weights::START };
+        self.shadow(ray, media, &mut weights, hero, numbers, cancel);
+        weights.carried / weights.asked.mean()
+    }
+}

@@ -1,0 +1,18 @@
+//! Light that is known where paths are scattered, as by photons.
+
+use super::filled::Filled;
+use super::scattering::Scattering;
+use crate::integrators::nesting::MediumStack;
+use crate::integrators::transport::Visit;
+use crate::optics::Rgb;
+use crate::scene::SurfaceInteraction;
+
+/// What is known of light, at matt surfaces but for what comes there straight from lights, and among media.
+pub(in crate::integrators) trait KnownLight: Send + Sync {
+    /// How much of it is scattered back along a ray by a surface.
+    fn at_surface(&self, here: &SurfaceInteraction, visit: Visit) -> Rgb;
+
+    /// How much of it a medium scatters back along a ray, of what it scatters at all, at a point that is in these
+    /// media at a time.
+    fn among(&self, here: &Scattering, media: &MediumStack<Filled>, time: f64, visit: Visit) -> Rgb;
+}
