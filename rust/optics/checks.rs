@@ -54,9 +54,9 @@ where
     let films = [(300.0, [1.0, 1.47, 1.33]), (99.6, [1.0, 1.38, 1.52]), (80.0, [1.5, 1.0, 1.6])];
     let clear = films.map(|(thickness, indices)| {
         let eta = indices[2] / indices[0];
-        Dielectric::with(eta, F::rough([alpha; 2]), Filmed { thickness, indices }).into()
+        Dielectric::with(eta, F::rough([alpha; 2]), Filmed { thickness, indices, waves: None }).into()
     });
-    let silver = Reflectance::Filmed { thickness: 120.0, layers: [1.0, 1.5], index: SILVER };
+    let silver = Reflectance::Filmed { thickness: 120.0, layers: [1.0, 1.5], index: SILVER, waves: None };
     let gold = conductors::FilmedCurve::of(conductors::metal("gold").unwrap(), 250.0, 1.5, 1.0);
     let gold = Reflectance::FilmedMetal(conductors::FilmedMetal::One(gold));
     let metal = [silver, gold].map(|metal| Conductor::of(metal, F::rough([alpha, 0.2])).into());
@@ -79,7 +79,7 @@ fn kinds() -> Vec<AnyBsdf> {
         Null.into(),
         gold(1.0, [0.0; 2]),
         gold(1.33, [0.2; 2]),
-        SoapFilm::new(300.0, 1.33, 1.0).into(),
+        SoapFilm::new(300.0, 1.33, 1.0, None).into(),
     ];
     kinds.extend(filmed::<Ggx>(0.0));
     for n in [0.0, 1.0, 30.0, 5000.0] {
@@ -277,7 +277,7 @@ fn nothing_gains_light() {
 fn films_on_smooth_glass_keep_all_light_and_on_rough_glass_nearly_all() {
     for [above, film, below] in [[1.0, 1.47, 1.33], [1.0, 1.38, 1.52], [1.0, 2.3, 1.5]] {
         for thickness in [90.0, 300.0] {
-            let filmed = Filmed { thickness, indices: [above, film, below] };
+            let filmed = Filmed { thickness, indices: [above, film, below], waves: None };
             for (alpha, most) in [(0.0, 1e-12), (0.05, 0.005), (0.2, 0.012), (0.5, 0.02), (1.0, 0.03)] {
                 let bsdf: AnyBsdf = Dielectric::with(below / above, Ggx::rough([alpha; 2]), filmed).into();
                 for wo in directions() {

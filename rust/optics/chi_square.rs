@@ -205,7 +205,7 @@ fn refractions_have_their_density() {
                     Dielectric::with(
                         eta,
                         Some(Ggx::new([alpha; 2])),
-                        Filmed { thickness: 300.0, indices: [1.0, 1.9, eta] },
+                        Filmed { thickness: 300.0, indices: [1.0, 1.9, eta], waves: None },
                     )
                     .into(),
                 ] {

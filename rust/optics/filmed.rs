@@ -1,7 +1,9 @@
 //! Films on what is clear.
 
+use super::Rgb;
+use super::spectra::Waves;
 use super::split::Split;
-use super::{Rgb, thin_film};
+use super::thin_film::{self, Complex};
 
 /// A film between two clear media. Each channel reflects what the integral over wavelengths says, as far as that lies
 /// between 0 and 1, and lets through the rest: nothing is lost, and no light is negative. What is cut off is at most
@@ -12,6 +14,8 @@ pub struct Filmed {
     pub thickness: f64,
     /// The indices of refraction above it, in it and below it.
     pub indices: [f64; 3],
+    /// The wavelengths that are asked for, a channel each; none for red, green and blue.
+    pub waves: Option<Waves>,
 }
 
 impl Filmed {
@@ -19,7 +23,14 @@ impl Filmed {
     pub fn reflectance(&self, cosine: f64, is_above: bool) -> Rgb {
         let [above, film, below] = self.indices;
         let indices = if is_above { [above, film, below] } else { [below, film, above] };
-        thin_film::on_dielectric(self.thickness, indices, cosine.min(1.0)).clamp(Rgb::ZERO, Rgb::ONE)
+        let cosine = cosine.min(1.0);
+        match &self.waves {
+            Some(waves) => {
+                let [from, film, to] = indices;
+                waves.lanes(|nm| thin_film::reflectance(nm, cosine, self.thickness, from, film, Complex::from(to)))
+            }
+            None => thin_film::on_dielectric(self.thickness, indices, cosine).clamp(Rgb::ZERO, Rgb::ONE),
+        }
     }
 }
 

@@ -3,6 +3,7 @@
 use super::bsdf::either;
 use super::filmed::Filmed;
 use super::mirror::mirrored;
+use super::spectra::Waves;
 use super::{Bsdf, BsdfSample, Rgb};
 use glam::DVec3;
 
@@ -14,9 +15,10 @@ pub struct SoapFilm {
 }
 
 impl SoapFilm {
-    /// Of a thickness in nm, and the indices of refraction of the film and of what is around it.
-    pub fn new(thickness: f64, film: f64, around: f64) -> Self {
-        Self { film: Filmed { thickness, indices: [around, film, around] } }
+    /// Of a thickness in nm, and the indices of refraction of the film and of what is around it; at some wavelengths, or
+    /// for red, green and blue.
+    pub fn new(thickness: f64, film: f64, around: f64, waves: Option<Waves>) -> Self {
+        Self { film: Filmed { thickness, indices: [around, film, around], waves } }
     }
 
     /// The share of light along `w` that is reflected.

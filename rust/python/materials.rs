@@ -59,8 +59,13 @@ impl Appearances {
                 thickness: number("thickness")?,
                 ior: float("ior")?,
                 base: self.film_base(&given.getattr("base")?)?,
+                by_wave: self.textures.has_waves(),
             }),
-            "SoapFilm" => Arc::new(SoapFilmMaterial { thickness: number("thickness")?, ior: float("ior")? }),
+            "SoapFilm" => Arc::new(SoapFilmMaterial {
+                thickness: number("thickness")?,
+                ior: float("ior")?,
+                by_wave: self.textures.has_waves(),
+            }),
             "Boundary" => {
                 let medium = self.medium(given)?.ok_or_else(|| PyTypeError::new_err("interior must be a medium"))?;
                 Arc::new(BoundaryMaterial { medium, priority: given.getattr("priority")?.extract()? })

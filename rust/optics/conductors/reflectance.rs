@@ -1,8 +1,10 @@
 //! What conductors reflect.
 
 use super::{Curve, FilmedMetal, Metal};
+use crate::optics::Rgb;
 use crate::optics::fresnel::ConductorIndex;
-use crate::optics::{Rgb, thin_film};
+use crate::optics::spectra::Waves;
+use crate::optics::thin_film::{self, Complex};
 
 /// What a conductor reflects, by the cosine of incidence.
 #[derive(Clone, Copy, Debug)]
@@ -21,6 +23,8 @@ pub enum Reflectance {
         layers: [f64; 2],
         /// That of the conductor.
         index: (Rgb, Rgb),
+        /// The wavelengths that the channels stand for; none for red, green and blue.
+        waves: Option<Waves>,
     },
     /// A measured metal's under a film, by wavelength.
     FilmedMetal(FilmedMetal),
@@ -39,8 +43,15 @@ impl Reflectance {
             Self::Index(index) => index.reflectance(cosine),
             Self::Metal(curve) => curve.reflectance(cosine),
             Self::Within(curve, outside) => curve.reflectance_in(*outside, cosine),
-            Self::Filmed { thickness, layers, index } => {
+            Self::Filmed { thickness, layers, index, waves: None } => {
                 thin_film::on_conductor(*thickness, *layers, *index, cosine.min(1.0)).clamp(Rgb::ZERO, Rgb::ONE)
+            }
+            Self::Filmed { thickness, layers: [outside, film], index: (eta, k), waves: Some(waves) } => {
+                let at = |lane: usize| {
+                    let (nm, base) = (waves.all()[lane], Complex::new(eta[lane], k[lane]));
+                    thin_film::reflectance(nm, cosine.min(1.0), *thickness, *outside, *film, base)
+                };
+                Rgb::new(at(0), at(1), at(2))
             }
             Self::FilmedMetal(metal) => metal.reflectance(cosine),
         }

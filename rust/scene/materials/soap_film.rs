@@ -14,11 +14,13 @@ pub struct SoapFilmMaterial {
     pub thickness: Value<f64>,
     /// The index of refraction within.
     pub ior: f64,
+    /// Whether paths carry wavelengths.
+    pub by_wave: bool,
 }
 
 impl SoapFilmMaterial {
     fn bsdf(&self, point: &TexturePoint, outside: f64) -> AnyBsdf {
-        SoapFilm::new(self.thickness.at(point).max(0.0), self.ior, outside).into()
+        SoapFilm::new(self.thickness.at(point).max(0.0), self.ior, outside, point.waves).into()
     }
 }
 
@@ -36,7 +38,7 @@ impl Material for SoapFilmMaterial {
     }
 
     fn needs(&self) -> Needs {
-        self.thickness.needs()
+        Needs { waves: self.by_wave, ..Needs::NONE } | self.thickness.needs()
     }
 
     fn validate(&self) -> Result<(), String> {

@@ -21,6 +21,8 @@ pub struct ThinFilmMaterial {
     pub ior: f64,
     /// What it lies on.
     pub base: FilmBase,
+    /// Whether paths carry wavelengths.
+    pub by_wave: bool,
 }
 
 /// What a film lies on.
@@ -106,8 +108,9 @@ impl ThinFilmMaterial {
             FilmBase::Conductor(metal, _) if thickness == 0.0 => metal.bare(point, outside),
             FilmBase::Dielectric(glass) => {
                 let [alpha, _] = glass.roughness.alpha(point);
-                let film = Filmed { thickness, indices: [outside, self.ior, glass.interior.ior] };
-                let eta = glass.interior.ior / outside;
+                let within = glass.interior.ior_at(point.waves.as_ref());
+                let film = Filmed { thickness, indices: [outside, self.ior, within], waves: point.waves };
+                let eta = within / outside;
                 match glass.roughness.facets {
                     FacetKind::Ggx => Dielectric::with(eta, Ggx::rough([alpha; 2]), film).into(),
                     FacetKind::Beckmann => Dielectric::with(eta, Beckmann::rough([alpha; 2]), film).into(),
@@ -121,11 +124,20 @@ impl ThinFilmMaterial {
                         thickness,
                         layers: [outside, self.ior],
                         index: (eta.at(point), k.at(point)),
+                        waves: point.waves,
                     },
-                    Index::Measured(index, _) => {
-                        let range = self.thickness.range().map(|end| end.max(0.0));
-                        Reflectance::FilmedMetal(filmed.at(index, thickness, range, self.ior, outside))
-                    }
+                    Index::Measured(index, _) => match &point.waves {
+                        Some(waves) => Reflectance::Filmed {
+                            thickness,
+                            layers: [outside, self.ior],
+                            index: (waves.lanes(|nm| index.index_at(nm).0), waves.lanes(|nm| index.index_at(nm).1)),
+                            waves: point.waves,
+                        },
+                        None => {
+                            let range = self.thickness.range().map(|end| end.max(0.0));
+                            Reflectance::FilmedMetal(filmed.at(index, thickness, range, self.ior, outside))
+                        }
+                    },
                 };
                 metal.reflecting(reflectance, point)
             }
@@ -149,7 +161,7 @@ impl Material for ThinFilmMaterial {
     }
 
     fn needs(&self) -> Needs {
-        self.thickness.needs() | self.base.material().needs()
+        Needs { waves: self.by_wave, ..Needs::NONE } | self.thickness.needs() | self.base.material().needs()
     }
 
     fn validate(&self) -> Result<(), String> {
