@@ -9,12 +9,17 @@ use super::{Rgb, thin_film};
 #[derive(Clone, Copy, Debug)]
 pub struct Filmed {
     /// How thick it is, in nm.
-    pub thickness: f64,
+    thickness: f64,
     /// The indices of refraction above it, in it and below it.
-    pub indices: [f64; 3],
+    indices: [f64; 3],
 }
 
 impl Filmed {
+    /// Of a thickness in nm, and the indices of refraction above it, in it and below it.
+    pub fn new(thickness: f64, indices: [f64; 3]) -> Self {
+        Self { thickness, indices }
+    }
+
     /// The share of light that is reflected at a `cosine` of incidence from above or from below.
     pub fn reflectance(&self, cosine: f64, is_above: bool) -> Rgb {
         let [above, film, below] = self.indices;

@@ -16,7 +16,7 @@ pub struct SoapFilm {
 impl SoapFilm {
     /// Of a thickness in nm, and the indices of refraction of the film and of what is around it.
     pub fn new(thickness: f64, film: f64, around: f64) -> Self {
-        Self { film: Filmed { thickness, indices: [around, film, around] } }
+        Self { film: Filmed::new(thickness, [around, film, around]) }
     }
 
     /// The share of light along `w` that is reflected.

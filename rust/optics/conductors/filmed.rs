@@ -25,7 +25,7 @@ type Key = (&'static str, [u64; 3]);
 static KNOWN: LazyLock<RwLock<HashMap<Key, &'static FilmedCurve>>> = LazyLock::new(RwLock::default);
 
 impl FilmedCurve {
-    /// Cubics between so many steps are within 3e-4 of the integral, and in the last 3 degrees before grazing within 3e-3.
+    /// Cubics between so many steps are within 3e-4 of the integral, and in the last 6 degrees before grazing within 3e-3.
     const STEPS: usize = 128;
 
     /// Of a film of this thickness in nm and index in a medium of index `outside`; computed when it is first asked for.
@@ -166,7 +166,7 @@ mod tests {
 
     /// Near grazing incidence a film's fringes are narrow.
     fn bound(cosine: f64) -> f64 {
-        if cosine < 0.05 { 3e-3 } else { 3e-4 }
+        if cosine < 0.1 { 3e-3 } else { 3e-4 }
     }
 
     #[test]

@@ -106,7 +106,8 @@ impl ThinFilmMaterial {
             FilmBase::Conductor(metal, _) if thickness == 0.0 => metal.bare(point, outside),
             FilmBase::Dielectric(glass) => {
                 let [alpha, _] = glass.roughness.alpha(point);
-                let film = Filmed { thickness, indices: [outside, self.ior, glass.interior.ior] };
+                let indices = [outside, self.ior, glass.interior.ior];
+                let film = Filmed::new(thickness, indices);
                 let eta = glass.interior.ior / outside;
                 match glass.roughness.facets {
                     FacetKind::Ggx => Dielectric::with(eta, Ggx::rough([alpha; 2]), film).into(),
