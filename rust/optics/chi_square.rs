@@ -202,12 +202,7 @@ fn refractions_have_their_density() {
                     Dielectric::new(eta, alpha).into(),
                     Dielectric::of(eta, Some(Once::<Ggx>::new([alpha; 2]))).into(),
                     Dielectric::of(eta, Some(Once::<Beckmann>::new([alpha; 2]))).into(),
-                    Dielectric::with(
-                        eta,
-                        Some(Ggx::new([alpha; 2])),
-                        Filmed { thickness: 300.0, indices: [1.0, 1.9, eta], waves: None },
-                    )
-                    .into(),
+                    Dielectric::with(eta, Some(Ggx::new([alpha; 2])), Filmed::new(300.0, [1.0, 1.9, eta])).into(),
                 ] {
                     for eta in [None, Some(beyond)] {
                         assert_density(&bsdf, wo, &Slopes { wo, alpha: [alpha; 2], eta });

@@ -11,14 +11,24 @@ use super::thin_film::{self, Complex};
 #[derive(Clone, Copy, Debug)]
 pub struct Filmed {
     /// How thick it is, in nm.
-    pub thickness: f64,
+    thickness: f64,
     /// The indices of refraction above it, in it and below it.
-    pub indices: [f64; 3],
+    indices: [f64; 3],
     /// The wavelengths that are asked for, a channel each; none for red, green and blue.
-    pub waves: Option<Waves>,
+    waves: Option<Waves>,
 }
 
 impl Filmed {
+    /// Of a thickness in nm, and the indices of refraction above it, in it and below it.
+    pub fn new(thickness: f64, indices: [f64; 3]) -> Self {
+        Self { thickness, indices, waves: None }
+    }
+
+    /// The same at some wavelengths, or for red, green and blue.
+    pub fn at(self, waves: Option<Waves>) -> Self {
+        Self { waves, ..self }
+    }
+
     /// The share of light that is reflected at a `cosine` of incidence from above or from below.
     pub fn reflectance(&self, cosine: f64, is_above: bool) -> Rgb {
         let [above, film, below] = self.indices;

@@ -18,7 +18,7 @@ impl SoapFilm {
     /// Of a thickness in nm, and the indices of refraction of the film and of what is around it; at some wavelengths, or
     /// for red, green and blue.
     pub fn new(thickness: f64, film: f64, around: f64, waves: Option<Waves>) -> Self {
-        Self { film: Filmed { thickness, indices: [around, film, around], waves } }
+        Self { film: Filmed::new(thickness, [around, film, around]).at(waves) }
     }
 
     /// The share of light along `w` that is reflected.

@@ -39,7 +39,9 @@ def soap_bubble(width: int = 480, height: int = 480) -> tuple[Scene, Camera]:
     fallen = np.clip(0.93 - latitude, 0.0, 1.0) / 0.93
     least, most = (
         ImageTexture(
-            (_BLACK_FILM + depth * fallen**1.2)[::-1, np.newaxis].repeat(2, 1).astype(np.float32), linear=True
+            (_BLACK_FILM + depth * fallen**1.2)[::-1, np.newaxis].repeat(2, 1).astype(np.float32),
+            linear=True,
+            wrap=("repeat", "clamp"),
         )
         for depth in (820.0, 1160.0)
     )
@@ -85,7 +87,7 @@ def oil_on_water(width: int = 480, height: int = 320) -> tuple[Scene, Camera]:
     corners = [(-side, -side), (side, -side), (side, side), (-side, side)]
     faces = [[0, 1, 2], [0, 2, 3]]
     # The slick, as it is where it has spread the most and the least.
-    thick, thin = (ImageTexture(_slick(depth), linear=True) for depth in (900.0, 480.0))
+    thick, thin = (ImageTexture(_slick(depth), linear=True) for depth in (760.0, 400.0))
     thickness = MixTexture(thick, thin, FBm(0.0, 1.0, 0.8, octaves=5, seed=11))
     water = Mesh(
         [(x, y, 0.0) for x, y in corners],
@@ -97,7 +99,7 @@ def oil_on_water(width: int = 480, height: int = 320) -> tuple[Scene, Camera]:
     camera = Camera(
         (0.0, -4.0, 3.4), (0.0, 0.3, 0.0), up=(0.0, 0.0, 1.0), fov=40.0, width=width, height=height
     )
-    return Scene([water, asphalt], environment=1.0), camera
+    return Scene([water, asphalt], environment=2.0), camera
 
 
 def _slick(depth: float) -> NDArray[np.float32]:

@@ -24,8 +24,9 @@ const LEAST: f64 = 1e-7;
 ///
 /// At one wavelength λ what goes through is T₀ / (1 + 2ρ cos δ + ρ²), for a phase δ = 2π x / λ of light that is behind
 /// by x = 2 d n cos θ, which is T₀ / (1 − ρ²) times 1 + 2 Σ (−ρ)ᵐ cos mδ. So the colour is a sum over m of what is seen
-/// of fringes, by tables that all films share. Its error is below 2e-5 up to ways behind of 16 µm. Of light that is more
-/// than 48 µm behind, fringes are taken for too close to be seen; of thicker films that leaves an error below 0.0026 ρ.
+/// of fringes, by tables that all films share. Its error is below 2e-5 up to ways behind of 16 µm. Of light that is
+/// more than 48 µm behind, fringes are taken for too close to be seen; of thicker films that leaves an error below
+/// 0.0026 ρ.
 pub fn on_dielectric(thickness: f64, [from, film, to]: [f64; 3], cosine: f64) -> Rgb {
     let first = from * cosine;
     let squared = |index: f64| (index - from) * (index + from) + first * first;

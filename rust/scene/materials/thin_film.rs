@@ -109,7 +109,7 @@ impl ThinFilmMaterial {
             FilmBase::Dielectric(glass) => {
                 let [alpha, _] = glass.roughness.alpha(point);
                 let within = glass.interior.ior_at(point.waves.as_ref());
-                let film = Filmed { thickness, indices: [outside, self.ior, within], waves: point.waves };
+                let film = Filmed::new(thickness, [outside, self.ior, within]).at(point.waves);
                 let eta = within / outside;
                 match glass.roughness.facets {
                     FacetKind::Ggx => Dielectric::with(eta, Ggx::rough([alpha; 2]), film).into(),
