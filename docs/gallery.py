@@ -1,221 +1,390 @@
 """The pictures of the gallery, and its page: ``python docs/gallery.py [NAME ...]``.
 
-Each picture is rendered and saved in ``docs/gallery``; its seconds, samples and error go into
-``docs/gallery.md``. Those that are not named keep what they have.
+Each picture is a function, and the page shows its very lines. It is saved in ``docs/gallery``; what was seen
+of it stands in ``docs/gallery/record.json`` and on the page. Those that are not named keep what they have.
 """
 
+import inspect
 import json
+import os
 import sys
-from collections.abc import Callable
+import textwrap
+import time
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import trimesh
+from PIL import Image, ImageDraw
 
 import raywright as rw
 
-FOLDER = Path(__file__).parent / "gallery"
-PAGE = Path(__file__).parent / "gallery.md"
-# What was seen of each picture when it was made.
-RECORD = FOLDER / "record.json"
+HERE = Path(__file__).resolve().parent
+# How the page begins.
+HEAD = """# Gallery
 
-# What `rw.render` takes.
-Take = tuple[rw.Scene, rw.AnyCamera, dict[str, Any]]
-GREY = rw.Diffuse(0.5)
+Each picture was made by the lines under it, and `python docs/gallery.py NAME` makes it again. None was
+clamped, denoised or retouched. The seconds are the processor's, of all threads together, on a virtual
+machine of two cores that had other work too. The error is the relMSE that the render itself tells, without
+a picture to compare with, and its 95 % interval.
+
+All begin with
+
+<!-- shown -->
+```python
+import numpy as np
+import trimesh
+from PIL import Image, ImageDraw
+
+import raywright as rw
+```
+"""
 
 
-def _cornell() -> Take:
+def cornell():
+    """The box of Cornell University by its measured colours, with a knot of 20,000 triangles in it."""
     knot = rw.scenes.torus_knot(material=rw.Diffuse((0.78, 0.55, 0.2)))
-    scene, camera = rw.scenes.cornell_box(knot, 480, 480, emission=(40.0, 33.0, 22.0))
-    return scene, camera, {"samples": 256}
+    scene, camera = rw.scenes.cornell_box(knot, 1000, 1000, emission=(40, 33, 22))
+    image = rw.render(scene, camera, samples=48)
+    image.save("cornell.jpg")
+    return image
 
 
-def _plates() -> Take:
-    scene, camera = rw.scenes.veach_plates(480, 360)
-    return scene, camera, {"integrator": rw.Direct(), "samples": 256, "adaptive": True}
+def caustic():
+    """Light under a glass of water, and in a ring of gold.
+
+    Paths from the eye meet such light by chance alone. Here each sample has photons besides, and every way to
+    find light is weighed with all others (vertex connection and merging, Georgiev et al. 2012).
+    """
+    up = np.array((0, 1, 0))
+    glass = rw.Cylinder(-0.02 * up, 1.15 * up, 0.5, material=rw.Dielectric(1.5))
+    water = rw.Cylinder(0.1 * up, 0.75 * up, 0.45, material=rw.Dielectric(1.33, priority=1))
+    air = rw.Cylinder(0.74 * up, 1.2 * up, 0.45, material=rw.Dielectric(1.0, priority=2))
+    gold = rw.Conductor("Au", roughness=0.1)
+    ring = rw.Cylinder((1.35, 0.001, -0.45), (1.35, 0.28, -0.45), 0.55, capped=False, material=gold)
+    table = rw.Disk((0, 0, 0), (0, 1, 0), 9, material=rw.Diffuse((0.5, 0.4, 0.32)))
+    window = rw.Disk((-2, 4, 3), (2, -4, -3), 1.2, emission=1.5)
+    lamp = rw.SpotLight((-2.6, 2.6, -1.6), (0.6, 0, 0.2), (44, 39, 32), angle=40, falloff=20)
+    scene = rw.Scene([glass, water, air, ring, table, window], lights=[lamp])
+    camera = rw.Camera((0.9, 2.1, 3.6), (0.6, 0.47, 0.1), fov=26, width=1000, height=520)
+    image = rw.render(scene, camera, rw.Bidirectional(merge=True), samples=20)
+    image.save("caustic.jpg")
+    return image
 
 
-def _glass() -> Take:
-    scene, camera = rw.scenes.glass_spheres(400, 400)
-    return scene, camera, {"samples": 256, "adaptive": True}
+def keyhole():
+    """A room that has no light but what comes through the hole in its door.
+
+    Paths from the lamp and paths from the eye are joined at all their surfaces (Lafortune and Willems 1993;
+    Veach and Guibas 1994).
+    """
+    turn = np.linspace(np.radians(-60), np.radians(240), 40)
+    hole = np.stack([0.11 * np.cos(turn), 1.2 + 0.11 * np.sin(turn), 0 * turn], axis=1)
+    hole = np.concatenate([hole, [(-0.1, 0.9, 0), (0.1, 0.9, 0)]])
+    door = [(-1.4, 0, 0), (1.4, 0, 0), (1.4, 2.2, 0), (-1.4, 2.2, 0)]
+    white, wood = rw.Diffuse(0.8), rw.Diffuse((0.6, 0.42, 0.28))
+
+    def wall(corners, material=white):
+        return rw.Mesh(corners, [(0, 1, 2), (0, 2, 3)], material=material)
+
+    room = [
+        rw.Polygon(door, [hole], material=wood),
+        wall([(-1.4, 0, 0), (-1.4, 0, 3), (1.4, 0, 3), (1.4, 0, 0)], wood),
+        wall([(-1.4, 2.2, 0), (1.4, 2.2, 0), (1.4, 2.2, 3), (-1.4, 2.2, 3)]),
+        wall([(-1.4, 0, 0), (-1.4, 2.2, 0), (-1.4, 2.2, 3), (-1.4, 0, 3)]),
+        wall([(1.4, 0, 0), (1.4, 0, 3), (1.4, 2.2, 3), (1.4, 2.2, 0)]),
+        wall([(-1.4, 0, 3), (-1.4, 2.2, 3), (1.4, 2.2, 3), (1.4, 0, 3)]),
+        rw.Sphere((-0.75, 0.35, 1.0), 0.35, material=rw.Plastic((0.15, 0.3, 0.5), roughness=0.2)),
+        rw.Torus((0.7, 0.12, 0.8), (0, 1, 0), 0.28, 0.12, material=rw.Conductor("Cu", roughness=0.3)),
+    ]
+    glow = rw.Disk((-0.3, 0.95, -1), (0.3, 0.1, 1), 0.45, emission=(0.6, 0.5, 0.4))
+    lamp = rw.SpotLight((0.25, 1.85, -0.75), (0, 1.1, 0), (230, 190, 140), angle=14)
+    camera = rw.Camera((0.9, 1.5, 2.95), (-0.1, 0.68, 0.4), fov=54, width=1000, height=580)
+    image = rw.render(rw.Scene([*room, glow], lights=[lamp]), camera, rw.Bidirectional(), samples=32)
+    image.save("keyhole.jpg")
+    return image
 
 
-def _whitted() -> Take:
-    scene, camera = rw.scenes.whitted_spheres(480, 360)
-    return (
-        scene,
-        camera,
-        {"integrator": rw.Whitted(ambient=0.1), "samples": 64, "filter": rw.BlackmanHarrisFilter()},
-    )
+def haze():
+    """Beams of light in haze, through a window with a blind; what is scattered twice is left out."""
+    dark = rw.Diffuse(0.15)
+    slats = [rw.Box((-2, y, -0.04), (2, y + 0.15, 0.04), material=dark) for y in np.arange(0.9, 3.3, 0.48)]
+    wall = [
+        rw.Box((-9, 0, -0.04), (-2, 9, 0.04), material=dark),
+        rw.Box((2, 0, -0.04), (9, 9, 0.04), material=dark),
+        rw.Box((-2, 3.3, -0.04), (2, 9, 0.04), material=dark),
+        rw.Box((-2, 0, -0.04), (2, 0.9, 0.04), material=dark),
+    ]
+    floor = rw.Plane((0, 0, 0), (0, 1, 0), material=rw.Diffuse((0.3, 0.28, 0.25)))
+    ball = rw.Sphere((0, 0.5, 3.2), 0.5, material=rw.OrenNayar((0.6, 0.15, 0.1)))
+    lamp = rw.PointLight((0, 4.2, -3.6), (1100, 930, 690))
+    haze = rw.Homogeneous(scattering=0.07, phase=rw.HenyeyGreenstein(0.3))
+    air = rw.Box((-9, -1, 0.05), (5, 8, 9), material=rw.Boundary(haze))
+    camera = rw.Camera((-8, 1.7, 3.0), (0, 1.35, 2.6), fov=26, width=1000, height=520)
+    scene = rw.Scene([*slats, *wall, floor, ball, air], lights=[lamp])
+    image = rw.render(scene, camera, rw.Path(max_depth=1), samples=48, adaptive=True)
+    image.save("haze.jpg")
+    return image
 
 
-def _gold() -> Take:
-    scene, camera = rw.scenes.material_ball(rw.Conductor("Au", roughness=0.35), 360, 360)
-    return scene, camera, {"samples": 256}
+def cloud():
+    """A cloud at sunset: a grid of densities, in which light is scattered as often as it takes."""
+    x, y, z = np.mgrid[-1:1:128j, -1:1:80j, -1:1:128j]
+    rng = np.random.default_rng(4)
+    # Waves of all lengths, the weaker the shorter.
+    length = np.sqrt(sum(k**2 for k in np.meshgrid(*(np.fft.fftfreq(n) * n for n in x.shape), indexing="ij")))
+    waves = np.fft.ifftn(np.fft.fftn(rng.normal(size=x.shape)) / (length + 3) ** 1.9).real
+    body = np.full(x.shape, -1.0)
+    for a, b, c, r in rng.uniform((-0.75, -0.8, -0.6, 0.15), (0.75, -0.1, 0.6, 0.4), (60, 4)):
+        r *= 1.1 - abs(a)
+        b = min(b, 0.3 - 1.6 * abs(a))
+        body = np.maximum(body, 1 - np.sqrt((x - a) ** 2 + (y - b) ** 2 + (z - c) ** 2) / r)
+    density = np.clip(6 * (body + 0.14 * waves / waves.std()), 0, 1) * np.clip(6 * (y + 0.8), 0, 1)
+    bounds = [(-4, 1, -4), (4, 5, 4)]
+    vapour = rw.GridMedium(density, bounds, scattering=12.0, phase=rw.HenyeyGreenstein(0.6), at="centres")
+    evening = rw.SunSky((-1, 0.13, 0.1), turbidity=2.5, sun_scale=0.08, sky_scale=0.08)
+    scene = rw.Scene(rw.Box(*bounds, material=rw.Boundary(vapour)), environment=evening)
+    camera = rw.Camera((1.5, 0, 11), (0.2, 3.1, 0), fov=26, width=1000, height=520)
+    image = rw.render(scene, camera, samples=32, adaptive=True)
+    image.save("cloud.jpg")
+    return image
 
 
-def _marble() -> Take:
-    stone = rw.Plastic(rw.Marble(transform=2.0), roughness=0.1)
-    scene, camera = rw.scenes.material_ball(stone, 360, 360)
-    return scene, camera, {"samples": 256}
+def radiosity():
+    """A room solved for once, and its patches, each with the light that it sends.
+
+    Any camera can look at it then, by one ray a sample; the error is that of the picture, and that of the
+    solution is 2 %.
+    """
+
+    def quad(corner, a, b, grey, **how):
+        corner, a, b = np.array([corner, a, b], float)
+        corners = [corner, corner + a, corner + a + b, corner + b]
+        return rw.Mesh(corners, [(0, 1, 2), (0, 2, 3)], material=rw.Diffuse(grey), **how)
+
+    def block(low, high, grey):
+        solid = trimesh.creation.box(bounds=[low, high])
+        return rw.Mesh(solid.vertices, solid.faces, material=rw.Diffuse(grey))
+
+    red, blue, wood = (0.6, 0.2, 0.12), (0.2, 0.3, 0.5), (0.5, 0.32, 0.18)
+    room = [
+        quad((0, 0, 0), (0, 0, 4), (5, 0, 0), 0.5),
+        quad((0, 2.7, 0), (5, 0, 0), (0, 0, 4), 0.75),
+        quad((0, 0, 0), (5, 0, 0), (0, 2.7, 0), 0.7),
+        quad((0, 0, 0), (0, 2.7, 0), (0, 0, 4), red),
+        quad((5, 0, 0), (0, 0, 4), (0, 2.7, 0), blue),
+        quad((1.6, 2.69, 2.4), (1.8, 0, 0), (0, 0, 1.2), 0.5, emission=(9, 8, 6.5)),
+        block((1.5, 0.7, 1.1), (3.5, 0.76, 2.3), wood),
+        *(block((x, 0, z), (x + 0.1, 0.7, z + 0.1), wood) for x in (1.6, 3.3) for z in (1.2, 2.1)),
+        block((0.5, 0, 0.5), (1.1, 1.8, 1.0), 0.6),
+        block((2.3, 0.76, 1.5), (2.7, 1.1, 1.8), 0.7),
+    ]
+    scene = rw.Scene(room)
+    solution = rw.radiosity(scene, patch_size=0.35, error=0.02)
+    camera = rw.Camera((2.1, 1.75, 6.6), (2.5, 0.95, 1), fov=37, width=1000, height=640)
+    image = rw.render(scene, camera, rw.Radiosity(solution), samples=32)
+    # Edges of patches are drawn where the camera sees them, in eight pieces each.
+    part = np.linspace(0, 1, 9)[:, None]
+    a, b = solution.corners[:, :, None], np.roll(solution.corners, 1, axis=1)[:, :, None]
+    points = a + part * (b - a)
+    middle = (points[..., 1:, :] + points[..., :-1, :]) / 2
+    hidden = scene.occluded(camera.position, middle - camera.position, t_max=0.998)
+    turn, move = camera.extrinsics
+    column, row, depth = np.moveaxis((points @ turn.T + move) @ camera.intrinsics.T, -1, 0)
+    places = np.stack([column / depth, row / depth], axis=-1)
+    picture = Image.fromarray(image.srgb(exposure=0.7))
+    for start, end in zip(places[..., :-1, :][~hidden], places[..., 1:, :][~hidden], strict=True):
+        ImageDraw.Draw(picture, "RGBA").line([*start, *end], fill=(0, 0, 0, 40))
+    picture.save("radiosity.jpg", quality=90)
+    return image
 
 
-def _lamps() -> Take:
-    scene, camera = rw.scenes.many_lights(width=480, height=320)
-    return scene, camera, {"samples": 128, "adaptive": True}
+def photons():
+    """Where light falls, as points: each photon that the camera sees, in the colour of its power."""
+    scene, camera = rw.scenes.glass_spheres(1000, 1000)
+    found = scene.photons(200_000)
+    seen = found[~scene.occluded(camera.position, found.positions - camera.position, t_max=1 - 1e-6)]
+    turn, move = camera.extrinsics
+    column, row, depth = camera.intrinsics @ (turn @ seen.positions.T + move[:, None])
+    place = np.rint([row / depth, column / depth]).astype(int)
+    inside = (depth > 0) & ((place >= 0) & (place < 1000)).all(axis=0)
+    picture = np.zeros((1000, 1000, 3))
+    np.add.at(picture, tuple(place[:, inside]), seen.powers[inside])
+    shown = np.clip(1.2 * picture / seen.powers.max(), 0, 1) ** (1 / 2.2)
+    Image.fromarray((255 * shown).astype(np.uint8)).save("photons.jpg", quality=80)
+    return seen
 
 
-def _shapes() -> Take:
+def shapes():
+    """Curved shapes are hit as they are, not as triangles, here by a lens with six blades."""
+    blue, rust = rw.Plastic((0.1, 0.35, 0.6), roughness=0.15), rw.OrenNayar((0.7, 0.3, 0.15))
+    green, copper = rw.Plastic((0.2, 0.45, 0.15), roughness=0.25), rw.Conductor("Cu", roughness=0.2)
+    stool = "(x - 0.5)**2 + (z - 1.4)**2 - 0.45 * (y + 0.1)**2 - 0.06"
     things = [
-        rw.Cylinder(
-            (0, -1, -0.4), (0, 0.9, -0.4), 0.8, material=rw.Plastic((0.1, 0.35, 0.6), roughness=0.15)
-        ),
-        rw.Torus((2.7, -0.55, 0.3), (0.2, 1, 0.3), 0.8, 0.3, material=rw.Conductor("Cu", roughness=0.2)),
-        rw.Cone((-2.4, -1, -0.6), (-2.4, 1.1, -0.6), 0.9, material=rw.OrenNayar((0.7, 0.3, 0.15))),
-        rw.Ellipsoid((-1.5, -0.6, 1.5), (0.7, 0.4, 0.4), material=rw.Dielectric(1.5)),
-        rw.Sphere((1.4, -0.55, 1.7), 0.45, material=rw.Mirror()),
-        rw.Box((3.4, -1, -3.4), (5.0, 0.9, -1.8), material=rw.Diffuse(rw.Wood())),
+        rw.Implicit(stool, (-0.2, -1, 0.7), (1.2, 0.7, 2.1), material=rust),
+        rw.Cylinder((-0.6, -1, -1.6), (-0.6, 1.1, -1.6), 0.7, material=blue),
+        rw.Torus((2.7, -0.55, 0.3), (0.2, 1, 0.3), 0.8, 0.3, material=copper),
+        rw.Cone((-2.5, -1, -0.4), (-2.5, 1.1, -0.4), 0.9, material=green),
+        rw.Ellipsoid((-1.2, -0.6, 1.9), (0.7, 0.4, 0.4), material=rw.Dielectric(1.5)),
+        rw.Sphere((1.9, -0.6, 2.1), 0.4, material=rw.Mirror()),
+        rw.Box((3.6, -1, -3.4), (5.2, 0.9, -1.8), material=rw.Diffuse(rw.Wood())),
         rw.Plane((0, -1, 0), (0, 1, 0), material=rw.Diffuse(rw.Checker(0.25, 0.5))),
+        rw.Disk((-5, 8, 6), (5, -8, -6), 4, emission=3.6),
     ]
     camera = rw.ThinLens(
-        (0.5, 1.6, 7),
-        (0.3, -0.2, 0),
-        fov=34,
-        width=560,
-        height=360,
-        aperture_radius=0.12,
-        focus_point=(0, 0, 1),
+        (0.5, 1.5, 7.5),
+        (0.4, -0.1, 0),
+        fov=32,
+        width=1000,
+        height=620,
+        aperture_radius=0.11,
+        focus_point=(0, 0, 1.5),
         blades=6,
     )
-    scene = rw.Scene(things, environment=rw.SunSky((0.6, 0.7, 0.5), sun_scale=0.03, sky_scale=0.03))
-    return scene, camera, {"samples": 128, "filter": rw.GaussianFilter()}
+    image = rw.render(rw.Scene(things, environment=(0.5, 0.6, 0.75)), camera, samples=32)
+    image.save("shapes.jpg")
+    return image
 
 
-def _motion() -> Take:
-    ball = rw.Sphere(
-        (0, 0, 0),
-        0.5,
-        material=rw.Plastic(rw.Checker((0.75, 0.1, 0.08), (0.85, 0.82, 0.75), 8), roughness=0.1),
-    )
+def materials():
+    """Materials and textures: what they are made of is told by a few words each."""
+    bumps = rw.BumpMap(rw.Plastic((0.55, 0.12, 0.1), roughness=0.2), rw.FBm(transform=4.0), scale=0.12)
+    paint = rw.Principled((0.1, 0.25, 0.45), roughness=0.5, metallic=0.6, clearcoat=1, clearcoat_gloss=1)
+    kinds = [
+        rw.Conductor("Au", roughness=0.35),
+        rw.Plastic(rw.Marble(transform=1.6), roughness=0.1),
+        rw.Dielectric(1.5, transmittance=(0.45, 0.9, 0.6), distance=1.0),
+        paint,
+        rw.Plastic(rw.Wood(transform=5.0), roughness=0.25),
+        rw.Conductor("Cu", roughness=rw.Checker(0.1, 0.5, 12)),
+        bumps,
+        rw.OrenNayar((0.25, 0.4, 0.2)),
+    ]
+    balls = [
+        rw.Sphere((2.3 * (i % 4) - 3.45, 0, -2.6 * (i // 4)), 1.0, material=kind)
+        for i, kind in enumerate(kinds)
+    ]
+    floor = rw.Plane((0, -1, 0), (0, 1, 0), material=rw.Diffuse(rw.Checker(0.3, 0.4)))
+    lamp = rw.Disk((-6, 9, 6), (6, -9, -6), 4.5, emission=3.4)
+    camera = rw.Camera((0, 4.2, 10), (0, -0.2, -1.1), fov=28, width=1000, height=560)
+    image = rw.render(rw.Scene([*balls, floor, lamp], environment=0.55), camera, samples=32)
+    image.save("materials.jpg")
+    return image
+
+
+def motion():
+    """Balls that fall, roll and come nearer while the shutter is open."""
+    skin = rw.Plastic(rw.Checker((0.75, 0.1, 0.08), (0.85, 0.82, 0.75), 8), roughness=0.1)
+    ball = rw.Sphere((0, 0, 0), 0.5, material=skin)
     placed = []
     for i, way in enumerate([(0, 0, 0), (0, 0.45, 0), (0.9, 0, 0), (0.2, 0.2, 0.9)]):
         start, end = np.eye(4), np.eye(4)
         start[:3, 3] = (1.4 * i - 2.1, 0, 0)
         end[:3, 3] = start[:3, 3] + way
         placed.append(rw.Instance(ball, start, end))
-    floor = rw.Plane((0, -0.5, 0), (0, 1, 0), material=GREY)
-    lamp = rw.Disk((-3, 5, 4), (3, -5, -4), 1.0, emission=60.0)
-    camera = rw.Camera((0.3, 1.6, 6), (0.2, 0, 0), fov=32, width=560, height=280)
-    return rw.Scene([*placed, floor, lamp], environment=0.4), camera, {"samples": 128}
+    floor = rw.Plane((0, -0.5, 0), (0, 1, 0), material=rw.Diffuse((0.24, 0.28, 0.34)))
+    lamp = rw.Disk((-3, 5, 4), (3, -5, -4), 1.5, emission=22)
+    camera = rw.Camera((0.3, 1.6, 6), (0.2, 0, 0), fov=28, width=1000, height=440)
+    image = rw.render(rw.Scene([*placed, floor, lamp], environment=0.4), camera, samples=96)
+    image.save("motion.jpg")
+    return image
 
 
-def _forest() -> Take:
-    shapes = rw.scenes.forest().instances()
-    scene = rw.Scene(shapes, environment=rw.SunSky((0.7, 0.5, 0.4), sun_scale=0.04, sky_scale=0.04))
-    _, camera = rw.scenes.classics(1000, width=560, height=320)["forest"]
-    return scene, camera, {"integrator": rw.Path(max_depth=3), "samples": 64}
+def forest():
+    """A thousand million triangles: a hundred thousand copies of ten trees, under a physical sky."""
+    trees = rw.scenes.forest().instances()
+    sky = rw.SunSky((0.7, 0.5, 0.4), sun_scale=0.04, sky_scale=0.04)
+    ground = rw.Plane((0, 0, 0), (0, 1, 0), material=rw.Diffuse((0.11, 0.12, 0.05)))
+    camera = rw.Camera((0, 11, 60), (0, 4, 0), fov=40, width=1000, height=520)
+    image = rw.render(rw.Scene([*trees, ground], environment=sky), camera, rw.Path(max_depth=3), samples=24)
+    image.save("forest.jpg")
+    return image
 
 
-# Each by its name: what stands over it, and what is rendered.
-PICTURES: dict[str, tuple[str, Callable[[], Take]]] = {
-    "cornell": (
-        "The box of Cornell University by its measured colours, with a knot of 25,600 triangles in it.",
-        _cornell,
-    ),
-    "plates": (
-        "Veach's plates: four lamps of equal power seen in four plates, from sharp to dull. No "
-        "single way to draw light does for all.",
-        _plates,
-    ),
-    "glass": (
-        "A ball of glass and a mirror in the box: the bright spots are light that went through "
-        "and over them, found by chance alone.",
-        _glass,
-    ),
-    "whitted": (
-        "The first picture of its kind (Whitted 1980): what is seen in glass and mirrors, as a tree of rays.",
-        _whitted,
-    ),
-    "gold": (
-        "Rough gold by its measured index of refraction. What is scattered more than once between "
-        "its facets is not lost.",
-        _gold,
-    ),
-    "marble": (
-        "Marble under a coat of varnish: a solid texture, made in the space of its shape.",
-        _marble,
-    ),
-    "lamps": (
-        "Two thousand lamps. A tree of them knows which matter where.",
-        _lamps,
-    ),
-    "shapes": (
-        "Curved shapes are hit as they are, not as triangles: a torus, a cone, a cylinder, an "
-        "ellipsoid of glass and a mirror, behind a lens with six blades.",
-        _shapes,
-    ),
-    "motion": (
-        "Balls that fall, turn and roll while the shutter is open.",
-        _motion,
-    ),
-    "forest": (
-        "A thousand million triangles: a hundred thousand copies of ten trees, under a physical sky.",
-        _forest,
-    ),
+def whitted():
+    """The first picture of its kind (Whitted 1980): what is seen in glass and mirrors, as a tree of rays."""
+    scene, camera = rw.scenes.whitted_spheres(1000, 640)
+    image = rw.render(scene, camera, rw.Whitted(ambient=0.1), samples=16, filter=rw.BlackmanHarrisFilter())
+    image.save("whitted.jpg")
+    return image
+
+
+def heatmap():
+    """Where the work is: how many nodes of its tree each ray of a picture of a city visits."""
+    scene = rw.Scene(rw.scenes.city())
+    camera = rw.Camera((-260, 190, 420), (0, 20, 0), fov=50, width=888, height=560)
+    picture = rw.report.heatmap(scene, camera)
+    picture.save("heatmap.png")
+    return picture
+
+
+PICTURES = {
+    picture.__name__: picture
+    for picture in (
+        cornell,
+        caustic,
+        keyhole,
+        haze,
+        cloud,
+        radiosity,
+        photons,
+        shapes,
+        materials,
+        motion,
+        forest,
+        whitted,
+        heatmap,
+    )
 }
 
 
 def main(names: list[str]) -> None:
-    """Render the pictures of these names, or all, and write the page."""
+    """Make the pictures of these names, or all, and write the page."""
     unknown = set(names) - set(PICTURES)
     if unknown:
         raise SystemExit(f"no such picture: {', '.join(sorted(unknown))}; there are {', '.join(PICTURES)}")
-    FOLDER.mkdir(exist_ok=True)
-    record = json.loads(RECORD.read_text()) if RECORD.exists() else {}
+    os.makedirs(HERE / "gallery", exist_ok=True)
+    os.chdir(HERE / "gallery")
+    kept = Path("record.json")
     for name in names or PICTURES:
-        scene, camera, how = PICTURES[name][1]()
-        image = rw.render(scene, camera, sampler=rw.Sobol(), progress=False, **how)
-        image.save(FOLDER / f"{name}.png")
-        record[name] = [
-            image.seconds,
-            image.samples,
-            image.error.estimate,
-            image.error.low,
-            image.error.high,
-            *image.warnings,
-        ]
-        print(name, image, flush=True)
-        RECORD.write_text(json.dumps(record, indent=1) + "\n")
-    PAGE.write_text("\n".join(page(record)))
+        start = time.process_time()
+        made = PICTURES[name]()
+        told = seen(made, time.process_time() - start)
+        print(f"{name}: {told}", flush=True)
+        record = json.loads(kept.read_text()) if kept.exists() else {}
+        record[name] = told
+        kept.write_text(json.dumps({key: record[key] for key in PICTURES if key in record}, indent=1) + "\n")
+    (HERE / "gallery.md").write_text(page(json.loads(kept.read_text())))
 
 
-def page(record: dict[str, Any]) -> list[str]:
-    """Return the lines of the page."""
-    lines = [
-        "# Gallery",
-        "",
-        "Every picture here was made by the command that stands under it, on two cores of a virtual machine.",
-        "The error is the relMSE that the render itself estimated, without a picture to compare with.",
-        "",
-    ]
-    for name, (text, _) in PICTURES.items():
+def seen(made: Any, seconds: float) -> str:
+    """Tell what is to be known of a picture."""
+    parts = [f"{seconds:.0f} s of one core"]
+    if not isinstance(made, rw.Image):
+        return "; ".join([*parts, repr(made)])
+    parts += [f"{made.samples} samples a pixel", f"relMSE {made.error}"]
+    if made.bias is not None:
+        blur = float(np.mean(made.bias**2 / (made.rgb**2 + 0.01)))
+        parts.append(f"relMSE of the blur {blur:.2g}")
+    return "; ".join([*parts, *made.warnings])
+
+
+def lines(name: str) -> str:
+    """Return the lines that make a picture: all of its function but what it returns."""
+    body = inspect.getsource(PICTURES[name]).split('"""', 2)[2].strip("\n")
+    return textwrap.dedent(body).rsplit("\nreturn ", 1)[0]
+
+
+def page(record: dict[str, str]) -> str:
+    """Return the page, of what was seen of each picture."""
+    parts = [HEAD]
+    for name, picture in PICTURES.items():
         if name in record:
-            seconds, samples, error, low, high, *warnings = record[name]
-            told = [
-                f"{seconds:.0f} s, {samples} samples a pixel, relMSE {error:.2g} ({low:.2g} to {high:.2g})",
-                *warnings,
-            ]
-            lines += [
-                f"## {name.capitalize()}",
-                "",
-                text,
-                "",
-                f"![{name}](gallery/{name}.png)",
-                "",
-                f"`python docs/gallery.py {name}`: {'. '.join(told)}.",
-                "",
-            ]
-    return lines
+            parts += [f"## {name.capitalize()}\n", f"{inspect.getdoc(picture)}\n"]
+            suffix = "png" if f"{name}.png" in lines(name) else "jpg"
+            parts += [f"![{name}](gallery/{name}.{suffix})\n", f"{record[name]}.\n"]
+            parts += [f"<!-- shown -->\n```python\n{lines(name)}\n```\n"]
+    return "\n".join(parts)
 
 
 if __name__ == "__main__":

@@ -5,10 +5,13 @@ not: it is for packages that are not installed here. A comment that begins with 
 be so after the blocks before it; readers do not see it.
 """
 
+import json
 import re
+import runpy
 from pathlib import Path
 
 import pytest
+from PIL import Image as Pillow
 
 import raywright as rw
 
@@ -77,6 +80,20 @@ def test_every_block_of_a_page_is_either_run_or_marked():
         text = read(page)
         fences = len(re.findall("^```python$", text, re.MULTILINE))
         assert len(re.findall(BLOCK, text)) == fences + text.count("<!-- check\n"), page
+
+
+def test_gallery_shows_the_lines_that_made_its_pictures():
+    script = ROOT / "docs" / "gallery.py"
+    if not script.exists():
+        pytest.skip("only the repository has the script and its pictures")
+    gallery = runpy.run_path(str(script))
+    record = json.loads((script.parent / "gallery" / "record.json").read_text(encoding="utf-8"))
+    assert list(record) == list(gallery["PICTURES"])
+    page = read("docs/gallery.md")
+    assert page == gallery["page"](record)
+    for link in re.findall(r"\]\((gallery/[^)]+)\)", page):
+        with Pillow.open(script.parent / link) as picture:
+            assert picture.width == 1000, link
 
 
 def test_pages_name_what_is_there():
