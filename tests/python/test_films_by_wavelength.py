@@ -1,0 +1,47 @@
+"""Thin films in scenes whose paths carry wavelengths: at each, Airy's sum, and together the colours of red, green and blue."""
+
+import math
+
+import numpy as np
+import pytest
+
+import raywright as rw
+
+# Goes with wavelength, and is the same everywhere: what it is in has paths that carry wavelengths.
+SAME = rw.Cauchy(1.5, 0.0)
+
+
+def looked(material, by_wave, samples):
+    """The colour of a plate in an even light, seen at 45 degrees, with nothing but black behind it, and its error."""
+    plate = rw.Mesh(
+        [[-9, -9, 0], [9, -9, 0], [9, 9, 0], [-9, 9, 0]], [[0, 1, 2], [0, 2, 3]], material=material
+    )
+    behind = rw.Mesh(
+        [[-99, -99, -1], [99, -99, -1], [99, 99, -1], [-99, 99, -1]],
+        [[0, 1, 2], [0, 2, 3]],
+        material=rw.Diffuse(0.0),
+    )
+    aside = rw.Sphere((0, 0, -50), 1.0, material=rw.Dielectric(SAME if by_wave else 1.5))
+    camera = rw.Orthographic((0, 1, 1), direction=(0, -1, -1), up=(0, 1, -1), scale=0.1, width=16, height=16)
+    scene = rw.Scene([plate, behind, aside], environment=rw.ConstantEnvironment(1.0))
+    image = rw.render(scene, camera, rw.Path(), samples, progress=False)
+    assert ("wavelength" in str(image.plan)) is by_wave
+    values = image.rgb.astype(float).reshape(-1, 3)
+    return values.mean(axis=0), values.std(axis=0, ddof=1) / math.sqrt(len(values))
+
+
+@pytest.mark.parametrize(
+    "material",
+    [
+        rw.SoapFilm(320.0),
+        rw.ThinFilm(250.0, 1.47, base=rw.Dielectric(1.33)),
+        rw.ThinFilm(120.0, 1.8, base=rw.Conductor("Au")),
+    ],
+    ids=["soap", "oil on water", "gold"],
+)
+def test_wavelengths_together_have_the_colour_of_the_film(material):
+    colour, error = looked(material, False, 64)
+    seen, spread = looked(material, True, 4096)
+    # Of red, green and blue, what is mirrored at one angle has no noise of wavelengths; the other has.
+    assert (spread < 0.02 * colour.max()).all()
+    assert (np.abs(seen - colour) <= 3 * np.hypot(error, spread) + 2e-3 * colour.max()).all(), (seen, colour)
