@@ -150,7 +150,7 @@ mod tests {
     fn balls_have_their_bias() {
         // A fluence of 1 + x²: on average over a ball of radius r, 1 + r²/5. Photons on a lattice tell it as well as
         // their number in a ball is its volume.
-        let fine = 100;
+        let fine = 80;
         let place = |i: i32| (f64::from(i) + 0.5) * 2.0 / f64::from(fine) - 1.0;
         let one = |i: i32, j: i32, k: i32| {
             let position = DVec3::new(place(i), place(j), place(k));

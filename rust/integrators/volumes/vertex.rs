@@ -32,7 +32,7 @@ pub(in crate::integrators) struct Vertex<'a> {
 #[derive(Clone)]
 pub(in crate::integrators) enum Point<'a> {
     Surface {
-        arrived: Arrived<'a>,
+        arrived: Box<Arrived<'a>>,
         /// What a ray that goes through is in.
         through: MediumStack<Filled>,
     },
@@ -58,7 +58,7 @@ pub(in crate::integrators) struct Met {
 impl<'a> Vertex<'a> {
     pub fn of_surface(arrived: Arrived<'a>, through: MediumStack<Filled>, media: MediumStack<Filled>) -> Self {
         let (ray, t) = (arrived.ray, arrived.hit.t);
-        Self { point: Point::Surface { arrived, through }, ray, t, media }
+        Self { point: Point::Surface { arrived: Box::new(arrived), through }, ray, t, media }
     }
 
     pub fn of_medium(here: Scattering, collision: &Collision, ray: Ray, media: MediumStack<Filled>) -> Self {
