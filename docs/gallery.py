@@ -7,6 +7,7 @@ of it stands in ``docs/gallery/record.json`` and on the page. Those that are not
 import inspect
 import json
 import os
+import re
 import sys
 import textwrap
 import time
@@ -44,9 +45,9 @@ import raywright as rw
 def cornell():
     """The box of Cornell University by its measured colours, with a knot of 20,000 triangles in it."""
     knot = rw.scenes.torus_knot(material=rw.Diffuse((0.78, 0.55, 0.2)))
-    scene, camera = rw.scenes.cornell_box(knot, 1000, 1000, emission=(40, 33, 22))
-    image = rw.render(scene, camera, samples=48)
-    image.save("cornell.jpg")
+    scene, camera = rw.scenes.cornell_box(knot, 1000, 1000, emission=(18, 15, 10.5))
+    image = rw.render(scene, camera, samples=64)
+    image.save("cornell.jpg", exposure=0.8)
     return image
 
 
@@ -372,7 +373,10 @@ def seen(made: Any, seconds: float) -> str:
 def lines(name: str) -> str:
     """Return the lines that make a picture: all of its function but what it returns."""
     body = inspect.getsource(PICTURES[name]).split('"""', 2)[2].strip("\n")
-    return textwrap.dedent(body).rsplit("\nreturn ", 1)[0]
+    body = textwrap.dedent(body).rsplit("\nreturn ", 1)[0]
+    # What is defined at the left margin has two empty lines around it.
+    body = re.sub(r"\n\n+(?=def )", "\n\n\n", body)
+    return re.sub(r"(\n    .*)\n\n+(?=\S)", r"\1\n\n\n", body)
 
 
 def page(record: dict[str, str]) -> str:
