@@ -15,8 +15,8 @@ pub struct SoapFilm {
 }
 
 impl SoapFilm {
-    /// Of a thickness in nm, and the indices of refraction of the film and of what is around it; at some wavelengths, or
-    /// for red, green and blue.
+    /// Of a thickness in nm, and the indices of refraction of the film and of what is around it; at some wavelengths,
+    /// or for red, green and blue.
     pub fn new(thickness: f64, film: f64, around: f64, waves: Option<Waves>) -> Self {
         Self { film: Filmed::new(thickness, [around, film, around]).at(waves) }
     }

@@ -1,4 +1,4 @@
-"""Thin films in scenes whose paths carry wavelengths: at each, Airy's sum, and together the colours of red, green and blue."""
+"""Thin films in scenes whose paths carry wavelengths, beside the colours that they have without."""
 
 import math
 
@@ -12,7 +12,7 @@ SAME = rw.Cauchy(1.5, 0.0)
 
 
 def looked(material, by_wave, samples):
-    """The colour of a plate in an even light, seen at 45 degrees, with nothing but black behind it, and its error."""
+    """The colour of a plate in even light, at 45 degrees, with nothing but black behind it, and its error."""
     plate = rw.Mesh(
         [[-9, -9, 0], [9, -9, 0], [9, 9, 0], [-9, 9, 0]], [[0, 1, 2], [0, 2, 3]], material=material
     )
