@@ -32,8 +32,8 @@ WAYS = {
     "ProgressivePhotonMap": rw.ProgressivePhotonMap(),
 }
 
-# Whose long picture is the right one: without bias, and all of the light is found. What is seen through glass that
-# is lit through glass is found by merging alone, whose blur goes to nothing.
+# Whose long picture is the right one: without bias, and all of the light is found. What is seen through glass
+# that is lit through glass is found by merging alone, whose blur goes to nothing.
 RIGHT = {"behind glass": "Bidirectional, merged", "lens": "Bidirectional, merged"}
 
 
