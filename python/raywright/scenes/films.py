@@ -107,4 +107,5 @@ def _slick(depth: float) -> NDArray[np.float32]:
     y, x = np.mgrid[-1:1:512j, -1:1:512j]
     drops = ((-0.05, 0.02, 0.16), (0.13, 0.08, 0.11), (-0.2, 0.16, 0.09), (0.06, -0.13, 0.08))
     sum_of_drops = sum(np.exp(-((x - at) ** 2 + (y - across) ** 2) / size**2) for at, across, size in drops)
-    return np.clip(depth * (sum_of_drops - 0.1), 0.0, None).astype(np.float32)
+    thickness: NDArray[np.float32] = np.clip(depth * (sum_of_drops - 0.1), 0.0, None).astype(np.float32)
+    return thickness

@@ -24,9 +24,10 @@ static FRINGES: LazyLock<[Vec<Rgb>; 2]> = LazyLock::new(|| {
         let (turn_sin, turn_cos) = (TAU * STEP / wavelength).sin_cos();
         // From the entry before 0 on.
         let (mut cos, mut sin) = (turn_cos, -turn_sin);
-        for i in 0..COUNT {
-            all[0][i] += weight * cos;
-            all[1][i] += weight * sin;
+        let [cosines, sines] = &mut all;
+        for (cosine, sine) in cosines.iter_mut().zip(sines) {
+            *cosine += weight * cos;
+            *sine += weight * sin;
             (cos, sin) = (cos * turn_cos - sin * turn_sin, sin * turn_cos + cos * turn_sin);
         }
     }
