@@ -14,10 +14,10 @@ use std::f64::consts::TAU;
 
 impl Estimate {
     /// The light that a medium scatters back along the ray that came here, of each unit that it scatters: by photons of
-    /// the same medium in a ball, of which a share is in it; `share` tells it by the square of the ball's radius (Jensen
-    /// and Christensen, "Efficient Simulation of Light Transport in Scenes with Participating Media using Photon Maps",
-    /// 1998). Photons count by the extinction where each is, so that only light has to be even about here, and not what
-    /// fills the space.
+    /// the same medium in a ball, of which a share is in it; `share` tells it by the square of the ball's radius
+    /// (Jensen and Christensen, "Efficient Simulation of Light Transport in Scenes with Participating Media using
+    /// Photon Maps", 1998). Photons count by the extinction where each is, so that only light has to be even about
+    /// here, and not what fills the space.
     pub fn scattered(
         &self,
         of: &VolumeIndex,

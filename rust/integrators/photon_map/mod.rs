@@ -1,6 +1,7 @@
 //! Photon maps: how photons are kept (`maps`, `photon`), found (`places`, `grid`, `kd_tree`) and weighed (`estimate`,
-//! `kernel`), the same among media (`volume_photon`, `among`), how far light is gathered from (`radius`) and how much of that is surface (`cover`), the maps of a picture
-//! (`series`, `store`), and the pictures that are made of them (`session`).
+//! `kernel`), the same among media (`volume_photon`, `among`), how far light is gathered from (`radius`) and how much
+//! of that is surface (`cover`), the maps of a picture (`series`, `store`), and the pictures that are made of them
+//! (`session`).
 
 mod among;
 mod cover;
@@ -39,9 +40,9 @@ use session::{Mapped, Recipe};
 /// and glass to what is matt, so light is found that came through glass and is seen through glass. Samples of a batch
 /// are shared out among maps of its own, so that batches are independent and their spread tells the noise of maps too.
 ///
-/// Media have a map of their own, of all light that comes to be scattered in them: a path from the camera draws where it
-/// is scattered, and asks the photons about that place for what comes back along it (Jensen and Christensen, "Efficient
-/// Simulation of Light Transport in Scenes with Participating Media using Photon Maps", 1998).
+/// Media have a map of their own, of all light that comes to be scattered in them: a path from the camera draws where
+/// it is scattered, and asks the photons about that place for what comes back along it (Jensen and Christensen,
+/// "Efficient Simulation of Light Transport in Scenes with Participating Media using Photon Maps", 1998).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PhotonMap {
     /// Paths from lights for each map; at least 1.

@@ -8,8 +8,8 @@ use crate::scene::{Departure, EmissionSample, Emitters};
 #[derive(Clone, Copy)]
 pub(super) struct LightEnd {
     partial: Partial,
-    /// How its light set out, where it has come to its first vertex: with which density that would ask for light depends
-    /// on who looks.
+    /// How its light set out, where it has come to its first vertex: with which density that would ask for light
+    /// depends on who looks.
     departure: Option<Departure>,
 }
 
