@@ -268,7 +268,7 @@ def materials():
     floor = rw.Plane((0, -1, 0), (0, 1, 0), material=rw.Diffuse(rw.Checker(0.3, 0.4)))
     lamp = rw.Disk((-6, 9, 6), (6, -9, -6), 4.5, emission=3.4)
     camera = rw.Camera((0, 4.2, 10), (0, -0.2, -1.1), fov=28, width=1000, height=560)
-    image = rw.render(rw.Scene([*balls, floor, lamp], environment=0.55), camera, samples=32)
+    image = rw.render(rw.Scene([*balls, floor, lamp], environment=0.55), camera, samples=32, adaptive=True)
     image.save("materials.jpg")
     return image
 
@@ -305,7 +305,8 @@ def forest():
 def whitted():
     """The first picture of its kind (Whitted 1980): what is seen in glass and mirrors, as a tree of rays."""
     scene, camera = rw.scenes.whitted_spheres(1000, 640)
-    image = rw.render(scene, camera, rw.Whitted(ambient=0.1), samples=16, filter=rw.BlackmanHarrisFilter())
+    tree = rw.Whitted(ambient=0.1, light_samples=8)
+    image = rw.render(scene, camera, tree, samples=16, filter=rw.BlackmanHarrisFilter())
     image.save("whitted.jpg")
     return image
 
