@@ -242,7 +242,7 @@ def shapes():
         focus_point=(0, 0, 1.5),
         blades=6,
     )
-    image = rw.render(rw.Scene(things, environment=(0.5, 0.6, 0.75)), camera, samples=32)
+    image = rw.render(rw.Scene(things, environment=(0.5, 0.6, 0.75)), camera, samples=32, adaptive=True)
     image.save("shapes.jpg")
     return image
 
@@ -305,8 +305,8 @@ def forest():
 def whitted():
     """The first picture of its kind (Whitted 1980): what is seen in glass and mirrors, as a tree of rays."""
     scene, camera = rw.scenes.whitted_spheres(1000, 640)
-    tree = rw.Whitted(ambient=0.1, light_samples=8)
-    image = rw.render(scene, camera, tree, samples=16, filter=rw.BlackmanHarrisFilter())
+    tree = rw.Whitted(ambient=0.1, light_samples=2)
+    image = rw.render(scene, camera, tree, samples=64, filter=rw.BlackmanHarrisFilter())
     image.save("whitted.jpg")
     return image
 
