@@ -261,10 +261,8 @@ def materials():
         bumps,
         rw.OrenNayar((0.25, 0.4, 0.2)),
     ]
-    balls = [
-        rw.Sphere((2.3 * (i % 4) - 3.45, 0, -2.6 * (i // 4)), 1.0, material=kind)
-        for i, kind in enumerate(kinds)
-    ]
+    places = [(2.3 * (i % 4) - 3.45, 0, -2.6 * (i // 4)) for i in range(8)]
+    balls = [rw.Sphere(place, 1.0, material=kind) for place, kind in zip(places, kinds, strict=True)]
     floor = rw.Plane((0, -1, 0), (0, 1, 0), material=rw.Diffuse(rw.Checker(0.3, 0.4)))
     lamp = rw.Disk((-6, 9, 6), (6, -9, -6), 4.5, emission=3.4)
     camera = rw.Camera((0, 4.2, 10), (0, -0.2, -1.1), fov=28, width=1000, height=560)
