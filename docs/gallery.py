@@ -242,7 +242,7 @@ def shapes():
         focus_point=(0, 0, 1.5),
         blades=6,
     )
-    image = rw.render(rw.Scene(things, environment=(0.5, 0.6, 0.75)), camera, samples=32)
+    image = rw.render(rw.Scene(things, environment=(0.5, 0.6, 0.75)), camera, samples=32, adaptive=True)
     image.save("shapes.jpg")
     return image
 
@@ -261,10 +261,8 @@ def materials():
         bumps,
         rw.OrenNayar((0.25, 0.4, 0.2)),
     ]
-    balls = [
-        rw.Sphere((2.3 * (i % 4) - 3.45, 0, -2.6 * (i // 4)), 1.0, material=kind)
-        for i, kind in enumerate(kinds)
-    ]
+    places = [(2.3 * (i % 4) - 3.45, 0, -2.6 * (i // 4)) for i in range(8)]
+    balls = [rw.Sphere(place, 1.0, material=kind) for place, kind in zip(places, kinds, strict=True)]
     floor = rw.Plane((0, -1, 0), (0, 1, 0), material=rw.Diffuse(rw.Checker(0.3, 0.4)))
     lamp = rw.Disk((-6, 9, 6), (6, -9, -6), 4.5, emission=3.4)
     camera = rw.Camera((0, 4.2, 10), (0, -0.2, -1.1), fov=28, width=1000, height=560)
@@ -305,8 +303,8 @@ def forest():
 def whitted():
     """The first picture of its kind (Whitted 1980): what is seen in glass and mirrors, as a tree of rays."""
     scene, camera = rw.scenes.whitted_spheres(1000, 640)
-    tree = rw.Whitted(ambient=0.1, light_samples=8)
-    image = rw.render(scene, camera, tree, samples=16, filter=rw.BlackmanHarrisFilter())
+    tree = rw.Whitted(ambient=0.1, light_samples=2)
+    image = rw.render(scene, camera, tree, samples=64, filter=rw.BlackmanHarrisFilter())
     image.save("whitted.jpg")
     return image
 
