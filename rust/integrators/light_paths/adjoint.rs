@@ -30,6 +30,10 @@ pub(in crate::integrators) struct Arrived<'a> {
 }
 
 /// The same point as it is met by what comes from elsewhere.
+#[expect(
+    clippy::large_enum_variant,
+    reason = "it lives on the stack, and a box would be allocated at every connection"
+)]
 pub(in crate::integrators) enum Met<'a> {
     /// As before, but for the direction.
     Alike(SurfaceInteraction<&'a BsdfMix>),

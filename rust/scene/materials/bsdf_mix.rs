@@ -5,6 +5,7 @@ use crate::optics::{AnyBsdf, Bsdf, BsdfSample, Conductor, Rgb};
 
 /// All that scatters light at a point: one kind, or several that are weighed.
 #[derive(Clone, Debug)]
+#[expect(clippy::large_enum_variant, reason = "what most surfaces have must not be allocated at every hit")]
 pub enum BsdfMix {
     /// What most surfaces have.
     One(AnyBsdf),

@@ -47,8 +47,11 @@ impl FilmBase {
 /// asked for.
 #[derive(Debug, Default)]
 pub struct FilmedMetals {
-    ready: RwLock<Vec<(f64, Arc<[&'static FilmedCurve]>)>>,
+    ready: RwLock<Vec<FilmedIn>>,
 }
+
+/// An index of refraction around a metal, and what is made ready for it.
+type FilmedIn = (f64, Arc<[&'static FilmedCurve]>);
 
 impl FilmedMetals {
     /// Under a film of index `film` and a thickness in nm, one within `range`, which is always the same.
@@ -68,9 +71,7 @@ impl FilmedMetals {
 
     /// All that are needed over a range: one of the thickness itself if there is only one, else of even steps.
     fn of(&self, metal: &'static Metal, range: [f64; 2], film: f64, outside: f64) -> Arc<[&'static FilmedCurve]> {
-        let find = |ready: &[(f64, Arc<[&'static FilmedCurve]>)]| {
-            ready.iter().find(|(index, _)| *index == outside).map(|(_, all)| all.clone())
-        };
+        let find = |ready: &[FilmedIn]| ready.iter().find(|(index, _)| *index == outside).map(|(_, all)| all.clone());
         // What panicked left nothing half done.
         if let Some(all) = find(&self.ready.read().unwrap_or_else(PoisonError::into_inner)) {
             return all;
