@@ -2,6 +2,8 @@
 
 import numpy as np
 
+from render_peers_mitsuba import by_constants
+
 import raywright as rw
 
 GREY = rw.Diffuse(0.6)
@@ -73,12 +75,17 @@ def mirror_room(width, height):
     ball = rw.Sphere(
         (middle[0], low[1] + 0.75 * size, middle[2]), 0.15 * size, material=rw.Conductor("silver")
     )
-    return rw.Scene([*scene.shapes, ball], scene.lights, scene.environment), camera
+    return by_constants(rw.Scene([*scene.shapes, ball], scene.lights, scene.environment), camera)
+
+
+def plates(width, height):
+    """Return Veach's plates."""
+    return by_constants(*rw.scenes.veach_plates(width=width, height=height))
 
 
 SCENES = {
     "Cornell": rw.scenes.cornell_box,
-    "plates": rw.scenes.veach_plates,
+    "plates": plates,
     "glass spheres": rw.scenes.glass_spheres,
     "many lights": rw.scenes.many_lights,
     "mirror room": mirror_room,

@@ -21,7 +21,7 @@ import time
 from itertools import product
 
 import numpy as np
-from render_peers_mitsuba import SAMPLERS, Mitsuba
+from render_peers_mitsuba import SAMPLERS, Mitsuba, by_constants
 
 import raywright as rw
 
@@ -68,9 +68,7 @@ def scenes(mesh, side):
         return rw.Scene(scene.shapes[:-2], environment=1.0), camera, None
 
     def plates():
-        scene, camera = rw.scenes.veach_plates(width=side, height=side)
-        shapes = [by_constants(shape) for shape in scene.shapes]
-        return rw.Scene(shapes, scene.lights, scene.environment), camera, 1
+        return *by_constants(*rw.scenes.veach_plates(width=side, height=side)), 1
 
     return {
         "cornell": lambda: (*rw.scenes.cornell_box(width=side, height=side), None),
@@ -78,17 +76,6 @@ def scenes(mesh, side):
         "mesh": in_environment,
         "spheres": lambda: (*rw.scenes.glass_spheres(width=side, height=side), None),
     }
-
-
-def by_constants(shape):
-    """Return a shape of silver as one of its index at 630, 532 and 465 nm: in RGB, Mitsuba has no spectra."""
-    if not isinstance(shape.material, rw.Conductor) or shape.material.metal != "silver":
-        return shape
-    wavelengths, *index = rw.metal_index("silver")
-    eta, k = (np.interp((630, 532, 465), wavelengths, values) for values in index)
-    return rw.Mesh(
-        shape.vertices, shape.faces, material=rw.Conductor(eta=eta, k=k, alpha=shape.material.alpha)
-    )
 
 
 def _torus_arrays(around=706, along=353):

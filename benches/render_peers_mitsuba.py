@@ -6,6 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
+import raywright as rw
+
 # What its integrators and samplers are called there. Its ldsampler is left out: it is biased by 0.4 %.
 SAMPLERS = ("independent", "stratified", "multijitter", "orthogonal")
 VARIANT = "llvm_ad_rgb"
@@ -75,6 +77,27 @@ def _described(mi, scene, camera, sampler, folder):
     if scene.environment is not None:
         all_of_it["environment"] = {"type": "constant", "radiance": _rgb(scene.environment.radiance)}
     return all_of_it
+
+
+def by_constants(scene, camera):
+    """Return a scene whose metals are told by their index at 630, 532 and 465 nm: in RGB, Mitsuba has no spectra."""
+
+    def told(material):
+        if not isinstance(material, rw.Conductor) or material.metal is None:
+            return material
+        wavelengths, *index = rw.metal_index(material.metal)
+        eta, k = (np.interp((630, 532, 465), wavelengths, values) for values in index)
+        return rw.Conductor(eta=eta, k=k, alpha=material.alpha)
+
+    def of(shape, material):
+        if material is shape.material:
+            return shape
+        if isinstance(shape, rw.Sphere):
+            return rw.Sphere(shape.center, shape.radius, material=material, emission=shape.emission)
+        return rw.Mesh(shape.vertices, shape.faces, material=material, emission=shape.emission)
+
+    shapes = [of(shape, told(shape.material)) for shape in scene.shapes]
+    return rw.Scene(shapes, scene.lights, scene.environment), camera
 
 
 def _shape(mi, shape, path):

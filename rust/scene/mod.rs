@@ -40,7 +40,7 @@ pub use geometry::{
 };
 pub(crate) use lights::SeenTriangle;
 pub use lights::{
-    ConstantEnvironment, Departure, DirectionalLight, EmissionNumbers, EmissionPdf, EmissionSample, Emitters,
+    Aim, ConstantEnvironment, Departure, DirectionalLight, EmissionNumbers, EmissionPdf, EmissionSample, Emitters,
     EnvironmentMap, Light, LightBounds, LightContextLanes, LightLanes, LightSample, LightSampleContext, Lights,
     Picture, Place, PointEmission, PointLight, Profile, Projector, Reach, Source, SpotLight, SunSky, Waved,
 };

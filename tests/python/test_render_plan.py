@@ -6,6 +6,7 @@ from dataclasses import FrozenInstanceError, replace
 
 import numpy as np
 import pytest
+import rare_scenes
 
 import raywright as rw
 from raywright import _core
@@ -132,6 +133,16 @@ def test_paths_go_as_a_pilot_finds(name, reuse, caustics, why):
     again = rw.render(scene, camera, plan.path, samples=SAMPLES, threads=3, progress=False)
     assert np.array_equal(again.rgb, image.rgb)
     assert rw.render(scene, camera, samples=SAMPLES, seed=5, progress=False).plan == plan
+
+
+def test_larger_patches_are_tried_where_light_is_rare():
+    scene, camera = rare_scenes.keyhole(SIDE)
+    plan = rw.render(scene, camera, samples=SAMPLES, progress=False).plan
+    assert plan.path == rw.Path(reuse=8, caustics=False)
+    assert "error times time is 0." in plan["reuse"].why
+    # What is named is used as named.
+    named = rw.render(scene, camera, rw.Path(reuse=4), samples=SAMPLES, progress=False).plan
+    assert named.path.reuse == 4
 
 
 def test_a_pilot_says_the_same_on_any_number_of_threads():

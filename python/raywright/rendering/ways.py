@@ -14,8 +14,9 @@ from .choices import Limits, expected
 from .filters import Filter
 from .plan import Choice
 
-# The side of patches that share paths, where any do: larger ones have coarser noise, and gain little.
-_REUSE = 4
+# The side of patches that share paths, where any do. Larger ones have coarser noise, and gain little, but for
+# light that few paths find, as behind a keyhole: they are tried where a pilot's relMSE is above the last.
+_REUSE, _LARGE, _NOISY = 4, 8, 0.3
 # How much longer samples take that share paths, or that aim, by `benches/choices.py`, in times of a plain
 # one. It is not measured on the spot: the same has to be chosen everywhere, every time.
 _COSTS = {"reuse": 0.9, "caustics": 0.9}
@@ -85,13 +86,23 @@ def followed(
             why |= {name: _NEVER[name] for name in open_ if not can[name]}
             open_ = [name for name in open_ if can[name]]
             ways = [fixed | dict(zip(open_, way, strict=True)) for way in product(*_options(open_))]
-            paths = [replace(path, **way) for way in ways]
             # Nobody is sent where only one way is left.
-            errors = _core.pilot(compiled, camera, paths, threads, clamp, filter, look) if open_ else [0.0]
+            worth = [0.0]
+            if open_:
+
+                def sent(ways: list[dict[str, Any]]) -> list[float]:
+                    paths = [replace(path, **way) for way in ways]
+                    errors = _core.pilot(compiled, camera, paths, threads, clamp, filter, look)
+                    return [error * _cost(way) for error, way in zip(errors, ways, strict=True)]
+
+                worth = sent(ways)
+                least = ways[worth.index(min(worth))]
+                if "reuse" in open_ and least["reuse"] == _REUSE and min(worth) > _NOISY * _cost(least):
+                    ways.append(least | {"reuse": _LARGE})
+                    worth = sent(ways)
         except StoppedError:
             why |= dict.fromkeys(open_, "it was stopped before a pilot was back")
         else:
-            worth = [error * _cost(way) for error, way in zip(errors, ways, strict=True)]
             if min(worth) < _BETTER * worth[0]:
                 chosen = ways[worth.index(min(worth))]
             why |= {name: _told(name, ways, worth) for name in open_}

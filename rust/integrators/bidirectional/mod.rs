@@ -10,7 +10,7 @@ mod worker;
 
 pub use merging::Merge;
 
-use super::light_paths::{LightPaths, Limits, Partials, Weighing};
+use super::light_paths::{LightPaths, Limits, Partials, Weighing, emitters};
 use super::volumes::{BothEnds, Counting, MediaLightPaths};
 use super::{Integrator, Job, LightWorker, Session, Worker};
 use crate::scene::{Emitters, Scene};
@@ -62,7 +62,8 @@ impl Default for Bidirectional {
 impl Integrator for Bidirectional {
     fn begin<'a>(&'a self, job: Job<'a>, cancel: &Cancel) -> Box<dyn Session + 'a> {
         let limits = Limits { max_depth: self.max_depth, roulette_depth: self.roulette_depth };
-        let emitters = job.scene.emitters();
+        // Light that is merged, or splatted from what is matt alone (`LightTraced`), has more noise where it is aimed.
+        let emitters = if self.merge.is_none() { emitters(job.scene) } else { job.scene.emitters() };
         // Of light that has been scattered once at least, at the second surface.
         let merge = self.merge.filter(|_| self.max_depth.is_none_or(|depth| depth > 1));
         let merging = merge.zip(emitters.as_ref());

@@ -3,6 +3,7 @@
 use super::lobe::Lobe;
 use super::photon::Photon;
 use crate::math::DVec3;
+use rayon::prelude::*;
 use std::ops::Range;
 
 /// Places in cells, by halving the photons at the longest side of the box around them until few are left.
@@ -73,13 +74,19 @@ impl Cells {
         let mut ranges = Vec::new();
         let count = photons.len();
         all.divide(&mut photons, 0..count, &mut ranges);
-        for range in ranges {
+        let told = |range: Range<usize>| {
             let (min, max) = bounds(&photons[range]);
             let beside = DVec3::splat(BESIDE * (max - min).max_element());
             let (min, max) = (min - beside, max + beside);
             let mut near = Vec::new();
             all.gather(0, &photons, (min, max), &mut near);
-            all.add_leaf(&mut near, (min, max), usual);
+            Leaf::told(&mut near, (min, max), usual)
+        };
+        let told: Vec<(Leaf, Vec<Lobe>)> = ranges.into_par_iter().map(told).collect();
+        for (leaf, lobes) in told {
+            let first = all.lobes.len();
+            all.lobes.extend(lobes);
+            all.leaves.push(Leaf { lobes: first..all.lobes.len(), ..leaf });
         }
         all
     }
@@ -124,7 +131,27 @@ impl Cells {
         }
     }
 
-    fn add_leaf(&mut self, near: &mut [Photon], (min, max): (DVec3, DVec3), usual: f64) {
+    /// The cell of a place; `None` where no photon has been about.
+    #[inline]
+    pub fn find(&self, place: DVec3) -> Option<Cell<'_>> {
+        let mut node = 0;
+        loop {
+            match self.nodes[node] {
+                Node::Split { axis, at, second } => node = if place[axis] < at { node + 1 } else { second },
+                Node::Leaf(number) => {
+                    let leaf = &self.leaves[number];
+                    let inside = place.cmpge(leaf.min).all() && place.cmple(leaf.max).all();
+                    let &Leaf { share, gain, rarity, .. } = leaf;
+                    return inside.then(|| Cell { lobes: &self.lobes[leaf.lobes.clone()], share, gain, rarity });
+                }
+            }
+        }
+    }
+}
+
+impl Leaf {
+    /// What photons that have come to a cell and those beside it tell of it, and its lobes, by number from 0 on.
+    fn told(near: &mut [Photon], (min, max): (DVec3, DVec3), usual: f64) -> (Self, Vec<Lobe>) {
         let sides = max - min;
         let size = sides.max_element();
         let light: f64 = near.iter().map(|photon| photon.flux).sum();
@@ -149,32 +176,15 @@ impl Cells {
         strengths.sort_by(|a, b| b.1.total_cmp(&a.1));
         strengths.truncate(LOBES - 1);
         let total: f64 = strengths.iter().map(|(_, strength)| strength).sum();
-        let first = self.lobes.len();
         let part = if total > 0.0 { (1.0 - WIDE) / total } else { 0.0 };
-        self.lobes.extend(strengths.iter().filter(|(_, s)| *s > 0.0).map(|(lobe, s)| lobe.drawn(s * part)));
+        let mut lobes: Vec<Lobe> =
+            strengths.iter().filter(|(_, s)| *s > 0.0).map(|(lobe, s)| lobe.drawn(s * part)).collect();
         let wide = if total > 0.0 { WIDE } else { 1.0 };
-        self.lobes.push(all.drawn(wide));
+        lobes.push(all.drawn(wide));
         // By how much noise it takes from what paths find of the rest, and adds to it, were each lobe half filled by
         // what is sought.
         let share = (2.0 * brighter / (2.0 * brighter + 1.0)).clamp(SHARES[0], SHARES[1]);
-        self.leaves.push(Leaf { min, max, share, gain: 1.0 + brighter, rarity, lobes: first..self.lobes.len() });
-    }
-
-    /// The cell of a place; `None` where no photon has been about.
-    #[inline]
-    pub fn find(&self, place: DVec3) -> Option<Cell<'_>> {
-        let mut node = 0;
-        loop {
-            match self.nodes[node] {
-                Node::Split { axis, at, second } => node = if place[axis] < at { node + 1 } else { second },
-                Node::Leaf(number) => {
-                    let leaf = &self.leaves[number];
-                    let inside = place.cmpge(leaf.min).all() && place.cmple(leaf.max).all();
-                    let &Leaf { share, gain, rarity, .. } = leaf;
-                    return inside.then(|| Cell { lobes: &self.lobes[leaf.lobes.clone()], share, gain, rarity });
-                }
-            }
-        }
+        (Self { min, max, share, gain: 1.0 + brighter, rarity, lobes: 0..lobes.len() }, lobes)
     }
 }
 

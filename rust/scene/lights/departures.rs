@@ -36,7 +36,9 @@ impl Emitters<'_> {
     pub fn of_sample(&self, sample: &EmissionSample) -> Departure {
         let direction = sample.ray.direction;
         match sample.source {
-            Source::Surface(light) => self.departure_of_surface(light, sample.normal.dot(direction)),
+            Source::Surface(light) => {
+                self.departure_of_surface(light, sample.normal.dot(direction), (sample.ray.origin, direction))
+            }
             Source::Point(_) => self.departure_of_point(sample.source, direction),
             Source::Outside | Source::Direction(_) => self.departure_of_outside(sample.source, -direction),
         }
@@ -45,7 +47,8 @@ impl Emitters<'_> {
     /// That of light from a surface, along a ray back to it; none from what is never drawn.
     pub fn of_hit(&self, ray: &Ray, hit: &Hit, surface: &SurfacePoint) -> Option<Departure> {
         let light = self.lights.number_of(self.geometry, hit)?;
-        Some(self.departure_of_surface(light as u32, -ray.direction.dot(surface.normal)))
+        let way = (surface.position, -ray.direction);
+        Some(self.departure_of_surface(light as u32, way.1.dot(surface.normal), way))
     }
 
     /// That of light from outside that comes from a direction.
@@ -89,7 +92,8 @@ impl Emitters<'_> {
         let off = source.offset();
         let largest = off.abs().max_element();
         let normal = if largest > 0.0 { (off / largest).normalize() } else { drawn.direction };
-        Some((drawn, self.departure_of_surface(number as u32, normal.dot(drawn.direction)), drawn.pdf))
+        let way = (source.position(), -drawn.direction);
+        Some((drawn, self.departure_of_surface(number as u32, normal.dot(drawn.direction), way), drawn.pdf))
     }
 
     /// The density with which [`Lights::sample`] draws, for a receiver, the direction of light that comes to it along a
@@ -124,10 +128,14 @@ impl Emitters<'_> {
         }
     }
 
-    fn departure_of_surface(&self, light: u32, cosine: f64) -> Departure {
+    /// Light from a surface, from a place along a direction.
+    fn departure_of_surface(&self, light: u32, cosine: f64, (place, direction): (DVec3, DVec3)) -> Departure {
         let (probability, cosine) = (self.choice.probability(light as usize), cosine.abs());
         let density = match self.lights.extent(light as usize, self.geometry) {
-            Some((sides, area)) if probability > 0.0 => probability / area * (cosine / (PI * sides)),
+            Some((sides, area)) if probability > 0.0 => {
+                let own = cosine / (PI * sides);
+                probability / area * self.aim.from(place).map_or(own, |cones| cones.density(direction, own))
+            }
             _ => 0.0,
         };
         Departure { source: Source::Surface(light), density, cosine }
@@ -136,7 +144,9 @@ impl Emitters<'_> {
     fn departure_of_point(&self, source: Source, direction: DVec3) -> Departure {
         let Source::Point(point) = source else { return Departure { source, density: 0.0, cosine: 1.0 } };
         let number = self.within - self.lights.inside.len() + point as usize;
-        let density = self.choice.probability(number) * self.lights.inside[point as usize].emission_pdf(direction);
+        let own = self.lights.inside[point as usize].emission_pdf(direction);
+        let aim = self.aim_of_point(point as usize);
+        let density = self.choice.probability(number) * aim.map_or(own, |(_, cones)| cones.density(direction, own));
         Departure { source, density, cosine: 1.0 }
     }
 

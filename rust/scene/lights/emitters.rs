@@ -1,8 +1,11 @@
 //! Light that sets out from the lights of a scene, drawn by their power.
 
+use super::aim::Cones;
 use super::choice::MOST;
+use super::emission_sample::PointEmission;
 use super::emission_sample::{EmissionPdf, EmissionSample, Source};
-use super::{Emission, LightSampleContext, Lights, Reach, Sides};
+use super::light::Place;
+use super::{Aim, Emission, LightSampleContext, Lights, Reach, Sides};
 use crate::math::{DVec3, Frame, Hit, Ray, Region};
 use crate::sampling::AliasTable;
 use crate::sampling::warp::{cosine_hemisphere, uniform_triangle};
@@ -24,6 +27,8 @@ pub struct Emitters<'a> {
     /// The scene's box: its middle, and half its size.
     pub(super) middle: DVec3,
     half: DVec3,
+    /// What light from surfaces and points is aimed at.
+    pub(super) aim: Aim,
 }
 
 /// The numbers that light that sets out is drawn by, each in [0, 1).
@@ -54,7 +59,12 @@ impl<'a> Emitters<'a> {
         let from_outside = from_outside.sum::<f64>();
         powers.push(if from_outside.is_finite() { from_outside.min(MOST) } else { 0.0 });
         let middle = region.min + half;
-        Some(Self { lights, geometry, choice: AliasTable::new(&powers)?, within, middle, half })
+        Some(Self { lights, geometry, choice: AliasTable::new(&powers)?, within, middle, half, aim: Aim::default() })
+    }
+
+    /// The same, where light from surfaces and points is aimed.
+    pub fn aimed(self, aim: Aim) -> Self {
+        Self { aim, ..self }
     }
 
     /// Draws light that sets out; `None` if the draw gives none.
@@ -85,7 +95,7 @@ impl<'a> Emitters<'a> {
 
     /// From a light that is a single point.
     fn of_point(&self, number: usize, numbers: &EmissionNumbers) -> Option<EmissionSample> {
-        let drawn = self.lights.inside[number].sample_emission(numbers.direction)?;
+        let drawn = self.aimed_point(number, numbers.direction)?;
         Some(EmissionSample {
             ray: Ray::new(drawn.position, drawn.direction),
             weight: drawn.weight,
@@ -94,6 +104,28 @@ impl<'a> Emitters<'a> {
             source: Source::Point(number as u32),
             is_infinite: false,
         })
+    }
+
+    /// Light from a point, drawn by how it shines or by what is aimed at from there.
+    fn aimed_point(&self, number: usize, [u, v]: [f64; 2]) -> Option<PointEmission> {
+        let light = &self.lights.inside[number];
+        let Some((position, cones)) = self.aim_of_point(number) else { return light.sample_emission([u, v]) };
+        let share = cones.share();
+        let (direction, intensity, own) = if u < share {
+            let direction = cones.sample([u / share, v]);
+            (direction, light.intensity_towards(direction), light.emission_pdf(direction))
+        } else {
+            let drawn = light.sample_emission([(u - share) / (1.0 - share), v])?;
+            (drawn.direction, drawn.weight * drawn.pdf, drawn.pdf)
+        };
+        let pdf = cones.density(direction, own);
+        Some(PointEmission { position, direction, weight: intensity / pdf, pdf })
+    }
+
+    /// What is aimed at from a light that is a point, and that.
+    pub(super) fn aim_of_point(&self, number: usize) -> Option<(DVec3, Cones<'_>)> {
+        let Some(Place::Point(position)) = self.lights.inside[number].place() else { return None };
+        self.aim.from(position).map(|cones| (position, cones))
     }
 
     /// From a primitive of the scene that is no instance.
@@ -128,24 +160,44 @@ impl<'a> Emitters<'a> {
         pdf: f64,
         [u, v]: [f64; 2],
     ) -> Option<EmissionSample> {
-        let (normal, u) = match emission.sides {
-            Sides::Front => (surface.normal, u),
-            Sides::Back => (-surface.normal, u),
-            Sides::Both if u < 0.5 => (surface.normal, 2.0 * u),
-            Sides::Both => (-surface.normal, 2.0 * u - 1.0),
+        let cones = self.aim.from(surface.position);
+        let share = cones.as_ref().map_or(0.0, Cones::share);
+        let (normal, direction, cosine) = match &cones {
+            Some(cones) if u < share => {
+                let direction = cones.sample([u / share, v]);
+                let towards = surface.normal.dot(direction);
+                let normal = match emission.sides {
+                    Sides::Front => surface.normal,
+                    Sides::Back => -surface.normal,
+                    Sides::Both => surface.normal * 1f64.copysign(towards),
+                };
+                (normal, direction, normal.dot(direction))
+            }
+            _ => {
+                let u = (u - share) / (1.0 - share);
+                let (normal, u) = match emission.sides {
+                    Sides::Front => (surface.normal, u),
+                    Sides::Back => (-surface.normal, u),
+                    Sides::Both if u < 0.5 => (surface.normal, 2.0 * u),
+                    Sides::Both => (-surface.normal, 2.0 * u - 1.0),
+                };
+                let local = cosine_hemisphere([u, v]);
+                (normal, Frame::new(normal).to_world(local), local.z)
+            }
         };
-        let local = cosine_hemisphere([u, v]);
-        let direction = Frame::new(normal).to_world(local);
         // What a ray back along it would see.
         let back = Ray::new(surface.position + direction, -direction);
         let radiance = emission.sent(self.geometry, &back, &hit, surface, || 0.0);
         let sides = emission.sides.count();
         let ray = Ray { misses: [hit.primitive, Ray::NO_TRIANGLE], ..RayOrigin::new(surface).ray(direction) };
-        let is_drawn = pdf > 0.0 && pdf < f64::INFINITY && local.z > 0.0;
+        let is_drawn = pdf > 0.0 && pdf < f64::INFINITY && cosine > 0.0;
+        let own = cosine / (PI * sides);
+        let towards = cones.as_ref().map_or(own, |cones| cones.density(direction, own));
         is_drawn.then(|| EmissionSample {
             ray,
-            weight: radiance * (PI * sides / pdf),
-            pdf: EmissionPdf { place: pdf, direction: local.z / (PI * sides) },
+            // What is not aimed is worth the same in all directions, to the last digit.
+            weight: radiance * if cones.is_some() { cosine / (towards * pdf) } else { PI * sides / pdf },
+            pdf: EmissionPdf { place: pdf, direction: towards },
             normal,
             source: Source::Surface(light as u32),
             is_infinite: false,

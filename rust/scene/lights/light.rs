@@ -87,6 +87,11 @@ pub trait Light: Debug + Send + Sync {
         None
     }
 
+    /// What it sends along a unit direction, W/sr, of a light that is a single point.
+    fn intensity_towards(&self, _direction: DVec3) -> Rgb {
+        Rgb::ZERO
+    }
+
     /// The density, by solid angle, with which [`Light::sample_emission`] draws a unit direction.
     fn emission_pdf(&self, _direction: DVec3) -> f64 {
         0.0

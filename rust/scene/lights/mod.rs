@@ -1,5 +1,6 @@
 //! All lights of a scene, and the choice among them.
 
+mod aim;
 mod bounds;
 mod choice;
 mod constant;
@@ -30,6 +31,7 @@ mod tree;
 mod triangle;
 mod waved;
 
+pub use aim::Aim;
 pub use bounds::LightBounds;
 pub use constant::ConstantEnvironment;
 pub use departures::Departure;

@@ -45,6 +45,10 @@ impl Light for PointLight {
         Some(Place::Point(self.position))
     }
 
+    fn intensity_towards(&self, _: DVec3) -> Rgb {
+        self.intensity
+    }
+
     fn emission_pdf(&self, _: DVec3) -> f64 {
         UNIFORM_SPHERE_PDF
     }

@@ -113,6 +113,10 @@ impl Light for Projector {
         Some(Place::Point(self.position))
     }
 
+    fn intensity_towards(&self, direction: DVec3) -> Rgb {
+        self.towards(direction)
+    }
+
     /// Beside the picture it does not matter: nothing is sent there.
     fn emission_pdf(&self, direction: DVec3) -> f64 {
         let (ahead, [x, y]) = (self.axes[2].dot(direction), self.half);

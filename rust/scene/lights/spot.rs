@@ -122,6 +122,10 @@ impl Light for SpotLight {
         Some(Place::Point(self.position))
     }
 
+    fn intensity_towards(&self, direction: DVec3) -> Rgb {
+        self.intensity * self.share(direction)
+    }
+
     /// Beyond the cone it does not matter: nothing is sent there.
     fn emission_pdf(&self, _: DVec3) -> f64 {
         1.0 / (TAU * self.height())

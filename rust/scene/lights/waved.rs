@@ -98,6 +98,10 @@ impl Light for Waved {
         Some(PointEmission { weight: self.at(drawn.weight, None), ..drawn })
     }
 
+    fn intensity_towards(&self, direction: DVec3) -> Rgb {
+        self.at(self.light.intensity_towards(direction), None)
+    }
+
     fn emission_pdf(&self, direction: DVec3) -> f64 {
         self.light.emission_pdf(direction)
     }
