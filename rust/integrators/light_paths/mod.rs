@@ -1,6 +1,6 @@
-//! Paths that start at lights: how they go (`walk`), how surfaces scatter along the way of light (`adjoint`), and where
-//! cameras see them (`to_camera`); what they are aimed at (`targets`). What light finds may be weighed beside what is found in other ways (`weights`,
-//! `partials`). Maps of what comes to surfaces are a room of their own, `photon_map`.
+//! Paths that start at lights: what they are aimed at (`targets`), how they go (`walk`), how surfaces scatter along the
+//! way of light (`adjoint`), and where cameras see them (`to_camera`). What light finds may be weighed beside what is
+//! found in other ways (`weights`, `partials`). Maps of what comes to surfaces are a room of their own, `photon_map`.
 
 mod adjoint;
 mod dimensions;
