@@ -2,7 +2,7 @@
 
 use super::super::ErrorEstimate;
 use super::super::denominators::{Denominators, cross};
-use super::super::outliers::Largest;
+use super::super::outliers::{Largest, beside, is_find};
 use super::super::patchwork::Patchwork;
 use super::halves::Halves;
 use super::planes::{Size, blurred};
@@ -34,14 +34,16 @@ const REACH: usize = 3;
 /// quarters. What comes out is their mean, whose squared error is the mean of theirs less their own variance about it,
 /// to the last bit. No variance is known beforehand, and nothing is assumed of filters.
 ///
-/// The denominators are as in every other error ([`Denominators`]), of the filtered picture.
+/// The denominators are as in every other error ([`Denominators`]), but that the filtered picture stands for the
+/// neighbours.
 pub fn settle(halves: &Halves, candidates: &[Vec<Vec<Rgb>>; 2]) -> Denoised {
     let size = Size { width: halves.width, height: halves.height };
     let quarters = &halves.quarters;
-    let means = [halves.mean(0), halves.mean(1)];
     // Whose candidates, who chooses, who tells.
     let ways = [(0, 2, 3), (0, 3, 2), (1, 0, 1), (1, 1, 0)];
-    let chosen = ways.map(|(half, chooser, _)| selected(&means[half], &candidates[half], &quarters[chooser], size));
+    let chosen = ways.map(|(half, chooser, _)| {
+        selected(&candidates[half], &quarters[chooser], &halves.variances[half], halves.samples / 2.0, size)
+    });
     let picture: Vec<Rgb> =
         (0..size.pixels()).map(|i| (chosen[0][i] + chosen[1][i] + chosen[2][i] + chosen[3][i]) / 4.0).collect();
     let of = |i: usize| {
@@ -77,31 +79,46 @@ fn smooth(values: &[Rgb], size: Size) -> Vec<Rgb> {
 /// The error of a picture from what its pixels' squared errors are, each without bias and with much noise.
 ///
 /// The noise of each is independent of that of others but for patches, and their squares tell how large that of the sum
-/// is. Denominators are in doubt by as much as choosing them has changed.
+/// is. Denominators are in doubt by as much as others would change: those of the filtered picture alone, where it may
+/// be bright by light that was spilt, with its neighbours and without, and those of the picture with its noise. Few
+/// pixels that carry much count as such if they met what the next ones do not show.
 fn told(halves: &Halves, picture: &[Rgb], errors: &[Rgb], varies: &[Rgb]) -> ErrorEstimate {
     let (width, patch) = (halves.width, halves.patch);
     let across = width.div_ceil(patch);
+    let means: Vec<Rgb> = halves.mean(0).iter().zip(halves.mean(1)).map(|(a, b)| (*a + b) / 2.0).collect();
+    let shown: Vec<f64> = means.iter().map(|mean| mean.abs().max()).collect();
     let mut patches = vec![0.0; across * halves.height.div_ceil(patch)];
-    let mut own = 0.0;
+    let (mut largest, mut others) = (Largest::default(), [0.0; 3]);
     for (i, &error) in errors.iter().enumerate() {
         let (x, y) = (i % width, i / width);
-        let denominators = Denominators::new(&cross(picture, width, x, y), varies[i], halves.samples);
-        patches[y / patch * across + x / patch] += error.dot(denominators.inverse);
-        own += error.dot(denominators.own);
+        let [mean, filtered] = [means[i], picture[i]];
+        let variance = (halves.variances[0][i] + halves.variances[1][i]) / 4.0;
+        let of = |cross: &[Rgb; 5], variance| Denominators::new(cross, variance, halves.samples);
+        let likely = of(&[mean, filtered, filtered, filtered, filtered], variance);
+        let near = of(&cross(picture, width, x, y), varies[i]);
+        let noisy = of(&cross(&means, width, x, y), variance);
+        let brings = error.dot(likely.inverse);
+        for (other, inverse) in others.iter_mut().zip([near.inverse, near.own, noisy.inverse]) {
+            *other += error.dot(inverse);
+        }
+        patches[y / patch * across + x / patch] += brings;
+        let quarters = halves.quarters.each_ref().map(|quarter| quarter[i].abs().max());
+        let brightest = quarters.into_iter().fold(0.0, f64::max);
+        let rest = (quarters.iter().sum::<f64>() - brightest) / 3.0;
+        if is_find(brightest, rest, beside(&shown, width, x, y, patch)) {
+            largest.add(brings.max(0.0));
+        }
     }
     let count = 3.0 * errors.len() as f64;
     let sum: f64 = patches.iter().sum();
-    let mut largest = Largest::default();
-    patches.iter().for_each(|&patch| largest.add(patch.max(0.0)));
     let evenness = Patchwork { patch: patch as u32 }.evenness();
     let noise = 1.96 * (evenness * patches.iter().map(|patch| patch * patch).sum::<f64>()).sqrt();
-    let doubt = sum - own;
-    let away = noise.hypot(doubt);
+    let [least, most] = others.iter().fold([sum; 2], |[least, most], &other| [least.min(other), most.max(other)]);
     let value = sum.max(0.0) / count;
     ErrorEstimate {
         value,
-        low: ((sum - away) / count).max(0.0),
-        high: (sum + away).max(0.0) / count,
+        low: ((sum - noise.hypot(sum - least)) / count).max(0.0),
+        high: (sum + noise.hypot(most - sum)).max(0.0) / count,
         carried: if sum > 0.0 { largest.carry(sum) } else { None },
     }
 }
