@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 /// How far away what counts may be, and how far the patches go that are compared.
 const REACH: isize = 7;
-const PATCH: usize = 2;
+const PATCH: usize = 1;
 
 /// Pixels a side that are worked on at once: what is summed for them stays in the cache.
 const SIDE: usize = 32;

@@ -6,7 +6,7 @@ use crate::optics::Rgb;
 use rayon::prelude::*;
 
 /// Errors are compared over squares that go so far, twice one after the other.
-const REACH: usize = 2;
+const REACH: usize = 1;
 
 /// What was chosen passes into each other over so many pixels.
 const SEAM: usize = 1;
