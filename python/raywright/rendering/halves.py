@@ -58,11 +58,11 @@ class Halves:
     @property
     def features(self) -> NDArray[np.float64]:
         """Albedo, normal and nearness, (2, H, W, 7) float64: nearness is 0 where nothing is seen, below 1."""
-        is_seen = np.isfinite(self.depth)
-        middle = float(np.median(self.depth[is_seen])) if is_seen.any() else 1.0
-        with np.errstate(over="ignore"):
-            nearness = middle / (middle + self.depth.astype(np.float64)) if middle > 0 else is_seen * 0.5
-        parts = [self.albedo, self.normal, np.asarray(nearness)[..., np.newaxis]]
+        depth = self.depth.astype(np.float64)
+        is_seen = np.isfinite(depth)
+        middle = float(np.median(depth[is_seen])) if is_seen.any() else 0.0
+        nearness = middle / (middle + depth) if middle > 0 else is_seen * 0.5
+        parts: list[NDArray[Any]] = [self.albedo, self.normal, nearness[..., np.newaxis]]
         return np.ascontiguousarray(np.nan_to_num(np.concatenate(parts, axis=-1, dtype=np.float64)))
 
     def __eq__(self, other: object) -> bool:
