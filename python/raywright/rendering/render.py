@@ -434,8 +434,8 @@ def _image(
     for i, name in enumerate(HISTORY.names or ()):
         history[name] = done.history[:, i]
     warnings = list(told)
-    unknown = np.full(done.rgb.shape, np.nan, np.float32), None, None
-    standard_error, pooled, degrees = done.uncertainty or unknown
+    rgb = done.rgb
+    standard_error, pooled, degrees = done.uncertainty or (np.full_like(rgb, np.nan), None, None)
     if done.dropped:
         warnings.append(f"{_samples(done.dropped)} not finite or negative, and count as black")
     clamped, taken = done.clamped
@@ -455,7 +455,7 @@ def _image(
         carriers = "one sample carries" if few == 1 else f"{few} samples carry"
         warnings.append(f"{carriers} {100 * share:.0f} % of the error estimate: it cannot be trusted yet")
     return Image(
-        done.rgb,
+        rgb,
         standard_error,
         ErrorEstimate(*done.error, trusted=done.trusted),
         history,
