@@ -171,12 +171,14 @@ def judged(make, side, samples, seeds, truth=None, **how):
 
 
 def test_a_small_box_is_better_and_knows_by_how_much():
-    truth = reference(*rare_scenes.cornell(32), 1024)
-    before, after, told, honest, _ = judged(rare_scenes.cornell, 32, 16, 10, truth)
-    assert np.mean(before) > 1.5 * np.mean(after)
-    assert 0.6 < told < 1.6
-    # Of intervals that hold in 95 of 100 cases, 6 of 10 or fewer do so once in 1000.
-    assert honest > 6
+    # At this size the pixels on the rim of the lamp, which stay as they are, hold most of the error.
+    truth = reference(*rare_scenes.cornell(48), 512)
+    before, after, told, honest, _ = judged(rare_scenes.cornell, 48, 16, 6, truth)
+    assert np.median(before / after) > 1.5
+    assert np.all(before > after)
+    assert 0.5 < told < 2
+    # Of intervals that hold in 95 of 100 cases, 3 of 6 or fewer do so once in 450.
+    assert honest >= 4
 
 
 def test_open_image_denoise_is_asked_for_by_name(noisy, monkeypatch):
