@@ -98,6 +98,9 @@ fn smooth(values: &[Rgb], size: Size) -> Vec<Rgb> {
 /// is. Denominators are in doubt by as much as others would change: those of the filtered picture alone, where it may
 /// be bright by light that was spilt, with its neighbours and without, and those of the picture with its noise. Few
 /// pixels that carry much count as such if they met what the next ones do not show.
+///
+/// Squares are skewed: where the sum happens to be small, so do the squares that tell its noise. The upper end is as many
+/// times the estimate, then, as a logarithm that is as uncertain has it.
 fn told(halves: &Halves, picture: &[Rgb], errors: &[Rgb], varies: &[Rgb]) -> ErrorEstimate {
     let (width, patch) = (halves.width, halves.patch);
     let across = width.div_ceil(patch);
@@ -134,9 +137,17 @@ fn told(halves: &Halves, picture: &[Rgb], errors: &[Rgb], varies: &[Rgb]) -> Err
     ErrorEstimate {
         value,
         low: ((sum - noise.hypot(sum - least)) / count).max(0.0),
-        high: (sum + noise.hypot(most - sum)).max(0.0) / count,
+        high: greatest(sum, noise.hypot(most - sum)) / count,
         carried: if sum > 0.0 { largest.carry(sum) } else { None },
     }
+}
+
+/// The upper end of a sum that is uncertain by so much.
+fn greatest(sum: f64, away: f64) -> f64 {
+    /// More than that is no longer told by the sum.
+    const MOST: f64 = 4.0;
+    let times = if sum > 0.0 { (away / sum).min(MOST).exp() } else { 0.0 };
+    (sum + away).max(sum * times).max(0.0)
 }
 
 #[cfg(test)]
