@@ -155,8 +155,8 @@ impl Rendering {
     /// How many bytes [`Rendering::to_bytes`] gives at most, for a film of this size and with a history of a million
     /// passes.
     pub fn most_bytes(width: u32, height: u32, halves: bool, apart: bool) -> usize {
-        // Of a cell 39 numbers of 8 bytes, 36 more where parts are kept apart, and 4 of 4, and as much again for what stands before them in the smallest
-        // tile.
+        // Of a cell 39 numbers of 8 bytes, 36 more where parts are kept apart, and 4 of 4; and as much again for what
+        // stands before them in the smallest tile.
         let cells = width as usize * height as usize * if halves { 2 } else { 1 };
         let numbers = if apart { 39 + 36 } else { 39 };
         cells * 2 * (numbers * 8 + 4 * 4) + 20_000_000 + 1024

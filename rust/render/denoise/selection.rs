@@ -15,8 +15,8 @@ const SEAM: usize = 1;
 ///
 /// The squared difference of a candidate from that picture is its squared error, and the picture's variance, which is
 /// the same for all. So their differences are without bias, and many pixels together tell which candidate errs least.
-/// They count by how bright the picture is, as far as the half of which the candidates were made (the first is that) and
-/// the other picture tell, which has half as many samples: a lamp that only one of them has met is bright, and beside it
+/// They count by how bright the picture is, as far as the half of which the candidates were made (the first is that)
+/// and the other picture, of half as many samples, tell: a lamp that only one of them has met is bright, and beside it
 /// the dark counts by the dark, so that no filter is good where it spills light. `variance` is that of the half, which
 /// has so many `samples`.
 pub(super) fn selected(

@@ -26,13 +26,12 @@ const REACH: usize = 3;
 
 /// Settles for one of the candidates of each half, pixel by pixel, and tells the error of the outcome.
 ///
-/// One quarter b of the other half chooses among the candidates of a half, and the other, b′, tells what was chosen: of
-/// a picture x that knows nothing of b′, (x − b′)² is (x − μ)² and the variance of b′ on average. That variance is
-/// (b − b′)² / 2 less what b and b′ differ in, on average over all that there might be; x may know of b, for that
-/// enters the sum without regard to x. So (x − b′)² − (b − b′)² / 2 is the squared error of x without bias, whatever
-/// filter x comes from and however it was chosen. There are four such pictures: of two halves, each chosen by two
-/// quarters. What comes out is their mean, whose squared error is the mean of theirs less their own variance about it,
-/// to the last bit. No variance is known beforehand, and nothing is assumed of filters.
+/// One quarter b of the other half chooses among the candidates of a half, and the other, b′, tells what was chosen. Of
+/// a picture x that knows nothing of b′, (x − b′)² is (x − μ)² and the variance of b′, on average; and (b − b′)² / 2 is
+/// that variance on average, whatever x took from b, for x is not in it. So (x − b′)² − (b − b′)² / 2 is the squared
+/// error of x without bias, whatever filter x comes from and however it was chosen. There are four such pictures: of
+/// two halves, each chosen by two quarters. What comes out is their mean, whose squared error is the mean of theirs
+/// less their own variance about it. No variance is known beforehand, and nothing is assumed of filters.
 ///
 /// The denominators are as in every other error ([`Denominators`]), but that the filtered picture stands for the
 /// neighbours.
@@ -99,8 +98,8 @@ fn smooth(values: &[Rgb], size: Size) -> Vec<Rgb> {
 /// be bright by light that was spilt, with its neighbours and without, and those of the picture with its noise. Few
 /// pixels that carry much count as such if they met what the next ones do not show.
 ///
-/// Squares are skewed: where the sum happens to be small, so do the squares that tell its noise. The upper end is as many
-/// times the estimate, then, as a logarithm that is as uncertain has it.
+/// Squares are skewed: where the sum happens to be small, so do the squares that tell its noise. So the upper end is as
+/// many times the estimate as a logarithm that is as uncertain has it.
 fn told(halves: &Halves, picture: &[Rgb], errors: &[Rgb], varies: &[Rgb]) -> ErrorEstimate {
     let (width, patch) = (halves.width, halves.patch);
     let across = width.div_ceil(patch);
