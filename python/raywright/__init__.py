@@ -83,6 +83,7 @@ from .rendering.filters import (
     TriangleFilter,
 )
 from .rendering.frames import render_frames
+from .rendering.halves import Halves
 from .rendering.image import ErrorEstimate, Image
 from .rendering.plan import Choice, RenderPlan
 from .rendering.render import render
@@ -168,6 +169,7 @@ __all__ = [
     "Grid",
     "GridMedium",
     "Halton",
+    "Halves",
     "HenyeyGreenstein",
     "Hits",
     "Homogeneous",

@@ -27,6 +27,8 @@ __all__ = [
     "cone_coverage",
     "cones",
     "daylight_power",
+    "denoise_candidates",
+    "denoise_settle",
     "exr_channels",
     "first_hits",
     "implicit_trouble",
@@ -253,6 +255,7 @@ class Job:
         sampler: Any,
         filter: Any,
         transparent: bool,
+        apart: bool,
     ) -> Job: ...
     def patch(self, scene: CompiledScene) -> int:
         """Return the side of the square patches of pixels whose samples the integrator takes together."""
@@ -341,6 +344,15 @@ class Rendering:
     ) -> NDArray[np.float32] | None:
         """Bias of each pixel (H,W,3) by how far light is gathered from; None where it is not."""
     @property
+    def halves(self) -> tuple[NDArray[np.float32], NDArray[np.float32]] | None:
+        """Independent quarters of the samples (4,H,W,3), and variances (2,H,W,3) of the halves they make.
+
+        None where they were not kept, or where a quarter has no whole batch.
+        """
+    @property
+    def patch(self) -> int:
+        """The side of the squares of pixels that take samples together."""
+    @property
     def aim(self) -> int:
         """Samples after the pass that is being worked on; as many as there are if none is."""
     @property
@@ -421,6 +433,20 @@ def aovs(
 
 def plan(scene: CompiledScene) -> tuple[str, list[tuple[str, bool, str]]]:
     """Name the kernel that shades the scene, and tell rows of what, whether, and what follows."""
+
+def denoise_candidates(
+    halves: dict[str, Any], features: NDArray[np.float64], threads: int | None
+) -> NDArray[np.float32]:
+    """Return each half of a picture as it is and filtered in some ways, (2, ways, H, W, 3).
+
+    ``halves`` has ``quarters`` and ``variances`` of `Rendering.halves`, the ``samples`` of a pixel and the
+    ``patch``; ``features`` are two independent pictures of what is seen first, (2, H, W, 7).
+    """
+
+def denoise_settle(
+    halves: dict[str, Any], candidates: NDArray[np.float32], threads: int | None
+) -> tuple[NDArray[np.float32], NDArray[np.float32], tuple[float, float, float], bool]:
+    """Return a picture of the best candidates, how far pixels are off, relMSE, and whether to trust it."""
 
 def batch_for(samples: int | None) -> int:
     """Return the samples of a batch for a number of samples a pixel, if that is known."""

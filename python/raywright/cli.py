@@ -159,7 +159,7 @@ def _tell_report(report: Any, options: argparse.Namespace) -> None:
 def _picture(shot: Shot, options: argparse.Namespace) -> None:
     # What a scene hides stays hidden.
     background = shot.background if options.background == BACKGROUNDS[0] else options.background
-    kept = {"checkpoint": options.checkpoint, "background": background}
+    kept = {"checkpoint": options.checkpoint, "background": background, "denoise": options.denoise}
     image = shot.render(**_how(options, shot), **kept, progress=not options.quiet)
     image.save(options.output, options.exposure, options.tone)
     if not options.quiet:
@@ -343,6 +343,9 @@ def _add_picture(
     _add_limits(verb, limit, width, height)
     verb.add_argument(
         "--checkpoint", metavar="FILE", help="keep the render in a file, and go on from it if it is there"
+    )
+    verb.add_argument(
+        "--denoise", action="store_true", help="take the noise out in the end: biased, with its error"
     )
     verb.add_argument("--quiet", action="store_true", help="print nothing but errors")
 

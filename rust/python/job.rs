@@ -89,6 +89,7 @@ impl Job {
         sampler: &Bound<'_, PyAny>,
         filter: &Bound<'_, PyAny>,
         transparent: bool,
+        apart: bool,
     ) -> PyResult<Self> {
         let (sampler, filter) = (samplers::sampler(sampler)?, samplers::filter(filter)?.into());
         let base = integrator.py().import("raywright.integrators.base")?.getattr("Integrator")?;
@@ -100,7 +101,7 @@ impl Job {
         Ok(Self {
             camera,
             integrator,
-            settings: Settings { seed, adaptive, clamp, sampler, filter, ..Settings::default() },
+            settings: Settings { seed, adaptive, apart, clamp, sampler, filter, ..Settings::default() },
             transparent,
         })
     }

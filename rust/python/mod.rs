@@ -6,6 +6,7 @@ mod builds;
 mod cameras;
 mod columns;
 mod cones;
+mod denoise;
 mod describe;
 mod every;
 mod exr_files;
@@ -60,6 +61,8 @@ mod _core {
     use super::cameras::{camera_rays, camera_rays_through};
     #[pymodule_export]
     use super::cones::{cone_coverage, cones};
+    #[pymodule_export]
+    use super::denoise::{denoise_candidates, denoise_settle};
     #[pymodule_export]
     use super::exr_files::exr_channels;
     #[pymodule_export]

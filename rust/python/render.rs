@@ -7,6 +7,7 @@ use pyo3::types::PyBytes;
 use std::time::{Duration, Instant};
 
 use super::cameras::AnyCamera;
+use super::denoise;
 use super::integrators;
 use super::job::Job;
 use super::query::CompiledScene;
@@ -42,9 +43,9 @@ impl Rendering {
     ) -> PyResult<Self> {
         let (job, pool) = (job.get(), pool(threads).map_err(PyRuntimeError::new_err)?);
         let (width, height) = (job.camera().width(), job.camera().height());
-        let Settings { sampler, adaptive, clamp, .. } = job.settings(Until::default(), threads);
-        let read =
-            || render::Rendering::from_bytes(data, width, height, sampler.batch(), adaptive, clamp, patch.max(1));
+        let Settings { sampler, adaptive, apart, clamp, .. } = job.settings(Until::default(), threads);
+        let (batch, patch) = (sampler.batch(), patch.max(1));
+        let read = || render::Rendering::from_bytes(data, width, height, batch, adaptive, clamp, patch, apart);
         py.detach(|| pool.install(read)).map(Self).map_err(malformed)
     }
 
@@ -52,7 +53,7 @@ impl Rendering {
     #[staticmethod]
     fn most_bytes(job: &Bound<'_, Job>) -> usize {
         let (camera, settings) = (job.get().camera(), job.get().settings(Until::default(), None));
-        render::Rendering::most_bytes(camera.width(), camera.height(), settings.adaptive)
+        render::Rendering::most_bytes(camera.width(), camera.height(), settings.adaptive, settings.apart)
     }
 
     fn to_bytes<'py>(&self, py: Python<'py>) -> Bound<'py, PyBytes> {
@@ -122,6 +123,17 @@ impl Rendering {
     #[getter]
     fn clamped(&self) -> (u64, f64) {
         self.0.film.clamped()
+    }
+
+    /// Four independent parts of the samples, (4, H, W, 3), and the variances of the halves that they make, (2, H, W,
+    /// 3); `None` where they were not kept, or a part has no whole batch.
+    #[getter]
+    fn halves<'py>(&self, py: Python<'py>) -> PyResult<Option<denoise::Parts<'py>>> {
+        denoise::halves(py, &self.0.film)
+    }
+    #[getter]
+    fn patch(&self) -> u32 {
+        self.0.film.patch()
     }
 
     #[getter]

@@ -31,6 +31,7 @@ pub struct Film {
     halves: bool,
     clamp: Option<f64>,
     patch: u32,
+    apart: bool,
     samples: u32,
     tiles: Vec<FilmTile>,
 }
@@ -87,13 +88,25 @@ impl Film {
         clamp: Option<f64>,
     ) -> Self {
         assert!(side > 0 && batch.is_power_of_two(), "tiles hold pixels, and batches fill blocks");
-        Self { width, height, side, batch, halves, clamp, patch: 1, samples: 0, tiles: Vec::new() }
+        Self { width, height, side, batch, halves, clamp, patch: 1, apart: false, samples: 0, tiles: Vec::new() }
     }
 
     /// The same film, in patches of so many pixels a side, of which its tiles hold whole ones.
     pub fn in_patches(self, patch: u32) -> Self {
         assert!(patch > 0 && self.side.is_multiple_of(patch), "whole patches");
         Self { patch, ..self }
+    }
+
+    /// The same film, without samples yet, which keeps four parts of them apart if that is wanted
+    /// ([`Film::halves`]).
+    pub fn kept_apart(self, apart: bool) -> Self {
+        let tiles = if apart { self.tiles.into_iter().map(FilmTile::kept_apart).collect() } else { self.tiles };
+        Self { apart, tiles, ..self }
+    }
+
+    /// Whether parts of its samples are kept apart.
+    pub(super) fn is_apart(&self) -> bool {
+        self.apart
     }
 
     /// The side of its patches.
@@ -111,7 +124,8 @@ impl Film {
         let columns = self.width.div_ceil(self.side) as usize;
         let corner = [number % columns, number / columns].map(|n| n as u32 * self.side);
         let size = [self.side.min(self.width - corner[0]), self.side.min(self.height - corner[1])];
-        FilmTile::new(corner, size, self.batch, self.halves, self.clamp)
+        let tile = FilmTile::new(corner, size, self.batch, self.halves, self.clamp);
+        if self.apart { tile.kept_apart() } else { tile }
     }
 
     /// Pixels in a row.

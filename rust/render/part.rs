@@ -50,6 +50,7 @@ impl Rendering {
             to.word(size);
         }
         to.byte(u8::from(!film.appends()));
+        to.byte(u8::from(film.is_apart()));
         to.byte(u8::from(film.clamp().is_some()));
         to.float(film.clamp().unwrap_or(0.0));
         to.word(tiles.start as u32);
@@ -114,8 +115,8 @@ impl Request {
         let (side, batch): (u32, u32) = (from.word()?, from.word()?);
         check((1..=64).contains(&side), "tiles have no size")?;
         check(batch.is_power_of_two() && batch <= 1 << 16, "a batch has no size")?;
-        let (halves, clamps, clamp) = (from.flag()?, from.flag()?, from.float()?);
-        let film = Film::without_tiles(width, height, side, batch, halves, clamps.then_some(clamp));
+        let (halves, apart, clamps, clamp) = (from.flag()?, from.flag()?, from.flag()?, from.float()?);
+        let film = Film::without_tiles(width, height, side, batch, halves, clamps.then_some(clamp)).kept_apart(apart);
         let (first, count): (u32, u32) = (from.word()?, from.word()?);
         let all = film.tile_count();
         check(first as usize <= all && count as usize <= all - first as usize, "there are no such tiles")?;
@@ -222,7 +223,7 @@ mod tests {
 
     fn settings(adaptive: bool) -> Settings {
         let until = Until { samples: Some(72), ..Until::default() };
-        Settings { until, threads: Some(2), adaptive, clamp: Some(1.0), seed: 4, ..Settings::default() }
+        Settings { until, threads: Some(2), adaptive, apart: true, clamp: Some(1.0), seed: 4, ..Settings::default() }
     }
 
     fn answer(request: &[u8], threads: usize) -> Vec<u8> {

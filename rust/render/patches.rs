@@ -93,7 +93,8 @@ fn bytes_and_parts_make_the_same_picture() {
             }
             rendering.end(0.0);
             let bytes = rendering.to_bytes();
-            let read = |patch| Rendering::from_bytes(&bytes, camera.width(), camera.height(), 1, adaptive, None, patch);
+            let read =
+                |patch| Rendering::from_bytes(&bytes, camera.width(), camera.height(), 1, adaptive, None, patch, false);
             rendering = read(4).unwrap();
             assert!(read(64).is_err());
         }

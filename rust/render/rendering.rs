@@ -154,15 +154,17 @@ impl Rendering {
 
     /// How many bytes [`Rendering::to_bytes`] gives at most, for a film of this size and with a history of a million
     /// passes.
-    pub fn most_bytes(width: u32, height: u32, halves: bool) -> usize {
-        // Of a cell 39 numbers of 8 bytes and 4 of 4, and as much again for what stands before them in the smallest
-        // tile.
+    pub fn most_bytes(width: u32, height: u32, halves: bool, apart: bool) -> usize {
+        // Of a cell 39 numbers of 8 bytes, 36 more where parts are kept apart, and 4 of 4; and as much again for what
+        // stands before them in the smallest tile.
         let cells = width as usize * height as usize * if halves { 2 } else { 1 };
-        cells * 2 * (39 * 8 + 4 * 4) + 20_000_000 + 1024
+        let numbers = if apart { 39 + 36 } else { 39 };
+        cells * 2 * (numbers * 8 + 4 * 4) + 20_000_000 + 1024
     }
 
-    /// From what [`Rendering::to_bytes`] gave for a film of the same size, batches, halves, clamping and patches,
-    /// whoever it comes from.
+    /// From what [`Rendering::to_bytes`] gave for a film of the same size, batches, halves, clamping, patches and
+    /// parts, whoever it comes from.
+    #[allow(clippy::too_many_arguments)]
     pub fn from_bytes(
         bytes: &[u8],
         width: u32,
@@ -171,6 +173,7 @@ impl Rendering {
         halves: bool,
         clamp: Option<f64>,
         patch: u32,
+        apart: bool,
     ) -> Result<Self, Malformed> {
         let mut from = Reader(bytes);
         let side: u32 = from.word()?;
@@ -179,7 +182,8 @@ impl Rendering {
         // The least that a film takes, so that memory is not taken for one that is not there.
         let tiles = width.div_ceil(side) as usize * height.div_ceil(side) as usize;
         check(bytes.len() / 32 >= tiles, "they end too early")?;
-        let mut this = Self::new(Film::new(width, height, side, batch, halves, clamp).in_patches(patch));
+        let film = Film::new(width, height, side, batch, halves, clamp).in_patches(patch).kept_apart(apart);
+        let mut this = Self::new(film);
         this.film.read(&mut from)?;
         this.aim = from.word()?;
         this.seconds = from.float()?;
@@ -240,11 +244,11 @@ mod tests {
 
     fn settings(samples: u32, adaptive: bool, clamp: Option<f64>) -> Settings {
         let until = Until { samples: Some(samples), ..Until::default() };
-        Settings { until, threads: Some(2), adaptive, clamp, ..Settings::default() }
+        Settings { until, threads: Some(2), adaptive, apart: clamp.is_some(), clamp, ..Settings::default() }
     }
 
     fn read(bytes: &[u8], adaptive: bool, clamp: Option<f64>) -> Result<Rendering, Malformed> {
-        Rendering::from_bytes(bytes, SIZE[0], SIZE[1], 1, adaptive, clamp, 1)
+        Rendering::from_bytes(bytes, SIZE[0], SIZE[1], 1, adaptive, clamp, 1, clamp.is_some())
     }
 
     fn assert_same(a: &Rendering, b: &Rendering) {
@@ -264,7 +268,7 @@ mod tests {
             for samples in [0, 1, 5, 16, 40, 72] {
                 let part = run(samples);
                 let bytes = part.to_bytes();
-                assert!(bytes.len() <= Rendering::most_bytes(SIZE[0], SIZE[1], adaptive));
+                assert!(bytes.len() <= Rendering::most_bytes(SIZE[0], SIZE[1], adaptive, clamp.is_some()));
                 let mut back = read(&bytes, adaptive, clamp).unwrap();
                 assert_same(&back, &part);
                 assert_eq!(back.to_bytes(), bytes);
@@ -284,8 +288,8 @@ mod tests {
         assert!(read(&bytes, false, None).is_ok());
         assert!(read(&bytes, true, None).is_err());
         assert!(read(&bytes, false, Some(1.0)).is_err());
-        assert!(Rendering::from_bytes(&bytes, 65_536, 65_536, 1, false, None, 1).is_err());
-        assert!(Rendering::from_bytes(&bytes, SIZE[0], SIZE[1], 4, false, None, 1).is_err());
+        assert!(Rendering::from_bytes(&bytes, 65_536, 65_536, 1, false, None, 1, false).is_err());
+        assert!(Rendering::from_bytes(&bytes, SIZE[0], SIZE[1], 4, false, None, 1, false).is_err());
     }
 
     /// Of a render that was even, and one that was adaptive.
@@ -302,7 +306,7 @@ mod tests {
     fn use_up(mut rendering: Rendering) {
         let (scene, camera) = cornell(SIZE[0], SIZE[1]);
         let bytes = rendering.to_bytes();
-        assert!(bytes.len() <= Rendering::most_bytes(SIZE[0], SIZE[1], rendering.plan.is_some()));
+        assert!(bytes.len() <= Rendering::most_bytes(SIZE[0], SIZE[1], rendering.plan.is_some(), true));
         let _ = (rendering.rgb(), rendering.standard_error(), rendering.film.counts(), rendering.film.clamped());
         let cells = || rendering.film.tiles().iter().flat_map(|tile| tile.counts());
         if rendering.aim < 64 && cells().all(|&count| count < 256) {

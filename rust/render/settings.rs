@@ -20,6 +20,8 @@ pub struct Settings {
     pub sampler: SamplerKind,
     /// Whether more samples go where more of the error is; else all pixels have the same number.
     pub adaptive: bool,
+    /// Whether four parts of the samples are kept apart, by which pictures are denoised.
+    pub apart: bool,
     /// The radiance to which brighter samples are dimmed, which biases the picture; `None` takes all as they are.
     pub clamp: Option<f64>,
     /// What part of the film a pixel is the mean of.
@@ -34,6 +36,7 @@ impl Default for Settings {
             threads: None,
             sampler: SamplerKind::default(),
             adaptive: false,
+            apart: false,
             clamp: None,
             filter: Arc::new(filter::Box::default()),
         }
@@ -64,6 +67,7 @@ impl Settings {
         } else {
             [16, 8, 4].into_iter().find(|&side| tiles(side) >= 8 * threads).unwrap_or(2)
         };
-        Film::new(width, height, side, self.sampler.batch(), self.adaptive, self.clamp).in_patches(patch)
+        let (batch, halves) = (self.sampler.batch(), self.adaptive);
+        Film::new(width, height, side, batch, halves, self.clamp).in_patches(patch).kept_apart(self.apart)
     }
 }

@@ -2,6 +2,7 @@
 
 use super::bytes::{Malformed, Reader, Writer, check};
 use super::patchwork::Patchwork;
+use super::quarters::{Quarters, Sums};
 use crate::optics::Rgb;
 
 /// Sums that a mean and its error are computed from.
@@ -47,6 +48,8 @@ pub struct FilmTile {
     /// Sums of samples and their squares, and the count up to which they are kept; empty unless the film is in halves.
     evidence: Vec<(Rgb, Rgb)>,
     evidence_until: Vec<u32>,
+    /// Parts of the samples; none unless they are kept apart.
+    quarters: Quarters,
     dropped: u64,
     clamped: u64,
 }
@@ -90,9 +93,20 @@ impl FilmTile {
             taken: vec![[Rgb::ZERO; 2]; if_any(clamp.is_some())],
             evidence: vec![(Rgb::ZERO, Rgb::ZERO); if_any(halves)],
             evidence_until: vec![0; if_any(halves)],
+            quarters: Quarters::default(),
             dropped: 0,
             clamped: 0,
         }
+    }
+
+    /// The same tile, without samples yet, with parts of them kept apart.
+    pub(super) fn kept_apart(self) -> Self {
+        Self { quarters: Quarters::new(self.counts.len()), ..self }
+    }
+
+    /// Sums over the quarters of a cell's samples, where they are kept apart.
+    pub(super) fn quarters(&self, cell: usize) -> Option<Sums> {
+        self.quarters.of(cell)
     }
 
     /// The positions of its pixels on the film, row by row.
@@ -184,6 +198,9 @@ impl FilmTile {
             partial.squares += batch * batch;
         }
         keep_largest(&mut self.largest[cell], sample);
+        if self.quarters.are_kept() {
+            self.quarters.add(cell, sample, number / self.batch, self.halves);
+        }
         if (number + 1).is_multiple_of(Self::BLOCK.max(self.batch)) {
             self.total[cell].add(partial);
             *partial = Moments::default();
@@ -191,6 +208,9 @@ impl FilmTile {
                 if let Some([whole, now]) = pairs.get_mut(cell) {
                     *whole += std::mem::take(now);
                 }
+            }
+            if self.quarters.are_kept() {
+                self.quarters.end_block(cell);
             }
         }
     }
@@ -221,6 +241,7 @@ impl FilmTile {
             + (self.taken.capacity() + self.singles.capacity()) * size_of::<[Rgb; 2]>()
             + self.evidence.capacity() * size_of::<(Rgb, Rgb)>()
             + self.evidence_until.capacity() * size_of::<u32>()
+            + self.quarters.bytes()
     }
 
     pub(super) fn dropped(&self) -> u64 {
@@ -279,6 +300,7 @@ impl FilmTile {
         }
         self.partial.clone_from(&next.partial);
         self.unfinished.clone_from(&next.unfinished);
+        self.quarters.append(&next.quarters);
         self.dropped += next.dropped;
         self.clamped += next.clamped;
     }
@@ -302,6 +324,7 @@ impl FilmTile {
         to.colours(&self.evidence, |(sum, _)| *sum);
         to.colours(&self.evidence, |(_, squares)| *squares);
         to.words(self.evidence_until.iter().copied());
+        self.quarters.write(to);
         to.word(self.dropped);
         to.word(self.clamped);
     }
@@ -323,6 +346,7 @@ impl FilmTile {
         from.colours(&mut self.evidence, |(sum, _)| sum)?;
         from.colours(&mut self.evidence, |(_, squares)| squares)?;
         from.words(self.evidence_until.iter_mut())?;
+        self.quarters.read(from)?;
         (self.dropped, self.clamped) = (from.word()?, from.word()?);
         let most = self.counts.len() as u64 * u64::from(Self::MOST);
         check(self.dropped <= most && self.clamped <= most, "there are more samples of a kind than samples")

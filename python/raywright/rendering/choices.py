@@ -14,6 +14,8 @@ Limits: TypeAlias = tuple[int | None, float | None, float | None]
 _MOST = 64
 # Where time may end a render, after few samples perhaps: the error is known well from two batches on.
 _TIMED = 16
+# The same where four parts of the samples are kept apart, each of whole batches.
+_TIMED_APART = 4
 # Where an error may end it: about how many samples it takes to a relMSE of 1, by the scenes of
 # `benches/samplers.py`, and the fewest that are taken.
 _EXPECTED = 0.25
@@ -38,7 +40,7 @@ def expected(limits: Limits, pixels: int) -> float:
 
 
 def chosen(
-    sampler: Sampler | None, limits: Limits, adaptive: bool, begun: object = None
+    sampler: Sampler | None, limits: Limits, adaptive: bool, begun: object = None, apart: bool = False
 ) -> tuple[Sampler, RenderPlan]:
     """Return the sampler of a render, with its batches, and the plan that tells of it.
 
@@ -52,13 +54,15 @@ def chosen(
         Whether pixels have halves.
     begun : str, optional
         The ``repr`` of the sampler of a render that goes on.
+    apart : bool
+        Whether four parts of the samples are kept apart.
     """
     if isinstance(sampler, Independent) or (sampler is not None and sampler.batch is not None):
         return _planned(sampler, "as named", "as named")
     if (before := _of(begun, sampler)) is not None:
         kind = "as the checkpoint has it" if sampler is None else "as named"
         return _planned(before, kind, "as the checkpoint has it")
-    batch, why = _batch(limits, adaptive)
+    batch, why = _batch(limits, adaptive, apart)
     if sampler is not None:
         return _planned(replace(sampler, batch=batch), "as named", why)
     if batch == 1:
@@ -93,7 +97,7 @@ def _of(begun: object, sampler: Sampler | None) -> Sampler | None:
     return next((one for one in wanted if repr(one) == begun), None)
 
 
-def _batch(limits: Limits, adaptive: bool) -> tuple[int, str]:
+def _batch(limits: Limits, adaptive: bool, apart: bool) -> tuple[int, str]:
     """Return the samples of a batch, and why it has as many."""
     samples, error, seconds = limits
     # The samples of an adaptive picture are in halves, each with batches of its own.
@@ -107,6 +111,6 @@ def _batch(limits: Limits, adaptive: bool) -> tuple[int, str]:
         likely = int(min(expected((None, error, None), 1), 2.0**31))
         options.append((_core.batch_for(likely), f"an error of {error:g} may end it after {likely} samples"))
     if seconds is not None:
-        options.append((_TIMED, "time may end it after few samples"))
+        options.append((_TIMED_APART if apart else _TIMED, "time may end it after few samples"))
     batch, why = min(options, key=lambda option: option[0])
     return max(batch // halves, 1), why

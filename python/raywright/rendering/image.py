@@ -1,8 +1,9 @@
 """Pictures, with how wrong they still are."""
 
 import math
+import time
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from os import PathLike
 from typing import Any
 
@@ -10,12 +11,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import _core
-from ..arrays import frozen, number
+from ..arrays import frozen, integer, number
 from ..io import pictures, shown
 from ..io.exr_layers import write_exr
 from ..io.tone import DEFAULT, check_tone
-from .plan import RenderPlan
+from .denoising import check_method, denoised
+from .halves import Halves
+from .plan import Choice, RenderPlan
 
+_UNSURE = "few samples tell the error of the denoised picture: it cannot be trusted yet"
 HISTORY = np.dtype([("seconds", np.float64), ("samples", np.int64), ("error", np.float64)])
 
 
@@ -92,7 +96,7 @@ class Image:
         What to know before trusting the picture; empty if there is nothing.
     biased : bool
         Whether the picture tends to something else than the scene: darker, where samples were clamped, or
-        blurred, where light is gathered from about a point (`bias`).
+        blurred, where light is gathered from about a point (`bias`) or the picture was denoised.
     aov : dict of str to (H, W, ...) arrays
         What else is known of the pixels, by name: what `aov` of `render` asked for, and ``samples`` (uint32)
         of each if the render was adaptive.
@@ -113,6 +117,9 @@ class Image:
         `PhotonMap`): twice the difference of the first two, as a bias that goes by r² has it, or four times
         that of the last two, if it is more and they do not agree. It has noise of its own, and what is alike
         in all three disks, such as a shadow's edge through the point, is not in it.
+    halves : Halves, optional
+        The picture in two halves of its samples, by which `denoise` filters it; ``halves`` of `render` keeps
+        them.
     """
 
     rgb: NDArray[np.float32]
@@ -129,6 +136,7 @@ class Image:
     degrees: NDArray[np.float32] | None = None
     alpha: NDArray[np.float32] | None = None
     bias: NDArray[np.float32] | None = None
+    halves: Halves | None = None
 
     def __post_init__(self) -> None:
         for name in ("rgb", "standard_error", "history"):
@@ -170,6 +178,76 @@ class Image:
         times = _core.student(level, unique)[where].reshape(degrees.shape)[..., None]
         away = times * (self.standard_error if self.pooled_error is None else self.pooled_error)
         return (self.rgb - away).astype(np.float32), (self.rgb + away).astype(np.float32)
+
+    def denoise(self, method: str = "regression", *, threads: int | None = None) -> "Image":
+        """Return the picture with less noise, and the error of that.
+
+        Each half of the samples is filtered by itself, in several ways. A quarter of the samples that are in
+        the other half tells which way is best where, to leave pixels as they are being one of the ways; and
+        the last quarter tells how wrong the outcome is. So `error` is of the picture that is returned, blur
+        included, as it is for pictures that were not filtered: without bias, and with an interval.
+
+        Parameters
+        ----------
+        method : str
+            How halves are filtered. ``"regression"``: each pixel by a fit to the albedo, normal and depth of
+            the pixels around that look like it (NFOR, Bitterli et al. 2016). ``"oidn"``: by Open Image
+            Denoise, a neural network (``pip install 'raywright[oidn]'``).
+        threads : int, optional
+            How many to use; all cores if not given. Open Image Denoise takes what it wants.
+
+        Returns
+        -------
+        Image
+            With the error of its own. `standard_error` is how far pixels are off, blur included, as the
+            squares of 13 by 13 pixels around tell. `plan` tells that it was denoised; `biased` is True, and
+            `halves` and what else is only known of a picture with its noise are None.
+
+        Raises
+        ------
+        ValueError
+            If the picture has no halves, or the method is not known.
+        ImportError
+            If Open Image Denoise is asked for and missing.
+        TypeError
+            If `threads` is no integer.
+
+        Notes
+        -----
+        What no sample has met is in no error. Where that of the picture with its noise cannot be trusted,
+        that of the other cannot either. Below some 10,000 pixels intervals are wide, since one quarter of the
+        samples has to tell.
+        """
+        method = check_method("method", method)
+        threads = None if threads is None else integer("threads", threads, 1)
+        if any(row.what == "denoised" for row in self.plan.rows):
+            raise ValueError("the picture is denoised already")
+        if self.halves is None:
+            raise ValueError(
+                "the picture has no halves to be denoised by: render it with halves=True, and at least four "
+                "samples per pixel, or four batches of those of a sampler with batches"
+            )
+        began = time.monotonic()
+        found = denoised(self.halves, method, threads)
+        row = Choice(
+            "denoised", method, "each pixel in the way that the other half of the samples finds best"
+        )
+        trusted = found.trusted and self.error.trusted
+        told = () if trusted or not self.error.trusted else (_UNSURE,)
+        return replace(
+            self,
+            rgb=found.rgb,
+            standard_error=found.off,
+            error=ErrorEstimate(*found.error, trusted=trusted),
+            seconds=self.seconds + time.monotonic() - began,
+            warnings=(*self.warnings, *told),
+            biased=True,
+            plan=replace(self.plan, rows=(*self.plan.rows, row)),
+            pooled_error=None,
+            degrees=None,
+            bias=None,
+            halves=None,
+        )
 
     def srgb(self, exposure: float = 0.0, tone: str = DEFAULT) -> NDArray[np.uint8]:
         """Return the picture for the eye, with the sRGB transfer.
@@ -279,6 +357,7 @@ class Image:
             and _same(self.degrees, other.degrees)
             and _same(self.alpha, other.alpha)
             and _same(self.bias, other.bias)
+            and self.halves == other.halves
             and self.aov.keys() == other.aov.keys()
             and all(
                 np.array_equal(array, other.aov[name], equal_nan=array.dtype.kind == "f")
@@ -305,6 +384,7 @@ class Image:
             self.degrees,
             self.alpha,
             self.bias,
+            self.halves,
         )
         return Image, parts
 

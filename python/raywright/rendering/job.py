@@ -28,11 +28,12 @@ class Job:
     sampler: Sampler
     filter: Filter
     transparent: bool = False
+    apart: bool = False
     told: tuple[str, ...] = ()
     _compiling: threading.Lock = field(default_factory=threading.Lock, repr=False)
 
     def _arguments(self) -> tuple[Any, ...]:
-        how = self.seed, self.adaptive, self.clamp, self.sampler, self.filter, self.transparent
+        how = self.seed, self.adaptive, self.clamp, self.sampler, self.filter, self.transparent, self.apart
         return (self.scene, self.camera, self.integrator, *how)
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -82,4 +83,5 @@ class Job:
             "sampler": repr(self.sampler),
             "filter": repr(self.filter),
             "transparent": self.transparent,
+            "halves": self.apart,
         }

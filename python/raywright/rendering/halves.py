@@ -1,0 +1,99 @@
+"""Pictures in two halves of samples, by which they are denoised."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .. import _core
+from ..arrays import frozen
+from ..cameras import AnyCamera
+from ..scene.scene import Scene
+from .aovs import seen
+
+# Samples a pixel of each of the two pictures of what is seen first.
+_SAMPLES = 8
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Halves:
+    """A picture in two halves of its samples, which know nothing of each other. Arrays are read-only.
+
+    Attributes
+    ----------
+    quarters : (4, H, W, 3) float32
+        Means of four independent parts of the samples: the first two are one half, the others the other. The
+        batches of a sampler go to the parts in turns.
+    variance : (2, H, W, 3) float32
+        The variance of the mean of either half, as it is where samples are independent of each other.
+    albedo, normal : (2, H, W, 3) float32
+        Two independent pictures of the albedo, and of the shading normal, of what is seen first.
+    depth : (2, H, W) float32
+        The same of the distance along the ray; infinite where nothing is seen.
+    samples : int
+        Samples per pixel of the picture.
+    patch : int
+        The side of the squares of pixels whose samples are taken together.
+    """
+
+    quarters: NDArray[np.float32]
+    variance: NDArray[np.float32]
+    albedo: NDArray[np.float32]
+    normal: NDArray[np.float32]
+    depth: NDArray[np.float32]
+    samples: int
+    patch: int = 1
+
+    def __post_init__(self) -> None:
+        for name in ("quarters", "variance", "albedo", "normal", "depth"):
+            object.__setattr__(self, name, frozen(getattr(self, name)))
+
+    @property
+    def rgb(self) -> NDArray[np.float32]:
+        """The pictures of the two halves, (2, H, W, 3) float32."""
+        first, second, third, fourth = self.quarters
+        return np.stack([(first + second) / 2, (third + fourth) / 2])
+
+    @property
+    def features(self) -> NDArray[np.float64]:
+        """Albedo, normal and nearness, (2, H, W, 7) float64: nearness is 0 where nothing is seen, below 1."""
+        depth = self.depth.astype(np.float64)
+        is_seen = np.isfinite(depth)
+        middle = float(np.median(depth[is_seen])) if is_seen.any() else 0.0
+        nearness = middle / (middle + depth) if middle > 0 else is_seen * 0.5
+        parts: list[NDArray[Any]] = [self.albedo, self.normal, nearness[..., np.newaxis]]
+        return np.ascontiguousarray(np.nan_to_num(np.concatenate(parts, axis=-1, dtype=np.float64)))
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Halves):
+            return NotImplemented
+        return self.samples == other.samples and all(
+            np.array_equal(getattr(self, name), getattr(other, name), equal_nan=True)
+            for name in ("quarters", "variance", "albedo", "normal", "depth")
+        )
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # Through the constructor, because unpickled arrays would be writeable.
+        parts = self.quarters, self.variance, self.albedo, self.normal, self.depth, self.samples, self.patch
+        return Halves, parts
+
+    def __repr__(self) -> str:
+        _, height, width, _ = self.quarters.shape
+        return f"Halves({width}x{height}, {self.samples} samples)"
+
+
+def halves_of(
+    rendering: _core.Rendering, scene: Scene, camera: AnyCamera, seed: int, threads: int | None
+) -> Halves | None:
+    """Return the halves of a render that keeps them; None where a part of the samples has no whole batch."""
+    kept = rendering.halves
+    if kept is None:
+        return None
+    names = ("albedo", "shading_normal", "depth")
+    # Of other numbers than each other, and than those of the picture's own `aov`.
+    views = [seen(scene, camera, names, _SAMPLES, (seed + more) % 2**64, threads) for more in (1, 2)]
+    albedo, normal, depth = (np.stack([view[name] for view in views]) for name in names)
+    return Halves(*kept, albedo, normal, depth, rendering.samples, rendering.patch)
