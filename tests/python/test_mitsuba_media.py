@@ -83,7 +83,7 @@ def test_what_is_around_all_shapes():
         ({"type": "homogeneous", "albedo": 2.0}, "homogeneous 'one.interior': absorption must be at least 0"),
         ({"type": "homogeneous", "phase": {"type": "hg", "g": 1.0}}, "g must be between -1 and 1"),
         ({"type": "homogeneous", "phase": {"type": "sggx"}}, "sggx 'phase' is not supported here"),
-        ({"type": "heterogeneous", "albedo": {"type": "gridvolume"}}, "albedo on a grid is not supported"),
+        ({"type": "homogeneous", "albedo": {"type": "gridvolume"}}, "albedo on a grid is not supported"),
         ({"type": "heterogeneous", "sigma_t": {"type": "gridvolume"}}, "must be given by its filename"),
         ({"type": "rgb", "value": 1.0}, "interior must be one of homogeneous, heterogeneous, got rgb"),
     ],

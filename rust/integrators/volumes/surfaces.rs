@@ -32,7 +32,7 @@ pub(in crate::integrators) fn meet(scene: &Scene, ray: &Ray, hit: &Hit, media: &
         Boundary::Between { hit: owner, outside, through } => {
             let material = scene.material_of(&owner);
             let is_matched = material.is_clear() && material.interior().is_some_and(|inside| inside.ior == outside);
-            if !is_matched && material.boundary().is_none() {
+            if !is_matched && !material.is_passed() {
                 let is_same = owner.primitive == hit.primitive && owner.inner == hit.inner;
                 return Met::Surface { hit: if is_same { *hit } else { owner }, outside, through };
             }

@@ -129,9 +129,14 @@ pub trait Material: Debug + Send + Sync {
         false
     }
 
-    /// The priority of what it encloses where that is all: it is no surface, and what is within begins there.
+    /// The priority of what it encloses where that has the index of refraction of what is around it.
     fn boundary(&self) -> Option<i32> {
         None
+    }
+
+    /// Whether it is no surface, and what is within begins there.
+    fn is_passed(&self) -> bool {
+        false
     }
 
     /// The share of an even light from nowhere that it reflects: the ambient coefficient of the classic models of light

@@ -4,14 +4,17 @@ use super::checks::number;
 use super::{BsdfMix, Material};
 use crate::optics::{AnyBsdf, ThinDielectric};
 use crate::scene::ShadingPoint;
+use crate::scene::media::Medium;
 use crate::scene::textures::Needs;
+use std::sync::Arc;
 
-/// A clear sheet too thin to bend what is seen through it: a window, a soap bubble without colours. It encloses
-/// nothing.
+/// A clear sheet too thin to bend what is seen through it: a window, a soap bubble without colours.
 #[derive(Clone, Debug)]
 pub struct ThinDielectricMaterial {
     /// The index of refraction within the sheet.
     pub ior: f64,
+    /// What it encloses, as a flask does smoke, and its priority; none where that is nothing.
+    pub within: Option<(Arc<dyn Medium>, i32)>,
 }
 
 impl Material for ThinDielectricMaterial {
@@ -33,5 +36,13 @@ impl Material for ThinDielectricMaterial {
 
     fn transmits(&self) -> bool {
         true
+    }
+
+    fn medium(&self) -> Option<&Arc<dyn Medium>> {
+        self.within.as_ref().map(|(medium, _)| medium)
+    }
+
+    fn boundary(&self) -> Option<i32> {
+        self.within.as_ref().map(|(_, priority)| *priority)
     }
 }

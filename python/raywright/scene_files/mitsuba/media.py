@@ -1,12 +1,12 @@
 """Media: what fills shapes, and the space around them."""
 
 from dataclasses import replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ...materials import Boundary, Dielectric, Mask, Material
+from ...materials import Boundary, Dielectric, Mask, Material, ThinDielectric
 from ...media import GridMedium, HenyeyGreenstein, Homogeneous, Isotropic, Medium, Phase, Rayleigh
 from ...media.files import read_density
 from .errors import SceneError
@@ -43,7 +43,7 @@ def filled(plugin: Plugin, material: Material | None) -> Material | None:
     if is_null:
         # Without a medium that is a hole.
         return Mask(Dielectric(), 0.0) if interior is None else Boundary(interior)
-    if interior is None or not isinstance(material, Dielectric):
+    if interior is None or not isinstance(material, Dielectric | ThinDielectric):
         # Nothing is seen of what is within an opaque shape.
         return material
     return replace(material, interior=interior)
@@ -106,36 +106,52 @@ def medium(plugin: Plugin) -> Medium:
 
 def _read(plugin: Plugin) -> Medium:
     scale, phase = plugin.number("scale", 1.0), _phase(plugin)
+    dimmed, scattered = (_grid(plugin, name) for name in ("sigma_t", "albedo"))
+    if dimmed is None and scattered is None:
+        albedo = np.array(_constant(plugin, "albedo", 0.75))
+        extinction = scale * np.array(_constant(plugin, "sigma_t", 1.0))
+        return Homogeneous(extinction * (1 - albedo), extinction * albedo, phase)
+    if dimmed is not None and scattered is not None and not dimmed.lies_as(scattered):
+        plugin.fail("sigma_t and albedo must lie in the same place")
+    # What is dimmed everywhere alike is so where the grid is.
+    density = np.ones((1, 1, 1)) if dimmed is None else dimmed.numbers
+    extinction = scale * np.array(_constant(plugin, "sigma_t", 1.0) if dimmed is None else (1.0, 1.0, 1.0))
+    placed = {"at": "centres", "phase": phase}
+    for grid in (dimmed, scattered):
+        if grid is not None:
+            placed |= {"bounds": grid.bounds, "transform": grid.transform}
+    if scattered is not None:
+        return GridMedium(density, extinction=extinction, albedo=scattered.numbers, **placed)
     albedo = np.array(_constant(plugin, "albedo", 0.75))
-    grid = plugin.child("sigma_t") if plugin.type == "heterogeneous" else None
-    if grid is not None and grid.type == "gridvolume":
-        density, bounds = _grid(grid)
-        return GridMedium(
-            density,
-            bounds,
-            transform=grid.to_world(),
-            absorption=scale * (1 - albedo),
-            scattering=scale * albedo,
-            phase=phase,
-            at="centres",
-        )
-    extinction = scale * np.array(_constant(plugin, "sigma_t", 1.0))
-    return Homogeneous(extinction * (1 - albedo), extinction * albedo, phase)
+    return GridMedium(density, absorption=extinction * (1 - albedo), scattering=extinction * albedo, **placed)
 
 
 def _constant(plugin: Plugin, name: str, default: float) -> Triple:
     inner = plugin.child(name)
-    if inner is None or inner.type not in VOLUMES:
+    if inner is None or inner.type != "constvolume":
         return colour(plugin, name, default)
-    if inner.type == "gridvolume":
-        plugin.fail(f"{name} on a grid is not supported")
     result = colour(inner, "value", 1.0)
     inner.ignore("to_world")
     inner.done()
     return result
 
 
-def _grid(plugin: Plugin) -> tuple[NDArray[Any], Any]:
+class _Grid(NamedTuple):
+    numbers: NDArray[Any]
+    bounds: Any
+    transform: Any
+
+    def lies_as(self, other: "_Grid") -> bool:
+        return self.bounds == other.bounds and np.array_equal(self.transform, other.transform)
+
+
+def _grid(medium: Plugin, name: str) -> _Grid | None:
+    """Return what a volume of a medium has on a grid, if it has."""
+    plugin = medium.child(name)
+    if plugin is None or plugin.type != "gridvolume":
+        return None
+    if medium.type != "heterogeneous":
+        medium.fail(f"{name} on a grid is not supported")
     if not plugin.has("filename"):
         plugin.fail("a grid must be given by its filename")
     plugin.choice("filter_type", "trilinear", ("trilinear",))
@@ -143,9 +159,9 @@ def _grid(plugin: Plugin) -> tuple[NDArray[Any], Any]:
     plugin.ignore("raw", "accel", "max_value")
     density, box = read_density(plugin.path())
     placed = plugin.switch("use_grid_bbox", False)
-    plugin.to_world()
+    transform = plugin.to_world()
     plugin.done()
-    return density, box if placed else None
+    return _Grid(density, box if placed else None, transform)
 
 
 def _phase(plugin: Plugin) -> Phase:
