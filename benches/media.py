@@ -3,14 +3,14 @@
     python benches/media.py [--scene NAME ...] [--side 128] [--samples 64] [--repeat 5]
 
 The scenes are told in Mitsuba's format, so that both have the same: a slab under a lamp, a cloud on a grid in
-the sun, a ball that dims each colour by its own. Both render them in turns, on all cores, raywright as it does
-by itself, Mitsuba by its ``volpath`` and, which is made for colours, its ``volpathmis``. Errors are relMSE
-against a long picture of each one's own, and before anything is timed, the long pictures of both have to agree.
-Mitsuba wants LLVM: name Debian's libLLVM in DRJIT_LIBLLVM_PATH.
+the sun, a ball that dims each colour by its own. Both render them in turns, on all cores, raywright as it
+does by itself, Mitsuba by its ``volpath`` and, which is made for colours, its ``volpathmis``. Errors are
+relMSE against a long picture of each one's own, and before anything is timed, both have to agree. Mitsuba
+wants LLVM: name Debian's libLLVM in DRJIT_LIBLLVM_PATH.
 
-What a picture needs is error times seconds. The last column is how much of what the better of Mitsuba's takes
-raywright takes to the same error. Then come the same scenes by wavelength, and what of that they need over
-themselves by red, green and blue.
+What a picture needs is error times seconds. The last columns are how much raywright takes to the same error of
+what the better of Mitsuba's does, and of what raywright does by red, green and blue: each scene is rendered by
+wavelength, too, against a long picture of that.
 """
 
 import argparse
@@ -121,7 +121,12 @@ def cloud(side, folder, size=64):
 
 def ball(side, folder):
     """Return a ball that dims blue sixteen times as much as red, under a sky."""
-    wax = {"type": "homogeneous", "sigma_t": rgb(1.0, 4.0, 16.0), "albedo": rgb(0.95, 0.9, 0.8)}
+    wax = {
+        "type": "homogeneous",
+        "sigma_t": rgb(0.0625, 0.25, 1.0),
+        "albedo": rgb(0.95, 0.9, 0.8),
+        "scale": 16.0,
+    }
     return {
         "type": "scene",
         "sensor": seen_from((0, 2.0, 5.0), (0, 0.9, 0), side),

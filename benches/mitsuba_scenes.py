@@ -47,7 +47,7 @@ def blocks(pixels: np.ndarray) -> np.ndarray:
 
 
 def compared(path: Path, shot: rw.Shot, given: dict[str, int], samples: int) -> str:
-    """Return how far apart both are: the pictures of a scene by Mitsuba, and by raywright to as many samples."""
+    """Return how far apart a scene's pictures by Mitsuba and by raywright are, of as many samples."""
     import mitsuba as mi
 
     if mi.variant() is None:

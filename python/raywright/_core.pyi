@@ -458,7 +458,7 @@ class GridBlocks:
         """Return the memory held."""
 
     def kept(self) -> NDArray[np.int64]:
-        """Return the least and greatest corners, beyond the last point, of blocks that are not all 0, (N,2,3)."""
+        """Return the corners of blocks that are not all 0, the greater beyond the last point, (N,2,3)."""
 
     def part(self, low: Sequence[int], high: Sequence[int]) -> NDArray[np.float32]:
         """Return the numbers between two corners, all of a point after one another."""

@@ -14,7 +14,8 @@ def filled():
     shades = {"type": "gridvolume", "filename": "shades.vol", "to_world": place}
     plain = {
         "type": "homogeneous",
-        "sigma_t": rgb(0.4, 0.8, 1.6),
+        "sigma_t": rgb(0.25, 0.5, 1.0),
+        "scale": 1.6,
         "albedo": rgb(0.9, 0.6, 0.3),
         "phase": {"type": "hg", "g": 0.4},
     }
@@ -22,7 +23,8 @@ def filled():
     smoke = {"type": "heterogeneous", "sigma_t": grid, "albedo": rgb(0.9, 0.6, 0.3), "scale": 2.0}
     marble = {"type": "heterogeneous", "sigma_t": grid, "albedo": shades, "scale": 1.5}
     dyed = {"type": "heterogeneous", "sigma_t": shades, "albedo": rgb(0.8), "scale": 2.0}
-    even = {"type": "heterogeneous", "sigma_t": {"type": "constvolume", "value": 1.2}, "albedo": shades}
+    everywhere = {"type": "constvolume", "value": 1.2, "to_world": place}
+    even = {"type": "heterogeneous", "sigma_t": everywhere, "albedo": shades}
     made = {
         "homogeneous, null": scene(a=FLOOR, b=ball(NULL, interior=plain), lamp=LAMP),
         "homogeneous, thindielectric": scene(

@@ -101,7 +101,7 @@ class GridMedium(Medium):
         brightness: float = 1.0,
     ) -> None:
         choice("at", at, get_args(At))
-        values = {
+        values: dict[str, Any] = {
             "density": _numbers("density", density, _MANY),
             "bounds": _UNIT if bounds is None else _bounds(bounds),
             "transform": None if transform is None else _transform(transform),
@@ -163,7 +163,9 @@ class GridMedium(Medium):
         TypeError
             As `GridMedium` does.
         """
-        named = {name: given for name, given in arguments.items() if isinstance(given, str) and name in _GRIDS}
+        named = {
+            name: given for name, given in arguments.items() if isinstance(given, str) and name in _GRIDS
+        }
         found = read_grids(path, {"density": density, **named})
         places = {} if bounds is not None else found.place
         return cls(**{"bounds": bounds, **places, **found.told, **arguments, **found.grids})

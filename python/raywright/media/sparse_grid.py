@@ -14,7 +14,7 @@ BLOCK = 8
 
 
 class Sliced(Protocol):
-    """What has a shape and gives its slabs by slices, as arrays, memory maps, and datasets of h5py and zarr do."""
+    """What has a shape and gives its slabs by slices, as arrays and datasets of h5py and zarr do."""
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -119,7 +119,7 @@ class SparseGrid:
         """Return the greatest number."""
         return self._blocks.greatest()
 
-    def __array__(self, dtype: DTypeLike = None, copy: bool | None = None) -> NDArray[Any]:
+    def __array__(self, dtype: DTypeLike | None = None, copy: bool | None = None) -> NDArray[Any]:
         if copy is False:
             raise ValueError("a sparse grid becomes an array by a copy")
         return self.dense().astype(dtype or np.float32, copy=False)

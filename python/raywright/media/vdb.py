@@ -158,7 +158,9 @@ def _node(
 
 def _corner(origin: Any, index: Any, power: int, side: int) -> tuple[int, int, int]:
     places = (int(index) >> (2 * power), int(index) >> power, int(index))
-    x, y, z = (begin + (place & ((1 << power) - 1)) * side for begin, place in zip(origin, places, strict=True))
+    x, y, z = (
+        begin + (place & ((1 << power) - 1)) * side for begin, place in zip(origin, places, strict=True)
+    )
     return x, y, z
 
 

@@ -2,7 +2,7 @@
 
 use super::checks::number;
 use super::{BsdfMix, Material};
-use crate::optics::{AnyBsdf, ThinDielectric};
+use crate::optics::{AnyBsdf, Mirror, Rgb, ThinDielectric};
 use crate::scene::ShadingPoint;
 use crate::scene::media::Medium;
 use crate::scene::textures::Needs;
@@ -19,11 +19,15 @@ pub struct ThinDielectricMaterial {
 
 impl Material for ThinDielectricMaterial {
     fn bsdf(&self, at: &ShadingPoint) -> BsdfMix {
-        ThinDielectric::new(self.ior / at.outside).into()
+        match self.within {
+            None => ThinDielectric::new(self.ior / at.outside).into(),
+            // What does not go straight on.
+            Some(_) => Mirror { reflectance: Rgb::ONE }.into(),
+        }
     }
 
     fn constant(&self) -> Option<AnyBsdf> {
-        Some(ThinDielectric::new(self.ior).into())
+        self.within.is_none().then(|| ThinDielectric::new(self.ior).into())
     }
 
     fn needs(&self) -> Needs {
@@ -40,6 +44,10 @@ impl Material for ThinDielectricMaterial {
 
     fn medium(&self) -> Option<&Arc<dyn Medium>> {
         self.within.as_ref().map(|(medium, _)| medium)
+    }
+
+    fn straight(&self, cosine: f64, outside: f64) -> f64 {
+        if self.within.is_none() { 0.0 } else { 1.0 - ThinDielectric::new(self.ior / outside).reflectance(cosine) }
     }
 
     fn boundary(&self) -> Option<i32> {

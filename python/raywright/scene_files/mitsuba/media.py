@@ -106,62 +106,66 @@ def medium(plugin: Plugin) -> Medium:
 
 def _read(plugin: Plugin) -> Medium:
     scale, phase = plugin.number("scale", 1.0), _phase(plugin)
-    dimmed, scattered = (_grid(plugin, name) for name in ("sigma_t", "albedo"))
-    if dimmed is None and scattered is None:
+    if plugin.type == "homogeneous":
         albedo = np.array(_constant(plugin, "albedo", 0.75))
         extinction = scale * np.array(_constant(plugin, "sigma_t", 1.0))
         return Homogeneous(extinction * (1 - albedo), extinction * albedo, phase)
-    if dimmed is not None and scattered is not None and not dimmed.lies_as(scattered):
+    # There is nothing of it where its extinction has no volume.
+    dimmed = _volume(plugin, "sigma_t", 1.0)
+    scattered = _volume(plugin, "albedo", 0.75)
+    extinction = scale * dimmed.colour
+    placed = {"bounds": dimmed.bounds, "transform": dimmed.transform, "at": "centres", "phase": phase}
+    if scattered.numbers is None:
+        absorption, scattering = extinction * (1 - scattered.colour), extinction * scattered.colour
+        return GridMedium(dimmed.density, absorption=absorption, scattering=scattering, **placed)
+    if scattered.bounds != dimmed.bounds or not np.array_equal(scattered.transform, dimmed.transform):
         plugin.fail("sigma_t and albedo must lie in the same place")
-    # What is dimmed everywhere alike is so where the grid is.
-    density = np.ones((1, 1, 1)) if dimmed is None else dimmed.numbers
-    extinction = scale * np.array(_constant(plugin, "sigma_t", 1.0) if dimmed is None else (1.0, 1.0, 1.0))
-    placed = {"at": "centres", "phase": phase}
-    for grid in (dimmed, scattered):
-        if grid is not None:
-            placed |= {"bounds": grid.bounds, "transform": grid.transform}
-    if scattered is not None:
-        return GridMedium(density, extinction=extinction, albedo=scattered.numbers, **placed)
-    albedo = np.array(_constant(plugin, "albedo", 0.75))
-    return GridMedium(density, absorption=extinction * (1 - albedo), scattering=extinction * albedo, **placed)
+    return GridMedium(dimmed.density, extinction=extinction, albedo=scattered.numbers, **placed)
 
 
 def _constant(plugin: Plugin, name: str, default: float) -> Triple:
     inner = plugin.child(name)
-    if inner is None or inner.type != "constvolume":
+    if inner is None or inner.type not in VOLUMES:
         return colour(plugin, name, default)
+    if inner.type == "gridvolume":
+        plugin.fail(f"{name} on a grid is not supported")
     result = colour(inner, "value", 1.0)
     inner.ignore("to_world")
     inner.done()
     return result
 
 
-class _Grid(NamedTuple):
-    numbers: NDArray[Any]
-    bounds: Any
-    transform: Any
+class _Volume(NamedTuple):
+    """Numbers over the unit cube, or bounds, wherever a transform takes these; else a colour."""
 
-    def lies_as(self, other: "_Grid") -> bool:
-        return self.bounds == other.bounds and np.array_equal(self.transform, other.transform)
+    colour: NDArray[np.float64]
+    numbers: NDArray[Any] | None = None
+    bounds: Any = None
+    transform: Any = None
+
+    @property
+    def density(self) -> NDArray[Any]:
+        return np.ones((1, 1, 1)) if self.numbers is None else self.numbers
 
 
-def _grid(medium: Plugin, name: str) -> _Grid | None:
-    """Return what a volume of a medium has on a grid, if it has."""
+def _volume(medium: Plugin, name: str, default: float) -> _Volume:
     plugin = medium.child(name)
-    if plugin is None or plugin.type != "gridvolume":
-        return None
-    if medium.type != "heterogeneous":
-        medium.fail(f"{name} on a grid is not supported")
+    if plugin is None or plugin.type not in VOLUMES:
+        return _Volume(np.array(colour(medium, name, default)), transform=np.eye(4))
+    if plugin.type == "constvolume":
+        value, transform = np.array(colour(plugin, "value", 1.0)), plugin.to_world()
+        plugin.done()
+        return _Volume(value, transform=transform)
     if not plugin.has("filename"):
         plugin.fail("a grid must be given by its filename")
     plugin.choice("filter_type", "trilinear", ("trilinear",))
     plugin.choice("wrap_mode", "clamp", ("clamp",))
     plugin.ignore("raw", "accel", "max_value")
-    density, box = read_density(plugin.path())
+    numbers, box = read_density(plugin.path())
     placed = plugin.switch("use_grid_bbox", False)
     transform = plugin.to_world()
     plugin.done()
-    return _Grid(density, box if placed else None, transform)
+    return _Volume(np.ones(3), numbers, box if placed else None, transform)
 
 
 def _phase(plugin: Plugin) -> Phase:
