@@ -8,9 +8,9 @@ does by itself, Mitsuba by its ``volpath`` and, which is made for colours, its `
 relMSE against a long picture of each one's own, and before anything is timed, both have to agree. Mitsuba
 wants LLVM: name Debian's libLLVM in DRJIT_LIBLLVM_PATH.
 
-What a picture needs is error times seconds. The last columns are how much raywright takes to the same error of
-what the better of Mitsuba's does, and of what raywright does by red, green and blue: each scene is rendered by
-wavelength, too, against a long picture of that.
+What a picture needs is error times seconds. The last columns are how much raywright takes to the same error
+of what the better of Mitsuba's does, and of what raywright does by red, green and blue: each scene is
+rendered by wavelength, too, against a long picture of that.
 """
 
 import argparse
