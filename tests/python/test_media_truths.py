@@ -66,8 +66,8 @@ def test_a_flask_of_white_smoke_is_invisible():
     smoke = rw.Homogeneous(0.0, (0.5, 2.0, 5.0), rw.HenyeyGreenstein(0.5))
     flask = rw.Sphere((0, 0, 0), 1.0, material=rw.ThinDielectric(1.5, interior=smoke))
     camera = rw.Camera((0, 0, 3), (0, 0, 0), fov=30, width=16, height=16)
-    for way in (rw.Path(), rw.Bidirectional()):
-        image = rw.render(rw.Scene([flask], environment=SKY), camera, way, 16, progress=False)
+    for way, samples in ((rw.Path(), 16), (rw.Bidirectional(), 64)):
+        image = rw.render(rw.Scene([flask], environment=SKY), camera, way, samples, progress=False)
         values = image.rgb.reshape(-1, 3).astype(float)
         error = values.std(axis=0, ddof=1) / 16
         assert (np.abs(values.mean(axis=0) - 1) <= 4 * error + 1e-6).all(), (values.mean(axis=0), error)
