@@ -347,7 +347,7 @@ def test_media_compare_print_and_pickle():
             "emission must",
         ),
         (lambda: rw.GridMedium("smoke.vdb"), TypeError, "density must be"),
-        (lambda: rw.GridMedium.load("smoke.raw"), ValueError, ".npy or a .vol"),
+        (lambda: rw.GridMedium.load("smoke.raw"), ValueError, "a .npy, a .vol or a .vdb"),
         (lambda: rw.GridMedium.load(3), TypeError, "path must be"),
         (lambda: rw.Boundary(None), TypeError, "interior must be a raywright medium"),
         (lambda: rw.Boundary(rw.Diffuse()), TypeError, "interior must be a raywright medium"),

@@ -60,6 +60,19 @@ def test_a_flask_of_what_absorbs():
     lit = rw.Scene([flask, ground(-2.0, 0.5)], lights=[sun])
     below = media.looking(distance=-1.5)
     media.assert_seen(lit, below, 4, 0.5 * (1 - reflected) ** 2 * left, rw.Path(1))
+    # From a lamp aside, by Fresnel's formulas.
+    lamp = rw.PointLight((1.5, 0, 1), 4.0)
+    cosine = 3 / math.hypot(1.5, 3)
+    within = math.sqrt(1 - (1 - cosine**2) / 1.5**2)
+    across, along = (
+        (cosine - 1.5 * within) / (cosine + 1.5 * within),
+        (1.5 * cosine - within) / (1.5 * cosine + within),
+    )
+    once = (across**2 + along**2) / 2
+    passed = (1 - 2 * once / (1 + once)) ** 2 * math.exp(-1 / cosine)
+    aside = rw.Scene([flask, ground(-2.0, 0.5)], lights=[lamp])
+    irradiance = 4 * cosine / (1.5**2 + 3**2)
+    media.assert_seen(aside, below, 4, 0.5 / math.pi * irradiance * passed, rw.Path(1))
 
 
 def test_a_flask_of_white_smoke_is_invisible():

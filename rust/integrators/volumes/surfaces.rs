@@ -57,5 +57,6 @@ pub(in crate::integrators) fn straight(scene: &Scene, ray: &Ray, hit: &Hit, outs
     }
     let surface = scene.geometry().surface(ray, hit);
     let here = SurfaceInteraction::new(scene, ray, hit, surface, None, outside);
-    material.straight(here.wo().z.abs(), outside)
+    // Rays to lights are as long as the way there.
+    material.straight((here.wo().z.abs() / ray.direction.length()).min(1.0), outside)
 }
