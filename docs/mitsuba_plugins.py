@@ -51,8 +51,7 @@ NEARLY = {
     "prbvolpath": "as `path`",
     "moment": "the integrator within, whose error every picture tells",
     "direct": "with none of `emitter_samples` or `bsdf_samples`: the same light by the other; warned of",
-    "heterogeneous": "of one `albedo`",
-    "gridvolume": "of one channel, for `sigma_t`",
+    "gridvolume": "of one or three channels; those of a medium in the same place",
     "depth": '`aov="depth"`',
 }
 # What is not read, and is refused by its name.

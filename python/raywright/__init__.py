@@ -64,7 +64,7 @@ from .materials import (
     metal_index,
     metals,
 )
-from .media import GridMedium, HenyeyGreenstein, Homogeneous, Isotropic, Medium, Rayleigh
+from .media import GridMedium, HenyeyGreenstein, Homogeneous, Isotropic, Medium, Rayleigh, SparseGrid
 from .query.all_hits import AllHits
 from .query.cones import ConeCoverage, ConeTouches
 from .query.hits import ClosestPoints, Hits, QueryCost
@@ -239,6 +239,7 @@ __all__ = [
     "Shot",
     "SoapFilm",
     "Sobol",
+    "SparseGrid",
     "Spectrum",
     "Sphere",
     "SpotLight",

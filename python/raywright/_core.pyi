@@ -1,6 +1,6 @@
 """The compiled core. Everything here takes validated, C-contiguous arrays; the public face is the package."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any, TypeAlias, final
 
 import numpy as np
@@ -14,6 +14,7 @@ __all__ = [
     "VERSION",
     "AcceleratorInfo",
     "CompiledScene",
+    "GridBlocks",
     "Interactions",
     "Job",
     "KernelContest",
@@ -468,6 +469,31 @@ def camera_rays_through(
 
     ``lens`` and ``time`` are those of `camera_rays`: one for all, or (N,2) and (N,).
     """
+
+@final
+class GridBlocks:
+    """Numbers on a grid, one or three a point, of which zeros take no memory."""
+
+    def __new__(
+        cls,
+        size: Sequence[int],
+        coloured: bool,
+        parts: Iterable[tuple[tuple[int, ...], NDArray[np.float32]]],
+    ) -> GridBlocks: ...
+    def bytes(self) -> int:
+        """Return the memory held."""
+
+    def kept(self) -> NDArray[np.int64]:
+        """Return the corners of blocks that are not all 0, the greater beyond the last point, (N,2,3)."""
+
+    def part(self, low: Sequence[int], high: Sequence[int]) -> NDArray[np.float32]:
+        """Return the numbers between two corners, all of a point after one another."""
+
+    def greatest(self) -> float:
+        """Return the greatest number."""
+
+    def same(self, other: GridBlocks) -> bool:
+        """Return whether all numbers are those of another."""
 
 @final
 class RadiosityShots:

@@ -18,10 +18,10 @@ impl ThinDielectric {
         Self { eta }
     }
 
-    /// The share of light along `w` that is reflected.
+    /// The share of light that is reflected at such a cosine to the normal, which is not negative.
     #[inline]
-    pub fn reflectance(&self, w: DVec3) -> f64 {
-        let r = fresnel::dielectric(w.z.abs(), self.eta);
+    pub fn reflectance(&self, cosine: f64) -> f64 {
+        let r = fresnel::dielectric(cosine, self.eta);
         2.0 * r / (1.0 + r)
     }
 }
@@ -37,7 +37,7 @@ impl Bsdf for ThinDielectric {
         if wo.z == 0.0 {
             return None;
         }
-        let reflectance = self.reflectance(wo);
+        let reflectance = self.reflectance(wo.z.abs());
         let is_reflected = choice() < reflectance;
         let drawn = if is_reflected {
             BsdfSample::delta(mirrored(wo), Rgb::ONE)

@@ -70,7 +70,11 @@ impl Appearances {
                 let medium = self.medium(given)?.ok_or_else(|| PyTypeError::new_err("interior must be a medium"))?;
                 Arc::new(BoundaryMaterial { medium, priority: given.getattr("priority")?.extract()? })
             }
-            "ThinDielectric" => Arc::new(ThinDielectricMaterial { ior: float("ior")? }),
+            "ThinDielectric" => {
+                let priority = given.getattr("priority")?.extract()?;
+                let within = self.medium(given)?.map(|medium| (medium, priority));
+                Arc::new(ThinDielectricMaterial { ior: float("ior")?, within })
+            }
             "Plastic" => Arc::new(PlasticMaterial {
                 reflectance: value("reflectance")?,
                 ior: float("ior")?,

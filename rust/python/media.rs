@@ -5,10 +5,13 @@ use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use std::sync::Arc;
 
+use super::grid_blocks::{GridBlocks, Kept};
 use super::spectra::{self, Meaning};
 use crate::optics::spectra::{Role, Smooth, Spectrum};
 use crate::optics::{HenyeyGreenstein, Phase, Rgb};
-use crate::scene::media::{At, Coefficients, GridMedium, Homogeneous, Medium, Values, WavedMedium};
+use crate::scene::media::{
+    At, Blocks, Coefficients, Field, Glow, GridMedium, Homogeneous, Medium, Values, WavedGrid, WavedMedium,
+};
 
 /// What all media have.
 #[derive(FromPyObject)]
@@ -25,59 +28,100 @@ struct PyMedium<'py> {
 pub fn read(given: &Bound<'_, PyAny>, waves: bool) -> PyResult<Arc<dyn Medium>> {
     let name = given.get_type().name()?;
     let PyMedium { absorption, scattering, phase } = given.extract()?;
-    let tint = |told: &Bound<'_, PyAny>, meaning| {
-        if waves {
-            return spectra::tint(told, meaning);
-        }
-        // Nobody asks for its spectrum.
-        let colour = Rgb::from_array(told.extract()?);
-        Ok((Arc::new(Spectrum::Smooth(Smooth::of(Rgb::ONE, Role::Amount))), colour))
-    };
-    let (absorbs, scatters) = (tint(&absorption, Meaning::Amount)?, tint(&scattering, Meaning::Amount)?);
+    let absorbs = tint(&absorption, Meaning::Amount, waves)?;
+    let scatters = tint(&scattering, Meaning::Amount, waves)?;
     let phase = read_phase(&phase)?;
-    let (absorption, scattering) = (absorbs.1, scatters.1);
-    let by_waves = |medium: Arc<dyn Medium>, emission| -> Arc<dyn Medium> {
-        if waves { Arc::new(WavedMedium::new(medium, [absorbs, scatters], emission)) } else { medium }
-    };
     match name.to_str()? {
         "Homogeneous" => {
-            let emission = tint(&given.getattr("emission")?, Meaning::Light)?;
-            let medium = Homogeneous::new(absorption, scattering, emission.1, phase);
+            let emission = tint(&given.getattr("emission")?, Meaning::Light, waves)?;
+            let medium = Homogeneous::new(absorbs.1, scatters.1, emission.1, phase);
             let medium = medium.ok_or_else(|| PyValueError::new_err("a medium must be finite and not negative"))?;
-            Ok(by_waves(Arc::new(medium), Some(emission)))
+            let medium = Arc::new(medium);
+            Ok(if waves { Arc::new(WavedMedium::new(medium, [absorbs, scatters], Some(emission))) } else { medium })
         }
-        "GridMedium" => {
-            let at = match given.getattr("at")?.extract::<String>()?.as_str() {
-                "centres" => At::Centres,
-                _ => At::Corners,
-            };
-            let of = |name: &'static str| move |why: String| PyValueError::new_err(format!("{name} {why}"));
-            let (size, density) = values::<1>(&given.getattr("density")?)?;
-            let density = Values::new(size, at, density).map_err(of("density"))?;
-            let glow = given.call_method0("_glow")?;
-            let is_glowing = !glow.is_none();
-            let told = given.getattr("emission")?;
-            let shines = if is_glowing { None } else { Some(tint(&told, Meaning::Light)?) };
-            let emission = shines.as_ref().map_or(Rgb::ZERO, |shines| shines.1);
-            let glow = is_glowing.then(|| values::<3>(&glow)).transpose()?;
-            let glow = glow.map(|(size, glow)| Values::new(size, at, glow)).transpose().map_err(of("emission"))?;
-            let coefficients = Coefficients::new(absorption, scattering, emission);
-            let matrix = given.call_method0("_place")?.extract()?;
-            let medium = GridMedium::new(density, glow, coefficients, phase, matrix).map_err(of("medium"))?;
-            Ok(by_waves(Arc::new(medium), shines))
-        }
+        "GridMedium" => read_grid(given, waves, [absorbs, scatters], phase),
         other => Err(PyTypeError::new_err(format!("medium must be a raywright medium, got {other}"))),
     }
 }
 
-/// How many numbers there are along each of three axes, and all of them.
-fn values<const C: usize>(array: &Bound<'_, PyAny>) -> PyResult<([usize; 3], Vec<[f32; C]>)> {
-    let array: PyReadonlyArrayDyn<'_, f32> = array.extract()?;
-    let &[x, y, z, ..] = array.shape() else {
-        return Err(PyValueError::new_err("a grid must have three axes"));
+/// A spectrum, which nobody asks for unless it is by wavelength, and the colour that stands for it.
+fn tint(told: &Bound<'_, PyAny>, meaning: Meaning, waves: bool) -> PyResult<(Arc<Spectrum>, Rgb)> {
+    if waves { spectra::tint(told, meaning) } else { Ok((flat(), Rgb::from_array(told.extract()?))) }
+}
+
+fn flat() -> Arc<Spectrum> {
+    Arc::new(Spectrum::Smooth(Smooth::of(Rgb::ONE, Role::Amount)))
+}
+
+/// What is absorbed and scattered: spectra, and the colours that stand for them.
+type Told = [(Arc<Spectrum>, Rgb); 2];
+
+/// A medium on a grid.
+fn read_grid(given: &Bound<'_, PyAny>, waves: bool, told: Told, phase: Phase) -> PyResult<Arc<dyn Medium>> {
+    let at = match given.getattr("at")?.extract::<String>()?.as_str() {
+        "centres" => At::Centres,
+        _ => At::Corners,
     };
-    let numbers = array.as_slice().map_err(|_| PyValueError::new_err("a grid must be C-contiguous"))?;
-    Ok(([x, y, z], numbers.as_chunks::<C>().0.to_vec()))
+    let some = |name: &'static str| -> PyResult<Option<Field>> {
+        let numbers = given.getattr(name)?;
+        (!numbers.is_none()).then(|| field(name, &numbers, at)).transpose()
+    };
+    let density = field("density", &given.getattr("density")?, at)?;
+    let albedo = some("albedo")?;
+    let light = given.getattr("emission")?;
+    let has_grid = light.hasattr("shape")?;
+    let glow = match some("temperature")? {
+        Some(Field::Grey(kelvin)) => Some(Glow::Heat { kelvin, brightness: given.getattr("brightness")?.extract()? }),
+        Some(Field::Coloured(_)) => return Err(PyValueError::new_err("temperature must have one number a point")),
+        None if has_grid => Some(Glow::Radiance(field("emission", &light, at)?)),
+        None => None,
+    };
+    let shines = if has_grid { None } else { Some(tint(&light, Meaning::Light, waves)?) };
+    let emission = shines.as_ref().map_or(Rgb::ZERO, |shines| shines.1);
+    let matrix = given.call_method0("_place")?.extract()?;
+    let told = match albedo {
+        None => told,
+        // All that is dimmed, in place of what is absorbed.
+        Some(_) => [tint(&given.getattr("extinction")?, Meaning::Amount, waves)?, (flat(), Rgb::ZERO)],
+    };
+    let is_heat = matches!(glow, Some(Glow::Heat { .. }));
+    let is_apart = density.is_coloured() || albedo.is_some() || is_heat;
+    let of = |why: String| PyValueError::new_err(format!("medium {why}"));
+    if waves && is_apart {
+        let one = |colour: Rgb| if colour.is_black() { Rgb::ZERO } else { Rgb::ONE };
+        let [absorbs, scatters] = told;
+        let coefficients = Coefficients { extinction: Rgb::ONE, scattering: one(scatters.1), emission: one(emission) };
+        let grid = GridMedium::new(density, albedo, glow, coefficients, phase, matrix).map_err(of)?;
+        return Ok(Arc::new(WavedGrid::new(grid, [absorbs.0, scatters.0], shines.map(|shines| shines.0))));
+    }
+    let coefficients = Coefficients::new(told[0].1, told[1].1, emission);
+    let medium = Arc::new(GridMedium::new(density, albedo, glow, coefficients, phase, matrix).map_err(of)?);
+    Ok(if waves { Arc::new(WavedMedium::new(medium, told, shines)) } else { medium })
+}
+
+/// The numbers of a grid: of an array, (X, Y, Z) or (X, Y, Z, 3), or blocks that the package has.
+fn field(name: &str, given: &Bound<'_, PyAny>, at: At) -> PyResult<Field> {
+    if let Ok(blocks) = given.getattr("_blocks") {
+        let blocks = blocks.cast_into::<GridBlocks>()?;
+        return Ok(match &blocks.get().0 {
+            Kept::Grey(blocks) => Field::Grey(Values::new(blocks.clone(), at)),
+            Kept::Coloured(blocks) => Field::Coloured(Values::new(blocks.clone(), at)),
+        });
+    }
+    let array: PyReadonlyArrayDyn<'_, f32> = given.extract()?;
+    let numbers = array.as_slice().map_err(|_| PyValueError::new_err(format!("{name} must be C-contiguous")))?;
+    let of = |why: String| PyValueError::new_err(format!("{name} {why}"));
+    match *array.shape() {
+        [x, y, z] => {
+            let blocks = Blocks::new([x, y, z], numbers.as_chunks::<1>().0).map_err(of)?;
+            Ok(Field::Grey(Values::new(Arc::new(blocks), at)))
+        }
+        [x, y, z, 3] => {
+            let blocks = Blocks::new([x, y, z], numbers.as_chunks::<3>().0).map_err(of)?;
+            Ok(Field::Coloured(Values::new(Arc::new(blocks), at)))
+        }
+        _ => Err(PyValueError::new_err(format!("{name} must have shape (X, Y, Z) or (X, Y, Z, 3)"))),
+    }
 }
 
 /// How a medium scatters.

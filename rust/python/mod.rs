@@ -12,6 +12,7 @@ mod every;
 mod exr_files;
 mod first_hits;
 mod freeform;
+mod grid_blocks;
 mod info;
 mod instances;
 mod integrators;
@@ -69,6 +70,8 @@ mod _core {
     use super::first_hits::first_hits;
     #[pymodule_export]
     use super::freeform::{implicit_trouble, polygon_trouble};
+    #[pymodule_export]
+    use super::grid_blocks::GridBlocks;
     #[pymodule_export]
     use super::info::AcceleratorInfo;
     #[pymodule_export]

@@ -121,6 +121,11 @@ impl Scene {
         self.accelerator.intersect(rays, hits);
     }
 
+    /// The closest hit of one ray.
+    pub fn intersect_one(&self, ray: &Ray) -> Hit {
+        self.accelerator.intersect_one(ray)
+    }
+
     /// Whether each ray hits anything.
     pub fn occluded(&self, rays: &[Ray], occluded: &mut [bool]) {
         self.accelerator.occluded(rays, occluded);

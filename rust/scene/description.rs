@@ -82,7 +82,7 @@ impl SceneDescription {
     pub fn validate(&self) -> Result<(), DescriptionError> {
         for (i, shape) in self.shapes.iter().enumerate() {
             shape.material.validate().map_err(|why| DescriptionError::Material(i, why))?;
-            if shape.material.boundary().is_some() && !shape.emission.is_dark() {
+            if shape.material.is_passed() && !shape.emission.is_dark() {
                 let why = "it is the end of a medium and no surface, and cannot shine; a medium may, by its emission";
                 return Err(DescriptionError::Material(i, why.into()));
             }

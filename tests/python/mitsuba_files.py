@@ -28,6 +28,15 @@ def write_files(folder):
     (folder / "curve.txt").write_text(curve())
     (folder / "spline.txt").write_text(spline())
     (folder / "gem.serialized").write_bytes(serialized())
+    (folder / "puff.vol").write_bytes(volume(rng.random((6, 5, 4, 1)) ** 2))
+    (folder / "shades.vol").write_bytes(volume(rng.random((3, 4, 5, 3))))
+
+
+def volume(numbers):
+    """A grid of Mitsuba's, of (Z, Y, X, channels)."""
+    z, y, x, channels = numbers.shape
+    header = struct.pack("<3sBiiiii6f", b"VOL", 3, 1, x, y, z, channels, 0, 0, 0, 1, 1, 1)
+    return header + numbers.astype("<f4").tobytes()
 
 
 def bowl(around=60, along=24):

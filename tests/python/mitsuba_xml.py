@@ -6,7 +6,7 @@ import numpy as np
 
 TAGS = {
     "bsdf": "diffuse dielectric roughdielectric thindielectric conductor roughconductor plastic roughplastic "
-    "principled principledthin twosided blendbsdf mask bumpmap normalmap",
+    "null principled principledthin twosided blendbsdf mask bumpmap normalmap",
     "shape": "sphere disk rectangle cube cylinder obj ply serialized linearcurve "
     "bsplinecurve shapegroup instance",
     "emitter": "area point spot projector directional constant envmap",
@@ -16,6 +16,9 @@ TAGS = {
     "rfilter": "box",
     "sampler": "independent",
     "integrator": "path volpath direct",
+    "medium": "homogeneous heterogeneous",
+    "volume": "gridvolume constvolume",
+    "phase": "hg rayleigh isotropic",
 }
 TAG_OF = {kind: tag for tag, kinds in TAGS.items() for kind in kinds.split()}
 

@@ -36,6 +36,57 @@ def test_a_slab_of_glass_that_absorbs():
     media.assert_seen(back, media.looking(), 4096, 0.0449900804155487, most=0.01)
 
 
+def test_a_flask_of_what_absorbs():
+    """Two panes of index 1.5, each of which reflects R = 2 r / (1 + r) with r = 0.04, and an optical depth of
+    1 between (Stokes, 1862): T² e⁻¹ / (1 - R² e⁻²) comes through, and comes back R + R T² e⁻² over that."""
+    reflected, left = 0.08 / 1.04, math.exp(-1)
+    through = (1 - reflected) ** 2 * left / (1 - (reflected * left) ** 2)
+    back = reflected * (1 + through * left)
+    pane = rw.ThinDielectric(1.5, interior=media.of_depth(1.0, 0.0))
+    flask = rw.Box((-media.FLAT, -media.FLAT, -1), (media.FLAT, media.FLAT, 0), material=pane)
+    media.assert_seen(rw.Scene([flask], environment=SKY), media.looking(), 512, through + back, most=0.003)
+    black = rw.Scene([flask, ground(-2.0)], environment=SKY)
+    media.assert_seen(black, media.looking(), 2048, back, most=0.01)
+    # Whoever goes straight on is not scattered, and light that is asked for comes through.
+    media.assert_seen(
+        rw.Scene([flask], environment=SKY),
+        media.looking(),
+        512,
+        (1 - reflected) ** 2 * left,
+        rw.Path(0),
+        0.005,
+    )
+    sun = rw.DirectionalLight((0, 0, -1), math.pi)
+    lit = rw.Scene([flask, ground(-2.0, 0.5)], lights=[sun])
+    below = media.looking(distance=-1.5)
+    media.assert_seen(lit, below, 4, 0.5 * (1 - reflected) ** 2 * left, rw.Path(1))
+    # From a lamp aside, by Fresnel's formulas.
+    lamp = rw.PointLight((1.5, 0, 1), 4.0)
+    cosine = 3 / math.hypot(1.5, 3)
+    within = math.sqrt(1 - (1 - cosine**2) / 1.5**2)
+    across, along = (
+        (cosine - 1.5 * within) / (cosine + 1.5 * within),
+        (1.5 * cosine - within) / (1.5 * cosine + within),
+    )
+    once = (across**2 + along**2) / 2
+    passed = (1 - 2 * once / (1 + once)) ** 2 * math.exp(-1 / cosine)
+    aside = rw.Scene([flask, ground(-2.0, 0.5)], lights=[lamp])
+    irradiance = 4 * cosine / (1.5**2 + 3**2)
+    media.assert_seen(aside, below, 4, 0.5 / math.pi * irradiance * passed, rw.Path(1))
+
+
+def test_a_flask_of_white_smoke_is_invisible():
+    smoke = rw.Homogeneous(0.0, (0.5, 2.0, 5.0), rw.HenyeyGreenstein(0.5))
+    flask = rw.Sphere((0, 0, 0), 1.0, material=rw.ThinDielectric(1.5, interior=smoke))
+    camera = rw.Camera((0, 0, 3), (0, 0, 0), fov=30, width=16, height=16)
+    for way, samples in ((rw.Path(), 16), (rw.Bidirectional(), 64)):
+        image = rw.render(rw.Scene([flask], environment=SKY), camera, way, samples, progress=False)
+        values = image.rgb.reshape(-1, 3).astype(float)
+        error = values.std(axis=0, ddof=1) / 16
+        assert (np.abs(values.mean(axis=0) - 1) <= 4 * error + 1e-6).all(), (values.mean(axis=0), error)
+        assert error.max() < 0.02
+
+
 @pytest.mark.parametrize(
     ("depth", "share"), [(1.0, 0.296997075145081), pytest.param(20.0, 0.00125, marks=slow)]
 )

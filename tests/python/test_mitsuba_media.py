@@ -25,15 +25,22 @@ def test_what_is_within_a_shape():
     assert within({"type": "null"}, SMOKE) == rw.Boundary(smoke)
     glass = {"type": "dielectric", "int_ior": 1.5, "ext_ior": 1.0}
     assert within(glass, SMOKE) == rw.Dielectric(1.5, alpha=0.0, interior=smoke)
-    constant = {"type": "heterogeneous", "albedo": 0.75, "sigma_t": {"type": "constvolume", "value": 2.0}}
     for phase, expected in [
         ({"type": "hg", "g": 0.5}, rw.HenyeyGreenstein(0.5)),
         ({"type": "rayleigh"}, rw.Rayleigh()),
         ({"type": "isotropic"}, rw.Isotropic()),
     ]:
-        assert within({"type": "null"}, {**constant, "phase": phase}).interior == rw.Homogeneous(
-            0.5, 1.5, expected
-        )
+        told = {"type": "homogeneous", "albedo": 0.75, "sigma_t": 2.0, "phase": phase}
+        assert within({"type": "null"}, told).interior == rw.Homogeneous(0.5, 1.5, expected)
+    pane = {"type": "thindielectric", "int_ior": 1.5, "ext_ior": 1.0}
+    assert within(pane, SMOKE) == rw.ThinDielectric(1.5, interior=smoke)
+    # What is heterogeneous is where its volume is, also if that is the same everywhere.
+    moved = np.diag([2.0, 3.0, 4.0, 1.0])
+    constant = {"type": "constvolume", "value": 2.0, "to_world": moved}
+    told = {"type": "heterogeneous", "albedo": 0.75, "sigma_t": constant}
+    assert within({"type": "null"}, told).interior == rw.GridMedium(
+        np.ones((1, 1, 1)), transform=moved, absorption=0.5, scattering=1.5, at="centres"
+    )
     # Nobody sees what is in a wall.
     assert (
         within({"type": "diffuse"}, SMOKE)
@@ -60,6 +67,23 @@ def test_densities_from_files(tmp_path):
     assert found.bounds == ((0, 0, 0), (2, 3, 4))
 
 
+def test_grids_of_albedos_and_of_colours(tmp_path):
+    header = struct.pack("<3sBiiiii6f", b"VOL", 3, 1, 2, 3, 4, 3, 0, 0, 0, 2, 3, 4)
+    numbers = (np.arange(72, dtype=np.float32) / 72).reshape(2, 3, 4, 3)
+    (tmp_path / "c.vol").write_bytes(header + numbers.transpose(2, 1, 0, 3).tobytes())
+    grid = {"type": "gridvolume", "filename": "c.vol"}
+    medium = {"type": "heterogeneous", "scale": 4.0, "sigma_t": grid, "albedo": dict(grid)}
+    scene = {"type": "scene", "sensor": EYE, "s": {"type": "cube", "interior": medium, "b": {"type": "null"}}}
+
+    def read():
+        return rw.from_mitsuba(scene, folder=tmp_path).scene.shapes[0].material.interior
+
+    assert read() == rw.GridMedium(numbers, transform=np.eye(4), extinction=4, albedo=numbers, at="centres")
+    medium["albedo"]["to_world"] = np.diag([2.0, 3.0, 4.0, 1.0])
+    with pytest.raises(ValueError, match="sigma_t and albedo must lie in the same place"):
+        read()
+
+
 def test_what_is_around_all_shapes():
     smoke = rw.Homogeneous((0.5, 1.0, 2.0), (1.5, 3.0, 6.0))
     ball = {"type": "sphere", "bsdf": {"type": "dielectric"}}
@@ -83,7 +107,7 @@ def test_what_is_around_all_shapes():
         ({"type": "homogeneous", "albedo": 2.0}, "homogeneous 'one.interior': absorption must be at least 0"),
         ({"type": "homogeneous", "phase": {"type": "hg", "g": 1.0}}, "g must be between -1 and 1"),
         ({"type": "homogeneous", "phase": {"type": "sggx"}}, "sggx 'phase' is not supported here"),
-        ({"type": "heterogeneous", "albedo": {"type": "gridvolume"}}, "albedo on a grid is not supported"),
+        ({"type": "homogeneous", "albedo": {"type": "gridvolume"}}, "albedo on a grid is not supported"),
         ({"type": "heterogeneous", "sigma_t": {"type": "gridvolume"}}, "must be given by its filename"),
         ({"type": "rgb", "value": 1.0}, "interior must be one of homogeneous, heterogeneous, got rgb"),
     ],

@@ -4,6 +4,7 @@ from .grid import GridMedium
 from .homogeneous import Homogeneous
 from .medium import Medium, medium
 from .phases import HenyeyGreenstein, Isotropic, Phase, Rayleigh
+from .sparse_grid import SparseGrid
 
 __all__ = [
     "GridMedium",
@@ -13,5 +14,6 @@ __all__ = [
     "Medium",
     "Phase",
     "Rayleigh",
+    "SparseGrid",
     "medium",
 ]

@@ -1,16 +1,52 @@
-"""Densities from files."""
+"""Numbers on grids from files."""
 
 import struct
+from collections.abc import Mapping
 from os import PathLike, fspath
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from .vdb import read_vdb
+
 Bounds = tuple[tuple[float, ...], tuple[float, ...]]
 # Magic, version, encoding, size along x, y and z, channels, and the box: all little-endian.
 _VOL = struct.Struct("<3sBiiiii6f")
+
+
+class Found(NamedTuple):
+    """What a file says: numbers by what they are for, where they lie, and where in cells they stand."""
+
+    grids: dict[str, Any]
+    place: dict[str, Any]
+    told: dict[str, Any]
+
+
+def read_grids(path: str | PathLike[str], names: Mapping[str, str]) -> Found:
+    """Return the grids of a file, by what they are for: one of these names each, where the file has names.
+
+    Raises
+    ------
+    FileNotFoundError
+        If there is no such file.
+    ImportError
+        If it wants a package that is not installed.
+    ValueError
+        If it cannot be read, and why.
+    TypeError
+        If the path is none.
+    """
+    if isinstance(path, str | PathLike) and Path(fspath(path)).suffix == ".vdb":
+        grids, place = read_vdb(Path(fspath(path)), tuple(dict.fromkeys(names.values())))
+        return Found({kind: grids[name] for kind, name in names.items()}, place, {"at": "centres"})
+    if named := [kind for kind in names if kind != "density"]:
+        raise ValueError(f"{named[0]} must be numbers: only OpenVDB's files have grids with names")
+    density, bounds = read_density(path)
+    if bounds is None:
+        return Found({"density": density}, {}, {})
+    return Found({"density": density}, {"bounds": bounds}, {"at": "centres"})
 
 
 def read_density(path: str | PathLike[str]) -> tuple[NDArray[Any], Bounds | None]:
@@ -22,6 +58,8 @@ def read_density(path: str | PathLike[str]) -> tuple[NDArray[Any], Bounds | None
         If there is no such file.
     ValueError
         If it cannot be read, and why.
+    TypeError
+        If the path is none.
     """
     if not isinstance(path, str | PathLike):
         raise TypeError(f"path must be a str or a path, got {type(path).__name__}")
@@ -29,7 +67,7 @@ def read_density(path: str | PathLike[str]) -> tuple[NDArray[Any], Bounds | None
     if name.suffix == ".vol":
         return read_vol(name)
     if name.suffix != ".npy":
-        raise ValueError(f"{name} must be a .npy or a .vol file")
+        raise ValueError(f"{name} must be a .npy, a .vol or a .vdb file")
     try:
         array = np.load(name, allow_pickle=False)
     except (ValueError, EOFError) as error:
@@ -42,6 +80,8 @@ def read_density(path: str | PathLike[str]) -> tuple[NDArray[Any], Bounds | None
 def read_vol(name: Path) -> tuple[NDArray[np.float32], Bounds]:
     """Return the numbers of one of Mitsuba's grid volumes, x first, and the box that it gives for them.
 
+    Of three channels they are (X, Y, Z, 3).
+
     Raises
     ------
     FileNotFoundError
@@ -53,13 +93,14 @@ def read_vol(name: Path) -> tuple[NDArray[np.float32], Bounds]:
     if len(data) < _VOL.size or data[:3] != b"VOL":
         raise ValueError(f"{name} cannot be read: it does not begin as a .vol file does")
     _, version, encoding, x, y, z, channels, *box = _VOL.unpack_from(data)
-    if version != 3 or encoding != 1 or channels != 1:
+    if version != 3 or encoding != 1 or channels not in (1, 3):
         raise ValueError(
-            f"{name} must be of version 3, float32 (1) and one channel, "
+            f"{name} must be of version 3, float32 (1) and one or three channels, "
             f"got version {version}, encoding {encoding} and {channels} channels"
         )
     rest = len(data) - _VOL.size
-    if min(x, y, z) < 1 or rest != 4 * x * y * z:
-        raise ValueError(f"{name} says {x} x {y} x {z} numbers, but holds {rest / 4:g}")
-    numbers = np.frombuffer(data, "<f4", offset=_VOL.size).reshape(z, y, x)
-    return numbers.transpose(2, 1, 0), (tuple(box[:3]), tuple(box[3:]))
+    if min(x, y, z) < 1 or rest != 4 * x * y * z * channels:
+        raise ValueError(f"{name} says {x} x {y} x {z} x {channels} numbers, but holds {rest / 4:g}")
+    numbers = np.frombuffer(data, "<f4", offset=_VOL.size).reshape(z, y, x, channels)
+    turned = numbers.transpose(2, 1, 0, 3)
+    return turned if channels == 3 else turned[..., 0], (tuple(box[:3]), tuple(box[3:]))

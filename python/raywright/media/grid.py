@@ -7,15 +7,18 @@ from typing import Any, Literal, TypeAlias, get_args
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..arrays import Triple, choice, real_array
+from ..arrays import Triple, choice, number, real_array
 from ..textures.spectrum import Spectrum, colour_or_spectrum
-from .files import read_density
+from .files import read_grids
 from .medium import Medium
 from .phases import Isotropic, Phase
 from .phases import phase as checked
+from .sparse_grid import SparseGrid
 
 At: TypeAlias = Literal["corners", "centres"]
-Numbers: TypeAlias = NDArray[np.float32]
+Numbers: TypeAlias = NDArray[np.float32] | SparseGrid
+_ONE, _MANY = (3,), (3, 4)
+_NONE = (0.0, 0.0, 0.0)
 _UNIT = ((0.0, 0.0, 0.0), (1.0, 1.0, 1.0))
 
 
@@ -29,9 +32,9 @@ class GridMedium(Medium):
 
     Parameters
     ----------
-    density : (X, Y, Z) array
-        Numbers that are finite and at least 0, kept as read-only float32; those that are so already are not
-        copied. The first axis is x.
+    density : (X, Y, Z) or (X, Y, Z, 3) array, or SparseGrid
+        Numbers that are finite and at least 0, for all colours or for each of red, green and blue, kept as
+        read-only float32; those that are so already are not copied. The first axis is x.
     bounds : (2, 3) array, optional
         Least and greatest corner of the grid; the unit cube if not given.
     transform : (4, 4) array, optional
@@ -40,17 +43,30 @@ class GridMedium(Medium):
         The share of light that is absorbed, and scattered, per unit of length where the density is 1.
     phase : HenyeyGreenstein, Rayleigh or Isotropic
         Into which directions it scatters.
-    emission : float, 3 floats, or array of shape (X', Y', Z') or (X', Y', Z', 3)
+    emission : float, 3 floats, Spectrum, array of (X', Y', Z') or (X', Y', Z', 3), or SparseGrid
         The radiance that it gives off by itself, per unit of length: numbers where the density is 1, or an
         array, over the same bounds, whatever the density.
     at : {"corners", "centres"}
         Where the numbers stand. "corners": those of the outermost lie on the faces of the bounds. "centres":
         each is in the middle of a cell, and the same up to the face, as OpenVDB's, pbrt's and Mitsuba's are.
+    extinction : float, 3 floats or Spectrum
+        With `albedo`, and in place of `absorption` and `scattering`: the share of light that is absorbed or
+        scattered per unit of length where the density is 1.
+    albedo : (X', Y', Z') or (X', Y', Z', 3) array, or SparseGrid, optional
+        The share of that which is scattered, at most 1, over the same bounds.
+    temperature : (X', Y', Z') array or SparseGrid, optional
+        Kelvin, over the same bounds. What is so hot gives off light as a black body does, as far as it
+        absorbs (Kirchhoff 1860); what is below 500 K gives off none.
+    brightness : float
+        The radiance of black bodies at the wavelength at which they have most of it, as pbrt's ``Lescale``:
+        1 is as bright as light of `Spectrum` with a value of 1. What is seen of that rises with the
+        temperature up to about that of the sun, since cooler bodies have most of it in the infrared.
 
     Raises
     ------
     ValueError
-        If something is negative, not finite, or of another shape, or a transform has no inverse.
+        If something is negative, not finite, or of another shape, a transform has no inverse, or an albedo
+        exceeds 1 or does not come with an extinction alone.
     TypeError
         If something is not of the kinds above.
     """
@@ -63,50 +79,74 @@ class GridMedium(Medium):
     phase: Phase
     emission: Triple | Spectrum | Numbers
     at: At
+    extinction: Triple | Spectrum
+    albedo: Numbers | None
+    temperature: Numbers | None
+    brightness: float
 
     def __init__(
         self,
-        density: ArrayLike,
+        density: ArrayLike | SparseGrid,
         bounds: ArrayLike | None = None,
         *,
         transform: ArrayLike | None = None,
         absorption: ArrayLike | Spectrum = 0.0,
         scattering: ArrayLike | Spectrum = 0.0,
         phase: Phase = Isotropic(),  # noqa: B008
-        emission: ArrayLike | Spectrum = 0.0,
+        emission: ArrayLike | Spectrum | SparseGrid = 0.0,
         at: At = "corners",
+        extinction: ArrayLike | Spectrum = 0.0,
+        albedo: ArrayLike | SparseGrid | None = None,
+        temperature: ArrayLike | SparseGrid | None = None,
+        brightness: float = 1.0,
     ) -> None:
         choice("at", at, get_args(At))
-        glow = emission if isinstance(emission, Spectrum) else real_array("emission", emission)
-        values = {
-            "density": _numbers("density", density, (3,)),
+        values: dict[str, Any] = {
+            "density": _numbers("density", density, _MANY),
             "bounds": _UNIT if bounds is None else _bounds(bounds),
             "transform": None if transform is None else _transform(transform),
             "absorption": colour_or_spectrum("absorption", absorption),
             "scattering": colour_or_spectrum("scattering", scattering),
             "phase": checked("phase", phase),
-            "emission": _numbers("emission", glow, (3, 4))
-            if isinstance(glow, np.ndarray) and glow.ndim >= 3
-            else colour_or_spectrum("emission", glow),
+            "emission": _emission(emission),
             "at": at,
+            "extinction": colour_or_spectrum("extinction", extinction),
+            "albedo": None if albedo is None else _numbers("albedo", albedo, _MANY),
+            "temperature": None if temperature is None else _numbers("temperature", temperature, _ONE),
+            "brightness": number("brightness", brightness),
         }
+        if values["brightness"] < 0:
+            raise ValueError(f"brightness must be at least 0, got {brightness}")
+        _one_of_both(values)
+        if isinstance(values["emission"], np.ndarray | SparseGrid) and temperature is not None:
+            raise ValueError("emission must be one number or 3 where there is a temperature, got a grid")
         for name, value in values.items():
             object.__setattr__(self, name, value)
 
     @classmethod
     def load(
-        cls, path: str | PathLike[str], bounds: ArrayLike | None = None, **arguments: Any
+        cls,
+        path: str | PathLike[str],
+        bounds: ArrayLike | None = None,
+        *,
+        density: str = "density",
+        **arguments: Any,
     ) -> "GridMedium":
         """Read the density from a file, with all else as the arguments of `GridMedium` say.
 
         Parameters
         ----------
         path : str or path
-            A file of numpy's (``.npy``), or of Mitsuba's (``.vol``, version 3, of one channel of float32).
+            A file of numpy's (``.npy``), Mitsuba's (``.vol``, version 3, of one or three channels of
+            float32), or OpenVDB's (``.vdb``, of float grids). Most of the last are compressed by Blosc, and
+            want ``pip install 'raywright[vdb]'``.
         bounds : (2, 3) array, optional
             Those of the grid, in place of what the file says of them.
+        density : str
+            Which of the grids of an OpenVDB file it is. `emission`, `albedo` and `temperature` may be names
+            of grids of that file, too.
         **arguments
-            Of `GridMedium`, by name. `at` is "centres" for Mitsuba's files, if it is not given.
+            Of `GridMedium`, by name. `at` is "centres" for files other than numpy's, if it is not given.
 
         Returns
         -------
@@ -116,15 +156,19 @@ class GridMedium(Medium):
         ------
         FileNotFoundError
             If there is no such file.
+        ImportError
+            If it is compressed by Blosc, and the package blosc is not installed.
         ValueError
             If it cannot be read, and why; and as `GridMedium` does.
         TypeError
             As `GridMedium` does.
         """
-        density, found = read_density(path)
-        if found is not None:
-            arguments = {"at": "centres", **arguments}
-        return cls(density, found if bounds is None else bounds, **arguments)
+        named = {
+            name: given for name, given in arguments.items() if isinstance(given, str) and name in _GRIDS
+        }
+        found = read_grids(path, {"density": density, **named})
+        places = {} if bounds is not None else found.place
+        return cls(**{"bounds": bounds, **places, **found.told, **arguments, **found.grids})
 
     def _place(self) -> list[list[float]]:
         """Give the first three rows of what takes the unit cube to the grid."""
@@ -133,13 +177,6 @@ class GridMedium(Medium):
         matrix[:3, 3] = low
         placed = matrix if self.transform is None else self.transform @ matrix
         return [[float(number) for number in row] for row in placed[:3]]
-
-    def _glow(self) -> Numbers | None:
-        """Give what is given off whatever the density, (X, Y, Z, 3), if that is an array."""
-        if not isinstance(self.emission, np.ndarray):
-            return None
-        given = self.emission if self.emission.ndim == 4 else self.emission[..., None]
-        return np.ascontiguousarray(np.broadcast_to(given, (*given.shape[:3], 3)))
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, GridMedium):
@@ -151,7 +188,8 @@ class GridMedium(Medium):
         )
 
     def __hash__(self) -> int:
-        return hash((self.density.shape, self.bounds, self.absorption, self.scattering, self.phase, self.at))
+        told = (self.absorption, self.scattering, self.extinction, self.phase, self.at)
+        return hash((self.density.shape, self.bounds, *told))
 
     def __reduce__(self) -> tuple[Any, ...]:
         # Through the constructor, because an unpickled array would be writeable.
@@ -161,7 +199,7 @@ class GridMedium(Medium):
         parts = [_told(self.density)]
         for name, usual in _USUAL.items():
             value = getattr(self, name)
-            if isinstance(value, np.ndarray) or value != usual:
+            if isinstance(value, np.ndarray | SparseGrid) or value != usual:
                 parts.append(f"{name}={_told(value)}")
         return f"GridMedium({', '.join(parts)})"
 
@@ -169,17 +207,21 @@ class GridMedium(Medium):
 _USUAL: dict[str, Any] = {
     "bounds": _UNIT,
     "transform": None,
-    "absorption": (0.0, 0.0, 0.0),
-    "scattering": (0.0, 0.0, 0.0),
+    "absorption": _NONE,
+    "scattering": _NONE,
     "phase": Isotropic(),
-    "emission": (0.0, 0.0, 0.0),
+    "emission": _NONE,
     "at": "corners",
+    "extinction": _NONE,
+    "albedo": None,
+    "temperature": None,
+    "brightness": 1.0,
 }
+_GRIDS = ("emission", "albedo", "temperature")
 
 
 def _made(density: Numbers, bounds: Any, *rest: Any) -> GridMedium:
-    names = ("transform", "absorption", "scattering", "phase", "emission", "at")
-    return GridMedium(density, bounds, **dict(zip(names, rest, strict=True)))
+    return GridMedium(density, bounds, **dict(zip([*_USUAL][1:], rest, strict=True)))
 
 
 def _told(value: Any) -> str:
@@ -188,7 +230,29 @@ def _told(value: Any) -> str:
     return repr(value.tolist()) if value.shape == (4, 4) else f"<{' x '.join(map(str, value.shape))}>"
 
 
-def _numbers(name: str, value: ArrayLike, dimensions: tuple[int, ...]) -> Numbers:
+def _emission(given: ArrayLike | Spectrum | SparseGrid) -> Triple | Spectrum | Numbers:
+    is_grid = isinstance(given, SparseGrid) or (
+        not isinstance(given, Spectrum) and real_array("emission", given).ndim >= 3
+    )
+    return _numbers("emission", given, _MANY) if is_grid else colour_or_spectrum("emission", given)  # type: ignore[arg-type]
+
+
+def _one_of_both(values: dict[str, Any]) -> None:
+    """Check that there is either what is absorbed and scattered, or what is dimmed and a share of it."""
+    albedo = values["albedo"]
+    if albedo is None and values["extinction"] != _NONE:
+        raise ValueError("extinction must come with an albedo; else give absorption and scattering")
+    if albedo is not None and (values["absorption"] != _NONE or values["scattering"] != _NONE):
+        raise ValueError("absorption and scattering must be 0 with an albedo, which comes with an extinction")
+    if albedo is not None and albedo.max() > 1:
+        raise ValueError(f"albedo must be at most 1, got {albedo.max():.6g}")
+
+
+def _numbers(name: str, value: ArrayLike | SparseGrid, dimensions: tuple[int, ...]) -> Numbers:
+    if isinstance(value, SparseGrid):
+        if len(value.shape) not in dimensions:
+            raise ValueError(f"{name} must have shape (X, Y, Z), got {value.shape}")
+        return value
     array = real_array(name, value)
     shape = "(X, Y, Z) or (X, Y, Z, 3)" if 4 in dimensions else "(X, Y, Z)"
     if array.ndim not in dimensions or (array.ndim == 4 and array.shape[3] != 3) or 0 in array.shape:

@@ -4,7 +4,7 @@ use super::filled::{self, Filled};
 use super::flight::{Collision, Flight};
 use super::numbers::Numbers;
 use super::scattering::Scattering;
-use super::surfaces::{Met, meet};
+use super::surfaces::{Met, meet, straight};
 use super::weights::Weights;
 use crate::integrators::nesting::MediumStack;
 use crate::integrators::shadows::opacity;
@@ -75,9 +75,7 @@ impl Course<'_> {
                 let reach = start + way / here.extinction[hero] * (1.0 + 1e-12);
                 asked.t_max = reach.next_up().min(asked.t_max);
             }
-            let mut hits = [Hit::MISS];
-            self.scene.intersect(&[asked], &mut hits);
-            let [hit] = hits;
+            let hit = self.scene.intersect_one(&asked);
             let end = if hit.is_hit() { hit.t } else { f64::INFINITY };
             if let Some((medium, within)) = around {
                 let span = [start, end];
@@ -101,10 +99,13 @@ impl Course<'_> {
             start = hit.t;
             match meet(self.scene, &path.ray, &hit, &path.media) {
                 Met::Passed(beyond, media) => (path.ray.t_min, path.media) = (beyond, media),
-                Met::Surface { hit, outside, through } => {
+                Met::Surface { hit, outside, through, beyond } => {
                     let opacity = opacity(self.scene, &path.ray, &hit);
+                    let straight = straight(self.scene, &path.ray, &hit, outside);
                     if opacity < 1.0 && numbers.next() >= opacity {
                         path.ray.t_min = hit.t.next_up();
+                    } else if straight > 0.0 && numbers.next() < straight {
+                        (path.ray.t_min, path.media) = (beyond, through);
                     } else {
                         return Some(Place::Surface { hit, outside, through });
                     }
@@ -127,13 +128,12 @@ impl Course<'_> {
         let length = ray.direction.length();
         let mut start = ray.t_min;
         while !cancel.is_raised() {
-            let mut hits = [Hit::MISS];
-            self.scene.intersect(&[ray], &mut hits);
-            let [hit] = hits;
+            let hit = self.scene.intersect_one(&ray);
             let met = hit.is_hit().then(|| meet(self.scene, &ray, &hit, &media));
-            let mut left = 1.0;
-            if let Some(Met::Surface { hit, .. }) = &met {
-                left -= opacity(self.scene, &ray, hit);
+            let (mut left, mut pane) = (1.0, 0.0);
+            if let Some(Met::Surface { hit, outside, .. }) = &met {
+                pane = straight(self.scene, &ray, hit, *outside);
+                left -= opacity(self.scene, &ray, hit) * (1.0 - pane);
                 if left <= 0.0 {
                     weights.carried = Rgb::ZERO;
                     return;
@@ -153,6 +153,7 @@ impl Course<'_> {
             match met {
                 None => return,
                 Some(Met::Passed(beyond, now)) => (ray.t_min, media) = (beyond, now),
+                Some(Met::Surface { through, beyond, .. }) if pane > 0.0 => (ray.t_min, media) = (beyond, through),
                 Some(Met::Surface { hit, .. }) => ray.t_min = hit.t.next_up(),
             }
             if ray.t_min > ray.t_max {

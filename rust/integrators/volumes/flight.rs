@@ -47,8 +47,11 @@ impl Flight<'_> {
     /// What is at a `t` of the ray.
     #[inline]
     pub(super) fn at(&self, t: f64) -> Coefficients {
-        let here = self.medium.at(self.ray.at(t));
-        self.waves.as_ref().map_or(here, |waves| self.medium.by_waves(here, waves))
+        let point = self.ray.at(t);
+        match &self.waves {
+            Some(waves) => self.medium.at_waves(point, waves),
+            None => self.medium.at(point),
+        }
     }
 
     /// What is in a stretch of it.

@@ -3,7 +3,7 @@
 use super::filled::Filled;
 use crate::integrators::nesting::{Boundary, Filling, MediumStack, around};
 use crate::math::{Hit, Ray};
-use crate::scene::Scene;
+use crate::scene::{Scene, SurfaceInteraction};
 
 /// What a ray has come to.
 pub(in crate::integrators) enum Met {
@@ -17,6 +17,8 @@ pub(in crate::integrators) enum Met {
         outside: f64,
         /// What a ray that goes through is in.
         through: MediumStack<Filled>,
+        /// The `t` from which a ray goes on that passes straight.
+        beyond: f64,
     },
 }
 
@@ -24,24 +26,37 @@ pub(in crate::integrators) enum Met {
 /// one that encloses nothing stands at the same place, as the floor that smoke lies on.
 pub(in crate::integrators) fn meet(scene: &Scene, ray: &Ray, hit: &Hit, media: &MediumStack<Filled>) -> Met {
     let Some(window) = around::<Filled>(scene, ray, hit) else {
-        return Met::Surface { hit: *hit, outside: 1.0, through: *media };
+        return Met::Surface { hit: *hit, outside: 1.0, through: *media, beyond: hit.t.next_up() };
     };
+    let beyond = window.t_max.next_up();
     let crossings = scene.crossings(&[window]);
     let through = match Boundary::new(scene, ray, media, &crossings, 0) {
         Boundary::None(media) => media,
         Boundary::Between { hit: owner, outside, through } => {
             let material = scene.material_of(&owner);
             let is_matched = material.is_clear() && material.interior().is_some_and(|inside| inside.ior == outside);
-            if !is_matched && material.boundary().is_none() {
+            if !is_matched && !material.is_passed() {
                 let is_same = owner.primitive == hit.primitive && owner.inner == hit.inner;
-                return Met::Surface { hit: if is_same { *hit } else { owner }, outside, through };
+                return Met::Surface { hit: if is_same { *hit } else { owner }, outside, through, beyond };
             }
             through
         }
     };
     let is_sheet = |hit: &&Hit| Filled::of(scene, hit).is_none() && scene.material_of(hit).is_opaque();
     match crossings.hits.iter().find(is_sheet) {
-        Some(sheet) => Met::Surface { hit: *sheet, outside: 1.0, through },
-        None => Met::Passed(window.t_max.next_up(), through),
+        Some(sheet) => Met::Surface { hit: *sheet, outside: 1.0, through, beyond },
+        None => Met::Passed(beyond, through),
     }
+}
+
+/// The share of a ray that goes straight on through a surface ([`crate::scene::materials::Material::straight`]).
+pub(in crate::integrators) fn straight(scene: &Scene, ray: &Ray, hit: &Hit, outside: f64) -> f64 {
+    let material = scene.material_of(hit);
+    if material.boundary().is_none() {
+        return 0.0;
+    }
+    let surface = scene.geometry().surface(ray, hit);
+    let here = SurfaceInteraction::new(scene, ray, hit, surface, None, outside);
+    // Rays to lights are as long as the way there.
+    material.straight((here.wo().z.abs() / ray.direction.length()).min(1.0), outside)
 }

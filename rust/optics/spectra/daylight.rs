@@ -1,6 +1,7 @@
 //! Daylight.
 
-use super::{FIRST, LAST};
+use super::{FIRST, LAST, matching};
+use std::sync::LazyLock;
 
 /// The power of daylight at a wavelength, relative to that at 560 nm, which is 100: the CIE's standard illuminant D65
 /// (CIE 015:2018), linear between every tenth nm, as it is defined. Zero outside of what is seen.
@@ -13,6 +14,23 @@ pub fn daylight(wavelength: f64) -> f64 {
     let before = (steps as usize).min(POWER.len() - 2);
     POWER[before] + (POWER[before + 1] - POWER[before]) * (steps - before as f64)
 }
+
+/// The same of as much daylight as has a luminance of 1, as light has whose power is 1 at all wavelengths.
+#[inline]
+pub fn white(wavelength: f64) -> f64 {
+    daylight(wavelength) / *MEAN
+}
+
+/// The mean power of daylight as the eye weighs it.
+static MEAN: LazyLock<f64> = LazyLock::new(|| {
+    let (mut sum, mut all) = (0.0, 0.0);
+    for nm in (360..=830).map(f64::from) {
+        let weight = matching(nm).y;
+        sum += weight * daylight(nm);
+        all += weight;
+    }
+    sum / all
+});
 
 const STEP: f64 = 10.0;
 

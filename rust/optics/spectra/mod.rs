@@ -3,6 +3,7 @@
 //! Wavelengths are in nm. What is seen lies between [`FIRST`] and [`LAST`], where the eye's response is tabulated.
 
 mod any;
+mod black_body;
 mod daylight;
 mod linear;
 mod observer;
@@ -13,7 +14,8 @@ mod table;
 mod waves;
 
 pub use any::Spectrum;
-pub use daylight::daylight;
+pub use black_body::{COLDEST, black_body, black_body_colour};
+pub use daylight::{daylight, white};
 pub use linear::at;
 pub use observer::matching;
 pub use primaries::{xyz_of_primaries, xyz_to_rgb};

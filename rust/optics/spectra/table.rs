@@ -1,7 +1,6 @@
 //! Spectra by their values.
 
-use super::{FIRST, LAST, daylight, matching};
-use std::sync::LazyLock;
+use super::{FIRST, LAST, white};
 
 /// What the values of a spectrum are of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,7 +45,7 @@ impl Table {
         let count = ((LAST - FIRST) / Self::STEP) as usize + 1;
         let values = (0..count).map(|i| {
             let nm = FIRST + Self::STEP * i as f64;
-            if told == Told::Power { at(nm) / (daylight(nm) / *MEAN) } else { at(nm) }
+            if told == Told::Power { at(nm) / white(nm) } else { at(nm) }
         });
         Some(Self { step: Self::STEP, values: values.collect() })
     }
@@ -63,17 +62,6 @@ impl Table {
         a + (b - a) * (steps - before as f64)
     }
 }
-
-/// The mean power of daylight as the eye weighs it.
-static MEAN: LazyLock<f64> = LazyLock::new(|| {
-    let (mut sum, mut all) = (0.0, 0.0);
-    for nm in (360..=830).map(f64::from) {
-        let weight = matching(nm).y;
-        sum += weight * daylight(nm);
-        all += weight;
-    }
-    sum / all
-});
 
 #[cfg(test)]
 mod tests {

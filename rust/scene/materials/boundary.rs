@@ -49,4 +49,8 @@ impl Material for BoundaryMaterial {
     fn boundary(&self) -> Option<i32> {
         Some(self.priority)
     }
+
+    fn is_passed(&self) -> bool {
+        true
+    }
 }

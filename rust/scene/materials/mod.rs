@@ -129,9 +129,21 @@ pub trait Material: Debug + Send + Sync {
         false
     }
 
-    /// The priority of what it encloses where that is all: it is no surface, and what is within begins there.
+    /// The priority of what it encloses where that has the index of refraction of what is around it.
     fn boundary(&self) -> Option<i32> {
         None
+    }
+
+    /// The share of light that goes straight on into what it encloses and out of it, as through a pane, where that has
+    /// the index of refraction of what is around it. Whoever follows light among media counts that as no scattering, so
+    /// that what the surface scatters is the rest, over its share. For light at such a cosine to the normal.
+    fn straight(&self, _cosine: f64, _outside: f64) -> f64 {
+        0.0
+    }
+
+    /// Whether it is no surface, and what is within begins there.
+    fn is_passed(&self) -> bool {
+        false
     }
 
     /// The share of an even light from nowhere that it reflects: the ambient coefficient of the classic models of light

@@ -87,7 +87,7 @@ fn all() -> Vec<Arc<dyn Material>> {
         Arc::new(brushed.clone()),
         Arc::new(glass(0.0)),
         Arc::new(glass(0.7)),
-        Arc::new(ThinDielectricMaterial { ior: 1.33 }),
+        Arc::new(ThinDielectricMaterial { ior: 1.33, within: None }),
         Arc::new(coat.clone()),
         Arc::new(phong),
         Arc::new(blinn),
@@ -459,7 +459,7 @@ fn what_cannot_be_is_refused_in_a_line() {
         refused(&MixMaterial { a: grey(0.5), b: grey(bad), amount: 0.5.into() }, "in b: reflectance must");
     }
     for bad in [0.0, -1.5, f64::NAN, f64::INFINITY] {
-        refused(&ThinDielectricMaterial { ior: bad }, "ior must be finite and above 0, got");
+        refused(&ThinDielectricMaterial { ior: bad, within: None }, "ior must be finite and above 0, got");
         let interior = Interior::new(bad, 0);
         refused(
             &DielectricMaterial { interior, roughness: 0.0.into(), medium: None },

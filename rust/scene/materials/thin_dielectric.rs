@@ -2,25 +2,32 @@
 
 use super::checks::number;
 use super::{BsdfMix, Material};
-use crate::optics::{AnyBsdf, ThinDielectric};
+use crate::optics::{AnyBsdf, Mirror, Rgb, ThinDielectric};
 use crate::scene::ShadingPoint;
+use crate::scene::media::Medium;
 use crate::scene::textures::Needs;
+use std::sync::Arc;
 
-/// A clear sheet too thin to bend what is seen through it: a window, a soap bubble without colours. It encloses
-/// nothing.
+/// A clear sheet too thin to bend what is seen through it: a window, a soap bubble without colours.
 #[derive(Clone, Debug)]
 pub struct ThinDielectricMaterial {
     /// The index of refraction within the sheet.
     pub ior: f64,
+    /// What it encloses, as a flask does smoke, and its priority; none where that is nothing.
+    pub within: Option<(Arc<dyn Medium>, i32)>,
 }
 
 impl Material for ThinDielectricMaterial {
     fn bsdf(&self, at: &ShadingPoint) -> BsdfMix {
-        ThinDielectric::new(self.ior / at.outside).into()
+        match self.within {
+            None => ThinDielectric::new(self.ior / at.outside).into(),
+            // What does not go straight on.
+            Some(_) => Mirror { reflectance: Rgb::ONE }.into(),
+        }
     }
 
     fn constant(&self) -> Option<AnyBsdf> {
-        Some(ThinDielectric::new(self.ior).into())
+        self.within.is_none().then(|| ThinDielectric::new(self.ior).into())
     }
 
     fn needs(&self) -> Needs {
@@ -33,5 +40,17 @@ impl Material for ThinDielectricMaterial {
 
     fn transmits(&self) -> bool {
         true
+    }
+
+    fn medium(&self) -> Option<&Arc<dyn Medium>> {
+        self.within.as_ref().map(|(medium, _)| medium)
+    }
+
+    fn straight(&self, cosine: f64, outside: f64) -> f64 {
+        if self.within.is_none() { 0.0 } else { 1.0 - ThinDielectric::new(self.ior / outside).reflectance(cosine) }
+    }
+
+    fn boundary(&self) -> Option<i32> {
+        self.within.as_ref().map(|(_, priority)| *priority)
     }
 }

@@ -22,9 +22,9 @@ impl Coefficients {
         Self { extinction: absorption + scattering, scattering, emission }
     }
 
-    /// So many times as much of it.
+    /// So many times as much of it, for each colour.
     #[inline]
-    pub fn times(&self, density: f64) -> Self {
+    pub fn times(&self, density: Rgb) -> Self {
         Self {
             extinction: self.extinction * density,
             scattering: self.scattering * density,

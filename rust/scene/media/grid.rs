@@ -1,44 +1,44 @@
 //! A medium that differs from place to place, by numbers on a grid.
 
-use super::stretch::{Content, Stretch};
-use super::{Coefficients, Medium, Stretches, Values};
+use super::block_walk::{BlockWalk, Majorants};
+use super::{Coefficients, Field, Glow, Medium, Stretches};
 use crate::math::{Affine, DVec3, Ray};
 use crate::optics::{Phase, Rgb};
 
 /// A medium whose density is given on a regular grid: where the density is 1, it does to light what its coefficients
 /// say. Outside of the grid there is nothing.
-///
-/// Rays go through it block by block, each with the greatest density in it (after Amanatides and Woo, "A Fast Voxel
-/// Traversal Algorithm for Ray Tracing", 1987), so that what is empty costs nothing and what is thin next to nothing.
 #[derive(Clone, Debug)]
 pub struct GridMedium {
-    density: Values<1>,
+    density: Field,
+    /// The share of what is dimmed that is scattered, where that differs from place to place.
+    albedo: Option<Field>,
     /// What it gives off by itself, if that does not go with the density.
-    glow: Option<Values<3>>,
+    glow: Option<Glow>,
     coefficients: Coefficients,
     phase: Phase,
     /// From the space of the grid to the unit cube.
     into: Affine,
-    blocks: [usize; 3],
-    /// The greatest density in each block, and the greatest glow.
-    densest: Vec<f32>,
-    brightest: Vec<f32>,
-    /// How long a block is across at most, in the space of the grid.
-    across: f64,
+    majorants: Majorants,
+}
+
+/// What a grid has at a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Here {
+    pub density: Rgb,
+    pub albedo: Option<Rgb>,
 }
 
 impl GridMedium {
-    /// How many numbers a block has along an axis, about: a block of 8 has 512, and its majorant a byte for each 128.
-    const BLOCK: usize = 8;
-
     /// A medium of a density, of what it does to light where that is 1, and of what it gives off by itself beside. The
-    /// matrix takes the unit cube to the grid.
+    /// matrix takes the unit cube to the grid. Where the share that is scattered has a grid of its own, it is a share
+    /// of the extinction of the coefficients.
     ///
     /// # Errors
     /// If something is negative or not finite, or the matrix has no inverse: what, in a few words.
     pub fn new(
-        density: Values<1>,
-        glow: Option<Values<3>>,
+        density: Field,
+        albedo: Option<Field>,
+        glow: Option<Glow>,
         coefficients: Coefficients,
         phase: Phase,
         matrix: [[f64; 4]; 3],
@@ -48,31 +48,46 @@ impl GridMedium {
         }
         let place = Affine::from_matrix(matrix);
         let into = place.inverse().map_err(|why| format!("transform has no inverse: {why}"))?;
-        let blocks = density.size().map(|n| n.div_ceil(Self::BLOCK));
-        let densest = density.greatest(blocks);
-        let brightest = glow.as_ref().map_or_else(Vec::new, |glow| glow.greatest(blocks));
-        let sides = [0, 1, 2].map(|axis| DVec3::from_array(place.rows.map(|row| row[axis])) / blocks[axis] as f64);
-        let across = sides.iter().map(|side| side.length()).sum();
-        let medium = Self { density, glow, coefficients, phase, into, blocks, densest, brightest, across };
-        let greatest = f64::from(medium.densest.iter().copied().fold(0.0, f32::max));
-        if !(coefficients.extinction * greatest).is_finite() {
+        let is_glowing = !coefficients.emission.is_black();
+        let majorants = Majorants::new(&density, glow.as_ref(), &coefficients, is_glowing, &place);
+        let scattering = if albedo.is_some() { coefficients.extinction } else { coefficients.scattering };
+        let coefficients = Coefficients { scattering, ..coefficients };
+        let medium = Self { density, albedo, glow, coefficients, phase, into, majorants };
+        if !(coefficients.extinction * medium.majorants.densest()).is_finite() {
             return Err("density times a coefficient must be finite".into());
         }
         Ok(medium)
     }
 
-    /// What there is in a block.
-    #[inline]
-    fn content(&self, block: usize) -> Content {
-        let density = f64::from(self.densest[block]);
-        let glows = self.brightest.get(block).is_some_and(|&glow| glow > 0.0);
-        if density == 0.0 && !glows {
-            return Content::Even(Coefficients::NONE);
-        }
-        let majorant = self.coefficients.extinction * density;
-        // Where it glows, it is asked for about once in a block, however thin it is.
-        let glows = glows || !self.coefficients.emission.is_black();
-        Content::Varies(if glows { majorant.at_least(Rgb::splat(1.0 / self.across)) } else { majorant })
+    /// Whether its density has a colour at each point.
+    pub(super) fn is_coloured(&self) -> bool {
+        self.density.is_coloured()
+    }
+
+    /// Whether the share that is scattered has a grid.
+    pub(super) fn has_albedo(&self) -> bool {
+        self.albedo.is_some()
+    }
+
+    /// How long a block is across at most, in the space of the grid.
+    pub(super) fn across(&self) -> f64 {
+        self.majorants.across()
+    }
+
+    /// What is at a point of the unit cube.
+    pub(super) fn here(&self, within: DVec3) -> Here {
+        let albedo = self.albedo.as_ref().map(|albedo| albedo.at(within));
+        Here { density: self.density.at(within), albedo }
+    }
+
+    /// A point as the unit cube has it.
+    pub(super) fn within(&self, point: DVec3) -> DVec3 {
+        self.into.point(point)
+    }
+
+    /// What it gives off by itself, if that does not go with the density.
+    pub(super) fn glow(&self) -> Option<&Glow> {
+        self.glow.as_ref()
     }
 }
 
@@ -86,142 +101,47 @@ impl Medium for GridMedium {
     }
 
     fn glows(&self) -> bool {
-        !self.coefficients.emission.is_black() || self.brightest.iter().any(|&most| most > 0.0)
+        !self.coefficients.emission.is_black() || self.majorants.glows()
     }
 
     fn stretches(&self, ray: &Ray, span: [f64; 2]) -> Stretches<'_> {
-        Stretches::blocks(BlockWalk::new(self, self.into.point(ray.origin), self.into.vector(ray.direction), span))
+        let (origin, direction) = (self.into.point(ray.origin), self.into.vector(ray.direction));
+        Stretches::blocks(BlockWalk::new(&self.majorants, origin, direction, span))
     }
 
     #[inline]
     fn at(&self, point: DVec3) -> Coefficients {
         let within = self.into.point(point);
-        let mut here = self.coefficients.times(self.density.value(within)[0]);
+        let mut here = self.coefficients.times(self.density.at(within));
+        if let Some(albedo) = &self.albedo {
+            here.scattering = here.extinction * albedo.at(within);
+        }
         if let Some(glow) = &self.glow {
-            here.emission += Rgb::from_array(glow.value(within));
+            here.emission += glow.at(within, || (here.extinction - here.scattering).at_least(Rgb::ZERO));
         }
         here
     }
 
     fn bytes(&self) -> usize {
-        self.density.bytes()
-            + self.glow.as_ref().map_or(0, Values::bytes)
-            + size_of_val(self.densest.as_slice())
-            + size_of_val(self.brightest.as_slice())
-    }
-}
-
-/// A ray on its way through the blocks of a grid.
-#[derive(Clone, Debug)]
-pub(super) struct BlockWalk<'m> {
-    medium: &'m GridMedium,
-    /// Whether there is nothing left but what lies outside.
-    is_past: bool,
-    /// Where it enters the grid, if it has not yet.
-    enters: Option<f64>,
-    /// Where it leaves the grid, or ends in it.
-    leaves: f64,
-    end: f64,
-    block: [usize; 3],
-    /// The `t` at which it comes to the next block along each axis, and how far that is from one to the next.
-    next: [f64; 3],
-    step: [f64; 3],
-    is_up: [bool; 3],
-}
-
-impl<'m> BlockWalk<'m> {
-    fn new(medium: &'m GridMedium, origin: DVec3, direction: DVec3, [start, end]: [f64; 2]) -> Self {
-        let (mut first, mut last) = (start, end);
-        for axis in 0..3 {
-            if direction[axis] == 0.0 {
-                if !(0.0..=1.0).contains(&origin[axis]) {
-                    last = f64::NEG_INFINITY;
-                }
-                continue;
-            }
-            let [a, b] = [0.0, 1.0].map(|face| (face - origin[axis]) / direction[axis]);
-            first = first.max(a.min(b));
-            last = last.min(a.max(b));
-        }
-        let is_past = first >= last;
-        let mut walk = Self {
-            medium,
-            is_past,
-            enters: (first > start).then_some(first),
-            leaves: last,
-            end,
-            block: [0; 3],
-            next: [f64::INFINITY; 3],
-            step: [0.0; 3],
-            is_up: [false; 3],
-        };
-        if is_past {
-            walk.enters = None;
-            return walk;
-        }
-        for axis in 0..3 {
-            let count = medium.blocks[axis] as f64;
-            let place = ((origin[axis] + direction[axis] * first) * count).clamp(0.0, count);
-            walk.block[axis] = (place as usize).min(medium.blocks[axis] - 1);
-            walk.is_up[axis] = direction[axis] > 0.0;
-            if direction[axis] != 0.0 {
-                let face = (walk.block[axis] + usize::from(walk.is_up[axis])) as f64 / count;
-                walk.next[axis] = (face - origin[axis]) / direction[axis];
-                walk.step[axis] = 1.0 / (count * direction[axis].abs());
-            }
-        }
-        walk
-    }
-}
-
-impl Iterator for BlockWalk<'_> {
-    type Item = Stretch;
-
-    #[inline]
-    fn next(&mut self) -> Option<Stretch> {
-        let nothing = Content::Even(Coefficients::NONE);
-        if let Some(end) = self.enters.take() {
-            return Some(Stretch { end, content: nothing });
-        }
-        if self.is_past {
-            let end = std::mem::replace(&mut self.end, f64::NAN);
-            return (!end.is_nan()).then_some(Stretch { end, content: nothing });
-        }
-        let [_, y, z] = self.medium.blocks;
-        let content = self.medium.content((self.block[0] * y + self.block[1]) * z + self.block[2]);
-        let [a, b, c] = self.next;
-        let axis = if a <= b && a <= c {
-            0
-        } else if b <= c {
-            1
-        } else {
-            2
-        };
-        let end = self.next[axis];
-        if end >= self.leaves {
-            self.is_past = true;
-            return Some(Stretch { end: self.leaves, content });
-        }
-        self.next[axis] += self.step[axis];
-        let (block, count) = (self.block[axis], self.medium.blocks[axis]);
-        // What rounding puts a hair's breadth beyond the last block is in it still.
-        self.block[axis] = if self.is_up[axis] { (block + 1).min(count - 1) } else { block.saturating_sub(1) };
-        Some(Stretch { end, content })
+        let albedo = self.albedo.as_ref().map_or(0, Field::bytes);
+        self.density.bytes() + albedo + self.glow.as_ref().map_or(0, Glow::bytes) + self.majorants.bytes()
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::At;
+    use super::super::{At, Blocks, Content, Stretch, Values};
     use super::*;
     use crate::sampling::{Sampler, warp};
+    use std::sync::Arc;
 
     const UNIT: [[f64; 4]; 3] = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]];
 
     fn grid(size: [usize; 3], at: At, density: Vec<f32>, matrix: [[f64; 4]; 3]) -> GridMedium {
-        let values = Values::new(size, at, density.into_iter().map(|v| [v]).collect()).unwrap();
+        let numbers: Vec<_> = density.into_iter().map(|v| [v]).collect();
+        let values = Values::new(Arc::new(Blocks::new(size, &numbers).unwrap()), at);
         let absorbing = Coefficients::new(Rgb::ONE, Rgb::ZERO, Rgb::ZERO);
-        GridMedium::new(values, None, absorbing, Phase::Isotropic, matrix).unwrap()
+        GridMedium::new(Field::Grey(values), None, None, absorbing, Phase::Isotropic, matrix).unwrap()
     }
 
     /// The optical depth along a ray to `t`, by a rule that is exact where densities are cubic between so many points.
@@ -324,22 +244,17 @@ mod tests {
     #[test]
     fn memory_is_that_of_the_numbers_and_little_more() {
         // Of 512³ numbers the blocks take 1/128 more: 541 MB in all.
-        let medium = grid([64; 3], At::Corners, vec![0.0; 1 << 18], UNIT);
+        let medium = grid([64; 3], At::Corners, vec![1.0; 1 << 18], UNIT);
         let whole = medium.bytes() * 512;
         assert!(whole <= 600_000_000, "{whole}");
     }
 
     #[test]
-    fn refuses_what_is_no_density_and_what_lies_nowhere() {
-        for bad in [-1.0, f32::NAN, f32::INFINITY] {
-            let why = Values::new([1, 2, 2], At::Corners, vec![[1.0], [0.0], [1.0], [bad]]).unwrap_err();
-            assert!(why.contains("[0, 1, 1]"), "{why}");
-        }
-        assert!(Values::<1>::new([0, 1, 1], At::Corners, vec![]).is_err());
-        assert!(Values::new([2, 1, 1], At::Corners, vec![[1.0]]).is_err());
+    fn refuses_what_lies_nowhere_and_what_is_no_coefficient() {
         let flat = [UNIT[0], UNIT[1], [0.0; 4]];
-        let values = Values::new([1; 3], At::Corners, vec![[1.0]]).unwrap();
-        let new = |coefficients, matrix| GridMedium::new(values.clone(), None, coefficients, Phase::Isotropic, matrix);
+        let field = Field::Grey(Values::new(Arc::new(Blocks::new([1; 3], &[[1.0]]).unwrap()), At::Corners));
+        let new =
+            |coefficients, matrix| GridMedium::new(field.clone(), None, None, coefficients, Phase::Isotropic, matrix);
         assert!(new(Coefficients::NONE, flat).is_err());
         assert!(new(Coefficients::new(Rgb::ONE, Rgb::splat(f64::NAN), Rgb::ZERO), UNIT).is_err());
         assert!(new(Coefficients::NONE, UNIT).is_ok());

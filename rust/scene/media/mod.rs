@@ -1,23 +1,32 @@
 //! What fills space: one interface over all media.
 
+mod block_walk;
+mod blocks;
 mod coefficients;
+mod field;
+mod glow;
 mod grid;
 mod homogeneous;
 mod stretch;
 mod values;
 mod waved;
+mod waved_grid;
 
+pub use blocks::{Blocks, Building};
 pub use coefficients::Coefficients;
+pub use field::Field;
+pub use glow::Glow;
 pub use grid::GridMedium;
 pub use homogeneous::Homogeneous;
 pub use stretch::{Content, Stretch};
 pub use values::{At, Values};
 pub use waved::WavedMedium;
+pub use waved_grid::WavedGrid;
 
 use crate::math::{DVec3, Ray};
 use crate::optics::spectra::Waves;
 use crate::optics::{Phase, Rgb};
-use grid::BlockWalk;
+use block_walk::BlockWalk;
 use std::fmt::Debug;
 
 /// What fills space, and dims and scatters light on its way.
@@ -44,6 +53,11 @@ pub trait Medium: Debug + Send + Sync {
 
     /// What there is at a point.
     fn at(&self, point: DVec3) -> Coefficients;
+
+    /// What there is at a point, at a path's wavelengths, where it is told by wavelength.
+    fn at_waves(&self, point: DVec3, waves: &Waves) -> Coefficients {
+        self.by_waves(self.at(point), waves)
+    }
 
     /// What there is at a point is this, at a path's wavelengths, where it is told by wavelength.
     fn by_waves(&self, here: Coefficients, _waves: &Waves) -> Coefficients {

@@ -1,12 +1,12 @@
 """Media: what fills shapes, and the space around them."""
 
 from dataclasses import replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ...materials import Boundary, Dielectric, Mask, Material
+from ...materials import Boundary, Dielectric, Mask, Material, ThinDielectric
 from ...media import GridMedium, HenyeyGreenstein, Homogeneous, Isotropic, Medium, Phase, Rayleigh
 from ...media.files import read_density
 from .errors import SceneError
@@ -43,7 +43,7 @@ def filled(plugin: Plugin, material: Material | None) -> Material | None:
     if is_null:
         # Without a medium that is a hole.
         return Mask(Dielectric(), 0.0) if interior is None else Boundary(interior)
-    if interior is None or not isinstance(material, Dielectric):
+    if interior is None or not isinstance(material, Dielectric | ThinDielectric):
         # Nothing is seen of what is within an opaque shape.
         return material
     return replace(material, interior=interior)
@@ -106,21 +106,21 @@ def medium(plugin: Plugin) -> Medium:
 
 def _read(plugin: Plugin) -> Medium:
     scale, phase = plugin.number("scale", 1.0), _phase(plugin)
-    albedo = np.array(_constant(plugin, "albedo", 0.75))
-    grid = plugin.child("sigma_t") if plugin.type == "heterogeneous" else None
-    if grid is not None and grid.type == "gridvolume":
-        density, bounds = _grid(grid)
-        return GridMedium(
-            density,
-            bounds,
-            transform=grid.to_world(),
-            absorption=scale * (1 - albedo),
-            scattering=scale * albedo,
-            phase=phase,
-            at="centres",
-        )
-    extinction = scale * np.array(_constant(plugin, "sigma_t", 1.0))
-    return Homogeneous(extinction * (1 - albedo), extinction * albedo, phase)
+    if plugin.type == "homogeneous":
+        albedo = np.array(_constant(plugin, "albedo", 0.75))
+        extinction = scale * np.array(_constant(plugin, "sigma_t", 1.0))
+        return Homogeneous(extinction * (1 - albedo), extinction * albedo, phase)
+    # There is nothing of it where its extinction has no volume.
+    dimmed = _volume(plugin, "sigma_t", 1.0)
+    scattered = _volume(plugin, "albedo", 0.75)
+    extinction = scale * dimmed.colour
+    placed = {"bounds": dimmed.bounds, "transform": dimmed.transform, "at": "centres", "phase": phase}
+    if scattered.numbers is None:
+        absorption, scattering = extinction * (1 - scattered.colour), extinction * scattered.colour
+        return GridMedium(dimmed.density, absorption=absorption, scattering=scattering, **placed)
+    if scattered.bounds != dimmed.bounds or not np.array_equal(scattered.transform, dimmed.transform):
+        plugin.fail("sigma_t and albedo must lie in the same place")
+    return GridMedium(dimmed.density, extinction=extinction, albedo=scattered.numbers, **placed)
 
 
 def _constant(plugin: Plugin, name: str, default: float) -> Triple:
@@ -135,17 +135,37 @@ def _constant(plugin: Plugin, name: str, default: float) -> Triple:
     return result
 
 
-def _grid(plugin: Plugin) -> tuple[NDArray[Any], Any]:
+class _Volume(NamedTuple):
+    """Numbers over the unit cube, or bounds, wherever a transform takes these; else a colour."""
+
+    colour: NDArray[np.float64]
+    numbers: NDArray[Any] | None = None
+    bounds: Any = None
+    transform: Any = None
+
+    @property
+    def density(self) -> NDArray[Any]:
+        return np.ones((1, 1, 1)) if self.numbers is None else self.numbers
+
+
+def _volume(medium: Plugin, name: str, default: float) -> _Volume:
+    plugin = medium.child(name)
+    if plugin is None or plugin.type not in VOLUMES:
+        return _Volume(np.array(colour(medium, name, default)), transform=np.eye(4))
+    if plugin.type == "constvolume":
+        value, transform = np.array(colour(plugin, "value", 1.0)), plugin.to_world()
+        plugin.done()
+        return _Volume(value, transform=transform)
     if not plugin.has("filename"):
         plugin.fail("a grid must be given by its filename")
     plugin.choice("filter_type", "trilinear", ("trilinear",))
     plugin.choice("wrap_mode", "clamp", ("clamp",))
     plugin.ignore("raw", "accel", "max_value")
-    density, box = read_density(plugin.path())
+    numbers, box = read_density(plugin.path())
     placed = plugin.switch("use_grid_bbox", False)
-    plugin.to_world()
+    transform = plugin.to_world()
     plugin.done()
-    return density, box if placed else None
+    return _Volume(np.ones(3), numbers, box if placed else None, transform)
 
 
 def _phase(plugin: Plugin) -> Phase:

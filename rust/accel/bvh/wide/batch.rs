@@ -3,7 +3,7 @@
 use super::answer::Answer;
 use super::errand::{Errand, Telling};
 use super::first::First;
-use super::winners::Winners;
+use super::winners::{Alone, Winners};
 use super::{WideBvh, few, packet, single, wave};
 use crate::accel::query::Query;
 use crate::math::{RayBatch, coherence};
@@ -50,6 +50,10 @@ impl<const N: usize, L: Leaves<N>, A: Answer> Kernel<N> for Firsts<'_, N, L, A> 
     #[inline(always)]
     fn run<S: Simd<N>>(self, simd: S) {
         let Self { bvh, rays, mut answer } = self;
+        if rays.len() == 1 && !bvh.nodes.is_empty() {
+            let errand = &mut First { rays: &rays, answer: &mut answer, winners: Alone };
+            return single::answer(simd, bvh, &rays, errand);
+        }
         let errand = &mut First { rays: &rays, answer: &mut answer, winners: Winners::new() };
         if bvh.nodes.is_empty() {
             miss(bvh, rays.len(), errand);

@@ -7,6 +7,7 @@ use super::first::First;
 use super::node::Packed;
 use super::sixteen::Sixteen;
 use super::step::Stacks;
+use super::winners::Settling;
 use super::{single, winners};
 use crate::math::Aabb;
 use crate::shapes::triangle::{ALL, Leaves, Met, RAYS};

@@ -8,19 +8,19 @@ use super::errand::{Errand, Visited};
 use super::looking::Looking;
 use super::node::Packed;
 use super::sixteen::Sixteen;
-use super::winners::Winners;
+use super::winners::{Settling, Winners};
 use crate::math::RayBatch;
 use crate::shapes::triangle::{EdgeRay, Leaves, RAYS};
 use crate::simd::Simd;
 
 /// The first hits of rays, or whether they have any.
-pub struct First<'a, A> {
+pub struct First<'a, A, W = Winners> {
     pub rays: &'a RayBatch<'a>,
     pub answer: &'a mut A,
-    pub winners: Winners,
+    pub winners: W,
 }
 
-impl<A: Answer> First<'_, A> {
+impl<A: Answer, W: Settling> First<'_, A, W> {
     /// Nothing better is to be found for ray `i`.
     #[inline(always)]
     pub fn conclude<const N: usize, L: Leaves<N>>(&mut self, bvh: &WideBvh<N, L>, i: usize, best: &Best) {
@@ -34,7 +34,7 @@ impl<A: Answer> First<'_, A> {
     }
 }
 
-impl<const N: usize, L: Leaves<N>, A: Answer> Errand<N, L> for First<'_, A> {
+impl<const N: usize, L: Leaves<N>, A: Answer, W: Settling> Errand<N, L> for First<'_, A, W> {
     type Flight = Looking;
     const NEAREST_FIRST: bool = !A::ANY;
     const SHORTENS: bool = !A::ANY;

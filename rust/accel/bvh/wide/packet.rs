@@ -19,6 +19,7 @@ use super::first::First;
 use super::node::{Packed, WideNode};
 use super::sixteen::Sixteen;
 use super::step::Stacks;
+use super::winners::Settling;
 use super::{single, winners};
 use crate::accel::slab::Clock;
 use crate::shapes::triangle::{ALL, Column, Leaves, Met, RAYS};

@@ -9,6 +9,47 @@ use crate::math::RayBatch;
 use crate::shapes::triangle::{Column, EdgeRay, EdgeRays, Leaves, Met, RAYS, Real};
 use crate::simd::Lanes;
 
+/// What computes the triangles that have won.
+pub trait Settling {
+    /// One more, of ray `i`.
+    fn add<const N: usize, L: Leaves<N>, A: Answer>(
+        &mut self,
+        bvh: &WideBvh<N, L>,
+        rays: &RayBatch<'_>,
+        i: usize,
+        best: &Best,
+        answer: &mut A,
+    );
+
+    /// Answers all that there are.
+    fn settle<const N: usize, L: Leaves<N>, A: Answer>(
+        &mut self,
+        bvh: &WideBvh<N, L>,
+        rays: &RayBatch<'_>,
+        answer: &mut A,
+    );
+}
+
+/// Each by itself, at once: what sixteen take together takes one ray as long.
+pub struct Alone;
+
+impl Settling for Alone {
+    #[inline(always)]
+    fn add<const N: usize, L: Leaves<N>, A: Answer>(
+        &mut self,
+        bvh: &WideBvh<N, L>,
+        rays: &RayBatch<'_>,
+        i: usize,
+        best: &Best,
+        answer: &mut A,
+    ) {
+        alone(bvh, rays, i, best.leaf, best.lane, answer);
+    }
+
+    #[inline(always)]
+    fn settle<const N: usize, L: Leaves<N>, A: Answer>(&mut self, _: &WideBvh<N, L>, _: &RayBatch<'_>, _: &mut A) {}
+}
+
 /// Rays that are done, each with the triangle that it hits. While one sixteen fill up, the sixteen before wait: what is
 /// written number by number is not to be read as vectors at once, since a wide load must wait for narrow stores.
 pub struct Winners {
@@ -33,10 +74,11 @@ impl Winners {
     pub fn new() -> Self {
         Self { sixteens: [Sixteen::new(), Sixteen::new()], filling: 0 }
     }
+}
 
-    /// One more, of ray `i`.
+impl Settling for Winners {
     #[inline(always)]
-    pub fn add<const N: usize, L: Leaves<N>, A: Answer>(
+    fn add<const N: usize, L: Leaves<N>, A: Answer>(
         &mut self,
         bvh: &WideBvh<N, L>,
         rays: &RayBatch<'_>,
@@ -52,9 +94,8 @@ impl Winners {
         }
     }
 
-    /// Answers all that there are.
     #[inline(always)]
-    pub fn settle<const N: usize, L: Leaves<N>, A: Answer>(
+    fn settle<const N: usize, L: Leaves<N>, A: Answer>(
         &mut self,
         bvh: &WideBvh<N, L>,
         rays: &RayBatch<'_>,

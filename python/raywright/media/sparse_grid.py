@@ -1,0 +1,146 @@
+"""Numbers on a grid that is mostly empty."""
+
+from collections.abc import Iterable, Iterator, Sequence
+from typing import Any, Protocol, final
+
+import numpy as np
+from numpy.typing import ArrayLike, DTypeLike, NDArray
+
+from .. import _core
+from ..arrays import real_array
+
+# How many points blocks have along an axis.
+BLOCK = 8
+
+
+class Sliced(Protocol):
+    """What has a shape and gives its slabs by slices, as arrays and datasets of h5py and zarr do."""
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Of three axes, or of four, the last of which has three entries."""
+
+    def __getitem__(self, slab: slice, /) -> Any:
+        """Give some planes across the first axis."""
+
+
+@final
+class SparseGrid:
+    """Numbers on a regular grid, of which those that are 0 take next to no memory.
+
+    Blocks of 8 by 8 by 8 points in which all is 0 are not kept. It stands wherever a `GridMedium` takes an
+    array, and the compiled scene has no copy of it: 512³ numbers that are all above 0 take 541 MB in all,
+    where an array of them would take as much again.
+
+    Parameters
+    ----------
+    shape : 3 or 4 int
+        (X, Y, Z), the first axis being x, or (X, Y, Z, 3) for a number each of red, green and blue.
+    parts : iterable of (3 int, array)
+        Where parts of it begin, and their numbers, finite and at least 0, which are kept as float32. What
+        comes later stands in place of what was there; all else is 0.
+
+    Raises
+    ------
+    ValueError
+        If a part reaches beyond the grid, a number is negative or not finite, or something has another shape.
+    TypeError
+        If numbers are not real.
+    """
+
+    __slots__ = ("_blocks", "shape")
+
+    shape: tuple[int, ...]
+
+    def __init__(self, shape: Sequence[int], parts: Iterable[tuple[Sequence[int], ArrayLike]] = ()) -> None:
+        self.shape = _shape(shape)
+        self._blocks = _core.GridBlocks(self.shape[:3], len(self.shape) == 4, self._checked(parts))
+
+    def _checked(
+        self, parts: Iterable[tuple[Sequence[int], ArrayLike]]
+    ) -> Iterator[tuple[tuple[int, ...], NDArray[np.float32]]]:
+        for origin, numbers in parts:
+            found = real_array("numbers", numbers)
+            if found.ndim != len(self.shape) or found.shape[3:] != self.shape[3:]:
+                raise ValueError(f"numbers of a grid of shape {self.shape} cannot have shape {found.shape}")
+            begins = tuple(int(n) for n in origin)
+            if len(begins) != 3 or any(
+                a < 0 or a + n > most for a, n, most in zip(begins, found.shape, self.shape, strict=False)
+            ):
+                raise ValueError(
+                    f"a part of shape {found.shape} at {begins} lies beyond the grid of shape {self.shape}"
+                )
+            # What float32 cannot hold becomes infinite, and is told.
+            with np.errstate(over="ignore"):
+                yield begins, np.ascontiguousarray(found, np.float32)
+
+    @classmethod
+    def of(cls, numbers: "ArrayLike | Sliced") -> "SparseGrid":
+        """Return the grid of an array, of which no more than a few planes are in memory at a time.
+
+        Parameters
+        ----------
+        numbers : array_like, or what has a shape and gives slabs by slices
+            (X, Y, Z) or (X, Y, Z, 3), finite and at least 0: an array, a memory map such as
+            ``np.load(path, mmap_mode="r")``, or a dataset of h5py or zarr.
+
+        Returns
+        -------
+        SparseGrid
+
+        Raises
+        ------
+        ValueError
+            If it is empty or of another shape, or a number is negative or not finite.
+        TypeError
+            If numbers are not real.
+        """
+        sliced: Any = numbers if hasattr(numbers, "shape") else real_array("numbers", numbers)
+        slabs = (((x, 0, 0), sliced[x : x + BLOCK]) for x in range(0, sliced.shape[0], BLOCK))
+        return cls(sliced.shape, slabs)
+
+    @property
+    def nbytes(self) -> int:
+        """The memory held."""
+        return self._blocks.bytes()
+
+    @property
+    def parts(self) -> "Iterator[tuple[tuple[int, int, int], NDArray[np.float32]]]":
+        """Where blocks begin that are not all 0, and their numbers."""
+        for low, high in self._blocks.kept().tolist():
+            size = [b - a for a, b in zip(low, high, strict=True)]
+            yield tuple(low), self._blocks.part(low, high).reshape(*size, *self.shape[3:])
+
+    def dense(self) -> NDArray[np.float32]:
+        """Return all numbers as an array."""
+        return self._blocks.part((0, 0, 0), self.shape[:3]).reshape(self.shape)
+
+    def max(self) -> float:
+        """Return the greatest number."""
+        return self._blocks.greatest()
+
+    def __array__(self, dtype: DTypeLike | None = None, copy: bool | None = None) -> NDArray[Any]:
+        if copy is False:
+            raise ValueError("a sparse grid becomes an array by a copy")
+        return self.dense().astype(dtype or np.float32, copy=False)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, SparseGrid):
+            return NotImplemented
+        return self.shape == other.shape and self._blocks.same(other._blocks)
+
+    def __hash__(self) -> int:
+        return hash((self.shape, self.nbytes, self.max()))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return SparseGrid, (self.shape, list(self.parts))
+
+    def __repr__(self) -> str:
+        return f"SparseGrid(<{' x '.join(map(str, self.shape))}>, {self.nbytes / 1e6:.3g} MB)"
+
+
+def _shape(given: Sequence[int]) -> tuple[int, ...]:
+    shape = tuple(given)
+    if len(shape) not in (3, 4) or shape[3:] not in ((), (3,)) or min(shape) < 1:
+        raise ValueError(f"shape must be (X, Y, Z) or (X, Y, Z, 3), and not empty, got {shape}")
+    return tuple(int(n) for n in shape)
