@@ -22,6 +22,7 @@ from mitsuba_parts import (
     scene,
 )
 from mitsuba_scenes_extended import extended
+from mitsuba_spectral import spectral
 
 
 def scenes():
@@ -488,4 +489,5 @@ def scenes():
             b=ball({"type": "diffuse"}, emitter={"type": "area", "radiance": picture("colours.png")}),
         ),
         **extended(),
+        **spectral(),
     }
