@@ -1,6 +1,7 @@
 //! Light tracing.
 
 use super::light_paths::{LightPaths, Limits};
+use super::parting::waves_among_media;
 use super::transport::Settings;
 use super::volumes::{Counting, MediaLightPaths, Volumes};
 use super::{Integrator, Job, LightWorker, Session, Worker};
@@ -47,9 +48,14 @@ impl Integrator for LightTraced {
             .not_drawn()
             .or_else(|| scene.glow())
             .map(|why| format!("{why}, where no path from a light can start: use Path"))
+            .or_else(|| waves_among_media(scene))
     }
 
     fn takes_media(&self) -> bool {
+        true
+    }
+
+    fn takes_waves(&self) -> bool {
         true
     }
 }

@@ -12,6 +12,7 @@ pub use merging::Merge;
 
 use super::light_paths::{LightPaths, Limits, Partials, Weighing};
 use super::volumes::{BothEnds, Counting, MediaLightPaths};
+use super::parting::waves_among_media;
 use super::{Integrator, Job, LightWorker, Session, Worker};
 use crate::scene::{Emitters, Scene};
 use crate::workers::Cancel;
@@ -76,10 +77,16 @@ impl Integrator for Bidirectional {
             return super::LightTraced::default().objection(scene, adaptive);
         }
         let is_merged = self.merge.is_some() && scene.plan().needs().media;
-        is_merged.then(|| "walks are not merged among media: use merge=False, or ProgressivePhotonMap".into())
+        waves_among_media(scene).or_else(|| {
+            is_merged.then(|| "walks are not merged among media: use merge=False, or ProgressivePhotonMap".into())
+        })
     }
 
     fn takes_media(&self) -> bool {
+        true
+    }
+
+    fn takes_waves(&self) -> bool {
         true
     }
 

@@ -328,7 +328,7 @@ impl<'a> BothEnds<'a> {
             return Rgb::ZERO;
         }
         let media = at.media(ray.direction);
-        let light = self.course().through(light, ray, media, sample.hero, sample.numbers, sample.cancel);
+        let light = self.course().through(light, ray, media, sample.numbers, sample.cancel);
         if light.is_finite() { light } else { Rgb::ZERO }
     }
 

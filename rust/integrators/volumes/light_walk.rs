@@ -99,7 +99,7 @@ impl<'a> MediaLightWalk<'a> {
     pub fn follow(&self, paths: &mut [Sampler], cancel: &Cancel, visitor: &mut impl MediaVisitor<'a>) {
         let mut setting_out = Vec::new();
         for (number, sampler) in (0u32..).zip(paths.iter_mut()) {
-            let Some(light) = self.emitters.sample(&EmissionDimensions::numbers(sampler)) else { continue };
+            let Some(light) = self.emitters.sample(&EmissionDimensions::numbers(sampler), None) else { continue };
             let (time, of_scene) = self.times.of(number as usize, self.moves, self.camera, sampler);
             setting_out.push((number, light, time, Ray { time: of_scene, ..light.ray }));
         }
@@ -176,7 +176,7 @@ impl<'a> MediaLightWalk<'a> {
         let Ray { origin, direction, time, .. } = path.going.ray;
         let back = Ray { time, ..Ray::new(origin, -direction) };
         let before = path.flux();
-        let left = self.course().through(before, back, MediumStack::NONE, path.hero, numbers, cancel);
+        let left = self.course().through(before, back, MediumStack::NONE, numbers, cancel);
         visitor.absorb(before - left);
         path.going.weights.carried = left;
     }

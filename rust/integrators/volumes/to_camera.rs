@@ -119,7 +119,7 @@ impl<'a> MediaVisitor<'a> for Connections<'a> {
         }
         let segment = at.leaving(at.origin().segment(&RayOrigin::free(seen.origin)), Ray::NO_TRIANGLE);
         let course = Course { scene, scatters: true, waves: None };
-        let light = course.through(light, segment, at.media(direction), path.hero, numbers, cancel);
+        let light = course.through(light, segment, at.media(direction), numbers, cancel);
         if light != Rgb::ZERO && light.is_finite() {
             self.splats.push(Splat { film: seen.film, light });
         }

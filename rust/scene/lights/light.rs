@@ -87,6 +87,11 @@ pub trait Light: Debug + Send + Sync {
         None
     }
 
+    /// The same at some wavelengths, if it is asked for those.
+    fn sample_emission_at(&self, u: [f64; 2], _waves: Option<&Waves>) -> Option<PointEmission> {
+        self.sample_emission(u)
+    }
+
     /// The density, by solid angle, with which [`Light::sample_emission`] draws a unit direction.
     fn emission_pdf(&self, _direction: DVec3) -> f64 {
         0.0

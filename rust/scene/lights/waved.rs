@@ -94,8 +94,12 @@ impl Light for Waved {
     }
 
     fn sample_emission(&self, u: [f64; 2]) -> Option<PointEmission> {
+        self.sample_emission_at(u, None)
+    }
+
+    fn sample_emission_at(&self, u: [f64; 2], waves: Option<&Waves>) -> Option<PointEmission> {
         let drawn = self.light.sample_emission(u)?;
-        Some(PointEmission { weight: self.at(drawn.weight, None), ..drawn })
+        Some(PointEmission { weight: self.at(drawn.weight, waves), ..drawn })
     }
 
     fn emission_pdf(&self, direction: DVec3) -> f64 {
