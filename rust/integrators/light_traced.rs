@@ -1,7 +1,6 @@
 //! Light tracing.
 
 use super::light_paths::{LightPaths, Limits};
-use super::parting::waves_among_media;
 use super::transport::Settings;
 use super::volumes::{Counting, MediaLightPaths, Volumes};
 use super::{Integrator, Job, LightWorker, Session, Worker};
@@ -48,7 +47,6 @@ impl Integrator for LightTraced {
             .not_drawn()
             .or_else(|| scene.glow())
             .map(|why| format!("{why}, where no path from a light can start: use Path"))
-            .or_else(|| waves_among_media(scene))
     }
 
     fn takes_media(&self) -> bool {

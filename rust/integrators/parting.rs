@@ -49,11 +49,11 @@ impl Parting {
     }
 }
 
-/// Why light from lights cannot be followed in a scene, if it has wavelengths among media.
+/// Why photons cannot be followed in a scene, if it has wavelengths among media.
 pub(super) fn waves_among_media(scene: &Scene) -> Option<String> {
     let needs = scene.plan().needs();
     (needs.media && needs.waves)
-        .then(|| "light that starts at lights is not followed by wavelength among media: use Path".into())
+        .then(|| "photons are not followed by wavelength among media: use Path, or Bidirectional".into())
 }
 
 #[cfg(test)]

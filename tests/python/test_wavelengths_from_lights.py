@@ -121,13 +121,13 @@ def test_light_from_lamps_is_that_of_paths(name, way):
 
 @slow
 @pytest.mark.parametrize("way", WAYS)
-@pytest.mark.parametrize("name", (*SURE, "a ball", "a rough ball"))
+@pytest.mark.parametrize("name", [*SURE, "a ball", "a rough ball"])
 def test_light_from_lamps_is_that_of_paths_to_two_in_a_thousand(name, way):
     assert_agree(name, way, 0.002, 7.0 if name in SURE else 48.0)
 
 
 def lantern():
-    """White balls in a hollow ball of glass, in white light: all is white, and comes by way of what parts it."""
+    """White balls in a hollow ball of glass, in white light, all of which comes by way of what parts it."""
     glass = rw.Sphere((0, 0, 0), 2.0, material=rw.Dielectric(FLINT))
     air = rw.Sphere((0, 0, 0), 1.8, material=rw.Dielectric(1.0, priority=1))
     balls = [rw.Sphere((x, 0, 0), 0.6, material=rw.Diffuse(1.0)) for x in (-0.65, 0.65)]
@@ -296,3 +296,49 @@ def test_who_cannot_says_so():
     for integrator in (rw.PhotonMap(), rw.ProgressivePhotonMap()):
         with pytest.raises(ValueError, match="not followed by wavelength among media: use Path"):
             rw.render(scene, down(0.5), integrator, 1, progress=False)
+
+
+def misty(medium):
+    """A lamp over a ball of glass, both in what absorbs and scatters by wavelength."""
+    mist = rw.Box((-2.5, -2.5, 0.02), (2.5, 2.5, 1.6), material=rw.Boundary(medium))
+    return rw.Scene([GREY, ball(rw.Dielectric(FLINT), radius=0.5), mist, lamp(WHITE)])
+
+
+def of_waves(least, most):
+    return rw.Spectrum(NM, np.linspace(least, most, len(NM)))
+
+
+VARIES = np.random.default_rng(3).uniform(0, 1, (5, 5, 5))
+MEDIA = {
+    "fog": rw.Homogeneous(of_waves(0.05, 0.4), of_waves(0.8, 0.2)),
+    "smoke": rw.GridMedium(
+        VARIES,
+        [(-2.5, -2.5, 0.02), (2.5, 2.5, 1.6)],
+        absorption=of_waves(1.5, 0.1),
+        scattering=of_waves(0.2, 0.8),
+    ),
+}
+
+
+@pytest.mark.parametrize(
+    ("name", "way"),
+    [
+        ("fog", "light"),
+        ("smoke", "both"),
+        pytest.param("fog", "both", marks=slow),
+        pytest.param("smoke", "light", marks=slow),
+    ],
+)
+@pytest.mark.parametrize(("most", "times"), [(0.04, 1), pytest.param(0.01, 16, marks=slow)])
+def test_light_goes_through_media_by_wavelength(name, way, most, times):
+    """Seen below the ball where connections must not end at glass, and through it by both."""
+    scene, camera = misty(MEDIA[name]), down(0.25 if way == "light" else 1.7, 2.4)
+    expected, off = mean(scene, camera, rw.Path(max_depth=6), 256 * times)
+    count = {"light": 256, "both": 96}[way] * times
+    found, error = mean(scene, camera, type(WAYS[way])(max_depth=6), count, seed=1)
+    joint = np.hypot(off, error)
+    print(
+        name, way, found, expected, (found - expected) / joint, joint / expected.max(), off / expected.max()
+    )
+    assert (abs(found - expected) <= 4 * joint).all(), (found, expected, joint)
+    assert (joint <= most * expected.max()).all(), joint / expected.max()

@@ -54,8 +54,7 @@ class Bidirectional:
     ValueError
         If a number is out of its range, or `radius` or `photons` are given and nothing is merged. When
         rendering, with `adaptive=True`, of a scene where a light is that no path can start at: one that
-        has no end, or that moves in instances; of one that has media and is rendered by wavelength; and
-        merged, of a scene that has media.
+        has no end, or that moves in instances; and merged, of a scene that has media.
     TypeError
         If a number is none, or `merge` is neither True nor False.
     """

@@ -30,8 +30,7 @@ class LightTraced:
     ------
     ValueError
         If a number is negative. When rendering, with `adaptive=True`, and of a scene where a light is that no
-        path can start at: one that has no end, or that moves in instances, or a medium that glows; and of one
-        that has media and is rendered by wavelength.
+        path can start at: one that has no end, or that moves in instances, or a medium that glows.
     TypeError
         If it is not an integer.
     """

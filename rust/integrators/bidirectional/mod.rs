@@ -12,7 +12,6 @@ pub use merging::Merge;
 
 use super::light_paths::{LightPaths, Limits, Partials, Weighing};
 use super::volumes::{BothEnds, Counting, MediaLightPaths};
-use super::parting::waves_among_media;
 use super::{Integrator, Job, LightWorker, Session, Worker};
 use crate::scene::{Emitters, Scene};
 use crate::workers::Cancel;
@@ -77,9 +76,7 @@ impl Integrator for Bidirectional {
             return super::LightTraced::default().objection(scene, adaptive);
         }
         let is_merged = self.merge.is_some() && scene.plan().needs().media;
-        waves_among_media(scene).or_else(|| {
-            is_merged.then(|| "walks are not merged among media: use merge=False, or ProgressivePhotonMap".into())
-        })
+        is_merged.then(|| "walks are not merged among media: use merge=False, or ProgressivePhotonMap".into())
     }
 
     fn takes_media(&self) -> bool {
