@@ -368,13 +368,7 @@ impl<'a> BothEnds<'a> {
     }
 
     /// What of some light gets to a vertex.
-    fn arriving(
-        &self,
-        light: Rgb,
-        ray: Ray,
-        (at, waves): (&Vertex, Option<Waves>),
-        sample: &mut Sample,
-    ) -> Rgb {
+    fn arriving(&self, light: Rgb, ray: Ray, (at, waves): (&Vertex, Option<Waves>), sample: &mut Sample) -> Rgb {
         if light.is_black() || !light.is_finite() {
             return Rgb::ZERO;
         }

@@ -144,20 +144,8 @@ impl<'a> MediaLightWalk<'a> {
             let (bounce, is_sharp, is_adrift, held, single) = (0, false, false, 0, false);
             let waves = self.waves.get(number as usize).copied();
             let start = light.weight.max();
-            let path = Drifting {
-                number,
-                going,
-                hero,
-                start,
-                time,
-                bounce,
-                again,
-                is_sharp,
-                is_adrift,
-                held,
-                waves,
-                single,
-            };
+            let path =
+                Drifting { number, going, hero, start, time, bounce, again, is_sharp, is_adrift, held, waves, single };
             self.send(path, &light, sampler, cancel, visitor);
         }
     }

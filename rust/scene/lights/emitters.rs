@@ -85,12 +85,7 @@ impl<'a> Emitters<'a> {
     }
 
     /// From a light that is a single point.
-    fn of_point(
-        &self,
-        number: usize,
-        numbers: &EmissionNumbers,
-        waves: Option<&Waves>,
-    ) -> Option<EmissionSample> {
+    fn of_point(&self, number: usize, numbers: &EmissionNumbers, waves: Option<&Waves>) -> Option<EmissionSample> {
         let drawn = self.lights.inside[number].sample_emission_at(numbers.direction, waves)?;
         Some(EmissionSample {
             ray: Ray::new(drawn.position, drawn.direction),

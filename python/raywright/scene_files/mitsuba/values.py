@@ -81,10 +81,8 @@ def shade_of(plugin: Plugin, emits: bool) -> Triple | Spectrum:
         result = Spectrum(*spectra.black_body(kelvin).T) * scale
     elif kind == "regular":
         values = _numbers(plugin, "values")
-        ends = [
-            plugin.number(f"wavelength_{end}", default) for end, default in (("min", 360.0), ("max", 830.0))
-        ]
-        result = _spectrum(plugin, np.linspace(*ends, len(values)), values)
+        low, high = plugin.number("wavelength_min", 360.0), plugin.number("wavelength_max", 830.0)
+        result = _spectrum(plugin, np.linspace(low, high, len(values)), values)
     elif kind == "irregular":
         result = _spectrum(plugin, _numbers(plugin, "wavelengths"), _numbers(plugin, "values"))
     elif plugin.has("filename"):
