@@ -1,7 +1,6 @@
 """Eight scenes that ask different things of those who carry light, from a matt room to lamps behind glass."""
 
 import numpy as np
-
 from render_peers_mitsuba import by_constants
 
 import raywright as rw

@@ -80,7 +80,7 @@ def _described(mi, scene, camera, sampler, folder):
 
 
 def by_constants(scene, camera):
-    """Return a scene whose metals are told by their index at 630, 532 and 465 nm: in RGB, Mitsuba has no spectra."""
+    """Return a scene whose metals have their index at 630, 532 and 465 nm: Mitsuba has no spectra in RGB."""
 
     def told(material):
         if not isinstance(material, rw.Conductor) or material.metal is None:

@@ -106,6 +106,30 @@ def keyhole():
     return image
 
 
+def prism():
+    """White light that a prism of flint spreads into its colours.
+
+    The index of refraction is that of the glass SF10 at each wavelength (Sellmeier's formula). Paths carry
+    three wavelengths, of which one goes on where the glass parts them (Wilkie et al. 2014). The beam is as
+    narrow as a slit: only paths that start at the lamp find where it goes.
+    """
+    corners = [0.6 * np.array((np.cos(turn), np.sin(turn))) for turn in np.radians((90, 210, 330))]
+    ends = [(x, y, z) for z in (0.002, 0.7) for x, y in corners]
+    faces = [(0, 2, 1), (3, 4, 5), (0, 1, 4), (0, 4, 3), (1, 2, 5), (1, 5, 4), (2, 0, 3), (2, 3, 5)]
+    glass = rw.Mesh(ends, faces, material=rw.Dielectric(rw.glasses["SF10"]))
+    table = rw.Box((-4, -4, -1), (5, 4, 0), material=rw.Diffuse(0.8))
+    # It comes down through the middle of a face, which it meets under 60 degrees.
+    lamp, face = (-2.86, -1.35, 0.8), (-0.26, 0.15, 0.3)
+    white = 300 * rw.illuminants["D65"]
+    slit = rw.ProjectorLight(np.ones((110, 1)), lamp, face, up=(0, 0, 1), fov=36, intensity=white)
+    window = rw.Disk((-1.5, 3.5, 3), (1.5, -3.5, -3), 1.2, emission=1.4)
+    scene = rw.Scene([table, glass, window], lights=[slit])
+    camera = rw.Camera((0.5, -3.3, 2.4), (0.5, -0.35, 0.1), up=(0, 0, 1), fov=36, width=1000, height=560)
+    image = rw.render(scene, camera, rw.Bidirectional(), samples=96)
+    image.save("prism.jpg", exposure=1)
+    return image
+
+
 def haze():
     """Beams of light in haze, through a window with a blind; what is scattered twice is left out."""
     dark = rw.Diffuse(0.15)
@@ -271,6 +295,25 @@ def materials():
     return image
 
 
+def bubble():
+    """A soap bubble from which the soap has run down, in a dark room with two windows.
+
+    Its film is black at the top, where it is 12 nm thick, and shows the colours of its thickness below.
+    """
+    scene, camera = rw.scenes.soap_bubble(1000, 900)
+    image = rw.render(scene, camera, samples=64)
+    image.save("bubble.jpg")
+    return image
+
+
+def oil():
+    """Oil that spreads on a puddle: a film of some hundred nm, thinnest at its rim."""
+    scene, camera = rw.scenes.oil_on_water(1000, 600)
+    image = rw.render(scene, camera, samples=96)
+    image.save("oil.jpg")
+    return image
+
+
 def motion():
     """Balls that fall, roll and come nearer while the shutter is open."""
     skin = rw.Plastic(rw.Checker((0.75, 0.1, 0.08), (0.85, 0.82, 0.75), 8), roughness=0.1)
@@ -324,12 +367,15 @@ PICTURES = {
         cornell,
         caustic,
         keyhole,
+        prism,
         haze,
         cloud,
         radiosity,
         photons,
         shapes,
         materials,
+        bubble,
+        oil,
         motion,
         forest,
         whitted,

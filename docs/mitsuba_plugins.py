@@ -31,7 +31,6 @@ NEARLY = {
     "bsplinecurve": "so too, in straight pieces that stray by 0.1 % of the radius; one sees into open ends",
     "sdfgrid": "a mesh of a third of its cells, with corners on the surface",
     "mesh_attribute": "of PLY files: vertices or faces, one attribute a mesh, between 0 and 1",
-    "spectrum": "by wavelength: red, green and blue, as white is D65; warned of",
     "conductor": "`material`: the metal's colour by its spectrum, as the `_spectral` variants have it",
     "roughconductor": "`material`: the metal's colour by its spectrum, as the `_spectral` variants have it",
     "bumpmap": "light fades towards the horizon in raywright's way; warned of",
@@ -60,7 +59,7 @@ REFUSED = {
     "BSDFs": (
         "circular", "hair", "measured", "measured_polarized", "polarizer", "pplastic", "retarder",
     ),
-    "textures and colours": ("volume", "irregular", "regular"),
+    "textures and colours": ("volume",),
     "emitters": ("directionalarea", "timed_sunsky"),
     "sensors": ("batch", "irradiancemeter"),
     "films": ("specfilm",),

@@ -52,6 +52,10 @@ impl Integrator for LightTraced {
     fn takes_media(&self) -> bool {
         true
     }
+
+    fn takes_waves(&self) -> bool {
+        true
+    }
 }
 
 /// What workers on a picture share.

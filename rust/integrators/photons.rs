@@ -167,7 +167,7 @@ impl<'a> MediaVisitor<'a> for Seen<'a> {
                 let photon = self.photon(path.number, path.bounce - 1, last, path.flux());
                 self.keep(photon, arrived);
             }
-            Point::Medium { here, medium, came } => {
+            Point::Medium { here, medium, came, .. } => {
                 let flux = *came * medium.extinction / path.going.weights.drawn.mean();
                 let photon = self.photon(path.number, path.bounce - 1, last, flux);
                 self.found.photons.push(Photon { position: here.position, direction: here.before, ..photon });

@@ -109,8 +109,8 @@ pub(super) fn check(
         let is_lost = scene.plan().needs().waves && !integrator.takes_waves();
         is_lost.then(|| {
             "this integrator knows nothing of wavelengths, and the scene has a spectrum or an index of refraction \
-             that goes with wavelength; Path follows light by wavelength, and so do Direct, Whitted, Distributed and \
-             RayCast"
+             that goes with wavelength; Path follows light by wavelength, and so do Bidirectional, PhotonMap, \
+             LightTraced, Direct, Whitted and others"
                 .to_owned()
         })
     };

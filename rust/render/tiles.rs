@@ -370,6 +370,10 @@ impl Bench<'_> {
                         // What a wavelength looks like is less than nothing in some channels.
                         None if self.signed => tile.add_with(run.cell, Rgb::ZERO, weight, seen * weight),
                         None => tile.add(run.cell, seen, weight),
+                        Some(light) if self.signed => {
+                            let brought = seen * weight + light.to(wanted.position, wanted.number);
+                            tile.add_with(run.cell, Rgb::ZERO, weight, brought);
+                        }
                         Some(light) => {
                             tile.add_with(run.cell, seen, weight, light.to(wanted.position, wanted.number));
                         }

@@ -16,6 +16,7 @@ from mitsuba_scenes import scenes
 
 REFERENCES = Path(__file__).parent / "data" / "mitsuba_blocks.npz"
 BLOCK = 8
+SPECTRA = ("spectrum", "regular", "irregular", "blackbody")
 # The spread of as many independent pictures tells the error of their mean.
 SEEDS, SAMPLES = 64, 128
 
@@ -30,14 +31,22 @@ def by_mitsuba(given, folder):
     """Means and standard errors of blocks, by Mitsuba."""
     import mitsuba as mi
 
-    if mi.variant() is None:
-        mi.set_variant("llvm_ad_rgb")
+    spectral = _is_spectral(given)
+    if mi.variant() is None or ("spectral" in mi.variant()) != spectral:
+        mi.set_variant("llvm_ad_spectral" if spectral else "llvm_ad_rgb")
     # Mitsuba takes its own objects for transforms.
     loaded = mi.load_dict(_placed(given, mi, folder))
     means = np.stack(
         [blocks(np.array(mi.render(loaded, spp=SAMPLES, seed=seed))[..., :3]) for seed in range(SEEDS)]
     )
     return means.mean(axis=0), means.std(axis=0, ddof=1) / np.sqrt(SEEDS)
+
+
+def _is_spectral(given):
+    """Whether anything of it goes with wavelength."""
+    if given.get("type") in SPECTRA:
+        return True
+    return any(_is_spectral(value) for value in given.values() if isinstance(value, dict))
 
 
 def _placed(given, mi, folder):

@@ -23,6 +23,7 @@ from mitsuba_parts import (
 )
 from mitsuba_scenes_extended import extended
 from mitsuba_scenes_media import filled
+from mitsuba_spectral import spectral
 
 
 def scenes():
@@ -490,4 +491,5 @@ def scenes():
         ),
         **extended(),
         **filled(),
+        **spectral(),
     }

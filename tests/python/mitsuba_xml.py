@@ -16,6 +16,7 @@ TAGS = {
     "rfilter": "box",
     "sampler": "independent",
     "integrator": "path volpath direct",
+    "spectrum": "blackbody d65 regular irregular",
     "medium": "homogeneous heterogeneous",
     "volume": "gridvolume constvolume",
     "phase": "hg rayleigh isotropic",
@@ -35,6 +36,9 @@ def xml(tree, name=None):
         return [f"<ref id={quoteattr(tree['id'])}{called}/>"]
     if kind == "rgb":
         return [f'<rgb{called} value="{numbers(tree["value"])}"/>']
+    if kind == "spectrum":
+        pairs = " ".join(f"{float(nm)!r}:{float(value)!r}" for nm, value in tree["value"])
+        return [f'<spectrum{called} value="{pairs}"/>']
     lines = ['<scene version="3.0.0">'] if kind == "scene" else []
     if kind != "scene":
         own = f" id={quoteattr(name)}" if kind == "shapegroup" else called

@@ -4,12 +4,14 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
 from numpy.typing import ArrayLike
 
 from ..arrays import colour, integer, positive
 from ..media.homogeneous import Homogeneous
 from ..media.medium import Medium
 from ..media.medium import medium as checked
+from ..textures.spectrum import Spectrum
 from .dispersion import Dispersion
 from .material import Material, Rough, facets, rough
 
@@ -44,11 +46,12 @@ class Dielectric(Material):
 
     interior : Homogeneous or GridMedium, optional
         What is within, if it is not clear: what dims and scatters light there.
-    transmittance : float or 3 floats, optional
+    transmittance : float, 3 floats or Spectrum, optional
         The tint of what is within, in place of `interior`: the share of light, one number or red, green and
         blue, above 0 and at most 1, that is left after a way of length `distance` inside (Bouguer, 1729;
         Beer, 1852). It is kept as an `interior` of the absorption -ln(transmittance) / distance; where all
-        is left, there is none.
+        is left, there is none. One by wavelength, such as makers tell of their filters, must be above 0 from
+        360 to 830 nm.
     distance : float, optional
         The length of that way, above 0, in units of the world. 1 if not given.
 
@@ -80,7 +83,7 @@ class Dielectric(Material):
         distribution: str = "ggx",
         multiple_scattering: bool = True,
         interior: Medium | None = None,
-        transmittance: ArrayLike | None = None,
+        transmittance: ArrayLike | Spectrum | None = None,
         distance: float | None = None,
     ) -> None:
         if transmittance is not None and interior is not None:
@@ -98,9 +101,11 @@ class Dielectric(Material):
         )
 
 
-def _tint(transmittance: ArrayLike, distance: float | None) -> Homogeneous | None:
+def _tint(transmittance: ArrayLike | Spectrum, distance: float | None) -> Homogeneous | None:
     """Return what leaves that share of light after that way, or None for what leaves all."""
     length = positive("distance", 1.0 if distance is None else distance)
+    if isinstance(transmittance, Spectrum):
+        return _tint_by_wavelength(transmittance, length)
     left = colour("transmittance", transmittance, most=1.0)
     if min(left) == 0:
         raise ValueError(
@@ -113,3 +118,21 @@ def _tint(transmittance: ArrayLike, distance: float | None) -> Homogeneous | Non
             f"distance leaves -ln(transmittance) / distance infinite: {distance!r} for {transmittance!r}"
         )
     return Homogeneous(absorption) if max(absorption) > 0 else None
+
+
+def _tint_by_wavelength(transmittance: Spectrum, length: float) -> Homogeneous | None:
+    seen = np.arange(360.0, 831.0)
+    told = np.asarray(transmittance.wavelengths)
+    # What is absorbed is not linear where the share is: it is told of each nm.
+    nm = np.union1d(seen, told[(told >= seen[0]) & (told <= seen[-1])])
+    left = np.asarray(transmittance.at(nm))
+    if left.min() <= 0 or left.max() > 1:
+        where = nm[(left <= 0) | (left > 1)][0]
+        raise ValueError(
+            "transmittance must be above 0 and at most 1 from 360 to 830 nm, got "
+            f"{transmittance.at(where):g} at {where:g} nm (a Spectrum is 0 beyond its wavelengths)"
+        )
+    absorption = 0.0 - np.log(left) / length
+    if not np.isfinite(absorption).all():
+        raise ValueError(f"distance leaves -ln(transmittance) / distance infinite: {length!r}")
+    return Homogeneous(Spectrum(nm, absorption)) if absorption.max() > 0 else None

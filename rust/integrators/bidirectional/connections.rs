@@ -6,17 +6,16 @@ use super::light_vertices::LightVertex;
 use super::worker::BidirectionalWorker;
 use crate::integrators::light_paths::{of_asked, onward_pdf, weight};
 use crate::math::Ray;
+use crate::optics::spectra::Waves;
 use crate::optics::{Bsdf, Rgb};
-use crate::scene::{Emitters, Encounter};
+use crate::scene::{Emitters, Encounter, LightSampleContext};
 
 impl<'a> BidirectionalWorker<'a> {
     /// Asks for light of one light, drawn by a choice and two numbers.
     pub(super) fn ask(&mut self, emitters: &Emitters, at: &EyeVertex, path: &EyePath, (choice, u): (f64, [f64; 2])) {
         let here = at.here();
-        let Some((light, departure, asked)) = emitters.sample_direct(&at.arrived.here.light_context(), choice, u)
-        else {
-            return;
-        };
+        let receiver = LightSampleContext { waves: at.arrived.waves, ..at.arrived.here.light_context() };
+        let Some((light, departure, asked)) = emitters.sample_direct(&receiver, choice, u) else { return };
         let (scattered, pdf) = at.evaluate(light.direction);
         let arriving = path.throughput * scattered * light.weight;
         if arriving.is_black() {
@@ -57,6 +56,9 @@ impl<'a> BidirectionalWorker<'a> {
         let mut arriving = path.throughput * scattered * light.flux * sent / square;
         if path.gilded {
             arriving *= light.again;
+        }
+        if path.single && light.single {
+            arriving = Waves::joined(arriving);
         }
         if arriving.is_black() || !arriving.is_finite() {
             return;

@@ -2,8 +2,10 @@
 
 use crate::integrators::light_paths::{Arrived, Partial};
 use crate::integrators::nesting::MediumStack;
+use crate::integrators::parting::Parting;
 use crate::math::{DVec3, Ray, RayQueue};
-use crate::optics::{Bsdf, Rgb};
+use crate::optics::spectra::Waves;
+use crate::optics::{Bsdf, BsdfSample, Rgb};
 use crate::scene::{Encounter, Footprint, LightSampleContext, SurfaceInteraction};
 
 /// A path on its way.
@@ -28,12 +30,32 @@ pub(super) struct EyePath {
     pub disk: f64,
     /// The normal that lights were drawn by where it was scattered last.
     pub normal: DVec3,
+    /// Its wavelengths; none for red, green and blue. And whether the first is all that it carries.
+    pub waves: Option<Waves>,
+    pub single: bool,
 }
 
 impl EyePath {
     /// What light that comes upon its ray would have been asked for from.
     pub fn receiver(&self, ray: &Ray) -> LightSampleContext {
-        LightSampleContext { position: ray.origin, normal: self.normal, waves: None }
+        LightSampleContext { position: ray.origin, normal: self.normal, waves: self.waves }
+    }
+
+    /// Leaves the hero of its wavelengths alone, which stands for all from here on.
+    pub fn end_all_but_hero(&mut self) {
+        if !self.single {
+            self.throughput = Waves::ended(self.throughput);
+            self.single = true;
+        }
+    }
+
+    /// It goes on along a direction drawn at a surface that parts wavelengths, if they have come together so far.
+    pub fn part(&mut self, parting: Option<&Parting>, wo: DVec3, next: &BsdfSample) {
+        match parting {
+            Some(_) if next.is_through => self.end_all_but_hero(),
+            Some(parting) if !self.single => self.throughput *= parting.mirrored(wo),
+            _ => {}
+        }
     }
 }
 
@@ -66,6 +88,8 @@ pub(super) struct EyeVertex<'a> {
     pub wide: Option<SurfaceInteraction>,
     /// What a ray that goes through is in.
     pub through: MediumStack,
+    /// What parts wavelengths where a path goes on, if it has not parted them already.
+    pub parting: Option<Parting>,
 }
 
 impl EyeVertex<'_> {

@@ -15,6 +15,8 @@ pub(super) struct LightVertex<'a> {
     pub again: Rgb,
     /// Which of the path's surfaces it is, from 1 on.
     pub bounce: u32,
+    /// Whether the hero of its wavelengths is all that it has come by.
+    pub single: bool,
     pub end: LightEnd,
     /// That of the same path before this.
     before: Option<u32>,
@@ -78,6 +80,7 @@ impl<'a> Visitor<'a> for LightVertices<'a> {
             flux: path.flux / odds.min(1.0),
             again: path.again,
             bounce: path.bounce,
+            single: path.single,
             end: *self.partials.end(path),
             before: *last,
         };

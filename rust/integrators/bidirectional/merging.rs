@@ -10,6 +10,7 @@ use crate::integrators::photon_map::{
 };
 use crate::integrators::{Job, is_matt};
 use crate::optics::Rgb;
+use crate::optics::spectra::Waves;
 use crate::sampling::Sampler;
 use crate::scene::{EmissionSample, Emitters, Encounter};
 use crate::workers::Cancel;
@@ -86,6 +87,11 @@ impl<'a> Merging<'a> {
         self.series.time(number)
     }
 
+    /// The wavelengths of all paths of samples of a number; none for red, green and blue.
+    pub fn waves(&self, number: u32) -> Option<Waves> {
+        self.series.waves(number)
+    }
+
     /// Makes maps ready for samples of these numbers.
     pub fn prepare(&self, numbers: Range<u32>, emitters: &Emitters, alone: bool, cancel: &Cancel) {
         let Job { scene, camera, .. } = self.job;
@@ -138,7 +144,7 @@ impl<'a> Merging<'a> {
                 Some(_) => 1.0,
                 None => of_merged((light, back), (&path.partial, at.onward_pdf(towards)), path.disk),
             };
-            sum += scattered * photon.power(path.gilded) * (share * weight / here.normal().dot(towards));
+            sum += scattered * photon.power(path.gilded, path.single) * (share * weight / here.normal().dot(towards));
         });
         if sum.is_black() || !sum.is_radiance() {
             return Rgb::ZERO;
@@ -162,7 +168,8 @@ impl<'a> Visitor<'a> for Keeping<'a> {
     fn meet(&mut self, arrived: &Arrived<'a>, path: &Flying, _: &MediumStack, _: (&mut Sampler, Dimensions)) {
         self.partials.arrive(path, arrived);
         if path.bounce > 1 && is_matt(arrived.here.bsdf()) {
-            let photon = StoredPhoton::arrived(arrived, path.flux * self.share, path.bounce - 1, path.again);
+            let power = (path.flux * self.share, path.single);
+            let photon = StoredPhoton::arrived(arrived, power, path.bounce - 1, path.again);
             self.kept.push((photon, self.partials.end(path).partial()));
         }
     }

@@ -84,6 +84,10 @@ impl Integrator for Bidirectional {
         true
     }
 
+    fn takes_waves(&self) -> bool {
+        true
+    }
+
     fn narrowed(&self, scale: f64, samples: u32) -> Option<Box<dyn Integrator>> {
         let merge = self.merge?;
         let merge = Some(Merge { scale: merge.scale * scale, mean_of: Some(samples), ..merge });

@@ -12,9 +12,10 @@ use crate::integrators::shadows::Shadows;
 use crate::integrators::transport::{Dimensions, widened};
 use crate::integrators::{CameraSample, Job, Worker, is_matt};
 use crate::math::{DVec3, Hit, Ray};
-use crate::optics::{Bsdf, Rgb};
+use crate::optics::spectra::Waves;
+use crate::optics::{Bsdf, Dispersive, Rgb};
 use crate::sampling::Sampler;
-use crate::scene::{Emitters, Encounter, SurfaceInteraction};
+use crate::scene::{Emitters, Encounter, Gaze, SurfaceInteraction};
 use crate::workers::Cancel;
 use std::sync::Arc;
 
@@ -30,6 +31,8 @@ pub(super) struct BidirectionalWorker<'a> {
     moves: bool,
     /// Whether anybody asks how wide rays are.
     widths: bool,
+    /// The wavelengths of samples; none where they find red, green and blue.
+    waves: Vec<Waves>,
     pub(super) passing: Passing,
     now: EyeQueue,
     next: EyeQueue,
@@ -64,6 +67,7 @@ impl<'a> BidirectionalWorker<'a> {
             paths: f64::from(camera.width()) * f64::from(camera.height()),
             moves: scene.geometry().moves() || camera.uses_time(),
             widths: needs.points.width,
+            waves: Vec::new(),
             passing: Passing::new(needs.masks, needs.nested),
             now: EyeQueue::default(),
             next: EyeQueue::default(),
@@ -78,6 +82,7 @@ impl<'a> BidirectionalWorker<'a> {
 
     /// Follows the paths of these samples to their ends, and adds what they find.
     fn follow(&mut self, samples: &mut [CameraSample], cancel: &Cancel, radiance: &mut [Rgb]) {
+        self.draw_waves(samples);
         let mut light = self.light.take();
         if let Some((walk, vertices)) = &mut light {
             self.samplers.clear();
@@ -85,6 +90,7 @@ impl<'a> BidirectionalWorker<'a> {
             let disks = self.merging.map(|merging| samples.iter().map(|sample| merging.disk(sample.sampler.number())));
             vertices.begin(samples.len(), disks.into_iter().flatten());
             walk.set_times(Times::Each(samples.iter().map(|sample| sample.ray.time).collect()));
+            walk.set_waves(self.waves.iter().copied());
             walk.follow(&mut self.samplers, cancel, vertices);
         }
         self.begin_merging(samples);
@@ -101,6 +107,21 @@ impl<'a> BidirectionalWorker<'a> {
             self.shadows.clear();
         }
         self.light = light;
+        for (light, waves) in radiance.iter_mut().zip(&self.waves) {
+            *light = waves.seen(*light);
+        }
+    }
+
+    /// Draws the wavelengths of samples, which both of their paths carry, in a scene that needs them.
+    fn draw_waves(&mut self, samples: &mut [CameraSample]) {
+        if self.job.scene.plan().needs().waves {
+            self.waves.clear();
+            let merging = self.merging;
+            self.waves.extend(samples.iter_mut().map(|sample| {
+                let of_merging = merging.and_then(|merging| merging.waves(sample.sampler.number()));
+                of_merging.unwrap_or_else(|| Waves::of(sample.sampler.one(Dimensions::WAVES)))
+            }));
+        }
     }
 
     /// Gets the maps that samples are to be merged with.
@@ -146,6 +167,8 @@ impl<'a> BidirectionalWorker<'a> {
                 partial: Partial::of_camera(self.paths, 0.0),
                 disk: self.merging.map_or(0.0, |merging| merging.disk(sample.sampler.number())),
                 normal: DVec3::ZERO,
+                waves: self.waves.get(number as usize).copied(),
+                single: false,
             };
             self.now.push(&sample.ray, path);
         }
@@ -173,13 +196,23 @@ impl<'a> BidirectionalWorker<'a> {
             match self.passing.meet(self.job.scene, i, (&ray, &hit), &path.media, &mut path.chance, number) {
                 Met::Nothing(ray, media) => self.next.push(&ray, EyePath { media, ..path }),
                 Met::Surface { hit, outside, through } => {
-                    let arrived = Arrived::new(self.job.scene, ray, hit, outside);
+                    let (arrived, parting) = match path.waves {
+                        None => (Arrived::new(self.job.scene, ray, hit, outside), None),
+                        Some(waves) => {
+                            let around = match self.passing.is_nested() {
+                                true => [&path.media, &through].map(MediumStack::dispersion),
+                                false => [Dispersive::NONE; 2],
+                            };
+                            Arrived::by_waves(self.job.scene, (ray, hit), (outside, around), waves)
+                        }
+                    };
                     let width = if self.widths { path.footprint.at(hit.t).width } else { 0.0 };
                     let wide = (width > 0.0).then(|| {
                         let surface = *arrived.here.surface();
-                        SurfaceInteraction::new(self.job.scene, &ray, &hit, surface, width, outside)
+                        let gaze = Gaze { width, waves: path.waves };
+                        SurfaceInteraction::new(self.job.scene, &ray, &hit, surface, gaze, arrived.outside)
                     });
-                    let at = EyeVertex { arrived, wide, through };
+                    let at = EyeVertex { arrived, wide, through, parting };
                     self.arrive(&at, path, width, sampler, light, &mut radiance[path.sample as usize]);
                 }
             }
@@ -202,6 +235,9 @@ impl<'a> BidirectionalWorker<'a> {
             return;
         }
         let here = at.here();
+        if at.parting.is_some_and(|parting| !parting.waits(here.bsdf())) {
+            path.end_all_but_hero();
+        }
         let cosine = at.arrived.cosine(at.arrived.back());
         path.partial = if path.bounce == 0 {
             Partial::of_camera(self.paths, self.seen(at, sampler) * cosine)
@@ -244,7 +280,7 @@ impl<'a> BidirectionalWorker<'a> {
     /// Light from outside that a path has come upon.
     fn outside(&self, ray: &Ray, path: &EyePath) -> Rgb {
         let lights = self.job.scene.lights();
-        let arriving = lights.infinite_radiance(ray.direction);
+        let arriving = lights.infinite_radiance_at(ray.direction, path.waves.as_ref());
         if arriving.is_black() || path.bounce == 0 && self.alone.is_none() {
             return arriving;
         }
@@ -267,7 +303,7 @@ impl<'a> BidirectionalWorker<'a> {
         if emission.is_dark() {
             return Rgb::ZERO;
         }
-        let sent = emission.sent(geometry, ray, hit, surface, || width);
+        let sent = emission.sent(geometry, ray, hit, surface, || Gaze { width, waves: path.waves });
         if sent.is_black() || path.bounce == 0 && self.alone.is_none() {
             return sent;
         }
@@ -288,6 +324,7 @@ impl<'a> BidirectionalWorker<'a> {
         let u = sampler.two(dimensions.direction());
         let Some(next) = here.sample(|| sampler.one(dimensions.scattering_choice()), u) else { return };
         path.throughput *= next.weight;
+        path.part(at.parting.as_ref(), here.wo(), &next);
         path.scale *= next.eta * next.eta;
         path.bounce += 1;
         if path.bounce >= self.limits.roulette_depth.min(roulette::AT_LATEST) {

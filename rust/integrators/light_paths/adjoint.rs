@@ -11,11 +11,13 @@
 //! shading normal is bent towards who looks. So what is evaluated is always what the viewer would see; what the light
 //! itself would see only says where to go.
 
+use crate::integrators::parting::Parting;
 use crate::math::{DVec3, Frame, Hit, Ray};
-use crate::optics::{Bsdf, BsdfSample, Rgb};
+use crate::optics::spectra::Waves;
+use crate::optics::{Bsdf, BsdfSample, Dispersive, Rgb};
 use crate::sampling::warp::{cosine_hemisphere, cosine_hemisphere_pdf};
 use crate::scene::materials::BsdfMix;
-use crate::scene::{Encounter, LightSampleContext, Scene, SurfaceInteraction};
+use crate::scene::{Encounter, Gaze, LightSampleContext, Scene, SurfaceInteraction};
 
 /// Where light has come to, along a ray of its own; or a path from a camera, which light then meets from elsewhere.
 #[derive(Clone)]
@@ -25,6 +27,8 @@ pub(in crate::integrators) struct Arrived<'a> {
     pub hit: Hit,
     /// The index of refraction on the other side of what the surface encloses.
     pub outside: f64,
+    /// The wavelengths of the light; none for red, green and blue.
+    pub waves: Option<Waves>,
     /// As the light meets it.
     pub here: SurfaceInteraction,
 }
@@ -112,7 +116,23 @@ impl<'a> Arrived<'a> {
     pub fn new(scene: &'a Scene, ray: Ray, hit: Hit, outside: f64) -> Self {
         let surface = scene.geometry().surface(&ray, &hit);
         let here = SurfaceInteraction::new(scene, &ray, &hit, surface, 0.0, outside);
-        Self { scene, ray, hit, outside, here }
+        Self { scene, ray, hit, outside, waves: None, here }
+    }
+
+    /// The same at some wavelengths, and what parts them there, if anything does: `outside` is the index of refraction
+    /// for yellow light, and `around` has how it goes with wavelength, on the front and on the back of the surface.
+    pub fn by_waves(
+        scene: &'a Scene,
+        (ray, hit): (Ray, Hit),
+        (outside, around): (f64, [Dispersive; 2]),
+        waves: Waves,
+    ) -> (Self, Option<Parting>) {
+        let surface = scene.geometry().surface(&ray, &hit);
+        let is_front = surface.is_front(&ray);
+        let around = around[usize::from(!is_front)];
+        let (outside, parting) = Parting::at(scene.material_at(&surface), is_front, (outside, around), &waves);
+        let here = SurfaceInteraction::new(scene, &ray, &hit, surface, Some(waves), outside);
+        (Self { scene, ray, hit, outside, waves: Some(waves), here }, parting)
     }
 
     /// As what comes from a direction meets it, from a distance, whose rays are so wide here.
@@ -126,7 +146,8 @@ impl<'a> Arrived<'a> {
         let ray = Ray { origin, direction: -direction, ..self.ray };
         let hit = Hit { t: distance, ..self.hit };
         let surface = *self.here.surface();
-        Met::Anew(SurfaceInteraction::new(self.scene, &ray, &hit, surface, width, self.outside))
+        let gaze = Gaze { width, waves: self.waves };
+        Met::Anew(SurfaceInteraction::new(self.scene, &ray, &hit, surface, gaze, self.outside))
     }
 
     /// Back to where it came from.

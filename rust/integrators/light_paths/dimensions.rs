@@ -19,6 +19,8 @@ impl EmissionDimensions {
     pub const TIME: u32 = 4;
     /// Which wavelength decides how far it gets among media.
     pub const HERO: u32 = 5;
+    /// Which wavelengths it carries, of which the first decides.
+    pub const WAVES: u32 = Self::HERO;
 
     /// What it is drawn by.
     pub fn numbers(sampler: &mut Sampler) -> EmissionNumbers {

@@ -1,7 +1,7 @@
 //! Light that comes to a camera.
 
 use super::adjoint::{Arrived, Onward};
-use super::dimensions::Dimensions;
+use super::dimensions::{Dimensions, EmissionDimensions};
 use super::partials::Partials;
 use super::walk::{Flying, LightWalk, Limits, Visitor};
 use super::weights::weight;
@@ -9,6 +9,7 @@ use crate::integrators::nesting::MediumStack;
 use crate::integrators::shadows::Shadows;
 use crate::integrators::{Job, LightWorker, Splat};
 use crate::math::{DVec3, Ray};
+use crate::optics::spectra::Waves;
 use crate::optics::{Bsdf, Rgb};
 use crate::sampling::Sampler;
 use crate::scene::{Camera, EmissionSample, Emitters, Encounter, Footprint, RayOrigin, Scene};
@@ -79,6 +80,9 @@ impl LightWorker for LightPaths<'_> {
             let disks = weighing.disks.as_ref().map(|disk| paths.iter().map(|path| disk(path.number())));
             weighing.partials.begin(disks.into_iter().flatten());
         }
+        if self.connections.scene.plan().needs().waves {
+            self.walk.set_waves(paths.iter_mut().map(|path| Waves::of(path.one(EmissionDimensions::WAVES))));
+        }
         self.walk.follow(paths, cancel, &mut self.connections);
         splats.append(&mut self.connections.splats);
     }
@@ -140,6 +144,9 @@ impl<'a> Visitor<'a> for Connections<'a> {
         }
         if let Some(weighing) = &mut self.weighing {
             light *= weighing.weigh(arrived, path, (direction, distance), seen.density);
+        }
+        if let Some(waves) = &arrived.waves {
+            light = waves.seen(light);
         }
         let segment = here.ray_origin().segment(&RayOrigin::free(seen.origin));
         let misses = [arrived.hit.primitive, Ray::NO_TRIANGLE];

@@ -3,10 +3,12 @@
 use super::adjoint::{Arrived, Onward};
 use super::dimensions::{Dimensions, EmissionDimensions};
 use crate::integrators::nesting::MediumStack;
+use crate::integrators::parting::Parting;
 use crate::integrators::passing::{Met, Passing};
 use crate::integrators::{is_matt, roulette};
 use crate::math::{Hit, Ray, RayQueue};
-use crate::optics::{Bsdf, Rgb};
+use crate::optics::spectra::Waves;
+use crate::optics::{Bsdf, Dispersive, Rgb};
 use crate::sampling::Sampler;
 use crate::scene::{Camera, EmissionSample, Emitters, Encounter, Scene};
 use crate::workers::Cancel;
@@ -30,6 +32,8 @@ pub(in crate::integrators) struct LightWalk<'a> {
     /// Whether anything moves, the camera included.
     moves: bool,
     times: Times,
+    /// The wavelengths of paths; none where they carry red, green and blue.
+    waves: Vec<Waves>,
     passing: Passing,
     now: Queue,
     next: Queue,
@@ -130,6 +134,18 @@ pub(in crate::integrators) struct Flying {
     pub is_sharp: bool,
     /// How many times in a row glass has held it ([`roulette::held`]).
     held: u32,
+    /// Whether the hero of its wavelengths is all that it carries.
+    pub single: bool,
+}
+
+impl Flying {
+    /// Leaves the hero of its wavelengths alone, which stands for all from here on.
+    fn end_all_but_hero(&mut self) {
+        if !self.single {
+            self.flux = Waves::ended(self.flux);
+            self.single = true;
+        }
+    }
 }
 
 impl<'a> LightWalk<'a> {
@@ -142,6 +158,7 @@ impl<'a> LightWalk<'a> {
             camera,
             moves: scene.geometry().moves() || camera.is_some_and(|camera| camera.uses_time()),
             times: Times::Drawn,
+            waves: Vec::new(),
             passing: Passing::new(needs.masks, needs.nested),
             now: Queue::default(),
             next: Queue::default(),
@@ -152,6 +169,12 @@ impl<'a> LightWalk<'a> {
     /// When the paths that will be followed are on their way.
     pub fn set_times(&mut self, times: Times) {
         self.times = times;
+    }
+
+    /// At which wavelengths the paths that will be followed go.
+    pub fn set_waves(&mut self, waves: impl Iterator<Item = Waves>) {
+        self.waves.clear();
+        self.waves.extend(waves);
     }
 
     /// Whether there is anything that rays may pass.
@@ -179,12 +202,14 @@ impl<'a> LightWalk<'a> {
     fn start(&mut self, paths: &mut [Sampler], visitor: &mut impl Visitor<'a>) {
         self.now.clear();
         for (number, sampler) in (0u32..).zip(paths) {
-            let Some(light) = self.emitters.sample(&EmissionDimensions::numbers(sampler)) else { continue };
+            let numbers = EmissionDimensions::numbers(sampler);
+            let Some(light) = self.emitters.sample(&numbers, self.waves.get(number as usize)) else { continue };
             let (time, of_scene) = self.times.of(number as usize, self.moves, self.camera, sampler);
             let ray = Ray { time: of_scene, ..light.ray };
             let (flux, start) = (light.weight, light.weight.max());
             let (media, chance, again) = (MediumStack::NONE, -1.0, Rgb::ONE);
-            let path = Flying { number, flux, start, time, bounce: 0, media, chance, again, is_sharp: false, held: 0 };
+            let (bounce, is_sharp, held, single) = (0, false, 0, false);
+            let path = Flying { number, flux, start, time, bounce, media, chance, again, is_sharp, held, single };
             visitor.set_out(&path, &light);
             self.now.push(&ray, path);
         }
@@ -214,7 +239,17 @@ impl<'a> LightWalk<'a> {
             match self.passing.meet(self.scene, i, (&ray, &hit), &path.media, &mut path.chance, number) {
                 Met::Nothing(ray, media) => self.next.push(&ray, Flying { media, ..path }),
                 Met::Surface { hit, outside, through } => {
-                    let arrived = Arrived::new(self.scene, ray, hit, outside);
+                    let (arrived, parting) = match self.waves.get(path.number as usize) {
+                        None => (Arrived::new(self.scene, ray, hit, outside), None),
+                        Some(&waves) => {
+                            let around = self.around(&path.media, &through);
+                            Arrived::by_waves(self.scene, (ray, hit), (outside, around), waves)
+                        }
+                    };
+                    let waiting = parting.filter(|parting| parting.waits(arrived.here.bsdf()));
+                    if parting.is_some() && waiting.is_none() {
+                        path.end_all_but_hero();
+                    }
                     let again = arrived.here.bsdf().again();
                     if again != Rgb::ONE {
                         path.flux *= path.again;
@@ -222,19 +257,25 @@ impl<'a> LightWalk<'a> {
                     }
                     path.bounce += 1;
                     visitor.meet(&arrived, &path, &through, (sampler, dimensions));
-                    self.go_on(&arrived, path, through, (sampler, dimensions), visitor);
+                    self.go_on(&arrived, path, (through, waiting), (sampler, dimensions), visitor);
                 }
             }
         }
         std::mem::swap(&mut self.now, &mut self.next);
     }
 
+    /// How the index of refraction goes with wavelength around what a surface encloses that a path has come to, by what
+    /// the path is in and what it would be in beyond: if it has come to the front, and to the back.
+    fn around(&self, media: &MediumStack, through: &MediumStack) -> [Dispersive; 2] {
+        if self.passing.is_nested() { [media, through].map(MediumStack::dispersion) } else { [Dispersive::NONE; 2] }
+    }
+
     /// Sends a path on from a surface, unless it ends there.
     fn go_on(
         &mut self,
         arrived: &Arrived<'a>,
-        path: Flying,
-        through: MediumStack,
+        mut path: Flying,
+        (through, parting): (MediumStack, Option<Parting>),
         (sampler, dimensions): (&mut Sampler, Dimensions),
         visitor: &mut impl Visitor<'a>,
     ) {
@@ -244,6 +285,11 @@ impl<'a> LightWalk<'a> {
         let u = sampler.two(dimensions.direction());
         let Some(next) = arrived.onward(|| sampler.one(dimensions.scattering_choice()), u) else { return };
         visitor.go_on(arrived, &path, &next);
+        match parting {
+            Some(_) if next.is_through => path.end_all_but_hero(),
+            Some(parting) if !path.single => path.flux *= parting.mirrored(arrived.here.wo()),
+            _ => {}
+        }
         let mut flux = path.flux * next.weight;
         if path.bounce >= self.limits.roulette_depth.min(roulette::AT_LATEST) {
             let survival = roulette::survival(flux / path.start, 1.0).min(roulette::held(path.held));

@@ -126,7 +126,7 @@ mod tests {
         // A fluence of 1 scatters 1 / 4π into each direction. The nearest of 50 are told by 49 of them, all kernels
         // alike; of 1,000 maps that is known to half a percent.
         let here = Scattering { position: DVec3::ZERO, before: DVec3::X, phase: Phase::Isotropic };
-        let visit = Visit { number: 0, looks_about: false, gilded: false, bounces: None };
+        let visit = Visit { number: 0, looks_about: false, gilded: false, single: false, bounces: None };
         for kernel in [Kernel::Box, Kernel::Cone, Kernel::Epanechnikov] {
             for (nearest, radius) in [(Some(50), None), (None, Some(0.5))] {
                 let most = radius.unwrap_or(f64::INFINITY) * radius.unwrap_or(1.0);
@@ -161,7 +161,7 @@ mod tests {
         let plane = |i| (0..fine).flat_map(move |j| (0..fine).map(move |k| one(i, j, k)));
         let of = VolumeIndex::new((0..fine).flat_map(plane).collect(), Some(1.0));
         let here = Scattering { position: DVec3::ZERO, before: DVec3::X, phase: Phase::Isotropic };
-        let visit = Visit { number: 0, looks_about: false, gilded: false, bounces: None };
+        let visit = Visit { number: 0, looks_about: false, gilded: false, single: false, bounces: None };
         for scale in [1.0, 0.5f64.sqrt(), 0.5] {
             let estimate = Estimate { nearest: None, most: f64::INFINITY, kernel: Kernel::Box, scale };
             let told = estimate.scattered(&of, &here, &MediumStack::NONE, &visit, |_| 1.0).mean() * 4.0 * PI;

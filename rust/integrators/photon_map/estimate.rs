@@ -37,7 +37,7 @@ impl Estimate {
                 let towards = -photon.direction.as_dvec3();
                 // Power is counted across the geometric normal, and light over solid angle is scattered.
                 let scattered = here.evaluate(towards).0 / here.normal().dot(towards);
-                sum += scattered * photon.power(visit.gilded) * weight;
+                sum += scattered * photon.power(visit.gilded, visit.single) * weight;
             }
         };
         let measured = |number: u32, squared: f64| of.photons[number as usize].measured(here, squared, bounces);
@@ -82,7 +82,7 @@ mod tests {
     const FIXED: Estimate = Estimate { nearest: None, most: f64::INFINITY, kernel: Kernel::Box, scale: 1.0 };
 
     fn visit(bounces: Option<u32>) -> Visit {
-        Visit { number: 0, looks_about: false, gilded: false, bounces }
+        Visit { number: 0, looks_about: false, gilded: false, single: false, bounces }
     }
 
     /// Irradiance about a point: of a white floor, π times what it sends.

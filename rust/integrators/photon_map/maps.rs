@@ -9,6 +9,7 @@ use crate::integrators::light_paths::{Arrived, Dimensions, Flying, LightWalk, Li
 use crate::integrators::nesting::MediumStack;
 use crate::integrators::volumes::{Drifting, MediaLightWalk, MediaVisitor, Numbers, Point, Vertex};
 use crate::optics::Rgb;
+use crate::optics::spectra::Waves;
 use crate::sampling::Sampler;
 use crate::scene::{Camera, EmissionSample, Emitters, Scene};
 use crate::workers::Cancel;
@@ -27,6 +28,8 @@ pub(in crate::integrators) struct Flight {
     pub number: u32,
     /// When all are on their way, while the shutter is open, if anything moves.
     pub time: Option<f64>,
+    /// The wavelengths of all; none for red, green and blue.
+    pub waves: Option<Waves>,
 }
 
 /// Photons, and where they are found.
@@ -107,6 +110,7 @@ pub(in crate::integrators) fn flown<'a, V: Visitor<'a> + Send>(
     chunked(flight, (alone, cancel), visitor, |samplers, visitor| {
         let mut walk = LightWalk::new(scene, emitters, flight.limits, Some(camera));
         walk.set_times(flight.time.map_or(Times::Drawn, Times::All));
+        walk.set_waves(flight.waves.into_iter().flat_map(|waves| std::iter::repeat_n(waves, samplers.len())));
         walk.follow(samplers, cancel, visitor);
     })
 }
@@ -159,9 +163,9 @@ impl Storing {
         self.chains[path as usize] &= is_sharp;
     }
 
-    fn keep(&mut self, arrived: &Arrived, path: u32, flux: Rgb, bounces: u32, again: Rgb) {
+    fn keep(&mut self, arrived: &Arrived, path: u32, (flux, single): (Rgb, bool), bounces: u32, again: Rgb) {
         if is_matt(arrived.here.bsdf()) {
-            let photon = StoredPhoton::arrived(arrived, flux * self.share, bounces, again);
+            let photon = StoredPhoton::arrived(arrived, (flux * self.share, single), bounces, again);
             let is_sharp = self.chains[path as usize];
             self.stored.surfaces[usize::from(!(self.caustic && is_sharp))].push(photon);
         }
@@ -179,7 +183,7 @@ impl Visitor<'_> for Storing {
             return;
         }
         self.scattered(path.number, path.is_sharp);
-        self.keep(arrived, path.number, path.flux, path.bounce - 1, path.again);
+        self.keep(arrived, path.number, (path.flux, path.single), path.bounce - 1, path.again);
     }
 }
 
@@ -196,7 +200,7 @@ impl<'a> MediaVisitor<'a> for Storing {
         match &at.point {
             Point::Surface { arrived, .. } => {
                 if bounces > 0 {
-                    self.keep(arrived, path.number, path.flux(), bounces, path.again);
+                    self.keep(arrived, path.number, (path.flux(), false), bounces, path.again);
                 }
             }
             Point::Medium { here, came, .. } => {
@@ -213,7 +217,7 @@ mod tests {
     use crate::scene::fixtures::{cornell, furnace};
 
     fn flight(paths: u32, limits: Limits) -> Flight {
-        Flight { paths, limits, caustic: true, seed: 3, number: 0, time: None }
+        Flight { paths, limits, caustic: true, seed: 3, number: 0, time: None, waves: None }
     }
 
     #[test]
@@ -227,7 +231,7 @@ mod tests {
         let found = fly(&scene, &emitters, &camera, &flight(100_000, all), false, &Cancel::default());
         let [caustic, global] = found.surfaces;
         assert!(caustic.is_empty());
-        let stored: Rgb = global.iter().map(|photon| photon.power(false)).sum();
+        let stored: Rgb = global.iter().map(|photon| photon.power(false, false)).sum();
         let expected = 24.0 * std::f64::consts::PI * rho / (1.0 - rho);
         // Before roulette, all are alike; after it a path brings what is left, 0.7⁴ of all, with a standard deviation
         // of about its mean: of 100,000 it is known to 0.1 %.
@@ -237,7 +241,7 @@ mod tests {
         let found = fly(&scene, &emitters, &camera, &flight(2000, exact), true, &Cancel::default());
         let [_, global] = found.surfaces;
         let of = |bounces| {
-            global.iter().filter(|p| p.bounces == bounces).map(|photon| photon.power(false)).sum::<Rgb>().mean()
+            global.iter().filter(|p| p.bounces == bounces).map(|photon| photon.power(false, false)).sum::<Rgb>().mean()
         };
         for bounces in 1..6 {
             let expected = 24.0 * std::f64::consts::PI * rho.powi(bounces as i32);

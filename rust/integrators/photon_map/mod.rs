@@ -27,6 +27,7 @@ pub(super) use series::{Sending, Series, Spread};
 pub(super) use store::Counted;
 
 use super::light_paths::Limits;
+use super::parting::waves_among_media;
 use super::{Integrator, Job, Session};
 use crate::scene::Scene;
 use crate::workers::Cancel;
@@ -130,7 +131,11 @@ fn objection(scene: &Scene, adaptive: bool) -> Option<String> {
     if adaptive {
         return Some("maps are of samples of all pixels alike, so these cannot be adaptive: use adaptive=False".into());
     }
-    scene.not_drawn().or_else(|| scene.glow()).map(|why| format!("{why}, where no photon can start: use Path"))
+    scene
+        .not_drawn()
+        .or_else(|| scene.glow())
+        .map(|why| format!("{why}, where no photon can start: use Path"))
+        .or_else(|| waves_among_media(scene))
 }
 
 impl Integrator for PhotonMap {
@@ -151,6 +156,10 @@ impl Integrator for PhotonMap {
     }
 
     fn takes_media(&self) -> bool {
+        true
+    }
+
+    fn takes_waves(&self) -> bool {
         true
     }
 
@@ -178,6 +187,10 @@ impl Integrator for ProgressivePhotonMap {
     }
 
     fn takes_media(&self) -> bool {
+        true
+    }
+
+    fn takes_waves(&self) -> bool {
         true
     }
 

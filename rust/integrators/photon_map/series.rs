@@ -6,6 +6,7 @@ use super::store::{Counted, Key, MapStore, Suitable};
 use crate::integrators::Job;
 use crate::integrators::light_paths::Limits;
 use crate::math::DVec3;
+use crate::optics::spectra::Waves;
 use crate::sampling::Sampler;
 use crate::scene::Emitters;
 use crate::workers::Cancel;
@@ -96,7 +97,7 @@ impl<'a, M: Counted + Any + Send + Sync> Series<'a, M> {
         const MOST: u32 = 100_000;
         let all = self.sending.paths;
         let paths = all.min(MOST);
-        let flight = Flight { seed: SEED, paths, ..self.flight(u32::MAX) };
+        let flight = Flight { seed: SEED, paths, waves: None, ..self.flight(u32::MAX) };
         let told = self.store.radius(self.key(&flight, [None; 2]), || {
             let all = fly(self.job.scene, emitters?, self.job.camera, &flight, false, cancel);
             let disks: Vec<DVec3> = all.surfaces.iter().flatten().map(|photon| photon.position).collect();
@@ -136,11 +137,26 @@ impl<'a, M: Counted + Any + Send + Sync> Series<'a, M> {
         self.radius(self.sending.spread.map(number))
     }
 
-    /// When all of a map is on its way, while the shutter is open: evenly spread over the maps of a seed.
-    fn time_of(&self, map: u32) -> f64 {
+    /// A number in [0, 1) of a map, which a dimension has: evenly spread over the maps of a seed.
+    fn spread(&self, map: u32, dimension: u32) -> f64 {
         const GOLDEN: f64 = 0.618_033_988_749_894_9;
-        let start = Sampler::new(self.job.seed, u32::MAX, u32::MAX).one(0);
+        let start = Sampler::new(self.job.seed, u32::MAX, u32::MAX).one(dimension);
         (start + f64::from(map) * GOLDEN).fract()
+    }
+
+    /// When all of a map is on its way, while the shutter is open.
+    fn time_of(&self, map: u32) -> f64 {
+        self.spread(map, 0)
+    }
+
+    /// The wavelengths of all of a map, in a scene that needs them: light meets the paths of samples at these alone.
+    fn waves_of(&self, map: u32) -> Option<Waves> {
+        self.job.scene.plan().needs().waves.then(|| Waves::of(self.spread(map, 1)))
+    }
+
+    /// The same of the map of a sample.
+    pub fn waves(&self, number: u32) -> Option<Waves> {
+        self.waves_of(self.sending.spread.map(number))
     }
 
     fn moves(&self) -> bool {
@@ -160,11 +176,11 @@ impl<'a, M: Counted + Any + Send + Sync> Series<'a, M> {
     fn flight(&self, map: u32) -> Flight {
         let Sending { paths, limits, caustic, .. } = self.sending;
         let time = self.moves().then(|| self.time_of(map));
-        Flight { paths, limits, caustic, seed: self.job.seed, number: map, time }
+        Flight { paths, limits, caustic, seed: self.job.seed, number: map, time, waves: self.waves_of(map) }
     }
 
     fn key(&self, flight: &Flight, radii: [Option<f64>; 2]) -> Key {
-        let Flight { paths, limits, caustic, seed, number, time } = *flight;
+        let Flight { paths, limits, caustic, seed, number, time, .. } = *flight;
         let Limits { max_depth, roulette_depth } = limits;
         let time = time.map(|time| self.job.camera.body().scene_time(time).to_bits());
         let [radius, ball] = radii.map(|radius| radius.map(f64::to_bits));

@@ -14,6 +14,7 @@ use crate::integrators::nesting::MediumStack;
 use crate::integrators::transport::{Gather, MattLight, Settings, Visit};
 use crate::integrators::volumes::{Filled, KnownLight, Scattering, Volumes};
 use crate::integrators::{Job, Session, Worker};
+use crate::optics::spectra::Waves;
 use crate::optics::{Bsdf, Rgb};
 use crate::scene::materials::BsdfMix;
 use crate::scene::{Emitters, Scene, SurfaceInteraction};
@@ -54,6 +55,10 @@ impl Known<'_> {
 impl MattLight for Known<'_> {
     fn radiance(&self, here: &SurfaceInteraction<&BsdfMix>, visit: Visit) -> Rgb {
         self.matt(here, visit)
+    }
+
+    fn waves(&self, number: u32) -> Option<Waves> {
+        self.series.waves(number)
     }
 }
 

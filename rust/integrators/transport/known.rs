@@ -1,6 +1,7 @@
 //! Light at matt surfaces that is known, as by photons.
 
 use crate::optics::Rgb;
+use crate::optics::spectra::Waves;
 use crate::scene::SurfaceInteraction;
 use crate::scene::materials::BsdfMix;
 
@@ -22,6 +23,8 @@ pub(in crate::integrators) struct Visit {
     pub looks_about: bool,
     /// Whether the path has been at a surface that gives more than there is ([`crate::optics::Bsdf::again`]).
     pub gilded: bool,
+    /// Whether the hero of its wavelengths is all that it carries.
+    pub single: bool,
     /// Surfaces that light may have been scattered at before.
     pub bounces: Option<u32>,
 }
@@ -30,4 +33,7 @@ pub(in crate::integrators) struct Visit {
 pub(in crate::integrators) trait MattLight: Send + Sync {
     /// How much of it is scattered back along a ray.
     fn radiance(&self, here: &SurfaceInteraction<&BsdfMix>, visit: Visit) -> Rgb;
+
+    /// At which wavelengths it is known for samples of a number; none for red, green and blue.
+    fn waves(&self, number: u32) -> Option<Waves>;
 }

@@ -42,7 +42,7 @@ impl<N: Features> TransportWorker<'_, N> {
         let path = &block.paths[lane];
         let bounces = self.settings.max_depth.map(|depth| depth.saturating_sub(path.bounce + 1));
         let (looks_about, gilded) = (self.gathers_from(block, lane), path.gilded);
-        let visit = Visit { number, looks_about, gilded, bounces };
+        let visit = Visit { number, looks_about, gilded, single: path.single, bounces };
         path.throughput * known.radiance(&block.other(lane), visit)
     }
 

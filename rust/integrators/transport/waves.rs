@@ -17,7 +17,11 @@ impl<N: Features> TransportWorker<'_, N> {
     pub(super) fn draw_waves(&mut self, samples: &mut [CameraSample]) {
         if N::GENERAL && self.scene.plan().needs().waves {
             self.waves.clear();
-            self.waves.extend(samples.iter_mut().map(|sample| Waves::of(sample.sampler.one(Dimensions::WAVES))));
+            let known = self.known;
+            self.waves.extend(samples.iter_mut().map(|sample| {
+                let of_known = known.and_then(|known| known.waves(sample.sampler.number()));
+                of_known.unwrap_or_else(|| Waves::of(sample.sampler.one(Dimensions::WAVES)))
+            }));
         }
     }
 

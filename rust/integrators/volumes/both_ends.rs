@@ -12,10 +12,12 @@ use super::vertex::{Point, Vertex};
 use super::weights::Weights;
 use crate::integrators::light_paths::{self, Arrived, Limits, Onward, Partial, of_asked, weight};
 use crate::integrators::nesting::MediumStack;
+use crate::integrators::parting::Parting;
 use crate::integrators::transport::Dimensions;
 use crate::integrators::{CameraSample, Job, Worker, roulette};
 use crate::math::{DVec3, Ray};
 use crate::optics::Rgb;
+use crate::optics::spectra::Waves;
 use crate::scene::{EmissionSample, Emitters, Encounter, LightSampleContext};
 use crate::workers::Cancel;
 
@@ -39,6 +41,7 @@ struct LightVertex<'a> {
     flux: Rgb,
     again: Rgb,
     bounce: u32,
+    single: bool,
     end: LightEnd,
 }
 
@@ -59,6 +62,9 @@ struct EyePath {
     partial: Partial,
     /// The normal that lights were drawn by where it was scattered last.
     normal: DVec3,
+    /// Its wavelengths; none for red, green and blue. And whether the first is all that it carries.
+    waves: Option<Waves>,
+    single: bool,
 }
 
 /// What a sample has besides its path.
@@ -93,7 +99,8 @@ impl<'a> MediaVisitor<'a> for LightVertices<'a> {
             return;
         }
         let flux = path.flux() / odds.min(1.0);
-        self.all.push(LightVertex { at: at.clone(), flux, again: path.again, bounce: path.bounce, end: *end });
+        let (again, bounce, single) = (path.again, path.bounce, path.single);
+        self.all.push(LightVertex { at: at.clone(), flux, again, bounce, single, end: *end });
     }
 
     fn go_on(&mut self, at: &Vertex<'a>, _: &Drifting, next: &Onward) {
@@ -110,7 +117,20 @@ impl EyePath {
 
     /// What light that comes upon its ray would have been asked for from.
     fn receiver(&self) -> LightSampleContext {
-        LightSampleContext { position: self.going.ray.origin, normal: self.normal, waves: None }
+        LightSampleContext { position: self.going.ray.origin, normal: self.normal, waves: self.waves }
+    }
+
+    /// The wavelengths at which it goes through media, or at which light goes that has come by one alone, too.
+    fn waves_with(&self, single: bool) -> Option<Waves> {
+        if single || self.single { self.waves.map(|waves| waves.alone()) } else { self.waves }
+    }
+
+    /// Leaves the first of its wavelengths alone, which stands for all from here on.
+    fn end_all_but_first(&mut self) {
+        if !self.single {
+            self.going.weights.end_all_but_first();
+            self.single = true;
+        }
     }
 }
 
@@ -134,8 +154,8 @@ impl<'a> BothEnds<'a> {
         }
     }
 
-    fn course(&self) -> Course<'a> {
-        Course { scene: self.job.scene, scatters: true, waves: None }
+    fn course(&self, waves: Option<Waves>) -> Course<'a> {
+        Course { scene: self.job.scene, scatters: true, waves }
     }
 
     /// The weight of a way where one alone counts.
@@ -145,23 +165,29 @@ impl<'a> BothEnds<'a> {
 
     /// What arrives along a camera's ray.
     fn follow(&mut self, sample: &mut CameraSample, media: MediumStack<Filled>, cancel: &Cancel) -> Rgb {
+        let u = sample.sampler.one(Dimensions::WAVES);
+        let waves = self.job.scene.plan().needs().waves.then(|| Waves::of(u));
         if let Some((walk, vertices)) = &mut self.light {
+            walk.set_waves(waves.into_iter());
             vertices.all.clear();
             walk.set_times(light_paths::Times::Each(vec![sample.ray.time]));
             walk.follow(&mut [sample.sampler.paired()], cancel, vertices);
         }
         let camera = self.job.camera;
-        let hero = ((sample.sampler.one(Dimensions::SHARING) * 3.0) as usize).min(2);
+        let hero = ((u * 3.0) as usize).min(2);
         let lens = if camera.uses_lens() { sample.sampler.two(1) } else { [0.5; 2] };
         let time = if self.moves { sample.sampler.one(3) } else { 0.0 };
         let mut numbers = Numbers::apart(&mut sample.sampler);
+        // Not by the number of the wavelengths: what parts these goes by the first.
+        let hero = if waves.is_some() { numbers.hero() } else { hero };
         let going = Going { ray: sample.ray, weights: Weights::START, media };
         let partial = Partial::of_camera(self.paths, 0.0);
-        let mut path = EyePath { going, scale: 1.0, bounce: 0, gilded: false, partial, normal: DVec3::ZERO };
+        let (normal, single) = (DVec3::ZERO, false);
+        let mut path = EyePath { going, scale: 1.0, bounce: 0, gilded: false, partial, normal, waves, single };
         let mut light = Rgb::ZERO;
         let mut sample = Sample { hero, numbers: &mut numbers, cancel, lens, time };
         while self.advance(&mut path, &mut sample, &mut light) {}
-        light
+        waves.map_or(light, |waves| waves.seen(light))
     }
 
     /// Takes a path to where it is scattered next and on from there, and says whether it goes on.
@@ -169,18 +195,32 @@ impl<'a> BothEnds<'a> {
         sample.numbers.ray = Dimensions::of(path.bounce, 0);
         let u = sample.numbers.ray.mask();
         let way = (sample.hero, depth(sample.numbers.one(u)));
-        let place = self.course().advance(&mut path.going, way, sample.numbers, sample.cancel, light, None);
+        let course = self.course(path.waves_with(false));
+        let place = course.advance(&mut path.going, way, sample.numbers, sample.cancel, light, None);
         let Going { ray, media, .. } = path.going;
+        let mut parting = None;
         let at = match place {
             None => return false,
             Some(Place::Outside) => {
                 *light += path.throughput() * self.outside(path);
                 return false;
             }
-            Some(Place::Medium { here, collision, .. }) => Vertex::of_medium(here, &collision, ray, media),
+            Some(Place::Medium { here, collision, .. }) => {
+                Vertex::of_medium(self.job.scene, here, &collision, (ray, media), path.waves.as_ref())
+            }
             Some(Place::Surface { hit, outside, through }) => {
-                let arrived = Arrived::new(self.job.scene, ray, hit, outside);
+                let arrived;
+                (arrived, parting) = match path.waves {
+                    None => (Arrived::new(self.job.scene, ray, hit, outside), None),
+                    Some(waves) => {
+                        let around = [&media, &through].map(MediumStack::dispersion);
+                        Arrived::by_waves(self.job.scene, (ray, hit), (outside, around), waves)
+                    }
+                };
                 *light += path.throughput() * self.emitted(&arrived, path);
+                if parting.is_some_and(|parting| !parting.waits(arrived.here.bsdf())) {
+                    path.end_all_but_first();
+                }
                 Vertex::of_surface(arrived, through, media)
             }
         };
@@ -210,13 +250,13 @@ impl<'a> BothEnds<'a> {
                 }
             }
         }
-        self.go_on(&at, path, sample)
+        self.go_on(&at, path, parting, sample)
     }
 
     /// Light from outside that a path has come upon.
     fn outside(&self, path: &EyePath) -> Rgb {
         let (lights, direction) = (self.job.scene.lights(), path.going.ray.direction);
-        let arriving = lights.infinite_radiance(direction);
+        let arriving = lights.infinite_radiance_at(direction, path.waves.as_ref());
         if arriving.is_black() || path.bounce == 0 && self.alone.is_none() {
             return arriving;
         }
@@ -239,7 +279,7 @@ impl<'a> BothEnds<'a> {
         if emission.is_dark() {
             return Rgb::ZERO;
         }
-        let sent = emission.sent(geometry, ray, hit, surface, || 0.0);
+        let sent = emission.sent(geometry, ray, hit, surface, || path.waves);
         if sent.is_black() || path.bounce == 0 && self.alone.is_none() {
             return sent;
         }
@@ -258,7 +298,8 @@ impl<'a> BothEnds<'a> {
     fn ask(&self, emitters: &Emitters, at: &Vertex, path: &EyePath, sample: &mut Sample) -> Rgb {
         let choice = sample.numbers.ray.light_choice(0);
         let (choice, u) = (sample.numbers.one(choice), sample.numbers.two(choice + 1));
-        let Some((light, departure, asked)) = emitters.sample_direct(&at.receiver(), choice, u) else {
+        let receiver = LightSampleContext { waves: path.waves, ..at.receiver() };
+        let Some((light, departure, asked)) = emitters.sample_direct(&receiver, choice, u) else {
             return Rgb::ZERO;
         };
         let (scattered, pdf) = at.evaluate(light.direction);
@@ -277,7 +318,8 @@ impl<'a> BothEnds<'a> {
             Some(source) => at.origin().segment(source),
             None => at.origin().ray(light.direction),
         };
-        self.arriving(arriving * weight, at.leaving(ray, light.primitive), at, sample)
+        let ray = at.leaving(ray, light.primitive);
+        self.arriving(arriving * weight, ray, (at, path.waves_with(false)), sample)
     }
 
     /// What comes of a point that light has come to.
@@ -306,6 +348,9 @@ impl<'a> BothEnds<'a> {
         if path.gilded {
             arriving *= light.again;
         }
+        if path.single && light.single {
+            arriving = Waves::joined(arriving);
+        }
         if arriving.is_black() || !arriving.is_finite() {
             return Rgb::ZERO;
         }
@@ -319,21 +364,21 @@ impl<'a> BothEnds<'a> {
             }
         };
         let segment = at.leaving(at.origin().segment(&there.origin()), there.primitive());
-        self.arriving(arriving * weight, segment, at, sample)
+        self.arriving(arriving * weight, segment, (at, path.waves_with(light.single)), sample)
     }
 
     /// What of some light gets to a vertex.
-    fn arriving(&self, light: Rgb, ray: Ray, at: &Vertex, sample: &mut Sample) -> Rgb {
+    fn arriving(&self, light: Rgb, ray: Ray, (at, waves): (&Vertex, Option<Waves>), sample: &mut Sample) -> Rgb {
         if light.is_black() || !light.is_finite() {
             return Rgb::ZERO;
         }
         let media = at.media(ray.direction);
-        let light = self.course().through(light, ray, media, sample.hero, sample.numbers, sample.cancel);
+        let light = self.course(waves).through(light, ray, media, sample.numbers, sample.cancel);
         if light.is_finite() { light } else { Rgb::ZERO }
     }
 
     /// Sends a path on, unless it ends there.
-    fn go_on(&self, at: &Vertex, path: &mut EyePath, sample: &mut Sample) -> bool {
+    fn go_on(&self, at: &Vertex, path: &mut EyePath, parting: Option<Parting>, sample: &mut Sample) -> bool {
         let ray = sample.numbers.ray;
         let (u, choice) = (sample.numbers.two(ray.direction()), ray.scattering_choice());
         let next = match &at.point {
@@ -341,6 +386,13 @@ impl<'a> BothEnds<'a> {
             Point::Medium { here, .. } => here.sample(|| 0.0, u),
         };
         let Some(next) = next else { return false };
+        match (&at.point, parting) {
+            (_, Some(_)) if next.is_through => path.end_all_but_first(),
+            (Point::Surface { arrived, .. }, Some(parting)) if !path.single => {
+                path.going.weights.carried *= parting.mirrored(arrived.here.wo());
+            }
+            _ => {}
+        }
         path.going.weights.carried *= next.weight;
         path.scale *= next.eta * next.eta;
         path.bounce += 1;

@@ -115,13 +115,15 @@ impl Course<'_> {
         None
     }
 
-    /// Dims light along a ray that starts in some media, by all that lies on it.
+    /// Dims light along a ray that starts in some media, by all that lies on it. Which wavelength decides by chance is
+    /// drawn where that is asked for, unless it is told.
+    #[allow(clippy::too_many_arguments)]
     pub fn shadow(
         &self,
         mut ray: Ray,
         mut media: MediumStack<Filled>,
         weights: &mut Weights,
-        hero: usize,
+        hero: &mut Option<usize>,
         numbers: &mut Numbers,
         cancel: &Cancel,
     ) {
@@ -164,18 +166,19 @@ impl Course<'_> {
         weights.carried = Rgb::ZERO;
     }
 
-    /// What of some light gets along a ray that starts in some media: right on average where media are uneven.
+    /// What of some light gets along a ray that starts in some media: right on average where media are uneven. The
+    /// light may have come by a draw of its own, of which another wavelength decided: the mean of a product is that of
+    /// the means only where these have nothing to do with each other.
     pub fn through(
         &self,
         light: Rgb,
         ray: Ray,
         media: MediumStack<Filled>,
-        hero: usize,
         numbers: &mut Numbers,
         cancel: &Cancel,
     ) -> Rgb {
         let mut weights = Weights { carried: light, ..Weights::START };
-        self.shadow(ray, media, &mut weights, hero, numbers, cancel);
+        self.shadow(ray, media, &mut weights, &mut None, numbers, cancel);
         weights.carried / weights.asked.mean()
     }
 }

@@ -59,7 +59,7 @@ impl Walker<'_> {
         // Running into a light that is a point or of a single direction never happens.
         let by_chance = path.weights.drawn * if self.follows_all() { path.splits * pdf / light.pdf } else { 0.0 };
         let mut weights = Weights { carried, drawn: by_chance, asked: path.weights.drawn };
-        self.course(path.waves).shadow(ray, media, &mut weights, hero, numbers, cancel);
+        self.course(path.waves).shadow(ray, media, &mut weights, &mut Some(hero), numbers, cancel);
         let asked = weights.asked.mean();
         Some(weights.carried / asked * power_heuristic(asked, weights.drawn.mean()))
     }

@@ -12,12 +12,13 @@ const FAINT: f64 = 0.05;
 const SURVIVAL: f64 = 0.25;
 
 impl Flight<'_> {
-    /// Dims light on its way, and tells with which densities a path would have come along it.
+    /// Dims light on its way, and tells with which densities a path would have come along it; `hero` is drawn where it
+    /// is needed, unless it is there.
     ///
     /// Where the medium is even, that is closed; elsewhere it is estimated from the shares of nothing in what light
     /// meets at random, as often as in the densest medium that it could be (Novák, Selle and Jarosz, "Residual Ratio
     /// Tracking for Estimating Attenuation in Participating Media", 2014, 3.2).
-    pub fn fade(&self, weights: &mut Weights, hero: usize, numbers: &mut Numbers, cancel: &Cancel) {
+    pub fn fade(&self, weights: &mut Weights, hero: &mut Option<usize>, numbers: &mut Numbers, cancel: &Cancel) {
         let scatters = self.scatters && self.medium.scatters();
         let mut start = self.span[0];
         for stretch in self.medium.stretches(&self.ray, self.span) {
@@ -28,6 +29,7 @@ impl Flight<'_> {
                     weights.times(left, drawn, Rgb::ONE);
                 }
                 Content::Varies(most) => {
+                    let hero = *hero.get_or_insert_with(|| numbers.hero());
                     self.fade_by_chance(most, [start, stretch.end], scatters, weights, hero, numbers, cancel);
                 }
             }

@@ -39,7 +39,7 @@ impl Arrival {
 impl Walker<'_> {
     fn visit(&self, path: &PathState, number: u32, looks_about: bool) -> Visit {
         let bounces = self.settings.max_depth.map(|depth| depth.saturating_sub(path.bounce + 1));
-        Visit { number, looks_about, gilded: path.gilded, bounces }
+        Visit { number, looks_about, gilded: path.gilded, single: path.single, bounces }
     }
 
     /// What is known of light where a medium scatters a path, of a sample of a number.

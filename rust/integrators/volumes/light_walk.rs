@@ -7,8 +7,10 @@ use super::vertex::{Point, Vertex};
 use super::weights::Weights;
 use crate::integrators::light_paths::{Arrived, Dimensions, EmissionDimensions, Limits, Onward, Times};
 use crate::integrators::nesting::MediumStack;
+use crate::integrators::parting::Parting;
 use crate::integrators::{is_matt, roulette};
 use crate::math::Ray;
+use crate::optics::spectra::Waves;
 use crate::optics::{Bsdf, Rgb};
 use crate::sampling::Sampler;
 use crate::scene::{Camera, EmissionSample, Emitters, Scene};
@@ -24,6 +26,8 @@ pub(in crate::integrators) struct MediaLightWalk<'a> {
     /// Whether anything moves, the camera included.
     moves: bool,
     times: Times,
+    /// The wavelengths of paths; none where they carry red, green and blue.
+    waves: Vec<Waves>,
 }
 
 /// A path on its way.
@@ -46,12 +50,28 @@ pub(in crate::integrators) struct Drifting {
     pub is_sharp: bool,
     pub is_adrift: bool,
     held: u32,
+    /// Its wavelengths; none for red, green and blue. And whether the first is all that it carries.
+    waves: Option<Waves>,
+    pub single: bool,
 }
 
 impl Drifting {
     /// The flux that it stands for; where a medium scatters it, that of what is scattered.
     pub fn flux(&self) -> Rgb {
         self.going.weights.throughput()
+    }
+
+    /// The wavelengths at which it goes through media.
+    pub fn waves(&self) -> Option<Waves> {
+        if self.single { self.waves.map(|waves| waves.alone()) } else { self.waves }
+    }
+
+    /// Leaves the first of its wavelengths alone, which stands for all from here on.
+    fn end_all_but_first(&mut self) {
+        if !self.single {
+            self.going.weights.end_all_but_first();
+            self.single = true;
+        }
     }
 }
 
@@ -83,7 +103,7 @@ pub(in crate::integrators) trait MediaVisitor<'a> {
 impl<'a> MediaLightWalk<'a> {
     pub fn new(scene: &'a Scene, emitters: &'a Emitters<'a>, limits: Limits, camera: Option<&'a dyn Camera>) -> Self {
         let moves = scene.geometry().moves() || camera.is_some_and(|camera| camera.uses_time());
-        Self { scene, emitters, limits, camera, moves, times: Times::Drawn }
+        Self { scene, emitters, limits, camera, moves, times: Times::Drawn, waves: Vec::new() }
     }
 
     /// When the paths that will be followed are on their way.
@@ -91,15 +111,22 @@ impl<'a> MediaLightWalk<'a> {
         self.times = times;
     }
 
-    fn course(&self) -> Course<'a> {
-        Course { scene: self.scene, scatters: true, waves: None }
+    /// At which wavelengths the paths that will be followed go.
+    pub fn set_waves(&mut self, waves: impl Iterator<Item = Waves>) {
+        self.waves.clear();
+        self.waves.extend(waves);
+    }
+
+    fn course(&self, path: &Drifting) -> Course<'a> {
+        Course { scene: self.scene, scatters: true, waves: path.waves() }
     }
 
     /// Follows a path for each of these numbers to its end.
     pub fn follow(&self, paths: &mut [Sampler], cancel: &Cancel, visitor: &mut impl MediaVisitor<'a>) {
         let mut setting_out = Vec::new();
         for (number, sampler) in (0u32..).zip(paths.iter_mut()) {
-            let Some(light) = self.emitters.sample(&EmissionDimensions::numbers(sampler)) else { continue };
+            let numbers = EmissionDimensions::numbers(sampler);
+            let Some(light) = self.emitters.sample(&numbers, self.waves.get(number as usize)) else { continue };
             let (time, of_scene) = self.times.of(number as usize, self.moves, self.camera, sampler);
             setting_out.push((number, light, time, Ray { time: of_scene, ..light.ray }));
         }
@@ -114,9 +141,11 @@ impl<'a> MediaLightWalk<'a> {
             let hero = ((sampler.one(EmissionDimensions::HERO) * 3.0) as usize).min(2);
             let going = Going { ray, weights: Weights { carried: light.weight, ..Weights::START }, media };
             let again = Rgb::ONE;
-            let (bounce, is_sharp, is_adrift, held) = (0, false, false, 0);
+            let (bounce, is_sharp, is_adrift, held, single) = (0, false, false, 0, false);
+            let waves = self.waves.get(number as usize).copied();
             let start = light.weight.max();
-            let path = Drifting { number, going, hero, start, time, bounce, again, is_sharp, is_adrift, held };
+            let path =
+                Drifting { number, going, hero, start, time, bounce, again, is_sharp, is_adrift, held, waves, single };
             self.send(path, &light, sampler, cancel, visitor);
         }
     }
@@ -131,6 +160,10 @@ impl<'a> MediaLightWalk<'a> {
         visitor: &mut impl MediaVisitor<'a>,
     ) {
         let mut numbers = Numbers::apart(sampler);
+        if path.waves.is_some() {
+            // Not by the number of the wavelengths: what parts these goes by the first.
+            path.hero = numbers.hero();
+        }
         visitor.set_out(&path, light);
         if light.is_infinite && self.scene.surrounding().is_some() {
             self.come_from_afar(&mut path, &mut numbers, cancel, visitor);
@@ -140,16 +173,30 @@ impl<'a> MediaLightWalk<'a> {
             let before = path.flux();
             let way = depth(numbers.one(dimensions.mask()));
             let (hero, mut glow) = (path.hero, Rgb::ZERO);
-            let place = self.course().advance(&mut path.going, (hero, way), &mut numbers, cancel, &mut glow, None);
+            let place = self.course(&path).advance(&mut path.going, (hero, way), &mut numbers, cancel, &mut glow, None);
             let taken = if place.is_some() { before - path.flux() } else { before };
             visitor.absorb(taken);
             let Going { ray, media, .. } = path.going;
+            let mut waiting = None;
             let at = match place {
                 None => return,
                 Some(Place::Outside) => return visitor.leave(&path),
-                Some(Place::Medium { here, collision, .. }) => Vertex::of_medium(here, &collision, ray, media),
+                Some(Place::Medium { here, collision, .. }) => {
+                    Vertex::of_medium(self.scene, here, &collision, (ray, media), path.waves.as_ref())
+                }
                 Some(Place::Surface { hit, outside, through }) => {
-                    Vertex::of_surface(Arrived::new(self.scene, ray, hit, outside), through, media)
+                    let (arrived, parting) = match path.waves {
+                        None => (Arrived::new(self.scene, ray, hit, outside), None),
+                        Some(waves) => {
+                            let around = [&media, &through].map(MediumStack::dispersion);
+                            Arrived::by_waves(self.scene, (ray, hit), (outside, around), waves)
+                        }
+                    };
+                    waiting = parting.filter(|parting| parting.waits(arrived.here.bsdf()));
+                    if parting.is_some() && waiting.is_none() {
+                        path.end_all_but_first();
+                    }
+                    Vertex::of_surface(arrived, through, media)
                 }
             };
             let again = at.again();
@@ -159,7 +206,7 @@ impl<'a> MediaLightWalk<'a> {
             }
             path.bounce += 1;
             visitor.meet(&at, &path, &mut numbers, dimensions, cancel);
-            if !self.go_on(&at, &mut path, &mut numbers, dimensions, visitor) {
+            if !self.go_on(&at, &mut path, waiting, &mut numbers, dimensions, visitor) {
                 return;
             }
         }
@@ -176,7 +223,7 @@ impl<'a> MediaLightWalk<'a> {
         let Ray { origin, direction, time, .. } = path.going.ray;
         let back = Ray { time, ..Ray::new(origin, -direction) };
         let before = path.flux();
-        let left = self.course().through(before, back, MediumStack::NONE, path.hero, numbers, cancel);
+        let left = self.course(path).through(before, back, MediumStack::NONE, numbers, cancel);
         visitor.absorb(before - left);
         path.going.weights.carried = left;
     }
@@ -186,6 +233,7 @@ impl<'a> MediaLightWalk<'a> {
         &self,
         at: &Vertex<'a>,
         path: &mut Drifting,
+        parting: Option<Parting>,
         numbers: &mut Numbers,
         dimensions: Dimensions,
         visitor: &mut impl MediaVisitor<'a>,
@@ -197,6 +245,13 @@ impl<'a> MediaLightWalk<'a> {
         let choice = dimensions.scattering_choice();
         let Some(next) = at.onward(|| numbers.one(choice), u) else { return false };
         visitor.go_on(at, path, &next);
+        match (&at.point, parting) {
+            (_, Some(_)) if next.is_through => path.end_all_but_first(),
+            (Point::Surface { arrived, .. }, Some(parting)) if !path.single => {
+                path.going.weights.carried *= parting.mirrored(arrived.here.wo());
+            }
+            _ => {}
+        }
         path.going.weights.carried *= next.weight;
         let flux = path.flux();
         let bsdf = match &at.point {

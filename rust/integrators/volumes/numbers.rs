@@ -43,6 +43,11 @@ impl<'s> Numbers<'s> {
         self.more.one(self.taken)
     }
 
+    /// Which of three wavelengths decides, by the next number.
+    pub fn hero(&mut self) -> usize {
+        ((self.next() * 3.0) as usize).min(2)
+    }
+
     /// An optical depth that a ray gets through, as often as light does: by the next number.
     pub fn depth(&mut self) -> f64 {
         depth(self.next())

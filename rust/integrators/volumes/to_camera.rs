@@ -5,10 +5,11 @@ use super::light_end::LightEnd;
 use super::light_walk::{Drifting, MediaLightWalk, MediaVisitor};
 use super::numbers::Numbers;
 use super::vertex::Vertex;
-use crate::integrators::light_paths::{Dimensions, Limits, Onward, weight};
+use crate::integrators::light_paths::{Dimensions, EmissionDimensions, Limits, Onward, weight};
 use crate::integrators::{Job, LightWorker, Splat};
 use crate::math::{DVec3, Ray};
 use crate::optics::Rgb;
+use crate::optics::spectra::Waves;
 use crate::sampling::Sampler;
 use crate::scene::{EmissionSample, Emitters, RayOrigin};
 use crate::workers::Cancel;
@@ -52,6 +53,9 @@ impl<'a> MediaLightPaths<'a> {
 impl LightWorker for MediaLightPaths<'_> {
     fn follow(&mut self, paths: &mut [Sampler], cancel: &Cancel, splats: &mut Vec<Splat>) {
         self.connections.splats.clear();
+        if self.connections.job.scene.plan().needs().waves {
+            self.walk.set_waves(paths.iter_mut().map(|path| Waves::of(path.one(EmissionDimensions::WAVES))));
+        }
         self.walk.follow(paths, cancel, &mut self.connections);
         splats.append(&mut self.connections.splats);
     }
@@ -118,8 +122,9 @@ impl<'a> MediaVisitor<'a> for Connections<'a> {
             return;
         }
         let segment = at.leaving(at.origin().segment(&RayOrigin::free(seen.origin)), Ray::NO_TRIANGLE);
-        let course = Course { scene, scatters: true, waves: None };
-        let light = course.through(light, segment, at.media(direction), path.hero, numbers, cancel);
+        let course = Course { scene, scatters: true, waves: path.waves() };
+        let light = course.through(light, segment, at.media(direction), numbers, cancel);
+        let light = path.waves().map_or(light, |waves| waves.seen(light));
         if light != Rgb::ZERO && light.is_finite() {
             self.splats.push(Splat { film: seen.film, light });
         }

@@ -7,15 +7,16 @@
 //! connected; and σ is the mean of the wavelengths'. Weights of all ways still add up to 1, as all put the same in, and
 //! what a way brings stays as bounded as without media: its own transmittance is in what it carries.
 
-use super::filled::Filled;
+use super::filled::{self, Filled};
 use super::flight::Collision;
 use super::scattering::Scattering;
 use crate::integrators::light_paths::{Arrived, Onward, onward_pdf};
 use crate::integrators::nesting::MediumStack;
 use crate::math::{DVec3, Ray};
+use crate::optics::spectra::Waves;
 use crate::optics::{Bsdf, Rgb};
 use crate::scene::media::Coefficients;
-use crate::scene::{Encounter, LightSampleContext, RayOrigin};
+use crate::scene::{Encounter, LightSampleContext, RayOrigin, Scene};
 
 /// Where a path has come to.
 #[derive(Clone)]
@@ -40,6 +41,8 @@ pub(in crate::integrators) enum Point<'a> {
         here: Scattering,
         /// What the medium does to light there.
         medium: Coefficients,
+        /// What stands for the cosine of a direction: the same whoever comes there, at whichever wavelengths.
+        density: f64,
         /// As [`Collision::came`].
         came: Rgb,
     },
@@ -61,9 +64,17 @@ impl<'a> Vertex<'a> {
         Self { point: Point::Surface { arrived: Box::new(arrived), through }, ray, t, media }
     }
 
-    pub fn of_medium(here: Scattering, collision: &Collision, ray: Ray, media: MediumStack<Filled>) -> Self {
+    pub fn of_medium(
+        scene: &Scene,
+        here: Scattering,
+        collision: &Collision,
+        (ray, media): (Ray, MediumStack<Filled>),
+        waves: Option<&Waves>,
+    ) -> Self {
         let Collision { t, here: medium, came, .. } = *collision;
-        Self { point: Point::Medium { here, medium, came }, ray, t, media }
+        let plain = |_: &Waves| filled::around(scene, &media, &ray).map(|(medium, within)| medium.at(within.at(t)));
+        let density = waves.and_then(plain).unwrap_or(medium).extinction.mean();
+        Self { point: Point::Medium { here, medium, density, came }, ray, t, media }
     }
 
     /// Back to where it came from.
@@ -102,7 +113,7 @@ impl<'a> Vertex<'a> {
     pub fn cosine(&self, direction: DVec3) -> f64 {
         match &self.point {
             Point::Surface { arrived, .. } => arrived.cosine(direction),
-            Point::Medium { medium, .. } => medium.extinction.mean(),
+            Point::Medium { density, .. } => *density,
         }
     }
 

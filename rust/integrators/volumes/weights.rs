@@ -32,6 +32,11 @@ impl Weights {
         *self = Self { carried, drawn: Rgb::ONE, asked };
     }
 
+    /// The same where any of the three decides, whichever is the hero at what parts them.
+    pub fn end_all_but_first(&mut self) {
+        *self = Self { carried: Waves::ended(self.throughput()), ..Self::START };
+    }
+
     /// Multiplies all three.
     #[inline]
     pub fn times(&mut self, carried: Rgb, drawn: Rgb, asked: Rgb) {

@@ -7,6 +7,7 @@ use super::emission_sample::{EmissionPdf, EmissionSample, Source};
 use super::light::Place;
 use super::{Aim, Emission, LightSampleContext, Lights, Reach, Sides};
 use crate::math::{DVec3, Frame, Hit, Ray, Region};
+use crate::optics::spectra::Waves;
 use crate::sampling::AliasTable;
 use crate::sampling::warp::{cosine_hemisphere, uniform_triangle};
 use crate::scene::{Geometry, RayOrigin, SurfacePoint};
@@ -67,24 +68,24 @@ impl<'a> Emitters<'a> {
         Self { aim, ..self }
     }
 
-    /// Draws light that sets out; `None` if the draw gives none.
-    pub fn sample(&self, numbers: &EmissionNumbers) -> Option<EmissionSample> {
+    /// Draws light that sets out, at some wavelengths or as red, green and blue; `None` if the draw gives none.
+    pub fn sample(&self, numbers: &EmissionNumbers, waves: Option<&Waves>) -> Option<EmissionSample> {
         let chosen = self.choice.sample(numbers.choice);
         let probability = self.choice.probability(chosen);
         let drawn = if chosen == self.within {
-            self.of_infinite(numbers)?
+            self.of_infinite(numbers, waves)?
         } else if let Some(&primitive) = self.lights.surfaces.get(chosen) {
             let emission = self.lights.emission(self.geometry.locate(primitive).0);
-            self.of_primitive(emission, chosen, primitive, numbers)?
+            self.of_primitive(emission, chosen, primitive, (numbers, waves))?
         } else {
             let number = chosen - self.lights.surfaces.len();
             match number.checked_sub(self.lights.copied.len()) {
                 None => {
                     let (emission, surface, hit, pdf) =
                         self.lights.copied.place(number, self.geometry, numbers.place)?;
-                    self.of_surface(emission, (chosen, &surface), hit, pdf, numbers.direction)?
+                    self.of_surface(emission, (chosen, &surface), hit, pdf, (numbers.direction, waves))?
                 }
-                Some(number) => self.of_point(number, numbers)?,
+                Some(number) => self.of_point(number, numbers, waves)?,
             }
         };
         let weight = drawn.weight / probability;
@@ -94,8 +95,8 @@ impl<'a> Emitters<'a> {
     }
 
     /// From a light that is a single point.
-    fn of_point(&self, number: usize, numbers: &EmissionNumbers) -> Option<EmissionSample> {
-        let drawn = self.aimed_point(number, numbers.direction)?;
+    fn of_point(&self, number: usize, numbers: &EmissionNumbers, waves: Option<&Waves>) -> Option<EmissionSample> {
+        let drawn = self.aimed_point(number, numbers.direction, waves)?;
         Some(EmissionSample {
             ray: Ray::new(drawn.position, drawn.direction),
             weight: drawn.weight,
@@ -107,15 +108,15 @@ impl<'a> Emitters<'a> {
     }
 
     /// Light from a point, drawn by how it shines or by what is aimed at from there.
-    fn aimed_point(&self, number: usize, [u, v]: [f64; 2]) -> Option<PointEmission> {
+    fn aimed_point(&self, number: usize, [u, v]: [f64; 2], waves: Option<&Waves>) -> Option<PointEmission> {
         let light = &self.lights.inside[number];
-        let Some((position, cones)) = self.aim_of_point(number) else { return light.sample_emission([u, v]) };
+        let Some((position, cones)) = self.aim_of_point(number) else { return light.sample_emission_at([u, v], waves) };
         let share = cones.share();
         let (direction, intensity, own) = if u < share {
             let direction = cones.sample([u / share, v]);
-            (direction, light.intensity_towards(direction), light.emission_pdf(direction))
+            (direction, light.intensity_towards(direction, waves), light.emission_pdf(direction))
         } else {
-            let drawn = light.sample_emission([(u - share) / (1.0 - share), v])?;
+            let drawn = light.sample_emission_at([(u - share) / (1.0 - share), v], waves)?;
             (drawn.direction, drawn.weight * drawn.pdf, drawn.pdf)
         };
         let pdf = cones.density(direction, own);
@@ -134,7 +135,7 @@ impl<'a> Emitters<'a> {
         emission: &Emission,
         light: usize,
         primitive: u32,
-        numbers: &EmissionNumbers,
+        (numbers, waves): (&EmissionNumbers, Option<&Waves>),
     ) -> Option<EmissionSample> {
         let (surface, uv, pdf) = match self.geometry.shape(primitive) {
             Some(shape) => {
@@ -147,7 +148,7 @@ impl<'a> Emitters<'a> {
             }
         };
         let hit = Hit { t: 1.0, uv, primitive, inner: 0 };
-        self.of_surface(emission, (light, &surface), hit, pdf, numbers.direction)
+        self.of_surface(emission, (light, &surface), hit, pdf, (numbers.direction, waves))
     }
 
     /// From a point of a surface, a light of this number, that was drawn with a density, by area; the hit is that of a
@@ -158,7 +159,7 @@ impl<'a> Emitters<'a> {
         (light, surface): (usize, &SurfacePoint),
         hit: Hit,
         pdf: f64,
-        [u, v]: [f64; 2],
+        ([u, v], waves): ([f64; 2], Option<&Waves>),
     ) -> Option<EmissionSample> {
         let cones = self.aim.from(surface.position);
         let share = cones.as_ref().map_or(0.0, Cones::share);
@@ -187,7 +188,7 @@ impl<'a> Emitters<'a> {
         };
         // What a ray back along it would see.
         let back = Ray::new(surface.position + direction, -direction);
-        let radiance = emission.sent(self.geometry, &back, &hit, surface, || 0.0);
+        let radiance = emission.sent(self.geometry, &back, &hit, surface, || waves.copied());
         let sides = emission.sides.count();
         let ray = Ray { misses: [hit.primitive, Ray::NO_TRIANGLE], ..RayOrigin::new(surface).ray(direction) };
         let is_drawn = pdf > 0.0 && pdf < f64::INFINITY && cosine > 0.0;
@@ -205,8 +206,8 @@ impl<'a> Emitters<'a> {
     }
 
     /// From outside: a direction, and a place on a rectangle across it from which all of the box is reached.
-    fn of_infinite(&self, numbers: &EmissionNumbers) -> Option<EmissionSample> {
-        let receiver = LightSampleContext::free(self.middle);
+    fn of_infinite(&self, numbers: &EmissionNumbers, waves: Option<&Waves>) -> Option<EmissionSample> {
+        let receiver = LightSampleContext { waves: waves.copied(), ..LightSampleContext::free(self.middle) };
         let chosen = self.lights.infinite.choose(numbers.outside);
         let drawn = self.lights.infinite.sample_of(chosen, &receiver, numbers.place)?;
         let frame = Frame::new(drawn.direction);

@@ -87,8 +87,14 @@ pub trait Light: Debug + Send + Sync {
         None
     }
 
-    /// What it sends along a unit direction, W/sr, of a light that is a single point.
-    fn intensity_towards(&self, _direction: DVec3) -> Rgb {
+    /// The same at some wavelengths, if it is asked for those.
+    fn sample_emission_at(&self, u: [f64; 2], _waves: Option<&Waves>) -> Option<PointEmission> {
+        self.sample_emission(u)
+    }
+
+    /// What it sends along a unit direction, W/sr, of a light that is a single point; at some wavelengths, if it is
+    /// asked for those.
+    fn intensity_towards(&self, _direction: DVec3, _waves: Option<&Waves>) -> Rgb {
         Rgb::ZERO
     }
 

@@ -4,6 +4,7 @@ use super::light::strength;
 use super::{Light, LightBounds, LightSample, LightSampleContext, Place, PointEmission, Reach};
 use crate::math::DVec3;
 use crate::optics::Rgb;
+use crate::optics::spectra::Waves;
 use crate::sampling::warp::{UNIFORM_SPHERE_PDF, uniform_sphere};
 use std::f64::consts::PI;
 
@@ -45,7 +46,7 @@ impl Light for PointLight {
         Some(Place::Point(self.position))
     }
 
-    fn intensity_towards(&self, _: DVec3) -> Rgb {
+    fn intensity_towards(&self, _: DVec3, _: Option<&Waves>) -> Rgb {
         self.intensity
     }
 

@@ -4,6 +4,7 @@ use super::light::strength;
 use super::{Light, LightBounds, LightSample, LightSampleContext, Picture, Place, PointEmission, Reach};
 use crate::math::DVec3;
 use crate::optics::Rgb;
+use crate::optics::spectra::Waves;
 use std::sync::Arc;
 
 /// A slide projector: a point from which light goes through a picture.
@@ -113,7 +114,7 @@ impl Light for Projector {
         Some(Place::Point(self.position))
     }
 
-    fn intensity_towards(&self, direction: DVec3) -> Rgb {
+    fn intensity_towards(&self, direction: DVec3, _: Option<&Waves>) -> Rgb {
         self.towards(direction)
     }
 

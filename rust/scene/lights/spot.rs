@@ -4,6 +4,7 @@ use super::light::strength;
 use super::{Light, LightBounds, LightSample, LightSampleContext, Place, PointEmission, Reach};
 use crate::math::{DVec3, Frame};
 use crate::optics::Rgb;
+use crate::optics::spectra::Waves;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// How light falls off towards the rim of a cone.
@@ -122,7 +123,7 @@ impl Light for SpotLight {
         Some(Place::Point(self.position))
     }
 
-    fn intensity_towards(&self, direction: DVec3) -> Rgb {
+    fn intensity_towards(&self, direction: DVec3, _: Option<&Waves>) -> Rgb {
         self.intensity * self.share(direction)
     }
 

@@ -94,12 +94,16 @@ impl Light for Waved {
     }
 
     fn sample_emission(&self, u: [f64; 2]) -> Option<PointEmission> {
-        let drawn = self.light.sample_emission(u)?;
-        Some(PointEmission { weight: self.at(drawn.weight, None), ..drawn })
+        self.sample_emission_at(u, None)
     }
 
-    fn intensity_towards(&self, direction: DVec3) -> Rgb {
-        self.at(self.light.intensity_towards(direction), None)
+    fn sample_emission_at(&self, u: [f64; 2], waves: Option<&Waves>) -> Option<PointEmission> {
+        let drawn = self.light.sample_emission(u)?;
+        Some(PointEmission { weight: self.at(drawn.weight, waves), ..drawn })
+    }
+
+    fn intensity_towards(&self, direction: DVec3, waves: Option<&Waves>) -> Rgb {
+        self.at(self.light.intensity_towards(direction, waves), waves)
     }
 
     fn emission_pdf(&self, direction: DVec3) -> f64 {

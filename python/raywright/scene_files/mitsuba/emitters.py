@@ -26,7 +26,7 @@ from .plugin import Plugin, Triple
 from .sensors import field_of_view
 from .textures import picture
 from .transforms import Matrix, straightened
-from .values import UNIFORM, colour
+from .values import UNIFORM, colour, shade
 
 TYPES = ("point", "spot", "projector", "directional", "constant", "envmap", "sunsky")
 
@@ -79,7 +79,7 @@ def _point(plugin: Plugin) -> PointLight:
         position = plugin.vector("position", (0.0, 0.0, 0.0))
     else:
         position = plugin.to_world()[:3, 3]
-    return PointLight(position, colour(plugin, "intensity", 1.0, emits=True))
+    return PointLight(position, shade(plugin, "intensity", 1.0, emits=True))
 
 
 def _spot(plugin: Plugin) -> SpotLight | ProjectorLight:
@@ -92,7 +92,7 @@ def _spot(plugin: Plugin) -> SpotLight | ProjectorLight:
     return SpotLight(
         matrix[:3, 3],
         matrix[:3, 3] + _unit(matrix[:3, 2]),
-        colour(plugin, "intensity", 1.0, emits=True),
+        shade(plugin, "intensity", 1.0, emits=True),
         cutoff,
         cutoff - beam,
         "linear",
@@ -154,11 +154,11 @@ def _directional(plugin: Plugin) -> DirectionalLight:
         direction = plugin.vector("direction", (0.0, 0.0, 1.0))
     else:
         direction = plugin.to_world()[:3, 2]
-    return DirectionalLight(direction, colour(plugin, "irradiance", 1.0, emits=True))
+    return DirectionalLight(direction, shade(plugin, "irradiance", 1.0, emits=True))
 
 
 def _constant(plugin: Plugin) -> ConstantEnvironment:
-    return ConstantEnvironment(colour(plugin, "radiance", 1.0, emits=True))
+    return ConstantEnvironment(shade(plugin, "radiance", 1.0, emits=True))
 
 
 def _map(plugin: Plugin) -> EnvironmentMap:

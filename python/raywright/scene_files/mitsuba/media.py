@@ -6,12 +6,14 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ... import _core
 from ...materials import Boundary, Dielectric, Mask, Material, ThinDielectric
 from ...media import GridMedium, HenyeyGreenstein, Homogeneous, Isotropic, Medium, Phase, Rayleigh
 from ...media.files import read_density
+from ...textures import Spectrum
 from .errors import SceneError
 from .plugin import Plugin, Triple
-from .values import colour
+from .values import colour, shade
 
 TYPES = ("homogeneous", "heterogeneous")
 PHASES = ("isotropic", "hg", "rayleigh")
@@ -107,9 +109,8 @@ def medium(plugin: Plugin) -> Medium:
 def _read(plugin: Plugin) -> Medium:
     scale, phase = plugin.number("scale", 1.0), _phase(plugin)
     if plugin.type == "homogeneous":
-        albedo = np.array(_constant(plugin, "albedo", 0.75))
-        extinction = scale * np.array(_constant(plugin, "sigma_t", 1.0))
-        return Homogeneous(extinction * (1 - albedo), extinction * albedo, phase)
+        albedo = _constant(plugin, "albedo", 0.75)
+        return Homogeneous(*_parts(_constant(plugin, "sigma_t", 1.0), albedo, scale), phase)
     # There is nothing of it where its extinction has no volume.
     dimmed = _volume(plugin, "sigma_t", 1.0)
     scattered = _volume(plugin, "albedo", 0.75)
@@ -123,13 +124,33 @@ def _read(plugin: Plugin) -> Medium:
     return GridMedium(dimmed.density, extinction=extinction, albedo=scattered.numbers, **placed)
 
 
-def _constant(plugin: Plugin, name: str, default: float) -> Triple:
+def _parts(extinction: Triple | Spectrum, albedo: Triple | Spectrum, scale: float) -> tuple[Any, Any]:
+    """Return what is absorbed and what is scattered, by wavelength if either is so told."""
+    told = [one for one in (extinction, albedo) if isinstance(one, Spectrum)]
+    if not told:
+        all_of, share = scale * np.array(extinction), np.array(albedo)
+        return all_of * (1 - share), all_of * share
+    nm = np.unique(np.concatenate([np.arange(360.0, 831.0), *(one.wavelengths for one in told)]))
+    all_of, share = scale * _at(extinction, nm, False), _at(albedo, nm, True)
+    return Spectrum(nm, all_of * (1 - share)), Spectrum(nm, all_of * share)
+
+
+def _at(told: Triple | Spectrum, nm: NDArray[np.float64], is_share: bool) -> NDArray[np.float64]:
+    """Return what is told at wavelengths: of red, green and blue by a smooth spectrum."""
+    if isinstance(told, Spectrum):
+        return np.asarray(told.at(nm))
+    if len({*told}) == 1:
+        return np.full(nm.shape, told[0])
+    return np.asarray(_core.smooth_spectrum(told, is_share, False, nm.tolist()))
+
+
+def _constant(plugin: Plugin, name: str, default: float) -> Triple | Spectrum:
     inner = plugin.child(name)
     if inner is None or inner.type not in VOLUMES:
-        return colour(plugin, name, default)
+        return shade(plugin, name, default)
     if inner.type == "gridvolume":
         plugin.fail(f"{name} on a grid is not supported")
-    result = colour(inner, "value", 1.0)
+    result = shade(inner, "value", 1.0)
     inner.ignore("to_world")
     inner.done()
     return result

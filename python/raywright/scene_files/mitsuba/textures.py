@@ -7,11 +7,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...io.pictures import read
-from ...textures import Checker, ImageTexture, ProductTexture, UvTransform, VertexColors
+from ...textures import Checker, ImageTexture, ProductTexture, Spectrum, UvTransform, VertexColors
 from ...textures.texture import Number, Texture, Value
 from .plugin import Plugin, Triple
 from .uv import UPRIGHT, Uv
-from .values import UNIFORM, colour, of_plugin
+from .values import UNIFORM, at_each_nm, of_plugin, shade
 
 # Luminance of linear Rec. 709.
 _LUMINANCE = np.array([0.212671, 0.715160, 0.072169])
@@ -49,8 +49,10 @@ def value(
     """
     inner = plugin.child(name)
     if inner is None or inner.type in UNIFORM:
-        found = colour(plugin, name, default, emits)
-        return found if change is None else _changed(found, change)
+        found = shade(plugin, name, default, emits)
+        if change is None:
+            return found
+        return at_each_nm(found, change) if isinstance(found, Spectrum) else _changed(found, change)
     return texture(inner, uv, change)
 
 

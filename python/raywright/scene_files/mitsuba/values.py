@@ -1,19 +1,44 @@
-"""Colours and spectra, as linear red, green and blue (Rec. 709)."""
+"""Colours, as linear red, green and blue (Rec. 709), and spectra."""
 
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
+from ...textures import Spectrum
 from . import spectra
 from .plugin import Plugin, Triple
 
 # Types of plugins that are one colour, or one number, all over.
-UNIFORM = ("rgb", "srgb", "spectrum", "uniform", "d65", "rawconstant", "blackbody")
+UNIFORM = (
+    "rgb", "srgb", "spectrum", "uniform", "regular", "irregular", "d65", "rawconstant", "blackbody",
+)  # fmt: skip
 
 
 def colour(plugin: Plugin, name: str, default: float | Triple, emits: bool = False) -> Triple:
-    """Return a parameter of a plugin that is one colour.
+    """Return a parameter of a plugin that is one colour; one by wavelength is approximated, and warned of.
+
+    Arguments are those of `shade`.
+    """
+    return _plain(plugin, shade(plugin, name, default, emits), emits)
+
+
+def of_plugin(plugin: Plugin, emits: bool) -> Triple:
+    """Return the colour of a plugin of a type in `UNIFORM`, as `colour` does."""
+    return _plain(plugin, shade_of(plugin, emits), emits)
+
+
+def _plain(plugin: Plugin, found: Triple | Spectrum, emits: bool) -> Triple:
+    if not isinstance(found, Spectrum):
+        return found
+    plugin.warn("spectra by wavelength are approximated by red, green and blue here")
+    return found.rgb if emits else found.reflected_rgb
+
+
+def shade(plugin: Plugin, name: str, default: float | Triple, emits: bool = False) -> Triple | Spectrum:
+    """Return a parameter of a plugin that is one colour, or goes with wavelength.
 
     Parameters
     ----------
@@ -32,13 +57,14 @@ def colour(plugin: Plugin, name: str, default: float | Triple, emits: bool = Fal
         inner = Plugin(value, f"{plugin.where}.{name}", plugin.context)
         if inner.type not in UNIFORM:
             plugin.fail(f"{name} must be the same everywhere, got a {inner.type}")
-        return of_plugin(inner, emits)
+        return shade_of(inner, emits)
     return of_numbers(plugin, name, value)
 
 
-def of_plugin(plugin: Plugin, emits: bool) -> Triple:
-    """Return the colour of a plugin of a type in `UNIFORM`."""
+def shade_of(plugin: Plugin, emits: bool) -> Triple | Spectrum:
+    """Return the colour or the spectrum of a plugin of a type in `UNIFORM`."""
     kind = plugin.type
+    result: Triple | Spectrum
     if kind in ("rgb", "srgb", "rawconstant"):
         name = "color" if plugin.has("color") else "value"
         value = plugin.take(name)
@@ -47,22 +73,27 @@ def of_plugin(plugin: Plugin, emits: bool) -> Triple:
         result = _hex(plugin, value, coded) if isinstance(value, str) else of_numbers(plugin, name, value)
     elif kind == "d65":
         scale = plugin.number("scale", 1.0)
-        result = colour(plugin, "color", 1.0)
-        result = _triple(np.multiply(result, scale))
+        result = _triple(np.multiply(colour(plugin, "color", 1.0), scale))
     elif kind == "blackbody":
         kelvin, scale = plugin.number("temperature", 5000.0), plugin.number("scale", 1.0)
         if not kelvin > 0:
             plugin.fail(f"temperature must be greater than 0, got {kelvin:g}")
-        result = _triple(scale * np.maximum(spectra.rgb(spectra.black_body(kelvin), emits), 0.0))
+        result = Spectrum(*spectra.black_body(kelvin).T) * scale
+    elif kind == "regular":
+        values = _numbers(plugin, "values")
+        low, high = plugin.number("wavelength_min", 360.0), plugin.number("wavelength_max", 830.0)
+        result = _spectrum(plugin, np.linspace(low, high, len(values)), values)
+    elif kind == "irregular":
+        result = _spectrum(plugin, _numbers(plugin, "wavelengths"), _numbers(plugin, "values"))
     elif plugin.has("filename"):
-        plugin.fail("spectra in files are not supported; give an rgb")
+        result = _spectrum(plugin, *_of_file(plugin, plugin.path()).T)
     elif kind == "uniform" or not isinstance(plugin.take("value"), list | tuple | np.ndarray):
         value = plugin.number("value", 1.0)
         result = (value,) * 3
         if emits and kind == "spectrum":
             result = _triple(spectra.EVEN * value)
     else:
-        result = _by_wavelength(plugin, plugin.take("value"), emits)
+        result = _spectrum(plugin, *_pairs(plugin, plugin.take("value")).T)
     plugin.done()
     return result
 
@@ -92,17 +123,55 @@ def _hex(plugin: Plugin, text: str, coded: bool) -> Triple:
     return _triple(shares)
 
 
-def _by_wavelength(plugin: Plugin, pairs: Any, emits: bool) -> Triple:
+def at_each_nm(spectrum: Spectrum, change: Any) -> Spectrum:
+    """Return a spectrum whose values are changed by what need not be linear."""
+    ends = spectrum.wavelengths[0], spectrum.wavelengths[-1]
+    between = np.arange(np.ceil(max(ends[0], 360.0)), min(ends[1], 830.0))
+    nm = np.union1d(spectrum.wavelengths, between)
+    return Spectrum(nm, change(np.asarray(spectrum.at(nm))))
+
+
+def _pairs(plugin: Plugin, pairs: Any) -> NDArray[np.float64]:
     try:
         table = np.array(pairs, dtype=np.float64)
     except (TypeError, ValueError):
         table = np.empty(0)
     if table.ndim != 2 or table.shape[1] != 2 or not np.isfinite(table).all() or not len(table):
         plugin.fail("value must be one number, or pairs of a wavelength and a number")
-    if (np.diff(table[:, 0]) <= 0).any():
-        plugin.fail("wavelengths must rise")
-    plugin.warn("spectra by wavelength are approximated by red, green and blue")
-    return _triple(spectra.rgb(table, emits))
+    return table
+
+
+def _numbers(plugin: Plugin, name: str) -> NDArray[np.float64]:
+    given = plugin.take(name, ())
+    try:
+        array = np.array(given.replace(",", " ").split() if isinstance(given, str) else given, np.float64)
+    except (TypeError, ValueError):
+        array = np.empty(0)
+    if array.ndim != 1 or len(array) < 2 or not np.isfinite(array).all():
+        plugin.fail(f"{name} must be two or more finite numbers")
+    return array
+
+
+def _of_file(plugin: Plugin, path: Path) -> NDArray[np.float64]:
+    """Read a wavelength and a value a line; what begins with # is none."""
+    lines = (line.split("#")[0].split() for line in path.read_text(encoding="utf-8").splitlines())
+    try:
+        table = np.array([[float(number) for number in line] for line in lines if line], np.float64)
+    except ValueError:
+        table = np.empty(0)
+    if table.ndim != 2 or table.shape[1] != 2 or not np.isfinite(table).all():
+        plugin.fail(f"{path.name} must have a wavelength and a number in each line")
+    return table
+
+
+def _spectrum(plugin: Plugin, nm: NDArray[np.float64], values: NDArray[np.float64]) -> Spectrum:
+    if len(nm) < 2 or (np.diff(nm) <= 0).any():
+        plugin.fail("wavelengths must be two or more, and rise")
+    if len(values) != len(nm):
+        plugin.fail(f"values must be as many as the {len(nm)} wavelengths, got {len(values)}")
+    if (values < 0).any():
+        plugin.fail(f"values must be at least 0, got {values.min():g}")
+    return Spectrum(nm, values)
 
 
 def _triple(array: Any) -> Triple:

@@ -54,7 +54,7 @@ fn light_that_was_drawn_is_as_likely_as_is_told() {
             place: sampler.two(1),
             direction: sampler.two(3),
         };
-        let Some(drawn) = emitters.sample(&numbers) else { continue };
+        let Some(drawn) = emitters.sample(&numbers, None) else { continue };
         let Departure { source, density, .. } = emitters.of_sample(&drawn);
         kinds[match source {
             Source::Surface(_) => 0,

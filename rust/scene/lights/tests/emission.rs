@@ -29,7 +29,7 @@ fn emit(emitters: &Emitters, number: u32) -> Option<EmissionSample> {
     let mut sampler = Sampler::new(7, 1, number);
     let [choice, outside] = [sampler.one(0), sampler.one(2)];
     let (place, direction) = (sampler.two(1), sampler.two(3));
-    emitters.sample(&EmissionNumbers { choice, outside, place, direction })
+    emitters.sample(&EmissionNumbers { choice, outside, place, direction }, None)
 }
 
 /// Mean and standard error of what falls on the patch from either side, by light that sets out, nothing in its way.
