@@ -15,6 +15,7 @@
 use super::facet::Facet;
 use crate::math::DVec3;
 use crate::math::gauss::gauss;
+use std::collections::VecDeque;
 use std::f64::consts::PI;
 use std::sync::OnceLock;
 
@@ -27,6 +28,10 @@ const ENOUGH: f64 = 1e-11;
 
 /// No rectangle is halved more often.
 const MOST_CUTS: u32 = 96;
+
+/// Nor are more rectangles halved of a pair, the large ones first: where roundings of corners lie between what touches,
+/// halves never tell the same.
+const MOST_HALVED: u32 = 1 << 9;
 
 /// Slices that end so much farther from the line than others, or than they start, are cut.
 const UNEVEN: f64 = 8.0;
@@ -267,17 +272,18 @@ fn sum(parts: &[Part]) -> f64 {
     static RULE: OnceLock<Vec<(f64, f64)>> = OnceLock::new();
     let rule = RULE.get_or_init(|| gauss(POINTS));
     let whole = Rectangle { corner: [0.0; 2], sides: [1.0; 2] };
-    let mut open: Vec<_> = parts.iter().map(|part| (part, whole, part.over(&whole, rule), MOST_CUTS)).collect();
+    let mut open: VecDeque<_> = parts.iter().map(|part| (part, whole, part.over(&whole, rule), MOST_CUTS)).collect();
     let enough = ENOUGH * open.iter().map(|square| square.2).sum::<f64>();
-    let mut found = 0.0;
-    while let Some((part, area, before, cuts)) = open.pop() {
+    let (mut found, mut halved) = (0.0, 0);
+    while let Some((part, area, before, cuts)) = open.pop_front() {
         let halves = [0, 1].map(|axis| area.halves(axis).map(|half| (half, part.over(&half, rule))));
         let [across, up] = halves.map(|[low, high]| low.1 + high.1 - before);
         let is_next = area.corner[0] == 0.0 && area.sides[0] > part.near;
-        if (across.abs() <= enough && up.abs() <= enough && !is_next) || cuts == 0 {
+        if (across.abs() <= enough && up.abs() <= enough && !is_next) || cuts == 0 || halved == MOST_HALVED {
             // What either way of halving mends.
             found += before + across + up;
         } else {
+            halved += 1;
             let halves = halves[usize::from(!is_next && up.abs() > across.abs())];
             open.extend(halves.map(|(half, value)| (part, half, value, cuts - 1)));
         }

@@ -20,6 +20,10 @@ const CANCELLED: f64 = 1e-6;
 /// not because they are in one plane.
 const FLAT: f64 = 1.0 / 16.0;
 
+/// Heights that are no greater a part of the radius are what roundings of corners leave of one plane. What is exchanged
+/// is less than 10⁻²⁴ of the square of the radius, and to find it takes long.
+const LEVEL: f64 = 1e-12;
+
 /// The area of one triangle times its view factor to another, which is the other's times that to the one.
 pub fn pair(quadrature: &mut Quadrature, one: &Facet, other: &Facet) -> f64 {
     let mut heights = [one.heights(other), other.heights(one)];
@@ -30,6 +34,10 @@ pub fn pair(quadrature: &mut Quadrature, one: &Facet, other: &Facet) -> f64 {
     let flat = FLAT * one.radius.max(other.radius);
     if heights.as_flattened().iter().all(|h| h.abs() <= flat) && heights.as_flattened().contains(&0.0) {
         heights = [one.exact_heights(other), other.exact_heights(one)];
+        let level = LEVEL * one.radius.max(other.radius);
+        if heights.as_flattened().iter().all(|h| h.abs() <= level) {
+            return 0.0;
+        }
     }
     if heights.iter().flatten().all(|&h| h >= 0.0) {
         return before(quadrature, one, other, heights, MOST_CUTS);
