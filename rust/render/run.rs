@@ -337,7 +337,9 @@ mod tests {
             let (here, (_, large)) = (Here(std::thread::current().id(), Default::default()), cornell(300, 300));
             let result = render(&scene, &large, &here, &settings, &mut Impatient(None));
             assert_eq!(result.err(), Some(RenderError::Interrupted));
-            assert_eq!(here.1.into_inner(), 65_536);
+            // After the first part, or before it where the machine has other things to do.
+            let taken = here.1.into_inner();
+            assert!(taken == 65_536 || taken == 0, "{taken}");
         }
     }
 

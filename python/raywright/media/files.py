@@ -100,7 +100,8 @@ def read_vol(name: Path) -> tuple[NDArray[np.float32], Bounds]:
         )
     rest = len(data) - _VOL.size
     if min(x, y, z) < 1 or rest != 4 * x * y * z * channels:
-        raise ValueError(f"{name} says {x} x {y} x {z} x {channels} numbers, but holds {rest / 4:g}")
+        said = f"{x} x {y} x {z}" + f" x {channels}" * (channels > 1)
+        raise ValueError(f"{name} says {said} numbers, but holds {rest / 4:g}")
     numbers = np.frombuffer(data, "<f4", offset=_VOL.size).reshape(z, y, x, channels)
     turned = numbers.transpose(2, 1, 0, 3)
     return turned if channels == 3 else turned[..., 0], (tuple(box[:3]), tuple(box[3:]))
