@@ -33,7 +33,7 @@ const REACH: usize = 3;
 /// two halves, each chosen by two quarters. What comes out is their mean, whose squared error is the mean of theirs
 /// less their own variance about it. No variance is known beforehand, and nothing is assumed of filters.
 ///
-/// The denominators are as in every other error ([`Denominators`]), but that the filtered picture stands for the
+/// The denominators are as in every other error (`denominators.rs`), but that the filtered picture stands for the
 /// neighbours.
 pub fn settle(halves: &Halves, candidates: &[Vec<Vec<Rgb>>; 2]) -> Denoised {
     let size = Size { width: halves.width, height: halves.height };

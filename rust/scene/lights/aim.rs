@@ -66,7 +66,7 @@ impl Cones<'_> {
     pub fn sample(&self, [choice, v]: [f64; 2]) -> DVec3 {
         let mut left = choice * self.angle;
         let mut chosen = (DVec3::Z, 0.0);
-        for &ball in &self.balls[..] {
+        for &ball in self.balls {
             let height = height(ball, self.place);
             chosen = (ball.0, height);
             if left < TAU * height {
