@@ -221,9 +221,9 @@ def test_open_image_denoise_tells_its_error_too():
     ],
 )
 def test_denoised_pictures_tell_their_error_or_that_they_cannot(make, side, better):
-    before, after, _, honest, _ = judged(make, side, 16, 100)
-    # Of intervals that hold in 95 of 100, 89 or fewer do so once in 90 tries; these seeds are fixed.
-    assert honest >= 90
+    before, after, _, honest, _ = judged(make, side, 16, 40)
+    # Of intervals that hold in 95 of 100 cases, 33 of 40 or fewer do so once in 290; these seeds are fixed.
+    assert honest >= 34
     assert np.mean(before) >= better * np.mean(after)
     # None is worse by more than what few samples can tell.
     assert np.max(after / before) < 1.1
