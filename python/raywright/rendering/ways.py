@@ -85,21 +85,14 @@ def followed(
             can = dict(zip(_PLAIN, _core.chances(compiled, path, threads, look), strict=True))
             why |= {name: _NEVER[name] for name in open_ if not can[name]}
             open_ = [name for name in open_ if can[name]]
-            ways = [fixed | dict(zip(open_, way, strict=True)) for way in product(*_options(open_))]
+
+            def sent(ways: list[dict[str, Any]]) -> list[float]:
+                paths = [replace(path, **way) for way in ways]
+                errors = _core.pilot(compiled, camera, paths, threads, clamp, filter, look)
+                return [error * _cost(way) for error, way in zip(errors, ways, strict=True)]
+
             # Nobody is sent where only one way is left.
-            worth = [0.0]
-            if open_:
-
-                def sent(ways: list[dict[str, Any]]) -> list[float]:
-                    paths = [replace(path, **way) for way in ways]
-                    errors = _core.pilot(compiled, camera, paths, threads, clamp, filter, look)
-                    return [error * _cost(way) for error, way in zip(errors, ways, strict=True)]
-
-                worth = sent(ways)
-                least = ways[worth.index(min(worth))]
-                if "reuse" in open_ and least["reuse"] == _REUSE and min(worth) > _NOISY * _cost(least):
-                    ways.append(least | {"reuse": _LARGE})
-                    worth = sent(ways)
+            ways, worth = _tried(fixed, open_, sent) if open_ else ([fixed], [0.0])
         except StoppedError:
             why |= dict.fromkeys(open_, "it was stopped before a pilot was back")
         else:
@@ -108,6 +101,19 @@ def followed(
             why |= {name: _told(name, ways, worth) for name in open_}
     rows = tuple(Choice(name, str(chosen[name]), why[name]) for name in _PLAIN)
     return replace(path, **chosen), rows, time.perf_counter() - began
+
+
+def _tried(
+    fixed: dict[str, Any], names: list[str], sent: Callable[[list[dict[str, Any]]], list[float]]
+) -> tuple[list[dict[str, Any]], list[float]]:
+    """Return ways, the plain one first, and what each takes in error times time, as pilots tell."""
+    ways = [fixed | dict(zip(names, way, strict=True)) for way in product(*_options(names))]
+    worth = sent(ways)
+    least = ways[worth.index(min(worth))]
+    if "reuse" in names and least["reuse"] == _REUSE and min(worth) > _NOISY * _cost(least):
+        ways.append(least | {"reuse": _LARGE})
+        worth = sent(ways)
+    return ways, worth
 
 
 def _options(names: list[str]) -> list[tuple[Any, Any]]:
