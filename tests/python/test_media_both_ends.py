@@ -11,6 +11,8 @@ import raywright as rw
 
 SKY = rw.ConstantEnvironment(1.0)
 WAYS = {"traced": (rw.LightTraced, 96), "both": (rw.Bidirectional, 16)}
+# Few paths from the lamp get through rough glass twice.
+RARE = {("milk", "traced"): 384}
 slow = pytest.mark.slow
 
 
@@ -67,7 +69,7 @@ EACH = [
 @pytest.mark.parametrize(("name", "way"), EACH)
 def test_pictures_are_those_of_paths(name, way):
     kind, samples = WAYS[way]
-    assert_same(SCENES[name], camera(), (kind(), samples), (rw.Path(), 96))
+    assert_same(SCENES[name], camera(), (kind(), RARE.get((name, way), samples)), (rw.Path(), 96))
 
 
 @pytest.mark.parametrize("depth", [0, 1, 2, pytest.param(3, marks=slow)])
