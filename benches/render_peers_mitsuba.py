@@ -128,14 +128,9 @@ def _material(material):
     if kind == "Dielectric" and material.alpha is None:
         return {"type": "dielectric", "int_ior": material.ior, "ext_ior": 1.0}
     if kind == "Conductor":
-        alpha = material.alpha
-        described = {
-            "type": "roughconductor",
-            "distribution": "ggx",
-            "alpha": alpha,
-            "eta": _rgb(material.eta),
-            "k": _rgb(material.k),
-        }
+        described = {"type": "conductor", "eta": _rgb(material.eta), "k": _rgb(material.k)}
+        if material.alpha is not None:
+            described |= {"type": "roughconductor", "distribution": "ggx", "alpha": material.alpha}
         return {"type": "twosided", "bsdf": described}
     raise TypeError(f"{material} is not told to Mitsuba")
 

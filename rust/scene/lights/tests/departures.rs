@@ -1,8 +1,8 @@
 //! What is told of the way of light from either of its ends is the same.
 
 use super::super::{
-    ConstantEnvironment, Departure, DirectionalLight, Emission, EmissionNumbers, Light, LightSampleContext, PointLight,
-    Sides, Source, SpotLight,
+    Aim, ConstantEnvironment, Departure, DirectionalLight, Emission, EmissionNumbers, EmissionSample, Emitters, Light,
+    LightSampleContext, PointLight, Sides, Source, SpotLight,
 };
 use super::white;
 use crate::math::{DVec3, Hit, Ray};
@@ -37,6 +37,16 @@ fn lit() -> Scene {
     scene(SceneDescription { shapes: vec![lamp, glowing(ball), glowing(disk)], lights })
 }
 
+/// Two balls to aim at, one of which holds a lamp.
+fn balls() -> Aim {
+    Aim::at(vec![(DVec3::new(0.6, 0.3, 0.1), 0.3), (DVec3::new(2.2, 0.4, 1.0), 0.6)])
+}
+
+/// Light that sets out as lights shine, and what is aimed at as well.
+fn each_aim(scene: &Scene) -> [Emitters<'_>; 2] {
+    [Aim::default(), balls()].map(|aim| scene.emitters().unwrap().aimed(aim))
+}
+
 fn assert_same(a: f64, b: f64, what: &dyn std::fmt::Debug) {
     assert!((a - b).abs() <= 1e-7 * a.abs() && a > 0.0, "{a} {b}: {what:?}");
 }
@@ -44,7 +54,12 @@ fn assert_same(a: f64, b: f64, what: &dyn std::fmt::Debug) {
 #[test]
 fn light_that_was_drawn_is_as_likely_as_is_told() {
     let scene = lit();
-    let emitters = scene.emitters().unwrap();
+    for emitters in each_aim(&scene) {
+        drawn_as_told(&emitters);
+    }
+}
+
+fn drawn_as_told(emitters: &Emitters<'_>) {
     let mut kinds = [0; 4];
     for number in 0..5000 {
         let mut sampler = Sampler::new(3, 0, number);
@@ -74,7 +89,12 @@ fn light_that_was_drawn_is_as_likely_as_is_told() {
 #[test]
 fn light_that_is_asked_for_is_as_likely_from_its_other_end() {
     let scene = lit();
-    let emitters = scene.emitters().unwrap();
+    for emitters in each_aim(&scene) {
+        asked_as_told(&scene, &emitters);
+    }
+}
+
+fn asked_as_told(scene: &Scene, emitters: &Emitters<'_>) {
     let (mut single, mut met) = (0, 0);
     for number in 0..5000 {
         let mut sampler = Sampler::new(4, 0, number);
@@ -107,4 +127,41 @@ fn light_that_is_asked_for_is_as_likely_from_its_other_end() {
         }
     }
     assert!(single > 500 && met > 500, "{single} {met}");
+}
+
+#[test]
+fn light_that_is_aimed_comes_to_balls_as_often_as_is_told() {
+    // How often light that sets out goes to a ball, counted, and by the densities told of light drawn without an aim.
+    let scene = lit();
+    let [plain, aimed] = each_aim(&scene);
+    let (middle, radius) = (DVec3::new(0.6, 0.3, 0.1), 0.3);
+    let to_ball = |ray: &Ray| {
+        let way = middle - ray.origin;
+        let along = way.dot(ray.direction);
+        along > 0.0 && way.length_squared() - along * along <= radius * radius * ray.direction.length_squared()
+    };
+    let count = 200_000;
+    let (mut drawn, mut told, mut square) = (0.0, 0.0, 0.0);
+    for number in 0..count {
+        let mut sampler = Sampler::new(7, 0, number);
+        let numbers = EmissionNumbers {
+            choice: sampler.one(0),
+            outside: sampler.one(2),
+            place: sampler.two(1),
+            direction: sampler.two(3),
+        };
+        let of_some = |drawn: &EmissionSample| matches!(drawn.source, Source::Surface(_) | Source::Point(_));
+        if let Some(one) = aimed.sample(&numbers, None).filter(of_some) {
+            drawn += f64::from(u8::from(to_ball(&one.ray)));
+        }
+        if let Some(one) = plain.sample(&numbers, None).filter(of_some).filter(|one| to_ball(&one.ray)) {
+            let ratio = aimed.of_sample(&one).density / one.pdf.direction / one.pdf.place;
+            told += ratio;
+            square += ratio * ratio;
+        }
+    }
+    // Five standard errors of both; chance exceeds them once in two million.
+    let error = (drawn + square).sqrt();
+    assert!(drawn > 20_000.0 && error < 0.02 * drawn, "{drawn} {error}");
+    assert!((drawn - told).abs() < 5.0 * error, "{drawn} {told} {error}");
 }
