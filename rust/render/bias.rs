@@ -70,7 +70,7 @@ mod tests {
         let settings = Settings { threads: Some(2), ..Settings::default() };
         let of = |way: &dyn Integrator| bias(&scene, &camera, way, &settings, 4, &mut Quiet).unwrap();
         assert!(of(&Path::default()).is_none());
-        let progressive = ProgressivePhotonMap { photons: 2000, ..Default::default() };
+        let progressive = ProgressivePhotonMap { photons: Some(2000), ..Default::default() };
         let found = of(&progressive).unwrap();
         assert!(found.len() == 36 && found.iter().any(|bias| !bias.is_black()));
         assert!(of(&PhotonMap { photons: 2000, ..Default::default() }).is_some());

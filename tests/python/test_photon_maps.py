@@ -278,6 +278,13 @@ def test_bits_go_by_the_seed_alone(tmp_path):
         assert not np.array_equal(rw.render(scene, look, way, 20, seed=6, progress=False).rgb, one.rgb)
 
 
+@pytest.mark.parametrize(("side", "photons"), [(8, 20_000), (80, 25_600)])
+def test_as_many_photons_as_suit_the_picture(side, photons):
+    scene, look = rw.scenes.cornell_box(width=side, height=side)
+    chosen, told = (picture(scene, look, rw.ProgressivePhotonMap(count), 1) for count in (None, photons))
+    assert np.array_equal(chosen.rgb, told.rgb)
+
+
 def test_workers_make_the_same_maps():
     scene, look = rw.scenes.cornell_box(width=12, height=10)
     way = rw.PhotonMap(3000, nearest=20)

@@ -29,7 +29,7 @@ pub(super) use store::Counted;
 use super::light_paths::Limits;
 use super::parting::waves_among_media;
 use super::{Integrator, Job, Session};
-use crate::scene::Scene;
+use crate::scene::{Camera, Scene};
 use crate::workers::Cancel;
 use session::{Mapped, Recipe};
 
@@ -73,8 +73,8 @@ pub struct PhotonMap {
 /// and bias go to zero. Among media the volume of balls shrinks as the area of disks does.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ProgressivePhotonMap {
-    /// Paths from lights for each map; at least 1.
-    pub photons: u32,
+    /// Paths from lights for each map, at least 1; `None` for as many as suit the picture.
+    pub photons: Option<u32>,
     /// How far photons may lie in the first map; `None` for as far as suits that.
     pub radius: Option<f64>,
     /// The share of new photons that is kept: how noise falls for bias, above 0 and at most 1, where radii stay.
@@ -113,7 +113,7 @@ impl Default for PhotonMap {
 impl Default for ProgressivePhotonMap {
     fn default() -> Self {
         Self {
-            photons: 100_000,
+            photons: None,
             radius: None,
             alpha: 2.0 / 3.0,
             gather: 0,
@@ -124,6 +124,14 @@ impl Default for ProgressivePhotonMap {
             mean_of: None,
         }
     }
+}
+
+/// Paths from lights that take about as long as a sample of all pixels does. More make the radius smaller, and not the
+/// noise; fewer would leave the picture's own paths idle (glass spheres of 64 × 64 pixels in two seconds: the error of
+/// 25,000 is 0.4 times that of 100,000).
+fn suited(camera: &dyn Camera) -> u32 {
+    const OF_A_PIXEL: u32 = 4;
+    (camera.width() * camera.height()).saturating_mul(OF_A_PIXEL).clamp(20_000, 500_000)
 }
 
 /// What neither can do.
@@ -171,7 +179,7 @@ impl Integrator for PhotonMap {
 impl Integrator for ProgressivePhotonMap {
     fn begin<'a>(&'a self, job: Job<'a>, cancel: &Cancel) -> Box<dyn Session + 'a> {
         let sending = Sending {
-            paths: self.photons,
+            paths: self.photons.unwrap_or_else(|| suited(job.camera)),
             limits: Limits { max_depth: self.max_depth, roulette_depth: self.roulette_depth },
             // All light is gathered from as far, in one map; apart, it is known what rays need not look for.
             caustic: true,

@@ -19,6 +19,7 @@ use crate::optics::{Bsdf, Rgb};
 use crate::scene::materials::BsdfMix;
 use crate::scene::{Emitters, Scene, SurfaceInteraction};
 use crate::workers::Cancel;
+use std::cell::Cell;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -45,7 +46,14 @@ impl Known<'_> {
     fn matt<B: Bsdf>(&self, here: &SurfaceInteraction<B>, visit: Visit) -> Rgb {
         let Some(maps) = self.series.of(visit.number) else { return Rgb::ZERO };
         let time = || self.series.scene_time(visit.number);
-        let share = |squared: f64| cover(self.scene, here, squared, self.estimate.kernel, time());
+        // Of both maps the disk is the same where all within a radius count, and probed once.
+        let probed = Cell::new((f64::NAN, 0.0));
+        let share = |squared: f64| {
+            if probed.get().0 != squared {
+                probed.set((squared, cover(self.scene, here, squared, self.estimate.kernel, time())));
+            }
+            probed.get().1
+        };
         let gathered = |of| self.estimate.radiance(of, here, &visit, share);
         let light = gathered(&maps.caustic);
         if visit.looks_about { light } else { light + gathered(&maps.global) }

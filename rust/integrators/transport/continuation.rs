@@ -77,6 +77,10 @@ impl<N: Features> TransportWorker<'_, N> {
         if N::GENERAL && matches!(self.settings.follow, Follow::DeltaLobes | Follow::Nothing) {
             return;
         }
+        let parts: [bool; LANES] = array::from_fn(|lane| block.goes_on[lane] && self.follows_both(block, lane));
+        if N::GENERAL {
+            (0..block.count).filter(|&lane| parts[lane]).for_each(|lane| self.split(block, lane));
+        }
         let splits: [u32; LANES] = array::from_fn(|lane| self.splits(block, lane));
         for branch in 0..splits.into_iter().max().unwrap_or(1) {
             // The first goes on as the path that it comes from.
@@ -91,7 +95,7 @@ impl<N: Features> TransportWorker<'_, N> {
             let choices = dimensions.map(Dimensions::scattering_choice);
             block.numbers.one_and_two(self.level, &choices, &mut choice, &mut u);
             let chances = self.chances(block, &dimensions);
-            let goes: [bool; LANES] = array::from_fn(|lane| block.goes_on[lane] && branch < splits[lane]);
+            let goes: [bool; LANES] = array::from_fn(|lane| block.goes_on[lane] && !parts[lane] && branch < splits[lane]);
             let ([mut origin, mut direction], mut drawn) = ([VectorLanes::ZERO; 2], BsdfSampleLanes::NONE);
             block.bsdf.sample(self.level, &goes, block.encounters.wo_lanes(), (&choice, &u), &mut drawn);
             let BsdfSampleLanes { wi, weight, pdf, .. } = &mut drawn;
@@ -191,7 +195,7 @@ impl<N: Features> TransportWorker<'_, N> {
     /// Whether roulette is played for a path after so many surfaces. The density with which a path comes to the second
     /// point that it shares must be known.
     #[inline]
-    fn plays(&self, bounce: u32) -> bool {
+    pub(super) fn plays(&self, bounce: u32) -> bool {
         (!N::SHARES || bounce > 1) && bounce >= self.settings.roulette_depth.min(roulette::AT_LATEST)
     }
 
