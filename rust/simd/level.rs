@@ -4,13 +4,16 @@
 use super::Neon;
 #[cfg(target_arch = "x86_64")]
 use super::{Avx2, Avx512, Sse2};
-use super::{Scalar, Simd};
+#[cfg(any(test, not(any(target_arch = "x86_64", target_arch = "aarch64"))))]
+use super::Scalar;
+use super::Simd;
 use std::sync::OnceLock;
 
 /// A level of the processor's vector instructions, from least to most.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Level {
-    /// What the compiler makes of arrays.
+    /// What the compiler makes of arrays, where it is all that there is, and in tests: a processor that always has
+    /// vectors needs no second copy of each kernel (a quarter of the compiled code).
     Scalar,
     /// NEON, on every 64-bit ARM.
     Neon,
@@ -45,7 +48,7 @@ impl Level {
     /// Whether this processor has it.
     pub fn is_available(self) -> bool {
         match self {
-            Self::Scalar => true,
+            Self::Scalar => cfg!(any(test, not(any(target_arch = "x86_64", target_arch = "aarch64")))),
             Self::Neon => cfg!(target_arch = "aarch64"),
             #[cfg(target_arch = "x86_64")]
             Self::Sse2 => true,
@@ -67,7 +70,7 @@ impl Level {
             .get_or_init(|| {
                 let forced = std::env::var("RAYWRIGHT_SIMD").unwrap_or_default();
                 let available: Vec<_> = Self::ALL.into_iter().filter(|l| l.is_available()).collect();
-                let best = *available.last().expect("Scalar is always available");
+                let best = *available.last().expect("each processor has its least level");
                 if forced.is_empty() {
                     return Ok(best);
                 }
@@ -100,12 +103,15 @@ impl Dispatch<4> for Level {
     #[inline]
     fn dispatch<K: Kernel<4>>(self, kernel: K) -> K::Output {
         match self {
+            #[cfg(any(test, not(any(target_arch = "x86_64", target_arch = "aarch64"))))]
+            Self::Scalar => kernel.run(Scalar),
             // Four lanes are for processors without more; wider levels have no code of their own for them.
             #[cfg(target_arch = "x86_64")]
-            Self::Sse2 | Self::Avx2 | Self::Avx512 => kernel.run(Sse2::new()),
+            _ => kernel.run(Sse2::new()),
             #[cfg(target_arch = "aarch64")]
-            Self::Neon => kernel.run(Neon::new()),
-            _ => kernel.run(Scalar),
+            _ => kernel.run(Neon::new()),
+            #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
+            level => panic!("only scalar code is compiled for this processor, not {}", level.name()),
         }
     }
 }
