@@ -1,8 +1,8 @@
 //! Places, divided by how much light comes there.
 
-use super::lobe::Lobe;
+use super::lobe::{Lobe, LobeLanes};
 use super::photon::Photon;
-use crate::math::DVec3;
+use crate::math::{DVec3, LANES};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -11,7 +11,7 @@ use std::ops::Range;
 pub(super) struct Cells {
     nodes: Vec<Node>,
     leaves: Vec<Leaf>,
-    lobes: Vec<Lobe>,
+    lobes: Vec<LobeLanes>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -30,14 +30,17 @@ struct Leaf {
     share: f64,
     gain: f64,
     rarity: f64,
+    /// How many lobes, and in which lanes.
+    count: usize,
     lobes: Range<usize>,
 }
 
 /// What is known of a cell.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cell<'a> {
-    /// Where light comes from: one lobe at least, [`LOBES`] at most, whose shares add up to 1.
-    pub lobes: &'a [Lobe],
+    /// Where light comes from: one lobe at least, [`LOBES`] at most, whose shares add up to 1; and how many.
+    pub lobes: &'a [LobeLanes],
+    pub count: usize,
     /// How often to aim.
     pub share: f64,
     /// How much brighter than usual it is there.
@@ -85,8 +88,8 @@ impl Cells {
         let told: Vec<(Leaf, Vec<Lobe>)> = ranges.into_par_iter().map(told).collect();
         for (leaf, lobes) in told {
             let first = all.lobes.len();
-            all.lobes.extend(lobes);
-            all.leaves.push(Leaf { lobes: first..all.lobes.len(), ..leaf });
+            all.lobes.extend(lobes.chunks(LANES).map(LobeLanes::of));
+            all.leaves.push(Leaf { count: lobes.len(), lobes: first..all.lobes.len(), ..leaf });
         }
         all
     }
@@ -141,8 +144,8 @@ impl Cells {
                 Node::Leaf(number) => {
                     let leaf = &self.leaves[number];
                     let inside = place.cmpge(leaf.min).all() && place.cmple(leaf.max).all();
-                    let &Leaf { share, gain, rarity, .. } = leaf;
-                    return inside.then(|| Cell { lobes: &self.lobes[leaf.lobes.clone()], share, gain, rarity });
+                    let &Leaf { share, gain, rarity, count, .. } = leaf;
+                    return inside.then(|| Cell { lobes: &self.lobes[leaf.lobes.clone()], count, share, gain, rarity });
                 }
             }
         }
@@ -150,7 +153,7 @@ impl Cells {
 }
 
 impl Leaf {
-    /// What photons that have come to a cell and those beside it tell of it, and its lobes, by number from 0 on.
+    /// What photons that have come to a cell and those beside it tell of it, and its lobes, which stand nowhere yet.
     fn told(near: &mut [Photon], (min, max): (DVec3, DVec3), usual: f64) -> (Self, Vec<Lobe>) {
         let sides = max - min;
         let size = sides.max_element();
@@ -184,7 +187,8 @@ impl Leaf {
         // By how much noise it takes from what paths find of the rest, and adds to it, were each lobe half filled by
         // what is sought.
         let share = (2.0 * brighter / (2.0 * brighter + 1.0)).clamp(SHARES[0], SHARES[1]);
-        (Self { min, max, share, gain: 1.0 + brighter, rarity, lobes: 0..lobes.len() }, lobes)
+        let leaf = Self { min, max, share, gain: 1.0 + brighter, rarity, count: lobes.len(), lobes: 0..0 };
+        (leaf, lobes)
     }
 }
 

@@ -2,7 +2,8 @@
 
 use super::photon::Photon;
 use crate::math::turn::sin_cos_turn;
-use crate::math::{DVec3, Frame};
+use crate::math::{DVec3, Frame, LANES, VectorLanes};
+use crate::simd::{Level, loops};
 use glam::DMat3;
 use std::f64::consts::TAU;
 
@@ -49,7 +50,7 @@ impl Lobe {
     }
 
     /// The middle of the ball, as seen from a place.
-    #[inline]
+    #[inline(always)]
     pub fn target(&self, place: DVec3) -> DVec3 {
         self.target + self.moves * (place - self.place)
     }
@@ -85,16 +86,15 @@ impl Lobe {
     }
 
     /// The density in solid angle of a unit direction, times how often the lobe is drawn.
-    #[inline]
+    #[inline(always)]
     pub fn pdf(&self, place: DVec3, direction: DVec3) -> f64 {
         let way = self.target(place) - place;
         let (far, along) = (way.length_squared(), way.dot(direction));
         let all = far + self.square;
-        // Most are missed, and told by products alone.
-        if along <= 0.0 || along * along * all < far * far {
-            return 0.0;
-        }
-        self.share * (1.0 + (far / all).sqrt()) * (all / self.square) / TAU
+        let density = self.share * (1.0 + (far / all).sqrt()) * (all / self.square) / TAU;
+        // Whether it is missed is told by products alone.
+        let is_missed = (along <= 0.0) | (along * along * all < far * far);
+        if is_missed { 0.0 } else { density }
     }
 
     /// How far from its middle a photon came from.
@@ -144,5 +144,74 @@ impl Lobe {
             }
         }
         each.push((lobe, photons.iter().map(|p| p.flux).sum()));
+    }
+}
+
+/// Lobes of one place, a lane each; there may be fewer than lanes.
+#[derive(Clone, Debug)]
+pub(super) struct LobeLanes {
+    place: VectorLanes,
+    target: VectorLanes,
+    moves: [VectorLanes; 3],
+    square: [f64; LANES],
+    share: [f64; LANES],
+}
+
+loops! {
+    /// The density that each lobe adds to a direction.
+    fn densities(of: &LobeLanes, place: DVec3, direction: DVec3, pdf: &mut [f64; LANES]) {
+        for i in 0..LANES {
+            pdf[i] = of.get(i).pdf(place, direction);
+        }
+    }
+}
+
+impl LobeLanes {
+    /// Of no more than there are lanes. Those that are left are never drawn.
+    pub fn of(lobes: &[Lobe]) -> Self {
+        let nothing = VectorLanes::ZERO;
+        let mut lanes = Self {
+            place: nothing,
+            target: nothing,
+            moves: [nothing; 3],
+            square: [1.0; LANES],
+            share: [0.0; LANES],
+        };
+        for (lane, lobe) in lobes.iter().enumerate() {
+            lanes.place.set(lane, lobe.place);
+            lanes.target.set(lane, lobe.target);
+            for axis in 0..3 {
+                lanes.moves[axis].set(lane, lobe.moves.col(axis));
+            }
+            (lanes.square[lane], lanes.share[lane]) = (lobe.square, lobe.share);
+        }
+        lanes
+    }
+
+    /// That of a lane.
+    #[inline(always)]
+    pub fn get(&self, lane: usize) -> Lobe {
+        let [x, y, z] = &self.moves;
+        Lobe {
+            place: self.place.get(lane),
+            target: self.target.get(lane),
+            moves: DMat3::from_cols(x.get(lane), y.get(lane), z.get(lane)),
+            square: self.square[lane],
+            share: self.share[lane],
+        }
+    }
+
+    /// How often that of a lane is drawn.
+    #[inline]
+    pub fn share(&self, lane: usize) -> f64 {
+        self.share[lane]
+    }
+
+    /// What [`Lobe::pdf`] gives of each.
+    #[inline]
+    pub fn pdf(&self, level: Level, place: DVec3, direction: DVec3) -> [f64; LANES] {
+        let mut each = [0.0; LANES];
+        densities(level, self, place, direction, &mut each);
+        each
     }
 }
