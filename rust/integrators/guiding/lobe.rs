@@ -62,12 +62,6 @@ impl Lobe {
         self.square / (self.square + far)
     }
 
-    /// How often it is drawn.
-    #[inline]
-    pub fn share(&self) -> f64 {
-        self.share
-    }
-
     /// Draws a direction to it, all with the same density: a cone's, of less than half of all directions even from
     /// within.
     #[inline]
@@ -86,15 +80,26 @@ impl Lobe {
     }
 
     /// The density in solid angle of a unit direction, times how often the lobe is drawn.
-    #[inline(always)]
+    #[cfg(test)]
     pub fn pdf(&self, place: DVec3, direction: DVec3) -> f64 {
+        let (is_met, far) = self.meets(place, direction);
+        if is_met { self.density(far) } else { 0.0 }
+    }
+
+    /// Whether a direction from a place meets it, and the square of how far its middle is from there. Most are missed,
+    /// and told by products alone.
+    #[inline(always)]
+    fn meets(&self, place: DVec3, direction: DVec3) -> (bool, f64) {
         let way = self.target(place) - place;
         let (far, along) = (way.length_squared(), way.dot(direction));
+        ((along > 0.0) & (along * along * (far + self.square) >= far * far), far)
+    }
+
+    /// The density of directions that meet it, times how often it is drawn, where its middle is so far away.
+    #[inline]
+    fn density(&self, far: f64) -> f64 {
         let all = far + self.square;
-        let density = self.share * (1.0 + (far / all).sqrt()) * (all / self.square) / TAU;
-        // Whether it is missed is told by products alone.
-        let is_missed = (along <= 0.0) | (along * along * all < far * far);
-        if is_missed { 0.0 } else { density }
+        self.share * (1.0 + (far / all).sqrt()) * (all / self.square) / TAU
     }
 
     /// How far from its middle a photon came from.
@@ -158,11 +163,15 @@ pub(super) struct LobeLanes {
 }
 
 loops! {
-    /// The density that each lobe adds to a direction.
-    fn densities(of: &LobeLanes, place: DVec3, direction: DVec3, pdf: &mut [f64; LANES]) {
+    /// Which lobes a direction meets, a bit each, and how far their middles are.
+    fn meet(of: &LobeLanes, place: DVec3, direction: DVec3, met: &mut u32, far: &mut [f64; LANES]) {
+        let mut bits = [0; LANES];
         for i in 0..LANES {
-            pdf[i] = of.get(i).pdf(place, direction);
+            let (is_met, square) = of.get(i).meets(place, direction);
+            bits[i] = u32::from(is_met) << i;
+            far[i] = square;
         }
+        *met = bits.into_iter().fold(0, |all, bit| all | bit);
     }
 }
 
@@ -207,11 +216,17 @@ impl LobeLanes {
         self.share[lane]
     }
 
-    /// What [`Lobe::pdf`] gives of each.
+    /// A sum, and what all of them in turn add to it: the density in solid angle of a unit direction, times how often
+    /// they are drawn.
     #[inline]
-    pub fn pdf(&self, level: Level, place: DVec3, direction: DVec3) -> [f64; LANES] {
-        let mut each = [0.0; LANES];
-        densities(level, self, place, direction, &mut each);
-        each
+    pub fn add_pdf(&self, level: Level, place: DVec3, direction: DVec3, mut sum: f64) -> f64 {
+        let (mut met, mut far) = (0, [0.0; LANES]);
+        meet(level, self, place, direction, &mut met, &mut far);
+        while met != 0 {
+            let lane = met.trailing_zeros() as usize % LANES;
+            met &= met - 1;
+            sum += self.get(lane).density(far[lane]);
+        }
+        sum
     }
 }

@@ -57,7 +57,6 @@ impl<'a> LocalGuide<'a> {
     /// The density in solid angle with which [`LocalGuide::sample`] draws a unit direction.
     #[inline]
     pub fn pdf(&self, level: Level, direction: DVec3) -> f64 {
-        let each = self.cell.lobes.iter().map(|lobes| lobes.pdf(level, self.place, direction));
-        each.flatten().fold(0.0, |sum, density| sum + density)
+        self.cell.lobes.iter().fold(0.0, |sum, lobes| lobes.add_pdf(level, self.place, direction, sum))
     }
 }
