@@ -71,12 +71,7 @@ impl<F: Tabulated> Coated<F> {
     /// What facets of a coat reflect between two directions above, and the density of the draw, by what
     /// [`Facets::mirroring`] tells of them.
     #[inline(always)]
-    fn glossy(
-        (facets, eta): (&F, f64),
-        share: f64,
-        [wo, wi]: [DVec3; 2],
-        (density, cosine): (f64, f64),
-    ) -> (f64, f64) {
+    fn glossy((facets, eta): (&F, f64), share: f64, [wo, wi]: [DVec3; 2], (density, cosine): (f64, f64)) -> (f64, f64) {
         let coat = fresnel::dielectric(cosine, eta) * density * facets.reflection_geometry(wo, wi);
         (coat, share * facets.reflected_pdf(wo, density))
     }

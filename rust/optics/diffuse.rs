@@ -115,14 +115,7 @@ impl DiffuseLanes {
     }
 
     /// What [`Bsdf::sample`] gives, in the lanes that ask; nothing in the others.
-    pub fn sample(
-        &self,
-        level: Level,
-        asks: &[bool; LANES],
-        wo: &VectorLanes,
-        u: &Pairs,
-        drawn: &mut BsdfSampleLanes,
-    ) {
+    pub fn sample(&self, level: Level, asks: &[bool; LANES], wo: &VectorLanes, u: &Pairs, drawn: &mut BsdfSampleLanes) {
         let BsdfSampleLanes { wi, weight, pdf, eta, is_through } = drawn;
         draw(level, &self.0, asks, wo, u, wi, weight, pdf);
         (*eta, *is_through) = ([1.0; LANES], [false; LANES]);

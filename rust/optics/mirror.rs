@@ -82,13 +82,7 @@ impl MirrorLanes {
     }
 
     /// The same where the lanes that ask are known to mirror.
-    pub(super) fn sample_all(
-        &self,
-        level: Level,
-        asks: &[bool; LANES],
-        wo: &VectorLanes,
-        drawn: &mut BsdfSampleLanes,
-    ) {
+    pub(super) fn sample_all(&self, level: Level, asks: &[bool; LANES], wo: &VectorLanes, drawn: &mut BsdfSampleLanes) {
         let BsdfSampleLanes { wi, weight, pdf, eta, is_through } = drawn;
         mirror(level, wo, asks, &self.0, wi, weight, pdf);
         (*eta, *is_through) = ([1.0; LANES], [false; LANES]);

@@ -179,13 +179,8 @@ impl LobeLanes {
     /// Of no more than there are lanes. Those that are left are never drawn.
     pub fn of(lobes: &[Lobe]) -> Self {
         let nothing = VectorLanes::ZERO;
-        let mut lanes = Self {
-            place: nothing,
-            target: nothing,
-            moves: [nothing; 3],
-            square: [1.0; LANES],
-            share: [0.0; LANES],
-        };
+        let mut lanes =
+            Self { place: nothing, target: nothing, moves: [nothing; 3], square: [1.0; LANES], share: [0.0; LANES] };
         for (lane, lobe) in lobes.iter().enumerate() {
             lanes.place.set(lane, lobe.place);
             lanes.target.set(lane, lobe.target);
