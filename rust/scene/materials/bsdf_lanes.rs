@@ -231,7 +231,7 @@ mod tests {
         match kind {
             0 => Diffuse { reflectance: colour }.into(),
             1 => Mirror { reflectance: colour }.into(),
-            2 if lane % 3 == 0 => Conductor::metal(metal("Au").unwrap(), 1.0, [alpha; 2]).into(),
+            2 if lane.is_multiple_of(3) => Conductor::metal(metal("Au").unwrap(), 1.0, [alpha; 2]).into(),
             2 => Conductor::new(Rgb::new(0.2, 0.9, 1.1), Rgb::splat(3.0), [alpha, 0.2 * alpha]).into(),
             3 => Dielectric::new(eta, 0.0).into(),
             4 => Dielectric::new(eta, 0.3).into(),
