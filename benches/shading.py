@@ -10,6 +10,7 @@ without. Choose instructions with RAYWRIGHT_SIMD, as avx2.
 """
 
 import argparse
+import dataclasses
 import statistics
 
 from render_peers import scenes
@@ -18,6 +19,26 @@ import raywright as rw
 from raywright import _core
 
 RAYS = ("camera", "closest", "shadow", "film")
+
+# What the blocks of the Cornell box are made of, in scenes by these names.
+KINDS = {
+    "glass": rw.Dielectric(1.5),
+    "pane": rw.ThinDielectric(1.5),
+    "mirror": rw.Mirror(0.9),
+    "metal": rw.Conductor("Au"),
+    "rough metal": rw.Conductor("Au", roughness=0.5),
+    "plastic": rw.Plastic((0.2, 0.4, 0.8)),
+    "rough plastic": rw.Plastic((0.2, 0.4, 0.8), roughness=0.5),
+    "metallic rough": rw.MetallicRough((0.9, 0.6, 0.2), 0.5, 0.5),
+}
+
+
+def of_kind(material, side):
+    """Return the Cornell box with blocks of a material, its camera, and no limit of bounces."""
+    scene, camera = rw.scenes.cornell_box(width=side, height=side)
+    *room, short, tall = scene.shapes
+    blocks = [dataclasses.replace(block, material=material) for block in (short, tall)]
+    return rw.Scene([*room, *blocks]), camera, None
 
 
 def told(scene, camera, path, arguments):
@@ -37,7 +58,8 @@ def told(scene, camera, path, arguments):
 def main():
     """Render and print the table."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--scene", action="append", help="which; all if not given")
+    which = f"which; by default those of render_peers.py, or one of {', '.join(KINDS)}"
+    parser.add_argument("--scene", action="append", help=which)
     parser.add_argument("--side", type=int, default=256, help="pixels on a side")
     parser.add_argument("--samples", type=int, default=16, help="of each pixel")
     parser.add_argument("--repeat", type=int, default=5, help="turns")
@@ -48,8 +70,11 @@ def main():
             "raywright must be built with the feature timing: maturin develop --release --features timing"
         )
     known = scenes(None, arguments.side)
+    usual = list(known)
+    for name, material in KINDS.items():
+        known[name] = lambda material=material: of_kind(material, arguments.side)
     columns = {}
-    for name in arguments.scene or known:
+    for name in arguments.scene or usual:
         if name not in known:
             parser.error(f"--scene is {name!r}, expected one of {', '.join(known)}")
         scene, camera, depth = known[name]()

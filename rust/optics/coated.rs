@@ -1,8 +1,12 @@
 //! Plastic, varnish, glaze: a matt base under a clear coat.
 
+mod lanes;
+
+pub use lanes::CoatedLanes;
+
 use super::albedo::{Coat, Tabulated};
 use super::bsdf::either;
-use super::conductor::above;
+use super::conductor::{above, mirrors};
 use super::lobes::diffuse;
 use super::mirror::mirrored;
 use super::{Bsdf, BsdfSample, Facets, Ggx, Rgb, fresnel};
@@ -56,6 +60,22 @@ impl<F: Tabulated> Coated<F> {
         }
     }
 
+    /// What the base scatters of light from `wi`, above, and the density of the draw, where one has the probability
+    /// `share` to be the coat's: by `base` and `average`, and what the coat reflects of light to and from there.
+    #[inline(always)]
+    fn matt((base, average): (Rgb, f64), share: f64, wi: DVec3, [reflectance, there]: [f64; 2]) -> (Rgb, f64) {
+        let reaching = (1.0 - reflectance) * (1.0 - there);
+        (base * (reaching * FRAC_1_PI * wi.z / (1.0 - average)), (1.0 - share) * wi.z * FRAC_1_PI)
+    }
+
+    /// What facets of a coat reflect between two directions above, and the density of the draw, by what
+    /// [`Facets::mirroring`] tells of them.
+    #[inline(always)]
+    fn glossy((facets, eta): (&F, f64), share: f64, [wo, wi]: [DVec3; 2], (density, cosine): (f64, f64)) -> (f64, f64) {
+        let coat = fresnel::dielectric(cosine, eta) * density * facets.reflection_geometry(wo, wi);
+        (coat, share * facets.reflected_pdf(wo, density))
+    }
+
     /// The probability with which a draw is reflected by the coat, of which it reflects this share.
     #[inline]
     fn share(&self, reflectance: f64) -> f64 {
@@ -67,19 +87,16 @@ impl<F: Tabulated> Coated<F> {
 impl<F: Tabulated> Bsdf for Coated<F> {
     #[inline]
     fn evaluate(&self, wo: DVec3, wi: DVec3) -> (Rgb, f64) {
-        if !F::sees(wo) || !F::sees(wi) || wo.z * wi.z <= 0.0 {
+        if !mirrors::<F>(wo, wi) {
             return (Rgb::ZERO, 0.0);
         }
         let (wo, wi) = (above(wo), above(wi));
         let reflectance = self.reflectance(wo);
         let share = self.share(reflectance);
-        let reaching = (1.0 - reflectance) * (1.0 - self.reflectance(wi));
-        let base = self.base * (reaching * FRAC_1_PI * wi.z / (1.0 - self.average));
-        let diffuse = (1.0 - share) * wi.z * FRAC_1_PI;
+        let (base, diffuse) = Self::matt((self.base, self.average), share, wi, [reflectance, self.reflectance(wi)]);
         let Some(Rough { facets, .. }) = &self.rough else { return (base, diffuse) };
-        let (density, cosine) = facets.mirroring(wo, wi);
-        let coat = fresnel::dielectric(cosine, self.eta) * density * facets.reflection_geometry(wo, wi);
-        (base + coat, share * facets.reflected_pdf(wo, density) + diffuse)
+        let (coat, glossy) = Self::glossy((facets, self.eta), share, [wo, wi], facets.mirroring(wo, wi));
+        (base + coat, glossy + diffuse)
     }
 
     #[inline]

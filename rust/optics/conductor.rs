@@ -112,7 +112,7 @@ fn made_up_of(lost: f64, reflectance: f64) -> f64 {
 
 /// Whether facets mirror one direction to another: both are seen, on one side.
 #[inline(always)]
-fn mirrors<F: Facets>(wo: DVec3, wi: DVec3) -> bool {
+pub(super) fn mirrors<F: Facets>(wo: DVec3, wi: DVec3) -> bool {
     F::sees(wo) & F::sees(wi) & (wo.z * wi.z > 0.0)
 }
 

@@ -1,11 +1,17 @@
 //! Glass, water and the like.
 
+mod lanes;
+
+pub use lanes::DielectricLanes;
+
+use super::bsdf::either;
 use super::conductor::above;
 use super::lobes::Grazing;
 use super::losses::{Lossy, LostBetween};
 use super::mirror::mirrored;
 use super::split::{Bare, Share, Split};
 use super::{Bsdf, BsdfSample, Facets, Ggx, Rgb, fresnel};
+use crate::math::select;
 use glam::DVec3;
 
 /// A dielectric interface, smooth or with isotropic microfacets (Walter et al., "Microfacet Models for Refraction
@@ -28,6 +34,41 @@ pub struct Dielectric<F: Lossy = Ggx, S: Split = Bare> {
 struct Rough<F: Lossy> {
     facets: F,
     interface: F::Interface,
+}
+
+/// The index beyond a surface over that on the side of `w`, for the index below over that above.
+#[inline(always)]
+fn beyond(eta: f64, w: DVec3) -> f64 {
+    if w.z > 0.0 { eta } else { 1.0 / eta }
+}
+
+/// One of the two single directions of a smooth interface.
+struct Single<S> {
+    wi: DVec3,
+    /// What is left of light from there.
+    weight: S,
+    /// Whether it is the one on the other side.
+    is_through: bool,
+    /// Whether there is one: none where all is reflected, of which roundings leave a choice beyond.
+    is_any: bool,
+}
+
+impl<S: Share> Single<S> {
+    /// Chosen by a number, where this share is reflected, and with the index beyond over that on the side of `wo`.
+    #[inline(always)]
+    fn new(wo: DVec3, eta: f64, reflectance: S, choice: f64) -> Self {
+        let chance = reflectance.chance();
+        let is_mirrored = choice < chance;
+        // Both are computed, and one is taken: lanes have no branches.
+        let (bent, is_total) = fresnel::refracted(wo, DVec3::new(0.0, 0.0, 1f64.copysign(wo.z)), eta);
+        let left = (reflectance.rest() / chance.rest()) * (1.0 / (eta * eta));
+        Self {
+            wi: select(is_mirrored, mirrored(wo), bent),
+            weight: S::select(is_mirrored, reflectance / chance, left),
+            is_through: !is_mirrored,
+            is_any: is_mirrored | !is_total,
+        }
+    }
 }
 
 impl Dielectric {
@@ -67,7 +108,7 @@ impl<F: Lossy, S: Split> Dielectric<F, S> {
     /// The index beyond the surface over that on the side of `w`.
     #[inline]
     fn beyond(&self, w: DVec3) -> f64 {
-        if w.z > 0.0 { self.eta } else { 1.0 / self.eta }
+        beyond(self.eta, w)
     }
 
     /// The share of light that is reflected at this cosine of incidence, on the side of `w`.
@@ -137,14 +178,9 @@ impl<F: Lossy, S: Split> Dielectric<F, S> {
     fn smooth_sample(&self, wo: DVec3, choice: f64) -> Option<BsdfSample> {
         let eta = self.beyond(wo);
         let reflectance = self.reflectance(wo, wo.z.abs());
-        let chance = reflectance.chance();
-        if choice < chance {
-            return Some(BsdfSample::delta(mirrored(wo), (reflectance / chance).rgb()).of_lobe([0.0, chance]));
-        }
-        let wi = fresnel::refract(wo, DVec3::new(0.0, 0.0, wo.z.signum()), eta)?;
-        let left = reflectance.rest() / chance.rest();
-        let drawn = BsdfSample::delta(wi, (left * (1.0 / (eta * eta))).rgb());
-        Some(drawn.through(eta).of_lobe([chance, 1.0]))
+        let Single { wi, weight, is_through, is_any } = Single::new(wo, eta, reflectance, choice);
+        let drawn = BsdfSample::delta(wi, weight.rgb()).of_lobe(either(reflectance.chance(), !is_through));
+        is_any.then(|| if is_through { drawn.through(eta) } else { drawn })
     }
 
     #[inline]

@@ -8,19 +8,19 @@ use glam::DVec3;
 ///
 /// Differences of nearly equal terms are divided out: with e = η² − 1 and g = η cos θt = √(e + c²), c − g is −e / (c +
 /// g). So the result has a relative error of some 10⁻¹⁵ however close η is to 1.
-#[inline]
+#[inline(always)]
 pub fn dielectric(cosine: f64, eta: f64) -> f64 {
     let (c, e) = (cosine, (eta - 1.0) * (eta + 1.0));
     let square = e + c * c;
-    if square <= 0.0 {
-        // At η = 1 and exactly grazing nothing is there to reflect.
-        return if e == 0.0 { 0.0 } else { 1.0 };
-    }
+    // Both are computed, and one is taken: lanes have no branches.
     let g = square.sqrt();
     let sum = c + g;
     let s = e / (sum * sum);
     let p = e * (c * sum - 1.0) / (sum * (eta * eta * c + g));
-    0.5 * (s * s + p * p)
+    let partial = 0.5 * (s * s + p * p);
+    // At η = 1 and exactly grazing nothing is there to reflect.
+    let all = if e == 0.0 { 0.0 } else { 1.0 };
+    if square <= 0.0 { all } else { partial }
 }
 
 /// Where a ray comes from that leaves along `wo` after refraction at a facet of unit normal `h`, on the side of `wo`:
@@ -28,12 +28,16 @@ pub fn dielectric(cosine: f64, eta: f64) -> f64 {
 /// unit vector as precisely as `wo` and `h` are, and it differs from −`wo` by as little as `eta` does from 1.
 #[inline]
 pub fn refract(wo: DVec3, h: DVec3, eta: f64) -> Option<DVec3> {
+    let (wi, is_total) = refracted(wo, h, eta);
+    (!is_total).then_some(wi)
+}
+
+/// The same without a branch: a direction, and whether there is none because all is reflected.
+#[inline(always)]
+pub(super) fn refracted(wo: DVec3, h: DVec3, eta: f64) -> (DVec3, bool) {
     let (c, e) = (wo.dot(h), (eta - 1.0) * (eta + 1.0));
     let square = e + c * c;
-    if square <= 0.0 {
-        return None;
-    }
-    Some(-(wo + h * (e / (c + square.sqrt()))) / eta)
+    (-(wo + h * (e / (c + square.sqrt()))) / eta, square <= 0.0)
 }
 
 /// The share of even light from a hemisphere that a dielectric reflects, ∫ 2 F(μ) μ dμ, in closed form (Walsh, 1926;
@@ -139,7 +143,7 @@ const GAUSS_COSINE: [(f64, f64); 4] = [
 
 /// Schlick's approximation of the weight with which a reflectance goes from its value at normal incidence to 1
 /// ("An Inexpensive BRDF Model for Physically-based Rendering", 1994): F = F₀ + (1 − F₀) (1 − cos θ)⁵.
-#[inline]
+#[inline(always)]
 pub fn schlick_weight(cosine: f64) -> f64 {
     let m = (1.0 - cosine).clamp(0.0, 1.0);
     let m2 = m * m;
@@ -147,7 +151,7 @@ pub fn schlick_weight(cosine: f64) -> f64 {
 }
 
 /// Schlick's approximation for a reflectance `f0` at normal incidence.
-#[inline]
+#[inline(always)]
 pub fn schlick(cosine: f64, f0: Rgb) -> Rgb {
     f0 + (Rgb::ONE - f0) * schlick_weight(cosine)
 }

@@ -52,7 +52,7 @@ impl Lobes {
 }
 
 /// A direction on the side of `wo`, by the cosine.
-#[inline]
+#[inline(always)]
 pub(super) fn diffuse(wo: DVec3, u: [f64; 2]) -> DVec3 {
     let mut wi = warp::cosine_hemisphere(u);
     wi.z = wi.z.copysign(wo.z);

@@ -1,7 +1,11 @@
 //! The material of glTF.
 
+mod lanes;
+
+pub use lanes::MetallicRoughLanes;
+
 use super::albedo::{MirrorLoss, SchlickShare};
-use super::conductor::{above, made_up};
+use super::conductor::{above, made_up, mirrors};
 use super::lobes::{Grazing, diffuse};
 use super::mirror::mirrored;
 use super::{Bsdf, BsdfSample, Facets, Ggx, Rgb, fresnel};
@@ -62,6 +66,31 @@ impl MetallicRough {
         Self { rough, base, multiple, color: base_color, metallic, grazing }
     }
 
+    /// What the base and metal scatter widely of light from `wi`, above, by what facets reflect once of light to and
+    /// from there, and the densities of draws of metal and of the base, by the probabilities of facets and metal
+    /// ([`MetallicRough::shares`]).
+    #[inline(always)]
+    fn wide(
+        (base, multiple, grazing): (Rgb, Rgb, &Grazing),
+        [facets, metal]: [f64; 2],
+        wi: DVec3,
+        [once_o, once_i]: [(f64, f64); 2],
+    ) -> (Rgb, [f64; 2]) {
+        let reaching = (1.0 - Self::dielectric(once_o)) * (1.0 - Self::dielectric(once_i));
+        let lost = (1.0 - once_o.1) * (1.0 - once_i.1);
+        let densities = [metal * grazing.pdf(wi.z), (1.0 - facets - metal).max(0.0) * wi.z * FRAC_1_PI];
+        ((base * reaching + multiple * lost) * wi.z, densities)
+    }
+
+    /// What facets reflect between two directions above, and the density of the draw, by what [`Facets::mirroring`]
+    /// tells of them.
+    #[inline(always)]
+    fn glossy((ggx, f0): (&Ggx, Rgb), facets: f64, [wo, wi]: [DVec3; 2], told: (f64, f64)) -> (Rgb, f64) {
+        let (density, cosine) = told;
+        let once = fresnel::schlick(cosine, f0) * (density * ggx.reflection_geometry(wo, wi));
+        (once, facets * ggx.reflected_pdf(wo, density))
+    }
+
     /// Reflectance at normal incidence.
     #[inline]
     fn f0(&self) -> Rgb {
@@ -78,7 +107,7 @@ impl MetallicRough {
     }
 
     /// The share of light that facets of a dielectric reflect once.
-    #[inline]
+    #[inline(always)]
     fn dielectric((schlick, kept): (f64, f64)) -> f64 {
         Self::DIELECTRIC * kept + (1.0 - Self::DIELECTRIC) * schlick
     }
@@ -98,25 +127,16 @@ impl MetallicRough {
 impl Bsdf for MetallicRough {
     #[inline]
     fn evaluate(&self, wo: DVec3, wi: DVec3) -> (Rgb, f64) {
-        if !Ggx::sees(wo) || !Ggx::sees(wi) || wo.z * wi.z <= 0.0 {
+        if !mirrors::<Ggx>(wo, wi) {
             return (Rgb::ZERO, 0.0);
         }
         let (wo, wi) = (above(wo), above(wi));
-        let (once_o, once_i) = (self.once(wo), self.once(wi));
-        let reaching = (1.0 - Self::dielectric(once_o)) * (1.0 - Self::dielectric(once_i));
-        let lost = (1.0 - once_o.1) * (1.0 - once_i.1);
-        let wide = (self.base * reaching + self.multiple * lost) * wi.z;
-        let [facets, metal] = self.shares(once_o);
-        let (once, facet) = match &self.rough {
-            None => (Rgb::ZERO, 0.0),
-            Some(Rough { ggx, .. }) => {
-                let (density, cosine) = ggx.mirroring(wo, wi);
-                let facets = density * ggx.reflection_geometry(wo, wi);
-                (fresnel::schlick(cosine, self.f0()) * facets, ggx.reflected_pdf(wo, density))
-            }
-        };
-        let spread = metal * self.grazing.pdf(wi.z);
-        (wide + once, facets * facet + spread + (1.0 - facets - metal).max(0.0) * wi.z * FRAC_1_PI)
+        let once = [self.once(wo), self.once(wi)];
+        let shares = self.shares(once[0]);
+        let (wide, [spread, matt]) = Self::wide((self.base, self.multiple, &self.grazing), shares, wi, once);
+        let Some(Rough { ggx, .. }) = &self.rough else { return (wide, spread + matt) };
+        let (glossy, facet) = Self::glossy((ggx, self.f0()), shares[0], [wo, wi], ggx.mirroring(wo, wi));
+        (wide + glossy, facet + spread + matt)
     }
 
     #[inline]

@@ -25,6 +25,9 @@ pub trait Share: Copy + Mul<f64, Output = Self> + Div<f64, Output = Self> {
     /// How often it is drawn: 0 or 1 only where all or nothing of the rest is left.
     fn chance(self) -> f64;
 
+    /// One of two, without a branch.
+    fn select(first: bool, a: Self, b: Self) -> Self;
+
     /// With as much more in each channel.
     fn plus(self, more: f64) -> Self;
 
@@ -43,6 +46,11 @@ impl Share for f64 {
     #[inline(always)]
     fn chance(self) -> f64 {
         self
+    }
+
+    #[inline(always)]
+    fn select(first: bool, a: Self, b: Self) -> Self {
+        if first { a } else { b }
     }
 
     #[inline(always)]
@@ -67,6 +75,11 @@ impl Share for Rgb {
     #[inline(always)]
     fn chance(self) -> f64 {
         self.mean()
+    }
+
+    #[inline(always)]
+    fn select(first: bool, a: Self, b: Self) -> Self {
+        Self::select(first, a, b)
     }
 
     #[inline(always)]

@@ -1,10 +1,11 @@
 //! What a scene needs, what is left out, and which variant of shading it takes.
 
+use super::materials::BsdfMix;
 use super::media::Medium;
 use super::textures::Needs;
 use super::{Emission, Geometry, Lights, Material, Rounding};
 use crate::accel::Primitives;
-use crate::optics::{AnyBsdf, Rgb};
+use crate::optics::{AnyBsdf, Bsdf, Rgb};
 use std::borrow::Cow;
 use std::ops::BitOr;
 use std::sync::Arc;
@@ -103,7 +104,7 @@ pub struct Plan {
     /// How many lights are asked one by one where light is scattered sharply; 0 where one of all is asked.
     few: u32,
     /// How each shape scatters on either side, if it does so alike everywhere ([`Material::constant_sides`]).
-    constants: Vec<Option<[AnyBsdf; 2]>>,
+    constants: Vec<Option<[BsdfMix; 2]>>,
     /// Of those that are diffuse, what each reflects.
     diffuse: Vec<Option<[Rgb; 2]>>,
     /// By which kinds of functions each scatters, on the front and on the back.
@@ -143,16 +144,16 @@ impl Plan {
                 }
                 None => {
                     needs = needs | Self::of(material.as_ref(), lights.emission(shape));
-                    constants.push(material.constant_sides());
+                    constants.push(material.constant_sides().map(|sides| sides.map(BsdfMix::One)));
                     kinds.push(material.kinds().unwrap_or([Self::MIXED; 2]).map(|kind| kind as u8));
                 }
             }
         }
         needs.waves |= needs.points.waves;
         let few = if needs.scattering { lights.few() } else { 0 };
-        let colour = |sides: &Option<[AnyBsdf; 2]>| match sides {
-            Some([AnyBsdf::Diffuse(front), AnyBsdf::Diffuse(back)]) => Some([front.reflectance, back.reflectance]),
-            _ => None,
+        let colour = |sides: &Option<[BsdfMix; 2]>| {
+            let [front, back] = sides.as_ref()?;
+            Some([front.diffuse()?, back.diffuse()?])
         };
         let diffuse = constants.iter().map(colour).collect();
         Self { needs, rounding, few, constants, diffuse, kinds }
@@ -232,7 +233,7 @@ impl Plan {
     /// How a shape scatters that is surrounded by nothing, if it does so alike everywhere; in a scene of
     /// [`ShadingVariant::Plain`] each does, and is diffuse.
     #[inline]
-    pub fn constant(&self, shape: u32, is_front: bool) -> Option<&AnyBsdf> {
+    pub fn constant(&self, shape: u32, is_front: bool) -> Option<&BsdfMix> {
         self.constants[shape as usize].as_ref().map(|[front, back]| if is_front { front } else { back })
     }
 

@@ -49,10 +49,10 @@ impl SurfaceInteraction {
         let gaze = gaze.into();
         if outside == 1.0
             && gaze.width == 0.0
-            && let Some(&bsdf) = scene.plan().constant(surface.shape, surface.is_front(ray))
+            && let Some(bsdf) = scene.plan().constant(surface.shape, surface.is_front(ray))
         {
             let shading = surface.shading_normal;
-            return Self::with(ray, surface, (shading, None), BsdfMix::One(bsdf));
+            return Self::with(ray, surface, (shading, None), bsdf.clone());
         }
         Self::mapped(scene, ray, hit, surface, gaze, outside)
     }

@@ -151,6 +151,12 @@ pub trait Shape: Debug + Send + Sync {
     /// The point of a candidate that [`Shape::meet`] told of this ray, moved onto the surface as nearly as f64 can.
     fn point(&self, ray: &Ray, t: f64, uv: [f64; 2]) -> Point;
 
+    /// The same without coordinates, for shapes that know a shorter way: within the errors of both.
+    #[inline]
+    fn site(&self, ray: &Ray, t: f64, uv: [f64; 2]) -> Site {
+        self.point(ray, t, uv).site()
+    }
+
     /// Its area; infinite where it has no end.
     fn area(&self) -> f64;
 

@@ -6,7 +6,7 @@ use super::meeting::{ball, ball_surface, tell};
 use super::solid::{Meet, Meets, Solid};
 use super::{Ball, Bounds, Candidate, Carried, Closest, Contact, Drawn, Point, Seen, Shape, Site};
 use crate::math::robust::UNIT;
-use crate::math::turn::sin_cos_turn;
+use crate::math::turn::{sin_cos_turn, upper_angle};
 use crate::math::{Affine, Bounded, DVec3, Frame, Number, Ray, Triple, at_right_angles, ellipsoid_area};
 use crate::sampling::warp::{UNIFORM_SPHERE_PDF, uniform_sphere};
 use std::f64::consts::{PI, TAU};
@@ -162,8 +162,11 @@ pub(super) fn globe([u, v]: [f64; 2]) -> (DVec3, [DVec3; 2]) {
 
 /// The longitude and the latitude of a vector of any length.
 pub(super) fn longitude_latitude(x: DVec3) -> [f64; 2] {
-    let turn = x.y.atan2(x.x) / TAU;
-    [if turn < 0.0 { (turn + 1.0).min(1.0) } else { turn }, x.x.hypot(x.y).atan2(-x.z) / PI]
+    let turn = upper_angle(x.y.abs(), x.x) / TAU;
+    let square = x.x * x.x + x.y * x.y;
+    // Squares that are too large or too small to be numbers are few.
+    let across = if (1e-280..1e280).contains(&square) { square.sqrt() } else { x.x.hypot(x.y) };
+    [if x.y < 0.0 { 1.0 - turn } else { turn }, upper_angle(across, -x.z) / PI]
 }
 
 impl Solid for Sphere {
@@ -233,6 +236,13 @@ impl Shape for Sphere {
 
     fn point(&self, _: &Ray, _: f64, uv: [f64; 2]) -> Point {
         self.at(uv)
+    }
+
+    fn site(&self, _: &Ray, _: f64, [u, v]: [f64; 2]) -> Site {
+        let ([sin, cos], [out, down]) = (sin_cos_turn(u), sin_cos_turn(0.5 * v));
+        let direction = DVec3::new(out * cos, out * sin, -down);
+        // As in `sight_in`.
+        self.towards(direction * (1.5 - 0.5 * direction.length_squared()))
     }
 
     fn area(&self) -> f64 {

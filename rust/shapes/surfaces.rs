@@ -107,15 +107,20 @@ fn a_ray_to_a_point_finds_it_and_its_coordinates() {
 fn points_lie_on_the_surface_to_within_their_error() {
     for shape in shapes() {
         for uv in places() {
-            let point = at(&*shape, uv);
-            // A line along the normal: how far along it the surface is, is decided without error.
-            let mut least = f64::INFINITY;
-            let ray = Ray { t_min: -1.0, ..Ray::new(point.position, point.normal) };
-            shape.meet(&ray, &mut |met| {
-                least = least.min(met.t.abs());
-                false
-            });
-            assert!(least <= point.error * 3f64.sqrt(), "{shape:?} {uv:?}: {least:e} {:e}", point.error);
+            let shorter = shape.site(&Ray::new(DVec3::ZERO, DVec3::X), 0.0, uv);
+            for point in [at(&*shape, uv).site(), shorter] {
+                // A line along the normal: how far along it the surface is, is decided without error.
+                let mut least = f64::INFINITY;
+                let ray = Ray { t_min: -1.0, ..Ray::new(point.position, point.normal) };
+                shape.meet(&ray, &mut |met| {
+                    least = least.min(met.t.abs());
+                    false
+                });
+                assert!(least <= point.error * 3f64.sqrt(), "{shape:?} {uv:?}: {least:e} {:e}", point.error);
+            }
+            let (own, near) = (at(&*shape, uv).site(), 4.0 * (at(&*shape, uv).error + shorter.error));
+            assert!((own.position - shorter.position).length() <= near, "{shape:?} {uv:?}");
+            assert!((own.normal - shorter.normal).length() < 1e-14, "{shape:?} {uv:?}");
         }
     }
 }

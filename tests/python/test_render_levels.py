@@ -9,8 +9,8 @@ import pytest
 import raywright as rw
 
 # Scenes that go by every part of shading which is compiled for each level: diffuse rooms with lamps of
-# triangles, smooth normals and masks, sheets of two sides, metal and glass, round lamps, skies, and each
-# kind of sampler.
+# triangles, smooth normals and masks, sheets of two sides, metal, glass and plastic, round lamps, skies,
+# and each kind of sampler.
 PICTURES = """
 import hashlib
 import raywright as rw
@@ -41,6 +41,12 @@ tell("sky", rw.Scene([knot, floor], environment=0.7), camera)
 ball, point = rw.Sphere((1, 0, 1), 0.5), rw.PointLight((0, 3, 3), 2)
 tell("smooth", rw.Scene([knot, floor, lamp, ball], [point]), camera)
 tell("masks", rw.Scene([knot, floor, lamp, veil]), camera)
+blue, gold = (0.2, 0.4, 0.8), rw.Conductor("Au")
+glossy = rw.Plastic(blue), rw.Plastic(blue, roughness=0.5), rw.MetallicRough(blue, 0.5, 0.3)
+kinds = *glossy, gold, rw.Mirror(0.9), rw.ThinDielectric(1.5), rw.Dielectric(1.5)
+balls = [rw.Sphere((x - 3, -1, 0), 0.45, material=kind) for x, kind in enumerate(kinds)]
+tell("kinds", rw.Scene([floor, lamp, *balls]), camera)
+tell("guided", rw.Scene([floor, lamp, *balls]), camera, rw.Path(caustics=True))
 """
 
 
@@ -57,5 +63,5 @@ def test_levels_change_no_bit():
 
     levels = [lines for level in ("neon", "sse2", "avx2", "avx512") if (lines := told(level)) is not None]
     reference = levels[0]
-    assert len({line.split()[1] for line in reference}) == len(reference) == 14
+    assert len({line.split()[1] for line in reference}) == len(reference) == 16
     assert all(other == reference for other in levels)

@@ -1,8 +1,8 @@
 //! Places, divided by how much light comes there.
 
-use super::lobe::Lobe;
+use super::lobe::{Lobe, LobeLanes};
 use super::photon::Photon;
-use crate::math::DVec3;
+use crate::math::{DVec3, LANES};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -11,15 +11,25 @@ use std::ops::Range;
 pub(super) struct Cells {
     nodes: Vec<Node>,
     leaves: Vec<Leaf>,
-    lobes: Vec<Lobe>,
+    lobes: Vec<LobeLanes>,
 }
 
+/// What is below `at` along an axis is in the first child, which is the next node; the rest is in the second, of this
+/// number. Without an axis it is a leaf, of this number.
 #[derive(Clone, Copy, Debug)]
-enum Node {
-    /// What is below `at` along the axis is in the first child, which is the next node.
-    Split { axis: usize, at: f64, second: usize },
-    /// By its number.
-    Leaf(usize),
+struct Node {
+    at: f64,
+    axis: u32,
+    second: u32,
+}
+
+impl Node {
+    /// In place of an axis.
+    const NONE: u32 = 3;
+
+    fn leaf(number: usize) -> Self {
+        Self { at: 0.0, axis: Self::NONE, second: number as u32 }
+    }
 }
 
 /// A cell, and roughly where photons came to it.
@@ -30,14 +40,17 @@ struct Leaf {
     share: f64,
     gain: f64,
     rarity: f64,
+    /// How many lobes, and in which lanes.
+    count: usize,
     lobes: Range<usize>,
 }
 
 /// What is known of a cell.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cell<'a> {
-    /// Where light comes from: one lobe at least, [`LOBES`] at most, whose shares add up to 1.
-    pub lobes: &'a [Lobe],
+    /// Where light comes from: one lobe at least, [`LOBES`] at most, whose shares add up to 1; and how many.
+    pub lobes: &'a [LobeLanes],
+    pub count: usize,
     /// How often to aim.
     pub share: f64,
     /// How much brighter than usual it is there.
@@ -85,8 +98,8 @@ impl Cells {
         let told: Vec<(Leaf, Vec<Lobe>)> = ranges.into_par_iter().map(told).collect();
         for (leaf, lobes) in told {
             let first = all.lobes.len();
-            all.lobes.extend(lobes);
-            all.leaves.push(Leaf { lobes: first..all.lobes.len(), ..leaf });
+            all.lobes.extend(lobes.chunks(LANES).map(LobeLanes::of));
+            all.leaves.push(Leaf { count: lobes.len(), lobes: first..all.lobes.len(), ..leaf });
         }
         all
     }
@@ -98,59 +111,57 @@ impl Cells {
         let size = max - min;
         let axis = (0..3).max_by(|&a, &b| size[a].total_cmp(&size[b])).unwrap_or(0);
         if mine.len() <= PHOTONS || size[axis] <= 0.0 {
-            self.nodes.push(Node::Leaf(ranges.len()));
+            self.nodes.push(Node::leaf(ranges.len()));
             ranges.push(range);
             return;
         }
         let half = mine.len() / 2;
         mine.select_nth_unstable_by(half, |a, b| a.position[axis].total_cmp(&b.position[axis]));
         let (at, node) = (mine[half].position[axis], self.nodes.len());
-        self.nodes.push(Node::Leaf(0));
+        self.nodes.push(Node::leaf(0));
         self.divide(photons, range.start..range.start + half, ranges);
-        self.nodes[node] = Node::Split { axis, at, second: self.nodes.len() };
+        self.nodes[node] = Node { at, axis: axis as u32, second: self.nodes.len() as u32 };
         self.divide(photons, range.start + half..range.end, ranges);
     }
 
     /// Adds those photons of a node that are in a box.
     fn gather(&self, node: usize, photons: &[Photon], (min, max): (DVec3, DVec3), near: &mut Vec<Photon>) {
-        match self.nodes[node] {
-            Node::Leaf(_) => {
-                let inside = |p: &&Photon| p.position.cmpge(min).all() && p.position.cmple(max).all();
-                near.extend(photons.iter().filter(inside));
-            }
-            Node::Split { axis, at, second } => {
-                // Halves are where `divide` made them.
-                let (one, other) = photons.split_at(photons.len() / 2);
-                if min[axis] <= at {
-                    self.gather(node + 1, one, (min, max), near);
-                }
-                if max[axis] >= at {
-                    self.gather(second, other, (min, max), near);
-                }
-            }
+        let Node { at, axis, second } = self.nodes[node];
+        if axis == Node::NONE {
+            let inside = |p: &&Photon| p.position.cmpge(min).all() && p.position.cmple(max).all();
+            near.extend(photons.iter().filter(inside));
+            return;
+        }
+        // Halves are where `divide` made them.
+        let (one, other) = photons.split_at(photons.len() / 2);
+        if min[axis as usize] <= at {
+            self.gather(node + 1, one, (min, max), near);
+        }
+        if max[axis as usize] >= at {
+            self.gather(second as usize, other, (min, max), near);
         }
     }
 
     /// The cell of a place; `None` where no photon has been about.
     #[inline]
     pub fn find(&self, place: DVec3) -> Option<Cell<'_>> {
+        // The way down is about as long for all places, but which it is nobody can foretell: no branch depends on it.
+        let coordinates = [place.x, place.y, place.z, 0.0];
         let mut node = 0;
-        loop {
-            match self.nodes[node] {
-                Node::Split { axis, at, second } => node = if place[axis] < at { node + 1 } else { second },
-                Node::Leaf(number) => {
-                    let leaf = &self.leaves[number];
-                    let inside = place.cmpge(leaf.min).all() && place.cmple(leaf.max).all();
-                    let &Leaf { share, gain, rarity, .. } = leaf;
-                    return inside.then(|| Cell { lobes: &self.lobes[leaf.lobes.clone()], share, gain, rarity });
-                }
-            }
+        while self.nodes[node].axis != Node::NONE {
+            let Node { at, axis, second } = self.nodes[node];
+            let is_below = coordinates[axis as usize & 3] < at;
+            node = std::hint::select_unpredictable(is_below, node + 1, second as usize);
         }
+        let leaf = &self.leaves[self.nodes[node].second as usize];
+        let inside = place.cmpge(leaf.min).all() && place.cmple(leaf.max).all();
+        let &Leaf { share, gain, rarity, count, .. } = leaf;
+        inside.then(|| Cell { lobes: &self.lobes[leaf.lobes.clone()], count, share, gain, rarity })
     }
 }
 
 impl Leaf {
-    /// What photons that have come to a cell and those beside it tell of it, and its lobes, by number from 0 on.
+    /// What photons that have come to a cell and those beside it tell of it, and its lobes, which stand nowhere yet.
     fn told(near: &mut [Photon], (min, max): (DVec3, DVec3), usual: f64) -> (Self, Vec<Lobe>) {
         let sides = max - min;
         let size = sides.max_element();
@@ -184,7 +195,8 @@ impl Leaf {
         // By how much noise it takes from what paths find of the rest, and adds to it, were each lobe half filled by
         // what is sought.
         let share = (2.0 * brighter / (2.0 * brighter + 1.0)).clamp(SHARES[0], SHARES[1]);
-        (Self { min, max, share, gain: 1.0 + brighter, rarity, lobes: 0..lobes.len() }, lobes)
+        let leaf = Self { min, max, share, gain: 1.0 + brighter, rarity, count: lobes.len(), lobes: 0..0 };
+        (leaf, lobes)
     }
 }
 

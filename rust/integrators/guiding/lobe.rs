@@ -2,7 +2,8 @@
 
 use super::photon::Photon;
 use crate::math::turn::sin_cos_turn;
-use crate::math::{DVec3, Frame};
+use crate::math::{DVec3, Frame, LANES, VectorLanes};
+use crate::simd::{Level, loops};
 use glam::DMat3;
 use std::f64::consts::TAU;
 
@@ -49,7 +50,7 @@ impl Lobe {
     }
 
     /// The middle of the ball, as seen from a place.
-    #[inline]
+    #[inline(always)]
     pub fn target(&self, place: DVec3) -> DVec3 {
         self.target + self.moves * (place - self.place)
     }
@@ -59,12 +60,6 @@ impl Lobe {
     pub fn fills(&self) -> f64 {
         let far = self.target.distance_squared(self.place);
         self.square / (self.square + far)
-    }
-
-    /// How often it is drawn.
-    #[inline]
-    pub fn share(&self) -> f64 {
-        self.share
     }
 
     /// Draws a direction to it, all with the same density: a cone's, of less than half of all directions even from
@@ -85,15 +80,25 @@ impl Lobe {
     }
 
     /// The density in solid angle of a unit direction, times how often the lobe is drawn.
-    #[inline]
+    #[cfg(test)]
     pub fn pdf(&self, place: DVec3, direction: DVec3) -> f64 {
+        let (is_met, far) = self.meets(place, direction);
+        if is_met { self.density(far) } else { 0.0 }
+    }
+
+    /// Whether a direction from a place meets it, and the square of how far its middle is from there. Most are missed,
+    /// and told by products alone.
+    #[inline(always)]
+    fn meets(&self, place: DVec3, direction: DVec3) -> (bool, f64) {
         let way = self.target(place) - place;
         let (far, along) = (way.length_squared(), way.dot(direction));
+        ((along > 0.0) & (along * along * (far + self.square) >= far * far), far)
+    }
+
+    /// The density of directions that meet it, times how often it is drawn, where its middle is so far away.
+    #[inline]
+    fn density(&self, far: f64) -> f64 {
         let all = far + self.square;
-        // Most are missed, and told by products alone.
-        if along <= 0.0 || along * along * all < far * far {
-            return 0.0;
-        }
         self.share * (1.0 + (far / all).sqrt()) * (all / self.square) / TAU
     }
 
@@ -144,5 +149,79 @@ impl Lobe {
             }
         }
         each.push((lobe, photons.iter().map(|p| p.flux).sum()));
+    }
+}
+
+/// Lobes of one place, a lane each; there may be fewer than lanes.
+#[derive(Clone, Debug)]
+pub(super) struct LobeLanes {
+    place: VectorLanes,
+    target: VectorLanes,
+    moves: [VectorLanes; 3],
+    square: [f64; LANES],
+    share: [f64; LANES],
+}
+
+loops! {
+    /// Which lobes a direction meets, a bit each, and how far their middles are.
+    fn meet(of: &LobeLanes, place: DVec3, direction: DVec3, met: &mut u32, far: &mut [f64; LANES]) {
+        let mut bits = [0; LANES];
+        for i in 0..LANES {
+            let (is_met, square) = of.get(i).meets(place, direction);
+            bits[i] = u32::from(is_met) << i;
+            far[i] = square;
+        }
+        *met = bits.into_iter().fold(0, |all, bit| all | bit);
+    }
+}
+
+impl LobeLanes {
+    /// Of no more than there are lanes. Those that are left are never drawn.
+    pub fn of(lobes: &[Lobe]) -> Self {
+        let nothing = VectorLanes::ZERO;
+        let mut lanes =
+            Self { place: nothing, target: nothing, moves: [nothing; 3], square: [1.0; LANES], share: [0.0; LANES] };
+        for (lane, lobe) in lobes.iter().enumerate() {
+            lanes.place.set(lane, lobe.place);
+            lanes.target.set(lane, lobe.target);
+            for axis in 0..3 {
+                lanes.moves[axis].set(lane, lobe.moves.col(axis));
+            }
+            (lanes.square[lane], lanes.share[lane]) = (lobe.square, lobe.share);
+        }
+        lanes
+    }
+
+    /// That of a lane.
+    #[inline(always)]
+    pub fn get(&self, lane: usize) -> Lobe {
+        let [x, y, z] = &self.moves;
+        Lobe {
+            place: self.place.get(lane),
+            target: self.target.get(lane),
+            moves: DMat3::from_cols(x.get(lane), y.get(lane), z.get(lane)),
+            square: self.square[lane],
+            share: self.share[lane],
+        }
+    }
+
+    /// How often that of a lane is drawn.
+    #[inline]
+    pub fn share(&self, lane: usize) -> f64 {
+        self.share[lane]
+    }
+
+    /// A sum, and what all of them in turn add to it: the density in solid angle of a unit direction, times how often
+    /// they are drawn.
+    #[inline]
+    pub fn add_pdf(&self, level: Level, place: DVec3, direction: DVec3, mut sum: f64) -> f64 {
+        let (mut met, mut far) = (0, [0.0; LANES]);
+        meet(level, self, place, direction, &mut met, &mut far);
+        while met != 0 {
+            let lane = met.trailing_zeros() as usize % LANES;
+            met &= met - 1;
+            sum += self.get(lane).density(far[lane]);
+        }
+        sum
     }
 }

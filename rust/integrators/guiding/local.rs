@@ -1,7 +1,8 @@
 //! Directions towards where light comes from.
 
 use super::cells::Cell;
-use crate::math::DVec3;
+use crate::math::{DVec3, LANES};
+use crate::simd::Level;
 
 /// Directions from a place towards where light comes from: those to one of several balls.
 #[derive(Clone, Copy, Debug)]
@@ -38,25 +39,24 @@ impl<'a> LocalGuide<'a> {
     /// Draws a direction: `choice` among the balls, `u` of those to one, all uniform in [0, 1).
     #[inline]
     pub fn sample(&self, mut choice: f64, u: [f64; 2]) -> DVec3 {
+        let Cell { lobes, count, .. } = self.cell;
         // Shares add up to 1 but for roundings.
-        let mut chosen = &self.cell.lobes[self.cell.lobes.len() - 1];
-        for lobe in self.cell.lobes {
-            if choice < lobe.share() {
+        let last = count - 1;
+        let mut chosen = last;
+        for lobe in 0..last {
+            let share = lobes[lobe / LANES].share(lobe % LANES);
+            if choice < share {
                 chosen = lobe;
                 break;
             }
-            choice -= lobe.share();
+            choice -= share;
         }
-        chosen.sample(self.place, u)
+        lobes[chosen / LANES].get(chosen % LANES).sample(self.place, u)
     }
 
     /// The density in solid angle with which [`LocalGuide::sample`] draws a unit direction.
     #[inline]
-    pub fn pdf(&self, direction: DVec3) -> f64 {
-        let mut sum = 0.0;
-        for lobe in self.cell.lobes {
-            sum += lobe.pdf(self.place, direction);
-        }
-        sum
+    pub fn pdf(&self, level: Level, direction: DVec3) -> f64 {
+        self.cell.lobes.iter().fold(0.0, |sum, lobes| lobes.add_pdf(level, self.place, direction, sum))
     }
 }

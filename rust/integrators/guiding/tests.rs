@@ -10,6 +10,7 @@ use crate::sampling::{Sampler, warp};
 use crate::scene::fixtures::{cornell, rectangle, scene, shape};
 use crate::scene::materials::MirrorMaterial;
 use crate::scene::{PointLight, Scene, SceneDescription, Shape};
+use crate::simd::Level;
 use crate::workers::Cancel;
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -98,13 +99,18 @@ fn cells_are_found_and_their_densities_integrate_to_one() {
         assert!((0.1..=0.6).contains(&local.share()) && local.gain() >= 1.0);
         let count = 200_000;
         let evenly = |number| warp::uniform_sphere(Sampler::new(6, 0, number).two(0));
-        let sum: f64 = (0..count).map(|number| local.pdf(evenly(number))).sum();
+        let sum: f64 = (0..count).map(|number| local.pdf(Level::Scalar, evenly(number))).sum();
         // Cones are wide here: the densities spread by less than three times their mean.
         let integral = sum * 2.0 * TAU / f64::from(count);
         assert!((integral - 1.0).abs() < 4.0 * 3.0 / f64::from(count).sqrt(), "{integral}");
         for number in 0..1000 {
             let mut sampler = Sampler::new(7, 0, number);
-            assert!(local.pdf(local.sample(sampler.one(0), sampler.two(1))) > 0.0);
+            let drawn = local.sample(sampler.one(0), sampler.two(1));
+            let density = local.pdf(Level::Scalar, drawn);
+            assert!(density > 0.0);
+            for level in Level::ALL.into_iter().filter(|level| level.is_available()) {
+                assert_eq!(local.pdf(level, drawn), density, "{level:?}");
+            }
         }
     }
 }

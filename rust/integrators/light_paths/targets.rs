@@ -4,6 +4,7 @@ use crate::integrators::is_matt;
 use crate::math::{DVec3, Region};
 use crate::optics::AnyBsdf;
 use crate::sampling::Sampler;
+use crate::scene::materials::BsdfMix;
 use crate::scene::{Aim, Emitters, Geometry, Scene};
 
 /// The most balls that are aimed at: all of them are asked of each direction.
@@ -35,7 +36,7 @@ fn balls(scene: &Scene) -> Vec<(DVec3, f64)> {
                 let copies = (0..instances.count() as u32).filter_map(|copy| instances.bounds(copy));
                 groups.extend(copies.map(|bounds| vec![bounds.min, bounds.max]));
             }
-        } else if [true, false].iter().any(|&side| scene.plan().constant(shape, side).is_some_and(is_sharp)) {
+        } else if [true, false].iter().any(|&side| scene.plan().constant(shape, side).is_some_and(is_sharp_alone)) {
             groups.push(points(scene.geometry(), shape));
         }
     }
@@ -55,6 +56,11 @@ fn balls(scene: &Scene) -> Vec<(DVec3, f64)> {
 /// Whether it is sharp, and more than a gap.
 fn is_sharp(bsdf: &AnyBsdf) -> bool {
     !is_matt(bsdf) && !matches!(bsdf, AnyBsdf::Transparent(_) | AnyBsdf::Null(_))
+}
+
+/// The same of what is of one kind.
+fn is_sharp_alone(bsdf: &BsdfMix) -> bool {
+    matches!(bsdf, BsdfMix::One(bsdf) if is_sharp(bsdf))
 }
 
 /// Some points of a shape, which tell about where it is.

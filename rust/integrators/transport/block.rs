@@ -33,7 +33,7 @@ pub(super) struct Block<'a> {
     pub reflectance: RgbLanes,
     /// Otherwise how each scatters, how wide its ray is, where light comes from by way of what is sharp, and whether
     /// roulette has been played.
-    pub bsdf: BsdfLanes,
+    pub bsdf: BsdfLanes<'a>,
     pub width: [f64; LANES],
     /// What parts the wavelengths of their paths that are to go on.
     pub parting: [Option<Parting>; LANES],

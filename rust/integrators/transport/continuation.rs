@@ -1,10 +1,11 @@
 //! Where paths go on to.
 
 use super::Follow;
+use super::aiming::{aim, aiming};
 use super::block::Block;
 use super::dimensions::Dimensions;
 use super::features::{Carried, Features};
-use super::guided::{Arrival, draw};
+use super::guided::Arrival;
 use super::path_state::PathState;
 use super::splitting::Branch;
 use super::worker::TransportWorker;
@@ -96,24 +97,21 @@ impl<N: Features> TransportWorker<'_, N> {
             block.numbers.one_and_two(self.level, &choices, &mut choice, &mut u);
             let chances = self.chances(block, &dimensions);
             let goes: [bool; LANES] = array::from_fn(|lane| block.goes_on[lane] && !parts[lane] && branch < splits[lane]);
+            let aims = if self.guide.is_some() { aiming(block, &goes, &mut choice) } else { [false; LANES] };
+            let scatters = array::from_fn(|lane| goes[lane] && !aims[lane]);
             let ([mut origin, mut direction], mut drawn) = ([VectorLanes::ZERO; 2], BsdfSampleLanes::NONE);
-            block.bsdf.sample(self.level, &goes, block.encounters.wo_lanes(), (&choice, &u), &mut drawn);
+            block.bsdf.sample(self.level, &scatters, block.encounters.wo_lanes(), (&choice, &u), &mut drawn);
             let BsdfSampleLanes { wi, weight, pdf, .. } = &mut drawn;
             leave(self.level, &block.encounters, wi, weight, pdf, &mut origin, &mut direction);
+            let mut denser = [1.0; LANES];
+            if self.guide.is_some() {
+                let rays = [&mut origin, &mut direction];
+                aim(self.level, block, (&goes, &aims), (&choice, &u), &mut drawn, rays, &mut denser);
+            }
             let mut going = 0;
             for lane in (0..block.count).filter(|&lane| goes[lane]) {
-                let mut denser = 1.0;
-                if let Some(guide) = &block.guides[lane] {
-                    let here = block.other(lane);
-                    let Some((next, by)) = draw(&here, guide, choice[lane], [u[0][lane], u[1][lane]]) else { continue };
-                    let ray = here.ray_origin().ray(next.wi);
-                    drawn.set(lane, Some(next));
-                    origin.set(lane, ray.origin);
-                    direction.set(lane, ray.direction);
-                    denser = by;
-                }
                 let Some(next) = drawn.get(lane) else { continue };
-                let (number, splits, chance) = (numbers[lane], splits[lane], chances[lane]);
+                let (number, splits, denser, chance) = (numbers[lane], splits[lane], denser[lane], chances[lane]);
                 if self.is_followed(block, lane, next.pdf)
                     && self.send(block, lane, &next, Branch { number, splits, denser, chance })
                 {

@@ -275,7 +275,7 @@ impl<N: Features> TransportWorker<'_, N> {
         block.bsdf.evaluate(self.level, &seen, block.encounters.wo_lanes(), &wi, &mut scattered, &mut pdf);
         for lane in (0..block.count).filter(|&lane| asks[lane]) {
             if let Some(guide) = &block.guides[lane] {
-                pdf[lane] = density(guide, pdf[lane], lights.get(lane).0);
+                pdf[lane] = density(self.level, guide, pdf[lane], lights.get(lane).0);
             }
         }
         let asked = &numbers.map(|(_, asked)| f64::from(asked.max(1)));

@@ -3,8 +3,7 @@
 use super::path_state::PathState;
 use crate::integrators::{LocalGuide, roulette};
 use crate::math::DVec3;
-use crate::optics::BsdfSample;
-use crate::scene::Encounter;
+use crate::simd::Level;
 
 /// Plays roulette for a path that was aimed and comes to a matt surface, and tells whether that ended the path, was
 /// survived, or is still to be played because the path was not aimed.
@@ -41,30 +40,6 @@ pub(super) enum Arrival {
 
 /// The density of a direction that a surface draws with `pdf`, where paths aim as well.
 #[inline]
-pub(super) fn density(guide: &LocalGuide, pdf: f64, direction: DVec3) -> f64 {
-    pdf + guide.share() * (guide.pdf(direction) - pdf)
-}
-
-/// A direction drawn by a surface or by where light comes from, weighed by the density of both together (Veach and
-/// Guibas, 1995: the one-sample model), and how much denser that is than the surface's.
-pub(super) fn draw(here: &impl Encounter, guide: &LocalGuide, choice: f64, u: [f64; 2]) -> Option<(BsdfSample, f64)> {
-    let share = guide.share();
-    if choice < share {
-        let direction = guide.sample(choice / share, u);
-        let (value, pdf) = here.evaluate(direction);
-        if value.is_black() || pdf <= 0.0 {
-            return None;
-        }
-        let both = density(guide, pdf, direction);
-        return Some((BsdfSample::new(direction, value / both, both), both / pdf));
-    }
-    // What is left of the choice is uniform again.
-    let next = here.sample(|| ((choice - share) / (1.0 - share)).min(1f64.next_down()), u)?;
-    if next.is_delta() {
-        let denser = 1.0 - share;
-        return Some((BsdfSample { weight: next.weight / denser, ..next }, denser));
-    }
-    let both = density(guide, next.pdf, next.wi);
-    let denser = both / next.pdf;
-    Some((BsdfSample { weight: next.weight / denser, pdf: both, ..next }, denser))
+pub(super) fn density(level: Level, guide: &LocalGuide, pdf: f64, direction: DVec3) -> f64 {
+    pdf + guide.share() * (guide.pdf(level, direction) - pdf)
 }

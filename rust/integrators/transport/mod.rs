@@ -1,5 +1,6 @@
 //! What path tracing and its ancestors share: a batch of paths on their way, one bounce at a time.
 
+mod aiming;
 mod ambient;
 mod arrivals;
 mod arrive;

@@ -9,11 +9,11 @@ use crate::integrators::CameraSample;
 use crate::integrators::nesting::MediumStack;
 use crate::math::{LANES, Ray, VectorLanes};
 use crate::optics::{Bsdf, Diffuse, Rgb};
-use crate::scene::materials::BsdfMix;
 use crate::scene::{Encounter, LightContextLanes, LightSampleContext, SurfaceInteraction, SurfaceInteractionLanes};
 use crate::simd::loops;
 use crate::timing::{Part, count, timed};
 use std::array;
+use std::borrow::Cow;
 
 loops! {
     /// From rays that meet surfaces to what is known of the encounters, where nothing is asked of a material but how it
@@ -156,16 +156,16 @@ impl<'a, N: Features> TransportWorker<'a, N> {
             let (ray, hit) = (block.rays[lane], block.hits[lane]);
             let (gaze, (outside, parting)) = (self.gaze(block, lane), self.parting(block, lane, &surface, outside));
             let bsdf = match self.scene.plan().constant(surface.shape, surface.is_front(&ray)) {
-                Some(&bsdf) if outside == 1.0 && width == 0.0 => BsdfMix::One(bsdf),
+                Some(bsdf) if outside == 1.0 && width == 0.0 => Cow::Borrowed(bsdf),
                 _ => {
                     let here = SurfaceInteraction::new(self.scene, &ray, &hit, surface, gaze, outside);
                     block.encounters.set(lane, &here);
                     block.receivers.set(lane, &here.light_context());
-                    here.into_bsdf()
+                    Cow::Owned(here.into_bsdf())
                 }
             };
             if N::GENERAL {
-                block.parting[lane] = parting.filter(|parting| parting.waits(&bsdf));
+                block.parting[lane] = parting.filter(|parting| parting.waits(&*bsdf));
                 if parting.is_some() && block.parting[lane].is_none() {
                     block.paths[lane].end_all_but_hero();
                 }

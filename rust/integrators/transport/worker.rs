@@ -34,7 +34,7 @@ pub(super) struct TransportWorker<'a, N> {
     /// Which surfaces are there for which rays.
     pub(super) passing: Passing,
     pub(super) widths: bool,
-    /// Whether paths may be sorted by what scatters them, and need no more of a diffuse surface than its colour.
+    /// Whether paths may be sorted by what scatters them.
     pub(super) in_columns: bool,
     /// What guides paths, if anything does.
     pub(super) guide: Option<&'a Guide>,
@@ -69,7 +69,7 @@ impl<'a, N: Features> TransportWorker<'a, N> {
             footprint,
             passing: Passing::new(N::GENERAL && needs.masks, N::GENERAL && needs.nested),
             widths,
-            in_columns: settings.are_plain() && !settings.guided,
+            in_columns: settings.are_plain(),
             guide,
             known,
             now: Queue::default(),
@@ -113,7 +113,8 @@ impl<'a, N: Features> TransportWorker<'a, N> {
         // A worker may be given samples of another seed or kind each time.
         block.numbers = SamplerLanes::new(&samples[0].sampler);
         for kind in 0..Plan::KINDS {
-            block.is_diffuse = kind == Plan::DIFFUSE;
+            // To aim takes more than a colour.
+            block.is_diffuse = kind == Plan::DIFFUSE && self.guide.is_none();
             let which = std::mem::take(&mut self.arrivals.kinds[kind]);
             for (number, some) in which.chunks(LANES).enumerate() {
                 let next = which.iter().skip((number + 1) * LANES).take(LANES);

@@ -1,17 +1,20 @@
-//! Rough metals by lane.
+//! Metals by lane.
 
 use super::{Conductor, Rough, above, mirrors};
 use crate::math::{DVec3, LANES, VectorLanes};
 use crate::optics::conductors::Reflectance;
 use crate::optics::fresnel::ConductorIndex;
 use crate::optics::lobes::Grazing;
+use crate::optics::mirror::MirrorLanes;
 use crate::optics::{BsdfSampleLanes, Facets, Ggx, Rgb, RgbLanes};
 use crate::sampling::Pairs;
 use crate::simd::{Level, loops};
+use std::array::from_fn;
 
-/// What is known of rough metals, a lane each, and of a direction that light goes to.
+/// What is known of metals, a lane each, and of a direction that light goes to.
 #[derive(Clone, Debug)]
 pub struct ConductorLanes {
+    is_rough: [bool; LANES],
     alpha: [[f64; LANES]; 2],
     multiple: RgbLanes,
     grazing: [[f64; LANES]; 2],
@@ -38,6 +41,16 @@ loops! {
         for i in 0..LANES {
             let index = ConductorIndex::with([of.index[0].get(i), of.index[1].get(i)]);
             reflectance.set(i, index.reflectance(cosine[i]));
+        }
+    }
+}
+
+loops! {
+    /// What smooth metals reflect, by their index.
+    fn reflect(of: &ConductorLanes, reflectance: &mut RgbLanes) {
+        for i in 0..LANES {
+            let index = ConductorIndex::with([of.index[0].get(i), of.index[1].get(i)]);
+            reflectance.set(i, index.reflectance(of.wo.get(i).z.abs()));
         }
     }
 }
@@ -99,6 +112,7 @@ loops! {
 impl ConductorLanes {
     /// Of nothing yet.
     pub const NONE: Self = Self {
+        is_rough: [false; LANES],
         alpha: [[1.0; LANES]; 2],
         multiple: RgbLanes::ZERO,
         grazing: [[1.0; LANES]; 2],
@@ -108,14 +122,16 @@ impl ConductorLanes {
         lost: [0.0; LANES],
     };
 
-    /// Puts a metal into a lane, and the direction that it was prepared for; says whether it could, which is not the
-    /// case if it is smooth.
+    /// Puts a metal into a lane, and a direction that light goes to.
     #[inline]
-    pub fn set(&mut self, lane: usize, metal: &Conductor, wo: DVec3) -> bool {
-        let Some(rough) = &metal.rough else { return false };
-        [self.alpha[0][lane], self.alpha[1][lane]] = rough.facets.alpha();
-        self.multiple.set(lane, rough.multiple);
-        [self.grazing[0][lane], self.grazing[1][lane]] = rough.grazing.parts();
+    pub fn set(&mut self, lane: usize, metal: &Conductor, wo: DVec3) {
+        self.is_rough[lane] = metal.rough.is_some();
+        if let Some(rough) = &metal.rough {
+            [self.alpha[0][lane], self.alpha[1][lane]] = rough.facets.alpha();
+            self.multiple.set(lane, rough.multiple);
+            [self.grazing[0][lane], self.grazing[1][lane]] = rough.grazing.parts();
+            self.lost[lane] = rough.lost(above(wo));
+        }
         self.is_by_index[lane] = false;
         if let Reflectance::Index(index) = &metal.fresnel {
             let [real, imaginary2] = index.parts();
@@ -124,8 +140,6 @@ impl ConductorLanes {
             self.is_by_index[lane] = true;
         }
         self.wo.set(lane, wo);
-        self.lost[lane] = rough.prepared.1;
-        true
     }
 
     #[inline(always)]
@@ -143,6 +157,11 @@ impl ConductorLanes {
         value: &mut RgbLanes,
         pdf: &mut [f64; LANES],
     ) {
+        let asks = &from_fn(|lane| asks[lane] && self.is_rough[lane]);
+        if !asks.contains(&true) {
+            (*value, *pdf) = (RgbLanes::ZERO, [0.0; LANES]);
+            return;
+        }
         let ([mut density, mut cosine, mut lost], mut reflectance) = ([[0.0; LANES]; 3], RgbLanes::ZERO);
         mirror(level, self, wi, &mut density, &mut cosine, &mut reflectance);
         for lane in (0..LANES).filter(|&lane| asks[lane]) {
@@ -166,17 +185,46 @@ impl ConductorLanes {
         (choice, u): (&[f64; LANES], &Pairs),
         drawn: &mut BsdfSampleLanes,
     ) {
-        let BsdfSampleLanes { wi, weight, pdf, eta, is_through } = drawn;
+        let are = |rough: bool| from_fn(|lane| asks[lane] && self.is_rough[lane] == rough);
+        let [smooth, rough]: [[bool; LANES]; 2] = [false, true].map(are);
+        if !rough.contains(&true) {
+            return self.sample_smooth(level, metals, &smooth, drawn);
+        }
+        let BsdfSampleLanes { wi, weight, pdf, eta, is_through } = &mut *drawn;
         draw(level, self, u, wi);
-        for lane in (0..LANES).filter(|&lane| asks[lane] && choice[lane] < self.lost[lane]) {
+        for lane in (0..LANES).filter(|&lane| rough[lane] && choice[lane] < self.lost[lane]) {
             let grazing = Grazing::with([self.grazing[0][lane], self.grazing[1][lane]]);
             wi.set(lane, grazing.sample([u[0][lane], u[1][lane]]));
         }
         let mut goes = [false; LANES];
-        turn(level, self, asks, wi, &mut goes);
-        self.evaluate(level, metals, &goes, wi, weight, pdf);
+        turn(level, self, &rough, wi, &mut goes);
+        self.evaluate(level, &metals, &goes, wi, weight, pdf);
         weigh(level, pdf, weight);
         (*eta, *is_through) = ([1.0; LANES], [false; LANES]);
+        if smooth.contains(&true) {
+            let mut mirrored = BsdfSampleLanes::NONE;
+            self.sample_smooth(level, metals, &smooth, &mut mirrored);
+            (0..LANES).filter(|&lane| smooth[lane]).for_each(|lane| drawn.set(lane, mirrored.get(lane)));
+        }
+    }
+
+    /// The same in lanes that ask and have smooth metals.
+    fn sample_smooth<'a>(
+        &self,
+        level: Level,
+        metals: impl Fn(usize) -> Option<&'a Conductor>,
+        asks: &[bool; LANES],
+        drawn: &mut BsdfSampleLanes,
+    ) {
+        let mut reflectance = RgbLanes::ZERO;
+        reflect(level, self, &mut reflectance);
+        for lane in (0..LANES).filter(|&lane| asks[lane] && !self.is_by_index[lane]) {
+            if let Some(metal) = metals(lane) {
+                reflectance.set(lane, metal.reflectance(self.wo.get(lane).z.abs()));
+            }
+        }
+        let asks = from_fn(|lane| asks[lane] && Ggx::sees(self.wo.get(lane)));
+        MirrorLanes(reflectance).sample_all(level, &asks, &self.wo, drawn);
     }
 }
 
@@ -187,12 +235,12 @@ mod tests {
     use crate::optics::{Bsdf, BsdfSample};
     use crate::sampling::Sampler;
     use crate::sampling::warp::uniform_sphere;
-    use std::array::from_fn;
 
-    /// Metals of an index and measured ones, alike in all directions and brushed.
-    fn metals() -> [Conductor; LANES] {
+    /// Metals of an index and measured ones, alike in all directions and brushed, or some of them smooth, or all.
+    fn metals(turn: u32) -> [Conductor; LANES] {
         from_fn(|lane| {
-            let alpha = [[0.3; 2], [1e-4; 2], [0.05, 0.6], [1.0; 2]][lane % 4];
+            let rough = [[0.3; 2], [1e-4; 2], [0.05, 0.6], [1.0; 2]][lane % 4];
+            let alpha = if (turn % 3) as usize > lane % 2 { [0.0; 2] } else { rough };
             match metal("gold") {
                 Some(gold) if lane / 4 % 2 == 1 => Conductor::metal(gold, if lane < 8 { 1.0 } else { 1.33 }, alpha),
                 _ => Conductor::new(Rgb::new(0.2, 0.9, 1.1), Rgb::new(3.9, 2.4, 2.2), alpha),
@@ -221,12 +269,12 @@ mod tests {
     #[test]
     fn lanes_have_the_bits_of_one() {
         for turn in 0..200 {
-            let (metals, case) = (metals(), case(turn));
+            let (metals, case) = (metals(turn), case(turn));
             let (mut lanes, mut wi, mut u) = (ConductorLanes::NONE, VectorLanes::ZERO, [[0.0; LANES]; 2]);
             let prepared = from_fn::<_, LANES, _>(|lane| {
                 let mut metal = metals[lane];
                 metal.prepare(case[lane].0[0]);
-                assert!(lanes.set(lane, &metal, case[lane].0[0]));
+                lanes.set(lane, &metal, case[lane].0[0]);
                 wi.set(lane, case[lane].0[1]);
                 [u[0][lane], u[1][lane]] = [case[lane].1[1], case[lane].1[2]];
                 metal
@@ -251,8 +299,5 @@ mod tests {
                 }
             }
         }
-        let smooth = Conductor::new(Rgb::ONE, Rgb::ONE, [0.0; 2]);
-        let mut lanes = ConductorLanes::NONE;
-        assert!(!lanes.set(0, &smooth, DVec3::Z));
     }
 }

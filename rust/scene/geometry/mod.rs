@@ -519,7 +519,7 @@ impl Geometry {
             return SurfacePoint { shape: self.locate(hit.primitive).0, inner: Some(hit.inner), ..point };
         }
         match others.get(hit.primitive) {
-            Some(shape) => self.on_shape(hit.primitive, &shape.point(ray, hit.t, hit.uv).site()),
+            Some(shape) => self.on_shape(hit.primitive, &shape.site(ray, hit.t, hit.uv)),
             None => self.on_triangle(hit.primitive, hit.uv),
         }
     }
