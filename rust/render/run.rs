@@ -84,7 +84,7 @@ pub fn go_on(
             return Err(RenderError::Interrupted);
         }
         // Passes may be too short for anyone to look up during one.
-        if progress.pauses() {
+        if progress.rests() {
             return Ok(false);
         }
     }
@@ -144,7 +144,8 @@ fn pass(
 ) -> Result<bool, RenderError> {
     let stop = Stop::default();
     let done = rendering.film.samples();
-    let (tiles, goal) = rendering.goal();
+    let (work, goal) = rendering.goal();
+    let tiles = work.tiles.tiles();
     let mut look = || {
         if progress.pauses() {
             stop.pause.raise();
