@@ -276,7 +276,10 @@ class Sight:
     def __new__(cls, rendering: Rendering) -> Sight: ...
     @property
     def is_open(self) -> bool:
-        """Whether a pass is worked on."""
+        """Whether a pass is worked on, or has just been done."""
+    @property
+    def is_done(self) -> bool:
+        """Whether nobody works on it: whoever looks is waited for."""
     def outline(self) -> Rendering | None:
         """Return the render without its pixels."""
     def copy(self) -> Rendering | None:

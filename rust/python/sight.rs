@@ -28,6 +28,12 @@ impl Sight {
         self.of.is_open()
     }
 
+    /// Whether nobody works on it: whoever looks is waited for.
+    #[getter]
+    fn is_done(&self) -> bool {
+        self.of.is_done()
+    }
+
     /// The render without its pixels.
     fn outline(&self) -> Option<Rendering> {
         self.of.outline().map(Rendering)

@@ -57,6 +57,8 @@ struct Shown {
     seconds: f64,
     since: Instant,
     aim: u32,
+    /// Whether all of the work is done, so that whoever looks is waited for.
+    is_done: bool,
 }
 
 impl Shown {
@@ -75,6 +77,11 @@ impl Sight {
     /// Whether there is anything to be seen: a pass is worked on.
     pub fn is_open(&self) -> bool {
         self.shown().is_some()
+    }
+
+    /// Whether the pass is done, so that nobody works any more: whoever looks is waited for.
+    pub fn is_done(&self) -> bool {
+        self.shown().as_ref().is_none_or(|shown| shown.is_done)
     }
 
     /// What the render knows of itself, and none of its pixels.
@@ -107,6 +114,15 @@ impl Sight {
 pub(super) struct Work<'a> {
     pub tiles: Loan<'a>,
     sight: &'a Sight,
+}
+
+impl Work<'_> {
+    /// Says that the work is done.
+    pub fn end(&self) {
+        if let Some(shown) = &mut *self.sight.shown() {
+            shown.is_done = true;
+        }
+    }
 }
 
 impl Drop for Work<'_> {
@@ -197,7 +213,7 @@ impl Rendering {
         };
         let tiles = Loan::of(&mut self.film);
         let (error, history, seconds, aim) = (self.error, self.history.clone(), self.seconds, self.aim);
-        let shown = |film| Shown { film, error, history, seconds, since: Instant::now(), aim };
+        let shown = |film| Shown { film, error, history, seconds, since: Instant::now(), aim, is_done: false };
         *self.sight.shown() = tiles.shared().map(shown);
         (Work { tiles, sight: &self.sight }, goal)
     }

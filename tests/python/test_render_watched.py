@@ -110,8 +110,8 @@ def test_who_asks_for_no_pixels_is_called_ten_times_a_second_however_large_the_p
     take = snapshots.Snapshots.take
 
     def taken(self, image, waits):
-        waited.append(waits)
         take(self, image, waits)
+        waited.append(waits())
 
     monkeypatch.setattr(snapshots.Snapshots, "take", taken)
 

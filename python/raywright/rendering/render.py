@@ -263,7 +263,7 @@ def render(
         if snapshots is None or not snapshots.due:
             return False
         if sight.is_open:
-            snapshots.take(lambda: so_far(sight), waits=False)
+            snapshots.take(lambda: so_far(sight), lambda: sight.is_done)
             return False
         # Between passes it has to be left to be looked at.
         return True
@@ -275,7 +275,7 @@ def render(
         if kept is not None and kept.wait() == 0:
             kept.write_beside(rendering)
         if snapshots is not None and snapshots.due:
-            snapshots.take(lambda: so_far(AtRest(rendering)), waits=True)
+            snapshots.take(lambda: so_far(AtRest(rendering)), lambda: True)
 
     def keep() -> None:
         # Nothing is kept of a render that could not begin.

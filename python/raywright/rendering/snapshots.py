@@ -10,6 +10,8 @@ from .so_far import ImageSoFar
 # The least time between two, and of how many times the time that showing one takes they take a share at most.
 _SECONDS = 0.1
 _TIMES = 10.0
+# How many times as long as showing one took there is none, however many threads there are.
+_REST = 1.0
 
 
 class Snapshots:
@@ -35,8 +37,8 @@ class Snapshots:
         """Whether the next picture is due."""
         return time.monotonic() >= self._due
 
-    def take(self, image: Callable[[], ImageSoFar], waits: bool) -> None:
-        """Show the picture that a function makes; the render `waits` meanwhile, or goes on."""
+    def take(self, image: Callable[[], ImageSoFar], waits: Callable[[], bool]) -> None:
+        """Show the picture that a function makes; another says in the end whether the render `waits`."""
         began = time.monotonic()
         shown = image()
         kept = weakref.ref(shown)
@@ -50,6 +52,6 @@ class Snapshots:
             whole = True
         ended = time.monotonic()
         # What tells errors works on all cores.
-        alone = 1 if waits or whole else self._threads
-        rest = max(_TIMES / alone - 1, 0) * (ended - began)
+        alone = 1 if whole or waits() else self._threads
+        rest = max(_TIMES / alone - 1, _REST) * (ended - began)
         self._due = max(began + _SECONDS, ended + rest)
