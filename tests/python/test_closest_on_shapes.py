@@ -340,7 +340,7 @@ def laid_out(matrix):
 def test_instances_are_as_near_as_what_is_in_them(uneven):
     matrices = placed(40, uneven)
     points = np.random.default_rng(11).uniform(-12, 12, (80, 3))
-    scene = rw.Scene([rw.Instance(GROUP, matrices), rw.Sphere((0, 0, 0), 4)], precision="double")
+    scene = rw.Scene([rw.Instance(GROUP, matrices), rw.Sphere((0, 0, 0), 9)], precision="double")
     closest = scene.closest_point(points)
     alone = np.stack(
         [
@@ -349,10 +349,10 @@ def test_instances_are_as_near_as_what_is_in_them(uneven):
             for shape in laid_out(matrix)
         ]
     )
-    ball = np.abs(np.linalg.norm(points, axis=1) - 4)
+    ball = np.abs(np.linalg.norm(points, axis=1) - 9)
     assert np.allclose(closest.distance, np.minimum(alone.min(axis=0), ball), rtol=0, atol=1e-13)
     on_copies = closest.shape_id == 0
-    assert 40 < on_copies.sum() < 80
+    assert 20 < on_copies.sum() < 80
     assert (closest.instance[~on_copies] == -1).all()
     which = alone.argmin(axis=0)[on_copies]
     assert np.array_equal(closest.instance[on_copies], which // 3)
@@ -363,7 +363,9 @@ def test_instances_are_as_near_as_what_is_in_them(uneven):
     ways = (closest.position - points) / closest.distance[:, None]
     hits = scene.intersect(points, ways, t_max=closest.distance * 1.5)
     same = hits.hit & (np.abs(hits.t - closest.distance) < 1e-9) & (hits.primitive == closest.primitive)
-    assert same.sum() > 20
+    # On the rims of cylinders there are two.
+    same &= (hits.shape_id != 0) | (hits.primitive != first + 1)
+    assert same.sum() > 10
     assert np.abs(np.cross(hits.normal[same], closest.normal[same])).max() < 1e-9
     assert np.allclose(np.linalg.norm(closest.normal, axis=1), 1, rtol=0, atol=1e-14)
     assert not scene.occluded(*closest.leave(points - closest.position), t_max=0.999).any()

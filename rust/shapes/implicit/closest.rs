@@ -185,7 +185,7 @@ impl Search<'_> {
                 break;
             }
         }
-        self.offer(own, free);
+        self.offer(own, free, false);
         if !further {
             return;
         }
@@ -198,16 +198,18 @@ impl Search<'_> {
                 break;
             }
         }
-        self.offer(own, free);
+        self.offer(own, free, true);
     }
 
-    /// Takes a point that is on the surface, if it is the nearest so far.
-    fn offer(&mut self, own: DVec3, free: DVec3) {
+    /// Takes a point that is on the surface, if it is the nearest so far. How far points about the nearest are is the
+    /// same to within rounding: one that is `right` goes before those.
+    fn offer(&mut self, own: DVec3, free: DVec3, right: bool) {
         let slope = (self.shape.gradient(own).0 * free).length();
         let off = self.shape.value(own).abs() / slope;
         let on = off <= 8.0 * UNIT * self.shape.extent || self.shape.enclosed(own).contains(0.0);
         let distance = self.way(own).length();
-        if on && distance.is_finite() && self.best.is_none_or(|(best, _)| distance < best) {
+        let room = 1.0 + if right { 8.0 * UNIT } else { -8.0 * UNIT };
+        if on && distance.is_finite() && self.best.is_none_or(|(best, _)| distance < best * room) {
             self.best = Some((distance, own));
         }
     }
