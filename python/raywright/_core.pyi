@@ -20,6 +20,7 @@ __all__ = [
     "KernelContest",
     "RadiosityShots",
     "Rendering",
+    "Sight",
     "aovs",
     "batch_for",
     "camera_rays",
@@ -292,6 +293,7 @@ class Sight:
     def amiss(self) -> tuple[int, int] | None:
         """How many samples were not finite or negative, and how many were clamped."""
 
+@final
 class Rendering:
     """A render: its picture so far, and what it takes to go on with it."""
 
