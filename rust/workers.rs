@@ -32,11 +32,20 @@ impl Cancel {
 /// A process that was forked has none of its parent's threads and would wait for them forever, so pools are kept by
 /// process as well; this is also why the global pool is never used.
 pub fn pool(threads: Option<usize>) -> Result<Arc<ThreadPool>, String> {
-    type Pools = HashMap<(u32, Option<usize>), Arc<ThreadPool>>;
+    kept(threads, false)
+}
+
+/// A pool of one thread a core for those who look at what others work on, and do not wait for these.
+pub fn onlookers() -> Result<Arc<ThreadPool>, String> {
+    kept(None, true)
+}
+
+fn kept(threads: Option<usize>, looks: bool) -> Result<Arc<ThreadPool>, String> {
+    type Pools = HashMap<(u32, Option<usize>, bool), Arc<ThreadPool>>;
     static POOLS: Mutex<Option<Pools>> = Mutex::new(None);
     let mut pools = POOLS.lock().unwrap_or_else(PoisonError::into_inner);
     let pools = pools.get_or_insert_with(HashMap::new);
-    let key = (std::process::id(), threads);
+    let key = (std::process::id(), threads, looks);
     if let Some(pool) = pools.get(&key) {
         return Ok(Arc::clone(pool));
     }

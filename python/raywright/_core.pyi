@@ -20,6 +20,7 @@ __all__ = [
     "KernelContest",
     "RadiosityShots",
     "Rendering",
+    "Sight",
     "aovs",
     "batch_for",
     "camera_rays",
@@ -194,22 +195,28 @@ class CompiledScene:
     def nearest(
         self, points: _Floats, max_distance: _Numbers, shape: tuple[int, ...], threads: int | None
     ) -> tuple[
-        NDArray[np.float64], NDArray[np.float64], NDArray[np.int32], NDArray[np.int32], NDArray[np.float64]
+        NDArray[np.float64],
+        NDArray[np.float64],
+        NDArray[np.int32],
+        NDArray[np.int32],
+        NDArray[np.float64],
+        NDArray[np.int32] | None,
     ]:
-        """Closest points of surfaces: distance, position (..., 3), shape_id, primitive, uv (..., 2)."""
+        """Closest points: distance, position (..., 3), shape_id, primitive, uv (..., 2), instance.
+
+        The last is None where there are no instances.
+        """
     def positions(
         self, shape_id: NDArray[np.int32], primitive: NDArray[np.int32], uv: NDArray[np.float64]
     ) -> NDArray[np.float64]:
         """Points on primitives: (N,3), NaN for misses."""
-    @property
-    def without_closest(self) -> int | None:
-        """Of shapes, the first of which closest points are not found."""
     def sites(
         self,
         shape_id: NDArray[np.int32],
         primitive: NDArray[np.int32],
         uv: NDArray[np.float64],
         position: NDArray[np.float64],
+        instance: NDArray[np.int32] | None,
     ) -> NDArray[np.float64]:
         """Find unit normals at points, and bound the error of each coordinate: (N,4), NaN for misses."""
     def normals(self, shape_id: NDArray[np.int32], primitive: NDArray[np.int32]) -> NDArray[np.float64]:
@@ -262,6 +269,29 @@ class Job:
         """Return the side of the square patches of pixels whose samples the integrator takes together."""
     def expose(self, scene: CompiledScene, request: bytes, threads: int | None) -> bytes:
         """Take the samples that a request of `Rendering.request` wants. One thread is the calling one."""
+
+@final
+class Sight:
+    """What can be seen of a render while a pass is worked on; None between passes."""
+
+    def __new__(cls, rendering: Rendering) -> Sight: ...
+    @property
+    def is_open(self) -> bool:
+        """Whether a pass is worked on, or has just been done."""
+    @property
+    def is_done(self) -> bool:
+        """Whether nobody works on it: whoever looks is waited for."""
+    def outline(self) -> Rendering | None:
+        """Return the render without its pixels."""
+    def copy(self) -> Rendering | None:
+        """Return all of the render as it is now, to be looked at."""
+    @property
+    def rgb(self) -> NDArray[np.float32] | None: ...
+    @property
+    def counts(self) -> NDArray[np.uint32] | None: ...
+    @property
+    def amiss(self) -> tuple[int, int] | None:
+        """How many samples were not finite or negative, and how many were clamped."""
 
 @final
 class Rendering:
@@ -325,7 +355,7 @@ class Rendering:
         seconds: float | None,
         pause: float | None,
         progress: Callable[[float, int, float, bool], None] | None,
-        look: Callable[[], None] | None,
+        look: Callable[[], bool | None] | None,
     ) -> bool:
         """Go on until the first of `samples` (per pixel), `error` (relMSE) or `seconds` is met: True.
 
@@ -334,7 +364,7 @@ class Rendering:
         after every pass.
         Signals are checked ten times a second or more, and ``look`` is called as often; an exception raised
         by a handler, by ``progress`` or by ``look`` ends the render at once and is passed on. Even then it
-        can be gone on with.
+        can be gone on with. Where ``look`` says True after a pass, the render is left too.
         """
     def bias(
         self,

@@ -1,5 +1,6 @@
 //! Floor 2: what finds hits.
 
+mod box_tree;
 mod boxes;
 mod brute;
 pub mod bsp;
@@ -20,6 +21,7 @@ mod user_geometry;
 pub mod walk;
 mod walked;
 
+pub use box_tree::BoxTree;
 pub use boxes::{Boxes, NodeBox};
 pub use brute::BruteForce;
 pub use crossings::Crossings;

@@ -27,11 +27,14 @@ pub struct Nearest {
     pub uv: [f64; 2],
     /// On which primitive; of several at the same distance, on the lowest.
     pub primitive: u32,
+    /// Of an instance, on which primitive of the prototype, flattened.
+    pub inner: u32,
 }
 
 impl Nearest {
     /// Nothing is near enough.
-    pub const MISS: Self = Self { distance: f64::INFINITY, position: DVec3::NAN, uv: [0.0; 2], primitive: u32::MAX };
+    pub const MISS: Self =
+        Self { distance: f64::INFINITY, position: DVec3::NAN, uv: [0.0; 2], primitive: u32::MAX, inner: 0 };
 
     /// Whether there is such a point.
     pub fn is_hit(&self) -> bool {
@@ -168,7 +171,7 @@ impl Search {
         let distance = if self.point == self.given { self.distance } else { length(self.given - position) };
         // What is farther than an f64 can say is not found either.
         if distance <= self.most && distance.is_finite() {
-            Nearest { distance, position, uv, primitive: self.primitive }
+            Nearest { distance, position, uv, primitive: self.primitive, inner: 0 }
         } else {
             Nearest::MISS
         }

@@ -3,7 +3,7 @@
 use super::one_of::one_of;
 use super::{
     Beckmann, BlinnPhong, Coated, CoatedOnce, Conductor, Dielectric, Diffuse, Faceted, Filmed, Ggx, MetallicRough,
-    Mirror, Null, Once, OrenNayar, Phong, Principled, PrincipledThin, SoapFilm, ThinDielectric, Transparent,
+    Mirror, Null, Once, OrenNayar, Phong, Principled, PrincipledThin, SoapFilm, ThinDielectric, Tinted, Transparent,
 };
 
 one_of! {
@@ -74,4 +74,9 @@ faceted! {
     Dielectric<Beckmann, Filmed>,
     Dielectric<Once<Ggx>, Filmed>,
     Dielectric<Once<Beckmann>, Filmed>,
+    Tinted<Dielectric<Ggx>>,
+    Tinted<Dielectric<Beckmann>>,
+    Tinted<Dielectric<Once<Ggx>>>,
+    Tinted<Dielectric<Once<Beckmann>>>,
+    Tinted<ThinDielectric>,
 }

@@ -81,6 +81,9 @@ fn kinds() -> Vec<AnyBsdf> {
         gold(1.0, [0.0; 2]),
         gold(1.33, [0.2; 2]),
         SoapFilm::new(300.0, 1.33, 1.0, None).into(),
+        Tinted { inner: ThinDielectric::new(1.5), reflectance: grey, transmittance: red }.into(),
+        Tinted { inner: Dielectric::new(1.5, 0.0), reflectance: grey, transmittance: red }.into(),
+        Tinted { inner: Dielectric::new(1.5, 0.3), reflectance: Rgb::ONE, transmittance: red }.into(),
     ];
     kinds.extend(filmed::<Ggx>(0.0));
     for n in [0.0, 1.0, 30.0, 5000.0] {

@@ -3,6 +3,7 @@
 use super::one_of::one_of;
 use super::{
     Beckmann, Coated, CoatedOnce, Conductor, Dielectric, Filmed, Ggx, Once, Principled, PrincipledThin, SoapFilm,
+    ThinDielectric, Tinted,
 };
 
 one_of! {
@@ -43,5 +44,15 @@ one_of! {
         FilmedDielectricOnce(Dielectric<Once<Ggx>, Filmed>),
         /// A film on glass of Beckmann's facets, scattering once.
         BeckmannFilmedDielectricOnce(Dielectric<Once<Beckmann>, Filmed>),
+        /// Glass with a colour at its surface.
+        TintedDielectric(Tinted<Dielectric<Ggx>>),
+        /// The same of Beckmann's facets.
+        BeckmannTintedDielectric(Tinted<Dielectric<Beckmann>>),
+        /// The same, scattering once.
+        TintedDielectricOnce(Tinted<Dielectric<Once<Ggx>>>),
+        /// The same of Beckmann's facets, scattering once.
+        BeckmannTintedDielectricOnce(Tinted<Dielectric<Once<Beckmann>>>),
+        /// A pane with a colour at its surface.
+        TintedThinDielectric(Tinted<ThinDielectric>),
     }
 }

@@ -41,6 +41,7 @@ mod split;
 mod thin_dielectric;
 pub mod thin_film;
 mod through;
+mod tinted;
 mod transparent;
 
 pub use any_bsdf::AnyBsdf;
@@ -70,4 +71,5 @@ pub use soap_film::SoapFilm;
 pub use spectrum::{Rgb, RgbLanes};
 pub use thin_dielectric::{ThinDielectric, ThinDielectricLanes};
 pub use through::Through;
+pub use tinted::Tinted;
 pub use transparent::Transparent;

@@ -120,8 +120,14 @@ impl Job {
         threads: Option<usize>,
     ) -> PyResult<Py<PyBytes>> {
         let (integrator, settings) = (self.integrator(py), self.settings(Until::default(), threads));
-        let mut watcher =
-            Watcher { progress: None, look: None, raised: None, pause: None, written: integrator.written() };
+        let mut watcher = Watcher {
+            progress: None,
+            look: None,
+            rests: false,
+            raised: None,
+            pause: None,
+            written: integrator.written(),
+        };
         let (scene, camera) = (&scene.get().0, self.camera());
         let request = Request::from_bytes(request, camera.width(), camera.height()).map_err(malformed)?;
         let result = py.detach(|| {

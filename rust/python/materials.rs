@@ -13,7 +13,7 @@ use crate::scene::materials::{
     BlinnPhongMaterial, BoundaryMaterial, BumpMap, ConductorMaterial, DielectricMaterial, DiffuseMaterial, FacetKind,
     FilmBase, FilmedMetals, Index, Interior, Looks, Mask, MetallicRoughMaterial, MirrorMaterial, MixMaterial,
     NormalMap, OrenNayarMaterial, PhongMaterial, PlasticMaterial, PrincipledMaterial, PrincipledThinMaterial,
-    Roughness, SoapFilmMaterial, ThinDielectricMaterial, ThinFilmMaterial, TwoSided,
+    Roughness, SoapFilmMaterial, ThinDielectricMaterial, ThinFilmMaterial, TintedBase, TintedMaterial, TwoSided,
 };
 use crate::scene::media::Medium;
 
@@ -60,6 +60,11 @@ impl Appearances {
                 ior: float("ior")?,
                 base: self.film_base(&given.getattr("base")?)?,
                 by_wave: self.textures.has_waves(),
+            }),
+            "Tinted" => Arc::new(TintedMaterial {
+                base: self.tinted_base(&given.getattr("base")?)?,
+                reflectance: value("reflectance")?,
+                transmittance: value("transmittance")?,
             }),
             "SoapFilm" => Arc::new(SoapFilmMaterial {
                 thickness: number("thickness")?,
@@ -149,6 +154,19 @@ impl Appearances {
             "Conductor" => FilmBase::Conductor(self.conductor(given)?, FilmedMetals::default()),
             other => {
                 return Err(PyTypeError::new_err(format!("base must be a Dielectric or a Conductor, got {other}")));
+            }
+        })
+    }
+
+    /// What has a tint.
+    fn tinted_base(&self, given: &Bound<'_, PyAny>) -> PyResult<TintedBase> {
+        Ok(match given.get_type().name()?.to_str()? {
+            "Dielectric" => TintedBase::Dielectric(self.dielectric(given)?),
+            "ThinDielectric" => TintedBase::Pane(given.getattr("ior")?.extract()?),
+            other => {
+                return Err(PyTypeError::new_err(format!(
+                    "base must be a Dielectric or a ThinDielectric, got {other}"
+                )));
             }
         })
     }

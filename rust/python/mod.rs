@@ -32,6 +32,7 @@ mod render;
 mod report;
 mod samplers;
 mod shapes;
+mod sight;
 mod signals;
 mod spectra;
 mod textures;
@@ -107,6 +108,8 @@ mod _core {
     use super::samplers::batch_for;
     #[pymodule_export]
     use super::shapes::{matrix_trouble, shape_area, shape_bounds};
+    #[pymodule_export]
+    use super::sight::Sight;
     #[pymodule_export]
     use super::simd;
     #[pymodule_export]

@@ -59,6 +59,7 @@ type ClosestPoints<'py> = (
     Bound<'py, PyArrayDyn<i32>>,
     Bound<'py, PyArrayDyn<i32>>,
     Bound<'py, PyArrayDyn<f64>>,
+    Option<Bound<'py, PyArrayDyn<i32>>>,
 );
 
 #[pymethods]
@@ -325,14 +326,21 @@ impl CompiledScene {
         let (distance, position) = (unwritten(py, lead, None)?, unwritten(py, lead, Some(3))?);
         let (shape, primitive, uv) =
             (unwritten(py, lead, None)?, unwritten(py, lead, None)?, unwritten(py, lead, Some(2))?);
+        let instance = match self.0.geometry().has_instances() {
+            true => Some(unwritten(py, lead, None)?),
+            false => None,
+        };
         {
+            let mut to_instance = instance.as_ref().map(|to| to.readwrite());
+            let instances = to_instance.as_mut().map(|to| to.as_slice_mut()).transpose()?;
             let (mut distance, mut position) = (distance.readwrite(), position.readwrite());
             let (mut shape, mut primitive, mut uv) = (shape.readwrite(), primitive.readwrite(), uv.readwrite());
             let numbers = (shape.as_slice_mut()?, primitive.as_slice_mut()?);
             let (position, uv) = (position.as_slice_mut()?.as_chunks_mut().0, uv.as_slice_mut()?.as_chunks_mut().0);
-            let parts = (distance.as_slice_mut()?, position, numbers, uv);
+            let parts = ((distance.as_slice_mut()?, position, numbers, uv), instances);
             let scene = &self.0;
-            answer(py, count, share(count), threads, parts, |start, (distance, position, (shape, primitive), uv)| {
+            answer(py, count, share(count), threads, parts, |start, (parts, mut instance)| {
+                let (distance, position, (shape, primitive), uv) = parts;
                 let some = start..start + distance.len();
                 let of = |n: usize, i: usize| if n == 1 { 0 } else { i };
                 let places: Vec<_> = some.clone().map(|i| points.get(of(points.len(), i))).collect();
@@ -342,10 +350,16 @@ impl CompiledScene {
                 for (i, nearest) in found.iter().enumerate() {
                     (distance[i], position[i], uv[i]) = (nearest.distance, nearest.position.to_array(), nearest.uv);
                     (shape[i], primitive[i]) = located(scene, nearest.primitive);
+                    if let Some(instance) = &mut instance {
+                        let Nearest { primitive: number, inner, .. } = *nearest;
+                        let hit = Hit { primitive: number, inner, ..Hit::MISS };
+                        (instance[i], primitive[i]) = instances::located(scene, &hit, primitive[i]);
+                    }
                 }
             })?;
         }
-        Ok((sealed(distance)?, sealed(position)?, sealed(shape)?, sealed(primitive)?, sealed(uv)?))
+        let instance = instance.map(sealed).transpose()?;
+        Ok((sealed(distance)?, sealed(position)?, sealed(shape)?, sealed(primitive)?, sealed(uv)?, instance))
     }
 
     fn positions<'py>(
@@ -359,12 +373,6 @@ impl CompiledScene {
         self.of_primitives(py, &shape_id, &primitive, |geometry, p, i| geometry.position(p, uv[i]).to_array())
     }
 
-    /// Of shapes, the first of which closest points are not found.
-    #[getter]
-    fn without_closest(&self) -> Option<u32> {
-        self.0.geometry().first_without_closest()
-    }
-
     fn sites<'py>(
         &self,
         py: Python<'py>,
@@ -372,10 +380,18 @@ impl CompiledScene {
         primitive: PyReadonlyArray1<'py, i32>,
         uv: PyReadonlyArray2<'py, f64>,
         position: PyReadonlyArray2<'py, f64>,
+        instance: Option<PyReadonlyArray1<'py, i32>>,
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let (uv, position) = (rows("uv", &uv)?, rows("position", &position)?);
-        self.of_primitives(py, &shape_id, &primitive, |geometry, p, i| {
-            let (normal, error) = geometry.site(p, DVec3::from_array(position[i]), uv[i]);
+        let instance = instance.as_ref().map(|instance| numbers("instance", instance)).transpose()?;
+        // What there is of a shape of instances is their number, and what is in them.
+        let copy_of = |i: usize| instance.and_then(|all| u32::try_from(all[i]).ok());
+        let inside = numbers("primitive", &primitive)?.to_vec();
+        let which: Vec<i32> = (0..inside.len()).map(|i| copy_of(i).map_or(inside[i], |copy| copy as i32)).collect();
+        let which = numpy::PyArray1::from_vec(py, which).readonly();
+        self.of_primitives(py, &shape_id, &which, |geometry, p, i| {
+            let inner = copy_of(i).map_or(0, |_| inside[i] as u32);
+            let (normal, error) = geometry.site(p, inner, DVec3::from_array(position[i]), uv[i]);
             [normal.x, normal.y, normal.z, error]
         })
     }

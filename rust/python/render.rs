@@ -16,11 +16,17 @@ use super::signals::heard;
 use super::watcher::{Watcher, malformed};
 use crate::integrators::{Guide, Integrator, Path};
 use crate::render::{self, Progress, RenderError, Settings, Until};
-use crate::workers::{Cancel, pool, watched};
+use crate::workers::{Cancel, onlookers, pool, watched};
+
+/// What is told of a film, by threads that do not work on any.
+fn looked_at<T: Send>(py: Python<'_>, tell: impl FnOnce() -> T + Send) -> PyResult<T> {
+    let pool = onlookers().map_err(PyRuntimeError::new_err)?;
+    Ok(py.detach(|| pool.install(tell)))
+}
 
 /// A render: its picture so far, and what it takes to go on with it.
 #[pyclass(module = "raywright._core")]
-pub struct Rendering(render::Rendering);
+pub struct Rendering(pub(super) render::Rendering);
 
 #[pymethods]
 impl Rendering {
@@ -62,7 +68,8 @@ impl Rendering {
 
     #[getter]
     fn rgb<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f32>>> {
-        self.picture(py, self.0.rgb())
+        let pixels = looked_at(py, || self.0.rgb())?;
+        self.picture(py, pixels)
     }
     /// The standard error of each pixel, the same as far as pixels around tell of it, and degrees of freedom of that;
     /// `None` where there are too few samples to say.
@@ -72,7 +79,7 @@ impl Rendering {
         &self,
         py: Python<'py>,
     ) -> PyResult<Option<(Bound<'py, PyArray3<f32>>, Bound<'py, PyArray3<f32>>, Bound<'py, PyArray2<f32>>)>> {
-        let Some(known) = py.detach(|| self.0.uncertainty()) else { return Ok(None) };
+        let Some(known) = looked_at(py, || self.0.uncertainty())? else { return Ok(None) };
         let (width, height) = (self.0.film.width() as usize, self.0.film.height() as usize);
         let degrees = known.degrees.into_iter().map(|degrees| degrees as f32).collect();
         Ok(Some((
@@ -106,7 +113,8 @@ impl Rendering {
     #[getter]
     fn counts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<u32>>> {
         let (width, height) = (self.0.film.width() as usize, self.0.film.height() as usize);
-        numpy::PyArray1::from_vec(py, self.0.film.counts()).reshape([height, width])
+        let counts = looked_at(py, || self.0.film.counts())?;
+        numpy::PyArray1::from_vec(py, counts).reshape([height, width])
     }
     #[getter]
     fn trusted(&self) -> bool {
@@ -121,8 +129,8 @@ impl Rendering {
         self.0.film.dropped()
     }
     #[getter]
-    fn clamped(&self) -> (u64, f64) {
-        self.0.film.clamped()
+    fn clamped(&self, py: Python<'_>) -> PyResult<(u64, f64)> {
+        looked_at(py, || self.0.film.clamped())
     }
 
     /// Four independent parts of the samples, (4, H, W, 3), and the variances of the halves that they make, (2, H, W,
@@ -232,7 +240,7 @@ impl Rendering {
 
     /// Goes on until the first of `samples` (per pixel), `error` (relMSE) or `seconds` is met, or until it has been at
     /// it for `pause` seconds; says whether one was met. `look` is called whenever signals are heard, and may raise to
-    /// end the render.
+    /// end the render, or say true to have it left after the pass.
     #[allow(clippy::too_many_arguments)]
     fn go_on(
         &mut self,
@@ -251,7 +259,7 @@ impl Rendering {
         let integrator = job.integrator(py);
         let settings = job.settings(Until { samples, error, seconds }, threads);
         let pause = pause.map(|pause| Instant::now() + Duration::from_secs_f64(pause.clamp(0.0, 1e9)));
-        let mut watcher = Watcher { progress, look, raised: None, pause, written: integrator.written() };
+        let mut watcher = Watcher { progress, look, rests: false, raised: None, pause, written: integrator.written() };
         let (rendering, camera) = (&mut self.0, job.camera());
         let result = py.detach(|| {
             job.showing(integrator.get(), |shown| {
@@ -273,7 +281,8 @@ impl Rendering {
     ) -> PyResult<Option<Bound<'py, PyArray3<f32>>>> {
         let (job, scene) = (job.get(), &scene.get().0);
         let (integrator, settings) = (job.integrator(py), job.settings(Until::default(), threads));
-        let mut watcher = Watcher { progress: None, look, raised: None, pause: None, written: integrator.written() };
+        let mut watcher =
+            Watcher { progress: None, look, rests: false, raised: None, pause: None, written: integrator.written() };
         let (camera, samples) = (job.camera(), self.0.film.samples());
         let told = py.detach(|| render::bias(scene, camera, integrator.get(), &settings, samples, &mut watcher));
         let Some(told) = told.map_err(|error| watcher.error(error))? else { return Ok(None) };
@@ -313,7 +322,7 @@ pub fn chances(
 ) -> PyResult<(bool, bool)> {
     let (scene, path) = (&scene.get().0, integrators::path(path)?);
     let any = Path { reuse: 2, caustics: true, ..path };
-    let mut watcher = Watcher { progress: None, look, raised: None, pause: None, written: None };
+    let mut watcher = Watcher { progress: None, look, rests: false, raised: None, pause: None, written: None };
     let aims = |cancel: &Cancel| any.is_guided(scene) && Guide::of(scene, cancel).is_some();
     let mut goes_on = true;
     let aims = py.detach(|| {
@@ -343,7 +352,7 @@ pub fn pilot(
     let paths: Vec<Path> = paths.iter().map(integrators::path).collect::<PyResult<_>>()?;
     let filter = samplers::filter(filter)?.into();
     let settings = Settings { threads, clamp, filter, ..Settings::default() };
-    let mut watcher = Watcher { progress: None, look, raised: None, pause: None, written: None };
+    let mut watcher = Watcher { progress: None, look, rests: false, raised: None, pause: None, written: None };
     let scene = &scene.get().0;
     let result = py.detach(|| render::pilot(scene, &*camera.0, &paths, &settings, &mut watcher));
     result.map_err(|error| watcher.error(error))

@@ -17,6 +17,8 @@ pub(super) fn malformed(why: Malformed) -> PyErr {
 pub(super) struct Watcher<'a> {
     pub progress: Option<Py<PyAny>>,
     pub look: Option<Py<PyAny>>,
+    /// What the last look said: whether to leave the render after the pass.
+    pub rests: bool,
     pub raised: Option<PyErr>,
     /// When to leave the render for now.
     pub pause: Option<Instant>,
@@ -37,14 +39,19 @@ impl Watcher<'_> {
     fn unless_raised(&mut self, then: impl FnOnce(Python<'_>, Option<&Py<PyAny>>) -> PyResult<()>) -> ControlFlow<()> {
         let ask = |py: Python<'_>| {
             py.check_signals()?;
-            if let Some(look) = &self.look {
-                look.call0(py)?;
-            }
-            then(py, self.progress.as_ref())
+            let rests = match &self.look {
+                Some(look) => look.call0(py)?.is_truthy(py)?,
+                None => false,
+            };
+            then(py, self.progress.as_ref())?;
+            Ok(rests)
         };
         let raised = self.written.and_then(Written::raised);
         match raised.map_or_else(|| Python::attach(ask), Err) {
-            Ok(()) => ControlFlow::Continue(()),
+            Ok(rests) => {
+                self.rests = rests;
+                ControlFlow::Continue(())
+            }
             Err(raised) => {
                 self.raised = Some(raised);
                 ControlFlow::Break(())
@@ -70,5 +77,9 @@ impl Progress for Watcher<'_> {
 
     fn pauses(&mut self) -> bool {
         self.pause.is_some_and(|pause| Instant::now() >= pause)
+    }
+
+    fn rests(&mut self) -> bool {
+        self.rests || self.pauses()
     }
 }

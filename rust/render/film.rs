@@ -200,6 +200,17 @@ impl Film {
         &mut self.tiles
     }
 
+    /// Its tiles, which it then has no more.
+    pub(super) fn take_tiles(&mut self) -> Vec<FilmTile> {
+        std::mem::take(&mut self.tiles)
+    }
+
+    /// Gives tiles to a film that has none.
+    pub(super) fn put_tiles(&mut self, tiles: Vec<FilmTile>) {
+        debug_assert!(self.tiles.is_empty() && tiles.len() == self.tile_count(), "its own tiles");
+        self.tiles = tiles;
+    }
+
     /// The side of its tiles.
     pub(super) fn side(&self) -> u32 {
         self.side

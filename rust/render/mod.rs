@@ -12,6 +12,7 @@ mod error;
 mod film;
 pub mod filter;
 mod jumps;
+mod lent;
 mod outliers;
 mod part;
 #[cfg(test)]
@@ -41,7 +42,7 @@ pub use part::Request;
 pub use pilot::{PILOT, pilot};
 pub use pooled::Uncertainty;
 pub use progress::{Progress, Quiet};
-pub use rendering::{HistoryRow, Rendering, roots};
+pub use rendering::{HistoryRow, Rendering, Sight, roots};
 pub use run::{RenderError, go_on, render};
 pub use schedule::Until;
 pub use settings::Settings;

@@ -6,6 +6,7 @@
 
 use super::bytes::{Malformed, Reader, Writer, check};
 use super::epoch::Epoch;
+use super::lent::{given_back, lent};
 use super::run::{self, begin};
 use super::tile::FilmTile;
 use super::tiles::{Exposure, Goal, Stop};
@@ -169,7 +170,8 @@ impl Request {
             Wanted::Even { done, samples } => (done, Goal::Even { before: 0, samples }),
             Wanted::Planned { ref epoch, done, samples } => (done, Goal::Planned { epoch, done, samples }),
         };
-        let tiles = &mut self.tiles[..];
+        let lent = lent(std::mem::take(&mut self.tiles));
+        let tiles = &lent[..];
         let pool = pool(settings.threads).map_err(RenderError::Threads)?;
         let job = settings.job(scene, camera);
         let session = if pool.current_num_threads() == 1 {
@@ -198,6 +200,7 @@ impl Request {
         if !reached {
             return Err(RenderError::Interrupted);
         }
+        self.tiles = given_back(lent);
         let mut to = Writer::default();
         to.word(self.first);
         to.word(self.tiles.len() as u32);

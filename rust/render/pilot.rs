@@ -1,6 +1,7 @@
 //! What ways to render a picture are worth, as a few samples of a few parts of it tell.
 
 use super::denominators::FLOOR;
+use super::lent::{given_back, lent};
 use super::settings::Settings;
 use super::tile::FilmTile;
 use super::tiles::{Exposure, Goal, Stop};
@@ -112,11 +113,11 @@ fn parts(camera: &dyn Camera, clamp: Option<f64>) -> Vec<FilmTile> {
 }
 
 fn expose(scene: &Scene, camera: &dyn Camera, way: &Path, settings: &Settings, stop: &Stop) -> Vec<FilmTile> {
-    let mut tiles = parts(camera, settings.clamp);
+    let tiles = lent(parts(camera, settings.clamp));
     let session = way.begin(settings.job(scene, camera), &stop.cancel);
     let exposure = Exposure::new(scene, camera, way, &*session, settings);
-    exposure.expose(&mut tiles, 0, Goal::Even { before: 0, samples: SAMPLES }, stop);
-    tiles
+    exposure.expose(&tiles, 0, Goal::Even { before: 0, samples: SAMPLES }, stop);
+    given_back(tiles)
 }
 
 /// For each part and pixel, [`crate::integrators::LocalGuide::rarity`] of the place that the middle of the pixel sees;

@@ -15,6 +15,11 @@ pub trait Progress {
     fn pauses(&mut self) -> bool {
         false
     }
+
+    /// Called after a pass: whether to leave the render for now.
+    fn rests(&mut self) -> bool {
+        self.pauses()
+    }
 }
 
 /// Lets a render go on to its end.

@@ -4,11 +4,14 @@ use super::adaptive::Adaptive;
 use super::bytes::{Malformed, Reader, Writer, check};
 use super::epoch::Epoch;
 use super::error::estimate;
+use super::lent::{LentFilm, Loan};
 use super::pooled::{Uncertainty, uncertainty};
 use super::tile::FilmTile;
 use super::tiles::Goal;
 use super::{ErrorEstimate, Film, Until};
 use crate::optics::Rgb;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Instant;
 
 /// How far a render was after a pass.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,7 +28,7 @@ pub struct HistoryRow {
 ///
 /// It is worked on in passes. Within one, some cells have more samples already and others have not; each has the first
 /// of its samples and nothing else, so a pass can be left at any time and gone on with, and no bit tells of it.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct Rendering {
     /// The picture.
     pub film: Film,
@@ -38,13 +41,102 @@ pub struct Rendering {
     /// Samples that the film has after the pass that is being worked on, or has if there is none.
     aim: u32,
     plan: Option<Adaptive>,
+    sight: Sight,
+}
+
+/// What can be seen of a render while a pass is worked on, from any thread.
+#[derive(Clone, Debug, Default)]
+pub struct Sight(Arc<Mutex<Option<Shown>>>);
+
+#[derive(Debug)]
+struct Shown {
+    film: Arc<LentFilm>,
+    error: Option<ErrorEstimate>,
+    history: Vec<HistoryRow>,
+    /// How long it took before, and since when it is worked on.
+    seconds: f64,
+    since: Instant,
+    aim: u32,
+    /// Whether all of the work is done, so that whoever looks is waited for.
+    is_done: bool,
+}
+
+impl Shown {
+    fn rendering(&self, film: Film) -> Rendering {
+        let seconds = self.seconds + self.since.elapsed().as_secs_f64();
+        let (error, history, aim) = (self.error, self.history.clone(), self.aim);
+        Rendering { film, error, history, seconds, aim, plan: None, sight: Sight::default() }
+    }
+}
+
+impl Sight {
+    fn shown(&self) -> MutexGuard<'_, Option<Shown>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Whether there is anything to be seen: a pass is worked on.
+    pub fn is_open(&self) -> bool {
+        self.shown().is_some()
+    }
+
+    /// Whether the pass is done, so that nobody works any more: whoever looks is waited for.
+    pub fn is_done(&self) -> bool {
+        self.shown().as_ref().is_none_or(|shown| shown.is_done)
+    }
+
+    /// What the render knows of itself, and none of its pixels.
+    pub fn outline(&self) -> Option<Rendering> {
+        self.shown().as_ref().map(|shown| shown.rendering(shown.film.without_tiles()))
+    }
+
+    /// All of it as it is now, to be looked at: it is as large as the render.
+    pub fn copy(&self) -> Option<Rendering> {
+        self.shown().as_ref().map(|shown| shown.rendering(shown.film.copy()))
+    }
+
+    /// The picture, linear, row by row from the top.
+    pub fn rgb(&self) -> Option<Vec<[f32; 3]>> {
+        self.shown().as_ref().map(|shown| shown.film.means())
+    }
+
+    /// How many samples each pixel has.
+    pub fn counts(&self) -> Option<Vec<u32>> {
+        self.shown().as_ref().map(|shown| shown.film.counts())
+    }
+
+    /// Samples that were not finite or negative, and samples that were clamped.
+    pub fn amiss(&self) -> Option<[u64; 2]> {
+        self.shown().as_ref().map(|shown| [shown.film.dropped(), shown.film.clamped()])
+    }
+}
+
+/// Tiles of a render that are worked on, in sight of others.
+pub(super) struct Work<'a> {
+    pub tiles: Loan<'a>,
+    sight: &'a Sight,
+}
+
+impl Work<'_> {
+    /// Says that the work is done.
+    pub fn end(&self) {
+        if let Some(shown) = &mut *self.sight.shown() {
+            shown.is_done = true;
+        }
+    }
+}
+
+impl Drop for Work<'_> {
+    fn drop(&mut self) {
+        // Whoever looks has to let go, before the tiles come back.
+        *self.sight.shown() = None;
+    }
 }
 
 impl Rendering {
     /// One of an empty film. If that is in halves, more samples will go where more of the error is.
     pub fn new(mut film: Film) -> Self {
         let plan = (film.cells() > 1).then(|| Adaptive::new(&mut film));
-        Self { film, error: None, history: Vec::new(), seconds: 0.0, aim: 0, plan }
+        Self { film, error: None, history: Vec::new(), seconds: 0.0, aim: 0, plan, sight: Sight::default() }
     }
 
     /// The picture, linear, row by row from the top.
@@ -107,14 +199,23 @@ impl Rendering {
         self.aim = aim;
     }
 
-    /// The tiles, and what they shall have after the pass.
-    pub(super) fn goal(&mut self) -> (&mut [FilmTile], Goal<'_>) {
+    /// What can be seen of it while it is worked on.
+    pub fn sight(&self) -> Sight {
+        self.sight.clone()
+    }
+
+    /// The tiles, to be worked on in sight of others, and what they shall have after the pass.
+    pub(super) fn goal(&mut self) -> (Work<'_>, Goal<'_>) {
         let (done, samples) = (self.film.samples(), self.aim);
         let goal = match &self.plan {
             Some(plan) => Goal::Planned { epoch: plan.epoch(), done, samples },
             None => Goal::Even { before: 0, samples },
         };
-        (self.film.tiles_mut(), goal)
+        let tiles = Loan::of(&mut self.film);
+        let (error, history, seconds, aim) = (self.error, self.history.clone(), self.seconds, self.aim);
+        let shown = |film| Shown { film, error, history, seconds, since: Instant::now(), aim, is_done: false };
+        *self.sight.shown() = tiles.shared().map(shown);
+        (Work { tiles, sight: &self.sight }, goal)
     }
 
     /// Who gets how many samples, where that is not the same for all.

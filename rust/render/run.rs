@@ -4,7 +4,7 @@ use super::tiles::{Exposure, Stop};
 use super::{Progress, Rendering, Settings};
 use crate::integrators::{Integrator, Job, Session};
 use crate::scene::{Camera, Scene};
-use crate::workers::{pool, watched};
+use crate::workers::{Cancel, pool, watched};
 use std::fmt;
 use std::time::Instant;
 
@@ -84,7 +84,7 @@ pub fn go_on(
             return Err(RenderError::Interrupted);
         }
         // Passes may be too short for anyone to look up during one.
-        if progress.pauses() {
+        if progress.rests() {
             return Ok(false);
         }
     }
@@ -144,7 +144,8 @@ fn pass(
 ) -> Result<bool, RenderError> {
     let stop = Stop::default();
     let done = rendering.film.samples();
-    let (tiles, goal) = rendering.goal();
+    let (work, goal) = rendering.goal();
+    let tiles = work.tiles.tiles();
     let mut look = || {
         if progress.pauses() {
             stop.pause.raise();
@@ -167,7 +168,12 @@ fn pass(
             !ended
         };
         // Whoever watches may still end a pass that has just been done.
-        watched(threads, |_| exposure.expose(tiles, done, goal, &stop), watch).map_err(RenderError::Threads)? && !ended
+        let expose = |_: &Cancel| {
+            let reached = exposure.expose(tiles, done, goal, &stop);
+            work.end();
+            reached
+        };
+        watched(threads, expose, watch).map_err(RenderError::Threads)? && !ended
     };
     // It is raised by whoever watches, or by an integrator that cannot go on.
     if stop.cancel.is_raised() { Err(RenderError::Interrupted) } else { Ok(reached) }
@@ -180,7 +186,6 @@ mod tests {
     use crate::integrators::{CameraSample, Path, Worker};
     use crate::optics::Rgb;
     use crate::scene::fixtures::{cornell, furnace};
-    use crate::workers::Cancel;
     use std::ops::ControlFlow;
     use std::time::Duration;
 

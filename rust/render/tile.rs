@@ -147,6 +147,16 @@ impl FilmTile {
         &self.counts
     }
 
+    /// The mean of a pixel, over those of its cells that have samples; black without any.
+    pub(super) fn mean(&self, pixel: usize) -> Rgb {
+        let of = |cell: usize| (self.total[cell].sum + self.partial[cell].sum) / f64::from(self.counts[cell].max(1));
+        match self.halves {
+            true if self.counts[2 * pixel + 1] > 0 => (of(2 * pixel) + of(2 * pixel + 1)) / 2.0,
+            true => of(2 * pixel),
+            false => of(pixel),
+        }
+    }
+
     /// The number, among all samples of its pixel, of the sample that is number `nth` of its cell. Halves take turns by
     /// the batch, so no batch is in both.
     #[inline]

@@ -2,6 +2,7 @@
 
 use super::camera_samples::{CameraSampler, Wanted};
 use super::epoch::Epoch;
+use super::lent::held;
 use super::patchwork::Patchwork;
 use super::splats::{Brought, LightTracer};
 use super::{FilmTile, Settings};
@@ -12,8 +13,8 @@ use crate::timing::{self, timed};
 use crate::workers::Cancel;
 use rayon::prelude::*;
 use std::ops::Range;
-use std::slice;
 use std::sync::{Mutex, PoisonError};
+use std::{iter, slice};
 
 /// Paths advanced together at most: enough to keep the accelerator's kernels full, few enough to stay in cache.
 const BATCH: usize = 4096;
@@ -168,19 +169,19 @@ impl<'a> Exposure<'a> {
     /// Adds samples until the goal is reached, and says whether it was: it returns soon when it is asked to stop. Even
     /// then each cell has the first of its samples and nothing else, and can be taken further. Before this, each pixel
     /// has `done` samples, or all have on average.
-    pub fn expose(&self, tiles: &mut [FilmTile], done: u32, goal: Goal, stop: &Stop) -> bool {
+    pub fn expose(&self, tiles: &[Mutex<FilmTile>], done: u32, goal: Goal, stop: &Stop) -> bool {
         self.session.before_pass(done, &stop.cancel);
         self.in_parts(tiles, goal, false, stop, |tiles, part| {
-            let reached = |(number, tile): (usize, &mut FilmTile)| {
+            let reached = |(number, tile): (usize, &Mutex<FilmTile>)| {
                 !part.is_ended(stop) && {
                     let mut bench = self.take_bench();
                     let reached =
-                        self.expose_tiles(slice::from_mut(tile), number, part, BATCH, &mut bench, stop, &mut || {});
+                        self.expose_tiles(slice::from_ref(tile), number, part, BATCH, &mut bench, stop, &mut || {});
                     self.put_bench(bench);
                     reached
                 }
             };
-            tiles.par_iter_mut().enumerate().with_max_len(1).map(reached).reduce(|| true, |a, b| a && b)
+            tiles.par_iter().enumerate().with_max_len(1).map(reached).reduce(|| true, |a, b| a && b)
         })
     }
 
@@ -188,7 +189,7 @@ impl<'a> Exposure<'a> {
     /// integrator that wants to be here, `poll` is called, which may ask to stop.
     pub fn expose_here(
         &self,
-        tiles: &mut [FilmTile],
+        tiles: &[Mutex<FilmTile>],
         done: u32,
         goal: Goal,
         stop: &Stop,
@@ -208,18 +209,18 @@ impl<'a> Exposure<'a> {
     /// of as many samples as that is kept for. Says whether all parts were done.
     fn in_parts(
         &self,
-        tiles: &mut [FilmTile],
+        tiles: &[Mutex<FilmTile>],
         goal: Goal,
         alone: bool,
         stop: &Stop,
-        mut work: impl FnMut(&mut [FilmTile], Part) -> bool,
+        mut work: impl FnMut(&[Mutex<FilmTile>], Part) -> bool,
     ) -> bool {
         let ready = self.session.at_once();
         let at_once = self.light.as_ref().map(LightTracer::at_once).into_iter().chain(ready).min();
         let (Some(at_once), Goal::Even { before, samples }) = (at_once, goal) else {
             return work(tiles, Part { goal, light: None, is_ready: false });
         };
-        let first = before + tiles.iter().map(FilmTile::fewest).min().unwrap_or(0);
+        let first = before + tiles.iter().map(|tile| held(tile).fewest()).min().unwrap_or(0);
         (first..samples).step_by(at_once.max(1) as usize).all(|start| {
             if start > first && stop.is_raised() {
                 return false;
@@ -258,7 +259,7 @@ impl<'a> Exposure<'a> {
     #[allow(clippy::too_many_arguments)]
     fn expose_tiles(
         &self,
-        tiles: &mut [FilmTile],
+        tiles: &[Mutex<FilmTile>],
         first: usize,
         part: Part,
         most: usize,
@@ -272,35 +273,38 @@ impl<'a> Exposure<'a> {
         let works_together = self.patchwork.patch > 1;
         let mut members: Vec<Member> = Vec::new();
         for index in 0..tiles.len() {
-            let (number, steps) = (first + index, goal.steps(&tiles[index]));
+            let mut tile = held(&tiles[index]);
+            let (number, steps) = (first + index, goal.steps(&tile));
             // Pixels on their own take all of their samples one after the other: the rays of one are near each other.
             let stride = if works_together { 1 } else { steps.len().max(1) as u32 };
             for step in steps.clone().step_by(stride as usize) {
                 let end = steps.end.min(step + stride);
-                for cells in tiles[index].together(self.patchwork, step) {
-                    let tile = &tiles[index];
+                for cells in tile.together(self.patchwork, step) {
                     members.clear();
                     members.extend(cells.map(|cell| Member {
                         cell,
                         position: tile.position(cell),
-                        samples: goal.at(number, tile, cell, step)..goal.at(number, tile, cell, end),
+                        samples: goal.at(number, &tile, cell, step)..goal.at(number, &tile, cell, end),
                         count: tile.counts()[cell],
                     }));
                     for of_step in 0..members.iter().map(|member| member.samples.len()).max().unwrap_or(0) as u32 {
                         for member in &members {
                             let Some(nth) = member.wants(of_step) else { continue };
-                            let number = before + tiles[index].number(member.cell, nth);
+                            let number = before + tile.number(member.cell, nth);
                             bench.add(index, member.cell, Wanted { position: member.position, number });
                         }
                         if works_together && bench.ends.last().copied().unwrap_or(0) < bench.wanted.len() {
                             bench.ends.push(bench.wanted.len());
                         }
                         if bench.wanted.len() + members.len() > most {
+                            // Whoever looks at it need not wait for rays.
+                            drop(tile);
                             let developed = bench.develop(&self.samples, tiles, part.light, &stop.cancel);
                             poll();
                             if !developed || part.is_ended(stop) {
                                 return false;
                             }
+                            tile = held(&tiles[index]);
                         }
                     }
                 }
@@ -335,7 +339,7 @@ impl Bench<'_> {
     fn develop(
         &mut self,
         sampler: &CameraSampler,
-        tiles: &mut [FilmTile],
+        tiles: &[Mutex<FilmTile>],
         light: Option<&Brought>,
         cancel: &Cancel,
     ) -> bool {
@@ -362,10 +366,12 @@ impl Bench<'_> {
         }
         timed(timing::Part::Film, || {
             let (mut radiance, mut wanted) = (self.radiance.iter(), self.weights.iter().zip(&self.wanted));
-            for run in &self.runs {
-                for (&weight, wanted) in wanted.by_ref().take(run.count as usize) {
+            for runs in self.runs.chunk_by(|a, b| a.tile == b.tile) {
+                let mut tile = held(&tiles[runs[0].tile]);
+                let each = runs.iter().flat_map(|run| iter::repeat_n(run, run.count as usize));
+                for (run, (&weight, wanted)) in each.zip(wanted.by_ref()) {
                     let seen = if weight == 0.0 { None } else { radiance.next() };
-                    let (tile, seen) = (&mut tiles[run.tile], seen.copied().unwrap_or(Rgb::ZERO));
+                    let seen = seen.copied().unwrap_or(Rgb::ZERO);
                     match light {
                         // What a wavelength looks like is less than nothing in some channels.
                         None if self.signed => tile.add_with(run.cell, Rgb::ZERO, weight, seen * weight),

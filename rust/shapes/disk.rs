@@ -1,5 +1,6 @@
 //! The disk, whole or with a round hole.
 
+use super::around::Around;
 use super::line::Line;
 use super::meeting::tell;
 use super::plane::crossing;
@@ -192,6 +193,15 @@ impl Shape for Disk {
         let out = distance.clamp(self.inner_radius, self.radius);
         let from_center = (frame.tangent * x + frame.bitangent * y) * out;
         Some(Closest { position: self.center + from_center, uv: self.coordinates(0, from_center) })
+    }
+
+    fn closest_stretched(&self, to_world: &Affine, _: &Affine, place: DVec3) -> Option<Closest> {
+        let frame = self.frame();
+        let around = Around::new(to_world, &frame, self.center, place);
+        let ends = [[self.inner_radius, 0.0], [self.radius, 0.0]];
+        let from_center = frame.to_world(around.nearest(self.radius, |out| around.of_segment(out, ends)).local);
+        let position = to_world.point(self.center + from_center);
+        Some(Closest { position, uv: self.coordinates(0, from_center) })
     }
 
     fn bounds(&self) -> Bounds {

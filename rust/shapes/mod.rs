@@ -1,5 +1,6 @@
 //! Floor 1: what can be hit, one shape a module.
 
+mod around;
 mod closest;
 mod cone;
 mod contact;
@@ -9,6 +10,7 @@ mod disk;
 mod ellipsoid;
 #[cfg(test)]
 mod exact_hits;
+mod gap;
 mod implicit;
 mod line;
 mod meeting;
@@ -34,6 +36,7 @@ pub use contact::{Candidate, Contact};
 pub use cuboid::Cuboid;
 pub use disk::Disk;
 pub use ellipsoid::Ellipsoid;
+pub use gap::gap_under;
 pub use implicit::Implicit;
 pub use line::{Carried, Line};
 pub use placed::Placed;

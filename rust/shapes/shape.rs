@@ -235,18 +235,25 @@ pub trait Shape: Debug + Send + Sync {
         self.pdf_from(place, direction)
     }
 
-    /// The point that is nearest to another, of several one; none where the shape does not know.
+    /// The point that is nearest to another, of several one; none where there is none.
     fn closest(&self, _place: DVec3) -> Option<Closest> {
         None
     }
 
     /// The same of its image under a map, of which the inverse is given too.
     ///
-    /// Here: none where the map scales some lengths more than others, which changes what is nearest.
+    /// Here: its own, where the map scales all lengths alike.
     fn closest_under(&self, to_world: &Affine, to_object: &Affine, place: DVec3) -> Option<Closest> {
-        to_world.uniform_scale()?;
+        if to_world.uniform_scale().is_none() {
+            return self.closest_stretched(to_world, to_object, place);
+        }
         let own = self.closest(to_object.point(place))?;
         Some(Closest { position: to_world.point(own.position), ..own })
+    }
+
+    /// The same where the map scales some lengths more than others, which changes what is nearest.
+    fn closest_stretched(&self, _to_world: &Affine, _to_object: &Affine, _place: DVec3) -> Option<Closest> {
+        None
     }
 
     /// The density by solid angle with which [`Shape::sample_from`] draws a direction, of any length, from a place. 0

@@ -65,7 +65,7 @@ fn accelerators(triangles: &Doubles) -> Vec<(String, Box<dyn Accelerator>)> {
 }
 
 fn bits(nearest: &Nearest) -> ([u64; 6], u32) {
-    let Nearest { distance, position: p, uv, primitive } = nearest;
+    let Nearest { distance, position: p, uv, primitive, .. } = nearest;
     ([*distance, p.x, p.y, p.z, uv[0], uv[1]].map(f64::to_bits), *primitive)
 }
 
@@ -398,11 +398,11 @@ fn copies_of_one_triangle_and_of_one_point() {
         let mut found = [Nearest::MISS];
         accelerator.nearest(&[DVec3::new(0.25, 0.25, -2.0)], &[2.0], &mut found);
         let position = DVec3::new(0.25, 0.25, 0.0);
-        assert_eq!(found, [Nearest { distance: 2.0, position, uv: [0.25, 0.25], primitive: 0 }], "{name}");
+        assert_eq!(found, [Nearest { distance: 2.0, position, uv: [0.25, 0.25], primitive: 0, inner: 0 }], "{name}");
     }
     let point = Doubles(vec![[DVec3::splat(1e7); 3]; 3]);
     let found = agreed(&point, &[DVec3::splat(1e7), DVec3::ZERO, DVec3::splat(1e300)], &[1e8]);
-    assert_eq!(found[0], Nearest { distance: 0.0, position: DVec3::splat(1e7), uv: [0.0; 2], primitive: 0 });
+    assert_eq!(found[0], Nearest { distance: 0.0, position: DVec3::splat(1e7), uv: [0.0; 2], primitive: 0, inner: 0 });
     assert_eq!(found[1].distance, 3f64.sqrt() * 1e7);
     assert!(!found[2].is_hit());
 }

@@ -47,7 +47,12 @@ def clear(**more):
     }
 
 
-VOLUME = {"KHR_materials_volume": {"thicknessFactor": 0.1}}
+def volume(**more):
+    return {"KHR_materials_volume": {"thicknessFactor": 0.1, **more}}
+
+
+VOLUME = volume()
+FILM = {"KHR_materials_iridescence": {"iridescenceFactor": 1.0, "iridescenceIor": 1.4}}
 
 
 def test_all_of_the_model_is_read(tmp_path):
@@ -204,8 +209,40 @@ def test_pictures_beside_the_file_are_found(tmp_path):
             clear(extensions=VOLUME, metallicFactor=0.25),
             rw.Mix(rw.MetallicRough(1, 0.25, 0), rw.Dielectric(), 0.75),
         ),
+        (
+            clear(extensions=volume(attenuationDistance=0.5, attenuationColor=[1, 0.25, 0])),
+            rw.Dielectric(1.5, 0.0, transmittance=(1, 0.25, 1e-6), distance=0.5),
+        ),
+        # Without a distance nothing is lost, and a sheet has no inside.
+        (clear(extensions=volume(attenuationColor=[1, 0.5, 0.5])), rw.Dielectric(1.5, 0.0)),
+        (
+            clear(
+                extensions={"KHR_materials_volume": {"attenuationDistance": 1, "attenuationColor": [1, 0, 0]}}
+            ),
+            rw.ThinDielectric(1.5),
+        ),
+        (clear(baseColorFactor=[1, 0.5, 0, 1]), rw.Tinted(rw.ThinDielectric(1.5), (1, 0.5, 0))),
+        (
+            clear(baseColorFactor=[1, 0.5, 0, 1], extensions=VOLUME),
+            rw.Tinted(rw.Dielectric(1.5, 0.0), (1, 0.5, 0)),
+        ),
+        (
+            clear(extensions={**VOLUME, "KHR_materials_dispersion": {"dispersion": 20 / 55}}),
+            rw.Dielectric(rw.Cauchy.from_abbe(1.5, 55.0), 0.0),
+        ),
+        (clear(extensions={**VOLUME, "KHR_materials_dispersion": {}}), rw.Dielectric(1.5, 0.0)),
+        (clear(extensions={**VOLUME, **FILM}), rw.ThinFilm(400.0, 1.4, base=rw.Dielectric(1.5, 0.0))),
+        (
+            clear(extensions={"KHR_materials_iridescence": {"iridescenceFactor": 0.5}}),
+            rw.Mix(rw.ThinDielectric(1.5), rw.SoapFilm(400.0, 1.3), 0.5),
+        ),
+        (clear(extensions={"KHR_materials_iridescence": {}}), rw.ThinDielectric(1.5)),
     ],
-    ids=["nothing", "matt", "blend", "ior", "pane", "water", "rough glass", "partly metal"],
+    ids=[
+        *("nothing", "matt", "blend", "ior", "pane", "water", "rough glass", "partly metal"),
+        *("tint within", "no way", "no inside", "tinted pane", "tinted glass", "dispersion", "none"),
+        *("film on glass", "bubble", "no film"),
+    ],
 )
 def test_materials_become_ours(tmp_path, material, expected):
     assert loaded(tmp_path, material).material == expected
@@ -225,18 +262,49 @@ def test_what_goes_through_may_vary(tmp_path):
     assert mix.amount == rw.ProductTexture(rw.MixTexture(1.0, 0.0, blue), rw.ProductTexture(red, 0.5))
 
 
+def test_tints_and_films_may_vary(tmp_path):
+    writer = Writer()
+    info = writer.picture(png(PIXELS[..., :3]))
+    mesh = loaded(tmp_path, clear(baseColorTexture=info), writer)
+    assert mesh.material == rw.Tinted(rw.ThinDielectric(1.5), rw.ImageTexture(PIXELS[..., :3]))
+    writer = Writer()
+    info = writer.picture(png(PIXELS[..., :3]))
+    film = {
+        "KHR_materials_iridescence": {
+            "iridescenceFactor": 0.5,
+            "iridescenceTexture": info,
+            "iridescenceThicknessMinimum": 200,
+            "iridescenceThicknessMaximum": 600,
+            "iridescenceThicknessTexture": info,
+        }
+    }
+    mix = loaded(tmp_path, clear(extensions={**VOLUME, **film}), writer).material
+    red, green = (rw.ImageTexture(PIXELS[..., :3], linear=True, channel=name) for name in "rg")
+    assert mix.b == rw.ThinFilm(rw.MixTexture(200.0, 600.0, green), 1.3, base=rw.Dielectric(1.5, 0.0))
+    assert (mix.a, mix.amount) == (rw.Dielectric(1.5, 0.0), rw.ProductTexture(red, 0.5))
+
+
+def test_metal_under_a_film_reflects_its_colour_where_the_film_ends(tmp_path):
+    metal = {"baseColorFactor": [0.9, 0.6, 0.3, 1], "metallicFactor": 1, "roughnessFactor": 0}
+    made = loaded(tmp_path, {"pbrMetallicRoughness": metal, "extensions": FILM}).material
+    assert (made.thickness, made.ior) == (400.0, 1.4)
+    eta = np.array(made.base.eta)
+    assert np.allclose(((eta - 1) / (eta + 1)) ** 2, (0.9, 0.6, 0.3), rtol=1e-12)
+    assert made.base.k == (0.0, 0.0, 0.0)
+
+
 @pytest.mark.parametrize(
     ("material", "told"),
     [
         (
-            clear(baseColorFactor=[1, 0, 0, 1]),
-            "what goes through clear materials is not tinted by their base colour",
+            clear(baseColorFactor=[1, 0, 0, 1], extensions={**VOLUME, **FILM}),
+            "what goes through clear materials with films on them is not tinted by their base colour",
+        ),
+        (
+            {"pbrMetallicRoughness": {"metallicFactor": 0}, "extensions": FILM},
+            "films on what is neither clear nor metal of one colour are left out",
         ),
         (clear(roughnessFactor=0.5), "thin clear materials are smooth here, however rough they are"),
-        (
-            clear(extensions={"KHR_materials_volume": {"thicknessFactor": 1, "attenuationDistance": 1}}),
-            "clear materials do not absorb light here",
-        ),
         (
             {"extensions": {"KHR_materials_ior": {"ior": 1.8}}},
             "the ior counts for what is clear, or no metal at all, and is left out elsewhere",

@@ -1,5 +1,9 @@
 """Renders that are watched while they go on, and stopped from elsewhere."""
 
+import os
+import pickle
+import select
+import signal
 import threading
 import time
 from concurrent.futures import ThreadPoolExecutor
@@ -8,6 +12,7 @@ import numpy as np
 import pytest
 
 import raywright as rw
+from raywright.rendering import snapshots
 
 
 class Watch(list):
@@ -72,14 +77,146 @@ def test_pictures_so_far_get_better():
         assert image.rgb.shape == image.standard_error.shape == (64, 64, 3)
 
 
-def test_pictures_come_ten_times_a_second_at_most_and_cost_a_tenth():
-    watch = Watch()
-    rw.render(*cornell(), seconds=1.0, progress=watch)
-    assert (np.diff(watch.times[:-1]) >= 0.1).all()
-    watch = Watch(lambda image: time.sleep(0.05))
-    rw.render(*cornell(), seconds=1.5, progress=watch)
-    assert (np.diff(watch.times[:-1]) >= 10 * 0.05).all()
-    assert len(watch) >= 2
+class Clock:
+    """Time that goes on by a fiftieth of a second with each look at the render, however long that takes.
+
+    It stands for `time`, and as `stop`, which is asked at each look, it ends the render after so many.
+    """
+
+    def __init__(self, looks):
+        self.now, self.left = 0.0, looks
+
+    def monotonic(self):
+        return self.now
+
+    def is_set(self):
+        self.now += 0.02
+        self.left -= 1
+        return self.left < 0
+
+
+@pytest.fixture
+def clock(monkeypatch):
+    def start(looks):
+        clock = Clock(looks)
+        monkeypatch.setattr(snapshots, "time", clock)
+        return clock
+
+    return start
+
+
+def test_who_asks_for_no_pixels_is_called_ten_times_a_second_however_large_the_picture_is(clock, monkeypatch):
+    clock, told, waited = clock(40), [], []
+    take = snapshots.Snapshots.take
+
+    def taken(self, image, waits):
+        take(self, image, waits)
+        waited.append(waits())
+
+    monkeypatch.setattr(snapshots.Snapshots, "take", taken)
+
+    def watch(image):
+        told.append(clock.now)
+        # What is known of all pixels together is there, and no pixel is.
+        assert image.samples == 0
+        assert np.isnan(image.error.estimate)
+        assert repr(image).startswith("Image(1920x1080, 0 samples")
+        # In the end it is shown what is returned.
+        assert type(image) is rw.Image or not {"rgb", "standard_error", "degrees"} & set(vars(image))
+
+    # A sample of each of its pixels takes longer than all looks, and the render is not left for one of them.
+    image = rw.render(
+        *rw.scenes.cornell_box(width=1920, height=1080), rw.Path(reuse=1), progress=watch, stop=clock
+    )
+    assert image.samples == 0
+    during = told[:-1]
+    assert len(during) >= 6
+    assert np.allclose(np.diff(during), 0.1, rtol=0, atol=0.021)
+    assert waited == [False] * len(during)
+
+
+@pytest.mark.parametrize(("threads", "share"), [(1, 9.0), (2, 4.0), (5, 1.0)])
+def test_what_it_takes_to_show_it_is_a_tenth_of_the_work_at_most(clock, threads, share):
+    clock, began = clock(120), []
+
+    def watch(image):
+        began.append(clock.now)
+        clock.now += 0.05
+
+    scene = rw.scenes.cornell_box(width=1920, height=1080)
+    rw.render(*scene, rw.Path(reuse=1), progress=watch, stop=clock, threads=threads)
+    gaps = np.diff(began[:-1])
+    assert len(gaps) >= 3
+    # One thread shows it, and the others go on. Looks are a fiftieth of a second apart.
+    least = max(0.1, 0.05 * (1 + share))
+    assert (gaps >= least - 1e-9).all()
+    assert (gaps < least + 0.021).all()
+
+
+def test_pixels_so_far_have_the_first_of_their_samples_and_nothing_else(clock):
+    scene, camera = rw.scenes.cornell_box(width=400, height=400)
+    how = {"seed": 7, "sampler": rw.Independent(), "progress": False}
+    whole = [rw.render(scene, camera, rw.Path(reuse=1), n, **how).rgb for n in (1, 2)]
+    seen = []
+
+    def watch(image):
+        clock.now += 1.0
+        seen.append((image.samples, image.rgb, image.rgb is image.rgb))
+
+    clock = clock(100_000)
+    how |= {"progress": watch, "stop": clock}
+    rw.render(scene, camera, rw.Path(reuse=1), 2, threads=1, **how)
+    before = {0: [np.zeros_like(whole[0]), whole[0]], 1: whole}
+    mixed = 0
+    for samples, rgb, same in seen:
+        assert same
+        if samples in before:
+            old, new = ((rgb == one).all(axis=2) for one in before[samples])
+            assert (old | new).all()
+            mixed += old.any() and new.any() and not (old & new).all()
+    assert mixed > 0
+
+
+def test_pictures_that_are_kept_stay_as_they_were():
+    kept, pixels = [], []
+
+    def watch(image):
+        pixels.append(image.rgb.copy())
+        kept.append(image)
+
+    scene, camera = rw.scenes.cornell_box(width=64, height=64)
+    rw.render(scene, camera, seconds=1.0, progress=watch, adaptive=True, clamp=0.5)
+    assert len(kept) >= 3
+    for image, rgb in zip(kept, pixels, strict=True):
+        assert np.array_equal(image.rgb, rgb)
+        assert not image.rgb.flags.writeable
+        copy = pickle.loads(pickle.dumps(image))
+        assert type(copy) is rw.Image
+        assert copy == image
+        assert image.aov["samples"].shape == (64, 64)
+        if image.samples >= 4:
+            assert np.isfinite(image.standard_error).all()
+            assert image.biased
+            assert "clamped" in image.warnings[0]
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="there is no fork")
+def test_after_a_fork_pictures_are_made_as_before():
+    scene, camera = cornell(16)
+    here = rw.render(scene, camera, samples=4, progress=False)
+    read, write = os.pipe()
+    # What a child that hangs would hold up is this test alone.
+    child = os.fork()
+    if child == 0:
+        again = rw.render(scene, camera, samples=4, progress=False)
+        os.write(write, b"y" if np.array_equal(again.rgb, here.rgb) else b"n")
+        os._exit(0)
+    ready, _, _ = select.select([read], [], [], 20)
+    if not ready:
+        os.kill(child, signal.SIGKILL)
+    os.waitpid(child, 0)
+    assert ready
+    assert os.read(read, 1) == b"y"
 
 
 def test_another_thread_may_stop_a_render_at_once(executor):

@@ -1,6 +1,7 @@
 """The viewer as its page sees it: what is shown, and when work ends."""
 
 import base64
+import json
 import re
 import signal
 import socket
@@ -17,6 +18,7 @@ import pytest
 from viewer_page import ask, is_done, page, pixels, turn, until
 
 import raywright as rw
+from raywright.viewer import boxes
 
 SIZE = {"width": 96, "height": 72}
 
@@ -263,3 +265,76 @@ def test_no_style_cuts_or_hides_what_stands_under_the_picture():
         for cut in ("overflow", "text-overflow", "white-space", "display: none", "min-width: 0"):
             assert cut not in rules[name], (name, cut)
     assert "@media" not in style
+
+
+def boxes_of(viewer, depth):
+    kind = {"Content_Type": "application/json"}
+    return ask(viewer, "boxes", "POST", json.dumps({"depth": depth}), **kind)[0]
+
+
+def test_boxes_of_the_accelerator_are_drawn_level_by_level():
+    scene, camera = rw.scenes.cornell_box(**SIZE)
+    deepest = int(scene.tree().depth[-1])
+    with rw.view(scene, camera, samples=4, fit=False, boxes=0) as viewer, page(viewer) as events:
+        root = until(events, is_done)
+        assert root["boxes"] == 0
+        assert boxes_of(viewer, None) == 204
+        plain = until(events, lambda frame: is_done(frame) and frame["boxes"] is None)
+        assert boxes_of(viewer, deepest) == 204
+        deep = until(events, lambda frame: frame["boxes"] == deepest)
+        # Beyond the last level there is nothing to be drawn, and nothing is rendered anew.
+        assert boxes_of(viewer, deepest + 1) == 204
+        assert until(events, lambda frame: frame["boxes"] is None)["picture"] == plain["picture"]
+        assert boxes_of(viewer, -1) == 400
+    image = rw.render(scene, camera, samples=4, progress=False)
+    assert np.array_equal(pixels(plain), image.srgb())
+    drawn = (pixels(root) != pixels(plain)).any(axis=2)
+    assert (pixels(root)[drawn] == (255, 208, 0)).all()
+    # Corners of the root are seen where rays to them go, and its edges there and nowhere near the middle.
+    corners = scene.tree().at(0).corners.reshape(-1, 3)
+    lines = boxes.edges(camera, scene.tree().at(0).corners)
+    ways = camera.rays_through(lines.reshape(-1, 2) * (96, 72))[1]
+    there = corners - camera.position
+    there /= np.linalg.norm(there, axis=1)[:, None]
+    off = np.linalg.norm(ways[:, None] - there, axis=2).min(axis=1)
+    assert len(lines) == 12
+    assert off.max() < 1e-12
+    assert (pixels(deep) != pixels(plain)).any()
+
+
+@pytest.mark.parametrize("kind", ["perspective", "intrinsics", "parallel", "within"])
+def test_edges_are_where_rays_to_them_go(kind):
+    looks = {"width": 40, "height": 30}
+    camera = {
+        "perspective": rw.Camera((3, 4, 5), (0, 0, 0), **looks),
+        "intrinsics": rw.Camera.from_intrinsics(
+            [[50, 1, 12], [0, 45, 9], [0, 0, 1]], np.eye(3), (0, 0, 4), 40, 30
+        ),
+        "parallel": rw.Orthographic((3, 4, 5), (0, 0, 0), scale=4, **looks),
+        # Half of the box is behind it.
+        "within": rw.Camera((0.1, 0.2, 0.3), (1, 0, 0), **looks),
+    }[kind]
+    corners = rw.Scene(rw.Box((-1, -1, -1), (1, 1, 1)), accelerator=rw.BVH()).tree().corners[:1]
+    lines = boxes.edges(camera, corners)
+    assert len(lines) == 12 if kind != "within" else 0 < len(lines) < 12
+    along = np.linspace(0, 1, 7)[1:-1, None, None]
+    places = ((1 - along) * lines[:, 0] + along * lines[:, 1]) * (40, 30)
+    origins, ways = camera.rays_through(places)
+    # Every edge has two coordinates of size 1: the ray passes some edge of the box.
+    ends = corners[:, boxes._EDGES].reshape(-1, 2, 3)
+    for origin, way in zip(origins.reshape(-1, 3), ways.reshape(-1, 3), strict=True):
+        edge, gap = ends[:, 1] - ends[:, 0], ends[:, 0] - origin
+        across = np.cross(edge, way)
+        lengths = np.linalg.norm(across, axis=1)
+        assert (np.abs((gap * across).sum(axis=1))[lengths > 0] / lengths[lengths > 0]).min() < 1e-9
+
+
+def test_boxes_that_cannot_be_drawn_are_refused():
+    scene, camera = rw.scenes.cornell_box(**SIZE)
+    with pytest.raises(ValueError, match="boxes must be at least 0"):
+        rw.view(scene, camera, boxes=-1)
+    with pytest.raises(ValueError, match="boxes are drawn for a Camera, ThinLens or Orthographic"):
+        rw.view(scene, rw.Panorama((0, 1, 0), (0, 1, 1)), boxes=1)
+    grid = rw.Scene(scene.shapes, accelerator=rw.Grid())
+    with pytest.raises(ValueError, match="a Grid has no tree of boxes"):
+        rw.view(grid, camera, boxes=1)

@@ -20,6 +20,7 @@ from .plastic import Plastic
 from .principled import Principled, PrincipledThin
 from .thin_dielectric import ThinDielectric
 from .thin_film import SoapFilm, ThinFilm
+from .tinted import Tinted
 from .two_sided import TwoSided
 
 __all__ = [
@@ -48,6 +49,7 @@ __all__ = [
     "SoapFilm",
     "ThinDielectric",
     "ThinFilm",
+    "Tinted",
     "TwoSided",
     "glasses",
     "metal_index",

@@ -122,7 +122,7 @@ def _middles(scene: Scene) -> ClosestPoints:
     uv = np.full((len(primitive), 2), 1 / 3)
     core = scene._compiled()
     position = core.positions(shape_id, primitive, uv)
-    return ClosestPoints(np.zeros(len(primitive)), position, shape_id, primitive, uv, core)
+    return ClosestPoints(np.zeros(len(primitive)), position, shape_id, primitive, uv, None, core)
 
 
 def _balls(scene: Scene, points: Floats, ways: Floats, across: Floats, threads: int | None) -> Floats:

@@ -1,5 +1,6 @@
 """The material of glTF 2.0, made of this library's materials: metal and matt, clear, cut out, and shining."""
 
+import math
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -9,6 +10,8 @@ from ..arrays import Triple
 from ..lights import Emission
 from ..lights.emission import Emitted
 from ..materials import (
+    Cauchy,
+    Conductor,
     Dielectric,
     Diffuse,
     Mask,
@@ -17,7 +20,10 @@ from ..materials import (
     Mix,
     NormalMap,
     Plastic,
+    SoapFilm,
     ThinDielectric,
+    ThinFilm,
+    Tinted,
 )
 from ..textures import ImageTexture, MixTexture, ProductTexture, UvTransform, VertexColors
 from ..textures.image import Channel, Filter, Wrap
@@ -54,6 +60,49 @@ class Picture(NamedTuple):
         return ImageTexture(self.pixels, linear, channel, self.filter, self.wrap, self.transform)
 
 
+class Within(NamedTuple):
+    """What clear materials enclose (KHR_materials_volume, KHR_materials_dispersion).
+
+    Attributes
+    ----------
+    share : 3 floats
+        What is left of light after a way of the length of `distance`, above 0.
+    distance : float
+        That way, in units of the world; infinite where nothing is lost.
+    abbe : float, optional
+        Abbe's number, where the index of refraction goes with wavelength.
+    """
+
+    share: Triple
+    distance: float
+    abbe: float | None
+
+
+class Film(NamedTuple):
+    """A film of the colours of its thickness (KHR_materials_iridescence).
+
+    Attributes
+    ----------
+    share : float
+        Of the surface that has it.
+    picture : Picture, optional
+        Of that share, in red.
+    ior : float
+        Its index of refraction.
+    least, most : float
+        Its thickness in nanometres where its picture is 0, and where it is 1 or there is none.
+    thickness : Picture, optional
+        Of the thickness, in green.
+    """
+
+    share: float
+    picture: Picture | None
+    ior: float
+    least: float
+    most: float
+    thickness: Picture | None
+
+
 class Pbr(NamedTuple):
     """What glTF says of a material (3.9, and extensions); None where it says nothing.
 
@@ -83,8 +132,10 @@ class Pbr(NamedTuple):
         Share of light that goes through what is no metal (KHR_materials_transmission).
     transmission_picture : Picture, optional
         Of that share, in red.
-    solid : bool
-        Whether it bounds a volume (KHR_materials_volume), and is no thin sheet.
+    within : Within, optional
+        What it bounds, unless it is a thin sheet.
+    film : Film, optional
+        What is on it, where it is clear or metal.
     unlit : bool
         Whether it is to be shown without light (KHR_materials_unlit); it is matt here.
     """
@@ -105,7 +156,8 @@ class Pbr(NamedTuple):
     ior: float = IOR
     transmission: float = 0.0
     transmission_picture: Picture | None = None
-    solid: bool = False
+    within: Within | None = None
+    film: Film | None = None
     unlit: bool = False
 
     def material(self) -> Material | None:
@@ -128,6 +180,18 @@ class Pbr(NamedTuple):
             radiance = _times(self.emission_picture.texture(), radiance)
         return Emission(radiance, both_sides=True) if self.both_sides else radiance
 
+    @property
+    def is_tinted(self) -> bool:
+        """Whether its base colour is not white."""
+        tinted = self.color_picture is not None or self.colored
+        return tinted or (self.color is not None and bool((self.color[:3] != 1).any()))
+
+    @property
+    def is_plain_metal(self) -> bool:
+        """Whether it is metal of one colour everywhere."""
+        metallic, _ = self._shares()
+        return metallic == 1.0 and self.color_picture is None and not self.colored
+
     def _body(self) -> Material | None:
         """Return what it is without holes, and as if nothing went through."""
         known = (self.color, self.color_picture, self.metallic, self.roughness, self.rough_picture)
@@ -139,7 +203,27 @@ class Pbr(NamedTuple):
         metallic, roughness = self._shares()
         if self.ior != IOR and self.ior >= 1 and metallic == 0.0:
             return Plastic(color, self.ior, roughness)
-        return MetallicRough(color, metallic, roughness)
+        body = MetallicRough(color, metallic, roughness)
+        if self.film is None or not self.is_plain_metal:
+            return body
+        assert not isinstance(color, Texture)
+        eta = [_index(share) for share in color]
+        return self._filmed(body, Conductor(eta=eta, k=0.0, roughness=roughness))
+
+    def _filmed(self, bare: Material, base: Dielectric | Conductor | None) -> Material:
+        """Return what has the film on it, as far as that covers it; without a base the film is by itself."""
+        film = self.film
+        assert film is not None
+        thickness: Number = film.most
+        if film.thickness is not None:
+            thickness = MixTexture(film.least, film.most, film.thickness.texture(linear=True, channel="g"))
+        made: Material = (
+            SoapFilm(thickness, film.ior) if base is None else ThinFilm(thickness, film.ior, base=base)
+        )
+        share: Number = film.share
+        if film.picture is not None:
+            share = _scaled(film.picture.texture(linear=True, channel="r"), film.share)
+        return made if share == 1.0 else Mix(bare, made, share)
 
     def _color(self) -> Value:
         color: Value = _WHITE if self.color is None else _triple(self.color[:3])
@@ -161,7 +245,7 @@ class Pbr(NamedTuple):
     def _clear(self, body: Material) -> Material:
         """Return a material that light goes through where it is no metal."""
         metallic, roughness = self._shares()
-        clear = Dielectric(self.ior, roughness) if self.solid else ThinDielectric(self.ior)
+        clear: Material = self._glass(roughness)
         share: Number = self.transmission
         if self.transmission_picture is not None:
             share = _scaled(self.transmission_picture.texture(linear=True, channel="r"), self.transmission)
@@ -170,6 +254,21 @@ class Pbr(NamedTuple):
         elif metallic:
             share = _share_of(share, 1 - metallic)
         return clear if share == 1.0 else Mix(body, clear, share)
+
+    def _glass(self, roughness: Number) -> Material:
+        """Return what is clear, with its colour, or with the film on it."""
+        within = self.within
+        pane: Dielectric | ThinDielectric
+        if within is None:
+            pane = ThinDielectric(self.ior)
+        else:
+            ior = self.ior if within.abbe is None else Cauchy.from_abbe(self.ior, within.abbe)
+            takes = math.isfinite(within.distance) and within.distance > 0
+            share, distance = (within.share, within.distance) if takes else (None, None)
+            pane = Dielectric(ior, roughness, transmittance=share, distance=distance)
+        if self.film is not None:
+            return self._filmed(pane, pane if isinstance(pane, Dielectric) else None)
+        return Tinted(pane, self._color()) if self.is_tinted else pane
 
     def _alpha(self) -> Number:
         """Return how much of it is there."""
@@ -197,6 +296,12 @@ def _scaled(texture: Texture, factor: float) -> Texture:
 
 def _share_of(share: Number, factor: float) -> Number:
     return _scaled(share, factor) if isinstance(share, Texture) else share * factor
+
+
+def _index(share: float) -> float:
+    """Return the index of refraction by which such a share of light is reflected that comes straight on."""
+    root = math.sqrt(min(max(share, 0.0), 0.9999))
+    return (1 + root) / (1 - root)
 
 
 def _triple(numbers: NDArray[np.float64]) -> Triple:

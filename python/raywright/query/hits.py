@@ -313,7 +313,8 @@ class ClosestPoints(SurfacePoints):
     shape_id : (...) int32
         Which of ``scene.shapes`` it is on; -1 for none.
     primitive : (...) int32
-        Which face of that shape, 0 where it is no mesh; -1 for none.
+        Which face of that shape, 0 where it is no mesh, or of an instance what `Instance.locate` tells; -1
+        for none.
     uv : (..., 2) float64
         Barycentric weights of the face's second and third corner, so that the closest point is at
         ``(1 - u - v) * a + u * b + v * c`` for corners a, b, c; on a shape that is no mesh, its own u and v.
@@ -330,16 +331,21 @@ class ClosestPoints(SurfacePoints):
         shape_id: NDArray[np.int32],
         primitive: NDArray[np.int32],
         uv: NDArray[np.float64],
+        instance: NDArray[np.int32] | None,
         compiled: _core.CompiledScene,
     ) -> None:
         parts = {"distance": distance, "shape_id": shape_id, "primitive": primitive, "uv": uv}
+        if instance is not None:
+            parts["instance"] = instance
         # The position is known already, and stands where cached_property keeps its values.
         self.__dict__.update(parts, position=position, _compiled=compiled, _rays=None)
 
     @cached_property
     def _site(self) -> NDArray[np.float64]:
         """The unit normal, and a bound on how far each coordinate of `position` is off: (..., 4) float64."""
-        places = self.uv.reshape(-1, 2), self.position.reshape(-1, 3)
+        instance = vars(self).get("instance")
+        copies = None if instance is None else np.ascontiguousarray(instance).reshape(-1)
+        places = self.uv.reshape(-1, 2), self.position.reshape(-1, 3), copies
         known = self._known("normal")
         sites = known.sites(self.shape_id.reshape(-1), self.primitive.reshape(-1), *places)
         return sealed(sites.reshape(*self.primitive.shape, 4))

@@ -1,7 +1,5 @@
 """The questions that points ask of a scene."""
 
-from typing import Any
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -15,25 +13,8 @@ class PointQueries:
 
     _core: CompiledScene | None
 
-    @property
-    def shapes(self) -> tuple[Any, ...]:
-        """The shapes in the scene."""
-        raise NotImplementedError
-
     def _compiled(self) -> CompiledScene:
         raise NotImplementedError
-
-    def _near(self) -> CompiledScene:
-        """Return what finds closest points, or refuse by the name of the shape of which none are found."""
-        core = self._core or self._compiled()
-        index = core.without_closest
-        if index is None:
-            return core
-        kind = type(self.shapes[index]).__name__
-        what = kind
-        if kind not in ("Implicit", "Instance", "Instances"):
-            what = f"a {kind} under a transform that scales some lengths more than others"
-        raise ValueError(f"closest points are not found on {what}, which shape {index} is")
 
     def contains(self, points: ArrayLike, threads: int | None = None) -> NDArray[np.bool_]:
         """Find whether each point is inside a closed surface.
@@ -91,21 +72,26 @@ class PointQueries:
         Raises
         ------
         ValueError
-            If the last dimension is not 3, shapes do not broadcast, `max_distance` is negative or NaN, or the
-            scene has instances, an `Implicit`, or a disk, cylinder, cone, paraboloid, torus or polygon under
-            a transform that scales some lengths more than others.
+            If the last dimension is not 3, shapes do not broadcast, or `max_distance` is negative or NaN.
         TypeError
             If an array does not hold real numbers.
 
         Notes
         -----
-        Points that are NaN or infinite have no closest point.
+        Points that are NaN or infinite have no closest point. What moves is where it is as the shutter opens.
 
-        Shapes that are no meshes are asked in turn, where their box is near enough. Most have a closed form;
-        of ellipsoids the closest point is where a sum that falls is 1, which halving finds to the last digit
-        (Eberly, "Distance from a Point to an Ellipse, an Ellipsoid, or a Hyperellipsoid", 2013).
+        Shapes that are no meshes, and instances, are found through a tree of their boxes, which is built when
+        the first point is asked. What is in an instance is measured where it stands, so that transforms that
+        scale some lengths more than others, within each other too, are as good as any.
+
+        Most shapes have a closed form; of ellipsoids the closest point is where a sum that falls is 1, which
+        halving finds to the last digit (Eberly, "Distance from a Point to an Ellipse, an Ellipsoid, or a
+        Hyperellipsoid", 2013). Disks, cylinders, cones, paraboloids and tori under such a transform are a
+        curve at each turn about their axis, of which the closest is found by bounds on how fast its distance
+        changes (Piyavskii 1972). Of an `Implicit` no part of the box is left out that intervals cannot rule
+        out; where all of it is about as far, as from the middle of a sphere, it is a close one.
         """
-        core = self._near()
+        core = self._core or self._compiled()
         return ClosestPoints(*core.nearest(*nearest_arguments(points, max_distance, threads)), core)
 
     def signed_distance(self, points: ArrayLike, threads: int | None = None) -> NDArray[np.float64]:
@@ -129,11 +115,11 @@ class PointQueries:
         Raises
         ------
         ValueError
-            If the last dimension is not 3, or the scene has what `closest_point` refuses.
+            If the last dimension is not 3.
         TypeError
             If the array does not hold real numbers.
         """
-        core = self._near()
+        core = self._core or self._compiled()
         distance = core.nearest(*nearest_arguments(points, np.inf, threads))[0]
         inside = core.contains(*point_arguments(points, threads)) & (distance > 0)
         return np.asarray(np.where(inside, -distance, distance))

@@ -328,6 +328,11 @@ class Image:
             lines.append(f"{seconds:9.2f} {samples:9d} {told:>10}")
         return "\n".join(lines)
 
+    def _extent(self) -> tuple[int, int]:
+        """Return width and height in pixels."""
+        height, width = self.rgb.shape[:2]
+        return width, height
+
     def _repr_png_(self) -> bytes:
         return shown.png(self.rgb, self.alpha)
 
@@ -389,7 +394,7 @@ class Image:
         return Image, parts
 
     def __repr__(self) -> str:
-        height, width = self.rgb.shape[:2]
+        width, height = self._extent()
         parts = [
             f"{width}x{height}",
             f"{self.samples} samples",

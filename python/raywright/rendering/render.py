@@ -6,13 +6,13 @@ from collections.abc import Callable, Iterable
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
-import numpy as np
 from numpy.typing import NDArray
 
 from .. import _core
 from ..arrays import integer, positive
 from ..cameras import AnyCamera
 from ..integrators import AnyIntegrator, Path, check_integrator
+from ..integrators.base import Integrator
 from ..scene.scene import Scene
 from .aovs import covers, names_of, seen
 from .choices import Limits, chosen, waves
@@ -20,14 +20,15 @@ from .denoising import check_method
 from .filters import BoxFilter, Filter
 from .gathered import is_gathered, rate, with_bias
 from .halves import halves_of
-from .image import HISTORY, ErrorEstimate, Image
+from .image import Image
 from .interrupts import ON_INTERRUPT, unless_terminated
 from .job import Job
+from .made import doubts, made, overall
 from .notebook import display
-from .plan import RenderPlan
 from .progress import Report, bar
 from .samplers import Sampler
 from .snapshots import Snapshots
+from .so_far import AtRest, ImageSoFar, Sight
 from .ways import StoppedError, followed
 
 if TYPE_CHECKING:
@@ -105,9 +106,11 @@ def render(
     progress : bool or callable
         Whether to show a bar on stderr and, in a notebook, the picture as it comes; before, where the scene
         takes longer than two seconds to compile, a bar for that. Or a function that is
-        called with the picture so far, an Image, ten times a second at most and less often where it takes
-        long, and in the end with what is returned. Within a pass some pixels have more samples than others;
-        before the end of the first, ``image.samples`` is 0. What the function raises ends the render.
+        called with the picture so far, an Image, ten times a second, less often where it takes more than a
+        tenth of the work, and in the end with what is returned. Pixels so far are computed when the function
+        asks for them, or keeps the image: large pictures take no time from those who only want to know how
+        far they are. Within a pass some pixels have more samples than others; before the end of the first,
+        ``image.samples`` is 0. What the function raises ends the render.
     adaptive : bool
         Whether more samples go to the pixels where more of the estimated relMSE is; `samples` is then their
         mean, and ``image.aov["samples"]`` tells how many each pixel has. It begins after 16 samples. No pixel
@@ -241,20 +244,38 @@ def render(
     rendering = _begun(kept, job, threads)
     # A pilot is part of what a picture takes.
     rendering.spend(spent)
-    snapshots = None if show is None else Snapshots(show)
+    sight = _core.Sight(rendering)
+    # One that is written in Python works on the thread that shows pictures.
+    alone = isinstance(integrator, Integrator)
+    snapshots = None if show is None else Snapshots(show, 1 if alone else threads or os.cpu_count() or 1)
 
-    def so_far(told: Iterable[str] = ()) -> Image:
-        return _image(rendering, clamp, {"samples": rendering.counts} if adaptive else {}, told, plan)
+    def whole(done: _core.Rendering, told: Iterable[str] = ()) -> Image:
+        return made(done, clamp, {"samples": done.counts} if adaptive else {}, told, plan)
+
+    def outline(done: _core.Rendering) -> dict[str, Any]:
+        return overall(done) | {"plan": plan, "_doubts": tuple(doubts(done))}
+
+    def so_far(seen: Sight) -> ImageSoFar:
+        return ImageSoFar.of(seen, whole, outline, (camera.width, camera.height), adaptive)
+
+    def look_on() -> bool:
+        look()
+        if snapshots is None or not snapshots.due:
+            return False
+        if sight.is_open:
+            snapshots.take(lambda: so_far(sight), lambda: sight.is_done)
+            return False
+        # Between passes it has to be left to be looked at.
+        return True
 
     def wait() -> float | None:
-        waits = [one.wait() for one in (kept, snapshots) if one is not None]
-        return min(waits, default=None)
+        return None if kept is None else kept.wait()
 
     def rest() -> None:
         if kept is not None and kept.wait() == 0:
             kept.write_beside(rendering)
-        if snapshots is not None and snapshots.wait() == 0:
-            snapshots.take(so_far)
+        if snapshots is not None and snapshots.due:
+            snapshots.take(lambda: so_far(AtRest(rendering)), lambda: True)
 
     def keep() -> None:
         # Nothing is kept of a render that could not begin.
@@ -270,7 +291,7 @@ def render(
                 broken = _elsewhere(rendering, job, executor, limits, threads, report, rest, look)
                 told.extend(broken)
             if executor is None or broken:
-                _here(rendering, job, limits, threads, report, wait, rest, looks)
+                _here(rendering, job, limits, threads, report, wait, rest, looks if show is None else look_on)
 
         try:
             look()
@@ -282,7 +303,7 @@ def render(
             told.extend(_unseen(rendering, "stopped"))
         except KeyboardInterrupt as interrupt:
             if on_interrupt == "raise":
-                interrupt.image = so_far(_unseen(rendering, "interrupted"))  # type: ignore[attr-defined]
+                interrupt.image = whole(rendering, _unseen(rendering, "interrupted"))  # type: ignore[attr-defined]
                 raise
             told += ["interrupted by Ctrl-C", *_unseen(rendering, "interrupted")]
         finally:
@@ -299,7 +320,7 @@ def render(
     asked = (*names, "alpha") if transparent else names
     known = covers(rendering, job, asked, None, threads)
     found |= {name: array for name, array in known.items() if name in names}
-    image = _image(rendering, clamp, found, problems, plan, known["alpha"] if transparent else None)
+    image = made(rendering, clamp, found, problems, plan, known["alpha"] if transparent else None)
     if is_gathered(integrator):
         image = with_bias(image, limits[1], rendering, job, threads, looks)
     if apart:
@@ -373,9 +394,9 @@ def _here(
     report: Report | None,
     wait: Callable[[], float | None],
     rest: Callable[[], None],
-    look: Callable[[], None] | None,
+    look: Callable[[], bool | None] | None,
 ) -> None:
-    """Render in this process; `rest` is called whenever `wait` is over."""
+    """Render in this process; `rest` is called whenever `wait` is over, or `look` has said so."""
     compiled = job.scene._compiled()
     while not rendering.go_on(job.core, compiled, threads, *limits, wait(), report, look):
         rest()
@@ -422,62 +443,9 @@ def _begun(kept: "Checkpoints | None", job: Job, threads: int | None) -> _core.R
         kept.refuse(f"is damaged: {error}")
 
 
-def _image(
-    done: _core.Rendering,
-    clamp: float | None,
-    aov: dict[str, NDArray[Any]],
-    told: Iterable[str],
-    plan: RenderPlan,
-    alpha: NDArray[np.float32] | None = None,
-) -> Image:
-    history = np.empty(len(done.history), HISTORY)
-    for i, name in enumerate(HISTORY.names or ()):
-        history[name] = done.history[:, i]
-    warnings = list(told)
-    rgb = done.rgb
-    standard_error, pooled, degrees = done.uncertainty or (np.full_like(rgb, np.nan), None, None)
-    if done.dropped:
-        warnings.append(f"{_samples(done.dropped)} not finite or negative, and count as black")
-    clamped, taken = done.clamped
-    if clamped:
-        warnings.append(
-            f"biased: {_samples(clamped)} clamped to {clamp:g}, "
-            f"which took {100 * taken:.2g} % of the radiance"
-        )
-    if done.carried is None and not done.trusted:
-        _, low, high = done.error
-        warnings.append(
-            f"light is found so rarely that the error may be {low:.2g} or {high:.2g}: "
-            "its estimate cannot be trusted yet"
-        )
-    elif done.carried is not None:
-        few, share = done.carried
-        carriers = "one sample carries" if few == 1 else f"{few} samples carry"
-        warnings.append(f"{carriers} {100 * share:.0f} % of the error estimate: it cannot be trusted yet")
-    return Image(
-        rgb,
-        standard_error,
-        ErrorEstimate(*done.error, trusted=done.trusted),
-        history,
-        done.seconds,
-        done.samples,
-        tuple(warnings),
-        biased=clamped > 0,
-        aov=aov,
-        plan=plan,
-        pooled_error=pooled,
-        degrees=degrees,
-        alpha=alpha,
-    )
-
-
 def _denoised(image: Image, method: str, threads: int | None) -> Image:
     """Return an image denoised, or as it is with what there is to say of that."""
     if image.halves is None:
         few = "not denoised: a quarter of the samples is less than a batch of them"
         return replace(image, warnings=(*image.warnings, few))
     return image.denoise(method, threads=threads)
-
-
-def _samples(count: int) -> str:
-    return f"{count} sample{' was' if count == 1 else 's were'}"

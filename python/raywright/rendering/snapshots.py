@@ -1,35 +1,57 @@
 """Pictures of a render that is under way, as often as they cost little."""
 
 import time
+import weakref
 from collections.abc import Callable
 
 from .image import Image
+from .so_far import ImageSoFar
 
-# The least time between two, and how many times as long as showing one took it is at least.
+# The least time between two, and of how many times the time that showing one takes they take a share at most.
 _SECONDS = 0.1
-_SHARE = 9.0
+_TIMES = 10.0
+# How many times as long as showing one took there is none, however many threads there are.
+_REST = 1.0
 
 
 class Snapshots:
-    """Shows a render to someone: ten times a second at most, and for a tenth of the time at most.
+    """Shows a render to someone: ten times a second at most, and for a tenth of the work at most.
+
+    Pixels are computed when they are asked for, so that whoever wants to know no more than how far a render
+    is, or to stop it, is called ten times a second however large the picture is.
 
     Parameters
     ----------
     show : callable
         Takes an Image.
+    threads : int
+        How many work on the picture while it is shown: the one that shows it takes the time of one of them.
     """
 
-    def __init__(self, show: Callable[[Image], object]) -> None:
-        self._show = show
+    def __init__(self, show: Callable[[Image], object], threads: int) -> None:
+        self._show, self._threads = show, threads
         self._due = time.monotonic() + _SECONDS
 
-    def wait(self) -> float:
-        """Return the seconds until the next picture is due."""
-        return max(self._due - time.monotonic(), 0.0)
+    @property
+    def due(self) -> bool:
+        """Whether the next picture is due."""
+        return time.monotonic() >= self._due
 
-    def take(self, image: Callable[[], Image]) -> None:
-        """Show the picture that a function makes."""
+    def take(self, image: Callable[[], ImageSoFar], waits: Callable[[], bool]) -> None:
+        """Show the picture that a function makes; another says in the end whether the render `waits`."""
         began = time.monotonic()
-        self._show(image())
+        shown = image()
+        kept = weakref.ref(shown)
+        self._show(shown)
+        whole = shown.is_whole
+        del shown
+        # Whoever keeps it can see later what there was to be seen.
+        still = kept()
+        if still is not None:
+            still.settle()
+            whole = True
         ended = time.monotonic()
-        self._due = ended + max(_SECONDS, _SHARE * (ended - began))
+        # What tells errors works on all cores.
+        alone = 1 if whole or waits() else self._threads
+        rest = max(_TIMES / alone - 1, _REST) * (ended - began)
+        self._due = max(began + _SECONDS, ended + rest)

@@ -97,7 +97,7 @@ class Instance:
     exact for it as it is taken there. Compared with shapes that are moved themselves, hits differ by what
     rounding moved vertices makes, and not at all where neither rounds, as with integers and powers of two.
 
-    Closed surfaces in copies count for ``contains``; ``closest_point`` refuses scenes with instances.
+    Closed surfaces in copies count for ``contains``, and all that is in them for ``closest_point``.
     """
 
     shapes: tuple[AnyShape, ...]

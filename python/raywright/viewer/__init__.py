@@ -106,6 +106,7 @@ def view(
     exposure: float = 0.0,
     tone: str = DEFAULT,
     fit: bool = True,
+    boxes: int | None = None,
     port: int = 0,
     open: bool = False,
 ) -> Viewer:
@@ -124,6 +125,9 @@ def view(
     fit : bool
         Whether as many pixels are rendered as the window has room for, in the shape of the camera's picture,
         or as many as the camera has. The camera that `Viewer.camera` gives back keeps its own.
+    boxes : int, optional
+        Which level of the accelerator's boxes is drawn over the picture, 0 for the root; of a level of more
+        than 20,000 the largest. The keys b and B go a level deeper and back. `Scene.tree` gives the boxes.
     port : int
         Where to listen; any free port if 0.
     open : bool
@@ -137,12 +141,14 @@ def view(
     Raises
     ------
     TypeError, ValueError
-        As `render`.
+        As `render`; also if `boxes` is negative, the accelerator has none, or the camera is a `Fisheye` or a
+        `Panorama`, in whose pictures edges are bent.
     OSError
         If the port is taken.
     """
     if not isinstance(fit, bool):
         raise TypeError(f"fit must be True or False, got {fit!r}")
+    boxes = None if boxes is None else integer("boxes", boxes, 0)
     port, exposure = integer("port", port, 0, 65535), check_tone(exposure, tone)
     if samples is None and error is None and seconds is None:
         error = _ERROR
@@ -162,7 +168,7 @@ def view(
     from .server import Server
     from .session import Session
 
-    session = Session(scene, camera, integrator, how, exposure, tone, fit)
+    session = Session(scene, camera, integrator, how, exposure, tone, fit, boxes)
     try:
         server = Server(session, port)
     except BaseException:

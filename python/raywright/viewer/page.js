@@ -126,6 +126,7 @@ new ResizeObserver(() => {
 
 const exposure = byId("exposure");
 let cameraLine = "";
+let boxes = null;
 
 function expose(stops) {
   exposure.value = stops;
@@ -156,6 +157,10 @@ document.addEventListener("keydown", (event) => {
     exposure.dispatchEvent(new Event("input"));
   } else if (event.key === "c") {
     copyCamera();
+  } else if (event.key === "b" || event.key === "B") {
+    // One level deeper, or back; beyond the last the server shows none.
+    const next = boxes === null ? 0 : boxes + (event.key === "b" ? 1 : -1);
+    send("boxes", { depth: next < 0 ? null : next });
   }
 });
 
@@ -177,7 +182,9 @@ const short = (value) => (value === null ? "–" : value.toPrecision(3));
 function tell(frame) {
   document.body.dataset.state = frame.state;
   cameraLine = frame.camera;
-  byId("message").textContent = frame.warnings.join(" · ");
+  boxes = frame.boxes;
+  const told = boxes === null ? [] : [`boxes ${boxes} ${boxes === 1 ? "step" : "steps"} from the root`];
+  byId("message").textContent = [...told, ...frame.warnings].join(" · ");
   const isPreview = frame.state === "preview";
   byId("samples").textContent = isPreview ? "preview" : frame.samples;
   byId("seconds").textContent = frame.seconds.toFixed(1);
@@ -250,6 +257,7 @@ async function show() {
     remember(frame);
     canvas.dataset.number = frame.number;
     canvas.dataset.exposure = frame.exposure;
+    canvas.dataset.boxes = frame.boxes;
   }
   showing = false;
 }

@@ -33,6 +33,8 @@ _FILES = {
 _MOST_BODY = 4096
 # Pixels of a window, and stops of exposure.
 _WINDOW, _EXPOSURE = (16, 4096), (-20.0, 20.0)
+# Steps from the root of a tree to boxes.
+_DEEPEST = 1000
 _MOST_PAGES = 32
 # How soon it is seen that a page was closed, and how long a silent connection is kept.
 _LOOK = 0.1
@@ -191,7 +193,8 @@ class _Handler(BaseHTTPRequestHandler):
             raise _RefusedError(HTTPStatus.NOT_FOUND, "nothing is here")
 
     def _post(self, path: str) -> None:
-        asked = {"view": self._view, "window": self._window, "exposure": self._exposure}.get(path)
+        all_ = {"view": self._view, "window": self._window, "exposure": self._exposure, "boxes": self._boxes}
+        asked = all_.get(path)
         if asked is None:
             raise _RefusedError(HTTPStatus.NOT_FOUND, "nothing is here")
         if self.headers.get_content_type() != "application/json":
@@ -215,6 +218,10 @@ class _Handler(BaseHTTPRequestHandler):
         if not least <= value <= most:
             raise ValueError(f"exposure must be between {least:g} and {most:g}, got {value:g}")
         self.server.session.expose(value)
+
+    def _boxes(self, told: Any) -> None:
+        (depth,) = _named(told, "boxes", "depth")
+        self.server.session.box(None if depth is None else integer("depth", depth, 0, _DEEPEST))
 
     def _body(self) -> bytes:
         told = self.headers.get("Content-Length", "")

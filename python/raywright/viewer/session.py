@@ -14,9 +14,12 @@ from ..cameras import AnyCamera
 from ..integrators import AnyIntegrator
 from ..io import shown
 from ..io.tone import DEFAULT
+from ..query.trees import TreeBoxes
 from ..rendering.image import Image
 from ..rendering.render import render
+from ..rendering.so_far import ImageSoFar
 from ..scene.scene import Scene
+from .boxes import check_flat, drawn, edges
 from .orbit import Orbit, View, resized, scaled
 
 # What a preview may take: its samples, and its seconds.
@@ -49,6 +52,8 @@ class Frame:
         What it is seen by, with the size that the caller gave it.
     exposure, tone
         How it is shown, as `Image.save` has it.
+    boxes : TreeBoxes, optional
+        What of the accelerator is drawn over it: one level.
     """
 
     number: int
@@ -59,6 +64,7 @@ class Frame:
     camera: AnyCamera
     exposure: float = 0.0
     tone: str = DEFAULT
+    boxes: TreeBoxes | None = None
     _lock: threading.Lock = field(default_factory=threading.Lock, repr=False, compare=False)
 
     @property
@@ -75,7 +81,10 @@ class Frame:
 
     def file(self, suffix: str) -> bytes:
         """Return the picture as a file of such an ending."""
-        return shown.encoded(self.image.srgb(self.exposure, self.tone), suffix)
+        pixels = self.image.srgb(self.exposure, self.tone)
+        if self.boxes is not None:
+            pixels = drawn(pixels, edges(self.camera, self.boxes.corners))
+        return shown.encoded(pixels, suffix)
 
     def told(self) -> dict[str, Any]:
         """Return what there is to say of the picture, for JSON; None stands for what is not known."""
@@ -90,6 +99,7 @@ class Frame:
             "size": self.size,
             "camera": re.sub(r"\b([A-Z]\w*\()", r"rw.\1", repr(self.camera)),
             "exposure": self.exposure,
+            "boxes": None if self.boxes is None else int(self.boxes.depth[0]),
             "samples": image.samples,
             "seconds": image.seconds,
             "error": [None if math.isnan(value) else value for value in error],
@@ -116,6 +126,8 @@ class Session:
         How pictures are shown, as `Image.save` has it.
     fits : bool
         Whether the picture takes the size of the window that it is shown in.
+    boxes : int, optional
+        Which level of the accelerator's boxes is drawn over pictures.
     """
 
     def __init__(
@@ -127,6 +139,7 @@ class Session:
         exposure: float = 0.0,
         tone: str = DEFAULT,
         fits: bool = True,
+        boxes: int | None = None,
     ) -> None:
         self.fits = fits
         self._exposure, self._tone = exposure, tone
@@ -135,6 +148,7 @@ class Session:
         # Here, so that what there is to warn of is told to the caller, and Ctrl-C ends it.
         self._orbit = Orbit(camera, scene._compiled().bounds)
         self._view = View()
+        self._boxes = self._level(boxes)
         # What is wanted, by number, and the last of these that was rendered to its end.
         self._wanted, self._done = 1, 0
         self._frame: Frame | None = None
@@ -205,12 +219,44 @@ class Session:
         """Show pictures brighter by so many stops, the last one too."""
         with self._changed:
             self._exposure = exposure
-            if self._frame is not None:
-                self._count += 1
-                self._frame = replace(
-                    self._frame, number=self._count, exposure=exposure, _lock=threading.Lock()
-                )
-                self._changed.notify_all()
+            self._show_again()
+
+    def box(self, depth: int | None) -> None:
+        """Draw the boxes of a level of the accelerator over pictures, the last one too; none beyond the last.
+
+        Raises
+        ------
+        ValueError
+            If the accelerator has no boxes, or edges are not straight in the camera's pictures.
+        """
+        boxes = self._level(depth)
+        with self._changed:
+            self._boxes = boxes
+            self._show_again()
+
+    def _level(self, depth: int | None) -> TreeBoxes | None:
+        if depth is None:
+            return None
+        check_flat(self._orbit.camera(View()))
+        level = self._tree.at(depth)
+        return level if len(level) else None
+
+    @cached_property
+    def _tree(self) -> TreeBoxes:
+        return self._scene.tree()
+
+    def _show_again(self) -> None:
+        """Show the last picture as pictures are to be shown now; whoever asks holds the lock."""
+        if self._frame is not None:
+            self._count += 1
+            self._frame = replace(
+                self._frame,
+                number=self._count,
+                exposure=self._exposure,
+                boxes=self._boxes,
+                _lock=threading.Lock(),
+            )
+            self._changed.notify_all()
 
     @contextmanager
     def watched(self) -> Iterator[None]:
@@ -287,6 +333,9 @@ class Session:
         def show(image: Image) -> None:
             # Until all pixels have a sample, the preview is the better picture.
             if image.samples:
+                if isinstance(image, ImageSoFar):
+                    # To tell errors of pixels, which nobody sees here, would take much longer.
+                    image.settle_seen()
                 self._show(image, job, "refining")
 
         camera = resized(self._orbit.camera(job.view), *job.size)
@@ -309,7 +358,15 @@ class Session:
             self._count += 1
             seen_by = self._orbit.camera(job.view)
             self._frame = Frame(
-                self._count, image, job.view, state, job.size, seen_by, self._exposure, self._tone
+                self._count,
+                image,
+                job.view,
+                state,
+                job.size,
+                seen_by,
+                self._exposure,
+                self._tone,
+                self._boxes,
             )
             self._changed.notify_all()
 

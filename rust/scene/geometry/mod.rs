@@ -4,6 +4,7 @@ mod facets;
 mod instances;
 mod lanes;
 mod motion;
+mod near;
 mod objects;
 mod per_vertex;
 mod pose;
@@ -22,7 +23,7 @@ pub(in crate::scene) use watched::Watched;
 
 use super::SurfacePoint;
 use super::textures::Needs;
-use crate::accel::{Nearest, Primitives, UserGeometry, region};
+use crate::accel::{BoxTree, Primitives, UserGeometry, region};
 use crate::math::{DVec3, Hit, Ray, Region, Vec3};
 use crate::shapes::{Bounds, Shape, Site};
 use crate::simd::ask_for;
@@ -148,6 +149,9 @@ pub struct Geometry {
     rounding: Rounding,
     /// Where all of it lies, once that was asked.
     region: OnceLock<Region>,
+    /// What is no mesh, and all of it, by how far it is, once that was asked.
+    near_others: OnceLock<BoxTree>,
+    near_all: OnceLock<BoxTree>,
 }
 
 /// Twice the area of a triangle along its unit normal, as the winding gives it.
@@ -298,34 +302,9 @@ impl Geometry {
         self.others.as_ref()?.first().map(|first| self.locate(first).0)
     }
 
-    /// The first shape, by its number among shapes, that does not tell its nearest point.
-    pub fn first_without_closest(&self) -> Option<u32> {
-        self.others.as_ref()?.first_without_closest().map(|first| self.locate(first).0)
-    }
-
-    /// Puts the nearest points of shapes that are no meshes in the place of what was found on meshes and is farther.
-    pub(in crate::scene) fn nearest_of_others(&self, points: &[DVec3], most: &[f64], found: &mut [Nearest]) {
-        if let Some(others) = &self.others {
-            others.nearest(points, most, found);
-        }
-    }
-
     /// Whether there is a mesh that has vertices.
     pub(in crate::scene) fn has_vertices(&self) -> bool {
         !self.vertices.is_empty()
-    }
-
-    /// The unit normal of a primitive that is no instance at a point of it, and a bound on the error of each of the
-    /// point's coordinates.
-    pub fn site(&self, primitive: u32, position: DVec3, uv: [f64; 2]) -> (DVec3, f64) {
-        match self.others.as_ref().and_then(|others| others.get(primitive)) {
-            Some(shape) => {
-                let point = shape.point(&Ray::new(position, DVec3::X), 0.0, uv);
-                // What is nearest is found by a few roundings more than a point of given coordinates.
-                (point.normal, 4.0 * point.error)
-            }
-            None => (self.normal(primitive), self.error(primitive)),
-        }
     }
 
     /// How many shapes there are.
@@ -393,6 +372,11 @@ impl Geometry {
             + self.first.capacity() * size_of::<u32>()
             + self.gaps.capacity() * size_of::<Gap>()
             + self.facets.bytes()
+            + [&self.near_others, &self.near_all]
+                .iter()
+                .filter_map(|tree| tree.get())
+                .map(BoxTree::bytes)
+                .sum::<usize>()
             + self.others.as_ref().map_or(0, |others| others.bytes(seen))
     }
 

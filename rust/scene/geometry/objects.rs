@@ -2,9 +2,8 @@
 
 use super::instances::Instances;
 use super::prototype::Prototype;
-use crate::accel::{Nearest, UserGeometry, Wanted};
-use crate::math::{DVec3, Ray};
-use crate::shapes::triangle::length;
+use crate::accel::{UserGeometry, Wanted};
+use crate::math::Ray;
 use crate::shapes::{Ball, Bounds, Candidate, Shape};
 use std::sync::Arc;
 
@@ -61,42 +60,10 @@ impl Objects {
         self.numbers.binary_search(&number).ok().map(|i| self.shapes[i].as_ref())
     }
 
-    /// The number of the first that does not tell its nearest point: of instances, and of shapes that cannot.
-    pub fn first_without_closest(&self) -> Option<u32> {
-        let instances = self.instances.first().map(|&(first, _)| first);
-        let cannot = self.shapes.iter().position(|shape| shape.closest(DVec3::ZERO).is_none());
-        cannot.map(|i| self.numbers[i]).into_iter().chain(instances).min()
-    }
-
-    /// Puts the nearest point of a shape in the place of what was found, where that is farther, or as far and of a
-    /// greater number.
-    ///
-    /// Shapes are asked in turn, but for those whose box is too far.
-    pub fn nearest(&self, points: &[DVec3], max_distances: &[f64], found: &mut [Nearest]) {
-        /// Room for the roundings of boxes and of distances.
-        const ROOM: f64 = 1.0 + 1.0 / (1u64 << 40) as f64;
-        let boxes: Vec<Bounds> = self.shapes.iter().map(|shape| shape.bounds()).collect();
-        for (i, (&place, found)) in points.iter().zip(found).enumerate() {
-            if !place.is_finite() {
-                continue;
-            }
-            // One for all, or one a point.
-            let within = max_distances[if max_distances.len() == 1 { 0 } else { i }];
-            for ((&primitive, shape), around) in self.numbers.iter().zip(&self.shapes).zip(&boxes) {
-                let most = found.distance.min(within);
-                let gap = (around.min - place).max(place - around.max).max(DVec3::ZERO);
-                if length(gap) > most * ROOM {
-                    continue;
-                }
-                let Some(closest) = shape.closest(place) else { continue };
-                let distance = length(place - closest.position);
-                let is_nearer =
-                    distance < found.distance || (distance == found.distance && primitive < found.primitive);
-                if is_nearer && distance <= most && distance.is_finite() {
-                    *found = Nearest { distance, position: closest.position, uv: closest.uv, primitive };
-                }
-            }
-        }
+    /// The numbers of all of them.
+    pub fn all(&self) -> impl Iterator<Item = u32> {
+        let copies = self.instances.iter().flat_map(|(first, instances)| *first..first + instances.count() as u32);
+        self.numbers.iter().copied().chain(copies)
     }
 
     /// Memory held, without that of shapes themselves, and without prototypes that were `seen`; those here count as

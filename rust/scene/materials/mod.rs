@@ -25,6 +25,7 @@ mod soap_film;
 mod tests;
 mod thin_dielectric;
 mod thin_film;
+mod tinted;
 mod two_sided;
 
 pub use blinn_phong::BlinnPhongMaterial;
@@ -49,6 +50,7 @@ pub use roughness::{FacetKind, Roughness};
 pub use soap_film::SoapFilmMaterial;
 pub use thin_dielectric::ThinDielectricMaterial;
 pub use thin_film::{FilmBase, FilmedMetals, ThinFilmMaterial};
+pub use tinted::{TintedBase, TintedMaterial};
 pub use two_sided::TwoSided;
 
 use super::ShadingPoint;

@@ -1,5 +1,6 @@
 //! Surfaces `f(x, y, z) = 0` within a box.
 
+mod closest;
 mod functions;
 mod jet;
 mod line;
@@ -11,7 +12,7 @@ mod tape;
 #[cfg(test)]
 mod tests;
 
-use super::{Bounds, Candidate, Drawn, Point, Shape};
+use super::{Bounds, Candidate, Closest, Drawn, Point, Shape};
 use crate::math::robust::{UNIT, normalising_scale};
 use crate::math::{Affine, DVec3, Interval, Ray};
 use jet::Jet;
@@ -171,6 +172,17 @@ impl Implicit {
 }
 
 impl Shape for Implicit {
+    fn closest(&self, place: DVec3) -> Option<Closest> {
+        let own = closest::closest(self, &Affine::translation(DVec3::ZERO), place)?;
+        Some(Closest { position: own, uv: self.uv(own, Self::main_axis(self.gradient(own).0)) })
+    }
+
+    fn closest_stretched(&self, to_world: &Affine, _: &Affine, place: DVec3) -> Option<Closest> {
+        let own = closest::closest(self, to_world, place)?;
+        let uv = self.uv(own, Self::main_axis(self.gradient(own).0));
+        Some(Closest { position: to_world.point(own), uv })
+    }
+
     fn bounds(&self) -> Bounds {
         self.bounds
     }

@@ -9,7 +9,7 @@ mod trapezoids;
 use super::triangle::{nearest_point, point_of};
 use super::{Bounds, Candidate, Closest, Drawn, Point, Shape};
 use crate::math::robust::{UNIT, normalising_scale};
-use crate::math::{DVec3, DoubleDouble, Ray};
+use crate::math::{Affine, DVec3, DoubleDouble, Ray};
 use crossing::Line;
 use glam::DVec2;
 use trapezoids::{Trapezoid, trapezoids};
@@ -207,24 +207,49 @@ impl Polygon {
     }
 }
 
+impl Polygon {
+    /// Its edges, as the rings go.
+    fn edges(&self) -> impl Iterator<Item = (DVec3, DVec3)> {
+        self.rings.iter().flat_map(|ring| ring.iter().copied().zip(ring.iter().copied().cycle().skip(1)))
+    }
+
+    /// Whether a point of its plane is within its outline, and in no hole.
+    fn holds(&self, foot: DVec3) -> bool {
+        let [i, j] = self.kept;
+        let is_crossed = |(a, b): &(DVec3, DVec3)| {
+            (a[j] > foot[j]) != (b[j] > foot[j]) && foot[i] < a[i] + (b[i] - a[i]) * ((foot[j] - a[j]) / (b[j] - a[j]))
+        };
+        self.edges().filter(is_crossed).count() % 2 == 1
+    }
+}
+
 impl Shape for Polygon {
     fn closest(&self, place: DVec3) -> Option<Closest> {
         let foot = place - self.normal * self.normal.dot(place - self.anchor);
-        let [i, j] = self.kept;
-        let edges = || self.rings.iter().flat_map(|ring| ring.iter().zip(ring.iter().cycle().skip(1)));
-        let is_crossed = |(a, b): &(&DVec3, &DVec3)| {
-            (a[j] > foot[j]) != (b[j] > foot[j]) && foot[i] < a[i] + (b[i] - a[i]) * ((foot[j] - a[j]) / (b[j] - a[j]))
-        };
-        let is_inside = edges().filter(is_crossed).count() % 2 == 1;
-        let position = if is_inside {
-            foot
-        } else {
-            // An edge is a triangle without area.
-            let near = edges().map(|(&a, &b)| ([a, b, b], nearest_point([a, b, b], place)));
-            let (edge, found) = near.min_by(|(_, a), (_, b)| a.distance.total_cmp(&b.distance))?;
-            point_of(edge, found.uv)
-        };
+        if self.holds(foot) {
+            return Some(Closest { position: foot, uv: self.uv(foot - self.corner) });
+        }
+        // An edge is a triangle without area.
+        let near = self.edges().map(|(a, b)| ([a, b, b], nearest_point([a, b, b], place)));
+        let (edge, found) = near.min_by(|(_, a), (_, b)| a.distance.total_cmp(&b.distance))?;
+        let position = point_of(edge, found.uv);
         Some(Closest { position, uv: self.uv(position - self.corner) })
+    }
+
+    fn closest_stretched(&self, to_world: &Affine, to_object: &Affine, place: DVec3) -> Option<Closest> {
+        let normal = to_world.normal(self.normal).normalize();
+        let foot = place - normal * normal.dot(place - to_world.point(self.anchor));
+        let own = to_object.point(foot);
+        if self.holds(own) {
+            // Far from the plane the foot has lost digits that its own coordinates in the plane have not.
+            let own = own - self.normal * self.normal.dot(own - self.anchor);
+            return Some(Closest { position: to_world.point(own), uv: self.uv(own - self.corner) });
+        }
+        let moved = self.edges().map(|(a, b)| [a, b].map(|end| to_world.point(end)));
+        let near = moved.map(|[a, b]| ([a, b, b], nearest_point([a, b, b], place)));
+        let (edge, found) = near.min_by(|(_, a), (_, b)| a.distance.total_cmp(&b.distance))?;
+        let position = point_of(edge, found.uv);
+        Some(Closest { position, uv: self.uv(to_object.point(position) - self.corner) })
     }
 
     fn bounds(&self) -> Bounds {

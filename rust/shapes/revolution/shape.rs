@@ -2,6 +2,7 @@
 
 use super::{BASE, Profile, Revolution, SIDE, TIP};
 use crate::math::{Affine, Bounded, DVec3, Number, Ray, Triple};
+use crate::shapes::around::Around;
 use crate::shapes::closest::of_segment;
 use crate::shapes::line::Line;
 use crate::shapes::meeting::tell;
@@ -90,6 +91,33 @@ impl Shape for Revolution {
         let (_, part, [radius, up]) = best?;
         let from_base = frame.to_world(DVec3::new(x * radius, y * radius, up));
         Some(Closest { position: self.base + from_base, uv: self.coordinates(part, from_base) })
+    }
+
+    fn closest_stretched(&self, to_world: &Affine, _: &Affine, place: DVec3) -> Option<Closest> {
+        let (frame, height) = self.frame();
+        let around = Around::new(to_world, &frame, self.base, place);
+        let [base, tip] = self.radii();
+        let widest = base.max(tip);
+        let side = around.nearest(widest, |out| match self.profile {
+            Profile::Straight { .. } => around.of_segment(out, [[base, 0.0], [tip, height]]),
+            Profile::Parabola { tip } => around.of_parabola(out, [tip, height]),
+        });
+        let cap = |radius: f64, at: f64| {
+            let ends = [[0.0, at], [radius, at]];
+            (self.capped && radius > 0.0).then(|| around.nearest(radius, |out| around.of_segment(out, ends)))
+        };
+        let parts = [(BASE, cap(base, 0.0)), (SIDE, Some(side)), (TIP, cap(tip, height))];
+        let found = parts.into_iter().filter_map(|(part, found)| Some((part, found?)));
+        let (part, nearest) = found.min_by(|(_, a), (_, b)| a.distance.total_cmp(&b.distance))?;
+        // From the nearer end of the axis, as points of given coordinates are.
+        let from_base = frame.to_world(nearest.local);
+        let DVec3 { x, y, z } = nearest.local;
+        let own = if z <= 0.5 * height {
+            self.base + from_base
+        } else {
+            self.tip + frame.to_world(DVec3::new(x, y, z - height))
+        };
+        Some(Closest { position: to_world.point(own), uv: self.coordinates(part, from_base) })
     }
 
     fn bounds(&self) -> Bounds {

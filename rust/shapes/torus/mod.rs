@@ -4,9 +4,10 @@ mod line;
 #[cfg(test)]
 mod tests;
 
+use super::around::Around;
 use super::{Bounds, Candidate, Closest, Drawn, Point, Shape};
 use crate::math::robust::{UNIT, normalising_scale};
-use crate::math::{DVec3, DoubleDouble, Frame, Ray};
+use crate::math::{Affine, DVec3, DoubleDouble, Frame, Ray};
 use line::Tube;
 use std::f64::consts::{PI, TAU};
 
@@ -106,6 +107,13 @@ impl Shape for Torus {
         let radius = self.major + self.minor * out;
         let from_centre = self.frame.to_world(DVec3::new(x * radius, y * radius, self.minor * up));
         Some(Closest { position: self.centre + from_centre, uv: self.uv(from_centre * self.scale) })
+    }
+
+    fn closest_stretched(&self, to_world: &Affine, _: &Affine, place: DVec3) -> Option<Closest> {
+        let around = Around::new(to_world, &self.frame, self.centre, place);
+        let curve = |out| around.of_circle(out, self.major, self.minor);
+        let from_centre = self.frame.to_world(around.nearest(self.major + self.minor, curve).local);
+        Some(Closest { position: to_world.point(self.centre + from_centre), uv: self.uv(from_centre * self.scale) })
     }
 
     fn bounds(&self) -> Bounds {

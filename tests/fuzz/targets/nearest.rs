@@ -42,7 +42,7 @@ fn one_by_one(triangles: &Triangles, point: DVec3) -> (f64, u32) {
 
 /// A nearest point as bits.
 fn bits(nearest: &Nearest) -> ([u64; 6], u32) {
-    let Nearest { distance, position: p, uv, primitive } = nearest;
+    let Nearest { distance, position: p, uv, primitive, .. } = nearest;
     ([*distance, p.x, p.y, p.z, uv[0], uv[1]].map(f64::to_bits), *primitive)
 }
 

@@ -5,6 +5,7 @@ from typing import NamedTuple
 from ...lights.emission import Emitted
 from ...materials import Material
 from ..pbr import IOR, Pbr, Picture
+from .clear import film, within
 from .document import Document
 from .glossy import of_glossy
 from .part import Part
@@ -53,7 +54,6 @@ class Materials:
             self._document.tell("materials that are shown without light (unlit) are matt here")
         seen = _Seen(self._document, self._pictures)
         clear = part.extension("KHR_materials_transmission")
-        volume = part.extension("KHR_materials_volume")
         strength = part.extension("KHR_materials_emissive_strength")
         factor = 1.0 if strength is None else strength.number("emissiveStrength", 1.0, 0.0)
         normals = part.part("normalTexture")
@@ -69,10 +69,11 @@ class Materials:
             ior=self._ior(part),
             transmission=0.0 if clear is None else clear.number("transmissionFactor", 0.0, 0, 1),
             transmission_picture=None if clear is None else seen.picture(clear, "transmissionTexture"),
-            solid=volume is not None and volume.number("thicknessFactor", 0.0, 0) > 0,
+            within=within(part),
+            film=film(part, seen.picture),
             unlit=unlit,
         )
-        self._tell_of_glass(made, volume)
+        self._tell_of_glass(made)
         return Surface(made.material(), made.emitted(), seen.coordinates or 0)
 
     def _ior(self, part: Part) -> float:
@@ -85,17 +86,16 @@ class Materials:
             return IOR
         return ior
 
-    def _tell_of_glass(self, made: Pbr, volume: Part | None) -> None:
-        """Tell what of the model for clear materials is not shown."""
+    def _tell_of_glass(self, made: Pbr) -> None:
+        """Tell what of the model for clear materials, and of films, is not shown."""
         tell = self._document.tell
+        if made.film is not None and made.transmission > 0 and made.is_tinted:
+            tell("what goes through clear materials with films on them is not tinted by their base colour")
+        if made.film is not None and made.transmission == 0 and not made.is_plain_metal:
+            tell("films on what is neither clear nor metal of one colour are left out")
         if made.transmission > 0:
-            tinted = made.color_picture is not None or made.colored
-            if tinted or (made.color is not None and (made.color[:3] != 1).any()):
-                tell("what goes through clear materials is not tinted by their base colour")
-            if not made.solid and (made.roughness is None or made.roughness > 0):
+            if made.within is None and (made.roughness is None or made.roughness > 0):
                 tell("thin clear materials are smooth here, however rough they are")
-            if volume is not None and "attenuationDistance" in volume:
-                tell("clear materials do not absorb light here")
         elif made.ior != IOR and made.metallic != 0.0:
             tell("the ior counts for what is clear, or no metal at all, and is left out elsewhere")
 

@@ -17,11 +17,12 @@ from ...materials import (
     NormalMap,
     Plastic,
     ThinDielectric,
+    Tinted,
     TwoSided,
 )
 from . import coats
 from .errors import SceneError
-from .facets import SMOOTH, conductor, dielectric, facets, scaled
+from .facets import SMOOTH, conductor, dielectric, facets, tinted
 from .iors import relative
 from .plugin import Plugin
 from .principled import principled, principled_thin
@@ -89,6 +90,9 @@ def turned_round(given: Material, plugin: Plugin) -> Material:
         return Mask(turned_round(given.material, plugin), given.opacity)
     if isinstance(given, Mix):
         return Mix(turned_round(given.a, plugin), turned_round(given.b, plugin), given.amount)
+    if isinstance(given, Tinted):
+        base = turned_round(given.base, plugin)
+        return replace(given, base=base) if isinstance(base, Dielectric) else given
     if isinstance(given, Dielectric) and isinstance(given.ior, float):
         return replace(given, ior=1 / given.ior)
     return given
@@ -103,8 +107,7 @@ def _dielectric(plugin: Plugin, uv: Uv) -> Sides:
 
 
 def _thin_dielectric(plugin: Plugin, uv: Uv) -> Sides:
-    pane = ThinDielectric(relative(plugin, "bk7"))
-    return Sides(scaled(pane, plugin, ("specular_reflectance", "specular_transmittance"), uv), False)
+    return Sides(tinted(ThinDielectric(relative(plugin, "bk7")), plugin, uv), False)
 
 
 def _conductor(plugin: Plugin, uv: Uv) -> Sides:

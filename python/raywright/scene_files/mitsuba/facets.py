@@ -2,7 +2,7 @@
 
 from typing import NamedTuple, TypedDict
 
-from ...materials import Conductor, Dielectric, Diffuse, Material, Mirror, Mix
+from ...materials import Conductor, Dielectric, Diffuse, Material, Mirror, Mix, ThinDielectric, Tinted
 from ...materials.material import Rough
 from ...textures.texture import Texture
 from .iors import relative
@@ -40,8 +40,16 @@ def dielectric(plugin: Plugin, uv: Uv) -> Material:
     rough = facets(plugin, uv) if plugin.type == "roughdielectric" else SMOOTH
     if isinstance(rough.alpha, tuple):
         plugin.fail("alpha_u and alpha_v are not supported")
-    solid = Dielectric(relative(plugin, "bk7"), **rough.arguments())
-    return scaled(solid, plugin, ("specular_reflectance", "specular_transmittance"), uv)
+    return tinted(Dielectric(relative(plugin, "bk7"), **rough.arguments()), plugin, uv)
+
+
+def tinted(clear: Dielectric | ThinDielectric, plugin: Plugin, uv: Uv) -> Material:
+    """Return what is clear with the colours that its surface gives to what it reflects and lets through."""
+    reflected, through = (
+        value(plugin, f"specular_{name}", 1.0, uv) for name in ("reflectance", "transmittance")
+    )
+    whole = (1.0, 1.0, 1.0)
+    return clear if (reflected, through) == (whole, whole) else Tinted(clear, through, reflected)
 
 
 class Arguments(TypedDict):

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ... import _core
-from ...materials import Boundary, Dielectric, Mask, Material, ThinDielectric
+from ...materials import Boundary, Dielectric, Mask, Material, ThinDielectric, Tinted
 from ...media import GridMedium, HenyeyGreenstein, Homogeneous, Isotropic, Medium, Phase, Rayleigh
 from ...media.files import read_density
 from ...textures import Spectrum
@@ -45,6 +45,10 @@ def filled(plugin: Plugin, material: Material | None) -> Material | None:
     if is_null:
         # Without a medium that is a hole.
         return Mask(Dielectric(), 0.0) if interior is None else Boundary(interior)
+    if interior is not None and isinstance(material, Tinted):
+        if isinstance(material.base, ThinDielectric):
+            plugin.fail("a medium within a pane of specular_transmittance other than 1 is not supported")
+        return replace(material, base=replace(material.base, interior=interior))
     if interior is None or not isinstance(material, Dielectric | ThinDielectric):
         # Nothing is seen of what is within an opaque shape.
         return material

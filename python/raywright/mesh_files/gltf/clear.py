@@ -1,0 +1,43 @@
+"""What clear materials of a glTF file have within, and films on them (KHR_materials_volume, and others)."""
+
+import math
+from collections.abc import Callable
+
+from ..pbr import Film, Picture, Within
+from .part import Part
+
+# The share of light that stands for none: no way that has an end takes all of it.
+_LEAST = 1e-6
+# Abbe's number over which dispersion is 1 (KHR_materials_dispersion).
+_ABBE = 20.0
+
+
+def within(part: Part) -> Within | None:
+    """Return what a material encloses, None if it is a thin sheet."""
+    volume = part.extension("KHR_materials_volume")
+    if volume is None or volume.number("thicknessFactor", 0.0, 0) == 0:
+        return None
+    # How thick it is follows from the mesh. No distance is an infinite one, after which nothing is lost.
+    told = "attenuationDistance" in volume
+    distance = volume.number("attenuationDistance", least=0) if told else math.inf
+    color = volume.numbers("attenuationColor", 3, (1.0, 1.0, 1.0), 0, 1)
+    red, green, blue = (max(float(share), _LEAST) for share in color)
+    spread = part.extension("KHR_materials_dispersion")
+    dispersion = 0.0 if spread is None else spread.number("dispersion", 0.0, 0)
+    return Within((red, green, blue), distance, _ABBE / dispersion if dispersion else None)
+
+
+def film(part: Part, picture: Callable[[Part, str], Picture | None]) -> Film | None:
+    """Return the film on a material, None if there is none."""
+    thin = part.extension("KHR_materials_iridescence")
+    factor = 0.0 if thin is None else thin.number("iridescenceFactor", 0.0, 0, 1)
+    if thin is None or factor == 0:
+        return None
+    return Film(
+        factor,
+        picture(thin, "iridescenceTexture"),
+        thin.number("iridescenceIor", 1.3, 1),
+        thin.number("iridescenceThicknessMinimum", 100.0, 0),
+        thin.number("iridescenceThicknessMaximum", 400.0, 0),
+        picture(thin, "iridescenceThicknessTexture"),
+    )

@@ -1,0 +1,90 @@
+"""Pictures made of renders as the core has them."""
+
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .. import _core
+from .image import HISTORY, ErrorEstimate, Image
+from .plan import RenderPlan
+
+
+def made(
+    done: _core.Rendering,
+    clamp: float | None,
+    aov: dict[str, NDArray[Any]],
+    told: Iterable[str],
+    plan: RenderPlan,
+    alpha: NDArray[np.float32] | None = None,
+) -> Image:
+    """Return the picture of a render that nobody works on.
+
+    Parameters
+    ----------
+    done : _core.Rendering
+        The render.
+    clamp : float, optional
+        As `render` was told.
+    aov : dict
+        What else is known of the pixels.
+    told : iterable of str
+        What there is to warn of besides.
+    plan : RenderPlan
+        What was chosen.
+    alpha : (H, W) array, optional
+        What is covered.
+    """
+    warnings = list(told)
+    rgb = done.rgb
+    standard_error, pooled, degrees = done.uncertainty or (np.full_like(rgb, np.nan), None, None)
+    if done.dropped:
+        warnings.append(f"{_samples(done.dropped)} not finite or negative, and count as black")
+    clamped, taken = done.clamped
+    if clamped:
+        warnings.append(
+            f"biased: {_samples(clamped)} clamped to {clamp:g}, "
+            f"which took {100 * taken:.2g} % of the radiance"
+        )
+    return Image(
+        rgb,
+        standard_error,
+        **overall(done),
+        warnings=(*warnings, *doubts(done)),
+        biased=clamped > 0,
+        aov=aov,
+        plan=plan,
+        pooled_error=pooled,
+        degrees=degrees,
+        alpha=alpha,
+    )
+
+
+def overall(done: _core.Rendering) -> dict[str, Any]:
+    """Return what is known of all pixels together."""
+    rows = done.history
+    history = np.empty(len(rows), HISTORY)
+    for i, name in enumerate(HISTORY.names or ()):
+        history[name] = rows[:, i]
+    error = ErrorEstimate(*done.error, trusted=done.trusted)
+    return {"error": error, "history": history, "seconds": done.seconds, "samples": done.samples}
+
+
+def doubts(done: _core.Rendering) -> list[str]:
+    """Return what there is to warn of in the error estimate."""
+    if done.carried is not None:
+        few, share = done.carried
+        carriers = "one sample carries" if few == 1 else f"{few} samples carry"
+        return [f"{carriers} {100 * share:.0f} % of the error estimate: it cannot be trusted yet"]
+    if done.trusted:
+        return []
+    _, low, high = done.error
+    return [
+        f"light is found so rarely that the error may be {low:.2g} or {high:.2g}: "
+        "its estimate cannot be trusted yet"
+    ]
+
+
+def _samples(count: int) -> str:
+    return f"{count} sample{' was' if count == 1 else 's were'}"

@@ -1,0 +1,84 @@
+"""Boxes of an accelerator over a picture."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..cameras import AnyCamera, Camera, Orthographic, ThinLens
+
+# Corners that differ in one bit of their number share an edge.
+_EDGES = np.array([(i, i | 1 << bit) for i in range(8) for bit in range(3) if not i >> bit & 1])
+# The most boxes that are drawn: the largest of a level.
+_MOST = 20_000
+# What is nearer than this, next to what is farthest, is not drawn: it has no place in the picture.
+_NEAREST = 1e-6
+# How far beside the picture lines are drawn, in widths of it, and in what colour.
+_BESIDE = 4.0
+_COLOUR = (255, 208, 0)
+
+
+def check_flat(camera: AnyCamera) -> None:
+    """Raise a ValueError unless straight edges are straight in a camera's picture."""
+    if not isinstance(camera, Camera | ThinLens | Orthographic):
+        kind = type(camera).__name__
+        kinds = "a Camera, ThinLens or Orthographic"
+        raise ValueError(f"boxes are drawn for {kinds}, and the camera is a {kind}")
+
+
+def edges(camera: AnyCamera, corners: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return where the edges of boxes are seen.
+
+    Parameters
+    ----------
+    camera : Camera, ThinLens or Orthographic
+        From where, as the shutter opens.
+    corners : (K, 8, 3) array
+        Of boxes, as `TreeBoxes` has them.
+
+    Returns
+    -------
+    (E, 2, 2) float64
+        The ends of edges, or of what of them is in front of the camera, from (0, 0) at the upper left of the
+        picture to (1, 1) at its lower right.
+    """
+    size = np.linalg.norm(np.ptp(corners, axis=1), axis=1)
+    corners = corners[np.argsort(-size, kind="stable")[:_MOST]]
+    ends = corners[:, _EDGES].reshape(-1, 2, 3)
+    picture = np.array([(0, 0), (camera.width, 0), (0, camera.height), (camera.width, camera.height)], float)
+    origins, ways = camera.rays_through(picture)
+    if isinstance(camera, Orthographic):
+        # A point is across and down from where the rays start, and on along them.
+        axes = np.stack([origins[1] - origins[0], origins[2] - origins[0], ways[0]])
+    else:
+        # Ways to the corners of a plane, which are those of a parallelogram.
+        lengths = np.linalg.svd(np.stack([ways[0], -ways[1], -ways[2], ways[3]], axis=1))[2][-1]
+        plane = ways * (lengths * np.sign(lengths[0]))[:, np.newaxis]
+        axes = np.stack([plane[1] - plane[0], plane[2] - plane[0], plane[0]])
+    seen = (ends - origins[0]) @ np.linalg.inv(axes)
+    cut = seen[..., 2]
+    nearest = _NEAREST * max(float(np.abs(cut).max(initial=0.0)), np.finfo(float).tiny)
+    seen = _in_front(seen, cut - nearest)
+    ends = seen[..., :2] if isinstance(camera, Orthographic) else seen[..., :2] / seen[..., 2:]
+    beside = (np.abs(ends - 0.5) > _BESIDE).any(axis=(1, 2))
+    return ends[~beside]
+
+
+def drawn(pixels: NDArray[np.uint8], lines: NDArray[np.float64]) -> NDArray[np.uint8]:
+    """Return a picture, (H, W, 3), with lines drawn over it, as `edges` tells them."""
+    from PIL import Image, ImageDraw
+
+    image = Image.fromarray(pixels)
+    draw = ImageDraw.Draw(image)
+    for line in lines * image.size:
+        draw.line([tuple(end) for end in line.tolist()], fill=_COLOUR, width=1)
+    return np.asarray(image)
+
+
+def _in_front(ends: NDArray[np.float64], cut: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return edges (E, 2, C), or parts of them, where a number (E, 2) that is even along them is above 0."""
+    seen = (cut > 0).any(axis=1)
+    ends, cut = ends[seen], cut[seen]
+    for one, other in ((0, 1), (1, 0)):
+        behind = cut[:, one] <= 0
+        share = (cut[behind, other] / (cut[behind, other] - cut[behind, one]))[:, np.newaxis]
+        ends[behind, one] = ends[behind, other] + share * (ends[behind, one] - ends[behind, other])
+    return ends
