@@ -5,6 +5,7 @@ mod brute;
 pub mod bsp;
 pub mod bvh;
 mod crossings;
+pub mod flat;
 pub mod grid;
 pub mod kdtree;
 mod kept;

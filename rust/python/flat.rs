@@ -1,0 +1,267 @@
+//! A scene as flat arrays, and what kernels over these need of the core: rays made ready, and candidates decided.
+
+use numpy::{PyArray1, PyArrayDyn, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
+use pyo3::exceptions::{PyRuntimeError, PyValueError};
+use pyo3::prelude::*;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use super::accelerators;
+use super::arrays::{Numbers, Triples, numbers, rows, sealed, unwritten};
+use super::columns::HitParts;
+use super::instances;
+use super::query::{CompiledScene, Hits, write};
+use super::rays::{BATCH, RayArguments, RayArrays, answer, share};
+use crate::accel::Primitives;
+use crate::accel::flat::{CANDIDATES, Flat, Settled, Settler, flat_ray};
+use crate::math::{Hit, Ray};
+use crate::workers;
+
+/// A compiled scene's flat arrays.
+#[pyclass(frozen, module = "raywright._core")]
+pub struct FlatScene {
+    scene: Py<CompiledScene>,
+    flat: Flat,
+}
+
+/// What an any-hit kernel says of a ray: nothing is hit, something is, or f32 does not tell.
+const MISSED: u32 = 0;
+const HIT: u32 = 1;
+
+#[pymethods]
+#[allow(clippy::too_many_arguments)]
+impl FlatScene {
+    /// Builds a tree over a scene's geometry, as an accelerator's description and a quality say.
+    #[new]
+    fn new(
+        py: Python<'_>,
+        scene: Bound<'_, CompiledScene>,
+        accelerator: &Bound<'_, PyAny>,
+        quality: &str,
+    ) -> PyResult<Self> {
+        let options = accelerators::tree_options(accelerator, quality)?;
+        let compiled = scene.get();
+        let flat = py
+            .detach(|| {
+                let build = || Flat::new(compiled.scene().geometry(), &options);
+                workers::pool(None).map(|pool| pool.install(build))
+            })
+            .map_err(PyRuntimeError::new_err)?;
+        Ok(Self { scene: scene.unbind(), flat })
+    }
+
+    /// (K, 8) uint32, the bytes of nodes.
+    #[getter]
+    fn nodes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<u32>>> {
+        let rows = self.flat.nodes.iter().map(|n| {
+            let ([a, b, c], [d, e, f]) = (n.min.map(f32::to_bits), n.max.map(f32::to_bits));
+            [a, b, c, n.index, d, e, f, n.count]
+        });
+        table(py, self.flat.nodes.len(), rows)
+    }
+
+    /// (M, 12) uint32, the bytes of triangles.
+    #[getter]
+    fn triangles<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<u32>>> {
+        let rows = self.flat.triangles.iter().map(|t| {
+            let [corner, edge, other] = [t.corner, t.edge, t.other].map(|v| v.map(f32::to_bits));
+            let [[a, b, c], [d, e, f], [g, h, i]] = [corner, edge, other];
+            [a, b, c, t.primitive, d, e, f, t.largest.to_bits(), g, h, i, t.reserved]
+        });
+        table(py, self.flat.triangles.len(), rows)
+    }
+
+    /// What has no end.
+    #[getter]
+    fn unbounded<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
+        PyArray1::from_slice(py, &self.flat.unbounded)
+    }
+
+    /// The first primitive of each shape, and how many there are in all.
+    #[getter]
+    fn first(&self) -> Vec<u32> {
+        let geometry = self.scene.get().scene().geometry();
+        let shapes = (0..geometry.shapes() as u32).map(|shape| geometry.primitives_of(shape).start);
+        shapes.chain([Primitives::count(geometry) as u32]).collect()
+    }
+
+    #[getter]
+    fn depth(&self) -> usize {
+        self.flat.depth
+    }
+
+    /// The middle of box units.
+    #[getter]
+    fn centre<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_slice(py, &self.flat.region.centre.to_array())
+    }
+
+    /// From the scene's units to box units.
+    #[getter]
+    fn scale(&self) -> f64 {
+        self.flat.region.scale
+    }
+
+    /// Rays as kernels take them: (N, 8) float32.
+    fn rays<'py>(
+        &self,
+        py: Python<'py>,
+        origins: Triples<'py>,
+        directions: Triples<'py>,
+        t_min: Numbers<'py>,
+        t_max: Numbers<'py>,
+        shape: Vec<usize>,
+        threads: Option<usize>,
+    ) -> PyResult<Bound<'py, PyArrayDyn<f32>>> {
+        let arguments = RayArguments { origins, directions, t_min, t_max, time: None, shape };
+        let rays = arguments.rays()?;
+        let out = unwritten(py, &[rays.count], Some(8))?;
+        answer(
+            py,
+            rays.count,
+            rays.chunk(),
+            threads,
+            out.readwrite().as_slice_mut()?.as_chunks_mut().0,
+            |start, out| {
+                rays.gathered(start, out.len(), |batch, places| {
+                    for (ray, &place) in batch.iter().zip(places) {
+                        out[place] = flat_ray(ray, &self.flat.region);
+                    }
+                });
+            },
+        )?;
+        Ok(out)
+    }
+
+    /// The closest hits among candidates, (N, 4) uint32; and of how many rays the candidates had to be decided, and how
+    /// many were asked of the scene's own accelerator.
+    fn intersect<'py>(
+        &self,
+        py: Python<'py>,
+        origins: Triples<'py>,
+        directions: Triples<'py>,
+        t_min: Numbers<'py>,
+        t_max: Numbers<'py>,
+        shape: Vec<usize>,
+        threads: Option<usize>,
+        time: Option<Numbers<'py>>,
+        candidates: PyReadonlyArray2<'py, u32>,
+    ) -> PyResult<(Hits<'py>, (usize, usize))> {
+        let arguments = RayArguments { origins, directions, t_min, t_max, time, shape };
+        let (rays, lead) = (arguments.rays()?, &arguments.shape);
+        let candidates = rows::<u32, CANDIDATES>("candidates", &candidates)?;
+        lengths(&rays, candidates.len())?;
+        let scene = self.scene.get().scene();
+        let count = Primitives::count(scene.geometry()) as u32;
+        if let Some(i) = candidates.iter().position(|row| row.iter().any(|&p| p >= count && p < u32::MAX - 2)) {
+            return Err(PyValueError::new_err(format!("candidates[{i}] names a primitive beyond the {count}")));
+        }
+        let settler = Settler::new(scene.geometry(), &self.flat, scene.accelerator());
+        let (t, shape) = (unwritten(py, lead, None)?, unwritten(py, lead, None)?);
+        let (primitive, uv) = (unwritten(py, lead, None)?, unwritten(py, lead, Some(2))?);
+        let instance = match scene.geometry().has_instances() {
+            true => Some(unwritten(py, lead, None)?),
+            false => None,
+        };
+        let (decided, walked) = (AtomicUsize::new(0), AtomicUsize::new(0));
+        {
+            let (mut t, mut shape) = (t.readwrite(), shape.readwrite());
+            let (mut primitive, mut uv) = (primitive.readwrite(), uv.readwrite());
+            let mut instance = instance.as_ref().map(|to| to.readwrite());
+            let instances = instance.as_mut().map(|to| to.as_slice_mut()).transpose()?;
+            let numbers = (t.as_slice_mut()?, shape.as_slice_mut()?, primitive.as_slice_mut()?);
+            let parts: (HitParts<'_>, _) =
+                ((numbers.0, numbers.1, numbers.2, uv.as_slice_mut()?.as_chunks_mut().0), instances);
+            answer(
+                py,
+                rays.count,
+                rays.chunk(),
+                threads,
+                parts,
+                |start, ((t, shape, primitive, uv), mut instance)| {
+                    let count = t.len();
+                    let mut hits = vec![Hit::MISS; BATCH.min(count)];
+                    let mut mine = Vec::with_capacity(hits.len());
+                    rays.gathered(start, count, |batch, places| {
+                        let hits = &mut hits[..batch.len()];
+                        mine.clear();
+                        mine.extend(places.iter().map(|place| candidates[start + place]));
+                        let told: Settled = settler.closest(batch, &mine, hits);
+                        decided.fetch_add(told.decided, Ordering::Relaxed);
+                        walked.fetch_add(told.walked, Ordering::Relaxed);
+                        write(scene, hits, places, (t, shape, primitive, uv));
+                        if let Some(instance) = &mut instance {
+                            instances::write(scene, hits, places, instance, primitive);
+                        }
+                    });
+                },
+            )?;
+        }
+        let instance = instance.map(sealed).transpose()?;
+        let hits = (sealed(t)?, sealed(shape)?, sealed(primitive)?, sealed(uv)?, instance);
+        Ok((hits, (decided.into_inner(), walked.into_inner())))
+    }
+
+    /// Whether rays hit anything, where (N,) uint32 says so: 0 no, 1 yes, otherwise the scene's own accelerator is
+    /// asked; and how often it was.
+    fn occluded<'py>(
+        &self,
+        py: Python<'py>,
+        origins: Triples<'py>,
+        directions: Triples<'py>,
+        t_min: Numbers<'py>,
+        t_max: Numbers<'py>,
+        shape: Vec<usize>,
+        threads: Option<usize>,
+        time: Option<Numbers<'py>>,
+        answers: PyReadonlyArray1<'py, u32>,
+    ) -> PyResult<(Bound<'py, PyArrayDyn<bool>>, usize)> {
+        let arguments = RayArguments { origins, directions, t_min, t_max, time, shape };
+        let rays = arguments.rays()?;
+        let answers = numbers("answers", &answers)?;
+        lengths(&rays, answers.len())?;
+        let accelerator = self.scene.get().scene().accelerator();
+        // What has no end stands in no leaf, and may be hit where nothing else is.
+        let missed = if self.flat.unbounded.is_empty() { MISSED } else { HIT };
+        let out = unwritten(py, &arguments.shape, None)?;
+        let asked = AtomicUsize::new(0);
+        answer(py, rays.count, share(rays.count), threads, out.readwrite().as_slice_mut()?, |start, out| {
+            let (mut open, mut places): (Vec<Ray>, Vec<usize>) = Default::default();
+            for (i, to) in out.iter_mut().enumerate() {
+                let told = answers[start + i];
+                *to = told == HIT;
+                if told != HIT && told != missed {
+                    open.push(rays.ray(start + i));
+                    places.push(i);
+                }
+            }
+            if !open.is_empty() {
+                asked.fetch_add(open.len(), Ordering::Relaxed);
+                let mut found = vec![false; open.len()];
+                accelerator.occluded(&open, &mut found);
+                places.iter().zip(found).for_each(|(&i, found)| out[i] = found);
+            }
+        })?;
+        Ok((out, asked.into_inner()))
+    }
+}
+
+/// Rows of numbers as an array.
+fn table<'py, const K: usize>(
+    py: Python<'py>,
+    count: usize,
+    rows: impl Iterator<Item = [u32; K]>,
+) -> PyResult<Bound<'py, PyArrayDyn<u32>>> {
+    let out = unwritten(py, &[count], Some(K))?;
+    for (to, row) in out.readwrite().as_slice_mut()?.as_chunks_mut::<K>().0.iter_mut().zip(rows) {
+        *to = row;
+    }
+    sealed(out)
+}
+
+/// Refuses answers to another number of rays.
+fn lengths(rays: &RayArrays<'_>, answers: usize) -> PyResult<()> {
+    match rays.count == answers {
+        true => Ok(()),
+        false => Err(PyValueError::new_err(format!("answers to {answers} rays, expected {}", rays.count))),
+    }
+}

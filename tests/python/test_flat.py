@@ -1,0 +1,142 @@
+"""Scenes as arrays without pointers: what their bytes are promised to be, and a walk by nothing else."""
+
+import numpy as np
+import pytest
+
+import raywright as rw
+
+KNOT = rw.scenes.torus_knot(along=40, around=8)
+SCENES = {
+    "knot": [KNOT],
+    "far and small": [rw.Mesh(KNOT.vertices * 1e-3 + np.array([1e4, 0, 0]), KNOT.faces)],
+    "parted": rw.scenes.diagonal_wall(boards=40),
+    "several": [rw.Mesh(KNOT.vertices + 2.0, KNOT.faces), rw.Sphere((0, 0, 0), 1), KNOT],
+    "one": [rw.Mesh([(0.0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)])],
+    "nothing": [],
+}
+
+
+def after(nodes, i):
+    """Return the node after all that is below a node."""
+    return i + 1 if nodes["count"][i] else int(nodes["index"][i])
+
+
+@pytest.mark.parametrize("name", SCENES)
+@pytest.mark.parametrize("builder", ["binned", "spatial", "median"])
+def test_arrays_are_what_they_are_said_to_be(name, builder):
+    scene = rw.Scene(SCENES[name], accelerator=rw.BVH(builder=builder))
+    flat = scene.flat()
+    nodes, triangles = flat.nodes, flat.triangles
+    assert nodes.dtype.itemsize == 32
+    assert triangles.dtype.itemsize == 48
+    assert [nodes.dtype.fields[f][1] for f in nodes.dtype.names] == [0, 12, 16, 28]
+    assert [triangles.dtype.fields[f][1] for f in triangles.dtype.names] == [0, 12, 16, 28, 32, 44]
+    assert not nodes.flags.writeable
+    assert not triangles.flags.writeable
+    assert flat.bytes == 32 * len(nodes) + 48 * len(triangles)
+    if not scene.shapes:
+        assert (len(nodes), len(triangles), flat.depth) == (0, 0, 0)
+        return
+    # Every node before what is below it, children one after the other, and leaves one after the other.
+    depth, entries = np.zeros(len(nodes), int), 0
+    assert after(nodes, 0) == len(nodes)
+    for i in range(len(nodes)):
+        if nodes["count"][i]:
+            assert nodes["index"][i] == entries
+            mine = triangles[entries : entries + nodes["count"][i]]
+            entries += nodes["count"][i]
+            is_face = mine["largest"] >= 0
+            if builder != "spatial" and name != "parted":
+                corner = mine["corner"][is_face]
+                for point in (corner, corner + mine["edge"][is_face], corner + mine["other"][is_face]):
+                    assert (point >= nodes["lower"][i] - 1e-6).all()
+                    assert (point <= nodes["upper"][i] + 1e-6).all()
+            assert (mine["corner"][~is_face] >= nodes["lower"][i]).all()
+            assert (mine["edge"][~is_face] <= nodes["upper"][i]).all()
+        else:
+            first, second = i + 1, after(nodes, i + 1)
+            assert after(nodes, second) == nodes["index"][i]
+            depth[[first, second]] = depth[i] + 1
+            for child in (first, second):
+                assert (nodes["lower"][child] >= nodes["lower"][i]).all()
+                assert (nodes["upper"][child] <= nodes["upper"][i]).all()
+    assert entries == len(triangles)
+    assert depth.max() == flat.depth
+    # Every primitive stands somewhere, once unless it is parted.
+    assert set(triangles["primitive"]) == set(range(flat.first[-1]))
+    if builder == "median":
+        assert len(triangles) == flat.first[-1]
+    assert len(flat.first) == len(scene.shapes) + 1
+
+
+@pytest.mark.parametrize("name", ["knot", "far and small", "several"])
+def test_triangles_are_those_of_the_scene(name):
+    scene = rw.Scene(SCENES[name], precision="double")
+    flat = scene.flat()
+    assert np.log2(flat.scale) % 1 == 0
+    for shape, first in zip(scene.shapes, flat.first, strict=False):
+        if not isinstance(shape, rw.Mesh):
+            (box,) = flat.triangles[flat.triangles["primitive"] == first]
+            assert box["largest"] == -1
+            lower, upper = (box[end] / flat.scale + flat.centre for end in ("corner", "edge"))
+            assert lower == pytest.approx(-np.ones(3), abs=1e-5)
+            assert upper == pytest.approx(np.ones(3), abs=1e-5)
+            continue
+        corners = np.asarray(shape.vertices, float)[shape.faces]
+        number = flat.triangles["primitive"].astype(int) - first
+        mine = (number >= 0) & (number < len(corners))
+        a, b, c = np.moveaxis(corners[number[mine]], 1, 0)
+        some = flat.triangles[mine]
+        # Differences are taken before anything is rounded.
+        assert (some["corner"] == ((a - flat.centre) * flat.scale).astype(np.float32)).all()
+        assert (some["edge"] == ((b - a) * flat.scale).astype(np.float32)).all()
+        assert (some["other"] == ((c - a) * flat.scale).astype(np.float32)).all()
+        edges = np.abs(np.concatenate([some["edge"], some["other"]], axis=1))
+        assert (some["largest"] == edges.max(axis=1)).all()
+        assert np.abs(some["corner"]).max() <= 2
+
+
+def walked(flat, origin, direction):
+    """Return the primitive that a ray hits first, by the arrays alone and without a stack."""
+    start, t_best, found, i = (origin - flat.centre) * flat.scale, np.inf, -1, 0
+    while i < len(flat.nodes):
+        node = flat.nodes[i]
+        ends = (np.stack([node["lower"], node["upper"]]) - start) / direction
+        near, far = ends.min(axis=0).max(), ends.max(axis=0).min()
+        if near > far + 1e-5 or far < 0 or near > t_best:
+            i = after(flat.nodes, i)
+            continue
+        for one in flat.triangles[node["index"] : node["index"] + node["count"]] if node["count"] else ():
+            edges = np.stack([one["edge"], one["other"], -direction], axis=1).astype(float)
+            u, v, t = np.linalg.solve(edges, start - one["corner"])
+            if u >= 0 and v >= 0 and u + v <= 1 and 0 <= t < t_best:
+                t_best, found = t, int(one["primitive"])
+        i += 1
+    return found
+
+
+def test_a_walk_of_a_few_lines_finds_what_the_scene_does():
+    scene = rw.Scene(KNOT)
+    random = np.random.default_rng(4)
+    origins = random.uniform(-4, 4, (60, 3))
+    directions = random.uniform(-1, 1, (60, 3)) - origins
+    flat = scene.flat()
+    found = [walked(flat, *ray) for ray in zip(origins, directions, strict=True)]
+    hits = scene.intersect(origins, directions)
+    assert hits.hit.sum() > 15
+    np.testing.assert_array_equal(found, hits.primitive)
+
+
+def test_what_has_no_end_stands_apart():
+    flat = rw.Scene([rw.Plane((0, 0, 0), (0, 0, 1)), KNOT]).flat()
+    assert flat.unbounded.tolist() == [0]
+    assert flat.triangles["primitive"].min() == 1
+    assert (
+        repr(flat)
+        == f"FlatArrays({len(flat.nodes)} nodes, {len(flat.triangles)} triangles, depth {flat.depth})"
+    )
+
+
+def test_other_accelerators_have_flat_arrays_too():
+    flat = rw.Scene(KNOT, accelerator=rw.Grid()).flat()
+    assert flat.nodes.tobytes() == rw.Scene(KNOT).flat().nodes.tobytes()
