@@ -475,13 +475,19 @@ def camera_rays_through(
 class FlatScene:
     """A compiled scene as flat arrays, and what kernels over these need of the core."""
 
-    def __new__(cls, scene: CompiledScene, accelerator: Any, quality: str) -> FlatScene: ...
+    def __new__(cls, scene: CompiledScene, accelerator: Any, quality: str, prototypes: bool) -> FlatScene: ...
     @property
     def nodes(self) -> NDArray[np.uint32]:
         """(K, 8), the bytes of nodes: least corner, index, greatest corner, count."""
     @property
     def triangles(self) -> NDArray[np.uint32]:
-        """(M, 12), the bytes of triangles: corner, primitive, edge, largest, other edge, 0."""
+        """(M, 12), the bytes of triangles: corner, primitive, edge, largest, other edge, instance."""
+    @property
+    def instances(self) -> NDArray[np.uint32]:
+        """(I, 16), the bytes of instances: a (3, 4) matrix, first node, node after, primitive, 0."""
+    @property
+    def own(self) -> tuple[int, int]:
+        """How many of the nodes and of the triangles are the scene's own."""
     @property
     def unbounded(self) -> NDArray[np.uint32]:
         """Primitives without end: (U,)."""

@@ -29,7 +29,7 @@ pub use nearest::Nearest;
 pub use parity::Side;
 pub use slab::SlabRay;
 pub use touches::{Touch, Touches};
-pub use user_geometry::UserGeometry;
+pub use user_geometry::{Inside, UserGeometry};
 pub use walked::walked;
 
 pub use query::{Every, Meeting, Wanted};

@@ -30,19 +30,21 @@ const HIT: u32 = 1;
 #[pymethods]
 #[allow(clippy::too_many_arguments)]
 impl FlatScene {
-    /// Builds a tree over a scene's geometry, as an accelerator's description and a quality say.
+    /// Builds a tree over a scene's geometry, as an accelerator's description and a quality say, and over prototypes if
+    /// these are wanted.
     #[new]
     fn new(
         py: Python<'_>,
         scene: Bound<'_, CompiledScene>,
         accelerator: &Bound<'_, PyAny>,
         quality: &str,
+        prototypes: bool,
     ) -> PyResult<Self> {
         let options = accelerators::tree_options(accelerator, quality)?;
         let compiled = scene.get();
         let flat = py
             .detach(|| {
-                let build = || Flat::new(compiled.scene().geometry(), &options);
+                let build = || Flat::new(compiled.scene().geometry(), &options, prototypes);
                 workers::pool(None).map(|pool| pool.install(build))
             })
             .map_err(PyRuntimeError::new_err)?;
@@ -65,9 +67,25 @@ impl FlatScene {
         let rows = self.flat.triangles.iter().map(|t| {
             let [corner, edge, other] = [t.corner, t.edge, t.other].map(|v| v.map(f32::to_bits));
             let [[a, b, c], [d, e, f], [g, h, i]] = [corner, edge, other];
-            [a, b, c, t.primitive, d, e, f, t.largest.to_bits(), g, h, i, t.reserved]
+            [a, b, c, t.primitive, d, e, f, t.largest.to_bits(), g, h, i, t.instance]
         });
         table(py, self.flat.triangles.len(), rows)
+    }
+
+    /// (I, 16) uint32, the bytes of instances.
+    #[getter]
+    fn instances<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<u32>>> {
+        let rows = self.flat.instances.iter().map(|one| {
+            let [[a, b, c, d], [e, f, g, h], [i, j, k, l]] = one.rows.map(|row| row.map(f32::to_bits));
+            [a, b, c, d, e, f, g, h, i, j, k, l, one.node, one.end, one.primitive, one.reserved]
+        });
+        table(py, self.flat.instances.len(), rows)
+    }
+
+    /// How many of the nodes and of the triangles are the scene's own.
+    #[getter]
+    fn own(&self) -> (usize, usize) {
+        (self.flat.own[0], self.flat.own[1])
     }
 
     /// What has no end.

@@ -34,6 +34,7 @@ def test_arrays_are_what_they_are_said_to_be(name, builder):
     assert not nodes.flags.writeable
     assert not triangles.flags.writeable
     assert flat.bytes == 32 * len(nodes) + 48 * len(triangles)
+    assert flat.own == len(nodes)
     if not scene.shapes:
         assert (len(nodes), len(triangles), flat.depth) == (0, 0, 0)
         return
@@ -96,23 +97,30 @@ def test_triangles_are_those_of_the_scene(name):
         assert np.abs(some["corner"]).max() <= 2
 
 
-def walked(flat, origin, direction):
-    """Return the primitive that a ray hits first, by the arrays alone and without a stack."""
-    start, t_best, found, i = (origin - flat.centre) * flat.scale, np.inf, -1, 0
-    while i < len(flat.nodes):
+def walked(flat, start, direction, i, end, best=(np.inf, ())):
+    """Return t and the primitive that a ray in box units hits first, by the arrays alone, without a stack."""
+    while i < end:
         node = flat.nodes[i]
         ends = (np.stack([node["lower"], node["upper"]]) - start) / direction
         near, far = ends.min(axis=0).max(), ends.max(axis=0).min()
-        if near > far + 1e-5 or far < 0 or near > t_best:
+        if near > far + 1e-5 or far < 0 or near > best[0]:
             i = after(flat.nodes, i)
             continue
         for one in flat.triangles[node["index"] : node["index"] + node["count"]] if node["count"] else ():
+            if one["instance"]:
+                copy = flat.instances[one["instance"] - 1]
+                assert copy["primitive"] == one["primitive"]
+                turn, shift = copy["matrix"][:, :3].astype(float), copy["matrix"][:, 3]
+                within = (turn @ start + shift, turn @ direction, int(copy["node"]), int(copy["end"]))
+                t, inner = walked(flat, *within, (best[0], ()))
+                best = (t, (int(one["primitive"]), *inner)) if inner else best
+                continue
             edges = np.stack([one["edge"], one["other"], -direction], axis=1).astype(float)
             u, v, t = np.linalg.solve(edges, start - one["corner"])
-            if u >= 0 and v >= 0 and u + v <= 1 and 0 <= t < t_best:
-                t_best, found = t, int(one["primitive"])
+            if u >= 0 and v >= 0 and u + v <= 1 and 0 <= t < best[0]:
+                best = t, (int(one["primitive"]),)
         i += 1
-    return found
+    return best
 
 
 def test_a_walk_of_a_few_lines_finds_what_the_scene_does():
@@ -121,10 +129,46 @@ def test_a_walk_of_a_few_lines_finds_what_the_scene_does():
     origins = random.uniform(-4, 4, (60, 3))
     directions = random.uniform(-1, 1, (60, 3)) - origins
     flat = scene.flat()
-    found = [walked(flat, *ray) for ray in zip(origins, directions, strict=True)]
+    local = (origins - flat.centre) * flat.scale
+    found = [walked(flat, *ray, 0, flat.own)[1] for ray in zip(local, directions, strict=True)]
     hits = scene.intersect(origins, directions)
     assert hits.hit.sum() > 15
-    np.testing.assert_array_equal(found, hits.primitive)
+    assert found == [(p,) if p >= 0 else () for p in hits.primitive.tolist()]
+
+
+def test_copies_are_entered_by_their_matrices():
+    random = np.random.default_rng(7)
+    moves = np.tile(np.eye(4), (5, 1, 1))
+    moves[:, :3, :3] += random.uniform(-0.4, 0.4, (5, 3, 3))
+    moves[:, :3, 3] = random.uniform(-4, 4, (5, 3))
+    # Within another, too, and twice the same.
+    inner = rw.Instance([KNOT], moves[:2])
+    pair = rw.Instance([inner, rw.Mesh(KNOT.vertices + 3, KNOT.faces)], moves[2:4])
+    scene = rw.Scene([rw.Instance([KNOT], moves), KNOT, pair])
+    flat = scene.flat()
+    assert flat.instances.dtype.itemsize == 64
+    assert [flat.instances.dtype.fields[f][1] for f in flat.instances.dtype.names] == [0, 48, 52, 56, 60]
+    # Five and two in the scene, two in the pair; the knot's tree is there once.
+    assert len(flat.instances) == 9
+    assert len({int(one["node"]) for one in flat.instances}) == 2
+    assert flat.own == after(flat.nodes, 0) < len(flat.nodes)
+    hits = scene.intersect(*(rays := random_aimed(random, moves)))
+    assert len(set(hits.shape_id.tolist())) == 4
+    local = (rays[0] - flat.centre) * flat.scale
+    for i, (origin, direction) in enumerate(zip(local, rays[1], strict=True)):
+        t, found = walked(flat, origin, direction, 0, flat.own)
+        assert bool(found) == hits.hit[i]
+        if found:
+            shape, number = hits.shape_id[i], found[0] - flat.first[hits.shape_id[i]]
+            assert t == pytest.approx(hits.t[i] * flat.scale, rel=1e-4)
+            assert number == (hits.primitive[i] if shape == 1 else hits.instance[i])
+
+
+def random_aimed(random, moves, count=80):
+    """Return rays from about copies to where they may be."""
+    at = moves[random.integers(0, len(moves), count), :3, 3] + random.uniform(-2, 2, (count, 3))
+    origins = random.uniform(-12, 12, (count, 3))
+    return origins, at - origins
 
 
 def test_what_has_no_end_stands_apart():

@@ -204,7 +204,7 @@ def test_coincident_faces_go_to_the_first(gpu):
 
 
 def test_nothing_and_one_of_everything(gpu):
-    stats, wanted = agrees(rw.Scene([]), gpu, [[0.0, 0, 0]], [[0.0, 0, 1]])
+    _, wanted = agrees(rw.Scene([]), gpu, [[0.0, 0, 0]], [[0.0, 0, 1]])
     assert not wanted.hit.any()
     triangle = rw.Scene(rw.Mesh([(0.0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)]))
     for way in ([0.1, 0.1, -1], [0.0, 0.0, -1], [0.5, 0.5, -1]):
@@ -297,7 +297,7 @@ def test_what_is_no_device_is_refused(gpu):
         gpu.hold(3)
     with pytest.raises(ValueError, match="adapter is 'no such thing', expected part of one of"):
         rw.Gpu("no such thing")
-    with pytest.raises(TypeError, match="adapter must be a name or a wgpu.GPUAdapter, got int"):
+    with pytest.raises(TypeError, match=r"adapter must be a name or a wgpu\.GPUAdapter, got int"):
         rw.Gpu(3)
     assert rw.Gpu(gpu.name[:6].upper()).name == gpu.name
 
@@ -372,7 +372,7 @@ def test_two_hundred_thousand_rays(gpu, name):
     scene = rw.Scene(SHAPES[name]())
     corners = [shape.vertices[shape.faces].reshape(-1, 3) for shape in scene.shapes]
     mesh = rw.Mesh(np.concatenate(corners), np.arange(sum(map(len, corners))).reshape(-1, 3))
-    stats, wanted = agrees(scene, gpu, *random_rays(mesh, 100_000, spread=0.75))
+    stats, _ = agrees(scene, gpu, *random_rays(mesh, 100_000, spread=0.75))
     assert stats.closest_share <= MOST_CLOSEST
     assert stats.any_share <= MOST_ANY
     agrees(scene, gpu, *aimed_rays(mesh, 50_000))

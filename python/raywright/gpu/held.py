@@ -31,7 +31,7 @@ class GpuScene:
         self, device: Any, name: str, scene: Scene, most: int, bounds: float, pipelines: dict[str, Any]
     ) -> None:
         self._core = scene._compiled()
-        self._flat = FlatScene(self._core, scene.accelerator_choice, scene.quality)
+        self._flat = FlatScene(self._core, scene.accelerator_choice, scene.quality, False)
         self._name = name
         self._stats = GpuStats()
         arrays = flat_arrays(self._flat)

@@ -56,7 +56,7 @@ struct Triangle {
     edge: vec3<u32>,
     largest: u32,
     other: vec3<u32>,
-    reserved: u32,
+    instance: u32,
 }
 
 struct Ray {

@@ -368,7 +368,7 @@ class Scene(Queries):
         FlatArrays
             Nodes of 32 bytes, triangles of 48, and where they are.
         """
-        return flat_arrays(_core.FlatScene(self._compiled(), self._accelerator, self._quality))
+        return flat_arrays(_core.FlatScene(self._compiled(), self._accelerator, self._quality, True))
 
     def on(self, device: Device[Held]) -> AbstractContextManager[Held]:
         """Hold the scene on a device, which then answers for rays as the scene does.

@@ -7,7 +7,7 @@ mod rays;
 mod settle;
 mod walks;
 
-pub use arrays::{Flat, FlatTriangle};
+pub use arrays::{Flat, FlatInstance, FlatTriangle};
 pub use nodes::FlatNode;
 pub use rays::{FlatRay, flat_ray};
 pub use settle::{CANDIDATES, CERTAIN, NO_CANDIDATE, OVERFLOW, Settled, Settler};

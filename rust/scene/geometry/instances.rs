@@ -2,7 +2,7 @@
 
 use super::pose::{Pose, between, carried_by};
 use super::prototype::Prototype;
-use crate::accel::{Meeting, Side, Wanted};
+use crate::accel::{Inside, Meeting, Side, Wanted};
 use crate::math::{Hit, Ray, Singular};
 use crate::scene::textures::Needs;
 use crate::scene::{ShadingPoint, SurfacePoint};
@@ -151,6 +151,16 @@ impl Instances {
     pub fn bounds(&self, instance: u32) -> Option<Bounds> {
         let [a, b] = self.ends(instance)?;
         Some(Bounds { min: a.min.min(b.min), max: a.max.max(b.max) })
+    }
+
+    /// As [`crate::accel::UserGeometry::inside`] has it.
+    pub fn inside(&self, instance: u32) -> Option<Inside<'_>> {
+        if self.moves() {
+            return None;
+        }
+        let (rows, shift) = self.pose(instance, 0.0)?.into_prototype();
+        let id = Arc::as_ptr(&self.prototype).addr();
+        Some(Inside { id, primitives: self.prototype.geometry(), rows, shift })
     }
 
     /// As [`crate::accel::UserGeometry::meet`] has it.

@@ -2,7 +2,7 @@
 
 use super::instances::Instances;
 use super::prototype::Prototype;
-use crate::accel::{Nearest, UserGeometry, Wanted};
+use crate::accel::{Inside, Nearest, UserGeometry, Wanted};
 use crate::math::{DVec3, Ray};
 use crate::shapes::triangle::length;
 use crate::shapes::{Ball, Bounds, Candidate, Shape};
@@ -138,6 +138,11 @@ impl UserGeometry for Objects {
             Some((instances, instance)) => instances.ends(instance),
             None => self.bounds(primitive).map(|b| [b, b]),
         }
+    }
+
+    fn inside(&self, primitive: u32) -> Option<Inside<'_>> {
+        let (instances, instance) = self.instance(primitive)?;
+        instances.inside(instance)
     }
 
     fn meet(&self, primitive: u32, wanted: Wanted, ray: &Ray, met: &mut dyn FnMut(Candidate) -> bool) -> bool {
