@@ -9,6 +9,7 @@ use super::accelerators;
 use super::arrays::{Numbers, Triples, numbers, rows, sealed, unwritten};
 use super::columns::HitParts;
 use super::instances;
+use super::level;
 use super::query::{CompiledScene, Hits, write};
 use super::rays::{BATCH, RayArguments, RayArrays, answer, share};
 use crate::accel::Primitives;
@@ -173,7 +174,7 @@ impl FlatScene {
         if let Some(i) = candidates.iter().position(|row| row.iter().any(|&p| p >= count && p < u32::MAX - 2)) {
             return Err(PyValueError::new_err(format!("candidates[{i}] names a primitive beyond the {count}")));
         }
-        let settler = Settler::new(scene.geometry(), &self.flat, scene.accelerator());
+        let settler = Settler::new(scene.geometry(), &self.flat, scene.accelerator(), level()?);
         let (t, shape) = (unwritten(py, lead, None)?, unwritten(py, lead, None)?);
         let (primitive, uv) = (unwritten(py, lead, None)?, unwritten(py, lead, Some(2))?);
         let instance = match scene.geometry().has_instances() {

@@ -245,15 +245,15 @@ def test_a_device_that_is_lost_is_told_of_and_nothing_else_is(gpu, monkeypatch):
     wanted = scene.intersect(*rays)
     with scene.on(gpu) as there:
         monkeypatch.setattr(type(there._kernels), "chunk", 300)
-        run, calls = there._kernels.run, []
+        read, calls = there._kernels.read, []
 
-        def fails(kernel, some):
-            calls.append(len(some))
+        def fails(work):
+            calls.append(work)
             if len(calls) == 2:
                 raise RuntimeError("Parent device is lost")
-            return run(kernel, some)
+            return read(work)
 
-        monkeypatch.setattr(there._kernels, "run", fails)
+        monkeypatch.setattr(there._kernels, "read", fails)
         with pytest.warns(RuntimeWarning, match="was lost, and the CPU goes on: Parent device"):
             assert there.intersect(*rays) == wanted
         assert there.stats.closest_walked >= 700

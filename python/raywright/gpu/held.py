@@ -1,5 +1,6 @@
 """A scene on a graphics processor."""
 
+import threading
 import warnings
 from types import TracebackType
 from typing import Any
@@ -37,6 +38,8 @@ class GpuScene:
         arrays = flat_arrays(self._flat)
         self._bytes = arrays.bytes
         self._is_closed = False
+        # Buffers are the scene's, one batch of rays after the other.
+        self._lock = threading.Lock()
         self._kernels: Kernels | None = Kernels(
             device, arrays.nodes, arrays.triangles, arrays.depth, most, bounds, pipelines
         )
@@ -70,7 +73,8 @@ class GpuScene:
             If the ``with`` block has ended.
         """
         rays = ray_arguments(origins, directions, t_min, t_max, threads, time)
-        told = self._ask("closest", rays)
+        with self._lock:
+            told = self._ask("closest", rays)
         hits, (decided, walked) = self._flat.intersect(*rays, told)
         self._stats.closest += len(told)
         self._stats.closest_decided += decided
@@ -96,7 +100,8 @@ class GpuScene:
             If the ``with`` block has ended.
         """
         rays = ray_arguments(origins, directions, t_min, t_max, threads, time)
-        told = self._ask("occluded", rays)
+        with self._lock:
+            told = self._ask("occluded", rays)
         found, walked = self._flat.occluded(*rays, told)
         self._stats.any += len(told)
         self._stats.any_walked += walked
@@ -112,11 +117,15 @@ class GpuScene:
         if self._kernels is None:
             return told
         chunk = self._kernels.chunk
-        for start in range(0, count, chunk):
+        before: tuple[int, int, Any] | None = None
+        # While the device is at work on some, the next are made ready.
+        for slot, start in enumerate(range(0, count + chunk, chunk)):
             stop = min(start + chunk, count)
-            ready = self._flat.rays(*_part(rays, count, start, stop))
+            ready = self._flat.rays(*_part(rays, count, start, stop)) if start < count else None
             try:
-                told[start:stop] = self._kernels.run(kernel, ready)
+                work = None if ready is None else self._kernels.submit(kernel, ready, slot % 2)
+                if before is not None:
+                    told[before[0] : before[1]] = self._kernels.read(before[2])
             except Exception as lost:
                 self._kernels = None
                 warnings.warn(
@@ -125,6 +134,7 @@ class GpuScene:
                     stacklevel=3,
                 )
                 break
+            before = (start, stop, work)
         return told
 
     def __enter__(self) -> "GpuScene":

@@ -122,8 +122,7 @@ class Kernels:
             "closest": self._pipeline(shared.replace("ANSWER", "vec4<u32>") + closest, "closest"),
             "occluded": self._pipeline(shared.replace("ANSWER", "u32") + text("occluded.wgsl"), "occluded"),
         }
-        self._room = 0
-        self._own: list[Any] = []
+        self._slots: list[list[Any]] = [[], []]
         self._most = most
 
     @property
@@ -139,26 +138,26 @@ class Kernels:
             )
         return self._known[code]
 
-    def _make_room(self, rays: int) -> list[Any]:
-        """Return buffers for so many rays: of the job, the rays and the answers."""
+    def _room(self, slot: int, rays: int) -> list[Any]:
+        """Return a slot's buffers for so many rays: of the job, the rays and the answers."""
         import wgpu
 
-        if rays > self._room:
-            self._destroy(self._own)
+        if not self._slots[slot] or self._slots[slot][1].size < 32 * rays:
+            self._destroy(self._slots[slot])
             usage = wgpu.BufferUsage
             make = self._device.create_buffer
-            self._room = min(max(2 * self._room, rays, 1024), max(self.chunk, rays))
-            self._own = [
+            room = max(rays, 1024)
+            self._slots[slot] = [
                 make(size=16, usage=usage.UNIFORM | usage.COPY_DST),
-                make(size=32 * self._room, usage=usage.STORAGE | usage.COPY_DST),
-                make(size=16 * self._room, usage=usage.STORAGE | usage.COPY_SRC),
+                make(size=32 * room, usage=usage.STORAGE | usage.COPY_DST),
+                make(size=16 * room, usage=usage.STORAGE | usage.COPY_SRC),
             ]
-        return self._own
+        return self._slots[slot]
 
-    def run(self, kernel: str, rays: NDArray[np.float32]) -> NDArray[np.uint32]:
-        """Return what "closest", (N, 4), or "occluded", (N,), says of rays, (N, 8)."""
-        count, width = len(rays), 4 if kernel == "closest" else 1
-        job, given, answers = self._make_room(count)
+    def submit(self, kernel: str, rays: NDArray[np.float32], slot: int) -> tuple[str, int, int]:
+        """Set "closest" or "occluded" to work on rays, (N, 8), in slot 0 or 1; return what `read` takes."""
+        count = len(rays)
+        job, given, answers = self._room(slot, count)
         queue = self._device.queue
         queue.write_buffer(job, 0, np.array([0, count, self._nodes, 0], np.uint32))
         queue.write_buffer(given, 0, np.ascontiguousarray(rays))
@@ -170,7 +169,14 @@ class Kernels:
         compute.dispatch_workgroups(-(-count // _GROUP))
         compute.end()
         queue.submit([encoder.finish()])
-        told = np.frombuffer(queue.read_buffer(answers, size=4 * width * count), np.uint32)
+        return kernel, count, slot
+
+    def read(self, work: tuple[str, int, int]) -> NDArray[np.uint32]:
+        """Wait for work, and return what "closest", (N, 4), or "occluded", (N,), says."""
+        kernel, count, slot = work
+        width = 4 if kernel == "closest" else 1
+        answers = self._device.queue.read_buffer(self._slots[slot][2], size=4 * width * count)
+        told = np.frombuffer(answers, np.uint32)
         return told.reshape(count, width) if width > 1 else told
 
     def _bound(self, pipeline: Any, buffers: list[Any]) -> Any:
@@ -182,8 +188,8 @@ class Kernels:
 
     def destroy(self) -> None:
         """Give the device's memory back."""
-        self._destroy([*self._own, *self._scene])
-        self._own, self._scene, self._room = [], [], 0
+        self._destroy([*self._slots[0], *self._slots[1], *self._scene])
+        self._slots, self._scene = [[], []], []
 
     @staticmethod
     def _destroy(buffers: list[Any]) -> None:

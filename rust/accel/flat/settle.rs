@@ -8,7 +8,8 @@ use super::arrays::Flat;
 use crate::accel::query::{Closest, Query};
 use crate::accel::{Accelerator, Primitives, UserGeometry, Wanted};
 use crate::math::{DVec3, Hit, Ray, Region};
-use crate::shapes::triangle::{Column, EdgeRay, EdgeRays, RAYS};
+use crate::shapes::triangle::{Column, EdgeRay, EdgeRays, Met, RAYS};
+use crate::simd::{Level, loops};
 use std::sync::Arc;
 
 /// How many candidates a ray may have.
@@ -31,6 +32,7 @@ pub struct Settler<'a> {
     region: &'a Region,
     /// What every ray may hit besides its candidates.
     unbounded: &'a [u32],
+    level: Level,
     /// Whom to ask where candidates are too many.
     accelerator: &'a dyn Accelerator,
 }
@@ -56,9 +58,9 @@ struct Sixteen {
 
 impl<'a> Settler<'a> {
     /// Of primitives that are laid out flat, and whose hits an accelerator finds.
-    pub fn new(primitives: &'a dyn Primitives, flat: &'a Flat, accelerator: &'a dyn Accelerator) -> Self {
+    pub fn new(primitives: &'a dyn Primitives, flat: &'a Flat, accelerator: &'a dyn Accelerator, level: Level) -> Self {
         let (region, unbounded) = (&flat.of_triangles, flat.unbounded.as_slice());
-        Self { primitives, objects: primitives.objects(), region, unbounded, accelerator }
+        Self { primitives, objects: primitives.objects(), region, unbounded, level, accelerator }
     }
 
     /// The closest hit of each ray, of which these are candidates.
@@ -131,8 +133,8 @@ impl<'a> Settler<'a> {
             return;
         }
         let here = !(u32::MAX << count);
-        let plain = sixteen.edges.prepare(self.region) & here;
-        let all = sixteen.edges.won(&sixteen.corners, plain);
+        let mut all = Met::NONE;
+        won(self.level, &mut sixteen.edges, &sixteen.corners, self.region, here, &mut all);
         for i in 0..count {
             let (place, primitive) = (sixteen.places[i], sixteen.triangles[i]);
             hits[place] = if all.met >> i & 1 == 1 {
@@ -141,6 +143,14 @@ impl<'a> Settler<'a> {
                 self.first(&rays[place], &[primitive])
             };
         }
+    }
+}
+
+loops! {
+    /// Where sixteen rays meet triangles that they are known to meet.
+    fn won(edges: &mut EdgeRays, corners: &[[Column<f64>; 3]; 3], region: &Region, here: u32, all: &mut Met) {
+        let plain = edges.prepare(region) & here;
+        *all = edges.won(corners, plain);
     }
 }
 
