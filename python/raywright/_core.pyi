@@ -543,9 +543,12 @@ class FlatScene:
         shape: tuple[int, ...],
         threads: int | None,
         time: _Numbers | None,
-        answers: NDArray[np.uint32],
-    ) -> tuple[NDArray[np.bool_], int]:
-        """Find whether rays hit anything, told (N,): 0 no, 1 yes, 2 to be found out; and of how many."""
+        told: NDArray[np.uint32],
+    ) -> tuple[NDArray[np.bool_], tuple[int, int]]:
+        """Find whether rays hit anything, of which (N,) tells what they may hit.
+
+        And of how many rays that had to be decided, and how many the accelerator was asked about.
+        """
 
 @final
 class GridBlocks:

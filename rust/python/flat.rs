@@ -13,8 +13,8 @@ use super::level;
 use super::query::{CompiledScene, Hits, write};
 use super::rays::{BATCH, RayArguments, RayArrays, answer, share};
 use crate::accel::Primitives;
-use crate::accel::flat::{CANDIDATES, Flat, Settled, Settler, flat_ray};
-use crate::math::{Hit, Ray};
+use crate::accel::flat::{CANDIDATES, CERTAIN, Flat, NO_CANDIDATE, Settled, Settler, flat_ray};
+use crate::math::Hit;
 use crate::workers;
 
 /// A compiled scene's flat arrays.
@@ -23,10 +23,6 @@ pub struct FlatScene {
     scene: Py<CompiledScene>,
     flat: Flat,
 }
-
-/// What an any-hit kernel says of a ray: nothing is hit, something is, or f32 does not tell.
-const MISSED: u32 = 0;
-const HIT: u32 = 1;
 
 #[pymethods]
 #[allow(clippy::too_many_arguments)]
@@ -168,12 +164,8 @@ impl FlatScene {
         let arguments = RayArguments { origins, directions, t_min, t_max, time, shape };
         let (rays, lead) = (arguments.rays()?, &arguments.shape);
         let candidates = rows::<u32, CANDIDATES>("candidates", &candidates)?;
-        lengths(&rays, candidates.len())?;
+        self.check(&rays, candidates)?;
         let scene = self.scene.get().scene();
-        let count = Primitives::count(scene.geometry()) as u32;
-        if let Some(i) = candidates.iter().position(|row| row.iter().any(|&p| p >= count && p < u32::MAX - 2)) {
-            return Err(PyValueError::new_err(format!("candidates[{i}] names a primitive beyond the {count}")));
-        }
         let settler = Settler::new(scene.geometry(), &self.flat, scene.accelerator(), level()?);
         let (t, shape) = (unwritten(py, lead, None)?, unwritten(py, lead, None)?);
         let (primitive, uv) = (unwritten(py, lead, None)?, unwritten(py, lead, Some(2))?);
@@ -220,8 +212,8 @@ impl FlatScene {
         Ok((hits, (decided.into_inner(), walked.into_inner())))
     }
 
-    /// Whether rays hit anything, where (N,) uint32 says so: 0 no, 1 yes, otherwise the scene's own accelerator is
-    /// asked; and how often it was.
+    /// Whether rays hit anything, of which (N,) uint32 tells what they may hit; and of how many rays that had to be
+    /// decided, and how many were asked of the scene's own accelerator.
     fn occluded<'py>(
         &self,
         py: Python<'py>,
@@ -232,35 +224,52 @@ impl FlatScene {
         shape: Vec<usize>,
         threads: Option<usize>,
         time: Option<Numbers<'py>>,
-        answers: PyReadonlyArray1<'py, u32>,
-    ) -> PyResult<(Bound<'py, PyArrayDyn<bool>>, usize)> {
+        told: PyReadonlyArray1<'py, u32>,
+    ) -> PyResult<(Bound<'py, PyArrayDyn<bool>>, (usize, usize))> {
         let arguments = RayArguments { origins, directions, t_min, t_max, time, shape };
         let rays = arguments.rays()?;
-        let answers = numbers("answers", &answers)?;
-        lengths(&rays, answers.len())?;
-        let accelerator = self.scene.get().scene().accelerator();
-        // What has no end stands in no leaf, and may be hit where nothing else is.
-        let missed = if self.flat.unbounded.is_empty() { MISSED } else { HIT };
+        let told = numbers("told", &told)?;
+        let scene = self.scene.get().scene();
+        self.check(&rays, told.as_chunks::<1>().0)?;
+        let settler = Settler::new(scene.geometry(), &self.flat, scene.accelerator(), level()?);
         let out = unwritten(py, &arguments.shape, None)?;
-        let asked = AtomicUsize::new(0);
+        let (decided, walked) = (AtomicUsize::new(0), AtomicUsize::new(0));
         answer(py, rays.count, share(rays.count), threads, out.readwrite().as_slice_mut()?, |start, out| {
-            let (mut open, mut places): (Vec<Ray>, Vec<usize>) = Default::default();
+            // Most are answered already: only of the others is the ray wanted.
+            let (mut open, mut places, mut mine) = (Vec::new(), Vec::new(), Vec::new());
+            let is_open = |told: u32| told != CERTAIN && (told != NO_CANDIDATE || !self.flat.unbounded.is_empty());
             for (i, to) in out.iter_mut().enumerate() {
-                let told = answers[start + i];
-                *to = told == HIT;
-                if told != HIT && told != missed {
+                let told = told[start + i];
+                *to = told == CERTAIN;
+                if is_open(told) {
                     open.push(rays.ray(start + i));
                     places.push(i);
+                    mine.push(told);
                 }
             }
-            if !open.is_empty() {
-                asked.fetch_add(open.len(), Ordering::Relaxed);
-                let mut found = vec![false; open.len()];
-                accelerator.occluded(&open, &mut found);
-                places.iter().zip(found).for_each(|(&i, found)| out[i] = found);
-            }
+            let mut found = vec![false; open.len()];
+            let settled = settler.occluded(&open, &mine, &mut found);
+            decided.fetch_add(settled.decided, Ordering::Relaxed);
+            walked.fetch_add(settled.walked, Ordering::Relaxed);
+            places.iter().zip(found).for_each(|(&i, found)| out[i] = found);
         })?;
-        Ok((out, asked.into_inner()))
+        Ok((out, (decided.into_inner(), walked.into_inner())))
+    }
+}
+
+impl FlatScene {
+    /// Refuses what is told of another number of rays, so many numbers each, or of primitives that there are not.
+    fn check<const K: usize>(&self, rays: &RayArrays<'_>, told: &[[u32; K]]) -> PyResult<()> {
+        if rays.count != told.len() {
+            let count = told.len();
+            return Err(PyValueError::new_err(format!("{count} rays are told of, expected {}", rays.count)));
+        }
+        let count = Primitives::count(self.scene.get().scene().geometry()) as u32;
+        let strange = |row: &[u32; K]| row.iter().any(|&p| p >= count && p < CERTAIN);
+        match told.iter().position(strange) {
+            Some(i) => Err(PyValueError::new_err(format!("ray {i} is told of a primitive beyond the {count}"))),
+            None => Ok(()),
+        }
     }
 }
 
@@ -275,12 +284,4 @@ fn table<'py, const K: usize>(
         *to = row;
     }
     sealed(out)
-}
-
-/// Refuses answers to another number of rays.
-fn lengths(rays: &RayArrays<'_>, answers: usize) -> PyResult<()> {
-    match rays.count == answers {
-        true => Ok(()),
-        false => Err(PyValueError::new_err(format!("answers to {answers} rays, expected {}", rays.count))),
-    }
 }

@@ -26,7 +26,7 @@ def pairs(count: int = 8192, seed: int = 0) -> NDArray[np.float32]:
     numbers[tiny] *= 2.0**-60 / np.abs(numbers[tiny])
     numbers[tiny] *= 2.0 ** random.integers(-10, -1, (part, 2))
     numbers[zero, 0] = 0.0
-    return numbers.astype(np.float32)
+    return np.asarray(numbers, np.float32)
 
 
 def trouble(given: NDArray[np.float32], results: NDArray[np.float32]) -> str | None:

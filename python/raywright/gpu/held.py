@@ -18,7 +18,7 @@ from .kernels import Kernels
 from .stats import GpuStats
 
 # What the kernels say of rays that are the CPU's.
-_OPEN = {"closest": 0xFFFFFFFE, "occluded": 2}
+_OPEN = 0xFFFFFFFE
 
 
 class GpuScene:
@@ -102,8 +102,9 @@ class GpuScene:
         rays = ray_arguments(origins, directions, t_min, t_max, threads, time)
         with self._lock:
             told = self._ask("occluded", rays)
-        found, walked = self._flat.occluded(*rays, told)
+        found, (decided, walked) = self._flat.occluded(*rays, told)
         self._stats.any += len(told)
+        self._stats.any_decided += decided
         self._stats.any_walked += walked
         return found
 
@@ -113,7 +114,7 @@ class GpuScene:
             raise RuntimeError("the scene is on the device no more: its with block has ended")
         count = int(np.prod(rays[4], dtype=np.int64))
         shape = (count, 4) if kernel == "closest" else (count,)
-        told = np.full(shape, _OPEN[kernel], np.uint32)
+        told = np.full(shape, _OPEN, np.uint32)
         if self._kernels is None:
             return told
         chunk = self._kernels.chunk

@@ -19,6 +19,8 @@ class GpuStats:
         float32.
     any : int
         Rays asked whether they hit anything.
+    any_decided : int
+        Those of them of which the CPU decided whether they hit one face.
     any_walked : int
         Those of them that the CPU traced by itself.
     """
@@ -27,6 +29,7 @@ class GpuStats:
     closest_decided: int = 0
     closest_walked: int = 0
     any: int = 0
+    any_decided: int = 0
     any_walked: int = 0
 
     @property
@@ -37,4 +40,4 @@ class GpuStats:
     @property
     def any_share(self) -> float:
         """The share of rays asked for any hit that the device did not decide."""
-        return self.any_walked / self.any if self.any else 0.0
+        return (self.any_decided + self.any_walked) / self.any if self.any else 0.0

@@ -8,6 +8,7 @@ use super::arrays::Flat;
 use crate::accel::query::{Closest, Query};
 use crate::accel::{Accelerator, Primitives, UserGeometry, Wanted};
 use crate::math::{DVec3, Hit, Ray, Region};
+use crate::shapes::Candidate;
 use crate::shapes::triangle::{Column, EdgeRay, EdgeRays, Met, RAYS};
 use crate::simd::{Level, loops};
 use std::sync::Arc;
@@ -21,7 +22,8 @@ pub const NO_CANDIDATE: u32 = u32::MAX;
 /// In place of the first: there are more than can be told.
 pub const OVERFLOW: u32 = u32::MAX - 1;
 
-/// In place of the second: the first is a triangle that is hit for certain, and first.
+/// In place of the second: the first is a triangle that is hit for certain, and first. Where any hit will do, in place
+/// of the only one: something is hit for certain.
 pub const CERTAIN: u32 = u32::MAX - 2;
 
 /// What decides.
@@ -98,6 +100,49 @@ impl<'a> Settler<'a> {
             }
         }
         settled
+    }
+
+    /// Whether each ray hits anything, of which this is told: what it may hit, if that is one primitive alone.
+    pub fn occluded(&self, rays: &[Ray], told: &[u32], occluded: &mut [bool]) -> Settled {
+        assert!(rays.len() == told.len() && rays.len() == occluded.len(), "what is told and an answer for each ray");
+        let mut settled = Settled::default();
+        let (mut walked, mut places) = (Vec::new(), Vec::new());
+        for (i, (ray, &told)) in rays.iter().zip(told).enumerate() {
+            occluded[i] = match told {
+                CERTAIN => true,
+                NO_CANDIDATE | OVERFLOW => false,
+                only => {
+                    settled.decided += 1;
+                    self.meets(ray, only)
+                }
+            };
+            // What has no end may be hit where nothing else is.
+            if told == OVERFLOW || (!occluded[i] && !self.unbounded.is_empty()) {
+                walked.push(*ray);
+                places.push(i);
+            }
+        }
+        if !walked.is_empty() {
+            settled.walked = walked.len();
+            let mut found = vec![false; walked.len()];
+            self.accelerator.occluded(&walked, &mut found);
+            for (&i, found) in places.iter().zip(found) {
+                occluded[i] = found;
+            }
+        }
+        settled
+    }
+
+    /// Whether a ray meets a primitive.
+    fn meets(&self, ray: &Ray, primitive: u32) -> bool {
+        let Some(edges) = EdgeRay::new(ray, self.region) else { return false };
+        let corners = self.primitives.corners(primitive);
+        if corners.iter().all(|c| c.is_finite()) {
+            return edges.meet(corners).is_some();
+        }
+        let asked = Ray { t_min: edges.t_min, t_max: edges.t_max, time: ray.time, ..along(&edges) };
+        let is_hit = |met: Candidate| (met.t * edges.scale).is_finite();
+        self.objects.as_ref().is_some_and(|objects| objects.meet(primitive, Wanted::Any, &asked, &mut { is_hit }))
     }
 
     /// The first hit among candidates.

@@ -68,6 +68,11 @@ pub fn check_transforms(matrices: &[Matrix]) -> Result<(), BadTransform> {
     each(matrices, |matrix| Pose::new(matrix).map(drop)).map(drop)
 }
 
+/// A `t` at which a ray counts, and that is a number.
+fn some_t(ray: &Ray) -> f64 {
+    if ray.t_min.is_finite() { ray.t_min } else { ray.t_max.min(0.0) }
+}
+
 /// That something is met there, of which nothing else is asked.
 fn anywhere(t: f64) -> Candidate {
     Candidate { t, uv: [0.0; 2], contact: Contact::Inside, inner: 0 }
@@ -174,7 +179,7 @@ impl Instances {
                 let hit = accelerator.intersect_one(&ray);
                 hit.is_hit() && met(told(&hit, Contact::Inside))
             }
-            Wanted::Any => accelerator.occluded_one(&ray) && met(anywhere(ray.t_min)),
+            Wanted::Any => accelerator.occluded_one(&ray) && met(anywhere(some_t(&ray))),
             Wanted::Every => {
                 let hits = accelerator.crossings(&[ray]).hits;
                 // What is only touched is told twice there, and has to be here.
