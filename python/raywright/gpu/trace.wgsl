@@ -41,7 +41,8 @@
 // the division by 2.5U |n/D|. A sixteenth more than that is allowed, 4U |n/D|, and 2^-25 (L + 4) for the CPU's t.
 // Neither can be large: |n/D| <= 6 S E^2 / 256 U E^2 < 2^23.
 //
-// All bounds are themselves computed in f32, and err by some U of themselves, for which each has room.
+// All bounds are themselves computed in f32, and err by some U of themselves, for which each has room. What is allowed
+// here is held against the worst arithmetic that there may be in tests/python/test_gpu_bounds.py.
 
 struct Node {
     lower: vec3<u32>,
