@@ -39,30 +39,31 @@ def test_arrays_are_what_they_are_said_to_be(name, builder):
         assert (len(nodes), len(triangles), flat.depth) == (0, 0, 0)
         return
     # Every node before what is below it, children one after the other, and leaves one after the other.
-    depth, entries = np.zeros(len(nodes), int), 0
-    assert after(nodes, 0) == len(nodes)
-    for i in range(len(nodes)):
-        if nodes["count"][i]:
-            assert nodes["index"][i] == entries
-            mine = triangles[entries : entries + nodes["count"][i]]
-            entries += nodes["count"][i]
-            is_face = mine["largest"] >= 0
-            if builder != "spatial" and name != "parted":
-                corner = mine["corner"][is_face]
-                for point in (corner, corner + mine["edge"][is_face], corner + mine["other"][is_face]):
-                    assert (point >= nodes["lower"][i] - 1e-6).all()
-                    assert (point <= nodes["upper"][i] + 1e-6).all()
-            assert (mine["corner"][~is_face] >= nodes["lower"][i]).all()
-            assert (mine["edge"][~is_face] <= nodes["upper"][i]).all()
-        else:
-            first, second = i + 1, after(nodes, i + 1)
-            assert after(nodes, second) == nodes["index"][i]
-            depth[[first, second]] = depth[i] + 1
-            for child in (first, second):
-                assert (nodes["lower"][child] >= nodes["lower"][i]).all()
-                assert (nodes["upper"][child] <= nodes["upper"][i]).all()
-    assert entries == len(triangles)
+    behind = np.where(nodes["count"], np.arange(len(nodes)) + 1, nodes["index"])
+    inner, leaves = np.flatnonzero(nodes["count"] == 0), np.flatnonzero(nodes["count"])
+    first = inner + 1
+    second = behind[first]
+    assert behind[0] == len(nodes)
+    np.testing.assert_array_equal(behind[second], behind[inner])
+    for child in (first, second):
+        assert (nodes["lower"][child] >= nodes["lower"][inner]).all()
+        assert (nodes["upper"][child] <= nodes["upper"][inner]).all()
+    depth = np.zeros(len(nodes), int)
+    for i, *children in zip(inner, first, second, strict=True):
+        depth[children] = depth[i] + 1
     assert depth.max() == flat.depth
+    counts = nodes["count"][leaves].astype(int)
+    np.testing.assert_array_equal(nodes["index"][leaves], np.cumsum(counts) - counts)
+    assert counts.sum() == len(triangles)
+    lower, upper = (np.repeat(nodes[end][leaves], counts, axis=0) for end in ("lower", "upper"))
+    is_face = triangles["largest"] >= 0
+    if builder != "spatial" and name != "parted":
+        for edge in (0, triangles["edge"], triangles["other"]):
+            point = (triangles["corner"] + edge)[is_face]
+            assert (point >= lower[is_face] - 1e-6).all()
+            assert (point <= upper[is_face] + 1e-6).all()
+    assert (triangles["corner"] >= lower)[~is_face].all()
+    assert (triangles["edge"] <= upper)[~is_face].all()
     # Every primitive stands somewhere, once unless it is parted.
     assert set(triangles["primitive"]) == set(range(flat.first[-1]))
     if builder == "median":

@@ -227,10 +227,10 @@ def test_images_keep_their_shape(gpu):
 
 def test_scenes_larger_than_a_binding_are_split(gpu):
     scene, rays = rw.Scene(KNOT), random_rays(KNOT, 500)
-    most, gpu._most = gpu._most, 1 << 14
+    most, gpu._most = gpu._most, 1 << 15
     try:
         with scene.on(gpu) as there:
-            assert there.bytes > 4 * gpu._most
+            assert there.bytes > 2 * gpu._most
             assert there.intersect(*rays) == scene.intersect(*rays)
             np.testing.assert_array_equal(there.occluded(*rays), scene.occluded(*rays))
         gpu._most = 256
