@@ -62,8 +62,8 @@ def test_arrays_are_what_they_are_said_to_be(name, builder):
             point = (triangles["corner"] + edge)[is_face]
             assert (point >= lower[is_face] - 1e-6).all()
             assert (point <= upper[is_face] + 1e-6).all()
-    assert (triangles["corner"] >= lower)[~is_face].all()
-    assert (triangles["edge"] <= upper)[~is_face].all()
+        assert (triangles["corner"] >= lower)[~is_face].all()
+        assert (triangles["edge"] <= upper)[~is_face].all()
     # Every primitive stands somewhere, once unless it is parted.
     assert set(triangles["primitive"]) == set(range(flat.first[-1]))
     if builder == "median":

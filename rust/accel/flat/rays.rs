@@ -19,11 +19,12 @@ const OPEN: FlatRay = [0.0; 8];
 /// From so many radii on a ray is moved up to where it is nearest to the middle, in f64: errors grow with the distance.
 const FAR: f64 = 2.0;
 
-/// What a move may err by, over the distance.
-const FAR_ERROR: f64 = 1.0 / (1u64 << 48) as f64;
+/// More than a move may err by, over the distance: it is rounded as the middle is taken off, and as a part of the
+/// direction is added, by 2⁻⁵³ of the distance each.
+const FAR_ERROR: f64 = 1.0 / (1u64 << 51) as f64;
 
-/// Beyond it, in box units, a move errs by more than 2⁻²⁶, and what f32 tells is of no use.
-const FARTHEST: f64 = (1u64 << 22) as f64;
+/// Beyond it, in box units, a move errs by more than 2⁻²⁵, and kernels know of no more.
+const FARTHEST: f64 = (1u64 << 26) as f64;
 
 /// In place of what is greater.
 const FOREVER: f64 = (1u128 << 100) as f64;
