@@ -74,7 +74,7 @@ class Cases:
         vectors = random.uniform(-1, 1, (4, COUNT, 3))
         # Half of them have numbers as large as they can be, whose errors add up.
         vectors[:, : COUNT // 2] = np.sign(vectors[:, : COUNT // 2])
-        self.corner, self.edge, self.other = 2 * vectors[0], size * vectors[1], size * vectors[2]
+        self.corner, self.edge, self.other = 2 * vectors[0], size[0] * vectors[1], size[1] * vectors[2]
         self.direction = 2 * vectors[3] / np.abs(vectors[3]).max(axis=1, keepdims=True)
         self.direction[np.abs(self.direction).max(axis=1) >= 2] *= 1 - 2.0**-30
         self.origin = random.uniform(-4, 4, (COUNT, 3))
@@ -109,25 +109,31 @@ class Cases:
             pushed(getattr(self, name), to.get(name[0] if name != "other" else "f", zero), 0.5)
             for name in ("direction", "edge", "other")
         )
-        size = np.maximum(np.abs(e).max(axis=1), np.abs(f).max(axis=1))
         return (
             away,
             d,
             e,
             f,
-            {"size": size, "S": np.abs(away).max(axis=1), "reach": np.abs(origin).max(axis=1) + 3},
+            {
+                "E": np.abs(e).max(axis=1),
+                "F": np.abs(f).max(axis=1),
+                "S": np.abs(away).max(axis=1),
+                "reach": np.abs(origin).max(axis=1) + 3,
+            },
         )
 
 
 PARTS = {"u": "sdf", "v": "dse", "determinant": "edf", "numerator": "fse"}
-BOUNDS = {"u": "of_edges", "v": "of_edges", "determinant": "M", "numerator": "N"}
+BOUNDS = {"u": "of_u", "v": "of_v", "determinant": "M", "numerator": "N"}
+# Of both edges: large, small, tiny, and of a sliver.
+SIZES = [(2.0, 2.0), (0.01, 0.01), (1e-6, 1e-6), (1e-4, 2.0)]
 
 
 def triple(named, parts, how):
     return how(*(named[part] for part in parts))
 
 
-@pytest.mark.parametrize("size", [2.0, 0.01, 1e-6])
+@pytest.mark.parametrize("size", SIZES)
 @pytest.mark.parametrize("kind", PARTS)
 @pytest.mark.parametrize("how", [pushed_triple, expanded_triple])
 def test_no_product_is_off_by_more(kind, how, size):
@@ -143,7 +149,7 @@ def test_no_product_is_off_by_more(kind, how, size):
     assert share.max() > 0.3
 
 
-@pytest.mark.parametrize("size", [2.0, 0.01, 1e-6])
+@pytest.mark.parametrize("size", SIZES)
 def test_the_third_weight_is_off_by_no_more(size):
     cases = Cases(2, size)
     s, d, e, f, sizes = cases.given("u")
@@ -161,12 +167,12 @@ def test_the_third_weight_is_off_by_no_more(size):
     s, d, e, f, _ = cases.given("v")
     v = expanded_triple(d, s, e, to)
     w = pushed(pushed(determinant - u, -to) - v, -to)
-    share = np.abs(w - (true["determinant"] - true["u"] - true["v"])) / bound("of_third", **sizes)
+    share = np.abs(w - (true["determinant"] - true["u"] - true["v"])) / bound("of_w", **sizes)
     assert share.max() < 1
     assert share.max() > 0.3
 
 
-@pytest.mark.parametrize("size", [2.0, 0.01])
+@pytest.mark.parametrize("size", SIZES)
 def test_t_lies_where_it_is_said_to(size):
     cases = Cases(3, size)
     to = cases.towards
@@ -188,7 +194,7 @@ def test_t_lies_where_it_is_said_to(size):
         error = bound("error", N=n, M=m, t=t, room=room, reach=sizes["reach"])
         share = (np.abs(t - t_true) + 2.0**-26 * (sizes["reach"] + 1)) / error
     # The CPU's own t may be off, too, and is among it.
-    assert certain.mean() > 0.3
+    assert certain.mean() > 0.2
     assert share[certain].max() < 1
     assert share[certain].max() > 0.3
 

@@ -13,8 +13,8 @@
 //
 // The numbers. Box units: every corner is at most 2 in every coordinate, and rounded to f32, by U/2 of itself. L is the
 // largest coordinate of the ray's origin o, plus 2. The origin errs by U/2 of itself for rounding and by U/4 for being
-// moved up to the scene. The direction d is at most 2, and errs by U/2 of itself. Edges e and f are at most E, and err
-// by U/2 of themselves. The CPU's own t, of which all of this must be true, errs by at most 2^-26 (L + 2).
+// moved up to the scene. The direction d is at most 2, and errs by U/2 of itself. Edges e and f are at most E and F,
+// and err by U/2 of themselves: of a sliver one is short. The CPU's own t, of which all of this must be true, errs by at most 2^-26 (L + 2).
 //
 // Boxes. A plane lies at (plane - o) / d. The difference errs by U of itself, at most UL, the division by 2.5 U, the
 // product by U, the sum with the pad by U, d by U/2: 6UL of distance; o by UL/2 + U/4; and the CPU's t, as a distance
@@ -26,20 +26,20 @@
 // errs by U(L/2 + 1/2) for what o and a err by, and by US for the difference: it is held. Each of u, v and the
 // determinant is the sum of six products of three numbers. In any order, each of these is rounded at most 7 times:
 //
-// - u, v: 6 2SE at most, of which 7U are 84 USE; s errs by 6 2E U(L/2 + 1/2 + S) = UE(6L + 6 + 12S); d and an edge by
-//   U/2 each, 12 USE. Together UE(108 S + 6(L + 1)); 128 S + 8(L + 1) is allowed.
-// - the determinant: 12 E^2 at most, of which 7U are 84 UE^2; d and both edges 18 UE^2: 102 UE^2; 128 is allowed.
+// - u: 6 2SF at most, of which 7U are 84 USF; s errs by 6 2F U(L/2 + 1/2 + S) = UF(6L + 6 + 12S); d and the edge by
+//   U/2 each, 12 USF. Together UF(108 S + 6(L + 1)); 128 S + 8(L + 1) is allowed. And so v, with E.
+// - the determinant: 12 EF at most, of which 7U are 84 UEF; d and both edges 18 UEF: 102 UEF; 128 is allowed.
 // - w = determinant - u - v, all three held: what they err by, and twice U of the sum of what they are at most,
-//   12 E^2 + 24 SE: together UE(264 S + 12(L + 1) + 126 E). 320 S + 16(L + 1) + 160 E is allowed.
-// - the numerator of t, f . (s x e): 6 SE^2 at most: 42 USE^2; s 6 E^2 U(L/2 + 1/2 + S), edges 6 USE^2: together
-//   UE^2(54 S + 3(L + 1)). 64 S + 4(L + 1) is allowed.
+//   12 EF + 12 S(E + F): together U(E + F)(132 S + 6(L + 1)) + 126 UEF. 160 S + 8(L + 1), and 160, are allowed.
+// - the numerator of t, f . (s x e): 6 SEF at most: 42 USEF; s 6 EF U(L/2 + 1/2 + S), edges 6 USEF: together
+//   UEF(54 S + 3(L + 1)). 64 S + 4(L + 1) is allowed.
 //
 // What is lost below 2^-126 is, in each of at most 18 products, twice that times at most 2 + L, and once in each sum:
 // less than 2^-118 (1 + L), which is added to all.
 //
 // t. With numerator n and determinant D, off by N and M, and |D| > 2M, n/D is off by (N + |n/D| M) / (|D| - M), and
 // the division by 2.5U |n/D|. A sixteenth more than that is allowed, 4U |n/D|, and 2^-25 (L + 4) for the CPU's t.
-// Neither can be large: |n/D| <= 6 S E^2 / 256 U E^2 < 2^23.
+// Neither can be large: |n/D| <= 6 SEF / 256 UEF < 2^23.
 //
 // All bounds are themselves computed in f32, and err by some U of themselves, for which each has room. What is allowed
 // here is held against the worst arithmetic that there may be in tests/python/test_gpu_bounds.py.
@@ -156,8 +156,7 @@ struct Meeting {
 }
 
 fn meet(ray: Slabs, triangle: Triangle, enter: f32, limit: f32) -> Meeting {
-    let size = number(triangle.largest);
-    if size < 0.0 {
+    if number(triangle.largest) < 0.0 {
         // No triangle: its box is all that is known.
         let within = passes(ray, vector(triangle.corner), vector(triangle.edge), limit);
         return Meeting(within.x <= within.y, false, within.x, BEYOND);
@@ -175,28 +174,31 @@ fn meet(ray: Slabs, triangle: Triangle, enter: f32, limit: f32) -> Meeting {
     let reach = ray.reach + 1.0;
     let S = largest(s);
     let least = LEAST * reach;
-    let of_edges = U * size * (128.0 * S + 8.0 * reach) + least;
-    let of_third = U * size * (320.0 * S + 16.0 * reach + 160.0 * size) + least;
-    let above = u > of_edges || v > of_edges || w > of_third;
-    let below = u < -of_edges || v < -of_edges || w < -of_third;
+    let E = largest(e);
+    let F = largest(f);
+    let of_u = U * F * (128.0 * S + 8.0 * reach) + least;
+    let of_v = U * E * (128.0 * S + 8.0 * reach) + least;
+    let of_w = U * ((E + F) * (160.0 * S + 8.0 * reach) + 160.0 * E * F) + least;
+    let above = u > of_u || v > of_v || w > of_w;
+    let below = u < -of_u || v < -of_v || w < -of_w;
     if above && below {
         return Meeting(false, false, enter, BEYOND);
     }
-    let M = 128.0 * U * size * size + least;
+    let M = 128.0 * U * E * F + least;
     let room = abs(determinant) - M;
     if room <= M {
         return Meeting(true, false, enter, BEYOND);
     }
     let t = dot(f, q) / determinant;
-    let N = U * size * size * (64.0 * S + 4.0 * reach) + least;
+    let N = U * E * F * (64.0 * S + 4.0 * reach) + least;
     let error = 1.0625 * ((N + abs(t) * M) / room) + 4.0 * U * abs(t) + 0.25 * U * (reach + 3.0);
     let low = t - error;
     let high = t + error;
     if high < ray.t_min || low > limit {
         return Meeting(false, false, low, high);
     }
-    let all_above = u > of_edges && v > of_edges && w > of_third;
-    let all_below = u < -of_edges && v < -of_edges && w < -of_third;
+    let all_above = u > of_u && v > of_v && w > of_w;
+    let all_below = u < -of_u && v < -of_v && w < -of_w;
     // Ends of the ray are rounded outwards, by up to 2^-21 of themselves.
     let begins = ray.t_min + 8.0 * U * abs(ray.t_min);
     let ends = ray.t_max - 8.0 * U * abs(ray.t_max);

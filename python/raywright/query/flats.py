@@ -57,11 +57,11 @@ class FlatArrays:
         What stands in the leaves, leaf after leaf; where faces are parted a face may stand in several. Its
         fields:
 
-        - ``corner``, 0 to 11: three float32, the first corner;
+        - ``corner``, 0 to 11: three float32, the corner from which the shortest edge goes, as it is wound;
         - ``primitive``, 12 to 15: uint32, the number among all primitives of the scene; see `first`;
-        - ``edge``, 16 to 27: three float32, from the first corner to the second;
+        - ``edge``, 16 to 27: three float32, from there to the next corner;
         - ``largest``, 28 to 31: float32, the largest coordinate of both edges, in magnitude;
-        - ``other``, 32 to 43: three float32, from the first corner to the third;
+        - ``other``, 32 to 43: three float32, from there to the one before;
         - ``instance``, 44 to 47: uint32, of a copy of an `Instance` one more than its place in `instances`,
           of anything else 0.
 

@@ -12,19 +12,21 @@ use rayon::prelude::*;
 use std::collections::HashMap;
 
 /// What stands in a leaf: a triangle by a corner and the two edges from there, in box units. Differences are taken in
-/// f64 and rounded once: edges of small triangles lose nothing to their distance from the middle.
+/// f64 and rounded once: edges of small triangles lose nothing to their distance from the middle. Of the three corners
+/// it is that from which the shortest edge goes, as it is wound: of a sliver, only one of two edges is long then, and
+/// products of both are as small as the triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct FlatTriangle {
-    /// Its first corner; of what is no triangle, the least corner of its box.
+    /// A corner; of what is no triangle, the least corner of its box.
     pub corner: [f32; 3],
     /// Its number among all primitives.
     pub primitive: u32,
-    /// From the first corner to the second; of what is no triangle, the greatest corner of its box.
+    /// From there to the next corner; of what is no triangle, the greatest corner of its box.
     pub edge: [f32; 3],
     /// The largest coordinate of an edge in magnitude; −1 for what is no triangle.
     pub largest: f32,
-    /// From the first corner to the third.
+    /// From there to the one before.
     pub other: [f32; 3],
     /// Of an instance that is told, one more than its place among instances; otherwise 0.
     pub instance: u32,
@@ -190,13 +192,15 @@ fn flat_triangle(input: &Input, primitive: u32) -> FlatTriangle {
     }
     let corners = input.primitives.corners(primitive);
     let local = corners.map(|corner| input.region.to_box(corner));
-    let edge = |to: usize| {
+    let edge = |from: usize, to: usize| {
         // A difference of huge numbers may overflow before it is scaled; in box units it does not.
-        let exact: DVec3 = (corners[to] - corners[0]) * input.region.scale;
-        (if exact.is_finite() { exact } else { local[to] - local[0] }).as_vec3()
+        let exact: DVec3 = (corners[to] - corners[from]) * input.region.scale;
+        (if exact.is_finite() { exact } else { local[to] - local[from] }).as_vec3()
     };
-    let (e, f) = (edge(1), edge(2));
+    let lengths = [0, 1, 2].map(|i| (local[(i + 1) % 3] - local[i]).length_squared());
+    let from = (0..3).min_by(|&i, &j| lengths[i].total_cmp(&lengths[j])).unwrap_or(0);
+    let (e, f) = (edge(from, (from + 1) % 3), edge(from, (from + 2) % 3));
     let largest = greater(e.abs().max_element(), f.abs().max_element());
-    let (corner, edge, other) = (local[0].as_vec3().to_array(), e.to_array(), f.to_array());
+    let (corner, edge, other) = (local[from].as_vec3().to_array(), e.to_array(), f.to_array());
     FlatTriangle { corner, primitive, edge, largest, other, instance: 0 }
 }
