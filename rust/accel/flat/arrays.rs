@@ -192,14 +192,15 @@ fn flat_triangle(input: &Input, primitive: u32) -> FlatTriangle {
     }
     let corners = input.primitives.corners(primitive);
     let local = corners.map(|corner| input.region.to_box(corner));
-    let edge = |from: usize, to: usize| {
+    let edges = [0, 1, 2].map(|i| {
+        let next = (i + 1) % 3;
         // A difference of huge numbers may overflow before it is scaled; in box units it does not.
-        let exact: DVec3 = (corners[to] - corners[from]) * input.region.scale;
-        (if exact.is_finite() { exact } else { local[to] - local[from] }).as_vec3()
-    };
-    let lengths = [0, 1, 2].map(|i| (local[(i + 1) % 3] - local[i]).length_squared());
+        let exact: DVec3 = (corners[next] - corners[i]) * input.region.scale;
+        if exact.is_finite() { exact } else { local[next] - local[i] }
+    });
+    let lengths = edges.map(DVec3::length_squared);
     let from = (0..3).min_by(|&i, &j| lengths[i].total_cmp(&lengths[j])).unwrap_or(0);
-    let (e, f) = (edge(from, (from + 1) % 3), edge(from, (from + 2) % 3));
+    let (e, f) = (edges[from].as_vec3(), (-edges[(from + 2) % 3]).as_vec3());
     let largest = greater(e.abs().max_element(), f.abs().max_element());
     let (corner, edge, other) = (local[from].as_vec3().to_array(), e.to_array(), f.to_array());
     FlatTriangle { corner, primitive, edge, largest, other, instance: 0 }
