@@ -194,8 +194,11 @@ def test_shapes_and_copies_are_candidates_by_their_boxes(gpu):
         np.testing.assert_array_equal(hits.position, wanted.position)
         np.testing.assert_array_equal(there.occluded(origins, directions), wanted.hit)
     with_plane = rw.Scene([*shapes, rw.Plane((0, 0, -1), (0, 0, 1))])
-    _, wanted = agrees(with_plane, gpu, origins[:500], directions[:500])
+    stats, wanted = agrees(with_plane, gpu, origins[:500], directions[:500])
     assert (wanted.shape_id == 4).any()
+    # Every ray may meet it.
+    assert stats.closest_share == 1
+    assert stats.any_share <= 1
 
 
 def test_coincident_faces_go_to_the_first(gpu):

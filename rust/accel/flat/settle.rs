@@ -111,10 +111,11 @@ impl<'a> Settler<'a> {
             occluded[i] = match told {
                 CERTAIN => true,
                 NO_CANDIDATE | OVERFLOW => false,
-                only => {
+                only if self.unbounded.is_empty() => {
                     settled.decided += 1;
                     self.meets(ray, only)
                 }
+                _ => false,
             };
             // What has no end may be hit where nothing else is.
             if told == OVERFLOW || (!occluded[i] && !self.unbounded.is_empty()) {
