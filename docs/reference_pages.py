@@ -21,6 +21,7 @@ _APART = {"trimesh_ray": trimesh_ray}
 _STRANGERS = "tuple, dict, object, Exception, ABC, Generic"
 _CORE = "the core"
 _HEADINGS = {
+    "gpu": "Graphics processors",
     "io": "Files",
     "query": "What rays and points find",
     "rendering": "Pictures",

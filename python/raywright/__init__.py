@@ -68,6 +68,7 @@ from .materials import (
 from .media import GridMedium, HenyeyGreenstein, Homogeneous, Isotropic, Medium, Rayleigh, SparseGrid
 from .query.all_hits import AllHits
 from .query.cones import ConeCoverage, ConeTouches
+from .query.flats import FlatArrays
 from .query.hits import ClosestPoints, Hits, QueryCost
 from .query.interactions import Interactions, LightSamples, Rays, Scattered, power_heuristic
 from .query.leaving import LeavingRays
@@ -119,6 +120,7 @@ if TYPE_CHECKING:
     from .exchange.radiative import RadiativeExchange, radiative_exchange
     from .exchange.radiosity import radiosity
     from .exchange.view_factors import ViewFactors, view_factors
+    from .gpu import Gpu, GpuScene, GpuStats
     from .scene_files.load import load
     from .scene_files.mitsuba import from_mitsuba
     from .viewer import Viewer, view
@@ -166,7 +168,11 @@ __all__ = [
     "ErrorEstimate",
     "FBm",
     "Fisheye",
+    "FlatArrays",
     "GaussianFilter",
+    "Gpu",
+    "GpuScene",
+    "GpuStats",
     "Grid",
     "GridMedium",
     "Halton",
@@ -288,6 +294,9 @@ __version__ = _core.VERSION
 if not TYPE_CHECKING:
     # These are for those who ask for them: nothing else waits for their import.
     _LATER = {
+        "Gpu": ".gpu",
+        "GpuScene": ".gpu",
+        "GpuStats": ".gpu",
         "RadiativeExchange": ".exchange.radiative",
         "ViewFactors": ".exchange.view_factors",
         "Viewer": ".viewer",

@@ -14,6 +14,7 @@ __all__ = [
     "VERSION",
     "AcceleratorInfo",
     "CompiledScene",
+    "FlatScene",
     "GridBlocks",
     "Interactions",
     "Job",
@@ -499,6 +500,85 @@ def camera_rays_through(
 
     ``lens`` and ``time`` are those of `camera_rays`: one for all, or (N,2) and (N,).
     """
+
+@final
+class FlatScene:
+    """A compiled scene as flat arrays, and what kernels over these need of the core."""
+
+    def __new__(cls, scene: CompiledScene, accelerator: Any, quality: str, prototypes: bool) -> FlatScene: ...
+    @property
+    def nodes(self) -> NDArray[np.uint32]:
+        """(K, 8), the bytes of nodes: least corner, index, greatest corner, count."""
+    @property
+    def triangles(self) -> NDArray[np.uint32]:
+        """(M, 12), the bytes of triangles: corner, primitive, edge, largest, other edge, instance."""
+    @property
+    def instances(self) -> NDArray[np.uint32]:
+        """(I, 16), the bytes of instances: a (3, 4) matrix, first node, node after, primitive, 0."""
+    @property
+    def own(self) -> tuple[int, int]:
+        """How many of the nodes and of the triangles are the scene's own."""
+    @property
+    def unbounded(self) -> NDArray[np.uint32]:
+        """Primitives without end: (U,)."""
+    @property
+    def first(self) -> list[int]:
+        """The first primitive of each shape, and how many there are in all."""
+    @property
+    def depth(self) -> int: ...
+    @property
+    def centre(self) -> NDArray[np.float64]: ...
+    @property
+    def scale(self) -> float: ...
+    def rays(
+        self,
+        origins: _Floats,
+        directions: _Floats,
+        t_min: _Numbers,
+        t_max: _Numbers,
+        shape: tuple[int, ...],
+        threads: int | None,
+    ) -> NDArray[np.float32]:
+        """Make rays ready for kernels: (N, 8), origin, t_min, direction and t_max in box units."""
+    def intersect(
+        self,
+        origins: _Floats,
+        directions: _Floats,
+        t_min: _Numbers,
+        t_max: _Numbers,
+        shape: tuple[int, ...],
+        threads: int | None,
+        time: _Numbers | None,
+        candidates: NDArray[np.uint32],
+    ) -> tuple[
+        tuple[
+            NDArray[np.float64],
+            NDArray[np.int32],
+            NDArray[np.int32],
+            NDArray[np.float64],
+            NDArray[np.int32] | None,
+        ],
+        tuple[int, int],
+    ]:
+        """Find the closest hits among candidates (N, 4), as `CompiledScene.intersect` gives them.
+
+        And of how many rays candidates had to be decided, and how many the accelerator was asked about.
+        """
+    def occluded(
+        self,
+        origins: _Floats,
+        directions: _Floats,
+        t_min: _Numbers,
+        t_max: _Numbers,
+        shape: tuple[int, ...],
+        threads: int | None,
+        time: _Numbers | None,
+        told: NDArray[np.uint32],
+    ) -> tuple[NDArray[np.bool_], tuple[int, int]]:
+        """Find whether rays hit anything, of which (N,) tells what they may hit.
+
+        And of how many rays that had to be decided, and how many the accelerator was asked about.
+        """
 
 @final
 class GridBlocks:

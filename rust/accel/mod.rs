@@ -6,6 +6,7 @@ mod brute;
 pub mod bsp;
 pub mod bvh;
 mod crossings;
+pub mod flat;
 pub mod grid;
 pub mod kdtree;
 mod kept;
@@ -30,7 +31,7 @@ pub use nearest::Nearest;
 pub use parity::Side;
 pub use slab::SlabRay;
 pub use touches::{Touch, Touches};
-pub use user_geometry::UserGeometry;
+pub use user_geometry::{Inside, UserGeometry};
 pub use walked::walked;
 
 pub use query::{Every, Meeting, Wanted};

@@ -2,6 +2,7 @@
 
 use super::bvh::traverse::Traversal;
 use super::bvh::{self, Options};
+use super::flat;
 use super::mixed::mixed;
 use super::walk::Mailbox;
 use super::walked::walked;
@@ -31,4 +32,9 @@ pub fn binary(
     level: Level,
 ) -> Box<dyn Accelerator> {
     walked(primitives, level, Mailbox::Stamps, &|input| traversal.build(input, options))
+}
+
+/// The same as arrays without pointers.
+pub fn flat(primitives: &dyn Primitives, options: &Options, way: flat::Way, level: Level) -> Box<dyn Accelerator> {
+    walked(primitives, level, Mailbox::Stamps, &|input| flat::build(input, options, way))
 }

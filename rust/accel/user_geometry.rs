@@ -1,8 +1,21 @@
 //! Primitives that are no triangles: curved shapes, and whole scenes put elsewhere.
 
+use super::Primitives;
 use super::query::Wanted;
-use crate::math::Ray;
+use crate::math::{DVec3, Ray};
 use crate::shapes::{Ball, Bounds, Candidate};
+
+/// Others put elsewhere as they are.
+pub struct Inside<'a> {
+    /// Known by it: the same others have the same.
+    pub id: usize,
+    /// What they are.
+    pub primitives: &'a dyn Primitives,
+    /// Rows of the linear map that takes what is around to where they are, once `shift` is taken off.
+    pub rows: [DVec3; 3],
+    /// Where their origin stands.
+    pub shift: DVec3,
+}
 
 /// What is hit and is no triangle, known by its number among all primitives.
 pub trait UserGeometry: Send + Sync {
@@ -27,6 +40,12 @@ pub trait UserGeometry: Send + Sync {
     /// The boxes around one at the times 0 and 1. Interpolated number by number, they hold it at any time between.
     fn ends(&self, primitive: u32) -> Option<[Bounds; 2]> {
         self.bounds(primitive).map(|b| [b, b])
+    }
+
+    /// Of one that is others put elsewhere, and stands still as they do: those.
+    fn inside(&self, primitive: u32) -> Option<Inside<'_>> {
+        let _ = primitive;
+        None
     }
 
     /// Calls `met` with what of it the ray meets between `t_min` and `t_max`, both ends included, until it says true;

@@ -44,7 +44,7 @@ pub fn walked(primitives: &dyn Primitives, level: Level, mailbox: Mailbox, build
 
 impl<'a> Input<'a> {
     /// Looks where primitives lie. Apart from that come the numbers of those without end.
-    fn new(primitives: &'a dyn Primitives) -> (Self, Vec<u32>) {
+    pub(super) fn new(primitives: &'a dyn Primitives) -> (Self, Vec<u32>) {
         let region = primitives.region();
         let all = 0..primitives.count() as u32;
         let [surround, work] = primitives.work().parts([1.0, 20.0]);

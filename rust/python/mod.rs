@@ -11,6 +11,7 @@ mod describe;
 mod every;
 mod exr_files;
 mod first_hits;
+mod flat;
 mod freeform;
 mod grid_blocks;
 mod info;
@@ -69,6 +70,8 @@ mod _core {
     use super::exr_files::exr_channels;
     #[pymodule_export]
     use super::first_hits::first_hits;
+    #[pymodule_export]
+    use super::flat::FlatScene;
     #[pymodule_export]
     use super::freeform::{implicit_trouble, polygon_trouble};
     #[pymodule_export]

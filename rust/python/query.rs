@@ -31,7 +31,7 @@ pub struct CompiledScene(
 );
 
 /// t, shape_id, primitive and uv, and in a scene with instances instance.
-type Hits<'py> = (
+pub(super) type Hits<'py> = (
     Bound<'py, PyArrayDyn<f64>>,
     Bound<'py, PyArrayDyn<i32>>,
     Bound<'py, PyArrayDyn<i32>>,
@@ -501,7 +501,7 @@ impl CompiledScene {
 /// Writes hits down where they belong.
 // On its own, or the loop's pointers do not fit into registers.
 #[inline(never)]
-fn write(scene: &scene::Scene, hits: &[Hit], places: &[usize], (t, shape, primitive, uv): HitParts<'_>) {
+pub(super) fn write(scene: &scene::Scene, hits: &[Hit], places: &[usize], (t, shape, primitive, uv): HitParts<'_>) {
     // Told to be as long, so that one comparison serves all four.
     let count = t.len();
     let (shape, primitive, uv) = (&mut shape[..count], &mut primitive[..count], &mut uv[..count]);

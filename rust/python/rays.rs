@@ -86,6 +86,18 @@ impl RayArrays<'_> {
         })
     }
 
+    /// One of them.
+    pub fn ray(&self, i: usize) -> Ray {
+        let of = |length: usize| if length == 1 { 0 } else { i };
+        let Self { t_min, t_max, time, .. } = *self;
+        Ray {
+            t_min: t_min[of(t_min.len())],
+            t_max: t_max[of(t_max.len())],
+            time: time[of(time.len())],
+            ..Ray::new(self.origins.get(of(self.origins.len())), self.directions.get(of(self.directions.len())))
+        }
+    }
+
     /// Calls `answer` with up to [`BATCH`] rays at a time of the `count` from `start` on, and with where each lies
     /// among them.
     #[inline(always)]

@@ -2,11 +2,11 @@
 
 #[cfg(target_arch = "aarch64")]
 use super::Neon;
-#[cfg(target_arch = "x86_64")]
-use super::{Avx2, Avx512, Sse2};
 #[cfg(any(test, not(any(target_arch = "x86_64", target_arch = "aarch64"))))]
 use super::Scalar;
 use super::Simd;
+#[cfg(target_arch = "x86_64")]
+use super::{Avx2, Avx512, Sse2};
 use std::sync::OnceLock;
 
 /// A level of the processor's vector instructions, from least to most.

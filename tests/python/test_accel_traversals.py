@@ -149,6 +149,8 @@ def test_a_tree_follows_what_moves(way):
         ({"traversal": "stack", "bounds": "slabs"}, ", stack in 13 slabs, single"),
         ({"traversal": "packets4"}, ", packets of 4, single"),
         ({"traversal": "packets64"}, ", packets of 64, single"),
+        ({"traversal": "flat"}, ", flat, stack, single"),
+        ({"traversal": "stackless"}, ", flat, stackless, single"),
     ],
     ids=str,
 )
@@ -166,6 +168,19 @@ def test_threads_take_memory_for_each_order():
     nodes = stack.nodes + stack.leaves
     assert six.bytes - stack.bytes == 6 * 8 * nodes
     assert eight.bytes - stack.bytes == 8 * 8 * nodes
+
+
+def test_arrays_without_pointers_are_the_same_tree():
+    stack, flat, stackless = (
+        rw.Scene(KNOT, accelerator=rw.BVH(traversal=way)) for way in ("stack", "flat", "stackless")
+    )
+    rays = rays_for(stack)
+    assert flat.accelerator.bytes == stackless.accelerator.bytes == stack.accelerator.bytes
+    assert flat.accelerator.sah_cost == stack.accelerator.sah_cost
+    # With a stack the same boxes are tested in the same order, and without one others too.
+    np.testing.assert_array_equal(flat.cost(*rays).nodes, stack.cost(*rays).nodes)
+    np.testing.assert_array_equal(flat.cost(*rays).primitives, stack.cost(*rays).primitives)
+    assert stackless.cost(*rays).primitives.sum() > stack.cost(*rays).primitives.sum()
 
 
 def test_rays_of_one_mind_share_work():

@@ -18,7 +18,7 @@ FLOORS = [
     {"shapes"},
     {"mesh_files", "query"},
     {"scene"},
-    {"exchange", "measure"},
+    {"exchange", "gpu", "measure"},
     {"integrators", "scenes"},
     {"rendering"},
     {"compat", "report", "scene_files", "viewer"},

@@ -248,3 +248,12 @@ def test_what_cannot_be_is_refused(box: rw.Mesh) -> None:
         rw.Instance(rw.Instance(many, np.tile(np.eye(4), (20_000, 1, 1))), np.eye(4))
     assert not rw.Scene(rw.Instance([], np.eye(4))).intersect((0, 0, 0), (0, 0, 1)).hit
     assert not rw.Scene(rw.Instance(box, np.empty((0, 4, 4)))).intersect((0, 0, 0), (0, 0, 1)).hit
+
+
+def test_a_ray_without_a_beginning_is_occluded_by_a_copy(box: rw.Mesh) -> None:
+    scene = rw.Scene(rw.Instance([box], np.eye(4)))
+    origins = np.array([[0.5, 0.4, 3.0], [0.5, 0.4, -3.0], [5.0, 5.0, 3.0]])
+    for directions in ([0, 0, 1.0], [0, 0, -1.0], [0, 0, 3e-200]):
+        hits = scene.intersect(origins, directions, t_min=-np.inf)
+        assert hits.hit.tolist() == [True, True, False]
+        np.testing.assert_array_equal(scene.occluded(origins, directions, t_min=-np.inf), hits.hit)

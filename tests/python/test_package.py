@@ -60,6 +60,8 @@ def test_wheel_is_for_all_pythons_from_3_10_and_holds_the_package_alone():
     names = zipfile.ZipFile(wheel).namelist()
     assert {"raywright/__init__.py", "raywright/_core.pyi", "raywright/py.typed"} <= set(names)
     assert {f"raywright/viewer/page.{kind}" for kind in ("html", "css", "js")} <= set(names)
+    kernels = ("trace", "closest", "occluded", "probe")
+    assert {f"raywright/gpu/{kernel}.wgsl" for kernel in kernels} <= set(names)
     assert sum(name.endswith((".so", ".pyd")) for name in names) == 1
     tops = {name.split("/")[0].removesuffix(".dist-info").split("-")[0] for name in names}
     assert tops <= {"raywright", "raywright.libs"}
@@ -74,7 +76,7 @@ def test_sdist_holds_what_it_is_built_and_tested_from():
     for folder in ("rust", "python/raywright", "tests", "docs", "examples"):
         mine = {
             path.relative_to(ROOT).as_posix()
-            for kind in ("*.rs", "*.py", "*.pyi", "*.md", "*.html", "*.css", "*.js")
+            for kind in ("*.rs", "*.py", "*.pyi", "*.md", "*.html", "*.css", "*.js", "*.wgsl")
             for path in (ROOT / folder).rglob(kind)
         }
         # How the pages are built is of no use without the repository.

@@ -7,7 +7,9 @@ from ..arrays import choice, integer, number, positive
 
 Builder = Literal["binned", "sweep", "spatial", "morton", "ploc", "midpoint", "median", "mean"]
 Optimiser = Literal["reinsertion", "treelet"]
-Traversal = Literal["wide", "wide4", "wide8", "stack", "threaded", "packets4", "packets64"]
+Traversal = Literal[
+    "wide", "wide4", "wide8", "stack", "threaded", "packets4", "packets64", "flat", "stackless"
+]
 Volume = Literal["box", "oriented", "slabs"]
 _MOST_BUDGET = 8.0
 # Which builders an option is for; the others would ignore it.
@@ -56,7 +58,7 @@ class BVH:
         high-quality bounding volume hierarchies"). If not given, what suits the scene's ``quality`` for
         ``"binned"``, and nothing for the others; with ``()`` nothing at all. What suits the quality may be,
         for long and diagonal geometry, that spatial splits part it, or that it is cut into pieces first.
-    traversal : {"wide", "wide4", "wide8", "stack", "threaded", "packets4", "packets64"}
+    traversal : {"wide", "wide4", "wide8", "stack", "threaded", "packets4", "packets64", "flat", "stackless"}
         How rays go through the tree. Hits are the same.
 
         - ``"wide"``: the tree is collapsed to one of 8 children a node, or 4 where the processor has no AVX2
@@ -75,6 +77,9 @@ class BVH:
           known, and an interval test of all of them (Wald, Boulos and Shirley 2007, "Ray tracing deformable
           scenes using dynamic bounding volume hierarchies"; Overbeck, Ramamoorthi and Mark 2008, "Large ray
           packets for real-time Whitted ray tracing"). For rays that go much the same way.
+        - ``"flat"``: the tree as arrays without pointers, as `Scene.flat` has it, with a stack.
+        - ``"stackless"``: the same without one: each node says where to go on if its box is missed (Smits
+          1998), in one order for all rays.
 
         All but the wide ones hold shapes that are not triangles in the same tree as these.
     orders : {6, 8}, optional

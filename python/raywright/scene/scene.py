@@ -3,8 +3,8 @@
 import threading
 import warnings
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
-from typing import Any, Literal, TypeAlias, get_args
+from contextlib import AbstractContextManager, contextmanager
+from typing import Any, Literal, Protocol, TypeAlias, TypeVar, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,6 +16,7 @@ from ..lights import Environment, Light, environments
 from ..lights import lights as checked_lights
 from ..media.medium import Medium
 from ..media.medium import medium as checked_medium
+from ..query.flats import FlatArrays, flat_arrays
 from ..query.queries import Queries
 from ..query.trees import TreeBoxes
 from ..shapes.mesh import face_count, moved
@@ -27,8 +28,16 @@ from .wavelengths import reason
 
 Precision: TypeAlias = Literal["auto", "single", "double"]
 Quality: TypeAlias = Literal["fast build", "balanced", "fast rays"]
+Held = TypeVar("Held", covariant=True)
 _BINNED_BVH = BVH()
 _ARGUMENTS = ("shapes", "lights", "environment", "accelerator", "precision", "quality", "medium")
+
+
+class Device(Protocol[Held]):
+    """What can hold a scene: a `Gpu`."""
+
+    def hold(self, scene: "Scene") -> AbstractContextManager[Held]:
+        """Hold a scene as long as a ``with`` block lasts."""
 
 
 class Scene(Queries):
@@ -347,6 +356,43 @@ class Scene(Queries):
             raise ValueError(f"a {kind} has no tree of boxes; BVH, KdTree and Octree have")
         depth, primitives, corners = boxes
         return TreeBoxes(depth, primitives, corners.reshape(-1, 8, 3))
+
+    def flat(self) -> FlatArrays:
+        """Return the scene as arrays without pointers, as graphics processors take it.
+
+        A binary tree is built for it, as the accelerator says if that is a `BVH`, and as the default does
+        otherwise; a scene that moves later is not followed.
+
+        Returns
+        -------
+        FlatArrays
+            Nodes of 32 bytes, triangles of 48, and where they are.
+        """
+        return flat_arrays(_core.FlatScene(self._compiled(), self._accelerator, self._quality, True))
+
+    def on(self, device: Device[Held]) -> AbstractContextManager[Held]:
+        """Hold the scene on a device, which then answers for rays as the scene does.
+
+        Parameters
+        ----------
+        device : Gpu
+            Which.
+
+        Returns
+        -------
+        GpuScene
+            For use in a ``with`` block, whose end gives the memory of the device back.
+
+        Raises
+        ------
+        TypeError
+            If `device` is no `Gpu`.
+        """
+        hold = getattr(device, "hold", None)
+        if isinstance(device, type) or hold is None:
+            raise TypeError(f"device must be a Gpu, got {device!r}")
+        held: AbstractContextManager[Held] = hold(self)
+        return held
 
     @contextmanager
     def _unless_building(self) -> Iterator[None]:

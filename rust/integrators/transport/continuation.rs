@@ -96,7 +96,8 @@ impl<N: Features> TransportWorker<'_, N> {
             let choices = dimensions.map(Dimensions::scattering_choice);
             block.numbers.one_and_two(self.level, &choices, &mut choice, &mut u);
             let chances = self.chances(block, &dimensions);
-            let goes: [bool; LANES] = array::from_fn(|lane| block.goes_on[lane] && !parts[lane] && branch < splits[lane]);
+            let goes: [bool; LANES] =
+                array::from_fn(|lane| block.goes_on[lane] && !parts[lane] && branch < splits[lane]);
             let aims = if self.guide.is_some() { aiming(block, &goes, &mut choice) } else { [false; LANES] };
             let scatters = array::from_fn(|lane| goes[lane] && !aims[lane]);
             let ([mut origin, mut direction], mut drawn) = ([VectorLanes::ZERO; 2], BsdfSampleLanes::NONE);

@@ -10,6 +10,7 @@ use crate::accel::bvh::build::{Builder, binned, ploc, spatial};
 use crate::accel::bvh::optimise::{Optimiser, Optimisers};
 use crate::accel::bvh::traverse::{Orders, Rays, Traversal};
 use crate::accel::bvh::{self, Quality};
+use crate::accel::flat;
 use crate::accel::trees;
 use crate::simd::Level;
 
@@ -33,28 +34,36 @@ enum Tree {
     /// One of so many children a node, or of as many as suit the level.
     Wide(Option<usize>),
     Binary(Traversal),
+    /// As arrays without pointers.
+    Flat(flat::Way),
 }
 
 impl Bvh {
     /// Reads what is to be built; `quality` decides what nothing else does.
     pub fn build(self, quality: &str, level: Level) -> PyResult<Build> {
+        let options = self.options(quality)?;
+        Ok(match self.tree(level)? {
+            Tree::Wide(None) => Box::new(move |geometry| trees::over(geometry, &options, level)),
+            Tree::Wide(Some(width)) => Box::new(move |geometry| trees::of_width(width, geometry, &options, level)),
+            Tree::Flat(way) => Box::new(move |geometry| trees::flat(geometry, &options, way, level)),
+            Tree::Binary(way) => Box::new(move |geometry| trees::binary(geometry, &options, way, level)),
+        })
+    }
+
+    /// Reads how a tree is built.
+    pub fn options(&self, quality: &str) -> PyResult<bvh::Options> {
         let quality = match quality {
             "fast build" => Quality::FastBuild,
             "balanced" => Quality::Balanced,
             "fast rays" => Quality::FastRays,
             other => return Err(unknown("quality", other, &["fast build", "balanced", "fast rays"])),
         };
-        let options = bvh::Options {
+        Ok(bvh::Options {
             quality,
             builder: self.builder()?,
             optimisers: self.optimisers()?,
             traversal_cost: self.traversal_cost,
             intersection_cost: self.intersection_cost,
-        };
-        Ok(match self.tree(level)? {
-            Tree::Wide(None) => Box::new(move |geometry| trees::over(geometry, &options, level)),
-            Tree::Wide(Some(width)) => Box::new(move |geometry| trees::of_width(width, geometry, &options, level)),
-            Tree::Binary(way) => Box::new(move |geometry| trees::binary(geometry, &options, way, level)),
         })
     }
 
@@ -82,6 +91,8 @@ impl Bvh {
             }),
             "packets4" => Tree::Binary(Traversal::Stack(Rays::Four)),
             "packets64" => Tree::Binary(Traversal::Stack(Rays::SixtyFour)),
+            "flat" => Tree::Flat(flat::Way::Stack),
+            "stackless" => Tree::Flat(flat::Way::Stackless),
             "threaded" => Tree::Binary(Traversal::Threaded(orders)),
             other => return Err(unknown("traversal", other, &TRAVERSALS)),
         })
@@ -122,4 +133,5 @@ impl Bvh {
 
 const BUILDERS: [&str; 8] = ["binned", "sweep", "spatial", "morton", "ploc", "midpoint", "median", "mean"];
 
-const TRAVERSALS: [&str; 7] = ["wide", "wide4", "wide8", "stack", "threaded", "packets4", "packets64"];
+const TRAVERSALS: [&str; 9] =
+    ["wide", "wide4", "wide8", "stack", "threaded", "packets4", "packets64", "flat", "stackless"];

@@ -10,6 +10,7 @@ use std::fmt::Display;
 use std::ops::RangeInclusive;
 
 use super::level;
+use crate::accel::bvh::Options;
 use crate::accel::walk::{Built, Input, Mailbox};
 use crate::accel::{Accelerator, BruteForce, Primitives, walked};
 use crate::simd::Level;
@@ -29,6 +30,14 @@ pub fn read(choice: &Bound<'_, PyAny>, quality: &str) -> PyResult<Build> {
         "BSP" => choice.extract::<space::Bsp>()?.build(level),
         "BruteForce" => Ok(Box::new(move |geometry| BruteForce::over(geometry, level))),
         other => Err(PyTypeError::new_err(format!("accelerator is a {other}, expected one of raywright's"))),
+    }
+}
+
+/// How a choice builds a binary tree, if it is one of those that do; otherwise as the default does.
+pub fn tree_options(choice: &Bound<'_, PyAny>, quality: &str) -> PyResult<Options> {
+    match choice.get_type().name()?.to_str()? {
+        "BVH" => choice.extract::<bvh::Bvh>()?.options(quality),
+        _ => Ok(Options::DEFAULT),
     }
 }
 

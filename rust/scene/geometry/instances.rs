@@ -2,7 +2,7 @@
 
 use super::pose::{Pose, between, carried_by};
 use super::prototype::Prototype;
-use crate::accel::{Meeting, Side, Wanted};
+use crate::accel::{Inside, Meeting, Side, Wanted};
 use crate::math::{Hit, Ray, Singular};
 use crate::scene::textures::Needs;
 use crate::scene::{ShadingPoint, SurfacePoint};
@@ -66,6 +66,11 @@ fn each<A: Sync, B: Send>(
 /// If one has none: the first.
 pub fn check_transforms(matrices: &[Matrix]) -> Result<(), BadTransform> {
     each(matrices, |matrix| Pose::new(matrix).map(drop)).map(drop)
+}
+
+/// A `t` at which a ray counts, and that is a number.
+fn some_t(ray: &Ray) -> f64 {
+    if ray.t_min.is_finite() { ray.t_min } else { ray.t_max.min(0.0) }
 }
 
 /// That something is met there, of which nothing else is asked.
@@ -153,6 +158,16 @@ impl Instances {
         Some(Bounds { min: a.min.min(b.min), max: a.max.max(b.max) })
     }
 
+    /// As [`crate::accel::UserGeometry::inside`] has it.
+    pub fn inside(&self, instance: u32) -> Option<Inside<'_>> {
+        if self.moves() {
+            return None;
+        }
+        let (rows, shift) = self.pose(instance, 0.0)?.into_prototype();
+        let id = Arc::as_ptr(&self.prototype).addr();
+        Some(Inside { id, primitives: self.prototype.geometry(), rows, shift })
+    }
+
     /// As [`crate::accel::UserGeometry::meet`] has it.
     pub fn meet(&self, instance: u32, wanted: Wanted, ray: &Ray, met: &mut dyn FnMut(Candidate) -> bool) -> bool {
         let Some(pose) = self.pose(instance, ray.time) else { return false };
@@ -164,7 +179,7 @@ impl Instances {
                 let hit = accelerator.intersect_one(&ray);
                 hit.is_hit() && met(told(&hit, Contact::Inside))
             }
-            Wanted::Any => accelerator.occluded_one(&ray) && met(anywhere(ray.t_min)),
+            Wanted::Any => accelerator.occluded_one(&ray) && met(anywhere(some_t(&ray))),
             Wanted::Every => {
                 let hits = accelerator.crossings(&[ray]).hits;
                 // What is only touched is told twice there, and has to be here.

@@ -2,7 +2,7 @@
 
 use super::instances::Instances;
 use super::prototype::Prototype;
-use crate::accel::{UserGeometry, Wanted};
+use crate::accel::{Inside, UserGeometry, Wanted};
 use crate::math::Ray;
 use crate::shapes::{Ball, Bounds, Candidate, Shape};
 use std::sync::Arc;
@@ -105,6 +105,11 @@ impl UserGeometry for Objects {
             Some((instances, instance)) => instances.ends(instance),
             None => self.bounds(primitive).map(|b| [b, b]),
         }
+    }
+
+    fn inside(&self, primitive: u32) -> Option<Inside<'_>> {
+        let (instances, instance) = self.instance(primitive)?;
+        instances.inside(instance)
     }
 
     fn meet(&self, primitive: u32, wanted: Wanted, ray: &Ray, met: &mut dyn FnMut(Candidate) -> bool) -> bool {

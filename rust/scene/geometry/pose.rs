@@ -101,6 +101,11 @@ impl Pose {
         }
     }
 
+    /// The linear map that takes points to the prototype's space, once the shift is taken off.
+    pub fn into_prototype(&self) -> (Rows, DVec3) {
+        (self.inverse, self.shift)
+    }
+
     /// The linear part: the inverse of the inverse. None if f64 does not hold it, though it held the original.
     fn rows(&self) -> Option<Rows> {
         inverse(&self.inverse).ok()

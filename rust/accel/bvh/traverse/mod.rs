@@ -13,7 +13,9 @@ mod slabs;
 mod threaded;
 mod volumes;
 
+pub(in crate::accel) use any::larger_first;
 pub(super) use moving::Moving;
+pub(in crate::accel) use numbered::Numbered;
 use ordered::Ordered;
 pub use ordered::Rays;
 pub use threaded::{Orders, Threaded};
@@ -66,14 +68,21 @@ impl Traversal {
 
     /// Builds a tree as the options say, with leaves that suit one that is walked as it is.
     pub fn build(self, input: &Input, options: &Options) -> Built {
-        // What is no triangle is tested one by one.
-        let block = if input.primitives.objects().is_some() { 1 } else { BLOCK };
-        let steps = options.steps(block);
-        let built = steps.build(&input.boxes, contents(input), input.work);
-        let (bvh, name) = built.unwrap_or_default();
-        let (traversal, intersection) = (options.traversal_cost, options.intersection_cost);
-        self.over(gather(&bvh, Costs { traversal, intersection, block }), input, &name)
+        let (bvh, name) = gathered(input, options, BLOCK);
+        self.over(bvh, input, &name)
     }
+}
+
+/// A tree as the options say, with leaves that suit one that is walked as it is and tests so many triangles at once;
+/// and how it was built.
+pub(in crate::accel) fn gathered(input: &Input, options: &Options, block: usize) -> (BinaryBvh, String) {
+    // What is no triangle is tested one by one.
+    let block = if input.primitives.objects().is_some() { 1 } else { block };
+    let steps = options.steps(block);
+    let built = steps.build(&input.boxes, contents(input), input.work);
+    let (bvh, name) = built.unwrap_or_default();
+    let (traversal, intersection) = (options.traversal_cost, options.intersection_cost);
+    (gather(&bvh, Costs { traversal, intersection, block }), name)
 }
 
 /// What builders see of primitives.

@@ -1,0 +1,71 @@
+"""A graphics processor."""
+
+from typing import Any
+
+from ..scene.scene import Scene
+from .adapters import chosen, name_of
+from .arithmetic import pairs, trouble
+from .held import GpuScene
+from .kernels import limits_of, probed
+
+
+class Gpu:
+    """A graphics processor that answers for rays, by WebGPU: ``with scene.on(rw.Gpu()) as there: ...``.
+
+    It needs the extra ``raywright[gpu]``, and a driver for Vulkan, Metal or Direct3D 12. Its arithmetic is
+    tried once: answers are the CPU's, to the bit, on every device that computes as WGSL promises.
+
+    Parameters
+    ----------
+    adapter : str or wgpu.GPUAdapter, optional
+        Which device: a part of its name, or wgpu's own object. The one that wgpu prefers if not given.
+
+    Raises
+    ------
+    ImportError
+        If wgpu is not installed.
+    RuntimeError
+        If there is no such driver, or the device does not compute as WGSL promises.
+    ValueError
+        If no device has such a name.
+    TypeError
+        If `adapter` is neither.
+    """
+
+    def __init__(self, adapter: Any = None) -> None:
+        found = chosen(adapter)
+        self._limits = limits_of(found)
+        self._name, self._backend = name_of(found), str(found.info["backend_type"])
+        self._device = found.request_device_sync(required_limits=self._limits)
+        # What bounds are multiplied by, and what a binding holds: tests change these.
+        self._bounds = 1.0
+        self._most = min(self._limits["max-storage-buffer-binding-size"], self._limits["max-buffer-size"])
+        self._pipelines: dict[str, Any] = {}
+        given = pairs()
+        if wrong := trouble(given, probed(self._device, given)):
+            raise RuntimeError(f"{self._name} does not compute as WGSL promises: {wrong}")
+
+    @property
+    def name(self) -> str:
+        """What the device is called."""
+        return self._name
+
+    @property
+    def backend(self) -> str:
+        """What its driver speaks: "Vulkan", "Metal" or "D3D12"."""
+        return self._backend
+
+    def hold(self, scene: Scene) -> GpuScene:
+        """Put a scene on the device; `Scene.on` does it.
+
+        Raises
+        ------
+        MemoryError
+            If the device has no room for the scene.
+        """
+        if not isinstance(scene, Scene):
+            raise TypeError(f"scene must be a Scene, got {type(scene).__name__}")
+        return GpuScene(self._device, self._name, scene, self._most, self._bounds, self._pipelines)
+
+    def __repr__(self) -> str:
+        return f"Gpu({self._name!r}, {self._backend})"

@@ -1,0 +1,167 @@
+"""A scene on a graphics processor."""
+
+import threading
+import warnings
+from types import TracebackType
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .._core import FlatScene
+from ..query.flats import flat_arrays
+from ..query.hits import Hits
+from ..query.queries import known_by
+from ..query.rays import RayArguments, ray_arguments
+from ..scene.scene import Scene
+from .kernels import Kernels
+from .stats import GpuStats
+
+# What the kernels say of rays that are the CPU's.
+_OPEN = 0xFFFFFFFE
+
+
+class GpuScene:
+    """A scene on a graphics processor: `Scene.on` makes it. It answers as the scene does, to the bit.
+
+    What the device does not decide, the CPU does; `stats` tells how much that is. Should the device be lost,
+    that is warned of, once, and the CPU answers from then on.
+    """
+
+    def __init__(
+        self, device: Any, name: str, scene: Scene, most: int, bounds: float, pipelines: dict[str, Any]
+    ) -> None:
+        self._core = scene._compiled()
+        self._flat = FlatScene(self._core, scene.accelerator_choice, scene.quality, False)
+        self._name = name
+        self._stats = GpuStats()
+        arrays = flat_arrays(self._flat)
+        self._bytes = arrays.bytes
+        self._is_closed = False
+        # Buffers are the scene's, one batch of rays after the other.
+        self._lock = threading.Lock()
+        self._kernels: Kernels | None = Kernels(
+            device, arrays.nodes, arrays.triangles, arrays.depth, most, bounds, pipelines
+        )
+
+    @property
+    def stats(self) -> GpuStats:
+        """What became of the rays so far."""
+        return self._stats
+
+    @property
+    def bytes(self) -> int:
+        """Bytes of the scene that the device holds."""
+        return self._bytes
+
+    def intersect(
+        self,
+        origins: ArrayLike,
+        directions: ArrayLike,
+        t_min: ArrayLike = 0.0,
+        t_max: ArrayLike = np.inf,
+        threads: int | None = None,
+        time: ArrayLike | None = None,
+    ) -> Hits:
+        """Find the closest hit of each ray: what `Scene.intersect` finds, to the bit.
+
+        Takes, returns and raises what that does.
+
+        Raises
+        ------
+        RuntimeError
+            If the ``with`` block has ended.
+        """
+        rays = ray_arguments(origins, directions, t_min, t_max, threads, time)
+        with self._lock:
+            told = self._ask("closest", rays)
+        hits, (decided, walked) = self._flat.intersect(*rays, told)
+        self._stats.closest += len(told)
+        self._stats.closest_decided += decided
+        self._stats.closest_walked += walked
+        return Hits(*hits, self._core, known_by(self._core, rays))
+
+    def occluded(
+        self,
+        origins: ArrayLike,
+        directions: ArrayLike,
+        t_min: ArrayLike = 0.0,
+        t_max: ArrayLike = np.inf,
+        threads: int | None = None,
+        time: ArrayLike | None = None,
+    ) -> NDArray[np.bool_]:
+        """Find whether each ray hits anything: what `Scene.occluded` finds.
+
+        Takes, returns and raises what that does.
+
+        Raises
+        ------
+        RuntimeError
+            If the ``with`` block has ended.
+        """
+        rays = ray_arguments(origins, directions, t_min, t_max, threads, time)
+        with self._lock:
+            told = self._ask("occluded", rays)
+        found, (decided, walked) = self._flat.occluded(*rays, told)
+        self._stats.any += len(told)
+        self._stats.any_decided += decided
+        self._stats.any_walked += walked
+        return found
+
+    def _ask(self, kernel: str, rays: RayArguments) -> NDArray[np.uint32]:
+        """Return what a kernel says of all rays; what it does not say is left open."""
+        if self._is_closed:
+            raise RuntimeError("the scene is on the device no more: its with block has ended")
+        count = int(np.prod(rays[4], dtype=np.int64))
+        shape = (count, 4) if kernel == "closest" else (count,)
+        told = np.full(shape, _OPEN, np.uint32)
+        if self._kernels is None:
+            return told
+        chunk = self._kernels.chunk
+        before: tuple[int, int, Any] | None = None
+        # While the device is at work on some, the next are made ready.
+        for slot, start in enumerate(range(0, count + chunk, chunk)):
+            stop = min(start + chunk, count)
+            ready = self._flat.rays(*_part(rays, count, start, stop)) if start < count else None
+            try:
+                work = None if ready is None else self._kernels.submit(kernel, ready, slot % 2)
+                if before is not None:
+                    told[before[0] : before[1]] = self._kernels.read(before[2])
+            except Exception as lost:
+                self._kernels = None
+                warnings.warn(
+                    f"{self._name} was lost, and the CPU goes on: {str(lost).strip()}",
+                    RuntimeWarning,
+                    stacklevel=3,
+                )
+                break
+            before = (start, stop, work)
+        return told
+
+    def __enter__(self) -> "GpuScene":
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        if self._kernels is not None:
+            self._kernels.destroy()
+        self._kernels, self._is_closed = None, True
+
+    def __repr__(self) -> str:
+        return f"GpuScene({self._core.accelerator.primitives} primitives on {self._name!r})"
+
+
+def _part(rays: RayArguments, count: int, start: int, stop: int) -> tuple[Any, ...]:
+    """Return the rays from `start` to `stop` of `count`, as the core takes them; time is not asked for."""
+    origins, directions, t_min, t_max, _, threads, _ = rays
+    vectors = (array.reshape(-1, 3) for array in (origins, directions))
+    numbers = (x.reshape(-1) if isinstance(x, np.ndarray) else x for x in (t_min, t_max))
+    some = [
+        x[start:stop] if isinstance(x, np.ndarray) and len(x) == count and count > 1 else x
+        for x in (*vectors, *numbers)
+    ]
+    return (*some, (stop - start,), threads)

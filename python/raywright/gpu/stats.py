@@ -1,0 +1,43 @@
+"""How many rays the device answered for, and how many were left to the CPU."""
+
+from dataclasses import dataclass
+
+
+@dataclass
+class GpuStats:
+    """What became of the rays that a `GpuScene` was asked about, since it was put on the device.
+
+    Attributes
+    ----------
+    closest : int
+        Rays asked for their closest hit.
+    closest_decided : int
+        Those of them whose hit the CPU decided among up to four candidates. (Of all that hit something it
+        computes `t` and `uv`.)
+    closest_walked : int
+        Those of them that the CPU traced by itself: there were more candidates, or the ray was not one for
+        float32.
+    any : int
+        Rays asked whether they hit anything.
+    any_decided : int
+        Those of them of which the CPU decided whether they hit one face.
+    any_walked : int
+        Those of them that the CPU traced by itself.
+    """
+
+    closest: int = 0
+    closest_decided: int = 0
+    closest_walked: int = 0
+    any: int = 0
+    any_decided: int = 0
+    any_walked: int = 0
+
+    @property
+    def closest_share(self) -> float:
+        """The share of rays asked for their closest hit that the device did not decide alone."""
+        return (self.closest_decided + self.closest_walked) / self.closest if self.closest else 0.0
+
+    @property
+    def any_share(self) -> float:
+        """The share of rays asked for any hit that the device did not decide."""
+        return (self.any_decided + self.any_walked) / self.any if self.any else 0.0
