@@ -66,6 +66,15 @@ def test_options_are_read(tmp_path):
         tmp_path, 'Shape "sphere"', HEAD.replace('"perspective" "float fov" 50', '"orthographic"')
     ).camera
     assert (flat.scale, flat.scale_axis) == (2, "smaller")
+    for name, wanted in {
+        '"bdpt"': rw.Bidirectional(3),
+        '"lightpath"': rw.LightTraced(3),
+        '"sppm"': rw.ProgressivePhotonMap(max_depth=3),
+        '"sppm" "integer photonsperiteration" 5000 "float radius" 0.1': rw.ProgressivePhotonMap(
+            5000, 0.1, max_depth=3
+        ),
+    }.items():
+        assert load(tmp_path, 'Shape "sphere"', HEAD.replace('"volpath"', name)).integrator == wanted
     boxed = load(tmp_path, 'Shape "sphere"', HEAD + 'PixelFilter "box"\n')
     assert boxed.filter == rw.BoxFilter()
 

@@ -84,6 +84,19 @@ def test_moving_the_camera_changes_the_picture_and_back_brings_it_back():
         assert until(events, is_done)["picture"] == start["picture"]
 
 
+def test_states_of_a_solution_follow_each_other():
+    scene, look = rw.scenes.cornell_box(**SIZE)
+    states = rw.radiosity(scene, method="progressive", states=True, error=0.5, rays=2000, patch_size=300)
+    first, *_, last = states
+    with rw.view(scene, look, rw.Radiosity(first), samples=1) as viewer, page(viewer) as events:
+        early = until(events, is_done)
+        viewer.show(rw.Radiosity(last))
+        late = until(events, lambda frame: is_done(frame) and frame["number"] > early["number"])
+        assert pixels(late).mean() > 1.1 * pixels(early).mean()
+        with pytest.raises(TypeError, match="integrator must be"):
+            viewer.show("path")
+
+
 def test_the_camera_is_where_it_was_moved_and_prints_as_what_makes_it():
     scene, camera = rw.scenes.cornell_box(**SIZE)
     look = {"exposure": 1.5, "tone": "linear"}

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..arrays import integer
 from ..cameras import AnyCamera
-from ..integrators import AnyIntegrator, Path
+from ..integrators import AnyIntegrator, Path, check_integrator
 from ..io.tone import DEFAULT, check_tone
 from ..rendering.filters import BoxFilter, Filter
 from ..rendering.render import check
@@ -57,6 +57,23 @@ class Viewer:
     def camera(self) -> AnyCamera:
         """The camera as it was moved; what it prints as is the line that makes it."""
         return self._session.camera
+
+    def show(self, integrator: AnyIntegrator) -> None:
+        """Show what another integrator makes of the scene, as the next state of a radiosity solution does.
+
+        Parameters
+        ----------
+        integrator : Path or another kind
+            What turns rays into radiance from now on. What is being rendered ends at once; the camera stays
+            where it was moved.
+
+        Raises
+        ------
+        TypeError
+            If `integrator` is none.
+        """
+        check_integrator("integrator", integrator)
+        self._session.show(integrator)
 
     def wait(self) -> None:
         """Wait until it is closed, or Ctrl-C is pressed, which closes it."""

@@ -205,6 +205,13 @@ class Session:
                 self._wanted += 1
                 self._changed.notify_all()
 
+    def show(self, integrator: AnyIntegrator) -> None:
+        """Show what another integrator makes of the scene. The render before ends at once."""
+        with self._changed:
+            self._integrator = integrator
+            self._wanted += 1
+            self._changed.notify_all()
+
     def fit(self, width: int, height: int) -> None:
         """Render as many pixels as a window of this size has room for. The render before ends at once."""
         size = scaled(self._given, min(width / self._given[0], height / self._given[1]))

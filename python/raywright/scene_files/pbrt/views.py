@@ -7,7 +7,14 @@ from typing import Any
 import numpy as np
 
 from ...cameras import AnyCamera, Camera, Orthographic, Panorama, ThinLens
-from ...integrators import AmbientOcclusion, AnyIntegrator, Bidirectional, LightTraced, Path
+from ...integrators import (
+    AmbientOcclusion,
+    AnyIntegrator,
+    Bidirectional,
+    LightTraced,
+    Path,
+    ProgressivePhotonMap,
+)
 from ...rendering.filters import (
     BoxFilter,
     Filter,
@@ -20,7 +27,7 @@ from ...rendering.samplers import Halton, Independent, Sampler, Sobol, Stratifie
 from .parameters import Floats, Parameters
 
 # All that goes along paths; what they differ in is how, and the picture is the same.
-_PATHS = ("path", "volpath", "simplepath", "simplevolpath", "randomwalk", "mlt", "sppm")
+_PATHS = ("path", "volpath", "simplepath", "simplevolpath", "randomwalk", "mlt")
 
 
 def camera(kind: str, parameters: Parameters, matrix: Floats, size: tuple[int, int]) -> AnyCamera:
@@ -166,6 +173,11 @@ def integrator(kind: str, parameters: Parameters) -> AnyIntegrator:
         made = Bidirectional(depth)
     elif kind == "lightpath":
         made = LightTraced(depth)
+    elif kind == "sppm":
+        # Fewer than one photon is as many as suit the picture, there and here.
+        photons = parameters.integer("photonsperiteration", -1)
+        radius = parameters.number("radius", 1.0) if parameters.has("radius") else None
+        made = ProgressivePhotonMap(photons if photons > 0 else None, radius, max_depth=depth)
     elif kind == "ambientocclusion":
         distance = parameters.number("maxdistance", math.inf) if parameters.has("maxdistance") else math.inf
         parameters.ignore("cossample")
