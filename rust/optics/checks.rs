@@ -124,6 +124,7 @@ fn index(bsdf: &AnyBsdf) -> f64 {
         AnyBsdf::Faceted(Faceted::FilmedDielectric(d)) => d.eta(),
         AnyBsdf::Faceted(Faceted::BeckmannFilmedDielectric(d)) => d.eta(),
         AnyBsdf::Faceted(Faceted::FilmedDielectricOnce(d)) => d.eta(),
+        AnyBsdf::Faceted(Faceted::TintedDielectric(tinted)) => tinted.inner.eta(),
         _ => 1.0,
     }
 }
