@@ -24,6 +24,9 @@ pub struct FlatScene {
     flat: Flat,
 }
 
+/// Which rays hit anything, of how many that had to be decided, and how many were asked of the scene.
+type Occluded<'py> = (Bound<'py, PyArrayDyn<bool>>, (usize, usize));
+
 #[pymethods]
 #[allow(clippy::too_many_arguments)]
 impl FlatScene {
@@ -225,7 +228,7 @@ impl FlatScene {
         threads: Option<usize>,
         time: Option<Numbers<'py>>,
         told: PyReadonlyArray1<'py, u32>,
-    ) -> PyResult<(Bound<'py, PyArrayDyn<bool>>, (usize, usize))> {
+    ) -> PyResult<Occluded<'py>> {
         let arguments = RayArguments { origins, directions, t_min, t_max, time, shape };
         let rays = arguments.rays()?;
         let told = numbers("told", &told)?;

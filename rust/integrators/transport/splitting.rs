@@ -30,8 +30,8 @@ impl<N: Features> TransportWorker<'_, N> {
     }
 
     /// Whether the path of a lane goes on both as glass reflects it and as that refracts it: where light at matt
-    /// surfaces is known, at the first few surfaces. Paths are cheap there beside what is known, and a lamp that is seen
-    /// after two or three reflections within glass would be met once in a thousand samples, and all the brighter.
+    /// surfaces is known, at the first few surfaces. Paths are cheap there beside what is known, and a lamp that is
+    /// seen after two or three reflections within glass would be met once in a thousand samples, all the brighter.
     #[inline]
     pub(super) fn follows_both(&self, block: &Block, lane: usize) -> bool {
         const SURFACES: u32 = 3;

@@ -163,7 +163,7 @@ impl Instances {
         if self.moves() {
             return None;
         }
-        let (rows, shift) = self.pose(instance, 0.0)?.into_prototype();
+        let (rows, shift) = self.pose(instance, 0.0)?.to_prototype();
         let id = Arc::as_ptr(&self.prototype).addr();
         Some(Inside { id, primitives: self.prototype.geometry(), rows, shift })
     }

@@ -102,7 +102,7 @@ impl Pose {
     }
 
     /// The linear map that takes points to the prototype's space, once the shift is taken off.
-    pub fn into_prototype(&self) -> (Rows, DVec3) {
+    pub fn to_prototype(self) -> (Rows, DVec3) {
         (self.inverse, self.shift)
     }
 
