@@ -13,7 +13,7 @@ use std::sync::OnceLock;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Level {
     /// What the compiler makes of arrays, where it is all that there is, and in tests: a processor that always has
-    /// vectors needs no second copy of each kernel (a quarter of the compiled code).
+    /// vectors needs no second copy of each kernel.
     Scalar,
     /// NEON, on every 64-bit ARM.
     Neon,

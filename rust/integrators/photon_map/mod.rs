@@ -127,8 +127,7 @@ impl Default for ProgressivePhotonMap {
 }
 
 /// Paths from lights that take about as long as a sample of all pixels does. More make the radius smaller, and not the
-/// noise; fewer would leave the picture's own paths idle (glass spheres of 64 × 64 pixels in two seconds: the error of
-/// 25,000 is 0.4 times that of 100,000).
+/// noise; fewer would leave the picture's own paths the only ones that cost.
 fn suited(camera: &dyn Camera) -> u32 {
     const OF_A_PIXEL: u32 = 4;
     (camera.width() * camera.height()).saturating_mul(OF_A_PIXEL).clamp(20_000, 500_000)
