@@ -120,14 +120,14 @@ def test_who_asks_for_no_pixels_is_called_ten_times_a_second_however_large_the_p
         # What is known of all pixels together is there, and no pixel is.
         assert image.samples == 0
         assert np.isnan(image.error.estimate)
-        assert repr(image).startswith("Image(1920x1080, 0 samples")
+        assert repr(image).startswith("Image(2560x1440, 0 samples")
         # In the end it is shown what is returned.
         assert type(image) is rw.Image or not {"rgb", "standard_error", "degrees"} & set(vars(image))
 
-    # A sample of each of its pixels takes longer than all looks, and the render is not left for one of them.
-    image = rw.render(
-        *rw.scenes.cornell_box(width=1920, height=1080), rw.Path(reuse=1), progress=watch, stop=clock
-    )
+    # A sample of each of its pixels takes one thread seconds, and all looks eight tenths of one. The render is
+    # not left for any of them.
+    scene = rw.scenes.cornell_box(width=2560, height=1440)
+    image = rw.render(*scene, rw.Path(reuse=1), progress=watch, stop=clock, threads=1)
     assert image.samples == 0
     during = told[:-1]
     assert len(during) >= 6
