@@ -227,16 +227,18 @@ impl Everything<'_> {
             {
                 continue;
             }
-            let shaft = shaft.get_or_insert_with(|| between_facets(one, other));
-            if shaft.iter().any(|half| blocker.is_beyond(geometry, half)) {
-                continue;
-            }
             if let Blocker::Facet(facet) = blocker
                 && hides(facet, one, other)
             {
                 return Some(Hidden::Wholly);
             }
-            found = Some(Hidden::Partly);
+            // Where one is known to touch the shaft, others count only if they hide all.
+            if found.is_none() {
+                let shaft = shaft.get_or_insert_with(|| between_facets(one, other));
+                if !shaft.iter().any(|half| blocker.is_beyond(geometry, half)) {
+                    found = Some(Hidden::Partly);
+                }
+            }
         }
         found
     }
