@@ -8,6 +8,8 @@ from numpy.typing import NDArray
 
 _Floats: TypeAlias = NDArray[np.floating[Any]]
 _Numbers: TypeAlias = float | NDArray[np.float64]
+# Origins, directions, t_min, t_max, the leading shape of all, threads, time.
+_Rays: TypeAlias = tuple[_Floats, _Floats, _Numbers, _Numbers, tuple[int, ...], int | None, _Numbers | None]
 
 __all__ = [
     "PILOT",
@@ -102,13 +104,7 @@ class CompiledScene:
         """Fit the accelerator to a scene of the same faces; None if that cannot be done."""
     def intersect(
         self,
-        origins: _Floats,
-        directions: _Floats,
-        t_min: _Numbers,
-        t_max: _Numbers,
-        shape: tuple[int, ...],
-        threads: int | None,
-        time: _Numbers | None = None,
+        rays: _Rays,
         out: tuple[
             NDArray[np.float64],
             NDArray[np.int32],
@@ -136,26 +132,14 @@ class CompiledScene:
         """
     def occluded(
         self,
-        origins: _Floats,
-        directions: _Floats,
-        t_min: _Numbers,
-        t_max: _Numbers,
-        shape: tuple[int, ...],
-        threads: int | None,
-        time: _Numbers | None = None,
+        rays: _Rays,
         out: NDArray[np.bool_] | None = None,
         counted: tuple[list[bool] | None, bool] | None = None,
     ) -> NDArray[np.bool_]:
         """Whether each ray hits anything. Arguments as `intersect`."""
     def intersect_all(
         self,
-        origins: _Floats,
-        directions: _Floats,
-        t_min: _Numbers,
-        t_max: _Numbers,
-        shape: tuple[int, ...],
-        threads: int | None,
-        time: _Numbers | None = None,
+        rays: _Rays,
         counted: tuple[list[bool] | None, bool] | None = None,
     ) -> tuple[
         NDArray[np.int64],
@@ -171,24 +155,12 @@ class CompiledScene:
         """
     def count(
         self,
-        origins: _Floats,
-        directions: _Floats,
-        t_min: _Numbers,
-        t_max: _Numbers,
-        shape: tuple[int, ...],
-        threads: int | None,
-        time: _Numbers | None = None,
+        rays: _Rays,
     ) -> NDArray[np.int32]:
         """How many hits each ray has."""
     def cost(
         self,
-        origins: _Floats,
-        directions: _Floats,
-        t_min: _Numbers,
-        t_max: _Numbers,
-        shape: tuple[int, ...],
-        threads: int | None,
-        time: _Numbers | None = None,
+        rays: _Rays,
     ) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
         """Nodes visited and primitives tested for each ray's closest hit."""
     def contains(self, points: _Floats, shape: tuple[int, ...], threads: int | None) -> NDArray[np.bool_]:
@@ -532,23 +504,12 @@ class FlatScene:
     def scale(self) -> float: ...
     def rays(
         self,
-        origins: _Floats,
-        directions: _Floats,
-        t_min: _Numbers,
-        t_max: _Numbers,
-        shape: tuple[int, ...],
-        threads: int | None,
+        rays: _Rays,
     ) -> NDArray[np.float32]:
         """Make rays ready for kernels: (N, 8), origin, t_min, direction and t_max in box units."""
     def intersect(
         self,
-        origins: _Floats,
-        directions: _Floats,
-        t_min: _Numbers,
-        t_max: _Numbers,
-        shape: tuple[int, ...],
-        threads: int | None,
-        time: _Numbers | None,
+        rays: _Rays,
         candidates: NDArray[np.uint32],
     ) -> tuple[
         tuple[
@@ -566,13 +527,7 @@ class FlatScene:
         """
     def occluded(
         self,
-        origins: _Floats,
-        directions: _Floats,
-        t_min: _Numbers,
-        t_max: _Numbers,
-        shape: tuple[int, ...],
-        threads: int | None,
-        time: _Numbers | None,
+        rays: _Rays,
         told: NDArray[np.uint32],
     ) -> tuple[NDArray[np.bool_], tuple[int, int]]:
         """Find whether rays hit anything, of which (N,) tells what they may hit.

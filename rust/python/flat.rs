@@ -6,11 +6,11 @@ use pyo3::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use super::accelerators;
-use super::arrays::{Numbers, Triples, numbers, rows, sealed, unwritten};
-use super::columns::HitParts;
+use super::arrays::{numbers, rows, sealed, unwritten};
+use super::hits::{HitArrays, Hits};
 use super::instances;
 use super::level;
-use super::query::{CompiledScene, Hits, write};
+use super::query::{CompiledScene, write};
 use super::rays::{BATCH, RayArguments, RayArrays, answer, share};
 use crate::accel::Primitives;
 use crate::accel::flat::{CANDIDATES, CERTAIN, Flat, NO_CANDIDATE, Settled, Settler, flat_ray};
@@ -120,18 +120,8 @@ impl FlatScene {
     }
 
     /// Rays as kernels take them: (N, 8) float32.
-    fn rays<'py>(
-        &self,
-        py: Python<'py>,
-        origins: Triples<'py>,
-        directions: Triples<'py>,
-        t_min: Numbers<'py>,
-        t_max: Numbers<'py>,
-        shape: Vec<usize>,
-        threads: Option<usize>,
-    ) -> PyResult<Bound<'py, PyArrayDyn<f32>>> {
-        let arguments = RayArguments { origins, directions, t_min, t_max, time: None, shape };
-        let rays = arguments.rays()?;
+    fn rays<'py>(&self, py: Python<'py>, rays: RayArguments<'py>) -> PyResult<Bound<'py, PyArrayDyn<f32>>> {
+        let (threads, rays) = (rays.threads, rays.rays()?);
         let out = unwritten(py, &[rays.count], Some(8))?;
         answer(
             py,
@@ -155,63 +145,34 @@ impl FlatScene {
     fn intersect<'py>(
         &self,
         py: Python<'py>,
-        origins: Triples<'py>,
-        directions: Triples<'py>,
-        t_min: Numbers<'py>,
-        t_max: Numbers<'py>,
-        shape: Vec<usize>,
-        threads: Option<usize>,
-        time: Option<Numbers<'py>>,
+        rays: RayArguments<'py>,
         candidates: PyReadonlyArray2<'py, u32>,
     ) -> PyResult<(Hits<'py>, (usize, usize))> {
-        let arguments = RayArguments { origins, directions, t_min, t_max, time, shape };
-        let (rays, lead) = (arguments.rays()?, &arguments.shape);
+        let (lead, threads, rays) = (&rays.shape, rays.threads, rays.rays()?);
         let candidates = rows::<u32, CANDIDATES>("candidates", &candidates)?;
         self.check(&rays, candidates)?;
         let scene = self.scene.get().scene();
         let settler = Settler::new(scene.geometry(), &self.flat, scene.accelerator(), level()?);
-        let (t, shape) = (unwritten(py, lead, None)?, unwritten(py, lead, None)?);
-        let (primitive, uv) = (unwritten(py, lead, None)?, unwritten(py, lead, Some(2))?);
-        let instance = match scene.geometry().has_instances() {
-            true => Some(unwritten(py, lead, None)?),
-            false => None,
-        };
         let (decided, walked) = (AtomicUsize::new(0), AtomicUsize::new(0));
-        {
-            let (mut t, mut shape) = (t.readwrite(), shape.readwrite());
-            let (mut primitive, mut uv) = (primitive.readwrite(), uv.readwrite());
-            let mut instance = instance.as_ref().map(|to| to.readwrite());
-            let instances = instance.as_mut().map(|to| to.as_slice_mut()).transpose()?;
-            let numbers = (t.as_slice_mut()?, shape.as_slice_mut()?, primitive.as_slice_mut()?);
-            let parts: (HitParts<'_>, _) =
-                ((numbers.0, numbers.1, numbers.2, uv.as_slice_mut()?.as_chunks_mut().0), instances);
-            answer(
-                py,
-                rays.count,
-                rays.chunk(),
-                threads,
-                parts,
-                |start, ((t, shape, primitive, uv), mut instance)| {
-                    let count = t.len();
-                    let mut hits = vec![Hit::MISS; BATCH.min(count)];
-                    let mut mine = Vec::with_capacity(hits.len());
-                    rays.gathered(start, count, |batch, places| {
-                        let hits = &mut hits[..batch.len()];
-                        mine.clear();
-                        mine.extend(places.iter().map(|place| candidates[start + place]));
-                        let told: Settled = settler.closest(batch, &mine, hits);
-                        decided.fetch_add(told.decided, Ordering::Relaxed);
-                        walked.fetch_add(told.walked, Ordering::Relaxed);
-                        write(scene, hits, places, (t, shape, primitive, uv));
-                        if let Some(instance) = &mut instance {
-                            instances::write(scene, hits, places, instance, primitive);
-                        }
-                    });
-                },
-            )?;
-        }
-        let instance = instance.map(sealed).transpose()?;
-        let hits = (sealed(t)?, sealed(shape)?, sealed(primitive)?, sealed(uv)?, instance);
+        let hits = HitArrays::new(py, scene, lead, None)?.written(|parts| {
+            answer(py, rays.count, rays.chunk(), threads, parts, |start, ((t, shape, primitive, uv), mut instance)| {
+                let count = t.len();
+                let mut hits = vec![Hit::MISS; BATCH.min(count)];
+                let mut mine = Vec::with_capacity(hits.len());
+                rays.gathered(start, count, |batch, places| {
+                    let hits = &mut hits[..batch.len()];
+                    mine.clear();
+                    mine.extend(places.iter().map(|place| candidates[start + place]));
+                    let told: Settled = settler.closest(batch, &mine, hits);
+                    decided.fetch_add(told.decided, Ordering::Relaxed);
+                    walked.fetch_add(told.walked, Ordering::Relaxed);
+                    write(scene, hits, places, (t, shape, primitive, uv));
+                    if let Some(instance) = &mut instance {
+                        instances::write(scene, hits, places, instance, primitive);
+                    }
+                });
+            })
+        })?;
         Ok((hits, (decided.into_inner(), walked.into_inner())))
     }
 
@@ -220,22 +181,15 @@ impl FlatScene {
     fn occluded<'py>(
         &self,
         py: Python<'py>,
-        origins: Triples<'py>,
-        directions: Triples<'py>,
-        t_min: Numbers<'py>,
-        t_max: Numbers<'py>,
-        shape: Vec<usize>,
-        threads: Option<usize>,
-        time: Option<Numbers<'py>>,
+        rays: RayArguments<'py>,
         told: PyReadonlyArray1<'py, u32>,
     ) -> PyResult<Occluded<'py>> {
-        let arguments = RayArguments { origins, directions, t_min, t_max, time, shape };
-        let rays = arguments.rays()?;
+        let (lead, threads, rays) = (&rays.shape, rays.threads, rays.rays()?);
         let told = numbers("told", &told)?;
         let scene = self.scene.get().scene();
         self.check(&rays, told.as_chunks::<1>().0)?;
         let settler = Settler::new(scene.geometry(), &self.flat, scene.accelerator(), level()?);
-        let out = unwritten(py, &arguments.shape, None)?;
+        let out = unwritten(py, lead, None)?;
         let (decided, walked) = (AtomicUsize::new(0), AtomicUsize::new(0));
         answer(py, rays.count, share(rays.count), threads, out.readwrite().as_slice_mut()?, |start, out| {
             // Most are answered already: only of the others is the ray wanted.

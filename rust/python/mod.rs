@@ -14,6 +14,7 @@ mod first_hits;
 mod flat;
 mod freeform;
 mod grid_blocks;
+mod hits;
 mod info;
 mod instances;
 mod integrators;

@@ -10,6 +10,7 @@ use super::builds::{self, Builds};
 use super::columns::HitParts;
 use super::describe::Scene;
 use super::every;
+use super::hits::{HitArrays, Hits};
 use super::info::AcceleratorInfo;
 use super::instances;
 use super::rays::{BATCH, RayArguments, answer, share};
@@ -28,15 +29,6 @@ pub struct CompiledScene(
     Vec<Py<PyAny>>,
     /// What its shapes are called, in their order.
     Py<PyAny>,
-);
-
-/// t, shape_id, primitive and uv, and in a scene with instances instance.
-pub(super) type Hits<'py> = (
-    Bound<'py, PyArrayDyn<f64>>,
-    Bound<'py, PyArrayDyn<i32>>,
-    Bound<'py, PyArrayDyn<i32>>,
-    Bound<'py, PyArrayDyn<f64>>,
-    Option<Bound<'py, PyArrayDyn<i32>>>,
 );
 
 /// Whether each shape counts, and whether only what faces the ray does.
@@ -105,91 +97,53 @@ impl CompiledScene {
             .map_err(|e| PyValueError::new_err(e.to_string()))
     }
 
-    #[pyo3(signature = (
-        origins, directions, t_min, t_max, shape, threads, time=None, out=None, counted=None
-    ))]
+    #[pyo3(signature = (rays, out=None, counted=None))]
     fn intersect<'py>(
         &self,
         py: Python<'py>,
-        origins: Triples<'py>,
-        directions: Triples<'py>,
-        t_min: Numbers<'py>,
-        t_max: Numbers<'py>,
-        shape: Vec<usize>,
-        threads: Option<usize>,
-        time: Option<Numbers<'py>>,
+        rays: RayArguments<'py>,
         out: Option<Hits<'py>>,
         counted: Option<Counted>,
     ) -> PyResult<Hits<'py>> {
-        let arguments = RayArguments { origins, directions, t_min, t_max, time, shape };
-        let (rays, lead) = (arguments.rays()?, &arguments.shape);
+        let (lead, threads, rays) = (&rays.shape, rays.threads, rays.rays()?);
         let (scene, filter) = (&self.0, counted.map(scene::Filter::from));
-        let (t, shape, primitive, uv, instance) = match out {
-            Some(out) => out,
-            None => {
-                let numbers = (unwritten(py, lead, None)?, unwritten(py, lead, None)?);
-                (unwritten(py, lead, None)?, numbers.0, numbers.1, unwritten(py, lead, Some(2))?, None)
-            }
-        };
-        let instance = match scene.geometry().has_instances() {
-            true => Some(instance.map_or_else(|| unwritten(py, lead, None), Ok)?),
-            false => None,
-        };
-        let (mut to_t, mut to_shape) =
-            (writable("out.t", &t, lead, None)?, writable("out.shape_id", &shape, lead, None)?);
-        let mut to_primitive = writable("out.primitive", &primitive, lead, None)?;
-        let mut to_uv = writable("out.uv", &uv, lead, Some(2))?;
-        let mut to_instance = instance.as_ref().map(|to| writable("out.instance", to, lead, None)).transpose()?;
         let by_columns = scene.accelerator().by_columns().filter(|_| filter.is_none());
-        let (ts, shapes, primitives) = (to_t.as_slice_mut()?, to_shape.as_slice_mut()?, to_primitive.as_slice_mut()?);
-        let instances = to_instance.as_mut().map(|to| to.as_slice_mut()).transpose()?;
-        let parts = ((ts, shapes, primitives, to_uv.as_slice_mut()?.as_chunks_mut().0), instances);
         let chunk = if by_columns.is_some() { rays.window() } else { rays.chunk() };
-        answer(py, rays.count, chunk, threads, parts, |start, ((t, shape, primitive, uv), mut instance)| {
-            let count = t.len();
-            if let Some(tree) = by_columns {
-                return rays.closest(scene.geometry(), tree, start, (t, shape, primitive, uv));
-            }
-            let mut hits = vec![Hit::MISS; BATCH.min(count)];
-            rays.gathered(start, count, |batch, places| {
-                let hits = &mut hits[..batch.len()];
-                match &filter {
-                    Some(filter) => filter.intersect(scene, batch, false, hits),
-                    None => scene.intersect(batch, hits),
+        HitArrays::new(py, scene, lead, out)?.written(|parts| {
+            answer(py, rays.count, chunk, threads, parts, |start, (parts, mut instance)| {
+                if let Some(tree) = by_columns {
+                    return rays.closest(scene.geometry(), tree, start, parts);
                 }
-                write(scene, hits, places, (t, shape, primitive, uv));
-                if let Some(instance) = &mut instance {
-                    instances::write(scene, hits, places, instance, primitive);
-                }
-            });
-        })?;
-        let _ = (to_t.make_nonwriteable(), to_uv.make_nonwriteable());
-        let _ = (to_shape.make_nonwriteable(), to_primitive.make_nonwriteable());
-        let _ = to_instance.map(|to| to.make_nonwriteable());
-        Ok((t, shape, primitive, uv, instance))
+                let (t, shape, primitive, uv) = parts;
+                let count = t.len();
+                let mut hits = vec![Hit::MISS; BATCH.min(count)];
+                rays.gathered(start, count, |batch, places| {
+                    let hits = &mut hits[..batch.len()];
+                    match &filter {
+                        Some(filter) => filter.intersect(scene, batch, false, hits),
+                        None => scene.intersect(batch, hits),
+                    }
+                    write(scene, hits, places, (t, shape, primitive, uv));
+                    if let Some(instance) = &mut instance {
+                        instances::write(scene, hits, places, instance, primitive);
+                    }
+                });
+            })
+        })
     }
 
-    #[pyo3(signature = (
-        origins, directions, t_min, t_max, shape, threads, time=None, out=None, counted=None
-    ))]
+    #[pyo3(signature = (rays, out=None, counted=None))]
     fn occluded<'py>(
         &self,
         py: Python<'py>,
-        origins: Triples<'py>,
-        directions: Triples<'py>,
-        t_min: Numbers<'py>,
-        t_max: Numbers<'py>,
-        shape: Vec<usize>,
-        threads: Option<usize>,
-        time: Option<Numbers<'py>>,
+        rays: RayArguments<'py>,
         out: Option<Bound<'py, PyArrayDyn<bool>>>,
         counted: Option<Counted>,
     ) -> PyResult<Bound<'py, PyArrayDyn<bool>>> {
-        let arguments = RayArguments { origins, directions, t_min, t_max, time, shape };
-        let rays = arguments.rays()?;
-        let out = out.map_or_else(|| unwritten(py, &arguments.shape, None), Ok)?;
+        let (lead, threads, rays) = (&rays.shape, rays.threads, rays.rays()?);
+        let out = out.map_or_else(|| unwritten(py, lead, None), Ok)?;
         {
-            let mut out = writable("out", &out, &arguments.shape, None)?;
+            let mut out = writable("out", &out, lead, None)?;
             let (scene, filter) = (&self.0, counted.map(scene::Filter::from));
             let by_columns = scene.accelerator().by_columns().filter(|_| filter.is_none());
             let chunk = if by_columns.is_some() { rays.window() } else { rays.chunk() };
@@ -219,58 +173,27 @@ impl CompiledScene {
         Ok(out)
     }
 
-    #[pyo3(signature = (origins, directions, t_min, t_max, shape, threads, time=None, counted=None))]
+    #[pyo3(signature = (rays, counted=None))]
     fn intersect_all<'py>(
         &self,
         py: Python<'py>,
-        origins: Triples<'py>,
-        directions: Triples<'py>,
-        t_min: Numbers<'py>,
-        t_max: Numbers<'py>,
-        shape: Vec<usize>,
-        threads: Option<usize>,
-        time: Option<Numbers<'py>>,
+        rays: RayArguments<'py>,
         counted: Option<Counted>,
     ) -> PyResult<every::AllHits<'py>> {
-        let arguments = RayArguments { origins, directions, t_min, t_max, time, shape };
-        every::intersect_all(py, &self.0, &arguments.rays()?, threads, counted.map(scene::Filter::from).as_ref())
+        every::intersect_all(py, &self.0, &rays.rays()?, rays.threads, counted.map(scene::Filter::from).as_ref())
     }
 
-    #[pyo3(signature = (origins, directions, t_min, t_max, shape, threads, time=None))]
-    fn count<'py>(
-        &self,
-        py: Python<'py>,
-        origins: Triples<'py>,
-        directions: Triples<'py>,
-        t_min: Numbers<'py>,
-        t_max: Numbers<'py>,
-        shape: Vec<usize>,
-        threads: Option<usize>,
-        time: Option<Numbers<'py>>,
-    ) -> PyResult<Bound<'py, PyArrayDyn<i32>>> {
-        let arguments = RayArguments { origins, directions, t_min, t_max, time, shape };
-        let rays = arguments.rays()?;
-        let out = unwritten(py, &arguments.shape, None)?;
+    fn count<'py>(&self, py: Python<'py>, rays: RayArguments<'py>) -> PyResult<Bound<'py, PyArrayDyn<i32>>> {
+        let (lead, threads, rays) = (&rays.shape, rays.threads, rays.rays()?);
+        let out = unwritten(py, lead, None)?;
         answer(py, rays.count, rays.chunk(), threads, out.readwrite().as_slice_mut()?, |start, out| {
             every::count(&self.0, &rays, start, out);
         })?;
         Ok(out)
     }
 
-    #[pyo3(signature = (origins, directions, t_min, t_max, shape, threads, time=None))]
-    fn cost<'py>(
-        &self,
-        py: Python<'py>,
-        origins: Triples<'py>,
-        directions: Triples<'py>,
-        t_min: Numbers<'py>,
-        t_max: Numbers<'py>,
-        shape: Vec<usize>,
-        threads: Option<usize>,
-        time: Option<Numbers<'py>>,
-    ) -> PyResult<Costs<'py>> {
-        let arguments = RayArguments { origins, directions, t_min, t_max, time, shape };
-        let (rays, lead) = (arguments.rays()?, &arguments.shape);
+    fn cost<'py>(&self, py: Python<'py>, rays: RayArguments<'py>) -> PyResult<Costs<'py>> {
+        let (lead, threads, rays) = (&rays.shape, rays.threads, rays.rays()?);
         let (nodes, primitives) = (unwritten(py, lead, None)?, unwritten(py, lead, None)?);
         {
             let (mut nodes, mut primitives) = (nodes.readwrite(), primitives.readwrite());

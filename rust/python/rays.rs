@@ -35,15 +35,26 @@ pub struct RayArrays<'a> {
     pub(super) tiling: Tiling,
 }
 
-/// What the package gives for a batch of rays: arrays and numbers, and the leading shape of all.
+/// What the package gives for a batch of rays, as one tuple: arrays and numbers, the leading shape of all, and on how
+/// many threads they are traced.
 pub struct RayArguments<'py> {
     pub origins: Triples<'py>,
     pub directions: Triples<'py>,
     pub t_min: Numbers<'py>,
     pub t_max: Numbers<'py>,
+    pub shape: Vec<usize>,
+    pub threads: Option<usize>,
     /// None is 0 for all.
     pub time: Option<Numbers<'py>>,
-    pub shape: Vec<usize>,
+}
+
+impl<'py> FromPyObject<'_, 'py> for RayArguments<'py> {
+    type Error = PyErr;
+
+    fn extract(object: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
+        let (origins, directions, t_min, t_max, shape, threads, time) = object.extract()?;
+        Ok(Self { origins, directions, t_min, t_max, shape, threads, time })
+    }
 }
 
 impl RayArguments<'_> {

@@ -124,8 +124,8 @@ def test_who_asks_for_no_pixels_is_called_ten_times_a_second_however_large_the_p
         # In the end it is shown what is returned.
         assert type(image) is rw.Image or not {"rgb", "standard_error", "degrees"} & set(vars(image))
 
-    # A sample of each of its pixels takes one thread seconds, and all looks eight tenths of one. The render is
-    # not left for any of them.
+    # A sample of each of its pixels takes one thread seconds, and all looks eight tenths of one. The render
+    # is not left for any of them.
     scene = rw.scenes.cornell_box(width=2560, height=1440)
     image = rw.render(*scene, rw.Path(reuse=1), progress=watch, stop=clock, threads=1)
     assert image.samples == 0

@@ -75,7 +75,7 @@ class GpuScene:
         rays = ray_arguments(origins, directions, t_min, t_max, threads, time)
         with self._lock:
             told = self._ask("closest", rays)
-        hits, (decided, walked) = self._flat.intersect(*rays, told)
+        hits, (decided, walked) = self._flat.intersect(rays, told)
         self._stats.closest += len(told)
         self._stats.closest_decided += decided
         self._stats.closest_walked += walked
@@ -102,7 +102,7 @@ class GpuScene:
         rays = ray_arguments(origins, directions, t_min, t_max, threads, time)
         with self._lock:
             told = self._ask("occluded", rays)
-        found, (decided, walked) = self._flat.occluded(*rays, told)
+        found, (decided, walked) = self._flat.occluded(rays, told)
         self._stats.any += len(told)
         self._stats.any_decided += decided
         self._stats.any_walked += walked
@@ -122,7 +122,7 @@ class GpuScene:
         # While the device is at work on some, the next are made ready.
         for slot, start in enumerate(range(0, count + chunk, chunk)):
             stop = min(start + chunk, count)
-            ready = self._flat.rays(*_part(rays, count, start, stop)) if start < count else None
+            ready = self._flat.rays(_part(rays, count, start, stop)) if start < count else None
             try:
                 work = None if ready is None else self._kernels.submit(kernel, ready, slot % 2)
                 if before is not None:
@@ -155,13 +155,13 @@ class GpuScene:
         return f"GpuScene({self._core.accelerator.primitives} primitives on {self._name!r})"
 
 
-def _part(rays: RayArguments, count: int, start: int, stop: int) -> tuple[Any, ...]:
+def _part(rays: RayArguments, count: int, start: int, stop: int) -> RayArguments:
     """Return the rays from `start` to `stop` of `count`, as the core takes them; time is not asked for."""
     origins, directions, t_min, t_max, _, threads, _ = rays
-    vectors = (array.reshape(-1, 3) for array in (origins, directions))
-    numbers = (x.reshape(-1) if isinstance(x, np.ndarray) else x for x in (t_min, t_max))
-    some = [
-        x[start:stop] if isinstance(x, np.ndarray) and len(x) == count and count > 1 else x
-        for x in (*vectors, *numbers)
-    ]
-    return (*some, (stop - start,), threads)
+
+    def some(array: NDArray[Any]) -> NDArray[Any]:
+        return array[start:stop] if len(array) == count and count > 1 else array
+
+    starts, ways = (some(array.reshape(-1, 3)) for array in (origins, directions))
+    near, far = (some(x.reshape(-1)) if isinstance(x, np.ndarray) else x for x in (t_min, t_max))
+    return starts, ways, near, far, (stop - start,), threads, None

@@ -88,9 +88,9 @@ class Queries(PointQueries):
         if not (mask is None and shapes is None and cull is None):
             rays, what = asked(rays, mask), counted(shapes, cull, core.names)
         if out is None:
-            return Hits(*core.intersect(*rays, None, what), core, known_by(core, rays))
+            return Hits(*core.intersect(rays, None, what), core, known_by(core, rays))
         with rewritten(out, rays[4]) as arrays:
-            answer = core.intersect(*rays, arrays, what)
+            answer = core.intersect(rays, arrays, what)
         out._tell(*answer, core, known_by(core, rays))
         return out
 
@@ -127,7 +127,7 @@ class Queries(PointQueries):
         rays = asked(ray_arguments(origins, directions, t_min, t_max, threads, time), mask)
         core = self._core or self._compiled()
         what = None if shapes is None and cull is None else counted(shapes, cull, core.names)
-        return core.occluded(*rays, None if out is None else flags("out", out, rays[4]), what)
+        return core.occluded(rays, None if out is None else flags("out", out, rays[4]), what)
 
     def interactions(self, rays: Rays) -> Interactions:
         """Find what each ray of a batch meets, and all that shading needs of it.
@@ -190,7 +190,7 @@ class Queries(PointQueries):
         rays = asked(ray_arguments(origins, directions, t_min, t_max, threads, time), mask)
         core = self._core or self._compiled()
         what = None if shapes is None and cull is None else counted(shapes, cull, core.names)
-        return AllHits(*core.intersect_all(*rays, what), rays[4], core, known_by(core, rays))
+        return AllHits(*core.intersect_all(rays, what), rays[4], core, known_by(core, rays))
 
     def count(
         self,
@@ -211,7 +211,7 @@ class Queries(PointQueries):
             With the leading shape of the rays.
         """
         rays = ray_arguments(origins, directions, t_min, t_max, threads, time)
-        return (self._core or self._compiled()).count(*rays)
+        return (self._core or self._compiled()).count(rays)
 
     def cost(
         self,
@@ -233,7 +233,7 @@ class Queries(PointQueries):
             With the leading shape of the rays.
         """
         rays = ray_arguments(origins, directions, t_min, t_max, threads, time)
-        return QueryCost(*(self._core or self._compiled()).cost(*rays))
+        return QueryCost(*(self._core or self._compiled()).cost(rays))
 
     def pick(
         self,
