@@ -65,7 +65,8 @@ loops! {
             let base = (of.base.get(i), of.average[i]);
             let (matt, by_cosine) = Coated::<F>::matt(base, share, w, [of.reflectance[i], there[i]]);
             let told = (density[i], cosine[i]);
-            let (coat, glossy) = Coated::<F>::glossy((&of.facets(i), of.eta[i]), share, [o, w], told);
+            let coated = (&of.facets(i), of.eta[i]);
+            let (coat, glossy) = Coated::glossy(coated, share, [o, w], told);
             let scattered = Rgb::select(of.is_rough[i], matt + coat, matt);
             let drawn = if of.is_rough[i] { glossy + by_cosine } else { by_cosine };
             value.set(i, Rgb::select(is_seen, scattered, Rgb::ZERO));
@@ -99,7 +100,12 @@ loops! {
 
 loops! {
     /// From what is scattered to what a throughput is multiplied by; of single directions it is the coat's.
-    fn weigh<F: Tabulated>(of: &CoatedLanes<F>, is_single: &[bool; LANES], pdf: &mut [f64; LANES], value: &mut RgbLanes) {
+    fn weigh<F: Tabulated>(
+        of: &CoatedLanes<F>,
+        is_single: &[bool; LANES],
+        pdf: &mut [f64; LANES],
+        value: &mut RgbLanes,
+    ) {
         for i in 0..LANES {
             let single = Rgb::splat(of.reflectance[i] / of.share[i]);
             value.set(i, Rgb::select(is_single[i], single, value.get(i) / pdf[i]));
