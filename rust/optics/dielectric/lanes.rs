@@ -181,7 +181,7 @@ impl<F: Facets> DielectricLanes<F> {
 
 impl<F: Lossy> DielectricLanes<F> {
     /// What facets scatter in the lanes that ask, of which both directions are seen.
-    fn scattered<'a, S: Split>(
+    fn scattered<'a, S: Split + 'a>(
         &self,
         level: Level,
         each: impl Fn(usize) -> Option<&'a Dielectric<F, S>> + Copy,
@@ -191,7 +191,6 @@ impl<F: Lossy> DielectricLanes<F> {
         (value, pdf): (&mut RgbLanes, &mut [f64; LANES]),
     ) where
         F: 'a,
-        S: 'a,
     {
         let reflectance = self.reflectances(level, each, asks, wo, facets.cosines());
         let mut back = [0.0; LANES];
@@ -204,7 +203,7 @@ impl<F: Lossy> DielectricLanes<F> {
     }
 
     /// The shares that interfaces reflect at cosines of incidence, in the lanes that ask.
-    fn reflectances<'a, S: Split>(
+    fn reflectances<'a, S: Split + 'a>(
         &self,
         level: Level,
         each: impl Fn(usize) -> Option<&'a Dielectric<F, S>>,
@@ -214,7 +213,6 @@ impl<F: Lossy> DielectricLanes<F> {
     ) -> <S::Share as InLanes>::Lanes
     where
         F: 'a,
-        S: 'a,
     {
         let mut shares = <S::Share as InLanes>::EMPTY;
         S::reflectances(level, |lane| each(lane).map(|of| &of.split), asks, (&self.etas, wo), cosines, &mut shares);
@@ -222,7 +220,7 @@ impl<F: Lossy> DielectricLanes<F> {
     }
 
     /// What is drawn in lanes that ask and are smooth.
-    fn sample_smooth<'a, S: Split>(
+    fn sample_smooth<'a, S: Split + 'a>(
         &self,
         level: Level,
         each: impl Fn(usize) -> Option<&'a Dielectric<F, S>>,
@@ -231,7 +229,6 @@ impl<F: Lossy> DielectricLanes<F> {
         drawn: &mut BsdfSampleLanes,
     ) where
         F: 'a,
-        S: 'a,
     {
         let mut cosines = [0.0; LANES];
         cosine(level, wo, &mut cosines);
