@@ -16,7 +16,7 @@ pub trait LaneBsdf: Bsdf {
 /// to.
 ///
 /// What it answers are the bits that each function gives by itself ([`Bsdf`]), whatever the level: that of loops over
-/// lanes ([`crate::simd::loops`]). `each` gives the functions themselves, of which more may be asked than stands in
+/// lanes (`simd/loops.rs`). `each` gives the functions themselves, of which more may be asked than stands in
 /// columns.
 pub trait BsdfColumns<B: ?Sized>: Clone + Debug {
     /// Of nothing yet.
