@@ -31,7 +31,7 @@ pub use nearest::Nearest;
 pub use parity::Side;
 pub use slab::SlabRay;
 pub use touches::{Touch, Touches};
-pub use user_geometry::{Inside, UserGeometry};
+pub use user_geometry::{Placed, UserGeometry};
 pub use walked::walked;
 
 pub use query::{Every, Meeting, Wanted};

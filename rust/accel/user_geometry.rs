@@ -6,7 +6,7 @@ use crate::math::{DVec3, Ray};
 use crate::shapes::{Ball, Bounds, Candidate};
 
 /// Others put elsewhere as they are.
-pub struct Inside<'a> {
+pub struct Placed<'a> {
     /// Known by it: the same others have the same.
     pub id: usize,
     /// What they are.
@@ -43,7 +43,7 @@ pub trait UserGeometry: Send + Sync {
     }
 
     /// Of one that is others put elsewhere, and stands still as they do: those.
-    fn inside(&self, primitive: u32) -> Option<Inside<'_>> {
+    fn inside(&self, primitive: u32) -> Option<Placed<'_>> {
         let _ = primitive;
         None
     }

@@ -11,7 +11,9 @@ one_of! {
     ///
     /// A kind is one file and one line of this list. A batch calls it through a `match`, which predicts well and
     /// inlines, rather than through a pointer.
-    AnyBsdf, inline, {
+    AnyBsdf, inline,
+    /// What is known of functions of all kinds, a lane each, and of a direction that light goes to.
+    AnyBsdfLanes, {
         /// Lambert's: equally bright from everywhere.
         Diffuse(Diffuse),
         /// Rough and matt: brighter towards the light.
@@ -44,6 +46,18 @@ one_of! {
 impl AnyBsdf {
     /// The kind of [`Diffuse`], the first.
     pub const DIFFUSE: usize = 0;
+
+    /// How many kinds there are, with those of [`Faceted`].
+    pub const KINDS: usize = Self::VARIANTS + Faceted::VARIANTS;
+
+    /// The number of its kind among all.
+    #[inline]
+    pub fn kind(&self) -> usize {
+        match self {
+            Self::Faceted(faceted) => Self::VARIANTS + faceted.variant(),
+            _ => self.variant(),
+        }
+    }
 }
 
 /// Makes [`AnyBsdf`] of less common facets too.

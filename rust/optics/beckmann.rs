@@ -3,6 +3,7 @@
 use super::Facets;
 use crate::math::DVec3;
 use crate::math::erf::{FRAC_1_SQRT_PI, complement_integral, exceeded, scaled_complement};
+use crate::math::exponential::exp;
 use std::f64::consts::FRAC_1_PI;
 
 /// The distribution of facets of a surface whose slopes are normally distributed (Beckmann and Spizzichino, "The
@@ -20,26 +21,31 @@ impl Beckmann {
     const NOTHING: f64 = 700.0;
 
     /// The density where slopes in units of α have the square `e`, and the normal a cosine of the square `square`.
-    #[inline]
+    #[inline(always)]
     fn at(&self, e: f64, square: f64) -> f64 {
         let [ax, ay] = self.alpha;
         // Also false where a facet stands upright, and both are infinite or nothing.
-        if e < Self::NOTHING { (-e).exp() * FRAC_1_PI / (ax * ay * square * square) } else { 0.0 }
+        if e < Self::NOTHING { exp(-e) * FRAC_1_PI / (ax * ay * square * square) } else { 0.0 }
     }
 }
 
 impl Facets for Beckmann {
-    #[inline]
+    #[inline(always)]
     fn new(alpha: [f64; 2]) -> Self {
         Self { alpha: alpha.map(|a| a.clamp(Self::SMOOTH, 1.0)) }
     }
 
-    #[inline]
+    #[inline(always)]
+    fn with(alpha: [f64; 2]) -> Self {
+        Self { alpha }
+    }
+
+    #[inline(always)]
     fn alpha(&self) -> [f64; 2] {
         self.alpha
     }
 
-    #[inline]
+    #[inline(always)]
     fn density(&self, h: DVec3) -> f64 {
         let [ax, ay] = self.alpha;
         let (x, y, square) = (h.x / ax, h.y / ay, h.z * h.z);
@@ -47,7 +53,7 @@ impl Facets for Beckmann {
     }
 
     /// By the half vector as it is, not unit, whose slopes are the same.
-    #[inline]
+    #[inline(always)]
     fn mirroring(&self, wo: DVec3, wi: DVec3) -> (f64, f64) {
         let ([ax, ay], q) = (self.alpha, wo + wi);
         let length = q.length_squared();
@@ -59,7 +65,7 @@ impl Facets for Beckmann {
         (self.at((x * x + y * y) / square, square / length), (0.5 * length.sqrt()).min(1.0))
     }
 
-    #[inline]
+    #[inline(always)]
     fn stretch(&self, w: DVec3) -> f64 {
         let ([ax, ay], z) = (self.alpha, w.z.abs());
         let (x, y) = (ax * w.x, ay * w.y);
@@ -71,6 +77,7 @@ impl Facets for Beckmann {
     /// Slopes along the way to `wo` and across it are independent of each other (Heitz and d'Eon, "Importance Sampling
     /// Microfacet-Based BSDFs using the Distribution of Visible Normals", 2014): of those across a share is exceeded,
     /// those along are found by `leaning`.
+    #[inline(always)]
     fn sample_visible(&self, wo: DVec3, u: [f64; 2]) -> DVec3 {
         let [ax, ay] = self.alpha;
         let (x, y) = (ax * wo.x, ay * wo.y);
@@ -82,7 +89,7 @@ impl Facets for Beckmann {
 }
 
 /// A share of facets whose slope is finite: neither none nor all of them.
-#[inline]
+#[inline(always)]
 fn share(u: f64) -> f64 {
     u.clamp(1e-19, 1.0 - f64::EPSILON)
 }

@@ -1,6 +1,8 @@
 //! Blinn's lobe about the half vector.
 
+use super::bsdf_columns::LaneBsdf;
 use super::lobes::{Lobes, diffuse, power_cosine};
+use super::looped::Looped;
 use super::{Bsdf, BsdfSample, Rgb};
 use glam::DVec3;
 use std::f64::consts::{FRAC_1_PI, PI, TAU};
@@ -25,7 +27,7 @@ impl BlinnPhong {
     }
 
     /// cosⁿ θh and the cosine between half vector and `wo`; `None` for a half vector without direction.
-    #[inline]
+    #[inline(always)]
     fn lobe(&self, wo: DVec3, wi: DVec3) -> Option<(f64, f64)> {
         let h = (wo + wi).try_normalize()?;
         Some((h.z.abs().min(1.0).powf(self.exponent), wo.dot(h)))
@@ -33,7 +35,7 @@ impl BlinnPhong {
 }
 
 impl Bsdf for BlinnPhong {
-    #[inline]
+    #[inline(always)]
     fn evaluate(&self, wo: DVec3, wi: DVec3) -> (Rgb, f64) {
         if wo.z * wi.z <= 0.0 {
             return (Rgb::ZERO, 0.0);
@@ -44,7 +46,7 @@ impl Bsdf for BlinnPhong {
         (value, self.lobes.mixed(wi.z.abs() * FRAC_1_PI, density))
     }
 
-    #[inline]
+    #[inline(always)]
     fn sample(&self, wo: DVec3, choice: impl FnOnce() -> f64, u: [f64; 2]) -> Option<BsdfSample> {
         if wo.z == 0.0 || self.lobes.black() {
             return None;
@@ -67,4 +69,8 @@ impl Bsdf for BlinnPhong {
     fn roughness(&self) -> f64 {
         self.lobes.roughness(self.exponent)
     }
+}
+
+impl LaneBsdf for BlinnPhong {
+    type Lanes = Looped;
 }

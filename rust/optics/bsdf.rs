@@ -23,9 +23,6 @@ pub trait Bsdf {
     /// choices.
     fn sample(&self, wo: DVec3, choice: impl FnOnce() -> f64, u: [f64; 2]) -> Option<BsdfSample>;
 
-    /// Computes beforehand what goes by `wo` alone: several questions are to follow that have the same.
-    fn prepare(&mut self, _wo: DVec3) {}
-
     /// About the share of white light that is scattered, for pictures of it: that of even light where it is known.
     fn albedo(&self) -> Rgb;
 
@@ -62,7 +59,7 @@ pub trait Bsdf {
     }
 }
 
-/// One that is borrowed answers as it was prepared.
+/// One that is borrowed.
 impl<B: Bsdf> Bsdf for &B {
     #[inline(always)]
     fn evaluate(&self, wo: DVec3, wi: DVec3) -> (Rgb, f64) {
@@ -132,19 +129,19 @@ impl BsdfSample {
     }
 
     /// A single direction on the side of `wo`, from the only lobe.
-    #[inline]
+    #[inline(always)]
     pub(super) fn delta(wi: DVec3, weight: Rgb) -> Self {
         Self::new(wi, weight, f64::INFINITY)
     }
 
     /// The same on the other side, where the index of refraction is so many times as large.
-    #[inline]
+    #[inline(always)]
     pub(super) fn through(self, eta: f64) -> Self {
         Self { eta, is_through: true, ..self }
     }
 
     /// The same of the lobe that has these choices.
-    #[inline]
+    #[inline(always)]
     pub(super) fn of_lobe(self, choices: [f64; 2]) -> Self {
         Self { choices, ..self }
     }
@@ -163,7 +160,7 @@ impl BsdfSample {
 }
 
 /// The choices of the first of two lobes, of this probability, or of the second.
-#[inline]
+#[inline(always)]
 pub(super) fn either(first: f64, is_first: bool) -> [f64; 2] {
     if is_first { [0.0, first] } else { [first, 1.0] }
 }

@@ -3,9 +3,13 @@
 use super::conductors::Reflectance;
 use super::losses::Lossy;
 use super::*;
+use crate::math::{LANES, VectorLanes};
 use crate::sampling::Sampler;
+use crate::sampling::warp::uniform_sphere;
+use crate::simd::Level;
 use glam::DVec3;
 use proptest::prelude::*;
+use std::array::from_fn;
 use std::sync::OnceLock;
 
 fn direction(degrees: f64, turn: f64) -> DVec3 {
@@ -231,6 +235,101 @@ fn draws_weigh_what_is_evaluated() {
                 assert!(off < bound && (pdf / s.pdf - 1.0).abs() < bound, "{off:e} {pdf} {s:?} {bsdf:?} {wo}");
             }
         }
+    }
+}
+
+/// Two directions: any, grazing, straight, in the plane, mirrored, opposite, or about the critical angle.
+fn two_directions(turn: u32, sampler: &mut Sampler) -> [DVec3; 2] {
+    let [wo, wi] = [1, 3].map(|dimension| uniform_sphere(sampler.two(dimension)));
+    match turn % 10 {
+        0 => [DVec3::new(wo.x, wo.y, 1e-9 * wo.z).normalize(), wi],
+        1 => [DVec3::Z.copysign(wo), wi],
+        2 => [DVec3::X, wi],
+        3 => [wo, DVec3::new(-wo.x, -wo.y, wo.z)],
+        4 => [wo, -wo],
+        5 => [DVec3::new((1.0 / 1.5) * (1.0 + 1e-16 * (wi.x * 4.0).round()), 0.0, -(5f64 / 9.0).sqrt()), wi],
+        6 => [DVec3::new(1.0, 0.0, 1e-90), DVec3::new(-1.0, 0.0, 1e-90)],
+        _ => [wo, wi],
+    }
+}
+
+/// That lanes answer as each function of them does by itself, at every level.
+fn assert_alike(turn: u32, each: &[AnyBsdf; LANES]) {
+    let mut sampler: [Sampler; LANES] = from_fn(|lane| Sampler::new(8, turn, lane as u32));
+    let (mut lanes, mut to, mut from, mut u) =
+        (AnyBsdfLanes::NONE, VectorLanes::ZERO, VectorLanes::ZERO, [[0.0; LANES]; 2]);
+    for lane in 0..LANES {
+        let [wo, wi] = two_directions(turn + lane as u32, &mut sampler[lane]);
+        to.set(lane, wo);
+        from.set(lane, wi);
+        lanes.set(lane, &each[lane], wo);
+        [u[0][lane], u[1][lane]] = sampler[lane].two(5);
+    }
+    let choice = from_fn(|lane| sampler[lane].one(6));
+    let asks = from_fn(|lane| lane as u32 != turn % 16);
+    let one = |lane: usize| Some(&each[lane]);
+    for level in Level::ALL.into_iter().filter(|level| level.is_available()) {
+        let (mut value, mut pdf) = (RgbLanes::ZERO, [f64::NAN; LANES]);
+        lanes.evaluate(level, one, &asks, [&to, &from], &mut value, &mut pdf);
+        let mut drawn = BsdfSampleLanes::NONE;
+        lanes.sample(level, one, &asks, &to, (&choice, &u), &mut drawn);
+        for lane in 0..LANES {
+            let (one, wo, drawn) = (&each[lane], to.get(lane), drawn.get(lane));
+            if !asks[lane] {
+                assert!(value.get(lane).is_black() && pdf[lane] == 0.0 && drawn.is_none());
+                continue;
+            }
+            let found = (value.get(lane), pdf[lane]);
+            assert_eq!(found, one.evaluate(wo, from.get(lane)), "{level:?} {turn} {lane} {one:?}");
+            let wanted = one.sample(wo, || choice[lane], [u[0][lane], u[1][lane]]);
+            let told = |of: BsdfSample| (of.wi, of.weight, of.pdf, of.eta, of.is_through);
+            assert_eq!(drawn.map(told), wanted.map(told), "{level:?} {turn} {lane} {one:?}");
+        }
+    }
+}
+
+/// Principled surfaces and sheets, from matt and metal to glass.
+fn principled() -> Vec<AnyBsdf> {
+    let look = |roughness: f64, transmission: f64| Look {
+        base_color: Rgb::new(0.9, 0.4, 0.1),
+        luminance: 0.48,
+        roughness,
+        anisotropic: 0.5 * roughness,
+        transmission,
+        specular_tint: 0.3,
+        sheen: 0.5,
+        sheen_tint: 0.4,
+        flatness: 0.2,
+    };
+    let all = [0.0, 0.2, 0.7, 1.0].into_iter().flat_map(|roughness| [0.0, 0.6, 1.0].map(|share| (roughness, share)));
+    let made = |(roughness, share): (f64, f64)| -> [AnyBsdf; 3] {
+        [
+            Principled::new(look(roughness, share), 1.5, 0.3, [share, roughness], true).into(),
+            Principled::new(look(roughness, 0.0), 1.33, share, [1.0 - share, 0.9], false).into(),
+            PrincipledThin::new(look(roughness, share), 1.5, roughness).into(),
+        ]
+    };
+    all.flat_map(made).collect()
+}
+
+#[test]
+fn lanes_answer_as_each_by_itself() {
+    let mut kinds = kinds();
+    kinds.extend(principled());
+    let name = |of: &AnyBsdf| {
+        let told = format!("{of:?}");
+        told[..told.find(' ').unwrap_or(told.len())].to_owned()
+    };
+    let mut names: Vec<String> = kinds.iter().map(name).collect();
+    names.sort();
+    names.dedup();
+    for turn in 0..20 {
+        // Of one kind, smooth and rough, and of many.
+        for wanted in &names {
+            let alike: Vec<&AnyBsdf> = kinds.iter().filter(|of| name(of) == *wanted).collect();
+            assert_alike(turn, &from_fn(|lane| *alike[(lane + turn as usize) % alike.len()]));
+        }
+        assert_alike(turn, &from_fn(|lane| kinds[(lane * 17 + turn as usize * 31) % kinds.len()]));
     }
 }
 

@@ -2,8 +2,6 @@
 
 mod lanes;
 
-pub use lanes::CoatedLanes;
-
 use super::albedo::{Coat, Tabulated};
 use super::bsdf::either;
 use super::conductor::{above, mirrors};

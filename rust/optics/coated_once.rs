@@ -1,8 +1,10 @@
 //! Plastic whose coat scatters once each time it is met.
 
 use super::bsdf::either;
+use super::bsdf_columns::LaneBsdf;
 use super::conductor::above;
 use super::lobes::diffuse;
+use super::looped::Looped;
 use super::{Bsdf, BsdfSample, Facets, Once, Rgb, Through, fresnel};
 use glam::DVec3;
 use std::f64::consts::FRAC_1_PI;
@@ -29,7 +31,7 @@ impl<F: Facets> CoatedOnce<F> {
     }
 
     /// The probability with which a draw is reflected by the coat, of which this share goes through.
-    #[inline]
+    #[inline(always)]
     fn share(&self, through: f64) -> f64 {
         let base = self.base.max() * self.through.average() * through;
         let coat = 1.0 - through;
@@ -38,6 +40,7 @@ impl<F: Facets> CoatedOnce<F> {
 }
 
 impl<F: Facets> Bsdf for CoatedOnce<F> {
+    #[inline(always)]
     fn evaluate(&self, wo: DVec3, wi: DVec3) -> (Rgb, f64) {
         if !F::sees(wo) || !F::sees(wi) || wo.z * wi.z <= 0.0 {
             return (Rgb::ZERO, 0.0);
@@ -51,6 +54,7 @@ impl<F: Facets> Bsdf for CoatedOnce<F> {
         (base + coat, share * self.facets.reflected_pdf(wo, density) + (1.0 - share) * wi.z * FRAC_1_PI)
     }
 
+    #[inline(always)]
     fn sample(&self, wo: DVec3, choice: impl FnOnce() -> f64, u: [f64; 2]) -> Option<BsdfSample> {
         if !F::sees(wo) {
             return None;
@@ -75,4 +79,8 @@ impl<F: Facets> Bsdf for CoatedOnce<F> {
     fn roughness(&self) -> f64 {
         self.facets.mean_alpha()
     }
+}
+
+impl<F: Facets> LaneBsdf for CoatedOnce<F> {
+    type Lanes = Looped;
 }

@@ -2,8 +2,6 @@
 
 mod lanes;
 
-pub use lanes::ConductorLanes;
-
 use super::bsdf::either;
 use super::conductors::{Metal, Reflectance};
 use super::fresnel::ConductorIndex;
@@ -34,8 +32,6 @@ struct Rough<F: Lossy> {
     grazing: Grazing,
     /// What is scattered more than once, over π and the mean loss.
     multiple: Rgb,
-    /// A direction, and what is lost of light from there.
-    prepared: (DVec3, f64),
 }
 
 impl<F: Lossy> Rough<F> {
@@ -51,12 +47,6 @@ impl<F: Lossy> Rough<F> {
         let single = density * facets.reflection_geometry(wo, wi);
         let value = reflectance * single + multiple * (lost * lost_there * wi.z);
         (value, (1.0 - lost) * facets.reflected_pdf(wo, density) + lost * grazing.pdf(wi.z))
-    }
-
-    /// What is lost of light from `w`.
-    #[inline]
-    fn lost(&self, w: DVec3) -> f64 {
-        if w == self.prepared.0 { self.prepared.1 } else { self.loss.of(w) }
     }
 }
 
@@ -79,8 +69,7 @@ impl<F: Lossy> Conductor<F> {
         let rough = facets.map(|facets| {
             let loss = facets.mirror();
             let multiple = fresnel.seen(|mean| made_up_of(loss.average(), mean)).at_least(Rgb::ZERO);
-            let prepared = (DVec3::NAN, 0.0);
-            Rough { facets, loss, grazing: Grazing::new(facets.mean_alpha()), multiple, prepared }
+            Rough { facets, loss, grazing: Grazing::new(facets.mean_alpha()), multiple }
         });
         Self { fresnel, rough }
     }
@@ -133,7 +122,7 @@ impl<F: Lossy> Bsdf for Conductor<F> {
         }
         let (wo, wi) = (above(wo), above(wi));
         let (density, cosine) = rough.facets.mirroring(wo, wi);
-        let lost = [rough.lost(wo), rough.loss.of(wi)];
+        let lost = [rough.loss.of(wo), rough.loss.of(wi)];
         let parts = (&rough.facets, rough.multiple, &rough.grazing);
         Rough::scattered(parts, [wo, wi], (density, self.reflectance(cosine)), lost)
     }
@@ -147,7 +136,7 @@ impl<F: Lossy> Bsdf for Conductor<F> {
             return Some(BsdfSample::delta(mirrored(wo), self.reflectance(wo.z.abs())));
         };
         let up = above(wo);
-        let lost = rough.lost(up);
+        let lost = rough.loss.of(up);
         let is_multiple = choice() < lost;
         let mut wi = if is_multiple { rough.grazing.sample(u) } else { rough.facets.sample_reflection(up, u) };
         if wi.z <= 0.0 {
@@ -156,15 +145,6 @@ impl<F: Lossy> Bsdf for Conductor<F> {
         wi.z = wi.z.copysign(wo.z);
         let (value, pdf) = self.evaluate(wo, wi);
         (pdf > 0.0).then(|| BsdfSample::new(wi, value / pdf, pdf).of_lobe(either(lost, is_multiple)))
-    }
-
-    fn prepare(&mut self, wo: DVec3) {
-        if let Some(rough) = &mut self.rough
-            && F::sees(wo)
-        {
-            let wo = above(wo);
-            rough.prepared = (wo, rough.loss.of(wo));
-        }
     }
 
     fn albedo(&self) -> Rgb {
@@ -188,30 +168,5 @@ impl<F: Lossy> Bsdf for Conductor<F> {
 
     fn roughness(&self) -> f64 {
         self.rough.as_ref().map_or(0.0, |rough| rough.facets.mean_alpha())
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::sampling::Sampler;
-    use crate::sampling::warp::uniform_sphere;
-
-    #[test]
-    fn what_is_prepared_for_a_direction_changes_no_bit() {
-        for alpha in [[0.3; 2], [0.05, 0.6], [0.0; 2]] {
-            let plain = Conductor::new(Rgb::new(0.2, 0.9, 1.1), Rgb::new(3.9, 2.4, 2.2), alpha);
-            for number in 0..200 {
-                let mut sampler = Sampler::new(5, 0, number);
-                let [wo, other, wi] = [0, 2, 4].map(|dimension| uniform_sphere(sampler.two(dimension)));
-                let mut prepared = plain;
-                prepared.prepare(wo);
-                for wo in [wo, -wo, other] {
-                    assert_eq!(prepared.evaluate(wo, wi), plain.evaluate(wo, wi));
-                    let drawn = |of: &Conductor| of.sample(wo, || 0.3, [0.4, 0.8]).map(|s| (s.wi, s.weight, s.pdf));
-                    assert_eq!(drawn(&prepared), drawn(&plain));
-                }
-            }
-        }
     }
 }

@@ -1,18 +1,17 @@
 //! Glass, water and the like.
 
+mod facet;
 mod lanes;
-
-pub use lanes::DielectricLanes;
 
 use super::bsdf::either;
 use super::conductor::above;
 use super::lobes::Grazing;
 use super::losses::{Lossy, LostBetween};
 use super::mirror::mirrored;
-use super::split::{Bare, Share, Split};
+use super::split::{Bare, Share, Split, beyond};
 use super::{Bsdf, BsdfSample, Facets, Ggx, Rgb, fresnel};
-use crate::math::select;
-use glam::DVec3;
+use crate::math::{DVec3, in_lanes, select};
+use facet::{Bent, Facet};
 
 /// A dielectric interface, smooth or with isotropic microfacets (Walter et al., "Microfacet Models for Refraction
 /// through Rough Surfaces", 2007), which reflects and refracts.
@@ -36,10 +35,48 @@ struct Rough<F: Lossy> {
     interface: F::Interface,
 }
 
-/// The index beyond a surface over that on the side of `w`, for the index below over that above.
-#[inline(always)]
-fn beyond(eta: f64, w: DVec3) -> f64 {
-    if w.z > 0.0 { eta } else { 1.0 / eta }
+impl<F: Lossy> Rough<F> {
+    fn new(facets: F, eta: f64) -> Self {
+        Self { facets, interface: facets.interface(eta) }
+    }
+
+    /// How light goes on the side of `w` that facets lose and give back.
+    #[inline]
+    fn grazing(&self, w: DVec3) -> Grazing {
+        Grazing::new(self.interface.scale(w))
+    }
+
+    /// What is known of light that goes to `wo`.
+    #[inline]
+    fn known(&self, wo: DVec3) -> Known {
+        Known { lost: self.interface.loss(wo), crossing: self.interface.crossing(wo) }
+    }
+
+    /// Draws where light comes from that facets lost and give back, by a choice among what is lost; with the choices
+    /// that lead to its side. None in the plane.
+    #[inline]
+    fn give_back(&self, known: &Known, wo: DVec3, choice: f64, u: [f64; 2]) -> Option<(DVec3, [f64; 2])> {
+        let Known { lost, crossing } = *known;
+        let crossing = lost * crossing;
+        let (side, choices) =
+            if choice < crossing { (-wo.z.signum(), [0.0, crossing]) } else { (wo.z.signum(), [crossing, lost]) };
+        let wi = self.grazing(DVec3::new(0.0, 0.0, side)).sample(u) * DVec3::new(1.0, 1.0, side);
+        F::sees(wi).then_some((wi, choices))
+    }
+}
+
+/// What is known of light that goes somewhere.
+#[derive(Clone, Copy, Debug)]
+struct Known {
+    /// The share that facets lose.
+    lost: f64,
+    /// The share of that which is given back on the other side.
+    crossing: f64,
+}
+
+in_lanes! {
+    /// What is known of light that goes somewhere, a lane each.
+    KnownLanes of Known { lost: f64, crossing: f64 }
 }
 
 /// One of the two single directions of a smooth interface.
@@ -96,7 +133,7 @@ impl<F: Lossy, S: Split> Dielectric<F, S> {
     /// bare ones.
     pub fn with(eta: f64, facets: Option<F>, split: S) -> Self {
         let facets = facets.filter(|_| (eta - 1.0).abs() >= Self::INVISIBLE);
-        Self { eta, rough: facets.map(|facets| Rough { facets, interface: facets.interface(eta) }), split }
+        Self { eta, rough: facets.map(|facets| Rough::new(facets, eta)), split }
     }
 
     /// The index below over the index above.
@@ -117,61 +154,19 @@ impl<F: Lossy, S: Split> Dielectric<F, S> {
         self.split.reflectance(cosine, self.beyond(w), w.z > 0.0)
     }
 
-    /// What one scattering does: the scattering function with its cosine, for radiance, and the density of a draw.
+    /// What facets scatter between two directions that see each other by one of them, and what is given back of what
+    /// they lose: the scattering function with its cosine, for radiance, and the density of a draw.
     #[inline]
-    fn single(&self, rough: &Rough<F>, wo: DVec3, wi: DVec3) -> (S::Share, f64) {
-        let (eta, facets) = (self.beyond(wo), &rough.facets);
-        if wo.z * wi.z > 0.0 {
-            let (o, i) = (above(wo), above(wi));
-            let (density, cosine) = facets.mirroring(o, i);
-            let reflectance = self.reflectance(wo, cosine);
-            let value = reflectance * density * facets.reflection_geometry(o, i);
-            return (value, facets.reflected_pdf(o, reflectance.chance() * density));
-        }
-        // The facet's normal, on the side of wo; the length holds the Jacobian (Walter et al., 2007, eq. 16 and 17).
-        let q = wo + wi * eta;
-        let q = if q.z * wo.z < 0.0 { -q } else { q };
-        let square = q.length_squared();
-        if square == 0.0 {
-            return (S::Share::NONE, 0.0);
-        }
-        let h = q / square.sqrt();
-        let (o, i) = (wo.dot(h), -wi.dot(h));
-        if o <= 0.0 || i <= 0.0 {
-            return (S::Share::NONE, 0.0);
-        }
-        self.refraction(rough, wo, wi, h, [o, i], square)
-    }
-
-    /// Refraction at a facet of normal `h`, on the side of `wo`, with cosines to both directions and |wo + η wi|².
-    #[inline]
-    fn refraction(
-        &self,
-        rough: &Rough<F>,
-        wo: DVec3,
-        wi: DVec3,
-        h: DVec3,
-        [o, i]: [f64; 2],
-        square: f64,
-    ) -> (S::Share, f64) {
-        let (eta, facets) = (self.beyond(wo), &rough.facets);
-        let reflectance = self.reflectance(wo, o);
-        let density = facets.density(h);
-        let through = reflectance.rest() * density * o * i / square;
-        let [seen, both] = facets.refraction_geometry(wo, wi);
-        (through * both, reflectance.chance().rest() * density * o * i / square * seen * eta * eta)
-    }
-
-    /// As [`Dielectric::single`], with what is given back of what facets lose.
-    #[inline]
-    fn both(&self, rough: &Rough<F>, wo: DVec3, wi: DVec3, (value, pdf): (S::Share, f64)) -> (S::Share, f64) {
-        let lost = rough.interface.loss(wo);
-        let back =
-            rough.interface.given_back(lost, wo, wi) / if wo.z * wi.z < 0.0 { self.beyond(wo).powi(2) } else { 1.0 };
-        let crossing = rough.interface.crossing(wo);
-        let share = if wo.z * wi.z < 0.0 { crossing } else { 1.0 - crossing };
-        let scale = rough.interface.scale(wi);
-        (value.plus(back), (1.0 - lost) * pdf + lost * share * Grazing::new(scale).pdf(wi.z.abs()))
+    fn scattered(&self, rough: &Rough<F>, known: &Known, [wo, wi]: [DVec3; 2], facet: &Facet) -> (S::Share, f64) {
+        let eta = self.beyond(wo);
+        let reflectance = self.reflectance(wo, facet.cosines[0]);
+        let once = if wo.z * wi.z < 0.0 {
+            facet.refracted(&rough.facets, reflectance, eta, [wo, wi])
+        } else {
+            facet.mirrored(&rough.facets, reflectance, [wo, wi])
+        };
+        let back = rough.interface.given_back(known.lost, wo, wi);
+        known.with_given_back(once, [wo, wi], eta, back, &rough.grazing(wi))
     }
 
     #[inline]
@@ -185,45 +180,49 @@ impl<F: Lossy, S: Split> Dielectric<F, S> {
 
     #[inline]
     fn rough_sample(&self, rough: &Rough<F>, wo: DVec3, choice: f64, u: [f64; 2]) -> Option<BsdfSample> {
-        let lost = rough.interface.loss(wo);
-        let eta = self.beyond(wo);
-        let (wi, single, choices) = if choice < lost {
-            let crossing = lost * rough.interface.crossing(wo);
-            let (side, choices) =
-                if choice < crossing { (-wo.z.signum(), [0.0, crossing]) } else { (wo.z.signum(), [crossing, lost]) };
-            let scale = rough.interface.scale(DVec3::new(0.0, 0.0, side));
-            let wi = Grazing::new(scale).sample(u) * DVec3::new(1.0, 1.0, side);
-            if !F::sees(wi) {
+        let (known, eta) = (rough.known(wo), self.beyond(wo));
+        let (wi, facet, choices) = if choice < known.lost {
+            let (wi, choices) = rough.give_back(&known, wo, choice, u)?;
+            (wi, Facet::between(&rough.facets, eta, [wo, wi]), choices)
+        } else {
+            let h = facet::seen(&rough.facets, wo, u);
+            let chance = self.reflectance(wo, wo.dot(h)).chance();
+            let bent = Bent::new(&rough.facets, eta, wo, h, known.rest(choice) < chance);
+            let between = known.lost + (1.0 - known.lost) * chance;
+            let choices = if bent.is_through { [between, 1.0] } else { [known.lost, between] };
+            if !bent.is_any {
                 return None;
             }
-            (wi, self.single(rough, wo, wi), choices)
-        } else {
-            let choice = (choice - lost) / (1.0 - lost);
-            let mut h = rough.facets.sample_visible(above(wo), u);
-            h.z = h.z.copysign(wo.z);
-            let o = wo.dot(h);
-            let chance = self.reflectance(wo, o).chance();
-            let between = lost + (1.0 - lost) * chance;
-            if choice < chance {
-                let wi = h * (2.0 * o) - wo;
-                if wi.z * wo.z <= 0.0 {
-                    return None;
-                }
-                (wi, self.single(rough, wo, wi), [lost, between])
-            } else {
-                let wi = fresnel::refract(wo, h, eta)?;
-                if wi.z * wo.z >= 0.0 || !F::sees(wi) {
-                    return None;
-                }
-                // |wo + η wi| without the rounding of either: near index 1 it is all that tells directions apart.
-                let e = (eta - 1.0) * (eta + 1.0);
-                let g = (e + o * o).sqrt();
-                (wi, self.refraction(rough, wo, wi, h, [o, g / eta], (e / (o + g)).powi(2)), [between, 1.0])
-            }
+            (bent.wi, bent.facet, choices)
         };
-        let (value, pdf) = self.both(rough, wo, wi, single);
+        let (value, pdf) = self.scattered(rough, &known, [wo, wi], &facet);
         let drawn = BsdfSample::new(wi, (value / pdf).rgb(), pdf).of_lobe(choices);
         (pdf > 0.0).then(|| if wo.z * wi.z < 0.0 { drawn.through(eta) } else { drawn })
+    }
+}
+
+impl Known {
+    /// With what is given back, `back`, of what facets lose, of light that goes to `wo` and comes from `wi`, on whose
+    /// side it goes about as `grazing` says; `eta` is the index beyond the surface.
+    #[inline(always)]
+    fn with_given_back<S: Share>(
+        &self,
+        (value, pdf): (S, f64),
+        [wo, wi]: [DVec3; 2],
+        eta: f64,
+        back: f64,
+        grazing: &Grazing,
+    ) -> (S, f64) {
+        let is_through = wo.z * wi.z < 0.0;
+        let back = back / if is_through { eta * eta } else { 1.0 };
+        let share = if is_through { self.crossing } else { 1.0 - self.crossing };
+        (value.plus(back), (1.0 - self.lost) * pdf + self.lost * share * grazing.pdf(wi.z.abs()))
+    }
+
+    /// What is left of a choice among all, where it is not of what is lost.
+    #[inline(always)]
+    fn rest(&self, choice: f64) -> f64 {
+        (choice - self.lost) / (1.0 - self.lost)
     }
 }
 
@@ -232,7 +231,8 @@ impl<F: Lossy, S: Split> Bsdf for Dielectric<F, S> {
     fn evaluate(&self, wo: DVec3, wi: DVec3) -> (Rgb, f64) {
         match &self.rough {
             Some(rough) if F::sees(wo) && F::sees(wi) => {
-                let (value, pdf) = self.both(rough, wo, wi, self.single(rough, wo, wi));
+                let facet = Facet::between(&rough.facets, self.beyond(wo), [wo, wi]);
+                let (value, pdf) = self.scattered(rough, &rough.known(wo), [wo, wi], &facet);
                 (value.rgb(), pdf)
             }
             _ => (Rgb::ZERO, 0.0),

@@ -1,9 +1,10 @@
 //! Lambert's law.
 
-use super::{Bsdf, BsdfSample, BsdfSampleLanes, Rgb, RgbLanes};
-use crate::math::{LANES, VectorLanes};
-use crate::sampling::{Pairs, warp};
-use crate::simd::{Level, loops};
+use super::bsdf_columns::LaneBsdf;
+use super::straight::Straight;
+use super::{Bsdf, BsdfSample, Rgb};
+use crate::math::in_lanes;
+use crate::sampling::warp;
 use glam::DVec3;
 use std::f64::consts::FRAC_1_PI;
 
@@ -44,82 +45,13 @@ impl Bsdf for Diffuse {
     }
 }
 
-loops! {
-    /// What is scattered in the lanes that ask.
-    fn scatter(
-        reflectance: &RgbLanes,
-        asks: &[bool; LANES],
-        wo: &VectorLanes,
-        wi: &VectorLanes,
-        value: &mut RgbLanes,
-        pdf: &mut [f64; LANES],
-    ) {
-        for i in 0..LANES {
-            let of = Diffuse { reflectance: reflectance.get(i) };
-            let (scattered, drawn) = of.evaluate(wo.get(i), wi.get(i));
-            value.set(i, Rgb::select(asks[i], scattered, Rgb::ZERO));
-            pdf[i] = if asks[i] { drawn } else { 0.0 };
-        }
-    }
+in_lanes! {
+    /// What diffuse surfaces reflect, a lane each.
+    DiffuseLanes of Diffuse { reflectance: Rgb }
 }
 
-loops! {
-    /// Directions by the cosine in the lanes that ask.
-    fn draw(
-        reflectance: &RgbLanes,
-        asks: &[bool; LANES],
-        wo: &VectorLanes,
-        u: &Pairs,
-        wi: &mut VectorLanes,
-        weight: &mut RgbLanes,
-        pdf: &mut [f64; LANES],
-    ) {
-        for i in 0..LANES {
-            let of = Diffuse { reflectance: reflectance.get(i) };
-            let (direction, left, density) = match of.sample(wo.get(i), || 0.0, [u[0][i], u[1][i]]) {
-                Some(drawn) => (drawn.wi, drawn.weight, drawn.pdf),
-                None => (wo.get(i), Rgb::ZERO, 0.0),
-            };
-            wi.set(i, direction);
-            weight.set(i, left);
-            pdf[i] = if asks[i] { density } else { 0.0 };
-        }
-    }
-}
-
-/// What diffuse surfaces reflect, a lane each.
-#[derive(Clone, Debug)]
-pub struct DiffuseLanes(RgbLanes);
-
-impl DiffuseLanes {
-    /// Of nothing yet.
-    pub const NONE: Self = Self(RgbLanes::ZERO);
-
-    /// Puts a surface into a lane.
-    #[inline]
-    pub fn set(&mut self, lane: usize, diffuse: &Diffuse) {
-        self.0.set(lane, diffuse.reflectance);
-    }
-
-    /// What [`Bsdf::evaluate`] gives, in the lanes that ask.
-    pub fn evaluate(
-        &self,
-        level: Level,
-        asks: &[bool; LANES],
-        wo: &VectorLanes,
-        wi: &VectorLanes,
-        value: &mut RgbLanes,
-        pdf: &mut [f64; LANES],
-    ) {
-        scatter(level, &self.0, asks, wo, wi, value, pdf);
-    }
-
-    /// What [`Bsdf::sample`] gives, in the lanes that ask; nothing in the others.
-    pub fn sample(&self, level: Level, asks: &[bool; LANES], wo: &VectorLanes, u: &Pairs, drawn: &mut BsdfSampleLanes) {
-        let BsdfSampleLanes { wi, weight, pdf, eta, is_through } = drawn;
-        draw(level, &self.0, asks, wo, u, wi, weight, pdf);
-        (*eta, *is_through) = ([1.0; LANES], [false; LANES]);
-    }
+impl LaneBsdf for Diffuse {
+    type Lanes = Straight<Self>;
 }
 
 #[cfg(test)]

@@ -11,7 +11,9 @@ one_of! {
     ///
     /// They are kept apart from the kinds of [`super::AnyBsdf`], and not inlined, so that these do not share their code
     /// with what most scenes do not have.
-    Faceted, inline(never), {
+    Faceted, inline(never),
+    /// What is known of sixteen of them, a lane each.
+    FacetedLanes, {
         /// Metal of Beckmann's facets.
         BeckmannConductor(Conductor<Beckmann>),
         /// Glass of Beckmann's facets.

@@ -17,8 +17,11 @@ pub trait Facets: Copy + Debug + PartialEq {
     /// Of this roughness along x and y, 0 to 1. Where one is below [`Facets::SMOOTH`] it counts as that much.
     fn new(alpha: [f64; 2]) -> Self;
 
+    /// Of a roughness that another has.
+    fn with(alpha: [f64; 2]) -> Self;
+
     /// One for a rough surface, `None` where it is smooth in both directions.
-    #[inline]
+    #[inline(always)]
     fn rough(alpha: [f64; 2]) -> Option<Self> {
         (alpha[0] >= Self::SMOOTH || alpha[1] >= Self::SMOOTH).then(|| Self::new(alpha))
     }
@@ -27,7 +30,7 @@ pub trait Facets: Copy + Debug + PartialEq {
     fn alpha(&self) -> [f64; 2];
 
     /// The roughness of the isotropic distribution with as many slopes: √(αx αy).
-    #[inline]
+    #[inline(always)]
     fn mean_alpha(&self) -> f64 {
         let [ax, ay] = self.alpha();
         (ax * ay).sqrt()
@@ -48,7 +51,7 @@ pub trait Facets: Copy + Debug + PartialEq {
     fn sample_visible(&self, wo: DVec3, u: [f64; 2]) -> DVec3;
 
     /// The share of the facets' area facing `w` that is seen from there: Smith's G₁.
-    #[inline]
+    #[inline(always)]
     fn masking(&self, w: DVec3) -> f64 {
         2.0 * w.z.abs() / (w.z.abs() + self.stretch(w))
     }
@@ -64,14 +67,14 @@ pub trait Facets: Copy + Debug + PartialEq {
     /// G₁(wo) / cos θo, and G₂(wo, wi) / cos θo for light that goes through to `wi` on the other side. Here a
     /// refraction that starts at a facet seen from one side is taken to get out where the facet is seen from the other,
     /// G₂ = min(G₁(wo), G₁(wi)).
-    #[inline]
+    #[inline(always)]
     fn refraction_geometry(&self, wo: DVec3, wi: DVec3) -> [f64; 2] {
         let seen = 2.0 / (wo.z.abs() + self.stretch(wo));
         [seen, seen.min(2.0 * (wi.z / wo.z).abs() / (wi.z.abs() + self.stretch(wi)))]
     }
 
     /// The density, in solid angle of facet normals, with which [`Facets::sample_visible`] draws `h`.
-    #[inline]
+    #[inline(always)]
     fn visible_pdf(&self, wo: DVec3, h: DVec3) -> f64 {
         self.density(h) * wo.dot(h).max(0.0) * 2.0 / (wo.z + self.stretch(wo))
     }

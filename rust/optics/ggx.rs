@@ -2,7 +2,7 @@
 
 use super::Facets;
 use crate::math::turn::sin_cos_turn;
-use glam::DVec3;
+use crate::math::{DVec3, in_lanes};
 use std::f64::consts::FRAC_1_PI;
 
 /// The distribution of slopes that Trowbridge and Reitz found (1975), later named GGX (Walter et al., "Microfacet
@@ -13,18 +13,20 @@ pub struct Ggx {
     alpha: [f64; 2],
 }
 
-impl Ggx {
-    /// Of a roughness that another has.
-    #[inline(always)]
-    pub(super) fn with(alpha: [f64; 2]) -> Self {
-        Self { alpha }
-    }
+in_lanes! {
+    /// Such facets, a lane each.
+    GgxLanes of Ggx { alpha: [f64; 2] }
 }
 
 impl Facets for Ggx {
     #[inline]
     fn new(alpha: [f64; 2]) -> Self {
         Self { alpha: alpha.map(|a| a.clamp(Self::SMOOTH, 1.0)) }
+    }
+
+    #[inline(always)]
+    fn with(alpha: [f64; 2]) -> Self {
+        Self { alpha }
     }
 
     #[inline(always)]

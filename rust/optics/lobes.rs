@@ -2,8 +2,8 @@
 
 use super::Rgb;
 use super::bsdf::either;
-use crate::math::Frame;
 use crate::math::turn::sin_cos_turn;
+use crate::math::{Frame, in_lanes};
 use crate::sampling::warp;
 use glam::DVec3;
 use std::f64::consts::FRAC_1_PI;
@@ -23,24 +23,24 @@ impl Lobes {
         Self { diffuse, specular, share: if s > 0.0 { s / (d + s) } else { 0.0 } }
     }
 
-    #[inline]
+    #[inline(always)]
     pub fn black(&self) -> bool {
         self.diffuse.is_black() && self.specular.is_black()
     }
 
-    #[inline]
+    #[inline(always)]
     pub fn is_specular(&self, choice: impl FnOnce() -> f64) -> bool {
         self.share == 1.0 || (self.share > 0.0 && choice() < self.share)
     }
 
     /// The choices of the specular part, or of the other.
-    #[inline]
+    #[inline(always)]
     pub fn choices(&self, is_specular: bool) -> [f64; 2] {
         either(self.share, is_specular)
     }
 
     /// The density of a draw from either part.
-    #[inline]
+    #[inline(always)]
     pub fn mixed(&self, diffuse: f64, specular: f64) -> f64 {
         (1.0 - self.share) * diffuse + self.share * specular
     }
@@ -60,7 +60,7 @@ pub(super) fn diffuse(wo: DVec3, u: [f64; 2]) -> DVec3 {
 }
 
 /// A direction about `axis` with density (n + 1) / 2π cosⁿ.
-#[inline]
+#[inline(always)]
 pub(super) fn power_cosine(axis: DVec3, exponent: f64, u: [f64; 2]) -> DVec3 {
     // 1 − cos by expm1, so that a sharp lobe's width is not rounded away.
     let depth = -(u[1].ln() / (exponent + 1.0)).exp_m1();
@@ -73,11 +73,16 @@ pub(super) fn power_cosine(axis: DVec3, exponent: f64, u: [f64; 2]) -> DVec3 {
 /// as the inverse square: so do these, with density μ / (μ² + κ²) over the cosine μ for a scale κ. At κ = 1 it is
 /// nearly the cosine's.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Grazing {
+pub struct Grazing {
     /// κ².
     square: f64,
     /// ln(1 + 1 / κ²).
     log: f64,
+}
+
+in_lanes! {
+    /// Such directions, a lane each.
+    GrazingLanes of Grazing { square: f64, log: f64 }
 }
 
 impl Grazing {
@@ -87,20 +92,8 @@ impl Grazing {
         Self { square, log: square.recip().ln_1p() }
     }
 
-    /// Of its parts.
-    #[inline(always)]
-    pub fn with([square, log]: [f64; 2]) -> Self {
-        Self { square, log }
-    }
-
-    /// What it consists of.
-    #[inline(always)]
-    pub fn parts(&self) -> [f64; 2] {
-        [self.square, self.log]
-    }
-
     /// Draws one.
-    #[inline]
+    #[inline(always)]
     pub fn sample(&self, u: [f64; 2]) -> DVec3 {
         let square = (self.square * (u[1] * self.log).exp_m1()).min(1.0);
         let [sin, cos] = sin_cos_turn(u[0]);

@@ -48,46 +48,46 @@ impl<F: Tabulated> Lossy for F {
     type Mirror = MirrorLoss;
     type Interface = Interface;
 
-    #[inline]
+    #[inline(always)]
     fn mirror(self) -> MirrorLoss {
         MirrorLoss::new(self)
     }
 
-    #[inline]
+    #[inline(always)]
     fn interface(self, eta: f64) -> Interface {
         Interface::new(self, eta)
     }
 }
 
 impl Lost for MirrorLoss {
-    #[inline]
+    #[inline(always)]
     fn of(&self, w: DVec3) -> f64 {
         Self::of(self, w)
     }
 
-    #[inline]
+    #[inline(always)]
     fn average(&self) -> f64 {
         Self::average(self)
     }
 }
 
 impl LostBetween for Interface {
-    #[inline]
+    #[inline(always)]
     fn loss(&self, w: DVec3) -> f64 {
         Self::loss(self, w)
     }
 
-    #[inline]
+    #[inline(always)]
     fn crossing(&self, w: DVec3) -> f64 {
         Self::crossing(self, w)
     }
 
-    #[inline]
+    #[inline(always)]
     fn scale(&self, w: DVec3) -> f64 {
         Self::scale(self, w)
     }
 
-    #[inline]
+    #[inline(always)]
     fn given_back(&self, loss: f64, wo: DVec3, wi: DVec3) -> f64 {
         Self::given_back(self, loss, wo, wi)
     }
@@ -101,46 +101,46 @@ impl<F: Facets> Lossy for Once<F> {
     type Mirror = Nothing;
     type Interface = Nothing;
 
-    #[inline]
+    #[inline(always)]
     fn mirror(self) -> Nothing {
         Nothing
     }
 
-    #[inline]
+    #[inline(always)]
     fn interface(self, _eta: f64) -> Nothing {
         Nothing
     }
 }
 
 impl Lost for Nothing {
-    #[inline]
+    #[inline(always)]
     fn of(&self, _w: DVec3) -> f64 {
         0.0
     }
 
-    #[inline]
+    #[inline(always)]
     fn average(&self) -> f64 {
         0.0
     }
 }
 
 impl LostBetween for Nothing {
-    #[inline]
+    #[inline(always)]
     fn loss(&self, _w: DVec3) -> f64 {
         0.0
     }
 
-    #[inline]
+    #[inline(always)]
     fn crossing(&self, _w: DVec3) -> f64 {
         0.0
     }
 
-    #[inline]
+    #[inline(always)]
     fn scale(&self, _w: DVec3) -> f64 {
         1.0
     }
 
-    #[inline]
+    #[inline(always)]
     fn given_back(&self, _loss: f64, _wo: DVec3, _wi: DVec3) -> f64 {
         0.0
     }

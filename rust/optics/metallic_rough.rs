@@ -2,8 +2,6 @@
 
 mod lanes;
 
-pub use lanes::MetallicRoughLanes;
-
 use super::albedo::{MirrorLoss, SchlickShare};
 use super::conductor::{above, made_up, mirrors};
 use super::lobes::{Grazing, diffuse};

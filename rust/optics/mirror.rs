@@ -1,8 +1,9 @@
 //! A perfect mirror.
 
-use super::{Bsdf, BsdfSample, BsdfSampleLanes, Rgb, RgbLanes};
-use crate::math::{LANES, VectorLanes};
-use crate::simd::{Level, loops};
+use super::bsdf_columns::LaneBsdf;
+use super::straight::Straight;
+use super::{Bsdf, BsdfSample, Rgb};
+use crate::math::in_lanes;
 use glam::DVec3;
 
 /// Reflects into the one direction that Euclid's law of reflection says, the same share at every angle. Both sides
@@ -20,12 +21,12 @@ pub(super) fn mirrored(w: DVec3) -> DVec3 {
 }
 
 impl Bsdf for Mirror {
-    #[inline]
+    #[inline(always)]
     fn evaluate(&self, _wo: DVec3, _wi: DVec3) -> (Rgb, f64) {
         (Rgb::ZERO, 0.0)
     }
 
-    #[inline]
+    #[inline(always)]
     fn sample(&self, wo: DVec3, _choice: impl FnOnce() -> f64, _u: [f64; 2]) -> Option<BsdfSample> {
         (wo.z != 0.0 && !self.reflectance.is_black()).then(|| BsdfSample::delta(mirrored(wo), self.reflectance))
     }
@@ -43,48 +44,11 @@ impl Bsdf for Mirror {
     }
 }
 
-loops! {
-    /// Mirror images, in the lanes that ask, of which so much is left.
-    fn mirror(
-        wo: &VectorLanes,
-        asks: &[bool; LANES],
-        reflectance: &RgbLanes,
-        wi: &mut VectorLanes,
-        weight: &mut RgbLanes,
-        pdf: &mut [f64; LANES],
-    ) {
-        for i in 0..LANES {
-            wi.set(i, mirrored(wo.get(i)));
-            weight.set(i, reflectance.get(i));
-            pdf[i] = if asks[i] { f64::INFINITY } else { 0.0 };
-        }
-    }
+in_lanes! {
+    /// What mirrors reflect, a lane each.
+    MirrorLanes of Mirror { reflectance: Rgb }
 }
 
-/// What mirrors reflect, a lane each.
-#[derive(Clone, Debug)]
-pub struct MirrorLanes(pub(super) RgbLanes);
-
-impl MirrorLanes {
-    /// Of nothing yet.
-    pub const NONE: Self = Self(RgbLanes::ZERO);
-
-    /// Puts what is reflected into a lane.
-    #[inline]
-    pub fn set(&mut self, lane: usize, reflectance: Rgb) {
-        self.0.set(lane, reflectance);
-    }
-
-    /// What [`Mirror`] gives as [`Bsdf::sample`], in the lanes that ask; nothing in the others.
-    pub fn sample(&self, level: Level, asks: &[bool; LANES], wo: &VectorLanes, drawn: &mut BsdfSampleLanes) {
-        let mirrors = |lane: usize| asks[lane] && wo.get(lane).z != 0.0 && !self.0.get(lane).is_black();
-        self.sample_all(level, &std::array::from_fn(mirrors), wo, drawn);
-    }
-
-    /// The same where the lanes that ask are known to mirror.
-    pub(super) fn sample_all(&self, level: Level, asks: &[bool; LANES], wo: &VectorLanes, drawn: &mut BsdfSampleLanes) {
-        let BsdfSampleLanes { wi, weight, pdf, eta, is_through } = drawn;
-        mirror(level, wo, asks, &self.0, wi, weight, pdf);
-        (*eta, *is_through) = ([1.0; LANES], [false; LANES]);
-    }
+impl LaneBsdf for Mirror {
+    type Lanes = Straight<Self>;
 }

@@ -1,5 +1,7 @@
 //! What scatters nothing.
 
+use super::bsdf_columns::LaneBsdf;
+use super::looped::Looped;
 use super::{Bsdf, BsdfSample, Rgb};
 use glam::DVec3;
 
@@ -9,12 +11,12 @@ use glam::DVec3;
 pub struct Null;
 
 impl Bsdf for Null {
-    #[inline]
+    #[inline(always)]
     fn evaluate(&self, _wo: DVec3, _wi: DVec3) -> (Rgb, f64) {
         (Rgb::ZERO, 0.0)
     }
 
-    #[inline]
+    #[inline(always)]
     fn sample(&self, _wo: DVec3, _choice: impl FnOnce() -> f64, _u: [f64; 2]) -> Option<BsdfSample> {
         None
     }
@@ -26,4 +28,8 @@ impl Bsdf for Null {
     fn is_delta(&self) -> bool {
         true
     }
+}
+
+impl LaneBsdf for Null {
+    type Lanes = Looped;
 }

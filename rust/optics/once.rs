@@ -1,7 +1,7 @@
 //! Facets that scatter once.
 
 use super::Facets;
-use crate::math::DVec3;
+use crate::math::{DVec3, InLanes};
 
 /// Facets whose masking and shadowing are independent of each other, G₂ = G₁(wo) G₁(wi), and which give nothing back of
 /// what they throw on each other: the model of Walter et al. ("Microfacet Models for Refraction through Rough
@@ -9,44 +9,64 @@ use crate::math::DVec3;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Once<F>(F);
 
+impl<F: InLanes> InLanes for Once<F> {
+    type Lanes = F::Lanes;
+    const EMPTY: F::Lanes = F::EMPTY;
+
+    #[inline(always)]
+    fn get(lanes: &F::Lanes, lane: usize) -> Self {
+        Self(F::get(lanes, lane))
+    }
+
+    #[inline(always)]
+    fn put(&self, lanes: &mut F::Lanes, lane: usize) {
+        self.0.put(lanes, lane);
+    }
+}
+
 impl<F: Facets> Facets for Once<F> {
-    #[inline]
+    #[inline(always)]
     fn new(alpha: [f64; 2]) -> Self {
         Self(F::new(alpha))
     }
 
-    #[inline]
+    #[inline(always)]
+    fn with(alpha: [f64; 2]) -> Self {
+        Self(F::with(alpha))
+    }
+
+    #[inline(always)]
     fn alpha(&self) -> [f64; 2] {
         self.0.alpha()
     }
 
-    #[inline]
+    #[inline(always)]
     fn density(&self, h: DVec3) -> f64 {
         self.0.density(h)
     }
 
-    #[inline]
+    #[inline(always)]
     fn mirroring(&self, wo: DVec3, wi: DVec3) -> (f64, f64) {
         self.0.mirroring(wo, wi)
     }
 
-    #[inline]
+    #[inline(always)]
     fn stretch(&self, w: DVec3) -> f64 {
         self.0.stretch(w)
     }
 
-    #[inline]
+    #[inline(always)]
     fn sample_visible(&self, wo: DVec3, u: [f64; 2]) -> DVec3 {
         self.0.sample_visible(wo, u)
     }
 
-    #[inline]
+    #[inline(always)]
     fn reflection_geometry(&self, wo: DVec3, wi: DVec3) -> f64 {
         // For either direction, G₁ = 2 z / (z + s).
         wi.z / ((wo.z + self.stretch(wo)) * (wi.z + self.stretch(wi)))
     }
 
-    #[inline]
+    #[inline(always)]
     fn refraction_geometry(&self, wo: DVec3, wi: DVec3) -> [f64; 2] {
         let seen = 2.0 / (wo.z.abs() + self.stretch(wo));
         [seen, seen * self.masking(wi)]

@@ -1,9 +1,44 @@
 //! Several kinds of scattering as one type.
 
-/// Makes an enum of kinds that implement [`super::Bsdf`], which implements it too and numbers them. `$inline` is how
-/// its functions are to be inlined.
+use crate::math::LANES;
+
+/// Lanes that ask, by kind.
+pub(super) struct ByKind<'a> {
+    kinds: &'a [u8; LANES],
+    asks: &'a [bool; LANES],
+    /// The kinds of those that ask, a bit each.
+    present: u64,
+}
+
+impl<'a> ByKind<'a> {
+    /// Of lanes of some kinds, of which these ask.
+    #[inline]
+    pub fn new(kinds: &'a [u8; LANES], asks: &'a [bool; LANES]) -> Self {
+        let kind = |lane: usize| if asks[lane] { 1u64 << (kinds[lane] & 63) } else { 0 };
+        Self { kinds, asks, present: (0..LANES).fold(0, |all, lane| all | kind(lane)) }
+    }
+
+    /// Whether all that ask are of one kind.
+    #[inline]
+    pub fn is_one(&self) -> bool {
+        self.present.is_power_of_two()
+    }
+
+    /// Which lanes of a kind ask, if any do.
+    #[inline]
+    pub fn asks(&self, kind: u8) -> Option<[bool; LANES]> {
+        let asks = |lane: usize| self.asks[lane] && self.kinds[lane] == kind;
+        (self.present >> kind & 1 == 1).then(|| std::array::from_fn(asks))
+    }
+}
+
+/// Makes an enum of kinds that implement [`super::Bsdf`], which implements it too and numbers them, and columns for
+/// sixteen of it. `$inline` is how its functions are to be inlined.
 macro_rules! one_of {
-    ($(#[$about:meta])* $name:ident, $inline:meta, { $($(#[$doc:meta])* $kind:ident($of:ty),)+ }) => {
+    (
+        $(#[$about:meta])* $name:ident, $inline:meta, $(#[$about_columns:meta])* $columns:ident,
+        { $($(#[$doc:meta])* $kind:ident($of:ty),)+ }
+    ) => {
         $(#[$about])*
         #[derive(Clone, Copy, Debug)]
         pub enum $name {
@@ -11,12 +46,12 @@ macro_rules! one_of {
         }
 
         impl $name {
-            /// How many kinds there are.
-            pub const KINDS: usize = [$(stringify!($kind)),+].len();
+            /// How many kinds there are here.
+            pub const VARIANTS: usize = [$(stringify!($kind)),+].len();
 
             /// The number of its kind among them.
             #[inline]
-            pub fn kind(&self) -> usize {
+            pub fn variant(&self) -> usize {
                 enum Kind {
                     $($kind),+
                 }
@@ -49,13 +84,6 @@ macro_rules! one_of {
             ) -> Option<$crate::optics::BsdfSample> {
                 match self {
                     $(Self::$kind(kind) => kind.sample(wo, choice, u),)+
-                }
-            }
-
-            #[$inline]
-            fn prepare(&mut self, wo: glam::DVec3) {
-                match self {
-                    $(Self::$kind(kind) => kind.prepare(wo),)+
                 }
             }
 
@@ -98,6 +126,104 @@ macro_rules! one_of {
                 match self {
                     $(Self::$kind(kind) => kind.diffuse(),)+
                 }
+            }
+        }
+
+        $(#[$about_columns])*
+        #[derive(Clone, Debug)]
+        #[allow(non_snake_case, reason = "a field for each kind has its name")]
+        pub struct $columns {
+            /// Of which kind each lane is; of none before the first.
+            kinds: [u8; $crate::math::LANES],
+            $($kind: <$of as $crate::optics::bsdf_columns::LaneBsdf>::Lanes,)+
+        }
+
+        impl $crate::optics::bsdf_columns::LaneBsdf for $name {
+            type Lanes = $columns;
+        }
+
+        impl $crate::optics::bsdf_columns::BsdfColumns<$name> for $columns {
+            const NONE: Self = Self {
+                kinds: [u8::MAX; $crate::math::LANES],
+                $($kind: <<$of as $crate::optics::bsdf_columns::LaneBsdf>::Lanes
+                    as $crate::optics::bsdf_columns::BsdfColumns<$of>>::NONE,)+
+            };
+
+            #[$inline]
+            fn set(&mut self, lane: usize, of: &$name, wo: glam::DVec3) {
+                self.kinds[lane] = of.variant() as u8;
+                match of {
+                    $($name::$kind(of) => self.$kind.set(lane, of, wo),)+
+                }
+            }
+
+            #[$inline]
+            fn evaluate<'a>(
+                &self,
+                level: $crate::simd::Level,
+                each: impl Fn(usize) -> Option<&'a $name> + Copy,
+                asks: &[bool; $crate::math::LANES],
+                directions: [&$crate::math::VectorLanes; 2],
+                value: &mut $crate::optics::RgbLanes,
+                pdf: &mut [f64; $crate::math::LANES],
+            ) {
+                let by_kind = $crate::optics::one_of::ByKind::new(&self.kinds, asks);
+                if !by_kind.is_one() {
+                    (*value, *pdf) = ($crate::optics::RgbLanes::ZERO, [0.0; $crate::math::LANES]);
+                }
+                let mut kind = 0;
+                $(
+                    if let Some(mine) = by_kind.asks(kind) {
+                        let each = |lane| match each(lane) {
+                            Some($name::$kind(of)) => Some(of),
+                            _ => None,
+                        };
+                        if by_kind.is_one() {
+                            return self.$kind.evaluate(level, each, &mine, directions, value, pdf);
+                        }
+                        let (mut some, mut density) = (value.clone(), *pdf);
+                        self.$kind.evaluate(level, each, &mine, directions, &mut some, &mut density);
+                        for lane in (0..$crate::math::LANES).filter(|&lane| mine[lane]) {
+                            value.set(lane, some.get(lane));
+                            pdf[lane] = density[lane];
+                        }
+                    }
+                    kind += 1;
+                )+
+                let _ = kind;
+            }
+
+            #[$inline]
+            fn sample<'a>(
+                &self,
+                level: $crate::simd::Level,
+                each: impl Fn(usize) -> Option<&'a $name> + Copy,
+                asks: &[bool; $crate::math::LANES],
+                wo: &$crate::math::VectorLanes,
+                numbers: (&[f64; $crate::math::LANES], &$crate::sampling::Pairs),
+                drawn: &mut $crate::optics::BsdfSampleLanes,
+            ) {
+                let by_kind = $crate::optics::one_of::ByKind::new(&self.kinds, asks);
+                if !by_kind.is_one() {
+                    drawn.pdf = [0.0; $crate::math::LANES];
+                }
+                let mut kind = 0;
+                $(
+                    if let Some(mine) = by_kind.asks(kind) {
+                        let each = |lane| match each(lane) {
+                            Some($name::$kind(of)) => Some(of),
+                            _ => None,
+                        };
+                        if by_kind.is_one() {
+                            return self.$kind.sample(level, each, &mine, wo, numbers, drawn);
+                        }
+                        let mut some = $crate::optics::BsdfSampleLanes::NONE;
+                        self.$kind.sample(level, each, &mine, wo, numbers, &mut some);
+                        drawn.take(&mine, &some);
+                    }
+                    kind += 1;
+                )+
+                let _ = kind;
             }
         }
     };

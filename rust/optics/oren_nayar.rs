@@ -1,8 +1,11 @@
 //! Rough matt surfaces.
 
+use super::bsdf_columns::LaneBsdf;
+use super::straight::Straight;
 use super::{Bsdf, BsdfSample, Rgb};
+use crate::math::turn::upper_angle;
+use crate::math::{DVec3, in_lanes};
 use crate::sampling::warp;
-use glam::DVec3;
 use std::f64::consts::{FRAC_1_PI, PI};
 
 /// A surface of Lambertian facets (Oren and Nayar, "Generalization of Lambert's Reflectance Model", 1994) in the form
@@ -37,18 +40,18 @@ impl OrenNayar {
     }
 
     /// The share of light from a direction that white facets scatter once.
-    #[inline]
+    #[inline(always)]
     fn single(&self, cosine: f64) -> f64 {
         let c = cosine.clamp(0.0, 1.0);
         let s = ((1.0 - c) * (1.0 + c)).sqrt();
         // (1 − sin³) / cos without the cancellation at the horizon.
-        let g = s * (c.acos() - s * c) + 2.0 / 3.0 * s * (c * (1.0 + s + s * s) / (1.0 + s) - 1.0);
+        let g = s * (upper_angle(s, c) - s * c) + 2.0 / 3.0 * s * (c * (1.0 + s + s * s) / (1.0 + s) - 1.0);
         self.scale * (1.0 + self.r * FRAC_1_PI * g)
     }
 }
 
 impl Bsdf for OrenNayar {
-    #[inline]
+    #[inline(always)]
     fn evaluate(&self, wo: DVec3, wi: DVec3) -> (Rgb, f64) {
         if wo.z * wi.z <= 0.0 {
             return (Rgb::ZERO, 0.0);
@@ -61,7 +64,7 @@ impl Bsdf for OrenNayar {
         ((self.reflectance * single + self.multiple * lost.max(0.0)) * i, i * FRAC_1_PI)
     }
 
-    #[inline]
+    #[inline(always)]
     fn sample(&self, wo: DVec3, _choice: impl FnOnce() -> f64, u: [f64; 2]) -> Option<BsdfSample> {
         if wo.z == 0.0 || self.reflectance.is_black() {
             return None;
@@ -77,4 +80,13 @@ impl Bsdf for OrenNayar {
         let lost = 1.0 - average;
         self.reflectance * average + self.multiple * (PI * lost * lost)
     }
+}
+
+in_lanes! {
+    /// Such surfaces, a lane each.
+    OrenNayarLanes of OrenNayar { reflectance: Rgb, scale: f64, r: f64, multiple: Rgb }
+}
+
+impl LaneBsdf for OrenNayar {
+    type Lanes = Straight<Self>;
 }

@@ -1,6 +1,8 @@
 //! Phong's lobe about the mirror direction.
 
+use super::bsdf_columns::LaneBsdf;
 use super::lobes::{Lobes, diffuse};
+use super::looped::Looped;
 use super::mirror::mirrored;
 use super::{Bsdf, BsdfSample, Rgb};
 use glam::DVec3;
@@ -23,7 +25,7 @@ impl Phong {
 }
 
 impl Bsdf for Phong {
-    #[inline]
+    #[inline(always)]
     fn evaluate(&self, wo: DVec3, wi: DVec3) -> (Rgb, f64) {
         if wo.z * wi.z <= 0.0 {
             return (Rgb::ZERO, 0.0);
@@ -34,7 +36,7 @@ impl Bsdf for Phong {
         (value, self.lobes.mixed(wi.z.abs() * FRAC_1_PI, density))
     }
 
-    #[inline]
+    #[inline(always)]
     fn sample(&self, wo: DVec3, choice: impl FnOnce() -> f64, u: [f64; 2]) -> Option<BsdfSample> {
         if wo.z == 0.0 || self.lobes.black() {
             return None;
@@ -52,4 +54,8 @@ impl Bsdf for Phong {
     fn roughness(&self) -> f64 {
         self.lobes.roughness(self.exponent)
     }
+}
+
+impl LaneBsdf for Phong {
+    type Lanes = Looped;
 }

@@ -1,10 +1,13 @@
 //! The principled models of the film studios: many looks by a few numbers.
 
+use super::bsdf_columns::LaneBsdf;
 use super::conductor::above;
 use super::lobes::diffuse;
+use super::straight::Straight;
 use super::{Bsdf, BsdfSample, Facets, Ggx, Once, Rgb, fresnel};
+use crate::math::exponential::exp;
 use crate::math::turn::sin_cos_turn;
-use glam::DVec3;
+use crate::math::{DVec3, in_lanes, select};
 use std::f64::consts::{FRAC_1_PI, PI};
 
 /// What the principled models are told of a point, each number 0 to 1 unless it says otherwise.
@@ -30,6 +33,21 @@ pub struct Look {
     pub flatness: f64,
 }
 
+in_lanes! {
+    /// What they are told of points, a lane each.
+    LookLanes of Look {
+        base_color: Rgb,
+        luminance: f64,
+        roughness: f64,
+        anisotropic: f64,
+        transmission: f64,
+        specular_tint: f64,
+        sheen: f64,
+        sheen_tint: f64,
+        flatness: f64,
+    }
+}
+
 impl Look {
     /// Facets of a roughness, stretched.
     fn facets(&self, roughness: f64) -> Once<Ggx> {
@@ -38,12 +56,14 @@ impl Look {
     }
 
     /// The colour at a luminance of 1.
+    #[inline(always)]
     fn tint(&self) -> Rgb {
         if self.luminance > 0.0 { self.base_color / self.luminance } else { Rgb::ONE }
     }
 
     /// What is matt, with its cosine: Burley's diffuse reflection, part of it flattened as by Hanrahan and Krueger, and
     /// sheen, between two directions above.
+    #[inline(always)]
     fn matt(&self, wo: DVec3, wi: DVec3, shares: [f64; 2]) -> Rgb {
         let half = (wo + wi).normalize_or(DVec3::Z);
         let cosine = wi.dot(half);
@@ -62,6 +82,7 @@ impl Look {
 
 /// Schlick's reflectance for what it is at normal incidence, of light that meets a facet at a cosine, with `eta` the
 /// index beyond over that before: towards the thinner side it is that of the angle within.
+#[inline(always)]
 fn schlick(normal: Rgb, cosine: f64, eta: f64) -> Rgb {
     let weight = if eta > 1.0 {
         fresnel::schlick_weight(cosine)
@@ -72,6 +93,7 @@ fn schlick(normal: Rgb, cosine: f64, eta: f64) -> Rgb {
 }
 
 /// Reflectance at normal incidence.
+#[inline(always)]
 fn at_normal(eta: f64) -> f64 {
     ((eta - 1.0) / (eta + 1.0)).powi(2)
 }
@@ -104,7 +126,7 @@ impl Principled {
     pub fn new(look: Look, eta: f64, metallic: f64, [coat, gloss]: [f64; 2], solid: bool) -> Self {
         // At an index of 1 there would be no surface.
         let eta = if (eta - 1.0).abs() < 1e-3 { 1.001 } else { eta };
-        let gloss = Gtr1 { alpha: 0.1 + (0.001 - 0.1) * gloss };
+        let gloss = Gtr1::new(0.1 + (0.001 - 0.1) * gloss);
         Self { look, facets: look.facets(look.roughness), eta, metallic, coat, gloss, solid }
     }
 
@@ -114,12 +136,14 @@ impl Principled {
     }
 
     /// The shares of what is matt and of what goes through.
+    #[inline(always)]
     fn bodies(&self) -> [f64; 2] {
         let through = self.look.transmission;
         [(1.0 - self.metallic) * (1.0 - through), (1.0 - self.metallic) * through]
     }
 
     /// What facets reflect of light that meets them at a cosine.
+    #[inline(always)]
     fn reflectance(&self, is_front: bool, cosine: f64) -> Rgb {
         let look = &self.look;
         if !is_front {
@@ -132,6 +156,7 @@ impl Principled {
     }
 
     /// The probabilities of the matt part and of the coat; the rest is the facets'.
+    #[inline(always)]
     fn shares(&self, is_front: bool) -> [f64; 2] {
         if !is_front {
             return [0.0; 2];
@@ -143,6 +168,7 @@ impl Principled {
     }
 
     /// The probability that a facet drawn reflects, at a cosine.
+    #[inline(always)]
     fn reflecting(&self, is_front: bool, cosine: f64) -> f64 {
         let [_, through] = self.bodies();
         if is_front {
@@ -153,11 +179,13 @@ impl Principled {
     }
 
     /// Whether a direction is on the side that all of it is on, and the index beyond it.
+    #[inline(always)]
     fn side(&self, wo: DVec3) -> (bool, f64) {
         let is_front = wo.z > 0.0 || !self.solid;
         (is_front, if is_front { self.eta } else { 1.0 / self.eta })
     }
 
+    #[inline(always)]
     fn reflected(&self, is_front: bool, o: DVec3, i: DVec3) -> (Rgb, f64) {
         let [matt, coat] = self.shares(is_front);
         let (density, cosine) = self.facets.mirroring(o, i);
@@ -182,6 +210,7 @@ impl Principled {
         (value, pdf)
     }
 
+    #[inline(always)]
     fn refracted(&self, wo: DVec3, wi: DVec3) -> (Rgb, f64) {
         let (is_front, eta) = self.side(wo);
         let [_, through] = self.bodies();
@@ -206,6 +235,7 @@ impl Principled {
 }
 
 impl Bsdf for Principled {
+    #[inline(always)]
     fn evaluate(&self, wo: DVec3, wi: DVec3) -> (Rgb, f64) {
         if !Ggx::sees(wo) || !Ggx::sees(wi) {
             return (Rgb::ZERO, 0.0);
@@ -223,6 +253,7 @@ impl Bsdf for Principled {
         }
     }
 
+    #[inline(always)]
     fn sample(&self, wo: DVec3, choice: impl FnOnce() -> f64, u: [f64; 2]) -> Option<BsdfSample> {
         let (is_front, eta) = self.side(wo);
         if !Ggx::sees(wo) || (!is_front && self.bodies()[1] == 0.0) {
@@ -231,24 +262,20 @@ impl Bsdf for Principled {
         let (choice, up) = (choice(), above(wo));
         let [matt, coat] = self.shares(is_front);
         let smooth = matt + coat;
-        let mut beyond = false;
-        let (mut wi, choices) = if choice < matt {
-            (diffuse(up, u), [0.0, matt])
-        } else if choice < smooth {
-            let half = self.gloss.sample(u);
-            (half * (2.0 * up.dot(half)) - up, [matt, smooth])
-        } else {
-            let half = self.facets.sample_visible(up, u);
-            let cosine = up.dot(half);
-            let between = smooth + (1.0 - smooth) * self.reflecting(is_front, cosine);
-            if choice < between {
-                (half * (2.0 * cosine) - up, [smooth, between])
-            } else {
-                beyond = true;
-                (fresnel::refract(up, half, eta)?, [between, 1.0])
-            }
-        };
-        if (wi.z > 0.0) == beyond || !Ggx::sees(wi) {
+        // All are computed, and one is taken: lanes have no branches.
+        let (gloss, half) = (self.gloss.sample(u), self.facets.sample_visible(up, u));
+        let cosine = up.dot(half);
+        let between = smooth + (1.0 - smooth) * self.reflecting(is_front, cosine);
+        let (bent, is_total) = fresnel::refracted(up, half, eta);
+        let (is_matt, is_smooth) = (choice < matt, choice < smooth);
+        let beyond = !is_smooth & (choice >= between);
+        let sharp = select(beyond, bent, half * (2.0 * cosine) - up);
+        let coated = select(is_smooth, gloss * (2.0 * up.dot(gloss)) - up, sharp);
+        let mut wi = select(is_matt, diffuse(up, u), coated);
+        let of_facet = if beyond { [between, 1.0] } else { [smooth, between] };
+        let of_rest = if is_smooth { [matt, smooth] } else { of_facet };
+        let choices = if is_matt { [0.0, matt] } else { of_rest };
+        if (beyond & is_total) | ((wi.z > 0.0) == beyond) | !Ggx::sees(wi) {
             return None;
         }
         wi.z = wi.z.abs().copysign(if beyond { -wo.z } else { wo.z });
@@ -291,6 +318,7 @@ impl PrincipledThin {
     }
 
     /// The choices up to the end of each lobe: sharp and matt, of each what is reflected and what goes through.
+    #[inline(always)]
     fn ends(&self) -> [f64; 4] {
         let sharp = self.look.transmission;
         [0.5 * sharp, sharp, 1.0 - (1.0 - sharp) * self.diffuse_transmission, 1.0]
@@ -298,6 +326,7 @@ impl PrincipledThin {
 }
 
 impl Bsdf for PrincipledThin {
+    #[inline(always)]
     fn evaluate(&self, wo: DVec3, wi: DVec3) -> (Rgb, f64) {
         if !Ggx::sees(wo) || !Ggx::sees(wi) {
             return (Rgb::ZERO, 0.0);
@@ -306,7 +335,7 @@ impl Bsdf for PrincipledThin {
         let (o, i, sharp) = (above(wo), above(wi), look.transmission);
         let (mut value, mut pdf) = (Rgb::ZERO, 0.0);
         if sharp > 0.0 {
-            let facets = &self.facets[usize::from(is_through)];
+            let facets = if is_through { self.facets[1] } else { self.facets[0] };
             let (density, cosine) = facets.mirroring(o, i);
             let plain = fresnel::dielectric(cosine, self.eta);
             let share = if is_through {
@@ -328,21 +357,27 @@ impl Bsdf for PrincipledThin {
         (value, pdf)
     }
 
+    #[inline(always)]
     fn sample(&self, wo: DVec3, choice: impl FnOnce() -> f64, u: [f64; 2]) -> Option<BsdfSample> {
         if !Ggx::sees(wo) {
             return None;
         }
-        let (choice, up, ends) = (choice(), above(wo), self.ends());
-        let lobe = ends.iter().position(|&end| choice < end).unwrap_or(3);
-        let mut wi = if lobe < 2 { self.facets[lobe].sample_reflection(up, u) } else { diffuse(up, u) };
+        let (choice, up) = (choice(), above(wo));
+        let [mirrored, sharp, matt, all] = self.ends();
+        let (is_sharp, is_first) = (choice < sharp, choice < if choice < sharp { mirrored } else { matt });
+        // Both are computed, and one is taken: lanes have no branches.
+        let facets = if is_first { self.facets[0] } else { self.facets[1] };
+        let mut wi = select(is_sharp, facets.sample_reflection(up, u), diffuse(up, u));
         if !(wi.z > 0.0 && Ggx::sees(wi)) {
             return None;
         }
-        let is_through = lobe % 2 == 1;
+        let is_through = !is_first;
+        let of_sharp = if is_first { [0.0, mirrored] } else { [mirrored, sharp] };
+        let of_matt = if is_first { [sharp, matt] } else { [matt, all] };
+        let choices = if is_sharp { of_sharp } else { of_matt };
         wi.z = wi.z.copysign(if is_through { -wo.z } else { wo.z });
         let (value, pdf) = self.evaluate(wo, wi);
-        let begin = if lobe == 0 { 0.0 } else { ends[lobe - 1] };
-        let drawn = BsdfSample::new(wi, value / pdf, pdf).of_lobe([begin, ends[lobe]]);
+        let drawn = BsdfSample::new(wi, value / pdf, pdf).of_lobe(choices);
         (pdf > 0.0).then(|| if is_through { drawn.through(1.0) } else { drawn })
     }
 
@@ -362,23 +397,62 @@ impl Bsdf for PrincipledThin {
 /// Facets of tails so long that they glow, for coats: Burley's (2012) generalisation of GGX with an exponent of 1.
 #[derive(Clone, Copy, Debug)]
 struct Gtr1 {
-    alpha: f64,
+    /// α², and its logarithm.
+    square: f64,
+    log: f64,
+}
+
+in_lanes! {
+    /// Such facets, a lane each.
+    Gtr1Lanes of Gtr1 { square: f64, log: f64 }
 }
 
 impl Gtr1 {
+    fn new(alpha: f64) -> Self {
+        let square = alpha * alpha;
+        Self { square, log: square.ln() }
+    }
+
+    #[inline(always)]
     fn density(&self, h: DVec3) -> f64 {
-        let square = self.alpha * self.alpha;
-        (square - 1.0) / (PI * square.ln() * (1.0 + (square - 1.0) * h.z * h.z))
+        let square = self.square;
+        (square - 1.0) / (PI * self.log * (1.0 + (square - 1.0) * h.z * h.z))
     }
 
     /// Draws a normal with density D cos θ.
+    #[inline(always)]
     fn sample(&self, u: [f64; 2]) -> DVec3 {
-        let square = self.alpha * self.alpha;
-        let height = ((1.0 - square.powf(1.0 - u[1])) / (1.0 - square)).clamp(0.0, 1.0);
+        let height = ((1.0 - exp(self.log * (1.0 - u[1]))) / (1.0 - self.square)).clamp(0.0, 1.0);
         let [sin, cos] = sin_cos_turn(u[0]);
         let radius = (1.0 - height).sqrt();
         DVec3::new(radius * cos, radius * sin, height.sqrt())
     }
+}
+
+in_lanes! {
+    /// Such surfaces, a lane each.
+    PrincipledLanes of Principled {
+        look: Look,
+        facets: Once<Ggx>,
+        eta: f64,
+        metallic: f64,
+        coat: f64,
+        gloss: Gtr1,
+        solid: bool,
+    }
+}
+
+impl LaneBsdf for Principled {
+    type Lanes = Straight<Self>;
+}
+
+in_lanes! {
+    /// Such sheets, a lane each.
+    PrincipledThinLanes of PrincipledThin { look: Look, facets: [Once<Ggx>; 2], eta: f64, diffuse_transmission: f64 }
+}
+
+impl LaneBsdf for PrincipledThin {
+    type Lanes = Straight<Self>;
 }
 
 #[cfg(test)]

@@ -36,6 +36,17 @@ impl BsdfSampleLanes {
         (drawn.pdf > 0.0).then_some(drawn)
     }
 
+    /// Takes some lanes from another.
+    #[inline]
+    pub fn take(&mut self, lanes: &[bool; LANES], from: &Self) {
+        for lane in (0..LANES).filter(|&lane| lanes[lane]) {
+            self.wi.set(lane, from.wi.get(lane));
+            self.weight.set(lane, from.weight.get(lane));
+            (self.pdf[lane], self.eta[lane]) = (from.pdf[lane], from.eta[lane]);
+            self.is_through[lane] = from.is_through[lane];
+        }
+    }
+
     /// Sets that of a lane.
     #[inline]
     pub fn set(&mut self, lane: usize, drawn: Option<BsdfSample>) {

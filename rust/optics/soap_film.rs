@@ -1,7 +1,9 @@
 //! A film by itself.
 
 use super::bsdf::either;
+use super::bsdf_columns::LaneBsdf;
 use super::filmed::Filmed;
+use super::looped::Looped;
 use super::mirror::mirrored;
 use super::spectra::Waves;
 use super::{Bsdf, BsdfSample, Rgb};
@@ -29,12 +31,12 @@ impl SoapFilm {
 }
 
 impl Bsdf for SoapFilm {
-    #[inline]
+    #[inline(always)]
     fn evaluate(&self, _wo: DVec3, _wi: DVec3) -> (Rgb, f64) {
         (Rgb::ZERO, 0.0)
     }
 
-    #[inline]
+    #[inline(always)]
     fn sample(&self, wo: DVec3, choice: impl FnOnce() -> f64, _u: [f64; 2]) -> Option<BsdfSample> {
         if wo.z == 0.0 {
             return None;
@@ -65,4 +67,8 @@ impl Bsdf for SoapFilm {
     fn roughness(&self) -> f64 {
         0.0
     }
+}
+
+impl LaneBsdf for SoapFilm {
+    type Lanes = Looped;
 }

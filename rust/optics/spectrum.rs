@@ -1,6 +1,6 @@
 //! Amounts of light.
 
-use crate::math::VectorLanes;
+use crate::math::{InLanes, VectorLanes};
 use glam::DVec3;
 use std::fmt;
 use std::iter::Sum;
@@ -169,6 +169,21 @@ impl RgbLanes {
     #[inline(always)]
     pub fn set(&mut self, lane: usize, colour: Rgb) {
         self.0.set(lane, colour.0);
+    }
+}
+
+impl InLanes for Rgb {
+    type Lanes = RgbLanes;
+    const EMPTY: RgbLanes = RgbLanes::ZERO;
+
+    #[inline(always)]
+    fn get(lanes: &RgbLanes, lane: usize) -> Self {
+        lanes.get(lane)
+    }
+
+    #[inline(always)]
+    fn put(&self, lanes: &mut RgbLanes, lane: usize) {
+        lanes.set(lane, *self);
     }
 }
 

@@ -1,6 +1,8 @@
 //! How an interface divides light between two ways.
 
 use super::{Rgb, fresnel};
+use crate::math::{DVec3, InLanes, LANES, VectorLanes};
+use crate::simd::{Level, loops};
 use std::fmt::Debug;
 use std::ops::{Div, Mul};
 
@@ -12,10 +14,35 @@ pub trait Split: Copy + Debug {
     /// The share of light that is reflected at a `cosine` of incidence, 0 to 1: `eta` is the index of refraction beyond
     /// over that before, and light comes from above or from below the surface.
     fn reflectance(&self, cosine: f64, eta: f64, is_above: bool) -> Self::Share;
+
+    /// The same by lane, in those that ask, of light that goes to `wo`, with the index below the surface over that
+    /// above in `etas`.
+    #[inline]
+    fn reflectances<'a>(
+        _level: Level,
+        each: impl Fn(usize) -> Option<&'a Self>,
+        asks: &[bool; LANES],
+        (etas, wo): (&[f64; LANES], &VectorLanes),
+        cosines: &[f64; LANES],
+        shares: &mut <Self::Share as InLanes>::Lanes,
+    ) where
+        Self: 'a,
+    {
+        for lane in (0..LANES).filter(|&lane| asks[lane]) {
+            let (wo, Some(split)) = (wo.get(lane), each(lane)) else { continue };
+            split.reflectance(cosines[lane], beyond(etas[lane], wo), wo.z > 0.0).put(shares, lane);
+        }
+    }
+}
+
+/// The index beyond a surface over that on the side of `w`, for the index below over that above.
+#[inline(always)]
+pub(super) fn beyond(eta: f64, w: DVec3) -> f64 {
+    if w.z > 0.0 { eta } else { 1.0 / eta }
 }
 
 /// A share of light, one for all of it or a colour.
-pub trait Share: Copy + Mul<f64, Output = Self> + Div<f64, Output = Self> {
+pub trait Share: Copy + InLanes + Mul<f64, Output = Self> + Div<f64, Output = Self> {
     /// No light.
     const NONE: Self;
 
@@ -103,5 +130,26 @@ impl Split for Bare {
     #[inline(always)]
     fn reflectance(&self, cosine: f64, eta: f64, _is_above: bool) -> f64 {
         fresnel::dielectric(cosine, eta)
+    }
+
+    #[inline]
+    fn reflectances<'a>(
+        level: Level,
+        _each: impl Fn(usize) -> Option<&'a Self>,
+        _asks: &[bool; LANES],
+        (etas, wo): (&[f64; LANES], &VectorLanes),
+        cosines: &[f64; LANES],
+        shares: &mut [f64; LANES],
+    ) {
+        reflect(level, etas, wo, cosines, shares);
+    }
+}
+
+loops! {
+    /// Fresnel's reflectance in every lane.
+    fn reflect(etas: &[f64; LANES], wo: &VectorLanes, cosines: &[f64; LANES], shares: &mut [f64; LANES]) {
+        for i in 0..LANES {
+            shares[i] = fresnel::dielectric(cosines[i], beyond(etas[i], wo.get(i)));
+        }
     }
 }

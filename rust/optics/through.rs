@@ -57,7 +57,7 @@ impl Through {
     }
 
     /// The share of light of a cosine that goes through, by cubics (Catmull and Rom, 1974).
-    #[inline]
+    #[inline(always)]
     pub fn share(&self, cosine: f64) -> f64 {
         let at = self.variable(cosine).clamp(0.0, 1.0) * (NODES - 1) as f64;
         let low = (at as usize).min(NODES - 2);
@@ -72,19 +72,19 @@ impl Through {
     }
 
     /// The share of even light that goes through.
-    #[inline]
+    #[inline(always)]
     pub fn average(&self) -> f64 {
         f64::from(self.average)
     }
 
     /// The share of even light from within that is reflected.
-    #[inline]
+    #[inline(always)]
     pub fn within(&self) -> f64 {
         f64::from(self.within)
     }
 
     /// A variable from 0 to 1 for a cosine: dense at grazing, and about α.
-    #[inline]
+    #[inline(always)]
     fn variable(&self, c: f64) -> f64 {
         let square = self.alpha * self.alpha;
         (1.0 - self.weight) * c.sqrt() + self.weight * c * ((1.0 + square) / (c * c + square)).sqrt()

@@ -1,6 +1,9 @@
 //! What lets light straight through.
 
+use super::bsdf_columns::LaneBsdf;
+use super::straight::Straight;
 use super::{Bsdf, BsdfSample, Rgb};
+use crate::math::in_lanes;
 use glam::DVec3;
 
 /// Lets light through as if nothing were there, or a share of it: the holes of a mask.
@@ -11,12 +14,12 @@ pub struct Transparent {
 }
 
 impl Bsdf for Transparent {
-    #[inline]
+    #[inline(always)]
     fn evaluate(&self, _wo: DVec3, _wi: DVec3) -> (Rgb, f64) {
         (Rgb::ZERO, 0.0)
     }
 
-    #[inline]
+    #[inline(always)]
     fn sample(&self, wo: DVec3, _choice: impl FnOnce() -> f64, _u: [f64; 2]) -> Option<BsdfSample> {
         (!self.transmittance.is_black()).then(|| BsdfSample::delta(-wo, self.transmittance).through(1.0))
     }
@@ -36,4 +39,13 @@ impl Bsdf for Transparent {
     fn roughness(&self) -> f64 {
         0.0
     }
+}
+
+in_lanes! {
+    /// What they let through, a lane each.
+    TransparentLanes of Transparent { transmittance: Rgb }
+}
+
+impl LaneBsdf for Transparent {
+    type Lanes = Straight<Self>;
 }

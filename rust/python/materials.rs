@@ -11,7 +11,7 @@ use crate::optics::conductors::{METALS, metal};
 use crate::scene::Material;
 use crate::scene::materials::{
     BlinnPhongMaterial, BoundaryMaterial, BumpMap, ConductorMaterial, DielectricMaterial, DiffuseMaterial, FacetKind,
-    FilmBase, FilmedMetals, Index, Interior, Looks, Mask, MetallicRoughMaterial, MirrorMaterial, MixMaterial,
+    FilmBase, FilmedMetals, Index, Interior, LookTextures, Mask, MetallicRoughMaterial, MirrorMaterial, MixMaterial,
     NormalMap, OrenNayarMaterial, PhongMaterial, PlasticMaterial, PrincipledMaterial, PrincipledThinMaterial,
     Roughness, SoapFilmMaterial, ThinDielectricMaterial, ThinFilmMaterial, TintedBase, TintedMaterial, TwoSided,
 };
@@ -182,9 +182,9 @@ impl Appearances {
     }
 
     /// What the principled materials have in common.
-    fn looks(&self, given: &Bound<'_, PyAny>) -> PyResult<Looks> {
+    fn looks(&self, given: &Bound<'_, PyAny>) -> PyResult<LookTextures> {
         let number = |name: &str| self.textures.number(given, name);
-        Ok(Looks {
+        Ok(LookTextures {
             base_color: self.textures.attribute(given, "base_color", Meaning::Share)?,
             roughness: number("roughness")?,
             anisotropic: number("anisotropic")?,

@@ -40,9 +40,9 @@ pub use geometry::{
 };
 pub(crate) use lights::SeenTriangle;
 pub use lights::{
-    Aim, ConstantEnvironment, Departure, DirectionalLight, EmissionNumbers, EmissionPdf, EmissionSample, Emitters,
-    EnvironmentMap, Light, LightBounds, LightContextLanes, LightLanes, LightSample, LightSampleContext, Lights,
-    Picture, Place, PointEmission, PointLight, Profile, Projector, Reach, Source, SpotLight, SunSky, Waved,
+    Aim, ConstantEnvironment, DirectionalLight, EmissionDensity, EmissionNumbers, EmissionPdf, EmissionSample,
+    Emitters, EnvironmentMap, Light, LightBounds, LightContextLanes, LightLanes, LightSample, LightSampleContext,
+    Lights, Picture, Place, PointEmission, PointLight, Profile, Projector, Reach, Source, SpotLight, SunSky, Waved,
 };
 pub use materials::{DiffuseMaterial, Material};
 pub use patches::{Cell, Patches};

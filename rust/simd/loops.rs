@@ -6,43 +6,49 @@
 /// What a level has is what the compiler may use; it fuses nothing by itself. A loop becomes vectors where its lanes do
 /// the same: no branch that jumps, no call, no index that depends on a lane. Such steps stand in loops of their own.
 /// What is called must be `#[inline(always)]`, down to the last, so that all is compiled for the level; and what is
-/// written must come as an argument each, for only of those is it known that they lie apart.
+/// written must come as an argument each, for only of those is it known that they lie apart. Such a function may be one
+/// of types, which it is compiled for one by one.
 macro_rules! loops {
-    ($(#[$attribute:meta])* $visibility:vis fn $name:ident($($argument:ident: $type:ty),* $(,)?) $body:block) => {
+    (
+        $(#[$attribute:meta])*
+        $visibility:vis fn $name:ident $(<$($of:ident: $bound:ident $(+ $more:ident)*),+>)?(
+            $($argument:ident: $type:ty),* $(,)?
+        ) $body:block
+    ) => {
         $(#[$attribute])*
         #[inline]
         #[allow(clippy::too_many_arguments)]
-        $visibility fn $name(level: $crate::simd::Level, $($argument: $type),*) {
+        $visibility fn $name$(<$($of: $bound $(+ $more)*),+>)?(level: $crate::simd::Level, $($argument: $type),*) {
             #[inline(always)]
             #[allow(clippy::too_many_arguments)]
-            fn run($($argument: $type),*) $body
+            fn run$(<$($of: $bound $(+ $more)*),+>)?($($argument: $type),*) $body
 
             #[cfg(target_arch = "x86_64")]
             #[target_feature(enable = "avx2,fma,popcnt,bmi1,bmi2,lzcnt")]
             #[allow(clippy::too_many_arguments)]
-            unsafe fn with_avx2($($argument: $type),*) {
-                run($($argument),*);
+            unsafe fn with_avx2$(<$($of: $bound $(+ $more)*),+>)?($($argument: $type),*) {
+                run$(::<$($of),+>)?($($argument),*);
             }
 
             #[cfg(target_arch = "x86_64")]
             #[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw,avx2,fma,popcnt,bmi1,bmi2,lzcnt")]
             #[allow(clippy::too_many_arguments)]
-            unsafe fn with_avx512($($argument: $type),*) {
-                run($($argument),*);
+            unsafe fn with_avx512$(<$($of: $bound $(+ $more)*),+>)?($($argument: $type),*) {
+                run$(::<$($of),+>)?($($argument),*);
             }
 
             match level {
                 #[cfg(target_arch = "x86_64")]
                 $crate::simd::Level::Avx512 if $crate::simd::Avx512::detect().is_some() => {
                     // SAFETY: the processor was just seen to have what `with_avx512` is compiled for.
-                    unsafe { with_avx512($($argument),*) }
+                    unsafe { with_avx512$(::<$($of),+>)?($($argument),*) }
                 }
                 #[cfg(target_arch = "x86_64")]
                 $crate::simd::Level::Avx2 if $crate::simd::Avx2::detect().is_some() => {
                     // SAFETY: the processor was just seen to have what `with_avx2` is compiled for.
-                    unsafe { with_avx2($($argument),*) }
+                    unsafe { with_avx2$(::<$($of),+>)?($($argument),*) }
                 }
-                _ => run($($argument),*),
+                _ => run$(::<$($of),+>)?($($argument),*),
             }
         }
     };

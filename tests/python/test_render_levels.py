@@ -47,6 +47,27 @@ kinds = *glossy, gold, rw.Mirror(0.9), rw.ThinDielectric(1.5), rw.Dielectric(1.5
 balls = [rw.Sphere((x - 3, -1, 0), 0.45, material=kind) for x, kind in enumerate(kinds)]
 tell("kinds", rw.Scene([floor, lamp, *balls]), camera)
 tell("guided", rw.Scene([floor, lamp, *balls]), camera, rw.Path(caustics=True))
+
+mixed = rw.Mix(rw.Mix(rw.Diffuse(blue), gold, 0.3), rw.Dielectric(1.5, roughness=0.4), 0.5)
+principled = rw.Principled(blue, metallic=0.2, transmission=0.3, clearcoat=0.8, sheen=0.5)
+others = (
+    rw.Dielectric(1.5, roughness=0.5),
+    rw.Dielectric(1.5, roughness=0.3, distribution="beckmann"),
+    rw.Conductor("Au", roughness=0.4, distribution="beckmann", multiple_scattering=False),
+    rw.Plastic(blue, roughness=0.4, multiple_scattering=False),
+    principled,
+    rw.PrincipledThin(blue, transmission=0.4),
+    rw.OrenNayar(blue, 0.6),
+    rw.Phong(blue, 0.2, 30),
+    rw.BlinnPhong(blue, 0.2, 30),
+    mixed,
+    rw.Tinted(rw.Dielectric(1.5), transmittance=blue),
+    rw.ThinFilm(300, ior=1.5, base=rw.Dielectric(1.33)),
+    rw.SoapFilm(400),
+)
+balls = [rw.Sphere((x % 7 - 3, x // 7 - 1, 0), 0.45, material=kind) for x, kind in enumerate(others)]
+tell("others", rw.Scene([floor, lamp, *balls]), camera)
+tell("others split", rw.Scene([floor, lamp, *balls]), camera, rw.Distributed(splits=3))
 """
 
 
@@ -63,5 +84,5 @@ def test_levels_change_no_bit():
 
     levels = [lines for level in ("neon", "sse2", "avx2", "avx512") if (lines := told(level)) is not None]
     reference = levels[0]
-    assert len({line.split()[1] for line in reference}) == len(reference) == 16
+    assert len({line.split()[1] for line in reference}) == len(reference) == 18
     assert all(other == reference for other in levels)

@@ -4,7 +4,7 @@ use super::nodes::{FlatNode, flatten};
 use crate::accel::bvh::Options;
 use crate::accel::bvh::traverse::{gathered, larger_first};
 use crate::accel::walk::Input;
-use crate::accel::{Inside, Primitives, region};
+use crate::accel::{Placed, Primitives, region};
 use crate::math::robust::greater;
 use crate::math::{DVec3, Region};
 use crate::shapes::Bounds;
@@ -157,7 +157,7 @@ impl Layout {
     }
 
     /// Lays a prototype out, if it is not there.
-    fn prototype(&mut self, inside: &Inside<'_>, options: &Options) -> Laid {
+    fn prototype(&mut self, inside: &Placed<'_>, options: &Options) -> Laid {
         if let Some(laid) = self.known.get(&inside.id) {
             return *laid;
         }
@@ -174,7 +174,7 @@ impl Layout {
 }
 
 /// The map from one region's box units to those of a prototype's.
-fn between(inside: &Inside<'_>, from: &Region, to: &Region) -> [[f32; 4]; 3] {
+fn between(inside: &Placed<'_>, from: &Region, to: &Region) -> [[f32; 4]; 3] {
     std::array::from_fn(|i| {
         let row = inside.rows[i];
         let shift = (row.dot(from.centre - inside.shift) - to.centre[i]) * to.scale;

@@ -289,7 +289,7 @@ impl<'a> BidirectionalWorker<'a> {
                 (Some(_), _) => self.full(0, path.bounce + 2),
                 (None, Some(emitters)) => {
                     let asked = lights.infinite_pdf(&path.receiver(ray), ray.direction);
-                    path.partial.of_found(asked, &emitters.of_outside(ray.direction))
+                    path.partial.of_found(asked, &emitters.of_environment(ray.direction))
                 }
                 (None, None) => 1.0,
             }

@@ -4,7 +4,7 @@ use super::adjoint::{Arrived, Met, Onward};
 use super::walk::Flying;
 use super::weights::Partial;
 use crate::integrators::is_matt;
-use crate::scene::{Departure, EmissionSample, Emitters};
+use crate::scene::{EmissionDensity, EmissionSample, Emitters};
 
 /// That of each path of a batch.
 pub(in crate::integrators) struct Partials<'a> {
@@ -20,7 +20,7 @@ pub(in crate::integrators) struct LightEnd {
     partial: Partial,
     /// How its light set out, where it has come to its first surface: with which density that would ask for light
     /// depends on who looks.
-    departure: Option<Departure>,
+    departure: Option<EmissionDensity>,
 }
 
 impl LightEnd {

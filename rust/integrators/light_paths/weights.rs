@@ -17,7 +17,7 @@
 //! and masks, which are passed by chance, are left out, and where a direction is single, the chance that it was drawn
 //! with counts as the same from both ends.
 
-use crate::scene::Departure;
+use crate::scene::EmissionDensity;
 
 /// What is known, where a walk has come to, of the other ways to find its vertices: Georgiev's d_VCM and d_VC.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,7 +34,7 @@ pub(in crate::integrators) struct Partial {
 
 impl Partial {
     /// That of light that sets out. At its first surface, [`Partial::asked`] comes before all else but arriving.
-    pub fn of_light(departure: &Departure) -> Self {
+    pub fn of_light(departure: &EmissionDensity) -> Self {
         let share = departure.cosine / departure.density;
         Self { here: share, beyond: if departure.is_single() { 0.0 } else { share }, merged: 0.0 }
     }
@@ -93,7 +93,7 @@ impl Partial {
 
     /// How much it counts that a walk from the camera has come upon light that is asked for with a density, and sets
     /// out so; `self` before arriving.
-    pub fn of_found(&self, asked: f64, departure: &Departure) -> f64 {
+    pub fn of_found(&self, asked: f64, departure: &EmissionDensity) -> f64 {
         weight(self.here * asked, self.beyond * departure.density / departure.cosine)
     }
 }
@@ -103,7 +103,7 @@ impl Partial {
 /// on along the other with the last.
 pub(in crate::integrators) fn of_asked(
     eye: &Partial,
-    (asked, departure): (f64, &Departure),
+    (asked, departure): (f64, &EmissionDensity),
     forward: f64,
     cosine: f64,
     reverse: f64,
@@ -145,7 +145,7 @@ mod tests {
         is_matt: Vec<bool>,
         /// The disk of photons, times their number; 0 where walks do not merge.
         disk: f64,
-        departure: Departure,
+        departure: EmissionDensity,
         asked: f64,
         seen: f64,
         paths: f64,
@@ -166,7 +166,7 @@ mod tests {
         let is_matt = (0..=length).map(|i| i > 0 && single[i] > 2.0).collect();
         let cosine = if is_point { 1.0 } else { after[0] };
         let source = if is_point { Source::Point(0) } else { Source::Surface(0) };
-        let departure = Departure { source, density: any(), cosine };
+        let departure = EmissionDensity { source, density: any(), cosine };
         let (asked, seen) = (any(), any());
         let disk = if number.is_multiple_of(2) { 0.0 } else { 3.0 * any() };
         let paths = 64.0;

@@ -14,6 +14,7 @@ mod first_seen;
 mod guided;
 mod known;
 mod matt;
+mod meet;
 mod path_state;
 mod resampling;
 mod reuse;

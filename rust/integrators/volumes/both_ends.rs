@@ -265,7 +265,7 @@ impl<'a> BothEnds<'a> {
                 (Some(_), _) => self.full(0, path.bounce + 2),
                 (None, Some(emitters)) => {
                     let asked = lights.infinite_pdf(&path.receiver(), direction);
-                    path.partial.of_found(asked, &emitters.of_outside(direction))
+                    path.partial.of_found(asked, &emitters.of_environment(direction))
                 }
                 (None, None) => 1.0,
             }

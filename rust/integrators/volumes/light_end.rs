@@ -2,7 +2,7 @@
 
 use super::vertex::{Met, Vertex};
 use crate::integrators::light_paths::{Onward, Partial};
-use crate::scene::{Departure, EmissionSample, Emitters};
+use crate::scene::{EmissionDensity, EmissionSample, Emitters};
 
 /// What it knows where it has come to.
 #[derive(Clone, Copy)]
@@ -10,7 +10,7 @@ pub(super) struct LightEnd {
     partial: Partial,
     /// How its light set out, where it has come to its first vertex: with which density that would ask for light
     /// depends on who looks.
-    departure: Option<Departure>,
+    departure: Option<EmissionDensity>,
 }
 
 impl LightEnd {

@@ -1,8 +1,9 @@
 //! The material of glTF by lane.
 
 use super::{MetallicRough, above, diffuse, mirrored, mirrors};
-use crate::math::{DVec3, LANES, VectorLanes, select};
-use crate::optics::lobes::Grazing;
+use crate::math::{DVec3, InLanes, LANES, VectorLanes, select};
+use crate::optics::bsdf_columns::{BsdfColumns, LaneBsdf};
+use crate::optics::lobes::{Grazing, GrazingLanes};
 use crate::optics::{BsdfSampleLanes, Facets, Ggx, Rgb, RgbLanes, fresnel};
 use crate::sampling::Pairs;
 use crate::simd::{Level, loops};
@@ -16,11 +17,15 @@ pub struct MetallicRoughLanes {
     base: RgbLanes,
     multiple: RgbLanes,
     f0: RgbLanes,
-    grazing: [[f64; LANES]; 2],
+    grazing: GrazingLanes,
     wo: VectorLanes,
     /// What facets reflect once of light to `wo`, and how often a draw is that, and what metal scatters more than once.
     once: [[f64; LANES]; 2],
     shares: [[f64; LANES]; 2],
+}
+
+impl LaneBsdf for MetallicRough {
+    type Lanes = MetallicRoughLanes;
 }
 
 loops! {
@@ -114,36 +119,6 @@ loops! {
 }
 
 impl MetallicRoughLanes {
-    /// Of nothing yet.
-    pub const NONE: Self = Self {
-        is_rough: [false; LANES],
-        alpha: [1.0; LANES],
-        base: RgbLanes::ZERO,
-        multiple: RgbLanes::ZERO,
-        f0: RgbLanes::ZERO,
-        grazing: [[1.0; LANES]; 2],
-        wo: VectorLanes::ZERO,
-        once: [[0.0; LANES]; 2],
-        shares: [[0.0; LANES]; 2],
-    };
-
-    /// Puts a material into a lane, and a direction that light goes to.
-    #[inline]
-    pub fn set(&mut self, lane: usize, of: &MetallicRough, wo: DVec3) {
-        self.is_rough[lane] = of.rough.is_some();
-        if let Some(rough) = &of.rough {
-            self.alpha[lane] = rough.ggx.alpha()[0];
-        }
-        self.base.set(lane, of.base);
-        self.multiple.set(lane, of.multiple);
-        self.f0.set(lane, of.f0());
-        [self.grazing[0][lane], self.grazing[1][lane]] = of.grazing.parts();
-        self.wo.set(lane, wo);
-        let once = of.once(above(wo));
-        (self.once[0][lane], self.once[1][lane]) = once;
-        [self.shares[0][lane], self.shares[1][lane]] = of.shares(once);
-    }
-
     #[inline(always)]
     fn facets(&self, lane: usize) -> Ggx {
         Ggx::with([self.alpha[lane]; 2])
@@ -151,16 +126,45 @@ impl MetallicRoughLanes {
 
     #[inline(always)]
     fn grazing(&self, lane: usize) -> Grazing {
-        Grazing::with([self.grazing[0][lane], self.grazing[1][lane]])
+        Grazing::get(&self.grazing, lane)
+    }
+}
+
+impl BsdfColumns<MetallicRough> for MetallicRoughLanes {
+    const NONE: Self = Self {
+        is_rough: [false; LANES],
+        alpha: [1.0; LANES],
+        base: RgbLanes::ZERO,
+        multiple: RgbLanes::ZERO,
+        f0: RgbLanes::ZERO,
+        grazing: Grazing::EMPTY,
+        wo: VectorLanes::ZERO,
+        once: [[0.0; LANES]; 2],
+        shares: [[0.0; LANES]; 2],
+    };
+
+    #[inline]
+    fn set(&mut self, lane: usize, of: &MetallicRough, wo: DVec3) {
+        self.is_rough[lane] = of.rough.is_some();
+        if let Some(rough) = &of.rough {
+            self.alpha[lane] = rough.ggx.alpha()[0];
+        }
+        self.base.set(lane, of.base);
+        self.multiple.set(lane, of.multiple);
+        self.f0.set(lane, of.f0());
+        of.grazing.put(&mut self.grazing, lane);
+        self.wo.set(lane, wo);
+        let once = of.once(above(wo));
+        (self.once[0][lane], self.once[1][lane]) = once;
+        [self.shares[0][lane], self.shares[1][lane]] = of.shares(once);
     }
 
-    /// What [`crate::optics::Bsdf::evaluate`] gives, in the lanes that ask, of the materials that were put there.
-    pub fn evaluate<'a>(
+    fn evaluate<'a>(
         &self,
         level: Level,
-        each: impl Fn(usize) -> Option<&'a MetallicRough>,
+        each: impl Fn(usize) -> Option<&'a MetallicRough> + Copy,
         asks: &[bool; LANES],
-        wi: &VectorLanes,
+        [_, wi]: [&VectorLanes; 2],
         value: &mut RgbLanes,
         pdf: &mut [f64; LANES],
     ) {
@@ -174,12 +178,12 @@ impl MetallicRoughLanes {
         scatter(level, self, wi, &density, &cosine, &schlick, &kept, asks, value, pdf);
     }
 
-    /// What [`crate::optics::Bsdf::sample`] gives, in the lanes that ask; nothing in the others.
-    pub fn sample<'a>(
+    fn sample<'a>(
         &self,
         level: Level,
-        each: impl Fn(usize) -> Option<&'a MetallicRough>,
+        each: impl Fn(usize) -> Option<&'a MetallicRough> + Copy,
         asks: &[bool; LANES],
+        wo: &VectorLanes,
         (choice, u): (&[f64; LANES], &Pairs),
         drawn: &mut BsdfSampleLanes,
     ) {
@@ -195,7 +199,7 @@ impl MetallicRoughLanes {
         let [mut goes, mut is_single] = [[false; LANES]; 2];
         turn(level, self, choice, asks, wi, &mut goes, &mut is_single);
         let scatters = from_fn(|lane| goes[lane] && !is_single[lane]);
-        self.evaluate(level, each, &scatters, wi, weight, pdf);
+        self.evaluate(level, each, &scatters, [wo, wi], weight, pdf);
         weigh(level, self, &is_single, pdf, weight);
         (*eta, *is_through) = ([1.0; LANES], [false; LANES]);
     }

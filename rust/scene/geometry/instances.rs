@@ -2,7 +2,7 @@
 
 use super::pose::{Pose, between, carried_by};
 use super::prototype::Prototype;
-use crate::accel::{Inside, Meeting, Side, Wanted};
+use crate::accel::{Meeting, Placed, Side, Wanted};
 use crate::math::{Hit, Ray, Singular};
 use crate::scene::textures::Needs;
 use crate::scene::{ShadingPoint, SurfacePoint};
@@ -159,13 +159,13 @@ impl Instances {
     }
 
     /// As [`crate::accel::UserGeometry::inside`] has it.
-    pub fn inside(&self, instance: u32) -> Option<Inside<'_>> {
+    pub fn inside(&self, instance: u32) -> Option<Placed<'_>> {
         if self.moves() {
             return None;
         }
         let (rows, shift) = self.pose(instance, 0.0)?.to_prototype();
         let id = Arc::as_ptr(&self.prototype).addr();
-        Some(Inside { id, primitives: self.prototype.geometry(), rows, shift })
+        Some(Placed { id, primitives: self.prototype.geometry(), rows, shift })
     }
 
     /// As [`crate::accel::UserGeometry::meet`] has it.

@@ -2,7 +2,7 @@
 
 use super::instances::Instances;
 use super::prototype::Prototype;
-use crate::accel::{Inside, UserGeometry, Wanted};
+use crate::accel::{Placed, UserGeometry, Wanted};
 use crate::math::Ray;
 use crate::shapes::{Ball, Bounds, Candidate, Shape};
 use std::sync::Arc;
@@ -107,7 +107,7 @@ impl UserGeometry for Objects {
         }
     }
 
-    fn inside(&self, primitive: u32) -> Option<Inside<'_>> {
+    fn inside(&self, primitive: u32) -> Option<Placed<'_>> {
         let (instances, instance) = self.instance(primitive)?;
         instances.inside(instance)
     }

@@ -15,7 +15,7 @@ use std::f64::consts::PI;
 /// What has a single place or direction has a probability in place of a density, in this and in
 /// [`Emitters::asked_from`] alike: only their ratio counts.
 #[derive(Clone, Copy, Debug)]
-pub struct Departure {
+pub struct EmissionDensity {
     /// From what.
     pub source: Source,
     /// The density of the place, by area, times that of the direction, by solid angle.
@@ -24,7 +24,7 @@ pub struct Departure {
     pub cosine: f64,
 }
 
-impl Departure {
+impl EmissionDensity {
     /// Whether no ray can come upon it by chance.
     pub fn is_single(&self) -> bool {
         matches!(self.source, Source::Point(_) | Source::Direction(_))
@@ -33,27 +33,27 @@ impl Departure {
 
 impl Emitters<'_> {
     /// That of light that was drawn as it sets out.
-    pub fn of_sample(&self, sample: &EmissionSample) -> Departure {
+    pub fn of_sample(&self, sample: &EmissionSample) -> EmissionDensity {
         let direction = sample.ray.direction;
         match sample.source {
             Source::Surface(light) => {
-                self.departure_of_surface(light, sample.normal.dot(direction), (sample.ray.origin, direction))
+                self.emission_of_surface(light, sample.normal.dot(direction), (sample.ray.origin, direction))
             }
-            Source::Point(_) => self.departure_of_point(sample.source, direction),
-            Source::Outside | Source::Direction(_) => self.departure_of_outside(sample.source, -direction),
+            Source::Point(_) => self.emission_of_point(sample.source, direction),
+            Source::Infinite | Source::Direction(_) => self.emission_of_infinite(sample.source, -direction),
         }
     }
 
     /// That of light from a surface, along a ray back to it; none from what is never drawn.
-    pub fn of_hit(&self, ray: &Ray, hit: &Hit, surface: &SurfacePoint) -> Option<Departure> {
+    pub fn of_hit(&self, ray: &Ray, hit: &Hit, surface: &SurfacePoint) -> Option<EmissionDensity> {
         let light = self.lights.number_of(self.geometry, hit)?;
         let way = (surface.position, -ray.direction);
-        Some(self.departure_of_surface(light as u32, way.1.dot(surface.normal), way))
+        Some(self.emission_of_surface(light as u32, way.1.dot(surface.normal), way))
     }
 
     /// That of light from outside that comes from a direction.
-    pub fn of_outside(&self, direction: DVec3) -> Departure {
-        self.departure_of_outside(Source::Outside, direction)
+    pub fn of_environment(&self, direction: DVec3) -> EmissionDensity {
+        self.emission_of_infinite(Source::Infinite, direction)
     }
 
     /// Draws light as [`Lights::sample`] does, and tells how likely it sets out; and the density of the draw, as
@@ -63,14 +63,14 @@ impl Emitters<'_> {
         receiver: &LightSampleContext,
         choice: f64,
         u: [f64; 2],
-    ) -> Option<(LightSample, Departure, f64)> {
+    ) -> Option<(LightSample, EmissionDensity, f64)> {
         let (lights, geometry) = (self.lights, self.geometry);
         let (infinite, share) = (&lights.infinite, lights.infinite.share());
         if choice < share {
             let chosen = infinite.choose(choice / share);
             let drawn = infinite.sample_of(chosen, receiver, u)?.chosen(share);
-            let source = if drawn.pdf == f64::INFINITY { Source::Direction(chosen as u32) } else { Source::Outside };
-            let departure = self.departure_of_outside(source, drawn.direction);
+            let source = if drawn.pdf == f64::INFINITY { Source::Direction(chosen as u32) } else { Source::Infinite };
+            let departure = self.emission_of_infinite(source, drawn.direction);
             let density = match source {
                 Source::Direction(_) => share * infinite.probability(chosen),
                 _ => drawn.pdf,
@@ -85,7 +85,7 @@ impl Emitters<'_> {
         let points = lights.surfaces.len() + lights.copied.len();
         if let Some(point) = number.checked_sub(points) {
             let distance = source.position().distance(receiver.position);
-            let departure = self.departure_of_point(Source::Point(point as u32), -drawn.direction);
+            let departure = self.emission_of_point(Source::Point(point as u32), -drawn.direction);
             return Some((drawn, departure, probability * distance * distance));
         }
         // The way off a surface is along its normal.
@@ -93,7 +93,7 @@ impl Emitters<'_> {
         let largest = off.abs().max_element();
         let normal = if largest > 0.0 { (off / largest).normalize() } else { drawn.direction };
         let way = (source.position(), -drawn.direction);
-        Some((drawn, self.departure_of_surface(number as u32, normal.dot(drawn.direction), way), drawn.pdf))
+        Some((drawn, self.emission_of_surface(number as u32, normal.dot(drawn.direction), way), drawn.pdf))
     }
 
     /// The density with which [`Lights::sample`] draws, for a receiver, the direction of light that comes to it along a
@@ -102,14 +102,14 @@ impl Emitters<'_> {
     pub fn asked_from(
         &self,
         receiver: &LightSampleContext,
-        departure: &Departure,
+        departure: &EmissionDensity,
         direction: DVec3,
         distance: f64,
     ) -> f64 {
         let Self { lights, geometry, .. } = self;
         let infinite = &lights.infinite;
         let number = match departure.source {
-            Source::Outside => return lights.infinite_pdf(receiver, -direction),
+            Source::Infinite => return lights.infinite_pdf(receiver, -direction),
             Source::Direction(light) => return infinite.share() * infinite.probability(light as usize),
             Source::Surface(light) => light as usize,
             Source::Point(light) => lights.surfaces.len() + lights.copied.len() + light as usize,
@@ -129,7 +129,7 @@ impl Emitters<'_> {
     }
 
     /// Light from a surface, from a place along a direction.
-    fn departure_of_surface(&self, light: u32, cosine: f64, (place, direction): (DVec3, DVec3)) -> Departure {
+    fn emission_of_surface(&self, light: u32, cosine: f64, (place, direction): (DVec3, DVec3)) -> EmissionDensity {
         let (probability, cosine) = (self.choice.probability(light as usize), cosine.abs());
         let density = match self.lights.extent(light as usize, self.geometry) {
             Some((sides, area)) if probability > 0.0 => {
@@ -138,20 +138,20 @@ impl Emitters<'_> {
             }
             _ => 0.0,
         };
-        Departure { source: Source::Surface(light), density, cosine }
+        EmissionDensity { source: Source::Surface(light), density, cosine }
     }
 
-    fn departure_of_point(&self, source: Source, direction: DVec3) -> Departure {
-        let Source::Point(point) = source else { return Departure { source, density: 0.0, cosine: 1.0 } };
+    fn emission_of_point(&self, source: Source, direction: DVec3) -> EmissionDensity {
+        let Source::Point(point) = source else { return EmissionDensity { source, density: 0.0, cosine: 1.0 } };
         let number = self.within - self.lights.inside.len() + point as usize;
         let own = self.lights.inside[point as usize].emission_pdf(direction);
         let aim = self.aim_of_point(point as usize);
         let density = self.choice.probability(number) * aim.map_or(own, |(_, cones)| cones.density(direction, own));
-        Departure { source, density, cosine: 1.0 }
+        EmissionDensity { source, density, cosine: 1.0 }
     }
 
     /// Light that comes from a direction.
-    fn departure_of_outside(&self, source: Source, direction: DVec3) -> Departure {
+    fn emission_of_infinite(&self, source: Source, direction: DVec3) -> EmissionDensity {
         let [across, other] = self.covered(&Frame::new(direction));
         let infinite = &self.lights.infinite;
         let towards = match source {
@@ -159,7 +159,7 @@ impl Emitters<'_> {
             _ => infinite.pdf(&LightSampleContext::free(self.middle), direction),
         };
         let density = self.choice.probability(self.within) / (4.0 * across * other) * towards;
-        Departure { source, density, cosine: 1.0 }
+        EmissionDensity { source, density, cosine: 1.0 }
     }
 }
 

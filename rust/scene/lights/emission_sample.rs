@@ -28,9 +28,9 @@ pub enum Source {
     Surface(u32),
     /// A light that is a single point, by its number among those.
     Point(u32),
-    /// Any of the lights outside, by a direction that several may have.
-    Outside,
-    /// The single direction of a light outside, by its number among those.
+    /// Any of the infinite lights, by a direction that several may have.
+    Infinite,
+    /// The single direction of an infinite light, by its number among those.
     Direction(u32),
 }
 

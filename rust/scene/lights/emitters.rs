@@ -223,7 +223,7 @@ impl<'a> Emitters<'a> {
             weight: drawn.weight * area,
             pdf: EmissionPdf { place: 1.0 / area, direction: drawn.pdf },
             normal: DVec3::ZERO,
-            source: if drawn.pdf == f64::INFINITY { Source::Direction(chosen as u32) } else { Source::Outside },
+            source: if drawn.pdf == f64::INFINITY { Source::Direction(chosen as u32) } else { Source::Infinite },
             is_infinite: true,
         })
     }

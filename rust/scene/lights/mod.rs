@@ -34,7 +34,7 @@ mod waved;
 pub use aim::Aim;
 pub use bounds::LightBounds;
 pub use constant::ConstantEnvironment;
-pub use departures::Departure;
+pub use departures::EmissionDensity;
 pub use directional::DirectionalLight;
 pub use emission_sample::{EmissionPdf, EmissionSample, PointEmission, Source};
 pub use emitters::{EmissionNumbers, Emitters, not_drawn};

@@ -90,13 +90,11 @@ impl Bsdf for BsdfMix {
         match self {
             Self::One(bsdf) => bsdf.evaluate(wo, wi),
             Self::Several(parts) => {
-                let (mut value, mut density, total) = (Rgb::ZERO, 0.0, share_of_all(parts));
-                for (weight, bsdf) in parts {
-                    let (of_part, pdf) = bsdf.evaluate(wo, wi);
-                    value += *weight * of_part;
-                    density += share(*weight) / total * pdf;
+                let mut sum = (Rgb::ZERO, 0.0);
+                for (weight, probability, bsdf) in weighed(parts) {
+                    sum = with_part(sum, (weight, probability), bsdf.evaluate(wo, wi));
                 }
-                if total > 0.0 { (value, density) } else { (Rgb::ZERO, 0.0) }
+                sum
             }
         }
     }
@@ -106,41 +104,17 @@ impl Bsdf for BsdfMix {
         match self {
             Self::One(bsdf) => bsdf.sample(wo, choice, u),
             Self::Several(parts) => {
-                let total = share_of_all(parts);
-                let mut left = choice() * total;
-                let last = parts.iter().rposition(|(weight, _)| share(*weight) > 0.0)?;
-                let (mut chosen, mut before) = (last, 0.0);
-                for (i, (weight, _)) in parts[..last].iter().enumerate() {
-                    let mine = share(*weight);
-                    if left < mine {
-                        chosen = i;
-                        break;
-                    }
-                    left -= mine;
-                    before += mine;
-                }
-                let (weight, bsdf) = &parts[chosen];
-                let probability = share(*weight) / total;
-                // What is left of the choice is as good as a new one.
-                let rest = (left / share(*weight)).clamp(0.0, 1f64.next_down());
-                let sample = bsdf.sample(wo, || rest, u)?;
-                let is_end = |choice| chosen == last && choice == 1.0;
-                let among_all = |choice| if is_end(choice) { 1.0 } else { (before + choice * share(*weight)) / total };
-                let choices = sample.choices.map(among_all);
+                let chosen = Chosen::new(parts, choice())?;
+                let (weight, bsdf) = &parts[chosen.part];
+                let sample = bsdf.sample(wo, || chosen.rest, u)?;
+                let choices = sample.choices.map(|choice| chosen.among_all(choice));
                 if sample.is_delta() {
-                    return Some(BsdfSample { weight: sample.weight * *weight / probability, choices, ..sample });
+                    let weight = sample.weight * *weight / chosen.probability();
+                    return Some(BsdfSample { weight, choices, ..sample });
                 }
                 let (value, pdf) = self.evaluate(wo, sample.wi);
                 (pdf > 0.0).then(|| BsdfSample { weight: value / pdf, pdf, choices, ..sample })
             }
-        }
-    }
-
-    #[inline]
-    fn prepare(&mut self, wo: DVec3) {
-        match self {
-            Self::One(bsdf) => bsdf.prepare(wo),
-            Self::Several(parts) => parts.iter_mut().for_each(|(_, bsdf)| bsdf.prepare(wo)),
         }
     }
 
@@ -197,6 +171,60 @@ fn share(weight: Rgb) -> f64 {
     weight.max()
 }
 
-fn share_of_all(parts: &[(Rgb, AnyBsdf)]) -> f64 {
-    parts.iter().map(|(weight, _)| share(*weight)).sum()
+/// Parts, of each its weight and the probability that it is drawn from: none of those without any.
+pub(super) fn weighed(parts: &[(Rgb, AnyBsdf)]) -> impl Iterator<Item = (Rgb, f64, &AnyBsdf)> {
+    let total: f64 = parts.iter().map(|(weight, _)| share(*weight)).sum();
+    let all = if total > 0.0 { parts } else { &[] };
+    all.iter().map(move |(weight, bsdf)| (*weight, share(*weight) / total, bsdf))
+}
+
+/// What is scattered, and its density, with that of one more part, of a weight and a probability.
+#[inline(always)]
+pub(super) fn with_part(sum: (Rgb, f64), (weight, probability): (Rgb, f64), part: (Rgb, f64)) -> (Rgb, f64) {
+    (sum.0 + weight * part.0, sum.1 + probability * part.1)
+}
+
+/// A part that is drawn from.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Chosen {
+    /// Its number.
+    pub part: usize,
+    /// What is left of the choice, which is as good as a new one.
+    pub rest: f64,
+    /// The shares of those before it, its own, and that of all.
+    shares: [f64; 3],
+    is_last: bool,
+}
+
+impl Chosen {
+    /// One of some parts; none where nothing has a weight.
+    pub fn new(parts: &[(Rgb, AnyBsdf)], choice: f64) -> Option<Self> {
+        let total: f64 = parts.iter().map(|(weight, _)| share(*weight)).sum();
+        let last = parts.iter().rposition(|(weight, _)| share(*weight) > 0.0)?;
+        let (mut left, mut part, mut before) = (choice * total, last, 0.0);
+        for (i, (weight, _)) in parts[..last].iter().enumerate() {
+            let mine = share(*weight);
+            if left < mine {
+                part = i;
+                break;
+            }
+            left -= mine;
+            before += mine;
+        }
+        let mine = share(parts[part].0);
+        let rest = (left / mine).clamp(0.0, 1f64.next_down());
+        Some(Self { part, rest, shares: [before, mine, total], is_last: part == last })
+    }
+
+    /// The probability that it is drawn from.
+    #[inline]
+    pub fn probability(&self) -> f64 {
+        self.shares[1] / self.shares[2]
+    }
+
+    /// What a choice within it is among all.
+    fn among_all(&self, choice: f64) -> f64 {
+        let [before, mine, total] = self.shares;
+        if self.is_last && choice == 1.0 { 1.0 } else { (before + choice * mine) / total }
+    }
 }

@@ -42,6 +42,10 @@ impl Material for DielectricMaterial {
         (!self.needs().any()).then(|| self.bare(&TexturePoint::default(), 1.0))
     }
 
+    fn kinds(&self) -> Option<[usize; 2]> {
+        Some([self.bare(&TexturePoint::default(), 1.0).kind(); 2])
+    }
+
     fn needs(&self) -> Needs {
         let roughness = self.roughness.needs();
         Needs { waves: roughness.waves | self.interior.dispersion.is_any(), ..roughness }

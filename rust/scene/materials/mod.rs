@@ -45,7 +45,7 @@ pub use normal_map::NormalMap;
 pub use oren_nayar::OrenNayarMaterial;
 pub use phong::PhongMaterial;
 pub use plastic::PlasticMaterial;
-pub use principled::{Looks, PrincipledMaterial, PrincipledThinMaterial};
+pub use principled::{LookTextures, PrincipledMaterial, PrincipledThinMaterial};
 pub use roughness::{FacetKind, Roughness};
 pub use soap_film::SoapFilmMaterial;
 pub use thin_dielectric::ThinDielectricMaterial;
@@ -82,7 +82,7 @@ pub trait Material: Debug + Send + Sync {
     }
 
     /// The kinds of functions, as [`AnyBsdf::kind`] has them, by which it scatters at every point, on the front and on
-    /// the back, if they are known beforehand.
+    /// the back, if they are known beforehand; at few points it may be by others, unless it is [`AnyBsdf::DIFFUSE`].
     fn kinds(&self) -> Option<[usize; 2]> {
         Some(self.constant_sides()?.map(|bsdf| bsdf.kind()))
     }

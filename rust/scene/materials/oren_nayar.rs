@@ -30,6 +30,10 @@ impl Material for OrenNayarMaterial {
         (!self.needs().any()).then(|| self.bsdf(&TexturePoint::default()).into())
     }
 
+    fn kinds(&self) -> Option<[usize; 2]> {
+        Some([AnyBsdf::from(self.bsdf(&TexturePoint::default())).kind(); 2])
+    }
+
     fn needs(&self) -> Needs {
         self.reflectance.needs() | self.roughness.needs()
     }

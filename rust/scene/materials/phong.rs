@@ -60,6 +60,10 @@ impl Material for PhongMaterial {
         (!self.needs().any()).then(|| self.bsdf(&TexturePoint::default()).into())
     }
 
+    fn kinds(&self) -> Option<[usize; 2]> {
+        Some([AnyBsdf::from(self.bsdf(&TexturePoint::default())).kind(); 2])
+    }
+
     fn needs(&self) -> Needs {
         self.diffuse.needs() | self.specular.needs() | self.exponent.needs() | self.ambient.needs()
     }

@@ -55,6 +55,10 @@ impl Material for PlasticMaterial {
         (!self.needs().any()).then(|| self.bsdf(&TexturePoint::default(), 1.0))
     }
 
+    fn kinds(&self) -> Option<[usize; 2]> {
+        Some([self.bsdf(&TexturePoint::default(), 1.0).kind(); 2])
+    }
+
     fn needs(&self) -> Needs {
         self.reflectance.needs() | self.roughness.needs()
     }

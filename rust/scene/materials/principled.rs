@@ -3,13 +3,13 @@
 use super::checks::{number, within};
 use super::{BsdfMix, Interior, Material};
 use crate::math::DVec3;
-use crate::optics::{Look, Principled, PrincipledThin};
+use crate::optics::{AnyBsdf, Look, Principled, PrincipledThin};
 use crate::scene::ShadingPoint;
 use crate::scene::textures::{Needs, TexturePoint, Value};
 
 /// What the principled models have in common, each 0 to 1: see [`Look`].
 #[derive(Clone, Debug)]
-pub struct Looks {
+pub struct LookTextures {
     /// The colour.
     pub base_color: Value,
     /// Its square is the facets' α.
@@ -28,7 +28,7 @@ pub struct Looks {
     pub flatness: Value<f64>,
 }
 
-impl Looks {
+impl LookTextures {
     fn numbers(&self) -> [(&str, &Value<f64>); 7] {
         [
             ("roughness", &self.roughness),
@@ -80,7 +80,7 @@ impl Looks {
 #[derive(Clone, Debug)]
 pub struct PrincipledMaterial {
     /// What it looks like.
-    pub looks: Looks,
+    pub looks: LookTextures,
     /// What is within.
     pub interior: Interior,
     /// From 0, none, to 1, metal.
@@ -92,6 +92,14 @@ pub struct PrincipledMaterial {
 }
 
 impl PrincipledMaterial {
+    fn bsdf(&self, point: &TexturePoint, outside: f64) -> AnyBsdf {
+        let solid = self.is_solid();
+        // What is opaque fills nothing: what is around it does not count.
+        let eta = self.interior.ior / if solid { outside } else { 1.0 };
+        let coat = [self.clearcoat.at(point), self.clearcoat_gloss.at(point)];
+        Principled::new(self.looks.at(point), eta, self.metallic.at(point), coat, solid).into()
+    }
+
     /// Whether light goes through anywhere.
     fn is_solid(&self) -> bool {
         self.looks.transmission.range()[1] > 0.0
@@ -100,11 +108,15 @@ impl PrincipledMaterial {
 
 impl Material for PrincipledMaterial {
     fn bsdf(&self, at: &ShadingPoint) -> BsdfMix {
-        let (point, solid) = (&at.texture, self.is_solid());
-        // What is opaque fills nothing: what is around it does not count.
-        let eta = self.interior.ior / if solid { at.outside } else { 1.0 };
-        let coat = [self.clearcoat.at(point), self.clearcoat_gloss.at(point)];
-        Principled::new(self.looks.at(point), eta, self.metallic.at(point), coat, solid).into()
+        self.bsdf(&at.texture, at.outside).into()
+    }
+
+    fn constant(&self) -> Option<AnyBsdf> {
+        (!self.needs().any()).then(|| self.bsdf(&TexturePoint::default(), 1.0))
+    }
+
+    fn kinds(&self) -> Option<[usize; 2]> {
+        Some([self.bsdf(&TexturePoint::default(), 1.0).kind(); 2])
     }
 
     fn needs(&self) -> Needs {
@@ -136,17 +148,30 @@ impl Material for PrincipledMaterial {
 #[derive(Clone, Debug)]
 pub struct PrincipledThinMaterial {
     /// What it looks like.
-    pub looks: Looks,
+    pub looks: LookTextures,
     /// The index of refraction.
     pub ior: f64,
     /// The share of what is matt that is scattered on the other side, 0 to 1.
     pub diffuse_transmission: Value<f64>,
 }
 
+impl PrincipledThinMaterial {
+    fn bsdf(&self, point: &TexturePoint) -> AnyBsdf {
+        PrincipledThin::new(self.looks.at(point), self.ior, self.diffuse_transmission.at(point)).into()
+    }
+}
+
 impl Material for PrincipledThinMaterial {
     fn bsdf(&self, at: &ShadingPoint) -> BsdfMix {
-        let point = &at.texture;
-        PrincipledThin::new(self.looks.at(point), self.ior, self.diffuse_transmission.at(point)).into()
+        self.bsdf(&at.texture).into()
+    }
+
+    fn constant(&self) -> Option<AnyBsdf> {
+        (!self.needs().any()).then(|| self.bsdf(&TexturePoint::default()))
+    }
+
+    fn kinds(&self) -> Option<[usize; 2]> {
+        Some([self.bsdf(&TexturePoint::default()).kind(); 2])
     }
 
     fn needs(&self) -> Needs {

@@ -1,7 +1,7 @@
 //! What is told of the way of light from either of its ends is the same.
 
 use super::super::{
-    Aim, ConstantEnvironment, Departure, DirectionalLight, Emission, EmissionNumbers, Emitters, Light,
+    Aim, ConstantEnvironment, DirectionalLight, Emission, EmissionDensity, EmissionNumbers, Emitters, Light,
     LightSampleContext, PointLight, Sides, Source, SpotLight,
 };
 use super::white;
@@ -70,11 +70,11 @@ fn drawn_as_told(emitters: &Emitters<'_>) {
             direction: sampler.two(3),
         };
         let Some(drawn) = emitters.sample(&numbers, None) else { continue };
-        let Departure { source, density, .. } = emitters.of_sample(&drawn);
+        let EmissionDensity { source, density, .. } = emitters.of_sample(&drawn);
         kinds[match source {
             Source::Surface(_) => 0,
             Source::Point(_) => 1,
-            Source::Outside => 2,
+            Source::Infinite => 2,
             Source::Direction(_) => 3,
         }] += 1;
         if let Source::Direction(_) = source {
@@ -114,7 +114,9 @@ fn asked_as_told(scene: &Scene, emitters: &Emitters<'_>) {
         let mut hits = [Hit::MISS];
         scene.intersect(&[ray], &mut hits);
         match departure.source {
-            Source::Outside => assert_same(departure.density, emitters.of_outside(light.direction).density, &departure),
+            Source::Infinite => {
+                assert_same(departure.density, emitters.of_environment(light.direction).density, &departure)
+            }
             Source::Surface(_) if (hits[0].t - distance).abs() < 1e-9 => {
                 let surface = scene.geometry().surface(&ray, &hits[0]);
                 let found = emitters.of_hit(&ray, &hits[0], &surface).unwrap();
