@@ -173,6 +173,35 @@ def test_grids_of_distances_have_their_surface(tmp_path):
     assert plain.normals is None
 
 
+def test_a_grid_of_distances_has_the_first_colour_of_its_texture_all_over():
+    """As Mitsuba has u and v of them: 0."""
+    z, y, x = np.meshgrid(*3 * [np.linspace(0, 1, 8)], indexing="ij")
+    grid = np.sqrt((x - 0.5) ** 2 + (y - 0.5) ** 2 + (z - 0.5) ** 2) - 0.3
+    colours = {"color0": {"type": "rgb", "value": 0.8}, "color1": {"type": "rgb", "value": 0.1}}
+    squares = {"type": "checkerboard", "to_uv": [[5, 0, 0], [0, 5, 0], [0, 0, 1]], **colours}
+    eye = {
+        "type": "orthographic",
+        "to_world": [[-0.1, 0, 0, 0.5], [0, 0.1, 0, 0.5], [0, 0, -0.1, 3], [0, 0, 0, 1]],
+    }
+    shot = rw.from_mitsuba(
+        {
+            "type": "scene",
+            "integrator": {"type": "path", "max_depth": 2},
+            "eye": {**eye, "film": {"type": "hdrfilm", "width": 4, "height": 4}},
+            "sky": {"type": "constant"},
+            "one": {
+                "type": "sdfgrid",
+                "grid": grid,
+                "normals": "analytic",
+                "bsdf": {"type": "diffuse", "reflectance": squares},
+            },
+        }
+    )
+    seen = shot.render(samples=16, progress=False).rgb
+    assert seen.min() > 0.79
+    assert seen.max() < 0.81
+
+
 def test_a_plane_in_a_grid_is_a_plane():
     grid = np.broadcast_to(np.linspace(-0.3, 0.7, 5)[:, None, None], (5, 4, 3))
     found = sdf_grids.surface(grid)
@@ -207,7 +236,7 @@ def test_curves_of_files_are_parted_by_empty_lines(tmp_path):
 
 @pytest.mark.filterwarnings("ignore:.*light fades")
 def test_a_map_of_normals_goes_with_the_normal_where_coordinates_are_mirrored(tmp_path):
-    """Mitsuba leans normals along u, and along what is at right angles to that and the normal, not along v."""
+    """Mitsuba leans normals along u, and along what is at right angles to it and the normal, not along v."""
 
     def quads(*lefts):
         """Unit squares side by side, as a PLY, some of whose v goes down rather than up."""

@@ -20,6 +20,7 @@ from .textures import value
 from .transforms import Matrix, frame
 from .uv import DISK, MIRRORED, SAME, SPHERE, Uv
 
+_CORNER = 1e-6
 GROUP, COPY, MERGED = "shapegroup", "instance", "merge"
 
 
@@ -112,7 +113,9 @@ def _distance_grid(plugin: Plugin) -> Mesh:
     found = sdf_grids.surface(grid)
     triangles = mesh_files.Triangles(found.vertices, found.faces, found.normals)
     vertices, faces, normals, _ = triangles.placed(plugin.to_world(), plugin.switch("flip_normals", False))
-    return Mesh(vertices, faces, None if plain else normals, None, *_look(plugin, SAME))
+    # All of it has the colour at the texture's first corner: within that cell of a checkerboard, if just so.
+    corner = np.full((len(vertices), 2), _CORNER)
+    return Mesh(vertices, faces, None if plain else normals, corner, *_look(plugin, SAME))
 
 
 def _sphere(plugin: Plugin) -> Sphere:
