@@ -47,6 +47,12 @@ class Triangles(NamedTuple):
             normals = -normals if flipped else normals
         return Triangles(vertices, self.faces[:, [0, 2, 1]] if turned else self.faces, normals, self.uv)
 
+    @property
+    def box(self) -> Floats:
+        """The least and the greatest corner of all faces, (2, 3)."""
+        corners = self.vertices[self.faces].reshape(-1, 3)
+        return np.stack([corners.min(axis=0), corners.max(axis=0)])
+
     def mirrored(self) -> NDArray[np.bool_]:
         """Return of each face, (F,), whether u, v and the normal are left-handed on it."""
         if self.uv is None:

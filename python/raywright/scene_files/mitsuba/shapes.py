@@ -79,7 +79,8 @@ def _by_hand(plugin: Plugin, triangles: mesh_files.Triangles) -> Mesh | tuple[Me
     vertices, faces, normals, uv = triangles
     mirrored = triangles.mirrored() if attributes.has_within(plugin, "normalmap") else np.zeros(1, bool)
     if mirrored.all() or not mirrored.any():
-        return Mesh(vertices, faces, normals, uv, *_look(plugin, MIRRORED if mirrored.all() else SAME))
+        look = _look(plugin, MIRRORED if mirrored.all() else SAME, box=triangles.box)
+        return Mesh(vertices, faces, normals, uv, *look)
     again = Plugin(plugin.values, plugin.where, plugin.context)
     return (
         Mesh(vertices, faces[~mirrored], normals, uv, *_look(plugin, SAME)),
@@ -170,10 +171,12 @@ _READERS: dict[str, Callable[[Plugin], Mesh | Shape | tuple[Mesh, ...]]] = {
 TYPES = tuple(_READERS)
 
 
-def _look(plugin: Plugin, uv: Uv, inside_out: bool = False) -> tuple[Material, Emitted | None]:
+def _look(
+    plugin: Plugin, uv: Uv, inside_out: bool = False, box: media.Box | None = None
+) -> tuple[Material, Emitted | None]:
     """Return the material of a shape and what it emits, None if nothing.
 
-    `inside_out`, of one whose front is its inside in Mitsuba.
+    `inside_out`, of one whose front is its inside in Mitsuba; `box`, from where to where it is.
     """
     emission: Emitted | None = None
     for emitter in plugin.children("area"):
@@ -189,7 +192,7 @@ def _look(plugin: Plugin, uv: Uv, inside_out: bool = False) -> tuple[Material, E
         plugin.fail("a shape must have one BSDF only")
     # Lamps are black, and all else is grey on its front.
     default = bsdfs.BLACK if emission is not None else TwoSided(Diffuse(0.5), bsdfs.BLACK)
-    material = media.filled(plugin, found[0] if found else None) or default
+    material = media.filled(plugin, found[0] if found else None, box) or default
     plugin.ignore("silhouette_sampling_weight")
     return bsdfs.turned_round(material, plugin) if inside_out else material, emission
 
