@@ -18,7 +18,7 @@ from .rendering.shot import Shot
 from .scene.scene import Scene
 from .scene.summary import described
 from .scene_files.load import has_camera, load
-from .scene_files.shown import HEIGHT, WIDTH
+from .scene_files.shown import HEIGHT, WIDTH, size_of
 from .scenes import cornell_box, torus_knot
 from .viewer import view
 
@@ -126,7 +126,7 @@ def _shot(options: argparse.Namespace) -> Shot:
     if options.up is not None and (options.scene == CORNELL or has_camera(options.scene)):
         options.refuse(f"argument --up: is for mesh files, and {options.scene} knows itself what is up")
     if options.scene == CORNELL:
-        return Shot(*cornell_box(None, options.width or WIDTH, options.height or HEIGHT))
+        return Shot(*cornell_box(None, *size_of(options.width, options.height)))
     return load(options.scene, options.up or "y", options.width, options.height)
 
 

@@ -218,6 +218,8 @@ def test_open_image_denoise_tells_its_error_too():
         (many_lights, 48, 1.0),
         (checkered, 48, 1.0),
         (rare_scenes.keyhole, 32, 1.0),
+        (rare_scenes.small_lamp, 32, 2.0),
+        (rare_scenes.plates, 32, 1.0),
     ],
 )
 def test_denoised_pictures_tell_their_error_or_that_they_cannot(make, side, better):

@@ -293,6 +293,42 @@ def test_metal_under_a_film_reflects_its_colour_where_the_film_ends(tmp_path):
     assert made.base.k == (0.0, 0.0, 0.0)
 
 
+def test_metal_of_a_picture_has_its_film(tmp_path):
+    shades = np.uint8(
+        [[(230, 180, 90, 255), (120, 200, 240, 255)], [(255, 255, 255, 255), (90, 80, 70, 255)]]
+    )
+    writer = Writer()
+    metal = {"baseColorTexture": writer.picture(png(shades)), "baseColorFactor": [1, 0.5, 1, 1]}
+    whole = loaded(tmp_path, {"pbrMetallicRoughness": metal, "extensions": FILM}, writer).material
+    eta = whole.base.eta
+    shares = ((shades[..., :3] / 255 + 0.055) / 1.055) ** 2.4 * (1, 0.5, 1)
+    found = np.square((eta.image - 1) / (eta.image + 1.0))
+    assert np.allclose(found, np.minimum(shares, 0.9999), rtol=1e-4, atol=0)
+    assert not eta.decoded
+    # Where only some of it is metal, that has the film.
+    writer = Writer()
+    where = writer.picture(png(PIXELS[..., :3]))
+    metal = {"baseColorTexture": writer.picture(png(shades)), "metallicRoughnessTexture": where}
+    told = "what is neither clear nor metal is bare of films"
+    partly = loaded(tmp_path, {"pbrMetallicRoughness": metal, "extensions": FILM}, writer, told).material
+    blue, green = (rw.ImageTexture(PIXELS[..., :3], linear=True, channel=name) for name in "bg")
+    assert partly.a == rw.MetallicRough(rw.ImageTexture(shades), 0.0, green)
+    assert partly.b == rw.ThinFilm(
+        400.0, 1.4, base=rw.Conductor(eta=partly.b.base.eta, roughness=green, k=0.0)
+    )
+    assert partly.amount == blue
+    # One whose thickness is 0 is none: straight on, the metal has its colour.
+    writer = Writer()
+    bare = {"KHR_materials_iridescence": {"iridescenceFactor": 1, "iridescenceThicknessMaximum": 0}}
+    grey = np.full((2, 2, 3), 150, np.uint8)
+    metal = {"baseColorTexture": writer.picture(png(grey)), "roughnessFactor": 0}
+    mesh = loaded(tmp_path, {"pbrMetallicRoughness": metal, "extensions": bare}, writer)
+    eye = rw.Orthographic((0.5, 0.5, 3), (0.5, 0.5, 0), up=(0, 1, 0), scale=0.5, width=2, height=2)
+    scene = rw.Scene(mesh, environment=1.0)
+    seen = rw.render(scene, eye, rw.Path(max_depth=1), samples=4, progress=False).rgb
+    assert np.allclose(seen, ((150 / 255 + 0.055) / 1.055) ** 2.4, rtol=1e-5)
+
+
 @pytest.mark.parametrize(
     ("material", "told"),
     [
@@ -302,7 +338,7 @@ def test_metal_under_a_film_reflects_its_colour_where_the_film_ends(tmp_path):
         ),
         (
             {"pbrMetallicRoughness": {"metallicFactor": 0}, "extensions": FILM},
-            "films on what is neither clear nor metal of one colour are left out",
+            "what is neither clear nor metal is bare of films",
         ),
         (clear(roughnessFactor=0.5), "thin clear materials are smooth here, however rough they are"),
         (

@@ -470,3 +470,18 @@ def test_a_scene_without_a_sensor_is_told_so():
         rw.from_mitsuba({"type": "scene", "ball": {"type": "sphere"}})
     with pytest.raises(ValueError, match=r"^scene: my_camera 'eye' is not supported here$"):
         rw.from_mitsuba({"type": "scene", "eye": {"type": "my_camera", "film": {"type": "hdrfilm"}}})
+
+
+def test_a_spot_throws_each_point_of_its_picture():
+    """Between whole points of a picture the same is thrown, however many there are."""
+    bands = np.repeat(np.arange(1, 301)[None, :, None] % 7 / 7, 2, axis=0).astype(np.float32)
+    picture = {"type": "bitmap", "data": bands, "filter_type": "nearest", "raw": True}
+    (light,) = shot(
+        s={"type": "spot", "cutoff_angle": 10.0, "beam_width": 10.0, "texture": picture}
+    ).scene.lights
+    tangent = np.tan(np.radians(10.0)) * (1 - 2 * (np.arange(600) + 0.5) / 600)
+    cosine = 1 / np.sqrt(1 + tangent**2 + tangent[300] ** 2)
+    inside = np.degrees(np.arccos(cosine)) < 10
+    expected = np.where(inside, np.repeat(bands[0, :, 0], 2)[::-1] * cosine**3, 0)
+    assert light.image.shape == (600, 600, 3)
+    assert np.allclose(light.image[300, :, 1], expected, rtol=1e-5, atol=0)

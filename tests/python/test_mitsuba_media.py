@@ -84,6 +84,33 @@ def test_grids_of_albedos_and_of_colours(tmp_path):
         read()
 
 
+@pytest.mark.parametrize("wrap", ["repeat", "clamp"])
+def test_albedos_go_on_beyond_their_grid_in_what_is_the_same_elsewhere(tmp_path, wrap):
+    rng = np.random.default_rng(3)
+    shares = rng.random((2, 3, 4)).astype("<f4")
+    header = struct.pack("<3sBiiiii6f", b"VOL", 3, 1, 4, 3, 2, 1, *(0, 0, 0, 1, 1, 1))
+    (tmp_path / "shares.vol").write_bytes(header + shares.tobytes())
+    grid = {"type": "gridvolume", "filename": str(tmp_path / "shares.vol"), "wrap_mode": wrap}
+    grid["to_world"] = np.array([(0.4, 0, 0, 0.1), (0, 0.5, 0, 0), (0, 0, 0.6, 0), (0, 0, 0, 1)])
+    told = {"type": "homogeneous", "albedo": grid, "sigma_t": 2.0, "scale": 3.0}
+    cube = {
+        "type": "cube",
+        "to_world": np.diag([1.0, 0.9, 0.8, 1.0]),
+        "bsdf": {"type": "null"},
+        "interior": told,
+    }
+    medium = shot(one=cube).scene.shapes[0].material.interior
+    assert medium.extinction == (6.0, 6.0, 6.0)
+    assert np.array_equal(medium.density, np.ones((1, 1, 1), np.float32))
+    (low, high), size = np.array(medium.bounds), np.array(medium.albedo.shape[:3])
+    middles = [(np.arange(n) + 0.5) / n * (b - a) + a for n, a, b in zip(size, low, high, strict=True)]
+    inside = np.abs(np.array([0.4, 0.5, 0.6]) * (low, high) + (0.1, 0, 0)) >= (1.0, 0.9, 0.8)
+    assert inside.all()
+    cells = [np.floor(m * n).astype(int) for m, n in zip(middles, (4, 3, 2), strict=True)]
+    at = [c % n if wrap == "repeat" else c.clip(0, n - 1) for c, n in zip(cells, (4, 3, 2), strict=True)]
+    assert np.array_equal(medium.albedo.squeeze(), shares.transpose(2, 1, 0)[np.ix_(*at)])
+
+
 def test_what_is_around_all_shapes():
     smoke = rw.Homogeneous((0.5, 1.0, 2.0), (1.5, 3.0, 6.0))
     ball = {"type": "sphere", "bsdf": {"type": "dielectric"}}
@@ -107,7 +134,10 @@ def test_what_is_around_all_shapes():
         ({"type": "homogeneous", "albedo": 2.0}, "homogeneous 'one.interior': absorption must be at least 0"),
         ({"type": "homogeneous", "phase": {"type": "hg", "g": 1.0}}, "g must be between -1 and 1"),
         ({"type": "homogeneous", "phase": {"type": "sggx"}}, "sggx 'phase' is not supported here"),
-        ({"type": "homogeneous", "albedo": {"type": "gridvolume"}}, "albedo on a grid is not supported"),
+        (
+            {"type": "homogeneous", "albedo": {"type": "gridvolume"}},
+            "albedo on a grid is read within meshes only",
+        ),
         ({"type": "heterogeneous", "sigma_t": {"type": "gridvolume"}}, "must be given by its filename"),
         ({"type": "rgb", "value": 1.0}, "interior must be one of homogeneous, heterogeneous, got rgb"),
     ],

@@ -173,6 +173,35 @@ def test_grids_of_distances_have_their_surface(tmp_path):
     assert plain.normals is None
 
 
+def test_a_grid_of_distances_has_the_first_colour_of_its_texture_all_over():
+    """As Mitsuba has u and v of them: 0."""
+    z, y, x = np.meshgrid(*3 * [np.linspace(0, 1, 8)], indexing="ij")
+    grid = np.sqrt((x - 0.5) ** 2 + (y - 0.5) ** 2 + (z - 0.5) ** 2) - 0.3
+    colours = {"color0": {"type": "rgb", "value": 0.8}, "color1": {"type": "rgb", "value": 0.1}}
+    squares = {"type": "checkerboard", "to_uv": [[5, 0, 0], [0, 5, 0], [0, 0, 1]], **colours}
+    eye = {
+        "type": "orthographic",
+        "to_world": [[-0.1, 0, 0, 0.5], [0, 0.1, 0, 0.5], [0, 0, -0.1, 3], [0, 0, 0, 1]],
+    }
+    shot = rw.from_mitsuba(
+        {
+            "type": "scene",
+            "integrator": {"type": "path", "max_depth": 2},
+            "eye": {**eye, "film": {"type": "hdrfilm", "width": 4, "height": 4}},
+            "sky": {"type": "constant"},
+            "one": {
+                "type": "sdfgrid",
+                "grid": grid,
+                "normals": "analytic",
+                "bsdf": {"type": "diffuse", "reflectance": squares},
+            },
+        }
+    )
+    seen = shot.render(samples=16, progress=False).rgb
+    assert seen.min() > 0.79
+    assert seen.max() < 0.81
+
+
 def test_a_plane_in_a_grid_is_a_plane():
     grid = np.broadcast_to(np.linspace(-0.3, 0.7, 5)[:, None, None], (5, 4, 3))
     found = sdf_grids.surface(grid)
@@ -203,3 +232,58 @@ def test_curves_of_files_are_parted_by_empty_lines(tmp_path):
     both = shape(tmp_path, type="linearcurve", filename="curve.txt")
     # Of 5 and 4 points: 7 straight pieces and 9 balls.
     assert len(both.vertices) == 7 * 2 * 49 + 9 * 25 * 49
+
+
+@pytest.mark.filterwarnings("ignore:.*light fades")
+def test_a_map_of_normals_goes_with_the_normal_where_coordinates_are_mirrored(tmp_path):
+    """Mitsuba leans normals along u, and along what is at right angles to it and the normal, not along v."""
+
+    def quads(*lefts):
+        """Unit squares side by side, as a PLY, some of whose v goes down rather than up."""
+        corners, faces = [], []
+        for k, left in enumerate(lefts):
+            faces += [(3, *(4 * k + i for i in face)) for face in ((0, 1, 2), (0, 2, 3))]
+            for x, y in ((0, 0), (1, 0), (1, 1), (0, 1)):
+                corners.append((x + k - len(lefts) / 2, y - 0.5, 0, x, 1 - y if left else y))
+        header = ["ply", "format ascii 1.0", f"element vertex {len(corners)}"]
+        header += [f"property float {name}" for name in ("x", "y", "z", "u", "v")]
+        header += [f"element face {len(faces)}", "property list uchar int vertex_indices", "end_header"]
+        return "\n".join([*header, *(" ".join(map(str, row)) for row in (*corners, *faces))]) + "\n"
+
+    def shot(*lefts):
+        name = f"{''.join(str(int(left)) for left in lefts)}.ply"
+        (tmp_path / name).write_text(quads(*lefts))
+        tilt = {"type": "rawconstant", "value": [0.6, 0.8, 0.9]}
+        matt = {"type": "diffuse", "reflectance": {"type": "rgb", "value": 0.5}}
+        return rw.from_mitsuba(
+            {
+                "type": "scene",
+                "integrator": {"type": "direct"},
+                "eye": {
+                    "type": "orthographic",
+                    "to_world": [[-1, 0, 0, 0], [0, 1, 0, 0], [0, 0, -1, 3], [0, 0, 0, 1]],
+                    "film": {"type": "hdrfilm", "width": 8, "height": 2, "rfilter": {"type": "box"}},
+                },
+                "sun": {"type": "directional", "direction": [0.0, -0.3, -1.0]},
+                "one": {
+                    "type": "ply",
+                    "filename": name,
+                    "face_normals": True,
+                    "bsdf": {"type": "twosided", "a": {"type": "normalmap", "normalmap": tilt, "b": matt}},
+                },
+            },
+            folder=tmp_path,
+        )
+
+    def picture(*lefts):
+        return shot(*lefts).render(samples=4, progress=False).rgb
+
+    straight = picture(False, False)
+    lean = np.array((0.2, 0.6, 0.8)) / np.linalg.norm((0.2, 0.6, 0.8))
+    cosine = lean @ np.array((0, 0.3, 1)) / np.hypot(0.3, 1)
+    assert np.allclose(straight[:, 2:6], 0.5 / np.pi * cosine, rtol=1e-6)
+    assert np.array_equal(picture(True, True), straight)
+    assert np.array_equal(picture(True, False), straight)
+    parts = shot(True, False).scene.shapes
+    assert [len(part.faces) for part in parts] == [2, 2]
+    assert len(shot(True, True).scene.shapes) == 1

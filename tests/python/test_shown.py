@@ -150,6 +150,11 @@ def test_size_and_the_way_up_may_be_told(tmp_path):
     camera = gltf(tmp_path, camera={"translation": [0, 0, 4]}).camera
     small = rw.load(tmp_path / "file.glb", width=72).camera
     assert (camera.width, camera.height, small.width, small.height) == (720, 480, 72, 48)
+    # What has no camera has pictures of 4 by 3.
+    write(tmp_path, "Kd 0 0 0")
+    for size in ({"width": 72}, {"height": 54}, {"width": 72, "height": 54}):
+        small = rw.load(tmp_path / "file.obj", **size).camera
+        assert (small.width, small.height) == (72, 54)
     gltf(tmp_path)
     for one in (path, tmp_path / "file.glb"):
         with pytest.raises(ValueError, match=r"^width must be"):

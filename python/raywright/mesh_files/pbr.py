@@ -28,6 +28,7 @@ from ..materials import (
 from ..textures import ImageTexture, MixTexture, ProductTexture, UvTransform, VertexColors
 from ..textures.image import Channel, Filter, Wrap
 from ..textures.texture import Number, Texture, Value
+from .look import linear
 
 _WHITE = (1.0, 1.0, 1.0)
 # Of what reflects 4 % at normal incidence, as the model has it (3.9.6, and KHR_materials_ior).
@@ -135,7 +136,7 @@ class Pbr(NamedTuple):
     within : Within, optional
         What it bounds, unless it is a thin sheet.
     film : Film, optional
-        What is on it, where it is clear or metal.
+        What is on it, where it is clear or metal; what is partly metal has it on that part.
     unlit : bool
         Whether it is to be shown without light (KHR_materials_unlit); it is matt here.
     """
@@ -187,10 +188,12 @@ class Pbr(NamedTuple):
         return tinted or (self.color is not None and bool((self.color[:3] != 1).any()))
 
     @property
-    def is_plain_metal(self) -> bool:
-        """Whether it is metal of one colour everywhere."""
+    def filmed(self) -> str:
+        """How much of what is not clear shows its film: "all", "metal", or "nothing"."""
         metallic, _ = self._shares()
-        return metallic == 1.0 and self.color_picture is None and not self.colored
+        if metallic == 0.0 or self.colored:
+            return "nothing"
+        return "all" if metallic == 1.0 else "metal"
 
     def _body(self) -> Material | None:
         """Return what it is without holes, and as if nothing went through."""
@@ -204,11 +207,24 @@ class Pbr(NamedTuple):
         if self.ior != IOR and self.ior >= 1 and metallic == 0.0:
             return Plastic(color, self.ior, roughness)
         body = MetallicRough(color, metallic, roughness)
-        if self.film is None or not self.is_plain_metal:
+        if self.film is None or self.filmed == "nothing":
             return body
-        assert not isinstance(color, Texture)
-        eta = [_index(share) for share in color]
-        return self._filmed(body, Conductor(eta=eta, k=0.0, roughness=roughness))
+        metal = self._filmed(
+            body if metallic == 1.0 else MetallicRough(color, 1.0, roughness),
+            Conductor(eta=self._indices(), k=0.0, roughness=roughness),
+        )
+        return metal if metallic == 1.0 else Mix(MetallicRough(color, 0.0, roughness), metal, metallic)
+
+    def _indices(self) -> Value:
+        """Return the indices of refraction by which metal reflects its base colour, picture and all."""
+        factor = np.array(_WHITE if self.color is None else self.color[:3])
+        picture = self.color_picture
+        if picture is None:
+            return _triple(_index(factor))
+        colours = picture.pixels[..., : -1 if picture.has_alpha else None]
+        levels = linear(np.arange(256) / 255)
+        shares = levels[colours] if colours.dtype == np.uint8 else colours
+        return picture._replace(pixels=_index(shares * factor).astype(np.float32)).texture(linear=True)
 
     def _filmed(self, bare: Material, base: Dielectric | Conductor | None) -> Material:
         """Return what has the film on it, as far as that covers it; without a base the film is by itself."""
@@ -298,10 +314,10 @@ def _share_of(share: Number, factor: float) -> Number:
     return _scaled(share, factor) if isinstance(share, Texture) else share * factor
 
 
-def _index(share: float) -> float:
-    """Return the index of refraction by which such a share of light is reflected that comes straight on."""
-    root = math.sqrt(min(max(share, 0.0), 0.9999))
-    return (1 + root) / (1 - root)
+def _index(shares: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the indices of refraction by which such shares of light are reflected that come straight on."""
+    root = np.sqrt(np.clip(shares, 0.0, 0.9999))
+    return np.asarray((1 + root) / (1 - root))
 
 
 def _triple(numbers: NDArray[np.float64]) -> Triple:

@@ -44,8 +44,8 @@ def load(
     up : {"y", "z"}
         The axis that points up in a mesh file that does not say so; in glTF it is y.
     width, height : int, optional
-        Size of the picture in pixels: the file's own if not given; if only one is given, the other keeps its
-        proportions. For a file without a camera they are 640 and 480 where they are not given.
+        Size of the picture in pixels: the file's own if not given, or for a file without a camera 640 by 480;
+        if only one is given, the other keeps these proportions.
     **parameters
         What ``$name`` in a scene of Mitsuba stands for, in place of its defaults: ``spp=16``. Those of the
         names above are given by ``from_mitsuba(parameters=)``.

@@ -6,6 +6,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import integer
 from ..cameras import AnyCamera
 from ..lights import Emission, Light
 from ..lights.emission import Emitted
@@ -65,10 +66,28 @@ def shown(
     if camera is not None:
         scene = Scene(parts, lights) if lights or radiance > 0 else lit(parts, camera)
         return Shot(scene, camera).resized(width, height)
-    size = WIDTH if width is None else width, HEIGHT if height is None else height
+    size = size_of(width, height)
     if lights or radiance >= _ENOUGH:
         return Shot(Scene(parts, lights), framed(parts, up, *size))
     return Shot(*studio(parts, up, *size))
+
+
+def size_of(width: int | None, height: int | None) -> tuple[int, int]:
+    """Return the size of a picture of what has no camera: if one of them is given, the other goes with it.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of its range.
+    TypeError
+        If it is no integer.
+    """
+    if width is None and height is None:
+        return WIDTH, HEIGHT
+    if width is None:
+        assert height is not None
+        return max(round(integer("height", height, 1) * WIDTH / HEIGHT), 1), height
+    return width, max(round(integer("width", width, 1) * HEIGHT / WIDTH), 1) if height is None else height
 
 
 def own_radiance(shapes: Sequence[AnyShape]) -> float:

@@ -91,8 +91,9 @@ class Materials:
         tell = self._document.tell
         if made.film is not None and made.transmission > 0 and made.is_tinted:
             tell("what goes through clear materials with films on them is not tinted by their base colour")
-        if made.film is not None and made.transmission == 0 and not made.is_plain_metal:
-            tell("films on what is neither clear nor metal of one colour are left out")
+        if made.film is not None and made.transmission == 0 and made.filmed != "all":
+            coloured = "metal with colours of its vertices is bare of films, and so is what is no metal"
+            tell(coloured if made.colored else "what is neither clear nor metal is bare of films")
         if made.transmission > 0:
             if made.within is None and (made.roughness is None or made.roughness > 0):
                 tell("thin clear materials are smooth here, however rough they are")

@@ -62,7 +62,7 @@ def read_gltf(path: str | PathLike[str], width: int | None = None, height: int |
     the extensions KHR_materials_emissive_strength, KHR_materials_transmission (a `ThinDielectric`, or a
     `Dielectric` where KHR_materials_volume says that there is a volume, with the tint of that; `Tinted` where
     the base colour is not white), KHR_materials_dispersion, KHR_materials_iridescence (a `ThinFilm` on what
-    is clear and on metal of one colour, a `SoapFilm` where what is clear is a sheet), KHR_materials_ior and
+    is clear and on metal, a `SoapFilm` where what is clear is a sheet), KHR_materials_ior and
     KHR_texture_transform; trimesh turns KHR_materials_pbrSpecularGlossiness into that model. How thick a
     volume is follows from its mesh, and not from the file's word for it.
 

@@ -20,15 +20,23 @@ _ENDINGS = ("rgb", "xyz", "012", "123")
 
 def named_within(plugin: Plugin) -> set[str]:
     """Return the names of the attributes that the materials and lights of a shape ask for."""
-    found: set[str] = set()
-    seen: set[int] = set()
+    names = (one.get("name") for one in _within(plugin) if str(one.get("type")).lower() == "mesh_attribute")
+    return {name for name in names if isinstance(name, str)}
+
+
+def has_within(plugin: Plugin, kind: str) -> bool:
+    """Whether there is a plugin of a type within another, however deep."""
+    return any(str(one.get("type")).lower() == kind for one in _within(plugin))
+
+
+def _within(plugin: Plugin) -> list[Mapping[str, Any]]:
+    """Return a plugin and all that is in it, each once."""
+    found: dict[int, Mapping[str, Any]] = {}
 
     def look(values: Mapping[str, Any], where: str) -> None:
-        if id(values) in seen:
+        if id(values) in found:
             return
-        seen.add(id(values))
-        if str(values.get("type")).lower() == "mesh_attribute" and isinstance(values.get("name"), str):
-            found.add(values["name"])
+        found[id(values)] = values
         for name, value in values.items():
             if isinstance(value, Mapping):
                 inner = plugin.context.follow(value, where)
@@ -36,7 +44,7 @@ def named_within(plugin: Plugin) -> set[str]:
                     look(inner, f"{where}.{name}")
 
     look(plugin.values, str(plugin))
-    return found
+    return list(found.values())
 
 
 def read_attribute(path: Path, name: str) -> tuple[bool, Floats]:

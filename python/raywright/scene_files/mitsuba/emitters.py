@@ -31,7 +31,7 @@ from .values import UNIFORM, colour, shade
 TYPES = ("point", "spot", "projector", "directional", "constant", "envmap", "sunsky")
 
 # Points across what a spot throws through a texture, and the widest that does: beyond they lie too far apart.
-_FEWEST, _MOST, _WIDEST = 512, 1024, 80.0
+_FEWEST, _MOST, _WIDEST = 512, 2048, 80.0
 # What a luminance of the sky, in cd/m² over 683 lm/W, is divided by in Mitsuba: the integral of the
 # observer's green over wavelengths in nm (CIE 1931).
 _SKY = 106.856895
@@ -106,7 +106,9 @@ def _picture_spot(
     cutoff, beam = angles
     if not 0 < cutoff <= _WIDEST:
         plugin.fail(f"cutoff_angle must be above 0 and at most {_WIDEST:g} with a texture, got {cutoff:g}")
-    count = min(max(_FEWEST, *thrown.size_of(texture)), _MOST)
+    # As many to each of the picture's, where there can be, so that between them the same is thrown.
+    side = max(thrown.size_of(texture))
+    count = min(side * max(-(-_FEWEST // side), 1), _MOST)
     tangent = math.tan(math.radians(cutoff))
     # From the left of the picture, which is +x, to its right, and from its top, +y.
     plane = 1 - 2 * (np.arange(count) + 0.5) / count

@@ -18,12 +18,20 @@ from .values import colour, shade
 TYPES = ("homogeneous", "heterogeneous")
 PHASES = ("isotropic", "hg", "rayleigh")
 VOLUMES = ("constvolume", "gridvolume")
+_WRAPS = ("clamp", "repeat")
+# Of a grid that goes on as far as its shape does.
+_MOST_CELLS = 2**26
+# The least and the greatest corner, (2, 3).
+Box = NDArray[np.float64]
+
 # Under which the plugins of a scene have told each other of media.
 _WITHIN, _AROUND = "media within", "media around"
 
 
-def filled(plugin: Plugin, material: Material | None) -> Material | None:
+def filled(plugin: Plugin, material: Material | None, box: Box | None = None) -> Material | None:
     """Return the material of a shape, with what is within; None if it has none.
+
+    `box` is the least and the greatest corner of the shape, where that is known: grids repeat as far.
 
     Raises
     ------
@@ -34,7 +42,7 @@ def filled(plugin: Plugin, material: Material | None) -> Material | None:
     for null in plugin.children("null"):
         null.done()
         is_null = True
-    interior, exterior = (_side(plugin, name) for name in ("interior", "exterior"))
+    interior, exterior = _side(plugin, "interior", box), _side(plugin, "exterior")
     kept = plugin.context.kept
     if exterior is not None:
         kept.setdefault(_AROUND, []).append(exterior)
@@ -75,17 +83,17 @@ def around(scene: Plugin, eye: Plugin) -> Medium | None:
     return outside[0] if outside else None
 
 
-def _side(plugin: Plugin, name: str) -> Medium | None:
+def _side(plugin: Plugin, name: str, box: Box | None = None) -> Medium | None:
     inner = plugin.child(name)
     if inner is None:
         return None
     if inner.type not in TYPES:
         plugin.fail(f"{name} must be one of {', '.join(TYPES)}, got {inner.type}")
-    return medium(inner)
+    return medium(inner, box)
 
 
-def medium(plugin: Plugin) -> Medium:
-    """Return the medium that a plugin stands for.
+def medium(plugin: Plugin, box: Box | None = None) -> Medium:
+    """Return the medium that a plugin stands for, within a box if that is known.
 
     Raises
     ------
@@ -94,12 +102,12 @@ def medium(plugin: Plugin) -> Medium:
     ValueError
         If its type, or a parameter of it, is not supported; tells which.
     """
-    key = ("medium", id(plugin.values))
+    key = ("medium", id(plugin.values), None if box is None else box.tobytes())
     if key in plugin.context.kept:
         kept: Medium = plugin.context.kept[key]
         return kept
     try:
-        result = _read(plugin)
+        result = _read(plugin, box)
     except (SceneError, FileNotFoundError):
         raise
     except (ValueError, TypeError) as error:
@@ -110,9 +118,15 @@ def medium(plugin: Plugin) -> Medium:
     return result
 
 
-def _read(plugin: Plugin) -> Medium:
+def _read(plugin: Plugin, box: Box | None) -> Medium:
     scale, phase = plugin.number("scale", 1.0), _phase(plugin)
     if plugin.type == "homogeneous":
+        shares = plugin.child("albedo")
+        if shares is not None and shares.type == "gridvolume":
+            if box is None:
+                plugin.fail("albedo on a grid is read within meshes only")
+            extinction = scale * np.array(colour(plugin, "sigma_t", 1.0))
+            return _shared(plugin, _grid(shares, _WRAPS), box, extinction, phase)
         albedo = _constant(plugin, "albedo", 0.75)
         return Homogeneous(*_parts(_constant(plugin, "sigma_t", 1.0), albedo, scale), phase)
     # There is nothing of it where its extinction has no volume.
@@ -126,6 +140,37 @@ def _read(plugin: Plugin) -> Medium:
     if scattered.bounds != dimmed.bounds or not np.array_equal(scattered.transform, dimmed.transform):
         plugin.fail("sigma_t and albedo must lie in the same place")
     return GridMedium(dimmed.density, extinction=extinction, albedo=scattered.numbers, **placed)
+
+
+def _shared(
+    plugin: Plugin, albedo: "_Volume", box: Box, extinction: NDArray[np.float64], phase: Phase
+) -> GridMedium:
+    """Return what has one extinction all over, and an albedo that goes on beyond its grid as that wraps."""
+    assert albedo.numbers is not None
+    size = np.array(albedo.numbers.shape[:3])
+    low, high = (np.zeros(3), np.ones(3)) if albedo.bounds is None else np.array(albedo.bounds, np.float64)
+    corners = np.stack(np.meshgrid(*box.T, indexing="ij"), -1).reshape(-1, 3)
+    inverse = np.linalg.inv(albedo.transform)
+    # In cells of the grid, and one of them farther, so that there are neighbours on both sides.
+    cells = ((corners @ inverse[:3, :3].T + inverse[:3, 3]) - low) / (high - low) * size
+    first, last = np.floor(cells.min(axis=0)).astype(int) - 1, np.ceil(cells.max(axis=0)).astype(int) + 1
+    if np.prod((last - first).astype(float)) > _MOST_CELLS:
+        plugin.fail(f"albedo on a grid reaches over more than {_MOST_CELLS} cells in its shape")
+    each = [np.arange(a, b) for a, b in zip(first, last, strict=True)]
+    where = [
+        at % count if albedo.repeats else np.clip(at, 0, count - 1)
+        for at, count in zip(each, size, strict=True)
+    ]
+    bounds = low + (high - low) * np.stack([first, last]) / size
+    return GridMedium(
+        np.ones((1, 1, 1)),
+        bounds,
+        transform=albedo.transform,
+        at="centres",
+        phase=phase,
+        extinction=extinction,
+        albedo=albedo.numbers[np.ix_(*where)],
+    )
 
 
 def _parts(extinction: Triple | Spectrum, albedo: Triple | Spectrum, scale: float) -> tuple[Any, Any]:
@@ -167,6 +212,7 @@ class _Volume(NamedTuple):
     numbers: NDArray[Any] | None = None
     bounds: Any = None
     transform: Any = None
+    repeats: bool = False
 
     @property
     def density(self) -> NDArray[Any]:
@@ -181,16 +227,20 @@ def _volume(medium: Plugin, name: str, default: float) -> _Volume:
         value, transform = np.array(colour(plugin, "value", 1.0)), plugin.to_world()
         plugin.done()
         return _Volume(value, transform=transform)
+    return _grid(plugin, ("clamp",))
+
+
+def _grid(plugin: Plugin, wraps: tuple[str, ...]) -> _Volume:
     if not plugin.has("filename"):
         plugin.fail("a grid must be given by its filename")
     plugin.choice("filter_type", "trilinear", ("trilinear",))
-    plugin.choice("wrap_mode", "clamp", ("clamp",))
+    repeats = plugin.choice("wrap_mode", "clamp", wraps) == "repeat"
     plugin.ignore("raw", "accel", "max_value")
     numbers, box = read_density(plugin.path())
     placed = plugin.switch("use_grid_bbox", False)
     transform = plugin.to_world()
     plugin.done()
-    return _Volume(np.ones(3), numbers, box if placed else None, transform)
+    return _Volume(np.ones(3), numbers, box if placed else None, transform, repeats)
 
 
 def _phase(plugin: Plugin) -> Phase:

@@ -47,6 +47,22 @@ class Triangles(NamedTuple):
             normals = -normals if flipped else normals
         return Triangles(vertices, self.faces[:, [0, 2, 1]] if turned else self.faces, normals, self.uv)
 
+    @property
+    def box(self) -> Floats:
+        """The least and the greatest corner of all faces, (2, 3)."""
+        corners = self.vertices[self.faces].reshape(-1, 3)
+        return np.stack([corners.min(axis=0), corners.max(axis=0)])
+
+    def mirrored(self) -> NDArray[np.bool_]:
+        """Return of each face, (F,), whether u, v and the normal are left-handed on it."""
+        if self.uv is None:
+            return np.zeros(len(self.faces), bool)
+        corners, at = self.vertices[self.faces], self.uv[self.faces]
+        own = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        outside = own if self.normals is None else self.normals[self.faces].sum(axis=1)
+        (ua, va), (ub, vb) = (at[:, 1] - at[:, 0]).T, (at[:, 2] - at[:, 0]).T
+        return np.asarray((ua * vb - va * ub) * np.einsum("ij,ij->i", own, outside) < 0)
+
 
 def rectangle() -> Triangles:
     """Return the square from (-1, -1, 0) to (1, 1, 0), which looks along +z."""

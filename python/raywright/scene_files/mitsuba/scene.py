@@ -99,7 +99,7 @@ def _read(scene: Plugin, number: int) -> Shot:
             else:
                 around.append(cast(Environment, one))
         else:
-            found.append(shapes.shape(plugin))
+            found += shapes.shapes_of(plugin)
     integrators = list(scene.children(*settings.INTEGRATORS))
     if len(integrators) > 1:
         scene.fail("a scene must have one integrator only")

@@ -18,13 +18,14 @@ from .errors import SceneError
 from .plugin import Plugin
 from .textures import value
 from .transforms import Matrix, frame
-from .uv import CUBE, DISK, SAME, SPHERE, Uv
+from .uv import DISK, MIRRORED, SAME, SPHERE, Uv
 
+_CORNER = 1e-6
 GROUP, COPY, MERGED = "shapegroup", "instance", "merge"
 
 
-def shape(plugin: Plugin) -> Mesh | Shape:
-    """Return the shape that a plugin stands for, with its material and what it emits.
+def shapes_of(plugin: Plugin) -> tuple[Mesh | Shape, ...]:
+    """Return the shape that a plugin stands for, or its parts, with its material and what it emits.
 
     Raises
     ------
@@ -40,10 +41,10 @@ def shape(plugin: Plugin) -> Mesh | Shape:
     except (ValueError, TypeError, np.linalg.LinAlgError) as error:
         raise SceneError(f"{plugin}: {error}") from error
     plugin.done()
-    return result
+    return result if isinstance(result, tuple) else (result,)
 
 
-def _mesh(plugin: Plugin) -> Mesh:
+def _mesh(plugin: Plugin) -> Mesh | tuple[Mesh, ...]:
     own = {"rectangle": mesh_files.rectangle, "cube": mesh_files.cube}
     names = attributes.named_within(plugin)
     if len(names) > 1:
@@ -55,9 +56,9 @@ def _mesh(plugin: Plugin) -> Mesh:
     elif plugin.type in own:
         # All corners of each face have its own normal.
         normals = None
-    look = _look(plugin, CUBE if plugin.type == "cube" else SAME)
+    placed = mesh_files.Triangles(vertices, faces, normals, uv)
     if not names:
-        return Mesh(vertices, faces, normals, uv, *look)
+        return _by_hand(plugin, placed)
     if plugin.type != "ply":
         plugin.fail(f"mesh_attribute is read of ply files only, and {plugin.type} has none")
     of_faces, colours = attributes.read_attribute(plugin.path(), names.pop())
@@ -67,7 +68,24 @@ def _mesh(plugin: Plugin) -> Mesh:
         vertices, colours = vertices[corners], np.repeat(colours, 3, axis=0)
         normals, uv = (None if one is None else one[corners] for one in (normals, uv))
         faces = np.arange(len(corners)).reshape(-1, 3)
-    return Mesh(vertices, faces, normals, uv, *look, colours)
+    return Mesh(vertices, faces, normals, uv, *_look(plugin, SAME), colours)
+
+
+def _by_hand(plugin: Plugin, triangles: mesh_files.Triangles) -> Mesh | tuple[Mesh, ...]:
+    """Return a mesh; where it has a map of normals, in two if only some of its faces are mirrored.
+
+    Along v Mitsuba has what is at right angles to u and the normal, whichever way v goes.
+    """
+    vertices, faces, normals, uv = triangles
+    mirrored = triangles.mirrored() if attributes.has_within(plugin, "normalmap") else np.zeros(1, bool)
+    if mirrored.all() or not mirrored.any():
+        look = _look(plugin, MIRRORED if mirrored.all() else SAME, box=triangles.box)
+        return Mesh(vertices, faces, normals, uv, *look)
+    again = Plugin(plugin.values, plugin.where, plugin.context)
+    return (
+        Mesh(vertices, faces[~mirrored], normals, uv, *_look(plugin, SAME)),
+        Mesh(vertices, faces[mirrored], normals, uv, *_look(again, MIRRORED)),
+    )
 
 
 def _curves(plugin: Plugin) -> Mesh:
@@ -96,7 +114,9 @@ def _distance_grid(plugin: Plugin) -> Mesh:
     found = sdf_grids.surface(grid)
     triangles = mesh_files.Triangles(found.vertices, found.faces, found.normals)
     vertices, faces, normals, _ = triangles.placed(plugin.to_world(), plugin.switch("flip_normals", False))
-    return Mesh(vertices, faces, None if plain else normals, None, *_look(plugin, SAME))
+    # All of it has the colour at the texture's first corner: within that cell of a checkerboard, if just so.
+    corner = np.full((len(vertices), 2), _CORNER)
+    return Mesh(vertices, faces, None if plain else normals, corner, *_look(plugin, SAME))
 
 
 def _sphere(plugin: Plugin) -> Sphere:
@@ -135,7 +155,7 @@ def _cylinder(plugin: Plugin) -> Cylinder:
     )
 
 
-_READERS: dict[str, Callable[[Plugin], Mesh | Shape]] = {
+_READERS: dict[str, Callable[[Plugin], Mesh | Shape | tuple[Mesh, ...]]] = {
     "obj": _mesh,
     "ply": _mesh,
     "serialized": _mesh,
@@ -151,10 +171,12 @@ _READERS: dict[str, Callable[[Plugin], Mesh | Shape]] = {
 TYPES = tuple(_READERS)
 
 
-def _look(plugin: Plugin, uv: Uv, inside_out: bool = False) -> tuple[Material, Emitted | None]:
+def _look(
+    plugin: Plugin, uv: Uv, inside_out: bool = False, box: media.Box | None = None
+) -> tuple[Material, Emitted | None]:
     """Return the material of a shape and what it emits, None if nothing.
 
-    `inside_out`, of one whose front is its inside in Mitsuba.
+    `inside_out`, of one whose front is its inside in Mitsuba; `box`, from where to where it is.
     """
     emission: Emitted | None = None
     for emitter in plugin.children("area"):
@@ -170,7 +192,7 @@ def _look(plugin: Plugin, uv: Uv, inside_out: bool = False) -> tuple[Material, E
         plugin.fail("a shape must have one BSDF only")
     # Lamps are black, and all else is grey on its front.
     default = bsdfs.BLACK if emission is not None else TwoSided(Diffuse(0.5), bsdfs.BLACK)
-    material = media.filled(plugin, found[0] if found else None) or default
+    material = media.filled(plugin, found[0] if found else None, box) or default
     plugin.ignore("silhouette_sampling_weight")
     return bsdfs.turned_round(material, plugin) if inside_out else material, emission
 
@@ -219,7 +241,7 @@ def group(plugin: Plugin) -> tuple[Mesh | Shape, ...]:
         if inner.type == MERGED:
             found += group(inner)
         else:
-            found.append(shape(inner))
+            found += shapes_of(inner)
     plugin.done()
     return tuple(found)
 

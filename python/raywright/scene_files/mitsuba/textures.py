@@ -133,18 +133,20 @@ def picture(plugin: Plugin) -> tuple[NDArray[Any], bool]:
 
 def normals(plugin: Plugin, uv: Uv) -> ImageTexture:
     """Return a picture of normals, along u and v as raywright has them."""
-    if plugin.type == "rawconstant":
-        tilted = np.array([[plugin.vector("value", (0.5, 0.5, 1.0))]], np.float32)
-        plugin.done()
-        return ImageTexture(tilted, linear=True)
-    if plugin.type != "bitmap":
-        plugin.fail("a normal map must be a bitmap or a rawconstant")
-    if uv.turned:
-        plugin.fail("a normal map on a disk is not supported")
 
     def turn(colours: NDArray[np.float64]) -> NDArray[np.float64]:
         # Along v Mitsuba has what makes a right-handed frame with u and the normal.
         return np.stack([colours[..., 0], 1 - colours[..., 1], colours[..., 2]], -1)
+
+    if plugin.type == "rawconstant":
+        tilted = np.array([[plugin.vector("value", (0.5, 0.5, 1.0))]], np.float64)
+        plugin.done()
+        tilted = turn(tilted) if uv.left_handed else tilted
+        return ImageTexture(tilted.astype(np.float32), linear=True)
+    if plugin.type != "bitmap":
+        plugin.fail("a normal map must be a bitmap or a rawconstant")
+    if uv.turned:
+        plugin.fail("a normal map on a disk is not supported")
 
     return _bitmap(plugin, uv, turn if uv.left_handed else None, False)
 

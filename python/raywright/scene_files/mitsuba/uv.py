@@ -31,7 +31,8 @@ SAME = Uv(np.eye(3))
 SPHERE = Uv(np.array([(1.0, 0.0, 0.0), (0.0, -1.0, 1.0), (0.0, 0.0, 1.0)]))
 # u is the distance from the centre and v the angle.
 DISK = Uv(np.array([(0.0, -1.0, 1.0), (1.0, 0.0, 0.0), (0.0, 0.0, 1.0)]), turned=True)
-CUBE = Uv(np.eye(3), left_handed=True)
+# Faces of meshes on which u, v and the normal are left-handed, as on all of the cube.
+MIRRORED = Uv(np.eye(3), left_handed=True)
 
 # Mitsuba's pictures have their top row at v = 0.
 UPRIGHT: Matrix = np.array([(1.0, 0.0, 0.0), (0.0, -1.0, 1.0), (0.0, 0.0, 1.0)])
