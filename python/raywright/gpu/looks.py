@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..materials import Conductor, Dielectric, Diffuse, Material, Mirror, TwoSided
 from ..textures.image import ImageTexture
-from .facets import average_loss, loss_table
+from .facets import ENTRIES, loss_table, mean_fresnel, mean_loss
 from .measured import made_up, reflectances
 
 # 80 bytes: see `Material` of shading.wgsl.
@@ -140,9 +140,18 @@ class Looks:
         row["eta"] = glass.ior
         row["kind"] = _GLASS
         if alpha >= _SMOOTH and abs(glass.ior - 1) >= 1e-6:
-            if glass.multiple_scattering:
-                raise LeftError(f"{what} is rough, and its facets throw light on each other")
             row["kind"], row["alpha"] = _ROUGH_GLASS, alpha
+            self._give_back(row, alpha, float(glass.ior), glass.multiple_scattering)
+
+    def _give_back(self, row: NDArray[np.void], alpha: float, eta: float, gives: bool) -> None:
+        """Say what rough glass gives back of what its facets lose, on which side: `Interface` of the core."""
+        tables = [loss_table(alpha, own) if gives else np.zeros(ENTRIES) for own in (eta, 1 / eta)]
+        row["losses"] = self.add(np.concatenate(tables))
+        means = [mean_loss(table) for table in tables]
+        if min(means) > 0:
+            through = [1 - mean_fresnel(own) for own in (eta, 1 / eta)]
+            row["k"][:2] = [part * min(means) / mean for part, mean in zip(through, means, strict=True)]
+            row["multiple"][:2] = [1 / (np.pi * mean) for mean in means]
 
     def _metal(self, row: NDArray[np.void], metal: Conductor, what: str) -> None:
         alpha = _alpha(metal, what)
@@ -162,8 +171,8 @@ class Looks:
     def _losses(self, alpha: float) -> tuple[int, float]:
         """Return where the table of what facets lose begins, and the mean loss; of 0 they lose nothing."""
         if alpha not in self._tables:
-            table = loss_table(alpha) if alpha else np.zeros(64)
-            self._tables[alpha] = self.add(table), average_loss(alpha) if alpha else 0.0
+            table = loss_table(alpha) if alpha else np.zeros(ENTRIES)
+            self._tables[alpha] = self.add(table), mean_loss(table)
         return self._tables[alpha]
 
 

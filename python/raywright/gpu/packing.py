@@ -1,7 +1,7 @@
 """Materials, lights and what faces look like as arrays for `shading.wgsl`.
 
-All numbers are little-endian, without gaps, and lengths in box units (see `FlatArrays`). What cannot be packed is told
-by name: `LeftError`.
+All numbers are little-endian, without gaps, and lengths in box units (see `FlatArrays`). What cannot be
+packed is told by name: `LeftError`.
 """
 
 from dataclasses import dataclass
@@ -17,8 +17,8 @@ from ..scene.scene import Scene
 from ..shapes.mesh import Mesh
 from .looks import LeftError, Looks, constant
 
-# 112 bytes a face, by its number among all primitives: corners and edges as a mesh winds them; `material`, of its
-# front, in `MATERIAL`, that of its back being the next; `light`, in `LIGHT`, or NO; `has`, 1 for normals and 2 for
+# 112 bytes a face, by its number among all primitives: a corner and two edges as a mesh winds them;
+# `material`, of its front, that of its back being the next; `light`, or NO; `has`, 1 for normals and 2 for
 # texture coordinates, which are u_a, u_b, u_c and v.
 FACE = np.dtype(
     [
@@ -38,8 +38,9 @@ FACE = np.dtype(
         ("reserved", "<f4"),
     ]
 )
-# 48 bytes a light: `kind`, 0 for a face that shines, 1 for a point, 2 for a direction; `radiance`, intensity (in box
-# units) or irradiance; `until` and `share` of all draws from lights that are not the sky.
+# 48 bytes a light: `kind`, 0 for a face that shines, 1 for a point, 2 for a direction; `radiance`, or
+# intensity (in box units), or irradiance; `until` and `share`, of all draws from what is not the sky, those
+# of all up to it and its own.
 LIGHT = np.dtype(
     [
         ("radiance", "<f4", 3),
@@ -220,7 +221,7 @@ def _share(lights: NDArray[np.void], lit: NDArray[np.void], faces: NDArray[np.vo
         # What goes through a circle as large as box units are.
         4 * np.pi,
     ]
-    power = strength * np.select([lights["kind"] == i for i in range(3)], kinds)
+    power = strength * np.choose(lights["kind"], kinds)
     total = power.sum()
     # Ends are rounded, and shares what is between them: so that what is drawn is what is told.
     until = (np.cumsum(power) / (total if total > 0 else 1.0)).astype(np.float32)

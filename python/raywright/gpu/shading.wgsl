@@ -51,9 +51,10 @@ struct Material {
     k: vec3<f32>,
     // Where in the numbers its reflectances begin.
     table: u32,
-    // What facets throw on facets, over pi and the mean loss.
+    // Of metals what facets throw on facets, over pi and the mean loss. Of rough glass one over pi and the mean loss
+    // above and below, and in k the shares of that which cross from there.
     multiple: vec3<f32>,
-    // Where in the numbers begins what facets lose.
+    // Where in the numbers begins what facets lose; of rough glass that above, and then that below.
     losses: u32,
     // Where in the numbers its picture begins, or NO.
     picture: u32,
@@ -418,7 +419,7 @@ fn rough_metal(looks: Material, wo: vec3<f32>, wi: vec3<f32>) -> Scattered {
 }
 
 // One scattering at a rough dielectric: Dielectric::single of the core.
-fn rough_glass(looks: Material, wo: vec3<f32>, wi: vec3<f32>) -> Scattered {
+fn rough_glass_once(looks: Material, wo: vec3<f32>, wi: vec3<f32>) -> Scattered {
     let eta = select(1.0 / looks.eta.x, looks.eta.x, wo.z > 0.0);
     if wo.z * wi.z > 0.0 {
         let o = above(wo);
@@ -445,6 +446,28 @@ fn rough_glass(looks: Material, wo: vec3<f32>, wi: vec3<f32>) -> Scattered {
     let seen = 2.0 / (abs(wo.z) + stretch(wo, looks.alpha));
     let both = min(seen, 2.0 * abs(wi.z / wo.z) / (abs(wi.z) + stretch(wi, looks.alpha)));
     return Scattered(vec3<f32>(through * both), through * seen * eta * eta);
+}
+
+// What facets lose of light from a direction, on its side of rough glass.
+fn lost_between(looks: Material, w: vec3<f32>) -> f32 {
+    return lost(looks.losses + select(0u, 64u, w.z < 0.0), abs(w.z));
+}
+
+// The share of what is lost on the side of a direction that is given back on the other.
+fn crossing(looks: Material, w: vec3<f32>) -> f32 {
+    return select(looks.k.x, looks.k.y, w.z < 0.0);
+}
+
+// With what is given back of what facets lose: Dielectric::both of the core.
+fn rough_glass(looks: Material, wo: vec3<f32>, wi: vec3<f32>) -> Scattered {
+    let by = rough_glass_once(looks, wo, wi);
+    let loss = lost_between(looks, wo);
+    let eta = select(1.0 / looks.eta.x, looks.eta.x, wo.z > 0.0);
+    let crosses = wo.z * wi.z < 0.0;
+    let share = select(1.0 - crossing(looks, wo), crossing(looks, wo), crosses);
+    let over = select(looks.multiple.x, looks.multiple.y, wi.z < 0.0) / select(1.0, eta * eta, crosses);
+    let back = loss * share * lost_between(looks, wi) * abs(wi.z) * over;
+    return Scattered(by.value + back, (1.0 - loss) * by.pdf + loss * share * abs(wi.z) * INVERSE_PI);
 }
 
 fn is_metal(looks: Material) -> bool {
@@ -496,22 +519,30 @@ fn drawn_glass(looks: Material, wo: vec3<f32>, choice: f32) -> Drawn {
 
 fn drawn_rough_glass(looks: Material, wo: vec3<f32>, choice: f32, u: vec2<f32>) -> Drawn {
     let eta = select(1.0 / looks.eta.x, looks.eta.x, wo.z > 0.0);
-    var h = visible_facet(above(wo), looks.alpha, u);
-    h.z = select(-h.z, h.z, wo.z > 0.0);
-    let o = dot(wo, h);
-    var wi = h * (2.0 * o) - wo;
+    let loss = lost_between(looks, wo);
+    var wi = by_cosine(u);
     var beyond = 1.0;
-    if choice < fresnel(o, eta) {
-        if wi.z * wo.z <= 0.0 {
-            return NOTHING;
-        }
+    if choice < loss {
+        let crosses = choice < loss * crossing(looks, wo);
+        wi.z = select(-wi.z, wi.z, (wo.z > 0.0) != crosses);
+        beyond = select(1.0, eta, crosses);
     } else {
-        wi = refracted(wo, h, eta);
-        beyond = eta;
-        if wi.z * wo.z >= 0.0 {
-            return NOTHING;
+        var h = visible_facet(above(wo), looks.alpha, u);
+        h.z = select(-h.z, h.z, wo.z > 0.0);
+        let o = dot(wo, h);
+        wi = h * (2.0 * o) - wo;
+        if (choice - loss) / (1.0 - loss) < fresnel(o, eta) {
+            if wi.z * wo.z <= 0.0 {
+                return NOTHING;
+            }
+        } else {
+            wi = refracted(wo, h, eta);
+            beyond = eta;
+            if wi.z * wo.z >= 0.0 {
+                return NOTHING;
+            }
+            wi = normalize(wi);
         }
-        wi = normalize(wi);
     }
     let by = rough_glass(looks, wo, wi);
     if !(by.pdf > 0.0) {

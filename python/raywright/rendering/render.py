@@ -240,7 +240,7 @@ def render(
         scene._compiled(progress is True)
     there, began = None, time.monotonic()
     if device is not None:
-        asked = {
+        others = {
             "adaptive=True": adaptive,
             "clamp": clamp is not None,
             "background='transparent'": background == "transparent",
@@ -249,7 +249,7 @@ def render(
             "checkpoint": checkpoint is not None,
             "executor": executor is not None,
         }
-        there = OnDevice(device, scene, camera, integrator, seed, asked, sampler, filter)
+        there = OnDevice(device, scene, camera, integrator, seed, others, sampler, filter)
     prepared = time.monotonic() - began
     if there is not None and there.works:
         integrator, sampler, plan = there.plan(integrator)
