@@ -157,8 +157,12 @@ def _check_apart(glasses: list[Mesh]) -> None:
 
 
 def _is_closed(mesh: Mesh) -> bool:
-    """Return whether each edge of a mesh has two faces."""
-    numbers = np.unique(mesh.vertices, axis=0, return_inverse=True)[1].reshape(-1)
+    """Return whether each edge of a mesh has two faces; corners are one that are next to each other."""
+    points = mesh.vertices.astype(np.float64)
+    points = np.round(
+        (points - points.min(axis=0)) * (1e6 / max(float(np.ptp(points, axis=0).max()), 1e-300))
+    )
+    numbers = np.unique(points, axis=0, return_inverse=True)[1].reshape(-1)
     faces = numbers[mesh.faces]
     edges = np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1)
     return bool((np.unique(edges, axis=0, return_counts=True)[1] == 2).all())
@@ -215,13 +219,12 @@ def _delta(scene: Scene, flat: FlatArrays) -> NDArray[np.void]:
 def _share(lights: NDArray[np.void], lit: NDArray[np.void], faces: NDArray[np.void]) -> None:
     """Share draws among lights by about their power, and tell faces which light they are."""
     strength = lights["radiance"].astype(np.float64).max(axis=1, initial=0.0)
-    kinds = [
-        np.pi * lights["area"] * np.where(lights["sides"] == (_FRONT | _BACK), 2, 1),
-        4 * np.pi,
-        # What goes through a circle as large as box units are.
-        4 * np.pi,
-    ]
-    power = strength * np.choose(lights["kind"], kinds)
+    # Of what has no extent, all that goes through a ball as large as box units are.
+    reach = np.full(len(lights), 4 * np.pi)
+    lamp = lights["kind"] == _LAMP
+    sides = np.where(lights["sides"][lamp] == (_FRONT | _BACK), 2, 1)
+    reach[lamp] = np.pi * lights["area"][lamp] * sides
+    power = strength * reach
     total = power.sum()
     # Ends are rounded, and shares what is between them: so that what is drawn is what is told.
     until = (np.cumsum(power) / (total if total > 0 else 1.0)).astype(np.float32)
