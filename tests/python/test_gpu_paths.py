@@ -136,6 +136,15 @@ SCENES = {
         ],
         environment=0.7,
     ),
+    "plastic": lambda: rw.Scene(
+        [
+            floor(rw.Plastic((0.6, 0.3, 0.2), roughness=0.5)),
+            lamp(),
+            ball((-1.1, 0, 0), rw.Plastic(0.8)),
+            ball((1.1, 0, 0), rw.Plastic((0.1, 0.2, 0.7), 1.8, alpha=0.5)),
+        ],
+        environment=0.3,
+    ),
     "points, directions and pictures": lambda: rw.Scene(
         [
             floor(
@@ -267,9 +276,11 @@ LEFT = {
     "the camera is a Orthographic": {"camera": rw.Orthographic((0, 1, 6), (0, 0, 0), width=4, height=4)},
     "the camera is far": {"camera": rw.Camera((0, 0, 1e5), (0, 0, 0), width=4, height=4)},
     "shape 0 is a Sphere": {"scene": rw.Scene(rw.Sphere())},
-    "copies of an Instance": {"scene": rw.Scene(rw.Instance([lamp()], [np.eye(4)]))},
-    "the Plastic of shape 0 is of no kind": {"scene": rw.Scene(floor(rw.Plastic()))},
-    "is filled": {"scene": rw.Scene(floor(rw.Dielectric(transmittance=0.5)))},
+    "the scene has instances": {"scene": rw.Scene(rw.Instance([lamp()], [np.eye(4)]))},
+    "the Phong of shape 0 is of no kind": {"scene": rw.Scene(floor(rw.Phong()))},
+    "the scene has masks": {"scene": rw.Scene(floor(rw.Mask(rw.Diffuse(), 0.5)))},
+    "the scene has smoke and haze": {"scene": rw.Scene(lamp(), medium=rw.Homogeneous(0.1))},
+    "shape 1 is tiny": {"scene": rw.Scene([lamp(), ball((0, 0, 0), rw.Diffuse(), 1e-4)])},
     "is brushed": {"scene": rw.Scene(floor(rw.Conductor("gold", alpha=(0.1, 0.2))))},
     "has the distribution 'beckmann'": {
         "scene": rw.Scene(floor(rw.Conductor("gold", alpha=0.1, distribution="beckmann")))

@@ -29,11 +29,11 @@ def mean_fresnel(eta: float) -> float:
     return float(least**2 + (2 * cosine * fresnel(cosine, eta) * 2 * t * (1 - least)).mean())
 
 
-def _out(alpha: float, eta: float | None, z: float) -> float:
-    """Return the share of light from a cosine that leaves white facets, or those of a dielectric, at once.
+def _out(alpha: float, eta: float | None, z: float) -> tuple[float, float]:
+    """Return the shares of light from a cosine that leave white facets, or a dielectric's, on either side.
 
-    By the mean of Smith's G2 over G1 over the facets that are seen (Dupuy and Benyoub, 2023, for how these
-    are drawn), on a grid that is dense where they reflect along the surface.
+    In one scattering, by the mean of Smith's G2 over G1 over the facets that are seen (Dupuy and Benyoub,
+    2023, for how these are drawn), on a grid that is dense where they reflect along the surface.
     """
     middles = (np.arange(_STEPS) + 0.5) / _STEPS
     t, turn = (part.ravel() for part in np.meshgrid(middles, middles))
@@ -55,14 +55,19 @@ def _out(alpha: float, eta: float | None, z: float) -> float:
     up = wi[2] > 0
     seen = np.where(up, wi[2] * (z + length) / np.where(up, length * wi[2] + stretch(wi) * z, 1), 0)
     if eta is None:
-        return float((4 * t**3 * seen).mean())
+        return float((4 * t**3 * seen).mean()), 0.0
     share = fresnel(o, eta)
     square = eta**2 - 1 + o**2
     wi = -(wo + h * ((eta**2 - 1) / (o + np.sqrt(np.maximum(square, 0))))) / eta
     down = (wi[2] < 0) & (square > 0)
     low = np.where(down, -wi[2], 1.0)
     through = np.minimum(1, low * (z + length) / (z * (low + stretch(wi))))
-    return float((4 * t**3 * (share * seen + (1 - share) * np.where(down, through, 0))).mean())
+    beyond = (1 - share) * np.where(down, through, 0)
+    return float((4 * t**3 * share * seen).mean()), float((4 * t**3 * beyond).mean())
+
+
+# Not from the plane itself, where nothing is defined.
+_COSINES: list[float] = np.maximum(np.linspace(0, 1, ENTRIES) ** 2, 1e-6).tolist()
 
 
 @lru_cache(64)
@@ -71,13 +76,17 @@ def loss_table(alpha: float, eta: float | None = None) -> Floats:
 
     Of mirrors, or of a dielectric whose index on the other side is `eta` times that before it.
     """
-    # Not from the plane itself, where nothing is defined.
-    cosines = np.maximum(np.linspace(0, 1, ENTRIES) ** 2, 1e-6)
-    return np.clip([1 - _out(alpha, eta, z) for z in cosines.tolist()], 0, 1)
+    return np.clip([1 - sum(_out(alpha, eta, z)) for z in _COSINES], 0, 1)
 
 
-def mean_loss(table: Floats) -> float:
-    """Return what is lost of even light, by a table as it is interpolated."""
+@lru_cache(64)
+def coat_table(alpha: float, eta: float) -> Floats:
+    """Return what a rough dielectric reflects of light from such cosines, in one scattering."""
+    return np.clip([_out(alpha, eta, z)[0] for z in _COSINES], 0, 1)
+
+
+def mean_of(table: Floats) -> float:
+    """Return what is lost, or reflected, of even light, by a table as it is interpolated."""
     roots = (np.arange(4096) + 0.5) / 4096
     loss = np.interp(roots, np.linspace(0, 1, ENTRIES), table)
     # With the cosine r^2, 2 c dc is 4 r^3 dr.

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..lights import ConstantEnvironment, DirectionalLight, Emission, EnvironmentMap, PointLight
-from ..materials import Dielectric
+from ..materials import Conductor, Dielectric, Plastic
 from ..query.flats import FlatArrays
 from ..scene.scene import Scene
 from ..shapes.mesh import Mesh
@@ -73,6 +73,8 @@ LIT = np.dtype(
 NO = 0xFFFFFFFF
 _LAMP, _POINT, _DIRECTION = 0, 1, 2
 _FRONT, _BACK = 1, 2
+# In box units: what is smaller has details that float32 does not tell from where rays leave it.
+_TINY = 1e-3
 # The share of draws that goes to the sky where there are lights too.
 _SKY_SHARE = 0.5
 
@@ -122,20 +124,26 @@ def packed(scene: Scene, flat: FlatArrays) -> Packed:
     faces["light"] = NO
     lamps: list[NDArray[np.void]] = []
     glasses: list[Mesh] = []
+    coated: list[Mesh] = []
     for number, shape in enumerate(scene.shapes):
         first, end = int(flat.first[number]), int(flat.first[number + 1])
         if not isinstance(shape, Mesh):
             raise LeftError(f"shape {number} is a {type(shape).__name__}")
+        bounds = shape.bounds
+        if bounds is not None and (bounds[1] - bounds[0]).max() * flat.scale < _TINY:
+            raise LeftError(f"shape {number} is tiny beside the scene")
         if end - first != len(shape.faces):
             raise LeftError(f"shape {number} has faces that are left out")
         some = faces[first:end]
         _lay(some, shape, flat)
         if isinstance(shape.material, Dielectric):
             glasses.append(shape)
+        elif isinstance(shape.material, Conductor | Plastic):
+            coated.append(shape)
         some["material"] = looks.number(shape.material, f"shape {number}")
         if shape.emission is not None:
             lamps.append(_shining(shape, some, first, f"shape {number}"))
-    _check_apart(glasses)
+    _check_apart(glasses, coated)
     lights = np.concatenate([*lamps, _delta(scene, flat)])
     lit = np.zeros((), LIT)
     _sky(scene, lit, looks)
@@ -143,17 +151,25 @@ def packed(scene: Scene, flat: FlatArrays) -> Packed:
     return Packed(faces, looks.array(), lights, looks.numbers(), lit)
 
 
-def _check_apart(glasses: list[Mesh]) -> None:
-    """Raise a LeftError if several shapes of glass may be in one another."""
+def _check_apart(glasses: list[Mesh], coated: list[Mesh]) -> None:
+    """Raise a LeftError if paths have to know what they are in: of one shape of glass they never do."""
     if len(glasses) < 2:
         return
-    boxes = [bounds for mesh in glasses if (bounds := mesh.bounds) is not None]
-    for i, (low, high) in enumerate(boxes):
-        for others_low, others_high in boxes[:i]:
-            if (low <= others_high).all() and (others_low <= high).all():
-                raise LeftError("shapes of glass are next to each other, or in one another")
+    boxes, others = ([mesh.bounds for mesh in some] for some in (glasses, coated))
+    for i, box in enumerate(boxes):
+        if any(_overlap(box, other) for other in boxes[:i]):
+            raise LeftError("shapes of glass are next to each other, or in one another")
+        if any(_overlap(box, other) for other in others):
+            raise LeftError("there are several shapes of glass, and metal or plastic next to one")
     if not all(map(_is_closed, glasses)):
         raise LeftError("there are several shapes of glass, and not all are closed")
+
+
+def _overlap(box: NDArray[np.float64] | None, other: NDArray[np.float64] | None) -> bool:
+    """Return whether two boxes have a point in common; None is that of nothing."""
+    if box is None or other is None:
+        return False
+    return bool((box[0] <= other[1]).all() and (other[0] <= box[1]).all())
 
 
 def _is_closed(mesh: Mesh) -> bool:

@@ -169,8 +169,8 @@ def render(
     device : Gpu, optional
         Who follows paths, in place of the CPU: a picture that agrees with the CPU's within the errors of
         both, by the same estimator with other random numbers. It does pictures by a `Path` and a `Camera` of
-        meshes that are `Diffuse`, `Mirror`, `Dielectric` or `Conductor`, in the light of emission, points,
-        directions and an environment. Whatever it does not, the CPU renders as without, whole, and
+        meshes that are `Diffuse`, `Mirror`, `Dielectric`, `Conductor` or `Plastic`, in the light of emission,
+        points, directions and an environment. Whatever it does not, the CPU renders as without, whole, and
         ``image.plan["device"]`` says what that was. If the device is lost, that is warned of, and the CPU
         goes on. Limits, `progress`, `stop` and Ctrl-C are heard between its pieces of work.
 
