@@ -89,8 +89,9 @@ class Gpu:
         """
         if scene.wavelengths is not None:
             raise LeftError(f"paths carry wavelengths: {scene.wavelengths}")
-        for what in scene.plan().needed:
-            if what in _LEFT:
+        needed = scene.plan().needed
+        for what in _LEFT:
+            if what in needed:
                 raise LeftError(f"the scene has {what}")
         flat = scene.flat()
         eye, looks = eye_of(camera, flat), packed(scene, flat)

@@ -9,7 +9,9 @@ from typing import TYPE_CHECKING, Any
 from .. import _core
 from ..cameras import AnyCamera
 from ..integrators import AnyIntegrator, Path
+from ..scene.instance import AnyShape, Instance
 from ..scene.scene import Scene
+from ..shapes.mesh import face_count
 from .choices import Limits
 from .filters import BoxFilter, Filter
 from .plan import Choice, RenderPlan
@@ -20,6 +22,8 @@ from .ways import StoppedError
 if TYPE_CHECKING:
     from ..gpu.wavefront import Wavefront
 
+# The most faces that copies are laid out as.
+_LAID_OUT = 4_000_000
 # Samples of a pass once there are as many, where neither an error nor time may end the render.
 _PASS = 64
 # What paths do there.
@@ -69,7 +73,7 @@ class OnDevice:
         assert isinstance(integrator, Path)
         depths = integrator.max_depth, integrator.roulette_depth
         try:
-            self._paths = device.paths(scene, camera, *depths, seed)
+            self._paths = device.paths(_without_copies(scene), camera, *depths, seed)
         except LeftError as left:
             self._left = str(left)
         except MemoryError as little:
@@ -152,6 +156,21 @@ class OnDevice:
         """Give the device's memory back."""
         if self._paths is not None:
             self._paths.destroy()
+
+
+def _without_copies(scene: Scene) -> Scene:
+    """Return a scene with still copies laid out as shapes of their own, if they are few enough."""
+    needed = scene.plan().needed
+    if "instances" not in needed or "motion" in needed or sum(map(_faces, scene.shapes)) > _LAID_OUT:
+        return scene
+    from ..exchange.copies import laid_out
+
+    return laid_out(scene).scene
+
+
+def _faces(shape: AnyShape) -> int:
+    """Return how many faces a shape has, in all copies."""
+    return len(shape) * shape.primitives if isinstance(shape, Instance) else face_count(shape)
 
 
 def _left(integrator: AnyIntegrator, asked: dict[str, bool], sampler: Sampler | None, filter: Filter) -> str:
