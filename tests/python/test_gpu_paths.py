@@ -170,6 +170,26 @@ def test_scenes(gpu, name):
     both(SCENES[name](), gpu)
 
 
+FILTERS = [rw.BoxFilter(1.5), rw.TriangleFilter(2), rw.GaussianFilter(), rw.BlackmanHarrisFilter(3)]
+
+
+@pytest.mark.parametrize("filter", FILTERS, ids=lambda filter: type(filter).__name__)
+def test_filters_draw_samples(gpu, filter):
+    """Of a tilted edge, which each filter blurs by another width."""
+    scene = rw.Scene(quad((-2, -3, 0), (2.3, 1, 0), (-1, 6, 0), material=rw.Diffuse(0), emission=1.0))
+    how = {"filter": filter, "progress": False}
+    there = rw.render(scene, CAMERA, rw.Path(0, reuse=1, caustics=False), 400, device=gpu, **how)
+    assert there.plan["device"].chosen == gpu.name
+    here = rw.render(scene, CAMERA, rw.Path(0, reuse=1, caustics=False), 400, sampler=rw.Independent(), **how)
+    error = np.sqrt(there.standard_error.astype(float) ** 2 + here.standard_error.astype(float) ** 2) + 1e-3
+    z = ((there.rgb - here.rgb) / error)[..., 0]
+    assert np.abs(z).max() < 5.2
+    # Next to the edge samples differ, and what they tell is as far apart as it may be.
+    edge = np.minimum(there.rgb, 1 - there.rgb)[..., 0] > 0.1
+    assert edge.sum() > 20
+    assert np.mean(z[edge] ** 2) < 2
+
+
 def test_copies_are_laid_out(gpu, monkeypatch):
     moves = np.tile(np.diag([0.7, 0.7, 0.7, 1.0]), (3, 1, 1))
     moves[:, 0, 3] = -1.5, 0, 1.5
@@ -297,7 +317,7 @@ LEFT = {
     "background='transparent'": {"background": "transparent"},
     "halves=True": {"halves": True},
     "the sampler is a Sobol": {"sampler": rw.Sobol(4)},
-    "the filter is GaussianFilter": {"filter": rw.GaussianFilter()},
+    "the filter is MitchellFilter": {"filter": rw.MitchellFilter()},
     "the camera is a Orthographic": {"camera": rw.Orthographic((0, 1, 6), (0, 0, 0), width=4, height=4)},
     "the camera is far": {"camera": rw.Camera((0, 0, 1e5), (0, 0, 0), width=4, height=4)},
     "shape 0 is a Sphere": {"scene": rw.Scene(rw.Sphere())},

@@ -13,9 +13,10 @@ from ..scene.instance import AnyShape, Instance
 from ..scene.scene import Scene
 from ..shapes.mesh import face_count
 from .choices import Limits
-from .filters import BoxFilter, Filter
+from .filters import Filter
 from .plan import Choice, RenderPlan
 from .progress import Report
+from .quantiles import quantiles
 from .samplers import Independent, Sampler
 from .ways import StoppedError
 
@@ -32,7 +33,7 @@ _PLAIN: dict[str, Any] = {"reuse": 1, "caustics": False}
 
 def check_device(device: Any) -> None:
     """Raise a TypeError unless a device is one."""
-    if isinstance(device, type) or not callable(getattr(device, "paths", None)):
+    if isinstance(device, type) or not callable(getattr(device, "_paths", None)):
         raise TypeError(f"device must be a raywright.Gpu, got {device!r}")
 
 
@@ -73,7 +74,7 @@ class OnDevice:
         assert isinstance(integrator, Path)
         depths = integrator.max_depth, integrator.roulette_depth
         try:
-            self._paths = device.paths(_without_copies(scene), camera, *depths, seed)
+            self._paths = device._paths(_without_copies(scene), camera, *depths, seed, quantiles(filter))
         except LeftError as left:
             self._left = str(left)
         except MemoryError as little:
@@ -185,6 +186,6 @@ def _left(integrator: AnyIntegrator, asked: dict[str, bool], sampler: Sampler | 
             return name
     if not isinstance(sampler, Independent | None):
         return f"the sampler is a {type(sampler).__name__}"
-    if filter != BoxFilter():
+    if quantiles(filter) is None:
         return f"the filter is {filter!r}"
     return ""
