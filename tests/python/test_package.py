@@ -60,7 +60,7 @@ def test_wheel_is_for_all_pythons_from_3_10_and_holds_the_package_alone():
     names = zipfile.ZipFile(wheel).namelist()
     assert {"raywright/__init__.py", "raywright/_core.pyi", "raywright/py.typed"} <= set(names)
     assert {f"raywright/viewer/page.{kind}" for kind in ("html", "css", "js")} <= set(names)
-    kernels = ("trace", "closest", "occluded", "probe")
+    kernels = ("trace", "closest", "occluded", "probe", "shading", "walk", "paths")
     assert {f"raywright/gpu/{kernel}.wgsl" for kernel in kernels} <= set(names)
     assert sum(name.endswith((".so", ".pyd")) for name in names) == 1
     tops = {name.split("/")[0].removesuffix(".dist-info").split("-")[0] for name in names}
