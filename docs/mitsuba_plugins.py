@@ -30,6 +30,7 @@ NEARLY = {
     "linearcurve": "a mesh of 48 sides, within 0.22 % of the radius; fewer sides beyond 4 million triangles",
     "bsplinecurve": "so too, in straight pieces that stray by 0.1 % of the radius; one sees into open ends",
     "sdfgrid": "a mesh of a third of its cells, with corners on the surface",
+    "heightfield": "Mitsuba 0.6's: a mesh of four triangles a patch, whose points are those of the picture",
     "mesh_attribute": "of PLY files: vertices or faces, one attribute a mesh, between 0 and 1",
     "conductor": "`material`: the metal's colour by its spectrum, as the `_spectral` variants have it",
     "roughconductor": "`material`: the metal's colour by its spectrum, as the `_spectral` variants have it",

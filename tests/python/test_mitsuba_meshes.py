@@ -5,6 +5,7 @@ import re
 import numpy as np
 import pytest
 from mitsuba_files import OCTAHEDRON, curve, dabs, eight, serialized
+from PIL import Image
 
 import raywright as rw
 from raywright.scene_files import tubes
@@ -148,6 +149,82 @@ def vol(grid):
         + np.array([0, 0, 0, 1, 1, 1], "<f4").tobytes()
     )
     return head + grid.astype("<f4").tobytes()
+
+
+def bilinear(heights, x, y):
+    """The height over points of the square from (-1, -1) to (1, 1)."""
+    rows, columns = heights.shape
+    u, v = (x + 1) / 2 * (columns - 1), (y + 1) / 2 * (rows - 1)
+    i, j = np.minimum(u.astype(int), columns - 2), np.minimum(v.astype(int), rows - 2)
+    u, v = u - i, v - j
+    a, b, c, d = heights[j, i], heights[j, i + 1], heights[j + 1, i], heights[j + 1, i + 1]
+    return (1 - v) * ((1 - u) * a + u * b) + v * ((1 - u) * c + u * d)
+
+
+def test_height_fields_stray_from_their_patches_by_a_sixteenth_of_the_twist(tmp_path):
+    random = np.random.default_rng(5)
+    heights = random.random((4, 6)).astype(np.float32)
+    field = shape(
+        tmp_path, type="heightfield", scale=0.5, texture={"type": "bitmap", "data": heights, "raw": True}
+    )
+    twist = np.abs(np.diff(np.diff(0.5 * heights, axis=0), axis=1)).max()
+    x, y = random.uniform(-1, 1, (2, 5000))
+    down = np.broadcast_to((0.0, 0.0, -1.0), (5000, 3))
+    hits = rw.Scene(field).intersect(np.stack([x, y, np.full(5000, 9.0)], -1), down)
+    off = np.abs(9 - hits.t - bilinear(0.5 * heights, x, y))
+    # So far it is in the middle of a half edge, and not beyond.
+    assert 0.5 * twist / 16 < off.max() < 1.0001 * twist / 16
+    # Along edges and in the middle of patches it is the patch; rows are along y, from below.
+    u, v = (np.arange(6) / 2.5 - 1), (np.arange(4) / 1.5 - 1)
+    assert np.allclose(field.vertices[:24, 2], 0.5 * heights.reshape(-1), rtol=0, atol=1e-7)
+    assert np.allclose(
+        field.vertices[:24, :2], np.stack(np.meshgrid(u, v), -1).reshape(-1, 2), rtol=0, atol=1e-7
+    )
+    middles = field.vertices[24:]
+    assert np.allclose(middles[:, 2], bilinear(0.5 * heights, *middles[:, :2].T), rtol=0, atol=1e-7)
+    assert np.allclose(field.uv, (field.vertices[:, :2] + 1) / 2, rtol=0, atol=1e-7)
+
+
+def test_height_fields_of_old_files_lie_as_their_picture_says(tmp_path):
+    """A slope of one along x, from a picture of a file, as Mitsuba 0.6 has it."""
+    Image.fromarray(np.array([(0, 255), (0, 255)], np.uint8)).save(tmp_path / "slope.png")
+    (tmp_path / "scene.xml").write_text(
+        """<scene version="0.5.0">
+            <sensor type="perspective"/>
+            <shape type="heightfield">
+                <string name="filename" value="slope.png"/>
+                <float name="scale" value="2"/>
+                <boolean name="flipNormals" value="true"/>
+                <transform name="toWorld"><translate z="3"/></transform>
+            </shape>
+        </scene>""",
+        encoding="utf-8",
+    )
+    field = rw.load(tmp_path / "scene.xml").scene.shapes[0]
+    assert np.allclose(field.vertices[:, 2], field.vertices[:, 0] + 4, rtol=0, atol=1e-6)
+    assert np.allclose(field.normals, np.array((1, 0, -1)) / np.sqrt(2), rtol=0, atol=1e-6)
+    a, b, c = field.vertices[field.faces[0]]
+    assert np.cross(b - a, c - a)[2] < 0
+    plain = shape(tmp_path, type="heightfield", filename="slope.png", shading_normals=False)
+    assert plain.normals is None
+
+
+@pytest.mark.parametrize(
+    ("values", "told"),
+    [
+        ({}, "either filename or one texture of type bitmap"),
+        ({"data": np.zeros((2, 2))}, "either filename or one texture of type bitmap"),
+        (
+            {"texture": {"type": "bitmap", "data": np.zeros((1, 2, 1)), "raw": True}},
+            r"2 columns, got \(1, 2\)",
+        ),
+        ({"texture": {"type": "bitmap", "data": np.full((2, 2, 1), np.nan), "raw": True}}, "must be finite"),
+        ({"filename": "none.exr"}, "none.exr"),
+    ],
+)
+def test_height_fields_that_are_none_are_refused(tmp_path, values, told):
+    with pytest.raises((ValueError, FileNotFoundError), match=told):
+        shape(tmp_path, type="heightfield", **values)
 
 
 def test_grids_of_distances_have_their_surface(tmp_path):

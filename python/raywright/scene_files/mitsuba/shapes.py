@@ -13,10 +13,10 @@ from ...scene.instance import AnyShape, Instance
 from ...shapes import Cylinder, Disk, Shape, Sphere
 from ...shapes.mesh import Mesh
 from .. import tubes
-from . import attributes, bsdfs, curves, media, mesh_files, sdf_grids
+from . import attributes, bsdfs, curves, height_fields, media, mesh_files, sdf_grids
 from .errors import SceneError
 from .plugin import Plugin
-from .textures import value
+from .textures import heights, value
 from .transforms import Matrix, frame
 from .uv import DISK, MIRRORED, SAME, SPHERE, Uv
 
@@ -119,6 +119,24 @@ def _distance_grid(plugin: Plugin) -> Mesh:
     return Mesh(vertices, faces, None if plain else normals, corner, *_look(plugin, SAME))
 
 
+def _height_field(plugin: Plugin) -> Mesh | tuple[Mesh, ...]:
+    inner = list(plugin.children("bitmap"))
+    if len(inner) + plugin.has("filename") != 1:
+        plugin.fail("either filename or one texture of type bitmap must be given")
+    # How finely to look at a texture that is a formula; pictures have their own points.
+    plugin.ignore("width", "height")
+    if inner:
+        found = heights(inner[0])
+        inner[0].ignore("filter_type", "wrap_mode", "format")
+        inner[0].done()
+    else:
+        found = heights(plugin)
+    plain = not plugin.switch("shading_normals", True)
+    triangles = height_fields.surface(found * plugin.number("scale", 1.0))
+    placed = triangles.placed(plugin.to_world(), plugin.switch("flip_normals", False))
+    return _by_hand(plugin, placed._replace(normals=None) if plain else placed)
+
+
 def _sphere(plugin: Plugin) -> Sphere:
     matrix = plugin.to_world()
     center, radius = plugin.vector("center", (0.0, 0.0, 0.0)), plugin.number("radius", 1.0)
@@ -167,6 +185,7 @@ _READERS: dict[str, Callable[[Plugin], Mesh | Shape | tuple[Mesh, ...]]] = {
     "linearcurve": _curves,
     "bsplinecurve": _curves,
     "sdfgrid": _distance_grid,
+    "heightfield": _height_field,
 }
 TYPES = tuple(_READERS)
 

@@ -131,6 +131,13 @@ def picture(plugin: Plugin) -> tuple[NDArray[Any], bool]:
     return array, linear or array.dtype.kind == "f"
 
 
+def heights(plugin: Plugin) -> NDArray[np.float64]:
+    """Return the luminance of the picture that a plugin names or holds, (H, W)."""
+    array, linear = picture(plugin)
+    colours = linear_colours(array, linear)
+    return colours[..., 0] if array.shape[2] == 1 else colours @ _LUMINANCE
+
+
 def normals(plugin: Plugin, uv: Uv) -> ImageTexture:
     """Return a picture of normals, along u and v as raywright has them."""
 
