@@ -19,7 +19,8 @@ from ..rendering.image import Image
 from ..rendering.render import render
 from ..rendering.so_far import ImageSoFar
 from ..scene.scene import Scene
-from .boxes import check_flat, drawn, edges
+from .boxes import check_flat, drawn, edges, largest
+from .drawn import Drawn
 from .orbit import Orbit, View, resized, scaled
 
 # What a preview may take: its samples, and its seconds.
@@ -97,7 +98,7 @@ class Frame:
             "width": width,
             "height": height,
             "size": self.size,
-            "camera": re.sub(r"\b([A-Z]\w*\()", r"rw.\1", repr(self.camera)),
+            "camera": line_of(self.camera),
             "exposure": self.exposure,
             "boxes": None if self.boxes is None else int(self.boxes.depth[0]),
             "samples": image.samples,
@@ -105,7 +106,7 @@ class Frame:
             "error": [None if math.isnan(value) else value for value in error],
             "trusted": image.error.trusted,
             "warnings": list(image.warnings),
-            "view": {name: getattr(view, name) for name in View.LIMITS},
+            "view": view.told(),
         }
 
 
@@ -193,6 +194,21 @@ class Session:
         return self._orbit.elevations
 
     @property
+    def view(self) -> View:
+        """The view that is wanted now."""
+        return self._view
+
+    @property
+    def depth(self) -> int | None:
+        """Which level of the accelerator's boxes is drawn over pictures."""
+        return None if self._boxes is None else int(self._boxes.depth[0])
+
+    @cached_property
+    def drawn(self) -> Drawn:
+        """What a page needs to draw the scene itself."""
+        return Drawn(self._scene, self._orbit, self._integrator, self._how, self._tone)
+
+    @property
     def camera(self) -> AnyCamera:
         """The camera of the view that is wanted now."""
         return self._orbit.camera(self._view)
@@ -209,6 +225,7 @@ class Session:
         """Show what another integrator makes of the scene. The render before ends at once."""
         with self._changed:
             self._integrator = integrator
+            self.drawn.show(integrator)
             self._wanted += 1
             self._changed.notify_all()
 
@@ -252,6 +269,27 @@ class Session:
     def _tree(self) -> TreeBoxes:
         return self._scene.tree()
 
+    def corners(self, depth: int) -> bytes:
+        """Return the boxes of a level, (K, 8, 3) float32 in box units: of many the largest, none beyond the last."""
+        return self.drawn.local(largest(self._tree.at(depth).corners)).tobytes()
+
+    def pick(self, view: View, x: float, y: float) -> dict[str, Any]:
+        """Tell what is seen at a place of the picture of a view, from (0, 0) at its upper left to (1, 1)."""
+        camera = resized(self._orbit.camera(view), *self._size)
+        (column, right), (row, down) = (
+            divmod(share * size, 1.0) for share, size in zip((x, y), self._size, strict=True)
+        )
+        hit = self._scene.pick(camera, int(column), int(row), (right, down))
+        if not hit.hit:
+            return {"shape": None}
+        return {
+            "shape": int(hit.shape_id),
+            "name": str(hit.names) or None,
+            "face": int(hit.primitive),
+            "position": hit.position.tolist(),
+            "t": float(hit.t),
+        }
+
     def _show_again(self) -> None:
         """Show the last picture as pictures are to be shown now; whoever asks holds the lock."""
         if self._frame is not None:
@@ -289,6 +327,12 @@ class Session:
             self._changed.wait_for(newer, seconds)
             frame = self._frame
             return frame if frame is not None and frame.number > after else None
+
+    def next_view(self, last: View, seconds: float) -> View:
+        """Return the view that is wanted, or wait for a time for another than the last."""
+        with self._changed:
+            self._changed.wait_for(lambda: self._view != last or self._closed, seconds)
+            return self._view
 
     def close(self) -> None:
         """End all work."""
@@ -399,6 +443,11 @@ class _Job:
         if not self.session.is_wanted(self):
             raise _UnwantedError
         return False
+
+
+def line_of(camera: AnyCamera) -> str:
+    """Return the line of Python that makes a camera."""
+    return re.sub(r"\b([A-Z]\w*\()", r"rw.\1", repr(camera))
 
 
 def _divisor(times: float) -> int:

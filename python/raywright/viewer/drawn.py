@@ -1,0 +1,117 @@
+"""What a page needs to draw a scene by itself: arrays for its graphics processor, and how rays spread."""
+
+import threading
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .._core import FlatScene
+from ..cameras import Camera, Orthographic, ThinLens
+from ..integrators import AnyIntegrator
+from ..io.tone import TONES
+from ..query.flats import FlatArrays, flat_arrays
+from ..scene.scene import Scene
+from .lamps import lamp
+from .orbit import Orbit, View
+from .paint import paints
+
+# The scene is not laid out for a page if it would take more than this.
+_MOST_BYTES = 1 << 30
+# Bytes of a primitive, at the most that a binary tree of it takes.
+_EACH = 48 + 64
+
+
+class Drawn:
+    """A scene as a page draws it, laid out when the first one asks.
+
+    Parameters
+    ----------
+    scene : Scene
+        What.
+    orbit : Orbit
+        Of the camera.
+    integrator : Path or another kind
+        What the core would render it with.
+    how : mapping
+        What else `render` takes.
+    tone : str
+        As `Image.save` has it.
+    """
+
+    def __init__(
+        self, scene: Scene, orbit: Orbit, integrator: AnyIntegrator, how: Mapping[str, Any], tone: str
+    ) -> None:
+        self._scene, self._orbit, self._integrator = scene, orbit, integrator
+        self._how, self._tone = how, tone
+        self._lock = threading.Lock()
+        self._core: Any = None
+        self._version = 0
+        self._flat: FlatArrays | None = None
+        self._arrays: dict[str, bytes] = {}
+
+    def show(self, integrator: AnyIntegrator) -> None:
+        """Take another integrator from now on."""
+        self._integrator = integrator
+
+    def told(self) -> dict[str, Any]:
+        """Return what there is to tell a page: ``{"why": ...}`` in one line if it cannot draw the scene itself."""
+        why = self._refused()
+        if why is not None:
+            return {"why": why}
+        with self._lock:
+            flat = self._laid_out()
+            if not len(flat.nodes):
+                return {"why": "the scene is empty"}
+            if len(flat.unbounded) or (flat.triangles["largest"] < 0).any():
+                return {"why": "the page draws triangles alone, and the scene has other shapes, or copies"}
+            return {
+                "why": None,
+                "version": str(self._version),
+                "arrays": {name: len(data) for name, data in self._arrays.items()},
+                "nodes": flat.own,
+                "depth": flat.depth,
+                "centre": flat.centre.tolist(),
+                "scale": flat.scale,
+                "orbit": self._orbit.told(),
+                "lamp": lamp(self._scene, self._orbit.camera(View())),
+                "tone": TONES.index(self._tone),
+                "traced": False,
+            }
+
+    def bytes(self, version: str, name: str) -> bytes | None:
+        """Return an array of a version; None if there is none."""
+        with self._lock:
+            return self._arrays.get(name) if version == str(self._version) else None
+
+    def local(self, points: NDArray[np.float64]) -> NDArray[np.float32]:
+        """Return points in box units."""
+        with self._lock:
+            flat = self._laid_out()
+            return np.asarray((points - flat.centre) * flat.scale, "<f4")
+
+    def _refused(self) -> str | None:
+        camera = self._orbit.camera(View())
+        if not isinstance(camera, Camera | ThinLens | Orthographic):
+            return f"the page draws no pictures of a {type(camera).__name__}"
+        if camera.moved_to is not None:
+            return "the page draws no camera that moves while its shutter is open"
+        if self._scene.accelerator.primitives * _EACH > _MOST_BYTES:
+            return "the scene is too large for the page to draw"
+        return None
+
+    def _laid_out(self) -> FlatArrays:
+        """Return the arrays of the scene as it is now; whoever asks holds the lock."""
+        core = self._scene._compiled()
+        if self._flat is None or self._core is not core:
+            scene = self._scene
+            flat = flat_arrays(FlatScene(core, scene.accelerator_choice, scene.quality, True))
+            self._flat, self._core = flat, core
+            self._version += 1
+            self._arrays = {
+                "nodes": flat.nodes.tobytes(),
+                "triangles": flat.triangles.tobytes(),
+                "paints": paints(scene.shapes, flat.first).tobytes(),
+            }
+        return self._flat
