@@ -151,16 +151,16 @@ def test_the_picture_fills_the_window_and_is_exposed_by_the_page(page, knot):
     with rw.view(*knot, samples=4) as viewer:
         page.goto(viewer.url)
         shown(page, is_state("done"))
-        wide, high = page.evaluate("[canvas.clientWidth, canvas.clientHeight]")
-        _, plain = shown(page, f"canvas.height === {high} && {is_state('done')}")
+        wide, high = page.evaluate("[picture.clientWidth, picture.clientHeight]")
+        _, plain = shown(page, f"picture.height === {high} && {is_state('done')}")
         assert plain.shape == (high, high, 3)
         assert wide > high
         page.set_viewport_size({"width": 500, "height": 700})
-        page.wait_for_function("() => canvas.height === 500 && canvas.width === 500", timeout=10_000)
+        page.wait_for_function("() => picture.height === 500 && picture.width === 500", timeout=10_000)
         _, plain = shown(page, is_state("done"))
         for _ in range(4):
             page.keyboard.press("]")
-        _, brighter = shown(page, f"canvas.dataset.exposure === '1' && {is_state('done')}")
+        _, brighter = shown(page, f"picture.dataset.exposure === '1' && {is_state('done')}")
         assert told(page, "stops") == "1"
         assert brighter.mean() > 1.2 * plain.mean()
         page.keyboard.press("c")
@@ -225,5 +225,5 @@ def test_pages_from_elsewhere_get_nothing(browser, knot):
         assert not viewer.rendering
         page.goto(viewer.url)
         shown(page, is_state("done"))
-        assert page.evaluate("view.zoom") == 1
+        assert page.evaluate("viewer.view.zoom") == 1
     page.close()

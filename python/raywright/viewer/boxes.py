@@ -60,8 +60,8 @@ def largest(corners: NDArray[np.float64]) -> NDArray[np.float64]:
     return corners[np.argsort(-size, kind="stable")[:_MOST]]
 
 
-def spread(camera: Camera | ThinLens | Orthographic) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return how a camera's rays spread over its picture.
+def spread(camera: AnyCamera) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return how the rays of a camera spread over its picture; edges must be straight there (`check_flat`).
 
     Returns
     -------
@@ -75,7 +75,8 @@ def spread(camera: Camera | ThinLens | Orthographic) -> tuple[NDArray[np.float64
         # Ways to the corners of a plane, which are those of a parallelogram.
         lengths = np.linalg.svd(np.stack([ways[0], -ways[1], -ways[2], ways[3]], axis=1))[2][-1]
         ways = ways * (lengths * np.sign(lengths[0]))[:, np.newaxis]
-    return tuple(np.stack([one[0], one[1] - one[0], one[2] - one[0]]) for one in (origins, ways))
+    starts, towards = (np.stack([one[0], one[1] - one[0], one[2] - one[0]]) for one in (origins, ways))
+    return starts, towards
 
 
 def drawn(pixels: NDArray[np.uint8], lines: NDArray[np.float64]) -> NDArray[np.uint8]:

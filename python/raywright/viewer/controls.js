@@ -87,6 +87,7 @@ export function listen(canvas, { view, move, pick }) {
 export function listenToKeys(target, actions) {
   target.addEventListener("keydown", (event) => {
     if (event.key in actions && isPlain(event)) {
+      event.stopPropagation();
       actions[event.key]();
     }
   });

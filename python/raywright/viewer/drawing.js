@@ -140,7 +140,7 @@ export class Drawing {
     this.aim(width, height);
     passes.drawSight(width, height);
     this.aim(canvas.width, canvas.height);
-    passes.present(this.context.getCurrentTexture().createView());
+    this.present();
     await passes.device.queue.onSubmittedWorkDone();
     const took = performance.now() - began;
     const fit = Math.ceil(divisor * Math.sqrt(took / SMOOTH));
@@ -173,6 +173,16 @@ export class Drawing {
       sample: 0,
       ...more,
     });
+  }
+
+  // A file of what is seen: a canvas keeps it no longer than until it was shown, so it is drawn again.
+  saved() {
+    this.present();
+    return new Promise((done) => this.canvas.toBlob(done));
+  }
+
+  present() {
+    this.passes.present(this.context.getCurrentTexture().createView());
   }
 
   destroy() {

@@ -1,58 +1,37 @@
 // The page of the viewer's server: asks it by HTTP, and hears of it by server-sent events.
 
 import { Viewer } from "./viewer.js";
+import { Wire } from "./wire.js";
 
-class Wire {
+class Server extends Wire {
   constructor() {
-    this.on = {};
-    // The newest of what is to be told, by where to; what was not sent yet is not worth it any more.
-    this.unsent = new Map();
-    this.isSending = false;
+    super();
+    this.hasFile = true;
     this.events = null;
     this.isWatching = null;
+    this.isKnown = false;
   }
 
-  post(path, given) {
+  async ask(what, given) {
     const headers = { "Content-Type": "application/json" };
-    return fetch(path, { method: "POST", headers, body: JSON.stringify(given) });
-  }
-
-  async send(path, given) {
-    this.unsent.set(path, given);
-    if (this.isSending) {
-      return;
-    }
-    this.isSending = true;
-    while (this.unsent.size) {
-      const [[where, what]] = this.unsent;
-      this.unsent.delete(where);
-      try {
-        await this.post(where, what);
-      } catch {
-        // The stream of pictures tells when the server is gone.
-      }
-    }
-    this.isSending = false;
-  }
-
-  async ask(path, given) {
-    const answer = await this.post(path, given);
+    const answer = await fetch(what, { method: "POST", headers, body: JSON.stringify(given) });
     if (!answer.ok) {
       throw new Error((await answer.text()).trim());
     }
-    return answer.json();
+    return answer.status === 204 ? null : answer.json();
   }
 
-  bytes = async (name) => this.answered(await fetch(name)).arrayBuffer();
-
-  text = async (name) => this.answered(await fetch(name)).text();
-
-  answered(answer) {
+  async answered(name) {
+    const answer = await fetch(name);
     if (!answer.ok) {
-      throw new Error(`${answer.url} is not there`);
+      throw new Error(`the server has no ${name}`);
     }
     return answer;
   }
+
+  bytes = async (name) => (await this.answered(name)).arrayBuffer();
+
+  text = async (name) => (await this.answered(name)).text();
 
   // Hear of pictures, for which the core has to render, or only of where they are from.
   watch(isOn) {
@@ -64,14 +43,11 @@ class Wire {
     const events = new EventSource(isOn ? "events" : "news");
     this.events = events;
     const hear = (name, tell) => events.addEventListener(name, (event) => tell(JSON.parse(event.data)));
-    let isFirst = true;
     hear("scene", (scene) => {
-      // Of a stream that was left and is heard again it is known.
-      if (!this.isKnown || !isFirst) {
+      if (!this.isKnown) {
         this.isKnown = true;
         this.on.scene(scene);
       }
-      isFirst = false;
     });
     hear("view", (view) => this.on.view(view));
     hear("frame", ({ picture, ...frame }) => {
@@ -82,8 +58,18 @@ class Wire {
       events.close();
       this.on.trouble(line);
     });
-    events.addEventListener("error", () => this.events === events && this.on.ended());
+    events.addEventListener("error", () => {
+      if (this.events === events) {
+        // Should it come back, it begins anew.
+        this.isKnown = false;
+        this.on.ended();
+      }
+    });
+  }
+
+  close() {
+    this.events?.close();
   }
 }
 
-window.viewer = new Viewer(document, document.body, document, new Wire());
+window.viewer = new Viewer(document, document.body, document, new Server());

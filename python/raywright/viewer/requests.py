@@ -1,5 +1,6 @@
 """What a page asks for and tells, by whatever way that comes: the server's, or a notebook's."""
 
+from collections.abc import Callable
 from typing import Any
 
 from ..arrays import integer, number
@@ -104,7 +105,7 @@ def _drawing(session: Session, given: Any) -> dict[str, Any]:
     return session.drawn.told()
 
 
-_ANSWERS: dict[str, Any] = {
+_ANSWERS: dict[str, Callable[[Session, Any], dict[str, Any] | None]] = {
     "view": _view,
     "window": _window,
     "exposure": _exposure,

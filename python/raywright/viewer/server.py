@@ -179,7 +179,9 @@ class _Handler(BaseHTTPRequestHandler):
             self._events(session, with_pictures=path == "events")
         elif (data := bytes_of(session, path)) is not None:
             # The address of an array holds its version, and what it holds never changes.
-            kept = {"Cache-Control": "private, max-age=86400, immutable"} if path.startswith("arrays/") else {}
+            kept = (
+                {"Cache-Control": "private, max-age=86400, immutable"} if path.startswith("arrays/") else {}
+            )
             self._send(HTTPStatus.OK, "application/octet-stream", data, kept)
         else:
             raise _RefusedError(HTTPStatus.NOT_FOUND, "nothing is here")

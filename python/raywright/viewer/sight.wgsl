@@ -1,5 +1,5 @@
-// What is seen along a ray, for pictures: after trace.wgsl, whose tests of boxes and triangles it takes. Of what f32
-// cannot tell, a picture shows the middle.
+// What is seen along a ray, for pictures: after trace.wgsl, whose tests of boxes and triangles it takes. What f32 cannot
+// tell counts as hit.
 
 struct Look {
     // The ray at the upper left of the picture, what is added across it and down: where rays start, and their ways.
@@ -31,6 +31,13 @@ struct Hit {
     visits: u32,
 }
 
+// Where along a ray the plane of a triangle is. The bounds of `meet` lie around it, but for those that boxes tell.
+fn distance_to(ray: Slabs, triangle: Triangle) -> f32 {
+    let s = ray.origin - vector(triangle.corner);
+    let across = cross(vector(triangle.edge), vector(triangle.other));
+    return -dot(s, across) / dot(ray.direction, across);
+}
+
 fn first_hit(ray: Slabs) -> Hit {
     var hit = Hit(FOREVER, NONE, 1u);
     var stack: array<u32, STACK>;
@@ -48,11 +55,14 @@ fn first_hit(ray: Slabs) -> Hit {
         var go_on = false;
         if here.count > 0u {
             for (var i = here.index; i < here.index + here.count; i++) {
-                let met = meet(ray, triangle(i), enter, hit.t);
-                let t = 0.5 * (met.low + met.high);
-                if met.possible && met.high < BEYOND && t < hit.t && t > ray.t_min {
-                    hit.t = t;
-                    hit.at = i;
+                let one = triangle(i);
+                let met = meet(ray, one, enter, hit.t);
+                if met.possible && met.high < BEYOND {
+                    let t = distance_to(ray, one);
+                    if t > ray.t_min && t < hit.t {
+                        hit.t = t;
+                        hit.at = i;
+                    }
                 }
             }
         } else {
@@ -107,10 +117,13 @@ fn is_hidden(ray: Slabs) -> bool {
             continue;
         }
         for (var i = 0u; i < here.count; i++) {
-            let met = meet(ray, triangle(here.index + i), within.x, ray.t_max);
-            let t = 0.5 * (met.low + met.high);
-            if met.possible && met.high < BEYOND && t > ray.t_min && t < ray.t_max {
-                return true;
+            let one = triangle(here.index + i);
+            let met = meet(ray, one, within.x, ray.t_max);
+            if met.possible && met.high < BEYOND {
+                let t = distance_to(ray, one);
+                if t > ray.t_min && t < ray.t_max {
+                    return true;
+                }
             }
         }
         at++;

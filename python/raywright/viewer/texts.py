@@ -8,7 +8,16 @@ from ..gpu.kernels import text as kernel
 
 _SCRIPT, _SHADER = "text/javascript; charset=utf-8", "text/plain; charset=utf-8"
 # Each module after those that it imports.
-MODULES = ("orbit.js", "device.js", "passes.js", "drawing.js", "stream.js", "controls.js", "viewer.js")
+MODULES = (
+    "orbit.js",
+    "device.js",
+    "passes.js",
+    "drawing.js",
+    "stream.js",
+    "controls.js",
+    "viewer.js",
+    "wire.js",
+)
 SHADERS = ("trace.wgsl", "sight.wgsl", "screen.wgsl", "lines.wgsl")
 # What is served besides arrays, by what follows the token, and of what type.
 FILES = {

@@ -13,8 +13,8 @@ const rounded = (values) => values.map((value) => +value.toPrecision(6)).join(",
 const same = (a, b) => Object.keys(START).every((name) => a[name] === b[name]);
 
 // `root` has the page's parts, `host` is told the state, keys are heard on `keys`, and `wire` leads to the core: it has
-// `send(what, given)`, `ask(what, given)`, `bytes(name)`, `text(name)`, `watch(isOn)` for the core's pictures, and
-// calls what is put to its `on`: `scene`, `view`, `frame`, `trouble`, `ended`.
+// `send(what, given)`, `ask(what, given)`, `bytes(name)`, `text(name)`, `watch(isOn)` for the core's pictures, `close()`,
+// and whether it `hasFile` of a picture; and it calls what is put to its `on`: `scene`, `view`, `frame`, `trouble`, `ended`.
 export class Viewer {
   constructor(root, host, keys, wire) {
     [this.host, this.wire] = [host, wire];
@@ -84,10 +84,11 @@ export class Viewer {
     });
     // The window: as many pixels as it has room for, once it keeps its size for a moment.
     let resizing = 0;
-    new ResizeObserver(() => {
+    this.observer = new ResizeObserver(() => {
       clearTimeout(resizing);
       resizing = setTimeout(() => this.fit(), 100);
-    }).observe(byId("stage"));
+    });
+    this.observer.observe(byId("stage"));
   }
 
   // The scene and the camera.
@@ -182,12 +183,14 @@ export class Viewer {
     }
   }
 
-  // What is drawn here is saved as it is seen; what the core renders is saved by the link.
+  // The server has a file of what the core renders; all else is saved as it is seen.
   async save(event) {
-    if (this.shownHere) {
+    if (this.shownHere || !this.wire.hasFile) {
       event.preventDefault();
+      const canvas = this.byId("picture");
+      const file = this.shownHere ? this.drawing.saved() : new Promise((done) => canvas.toBlob(done));
       const link = Object.assign(document.createElement("a"), { download: "raywright.png" });
-      link.href = URL.createObjectURL(await this.drawing.saved());
+      link.href = URL.createObjectURL(await file);
       link.click();
       URL.revokeObjectURL(link.href);
     }
@@ -267,6 +270,7 @@ export class Viewer {
       this.wire.watch(false);
       this.showHere(true);
       this.state = "drawn";
+      this.say(this.toldBoxes());
       this.byId("error").textContent = "–";
       this.byId("interval").textContent = "";
     }
@@ -319,6 +323,12 @@ export class Viewer {
     this.boxes = frame.boxes;
     this.say(this.toldBoxes(), ...frame.warnings);
     this.stream.tell(frame);
+  }
+
+  close() {
+    this.observer.disconnect();
+    this.drawing?.destroy();
+    this.wire.close();
   }
 
   end(state, line) {
