@@ -1,45 +1,28 @@
-"""The viewer in a real browser: Debian's chromium or the like, without a window, driven by playwright.
+"""The viewer in a real browser, by the core's pictures."""
 
-``pip install '.[browser]'`` and ``apt-get install chromium`` (or chromium-headless-shell) bring both.
-"""
-
-import base64
-import io
-import shutil
 import time
 
 import numpy as np
 import pytest
-from PIL import Image as Pillow
 
 import raywright as rw
 
-playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
-NAMES = ("chromium", "chromium-headless-shell", "chromium-browser", "google-chrome")
-CHROMIUM = next(filter(None, map(shutil.which, NAMES)), None)
-pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="chromium is not installed")
+pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
+from viewer_browser import decoded, is_state, launched, needs_chromium, opened, told
+
+pytestmark = needs_chromium
 
 
 @pytest.fixture(scope="module")
 def browser():
-    with playwright.sync_playwright() as driver:
-        # Its sandbox does not work for root or within containers, and it sees nothing but our own page.
-        one = driver.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox", "--disable-gpu"])
+    with launched("--disable-gpu") as one:
         yield one
-        one.close()
 
 
 @pytest.fixture
 def page(browser):
-    """An empty page that must have nothing to complain of."""
-    page = browser.new_page(viewport={"width": 900, "height": 700})
-    complaints = []
-    page.on("console", lambda told: complaints.append(told.text) if told.type == "error" else None)
-    page.on("pageerror", lambda error: complaints.append(str(error)))
-    yield page
-    if not page.is_closed():
-        page.close()
-    assert complaints == []
+    with opened(browser) as page:
+        yield page
 
 
 @pytest.fixture(scope="module")
@@ -54,16 +37,7 @@ def shown(page, wanted="true", seconds=20):
     number, url = page.evaluate(
         "() => { const c = document.getElementById('picture'); return [+c.dataset.number, c.toDataURL()]; }"
     )
-    data = base64.b64decode(url.partition(",")[2])
-    return number, np.asarray(Pillow.open(io.BytesIO(data)).convert("RGB"), float)
-
-
-def told(page, name):
-    return page.text_content(f"#{name}")
-
-
-def is_state(state):
-    return f"document.body.dataset.state === '{state}'"
+    return number, decoded(url.partition(",")[2])
 
 
 def test_the_page_shows_a_picture_within_two_seconds_and_it_gets_better(page, knot):

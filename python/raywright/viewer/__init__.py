@@ -33,8 +33,8 @@ _NO_WIDGET = (
 class Viewer:
     """A scene that is served to the browsers of this machine until it is closed; `view` makes it.
 
-    It is a context manager, which closes it at the end. In a notebook it shows itself in its cell, by `widget`,
-    if the extra ``raywright[widget]`` is installed.
+    It is a context manager, which closes it at the end. In a notebook it shows itself in its cell, by
+    `widget`, if the extra ``raywright[widget]`` is installed.
 
     Attributes
     ----------
@@ -82,12 +82,14 @@ class Viewer:
         """
         check_integrator("integrator", integrator)
         self._session.show(integrator)
+        if self._widget is not None:
+            self._widget.again()
 
     def widget(self) -> "ViewerWidget":
         """Return the viewer as a widget for notebooks, which shows itself where a cell ends with it.
 
-        It is the page, by the notebook's own messages: it works with a kernel on another machine, too. Nothing
-        is rendered while it is not seen.
+        It is the page, by the notebook's own messages: it works with a kernel on another machine, too.
+        Nothing is rendered while it is not seen.
 
         Raises
         ------
@@ -166,11 +168,13 @@ def view(
 ) -> Viewer:
     """Show a scene in the browser, or in a notebook's cell, and let the mouse move the camera.
 
-    The page is served to this machine alone, as long as the process lives or until the viewer is closed. Where
-    the browser has WebGPU, it draws the scene itself while the camera moves, and the core renders what stands;
-    elsewhere, and where the scene is not of meshes alone, all pictures are the core's: a small one comes at once
-    and a better one after it, with its error. The key g changes between both. While no page is open nothing is
-    rendered. In a notebook, the viewer shows itself where a cell ends with it (`Viewer.widget`).
+    The page is served to this machine alone, as long as the process lives or until the viewer is closed.
+    Where the browser has WebGPU, and the scene is of meshes, it draws by itself: a ray and its shadow a pixel
+    while the camera moves, and paths, more and more of them, once it stands; what of materials, lights and
+    integrators it does not know the core renders once the camera stands. Elsewhere all pictures are the
+    core's: a small one comes at once and a better one after it, with its error. The key g changes between
+    both. While no page is open nothing is rendered. In a notebook, the viewer shows itself where a cell ends
+    with it (`Viewer.widget`).
 
     Parameters
     ----------

@@ -43,7 +43,7 @@ def edges(camera: AnyCamera, corners: NDArray[np.float64]) -> NDArray[np.float64
     corners = largest(corners)
     ends = corners[:, _EDGES].reshape(-1, 2, 3)
     origins, ways = spread(camera)
-    # A point is across and down from where the rays start, and on along them; or it is where a way meets a plane.
+    # A point is across and down from where rays start, and on along them; or it is where a way meets a plane.
     axes = np.stack([*origins[1:], ways[0]] if isinstance(camera, Orthographic) else [*ways[1:], ways[0]])
     seen = (ends - origins[0]) @ np.linalg.inv(axes)
     cut = seen[..., 2]

@@ -38,7 +38,8 @@ export async function upload(device, told, bytesOf) {
     if (all[i].byteLength !== told.arrays[name]) {
       throw new Error(`${name} did not arrive as they are`);
     }
-    return [name, bufferOf(device, all[i], GPUBufferUsage.STORAGE)];
+    // What is asked for once is small, and read as such.
+    return [name, bufferOf(device, all[i], name === "lit" ? GPUBufferUsage.UNIFORM : GPUBufferUsage.STORAGE)];
   });
   return Object.fromEntries(buffers);
 }

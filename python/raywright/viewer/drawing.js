@@ -11,7 +11,11 @@ const SMOOTH = 40;
 const MOST_DIVISOR = 8;
 // Visits of boxes that the heat map shows as white.
 const VISITS = 256;
-const SHADERS = ["trace", "sight", "screen", "lines"];
+// Milliseconds that a band of paths may take, and between two pictures of what they have brought.
+const BAND = 30;
+const MOST_ROWS = 1 << 16;
+const BETWEEN = 60;
+const SHADERS = ["trace", "shading", "sight", "screen", "lines", "path"];
 
 const nextFrame = () => new Promise(requestAnimationFrame);
 const sameTexts = new Map();
@@ -38,7 +42,10 @@ export class Drawing {
     this.exposure = 0;
     this.isHeat = false;
     this.divisor = 2;
-    this.isActive = this.isWorking = this.isDirty = this.isDestroyed = false;
+    this.isActive = this.isWorking = this.isDirty = this.isStale = this.isDestroyed = false;
+    // Paths of each pixel that there are, the row from which on the next are traced, and how many rows at once.
+    this.sample = this.row = 0;
+    this.rows = 32;
     this.pictures = 0;
     this.movedAt = -Infinity;
   }
@@ -60,7 +67,13 @@ export class Drawing {
     const passes = new Passes(device, navigator.gpu.getPreferredCanvasFormat(), told, buffers, texts);
     await passes.prepare();
     const drawing = new Drawing(canvas, told, name, passes, on);
+    // The kernel of paths is large, and takes its time to compile.
+    passes.paths?.prepare().then(
+      () => drawing.work(),
+      (error) => drawing.isDestroyed || on.lost(error.message),
+    );
     device.lost.then(({ message }) => drawing.isDestroyed || on.lost(message));
+    device.addEventListener("uncapturederror", ({ error }) => drawing.isDestroyed || on.lost(error.message));
     return { drawing };
   }
 
@@ -72,23 +85,32 @@ export class Drawing {
     }
   }
 
-  // Show something else: a view, an exposure, a size in pixels, or the heat map.
-  show(changes, isMove = false) {
-    const { width, height, ...others } = changes;
-    if (width && (this.canvas.width !== width || this.canvas.height !== height)) {
+  // Show something else: a view, a size in pixels, or the heat map; or the same in another way.
+  show({ width, height, exposure, ...others }, isMove = false) {
+    const resized = width && (this.canvas.width !== width || this.canvas.height !== height);
+    if (resized) {
       [this.canvas.width, this.canvas.height] = [width, height];
     }
     Object.assign(this, others);
-    this.again(isMove);
+    this.exposure = exposure ?? this.exposure;
+    if (resized || Object.keys(others).length) {
+      this.again(isMove);
+    } else {
+      this.isStale = true;
+      this.work();
+    }
   }
 
-  async box(corners) {
+  box(corners) {
     this.passes.box(corners);
-    this.again();
+    this.isStale = true;
+    this.work();
   }
 
+  // Begin anew.
   again(isMove = false) {
     this.isDirty = true;
+    this.sample = this.row = 0;
     if (isMove) {
       this.movedAt = performance.now();
     }
@@ -110,26 +132,75 @@ export class Drawing {
   // Do one thing that is to be done; whether there may be more.
   async step() {
     const left = this.movedAt + STANDS - performance.now();
-    if (this.isDirty) {
-      this.isDirty = false;
+    const traced = this.isHeat ? null : this.told.traced;
+    if (this.isDirty || (this.isStale && !this.sample)) {
+      this.isDirty = this.isStale = false;
       this.isWhole = left <= 0 && this.divisor === 1;
       await nextFrame();
       await this.sketch(this.divisor);
-      return true;
-    }
-    if (left > 0) {
+    } else if (left > 0) {
       await new Promise((done) => setTimeout(done, Math.min(left, 20)));
-      return true;
-    }
-    if (!this.isWhole) {
+    } else if (this.isStale) {
+      this.isStale = false;
+      this.present();
+    } else if (traced && this.passes.paths.pipeline) {
+      return this.trace(traced);
+    } else if (!this.isWhole) {
       this.isWhole = true;
       await this.sketch(1);
+    } else {
+      if (!this.isHeat && !traced) {
+        this.on.stands();
+      }
+      return false;
+    }
+    return true;
+  }
+
+  // A band of paths more, and at times the picture of all; whether there are more.
+  async trace({ samples, seconds }) {
+    const { canvas, passes } = this;
+    if (this.sample === 0 && this.row === 0) {
+      passes.paths.room(canvas.width, canvas.height);
+      this.spent = 0;
+      this.presentedAt = -Infinity;
+    }
+    if (this.sample >= samples || (seconds !== null && this.spent >= seconds && this.sample > 0)) {
+      return false;
+    }
+    const began = performance.now();
+    const before = this.sample;
+    let left = this.rows;
+    while (left > 0 && this.sample < samples) {
+      const rows = Math.min(left, canvas.height - this.row);
+      this.aim(canvas.width, canvas.height, { row: this.row, sample: this.sample });
+      passes.paths.trace(rows);
+      left -= rows;
+      this.row += rows;
+      if (this.row >= canvas.height) {
+        this.row = 0;
+        this.sample += 1;
+      }
+    }
+    await passes.device.queue.onSubmittedWorkDone();
+    if (this.isDirty) {
       return true;
     }
-    if (!this.isHeat) {
-      this.on.stands();
+    const took = performance.now() - began;
+    this.spent += took / 1000;
+    const most = Math.min(2 * this.rows, MOST_ROWS);
+    this.rows = Math.max(8 * Math.round(Math.min((this.rows * BAND) / took, most) / 8), 8);
+    if (this.sample === before) {
+      return true;
     }
-    return false;
+    if (performance.now() - this.presentedAt > BETWEEN || this.sample === samples) {
+      await nextFrame();
+      this.present();
+      this.presentedAt = performance.now();
+      canvas.dataset.samples = this.sample;
+      this.on.tell({ samples: this.sample, seconds: this.spent, isDone: this.sample === samples });
+    }
+    return true;
   }
 
   // One ray a pixel, of as many times fewer pixels; the next picture in movement has as many as the device can do.
@@ -139,7 +210,6 @@ export class Drawing {
     const began = performance.now();
     this.aim(width, height);
     passes.drawSight(width, height);
-    this.aim(canvas.width, canvas.height);
     this.present();
     await passes.device.queue.onSubmittedWorkDone();
     const took = performance.now() - began;
@@ -147,6 +217,7 @@ export class Drawing {
     this.divisor = Math.min(Math.max(fit, 1), MOST_DIVISOR);
     this.pictures += 1;
     canvas.dataset.pictures = this.pictures;
+    canvas.dataset.samples = 0;
     this.on.tell({ samples: this.isHeat ? `1 to ${VISITS} visits` : "sketch", seconds: took / 1000 });
   }
 
@@ -182,7 +253,8 @@ export class Drawing {
   }
 
   present() {
-    this.passes.present(this.context.getCurrentTexture().createView());
+    this.aim(this.canvas.width, this.canvas.height);
+    this.passes.present(this.context.getCurrentTexture().createView(), this.sample > 0);
   }
 
   destroy() {

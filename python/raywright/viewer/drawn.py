@@ -9,9 +9,12 @@ from numpy.typing import NDArray
 
 from .._core import FlatScene
 from ..cameras import Camera, Orthographic, ThinLens
-from ..integrators import AnyIntegrator
+from ..gpu.looks import LeftError
+from ..gpu.packing import packed
+from ..integrators import AnyIntegrator, Path
 from ..io.tone import TONES
 from ..query.flats import FlatArrays, flat_arrays
+from ..rendering.filters import BoxFilter
 from ..scene.scene import Scene
 from .lamps import lamp
 from .orbit import Orbit, View
@@ -19,6 +22,10 @@ from .paint import paints
 
 # The scene is not laid out for a page if it would take more than this.
 _MOST_BYTES = 1 << 30
+_FILTER = BoxFilter()
+# Surfaces of a path, and paths of a pixel, where nobody says how many.
+_DEEPEST = 1 << 20
+_SAMPLES = 4096
 # Bytes of a primitive, at the most that a binary tree of it takes.
 _EACH = 48 + 64
 
@@ -50,13 +57,15 @@ class Drawn:
         self._version = 0
         self._flat: FlatArrays | None = None
         self._arrays: dict[str, bytes] = {}
+        # What of the scene the page cannot shade as the core does.
+        self._left: str | None = None
 
     def show(self, integrator: AnyIntegrator) -> None:
         """Take another integrator from now on."""
         self._integrator = integrator
 
     def told(self) -> dict[str, Any]:
-        """Return what there is to tell a page: ``{"why": ...}`` in one line if it cannot draw the scene itself."""
+        """Return what there is to tell a page: if it cannot draw the scene ``{"why": ...}``, in one line."""
         why = self._refused()
         if why is not None:
             return {"why": why}
@@ -66,6 +75,7 @@ class Drawn:
                 return {"why": "the scene is empty"}
             if len(flat.unbounded) or (flat.triangles["largest"] < 0).any():
                 return {"why": "the page draws triangles alone, and the scene has other shapes, or copies"}
+            left = self._left_out() or self._left
             return {
                 "why": None,
                 "version": str(self._version),
@@ -77,7 +87,8 @@ class Drawn:
                 "orbit": self._orbit.told(),
                 "lamp": lamp(self._scene, self._orbit.camera(View())),
                 "tone": TONES.index(self._tone),
-                "traced": False,
+                "traced": None if left else self._limits(),
+                "left": left,
             }
 
     def bytes(self, version: str, name: str) -> bytes | None:
@@ -101,6 +112,30 @@ class Drawn:
             return "the scene is too large for the page to draw"
         return None
 
+    def _left_out(self) -> str | None:
+        """Return why the core renders what stands still, though the page knows all surfaces and lights."""
+        integrator = self._integrator
+        if type(integrator) is not Path:
+            return f"the page has no {type(integrator).__name__}"
+        if isinstance(self._orbit.camera(View()), ThinLens):
+            return "the page has no lenses"
+        if self._scene.medium is not None or self._scene.wavelengths is not None:
+            return "the page has neither media nor wavelengths"
+        if self._how.get("filter", _FILTER) != _FILTER or self._how.get("clamp") is not None:
+            return "the page has no filters and does not clamp"
+        return None
+
+    def _limits(self) -> dict[str, Any]:
+        """Return how paths end, and how many there are of each pixel."""
+        path: Any = self._integrator
+        return {
+            "depth": _DEEPEST if path.max_depth is None else path.max_depth,
+            "roulette": path.roulette_depth,
+            "seed": self._how.get("seed", 0) % 2**16,
+            "samples": self._how.get("samples") or _SAMPLES,
+            "seconds": self._how.get("seconds"),
+        }
+
     def _laid_out(self) -> FlatArrays:
         """Return the arrays of the scene as it is now; whoever asks holds the lock."""
         core = self._scene._compiled()
@@ -114,4 +149,11 @@ class Drawn:
                 "triangles": flat.triangles.tobytes(),
                 "paints": paints(scene.shapes, flat.first).tobytes(),
             }
+            try:
+                looks = packed(scene, flat)
+            except LeftError as left:
+                self._left = str(left)
+            else:
+                self._left = None
+                self._arrays |= {name: array.tobytes() for name, array in vars(looks).items()}
         return self._flat

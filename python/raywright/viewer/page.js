@@ -49,6 +49,7 @@ class Server extends Wire {
         this.on.scene(scene);
       }
     });
+    hear("again", () => this.on.again());
     hear("view", (view) => this.on.view(view));
     hear("frame", ({ picture, ...frame }) => {
       const bytes = Uint8Array.from(atob(picture.data), (letter) => letter.charCodeAt(0));

@@ -1,6 +1,7 @@
 // What a scene's pictures are drawn by: the kernels' texts put together, and one pass after the other.
 
 import { bufferOf } from "./device.js";
+import { Paths } from "./paths.js";
 
 const FLOATS = 48;
 
@@ -28,10 +29,10 @@ export class Passes {
     const uniform = GPUBufferUsage.UNIFORM;
     this.job = bufferOf(device, new Uint32Array([0, 0, told.nodes, 0]), uniform);
     this.look = bufferOf(device, new Float32Array(FLOATS), uniform);
-    const both = GPUShaderStage.FRAGMENT | GPUShaderStage.VERTEX | GPUShaderStage.COMPUTE;
+    const both = GPUShaderStage.FRAGMENT | GPUShaderStage.COMPUTE;
     const kinds = { 0: "uniform", 3: "read-only-storage", 4: "read-only-storage", 5: "uniform", 6: "read-only-storage" };
     const bound = { 0: this.job, 3: buffers.nodes, 4: buffers.triangles, 5: this.look, 6: buffers.paints };
-    const visible = (i) => (kinds[i] === "uniform" ? both : GPUShaderStage.FRAGMENT | GPUShaderStage.COMPUTE);
+    const visible = (i) => (kinds[i] === "uniform" ? both | GPUShaderStage.VERTEX : both);
     this.layout = device.createBindGroupLayout({
       entries: Object.keys(kinds).map((i) => ({ binding: +i, visibility: visible(i), buffer: { type: kinds[i] } })),
     });
@@ -66,10 +67,15 @@ export class Passes {
         fragment: { module, entryPoint: fragment, targets: [{ format }] },
         primitive: { topology },
       });
-    [this.sight, this.shown, this.line] = await Promise.all([
+    this.brought = device.createBindGroupLayout({
+      entries: [{ binding: 2, visibility: read, buffer: { type: "read-only-storage" } }],
+    });
+    this.paths = this.buffers.faces ? new Paths(this) : null;
+    [this.sight, this.shown, this.line, this.developed] = await Promise.all([
       drawing(screen, "whole", "sight", [], "rgba8unorm"),
       drawing(screen, "whole", "shown", [this.pictures], this.format),
       drawing(lines, "edge", "line", [this.corners], this.format, "line-list"),
+      drawing(screen, "whole", "developed", [this.brought], this.format),
     ]);
   }
 
@@ -119,17 +125,13 @@ export class Passes {
     this.device.queue.submit([encoder.finish()]);
   }
 
-  // That texture, or what `draw` puts there, on a canvas, and boxes over it.
-  present(view, draw) {
+  // That texture, or what paths have brought, on a canvas, and boxes over it.
+  present(view, isTraced) {
     const encoder = this.device.createCommandEncoder();
     this.pass(encoder, view, "clear", (pass) => {
-      if (draw) {
-        draw(pass);
-      } else {
-        pass.setPipeline(this.shown);
-        pass.setBindGroup(1, this.picture);
-        pass.draw(3);
-      }
+      pass.setPipeline(isTraced ? this.developed : this.shown);
+      pass.setBindGroup(1, isTraced ? this.paths.picture : this.picture);
+      pass.draw(3);
       if (this.boxes) {
         pass.setPipeline(this.line);
         pass.setBindGroup(1, this.boxes.group);
@@ -155,6 +157,7 @@ export class Passes {
 
   destroy() {
     this.texture?.destroy();
+    this.paths?.destroy();
     [this.job, this.look, this.boxes?.buffer, ...Object.values(this.buffers)].forEach((buffer) => buffer?.destroy());
   }
 }

@@ -53,8 +53,8 @@ def bytes_of(session: Session, name: str) -> bytes | None:
     session : Session
         Of what.
     name : str
-        ``"arrays/VERSION/NAME"``, as the answer to ``"drawing"`` tells them, or ``"boxes/DEPTH"``: the corners of
-        the accelerator's boxes at a level, (K, 8, 3) float32 in box units.
+        ``"arrays/VERSION/NAME"``, as the answer to ``"drawing"`` tells them, or ``"boxes/DEPTH"``: the
+        corners of the accelerator's boxes at a level, (K, 8, 3) float32 in box units.
     """
     kind, _, rest = name.partition("/")
     if kind == "arrays":

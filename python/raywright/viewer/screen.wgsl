@@ -46,3 +46,12 @@ fn sight(@builtin(position) at: vec4<f32>) -> @location(0) vec4<f32> {
 fn shown(@builtin(position) at: vec4<f32>) -> @location(0) vec4<f32> {
     return textureSampleLevel(drawn, between, at.xy / look.size.xy, 0.0);
 }
+
+// What paths have brought so far, and how many of them, by pixel.
+@group(1) @binding(2) var<storage, read> brought: array<vec4<f32>>;
+
+@fragment
+fn developed(@builtin(position) at: vec4<f32>) -> @location(0) vec4<f32> {
+    let sum = brought[u32(at.y) * u32(look.size.x) + u32(at.x)];
+    return encoded(toned(sum.xyz / max(sum.w, 1.0)));
+}

@@ -214,7 +214,7 @@ class _Handler(BaseHTTPRequestHandler):
         return body
 
     def _events(self, session: Session, with_pictures: bool) -> None:
-        """Send pictures, or of these only where they are from, as server-sent events until the page is closed."""
+        """Send pictures, or only where the camera is, as server-sent events until the page is closed."""
         server = self.server
         if server.pages >= _MOST_PAGES:
             raise _RefusedError(HTTPStatus.SERVICE_UNAVAILABLE, "too many pages look at this already")
@@ -227,21 +227,23 @@ class _Handler(BaseHTTPRequestHandler):
                 with session.watched():
                     self._pictures(session)
             else:
-                self._views(session)
+                self._news(session)
         except OSError:
             # The page was closed while something was on its way.
             pass
         finally:
             server.pages -= 1
 
-    def _views(self, session: Session) -> None:
-        """Tell where the camera is moved to, by whichever page."""
-        last, spoke = session.view, time.monotonic()
+    def _news(self, session: Session) -> None:
+        """Tell where the camera is moved to, by whichever page, and of other integrators."""
+        last, spoke = session.news, time.monotonic()
         while not session.closed and not _has_left(self.connection):
-            view = session.next_view(last, _LOOK)
-            if view != last:
-                last = view
+            view, shown = news = session.next_news(last, _LOOK)
+            if news != last:
+                if shown != last[1]:
+                    self._event("again", {})
                 self._event("view", view.told())
+                last = news
             elif session.trouble is not None:
                 self._event("trouble", {"line": session.trouble})
                 return
@@ -252,9 +254,12 @@ class _Handler(BaseHTTPRequestHandler):
             spoke = time.monotonic()
 
     def _pictures(self, session: Session) -> None:
-        last, spoke = 0, time.monotonic()
+        last, shown, spoke = 0, session.news[1], time.monotonic()
         while not session.closed and not _has_left(self.connection):
             frame = session.next_frame(last, _LOOK)
+            if shown != session.news[1]:
+                shown = session.news[1]
+                self._event("again", {})
             if frame is not None:
                 last = frame.number
                 kind, data = frame.data

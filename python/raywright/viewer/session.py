@@ -153,7 +153,7 @@ class Session:
         # What is wanted, by number, and the last of these that was rendered to its end.
         self._wanted, self._done = 1, 0
         self._frame: Frame | None = None
-        self._count = 0
+        self._count = self._shown = 0
         self._trouble: str | None = None
         self._divisor = _divisor(camera.width * camera.height / _PIXELS)
         self._watchers, self._left = 0, -math.inf
@@ -226,6 +226,7 @@ class Session:
         with self._changed:
             self._integrator = integrator
             self.drawn.show(integrator)
+            self._shown += 1
             self._wanted += 1
             self._changed.notify_all()
 
@@ -270,7 +271,7 @@ class Session:
         return self._scene.tree()
 
     def corners(self, depth: int) -> bytes:
-        """Return the boxes of a level, (K, 8, 3) float32 in box units: of many the largest, none beyond the last."""
+        """Return the boxes of a level, (K, 8, 3) float32 in box units: of many the largest."""
         return self.drawn.local(largest(self._tree.at(depth).corners)).tobytes()
 
     def pick(self, view: View, x: float, y: float) -> dict[str, Any]:
@@ -328,11 +329,16 @@ class Session:
             frame = self._frame
             return frame if frame is not None and frame.number > after else None
 
-    def next_view(self, last: View, seconds: float) -> View:
-        """Return the view that is wanted, or wait for a time for another than the last."""
+    @property
+    def news(self) -> tuple[View, int]:
+        """The view that is wanted now, and how many other integrators were shown so far."""
+        return self._view, self._shown
+
+    def next_news(self, last: tuple[View, int], seconds: float) -> tuple[View, int]:
+        """Return `news`, or wait for a time for others than the last."""
         with self._changed:
-            self._changed.wait_for(lambda: self._view != last or self._closed, seconds)
-            return self._view
+            self._changed.wait_for(lambda: self.news != last or self._closed, seconds)
+            return self.news
 
     def close(self) -> None:
         """End all work."""

@@ -24,6 +24,9 @@ struct Look {
 @group(0) @binding(5) var<uniform> look: Look;
 @group(0) @binding(6) var<storage, read> paints: array<u32>;
 
+// Primitives that rays leave, and end at, which they do not meet.
+var<private> departed: vec2<u32> = vec2<u32>(NONE, NONE);
+
 struct Hit {
     t: f32,
     // The triangle, by its place; NONE for none.
@@ -57,7 +60,7 @@ fn first_hit(ray: Slabs) -> Hit {
             for (var i = here.index; i < here.index + here.count; i++) {
                 let one = triangle(i);
                 let met = meet(ray, one, enter, hit.t);
-                if met.possible && met.high < BEYOND {
+                if met.possible && met.high < BEYOND && all(departed != vec2<u32>(one.primitive)) {
                     let t = distance_to(ray, one);
                     if t > ray.t_min && t < hit.t {
                         hit.t = t;
@@ -119,7 +122,7 @@ fn is_hidden(ray: Slabs) -> bool {
         for (var i = 0u; i < here.count; i++) {
             let one = triangle(here.index + i);
             let met = meet(ray, one, within.x, ray.t_max);
-            if met.possible && met.high < BEYOND {
+            if met.possible && met.high < BEYOND && all(departed != vec2<u32>(one.primitive)) {
                 let t = distance_to(ray, one);
                 if t > ray.t_min && t < ray.t_max {
                     return true;
@@ -143,8 +146,8 @@ fn off_surface(p: vec3<f32>) -> f32 {
     return 64.0 * 1.1920928955078125e-07 * (largest(p) + 2.0);
 }
 
-const LAMP: f32 = 0.8;
-const AROUND: f32 = 0.2;
+const BY_LAMP: f32 = 0.8;
+const BY_ALL: f32 = 0.2;
 // What surrounds the scene.
 const BEHIND = vec3<f32>(0.012, 0.013, 0.015);
 
@@ -166,17 +169,18 @@ fn sketched(ray: Slabs, hit: Hit) -> vec3<f32> {
     let place = ray.origin + hit.t * ray.direction;
     let off = off_surface(place);
     let start = place + off * normal;
+    departed = vec2<u32>(one.primitive, NONE);
     let way = look.lamp.xyz - look.lamp.w * start;
     let distance = length(way);
     let towards = way / max(distance, TINY);
     let lit = dot(normal, towards);
     // What is turned away still differs by where it faces.
-    var light = AROUND * (1.0 + 0.5 * dot(normal, -ray.direction));
+    var light = BY_ALL * (1.0 + 0.5 * dot(normal, -ray.direction));
     if lit > 0.0 {
         // Not up to the lamp: that has a surface.
         let reach = select(FOREVER, 0.98 * distance, look.lamp.w > 0.5);
         if !is_hidden(slabs(Ray(start, off, towards, reach))) {
-            light += LAMP * lit;
+            light += BY_LAMP * lit;
         }
     }
     return paint.xyz * light;

@@ -14,7 +14,7 @@ const same = (a, b) => Object.keys(START).every((name) => a[name] === b[name]);
 
 // `root` has the page's parts, `host` is told the state, keys are heard on `keys`, and `wire` leads to the core: it has
 // `send(what, given)`, `ask(what, given)`, `bytes(name)`, `text(name)`, `watch(isOn)` for the core's pictures, `close()`,
-// and whether it `hasFile` of a picture; and it calls what is put to its `on`: `scene`, `view`, `frame`, `trouble`, `ended`.
+// and whether it `hasFile` of a picture; and it calls what is put to its `on`: `scene`, `view`, `again`, `frame`, `trouble`, `ended`.
 export class Viewer {
   constructor(root, host, keys, wire) {
     [this.host, this.wire] = [host, wire];
@@ -38,6 +38,7 @@ export class Viewer {
     wire.on = {
       scene: (scene) => this.begin(scene),
       view: (view) => this.follow(view),
+      again: () => this.askAgain(),
       frame: (frame, bytes) => this.take(frame, bytes),
       trouble: (line) => this.end("ended", line),
       ended: () => this.state === "ended" || this.end("waiting", "The viewer has ended; the picture is as it was."),
@@ -144,12 +145,17 @@ export class Viewer {
   }
 
   async box(depth) {
-    this.boxes = depth < 0 ? null : depth;
-    this.wire.send("boxes", { depth: this.boxes });
+    const wanted = depth < 0 ? null : depth;
+    this.boxes = wanted;
+    this.wire.send("boxes", { depth: wanted });
     if (this.drawing) {
-      const corners = this.boxes === null ? null : await this.wire.bytes(`boxes/${this.boxes}`);
+      const corners = wanted === null ? null : await this.wire.bytes(`boxes/${wanted}`);
+      if (this.boxes !== wanted) {
+        // Another level is on its way.
+        return;
+      }
       // Beyond the last level there are none.
-      this.boxes = corners?.byteLength ? this.boxes : null;
+      this.boxes = corners?.byteLength ? wanted : null;
       this.drawing.box(corners);
       if (this.isDrawn) {
         this.say(this.toldBoxes());
@@ -221,6 +227,16 @@ export class Viewer {
     this.tellWay();
   }
 
+  // What the core renders is another picture now: whether what stands can be drawn here has to be asked again.
+  async askAgain() {
+    if (this.drawing) {
+      this.drawing.told.traced = null;
+      const { traced } = await this.wire.ask("drawing", {});
+      this.drawing.told.traced = traced ?? null;
+      this.drawing.again();
+    }
+  }
+
   toggle() {
     if (!this.drawing) {
       this.say(this.why);
@@ -251,6 +267,7 @@ export class Viewer {
   }
 
   giveUp(why) {
+    this.drawing?.destroy();
     [this.drawing, this.why, this.isDrawn] = [null, why, false];
     this.showHere(false);
     this.wire.watch(true);
@@ -294,8 +311,9 @@ export class Viewer {
 
   // What there is to say.
 
-  tellDrawn({ samples, seconds }) {
+  tellDrawn({ samples, seconds, isDone }) {
     if (this.shownHere) {
+      this.state = isDone ? "done" : "drawn";
       this.byId("samples").textContent = samples;
       this.byId("seconds").textContent = seconds.toFixed(seconds < 0.1 ? 3 : 1);
     }

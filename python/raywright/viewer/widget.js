@@ -67,6 +67,10 @@ class Comm extends Wire {
       // The next comes once this has arrived.
       this.say({ do: "seen" });
       this.on.frame(content.frame, buffers[0]);
+    } else if (content.again) {
+      this.on.again();
+    } else if (content.view && content.from !== this.page) {
+      this.on.view(content.view);
     } else if (content.trouble) {
       this.on.trouble(content.trouble);
     } else if (content.ended) {

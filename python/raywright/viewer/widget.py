@@ -17,7 +17,8 @@ from .texts import SHADERS, bundled, text
 
 # Bytes of a message at most: some notebooks drop larger ones.
 _PART = 4 << 20
-# How soon it is seen that a page looks on no more, and how long one may take to show a picture: then it is gone.
+# How soon it is seen that a page looks on no more, and how long one may take to show a picture: then
+# it is gone.
 _LOOK = 0.1
 _SILENCE = 10.0
 _BODY = re.compile(r"<body[^>]*>(.*)</body>", re.DOTALL)
@@ -51,6 +52,10 @@ class ViewerWidget(anywidget.AnyWidget):
         """How many pages the core renders for."""
         return sum(watch.is_alive() for watch in self._watches.values())
 
+    def again(self) -> None:
+        """Tell pages that the core renders another picture now."""
+        self.send({"again": True})
+
     def end(self) -> None:
         """Tell pages that there is nothing more to come."""
         for watch in self._watches.values():
@@ -67,14 +72,15 @@ class ViewerWidget(anywidget.AnyWidget):
         if what in ("ask", "bytes"):
             answer, buffers = self._answer(what, content)
             self.send({"page": page, "answer": content.get("id"), **answer}, buffers)
+            if content.get("what") == "view":
+                self.send({"view": self._session.view.told(), "from": page})
         elif what == "watch":
             self._watch(page, content.get("on") is True)
         elif what == "seen":
             watch = self._watches.get(page)
-            if watch is not None:
-                # One that was given up, as the kernel was busy for long, goes on.
-                if watch.seen():
-                    self._watch(page, True)
+            # One that was given up, as the kernel was busy for long, goes on.
+            if watch is not None and watch.seen():
+                self._watch(page, True)
 
     def _watch(self, page: int, is_on: bool) -> None:
         before = self._watches.pop(page, None)
