@@ -424,6 +424,11 @@ class Rendering:
         """
     def take(self, answer: bytes) -> None:
         """Add the samples that `Job.expose` took."""
+    def add(self, count: int, sums: NDArray[np.float64], dropped: int) -> None:
+        """Add so many samples of each pixel: ``sums`` (H*W,9) are sums, sums of squares and the largest.
+
+        ``dropped`` of them were no radiance, and are 0 there. The film has single samples, not clamped.
+        """
 
 PILOT: int
 """The most samples that a pilot takes of each path."""

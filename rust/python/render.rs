@@ -1,11 +1,12 @@
 //! Scenes to pictures.
 
-use numpy::{PyArray2, PyArray3, PyArrayMethods};
+use numpy::{PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray2};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use std::time::{Duration, Instant};
 
+use super::arrays;
 use super::cameras::AnyCamera;
 use super::denoise;
 use super::integrators;
@@ -207,6 +208,12 @@ impl Rendering {
 
     fn take(&mut self, answer: &[u8]) -> PyResult<()> {
         self.0.take(answer).map_err(malformed)
+    }
+
+    fn add(&mut self, py: Python<'_>, count: u32, sums: PyReadonlyArray2<'_, f64>, dropped: u64) -> PyResult<()> {
+        let rows = arrays::rows("sums", &sums)?;
+        let pool = pool(None).map_err(PyRuntimeError::new_err)?;
+        py.detach(|| pool.install(|| self.0.add(count, rows, dropped))).map_err(malformed)
     }
 
     /// What covers each pixel, by the samples that there are, or by so many `samples` each: the share of it that

@@ -29,6 +29,7 @@ mod settings;
 mod sightings;
 mod splats;
 mod student;
+mod sums;
 mod tile;
 mod tiles;
 

@@ -315,6 +315,26 @@ impl FilmTile {
         self.clamped += next.clamped;
     }
 
+    /// Adds samples to each cell, each a batch, that were added up elsewhere: by the position of its pixel, their sum,
+    /// the sum of their squares, and the largest.
+    ///
+    /// # Panics
+    /// If the film is in halves, or has batches of several samples, or keeps more of them than these.
+    pub(super) fn add_sums(&mut self, count: u32, of: impl Fn((u32, u32)) -> [Rgb; 3]) {
+        assert!(self.batch == 1 && !self.halves && self.taken.is_empty() && !self.quarters.are_kept(), "sums alone");
+        for cell in 0..self.counts.len() {
+            let [sum, squares, largest] = of(self.position(cell));
+            self.counts[cell] += count;
+            self.total[cell].add(&Moments { sum, squares });
+            keep_largest(&mut self.largest[cell], largest);
+        }
+    }
+
+    /// Counts samples that were dropped elsewhere.
+    pub(super) fn drop_more(&mut self, count: u64) {
+        self.dropped += count;
+    }
+
     /// The most samples of a cell that bytes may tell of: sums of them stay far below what numbers hold.
     pub(super) const MOST: u32 = u32::MAX / 4;
 

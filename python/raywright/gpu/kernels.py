@@ -39,7 +39,7 @@ class Parts:
         Bytes that a binding holds.
     """
 
-    def __init__(self, device: Any, rows: NDArray[np.void], most: int) -> None:
+    def __init__(self, device: Any, rows: NDArray[Any], most: int) -> None:
         import wgpu
 
         size = rows.dtype.itemsize
@@ -53,9 +53,9 @@ class Parts:
             for piece in pieces
         ]
 
-    def declared(self, kind: str, first: int) -> str:
+    def declared(self, kind: str, first: int, name: str | None = None) -> str:
         """Return the bindings in WGSL, from a number on, and the function that reads an element of all."""
-        name = kind.lower()
+        name = name or kind.lower()
         count = len(self.buffers)
         bindings = [
             f"@group(0) @binding({first + i}) var<storage, read> {name}s{i}: array<{kind}>;"

@@ -1,0 +1,191 @@
+"""Materials as rows of an array, with their tables and pictures."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..materials import Conductor, Dielectric, Diffuse, Material, Mirror, TwoSided
+from ..textures.image import ImageTexture
+from .facets import average_loss, loss_table
+
+# 64 bytes: see `Material` of shading.wgsl.
+MATERIAL = np.dtype(
+    [
+        ("colour", "<f4", 3),
+        ("kind", "<u4"),
+        ("eta", "<f4", 3),
+        ("alpha", "<f4"),
+        ("k", "<f4", 3),
+        ("table", "<u4"),
+        ("multiple", "<f4", 3),
+        ("picture", "<u4"),
+    ]
+)
+_NO = 0xFFFFFFFF
+_DIFFUSE, _MIRROR, _GLASS, _METAL, _ROUGH_METAL, _ROUGH_GLASS = range(6)
+# Below this a surface is a smooth one, and from the other on its lobes are as f32 has them.
+_SMOOTH, _LEAST = 1e-5, 2e-3
+_WRAPS = {"repeat": 1, "clamp": 2, "mirror": 3}
+
+
+class LeftError(Exception):
+    """Something that only the CPU knows; its text says what."""
+
+
+def told(thing: object) -> str:
+    """Return how a thing is called."""
+    return type(thing).__name__
+
+
+def constant(given: Any, what: str) -> tuple[float, float, float]:
+    """Return a colour that is the same everywhere.
+
+    Raises
+    ------
+    LeftError
+        If it is not.
+    """
+    if not isinstance(given, tuple):
+        raise LeftError(f"{what} is a {told(given)}")
+    return given
+
+
+class Looks:
+    """All materials of a scene, each once, and the numbers that they need."""
+
+    def __init__(self) -> None:
+        self._rows: list[NDArray[np.void]] = []
+        self._known: dict[Material, int] = {}
+        self._numbers: list[NDArray[np.float32]] = []
+        self._count = 0
+        self._tables: dict[float, tuple[int, float]] = {}
+
+    def add(self, numbers: ArrayLike) -> int:
+        """Keep numbers, and return where they begin."""
+        array = np.ascontiguousarray(numbers, np.float32).reshape(-1)
+        self._numbers.append(array)
+        self._count += len(array)
+        return self._count - len(array)
+
+    def numbers(self) -> NDArray[np.float32]:
+        """Return all of them."""
+        return np.concatenate([*self._numbers, np.zeros(1, np.float32)])
+
+    def array(self) -> NDArray[np.void]:
+        """Return the rows of all materials, fronts and backs by turns."""
+        return np.array(self._rows or [np.zeros((), MATERIAL)] * 2, MATERIAL)
+
+    def number(self, material: Material, where: str) -> int:
+        """Return where a material begins.
+
+        Raises
+        ------
+        LeftError
+            If it is none that the kernels know.
+        """
+        if material not in self._known:
+            sides = (material.front, material.back) if isinstance(material, TwoSided) else (material, material)
+            rows = [self._row(side, f"the {told(side)} of {where}") for side in sides]
+            self._known[material] = len(self._rows)
+            self._rows += rows
+        return self._known[material]
+
+    def _row(self, material: Material, what: str) -> NDArray[np.void]:
+        row = np.zeros((), MATERIAL)
+        row["picture"] = _NO
+        if isinstance(material, Diffuse):
+            row["kind"] = _DIFFUSE
+            self._paint(row, material.reflectance, what)
+        elif isinstance(material, Mirror):
+            row["kind"] = _MIRROR
+            self._paint(row, material.reflectance, what)
+        elif isinstance(material, Dielectric):
+            self._glass(row, material, what)
+        elif isinstance(material, Conductor):
+            self._metal(row, material, what)
+        else:
+            raise LeftError(f"{what} is of no kind that it knows")
+        return row
+
+    def _paint(self, row: NDArray[np.void], given: Any, what: str) -> None:
+        """Give a row its colour, which may be a picture."""
+        row["colour"] = 1.0
+        if not isinstance(given, ImageTexture):
+            row["colour"] = constant(given, f"the reflectance of {what}")
+            return
+        if given.filter != "bilinear":
+            raise LeftError(f"the picture of {what} has the filter {given.filter!r}, not 'bilinear'")
+        image = given.image[..., list(given.channels)].astype(np.float64)
+        if given.image.dtype == np.uint8:
+            image /= 255
+        if given.decoded:
+            image = np.where(image <= 0.04045, image / 12.92, ((image + 0.055) / 1.055) ** 2.4)
+        height, width = image.shape[:2]
+        wrap = _WRAPS[given.wrap[0]] + 4 * _WRAPS[given.wrap[1]]
+        head = [width, height, wrap, *np.ravel(given.transform.matrix)]
+        row["picture"] = self.add(np.concatenate([head, np.broadcast_to(image, (height, width, 3)).ravel()]))
+
+    def _glass(self, row: NDArray[np.void], glass: Dielectric, what: str) -> None:
+        if glass.interior is not None:
+            raise LeftError(f"{what} is filled")
+        if not isinstance(glass.ior, float | int):
+            raise LeftError(f"the index of {what} goes with wavelength")
+        alpha = _alpha(glass, what)
+        row["eta"] = glass.ior
+        row["kind"] = _GLASS
+        if alpha >= _SMOOTH and abs(glass.ior - 1) >= 1e-6:
+            if glass.multiple_scattering:
+                raise LeftError(f"{what} is rough, and its facets throw light on each other")
+            row["kind"], row["alpha"] = _ROUGH_GLASS, alpha
+
+    def _metal(self, row: NDArray[np.void], metal: Conductor, what: str) -> None:
+        if metal.metal is not None:
+            raise LeftError(f"{what} is measured by wavelength")
+        eta, k = constant(metal.eta, f"eta of {what}"), constant(metal.k, f"k of {what}")
+        alpha = _alpha(metal, what)
+        row["kind"], row["eta"], row["k"] = _METAL, eta, k
+        if alpha >= _SMOOTH:
+            row["kind"], row["alpha"] = _ROUGH_METAL, alpha
+            row["table"], average = self._losses(alpha if metal.multiple_scattering else 0.0)
+            if average > 0:
+                mean = mean_reflectance(np.array(eta), np.array(k))
+                row["multiple"] = mean**2 * (1 - average) / (1 - mean * average) / (np.pi * average)
+
+    def _losses(self, alpha: float) -> tuple[int, float]:
+        """Return where the table of what facets lose begins, and the mean loss; of 0 they lose nothing."""
+        if alpha not in self._tables:
+            table = loss_table(alpha) if alpha else np.zeros(64)
+            self._tables[alpha] = self.add(table), average_loss(alpha) if alpha else 0.0
+        return self._tables[alpha]
+
+
+def _alpha(material: Any, what: str) -> float:
+    """Return the roughness of a material, alike in all directions, as its facets have it."""
+    given = material.alpha if material.alpha is not None else material.roughness
+    both = given if isinstance(given, tuple) else (given, given)
+    if not all(isinstance(one, float | int) for one in both):
+        raise LeftError(f"the roughness of {what} is a texture")
+    if both[0] != both[1]:
+        raise LeftError(f"{what} is brushed")
+    alpha = float(both[0]) if material.alpha is not None else float(both[0]) ** 2
+    if alpha >= _SMOOTH:
+        if material.distribution != "ggx":
+            raise LeftError(f"{what} has the distribution {material.distribution!r}")
+        if alpha < _LEAST:
+            raise LeftError(f"{what} is next to smooth, with an alpha of {alpha:g}")
+    return alpha
+
+
+def mean_reflectance(eta: NDArray[np.float64], k: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the share of even light that a conductor of index eta + ik reflects."""
+    nodes, weights = np.polynomial.legendre.leggauss(32)
+    cosine, weight = (0.5 * (nodes + 1))[:, None], (0.5 * weights)[:, None]
+    c2, s2 = cosine**2, 1 - cosine**2
+    real = eta**2 - k**2 - s2
+    norm = np.sqrt(real**2 + 4 * eta**2 * k**2)
+    a = np.sqrt(np.maximum((norm + real) / 2, 0))
+    plain, twice = norm + c2, 2 * cosine * a
+    even, odd = c2 * norm + s2 * s2, s2 * twice
+    reflected = (plain - twice) * even / ((plain + twice) * (even + odd))
+    return np.asarray((2 * cosine * weight * reflected).sum(axis=0))

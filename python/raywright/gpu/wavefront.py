@@ -1,0 +1,324 @@
+"""Path tracing on a device: kernels by turns, and sums of samples back."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..query.flats import FlatArrays
+from .kernels import Parts, text
+from .packing import Packed
+
+# 128 bytes: see `Job` of paths.wgsl.
+JOB = np.dtype(
+    [
+        ("eye", "<f4", 3),
+        ("zero", "<u4"),
+        ("corner", "<f4", 3),
+        ("width", "<u4"),
+        ("across", "<f4", 3),
+        ("height", "<u4"),
+        ("down", "<f4", 3),
+        ("nodes", "<u4"),
+        ("first_pixel", "<u4"),
+        ("pixels", "<u4"),
+        ("first_sample", "<u4"),
+        ("samples", "<u4"),
+        ("max_depth", "<u4"),
+        ("roulette_depth", "<u4"),
+        ("seed", "<u4", 2),
+        ("now", "<u4"),
+        ("capacity", "<u4"),
+        ("reserved", "<u4", 2),
+    ]
+)
+_PATH, _SHADOW, _PIXEL = 80, 64, 80
+_LISTS, _GROUP = 8, 64
+# Paths at once, where a device has room for them.
+_CAPACITY = 1 << 19
+# Bounces between looks at how many paths are left.
+_BOUNCES = 8
+# The bindings before those of the scene.
+_OWN = 8
+_SKY, _MATT, _SHARP, _BRUSHED, _FROSTED, _TO_LIGHT = range(2, 8)
+_SHADING = {
+    "leave_scene": _SKY,
+    "shade_matt": _MATT,
+    "shade_sharp": _SHARP,
+    "shade_brushed": _BRUSHED,
+    "shade_frosted": _FROSTED,
+}
+_ENTRIES = ("generate", "plan_first", "trace", "plan_shading", *_SHADING, "plan_rays", "bring", "gather")
+_NO_LIMIT = 0xFFFFFFFF
+
+
+@dataclass(frozen=True)
+class Eye:
+    """A pinhole camera in box units: where it is, and the ways to the corners of its film.
+
+    Attributes
+    ----------
+    eye, corner, across, down : (3,) float64
+        The point x, y of a film from 0 to 1, from its left and its top, is seen along
+        ``corner + across * x + down * y``.
+    width, height : int
+        Of its picture in pixels.
+    """
+
+    eye: NDArray[np.float64]
+    corner: NDArray[np.float64]
+    across: NDArray[np.float64]
+    down: NDArray[np.float64]
+    width: int
+    height: int
+
+
+class Wavefront:
+    """Paths of a scene on a device.
+
+    Parameters
+    ----------
+    device : wgpu.GPUDevice
+        Which.
+    flat : FlatArrays
+        The scene's tree.
+    scene : Packed
+        What it looks like.
+    eye : Eye
+        From where.
+    max_depth, roulette_depth, seed : int
+        As `Path` and `render` have them; None for no greatest depth.
+    most : int
+        Bytes that a binding holds.
+    known : dict
+        Pipelines that were made before, by text and entry.
+
+    Raises
+    ------
+    MemoryError
+        If the scene needs more bindings than the device has.
+    """
+
+    def __init__(
+        self,
+        device: Any,
+        flat: FlatArrays,
+        scene: Packed,
+        eye: Eye,
+        max_depth: int | None,
+        roulette_depth: int,
+        seed: int,
+        most: int,
+        known: dict[Any, Any],
+    ) -> None:
+        self._device, self._known = device, known
+        self._pixels = eye.width * eye.height
+        room = min(_CAPACITY, most // _PATH) // _GROUP * _GROUP
+        self._capacity = max(min(room, -(-self._pixels * 16 // _GROUP) * _GROUP), _GROUP)
+        self._buffers: list[Any] = []
+        parts = {
+            "Node": Parts(device, flat.nodes[: flat.own], most),
+            "Triangle": Parts(device, flat.triangles, most),
+            "Face": Parts(device, scene.faces, most),
+            "Material": Parts(device, scene.materials, most),
+            "Light": Parts(device, scene.lights, most),
+            "f32": Parts(device, scene.numbers, most),
+        }
+        self._scene = [buffer for part in parts.values() for buffer in part.buffers]
+        self._kinds = [kind for kind, part in parts.items() for _ in part.buffers]
+        # The most of one kernel: what shades has four bindings of its own.
+        used = len(self._scene) - len(parts["Node"].buffers) - len(parts["Triangle"].buffers) + 4
+        have = device.limits["max-storage-buffers-per-shader-stage"]
+        if used > have:
+            self.destroy()
+            raise MemoryError(f"the scene needs {used} bindings, and the device has {have}")
+        bindings, first = [], _OWN
+        for kind, part in parts.items():
+            bindings.append(part.declared(kind, first, "number" if kind == "f32" else kind.lower()))
+            first += len(part.buffers)
+        depth = f"{(flat.depth // 32 + 1) * 32}u"
+        self._code = "\n".join(
+            [
+                text("shading.wgsl"),
+                text("walk.wgsl").replace("STACK", depth),
+                text("paths.wgsl").replace("BINDINGS", "\n".join(bindings)),
+            ]
+        )
+        self._job = np.zeros((), JOB)
+        for name in ("eye", "corner", "across", "down", "width", "height"):
+            self._job[name] = getattr(eye, name)
+        self._job["nodes"], self._job["capacity"] = flat.own, self._capacity
+        self._job["max_depth"] = _NO_LIMIT if max_depth is None else max_depth
+        self._job["roulette_depth"] = min(roulette_depth, 4096)
+        self._job["seed"] = seed & 0xFFFFFFFF, seed >> 32
+        self._max_depth = max_depth
+        self._make(scene.lit)
+        self._pipelines = {entry: self._pipeline(entry) for entry in _ENTRIES}
+        self._groups: dict[tuple[str, int], Any] = {}
+
+    def _make(self, lit: NDArray[np.void]) -> None:
+        """Make the buffers that are not the scene's."""
+        import wgpu
+
+        usage = wgpu.BufferUsage
+
+        def make(size: int, use: int) -> Any:
+            self._buffers.append(self._device.create_buffer(size=size, usage=use))
+            return self._buffers[-1]
+
+        # One for each list of rays.
+        self._jobs = [make(JOB.itemsize, usage.UNIFORM | usage.COPY_DST) for _ in range(2)]
+        self._lit = make(lit.nbytes, usage.UNIFORM | usage.COPY_DST)
+        self._paths = make(_PATH * self._capacity, usage.STORAGE)
+        self._counts = make(4 * _LISTS, usage.STORAGE | usage.COPY_SRC | usage.COPY_DST)
+        lists = make(4 * (_LISTS - 1) * self._capacity, usage.STORAGE)
+        self._plan = make(16 * _LISTS, usage.STORAGE | usage.INDIRECT | usage.COPY_DST)
+        shadows = make(_SHADOW * self._capacity, usage.STORAGE)
+        self._film = make(
+            _PIXEL * min(self._capacity, self._pixels),
+            usage.STORAGE | usage.COPY_SRC | usage.COPY_DST,
+        )
+        self._device.queue.write_buffer(self._lit, 0, np.ascontiguousarray(lit).reshape(1).view(np.uint8))
+        self._own = [self._lit, self._paths, self._counts, lists, self._plan, shadows, self._film]
+
+    def _pipeline(self, entry: str) -> Any:
+        if (self._code, entry) not in self._known:
+            if self._code not in self._known:
+                self._known[self._code] = self._device.create_shader_module(code=self._code)
+            self._known[self._code, entry] = self._device.create_compute_pipeline(
+                layout="auto", compute={"module": self._known[self._code], "entry_point": entry}
+            )
+        return self._known[self._code, entry]
+
+    def _bound(self, entry: str, now: int) -> Any:
+        """Return the bindings of a kernel: those that its text says it has."""
+        if (entry, now) not in self._groups:
+            buffers = [self._jobs[now], *self._own, *self._scene]
+            entries = [
+                {"binding": i, "resource": {"buffer": buffers[i], "offset": 0, "size": buffers[i].size}}
+                for i in self._used(entry)
+            ]
+            layout = self._pipelines[entry].get_bind_group_layout(0)
+            self._groups[entry, now] = self._device.create_bind_group(layout=layout, entries=entries)
+        return self._groups[entry, now]
+
+    def _used(self, entry: str) -> list[int]:
+        """Return the bindings that a kernel asks for."""
+        scene = list(range(_OWN, _OWN + len(self._scene)))
+        walk, some, numbers = (
+            [i for i in scene if self._kinds[i - _OWN] in kinds]
+            for kinds in (("Node", "Triangle"), ("Face", "Material"), ("f32",))
+        )
+        looks = scene[len(walk) :]
+        own = {
+            "generate": [0, 2, 3, 4],
+            "plan_first": [0, 3, 5],
+            "trace": [0, 2, 3, 4, *walk, *some],
+            "plan_shading": [0, 3, 5],
+            "leave_scene": [0, 1, 2, 3, 4, *numbers],
+            "plan_rays": [0, 3, 5],
+            "bring": [0, 2, 3, 6, *walk],
+            "gather": [0, 2, 7],
+        }
+        return own.get(entry, [0, 1, 2, 3, 4, 6, *looks])
+
+    def add(
+        self, first_sample: int, samples: int, look: Callable[[], object]
+    ) -> tuple[NDArray[np.float64], int]:
+        """Take samples of all pixels.
+
+        Parameters
+        ----------
+        first_sample, samples : int
+            Their numbers.
+        look : callable
+            Called between pieces of work; what it raises ends them.
+
+        Returns
+        -------
+        sums : (H * W, 9) float64
+            Of each pixel's samples their sum, that of their squares, and the largest.
+        dropped : int
+            How many were no radiance.
+        """
+        sums = np.empty((self._pixels, 9))
+        dropped = 0
+        block = min(self._capacity, self._pixels)
+        for first in range(0, self._pixels, block):
+            count = min(block, self._pixels - first)
+            film = self._block(first, count, first_sample, samples, look)
+            rows = film.reshape(count, 5, 4)[:, :, :3].astype(np.float64)
+            sums[first : first + count] = np.concatenate(
+                [rows[:, 0] + rows[:, 1], rows[:, 2] + rows[:, 3], rows[:, 4]], axis=1
+            )
+            dropped += int(film.view(np.uint32).reshape(count, 20)[:, 3].sum(dtype=np.int64))
+        return np.maximum(sums, 0.0), dropped
+
+    def _block(
+        self, first: int, pixels: int, first_sample: int, samples: int, look: Callable[[], object]
+    ) -> NDArray[np.float32]:
+        """Take samples of some pixels, and return what the film has of them."""
+        queue = self._device.queue
+        encoder = self._device.create_command_encoder()
+        encoder.clear_buffer(self._film)
+        queue.submit([encoder.finish()])
+        at_once = max(self._capacity // pixels, 1)
+        for some in range(0, samples, at_once):
+            count = min(at_once, samples - some)
+            self._job["first_pixel"], self._job["pixels"] = first, pixels
+            self._job["first_sample"], self._job["samples"] = first_sample + some, count
+            for now, buffer in enumerate(self._jobs):
+                self._job["now"] = now
+                queue.write_buffer(buffer, 0, self._job.reshape(1).view(np.uint8))
+            for steps, is_last in self._rounds():
+                self._submit(steps, pixels * count)
+                look()
+                if is_last or not np.frombuffer(queue.read_buffer(self._counts), np.uint32)[:2].any():
+                    break
+            self._submit([("gather", 0, -(-pixels // _GROUP))], 0)
+        return np.frombuffer(queue.read_buffer(self._film, size=_PIXEL * pixels), np.float32)
+
+    def _rounds(self) -> Iterator[tuple[list[tuple[str, int, int | None]], bool]]:
+        """Yield what is to be done until paths end, and whether they have ended then for sure."""
+        steps: list[tuple[str, int, int | None]] = [("generate", 0, None), ("plan_first", 0, 1)]
+        bounce, last = 0, self._max_depth
+        while True:
+            for _ in range(_BOUNCES):
+                now = bounce % 2
+                steps += [("trace", now, None), ("plan_shading", now, 1)]
+                steps += [(entry, now, None) for entry in _SHADING]
+                steps += [("plan_rays", now, 1), ("bring", now, None)]
+                bounce += 1
+                if last is not None and bounce > last:
+                    yield steps, True
+                    return
+            yield steps, False
+            steps = []
+
+    def _submit(self, steps: list[tuple[str, int, int | None]], paths: int) -> None:
+        """Set kernels to work: of each its name, which list of rays is at work, and groups of threads."""
+        encoder = self._device.create_command_encoder()
+        if steps[0][0] == "generate":
+            encoder.clear_buffer(self._counts)
+            encoder.clear_buffer(self._plan)
+        compute = encoder.begin_compute_pass()
+        for entry, now, groups in steps:
+            compute.set_pipeline(self._pipelines[entry])
+            compute.set_bind_group(0, self._bound(entry, now))
+            if entry == "generate":
+                compute.dispatch_workgroups(-(-paths // _GROUP))
+            elif groups is not None:
+                compute.dispatch_workgroups(groups)
+            else:
+                which = now if entry == "trace" else _SHADING.get(entry, _TO_LIGHT)
+                compute.dispatch_workgroups_indirect(self._plan, 16 * which)
+        compute.end()
+        self._device.queue.submit([encoder.finish()])
+
+    def destroy(self) -> None:
+        """Give the device's memory back."""
+        for buffer in [*self._buffers, *self._scene]:
+            buffer.destroy()
+        self._buffers, self._scene = [], []
