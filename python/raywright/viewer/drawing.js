@@ -9,13 +9,13 @@ const STANDS = 150;
 // Milliseconds that a picture in movement may take, and how many times smaller it may be in each direction.
 const SMOOTH = 40;
 const MOST_DIVISOR = 8;
-// Visits of boxes that the heat map shows as white.
+// Nodes read by a ray that the heat map shows as white.
 const VISITS = 256;
 // Milliseconds that a band of paths may take, and between two pictures of what they have brought.
 const BAND = 30;
 const MOST_ROWS = 1 << 16;
 const BETWEEN = 60;
-const SHADERS = ["trace", "shading", "sight", "screen", "lines", "path"];
+const SHADERS = ["walk", "shading", "sight", "screen", "lines", "path"];
 
 const nextFrame = () => new Promise(requestAnimationFrame);
 const sameTexts = new Map();
@@ -93,7 +93,8 @@ export class Drawing {
     }
     Object.assign(this, others);
     this.exposure = exposure ?? this.exposure;
-    if (resized || Object.keys(others).length) {
+    // A sketch has its exposure; what paths have brought gets it when it is shown.
+    if (resized || Object.keys(others).length || (exposure !== undefined && !this.sample)) {
       this.again(isMove);
     } else {
       this.isStale = true;
@@ -133,7 +134,7 @@ export class Drawing {
   async step() {
     const left = this.movedAt + STANDS - performance.now();
     const traced = this.isHeat ? null : this.told.traced;
-    if (this.isDirty || (this.isStale && !this.sample)) {
+    if (this.isDirty) {
       this.isDirty = this.isStale = false;
       this.isWhole = left <= 0 && this.divisor === 1;
       await nextFrame();
@@ -173,8 +174,8 @@ export class Drawing {
     let left = this.rows;
     while (left > 0 && this.sample < samples) {
       const rows = Math.min(left, canvas.height - this.row);
-      this.aim(canvas.width, canvas.height, { row: this.row, sample: this.sample });
-      passes.paths.trace(rows);
+      this.aim(canvas.width, canvas.height, { row: this.row });
+      passes.paths.trace(rows, this.sample);
       left -= rows;
       this.row += rows;
       if (this.row >= canvas.height) {
@@ -218,7 +219,7 @@ export class Drawing {
     this.pictures += 1;
     canvas.dataset.pictures = this.pictures;
     canvas.dataset.samples = 0;
-    this.on.tell({ samples: this.isHeat ? `1 to ${VISITS} visits` : "sketch", seconds: took / 1000 });
+    this.on.tell({ samples: this.isHeat ? `1 to ${VISITS} nodes` : "sketch", seconds: took / 1000 });
   }
 
   aim(width, height, more = {}) {
@@ -241,7 +242,6 @@ export class Drawing {
       mode: this.isHeat ? 1 : 0,
       tone,
       row: 0,
-      sample: 0,
       ...more,
     });
   }

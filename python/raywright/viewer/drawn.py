@@ -147,7 +147,7 @@ class Drawn:
             self._arrays = {
                 "nodes": flat.nodes.tobytes(),
                 "triangles": flat.triangles.tobytes(),
-                "paints": paints(scene.shapes, flat.first).tobytes(),
+                "paints": paints(scene.shapes, flat).tobytes(),
             }
             try:
                 looks = packed(scene, flat)

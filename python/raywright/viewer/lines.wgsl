@@ -1,4 +1,4 @@
-// The edges of boxes over a picture: after trace.wgsl and sight.wgsl.
+// The edges of boxes over a picture: after gpu/walk.wgsl and sight.wgsl.
 
 // Eight corners of each.
 @group(1) @binding(0) var<storage, read> corners: array<f32>;

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..query.flats import FlatArrays
 from ..shapes.mesh import Mesh
 
 # What tells of a material's colour, the first that it has.
@@ -16,27 +17,44 @@ _GREY = (0.7, 0.7, 0.7)
 _SHINES = 255
 
 
-def paints(shapes: Sequence[Any], first: NDArray[np.int64]) -> NDArray[np.uint8]:
-    """Return a colour for each primitive, as far as one can be told without asking textures where.
+def paints(shapes: Sequence[Any], flat: FlatArrays) -> NDArray[np.uint32]:
+    """Return a colour and the normal of each primitive, as far as they can be told without asking where on it.
 
     Parameters
     ----------
     shapes : sequence of shapes
         Of a scene.
-    first : (S + 1,) int64
-        The number of the first primitive of each, as `FlatArrays` has it.
+    flat : FlatArrays
+        Its arrays.
 
     Returns
     -------
-    (N, 4) uint8
-        Linear red, green and blue of 255, and 255 if it shines.
+    (N, 2) uint32
+        Linear red, green and blue, each a byte of 255, and one that is 255 if it shines; and where the normal is
+        on an octahedron, two int16 of 32767 (Cigolle et al. 2014).
     """
+    first = flat.first
     rows = np.zeros((max(int(first[-1]), 1), 4), np.uint8)
     for shape, begin, end in zip(shapes, first[:-1], first[1:], strict=True):
         shines = isinstance(shape, Mesh) and shape.emission is not None
         rows[begin:end, :3] = np.clip(np.round(255 * np.array(_colour(shape))), 0, 255)
         rows[begin:end, 3] = _SHINES * shines
-    return rows
+    packed = np.zeros((len(rows), 2), "<u4")
+    packed[:, 0] = rows.view("<u4")[:, 0]
+    packed[flat.triangles["primitive"], 1] = _folded(flat.triangles)
+    return packed
+
+
+def _folded(triangles: NDArray[np.void]) -> NDArray[np.uint32]:
+    """Return normals of triangles on an octahedron, whose lower half is folded out."""
+    across = np.cross(triangles["edge"].astype(float), triangles["other"].astype(float))
+    sums = np.abs(across).sum(axis=1, keepdims=True)
+    x, y, z = np.divide(across, sums, out=np.zeros_like(across), where=sums > 0).T
+    below = z < 0
+    u = np.where(below, (1 - np.abs(y)) * np.where(x >= 0, 1, -1), x)
+    v = np.where(below, (1 - np.abs(x)) * np.where(y >= 0, 1, -1), y)
+    both = np.round(32767 * np.stack([u, v], axis=1)).astype("<i2")
+    return np.ascontiguousarray(both).view("<u4")[:, 0]
 
 
 def _colour(shape: Any) -> NDArray[np.float64]:

@@ -5,18 +5,9 @@ import { Paths } from "./paths.js";
 
 const FLOATS = 48;
 
-// The text that all passes begin with, for a tree of some depth.
-function beginning({ trace, sight }, depth) {
-  const bindings = `
-@group(0) @binding(3) var<storage, read> nodes: array<Node>;
-@group(0) @binding(4) var<storage, read> triangles: array<Triangle>;
-fn node(i: u32) -> Node { return nodes[i]; }
-fn triangle(i: u32) -> Triangle { return triangles[i]; }
-`;
-  const shared = trace.replace("BINDINGS", bindings).replaceAll("ANSWER", "u32").replaceAll("SCALE", "1.0");
-  // A path puts one child away a level.
-  return shared + sight.replaceAll("STACK", `${Math.floor(depth / 32) * 32 + 32}u`);
-}
+// The text that all passes begin with, for a tree of some depth: a path puts one child away a level.
+const beginning = ({ walk, sight }, depth) =>
+  walk.replaceAll("STACK", `${Math.floor(depth / 32) * 32 + 32}u`) + sight;
 
 export class Passes {
   // Of a device, for a canvas of some format, a scene as it was told, its buffers, and the kernels' texts.
@@ -25,20 +16,19 @@ export class Passes {
     this.format = format;
     this.told = told;
     this.buffers = buffers;
-    this.shared = beginning(texts, told.depth);
+    this.beginning = beginning(texts, told.depth);
     const uniform = GPUBufferUsage.UNIFORM;
-    this.job = bufferOf(device, new Uint32Array([0, 0, told.nodes, 0]), uniform);
     this.look = bufferOf(device, new Float32Array(FLOATS), uniform);
     const both = GPUShaderStage.FRAGMENT | GPUShaderStage.COMPUTE;
-    const kinds = { 0: "uniform", 3: "read-only-storage", 4: "read-only-storage", 5: "uniform", 6: "read-only-storage" };
-    const bound = { 0: this.job, 3: buffers.nodes, 4: buffers.triangles, 5: this.look, 6: buffers.paints };
-    const visible = (i) => (kinds[i] === "uniform" ? both | GPUShaderStage.VERTEX : both);
+    const read = { visibility: both, buffer: { type: "read-only-storage" } };
+    const aimed = { visibility: both | GPUShaderStage.VERTEX, buffer: { type: "uniform" } };
     this.layout = device.createBindGroupLayout({
-      entries: Object.keys(kinds).map((i) => ({ binding: +i, visibility: visible(i), buffer: { type: kinds[i] } })),
+      entries: [read, read, read, aimed].map((kind, binding) => ({ binding, ...kind })),
     });
+    const bound = [buffers.nodes, buffers.triangles, buffers.paints, this.look];
     this.scene = device.createBindGroup({
       layout: this.layout,
-      entries: Object.entries(bound).map(([i, buffer]) => ({ binding: +i, resource: { buffer } })),
+      entries: bound.map((buffer, binding) => ({ binding, resource: { buffer } })),
     });
     this.sampler = device.createSampler({ magFilter: "linear", minFilter: "linear" });
     this.texts = texts;
@@ -48,8 +38,8 @@ export class Passes {
   // Compile what is needed at once.
   async prepare() {
     const { device } = this;
-    const screen = device.createShaderModule({ code: this.shared + this.texts.screen });
-    const lines = device.createShaderModule({ code: this.shared + this.texts.lines });
+    const screen = device.createShaderModule({ code: this.beginning + this.texts.screen });
+    const lines = device.createShaderModule({ code: this.beginning + this.texts.lines });
     const read = GPUShaderStage.FRAGMENT;
     this.pictures = device.createBindGroupLayout({
       entries: [
@@ -80,13 +70,13 @@ export class Passes {
   }
 
   // Where from, and how it is shown: numbers for the kernels, in box units.
-  aim({ origins, ways, inverse, parallel, lamp, width, height, gain, brightest, mode, tone, row, sample }) {
+  aim({ origins, ways, inverse, parallel, lamp, width, height, gain, brightest, mode, tone, row }) {
     const numbers = new Float32Array(FLOATS);
     [...origins, ...ways, ...inverse].forEach((vector, i) => numbers.set(vector, 4 * i));
     numbers[3] = parallel ? 1 : 0;
     numbers.set(lamp, 36);
     numbers.set([width, height, gain, brightest], 40);
-    new Uint32Array(numbers.buffer).set([mode, tone, row, sample], 44);
+    new Uint32Array(numbers.buffer).set([mode, tone, row, this.told.nodes], 44);
     this.device.queue.writeBuffer(this.look, 0, numbers);
   }
 
@@ -158,6 +148,6 @@ export class Passes {
   destroy() {
     this.texture?.destroy();
     this.paths?.destroy();
-    [this.job, this.look, this.boxes?.buffer, ...Object.values(this.buffers)].forEach((buffer) => buffer?.destroy());
+    [this.look, this.boxes?.buffer, ...Object.values(this.buffers)].forEach((buffer) => buffer?.destroy());
   }
 }

@@ -1,5 +1,5 @@
-// One path a pixel and pass, added to those before it: after trace.wgsl, sight.wgsl and gpu/shading.wgsl. Light is asked
-// for at every surface, and met by chance, weighed by both densities (Veach and Guibas 1995).
+// One path a pixel and pass, added to those before it: after gpu/walk.wgsl, gpu/shading.wgsl and sight.wgsl. Light is
+// asked for at every surface, and met by chance, weighed by both densities (Veach and Guibas 1995).
 
 @group(1) @binding(0) var<storage, read_write> sums: array<vec4<f32>>;
 @group(1) @binding(1) var<storage, read> faces: array<Face>;
@@ -14,8 +14,9 @@ struct Limits {
     depth: u32,
     roulette: u32,
     seed: u32,
-    // Columns of the picture.
+    // Columns of the picture, and which of all paths of a pixel this is.
     width: u32,
+    sample: u32,
 }
 
 fn face(i: u32) -> Face {
@@ -30,7 +31,7 @@ fn light(i: u32) -> Light {
     return lights[i];
 }
 
-fn stored(i: u32) -> f32 {
+fn number(i: u32) -> f32 {
     return numbers[i];
 }
 
@@ -58,9 +59,8 @@ fn asked_for(at: Surface, its: Material, colour: vec3<f32>) -> vec3<f32> {
     if !(most(by.value) > 0.0) {
         return vec3<f32>(0.0);
     }
-    departed = vec2<u32>(at.face, arriving.face);
-    let reach = min(arriving.distance * (1.0 - 1e-6), FOREVER);
-    if is_hidden(slabs(Ray(leaving(at, arriving.direction), 0.0, arriving.direction, reach))) {
+    let start = leaving(at, arriving.direction);
+    if is_hidden(start, arriving.direction, arriving.distance, at.face, arriving.face, look.mode.w) {
         return vec3<f32>(0.0);
     }
     if arriving.pdf == SINGLE {
@@ -69,7 +69,7 @@ fn asked_for(at: Surface, its: Material, colour: vec3<f32>) -> vec3<f32> {
     return by.value * arriving.radiance * (beside(arriving.pdf, by.pdf) / arriving.pdf);
 }
 
-fn traced(first: Slabs) -> vec3<f32> {
+fn traced(first: Ray) -> vec3<f32> {
     var ray = first;
     var throughput = vec3<f32>(1.0);
     var light = vec3<f32>(0.0);
@@ -77,17 +77,17 @@ fn traced(first: Slabs) -> vec3<f32> {
     var pdf = SINGLE;
     // What refraction has taken of the throughput, by which no path is left.
     var eta_squared = 1.0;
-    departed = vec2<u32>(NONE);
+    var from_face = NOBODY;
     for (var depth = 0u;; depth++) {
-        let hit = first_hit(ray);
-        if hit.at == NONE {
+        let met = nearest(ray.origin, ray.direction, from_face, look.mode.w);
+        if met.face == NOBODY {
             if lit.sky_kind != 0u {
                 let other = lit.sky_share * sky_pdf(ray.direction);
                 light += throughput * sky_radiance(ray.direction) * select(beside(pdf, other), 1.0, pdf == SINGLE);
             }
             break;
         }
-        let at = surface_at(triangle(hit.at).primitive, ray.origin, ray.direction);
+        let at = surface_at(met.face, ray.origin, ray.direction);
         let shining = emitted(at, ray.direction);
         if most(shining) > 0.0 {
             let other = emitted_pdf(at, ray.origin, ray.direction);
@@ -116,8 +116,8 @@ fn traced(first: Slabs) -> vec3<f32> {
             }
             throughput /= stays;
         }
-        departed = vec2<u32>(at.face, NONE);
-        ray = slabs(Ray(leaving(at, next.wi), 0.0, next.wi, FOREVER));
+        from_face = at.face;
+        ray = Ray(leaving(at, next.wi), next.wi);
     }
     return light;
 }
@@ -128,13 +128,13 @@ fn accumulate(@builtin(global_invocation_id) id: vec3<u32>) {
     if pixel.x >= limits.width || f32(pixel.y) >= look.size.y {
         return;
     }
-    drawn_for = vec3<u32>(pixel, look.mode.w);
+    drawn_for = vec3<u32>(pixel, limits.sample);
     drawn_so_far = 0u;
     let within = numbers_drawn().xy;
     let light = traced(ray_through((vec2<f32>(pixel) + within) / look.size.xy));
     let which = pixel.y * limits.width + pixel.x;
     var sum = vec4<f32>(0.0);
-    if look.mode.w > 0u {
+    if limits.sample > 0u {
         sum = sums[which];
     }
     // A number that is none would stay for ever.

@@ -11,7 +11,7 @@ export class Paths {
     const { device, buffers, told } = passes;
     const { depth, roulette, seed } = told.traced ?? { depth: 0, roulette: 0, seed: 0 };
     this.given = [depth, roulette, seed];
-    this.limits = bufferOf(device, new Uint32Array([...this.given, 0]), GPUBufferUsage.UNIFORM);
+    this.limits = bufferOf(device, new Uint32Array(8), GPUBufferUsage.UNIFORM);
     this.buffers = [...NAMES.map((name) => buffers[name]), buffers.lit, this.limits];
     const visibility = GPUShaderStage.COMPUTE;
     const types = ["storage", ...NAMES.map(() => "read-only-storage"), "uniform", "uniform"];
@@ -22,10 +22,10 @@ export class Paths {
   }
 
   async prepare() {
-    const { device, shared, texts, layout } = this.passes;
+    const { device, beginning, texts, layout } = this.passes;
     this.pipeline = await device.createComputePipelineAsync({
       layout: device.createPipelineLayout({ bindGroupLayouts: [layout, this.layout] }),
-      compute: { module: device.createShaderModule({ code: shared + texts.shading + texts.path }), entryPoint: "accumulate" },
+      compute: { module: device.createShaderModule({ code: beginning + texts.shading + texts.path }), entryPoint: "accumulate" },
     });
   }
 
@@ -38,7 +38,6 @@ export class Paths {
     this.sums?.destroy();
     this.size = [width, height];
     this.sums = device.createBuffer({ size: 16 * width * height, usage: GPUBufferUsage.STORAGE });
-    device.queue.writeBuffer(this.limits, 0, new Uint32Array([...this.given, width]));
     this.group = device.createBindGroup({
       layout: this.layout,
       entries: [this.sums, ...this.buffers].map((buffer, binding) => ({ binding, resource: { buffer } })),
@@ -49,9 +48,10 @@ export class Paths {
     });
   }
 
-  // One path more of each pixel in so many rows; from which row on, and the how manieth it is, was told by `aim`.
-  trace(rows) {
+  // One path more of each pixel in so many rows, the how manieth; from which row on was told by `aim`.
+  trace(rows, sample) {
     const { device, scene } = this.passes;
+    device.queue.writeBuffer(this.limits, 0, new Uint32Array([...this.given, this.size[0], sample]));
     const encoder = device.createCommandEncoder();
     const pass = encoder.beginComputePass();
     pass.setPipeline(this.pipeline);

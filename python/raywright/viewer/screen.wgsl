@@ -1,4 +1,4 @@
-// What is drawn on the screen: after trace.wgsl and sight.wgsl.
+// What is drawn on the screen: after gpu/walk.wgsl and sight.wgsl.
 
 @vertex
 fn whole(@builtin(vertex_index) i: u32) -> @builtin(position) vec4<f32> {
@@ -17,25 +17,25 @@ fn toned(rgb: vec3<f32>) -> vec3<f32> {
     if peak > 0.5 {
         shown = 1.0 - 0.25 / (peak - 0.5 + 0.5);
     }
-    let scaled = light * (shown / max(peak, TINY));
+    let scaled = light * (shown / max(peak, 1e-18));
     let white = 1.0 - 1.0 / (0.15 * (peak - shown) + 1.0);
     return mix(scaled, vec3<f32>(shown), white);
 }
 
 // The sRGB transfer (IEC 61966-2-1).
 fn encoded(linear: vec3<f32>) -> vec4<f32> {
-    let curved = 1.055 * pow(max(linear, vec3<f32>(TINY)), vec3<f32>(1.0 / 2.4)) - 0.055;
+    let curved = 1.055 * pow(max(linear, vec3<f32>(1e-18)), vec3<f32>(1.0 / 2.4)) - 0.055;
     return vec4<f32>(select(curved, 12.92 * linear, linear <= vec3<f32>(0.0031308)), 1.0);
 }
 
 @fragment
 fn sight(@builtin(position) at: vec4<f32>) -> @location(0) vec4<f32> {
     let ray = ray_through(at.xy / look.size.xy);
-    let hit = first_hit(ray);
+    let met = nearest(ray.origin, ray.direction, NOBODY, look.mode.w);
     if look.mode.x == 1u {
-        return encoded(heat(log2(f32(hit.visits)) / log2(look.size.w)));
+        return encoded(heat(log2(f32(visits)) / log2(look.size.w)));
     }
-    return encoded(toned(sketched(ray, hit)));
+    return encoded(toned(sketched(ray, met)));
 }
 
 @group(1) @binding(0) var drawn: texture_2d<f32>;

@@ -1,5 +1,4 @@
-// What is seen along a ray, for pictures: after trace.wgsl, whose tests of boxes and triangles it takes. What f32 cannot
-// tell counts as hit.
+// What is seen along a ray of a picture, by gpu/walk.wgsl.
 
 struct Look {
     // The ray at the upper left of the picture, what is added across it and down: where rays start, and their ways.
@@ -15,135 +14,48 @@ struct Look {
     along: vec4<f32>,
     // The lamp of a picture in movement; w is 1 for a place, 0 for a direction.
     lamp: vec4<f32>,
-    // Width and height of the picture; the factor of the exposure; visits that are the brightest of the heat map.
+    // Width and height of the picture; the factor of the exposure; visits that the heat map shows as white.
     size: vec4<f32>,
-    // What is drawn: 0 the scene, 1 the heat map; the tone: 0 filmic, 1 linear; the first row of a band; the sample.
+    // What is drawn, 0 the scene, 1 the heat map; the tone, 0 filmic, 1 linear; the first row of a band; nodes.
     mode: vec4<u32>,
 }
 
-@group(0) @binding(5) var<uniform> look: Look;
-@group(0) @binding(6) var<storage, read> paints: array<u32>;
+@group(0) @binding(0) var<storage, read> nodes: array<Node>;
+@group(0) @binding(1) var<storage, read> triangles: array<Triangle>;
+// Of each primitive a colour, its last byte 255 if it shines, and its normal in an octahedron.
+@group(0) @binding(2) var<storage, read> paints: array<vec2<u32>>;
+@group(0) @binding(3) var<uniform> look: Look;
 
-// Primitives that rays leave, and end at, which they do not meet.
-var<private> departed: vec2<u32> = vec2<u32>(NONE, NONE);
+// Nodes that were read on the way.
+var<private> visits: u32;
 
-struct Hit {
-    t: f32,
-    // The triangle, by its place; NONE for none.
-    at: u32,
-    visits: u32,
+fn node(i: u32) -> Node {
+    visits++;
+    return nodes[i];
 }
 
-// Where along a ray the plane of a triangle is. The bounds of `meet` lie around it, but for those that boxes tell.
-fn distance_to(ray: Slabs, triangle: Triangle) -> f32 {
-    let s = ray.origin - vector(triangle.corner);
-    let across = cross(vector(triangle.edge), vector(triangle.other));
-    return -dot(s, across) / dot(ray.direction, across);
+fn triangle(i: u32) -> Triangle {
+    return triangles[i];
 }
 
-fn first_hit(ray: Slabs) -> Hit {
-    var hit = Hit(FOREVER, NONE, 1u);
-    var stack: array<u32, STACK>;
-    var enters: array<f32, STACK>;
-    var size = 0u;
-    var at = 0u;
-    let root = node(0u);
-    let first = passes(ray, vector(root.lower), vector(root.upper), ray.t_max);
-    if first.x > first.y {
-        return hit;
-    }
-    var enter = first.x;
-    loop {
-        let here = node(at);
-        var go_on = false;
-        if here.count > 0u {
-            for (var i = here.index; i < here.index + here.count; i++) {
-                let one = triangle(i);
-                let met = meet(ray, one, enter, hit.t);
-                if met.possible && met.high < BEYOND && all(departed != vec2<u32>(one.primitive)) {
-                    let t = distance_to(ray, one);
-                    if t > ray.t_min && t < hit.t {
-                        hit.t = t;
-                        hit.at = i;
-                    }
-                }
-            }
-        } else {
-            let a = at + 1u;
-            let left = node(a);
-            let b = select(left.index, a + 1u, left.count > 0u);
-            let right = node(b);
-            hit.visits += 2u;
-            let to_left = passes(ray, vector(left.lower), vector(left.upper), hit.t);
-            let to_right = passes(ray, vector(right.lower), vector(right.upper), hit.t);
-            let meets_left = to_left.x <= to_left.y;
-            let meets_right = to_right.x <= to_right.y;
-            if meets_left && meets_right {
-                let left_first = to_left.x <= to_right.x;
-                stack[size] = select(a, b, left_first);
-                enters[size] = select(to_left.x, to_right.x, left_first);
-                size++;
-                at = select(b, a, left_first);
-                enter = select(to_right.x, to_left.x, left_first);
-                go_on = true;
-            } else if meets_left {
-                at = a;
-                enter = to_left.x;
-                go_on = true;
-            } else if meets_right {
-                at = b;
-                enter = to_right.x;
-                go_on = true;
-            }
-        }
-        while !go_on && size > 0u {
-            size--;
-            at = stack[size];
-            enter = enters[size];
-            go_on = enter < hit.t;
-        }
-        if !go_on {
-            break;
-        }
-    }
-    return hit;
-}
-
-// Whether anything lies between, along the nodes as they lie (Smits 1998).
-fn is_hidden(ray: Slabs) -> bool {
-    var at = 0u;
-    while at < job.nodes {
-        let here = node(at);
-        let within = passes(ray, vector(here.lower), vector(here.upper), ray.t_max);
-        if within.x > within.y {
-            at = select(here.index, at + 1u, here.count > 0u);
-            continue;
-        }
-        for (var i = 0u; i < here.count; i++) {
-            let one = triangle(here.index + i);
-            let met = meet(ray, one, within.x, ray.t_max);
-            if met.possible && met.high < BEYOND && all(departed != vec2<u32>(one.primitive)) {
-                let t = distance_to(ray, one);
-                if t > ray.t_min && t < ray.t_max {
-                    return true;
-                }
-            }
-        }
-        at++;
-    }
-    return false;
+struct Ray {
+    origin: vec3<f32>,
+    direction: vec3<f32>,
 }
 
 // The ray through a place of the picture, from (0, 0) at its upper left to (1, 1).
-fn ray_through(place: vec2<f32>) -> Slabs {
+fn ray_through(place: vec2<f32>) -> Ray {
     let origin = look.origin + place.x * look.origin_across + place.y * look.origin_down;
     let way = look.way + place.x * look.way_across + place.y * look.way_down;
-    return slabs(Ray(origin.xyz, 0.0, normalize(way.xyz), FOREVER));
+    return Ray(origin.xyz, normalize(way.xyz));
 }
 
-// How far a point may be off its surface, and what begins there is moved away from it.
-fn off_surface(p: vec3<f32>) -> f32 {
-    return 64.0 * 1.1920928955078125e-07 * (largest(p) + 2.0);
+// A unit vector from where it is seen on an octahedron (Cigolle et al., 2014).
+fn unfolded(packed: u32) -> vec3<f32> {
+    let e = unpack2x16snorm(packed);
+    let z = 1.0 - abs(e.x) - abs(e.y);
+    let folded = (1.0 - abs(e.yx)) * select(vec2<f32>(-1.0), vec2<f32>(1.0), e >= vec2<f32>(0.0));
+    return normalize(vec3<f32>(select(folded, e, z >= 0.0), z));
 }
 
 const BY_LAMP: f32 = 0.8;
@@ -152,38 +64,35 @@ const BY_ALL: f32 = 0.2;
 const BEHIND = vec3<f32>(0.012, 0.013, 0.015);
 
 // The light along a ray of a picture in movement: a colour of each shape, one lamp and its shadow.
-fn sketched(ray: Slabs, hit: Hit) -> vec3<f32> {
-    if hit.at == NONE {
+fn sketched(ray: Ray, met: Met) -> vec3<f32> {
+    if met.face == NOBODY {
         return BEHIND;
     }
-    let one = triangle(hit.at);
-    let paint = unpack4x8unorm(paints[one.primitive]);
-    if paint.w > 0.5 {
+    let paint = paints[met.face];
+    let colour = unpack4x8unorm(paint.x);
+    if colour.w > 0.5 {
         return vec3<f32>(1.0);
     }
-    let across = cross(vector(one.edge), vector(one.other));
-    var normal = normalize(across / max(largest(across), TINY));
+    var normal = unfolded(paint.y);
     if dot(normal, ray.direction) > 0.0 {
         normal = -normal;
     }
-    let place = ray.origin + hit.t * ray.direction;
-    let off = off_surface(place);
-    let start = place + off * normal;
-    departed = vec2<u32>(one.primitive, NONE);
-    let way = look.lamp.xyz - look.lamp.w * start;
-    let distance = length(way);
-    let towards = way / max(distance, TINY);
-    let lit = dot(normal, towards);
+    let place = ray.origin + met.t * ray.direction;
+    let way = look.lamp.xyz - look.lamp.w * place;
+    let distance = max(length(way), 1e-18);
+    let towards = way / distance;
+    let facing = dot(normal, towards);
     // What is turned away still differs by where it faces.
     var light = BY_ALL * (1.0 + 0.5 * dot(normal, -ray.direction));
-    if lit > 0.0 {
+    if facing > 0.0 {
+        let start = place + normal * (64.0 * ULP * (length(place) + met.t + 2.0));
         // Not up to the lamp: that has a surface.
-        let reach = select(FOREVER, 0.98 * distance, look.lamp.w > 0.5);
-        if !is_hidden(slabs(Ray(start, off, towards, reach))) {
-            light += BY_LAMP * lit;
+        let reach = select(BEYOND, 0.98 * distance, look.lamp.w > 0.5);
+        if !is_hidden(start, towards, reach, met.face, NOBODY, look.mode.w) {
+            light += BY_LAMP * facing;
         }
     }
-    return paint.xyz * light;
+    return colour.xyz * light;
 }
 
 // From black by blue, green and yellow to white, each brighter than the one before.

@@ -19,7 +19,7 @@ MODULES = (
     "viewer.js",
     "wire.js",
 )
-SHADERS = ("trace.wgsl", "shading.wgsl", "sight.wgsl", "screen.wgsl", "lines.wgsl", "path.wgsl")
+SHADERS = ("walk.wgsl", "shading.wgsl", "sight.wgsl", "screen.wgsl", "lines.wgsl", "path.wgsl")
 # What is served besides arrays, by what follows the token, and of what type.
 FILES = {
     "": "text/html; charset=utf-8",
@@ -28,10 +28,7 @@ FILES = {
     **dict.fromkeys(MODULES, _SCRIPT),
     **dict.fromkeys(SHADERS, _SHADER),
 }
-_KERNELS = ("trace.wgsl", "shading.wgsl")
-# Names of a kernel that are others in a page: two texts that are put together have the same, or browsers keep
-# the word for themselves (WGSL, "Reserved Words").
-_RENAMED = {"shading.wgsl": {r"\bnumber\(": "stored(", r"\bof\b": "its"}}
+_KERNELS = ("walk.wgsl", "shading.wgsl")
 _IMPORT = re.compile(r"^import [^;]*;\n", re.MULTILINE)
 _EXPORT = re.compile(r"^export ", re.MULTILINE)
 
@@ -40,10 +37,7 @@ _EXPORT = re.compile(r"^export ", re.MULTILINE)
 def text(path: str) -> str:
     """Return the text of a file of the page by what is asked for."""
     if path in _KERNELS:
-        told = kernel(path)
-        for name, other in _RENAMED.get(path, {}).items():
-            told = re.sub(name, other, told)
-        return told
+        return kernel(path)
     return (files(__package__) / (path or "page.html")).read_text(encoding="utf-8")
 
 

@@ -263,7 +263,7 @@ export class Viewer {
     this.drawHere();
     this.drawing.show({ isHeat: this.isHeat });
     this.tellWay();
-    this.say(this.isHeat ? "boxes visited by each ray: from 1, black, to 256 and more, white" : "");
+    this.say(this.isHeat ? "nodes of the tree that each ray reads: from 1, black, to 256 and more, white" : "");
   }
 
   giveUp(why) {
