@@ -18,7 +18,7 @@ _SHINES = 255
 
 
 def paints(shapes: Sequence[Any], flat: FlatArrays) -> NDArray[np.uint32]:
-    """Return a colour and the normal of each primitive, as far as they can be told without asking where on it.
+    """Return a colour and the normal of each primitive, as far as they are known without asking where on it.
 
     Parameters
     ----------
@@ -30,8 +30,8 @@ def paints(shapes: Sequence[Any], flat: FlatArrays) -> NDArray[np.uint32]:
     Returns
     -------
     (N, 2) uint32
-        Linear red, green and blue, each a byte of 255, and one that is 255 if it shines; and where the normal is
-        on an octahedron, two int16 of 32767 (Cigolle et al. 2014).
+        Linear red, green and blue, each a byte of 255, and one that is 255 if it shines; and where the normal
+        is on an octahedron, two int16 of 32767 (Cigolle et al. 2014).
     """
     first = flat.first
     rows = np.zeros((max(int(first[-1]), 1), 4), np.uint8)

@@ -233,6 +233,7 @@ export class Viewer {
       this.drawing.told.traced = null;
       const { traced } = await this.wire.ask("drawing", {});
       this.drawing.told.traced = traced ?? null;
+      this.drawHere();
       this.drawing.again();
     }
   }
@@ -243,12 +244,11 @@ export class Viewer {
       return;
     }
     this.isDrawn = !this.isDrawn;
+    this.drawHere();
     if (this.isDrawn) {
-      this.drawHere();
       this.drawing.again();
     } else {
       this.showHere(false);
-      this.wire.watch(true);
     }
     this.tellWay();
   }
@@ -283,8 +283,9 @@ export class Viewer {
   }
 
   drawHere() {
+    this.isHandedOver = false;
+    this.wire.watch(!this.isDrawn);
     if (this.isDrawn && !this.shownHere) {
-      this.wire.watch(false);
       this.showHere(true);
       this.state = "drawn";
       this.say(this.toldBoxes());
@@ -296,6 +297,7 @@ export class Viewer {
   // The camera stands, and the core makes the better picture of it: its pictures take over as they come.
   handOver() {
     if (this.isDrawn) {
+      this.isHandedOver = true;
       this.wire.watch(true);
     }
   }
@@ -323,17 +325,21 @@ export class Viewer {
     if (performance.now() - this.movedAt > SETTLED) {
       this.follow(frame.view);
     }
-    // A preview is no better than what is drawn here.
-    if (!this.isDrawn || (frame.state !== "preview" && same(frame.view, this.view) && !this.isHeat)) {
+    if (this.isWanted(frame)) {
       this.stream.show(frame, bytes);
     }
   }
 
+  // Of what is on its way some is no longer, and a preview is no better than what is drawn here.
+  isWanted(frame) {
+    return !this.isDrawn || (this.isHandedOver && frame.state !== "preview" && same(frame.view, this.view));
+  }
+
   tellFrame(frame) {
-    if (this.isDrawn) {
-      if (!same(frame.view, this.view)) {
-        return;
-      }
+    if (!this.isWanted(frame)) {
+      return;
+    }
+    if (this.shownHere) {
       this.showHere(false);
     }
     this.state = frame.state;
