@@ -85,7 +85,9 @@ class Looks:
             If it is none that the kernels know.
         """
         if material not in self._known:
-            sides = (material.front, material.back) if isinstance(material, TwoSided) else (material, material)
+            sides = (
+                (material.front, material.back) if isinstance(material, TwoSided) else (material, material)
+            )
             rows = [self._row(side, f"the {told(side)} of {where}") for side in sides]
             self._known[material] = len(self._rows)
             self._rows += rows

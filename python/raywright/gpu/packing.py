@@ -249,5 +249,3 @@ def _shares(image: NDArray[np.float32]) -> NDArray[np.float32]:
     columns = np.cumsum(weights, axis=1) / np.where(rows > 0, rows, 1)[:, None]
     up_to_row[-1], columns[:, -1] = 1, 1
     return np.concatenate([up_to_row.astype(np.float32), columns.astype(np.float32).ravel()])
-
-

@@ -25,7 +25,9 @@ from .orbit import Orbit, View, resized, scaled
 
 # What a preview may take: its samples, and its seconds.
 _SAMPLES = 4
-_SECONDS = 0.06
+_SECONDS = 0.03
+# How long a camera may rest, in seconds, before it counts as standing: moves of a mouse are nearer.
+_REST = 0.02
 # Pixels of the first one, and how many times smaller than the picture any may be in each direction.
 _PIXELS = 20_000
 _LEAST_DIVISOR, _MOST_DIVISOR = 2, 32
@@ -365,7 +367,8 @@ class Session:
                 self._rendering = True
             try:
                 self._preview(replace(job, is_preview=True))
-                self._picture(job)
+                if self._rests(job):
+                    self._picture(job)
             except _UnwantedError:
                 pass
             except Exception as error:
@@ -375,6 +378,11 @@ class Session:
                 return
             finally:
                 self._rendering = False
+
+    def _rests(self, job: "_Job") -> bool:
+        """Wait for a moment whether something else is wanted; whether nothing was."""
+        with self._changed:
+            return not self._changed.wait_for(lambda: self._closed or self._wanted != job.number, _REST)
 
     def _preview(self, job: "_Job") -> None:
         """Show something soon: fewer pixels, and few samples of them."""
