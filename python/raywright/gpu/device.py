@@ -2,11 +2,16 @@
 
 from typing import Any
 
+from ..cameras import AnyCamera
 from ..scene.scene import Scene
 from .adapters import chosen, name_of
 from .arithmetic import pairs, trouble
+from .eyes import eye_of
 from .held import GpuScene
 from .kernels import limits_of, probed
+from .looks import LeftError
+from .packing import packed
+from .wavefront import Wavefront
 
 
 class Gpu:
@@ -66,6 +71,27 @@ class Gpu:
         if not isinstance(scene, Scene):
             raise TypeError(f"scene must be a Scene, got {type(scene).__name__}")
         return GpuScene(self._device, self._name, scene, self._most, self._bounds, self._pipelines)
+
+    def paths(
+        self, scene: Scene, camera: AnyCamera, max_depth: int | None, roulette_depth: int, seed: int
+    ) -> Wavefront:
+        """Return the paths of a picture, ready to be followed; `render` does it, by its `device`.
+
+        Raises
+        ------
+        LeftError
+            If something is only known to the CPU: says what.
+        MemoryError
+            If the device has no room for the scene.
+        """
+        if scene.wavelengths is not None:
+            raise LeftError(f"paths carry wavelengths: {scene.wavelengths}")
+        flat = scene.flat()
+        if len(flat.instances):
+            raise LeftError("the scene has copies of an Instance")
+        eye, looks = eye_of(camera, flat), packed(scene, flat)
+        settings = max_depth, roulette_depth, seed
+        return Wavefront(self._device, flat, looks, eye, *settings, self._most, self._pipelines)
 
     def __repr__(self) -> str:
         return f"Gpu({self._name!r}, {self._backend})"

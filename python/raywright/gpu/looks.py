@@ -8,8 +8,9 @@ from numpy.typing import ArrayLike, NDArray
 from ..materials import Conductor, Dielectric, Diffuse, Material, Mirror, TwoSided
 from ..textures.image import ImageTexture
 from .facets import average_loss, loss_table
+from .measured import made_up, reflectances
 
-# 64 bytes: see `Material` of shading.wgsl.
+# 80 bytes: see `Material` of shading.wgsl.
 MATERIAL = np.dtype(
     [
         ("colour", "<f4", 3),
@@ -19,7 +20,9 @@ MATERIAL = np.dtype(
         ("k", "<f4", 3),
         ("table", "<u4"),
         ("multiple", "<f4", 3),
+        ("losses", "<u4"),
         ("picture", "<u4"),
+        ("reserved", "<u4", 3),
     ]
 )
 _NO = 0xFFFFFFFF
@@ -142,17 +145,19 @@ class Looks:
             row["kind"], row["alpha"] = _ROUGH_GLASS, alpha
 
     def _metal(self, row: NDArray[np.void], metal: Conductor, what: str) -> None:
-        if metal.metal is not None:
-            raise LeftError(f"{what} is measured by wavelength")
-        eta, k = constant(metal.eta, f"eta of {what}"), constant(metal.k, f"k of {what}")
         alpha = _alpha(metal, what)
-        row["kind"], row["eta"], row["k"] = _METAL, eta, k
+        row["kind"], row["colour"] = _METAL, 1.0
+        if metal.metal is not None:
+            # The index is 0, which none is, and a table stands for it.
+            table, row["colour"] = reflectances(metal.metal)
+            row["table"] = self.add(table)
+        else:
+            row["eta"], row["k"] = constant(metal.eta, f"eta of {what}"), constant(metal.k, f"k of {what}")
         if alpha >= _SMOOTH:
             row["kind"], row["alpha"] = _ROUGH_METAL, alpha
-            row["table"], average = self._losses(alpha if metal.multiple_scattering else 0.0)
+            row["losses"], average = self._losses(alpha if metal.multiple_scattering else 0.0)
             if average > 0:
-                mean = mean_reflectance(np.array(eta), np.array(k))
-                row["multiple"] = mean**2 * (1 - average) / (1 - mean * average) / (np.pi * average)
+                row["multiple"] = made_up(metal, average)
 
     def _losses(self, alpha: float) -> tuple[int, float]:
         """Return where the table of what facets lose begins, and the mean loss; of 0 they lose nothing."""
@@ -177,17 +182,3 @@ def _alpha(material: Any, what: str) -> float:
         if alpha < _LEAST:
             raise LeftError(f"{what} is next to smooth, with an alpha of {alpha:g}")
     return alpha
-
-
-def mean_reflectance(eta: NDArray[np.float64], k: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the share of even light that a conductor of index eta + ik reflects."""
-    nodes, weights = np.polynomial.legendre.leggauss(32)
-    cosine, weight = (0.5 * (nodes + 1))[:, None], (0.5 * weights)[:, None]
-    c2, s2 = cosine**2, 1 - cosine**2
-    real = eta**2 - k**2 - s2
-    norm = np.sqrt(real**2 + 4 * eta**2 * k**2)
-    a = np.sqrt(np.maximum((norm + real) / 2, 0))
-    plain, twice = norm + c2, 2 * cosine * a
-    even, odd = c2 * norm + s2 * s2, s2 * twice
-    reflected = (plain - twice) * even / ((plain + twice) * (even + odd))
-    return np.asarray((2 * cosine * weight * reflected).sum(axis=0))

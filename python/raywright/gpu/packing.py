@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..lights import ConstantEnvironment, DirectionalLight, Emission, EnvironmentMap, PointLight
+from ..materials import Dielectric
 from ..query.flats import FlatArrays
 from ..scene.scene import Scene
 from ..shapes.mesh import Mesh
@@ -83,7 +84,7 @@ class Packed:
     ----------
     faces : (P,) structured, 112 bytes each
         What faces look like, by their numbers among all primitives.
-    materials : (2 M,) structured, 64 bytes each
+    materials : (2 M,) structured, 80 bytes each
         Fronts and backs by turns (`looks.MATERIAL`).
     lights : (L,) structured, 48 bytes each
         What is drawn by light, but for the sky.
@@ -119,6 +120,7 @@ def packed(scene: Scene, flat: FlatArrays) -> Packed:
     faces = np.zeros(max(int(flat.first[-1]), 1), FACE)
     faces["light"] = NO
     lamps: list[NDArray[np.void]] = []
+    glasses: list[Mesh] = []
     for number, shape in enumerate(scene.shapes):
         first, end = int(flat.first[number]), int(flat.first[number + 1])
         if not isinstance(shape, Mesh):
@@ -127,14 +129,38 @@ def packed(scene: Scene, flat: FlatArrays) -> Packed:
             raise LeftError(f"shape {number} has faces that are left out")
         some = faces[first:end]
         _lay(some, shape, flat)
+        if isinstance(shape.material, Dielectric):
+            glasses.append(shape)
         some["material"] = looks.number(shape.material, f"shape {number}")
         if shape.emission is not None:
             lamps.append(_shining(shape, some, first, f"shape {number}"))
+    _check_apart(glasses)
     lights = np.concatenate([*lamps, _delta(scene, flat)])
     lit = np.zeros((), LIT)
     _sky(scene, lit, looks)
     _share(lights, lit, faces)
     return Packed(faces, looks.array(), lights, looks.numbers(), lit)
+
+
+def _check_apart(glasses: list[Mesh]) -> None:
+    """Raise a LeftError if several shapes of glass may be in one another."""
+    if len(glasses) < 2:
+        return
+    boxes = [bounds for mesh in glasses if (bounds := mesh.bounds) is not None]
+    for i, (low, high) in enumerate(boxes):
+        for others_low, others_high in boxes[:i]:
+            if (low <= others_high).all() and (others_low <= high).all():
+                raise LeftError("shapes of glass are next to each other, or in one another")
+    if not all(map(_is_closed, glasses)):
+        raise LeftError("there are several shapes of glass, and not all are closed")
+
+
+def _is_closed(mesh: Mesh) -> bool:
+    """Return whether each edge of a mesh has two faces."""
+    numbers = np.unique(mesh.vertices, axis=0, return_inverse=True)[1].reshape(-1)
+    faces = numbers[mesh.faces]
+    edges = np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1)
+    return bool((np.unique(edges, axis=0, return_counts=True)[1] == 2).all())
 
 
 def _lay(faces: NDArray[np.void], mesh: Mesh, flat: FlatArrays) -> None:

@@ -46,7 +46,9 @@ struct Path {
     face: u32,
     // How often in a row glass has held it.
     held: u32,
-    reserved: vec2<u32>,
+    // 1 where it has come by way of a metal that may reflect more than there is.
+    gilded: u32,
+    reserved: u32,
 }
 
 // A ray to a light, and what that brings if nothing is in the way.
@@ -230,6 +232,10 @@ fn shade(i: u32, kind: u32) {
         return;
     }
     let colour = colour_at(looks, at.uv);
+    if is_metal(looks) && any(looks.colour != vec3<f32>(1.0)) {
+        path.throughput *= select(vec3<f32>(1.0), looks.colour, path.gilded == 1u);
+        path.gilded = 1u;
+    }
     if !is_single(looks) {
         let u = numbers_of(i, 2u * path.bounce + 1u);
         let arriving = from_lights(at.position, u.x, u.yz);

@@ -42,18 +42,24 @@ const ROUGH_METAL: u32 = 4u;
 const ROUGH_GLASS: u32 = 5u;
 
 struct Material {
+    // Of metals, what is left of each reflection but the first.
     colour: vec3<f32>,
     kind: u32,
-    // Of metals, with k; of glass the first is the index below over that above.
+    // Of metals, with k, or 0 where a table stands for both; of glass the first is the index below over that above.
     eta: vec3<f32>,
     alpha: f32,
     k: vec3<f32>,
-    // Where in the numbers its tables begin.
+    // Where in the numbers its reflectances begin.
     table: u32,
     // What facets throw on facets, over pi and the mean loss.
     multiple: vec3<f32>,
+    // Where in the numbers begins what facets lose.
+    losses: u32,
     // Where in the numbers its picture begins, or NO.
     picture: u32,
+    reserved_a: u32,
+    reserved_b: u32,
+    reserved_c: u32,
 }
 
 // Kinds of lights.
@@ -323,14 +329,14 @@ fn metallic(cosine: f32, eta: vec3<f32>, k: vec3<f32>) -> vec3<f32> {
     return clamp((sum - twice) * even / ((sum + twice) * (even + odd)), vec3<f32>(0.0), vec3<f32>(1.0));
 }
 
-// What a metal reflects: by its index, or by a table of 64 cosines from 0 to 1.
+// What a metal reflects: by its index, or by a table of 257 cosines from 0 to 1.
 fn reflectance(looks: Material, cosine: f32) -> vec3<f32> {
     if looks.eta.x > 0.0 {
         return metallic(cosine, looks.eta, looks.k);
     }
-    let place = clamp(cosine, 0.0, 1.0) * 63.0;
-    let i = min(u32(place), 62u);
-    let first = u32(looks.k.x) + 3u * i;
+    let place = clamp(cosine, 0.0, 1.0) * 256.0;
+    let i = min(u32(place), 255u);
+    let first = looks.table + 3u * i;
     let low = vec3<f32>(number(first), number(first + 1u), number(first + 2u));
     let high = vec3<f32>(number(first + 3u), number(first + 4u), number(first + 5u));
     return mix(low, high, place - f32(i));
@@ -405,8 +411,8 @@ fn rough_metal(looks: Material, wo: vec3<f32>, wi: vec3<f32>) -> Scattered {
     let met = mirroring(wo, wi, looks.alpha);
     let s = vec2<f32>(stretch(wo, looks.alpha), stretch(wi, looks.alpha));
     let single = met.x * 0.5 * wi.z / (s.x * wi.z + s.y * wo.z);
-    let loss = lost(looks.table, wo.z);
-    let back = looks.multiple * (loss * lost(looks.table, wi.z) * wi.z);
+    let loss = lost(looks.losses, wo.z);
+    let back = looks.multiple * (loss * lost(looks.losses, wi.z) * wi.z);
     let pdf = (1.0 - loss) * met.x * 0.5 / (wo.z + s.x) + loss * wi.z * INVERSE_PI;
     return Scattered(reflectance(looks, met.y) * single + back, pdf);
 }
@@ -439,6 +445,10 @@ fn rough_glass(looks: Material, wo: vec3<f32>, wi: vec3<f32>) -> Scattered {
     let seen = 2.0 / (abs(wo.z) + stretch(wo, looks.alpha));
     let both = min(seen, 2.0 * abs(wi.z / wo.z) / (abs(wi.z) + stretch(wi, looks.alpha)));
     return Scattered(vec3<f32>(through * both), through * seen * eta * eta);
+}
+
+fn is_metal(looks: Material) -> bool {
+    return looks.kind == METAL || looks.kind == ROUGH_METAL;
 }
 
 fn is_single(looks: Material) -> bool {
@@ -513,7 +523,7 @@ fn drawn_rough_glass(looks: Material, wo: vec3<f32>, choice: f32, u: vec2<f32>) 
 fn drawn_rough_metal(looks: Material, wo: vec3<f32>, choice: f32, u: vec2<f32>) -> Drawn {
     let up = above(wo);
     var wi = by_cosine(u);
-    if choice >= lost(looks.table, up.z) {
+    if choice >= lost(looks.losses, up.z) {
         let h = visible_facet(up, looks.alpha, u);
         wi = h * (2.0 * dot(up, h)) - up;
     }

@@ -1,13 +1,13 @@
 """Path tracing on a device: kernels by turns, and sums of samples back."""
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..query.flats import FlatArrays
+from .eyes import Eye
 from .kernels import Parts, text
 from .packing import Packed
 
@@ -42,37 +42,20 @@ _CAPACITY = 1 << 19
 _BOUNCES = 8
 # The bindings before those of the scene.
 _OWN = 8
-_SKY, _MATT, _SHARP, _BRUSHED, _FROSTED, _TO_LIGHT = range(2, 8)
-_SHADING = {
-    "leave_scene": _SKY,
-    "shade_matt": _MATT,
-    "shade_sharp": _SHARP,
-    "shade_brushed": _BRUSHED,
-    "shade_frosted": _FROSTED,
+_TO_LIGHT = 7
+# Of kernels that shade, their lists, and the kinds of materials that are for them; the sky is of none.
+_SHADING: dict[str, tuple[int, set[int]]] = {
+    "leave_scene": (2, set()),
+    "shade_matt": (3, {0}),
+    "shade_sharp": (4, {1, 2, 3}),
+    "shade_brushed": (5, {4}),
+    "shade_frosted": (6, {5}),
 }
-_ENTRIES = ("generate", "plan_first", "trace", "plan_shading", *_SHADING, "plan_rays", "bring", "gather")
 _NO_LIMIT = 0xFFFFFFFF
 
 
-@dataclass(frozen=True)
-class Eye:
-    """A pinhole camera in box units: where it is, and the ways to the corners of its film.
-
-    Attributes
-    ----------
-    eye, corner, across, down : (3,) float64
-        The point x, y of a film from 0 to 1, from its left and its top, is seen along
-        ``corner + across * x + down * y``.
-    width, height : int
-        Of its picture in pixels.
-    """
-
-    eye: NDArray[np.float64]
-    corner: NDArray[np.float64]
-    across: NDArray[np.float64]
-    down: NDArray[np.float64]
-    width: int
-    height: int
+# A kernel, which list of rays is at work, and groups of threads, or None where a list tells.
+Step: TypeAlias = tuple[str, int, int | None]
 
 
 class Wavefront:
@@ -155,8 +138,28 @@ class Wavefront:
         self._job["seed"] = seed & 0xFFFFFFFF, seed >> 32
         self._max_depth = max_depth
         self._make(scene.lit)
-        self._pipelines = {entry: self._pipeline(entry) for entry in _ENTRIES}
+        # What the scene has none of is not asked, and not compiled.
+        kinds = set(scene.materials["kind"].tolist())
+        self._shading = {
+            entry: which
+            for entry, (which, needs) in _SHADING.items()
+            if (needs & kinds if needs else int(scene.lit["sky_kind"]))
+        }
+        self._asks = int(scene.lit["lights"]) > 0 or int(scene.lit["sky_kind"]) > 0
+        entries = (
+            "generate",
+            "plan_first",
+            "trace",
+            "plan_shading",
+            *self._shading,
+            "plan_rays",
+            "bring",
+            "gather",
+        )
+        self._pipelines = {entry: self._pipeline(entry) for entry in entries}
         self._groups: dict[tuple[str, int], Any] = {}
+        # Drivers may compile when they are first asked.
+        self._block(0, 1, 0, 1, lambda: None)
 
     def _make(self, lit: NDArray[np.void]) -> None:
         """Make the buffers that are not the scene's."""
@@ -280,16 +283,16 @@ class Wavefront:
             self._submit([("gather", 0, -(-pixels // _GROUP))], 0)
         return np.frombuffer(queue.read_buffer(self._film, size=_PIXEL * pixels), np.float32)
 
-    def _rounds(self) -> Iterator[tuple[list[tuple[str, int, int | None]], bool]]:
+    def _rounds(self) -> Iterator[tuple[list[Step], bool]]:
         """Yield what is to be done until paths end, and whether they have ended then for sure."""
-        steps: list[tuple[str, int, int | None]] = [("generate", 0, None), ("plan_first", 0, 1)]
+        steps: list[Step] = [("generate", 0, None), ("plan_first", 0, 1)]
         bounce, last = 0, self._max_depth
         while True:
             for _ in range(_BOUNCES):
                 now = bounce % 2
                 steps += [("trace", now, None), ("plan_shading", now, 1)]
-                steps += [(entry, now, None) for entry in _SHADING]
-                steps += [("plan_rays", now, 1), ("bring", now, None)]
+                steps += [(entry, now, None) for entry in self._shading]
+                steps += [("plan_rays", now, 1), *([("bring", now, None)] if self._asks else [])]
                 bounce += 1
                 if last is not None and bounce > last:
                     yield steps, True
@@ -297,8 +300,8 @@ class Wavefront:
             yield steps, False
             steps = []
 
-    def _submit(self, steps: list[tuple[str, int, int | None]], paths: int) -> None:
-        """Set kernels to work: of each its name, which list of rays is at work, and groups of threads."""
+    def _submit(self, steps: list[Step], paths: int) -> None:
+        """Set kernels to work, one after the other, on so many paths if they are to be generated."""
         encoder = self._device.create_command_encoder()
         if steps[0][0] == "generate":
             encoder.clear_buffer(self._counts)
@@ -312,7 +315,7 @@ class Wavefront:
             elif groups is not None:
                 compute.dispatch_workgroups(groups)
             else:
-                which = now if entry == "trace" else _SHADING.get(entry, _TO_LIGHT)
+                which = now if entry == "trace" else self._shading.get(entry, _TO_LIGHT)
                 compute.dispatch_workgroups_indirect(self._plan, 16 * which)
         compute.end()
         self._device.queue.submit([encoder.finish()])

@@ -1,6 +1,7 @@
 """From a scene and a camera to a picture."""
 
 import os
+import time
 import warnings as python_warnings
 from collections.abc import Callable, Iterable
 from dataclasses import replace
@@ -25,6 +26,7 @@ from .interrupts import ON_INTERRUPT, unless_terminated
 from .job import Job
 from .made import doubts, made, overall
 from .notebook import display
+from .on_device import OnDevice, check_device
 from .progress import Report, bar
 from .samplers import Sampler
 from .snapshots import Snapshots
@@ -34,6 +36,7 @@ from .ways import StoppedError, followed
 if TYPE_CHECKING:
     from concurrent.futures import Executor
 
+    from ..gpu import Gpu
     from .checkpoints import Checkpoints
 
 _PATH = Path()
@@ -74,6 +77,7 @@ def render(
     on_interrupt: str = "raise",
     halves: bool = False,
     denoise: bool | str = False,
+    device: "Gpu | None" = None,
 ) -> Image:
     """Render a picture, until the first of the limits that are given is met.
 
@@ -162,6 +166,13 @@ def render(
         Whether the picture is denoised in the end, by `Image.denoise`; a text is its `method`. What `error`
         limits is the error of the picture before that. If it has too few samples, it stays as it is, and
         ``image.warnings`` says so.
+    device : Gpu, optional
+        Who follows paths, in place of the CPU: a picture that agrees with the CPU's within the errors of
+        both, by the same estimator with other random numbers. It does pictures by a `Path` and a `Camera` of
+        meshes that are `Diffuse`, `Mirror`, `Dielectric` or `Conductor`, in the light of emission, points,
+        directions and an environment. Whatever it does not, the CPU renders as without, whole, and
+        ``image.plan["device"]`` says what that was. If the device is lost, that is warned of, and the CPU
+        goes on. Limits, `progress`, `stop` and Ctrl-C are heard between its pieces of work.
 
     Returns
     -------
@@ -213,6 +224,8 @@ def render(
         check_method("denoise", denoise) if isinstance(denoise, str) else "regression" if denoise else None
     )
     apart = halves or method is not None
+    if device is not None:
+        check_device(device)
     names = names_of(aov)
     kept, begun = None, {}
     if checkpoint is not None:
@@ -222,20 +235,38 @@ def render(
         from .checkpoints import Checkpoints, held
 
         begun = held(checkpoint)
-    sampler, plan = chosen(sampler, limits, adaptive, begun.get("sampler"), apart)
     if executor is None:
         # Here, so that what there is to warn of is told to the caller.
         scene._compiled(progress is True)
+    there, began = None, time.monotonic()
+    if device is not None:
+        asked = {
+            "adaptive=True": adaptive,
+            "clamp": clamp is not None,
+            "background='transparent'": background == "transparent",
+            "halves=True": halves,
+            "denoise": method is not None,
+            "checkpoint": checkpoint is not None,
+            "executor": executor is not None,
+        }
+        there = OnDevice(device, scene, camera, integrator, seed, asked, sampler, filter)
+    prepared = time.monotonic() - began
+    if there is not None and there.works:
+        integrator, sampler, plan = there.plan(integrator)
+    else:
+        sampler, plan = chosen(sampler, limits, adaptive, begun.get("sampler"), apart)
 
     def look() -> None:
         if stop is not None and stop.is_set():
             raise StoppedError
 
     looks, spent = None if stop is None else look, 0.0
-    if isinstance(integrator, Path):
+    if isinstance(integrator, Path) and not (there is not None and there.works):
         what = scene, camera, limits, threads, clamp, filter
         integrator, rows, spent = followed(integrator, *what, begun, looks)
         plan = replace(plan, rows=plan.rows + rows, path=integrator)
+    if there is not None and not there.works:
+        plan = replace(plan, rows=(there.row(), *plan.rows))
     plan = replace(plan, rows=plan.rows + waves(scene))
     transparent = background == "transparent"
     job = Job(scene, camera, integrator, seed, adaptive, clamp, sampler, filter, transparent, apart)
@@ -243,7 +274,7 @@ def render(
         kept = Checkpoints(checkpoint, job.identity())
     rendering = _begun(kept, job, threads)
     # A pilot is part of what a picture takes.
-    rendering.spend(spent)
+    rendering.spend(spent + prepared)
     sight = _core.Sight(rendering)
     # One that is written in Python works on the thread that shows pictures.
     alone = isinstance(integrator, Integrator)
@@ -286,6 +317,12 @@ def render(
         told: list[str] = []
 
         def work() -> None:
+            nonlocal plan
+            if there is not None and there.works:
+                if there.run(rendering, limits, report, rest, look):
+                    return
+                told.append(f"{there.row().why}, and the CPU went on")
+                plan = replace(plan, rows=(there.row(), *plan.rows[1:]))
             broken = []
             if executor is not None:
                 broken = _elsewhere(rendering, job, executor, limits, threads, report, rest, look)
@@ -308,6 +345,8 @@ def render(
             told += ["interrupted by Ctrl-C", *_unseen(rendering, "interrupted")]
         finally:
             keep()
+            if there is not None:
+                there.end()
         return told + ([kept.trouble] if kept is not None and kept.trouble else [])
 
     if progress is True:

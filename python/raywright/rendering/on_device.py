@@ -1,0 +1,170 @@
+"""Pictures whose paths are traced by a graphics processor: what can be, and pass after pass."""
+
+import time
+import warnings
+from collections.abc import Callable
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from .. import _core
+from ..cameras import AnyCamera
+from ..integrators import AnyIntegrator, Path
+from ..scene.scene import Scene
+from .choices import Limits
+from .filters import BoxFilter, Filter
+from .plan import Choice, RenderPlan
+from .progress import Report
+from .samplers import Independent, Sampler
+from .ways import StoppedError
+
+if TYPE_CHECKING:
+    from ..gpu.wavefront import Wavefront
+
+# Samples of a pass once there are as many, where neither an error nor time may end the render.
+_PASS = 64
+_PLAIN = {"reuse": 1, "caustics": False}
+
+
+def check_device(device: Any) -> None:
+    """Raise a TypeError unless a device is one."""
+    if isinstance(device, type) or not callable(getattr(device, "paths", None)):
+        raise TypeError(f"device must be a raywright.Gpu, got {device!r}")
+
+
+class OnDevice:
+    """A picture on a device, if it can be there.
+
+    Parameters
+    ----------
+    device : Gpu
+        Which.
+    scene, camera, integrator, seed
+        As `render` has them.
+    asked : dict of str to bool
+        What else is asked for that devices do not do, by how it is called, and whether it is.
+    sampler, filter
+        As `render` has them.
+    """
+
+    def __init__(
+        self,
+        device: Any,
+        scene: Scene,
+        camera: AnyCamera,
+        integrator: AnyIntegrator,
+        seed: int,
+        asked: dict[str, bool],
+        sampler: Sampler | None,
+        filter: Filter,
+    ) -> None:
+        self.name = str(device.name)
+        self._paths: Wavefront | None = None
+        self._lost = ""
+        self._left = _left(integrator, asked, sampler, filter)
+        if self._left:
+            return
+        from ..gpu.looks import LeftError
+
+        assert isinstance(integrator, Path)
+        depths = integrator.max_depth, integrator.roulette_depth
+        try:
+            self._paths = device.paths(scene, camera, *depths, seed)
+        except LeftError as left:
+            self._left = str(left)
+        except MemoryError as little:
+            self._left = f"no room: {little}"
+        except Exception as broken:
+            self._give_up(broken)
+
+    @property
+    def works(self) -> bool:
+        """Whether it is the device that works."""
+        return self._paths is not None
+
+    def row(self) -> Choice:
+        """Return what the plan says of it."""
+        if self._lost:
+            return Choice("device", "CPU", f"{self.name} was lost: {self._lost}")
+        if self._left:
+            return Choice("device", "CPU", f"left by {self.name}: {self._left}")
+        return Choice("device", self.name, "paths are traced there in float32, and errors told here")
+
+    def plan(self, integrator: AnyIntegrator) -> tuple[Path, Sampler, RenderPlan]:
+        """Return the path tracer, sampler and plan of a picture there."""
+        assert isinstance(integrator, Path)
+        path = replace(integrator, **_PLAIN)
+        rows = (
+            self.row(),
+            Choice("sampler", "Independent", "devices hash what a number is for (pcg4d), not Philox"),
+            *(Choice(name, "no", "devices follow each path by itself") for name in _PLAIN),
+        )
+        sampler = Independent()
+        return path, sampler, RenderPlan(rows, sampler, path)
+
+    def run(
+        self,
+        rendering: _core.Rendering,
+        limits: Limits,
+        report: Report | None,
+        rest: Callable[[], None],
+        look: Callable[[], None],
+    ) -> bool:
+        """Go on until a limit is met: True. False if the device was lost, and the CPU can go on.
+
+        `report` and `rest` are called after each pass, `look` more often.
+        """
+        started, earlier = time.perf_counter(), rendering.seconds
+
+        def elapsed() -> float:
+            return earlier + time.perf_counter() - started
+
+        while self._paths is not None:
+            done = rendering.samples
+            aim = rendering.next_aim(*limits, done, elapsed(), rendering.rate)
+            if aim <= done:
+                return True
+            if limits[0] is not None and limits[1:] == (None, None) and done >= _PASS:
+                aim = min(limits[0], done + _PASS)
+            try:
+                sums, dropped = self._paths.add(done, aim - done, look)
+            except StoppedError:
+                raise
+            except Exception as broken:
+                self._give_up(broken)
+                return False
+            rendering.begin(aim)
+            rendering.add(aim - done, sums, dropped)
+            row = rendering.end(elapsed())
+            if report is not None:
+                report(*row)
+            rest()
+        return False
+
+    def _give_up(self, broken: Exception) -> None:
+        self._lost = (str(broken).strip() or type(broken).__name__).splitlines()[0]
+        self._paths = None
+        warnings.warn(
+            f"{self.name} was lost, and the CPU goes on: {self._lost}", RuntimeWarning, stacklevel=5
+        )
+
+    def end(self) -> None:
+        """Give the device's memory back."""
+        if self._paths is not None:
+            self._paths.destroy()
+
+
+def _left(integrator: AnyIntegrator, asked: dict[str, bool], sampler: Sampler | None, filter: Filter) -> str:
+    """Return what of a render devices do not do; nothing if they do all of it."""
+    if not isinstance(integrator, Path):
+        return f"the integrator is a {type(integrator).__name__}, not a Path"
+    for name, plain in _PLAIN.items():
+        if getattr(integrator, name) not in (None, plain):
+            return f"{name}={getattr(integrator, name)!r} of Path"
+    for name, is_asked in asked.items():
+        if is_asked:
+            return name
+    if not isinstance(sampler, Independent | None):
+        return f"the sampler is a {type(sampler).__name__}"
+    if filter != BoxFilter():
+        return f"the filter is {filter!r}"
+    return ""
