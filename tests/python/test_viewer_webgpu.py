@@ -217,6 +217,13 @@ def test_what_has_no_triangles_is_streamed(page):
         wait(page, is_state("done"))
         assert (state(page, "way"), told(page, "way")) == ("core", "the core")
         assert "the page draws triangles alone" in page.get_attribute("#way", "title")
+        # So is what a device has no room for.
+        told_of = """async ([url, most]) => (await import(url)).noRoom(
+            { limits: { maxStorageBufferBindingSize: most, maxBufferSize: 2 ** 40 } },
+            { nodes: 5e6, faces: 9e6 })"""
+        module = viewer.url + "device.js"
+        assert page.evaluate(told_of, [module, 9_000_000]) is None
+        assert page.evaluate(told_of, [module, 8_999_999]).startswith("faces of the scene take 9 MiB")
 
 
 def test_closing_ends_what_is_drawn_and_what_is_rendered(page, box):

@@ -164,7 +164,8 @@ FAKE = """([esm, traits]) => {
         off: (name, hear) => heard.splice(heard.indexOf(hear), 1),
     };
     window.deliver = ([content, data]) => {
-        const buffers = data.map(text => new DataView(Uint8Array.from(atob(text), c => c.charCodeAt(0)).buffer));
+        const bytes = text => Uint8Array.from(atob(text), letter => letter.charCodeAt(0));
+        const buffers = data.map(text => new DataView(bytes(text).buffer));
         [...heard].forEach(hear => hear(content, buffers));
     };
     const url = URL.createObjectURL(new Blob([esm], { type: "text/javascript" }));

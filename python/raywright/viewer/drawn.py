@@ -26,8 +26,8 @@ _FILTER = BoxFilter()
 # Surfaces of a path, and paths of a pixel, where nobody says how many.
 _DEEPEST = 1 << 20
 _SAMPLES = 4096
-# Bytes of a primitive, at the most that a binary tree of it takes.
-_EACH = 48 + 64
+# Bytes of a primitive: in the tree, with the two nodes that it takes at most, as a face, and its paint.
+_EACH = 48 + 64 + 112 + 8
 
 
 class Drawn:
