@@ -7,7 +7,7 @@ import pytest
 from viewer_page import ask, page, turn
 
 import raywright as rw
-from raywright.viewer.lamps import lamp
+from raywright.viewer.lamps import behind, lamp
 from raywright.viewer.paint import paints
 
 SIZE = {"width": 96, "height": 72}
@@ -180,6 +180,15 @@ def test_the_lamp_of_a_sketch():
         assert told["far"] is far
         parallel = np.cross(told["place"], place) if far else np.subtract(told["place"], place)
         assert np.allclose(parallel, 0, rtol=0, atol=0.2)
+
+
+def test_what_surrounds_a_sketch():
+    knot = rw.scenes.torus_knot()
+    image = np.zeros((4, 8, 3), np.float32)
+    image[0, 0] = (32, 16, 8)
+    around = [rw.ConstantEnvironment((1, 0, 0.5)), rw.EnvironmentMap(image, scale=2.0)]
+    for environment, wanted in ((None, (0, 0, 0)), (0.5, (0.5, 0.5, 0.5)), (around, (3, 1, 1))):
+        assert behind(rw.Scene(knot, environment=environment)) == list(wanted)
 
 
 def test_a_scene_alone_is_framed_and_lit():

@@ -209,7 +209,7 @@ export class Drawing {
     const { canvas, passes } = this;
     const [width, height] = [canvas.width, canvas.height].map((size) => Math.max(Math.ceil(size / divisor), 1));
     const began = performance.now();
-    this.aim(width, height);
+    this.aim(width, height, { gain: 1 });
     passes.drawSight(width, height);
     this.present();
     await passes.device.queue.onSubmittedWorkDone();
@@ -223,7 +223,7 @@ export class Drawing {
   }
 
   aim(width, height, more = {}) {
-    const { centre, scale, orbit, lamp, tone } = this.told;
+    const { centre, scale, orbit, lamp, behind, tone } = this.told;
     const local = (point) => times(minus(point, centre), scale);
     const { origins, ways } = spread(orbit, this.view);
     const [corner, ...sides] = origins;
@@ -242,6 +242,7 @@ export class Drawing {
       mode: this.isHeat ? 1 : 0,
       tone,
       row: 0,
+      behind: times(behind, 2 ** this.exposure),
       ...more,
     });
   }

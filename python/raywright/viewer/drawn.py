@@ -16,7 +16,7 @@ from ..io.tone import TONES
 from ..query.flats import FlatArrays, flat_arrays
 from ..rendering.filters import BoxFilter
 from ..scene.scene import Scene
-from .lamps import lamp
+from .lamps import behind, lamp
 from .orbit import Orbit, View
 from .paint import paints
 
@@ -86,6 +86,7 @@ class Drawn:
                 "scale": flat.scale,
                 "orbit": self._orbit.told(),
                 "lamp": lamp(self._scene, self._orbit.camera(View())),
+                "behind": behind(self._scene),
                 "tone": TONES.index(self._tone),
                 "traced": None if left else self._limits(),
                 "left": left,

@@ -1,16 +1,26 @@
-"""Where light comes from while the camera moves: of all lamps one, for one shadow ray a pixel."""
+"""Light while the camera moves: of all lamps one, for one shadow ray a pixel, and one colour of the sky."""
 
 from typing import Any
 
 import numpy as np
 
 from ..cameras import AnyCamera
-from ..lights import DirectionalLight, PointLight, ProjectorLight, SpotLight, SunSky
+from ..lights import (
+    ConstantEnvironment,
+    DirectionalLight,
+    EnvironmentMap,
+    PointLight,
+    ProjectorLight,
+    SpotLight,
+    SunSky,
+)
 from ..scene.scene import Scene
 from ..shapes.mesh import Mesh
 
 # Over the right shoulder of who looks.
 _RIGHT, _UP = 0.5, 0.8
+# A clear sky, where its colours are not at hand.
+_SKY = (0.25, 0.4, 0.65)
 
 
 def lamp(scene: Scene, camera: AnyCamera) -> dict[str, Any]:
@@ -40,3 +50,17 @@ def lamp(scene: Scene, camera: AnyCamera) -> dict[str, Any]:
     forward, up = np.array(camera.forward), np.array(camera.up) / np.linalg.norm(camera.up)
     right = np.cross(forward, up)
     return {"place": (_RIGHT * right + _UP * up - forward).tolist(), "far": True}
+
+
+def behind(scene: Scene) -> list[float]:
+    """Return the radiance that surrounds a scene, everywhere the same: of a picture the mean."""
+    sums = np.zeros(3)
+    around = scene.environment
+    for one in around if isinstance(around, tuple) else (around,):
+        if isinstance(one, EnvironmentMap):
+            sums += one.scale * one.image.mean(axis=(0, 1), dtype=float)
+        elif isinstance(one, ConstantEnvironment) and isinstance(one.radiance, tuple):
+            sums += one.radiance
+        elif one is not None:
+            sums += _SKY
+    return sums.tolist()

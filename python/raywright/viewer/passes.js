@@ -3,7 +3,7 @@
 import { bufferOf } from "./device.js";
 import { Paths } from "./paths.js";
 
-const FLOATS = 48;
+const FLOATS = 52;
 
 // The text that all passes begin with, for a tree of some depth: a path puts one child away a level.
 const beginning = ({ walk, sight }, depth) =>
@@ -70,12 +70,13 @@ export class Passes {
   }
 
   // Where from, and how it is shown: numbers for the kernels, in box units.
-  aim({ origins, ways, inverse, parallel, lamp, width, height, gain, brightest, mode, tone, row }) {
+  aim({ origins, ways, inverse, parallel, lamp, width, height, gain, brightest, mode, tone, row, behind }) {
     const numbers = new Float32Array(FLOATS);
     [...origins, ...ways, ...inverse].forEach((vector, i) => numbers.set(vector, 4 * i));
     numbers[3] = parallel ? 1 : 0;
     numbers.set(lamp, 36);
     numbers.set([width, height, gain, brightest], 40);
+    numbers.set(behind, 48);
     new Uint32Array(numbers.buffer).set([mode, tone, row, this.told.nodes], 44);
     this.device.queue.writeBuffer(this.look, 0, numbers);
   }

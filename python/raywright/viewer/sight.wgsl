@@ -18,6 +18,8 @@ struct Look {
     size: vec4<f32>,
     // What is drawn, 0 the scene, 1 the heat map; the tone, 0 filmic, 1 linear; the first row of a band; nodes.
     mode: vec4<u32>,
+    // What surrounds the scene.
+    behind: vec4<f32>,
 }
 
 @group(0) @binding(0) var<storage, read> nodes: array<Node>;
@@ -60,13 +62,12 @@ fn unfolded(packed: u32) -> vec3<f32> {
 
 const BY_LAMP: f32 = 0.8;
 const BY_ALL: f32 = 0.2;
-// What surrounds the scene.
-const BEHIND = vec3<f32>(0.012, 0.013, 0.015);
 
-// The light along a ray of a picture in movement: a colour of each shape, one lamp and its shadow.
+// The light along a ray of a picture in movement: a colour of each shape, one lamp and its shadow. It knows nothing of
+// how bright lamps are, and so has no exposure.
 fn sketched(ray: Ray, met: Met) -> vec3<f32> {
     if met.face == NOBODY {
-        return BEHIND;
+        return look.behind.xyz;
     }
     let paint = paints[met.face];
     let colour = unpack4x8unorm(paint.x);

@@ -54,6 +54,12 @@ export class Stream {
     this.remember(frame);
   }
 
+  // The curve is that of a picture that is shown no more.
+  forget() {
+    this.history = [];
+    this.plot();
+  }
+
   // Error against time, both by their logarithms: it falls along a straight line.
   remember(frame) {
     const key = JSON.stringify([frame.view, frame.size]);

@@ -291,6 +291,7 @@ export class Viewer {
       this.say(this.toldBoxes());
       this.byId("error").textContent = "–";
       this.byId("interval").textContent = "";
+      this.stream.forget();
     }
   }
 
