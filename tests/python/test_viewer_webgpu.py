@@ -82,12 +82,13 @@ def test_a_dragged_camera_is_drawn_at_once_and_the_core_knows_where_it_is(page, 
     with rw.view(*box, fit=False) as viewer:
         begin(page, viewer)
         start = picture(page, "viewer.drawing.sample >= 1")
+        # No more than that: of what stands still nothing is made.
+        page.evaluate("() => { viewer.drawing.told.traced = null; viewer.drawing.on.stands = () => {}; }")
         drawings = page.evaluate("viewer.drawing.pictures")
         page.mouse.move(300, 150)
         page.mouse.down()
         for x in range(300, 361, 10):
             page.mouse.move(x, 150)
-        # The camera has not stood still: that is a sketch.
         sketch = picture(page, f"viewer.drawing.pictures > {drawings}")
         assert told(page, "samples") == "sketch"
         page.mouse.up()
@@ -102,9 +103,6 @@ def test_a_dragged_camera_is_drawn_at_once_and_the_core_knows_where_it_is(page, 
         assert not viewer.rendering
         # What is seen is what the core sees from there: where it sees nothing it is dark.
         hits = box[0].pick(seen_by, np.arange(SIZE), np.arange(SIZE)[:, None])
-        wait(page, "viewer.drawing.sample >= 1")
-        page.evaluate("() => { viewer.drawing.told.traced = null; viewer.drawing.on.stands = () => {}; }")
-        page.evaluate("viewer.drawing.again()")
         whole = picture(page, "viewer.drawing.isWhole && !viewer.drawing.isWorking")
         agree = (whole.max(axis=2) > 40) == hits.hit
         assert agree.mean() > 0.99

@@ -217,3 +217,58 @@ def test_the_module_draws_in_a_cell():
         page.evaluate("cleanup()")
         until("outbox.length === 0 && heard.length === 0")
         assert is_soon(lambda: not viewer.rendering)
+
+
+@pytest.mark.filterwarnings("default")
+def test_a_real_kernel_shows_it_and_sends_pictures():
+    pytest.importorskip("ipykernel", reason="ipykernel is not installed")
+    manager = pytest.importorskip("jupyter_client.manager", reason="jupyter_client is not installed")
+    source = (
+        "import raywright as rw\n"
+        "viewer = rw.view(*rw.scenes.cornell_box(width=32, height=32), error=1e-12)\n"
+        "viewer"
+    )
+    kernel, client = manager.start_new_kernel(kernel_name="python3")
+    try:
+        client.execute(source)
+
+        def heard(wanted):
+            while True:
+                message = client.get_iopub_msg(timeout=60)
+                content = message["content"]
+                assert message["msg_type"] != "error", content
+                found = wanted(message["msg_type"], content)
+                if found is not None:
+                    return found, message["buffers"]
+
+        def shown(kind, content):
+            view = "application/vnd.jupyter.widget-view+json"
+            return content["data"].get(view) if kind == "execute_result" else None
+
+        def custom(name):
+            def told(kind, content):
+                is_custom = kind == "comm_msg" and content["data"].get("method") == "custom"
+                return content["data"]["content"].get(name) if is_custom else None
+
+            return told
+
+        def say(**content):
+            data = {"method": "custom", "content": {"page": 1, **content}}
+            message = client.session.msg("comm_msg", {"comm_id": model["model_id"], "data": data})
+            client.shell_channel.send(message)
+
+        model, _ = heard(shown)
+        say(do="ask", id=1, what="scene", given={})
+        assert heard(custom("told"))[0]["width"] == 32
+        say(do="watch", on=True)
+        for _ in range(2):
+            _, (data,) = heard(custom("frame"))
+            assert np.asarray(Pillow.open(io.BytesIO(data))).std() > 10
+            say(do="seen")
+        client.execute("viewer.close(); viewer.rendering")
+        assert heard(lambda kind, told: told["data"] if kind == "execute_result" else None)[0] == {
+            "text/plain": "False"
+        }
+    finally:
+        client.stop_channels()
+        kernel.shutdown_kernel(now=True)

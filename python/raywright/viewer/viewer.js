@@ -249,6 +249,7 @@ export class Viewer {
       this.drawing.again();
     } else {
       this.showHere(false);
+      this.state = "waiting";
     }
     this.tellWay();
   }
