@@ -121,6 +121,22 @@ def test_nothing_under_the_picture_is_cut_in_a_narrow_window(page, knot):
             assert page.evaluate("document.getElementById('picture').clientHeight") > height / 3
 
 
+def test_what_is_said_under_the_picture_does_not_begin_it_anew_for_ever(page, knot):
+    say = "text => document.getElementById('interval').textContent = text"
+    with rw.view(*knot, samples=1) as viewer:
+        page.set_viewport_size({"width": 600, "height": 400})
+        page.goto(viewer.url)
+        shown(page)
+        sizes = []
+        for i in range(6):
+            page.evaluate(say, "0.000123 to 0.000124 " * (9 * (i % 2)))
+            # Longer than a window has to keep its size.
+            time.sleep(0.2)
+            sizes.append(page.evaluate("document.getElementById('stage').clientHeight"))
+        assert len(set(sizes)) > 1
+        assert viewer._session._wanted <= 4
+
+
 def test_the_picture_fills_the_window_and_is_exposed_by_the_page(page, knot):
     with rw.view(*knot, samples=4) as viewer:
         page.goto(viewer.url)

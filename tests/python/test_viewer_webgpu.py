@@ -210,7 +210,8 @@ def test_the_core_draws_by_a_key_and_what_the_page_does_not_know(page, box):
 
 def test_what_has_no_triangles_is_streamed(page):
     scene = rw.Scene([rw.Sphere((0, 0, 0), 1.0)], environment=1.0)
-    with rw.view(scene, rw.Camera((0, 0, 4), (0, 0, 0), width=SIZE, height=SIZE), samples=4) as viewer:
+    camera = rw.Camera((0, 0, 4), (0, 0, 0), width=SIZE, height=SIZE)
+    with rw.view(scene, camera, fit=False, samples=4) as viewer:
         begin(page, viewer)
         wait(page, is_state("done"))
         assert (state(page, "way"), told(page, "way")) == ("core", "the core")

@@ -87,7 +87,7 @@ export class Viewer {
     let resizing = 0;
     this.observer = new ResizeObserver(() => {
       clearTimeout(resizing);
-      resizing = setTimeout(() => this.fit(), 100);
+      resizing = setTimeout(() => this.refit(), 100);
     });
     this.observer.observe(byId("stage"));
   }
@@ -121,6 +121,17 @@ export class Viewer {
       this.view = view;
       this.drawHere();
       this.drawing?.show({ view }, true);
+    }
+  }
+
+  // What is said under the picture may take another line, and so another picture: of a window that keeps its size that
+  // happens once, or each picture would bring the next.
+  refit() {
+    const room = `${this.host.clientWidth} ${this.host.clientHeight}`;
+    this.fitted = room === this.room ? this.fitted + 1 : 0;
+    this.room = room;
+    if (this.fitted < 2) {
+      this.fit();
     }
   }
 
