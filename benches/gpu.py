@@ -1,14 +1,18 @@
 """The same tree as pointers, as arrays and in a compute kernel: who asks a million rays of it, and how soon.
 
     python benches/gpu.py [--triangles 60000] [--rays 1000000] [--repeats 5] [--adapter NAME] [--mesh FILE]
+                          [--seconds 10] [--size 256]
 
 Prints Markdown: a row a way, with the bytes of its tree, the boxes that a ray tests, million rays a second
 from numpy to numpy for closest hits and for any hit, and of kernels the share of rays that were left to the
 CPU. The walks in Python are asked few rays. Every answer is held against the default tree's, to the bit
-where it is the core's. Without a driver for Vulkan, Metal or Direct3D 12 the last row says so.
+where it is the core's. A second table is of pictures: how many samples the CPU takes of each in a second, and
+how many the device, each with its name, and how wrong the picture is after so many seconds, by the same
+estimator and independent samples. Without a driver for Vulkan, Metal or Direct3D 12 the last row says so.
 """
 
 import argparse
+import os
 import statistics
 import time
 
@@ -163,6 +167,50 @@ def in_compute(scene, rays, wanted, repeats, adapter):
         yield *row, rate(count, closest), rate(count, any_hit), left
 
 
+def pictures(size):
+    """Yield scenes that devices know, each with its name and a camera."""
+    yield "Cornell box", *rw.scenes.cornell_box(width=size, height=size)
+    sky = np.random.default_rng(0).random((64, 128, 3)) ** 4
+    sky[20, 70] = 400
+    gold = rw.scenes.torus_knot(along=300, around=30)
+    gold = rw.Mesh(
+        gold.vertices, gold.faces, normals=gold.normals, material=rw.Conductor("gold", roughness=0.4)
+    )
+    camera = rw.Camera((0, -3, 7), (0, 0, 0), width=size, height=size)
+    yield (
+        f"golden knot of {len(gold.faces)} faces",
+        rw.Scene(gold, environment=rw.EnvironmentMap(sky)),
+        camera,
+    )
+
+
+def in_pictures(size, seconds, adapter):
+    """Yield rows of pictures: by the CPU, and by a device if there is one."""
+    devices = [(f"CPU, {os.cpu_count()} threads", None)]
+    try:
+        gpu = rw.Gpu(adapter)
+        devices.append((gpu.name, gpu))
+    except (ImportError, RuntimeError) as missing:
+        yield "", "compute", "", str(missing)
+    for name, scene, camera in pictures(size):
+        path = rw.Path(reuse=1, caustics=False)
+        for told, device in devices:
+            image = rw.render(
+                scene,
+                camera,
+                path,
+                seconds=seconds,
+                sampler=rw.Independent(),
+                progress=False,
+                device=device,
+            )
+            assert device is None or image.plan["device"].chosen == told
+            # From the first pass on: before, kernels are compiled.
+            taken = np.ptp(image.history["samples"]) * size * size
+            spent = max(np.ptp(image.history["seconds"]), 1e-9)
+            yield name, told, rate(taken, spent), f"{image.error.estimate:.3g}"
+
+
 def main():
     """Measure, and print a table."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
@@ -170,6 +218,8 @@ def main():
     parser.add_argument("--rays", type=int, default=1_000_000)
     parser.add_argument("--repeats", type=int, default=5)
     parser.add_argument("--adapter")
+    parser.add_argument("--seconds", type=float, default=10.0)
+    parser.add_argument("--size", type=int, default=256, help="of pictures, in pixels a side")
     parser.add_argument("--mesh", help="an .npz with vertices and faces, or a mesh file")
     arguments = parser.parse_args()
     if arguments.mesh and arguments.mesh.endswith(".npz"):
@@ -197,6 +247,11 @@ def main():
     ):
         for row in rows:
             print("| " + " | ".join(row) + " |", flush=True)
+    print(f"\npictures of {arguments.size} by {arguments.size} pixels, {arguments.seconds:g} s each\n")
+    print("| picture | by | M samples/s | relMSE |")
+    print("|---|---|---|---|")
+    for row in in_pictures(arguments.size, arguments.seconds, arguments.adapter):
+        print("| " + " | ".join(row) + " |", flush=True)
 
 
 if __name__ == "__main__":

@@ -65,7 +65,7 @@ def test_wheel_is_for_all_pythons_from_3_10_and_holds_the_package_alone():
         path.name for path in (ROOT / "python/raywright/viewer").iterdir() if path.suffix in (".js", ".wgsl")
     }
     assert {f"raywright/viewer/{part}" for part in {*parts, *MODULES, "widget.js"}} <= set(names)
-    kernels = ("trace", "closest", "occluded", "probe", "walk", "shading")
+    kernels = ("trace", "closest", "occluded", "probe", "shading", "walk", "paths")
     assert {f"raywright/gpu/{kernel}.wgsl" for kernel in kernels} <= set(names)
     assert sum(name.endswith((".so", ".pyd")) for name in names) == 1
     tops = {name.split("/")[0].removesuffix(".dist-info").split("-")[0] for name in names}

@@ -13,6 +13,9 @@ from .looks import LeftError
 from .packing import packed
 from .wavefront import Wavefront
 
+# What kernels for pictures know nothing of, as `Scene.plan` calls it.
+_LEFT = ("masks", "smoke and haze", "patterned lights", "motion", "instances")
+
 
 class Gpu:
     """A graphics processor that answers for rays, by WebGPU: ``with scene.on(rw.Gpu()) as there: ...``.
@@ -86,9 +89,10 @@ class Gpu:
         """
         if scene.wavelengths is not None:
             raise LeftError(f"paths carry wavelengths: {scene.wavelengths}")
+        for what in scene.plan().needed:
+            if what in _LEFT:
+                raise LeftError(f"the scene has {what}")
         flat = scene.flat()
-        if len(flat.instances):
-            raise LeftError("the scene has copies of an Instance")
         eye, looks = eye_of(camera, flat), packed(scene, flat)
         settings = max_depth, roulette_depth, seed
         return Wavefront(self._device, flat, looks, eye, *settings, self._most, self._pipelines)

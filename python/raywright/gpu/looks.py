@@ -5,9 +5,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..materials import Conductor, Dielectric, Diffuse, Material, Mirror, TwoSided
+from ..materials import Conductor, Dielectric, Diffuse, Material, Mirror, Plastic, TwoSided
 from ..textures.image import ImageTexture
-from .facets import average_loss, loss_table
+from .facets import ENTRIES, coat_table, loss_table, mean_fresnel, mean_of
 from .measured import made_up, reflectances
 
 # 80 bytes: see `Material` of shading.wgsl.
@@ -26,7 +26,7 @@ MATERIAL = np.dtype(
     ]
 )
 _NO = 0xFFFFFFFF
-_DIFFUSE, _MIRROR, _GLASS, _METAL, _ROUGH_METAL, _ROUGH_GLASS = range(6)
+_DIFFUSE, _MIRROR, _GLASS, _METAL, _ROUGH_METAL, _ROUGH_GLASS, _PLASTIC = range(7)
 # Below this a surface is a smooth one, and from the other on its lobes are as f32 has them.
 _SMOOTH, _LEAST = 1e-5, 2e-3
 _WRAPS = {"repeat": 1, "clamp": 2, "mirror": 3}
@@ -109,6 +109,8 @@ class Looks:
             self._glass(row, material, what)
         elif isinstance(material, Conductor):
             self._metal(row, material, what)
+        elif isinstance(material, Plastic):
+            self._coat(row, material, what)
         else:
             raise LeftError(f"{what} is of no kind that it knows")
         return row
@@ -140,9 +142,30 @@ class Looks:
         row["eta"] = glass.ior
         row["kind"] = _GLASS
         if alpha >= _SMOOTH and abs(glass.ior - 1) >= 1e-6:
-            if glass.multiple_scattering:
-                raise LeftError(f"{what} is rough, and its facets throw light on each other")
             row["kind"], row["alpha"] = _ROUGH_GLASS, alpha
+            self._give_back(row, alpha, float(glass.ior), glass.multiple_scattering)
+
+    def _give_back(self, row: NDArray[np.void], alpha: float, eta: float, gives: bool) -> None:
+        """Say what rough glass gives back of what its facets lose, on which side: `Interface` of the core."""
+        tables = [loss_table(alpha, own) if gives else np.zeros(ENTRIES) for own in (eta, 1 / eta)]
+        row["losses"] = self.add(np.concatenate(tables))
+        means = [mean_of(table) for table in tables]
+        if min(means) > 0:
+            through = [1 - mean_fresnel(own) for own in (eta, 1 / eta)]
+            row["k"][:2] = [part * min(means) / mean for part, mean in zip(through, means, strict=True)]
+            row["multiple"][:2] = [1 / (np.pi * mean) for mean in means]
+
+    def _coat(self, row: NDArray[np.void], plastic: Plastic, what: str) -> None:
+        alpha, eta = _alpha(plastic, what), float(plastic.ior)
+        self._paint(row, plastic.reflectance, what)
+        row["kind"], row["eta"] = _PLASTIC, eta
+        mean = mean_fresnel(eta)
+        if alpha >= _SMOOTH:
+            if not plastic.multiple_scattering:
+                raise LeftError(f"{what} is rough, and loses what its facets throw on each other")
+            table = coat_table(alpha, eta)
+            row["alpha"], row["losses"], mean = alpha, self.add(table), mean_of(table)
+        row["k"][:2] = mean, mean_fresnel(1 / eta)
 
     def _metal(self, row: NDArray[np.void], metal: Conductor, what: str) -> None:
         alpha = _alpha(metal, what)
@@ -162,8 +185,8 @@ class Looks:
     def _losses(self, alpha: float) -> tuple[int, float]:
         """Return where the table of what facets lose begins, and the mean loss; of 0 they lose nothing."""
         if alpha not in self._tables:
-            table = loss_table(alpha) if alpha else np.zeros(64)
-            self._tables[alpha] = self.add(table), average_loss(alpha) if alpha else 0.0
+            table = loss_table(alpha) if alpha else np.zeros(ENTRIES)
+            self._tables[alpha] = self.add(table), mean_of(table)
         return self._tables[alpha]
 
 

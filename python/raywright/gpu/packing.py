@@ -1,7 +1,7 @@
 """Materials, lights and what faces look like as arrays for `shading.wgsl`.
 
-All numbers are little-endian, without gaps, and lengths in box units (see `FlatArrays`). What cannot be packed is told
-by name: `LeftError`.
+All numbers are little-endian, without gaps, and lengths in box units (see `FlatArrays`). What cannot be
+packed is told by name: `LeftError`.
 """
 
 from dataclasses import dataclass
@@ -11,14 +11,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..lights import ConstantEnvironment, DirectionalLight, Emission, EnvironmentMap, PointLight
-from ..materials import Dielectric
+from ..materials import Conductor, Dielectric, Plastic
 from ..query.flats import FlatArrays
 from ..scene.scene import Scene
 from ..shapes.mesh import Mesh
 from .looks import LeftError, Looks, constant
 
-# 112 bytes a face, by its number among all primitives: corners and edges as a mesh winds them; `material`, of its
-# front, in `MATERIAL`, that of its back being the next; `light`, in `LIGHT`, or NO; `has`, 1 for normals and 2 for
+# 112 bytes a face, by its number among all primitives: a corner and two edges as a mesh winds them;
+# `material`, of its front, that of its back being the next; `light`, or NO; `has`, 1 for normals and 2 for
 # texture coordinates, which are u_a, u_b, u_c and v.
 FACE = np.dtype(
     [
@@ -38,8 +38,9 @@ FACE = np.dtype(
         ("reserved", "<f4"),
     ]
 )
-# 48 bytes a light: `kind`, 0 for a face that shines, 1 for a point, 2 for a direction; `radiance`, intensity (in box
-# units) or irradiance; `until` and `share` of all draws from lights that are not the sky.
+# 48 bytes a light: `kind`, 0 for a face that shines, 1 for a point, 2 for a direction; `radiance`, or
+# intensity (in box units), or irradiance; `until` and `share`, of all draws from what is not the sky, those
+# of all up to it and its own.
 LIGHT = np.dtype(
     [
         ("radiance", "<f4", 3),
@@ -72,6 +73,8 @@ LIT = np.dtype(
 NO = 0xFFFFFFFF
 _LAMP, _POINT, _DIRECTION = 0, 1, 2
 _FRONT, _BACK = 1, 2
+# In box units: what is smaller has details that float32 does not tell from where rays leave it.
+_TINY = 1e-3
 # The share of draws that goes to the sky where there are lights too.
 _SKY_SHARE = 0.5
 
@@ -121,20 +124,26 @@ def packed(scene: Scene, flat: FlatArrays) -> Packed:
     faces["light"] = NO
     lamps: list[NDArray[np.void]] = []
     glasses: list[Mesh] = []
+    coated: list[Mesh] = []
     for number, shape in enumerate(scene.shapes):
         first, end = int(flat.first[number]), int(flat.first[number + 1])
         if not isinstance(shape, Mesh):
             raise LeftError(f"shape {number} is a {type(shape).__name__}")
+        bounds = shape.bounds
+        if bounds is not None and (bounds[1] - bounds[0]).max() * flat.scale < _TINY:
+            raise LeftError(f"shape {number} is tiny beside the scene")
         if end - first != len(shape.faces):
             raise LeftError(f"shape {number} has faces that are left out")
         some = faces[first:end]
         _lay(some, shape, flat)
         if isinstance(shape.material, Dielectric):
             glasses.append(shape)
+        elif isinstance(shape.material, Conductor | Plastic):
+            coated.append(shape)
         some["material"] = looks.number(shape.material, f"shape {number}")
         if shape.emission is not None:
             lamps.append(_shining(shape, some, first, f"shape {number}"))
-    _check_apart(glasses)
+    _check_apart(glasses, coated)
     lights = np.concatenate([*lamps, _delta(scene, flat)])
     lit = np.zeros((), LIT)
     _sky(scene, lit, looks)
@@ -142,22 +151,34 @@ def packed(scene: Scene, flat: FlatArrays) -> Packed:
     return Packed(faces, looks.array(), lights, looks.numbers(), lit)
 
 
-def _check_apart(glasses: list[Mesh]) -> None:
-    """Raise a LeftError if several shapes of glass may be in one another."""
+def _check_apart(glasses: list[Mesh], coated: list[Mesh]) -> None:
+    """Raise a LeftError if paths have to know what they are in: of one shape of glass they never do."""
     if len(glasses) < 2:
         return
-    boxes = [bounds for mesh in glasses if (bounds := mesh.bounds) is not None]
-    for i, (low, high) in enumerate(boxes):
-        for others_low, others_high in boxes[:i]:
-            if (low <= others_high).all() and (others_low <= high).all():
-                raise LeftError("shapes of glass are next to each other, or in one another")
+    boxes, others = ([mesh.bounds for mesh in some] for some in (glasses, coated))
+    for i, box in enumerate(boxes):
+        if any(_overlap(box, other) for other in boxes[:i]):
+            raise LeftError("shapes of glass are next to each other, or in one another")
+        if any(_overlap(box, other) for other in others):
+            raise LeftError("there are several shapes of glass, and metal or plastic next to one")
     if not all(map(_is_closed, glasses)):
         raise LeftError("there are several shapes of glass, and not all are closed")
 
 
+def _overlap(box: NDArray[np.float64] | None, other: NDArray[np.float64] | None) -> bool:
+    """Return whether two boxes have a point in common; None is that of nothing."""
+    if box is None or other is None:
+        return False
+    return bool((box[0] <= other[1]).all() and (other[0] <= box[1]).all())
+
+
 def _is_closed(mesh: Mesh) -> bool:
-    """Return whether each edge of a mesh has two faces."""
-    numbers = np.unique(mesh.vertices, axis=0, return_inverse=True)[1].reshape(-1)
+    """Return whether each edge of a mesh has two faces; corners are one that are next to each other."""
+    points = mesh.vertices.astype(np.float64)
+    points = np.round(
+        (points - points.min(axis=0)) * (1e6 / max(float(np.ptp(points, axis=0).max()), 1e-300))
+    )
+    numbers = np.unique(points, axis=0, return_inverse=True)[1].reshape(-1)
     faces = numbers[mesh.faces]
     edges = np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1)
     return bool((np.unique(edges, axis=0, return_counts=True)[1] == 2).all())
@@ -214,13 +235,12 @@ def _delta(scene: Scene, flat: FlatArrays) -> NDArray[np.void]:
 def _share(lights: NDArray[np.void], lit: NDArray[np.void], faces: NDArray[np.void]) -> None:
     """Share draws among lights by about their power, and tell faces which light they are."""
     strength = lights["radiance"].astype(np.float64).max(axis=1, initial=0.0)
-    kinds = [
-        np.pi * lights["area"] * np.where(lights["sides"] == (_FRONT | _BACK), 2, 1),
-        4 * np.pi,
-        # What goes through a circle as large as box units are.
-        4 * np.pi,
-    ]
-    power = strength * np.select([lights["kind"] == i for i in range(3)], kinds)
+    # Of what has no extent, all that goes through a ball as large as box units are.
+    reach = np.full(len(lights), 4 * np.pi)
+    lamp = lights["kind"] == _LAMP
+    sides = np.where(lights["sides"][lamp] == (_FRONT | _BACK), 2, 1)
+    reach[lamp] = np.pi * lights["area"][lamp] * sides
+    power = strength * reach
     total = power.sum()
     # Ends are rounded, and shares what is between them: so that what is drawn is what is told.
     until = (np.cumsum(power) / (total if total > 0 else 1.0)).astype(np.float32)

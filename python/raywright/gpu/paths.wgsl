@@ -82,7 +82,7 @@ struct Pixel {
 // Lists, by number: rays at work on and rays that follow, those that leave the scene, and kinds of surfaces.
 const SKY: u32 = 2u;
 const MATT: u32 = 3u;
-const SHARP: u32 = 4u;
+const OTHERS: u32 = 4u;
 const BRUSHED: u32 = 5u;
 const FROSTED: u32 = 6u;
 const TO_LIGHT: u32 = 7u;
@@ -157,7 +157,7 @@ fn trace(@builtin(global_invocation_id) id: vec3<u32>) {
         case DIFFUSE: { put(MATT, i); }
         case ROUGH_METAL: { put(BRUSHED, i); }
         case ROUGH_GLASS: { put(FROSTED, i); }
-        default: { put(SHARP, i); }
+        default: { put(OTHERS, i); }
     }
 }
 
@@ -291,8 +291,8 @@ fn shade_matt(@builtin(global_invocation_id) id: vec3<u32>) {
 }
 
 @compute @workgroup_size(64)
-fn shade_sharp(@builtin(global_invocation_id) id: vec3<u32>) {
-    let i = taken(SHARP, id.x);
+fn shade_others(@builtin(global_invocation_id) id: vec3<u32>) {
+    let i = taken(OTHERS, id.x);
     if i != NO {
         shade(i, NO);
     }

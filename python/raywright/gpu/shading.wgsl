@@ -40,6 +40,7 @@ const GLASS: u32 = 2u;
 const METAL: u32 = 3u;
 const ROUGH_METAL: u32 = 4u;
 const ROUGH_GLASS: u32 = 5u;
+const PLASTIC: u32 = 6u;
 
 struct Material {
     // Of metals, what is left of each reflection but the first.
@@ -51,9 +52,11 @@ struct Material {
     k: vec3<f32>,
     // Where in the numbers its reflectances begin.
     table: u32,
-    // What facets throw on facets, over pi and the mean loss.
+    // Of metals what facets throw on facets, over pi and the mean loss. Of rough glass one over pi and the mean loss
+    // above and below, and in k the shares of that which cross from there.
     multiple: vec3<f32>,
-    // Where in the numbers begins what facets lose.
+    // Where in the numbers begins what facets lose; of rough glass that above, and then that below; of rough plastic
+    // what its coat reflects, of which k has the mean, and that from within.
     losses: u32,
     // Where in the numbers its picture begins, or NO.
     picture: u32,
@@ -418,7 +421,7 @@ fn rough_metal(looks: Material, wo: vec3<f32>, wi: vec3<f32>) -> Scattered {
 }
 
 // One scattering at a rough dielectric: Dielectric::single of the core.
-fn rough_glass(looks: Material, wo: vec3<f32>, wi: vec3<f32>) -> Scattered {
+fn rough_glass_once(looks: Material, wo: vec3<f32>, wi: vec3<f32>) -> Scattered {
     let eta = select(1.0 / looks.eta.x, looks.eta.x, wo.z > 0.0);
     if wo.z * wi.z > 0.0 {
         let o = above(wo);
@@ -447,6 +450,64 @@ fn rough_glass(looks: Material, wo: vec3<f32>, wi: vec3<f32>) -> Scattered {
     return Scattered(vec3<f32>(through * both), through * seen * eta * eta);
 }
 
+// What facets lose of light from a direction, on its side of rough glass.
+fn lost_between(looks: Material, w: vec3<f32>) -> f32 {
+    return lost(looks.losses + select(0u, 64u, w.z < 0.0), abs(w.z));
+}
+
+// The share of what is lost on the side of a direction that is given back on the other.
+fn crossing(looks: Material, w: vec3<f32>) -> f32 {
+    return select(looks.k.x, looks.k.y, w.z < 0.0);
+}
+
+// With what is given back of what facets lose: Dielectric::both of the core.
+fn rough_glass(looks: Material, wo: vec3<f32>, wi: vec3<f32>) -> Scattered {
+    let by = rough_glass_once(looks, wo, wi);
+    let loss = lost_between(looks, wo);
+    let eta = select(1.0 / looks.eta.x, looks.eta.x, wo.z > 0.0);
+    let crosses = wo.z * wi.z < 0.0;
+    let share = select(1.0 - crossing(looks, wo), crossing(looks, wo), crosses);
+    let over = select(looks.multiple.x, looks.multiple.y, wi.z < 0.0) / select(1.0, eta * eta, crosses);
+    let back = loss * share * lost_between(looks, wi) * abs(wi.z) * over;
+    return Scattered(by.value + back, (1.0 - loss) * by.pdf + loss * share * abs(wi.z) * INVERSE_PI);
+}
+
+// What the coat of plastic reflects.
+fn coat(looks: Material, cosine: f32) -> f32 {
+    if looks.alpha > 0.0 {
+        return lost(looks.losses, cosine);
+    }
+    return fresnel(cosine, looks.eta.x);
+}
+
+// The share of draws from the coat, by what it reflects, and what the matt base gives back.
+fn coat_share(reflected: f32, base: vec3<f32>) -> f32 {
+    return select(0.0, reflected / (reflected + most(base) * (1.0 - reflected)), reflected > 0.0);
+}
+
+// Coated::base of the core.
+fn base_of(looks: Material, colour: vec3<f32>) -> vec3<f32> {
+    return colour * (1.0 - looks.k.y) / (1.0 - colour * looks.k.y);
+}
+
+// Coated::evaluate of the core, above.
+fn plastic(looks: Material, colour: vec3<f32>, wo: vec3<f32>, wi: vec3<f32>) -> Scattered {
+    let base = base_of(looks, colour);
+    let reflected = coat(looks, wo.z);
+    let share = coat_share(reflected, base);
+    let reaching = (1.0 - reflected) * (1.0 - coat(looks, wi.z));
+    let matt = base * (reaching * INVERSE_PI * wi.z / (1.0 - looks.k.x));
+    var by = Scattered(matt, (1.0 - share) * wi.z * INVERSE_PI);
+    if looks.alpha > 0.0 {
+        let met = mirroring(wo, wi, looks.alpha);
+        let s = vec2<f32>(stretch(wo, looks.alpha), stretch(wi, looks.alpha));
+        let single = fresnel(met.y, looks.eta.x) * met.x * 0.5 * wi.z / (s.x * wi.z + s.y * wo.z);
+        by.value += vec3<f32>(single);
+        by.pdf += share * met.x * 0.5 / (wo.z + s.x);
+    }
+    return by;
+}
+
 fn is_metal(looks: Material) -> bool {
     return looks.kind == METAL || looks.kind == ROUGH_METAL;
 }
@@ -465,6 +526,9 @@ fn scattered(looks: Material, colour: vec3<f32>, wo: vec3<f32>, wi: vec3<f32>) -
     }
     if looks.kind == ROUGH_METAL {
         return rough_metal(looks, above(wo), above(wi));
+    }
+    if looks.kind == PLASTIC {
+        return plastic(looks, colour, above(wo), above(wi));
     }
     let pdf = abs(wi.z) * INVERSE_PI;
     return Scattered(colour * pdf, pdf);
@@ -496,22 +560,30 @@ fn drawn_glass(looks: Material, wo: vec3<f32>, choice: f32) -> Drawn {
 
 fn drawn_rough_glass(looks: Material, wo: vec3<f32>, choice: f32, u: vec2<f32>) -> Drawn {
     let eta = select(1.0 / looks.eta.x, looks.eta.x, wo.z > 0.0);
-    var h = visible_facet(above(wo), looks.alpha, u);
-    h.z = select(-h.z, h.z, wo.z > 0.0);
-    let o = dot(wo, h);
-    var wi = h * (2.0 * o) - wo;
+    let loss = lost_between(looks, wo);
+    var wi = by_cosine(u);
     var beyond = 1.0;
-    if choice < fresnel(o, eta) {
-        if wi.z * wo.z <= 0.0 {
-            return NOTHING;
-        }
+    if choice < loss {
+        let crosses = choice < loss * crossing(looks, wo);
+        wi.z = select(-wi.z, wi.z, (wo.z > 0.0) != crosses);
+        beyond = select(1.0, eta, crosses);
     } else {
-        wi = refracted(wo, h, eta);
-        beyond = eta;
-        if wi.z * wo.z >= 0.0 {
-            return NOTHING;
+        var h = visible_facet(above(wo), looks.alpha, u);
+        h.z = select(-h.z, h.z, wo.z > 0.0);
+        let o = dot(wo, h);
+        wi = h * (2.0 * o) - wo;
+        if (choice - loss) / (1.0 - loss) < fresnel(o, eta) {
+            if wi.z * wo.z <= 0.0 {
+                return NOTHING;
+            }
+        } else {
+            wi = refracted(wo, h, eta);
+            beyond = eta;
+            if wi.z * wo.z >= 0.0 {
+                return NOTHING;
+            }
+            wi = normalize(wi);
         }
-        wi = normalize(wi);
     }
     let by = rough_glass(looks, wo, wi);
     if !(by.pdf > 0.0) {
@@ -539,6 +611,30 @@ fn drawn_rough_metal(looks: Material, wo: vec3<f32>, choice: f32, u: vec2<f32>) 
     return Drawn(wi, by.pdf, by.value / by.pdf, 1.0);
 }
 
+fn drawn_plastic(looks: Material, colour: vec3<f32>, wo: vec3<f32>, choice: f32, u: vec2<f32>) -> Drawn {
+    let up = above(wo);
+    let reflected = coat(looks, up.z);
+    let share = coat_share(reflected, base_of(looks, colour));
+    var wi = by_cosine(u);
+    if choice < share {
+        if looks.alpha == 0.0 {
+            return Drawn(vec3<f32>(-wo.xy, wo.z), SINGLE, vec3<f32>(reflected / share), 1.0);
+        }
+        let h = visible_facet(up, looks.alpha, u);
+        wi = h * (2.0 * dot(up, h)) - up;
+    }
+    if wi.z <= 0.0 {
+        return NOTHING;
+    }
+    wi = normalize(wi);
+    let by = plastic(looks, colour, up, wi);
+    if !(by.pdf > 0.0) {
+        return NOTHING;
+    }
+    wi.z = select(-wi.z, wi.z, wo.z > 0.0);
+    return Drawn(wi, by.pdf, by.value / by.pdf, 1.0);
+}
+
 // Draws where light comes from that a material scatters to `wo`.
 fn drawn(looks: Material, colour: vec3<f32>, wo: vec3<f32>, choice: f32, u: vec2<f32>) -> Drawn {
     if wo.z == 0.0 {
@@ -556,6 +652,7 @@ fn drawn(looks: Material, colour: vec3<f32>, wo: vec3<f32>, choice: f32, u: vec2
         case METAL: { return Drawn(vec3<f32>(-wo.xy, wo.z), SINGLE, reflectance(looks, abs(wo.z)), 1.0); }
         case ROUGH_METAL: { return drawn_rough_metal(looks, wo, choice, u); }
         case ROUGH_GLASS: { return drawn_rough_glass(looks, wo, choice, u); }
+        case PLASTIC: { return drawn_plastic(looks, colour, wo, choice, u); }
         default: { return NOTHING; }
     }
 }

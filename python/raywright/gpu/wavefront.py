@@ -37,7 +37,7 @@ JOB = np.dtype(
 _PATH, _SHADOW, _PIXEL = 80, 64, 80
 _LISTS, _GROUP = 8, 64
 # Paths at once, where a device has room for them.
-_CAPACITY = 1 << 19
+_CAPACITY = 1 << 20
 # Bounces between looks at how many paths are left.
 _BOUNCES = 8
 # The bindings before those of the scene.
@@ -47,7 +47,7 @@ _TO_LIGHT = 7
 _SHADING: dict[str, tuple[int, set[int]]] = {
     "leave_scene": (2, set()),
     "shade_matt": (3, {0}),
-    "shade_sharp": (4, {1, 2, 3}),
+    "shade_others": (4, {1, 2, 3, 6}),
     "shade_brushed": (5, {4}),
     "shade_frosted": (6, {5}),
 }

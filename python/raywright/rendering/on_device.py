@@ -22,7 +22,8 @@ if TYPE_CHECKING:
 
 # Samples of a pass once there are as many, where neither an error nor time may end the render.
 _PASS = 64
-_PLAIN = {"reuse": 1, "caustics": False}
+# What paths do there.
+_PLAIN: dict[str, Any] = {"reuse": 1, "caustics": False}
 
 
 def check_device(device: Any) -> None:

@@ -169,8 +169,8 @@ def render(
     device : Gpu, optional
         Who follows paths, in place of the CPU: a picture that agrees with the CPU's within the errors of
         both, by the same estimator with other random numbers. It does pictures by a `Path` and a `Camera` of
-        meshes that are `Diffuse`, `Mirror`, `Dielectric` or `Conductor`, in the light of emission, points,
-        directions and an environment. Whatever it does not, the CPU renders as without, whole, and
+        meshes that are `Diffuse`, `Mirror`, `Dielectric`, `Conductor` or `Plastic`, in the light of emission,
+        points, directions and an environment. Whatever it does not, the CPU renders as without, whole, and
         ``image.plan["device"]`` says what that was. If the device is lost, that is warned of, and the CPU
         goes on. Limits, `progress`, `stop` and Ctrl-C are heard between its pieces of work.
 
@@ -240,7 +240,7 @@ def render(
         scene._compiled(progress is True)
     there, began = None, time.monotonic()
     if device is not None:
-        asked = {
+        others = {
             "adaptive=True": adaptive,
             "clamp": clamp is not None,
             "background='transparent'": background == "transparent",
@@ -249,7 +249,7 @@ def render(
             "checkpoint": checkpoint is not None,
             "executor": executor is not None,
         }
-        there = OnDevice(device, scene, camera, integrator, seed, asked, sampler, filter)
+        there = OnDevice(device, scene, camera, integrator, seed, others, sampler, filter)
     prepared = time.monotonic() - began
     if there is not None and there.works:
         integrator, sampler, plan = there.plan(integrator)
