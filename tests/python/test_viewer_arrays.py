@@ -9,6 +9,7 @@ from viewer_page import ask, page, turn
 import raywright as rw
 from raywright.viewer.lamps import behind, lamp
 from raywright.viewer.paint import paints
+from raywright.viewer.texts import text
 
 SIZE = {"width": 96, "height": 72}
 JSON = {"Content_Type": "application/json"}
@@ -180,6 +181,17 @@ def test_the_lamp_of_a_sketch():
         assert told["far"] is far
         parallel = np.cross(told["place"], place) if far else np.subtract(told["place"], place)
         assert np.allclose(parallel, 0, rtol=0, atol=0.2)
+
+
+def test_shaders_are_what_other_browsers_take_too():
+    # Firefox reads WGSL as wgpu does, and not as chromium.
+    try:
+        device = rw.Gpu()._device
+    except (ImportError, RuntimeError) as missing:
+        pytest.skip(str(missing))
+    beginning = text("walk.wgsl").replace("STACK", "32u") + text("sight.wgsl")
+    for rest in (text("screen.wgsl"), text("lines.wgsl"), text("shading.wgsl") + text("path.wgsl")):
+        device.create_shader_module(code=beginning + rest)
 
 
 def test_what_surrounds_a_sketch():

@@ -202,6 +202,7 @@ def test_the_core_draws_by_a_key_and_what_the_page_does_not_know(page, box):
         viewer.show(rw.Whitted())
         wait(page, f"document.body.dataset.shown === 'picture' && {is_state('done')}")
         assert told(page, "way") == "WebGPU"
+        assert "what stands is the core's: the page has no Whitted" in page.get_attribute("#way", "title")
         page.focus("#picture")
         page.keyboard.press("ArrowRight")
         wait(page, "document.body.dataset.shown === 'drawn'")

@@ -25,7 +25,8 @@ export function noRoom(device, arrays) {
 }
 
 export function bufferOf(device, data, usage) {
-  const buffer = device.createBuffer({ size: Math.max(data.byteLength + 3 & ~3, 64), usage: usage | GPUBufferUsage.COPY_DST });
+  const size = Math.max(Math.ceil(data.byteLength / 4) * 4, 64);
+  const buffer = device.createBuffer({ size, usage: usage | GPUBufferUsage.COPY_DST });
   device.queue.writeBuffer(buffer, 0, data);
   return buffer;
 }

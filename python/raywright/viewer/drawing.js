@@ -1,4 +1,4 @@
-// The scene drawn here: a ray and its shadow a pixel while the camera moves, and what stands still as well as it can be.
+// The scene drawn here: a ray and its shadow a pixel while the camera moves, and paths while it stands.
 
 import { inverse, minus, spread, times } from "./orbit.js";
 import { noRoom, openDevice, upload } from "./device.js";

@@ -23,9 +23,10 @@ export class Paths {
 
   async prepare() {
     const { device, beginning, texts, layout } = this.passes;
+    const module = device.createShaderModule({ code: beginning + texts.shading + texts.path });
     this.pipeline = await device.createComputePipelineAsync({
       layout: device.createPipelineLayout({ bindGroupLayouts: [layout, this.layout] }),
-      compute: { module: device.createShaderModule({ code: beginning + texts.shading + texts.path }), entryPoint: "accumulate" },
+      compute: { module, entryPoint: "accumulate" },
     });
   }
 

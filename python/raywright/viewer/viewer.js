@@ -13,8 +13,9 @@ const rounded = (values) => values.map((value) => +value.toPrecision(6)).join(",
 const same = (a, b) => Object.keys(START).every((name) => a[name] === b[name]);
 
 // `root` has the page's parts, `host` is told the state, keys are heard on `keys`, and `wire` leads to the core: it has
-// `send(what, given)`, `ask(what, given)`, `bytes(name)`, `text(name)`, `watch(isOn)` for the core's pictures, `close()`,
-// and whether it `hasFile` of a picture; and it calls what is put to its `on`: `scene`, `view`, `again`, `frame`, `trouble`, `ended`.
+// `send(what, given)`, `ask(what, given)`, `bytes(name)`, `text(name)`, `watch(isOn)` for the core's pictures,
+// `close()`, and whether it `hasFile` of a picture; and it calls what is put to its `on`: `scene`, `view`, `again`,
+// `frame`, `trouble`, `ended`.
 export class Viewer {
   constructor(root, host, keys, wire) {
     [this.host, this.wire] = [host, wire];
@@ -242,8 +243,9 @@ export class Viewer {
   async askAgain() {
     if (this.drawing) {
       this.drawing.told.traced = null;
-      const { traced } = await this.wire.ask("drawing", {});
-      this.drawing.told.traced = traced ?? null;
+      const { traced, left } = await this.wire.ask("drawing", {});
+      Object.assign(this.drawing.told, { traced: traced ?? null, left });
+      this.tellWay();
       this.drawHere();
       this.drawing.again();
     }
@@ -319,9 +321,13 @@ export class Viewer {
     this.host.dataset.way = this.isDrawn ? "drawn" : "core";
     const way = this.byId("way");
     way.textContent = this.isDrawn ? `WebGPU${this.isHeat ? ", heat" : ""}` : CORE;
-    way.title = this.isDrawn
-      ? `drawn by this browser on ${this.drawing.name}; g for the core's pictures`
-      : `rendered by the core${this.why ? `: ${this.why}` : "; g to draw here, by WebGPU"}`;
+    if (this.isDrawn) {
+      const { left } = this.drawing.told;
+      const standing = left ? `; what stands is the core's: ${left}` : "";
+      way.title = `drawn by this browser on ${this.drawing.name}; g for the core's pictures${standing}`;
+    } else {
+      way.title = `rendered by the core${this.why ? `: ${this.why}` : "; g to draw here, by WebGPU"}`;
+    }
   }
 
   // What there is to say.

@@ -29,7 +29,10 @@ class Comm extends Wire {
     if (error !== undefined) {
       throw new Error(error);
     }
-    return { told, total, bytes: buffers[0] && new Uint8Array(buffers[0].buffer ?? buffers[0], buffers[0].byteOffset ?? 0, buffers[0].byteLength) };
+    // A view of some bytes, or all of them, as the notebook likes it.
+    const [data] = buffers;
+    const bytes = data && new Uint8Array(data.buffer ?? data, data.byteOffset ?? 0, data.byteLength);
+    return { told, total, bytes };
   }
 
   ask = async (what, given) => (await this.exchange({ do: "ask", what, given })).told;
