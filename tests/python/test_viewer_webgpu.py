@@ -5,6 +5,7 @@ import time
 
 import numpy as np
 import pytest
+from PIL import Image as Pillow
 
 import raywright as rw
 from raywright.viewer.boxes import drawn, edges
@@ -225,11 +226,20 @@ def test_what_has_no_triangles_is_streamed(page):
         assert page.evaluate(told_of, [module, 8_999_999]).startswith("faces of the scene take 9 MiB")
 
 
-def test_closing_ends_what_is_drawn_and_what_is_rendered(page, box):
-    with rw.view(*box, fit=False) as viewer:
+def test_what_is_drawn_is_saved_and_has_an_end(page, box):
+    with rw.view(*box, fit=False, seconds=0.2) as viewer:
         begin(page, viewer)
-        wait(page, "viewer.drawing.sample >= 1")
+        wait(page, is_state("done"))
+        spent, samples = page.evaluate("[viewer.drawing.spent, viewer.drawing.sample]")
+        assert spent >= 0.2
+        with page.expect_download() as download:
+            page.click("#save")
+        saved = np.asarray(Pillow.open(download.value.path()).convert("RGB"), float)
+        assert np.array_equal(saved, picture(page))
+        assert page.evaluate("viewer.drawing.sample") == samples
         viewer.close()
         wait(page, "document.getElementById('message').textContent.includes('has ended')")
-        # The page goes on by itself; at its own end nothing of it is left.
-        page.close()
+        # What was drawn here stays, and can be looked at from elsewhere.
+        page.focus("#drawn")
+        page.keyboard.press("ArrowRight")
+        wait(page, "viewer.drawing.sample >= 1")

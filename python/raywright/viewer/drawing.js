@@ -167,7 +167,9 @@ export class Drawing {
       this.presentedAt = -Infinity;
     }
     if (this.sample >= samples || (seconds !== null && this.spent >= seconds && this.sample > 0)) {
-      return false;
+      await this.showPaths(true);
+      // It may have been moved by now.
+      return this.isDirty;
     }
     const began = performance.now();
     const before = this.sample;
@@ -194,14 +196,18 @@ export class Drawing {
     if (this.sample === before) {
       return true;
     }
-    if (performance.now() - this.presentedAt > BETWEEN || this.sample === samples) {
-      await nextFrame();
-      this.present();
-      this.presentedAt = performance.now();
-      canvas.dataset.samples = this.sample;
-      this.on.tell({ samples: this.sample, seconds: this.spent, isDone: this.sample === samples });
+    if (performance.now() - this.presentedAt > BETWEEN) {
+      await this.showPaths(false);
     }
     return true;
+  }
+
+  async showPaths(isDone) {
+    await nextFrame();
+    this.present();
+    this.presentedAt = performance.now();
+    this.canvas.dataset.samples = this.sample;
+    this.on.tell({ samples: this.sample, seconds: this.spent, isDone });
   }
 
   // One ray a pixel, of as many times fewer pixels; the next picture in movement has as many as the device can do.

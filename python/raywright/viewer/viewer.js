@@ -210,7 +210,8 @@ export class Viewer {
       const link = Object.assign(document.createElement("a"), { download: "raywright.png" });
       link.href = URL.createObjectURL(await file);
       link.click();
-      URL.revokeObjectURL(link.href);
+      // It is fetched after the click.
+      setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
     }
   }
 
