@@ -170,6 +170,42 @@ def test_scenes(gpu, name):
     both(SCENES[name](), gpu)
 
 
+FILTERS = [rw.BoxFilter(1.5), rw.TriangleFilter(2), rw.GaussianFilter(), rw.BlackmanHarrisFilter(3)]
+
+
+@pytest.mark.parametrize("filter", FILTERS, ids=lambda filter: type(filter).__name__)
+def test_filters_draw_samples(gpu, filter):
+    """Of a tilted edge, which each filter blurs by another width."""
+    scene = rw.Scene(quad((-2, -3, 0), (2.3, 1, 0), (-1, 6, 0), material=rw.Diffuse(0), emission=1.0))
+    how = {"filter": filter, "progress": False}
+    there = rw.render(scene, CAMERA, rw.Path(0, reuse=1, caustics=False), 400, device=gpu, **how)
+    assert there.plan["device"].chosen == gpu.name
+    here = rw.render(scene, CAMERA, rw.Path(0, reuse=1, caustics=False), 400, sampler=rw.Independent(), **how)
+    error = np.sqrt(there.standard_error.astype(float) ** 2 + here.standard_error.astype(float) ** 2) + 1e-3
+    z = ((there.rgb - here.rgb) / error)[..., 0]
+    assert np.abs(z).max() < 5.2
+    # Next to the edge samples differ, and what they tell is as far apart as it may be.
+    edge = np.minimum(there.rgb, 1 - there.rgb)[..., 0] > 0.1
+    assert edge.sum() > 20
+    assert np.mean(z[edge] ** 2) < 2
+
+
+def test_copies_are_laid_out(gpu, monkeypatch):
+    moves = np.tile(np.diag([0.7, 0.7, 0.7, 1.0]), (3, 1, 1))
+    moves[:, 0, 3] = -1.5, 0, 1.5
+    moves[1, 0, 0] = -0.7
+    knob = ball((0, 0, 0), rw.Mirror(0.8), rows=6)
+    shade = quad((-0.5, 1.2, -0.5), (1, 0, 0), (0, 0, 1), emission=(3, 2, 1), material=rw.Diffuse(0))
+    shapes = [floor(rw.Diffuse(0.5)), rw.Instance([rw.Instance([knob], [np.eye(4)]), shade], moves)]
+    scene = rw.Scene(shapes, environment=0.1)
+    both(scene, gpu)
+    from raywright.rendering import on_device
+
+    monkeypatch.setattr(on_device, "_LAID_OUT", 100)
+    image = rw.render(scene, CAMERA, PLAIN, 1, progress=False, device=gpu)
+    assert "the scene has instances" in image.plan["device"].why
+
+
 @pytest.mark.parametrize("depth", [0, 1, 2])
 def test_bounces_are_counted_alike(gpu, depth):
     scene, camera = rw.scenes.cornell_box(width=SIDE, height=SIDE)
@@ -206,31 +242,40 @@ def test_the_same_seed_is_the_same_picture(gpu):
     one, same, other = (render(samples=20, seed=seed) for seed in (2**40, 2**40, 2**40 + 1))
     np.testing.assert_array_equal(one.rgb, same.rgb)
     assert (one.rgb != other.rgb).any()
-    # Large pictures are taken in parts.
-    from raywright.gpu import wavefront
 
-    most, wavefront._CAPACITY = wavefront._CAPACITY, 64 * 3
+
+def test_large_scenes_and_pictures_are_taken_in_parts(gpu):
+    knot = rw.scenes.torus_knot(along=40, around=8)
+    knot = rw.Mesh(knot.vertices, knot.faces, normals=knot.normals, material=rw.Mirror(0.9))
+    scene = rw.Scene(knot, environment=sky())
+    camera = rw.Camera((0, 0, 6), (0, 0, 0), width=24, height=16)
+
+    def render():
+        image = rw.render(scene, camera, PLAIN, 3, progress=False, device=gpu)
+        assert image.plan["device"].chosen == gpu.name
+        return image.rgb
+
+    whole = render()
+    most, gpu._most = gpu._most, 1 << 15
     try:
-        parts = rw.render(
-            scene, camera.__class__(**camera_of(camera, 24, 16)), PLAIN, 3, progress=False, device=gpu
-        )
+        np.testing.assert_array_equal(render(), whole)
+        gpu._most = 256
+        image = rw.render(scene, camera, PLAIN, 1, progress=False, device=gpu)
+        assert "no room: the scene needs" in image.plan["device"].why
     finally:
-        wavefront._CAPACITY = most
-    whole = rw.render(
-        scene, camera.__class__(**camera_of(camera, 24, 16)), PLAIN, 3, progress=False, device=gpu
-    )
-    np.testing.assert_array_equal(parts.rgb, whole.rgb)
+        gpu._most = most
 
 
-def camera_of(camera, width, height):
-    return {
-        "position": camera.position,
-        "target": camera.target,
-        "up": camera.up,
-        "fov": camera.fov,
-        "width": width,
-        "height": height,
-    }
+def test_nothing_gets_in_between_faces(gpu):
+    """Outside of a closed wall of odd faces it is so bright that a single ray through it would be seen."""
+    shell = ball((0.3, 0.1, 0.2), rw.Diffuse(0.8), 2.0, rows=24)
+    points = shell.vertices + 0.02 * np.sin(50 * shell.vertices[:, ::-1])
+    scene = rw.Scene(rw.Mesh(points, shell.faces, material=shell.material), environment=1e6)
+    camera = rw.Camera((0.1, 0.2, 0.3), (1, 0.2, 0.1), fov=120, width=SIDE, height=SIDE)
+    path = rw.Path(max_depth=6, reuse=1, caustics=False)
+    image = rw.render(scene, camera, path, 32, progress=False, device=gpu)
+    assert image.plan["device"].chosen == gpu.name
+    assert not image.rgb.any()
 
 
 def test_limits_and_those_who_watch(gpu):
@@ -272,11 +317,13 @@ LEFT = {
     "background='transparent'": {"background": "transparent"},
     "halves=True": {"halves": True},
     "the sampler is a Sobol": {"sampler": rw.Sobol(4)},
-    "the filter is GaussianFilter": {"filter": rw.GaussianFilter()},
+    "the filter is MitchellFilter": {"filter": rw.MitchellFilter()},
     "the camera is a Orthographic": {"camera": rw.Orthographic((0, 1, 6), (0, 0, 0), width=4, height=4)},
     "the camera is far": {"camera": rw.Camera((0, 0, 1e5), (0, 0, 0), width=4, height=4)},
     "shape 0 is a Sphere": {"scene": rw.Scene(rw.Sphere())},
-    "the scene has instances": {"scene": rw.Scene(rw.Instance([lamp()], [np.eye(4)]))},
+    "the scene has motion": {
+        "scene": rw.Scene(rw.Instance([lamp()], [np.eye(4)], [np.diag([2.0, 2, 2, 1])]))
+    },
     "the Phong of shape 0 is of no kind": {"scene": rw.Scene(floor(rw.Phong()))},
     "the scene has masks": {"scene": rw.Scene(floor(rw.Mask(rw.Diffuse(), 0.5)))},
     "the scene has smoke and haze": {"scene": rw.Scene(lamp(), medium=rw.Homogeneous(0.1))},

@@ -2,6 +2,9 @@
 
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from ..cameras import AnyCamera
 from ..scene.scene import Scene
 from .adapters import chosen, name_of
@@ -75,10 +78,18 @@ class Gpu:
             raise TypeError(f"scene must be a Scene, got {type(scene).__name__}")
         return GpuScene(self._device, self._name, scene, self._most, self._bounds, self._pipelines)
 
-    def paths(
-        self, scene: Scene, camera: AnyCamera, max_depth: int | None, roulette_depth: int, seed: int
+    def _paths(
+        self,
+        scene: Scene,
+        camera: AnyCamera,
+        max_depth: int | None,
+        roulette_depth: int,
+        seed: int,
+        quantiles: NDArray[np.float64],
     ) -> Wavefront:
         """Return the paths of a picture, ready to be followed; `render` does it, by its `device`.
+
+        The parameters are those of `Wavefront`.
 
         Raises
         ------
@@ -89,12 +100,13 @@ class Gpu:
         """
         if scene.wavelengths is not None:
             raise LeftError(f"paths carry wavelengths: {scene.wavelengths}")
-        for what in scene.plan().needed:
-            if what in _LEFT:
+        needed = scene.plan().needed
+        for what in _LEFT:
+            if what in needed:
                 raise LeftError(f"the scene has {what}")
         flat = scene.flat()
         eye, looks = eye_of(camera, flat), packed(scene, flat)
-        settings = max_depth, roulette_depth, seed
+        settings = max_depth, roulette_depth, seed, quantiles
         return Wavefront(self._device, flat, looks, eye, *settings, self._most, self._pipelines)
 
     def __repr__(self) -> str:

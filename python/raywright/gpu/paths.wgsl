@@ -27,7 +27,9 @@ struct Job {
     // Which of the two lists of rays is at work on, and how long lists are at most.
     now: u32,
     capacity: u32,
-    reserved: vec2<u32>,
+    // Where in the numbers the quantiles of the filter begin: 1025, in pixels from a pixel's centre.
+    quantiles: u32,
+    reserved: u32,
 }
 
 struct Path {
@@ -116,6 +118,13 @@ fn taken(list: u32, place: u32) -> u32 {
     return lists[list * job.capacity + place];
 }
 
+// How far from a pixel's centre a filter draws a sample, along an axis.
+fn offset(u: f32) -> f32 {
+    let place = u * 1024.0;
+    let i = min(u32(place), 1023u);
+    return mix(number(job.quantiles + i), number(job.quantiles + i + 1u), place - f32(i));
+}
+
 @compute @workgroup_size(64)
 fn generate(@builtin(global_invocation_id) id: vec3<u32>) {
     let i = id.x;
@@ -124,8 +133,8 @@ fn generate(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     let pixel = job.first_pixel + i % job.pixels;
     let u = numbers_of(i, 0u);
-    let x = (f32(pixel % job.width) + u.x) / f32(job.width);
-    let y = (f32(pixel / job.width) + u.y) / f32(job.height);
+    let x = (f32(pixel % job.width) + 0.5 + offset(u.x)) / f32(job.width);
+    let y = (f32(pixel / job.width) + 0.5 + offset(u.y)) / f32(job.height);
     var path: Path;
     path.origin = job.eye;
     path.leaves = NO;

@@ -31,7 +31,8 @@ JOB = np.dtype(
         ("seed", "<u4", 2),
         ("now", "<u4"),
         ("capacity", "<u4"),
-        ("reserved", "<u4", 2),
+        ("quantiles", "<u4"),
+        ("reserved", "<u4"),
     ]
 )
 _PATH, _SHADOW, _PIXEL = 80, 64, 80
@@ -73,6 +74,8 @@ class Wavefront:
         From where.
     max_depth, roulette_depth, seed : int
         As `Path` and `render` have them; None for no greatest depth.
+    quantiles : (1025,) array
+        Of how far from a pixel's centre its samples lie along either axis, in pixels.
     most : int
         Bytes that a binding holds.
     known : dict
@@ -93,6 +96,7 @@ class Wavefront:
         max_depth: int | None,
         roulette_depth: int,
         seed: int,
+        quantiles: NDArray[np.float64],
         most: int,
         known: dict[Any, Any],
     ) -> None:
@@ -107,7 +111,7 @@ class Wavefront:
             "Face": Parts(device, scene.faces, most),
             "Material": Parts(device, scene.materials, most),
             "Light": Parts(device, scene.lights, most),
-            "f32": Parts(device, scene.numbers, most),
+            "f32": Parts(device, np.append(scene.numbers, quantiles.astype(np.float32)), most),
         }
         self._scene = [buffer for part in parts.values() for buffer in part.buffers]
         self._kinds = [kind for kind, part in parts.items() for _ in part.buffers]
@@ -135,6 +139,7 @@ class Wavefront:
         self._job["nodes"], self._job["capacity"] = flat.own, self._capacity
         self._job["max_depth"] = _NO_LIMIT if max_depth is None else max_depth
         self._job["roulette_depth"] = min(roulette_depth, 4096)
+        self._job["quantiles"] = len(scene.numbers)
         self._job["seed"] = seed & 0xFFFFFFFF, seed >> 32
         self._max_depth = max_depth
         self._make(scene.lit)
@@ -216,7 +221,7 @@ class Wavefront:
         )
         looks = scene[len(walk) :]
         own = {
-            "generate": [0, 2, 3, 4],
+            "generate": [0, 2, 3, 4, *numbers],
             "plan_first": [0, 3, 5],
             "trace": [0, 2, 3, 4, *walk, *some],
             "plan_shading": [0, 3, 5],

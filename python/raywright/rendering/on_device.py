@@ -9,17 +9,22 @@ from typing import TYPE_CHECKING, Any
 from .. import _core
 from ..cameras import AnyCamera
 from ..integrators import AnyIntegrator, Path
+from ..scene.instance import AnyShape, Instance
 from ..scene.scene import Scene
+from ..shapes.mesh import face_count
 from .choices import Limits
-from .filters import BoxFilter, Filter
+from .filters import Filter
 from .plan import Choice, RenderPlan
 from .progress import Report
+from .quantiles import quantiles
 from .samplers import Independent, Sampler
 from .ways import StoppedError
 
 if TYPE_CHECKING:
     from ..gpu.wavefront import Wavefront
 
+# The most faces that copies are laid out as.
+_LAID_OUT = 4_000_000
 # Samples of a pass once there are as many, where neither an error nor time may end the render.
 _PASS = 64
 # What paths do there.
@@ -28,7 +33,7 @@ _PLAIN: dict[str, Any] = {"reuse": 1, "caustics": False}
 
 def check_device(device: Any) -> None:
     """Raise a TypeError unless a device is one."""
-    if isinstance(device, type) or not callable(getattr(device, "paths", None)):
+    if isinstance(device, type) or not callable(getattr(device, "_paths", None)):
         raise TypeError(f"device must be a raywright.Gpu, got {device!r}")
 
 
@@ -69,7 +74,7 @@ class OnDevice:
         assert isinstance(integrator, Path)
         depths = integrator.max_depth, integrator.roulette_depth
         try:
-            self._paths = device.paths(scene, camera, *depths, seed)
+            self._paths = device._paths(_without_copies(scene), camera, *depths, seed, quantiles(filter))
         except LeftError as left:
             self._left = str(left)
         except MemoryError as little:
@@ -154,6 +159,21 @@ class OnDevice:
             self._paths.destroy()
 
 
+def _without_copies(scene: Scene) -> Scene:
+    """Return a scene with still copies laid out as shapes of their own, if they are few enough."""
+    needed = scene.plan().needed
+    if "instances" not in needed or "motion" in needed or sum(map(_faces, scene.shapes)) > _LAID_OUT:
+        return scene
+    from ..exchange.copies import laid_out
+
+    return laid_out(scene).scene
+
+
+def _faces(shape: AnyShape) -> int:
+    """Return how many faces a shape has, in all copies."""
+    return len(shape) * shape.primitives if isinstance(shape, Instance) else face_count(shape)
+
+
 def _left(integrator: AnyIntegrator, asked: dict[str, bool], sampler: Sampler | None, filter: Filter) -> str:
     """Return what of a render devices do not do; nothing if they do all of it."""
     if not isinstance(integrator, Path):
@@ -166,6 +186,6 @@ def _left(integrator: AnyIntegrator, asked: dict[str, bool], sampler: Sampler | 
             return name
     if not isinstance(sampler, Independent | None):
         return f"the sampler is a {type(sampler).__name__}"
-    if filter != BoxFilter():
+    if quantiles(filter) is None:
         return f"the filter is {filter!r}"
     return ""
