@@ -79,13 +79,42 @@ def test_what_a_page_cannot_draw_is_told_in_a_line(scene, camera, why):
         ({"integrator": rw.Whitted()}, "the page has no Whitted"),
         ({"clamp": 10.0}, "does not clamp"),
         ({"filter": rw.GaussianFilter()}, "the page has no filters"),
+        ({"camera": rw.ThinLens((278, 273, -800), (278, 273, 0), f_stop=0.01)}, "the page has no lenses"),
     ],
 )
 def test_what_the_core_renders_once_the_camera_stands_is_told(changes, left):
-    with rw.view(*rw.scenes.cornell_box(**SIZE), **changes) as viewer:
+    scene, camera = rw.scenes.cornell_box(**SIZE)
+    with rw.view(scene, **({"camera": camera} | changes)) as viewer:
         told = asked(viewer, "drawing", {})[1]
         assert (told["why"], told["traced"]) == (None, None)
         assert left in told["left"]
+
+
+def test_masks_are_drawn_whole_and_rendered_by_the_core():
+    leaf = rw.Mesh([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)], material=rw.Mask(rw.Diffuse(), 0.5))
+    with rw.view(rw.Scene(leaf, environment=1.0)) as viewer:
+        told = asked(viewer, "drawing", {})[1]
+        assert (told["why"], told["left"], told["traced"]) == (None, "the page has no masks", None)
+
+
+def test_copies_are_drawn_as_shapes_of_their_own():
+    knot = rw.scenes.torus_knot(along=40, around=8)
+    places = np.eye(4) + np.zeros((3, 1, 1))
+    places[:, 0, 3] = (-5, 0, 5)
+    camera = rw.Camera((0, 0, 20), (0, 0, 0), **SIZE)
+    scene = rw.Scene([rw.Instance(knot, places)], environment=1.0)
+    with rw.view(scene, camera) as viewer:
+        told = asked(viewer, "drawing", {})[1]
+        assert (told["why"], told["left"]) == (None, None)
+        assert told["arrays"]["faces"] == 112 * 3 * len(knot.faces)
+        # The core knows which copy is seen.
+        found = asked(viewer, "pick", {"view": {}, "x": 0.52, "y": 0.4})[1]
+        hit = scene.pick(camera, 49, 28, (0.92, 0.8))
+        assert found["shape"] in (0, None)
+        assert (found["shape"] == 0) == bool(hit.hit)
+    moving = rw.Instance(knot, np.eye(4), transform_end=np.diag([2.0, 2.0, 2.0, 1.0]))
+    with rw.view(rw.Scene([moving], environment=1.0), camera) as viewer:
+        assert "nothing that moves" in asked(viewer, "drawing", {})[1]["why"]
 
 
 def test_limits_of_paths_are_those_of_the_render():

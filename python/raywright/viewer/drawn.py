@@ -9,13 +9,16 @@ from numpy.typing import NDArray
 
 from .._core import FlatScene
 from ..cameras import Camera, Orthographic, ThinLens
+from ..exchange.copies import laid_out
 from ..gpu.looks import LeftError
 from ..gpu.packing import packed
 from ..integrators import AnyIntegrator, Path
 from ..io.tone import TONES
 from ..query.flats import FlatArrays, flat_arrays
 from ..rendering.filters import BoxFilter
+from ..scene.instance import AnyShape, Instance
 from ..scene.scene import Scene
+from ..shapes.mesh import Mesh
 from .lamps import behind, lamp
 from .orbit import Orbit, View
 from .paint import paints
@@ -26,6 +29,8 @@ _FILTER = BoxFilter()
 # Surfaces of a path, and paths of a pixel, where nobody says how many.
 _DEEPEST = 1 << 20
 _SAMPLES = 4096
+# What scenes may need, by their plans, that paths in a page do not know.
+_MISSING = ("masks", "smoke and haze", "patterned lights")
 # Bytes of a primitive: in the tree, with the two nodes that it takes at most, as a face, and its paint.
 _EACH = 48 + 64 + 112 + 8
 
@@ -74,7 +79,7 @@ class Drawn:
             if not len(flat.nodes):
                 return {"why": "the scene is empty"}
             if len(flat.unbounded) or (flat.triangles["largest"] < 0).any():
-                return {"why": "the page draws triangles alone, and the scene has other shapes, or copies"}
+                return {"why": "the page draws triangles alone, and the scene has other shapes"}
             left = self._left_out() or self._left
             return {
                 "why": None,
@@ -109,7 +114,9 @@ class Drawn:
             return f"the page draws no pictures of a {type(camera).__name__}"
         if camera.moved_to is not None:
             return "the page draws no camera that moves while its shutter is open"
-        if self._scene.accelerator.primitives * _EACH > _MOST_BYTES:
+        if "motion" in self._scene.plan().needed:
+            return "the page draws nothing that moves while the shutter is open"
+        if sum(map(_faces, self._scene.shapes)) * _EACH > _MOST_BYTES:
             return "the scene is too large for the page to draw"
         return None
 
@@ -120,8 +127,12 @@ class Drawn:
             return f"the page has no {type(integrator).__name__}"
         if isinstance(self._orbit.camera(View()), ThinLens):
             return "the page has no lenses"
-        if self._scene.medium is not None or self._scene.wavelengths is not None:
-            return "the page has neither media nor wavelengths"
+        if self._scene.wavelengths is not None:
+            return "the page has no wavelengths"
+        needed = self._scene.plan().needed
+        for what in _MISSING:
+            if what in needed:
+                return f"the page has no {what}"
         if self._how.get("filter", _FILTER) != _FILTER or self._how.get("clamp") is not None:
             return "the page has no filters and does not clamp"
         return None
@@ -141,8 +152,10 @@ class Drawn:
         """Return the arrays of the scene as it is now; whoever asks holds the lock."""
         core = self._scene._compiled()
         if self._flat is None or self._core is not core:
-            scene = self._scene
-            flat = flat_arrays(FlatScene(core, scene.accelerator_choice, scene.quality, True))
+            # Copies become shapes of their own.
+            scene = laid_out(self._scene).scene
+            inner = scene._compiled()
+            flat = flat_arrays(FlatScene(inner, scene.accelerator_choice, scene.quality, True))
             self._flat, self._core = flat, core
             self._version += 1
             self._arrays = {
@@ -158,3 +171,10 @@ class Drawn:
                 self._left = None
                 self._arrays |= {name: array.tobytes() for name, array in vars(looks).items()}
         return self._flat
+
+
+def _faces(shape: AnyShape) -> int:
+    """Return how many primitives a shape has, in all copies."""
+    if isinstance(shape, Instance):
+        return len(shape) * shape.primitives
+    return len(shape.faces) if isinstance(shape, Mesh) else 1
