@@ -233,6 +233,16 @@ def test_a_furnace_is_white(gpu, name):
     assert abs(there.rgb.mean(dtype=float) - 1) < 4 * error + 1e-3
 
 
+def test_nothing_and_nothing_but_light(gpu):
+    how = {"samples": 2, "progress": False, "device": gpu}
+    for scene, radiance in [(rw.Scene([]), 0), (rw.Scene([], environment=(1, 2, 3)), (1, 2, 3))]:
+        image = rw.render(scene, CAMERA, PLAIN, **how)
+        assert image.plan["device"].chosen == gpu.name
+        np.testing.assert_array_equal(image.rgb, np.broadcast_to(np.float32(radiance), image.rgb.shape))
+    dark = rw.render(rw.Scene(floor(rw.Diffuse(0.5))), CAMERA, PLAIN, **how)
+    assert not dark.rgb.any()
+
+
 def test_the_same_seed_is_the_same_picture(gpu):
     scene, camera = rw.scenes.cornell_box(width=8, height=8)
 
@@ -316,6 +326,7 @@ LEFT = {
     "clamp": {"clamp": 10.0},
     "background='transparent'": {"background": "transparent"},
     "halves=True": {"halves": True},
+    "denoise": {"denoise": True, "samples": 4, "sampler": rw.Independent()},
     "the sampler is a Sobol": {"sampler": rw.Sobol(4)},
     "the filter is MitchellFilter": {"filter": rw.MitchellFilter()},
     "the camera is a Orthographic": {"camera": rw.Orthographic((0, 1, 6), (0, 0, 0), width=4, height=4)},

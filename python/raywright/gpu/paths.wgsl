@@ -215,7 +215,7 @@ fn leave_scene(@builtin(global_invocation_id) id: vec3<u32>) {
 }
 
 // The greatest chance to go on for light that glass has held so many times in a row, as the core has it: it brings
-// nothing to anybody.
+// nothing to anybody. Here that goes for rough glass as well: all wait for the last path.
 fn kept(held: u32) -> f32 {
     return select(1.0, 1.0 - 1.0 / 32.0, held >= 64u);
 }
@@ -274,7 +274,8 @@ fn shade(i: u32, kind: u32) {
         return;
     }
     path.scale *= next.eta * next.eta;
-    path.held = select(0u, path.held + 1u, looks.kind == GLASS && next.eta == 1.0);
+    let is_glass = looks.kind == GLASS || looks.kind == ROUGH_GLASS;
+    path.held = select(0u, path.held + 1u, is_glass && next.eta == 1.0);
     path.bounce++;
     if path.bounce >= job.roulette_depth {
         let survival = min(min(sqrt(most(path.throughput) * path.scale), 1.0 - 1.0 / 4096.0), kept(path.held));

@@ -1,5 +1,6 @@
 """Path tracing on a device: kernels by turns, and sums of samples back."""
 
+import time
 from collections.abc import Callable, Iterator
 from typing import Any, TypeAlias
 
@@ -39,6 +40,8 @@ _PATH, _SHADOW, _PIXEL = 80, 64, 80
 _LISTS, _GROUP = 8, 64
 # Paths at once, where a device has room for them.
 _CAPACITY = 1 << 20
+# Seconds that a piece of work should take; paths at first, and at least.
+_PIECE, _FIRST, _LEAST = 0.25, 1 << 16, 1 << 15
 # Bounces between looks at how many paths are left.
 _BOUNCES = 8
 # The bindings before those of the scene.
@@ -164,6 +167,7 @@ class Wavefront:
         self._pipelines = {entry: self._pipeline(entry) for entry in entries}
         self._groups: dict[tuple[str, int], Any] = {}
         # Drivers may compile when they are first asked.
+        self._wave = min(_FIRST, self._capacity)
         self._block(0, 1, 0, 1, lambda: None)
 
     def _make(self, lit: NDArray[np.void]) -> None:
@@ -253,15 +257,16 @@ class Wavefront:
         """
         sums = np.empty((self._pixels, 9))
         dropped = 0
-        block = min(self._capacity, self._pixels)
-        for first in range(0, self._pixels, block):
-            count = min(block, self._pixels - first)
+        first = 0
+        while first < self._pixels:
+            count = min(self._wave, self._pixels - first)
             film = self._block(first, count, first_sample, samples, look)
             rows = film.reshape(count, 5, 4)[:, :, :3].astype(np.float64)
             sums[first : first + count] = np.concatenate(
                 [rows[:, 0] + rows[:, 1], rows[:, 2] + rows[:, 3], rows[:, 4]], axis=1
             )
             dropped += int(film.view(np.uint32).reshape(count, 20)[:, 3].sum(dtype=np.int64))
+            first += count
         return np.maximum(sums, 0.0), dropped
 
     def _block(
@@ -272,21 +277,36 @@ class Wavefront:
         encoder = self._device.create_command_encoder()
         encoder.clear_buffer(self._film)
         queue.submit([encoder.finish()])
-        at_once = max(self._capacity // pixels, 1)
-        for some in range(0, samples, at_once):
-            count = min(at_once, samples - some)
+        some = 0
+        while some < samples:
+            count = min(max(self._wave // pixels, 1), samples - some)
             self._job["first_pixel"], self._job["pixels"] = first, pixels
             self._job["first_sample"], self._job["samples"] = first_sample + some, count
             for now, buffer in enumerate(self._jobs):
                 self._job["now"] = now
                 queue.write_buffer(buffer, 0, self._job.reshape(1).view(np.uint8))
+            longest = 0.0
             for steps, is_last in self._rounds():
+                began = time.perf_counter()
                 self._submit(steps, pixels * count)
+                left = np.frombuffer(queue.read_buffer(self._counts), np.uint32)[:2].any()
+                longest = max(longest, time.perf_counter() - began)
                 look()
-                if is_last or not np.frombuffer(queue.read_buffer(self._counts), np.uint32)[:2].any():
+                if is_last or not left:
                     break
+            self._keep_pace(pixels * count, longest)
+            some += count
             self._submit([("gather", 0, -(-pixels // _GROUP))], 0)
         return np.frombuffer(queue.read_buffer(self._film, size=_PIXEL * pixels), np.float32)
+
+    def _keep_pace(self, paths: int, took: float) -> None:
+        """Have more paths or fewer at work next time, so that nobody waits for long who wants to end it.
+
+        Sums are the same: paths of a pixel join them in the order of their numbers.
+        """
+        if 2 * paths >= self._wave:
+            wave = self._wave * min(max(_PIECE / max(took, 1e-6), 0.25), 4.0)
+            self._wave = min(max(int(wave) // _GROUP * _GROUP, _LEAST), self._capacity)
 
     def _rounds(self) -> Iterator[tuple[list[Step], bool]]:
         """Yield what is to be done until paths end, and whether they have ended then for sure."""
