@@ -16,6 +16,7 @@ from pathlib import Path
 import pytest
 
 import raywright as rw
+from raywright.viewer.texts import MODULES
 
 ROOT = Path(__file__).parents[2]
 MOST_BYTES = 8_000_000
@@ -60,6 +61,10 @@ def test_wheel_is_for_all_pythons_from_3_10_and_holds_the_package_alone():
     names = zipfile.ZipFile(wheel).namelist()
     assert {"raywright/__init__.py", "raywright/_core.pyi", "raywright/py.typed"} <= set(names)
     assert {f"raywright/viewer/page.{kind}" for kind in ("html", "css", "js")} <= set(names)
+    parts = {
+        path.name for path in (ROOT / "python/raywright/viewer").iterdir() if path.suffix in (".js", ".wgsl")
+    }
+    assert {f"raywright/viewer/{part}" for part in {*parts, *MODULES, "widget.js"}} <= set(names)
     kernels = ("trace", "closest", "occluded", "probe", "shading", "walk", "paths")
     assert {f"raywright/gpu/{kernel}.wgsl" for kernel in kernels} <= set(names)
     assert sum(name.endswith((".so", ".pyd")) for name in names) == 1

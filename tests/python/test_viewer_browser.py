@@ -1,45 +1,28 @@
-"""The viewer in a real browser: Debian's chromium or the like, without a window, driven by playwright.
+"""The viewer in a real browser, by the core's pictures."""
 
-``pip install '.[browser]'`` and ``apt-get install chromium`` (or chromium-headless-shell) bring both.
-"""
-
-import base64
-import io
-import shutil
 import time
 
 import numpy as np
 import pytest
-from PIL import Image as Pillow
 
 import raywright as rw
 
-playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
-NAMES = ("chromium", "chromium-headless-shell", "chromium-browser", "google-chrome")
-CHROMIUM = next(filter(None, map(shutil.which, NAMES)), None)
-pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="chromium is not installed")
+pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
+from viewer_browser import decoded, is_state, launched, needs_chromium, opened, told
+
+pytestmark = needs_chromium
 
 
 @pytest.fixture(scope="module")
 def browser():
-    with playwright.sync_playwright() as driver:
-        # Its sandbox does not work for root or within containers, and it sees nothing but our own page.
-        one = driver.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox", "--disable-gpu"])
+    with launched("--disable-gpu") as one:
         yield one
-        one.close()
 
 
 @pytest.fixture
 def page(browser):
-    """An empty page that must have nothing to complain of."""
-    page = browser.new_page(viewport={"width": 900, "height": 700})
-    complaints = []
-    page.on("console", lambda told: complaints.append(told.text) if told.type == "error" else None)
-    page.on("pageerror", lambda error: complaints.append(str(error)))
-    yield page
-    if not page.is_closed():
-        page.close()
-    assert complaints == []
+    with opened(browser) as page:
+        yield page
 
 
 @pytest.fixture(scope="module")
@@ -54,16 +37,7 @@ def shown(page, wanted="true", seconds=20):
     number, url = page.evaluate(
         "() => { const c = document.getElementById('picture'); return [+c.dataset.number, c.toDataURL()]; }"
     )
-    data = base64.b64decode(url.partition(",")[2])
-    return number, np.asarray(Pillow.open(io.BytesIO(data)).convert("RGB"), float)
-
-
-def told(page, name):
-    return page.text_content(f"#{name}")
-
-
-def is_state(state):
-    return f"document.body.dataset.state === '{state}'"
+    return number, decoded(url.partition(",")[2])
 
 
 def test_the_page_shows_a_picture_within_two_seconds_and_it_gets_better(page, knot):
@@ -147,20 +121,36 @@ def test_nothing_under_the_picture_is_cut_in_a_narrow_window(page, knot):
             assert page.evaluate("document.getElementById('picture').clientHeight") > height / 3
 
 
+def test_what_is_said_under_the_picture_does_not_begin_it_anew_for_ever(page, knot):
+    say = "text => document.getElementById('interval').textContent = text"
+    with rw.view(*knot, samples=1) as viewer:
+        page.set_viewport_size({"width": 600, "height": 400})
+        page.goto(viewer.url)
+        shown(page)
+        sizes = []
+        for i in range(6):
+            page.evaluate(say, "0.000123 to 0.000124 " * (9 * (i % 2)))
+            # Longer than a window has to keep its size.
+            time.sleep(0.2)
+            sizes.append(page.evaluate("document.getElementById('stage').clientHeight"))
+        assert len(set(sizes)) > 1
+        assert viewer._session._wanted <= 4
+
+
 def test_the_picture_fills_the_window_and_is_exposed_by_the_page(page, knot):
     with rw.view(*knot, samples=4) as viewer:
         page.goto(viewer.url)
         shown(page, is_state("done"))
-        wide, high = page.evaluate("[canvas.clientWidth, canvas.clientHeight]")
-        _, plain = shown(page, f"canvas.height === {high} && {is_state('done')}")
+        wide, high = page.evaluate("[picture.clientWidth, picture.clientHeight]")
+        _, plain = shown(page, f"picture.height === {high} && {is_state('done')}")
         assert plain.shape == (high, high, 3)
         assert wide > high
         page.set_viewport_size({"width": 500, "height": 700})
-        page.wait_for_function("() => canvas.height === 500 && canvas.width === 500", timeout=10_000)
+        page.wait_for_function("() => picture.height === 500 && picture.width === 500", timeout=10_000)
         _, plain = shown(page, is_state("done"))
         for _ in range(4):
             page.keyboard.press("]")
-        _, brighter = shown(page, f"canvas.dataset.exposure === '1' && {is_state('done')}")
+        _, brighter = shown(page, f"picture.dataset.exposure === '1' && {is_state('done')}")
         assert told(page, "stops") == "1"
         assert brighter.mean() > 1.2 * plain.mean()
         page.keyboard.press("c")
@@ -225,5 +215,5 @@ def test_pages_from_elsewhere_get_nothing(browser, knot):
         assert not viewer.rendering
         page.goto(viewer.url)
         shown(page, is_state("done"))
-        assert page.evaluate("view.zoom") == 1
+        assert page.evaluate("viewer.view.zoom") == 1
     page.close()

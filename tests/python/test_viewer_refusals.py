@@ -11,6 +11,7 @@ import pytest
 from viewer_page import ask
 
 import raywright as rw
+from raywright.viewer.texts import MODULES, SHADERS
 
 SIZE = {"width": 96, "height": 72}
 
@@ -39,7 +40,9 @@ def test_it_listens_on_this_machine_alone(viewer):
 
 
 def test_the_page_is_served_with_what_keeps_others_out(viewer):
-    for path, kind in (("", "text/html"), ("page.js", "text/javascript"), ("page.css", "text/css")):
+    scripts = [(name, "text/javascript") for name in ("page.js", *MODULES)]
+    shaders = [(name, "text/plain") for name in SHADERS]
+    for path, kind in (("", "text/html"), ("page.css", "text/css"), *scripts, *shaders):
         status, headers, body = ask(viewer, path)
         assert status == 200
         assert headers["Content-Type"].startswith(kind)
@@ -67,7 +70,16 @@ def test_foreign_hosts_and_origins_are_refused(viewer):
     ]
     view = {"method": "POST", "body": "{}", "Content_Type": "application/json"}
     for headers in foreign:
-        for path, how in (("", {}), ("events", {}), ("picture.png", {}), ("view", view)):
+        for path, how in (
+            ("", {}),
+            ("events", {}),
+            ("news", {}),
+            ("picture.png", {}),
+            ("boxes/0", {}),
+            ("view", view),
+            ("pick", view),
+            ("drawing", view),
+        ):
             status, _, body = ask(viewer, path, **how, **headers)
             assert (status, body.count(b"\n")) == (403, 1), headers
     for host in (f"127.0.0.1:{port}", f"localhost:{port}"):
@@ -84,7 +96,19 @@ def test_nothing_is_found_without_the_token(viewer):
         assert urlsplit(other.url).path != urlsplit(viewer.url).path
 
 
-@pytest.mark.parametrize("path", ["events2", "page.html", "../server.py", "view", "..%2fserver.py"])
+@pytest.mark.parametrize(
+    "path",
+    [
+        "events2",
+        "page.html",
+        "../server.py",
+        "view",
+        "..%2fserver.py",
+        "drawing",
+        "widget.js",
+        "arrays/1/nodes",
+    ],
+)
 def test_nothing_else_is_served(viewer, path):
     assert ask(viewer, path)[0] == 404
 

@@ -25,11 +25,11 @@ def turn(viewer, **view):
 
 
 @contextmanager
-def page(viewer_or_url):
+def page(viewer_or_url, path="events"):
     """What a page hears: pairs of an event's name and what it tells."""
     at = urlsplit(getattr(viewer_or_url, "url", viewer_or_url))
     with closing(HTTPConnection(at.hostname, at.port, timeout=20)) as connection:
-        connection.request("GET", at.path + "events")
+        connection.request("GET", at.path + path)
         answer = connection.getresponse()
         assert (answer.status, answer.headers["Content-Type"]) == (200, "text/event-stream")
 

@@ -11,23 +11,30 @@ from ..io.tone import DEFAULT, check_tone
 from ..rendering.filters import BoxFilter, Filter
 from ..rendering.render import check
 from ..rendering.samplers import Sampler
+from ..scene.framing import framed
 from ..scene.scene import Scene
+from ..scenes.studio import lit
 
 if TYPE_CHECKING:
     from .server import Server
     from .session import Session
+    from .widget import ViewerWidget
 
 __all__ = ["Viewer", "view"]
 
 _PATH = Path()
 _FILTER: Filter = BoxFilter()
 _ERROR = 1e-4
+_NO_WIDGET = (
+    "the viewer in a notebook needs anywidget, which is not installed: pip install 'raywright[widget]'"
+)
 
 
 class Viewer:
     """A scene that is served to the browsers of this machine until it is closed; `view` makes it.
 
-    It is a context manager, which closes it at the end.
+    It is a context manager, which closes it at the end. In a notebook it shows itself in its cell, by
+    `widget`, if the extra ``raywright[widget]`` is installed.
 
     Attributes
     ----------
@@ -40,6 +47,7 @@ class Viewer:
     def __init__(self, server: "Server", session: "Session") -> None:
         self.url = server.url
         self._server, self._session = server, session
+        self._widget: ViewerWidget | None = None
         self._closed = threading.Event()
         # It must not be left to the end of the interpreter, which does not wait for it.
         atexit.register(self.close)
@@ -74,6 +82,27 @@ class Viewer:
         """
         check_integrator("integrator", integrator)
         self._session.show(integrator)
+        if self._widget is not None:
+            self._widget.again()
+
+    def widget(self) -> "ViewerWidget":
+        """Return the viewer as a widget for notebooks, which shows itself where a cell ends with it.
+
+        It is the page, by the notebook's own messages: it works with a kernel on another machine, too.
+        Nothing is rendered while it is not seen.
+
+        Raises
+        ------
+        ImportError
+            If anywidget is not installed.
+        """
+        if self._widget is None:
+            try:
+                from .widget import ViewerWidget
+            except ImportError as missing:
+                raise ImportError(_NO_WIDGET) from missing
+            self._widget = ViewerWidget(self._session)
+        return self._widget
 
     def wait(self) -> None:
         """Wait until it is closed, or Ctrl-C is pressed, which closes it."""
@@ -92,9 +121,19 @@ class Viewer:
             self._closed.set()
             atexit.unregister(self.close)
             self._session.close()
+            if self._widget is not None:
+                self._widget.end()
             self._server.shutdown()
             self._server.server_close()
             self._thread.join()
+
+    def _repr_mimebundle_(self, include: Any = None, exclude: Any = None) -> Any:
+        """Return what a notebook shows: the widget, or where the page is and what is missing."""
+        try:
+            widget = self.widget()
+        except ImportError as missing:
+            return {"text/plain": f"{self!r}\n({missing})"}
+        return widget._repr_mimebundle_(include=include, exclude=exclude)
 
     def __enter__(self) -> "Viewer":
         return self
@@ -108,7 +147,7 @@ class Viewer:
 
 def view(
     scene: Scene,
-    camera: AnyCamera,
+    camera: AnyCamera | None = None,
     integrator: AnyIntegrator = _PATH,
     samples: int | None = None,
     error: float | None = None,
@@ -127,16 +166,23 @@ def view(
     port: int = 0,
     open: bool = False,
 ) -> Viewer:
-    """Show a scene in the browser while it renders, with its error, and let the mouse move the camera.
+    """Show a scene in the browser, or in a notebook's cell, and let the mouse move the camera.
 
-    The page is served to this machine alone, as long as the process lives or until the viewer is closed. A
-    small picture comes at once and a better one after it; moving the camera begins anew. While no page is
-    open nothing is rendered.
+    The page is served to this machine alone, as long as the process lives or until the viewer is closed.
+    Where the browser has WebGPU, and the scene is of meshes, it draws by itself: a ray and its shadow a pixel
+    while the camera moves, and paths, more and more of them, once it stands; what of materials, lights and
+    integrators it does not know the core renders once the camera stands. Elsewhere all pictures are the
+    core's: a small one comes at once and a better one after it, with its error. The key g changes between
+    both. While no page is open nothing is rendered. In a notebook, the viewer shows itself where a cell ends
+    with it (`Viewer.widget`).
 
     Parameters
     ----------
-    scene, camera, integrator, samples, error, seconds, seed, threads, adaptive, clamp, sampler, filter
+    scene, integrator, samples, error, seconds, seed, threads, adaptive, clamp, sampler, filter
         As `render` has them. If no limit is given, it renders to a relMSE of 1e-4.
+    camera : Camera or another kind, optional
+        From where to begin with. If not given, all of the scene is in the picture, and a scene without any
+        light is lit as by a studio's lamps.
     exposure, tone
         How pictures are shown, as `Image.save` has it. The page changes the exposure without a new render.
     fit : bool
@@ -169,6 +215,10 @@ def view(
     port, exposure = integer("port", port, 0, 65535), check_tone(exposure, tone)
     if samples is None and error is None and seconds is None:
         error = _ERROR
+    if camera is None and isinstance(scene, Scene):
+        camera = framed(scene.shapes)
+        if not _shines(scene):
+            scene = lit(scene.shapes, camera)
     check(scene, camera, integrator, samples, error, seconds, seed, threads, adaptive, clamp, sampler, filter)
     how: dict[str, Any] = {
         "samples": samples,
@@ -197,3 +247,10 @@ def view(
 
         webbrowser.open(viewer.url)
     return viewer
+
+
+def _shines(scene: Scene) -> bool:
+    """Whether there is any light in a scene."""
+    inside = (one for shape in scene.shapes for one in getattr(shape, "shapes", (shape,)))
+    lights = scene.lights or scene.environment is not None
+    return bool(lights) or any(getattr(shape, "emission", None) is not None for shape in inside)

@@ -40,19 +40,11 @@ def edges(camera: AnyCamera, corners: NDArray[np.float64]) -> NDArray[np.float64
         The ends of edges, or of what of them is in front of the camera, from (0, 0) at the upper left of the
         picture to (1, 1) at its lower right.
     """
-    size = np.linalg.norm(np.ptp(corners, axis=1), axis=1)
-    corners = corners[np.argsort(-size, kind="stable")[:_MOST]]
+    corners = largest(corners)
     ends = corners[:, _EDGES].reshape(-1, 2, 3)
-    picture = np.array([(0, 0), (camera.width, 0), (0, camera.height), (camera.width, camera.height)], float)
-    origins, ways = camera.rays_through(picture)
-    if isinstance(camera, Orthographic):
-        # A point is across and down from where the rays start, and on along them.
-        axes = np.stack([origins[1] - origins[0], origins[2] - origins[0], ways[0]])
-    else:
-        # Ways to the corners of a plane, which are those of a parallelogram.
-        lengths = np.linalg.svd(np.stack([ways[0], -ways[1], -ways[2], ways[3]], axis=1))[2][-1]
-        plane = ways * (lengths * np.sign(lengths[0]))[:, np.newaxis]
-        axes = np.stack([plane[1] - plane[0], plane[2] - plane[0], plane[0]])
+    origins, ways = spread(camera)
+    # A point is across and down from where rays start, and on along them; or it is where a way meets a plane.
+    axes = np.stack([*origins[1:], ways[0]] if isinstance(camera, Orthographic) else [*ways[1:], ways[0]])
     seen = (ends - origins[0]) @ np.linalg.inv(axes)
     cut = seen[..., 2]
     nearest = _NEAREST * max(float(np.abs(cut).max(initial=0.0)), np.finfo(float).tiny)
@@ -60,6 +52,31 @@ def edges(camera: AnyCamera, corners: NDArray[np.float64]) -> NDArray[np.float64
     ends = seen[..., :2] if isinstance(camera, Orthographic) else seen[..., :2] / seen[..., 2:]
     beside = (np.abs(ends - 0.5) > _BESIDE).any(axis=(1, 2))
     return ends[~beside]
+
+
+def largest(corners: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return boxes, (K, 8, 3), the largest first; of more than 20,000 those alone."""
+    size = np.linalg.norm(np.ptp(corners, axis=1), axis=1)
+    return corners[np.argsort(-size, kind="stable")[:_MOST]]
+
+
+def spread(camera: AnyCamera) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return how the rays of a camera spread over its picture; edges must be straight there (`check_flat`).
+
+    Returns
+    -------
+    origins, ways : (3, 3) float64
+        The ray at the upper left of the picture, what is added to it across the picture, and what is added
+        down: where rays start, and which way they go, at no particular length.
+    """
+    picture = np.array([(0, 0), (camera.width, 0), (0, camera.height), (camera.width, camera.height)], float)
+    origins, ways = camera.rays_through(picture)
+    if not isinstance(camera, Orthographic):
+        # Ways to the corners of a plane, which are those of a parallelogram.
+        lengths = np.linalg.svd(np.stack([ways[0], -ways[1], -ways[2], ways[3]], axis=1))[2][-1]
+        ways = ways * (lengths * np.sign(lengths[0]))[:, np.newaxis]
+    starts, towards = (np.stack([one[0], one[1] - one[0], one[2] - one[0]]) for one in (origins, ways))
+    return starts, towards
 
 
 def drawn(pixels: NDArray[np.uint8], lines: NDArray[np.float64]) -> NDArray[np.uint8]:

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from ..arrays import number
 from ..cameras import AnyCamera, Camera, Orthographic, Pose, ThinLens
+from .boxes import check_flat, spread
 
 # Degrees from straight above or below: nearer than that, which way is up would not be told.
 _POLE = 1.0
@@ -67,6 +68,10 @@ class View:
             values[name] = value
         return cls(**values)
 
+    def told(self) -> dict[str, float]:
+        """Return it for JSON, as `read` takes it."""
+        return {name: getattr(self, name) for name in self.LIMITS}
+
 
 class Orbit:
     """A camera that goes around the point that it looks at.
@@ -98,6 +103,32 @@ class Orbit:
         """The least and the greatest elevation of a view: what is beyond comes to the same as these."""
         most = max(90.0 - _POLE, abs(self._elevation))
         return -most - self._elevation, most - self._elevation
+
+    def told(self) -> dict[str, Any]:
+        """Return all that it takes to go around by oneself, for JSON: how rays spread at the start, and axes.
+
+        Raises
+        ------
+        ValueError
+            If edges are not straight in the camera's pictures.
+        """
+        check_flat(self._camera)
+        origins, ways = spread(self._camera)
+        parts = {
+            "position": self._position,
+            "pivot": self._pivot,
+            "up": self._up,
+            "right": self._right,
+            "pictureUp": self._picture_up,
+            "origins": origins,
+            "ways": ways,
+        }
+        return {
+            **{name: array.tolist() for name, array in parts.items()},
+            "height": self._height,
+            "elevations": self.elevations,
+            "parallel": isinstance(self._camera, Orthographic),
+        }
 
     def camera(self, view: View) -> AnyCamera:
         """Return the camera of a view: the one it started with, to the bit, if nothing was moved."""

@@ -13,28 +13,16 @@ import socket
 import socketserver
 import sys
 import time
-from functools import lru_cache
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
-from importlib.resources import files
 from typing import Any
 
-from ..arrays import integer, number
-from .orbit import View
+from .requests import bytes_of, is_known, scene_told, told
 from .session import Session
+from .texts import FILES, text
 
 HOST = "127.0.0.1"
-# The page, by what follows the token.
-_FILES = {
-    "": ("page.html", "text/html; charset=utf-8"),
-    "page.css": ("page.css", "text/css; charset=utf-8"),
-    "page.js": ("page.js", "text/javascript; charset=utf-8"),
-}
 _MOST_BODY = 4096
-# Pixels of a window, and stops of exposure.
-_WINDOW, _EXPOSURE = (16, 4096), (-20.0, 20.0)
-# Steps from the root of a tree to boxes.
-_DEEPEST = 1000
 _MOST_PAGES = 32
 # How soon it is seen that a page was closed, and how long a silent connection is kept.
 _LOOK = 0.1
@@ -178,50 +166,40 @@ class _Handler(BaseHTTPRequestHandler):
         return rest[0]
 
     def _get(self, path: str) -> None:
-        if path in _FILES:
-            name, kind = _FILES[path]
-            self._send(HTTPStatus.OK, kind, _file(name))
+        session = self.server.session
+        if path in FILES:
+            self._send(HTTPStatus.OK, FILES[path], text(path).encode())
         elif path == "picture.png":
-            frame = self.server.session.next_frame(0, 0.0)
+            frame = session.next_frame(0, 0.0)
             if frame is None:
                 raise _RefusedError(HTTPStatus.NOT_FOUND, "there is no picture yet")
             more = {"Content-Disposition": 'attachment; filename="raywright.png"'}
             self._send(HTTPStatus.OK, "image/png", frame.file(".png"), more)
-        elif path == "events":
-            self._events()
+        elif path in ("events", "news"):
+            self._events(session, with_pictures=path == "events")
+        elif (data := bytes_of(session, path)) is not None:
+            # The address of an array holds its version, and what it holds never changes.
+            kept = (
+                {"Cache-Control": "private, max-age=86400, immutable"} if path.startswith("arrays/") else {}
+            )
+            self._send(HTTPStatus.OK, "application/octet-stream", data, kept)
         else:
             raise _RefusedError(HTTPStatus.NOT_FOUND, "nothing is here")
 
     def _post(self, path: str) -> None:
-        all_ = {"view": self._view, "window": self._window, "exposure": self._exposure, "boxes": self._boxes}
-        asked = all_.get(path)
-        if asked is None:
+        if not is_known(path):
             raise _RefusedError(HTTPStatus.NOT_FOUND, "nothing is here")
         if self.headers.get_content_type() != "application/json":
             raise _RefusedError(HTTPStatus.BAD_REQUEST, f"a {path} must be application/json")
         try:
-            asked(json.loads(self._body()))
+            answer = told(self.server.session, path, json.loads(self._body()))
         except (ValueError, TypeError, RecursionError) as error:
             raise _RefusedError(HTTPStatus.BAD_REQUEST, " ".join(str(error).split())[:200]) from error
-        self._send(HTTPStatus.NO_CONTENT, None, b"")
-
-    def _view(self, told: Any) -> None:
-        self.server.session.turn(View.read(told))
-
-    def _window(self, told: Any) -> None:
-        width, height = _named(told, "a window", "width", "height")
-        self.server.session.fit(integer("width", width, *_WINDOW), integer("height", height, *_WINDOW))
-
-    def _exposure(self, told: Any) -> None:
-        (given,) = _named(told, "an exposure", "exposure")
-        value, (least, most) = number("exposure", given), _EXPOSURE
-        if not least <= value <= most:
-            raise ValueError(f"exposure must be between {least:g} and {most:g}, got {value:g}")
-        self.server.session.expose(value)
-
-    def _boxes(self, told: Any) -> None:
-        (depth,) = _named(told, "boxes", "depth")
-        self.server.session.box(None if depth is None else integer("depth", depth, 0, _DEEPEST))
+        if answer is None:
+            self._send(HTTPStatus.NO_CONTENT, None, b"")
+        else:
+            data = json.dumps(answer, allow_nan=False).encode()
+            self._send(HTTPStatus.OK, "application/json", data)
 
     def _body(self) -> bytes:
         told = self.headers.get("Content-Length", "")
@@ -235,36 +213,53 @@ class _Handler(BaseHTTPRequestHandler):
             raise _RefusedError(HTTPStatus.BAD_REQUEST, "the body ends too early")
         return body
 
-    def _events(self) -> None:
-        """Send pictures as server-sent events until the page is closed."""
-        server, session = self.server, self.server.session
+    def _events(self, session: Session, with_pictures: bool) -> None:
+        """Send pictures, or only where the camera is, as server-sent events until the page is closed."""
+        server = self.server
         if server.pages >= _MOST_PAGES:
             raise _RefusedError(HTTPStatus.SERVICE_UNAVAILABLE, "too many pages look at this already")
         server.pages += 1
         self.close_connection = True
         try:
             self._head(HTTPStatus.OK, {"Content-Type": "text/event-stream", "Connection": "close"})
-            width, height = session.size
-            scene = {
-                "width": width,
-                "height": height,
-                "elevations": session.elevations,
-                "exposure": session.exposure,
-                "fits": session.fits,
-            }
-            self._event("scene", scene)
-            with session.watched():
-                self._pictures(session)
+            self._event("scene", scene_told(session))
+            if with_pictures:
+                with session.watched():
+                    self._pictures(session)
+            else:
+                self._news(session)
         except OSError:
             # The page was closed while something was on its way.
             pass
         finally:
             server.pages -= 1
 
+    def _news(self, session: Session) -> None:
+        """Tell where the camera is moved to, by whichever page, and of other integrators."""
+        last, spoke = session.news, time.monotonic()
+        while not session.closed and not _has_left(self.connection):
+            view, shown = news = session.next_news(last, _LOOK)
+            if news != last:
+                if shown != last[1]:
+                    self._event("again", {})
+                self._event("view", view.told())
+                last = news
+            elif session.trouble is not None:
+                self._event("trouble", {"line": session.trouble})
+                return
+            elif time.monotonic() - spoke > 0.5 * _SILENCE:
+                self.wfile.write(b":\n\n")
+            else:
+                continue
+            spoke = time.monotonic()
+
     def _pictures(self, session: Session) -> None:
-        last, spoke = 0, time.monotonic()
+        last, shown, spoke = 0, session.news[1], time.monotonic()
         while not session.closed and not _has_left(self.connection):
             frame = session.next_frame(last, _LOOK)
+            if shown != session.news[1]:
+                shown = session.news[1]
+                self._event("again", {})
             if frame is not None:
                 last = frame.number
                 kind, data = frame.data
@@ -309,15 +304,3 @@ def _has_left(connection: socket.socket) -> bool:
     else:
         ready = bool(select.select([connection], [], [], 0)[0])
     return ready and not connection.recv(1, socket.MSG_PEEK)
-
-
-def _named(told: Any, what: str, *names: str) -> list[Any]:
-    """Return what an object has by these names, and by no others."""
-    if not isinstance(told, dict) or set(told) != set(names):
-        raise ValueError(f"{what} must be an object with {' and '.join(names)}")
-    return [told[name] for name in names]
-
-
-@lru_cache
-def _file(name: str) -> bytes:
-    return (files(__package__) / name).read_bytes()

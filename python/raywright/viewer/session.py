@@ -19,12 +19,15 @@ from ..rendering.image import Image
 from ..rendering.render import render
 from ..rendering.so_far import ImageSoFar
 from ..scene.scene import Scene
-from .boxes import check_flat, drawn, edges
+from .boxes import check_flat, drawn, edges, largest
+from .drawn import Drawn
 from .orbit import Orbit, View, resized, scaled
 
 # What a preview may take: its samples, and its seconds.
 _SAMPLES = 4
-_SECONDS = 0.06
+_SECONDS = 0.03
+# How long a camera may rest, in seconds, before it counts as standing: moves of a mouse are nearer.
+_REST = 0.02
 # Pixels of the first one, and how many times smaller than the picture any may be in each direction.
 _PIXELS = 20_000
 _LEAST_DIVISOR, _MOST_DIVISOR = 2, 32
@@ -97,7 +100,7 @@ class Frame:
             "width": width,
             "height": height,
             "size": self.size,
-            "camera": re.sub(r"\b([A-Z]\w*\()", r"rw.\1", repr(self.camera)),
+            "camera": line_of(self.camera),
             "exposure": self.exposure,
             "boxes": None if self.boxes is None else int(self.boxes.depth[0]),
             "samples": image.samples,
@@ -105,7 +108,7 @@ class Frame:
             "error": [None if math.isnan(value) else value for value in error],
             "trusted": image.error.trusted,
             "warnings": list(image.warnings),
-            "view": {name: getattr(view, name) for name in View.LIMITS},
+            "view": view.told(),
         }
 
 
@@ -152,7 +155,7 @@ class Session:
         # What is wanted, by number, and the last of these that was rendered to its end.
         self._wanted, self._done = 1, 0
         self._frame: Frame | None = None
-        self._count = 0
+        self._count = self._shown = 0
         self._trouble: str | None = None
         self._divisor = _divisor(camera.width * camera.height / _PIXELS)
         self._watchers, self._left = 0, -math.inf
@@ -193,6 +196,21 @@ class Session:
         return self._orbit.elevations
 
     @property
+    def view(self) -> View:
+        """The view that is wanted now."""
+        return self._view
+
+    @property
+    def depth(self) -> int | None:
+        """Which level of the accelerator's boxes is drawn over pictures."""
+        return None if self._boxes is None else int(self._boxes.depth[0])
+
+    @cached_property
+    def drawn(self) -> Drawn:
+        """What a page needs to draw the scene itself."""
+        return Drawn(self._scene, self._orbit, self._integrator, self._how, self._tone)
+
+    @property
     def camera(self) -> AnyCamera:
         """The camera of the view that is wanted now."""
         return self._orbit.camera(self._view)
@@ -209,6 +227,8 @@ class Session:
         """Show what another integrator makes of the scene. The render before ends at once."""
         with self._changed:
             self._integrator = integrator
+            self.drawn.show(integrator)
+            self._shown += 1
             self._wanted += 1
             self._changed.notify_all()
 
@@ -252,6 +272,27 @@ class Session:
     def _tree(self) -> TreeBoxes:
         return self._scene.tree()
 
+    def corners(self, depth: int) -> bytes:
+        """Return the boxes of a level, (K, 8, 3) float32 in box units: of many the largest."""
+        return self.drawn.local(largest(self._tree.at(depth).corners)).tobytes()
+
+    def pick(self, view: View, x: float, y: float) -> dict[str, Any]:
+        """Tell what is seen at a place of the picture of a view, from (0, 0) at its upper left to (1, 1)."""
+        camera = resized(self._orbit.camera(view), *self._size)
+        (column, right), (row, down) = (
+            divmod(share * size, 1.0) for share, size in zip((x, y), self._size, strict=True)
+        )
+        hit = self._scene.pick(camera, int(column), int(row), (right, down))
+        if not hit.hit:
+            return {"shape": None}
+        return {
+            "shape": int(hit.shape_id),
+            "name": str(hit.names) or None,
+            "face": int(hit.primitive),
+            "position": hit.position.tolist(),
+            "t": float(hit.t),
+        }
+
     def _show_again(self) -> None:
         """Show the last picture as pictures are to be shown now; whoever asks holds the lock."""
         if self._frame is not None:
@@ -290,6 +331,17 @@ class Session:
             frame = self._frame
             return frame if frame is not None and frame.number > after else None
 
+    @property
+    def news(self) -> tuple[View, int]:
+        """The view that is wanted now, and how many other integrators were shown so far."""
+        return self._view, self._shown
+
+    def next_news(self, last: tuple[View, int], seconds: float) -> tuple[View, int]:
+        """Return `news`, or wait for a time for others than the last."""
+        with self._changed:
+            self._changed.wait_for(lambda: self.news != last or self._closed, seconds)
+            return self.news
+
     def close(self) -> None:
         """End all work."""
         with self._changed:
@@ -315,7 +367,8 @@ class Session:
                 self._rendering = True
             try:
                 self._preview(replace(job, is_preview=True))
-                self._picture(job)
+                if self._rests(job):
+                    self._picture(job)
             except _UnwantedError:
                 pass
             except Exception as error:
@@ -325,6 +378,11 @@ class Session:
                 return
             finally:
                 self._rendering = False
+
+    def _rests(self, job: "_Job") -> bool:
+        """Wait for a moment whether something else is wanted; whether nothing was."""
+        with self._changed:
+            return not self._changed.wait_for(lambda: self._closed or self._wanted != job.number, _REST)
 
     def _preview(self, job: "_Job") -> None:
         """Show something soon: fewer pixels, and few samples of them."""
@@ -399,6 +457,11 @@ class _Job:
         if not self.session.is_wanted(self):
             raise _UnwantedError
         return False
+
+
+def line_of(camera: AnyCamera) -> str:
+    """Return the line of Python that makes a camera."""
+    return re.sub(r"\b([A-Z]\w*\()", r"rw.\1", repr(camera))
 
 
 def _divisor(times: float) -> int:
