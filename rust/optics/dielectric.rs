@@ -1,6 +1,7 @@
 //! Glass, water and the like.
 
 mod lanes;
+mod open;
 
 pub use lanes::DielectricLanes;
 
@@ -35,6 +36,10 @@ struct Rough<F: Lossy> {
     facets: F,
     interface: F::Interface,
 }
+
+/// How much what bare facets would reflect counts for which way is drawn, beside what these do: where a film reflects
+/// nothing, they still do as far as other facets are in the way.
+const BARE: f64 = 0.25;
 
 /// The index beyond a surface over that on the side of `w`, for the index below over that above.
 #[inline(always)]
@@ -92,8 +97,11 @@ impl<F: Lossy, S: Split> Dielectric<F, S> {
     /// then counts as smooth: Fresnel's reflection is all that can be told.
     const INVISIBLE: f64 = 1e-6;
 
-    /// As [`Dielectric::of`], of an interface that divides light as it says. What facets lose and give back is that of
-    /// bare ones.
+    /// As [`Dielectric::of`], of an interface that divides light as it says.
+    ///
+    /// What facets lose and give back is that of bare ones, where something gives back at all. So that nothing is lost
+    /// or gained, what lies on a facet changes how light is divided there only as far as none of it is stopped by other
+    /// facets on either way ([`open::openness`]): of that part as much more is reflected as less goes through.
     pub fn with(eta: f64, facets: Option<F>, split: S) -> Self {
         let facets = facets.filter(|_| (eta - 1.0).abs() >= Self::INVISIBLE);
         Self { eta, rough: facets.map(|facets| Rough { facets, interface: facets.interface(eta) }), split }
@@ -117,6 +125,19 @@ impl<F: Lossy, S: Split> Dielectric<F, S> {
         self.split.reflectance(cosine, self.beyond(w), w.z > 0.0)
     }
 
+    /// What bare facets would reflect of it, where that is not what these do, and what is lost is given back.
+    #[inline]
+    fn bare(&self, w: DVec3, cosine: f64) -> Option<f64> {
+        if F::Interface::GIVES_BACK { self.split.bare(cosine, self.beyond(w)) } else { None }
+    }
+
+    /// How often a reflection is drawn at a facet on the side of `w`, of this reflectance there.
+    #[inline]
+    fn chance(&self, w: DVec3, cosine: f64, reflectance: S::Share) -> f64 {
+        let chance = reflectance.chance();
+        self.bare(w, cosine).map_or(chance, |bare| chance + BARE * (bare - chance))
+    }
+
     /// What one scattering does: the scattering function with its cosine, for radiance, and the density of a draw.
     #[inline]
     fn single(&self, rough: &Rough<F>, wo: DVec3, wi: DVec3) -> (S::Share, f64) {
@@ -125,8 +146,15 @@ impl<F: Lossy, S: Split> Dielectric<F, S> {
             let (o, i) = (above(wo), above(wi));
             let (density, cosine) = facets.mirroring(o, i);
             let reflectance = self.reflectance(wo, cosine);
-            let value = reflectance * density * facets.reflection_geometry(o, i);
-            return (value, facets.reflected_pdf(o, reflectance.chance() * density));
+            let geometry = facets.reflection_geometry(o, i);
+            let value = match self.bare(wo, cosine) {
+                None => reflectance * density * geometry,
+                Some(bare) => {
+                    let open = open::openness(facets, wo, (wo + wi).normalize(), eta) / (4.0 * o.z);
+                    (reflectance * open).plus(bare * (geometry - open)) * density
+                }
+            };
+            return (value, facets.reflected_pdf(o, self.chance(wo, cosine, reflectance) * density));
         }
         // The facet's normal, on the side of wo; the length holds the Jacobian (Walter et al., 2007, eq. 16 and 17).
         let q = wo + wi * eta;
@@ -157,9 +185,15 @@ impl<F: Lossy, S: Split> Dielectric<F, S> {
         let (eta, facets) = (self.beyond(wo), &rough.facets);
         let reflectance = self.reflectance(wo, o);
         let density = facets.density(h);
-        let through = reflectance.rest() * density * o * i / square;
         let [seen, both] = facets.refraction_geometry(wo, wi);
-        (through * both, reflectance.chance().rest() * density * o * i / square * seen * eta * eta)
+        let pdf = self.chance(wo, o, reflectance).rest() * density * o * i / square * seen * eta * eta;
+        let Some(bare) = self.bare(wo, o) else {
+            let through = reflectance.rest() * density * o * i / square;
+            return (through * both, pdf);
+        };
+        let open = open::openness(facets, wo, h, eta) / wo.z.abs();
+        let through = (reflectance.rest() * open).plus(bare.rest() * (both - open));
+        (through * density * o * i / square, pdf)
     }
 
     /// As [`Dielectric::single`], with what is given back of what facets lose.
@@ -202,7 +236,7 @@ impl<F: Lossy, S: Split> Dielectric<F, S> {
             let mut h = rough.facets.sample_visible(above(wo), u);
             h.z = h.z.copysign(wo.z);
             let o = wo.dot(h);
-            let chance = self.reflectance(wo, o).chance();
+            let chance = self.chance(wo, o, self.reflectance(wo, o));
             let between = lost + (1.0 - lost) * chance;
             if choice < chance {
                 let wi = h * (2.0 * o) - wo;

@@ -1,9 +1,9 @@
 //! Films on what is clear.
 
-use super::Rgb;
 use super::spectra::Waves;
 use super::split::Split;
 use super::thin_film::{self, Complex};
+use super::{Rgb, fresnel};
 
 /// A film between two clear media. Each channel reflects what the integral over wavelengths says, as far as that lies
 /// between 0 and 1, and lets through the rest: nothing is lost, and no light is negative. What is cut off is at most
@@ -50,5 +50,10 @@ impl Split for Filmed {
     #[inline]
     fn reflectance(&self, cosine: f64, _eta: f64, is_above: bool) -> Rgb {
         self.reflectance(cosine, is_above)
+    }
+
+    #[inline]
+    fn bare(&self, cosine: f64, eta: f64) -> Option<f64> {
+        Some(fresnel::dielectric(cosine, eta))
     }
 }

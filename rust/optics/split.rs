@@ -12,6 +12,12 @@ pub trait Split: Copy + Debug {
     /// The share of light that is reflected at a `cosine` of incidence, 0 to 1: `eta` is the index of refraction beyond
     /// over that before, and light comes from above or from below the surface.
     fn reflectance(&self, cosine: f64, eta: f64, is_above: bool) -> Self::Share;
+
+    /// What the two media alone would reflect, where something between them makes a difference.
+    #[inline(always)]
+    fn bare(&self, _cosine: f64, _eta: f64) -> Option<f64> {
+        None
+    }
 }
 
 /// A share of light, one for all of it or a colour.
