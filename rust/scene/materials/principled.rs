@@ -101,14 +101,16 @@ impl PrincipledMaterial {
 impl Material for PrincipledMaterial {
     fn bsdf(&self, at: &ShadingPoint) -> BsdfMix {
         let (point, solid) = (&at.texture, self.is_solid());
-        // What is opaque fills nothing: what is around it does not count.
-        let eta = self.interior.ior / if solid { at.outside } else { 1.0 };
+        // What is opaque fills nothing: what is around it does not count, and all that it mirrors has the index of
+        // yellow light.
+        let eta = if solid { self.interior.ior_at(point.waves.as_ref()) / at.outside } else { self.interior.ior };
         let coat = [self.clearcoat.at(point), self.clearcoat_gloss.at(point)];
         Principled::new(self.looks.at(point), eta, self.metallic.at(point), coat, solid).into()
     }
 
     fn needs(&self) -> Needs {
-        self.looks.needs() | self.metallic.needs() | self.clearcoat.needs() | self.clearcoat_gloss.needs()
+        let parts = Needs { waves: self.interior.dispersion.is_any(), ..Needs::NONE };
+        self.looks.needs() | self.metallic.needs() | self.clearcoat.needs() | self.clearcoat_gloss.needs() | parts
     }
 
     fn validate(&self) -> Result<(), String> {
