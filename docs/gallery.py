@@ -175,6 +175,25 @@ def cloud():
     return image
 
 
+def marble():
+    """Marble that light enters: rough and clear at its surface, and a medium that scatters within.
+
+    It glows where it is thin, and where light that fell on its back comes out. No lamp can be asked for from
+    under a rough surface: photons are kept where the stone scatters them, and paths from the eye ask there.
+    """
+    within = rw.Homogeneous(absorption=(0.13, 0.44, 1.0), scattering=11)
+    stone = rw.Dielectric(1.5, 0.3, interior=within)
+    knot = rw.scenes.torus_knot(tube=0.3, along=600, around=48, material=stone)
+    table = rw.Disk((0, 0, -0.76), (0, 0, 1), 14, material=rw.Diffuse((0.16, 0.13, 0.12)))
+    lamp = rw.Disk((-2.2, 4.4, 2.6), (2.2, -4.4, -2.9), 1.9, emission=(11, 8.3, 5.6))
+    window = rw.Disk((3.5, -3, 4.5), (-3.5, 3, -4.5), 1.8, emission=(0.9, 1.1, 1.4))
+    camera = rw.Camera((0.6, -5.2, 2.5), (0.05, 0, -0.12), up=(0, 0, 1), fov=28, width=1000, height=560)
+    scene = rw.Scene([knot, table, lamp, window])
+    image = rw.render(scene, camera, rw.ProgressivePhotonMap(200_000), samples=48)
+    image.save("marble.jpg", exposure=1)
+    return image
+
+
 def radiosity():
     """A room solved for once, and its patches, each with the light that it sends.
 
@@ -370,6 +389,7 @@ PICTURES = {
         prism,
         haze,
         cloud,
+        marble,
         radiosity,
         photons,
         shapes,

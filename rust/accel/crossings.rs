@@ -22,6 +22,12 @@ pub struct Crossings {
 }
 
 impl Crossings {
+    /// Those of a ray, by its number.
+    #[inline]
+    pub fn of_ray(&self, ray: usize) -> &[Hit] {
+        &self.hits[self.splits[ray]..self.splits[ray + 1]]
+    }
+
     /// Puts what rays meet in order, and counts points that triangles share once.
     pub fn of(every: Every) -> Self {
         let Every { mut met, rays } = every;
@@ -44,6 +50,12 @@ impl Crossings {
             let count = rest.iter().take_while(|(ray, _)| *ray as usize == i).count();
             let (mine, others) = rest.split_at(count);
             rest = others;
+            if let [(_, Meeting { hit, contact: Contact::Inside })] = mine {
+                // Most often there is one, and it shares its point with no other.
+                crossings.hits.push(Hit { t: hit.t * scale, ..*hit });
+                crossings.splits.push(crossings.hits.len());
+                continue;
+            }
             for ((_, m), times) in mine.iter().zip(times_told(mine, same_point)) {
                 let hit = Hit { t: m.hit.t * scale, ..m.hit };
                 crossings.hits.extend(std::iter::repeat_n(hit, times));

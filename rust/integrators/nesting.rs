@@ -1,6 +1,5 @@
 //! Which media a path is in.
 
-use crate::accel::Crossings;
 use crate::math::{DVec3, Hit, Ray};
 use crate::optics::Dispersive;
 use crate::scene::materials::Interior;
@@ -129,7 +128,7 @@ impl<F: Filling> MediumStack<F> {
                 next += 1;
                 let mut found = Self::default();
                 // From the last crossing back to the origin.
-                for hit in crossed(&crossings, next - 1).rev() {
+                for hit in crossed(crossings.of_ray(next - 1)).rev() {
                     found.pass(scene, &rays[i], hit, true);
                 }
                 found
@@ -157,9 +156,8 @@ impl<F: Filling> MediumStack<F> {
     }
 }
 
-/// What a ray of some crosses; not what it only touches, which is told twice.
-fn crossed(crossings: &Crossings, ray: usize) -> impl DoubleEndedIterator<Item = &Hit> {
-    let hits = &crossings.hits[crossings.splits[ray]..crossings.splits[ray + 1]];
+/// What a ray crosses, of all that it is told to; not what it only touches, which is told twice.
+fn crossed(hits: &[Hit]) -> impl DoubleEndedIterator<Item = &Hit> {
     let is_twice = move |i: usize| {
         let same = |j: usize| hits.get(j).is_some_and(|other| *other == hits[i]);
         same(i + 1) || (i > 0 && same(i - 1))
@@ -194,10 +192,10 @@ pub(super) fn around<F: Filling>(scene: &Scene, ray: &Ray, hit: &Hit) -> Option<
 
 impl<F: Filling> Boundary<F> {
     /// What a ray in some media comes to, by what it crosses around its hit ([`around`]).
-    pub(super) fn new(scene: &Scene, ray: &Ray, inside: &MediumStack<F>, crossings: &Crossings, number: usize) -> Self {
+    pub(super) fn new(scene: &Scene, ray: &Ray, inside: &MediumStack<F>, hits: &[Hit]) -> Self {
         let mut through = *inside;
         let mut owner: Option<(F, bool, Hit)> = None;
-        for hit in crossed(crossings, number) {
+        for hit in crossed(hits) {
             let Some((interior, enters)) = through.pass(scene, ray, hit, false) else { continue };
             if owner.as_ref().is_none_or(|(best, ..)| interior.is_above(best)) {
                 owner = Some((interior, enters, *hit));

@@ -3,7 +3,6 @@
 use crate::math::DVec3;
 use crate::optics::spectra::Waves;
 use crate::optics::{Bsdf, Dispersive, Rgb, fresnel};
-use crate::scene::Scene;
 use crate::scene::materials::Material;
 
 /// What parts wavelengths at a surface. Bent light has one direction for each of them, so all but the hero end; what a
@@ -47,13 +46,6 @@ impl Parting {
         let reflectance = etas.map(|eta| fresnel::dielectric(wo.z.abs().min(1.0), eta));
         if reflectance[0] > 0.0 { reflectance / reflectance[0] } else { Rgb::ONE }
     }
-}
-
-/// Why photons cannot be followed in a scene, if it has wavelengths among media.
-pub(super) fn waves_among_media(scene: &Scene) -> Option<String> {
-    let needs = scene.plan().needs();
-    (needs.media && needs.waves)
-        .then(|| "photons are not followed by wavelength among media: use Path, or Bidirectional".into())
 }
 
 #[cfg(test)]

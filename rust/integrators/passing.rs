@@ -87,7 +87,7 @@ impl Passing {
         if self.of.get(self.next) == Some(&(i as u32)) {
             let window = self.next;
             self.next += 1;
-            match Boundary::new(scene, ray, media, &self.crossings, window) {
+            match Boundary::new(scene, ray, media, self.crossings.of_ray(window)) {
                 Boundary::None(media) => {
                     return Met::Nothing(Ray { t_min: self.windows[window].t_max.next_up(), ..*ray }, media);
                 }

@@ -103,8 +103,8 @@ impl Shadows {
                 }
                 if self.of.get(window) == Some(&i) {
                     window += 1;
-                    if let Boundary::None(media) = Boundary::new(scene, ray, &self.media[which], &crossings, window - 1)
-                    {
+                    let hits = crossings.of_ray(window - 1);
+                    if let Boundary::None(media) = Boundary::new(scene, ray, &self.media[which], hits) {
                         self.rays.set_t_min(which, self.windows[window - 1].t_max.next_up());
                         self.media[which] = media;
                         on_way[kept] = which;

@@ -2,6 +2,7 @@
 
 mod facet;
 mod lanes;
+mod open;
 
 use super::bsdf::either;
 use super::conductor::above;
@@ -11,7 +12,7 @@ use super::mirror::mirrored;
 use super::split::{Bare, Share, Split, beyond};
 use super::{Bsdf, BsdfSample, Facets, Ggx, Rgb, fresnel};
 use crate::math::{DVec3, in_lanes, select};
-use facet::{Bent, Facet};
+use facet::{Bent, Divided, Facet};
 
 /// A dielectric interface, smooth or with isotropic microfacets (Walter et al., "Microfacet Models for Refraction
 /// through Rough Surfaces", 2007), which reflects and refracts.
@@ -28,6 +29,10 @@ pub struct Dielectric<F: Lossy = Ggx, S: Split = Bare> {
     /// How facets divide light.
     split: S,
 }
+
+/// How much what bare facets would reflect counts for which way is drawn, beside what these do: where a film reflects
+/// nothing, they still do as far as other facets are in the way.
+const BARE: f64 = 0.25;
 
 #[derive(Clone, Copy, Debug)]
 struct Rough<F: Lossy> {
@@ -129,8 +134,11 @@ impl<F: Lossy, S: Split> Dielectric<F, S> {
     /// then counts as smooth: Fresnel's reflection is all that can be told.
     const INVISIBLE: f64 = 1e-6;
 
-    /// As [`Dielectric::of`], of an interface that divides light as it says. What facets lose and give back is that of
-    /// bare ones.
+    /// As [`Dielectric::of`], of an interface that divides light as it says.
+    ///
+    /// What facets lose and give back is that of bare ones, where something gives back at all. So that nothing is lost
+    /// or gained, what lies on a facet changes how light is divided there only as far as none of it is stopped by other
+    /// facets on either way ([`open::openness`]): of that part as much more is reflected as less goes through.
     pub fn with(eta: f64, facets: Option<F>, split: S) -> Self {
         let facets = facets.filter(|_| (eta - 1.0).abs() >= Self::INVISIBLE);
         Self { eta, rough: facets.map(|facets| Rough::new(facets, eta)), split }
@@ -154,16 +162,36 @@ impl<F: Lossy, S: Split> Dielectric<F, S> {
         self.split.reflectance(cosine, self.beyond(w), w.z > 0.0)
     }
 
+    /// Whether what bare facets would reflect counts beside what these do.
+    const WEIGHS_BARE: bool = F::Interface::GIVES_BACK && S::DIFFERS;
+
+    /// How a facet on the side of `w` divides light at this cosine of incidence.
+    #[inline]
+    fn divided(&self, w: DVec3, cosine: f64) -> Divided<S::Share> {
+        self.divide(self.reflectance(w, cosine), w, cosine)
+    }
+
+    /// The same, where it is known which share is reflected.
+    #[inline(always)]
+    fn divide(&self, reflectance: S::Share, w: DVec3, cosine: f64) -> Divided<S::Share> {
+        let divided = Divided::of(reflectance);
+        if Self::WEIGHS_BARE {
+            let bare = fresnel::dielectric(cosine, self.beyond(w));
+            Divided { chance: divided.chance + BARE * (bare - divided.chance), bare: Some(bare), ..divided }
+        } else {
+            divided
+        }
+    }
+
     /// What facets scatter between two directions that see each other by one of them, and what is given back of what
     /// they lose: the scattering function with its cosine, for radiance, and the density of a draw.
     #[inline]
     fn scattered(&self, rough: &Rough<F>, known: &Known, [wo, wi]: [DVec3; 2], facet: &Facet) -> (S::Share, f64) {
-        let eta = self.beyond(wo);
-        let reflectance = self.reflectance(wo, facet.cosines[0]);
+        let (eta, divided) = (self.beyond(wo), self.divided(wo, facet.cosines[0]));
         let once = if wo.z * wi.z < 0.0 {
-            facet.refracted(&rough.facets, reflectance, eta, [wo, wi])
+            facet.refracted(&rough.facets, &divided, eta, [wo, wi])
         } else {
-            facet.mirrored(&rough.facets, reflectance, [wo, wi])
+            facet.mirrored(&rough.facets, &divided, eta, [wo, wi])
         };
         let back = rough.interface.given_back(known.lost, wo, wi);
         known.with_given_back(once, [wo, wi], eta, back, &rough.grazing(wi))
@@ -186,7 +214,7 @@ impl<F: Lossy, S: Split> Dielectric<F, S> {
             (wi, Facet::between(&rough.facets, eta, [wo, wi]), choices)
         } else {
             let h = facet::seen(&rough.facets, wo, u);
-            let chance = self.reflectance(wo, wo.dot(h)).chance();
+            let chance = self.divided(wo, wo.dot(h)).chance;
             let bent = Bent::new(&rough.facets, eta, wo, h, known.rest(choice) < chance);
             let between = known.lost + (1.0 - known.lost) * chance;
             let choices = if bent.is_through { [between, 1.0] } else { [known.lost, between] };

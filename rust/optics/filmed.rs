@@ -45,6 +45,8 @@ impl Filmed {
 }
 
 impl Split for Filmed {
+    const DIFFERS: bool = true;
+
     type Share = Rgb;
 
     #[inline]

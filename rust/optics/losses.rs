@@ -30,6 +30,9 @@ pub trait Lost: Copy + Debug {
 
 /// The share of light that an interface loses, and how it is given back: see [`Interface`].
 pub trait LostBetween: Copy + Debug {
+    /// Whether anything is given back.
+    const GIVES_BACK: bool = true;
+
     /// The share of light from `w` that is neither reflected nor refracted away by one facet.
     fn loss(&self, w: DVec3) -> f64;
 
@@ -125,6 +128,8 @@ impl Lost for Nothing {
 }
 
 impl LostBetween for Nothing {
+    const GIVES_BACK: bool = false;
+
     #[inline(always)]
     fn loss(&self, _w: DVec3) -> f64 {
         0.0

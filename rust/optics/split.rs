@@ -8,6 +8,9 @@ use std::ops::{Div, Mul};
 
 /// What is reflected at an interface between two media that are clear; the rest goes through.
 pub trait Split: Copy + Debug {
+    /// Whether something lies between the media, so that they alone would reflect another share.
+    const DIFFERS: bool = false;
+
     /// A number where all light is divided alike, a colour where it is not.
     type Share: Share;
 

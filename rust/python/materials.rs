@@ -105,7 +105,7 @@ impl Appearances {
             }),
             "Principled" => Arc::new(PrincipledMaterial {
                 looks: self.looks(given)?,
-                interior: Interior::new(float("ior")?, given.getattr("priority")?.extract()?),
+                interior: interior(given)?,
                 metallic: number("metallic")?,
                 clearcoat: number("clearcoat")?,
                 clearcoat_gloss: number("clearcoat_gloss")?,
@@ -142,8 +142,7 @@ impl Appearances {
     }
 
     fn dielectric(&self, given: &Bound<'_, PyAny>) -> PyResult<DielectricMaterial> {
-        let (ior, dispersion) = spectra::index(&given.getattr("ior")?)?;
-        let interior = Interior { ior, dispersion, priority: given.getattr("priority")?.extract()? };
+        let interior = interior(given)?;
         Ok(DielectricMaterial { interior, roughness: self.roughness(given)?, medium: self.medium(given)? })
     }
 
@@ -237,4 +236,10 @@ pub fn metal_index(name: &str) -> PyResult<Vec<[f64; 3]>> {
 
 fn unknown(name: &str) -> PyErr {
     PyValueError::new_err(format!("metal must be one that is known, got '{name}'"))
+}
+
+/// What fills a solid.
+fn interior(given: &Bound<'_, PyAny>) -> PyResult<Interior> {
+    let (ior, dispersion) = spectra::index(&given.getattr("ior")?)?;
+    Ok(Interior { ior, dispersion, priority: given.getattr("priority")?.extract()? })
 }

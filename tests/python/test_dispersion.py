@@ -173,6 +173,41 @@ def test_shapes_of_arrays_are_kept():
     assert rw.Sellmeier(np.array([1.0]), [0.01]) == rw.Sellmeier((1.0,), (0.01,))
 
 
+def test_principled_solids_disperse():
+    # A wedge bends what is seen through it to the side, each colour by its own: past an edge, some see light
+    # and others what is dark. Of white transmission, both materials are glass that scatters once.
+    glass = rw.Cauchy(1.5, 0.03)
+    ends = [(x, y, z) for z in (0, -1) for x, y in [(-1, -1), (1, -1), (1, 1), (-1, 1)]]
+    ends[4:] = [(x, y, -0.1 if x < 0 else -1.1) for x, y, _ in ends[4:]]
+    sides = [[0, 1, 2, 3], [7, 6, 5, 4], [4, 5, 1, 0], [5, 6, 2, 1], [6, 7, 3, 2], [7, 4, 0, 3]]
+    faces = [corners for a, b, c, d in sides for corners in ((a, b, c), (a, c, d))]
+    dark = rw.Diffuse(0)
+    edge = rw.Mesh(
+        [(-9, -9, -6), (1.9, -9, -6), (1.9, 9, -6), (-9, 9, -6)], [(0, 1, 2), (0, 2, 3)], material=dark
+    )
+    light = rw.Mesh(
+        [(-9, -9, -7), (9, -9, -7), (9, 9, -7), (-9, 9, -7)], [(0, 1, 2), (0, 2, 3)], emission=1.0
+    )
+    camera = rw.Orthographic((0, 0, 3), (0, 0, 0), up=(0, 1, 0), scale=0.05, width=8, height=8)
+    means, errors = [], []
+    for material in (
+        rw.Dielectric(glass, alpha=0.02, multiple_scattering=False),
+        rw.Principled(1.0, 0.02**0.5, ior=glass, transmission=1.0),
+        rw.Dielectric(1.5, alpha=0.02),
+    ):
+        scene = rw.Scene([rw.Mesh(ends, faces, material=material), edge, light])
+        image = rw.render(scene, camera, rw.Path(max_depth=4), samples=400, progress=False)
+        means.append(image.rgb.astype(float).mean(axis=(0, 1)))
+        errors.append(np.sqrt((image.standard_error.astype(float) ** 2).sum(axis=(0, 1))) / 64)
+    # Four standard errors of both: chance exceeds them in one of three channels once in 5000.
+    assert np.all(np.abs(means[0] - means[1]) < 4 * np.hypot(*errors[:2])), (means, errors)
+    assert np.ptp(means[1]) > 0.2 * means[1].max()
+    assert np.ptp(means[2]) < 0.01
+    # What lets nothing through has the index of yellow light.
+    opaque = rw.Scene(rw.Sphere((0, 0, 0), 1, material=rw.Principled(ior=glass)), environment=1.0)
+    assert np.isfinite(rw.render(opaque, camera, samples=2, progress=False).rgb).all()
+
+
 @pytest.mark.parametrize(
     ("call", "kind", "message"),
     [
@@ -188,6 +223,22 @@ def test_shapes_of_arrays_are_kept():
         (lambda: rw.Sellmeier([1.0, 2.0], [0.01]), ValueError, "B and C must be as many, got 2 and 1"),
         (lambda: rw.Sellmeier([1.0], [-0.01]), ValueError, "C must be at least 0, got -0.01"),
         (lambda: rw.Sellmeier([], []), ValueError, "B must be one or more finite numbers"),
+        (
+            lambda: rw.Plastic(ior=rw.Cauchy(1.5, 0.004)),
+            TypeError,
+            "got a Cauchy: what has been under a coat",
+        ),
+        (
+            lambda: rw.ThinDielectric(rw.glasses["SF10"]),
+            TypeError,
+            "got a Sellmeier: a pane sends all colours",
+        ),
+        (
+            lambda: rw.PrincipledThin(ior=rw.Cauchy(1.5, 0.004)),
+            TypeError,
+            "a sheet sends all colours straight",
+        ),
+        (lambda: rw.SoapFilm(300.0, rw.Cauchy(1.3, 0.004)), TypeError, "films have the same for all colours"),
         (lambda: rw.Cauchy(0, 0.004), ValueError, "B must be"),
         (lambda: rw.Cauchy(1.5, np.inf), ValueError, "C must be"),
         (lambda: rw.Cauchy(1.5, -0.5).index(0.5), ValueError, "at 0.5 it gives no index"),

@@ -39,6 +39,15 @@ SCENES = {
     "haze": rw.Scene([FLOOR, LAMP, haze()]),
     "cloud": rw.Scene([FLOOR, LAMP, cloud()]),
     "milk": rw.Scene([FLOOR, LAMP, rw.Sphere((0, 0, 0.6), 0.5, material=MILK)]),
+    # By wavelength: glass that disperses, in haze that scatters blue light most.
+    "colours": rw.Scene(
+        [
+            FLOOR,
+            LAMP,
+            haze(0.1, rw.Spectrum([360, 830], [1.4, 0.3])),
+            rw.Sphere((0, 0, 0.6), 0.35, material=rw.Dielectric(rw.Cauchy(1.5, 0.02))),
+        ]
+    ),
     "tinted": rw.Scene(
         [
             FLOOR,
@@ -59,7 +68,13 @@ MAPS = {
 
 
 # Each scene is seen by one map, and by all where there is time.
-QUICK = {("haze", "nearest"), ("cloud", "progressive"), ("milk", "gathered"), ("tinted", "fixed")}
+QUICK = {
+    ("haze", "nearest"),
+    ("cloud", "progressive"),
+    ("milk", "gathered"),
+    ("tinted", "fixed"),
+    ("colours", "progressive"),
+}
 EACH = [
     pytest.param(name, way, marks=() if (name, way) in QUICK else slow, id=f"{name}-{way}")
     for name in SCENES

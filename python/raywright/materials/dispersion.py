@@ -149,3 +149,19 @@ class Sellmeier(Dispersion):
     def _index(self, squares: NDArray[np.float64]) -> NDArray[np.float64]:
         terms = (b * squares / (squares - c) for b, c in zip(self.B, self.C, strict=True))
         return np.asarray(np.sqrt(1 + sum(terms)))
+
+
+def one_index(given: Any, why: str) -> float:
+    """Return an index of refraction of what has the same for all wavelengths.
+
+    Raises
+    ------
+    ValueError
+        If it is not finite and above 0.
+    TypeError
+        If it is no number; of one that goes with wavelength, tells why that is none.
+    """
+    if isinstance(given, Dispersion):
+        kind = type(given).__name__
+        raise TypeError(f"ior must be one number, got a {kind}: {why}; its index() is that of yellow light")
+    return positive("ior", given)

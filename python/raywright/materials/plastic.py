@@ -6,6 +6,7 @@ from typing import Any
 from numpy.typing import ArrayLike
 
 from ..textures.texture import Texture, Value, value
+from .dispersion import one_index
 from .material import Material, Rough, facets, number_from, rough
 
 
@@ -60,7 +61,7 @@ class Plastic(Material):
     ) -> None:
         self._set(
             reflectance=value("reflectance", reflectance, most=1.0),
-            ior=number_from("ior", ior, 1.0),
+            ior=number_from("ior", one_index(ior, "what has been under a coat has lost its direction"), 1.0),
             **rough(roughness, alpha, pair=False),
             **facets(distribution, multiple_scattering),
         )

@@ -6,6 +6,7 @@ from numpy.typing import ArrayLike
 
 from ..arrays import integer, positive
 from ..textures.texture import Number, Texture, Value, scalar, value
+from .dispersion import Dispersion, one_index
 from .material import Material
 
 _SHARES = (
@@ -33,8 +34,10 @@ class Principled(Material):
         From 0, smooth, to 1. Its square is the alpha of the facets, 0.001 at least.
     metallic : float or Texture
         From 0, none, to 1, metal.
-    ior : float
-        The index of refraction of what is no metal, above 0.
+    ior : float, Cauchy or Sellmeier
+        The index of refraction of what is no metal, above 0. One that goes with wavelength, as those of
+        `glasses`, spreads what goes through into its colours; where nothing does, it is that of yellow
+        light.
     transmission : float or Texture
         The share of what is no metal that is clear, in [0, 1].
     anisotropic : float or Texture
@@ -61,7 +64,7 @@ class Principled(Material):
     base_color: Value
     roughness: Number
     metallic: Number
-    ior: float
+    ior: float | Dispersion
     transmission: Number
     anisotropic: Number
     specular_tint: Number
@@ -78,7 +81,7 @@ class Principled(Material):
         roughness: "float | Texture" = 0.5,
         metallic: "float | Texture" = 0.0,
         *,
-        ior: float = 1.5,
+        ior: float | Dispersion = 1.5,
         transmission: "float | Texture" = 0.0,
         anisotropic: "float | Texture" = 0.0,
         specular_tint: "float | Texture" = 0.0,
@@ -93,7 +96,7 @@ class Principled(Material):
         shares = (*_SHARES, "metallic", "clearcoat", "clearcoat_gloss")
         self._set(
             base_color=value("base_color", base_color, most=1.0),
-            ior=positive("ior", ior),
+            ior=ior if isinstance(ior, Dispersion) else positive("ior", ior),
             priority=integer("priority", priority, -(2**31), 2**31 - 1),
             **{name: scalar(name, given[name], most=1.0) for name in shares},
         )
@@ -157,6 +160,6 @@ class PrincipledThin(Material):
         given = locals()
         self._set(
             base_color=value("base_color", base_color, most=1.0),
-            ior=positive("ior", ior),
+            ior=one_index(ior, "a sheet sends all colours straight on"),
             **{name: scalar(name, given[name], most=1.0) for name in (*_SHARES, "diffuse_transmission")},
         )

@@ -2,9 +2,10 @@
 
 from dataclasses import dataclass
 
-from ..arrays import integer, positive
+from ..arrays import integer
 from ..media.medium import Medium
 from ..media.medium import medium as checked
+from .dispersion import one_index
 from .material import Material
 
 
@@ -41,7 +42,7 @@ class ThinDielectric(Material):
         priority: int = 0,
     ) -> None:
         self._set(
-            ior=positive("ior", ior),
+            ior=one_index(ior, "a pane sends all colours straight on"),
             interior=checked("interior", interior),
             priority=integer("priority", priority, -(2**31), 2**31 - 1),
         )

@@ -2,10 +2,10 @@
 
 from dataclasses import dataclass
 
-from ..arrays import positive
 from ..textures.texture import Number, Texture, scalar
 from .conductor import Conductor
 from .dielectric import Dielectric
+from .dispersion import one_index
 from .material import Material
 
 
@@ -30,10 +30,9 @@ class ThinFilm(Material):
     too, to 3e-4 up to 66 degrees and to 5e-3 near grazing incidence. Of films thicker than some 6 µm hardly
     any fringes are seen: of light that is more than 48 µm behind, they are left out.
 
-    On a rough base each facet has the film. What facets throw on each other goes by the bare base, so that a
-    rough one that is clear gains or loses some of the light: up to 1 % at a roughness of 0.4, 2 % at 0.7 and
-    6 % at 1 under oil or a lens's coat, and three times as much under what reflects as strongly as the oxide
-    of titanium. A smooth one keeps all.
+    On a rough base each facet has the film. What facets throw on each other goes by the bare base, and of a
+    clear one so does that part of a facet from which other facets stop light, be it reflected or refracted:
+    so a rough one keeps all light that a bare one does.
 
     Parameters
     ----------
@@ -68,7 +67,7 @@ class ThinFilm(Material):
             raise TypeError(f"base must be a Dielectric or a Conductor, got {type(base).__name__}")
         self._set(
             thickness=scalar("thickness", thickness),
-            ior=positive("ior", ior),
+            ior=one_index(ior, "films have the same for all colours"),
             base=base,
         )
 
@@ -106,5 +105,5 @@ class SoapFilm(Material):
     ) -> None:
         self._set(
             thickness=scalar("thickness", thickness),
-            ior=positive("ior", ior),
+            ior=one_index(ior, "films have the same for all colours"),
         )

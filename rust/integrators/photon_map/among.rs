@@ -36,7 +36,7 @@ impl Estimate {
                 if weight > 0.0 {
                     let photon = &of.photons[number as usize];
                     let scattered = here.evaluate(-photon.direction.as_dvec3()).0;
-                    sum += scattered * photon.power(visit.gilded) * weight;
+                    sum += scattered * photon.power(visit.gilded, visit.single) * weight;
                 }
             });
         if sum.is_black() || !sum.is_radiance() {
@@ -116,7 +116,7 @@ mod tests {
             let [x, y, z] = [0, 1, 2].map(|axis| side * (sampler.one(axis) - 0.5));
             let here = Scattering { position: DVec3::new(x, y, z), before: DVec3::Z, phase: Phase::Isotropic };
             let power = side.powi(3) / f64::from(count);
-            VolumePhoton::new(&here, Rgb::splat(power), Rgb::ONE, 0, &MediumStack::NONE)
+            VolumePhoton::new(&here, (Rgb::splat(power), false), Rgb::ONE, 0, &MediumStack::NONE)
         };
         (0..count).map(one).collect()
     }
@@ -156,7 +156,7 @@ mod tests {
             let position = DVec3::new(place(i), place(j), place(k));
             let here = Scattering { position, before: DVec3::Z, phase: Phase::Isotropic };
             let power = (1.0 + position.x * position.x) * 8.0 / f64::from(fine).powi(3);
-            VolumePhoton::new(&here, Rgb::splat(power), Rgb::ONE, 0, &MediumStack::NONE)
+            VolumePhoton::new(&here, (Rgb::splat(power), false), Rgb::ONE, 0, &MediumStack::NONE)
         };
         let plane = |i| (0..fine).flat_map(move |j| (0..fine).map(move |k| one(i, j, k)));
         let of = VolumeIndex::new((0..fine).flat_map(plane).collect(), Some(1.0));

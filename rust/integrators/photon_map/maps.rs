@@ -130,6 +130,7 @@ pub(super) fn fly<'a>(
         chunked(flight, (alone, cancel), storing, |samplers, visitor| {
             let mut walk = MediaLightWalk::new(scene, emitters, flight.limits, Some(camera));
             walk.set_times(flight.time.map_or(Times::Drawn, Times::All));
+            walk.set_waves(flight.waves.into_iter().flat_map(|waves| std::iter::repeat_n(waves, samplers.len())));
             walk.follow(samplers, cancel, visitor);
         })
     } else {
@@ -200,11 +201,11 @@ impl<'a> MediaVisitor<'a> for Storing {
         match &at.point {
             Point::Surface { arrived, .. } => {
                 if bounces > 0 {
-                    self.keep(arrived, path.number, (path.flux(), false), bounces, path.again);
+                    self.keep(arrived, path.number, (path.flux(), path.single), bounces, path.again);
                 }
             }
             Point::Medium { here, came, .. } => {
-                let power = *came * (self.share / path.going.weights.drawn.mean());
+                let power = (*came * (self.share / path.going.weights.drawn.mean()), path.single);
                 self.stored.among.push(VolumePhoton::new(here, power, path.again, bounces, &at.media));
             }
         }

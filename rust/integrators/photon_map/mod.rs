@@ -27,7 +27,6 @@ pub(super) use series::{Sending, Series, Spread};
 pub(super) use store::Counted;
 
 use super::light_paths::Limits;
-use super::parting::waves_among_media;
 use super::{Integrator, Job, Session};
 use crate::scene::{Camera, Scene};
 use crate::workers::Cancel;
@@ -138,11 +137,7 @@ fn objection(scene: &Scene, adaptive: bool) -> Option<String> {
     if adaptive {
         return Some("maps are of samples of all pixels alike, so these cannot be adaptive: use adaptive=False".into());
     }
-    scene
-        .not_drawn()
-        .or_else(|| scene.glow())
-        .map(|why| format!("{why}, where no photon can start: use Path"))
-        .or_else(|| waves_among_media(scene))
+    scene.not_drawn().or_else(|| scene.glow()).map(|why| format!("{why}, where no photon can start: use Path"))
 }
 
 impl Integrator for PhotonMap {

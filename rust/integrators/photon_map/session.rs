@@ -75,6 +75,10 @@ impl KnownLight for Known<'_> {
         self.matt(here, visit)
     }
 
+    fn waves(&self, number: u32) -> Option<Waves> {
+        self.series.waves(number)
+    }
+
     fn among(&self, here: &Scattering, media: &MediumStack<Filled>, time: f64, visit: Visit) -> Rgb {
         let Some(maps) = self.series.of(visit.number) else { return Rgb::ZERO };
         let share = |squared: f64| room(self.scene, here.position, media, squared, self.among.kernel, time);

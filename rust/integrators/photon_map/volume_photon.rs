@@ -5,6 +5,7 @@ use crate::integrators::nesting::MediumStack;
 use crate::integrators::volumes::{Filled, Scattering};
 use crate::math::{DVec3, Vec3};
 use crate::optics::Rgb;
+use crate::optics::spectra::Waves;
 
 /// Light that a medium has scattered, in as few bytes as its numbers need.
 #[derive(Clone, Copy, Debug)]
@@ -20,13 +21,22 @@ pub(in crate::integrators) struct VolumePhoton {
     bounces: u32,
     /// In what.
     filled: (u32, u32),
+    /// Whether it is light of the first of its wavelengths alone, which stands for all.
+    single: bool,
 }
 
 impl VolumePhoton {
-    pub fn new(here: &Scattering, power: Rgb, again: Rgb, bounces: u32, media: &MediumStack<Filled>) -> Self {
+    /// Of so much power, which may be that of the first of its wavelengths alone.
+    pub fn new(
+        here: &Scattering,
+        (power, single): (Rgb, bool),
+        again: Rgb,
+        bounces: u32,
+        media: &MediumStack<Filled>,
+    ) -> Self {
         let [power, again] = [power, again].map(|rgb| rgb.to_array().map(|x| x as f32));
         let direction = here.before.as_vec3();
-        Self { position: here.position, direction, power, again, bounces, filled: Filled::there(media) }
+        Self { position: here.position, direction, power, again, bounces, filled: Filled::there(media), single }
     }
 
     /// Whether it counts in what fills a place, and has been scattered so many times at most.
@@ -35,9 +45,11 @@ impl VolumePhoton {
         self.filled == filled && bounces.is_none_or(|most| self.bounces <= most)
     }
 
-    /// The power as a viewer sees it who looks by way of what gives more than there is, or not.
-    pub fn power(&self, gilded: bool) -> Rgb {
+    /// The power as a viewer sees it who looks by way of what gives more than there is, or not, and who has ended all
+    /// wavelengths but the first, or not.
+    pub fn power(&self, gilded: bool, single: bool) -> Rgb {
         let power = Rgb::from_array(self.power.map(f64::from));
+        let power = if single && self.single { Waves::joined(power) } else { power };
         if gilded { power * Rgb::from_array(self.again.map(f64::from)) } else { power }
     }
 }

@@ -3,7 +3,8 @@
 //! As among surfaces alone ([`crate::integrators::Bidirectional`]), with points of media among the vertices
 //! ([`super::vertex`] has how these are weighed). What glows is found by the camera's paths alone.
 
-use super::course::{Course, Going, Place};
+use super::asking::at_once;
+use super::course::{Course, Going, Nobody, Place};
 use super::filled::Filled;
 use super::light_end::LightEnd;
 use super::light_walk::{Drifting, MediaLightWalk, MediaVisitor};
@@ -155,7 +156,7 @@ impl<'a> BothEnds<'a> {
     }
 
     fn course(&self, waves: Option<Waves>) -> Course<'a> {
-        Course { scene: self.job.scene, scatters: true, waves }
+        Course::alone(self.job.scene, waves)
     }
 
     /// The weight of a way where one alone counts.
@@ -196,7 +197,8 @@ impl<'a> BothEnds<'a> {
         let u = sample.numbers.ray.mask();
         let way = (sample.hero, depth(sample.numbers.one(u)));
         let course = self.course(path.waves_with(false));
-        let place = course.advance(&mut path.going, way, sample.numbers, sample.cancel, light, None);
+        let lit = None::<&Nobody>;
+        let place = at_once(course.advance(&mut path.going, way, sample.numbers, sample.cancel, light, lit));
         let Going { ray, media, .. } = path.going;
         let mut parting = None;
         let at = match place {
@@ -373,7 +375,7 @@ impl<'a> BothEnds<'a> {
             return Rgb::ZERO;
         }
         let media = at.media(ray.direction);
-        let light = self.course(waves).through(light, ray, media, sample.numbers, sample.cancel);
+        let light = at_once(self.course(waves).through(light, ray, media, sample.numbers, sample.cancel));
         if light.is_finite() { light } else { Rgb::ZERO }
     }
 

@@ -1,10 +1,11 @@
 //! How a path gets on among media, from where it was scattered last to where it is next.
 
+use super::asking::{Alone, Asks};
 use super::filled::{self, Filled};
 use super::flight::{Collision, Flight};
 use super::numbers::Numbers;
 use super::scattering::Scattering;
-use super::surfaces::{Met, meet, straight};
+use super::surfaces::{Met, come_to, straight};
 use super::weights::Weights;
 use crate::integrators::nesting::MediumStack;
 use crate::integrators::shadows::opacity;
@@ -17,8 +18,10 @@ use crate::workers::Cancel;
 
 /// What lies on the way of any path.
 #[derive(Clone, Copy)]
-pub(in crate::integrators) struct Course<'a> {
+pub(in crate::integrators) struct Course<'a, A = Alone<'a>> {
     pub scene: &'a Scene,
+    /// Who tells what rays hit.
+    pub asks: A,
     /// Whether what media scatter counts; if not, they only dim.
     pub scatters: bool,
     /// The wavelengths of what is on the way; none for red, green and blue.
@@ -43,21 +46,40 @@ pub(in crate::integrators) enum Place {
     Outside,
 }
 
-/// Who adds what light comes to a path on a part of its ray in an even medium that scatters.
-pub(super) type OnTheWay<'f> = &'f mut dyn FnMut(&Going, [f64; 2], &Coefficients, Phase, &mut Numbers) -> Rgb;
+/// Who adds what light comes to a path on its way.
+pub(super) trait OnTheWay {
+    /// That on a part of its ray in an even medium that scatters.
+    async fn add(&self, now: &Going, span: [f64; 2], here: (&Coefficients, Phase), numbers: &mut Numbers<'_>) -> Rgb;
+}
 
-impl Course<'_> {
+/// Nobody does.
+pub(super) struct Nobody;
+
+impl OnTheWay for Nobody {
+    async fn add(&self, _: &Going, _: [f64; 2], _: (&Coefficients, Phase), _: &mut Numbers<'_>) -> Rgb {
+        Rgb::ZERO
+    }
+}
+
+impl<'a> Course<'a> {
+    /// That of a path that is followed by itself.
+    pub fn alone(scene: &'a Scene, waves: Option<Waves>) -> Self {
+        Self { scene, asks: Alone(scene), scatters: true, waves }
+    }
+}
+
+impl<A: Asks> Course<'_, A> {
     /// Takes a path along its ray to where it is scattered next; none if nothing of it is left. `way` is the optical
     /// depth that it gets through before that, for its hero: drawn once for a ray, however many media it goes through.
     /// `light` is added what it comes by that glows.
-    pub fn advance(
+    pub async fn advance(
         &self,
         path: &mut Going,
         (hero, mut way): (usize, f64),
-        numbers: &mut Numbers,
+        numbers: &mut Numbers<'_>,
         cancel: &Cancel,
         light: &mut Rgb,
-        mut on_the_way: Option<OnTheWay>,
+        on_the_way: Option<&impl OnTheWay>,
     ) -> Option<Place> {
         let mut start = path.ray.t_min;
         while !cancel.is_raised() {
@@ -75,12 +97,12 @@ impl Course<'_> {
                 let reach = start + way / here.extinction[hero] * (1.0 + 1e-12);
                 asked.t_max = reach.next_up().min(asked.t_max);
             }
-            let hit = self.scene.intersect_one(&asked);
+            let hit = self.asks.first(&asked).await;
             let end = if hit.is_hit() { hit.t } else { f64::INFINITY };
             if let Some((medium, within)) = around {
                 let span = [start, end];
-                if let (Some(here), Some(add)) = (even, &mut on_the_way) {
-                    *light += add(path, span, &here, medium.phase(), numbers);
+                if let (Some(here), Some(lit)) = (even, on_the_way) {
+                    *light += lit.add(path, span, (&here, medium.phase()), numbers).await;
                 }
                 let flight = Flight { medium, ray: within, span, length: 1.0, scatters: self.scatters, waves };
                 let weights = &mut path.weights;
@@ -97,7 +119,7 @@ impl Course<'_> {
                 return Some(Place::Outside);
             }
             start = hit.t;
-            match meet(self.scene, &path.ray, &hit, &path.media) {
+            match come_to((self.scene, self.asks), &path.ray, &hit, &path.media).await {
                 Met::Passed(beyond, media) => (path.ray.t_min, path.media) = (beyond, media),
                 Met::Surface { hit, outside, through, beyond } => {
                     let opacity = opacity(self.scene, &path.ray, &hit);
@@ -118,20 +140,23 @@ impl Course<'_> {
     /// Dims light along a ray that starts in some media, by all that lies on it. Which wavelength decides by chance is
     /// drawn where that is asked for, unless it is told.
     #[allow(clippy::too_many_arguments)]
-    pub fn shadow(
+    pub async fn shadow(
         &self,
         mut ray: Ray,
         mut media: MediumStack<Filled>,
         weights: &mut Weights,
         hero: &mut Option<usize>,
-        numbers: &mut Numbers,
+        numbers: &mut Numbers<'_>,
         cancel: &Cancel,
     ) {
         let length = ray.direction.length();
         let mut start = ray.t_min;
         while !cancel.is_raised() {
-            let hit = self.scene.intersect_one(&ray);
-            let met = hit.is_hit().then(|| meet(self.scene, &ray, &hit, &media));
+            let hit = self.asks.first(&ray).await;
+            let met = match hit.is_hit() {
+                true => Some(come_to((self.scene, self.asks), &ray, &hit, &media).await),
+                false => None,
+            };
             let (mut left, mut pane) = (1.0, 0.0);
             if let Some(Met::Surface { hit, outside, .. }) = &met {
                 pane = straight(self.scene, &ray, hit, *outside);
@@ -169,16 +194,16 @@ impl Course<'_> {
     /// What of some light gets along a ray that starts in some media: right on average where media are uneven. The
     /// light may have come by a draw of its own, of which another wavelength decided: the mean of a product is that of
     /// the means only where these have nothing to do with each other.
-    pub fn through(
+    pub async fn through(
         &self,
         light: Rgb,
         ray: Ray,
         media: MediumStack<Filled>,
-        numbers: &mut Numbers,
+        numbers: &mut Numbers<'_>,
         cancel: &Cancel,
     ) -> Rgb {
         let mut weights = Weights { carried: light, ..Weights::START };
-        self.shadow(ray, media, &mut weights, &mut None, numbers, cancel);
+        self.shadow(ray, media, &mut weights, &mut None, numbers, cancel).await;
         weights.carried / weights.asked.mean()
     }
 }

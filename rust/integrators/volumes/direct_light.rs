@@ -1,5 +1,6 @@
 //! Light that is asked for where paths are scattered.
 
+use super::asking::Asks;
 use super::filled::Filled;
 use super::numbers::Numbers;
 use super::path_state::PathState;
@@ -12,16 +13,16 @@ use crate::optics::Rgb;
 use crate::scene::{Encounter, LightSample, LightSampleContext};
 use crate::workers::Cancel;
 
-impl Walker<'_> {
+impl<A: Asks> Walker<'_, A> {
     /// Next-event estimation: draws light where a path is, and tells what arrives of it. `through` is what rays start
     /// in that leave to the other side, if they do.
-    pub(super) fn direct_light(
+    pub(super) async fn direct_light(
         &self,
         here: &impl Encounter,
         path: &PathState,
         media: impl FnOnce(&LightSample) -> MediumStack<Filled>,
         hero: usize,
-        numbers: &mut Numbers,
+        numbers: &mut Numbers<'_>,
         cancel: &Cancel,
     ) -> Option<(LightSample, Rgb)> {
         let choice = numbers.ray.light_choice(0);
@@ -29,20 +30,20 @@ impl Walker<'_> {
         let (lights, geometry) = (self.scene.lights(), self.scene.geometry());
         let light =
             lights.sample(geometry, &LightSampleContext { waves: path.waves, ..here.light_context() }, choice, u)?;
-        let arrives = self.arriving(here, path, &light, media(&light), hero, numbers, cancel)?;
+        let arrives = self.arriving(here, path, &light, media(&light), hero, numbers, cancel).await?;
         Some((light, arrives))
     }
 
     /// What arrives where a path is of light that was drawn, weighed beside running into it by chance.
     #[allow(clippy::too_many_arguments)]
-    pub(super) fn arriving(
+    pub(super) async fn arriving(
         &self,
         here: &impl Encounter,
         path: &PathState,
         light: &LightSample,
         media: MediumStack<Filled>,
         hero: usize,
-        numbers: &mut Numbers,
+        numbers: &mut Numbers<'_>,
         cancel: &Cancel,
     ) -> Option<Rgb> {
         let (scattered, pdf) = here.evaluate(light.direction);
@@ -59,7 +60,7 @@ impl Walker<'_> {
         // Running into a light that is a point or of a single direction never happens.
         let by_chance = path.weights.drawn * if self.follows_all() { path.splits * pdf / light.pdf } else { 0.0 };
         let mut weights = Weights { carried, drawn: by_chance, asked: path.weights.drawn };
-        self.course(path.waves).shadow(ray, media, &mut weights, &mut Some(hero), numbers, cancel);
+        self.course(path.waves).shadow(ray, media, &mut weights, &mut Some(hero), numbers, cancel).await;
         let asked = weights.asked.mean();
         Some(weights.carried / asked * power_heuristic(asked, weights.drawn.mean()))
     }

@@ -1,5 +1,7 @@
 //! Light of points, scattered into a path on its way.
 
+use super::asking::Asks;
+use super::course::{Going, OnTheWay};
 use super::numbers::Numbers;
 use super::path_state::PathState;
 use super::scattering::Scattering;
@@ -44,18 +46,50 @@ impl Equiangular {
     }
 }
 
-impl Walker<'_> {
+/// Light of points that comes to a path as it sets out on a part of its way.
+struct OfPoints<'p, 'a, A> {
+    walker: &'p Walker<'a, A>,
+    path: &'p PathState,
+    hero: usize,
+    cancel: &'p Cancel,
+}
+
+impl<A: Asks> OnTheWay for OfPoints<'_, '_, A> {
+    async fn add(
+        &self,
+        now: &Going,
+        span: [f64; 2],
+        (here, phase): (&Coefficients, Phase),
+        numbers: &mut Numbers<'_>,
+    ) -> Rgb {
+        let Going { ray, weights, media } = *now;
+        let path = PathState { ray, weights, media, ..*self.path };
+        self.walker.lit_on_the_way(&path, span, here, phase, self.hero, numbers, self.cancel).await
+    }
+}
+
+impl<'a, A: Asks> Walker<'a, A> {
+    /// Who adds light of points as a path sets out on its way.
+    pub(super) fn of_points<'p>(
+        &'p self,
+        path: &'p PathState,
+        hero: usize,
+        cancel: &'p Cancel,
+    ) -> impl OnTheWay + use<'p, 'a, A> {
+        OfPoints { walker: self, path, hero, cancel }
+    }
+
     /// What comes to a path of the light of points that a medium on its way scatters: of an even medium between two `t`
     /// of its ray. It is weighed beside what is asked for where the path itself is scattered.
     #[allow(clippy::too_many_arguments)]
-    pub(super) fn lit_on_the_way(
+    async fn lit_on_the_way(
         &self,
         path: &PathState,
         span: [f64; 2],
         here: &Coefficients,
         phase: Phase,
         hero: usize,
-        numbers: &mut Numbers,
+        numbers: &mut Numbers<'_>,
         cancel: &Cancel,
     ) -> Rgb {
         let choice = numbers.ray.light_choice(1);
@@ -73,7 +107,8 @@ impl Walker<'_> {
         };
         let weights = Weights { carried: path.weights.carried * here.scattering * left / pdf, ..path.weights };
         let there = PathState { weights, ..*path };
-        let Some(arrives) = self.arriving(&point, &there, &light, path.media, hero, numbers, cancel) else {
+        let arrives = self.arriving(&point, &there, &light, path.media, hero, numbers, cancel).await;
+        let Some(arrives) = arrives else {
             return Rgb::ZERO;
         };
         let drawn = (path.weights.drawn * here.extinction * left).mean() / path.weights.drawn.mean();

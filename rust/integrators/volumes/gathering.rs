@@ -36,7 +36,7 @@ impl Arrival {
     }
 }
 
-impl Walker<'_> {
+impl<A> Walker<'_, A> {
     fn visit(&self, path: &PathState, number: u32, looks_about: bool) -> Visit {
         let bounces = self.settings.max_depth.map(|depth| depth.saturating_sub(path.bounce + 1));
         Visit { number, looks_about, gilded: path.gilded, single: path.single, bounces }

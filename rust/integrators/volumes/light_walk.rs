@@ -1,6 +1,7 @@
 //! The way of paths that start at lights and go through media, one path after the other.
 
-use super::course::{Course, Going, Place};
+use super::asking::at_once;
+use super::course::{Course, Going, Nobody, Place};
 use super::filled::Filled;
 use super::numbers::{Numbers, depth};
 use super::vertex::{Point, Vertex};
@@ -118,7 +119,7 @@ impl<'a> MediaLightWalk<'a> {
     }
 
     fn course(&self, path: &Drifting) -> Course<'a> {
-        Course { scene: self.scene, scatters: true, waves: path.waves() }
+        Course::alone(self.scene, path.waves())
     }
 
     /// Follows a path for each of these numbers to its end.
@@ -173,7 +174,8 @@ impl<'a> MediaLightWalk<'a> {
             let before = path.flux();
             let way = depth(numbers.one(dimensions.mask()));
             let (hero, mut glow) = (path.hero, Rgb::ZERO);
-            let place = self.course(&path).advance(&mut path.going, (hero, way), &mut numbers, cancel, &mut glow, None);
+            let (course, lit, going) = (self.course(&path), None::<&Nobody>, &mut path.going);
+            let place = at_once(course.advance(going, (hero, way), &mut numbers, cancel, &mut glow, lit));
             let taken = if place.is_some() { before - path.flux() } else { before };
             visitor.absorb(taken);
             let Going { ray, media, .. } = path.going;
@@ -223,7 +225,7 @@ impl<'a> MediaLightWalk<'a> {
         let Ray { origin, direction, time, .. } = path.going.ray;
         let back = Ray { time, ..Ray::new(origin, -direction) };
         let before = path.flux();
-        let left = self.course(path).through(before, back, MediumStack::NONE, numbers, cancel);
+        let left = at_once(self.course(path).through(before, back, MediumStack::NONE, numbers, cancel));
         visitor.absorb(before - left);
         path.going.weights.carried = left;
     }

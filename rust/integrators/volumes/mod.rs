@@ -1,10 +1,11 @@
-//! Paths through smoke, haze and whatever else fills space, one at a time: from the camera (`walker`), from lights
-//! (`light_walk`, `to_camera`), and from both ends (`both_ends`).
+//! Paths through smoke, haze and whatever else fills space: from the camera (`walker`), many side by side (`asking`,
+//! `together`), and one at a time from lights (`light_walk`, `to_camera`), and from both ends (`both_ends`).
 //!
 //! Paths carry densities for three wavelengths, of which one decides how far they get; all count by the mean of what
 //! each of the three would have done (Wilkie et al., "Hero Wavelength Spectral Sampling", 2014; Miller, Georgiev and
 //! Jarosz, "A Null-Scattering Path Integral Formulation of Light Transport", 2019).
 
+mod asking;
 mod both_ends;
 mod course;
 mod direct_light;
@@ -21,6 +22,7 @@ mod path_state;
 mod scattering;
 mod surfaces;
 mod to_camera;
+mod together;
 mod vertex;
 mod walker;
 mod weights;
@@ -42,7 +44,7 @@ use crate::optics::Rgb;
 use crate::scene::Scene;
 use crate::scene::lights::{Light, Place as LightPlace};
 use std::sync::Arc;
-use walker::Walker;
+use walker::Walkers;
 
 /// Along which of the directions into which light is scattered paths go on.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -117,6 +119,6 @@ struct Among<'a> {
 
 impl Session for Among<'_> {
     fn worker(&self) -> Box<dyn Worker + '_> {
-        Box::new(Walker::new(self.settings, self.scene, &self.points, self.known.as_deref()))
+        Box::new(Walkers::new(self.settings, self.scene, &self.points, self.known.as_deref()))
     }
 }

@@ -32,6 +32,8 @@ pub(super) struct PathState {
     /// Its wavelengths; none for red, green and blue. And whether the first is all that it carries.
     pub waves: Option<Waves>,
     pub single: bool,
+    /// Whether other paths have the same, and the one that decides may be any of them.
+    pub shares_waves: bool,
     /// Into how many it is split where it is; 0 where it ends.
     pub splits: f64,
     /// Whether it looks about from where light is known, and has been at something sharp since.
@@ -54,6 +56,7 @@ impl PathState {
             gilded: false,
             waves,
             single: false,
+            shares_waves: false,
             splits: 1.0,
             is_gathered: false,
             is_sharp_since: false,
@@ -81,16 +84,20 @@ impl PathState {
             Some(_) if next.is_through => self.end_all_but_hero(),
             Some(parting) if !self.single => {
                 let by = parting.mirrored(wo);
-                self.weights.times(by, by, Rgb::ONE);
+                self.weights.times(by, if self.shares_waves { Rgb::ONE } else { by }, Rgb::ONE);
             }
             _ => {}
         }
     }
 
-    /// Leaves the hero of its wavelengths alone, which stands for all from here on.
+    /// Leaves the first of its wavelengths alone, which stands for all from here on.
     pub fn end_all_but_hero(&mut self) {
         if !self.single {
-            self.weights.end_all_but_hero();
+            if self.shares_waves {
+                self.weights.end_all_but_first();
+            } else {
+                self.weights.end_all_but_hero();
+            }
             (self.waves, self.single) = (self.waves.map(|waves| waves.alone()), true);
         }
     }

@@ -1,5 +1,6 @@
 //! What a ray among media comes to.
 
+use super::asking::{Alone, Asks, at_once};
 use super::filled::Filled;
 use crate::integrators::nesting::{Boundary, Filling, MediumStack, around};
 use crate::math::{Hit, Ray};
@@ -24,13 +25,27 @@ pub(in crate::integrators) enum Met {
 
 /// What it is that a ray in some media has hit. Where neither light is reflected nor bent, there is no surface, unless
 /// one that encloses nothing stands at the same place, as the floor that smoke lies on.
-pub(in crate::integrators) fn meet(scene: &Scene, ray: &Ray, hit: &Hit, media: &MediumStack<Filled>) -> Met {
+pub(super) async fn come_to(
+    (scene, asks): (&Scene, impl Asks),
+    ray: &Ray,
+    hit: &Hit,
+    media: &MediumStack<Filled>,
+) -> Met {
     let Some(window) = around::<Filled>(scene, ray, hit) else {
         return Met::Surface { hit: *hit, outside: 1.0, through: *media, beyond: hit.t.next_up() };
     };
     let beyond = window.t_max.next_up();
-    let crossings = scene.crossings(&[window]);
-    let through = match Boundary::new(scene, ray, media, &crossings, 0) {
+    asks.crossed(&window, |crossed| meet_at(scene, ray, (hit, beyond), media, crossed)).await
+}
+
+/// As [`come_to`], of a ray by itself.
+pub(in crate::integrators) fn meet(scene: &Scene, ray: &Ray, hit: &Hit, media: &MediumStack<Filled>) -> Met {
+    at_once(come_to((scene, Alone(scene)), ray, hit, media))
+}
+
+/// The same by all that is crossed about the hit, beyond which the ray goes on from a `t`.
+fn meet_at(scene: &Scene, ray: &Ray, (hit, beyond): (&Hit, f64), media: &MediumStack<Filled>, crossed: &[Hit]) -> Met {
+    let through = match Boundary::new(scene, ray, media, crossed) {
         Boundary::None(media) => media,
         Boundary::Between { hit: owner, outside, through } => {
             let material = scene.material_of(&owner);
@@ -43,14 +58,14 @@ pub(in crate::integrators) fn meet(scene: &Scene, ray: &Ray, hit: &Hit, media: &
         }
     };
     let is_sheet = |hit: &&Hit| Filled::of(scene, hit).is_none() && scene.material_of(hit).is_opaque();
-    match crossings.hits.iter().find(is_sheet) {
+    match crossed.iter().find(is_sheet) {
         Some(sheet) => Met::Surface { hit: *sheet, outside: 1.0, through, beyond },
         None => Met::Passed(beyond, through),
     }
 }
 
 /// The share of a ray that goes straight on through a surface ([`crate::scene::materials::Material::straight`]).
-pub(in crate::integrators) fn straight(scene: &Scene, ray: &Ray, hit: &Hit, outside: f64) -> f64 {
+pub(super) fn straight(scene: &Scene, ray: &Ray, hit: &Hit, outside: f64) -> f64 {
     let material = scene.material_of(hit);
     if material.boundary().is_none() {
         return 0.0;

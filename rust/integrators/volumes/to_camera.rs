@@ -1,5 +1,6 @@
 //! Light that comes to a camera through media.
 
+use super::asking::at_once;
 use super::course::Course;
 use super::light_end::LightEnd;
 use super::light_walk::{Drifting, MediaLightWalk, MediaVisitor};
@@ -122,8 +123,8 @@ impl<'a> MediaVisitor<'a> for Connections<'a> {
             return;
         }
         let segment = at.leaving(at.origin().segment(&RayOrigin::free(seen.origin)), Ray::NO_TRIANGLE);
-        let course = Course { scene, scatters: true, waves: path.waves() };
-        let light = course.through(light, segment, at.media(direction), numbers, cancel);
+        let course = Course::alone(scene, path.waves());
+        let light = at_once(course.through(light, segment, at.media(direction), numbers, cancel));
         let light = path.waves().map_or(light, |waves| waves.seen(light));
         if light != Rgb::ZERO && light.is_finite() {
             self.splats.push(Splat { film: seen.film, light });

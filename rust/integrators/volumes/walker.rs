@@ -1,11 +1,13 @@
-//! One path after the other.
+//! Paths from the camera.
 
-use super::course::{Course, Going, OnTheWay, Place};
+use super::asking::Asks;
+use super::course::{Course, Going, Place};
 use super::filled::Filled;
 use super::known::KnownLight;
 use super::numbers::{Numbers, depth};
 use super::path_state::PathState;
 use super::scattering::Scattering;
+use super::together::{Lane, lanes, together};
 use super::{Onwards, Volumes};
 use crate::integrators::nesting::MediumStack;
 use crate::integrators::parting::Parting;
@@ -13,22 +15,26 @@ use crate::integrators::transport::{Dimensions, power_heuristic};
 use crate::integrators::{CameraSample, Worker, roulette};
 use crate::math::{DVec3, Hit, Ray};
 use crate::optics::spectra::Waves;
-use crate::optics::{Bsdf, BsdfSample, Phase, Rgb};
-use crate::scene::media::Coefficients;
+use crate::optics::{Bsdf, BsdfSample, Rgb};
 use crate::scene::{Encounter, Light, LightSample, LightSampleContext, Scene, SurfaceInteraction};
 use crate::workers::Cancel;
+use std::cell::{Cell, RefCell};
 
-/// What one thread works with.
-pub(super) struct Walker<'a> {
+/// Who follows paths, and asks what their rays hit.
+#[derive(Clone, Copy)]
+pub(super) struct Walker<'a, A> {
     pub(super) settings: Volumes,
     pub(super) scene: &'a Scene,
     /// Lights that are points.
     pub(super) points: &'a [(DVec3, &'a dyn Light)],
     /// What is known of light where paths are scattered, if anything is.
     pub(super) known: Option<&'a dyn KnownLight>,
-    /// Paths that have been split off and wait.
-    waiting: Vec<PathState>,
+    /// Who tells what they hit.
+    asks: A,
 }
+
+/// What one thread works with.
+pub(super) struct Walkers<'a>(Walker<'a, ()>);
 
 /// The part of a ray in an even medium in which it was scattered, and the density of the place.
 struct Part {
@@ -37,36 +43,54 @@ struct Part {
     density: f64,
 }
 
-impl<'a> Walker<'a> {
+impl<'a> Walkers<'a> {
     pub fn new(
         settings: Volumes,
         scene: &'a Scene,
         points: &'a [(DVec3, &'a dyn Light)],
         known: Option<&'a dyn KnownLight>,
     ) -> Self {
-        Self { settings, scene, points, known, waiting: Vec::new() }
+        Self(Walker { settings, scene, points, known, asks: () })
     }
+}
 
+impl<'a, A: Asks> Walker<'a, A> {
     /// Whether paths go on in all directions into which light is scattered.
     pub(super) fn follows_all(&self) -> bool {
         self.settings.onwards == Onwards::All
     }
 
-    /// What arrives along a camera's ray.
-    fn follow(&mut self, sample: &mut CameraSample, media: MediumStack<Filled>, cancel: &Cancel) -> Rgb {
+    /// What arrives along a camera's ray. `waiting` is room for paths that have been split off and wait.
+    async fn follow(
+        &self,
+        sample: &mut CameraSample,
+        media: MediumStack<Filled>,
+        waiting: &mut Vec<PathState>,
+        cancel: &Cancel,
+    ) -> Rgb {
         let mut light = Rgb::ZERO;
         let u = sample.sampler.one(Dimensions::WAVES);
-        let waves = self.scene.plan().needs().waves.then(|| Waves::of(u));
-        // The first of the wavelengths is the hero; of red, green and blue it is any.
-        let hero = if waves.is_some() { 0 } else { ((u * 3.0) as usize).min(2) };
         let number = sample.sampler.number();
-        self.waiting.clear();
-        self.waiting.push(PathState::of_camera(sample.ray, media, waves));
+        let waves = match self.known {
+            Some(known) => known.waves(number),
+            None => self.scene.plan().needs().waves.then(|| Waves::of(u)),
+        };
         let mut numbers = Numbers::new(&mut sample.sampler);
-        while let Some(mut path) = self.waiting.pop() {
+        // The first of the wavelengths is the hero, unless other paths have the same: what parts these ends all but the
+        // first, and the one that decides is to have nothing to do with that. Of red, green and blue it is any.
+        let hero = match (waves, self.known) {
+            (Some(_), Some(_)) => numbers.hero(),
+            (Some(_), None) => 0,
+            (None, _) => ((u * 3.0) as usize).min(2),
+        };
+        let path = PathState::of_camera(sample.ray, media, waves);
+        waiting.clear();
+        waiting.push(PathState { shares_waves: self.known.is_some(), ..path });
+        while let Some(mut path) = waiting.pop() {
             while !cancel.is_raised() {
                 numbers.ray = Dimensions::of(path.bounce, path.branch);
-                let Some(place) = self.advance(&mut path, hero, &mut numbers, cancel, &mut light) else { break };
+                let place = self.advance(&mut path, hero, &mut numbers, cancel, &mut light).await;
+                let Some(place) = place else { break };
                 let goes_on = match place {
                     Place::Medium { here, .. } if self.known.is_some() => {
                         light += self.known_among(&path, &here, number);
@@ -75,11 +99,11 @@ impl<'a> Walker<'a> {
                     Place::Medium { here, collision, span } => {
                         let part = collision.density.map(|density| Part { span, t: collision.t, density });
                         let part = part.filter(|_| self.is_lit(&path));
-                        self.scatter(&mut path, &here, part, hero, &mut numbers, cancel, &mut light)
+                        self.scatter(&mut path, &here, part, hero, &mut numbers, cancel, &mut light).await
                     }
                     Place::Surface { hit, outside, through } => {
-                        let at = (hit, outside, through);
-                        self.reflect(&mut path, at, (hero, number), &mut numbers, cancel, &mut light)
+                        let (at, of) = ((hit, outside, through), (hero, number));
+                        self.reflect(&mut path, at, of, waiting, &mut numbers, cancel, &mut light).await
                     }
                     Place::Outside => false,
                 };
@@ -92,32 +116,27 @@ impl<'a> Walker<'a> {
     }
 
     /// What lies on the way of paths.
-    pub(super) fn course(&self, waves: Option<Waves>) -> Course<'a> {
-        Course { scene: self.scene, scatters: self.settings.scatters, waves }
+    pub(super) fn course(&self, waves: Option<Waves>) -> Course<'a, A> {
+        Course { scene: self.scene, asks: self.asks, scatters: self.settings.scatters, waves }
     }
 
     /// Takes a path along its ray to where it is scattered next; none if it leaves the scene, and with what arrives
     /// from there.
-    fn advance(
+    async fn advance(
         &self,
         path: &mut PathState,
         hero: usize,
-        numbers: &mut Numbers,
+        numbers: &mut Numbers<'_>,
         cancel: &Cancel,
         light: &mut Rgb,
     ) -> Option<Place> {
         let u = numbers.ray.mask();
         let way = depth(numbers.one(u));
-        let is_lit = self.is_lit(path);
-        let before = *path;
-        let mut add = |now: &Going, span: [f64; 2], here: &Coefficients, phase: Phase, numbers: &mut Numbers| {
-            let Going { ray, weights, media } = *now;
-            let path = PathState { ray, weights, media, ..before };
-            self.lit_on_the_way(&path, span, here, phase, hero, numbers, cancel)
-        };
-        let on_the_way: Option<OnTheWay> = if is_lit { Some(&mut add) } else { None };
         let mut going = Going { ray: path.ray, weights: path.weights, media: path.media };
-        let place = self.course(before.waves).advance(&mut going, (hero, way), numbers, cancel, light, on_the_way);
+        let lit = self.is_lit(path).then(|| self.of_points(path, hero, cancel));
+        let course = self.course(path.waves);
+        let place = course.advance(&mut going, (hero, way), numbers, cancel, light, lit.as_ref()).await;
+        drop(lit);
         (path.ray, path.weights, path.media) = (going.ray, going.weights, going.media);
         if let Some(Place::Outside) = place {
             *light += path.weights.throughput() * self.light_from_outside(path);
@@ -159,13 +178,13 @@ impl<'a> Walker<'a> {
 
     /// Scatters a path in a medium, and says whether it goes on.
     #[allow(clippy::too_many_arguments)]
-    fn scatter(
+    async fn scatter(
         &self,
         path: &mut PathState,
         here: &Scattering,
         part: Option<Part>,
         hero: usize,
-        numbers: &mut Numbers,
+        numbers: &mut Numbers<'_>,
         cancel: &Cancel,
         light: &mut Rgb,
     ) -> bool {
@@ -173,7 +192,8 @@ impl<'a> Walker<'a> {
             return false;
         }
         let media = path.media;
-        if let Some((drawn, arrives)) = self.direct_light(here, path, |_| media, hero, numbers, cancel) {
+        let asked = self.direct_light(here, path, |_| media, hero, numbers, cancel).await;
+        if let Some((drawn, arrives)) = asked {
             let place = drawn.source.filter(|_| drawn.pdf == f64::INFINITY).map(|source| source.position());
             let weight = match (part, place) {
                 (Some(Part { span, t, density }), Some(place)) => {
@@ -190,12 +210,14 @@ impl<'a> Walker<'a> {
     }
 
     /// Scatters a path at a surface, and says whether it goes on.
-    fn reflect(
-        &mut self,
+    #[allow(clippy::too_many_arguments)]
+    async fn reflect(
+        &self,
         path: &mut PathState,
         (hit, outside, through): (Hit, f64, MediumStack<Filled>),
         (hero, number): (usize, u32),
-        numbers: &mut Numbers,
+        waiting: &mut Vec<PathState>,
+        numbers: &mut Numbers<'_>,
         cancel: &Cancel,
         light: &mut Rgb,
     ) -> bool {
@@ -215,8 +237,8 @@ impl<'a> Walker<'a> {
         }
         let (outside, parting) = path.parting(scene, &surface, &through, outside);
         let here = SurfaceInteraction::new(scene, &ray, &hit, surface, path.waves, outside);
-        let waiting = parting.filter(|parting| parting.waits(here.bsdf()));
-        if parting.is_some() && waiting.is_none() {
+        let later = parting.filter(|parting| parting.waits(here.bsdf()));
+        if parting.is_some() && later.is_none() {
             path.end_all_but_hero();
         }
         path.meet(here.bsdf().again());
@@ -229,15 +251,15 @@ impl<'a> Walker<'a> {
         if !here.bsdf().is_delta() && !arrival.is_lit() {
             let now = path.media;
             let side = |drawn: &LightSample| if here.is_through(drawn.direction) { through } else { now };
-            if let Some((_, arrives)) = self.direct_light(&here, path, side, hero, numbers, cancel) {
+            if let Some((_, arrives)) = self.direct_light(&here, path, side, hero, numbers, cancel).await {
                 *light += arrives;
             }
         }
         if !self.follows_all() {
-            return self.split(path, &here, through, waiting.as_ref());
+            return self.split(path, &here, through, later.as_ref(), waiting);
         }
         if arrival.is_known() {
-            self.look_about(path, &here, through, numbers);
+            self.look_about(path, &here, through, waiting, numbers);
             return false;
         }
         let choice = numbers.ray.scattering_choice();
@@ -246,41 +268,41 @@ impl<'a> Walker<'a> {
         let media = if next.is_through { through } else { path.media };
         path.is_sharp_since = path.is_gathered;
         let chance = numbers.ray.roulette();
-        path.part(waiting.as_ref(), here.wo(), &next);
+        path.part(later.as_ref(), here.wo(), &next);
         self.go_on(path, &here, &next, media, numbers.one(chance), true)
     }
 
     /// Sends on a path for every single direction that a surface scatters into.
     fn split(
-        &mut self,
+        &self,
         path: &PathState,
         here: &SurfaceInteraction,
         through: MediumStack<Filled>,
         parting: Option<&Parting>,
+        waiting: &mut Vec<PathState>,
     ) -> bool {
         let mut branch = path.branch.wrapping_mul(2);
-        let mut sent = Vec::new();
         here.bsdf().delta_lobes(here.wo(), |single| {
             if let Some(next) = here.to_world(single) {
                 let mut one = PathState { branch, ..*path };
                 one.part(parting, here.wo(), &next);
                 let media = if next.is_through { through } else { path.media };
                 if self.go_on(&mut one, here, &next, media, 0.0, true) {
-                    sent.push(one);
+                    waiting.push(one);
                 }
                 branch = branch.wrapping_add(1);
             }
         });
-        self.waiting.extend(sent);
         false
     }
 
     /// Sends on as many paths as look about from where light is known.
     fn look_about(
-        &mut self,
+        &self,
         path: &PathState,
         here: &SurfaceInteraction,
         through: MediumStack<Filled>,
+        waiting: &mut Vec<PathState>,
         numbers: &mut Numbers,
     ) {
         for branch in 0..path.splits as u32 {
@@ -296,7 +318,7 @@ impl<'a> Walker<'a> {
             let mut one = PathState { branch, is_gathered: true, is_sharp_since: false, splits: 1.0, ..*path };
             let chance = numbers.one(dimensions.roulette());
             if self.go_on(&mut one, here, &next, media, chance, true) {
-                self.waiting.push(one);
+                waiting.push(one);
             }
         }
     }
@@ -345,17 +367,26 @@ impl<'a> Walker<'a> {
     }
 }
 
-impl Worker for Walker<'_> {
+impl Worker for Walkers<'_> {
     fn radiance(&mut self, samples: &mut [CameraSample], cancel: &Cancel, radiance: &mut [Rgb]) {
         assert_eq!(samples.len(), radiance.len());
+        let Walker { settings, scene, points, known, .. } = self.0;
         let rays: Vec<Ray> = samples.iter().map(|sample| sample.ray).collect();
         let mut media = Vec::new();
-        MediumStack::at(self.scene, &rays, &mut media);
-        for ((sample, media), radiance) in samples.iter_mut().zip(media).zip(radiance) {
-            if cancel.is_raised() {
-                return;
+        MediumStack::at(scene, &rays, &mut media);
+        let lanes = lanes(samples.len());
+        let radiance = Cell::from_mut(radiance).as_slice_of_cells();
+        let to_do = RefCell::new(samples.iter_mut().zip(media).zip(radiance));
+        together(scene, &lanes, |lane: &Lane| {
+            let (walker, to_do) = (Walker { settings, scene, points, known, asks: lane }, &to_do);
+            async move {
+                let mut waiting = Vec::new();
+                while !cancel.is_raised() {
+                    let next = to_do.borrow_mut().next();
+                    let Some(((sample, media), radiance)) = next else { return };
+                    radiance.set(walker.follow(sample, media, &mut waiting, cancel).await);
+                }
             }
-            *radiance = self.follow(sample, media, cancel);
-        }
+        });
     }
 }

@@ -1,6 +1,6 @@
 //! A facet of a rough interface, and what it does with light.
 
-use super::above;
+use super::{above, open};
 use crate::math::{DVec3, LANES, in_lanes, select};
 use crate::optics::split::Share;
 use crate::optics::{Facets, fresnel};
@@ -75,12 +75,25 @@ impl Facet {
         }
     }
 
-    /// What it mirrors of light, of which it reflects a share, and the density of a draw.
+    /// What it mirrors of light, and the density of a draw; with `eta` the index beyond over that on the side of `wo`.
     #[inline(always)]
-    pub fn mirrored<F: Facets, S: Share>(&self, facets: &F, reflectance: S, [wo, wi]: [DVec3; 2]) -> (S, f64) {
+    pub fn mirrored<F: Facets, S: Share>(
+        &self,
+        facets: &F,
+        divided: &Divided<S>,
+        eta: f64,
+        [wo, wi]: [DVec3; 2],
+    ) -> (S, f64) {
         let (o, i) = (above(wo), above(wi));
-        let value = reflectance * self.density * facets.reflection_geometry(o, i);
-        (value, facets.reflected_pdf(o, reflectance.chance() * self.density))
+        let geometry = facets.reflection_geometry(o, i);
+        let seen = match divided.bare {
+            None => divided.reflectance * self.density * geometry,
+            Some(bare) => {
+                let open = open::openness(facets, wo, (wo + wi).normalize(), eta) / (4.0 * o.z);
+                (divided.reflectance * open).plus(bare * (geometry - open)) * self.density
+            }
+        };
+        (seen, facets.reflected_pdf(o, divided.chance * self.density))
     }
 
     /// What it refracts, and the density of a draw; nothing where there is none.
@@ -88,16 +101,44 @@ impl Facet {
     pub fn refracted<F: Facets, S: Share>(
         &self,
         facets: &F,
-        reflectance: S,
+        divided: &Divided<S>,
         eta: f64,
         [wo, wi]: [DVec3; 2],
     ) -> (S, f64) {
         let Self { density, cosines: [o, i], square } = *self;
-        let through = reflectance.rest() * density * o * i / square;
         let [seen, both] = facets.refraction_geometry(wo, wi);
-        let drawn = reflectance.chance().rest() * density * o * i / square * seen * eta * eta;
+        let through = match divided.bare {
+            None => divided.reflectance.rest() * density * o * i / square * both,
+            Some(bare) => {
+                let q = wo + wi * eta;
+                let h = q.normalize() * (q.z * wo.z).signum();
+                let open = open::openness(facets, wo, h, eta) / wo.z.abs();
+                let rest = (divided.reflectance.rest() * open).plus((1.0 - bare) * (both - open));
+                rest * density * o * i / square
+            }
+        };
+        let drawn = divided.chance.rest() * density * o * i / square * seen * eta * eta;
         let is_any = density > 0.0;
-        (S::select(is_any, through * both, S::NONE), if is_any { drawn } else { 0.0 })
+        (S::select(is_any, through, S::NONE), if is_any { drawn } else { 0.0 })
+    }
+}
+
+/// How a facet divides light.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Divided<S> {
+    /// The share that is reflected.
+    pub reflectance: S,
+    /// How often a reflection is drawn.
+    pub chance: f64,
+    /// What a bare facet would reflect, where that is something else and what is lost is given back.
+    pub bare: Option<f64>,
+}
+
+impl<S: Share> Divided<S> {
+    /// By what is reflected alone.
+    #[inline(always)]
+    pub fn of(reflectance: S) -> Self {
+        Self { reflectance, chance: reflectance.chance(), bare: None }
     }
 }
 

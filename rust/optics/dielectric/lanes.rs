@@ -1,6 +1,6 @@
 //! Glass by lane.
 
-use super::facet::{Bent, Facet, FacetLanes, seen};
+use super::facet::{Bent, Divided, Facet, FacetLanes, seen};
 use super::{Dielectric, Known, KnownLanes, Rough, Single};
 use crate::math::{DVec3, InLanes, LANES, VectorLanes};
 use crate::optics::bsdf_columns::{BsdfColumns, LaneBsdf};
@@ -85,13 +85,13 @@ loops! {
 }
 
 loops! {
-    /// Where light comes from that they mirror or refract, by how much of it they reflect, in the lanes that ask and
+    /// Where light comes from that they mirror or refract, by how often they are to mirror it, in the lanes that ask and
     /// have such light.
-    fn bend<F: Facets, S: Share>(
+    fn bend<F: Facets>(
         of: &DielectricLanes<F>,
         wo: &VectorLanes,
         normal: &VectorLanes,
-        reflectance: &S::Lanes,
+        chances: &[f64; LANES],
         choice: &[f64; LANES],
         asks: &[bool; LANES],
         wi: &mut VectorLanes,
@@ -100,7 +100,7 @@ loops! {
     ) {
         for i in 0..LANES {
             let (wo, known) = (wo.get(i), Known::get(&of.known, i));
-            let is_mirrored = known.rest(choice[i]) < S::get(reflectance, i).chance();
+            let is_mirrored = known.rest(choice[i]) < chances[i];
             let bent = Bent::new(&of.facets(i), beyond(of.etas[i], wo), wo, normal.get(i), is_mirrored);
             wi.set(i, bent.wi);
             bent.facet.put(facets, i);
@@ -136,9 +136,9 @@ loops! {
     ) {
         for i in 0..LANES {
             let (o, w, facet) = (wo.get(i), wi.get(i), Facet::get(facets, i));
-            let (reflectance, eta) = (S::get(reflectance, i), beyond(of.etas[i], o));
-            let mirrored = facet.mirrored(&of.facets(i), reflectance, [o, w]);
-            let refracted = facet.refracted(&of.facets(i), reflectance, eta, [o, w]);
+            let (divided, eta) = (Divided::of(S::get(reflectance, i)), beyond(of.etas[i], o));
+            let mirrored = facet.mirrored(&of.facets(i), &divided, eta, [o, w]);
+            let refracted = facet.refracted(&of.facets(i), &divided, eta, [o, w]);
             let is_through = o.z * w.z < 0.0;
             let once = (
                 S::select(is_through, refracted.0, mirrored.0),
@@ -192,6 +192,19 @@ impl<F: Lossy> DielectricLanes<F> {
     ) where
         F: 'a,
     {
+        if Dielectric::<F, S>::WEIGHS_BARE {
+            // How open facets are asks for branches.
+            (*value, *pdf) = (RgbLanes::ZERO, [0.0; LANES]);
+            for lane in (0..LANES).filter(|&lane| asks[lane]) {
+                let Some((of, rough)) = each(lane).and_then(|of| Some((of, of.rough.as_ref()?))) else { continue };
+                let directions = [wo.get(lane), wi.get(lane)];
+                let known = Known::get(&self.known, lane);
+                let (scattered, drawn) = of.scattered(rough, &known, directions, &Facet::get(facets, lane));
+                value.set(lane, scattered.rgb());
+                pdf[lane] = drawn;
+            }
+            return;
+        }
         let reflectance = self.reflectances(level, each, asks, wo, facets.cosines());
         let mut back = [0.0; LANES];
         for lane in (0..LANES).filter(|&lane| asks[lane]) {
@@ -217,6 +230,28 @@ impl<F: Lossy> DielectricLanes<F> {
         let mut shares = <S::Share as InLanes>::EMPTY;
         S::reflectances(level, |lane| each(lane).map(|of| &of.split), asks, (&self.etas, wo), cosines, &mut shares);
         shares
+    }
+
+    /// How often facets are to mirror light at cosines of incidence, in the lanes that ask.
+    fn chances<'a, S: Split + 'a>(
+        &self,
+        level: Level,
+        each: impl Fn(usize) -> Option<&'a Dielectric<F, S>> + Copy,
+        asks: &[bool; LANES],
+        wo: &VectorLanes,
+        cosines: &[f64; LANES],
+    ) -> [f64; LANES]
+    where
+        F: 'a,
+    {
+        let reflectance = self.reflectances(level, each, asks, wo, cosines);
+        from_fn(|lane| {
+            let share = S::Share::get(&reflectance, lane);
+            match each(lane).filter(|_| asks[lane]) {
+                Some(of) => of.divide(share, wo.get(lane), cosines[lane]).chance,
+                None => share.chance(),
+            }
+        })
     }
 
     /// What is drawn in lanes that ask and are smooth.
@@ -302,9 +337,9 @@ impl<F: Lossy, S: Split> BsdfColumns<Dielectric<F, S>> for DielectricLanes<F> {
         let BsdfSampleLanes { wi, weight, pdf, eta, is_through } = &mut *drawn;
         let (mut normal, mut cosines, mut facets) = (VectorLanes::ZERO, [0.0; LANES], Facet::EMPTY);
         look(level, self, wo, u, &mut normal, &mut cosines);
-        let reflectance = self.reflectances(level, each, &rough, wo, &cosines);
+        let chances = self.chances(level, each, &rough, wo, &cosines);
         let mut goes = [false; LANES];
-        bend::<F, S::Share>(level, self, wo, &normal, &reflectance, choice, &rough, wi, &mut facets, &mut goes);
+        bend::<F>(level, self, wo, &normal, &chances, choice, &rough, wi, &mut facets, &mut goes);
         for lane in (0..LANES).filter(|&lane| rough[lane] && choice[lane] < self.known.lost[lane]) {
             let (wo, known, u) = (wo.get(lane), Known::get(&self.known, lane), [u[0][lane], u[1][lane]]);
             goes[lane] = false;

@@ -94,8 +94,9 @@ pub struct PrincipledMaterial {
 impl PrincipledMaterial {
     fn bsdf(&self, point: &TexturePoint, outside: f64) -> AnyBsdf {
         let solid = self.is_solid();
-        // What is opaque fills nothing: what is around it does not count.
-        let eta = self.interior.ior / if solid { outside } else { 1.0 };
+        // What is opaque fills nothing: what is around it does not count, and all that it mirrors has the index of
+        // yellow light.
+        let eta = if solid { self.interior.ior_at(point.waves.as_ref()) / outside } else { self.interior.ior };
         let coat = [self.clearcoat.at(point), self.clearcoat_gloss.at(point)];
         Principled::new(self.looks.at(point), eta, self.metallic.at(point), coat, solid).into()
     }
@@ -120,7 +121,8 @@ impl Material for PrincipledMaterial {
     }
 
     fn needs(&self) -> Needs {
-        self.looks.needs() | self.metallic.needs() | self.clearcoat.needs() | self.clearcoat_gloss.needs()
+        let parts = Needs { waves: self.interior.dispersion.is_any(), ..Needs::NONE };
+        self.looks.needs() | self.metallic.needs() | self.clearcoat.needs() | self.clearcoat_gloss.needs() | parts
     }
 
     fn validate(&self) -> Result<(), String> {
