@@ -85,8 +85,8 @@ loops! {
 }
 
 loops! {
-    /// Where light comes from that they mirror or refract, by how often they are to mirror it, in the lanes that ask and
-    /// have such light.
+    /// Where light comes from that they mirror or refract, by how often they are to mirror it, in the lanes that ask
+    /// and have such light.
     fn bend<F: Facets>(
         of: &DielectricLanes<F>,
         wo: &VectorLanes,
