@@ -290,14 +290,6 @@ def test_the_fan_has_its_colours_in_order():
     assert 0.1 < high - low < 1.0
 
 
-def test_who_cannot_says_so():
-    smoke = rw.Box((-1, -1, 0.1), (1, 1, 0.4), material=rw.Boundary(rw.Homogeneous(0.1, 0.5)))
-    scene = rw.Scene([floor(), smoke], environment=1.0)
-    for integrator in (rw.PhotonMap(), rw.ProgressivePhotonMap()):
-        with pytest.raises(ValueError, match="not followed by wavelength among media: use Path"):
-            rw.render(scene, down(0.5), integrator, 1, progress=False)
-
-
 def misty(medium):
     """A lamp over a ball of glass, both in what absorbs and scatters by wavelength."""
     mist = rw.Box((-2.5, -2.5, 0.02), (2.5, 2.5, 1.6), material=rw.Boundary(medium))
