@@ -80,14 +80,18 @@ def _described(mi, scene, camera, sampler, folder):
 
 
 def by_constants(scene, camera):
-    """Return a scene whose metals have their index at 630, 532 and 465 nm: Mitsuba has no spectra in RGB."""
+    """Return a scene whose metals are as Mitsuba has them.
+
+    Their index is that at 630, 532 and 465 nm, for Mitsuba has no spectra in RGB, and what facets throw on
+    facets is lost.
+    """
 
     def told(material):
         if not isinstance(material, rw.Conductor) or material.metal is None:
             return material
         wavelengths, *index = rw.metal_index(material.metal)
         eta, k = (np.interp((630, 532, 465), wavelengths, values) for values in index)
-        return rw.Conductor(eta=eta, k=k, alpha=material.alpha)
+        return rw.Conductor(eta=eta, k=k, alpha=material.alpha, multiple_scattering=False)
 
     def of(shape, material):
         if material is shape.material:
