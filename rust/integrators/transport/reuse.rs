@@ -52,6 +52,8 @@ impl Sight {
 #[derive(Clone, Copy)]
 struct First {
     departure: RayOrigin,
+    /// The primitive that it is on, which rays from and to here miss.
+    primitive: u32,
     /// Shading normal and geometric normal on the side of the camera.
     shading: DVec3,
     normal: DVec3,
@@ -64,6 +66,7 @@ struct First {
 #[derive(Clone, Copy)]
 struct Second {
     departure: RayOrigin,
+    primitive: u32,
     shading: DVec3,
     normal: DVec3,
     is_flat: bool,
@@ -105,6 +108,7 @@ const FEW: usize = 5;
 impl First {
     const NONE: Self = Self {
         departure: RayOrigin::free(DVec3::ZERO),
+        primitive: Ray::NO_TRIANGLE,
         shading: DVec3::ZERO,
         normal: DVec3::ZERO,
         is_flat: true,
@@ -152,10 +156,10 @@ impl Reuse {
         self.strays.rays.clear();
     }
 
-    /// A path comes to a surface. Where what it finds from there on is to be shared, it goes on as the path of a sample
+    /// A path comes to a surface, on a primitive of the scene. Where what it finds from there on is to be shared, it goes on as the path of a sample
     /// of number `samples` or more.
     #[inline]
-    pub fn visit<S: Bsdf>(&mut self, mut path: PathState, here: &SurfaceInteraction<S>) -> PathState {
+    pub fn visit<S: Bsdf>(&mut self, mut path: PathState, here: &SurfaceInteraction<S>, primitive: u32) -> PathState {
         if path.bounce > 1 {
             return path;
         }
@@ -170,10 +174,10 @@ impl Reuse {
         let (departure, is_flat) = (here.ray_origin(), here.is_flat());
         if path.bounce == 0 {
             let reflectance = path.throughput * reflectance;
-            self.first[path.sample as usize] = First { departure, shading, normal, is_flat, reflectance };
+            self.first[path.sample as usize] = First { departure, primitive, shading, normal, is_flat, reflectance };
             return path;
         }
-        let second = Second { departure, shading, normal, is_flat, sample: path.sample };
+        let second = Second { departure, primitive, shading, normal, is_flat, sample: path.sample };
         let first = &self.first[path.sample as usize];
         if first.reflectance.is_black() || here.is_bent() || first.geometry(&second).is_none() {
             return path;
@@ -244,7 +248,8 @@ impl Reuse {
             let ray = if is_known { Pair::KNOWN } else { rays.len() as u32 };
             self.pairs.push(Pair { first: i, ray, is_stray: false, geometry, fading });
             if !is_known {
-                rays.push(second.departure.segment(&there.departure));
+                let misses = [second.primitive, there.primitive];
+                rays.push(Ray { misses, ..second.departure.segment(&there.departure) });
             }
         }
         let left = rays.len() % BUNDLE;
@@ -294,12 +299,19 @@ mod tests {
 
     fn first(position: DVec3, normal: DVec3, shading: DVec3) -> First {
         let departure = RayOrigin::free(position);
-        First { departure, shading, normal, is_flat: shading == normal, reflectance: Rgb::ONE }
+        First {
+            departure,
+            primitive: Ray::NO_TRIANGLE,
+            shading,
+            normal,
+            is_flat: shading == normal,
+            reflectance: Rgb::ONE,
+        }
     }
 
     fn second(position: DVec3, normal: DVec3, shading: DVec3) -> Second {
         let departure = RayOrigin::free(position);
-        Second { departure, shading, normal, is_flat: shading == normal, sample: 0 }
+        Second { departure, primitive: Ray::NO_TRIANGLE, shading, normal, is_flat: shading == normal, sample: 0 }
     }
 
     #[test]
