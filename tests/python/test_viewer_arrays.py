@@ -7,8 +7,11 @@ import pytest
 from viewer_page import ask, page, turn
 
 import raywright as rw
+from raywright.viewer import server
 from raywright.viewer.lamps import behind, lamp
+from raywright.viewer.orbit import View
 from raywright.viewer.paint import paints
+from raywright.viewer.requests import scene_told
 from raywright.viewer.texts import text
 
 SIZE = {"width": 96, "height": 72}
@@ -173,6 +176,23 @@ def test_who_draws_by_itself_hears_of_the_camera_and_nothing_is_rendered():
         assert not viewer.rendering
         viewer.close()
         assert not [name for name, _ in news if name != "view"]
+
+
+def test_what_changes_while_the_scene_is_told_is_news(monkeypatch):
+    def tell(session):
+        told = scene_told(session)
+        session.turn(View(azimuth=20))
+        session.show(rw.Whitted())
+        return told
+
+    with rw.view(*rw.scenes.cornell_box(**SIZE), samples=1) as viewer:
+        for path in ("news", "events"):
+            monkeypatch.setattr(server, "scene_told", tell)
+            with page(viewer, path) as heard:
+                assert next(heard)[0] == "scene"
+                monkeypatch.setattr(server, "scene_told", scene_told)
+                assert next(heard)[0] == "again"
+                assert next(told for name, told in heard if name in ("view", "frame"))
 
 
 def test_colours_and_normals_of_a_sketch():
