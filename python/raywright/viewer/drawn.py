@@ -146,6 +146,7 @@ class Drawn:
             "seed": self._how.get("seed", 0) % 2**16,
             "samples": self._how.get("samples") or _SAMPLES,
             "seconds": self._how.get("seconds"),
+            "error": self._how.get("error"),
         }
 
     def _laid_out(self) -> FlatArrays:
