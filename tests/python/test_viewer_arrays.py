@@ -122,9 +122,10 @@ def test_copies_are_drawn_as_shapes_of_their_own():
 
 def test_limits_of_paths_are_those_of_the_render():
     path = rw.Path(max_depth=3, roulette_depth=2)
-    with rw.view(*rw.scenes.cornell_box(**SIZE), path, samples=7, seed=5) as viewer:
+    with rw.view(*rw.scenes.cornell_box(**SIZE), path, samples=7, error=0.1, seed=5) as viewer:
         limits = asked(viewer, "drawing", {})[1]["traced"]
-        assert limits == {"depth": 3, "roulette": 2, "seed": 5, "samples": 7, "seconds": None}
+        wanted = {"depth": 3, "roulette": 2, "seed": 5, "samples": 7, "seconds": None, "error": 0.1}
+        assert limits == wanted
         viewer.show(rw.Whitted())
         assert asked(viewer, "drawing", {})[1]["traced"] is None
 
@@ -239,8 +240,11 @@ def test_shaders_are_what_other_browsers_take_too():
     except (ImportError, RuntimeError) as missing:
         pytest.skip(str(missing))
     beginning = text("walk.wgsl").replace("STACK", "32u") + text("sight.wgsl")
-    for rest in (text("screen.wgsl"), text("lines.wgsl"), text("shading.wgsl") + text("path.wgsl")):
+    brought = text("brought.wgsl")
+    paths = text("shading.wgsl") + brought + text("path.wgsl")
+    for rest in (brought + text("screen.wgsl"), text("lines.wgsl"), paths):
         device.create_shader_module(code=beginning + rest)
+    device.create_shader_module(code=brought + text("error.wgsl"))
 
 
 def test_what_surrounds_a_sketch():
