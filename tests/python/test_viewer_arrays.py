@@ -7,6 +7,7 @@ import pytest
 from viewer_page import ask, page, turn
 
 import raywright as rw
+from raywright.gpu.packing import known_lit, packed
 from raywright.viewer import server
 from raywright.viewer.lamps import behind, lamp
 from raywright.viewer.orbit import View
@@ -241,7 +242,8 @@ def test_shaders_are_what_other_browsers_take_too():
         pytest.skip(str(missing))
     beginning = text("walk.wgsl").replace("STACK", "32u") + text("sight.wgsl")
     brought = text("brought.wgsl")
-    paths = text("shading.wgsl") + brought + text("path.wgsl")
+    lit = packed(rw.Scene(rw.scenes.torus_knot()), rw.Scene(rw.scenes.torus_knot()).flat()).lit
+    paths = known_lit(lit) + text("shading.wgsl") + brought + text("path.wgsl")
     for rest in (brought + text("screen.wgsl"), text("lines.wgsl"), paths):
         device.create_shader_module(code=beginning + rest)
     device.create_shader_module(code=brought + text("error.wgsl"))

@@ -82,7 +82,7 @@ fn traced(first: Ray) -> vec3<f32> {
     for (var depth = 0u;; depth++) {
         let met = nearest(ray.origin, ray.direction, from_face, look.mode.w);
         if met.face == NOBODY {
-            if lit.sky_kind != 0u {
+            if SKY_KIND != 0u {
                 let other = lit.sky_share * sky_pdf(ray.direction);
                 light += throughput * sky_radiance(ray.direction) * select(beside(pdf, other), 1.0, pdf == SINGLE);
             }

@@ -26,8 +26,9 @@ export class Paths {
   }
 
   async prepare() {
-    const { device, beginning, texts, layout } = this.passes;
-    const module = device.createShaderModule({ code: beginning + texts.shading + texts.brought + texts.path });
+    const { device, beginning, texts, layout, told } = this.passes;
+    const parts = [beginning, told.known, texts.shading, texts.brought, texts.path];
+    const module = device.createShaderModule({ code: parts.join("\n") });
     this.pipeline = await device.createComputePipelineAsync({
       layout: device.createPipelineLayout({ bindGroupLayouts: [layout, this.layout] }),
       compute: { module, entryPoint: "accumulate" },
