@@ -134,6 +134,28 @@ def test_the_page_tells_how_wrong_its_picture_is(page):
         assert told(page, "interval") == ""
 
 
+def test_a_page_that_is_given_up_while_it_estimates_has_nothing_to_complain_of(page):
+    with rw.view(*rw.scenes.cornell_box(width=16, height=16), fit=False, samples=2) as viewer:
+        begin(page, viewer)
+        go_on(page)
+        # Whoever waits for the estimate never hears of it.
+        page.evaluate("""async () => {
+            const { drawing } = viewer;
+            const { errors } = drawing.passes.paths;
+            const estimate = errors.estimate.bind(errors);
+            const begun = new Promise(done => {
+                errors.estimate = () => { setTimeout(done); return estimate(); };
+            });
+            drawing.told.traced.samples = 3;
+            drawing.work();
+            await begun;
+            viewer.close();
+            while (drawing.isWorking) {
+                await new Promise(done => setTimeout(done, 10));
+            }
+        }""")
+
+
 @pytest.mark.slow
 def test_few_paths_that_find_the_light_are_not_trusted(page):
     scene, camera = glass()

@@ -130,6 +130,11 @@ export class Drawing {
     this.isWorking = true;
     try {
       while (this.isActive && (await this.step())) {}
+    } catch (error) {
+      // What a device was still to tell when it was given up is not heard.
+      if (!this.isDestroyed) {
+        throw error;
+      }
     } finally {
       this.isWorking = false;
     }
