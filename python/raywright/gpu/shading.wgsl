@@ -1,8 +1,8 @@
 // What surfaces and lights do in f32: where a ray has met a face, how that scatters light, and what light reaches it.
 //
 // Whoever includes this has bindings and these functions: face(i) -> Face, material(i) -> Material, light(i) -> Light
-// and number(i) -> f32, which read the arrays of packing.py, `lit`, a Lit, and the constants of `known_lit`. All lengths
-// are in box units (see `FlatArrays`). Nothing here is an extension: it runs in browsers too.
+// and number(i) -> f32, which read the arrays of packing.py, `lit`, a Lit, and the constants of `known_lit`. All
+// lengths are in box units (see `FlatArrays`). Nothing here is an extension: it runs in browsers too.
 //
 // The scattering functions are those of the core (rust/optics), and draws have the same densities where nothing else is
 // said. In a shading frame z is on the side of the winding's normal; directions point away from the surface.

@@ -9,8 +9,8 @@ export class Figures {
     this.forget();
   }
 
-  // `error` has a value, `low`, `high`, and whether it `isTrusted`, or is null where none is known; `of` is what picture
-  // it is of.
+  // `error` has a value, `low`, `high`, and whether it `isTrusted`, or is null where none is known; `of` tells pictures
+  // apart.
   tell({ samples, seconds, error, of }) {
     this.byId("samples").textContent = samples;
     this.byId("seconds").textContent = seconds.toFixed(seconds < 0.1 ? 3 : 1);

@@ -56,8 +56,8 @@ class Comm extends Wire {
 
   text = async (name) => new TextDecoder().decode(await this.bytes(name));
 
-  // A notebook tells that it has lost the kernel, or found it again, and not which. One that was restarted knows nothing
-  // of widgets before.
+  // A notebook tells that it has lost the kernel, or found it again, and not which. One that was restarted knows
+  // nothing of widgets before.
   seek = async () => {
     const answered = this.ask("scene", {}).then(
       () => true,
