@@ -394,3 +394,30 @@ def test_a_device_that_is_lost_is_told_of_and_the_cpu_goes_on(gpu, monkeypatch):
     assert image.plan["device"].chosen == "CPU"
     assert "Parent device is lost" in image.warnings[0]
     agree(image, rw.render(scene, camera, PLAIN, 128, progress=False))
+
+
+def resident():
+    """Bytes of memory that the process has."""
+    with open("/proc/self/statm") as told:
+        return int(told.read().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+
+
+@pytest.mark.skipif(not os.path.exists("/proc/self/statm"), reason="the system does not tell memory so")
+def test_memory_does_not_grow_with_samples(gpu):
+    # All kernels, and each way to be lit: a driver may keep something for each time that one is bound.
+    looks = (
+        rw.Diffuse(0.5),
+        rw.Mirror(),
+        rw.Conductor("gold", roughness=0.3),
+        rw.Dielectric(1.5, roughness=0.3),
+    )
+    balls = [ball((2.5 * i - 4, 0, 0), material, rows=4) for i, material in enumerate(looks)]
+    camera = rw.Camera((0, 1, 9), (0, 0, 0), width=16, height=16)
+    for shapes, environment in (([*balls, lamp()], sky()), (balls, 0.5)):
+        scene = rw.Scene(shapes, environment=environment)
+        how = {"device": gpu, "progress": False}
+        assert rw.render(scene, camera, PLAIN, samples=64, **how).plan["device"].chosen == gpu.name
+        before = resident()
+        rw.render(scene, camera, PLAIN, samples=384, **how)
+        # It was half a megabyte for each of some two hundred bindings.
+        assert resident() - before < 20e6

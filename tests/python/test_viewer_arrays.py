@@ -7,8 +7,12 @@ import pytest
 from viewer_page import ask, page, turn
 
 import raywright as rw
+from raywright.gpu.packing import known_lit, packed
+from raywright.viewer import server
 from raywright.viewer.lamps import behind, lamp
+from raywright.viewer.orbit import View
 from raywright.viewer.paint import paints
+from raywright.viewer.requests import scene_told
 from raywright.viewer.texts import text
 
 SIZE = {"width": 96, "height": 72}
@@ -119,9 +123,10 @@ def test_copies_are_drawn_as_shapes_of_their_own():
 
 def test_limits_of_paths_are_those_of_the_render():
     path = rw.Path(max_depth=3, roulette_depth=2)
-    with rw.view(*rw.scenes.cornell_box(**SIZE), path, samples=7, seed=5) as viewer:
+    with rw.view(*rw.scenes.cornell_box(**SIZE), path, samples=7, error=0.1, seed=5) as viewer:
         limits = asked(viewer, "drawing", {})[1]["traced"]
-        assert limits == {"depth": 3, "roulette": 2, "seed": 5, "samples": 7, "seconds": None}
+        wanted = {"depth": 3, "roulette": 2, "seed": 5, "samples": 7, "seconds": None, "error": 0.1}
+        assert limits == wanted
         viewer.show(rw.Whitted())
         assert asked(viewer, "drawing", {})[1]["traced"] is None
 
@@ -175,6 +180,23 @@ def test_who_draws_by_itself_hears_of_the_camera_and_nothing_is_rendered():
         assert not [name for name, _ in news if name != "view"]
 
 
+def test_what_changes_while_the_scene_is_told_is_news(monkeypatch):
+    def tell(session):
+        told = scene_told(session)
+        session.turn(View(azimuth=20))
+        session.show(rw.Whitted())
+        return told
+
+    with rw.view(*rw.scenes.cornell_box(**SIZE), samples=1) as viewer:
+        for path in ("news", "events"):
+            monkeypatch.setattr(server, "scene_told", tell)
+            with page(viewer, path) as heard:
+                assert next(heard)[0] == "scene"
+                monkeypatch.setattr(server, "scene_told", scene_told)
+                assert next(heard)[0] == "again"
+                assert next(told for name, told in heard if name in ("view", "frame"))
+
+
 def test_colours_and_normals_of_a_sketch():
     mesh = rw.scenes.torus_knot(along=40, around=8, material=rw.Diffuse((0.8, 0.4, 0.2)))
     two = rw.TwoSided(rw.Diffuse(0.25), rw.Mirror())
@@ -219,8 +241,12 @@ def test_shaders_are_what_other_browsers_take_too():
     except (ImportError, RuntimeError) as missing:
         pytest.skip(str(missing))
     beginning = text("walk.wgsl").replace("STACK", "32u") + text("sight.wgsl")
-    for rest in (text("screen.wgsl"), text("lines.wgsl"), text("shading.wgsl") + text("path.wgsl")):
+    brought = text("brought.wgsl")
+    lit = packed(rw.Scene(rw.scenes.torus_knot()), rw.Scene(rw.scenes.torus_knot()).flat()).lit
+    paths = known_lit(lit) + text("shading.wgsl") + brought + text("path.wgsl")
+    for rest in (brought + text("screen.wgsl"), text("lines.wgsl"), paths):
         device.create_shader_module(code=beginning + rest)
+    device.create_shader_module(code=brought + text("error.wgsl"))
 
 
 def test_what_surrounds_a_sketch():

@@ -138,6 +138,7 @@ def test_what_is_said_under_the_picture_does_not_begin_it_anew_for_ever(page, kn
 
 
 def test_the_picture_fills_the_window_and_is_exposed_by_the_page(page, knot):
+    page.set_viewport_size({"width": 600, "height": 400})
     with rw.view(*knot, samples=4) as viewer:
         page.goto(viewer.url)
         shown(page, is_state("done"))
@@ -145,8 +146,8 @@ def test_the_picture_fills_the_window_and_is_exposed_by_the_page(page, knot):
         _, plain = shown(page, f"picture.height === {high} && {is_state('done')}")
         assert plain.shape == (high, high, 3)
         assert wide > high
-        page.set_viewport_size({"width": 500, "height": 700})
-        page.wait_for_function("() => picture.height === 500 && picture.width === 500", timeout=10_000)
+        page.set_viewport_size({"width": 400, "height": 800})
+        page.wait_for_function("() => picture.height === 400 && picture.width === 400", timeout=10_000)
         _, plain = shown(page, is_state("done"))
         for _ in range(4):
             page.keyboard.press("]")

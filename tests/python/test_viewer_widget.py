@@ -157,11 +157,13 @@ def test_without_anywidget_it_is_told_what_is_missing(viewer, monkeypatch):
 FAKE = """([esm, traits]) => {
     window.outbox = [];
     window.heard = [];
+    window.lost = [];
+    const listeners = name => ({ "msg:custom": heard, comm_live_update: lost })[name];
     window.model = {
         get: name => traits[name],
         send: content => outbox.push(content),
-        on: (name, hear) => heard.push(hear),
-        off: (name, hear) => heard.splice(heard.indexOf(hear), 1),
+        on: (name, hear) => listeners(name).push(hear),
+        off: (name, hear) => listeners(name).splice(listeners(name).indexOf(hear), 1),
     };
     window.deliver = ([content, data]) => {
         const bytes = text => Uint8Array.from(atob(text), letter => letter.charCodeAt(0));

@@ -3,6 +3,7 @@
 import base64
 import io
 import json
+import time
 from contextlib import closing, contextmanager
 from http.client import HTTPConnection
 from urllib.parse import urlsplit
@@ -34,12 +35,15 @@ def page(viewer_or_url, path="events"):
         assert (answer.status, answer.headers["Content-Type"]) == (200, "text/event-stream")
 
         def events():
-            name = None
+            name, spoke = None, time.monotonic()
             for line in answer:
+                # The server says now and then that it is still there, so that no read takes long.
+                assert time.monotonic() - spoke < 20, "nothing new is heard"
                 if line.startswith(b"event: "):
                     name = line[7:].strip().decode()
                 elif line.startswith(b"data: "):
                     yield name, json.loads(line[6:])
+                    spoke = time.monotonic()
 
         try:
             yield events()

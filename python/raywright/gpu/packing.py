@@ -104,6 +104,16 @@ class Packed:
     lit: NDArray[np.void]
 
 
+def known_lit(lit: NDArray[np.void]) -> str:
+    """Return what of a `Lit` kernels are compiled with, as WGSL: what there is none of is not compiled.
+
+    A driver in software (llvmpipe of Mesa 22.3) makes another kernel of one that branches by numbers of a
+    uniform each time that it is bound, and keeps them all.
+    """
+    has_lights = "true" if lit["lights"] else "false"
+    return f"const SKY_KIND = {int(lit['sky_kind'])}u;\nconst HAS_LIGHTS = {has_lights};\n"
+
+
 def packed(scene: Scene, flat: FlatArrays) -> Packed:
     """Pack a scene.
 

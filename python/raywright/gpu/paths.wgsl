@@ -202,7 +202,7 @@ fn plan_first() {
 @compute @workgroup_size(64)
 fn leave_scene(@builtin(global_invocation_id) id: vec3<u32>) {
     let i = taken(SKY, id.x);
-    if i == NO || lit.sky_kind == 0u {
+    if i == NO || SKY_KIND == 0u {
         return;
     }
     let direction = paths[i].direction;

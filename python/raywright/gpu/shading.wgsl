@@ -1,8 +1,8 @@
 // What surfaces and lights do in f32: where a ray has met a face, how that scatters light, and what light reaches it.
 //
 // Whoever includes this has bindings and these functions: face(i) -> Face, material(i) -> Material, light(i) -> Light
-// and number(i) -> f32, which read the arrays of packing.py, and `lit`, a Lit. All lengths are in box units (see
-// `FlatArrays`). Nothing here is an extension: it runs in browsers too.
+// and number(i) -> f32, which read the arrays of packing.py, `lit`, a Lit, and the constants of `known_lit`. All
+// lengths are in box units (see `FlatArrays`). Nothing here is an extension: it runs in browsers too.
 //
 // The scattering functions are those of the core (rust/optics), and draws have the same densities where nothing else is
 // said. In a shading frame z is on the side of the winding's normal; directions point away from the surface.
@@ -704,8 +704,8 @@ fn sky_place(direction: vec3<f32>) -> vec2<f32> {
 
 // The radiance from outside along a direction.
 fn sky_radiance(direction: vec3<f32>) -> vec3<f32> {
-    if lit.sky_kind != 2u {
-        return lit.sky * f32(lit.sky_kind);
+    if SKY_KIND != 2u {
+        return lit.sky * f32(SKY_KIND);
     }
     let place = sky_place(direction) - 0.5;
     let corner = floor(place);
@@ -746,7 +746,7 @@ fn sky_columns(row: u32) -> u32 {
 
 // The density, in solid angle, with which `from_sky` draws a direction.
 fn sky_pdf(direction: vec3<f32>) -> f32 {
-    if lit.sky_kind != 2u {
+    if SKY_KIND != 2u {
         return 0.25 * INVERSE_PI;
     }
     let place = sky_place(direction);
@@ -761,7 +761,7 @@ fn sky_pdf(direction: vec3<f32>) -> f32 {
 
 // A direction to the sky: of a picture by what there is of light in each texel.
 fn from_sky(u: vec2<f32>) -> vec3<f32> {
-    if lit.sky_kind != 2u {
+    if SKY_KIND != 2u {
         let z = 1.0 - 2.0 * u.x;
         return vec3<f32>(sqrt(max(1.0 - z * z, 0.0)) * turned(u.y), z);
     }
@@ -807,7 +807,7 @@ fn from_lights(position: vec3<f32>, choice: f32, u: vec2<f32>) -> Arriving {
         arriving.pdf = lit.sky_share * sky_pdf(arriving.direction);
         return arriving;
     }
-    if lit.lights == 0u {
+    if !HAS_LIGHTS {
         return arriving;
     }
     let left = (choice - lit.sky_share) / (1.0 - lit.sky_share);

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from ..query.flats import FlatArrays
 from .eyes import Eye
 from .kernels import Parts, text
-from .packing import Packed
+from .packing import Packed, known_lit
 
 # 128 bytes: see `Job` of paths.wgsl.
 JOB = np.dtype(
@@ -128,6 +128,7 @@ class Wavefront:
         for kind, part in parts.items():
             bindings.append(part.declared(kind, first, "number" if kind == "f32" else kind.lower()))
             first += len(part.buffers)
+        bindings.append(known_lit(scene.lit))
         depth = f"{(flat.depth // 32 + 1) * 32}u"
         self._code = "\n".join(
             [

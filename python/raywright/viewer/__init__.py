@@ -172,9 +172,9 @@ def view(
     Where the browser has WebGPU, and the scene is of meshes, it draws by itself: a ray and its shadow a pixel
     while the camera moves, and paths, more and more of them, once it stands; what of materials, lights and
     integrators it does not know the core renders once the camera stands. Elsewhere all pictures are the
-    core's: a small one comes at once and a better one after it, with its error. The key g changes between
-    both. While no page is open nothing is rendered. In a notebook, the viewer shows itself where a cell ends
-    with it (`Viewer.widget`).
+    core's: a small one comes at once and a better one after it. Either way it is told how wrong the picture
+    still is. The key g changes between both. While no page is open nothing is rendered. In a notebook, the
+    viewer shows itself where a cell ends with it (`Viewer.widget`).
 
     Parameters
     ----------

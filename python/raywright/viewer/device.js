@@ -16,9 +16,12 @@ export async function openDevice() {
   return { device, name };
 }
 
+// The bytes of the largest array that a device holds.
+export const mostOf = ({ limits }) => Math.min(limits.maxStorageBufferBindingSize, limits.maxBufferSize);
+
 // Why a device has no room for arrays of so many bytes, by name; null if it has.
 export function noRoom(device, arrays) {
-  const most = Math.min(device.limits.maxStorageBufferBindingSize, device.limits.maxBufferSize);
+  const most = mostOf(device);
   const [name, bytes] = Object.entries(arrays).reduce((a, b) => (a[1] >= b[1] ? a : b));
   const [needs, has] = [bytes, most].map((size) => Math.ceil(size / 2 ** 20));
   return bytes > most ? `${name} of the scene take ${needs} MiB, and this device holds ${has} MiB at once` : null;

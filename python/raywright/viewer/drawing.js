@@ -15,7 +15,12 @@ const VISITS = 256;
 const BAND = 30;
 const MOST_ROWS = 1 << 16;
 const BETWEEN = 60;
-const SHADERS = ["walk", "shading", "sight", "screen", "lines", "path"];
+// How many times as many paths there are when the next error is told, below how many of them one ends nothing, and how
+// many times the paths may become while one stays below what is wanted that is not trusted (render/schedule.rs).
+const LATER = 1.25;
+const LEAST = 16;
+const PATIENCE = 64;
+const SHADERS = ["walk", "shading", "sight", "screen", "lines", "path", "brought", "error"];
 
 const nextFrame = () => new Promise(requestAnimationFrame);
 const sameTexts = new Map();
@@ -125,6 +130,11 @@ export class Drawing {
     this.isWorking = true;
     try {
       while (this.isActive && (await this.step())) {}
+    } catch (error) {
+      // What a device was still to tell when it was given up is not heard.
+      if (!this.isDestroyed) {
+        throw error;
+      }
     } finally {
       this.isWorking = false;
     }
@@ -133,7 +143,8 @@ export class Drawing {
   // Do one thing that is to be done; whether there may be more.
   async step() {
     const left = this.movedAt + STANDS - performance.now();
-    const traced = this.isHeat ? null : this.told.traced;
+    const { canvas, passes } = this;
+    const traced = !this.isHeat && passes.paths?.fits(canvas.width, canvas.height) ? this.told.traced : null;
     if (this.isDirty) {
       this.isDirty = this.isStale = false;
       this.isWhole = left <= 0 && this.divisor === 1;
@@ -144,7 +155,7 @@ export class Drawing {
     } else if (this.isStale) {
       this.isStale = false;
       this.present();
-    } else if (traced && this.passes.paths.pipeline) {
+    } else if (traced && passes.paths.isReady) {
       return this.trace(traced);
     } else if (!this.isWhole) {
       this.isWhole = true;
@@ -159,15 +170,17 @@ export class Drawing {
   }
 
   // A band of paths more, and at times the picture of all; whether there are more.
-  async trace({ samples, seconds }) {
+  async trace(limits) {
     const { canvas, passes } = this;
+    const { samples } = limits;
     if (this.sample === 0 && this.row === 0) {
       passes.paths.room(canvas.width, canvas.height);
-      this.spent = 0;
+      this.spent = this.above = 0;
       this.presentedAt = -Infinity;
+      [this.error, this.errorAt, this.nextErrorAt] = [null, 0, 2];
     }
-    if (this.sample >= samples || (seconds !== null && this.spent >= seconds && this.sample > 0)) {
-      await this.showPaths(true);
+    if (this.isEnough(limits)) {
+      await this.showPaths(limits, true);
       // It may have been moved by now.
       return this.isDirty;
     }
@@ -197,17 +210,49 @@ export class Drawing {
       return true;
     }
     if (performance.now() - this.presentedAt > BETWEEN) {
-      await this.showPaths(false);
+      await this.showPaths(limits, false);
     }
     return true;
   }
 
-  async showPaths(isDone) {
+  isEnough({ samples, seconds, error }) {
+    if (this.sample >= samples || (seconds !== null && this.spent >= seconds && this.sample > 0)) {
+      return true;
+    }
+    if (error === null || !this.error || this.errorAt < LEAST) {
+      return false;
+    }
+    const { value, high, isTrusted } = this.error;
+    return isTrusted ? high <= error : value <= error && this.errorAt >= PATIENCE * Math.max(this.above, LEAST);
+  }
+
+  // How wrong the picture still is, told as often as paths have become some more.
+  async tellError({ error }) {
+    const [began, sample] = [performance.now(), this.sample];
+    const told = await this.passes.paths.errors.estimate();
+    if (this.isDirty) {
+      return;
+    }
+    this.spent += (performance.now() - began) / 1000;
+    [this.error, this.errorAt, this.nextErrorAt] = [told, sample, Math.ceil(LATER * sample)];
+    if (error !== null && !(told?.value <= error)) {
+      this.above = sample;
+    }
+  }
+
+  async showPaths(limits, isDone) {
+    if (this.sample >= this.nextErrorAt || (isDone && this.sample > this.errorAt)) {
+      await this.tellError(limits);
+    }
     await nextFrame();
+    if (this.isDirty) {
+      return;
+    }
     this.present();
     this.presentedAt = performance.now();
     this.canvas.dataset.samples = this.sample;
-    this.on.tell({ samples: this.sample, seconds: this.spent, isDone });
+    const { view, spent, error, sample, canvas } = this;
+    this.on.tell({ samples: sample, seconds: spent, error, isDone, of: [view, canvas.width, canvas.height] });
   }
 
   // One ray a pixel, of as many times fewer pixels; the next picture in movement has as many as the device can do.
@@ -225,7 +270,7 @@ export class Drawing {
     this.pictures += 1;
     canvas.dataset.pictures = this.pictures;
     canvas.dataset.samples = 0;
-    this.on.tell({ samples: this.isHeat ? `1 to ${VISITS} nodes` : "sketch", seconds: took / 1000 });
+    this.on.tell({ samples: this.isHeat ? `1 to ${VISITS} nodes` : "sketch", seconds: took / 1000, error: null });
   }
 
   aim(width, height, more = {}) {

@@ -11,7 +11,7 @@ from .._core import FlatScene
 from ..cameras import Camera, Orthographic, ThinLens
 from ..exchange.copies import laid_out
 from ..gpu.looks import LeftError
-from ..gpu.packing import packed
+from ..gpu.packing import known_lit, packed
 from ..integrators import AnyIntegrator, Path
 from ..io.tone import TONES
 from ..query.flats import FlatArrays, flat_arrays
@@ -64,6 +64,7 @@ class Drawn:
         self._arrays: dict[str, bytes] = {}
         # What of the scene the page cannot shade as the core does.
         self._left: str | None = None
+        self._known = ""
 
     def show(self, integrator: AnyIntegrator) -> None:
         """Take another integrator from now on."""
@@ -92,6 +93,7 @@ class Drawn:
                 "orbit": self._orbit.told(),
                 "lamp": lamp(self._scene, self._orbit.camera(View())),
                 "behind": behind(self._scene),
+                "known": self._known,
                 "tone": TONES.index(self._tone),
                 "traced": None if left else self._limits(),
                 "left": left,
@@ -146,6 +148,7 @@ class Drawn:
             "seed": self._how.get("seed", 0) % 2**16,
             "samples": self._how.get("samples") or _SAMPLES,
             "seconds": self._how.get("seconds"),
+            "error": self._how.get("error"),
         }
 
     def _laid_out(self) -> FlatArrays:
@@ -168,7 +171,7 @@ class Drawn:
             except LeftError as left:
                 self._left = str(left)
             else:
-                self._left = None
+                self._left, self._known = None, known_lit(looks.lit)
                 self._arrays |= {name: array.tobytes() for name, array in vars(looks).items()}
         return self._flat
 

@@ -38,7 +38,7 @@ export class Passes {
   // Compile what is needed at once.
   async prepare() {
     const { device } = this;
-    const screen = device.createShaderModule({ code: this.beginning + this.texts.screen });
+    const screen = device.createShaderModule({ code: this.beginning + this.texts.brought + this.texts.screen });
     const lines = device.createShaderModule({ code: this.beginning + this.texts.lines });
     const read = GPUShaderStage.FRAGMENT;
     this.pictures = device.createBindGroupLayout({

@@ -1,7 +1,8 @@
-// One path a pixel and pass, added to those before it: after gpu/walk.wgsl, gpu/shading.wgsl and sight.wgsl. Light is
-// asked for at every surface, and met by chance, weighed by both densities (Veach and Guibas 1995).
+// One path a pixel and pass, added to those before it: after gpu/walk.wgsl, gpu/shading.wgsl, sight.wgsl and
+// brought.wgsl. Light is asked for at every surface, and met by chance, weighed by both densities (Veach and Guibas
+// 1995).
 
-@group(1) @binding(0) var<storage, read_write> sums: array<vec4<f32>>;
+@group(1) @binding(0) var<storage, read_write> sums: array<Brought>;
 @group(1) @binding(1) var<storage, read> faces: array<Face>;
 @group(1) @binding(2) var<storage, read> materials: array<Material>;
 @group(1) @binding(3) var<storage, read> lights: array<Light>;
@@ -81,7 +82,7 @@ fn traced(first: Ray) -> vec3<f32> {
     for (var depth = 0u;; depth++) {
         let met = nearest(ray.origin, ray.direction, from_face, look.mode.w);
         if met.face == NOBODY {
-            if lit.sky_kind != 0u {
+            if SKY_KIND != 0u {
                 let other = lit.sky_share * sky_pdf(ray.direction);
                 light += throughput * sky_radiance(ray.direction) * select(beside(pdf, other), 1.0, pdf == SINGLE);
             }
@@ -133,11 +134,11 @@ fn accumulate(@builtin(global_invocation_id) id: vec3<u32>) {
     let within = numbers_drawn().xy;
     let light = traced(ray_through((vec2<f32>(pixel) + within) / look.size.xy));
     let which = pixel.y * limits.width + pixel.x;
-    var sum = vec4<f32>(0.0);
+    var before = Brought();
     if limits.sample > 0u {
-        sum = sums[which];
+        before = sums[which];
     }
     // A number that is none would stay for ever.
     let counts = most(light) < 1e30 && most(-light) <= 0.0;
-    sums[which] = sum + vec4<f32>(select(vec3<f32>(0.0), light, counts), 1.0);
+    sums[which] = with_path(before, select(vec3<f32>(0.0), light, counts));
 }

@@ -1,8 +1,11 @@
 // Paths through a scene, a pass over the picture at a time, in bands of rows: no device is kept busy for long.
 
-import { bufferOf } from "./device.js";
+import { bufferOf, mostOf } from "./device.js";
+import { Errors } from "./error.js";
 
 const NAMES = ["faces", "materials", "lights", "numbers"];
+// Bytes of a pixel: what paths have brought there.
+const PIXEL = 48;
 
 export class Paths {
   // Beside other passes, whose scene they see.
@@ -19,15 +22,24 @@ export class Paths {
       entries: types.map((type, binding) => ({ binding, visibility, buffer: { type } })),
     });
     this.size = [0, 0];
+    this.errors = new Errors(device, passes.texts);
   }
 
   async prepare() {
-    const { device, beginning, texts, layout } = this.passes;
-    const module = device.createShaderModule({ code: beginning + texts.shading + texts.path });
+    const { device, beginning, texts, layout, told } = this.passes;
+    const parts = [beginning, told.known, texts.shading, texts.brought, texts.path];
+    const module = device.createShaderModule({ code: parts.join("\n") });
     this.pipeline = await device.createComputePipelineAsync({
       layout: device.createPipelineLayout({ bindGroupLayouts: [layout, this.layout] }),
       compute: { module, entryPoint: "accumulate" },
     });
+    await this.errors.prepare();
+    this.isReady = true;
+  }
+
+  // Whether the device holds what paths bring to so many pixels.
+  fits(width, height) {
+    return PIXEL * width * height <= mostOf(this.passes.device);
   }
 
   // Room for the sums of a picture of so many pixels, kept as long as it has these.
@@ -38,7 +50,8 @@ export class Paths {
     const { device, brought } = this.passes;
     this.sums?.destroy();
     this.size = [width, height];
-    this.sums = device.createBuffer({ size: 16 * width * height, usage: GPUBufferUsage.STORAGE });
+    const usage = GPUBufferUsage.STORAGE | GPUBufferUsage.COPY_SRC;
+    this.sums = device.createBuffer({ size: PIXEL * width * height, usage });
     this.group = device.createBindGroup({
       layout: this.layout,
       entries: [this.sums, ...this.buffers].map((buffer, binding) => ({ binding, resource: { buffer } })),
@@ -47,6 +60,7 @@ export class Paths {
       layout: brought,
       entries: [{ binding: 2, resource: { buffer: this.sums } }],
     });
+    this.errors.of(this.sums, width, height);
   }
 
   // One path more of each pixel in so many rows, the how manieth; from which row on was told by `aim`.
@@ -66,5 +80,6 @@ export class Paths {
   destroy() {
     this.sums?.destroy();
     this.limits.destroy();
+    this.errors.destroy();
   }
 }

@@ -1,4 +1,4 @@
-// What is drawn on the screen: after gpu/walk.wgsl and sight.wgsl.
+// What is drawn on the screen: after gpu/walk.wgsl, sight.wgsl and brought.wgsl.
 
 @vertex
 fn whole(@builtin(vertex_index) i: u32) -> @builtin(position) vec4<f32> {
@@ -47,11 +47,11 @@ fn shown(@builtin(position) at: vec4<f32>) -> @location(0) vec4<f32> {
     return textureSampleLevel(drawn, between, at.xy / look.size.xy, 0.0);
 }
 
-// What paths have brought so far, and how many of them, by pixel.
-@group(1) @binding(2) var<storage, read> brought: array<vec4<f32>>;
+// What paths have brought so far, by pixel.
+@group(1) @binding(2) var<storage, read> brought: array<Brought>;
 
 @fragment
 fn developed(@builtin(position) at: vec4<f32>) -> @location(0) vec4<f32> {
-    let sum = brought[u32(at.y) * u32(look.size.x) + u32(at.x)];
-    return encoded(toned(sum.xyz / max(sum.w, 1.0)));
+    let its = brought[u32(at.y) * u32(look.size.x) + u32(at.x)];
+    return encoded(toned(its.sum / max(its.count, 1.0)));
 }

@@ -17,6 +17,7 @@ from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from typing import Any
 
+from .orbit import View
 from .requests import bytes_of, is_known, scene_told, told
 from .session import Session
 from .texts import FILES, text
@@ -222,21 +223,23 @@ class _Handler(BaseHTTPRequestHandler):
         self.close_connection = True
         try:
             self._head(HTTPStatus.OK, {"Content-Type": "text/event-stream", "Connection": "close"})
+            # Of before the scene is told: what changes in between is news.
+            news = session.news
             self._event("scene", scene_told(session))
             if with_pictures:
                 with session.watched():
-                    self._pictures(session)
+                    self._pictures(session, news)
             else:
-                self._news(session)
+                self._news(session, news)
         except OSError:
             # The page was closed while something was on its way.
             pass
         finally:
             server.pages -= 1
 
-    def _news(self, session: Session) -> None:
+    def _news(self, session: Session, last: tuple[View, int]) -> None:
         """Tell where the camera is moved to, by whichever page, and of other integrators."""
-        last, spoke = session.news, time.monotonic()
+        spoke = time.monotonic()
         while not session.closed and not _has_left(self.connection):
             view, shown = news = session.next_news(last, _LOOK)
             if news != last:
@@ -253,8 +256,8 @@ class _Handler(BaseHTTPRequestHandler):
                 continue
             spoke = time.monotonic()
 
-    def _pictures(self, session: Session) -> None:
-        last, shown, spoke = 0, session.news[1], time.monotonic()
+    def _pictures(self, session: Session, news: tuple[View, int]) -> None:
+        last, shown, spoke = 0, news[1], time.monotonic()
         while not session.closed and not _has_left(self.connection):
             frame = session.next_frame(last, _LOOK)
             if shown != session.news[1]:

@@ -11,15 +11,26 @@ _SCRIPT, _SHADER = "text/javascript; charset=utf-8", "text/plain; charset=utf-8"
 MODULES = (
     "orbit.js",
     "device.js",
+    "error.js",
     "passes.js",
     "paths.js",
     "drawing.js",
     "stream.js",
+    "figures.js",
     "controls.js",
     "viewer.js",
     "wire.js",
 )
-SHADERS = ("walk.wgsl", "shading.wgsl", "sight.wgsl", "screen.wgsl", "lines.wgsl", "path.wgsl")
+SHADERS = (
+    "walk.wgsl",
+    "shading.wgsl",
+    "sight.wgsl",
+    "screen.wgsl",
+    "lines.wgsl",
+    "path.wgsl",
+    "brought.wgsl",
+    "error.wgsl",
+)
 # What is served besides arrays, by what follows the token, and of what type.
 FILES = {
     "": "text/html; charset=utf-8",

@@ -3,6 +3,7 @@
 import { START, ZOOM, clamp } from "./orbit.js";
 import { Drawing } from "./drawing.js";
 import { Stream } from "./stream.js";
+import { Figures } from "./figures.js";
 import { listen, listenToKeys } from "./controls.js";
 
 // Milliseconds after a move of our own in which pictures may still show an earlier view.
@@ -30,6 +31,7 @@ export class Viewer {
     this.drawing = null;
     this.isDrawn = this.isHeat = false;
     this.why = "";
+    this.figures = new Figures(this.byId);
     this.stream = new Stream(this.byId, (frame) => this.tellFrame(frame));
     this.exposure = this.byId("exposure");
     for (const canvas of [this.byId("picture"), this.byId("drawn")]) {
@@ -304,9 +306,7 @@ export class Viewer {
       this.showHere(true);
       this.state = "drawn";
       this.say(this.toldBoxes());
-      this.byId("error").textContent = "–";
-      this.byId("interval").textContent = "";
-      this.stream.forget();
+      this.figures.forget();
     }
   }
 
@@ -333,11 +333,10 @@ export class Viewer {
 
   // What there is to say.
 
-  tellDrawn({ samples, seconds, isDone }) {
+  tellDrawn({ isDone, ...told }) {
     if (this.shownHere) {
       this.state = isDone ? "done" : "drawn";
-      this.byId("samples").textContent = samples;
-      this.byId("seconds").textContent = seconds.toFixed(seconds < 0.1 ? 3 : 1);
+      this.figures.tell(told);
     }
   }
 
@@ -366,7 +365,15 @@ export class Viewer {
     this.cameraLine = frame.camera;
     this.boxes = frame.boxes;
     this.say(this.toldBoxes(), ...frame.warnings);
-    this.stream.tell(frame);
+    const isPreview = frame.state === "preview";
+    const [value, low, high] = frame.error;
+    this.figures.tell({
+      samples: isPreview ? "preview" : frame.samples,
+      seconds: frame.seconds,
+      // That of a smaller picture says nothing of this one.
+      error: isPreview || value === null ? null : { value, low, high, isTrusted: frame.trusted },
+      of: [frame.view, frame.size],
+    });
   }
 
   close() {

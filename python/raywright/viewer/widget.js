@@ -3,6 +3,9 @@
 import { Viewer } from "./viewer.js";
 import { Wire } from "./wire.js";
 
+// Milliseconds in which a kernel answers that is there.
+const SILENCE = 5000;
+
 class Comm extends Wire {
   constructor(model) {
     super();
@@ -14,6 +17,7 @@ class Comm extends Wire {
     this.isWatching = false;
     this.hear = this.hear.bind(this);
     model.on("msg:custom", this.hear);
+    model.on("comm_live_update", this.seek);
   }
 
   say(content) {
@@ -52,6 +56,19 @@ class Comm extends Wire {
 
   text = async (name) => new TextDecoder().decode(await this.bytes(name));
 
+  // A notebook tells that it has lost the kernel, or found it again, and not which. One that was restarted knows
+  // nothing of widgets before.
+  seek = async () => {
+    const answered = this.ask("scene", {}).then(
+      () => true,
+      () => false,
+    );
+    const late = new Promise((done) => setTimeout(done, SILENCE, false));
+    if (!(await Promise.race([answered, late]))) {
+      this.on.ended();
+    }
+  };
+
   watch(isOn) {
     if (this.isWatching !== isOn) {
       this.isWatching = isOn;
@@ -88,6 +105,7 @@ class Comm extends Wire {
   close() {
     this.watch(false);
     this.model.off("msg:custom", this.hear);
+    this.model.off("comm_live_update", this.seek);
   }
 }
 
@@ -102,11 +120,17 @@ function render({ model, el }) {
   root.append(style, host);
   // Keys are the viewer's own, and not the notebook's.
   el.dataset.lmSuppressShortcuts = "true";
+  // A notebook may keep the keys where they are when something else of it is clicked on.
+  const leave = (event) => event.composedPath().includes(el) || root.activeElement?.blur();
+  document.addEventListener("pointerdown", leave, true);
   const wire = new Comm(model);
   const viewer = new Viewer(root, host, host, wire);
   host.viewer = viewer;
   wire.open();
-  return () => viewer.close();
+  return () => {
+    document.removeEventListener("pointerdown", leave, true);
+    viewer.close();
+  };
 }
 
 export default { render };
