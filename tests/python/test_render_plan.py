@@ -10,7 +10,7 @@ import rare_scenes
 
 import raywright as rw
 from raywright import _core
-from raywright.rendering.ways import StoppedError
+from raywright.rendering.ways import StoppedError, followed
 
 
 @pytest.fixture(scope="module")
@@ -143,6 +143,15 @@ def test_larger_patches_are_tried_where_light_is_rare():
     # What is named is used as named.
     named = rw.render(scene, camera, rw.Path(reuse=4), samples=SAMPLES, progress=False).plan
     assert named.path.reuse == 4
+
+
+def test_larger_patches_are_tried_where_samples_are_many():
+    for samples, reuse in ((255, 4), (256, 8)):
+        scene, camera = made("cornell_box")
+        path, _, _ = followed(
+            rw.Path(), scene, camera, (samples, None, None), None, None, rw.BoxFilter(), {}, None
+        )
+        assert path == rw.Path(reuse=reuse, caustics=False)
 
 
 def test_a_pilot_says_the_same_on_any_number_of_threads():

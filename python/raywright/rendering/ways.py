@@ -14,16 +14,20 @@ from .choices import Limits, expected
 from .filters import Filter
 from .plan import Choice
 
-# The side of patches that share paths, where any do. Larger ones have coarser noise, and gain little, but for
-# light that few paths find, as behind a keyhole: they are tried where a pilot's relMSE is above the last.
+# The side of patches that share paths, where any do. Larger ones have coarser noise, and intervals that are
+# wider the fewer there are: they are tried where light is found by few paths, as behind a keyhole, so that a
+# pilot's relMSE is above the last; and in pictures of so many samples that their pilot is a small share.
 _REUSE, _LARGE, _NOISY = 4, 8, 0.3
 # How much longer samples take that share paths, or that aim, by `benches/choices.py`, in times of a plain
 # one. It is not measured on the spot: the same has to be chosen everywhere, every time.
-_COSTS = {"reuse": 0.9, "caustics": 0.9}
+_COSTS: dict[str, dict[Any, float]] = {
+    "reuse": {1: 0.0, 2: 0.2, _REUSE: 0.5, _LARGE: 1.3},
+    "caustics": {False: 0.0, True: 1.2},
+}
 # What is more than plain has to be better by so much: a pilot may be wrong.
 _BETTER = 0.9
-# The share of a render's samples that a pilot of each way may take.
-_SHARE = 64
+# The share of a render's samples that a pilot of each way may take, and that where it is cheap to ask more.
+_SHARE, _SMALL_SHARE = 64, 256
 _PLAIN: dict[str, Any] = {"reuse": 1, "caustics": False}
 _MORE: dict[str, Any] = {"reuse": _REUSE, "caustics": True}
 _NEVER = {
@@ -73,7 +77,8 @@ def followed(
     if open_ and scene.wavelengths is not None:
         why |= dict.fromkeys(open_, "paths that carry wavelengths neither share nor aim")
         open_ = []
-    if open_ and expected(limits, pixels) * pixels < _SHARE * _core.PILOT:
+    samples = expected(limits, pixels) * pixels
+    if open_ and samples < _SHARE * _core.PILOT:
         why |= dict.fromkeys(open_, "the picture has too few samples to send a pilot")
         open_ = []
     compiled = scene._compiled() if open_ else None
@@ -92,7 +97,8 @@ def followed(
                 return [error * _cost(way) for error, way in zip(errors, ways, strict=True)]
 
             # Nobody is sent where only one way is left.
-            ways, worth = _tried(fixed, open_, sent) if open_ else ([fixed], [0.0])
+            is_long = samples >= _SMALL_SHARE * _core.PILOT
+            ways, worth = _tried(fixed, open_, sent, is_long) if open_ else ([fixed], [0.0])
         except StoppedError:
             why |= dict.fromkeys(open_, "it was stopped before a pilot was back")
         else:
@@ -104,15 +110,25 @@ def followed(
 
 
 def _tried(
-    fixed: dict[str, Any], names: list[str], sent: Callable[[list[dict[str, Any]]], list[float]]
+    fixed: dict[str, Any],
+    names: list[str],
+    sent: Callable[[list[dict[str, Any]]], list[float]],
+    is_long: bool,
 ) -> tuple[list[dict[str, Any]], list[float]]:
     """Return ways, the plain one first, and what each takes in error times time, as pilots tell."""
     ways = [fixed | dict(zip(names, way, strict=True)) for way in product(*_options(names))]
     worth = sent(ways)
     least = ways[worth.index(min(worth))]
-    if "reuse" in names and least["reuse"] == _REUSE and min(worth) > _NOISY * _cost(least):
-        ways.append(least | {"reuse": _LARGE})
-        worth = sent(ways)
+    is_rare = min(worth) > _NOISY * _cost(least)
+    if "reuse" in names and least["reuse"] == _REUSE and (is_long or is_rare):
+        larger = least | {"reuse": _LARGE}
+        small, large = sent([least, larger])
+        if is_rare:
+            # What few find is shared by few, however large patches are: they take no more time.
+            large *= _cost(least) / _cost(larger)
+        if large < _BETTER * small:
+            ways.append(larger)
+            worth.append(min(worth) * large / small)
     return ways, worth
 
 
@@ -122,7 +138,7 @@ def _options(names: list[str]) -> list[tuple[Any, Any]]:
 
 def _cost(way: Mapping[str, Any]) -> float:
     """Return how many times as long a sample takes as one of a plain path."""
-    return 1 + sum(_COSTS[name] for name, value in way.items() if value != _PLAIN[name])
+    return 1 + sum(_COSTS[name][value] for name, value in way.items())
 
 
 def _told(name: str, ways: list[dict[str, Any]], worth: list[float]) -> str:
