@@ -96,7 +96,8 @@ impl Worker for Asking<'_> {
                         up.with_z(up.z.abs())
                     };
                     let ray = RayOrigin::new(&surface).ray(frame.to_world(local));
-                    self.rays.push(Ray { time: sample.ray.time, t_max: self.settings.radius, ..ray });
+                    let misses = [self.hits[i].primitive, Ray::NO_TRIANGLE];
+                    self.rays.push(Ray { time: sample.ray.time, t_max: self.settings.radius, misses, ..ray });
                     self.of.push(i as u32);
                 }
             }

@@ -108,7 +108,8 @@ impl<'a> Rows<'a> {
                 }
             };
             if weight > 0.0 {
-                self.rays.push(origin.ray(Frame::new(normal).to_world(direction)));
+                let misses = [primitive, Ray::NO_TRIANGLE];
+                self.rays.push(Ray { misses, ..origin.ray(Frame::new(normal).to_world(direction)) });
                 self.weights.push(weight);
             } else {
                 // A ray that counts nothing keeps its place in its batch.

@@ -2,7 +2,7 @@
 
 use super::facet::Facet;
 use super::{Aim, Sampled};
-use crate::math::DVec3;
+use crate::math::{DVec3, Ray};
 use crate::sampling::{BatchSize, SamplerKind, warp};
 use crate::scene::{RayOrigin, Scene, SeenTriangle};
 use std::f64::consts::PI;
@@ -102,7 +102,8 @@ fn ask(
             let batch = sample / size.samples();
             batches[i][batch as usize][0] += weight;
             let origin = RayOrigin::off(start, errors[0], one.normal);
-            rays.push(origin.segment(&RayOrigin::off(end, errors[1], other.normal)));
+            let segment = origin.segment(&RayOrigin::off(end, errors[1], other.normal));
+            rays.push(Ray { misses: [from, to], ..segment });
             of.push((i, batch as usize, weight));
         }
     }
