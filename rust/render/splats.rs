@@ -138,6 +138,10 @@ impl<'a> LightTracer<'a> {
             first as u32..(end.max(0.0) as u32).min(count)
         };
         let [x, y] = splat.film;
+        let is_on = |at: f64, count: u32| (0.0..=f64::from(count)).contains(&at);
+        if self.edges.is_some() && !(is_on(x, self.width) && is_on(y, self.height)) {
+            return;
+        }
         for row in near(y, self.height) {
             for column in near(x, self.width) {
                 let weight = self.filter.evaluate(x - (f64::from(column) + 0.5), y - (f64::from(row) + 0.5));

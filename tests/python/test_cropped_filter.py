@@ -11,7 +11,7 @@ SIZE = 6
 
 def picture(filter, shapes, way=None, samples=256, seed=0):
     """What is seen of x from 0 to 6 on the plane z = 0, one unit a pixel, y up."""
-    eye = rw.Orthographic((3, 3, 5), (3, 3, 0), up=(0, 1, 0), width=SIZE, height=SIZE, view_height=SIZE)
+    eye = rw.Orthographic((3, 3, 5), (3, 3, 0), up=(0, 1, 0), scale=SIZE, width=SIZE, height=SIZE)
     scene = rw.Scene(shapes)
     return rw.render(
         scene, eye, way or rw.Direct(), samples=samples, filter=filter, seed=seed, progress=False

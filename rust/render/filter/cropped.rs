@@ -54,10 +54,8 @@ impl Part {
             }
             above
         };
-        let ends = [
-            if low > -radius { number_of(low) } else { 0.0 },
-            if high < radius { number_of(high) } else { 1.0 },
-        ];
+        let ends =
+            [if low > -radius { number_of(low) } else { 0.0 }, if high < radius { number_of(high) } else { 1.0 }];
         Self { ends, integral: integral(filter, low, high) / integral(filter, -radius, radius) }
     }
 }
