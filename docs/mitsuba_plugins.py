@@ -32,7 +32,7 @@ NEARLY = {
     "sdfgrid": "a mesh of a third of its cells, with corners on the surface",
     "heightfield": "Mitsuba 0.6's: a mesh of four triangles a patch, whose points are those of the picture",
     "mesh_attribute": "of PLY files: vertices or faces, one attribute a mesh, between 0 and 1",
-    "bumpmap": "slopes are means over some thousandths of the coordinates",
+    "bumpmap": "slopes are means over a thousandth of the coordinates",
     "spot": "with a texture: a projector of up to 2048² points, in which the fall-off is",
     "projector": "a texture's picture is resampled to 512 points or more",
     "envmap": "rows lie evenly between the poles, half a row off at most",
