@@ -27,6 +27,10 @@ class Tube(NamedTuple):
     uv: Floats
 
 
+# Balls are at the end of a segment, where patterns along the curve may change, and not before it by rounding.
+_BEYOND = 2e-7
+
+
 def linear(curves: list[Floats]) -> Tube:
     """Return what a ball sweeps that goes straight from point to point, its radius changing evenly."""
     segments = sum(len(curve) - 1 for curve in curves)
@@ -41,7 +45,7 @@ def linear(curves: list[Floats]) -> Tube:
         for k, point in enumerate(curve):
             # Coordinates go on around the segment before it.
             a, b = curve[max(k, 1) - 1 : max(k, 1) + 1, :3]
-            parts.append(_ball(point, b - a, sides, (first + k) / segments))
+            parts.append(_ball(point, b - a, sides, (first + k) / segments + _BEYOND))
         first += len(curve) - 1
     return _joined(parts)
 
