@@ -79,6 +79,7 @@ from .rendering.aovs import AOVS, aovs
 from .rendering.filters import (
     BlackmanHarrisFilter,
     BoxFilter,
+    CroppedFilter,
     GaussianFilter,
     LanczosFilter,
     MitchellFilter,
@@ -154,6 +155,7 @@ __all__ = [
     "ConeTouches",
     "ConeTraced",
     "ConstantEnvironment",
+    "CroppedFilter",
     "Cylinder",
     "Dielectric",
     "Diffuse",

@@ -31,6 +31,8 @@ pub struct Scene<'py> {
     pub names: Py<PyAny>,
     /// How much the build may take for rays to be fast.
     pub quality: String,
+    /// What becomes of shading normals.
+    shading_normals: String,
 }
 
 /// `raywright.Mesh`.
@@ -44,6 +46,11 @@ struct Mesh<'py> {
 }
 
 impl Scene<'_> {
+    /// Whether shading normals are taken as they are given.
+    pub fn normals_as_given(&self) -> bool {
+        self.shading_normals == "as given"
+    }
+
     /// The core's own description of it, and what has to live as long as what is made of it.
     ///
     /// Groups in it that nobody has yet are among the `builds`.

@@ -17,8 +17,10 @@ use super::rays::{BATCH, RayArguments, answer, share};
 use crate::accel::{Cost, Nearest};
 use crate::math::{DVec3, Hit};
 use crate::scene;
+use crate::scene::media::Medium;
 use crate::work::{Watch, Work};
 use crate::workers;
+use std::sync::Arc;
 
 /// A scene ready for rays.
 #[pyclass(frozen, module = "raywright._core")]
@@ -38,6 +40,19 @@ struct Counted(Option<Vec<bool>>, bool);
 impl From<Counted> for scene::Filter {
     fn from(Counted(shapes, is_front_only): Counted) -> Self {
         Self { shapes, is_front_only }
+    }
+}
+
+/// What a scene is told when it is compiled: what fills it, and whether shading normals are taken as they are given.
+struct Around {
+    medium: Option<Arc<dyn Medium>>,
+    as_given: bool,
+}
+
+impl Around {
+    fn put(self, scene: scene::Scene) -> scene::Scene {
+        let scene = scene.surrounded_by(self.medium);
+        if self.as_given { scene.with_normals_as_given() } else { scene }
     }
 }
 
@@ -69,16 +84,16 @@ impl CompiledScene {
         let build = accelerators::read(accelerator, &scene.quality)?;
         let builds = Builds::new(progress, scene.size()?);
         let names = scene.names.clone_ref(py);
-        let surrounding = scene.surrounding()?;
+        let around = Around { medium: scene.surrounding()?, as_given: scene.normals_as_given() };
         let (description, kept) = scene.describe(&builds)?;
         let size = builds::size(&description.shapes);
         let scene = builds.build(py, size, |work| scene::Scene::watched(description, build, work))?;
-        Ok(Self(scene.surrounded_by(surrounding), kept, names))
+        Ok(Self(around.put(scene), kept, names))
     }
 
     fn refitted(&self, py: Python<'_>, scene: Scene<'_>) -> PyResult<Option<Self>> {
         let names = scene.names.clone_ref(py);
-        let surrounding = scene.surrounding()?;
+        let around = Around { medium: scene.surrounding()?, as_given: scene.normals_as_given() };
         let (description, kept) = scene.describe(&Builds::new(None, 0))?;
         let (watch, mut signal) = (Watch::default(), Ok(()));
         let look = || {
@@ -93,7 +108,7 @@ impl CompiledScene {
             .map_err(PyRuntimeError::new_err)?;
         signal?;
         compiled
-            .map(|scene| scene.map(|scene| Self(scene.surrounded_by(surrounding), kept, names)))
+            .map(|scene| scene.map(|scene| Self(around.put(scene), kept, names)))
             .map_err(|e| PyValueError::new_err(e.to_string()))
     }
 

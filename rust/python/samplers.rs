@@ -65,6 +65,12 @@ struct Lanczos {
     lobes: u32,
 }
 
+/// `raywright.CroppedFilter`.
+#[derive(FromPyObject)]
+struct Cropped<'py> {
+    filter: Bound<'py, PyAny>,
+}
+
 /// Reads a filter by the name of its class.
 pub fn filter(filter: &Bound<'_, PyAny>) -> PyResult<Box<dyn Filter>> {
     let name = filter.get_type().name()?;
@@ -92,6 +98,10 @@ pub fn filter(filter: &Bound<'_, PyAny>) -> PyResult<Box<dyn Filter>> {
         "LanczosFilter" => {
             let Lanczos { lobes } = filter.extract()?;
             separable(filter::Lanczos::new(lobes))
+        }
+        "CroppedFilter" => {
+            let Cropped { filter: whole } = filter.extract()?;
+            Ok(Box::new(filter::Cropped(self::filter(&whole)?)))
         }
         other => Err(PyTypeError::new_err(format!("filter is a {other}, expected one of raywright's"))),
     }

@@ -1,7 +1,7 @@
 //! Samples of pixels as a camera takes them, sixteen at a time.
 
 use super::Settings;
-use super::filter::Filter;
+use super::filter::{Edges, Filter};
 use crate::integrators::{CameraSample, Session};
 use crate::math::LANES;
 use crate::sampling::{SamplerKind, SamplerLanes};
@@ -22,6 +22,8 @@ pub(super) struct CameraSampler<'a> {
     camera: &'a dyn Camera,
     session: &'a dyn Session,
     filter: &'a dyn Filter,
+    /// Where the filter ends with the film.
+    edges: Option<Edges>,
     kind: SamplerKind,
     seed: u64,
     /// Whether samples are spread over the time that the shutter is open.
@@ -37,6 +39,7 @@ impl<'a> CameraSampler<'a> {
             camera,
             session,
             filter: settings.filter.as_ref(),
+            edges: Edges::new(settings.filter.as_ref(), [camera.width(), camera.height()]),
             kind: settings.sampler,
             seed: settings.seed,
             moves: scene.geometry().moves() || camera.uses_time(),
@@ -57,6 +60,14 @@ impl<'a> CameraSampler<'a> {
             let numbers = of.map(|wanted| wanted.number);
             let samplers = SamplerLanes::of(self.kind, self.level, self.seed, &pixels, &numbers);
             samplers.two(self.level, &[0; LANES], &mut u);
+            let mut factors = [1.0; LANES];
+            if let Some(edges) = &self.edges {
+                for (lane, &Wanted { position: (x, y), .. }) in of.iter().enumerate() {
+                    let point;
+                    (point, factors[lane]) = edges.on_film([x, y], [u[0][lane], u[1][lane]]);
+                    [u[0][lane], u[1][lane]] = point;
+                }
+            }
             self.filter.sample_lanes(&u, &mut offsets, &mut counts);
             if self.uses_lens {
                 samplers.two(self.level, &[1; LANES], &mut lens);
@@ -76,7 +87,7 @@ impl<'a> CameraSampler<'a> {
             self.camera.rays(self.level, &film, &lens, &time, &mut rays);
             for (lane, wanted) in wanted.iter().enumerate() {
                 let CameraRay { ray, weight } = rays.get(lane);
-                let weight = counts[lane] * weight;
+                let weight = counts[lane] * factors[lane] * weight;
                 weights.push(weight);
                 if weight != 0.0 {
                     samples.push(CameraSample { ray, sampler: samplers.get(lane, wanted.number) });

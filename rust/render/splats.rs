@@ -5,7 +5,7 @@
 //! them; how samples are split into passes, or sent elsewhere, changes no bit.
 
 use super::Settings;
-use super::filter::Filter;
+use super::filter::{Edges, Filter};
 use crate::integrators::{LightWorker, Session, Splat};
 use crate::optics::Rgb;
 use crate::sampling::{Sampler, SamplerKind};
@@ -28,6 +28,8 @@ const CHUNKS: usize = 256;
 pub(super) struct LightTracer<'a> {
     session: &'a dyn Session,
     filter: &'a dyn Filter,
+    /// Where the filter ends with the film.
+    edges: Option<Edges>,
     kind: SamplerKind,
     seed: u64,
     width: u32,
@@ -63,6 +65,7 @@ impl<'a> LightTracer<'a> {
         Some(Self {
             session,
             filter: settings.filter.as_ref(),
+            edges: Edges::new(settings.filter.as_ref(), [camera.width(), camera.height()]),
             kind: settings.sampler,
             seed: settings.seed,
             width: camera.width(),
@@ -135,10 +138,15 @@ impl<'a> LightTracer<'a> {
             first as u32..(end.max(0.0) as u32).min(count)
         };
         let [x, y] = splat.film;
+        let is_on = |at: f64, count: u32| (0.0..=f64::from(count)).contains(&at);
+        if self.edges.is_some() && !(is_on(x, self.width) && is_on(y, self.height)) {
+            return;
+        }
         for row in near(y, self.height) {
             for column in near(x, self.width) {
                 let weight = self.filter.evaluate(x - (f64::from(column) + 0.5), y - (f64::from(row) + 0.5));
-                picture[row as usize * self.width as usize + column as usize] += light * weight;
+                let share = self.edges.as_ref().map_or(1.0, |edges| edges.share([column, row]));
+                picture[row as usize * self.width as usize + column as usize] += light * (weight / share);
             }
         }
     }

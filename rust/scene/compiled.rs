@@ -103,6 +103,12 @@ impl Scene {
         Self { plan, surrounding: medium, ..self }
     }
 
+    /// The same with all shading normals taken as they are given.
+    pub fn with_normals_as_given(self) -> Self {
+        let plan = self.plan.clone().with_normals_as_given(&self.geometry);
+        Self { plan, ..self }
+    }
+
     /// What fills the space in which nothing else is; none if it is empty.
     #[inline]
     pub fn surrounding(&self) -> Option<&dyn Medium> {

@@ -109,11 +109,16 @@ pub struct Plan {
     diffuse: Vec<Option<[Rgb; 2]>>,
     /// By which kinds of functions each scatters, on the front and on the back.
     kinds: Vec<[u8; 2]>,
+    /// Whether shading normals are taken as they are given.
+    as_given: bool,
 }
 
 /// What has less than this roughness, but does not scatter into single directions, counts as glossy. Over rougher
 /// surfaces, asking each of a few lights costs as much time as it saves.
 const GLOSS: f64 = 0.35;
+
+/// What becomes of shading normals unless they are taken as given.
+const FADED: &str = "interpolated, and faded at the terminator";
 
 /// A line of a plan: what it is about, whether the scene has it, and what that means.
 pub type PlanRow = (&'static str, bool, Cow<'static, str>);
@@ -156,7 +161,7 @@ impl Plan {
             Some([front.diffuse()?, back.diffuse()?])
         };
         let diffuse = constants.iter().map(colour).collect();
-        Self { needs, rounding, few, constants, diffuse, kinds }
+        Self { needs, rounding, few, constants, diffuse, kinds, as_given: false }
     }
 
     fn of(material: &dyn Material, emission: &Emission) -> SceneNeeds {
@@ -197,6 +202,35 @@ impl Plan {
         let waves = medium.is_some_and(Medium::has_waves);
         let around = SceneNeeds { media, glow, waves, ..SceneNeeds::default() };
         Self { needs: self.needs | around, ..self.clone() }
+    }
+
+    /// The same plan of a scene whose shading normals are taken as they are given. Shapes that may have any are asked
+    /// at each point.
+    pub(super) fn with_normals_as_given(mut self, geometry: &Geometry) -> Self {
+        // Bumps and maps need to know of tangents.
+        self.as_given = self.needs.smooth || self.needs.points.tangents;
+        if !self.as_given {
+            return self;
+        }
+        for shape in 0..self.constants.len() {
+            if geometry.has_normals(shape as u32) {
+                self.constants[shape] = None;
+            }
+            // What is diffuse everywhere has its own loops, which know of faded normals only.
+            if self.constants[shape].is_none() {
+                self.diffuse[shape] = None;
+                self.kinds[shape] = [Self::MIXED as u8; 2];
+                self.needs.scattering = true;
+            }
+        }
+        self
+    }
+
+    /// Whether shading normals are taken as they are given, and there are any: light does not fade at horizons, and no
+    /// normal is bent.
+    #[inline]
+    pub fn normals_as_given(&self) -> bool {
+        self.as_given
     }
 
     /// What the scene needs.
@@ -287,7 +321,8 @@ impl Plan {
         let needs = &self.needs;
         let row =
             |what, has, with: &'static str, without: &'static str| (what, has, if has { with } else { without }.into());
-        vec![
+        let smooth = if self.as_given { "interpolated, and taken as they are" } else { FADED };
+        let mut rows = vec![
             row("light", needs.light, "a light is asked at each point", "no light is asked, no shadow ray sent"),
             row(
                 "few lights",
@@ -319,12 +354,17 @@ impl Plan {
                 "emission is asked at each point",
                 "emission is one number a shape",
             ),
-            row("shading normals", needs.smooth, "interpolated, and faded at the terminator", "none kept or computed"),
+            row("shading normals", needs.smooth, smooth, "none kept or computed"),
             row("shapes", needs.shapes, "a tree of their own beside the triangles'", "no tree beside the triangles'"),
             row("instances", needs.instances, "rays are taken to each copy's space", "rays stay in the world"),
             row("motion", needs.motion, "rays are spread over the shutter's time", "all rays at one time"),
             ("float64 vertices", needs.double, self.digits()),
-        ]
+        ];
+        // Said of those only who asked for it.
+        if self.as_given {
+            rows.push(("normals as given", true, "no light fades, no normal is bent".into()));
+        }
+        rows
     }
 }
 

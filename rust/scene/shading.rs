@@ -25,6 +25,8 @@ pub struct ShadingPoint {
     pub is_front: bool,
     /// The index of refraction on the side of the normal.
     pub outside: f64,
+    /// Whether normals are taken as they are given: none is kept on the side of the point's.
+    pub as_given: bool,
 }
 
 /// How wide a bundle of neighbouring rays is: a cone around the ray (Akenine-Möller et al., "Texture Level of Detail
@@ -58,6 +60,7 @@ impl ShadingPoint {
             scale: 1.0,
             is_front: true,
             outside: 1.0,
+            as_given: false,
         }
     }
 }

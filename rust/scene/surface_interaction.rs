@@ -1,10 +1,12 @@
 //! A path's encounter with a surface.
 
+mod as_given;
 mod lanes;
 
 pub use lanes::SurfaceInteractionLanes;
 
 use super::materials::BsdfMix;
+use super::textures::Needs;
 use super::{Encounter, Gaze, LightSampleContext, RayOrigin, Scene, ShadingPoint, SurfacePoint};
 use crate::math::{DVec3, Frame, Hit, Ray, select};
 use crate::optics::{Bsdf, BsdfSample, Rgb};
@@ -30,6 +32,8 @@ pub struct SurfaceInteraction<B = BsdfMix> {
     is_flat: bool,
     /// Whether the shading normal was bent towards the ray.
     is_bent: bool,
+    /// Whether the shading normal is taken as it is given ([`Plan::normals_as_given`](super::Plan::normals_as_given)).
+    as_given: bool,
     /// Mean curvature, positive where the surface bulges towards the ray; 0 unless it was asked for.
     curvature: f64,
 }
@@ -62,11 +66,14 @@ impl SurfaceInteraction {
         let material = scene.material_at(&surface);
         let mut needs = material.needs();
         needs.tangents |= gaze.width > 0.0;
-        let mut point = ShadingPoint::new(scene.geometry(), ray, hit, surface, needs, gaze);
-        point.outside = outside;
+        let point = shading_point(scene, ray, hit, surface, needs, gaze, outside);
         let shading = material.normal(&point).unwrap_or(surface.shading_normal);
-        let tangent = material.tangent(&point);
-        let mut here = Self::with(ray, surface, (shading, tangent), material.bsdf(&point));
+        let normal = (shading, material.tangent(&point));
+        let mut here = if point.as_given && shading != surface.normal {
+            Self::as_given(ray, surface, normal, material.bsdf(&point))
+        } else {
+            Self::with(ray, surface, normal, material.bsdf(&point))
+        };
         if gaze.width > 0.0 {
             here.curvature = here.side * mean_curvature(&point);
         }
@@ -102,17 +109,21 @@ impl<B: Bsdf> SurfaceInteraction<B> {
             Some(tangent) => Frame::along(shading, tangent),
             None => Frame::new(shading),
         };
-        Self { surface, frame, bsdf, wo: frame.to_local(back), side, is_flat, is_bent, curvature: 0.0 }
+        let wo = frame.to_local(back);
+        Self { surface, frame, bsdf, wo, side, is_flat, is_bent, as_given: false, curvature: 0.0 }
     }
 
     /// The same as somebody meets it whose rays come back along a direction; `None` where more than that would differ:
     /// on the other side, and where a normal is bent for the one or the other.
     pub fn met_from(&self, direction: DVec3) -> Option<SurfaceInteraction<&B>> {
-        let &Self { surface, frame, ref bsdf, side, is_flat, is_bent, .. } = self;
+        if self.as_given {
+            return self.met_as_given(direction);
+        }
+        let &Self { surface, frame, ref bsdf, side, is_flat, is_bent, as_given, .. } = self;
         let wo = frame.to_local(direction);
         let is_bent = is_bent || !is_flat && wo.z * side < Self::GRAZING;
         let is_same_side = surface.normal.dot(direction) * side > 0.0;
-        let met = SurfaceInteraction { surface, frame, bsdf, wo, side, is_flat, is_bent, curvature: 0.0 };
+        let met = SurfaceInteraction { surface, frame, bsdf, wo, side, is_flat, is_bent, as_given, curvature: 0.0 };
         (is_same_side && !is_bent).then_some(met)
     }
 
@@ -120,9 +131,7 @@ impl<B: Bsdf> SurfaceInteraction<B> {
     /// arguments are those that [`SurfaceInteraction::new`] was given.
     pub fn ambient(&self, scene: &Scene, ray: &Ray, hit: &Hit, gaze: impl Into<Gaze>, outside: f64) -> Rgb {
         let material = scene.material_at(&self.surface);
-        let mut point = ShadingPoint::new(scene.geometry(), ray, hit, self.surface, material.needs(), gaze);
-        point.outside = outside;
-        material.ambient(&point)
+        material.ambient(&shading_point(scene, ray, hit, self.surface, material.needs(), gaze, outside))
     }
 
     /// The geometric normal on the side that the ray came from.
@@ -140,13 +149,26 @@ impl<B: Bsdf> SurfaceInteraction<B> {
     /// The shading normal on the side that the ray came from.
     #[inline(always)]
     pub fn shading_normal(&self) -> DVec3 {
-        self.frame.normal * self.side
+        self.frame.normal * self.shading_side()
     }
 
     /// The cosine between the ray, back along it, and the shading normal on its side.
     #[inline(always)]
     pub fn cosine(&self) -> f64 {
-        self.wo.z * self.side
+        self.wo.z * self.shading_side()
+    }
+
+    /// On which side of the shading normal the ray is taken to have come: from that of the geometric one, or where it
+    /// is given from whichever it does.
+    #[inline(always)]
+    fn shading_side(&self) -> f64 {
+        if self.as_given { 1f64.copysign(self.wo.z) } else { self.side }
+    }
+
+    /// Whether the shading normal is taken as it is given: no light fades.
+    #[inline(always)]
+    pub fn is_as_given(&self) -> bool {
+        self.as_given
     }
 
     /// Whether the two normals are one.
@@ -203,7 +225,7 @@ impl<B: Bsdf> SurfaceInteraction<B> {
         let direction = self.frame.to_world(wi);
         let fading = self.fading(wi, direction);
         // A single direction is not cut off along a line, and need not fade.
-        (direction, if is_delta & (fading > 0.0) { 1.0 } else { fading })
+        (direction, if is_delta & (fading > 0.0) & !self.as_given { 1.0 } else { fading })
     }
 
     /// A direction of the world in the shading frame, and how much light from there counts: 0 where it is not seen.
@@ -224,6 +246,9 @@ impl<B: Bsdf> SurfaceInteraction<B> {
     /// contacts, and needs the light that the geometric horizon cuts off.
     #[inline(always)]
     fn fading(&self, wi: DVec3, direction: DVec3) -> f64 {
+        if self.as_given {
+            return self.unfaded(wi, direction);
+        }
         let geometric = self.surface.normal.dot(direction);
         if wi.z * geometric <= 0.0 {
             return 0.0;
@@ -284,6 +309,25 @@ pub fn fading(geometric: f64, shading: f64, between: f64) -> f64 {
     let g = geometric / (shading * between);
     // A shading normal of the other side, as a bump may have, has no such horizon.
     if between <= 0.0 || g >= 1.0 { 1.0 } else { ((1.0 - g) * g + 1.0) * g }
+}
+
+/// What a material is told of the point.
+fn shading_point(
+    scene: &Scene,
+    ray: &Ray,
+    hit: &Hit,
+    surface: SurfacePoint,
+    needs: Needs,
+    gaze: impl Into<Gaze>,
+    outside: f64,
+) -> ShadingPoint {
+    let point = ShadingPoint::new(scene.geometry(), ray, hit, surface, needs, gaze);
+    if scene.plan().normals_as_given() {
+        // What is seen is the side of the shading normal.
+        let is_front = ray.direction.dot(surface.shading_normal) <= 0.0;
+        return ShadingPoint { outside, is_front, as_given: true, ..point };
+    }
+    ShadingPoint { outside, ..point }
 }
 
 /// The mean curvature of a surface, positive where it bulges to the side of its normal; 0 where it is not known how it

@@ -6,7 +6,6 @@ from mitsuba_parts import (
     FLOOR,
     GOLD,
     LAMP,
-    NEAR_NORMAL,
     ROUGH,
     SIZE,
     SKY,
@@ -376,18 +375,15 @@ def scenes():
             lamp=LAMP,
             sky=SKY,
         ),
-        # Both soften the shade of bumps where the surface itself falls into it, each in a way of its own.
-        # Light from near the surface's normal is not softened.
         "bumpmap": scene(
             2,
             a=FLOOR,
-            lamp=NEAR_NORMAL,
+            lamp=LAMP,
             b={
                 "type": "rectangle",
                 "to_world": plate(1.0, 1.0, 1.0),
                 "bsdf": {
                     "type": "bumpmap",
-                    "use_shadowing_function": False,
                     "scale": 0.15,
                     "height": picture("bumps.png", raw=True),
                     "bsdf": matt,
@@ -397,13 +393,12 @@ def scenes():
         "normalmap": scene(
             2,
             a=FLOOR,
-            lamp=NEAR_NORMAL,
+            lamp=LAMP,
             b={
                 "type": "rectangle",
                 "to_world": plate(1.0, 1.0, 1.0),
                 "bsdf": {
                     "type": "normalmap",
-                    "use_shadowing_function": False,
                     "normalmap": picture("normals.png", raw=True),
                     "bsdf": matt,
                 },

@@ -51,7 +51,7 @@ def test_a_shot_renders_as_its_file_says_unless_told_otherwise(path):
         samples=32,
         seed=5,
         sampler=rw.Independent(),
-        filter=rw.GaussianFilter(2.0, 0.5),
+        filter=rw.CroppedFilter(rw.GaussianFilter(2.0, 0.5)),
         progress=False,
     )
     assert np.array_equal(image.rgb, own.rgb)

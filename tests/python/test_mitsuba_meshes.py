@@ -311,7 +311,6 @@ def test_curves_of_files_are_parted_by_empty_lines(tmp_path):
     assert len(both.vertices) == 7 * 2 * 49 + 9 * 25 * 49
 
 
-@pytest.mark.filterwarnings("ignore:.*light fades")
 def test_a_map_of_normals_goes_with_the_normal_where_coordinates_are_mirrored(tmp_path):
     """Mitsuba leans normals along u, and along what is at right angles to it and the normal, not along v."""
 
@@ -358,9 +357,37 @@ def test_a_map_of_normals_goes_with_the_normal_where_coordinates_are_mirrored(tm
     straight = picture(False, False)
     lean = np.array((0.2, 0.6, 0.8)) / np.linalg.norm((0.2, 0.6, 0.8))
     cosine = lean @ np.array((0, 0.3, 1)) / np.hypot(0.3, 1)
-    assert np.allclose(straight[:, 2:6], 0.5 / np.pi * cosine, rtol=1e-6)
+    # By the function of Estevez, Lecocq and Stein (2019), of the slopes of the normal and of the light.
+    share = 2 / (1 + np.sqrt(1 + (0.2**2 + 0.6**2) / 0.8**2 / 8 * 0.3**2))
+    assert np.allclose(straight[:, 2:6], 0.5 / np.pi * cosine * share, rtol=1e-6)
     assert np.array_equal(picture(True, True), straight)
     assert np.array_equal(picture(True, False), straight)
     parts = shot(True, False).scene.shapes
     assert [len(part.faces) for part in parts] == [2, 2]
     assert len(shot(True, True).scene.shapes) == 1
+
+
+def test_balls_at_the_joints_of_curves_have_coordinates_as_mitsuba_has_them(tmp_path):
+    """Mitsuba (3.9.1) shows the ball of a joint as of the segment before it, and v as at its end."""
+    (tmp_path / "zig.txt").write_text("-1 0 -1 0.1\n-0.5 0 1 0.1\n-0.25 0 -1 0.1\n0 0 1 0.1\n")
+    mesh = shape(tmp_path, type="linearcurve", filename="zig.txt")
+    zig = rw.Scene(mesh)
+    points = np.array([[-1, 0, -1], [-0.5, 0, 1], [-0.25, 0, -1], [0, 0, 1.0]])
+    for k, point in enumerate(points):
+        before = max(k, 1) - 1
+        axis = points[before + 1] - points[before]
+        axis /= np.linalg.norm(axis)
+        rot = np.array((0, 0, 1)) - axis * axis[2]
+        rot /= np.linalg.norm(rot)
+        rad = np.cross(rot, axis)
+        # Outwards, where only the ball is hit.
+        beside = [points[j] for j in (k - 1, k + 1) if 0 <= j < len(points)]
+        outwards = point - np.mean(beside, axis=0)
+        outwards = outwards / np.linalg.norm(outwards) + (0.1, 0.3, 0)
+        outwards /= np.linalg.norm(outwards)
+        hit = zig.intersect(point + 2 * outwards, -outwards)
+        weights = np.array([1 - hit.uv.sum(), *hit.uv])
+        u, v = weights @ np.asarray(mesh.uv)[np.asarray(mesh.faces)[hit.primitive]]
+        expected = np.arctan2(rot @ outwards, rad @ outwards) / (2 * np.pi) % 1
+        assert np.isclose(u, expected, rtol=0, atol=2e-3)
+        assert np.isclose(v, k / 3, rtol=0, atol=1e-6)

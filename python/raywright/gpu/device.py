@@ -17,7 +17,7 @@ from .packing import packed
 from .wavefront import Wavefront
 
 # What kernels for pictures know nothing of, as `Scene.plan` calls it.
-_LEFT = ("masks", "smoke and haze", "patterned lights", "motion", "instances")
+_LEFT = ("masks", "smoke and haze", "patterned lights", "motion", "instances", "normals as given")
 
 
 class Gpu:

@@ -158,7 +158,38 @@ class LanczosFilter:
         object.__setattr__(self, "lobes", integer("lobes", self.lobes, 1, _MOST_LOBES))
 
 
-Filter = BoxFilter | TriangleFilter | GaussianFilter | MitchellFilter | BlackmanHarrisFilter | LanczosFilter
+WholeFilter = (
+    BoxFilter | TriangleFilter | GaussianFilter | MitchellFilter | BlackmanHarrisFilter | LanczosFilter
+)
+
+
+@dataclass(frozen=True)
+class CroppedFilter:
+    """Another filter, of which nothing lies beyond the film.
+
+    Pixels that are nearer to the film's edge than its radius take the part of it that lies on the film, as if
+    it were the whole; other pixels are as by the filter itself. Mitsuba's films are so, unless they have a
+    ``sample_border``.
+
+    Parameters
+    ----------
+    filter : BoxFilter, TriangleFilter, GaussianFilter, MitchellFilter, BlackmanHarrisFilter or LanczosFilter
+        The filter.
+
+    Raises
+    ------
+    TypeError
+        If `filter` is none of these.
+    """
+
+    filter: WholeFilter
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.filter, WholeFilter):
+            raise TypeError(f"filter must be one that is not cropped, got {type(self.filter).__name__}")
+
+
+Filter = WholeFilter | CroppedFilter
 
 
 def _lengths(values: object, *names: str) -> None:

@@ -128,7 +128,7 @@ def render(
         Those with batches take fewer samples to the same error, and tell the error of a single pixel from
         fewer independent parts. A number of samples that is no multiple of its batches is best avoided: part
         of a batch is right as well, but worth less.
-    filter : BoxFilter, TriangleFilter, GaussianFilter, MitchellFilter, BlackmanHarrisFilter or LanczosFilter
+    filter : BoxFilter, GaussianFilter or another kind
         What part of the film a pixel is the mean of.
     checkpoint : str or path, optional
         A file that is kept up to date with the render: every minute, at its end, and when it is interrupted.

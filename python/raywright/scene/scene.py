@@ -28,9 +28,19 @@ from .wavelengths import reason
 
 Precision: TypeAlias = Literal["auto", "single", "double"]
 Quality: TypeAlias = Literal["fast build", "balanced", "fast rays"]
+ShadingNormals: TypeAlias = Literal["faded", "as given"]
 Held = TypeVar("Held", covariant=True)
 _BINNED_BVH = BVH()
-_ARGUMENTS = ("shapes", "lights", "environment", "accelerator", "precision", "quality", "medium")
+_ARGUMENTS = (
+    "shapes",
+    "lights",
+    "environment",
+    "accelerator",
+    "precision",
+    "quality",
+    "medium",
+    "shading_normals",
+)
 
 
 class Device(Protocol[Held]):
@@ -72,13 +82,19 @@ class Scene(Queries):
 
     medium : Homogeneous or GridMedium, optional
         What fills the space in which nothing else is: haze, fog, sea. None is clear.
+    shading_normals : {"faded", "as given"}
+        What becomes of light where shading normals are not those of faces: those of a mesh's vertices, of
+        bumps and of normal maps. "faded" lets it fade towards the horizon of the face, so that facets do not
+        show where it grazes them, and bends towards the viewer what faces away from him. "as given" does
+        neither, as other renderers: see Notes.
 
     Raises
     ------
     FileNotFoundError
         If a file is missing.
     ValueError
-        If a file is not a mesh that can be read, or `precision` or `quality` is not one of those.
+        If a file is not a mesh that can be read, or `precision`, `quality` or `shading_normals` is not one
+        of those.
     TypeError
         If something is not of the kinds above.
 
@@ -90,6 +106,16 @@ class Scene(Queries):
     `Instance` are a group of their own in this. `plan` tells the figure, ``accelerator.precision`` what
     became of it. "single" where "auto" would keep the digits gives one RuntimeWarning, with the figure, when
     the scene is compiled.
+
+    By shading normals "as given", light counts by its cosine to them alone, and what is seen is the side that
+    they show the viewer: where he sees one from behind, a `TwoSided` has its back. What is on one side of
+    a face is still not lit from the other. Under bumps and normal maps, light has to come from the same side
+    of the normal that the surface has without them, and a share of it counts (Estevez, Lecocq and Stein,
+    "A Microfacet-Based Shadowing Function to Solve the Bump Terminator Problem", 2019); a normal that the
+    viewer would see from behind is turned half round the surface's own; and of a `BumpMap` only slopes
+    count. Mitsuba does all this. Scenes without shading normals are the same either way; of others, paths
+    are slower, ``Path(reuse=)`` shares nothing at their surfaces, and graphics processors leave them to the
+    CPU.
 
     Faces with a corner that is NaN or infinite are left out when the scene is compiled, with one
     RuntimeWarning that tells how many. Scenes compare by what they hold, and pickle without what was
@@ -106,6 +132,7 @@ class Scene(Queries):
         precision: Precision = "auto",
         quality: Quality = "balanced",
         medium: Medium | None = None,
+        shading_normals: ShadingNormals = "faded",
     ) -> None:
         self._shapes = meshes(shapes)
         self._lights = checked_lights(lights)
@@ -116,7 +143,9 @@ class Scene(Queries):
         self._accelerator = accelerator
         choice("precision", precision, get_args(Precision))
         choice("quality", quality, get_args(Quality))
+        choice("shading_normals", shading_normals, get_args(ShadingNormals))
         self._precision, self._quality = precision, quality
+        self._shading_normals = shading_normals
         self._medium = checked_medium("medium", medium)
         surroundings = self._environment if isinstance(self._environment, tuple) else (self._environment,)
         self._wavelengths = reason(self._shapes, (*self._lights, *surroundings, self._medium))
@@ -168,6 +197,11 @@ class Scene(Queries):
     def medium(self) -> Medium | None:
         """What fills the space in which nothing else is; None is clear."""
         return self._medium
+
+    @property
+    def shading_normals(self) -> ShadingNormals:
+        """What becomes of light under shading normals: "faded" or "as given"."""
+        return self._shading_normals
 
     @property
     def wavelengths(self) -> str | None:
@@ -460,6 +494,7 @@ class Scene(Queries):
             self._precision,
             self._quality,
             self._medium,
+            self._shading_normals,
         )
 
     def __eq__(self, other: object) -> bool:
@@ -491,6 +526,7 @@ class Scene(Queries):
         parts += [f"precision={self._precision!r}"] if self._precision != "auto" else []
         parts += [f"quality={self._quality!r}"] if self._quality != "balanced" else []
         parts += [f"medium={self._medium!r}"] if self._medium is not None else []
+        parts += [f"shading_normals={self._shading_normals!r}"] if self._shading_normals != "faded" else []
         return f"Scene({', '.join(parts)})"
 
 

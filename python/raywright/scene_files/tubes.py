@@ -27,6 +27,10 @@ class Tube(NamedTuple):
     uv: Floats
 
 
+# Balls are at the end of a segment, where patterns along the curve may change, and not before it by rounding.
+_BEYOND = 2e-7
+
+
 def linear(curves: list[Floats]) -> Tube:
     """Return what a ball sweeps that goes straight from point to point, its radius changing evenly."""
     segments = sum(len(curve) - 1 for curve in curves)
@@ -39,7 +43,9 @@ def linear(curves: list[Floats]) -> Tube:
             if (tube := _cone(a, b, sides, span)) is not None:
                 parts.append(tube)
         for k, point in enumerate(curve):
-            parts.append(_ball(point, sides, (first + min(k, len(curve) - 2)) / segments))
+            # Coordinates go on around the segment before it.
+            a, b = curve[max(k, 1) - 1 : max(k, 1) + 1, :3]
+            parts.append(_ball(point, b - a, sides, (first + k) / segments + _BEYOND))
         first += len(curve) - 1
     return _joined(parts)
 
@@ -134,18 +140,15 @@ def _cone(a: Floats, b: Floats, sides: int, span: tuple[float, float]) -> Tube |
     return _grid(ends, normals, uv)
 
 
-def _ball(point: Floats, sides: int, along: float) -> Tube:
+def _ball(point: Floats, axis: Floats, sides: int, along: float) -> Tube:
+    length = float(np.linalg.norm(axis))
+    axis = axis / length if length > 0 else np.array([0.0, 0.0, 1.0])
+    rot, rad = (one[0] for one in _frames(axis[None]))
     rings = max(sides // 2, 3)
     polar = np.pi * np.arange(rings + 1) / rings
     turn = 2 * np.pi * np.arange(sides + 1) / sides
-    normals = np.stack(
-        np.broadcast_arrays(
-            np.sin(polar)[:, None] * np.cos(turn),
-            np.sin(polar)[:, None] * np.sin(turn),
-            np.cos(polar)[:, None],
-        ),
-        -1,
-    )
+    out = np.cos(turn)[:, None] * rad + np.sin(turn)[:, None] * rot
+    normals = np.sin(polar)[:, None, None] * out + np.cos(polar)[:, None, None] * axis
     uv = np.stack(np.broadcast_arrays(np.arange(sides + 1)[None] / sides, np.full((rings + 1, 1), along)), -1)
     # From pole to pole, which turns the grid's faces round.
     return _grid(point[:3] + point[3] * normals, normals, uv, flipped=True)

@@ -36,7 +36,7 @@ loops! {
         direction: &mut VectorLanes,
     ) {
         for i in 0..LANES {
-            let here = encounters.get(i, Null);
+            let here = encounters.faded(i, Null);
             let (local, fading) = here.seen_from(towards.get(i));
             let ray = here.ray_origin().ray(towards.get(i));
             wi.set(i, local);
@@ -83,6 +83,9 @@ pub(super) fn aim(
     }
     let ([mut wi, mut from, mut along], mut counts) = ([VectorLanes::ZERO; 3], [0.0; LANES]);
     look(level, &block.encounters, &towards, &mut wi, &mut counts, &mut from, &mut along);
+    for lane in (0..LANES).filter(|&lane| aims[lane] && block.encounters.is_as_given(lane)) {
+        counts[lane] = block.encounters.get(lane, Null).seen_from(towards.get(lane)).1;
+    }
     let seen = array::from_fn(|lane| aims[lane] && counts[lane] > 0.0);
     let (mut value, mut pdf) = (RgbLanes::ZERO, [0.0; LANES]);
     block.bsdf.evaluate(level, &seen, block.encounters.wo_lanes(), &wi, &mut value, &mut pdf);

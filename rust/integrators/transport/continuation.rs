@@ -29,7 +29,7 @@ loops! {
         pdf: &mut [f64; LANES],
     ) {
         for i in 0..LANES {
-            let here = encounters.get(i, Diffuse { reflectance: reflectance.get(i) });
+            let here = encounters.faded(i, Diffuse { reflectance: reflectance.get(i) });
             let (towards, times, density) = match here.sample(|| 0.0, [u[0][i], u[1][i]]) {
                 Some(next) => (next.wi, next.weight, next.pdf),
                 None => (here.normal(), Rgb::ZERO, 0.0),
@@ -54,7 +54,7 @@ loops! {
         direction: &mut VectorLanes,
     ) {
         for i in 0..LANES {
-            let here = encounters.get(i, Null);
+            let here = encounters.faded(i, Null);
             let (towards, fading) = here.goes_to(wi.get(i), pdf[i] == f64::INFINITY);
             let ray = here.ray_origin().ray(towards);
             wi.set(i, towards);
@@ -102,8 +102,18 @@ impl<N: Features> TransportWorker<'_, N> {
             let scatters = array::from_fn(|lane| goes[lane] && !aims[lane]);
             let ([mut origin, mut direction], mut drawn) = ([VectorLanes::ZERO; 2], BsdfSampleLanes::NONE);
             block.bsdf.sample(self.level, &scatters, block.encounters.wo_lanes(), (&choice, &u), &mut drawn);
+            let as_given = |lane: &usize| block.encounters.is_as_given(*lane);
+            let before = (0..block.count).any(|lane| as_given(&lane)).then(|| drawn.clone());
             let BsdfSampleLanes { wi, weight, pdf, .. } = &mut drawn;
             leave(self.level, &block.encounters, wi, weight, pdf, &mut origin, &mut direction);
+            if let Some(before) = before {
+                for lane in (0..block.count).filter(as_given) {
+                    let (wi, given) = (before.wi.get(lane), before.pdf[lane]);
+                    let counts = block.encounters.get(lane, Null).goes_to(wi, given == f64::INFINITY).1;
+                    weight.set(lane, before.weight.get(lane) * counts);
+                    pdf[lane] = if counts > 0.0 { given } else { 0.0 };
+                }
+            }
             let mut denser = [1.0; LANES];
             if self.guide.is_some() {
                 let rays = [&mut origin, &mut direction];

@@ -25,7 +25,7 @@ loops! {
         t_max: &mut [f64; LANES],
     ) {
         for i in 0..LANES {
-            let here = encounters.get(i, Diffuse { reflectance: reflectance.get(i) });
+            let here = encounters.faded(i, Diffuse { reflectance: reflectance.get(i) });
             let (towards, light, drawn) = lights.get(i);
             let (scattered, pdf) = here.evaluate(towards);
             let all = throughput.get(i) * scattered * light * power_heuristic(drawn, pdf);
@@ -52,7 +52,7 @@ loops! {
     ) {
         for i in 0..LANES {
             let (direction, _, drawn) = lights.get(i);
-            let (local, fading) = encounters.get(i, Null).seen_from(direction);
+            let (local, fading) = encounters.faded(i, Null).seen_from(direction);
             wi.set(i, local);
             counts[i] = if drawn > 0.0 { fading } else { 0.0 };
         }
@@ -94,7 +94,7 @@ loops! {
     ) {
         for i in 0..LANES {
             let (source, is_within) = lights.source(i);
-            let from = encounters.get(i, Null).ray_origin();
+            let from = encounters.faded(i, Null).ray_origin();
             let (segment, ray) = (from.segment(&source), from.ray(lights.get(i).0));
             let ray = if is_within { segment } else { ray };
             origin.set(i, ray.origin);
@@ -270,6 +270,10 @@ impl<N: Features> TransportWorker<'_, N> {
     ) -> RgbLanes {
         let (mut wi, mut counts) = (VectorLanes::ZERO, [0.0; LANES]);
         turn(self.level, &block.encounters, lights, &mut wi, &mut counts);
+        for lane in (0..block.count).filter(|&lane| block.encounters.is_as_given(lane)) {
+            let (direction, _, drawn) = lights.get(lane);
+            counts[lane] = if drawn > 0.0 { block.encounters.get(lane, Null).seen_from(direction).1 } else { 0.0 };
+        }
         let (mut scattered, mut pdf) = (RgbLanes::ZERO, [0.0; LANES]);
         let seen = array::from_fn(|lane| asks[lane] && counts[lane] > 0.0);
         block.bsdf.evaluate(self.level, &seen, block.encounters.wo_lanes(), &wi, &mut scattered, &mut pdf);

@@ -163,7 +163,7 @@ impl Reuse {
         if path.bounce > 1 {
             return path;
         }
-        let Some(reflectance) = here.bsdf().diffuse() else { return path };
+        let Some(reflectance) = here.bsdf().diffuse().filter(|_| !here.is_as_given()) else { return path };
         let (shading, normal) = (here.shading_normal(), here.normal());
         // Where the one normal is seen from above and the other from below, or both from the side, nothing is
         // scattered.

@@ -6,6 +6,7 @@
 
 mod blackman_harris;
 mod box_filter;
+mod cropped;
 mod gaussian;
 mod lanczos;
 mod mitchell;
@@ -14,6 +15,7 @@ mod triangle;
 
 pub use blackman_harris::BlackmanHarris;
 pub use box_filter::Box;
+pub use cropped::{Cropped, Edges};
 pub use gaussian::Gaussian;
 pub use lanczos::Lanczos;
 pub use mitchell::Mitchell;
@@ -43,6 +45,11 @@ pub trait Filter: Debug + Send + Sync {
             (offset, weights[lane]) = self.sample([u[0][lane], u[1][lane]]);
             [offsets[0][lane], offsets[1][lane]] = offset;
         }
+    }
+
+    /// Whether pixels near the edge of the film take only what lies on it ([`Edges`]).
+    fn is_cropped(&self) -> bool {
+        false
     }
 }
 

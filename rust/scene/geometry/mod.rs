@@ -341,6 +341,11 @@ impl Geometry {
         !self.normals.is_empty()
     }
 
+    /// Whether a shape is a mesh that has shading normals.
+    pub fn has_normals(&self, shape: u32) -> bool {
+        self.is_smooth() && self.primitives_of(shape).any(|primitive| self.normals_of(primitive).is_some())
+    }
+
     /// Whether there are instances of prototypes.
     pub fn has_instances(&self) -> bool {
         self.others.as_ref().is_some_and(|others| others.has_instances())

@@ -24,10 +24,11 @@ pub struct BumpMap {
 /// The smallest cosine between a normal of its own and the geometric one.
 const GRAZING: f64 = 1e-3;
 
-/// The normal, bent as far as it must be to lie on the side of the surface.
-pub(super) fn on_its_side(normal: DVec3, geometric: DVec3) -> DVec3 {
+/// The normal, bent as far as it must be to lie on the side of the surface, unless it is taken as it is given.
+pub(super) fn on_its_side(normal: DVec3, at: &ShadingPoint) -> DVec3 {
+    let geometric = at.point.normal;
     let cosine = normal.dot(geometric);
-    if cosine >= GRAZING { normal } else { (normal + geometric * (GRAZING - cosine)).normalize() }
+    if at.as_given || cosine >= GRAZING { normal } else { (normal + geometric * (GRAZING - cosine)).normalize() }
 }
 
 impl BumpMap {
@@ -106,9 +107,11 @@ impl Material for BumpMap {
             mean += 0.25 * (before + after);
         }
         // The tangents of the raised surface (Blinn, 1978; Pharr, Jakob and Humphreys, 2023, 10.5.3).
+        // With normals as given, what a height does as such is left out: only slopes count.
+        let mean = if at.as_given { 0.0 } else { mean };
         let [du, dv] = [0, 1].map(|k| at.dp[k] + normal * slopes[k] + at.dn[k] * mean);
         let Some(raised) = du.cross(dv).try_normalize() else { return own };
-        Some(on_its_side(if raised.dot(normal) < 0.0 { -raised } else { raised }, at.point.normal))
+        Some(on_its_side(if raised.dot(normal) < 0.0 { -raised } else { raised }, at))
     }
 
     fn tangent(&self, at: &ShadingPoint) -> Option<DVec3> {

@@ -65,8 +65,9 @@ impl Material for NormalMap {
         let Some(u) = (at.dp[0] - normal * normal.dot(at.dp[0])).try_normalize() else { return own };
         let v = normal.cross(u);
         let v = if v.dot(at.dp[1]) < 0.0 { -v } else { v };
-        let Some(turned) = (u * x + v * y + normal * z.max(0.0)).try_normalize() else { return own };
-        Some(on_its_side(turned, at.point.normal))
+        let z = if at.as_given { z } else { z.max(0.0) };
+        let Some(turned) = (u * x + v * y + normal * z).try_normalize() else { return own };
+        Some(on_its_side(turned, at))
     }
 
     fn tangent(&self, at: &ShadingPoint) -> Option<DVec3> {

@@ -19,6 +19,7 @@ pub struct SurfaceInteractionLanes {
     // Yes or no, as wide as the rest of a lane.
     is_flat: [u64; LANES],
     is_bent: [u64; LANES],
+    as_given: [u64; LANES],
 }
 
 impl SurfaceInteractionLanes {
@@ -35,6 +36,7 @@ impl SurfaceInteractionLanes {
             curvature: [0.0; LANES],
             is_flat: [0; LANES],
             is_bent: [0; LANES],
+            as_given: [0; LANES],
         }
     }
 
@@ -46,6 +48,19 @@ impl SurfaceInteractionLanes {
     /// The encounter of a lane, with what scatters there.
     #[inline(always)]
     pub fn get<B: Bsdf>(&self, lane: usize, bsdf: B) -> SurfaceInteraction<B> {
+        SurfaceInteraction { as_given: self.is_as_given(lane), ..self.faded(lane, bsdf) }
+    }
+
+    /// Whether the shading normal of a lane is taken as it is given.
+    #[inline(always)]
+    pub fn is_as_given(&self, lane: usize) -> bool {
+        self.as_given[lane] != 0
+    }
+
+    /// The same as if no normal were taken as it is given: loops over lanes have no code for those, which are few, and
+    /// are seen to afterwards.
+    #[inline(always)]
+    pub fn faded<B: Bsdf>(&self, lane: usize, bsdf: B) -> SurfaceInteraction<B> {
         SurfaceInteraction {
             surface: self.surface.get(lane),
             frame: Frame {
@@ -58,6 +73,7 @@ impl SurfaceInteractionLanes {
             side: self.side[lane],
             is_flat: self.is_flat[lane] != 0,
             is_bent: self.is_bent[lane] != 0,
+            as_given: false,
             curvature: self.curvature[lane],
         }
     }
@@ -91,5 +107,6 @@ impl SurfaceInteractionLanes {
         self.curvature[lane] = here.curvature;
         self.is_flat[lane] = here.is_flat.into();
         self.is_bent[lane] = here.is_bent.into();
+        self.as_given[lane] = here.as_given.into();
     }
 }

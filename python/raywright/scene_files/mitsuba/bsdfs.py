@@ -158,7 +158,7 @@ def _blend(plugin: Plugin, uv: Uv) -> Sides:
 
 def _bump_map(plugin: Plugin, uv: Uv) -> Sides:
     (inner,) = _inner(plugin, uv, 1)
-    _soft_terminator(plugin)
+    _bent(plugin)
     textures = list(plugin.children(*TEXTURES))
     if len(textures) != 1:
         plugin.fail(f"one texture must be within, got {len(textures)}")
@@ -168,16 +168,17 @@ def _bump_map(plugin: Plugin, uv: Uv) -> Sides:
 
 def _normal_map(plugin: Plugin, uv: Uv) -> Sides:
     (inner,) = _inner(plugin, uv, 1)
-    _soft_terminator(plugin)
+    _bent(plugin)
     given = plugin.child("normalmap")
     if given is None:
         plugin.fail("normalmap must be given")
     return inner._replace(material=NormalMap(inner.material, normals(given, uv)))
 
 
-def _soft_terminator(plugin: Plugin) -> None:
-    plugin.ignore("flip_invalid_normals", "use_shadowing_function")
-    plugin.warn("light fades towards the horizon in raywright's way, not by use_shadowing_function")
+def _bent(plugin: Plugin) -> None:
+    for name in ("flip_invalid_normals", "use_shadowing_function"):
+        if not plugin.switch(name, True):
+            plugin.warn(f"{name} is on")
 
 
 def _inner(plugin: Plugin, uv: Uv, *counts: int) -> list[Sides]:

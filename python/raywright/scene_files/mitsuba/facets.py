@@ -2,11 +2,22 @@
 
 from typing import NamedTuple, TypedDict
 
-from ...materials import Conductor, Dielectric, Diffuse, Material, Mirror, Mix, ThinDielectric, Tinted
+from ...materials import (
+    Conductor,
+    Dielectric,
+    Diffuse,
+    Material,
+    Mirror,
+    Mix,
+    ThinDielectric,
+    Tinted,
+    metal_index,
+)
 from ...materials.material import Rough
+from ...textures import Spectrum
 from ...textures.texture import Texture
 from .iors import relative
-from .plugin import Plugin
+from .plugin import Plugin, Triple
 from .textures import scalar, value
 from .uv import Uv
 
@@ -23,16 +34,28 @@ def conductor(plugin: Plugin, uv: Uv) -> Material:
             plugin.fail("either material or eta and k must be given, got both")
         eta, k = value(plugin, "eta", 0.0, uv), value(plugin, "k", 1.0, uv)
         if not isinstance(eta, Texture):
-            eta = tuple(max(x, _NEXT_TO_NOTHING) for x in eta)  # type: ignore[assignment]
+            eta = _positive(eta)
         metal: Material = Conductor(eta=eta, k=k, **rough)
     elif name != "none":
         # Of some it also has, or only has, the values of Palik's handbook.
-        metal = Conductor(name.removesuffix("_palik"), **rough)
+        name = name.removesuffix("_palik")
+        if plugin.context.by_wavelength:
+            metal = Conductor(name, **rough)
+        else:
+            # The variants of red, green and blue make colours of both numbers before they reflect by them.
+            index = metal_index(name)
+            eta, k = (Spectrum(index.wavelengths, part).rgb for part in (index.eta, index.k))
+            metal = Conductor(eta=_positive(eta), k=_positive(k), **rough)
     elif plugin.type == "conductor":
         return Mirror(value(plugin, "specular_reflectance", 1.0, uv))
     else:
         metal = Conductor(eta=_NEXT_TO_NOTHING, k=1.0, **rough)
     return scaled(metal, plugin, ("specular_reflectance",), uv)
+
+
+def _positive(eta: Triple) -> Triple:
+    red, green, blue = (max(x, _NEXT_TO_NOTHING) for x in eta)
+    return red, green, blue
 
 
 def dielectric(plugin: Plugin, uv: Uv) -> Material:

@@ -37,6 +37,8 @@ class Context:
         self.kept: dict[Any, Any] = {}
         self._named: dict[str, Any] = {}
         self._warned: set[str] = set()
+        # Whether there is a spectrum, so that all of it is rendered by wavelength.
+        self.by_wavelength = False
         self._name(tree, "", 0)
 
     def _name(self, tree: Mapping[str, Any], path: str, depth: int) -> None:
@@ -49,6 +51,7 @@ class Context:
             self._named.setdefault(inner, value)
             if isinstance(value.get("id"), str) and value.get("type") not in ("ref", "alias"):
                 self._named.setdefault(value["id"], value)
+            self.by_wavelength |= _is_spectrum(value)
             self._name(value, inner, depth + 1)
 
     def follow(self, value: Any, where: str) -> Any:
@@ -68,6 +71,15 @@ class Context:
         if key not in self._warned:
             self._warned.add(key)
             warnings.warn(f"{plugin}: {message}", RuntimeWarning, stacklevel=2)
+
+
+def _is_spectrum(plugin: Mapping[str, Any]) -> bool:
+    """Tell whether a plugin is a colour by wavelength."""
+    if plugin.get("type") in ("regular", "irregular", "blackbody"):
+        return True
+    value = plugin.get("value")
+    is_table = isinstance(value, list | tuple | np.ndarray) and np.ndim(value) == 2
+    return plugin.get("type") == "spectrum" and ("filename" in plugin or is_table)
 
 
 class Plugin:

@@ -121,13 +121,15 @@ def _read(scene: Plugin, number: int) -> Shot:
         # What has no size is met by no ray.
         lights = []
     film = _only(eye, *sensors.FILMS)
-    rfilter = settings.rfilter(_only(film, *settings.FILTERS) if film is not None else None)
+    has_border = film is not None and film.switch("sample_border", False)
+    rfilter = settings.rfilter(_only(film, *settings.FILTERS) if film is not None else None, has_border)
     sampler, samples, seed = settings.sampler(_only(eye, *settings.SAMPLERS))
     whole = Scene(
         shapes.instances(found),
         lights,
         around[0] if len(around) == 1 else around or None,
         medium=media.around(scene, eye),
+        shading_normals="as given",
     )
     return Shot(
         whole,

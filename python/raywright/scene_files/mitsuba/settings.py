@@ -6,11 +6,13 @@ from typing import NamedTuple
 from ...integrators import AmbientOcclusion, AnyIntegrator, Direct, LightTraced, Path
 from ...rendering.filters import (
     BoxFilter,
+    CroppedFilter,
     Filter,
     GaussianFilter,
     LanczosFilter,
     MitchellFilter,
     TriangleFilter,
+    WholeFilter,
 )
 from ...rendering.samplers import Halton, Independent, Sampler, Sobol, Stratified
 from .plugin import Plugin
@@ -158,11 +160,17 @@ def sampler(plugin: Plugin | None) -> tuple[Sampler | None, int, int]:
     return kinds.get(plugin.type, Stratified()), count, seed
 
 
-def rfilter(plugin: Plugin | None) -> Filter:
-    """Return a reconstruction filter; Mitsuba's own, a Gaussian, if there is none."""
-    if plugin is None:
-        return GaussianFilter(2.0, 0.5)
-    readers: dict[str, Callable[[Plugin], Filter]] = {
+def rfilter(plugin: Plugin | None, has_border: bool) -> Filter:
+    """Return a reconstruction filter; Mitsuba's own, a Gaussian, if there is none.
+
+    Unless a film has a border, what lies beyond it counts for no pixel.
+    """
+    whole = GaussianFilter(2.0, 0.5) if plugin is None else _filter(plugin)
+    return whole if has_border or whole == BoxFilter() else CroppedFilter(whole)
+
+
+def _filter(plugin: Plugin) -> WholeFilter:
+    readers: dict[str, Callable[[Plugin], WholeFilter]] = {
         "box": lambda _: BoxFilter(),
         "tent": lambda one: TriangleFilter(one.number("radius", 1.0)),
         "gaussian": _gaussian,

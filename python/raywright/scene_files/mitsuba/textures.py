@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..._core import smooth_spectrum
 from ...io.pictures import read
 from ...textures import Checker, ImageTexture, ProductTexture, Spectrum, UvTransform, VertexColors
 from ...textures.texture import Number, Texture, Value
@@ -52,6 +53,10 @@ def value(
         found = shade(plugin, name, default, emits)
         if change is None:
             return found
+        if plugin.context.by_wavelength and not isinstance(found, Spectrum) and len({*found}) > 1:
+            # What is changed there is the smooth spectrum that colours become beside spectra.
+            nm = np.arange(360.0, 831.0, 5.0)
+            found = Spectrum(nm, smooth_spectrum(found, True, False, nm.tolist()))
         return at_each_nm(found, change) if isinstance(found, Spectrum) else _changed(found, change)
     return texture(inner, uv, change)
 
