@@ -39,6 +39,8 @@ pub(super) struct PathState {
     /// Whether it looks about from where light is known, and has been at something sharp since.
     pub is_gathered: bool,
     pub is_sharp_since: bool,
+    /// Whether what it finds is shared with others ([`super::reuse`]).
+    pub is_shared: bool,
 }
 
 impl PathState {
@@ -60,6 +62,7 @@ impl PathState {
             splits: 1.0,
             is_gathered: false,
             is_sharp_since: false,
+            is_shared: false,
         }
     }
 

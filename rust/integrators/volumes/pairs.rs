@@ -1,0 +1,134 @@
+//! Ways from many points of an even medium to one: loops over columns, which become vectors.
+
+use crate::math::DVec3;
+use crate::math::exponential::exp;
+use crate::optics::{Phase, PhaseTerms, Rgb};
+use crate::simd::{Level, loops};
+
+/// Points that light is scattered at on its way back along paths, a column a coordinate, and what they are to another.
+pub(super) struct Takers {
+    level: Level,
+    position: [Vec<f64>; 3],
+    before: [Vec<f64>; 3],
+    share: Vec<f64>,
+    distance: Vec<f64>,
+    onward: Vec<f64>,
+    to_light: Vec<f64>,
+    left: [Vec<f64>; 3],
+}
+
+/// A point that they look to, and two directions from there, which are unit.
+pub(super) struct Way {
+    pub to: DVec3,
+    pub onward: DVec3,
+    pub to_light: DVec3,
+}
+
+/// What one is to that point.
+pub(super) struct Pair {
+    /// The phase function over the distance's square.
+    pub share: f64,
+    /// The phase function at the point, into the two directions.
+    pub onward: f64,
+    pub to_light: f64,
+    /// The share of light that gets there.
+    pub left: Rgb,
+}
+
+loops! {
+    fn turn(
+        phase: &PhaseTerms,
+        to: &[[f64; 3]; 3],
+        position: [&[f64]; 3],
+        before: [&[f64]; 3],
+        share: &mut [f64],
+        distance: &mut [f64],
+        onward: &mut [f64],
+        to_light: &mut [f64],
+    ) {
+        let count = share.len();
+        let ([x, y, z], [a, b, c]) = (position, before);
+        let (x, y, z, a, b, c) = (&x[..count], &y[..count], &z[..count], &a[..count], &b[..count], &c[..count]);
+        let (distance, onward, to_light) = (&mut distance[..count], &mut onward[..count], &mut to_light[..count]);
+        let [to, next, light] = to;
+        for i in 0..count {
+            let way = [to[0] - x[i], to[1] - y[i], to[2] - z[i]];
+            let square = way[0] * way[0] + way[1] * way[1] + way[2] * way[2];
+            let length = square.sqrt();
+            let unit = [way[0] / length, way[1] / length, way[2] / length];
+            let part = phase.pdf([a[i], b[i], c[i]], unit) / square;
+            // What is at the same place is nowhere in particular.
+            share[i] = if part < f64::INFINITY { part } else { 0.0 };
+            distance[i] = length;
+            onward[i] = if square > 0.0 { phase.pdf(unit, *next) } else { 0.0 };
+            to_light[i] = if square > 0.0 { phase.pdf(unit, *light) } else { 0.0 };
+        }
+    }
+}
+
+loops! {
+    fn fade(extinction: f64, distance: &[f64], left: &mut [f64]) {
+        let distance = &distance[..left.len()];
+        for i in 0..left.len() {
+            left[i] = exp(-(extinction * distance[i]).min(700.0));
+        }
+    }
+}
+
+impl Default for Takers {
+    fn default() -> Self {
+        let (position, before, left) = Default::default();
+        let (share, distance, onward, to_light) = Default::default();
+        let level = Level::current().unwrap_or(Level::Scalar);
+        Self { level, position, before, share, distance, onward, to_light, left }
+    }
+}
+
+impl Takers {
+    pub fn clear(&mut self) {
+        let Self { position, before, .. } = self;
+        position.iter_mut().chain(before).for_each(Vec::clear);
+    }
+
+    /// A point, and the direction in which its path comes to it.
+    pub fn push(&mut self, position: DVec3, before: DVec3) {
+        for axis in 0..3 {
+            self.position[axis].push(position[axis]);
+            self.before[axis].push(before[axis]);
+        }
+    }
+
+    /// Finds what all of them are to a point, in a medium of an extinction.
+    pub fn meet(&mut self, way: &Way, phase: &Phase, extinction: Rgb) {
+        let count = self.position[0].len();
+        let Self { level, position, before, share, distance, onward, to_light, left } = self;
+        for column in [&mut *share, distance, onward, to_light].into_iter().chain(left.iter_mut()) {
+            column.resize(count, 0.0);
+        }
+        let level = *level;
+        let to = [way.to, way.onward, way.to_light].map(|vector| vector.to_array());
+        let [position, before] = [position, before].map(|columns| columns.each_ref().map(|column| &column[..]));
+        turn(level, &phase.terms(), &to, position, before, share, distance, onward, to_light);
+        let [red, others @ ..] = left;
+        fade(level, extinction[0], distance, red);
+        for (channel, other) in (1..).zip(others) {
+            if extinction[channel] == extinction[0] {
+                other.copy_from_slice(red);
+            } else {
+                fade(level, extinction[channel], distance, other);
+            }
+        }
+    }
+
+    /// What one is to the point.
+    #[inline]
+    pub fn pair(&self, i: usize) -> Pair {
+        let left = self.left.each_ref().map(|column| column[i]);
+        Pair {
+            share: self.share[i],
+            onward: self.onward[i],
+            to_light: self.to_light[i],
+            left: Rgb::from_array(left),
+        }
+    }
+}
