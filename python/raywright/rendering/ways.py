@@ -20,6 +20,10 @@ _REUSE, _LARGE, _NOISY = 4, 8, 0.3
 # How much longer samples take that share paths, or that aim, by `benches/choices.py`, in times of a plain
 # one. It is not measured on the spot: the same has to be chosen everywhere, every time.
 _COSTS = {"reuse": 0.9, "caustics": 0.9}
+# Paths in even media go on for long, beside which sharing costs next to nothing, and all that is shared is
+# smooth: larger patches are tried there, and from so many samples on they share without a pilot.
+_MEDIA = "smoke and haze"
+_UNTRIED = 1 << 17
 # What is more than plain has to be better by so much: a pilot may be wrong.
 _BETTER = 0.9
 # The share of a render's samples that a pilot of each way may take.
@@ -73,7 +77,11 @@ def followed(
     if open_ and scene.wavelengths is not None:
         why |= dict.fromkeys(open_, "paths that carry wavelengths neither share nor aim")
         open_ = []
-    if open_ and expected(limits, pixels) * pixels < _SHARE * _core.PILOT:
+    samples = expected(limits, pixels) * pixels if open_ else 0.0
+    if open_ and samples < _SHARE * _core.PILOT:
+        if "reuse" in open_ and samples >= _UNTRIED and _shares_in_media(path, scene, threads, look):
+            named["reuse"], why["reuse"] = _LARGE, "it is known to pay in even media"
+            open_.remove("reuse")
         why |= dict.fromkeys(open_, "the picture has too few samples to send a pilot")
         open_ = []
     compiled = scene._compiled() if open_ else None
@@ -92,7 +100,8 @@ def followed(
                 return [error * _cost(way) for error, way in zip(errors, ways, strict=True)]
 
             # Nobody is sent where only one way is left.
-            ways, worth = _tried(fixed, open_, sent) if open_ else ([fixed], [0.0])
+            hazy = _MEDIA in scene.plan().needed
+            ways, worth = _tried(fixed, open_, hazy, sent) if open_ else ([fixed], [0.0])
         except StoppedError:
             why |= dict.fromkeys(open_, "it was stopped before a pilot was back")
         else:
@@ -103,14 +112,31 @@ def followed(
     return replace(path, **chosen), rows, time.perf_counter() - began
 
 
+def _shares_in_media(
+    path: Path, scene: Scene, threads: int | None, look: Callable[[], None] | None
+) -> bool:
+    """Return whether paths can share what they find in media."""
+    if _MEDIA not in scene.plan().needed:
+        return False
+    try:
+        shares, _ = _core.chances(scene._compiled(), path, threads, look)
+    except StoppedError:
+        return False
+    return shares
+
+
 def _tried(
-    fixed: dict[str, Any], names: list[str], sent: Callable[[list[dict[str, Any]]], list[float]]
+    fixed: dict[str, Any],
+    names: list[str],
+    hazy: bool,
+    sent: Callable[[list[dict[str, Any]]], list[float]],
 ) -> tuple[list[dict[str, Any]], list[float]]:
     """Return ways, the plain one first, and what each takes in error times time, as pilots tell."""
     ways = [fixed | dict(zip(names, way, strict=True)) for way in product(*_options(names))]
     worth = sent(ways)
     least = ways[worth.index(min(worth))]
-    if "reuse" in names and least["reuse"] == _REUSE and min(worth) > _NOISY * _cost(least):
+    noisy = hazy or min(worth) > _NOISY * _cost(least)
+    if "reuse" in names and least["reuse"] == _REUSE and noisy:
         ways.append(least | {"reuse": _LARGE})
         worth = sent(ways)
     return ways, worth

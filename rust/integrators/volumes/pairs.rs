@@ -26,9 +26,9 @@ pub(super) struct Way {
 
 /// What one is to that point.
 pub(super) struct Pair {
-    /// The phase function over the distance's square.
+    /// The phase function, and the cosine at a surface, over the distance's square.
     pub share: f64,
-    /// The phase function at the point, into the two directions.
+    /// The phase function at the point, into the two directions; of a surface, which reflects the same to all, 1 and 0.
     pub onward: f64,
     pub to_light: f64,
     /// The share of light that gets there.
@@ -98,8 +98,9 @@ impl Takers {
         }
     }
 
-    /// Finds what all of them are to a point, in a medium of an extinction.
-    pub fn meet(&mut self, way: &Way, phase: &Phase, extinction: Rgb) {
+    /// Finds what all of them are to a point, in a medium of an extinction in which these shares of their ways lie; to
+    /// one of a surface, by the cosine at its normal.
+    pub fn meet(&mut self, way: &Way, normal: Option<DVec3>, inside: &[f64], phase: &Phase, extinction: Rgb) {
         let count = self.position[0].len();
         let Self { level, position, before, share, distance, onward, to_light, left } = self;
         for column in [&mut *share, distance, onward, to_light].into_iter().chain(left.iter_mut()) {
@@ -109,6 +110,16 @@ impl Takers {
         let to = [way.to, way.onward, way.to_light].map(|vector| vector.to_array());
         let [position, before] = [position, before].map(|columns| columns.each_ref().map(|column| &column[..]));
         turn(level, &phase.terms(), &to, position, before, share, distance, onward, to_light);
+        if let Some(normal) = normal {
+            for i in 0..count {
+                let apart = DVec3::new(position[0][i], position[1][i], position[2][i]) - way.to;
+                share[i] *= normal.dot(apart).max(0.0) / distance[i];
+                (onward[i], to_light[i]) = (1.0, 0.0);
+            }
+        }
+        for (distance, inside) in distance.iter_mut().zip(inside) {
+            *distance *= inside;
+        }
         let [red, others @ ..] = left;
         fade(level, extinction[0], distance, red);
         for (channel, other) in (1..).zip(others) {
@@ -124,11 +135,6 @@ impl Takers {
     #[inline]
     pub fn pair(&self, i: usize) -> Pair {
         let left = self.left.each_ref().map(|column| column[i]);
-        Pair {
-            share: self.share[i],
-            onward: self.onward[i],
-            to_light: self.to_light[i],
-            left: Rgb::from_array(left),
-        }
+        Pair { share: self.share[i], onward: self.onward[i], to_light: self.to_light[i], left: Rgb::from_array(left) }
     }
 }

@@ -7,13 +7,12 @@ use super::pairs::{Takers, Way};
 use super::path_state::PathState;
 use super::scattering::Scattering;
 use super::walker::Walker;
-use super::weights::Weights;
-use crate::integrators::nesting::MediumStack;
-use crate::math::{DVec3, Ray};
-use crate::optics::{BsdfSample, Phase, Rgb};
+use crate::integrators::nesting::Filling;
+use crate::math::{DVec3, Hit, Ray};
+use crate::optics::{Bsdf, BsdfSample, Phase, Rgb};
 use crate::scene::lights::Place;
 use crate::scene::media::Coefficients;
-use crate::scene::{Encounter, LightSampleContext, RayOrigin, Scene};
+use crate::scene::{Encounter, LightSampleContext, RayOrigin, Scene, SurfaceInteraction};
 use crate::workers::Cancel;
 use std::f64::consts::FRAC_1_PI;
 
@@ -29,16 +28,18 @@ pub(in crate::integrators) fn can_share(scene: &Scene) -> bool {
         && !scene.lights().others().any(|light| is_point(light.place()))
 }
 
-/// What a path leaves to be shared: from where it was scattered first, and from where second, with nothing but one even
-/// medium between (after Bekaert, Sbert and Halton, "Accelerating Path Tracing by Re-Using Paths", 2002).
+/// What a path leaves to be shared: from where an even medium scattered it first, and from where it came next, through
+/// nothing but that medium, or out of it to a matt surface (after Bekaert, Sbert and Halton, "Accelerating Path Tracing
+/// by Re-Using Paths", 2002).
 ///
-/// Path j of a group goes from a first point xⱼ to a second, yⱼ, where light from two directions is known: that of a
-/// light that was asked for, and one that was drawn and the rest of the path followed. It is worth the same to all first
-/// points from which nothing but the medium lies on the way to yⱼ. So each takes its part of it, as one more sample,
-/// weighed by the balance heuristic (Veach and Guibas, 1995) over the densities with which the paths of the group
-/// would have drawn the same: pₖ = f(xₖ → yⱼ) σ e^(−σd) / d², of phase function f and extinction σ; for the direction
-/// that was drawn at yⱼ, times f(xₖ → yⱼ → ω). Of several colours σ e^(−σd) is the mean, by how likely each is to have
-/// drawn what came before.
+/// Path j of a group goes from a first point xⱼ to a second, yⱼ. If that is in the medium, light from two directions is
+/// known there: that of a light that was asked for, and one that was drawn and the rest of the path followed. It is
+/// worth the same to all first points that see yⱼ, with nothing between but the medium. So each takes its part of it, as
+/// one more sample, weighed by the balance heuristic (Veach and Guibas, 1995) over the densities with which the paths of
+/// the group would have drawn the same: pₖ = f(xₖ → yⱼ) σ e^(−σs) / d², of phase function f, extinction σ and a way of d
+/// of which s lies in the medium; for the direction that was drawn at yⱼ, times f(xₖ → yⱼ → ω). If yⱼ is matt, what it
+/// reflects is the same for all, and its cosine stands for σ. Of several colours e^(−σs) is the mean, by how likely each
+/// is to have drawn what came before.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Parts {
     pub first: Option<First>,
@@ -56,18 +57,27 @@ pub(super) struct First {
     brought: Rgb,
     /// How likely each colour is to have drawn it.
     drawn: Rgb,
-    /// What stands for the shape that the medium fills.
-    shape: (u32, u32),
+    /// What stands for the shape that the medium fills; and how often the path was scattered before, where that limits
+    /// what is found.
+    among: ((u32, u32), u32),
+    /// Whether beyond that shape space is clear.
+    is_alone: bool,
 }
 
 /// A second point, which gives.
 #[derive(Clone, Copy)]
 pub(super) struct Second {
-    position: DVec3,
-    /// To the light that was asked for, and what arrives from there; and the way on, and what the path found there.
+    departure: RayOrigin,
+    /// Of a surface its normal on the side that is seen; none in the medium.
+    normal: Option<DVec3>,
+    /// How much of the way there is in the medium, and whether any is not.
+    inside: f64,
+    is_beyond: bool,
+    /// To the light that was asked for, and what arrives from there; and the way on.
     to_light: DVec3,
     lit: Rgb,
     onward: DVec3,
+    /// What the path found there; of a surface, what it reflects.
     pub found: Rgb,
 }
 
@@ -102,8 +112,9 @@ impl Encounter for AllWays {
 }
 
 impl First {
-    /// Where a path is scattered that is in some media.
-    pub fn new(here: &Scattering, of: Coefficients, weights: &Weights, media: &MediumStack<Filled>) -> Self {
+    /// Where a path is scattered, with what the medium does there, and whether there is a last bounce.
+    pub fn new(here: &Scattering, of: Coefficients, path: &PathState, is_limited: bool) -> Self {
+        let weights = &path.weights;
         Self {
             position: here.position,
             before: here.before,
@@ -111,7 +122,44 @@ impl First {
             here: of,
             brought: weights.throughput(),
             drawn: weights.drawn / (3.0 * weights.drawn.mean()),
-            shape: Filled::there(media),
+            among: (Filled::there(&path.media), if is_limited { path.bounce } else { 0 }),
+            is_alone: path.media.depth() == 1,
+        }
+    }
+}
+
+impl Second {
+    /// A surface to which a path has come by a `t` of its ray, if that reflects the same to all.
+    pub fn of_surface<B: Bsdf>(here: &SurfaceInteraction<B>, path: &PathState, t: f64) -> Option<Self> {
+        let is_matt = here.bsdf().diffuse().is_some() && here.is_flat() && !here.is_bent() && here.cosine() > 0.0;
+        let is_beyond = path.passed > 0;
+        let second = Self {
+            departure: here.ray_origin(),
+            normal: Some(here.normal()),
+            inside: if is_beyond { path.ray.t_min / t } else { 1.0 },
+            is_beyond,
+            to_light: DVec3::X,
+            lit: Rgb::ZERO,
+            onward: DVec3::X,
+            found: Rgb::ZERO,
+        };
+        is_matt.then_some(second)
+    }
+
+    /// Whether what it gives is worth nothing.
+    fn is_black(&self) -> bool {
+        self.lit.is_black() && self.found.is_black()
+    }
+
+    /// How much of the way from there to a first point lies in its medium, if it sees it, by what else does.
+    fn seen(&self, scene: &Scene, first: &First, hits: &[Hit]) -> f64 {
+        match hits {
+            [] if !self.is_beyond => 1.0,
+            [hit] if self.is_beyond && first.is_alone => {
+                let is_end = Filled::of(scene, hit).is_some_and(|filled| filled.shape() == first.among.0);
+                if is_end { 1.0 - hit.t } else { 0.0 }
+            }
+            _ => 0.0,
         }
     }
 }
@@ -129,10 +177,7 @@ impl<A: Asks> Walker<'_, A> {
         if self.settings.max_depth.is_some_and(|most| path.bounce >= most) {
             return None;
         }
-        // From here on it counts by itself; roulette knows what it has lost.
-        path.scale *= path.weights.throughput().max();
-        path.weights.carried = Rgb::splat(path.weights.drawn.mean());
-        path.is_shared = true;
+        path.share();
         let (here, media) = (AllWays(*here), path.media);
         let asked = self.direct_light(&here, path, |_| media, hero, numbers, cancel).await;
         let (to_light, lit) = asked.map_or((DVec3::X, Rgb::ZERO), |(light, arrives)| (light.direction, arrives));
@@ -140,7 +185,26 @@ impl<A: Asks> Walker<'_, A> {
         let next = here.sample(|| 0.0, numbers.two(u))?;
         let chance = numbers.ray.roulette();
         let goes_on = self.go_on(path, &here, &next, media, numbers.one(chance), self.never_ends());
-        Some((Second { position: here.position(), to_light, lit, onward: next.wi, found: Rgb::ZERO }, goes_on))
+        let second = Second {
+            departure: here.ray_origin(),
+            normal: None,
+            inside: 1.0,
+            is_beyond: false,
+            to_light,
+            lit,
+            onward: next.wi,
+            found: Rgb::ZERO,
+        };
+        Some((second, goes_on))
+    }
+
+    /// Whether a surface that a path has come to from a first point lies in the same medium, or next beyond its end.
+    pub(super) fn is_within_reach(&self, first: &First, path: &PathState) -> bool {
+        match path.passed {
+            0 => true,
+            1 => first.is_alone && path.media.depth() == 0 && self.scene.surrounding().is_none(),
+            _ => false,
+        }
     }
 }
 
@@ -153,6 +217,8 @@ pub(super) struct Reuse {
     giving: Vec<usize>,
     rays: Vec<Ray>,
     occluded: Vec<bool>,
+    /// Of the way from each that gives to each that takes, how much is in the medium; 0 where nothing is seen.
+    seen: Vec<f64>,
 }
 
 impl Reuse {
@@ -168,11 +234,11 @@ impl Reuse {
             }
             let (parts, radiance) = (&parts[start..][..count as usize], &mut radiance[start..][..count as usize]);
             start += count as usize;
-            // One medium after the other.
+            // One medium after the other, and one depth.
             let mut done = Vec::new();
             for first in parts.iter().filter(|parts| parts.second.is_some()).filter_map(|parts| parts.first) {
-                if !done.contains(&first.shape) {
-                    done.push(first.shape);
+                if !done.contains(&first.among) {
+                    done.push(first.among);
                     self.share_within(scene, &first, parts, radiance);
                 }
             }
@@ -186,59 +252,84 @@ impl Reuse {
         taking.clear();
         giving.clear();
         for (i, Parts { first, second }) in parts.iter().enumerate() {
-            let Some(first) = first.filter(|first| first.shape == of.shape) else { continue };
+            let Some(first) = first.filter(|first| first.among == of.among) else { continue };
             takers.push(first.position, first.before);
             taking.push(i);
-            if second.is_some_and(|second| !(second.lit.is_black() && second.found.is_black())) {
+            if second.is_some_and(|second| !second.is_black()) {
                 giving.push(i);
             }
         }
         self.look(scene, parts);
-        let (count, each) = (self.taking.len(), self.each());
-        for (number, &j) in self.giving.iter().enumerate() {
-            let Some(second) = &parts[j].second else { continue };
-            let way = Way { to: second.position, onward: second.onward, to_light: second.to_light };
-            self.takers.meet(&way, &of.phase, of.here.extinction);
-            let seen = |place: usize| self.taking[place] == j || !self.occluded[number * each + place];
-            let (mut lit, mut found) = (0.0, 0.0);
-            for place in (0..count).filter(|&place| seen(place)) {
-                let pair = self.takers.pair(place);
-                let drawn = &parts[self.taking[place]].first.map_or(Rgb::ZERO, |first| first.drawn);
-                let density = pair.share * (*drawn * of.here.extinction * pair.left).sum();
-                lit += density;
-                found += density * pair.onward;
-            }
-            let over = |light: Rgb, sum: f64| if sum > 0.0 { light / sum } else { Rgb::ZERO };
-            let (lit, found) = (over(second.lit, lit), over(second.found, found));
-            for place in (0..count).filter(|&place| seen(place)) {
-                let (pair, i) = (self.takers.pair(place), self.taking[place]);
-                let Some(first) = &parts[i].first else { continue };
-                let arrives = (lit * pair.to_light + found * pair.onward) * pair.share;
-                radiance[i] += first.brought * of.here.scattering * pair.left * arrives;
-            }
+        for number in 0..self.giving.len() {
+            self.give(number, of, parts, radiance);
         }
     }
 
-    /// How many rays there are from each that gives.
-    fn each(&self) -> usize {
-        self.taking.len().next_multiple_of(Self::BUNDLE)
+    /// Shares out what one gives.
+    fn give(&mut self, number: usize, of: &First, parts: &[Parts], radiance: &mut [Rgb]) {
+        let (giver, count) = (self.giving[number], self.taking.len());
+        let Some(second) = parts[giver].second else { return };
+        let seen = &mut self.seen[number * count..][..count];
+        if let Some(own) = self.taking.iter().position(|&taker| taker == giver)
+            && seen[own] == 0.0
+        {
+            // What its own path would not have seen, as where surfaces lie on each other, nobody else is to take.
+            seen.fill(0.0);
+            seen[own] = second.inside;
+        }
+        let seen = &*seen;
+        let way = Way { to: second.departure.position(), onward: second.onward, to_light: second.to_light };
+        self.takers.meet(&way, second.normal, seen, &of.phase, of.here.extinction);
+        let (scattering, extinction) = match second.normal {
+            None => (of.here.scattering, of.here.extinction),
+            Some(_) => (Rgb::ONE, Rgb::ONE),
+        };
+        let firsts = || (0..count).filter(|&place| seen[place] > 0.0).map(|place| (place, self.taking[place]));
+        let (mut lit, mut found) = (0.0, 0.0);
+        for (place, taker) in firsts() {
+            let (pair, Some(first)) = (self.takers.pair(place), &parts[taker].first) else { continue };
+            let density = pair.share * (first.drawn * extinction * pair.left).sum();
+            lit += density;
+            found += density * pair.onward;
+        }
+        let over = |light: Rgb, sum: f64| if sum > 0.0 { light / sum } else { Rgb::ZERO };
+        let (lit, found) = (over(second.lit, lit), over(second.found, found));
+        for (place, taker) in firsts() {
+            let (pair, Some(first)) = (self.takers.pair(place), &parts[taker].first) else { continue };
+            let arrives = (lit * pair.to_light + found * pair.onward) * pair.share;
+            radiance[taker] += first.brought * scattering * pair.left * arrives;
+        }
     }
 
     /// Looks from all that give to all that take.
     fn look(&mut self, scene: &Scene, parts: &[Parts]) {
-        let each = self.each();
-        self.rays.clear();
-        for second in self.giving.iter().filter_map(|&j| parts[j].second) {
-            let from = RayOrigin::free(second.position);
-            let to = self.taking.iter().filter_map(|&i| parts[i].first);
-            let before = self.rays.len();
-            self.rays.extend(to.map(|first| from.segment(&RayOrigin::free(first.position))));
+        self.seen.clear();
+        for &giver in &self.giving {
+            let Some(second) = parts[giver].second else { continue };
+            let firsts = self.taking.iter().filter_map(|&taker| parts[taker].first);
+            self.rays.clear();
+            let to = |first: &First| second.departure.segment(&RayOrigin::free(first.position));
+            self.rays.extend(firsts.clone().map(|first| to(&first)));
+            let faces = |first: &First| {
+                let way = first.position - second.departure.position();
+                second.normal.is_none_or(|normal| normal.dot(way) > 0.0)
+            };
+            if second.is_beyond {
+                let crossings = scene.crossings(&self.rays);
+                let seen = firsts.enumerate().map(|(i, first)| {
+                    if faces(&first) { second.seen(scene, &first, crossings.of_ray(i)) } else { 0.0 }
+                });
+                self.seen.extend(seen);
+                continue;
+            }
             // None of another origin goes with them.
             let last = self.rays[self.rays.len() - 1];
-            self.rays.resize(before + each, last);
+            self.rays.resize(self.rays.len().next_multiple_of(Self::BUNDLE), last);
+            self.occluded.clear();
+            self.occluded.resize(self.rays.len(), false);
+            scene.occluded(&self.rays, &mut self.occluded);
+            let blocked = self.occluded.iter();
+            self.seen.extend(firsts.zip(blocked).map(|(first, &is)| if faces(&first) && !is { 1.0 } else { 0.0 }));
         }
-        self.occluded.clear();
-        self.occluded.resize(self.rays.len(), false);
-        scene.occluded(&self.rays, &mut self.occluded);
     }
 }

@@ -6,7 +6,7 @@ use super::filled::Filled;
 use super::known::KnownLight;
 use super::numbers::{Numbers, depth};
 use super::path_state::PathState;
-use super::reuse::{First, Parts, Reuse};
+use super::reuse::{First, Parts, Reuse, Second};
 use super::scattering::Scattering;
 use super::together::{Lane, lanes, together};
 use super::{Onwards, Volumes};
@@ -98,7 +98,7 @@ impl<'a, A: Asks> Walker<'a, A> {
         while let Some(mut path) = waiting.pop() {
             while !cancel.is_raised() {
                 numbers.ray = Dimensions::of(path.bounce, path.branch);
-                let start = path.ray.t_min;
+                let was_first = std::mem::take(&mut path.is_first);
                 let light = match &mut parts.second {
                     Some(second) if path.is_shared => &mut second.found,
                     _ => &mut light,
@@ -111,15 +111,18 @@ impl<'a, A: Asks> Walker<'a, A> {
                         false
                     }
                     // Nothing but the medium lies between.
-                    Place::Medium { here, span, .. } if parts.first.is_some() && path.bounce == 1 && span[0] == start => {
+                    Place::Medium { here, .. } if was_first && path.passed == 0 => {
                         let met = self.scatter_shared(&mut path, &here, hero, &mut numbers, cancel).await;
                         let Some((second, goes_on)) = met else { break };
                         parts.second = Some(second);
                         goes_on
                     }
                     Place::Medium { here, collision, span } => {
-                        if self.settings.shares && path.bounce == 0 && collision.density.is_some() {
-                            parts.first = Some(First::new(&here, collision.here, &path.weights, &path.media));
+                        let takes = self.settings.shares && parts.first.is_none() && !path.gilded;
+                        if takes && collision.density.is_some() {
+                            let is_limited = self.settings.max_depth.is_some();
+                            parts.first = Some(First::new(&here, collision.here, &path, is_limited));
+                            path.is_first = true;
                         }
                         let part = collision.density.map(|density| Part { span, t: collision.t, density });
                         let part = part.filter(|_| self.is_lit(&path));
@@ -127,7 +130,14 @@ impl<'a, A: Asks> Walker<'a, A> {
                     }
                     Place::Surface { hit, outside, through } => {
                         let (at, of) = ((hit, outside, through), (hero, number));
-                        self.reflect(&mut path, at, of, waiting, &mut numbers, cancel, light).await
+                        let first = parts.first.filter(|first| was_first && self.is_within_reach(first, &path));
+                        let mut second = None;
+                        let to = (first.is_some().then_some(&mut second), light);
+                        let goes_on = self.reflect(&mut path, at, of, waiting, &mut numbers, cancel, to).await;
+                        if second.is_some() {
+                            parts.second = second;
+                        }
+                        goes_on
                     }
                     Place::Outside => false,
                 };
@@ -156,12 +166,12 @@ impl<'a, A: Asks> Walker<'a, A> {
     ) -> Option<Place> {
         let u = numbers.ray.mask();
         let way = depth(numbers.one(u));
-        let mut going = Going { ray: path.ray, weights: path.weights, media: path.media };
+        let mut going = Going { ray: path.ray, weights: path.weights, media: path.media, passed: 0 };
         let lit = self.is_lit(path).then(|| self.of_points(path, hero, cancel));
         let course = self.course(path.waves);
         let place = course.advance(&mut going, (hero, way), numbers, cancel, light, lit.as_ref()).await;
         drop(lit);
-        (path.ray, path.weights, path.media) = (going.ray, going.weights, going.media);
+        (path.ray, path.weights, path.media, path.passed) = (going.ray, going.weights, going.media, going.passed);
         if let Some(Place::Outside) = place {
             *light += path.weights.throughput() * self.light_from_outside(path);
             return None;
@@ -233,7 +243,8 @@ impl<'a, A: Asks> Walker<'a, A> {
         self.go_on(path, here, &next, media, numbers.one(chance), self.never_ends())
     }
 
-    /// Scatters a path at a surface, and says whether it goes on.
+    /// Scatters a path at a surface, and says whether it goes on. Where what it finds from there on may be shared, it is
+    /// told apart from what is its own.
     #[allow(clippy::too_many_arguments)]
     async fn reflect(
         &self,
@@ -243,7 +254,7 @@ impl<'a, A: Asks> Walker<'a, A> {
         waiting: &mut Vec<PathState>,
         numbers: &mut Numbers<'_>,
         cancel: &Cancel,
-        light: &mut Rgb,
+        (shared, mut light): (Option<&mut Option<Second>>, &mut Rgb),
     ) -> bool {
         let ray = path.ray;
         let (scene, geometry) = (self.scene, self.scene.geometry());
@@ -266,6 +277,12 @@ impl<'a, A: Asks> Walker<'a, A> {
             path.end_all_but_hero();
         }
         path.meet(here.bsdf().again());
+        if let Some(shared) = shared
+            && let Some(second) = Second::of_surface(&here, path, hit.t)
+        {
+            path.share();
+            light = &mut shared.insert(second).found;
+        }
         if !self.settings.ambient.is_black() {
             let share = here.ambient(scene, &ray, &hit, path.waves, outside);
             *light += path.weights.throughput() * share * self.settings.ambient;
@@ -375,9 +392,8 @@ impl<'a, A: Asks> Walker<'a, A> {
         if throughput.max() * path.scale < self.settings.least {
             return false;
         }
-        // Whether a path gets to where it shares is for the densities there to tell.
-        let first = if self.settings.shares { 2 } else { 0 };
-        if path.bounce < self.settings.roulette_depth.clamp(first, roulette::AT_LATEST) {
+        // Whether a path gets to where it shares is for the densities there alone to tell.
+        if path.is_first || path.bounce < self.settings.roulette_depth.min(roulette::AT_LATEST) {
             return !throughput.is_black();
         }
         let survival = if may_never_end {
