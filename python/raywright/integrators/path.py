@@ -35,7 +35,7 @@ class Path:
         where something moves, and in scenes with masks, with media in one another or with textures that are
         filtered by width. In scenes with `Homogeneous` media it is what goes from where such a medium scatters
         a path first to where the same medium does next, and nothing else; light of points is left out, and so
-        are wavelengths. In these 8 is chosen from 131,072 samples on, where no pilot is sent. Patches are cut elsewhere for each sample, so pixels err together with those around
+        are wavelengths. It pays where light is scattered often and the picture is fine. Patches are cut elsewhere for each sample, so pixels err together with those around
         them, and noise is as coarse as a patch. The error estimate knows it: its interval is wider than
         without, most so in small pictures.
     caustics : bool, optional

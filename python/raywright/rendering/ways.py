@@ -20,10 +20,8 @@ _REUSE, _LARGE, _NOISY = 4, 8, 0.3
 # How much longer samples take that share paths, or that aim, by `benches/choices.py`, in times of a plain
 # one. It is not measured on the spot: the same has to be chosen everywhere, every time.
 _COSTS = {"reuse": 0.9, "caustics": 0.9}
-# Paths in even media go on for long, beside which sharing costs next to nothing, and all that is shared is
-# smooth: larger patches are tried there, and from so many samples on they share without a pilot.
-_MEDIA = "smoke and haze"
-_UNTRIED = 1 << 17
+# Among media paths go on for longer, beside which sharing costs less, and larger patches are always tried.
+_MEDIA, _AMONG = "smoke and haze", {1: 0.0, 4: 0.2, 8: 0.5}
 # What is more than plain has to be better by so much: a pilot may be wrong.
 _BETTER = 0.9
 # The share of a render's samples that a pilot of each way may take.
@@ -77,11 +75,7 @@ def followed(
     if open_ and scene.wavelengths is not None:
         why |= dict.fromkeys(open_, "paths that carry wavelengths neither share nor aim")
         open_ = []
-    samples = expected(limits, pixels) * pixels if open_ else 0.0
-    if open_ and samples < _SHARE * _core.PILOT:
-        if "reuse" in open_ and samples >= _UNTRIED and _shares_in_media(path, scene, threads, look):
-            named["reuse"], why["reuse"] = _LARGE, "it is known to pay in even media"
-            open_.remove("reuse")
+    if open_ and expected(limits, pixels) * pixels < _SHARE * _core.PILOT:
         why |= dict.fromkeys(open_, "the picture has too few samples to send a pilot")
         open_ = []
     compiled = scene._compiled() if open_ else None
@@ -94,13 +88,14 @@ def followed(
             why |= {name: _NEVER[name] for name in open_ if not can[name]}
             open_ = [name for name in open_ if can[name]]
 
+            hazy = _MEDIA in scene.plan().needed
+
             def sent(ways: list[dict[str, Any]]) -> list[float]:
                 paths = [replace(path, **way) for way in ways]
                 errors = _core.pilot(compiled, camera, paths, threads, clamp, filter, look)
-                return [error * _cost(way) for error, way in zip(errors, ways, strict=True)]
+                return [error * _cost(way, hazy) for error, way in zip(errors, ways, strict=True)]
 
             # Nobody is sent where only one way is left.
-            hazy = _MEDIA in scene.plan().needed
             ways, worth = _tried(fixed, open_, hazy, sent) if open_ else ([fixed], [0.0])
         except StoppedError:
             why |= dict.fromkeys(open_, "it was stopped before a pilot was back")
@@ -110,19 +105,6 @@ def followed(
             why |= {name: _told(name, ways, worth) for name in open_}
     rows = tuple(Choice(name, str(chosen[name]), why[name]) for name in _PLAIN)
     return replace(path, **chosen), rows, time.perf_counter() - began
-
-
-def _shares_in_media(
-    path: Path, scene: Scene, threads: int | None, look: Callable[[], None] | None
-) -> bool:
-    """Return whether paths can share what they find in media."""
-    if _MEDIA not in scene.plan().needed:
-        return False
-    try:
-        shares, _ = _core.chances(scene._compiled(), path, threads, look)
-    except StoppedError:
-        return False
-    return shares
 
 
 def _tried(
@@ -135,7 +117,7 @@ def _tried(
     ways = [fixed | dict(zip(names, way, strict=True)) for way in product(*_options(names))]
     worth = sent(ways)
     least = ways[worth.index(min(worth))]
-    noisy = hazy or min(worth) > _NOISY * _cost(least)
+    noisy = hazy or min(worth) > _NOISY * _cost(least, hazy)
     if "reuse" in names and least["reuse"] == _REUSE and noisy:
         ways.append(least | {"reuse": _LARGE})
         worth = sent(ways)
@@ -146,8 +128,10 @@ def _options(names: list[str]) -> list[tuple[Any, Any]]:
     return [(_PLAIN[name], _MORE[name]) for name in names]
 
 
-def _cost(way: Mapping[str, Any]) -> float:
+def _cost(way: Mapping[str, Any], hazy: bool) -> float:
     """Return how many times as long a sample takes as one of a plain path."""
+    if hazy:
+        return 1 + _AMONG[way["reuse"]]
     return 1 + sum(_COSTS[name] for name, value in way.items() if value != _PLAIN[name])
 
 

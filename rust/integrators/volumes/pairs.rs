@@ -138,3 +138,49 @@ impl Takers {
         Pair { share: self.share[i], onward: self.onward[i], to_light: self.to_light[i], left: Rgb::from_array(left) }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::optics::HenyeyGreenstein;
+    use crate::sampling::{Sampler, warp};
+
+    #[test]
+    fn pairs_are_what_they_are_one_by_one_at_every_level() {
+        let phase = Phase::HenyeyGreenstein(HenyeyGreenstein::new(-0.6).unwrap());
+        let extinction = Rgb::new(0.5, 0.5, 3.0);
+        let drawn = |number: u32| Sampler::new(41, 0, number);
+        let unit = |number: u32| warp::uniform_sphere(drawn(number).two(0));
+        let place = |number: u32| unit(number) * 2.0 * drawn(number).one(4);
+        let way = Way { to: place(0), onward: unit(1), to_light: unit(2) };
+        let inside: Vec<f64> = (0..21).map(|i| drawn(100 + i).one(0)).collect();
+        let mut first: Option<Vec<[f64; 6]>> = None;
+        for level in Level::ALL.into_iter().filter(|level| level.is_available()) {
+            let mut takers = Takers { level, ..Takers::default() };
+            (0..21).for_each(|i| takers.push(place(10 + i), unit(50 + i)));
+            // One stands where the way leads to.
+            takers.push(way.to, DVec3::X);
+            let mut found = Vec::new();
+            for normal in [None, Some(DVec3::Z)] {
+                takers.meet(&way, normal, &[&inside[..], &[1.0]].concat(), &phase, extinction);
+                for (i, inside) in (0..21).zip(&inside) {
+                    let Pair { share, onward, to_light, left } = takers.pair(i as usize);
+                    let to = way.to - place(10 + i);
+                    let (length, ahead) = (to.length(), to.normalize());
+                    let cosine = normal.map_or(1.0, |normal| (-normal.dot(ahead)).max(0.0));
+                    let near = |a: f64, b: f64| (a - b).abs() <= 1e-12 * b.abs();
+                    assert!(near(share, phase.pdf(unit(50 + i), ahead) * cosine / (length * length)));
+                    if normal.is_none() {
+                        assert!(near(onward, phase.pdf(ahead, way.onward)));
+                        assert!(near(to_light, phase.pdf(ahead, way.to_light)));
+                    }
+                    (0..3).for_each(|c| assert!(near(left[c], (-extinction[c] * length * inside).exp())));
+                    found.push([share, onward, to_light, left[0], left[1], left[2]]);
+                }
+                let none = takers.pair(21);
+                assert!(none.share == 0.0 || none.share.is_nan(), "{}", none.share);
+            }
+            assert_eq!(*first.get_or_insert_with(|| found.clone()), found, "{level:?}");
+        }
+    }
+}

@@ -399,7 +399,7 @@ impl<'a, A: Asks> Walker<'a, A> {
         let survival = if may_never_end {
             roulette::survival(throughput, path.scale)
         } else {
-            (throughput.max() * path.scale).sqrt().min(1.0)
+            roulette::survival_among(throughput, path.scale)
         };
         if chance >= survival {
             return false;
