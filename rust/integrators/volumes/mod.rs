@@ -22,6 +22,7 @@ mod pairs;
 mod path_state;
 mod reuse;
 mod scattering;
+mod shared;
 mod surfaces;
 mod to_camera;
 mod together;

@@ -1,20 +1,16 @@
 //! Paths that share what they find in an even medium.
 
-use super::asking::Asks;
 use super::filled::Filled;
-use super::numbers::Numbers;
 use super::pairs::{Takers, Way};
 use super::path_state::PathState;
 use super::scattering::Scattering;
-use super::walker::Walker;
 use crate::integrators::nesting::Filling;
 use crate::math::{DVec3, Hit, Ray};
-use crate::optics::{Bsdf, BsdfSample, Phase, Rgb};
+use crate::optics::{Bsdf, Phase, Rgb};
 use crate::scene::lights::Place;
 use crate::scene::media::Coefficients;
-use crate::scene::{Encounter, LightSampleContext, RayOrigin, Scene, SurfaceInteraction};
+use crate::scene::{Encounter, RayOrigin, Scene, SurfaceInteraction};
 use crate::workers::Cancel;
-use std::f64::consts::FRAC_1_PI;
 
 /// Whether paths can share what they find among media: some medium is even and scatters, and whatever is seen of it is
 /// seen at any time. Light of points is drawn where it comes to a path on its way, which each has to itself.
@@ -32,14 +28,14 @@ pub(in crate::integrators) fn can_share(scene: &Scene) -> bool {
 /// nothing but that medium, or out of it to a matt surface (after Bekaert, Sbert and Halton, "Accelerating Path Tracing
 /// by Re-Using Paths", 2002).
 ///
-/// Path j of a group goes from a first point xⱼ to a second, yⱼ. If that is in the medium, light from two directions is
-/// known there: that of a light that was asked for, and one that was drawn and the rest of the path followed. It is
-/// worth the same to all first points that see yⱼ, with nothing between but the medium. So each takes its part of it, as
-/// one more sample, weighed by the balance heuristic (Veach and Guibas, 1995) over the densities with which the paths of
-/// the group would have drawn the same: pₖ = f(xₖ → yⱼ) σ e^(−σs) / d², of phase function f, extinction σ and a way of d
-/// of which s lies in the medium; for the direction that was drawn at yⱼ, times f(xₖ → yⱼ → ω). If yⱼ is matt, what it
-/// reflects is the same for all, and its cosine stands for σ. Of several colours e^(−σs) is the mean, by how likely each
-/// is to have drawn what came before.
+/// Path j of a group goes from a first point xⱼ to a second, yⱼ. If that is in the medium, light from two directions
+/// is known there: that of a light that was asked for, and one that was drawn and the rest of the path followed. It is
+/// worth the same to all first points that see yⱼ, with nothing between but the medium. So each takes its part of it,
+/// as one more sample, weighed by the balance heuristic (Veach and Guibas, 1995) over the densities with which the
+/// paths of the group would have drawn the same: pₖ = f(xₖ → yⱼ) σ e^(−σs) / d², of phase function f, extinction σ and
+/// a way of d of which s lies in the medium; for the direction that was drawn at yⱼ, times f(xₖ → yⱼ → ω). If yⱼ is
+/// matt, what it reflects is the same for all, and its cosine stands for σ. Of several colours e^(−σs) is the mean, by
+/// how likely each is to have drawn what came before.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Parts {
     pub first: Option<First>,
@@ -61,7 +57,7 @@ pub(super) struct First {
     /// what is found.
     among: ((u32, u32), u32),
     /// Whether beyond that shape space is clear.
-    is_alone: bool,
+    pub is_alone: bool,
 }
 
 /// A second point, which gives.
@@ -79,36 +75,6 @@ pub(super) struct Second {
     onward: DVec3,
     /// What the path found there; of a surface, what it reflects.
     pub found: Rgb,
-}
-
-/// A point of a medium that scatters the same into all directions: what arrives there is told, and not from where.
-struct AllWays(Scattering);
-
-impl AllWays {
-    /// In whose place each phase function is weighed beside asking for light: one weight for all that take.
-    const PDF: f64 = 0.25 * FRAC_1_PI;
-}
-
-impl Encounter for AllWays {
-    fn position(&self) -> DVec3 {
-        self.0.position()
-    }
-
-    fn ray_origin(&self) -> RayOrigin {
-        self.0.ray_origin()
-    }
-
-    fn light_context(&self) -> LightSampleContext {
-        self.0.light_context()
-    }
-
-    fn evaluate(&self, _direction: DVec3) -> (Rgb, f64) {
-        (Rgb::ONE, Self::PDF)
-    }
-
-    fn sample(&self, choice: impl FnOnce() -> f64, u: [f64; 2]) -> Option<BsdfSample> {
-        self.0.sample(choice, u).map(|drawn| BsdfSample::new(drawn.wi, Rgb::ONE, Self::PDF))
-    }
 }
 
 impl First {
@@ -129,6 +95,13 @@ impl First {
 }
 
 impl Second {
+    /// A point of the medium, and what arrives from a light, and the way on.
+    pub fn of_medium(position: DVec3, (to_light, lit): (DVec3, Rgb), onward: DVec3) -> Self {
+        let (normal, inside, is_beyond) = (None, 1.0, false);
+        let departure = RayOrigin::free(position);
+        Self { departure, normal, inside, is_beyond, to_light, lit, onward, found: Rgb::ZERO }
+    }
+
     /// A surface to which a path has come by a `t` of its ray, if that reflects the same to all.
     pub fn of_surface<B: Bsdf>(here: &SurfaceInteraction<B>, path: &PathState, t: f64) -> Option<Self> {
         let is_matt = here.bsdf().diffuse().is_some() && here.is_flat() && !here.is_bent() && here.cosine() > 0.0;
@@ -160,50 +133,6 @@ impl Second {
                 if is_end { 1.0 - hit.t } else { 0.0 }
             }
             _ => 0.0,
-        }
-    }
-}
-
-impl<A: Asks> Walker<'_, A> {
-    /// Scatters a path where what it finds is shared, and says whether it goes on.
-    pub(super) async fn scatter_shared(
-        &self,
-        path: &mut PathState,
-        here: &Scattering,
-        hero: usize,
-        numbers: &mut Numbers<'_>,
-        cancel: &Cancel,
-    ) -> Option<(Second, bool)> {
-        if self.settings.max_depth.is_some_and(|most| path.bounce >= most) {
-            return None;
-        }
-        path.share();
-        let (here, media) = (AllWays(*here), path.media);
-        let asked = self.direct_light(&here, path, |_| media, hero, numbers, cancel).await;
-        let (to_light, lit) = asked.map_or((DVec3::X, Rgb::ZERO), |(light, arrives)| (light.direction, arrives));
-        let u = numbers.ray.direction();
-        let next = here.sample(|| 0.0, numbers.two(u))?;
-        let chance = numbers.ray.roulette();
-        let goes_on = self.go_on(path, &here, &next, media, numbers.one(chance), self.never_ends());
-        let second = Second {
-            departure: here.ray_origin(),
-            normal: None,
-            inside: 1.0,
-            is_beyond: false,
-            to_light,
-            lit,
-            onward: next.wi,
-            found: Rgb::ZERO,
-        };
-        Some((second, goes_on))
-    }
-
-    /// Whether a surface that a path has come to from a first point lies in the same medium, or next beyond its end.
-    pub(super) fn is_within_reach(&self, first: &First, path: &PathState) -> bool {
-        match path.passed {
-            0 => true,
-            1 => first.is_alone && path.media.depth() == 0 && self.scene.surrounding().is_none(),
-            _ => false,
         }
     }
 }

@@ -243,8 +243,8 @@ impl<'a, A: Asks> Walker<'a, A> {
         self.go_on(path, here, &next, media, numbers.one(chance), self.never_ends())
     }
 
-    /// Scatters a path at a surface, and says whether it goes on. Where what it finds from there on may be shared, it is
-    /// told apart from what is its own.
+    /// Scatters a path at a surface, and says whether it goes on. Where what it finds from there on may be shared,
+    /// that is told apart from what is its own.
     #[allow(clippy::too_many_arguments)]
     async fn reflect(
         &self,
